@@ -1,0 +1,117 @@
+// The memory that a captured program shares with the head: chunks of encoded commands one way,
+// answers and credits the other way. Plain data and atomics: it is mapped into foreign processes.
+//
+//   app thread → chunk (bump pointer)  → publication (chunk, range, stream) → head
+//   head       → freed chunk index     → app
+//   head       → reply ring (bytes)    → the one app thread that asked
+//
+// Producer side of publications and consumer side of freed chunks are guarded by one lock in the app
+// process; so both rings have one producer and one consumer each.
+//
+// Layout of the mapping: CaptureHeader | publications | freed | reply bytes | chunks.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+namespace mural::capture {
+
+constexpr uint32_t kMagic = 0x4d55524c; // "MURL"
+constexpr uint32_t kVersion = 1;
+constexpr uint32_t kChunkBytes = 256 * 1024;
+constexpr uint32_t kDefaultChunks = 256; // 64 MiB
+constexpr uint32_t kReplyBytes = 4 * 1024 * 1024;
+constexpr int kMaxWindows = 256;
+
+// A range of one chunk that is complete and may be read.
+struct Publication {
+    uint32_t chunk;
+    uint32_t beginBytes;
+    uint32_t endBytes;
+    uint16_t stream;    // one per app thread
+    uint16_t lastOfChunk; // 1: the chunk is free once this range has been read
+};
+static_assert(sizeof(Publication) == 16);
+
+struct alignas(64) CaptureHeader {
+    uint32_t magic;
+    uint32_t version;
+    uint32_t chunkCount;       // = capacity of both index rings, a power of two
+    uint32_t replyCapacity;    // bytes, a power of two
+    uint64_t publicationsAt;   // offsets in bytes from the start of the mapping
+    uint64_t freedAt;
+    uint64_t repliesAt;
+    uint64_t chunksAt;
+    uint64_t totalBytes;
+
+    alignas(64) std::atomic<uint32_t> publishedTail; // app writes; futex: the head sleeps on it
+    alignas(64) std::atomic<uint32_t> publishedHead; // head writes
+    alignas(64) std::atomic<uint32_t> freedTail;     // head writes; futex: the app sleeps on it
+    alignas(64) std::atomic<uint32_t> freedHead;     // app writes
+    alignas(64) std::atomic<uint32_t> replyTail;     // head writes, bytes; futex
+    alignas(64) std::atomic<uint32_t> replyHead;     // app writes, bytes; futex: head may wait for room
+
+    // Frames that the nodes have finished, over all windows: the credit of the frame latency. futex.
+    alignas(64) std::atomic<uint32_t> framesDone;
+    std::atomic<uint32_t> framesSubmitted; // app writes
+    // Frames of the app's own window that are on the screen (--display app). futex.
+    std::atomic<uint32_t> framesShown;
+
+    // Set by the head when it ends the session in order; the app then goes on alone.
+    alignas(64) std::atomic<uint32_t> headGone;
+
+    // Results of `--verify`: written by the app, read by the head for the report.
+    alignas(64) std::atomic<uint64_t> verifiedFrames;
+    std::atomic<uint64_t> verifiedPixels;
+    std::atomic<uint64_t> differingPixels;
+    std::atomic<uint32_t> largestDifference;
+    // Counters of the app's side, for the report.
+    std::atomic<uint64_t> callsUnsupported;
+    std::atomic<uint64_t> roundTrips;
+    std::atomic<uint64_t> waitNs; // app thread blocked on credit or ring space
+};
+
+inline Publication* publications(CaptureHeader* h) {
+    return reinterpret_cast<Publication*>(reinterpret_cast<std::byte*>(h) + h->publicationsAt);
+}
+inline uint32_t* freed(CaptureHeader* h) {
+    return reinterpret_cast<uint32_t*>(reinterpret_cast<std::byte*>(h) + h->freedAt);
+}
+inline std::byte* replies(CaptureHeader* h) {
+    return reinterpret_cast<std::byte*>(h) + h->repliesAt;
+}
+inline std::byte* chunk(CaptureHeader* h, uint32_t index) {
+    return reinterpret_cast<std::byte*>(h) + h->chunksAt + size_t{index} * kChunkBytes;
+}
+
+// The handshake on the session's Unix socket (SOCK_STREAM, abstract name from MURAL_SESSION).
+// App → head: Hello. Head → app: Welcome with the mapping's memfd attached (SCM_RIGHTS), then
+// Welcome.extensionBytes bytes: the GL extensions that all nodes have, separated by spaces.
+// Afterwards the socket only says who is alive.
+struct Hello {
+    uint32_t magic;
+    uint32_t version;
+    uint64_t registryDigest; // of the command table: both ends must be of one build
+    int32_t pid;
+    uint32_t reserved;
+};
+
+enum Policy : uint32_t { kPolicyState = 0, kPolicyFull = 1 };
+
+struct Welcome {
+    uint32_t magic;
+    uint32_t version;
+    uint32_t clientId;
+    uint32_t policy;
+    uint32_t latency;      // frames that the app may be ahead of the nodes
+    uint32_t verifyEvery;  // 0: never; n: compare every n-th frame with the local picture
+    uint32_t nodeCount;    // render nodes (1: no gathering needed for copies)
+    uint32_t displayApp;   // 1: pictures come back into the app's own window
+    uint32_t nodeGlVersion; // lowest GL version of the nodes, 10 * major + minor; 0 unknown
+    uint32_t refused;      // not 0: the session is not for you; a text of extensionBytes follows instead
+    uint32_t extensionBytes;
+    uint32_t reserved;
+};
+
+} // namespace mural::capture

@@ -1,0 +1,39 @@
+// Monotonic time in nanoseconds and deadlines: every wait in Mural has one.
+#pragma once
+
+#include <cstdint>
+#include <ctime>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+namespace mural {
+
+constexpr int64_t kNsPerMs = 1'000'000;
+constexpr int64_t kNsPerS = 1'000'000'000;
+
+// By the raw system call: in a captured program clock_gettime may be replaced (virtual clocks).
+inline int64_t monotonicNowNs() {
+    timespec t{};
+    syscall(SYS_clock_gettime, CLOCK_MONOTONIC, &t);
+    return static_cast<int64_t>(t.tv_sec) * kNsPerS + t.tv_nsec;
+}
+
+class Deadline {
+public:
+    static Deadline inMs(int64_t ms) { return Deadline(monotonicNowNs() + ms * kNsPerMs); }
+    static Deadline never() { return Deadline(INT64_MAX); }
+
+    [[nodiscard]] bool passed() const { return atNs_ != INT64_MAX && monotonicNowNs() >= atNs_; }
+    // Time left in ns, 0 when passed; capped so that callers can wait in slices.
+    [[nodiscard]] int64_t leftNs(int64_t capNs = INT64_MAX) const {
+        if (atNs_ == INT64_MAX) return capNs;
+        const int64_t left = atNs_ - monotonicNowNs();
+        return left < 0 ? 0 : (left < capNs ? left : capNs);
+    }
+
+private:
+    explicit Deadline(int64_t atNs) : atNs_(atNs) {}
+    int64_t atNs_;
+};
+
+} // namespace mural

@@ -1,0 +1,71 @@
+// Contexts and window-like surfaces of a render node, over EGL (surfaceless), OSMesa or GLX.
+// All calls come from the one thread that replays (one per pipe).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "common/result.hpp"
+
+namespace mural::gl {
+
+using Proc = void (*)();
+
+// What a default framebuffer is made of; bits per channel.
+struct SurfaceConfig {
+    int width = 1;
+    int height = 1;
+    int red = 8, green = 8, blue = 8, alpha = 0;
+    int depth = 24, stencil = 8;
+    int samples = 0;
+    int accum = 0;
+    bool srgb = false;
+    bool stereo = false;
+};
+
+enum class Api { Desktop, Es1, Es2 };
+
+struct ContextConfig {
+    Api api = Api::Desktop;
+    int major = 1; // the version that the app's own context has; what comes out may be later, never earlier
+    int minor = 0;
+    bool core = false;
+    bool forwardCompatible = false;
+    bool debug = false;
+    bool robust = false;
+    SurfaceConfig surface; // contexts are made for a kind of surface
+};
+
+// Off-screen memory with the colour, depth and stencil buffers of a window.
+class Surface {
+public:
+    virtual ~Surface() = default;
+    [[nodiscard]] virtual int width() const = 0;
+    [[nodiscard]] virtual int height() const = 0;
+    // True: only one colour buffer, named GL_FRONT (EGL pbuffers of Mesa, OSMesa). The replay then
+    // maps GL_BACK* and GL_FRONT* to it.
+    [[nodiscard]] virtual bool singleBuffered() const = 0;
+};
+
+class Context {
+public:
+    virtual ~Context() = default;
+};
+
+class Platform {
+public:
+    virtual ~Platform() = default;
+    virtual Result<std::unique_ptr<Surface>> createSurface(const SurfaceConfig& config) = 0;
+    virtual Result<std::unique_ptr<Context>> createContext(const ContextConfig& config, Context* shareWith) = 0;
+    // Null context: release. Null surfaces: surfaceless (or a 1×1 dummy where that is unknown).
+    virtual Result<void> makeCurrent(Context* context, Surface* draw, Surface* read) = 0;
+    // Entry point of the current API, null when unknown.
+    virtual Proc getProcAddress(const char* name) = 0;
+    [[nodiscard]] virtual std::string describe() const = 0; // e.g. "EGL surfaceless, Mesa 22.3.6"
+};
+
+// name: "egl", "osmesa", "glx" or "auto" (EGL, then OSMesa). Errors say what is missing and how to get it.
+Result<std::unique_ptr<Platform>> openPlatform(const std::string& name);
+
+} // namespace mural::gl

@@ -1,0 +1,64 @@
+// What the user asked for: filled from the command line by `mural run`, handed to the head as one
+// JSON line. Every field has the default of a run without options.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/result.hpp"
+
+namespace mural {
+
+enum class Tiling { Exact, Lean };
+enum class Display { None, App, Windows };
+enum class CapturePolicy { State, Full };
+
+struct SessionConfig {
+    std::string session;          // abstract Unix socket name that programs connect to
+    int columns = 1;              // --tiles CxR
+    int rows = 1;
+    int localNodes = 0;           // --local-nodes; 0: min(columns * rows, 4) when there are no hosts
+    std::vector<std::string> hosts; // --nodes
+    std::string launchCommand = "ssh -o BatchMode=yes"; // --launch: prefix that runs a command on a host
+    std::string remoteMural;      // --remote-mural: path of mural on the hosts; empty: this one's path
+    Tiling tiling = Tiling::Exact;
+    Display display = Display::None;
+    CapturePolicy policy = CapturePolicy::State;
+    std::string glBackend = "auto"; // --gl: auto, egl, osmesa, glx
+    int latency = 1;              // frames the program may be ahead of the wall
+    int verifyEvery = 0;          // --verify[=n]
+    int64_t frames = 0;           // --frames; 0: until the program ends
+    std::string out;              // --out: folder (PNG) or video file; empty: none
+    std::vector<int64_t> saveFrames; // --save 1,30,90: only these; empty: all
+    int width = 0, height = 0;    // --size; 0: the program's own
+    bool fullScreen = false;      // --fullscreen: wall windows without borders, one per monitor
+    int windowX = 0, windowY = 0; // --position of the wall's upper left corner
+    bool placeThreads = true;     // --no-placement turns it off
+    bool explain = false;
+    std::string displayName;      // X display of the wall windows and of the app's window
+};
+
+std::string toJson(const SessionConfig& config); // one line
+Result<SessionConfig> sessionConfigFromJson(const std::string& line);
+
+// What one node is told first (HeadCommand::Setup).
+struct NodeSetup {
+    int node = 0;
+    int nodeCount = 1;
+    int columns = 1, rows = 1;
+    int regionColumn = 0, regionRow = 0, regionColumns = 1, regionRows = 1;
+    Tiling tiling = Tiling::Exact;
+    std::string glBackend = "auto";
+    bool sendPictures = false;    // Picture messages to the head at every swap
+    bool wallWindows = false;     // open one window per tile
+    bool fullScreen = false;
+    int windowX = 0, windowY = 0;
+    bool placeThreads = true;
+    std::string displayName;
+};
+
+std::string toJson(const NodeSetup& setup);
+Result<NodeSetup> nodeSetupFromJson(const std::string& line);
+
+} // namespace mural

@@ -1,0 +1,125 @@
+// The stream from the head to the render nodes, and the messages back. Little-endian, 4-byte aligned.
+// Grammar and versions: docs/wire-format.md.
+//
+//   stream  = Packet*
+//   Packet  = PacketHeader payload[sizeBytes]
+//   payload of a packet of a capture stream = Record*
+//   Record  = u32 header (low 16 bits opcode, high 16 bits length in 4-byte words, header included;
+//             0xffff: the next u32 is the length in words), arguments
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace mural::wire {
+
+constexpr uint32_t kMagic = 0x4d52534d; // "MSRM"
+constexpr uint32_t kVersion = 1;
+
+// Which capture stream a packet belongs to: client (app process) and thread of it.
+// streamOf(0, 0) is the head's own stream: its payload is one HeadCommand.
+constexpr uint32_t streamOf(uint32_t client, uint32_t thread) { return client << 16 | thread; }
+constexpr uint32_t clientOf(uint32_t stream) { return stream >> 16; }
+
+struct PacketHeader {
+    uint32_t sizeBytes; // of the payload
+    uint32_t stream;
+};
+constexpr uint32_t kMaxPacketBytes = 1u << 20;
+
+// First word of a packet of the head's own stream.
+enum class HeadCommand : uint32_t {
+    Setup = 1,      // json: tiles, regions, outputs, backend, rewriting mode (nodes/node/setup.hpp)
+    ClientGone = 2, // u32 client: free its contexts
+    Finish = 3,     // no more packets: answer Bye and exit
+};
+
+// Node → head.
+enum class NodeMessage : uint32_t {
+    Ready = 1,     // json: host, pid, renderer, glVersion, extensions, threads
+    Answer = 2,    // AnswerHeader + bytes
+    FrameDone = 3, // FrameDoneMessage
+    Picture = 4,   // PictureHeader + rows, when the picture store is not shared memory
+    Log = 5,       // text: one line for the user
+    Bye = 6,       // json: totals (commands, GL errors, replay time)
+};
+
+struct MessageHeader {
+    uint32_t type; // NodeMessage
+    uint32_t sizeBytes;
+};
+
+// Part of the answer to Op::Request… of request `requestId`.
+struct AnswerHeader {
+    uint32_t client;
+    uint32_t requestId;
+    uint32_t kind;       // AnswerKind
+    uint32_t groupBytes; // bytes per pixel (rectangles)
+    int32_t x, y, w, h;  // the part of the asked rectangle that follows (rectangles)
+    uint32_t first;      // 1: this node is the one that answers for what all nodes hold alike
+    uint32_t last;       // 1: nothing more comes from this node for this request
+};
+enum class AnswerKind : uint32_t {
+    Rectangle = 1, // disjoint parts of a picture, each from the node that drew it
+    Bytes = 2,     // all nodes hold the same: the first living node's bytes count
+    Sum = 3,       // u64 values, added over nodes
+};
+
+struct FrameDoneMessage {
+    uint32_t client;
+    uint32_t window;
+    uint32_t frame;    // number of the frame of this client, from 1
+    uint32_t width;    // of the window, pixels
+    uint32_t height;
+    uint32_t reserved;
+    uint64_t replayNs; // CPU time of the replay thread since the frame before
+    uint64_t readbackNs;
+};
+
+struct PictureHeader {
+    uint32_t client;
+    uint32_t window;
+    uint32_t frame;
+    int32_t x, y, w, h; // lower left origin, rows bottom first, BGRA 8 bits, tightly packed
+    uint32_t windowWidth, windowHeight;
+};
+
+// Mural's own opcodes in capture streams: below kFirstGlOpcode; GL commands have theirs from
+// streamcodec/registry/opcodes.lock.
+enum Op : uint16_t {
+    kOpInvalid = 0,
+    kOpBlobBegin = 1,      // u64 sizeBytes: a value too large for a record; queued until a command takes it
+    kOpBlobData = 2,       // bytes (length from the record; u32 count first)
+    kOpCreateContext = 3,  // u32 context, u32 shareContext (0 none), u32 api, u32 versionMajor, minor, u32 profile, u32 flags, u32 surfaceConfig index
+    kOpDestroyContext = 4, // u32 context
+    kOpMakeCurrent = 5,    // u32 context (0 none), u32 drawWindow, u32 readWindow
+    kOpWindow = 6,         // u32 window, WindowConfig: created or resized
+    kOpDestroyWindow = 7,  // u32 window
+    kOpSwap = 8,           // u32 window, u32 frame
+    kOpClientArrays = 9,   // client memory of the following draw (streamcodec/client_arrays.hpp)
+    kOpRequestPixels = 10, // u32 request, i32 x y w h, u32 format, u32 type, u32 groupBytes
+    kOpRequestTexImage = 11,
+    kOpRequestBuffer = 12,
+    kOpRequestQuery = 13,
+    kOpFillWindow = 14,    // i32 x y w h, u32 planes, bytes: pixels of other tiles, before a copy
+    kOpProgramLayout = 15, // after a link: u32 program, locations by name
+    kOpBufferBytes = 16,   // u32 buffer, u64 offset, bytes: written through a mapping
+    kOpFinish = 17,        // u32 request: answer when all before is done
+    kOpFrontPicture = 18,  // u32 window, u32 frame: like Swap for a single-buffered window or front drawing
+    kOpLastOwn = 63,
+};
+constexpr uint16_t kFirstGlOpcode = 64;
+
+// What the app's drawable looks like; the nodes make their surfaces alike.
+struct WindowConfig {
+    uint32_t width, height; // pixels
+    uint8_t red, green, blue, alpha;
+    uint8_t depth, stencil, samples, doubleBuffer;
+    uint8_t accum, stereo, srgb, isPbuffer;
+    uint32_t nativeLow, nativeHigh; // X window id, 0 when there is none
+};
+static_assert(sizeof(WindowConfig) == 28);
+
+enum class Api : uint32_t { Desktop = 0, Es1 = 1, Es2 = 2 }; // Es2: ES 2 and later
+
+} // namespace mural::wire
