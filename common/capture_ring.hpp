@@ -8,6 +8,8 @@
 // Producer side of publications and consumer side of freed chunks are guarded by one lock in the app
 // process; so both rings have one producer and one consumer each.
 //
+// At the start every chunk's index lies in the freed ring: the app takes its chunks from there only.
+//
 // Layout of the mapping: CaptureHeader | publications | freed | reply bytes | chunks.
 #pragma once
 

@@ -65,6 +65,20 @@ enum class AnswerKind : uint32_t {
     Sum = 3,       // u64 values, added over nodes
 };
 
+// In the reply ring of the client, before each answer (head → program). The bytes follow at once; the
+// next header begins right after them (no padding). Rectangles: rows of w * groupBytes bytes, tightly
+// packed, lowest row first; what no node sent is 0.
+struct ReplyHeader {
+    uint32_t requestId;
+    uint32_t kind;       // AnswerKind
+    uint64_t sizeBytes;  // of what follows
+    int32_t x, y, w, h;  // the union of the parts (rectangles)
+    uint32_t groupBytes; // bytes per pixel (rectangles)
+    uint32_t failed;     // 1: no node answered; sizeBytes is 0 then
+};
+static_assert(sizeof(ReplyHeader) == 40);
+
+// A node sends the Picture of a frame before its FrameDone: what has no Picture by then has none.
 struct FrameDoneMessage {
     uint32_t client;
     uint32_t window;
@@ -82,7 +96,9 @@ struct PictureHeader {
     uint32_t frame;
     int32_t x, y, w, h; // lower left origin, rows bottom first, BGRA 8 bits, tightly packed
     uint32_t windowWidth, windowHeight;
+    uint32_t nativeLow, nativeHigh; // WindowConfig's X window id, 0 when there is none
 };
+static_assert(sizeof(PictureHeader) == 44);
 
 // Mural's own opcodes in capture streams: below kFirstGlOpcode; GL commands have theirs from
 // streamcodec/registry/opcodes.lock.

@@ -1,0 +1,197 @@
+// JSON of the session's configuration: one list of fields per struct serves both directions, so a
+// field can't be written under one name and read under another.
+#include "nodes/session/session_config.hpp"
+
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <type_traits>
+#include <utility>
+
+namespace mural {
+namespace {
+
+using Json = nlohmann::json;
+
+template <class E> struct EnumNames;
+template <> struct EnumNames<Tiling> {
+    static constexpr std::pair<Tiling, const char*> kAll[] = {{Tiling::Exact, "exact"},
+                                                              {Tiling::Lean, "lean"}};
+};
+template <> struct EnumNames<Display> {
+    static constexpr std::pair<Display, const char*> kAll[] = {
+        {Display::None, "none"}, {Display::App, "app"}, {Display::Windows, "windows"}};
+};
+template <> struct EnumNames<CapturePolicy> {
+    static constexpr std::pair<CapturePolicy, const char*> kAll[] = {
+        {CapturePolicy::State, "state"}, {CapturePolicy::Full, "full"}};
+};
+
+template <class Config, class Visitor>
+    requires std::is_same_v<std::remove_const_t<Config>, SessionConfig>
+void visitFields(Config& c, Visitor&& visit) {
+    visit("session", c.session);
+    visit("columns", c.columns, 1);
+    visit("rows", c.rows, 1);
+    visit("localNodes", c.localNodes, 0);
+    visit("hosts", c.hosts);
+    visit("launchCommand", c.launchCommand);
+    visit("remoteMural", c.remoteMural);
+    visit("tiling", c.tiling);
+    visit("display", c.display);
+    visit("policy", c.policy);
+    visit("glBackend", c.glBackend);
+    visit("latency", c.latency, 0);
+    visit("verifyEvery", c.verifyEvery, 0);
+    visit("frames", c.frames, 0);
+    visit("out", c.out);
+    visit("saveFrames", c.saveFrames, 1);
+    visit("width", c.width, 0);
+    visit("height", c.height, 0);
+    visit("fullScreen", c.fullScreen);
+    visit("windowX", c.windowX);
+    visit("windowY", c.windowY);
+    visit("placeThreads", c.placeThreads);
+    visit("explain", c.explain);
+    visit("displayName", c.displayName);
+}
+
+template <class Setup, class Visitor>
+    requires std::is_same_v<std::remove_const_t<Setup>, NodeSetup>
+void visitFields(Setup& s, Visitor&& visit) {
+    visit("node", s.node, 0);
+    visit("nodeCount", s.nodeCount, 1);
+    visit("columns", s.columns, 1);
+    visit("rows", s.rows, 1);
+    visit("regionColumn", s.regionColumn, 0);
+    visit("regionRow", s.regionRow, 0);
+    visit("regionColumns", s.regionColumns, 1);
+    visit("regionRows", s.regionRows, 1);
+    visit("tiling", s.tiling);
+    visit("glBackend", s.glBackend);
+    visit("sendPictures", s.sendPictures);
+    visit("wallWindows", s.wallWindows);
+    visit("fullScreen", s.fullScreen);
+    visit("windowX", s.windowX);
+    visit("windowY", s.windowY);
+    visit("placeThreads", s.placeThreads);
+    visit("displayName", s.displayName);
+}
+
+template <class T> Json valueToJson(const T& value) {
+    if constexpr (std::is_enum_v<T>) {
+        for (const auto& [e, name] : EnumNames<T>::kAll)
+            if (e == value) return name;
+        return nullptr;
+    } else {
+        return value;
+    }
+}
+
+// Each reader returns what the value must be, empty when it is that.
+std::string readValue(const Json& j, std::string& into, int64_t) {
+    if (!j.is_string()) return "a text";
+    into = j.get<std::string>();
+    return {};
+}
+
+std::string readValue(const Json& j, bool& into, int64_t) {
+    if (!j.is_boolean()) return "true or false";
+    into = j.get<bool>();
+    return {};
+}
+
+template <class Int>
+    requires std::is_integral_v<Int>
+std::string readValue(const Json& j, Int& into, int64_t least) {
+    const int64_t lowest = std::max<int64_t>(least, std::numeric_limits<Int>::min());
+    const int64_t highest = std::numeric_limits<Int>::max();
+    const std::string wanted =
+        "a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest);
+    if (!j.is_number_integer()) return wanted;
+    if (j.is_number_unsigned() && j.get<uint64_t>() > static_cast<uint64_t>(highest)) return wanted;
+    const auto value = j.get<int64_t>();
+    if (value < lowest || value > highest) return wanted;
+    into = static_cast<Int>(value);
+    return {};
+}
+
+template <class E>
+    requires std::is_enum_v<E>
+std::string readValue(const Json& j, E& into, int64_t) {
+    std::string wanted = "one of";
+    for (const auto& [e, name] : EnumNames<E>::kAll) {
+        if (j.is_string() && j.get_ref<const std::string&>() == name) {
+            into = e;
+            return {};
+        }
+        wanted += std::string(" ") + name;
+    }
+    return wanted;
+}
+
+template <class T> std::string readValue(const Json& j, std::vector<T>& into, int64_t least) {
+    if (!j.is_array()) return "a list";
+    into.clear();
+    for (const Json& entry : j) {
+        T value{};
+        const std::string wanted = readValue(entry, value, least);
+        if (!wanted.empty()) return "a list, each entry " + wanted;
+        into.push_back(std::move(value));
+    }
+    return {};
+}
+
+template <class Config> std::string write(const Config& config) {
+    Json json = Json::object();
+    visitFields(config, [&](const char* name, const auto& value, int64_t = 0) {
+        json[name] = valueToJson(value);
+    });
+    // Paths need not be UTF-8; a replaced character is better than an exception.
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+template <class Config> Result<Config> read(const std::string& line, const std::string& what) {
+    Json json = Json::parse(line, nullptr, false);
+    if (!json.is_object()) {
+        return Error{what + " is not a JSON object: " + line.substr(0, 60) +
+                     "; both ends must be of one build of Mural"};
+    }
+    Config config;
+    std::string error;
+    visitFields(config, [&](const char* name, auto& value, int64_t least = INT64_MIN) {
+        const auto found = json.find(name);
+        if (found == json.end()) return;
+        const std::string wanted = readValue(*found, value, least);
+        if (!wanted.empty() && error.empty())
+            error = what + ": field " + name + " must be " + wanted;
+        json.erase(found);
+    });
+    if (!error.empty()) return Error{error};
+    if (!json.empty()) {
+        return Error{what + ": unknown field " + json.begin().key() +
+                     "; both ends must be of one build of Mural"};
+    }
+    return config;
+}
+
+} // namespace
+
+std::string toJson(const SessionConfig& config) { return write(config); }
+
+Result<SessionConfig> sessionConfigFromJson(const std::string& line) {
+    return read<SessionConfig>(line, "session configuration");
+}
+
+std::string toJson(const NodeSetup& setup) { return write(setup); }
+
+Result<NodeSetup> nodeSetupFromJson(const std::string& line) {
+    auto setup = read<NodeSetup>(line, "node setup");
+    if (!setup) return setup;
+    const bool inside = setup->node < setup->nodeCount &&
+                        setup->regionColumns <= setup->columns - setup->regionColumn &&
+                        setup->regionRows <= setup->rows - setup->regionRow;
+    if (!inside) return Error{"node setup: the region lies outside of the tile grid"};
+    return setup;
+}
+
+} // namespace mural

@@ -1,0 +1,110 @@
+#include "nodes/session/session_config.hpp"
+#include "nodes/session/session_secret.hpp"
+
+#include <gtest/gtest.h>
+
+namespace mural {
+namespace {
+
+TEST(SessionConfig, everyFieldSurvivesARoundTrip) {
+    SessionConfig c;
+    c.session = "mural-7";
+    c.columns = 3;
+    c.rows = 5;
+    c.localNodes = 2;
+    c.hosts = {"a", "b c"};
+    c.launchCommand = "rsh";
+    c.remoteMural = "/opt/mural";
+    c.tiling = Tiling::Lean;
+    c.display = Display::App;
+    c.policy = CapturePolicy::Full;
+    c.glBackend = "osmesa";
+    c.latency = 0;
+    c.verifyEvery = 4;
+    c.frames = int64_t{1} << 40;
+    c.out = "out \"quoted\"";
+    c.saveFrames = {1, 30, 90};
+    c.width = 640;
+    c.height = 480;
+    c.fullScreen = true;
+    c.windowX = -10;
+    c.windowY = 20;
+    c.placeThreads = false;
+    c.explain = true;
+    c.displayName = ":7";
+    const std::string json = toJson(c);
+    EXPECT_EQ(json.find('\n'), std::string::npos);
+    auto back = sessionConfigFromJson(json);
+    ASSERT_TRUE(back.ok()) << back.error().message;
+    EXPECT_EQ(toJson(*back), json);
+    EXPECT_EQ(back.value().saveFrames, c.saveFrames);
+    EXPECT_EQ(back.value().hosts, c.hosts);
+    EXPECT_EQ(back.value().display, Display::App);
+    EXPECT_NE(json, toJson(SessionConfig{}));
+}
+
+TEST(SessionConfig, missingFieldsKeepTheirDefaults) {
+    const auto c = sessionConfigFromJson(R"({"session":"s"})");
+    ASSERT_TRUE(c.ok());
+    EXPECT_EQ(c.value().latency, 1);
+    EXPECT_EQ(c.value().launchCommand, "ssh -o BatchMode=yes");
+}
+
+TEST(SessionConfig, errorsNameTheField) {
+    const std::pair<const char*, const char*> cases[] = {
+        {R"({"colums":2})", "colums"},
+        {R"({"columns":"2"})", "columns"},
+        {R"({"columns":0})", "columns"},
+        {R"({"columns":2.5})", "columns"},
+        {R"({"columns":4294967296})", "columns"},
+        {R"({"frames":18446744073709551615})", "frames"},
+        {R"({"tiling":"rough"})", "exact lean"},
+        {R"({"hosts":["a",1]})", "hosts"},
+        {R"({"saveFrames":[0]})", "saveFrames"},
+        {R"({"fullScreen":1})", "fullScreen"},
+        {R"([1])", "not a JSON object"},
+        {R"({"columns":)", "not a JSON object"},
+        {"", "not a JSON object"},
+    };
+    for (const auto& [json, part] : cases) {
+        const auto c = sessionConfigFromJson(json);
+        ASSERT_FALSE(c.ok()) << json;
+        EXPECT_NE(c.error().message.find(part), std::string::npos) << c.error().message;
+        EXPECT_EQ(c.error().message.find('\n'), std::string::npos);
+    }
+}
+
+TEST(NodeSetup, roundTripAndRegionCheck) {
+    NodeSetup s;
+    s.node = 2;
+    s.nodeCount = 3;
+    s.columns = 4;
+    s.rows = 2;
+    s.regionColumn = 2;
+    s.regionColumns = 2;
+    s.regionRows = 2;
+    s.sendPictures = true;
+    auto back = nodeSetupFromJson(toJson(s));
+    ASSERT_TRUE(back.ok()) << back.error().message;
+    EXPECT_EQ(toJson(*back), toJson(s));
+    s.regionColumn = 3;
+    EXPECT_FALSE(nodeSetupFromJson(toJson(s)).ok());
+}
+
+TEST(SessionSecret, hexRoundTripAndComparison) {
+    auto a = makeSessionSecret();
+    auto b = makeSessionSecret();
+    ASSERT_TRUE(a.ok() && b.ok());
+    EXPECT_FALSE(sameSecret(*a, *b));
+    auto back = sessionSecretFromHex(toHex(*a) + "\n");
+    ASSERT_TRUE(back.ok());
+    EXPECT_TRUE(sameSecret(*a, *back));
+    SessionSecret other = *a;
+    other[31] ^= std::byte{1};
+    EXPECT_FALSE(sameSecret(*a, other));
+    EXPECT_FALSE(sessionSecretFromHex(toHex(*a).substr(1)).ok());
+    EXPECT_FALSE(sessionSecretFromHex(std::string(64, 'g')).ok());
+}
+
+} // namespace
+} // namespace mural
