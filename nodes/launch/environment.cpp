@@ -1,0 +1,158 @@
+#include "nodes/launch/environment.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <unistd.h>
+
+namespace mural::launch {
+
+namespace {
+
+constexpr std::string_view kPreload = "LD_PRELOAD";
+constexpr std::string_view kLibraryPath = "LD_LIBRARY_PATH";
+constexpr std::string_view kGlxVendor = "__GLX_VENDOR_LIBRARY_NAME";
+constexpr std::string_view kEglVendors = "__EGL_VENDOR_LIBRARY_FILENAMES";
+constexpr std::string_view kRealGlxVendor = "MURAL_REAL_GLX_VENDOR";
+constexpr std::string_view kRealEglVendors = "MURAL_REAL_EGL_VENDORS";
+constexpr std::string_view kSession = "MURAL_SESSION";
+constexpr std::string_view kOurVendor = "mural";
+
+std::string_view baseName(std::string_view path) {
+    const auto slash = path.rfind('/');
+    return slash == std::string_view::npos ? path : path.substr(slash + 1);
+}
+
+std::vector<std::string_view> split(std::string_view text, std::string_view separators) {
+    std::vector<std::string_view> parts;
+    size_t at = 0;
+    while ((at = text.find_first_not_of(separators, at)) != std::string_view::npos) {
+        const size_t end = std::min(text.find_first_of(separators, at), text.size());
+        parts.push_back(text.substr(at, end - at));
+        at = end;
+    }
+    return parts;
+}
+
+bool isOurEglList(std::string_view list) {
+    const auto files = split(list, ":");
+    return std::any_of(files.begin(), files.end(), [](auto f) { return baseName(f) == kEglVendorFileName; });
+}
+
+// Takes over a vendor variable and keeps the user's own value where the interposer finds it.
+void replaceVendor(Environment& environment, std::string_view name, std::string_view keptName, std::string_view ours, bool alreadyOurs) {
+    const auto before = environment.get(name);
+    if (!alreadyOurs) {
+        if (before && !before->empty()) {
+            environment.set(keptName, *before);
+        } else {
+            environment.unset(keptName);
+        }
+    }
+    environment.set(name, ours);
+}
+
+void restoreVendor(Environment& environment, std::string_view name, std::string_view keptName, bool isOurs) {
+    if (isOurs) {
+        if (const auto kept = environment.get(keptName)) {
+            environment.set(name, *kept);
+        } else {
+            environment.unset(name);
+        }
+    }
+    environment.unset(keptName);
+}
+
+} // namespace
+
+Environment Environment::current() {
+    std::vector<std::string> entries;
+    for (char** e = environ; *e != nullptr; ++e) entries.emplace_back(*e);
+    return Environment(std::move(entries));
+}
+
+std::optional<std::string> Environment::get(std::string_view name) const {
+    for (const std::string& e : entries_) {
+        if (e.size() > name.size() && e[name.size()] == '=' && std::string_view(e).starts_with(name)) {
+            return e.substr(name.size() + 1);
+        }
+    }
+    return std::nullopt;
+}
+
+void Environment::set(std::string_view name, std::string_view value) {
+    unset(name);
+    entries_.push_back(std::string(name) + "=" + std::string(value));
+}
+
+void Environment::unset(std::string_view name) {
+    std::erase_if(entries_, [name](const std::string& e) {
+        return e.size() > name.size() && e[name.size()] == '=' && std::string_view(e).starts_with(name);
+    });
+}
+
+std::string ownBinary() {
+    std::error_code failed;
+    const auto path = std::filesystem::read_symlink("/proc/self/exe", failed);
+    return failed ? std::string("mural") : path.string();
+}
+
+Result<CaptureLibrary> findCaptureLibrary(const std::string& muralBinary) {
+    namespace fs = std::filesystem;
+    const fs::path prefix = fs::path(muralBinary).parent_path().parent_path();
+    for (const char* folder : {"lib", "lib/mural"}) {
+        const fs::path library = prefix / folder / kCaptureLibraryName;
+        std::error_code failed;
+        if (fs::exists(library, failed)) {
+            return CaptureLibrary{library.string(), (prefix / folder / kEglVendorFileName).string()};
+        }
+    }
+    return Error{"the capture library " + (prefix / "lib" / kCaptureLibraryName).string() +
+                 " is missing; build all of Mural (cmake --build --preset release) or install it again"};
+}
+
+std::string withoutCapture(std::string_view preload) {
+    std::string kept;
+    for (const auto entry : split(preload, " :")) {
+        if (baseName(entry) == kCaptureLibraryName) continue;
+        if (!kept.empty()) kept += ' ';
+        kept += entry;
+    }
+    return kept;
+}
+
+std::string withCapture(std::string_view preload, std::string_view entry) {
+    std::string all = withoutCapture(preload);
+    if (!all.empty()) all += ' ';
+    return all += entry;
+}
+
+Result<void> addCapture(Environment& environment, const CaptureLibrary& library, const std::string& session) {
+    const std::string folder = library.library.substr(0, library.library.rfind('/'));
+    if (folder.find_first_of(":;") != std::string::npos) {
+        return Error{"the folder " + folder + " has a ':' or ';' in its name, which the loader cannot take; move Mural elsewhere"};
+    }
+    std::string entry = library.library;
+    if (entry.find_first_of(" \t\n") != std::string::npos) {
+        // LD_PRELOAD cannot hold blanks: name the library alone and let the loader search its folder.
+        entry = kCaptureLibraryName;
+        const std::string searched = environment.get(kLibraryPath).value_or("");
+        if (!(searched + ":").starts_with(folder + ":")) {
+            environment.set(kLibraryPath, searched.empty() ? folder : folder + ":" + searched);
+        }
+    }
+    environment.set(kPreload, withCapture(environment.get(kPreload).value_or(""), entry));
+    replaceVendor(environment, kGlxVendor, kRealGlxVendor, kOurVendor, environment.get(kGlxVendor) == kOurVendor);
+    replaceVendor(environment, kEglVendors, kRealEglVendors, library.eglVendorFile,
+                  isOurEglList(environment.get(kEglVendors).value_or("")));
+    environment.set(kSession, session);
+    return {};
+}
+
+void removeCapture(Environment& environment) {
+    restoreVendor(environment, kGlxVendor, kRealGlxVendor, environment.get(kGlxVendor) == kOurVendor);
+    restoreVendor(environment, kEglVendors, kRealEglVendors, isOurEglList(environment.get(kEglVendors).value_or("")));
+    environment.unset(kPreload);
+    environment.unset(kSession);
+}
+
+} // namespace mural::launch

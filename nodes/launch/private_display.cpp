@@ -1,0 +1,147 @@
+#include "nodes/launch/private_display.hpp"
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/mman.h>
+#include <unistd.h>
+#include <utility>
+#include <xcb/xcb.h>
+
+#include "nodes/launch/program_check.hpp"
+
+namespace mural::launch {
+
+namespace {
+
+constexpr int64_t kStartMs = 20'000;
+constexpr int64_t kEndMs = 3'000;
+constexpr int64_t kProbeMs = 5'000;
+
+class OwnedFd {
+public:
+    explicit OwnedFd(int fd) : fd_(fd) {}
+    OwnedFd(const OwnedFd&) = delete;
+    OwnedFd& operator=(const OwnedFd&) = delete;
+    ~OwnedFd() { reset(); }
+    void reset() {
+        if (fd_ >= 0) close(std::exchange(fd_, -1));
+    }
+    [[nodiscard]] int get() const { return fd_; }
+
+private:
+    int fd_;
+};
+
+// The number that Xvfb writes to its -displayfd once it listens; empty when it ended or took too long.
+std::string readDisplayNumber(int fd, ChildProcess& server) {
+    const Deadline deadline = Deadline::inMs(kStartMs);
+    std::string text;
+    while (!deadline.passed()) {
+        pollfd waiting{fd, POLLIN, 0};
+        if (poll(&waiting, 1, 50) > 0) {
+            char part[16];
+            const ssize_t n = read(fd, part, sizeof part);
+            if (n <= 0) return {};
+            text.append(part, static_cast<size_t>(n));
+            if (text.back() == '\n') return text.substr(0, text.size() - 1);
+        } else if (!server.running()) {
+            return {};
+        }
+    }
+    return {};
+}
+
+// The server's last words, in one line.
+std::string lastLine(int logFd) {
+    std::string text(4096, '\0');
+    const off_t size = lseek(logFd, 0, SEEK_END);
+    const off_t from = size > 4096 ? size - 4096 : 0;
+    const ssize_t n = pread(logFd, text.data(), text.size(), from);
+    text.resize(n > 0 ? static_cast<size_t>(n) : 0);
+    while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
+    const auto at = text.rfind('\n');
+    return at == std::string::npos ? text : text.substr(at + 1);
+}
+
+SpawnRequest serverRequest(const std::string& binary, int width, int height, const std::string& authority, int numberFd, int logFd) {
+    SpawnRequest request;
+    request.file = binary;
+    request.arguments = {"Xvfb", "-displayfd", std::to_string(numberFd), "-screen", "0",
+                         std::to_string(width) + "x" + std::to_string(height) + "x24",
+                         "-nolisten", "tcp", "-noreset", "-auth", authority,
+                         "+extension", "GLX", "+extension", "RANDR", "-s", "0"};
+    Environment environment = Environment::current();
+    removeCapture(environment);
+    request.environment = environment.entries();
+    request.keptFds = {numberFd};
+    request.outputFd = logFd;
+    request.errorFd = logFd;
+    request.ownSession = true; // Ctrl-C is for the program
+    request.signalWhenWeDie = SIGTERM;
+    return request;
+}
+
+} // namespace
+
+Result<std::unique_ptr<PrivateDisplay>> PrivateDisplay::start(int width, int height) {
+    const ProgramCheck binary = findProgram("Xvfb", Environment::current().get("PATH").value_or("/usr/bin:/bin"));
+    if (!binary.ok()) {
+        return Error{"Xvfb is needed to run a program without a display of its own size, and was not found; install Debian's package xvfb"};
+    }
+    auto authority = XAuthority::create();
+    if (!authority) return authority.error();
+    int number[2];
+    if (pipe2(number, O_CLOEXEC) != 0) return Error{"no pipe for Xvfb: " + std::string(std::strerror(errno))};
+    OwnedFd readEnd(number[0]);
+    OwnedFd writeEnd(number[1]);
+    const OwnedFd log(memfd_create("mural-xvfb-log", MFD_CLOEXEC));
+
+    std::unique_ptr<PrivateDisplay> display(new PrivateDisplay);
+    display->authority_ = std::move(authority.value());
+    auto server = ChildProcess::start(serverRequest(binary.path, width, height, display->authority_->path(), writeEnd.get(), log.get()));
+    if (!server) return server.error();
+    display->server_ = std::move(server.value());
+    writeEnd.reset();
+    const std::string text = readDisplayNumber(readEnd.get(), display->server_);
+    if (text.empty()) {
+        const std::string words = lastLine(log.get());
+        return Error{"Xvfb gave no private display of " + std::to_string(width) + "x" + std::to_string(height) +
+                     " pixels" + (words.empty() ? std::string() : ": " + words) + "; check free memory and /tmp/.X11-unix"};
+    }
+    display->name_ = ":" + text;
+    return display;
+}
+
+PrivateDisplay::~PrivateDisplay() {
+    if (server_.started()) server_.end(Deadline::inMs(kEndMs));
+}
+
+void PrivateDisplay::use(Environment& environment) const {
+    environment.set("DISPLAY", name_);
+    environment.set("XAUTHORITY", authority_->path());
+    environment.unset("WAYLAND_DISPLAY"); // toolkits prefer Wayland where they see it
+    environment.unset("WAYLAND_SOCKET");
+    if (environment.get("XDG_SESSION_TYPE")) environment.set("XDG_SESSION_TYPE", "x11");
+}
+
+bool displayUsable(const std::string& name) {
+    if (name.empty()) return false;
+    const pid_t pid = fork();
+    if (pid == 0) {
+        alarm(kProbeMs / 1000); // ends this child when the server does not answer
+        xcb_connection_t* connection = xcb_connect(name.c_str(), nullptr);
+        _exit(xcb_connection_has_error(connection) == 0 ? 0 : 1);
+    }
+    if (pid < 0) return false;
+    ChildProcess probe = ChildProcess::adopt(pid);
+    if (!probe.waitUntil(Deadline::inMs(kProbeMs + 1000))) {
+        probe.end(Deadline::inMs(0));
+        return false;
+    }
+    return probe.exitStatus() == 0;
+}
+
+} // namespace mural::launch
