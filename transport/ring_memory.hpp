@@ -1,0 +1,44 @@
+// The memory of one connection: two byte rings, one per direction, and what describes them.
+// Layout of the mapping: header | control of ring 0 | control of ring 1 | bytes of 0 | bytes of 1.
+// Side 0 (the one that made it) writes ring 0 and reads ring 1; side 1 the other way round.
+#pragma once
+
+#include <memory>
+
+#include "common/result.hpp"
+#include "transport/byte_ring.hpp"
+#include "transport/file_descriptor.hpp"
+
+namespace mural {
+
+class RingMemory {
+public:
+    // For both ends in one process. Capacity per direction, a power of two.
+    static Result<std::shared_ptr<RingMemory>> makePrivate(size_t capacityBytes);
+    // For two processes; memfd is then what the other process opens. Its size is sealed, so that no
+    // peer can make an access fault.
+    static Result<std::shared_ptr<RingMemory>> makeShared(size_t capacityBytes,
+                                                          FileDescriptor& memfd);
+    static Result<std::shared_ptr<RingMemory>> openShared(int memfd);
+
+    RingMemory(const RingMemory&) = delete;
+    RingMemory& operator=(const RingMemory&) = delete;
+    ~RingMemory();
+
+    [[nodiscard]] RingControl& control(int ring) const;
+    [[nodiscard]] std::byte* data(int ring) const;
+    [[nodiscard]] size_t capacityBytes() const { return capacityBytes_; }
+
+private:
+    RingMemory(void* base, size_t sizeBytes, size_t capacityBytes)
+        : base_(static_cast<std::byte*>(base))
+        , sizeBytes_(sizeBytes)
+        , capacityBytes_(capacityBytes) {}
+    static Result<std::shared_ptr<RingMemory>> map(int fd, size_t capacityBytes);
+
+    std::byte* base_;
+    size_t sizeBytes_;
+    size_t capacityBytes_;
+};
+
+} // namespace mural

@@ -1,0 +1,28 @@
+// Waiting for a socket, with a deadline.
+#pragma once
+
+#include <algorithm>
+#include <cerrno>
+#include <poll.h>
+
+#include "common/clock.hpp"
+
+namespace mural {
+
+// Returns the events that came (POLLHUP and POLLERR unasked), 0 when the deadline passed.
+inline short waitForSocket(int fd, short events, Deadline deadline) {
+    while (true) {
+        pollfd look{fd, events, 0};
+        const int64_t leftNs = deadline.leftNs(3600 * kNsPerS);
+        const int timeoutMs = static_cast<int>((leftNs + kNsPerMs - 1) / kNsPerMs);
+        const int ready = poll(&look, 1, timeoutMs);
+        if (ready > 0)
+            return look.revents;
+        if (ready < 0 && errno != EINTR && errno != EAGAIN)
+            return POLLERR;
+        if (deadline.passed())
+            return 0;
+    }
+}
+
+} // namespace mural

@@ -1,0 +1,13 @@
+// The text of an errno value. strerror is not safe with threads; this is.
+#pragma once
+
+#include <string>
+#include <system_error>
+
+namespace mural {
+
+inline std::string errnoText(int code) {
+    return std::generic_category().message(code);
+}
+
+} // namespace mural
