@@ -1,0 +1,76 @@
+// Shows pictures in a window that belongs to another X client: the program's own window.
+//
+// Pixels are put 1:1, upper left corners together, clipped to the window; child windows stay on top, as
+// with OpenGL. A window that is gone, unmapped or of another size is not an error. One thread.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "nodes/output/picture_sink.hpp"
+#include "nodes/output/pixel_format.hpp"
+#include "nodes/output/shared_pixels.hpp"
+#include "nodes/output/x_connection.hpp"
+
+namespace mural {
+
+struct AppWindowConfig {
+    std::string displayName; // empty: DISPLAY
+    uint32_t window = 0;     // XID
+    int64_t timeoutMs = 5'000; // of open() and of each show(); a window manager may grab the server
+    bool sharedMemory = true;  // where the server has it
+    size_t pieceBytes = 32 * 1024; // without shared memory: pixels per request
+};
+
+class AppWindow : public PictureSink {
+public:
+    // Fails without a display, without the window, or when its pixels can't be written.
+    static Result<std::unique_ptr<AppWindow>> open(AppWindowConfig config);
+
+    // Returns when the server has done it. After a deadline has passed it can be called again.
+    Result<void> show(int64_t frame, const Picture& picture) override;
+    Result<void> finish() override { return {}; } // every picture was complete when show() returned
+    [[nodiscard]] std::string describe() const override;
+
+    // The last picture found no window; the next one looks again.
+    [[nodiscard]] bool windowGone() const { return windowGone_; }
+    [[nodiscard]] bool usesSharedMemory() const { return shared_ != nullptr; }
+
+private:
+    // A put of pixels that the server has not answered for yet.
+    struct Put {
+        xcb_void_cookie_t request;
+        unsigned fence;
+    };
+    enum class Outcome { Done, Again };
+
+    explicit AppWindow(AppWindowConfig config) : config_(std::move(config)) {}
+
+    Result<void> adopt(Deadline deadline);
+    Result<void> findConverter(xcb_visualid_t visual, int depth);
+    Result<Outcome> showOnce(const Picture& picture, Deadline deadline);
+    bool sharedFor(size_t sizeBytes, Deadline deadline);
+    Result<void> putShared(const Picture& picture, int width, int height, Deadline deadline);
+    Result<void> putInPieces(const Picture& picture, int width, int height, Deadline deadline);
+    void convert(const Picture& picture, const PixelViewport& part, std::byte* target) const;
+    void sent(xcb_void_cookie_t request);
+    Result<void> settle(size_t keep, Deadline deadline);
+    Result<Outcome> judge();
+
+    AppWindowConfig config_;
+    std::unique_ptr<XConnection> x_;
+    std::optional<PixelConverter> converter_; // of the window's visual
+    xcb_gcontext_t gc_ = 0;                   // 0: none yet
+    std::unique_ptr<SharedPixels> shared_;
+    bool sharedRefused_ = false;
+    std::vector<std::byte> piece_;
+    std::deque<Put> unanswered_;
+    XOwned<xcb_generic_error_t> firstError_; // of the puts of one picture
+    bool windowGone_ = false;
+};
+
+} // namespace mural

@@ -1,0 +1,29 @@
+// Where finished pictures go: a folder, a video, a window. Owned and called by one thread.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/result.hpp"
+#include "nodes/output/picture.hpp"
+
+namespace mural {
+
+class PictureSink {
+public:
+    PictureSink() = default;
+    PictureSink(const PictureSink&) = delete;
+    PictureSink& operator=(const PictureSink&) = delete;
+    // Ends the output as finish() does, but without telling what went wrong.
+    virtual ~PictureSink() = default;
+
+    // Takes the picture; its memory is the caller's again on return.
+    virtual Result<void> show(int64_t frame, const Picture& picture) = 0;
+
+    // Nothing more comes: completes what is open. Further calls do nothing.
+    virtual Result<void> finish() = 0;
+
+    [[nodiscard]] virtual std::string describe() const = 0;
+};
+
+} // namespace mural

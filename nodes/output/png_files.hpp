@@ -1,0 +1,40 @@
+// Pictures as PNG files: RGB, 8 bits per channel, exactly the values that were drawn.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "common/result.hpp"
+#include "nodes/output/picture_sink.hpp"
+
+namespace mural {
+
+// The file appears under its name only when it is complete.
+Result<void> writePng(const std::string& path, const Picture& picture);
+
+// Any PNG; 16-bit channels are cut to 8, transparency is dropped, no colour is converted.
+Result<OwnedPicture> readPng(const std::string& path);
+
+// Writes frame-000001.png and so on, named after the frame's number, into one folder.
+class PngFiles : public PictureSink {
+public:
+    // Makes the folder, and those above it, where missing.
+    static Result<std::unique_ptr<PngFiles>> open(const std::string& folder);
+
+    Result<void> show(int64_t frame, const Picture& picture) override;
+    Result<void> finish() override { return {}; }
+    [[nodiscard]] std::string describe() const override;
+
+    [[nodiscard]] int64_t filesWritten() const { return filesWritten_; }
+    [[nodiscard]] const std::string& lastPath() const { return lastPath_; } // empty: none yet
+
+private:
+    explicit PngFiles(std::string folder) : folder_(std::move(folder)) {}
+
+    std::string folder_;
+    std::string lastPath_;
+    int64_t filesWritten_ = 0;
+};
+
+} // namespace mural

@@ -1,0 +1,65 @@
+// Pictures as a video, through a child process `ffmpeg`. Lossless: the decoded video has exactly the
+// values that were drawn. Every frame that is shown is one frame of the video, at a fixed rate.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "common/result.hpp"
+#include "nodes/output/encoder_process.hpp"
+#include "nodes/output/picture_sink.hpp"
+#include "nodes/output/video_encoders.hpp"
+
+namespace mural {
+
+struct VideoConfig {
+    std::string path; // suffix .mp4 .mkv .avi .webm or .mov
+    int framesPerSecond = 30;
+    std::string program = "ffmpeg";
+    int64_t frameTimeoutMs = 10'000;   // the encoder takes no data for so long: error
+    int64_t finishTimeoutMs = 120'000; // encoders hold frames back
+    std::function<void(const std::string&)> say; // one line for the user; may be empty
+};
+
+class VideoFile : public PictureSink {
+public:
+    // Finds ffmpeg and its encoders; the file itself is begun with the first picture.
+    static Result<std::unique_ptr<VideoFile>> open(VideoConfig config);
+    ~VideoFile() override; // completes the file if that takes no longer than a moment
+
+    // A picture of another size than the one before ends the file and begins "NAME-2.SUFFIX".
+    // After a failure every further call fails alike.
+    Result<void> show(int64_t frame, const Picture& picture) override;
+    Result<void> finish() override;
+    [[nodiscard]] std::string describe() const override;
+
+    [[nodiscard]] const std::string& currentPath() const { return currentPath_; }
+    [[nodiscard]] int64_t framesWritten() const { return framesWritten_; }
+    // Of the running encoder, -1 when none runs.
+    [[nodiscard]] pid_t encoderPid() const { return encoder_ ? encoder_->pid() : -1; }
+
+private:
+    VideoFile(VideoConfig config, VideoEncoding encoding)
+        : config_(std::move(config))
+        , encoding_(std::move(encoding)) {}
+
+    Result<void> append(int64_t frame, const Picture& picture);
+    Result<void> begin(int width, int height);
+    Result<void> end(int64_t timeoutMs);
+    [[nodiscard]] std::string numberedPath() const;
+
+    VideoConfig config_; // program: its full path
+    VideoEncoding encoding_;
+    std::unique_ptr<EncoderProcess> encoder_;
+    std::optional<Error> failure_;
+    std::string currentPath_;
+    int width_ = 0;
+    int height_ = 0;
+    int files_ = 0;
+    int64_t framesWritten_ = 0;
+};
+
+} // namespace mural
