@@ -1,0 +1,35 @@
+// A library that is found at run time: a machine without EGL, OSMesa or X still runs what it has.
+// Libraries of GL are never unloaded: they leave thread-local storage and exit handlers behind.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/result.hpp"
+
+namespace mural::gl {
+
+class DynamicLibrary {
+public:
+    // The first of names that the loader finds. package: what to install when there is none.
+    static Result<DynamicLibrary> open(const std::vector<std::string>& names, const std::string& package);
+
+    [[nodiscard]] void* symbol(const char* name) const;
+
+    // Sets function to the symbol; false when the library lacks it.
+    template <class Function> bool load(Function& function, const char* name) const {
+        function = reinterpret_cast<Function>(symbol(name));
+        return function != nullptr;
+    }
+
+    [[nodiscard]] const std::string& name() const { return name_; }
+
+private:
+    DynamicLibrary(void* handle, std::string name) : handle_(handle), name_(std::move(name)) {}
+
+    void* handle_;
+    std::string name_;
+};
+
+} // namespace mural::gl

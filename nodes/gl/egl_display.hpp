@@ -1,0 +1,73 @@
+// An EGL display without a window system, and the functions of libEGL.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#define EGL_NO_X11 // eglplatform.h must not pull in Xlib and its macros
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+
+#include "nodes/gl/config_match.hpp"
+#include "nodes/gl/dynamic_library.hpp"
+
+namespace mural::gl {
+
+struct EglFunctions {
+    decltype(&eglBindAPI) bindApi = nullptr;
+    decltype(&eglCreateContext) createContext = nullptr;
+    decltype(&eglCreatePbufferSurface) createPbufferSurface = nullptr;
+    decltype(&eglDestroyContext) destroyContext = nullptr;
+    decltype(&eglDestroySurface) destroySurface = nullptr;
+    decltype(&eglGetConfigAttrib) getConfigAttrib = nullptr;
+    decltype(&eglGetConfigs) getConfigs = nullptr;
+    decltype(&eglGetError) getError = nullptr;
+    decltype(&eglGetProcAddress) getProcAddress = nullptr;
+    decltype(&eglInitialize) initialize = nullptr;
+    decltype(&eglMakeCurrent) makeCurrent = nullptr;
+    decltype(&eglQueryString) queryString = nullptr;
+    decltype(&eglQuerySurface) querySurface = nullptr;
+    PFNEGLGETPLATFORMDISPLAYEXTPROC getPlatformDisplay = nullptr;
+    // Null where the extensions of devices are missing.
+    PFNEGLQUERYDEVICESEXTPROC queryDevices = nullptr;
+    PFNEGLQUERYDEVICESTRINGEXTPROC queryDeviceString = nullptr;
+    PFNEGLQUERYDISPLAYATTRIBEXTPROC queryDisplayAttrib = nullptr;
+};
+
+// Never terminated: EGL hands out the same display to everyone who asks in this process, and another
+// platform (the next pipe's) may still draw with it.
+struct EglDisplayState {
+    EglFunctions egl;
+    EGLDisplay display = EGL_NO_DISPLAY;
+    std::string where; // "surfaceless" or "device 0"
+    bool software = false;
+    std::string extensions;
+    int version = 0; // 10 * major + minor
+    bool noConfigContext = false;
+    bool surfaceless = false;
+    bool colorspace = false;
+    // Measured when the platform is opened.
+    int maxSurfaceSize = kMaxSurfaceSize;
+    bool doubleBuffered = false;
+
+    [[nodiscard]] bool has(const char* extension) const;
+};
+
+// The surfaceless display, or one of a device. A GPU is preferred to a software renderer: with
+// several vendors installed the surfaceless platform may lead to Mesa's software renderer although the
+// machine's windows are drawn by another vendor's GPU.
+Result<std::shared_ptr<EglDisplayState>> openEglDisplay();
+
+struct EglConfigs {
+    std::vector<EGLConfig> handles;
+    std::vector<ConfigCandidate> candidates; // same order
+};
+// All that can make pbuffers. srgb: whether surfaces shall be made in the sRGB colour space, which
+// with EGL belongs to the surface and not to its configuration.
+EglConfigs listEglConfigs(const EglDisplayState& display, bool srgb);
+
+// "EGL_BAD_MATCH (the wishes do not go together)"; takes the error of this thread.
+std::string takeEglError(const EglFunctions& egl);
+
+} // namespace mural::gl

@@ -1,0 +1,219 @@
+// Contexts over EGL without a window system: pbuffers of the whole picture's size.
+//
+// Measured with Mesa 22.3.6 (llvmpipe), tests/gl/ keeps it so:
+//  - Pbuffers have one colour buffer. Which names mean it: see README.md here.
+//  - EGL_MAX_PBUFFER_WIDTH says 4096, yet 16384 works, and 16385 is granted without an error although
+//    the viewport then ends at 16384: so sizes are checked against GL_MAX_VIEWPORT_DIMS, not EGL.
+//  - No accumulation buffers and no stereo; sRGB is a property of the surface.
+//  - eglGetProcAddress of libglvnd gives a function for every name that begins with "gl".
+#include <algorithm>
+#include <utility>
+
+#include "nodes/gl/backends.hpp"
+#include "nodes/gl/egl_display.hpp"
+#include "nodes/gl/gl_info.hpp"
+
+namespace mural::gl {
+namespace {
+
+using SharedDisplay = std::shared_ptr<EglDisplayState>;
+
+class EglSurface final : public Surface {
+public:
+    EglSurface(SharedDisplay display, EGLSurface handle, const SurfaceConfig& config)
+        : display_(std::move(display)), handle_(handle), width_(config.width), height_(config.height) {}
+    EglSurface(const EglSurface&) = delete;
+    EglSurface& operator=(const EglSurface&) = delete;
+    ~EglSurface() override { display_->egl.destroySurface(display_->display, handle_); }
+
+    [[nodiscard]] int width() const override { return width_; }
+    [[nodiscard]] int height() const override { return height_; }
+    [[nodiscard]] bool singleBuffered() const override { return !display_->doubleBuffered; }
+    [[nodiscard]] EGLSurface handle() const { return handle_; }
+
+private:
+    SharedDisplay display_;
+    EGLSurface handle_;
+    int width_, height_;
+};
+
+class EglContext final : public Context {
+public:
+    EglContext(SharedDisplay display, EGLContext handle, EGLenum api, std::unique_ptr<Surface> dummy)
+        : display_(std::move(display)), handle_(handle), api_(api), dummy_(std::move(dummy)) {}
+    EglContext(const EglContext&) = delete;
+    EglContext& operator=(const EglContext&) = delete;
+    ~EglContext() override { display_->egl.destroyContext(display_->display, handle_); }
+
+    [[nodiscard]] EGLContext handle() const { return handle_; }
+    [[nodiscard]] EGLenum api() const { return api_; }
+    // What is bound when the caller names no surface.
+    [[nodiscard]] EGLSurface dummy() const {
+        return dummy_ ? static_cast<EglSurface*>(dummy_.get())->handle() : EGL_NO_SURFACE;
+    }
+
+private:
+    SharedDisplay display_;
+    EGLContext handle_;
+    EGLenum api_;
+    std::unique_ptr<Surface> dummy_;
+};
+
+std::vector<EGLint> contextAttributes(const ContextConfig& config, const EglDisplayState& display) {
+    const VersionRequest request = versionRequest(config);
+    std::vector<EGLint> list{EGL_CONTEXT_MAJOR_VERSION, request.major, EGL_CONTEXT_MINOR_VERSION, request.minor};
+    const bool desktop = config.api == Api::Desktop;
+    if (request.profile)
+        list.insert(list.end(),
+                    {EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                     config.core ? EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT
+                                 : EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT});
+    if (display.version >= 15) {
+        if (config.forwardCompatible) list.insert(list.end(), {EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE, EGL_TRUE});
+        if (config.debug) list.insert(list.end(), {EGL_CONTEXT_OPENGL_DEBUG, EGL_TRUE});
+        if (config.robust) list.insert(list.end(), {EGL_CONTEXT_OPENGL_ROBUST_ACCESS, EGL_TRUE});
+    } else {
+        EGLint flags = 0;
+        if (config.forwardCompatible) flags |= EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE_BIT_KHR;
+        if (config.debug) flags |= EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR;
+        if (config.robust && desktop) flags |= EGL_CONTEXT_OPENGL_ROBUST_ACCESS_BIT_KHR;
+        if (flags) list.insert(list.end(), {EGL_CONTEXT_FLAGS_KHR, flags});
+        if (config.robust && !desktop) list.insert(list.end(), {EGL_CONTEXT_OPENGL_ROBUST_ACCESS_EXT, EGL_TRUE});
+    }
+    list.push_back(EGL_NONE);
+    return list;
+}
+
+class EglPlatform final : public Platform {
+public:
+    explicit EglPlatform(SharedDisplay display) : display_(std::move(display)) {}
+
+    Result<std::unique_ptr<Surface>> createSurface(const SurfaceConfig& wish) override;
+    Result<std::unique_ptr<Context>> createContext(const ContextConfig& wish, Context* shareWith) override;
+    Result<void> makeCurrent(Context* context, Surface* draw, Surface* read) override;
+    Proc getProcAddress(const char* name) override { return display_->egl.getProcAddress(name); }
+    [[nodiscard]] std::string describe() const override {
+        return "EGL " + display_->where + ", " + renderer_ + ", " + version_;
+    }
+
+    // Makes a context and asks it what no EGL query tells.
+    Result<void> measure();
+
+private:
+    Result<EGLConfig> chooseConfig(const SurfaceConfig& wish) const;
+
+    SharedDisplay display_;
+    EGLenum currentApi_ = EGL_OPENGL_API;
+    std::string renderer_, version_;
+};
+
+Result<EGLConfig> EglPlatform::chooseConfig(const SurfaceConfig& wish) const {
+    const EglConfigs all = listEglConfigs(*display_, wish.srgb);
+    const auto index = matchConfig("EGL", all.candidates, wish);
+    if (!index) return index.error();
+    return all.handles[index.value()];
+}
+
+Result<std::unique_ptr<Surface>> EglPlatform::createSurface(const SurfaceConfig& wish) {
+    if (auto size = checkSize("EGL", wish, display_->maxSurfaceSize); !size) return size.error();
+    auto config = chooseConfig(wish);
+    if (!config) return config.error();
+    std::vector<EGLint> list{EGL_WIDTH, wish.width, EGL_HEIGHT, wish.height};
+    if (wish.srgb) list.insert(list.end(), {EGL_GL_COLORSPACE_KHR, EGL_GL_COLORSPACE_SRGB_KHR});
+    list.push_back(EGL_NONE);
+    const EglFunctions& egl = display_->egl;
+    const std::string what = std::to_string(wish.width) + "x" + std::to_string(wish.height) + " pixels" +
+                             (wish.srgb ? " in sRGB" : "");
+    EGLSurface handle = egl.createPbufferSurface(display_->display, config.value(), list.data());
+    if (handle == EGL_NO_SURFACE)
+        return Error{"EGL can't make a pbuffer of " + what + ": " + takeEglError(egl) +
+                     "; try a smaller picture or another --gl backend"};
+    auto surface = std::make_unique<EglSurface>(display_, handle, wish);
+    EGLint width = 0, height = 0;
+    egl.querySurface(display_->display, handle, EGL_WIDTH, &width);
+    egl.querySurface(display_->display, handle, EGL_HEIGHT, &height);
+    if (width != wish.width || height != wish.height)
+        return Error{"EGL made a pbuffer of " + std::to_string(width) + "x" + std::to_string(height) +
+                     " instead of " + what + ": draw a smaller picture"};
+    return std::unique_ptr<Surface>(std::move(surface));
+}
+
+Result<std::unique_ptr<Context>> EglPlatform::createContext(const ContextConfig& wish, Context* shareWith) {
+    const EglFunctions& egl = display_->egl;
+    auto config = chooseConfig(wish.surface);
+    if (!config) return config.error();
+    std::unique_ptr<Surface> dummy;
+    if (!display_->surfaceless) {
+        SurfaceConfig small = wish.surface;
+        small.width = small.height = 1;
+        auto made = createSurface(small);
+        if (!made) return made.error();
+        dummy = std::move(made.value());
+    }
+    const EGLenum api = wish.api == Api::Desktop ? EGL_OPENGL_API : EGL_OPENGL_ES_API;
+    if (!egl.bindApi(api))
+        return Error{"this EGL driver has no " + describeContext(wish) + ": try another --gl backend"};
+    EGLContext share = shareWith ? static_cast<EglContext*>(shareWith)->handle() : EGL_NO_CONTEXT;
+    EGLContext handle = egl.createContext(display_->display,
+                                          display_->noConfigContext ? EGL_NO_CONFIG_KHR : config.value(),
+                                          share,
+                                          contextAttributes(wish, *display_).data());
+    const std::string why = handle == EGL_NO_CONTEXT ? takeEglError(egl) : "";
+    egl.bindApi(currentApi_);
+    if (handle == EGL_NO_CONTEXT)
+        return Error{"EGL can't make an " + describeContext(wish) + " context" +
+                     (shareWith ? " that shares objects" : "") + ": " + why + "; see mural doctor"};
+    return std::unique_ptr<Context>(std::make_unique<EglContext>(display_, handle, api, std::move(dummy)));
+}
+
+Result<void> EglPlatform::makeCurrent(Context* context, Surface* draw, Surface* read) {
+    const EglFunctions& egl = display_->egl;
+    auto* wanted = static_cast<EglContext*>(context);
+    // Release acts on the API that is bound, so it must still be the current context's.
+    if (wanted) {
+        currentApi_ = wanted->api();
+        egl.bindApi(currentApi_);
+    }
+    EGLSurface none = wanted ? wanted->dummy() : EGL_NO_SURFACE;
+    EGLSurface drawHandle = draw && wanted ? static_cast<EglSurface*>(draw)->handle() : none;
+    EGLSurface readHandle = read && wanted ? static_cast<EglSurface*>(read)->handle() : drawHandle;
+    if (egl.makeCurrent(display_->display, drawHandle, readHandle, wanted ? wanted->handle() : EGL_NO_CONTEXT))
+        return {};
+    return Error{"EGL can't make the context current: " + takeEglError(egl) +
+                 "; check that context and surfaces were made for the same kind of surface"};
+}
+
+Result<void> EglPlatform::measure() {
+    SurfaceConfig config;
+    auto surface = createSurface(config);
+    if (!surface) return surface.error();
+    auto context = createContext(ContextConfig(), nullptr);
+    if (!context) { // a driver for embedded machines
+        ContextConfig es;
+        es.api = Api::Es2;
+        es.major = 2;
+        context = createContext(es, nullptr);
+    }
+    if (!context) return context.error();
+    if (auto current = makeCurrent(context->get(), surface->get(), surface->get()); !current) return current;
+    auto info = readGlInfo(*this);
+    auto released = makeCurrent(nullptr, nullptr, nullptr);
+    if (!info) return info.error();
+    display_->maxSurfaceSize = std::min(kMaxSurfaceSize, info->maxSurfaceSize);
+    display_->doubleBuffered = info->doubleBuffered;
+    renderer_ = info->renderer;
+    version_ = info->version;
+    return released;
+}
+
+} // namespace
+
+Result<std::unique_ptr<Platform>> openEgl() {
+    auto display = openEglDisplay();
+    if (!display) return display.error();
+    auto platform = std::make_unique<EglPlatform>(display.value());
+    if (auto measured = platform->measure(); !measured) return measured.error();
+    return std::unique_ptr<Platform>(std::move(platform));
+}
+
+} // namespace mural::gl

@@ -1,0 +1,85 @@
+#include "nodes/gl/gl_info.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <sstream>
+
+#include <GL/gl.h>
+#include <GL/glext.h>
+
+namespace mural::gl {
+namespace {
+
+struct Queries {
+    const GLubyte* (*getString)(GLenum) = nullptr;
+    const GLubyte* (*getStringi)(GLenum, GLuint) = nullptr;
+    void (*getIntegerv)(GLenum, GLint*) = nullptr;
+    GLenum (*getError)() = nullptr;
+};
+
+template <class Function> void load(Platform& platform, Function& function, const char* name) {
+    function = reinterpret_cast<Function>(platform.getProcAddress(name));
+}
+
+std::string text(const Queries& gl, GLenum name) {
+    const GLubyte* said = gl.getString(name);
+    return said ? reinterpret_cast<const char*>(said) : "";
+}
+
+// Core contexts know only the indexed form, versions before 3.0 only the whole string.
+std::vector<std::string> readExtensions(const Queries& gl, int glVersion) {
+    std::vector<std::string> extensions;
+    if (glVersion >= 30 && gl.getStringi) {
+        GLint count = 0;
+        gl.getIntegerv(GL_NUM_EXTENSIONS, &count);
+        for (GLint i = 0; i < count; i++)
+            if (const GLubyte* name = gl.getStringi(GL_EXTENSIONS, static_cast<GLuint>(i)))
+                extensions.emplace_back(reinterpret_cast<const char*>(name));
+    } else {
+        std::istringstream words(text(gl, GL_EXTENSIONS));
+        for (std::string word; words >> word;) extensions.push_back(word);
+    }
+    std::sort(extensions.begin(), extensions.end());
+    return extensions;
+}
+
+} // namespace
+
+int parseGlVersion(const std::string& version) {
+    for (size_t i = 0; i + 2 < version.size(); i++)
+        if (std::isdigit(static_cast<unsigned char>(version[i])) && version[i + 1] == '.' &&
+            std::isdigit(static_cast<unsigned char>(version[i + 2])))
+            return 10 * (version[i] - '0') + (version[i + 2] - '0');
+    return 0;
+}
+
+Result<GlInfo> readGlInfo(Platform& platform) {
+    Queries gl;
+    load(platform, gl.getString, "glGetString");
+    load(platform, gl.getStringi, "glGetStringi");
+    load(platform, gl.getIntegerv, "glGetIntegerv");
+    load(platform, gl.getError, "glGetError");
+    if (!gl.getString || !gl.getIntegerv || !gl.getError)
+        return Error{"the GL driver hands out no glGetString: reinstall the GL driver"};
+    GlInfo info;
+    info.version = text(gl, GL_VERSION);
+    info.vendor = text(gl, GL_VENDOR);
+    info.renderer = text(gl, GL_RENDERER);
+    info.glVersion = parseGlVersion(info.version);
+    if (info.glVersion == 0) return Error{"the GL driver tells no version ('" + info.version + "'): see mural doctor"};
+    info.es = info.version.rfind("OpenGL ES", 0) == 0;
+    info.extensions = readExtensions(gl, info.glVersion);
+    GLint dimensions[2] = {0, 0};
+    gl.getIntegerv(GL_MAX_VIEWPORT_DIMS, dimensions);
+    info.maxSurfaceSize = std::min(dimensions[0], dimensions[1]);
+    if (!info.es) {
+        GLint doubled = 0;
+        gl.getIntegerv(GL_DOUBLEBUFFER, &doubled);
+        info.doubleBuffered = doubled != 0;
+    }
+    // A question that this version does not know must not stay behind; a lost context reports for ever.
+    for (int i = 0; i < 16 && gl.getError() != GL_NO_ERROR; i++) {}
+    return info;
+}
+
+} // namespace mural::gl

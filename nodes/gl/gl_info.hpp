@@ -1,0 +1,26 @@
+// What the context that is current says about itself.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "nodes/gl/gl_platform.hpp"
+
+namespace mural::gl {
+
+struct GlInfo {
+    std::string vendor, renderer, version;
+    int glVersion = 0; // 10 * major + minor, e.g. 45
+    bool es = false;
+    std::vector<std::string> extensions; // sorted
+    int maxSurfaceSize = 0;              // the smaller side of GL_MAX_VIEWPORT_DIMS
+    bool doubleBuffered = false;         // desktop only; of the framebuffer that is current
+};
+
+// A context of the platform must be current. Fails when the driver hands out no functions.
+Result<GlInfo> readGlInfo(Platform& platform);
+
+// "4.5 (Compatibility Profile) Mesa 22.3.6" → 45, "OpenGL ES-CM 1.1 Mesa" → 11; 0 when there is no number.
+int parseGlVersion(const std::string& version);
+
+} // namespace mural::gl

@@ -1,0 +1,20 @@
+#include "nodes/gl/gl_platform.hpp"
+
+#include "nodes/gl/backends.hpp"
+
+namespace mural::gl {
+
+Result<std::unique_ptr<Platform>> openPlatform(const std::string& name) {
+    if (name == "egl") return openEgl();
+    if (name == "osmesa") return openOsmesa();
+    if (name == "glx") return openGlx();
+    if (name != "auto")
+        return Error{"no GL backend is named '" + name + "': use auto, egl, osmesa or glx"};
+    auto egl = openEgl();
+    if (egl) return egl;
+    auto osmesa = openOsmesa();
+    if (osmesa) return osmesa;
+    return Error{"no GL backend works: EGL: " + egl.error().message + "; OSMesa: " + osmesa.error().message};
+}
+
+} // namespace mural::gl

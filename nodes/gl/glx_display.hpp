@@ -1,0 +1,86 @@
+// A connection to an X server with GLX, and the functions of libX11 and libGLX.
+#pragma once
+
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include <GL/glx.h>
+#include <GL/glxext.h>
+#include <X11/Xlib.h>
+
+#include "nodes/gl/config_match.hpp"
+#include "nodes/gl/dynamic_library.hpp"
+
+namespace mural::gl {
+
+struct GlxFunctions {
+    decltype(&XOpenDisplay) openDisplay = nullptr;
+    decltype(&XCloseDisplay) closeDisplay = nullptr;
+    decltype(&XDefaultScreen) defaultScreen = nullptr;
+    decltype(&XFree) free = nullptr;
+    decltype(&XGetErrorText) getErrorText = nullptr;
+    decltype(&XSetErrorHandler) setErrorHandler = nullptr;
+    decltype(&XSync) sync = nullptr;
+    decltype(&glXCreatePbuffer) createPbuffer = nullptr;
+    decltype(&glXDestroyContext) destroyContext = nullptr;
+    decltype(&glXDestroyPbuffer) destroyPbuffer = nullptr;
+    decltype(&glXGetFBConfigAttrib) getFbConfigAttrib = nullptr;
+    decltype(&glXGetFBConfigs) getFbConfigs = nullptr;
+    decltype(&glXGetProcAddressARB) getProcAddress = nullptr;
+    decltype(&glXMakeContextCurrent) makeContextCurrent = nullptr;
+    decltype(&glXQueryDrawable) queryDrawable = nullptr;
+    decltype(&glXQueryExtension) queryExtension = nullptr;
+    decltype(&glXQueryExtensionsString) queryExtensionsString = nullptr;
+    decltype(&glXQueryVersion) queryVersion = nullptr;
+    PFNGLXCREATECONTEXTATTRIBSARBPROC createContextAttribs = nullptr;
+};
+
+// Owns the connection; used by one thread.
+struct GlxDisplayState {
+    GlxDisplayState() = default;
+    GlxDisplayState(const GlxDisplayState&) = delete;
+    GlxDisplayState& operator=(const GlxDisplayState&) = delete;
+    ~GlxDisplayState();
+
+    GlxFunctions glx;
+    ::Display* display = nullptr;
+    std::string name;
+    int screen = 0;
+    bool noConfigContext = false;
+    bool esProfile = false;
+    bool robust = false;
+    std::vector<GLXFBConfig> configs; // those that double-buffered pbuffers can be made of
+    std::vector<ConfigCandidate> candidates; // same order
+    int maxSurfaceSize = kMaxSurfaceSize; // measured when the platform is opened
+
+    [[nodiscard]] bool has(const char* extension) const;
+};
+
+// Opens the display that DISPLAY names. The state is filled but for maxSurfaceSize.
+Result<void> openGlxDisplay(GlxDisplayState& state);
+
+// Catches the X errors of one display while it lives: Xlib's own handler would end the process.
+// Errors of other displays go on to the handler that was set before. The handler belongs to the
+// process: traps of other threads (pipes) wait.
+class XErrorTrap {
+public:
+    explicit XErrorTrap(const GlxDisplayState& state);
+    XErrorTrap(const XErrorTrap&) = delete;
+    XErrorTrap& operator=(const XErrorTrap&) = delete;
+    ~XErrorTrap();
+
+    // Waits until the server has seen all requests. Empty: no error since the trap was set.
+    std::string take();
+
+private:
+    static int handle(::Display* display, XErrorEvent* event);
+
+    std::unique_lock<std::recursive_mutex> lock_;
+    const GlxDisplayState& state_;
+    XErrorTrap* outer_;
+    XErrorHandler previous_;
+    std::string text_;
+};
+
+} // namespace mural::gl

@@ -1,0 +1,207 @@
+// Contexts over GLX on an X display: double-buffered pbuffers of the whole picture's size.
+//
+// Measured with Mesa 22.3.6 (llvmpipe, Xvfb), tests/gl/ keeps it so: accumulation buffers of 16 bits
+// and 4 samples exist, but not together; GL_BACK and GL_FRONT are two buffers; a wish that the driver
+// can't meet comes back as an X error, which is caught here.
+#include <algorithm>
+#include <utility>
+
+#include "nodes/gl/backends.hpp"
+#include "nodes/gl/gl_info.hpp"
+#include "nodes/gl/glx_display.hpp"
+
+namespace mural::gl {
+namespace {
+
+using SharedDisplay = std::shared_ptr<GlxDisplayState>;
+
+class GlxSurface final : public Surface {
+public:
+    GlxSurface(SharedDisplay display, GLXPbuffer handle, const SurfaceConfig& config)
+        : display_(std::move(display)), handle_(handle), width_(config.width), height_(config.height) {}
+    GlxSurface(const GlxSurface&) = delete;
+    GlxSurface& operator=(const GlxSurface&) = delete;
+    ~GlxSurface() override { display_->glx.destroyPbuffer(display_->display, handle_); }
+
+    [[nodiscard]] int width() const override { return width_; }
+    [[nodiscard]] int height() const override { return height_; }
+    [[nodiscard]] bool singleBuffered() const override { return false; }
+    [[nodiscard]] GLXPbuffer handle() const { return handle_; }
+
+private:
+    SharedDisplay display_;
+    GLXPbuffer handle_;
+    int width_, height_;
+};
+
+class GlxContext final : public Context {
+public:
+    GlxContext(SharedDisplay display, GLXContext handle, std::unique_ptr<GlxSurface> dummy)
+        : display_(std::move(display)), handle_(handle), dummy_(std::move(dummy)) {}
+    GlxContext(const GlxContext&) = delete;
+    GlxContext& operator=(const GlxContext&) = delete;
+    ~GlxContext() override { display_->glx.destroyContext(display_->display, handle_); }
+
+    [[nodiscard]] GLXContext handle() const { return handle_; }
+    // Bound when the caller names no surface: GLX allows none only for some versions.
+    [[nodiscard]] GLXPbuffer dummy() const { return dummy_->handle(); }
+
+private:
+    SharedDisplay display_;
+    GLXContext handle_;
+    std::unique_ptr<GlxSurface> dummy_;
+};
+
+class GlxPlatform final : public Platform {
+public:
+    explicit GlxPlatform(SharedDisplay display) : display_(std::move(display)) {}
+
+    Result<std::unique_ptr<Surface>> createSurface(const SurfaceConfig& wish) override;
+    Result<std::unique_ptr<Context>> createContext(const ContextConfig& wish, Context* shareWith) override;
+    Result<void> makeCurrent(Context* context, Surface* draw, Surface* read) override;
+    Proc getProcAddress(const char* name) override {
+        return display_->glx.getProcAddress(reinterpret_cast<const GLubyte*>(name));
+    }
+    [[nodiscard]] std::string describe() const override {
+        return "GLX on " + display_->name + ", " + renderer_ + ", " + version_;
+    }
+
+    Result<void> measure();
+
+private:
+    Result<GLXFBConfig> chooseConfig(const SurfaceConfig& wish) const;
+    Result<std::unique_ptr<GlxSurface>> createPbuffer(const SurfaceConfig& wish);
+    Result<void> checkSupport(const ContextConfig& wish) const;
+    std::vector<int> contextAttributes(const ContextConfig& wish) const;
+
+    SharedDisplay display_;
+    std::string renderer_, version_;
+};
+
+Result<GLXFBConfig> GlxPlatform::chooseConfig(const SurfaceConfig& wish) const {
+    const auto index = matchConfig("GLX", display_->candidates, wish);
+    if (!index) return index.error();
+    return display_->configs[index.value()];
+}
+
+Result<std::unique_ptr<GlxSurface>> GlxPlatform::createPbuffer(const SurfaceConfig& wish) {
+    if (auto size = checkSize("GLX", wish, display_->maxSurfaceSize); !size) return size.error();
+    auto config = chooseConfig(wish);
+    if (!config) return config.error();
+    const int list[] = {GLX_PBUFFER_WIDTH, wish.width, GLX_PBUFFER_HEIGHT, wish.height,
+                        GLX_PRESERVED_CONTENTS, 1, GLX_LARGEST_PBUFFER, 0, 0};
+    const GlxFunctions& glx = display_->glx;
+    const std::string what = std::to_string(wish.width) + "x" + std::to_string(wish.height) + " pixels";
+    XErrorTrap trap(*display_);
+    GLXPbuffer handle = glx.createPbuffer(display_->display, config.value(), list);
+    if (const std::string why = trap.take(); !why.empty() || !handle)
+        return Error{"GLX can't make a pbuffer of " + what + ": " + (why.empty() ? "no reason given" : why) +
+                     "; try a smaller picture or --gl egl"};
+    auto surface = std::make_unique<GlxSurface>(display_, handle, wish);
+    unsigned width = 0, height = 0;
+    glx.queryDrawable(display_->display, handle, GLX_WIDTH, &width);
+    glx.queryDrawable(display_->display, handle, GLX_HEIGHT, &height);
+    if (static_cast<int>(width) != wish.width || static_cast<int>(height) != wish.height)
+        return Error{"GLX made a pbuffer of " + std::to_string(width) + "x" + std::to_string(height) +
+                     " instead of " + what + ": draw a smaller picture"};
+    return surface;
+}
+
+Result<std::unique_ptr<Surface>> GlxPlatform::createSurface(const SurfaceConfig& wish) {
+    auto surface = createPbuffer(wish);
+    if (!surface) return surface.error();
+    return std::unique_ptr<Surface>(std::move(surface.value()));
+}
+
+Result<void> GlxPlatform::checkSupport(const ContextConfig& wish) const {
+    const char* missing = nullptr;
+    if (wish.api != Api::Desktop && !display_->esProfile) missing = "GLX_EXT_create_context_es_profile";
+    else if (wish.robust && !display_->robust) missing = "GLX_ARB_create_context_robustness";
+    if (!missing) return {};
+    return Error{"GLX on '" + display_->name + "' has no " + describeContext(wish) + " contexts (" + missing +
+                 " is missing): use --gl egl"};
+}
+
+std::vector<int> GlxPlatform::contextAttributes(const ContextConfig& wish) const {
+    const VersionRequest request = versionRequest(wish);
+    std::vector<int> list{GLX_CONTEXT_MAJOR_VERSION_ARB, request.major, GLX_CONTEXT_MINOR_VERSION_ARB, request.minor};
+    if (wish.api != Api::Desktop)
+        list.insert(list.end(), {GLX_CONTEXT_PROFILE_MASK_ARB, GLX_CONTEXT_ES_PROFILE_BIT_EXT});
+    else if (request.profile)
+        list.insert(list.end(),
+                    {GLX_CONTEXT_PROFILE_MASK_ARB,
+                     wish.core ? GLX_CONTEXT_CORE_PROFILE_BIT_ARB : GLX_CONTEXT_COMPATIBILITY_PROFILE_BIT_ARB});
+    int flags = 0;
+    if (wish.forwardCompatible) flags |= GLX_CONTEXT_FORWARD_COMPATIBLE_BIT_ARB;
+    if (wish.debug) flags |= GLX_CONTEXT_DEBUG_BIT_ARB;
+    if (wish.robust) flags |= GLX_CONTEXT_ROBUST_ACCESS_BIT_ARB;
+    if (flags) list.insert(list.end(), {GLX_CONTEXT_FLAGS_ARB, flags});
+    if (display_->noConfigContext) list.insert(list.end(), {GLX_SCREEN, display_->screen});
+    list.push_back(0);
+    return list;
+}
+
+Result<std::unique_ptr<Context>> GlxPlatform::createContext(const ContextConfig& wish, Context* shareWith) {
+    if (auto supported = checkSupport(wish); !supported) return supported.error();
+    auto config = chooseConfig(wish.surface);
+    if (!config) return config.error();
+    SurfaceConfig small = wish.surface;
+    small.width = small.height = 1;
+    auto dummy = createPbuffer(small);
+    if (!dummy) return dummy.error();
+    GLXContext share = shareWith ? static_cast<GlxContext*>(shareWith)->handle() : nullptr;
+    XErrorTrap trap(*display_);
+    GLXContext handle = display_->glx.createContextAttribs(display_->display,
+                                                           display_->noConfigContext ? nullptr : config.value(),
+                                                           share,
+                                                           1,
+                                                           contextAttributes(wish).data());
+    const std::string why = trap.take();
+    if (handle && !why.empty()) display_->glx.destroyContext(display_->display, handle);
+    if (!handle || !why.empty())
+        return Error{"GLX can't make an " + describeContext(wish) + " context" +
+                     (shareWith ? " that shares objects" : "") + ": " +
+                     (why.empty() ? "the driver does not have it" : why) + "; see mural doctor"};
+    return std::unique_ptr<Context>(std::make_unique<GlxContext>(display_, handle, std::move(dummy.value())));
+}
+
+Result<void> GlxPlatform::makeCurrent(Context* context, Surface* draw, Surface* read) {
+    auto* wanted = static_cast<GlxContext*>(context);
+    GLXDrawable none = wanted ? wanted->dummy() : 0;
+    GLXDrawable drawHandle = draw && wanted ? static_cast<GlxSurface*>(draw)->handle() : none;
+    GLXDrawable readHandle = read && wanted ? static_cast<GlxSurface*>(read)->handle() : drawHandle;
+    XErrorTrap trap(*display_);
+    const Bool made = display_->glx.makeContextCurrent(
+        display_->display, drawHandle, readHandle, wanted ? wanted->handle() : nullptr);
+    const std::string why = trap.take();
+    if (made && why.empty()) return {};
+    return Error{"GLX can't make the context current: " + (why.empty() ? "no reason given" : why) +
+                 "; check that context and surfaces were made for the same kind of surface"};
+}
+
+Result<void> GlxPlatform::measure() {
+    auto surface = createSurface(SurfaceConfig());
+    if (!surface) return surface.error();
+    auto context = createContext(ContextConfig(), nullptr);
+    if (!context) return context.error();
+    if (auto current = makeCurrent(context->get(), surface->get(), surface->get()); !current) return current;
+    auto info = readGlInfo(*this);
+    auto released = makeCurrent(nullptr, nullptr, nullptr);
+    if (!info) return info.error();
+    display_->maxSurfaceSize = std::min(kMaxSurfaceSize, info->maxSurfaceSize);
+    renderer_ = info->renderer;
+    version_ = info->version;
+    return released;
+}
+
+} // namespace
+
+Result<std::unique_ptr<Platform>> openGlx() {
+    auto display = std::make_shared<GlxDisplayState>();
+    if (auto opened = openGlxDisplay(*display); !opened) return opened.error();
+    auto platform = std::make_unique<GlxPlatform>(std::move(display));
+    if (auto measured = platform->measure(); !measured) return measured.error();
+    return std::unique_ptr<Platform>(std::move(platform));
+}
+
+} // namespace mural::gl

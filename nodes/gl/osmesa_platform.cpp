@@ -1,0 +1,284 @@
+// Contexts over OSMesa: Mesa's software renderer without any window system.
+//
+// Measured with Mesa 22.3.6, tests/gl/ keeps it so:
+//  - One colour buffer; no multisampling, no stereo, no sRGB, no ES, no forward-compatible contexts.
+//  - GL_FRAMEBUFFER_SRGB does nothing here, where EGL and GLX of the same Mesa honour it on every
+//    framebuffer of desktop GL: a program that enables it on its window is not exact over OSMesa.
+//  - Formats belong to the context and buffers live in it: see osmesa_pixels.hpp.
+//  - Only one buffer can be bound, for drawing and reading.
+//  - Debug and robust contexts do not exist; the wishes are granted, because a well-defined
+//    program's picture does not depend on them.
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "nodes/gl/backends.hpp"
+#include "nodes/gl/config_match.hpp"
+#include "nodes/gl/gl_info.hpp"
+#include "nodes/gl/osmesa_library.hpp"
+#include "nodes/gl/osmesa_pixels.hpp"
+
+namespace mural::gl {
+namespace {
+
+// A colour format of OSMesa. BGRA as EGL and GLX have it: llvmpipe has code of its own for that order.
+struct ColorFormat {
+    int red, green, blue, alpha;
+    GLenum format, type;
+    int bytesPerPixel;
+};
+constexpr std::array<ColorFormat, 3> kColorFormats{{
+    {8, 8, 8, 8, OSMESA_BGRA, GL_UNSIGNED_BYTE, 4},
+    {8, 8, 8, 0, OSMESA_RGB, GL_UNSIGNED_BYTE, 3},
+    {5, 6, 5, 0, OSMESA_RGB_565, GL_UNSIGNED_SHORT_5_6_5, 2},
+}};
+
+struct DepthStencil {
+    int depth, stencil;
+};
+constexpr std::array<DepthStencil, 5> kDepthStencils{{{0, 0}, {16, 0}, {24, 0}, {24, 8}, {0, 8}}};
+
+struct Candidates {
+    std::vector<ConfigCandidate> list;
+    std::vector<ColorFormat> formats; // same order
+};
+
+Candidates listCandidates() {
+    Candidates all;
+    for (const ColorFormat& format : kColorFormats)
+        for (const DepthStencil& ds : kDepthStencils)
+            for (const int accum : {0, 16}) {
+                ConfigCandidate candidate;
+                candidate.bits = {1, 1, format.red, format.green, format.blue, format.alpha,
+                                  ds.depth, ds.stencil, 0, accum, false, false};
+                all.list.push_back(candidate);
+                all.formats.push_back(format);
+            }
+    return all;
+}
+
+Result<ColorFormat> chooseFormat(const SurfaceConfig& wish) {
+    const Candidates all = listCandidates();
+    const auto index = matchConfig("OSMesa", all.list, wish);
+    if (!index) return index.error();
+    return all.formats[index.value()];
+}
+
+class OsmesaContext;
+
+struct OsmesaState {
+    explicit OsmesaState(const OsmesaFunctions& functions) : osmesa(functions), pixels(functions.getProcAddress) {}
+
+    OsmesaFunctions osmesa;
+    OsmesaPixels pixels;
+    int maxSurfaceSize = kMaxSurfaceSize;
+    OsmesaContext* current = nullptr;
+};
+using SharedState = std::shared_ptr<OsmesaState>;
+
+class OsmesaSurface final : public Surface {
+public:
+    OsmesaSurface(const SurfaceConfig& config, const ColorFormat& format) : config_(config) {
+        const size_t sizeBytes = static_cast<size_t>(config.width) * static_cast<size_t>(config.height) *
+                                 static_cast<size_t>(format.bytesPerPixel);
+        // Not cleared: OSMesa only writes it, and only when GL is flushed; a big one costs nothing until then.
+        memory_ = std::shared_ptr<std::byte[]>(new std::byte[sizeBytes]);
+    }
+    OsmesaSurface(const OsmesaSurface&) = delete;
+    OsmesaSurface& operator=(const OsmesaSurface&) = delete;
+    ~OsmesaSurface() override;
+
+    [[nodiscard]] int width() const override { return config_.width; }
+    [[nodiscard]] int height() const override { return config_.height; }
+    [[nodiscard]] bool singleBuffered() const override { return true; }
+    [[nodiscard]] const SurfaceConfig& config() const { return config_; }
+
+    std::shared_ptr<std::byte[]> memory_;
+    OsmesaContext* home_ = nullptr; // the context whose buffers hold the contents; null: saved_ has them
+    SavedPixels saved_;
+
+private:
+    SurfaceConfig config_;
+};
+
+class OsmesaContext final : public Context {
+public:
+    OsmesaContext(SharedState state, OSMesaContext handle, const ContextConfig& config, const ColorFormat& format)
+        : state_(std::move(state)), handle_(handle), config_(config), format_(format) {}
+    OsmesaContext(const OsmesaContext&) = delete;
+    OsmesaContext& operator=(const OsmesaContext&) = delete;
+    ~OsmesaContext() override;
+
+    [[nodiscard]] OSMesaContext handle() const { return handle_; }
+    // Makes it current with the surface and brings the surface's contents here. Null: with a dummy.
+    Result<void> bind(OsmesaSurface* surface);
+    // Moves the contents of the surface that lives here back to the surface. Leaves this context current.
+    void evict();
+    void forget(OsmesaSurface* surface) {
+        if (resident_ == surface) resident_ = nullptr;
+    }
+
+private:
+    [[nodiscard]] bool compatibility() const { return !(config_.core && versionRequest(config_).profile); }
+    bool bindMemory(std::shared_ptr<std::byte[]> memory, int width, int height);
+
+    SharedState state_;
+    OSMesaContext handle_;
+    ContextConfig config_;
+    ColorFormat format_;
+    OsmesaSurface* resident_ = nullptr; // whose contents our buffers hold
+    std::shared_ptr<std::byte[]> bound_; // what OSMesa writes to, even after its surface is gone
+    std::shared_ptr<std::byte[]> dummy_{new std::byte[16]};
+};
+
+OsmesaSurface::~OsmesaSurface() {
+    if (home_) home_->forget(this);
+}
+
+OsmesaContext::~OsmesaContext() {
+    OsmesaContext* previous = state_->current;
+    evict();
+    state_->osmesa.destroyContext(handle_);
+    state_->osmesa.makeCurrent(nullptr, nullptr, 0, 0, 0);
+    state_->current = nullptr;
+    if (previous && previous != this) {
+        OsmesaSurface* surface = previous->resident_;
+        (void)previous->bind(surface); // it was bound like that a moment ago
+    }
+}
+
+bool OsmesaContext::bindMemory(std::shared_ptr<std::byte[]> memory, int width, int height) {
+    if (!state_->osmesa.makeCurrent(handle_, memory.get(), format_.type, width, height)) return false;
+    bound_ = std::move(memory);
+    state_->current = this;
+    return true;
+}
+
+void OsmesaContext::evict() {
+    if (resident_) {
+        const SurfaceConfig& config = resident_->config();
+        if (bindMemory(resident_->memory_, config.width, config.height))
+            resident_->saved_ = state_->pixels.save(config, compatibility());
+        resident_->home_ = nullptr;
+        resident_ = nullptr;
+    }
+    // Another size: OSMesa lets go of the old buffers, whose contents nobody may see again.
+    if (bound_) bindMemory(dummy_, 1, 1);
+}
+
+Result<void> OsmesaContext::bind(OsmesaSurface* surface) {
+    const Error failed{"OSMesa can't make the context current: not enough memory? try a smaller picture"};
+    if (!surface) {
+        evict();
+        if (!bindMemory(dummy_, 1, 1)) return failed;
+        return {};
+    }
+    if (!sameBits(surface->config(), config_.surface))
+        return Error{"OSMesa can't draw with one context to surfaces of different bits: use --gl egl"};
+    if (surface->home_ != this) {
+        evict();
+        if (surface->home_) surface->home_->evict();
+    }
+    if (!bindMemory(surface->memory_, surface->width(), surface->height())) return failed;
+    if (surface->home_ == this) return {};
+    resident_ = surface;
+    surface->home_ = this;
+    if (surface->saved_.valid) {
+        state_->pixels.restore(surface->config(), compatibility(), surface->saved_);
+        surface->saved_ = {};
+    }
+    return {};
+}
+
+class OsmesaPlatform final : public Platform {
+public:
+    explicit OsmesaPlatform(SharedState state) : state_(std::move(state)) {}
+
+    Result<std::unique_ptr<Surface>> createSurface(const SurfaceConfig& wish) override;
+    Result<std::unique_ptr<Context>> createContext(const ContextConfig& wish, Context* shareWith) override;
+    Result<void> makeCurrent(Context* context, Surface* draw, Surface* read) override;
+    Proc getProcAddress(const char* name) override {
+        return reinterpret_cast<Proc>(state_->osmesa.getProcAddress(name));
+    }
+    [[nodiscard]] std::string describe() const override { return "OSMesa, " + renderer_ + ", " + version_; }
+
+    Result<void> measure();
+
+private:
+    SharedState state_;
+    std::string renderer_, version_;
+};
+
+Result<std::unique_ptr<Surface>> OsmesaPlatform::createSurface(const SurfaceConfig& wish) {
+    if (auto size = checkSize("OSMesa", wish, state_->maxSurfaceSize); !size) return size.error();
+    auto format = chooseFormat(wish);
+    if (!format) return format.error();
+    return std::unique_ptr<Surface>(std::make_unique<OsmesaSurface>(wish, format.value()));
+}
+
+Result<std::unique_ptr<Context>> OsmesaPlatform::createContext(const ContextConfig& wish, Context* shareWith) {
+    if (wish.api != Api::Desktop || wish.forwardCompatible)
+        return Error{"OSMesa can't make an " + describeContext(wish) + " context: use --gl egl"};
+    auto format = chooseFormat(wish.surface);
+    if (!format) return format.error();
+    const VersionRequest request = versionRequest(wish);
+    const bool core = request.profile && wish.core;
+    const int list[] = {OSMESA_FORMAT, static_cast<int>(format->format),
+                        OSMESA_DEPTH_BITS, wish.surface.depth,
+                        OSMESA_STENCIL_BITS, wish.surface.stencil,
+                        OSMESA_ACCUM_BITS, wish.surface.accum,
+                        OSMESA_PROFILE, core ? OSMESA_CORE_PROFILE : OSMESA_COMPAT_PROFILE,
+                        OSMESA_CONTEXT_MAJOR_VERSION, request.major,
+                        OSMESA_CONTEXT_MINOR_VERSION, request.minor,
+                        0, 0};
+    OSMesaContext share = shareWith ? static_cast<OsmesaContext*>(shareWith)->handle() : nullptr;
+    OSMesaContext handle = state_->osmesa.createContextAttribs(list, share);
+    if (!handle)
+        return Error{"OSMesa can't make an " + describeContext(wish) + " context" +
+                     (shareWith ? " that shares objects" : "") + ": the driver does not have it; see mural doctor"};
+    return std::unique_ptr<Context>(std::make_unique<OsmesaContext>(state_, handle, wish, format.value()));
+}
+
+Result<void> OsmesaPlatform::makeCurrent(Context* context, Surface* draw, Surface* read) {
+    if (!context) {
+        state_->current = nullptr;
+        if (state_->osmesa.makeCurrent(nullptr, nullptr, 0, 0, 0)) return {};
+        return Error{"OSMesa can't release the context: install a newer libosmesa6"};
+    }
+    if (read && read != draw)
+        return Error{"OSMesa can't draw to one surface and read from another: use --gl egl"};
+    return static_cast<OsmesaContext*>(context)->bind(static_cast<OsmesaSurface*>(draw));
+}
+
+Result<void> OsmesaPlatform::measure() {
+    auto surface = createSurface(SurfaceConfig());
+    if (!surface) return surface.error();
+    auto context = createContext(ContextConfig(), nullptr);
+    if (!context) return context.error();
+    if (auto current = makeCurrent(context->get(), surface->get(), surface->get()); !current) return current;
+    auto info = readGlInfo(*this);
+    auto released = makeCurrent(nullptr, nullptr, nullptr);
+    if (!info) return info.error();
+    state_->maxSurfaceSize = std::min(kMaxSurfaceSize, info->maxSurfaceSize);
+    renderer_ = info->renderer;
+    version_ = info->version;
+    return released;
+}
+
+} // namespace
+
+Result<std::unique_ptr<Platform>> openOsmesa() {
+    auto library = DynamicLibrary::open({"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"}, "libosmesa6");
+    if (!library) return library.error();
+    OsmesaFunctions osmesa;
+    if (!library->load(osmesa.createContextAttribs, "OSMesaCreateContextAttribs") ||
+        !library->load(osmesa.destroyContext, "OSMesaDestroyContext") ||
+        !library->load(osmesa.getProcAddress, "OSMesaGetProcAddress") ||
+        !library->load(osmesa.makeCurrent, "OSMesaMakeCurrent"))
+        return Error{library->name() + " is older than OSMesa 11.2: install a newer libosmesa6"};
+    auto platform = std::make_unique<OsmesaPlatform>(std::make_shared<OsmesaState>(osmesa));
+    if (auto measured = platform->measure(); !measured) return measured.error();
+    return std::unique_ptr<Platform>(std::move(platform));
+}
+
+} // namespace mural::gl
