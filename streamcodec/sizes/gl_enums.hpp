@@ -3,8 +3,10 @@
 
 #include <GL/gl.h>
 #include <GL/glext.h>
-#include <GLES2/gl2ext.h>
+
 #include <GLES2/gl2platform.h>
+// gl2ext.h needs the macros of gl2platform.h
+#include <GLES2/gl2ext.h>
 
 // Names that only the OpenGL ES 1 header has; it can't be included together with GL/gl.h.
 #ifndef GL_TEXTURE_CROP_RECT_OES
