@@ -14,6 +14,7 @@
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -24,6 +25,7 @@ namespace mural {
 namespace {
 
 constexpr int64_t kWaitSliceNs = 20 * kNsPerMs; // where the kernel can't tell us that a child ended
+constexpr int kUnknownStatus = 255 << 8;         // as if it had ended with exit code 255
 constexpr int64_t kTermGraceMs = 2000;
 constexpr int kInputBufferBytes = 1 << 20;
 constexpr size_t kLargestText = size_t{4} << 20;
@@ -46,11 +48,18 @@ std::string textOf(int fd) {
     return text;
 }
 
-std::string lastLine(std::string text) {
-    while (!text.empty() && (text.back() == '\n' || text.back() == '\r'))
-        text.pop_back();
-    const size_t lineEnd = text.find_last_of("\r\n");
-    return lineEnd == std::string::npos ? text : text.substr(lineEnd + 1);
+// The reason is in one of the last two lines: ffmpeg's very last one is often only a consequence.
+std::string lastLines(const std::string& text) {
+    std::string last;
+    std::string beforeLast;
+    for (size_t begin = 0; begin < text.size();) {
+        const size_t end = std::min(text.find_first_of("\r\n", begin), text.size());
+        const std::string line = text.substr(begin, end - begin);
+        begin = end + 1;
+        if (line.empty() || line.find("Last message repeated") != std::string::npos) continue;
+        beforeLast = std::exchange(last, line);
+    }
+    return beforeLast.empty() ? last : beforeLast + "; " + last;
 }
 
 struct SpawnSettings {
@@ -189,7 +198,8 @@ bool EncoderProcess::ended(int64_t waitNs) {
     const int64_t untilNs = monotonicNowNs() + waitNs;
     while (pid_ >= 0) {
         const pid_t reaped = ::waitpid(pid_, &status_, WNOHANG);
-        if (reaped == pid_ || (reaped < 0 && errno == ECHILD)) {
+        if (reaped != 0 && !(reaped < 0 && errno == EINTR)) {
+            if (reaped < 0) status_ = kUnknownStatus; // somebody else has reaped it
             pid_ = -1;
             break;
         }
@@ -208,7 +218,7 @@ Error EncoderProcess::howItEnded() {
         how = fmt::format("was killed by signal {}", WTERMSIG(status_));
     else if (WIFEXITED(status_))
         how = fmt::format("ended with exit code {}", WEXITSTATUS(status_));
-    const std::string last = lastLine(textOf(errorFd_));
+    const std::string last = lastLines(textOf(errorFd_));
     return {fmt::format("{} {}{}{}", program_, how, last.empty() ? "" : ": ", last)};
 }
 

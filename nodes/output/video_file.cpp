@@ -121,7 +121,8 @@ Result<void> VideoFile::begin(int width, int height) {
     width_ = width;
     height_ = height;
     std::vector<std::string> arguments = {
-        config_.program, "-hide_banner", "-nostats", "-loglevel", "error", "-y",
+        // -xerror: without it ffmpeg 5.1 ends with 0 when the disk is full at a short .mkv's end.
+        config_.program, "-hide_banner", "-nostats", "-loglevel", "error", "-xerror", "-y",
         // the input: rows come bottom first, hence vflip
         "-f", "rawvideo", "-pixel_format", "bgr0", "-video_size",
         fmt::format("{}x{}", width, height), "-framerate",

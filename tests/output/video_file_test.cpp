@@ -138,7 +138,7 @@ TEST(VideoFile, encoderThatFailsIsQuoted) {
     for (int i = 1; i < 1000 && shown; ++i)
         shown = video.value()->show(i, picture.view());
     ASSERT_FALSE(shown);
-    EXPECT_NE(shown.error().message.find("exit code 3: disk quota is gone"), std::string::npos)
+    EXPECT_NE(shown.error().message.find("exit code 3: first; disk quota is gone"), std::string::npos)
         << shown.error().message;
 }
 
@@ -154,6 +154,23 @@ TEST(VideoFile, realEncoderCannotWrite) {
     ASSERT_FALSE(result);
     EXPECT_NE(result.error().message.find("No such file or directory"), std::string::npos)
         << result.error().message;
+}
+
+TEST(VideoFile, fullDiskIsSaid) {
+    for (const char* name : {"run.mp4", "run.mkv", "run.avi", "run.webm", "run.mov"}) {
+        const ScratchFolder scratch;
+        std::filesystem::create_symlink("/dev/full", scratch.path(name));
+        auto video = VideoFile::open(configFor(scratch.path(name)));
+        ASSERT_TRUE(video) << video.error().message;
+        const OwnedPicture picture = noisePicture(256, 256, 1);
+        Result<void> result;
+        for (int i = 1; i < 20 && result; ++i)
+            result = video.value()->show(i, picture.view());
+        if (result) result = video.value()->finish();
+        ASSERT_FALSE(result);
+        EXPECT_NE(result.error().message.find("No space left on device"), std::string::npos)
+            << result.error().message;
+    }
 }
 
 TEST(VideoFile, encoderThatDoesNotReadRunsIntoTheDeadline) {
