@@ -49,6 +49,7 @@ Result<void> ProgramSupervisor::start(SpawnRequest request) {
 void ProgramSupervisor::tick() {
     readSignals();
     if (killAt_ && killAt_->passed()) signalAll(SIGKILL);
+    if (killAt_ && !killAt_->passed()) askNewcomers();
 }
 
 void ProgramSupervisor::readSignals() {
@@ -63,6 +64,7 @@ void ProgramSupervisor::readSignals() {
         } else if (number == SIGTERM || number == SIGHUP) {
             stopSignal_ = number;
             program_.signal(number);
+            if (number == SIGTERM) asked_.insert(program_.pid());
             end(kStopGraceMs);
         } else if (!programRunning()) {
             stopSignal_ = number; // nobody else is there to take it
@@ -80,9 +82,16 @@ bool ProgramSupervisor::anyoneLeft() const {
 }
 
 void ProgramSupervisor::end(int64_t graceMs) {
-    signalAll(SIGTERM);
+    askNewcomers();
     const Deadline wanted = Deadline::inMs(graceMs);
     if (!killAt_ || wanted.leftNs() < killAt_->leftNs()) killAt_ = wanted;
+}
+
+// A process that was about to fork when it was asked to end leaves one that nobody has asked.
+void ProgramSupervisor::askNewcomers() {
+    for (const ProcessFacts& p : descendantsOf(getpid(), ours_)) {
+        if (p.state != 'Z' && !isOurs(p.session) && asked_.insert(p.pid).second) kill(p.pid, SIGTERM);
+    }
 }
 
 void ProgramSupervisor::signalAll(int number) {

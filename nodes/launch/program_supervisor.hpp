@@ -51,12 +51,14 @@ private:
     explicit ProgramSupervisor(int signalFd) : signalFd_(signalFd) {}
     void readSignals();
     void signalAll(int number);
+    void askNewcomers();
     [[nodiscard]] bool isOurs(pid_t session) const { return ours_.count(session) != 0; }
 
     int signalFd_;
     ChildProcess program_;
     std::set<pid_t> ours_;
     std::optional<Deadline> killAt_;
+    std::set<pid_t> asked_; // to end, once each
     int stopSignal_ = 0;
 };
 

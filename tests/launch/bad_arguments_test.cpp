@@ -1,0 +1,113 @@
+// The built command with everything that a user can get wrong: one line on standard error, nothing on
+// standard output, the documented status, and no process left.
+#include <cstdio>
+#include <gtest/gtest.h>
+#include <string>
+#include <sys/mman.h>
+#include <unistd.h>
+#include <vector>
+
+#include "nodes/launch/child_process.hpp"
+#include "nodes/launch/elf_check.hpp"
+#include "tests/launch/elf_bytes.hpp"
+#include "tests/launch/temporary_folder.hpp"
+
+namespace mural {
+namespace {
+
+struct Said {
+    int status = -1;
+    std::string output, errors;
+};
+
+std::string contentOf(int fd) {
+    std::string text(65536, '\0');
+    text.resize(static_cast<size_t>(std::max<ssize_t>(0, pread(fd, text.data(), text.size(), 0))));
+    close(fd);
+    return text;
+}
+
+Said mural(std::vector<std::string> words, std::vector<std::string> environment = {}) {
+    launch::SpawnRequest request;
+    request.file = MURAL_BINARY;
+    request.arguments = {"mural"};
+    request.arguments.insert(request.arguments.end(), words.begin(), words.end());
+    request.environment = {"PATH=/usr/bin:/bin"};
+    request.environment.insert(request.environment.end(), environment.begin(), environment.end());
+    request.outputFd = memfd_create("output", MFD_CLOEXEC);
+    request.errorFd = memfd_create("errors", MFD_CLOEXEC);
+    Said said;
+    auto child = launch::ChildProcess::start(request);
+    EXPECT_TRUE(child.ok());
+    EXPECT_TRUE(child.value().waitUntil(Deadline::inMs(60'000)));
+    said.status = child.value().exitStatus();
+    said.output = contentOf(request.outputFd);
+    said.errors = contentOf(request.errorFd);
+    return said;
+}
+
+void expectOneLine(const Said& said, int status, const std::string& word) {
+    EXPECT_EQ(said.status, status) << said.errors;
+    EXPECT_EQ(said.output, "");
+    EXPECT_EQ(std::count(said.errors.begin(), said.errors.end(), '\n'), 1) << said.errors;
+    EXPECT_EQ(said.errors.empty() ? ' ' : said.errors.back(), '\n');
+    EXPECT_NE(said.errors.find(word), std::string::npos) << said.errors;
+}
+
+TEST(BadArguments, ofTheCommandItself) {
+    expectOneLine(mural({}), 2, "command is needed");
+    expectOneLine(mural({"rnu"}), 2, "rnu");
+    expectOneLine(mural({"--nope"}), 2, "--nope");
+    expectOneLine(mural({"version", "--nope"}), 2, "--nope");
+    expectOneLine(mural({"node"}), 2, "--connect");
+    expectOneLine(mural({"head"}), 2, "--control-fd");
+    expectOneLine(mural({"head", "--control-fd", "x"}), 2, "--control-fd");
+}
+
+TEST(BadArguments, ofRun) {
+    expectOneLine(mural({"run"}), 2, "no program");
+    expectOneLine(mural({"run", "--"}), 2, "no program");
+    expectOneLine(mural({"run", "--tilez", "2x2", "--", "true"}), 2, "--tilez");
+    expectOneLine(mural({"run", "--tiles"}), 2, "needs a value");
+    expectOneLine(mural({"run", "--tiles", "2y2", "--", "true"}), 2, "COLUMNSxROWS");
+    expectOneLine(mural({"run", "--size", "0x0", "--", "true"}), 2, "--size");
+    expectOneLine(mural({"run", "--frames", "many", "--", "true"}), 2, "--frames");
+    expectOneLine(mural({"run", "--verify=x", "--", "true"}), 2, "--verify");
+    expectOneLine(mural({"run", "--out", "wall.jpg", "--", "true"}), 2, "jpg");
+    expectOneLine(mural({"run", "--out", "/proc/none", "--", "true"}), 2, "--out");
+    expectOneLine(mural({"run", "--gl", "vulkan", "--", "true"}), 2, "osmesa");
+}
+
+TEST(BadArguments, displaysThatAreNotThere) {
+    expectOneLine(mural({"run", "--display", "app", "--", "true"}), 2, "DISPLAY");
+    expectOneLine(mural({"run", "--display", "windows", "--", "true"}), 2, "DISPLAY");
+    expectOneLine(mural({"run", "--", "true"}, {"DISPLAY=:7654"}), 2, ":7654");
+}
+
+TEST(BadArguments, programsThatCannotBeCaptured) {
+    const test::TemporaryFolder folder;
+    const auto program = [&](const std::string& name, int mode) { return folder.file(name, test::elf64(true, launch::ownMachine()), mode); };
+    expectOneLine(mural({"run", "--", "surely-not-installed"}), 127, "PATH");
+    expectOneLine(mural({"run", "--", folder.at("none")}), 127, "none");
+    expectOneLine(mural({"run", "--", program("noright", 0644)}), 126, "chmod");
+    expectOneLine(mural({"run", "--", folder.at("")}), 126, "folder");
+    expectOneLine(mural({"run", "--", program("setuid", 04755)}), 2, "setuid");
+    expectOneLine(mural({"run", "--", program("setgid", 02755)}), 2, "setgid");
+    expectOneLine(mural({"run", "--", folder.file("static", test::elf64(false, launch::ownMachine()), 0755)}), 2, "static");
+    expectOneLine(mural({"run", "--", folder.file("narrow", test::elf32(), 0755)}), 2, "32-bit");
+    expectOneLine(mural({"run", "--native", "--", folder.at("none")}), 127, "none");
+}
+
+TEST(Help, everyCommandHasExamplesAndItsExitStatus) {
+    for (const char* command : {"run", "head", "node", "doctor", "list-commands", "version"}) {
+        const Said said = mural({command, "--help"});
+        EXPECT_EQ(said.status, 0);
+        EXPECT_EQ(said.errors, "");
+        EXPECT_NE(said.output.find("Example"), std::string::npos) << command;
+        EXPECT_NE(said.output.find("Exit status"), std::string::npos) << command;
+        EXPECT_NE(said.output.find(std::string("mural ") + command), std::string::npos) << command;
+    }
+}
+
+} // namespace
+} // namespace mural

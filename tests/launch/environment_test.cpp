@@ -1,0 +1,97 @@
+#include "nodes/launch/environment.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/launch/temporary_folder.hpp"
+
+namespace mural::launch {
+namespace {
+
+const CaptureLibrary kLibrary{"/opt/mural/lib/libGLX_mural.so.0", "/opt/mural/lib/mural_egl_vendor.json"};
+
+TEST(Preload, keepsOthersAndComesLast) {
+    EXPECT_EQ(withCapture("", kLibrary.library), kLibrary.library);
+    EXPECT_EQ(withCapture("/a.so", kLibrary.library), "/a.so " + kLibrary.library);
+    EXPECT_EQ(withCapture("/a.so:/b.so  c.so", kLibrary.library), "/a.so /b.so c.so " + kLibrary.library);
+}
+
+TEST(Preload, isIdempotentAndRemovesAnEarlierMural) {
+    const std::string once = withCapture("/a.so", kLibrary.library);
+    EXPECT_EQ(withCapture(once, kLibrary.library), once);
+    EXPECT_EQ(withCapture("/old/libGLX_mural.so.0 /a.so", kLibrary.library), once);
+    EXPECT_EQ(withoutCapture("/old/libGLX_mural.so.0:/a.so:libGLX_mural.so.0"), "/a.so");
+    EXPECT_EQ(withoutCapture("/x/notlibGLX_mural.so.0"), "/x/notlibGLX_mural.so.0");
+}
+
+TEST(Environment, setReplacesAndGetWantsTheWholeName) {
+    Environment e({"AB=1", "A=2"});
+    EXPECT_EQ(e.get("A"), "2");
+    EXPECT_EQ(e.get("B"), std::nullopt);
+    e.set("AB", "3");
+    EXPECT_EQ(e.get("AB"), "3");
+    EXPECT_EQ(e.entries().size(), 2u);
+    e.unset("A");
+    EXPECT_EQ(e.get("A"), std::nullopt);
+    EXPECT_EQ(e.get("AB"), "3");
+}
+
+TEST(CaptureEnvironment, setsAllThatBothFrontsNeed) {
+    Environment e({"LD_PRELOAD=/grab.so"});
+    ASSERT_TRUE(addCapture(e, kLibrary, "mural-1").ok());
+    EXPECT_EQ(e.get("LD_PRELOAD"), "/grab.so " + kLibrary.library);
+    EXPECT_EQ(e.get("__GLX_VENDOR_LIBRARY_NAME"), "mural");
+    EXPECT_EQ(e.get("__EGL_VENDOR_LIBRARY_FILENAMES"), kLibrary.eglVendorFile);
+    EXPECT_EQ(e.get("MURAL_SESSION"), "mural-1");
+    EXPECT_EQ(e.get("MURAL_REAL_GLX_VENDOR"), std::nullopt);
+    EXPECT_EQ(e.get("MURAL_REAL_EGL_VENDORS"), std::nullopt);
+}
+
+TEST(CaptureEnvironment, keepsTheUsersVendorsAlsoWhenAddedTwice) {
+    Environment e({"__GLX_VENDOR_LIBRARY_NAME=mesa", "__EGL_VENDOR_LIBRARY_FILENAMES=/v/50_mesa.json"});
+    ASSERT_TRUE(addCapture(e, kLibrary, "mural-1").ok());
+    const auto once = e.entries();
+    ASSERT_TRUE(addCapture(e, kLibrary, "mural-1").ok());
+    EXPECT_EQ(std::multiset<std::string>(once.begin(), once.end()), std::multiset<std::string>(e.entries().begin(), e.entries().end()));
+    EXPECT_EQ(e.get("MURAL_REAL_GLX_VENDOR"), "mesa");
+    EXPECT_EQ(e.get("MURAL_REAL_EGL_VENDORS"), "/v/50_mesa.json");
+}
+
+TEST(CaptureEnvironment, staleKeptVendorsDoNotSurvive) {
+    Environment e({"MURAL_REAL_GLX_VENDOR=old"});
+    ASSERT_TRUE(addCapture(e, kLibrary, "mural-1").ok());
+    EXPECT_EQ(e.get("MURAL_REAL_GLX_VENDOR"), std::nullopt);
+}
+
+TEST(CaptureEnvironment, removingGivesRenderersTheirOwnGl) {
+    Environment e({"HOME=/h", "LD_PRELOAD=/clock.so", "__GLX_VENDOR_LIBRARY_NAME=mesa"});
+    ASSERT_TRUE(addCapture(e, kLibrary, "mural-1").ok());
+    removeCapture(e);
+    EXPECT_EQ(std::multiset<std::string>(e.entries().begin(), e.entries().end()), (std::multiset<std::string>{"HOME=/h", "__GLX_VENDOR_LIBRARY_NAME=mesa"}));
+}
+
+TEST(CaptureEnvironment, folderWithBlanksGoesThroughTheLibraryPath) {
+    const CaptureLibrary spaced{"/my wall/lib/libGLX_mural.so.0", "/my wall/lib/mural_egl_vendor.json"};
+    Environment e({"LD_LIBRARY_PATH=/x"});
+    ASSERT_TRUE(addCapture(e, spaced, "s").ok());
+    ASSERT_TRUE(addCapture(e, spaced, "s").ok());
+    EXPECT_EQ(e.get("LD_PRELOAD"), "libGLX_mural.so.0");
+    EXPECT_EQ(e.get("LD_LIBRARY_PATH"), "/my wall/lib:/x");
+}
+
+TEST(CaptureEnvironment, folderThatTheLoaderCannotNameIsAnError) {
+    Environment e;
+    EXPECT_FALSE(addCapture(e, {"/a:b/libGLX_mural.so.0", ""}, "s").ok());
+}
+
+TEST(CaptureLibraryPlace, isFoundInTheBuildTreeAndInstalled) {
+    const test::TemporaryFolder folder;
+    std::filesystem::create_directories(folder.at("lib/mural"));
+    EXPECT_FALSE(findCaptureLibrary(folder.at("bin/mural")).ok());
+    folder.file("lib/mural/libGLX_mural.so.0", "", 0644);
+    EXPECT_EQ(findCaptureLibrary(folder.at("bin/mural")).value().library, folder.at("lib/mural/libGLX_mural.so.0"));
+    folder.file("lib/libGLX_mural.so.0", "", 0644);
+    EXPECT_EQ(findCaptureLibrary(folder.at("bin/mural")).value().library, folder.at("lib/libGLX_mural.so.0"));
+}
+
+} // namespace
+} // namespace mural::launch

@@ -1,0 +1,56 @@
+#include "tools/mural/head_events.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tools/mural/console.hpp"
+
+namespace mural::cli {
+namespace {
+
+HeadEvent event(const std::string& line) {
+    auto parsed = parseHeadEvent(line);
+    EXPECT_TRUE(parsed.ok()) << line;
+    return parsed.ok() ? parsed.value() : HeadEvent{};
+}
+
+TEST(HeadEvents, readsEachLineOfTheProtocol) {
+    EXPECT_EQ(event(R"({"event":"ready","explain":["a","b"],"nodes":[]})").explain, (std::vector<std::string>{"a", "b"}));
+    EXPECT_EQ(event(R"({"event":"error","text":"no GL"})").text, "no GL");
+    EXPECT_EQ(event(R"({"event":"clients","count":2})").clients, 2);
+    const HeadEvent frame = event(R"({"event":"frame","frame":120,"framesPerSecond":58.2,"bytesPerFrame":12345})");
+    EXPECT_EQ(frame.frame, 120);
+    EXPECT_DOUBLE_EQ(frame.framesPerSecond, 58.2);
+    EXPECT_DOUBLE_EQ(frame.bytesPerFrame, 12345);
+    EXPECT_EQ(event(R"({"event":"frames-reached"})").kind, HeadEvent::Kind::FramesReached);
+}
+
+TEST(HeadEvents, nothingFromOutsideThrows) {
+    for (const char* line : {"", "{", "[]", "7", "null", R"({"text":"x"})"}) EXPECT_FALSE(parseHeadEvent(line).ok()) << line;
+    EXPECT_EQ(event(R"({"event":"later"})").kind, HeadEvent::Kind::Unknown);
+    EXPECT_EQ(event(R"({"event":7})").kind, HeadEvent::Kind::Unknown);
+    EXPECT_EQ(event(R"({"event":"clients","count":"two"})").clients, 0);
+    EXPECT_EQ(event(R"({"event":"report","frames":[],"nodes":[1,{"node":3,"lost":true}]})").report.nodes.size(), 1u);
+}
+
+TEST(Report, saysWhatDiffersAndWhoWasLost) {
+    const HeadEvent e = event(R"({"event":"report","frames":90,"seconds":1.5,"framesPerSecond":60.0,"bytesPerFrame":12345,"verifiedFrames":90,)"
+                              R"("verifiedPixels":70778880,"differingPixels":3,"largestDifference":2,"savedPictures":1,"lastPicture":"out/a.png",)"
+                              R"("callsUnsupported":1,"nodes":[{"node":0,"frames":90},{"node":1,"frames":12,"lost":true}]})");
+    EXPECT_EQ(reportLines(e.report), (std::vector<std::string>{
+                                         "90 frames in 1.5 s, 60.0 frames/s, 12.3 kB per frame to each node",
+                                         "verified 90 frames, 70778880 pixels: 3 differ, by up to 2 of 255",
+                                         "saved 1 picture, the last in out/a.png",
+                                         "1 call of commands that Mural does not carry yet; see mural list-commands --unsupported",
+                                         "node 1 was lost after 12 frames"}));
+}
+
+TEST(Report, sizesHaveThreeDigits) {
+    EXPECT_EQ(sizeText(0), "0 B");
+    EXPECT_EQ(sizeText(999), "999 B");
+    EXPECT_EQ(sizeText(1000), "1.0 kB");
+    EXPECT_EQ(sizeText(4.56e6), "4.56 MB");
+    EXPECT_EQ(sizeText(7.8e9), "7.80 GB");
+}
+
+} // namespace
+} // namespace mural::cli

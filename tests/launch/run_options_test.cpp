@@ -1,0 +1,117 @@
+#include "tools/mural/run_options.hpp"
+
+#include <gtest/gtest.h>
+
+namespace mural::cli {
+namespace {
+
+RunArguments with(const std::function<void(RunArguments&)>& change) {
+    RunArguments arguments;
+    arguments.program = {"app", "-x"};
+    change(arguments);
+    return arguments;
+}
+
+RunOptions accepted(const std::function<void(RunArguments&)>& change) {
+    auto options = runOptionsFrom(with(change));
+    EXPECT_TRUE(options.ok()) << (options.ok() ? "" : options.error().message);
+    return options.ok() ? options.value() : RunOptions{};
+}
+
+std::string refusal(const std::function<void(RunArguments&)>& change) {
+    const auto options = runOptionsFrom(with(change));
+    return options.ok() ? "accepted" : options.error().message;
+}
+
+TEST(RunOptions, defaultsAreOneExactNode) {
+    const RunOptions o = accepted([](RunArguments&) {});
+    EXPECT_EQ(o.config.columns, 1);
+    EXPECT_EQ(o.config.rows, 1);
+    EXPECT_EQ(o.config.tiling, Tiling::Exact);
+    EXPECT_EQ(o.config.latency, 1);
+    EXPECT_FALSE(o.displayChosen);
+    EXPECT_EQ(o.program, (std::vector<std::string>{"app", "-x"}));
+}
+
+TEST(RunOptions, readsEveryOption) {
+    const RunOptions o = accepted([](RunArguments& a) {
+        a.tiles = "7x5";
+        a.nodes = "h1,h2";
+        a.localNodes = "3";
+        a.size = "7680x4320";
+        a.frames = "90";
+        a.out = "shots";
+        a.save = "90,1,30,30";
+        a.display = "windows";
+        a.tiling = "lean";
+        a.policy = "full";
+        a.gl = "osmesa";
+        a.latency = "0";
+        a.verify = "5";
+        a.fullScreen = true;
+        a.position = "-10,20";
+        a.noPlacement = true;
+        a.launch = "rsh";
+        a.remoteMural = "/opt/mural";
+    });
+    const SessionConfig& c = o.config;
+    EXPECT_EQ(c.columns, 7);
+    EXPECT_EQ(c.rows, 5);
+    EXPECT_EQ(c.hosts, (std::vector<std::string>{"h1", "h2"}));
+    EXPECT_EQ(c.localNodes, 3);
+    EXPECT_EQ(c.width, 7680);
+    EXPECT_EQ(c.height, 4320);
+    EXPECT_EQ(c.frames, 90);
+    EXPECT_EQ(c.out, "shots");
+    EXPECT_EQ(c.saveFrames, (std::vector<int64_t>{1, 30, 90}));
+    EXPECT_EQ(c.display, Display::Windows);
+    EXPECT_EQ(c.tiling, Tiling::Lean);
+    EXPECT_EQ(c.policy, CapturePolicy::Full);
+    EXPECT_EQ(c.glBackend, "osmesa");
+    EXPECT_EQ(c.latency, 0);
+    EXPECT_EQ(c.verifyEvery, 5);
+    EXPECT_TRUE(c.fullScreen);
+    EXPECT_EQ(c.windowX, -10);
+    EXPECT_EQ(c.windowY, 20);
+    EXPECT_FALSE(c.placeThreads);
+    EXPECT_EQ(c.launchCommand, "rsh");
+    EXPECT_EQ(c.remoteMural, "/opt/mural");
+}
+
+TEST(RunOptions, nodesWithoutTilesGetOneEach) {
+    const auto grid = [](const char* local) {
+        const RunOptions o = accepted([&](RunArguments& a) { a.localNodes = local; });
+        return std::pair(o.config.columns, o.config.rows);
+    };
+    EXPECT_EQ(grid("1"), std::pair(1, 1));
+    EXPECT_EQ(grid("4"), std::pair(2, 2));
+    EXPECT_EQ(grid("6"), std::pair(3, 2));
+    EXPECT_EQ(grid("7"), std::pair(7, 1));
+    const RunOptions o = accepted([](RunArguments& a) { a.nodes = "a,b"; });
+    EXPECT_EQ(o.config.columns, 2);
+}
+
+TEST(RunOptions, wrongValuesNameTheOptionAndWhatIsWanted) {
+    for (const char* bad : {"2", "2x", "x2", "0x1", "2x2x2", "-1x2", "2 x2", "2X2", "257x1", "99999999999x1", ""}) {
+        EXPECT_EQ(refusal([&](RunArguments& a) { a.tiles = bad; }).rfind("--tiles \"" + std::string(bad) + "\": must be", 0), 0u) << bad;
+    }
+    EXPECT_NE(refusal([](RunArguments& a) { a.size = "32768x1"; }).find("32767"), std::string::npos);
+    EXPECT_NE(refusal([](RunArguments& a) { a.frames = "0"; }).find("--frames"), std::string::npos);
+    EXPECT_NE(refusal([](RunArguments& a) { a.latency = "-1"; }).find("--latency"), std::string::npos);
+    EXPECT_NE(refusal([](RunArguments& a) { a.verify = "0"; }).find("--verify"), std::string::npos);
+    EXPECT_NE(refusal([](RunArguments& a) { a.gl = "vulkan"; }).find("auto, egl, osmesa, glx"), std::string::npos);
+    EXPECT_NE(refusal([](RunArguments& a) { a.position = "1"; }).find("--position"), std::string::npos);
+    EXPECT_NE(refusal([](RunArguments& a) { a.nodes = "h1,-oProxyCommand=x"; }).find("--nodes"), std::string::npos);
+}
+
+TEST(RunOptions, optionsThatMeanNothingTogetherAreRefused) {
+    EXPECT_NE(refusal([](RunArguments& a) { a.save = "1"; }).find("--out"), std::string::npos);
+    EXPECT_NE(refusal([](RunArguments& a) { a.fullScreen = true; }).find("--display windows"), std::string::npos);
+    EXPECT_NE(refusal([](RunArguments& a) { a.native = true; a.out = "x"; }).find("--native"), std::string::npos);
+    EXPECT_NE(refusal([](RunArguments& a) { a.tiles = "2x2"; a.localNodes = "5"; }).find("5 render nodes for 4 tiles"), std::string::npos);
+    EXPECT_NE(refusal([](RunArguments& a) { a.tiles = "4x4"; a.size = "3x100"; }).find("do not fit"), std::string::npos);
+    EXPECT_NE(refusal([](RunArguments& a) { a.program.clear(); }).find("no program"), std::string::npos);
+}
+
+} // namespace
+} // namespace mural::cli

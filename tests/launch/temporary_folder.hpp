@@ -1,0 +1,37 @@
+// A folder of a test's own, gone afterwards.
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace mural::test {
+
+class TemporaryFolder {
+public:
+    TemporaryFolder() {
+        std::string name = (std::filesystem::temp_directory_path() / "mural-test-XXXXXX").string();
+        path_ = mkdtemp(name.data());
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+
+    [[nodiscard]] std::string at(const std::string& name) const { return path_ + "/" + name; }
+
+    // mode: as for chmod, e.g. 0755.
+    std::string file(const std::string& name, const std::string& bytes, int mode) const {
+        std::ofstream(at(name), std::ios::binary) << bytes;
+        std::filesystem::permissions(at(name), static_cast<std::filesystem::perms>(mode));
+        return at(name);
+    }
+
+private:
+    std::string path_;
+};
+
+} // namespace mural::test

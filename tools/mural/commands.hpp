@@ -1,0 +1,21 @@
+// The sub-commands of mural; each returns its exit status.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/mural/run_options.hpp"
+
+namespace mural::cli {
+
+int runCommand(const RunOptions& options);
+int doctorCommand(bool asJson);
+int listCommandsCommand(bool onlyUnsupported);
+int versionCommand();
+
+// In a child of doctor, with the environment of a captured program: has the library come along?
+int preloadProbeCommand();
+
+const char* muralVersion();
+
+} // namespace mural::cli

@@ -1,0 +1,71 @@
+#include "tools/mural/console.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace mural::cli {
+
+namespace {
+
+constexpr int64_t kTerminalMs = 100;
+constexpr int64_t kLogMs = 5'000;
+
+const char* plural(int64_t count) { return count == 1 ? "" : "s"; }
+
+} // namespace
+
+std::string sizeText(double sizeBytes) {
+    if (sizeBytes < 1000) return fmt::format("{:.0f} B", sizeBytes);
+    if (sizeBytes < 1e6) return fmt::format("{:.1f} kB", sizeBytes / 1e3);
+    if (sizeBytes < 1e9) return fmt::format("{:.2f} MB", sizeBytes / 1e6);
+    return fmt::format("{:.2f} GB", sizeBytes / 1e9);
+}
+
+Console::Console(bool quiet)
+    : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1), nextLine_(Deadline::inMs(terminal_ ? 0 : kLogMs)) {}
+
+// One write per line, so that lines of several processes do not mix.
+void Console::write(const std::string& text) {
+    const std::string bytes = (progressShown_ ? "\r\033[K" : "") + text;
+    progressShown_ = false;
+    [[maybe_unused]] const ssize_t n = ::write(STDERR_FILENO, bytes.data(), bytes.size());
+}
+
+void Console::error(const std::string& text) { write("mural: " + text + "\n"); }
+
+void Console::say(const std::string& text) {
+    if (!quiet_) error(text);
+}
+
+void Console::progress(int64_t frame, double framesPerSecond, double bytesPerFrame) {
+    if (quiet_ || !nextLine_.passed()) return;
+    nextLine_ = Deadline::inMs(terminal_ ? kTerminalMs : kLogMs);
+    std::string text = fmt::format("mural: frame {}, {:.1f} frames/s", frame, framesPerSecond);
+    if (bytesPerFrame > 0) text += ", " + sizeText(bytesPerFrame) + " per frame";
+    write(terminal_ ? text : text + "\n");
+    progressShown_ = terminal_;
+}
+
+std::vector<std::string> reportLines(const SessionReport& r) {
+    std::vector<std::string> lines;
+    lines.push_back(fmt::format("{} frame{} in {:.1f} s, {:.1f} frames/s, {} per frame to each node", r.frames, plural(r.frames),
+                                r.seconds, r.framesPerSecond, sizeText(r.bytesPerFrame)));
+    if (r.verifiedFrames > 0) {
+        std::string line = fmt::format("verified {} frame{}, {} pixels: {} differ", r.verifiedFrames, plural(r.verifiedFrames), r.verifiedPixels, r.differingPixels);
+        if (r.differingPixels > 0) line += fmt::format(", by up to {} of 255", r.largestDifference);
+        lines.push_back(line);
+    }
+    if (r.savedPictures > 0) {
+        lines.push_back(fmt::format("saved {} picture{}, the last in {}", r.savedPictures, plural(r.savedPictures), r.lastPicture));
+    }
+    if (r.callsUnsupported > 0) {
+        lines.push_back(fmt::format("{} call{} of commands that Mural does not carry yet; see mural list-commands --unsupported", r.callsUnsupported, plural(r.callsUnsupported)));
+    }
+    for (const NodeReport& n : r.nodes) {
+        if (n.lost) lines.push_back(fmt::format("node {} was lost after {} frame{}", n.node, n.frames, plural(n.frames)));
+    }
+    return lines;
+}
+
+} // namespace mural::cli

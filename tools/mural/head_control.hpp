@@ -1,0 +1,43 @@
+// The head process of a session and the line-wise conversation with it. Owned by one thread.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/clock.hpp"
+#include "common/result.hpp"
+#include "nodes/launch/child_process.hpp"
+#include "nodes/launch/environment.hpp"
+
+namespace mural::cli {
+
+class HeadControl {
+public:
+    // command: program and arguments; "--control-fd N" is added.
+    static Result<std::unique_ptr<HeadControl>>
+    start(const std::vector<std::string>& command, const launch::Environment& environment);
+    HeadControl(const HeadControl&) = delete;
+    HeadControl& operator=(const HeadControl&) = delete;
+    // Ends the head and the nodes that it started, kindly at first.
+    ~HeadControl();
+
+    [[nodiscard]] int fd() const { return fd_; }
+    [[nodiscard]] launch::ChildProcess& process() { return process_; }
+    // False once either side has ended the conversation.
+    [[nodiscard]] bool connected() const { return connected_; }
+
+    void send(const std::string& line);
+    // What has arrived, complete lines only; does not block.
+    std::vector<std::string> receive();
+
+private:
+    HeadControl(int fd, launch::ChildProcess process) : fd_(fd), process_(process) {}
+
+    int fd_;
+    launch::ChildProcess process_;
+    bool connected_ = true;
+    std::string partial_;
+};
+
+} // namespace mural::cli

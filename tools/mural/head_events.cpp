@@ -1,0 +1,85 @@
+#include "tools/mural/head_events.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace mural::cli {
+
+namespace {
+
+using Json = nlohmann::json;
+
+// Fields of another type than expected count as absent: no line from outside may throw.
+int64_t whole(const Json& j, const char* name) {
+    const auto it = j.find(name);
+    return it != j.end() && it->is_number() ? it->get<int64_t>() : 0;
+}
+double real(const Json& j, const char* name) {
+    const auto it = j.find(name);
+    return it != j.end() && it->is_number() ? it->get<double>() : 0.0;
+}
+std::string text(const Json& j, const char* name) {
+    const auto it = j.find(name);
+    return it != j.end() && it->is_string() ? it->get<std::string>() : std::string();
+}
+bool truth(const Json& j, const char* name) {
+    const auto it = j.find(name);
+    return it != j.end() && it->is_boolean() && it->get<bool>();
+}
+
+HeadEvent::Kind kindOf(const std::string& name) {
+    using Kind = HeadEvent::Kind;
+    if (name == "ready") return Kind::Ready;
+    if (name == "error") return Kind::Error;
+    if (name == "clients") return Kind::Clients;
+    if (name == "frame") return Kind::Frame;
+    if (name == "frames-reached") return Kind::FramesReached;
+    if (name == "say") return Kind::Say;
+    if (name == "report") return Kind::Report;
+    return Kind::Unknown;
+}
+
+SessionReport reportFrom(const Json& j) {
+    SessionReport r;
+    r.frames = whole(j, "frames");
+    r.seconds = real(j, "seconds");
+    r.framesPerSecond = real(j, "framesPerSecond");
+    r.bytesPerFrame = real(j, "bytesPerFrame");
+    r.callsUnsupported = whole(j, "callsUnsupported");
+    r.verifiedFrames = whole(j, "verifiedFrames");
+    r.verifiedPixels = whole(j, "verifiedPixels");
+    r.differingPixels = whole(j, "differingPixels");
+    r.largestDifference = whole(j, "largestDifference");
+    r.savedPictures = whole(j, "savedPictures");
+    r.lastPicture = text(j, "lastPicture");
+    if (const auto nodes = j.find("nodes"); nodes != j.end() && nodes->is_array()) {
+        for (const Json& n : *nodes) {
+            if (n.is_object()) r.nodes.push_back({whole(n, "node"), whole(n, "frames"), real(n, "cpuSeconds"), truth(n, "lost")});
+        }
+    }
+    return r;
+}
+
+} // namespace
+
+Result<HeadEvent> parseHeadEvent(const std::string& line) {
+    const Json j = Json::parse(line, nullptr, false);
+    if (!j.is_object() || !j.contains("event")) {
+        return Error{"the head said something that is no event: " + line.substr(0, 80)};
+    }
+    HeadEvent event;
+    event.kind = kindOf(text(j, "event"));
+    event.text = text(j, "text");
+    event.clients = whole(j, "count");
+    event.frame = whole(j, "frame");
+    event.framesPerSecond = real(j, "framesPerSecond");
+    event.bytesPerFrame = real(j, "bytesPerFrame");
+    if (const auto lines = j.find("explain"); lines != j.end() && lines->is_array()) {
+        for (const Json& l : *lines) {
+            if (l.is_string()) event.explain.push_back(l.get<std::string>());
+        }
+    }
+    if (event.kind == HeadEvent::Kind::Report) event.report = reportFrom(j);
+    return event;
+}
+
+} // namespace mural::cli

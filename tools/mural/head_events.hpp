@@ -1,0 +1,49 @@
+// What the head says, line by line (docs/control-protocol.md). Pure.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/result.hpp"
+
+namespace mural::cli {
+
+struct NodeReport {
+    int64_t node = 0;
+    int64_t frames = 0;
+    double cpuSeconds = 0;
+    bool lost = false;
+};
+
+struct SessionReport {
+    int64_t frames = 0;
+    double seconds = 0;
+    double framesPerSecond = 0;
+    double bytesPerFrame = 0;
+    int64_t callsUnsupported = 0;
+    int64_t verifiedFrames = 0;
+    int64_t verifiedPixels = 0;
+    int64_t differingPixels = 0;
+    int64_t largestDifference = 0;
+    int64_t savedPictures = 0;
+    std::string lastPicture;
+    std::vector<NodeReport> nodes;
+};
+
+struct HeadEvent {
+    enum class Kind { Ready, Error, Clients, Frame, FramesReached, Say, Report, Unknown };
+    Kind kind = Kind::Unknown;
+    std::string text;                 // Error, Say
+    std::vector<std::string> explain; // Ready
+    int64_t clients = 0;              // Clients
+    int64_t frame = 0;                // Frame
+    double framesPerSecond = 0;
+    double bytesPerFrame = 0;
+    SessionReport report; // Report
+};
+
+// Fails on what is not a JSON object with an event. Events of a later head are Unknown.
+Result<HeadEvent> parseHeadEvent(const std::string& line);
+
+} // namespace mural::cli

@@ -1,0 +1,20 @@
+#include <fmt/format.h>
+
+#include "streamcodec/command_table.hpp"
+#include "tools/mural/commands.hpp"
+
+namespace mural::cli {
+
+int listCommandsCommand(bool onlyUnsupported) {
+    int64_t carried = 0;
+    int64_t left = 0;
+    for (const CommandInfo& command : commandTable()) {
+        (command.carried ? carried : left) += 1;
+        if (onlyUnsupported && command.carried) continue;
+        fmt::print("{}\t{}{}{}\n", command.name, command.commandClass, *command.reason != '\0' ? "\t" : "", command.reason);
+    }
+    fmt::print(stderr, "mural: {} commands are carried, {} are not\n", carried, left);
+    return 0;
+}
+
+} // namespace mural::cli

@@ -1,0 +1,174 @@
+// mural: one binary, many sub-commands. Parses the command line, and nothing else.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <fmt/format.h>
+#include <functional>
+
+#include "nodes/head/head.hpp"
+#include "nodes/launch/program_check.hpp"
+#include "nodes/node/node.hpp"
+#include "tools/mural/commands.hpp"
+
+namespace {
+
+using mural::launch::kExitUsage;
+
+int usageError(const std::string& command, std::string text) {
+    for (char& c : text) {
+        if (c == '\n') c = ' '; // one line for each mistake
+    }
+    while (!text.empty() && (text.back() == ' ' || text.back() == '.')) text.pop_back();
+    fmt::print(stderr, "{}: {} (see {} --help)\n", command, text, command);
+    return kExitUsage;
+}
+
+// What stands after the first "--" is the program of `mural run`, untouched.
+struct SplitLine {
+    std::vector<std::string> ours;
+    std::vector<std::string> program;
+    bool separated = false;
+};
+
+SplitLine split(int count, char** arguments) {
+    SplitLine line;
+    for (int i = 1; i < count; ++i) {
+        const std::string word = arguments[i];
+        if (line.separated) {
+            line.program.push_back(word);
+        } else if (word == "--") {
+            line.separated = true;
+        } else {
+            line.ours.push_back(word);
+        }
+    }
+    return line;
+}
+
+// Without "--" the first word that is no option begins the program: then "--" belongs to it.
+std::vector<std::string> programOf(const CLI::App& run, const SplitLine& line) {
+    std::vector<std::string> program = run.remaining();
+    if (!program.empty() && line.separated) program.emplace_back("--");
+    program.insert(program.end(), line.program.begin(), line.program.end());
+    return program;
+}
+
+// The first line of --help: CLI11 does not know what follows "--", nor the name above a sub-command.
+class HelpFormatter : public CLI::Formatter {
+public:
+    std::string make_usage(const CLI::App* app, std::string) const override {
+        if (app->get_parent() == nullptr) return "Usage: mural COMMAND [OPTIONS]\n";
+        const bool takesProgram = app->get_name() == "run";
+        return "Usage: mural " + app->get_name() + " [OPTIONS]" + (takesProgram ? " -- PROGRAM ARGUMENTS..." : "") + "\n";
+    }
+    std::string make_option_name(const CLI::Option* option, bool positional) const override {
+        const std::string name = CLI::Formatter::make_option_name(option, positional);
+        const auto at = name.find("{1}"); // how CLI11 writes a flag that may have a value
+        return at == std::string::npos ? name : name.substr(0, at) + "[=N]";
+    }
+};
+
+class CommandLine {
+public:
+    CommandLine() {
+        app_.formatter(std::make_shared<HelpFormatter>());
+        app_.footer("mural COMMAND --help says more about each.\n\nExamples:\n  mural run --tiles 2x2 -- glxgears\n  mural doctor");
+        addRun();
+        addProcesses();
+        addTools();
+    }
+
+    int perform(int count, char** arguments) {
+        line_ = split(count, arguments);
+        if (!line_.ours.empty() && !line_.ours.front().starts_with("-") && !isCommand(line_.ours.front())) {
+            return usageError("mural", "there is no command " + line_.ours.front());
+        }
+        std::vector<std::string> reversed(line_.ours.rbegin(), line_.ours.rend()); // as CLI11 takes them
+        try {
+            app_.parse(std::move(reversed));
+        } catch (const CLI::CallForHelp&) {
+            fmt::print("{}", current().help());
+            return 0;
+        } catch (const CLI::ArgumentMismatch& error) {
+            const std::string text = error.what(); // "--tiles: 1 required CxR missing"
+            return usageError("mural " + current().get_name(), text.substr(0, text.find(':')) + " needs a value");
+        } catch (const CLI::ParseError& error) {
+            return usageError(current().get_parent() == nullptr ? "mural" : "mural " + current().get_name(), error.what());
+        }
+        if (!action_) return usageError("mural", "a command is needed, such as run");
+        return action_();
+    }
+
+private:
+    [[nodiscard]] bool isCommand(const std::string& name) const {
+        const auto commands = app_.get_subcommands([](const CLI::App*) { return true; });
+        return std::any_of(commands.begin(), commands.end(), [&](const CLI::App* c) { return c->get_name() == name; });
+    }
+
+    CLI::App& current() {
+        const auto chosen = app_.get_subcommands();
+        return chosen.empty() ? app_ : *chosen.front();
+    }
+
+    CLI::App& add(const std::string& name, const std::string& what, std::function<int()> action, const std::string& footer) {
+        CLI::App* command = app_.add_subcommand(name, what);
+        command->final_callback([this, action = std::move(action)] { action_ = action; });
+        command->footer(footer);
+        return *command;
+    }
+
+    void addRun() {
+        run_ = &add("run", "run an OpenGL program on a wall of render nodes", [this] { return runProgram(); }, "");
+        run_->prefix_command();
+        mural::cli::describeRunOptions(*run_, runArguments_);
+    }
+
+    int runProgram() {
+        const auto rest = run_->remaining();
+        if (!rest.empty() && rest.front().starts_with("-")) return usageError("mural run", "there is no option " + rest.front());
+        runArguments_.program = programOf(*run_, line_);
+        const auto options = mural::cli::runOptionsFrom(runArguments_);
+        if (!options.ok()) return usageError("mural run", options.error().message);
+        return mural::cli::runCommand(options.value());
+    }
+
+    void addProcesses() {
+        CLI::App& head = add("head", "head process of a session (started by mural run)", [this] { return mural::runHead(controlFd_); },
+                             "Example:\n  mural head --control-fd 3     speaks docs/control-protocol.md on descriptor 3\n\nExit status: 0, or 1 when the session could not start.");
+        head.add_option("--control-fd", controlFd_, "descriptor of the conversation with mural run")->required()->check(CLI::NonNegativeNumber);
+        CLI::App& node = add("node", "render node process (started by the head, here or on another host)", [this] { return runNode(); },
+                             "Examples:\n  mural node --connect-fd 3           shared memory with a head on this machine\n  mural node --connect wall0:4711     a head on another machine\n\nExit status: 0, or 1 when the node could not draw.");
+        node.add_option("--connect-fd", node_.connectFd, "descriptor of shared memory with the head")->check(CLI::NonNegativeNumber);
+        node.add_option("--connect", node_.connect, "HOST:PORT of the head")->type_name("HOST:PORT");
+    }
+
+    int runNode() {
+        if ((node_.connectFd >= 0) == !node_.connect.empty()) return usageError("mural node", "exactly one of --connect-fd and --connect is needed");
+        return mural::runNode(node_);
+    }
+
+    void addTools() {
+        CLI::App& doctor = add("doctor", "look at what Mural needs on this machine", [this] { return mural::cli::doctorCommand(asJson_); },
+                               "Examples:\n  mural doctor\n  mural doctor --json\n\nEach line is ok, warn or bad, with what to do.\nExit status: 0 when Mural can be used, 1 when something that it needs is missing.");
+        doctor.add_flag("--json", asJson_, "for programs");
+        CLI::App& list = add("list-commands", "list the GL, GLX and EGL commands and what becomes of them", [this] { return mural::cli::listCommandsCommand(onlyUnsupported_); },
+                             "Examples:\n  mural list-commands\n  mural list-commands --unsupported\n\nOne command per line: name, class, and the reason when it is not carried.\nExit status: 0.");
+        list.add_flag("--unsupported", onlyUnsupported_, "only those that are not carried");
+        add("version", "print the version", [] { return mural::cli::versionCommand(); }, "Example:\n  mural version\n\nExit status: 0.");
+        add("preload-probe", "", [] { return mural::cli::preloadProbeCommand(); }, "").group("");
+    }
+
+    CLI::App app_{"Mural: unmodified OpenGL programs on display walls and clusters.", "mural"};
+    SplitLine line_;
+    CLI::App* run_ = nullptr;
+    mural::cli::RunArguments runArguments_;
+    mural::NodeOptions node_;
+    int controlFd_ = -1;
+    bool asJson_ = false;
+    bool onlyUnsupported_ = false;
+    std::function<int()> action_;
+};
+
+} // namespace
+
+int main(int count, char** arguments) { return CommandLine().perform(count, arguments); }

@@ -1,0 +1,17 @@
+#include <dlfcn.h>
+#include <string>
+
+#include "nodes/launch/environment.hpp"
+#include "tools/mural/commands.hpp"
+
+namespace mural::cli {
+
+// Names that a program looks up must be found in the library first.
+int preloadProbeCommand() {
+    void* found = dlsym(RTLD_DEFAULT, "glXSwapBuffers");
+    Dl_info info{};
+    if (found == nullptr || dladdr(found, &info) == 0 || info.dli_fname == nullptr) return 1;
+    return std::string(info.dli_fname).ends_with(launch::kCaptureLibraryName) ? 0 : 1;
+}
+
+} // namespace mural::cli

@@ -1,0 +1,25 @@
+#include "tools/mural/program_loop.hpp"
+
+#include <poll.h>
+
+namespace mural::cli {
+
+void waitTurn(PreparedRun& run, launch::ProgramSupervisor& program, int extraFd) {
+    pollfd waiting[3] = {{program.signalFd(), POLLIN, 0}, {extraFd, POLLIN, 0}, {run.windowManager ? run.windowManager->fd() : -1, POLLIN, 0}};
+    poll(waiting, 3, kTurnMs); // negative descriptors are passed over
+    program.tick();
+    // Without the display the program ends by itself, and that is what the loop waits for.
+    if (run.windowManager && !run.windowManager->dispatch()) run.windowManager.reset();
+}
+
+bool startProgram(PreparedRun& run, launch::ProgramSupervisor& program, Console& console) {
+    launch::SpawnRequest request;
+    request.file = run.programPath;
+    request.arguments = run.program;
+    request.environment = run.programEnvironment.entries();
+    const auto started = program.start(request);
+    if (!started.ok()) console.error(started.error().message);
+    return started.ok();
+}
+
+} // namespace mural::cli

@@ -1,0 +1,241 @@
+#include "tools/mural/run_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <fmt/format.h>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "nodes/launch/private_display.hpp"
+
+namespace mural::cli {
+
+namespace {
+
+constexpr int kMaxTilesPerSide = 256;
+constexpr int kMaxNodes = 1024;
+constexpr int kMaxLatency = 64;
+
+constexpr const char* kFooter = R"(Examples:
+  mural run -- glxgears                                  one node, into the program's own window
+  mural run --tiles 2x2 --frames 90 --out shots -- glxgears
+                                                         90 frames on 4 local nodes, as PNG files
+  mural run --tiles 4x2 --nodes wall1,wall2 --display windows --fullscreen -- app
+  mural run --size 7680x4320 --out wall.mp4 -- app       the program sees a screen of that size
+  mural run --native --frames 500 -- glxgears            without Mural, for comparison
+
+Exit status: the program's own; 128 + n when signal n ended it; 0 when --frames ended it.
+  2    Mural could not start the session: a bad argument, no display, no GL, a program that
+       cannot be captured (setuid, static, other word size)
+  126  the program cannot be executed
+  127  the program was not found)";
+
+std::optional<int64_t> wholeNumber(std::string_view text, int64_t lowest, int64_t highest) {
+    int64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || value < lowest || value > highest) return {};
+    return value;
+}
+
+std::optional<std::pair<int, int>> pairOf(std::string_view text, char separator, int lowest, int highest) {
+    const auto at = text.find(separator);
+    if (at == std::string_view::npos) return {};
+    const auto first = wholeNumber(text.substr(0, at), lowest, highest);
+    const auto second = wholeNumber(text.substr(at + 1), lowest, highest);
+    if (!first || !second) return {};
+    return std::pair(static_cast<int>(*first), static_cast<int>(*second));
+}
+
+std::vector<std::string> listOf(const std::string& text) {
+    std::vector<std::string> parts;
+    size_t at = 0;
+    while (at <= text.size()) {
+        const size_t end = std::min(text.find(',', at), text.size());
+        parts.push_back(text.substr(at, end - at));
+        at = end + 1;
+    }
+    return parts;
+}
+
+Error badValue(std::string_view option, std::string_view value, std::string_view wanted) {
+    return Error{fmt::format("{} \"{}\": {}", option, value, wanted)};
+}
+
+template <class E> struct Choice {
+    const char* name;
+    E value;
+};
+
+template <class E, size_t N>
+Result<void> choose(std::string_view option, const RunArguments::Text& text, const Choice<E> (&choices)[N], E& into) {
+    if (!text) return {};
+    std::string names;
+    for (const auto& choice : choices) {
+        if (*text == choice.name) {
+            into = choice.value;
+            return {};
+        }
+        names += names.empty() ? "" : ", ";
+        names += choice.name;
+    }
+    return badValue(option, *text, "must be one of " + names);
+}
+
+Result<void> readNumber(std::string_view option, const RunArguments::Text& text, int64_t lowest, int64_t highest, int64_t& into) {
+    if (!text) return {};
+    const auto value = wholeNumber(*text, lowest, highest);
+    if (!value && highest >= INT32_MAX) return badValue(option, *text, fmt::format("must be a whole number from {} on", lowest));
+    if (!value) return badValue(option, *text, fmt::format("must be a whole number from {} to {}", lowest, highest));
+    into = *value;
+    return {};
+}
+
+Result<void> readChoices(const RunArguments& a, SessionConfig& c) {
+    const Choice<Display> displays[] = {{"app", Display::App}, {"windows", Display::Windows}, {"none", Display::None}};
+    const Choice<Tiling> tilings[] = {{"exact", Tiling::Exact}, {"lean", Tiling::Lean}};
+    const Choice<CapturePolicy> policies[] = {{"state", CapturePolicy::State}, {"full", CapturePolicy::Full}};
+    const Choice<const char*> backends[] = {{"auto", "auto"}, {"egl", "egl"}, {"osmesa", "osmesa"}, {"glx", "glx"}};
+    const char* backend = "auto";
+    if (auto r = choose("--display", a.display, displays, c.display); !r) return r;
+    if (auto r = choose("--tiling", a.tiling, tilings, c.tiling); !r) return r;
+    if (auto r = choose("--policy", a.policy, policies, c.policy); !r) return r;
+    if (auto r = choose("--gl", a.gl, backends, backend); !r) return r;
+    c.glBackend = backend;
+    return {};
+}
+
+Result<void> readSizes(const RunArguments& a, SessionConfig& c) {
+    if (a.tiles) {
+        const auto tiles = pairOf(*a.tiles, 'x', 1, kMaxTilesPerSide);
+        if (!tiles) return badValue("--tiles", *a.tiles, fmt::format("must be COLUMNSxROWS, each from 1 to {}, such as 2x2", kMaxTilesPerSide));
+        std::tie(c.columns, c.rows) = *tiles;
+    }
+    if (a.size) {
+        const auto size = pairOf(*a.size, 'x', 1, launch::kMaxScreenSize);
+        if (!size) return badValue("--size", *a.size, fmt::format("must be WIDTHxHEIGHT in pixels, each from 1 to {}, such as 7680x4320", launch::kMaxScreenSize));
+        std::tie(c.width, c.height) = *size;
+    }
+    if (a.position) {
+        const auto position = pairOf(*a.position, ',', -launch::kMaxScreenSize, launch::kMaxScreenSize);
+        if (!position) return badValue("--position", *a.position, "must be X,Y in pixels, such as 0,0");
+        std::tie(c.windowX, c.windowY) = *position;
+    }
+    return {};
+}
+
+// A grid for nodes without --tiles: as square as the number allows, wider than high.
+std::pair<int, int> gridFor(int nodes) {
+    int rows = 1;
+    for (int r = 1; r * r <= nodes; ++r) {
+        if (nodes % r == 0) rows = r;
+    }
+    return {nodes / rows, rows};
+}
+
+Result<void> readNodes(const RunArguments& a, SessionConfig& c) {
+    int64_t local = 0;
+    if (auto r = readNumber("--local-nodes", a.localNodes, 1, kMaxNodes, local); !r) return r;
+    c.localNodes = static_cast<int>(local);
+    if (a.nodes) {
+        c.hosts = listOf(*a.nodes);
+        const bool bad = std::any_of(c.hosts.begin(), c.hosts.end(), [](const std::string& h) {
+            return h.empty() || h.front() == '-' || h.find_first_of(" \t\"'") != std::string::npos;
+        });
+        if (bad) return badValue("--nodes", *a.nodes, "must be host names separated by commas, such as wall1,wall2");
+    }
+    const int asked = c.localNodes + static_cast<int>(c.hosts.size());
+    if (asked > 0 && !a.tiles) std::tie(c.columns, c.rows) = gridFor(asked);
+    if (asked > c.columns * c.rows) {
+        return Error{fmt::format("{} render nodes for {} tiles: each node needs a tile; give more --tiles or fewer nodes", asked, c.columns * c.rows)};
+    }
+    if (a.launch) c.launchCommand = *a.launch;
+    c.remoteMural = a.remoteMural.value_or("");
+    return {};
+}
+
+Result<void> readOutput(const RunArguments& a, SessionConfig& c) {
+    if (a.out && a.out->empty()) return badValue("--out", "", "must be a folder or a video file, such as --out shots");
+    c.out = a.out.value_or("");
+    if (!a.save) return {};
+    if (!a.out) return Error{"--save needs --out: say where the pictures go, such as --out shots"};
+    for (const std::string& part : listOf(*a.save)) {
+        const auto frame = wholeNumber(part, 1, INT64_MAX);
+        if (!frame) return badValue("--save", *a.save, "must be frame numbers from 1 on, separated by commas, such as 1,30,90");
+        c.saveFrames.push_back(*frame);
+    }
+    std::sort(c.saveFrames.begin(), c.saveFrames.end());
+    c.saveFrames.erase(std::unique(c.saveFrames.begin(), c.saveFrames.end()), c.saveFrames.end());
+    return {};
+}
+
+Result<void> checkTogether(const RunArguments& a, const SessionConfig& c) {
+    if ((a.fullScreen || a.position.has_value()) && c.display != Display::Windows) {
+        return Error{std::string(a.fullScreen ? "--fullscreen" : "--position") + " is for wall windows; add --display windows"};
+    }
+    if (a.native && (a.out.has_value() || c.verifyEvery > 0)) {
+        return Error{std::string(c.verifyEvery > 0 ? "--verify" : "--out") + " needs captured frames; leave --native out"};
+    }
+    if (c.width > 0 && (c.columns > c.width || c.rows > c.height)) {
+        return Error{fmt::format("{}x{} tiles do not fit in {}x{} pixels; give fewer tiles", c.columns, c.rows, c.width, c.height)};
+    }
+    return {};
+}
+
+} // namespace
+
+void describeRunOptions(CLI::App& command, RunArguments& a) {
+    command.option_defaults()->take_last();
+    command.add_option("--tiles", a.tiles, "tiles of the wall, columns x rows (1x1, or one for each node)")->type_name("CxR");
+    command.add_option("--nodes", a.nodes, "render nodes on these hosts, separated by commas")->type_name("H1,H2");
+    command.add_option("--local-nodes", a.localNodes, "render nodes on this machine (as many as tiles, at most 4)")->type_name("N");
+    command.add_option("--size", a.size, "size of the wall: the program runs on a private display of this size")->type_name("WxH");
+    command.add_option("--frames", a.frames, "end the program after this many frames")->type_name("N");
+    command.add_option("--out", a.out, "write pictures into this folder (PNG), or a video (.mp4, .mkv, .webm, …)")->type_name("DIR|VIDEO");
+    command.add_option("--save", a.save, "write only these frames, counted from 1")->type_name("1,30,90");
+    command.add_option("--display", a.display, "where the wall is shown: app (the program's own window), windows (one per tile), none")->type_name("WHERE");
+    command.add_option("--tiling", a.tiling, "exact: every pixel as on one machine; lean: less memory (exact)")->type_name("HOW");
+    command.add_option("--policy", a.policy, "state: the program's own GL draws nothing; full: it draws too (state)")->type_name("WHAT");
+    command.add_option("--gl", a.gl, "GL of the render nodes: auto, egl, osmesa, glx (auto)")->type_name("GL");
+    command.add_option("--latency", a.latency, "frames that the program may be ahead of the wall (1)")->type_name("N");
+    command.add_flag("--verify{1}", a.verify, "compare every frame (=N: every Nth) with this machine's own picture");
+    command.add_flag("--fullscreen", a.fullScreen, "wall windows without borders, one per monitor");
+    command.add_option("--position", a.position, "upper left corner of the wall windows on the screen")->type_name("X,Y");
+    command.add_flag("--no-placement", a.noPlacement, "leave threads where the kernel puts them");
+    command.add_flag("--explain", a.explain, "say which decomposition and rewriting were chosen, and why");
+    command.add_flag("--native", a.native, "run without Mural, and only count frames and time");
+    command.add_option("--launch", a.launch, "command that runs a command on a host (ssh -o BatchMode=yes)")->type_name("CMD");
+    command.add_option("--remote-mural", a.remoteMural, "path of mural on the hosts (this one's)")->type_name("PATH");
+    command.add_flag("--quiet", a.quiet, "say nothing but errors");
+    command.footer(kFooter);
+}
+
+Result<RunOptions> runOptionsFrom(const RunArguments& a) {
+    RunOptions options;
+    SessionConfig& c = options.config;
+    if (auto r = readChoices(a, c); !r) return r.error();
+    if (auto r = readSizes(a, c); !r) return r.error();
+    if (auto r = readNodes(a, c); !r) return r.error();
+    if (auto r = readNumber("--frames", a.frames, 1, INT64_MAX, c.frames); !r) return r.error();
+    int64_t latency = c.latency;
+    if (auto r = readNumber("--latency", a.latency, 0, kMaxLatency, latency); !r) return r.error();
+    c.latency = static_cast<int>(latency);
+    int64_t verify = 0;
+    if (auto r = readNumber("--verify", a.verify.empty() ? RunArguments::Text() : a.verify, 1, INT32_MAX, verify); !r) return r.error();
+    c.verifyEvery = static_cast<int>(verify);
+    if (auto r = readOutput(a, c); !r) return r.error();
+    if (auto r = checkTogether(a, c); !r) return r.error();
+    c.fullScreen = a.fullScreen;
+    c.placeThreads = !a.noPlacement;
+    c.explain = a.explain;
+    options.displayChosen = a.display.has_value();
+    options.native = a.native;
+    options.quiet = a.quiet;
+    options.program = a.program;
+    if (options.program.empty()) return Error{"no program was given; put it after --, such as: mural run --tiles 2x2 -- glxgears"};
+    return options;
+}
+
+} // namespace mural::cli

@@ -1,0 +1,41 @@
+// The command line of `mural run`, as a value.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/result.hpp"
+#include "nodes/session/session_config.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace mural::cli {
+
+struct RunOptions {
+    SessionConfig config;       // all but session and displayName
+    bool displayChosen = false; // --display was given
+    bool native = false;
+    bool quiet = false;
+    std::vector<std::string> program; // name and arguments
+};
+
+// The texts as they stand on the command line; checked and converted by runOptionsFrom.
+struct RunArguments {
+    using Text = std::optional<std::string>;
+    Text tiles, size, position, nodes, out, save, display, tiling, policy, gl, launch, remoteMural;
+    Text localNodes, frames, latency;
+    std::string verify; // empty: not given
+    bool fullScreen = false, noPlacement = false, explain = false, native = false, quiet = false;
+    std::vector<std::string> program;
+};
+
+// Adds the options to the sub-command; `arguments` must outlive the parsing.
+void describeRunOptions(CLI::App& command, RunArguments& arguments);
+
+// One error, for the first argument that is wrong.
+Result<RunOptions> runOptionsFrom(const RunArguments& arguments);
+
+} // namespace mural::cli

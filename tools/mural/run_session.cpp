@@ -1,0 +1,199 @@
+#include "tools/mural/run_session.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <optional>
+
+#include "nodes/launch/program_check.hpp"
+#include "nodes/launch/program_supervisor.hpp"
+#include "tools/mural/head_control.hpp"
+#include "tools/mural/program_loop.hpp"
+
+namespace mural::cli {
+
+namespace {
+
+constexpr int64_t kReadyLocalMs = 60'000;
+constexpr int64_t kReadyRemoteMs = 120'000;
+constexpr int64_t kEndGraceMs = 3'000;
+// A launcher may leave the program behind and be gone: how long its children get until they draw…
+constexpr int64_t kFirstContextMs = 30'000;
+// …and how long what is left may live on once nobody draws any more.
+constexpr int64_t kAfterLastContextMs = 1'000;
+constexpr int64_t kWaitNoticeMs = 3'000;
+// The head drains and writes pictures after the program's end; as long as it says something it may.
+constexpr int64_t kFinishSilenceMs = 120'000;
+
+class Session {
+public:
+    Session(PreparedRun& run, Console& console, launch::ProgramSupervisor& program)
+        : run_(run), console_(console), program_(program) {}
+
+    int perform() {
+        auto head = HeadControl::start(run_.headCommand, run_.headEnvironment);
+        if (!head) return fail(head.error().message);
+        head_ = std::move(head.value());
+        program_.leaveAlone(head_->process().pid());
+        head_->send(toJson(run_.config));
+        if (const auto failed = awaitReady()) return *failed;
+        if (!startProgram(run_, program_, console_)) return launch::kExitNotExecutable;
+        whileRunning();
+        finish();
+        return framesReached_ ? 0 : program_.exitStatus();
+    }
+
+private:
+    int fail(const std::string& text) {
+        console_.error(text);
+        return launch::kExitUsage;
+    }
+
+    // Nothing when programs may connect; otherwise the exit status.
+    std::optional<int> awaitReady() {
+        const Deadline deadline = Deadline::inMs(run_.config.hosts.empty() ? kReadyLocalMs : kReadyRemoteMs);
+        while (!ready_) {
+            turn();
+            if (failure_) return fail(*failure_);
+            if (program_.stopSignal() != 0) return 128 + program_.stopSignal();
+            if (!head_->connected() && !ready_) {
+                head_->process().waitUntil(Deadline::inMs(1000));
+                return fail("the head process ended before the session began (" + head_->process().describeEnd() + "); see mural doctor");
+            }
+            if (deadline.passed()) return fail("the render nodes were not ready in time; see mural doctor, or try --local-nodes 1");
+        }
+        return {};
+    }
+
+    void whileRunning() {
+        if (framesReached_) program_.end(kEndGraceMs); // said before there was a program to end
+        while (program_.programRunning()) turn();
+        if (framesReached_ || program_.askedToStop()) {
+            endDescendants();
+            return;
+        }
+        awaitDescendants();
+        if (run_.display) endDescendants(); // their display goes with us
+    }
+
+    // Programs that leave their launcher: they are our descendants still.
+    void awaitDescendants() {
+        const Deadline noticeAt = Deadline::inMs(kWaitNoticeMs);
+        Deadline until = Deadline::never();
+        bool drawing = true;
+        bool noticed = false;
+        while (program_.anyoneLeft() && !program_.askedToStop()) {
+            if (drawing && clients_ == 0) until = Deadline::inMs(everClients_ ? kAfterLastContextMs : kFirstContextMs);
+            drawing = clients_ > 0;
+            if (!drawing && until.passed()) return;
+            if (!noticed && noticeAt.passed()) {
+                console_.say("the program has left processes behind; waiting for them (Ctrl-C ends this)");
+                noticed = true;
+            }
+            turn();
+            if (framesReached_) return;
+        }
+    }
+
+    void endDescendants() {
+        program_.end(kEndGraceMs);
+        const Deadline deadline = Deadline::inMs(2 * kEndGraceMs);
+        while (program_.anyoneLeft() && !deadline.passed()) turn();
+    }
+
+    void finish() {
+        const int signalBefore = program_.stopSignal();
+        if (head_->connected()) head_->send(R"({"command":"finish"})");
+        silenceUntil_ = Deadline::inMs(kFinishSilenceMs);
+        while (head_->connected() && !report_) {
+            turn();
+            if (program_.stopSignal() != signalBefore) break; // the user does not want to wait
+            if (silenceUntil_.passed()) {
+                console_.error("the head does not finish; it is ended");
+                break;
+            }
+        }
+        if (report_) tellReport();
+    }
+
+    void tellReport() {
+        for (const std::string& line : reportLines(*report_)) console_.say(line);
+        if (report_->frames > 0) return;
+        const std::string& name = run_.program.front();
+        if (everClients_) {
+            console_.error("no frame was captured: " + name + " made a GL context but never showed a picture (no buffer swap)");
+        } else {
+            console_.error("no frame was captured: " + name + " never reached GL through Mural; is it an OpenGL program, and does it keep LD_PRELOAD for its children?");
+        }
+    }
+
+    void turn() {
+        const bool wasConnected = head_->connected();
+        waitTurn(run_, program_, wasConnected ? head_->fd() : -1);
+        for (const std::string& line : head_->receive()) take(line);
+        if (wasConnected && !head_->connected() && ready_ && !report_) tellHeadLost();
+    }
+
+    void tellHeadLost() {
+        clients_ = 0;
+        head_->process().waitUntil(Deadline::inMs(500));
+        console_.error("the head process was lost (" + head_->process().describeEnd() + "); " +
+                       (program_.programRunning() ? "the program goes on alone, without the wall" : "there is no report"));
+    }
+
+    void take(const std::string& line) {
+        silenceUntil_ = Deadline::inMs(kFinishSilenceMs);
+        auto parsed = parseHeadEvent(line);
+        if (!parsed) {
+            console_.error(parsed.error().message);
+            return;
+        }
+        const HeadEvent& event = parsed.value();
+        switch (event.kind) {
+        case HeadEvent::Kind::Ready:
+            ready_ = true;
+            if (run_.config.explain) {
+                for (const std::string& text : event.explain) console_.error(text);
+            }
+            break;
+        case HeadEvent::Kind::Error: failure_ = event.text; break;
+        case HeadEvent::Kind::Clients:
+            clients_ = event.clients;
+            everClients_ = everClients_ || clients_ > 0;
+            break;
+        case HeadEvent::Kind::Frame: console_.progress(event.frame, event.framesPerSecond, event.bytesPerFrame); break;
+        case HeadEvent::Kind::FramesReached:
+            framesReached_ = true;
+            program_.end(kEndGraceMs);
+            break;
+        case HeadEvent::Kind::Say: console_.error(event.text); break;
+        case HeadEvent::Kind::Report: report_ = event.report; break;
+        case HeadEvent::Kind::Unknown: break;
+        }
+    }
+
+    PreparedRun& run_;
+    Console& console_;
+    launch::ProgramSupervisor& program_;
+    std::unique_ptr<HeadControl> head_;
+    bool ready_ = false;
+    bool framesReached_ = false;
+    bool everClients_ = false;
+    int64_t clients_ = 0;
+    std::optional<std::string> failure_;
+    std::optional<SessionReport> report_;
+    Deadline silenceUntil_ = Deadline::never();
+};
+
+} // namespace
+
+int runSession(PreparedRun& run, Console& console) {
+    auto program = launch::ProgramSupervisor::create();
+    if (!program) {
+        console.error(program.error().message);
+        return launch::kExitUsage;
+    }
+    if (run.display) program.value()->leaveAlone(run.display->pid());
+    return Session(run, console, *program.value()).perform();
+}
+
+} // namespace mural::cli
