@@ -1,0 +1,99 @@
+// The windows behind WallWindows. Everything here belongs to the thread that opened it.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "nodes/output/app_window.hpp"
+#include "nodes/output/glfw_session.hpp"
+#include "nodes/output/texture_blit.hpp"
+#include "nodes/output/wall_windows.hpp"
+
+struct GLFWwindow;
+
+namespace mural {
+
+// One window of the wall.
+class WallWindow {
+public:
+    struct Options {
+        PixelViewport place; // x, y: upper left corner on the screen, y down; w, h: size
+        std::string title;
+        bool fullScreen = false;
+        int monitor = 0;
+        bool openGl = true;
+        bool waitForRefresh = false;
+        int64_t timeoutMs = 0;
+    };
+
+    static Result<std::unique_ptr<WallWindow>> open(GlfwSession& session, const Options& options);
+    WallWindow(const WallWindow&) = delete;
+    WallWindow& operator=(const WallWindow&) = delete;
+    ~WallWindow();
+
+    Result<void> move(const PixelViewport& place);
+
+    // Takes the picture and leaves the one before in its place (memory to use again).
+    Result<void> draw(OwnedPicture& picture);
+    Result<void> present(); // makes visible what was drawn
+    void finish();          // returns when it is on its way to the screen
+
+    Result<void> redrawIfUncovered();
+    [[nodiscard]] bool closeRequested() const;
+    [[nodiscard]] std::string drawnBy() const;
+    [[nodiscard]] bool drawnBySoftware() const;
+
+private:
+    explicit WallWindow(GlfwSession& session) : session_(session) {}
+
+    Result<void> create(const Options& options);
+    Result<void> createFullScreen(const Options& options);
+    Result<void> prepareDrawing(const Options& options);
+    void resize(int width, int height);
+    Result<void> drawKept();
+    [[nodiscard]] std::string where() const;
+
+    GlfwSession& session_;
+    GLFWwindow* window_ = nullptr;
+    bool fullScreen_ = false;
+    int wantedWidth_ = 0; // what was last asked for; a window manager may not give it
+    int wantedHeight_ = 0;
+    std::string title_;
+    OwnedPicture kept_;                  // what the window shows
+    std::unique_ptr<TextureBlit> blit_;  // one of the two
+    std::unique_ptr<AppWindow> painter_;
+    bool uncovered_ = false;
+};
+
+class WallScreen {
+public:
+    static Result<std::unique_ptr<WallScreen>> open(const WallWindowsConfig& config);
+
+    struct TileBuffer {
+        size_t tile = 0;
+        OwnedPicture picture;
+    };
+    // Leaves used memory in the buffers.
+    Result<void> show(std::vector<TileBuffer>& buffers);
+    Result<void> arrange(const std::vector<TileWindow>& tiles);
+
+    // Handles what the server has sent.
+    Result<void> doWork();
+    void waitForEvents(int wakeFd, int64_t timeoutNs) { session_->waitForEvents(wakeFd, timeoutNs); }
+    [[nodiscard]] bool closeRequested() const;
+    [[nodiscard]] std::string describe() const;
+
+private:
+    explicit WallScreen(WallWindowsConfig config) : config_(std::move(config)) {}
+
+    Result<void> openWindows(bool openGl);
+    [[nodiscard]] PixelViewport placeOf(const TileWindow& tile) const;
+    Result<void> checkDisplay() const;
+
+    WallWindowsConfig config_;
+    std::unique_ptr<GlfwSession> session_; // before the windows: outlives them
+    std::vector<std::unique_ptr<WallWindow>> windows_;
+};
+
+} // namespace mural

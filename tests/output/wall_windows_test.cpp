@@ -1,0 +1,359 @@
+#include "nodes/output/wall_windows.hpp"
+
+#include <csignal>
+#include <cstring>
+#include <poll.h>
+
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+
+#include "tests/output/test_pictures.hpp"
+#include "tests/output/xvfb_server.hpp"
+
+namespace mural::test {
+
+namespace {
+
+constexpr int kScreenWidth = 640;
+constexpr int kScreenHeight = 480;
+
+class Walls : public testing::Test {
+protected:
+    void startServer(const std::vector<std::string>& options = {}) {
+        auto server = XvfbServer::start(kScreenWidth, kScreenHeight, 24, options);
+        ASSERT_TRUE(server) << server.error().message;
+        server_ = std::move(server.value());
+        auto client = XClient::open(server_->displayName());
+        ASSERT_TRUE(client) << client.error().message;
+        client_ = std::move(client.value());
+    }
+
+    WallWindowsConfig configFor(const std::vector<TileWindow>& tiles, WallDrawing drawing) {
+        WallWindowsConfig config;
+        config.displayName = server_->displayName();
+        config.tiles = tiles;
+        config.drawing = drawing;
+        return config;
+    }
+
+    void openWall(const WallWindowsConfig& config) {
+        auto wall = WallWindows::open(config);
+        ASSERT_TRUE(wall) << wall.error().message;
+        wall_ = std::move(wall.value());
+    }
+
+    void show(size_t tile, const Picture& picture) {
+        Result<void> shown = wall_->show(tile, picture);
+        ASSERT_TRUE(shown) << shown.error().message;
+    }
+
+    // x, y: upper left corner on the screen.
+    void expectOnScreen(int x, int y, const Picture& expected) {
+        auto seen = client_->seeScreen(x, y, expected.width, expected.height);
+        ASSERT_TRUE(seen) << seen.error().message;
+        EXPECT_TRUE(samePictures(expected, seen->view()));
+    }
+
+    // The only mapped child of the root whose size this is; 0 when there is none.
+    uint32_t findWindow(int width, int height) {
+        xcb_connection_t* c = client_->get();
+        XOwned<xcb_query_tree_reply_t> tree(
+            xcb_query_tree_reply(c, xcb_query_tree(c, client_->root()), nullptr));
+        for (int i = 0; tree && i < xcb_query_tree_children_length(tree.get()); ++i) {
+            const xcb_window_t child = xcb_query_tree_children(tree.get())[i];
+            XOwned<xcb_get_geometry_reply_t> geometry(
+                xcb_get_geometry_reply(c, xcb_get_geometry(c, child), nullptr));
+            if (geometry && geometry->width == width && geometry->height == height) return child;
+        }
+        return 0;
+    }
+
+    // For what the windows' thread does by itself, some time after an event.
+    template <class Condition> static bool becomesTrue(Condition condition) {
+        const Deadline deadline = Deadline::inMs(20'000);
+        while (!condition()) {
+            if (deadline.passed()) return false;
+            ::poll(nullptr, 0, 2);
+        }
+        return true;
+    }
+
+    std::unique_ptr<XvfbServer> server_;
+    std::unique_ptr<XClient> client_;
+    std::unique_ptr<WallWindows> wall_;
+};
+
+class DrawnWalls : public Walls, public testing::WithParamInterface<WallDrawing> {};
+
+} // namespace
+
+TEST(PlaceTiles, originGoesFromLowerLeftToUpperLeft) {
+    const PixelViewport tiles[] = {{0, 0, 100, 40}, {100, 40, 60, 50}};
+    const auto placed = placeTiles(tiles, 90);
+    ASSERT_EQ(placed.size(), 2U);
+    EXPECT_EQ(placed[0].screenX, 0);
+    EXPECT_EQ(placed[0].screenY, 50);
+    EXPECT_EQ(placed[1].screenX, 100);
+    EXPECT_EQ(placed[1].screenY, 0);
+}
+
+// A picture in four tiles of odd sizes is the picture again on the screen.
+TEST_P(DrawnWalls, tilesMakeThePictureExactly) {
+    startServer();
+    const PixelViewport tiles[] = {{0, 0, 201, 99}, {201, 0, 150, 99}, {0, 99, 201, 131}, {201, 99, 150, 131}};
+    WallWindowsConfig config = configFor(placeTiles(tiles, 230), GetParam());
+    config.positionX = 17;
+    config.positionY = 33;
+    openWall(config);
+    for (uint32_t i = 0; i < 3; ++i) {
+        const OwnedPicture whole = noisePicture(351, 230, i);
+        std::vector<OwnedPicture> parts;
+        std::vector<WallWindows::TilePicture> pictures;
+        for (size_t t = 0; t < 4; ++t)
+            parts.push_back(cutOut(whole.view(), tiles[t]));
+        for (size_t t = 0; t < 4; ++t)
+            pictures.push_back({t, parts[t].view()});
+        if (i == 1) { // one by one, too
+            for (size_t t = 0; t < 4; ++t)
+                show(t, parts[t].view());
+        } else {
+            Result<void> shown = wall_->showAll(pictures);
+            ASSERT_TRUE(shown) << shown.error().message;
+        }
+        expectOnScreen(17, 33, whole.view());
+    }
+    EXPECT_FALSE(wall_->closeRequested());
+    EXPECT_NE(wall_->describe().find("4 windows on " + server_->displayName()), std::string::npos);
+}
+
+TEST_P(DrawnWalls, windowsTakeThePicturesSize) {
+    startServer();
+    openWall(configFor({{{0, 0, 100, 100}, 50, 60, "wall", -1}}, GetParam()));
+    for (const auto& size : {std::pair{100, 100}, std::pair{203, 157}, std::pair{31, 300}, std::pair{100, 100}}) {
+        const OwnedPicture picture =
+            noisePicture(size.first, size.second, static_cast<uint32_t>(size.first));
+        show(0, picture.view());
+        expectOnScreen(50, 60, picture.view());
+        // Nothing of a larger window before is left beside it.
+        expectOnScreen(50 + size.first, 60, plainPicture(5, 5, 0, 0, 0).view());
+        EXPECT_NE(findWindow(size.first, size.second), 0U);
+    }
+}
+
+TEST_P(DrawnWalls, arrangeMovesAndResizes) {
+    startServer();
+    openWall(configFor({{{0, 0, 100, 100}, 0, 0, "wall", -1}}, GetParam()));
+    const OwnedPicture first = noisePicture(100, 100, 1);
+    show(0, first.view());
+    Result<void> arranged = wall_->arrange({{{0, 0, 80, 40}, 200, 300, "wall", -1}});
+    ASSERT_TRUE(arranged) << arranged.error().message;
+    const OwnedPicture second = noisePicture(80, 40, 2);
+    show(0, second.view());
+    expectOnScreen(200, 300, second.view());
+    expectOnScreen(0, 0, plainPicture(100, 100, 0, 0, 0).view());
+    EXPECT_FALSE(wall_->arrange({}));
+}
+
+TEST_P(DrawnWalls, fullScreenFillsTheMonitorAndKeepsPixels) {
+    startServer();
+    WallWindowsConfig config = configFor({{{0, 0, 200, 100}, 5, 5, "wall", -1}}, GetParam());
+    config.fullScreen = true;
+    openWall(config);
+    EXPECT_NE(findWindow(kScreenWidth, kScreenHeight), 0U);
+    const OwnedPicture full = noisePicture(kScreenWidth, kScreenHeight, 1);
+    show(0, full.view());
+    expectOnScreen(0, 0, full.view());
+    // A smaller picture is not scaled, and black is around it.
+    const OwnedPicture small = noisePicture(200, 100, 2);
+    show(0, small.view());
+    OwnedPicture expected = plainPicture(kScreenWidth, kScreenHeight, 0, 0, 0);
+    copyInto(expected, 0, kScreenHeight - 100, small.view());
+    expectOnScreen(0, 0, expected.view());
+    // A larger one is clipped.
+    const OwnedPicture large = noisePicture(kScreenWidth + 10, kScreenHeight + 20, 3);
+    show(0, large.view());
+    expectOnScreen(0, 0, cutOut(large.view(), {0, 20, kScreenWidth, kScreenHeight}).view());
+}
+
+TEST_P(DrawnWalls, comeBackWhenUncovered) {
+    startServer();
+    openWall(configFor({{{0, 0, 120, 90}, 10, 10, "wall", -1}}, GetParam()));
+    const OwnedPicture picture = noisePicture(120, 90, 1);
+    show(0, picture.view());
+    const uint32_t cover = client_->makeWindow(0, 0, 80, 80, 0xff0000);
+    client_->destroyWindow(cover);
+    EXPECT_TRUE(becomesTrue([&] {
+        auto seen = client_->seeScreen(10, 10, 120, 90);
+        return seen && comparePictures(picture.view(), seen->view()).same();
+    }));
+}
+
+TEST_P(DrawnWalls, closeButtonIsNoticed) {
+    startServer();
+    openWall(configFor({{{0, 0, 120, 90}, 10, 10, "wall", -1}}, GetParam()));
+    EXPECT_FALSE(wall_->closeRequested());
+    xcb_connection_t* c = client_->get();
+    const auto atom = [&](const char* name) {
+        XOwned<xcb_intern_atom_reply_t> reply(xcb_intern_atom_reply(
+            c, xcb_intern_atom(c, 0, static_cast<uint16_t>(std::strlen(name)), name), nullptr));
+        return reply->atom;
+    };
+    xcb_client_message_event_t message{};
+    message.response_type = XCB_CLIENT_MESSAGE;
+    message.format = 32;
+    message.window = findWindow(120, 90);
+    ASSERT_NE(message.window, 0U);
+    message.type = atom("WM_PROTOCOLS");
+    message.data.data32[0] = atom("WM_DELETE_WINDOW");
+    xcb_send_event(c, 0, message.window, 0, reinterpret_cast<const char*>(&message));
+    client_->sync();
+    EXPECT_TRUE(becomesTrue([&] { return wall_->closeRequested(); }));
+    // The wall goes on until its owner ends it.
+    const OwnedPicture picture = noisePicture(120, 90, 1);
+    show(0, picture.view());
+    expectOnScreen(10, 10, picture.view());
+}
+
+TEST_P(DrawnWalls, windowThatOthersDestroyEndsNothing) {
+    startServer();
+    openWall(configFor({{{0, 0, 120, 90}, 0, 0, "a", -1}, {{0, 0, 64, 64}, 200, 0, "b", -1}},
+                       GetParam()));
+    const OwnedPicture a = noisePicture(120, 90, 1);
+    const OwnedPicture b = noisePicture(64, 64, 1);
+    show(0, a.view());
+    client_->destroyWindow(findWindow(120, 90));
+    (void)wall_->show(0, a.view()); // whatever it says, the other window lives
+    (void)wall_->show(0, b.view());
+    show(1, b.view());
+    expectOnScreen(200, 0, b.view());
+}
+
+TEST_P(DrawnWalls, stoppedServerRunsIntoTheDeadline) {
+    startServer();
+    WallWindowsConfig config = configFor({{{0, 0, 120, 90}, 10, 10, "wall", -1}}, GetParam());
+    config.showTimeoutMs = 200;
+    openWall(config);
+    const OwnedPicture picture = noisePicture(120, 90, 1);
+    ASSERT_EQ(::kill(server_->pid(), SIGSTOP), 0);
+    for (int i = 0; i < 2; ++i) {
+        Result<void> shown = wall_->show(0, picture.view());
+        ASSERT_FALSE(shown);
+        EXPECT_NE(shown.error().message.find("in time"), std::string::npos)
+            << shown.error().message;
+    }
+    ASSERT_EQ(::kill(server_->pid(), SIGCONT), 0);
+    EXPECT_TRUE(becomesTrue([&] { return wall_->show(0, picture.view()).ok(); }));
+    expectOnScreen(10, 10, picture.view());
+}
+
+TEST_P(DrawnWalls, serverThatEndsIsAnErrorAndNotOurEnd) {
+    startServer();
+    openWall(configFor({{{0, 0, 120, 90}, 10, 10, "wall", -1}}, GetParam()));
+    const OwnedPicture picture = noisePicture(120, 90, 1);
+    show(0, picture.view());
+    server_->kill();
+    for (int i = 0; i < 2; ++i) {
+        Result<void> shown = wall_->show(0, picture.view());
+        ASSERT_FALSE(shown);
+        EXPECT_NE(shown.error().message.find("is lost"), std::string::npos)
+            << shown.error().message;
+    }
+    wall_.reset();
+    // Another display is no problem afterwards.
+    startServer();
+    openWall(configFor({{{0, 0, 120, 90}, 10, 10, "wall", -1}}, GetParam()));
+    show(0, picture.view());
+    expectOnScreen(10, 10, picture.view());
+}
+
+INSTANTIATE_TEST_SUITE_P(Ways, DrawnWalls,
+                         testing::Values(WallDrawing::OpenGl, WallDrawing::XPut),
+                         [](const auto& way) {
+                             return way.param == WallDrawing::OpenGl ? "OpenGl" : "XPut";
+                         });
+
+TEST_F(Walls, withoutGlxTheServerDraws) {
+    startServer({"-extension", "GLX"});
+    const std::vector<TileWindow> tiles = {{{0, 0, 120, 90}, 10, 10, "wall", -1}};
+    auto openGl = WallWindows::open(configFor(tiles, WallDrawing::OpenGl));
+    ASSERT_FALSE(openGl);
+    EXPECT_NE(openGl.error().message.find("GLX"), std::string::npos) << openGl.error().message;
+    openWall(configFor(tiles, WallDrawing::Auto));
+    const OwnedPicture picture = noisePicture(120, 90, 1);
+    show(0, picture.view());
+    expectOnScreen(10, 10, picture.view());
+}
+
+TEST_F(Walls, autoIsExactToo) {
+    startServer();
+    openWall(configFor({{{0, 0, 120, 90}, 10, 10, "wall", -1}, {{0, 0, 64, 64}, 200, 0, "b", -1}},
+                       WallDrawing::Auto));
+    const OwnedPicture a = noisePicture(120, 90, 1);
+    const OwnedPicture b = noisePicture(64, 64, 2);
+    show(0, a.view());
+    show(1, b.view());
+    expectOnScreen(10, 10, a.view());
+    expectOnScreen(200, 0, b.view());
+}
+
+TEST_F(Walls, whatIsMissingIsSaid) {
+    startServer();
+    const std::vector<TileWindow> tiles = {{{0, 0, 120, 90}, 10, 10, "a", -1},
+                                           {{0, 0, 120, 90}, 200, 10, "b", -1}};
+    WallWindowsConfig config = configFor(tiles, WallDrawing::Auto);
+    config.displayName = ":64999";
+    auto noDisplay = WallWindows::open(config);
+    ASSERT_FALSE(noDisplay);
+    EXPECT_NE(noDisplay.error().message.find("':64999'"), std::string::npos)
+        << noDisplay.error().message;
+    config = configFor(tiles, WallDrawing::Auto);
+    config.fullScreen = true;
+    auto noMonitor = WallWindows::open(config);
+    ASSERT_FALSE(noMonitor);
+    EXPECT_NE(noMonitor.error().message.find("no monitor 2"), std::string::npos)
+        << noMonitor.error().message;
+    EXPECT_FALSE(WallWindows::open(configFor({}, WallDrawing::Auto)));
+    openWall(configFor(tiles, WallDrawing::XPut));
+    auto second = WallWindows::open(configFor(tiles, WallDrawing::XPut));
+    ASSERT_FALSE(second);
+    EXPECT_NE(second.error().message.find("open in this process already"), std::string::npos);
+    EXPECT_FALSE(wall_->show(2, noisePicture(4, 4, 1).view()));
+    EXPECT_FALSE(wall_->show(0, Picture{}));
+}
+
+TEST_F(Walls, environmentStaysAsItIs) {
+    startServer();
+    ::setenv("DISPLAY", ":64998", 1);
+    openWall(configFor({{{0, 0, 64, 64}, 0, 0, "a", -1}}, WallDrawing::Auto));
+    EXPECT_STREQ(::getenv("DISPLAY"), ":64998");
+}
+
+// A render node has an EGL context current while it shows its tiles.
+TEST_F(Walls, currentContextOfTheCallerStays) {
+    startServer();
+    const auto getDisplay = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(
+        eglGetProcAddress("eglGetPlatformDisplayEXT"));
+    ASSERT_NE(getDisplay, nullptr);
+    EGLDisplay display = getDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+    ASSERT_TRUE(eglInitialize(display, nullptr, nullptr));
+    eglBindAPI(EGL_OPENGL_API);
+    EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, nullptr);
+    ASSERT_NE(context, EGL_NO_CONTEXT);
+    ASSERT_TRUE(eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context));
+    openWall(configFor({{{0, 0, 120, 90}, 10, 10, "wall", -1}}, WallDrawing::OpenGl));
+    const OwnedPicture picture = noisePicture(120, 90, 1);
+    show(0, picture.view());
+    expectOnScreen(10, 10, picture.view());
+    EXPECT_EQ(eglGetCurrentContext(), context);
+    const auto getString =
+        reinterpret_cast<const unsigned char* (*)(unsigned)>(eglGetProcAddress("glGetString"));
+    EXPECT_NE(getString(0x1F01 /* GL_RENDERER */), nullptr);
+    wall_.reset();
+    EXPECT_EQ(eglGetCurrentContext(), context);
+    EXPECT_NE(getString(0x1F01), nullptr);
+    eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(display, context);
+    eglTerminate(display);
+}
+
+} // namespace mural::test
