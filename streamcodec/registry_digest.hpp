@@ -1,10 +1,8 @@
-// Fingerprint of the command table: both ends of a capture must be of one build.
+// Which command table and opcodes this build has: app, head and nodes must agree.
 #pragma once
 
 #include <cstdint>
 
 namespace mural {
-
 uint64_t registryDigest();
-
 } // namespace mural

@@ -1,0 +1,74 @@
+#include "interposer/asking.hpp"
+
+#include "interposer/context.hpp"
+#include "interposer/own_records.hpp"
+#include "interposer/real_gl.hpp"
+#include "interposer/session.hpp"
+
+namespace mural {
+
+namespace {
+
+// Sends one question and reads its answer into scratch memory; `into` must hold sizeBytes.
+template <class Send> bool ask(ThreadState& t, void* into, uint64_t sizeBytes, Send&& send) {
+    Session* s = Session::current();
+    if (!s || !s->alive() || !t.context) return false;
+    if (t.context->group->persistentMaps) shipPersistentMaps(t, *t.context->group);
+    const uint32_t request = s->beginRequest();
+    send(request);
+    s->publish(t, false);
+    wire::ReplyHeader header{};
+    bool ok = s->answerHeader(request, header);
+    if (ok) {
+        const uint64_t wanted = header.sizeBytes < sizeBytes ? header.sizeBytes : sizeBytes;
+        ok = s->answerBytes(into, wanted) && s->answerBytes(nullptr, header.sizeBytes - wanted) && !header.failed && header.sizeBytes == sizeBytes;
+    }
+    s->endRequest();
+    if (!s->alive()) refreshDrawLocally(t);
+    return ok;
+}
+
+} // namespace
+
+GLenum takeError(Context& c) {
+    if (c.stashedError) {
+        const GLenum error = c.stashedError;
+        c.stashedError = 0;
+        return error;
+    }
+    return gReal.glGetError();
+}
+
+void stashError(Context& c, GLenum error) {
+    if (!c.stashedError) c.stashedError = error;
+}
+
+const void* askPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type) {
+    const uint32_t group = sizes::groupBytes(format, type);
+    if (w <= 0 || h <= 0 || group == 0) return nullptr;
+    const uint64_t bytes = uint64_t(w) * uint64_t(h) * group;
+    void* into = secondScratch(t, bytes);
+    if (!into) return nullptr;
+    const bool ok = ask(t, into, bytes, [&](uint32_t request) { records::requestPixels(t, request, x, y, w, h, format, type, group); });
+    return ok ? into : nullptr;
+}
+
+const void* askTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type, uint64_t sizeBytes) {
+    void* into = secondScratch(t, sizeBytes);
+    if (!into || sizeBytes == 0) return nullptr;
+    const bool ok = ask(t, into, sizeBytes, [&](uint32_t request) {
+        records::requestTexImage(t, request, byName, targetOrTexture, level, format, type, sizeBytes);
+    });
+    return ok ? into : nullptr;
+}
+
+bool askQuery(ThreadState& t, GLuint query, GLenum name, uint64_t& value) {
+    return ask(t, &value, sizeof value, [&](uint32_t request) { records::requestQuery(t, request, query, name); });
+}
+
+bool askFinish(ThreadState& t) {
+    uint64_t nothing = 0;
+    return ask(t, &nothing, sizeof nothing, [&](uint32_t request) { records::requestFinish(t, request); });
+}
+
+} // namespace mural

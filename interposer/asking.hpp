@@ -1,0 +1,35 @@
+// Questions that only the render nodes can answer. Each is a round trip: counted, shown by the report.
+#pragma once
+
+#include <GL/gl.h>
+#include <cstdint>
+
+#include "streamcodec/sizes/pixel_format.hpp"
+
+namespace mural {
+
+struct ThreadState;
+struct Context;
+
+// The rectangle of the current read framebuffer, tightly packed, put together from all nodes; in
+// scratch memory of the thread. Null: no answer.
+const void* askPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type);
+const void* askTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type, uint64_t sizeBytes);
+bool askQuery(ThreadState& t, GLuint query, GLenum name, uint64_t& value);
+bool askFinish(ThreadState& t);
+
+// Runs `call` on the program's own context for its error alone: true when it raised none. The error
+// is kept for the program's next glGetError.
+template <class Call> bool raisesNothing(Context& c, Call&& call);
+GLenum takeError(Context& c);
+void stashError(Context& c, GLenum error);
+
+template <class Call> bool raisesNothing(Context& c, Call&& call) {
+    stashError(c, takeError(c));
+    call();
+    const GLenum error = takeError(c);
+    stashError(c, error);
+    return error == GL_NO_ERROR;
+}
+
+} // namespace mural

@@ -1,0 +1,250 @@
+// Vertex array state: kept in the mirror, sent only where it names buffers.
+#include "custom_wrappers.hpp"
+#include "encoders.hpp"
+#include "interposer/context.hpp"
+#include "interposer/real_gl.hpp"
+#include "streamcodec/sizes/vertex_types.hpp"
+
+using namespace mural;
+using namespace mural::client_arrays;
+
+namespace {
+
+// True when the pointer is an offset that the nodes need now.
+bool set(ThreadState& t, uint32_t slot, GLint size, GLenum type, GLsizei stride, const void* pointer, uint32_t flags = 0) {
+    return t.context && !t.context->arrays.setPointer(slot, size, type, stride, flags, pointer);
+}
+
+void enableSlot(ThreadState& t, uint32_t slot, bool on) {
+    if (t.context && slot < kSlots) t.context->arrays.current().enable(slot, on);
+}
+
+} // namespace
+
+extern "C" {
+
+void mural_glVertexPointer(GLint size, GLenum type, GLsizei stride, const void* pointer) {
+    ThreadState& t = *tThread;
+    if (set(t, kVertex, size, type, stride, pointer)) encode_glVertexPointer(t, size, type, stride, pointer);
+    gReal.glVertexPointer(size, type, stride, pointer);
+}
+void mural_glNormalPointer(GLenum type, GLsizei stride, const void* pointer) {
+    ThreadState& t = *tThread;
+    if (set(t, kNormal, 3, type, stride, pointer)) encode_glNormalPointer(t, type, stride, pointer);
+    gReal.glNormalPointer(type, stride, pointer);
+}
+void mural_glColorPointer(GLint size, GLenum type, GLsizei stride, const void* pointer) {
+    ThreadState& t = *tThread;
+    if (set(t, kColor, size, type, stride, pointer)) encode_glColorPointer(t, size, type, stride, pointer);
+    gReal.glColorPointer(size, type, stride, pointer);
+}
+void mural_glSecondaryColorPointer(GLint size, GLenum type, GLsizei stride, const void* pointer) {
+    ThreadState& t = *tThread;
+    if (set(t, kSecondaryColor, size, type, stride, pointer)) encode_glSecondaryColorPointer(t, size, type, stride, pointer);
+    gReal.glSecondaryColorPointer(size, type, stride, pointer);
+}
+void mural_glTexCoordPointer(GLint size, GLenum type, GLsizei stride, const void* pointer) {
+    ThreadState& t = *tThread;
+    const uint32_t slot = t.context ? t.context->arrays.texCoordSlot() : kTexCoord0;
+    if (set(t, slot, size, type, stride, pointer)) encode_glTexCoordPointer(t, size, type, stride, pointer);
+    gReal.glTexCoordPointer(size, type, stride, pointer);
+}
+void mural_glFogCoordPointer(GLenum type, GLsizei stride, const void* pointer) {
+    ThreadState& t = *tThread;
+    if (set(t, kFogCoord, 1, type, stride, pointer)) encode_glFogCoordPointer(t, type, stride, pointer);
+    gReal.glFogCoordPointer(type, stride, pointer);
+}
+void mural_glIndexPointer(GLenum type, GLsizei stride, const void* pointer) {
+    ThreadState& t = *tThread;
+    if (set(t, kIndex, 1, type, stride, pointer)) encode_glIndexPointer(t, type, stride, pointer);
+    gReal.glIndexPointer(type, stride, pointer);
+}
+void mural_glEdgeFlagPointer(GLsizei stride, const void* pointer) {
+    ThreadState& t = *tThread;
+    if (set(t, kEdgeFlag, 1, GL_UNSIGNED_BYTE, stride, pointer)) encode_glEdgeFlagPointer(t, stride, pointer);
+    gReal.glEdgeFlagPointer(stride, pointer);
+}
+void mural_glPointSizePointerOES(GLenum type, GLsizei stride, const void* pointer) {
+    ThreadState& t = *tThread;
+    if (set(t, kPointSize, 1, type, stride, pointer)) encode_glPointSizePointerOES(t, type, stride, pointer);
+    gReal.glPointSizePointerOES(type, stride, pointer);
+}
+void mural_glVertexAttribPointer(GLuint index, GLint size, GLenum type, GLboolean normalized, GLsizei stride, const void* pointer) {
+    ThreadState& t = *tThread;
+    if (index < kGenerics) {
+        if (set(t, kGeneric0 + index, size, type, stride, pointer, normalized ? kNormalized : 0))
+            encode_glVertexAttribPointer(t, index, size, type, normalized, stride, pointer);
+    }
+    gReal.glVertexAttribPointer(index, size, type, normalized, stride, pointer);
+}
+void mural_glVertexAttribIPointer(GLuint index, GLint size, GLenum type, GLsizei stride, const void* pointer) {
+    ThreadState& t = *tThread;
+    if (index < kGenerics && set(t, kGeneric0 + index, size, type, stride, pointer, kInteger))
+        encode_glVertexAttribIPointer(t, index, size, type, stride, pointer);
+    gReal.glVertexAttribIPointer(index, size, type, stride, pointer);
+}
+void mural_glVertexAttribLPointer(GLuint index, GLint size, GLenum type, GLsizei stride, const void* pointer) {
+    ThreadState& t = *tThread;
+    if (index < kGenerics && set(t, kGeneric0 + index, size, type, stride, pointer, kLong))
+        encode_glVertexAttribLPointer(t, index, size, type, stride, pointer);
+    gReal.glVertexAttribLPointer(index, size, type, stride, pointer);
+}
+
+// EXT_vertex_array: the same with a count, which nobody needs.
+void mural_glVertexPointerEXT(GLint size, GLenum type, GLsizei stride, GLsizei, const void* pointer) { mural_glVertexPointer(size, type, stride, pointer); }
+void mural_glNormalPointerEXT(GLenum type, GLsizei stride, GLsizei, const void* pointer) { mural_glNormalPointer(type, stride, pointer); }
+void mural_glColorPointerEXT(GLint size, GLenum type, GLsizei stride, GLsizei, const void* pointer) { mural_glColorPointer(size, type, stride, pointer); }
+void mural_glTexCoordPointerEXT(GLint size, GLenum type, GLsizei stride, GLsizei, const void* pointer) { mural_glTexCoordPointer(size, type, stride, pointer); }
+void mural_glIndexPointerEXT(GLenum type, GLsizei stride, GLsizei, const void* pointer) { mural_glIndexPointer(type, stride, pointer); }
+void mural_glEdgeFlagPointerEXT(GLsizei stride, GLsizei, const GLboolean* pointer) { mural_glEdgeFlagPointer(stride, pointer); }
+
+// GL 4.6 compatibility, table 10.5: the command is defined by the ones that it stands for.
+void mural_glInterleavedArrays(GLenum format, GLsizei stride, const void* pointer) {
+    struct Row {
+        GLenum format;
+        GLint texCoord, color;
+        GLenum colorType;
+        bool normal;
+        GLint vertex;
+        GLsizei colorAt, normalAt, vertexAt, total;
+    };
+    constexpr GLsizei f = 4, c = 4;
+    static constexpr Row kRows[] = {
+        {GL_V2F, 0, 0, 0, false, 2, 0, 0, 0, 2 * f},
+        {GL_V3F, 0, 0, 0, false, 3, 0, 0, 0, 3 * f},
+        {GL_C4UB_V2F, 0, 4, GL_UNSIGNED_BYTE, false, 2, 0, 0, c, c + 2 * f},
+        {GL_C4UB_V3F, 0, 4, GL_UNSIGNED_BYTE, false, 3, 0, 0, c, c + 3 * f},
+        {GL_C3F_V3F, 0, 3, GL_FLOAT, false, 3, 0, 0, 3 * f, 6 * f},
+        {GL_N3F_V3F, 0, 0, 0, true, 3, 0, 0, 3 * f, 6 * f},
+        {GL_C4F_N3F_V3F, 0, 4, GL_FLOAT, true, 3, 0, 4 * f, 7 * f, 10 * f},
+        {GL_T2F_V3F, 2, 0, 0, false, 3, 0, 0, 2 * f, 5 * f},
+        {GL_T4F_V4F, 4, 0, 0, false, 4, 0, 0, 4 * f, 8 * f},
+        {GL_T2F_C4UB_V3F, 2, 4, GL_UNSIGNED_BYTE, false, 3, 2 * f, 0, c + 2 * f, c + 5 * f},
+        {GL_T2F_C3F_V3F, 2, 3, GL_FLOAT, false, 3, 2 * f, 0, 5 * f, 8 * f},
+        {GL_T2F_N3F_V3F, 2, 0, 0, true, 3, 0, 2 * f, 5 * f, 8 * f},
+        {GL_T2F_C4F_N3F_V3F, 2, 4, GL_FLOAT, true, 3, 2 * f, 6 * f, 9 * f, 12 * f},
+        {GL_T4F_C4F_N3F_V4F, 4, 4, GL_FLOAT, true, 4, 4 * f, 8 * f, 11 * f, 15 * f},
+    };
+    const Row* row = nullptr;
+    for (const Row& r : kRows) {
+        if (r.format == format) row = &r;
+    }
+    if (!row || stride < 0) {
+        gReal.glInterleavedArrays(format, stride, pointer); // for its error
+        return;
+    }
+    const GLsizei step = stride ? stride : row->total;
+    const auto* p = static_cast<const std::byte*>(pointer);
+    const auto part = [&](bool on, GLenum array) { on ? mural_glEnableClientState(array) : mural_glDisableClientState(array); };
+    part(false, GL_EDGE_FLAG_ARRAY);
+    part(false, GL_INDEX_ARRAY);
+    part(false, GL_SECONDARY_COLOR_ARRAY);
+    part(false, GL_FOG_COORD_ARRAY);
+    part(row->texCoord, GL_TEXTURE_COORD_ARRAY);
+    if (row->texCoord) mural_glTexCoordPointer(row->texCoord, GL_FLOAT, step, p);
+    part(row->color, GL_COLOR_ARRAY);
+    if (row->color) mural_glColorPointer(row->color, row->colorType, step, p + row->colorAt);
+    part(row->normal, GL_NORMAL_ARRAY);
+    if (row->normal) mural_glNormalPointer(GL_FLOAT, step, p + row->normalAt);
+    part(true, GL_VERTEX_ARRAY);
+    mural_glVertexPointer(row->vertex, GL_FLOAT, step, p + row->vertexAt);
+}
+
+void mural_glEnableClientState(GLenum array) {
+    ThreadState& t = *tThread;
+    if (t.context) enableSlot(t, t.context->arrays.slotOf(array), true);
+    encode_glEnableClientState(t, array);
+    gReal.glEnableClientState(array);
+}
+void mural_glDisableClientState(GLenum array) {
+    ThreadState& t = *tThread;
+    if (t.context) enableSlot(t, t.context->arrays.slotOf(array), false);
+    encode_glDisableClientState(t, array);
+    gReal.glDisableClientState(array);
+}
+void mural_glEnableVertexAttribArray(GLuint index) {
+    ThreadState& t = *tThread;
+    if (index < kGenerics) enableSlot(t, kGeneric0 + index, true);
+    encode_glEnableVertexAttribArray(t, index);
+    gReal.glEnableVertexAttribArray(index);
+}
+void mural_glDisableVertexAttribArray(GLuint index) {
+    ThreadState& t = *tThread;
+    if (index < kGenerics) enableSlot(t, kGeneric0 + index, false);
+    encode_glDisableVertexAttribArray(t, index);
+    gReal.glDisableVertexAttribArray(index);
+}
+void mural_glVertexAttribDivisor(GLuint index, GLuint divisor) {
+    ThreadState& t = *tThread;
+    if (t.context && index < kGenerics) t.context->arrays.current().slots[kGeneric0 + index].divisor = divisor;
+    encode_glVertexAttribDivisor(t, index, divisor);
+    gReal.glVertexAttribDivisor(index, divisor);
+}
+void mural_glClientActiveTexture(GLenum texture) {
+    ThreadState& t = *tThread;
+    if (t.context) t.context->arrays.activeTexture(texture);
+    encode_glClientActiveTexture(t, texture);
+    gReal.glClientActiveTexture(texture);
+}
+void mural_glPushClientAttrib(GLbitfield mask) {
+    ThreadState& t = *tThread;
+    if (t.context) t.context->arrays.push(mask);
+    encode_glPushClientAttrib(t, mask);
+    gReal.glPushClientAttrib(mask);
+}
+void mural_glPopClientAttrib() {
+    ThreadState& t = *tThread;
+    if (t.context) t.context->arrays.pop();
+    encode_glPopClientAttrib(t);
+    gReal.glPopClientAttrib();
+}
+void mural_glBindVertexArray(GLuint array) {
+    ThreadState& t = *tThread;
+    if (t.context) t.context->arrays.bind(array);
+    encode_glBindVertexArray(t, array);
+    gReal.glBindVertexArray(array);
+}
+void mural_glDeleteVertexArrays(GLsizei n, const GLuint* arrays) {
+    ThreadState& t = *tThread;
+    if (t.context && n > 0 && arrays) t.context->arrays.remove(n, arrays);
+    encode_glDeleteVertexArrays(t, n, DataArg::of(arrays, n > 0 ? uint64_t(n) * 4 : 0));
+    gReal.glDeleteVertexArrays(n, arrays);
+}
+
+// Formats and bindings of ARB_vertex_attrib_binding name buffers, never client memory.
+void mural_glVertexAttribBinding(GLuint attribindex, GLuint bindingindex) {
+    ThreadState& t = *tThread;
+    if (t.context && attribindex < kGenerics && attribindex != bindingindex) {
+        VertexArray& va = t.context->arrays.current();
+        va.set(va.client, kGeneric0 + attribindex, false);
+    }
+    encode_glVertexAttribBinding(t, attribindex, bindingindex);
+    gReal.glVertexAttribBinding(attribindex, bindingindex);
+}
+void mural_glBindVertexBuffer(GLuint bindingindex, GLuint buffer, GLintptr offset, GLsizei stride) {
+    ThreadState& t = *tThread;
+    if (t.context && bindingindex < kGenerics) {
+        VertexArray& va = t.context->arrays.current();
+        va.set(va.client, kGeneric0 + bindingindex, false);
+    }
+    encode_glBindVertexBuffer(t, bindingindex, buffer, offset, stride);
+    gReal.glBindVertexBuffer(bindingindex, buffer, offset, stride);
+}
+void mural_glBindVertexBuffers(GLuint first, GLsizei count, const GLuint* buffers, const GLintptr* offsets, const GLsizei* strides) {
+    ThreadState& t = *tThread;
+    for (GLuint i = first; t.context && count > 0 && i < first + GLuint(count) && i < kGenerics; ++i) {
+        VertexArray& va = t.context->arrays.current();
+        va.set(va.client, kGeneric0 + i, false);
+    }
+    const auto n = count > 0 ? uint64_t(count) : 0;
+    encode_glBindVertexBuffers(t, first, count, DataArg::of(buffers, n * 4), DataArg::of(offsets, n * 8), DataArg::of(strides, n * 4));
+    gReal.glBindVertexBuffers(first, count, buffers, offsets, strides);
+}
+void mural_glBindBuffer(GLenum target, GLuint buffer) {
+    ThreadState& t = *tThread;
+    if (t.context && target == GL_ARRAY_BUFFER) t.context->arrays.bindArrayBuffer(buffer);
+    encode_glBindBuffer(t, target, buffer);
+    gReal.glBindBuffer(target, buffer);
+}
+
+} // extern "C"

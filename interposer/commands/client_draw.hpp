@@ -1,0 +1,27 @@
+// Sends the vertex arrays that live in the program's memory ahead of the draw that reads them.
+#pragma once
+
+#include <GL/gl.h>
+#include <cstdint>
+
+namespace mural {
+
+struct ThreadState;
+struct Context;
+
+// Vertices first … last of the arrays, and as many instances from baseInstance.
+struct VertexRange {
+    int64_t first = 0;
+    int64_t last = -1; // below first: none
+    uint32_t instances = 1;
+    uint32_t baseInstance = 0;
+};
+void sendClientArrays(ThreadState& t, Context& c, const VertexRange& range);
+
+// The vertices that `count` indices at `indices` (client memory, or an offset into the element
+// buffer) name, with baseVertex added.
+VertexRange indexedRange(ThreadState& t, const Context& c, GLsizei count, GLenum type, const void* indices, GLint baseVertex);
+
+GLint elementBufferBinding();
+
+} // namespace mural

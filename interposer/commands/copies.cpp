@@ -1,0 +1,159 @@
+// Commands that copy out of a framebuffer. A node has only its tile of a window: what lies outside
+// is fetched from the others first and handed to all (kOpFillWindow).
+#include "custom_wrappers.hpp"
+#include "encoders.hpp"
+#include "interposer/asking.hpp"
+#include "interposer/context.hpp"
+#include "interposer/own_records.hpp"
+#include "interposer/real_gl.hpp"
+#include "interposer/session.hpp"
+
+using namespace mural;
+
+namespace {
+
+bool readsWindow(const Context& c) {
+    GLint framebuffer = 0;
+    gReal.glGetIntegerv(c.api == wire::Api::Desktop || c.version >= 30 ? GL_READ_FRAMEBUFFER_BINDING : GL_FRAMEBUFFER_BINDING, &framebuffer);
+    return framebuffer == 0;
+}
+
+// Fetches the rectangle of the window from all nodes and gives it to all. Null planes: nothing to do.
+void gather(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes) {
+    Session* s = Session::current();
+    Context* c = t.context;
+    if (!c || !s || !s->alive() || s->welcome().nodeCount < 2 || c->compilingList || !readsWindow(*c)) return;
+    const Window* window = findWindowById(c->readWindow);
+    if (!window) return;
+    const int64_t x0 = x < 0 ? 0 : x, y0 = y < 0 ? 0 : y;
+    const int64_t x1 = int64_t{x} + w < window->config.width ? int64_t{x} + w : window->config.width;
+    const int64_t y1 = int64_t{y} + h < window->config.height ? int64_t{y} + h : window->config.height;
+    if (x1 <= x0 || y1 <= y0) return;
+    const auto gx = static_cast<GLint>(x0), gy = static_cast<GLint>(y0);
+    const auto gw = static_cast<GLsizei>(x1 - x0), gh = static_cast<GLsizei>(y1 - y0);
+    struct Plane {
+        GLbitfield bit;
+        GLenum format, type;
+        uint32_t bits;
+        uint32_t bytes;
+    };
+    const Plane kinds[] = {{GL_COLOR_BUFFER_BIT, GL_RGBA, GL_UNSIGNED_BYTE, 8, 4},
+                           {GL_DEPTH_BUFFER_BIT, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, window->config.depth, 4},
+                           {GL_STENCIL_BUFFER_BIT, GL_STENCIL_INDEX, GL_UNSIGNED_BYTE, window->config.stencil, 1}};
+    for (const Plane& p : kinds) {
+        if (!(planes & p.bit) || p.bits == 0) continue;
+        const void* pixels = askPixels(t, gx, gy, gw, gh, p.format, p.type);
+        if (pixels) records::fillWindow(t, gx, gy, gw, gh, p.bit, DataArg::of(pixels, uint64_t(gw) * uint64_t(gh) * p.bytes));
+    }
+}
+
+GLbitfield planesOf(GLenum internalFormat) {
+    switch (internalFormat) {
+    case GL_DEPTH_COMPONENT:
+    case GL_DEPTH_COMPONENT16:
+    case GL_DEPTH_COMPONENT24:
+    case GL_DEPTH_COMPONENT32:
+    case GL_DEPTH_COMPONENT32F: return GL_DEPTH_BUFFER_BIT;
+    case GL_DEPTH_STENCIL:
+    case GL_DEPTH24_STENCIL8:
+    case GL_DEPTH32F_STENCIL8: return GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT;
+    default: return GL_COLOR_BUFFER_BIT;
+    }
+}
+
+// What a copy into the texture bound to `target` reads.
+GLbitfield planesOfLevel(ThreadState& t, GLenum target, GLint level) {
+    Session* s = Session::current();
+    if (!t.context || !s || s->welcome().nodeCount < 2 || !gReal.glGetTexLevelParameteriv) return GL_COLOR_BUFFER_BIT;
+    GLint format = 0;
+    gReal.glGetTexLevelParameteriv(target, level, GL_TEXTURE_INTERNAL_FORMAT, &format);
+    return planesOf(static_cast<GLenum>(format));
+}
+
+} // namespace
+
+extern "C" {
+
+void mural_glCopyTexImage1D(GLenum target, GLint level, GLenum internalformat, GLint x, GLint y, GLsizei width, GLint border) {
+    ThreadState& t = *tThread;
+    gather(t, x, y, width, 1, planesOf(internalformat));
+    encode_glCopyTexImage1D(t, target, level, internalformat, x, y, width, border);
+    gReal.glCopyTexImage1D(target, level, internalformat, x, y, width, border);
+}
+void mural_glCopyTexImage2D(GLenum target, GLint level, GLenum internalformat, GLint x, GLint y, GLsizei width, GLsizei height, GLint border) {
+    ThreadState& t = *tThread;
+    gather(t, x, y, width, height, planesOf(internalformat));
+    encode_glCopyTexImage2D(t, target, level, internalformat, x, y, width, height, border);
+    gReal.glCopyTexImage2D(target, level, internalformat, x, y, width, height, border);
+}
+void mural_glCopyTexSubImage1D(GLenum target, GLint level, GLint xoffset, GLint x, GLint y, GLsizei width) {
+    ThreadState& t = *tThread;
+    gather(t, x, y, width, 1, planesOfLevel(t, target, level));
+    encode_glCopyTexSubImage1D(t, target, level, xoffset, x, y, width);
+    gReal.glCopyTexSubImage1D(target, level, xoffset, x, y, width);
+}
+void mural_glCopyTexSubImage2D(GLenum target, GLint level, GLint xoffset, GLint yoffset, GLint x, GLint y, GLsizei width, GLsizei height) {
+    ThreadState& t = *tThread;
+    gather(t, x, y, width, height, planesOfLevel(t, target, level));
+    encode_glCopyTexSubImage2D(t, target, level, xoffset, yoffset, x, y, width, height);
+    gReal.glCopyTexSubImage2D(target, level, xoffset, yoffset, x, y, width, height);
+}
+void mural_glCopyTexSubImage3D(GLenum target, GLint level, GLint xoffset, GLint yoffset, GLint zoffset, GLint x, GLint y, GLsizei width, GLsizei height) {
+    ThreadState& t = *tThread;
+    gather(t, x, y, width, height, planesOfLevel(t, target, level));
+    encode_glCopyTexSubImage3D(t, target, level, xoffset, yoffset, zoffset, x, y, width, height);
+    gReal.glCopyTexSubImage3D(target, level, xoffset, yoffset, zoffset, x, y, width, height);
+}
+void mural_glCopyTextureSubImage1D(GLuint texture, GLint level, GLint xoffset, GLint x, GLint y, GLsizei width) {
+    ThreadState& t = *tThread;
+    gather(t, x, y, width, 1, GL_COLOR_BUFFER_BIT);
+    encode_glCopyTextureSubImage1D(t, texture, level, xoffset, x, y, width);
+    gReal.glCopyTextureSubImage1D(texture, level, xoffset, x, y, width);
+}
+void mural_glCopyTextureSubImage2D(GLuint texture, GLint level, GLint xoffset, GLint yoffset, GLint x, GLint y, GLsizei width, GLsizei height) {
+    ThreadState& t = *tThread;
+    gather(t, x, y, width, height, GL_COLOR_BUFFER_BIT);
+    encode_glCopyTextureSubImage2D(t, texture, level, xoffset, yoffset, x, y, width, height);
+    gReal.glCopyTextureSubImage2D(texture, level, xoffset, yoffset, x, y, width, height);
+}
+void mural_glCopyTextureSubImage3D(GLuint texture, GLint level, GLint xoffset, GLint yoffset, GLint zoffset, GLint x, GLint y, GLsizei width, GLsizei height) {
+    ThreadState& t = *tThread;
+    gather(t, x, y, width, height, GL_COLOR_BUFFER_BIT);
+    encode_glCopyTextureSubImage3D(t, texture, level, xoffset, yoffset, zoffset, x, y, width, height);
+    gReal.glCopyTextureSubImage3D(texture, level, xoffset, yoffset, zoffset, x, y, width, height);
+}
+void mural_glCopyPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum type) {
+    ThreadState& t = *tThread;
+    const GLbitfield planes = type == GL_COLOR ? GL_COLOR_BUFFER_BIT : type == GL_DEPTH ? GL_DEPTH_BUFFER_BIT
+                              : type == GL_STENCIL ? GL_STENCIL_BUFFER_BIT : GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT;
+    gather(t, x, y, width, height, planes);
+    encode_glCopyPixels(t, x, y, width, height, type);
+    if (t.drawLocally) gReal.glCopyPixels(x, y, width, height, type);
+}
+void mural_glBlitFramebuffer(GLint srcX0, GLint srcY0, GLint srcX1, GLint srcY1, GLint dstX0, GLint dstY0, GLint dstX1, GLint dstY1, GLbitfield mask, GLenum filter) {
+    ThreadState& t = *tThread;
+    const GLint x = srcX0 < srcX1 ? srcX0 : srcX1, y = srcY0 < srcY1 ? srcY0 : srcY1;
+    const GLint w = srcX0 < srcX1 ? srcX1 - srcX0 : srcX0 - srcX1, h = srcY0 < srcY1 ? srcY1 - srcY0 : srcY0 - srcY1;
+    gather(t, x - 1, y - 1, w + 2, h + 2, mask); // linear filters read one pixel further
+    encode_glBlitFramebuffer(t, srcX0, srcY0, srcX1, srcY1, dstX0, dstY0, dstX1, dstY1, mask, filter);
+    if (t.drawLocally) gReal.glBlitFramebuffer(srcX0, srcY0, srcX1, srcY1, dstX0, dstY0, dstX1, dstY1, mask, filter);
+}
+void mural_glBlitNamedFramebuffer(GLuint readFramebuffer, GLuint drawFramebuffer, GLint srcX0, GLint srcY0, GLint srcX1, GLint srcY1, GLint dstX0, GLint dstY0, GLint dstX1, GLint dstY1, GLbitfield mask, GLenum filter) {
+    ThreadState& t = *tThread;
+    if (readFramebuffer == 0) {
+        const GLint x = srcX0 < srcX1 ? srcX0 : srcX1, y = srcY0 < srcY1 ? srcY0 : srcY1;
+        const GLint w = srcX0 < srcX1 ? srcX1 - srcX0 : srcX0 - srcX1, h = srcY0 < srcY1 ? srcY1 - srcY0 : srcY0 - srcY1;
+        gather(t, x - 1, y - 1, w + 2, h + 2, mask);
+    }
+    encode_glBlitNamedFramebuffer(t, readFramebuffer, drawFramebuffer, srcX0, srcY0, srcX1, srcY1, dstX0, dstY0, dstX1, dstY1, mask, filter);
+    if (t.drawLocally) gReal.glBlitNamedFramebuffer(readFramebuffer, drawFramebuffer, srcX0, srcY0, srcX1, srcY1, dstX0, dstY0, dstX1, dstY1, mask, filter);
+}
+void mural_glBitmap(GLsizei width, GLsizei height, GLfloat xorig, GLfloat yorig, GLfloat xmove, GLfloat ymove, const GLubyte* bitmap) {
+    ThreadState& t = *tThread;
+    encode_glBitmap(t, width, height, xorig, yorig, xmove, ymove, imageSource(t, bitmap, GL_COLOR_INDEX, GL_BITMAP, width, height, 1, 2));
+    // The raster position moves in the program's own context too: an empty bitmap moves it as well.
+    if (t.drawLocally) gReal.glBitmap(width, height, xorig, yorig, xmove, ymove, bitmap);
+    else gReal.glBitmap(0, 0, 0, 0, xmove, ymove, nullptr);
+}
+
+} // extern "C"

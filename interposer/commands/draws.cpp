@@ -1,0 +1,258 @@
+// Draws from vertex arrays.
+#include "custom_wrappers.hpp"
+#include "encoders.hpp"
+#include "interposer/commands/client_draw.hpp"
+#include "interposer/context.hpp"
+#include "interposer/real_gl.hpp"
+#include "streamcodec/sizes/vertex_types.hpp"
+
+using namespace mural;
+
+namespace {
+
+VertexRange arraysRange(GLint first, GLsizei count, GLsizei instances = 1, GLuint baseInstance = 0) {
+    return {first, int64_t{first} + count - 1, instances > 0 ? static_cast<uint32_t>(instances) : 0, baseInstance};
+}
+
+// Everything that has to go ahead of a draw without indices.
+inline void prepareArrays(ThreadState& t, GLint first, GLsizei count, GLsizei instances = 1, GLuint baseInstance = 0) {
+    Context* c = t.context;
+    if (!c) return;
+    beforeDraw(t, *c);
+    if (c->arrays.anyClient()) [[unlikely]] sendClientArrays(t, *c, arraysRange(first, count, instances, baseInstance));
+}
+
+// The same with indices; says where these come from.
+DataArg prepareElements(ThreadState& t, GLsizei count, GLenum type, const void* indices, GLint baseVertex = 0, GLsizei instances = 1, GLuint baseInstance = 0) {
+    Context* c = t.context;
+    if (!c) return {};
+    beforeDraw(t, *c);
+    if (c->arrays.anyClient()) [[unlikely]] {
+        VertexRange range = indexedRange(t, *c, count, type, indices, baseVertex);
+        range.instances = instances > 0 ? static_cast<uint32_t>(instances) : 0;
+        range.baseInstance = baseInstance;
+        sendClientArrays(t, *c, range);
+    }
+    if (c->core || elementBufferBinding() != 0) return DataArg::offset(indices);
+    return DataArg::of(indices, count > 0 ? uint64_t(count) * sizes::typeBytes(type) : 0);
+}
+
+// Client memory of indirect draws exists in compatibility contexts only.
+DataArg indirectSource(ThreadState& t, const void* indirect, bool withElements, GLsizei drawCount, GLsizei stride) {
+    Context* c = t.context;
+    if (!c) return {};
+    beforeDraw(t, *c);
+    GLint buffer = 0;
+    gReal.glGetIntegerv(GL_DRAW_INDIRECT_BUFFER_BINDING, &buffer);
+    if (buffer != 0 || c->core) return DataArg::offset(indirect);
+    return DataArg::of(indirect, sizes::indirectBytes(withElements, drawCount, stride));
+}
+
+void indirectClientArrays(ThreadState& t, const DataArg& source, bool withElements, GLenum indexType, GLsizei drawCount, GLsizei stride) {
+    Context* c = t.context;
+    if (!c || !c->arrays.anyClient() || drawCount <= 0) return;
+    const size_t bytes = sizes::indirectBytes(withElements, drawCount, stride);
+    const void* commands = source.pointer;
+    if (source.isOffset) {
+        void* copy = scratchMemory(t, bytes);
+        if (!copy) return;
+        gReal.glGetBufferSubData(GL_DRAW_INDIRECT_BUFFER, reinterpret_cast<GLintptr>(source.pointer), static_cast<GLsizeiptr>(bytes), copy);
+        commands = copy;
+    }
+    const size_t step = stride > 0 ? static_cast<size_t>(stride) : withElements ? sizes::kDrawElementsCommandBytes : sizes::kDrawArraysCommandBytes;
+    VertexRange all{INT64_MAX, -1, 0, 0};
+    for (GLsizei i = 0; i < drawCount; ++i) {
+        GLuint word[5] = {};
+        std::memcpy(word, static_cast<const std::byte*>(commands) + static_cast<size_t>(i) * step, withElements ? 20 : 16);
+        VertexRange one = arraysRange(static_cast<GLint>(word[2]), static_cast<GLsizei>(word[0]));
+        if (withElements)
+            one = indexedRange(t, *c, static_cast<GLsizei>(word[0]), indexType,
+                               reinterpret_cast<const void*>(uintptr_t{word[2]} * sizes::typeBytes(indexType)), static_cast<GLint>(word[3]));
+        if (one.last < one.first) continue;
+        if (one.first < all.first) all.first = one.first;
+        if (one.last > all.last) all.last = one.last;
+        const GLuint base = word[withElements ? 4 : 3];
+        if (base + word[1] > all.instances) all.instances = base + word[1];
+    }
+    sendClientArrays(t, *c, all);
+}
+
+} // namespace
+
+extern "C" {
+
+void mural_glDrawArrays(GLenum mode, GLint first, GLsizei count) {
+    ThreadState& t = *tThread;
+    prepareArrays(t, first, count);
+    encode_glDrawArrays(t, mode, first, count);
+    if (t.drawLocally) gReal.glDrawArrays(mode, first, count);
+}
+void mural_glDrawArraysInstanced(GLenum mode, GLint first, GLsizei count, GLsizei instancecount) {
+    ThreadState& t = *tThread;
+    prepareArrays(t, first, count, instancecount);
+    encode_glDrawArraysInstanced(t, mode, first, count, instancecount);
+    if (t.drawLocally) gReal.glDrawArraysInstanced(mode, first, count, instancecount);
+}
+void mural_glDrawArraysInstancedBaseInstance(GLenum mode, GLint first, GLsizei count, GLsizei instancecount, GLuint baseinstance) {
+    ThreadState& t = *tThread;
+    prepareArrays(t, first, count, instancecount, baseinstance);
+    encode_glDrawArraysInstancedBaseInstance(t, mode, first, count, instancecount, baseinstance);
+    if (t.drawLocally) gReal.glDrawArraysInstancedBaseInstance(mode, first, count, instancecount, baseinstance);
+}
+void mural_glDrawElements(GLenum mode, GLsizei count, GLenum type, const void* indices) {
+    ThreadState& t = *tThread;
+    encode_glDrawElements(t, mode, count, type, prepareElements(t, count, type, indices));
+    if (t.drawLocally) gReal.glDrawElements(mode, count, type, indices);
+}
+void mural_glDrawElementsBaseVertex(GLenum mode, GLsizei count, GLenum type, const void* indices, GLint basevertex) {
+    ThreadState& t = *tThread;
+    encode_glDrawElementsBaseVertex(t, mode, count, type, prepareElements(t, count, type, indices, basevertex), basevertex);
+    if (t.drawLocally) gReal.glDrawElementsBaseVertex(mode, count, type, indices, basevertex);
+}
+void mural_glDrawElementsInstanced(GLenum mode, GLsizei count, GLenum type, const void* indices, GLsizei instancecount) {
+    ThreadState& t = *tThread;
+    encode_glDrawElementsInstanced(t, mode, count, type, prepareElements(t, count, type, indices, 0, instancecount), instancecount);
+    if (t.drawLocally) gReal.glDrawElementsInstanced(mode, count, type, indices, instancecount);
+}
+void mural_glDrawElementsInstancedBaseVertex(GLenum mode, GLsizei count, GLenum type, const void* indices, GLsizei instancecount, GLint basevertex) {
+    ThreadState& t = *tThread;
+    encode_glDrawElementsInstancedBaseVertex(t, mode, count, type, prepareElements(t, count, type, indices, basevertex, instancecount), instancecount, basevertex);
+    if (t.drawLocally) gReal.glDrawElementsInstancedBaseVertex(mode, count, type, indices, instancecount, basevertex);
+}
+void mural_glDrawElementsInstancedBaseInstance(GLenum mode, GLsizei count, GLenum type, const void* indices, GLsizei instancecount, GLuint baseinstance) {
+    ThreadState& t = *tThread;
+    encode_glDrawElementsInstancedBaseInstance(t, mode, count, type, prepareElements(t, count, type, indices, 0, instancecount, baseinstance), instancecount, baseinstance);
+    if (t.drawLocally) gReal.glDrawElementsInstancedBaseInstance(mode, count, type, indices, instancecount, baseinstance);
+}
+void mural_glDrawElementsInstancedBaseVertexBaseInstance(GLenum mode, GLsizei count, GLenum type, const void* indices, GLsizei instancecount, GLint basevertex, GLuint baseinstance) {
+    ThreadState& t = *tThread;
+    encode_glDrawElementsInstancedBaseVertexBaseInstance(t, mode, count, type, prepareElements(t, count, type, indices, basevertex, instancecount, baseinstance), instancecount, basevertex, baseinstance);
+    if (t.drawLocally) gReal.glDrawElementsInstancedBaseVertexBaseInstance(mode, count, type, indices, instancecount, basevertex, baseinstance);
+}
+// start and end are promises that programs break; the indices themselves are what counts.
+void mural_glDrawRangeElements(GLenum mode, GLuint start, GLuint end, GLsizei count, GLenum type, const void* indices) {
+    ThreadState& t = *tThread;
+    encode_glDrawRangeElements(t, mode, start, end, count, type, prepareElements(t, count, type, indices));
+    if (t.drawLocally) gReal.glDrawRangeElements(mode, start, end, count, type, indices);
+}
+void mural_glDrawRangeElementsBaseVertex(GLenum mode, GLuint start, GLuint end, GLsizei count, GLenum type, const void* indices, GLint basevertex) {
+    ThreadState& t = *tThread;
+    encode_glDrawRangeElementsBaseVertex(t, mode, start, end, count, type, prepareElements(t, count, type, indices, basevertex), basevertex);
+    if (t.drawLocally) gReal.glDrawRangeElementsBaseVertex(mode, start, end, count, type, indices, basevertex);
+}
+
+void mural_glMultiDrawArrays(GLenum mode, const GLint* first, const GLsizei* count, GLsizei drawcount) {
+    ThreadState& t = *tThread;
+    const auto n = drawcount > 0 ? uint64_t(drawcount) : 0;
+    if (Context* c = t.context) {
+        beforeDraw(t, *c);
+        if (c->arrays.anyClient() && n > 0) {
+            VertexRange all{INT64_MAX, -1, 1, 0};
+            for (uint64_t i = 0; i < n; ++i) {
+                if (count[i] <= 0) continue;
+                if (first[i] < all.first) all.first = first[i];
+                if (int64_t{first[i]} + count[i] - 1 > all.last) all.last = int64_t{first[i]} + count[i] - 1;
+            }
+            sendClientArrays(t, *c, all);
+        }
+    }
+    encode_glMultiDrawArrays(t, mode, DataArg::of(first, 4 * n), DataArg::of(count, 4 * n), drawcount);
+    if (t.drawLocally) gReal.glMultiDrawArrays(mode, first, count, drawcount);
+}
+
+} // extern "C"
+
+namespace {
+
+// Indices of glMultiDrawElements: u32 kind, u32 0, then offsets (kind 1, u64 each) or the index
+// lists one after the other (kind 0).
+DataArg multiIndices(ThreadState& t, const GLsizei* count, GLenum type, const void* const* indices, GLsizei drawcount, const GLint* basevertex) {
+    Context* c = t.context;
+    if (!c || drawcount <= 0) return {};
+    beforeDraw(t, *c);
+    const auto n = static_cast<size_t>(drawcount);
+    const uint32_t bytes = sizes::typeBytes(type);
+    if (c->arrays.anyClient()) {
+        VertexRange all{INT64_MAX, -1, 1, 0};
+        for (size_t i = 0; i < n; ++i) {
+            const VertexRange one = indexedRange(t, *c, count[i], type, indices[i], basevertex ? basevertex[i] : 0);
+            if (one.last < one.first) continue;
+            if (one.first < all.first) all.first = one.first;
+            if (one.last > all.last) all.last = one.last;
+        }
+        sendClientArrays(t, *c, all);
+    }
+    const bool offsets = c->core || elementBufferBinding() != 0;
+    size_t total = 8;
+    for (size_t i = 0; i < n; ++i) total += offsets ? 8 : count[i] > 0 ? static_cast<size_t>(count[i]) * bytes : 0;
+    auto* out = static_cast<std::byte*>(scratchMemory(t, total));
+    if (!out) return {};
+    const uint32_t head[2] = {offsets ? 1u : 0u, 0};
+    std::memcpy(out, head, 8);
+    std::byte* p = out + 8;
+    for (size_t i = 0; i < n; ++i) {
+        if (offsets) {
+            const auto offset = reinterpret_cast<uint64_t>(indices[i]);
+            std::memcpy(p, &offset, 8);
+            p += 8;
+        } else if (count[i] > 0) {
+            std::memcpy(p, indices[i], static_cast<size_t>(count[i]) * bytes);
+            p += static_cast<size_t>(count[i]) * bytes;
+        }
+    }
+    return DataArg::of(out, total);
+}
+
+} // namespace
+
+extern "C" {
+
+void mural_glMultiDrawElements(GLenum mode, const GLsizei* count, GLenum type, const void* const* indices, GLsizei drawcount) {
+    ThreadState& t = *tThread;
+    const DataArg data = multiIndices(t, count, type, indices, drawcount, nullptr);
+    encode_glMultiDrawElements(t, mode, DataArg::of(count, drawcount > 0 ? 4 * uint64_t(drawcount) : 0), type, data, drawcount);
+    if (t.drawLocally) gReal.glMultiDrawElements(mode, count, type, indices, drawcount);
+}
+void mural_glMultiDrawElementsBaseVertex(GLenum mode, const GLsizei* count, GLenum type, const void* const* indices, GLsizei drawcount, const GLint* basevertex) {
+    ThreadState& t = *tThread;
+    const uint64_t bytes = drawcount > 0 ? 4 * uint64_t(drawcount) : 0;
+    const DataArg data = multiIndices(t, count, type, indices, drawcount, basevertex);
+    encode_glMultiDrawElementsBaseVertex(t, mode, DataArg::of(count, bytes), type, data, drawcount, DataArg::of(basevertex, bytes));
+    if (t.drawLocally) gReal.glMultiDrawElementsBaseVertex(mode, count, type, indices, drawcount, basevertex);
+}
+void mural_glDrawArraysIndirect(GLenum mode, const void* indirect) {
+    ThreadState& t = *tThread;
+    const DataArg source = indirectSource(t, indirect, false, 1, 0);
+    indirectClientArrays(t, source, false, 0, 1, 0);
+    encode_glDrawArraysIndirect(t, mode, source);
+    if (t.drawLocally) gReal.glDrawArraysIndirect(mode, indirect);
+}
+void mural_glDrawElementsIndirect(GLenum mode, GLenum type, const void* indirect) {
+    ThreadState& t = *tThread;
+    const DataArg source = indirectSource(t, indirect, true, 1, 0);
+    indirectClientArrays(t, source, true, type, 1, 0);
+    encode_glDrawElementsIndirect(t, mode, type, source);
+    if (t.drawLocally) gReal.glDrawElementsIndirect(mode, type, indirect);
+}
+void mural_glMultiDrawArraysIndirect(GLenum mode, const void* indirect, GLsizei drawcount, GLsizei stride) {
+    ThreadState& t = *tThread;
+    const DataArg source = indirectSource(t, indirect, false, drawcount, stride);
+    indirectClientArrays(t, source, false, 0, drawcount, stride);
+    encode_glMultiDrawArraysIndirect(t, mode, source, drawcount, stride);
+    if (t.drawLocally) gReal.glMultiDrawArraysIndirect(mode, indirect, drawcount, stride);
+}
+void mural_glMultiDrawElementsIndirect(GLenum mode, GLenum type, const void* indirect, GLsizei drawcount, GLsizei stride) {
+    ThreadState& t = *tThread;
+    const DataArg source = indirectSource(t, indirect, true, drawcount, stride);
+    indirectClientArrays(t, source, true, type, drawcount, stride);
+    encode_glMultiDrawElementsIndirect(t, mode, type, source, drawcount, stride);
+    if (t.drawLocally) gReal.glMultiDrawElementsIndirect(mode, type, indirect, drawcount, stride);
+}
+void mural_glArrayElement(GLint i) {
+    ThreadState& t = *tThread;
+    if (Context* c = t.context; c && c->arrays.anyClient()) sendClientArrays(t, *c, {i, i, 1, 0});
+    encode_glArrayElement(t, i);
+    if (t.drawLocally) gReal.glArrayElement(i);
+}
+
+} // extern "C"

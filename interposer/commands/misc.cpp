@@ -1,0 +1,163 @@
+// Display lists, synchronisation, programs and answers that are put right before the program sees them.
+#include "custom_wrappers.hpp"
+#include "encoders.hpp"
+#include "interposer/asking.hpp"
+#include "interposer/context.hpp"
+#include "interposer/extensions.hpp"
+#include "interposer/own_records.hpp"
+#include "interposer/program_layout.hpp"
+#include "interposer/real_gl.hpp"
+#include "interposer/session.hpp"
+#include "streamcodec/size_expressions.hpp"
+
+using namespace mural;
+
+namespace {
+bool capturing(const ThreadState& t) {
+    Session* s = Session::current();
+    return t.context && s && s->alive();
+}
+void publish(ThreadState& t) {
+    if (Session* s = Session::current(); s && t.context) s->publish(t, false);
+}
+
+// A list holds draws and state: the program's own context needs the state but must not draw.
+template <class Call> void callWithoutDrawing(ThreadState& t, Call&& call) {
+    if (t.drawLocally) return call();
+    const bool canDiscard = t.context && t.context->version >= 30 && gReal.glEnable;
+    if (canDiscard) gReal.glEnable(GL_RASTERIZER_DISCARD);
+    call();
+    if (canDiscard) gReal.glDisable(GL_RASTERIZER_DISCARD);
+}
+} // namespace
+
+extern "C" {
+
+// Lists are compiled whole in the program's own context: if the head is lost they still draw.
+void mural_glNewList(GLuint list, GLenum mode) {
+    ThreadState& t = *tThread;
+    encode_glNewList(t, list, mode);
+    gReal.glNewList(list, mode);
+    if (!t.context) return;
+    t.context->compilingList = true;
+    refreshDrawLocally(t);
+}
+void mural_glEndList() {
+    ThreadState& t = *tThread;
+    encode_glEndList(t);
+    gReal.glEndList();
+    if (!t.context) return;
+    t.context->compilingList = false;
+    refreshDrawLocally(t);
+}
+void mural_glCallList(GLuint list) {
+    ThreadState& t = *tThread;
+    encode_glCallList(t, list);
+    callWithoutDrawing(t, [&] { gReal.glCallList(list); });
+}
+void mural_glCallLists(GLsizei n, GLenum type, const void* lists) {
+    ThreadState& t = *tThread;
+    encode_glCallLists(t, n, type, DataArg::of(lists, sizes::callListsBytes(n, type)));
+    callWithoutDrawing(t, [&] { gReal.glCallLists(n, type, lists); });
+}
+// Selection and feedback need vertices only: the program's own context does them.
+GLint mural_glRenderMode(GLenum mode) {
+    ThreadState& t = *tThread;
+    encode_glRenderMode(t, mode);
+    const GLint hits = gReal.glRenderMode(mode);
+    if (t.context) {
+        t.context->renderMode = mode;
+        refreshDrawLocally(t);
+    }
+    return hits;
+}
+
+void mural_glFlush() {
+    ThreadState& t = *tThread;
+    encode_glFlush(t);
+    gReal.glFlush();
+    publish(t);
+    flushedWindow(t);
+}
+void mural_glFinish() {
+    ThreadState& t = *tThread;
+    encode_glFinish(t);
+    gReal.glFinish();
+    publish(t);
+    flushedWindow(t);
+}
+GLsync mural_glFenceSync(GLenum condition, GLbitfield flags) {
+    ThreadState& t = *tThread;
+    const GLsync sync = gReal.glFenceSync(condition, flags);
+    encode_glFenceSync(t, condition, flags, sync);
+    publish(t);
+    return sync;
+}
+GLenum mural_glClientWaitSync(GLsync sync, GLbitfield flags, GLuint64 timeout) {
+    ThreadState& t = *tThread;
+    publish(t);
+    return gReal.glClientWaitSync(sync, flags, timeout);
+}
+void mural_glWaitSync(GLsync sync, GLbitfield flags, GLuint64 timeout) {
+    ThreadState& t = *tThread;
+    encode_glWaitSync(t, sync, flags, timeout);
+    gReal.glWaitSync(sync, flags, timeout);
+}
+void mural_glDeleteSync(GLsync sync) {
+    ThreadState& t = *tThread;
+    encode_glDeleteSync(t, sync);
+    gReal.glDeleteSync(sync);
+}
+
+// Attributes are bound before the nodes link, so that locations agree; uniforms are matched by name.
+void mural_glLinkProgram(GLuint program) {
+    ThreadState& t = *tThread;
+    gReal.glLinkProgram(program);
+    if (capturing(t)) bindAttributes(t, program);
+    encode_glLinkProgram(t, program);
+    if (capturing(t)) sendLayout(t, program);
+}
+void mural_glLinkProgramARB(GLuint program) { mural_glLinkProgram(program); }
+GLuint mural_glCreateShaderProgramv(GLenum type, GLsizei count, const GLchar* const* strings) {
+    ThreadState& t = *tThread;
+    const GLuint program = gReal.glCreateShaderProgramv(type, count, strings);
+    encode_glCreateShaderProgramv(t, type, count, packStrings(t, count, strings, nullptr), program);
+    if (capturing(t) && program) sendLayout(t, program);
+    return program;
+}
+// No format is advertised, so every binary is of the wrong one: the program links from source.
+void mural_glProgramBinary(GLuint program, GLenum binaryFormat, const void* binary, GLsizei length) {
+    if (!capturing(*tThread)) return gReal.glProgramBinary(program, binaryFormat, binary, length);
+    stashError(*tThread->context, takeError(*tThread->context));
+    stashError(*tThread->context, GL_INVALID_ENUM);
+}
+
+GLenum mural_glGetError() {
+    ThreadState& t = *tThread;
+    return t.context ? takeError(*t.context) : gReal.glGetError();
+}
+const GLubyte* mural_glGetString(GLenum name) {
+    ThreadState& t = *tThread;
+    if (capturing(t)) {
+        if (const char* text = adjustedString(*t.context, name)) return reinterpret_cast<const GLubyte*>(text);
+    }
+    return gReal.glGetString(name);
+}
+const GLubyte* mural_glGetStringi(GLenum name, GLuint index) {
+    ThreadState& t = *tThread;
+    if (capturing(t) && name == GL_EXTENSIONS) {
+        if (const char* text = extensionAt(*t.context, index)) return reinterpret_cast<const GLubyte*>(text);
+        return gReal.glGetStringi(name, UINT32_MAX); // for its error
+    }
+    return gReal.glGetStringi(name, index);
+}
+void mural_glGetIntegerv(GLenum pname, GLint* data) {
+    ThreadState& t = *tThread;
+    gReal.glGetIntegerv(pname, data);
+    if (!capturing(t) || !data) return;
+    if (pname == GL_NUM_EXTENSIONS) *data = extensionCount(*t.context);
+    else if (pname == GL_NUM_PROGRAM_BINARY_FORMATS || pname == GL_NUM_SHADER_BINARY_FORMATS) *data = 0;
+    else if (pname == GL_MINOR_VERSION && t.context->version == 46 && t.context->api == wire::Api::Desktop) *data = 5;
+}
+
+} // extern "C"

@@ -1,0 +1,212 @@
+// Pixels and texture images: drawn on the nodes, so read from the nodes.
+#include "custom_wrappers.hpp"
+#include "encoders.hpp"
+#include "interposer/asking.hpp"
+#include "interposer/context.hpp"
+#include "interposer/pixel_store.hpp"
+#include "interposer/real_gl.hpp"
+#include "interposer/session.hpp"
+
+using namespace mural;
+
+namespace {
+
+bool capturing(const ThreadState& t) {
+    Session* s = Session::current();
+    return t.context && s && s->alive();
+}
+
+// The part of the rectangle inside the read framebuffer: GL leaves memory for the rest untouched.
+struct Clip {
+    GLint x, y;
+    GLsizei w, h;
+};
+bool clipToReadWindow(Context& c, Clip& r) {
+    GLint framebuffer = 0;
+    gReal.glGetIntegerv(c.api == wire::Api::Desktop || c.version >= 30 ? GL_READ_FRAMEBUFFER_BINDING : GL_FRAMEBUFFER_BINDING, &framebuffer);
+    if (framebuffer != 0) return true;
+    const Window* w = findWindowById(c.readWindow);
+    if (!w) return true;
+    const int64_t x1 = int64_t{r.x} + r.w, y1 = int64_t{r.y} + r.h;
+    if (r.x < 0) r.x = 0;
+    if (r.y < 0) r.y = 0;
+    r.w = static_cast<GLsizei>((x1 < w->config.width ? x1 : int64_t{w->config.width}) - r.x);
+    r.h = static_cast<GLsizei>((y1 < w->config.height ? y1 : int64_t{w->config.height}) - r.y);
+    return r.w > 0 && r.h > 0;
+}
+
+// Writes tight pixels where the pack state puts them: client memory, or the bound pack buffer (the
+// program's own and the nodes').
+void deliver(ThreadState& t, const void* tight, void* pixels, const sizes::ImageLayout& layout) {
+    if (!packBufferBound(*t.context)) {
+        sizes::unpackTight(pixels, tight, layout);
+        return;
+    }
+    const size_t span = sizes::spanBytes(layout);
+    void* whole = scratchMemory(t, span);
+    if (!whole) return;
+    const auto offset = reinterpret_cast<GLintptr>(pixels);
+    gReal.glGetBufferSubData(GL_PIXEL_PACK_BUFFER, offset, static_cast<GLsizeiptr>(span), whole); // bytes between the rows stay
+    sizes::unpackTight(whole, tight, layout);
+    gReal.glBufferSubData(GL_PIXEL_PACK_BUFFER, offset, static_cast<GLsizeiptr>(span), whole);
+    encode_glBufferSubData(t, GL_PIXEL_PACK_BUFFER, offset, static_cast<GLsizeiptr>(span), DataArg::of(whole, span));
+}
+
+void readPixels(ThreadState& t, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type, void* pixels) {
+    Context& c = *t.context;
+    Clip clip{x, y, width, height};
+    if (!clipToReadWindow(c, clip)) return;
+    const void* tight = askPixels(t, clip.x, clip.y, clip.w, clip.h, format, type);
+    if (!tight) {
+        gReal.glReadPixels(x, y, width, height, format, type, pixels); // alone by now
+        return;
+    }
+    sizes::PixelStore store = packStore(c);
+    if (store.rowLength == 0) store.rowLength = width; // rows keep their distance when clipped
+    store.skipPixels += clip.x - x;
+    store.skipRows += clip.y - y;
+    const sizes::ImageLayout layout = sizes::layoutOf(store, format, type, clip.w, clip.h, 1, 2);
+    if (layout.known) deliver(t, tight, pixels, layout);
+}
+
+struct Level {
+    GLint width = 0, height = 0, depth = 0;
+};
+
+int imageDimensions(GLenum target) {
+    switch (target) {
+    case GL_TEXTURE_1D: return 1;
+    case GL_TEXTURE_3D:
+    case GL_TEXTURE_2D_ARRAY:
+    case GL_TEXTURE_CUBE_MAP_ARRAY: return 3;
+    default: return 2;
+    }
+}
+
+void readTexture(ThreadState& t, bool byName, GLuint which, GLint level, GLenum format, GLenum type, void* pixels, const Level& size, int dimensions) {
+    const size_t bytes = sizes::tightBytes(format, type, size.width, size.height, size.depth);
+    const void* tight = bytes ? askTexImage(t, byName, which, level, format, type, bytes) : nullptr;
+    if (!tight) return;
+    const sizes::ImageLayout layout = sizes::layoutOf(packStore(*t.context), format, type, size.width, size.height, size.depth, dimensions);
+    if (layout.known) deliver(t, tight, pixels, layout);
+}
+
+} // namespace
+
+extern "C" {
+
+void mural_glReadPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type, void* pixels) {
+    ThreadState& t = *tThread;
+    if (!capturing(t)) return gReal.glReadPixels(x, y, width, height, format, type, pixels);
+    const bool valid = raisesNothing(*t.context, [&] {
+        gReal.glReadPixels(x, y, width < 0 ? width : 0, height < 0 ? height : 0, format, type, pixels);
+    });
+    if (valid) readPixels(t, x, y, width, height, format, type, pixels);
+}
+
+void mural_glReadnPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type, GLsizei bufSize, void* data) {
+    ThreadState& t = *tThread;
+    if (!capturing(t)) return gReal.glReadnPixels(x, y, width, height, format, type, bufSize, data);
+    // The driver's own read tells whether bufSize is enough; its pixels are written over.
+    const bool valid = raisesNothing(*t.context, [&] { gReal.glReadnPixels(x, y, width, height, format, type, bufSize, data); });
+    if (valid) readPixels(t, x, y, width, height, format, type, data);
+}
+
+// The driver's own answer comes first: it gives the errors, and the content where nodes have none.
+void mural_glGetTexImage(GLenum target, GLint level, GLenum format, GLenum type, void* pixels) {
+    ThreadState& t = *tThread;
+    if (!capturing(t)) return gReal.glGetTexImage(target, level, format, type, pixels);
+    if (!raisesNothing(*t.context, [&] { gReal.glGetTexImage(target, level, format, type, pixels); })) return;
+    Level size;
+    gReal.glGetTexLevelParameteriv(target, level, GL_TEXTURE_WIDTH, &size.width);
+    gReal.glGetTexLevelParameteriv(target, level, GL_TEXTURE_HEIGHT, &size.height);
+    gReal.glGetTexLevelParameteriv(target, level, GL_TEXTURE_DEPTH, &size.depth);
+    readTexture(t, false, target, level, format, type, pixels, size, imageDimensions(target));
+}
+
+void mural_glGetnTexImage(GLenum target, GLint level, GLenum format, GLenum type, GLsizei bufSize, void* pixels) {
+    ThreadState& t = *tThread;
+    if (!capturing(t)) return gReal.glGetnTexImage(target, level, format, type, bufSize, pixels);
+    if (raisesNothing(*t.context, [&] { gReal.glGetnTexImage(target, level, format, type, bufSize, pixels); }))
+        mural_glGetTexImage(target, level, format, type, pixels);
+}
+
+void mural_glGetTextureImage(GLuint texture, GLint level, GLenum format, GLenum type, GLsizei bufSize, void* pixels) {
+    ThreadState& t = *tThread;
+    if (!capturing(t)) return gReal.glGetTextureImage(texture, level, format, type, bufSize, pixels);
+    if (!raisesNothing(*t.context, [&] { gReal.glGetTextureImage(texture, level, format, type, bufSize, pixels); })) return;
+    Level size;
+    GLint target = 0;
+    gReal.glGetTextureParameteriv(texture, GL_TEXTURE_TARGET, &target);
+    gReal.glGetTextureLevelParameteriv(texture, level, GL_TEXTURE_WIDTH, &size.width);
+    gReal.glGetTextureLevelParameteriv(texture, level, GL_TEXTURE_HEIGHT, &size.height);
+    gReal.glGetTextureLevelParameteriv(texture, level, GL_TEXTURE_DEPTH, &size.depth);
+    if (target == GL_TEXTURE_CUBE_MAP) size.depth = 6;
+    readTexture(t, true, texture, level, format, type, pixels, size, target == GL_TEXTURE_CUBE_MAP ? 3 : imageDimensions(static_cast<GLenum>(target)));
+}
+
+// A part: the whole level is asked for, the part copied out of it.
+void mural_glGetTextureSubImage(GLuint texture, GLint level, GLint xoffset, GLint yoffset, GLint zoffset, GLsizei width, GLsizei height, GLsizei depth, GLenum format, GLenum type, GLsizei bufSize, void* pixels) {
+    ThreadState& t = *tThread;
+    const auto local = [&] { gReal.glGetTextureSubImage(texture, level, xoffset, yoffset, zoffset, width, height, depth, format, type, bufSize, pixels); };
+    if (!capturing(t)) return local();
+    if (!raisesNothing(*t.context, local)) return;
+    Level size;
+    GLint target = 0;
+    gReal.glGetTextureParameteriv(texture, GL_TEXTURE_TARGET, &target);
+    gReal.glGetTextureLevelParameteriv(texture, level, GL_TEXTURE_WIDTH, &size.width);
+    gReal.glGetTextureLevelParameteriv(texture, level, GL_TEXTURE_HEIGHT, &size.height);
+    gReal.glGetTextureLevelParameteriv(texture, level, GL_TEXTURE_DEPTH, &size.depth);
+    if (target == GL_TEXTURE_CUBE_MAP) size.depth = 6;
+    const size_t whole = sizes::tightBytes(format, type, size.width, size.height, size.depth);
+    const auto* tight = static_cast<const std::byte*>(whole ? askTexImage(t, true, texture, level, format, type, whole) : nullptr);
+    const size_t group = sizes::groupBytes(format, type);
+    if (!tight || width <= 0 || height <= 0 || depth <= 0) return;
+    const size_t rowBytes = group * static_cast<size_t>(width);
+    auto* part = static_cast<std::byte*>(scratchMemory(t, rowBytes * static_cast<size_t>(height) * static_cast<size_t>(depth)));
+    if (!part) return;
+    std::byte* out = part;
+    for (GLsizei z = 0; z < depth; ++z) {
+        for (GLsizei y = 0; y < height; ++y, out += rowBytes) {
+            const size_t row = (static_cast<size_t>(zoffset + z) * static_cast<size_t>(size.height) + static_cast<size_t>(yoffset + y)) * static_cast<size_t>(size.width);
+            std::memcpy(out, tight + (row + static_cast<size_t>(xoffset)) * group, rowBytes);
+        }
+    }
+    const sizes::ImageLayout layout = sizes::layoutOf(packStore(*t.context), format, type, width, height, depth, imageDimensions(static_cast<GLenum>(target)));
+    if (layout.known && !packBufferBound(*t.context)) sizes::unpackTight(pixels, part, layout);
+}
+
+} // extern "C"
+
+namespace {
+
+// Counts of samples and primitives exist only where it was drawn; times are the local driver's.
+template <class T, class Local> void queryObject(GLuint id, GLenum pname, T* params, Local local) {
+    ThreadState& t = *tThread;
+    const bool counts = pname == GL_QUERY_RESULT || pname == GL_QUERY_RESULT_NO_WAIT;
+    if (!capturing(t) || t.drawLocally || !params || pname == GL_QUERY_RESULT_AVAILABLE) return local();
+    if (!raisesNothing(*t.context, local) || !counts) return;
+    uint64_t value = 0;
+    if (!askQuery(t, id, pname, value)) return;
+    const uint64_t largest = static_cast<uint64_t>(sizeof(T) == 4 ? (static_cast<T>(-1) < 0 ? INT32_MAX : UINT32_MAX) : UINT64_MAX);
+    *params = static_cast<T>(value < largest ? value : largest);
+}
+
+} // namespace
+
+extern "C" {
+
+void mural_glGetQueryObjectiv(GLuint id, GLenum pname, GLint* params) {
+    queryObject(id, pname, params, [=] { gReal.glGetQueryObjectiv(id, pname, params); });
+}
+void mural_glGetQueryObjectuiv(GLuint id, GLenum pname, GLuint* params) {
+    queryObject(id, pname, params, [=] { gReal.glGetQueryObjectuiv(id, pname, params); });
+}
+void mural_glGetQueryObjecti64v(GLuint id, GLenum pname, GLint64* params) {
+    queryObject(id, pname, params, [=] { gReal.glGetQueryObjecti64v(id, pname, params); });
+}
+void mural_glGetQueryObjectui64v(GLuint id, GLenum pname, GLuint64* params) {
+    queryObject(id, pname, params, [=] { gReal.glGetQueryObjectui64v(id, pname, params); });
+}
+
+} // extern "C"

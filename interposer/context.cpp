@@ -1,0 +1,272 @@
+#include "interposer/context.hpp"
+
+#include <cstdlib>
+#include <cstring>
+#include <linux/membarrier.h>
+#include <new>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include "interposer/log.hpp"
+#include "interposer/own_records.hpp"
+#include "interposer/real_gl.hpp"
+#include "interposer/session.hpp"
+#include "interposer/verify.hpp"
+#include "interposer/window_size.hpp"
+
+namespace mural {
+
+namespace {
+
+Lock tableLock;
+Context** contexts = nullptr;
+uint32_t contextCount = 0;
+Window* windows = nullptr;
+uint32_t lastContext = 0, lastWindow = 0;
+
+template <class T> T* make() {
+    void* memory = std::calloc(1, sizeof(T));
+    return memory ? new (memory) T : nullptr;
+}
+
+// After this, every other thread either sees its limit gone at its next record, or had begun that
+// record before: so what it has completed may be published for it.
+void stopFastPath(ThreadState& other) {
+    other.shared = true;
+    __atomic_store_n(&other.limit, nullptr, __ATOMIC_SEQ_CST);
+}
+
+void registerBarrier() {
+    static bool once = false;
+    if (!__atomic_exchange_n(&once, true, __ATOMIC_RELAXED))
+        syscall(SYS_membarrier, MEMBARRIER_CMD_REGISTER_PRIVATE_EXPEDITED, 0, 0);
+}
+
+// The thread gives up its context: what it encoded is made visible first.
+void leaveContext(ThreadState& t) {
+    Context* old = t.context;
+    if (!old) return;
+    Session* s = Session::current();
+    Guard guard(old->group->lock);
+    if (s && s->alive()) s->publish(t, false);
+    --old->group->threads;
+    if (old->group->lastWriter == &t) old->group->lastWriter = nullptr;
+    t.shared = false;
+    t.context = nullptr;
+}
+
+// Threads of one share group order all their records from the moment that there are two of them.
+void enterGroup(ThreadState& t, Context& c) {
+    ShareGroup& group = *c.group;
+    Guard guard(group.lock);
+    ++group.threads;
+    t.context = &c;
+    t.shared = group.threads > 1;
+    if (!t.shared) return;
+    registerBarrier();
+    for (ThreadState* other = firstThread(); other; other = other->next) {
+        if (other != &t && other->context && other->context->group == &group) stopFastPath(*other);
+    }
+    syscall(SYS_membarrier, MEMBARRIER_CMD_PRIVATE_EXPEDITED, 0, 0);
+    Session* s = Session::current();
+    for (ThreadState* other = firstThread(); s && other; other = other->next) {
+        if (other != &t && other->context && other->context->group == &group) s->publish(*other, false);
+    }
+}
+
+void announce(ThreadState& t, Context& c) {
+    if (c.announced) return;
+    if (c.shareWith && !c.shareWith->announced) announce(t, *c.shareWith);
+    c.announced = true;
+    const records::ContextInfo info{c.id, c.shareWith ? c.shareWith->id : 0, static_cast<uint32_t>(c.api),
+                                    static_cast<uint32_t>(c.version / 10), static_cast<uint32_t>(c.version % 10),
+                                    c.profileMask, c.flags, c.config};
+    records::createContext(t, info);
+}
+
+void announce(ThreadState& t, Window& w) {
+    if (w.announced) return;
+    w.announced = true;
+    records::window(t, w.id, w.config);
+}
+
+// Version and profile that the driver really gave; needs the context to be current.
+void learnVersion(Context& c) {
+    const auto* text = reinterpret_cast<const char*>(gReal.glGetString(GL_VERSION));
+    if (!text) return;
+    if (const char* es = std::strstr(text, "OpenGL ES")) {
+        const char* digits = std::strpbrk(es, "0123456789");
+        c.api = digits && *digits == '1' ? wire::Api::Es1 : wire::Api::Es2;
+        text = digits ? digits : "2.0";
+    }
+    c.version = (text[0] - '0') * 10 + (text[1] == '.' ? text[2] - '0' : 0);
+    if (c.api == wire::Api::Desktop && c.version >= 32) {
+        GLint mask = 0;
+        gReal.glGetIntegerv(GL_CONTEXT_PROFILE_MASK, &mask);
+        c.profileMask = static_cast<uint32_t>(mask);
+        c.core = mask & GL_CONTEXT_CORE_PROFILE_BIT;
+        GLint flags = 0;
+        gReal.glGetIntegerv(GL_CONTEXT_FLAGS, &flags);
+        c.flags = static_cast<uint32_t>(flags);
+    }
+}
+
+} // namespace
+
+void refreshDrawLocally(ThreadState& t) {
+    Session* s = Session::current();
+    const bool full = !s || !s->alive() || s->welcome().policy == capture::kPolicyFull;
+    t.drawLocally = full || !t.context || t.context->compilingList || t.context->renderMode != GL_RENDER;
+}
+
+Context* addContext(void* native, Context* shareWith, wire::Api api, const wire::WindowConfig& config) {
+    auto* c = make<Context>();
+    if (!c) return nullptr;
+    Guard guard(tableLock);
+    c->native = native;
+    c->shareWith = shareWith;
+    c->api = api;
+    c->config = config;
+    c->id = ++lastContext;
+    c->group = shareWith ? shareWith->group : make<ShareGroup>();
+    auto** larger = static_cast<Context**>(std::realloc(contexts, (contextCount + 1) * sizeof(Context*)));
+    if (!larger || !c->group) return nullptr;
+    contexts = larger;
+    contexts[contextCount++] = c;
+    return c;
+}
+
+Context* findContext(void* native) {
+    Guard guard(tableLock);
+    for (uint32_t i = contextCount; i-- > 0;) {
+        if (contexts[i]->native == native && !contexts[i]->destroyed) return contexts[i];
+    }
+    return nullptr;
+}
+
+void destroyContext(void* native) {
+    Context* c = findContext(native);
+    if (!c) return;
+    c->destroyed = true; // its share group may live on; the nodes keep the context for it
+    ThreadState& t = *tThread;
+    if (t.context && t.context != c && c->announced) records::destroyContext(t, c->id);
+}
+
+Window* addWindow(uintptr_t drawable, void* display, bool isEgl, const wire::WindowConfig& config, uint64_t native) {
+    auto* w = make<Window>();
+    if (!w) return nullptr;
+    Guard guard(tableLock);
+    w->id = ++lastWindow;
+    w->drawable = drawable;
+    w->display = display;
+    w->isEgl = isEgl;
+    w->native = native;
+    w->config = config;
+    w->config.nativeLow = static_cast<uint32_t>(native);
+    w->config.nativeHigh = static_cast<uint32_t>(native >> 32);
+    w->next = windows;
+    windows = w;
+    return w;
+}
+
+Window* findWindow(uintptr_t drawable, void* display) {
+    Guard guard(tableLock);
+    for (Window* w = windows; w; w = w->next) {
+        if (w->drawable == drawable && (w->display == display || !display)) return w;
+    }
+    return nullptr;
+}
+
+Window* findWindowById(uint32_t id) {
+    Guard guard(tableLock);
+    for (Window* w = windows; w; w = w->next) {
+        if (w->id == id) return w;
+    }
+    return nullptr;
+}
+
+void destroyWindow(uintptr_t drawable, void* display) {
+    Window* w = findWindow(drawable, display);
+    if (!w) return;
+    ThreadState& t = *tThread;
+    if (w->announced) records::destroyWindow(t, w->id);
+    Guard guard(tableLock);
+    w->drawable = 0; // never found again; its number is not used again
+}
+
+void becameCurrent(Context* context, Window* draw, Window* read) {
+    ThreadState& t = ownThreadState();
+    Session* s = Session::get();
+    if (!s) {
+        t.context = nullptr;
+        t.drawLocally = true;
+        return;
+    }
+    if (t.context && (t.context != context)) {
+        records::makeCurrent(t, 0, 0, 0);
+        leaveContext(t);
+    }
+    if (!context) {
+        refreshDrawLocally(t);
+        return;
+    }
+    if (!t.context) enterGroup(t, *context);
+    t.limit = nullptr; // the first record takes the slow path, which finds or takes a chunk
+    if (context->firstCurrent) {
+        context->firstCurrent = false;
+        loadOwnNeeds();
+        learnVersion(*context);
+    }
+    refreshDrawLocally(t);
+    announce(t, *context);
+    for (Window* w : {draw, read}) {
+        if (!w) continue;
+        updateWindowSize(t, *w);
+        announce(t, *w);
+    }
+    context->drawWindow = draw ? draw->id : 0;
+    context->readWindow = read ? read->id : 0;
+    records::makeCurrent(t, context->id, context->drawWindow, context->readWindow);
+    s->publish(t, false);
+}
+
+void updateWindowSize(ThreadState& t, Window& w) {
+    uint32_t width = 0, height = 0;
+    if (!askWindowSize(w, width, height) || (width == w.config.width && height == w.config.height)) return;
+    w.config.width = width;
+    w.config.height = height;
+    if (w.announced) records::window(t, w.id, w.config);
+}
+
+void flushedWindow(ThreadState& t) {
+    if (!t.context) return;
+    Window* w = findWindowById(t.context->drawWindow);
+    if (!w || w->config.doubleBuffer || t.cursor == w->lastFlush) return;
+    endFrame(w);
+    w->lastFlush = t.cursor;
+}
+
+bool swapLocally() {
+    Session* s = Session::current();
+    return !s || !s->alive() || s->welcome().policy == capture::kPolicyFull;
+}
+
+void endFrame(Window* w) {
+    ThreadState& t = *tThread;
+    Session* s = Session::current();
+    if (!s || !s->alive() || !w || !t.context) {
+        refreshDrawLocally(t);
+        return;
+    }
+    beforeDraw(t, *t.context);
+    const uint32_t frame = s->nextFrame();
+    const uint32_t every = s->welcome().verifyEvery;
+    if (every && frame % every == 0) verifyFrame(t, *w);
+    records::swap(t, w->id, frame);
+    s->publish(t, false);
+    s->waitForCredit(s->welcome().latency);
+    updateWindowSize(t, *w);
+    refreshDrawLocally(t);
+}
+
+} // namespace mural

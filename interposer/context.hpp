@@ -1,0 +1,95 @@
+// What the interposer knows of the program's contexts, share groups and drawables. The program's own
+// context (of the vendor's driver) knows everything else and is asked.
+#pragma once
+
+#include <GL/gl.h>
+#include <cstdint>
+
+#include "interposer/lock.hpp"
+#include "interposer/thread_state.hpp"
+#include "interposer/vertex_arrays.hpp"
+#include "streamcodec/wire.hpp"
+
+namespace mural {
+
+struct PersistentMap; // interposer/commands/mappings.cpp
+
+// Contexts that share objects. When more than one thread has one of them current, every record takes
+// the lock, and the writer before is published first: so the stream keeps the order of the calls.
+struct ShareGroup {
+    Lock lock;
+    ThreadState* lastWriter = nullptr;
+    int threads = 0; // that have a context of the group current
+    PersistentMap* maps = nullptr; // mappings of buffers that are not unmapped yet
+    int persistentMaps = 0;
+};
+
+struct Context {
+    uint32_t id = 0;
+    ShareGroup* group = nullptr;
+    wire::Api api = wire::Api::Desktop;
+    bool announced = false;    // the nodes know it
+    bool core = false;
+    bool destroyed = false;    // by the program, while still current
+    int version = 0;           // 10 * major + minor, of the local context
+    wire::WindowConfig config{};
+    Context* shareWith = nullptr;
+    uint32_t flags = 0;
+    uint32_t profileMask = 0;
+    void* native = nullptr;    // GLXContext or EGLContext
+
+    VertexArrayMirror arrays;
+    GLenum stashedError = 0;   // an error that we met while asking, for the program's next glGetError
+    bool compilingList = false;
+    GLenum renderMode = GL_RENDER;
+    bool firstCurrent = true;
+    uint32_t drawWindow = 0, readWindow = 0;
+    char* extensionText = nullptr; // filtered, made at the first question
+    const char** extensionNames = nullptr;
+    int extensionCount = -1;
+    char versionText[160] = {};
+};
+
+struct Window {
+    uint32_t id = 0;
+    uintptr_t drawable = 0;    // GLXDrawable or EGLSurface
+    void* display = nullptr;
+    bool isEgl = false;
+    bool announced = false;
+    uint64_t native = 0;       // X window
+    wire::WindowConfig config{};
+    std::byte* lastFlush = nullptr; // where the stream was at the last flush of a single-buffered window
+    Window* next = nullptr;
+};
+
+// Sets drawLocally from policy, list compilation, render mode and whether the head lives.
+void refreshDrawLocally(ThreadState& t);
+
+// Registers a context that the driver has made. shareWith may be null.
+Context* addContext(void* native, Context* shareWith, wire::Api api, const wire::WindowConfig& config);
+Context* findContext(void* native);
+void destroyContext(void* native);
+
+Window* addWindow(uintptr_t drawable, void* display, bool isEgl, const wire::WindowConfig& config, uint64_t native);
+Window* findWindow(uintptr_t drawable, void* display);
+Window* findWindowById(uint32_t id);
+void destroyWindow(uintptr_t drawable, void* display);
+
+// The driver has made `context` current with these drawables (null: none): says so in the stream.
+void becameCurrent(Context* context, Window* draw, Window* read);
+// The driver's idea of the window's size; announces a change.
+void updateWindowSize(ThreadState& t, Window& w);
+// The program shows the window's back buffer: a frame ends.
+void endFrame(Window* w);
+// glFlush or glFinish on a single-buffered window shows its picture: a frame, when something was drawn.
+void flushedWindow(ThreadState& t);
+// Whether the driver's own swap happens too.
+bool swapLocally();
+
+// Copies what persistent mappings have changed; called before anything that may read buffers.
+void shipPersistentMaps(ThreadState& t, ShareGroup& group);
+inline void beforeDraw(ThreadState& t, Context& c) {
+    if (c.group->persistentMaps > 0) [[unlikely]] shipPersistentMaps(t, *c.group);
+}
+
+} // namespace mural

@@ -1,0 +1,110 @@
+#include "interposer/encode_support.hpp"
+
+#include "interposer/context.hpp"
+#include "interposer/log.hpp"
+#include "interposer/own_records.hpp"
+#include "interposer/pixel_store.hpp"
+#include "interposer/session.hpp"
+
+namespace mural {
+
+namespace {
+// What a thread holds when there is nothing to capture (any more).
+void goAlone(ThreadState& t) {
+    t.cursor = t.limit = t.chunkEnd = nullptr;
+    t.chunk = UINT32_MAX;
+    t.drawLocally = true;
+}
+} // namespace
+
+std::byte* makeRoom(ThreadState& t, uint32_t sizeBytes) {
+    if (!t.context) return nullptr;
+    Session* s = Session::current();
+    if (!s || !s->alive()) {
+        goAlone(t);
+        return nullptr;
+    }
+    if (t.shared) {
+        ShareGroup& group = *t.context->group;
+        group.lock.lock();
+        if (group.lastWriter && group.lastWriter != &t) s->publish(*group.lastWriter, false);
+        group.lastWriter = &t;
+        t.locked = true;
+    }
+    if (t.chunk != UINT32_MAX && t.cursor + sizeBytes <= t.chunkEnd) return t.cursor;
+    s->publish(t, true);
+    if (!s->takeChunk(t)) {
+        if (t.locked) unlockGroup(t);
+        goAlone(t);
+        return nullptr;
+    }
+    t.limit = t.shared ? nullptr : t.chunkEnd;
+    return t.cursor;
+}
+
+void unlockGroup(ThreadState& t) {
+    t.locked = false;
+    t.context->group->lock.unlock();
+}
+
+void spill(ThreadState& t, const DataArg& d) {
+    if (!d.pointer) return;
+    records::blobBegin(t, d.sizeBytes);
+    const auto* p = static_cast<const std::byte*>(d.pointer);
+    for (uint64_t done = 0; done < d.sizeBytes;) {
+        const uint64_t left = d.sizeBytes - done;
+        const auto piece = static_cast<uint32_t>(left < record::kBlobPieceBytes ? left : record::kBlobPieceBytes);
+        if (!records::blobData(t, p + done, piece)) return;
+        done += piece;
+    }
+}
+
+DataArg imageSource(ThreadState& t, const void* pixels, GLenum format, GLenum type, GLsizei width, GLsizei height, GLsizei depth, int dimensions) {
+    if (!t.context) return {};
+    if (unpackBufferBound(*t.context)) return DataArg::offset(pixels);
+    if (!pixels) return {};
+    const sizes::ImageLayout layout = sizes::layoutOf(unpackStore(*t.context), format, type, width, height, depth, dimensions);
+    const size_t tight = layout.known ? sizes::tightBytes(layout) : 0;
+    if (tight == 0 || tight == SIZE_MAX) return {}; // the driver reports the error, the nodes get no data
+    if (isTight(layout)) return DataArg::of(static_cast<const std::byte*>(pixels) + layout.firstByte, tight);
+    void* packed = scratchMemory(t, tight);
+    if (!packed) return {};
+    sizes::packTight(packed, pixels, layout);
+    return DataArg::of(packed, tight);
+}
+
+DataArg packedSource(ThreadState& t, const void* data, GLsizei sizeBytes) {
+    if (!t.context) return {};
+    if (unpackBufferBound(*t.context)) return DataArg::offset(data);
+    return DataArg::of(data, sizeBytes > 0 ? static_cast<uint64_t>(sizeBytes) : 0);
+}
+
+DataArg packStrings(ThreadState& t, GLsizei count, const GLchar* const* strings, const GLint* lengths) {
+    if (count <= 0 || !strings) return {};
+    const auto n = static_cast<size_t>(count);
+    const auto lengthOf = [&](size_t i) -> uint32_t {
+        if (!strings[i]) return 0;
+        return lengths && lengths[i] >= 0 ? static_cast<uint32_t>(lengths[i]) : static_cast<uint32_t>(std::strlen(strings[i]));
+    };
+    size_t total = 4 * n;
+    for (size_t i = 0; i < n; ++i) total += lengthOf(i);
+    auto* out = static_cast<std::byte*>(scratchMemory(t, total));
+    if (!out) return {};
+    std::byte* text = out + 4 * n;
+    for (size_t i = 0; i < n; ++i) {
+        const uint32_t length = lengthOf(i);
+        std::memcpy(out + 4 * i, &length, 4);
+        if (length) std::memcpy(text, strings[i], length);
+        text += length;
+    }
+    return DataArg::of(out, total);
+}
+
+void unsupportedCalled(const char* name, const char* reason) {
+    if (Session* s = Session::current(); s && s->alive()) {
+        if (s->header()->callsUnsupported.fetch_add(1, std::memory_order_relaxed) == 0)
+            say("%s is not carried to the wall (%s); further such calls are only counted", name, reason);
+    }
+}
+
+} // namespace mural

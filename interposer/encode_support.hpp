@@ -1,0 +1,114 @@
+// Writing one record: beginRecord, put…, endRecord. No allocation, lock or system call unless the
+// chunk is full or several threads share the context's objects.
+#pragma once
+
+#include <GL/gl.h>
+#include <GL/glext.h>
+#include <cstring>
+
+#include "interposer/thread_state.hpp"
+#include "streamcodec/record.hpp"
+
+namespace mural {
+
+// The slow path: takes a new chunk, or the share group's lock. Null: not capturing.
+std::byte* makeRoom(ThreadState& t, uint32_t sizeBytes);
+void unlockGroup(ThreadState& t);
+
+// Space for a record of sizeBytes (header included, a multiple of 4); returns where its arguments go.
+inline std::byte* beginRecord(ThreadState& t, uint32_t opcode, uint32_t sizeBytes) {
+    std::byte* p = t.cursor;
+    if (reinterpret_cast<uintptr_t>(p) + sizeBytes + 4 > reinterpret_cast<uintptr_t>(t.limit)) [[unlikely]] {
+        p = makeRoom(t, sizeBytes + 4);
+        if (!p) return nullptr;
+    }
+    const uint32_t words = sizeBytes / 4;
+    if (words < record::kLongForm) [[likely]] {
+        const uint32_t header = opcode | words << 16;
+        std::memcpy(p, &header, 4);
+        return p + 4;
+    }
+    const uint32_t longHeader[2] = {opcode | record::kLongForm << 16, words + 1};
+    std::memcpy(p, longHeader, 8);
+    return p + 8;
+}
+
+// `arguments` is what beginRecord returned, sizeBytes the same as there.
+inline void endRecord(ThreadState& t, std::byte* arguments, uint32_t sizeBytes) {
+    __atomic_store_n(&t.cursor, arguments + sizeBytes - 4, __ATOMIC_RELEASE);
+    if (t.locked) [[unlikely]] unlockGroup(t);
+}
+
+// Bytes behind a pointer argument.
+struct DataArg {
+    const void* pointer = nullptr;
+    uint64_t sizeBytes = 0;
+    bool isOffset = false; // pointer is an offset into the bound buffer
+
+    static DataArg of(const void* p, uint64_t bytes) { return {p, p ? bytes : 0, false}; }
+    static DataArg offset(const void* p) { return {p, 0, true}; }
+    static DataArg text(const char* p) { return {p, p ? std::strlen(p) + 1 : 0, false}; }
+};
+
+// Bytes that the value takes in the record: a tag, and what stands inline.
+inline uint32_t wireBytes(const DataArg& d) {
+    if (d.isOffset) return 12;
+    if (!d.pointer || d.sizeBytes > record::kInlineBytes) return 4;
+    return 4 + (static_cast<uint32_t>(d.sizeBytes) + 3) / 4 * 4;
+}
+
+void spill(ThreadState& t, const DataArg& d);
+// Values too large for a record go ahead of it, in pieces.
+inline void spillLarge(ThreadState& t, const DataArg& d) {
+    if (d.sizeBytes > record::kInlineBytes && !d.isOffset) [[unlikely]] spill(t, d);
+}
+
+class Writer {
+public:
+    explicit Writer(std::byte* p) : p_(p) {}
+
+    template <class T> void put4(T value) {
+        uint32_t word = 0;
+        std::memcpy(&word, &value, sizeof(T) < 4 ? sizeof(T) : 4);
+        std::memcpy(p_, &word, 4);
+        p_ += 4;
+    }
+    template <class T> void put8(T value) {
+        static_assert(sizeof(T) == 8);
+        std::memcpy(p_, &value, 8);
+        p_ += 8;
+    }
+    void bytes(const void* source, uint32_t count) {
+        std::memcpy(p_, source, count);
+        p_ += (count + 3) / 4 * 4;
+    }
+    void data(const DataArg& d) {
+        if (d.isOffset) {
+            put4(record::kTagOffset);
+            put8(reinterpret_cast<uint64_t>(d.pointer));
+        } else if (!d.pointer) {
+            put4(record::kTagNull);
+        } else if (d.sizeBytes > record::kInlineBytes) {
+            put4(record::kTagBlob);
+        } else {
+            put4(static_cast<uint32_t>(d.sizeBytes));
+            bytes(d.pointer, static_cast<uint32_t>(d.sizeBytes));
+        }
+    }
+
+private:
+    std::byte* p_;
+};
+
+// Where an image in client memory, or an offset, comes from under the unpack state of the current
+// context; re-packed tightly into scratch memory when rows are apart.
+DataArg imageSource(ThreadState& t, const void* pixels, GLenum format, GLenum type, GLsizei width,
+                    GLsizei height, GLsizei depth, int dimensions);
+// The same for bytes that the pixel store does not rearrange (compressed images).
+DataArg packedSource(ThreadState& t, const void* data, GLsizei sizeBytes);
+// count strings as u32 lengths, then their bytes one after the other. lengths may be null.
+DataArg packStrings(ThreadState& t, GLsizei count, const GLchar* const* strings, const GLint* lengths);
+
+void unsupportedCalled(const char* name, const char* reason);
+
+} // namespace mural

@@ -1,0 +1,145 @@
+#include "interposer/extensions.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#include "interposer/context.hpp"
+#include "interposer/real_gl.hpp"
+#include "interposer/session.hpp"
+#include "streamcodec/command_table.hpp"
+
+namespace mural {
+
+namespace {
+
+// Extensions without commands of their own that hand out things of this machine.
+const char* const kLocalOnly[] = {"GL_ARB_gl_spirv", "GL_ARB_spirv_extensions", "GL_ARB_bindless_texture", "GL_ARB_get_program_binary",
+                                  "GL_OES_get_program_binary", "GL_ARB_sparse_buffer", "GL_ARB_sparse_texture", "GL_AMD_pinned_memory",
+                                  "GL_OES_EGL_image_external", "GL_OES_EGL_image_external_essl3", "GL_EXT_EGL_image_storage"};
+const char* const kWindowSystemLocalOnly[] = {"GLX_EXT_texture_from_pixmap", "EGL_KHR_image", "EGL_KHR_image_base", "EGL_KHR_image_pixmap",
+                                              "EGL_KHR_gl_texture_2D_image", "EGL_KHR_gl_texture_cubemap_image", "EGL_KHR_gl_texture_3D_image",
+                                              "EGL_KHR_gl_renderbuffer_image", "EGL_EXT_image_dma_buf_import", "EGL_EXT_image_dma_buf_import_modifiers",
+                                              "EGL_MESA_image_dma_buf_export", "EGL_MESA_drm_image", "EGL_WL_bind_wayland_display",
+                                              "EGL_WL_create_wayland_buffer_from_image", "EGL_KHR_cl_event2"};
+
+bool advertised(const char* name, size_t length) {
+    char text[128];
+    if (length == 0 || length + 3 > sizeof text) return false;
+    text[0] = ' ';
+    std::memcpy(text + 1, name, length);
+    text[length + 1] = ' ';
+    text[length + 2] = 0;
+    const char* nodes = Session::current()->nodeExtensions();
+    if (std::strlen(nodes) > 2 && !std::strstr(nodes, text)) return false;
+    text[length + 1] = 0;
+    for (const char* local : kLocalOnly) {
+        if (!std::strcmp(local, text + 1)) return false;
+    }
+    return extensionCarried(text + 1);
+}
+
+void append(Context& c, char*& out, const char* name, size_t length, int& capacity) {
+    if (!advertised(name, length)) return;
+    if (c.extensionCount + 1 > capacity) return;
+    std::memcpy(out, name, length);
+    c.extensionNames[c.extensionCount++] = out; // the blank behind it becomes the end in a second text
+    out += length;
+    *out++ = ' ';
+}
+
+// Both forms of the list: one text with blanks, and single names.
+void makeList(Context& c) {
+    if (c.extensionCount >= 0) return;
+    c.extensionCount = 0;
+    size_t total = 1;
+    GLint count = 0;
+    const bool indexed = c.version >= 30 && gReal.glGetStringi;
+    const char* whole = nullptr;
+    if (indexed) {
+        gReal.glGetIntegerv(GL_NUM_EXTENSIONS, &count);
+        for (GLint i = 0; i < count; ++i) total += std::strlen(reinterpret_cast<const char*>(gReal.glGetStringi(GL_EXTENSIONS, static_cast<GLuint>(i)))) + 1;
+    } else {
+        whole = reinterpret_cast<const char*>(gReal.glGetString(GL_EXTENSIONS));
+        if (!whole) return;
+        total += std::strlen(whole) + 1;
+        for (const char* p = whole; *p; ++p) count += *p == ' ';
+        ++count;
+    }
+    c.extensionText = static_cast<char*>(std::malloc(2 * total));
+    c.extensionNames = static_cast<const char**>(std::malloc(sizeof(char*) * (static_cast<size_t>(count) + 1)));
+    if (!c.extensionText || !c.extensionNames) return;
+    char* out = c.extensionText;
+    int capacity = count;
+    for (GLint i = 0; indexed && i < count; ++i) {
+        const auto* name = reinterpret_cast<const char*>(gReal.glGetStringi(GL_EXTENSIONS, static_cast<GLuint>(i)));
+        append(c, out, name, std::strlen(name), capacity);
+    }
+    for (const char* p = whole; p && *p;) {
+        const size_t length = std::strcspn(p, " ");
+        append(c, out, p, length, capacity);
+        p += length;
+        while (*p == ' ') ++p;
+    }
+    *out = 0;
+    // Names with an end of their own, behind the text.
+    char* single = c.extensionText + total;
+    for (int i = 0; i < c.extensionCount; ++i) {
+        const size_t length = std::strcspn(c.extensionNames[i], " ");
+        std::memcpy(single, c.extensionNames[i], length);
+        single[length] = 0;
+        c.extensionNames[i] = single;
+        single += length + 1;
+    }
+}
+
+} // namespace
+
+const char* adjustedString(Context& c, GLenum name) {
+    if (name == GL_EXTENSIONS && !c.core) {
+        makeList(c);
+        return c.extensionText;
+    }
+    if (name == GL_VERSION && c.version == 46 && c.api == wire::Api::Desktop) {
+        // 4.6 asks for SPIR-V, which is not carried: the program is told 4.5.
+        if (!c.versionText[0]) {
+            snprintf(c.versionText, sizeof c.versionText, "%s", reinterpret_cast<const char*>(gReal.glGetString(name)));
+            if (!std::strncmp(c.versionText, "4.6", 3)) c.versionText[2] = '5';
+        }
+        return c.versionText;
+    }
+    return nullptr;
+}
+
+const char* extensionAt(Context& c, GLuint index) {
+    makeList(c);
+    return index < static_cast<GLuint>(c.extensionCount) ? c.extensionNames[index] : nullptr;
+}
+
+GLint extensionCount(Context& c) {
+    makeList(c);
+    return c.extensionCount;
+}
+
+const char* filterWindowSystemExtensions(const char* text) {
+    if (!text) return nullptr;
+    auto* out = static_cast<char*>(std::malloc(std::strlen(text) + 2));
+    if (!out) return text;
+    char* end = out;
+    for (const char* p = text; *p;) {
+        const size_t length = std::strcspn(p, " ");
+        bool keep = length > 0;
+        for (const char* local : kWindowSystemLocalOnly) keep = keep && !(std::strlen(local) == length && !std::strncmp(local, p, length));
+        if (keep) {
+            std::memcpy(end, p, length);
+            end += length;
+            *end++ = ' ';
+        }
+        p += length;
+        while (*p == ' ') ++p;
+    }
+    *end = 0;
+    return out;
+}
+
+} // namespace mural

@@ -1,0 +1,217 @@
+// The EGL front: libEGL (of libglvnd) loads this library through the vendor file that
+// __EGL_VENDOR_LIBRARY_FILENAMES names. As in glx.cpp, the real vendor's library does the work.
+// Source: libglvnd, glvnd/libeglabi.h.
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <dlfcn.h>
+#include <glvnd/libeglabi.h>
+
+#include "interposer/context.hpp"
+#include "interposer/extensions.hpp"
+#include "interposer/fronts/own_functions.hpp"
+#include "interposer/log.hpp"
+#include "interposer/native_count.hpp"
+#include "interposer/real_gl.hpp"
+#include "interposer/session.hpp"
+
+namespace mural {
+
+namespace {
+
+void* (*vendorGetProcAddress)(const char*) = nullptr;
+
+Entry vendorEntry(const char* name) { return reinterpret_cast<Entry>(vendorGetProcAddress(name)); }
+template <class F> F* real(const char* name) { return reinterpret_cast<F*>(vendorEntry(name)); }
+
+uint8_t clampByte(EGLint v) { return static_cast<uint8_t>(v < 0 ? 0 : v > 255 ? 255 : v); }
+
+wire::WindowConfig configOf(EGLDisplay dpy, EGLConfig config) {
+    static auto* get = real<EGLBoolean(EGLDisplay, EGLConfig, EGLint, EGLint*)>("eglGetConfigAttrib");
+    const auto ask = [&](EGLint name) {
+        EGLint value = 0;
+        return config && get && get(dpy, config, name, &value) ? value : 0;
+    };
+    wire::WindowConfig c{};
+    c.red = clampByte(config ? ask(EGL_RED_SIZE) : 8);
+    c.green = clampByte(config ? ask(EGL_GREEN_SIZE) : 8);
+    c.blue = clampByte(config ? ask(EGL_BLUE_SIZE) : 8);
+    c.alpha = clampByte(ask(EGL_ALPHA_SIZE));
+    c.depth = clampByte(config ? ask(EGL_DEPTH_SIZE) : 24);
+    c.stencil = clampByte(config ? ask(EGL_STENCIL_SIZE) : 8);
+    c.samples = clampByte(ask(EGL_SAMPLES));
+    c.doubleBuffer = 1;
+    return c;
+}
+
+void addSurface(EGLDisplay dpy, EGLSurface surface, EGLConfig config, uint64_t native, const EGLint* attributes, bool pbuffer) {
+    if (!surface || nativeRun()) return;
+    wire::WindowConfig c = configOf(dpy, config);
+    c.isPbuffer = pbuffer;
+    for (const EGLint* a = attributes; a && *a != EGL_NONE; a += 2) {
+        if (a[0] == EGL_GL_COLORSPACE) c.srgb = a[1] == EGL_GL_COLORSPACE_SRGB;
+        if (a[0] == EGL_RENDER_BUFFER && a[1] == EGL_SINGLE_BUFFER) c.doubleBuffer = 0;
+    }
+    addWindow(reinterpret_cast<uintptr_t>(surface), dpy, true, c, native);
+}
+
+EGLContext createContext(EGLDisplay dpy, EGLConfig config, EGLContext share, const EGLint* attributes) {
+    static auto* call = real<EGLContext(EGLDisplay, EGLConfig, EGLContext, const EGLint*)>("eglCreateContext");
+    static auto* queryApi = real<EGLenum()>("eglQueryAPI");
+    const EGLContext made = call(dpy, config, share, attributes);
+    if (made && !nativeRun()) {
+        const bool desktop = queryApi && queryApi() == EGL_OPENGL_API;
+        addContext(made, findContext(share), desktop ? wire::Api::Desktop : wire::Api::Es2, configOf(dpy, config));
+    }
+    return made;
+}
+
+EGLBoolean destroyedContext(EGLDisplay dpy, EGLContext context) {
+    static auto* call = real<EGLBoolean(EGLDisplay, EGLContext)>("eglDestroyContext");
+    destroyContext(context);
+    return call(dpy, context);
+}
+
+Window* windowFor(EGLDisplay dpy, EGLSurface surface) {
+    return surface ? findWindow(reinterpret_cast<uintptr_t>(surface), dpy) : nullptr;
+}
+
+EGLBoolean makeCurrent(EGLDisplay dpy, EGLSurface draw, EGLSurface read, EGLContext context) {
+    static auto* call = real<EGLBoolean(EGLDisplay, EGLSurface, EGLSurface, EGLContext)>("eglMakeCurrent");
+    const EGLBoolean ok = call(dpy, draw, read, context);
+    if (ok && !nativeRun()) becameCurrent(context ? findContext(context) : nullptr, windowFor(dpy, draw), windowFor(dpy, read));
+    return ok;
+}
+
+void frameShown(EGLDisplay dpy, EGLSurface surface) {
+    if (nativeRun()) countNativeFrame();
+    else endFrame(windowFor(dpy, surface));
+}
+
+EGLBoolean swapBuffers(EGLDisplay dpy, EGLSurface surface) {
+    static auto* call = real<EGLBoolean(EGLDisplay, EGLSurface)>("eglSwapBuffers");
+    frameShown(dpy, surface);
+    return swapLocally() ? call(dpy, surface) : EGL_TRUE;
+}
+EGLBoolean swapBuffersWithDamageKhr(EGLDisplay dpy, EGLSurface surface, const EGLint* rects, EGLint n) {
+    static auto* call = real<EGLBoolean(EGLDisplay, EGLSurface, const EGLint*, EGLint)>("eglSwapBuffersWithDamageKHR");
+    frameShown(dpy, surface);
+    return swapLocally() ? call(dpy, surface, rects, n) : EGL_TRUE;
+}
+EGLBoolean swapBuffersWithDamageExt(EGLDisplay dpy, EGLSurface surface, const EGLint* rects, EGLint n) {
+    static auto* call = real<EGLBoolean(EGLDisplay, EGLSurface, const EGLint*, EGLint)>("eglSwapBuffersWithDamageEXT");
+    frameShown(dpy, surface);
+    return swapLocally() ? call(dpy, surface, rects, n) : EGL_TRUE;
+}
+
+EGLSurface createWindowSurface(EGLDisplay dpy, EGLConfig config, EGLNativeWindowType window, const EGLint* attributes) {
+    static auto* call = real<EGLSurface(EGLDisplay, EGLConfig, EGLNativeWindowType, const EGLint*)>("eglCreateWindowSurface");
+    const EGLSurface made = call(dpy, config, window, attributes);
+    addSurface(dpy, made, config, static_cast<uint64_t>(window), attributes, false);
+    return made;
+}
+
+// Platform surfaces of X11 take a pointer to the window's id (EXT_platform_x11, EXT_platform_xcb).
+EGLSurface createPlatformWindowSurface(EGLDisplay dpy, EGLConfig config, void* window, const EGLAttrib* attributes) {
+    static auto* call = real<EGLSurface(EGLDisplay, EGLConfig, void*, const EGLAttrib*)>("eglCreatePlatformWindowSurface");
+    const EGLSurface made = call(dpy, config, window, attributes);
+    EGLint narrow[33];
+    int n = 0;
+    for (; attributes && n < 32 && attributes[n] != EGL_NONE; n += 2) {
+        narrow[n] = static_cast<EGLint>(attributes[n]);
+        narrow[n + 1] = static_cast<EGLint>(attributes[n + 1]);
+    }
+    narrow[n] = EGL_NONE;
+    addSurface(dpy, made, config, window ? *static_cast<uint32_t*>(window) : 0, narrow, false);
+    return made;
+}
+EGLSurface createPlatformWindowSurfaceExt(EGLDisplay dpy, EGLConfig config, void* window, const EGLint* attributes) {
+    static auto* call = real<EGLSurface(EGLDisplay, EGLConfig, void*, const EGLint*)>("eglCreatePlatformWindowSurfaceEXT");
+    const EGLSurface made = call(dpy, config, window, attributes);
+    addSurface(dpy, made, config, window ? *static_cast<uint32_t*>(window) : 0, attributes, false);
+    return made;
+}
+EGLSurface createPbufferSurface(EGLDisplay dpy, EGLConfig config, const EGLint* attributes) {
+    static auto* call = real<EGLSurface(EGLDisplay, EGLConfig, const EGLint*)>("eglCreatePbufferSurface");
+    const EGLSurface made = call(dpy, config, attributes);
+    addSurface(dpy, made, config, 0, attributes, true);
+    return made;
+}
+EGLBoolean destroySurface(EGLDisplay dpy, EGLSurface surface) {
+    static auto* call = real<EGLBoolean(EGLDisplay, EGLSurface)>("eglDestroySurface");
+    destroyWindow(reinterpret_cast<uintptr_t>(surface), dpy);
+    return call(dpy, surface);
+}
+const char* queryString(EGLDisplay dpy, EGLint name) {
+    static auto* call = real<const char*(EGLDisplay, EGLint)>("eglQueryString");
+    const char* text = call(dpy, name);
+    if (name != EGL_EXTENSIONS || dpy == EGL_NO_DISPLAY || nativeRun()) return text;
+    static const char* filtered = filterWindowSystemExtensions(text);
+    return filtered;
+}
+
+struct Row {
+    const char* name;
+    Entry entry;
+};
+#define ROW(name, function) {name, reinterpret_cast<Entry>(function)}
+const Row kOwn[] = {
+    ROW("eglCreateContext", createContext), ROW("eglDestroyContext", destroyedContext), ROW("eglMakeCurrent", makeCurrent),
+    ROW("eglSwapBuffers", swapBuffers), ROW("eglSwapBuffersWithDamageKHR", swapBuffersWithDamageKhr),
+    ROW("eglSwapBuffersWithDamageEXT", swapBuffersWithDamageExt), ROW("eglCreateWindowSurface", createWindowSurface),
+    ROW("eglCreatePlatformWindowSurface", createPlatformWindowSurface),
+    ROW("eglCreatePlatformWindowSurfaceEXT", createPlatformWindowSurfaceExt),
+    ROW("eglCreatePbufferSurface", createPbufferSurface), ROW("eglDestroySurface", destroySurface),
+    ROW("eglQueryString", queryString),
+};
+#undef ROW
+
+void* getProcAddress(const char* name) {
+    for (const Row& row : kOwn) {
+        if (!std::strcmp(row.name, name)) return vendorEntry(name) ? reinterpret_cast<void*>(row.entry) : nullptr;
+    }
+    if (!nativeRun() && std::strncmp(name, "gl", 2) == 0) return reinterpret_cast<void*>(wrapperFor(name));
+    return reinterpret_cast<void*>(vendorEntry(name));
+}
+
+// The vendor libraries that the user's vendor files name, else the usual ones.
+void* openVendor() {
+    const char* wish = getenv("MURAL_REAL_EGL_VENDOR");
+    const char* const candidates[] = {wish && *wish ? wish : "libEGL_mesa.so.0", "libEGL_mesa.so.0", "libEGL_nvidia.so.0"};
+    for (const char* name : candidates) {
+        if (void* handle = dlopen(name, RTLD_LAZY)) return handle;
+    }
+    say("no EGL driver is found (libEGL_mesa.so.0): install libegl-mesa0");
+    return nullptr;
+}
+
+} // namespace
+
+bool askEglSize(const Window& w, uint32_t& width, uint32_t& height) {
+    static auto* query = real<EGLBoolean(EGLDisplay, EGLSurface, EGLint, EGLint*)>("eglQuerySurface");
+    EGLint a = 0, b = 0;
+    auto* surface = reinterpret_cast<EGLSurface>(w.drawable);
+    if (!query || !query(w.display, surface, EGL_WIDTH, &a) || !query(w.display, surface, EGL_HEIGHT, &b)) return false;
+    width = static_cast<uint32_t>(a);
+    height = static_cast<uint32_t>(b);
+    return a > 0 && b > 0;
+}
+
+} // namespace mural
+
+extern "C" __attribute__((visibility("default"))) EGLBoolean __egl_Main(uint32_t version, const __EGLapiExports* exports, __EGLvendorInfo* vendor, __EGLapiImports* imports) {
+    using Main = EGLBoolean(uint32_t, const __EGLapiExports*, __EGLvendorInfo*, __EGLapiImports*);
+    void* handle = mural::openVendor();
+    auto* main = handle ? reinterpret_cast<Main*>(dlsym(handle, "__egl_Main")) : nullptr;
+    if (!main || !main(version, exports, vendor, imports)) return EGL_FALSE;
+    mural::vendorGetProcAddress = imports->getProcAddress;
+    imports->getProcAddress = mural::getProcAddress;
+    imports->isPatchSupported = nullptr;
+    imports->initiatePatch = nullptr;
+    imports->releasePatch = nullptr;
+    imports->patchThreadAttach = nullptr;
+    mural::setRealLoader(mural::vendorEntry);
+    return EGL_TRUE;
+}

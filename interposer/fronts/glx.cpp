@@ -1,0 +1,296 @@
+// The GLX front: libGLX (of libglvnd) loads this library as a vendor named "mural". It passes
+// everything on to the real vendor's library and keeps for itself what makes contexts, binds them
+// and shows pictures. So every GL call arrives here, whichever way the program found it.
+// Source: libglvnd, glvnd/libglxabi.h.
+#include <cstdlib>
+#include <cstring>
+#include <dlfcn.h>
+#include <X11/Xlib.h>
+#include <glvnd/libglxabi.h>
+
+#include "interposer/context.hpp"
+#include "interposer/extensions.hpp"
+#include "interposer/fronts/glx_types.hpp"
+#include "interposer/fronts/own_functions.hpp"
+#include "interposer/log.hpp"
+#include "interposer/native_count.hpp"
+#include "interposer/real_gl.hpp"
+#include "interposer/session.hpp"
+
+namespace mural {
+
+using glx::XID;
+
+namespace {
+
+void* (*vendorGetProcAddress)(const GLubyte*) = nullptr;
+
+Entry vendorEntry(const char* name) {
+    return reinterpret_cast<Entry>(vendorGetProcAddress(reinterpret_cast<const GLubyte*>(name)));
+}
+
+// The vendor's own GLX function.
+template <class F> F* real(const char* name) { return reinterpret_cast<F*>(vendorEntry(name)); }
+
+// Xlib's, from the copy that the program already has.
+template <class F> F* xlib(const char* name) {
+    static void* handle = dlopen("libX11.so.6", RTLD_LAZY | RTLD_NOLOAD);
+    return handle ? reinterpret_cast<F*>(dlsym(handle, name)) : nullptr;
+}
+
+uint8_t clampByte(int v) { return static_cast<uint8_t>(v < 0 ? 0 : v > 255 ? 255 : v); }
+
+// Bits of a visual or framebuffer configuration, by whichever question the caller has.
+template <class Ask> wire::WindowConfig configFrom(Ask ask) {
+    wire::WindowConfig c{};
+    c.red = clampByte(ask(glx::kRed));
+    c.green = clampByte(ask(glx::kGreen));
+    c.blue = clampByte(ask(glx::kBlue));
+    c.alpha = clampByte(ask(glx::kAlpha));
+    c.depth = clampByte(ask(glx::kDepth));
+    c.stencil = clampByte(ask(glx::kStencil));
+    c.samples = clampByte(ask(glx::kSamples));
+    c.doubleBuffer = ask(glx::kDoubleBuffer) != 0;
+    c.accum = clampByte(ask(glx::kAccumRed));
+    c.stereo = ask(glx::kStereo) != 0;
+    c.srgb = ask(glx::kSrgbCapable) != 0;
+    return c;
+}
+
+wire::WindowConfig configOfFb(Display* dpy, GLXFBConfig fb) {
+    static auto* get = real<int(Display*, GLXFBConfig, int, int*)>("glXGetFBConfigAttrib");
+    return configFrom([&](int name) {
+        int value = 0;
+        if (!get || !fb || get(dpy, fb, name, &value) != 0) value = 0;
+        return value;
+    });
+}
+
+wire::WindowConfig configOfVisual(Display* dpy, XVisualInfo* visual) {
+    static auto* get = real<int(Display*, XVisualInfo*, int, int*)>("glXGetConfig");
+    return configFrom([&](int name) {
+        int value = 0;
+        if (!get || !visual || get(dpy, visual, name, &value) != 0) value = 0;
+        return value;
+    });
+}
+
+wire::WindowConfig defaultConfig() {
+    wire::WindowConfig c{};
+    c.red = c.green = c.blue = 8;
+    c.depth = 24;
+    c.stencil = 8;
+    c.doubleBuffer = 1;
+    return c;
+}
+
+Window* windowFor(Display* dpy, XID drawable, const Context& context) {
+    if (!drawable) return nullptr;
+    if (Window* w = findWindow(drawable, dpy)) return w;
+    return addWindow(drawable, dpy, false, context.config, drawable);
+}
+
+GLXContext created(GLXContext made, GLXContext share, const wire::WindowConfig& config) {
+    if (made && !nativeRun()) addContext(made, findContext(share), wire::Api::Desktop, config);
+    return made;
+}
+
+GLXContext createContext(Display* dpy, XVisualInfo* visual, GLXContext share, Bool direct) {
+    static auto* call = real<GLXContext(Display*, XVisualInfo*, GLXContext, Bool)>("glXCreateContext");
+    return created(call(dpy, visual, share, direct), share, configOfVisual(dpy, visual));
+}
+
+GLXContext createNewContext(Display* dpy, GLXFBConfig fb, int type, GLXContext share, Bool direct) {
+    static auto* call = real<GLXContext(Display*, GLXFBConfig, int, GLXContext, Bool)>("glXCreateNewContext");
+    return created(call(dpy, fb, type, share, direct), share, configOfFb(dpy, fb));
+}
+
+GLXContext createContextWithConfig(Display* dpy, GLXFBConfig fb, int type, GLXContext share, Bool direct) {
+    static auto* call = real<GLXContext(Display*, GLXFBConfig, int, GLXContext, Bool)>("glXCreateContextWithConfigSGIX");
+    return created(call(dpy, fb, type, share, direct), share, configOfFb(dpy, fb));
+}
+
+GLXContext createContextAttribs(Display* dpy, GLXFBConfig fb, GLXContext share, Bool direct, const int* attributes) {
+    static auto* call = real<GLXContext(Display*, GLXFBConfig, GLXContext, Bool, const int*)>("glXCreateContextAttribsARB");
+    return created(call(dpy, fb, share, direct, attributes), share, fb ? configOfFb(dpy, fb) : defaultConfig());
+}
+
+void destroyedContext(Display* dpy, GLXContext context) {
+    static auto* call = real<void(Display*, GLXContext)>("glXDestroyContext");
+    destroyContext(context);
+    call(dpy, context);
+}
+
+Bool madeCurrent(Bool ok, Display* dpy, XID draw, XID read, GLXContext native) {
+    if (!ok || nativeRun()) return ok;
+    Context* c = native ? findContext(native) : nullptr;
+    becameCurrent(c, c ? windowFor(dpy, draw, *c) : nullptr, c ? windowFor(dpy, read, *c) : nullptr);
+    return ok;
+}
+
+Bool makeCurrent(Display* dpy, XID drawable, GLXContext context) {
+    static auto* call = real<Bool(Display*, XID, GLXContext)>("glXMakeCurrent");
+    return madeCurrent(call(dpy, drawable, context), dpy, drawable, drawable, context);
+}
+
+Bool makeContextCurrent(Display* dpy, XID draw, XID read, GLXContext context) {
+    static auto* call = real<Bool(Display*, XID, XID, GLXContext)>("glXMakeContextCurrent");
+    return madeCurrent(call(dpy, draw, read, context), dpy, draw, read, context);
+}
+
+Bool makeCurrentRead(Display* dpy, XID draw, XID read, GLXContext context) {
+    static auto* call = real<Bool(Display*, XID, XID, GLXContext)>("glXMakeCurrentReadSGI");
+    return madeCurrent(call(dpy, draw, read, context), dpy, draw, read, context);
+}
+
+void swapBuffers(Display* dpy, XID drawable) {
+    static auto* call = real<void(Display*, XID)>("glXSwapBuffers");
+    if (nativeRun()) countNativeFrame();
+    else endFrame(findWindow(drawable, dpy));
+    if (swapLocally()) call(dpy, drawable);
+}
+
+int64_t swapBuffersMsc(Display* dpy, XID drawable, int64_t target, int64_t divisor, int64_t remainder) {
+    static auto* call = real<int64_t(Display*, XID, int64_t, int64_t, int64_t)>("glXSwapBuffersMscOML");
+    if (nativeRun()) countNativeFrame();
+    else endFrame(findWindow(drawable, dpy));
+    return swapLocally() ? call(dpy, drawable, target, divisor, remainder) : 0;
+}
+
+GLXWindow createWindow(Display* dpy, GLXFBConfig fb, ::Window window, const int* attributes) {
+    static auto* call = real<GLXWindow(Display*, GLXFBConfig, ::Window, const int*)>("glXCreateWindow");
+    const GLXWindow made = call(dpy, fb, window, attributes);
+    if (made && !nativeRun()) addWindow(made, dpy, false, configOfFb(dpy, fb), window);
+    return made;
+}
+
+void destroyGlxWindow(Display* dpy, GLXWindow window) {
+    static auto* call = real<void(Display*, GLXWindow)>("glXDestroyWindow");
+    destroyWindow(window, dpy);
+    call(dpy, window);
+}
+
+void addPbuffer(Display* dpy, GLXFBConfig fb, GLXPbuffer made) {
+    if (!made || nativeRun()) return;
+    wire::WindowConfig config = configOfFb(dpy, fb);
+    config.isPbuffer = 1;
+    addWindow(made, dpy, false, config, 0);
+}
+
+GLXPbuffer createPbuffer(Display* dpy, GLXFBConfig fb, const int* attributes) {
+    static auto* call = real<GLXPbuffer(Display*, GLXFBConfig, const int*)>("glXCreatePbuffer");
+    const GLXPbuffer made = call(dpy, fb, attributes);
+    addPbuffer(dpy, fb, made);
+    return made;
+}
+
+void destroyPbuffer(Display* dpy, GLXPbuffer pbuffer) {
+    static auto* call = real<void(Display*, GLXPbuffer)>("glXDestroyPbuffer");
+    destroyWindow(pbuffer, dpy);
+    call(dpy, pbuffer);
+}
+
+GLXPixmap createPixmap(Display* dpy, GLXFBConfig fb, Pixmap pixmap, const int* attributes) {
+    static auto* call = real<GLXPixmap(Display*, GLXFBConfig, Pixmap, const int*)>("glXCreatePixmap");
+    const GLXPixmap made = call(dpy, fb, pixmap, attributes);
+    if (made && !nativeRun()) {
+        wire::WindowConfig config = configOfFb(dpy, fb);
+        config.isPbuffer = 1;
+        addWindow(made, dpy, false, config, pixmap);
+    }
+    return made;
+}
+
+void destroyPixmap(Display* dpy, GLXPixmap pixmap) {
+    static auto* call = real<void(Display*, GLXPixmap)>("glXDestroyPixmap");
+    destroyWindow(pixmap, dpy);
+    call(dpy, pixmap);
+}
+
+const char* queryExtensionsString(Display* dpy, int screen) {
+    static auto* call = real<const char*(Display*, int)>("glXQueryExtensionsString");
+    static const char* filtered = filterWindowSystemExtensions(call(dpy, screen));
+    return nativeRun() ? call(dpy, screen) : filtered;
+}
+
+struct Row {
+    const char* name;
+    Entry entry;
+};
+#define ROW(name, function) {name, reinterpret_cast<Entry>(function)}
+const Row kOwn[] = {
+    ROW("glXCreateContext", createContext), ROW("glXCreateNewContext", createNewContext),
+    ROW("glXCreateContextWithConfigSGIX", createContextWithConfig), ROW("glXCreateContextAttribsARB", createContextAttribs),
+    ROW("glXDestroyContext", destroyedContext), ROW("glXMakeCurrent", makeCurrent),
+    ROW("glXMakeContextCurrent", makeContextCurrent), ROW("glXMakeCurrentReadSGI", makeCurrentRead),
+    ROW("glXSwapBuffers", swapBuffers), ROW("glXSwapBuffersMscOML", swapBuffersMsc),
+    ROW("glXCreateWindow", createWindow), ROW("glXDestroyWindow", destroyGlxWindow),
+    ROW("glXCreatePbuffer", createPbuffer), ROW("glXDestroyPbuffer", destroyPbuffer),
+    ROW("glXCreatePixmap", createPixmap), ROW("glXDestroyPixmap", destroyPixmap),
+    ROW("glXQueryExtensionsString", queryExtensionsString),
+};
+#undef ROW
+
+void* getProcAddress(const GLubyte* name) {
+    const auto* text = reinterpret_cast<const char*>(name);
+    for (const Row& row : kOwn) {
+        if (!std::strcmp(row.name, text)) return vendorEntry(text) ? reinterpret_cast<void*>(row.entry) : nullptr;
+    }
+    if (nativeRun() || std::strncmp(text, "glX", 3) == 0) return reinterpret_cast<void*>(vendorEntry(text));
+    if (std::strncmp(text, "gl", 2) == 0) return reinterpret_cast<void*>(wrapperFor(text));
+    return reinterpret_cast<void*>(vendorEntry(text));
+}
+
+// The library of the vendor that really draws: what the user had set, NVIDIA's when the X server is
+// theirs, else Mesa's.
+void* openVendor() {
+    const char* wish = getenv("MURAL_REAL_GLX_VENDOR");
+    const char* const candidates[] = {wish && *wish ? wish : "mesa", "mesa", "nvidia"};
+    for (const char* vendor : candidates) {
+        char name[128];
+        snprintf(name, sizeof name, "libGLX_%s.so.0", vendor);
+        if (void* handle = dlopen(name, RTLD_LAZY)) return handle;
+    }
+    say("no GLX driver is found (libGLX_mesa.so.0): install libglx-mesa0");
+    return nullptr;
+}
+
+} // namespace
+
+bool askGlxSize(const Window& w, uint32_t& width, uint32_t& height) {
+    auto* dpy = static_cast<Display*>(w.display);
+    unsigned int a = 0, b = 0;
+    if (w.native && !w.config.isPbuffer) {
+        static auto* geometry = xlib<Status(Display*, Drawable, ::Window*, int*, int*, unsigned*, unsigned*, unsigned*, unsigned*)>("XGetGeometry");
+        ::Window root = 0;
+        int x = 0, y = 0;
+        unsigned border = 0, depth = 0;
+        if (!geometry || !geometry(dpy, w.native, &root, &x, &y, &a, &b, &border, &depth)) return false;
+    } else {
+        static auto* query = real<void(Display*, XID, int, unsigned*)>("glXQueryDrawable");
+        if (!query) return false;
+        query(dpy, w.drawable, glx::kWidth, &a);
+        query(dpy, w.drawable, glx::kHeight, &b);
+    }
+    width = a;
+    height = b;
+    return a > 0 && b > 0;
+}
+
+} // namespace mural
+
+extern "C" __attribute__((visibility("default"))) Bool __glx_Main(uint32_t version, const __GLXapiExports* exports, __GLXvendorInfo* vendor, __GLXapiImports* imports) {
+    using Main = Bool(uint32_t, const __GLXapiExports*, __GLXvendorInfo*, __GLXapiImports*);
+    void* handle = mural::openVendor();
+    auto* main = handle ? reinterpret_cast<Main*>(dlsym(handle, "__glx_Main")) : nullptr;
+    if (!main || !main(version, exports, vendor, imports)) return False;
+    mural::vendorGetProcAddress = imports->getProcAddress;
+    imports->getProcAddress = mural::getProcAddress;
+    // Patched entry points would go round the wrappers.
+    imports->isPatchSupported = nullptr;
+    imports->initiatePatch = nullptr;
+    imports->releasePatch = nullptr;
+    imports->patchThreadAttach = nullptr;
+    mural::setRealLoader(mural::vendorEntry);
+    return True;
+}

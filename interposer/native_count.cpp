@@ -1,0 +1,47 @@
+#include "interposer/native_count.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "common/clock.hpp"
+
+namespace mural {
+
+namespace {
+
+int64_t firstNs = 0;
+long frames = 0;
+
+void writeReport(const char* path, int64_t nowNs) {
+    const int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    if (fd < 0) return;
+    char line[64];
+    const int n = snprintf(line, sizeof line, "%ld %.6f\n", frames, static_cast<double>(nowNs - firstNs) / 1e9);
+    [[maybe_unused]] const ssize_t written = write(fd, line, static_cast<size_t>(n));
+    close(fd);
+}
+
+} // namespace
+
+bool nativeRun() {
+    static const bool native = getenv("MURAL_NATIVE") != nullptr;
+    return native;
+}
+
+void countNativeFrame() {
+    const int64_t nowNs = monotonicNowNs();
+    if (firstNs == 0) firstNs = nowNs; // the time of the first frame is start-up
+    ++frames;
+    static const char* const path = getenv("MURAL_NATIVE_REPORT");
+    static const char* const limit = getenv("MURAL_NATIVE_FRAMES");
+    static const long last = limit ? atol(limit) : 0;
+    static int64_t writtenNs = 0;
+    if (path && (frames == last || nowNs - writtenNs > kNsPerS / 20)) {
+        writtenNs = nowNs;
+        writeReport(path, nowNs);
+    }
+}
+
+} // namespace mural

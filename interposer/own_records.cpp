@@ -1,0 +1,128 @@
+#include "interposer/own_records.hpp"
+
+namespace mural::records {
+
+namespace {
+// A record of fixed size from plain values.
+template <class... T> bool fixed(ThreadState& t, uint16_t opcode, T... values) {
+    constexpr uint32_t kSize = 4 + (0 + ... + (sizeof(T) == 8 ? 8 : 4));
+    std::byte* p = beginRecord(t, opcode, kSize);
+    if (!p) return false;
+    Writer w{p};
+    const auto put = [&](auto v) {
+        if constexpr (sizeof(v) == 8) w.put8(v);
+        else w.put4(v);
+    };
+    (put(values), ...);
+    endRecord(t, p, kSize);
+    return true;
+}
+
+void withConfig(ThreadState& t, uint16_t opcode, const uint32_t* words, uint32_t count, const wire::WindowConfig& config) {
+    const uint32_t size = 4 + 4 * count + sizeof config;
+    std::byte* p = beginRecord(t, opcode, size);
+    if (!p) return;
+    Writer w{p};
+    w.bytes(words, 4 * count);
+    w.bytes(&config, sizeof config);
+    endRecord(t, p, size);
+}
+} // namespace
+
+void blobBegin(ThreadState& t, uint64_t sizeBytes) { fixed(t, wire::kOpBlobBegin, sizeBytes); }
+
+bool blobData(ThreadState& t, const void* data, uint32_t sizeBytes) {
+    const uint32_t size = 8 + (sizeBytes + 3) / 4 * 4;
+    std::byte* p = beginRecord(t, wire::kOpBlobData, size);
+    if (!p) return false;
+    Writer w{p};
+    w.put4(sizeBytes);
+    w.bytes(data, sizeBytes);
+    endRecord(t, p, size);
+    return true;
+}
+
+void createContext(ThreadState& t, const ContextInfo& i) {
+    const uint32_t words[] = {i.context, i.shareContext, i.api, i.major, i.minor, i.profileMask, i.flags};
+    withConfig(t, wire::kOpCreateContext, words, 7, i.config);
+}
+void destroyContext(ThreadState& t, uint32_t context) { fixed(t, wire::kOpDestroyContext, context); }
+void makeCurrent(ThreadState& t, uint32_t context, uint32_t draw, uint32_t read) {
+    fixed(t, wire::kOpMakeCurrent, context, draw, read);
+}
+void window(ThreadState& t, uint32_t window, const wire::WindowConfig& config) {
+    withConfig(t, wire::kOpWindow, &window, 1, config);
+}
+void destroyWindow(ThreadState& t, uint32_t window) { fixed(t, wire::kOpDestroyWindow, window); }
+void swap(ThreadState& t, uint32_t window, uint32_t frame) { fixed(t, wire::kOpSwap, window, frame); }
+
+void requestPixels(ThreadState& t, uint32_t request, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type, uint32_t groupBytes) {
+    fixed(t, wire::kOpRequestPixels, request, x, y, w, h, format, type, groupBytes);
+}
+void requestTexImage(ThreadState& t, uint32_t request, uint32_t byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type, uint64_t sizeBytes) {
+    fixed(t, wire::kOpRequestTexImage, request, byName, targetOrTexture, level, format, type, sizeBytes);
+}
+void requestQuery(ThreadState& t, uint32_t request, GLuint query, GLenum pname) {
+    fixed(t, wire::kOpRequestQuery, request, query, pname);
+}
+void requestFinish(ThreadState& t, uint32_t request) { fixed(t, wire::kOpFinish, request); }
+void requestBuffer(ThreadState& t, uint32_t request, GLuint buffer, uint64_t offset, uint64_t sizeBytes) {
+    fixed(t, wire::kOpRequestBuffer, request, buffer, offset, sizeBytes);
+}
+
+void fillWindow(ThreadState& t, GLint x, GLint y, GLsizei width, GLsizei height, uint32_t planes, const DataArg& pixels) {
+    spillLarge(t, pixels);
+    const uint32_t size = 24 + wireBytes(pixels);
+    std::byte* p = beginRecord(t, wire::kOpFillWindow, size);
+    if (!p) return;
+    Writer w{p};
+    w.put4(x);
+    w.put4(y);
+    w.put4(width);
+    w.put4(height);
+    w.put4(planes);
+    w.data(pixels);
+    endRecord(t, p, size);
+}
+
+void bufferBytes(ThreadState& t, GLuint buffer, uint64_t offset, const DataArg& bytes) {
+    spillLarge(t, bytes);
+    const uint32_t size = 16 + wireBytes(bytes);
+    std::byte* p = beginRecord(t, wire::kOpBufferBytes, size);
+    if (!p) return;
+    Writer w{p};
+    w.put4(buffer);
+    w.put8(offset);
+    w.data(bytes);
+    endRecord(t, p, size);
+}
+
+void programLayout(ThreadState& t, GLuint program, const DataArg& layout) {
+    spillLarge(t, layout);
+    const uint32_t size = 8 + wireBytes(layout);
+    std::byte* p = beginRecord(t, wire::kOpProgramLayout, size);
+    if (!p) return;
+    Writer w{p};
+    w.put4(program);
+    w.data(layout);
+    endRecord(t, p, size);
+}
+
+void clientArrays(ThreadState& t, const client_arrays::ArrayRecord* arrays, uint32_t arrayCount, const DataArg* spans, uint32_t spanCount) {
+    uint32_t size = 12 + arrayCount * static_cast<uint32_t>(sizeof(client_arrays::ArrayRecord));
+    uint32_t inlineBytes = 0;
+    // Many middling spans would make a record larger than a chunk: the large ones go ahead.
+    for (uint32_t i = 0; i < spanCount; ++i) inlineBytes += wireBytes(spans[i]);
+    for (uint32_t i = 0; i < spanCount; ++i) spillLarge(t, spans[i]);
+    size += inlineBytes;
+    std::byte* p = beginRecord(t, wire::kOpClientArrays, size);
+    if (!p) return;
+    Writer w{p};
+    w.put4(arrayCount);
+    w.put4(spanCount);
+    w.bytes(arrays, arrayCount * static_cast<uint32_t>(sizeof(client_arrays::ArrayRecord)));
+    for (uint32_t i = 0; i < spanCount; ++i) w.data(spans[i]);
+    endRecord(t, p, size);
+}
+
+} // namespace mural::records

@@ -1,0 +1,33 @@
+// Mural's own records: everything in the stream that is not a GL command. Layouts: wire::Op.
+#pragma once
+
+#include "interposer/encode_support.hpp"
+#include "streamcodec/client_arrays.hpp"
+#include "streamcodec/wire.hpp"
+
+namespace mural::records {
+
+void blobBegin(ThreadState& t, uint64_t sizeBytes);
+bool blobData(ThreadState& t, const void* data, uint32_t sizeBytes);
+
+struct ContextInfo {
+    uint32_t context, shareContext, api, major, minor, profileMask, flags;
+    wire::WindowConfig config;
+};
+void createContext(ThreadState& t, const ContextInfo& info);
+void destroyContext(ThreadState& t, uint32_t context);
+void makeCurrent(ThreadState& t, uint32_t context, uint32_t draw, uint32_t read);
+void window(ThreadState& t, uint32_t window, const wire::WindowConfig& config);
+void destroyWindow(ThreadState& t, uint32_t window);
+void swap(ThreadState& t, uint32_t window, uint32_t frame);
+void requestPixels(ThreadState& t, uint32_t request, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type, uint32_t groupBytes);
+void requestTexImage(ThreadState& t, uint32_t request, uint32_t byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type, uint64_t sizeBytes);
+void requestQuery(ThreadState& t, uint32_t request, GLuint query, GLenum pname);
+void requestFinish(ThreadState& t, uint32_t request);
+void requestBuffer(ThreadState& t, uint32_t request, GLuint buffer, uint64_t offset, uint64_t sizeBytes);
+void fillWindow(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, uint32_t planes, const DataArg& pixels);
+void bufferBytes(ThreadState& t, GLuint buffer, uint64_t offset, const DataArg& bytes);
+void programLayout(ThreadState& t, GLuint program, const DataArg& layout);
+void clientArrays(ThreadState& t, const client_arrays::ArrayRecord* arrays, uint32_t arrayCount, const DataArg* spans, uint32_t spanCount);
+
+} // namespace mural::records

@@ -1,0 +1,61 @@
+#include "interposer/pixel_store.hpp"
+
+#include "interposer/context.hpp"
+#include "interposer/real_gl.hpp"
+
+namespace mural {
+
+namespace {
+
+// Without one of these the names are errors to the driver.
+bool hasPixelBuffers(const Context& c) { return c.api == wire::Api::Desktop ? c.version >= 21 : c.version >= 30; }
+bool hasRowLength(const Context& c) { return c.api == wire::Api::Desktop || c.version >= 30; }
+
+GLint get(GLenum name) {
+    GLint value = 0;
+    gReal.glGetIntegerv(name, &value);
+    return value;
+}
+
+} // namespace
+
+bool unpackBufferBound(const Context& c) { return hasPixelBuffers(c) && get(GL_PIXEL_UNPACK_BUFFER_BINDING) != 0; }
+bool packBufferBound(const Context& c) { return hasPixelBuffers(c) && get(GL_PIXEL_PACK_BUFFER_BINDING) != 0; }
+
+sizes::PixelStore unpackStore(const Context& c) {
+    sizes::PixelStore s;
+    s.alignment = get(GL_UNPACK_ALIGNMENT);
+    if (!hasRowLength(c)) return s;
+    s.rowLength = get(GL_UNPACK_ROW_LENGTH);
+    s.skipRows = get(GL_UNPACK_SKIP_ROWS);
+    s.skipPixels = get(GL_UNPACK_SKIP_PIXELS);
+    s.imageHeight = get(GL_UNPACK_IMAGE_HEIGHT);
+    s.skipImages = get(GL_UNPACK_SKIP_IMAGES);
+    if (c.api != wire::Api::Desktop) return s;
+    s.swapBytes = get(GL_UNPACK_SWAP_BYTES) != 0;
+    s.lsbFirst = get(GL_UNPACK_LSB_FIRST) != 0;
+    return s;
+}
+
+sizes::PixelStore packStore(const Context& c) {
+    sizes::PixelStore s;
+    s.alignment = get(GL_PACK_ALIGNMENT);
+    if (!hasRowLength(c)) return s;
+    s.rowLength = get(GL_PACK_ROW_LENGTH);
+    s.skipRows = get(GL_PACK_SKIP_ROWS);
+    s.skipPixels = get(GL_PACK_SKIP_PIXELS);
+    if (c.api != wire::Api::Desktop) return s;
+    s.imageHeight = get(GL_PACK_IMAGE_HEIGHT);
+    s.skipImages = get(GL_PACK_SKIP_IMAGES);
+    s.swapBytes = get(GL_PACK_SWAP_BYTES) != 0;
+    s.lsbFirst = get(GL_PACK_LSB_FIRST) != 0;
+    return s;
+}
+
+bool isTight(const sizes::ImageLayout& l) {
+    return !(l.bitmap && (l.lsbFirst || l.firstBit != 0 || l.width % 8 != 0)) && l.swapUnit == 0 &&
+           (l.rows <= 1 || l.rowStride == static_cast<ptrdiff_t>(l.rowBytes)) &&
+           (l.images <= 1 || l.imageStride == l.rowBytes * l.rows);
+}
+
+} // namespace mural

@@ -1,0 +1,39 @@
+#include "interposer/real_gl.hpp"
+
+#include "interposer/wrapper_table.hpp"
+
+namespace mural {
+
+GlFunctions gReal{};
+
+namespace {
+Loader realLoader = nullptr;
+} // namespace
+
+void setRealLoader(Loader loader) { realLoader = loader; }
+
+Entry wrapperFor(const char* name) {
+    const int index = glFunctionIndex(name);
+    if (index < 0 || !realLoader) return nullptr;
+    const Entry real = realLoader(name);
+    if (!real) return nullptr;
+    auto* slot = reinterpret_cast<Entry*>(&gReal) + index;
+    if (!__atomic_load_n(slot, __ATOMIC_ACQUIRE)) __atomic_store_n(slot, real, __ATOMIC_RELEASE);
+    const Entry wrapper = wrapperAt(index);
+    return wrapper ? wrapper : real;
+}
+
+void loadOwnNeeds() {
+    static const char* const kNames[] = {
+        "glGetString", "glGetStringi", "glGetIntegerv", "glGetError", "glGetInteger64v", "glGetBooleanv", "glIsEnabled",
+        "glReadPixels", "glPixelStorei", "glBindBuffer", "glBindFramebuffer", "glReadBuffer", "glGetBufferParameteriv",
+        "glGetNamedBufferParameteriv", "glGetBufferSubData", "glGetNamedBufferSubData", "glMapBufferRange",
+        "glGetProgramiv", "glGetActiveUniform", "glGetActiveAttrib", "glGetUniformLocation", "glGetAttribLocation",
+        "glGetTexLevelParameteriv", "glFinish", "glFlush", "glEnable", "glDisable", "glGetVertexAttribiv",
+        "glGetActiveUniformBlockName", "glGetProgramResourceiv", "glGetProgramResourceName", "glGetProgramInterfaceiv",
+        "glGetBufferPointerv", "glGetTextureLevelParameteriv", "glGetNamedBufferParameteri64v", "glGetBufferParameteri64v",
+        "glBegin", "glEnd", "glGetTextureParameteriv", "glGetFramebufferAttachmentParameteriv", "glCallList", "glCallLists"};
+    for (const char* name : kNames) wrapperFor(name);
+}
+
+} // namespace mural

@@ -1,0 +1,304 @@
+#include "interposer/session.hpp"
+
+#include <cstdlib>
+#include <cstring>
+#include <fcntl.h>
+#include <poll.h>
+#include <pthread.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include "common/clock.hpp"
+#include "interposer/lock.hpp"
+#include "interposer/log.hpp"
+#include "streamcodec/registry_digest.hpp"
+
+namespace mural {
+
+namespace {
+
+constexpr int64_t kSliceNs = 50 * kNsPerMs;   // how often a blocked thread looks whether the head lives
+constexpr int64_t kStuckNs = 60 * kNsPerS;    // a living head that gives nothing for so long is given up
+
+Session* theSession = nullptr;
+bool tried = false;
+Lock connectLock;
+Lock ringLock;    // publications and freed chunks have one producer, one consumer
+Lock requestLock; // one question at a time
+
+bool sendAll(int fd, const void* data, size_t bytes) {
+    const auto* p = static_cast<const char*>(data);
+    while (bytes > 0) {
+        const ssize_t n = send(fd, p, bytes, MSG_NOSIGNAL);
+        if (n <= 0) return false;
+        p += n;
+        bytes -= static_cast<size_t>(n);
+    }
+    return true;
+}
+
+bool receiveAll(int fd, void* into, size_t bytes) {
+    auto* p = static_cast<char*>(into);
+    while (bytes > 0) {
+        const ssize_t n = recv(fd, p, bytes, 0);
+        if (n <= 0) return false;
+        p += n;
+        bytes -= static_cast<size_t>(n);
+    }
+    return true;
+}
+
+// The welcome and the descriptor of the mapping that comes with its first byte.
+bool receiveWelcome(int fd, capture::Welcome& welcome, int& memory) {
+    alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))];
+    iovec part{&welcome, sizeof welcome};
+    msghdr message{};
+    message.msg_iov = &part;
+    message.msg_iovlen = 1;
+    message.msg_control = control;
+    message.msg_controllen = sizeof control;
+    const ssize_t n = recvmsg(fd, &message, MSG_CMSG_CLOEXEC);
+    if (n <= 0) return false;
+    for (cmsghdr* c = CMSG_FIRSTHDR(&message); c; c = CMSG_NXTHDR(&message, c)) {
+        if (c->cmsg_level == SOL_SOCKET && c->cmsg_type == SCM_RIGHTS) std::memcpy(&memory, CMSG_DATA(c), sizeof(int));
+    }
+    return receiveAll(fd, reinterpret_cast<char*>(&welcome) + n, sizeof welcome - static_cast<size_t>(n));
+}
+
+int connectAbstract(const char* name) {
+    const int fd = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    if (fd < 0) return -1;
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    const size_t length = std::strlen(name);
+    if (length + 1 > sizeof address.sun_path) {
+        close(fd);
+        return -1;
+    }
+    std::memcpy(address.sun_path + 1, name, length);
+    const auto bytes = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + length);
+    if (::connect(fd, reinterpret_cast<sockaddr*>(&address), bytes) != 0) {
+        close(fd);
+        return -1;
+    }
+    const timeval patience{30, 0};
+    setsockopt(fd, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    setsockopt(fd, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
+    return fd;
+}
+
+// The ring belongs to the parent; a child that goes on without exec draws alone.
+void forkedChild() {
+    if (Session* s = theSession) s->die(nullptr);
+    tThread->cursor = tThread->limit = tThread->chunkEnd = nullptr;
+    tThread->drawLocally = true;
+}
+
+} // namespace
+
+Session* Session::current() { return __atomic_load_n(&theSession, __ATOMIC_ACQUIRE); }
+
+Session* Session::get() {
+    if (Session* s = current()) return s;
+    Guard guard(connectLock);
+    if (tried) return theSession;
+    tried = true;
+    const char* name = getenv("MURAL_SESSION");
+    if (!name || !*name || getenv("MURAL_DISABLE")) return nullptr;
+    static Session session; // trivially destructible: outlives the program's destructors
+    if (!session.connect(name)) return nullptr;
+    pthread_atfork(nullptr, nullptr, forkedChild);
+    __atomic_store_n(&theSession, &session, __ATOMIC_RELEASE);
+    return theSession;
+}
+
+bool Session::connect(const char* name) {
+    socket_ = connectAbstract(name);
+    if (socket_ < 0) {
+        say("no head answers at session %s: this program draws on its own", name);
+        return false;
+    }
+    const capture::Hello hello{capture::kMagic, capture::kVersion, registryDigest(), getpid(), 0};
+    int memory = -1;
+    const bool received = sendAll(socket_, &hello, sizeof hello) && receiveWelcome(socket_, welcome_, memory);
+    if (!received || welcome_.magic != capture::kMagic || welcome_.version != capture::kVersion) {
+        say("the head does not speak this version: run the interposer and mural of one build; this program draws on its own");
+        close(socket_);
+        return false;
+    }
+    auto* text = static_cast<char*>(std::malloc(welcome_.extensionBytes + 3));
+    if (!text) return false;
+    text[0] = ' ';
+    if (!receiveAll(socket_, text + 1, welcome_.extensionBytes)) welcome_.extensionBytes = 0;
+    text[welcome_.extensionBytes + 1] = ' ';
+    text[welcome_.extensionBytes + 2] = 0;
+    if (welcome_.refused || memory < 0) {
+        say("not captured: %s", text + 1);
+        close(socket_);
+        return false;
+    }
+    extensions_ = text;
+    const off_t size = lseek(memory, 0, SEEK_END);
+    void* mapping = mmap(nullptr, static_cast<size_t>(size), PROT_READ | PROT_WRITE, MAP_SHARED, memory, 0);
+    close(memory);
+    if (mapping == MAP_FAILED) {
+        say("can't map %ld bytes shared with the head: this program draws on its own", static_cast<long>(size));
+        close(socket_);
+        return false;
+    }
+    madvise(mapping, static_cast<size_t>(size), MADV_DONTFORK);
+    header_ = static_cast<capture::CaptureHeader*>(mapping);
+    __atomic_store_n(&alive_, true, __ATOMIC_RELEASE);
+    return true;
+}
+
+void Session::die(const char* why) {
+    if (!__atomic_exchange_n(&alive_, false, __ATOMIC_ACQ_REL)) return;
+    if (why) say("%s; the program goes on alone", why);
+}
+
+bool Session::headAlive() {
+    if (!alive()) return false;
+    if (header_->headGone.load(std::memory_order_acquire)) {
+        die(nullptr); // the head has told the user why
+        return false;
+    }
+    pollfd p{socket_, POLLIN, 0};
+    if (poll(&p, 1, 0) > 0) {
+        char byte;
+        const bool open = !(p.revents & (POLLHUP | POLLERR)) && recv(socket_, &byte, 1, MSG_DONTWAIT | MSG_PEEK) != 0;
+        if (!open) {
+            die("the head is gone");
+            return false;
+        }
+    }
+    return true;
+}
+
+void Session::publish(ThreadState& t, bool last) {
+    if (!alive() || t.chunk == UINT32_MAX) return;
+    Guard guard(ringLock);
+    std::byte* start = capture::chunk(header_, t.chunk);
+    const auto end = static_cast<uint32_t>(__atomic_load_n(&t.cursor, __ATOMIC_ACQUIRE) - start);
+    if (end == t.publishedBytes && !last) return;
+    const uint32_t tail = header_->publishedTail.load(std::memory_order_relaxed);
+    const int64_t startedNs = monotonicNowNs();
+    // A takeover publishes ranges of one chunk, so publications may outnumber chunks.
+    while (tail - header_->publishedHead.load(std::memory_order_acquire) >= header_->chunkCount) {
+        if (!headAlive()) return;
+        if (monotonicNowNs() - startedNs > kStuckNs) return die("the head takes nothing for 60 s");
+        timespec nap{0, 200'000};
+        syscall(SYS_nanosleep, &nap, nullptr);
+    }
+    capture::publications(header_)[tail % header_->chunkCount] =
+        {t.chunk, t.publishedBytes, end, t.stream, static_cast<uint16_t>(last)};
+    t.publishedBytes = end;
+    if (last) t.chunk = UINT32_MAX;
+    header_->publishedTail.store(tail + 1, std::memory_order_release);
+    futexWakeAll(header_->publishedTail);
+}
+
+bool Session::takeChunk(ThreadState& t) {
+    const int64_t startedNs = monotonicNowNs();
+    while (alive()) {
+        uint32_t seen = 0;
+        {
+            Guard guard(ringLock);
+            const uint32_t head = header_->freedHead.load(std::memory_order_relaxed);
+            seen = header_->freedTail.load(std::memory_order_acquire);
+            if (head != seen) {
+                const uint32_t index = capture::freed(header_)[head % header_->chunkCount];
+                header_->freedHead.store(head + 1, std::memory_order_release);
+                std::byte* start = capture::chunk(header_, index);
+                t.chunk = index;
+                t.publishedBytes = 0;
+                t.chunkEnd = start + capture::kChunkBytes;
+                __atomic_store_n(&t.cursor, start, __ATOMIC_RELEASE);
+                return true;
+            }
+        }
+        futexWait(header_->freedTail, seen, kSliceNs);
+        const int64_t waitedNs = monotonicNowNs() - startedNs;
+        header_->waitNs.fetch_add(static_cast<uint64_t>(waitedNs < kSliceNs ? waitedNs : kSliceNs), std::memory_order_relaxed);
+        if (!headAlive()) return false;
+        if (waitedNs > kStuckNs) die("the head frees no memory for 60 s");
+    }
+    return false;
+}
+
+void Session::waitForCredit(uint32_t latency) {
+    header_->framesSubmitted.store(framesSubmitted_, std::memory_order_relaxed);
+    const int64_t startedNs = monotonicNowNs();
+    bool waited = false;
+    while (alive()) {
+        const uint32_t done = header_->framesDone.load(std::memory_order_acquire);
+        if (static_cast<int32_t>(framesSubmitted_ - done) <= static_cast<int32_t>(latency)) break;
+        waited = true;
+        futexWait(header_->framesDone, done, kSliceNs);
+        if (!headAlive()) break;
+        if (monotonicNowNs() - startedNs > 10 * kStuckNs) die("no frame came back for 10 minutes");
+    }
+    if (waited) header_->waitNs.fetch_add(static_cast<uint64_t>(monotonicNowNs() - startedNs), std::memory_order_relaxed);
+}
+
+void Session::waitShown() {
+    const int64_t startedNs = monotonicNowNs();
+    while (alive()) {
+        const uint32_t shown = header_->framesShown.load(std::memory_order_acquire);
+        if (static_cast<int32_t>(framesSubmitted_ - shown) <= 0) return;
+        futexWait(header_->framesShown, shown, kSliceNs);
+        if (!headAlive() || monotonicNowNs() - startedNs > kStuckNs) return;
+    }
+}
+
+uint32_t Session::beginRequest() {
+    requestLock.lock();
+    if (alive()) header_->roundTrips.fetch_add(1, std::memory_order_relaxed);
+    return ++lastRequest_;
+}
+
+void Session::endRequest() { requestLock.unlock(); }
+
+bool Session::answerBytes(void* into, uint64_t sizeBytes) {
+    auto* p = static_cast<std::byte*>(into);
+    const int64_t startedNs = monotonicNowNs();
+    uint32_t head = header_->replyHead.load(std::memory_order_relaxed);
+    while (sizeBytes > 0) {
+        const uint32_t tail = header_->replyTail.load(std::memory_order_acquire);
+        uint32_t have = tail - head;
+        if (have == 0) {
+            futexWait(header_->replyTail, tail, kSliceNs);
+            if (!headAlive()) return false;
+            if (monotonicNowNs() - startedNs > kStuckNs) {
+                die("the nodes did not answer for 60 s");
+                return false;
+            }
+            continue;
+        }
+        const uint32_t at = head % header_->replyCapacity;
+        if (have > header_->replyCapacity - at) have = header_->replyCapacity - at;
+        if (have > sizeBytes) have = static_cast<uint32_t>(sizeBytes);
+        if (p) {
+            std::memcpy(p, capture::replies(header_) + at, have);
+            p += have;
+        }
+        head += have;
+        sizeBytes -= have;
+        header_->replyHead.store(head, std::memory_order_release);
+        futexWakeAll(header_->replyHead);
+    }
+    return true;
+}
+
+bool Session::answerHeader(uint32_t request, wire::ReplyHeader& header) {
+    while (alive()) {
+        if (!answerBytes(&header, sizeof header)) return false;
+        if (header.requestId == request) return true;
+        if (!answerBytes(nullptr, header.sizeBytes)) return false; // late answer to a question given up
+    }
+    return false;
+}
+
+} // namespace mural

@@ -1,0 +1,60 @@
+// The connection to the head: one per process, opened with the first context. Owns the mapping, hands
+// out chunks, publishes what was encoded, waits for credit and answers. When the head is gone every
+// call becomes a no-op and the program goes on alone.
+#pragma once
+
+#include <cstdint>
+
+#include "common/capture_ring.hpp"
+#include "interposer/thread_state.hpp"
+#include "streamcodec/wire.hpp"
+
+namespace mural {
+
+class Session {
+public:
+    // The process's session; connects once, when MURAL_SESSION names a head. Null: no capture.
+    static Session* get();
+    // Like get(), but never connects.
+    static Session* current();
+
+    [[nodiscard]] const capture::Welcome& welcome() const { return welcome_; }
+    [[nodiscard]] bool alive() const { return __atomic_load_n(&alive_, __ATOMIC_ACQUIRE); }
+    [[nodiscard]] capture::CaptureHeader* header() { return header_; }
+    // Extensions that all nodes have, with a space before and behind each.
+    [[nodiscard]] const char* nodeExtensions() const { return extensions_; }
+
+    // Makes all complete records of the thread visible to the head. `last`: the chunk is used up.
+    void publish(ThreadState& t, bool last);
+    // A fresh chunk for the thread (after publish(t, true)); false when the head is gone.
+    bool takeChunk(ThreadState& t);
+    // Blocks until at most `latency` frames are on their way.
+    void waitForCredit(uint32_t latency);
+    // Blocks until frame `frame` of this process is shown (--display app); bounded.
+    void waitShown();
+
+    // One question to the nodes at a time per process.
+    uint32_t beginRequest();
+    // The head of the answer; false when the head died (the request is over then).
+    bool answerHeader(uint32_t request, wire::ReplyHeader& header);
+    // The next bytes of the answer.
+    bool answerBytes(void* into, uint64_t sizeBytes);
+    void endRequest();
+
+    uint32_t nextFrame() { return ++framesSubmitted_; }
+    void die(const char* why);
+
+private:
+    bool connect(const char* name);
+    bool headAlive();
+
+    capture::CaptureHeader* header_ = nullptr;
+    capture::Welcome welcome_{};
+    const char* extensions_ = "";
+    int socket_ = -1;
+    bool alive_ = false;
+    uint32_t framesSubmitted_ = 0;
+    uint32_t lastRequest_ = 0;
+};
+
+} // namespace mural

@@ -1,0 +1,73 @@
+#include "interposer/thread_state.hpp"
+
+#include <cstdlib>
+#include <pthread.h>
+
+#include "interposer/lock.hpp"
+#include "interposer/session.hpp"
+
+namespace mural {
+
+namespace {
+constinit ThreadState idleThread;
+Lock listLock;
+ThreadState* allThreads = nullptr;
+uint16_t lastStream = 0;
+pthread_key_t endKey;
+pthread_once_t endKeyOnce = PTHREAD_ONCE_INIT;
+
+// A thread ends: what it encoded is published, its entry waits for the next thread.
+void threadEnded(void* p) {
+    auto* t = static_cast<ThreadState*>(p);
+    if (Session* s = Session::current()) s->publish(*t, true);
+    t->cursor = t->limit = t->chunkEnd = nullptr;
+    t->context = nullptr;
+    t->gone.store(true, std::memory_order_release);
+}
+
+ThreadState* takeOver() {
+    for (ThreadState* t = allThreads; t; t = t->next) {
+        bool gone = true;
+        if (t->gone.compare_exchange_strong(gone, false)) return t;
+    }
+    return nullptr;
+}
+
+void* grow(void*& memory, size_t& have, size_t bytes) {
+    if (bytes > have) {
+        void* larger = std::realloc(memory, bytes + bytes / 4);
+        if (!larger) return nullptr;
+        memory = larger;
+        have = bytes + bytes / 4;
+    }
+    return memory;
+}
+} // namespace
+
+constinit thread_local ThreadState* tThread __attribute__((tls_model("initial-exec"))) = &idleThread;
+
+ThreadState& ownThreadState() {
+    if (tThread != &idleThread) return *tThread;
+    pthread_once(&endKeyOnce, [] { pthread_key_create(&endKey, threadEnded); });
+    Guard guard(listLock);
+    ThreadState* t = takeOver();
+    if (!t) {
+        t = static_cast<ThreadState*>(std::calloc(1, sizeof(ThreadState)));
+        if (!t) return idleThread;
+        t->drawLocally = true;
+        t->chunk = UINT32_MAX;
+        t->stream = ++lastStream;
+        t->next = allThreads;
+        allThreads = t;
+    }
+    pthread_setspecific(endKey, t);
+    tThread = t;
+    return *t;
+}
+
+ThreadState* firstThread() { return __atomic_load_n(&allThreads, __ATOMIC_ACQUIRE); }
+
+void* scratchMemory(ThreadState& t, size_t bytes) { return grow(t.scratch, t.scratchBytes, bytes); }
+void* secondScratch(ThreadState& t, size_t bytes) { return grow(t.scratch2, t.scratch2Bytes, bytes); }
+
+} // namespace mural

@@ -1,0 +1,83 @@
+// A mirror of the vertex array state, for one question at every draw: does an enabled array live in
+// the program's own memory? Such arrays are copied at the draw, as OpenGL reads them then.
+// Source: OpenGL 4.6 compatibility, sections 10.3 and 10.4.
+#pragma once
+
+#include <GL/gl.h>
+#include <GL/glext.h>
+#include <cstddef>
+#include <cstdint>
+
+#include "streamcodec/client_arrays.hpp"
+
+namespace mural {
+
+struct ArrayPointer {
+    const void* pointer = nullptr;
+    GLint size = 4;
+    GLenum type = GL_FLOAT;
+    GLsizei stride = 0;     // as given; 0: tightly packed
+    uint32_t flags = 0;     // client_arrays::Flags
+    GLuint divisor = 0;
+};
+
+// One vertex array object.
+struct VertexArray {
+    GLuint name = 0;
+    uint64_t enabled[2] = {0, 0}; // one bit per slot
+    uint64_t client[2] = {0, 0};  // the pointer was given while no buffer was bound
+    ArrayPointer slots[client_arrays::kSlots];
+
+    [[nodiscard]] bool anyClient() const { return (enabled[0] & client[0]) | (enabled[1] & client[1]); }
+    [[nodiscard]] bool isClient(uint32_t slot) const {
+        return enabled[slot / 64] & client[slot / 64] & (uint64_t{1} << slot % 64);
+    }
+    void set(uint64_t (&mask)[2], uint32_t slot, bool on) {
+        const uint64_t bit = uint64_t{1} << slot % 64;
+        mask[slot / 64] = on ? mask[slot / 64] | bit : mask[slot / 64] & ~bit;
+    }
+    void enable(uint32_t slot, bool on) { set(enabled, slot, on); }
+};
+
+class VertexArrayMirror {
+public:
+    [[nodiscard]] VertexArray& current() { return *current_; }
+    [[nodiscard]] bool anyClient() const { return current_->anyClient(); }
+
+    void bind(GLuint name);
+    void remove(GLsizei n, const GLuint* names);
+    void bindArrayBuffer(GLuint buffer) { arrayBuffer_ = buffer; }
+    [[nodiscard]] GLuint arrayBuffer() const { return arrayBuffer_; }
+    void forgetBuffers(GLsizei n, const GLuint* names);
+    void activeTexture(GLenum unit) { unit_ = unit - GL_TEXTURE0 < client_arrays::kTexCoords ? unit - GL_TEXTURE0 : 0; }
+    [[nodiscard]] uint32_t texCoordSlot() const { return client_arrays::kTexCoord0 + unit_; }
+
+    // True: the pointer is client memory, which travels at the draw; false: an offset, to be sent now.
+    bool setPointer(uint32_t slot, GLint size, GLenum type, GLsizei stride, uint32_t flags, const void* pointer);
+    // The slot of a glEnableClientState name, kSlots when it is none.
+    [[nodiscard]] uint32_t slotOf(GLenum array) const;
+
+    void push(GLbitfield mask);
+    void pop();
+
+private:
+    static constexpr int kStack = 16; // GL_MAX_CLIENT_ATTRIB_STACK_DEPTH
+    struct Saved {
+        bool arrays = false;
+        GLuint name = 0, arrayBuffer = 0;
+        uint32_t unit = 0;
+        VertexArray* copy = nullptr;
+    };
+    VertexArray* find(GLuint name);
+
+    VertexArray zero_;
+    VertexArray* current_ = &zero_;
+    VertexArray** named_ = nullptr; // by name, grows
+    GLuint namedCount_ = 0;
+    GLuint arrayBuffer_ = 0;
+    uint32_t unit_ = 0;
+    Saved stack_[kStack];
+    int depth_ = 0;
+};
+
+} // namespace mural

@@ -1,0 +1,29 @@
+// Every command and extension of the registry, and whether Mural carries it. Sorted by name.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace mural {
+
+struct CommandInfo {
+    const char* name;
+    const char* commandClass; // state object draw query sync transfer frame unsupported
+    const char* reason;       // why it is not carried; empty otherwise
+    bool carried;
+    uint16_t opcode;          // 0: never in a stream
+};
+struct ExtensionInfo {
+    const char* name;
+    bool carried;             // all its commands are; else it is not advertised to programs
+    const char* firstLacking;
+};
+
+std::span<const CommandInfo> commandTable();
+std::span<const ExtensionInfo> extensionTable();
+const CommandInfo* findCommand(std::string_view name);
+// Unknown extensions (newer than the registry) are not carried.
+bool extensionCarried(std::string_view name);
+
+} // namespace mural

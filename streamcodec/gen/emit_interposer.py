@@ -1,0 +1,158 @@
+"""Encoders (one per command that travels) and wrappers (one per command that a program may call)."""
+import re
+
+from emit_common import HEAD, ctype, prototype
+from registry import TYPE_BYTES
+
+DATA_KINDS = ('array', 'pixels', 'packed', 'data', 'made', 'text', 'strings')
+
+
+def pixel_shape(c, dims):
+    """format, type, width, height, depth of an image parameter, as C++ expressions."""
+    if c.name == 'glPolygonStipple':
+        return 'GL_COLOR_INDEX, GL_BITMAP, 32, 32, 1'
+    have = {p.name for p in c.params}
+    width = 'width' if 'width' in have else 'count'
+    height = 'height' if dims >= 2 else '1'
+    depth = 'depth' if dims >= 3 else '1'
+    return 'format, type, %s, %s, %s' % (width, height, depth)
+
+
+def result_bytes(c):
+    """Names that the driver makes travel behind the arguments."""
+    if c.name == 'glFenceSync':
+        return 8
+    return 4 if c.command_class == 'object' and c.returns != 'void' else 0
+
+
+def fixed_bytes(c):
+    total = 4
+    for p in c.params:
+        if p.how == 'scalar':
+            total += max(4, TYPE_BYTES[p.base])
+        elif p.how in ('sync', 'offset'):
+            total += 8
+        elif p.how == 'fixed':
+            total += (p.expr + 3) // 4 * 4
+    return total + result_bytes(c)
+
+
+def encoder(c, opcode):
+    args, puts, datas = ['ThreadState& self'], [], []
+    for p in c.params:
+        if p.how == 'skip':
+            continue
+        if p.how in DATA_KINDS:
+            args.append('const DataArg& %s' % p.name)
+            datas.append(p.name)
+            puts.append('out_.data(%s);' % p.name)
+        elif p.how == 'fixed':
+            args.append('%s %s' % (ctype(p.type), p.name))
+            puts.append('out_.bytes(%s, %d);' % (p.name, p.expr))
+        elif p.how == 'offset':
+            args.append('const void* %s' % p.name)
+            puts.append('out_.put8(reinterpret_cast<uint64_t>(%s));' % p.name)
+        elif p.how == 'sync':
+            args.append('GLsync %s' % p.name)
+            puts.append('out_.put8(reinterpret_cast<uint64_t>(%s));' % p.name)
+        else:
+            args.append('%s %s' % (ctype(p.type), p.name))
+            puts.append('out_.%s(%s);' % ('put8' if TYPE_BYTES[p.base] == 8 else 'put4', p.name))
+    if result_bytes(c):
+        args.append('%s result' % c.returns)
+        puts.append('out_.put4(result);' if result_bytes(c) == 4 else 'out_.put8(reinterpret_cast<uint64_t>(result));')
+    size = ' + '.join([str(fixed_bytes(c))] + ['wireBytes(%s)' % d for d in datas])
+    spills = ''.join('    spillLarge(self, %s);\n' % d for d in datas)
+    return ('inline void encode_%s(%s) {\n%s    const uint32_t size_ = %s;\n'
+            '    std::byte* at_ = beginRecord(self, %d, size_);\n    if (!at_) return;\n    Writer out_{at_};\n    %s\n'
+            '    endRecord(self, at_, size_);\n}\n' % (c.name, ', '.join(args), spills, size, opcode, '\n    '.join(puts)))
+
+
+def data_argument(c, p):
+    if p.how == 'array':
+        return 'DataArg::of(%s, %s)' % (p.name, p.expr)
+    if p.how == 'text':
+        return 'DataArg::text(%s)' % p.name
+    if p.how == 'made':
+        return 'DataArg::of(%s, vn(%s,4))' % (p.name, p.length)
+    if p.how == 'packed':
+        return 'packedSource(self, %s, %s)' % (p.name, p.expr)
+    if p.how == 'strings':
+        return 'packStrings(self, %s, %s, %s)' % ('count', p.name, 'nullptr' if p.expr == '-' else p.expr)
+    if p.how == 'pixels':
+        return 'imageSource(self, %s, %s, %s)' % (p.name, pixel_shape(c, int(p.expr)), p.expr)
+    raise SystemExit('%s: parameter %s needs app=custom' % (c.name, p.name))
+
+
+def wrapper(c):
+    ret = ctype(c.returns)
+    names = ', '.join(p.name for p in c.params)
+    out = 'extern "C" %s mural_%s(%s) {\n    ThreadState& self = *tThread;\n' % (ret, c.name, prototype(c))
+    encode_args = ', '.join(['self'] + [data_argument(c, p) if p.how in DATA_KINDS else p.name
+                                     for p in c.params if p.how != 'skip'])
+    if c.command_class == 'object':
+        if c.returns != 'void':
+            out += '    const %s result = gReal.%s(%s);\n' % (ret, c.name, names)
+            out += '    encode_%s(%s, result);\n    return result;\n' % (c.name, encode_args)
+        else:
+            out += '    gReal.%s(%s);\n    encode_%s(%s);\n' % (c.name, names, c.name, encode_args)
+    else:
+        out += '    encode_%s(%s);\n' % (c.name, encode_args)
+        local = c.option('local') != 'no'
+        if local and c.command_class == 'draw':
+            out += '    if (self.drawLocally) gReal.%s(%s);\n' % (c.name, names)
+        elif local:
+            out += '    gReal.%s(%s);\n' % (c.name, names)
+    return out + '}\n'
+
+
+def unsupported(c):
+    names = ', '.join(p.name for p in c.params)
+    ret = ctype(c.returns)
+    return ('extern "C" %s mural_%s(%s) {\n    unsupportedCalled("%s", "%s");\n    %sgReal.%s(%s);\n}\n' % (
+        ret, c.name, prototype(c), c.name, c.reason.replace('"', "'"), 'return ' if ret != 'void' else '', c.name, names))
+
+
+def emit(m):
+    encoders = HEAD + '''#pragma once
+#include "gl_opcodes.hpp"
+#include "interposer/encode_support.hpp"
+namespace mural {
+'''
+    encoders += ''.join(encoder(c, m.opcode[c.name]) for c in m.sent) + '} // namespace mural\n'
+
+    custom = [c for c in m.canonical if c.option('app') == 'custom' and c.command_class != 'unsupported']
+    declarations = HEAD + '#pragma once\n#include <GL/gl.h>\n#include <GL/glext.h>\n// Wrappers written by hand: interposer/commands/.\nextern "C" {\n'
+    declarations += ''.join('%s mural_%s(%s);\n' % (ctype(c.returns), c.name, prototype(c)) for c in custom) + '}\n'
+
+    wrappers = HEAD + '''#include "custom_wrappers.hpp"
+#include "encoders.hpp"
+#include "interposer/real_gl.hpp"
+#include "interposer/wrapper_table.hpp"
+#include "streamcodec/size_expressions.hpp"
+using namespace mural;
+'''
+    body, rows = '', []
+    for c in m.canonical:
+        if c.command_class == 'unsupported':
+            body += unsupported(c)
+            rows.append('unsupported')
+        elif c.option('app') == 'custom':
+            rows.append('wrapped')
+        elif c.sent and c.name in m.opcode:
+            body += wrapper(c)
+            rows.append('wrapped')
+        else:
+            rows.append('direct')   # a query: the driver's own entry point, at no cost
+    wrappers += body + '\nnamespace mural {\nnamespace {\nusing Entry = void (*)();\nconst Entry kWrappers[] = { // in the order of GlFunctions\n'
+    for c, row in zip(m.canonical, rows):
+        wrappers += '    %s,\n' % ('nullptr' if row == 'direct' else 'reinterpret_cast<Entry>(mural_%s)' % c.name)
+    wrappers += '};\nconst bool kCarried[] = {\n'
+    wrappers += ''.join('    %s,\n' % ('false' if row == 'unsupported' else 'true') for row in rows)
+    wrappers += '''};
+} // namespace
+void (*wrapperAt(int index))() { return kWrappers[index]; }
+bool carriedAt(int index) { return kCarried[index]; }
+} // namespace mural
+'''
+    return {'encoders.hpp': encoders, 'custom_wrappers.hpp': declarations, 'wrappers.cpp': wrappers}

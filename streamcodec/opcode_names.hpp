@@ -1,0 +1,8 @@
+// Readable names of GL opcodes, for messages and dumps. Null: unknown.
+#pragma once
+
+#include <cstdint>
+
+namespace mural {
+const char* glOpcodeName(uint16_t opcode);
+} // namespace mural

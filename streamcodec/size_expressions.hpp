@@ -1,0 +1,39 @@
+// The vocabulary of the size expressions in semantics.txt: bytes behind an input pointer, from the
+// other parameters. Used by the encoder (how much to copy) and by the replay (how much must be there).
+#pragma once
+
+#include <GL/gl.h>
+#include <GL/glext.h>
+#include <cstddef>
+#include <cstdint>
+
+#include "streamcodec/sizes/parameter_counts.hpp"
+#include "streamcodec/sizes/pixel_format.hpp"
+
+namespace mural {
+
+// count values of `bytes` each; negative counts are the driver's error to report, nothing to copy.
+template <class N> constexpr uint64_t vn(N count, uint32_t bytes) {
+    return static_cast<int64_t>(count) > 0 ? static_cast<uint64_t>(count) * bytes : 0;
+}
+// The same for pointers that may be null.
+template <class P> bool given(const P& p) {
+    if constexpr (requires { p.absent(); }) return !p.absent();
+    else return p != nullptr;
+}
+template <class N, class P> uint64_t n4(N count, const P& p) { return given(p) ? vn(count, 4) : 0; }
+template <class N, class P> uint64_t n8(N count, const P& p) { return given(p) ? vn(count, 8) : 0; }
+// One pixel of (format, type), or nothing.
+template <class P> uint64_t clearBytes(GLenum format, GLenum type, const P& p) {
+    return given(p) ? sizes::groupBytes(format, type) : 0;
+}
+constexpr int clearValues(GLenum buffer) { return buffer == GL_COLOR ? 4 : 1; }
+// Values that glMap1/2 read, from the first to the last.
+inline uint64_t mapSpan1(GLenum target, GLint stride, GLint order, uint32_t bytes) {
+    return sizes::map1Values(target, stride, order) * bytes;
+}
+inline uint64_t mapSpan2(GLenum target, GLint us, GLint uo, GLint vs, GLint vo, uint32_t bytes) {
+    return sizes::map2Values(target, us, uo, vs, vo) * bytes;
+}
+
+} // namespace mural
