@@ -46,6 +46,10 @@ public:
     // True: only one colour buffer, named GL_FRONT (EGL pbuffers of Mesa, OSMesa). The replay then
     // maps GL_BACK* and GL_FRONT* to it.
     [[nodiscard]] virtual bool singleBuffered() const = 0;
+    // True: the buffer has an alpha channel that was not asked for (OSMesa has no other 8-bit format). It
+    // is 1 everywhere when the surface is made; the picture is exact as long as it stays so: the replay
+    // takes alpha out of glColorMask while this framebuffer is drawn to.
+    [[nodiscard]] virtual bool hiddenAlpha() const { return false; }
 };
 
 class Context {

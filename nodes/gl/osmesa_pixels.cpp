@@ -8,15 +8,14 @@ namespace {
 
 // How a plane travels through client memory without loss.
 struct PlaneFormat {
-    GLbitfield mask = 0; // 0: there is no such plane
-    GLenum internalFormat = 0, format = 0, type = 0, attachment = 0;
-    size_t bytesPerPixel = 0;
+    GLbitfield mask;
+    GLenum internalFormat, format, type, attachment;
+    size_t bytesPerPixel;
 };
 
 PlaneFormat colorFormat(const SurfaceConfig& c) {
     const GLbitfield mask = GL_COLOR_BUFFER_BIT;
     if (c.green == 6) return {mask, GL_RGB565, GL_RGB, GL_UNSIGNED_SHORT_5_6_5, GL_COLOR_ATTACHMENT0, 2};
-    if (c.alpha == 0) return {mask, GL_RGB8, GL_RGB, GL_UNSIGNED_BYTE, GL_COLOR_ATTACHMENT0, 3};
     return {mask, GL_RGBA8, GL_BGRA, GL_UNSIGNED_BYTE, GL_COLOR_ATTACHMENT0, 4};
 }
 
@@ -27,13 +26,7 @@ PlaneFormat depthStencilFormat(const SurfaceConfig& c) {
     if (c.depth == 16)
         return {GL_DEPTH_BUFFER_BIT, GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT,
                 GL_DEPTH_ATTACHMENT, 2};
-    if (c.depth)
-        return {GL_DEPTH_BUFFER_BIT, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT,
-                GL_DEPTH_ATTACHMENT, 4};
-    if (c.stencil)
-        return {GL_STENCIL_BUFFER_BIT, GL_STENCIL_INDEX8, GL_STENCIL_INDEX, GL_UNSIGNED_BYTE,
-                GL_STENCIL_ATTACHMENT, 1};
-    return {};
+    return {GL_DEPTH_BUFFER_BIT, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, GL_DEPTH_ATTACHMENT, 4};
 }
 
 using Setting = std::pair<GLenum, GLint>;
@@ -120,6 +113,9 @@ OsmesaPixels::OsmesaPixels(decltype(&OSMesaGetProcAddress) find) {
     load(find, gl_.deleteFramebuffers, "glDeleteFramebuffers");
     load(find, gl_.genFramebuffers, "glGenFramebuffers");
     load(find, gl_.framebufferTexture2D, "glFramebufferTexture2D");
+    load(find, gl_.clearBufferfv, "glClearBufferfv");
+    load(find, gl_.colorMaski, "glColorMaski");
+    load(find, gl_.getBooleani, "glGetBooleani_v");
     load(find, gl_.enablei, "glEnablei");
     load(find, gl_.disablei, "glDisablei");
     load(find, gl_.isEnabledi, "glIsEnabledi");
@@ -149,7 +145,6 @@ SavedPixels OsmesaPixels::save(const SurfaceConfig& config, bool compatibility) 
     const NeutralState neutral(*this, compatibility);
     SavedPixels saved;
     auto read = [&](const PlaneFormat& plane, std::vector<std::byte>& pixels) {
-        if (!plane.mask) return;
         pixels.resize(static_cast<size_t>(config.width) * static_cast<size_t>(config.height) * plane.bytesPerPixel);
         gl_.readPixels(0, 0, config.width, config.height, plane.format, plane.type, pixels.data());
     };
@@ -165,11 +160,20 @@ void OsmesaPixels::restore(const SurfaceConfig& config, bool compatibility, cons
     restorePlane(config, GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT, pixels.depthStencil);
 }
 
+void OsmesaPixels::clearOpaque(bool compatibility) const {
+    const NeutralState neutral(*this, compatibility);
+    GLboolean mask[4] = {GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE};
+    gl_.getBooleani(GL_COLOR_WRITEMASK, 0, mask);
+    gl_.colorMaski(0, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    const GLfloat opaque[4] = {0, 0, 0, 1};
+    gl_.clearBufferfv(GL_COLOR, 0, opaque);
+    gl_.colorMaski(0, mask[0], mask[1], mask[2], mask[3]);
+}
+
 void OsmesaPixels::restorePlane(const SurfaceConfig& config,
                                 GLbitfield mask,
                                 const std::vector<std::byte>& pixels) const {
     const PlaneFormat plane = mask == GL_COLOR_BUFFER_BIT ? colorFormat(config) : depthStencilFormat(config);
-    if (!plane.mask) return;
     const GLint boundTexture = get(GL_TEXTURE_BINDING_2D);
     GLuint texture = 0, framebuffer = 0;
     gl_.genTextures(1, &texture);

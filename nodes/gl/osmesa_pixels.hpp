@@ -3,7 +3,7 @@
 // OSMesa keeps the buffers in the context, not with the memory that it is given: a second surface of
 // the same size would show the first one's picture, one of another size or in another context an
 // empty one. These copies make surfaces behave as those of EGL and GLX. Nothing else of GL's state
-// changes; accumulation buffers are not copied (GL can only read them back through the colours).
+// changes.
 #pragma once
 
 #include <cstddef>
@@ -29,6 +29,8 @@ public:
     // Both: a context is current with a framebuffer of these bits. compatibility: not a core profile.
     SavedPixels save(const SurfaceConfig& config, bool compatibility) const;
     void restore(const SurfaceConfig& config, bool compatibility, const SavedPixels& pixels) const;
+    // Black with an alpha of 1.
+    void clearOpaque(bool compatibility) const;
 
 private:
     struct Functions {
@@ -38,6 +40,9 @@ private:
         PFNGLDELETEFRAMEBUFFERSPROC deleteFramebuffers;
         PFNGLGENFRAMEBUFFERSPROC genFramebuffers;
         PFNGLFRAMEBUFFERTEXTURE2DPROC framebufferTexture2D;
+        PFNGLCLEARBUFFERFVPROC clearBufferfv;
+        PFNGLCOLORMASKIPROC colorMaski;
+        PFNGLGETBOOLEANI_VPROC getBooleani;
         PFNGLENABLEIPROC enablei;
         PFNGLDISABLEIPROC disablei;
         PFNGLISENABLEDIPROC isEnabledi;

@@ -4,6 +4,8 @@
 //  - One colour buffer; no multisampling, no stereo, no sRGB, no ES, no forward-compatible contexts.
 //  - GL_FRAMEBUFFER_SRGB does nothing here, where EGL and GLX of the same Mesa honour it on every
 //    framebuffer of desktop GL: a program that enables it on its window is not exact over OSMesa.
+//  - For the same reason (no sRGB view of the buffer) glAccum gives other colours than in a window: there
+//    Mesa accumulates decoded sRGB. So accumulation buffers are not offered.
 //  - Formats belong to the context and buffers live in it: see osmesa_pixels.hpp.
 //  - Only one buffer can be bound, for drawing and reading.
 //  - Debug and robust contexts do not exist; the wishes are granted, because a well-defined
@@ -21,7 +23,8 @@
 namespace mural::gl {
 namespace {
 
-// A colour format of OSMesa. BGRA as EGL and GLX have it: llvmpipe has code of its own for that order.
+// The colour formats that llvmpipe draws as it does for windows: OSMESA_RGB gives garbage (measured), so
+// a wish without alpha gets a channel that the replay has to keep at 1.
 struct ColorFormat {
     int red, green, blue, alpha;
     GLenum format, type;
@@ -29,14 +32,16 @@ struct ColorFormat {
 };
 constexpr std::array<ColorFormat, 3> kColorFormats{{
     {8, 8, 8, 8, OSMESA_BGRA, GL_UNSIGNED_BYTE, 4},
-    {8, 8, 8, 0, OSMESA_RGB, GL_UNSIGNED_BYTE, 3},
+    {8, 8, 8, 0, OSMESA_BGRA, GL_UNSIGNED_BYTE, 4},
     {5, 6, 5, 0, OSMESA_RGB_565, GL_UNSIGNED_SHORT_5_6_5, 2},
 }};
 
+// Not without depth: then llvmpipe clips what it draws to windows elsewhere (its "linear" rasterizer) than
+// what it draws here, and stippled lines have another phase (measured).
 struct DepthStencil {
     int depth, stencil;
 };
-constexpr std::array<DepthStencil, 5> kDepthStencils{{{0, 0}, {16, 0}, {24, 0}, {24, 8}, {0, 8}}};
+constexpr std::array<DepthStencil, 3> kDepthStencils{{{16, 0}, {24, 0}, {24, 8}}};
 
 struct Candidates {
     std::vector<ConfigCandidate> list;
@@ -46,14 +51,13 @@ struct Candidates {
 Candidates listCandidates() {
     Candidates all;
     for (const ColorFormat& format : kColorFormats)
-        for (const DepthStencil& ds : kDepthStencils)
-            for (const int accum : {0, 16}) {
-                ConfigCandidate candidate;
-                candidate.bits = {1, 1, format.red, format.green, format.blue, format.alpha,
-                                  ds.depth, ds.stencil, 0, accum, false, false};
-                all.list.push_back(candidate);
-                all.formats.push_back(format);
-            }
+        for (const DepthStencil& ds : kDepthStencils) {
+            ConfigCandidate candidate;
+            candidate.bits = {1, 1, format.red, format.green, format.blue, format.alpha,
+                              ds.depth, ds.stencil, 0, 0, false, false};
+            all.list.push_back(candidate);
+            all.formats.push_back(format);
+        }
     return all;
 }
 
@@ -91,6 +95,7 @@ public:
     [[nodiscard]] int width() const override { return config_.width; }
     [[nodiscard]] int height() const override { return config_.height; }
     [[nodiscard]] bool singleBuffered() const override { return true; }
+    [[nodiscard]] bool hiddenAlpha() const override { return config_.red == 8 && config_.alpha == 0; }
     [[nodiscard]] const SurfaceConfig& config() const { return config_; }
 
     std::shared_ptr<std::byte[]> memory_;
@@ -186,6 +191,8 @@ Result<void> OsmesaContext::bind(OsmesaSurface* surface) {
     if (surface->saved_.valid) {
         state_->pixels.restore(surface->config(), compatibility(), surface->saved_);
         surface->saved_ = {};
+    } else if (surface->hiddenAlpha()) {
+        state_->pixels.clearOpaque(compatibility());
     }
     return {};
 }
@@ -226,7 +233,6 @@ Result<std::unique_ptr<Context>> OsmesaPlatform::createContext(const ContextConf
     const int list[] = {OSMESA_FORMAT, static_cast<int>(format->format),
                         OSMESA_DEPTH_BITS, wish.surface.depth,
                         OSMESA_STENCIL_BITS, wish.surface.stencil,
-                        OSMESA_ACCUM_BITS, wish.surface.accum,
                         OSMESA_PROFILE, core ? OSMESA_CORE_PROFILE : OSMESA_COMPAT_PROFILE,
                         OSMESA_CONTEXT_MAJOR_VERSION, request.major,
                         OSMESA_CONTEXT_MINOR_VERSION, request.minor,

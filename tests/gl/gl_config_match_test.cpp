@@ -1,0 +1,97 @@
+#include "nodes/gl/config_match.hpp"
+
+#include <gtest/gtest.h>
+
+#include "nodes/gl/gl_info.hpp"
+
+namespace mural::gl {
+namespace {
+
+ConfigCandidate candidate(int alpha, int depth, int samples, int rank = 0) {
+    ConfigCandidate made;
+    made.bits.alpha = alpha;
+    made.bits.depth = depth;
+    made.bits.samples = samples;
+    made.rank = rank;
+    return made;
+}
+
+TEST(ConfigMatch, takesEqualBitsAndNotMore) {
+    const std::vector<ConfigCandidate> all{candidate(8, 32, 0), candidate(0, 32, 0), candidate(0, 24, 4), candidate(0, 24, 0)};
+    auto index = matchConfig("X", all, SurfaceConfig());
+    ASSERT_TRUE(index);
+    EXPECT_EQ(*index, 3u);
+}
+
+TEST(ConfigMatch, takesTheLowestRankThenTheFirst) {
+    const std::vector<ConfigCandidate> all{candidate(0, 24, 0, 2), candidate(0, 24, 0, 1), candidate(0, 24, 0, 1)};
+    EXPECT_EQ(matchConfig("X", all, SurfaceConfig()).value(), 1u);
+}
+
+TEST(ConfigMatch, oneSampleIsNoMultisampling) {
+    EXPECT_TRUE(matchConfig("X", {candidate(0, 24, 1)}, SurfaceConfig()));
+}
+
+TEST(ConfigMatch, errorNamesTheWishAndWhatThereIs) {
+    SurfaceConfig wish;
+    wish.samples = 8;
+    auto index = matchConfig("EGL", {candidate(0, 24, 0), candidate(0, 24, 4), candidate(8, 24, 8)}, wish);
+    ASSERT_FALSE(index);
+    EXPECT_NE(index.error().message.find("EGL"), std::string::npos);
+    EXPECT_NE(index.error().message.find("samples 8 (it has 0, 4)"), std::string::npos) << index.error().message;
+    EXPECT_FALSE(matchConfig("EGL", {}, wish));
+}
+
+TEST(ConfigMatch, everyAttributeCounts) {
+    const std::vector<int SurfaceConfig::*> numbers{
+        &SurfaceConfig::red, &SurfaceConfig::green, &SurfaceConfig::blue, &SurfaceConfig::alpha,
+        &SurfaceConfig::depth, &SurfaceConfig::stencil, &SurfaceConfig::samples, &SurfaceConfig::accum};
+    for (auto number : numbers) {
+        SurfaceConfig wish;
+        wish.*number += 2;
+        EXPECT_FALSE(matchConfig("X", {ConfigCandidate()}, wish));
+        EXPECT_FALSE(sameBits(wish, SurfaceConfig()));
+    }
+    SurfaceConfig srgb, stereo, wide;
+    srgb.srgb = stereo.stereo = true;
+    wide.width = 99;
+    EXPECT_FALSE(sameBits(srgb, SurfaceConfig()));
+    EXPECT_FALSE(sameBits(stereo, SurfaceConfig()));
+    EXPECT_TRUE(sameBits(wide, SurfaceConfig()));
+}
+
+TEST(ConfigMatch, sizesHaveLimits) {
+    SurfaceConfig wish;
+    wish.width = wish.height = kMaxSurfaceSize;
+    EXPECT_TRUE(checkSize("X", wish, kMaxSurfaceSize));
+    wish.height = kMaxSurfaceSize + 1;
+    EXPECT_FALSE(checkSize("X", wish, kMaxSurfaceSize));
+    wish.height = 0;
+    EXPECT_FALSE(checkSize("X", wish, kMaxSurfaceSize));
+}
+
+TEST(VersionRequest, profilesBeginWith31) {
+    ContextConfig wish;
+    EXPECT_FALSE(versionRequest(wish).profile);
+    wish.major = 3;
+    EXPECT_FALSE(versionRequest(wish).profile);
+    wish.minor = 1;
+    EXPECT_TRUE(versionRequest(wish).profile);
+    EXPECT_EQ(versionRequest(wish).minor, 2);
+    wish.minor = 3;
+    EXPECT_TRUE(versionRequest(wish).profile);
+    EXPECT_EQ(versionRequest(wish).minor, 3);
+    wish.api = Api::Es2;
+    EXPECT_FALSE(versionRequest(wish).profile);
+}
+
+TEST(GlVersion, isReadFromEveryForm) {
+    EXPECT_EQ(parseGlVersion("4.5 (Compatibility Profile) Mesa 22.3.6"), 45);
+    EXPECT_EQ(parseGlVersion("OpenGL ES-CM 1.1 Mesa 22.3.6"), 11);
+    EXPECT_EQ(parseGlVersion("OpenGL ES 3.2 NVIDIA 535.1"), 32);
+    EXPECT_EQ(parseGlVersion(""), 0);
+    EXPECT_EQ(parseGlVersion("none"), 0);
+}
+
+} // namespace
+} // namespace mural::gl

@@ -1,0 +1,28 @@
+// An X server of the test's own, on a display number that the server picks itself.
+#pragma once
+
+#include <string>
+
+#include <sys/types.h>
+
+#include "common/result.hpp"
+
+namespace mural::test {
+
+class Xvfb {
+public:
+    Xvfb() = default;
+    Xvfb(const Xvfb&) = delete;
+    Xvfb& operator=(const Xvfb&) = delete;
+    ~Xvfb();
+
+    // Waits until it answers and sets DISPLAY of this process.
+    Result<void> start();
+    [[nodiscard]] const std::string& display() const { return display_; }
+
+private:
+    pid_t process_ = -1;
+    std::string display_;
+};
+
+} // namespace mural::test
