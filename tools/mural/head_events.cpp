@@ -78,7 +78,10 @@ Result<HeadEvent> parseHeadEvent(const std::string& line) {
             if (l.is_string()) event.explain.push_back(l.get<std::string>());
         }
     }
-    if (event.kind == HeadEvent::Kind::Report) event.report = reportFrom(j);
+    if (event.kind == HeadEvent::Kind::Report) {
+        event.report = reportFrom(j);
+        event.report.json = line;
+    }
     return event;
 }
 

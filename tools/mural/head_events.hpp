@@ -29,6 +29,7 @@ struct SessionReport {
     int64_t savedPictures = 0;
     std::string lastPicture;
     std::vector<NodeReport> nodes;
+    std::string json; // the whole, as the head said it
 };
 
 struct HeadEvent {

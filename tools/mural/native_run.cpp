@@ -59,14 +59,15 @@ private:
     int fd_;
 };
 
-void tell(const std::optional<NativeReport::Count>& count, const std::string& name, Console& console) {
+void tell(const std::optional<NativeReport::Count>& count, const PreparedRun& run, Console& console) {
     if (!count || count->frames == 0) {
-        console.error("no frame was counted: " + name + " never showed a picture by GL; is it an OpenGL program?");
+        console.error("no frame was counted: " + run.program.front() + " never showed a picture by GL; is it an OpenGL program?");
         return;
     }
     // n pictures have n − 1 intervals between them.
     const double rate = count->seconds > 0 ? static_cast<double>(count->frames - 1) / count->seconds : 0.0;
     console.say(fmt::format("native: {} frames in {:.1f} s, {:.1f} frames/s", count->frames, count->seconds, rate));
+    writeReport(run, fmt::format(R"({{"event":"report","native":true,"frames":{},"seconds":{:.6f},"framesPerSecond":{:.3f}}})", count->frames, count->seconds, rate), console);
 }
 
 // True when as many frames as asked for have been seen.
@@ -108,7 +109,7 @@ int runNative(PreparedRun& run, Console& console) {
     if (!startProgram(run, program, console)) return launch::kExitNotExecutable;
 
     const bool framesReached = countFrames(run, program, report, console);
-    tell(report.read(), run.program.front(), console);
+    tell(report.read(), run, console);
     return framesReached ? 0 : program.exitStatus();
 }
 

@@ -1,5 +1,8 @@
 #include "tools/mural/program_loop.hpp"
 
+#include <cerrno>
+#include <cstring>
+#include <fstream>
 #include <poll.h>
 
 namespace mural::cli {
@@ -10,6 +13,14 @@ void waitTurn(PreparedRun& run, launch::ProgramSupervisor& program, int extraFd)
     program.tick();
     // Without the display the program ends by itself, and that is what the loop waits for.
     if (run.windowManager && !run.windowManager->dispatch()) run.windowManager.reset();
+}
+
+void writeReport(const PreparedRun& run, const std::string& json, Console& console) {
+    if (run.reportFile.empty()) return;
+    std::ofstream file(run.reportFile, std::ios::trunc);
+    file << json << '\n';
+    file.close();
+    if (!file) console.error("--report " + run.reportFile + ": cannot be written: " + std::strerror(errno));
 }
 
 bool startProgram(PreparedRun& run, launch::ProgramSupervisor& program, Console& console) {

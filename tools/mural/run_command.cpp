@@ -79,6 +79,7 @@ int runCommand(const RunOptions& options) {
     run.config = options.config;
     run.config.session = newSessionName();
     run.program = options.program;
+    run.reportFile = options.reportFile;
     run.programEnvironment = launch::Environment::current();
     run.headEnvironment = run.programEnvironment;
     launch::removeCapture(run.headEnvironment);

@@ -208,6 +208,7 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
     command.add_flag("--native", a.native, "run without Mural, and only count frames and time");
     command.add_option("--launch", a.launch, "command that runs a command on a host (ssh -o BatchMode=yes)")->type_name("CMD");
     command.add_option("--remote-mural", a.remoteMural, "path of mural on the hosts (this one's)")->type_name("PATH");
+    command.add_option("--report", a.report, "write the final report into this file, as one line of JSON")->type_name("FILE");
     command.add_flag("--quiet", a.quiet, "say nothing but errors");
     command.footer(kFooter);
 }
@@ -233,6 +234,8 @@ Result<RunOptions> runOptionsFrom(const RunArguments& a) {
     options.displayChosen = a.display.has_value();
     options.native = a.native;
     options.quiet = a.quiet;
+    if (a.report && a.report->empty()) return badValue("--report", "", "must be a file, such as --report report.json");
+    options.reportFile = a.report.value_or("");
     options.program = a.program;
     if (options.program.empty()) return Error{"no program was given; put it after --, such as: mural run --tiles 2x2 -- glxgears"};
     return options;

@@ -19,6 +19,7 @@ struct RunOptions {
     bool displayChosen = false; // --display was given
     bool native = false;
     bool quiet = false;
+    std::string reportFile;           // --report; empty: none
     std::vector<std::string> program; // name and arguments
 };
 
@@ -26,7 +27,7 @@ struct RunOptions {
 struct RunArguments {
     using Text = std::optional<std::string>;
     Text tiles, size, position, nodes, out, save, display, tiling, policy, gl, launch, remoteMural;
-    Text localNodes, frames, latency;
+    Text localNodes, frames, latency, report;
     std::string verify; // empty: not given
     bool fullScreen = false, noPlacement = false, explain = false, native = false, quiet = false;
     std::vector<std::string> program;

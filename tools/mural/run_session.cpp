@@ -116,6 +116,7 @@ private:
     }
 
     void tellReport() {
+        writeReport(run_, report_->json, console_);
         for (const std::string& line : reportLines(*report_)) console_.say(line);
         if (report_->frames > 0) return;
         const std::string& name = run_.program.front();

@@ -16,6 +16,7 @@ namespace mural::cli {
 // All that has been found out before anything is captured.
 struct PreparedRun {
     SessionConfig config; // complete
+    std::string reportFile; // empty: none
     std::string programPath;
     std::vector<std::string> program; // with argv[0] as the user wrote it
     launch::Environment programEnvironment;
@@ -24,6 +25,9 @@ struct PreparedRun {
     std::unique_ptr<launch::PrivateDisplay> display;          // null: the user's own
     std::unique_ptr<launch::WallWindowManager> windowManager; // null: no --size
 };
+
+// The report for programs, when there is a file for it.
+void writeReport(const PreparedRun& run, const std::string& json, Console& console);
 
 // Returns the exit status of `mural run`.
 int runSession(PreparedRun& run, Console& console);
