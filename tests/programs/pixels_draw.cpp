@@ -1,0 +1,229 @@
+// The pixel paths into the window: glDrawPixels, glBitmap, glCopyPixels with zoom, maps, scale and
+// bias, glRasterPos in all forms, glWindowPos, stencil and depth pixels.
+#include "tests/programs/support/gl.hpp"
+#include "tests/programs/support/program.hpp"
+#include "tests/programs/support/show.hpp"
+
+#include <vector>
+
+using namespace programs;
+
+namespace {
+
+std::vector<GLubyte> noise(std::size_t count, unsigned seed) {
+    std::vector<GLubyte> bytes(count);
+    Sequence numbers(seed);
+    for (GLubyte& value : bytes) {
+        value = numbers.byte();
+    }
+    return bytes;
+}
+
+void drawFormats(unsigned frame) {
+    const GLenum kinds[][2] = {
+        {GL_RGB, GL_UNSIGNED_BYTE}, {GL_RGBA, GL_UNSIGNED_BYTE}, {GL_BGRA, GL_UNSIGNED_BYTE},
+        {GL_LUMINANCE, GL_UNSIGNED_BYTE}, {GL_LUMINANCE_ALPHA, GL_UNSIGNED_BYTE}, {GL_RED, GL_BYTE},
+        {GL_GREEN, GL_UNSIGNED_SHORT}, {GL_RGB, GL_SHORT}, {GL_RGBA, GL_UNSIGNED_INT},
+        {GL_RGB, GL_UNSIGNED_SHORT_5_6_5}, {GL_RGBA, GL_UNSIGNED_INT_8_8_8_8},
+        {GL_BGRA, GL_UNSIGNED_SHORT_4_4_4_4_REV}, {GL_BGR, GL_INT}};
+    int index = 0;
+    for (const auto& kind : kinds) {
+        glWindowPos2i(3 + (index % 7) * 20, 3 + (index / 7) * 14);
+        glDrawPixels(17, 11, kind[0], kind[1], noise(17 * 11 * 16 + 64, frame + unsigned(index)).data());
+        ++index;
+    }
+    GLfloat floats[12 * 3];
+    for (int i = 0; i < 36; ++i) {
+        floats[i] = float((i * 5 + int(frame)) % 13) / 12.0F;
+    }
+    glWindowPos2f(145, 5);
+    glDrawPixels(4, 3, GL_RGB, GL_FLOAT, floats);
+}
+
+// A part of a larger picture, with odd rows, first bits and swapped bytes.
+void drawWithPixelStore(unsigned frame) {
+    glPushClientAttrib(GL_CLIENT_PIXEL_STORE_BIT);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glPixelStorei(GL_UNPACK_ROW_LENGTH, 29);
+    glPixelStorei(GL_UNPACK_SKIP_PIXELS, 3);
+    glPixelStorei(GL_UNPACK_SKIP_ROWS, 2);
+    glWindowPos2i(160, 5);
+    glDrawPixels(19, 13, GL_RGB, GL_UNSIGNED_BYTE, noise(29 * 3 * 16, 90 + frame).data());
+    glPixelStorei(GL_UNPACK_SWAP_BYTES, GL_TRUE);
+    glWindowPos2i(185, 5);
+    glDrawPixels(19, 13, GL_RGB, GL_UNSIGNED_SHORT, noise(29 * 6 * 16, 91 + frame).data());
+    glPixelStorei(GL_UNPACK_LSB_FIRST, GL_TRUE);
+    glColor3f(0.3F, 1, 0.6F);
+    glWindowPos2i(210, 5);
+    glBitmap(21, 17, 2, 1, 0, 0, noise(512, 92 + frame).data());
+    glPopClientAttrib();
+    glColor3f(1, 0.5F, 0.5F);
+    glWindowPos2i(235, 5);
+    glBitmap(11, 15, 0, 0, 0, 0, noise(64, 93 + frame).data());
+}
+
+// All ways to give a raster position; each shows where it is by a bitmap.
+void drawRasterPositions(unsigned frame) {
+    const GLubyte cross[] = {0x18, 0x18, 0x18, 0xff, 0xff, 0x18, 0x18, 0x18};
+    const auto mark = [&] { glBitmap(8, 8, 4, 4, 12, 0, cross); };
+    const auto x = GLfloat(frame);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glColor3f(1, 1, 0.4F);
+    glRasterPos2f(10.5F + x, 40), mark(), mark();
+    glRasterPos2d(40.25 + double(x), 40), mark();
+    glRasterPos2i(60, 40 + GLint(frame)), mark();
+    glRasterPos2s(80, 40), mark();
+    glColor3f(0.4F, 1, 1);
+    glRasterPos3f(100, 40, 0.2F), mark();
+    glRasterPos3d(120, 40, -0.2), mark();
+    glRasterPos3i(140, 40, 0), mark();
+    glRasterPos4f(160, 40, 0, 1), mark();
+    glRasterPos4s(360, 80, 0, 2), mark();
+    const GLfloat place[] = {200, 40.5F};
+    glRasterPos2fv(place), mark();
+    const GLint place4[] = {220, 40, 0, 1};
+    glRasterPos4iv(place4), mark();
+    // Outside of the window at the left: invalid, so nothing may appear.
+    glRasterPos2i(-1, 40), mark();
+    glWindowPos2d(10, 50.6), mark();
+    glWindowPos3f(30, 50, 0.5F), mark();
+    glWindowPos2s(50, 50), mark();
+    const GLint window[] = {70, 50, 0};
+    glWindowPos3iv(window), mark();
+    // Moved by an empty bitmap to before the left edge, which stays valid.
+    glWindowPos2i(2, 60);
+    glBitmap(0, 0, 0, 0, -6, 0, nullptr);
+    mark();
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    GLfloat told[4];
+    glGetFloatv(GL_CURRENT_RASTER_POSITION, told);
+    showBits(37, told[0]);
+}
+
+void drawZoomed(unsigned frame) {
+    const auto pixels = noise(9 * 7 * 4, 100 + frame);
+    const GLfloat zooms[][2] = {{1.5F, 1.5F}, {3, 2}, {-2, 1}, {2, -1.7F}, {0.6F, 0.5F}};
+    GLint x = 10;
+    for (const auto& zoom : zooms) {
+        glPixelZoom(zoom[0], zoom[1]);
+        glWindowPos2i(x + (zoom[0] < 0 ? 20 : 0), 70 + (zoom[1] < 0 ? 12 : 0));
+        glDrawPixels(9, 7, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+        x += 32;
+    }
+    glPixelZoom(1, 1);
+}
+
+void drawTransferred(unsigned frame) {
+    const auto pixels = noise(16 * 12 * 4, 110 + frame);
+    glPixelTransferf(GL_RED_SCALE, 0.5F);
+    glPixelTransferf(GL_GREEN_BIAS, 0.3F);
+    glPixelTransferf(GL_BLUE_SCALE, -1);
+    glPixelTransferf(GL_BLUE_BIAS, 1);
+    glWindowPos2i(10, 95);
+    glDrawPixels(16, 12, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+    glPixelTransferf(GL_RED_SCALE, 1);
+    glPixelTransferf(GL_GREEN_BIAS, 0);
+    glPixelTransferf(GL_BLUE_SCALE, 1);
+    glPixelTransferf(GL_BLUE_BIAS, 0);
+    GLfloat map[16];
+    GLushort shorts[8];
+    GLuint ints[4];
+    for (int i = 0; i < 16; ++i) {
+        map[i] = float((i * 7 + int(frame)) % 16) / 15.0F;
+        shorts[i / 2] = GLushort(65535 - i * 4000);
+        ints[i / 4] = GLuint(i) << 28;
+    }
+    glPixelMapfv(GL_PIXEL_MAP_R_TO_R, 16, map);
+    glPixelMapusv(GL_PIXEL_MAP_G_TO_G, 8, shorts);
+    glPixelMapuiv(GL_PIXEL_MAP_B_TO_B, 4, ints);
+    glPixelTransferi(GL_MAP_COLOR, GL_TRUE);
+    glWindowPos2i(35, 95);
+    glDrawPixels(16, 12, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+    glPixelTransferi(GL_MAP_COLOR, GL_FALSE);
+    // Colour indices become colours by maps.
+    for (const GLenum name : {GL_PIXEL_MAP_I_TO_R, GL_PIXEL_MAP_I_TO_G, GL_PIXEL_MAP_I_TO_B}) {
+        map[frame % 16] = 0.5F;
+        glPixelMapfv(name, 16, map);
+        map[(frame + 3) % 16] = 1;
+    }
+    glPixelTransferi(GL_INDEX_SHIFT, 1);
+    glPixelTransferi(GL_INDEX_OFFSET, 3);
+    glWindowPos2i(60, 95);
+    glDrawPixels(16, 12, GL_COLOR_INDEX, GL_UNSIGNED_BYTE, pixels.data());
+    glPixelTransferi(GL_INDEX_SHIFT, 0);
+    glPixelTransferi(GL_INDEX_OFFSET, 0);
+}
+
+void copyPixels(Window& window, unsigned frame) {
+    const int w = window.width();
+    const int h = window.height();
+    glWindowPos2i(w / 3, h * 2 / 3);
+    glCopyPixels(3, 3, 60, 30, GL_COLOR);
+    glPixelZoom(-1.5F, 1.25F);
+    glWindowPos2i(w - 10, h * 2 / 3);
+    glCopyPixels(int(frame) * 3, 60, 40, 30, GL_COLOR);
+    glPixelZoom(1, 1);
+    glPixelTransferf(GL_GREEN_SCALE, 0.4F);
+    glWindowPos2i(5, h * 2 / 3);
+    glCopyPixels(w / 2, 30, 50, 20, GL_COLOR);
+    glPixelTransferf(GL_GREEN_SCALE, 1);
+    // Overlapping itself.
+    glWindowPos2i(8, 8);
+    glCopyPixels(3, 3, 40, 22, GL_COLOR);
+}
+
+// Stencil and depth pixels, made visible by drawing through the tests.
+void drawStencilAndDepth(unsigned frame) {
+    glEnable(GL_STENCIL_TEST);
+    glWindowPos2i(90, 95);
+    glDrawPixels(24, 20, GL_STENCIL_INDEX, GL_UNSIGNED_BYTE, noise(480, 120 + frame).data());
+    glWindowPos2i(116, 95);
+    glCopyPixels(90, 95, 20, 15, GL_STENCIL);
+    glStencilFunc(GL_LESS, 100, 0xff);
+    glColor3f(0.9F, 0.2F, 0.9F);
+    glRecti(90, 95, 140, 115);
+    glDisable(GL_STENCIL_TEST);
+    GLfloat depths[24 * 20];
+    for (int i = 0; i < 480; ++i) {
+        depths[i] = float((i * 37 + int(frame) * 11) % 97) / 96.0F;
+    }
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_ALWAYS);
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    glWindowPos2i(145, 95);
+    glDrawPixels(24, 20, GL_DEPTH_COMPONENT, GL_FLOAT, depths);
+    glWindowPos2i(172, 95);
+    glCopyPixels(145, 95, 20, 15, GL_DEPTH);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDepthFunc(GL_LESS);
+    glBegin(GL_QUADS);
+    glColor3f(0.2F, 0.9F, 0.9F);
+    glVertex3f(145, 95, -1), glVertex3f(195, 95, 1), glVertex3f(195, 115, 1), glVertex3f(145, 115, -1);
+    glEnd();
+    glDisable(GL_DEPTH_TEST);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    return runInGlxWindow(
+        argc,
+        argv,
+        {},
+        [](Window&) {},
+        [](Window& window, int frame) {
+            glClearColor(0.1F, 0.1F, 0.1F, 1);
+            glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+            glMatrixMode(GL_PROJECTION);
+            glLoadIdentity();
+            glOrtho(0, window.width(), 0, window.height(), -1, 1);
+            const auto number = unsigned(frame);
+            drawFormats(number);
+            drawWithPixelStore(number);
+            drawRasterPositions(number);
+            drawZoomed(number);
+            drawTransferred(number);
+            drawStencilAndDepth(number);
+            copyPixels(window, number);
+        });
+}
