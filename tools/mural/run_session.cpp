@@ -101,6 +101,7 @@ private:
     }
 
     void finish() {
+        finishing_ = true;
         const int signalBefore = program_.stopSignal();
         if (head_->connected()) head_->send(R"({"command":"finish"})");
         silenceUntil_ = Deadline::inMs(kFinishSilenceMs);
@@ -138,7 +139,7 @@ private:
         clients_ = 0;
         head_->process().waitUntil(Deadline::inMs(500));
         console_.error("the head process was lost (" + head_->process().describeEnd() + "); " +
-                       (program_.programRunning() ? "the program goes on alone, without the wall" : "there is no report"));
+                       (!finishing_ ? "the program goes on alone, without the wall" : "there is no report"));
     }
 
     void take(const std::string& line) {
@@ -177,6 +178,7 @@ private:
     launch::ProgramSupervisor& program_;
     std::unique_ptr<HeadControl> head_;
     bool ready_ = false;
+    bool finishing_ = false;
     bool framesReached_ = false;
     bool everClients_ = false;
     int64_t clients_ = 0;
