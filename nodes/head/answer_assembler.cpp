@@ -1,0 +1,199 @@
+#include "nodes/head/answer_assembler.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace mural {
+namespace {
+
+using wire::AnswerHeader;
+using wire::AnswerKind;
+
+constexpr size_t kMostOpenRequests = 65536;
+constexpr int64_t kMostReplyBytes = int64_t{1} << 30;
+constexpr size_t kMostParts = 65536; // of one request
+
+Error contradiction(const AnswerHeader& header) {
+    return Error{"its answer to request " + std::to_string(header.requestId) +
+                 " contradicts the other nodes'; are they of one build?"};
+}
+
+} // namespace
+
+AnswerAssembler::AnswerAssembler(int nodes, Deliver deliver)
+    : deliver_(std::move(deliver))
+    , living_(static_cast<size_t>(nodes), true) {}
+
+Result<void> AnswerAssembler::answer(int node, const AnswerHeader& header, ByteBuffer bytes) {
+    Request complete;
+    {
+        const std::lock_guard lock(mutex_);
+        if (!living_[static_cast<size_t>(node)]) return {};
+        if (requests_.size() >= kMostOpenRequests) return Error{"it answers what nobody asked"};
+        const Key key{header.client, header.requestId};
+        Request& request = requests_[key];
+        if (auto added = add(node, header, std::move(bytes), request); !added) return added;
+        const bool deliver = !request.delivered && canDeliver(request);
+        if (deliver) {
+            complete = std::move(request);
+            request.parts.clear();
+            request.last = complete.last;
+            request.delivered = true;
+        }
+        if (allAnswered(request)) requests_.erase(key);
+        if (!deliver) return {};
+    }
+    deliver_(header.client, assemble(header.requestId, complete));
+    return {};
+}
+
+Result<void> AnswerAssembler::add(int node, const AnswerHeader& header, ByteBuffer bytes, Request& r) {
+    if (header.kind < 1 || header.kind > 3) return Error{"it answered in an unknown kind"};
+    if (r.last.empty()) {
+        r.last.resize(living_.size(), false);
+        r.kind = header.kind;
+        r.groupBytes = header.groupBytes;
+    }
+    const auto index = static_cast<size_t>(node);
+    if (r.kind != header.kind || r.last[index]) return contradiction(header);
+    r.last[index] = header.last != 0;
+    if (r.delivered || (bytes.size() == 0 && header.first == 0)) return {};
+    const bool rectangle = r.kind == static_cast<uint32_t>(AnswerKind::Rectangle);
+    PixelViewport where;
+    if (rectangle) {
+        where = {header.x, header.y, header.w, header.h};
+        PixelViewport all = where;
+        for (const Part& part : r.parts) all = unite(all, part.rectangle);
+        // 64: the most that NodeLink lets through, so that this can't overflow.
+        if (header.groupBytes != r.groupBytes || all.area() * header.groupBytes > kMostReplyBytes)
+            return contradiction(header);
+    }
+    if (header.first != 0) r.firstNode = node;
+    if (r.parts.size() >= kMostParts) return Error{"its answer comes in too many parts"};
+    r.parts.push_back({node, where, std::move(bytes)});
+    return {};
+}
+
+bool AnswerAssembler::allAnswered(const Request& request) const {
+    for (size_t node = 0; node < living_.size(); ++node)
+        if (living_[node] && !request.last[node]) return false;
+    return true;
+}
+
+bool AnswerAssembler::canDeliver(const Request& request) const {
+    const bool bytes = request.kind == static_cast<uint32_t>(AnswerKind::Bytes);
+    if (bytes && request.firstNode >= 0 && request.last[static_cast<size_t>(request.firstNode)])
+        return true; // all hold the same: no need to wait for the others
+    return allAnswered(request);
+}
+
+void AnswerAssembler::nodeLost(int node) {
+    std::vector<std::pair<Key, Request>> complete;
+    {
+        const std::lock_guard lock(mutex_);
+        living_[static_cast<size_t>(node)] = false;
+        for (auto it = requests_.begin(); it != requests_.end();) {
+            Request& request = it->second;
+            // Its half answer of bytes counts for nothing: another node has the same in whole.
+            if (request.firstNode == node && !request.last[static_cast<size_t>(node)])
+                request.firstNode = -1;
+            if (!allAnswered(request)) {
+                ++it;
+                continue;
+            }
+            if (!request.delivered) complete.emplace_back(it->first, std::move(request));
+            it = requests_.erase(it);
+        }
+    }
+    for (auto& [key, request] : complete) deliver_(key.first, assemble(key.second, request));
+}
+
+size_t AnswerAssembler::openRequests() const {
+    const std::lock_guard lock(mutex_);
+    return requests_.size();
+}
+
+Reply AnswerAssembler::assemble(uint32_t requestId, const Request& request) {
+    Reply reply;
+    reply.header.requestId = requestId;
+    reply.header.kind = request.kind;
+    reply.header.failed = 1; // until somebody's answer is in
+    if (request.kind == static_cast<uint32_t>(AnswerKind::Rectangle)) assembleRectangle(request, reply);
+    if (request.kind == static_cast<uint32_t>(AnswerKind::Bytes)) assembleBytes(request, reply);
+    if (request.kind == static_cast<uint32_t>(AnswerKind::Sum)) assembleSum(request, reply);
+    reply.header.sizeBytes = reply.bytes.size();
+    return reply;
+}
+
+void AnswerAssembler::assembleRectangle(const Request& request, Reply& reply) {
+    PixelViewport all;
+    int64_t covered = 0;
+    for (const Part& part : request.parts) {
+        all = unite(all, part.rectangle);
+        covered += part.rectangle.area();
+    }
+    // Nobody's tile meets the rectangle: that is an answer too, of no pixels.
+    reply.header.failed = std::ranges::find(request.last, true) == request.last.end() && all.empty();
+    reply.header.groupBytes = request.groupBytes;
+    reply.header.x = all.x;
+    reply.header.y = all.y;
+    reply.header.w = all.w;
+    reply.header.h = all.h;
+    const size_t pixelBytes = request.groupBytes;
+    const size_t rowBytes = static_cast<size_t>(all.w) * pixelBytes;
+    reply.bytes = ByteBuffer::ofSize(rowBytes * static_cast<size_t>(all.h));
+    if (reply.bytes.size() == 0) {
+        reply.header.w = reply.header.h = 0;
+        return;
+    }
+    if (covered < all.area()) std::memset(reply.bytes.data(), 0, reply.bytes.size());
+    for (const Part& part : request.parts) {
+        const size_t partRowBytes = static_cast<size_t>(part.rectangle.w) * pixelBytes;
+        const auto left = static_cast<size_t>(part.rectangle.x - all.x) * pixelBytes;
+        const auto bottom = static_cast<size_t>(part.rectangle.y - all.y);
+        for (size_t y = 0; y < static_cast<size_t>(part.rectangle.h); ++y) {
+            std::memcpy(reply.bytes.data() + (bottom + y) * rowBytes + left,
+                        part.bytes.data() + y * partRowBytes, partRowBytes);
+        }
+    }
+}
+
+void AnswerAssembler::assembleBytes(const Request& request, Reply& reply) {
+    int from = request.firstNode;
+    for (const Part& part : request.parts) {
+        // Without the one that speaks for all: the first that has spoken to the end.
+        const bool whole = request.last[static_cast<size_t>(part.node)];
+        if (request.firstNode < 0 && whole && (from < 0 || part.node < from)) from = part.node;
+    }
+    size_t sizeBytes = 0;
+    for (const Part& part : request.parts)
+        if (part.node == from) sizeBytes += part.bytes.size();
+    reply.bytes = ByteBuffer::ofSize(sizeBytes);
+    reply.header.failed = from < 0 || reply.bytes.size() != sizeBytes;
+    if (reply.header.failed != 0) return;
+    size_t at = 0;
+    for (const Part& part : request.parts) {
+        if (part.node != from || part.bytes.size() == 0) continue;
+        std::memcpy(reply.bytes.data() + at, part.bytes.data(), part.bytes.size());
+        at += part.bytes.size();
+    }
+}
+
+void AnswerAssembler::assembleSum(const Request& request, Reply& reply) {
+    std::vector<uint64_t> sums;
+    for (const Part& part : request.parts) {
+        const size_t count = part.bytes.size() / sizeof(uint64_t);
+        if (sums.size() < count) sums.resize(count, 0);
+        for (size_t i = 0; i < count; ++i) {
+            uint64_t value = 0;
+            std::memcpy(&value, part.bytes.data() + i * sizeof(value), sizeof(value));
+            sums[i] += value;
+        }
+    }
+    if (sums.empty()) return;
+    reply.header.failed = 0;
+    reply.bytes = ByteBuffer::ofSize(sums.size() * sizeof(uint64_t));
+    if (reply.bytes.size() != 0) std::memcpy(reply.bytes.data(), sums.data(), reply.bytes.size());
+}
+
+} // namespace mural

@@ -1,0 +1,65 @@
+// Puts together what the nodes answer to a program's request. Requests are known only from the
+// answers: the streams of all nodes are equal, so every node answers every request.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "common/pixel_viewport.hpp"
+#include "common/result.hpp"
+#include "nodes/head/byte_buffer.hpp"
+#include "nodes/head/capture_client.hpp"
+#include "streamcodec/wire.hpp"
+
+namespace mural {
+
+// All calls from any thread. `deliver` is called without locks held, once per request.
+class AnswerAssembler {
+public:
+    using Deliver = std::function<void(uint32_t client, Reply reply)>;
+
+    AnswerAssembler(int nodes, Deliver deliver);
+
+    Result<void> answer(int node, const wire::AnswerHeader& header, ByteBuffer bytes);
+    // Requests in progress are completed with what there is.
+    void nodeLost(int node);
+
+    [[nodiscard]] size_t openRequests() const;
+
+private:
+    using Key = std::pair<uint32_t, uint32_t>; // client, request
+
+    struct Part {
+        int node = 0;
+        PixelViewport rectangle;
+        ByteBuffer bytes;
+    };
+    struct Request {
+        uint32_t kind = 0;
+        uint32_t groupBytes = 0;
+        std::vector<Part> parts;
+        std::vector<bool> last;   // per node
+        int firstNode = -1;       // the one that answers for all (Bytes)
+        bool delivered = false;   // the rest only has to come in
+    };
+
+    Result<void> add(int node, const wire::AnswerHeader& header, ByteBuffer bytes, Request& request);
+    [[nodiscard]] bool allAnswered(const Request& request) const;
+    [[nodiscard]] bool canDeliver(const Request& request) const;
+
+    mutable std::mutex mutex_;
+    const Deliver deliver_;
+    std::vector<bool> living_;
+    std::map<Key, Request> requests_;
+
+    static Reply assemble(uint32_t requestId, const Request& request);
+    static void assembleRectangle(const Request& request, Reply& reply);
+    static void assembleBytes(const Request& request, Reply& reply);
+    static void assembleSum(const Request& request, Reply& reply);
+};
+
+} // namespace mural

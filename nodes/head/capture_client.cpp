@@ -1,0 +1,187 @@
+#include "nodes/head/capture_client.hpp"
+
+#include <chrono>
+#include <fstream>
+#include <poll.h>
+
+namespace mural {
+namespace {
+
+constexpr int64_t kPumpSliceNs = 50 * kNsPerMs;      // between two looks whether the program lives
+constexpr size_t kFlushBytes = size_t{64} * 1024;    // nodes begin with what they have by then
+constexpr int64_t kReplyPatienceMs = 30'000;         // without the program taking a byte
+constexpr size_t kMaxQueuedBytes = size_t{1} << 31;  // answers that the program asked for but does not take
+
+std::string nameOf(pid_t pid) {
+    std::ifstream file("/proc/" + std::to_string(pid) + "/comm");
+    std::string name;
+    std::getline(file, name);
+    return name.empty() ? "unknown" : name;
+}
+
+std::span<const std::byte> bytesOf(const auto& value) {
+    return std::as_bytes(std::span(&value, 1));
+}
+
+} // namespace
+
+CaptureClient::CaptureClient(uint32_t id,
+                             pid_t pid,
+                             std::unique_ptr<CaptureMemory> memory,
+                             NodeSet& nodes,
+                             CaptureEvents& events)
+    : id_(id)
+    , pid_(pid)
+    , name_(nameOf(pid))
+    , memory_(std::move(memory))
+    , nodes_(nodes)
+    , events_(events) {}
+
+CaptureClient::~CaptureClient() {
+    stop();
+    if (pumpThread_.joinable()) pumpThread_.join();
+    if (replyThread_.joinable()) replyThread_.join();
+}
+
+void CaptureClient::start(FileDescriptor socket) {
+    socket_ = std::move(socket);
+    memory_->closeFd();
+    pumpThread_ = std::thread([this] { pump(); });
+    replyThread_ = std::thread([this] { writeReplies(); });
+}
+
+std::string CaptureClient::describe() const {
+    return "program " + std::to_string(id_) + " (" + name_ + ", pid " + std::to_string(pid_) + ")";
+}
+
+void CaptureClient::drain() {
+    drainTail_ = memory_->publishedTail();
+    draining_ = true;
+    memory_->wakePump();
+}
+
+void CaptureClient::stop() {
+    stop_ = true;
+    memory_->wakePump();
+    const std::lock_guard lock(mutex_); // so that the writer is either before its look or asleep
+    replyQueued_.notify_all();
+}
+
+void CaptureClient::drop(const std::string& problem) {
+    {
+        const std::lock_guard lock(mutex_);
+        if (problem_.empty()) problem_ = problem;
+    }
+    stop();
+}
+
+void CaptureClient::pump() {
+    CaptureMemory::Range range;
+    bool gone = false;
+    while (!stop_ && !drained()) {
+        if (pumpNext(range)) continue;
+        flushNodes();
+        if (stop_ || gone) break; // gone: and nothing has come since that was seen
+        gone = programGone();
+        if (!gone) memory_->waitPublished(kPumpSliceNs);
+    }
+    flushNodes();
+    const bool inOrder = drained() && !gone && !stop_;
+    if (!inOrder) reportEnd();
+    pumpEnded_ = true;
+}
+
+void CaptureClient::reportEnd() {
+    std::string problem;
+    {
+        const std::lock_guard lock(mutex_);
+        problem = problem_;
+    }
+    if (!problem.empty()) memory_->setHeadGone(); // it goes on alone
+    events_.programEnded(id_, problem);
+}
+
+bool CaptureClient::pumpNext(CaptureMemory::Range& range) {
+    const CaptureMemory::Next next = memory_->next(range);
+    if (next == CaptureMemory::Next::Empty) return false;
+    if (next == CaptureMemory::Next::Bad) {
+        drop("its shared memory holds an impossible index; was it overwritten?");
+        return false;
+    }
+    if (!range.bytes.empty()) {
+        nodes_.broadcast(wire::streamOf(id_, range.stream), range.bytes);
+        unflushedBytes_ += range.bytes.size();
+    }
+    if (!memory_->take(range)) {
+        drop("it gave back more chunks than it took; was its shared memory overwritten?");
+        return false;
+    }
+    if (unflushedBytes_ >= kFlushBytes) flushNodes();
+    return true;
+}
+
+void CaptureClient::flushNodes() {
+    if (unflushedBytes_ == 0) return;
+    unflushedBytes_ = 0;
+    nodes_.flush();
+}
+
+bool CaptureClient::drained() const {
+    return draining_ && static_cast<int32_t>(memory_->takenHead() - drainTail_) >= 0;
+}
+
+bool CaptureClient::programGone() const {
+    pollfd look{socket_.get(), POLLRDHUP, 0};
+    return poll(&look, 1, 0) > 0 && (look.revents & (POLLRDHUP | POLLHUP | POLLERR | POLLNVAL)) != 0;
+}
+
+void CaptureClient::reply(Reply reply) {
+    const std::lock_guard lock(mutex_);
+    replyQueueBytes_ += reply.bytes.size();
+    if (replyQueueBytes_ > kMaxQueuedBytes) {
+        if (problem_.empty()) problem_ = "it asks for more than it reads; more than 2 GiB wait for it";
+        stop_ = true;
+        return;
+    }
+    replies_.push_back(std::move(reply));
+    replyQueued_.notify_one();
+}
+
+void CaptureClient::writeReplies() {
+    std::unique_lock lock(mutex_);
+    while (!stop_) {
+        if (replies_.empty()) {
+            replyQueued_.wait_for(lock, std::chrono::seconds(1));
+            continue;
+        }
+        const Reply reply = std::move(replies_.front());
+        replies_.pop_front();
+        replyQueueBytes_ -= reply.bytes.size();
+        lock.unlock();
+        const bool written = writeAll(bytesOf(reply.header)) && writeAll(reply.bytes.span());
+        lock.lock();
+        if (!written) return;
+    }
+}
+
+// False: the program is gone, dropped, or the session ends.
+bool CaptureClient::writeAll(std::span<const std::byte> bytes) {
+    Deadline deadline = Deadline::inMs(kReplyPatienceMs);
+    while (!bytes.empty()) {
+        const size_t written = memory_->writeReply(bytes);
+        bytes = bytes.subspan(written);
+        if (written > 0) {
+            deadline = Deadline::inMs(kReplyPatienceMs);
+            continue;
+        }
+        if (stop_ || programGone()) return false;
+        if (deadline.passed()) {
+            drop("it did not read its answer for 30 s");
+            return false;
+        }
+        memory_->waitReplyRoom(kPumpSliceNs);
+    }
+    return true;
+}
+
+} // namespace mural

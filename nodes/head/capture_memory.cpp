@@ -1,0 +1,173 @@
+#include "nodes/head/capture_memory.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <new>
+#include <sys/mman.h>
+
+#include "common/futex.hpp"
+
+namespace mural {
+namespace {
+
+using capture::CaptureHeader;
+using capture::kChunkBytes;
+using capture::Publication;
+
+constexpr uint64_t kPageBytes = 4096;
+
+uint64_t roundUp(uint64_t value) { return (value + kPageBytes - 1) / kPageBytes * kPageBytes; }
+
+Error systemError(const char* what) {
+    return Error{std::string("no shared memory for a program: ") + what + ": " +
+                 std::strerror(errno) + "; check the limits of memory and open files"};
+}
+
+void writeLayout(CaptureHeader& h, uint32_t chunkCount, uint32_t replyBytes) {
+    h.magic = capture::kMagic;
+    h.version = capture::kVersion;
+    h.chunkCount = chunkCount;
+    h.replyCapacity = replyBytes;
+    h.publicationsAt = roundUp(sizeof(CaptureHeader));
+    h.freedAt = roundUp(h.publicationsAt + uint64_t{chunkCount} * sizeof(Publication));
+    h.repliesAt = roundUp(h.freedAt + uint64_t{chunkCount} * sizeof(uint32_t));
+    h.chunksAt = roundUp(h.repliesAt + replyBytes);
+    h.totalBytes = h.chunksAt + uint64_t{chunkCount} * kChunkBytes;
+}
+
+void store(std::atomic<uint32_t>& word, uint32_t value) {
+    word.store(value, std::memory_order_release);
+    futexWakeAll(word);
+}
+
+} // namespace
+
+Result<std::unique_ptr<CaptureMemory>> CaptureMemory::create(uint32_t chunkCount,
+                                                             uint32_t replyBytes) {
+    FileDescriptor fd(memfd_create("mural-capture", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+    if (!fd.valid()) return systemError("memfd_create");
+    CaptureHeader layout{};
+    writeLayout(layout, chunkCount, replyBytes);
+    if (ftruncate(fd.get(), static_cast<off_t>(layout.totalBytes)) != 0)
+        return systemError("ftruncate");
+    // Without the seals the program could shrink the memory and kill the head with SIGBUS.
+    if (fcntl(fd.get(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0)
+        return systemError("sealing");
+    void* base =
+        mmap(nullptr, layout.totalBytes, PROT_READ | PROT_WRITE, MAP_SHARED, fd.get(), 0);
+    if (base == MAP_FAILED) return systemError("mmap");
+    auto* header = new (base) CaptureHeader{};
+    writeLayout(*header, chunkCount, replyBytes);
+    return std::unique_ptr<CaptureMemory>(
+        new CaptureMemory(std::move(fd), static_cast<std::byte*>(base), layout));
+}
+
+CaptureMemory::CaptureMemory(FileDescriptor fd, std::byte* base, const CaptureHeader& layout)
+    : fd_(std::move(fd))
+    , base_(base)
+    , shared_(reinterpret_cast<CaptureHeader*>(base))
+    , chunkCount_(layout.chunkCount)
+    , replyCapacity_(layout.replyCapacity)
+    , publicationsAt_(layout.publicationsAt)
+    , freedAt_(layout.freedAt)
+    , repliesAt_(layout.repliesAt)
+    , chunksAt_(layout.chunksAt)
+    , totalBytes_(layout.totalBytes) {
+    auto* freed = reinterpret_cast<uint32_t*>(at(freedAt_));
+    for (uint32_t i = 0; i < chunkCount_; ++i) freed[i] = i;
+    freedTail_ = chunkCount_;
+    shared_->freedTail.store(freedTail_, std::memory_order_release);
+}
+
+CaptureMemory::~CaptureMemory() { munmap(base_, totalBytes_); }
+
+CaptureMemory::Next CaptureMemory::next(Range& range) {
+    const uint32_t tail = publishedTail();
+    if (tail == publishedHead_) return Next::Empty;
+    if (tail - publishedHead_ > chunkCount_) return Next::Bad;
+    // Copied once: the program could change it between check and use.
+    Publication p;
+    const uint32_t slot = publishedHead_ & (chunkCount_ - 1);
+    std::memcpy(&p, at(publicationsAt_ + slot * sizeof(Publication)), sizeof(p));
+    asm volatile("" ::: "memory"); // the copy is the only read
+    const bool whole = p.beginBytes % 4 == 0 && p.endBytes % 4 == 0;
+    if (p.chunk >= chunkCount_ || p.beginBytes > p.endBytes || p.endBytes > kChunkBytes || !whole)
+        return Next::Bad;
+    range.bytes = {at(chunksAt_ + uint64_t{p.chunk} * kChunkBytes + p.beginBytes),
+                   p.endBytes - p.beginBytes};
+    range.chunk = p.chunk;
+    range.stream = p.stream;
+    range.lastOfChunk = p.lastOfChunk != 0;
+    return Next::Ready;
+}
+
+bool CaptureMemory::take(const Range& range) {
+    if (range.lastOfChunk) {
+        const uint32_t head = shared_->freedHead.load(std::memory_order_acquire);
+        if (freedTail_ - head >= chunkCount_) return false; // freed more often than taken
+        const uint32_t slot = freedTail_ & (chunkCount_ - 1);
+        std::memcpy(at(freedAt_ + slot * sizeof(uint32_t)), &range.chunk, sizeof(uint32_t));
+        store(shared_->freedTail, ++freedTail_);
+    }
+    const bool wasFull = publishedTail() - publishedHead_ >= chunkCount_;
+    shared_->publishedHead.store(++publishedHead_, std::memory_order_release);
+    if (wasFull) futexWakeAll(shared_->publishedHead); // only then can the program wait for room
+    return true;
+}
+
+uint32_t CaptureMemory::publishedTail() const {
+    return shared_->publishedTail.load(std::memory_order_acquire);
+}
+
+void CaptureMemory::waitPublished(int64_t timeoutNs) const {
+    futexWait(shared_->publishedTail, publishedHead_, timeoutNs);
+}
+
+void CaptureMemory::wakePump() const { futexWakeAll(shared_->publishedTail); }
+
+size_t CaptureMemory::writeReply(std::span<const std::byte> bytes) {
+    const uint32_t head = shared_->replyHead.load(std::memory_order_acquire);
+    const uint32_t used = replyTail_ - head;
+    if (used >= replyCapacity_) return 0; // full, or a head that makes no sense: never past the end
+    const size_t count = std::min<size_t>(bytes.size(), replyCapacity_ - used);
+    const uint32_t slot = replyTail_ & (replyCapacity_ - 1);
+    const size_t first = std::min<size_t>(count, replyCapacity_ - slot);
+    std::memcpy(at(repliesAt_ + slot), bytes.data(), first);
+    std::memcpy(at(repliesAt_), bytes.data() + first, count - first);
+    replyTail_ += static_cast<uint32_t>(count);
+    store(shared_->replyTail, replyTail_);
+    return count;
+}
+
+void CaptureMemory::waitReplyRoom(int64_t timeoutNs) const {
+    const uint32_t head = shared_->replyHead.load(std::memory_order_acquire);
+    if (replyTail_ - head < replyCapacity_) return;
+    futexWait(shared_->replyHead, head, timeoutNs);
+}
+
+void CaptureMemory::setFramesDone(uint32_t frames) { store(shared_->framesDone, frames); }
+void CaptureMemory::setFramesShown(uint32_t frames) { store(shared_->framesShown, frames); }
+
+void CaptureMemory::setHeadGone() {
+    store(shared_->headGone, 1);
+    for (const auto* word : {&shared_->publishedTail, &shared_->publishedHead, &shared_->freedTail,
+                             &shared_->replyTail, &shared_->replyHead, &shared_->framesDone,
+                             &shared_->framesShown})
+        futexWakeAll(*word);
+}
+
+CaptureCounts CaptureMemory::counts() const {
+    CaptureCounts c;
+    c.verifiedFrames = shared_->verifiedFrames.load();
+    c.verifiedPixels = shared_->verifiedPixels.load();
+    c.differingPixels = shared_->differingPixels.load();
+    c.largestDifference = shared_->largestDifference.load();
+    c.callsUnsupported = shared_->callsUnsupported.load();
+    c.roundTrips = shared_->roundTrips.load();
+    c.waitNs = shared_->waitNs.load();
+    return c;
+}
+
+} // namespace mural

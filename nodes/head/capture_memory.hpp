@@ -1,0 +1,79 @@
+// The head's side of the memory that one captured program shares (common/capture_ring.hpp).
+// The program may write anything anywhere in it at any time. So nothing is believed: offsets and the
+// head's own positions are kept here and only copied out, indices from the ring are read once and
+// checked.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "common/capture_ring.hpp"
+#include "common/result.hpp"
+#include "transport/file_descriptor.hpp"
+
+namespace mural {
+
+// The program's own counts, for the report.
+struct CaptureCounts {
+    uint64_t verifiedFrames = 0;
+    uint64_t verifiedPixels = 0;
+    uint64_t differingPixels = 0;
+    uint32_t largestDifference = 0;
+    uint64_t callsUnsupported = 0;
+    uint64_t roundTrips = 0;
+    uint64_t waitNs = 0;
+};
+
+// Threads: one for publications and chunks, one for replies; the words of progress from any.
+class CaptureMemory {
+public:
+    // Both powers of two.
+    static Result<std::unique_ptr<CaptureMemory>> create(
+        uint32_t chunkCount = capture::kDefaultChunks, uint32_t replyBytes = capture::kReplyBytes);
+    CaptureMemory(const CaptureMemory&) = delete;
+    CaptureMemory& operator=(const CaptureMemory&) = delete;
+    ~CaptureMemory();
+
+    [[nodiscard]] int fd() const { return fd_.get(); }
+    void closeFd() { fd_ = FileDescriptor(); } // the mapping stays
+
+    struct Range {
+        std::span<const std::byte> bytes;
+        uint32_t chunk = 0;
+        uint16_t stream = 0;
+        bool lastOfChunk = false;
+    };
+    enum class Next { Empty, Ready, Bad };
+    Next next(Range& range); // the oldest publication, not taken yet
+    bool take(const Range& range); // done with it; false: the ring of freed chunks is corrupt
+    [[nodiscard]] uint32_t publishedTail() const;
+    [[nodiscard]] uint32_t takenHead() const { return publishedHead_; }
+    void waitPublished(int64_t timeoutNs) const; // returns at once when there is something
+    void wakePump() const;
+
+    // Writes as much as there is room for.
+    size_t writeReply(std::span<const std::byte> bytes);
+    void waitReplyRoom(int64_t timeoutNs) const;
+
+    void setFramesDone(uint32_t frames);
+    void setFramesShown(uint32_t frames);
+    void setHeadGone(); // and wakes whoever sleeps on any word
+    [[nodiscard]] CaptureCounts counts() const;
+
+private:
+    CaptureMemory(FileDescriptor fd, std::byte* base, const capture::CaptureHeader& layout);
+    [[nodiscard]] std::byte* at(uint64_t offset) const { return base_ + offset; }
+
+    FileDescriptor fd_;
+    std::byte* base_;
+    capture::CaptureHeader* shared_;
+    uint32_t chunkCount_;
+    uint32_t replyCapacity_;
+    uint64_t publicationsAt_, freedAt_, repliesAt_, chunksAt_, totalBytes_;
+    uint32_t publishedHead_ = 0;
+    uint32_t freedTail_ = 0;
+    uint32_t replyTail_ = 0;
+};
+
+} // namespace mural

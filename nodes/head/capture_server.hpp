@@ -1,0 +1,68 @@
+// The session's Unix socket (abstract name): programs come, say Hello, and get their shared memory.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <sys/types.h>
+#include <thread>
+#include <vector>
+
+#include "common/capture_ring.hpp"
+#include "common/clock.hpp"
+#include "common/result.hpp"
+#include "transport/file_descriptor.hpp"
+
+namespace mural {
+
+struct Admission {
+    capture::Welcome welcome{};  // refused, extensionBytes, magic and version are the server's
+    int memoryFd = -1;           // the host's
+    std::string extensions;
+};
+
+// Who decides about programs. Called by the server's thread.
+class ProgramHost {
+public:
+    virtual ~ProgramHost() = default;
+    // An error refuses the program; its text is for the program's user.
+    virtual Result<Admission> admitProgram(pid_t pid) = 0;
+    // It was sent its Welcome (or not: then the socket is invalid and the admission void).
+    virtual void programWelcomed(uint32_t client, FileDescriptor socket) = 0;
+};
+
+class CaptureServer {
+public:
+    // digest: of the command table, must be equal at both ends.
+    static Result<std::unique_ptr<CaptureServer>> start(const std::string& session,
+                                                        uint64_t digest,
+                                                        ProgramHost& host);
+    CaptureServer(const CaptureServer&) = delete;
+    CaptureServer& operator=(const CaptureServer&) = delete;
+    ~CaptureServer(); // stops
+
+private:
+    struct Newcomer {
+        FileDescriptor socket;
+        Deadline deadline;
+        capture::Hello hello{};
+        size_t haveBytes = 0; // of hello
+    };
+
+    CaptureServer(FileDescriptor listener, uint64_t digest, ProgramHost& host);
+    void serve();
+    void acceptOne();
+    bool settle(Newcomer& newcomer, bool readable); // true: done with it, one way or the other
+    void answer(FileDescriptor socket, const capture::Hello& hello);
+    Result<Admission> judge(int socket, const capture::Hello& hello);
+
+    const FileDescriptor listener_;
+    const uint64_t digest_;
+    ProgramHost& host_;
+    std::vector<Newcomer> newcomers_; // connected, Hello not complete yet
+    std::atomic<bool> stop_{false};
+    std::thread thread_;
+};
+
+} // namespace mural

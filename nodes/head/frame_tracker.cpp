@@ -1,0 +1,113 @@
+#include "nodes/head/frame_tracker.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace mural {
+namespace {
+
+// A frame number that has been missing for so many later ones will not come: its thread died between
+// taking the number and swapping.
+constexpr size_t kMostEarly = 16;
+// Nodes can't be ahead of each other by more than the streams hold; a node that is, is broken.
+constexpr size_t kMostOpenFrames = size_t{1} << 20;
+
+} // namespace
+
+FrameTracker::FrameTracker(int nodes, Credit credit)
+    : credit_(std::move(credit))
+    , living_(static_cast<size_t>(nodes), true)
+    , framesOf_(static_cast<size_t>(nodes), 0) {}
+
+FrameTracker::Client& FrameTracker::client(uint32_t id) {
+    Client& c = clients_[id];
+    c.nodes.resize(living_.size());
+    return c;
+}
+
+Result<void> FrameTracker::frameDone(int node, const wire::FrameDoneMessage& m, int64_t nowNs) {
+    const std::lock_guard lock(mutex_);
+    Client& c = client(m.client);
+    NodeProgress& progress = c.nodes[static_cast<size_t>(node)];
+    const bool repeated = m.frame <= progress.done || progress.early.contains(m.frame);
+    if (repeated) return Error{"it finished frame " + std::to_string(m.frame) + " twice"};
+    if (c.windows.size() >= kMostOpenFrames) return Error{"it is a million frames ahead"};
+    ++framesOf_[static_cast<size_t>(node)];
+    if (m.frame > c.finished) c.windows.try_emplace(m.frame, Window{m.window, m.width, m.height});
+    progress.early.insert(m.frame);
+    if (progress.early.size() > kMostEarly) progress.done = *progress.early.begin() - 1;
+    while (!progress.early.empty() && *progress.early.begin() == progress.done + 1) {
+        ++progress.done;
+        progress.early.erase(progress.early.begin());
+    }
+    advance(m.client, c, nowNs);
+    return {};
+}
+
+void FrameTracker::nodeLost(int node, int64_t nowNs) {
+    const std::lock_guard lock(mutex_);
+    living_[static_cast<size_t>(node)] = false;
+    if (std::ranges::find(living_, true) == living_.end()) return;
+    for (auto& [id, c] : clients_) advance(id, c, nowNs);
+}
+
+void FrameTracker::clientGone(uint32_t id) {
+    const std::lock_guard lock(mutex_);
+    mainWindow_.clientGone(id);
+}
+
+void FrameTracker::pictureHeld(uint32_t id, uint32_t frame) {
+    const std::lock_guard lock(mutex_);
+    client(id).held.insert(frame);
+}
+
+void FrameTracker::pictureReleased(uint32_t id, uint32_t frame) {
+    const std::lock_guard lock(mutex_);
+    Client& c = client(id);
+    const auto found = c.held.find(frame);
+    if (found != c.held.end()) c.held.erase(found);
+    giveCredit(id, c);
+}
+
+void FrameTracker::advance(uint32_t id, Client& c, int64_t nowNs) {
+    uint32_t finished = std::numeric_limits<uint32_t>::max();
+    for (size_t node = 0; node < living_.size(); ++node)
+        if (living_[node]) finished = std::min(finished, c.nodes[node].done);
+    if (finished <= c.finished) return;
+    c.finished = finished;
+    while (!c.windows.empty() && c.windows.begin()->first <= finished) {
+        count(id, c.windows.begin()->second, nowNs);
+        c.windows.erase(c.windows.begin());
+    }
+    giveCredit(id, c);
+}
+
+void FrameTracker::giveCredit(uint32_t id, Client& c) {
+    uint32_t shown = c.finished;
+    if (!c.held.empty()) shown = std::min(shown, *c.held.begin() - 1);
+    shown = std::max(shown, c.shown); // a late swap of another thread does not take it back
+    if (c.finished == c.credited && shown == c.shown) return;
+    c.credited = c.finished;
+    c.shown = shown;
+    credit_(id, c.finished, shown);
+}
+
+void FrameTracker::count(uint32_t id, const Window& window, int64_t nowNs) {
+    const int64_t number = mainWindow_.swapped(id, window.id, window.width, window.height);
+    if (number == 0) return;
+    totals_.mainFrame = number;
+    if (totals_.wallFrames++ == 0) totals_.firstNs = nowNs;
+    totals_.latestNs = nowNs;
+}
+
+FrameTotals FrameTracker::totals() const {
+    const std::lock_guard lock(mutex_);
+    return totals_;
+}
+
+int64_t FrameTracker::framesOf(int node) const {
+    const std::lock_guard lock(mutex_);
+    return framesOf_[static_cast<size_t>(node)];
+}
+
+} // namespace mural

@@ -1,0 +1,102 @@
+#include "nodes/head/head.hpp"
+
+#include <csignal>
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "nodes/head/head_session.hpp"
+#include "nodes/launch/child_process.hpp"
+#include "nodes/launch/environment.hpp"
+#include "nodes/output/app_window.hpp"
+#include "nodes/output/outputs.hpp"
+#include "nodes/output/png_files.hpp"
+#include "streamcodec/registry_digest.hpp"
+
+namespace mural {
+namespace {
+
+constexpr int64_t kConfigPatienceMs = 10'000;
+constexpr int64_t kLaunchPatienceMs = 30'000;
+
+volatile std::sig_atomic_t asked = 0;
+void askToFinish(int) { asked = 1; }
+
+// The terminal's Ctrl-C reaches head and `mural run` alike; it is for `mural run` to decide then.
+void setUpSignals() {
+    launch::rememberSignals();
+    signal(SIGPIPE, SIG_IGN);
+    signal(SIGINT, SIG_IGN);
+    struct sigaction finish {};
+    finish.sa_handler = askToFinish; // no SA_RESTART: waits end
+    sigaction(SIGTERM, &finish, nullptr);
+    sigaction(SIGHUP, &finish, nullptr);
+}
+
+Result<SessionConfig> receiveConfig(ControlChannel& control) {
+    const Deadline deadline = Deadline::inMs(kConfigPatienceMs);
+    do {
+        if (const auto line = control.receive(deadline)) return sessionConfigFromJson(*line);
+    } while (!control.broken() && !deadline.passed() && asked == 0);
+    return Error{"no session configuration came; `mural head` is started by `mural run`"};
+}
+
+Result<std::vector<LaunchedNode>> launch(const SessionConfig& config, const SessionPlan& plan,
+                                         const ControlChannel& control) {
+    LaunchOptions options;
+    options.executable = launch::ownBinary();
+    options.remoteMural = config.remoteMural.empty() ? options.executable : config.remoteMural;
+    options.launchCommand = config.launchCommand;
+    return launchNodes(plan, options, Deadline::inMs(kLaunchPatienceMs),
+                       [&] { return asked != 0 || control.broken(); });
+}
+
+Result<void> addOutputs(const SessionConfig& config, ControlChannel& control, HeadOptions& options) {
+    options.openWindow = [display = config.displayName](uint64_t window) {
+        AppWindowConfig target;
+        target.displayName = display;
+        target.window = static_cast<uint32_t>(window);
+        auto opened = AppWindow::open(target);
+        if (!opened) return Result<std::unique_ptr<PictureSink>>(opened.error());
+        return Result<std::unique_ptr<PictureSink>>(std::move(*opened));
+    };
+    if (config.out.empty()) return {};
+    OutputOptions output;
+    output.say = [&control](const std::string& text) { control.say(text); };
+    auto file = openOutput(config.out, output);
+    if (!file) return file.error();
+    // The sink lives as long as the session that is asked for its last picture.
+    const auto* pngs = dynamic_cast<const PngFiles*>(file->get());
+    options.lastPicture = [pngs, out = config.out] { return pngs ? pngs->lastPath() : out; };
+    options.file = std::move(*file);
+    return {};
+}
+
+Result<int> runSession(ControlChannel& control) {
+    auto config = receiveConfig(control);
+    if (!config) return config.error();
+    char host[256] = "localhost";
+    gethostname(host, sizeof(host) - 1);
+    SessionPlan plan = planSession(*config, host);
+    HeadOptions options;
+    options.registryDigest = registryDigest();
+    options.interrupted = [] { return asked != 0; };
+    if (const auto outputs = addOutputs(*config, control, options); !outputs) return outputs.error();
+    auto nodes = launch(*config, plan, control);
+    if (!nodes) return nodes.error();
+    HeadSession session(*config, std::move(plan), std::move(*nodes), control, std::move(options));
+    return session.run();
+}
+
+} // namespace
+
+int runHead(int controlFd) {
+    fcntl(controlFd, F_SETFD, FD_CLOEXEC); // nodes must not hold it open
+    setUpSignals();
+    ControlChannel control{FileDescriptor(controlFd)};
+    const Result<int> status = runSession(control);
+    if (status) return status.value();
+    control.error(status.error().message);
+    return 1;
+}
+
+} // namespace mural

@@ -1,0 +1,358 @@
+#include "nodes/head/head_session.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <poll.h>
+#include <thread>
+
+namespace mural {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int64_t kTickMs = 50;
+constexpr int64_t kProgressNs = 200 * kNsPerMs;  // at most 5 lines per second
+constexpr int64_t kProcessPatienceMs = 2000;     // from a node's Bye to the end of its process
+
+bool wantsPictures(const SessionConfig& config) {
+    return config.display == Display::App || !config.out.empty();
+}
+
+} // namespace
+
+HeadSession::HeadSession(SessionConfig config,
+                         SessionPlan plan,
+                         std::vector<LaunchedNode> nodes,
+                         ControlChannel& control,
+                         HeadOptions options)
+    : config_(std::move(config))
+    , plan_(std::move(plan))
+    , control_(control)
+    , options_(std::move(options))
+    , nodeCount_(static_cast<int>(nodes.size()))
+    , sendsPictures_(wantsPictures(config_))
+    , frames_(nodeCount_,
+              [this](uint32_t client, uint32_t finished, uint32_t shown) {
+                  if (serving_) programs_->credit(client, finished, shown);
+              })
+    , answers_(nodeCount_,
+               [this](uint32_t client, Reply reply) {
+                   if (serving_) programs_->reply(client, std::move(reply));
+               })
+    , pictures_(nodeCount_,
+                [this](WindowPicture picture) {
+                    frames_.pictureHeld(picture.client, picture.frame);
+                    output_->add(std::move(picture));
+                })
+    , facts_(nodes.size())
+    , ready_(nodes.size(), false)
+    , totals_(nodes.size()) {
+    NodeEvents& events = *this; // a private base: make_unique could not convert
+    for (int node = 0; node < nodeCount_; ++node) {
+        LaunchedNode& launched = nodes[static_cast<size_t>(node)];
+        totals_[static_cast<size_t>(node)].node = node;
+        nodes_.add(std::make_unique<NodeLink>(NodePlace{node, launched.plan.where},
+                                              std::move(launched.connection),
+                                              std::move(launched.process), events));
+    }
+    if (!sendsPictures_) return;
+    PictureOutputConfig output;
+    output.saveFrames = config_.saveFrames;
+    output.toNativeWindows = config_.display == Display::App;
+    output.openWindow = options_.openWindow;
+    output.done = [this](uint32_t client, uint32_t frame) { frames_.pictureReleased(client, frame); };
+    output.say = [this](const std::string& text) { control_.say(text); };
+    output_ = std::make_unique<PictureOutput>(std::move(output), std::move(options_.file));
+}
+
+HeadSession::~HeadSession() {
+    tearingDown_ = true;
+    server_.reset();
+    if (output_) output_->drop();
+    nodes_.loseAll("the head ends");
+    if (programs_) programs_->endAll();
+    nodes_.end();
+}
+
+int HeadSession::run() {
+    if (const auto up = bringUp(); !up) {
+        control_.error(up.error().message);
+        return 1;
+    }
+    serve();
+    finish();
+    control_.send(reportOf(numbers()));
+    return 0;
+}
+
+// ---- start
+
+Result<void> HeadSession::bringUp() {
+    nodes_.startReading();
+    for (const NodePlan& plan : plan_.nodes)
+        nodes_.sendSetup(plan.node, toJson(setupOf(config_, plan_, plan)));
+    if (auto ready = awaitReady(); !ready) return ready;
+    openTables();
+    auto server = CaptureServer::start(config_.session, options_.registryDigest, *programs_);
+    if (!server) return server.error();
+    server_ = std::move(*server);
+    announceReady();
+    return {};
+}
+
+Result<void> HeadSession::awaitReady() {
+    const Deadline deadline = Deadline::inMs(options_.readyPatienceMs);
+    while (true) {
+        {
+            const std::lock_guard lock(mutex_);
+            if (!startFailure_.empty()) return Error{startFailure_};
+            const auto missing = std::ranges::find(ready_, false);
+            if (missing == ready_.end()) return {};
+            if (deadline.passed()) {
+                const auto node = static_cast<int>(missing - ready_.begin());
+                return Error{nodes_.link(node).describe() + " was not ready within " +
+                             std::to_string(options_.readyPatienceMs / 1000) +
+                             " s; try --gl osmesa, or fewer nodes"};
+            }
+        }
+        if (askedToFinish(Deadline::inMs(10)))
+            return Error{"the session was ended before its nodes were ready"};
+    }
+}
+
+void HeadSession::openTables() {
+    ProgramTerms terms;
+    capture::Welcome& welcome = terms.welcome;
+    welcome.policy = config_.policy == CapturePolicy::Full ? capture::kPolicyFull : capture::kPolicyState;
+    welcome.latency = static_cast<uint32_t>(config_.latency);
+    welcome.verifyEvery = static_cast<uint32_t>(config_.verifyEvery);
+    welcome.nodeCount = static_cast<uint32_t>(nodeCount_);
+    welcome.displayApp = config_.display == Display::App ? 1 : 0;
+    {
+        const std::lock_guard lock(mutex_);
+        welcome.nodeGlVersion = static_cast<uint32_t>(lowestGlVersion(facts_));
+        terms.extensions = commonExtensions(facts_);
+    }
+    terms.framesDoneWhenShown = config_.display == Display::App && config_.latency == 0;
+    terms.chunkCount = options_.chunkCount;
+    ProgramTable::Events events;
+    events.countChanged = [this](size_t count) {
+        control_.send({{"event", "clients"}, {"count", count}});
+    };
+    events.gone = [this](uint32_t client, const std::string& line) {
+        frames_.clientGone(client);
+        if (output_) output_->clientGone(client);
+        if (!line.empty()) control_.say(line);
+    };
+    programs_ = std::make_unique<ProgramTable>(std::move(terms), nodes_, std::move(events));
+    serving_ = true;
+}
+
+std::vector<std::string> HeadSession::explainLines() const {
+    std::vector<std::string> lines = plan_.explain;
+    lines.push_back(config_.tiling == Tiling::Exact
+                        ? "tiling exact: every node has a frame buffer of the whole picture and draws "
+                          "its tiles only; no pixel differs from a single machine's"
+                        : "tiling lean: frame buffers of the tiles' size; up to 0.25 % of the pixels "
+                          "may differ, mostly by 1");
+    return lines;
+}
+
+void HeadSession::announceReady() {
+    Json nodes = Json::array();
+    {
+        const std::lock_guard lock(mutex_);
+        for (const NodePlan& plan : plan_.nodes) {
+            const NodeFacts& facts = facts_[static_cast<size_t>(plan.node)];
+            nodes.push_back({{"node", plan.node},
+                             {"where", plan.where},
+                             {"pid", facts.pid},
+                             {"gl", facts.renderer}});
+        }
+    }
+    for (const std::string& warning : plan_.warnings) control_.say(warning);
+    control_.send({{"event", "ready"}, {"explain", explainLines()}, {"nodes", nodes}});
+}
+
+// ---- while it runs
+
+void HeadSession::serve() {
+    while (!askedToFinish(Deadline::inMs(kTickMs))) tick();
+}
+
+bool HeadSession::askedToFinish(Deadline deadline) {
+    const auto line = control_.receive(deadline);
+    if (control_.broken() || (options_.interrupted && options_.interrupted())) return true;
+    if (!line) return false;
+    const Json command = Json::parse(*line, nullptr, false);
+    const bool known = command.is_object() && command.value("command", Json()) == "finish";
+    if (!known) control_.say("the head does not know this command: " + line->substr(0, 60));
+    return known;
+}
+
+void HeadSession::tick() {
+    const int64_t nowNs = monotonicNowNs();
+    nodes_.watch(nowNs);
+    programs_->reap();
+    reportProgress(nowNs);
+}
+
+void HeadSession::reportProgress(int64_t nowNs) {
+    const FrameTotals totals = frames_.totals();
+    const int64_t onWall = sendsPictures_ ? output_->totals().mainFrame : totals.mainFrame;
+    if (config_.frames > 0 && onWall >= config_.frames && !framesReached_) {
+        framesReached_ = true;
+        control_.send({{"event", "frames-reached"}});
+    }
+    if (totals.wallFrames == lastProgressFrame_ || nowNs - lastProgressNs_ < kProgressNs) return;
+    lastProgressNs_ = nowNs;
+    lastProgressFrame_ = totals.wallFrames;
+    const auto rates = meter_.sample(nowNs, totals.wallFrames, nodes_.bytesSent());
+    control_.send({{"event", "frame"},
+                   {"frame", totals.mainFrame},
+                   {"framesPerSecond", rates.framesPerSecond},
+                   {"bytesPerFrame", rates.bytesPerFrame}});
+}
+
+// ---- what the nodes say
+
+Result<void> HeadSession::nodeReady(int node, const std::string& json) {
+    auto facts = nodeFactsFromJson(json);
+    if (!facts) return facts.error();
+    const auto index = static_cast<size_t>(node);
+    const std::lock_guard lock(mutex_);
+    if (ready_[index]) return Error{"it said twice that it is ready"};
+    facts_[index] = std::move(*facts);
+    ready_[index] = true;
+    return {};
+}
+
+Result<void> HeadSession::nodeAnswer(int node, const wire::AnswerHeader& header, ByteBuffer bytes) {
+    return answers_.answer(node, header, std::move(bytes));
+}
+
+Result<void> HeadSession::nodeFrameDone(int node, const wire::FrameDoneMessage& message) {
+    if (sendsPictures_) {
+        pictures_.frameDone(node, message.client, message.window, message.frame);
+        output_->waitForRoom();
+    }
+    {
+        const std::lock_guard lock(mutex_);
+        totals_[static_cast<size_t>(node)].cpuSeconds +=
+            static_cast<double>(message.replayNs) / static_cast<double>(kNsPerS);
+    }
+    return frames_.frameDone(node, message, monotonicNowNs());
+}
+
+Result<void> HeadSession::nodePicture(int node, const wire::PictureHeader& header, ByteBuffer rows) {
+    if (!sendsPictures_) return Error{"it sent a picture that nobody asked for"};
+    auto done = pictures_.part(node, header, std::move(rows));
+    output_->waitForRoom();
+    return done;
+}
+
+Result<void> HeadSession::nodeLog(int node, const std::string& text) {
+    std::string line = text.substr(0, text.find('\n'));
+    control_.say("node " + std::to_string(node) + ": " + line);
+    return {};
+}
+
+Result<void> HeadSession::nodeBye(int node, const std::string& json) {
+    if (!finishing_) return Error{"it ended though nobody had asked it to"};
+    const std::lock_guard lock(mutex_);
+    readBye(json, totals_[static_cast<size_t>(node)]);
+    return {};
+}
+
+void HeadSession::nodeLost(int node, const std::string& why) {
+    if (tearingDown_) return;
+    bool last = false;
+    bool starting = false;
+    {
+        const std::lock_guard lock(mutex_);
+        const std::string name = nodes_.link(node).describe();
+        totals_[static_cast<size_t>(node)].lost = true;
+        last = ++lostNodes_ == nodeCount_;
+        starting = !serving_;
+        if (starting && startFailure_.empty()) startFailure_ = name + " did not start: " + why;
+    }
+    if (starting) return;
+    control_.say(nodes_.link(node).describe() + " was lost: " + why + "; its tiles stay as they were");
+    answers_.nodeLost(node);
+    pictures_.nodeLost(node);
+    frames_.nodeLost(node, monotonicNowNs());
+    if (last) noNodeIsLeft();
+}
+
+void HeadSession::noNodeIsLeft() {
+    control_.say("no render node is left: programs go on alone, without the wall; start the session again");
+    programs_->refuseFrom("this session has lost all its render nodes; start it again");
+    programs_->tellHeadGone();
+}
+
+// ---- end
+
+void HeadSession::finish() {
+    finishing_ = true;
+    programs_->refuseFrom("the session is ending");
+    programs_->drainAll(Deadline::inMs(options_.drainPatienceMs),
+                        [this] { nodes_.watch(monotonicNowNs()); });
+    finishNodes();
+    if (output_ && !output_->finish(Deadline::inMs(options_.outputPatienceMs)))
+        control_.say("the last pictures could not be written in time; the output may be incomplete");
+    server_.reset();
+    programs_->endAll();
+    reportProgress(monotonicNowNs());
+    const Deadline deadline = Deadline::inMs(kProcessPatienceMs);
+    for (int node = 0; node < nodeCount_; ++node)
+        if (NodeProcess* process = nodes_.link(node).process()) process->waitEnded(deadline);
+    tearingDown_ = true;
+    if (output_) output_->drop();
+    nodes_.end();
+}
+
+void HeadSession::finishNodes() {
+    constexpr int kSliceMs = 5;
+    const int64_t beganNs = monotonicNowNs();
+    const Deadline deadline = Deadline::inMs(options_.endPatienceMs);
+    // Its own thread: a node that takes nothing would hold up the watch over the nodes.
+    std::thread asking([this] { nodes_.broadcast(wire::HeadCommand::Finish, {}); });
+    while (!allReadersEnded()) {
+        nodes_.watch(monotonicNowNs());
+        loseSilentNodes(beganNs, deadline.passed());
+        if (deadline.passed()) break; // a reader may hang in an output: that is seen to below
+        poll(nullptr, 0, kSliceMs);
+    }
+    asking.join();
+}
+
+void HeadSession::loseSilentNodes(int64_t sinceNs, bool all) {
+    const int64_t nowNs = monotonicNowNs();
+    for (int node = 0; node < nodeCount_; ++node) {
+        NodeLink& link = nodes_.link(node);
+        const int64_t silentNs = nowNs - std::max(sinceNs, link.lastProgressNs(nowNs));
+        const bool silent = silentNs > options_.byePatienceMs * kNsPerMs;
+        if (!link.saidBye() && (silent || all)) link.lose("it did not end in time with the session");
+    }
+}
+
+bool HeadSession::allReadersEnded() {
+    for (int node = 0; node < nodeCount_; ++node)
+        if (!nodes_.link(node).readerEnded()) return false;
+    return true;
+}
+
+SessionNumbers HeadSession::numbers() {
+    SessionNumbers result;
+    result.frames = frames_.totals();
+    result.bytesSent = nodes_.bytesSent();
+    result.programs = programs_->counts();
+    if (output_) result.output = output_->totals();
+    if (options_.lastPicture) result.lastPicture = options_.lastPicture();
+    const std::lock_guard lock(mutex_);
+    result.nodes = totals_;
+    for (NodeTotals& totals : result.nodes) totals.frames = frames_.framesOf(totals.node);
+    return result;
+}
+
+} // namespace mural

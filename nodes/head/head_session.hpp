@@ -1,0 +1,117 @@
+// One session of the head: connects programs, nodes and outputs, from the nodes' start to the report.
+//
+//   program → CaptureClient → NodeSet → nodes
+//   nodes → NodeLink → FrameTracker     → credit of the programs
+//                    → AnswerAssembler  → replies to the programs
+//                    → PictureAssembler → PictureOutput
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "nodes/head/answer_assembler.hpp"
+#include "nodes/head/capture_server.hpp"
+#include "nodes/head/control_channel.hpp"
+#include "nodes/head/frame_tracker.hpp"
+#include "nodes/head/node_facts.hpp"
+#include "nodes/head/node_launcher.hpp"
+#include "nodes/head/node_set.hpp"
+#include "nodes/head/picture_assembler.hpp"
+#include "nodes/head/picture_output.hpp"
+#include "nodes/head/program_table.hpp"
+#include "nodes/head/session_report.hpp"
+#include "nodes/session/session_config.hpp"
+
+namespace mural {
+
+struct HeadOptions {
+    uint64_t registryDigest = 0;
+    std::unique_ptr<PictureSink> file; // of --out; null: none
+    std::function<std::string()> lastPicture; // path of the last file; may be empty
+    std::function<Result<std::unique_ptr<PictureSink>>(uint64_t nativeWindow)> openWindow;
+    std::function<bool()> interrupted; // a signal asks to finish; may be empty
+    uint32_t chunkCount = capture::kDefaultChunks;
+    int64_t readyPatienceMs = 30'000;
+    int64_t drainPatienceMs = 10'000;
+    int64_t byePatienceMs = 10'000; // without anything from a node
+    int64_t endPatienceMs = 60'000; // with
+    int64_t outputPatienceMs = 150'000; // video encoders hold frames back
+};
+
+// run() by one thread, the one that has launched the nodes.
+class HeadSession : private NodeEvents {
+public:
+    HeadSession(SessionConfig config,
+                SessionPlan plan,
+                std::vector<LaunchedNode> nodes,
+                ControlChannel& control,
+                HeadOptions options);
+    ~HeadSession() override;
+
+    int run(); // the exit status of the head
+
+private:
+    Result<void> nodeReady(int node, const std::string& json) override;
+    Result<void> nodeAnswer(int node, const wire::AnswerHeader& header, ByteBuffer bytes) override;
+    Result<void> nodeFrameDone(int node, const wire::FrameDoneMessage& message) override;
+    Result<void> nodePicture(int node, const wire::PictureHeader& header, ByteBuffer rows) override;
+    Result<void> nodeLog(int node, const std::string& text) override;
+    Result<void> nodeBye(int node, const std::string& json) override;
+    void nodeLost(int node, const std::string& why) override;
+
+    Result<void> bringUp();
+    Result<void> awaitReady();
+    void openTables();
+    void announceReady();
+    std::vector<std::string> explainLines() const;
+
+    void serve();
+    bool askedToFinish(Deadline deadline); // waits until then for the control connection
+    void tick();
+    void reportProgress(int64_t nowNs);
+
+    void finish();
+    void finishNodes();
+    void loseSilentNodes(int64_t sinceNs, bool all);
+    bool allReadersEnded();
+    SessionNumbers numbers();
+    void noNodeIsLeft();
+
+    const SessionConfig config_;
+    const SessionPlan plan_;
+    ControlChannel& control_;
+    HeadOptions options_;
+    const int nodeCount_;
+    const bool sendsPictures_;
+
+    // In the order of construction; the nodes' readers use all of it and are ended before.
+    FrameTracker frames_;
+    AnswerAssembler answers_;
+    std::unique_ptr<PictureOutput> output_; // null: no pictures come
+    PictureAssembler pictures_;
+    NodeSet nodes_;
+    std::unique_ptr<ProgramTable> programs_; // once the nodes are ready
+    std::unique_ptr<CaptureServer> server_;
+
+    std::atomic<bool> finishing_{false};
+    std::atomic<bool> tearingDown_{false};
+    std::atomic<bool> serving_{false};
+    ProgressMeter meter_;
+    int64_t lastProgressNs_ = 0;
+    int64_t lastProgressFrame_ = 0;
+    bool framesReached_ = false;
+
+    std::mutex mutex_; // what follows
+    std::vector<NodeFacts> facts_;
+    std::vector<bool> ready_;
+    std::vector<NodeTotals> totals_;
+    std::string startFailure_;
+    int lostNodes_ = 0;
+};
+
+} // namespace mural

@@ -1,0 +1,27 @@
+// What the nodes said about themselves when they were ready, and what of it holds for all.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/result.hpp"
+
+namespace mural {
+
+struct NodeFacts {
+    std::string host;
+    int64_t pid = 0;
+    std::string renderer;
+    int glVersion = 0; // 10 * major + minor, 0: unknown
+    std::vector<std::string> extensions;
+};
+
+Result<NodeFacts> nodeFactsFromJson(const std::string& json);
+
+int lowestGlVersion(const std::vector<NodeFacts>& nodes);
+
+// Those that every node has, separated by spaces.
+std::string commonExtensions(const std::vector<NodeFacts>& nodes);
+
+} // namespace mural

@@ -1,0 +1,46 @@
+// Where render nodes come in over TCP. Who can't show a secret that a node was given is sent away;
+// nothing else of what he sends is looked at.
+#pragma once
+
+#include <atomic>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "nodes/session/session_secret.hpp"
+#include "transport/connection.hpp"
+
+namespace mural {
+
+// All calls from any thread.
+class NodeGate {
+public:
+    // Listens on a free port of the loopback interface, or of all.
+    static Result<std::unique_ptr<NodeGate>> open(bool loopbackOnly);
+    NodeGate(const NodeGate&) = delete;
+    NodeGate& operator=(const NodeGate&) = delete;
+    ~NodeGate();
+
+    [[nodiscard]] int port() const { return port_; }
+    void expect(int node, const SessionSecret& secret);
+    std::unique_ptr<Connection> take(int node); // null: it has not come yet
+
+private:
+    NodeGate(std::unique_ptr<Listener> listener, int port);
+    void acceptAll();
+    void check(std::unique_ptr<Connection> connection);
+
+    const std::unique_ptr<Listener> listener_;
+    const int port_;
+    std::atomic<bool> stop_{false};
+    std::mutex mutex_;
+    std::map<int, SessionSecret> expected_;
+    std::map<int, std::unique_ptr<Connection>> arrived_;
+    std::atomic<int> checking_{0};
+    std::vector<std::thread> checkers_; // the accepting thread's
+    std::thread thread_;
+};
+
+} // namespace mural

@@ -1,0 +1,157 @@
+#include "nodes/head/node_launcher.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <arpa/inet.h>
+#include <poll.h>
+#include <sstream>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "nodes/head/node_gate.hpp"
+#include "transport/file_descriptor.hpp"
+
+namespace mural {
+namespace {
+
+constexpr size_t kLocalBytes = size_t{16} << 20; // per direction between head and local node
+
+std::string nameOf(const NodePlan& plan) {
+    return "node " + std::to_string(plan.node) + " (" + plan.where + ")";
+}
+
+// The address under which `host` reaches this machine; the own name when that can't be found out.
+std::string addressTowards(const std::string& host) {
+    char name[256] = "localhost";
+    gethostname(name, sizeof(name) - 1);
+    addrinfo hints{};
+    hints.ai_family = AF_INET;
+    hints.ai_socktype = SOCK_DGRAM;
+    addrinfo* found = nullptr;
+    const std::string machine = host.substr(host.find('@') + 1); // user@host
+    if (getaddrinfo(machine.c_str(), "9", &hints, &found) != 0) return name;
+    // Connecting a datagram socket sends nothing but chooses the route.
+    const FileDescriptor fd(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+    sockaddr_in own{};
+    socklen_t size = sizeof(own);
+    char text[INET_ADDRSTRLEN] = {};
+    const bool known = connect(fd.get(), found->ai_addr, found->ai_addrlen) == 0 &&
+                       getsockname(fd.get(), reinterpret_cast<sockaddr*>(&own), &size) == 0 &&
+                       inet_ntop(AF_INET, &own.sin_addr, text, sizeof(text)) != nullptr;
+    freeaddrinfo(found);
+    return known ? text : name;
+}
+
+// For the shell that the launch command runs on the host.
+std::string quoted(const std::string& word) {
+    if (word.find_first_of(" \t\"'\\$`*?[]()<>|&;!#~") == std::string::npos) return word;
+    std::string result = "'";
+    for (const char c : word) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return result + "'";
+}
+
+std::vector<std::string> words(const std::string& text) {
+    std::istringstream stream(text);
+    std::vector<std::string> all;
+    for (std::string word; stream >> word;) all.push_back(word);
+    return all;
+}
+
+NodeCommand tcpCommand(const NodePlan& plan, const LaunchOptions& options, int port) {
+    NodeCommand command;
+    const std::string endpoint = ":" + std::to_string(port);
+    if (plan.reach == NodeReach::Tcp) {
+        command.arguments = {options.executable, "node", "--connect", "127.0.0.1" + endpoint};
+        return command;
+    }
+    command.arguments = words(options.launchCommand);
+    for (const std::string& word : {plan.where, quoted(options.remoteMural), std::string("node"),
+                                    std::string("--connect"), addressTowards(plan.where) + endpoint})
+        command.arguments.push_back(word);
+    return command;
+}
+
+Result<void> startLocal(LaunchedNode& node, const LaunchOptions& options) {
+    auto offer = offerSharedMemory(kLocalBytes);
+    if (!offer) return offer.error();
+    const FileDescriptor peerFd(offer->peerFd);
+    NodeCommand command;
+    command.arguments = {options.executable, "node", "--connect-fd", std::to_string(peerFd.get())};
+    command.inheritFd = peerFd.get();
+    auto process = NodeProcess::start(command);
+    if (!process) return process.error();
+    node.process = std::move(*process);
+    node.connection = std::move(offer->connection);
+    return {};
+}
+
+Result<void> startTcp(LaunchedNode& node, const LaunchOptions& options, NodeGate& gate) {
+    const auto secret = makeSessionSecret();
+    if (!secret) return secret.error();
+    NodeCommand command = tcpCommand(node.plan, options, gate.port());
+    command.standardInput = toHex(secret.value()) + "\n";
+    gate.expect(node.plan.node, secret.value());
+    auto process = NodeProcess::start(command);
+    if (!process) return process.error();
+    node.process = std::move(*process);
+    return {};
+}
+
+Result<std::unique_ptr<NodeGate>> openGate(const SessionPlan& plan) {
+    const auto reaches = [&](NodeReach reach) {
+        return std::ranges::any_of(plan.nodes, [&](const NodePlan& n) { return n.reach == reach; });
+    };
+    const bool remote = reaches(NodeReach::LaunchCommand);
+    if (!remote && !reaches(NodeReach::Tcp)) return std::unique_ptr<NodeGate>();
+    return NodeGate::open(!remote);
+}
+
+Result<void> awaitConnection(LaunchedNode& node, NodeGate& gate, Deadline deadline,
+                             const std::function<bool()>& cancelled) {
+    while (true) {
+        node.connection = gate.take(node.plan.node);
+        if (node.connection) return {};
+        const std::string name = nameOf(node.plan);
+        // A launch command may hand the node over to something else and end in order.
+        const auto how = node.process->ended();
+        const bool handedOver =
+            node.plan.reach == NodeReach::LaunchCommand && how == "exit status 0";
+        if (how && !handedOver)
+            return Error{name + " did not start: " + *how + "; its own messages say why"};
+        if (deadline.passed()) {
+            return Error{name + " did not connect within 30 s; check that it can reach port " +
+                         std::to_string(gate.port()) + " of this machine"};
+        }
+        if (cancelled()) return Error{"the session was ended before it began"};
+        poll(nullptr, 0, 20);
+    }
+}
+
+} // namespace
+
+Result<std::vector<LaunchedNode>> launchNodes(const SessionPlan& plan,
+                                              const LaunchOptions& options,
+                                              Deadline deadline,
+                                              const std::function<bool()>& cancelled) {
+    auto gate = openGate(plan);
+    if (!gate) return gate.error();
+    std::vector<LaunchedNode> nodes;
+    for (const NodePlan& planned : plan.nodes) {
+        LaunchedNode node;
+        node.plan = planned;
+        const bool local = planned.reach == NodeReach::SharedMemory;
+        const auto started = local ? startLocal(node, options) : startTcp(node, options, **gate);
+        if (!started) return Error{nameOf(planned) + " did not start: " + started.error().message};
+        nodes.push_back(std::move(node));
+    }
+    for (LaunchedNode& node : nodes) {
+        if (node.connection) continue;
+        const auto connected = awaitConnection(node, **gate, deadline, cancelled);
+        if (!connected) return connected.error();
+    }
+    return nodes;
+}
+
+} // namespace mural

@@ -1,0 +1,34 @@
+// Starts the planned nodes, all at once, and waits until each has its connection.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/result.hpp"
+#include "nodes/head/node_plan.hpp"
+#include "nodes/head/node_process.hpp"
+#include "transport/connection.hpp"
+
+namespace mural {
+
+struct LaunchedNode {
+    NodePlan plan;
+    std::unique_ptr<NodeProcess> process; // null in tests with nodes in the same process
+    std::unique_ptr<Connection> connection;
+};
+
+struct LaunchOptions {
+    std::string executable;    // of `mural` here
+    std::string remoteMural;   // on other hosts
+    std::string launchCommand; // prefix that runs a command on a host
+};
+
+// By the thread that lives as long as the nodes shall. `cancelled` is asked now and then.
+Result<std::vector<LaunchedNode>> launchNodes(const SessionPlan& plan,
+                                              const LaunchOptions& options,
+                                              Deadline deadline,
+                                              const std::function<bool()>& cancelled);
+
+} // namespace mural

@@ -1,0 +1,212 @@
+#include "nodes/head/node_link.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace mural {
+namespace {
+
+using wire::NodeMessage;
+
+// A node that takes nothing of a write for this long is lost, unless the head itself holds it up.
+constexpr int64_t kStuckNs = 20 * kNsPerS;
+constexpr int64_t kWriteLimitMs = 600'000;   // the last resort behind watch()
+constexpr int64_t kReadSliceMs = 100;        // between two looks whether the node was given up
+constexpr int64_t kMessageLimitMs = 60'000;  // from a message's header to its last byte
+constexpr int64_t kStatusPatienceMs = 300;   // a broken connection is seen before the process' end
+constexpr uint32_t kMaxTextBytes = 1u << 20;
+constexpr uint32_t kMaxDataBytes = (1u << 30) + 4096; // a picture of 16384 * 16384 pixels
+
+std::span<std::byte> bytesOf(auto& value) { return std::as_writable_bytes(std::span(&value, 1)); }
+
+// A rectangle whose bytes must be exactly `have`.
+bool rectangleFits(int32_t x, int32_t y, int32_t w, int32_t h, uint64_t pixelBytes, uint64_t have) {
+    constexpr int32_t kLimit = 1 << 20;
+    if (x < -kLimit || y < -kLimit || x > kLimit || y > kLimit) return false;
+    if (w < 0 || h < 0 || w > kLimit || h > kLimit) return false;
+    return uint64_t(w) * uint64_t(h) * pixelBytes == have;
+}
+
+} // namespace
+
+NodeLink::NodeLink(NodePlace place,
+                   std::unique_ptr<Connection> connection,
+                   std::unique_ptr<NodeProcess> process,
+                   NodeEvents& events)
+    : place_(std::move(place))
+    , connection_(std::move(connection))
+    , process_(std::move(process))
+    , events_(events) {}
+
+NodeLink::~NodeLink() { end(); }
+
+void NodeLink::startReading() {
+    lastMessageNs_ = monotonicNowNs();
+    reader_ = std::thread([this] { readMessages(); });
+}
+
+std::string NodeLink::describe() const {
+    std::string text = "node " + std::to_string(place_.node) + " (" + place_.where;
+    if (process_) text += ", pid " + std::to_string(process_->pid());
+    return text + ")";
+}
+
+void NodeLink::send(std::span<const std::byte> header, std::span<const std::byte> payload) {
+    if (!alive()) return;
+    writingSinceNs_ = monotonicNowNs();
+    const Deadline deadline = Deadline::inMs(kWriteLimitMs);
+    Result<void> written = connection_->write(header, deadline);
+    if (written && !payload.empty()) written = connection_->write(payload, deadline);
+    writingSinceNs_ = 0;
+    if (!written) lose(written.error().message);
+}
+
+void NodeLink::flush() {
+    if (alive()) connection_->flush();
+}
+
+void NodeLink::lose(const std::string& why) {
+    {
+        const std::lock_guard lock(reasonMutex_);
+        if (reason_.empty()) reason_ = why;
+    }
+    if (alive_.exchange(false)) connection_->close();
+}
+
+void NodeLink::watch(int64_t nowNs) {
+    if (!alive()) return;
+    const int64_t writingSince = writingSinceNs_;
+    if (writingSince == 0 || handlingSinceNs_ != 0) return;
+    const int64_t progressNs = std::max(writingSince, lastMessageNs_.load());
+    if (nowNs - progressNs > kStuckNs) lose("it took nothing for 20 s");
+}
+
+void NodeLink::end() {
+    if (alive_.exchange(false)) connection_->close();
+    if (reader_.joinable()) reader_.join();
+    if (process_) process_->kill();
+}
+
+void NodeLink::readMessages() {
+    while (alive() && !saidBye()) {
+        wire::MessageHeader header{};
+        const Result<bool> got = readHeader(header);
+        if (got && !got.value()) continue;
+        Result<void> done = got ? readMessage(header) : Result<void>(got.error());
+        if (!done) lose(done.error().message);
+    }
+    if (!saidBye()) events_.nodeLost(place_.node, reasonOfEnd());
+    alive_ = false;
+    readerEnded_ = true;
+}
+
+// False: nothing has come yet.
+Result<bool> NodeLink::readHeader(wire::MessageHeader& header) {
+    const Result<void> got = connection_->read(bytesOf(header), Deadline::inMs(kReadSliceMs));
+    if (got) return true;
+    if (!connection_->timedOut()) return got.error();
+    // Nothing is left to read: only now a process that has ended is lost. (A connection may not notice.)
+    if (process_ && place_.where == "local") {
+        if (const auto how = process_->ended()) return Error{*how};
+    }
+    return false;
+}
+
+Result<void> NodeLink::readMessage(const wire::MessageHeader& header) {
+    switch (static_cast<NodeMessage>(header.type)) {
+    case NodeMessage::Ready:
+    case NodeMessage::Log:
+    case NodeMessage::Bye:
+        return readText(header);
+    case NodeMessage::Answer:
+        return readAnswer(header.sizeBytes);
+    case NodeMessage::Picture:
+        return readPicture(header.sizeBytes);
+    case NodeMessage::FrameDone: {
+        wire::FrameDoneMessage message{};
+        if (header.sizeBytes != sizeof(message)) break;
+        if (auto got = readStruct(message); !got) return got;
+        return handle([&] { return events_.nodeFrameDone(place_.node, message); });
+    }
+    }
+    return Error{"it sent a message that makes no sense (type " + std::to_string(header.type) + ", " +
+                 std::to_string(header.sizeBytes) + " bytes); is it of another build?"};
+}
+
+Result<void> NodeLink::readText(const wire::MessageHeader& header) {
+    if (header.sizeBytes > kMaxTextBytes) return Error{"it sent a text of more than 1 MiB"};
+    auto bytes = readBytes(header.sizeBytes);
+    if (!bytes) return bytes.error();
+    const std::string text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    return handle([&] {
+        if (header.type == static_cast<uint32_t>(NodeMessage::Ready))
+            return events_.nodeReady(place_.node, text);
+        if (header.type == static_cast<uint32_t>(NodeMessage::Log))
+            return events_.nodeLog(place_.node, text);
+        auto done = events_.nodeBye(place_.node, text);
+        saidBye_ = done.ok();
+        return done;
+    });
+}
+
+Result<void> NodeLink::readAnswer(uint32_t sizeBytes) {
+    wire::AnswerHeader header{};
+    if (sizeBytes < sizeof(header) || sizeBytes > kMaxDataBytes)
+        return Error{"it sent an answer of an impossible size"};
+    if (auto got = readStruct(header); !got) return got;
+    const uint32_t dataBytes = sizeBytes - static_cast<uint32_t>(sizeof(header));
+    const bool rectangle = header.kind == static_cast<uint32_t>(wire::AnswerKind::Rectangle);
+    const bool fits = !rectangle || (header.groupBytes <= 64 &&
+                                     rectangleFits(header.x, header.y, header.w, header.h,
+                                                   header.groupBytes, dataBytes));
+    if (!fits) return Error{"it sent an answer whose rectangle and bytes do not fit"};
+    auto bytes = readBytes(dataBytes);
+    if (!bytes) return bytes.error();
+    return handle([&] { return events_.nodeAnswer(place_.node, header, std::move(*bytes)); });
+}
+
+Result<void> NodeLink::readPicture(uint32_t sizeBytes) {
+    wire::PictureHeader header{};
+    if (sizeBytes < sizeof(header) || sizeBytes > kMaxDataBytes)
+        return Error{"it sent a picture of an impossible size"};
+    if (auto got = readStruct(header); !got) return got;
+    const uint32_t dataBytes = sizeBytes - static_cast<uint32_t>(sizeof(header));
+    if (!rectangleFits(header.x, header.y, header.w, header.h, 4, dataBytes))
+        return Error{"it sent a picture whose rectangle and bytes do not fit"};
+    auto rows = readBytes(dataBytes);
+    if (!rows) return rows.error();
+    return handle([&] { return events_.nodePicture(place_.node, header, std::move(*rows)); });
+}
+
+template <class Header> Result<void> NodeLink::readStruct(Header& header) {
+    return connection_->read(bytesOf(header), Deadline::inMs(kMessageLimitMs));
+}
+
+Result<ByteBuffer> NodeLink::readBytes(size_t sizeBytes) {
+    ByteBuffer buffer = ByteBuffer::ofSize(sizeBytes);
+    if (buffer.size() != sizeBytes)
+        return Error{"no memory for a message of " + std::to_string(sizeBytes) + " bytes"};
+    if (sizeBytes == 0) return buffer;
+    auto got = connection_->read(buffer.span(), Deadline::inMs(kMessageLimitMs));
+    if (!got) return got.error();
+    return buffer;
+}
+
+template <class Handler> Result<void> NodeLink::handle(Handler&& handler) {
+    handlingSinceNs_ = monotonicNowNs();
+    Result<void> done = handler();
+    lastMessageNs_ = monotonicNowNs();
+    handlingSinceNs_ = 0;
+    return done;
+}
+
+// The end of the process says more than the broken connection that it leaves.
+std::string NodeLink::reasonOfEnd() {
+    if (process_) {
+        if (const auto how = process_->waitEnded(Deadline::inMs(kStatusPatienceMs))) return *how;
+    }
+    const std::lock_guard lock(reasonMutex_);
+    return reason_.empty() ? "its connection ended" : reason_;
+}
+
+} // namespace mural

@@ -1,0 +1,102 @@
+// The head's end of one render node: its connection, the thread that reads its messages, and the
+// knowledge whether it lives.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <thread>
+
+#include "common/result.hpp"
+#include "nodes/head/byte_buffer.hpp"
+#include "nodes/head/node_process.hpp"
+#include "streamcodec/wire.hpp"
+#include "transport/connection.hpp"
+
+namespace mural {
+
+// What comes from the nodes. Called by the reader thread of the node in question; an error loses the
+// node. Sizes and headers are checked before, contents are not.
+class NodeEvents {
+public:
+    virtual ~NodeEvents() = default;
+    virtual Result<void> nodeReady(int node, const std::string& json) = 0;
+    virtual Result<void> nodeAnswer(int node, const wire::AnswerHeader& header, ByteBuffer bytes) = 0;
+    virtual Result<void> nodeFrameDone(int node, const wire::FrameDoneMessage& message) = 0;
+    virtual Result<void> nodePicture(int node, const wire::PictureHeader& header, ByteBuffer rows) = 0;
+    virtual Result<void> nodeLog(int node, const std::string& text) = 0;
+    virtual Result<void> nodeBye(int node, const std::string& json) = 0;
+    // The last call for a node that did not say Bye; everything it had sent was handed on before.
+    virtual void nodeLost(int node, const std::string& why) = 0;
+};
+
+struct NodePlace {
+    int node = 0;
+    std::string where = "local"; // or the host
+};
+
+// send() and flush() from one thread at a time (NodeSet's lock); the rest from any thread.
+class NodeLink {
+public:
+    NodeLink(NodePlace place,
+             std::unique_ptr<Connection> connection,
+             std::unique_ptr<NodeProcess> process, // null: nothing of ours (tests)
+             NodeEvents& events);
+    ~NodeLink();
+
+    void startReading();
+
+    // A write that fails loses the node; nothing to tell the caller.
+    void send(std::span<const std::byte> header, std::span<const std::byte> payload);
+    void flush();
+
+    // Ends the connection; the reader thread then reports the first reason given.
+    void lose(const std::string& why);
+    // Called now and then: loses a node whose process has ended or that takes nothing for too long.
+    void watch(int64_t nowNs);
+
+    [[nodiscard]] bool alive() const { return alive_.load(std::memory_order_acquire); }
+    [[nodiscard]] bool saidBye() const { return saidBye_.load(std::memory_order_acquire); }
+    [[nodiscard]] bool readerEnded() const { return readerEnded_.load(std::memory_order_acquire); }
+    // When the node last gave or took something; now while the head itself is at work on it.
+    [[nodiscard]] int64_t lastProgressNs(int64_t nowNs) const {
+        return handlingSinceNs_ != 0 ? nowNs : lastMessageNs_.load();
+    }
+    [[nodiscard]] const NodePlace& place() const { return place_; }
+    [[nodiscard]] NodeProcess* process() { return process_.get(); }
+    [[nodiscard]] std::string describe() const; // "node 2 (local, pid 77)"
+
+    // Joins the reader, ends the process.
+    void end();
+
+private:
+    void readMessages();
+    Result<bool> readHeader(wire::MessageHeader& header);
+    Result<void> readMessage(const wire::MessageHeader& header);
+    Result<ByteBuffer> readBytes(size_t sizeBytes);
+    template <class Header> Result<void> readStruct(Header& header);
+    Result<void> readAnswer(uint32_t sizeBytes);
+    Result<void> readPicture(uint32_t sizeBytes);
+    Result<void> readText(const wire::MessageHeader& header);
+    template <class Handler> Result<void> handle(Handler&& handler);
+    std::string reasonOfEnd();
+
+    const NodePlace place_;
+    const std::unique_ptr<Connection> connection_;
+    const std::unique_ptr<NodeProcess> process_;
+    NodeEvents& events_;
+    std::thread reader_;
+    std::atomic<bool> alive_{true};
+    std::atomic<bool> saidBye_{false};
+    std::atomic<bool> readerEnded_{false};
+    std::atomic<int64_t> writingSinceNs_{0};  // 0: no write is in progress
+    std::atomic<int64_t> handlingSinceNs_{0}; // 0: the reader waits for the node, not the node for us
+    std::atomic<int64_t> lastMessageNs_{0};   // when the last message had been handled
+    std::mutex reasonMutex_;
+    std::string reason_;
+};
+
+} // namespace mural

@@ -1,0 +1,36 @@
+// Which nodes a session has, where they run and what each draws. Pure.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/tile_grid.hpp"
+#include "nodes/session/session_config.hpp"
+
+namespace mural {
+
+enum class NodeReach {
+    SharedMemory, // a process of this machine
+    Tcp,          // a process of this machine, as if it ran on another
+    LaunchCommand // a process of another machine
+};
+
+struct NodePlan {
+    int node = 0;
+    std::string where; // "local" or the host
+    NodeReach reach = NodeReach::SharedMemory;
+    TileRegion region;
+};
+
+struct SessionPlan {
+    std::vector<NodePlan> nodes;
+    std::vector<std::string> explain; // lines for --explain
+    std::vector<std::string> warnings; // lines that every user should see
+};
+
+// ownHost: this machine's name.
+SessionPlan planSession(const SessionConfig& config, const std::string& ownHost);
+
+NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node);
+
+} // namespace mural

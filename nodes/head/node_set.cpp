@@ -1,0 +1,92 @@
+#include "nodes/head/node_set.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+
+namespace mural {
+namespace {
+
+std::span<const std::byte> bytesOf(const auto& value) {
+    return std::as_bytes(std::span(&value, 1));
+}
+
+std::vector<std::byte> commandBytes(wire::HeadCommand command, std::span<const std::byte> arguments) {
+    const auto word = static_cast<uint32_t>(command);
+    std::vector<std::byte> payload(sizeof(word) + arguments.size());
+    std::memcpy(payload.data(), &word, sizeof(word));
+    std::ranges::copy(arguments, payload.begin() + sizeof(word));
+    return payload;
+}
+
+} // namespace
+
+void NodeSet::add(std::unique_ptr<NodeLink> link) { links_.push_back(std::move(link)); }
+
+void NodeSet::startReading() {
+    for (auto& link : links_) link->startReading();
+}
+
+bool NodeSet::broadcast(uint32_t stream, std::span<const std::byte> payload) {
+    const std::lock_guard lock(sendMutex_);
+    return sendLocked(stream, payload);
+}
+
+bool NodeSet::broadcast(wire::HeadCommand command, std::span<const std::byte> arguments) {
+    const bool sent = broadcast(wire::streamOf(0, 0), commandBytes(command, arguments));
+    flush();
+    return sent;
+}
+
+bool NodeSet::broadcast(wire::HeadCommand command, Deadline deadline) {
+    std::unique_lock lock(sendMutex_, std::chrono::nanoseconds(deadline.leftNs(60 * kNsPerS)));
+    if (!lock.owns_lock()) return false;
+    const bool sent = sendLocked(wire::streamOf(0, 0), commandBytes(command, {}));
+    for (auto& link : links_) link->flush();
+    return sent;
+}
+
+bool NodeSet::sendLocked(uint32_t stream, std::span<const std::byte> payload) {
+    const wire::PacketHeader header{static_cast<uint32_t>(payload.size()), stream};
+    bool any = false;
+    for (auto& link : links_) {
+        link->send(bytesOf(header), payload);
+        any = any || link->alive();
+    }
+    bytesSent_.fetch_add(sizeof(header) + payload.size(), std::memory_order_relaxed);
+    return any;
+}
+
+void NodeSet::sendSetup(int node, const std::string& json) {
+    const auto payload =
+        commandBytes(wire::HeadCommand::Setup, std::as_bytes(std::span(json.data(), json.size())));
+    const wire::PacketHeader header{static_cast<uint32_t>(payload.size()), wire::streamOf(0, 0)};
+    const std::lock_guard lock(sendMutex_);
+    link(node).send(bytesOf(header), payload);
+    link(node).flush();
+}
+
+void NodeSet::flush() {
+    const std::lock_guard lock(sendMutex_);
+    for (auto& link : links_) link->flush();
+}
+
+int NodeSet::livingCount() const {
+    return static_cast<int>(
+        std::ranges::count_if(links_, [](const auto& link) { return link->alive(); }));
+}
+
+void NodeSet::watch(int64_t nowNs) {
+    for (auto& link : links_) link->watch(nowNs);
+}
+
+void NodeSet::loseAll(const std::string& why) {
+    for (auto& link : links_)
+        if (!link->saidBye()) link->lose(why);
+}
+
+void NodeSet::end() {
+    for (auto& link : links_) link->end();
+}
+
+} // namespace mural

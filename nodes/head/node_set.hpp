@@ -1,0 +1,48 @@
+// All render nodes of the session. A packet goes to every living node or to none: the streams of all
+// nodes are equal, whatever threads send.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "nodes/head/node_link.hpp"
+
+namespace mural {
+
+class NodeSet {
+public:
+    void add(std::unique_ptr<NodeLink> link); // before any other call
+    void startReading();
+
+    // False when no node lives. Blocks while a node's connection is full.
+    bool broadcast(uint32_t stream, std::span<const std::byte> payload);
+    bool broadcast(wire::HeadCommand command, std::span<const std::byte> arguments);
+    // The same, but gives up when others keep the nodes busy until the deadline.
+    bool broadcast(wire::HeadCommand command, Deadline deadline);
+    void sendSetup(int node, const std::string& json);
+    void flush();
+
+    [[nodiscard]] size_t size() const { return links_.size(); }
+    [[nodiscard]] int livingCount() const;
+    NodeLink& link(int node) { return *links_[static_cast<size_t>(node)]; }
+
+    void watch(int64_t nowNs);
+    void loseAll(const std::string& why); // those that have not said Bye
+    void end();
+
+    // Bytes that each node was sent, packet headers included.
+    [[nodiscard]] uint64_t bytesSent() const { return bytesSent_.load(std::memory_order_relaxed); }
+
+private:
+    bool sendLocked(uint32_t stream, std::span<const std::byte> payload);
+
+    std::vector<std::unique_ptr<NodeLink>> links_;
+    std::timed_mutex sendMutex_;
+    std::atomic<uint64_t> bytesSent_{0};
+};
+
+} // namespace mural

@@ -1,0 +1,73 @@
+// Whole pictures from the parts that the nodes send at every swap.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <list>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "common/result.hpp"
+#include "nodes/head/byte_buffer.hpp"
+#include "nodes/output/picture.hpp"
+#include "streamcodec/wire.hpp"
+
+namespace mural {
+
+struct WindowPicture {
+    uint32_t client = 0;
+    uint32_t window = 0;
+    uint32_t frame = 0;
+    uint64_t nativeWindow = 0; // X window id, 0: none
+    std::shared_ptr<const OwnedPicture> picture;
+};
+
+// A picture is whole when every living node has sent its part or has finished the frame without one.
+// Where a node was lost, the picture keeps what that window's picture before had there.
+// All calls from any thread. `deliver` is called under the lock, so in the order of frames: it must
+// not block.
+class PictureAssembler {
+public:
+    using Deliver = std::function<void(WindowPicture picture)>;
+
+    PictureAssembler(int nodes, Deliver deliver);
+
+    Result<void> part(int node, const wire::PictureHeader& header, ByteBuffer rows);
+    void frameDone(int node, uint32_t client, uint32_t window, uint32_t frame);
+    void nodeLost(int node);
+
+private:
+    using Key = std::tuple<uint32_t, uint32_t, uint32_t>; // client, window, frame
+    using WindowKey = std::pair<uint32_t, uint32_t>;
+
+    struct Part {
+        wire::PictureHeader header{};
+        ByteBuffer rows;
+    };
+    struct Open {
+        std::vector<Part> parts;
+        std::vector<bool> done; // per node
+    };
+    using OpenPictures = std::map<Key, Open>;
+
+    [[nodiscard]] bool complete(const Open& open) const;
+    OpenPictures::iterator finish(OpenPictures::iterator at);
+    std::shared_ptr<const OwnedPicture> assemble(const WindowKey& key, const Open& open);
+    std::shared_ptr<OwnedPicture> spare();
+    std::shared_ptr<const OwnedPicture> latestOf(const WindowKey& key) const;
+    void keepLatest(const WindowKey& key, std::shared_ptr<const OwnedPicture> picture);
+
+    std::mutex mutex_;
+    const Deliver deliver_;
+    std::vector<bool> living_;
+    OpenPictures open_;
+    std::vector<std::shared_ptr<OwnedPicture>> made_; // memory of pictures, for the next ones
+    // Latest picture of the windows that swapped last, the newest first.
+    std::list<std::pair<WindowKey, std::shared_ptr<const OwnedPicture>>> latest_;
+};
+
+} // namespace mural

@@ -1,0 +1,85 @@
+// The thread that shows and saves finished pictures.
+//
+//   wall picture (main window) → file sink (--out), all frames or those of --save
+//   every window with a native X window → that window (--display app)
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "common/clock.hpp"
+#include "nodes/head/main_window.hpp"
+#include "nodes/head/picture_assembler.hpp"
+#include "nodes/output/picture_sink.hpp"
+
+namespace mural {
+
+struct PictureOutputConfig {
+    std::vector<int64_t> saveFrames; // of the main window, from 1; empty: all
+    bool toNativeWindows = false;    // --display app
+    // Opens the sink of one native window.
+    std::function<Result<std::unique_ptr<PictureSink>>(uint64_t nativeWindow)> openWindow;
+    // From the output's thread, when a picture has gone wherever it had to.
+    std::function<void(uint32_t client, uint32_t frame)> done;
+    std::function<void(const std::string&)> say;
+};
+
+struct OutputTotals {
+    int64_t mainFrame = 0;   // number of the main window's latest frame that is out
+    int64_t savedPictures = 0;
+    int64_t lastSavedFrame = 0;
+};
+
+// add(), waitForRoom() and clientGone() from any thread.
+class PictureOutput {
+public:
+    // file: null when nothing is saved. It is called by the output's thread only.
+    PictureOutput(PictureOutputConfig config, std::unique_ptr<PictureSink> file);
+    ~PictureOutput(); // drop(), and waits for the picture that is being shown
+
+    void add(WindowPicture picture); // never blocks
+    void waitForRoom();              // until the queue is short again, or the output ends
+    void clientGone(uint32_t client);
+
+    // Writes what is queued and completes the files; false when the deadline passed before that.
+    bool finish(Deadline deadline);
+    void drop(); // what is queued; nobody waits for room any more
+    [[nodiscard]] OutputTotals totals() const;
+
+private:
+    using WindowKey = std::pair<uint32_t, uint64_t>; // client, native window
+
+    void work();
+    void show(const WindowPicture& picture);
+    void save(int64_t frame, const Picture& picture);
+    void showInWindow(const WindowPicture& picture);
+    void forget(uint32_t client);
+
+    const PictureOutputConfig config_;
+    const std::set<int64_t> saveFrames_;
+    std::unique_ptr<PictureSink> file_;
+    bool fileFailed_ = false;
+    MainWindow mainWindow_;
+    std::map<WindowKey, std::unique_ptr<PictureSink>> windows_; // null: it could not be opened
+    std::set<WindowKey> complained_;
+
+    mutable std::mutex mutex_; // what follows
+    std::condition_variable changed_;
+    std::deque<WindowPicture> queue_; // a null picture: the client is gone
+    OutputTotals totals_;
+    bool finishing_ = false;
+    bool dropped_ = false;
+    bool ended_ = false;
+    std::thread thread_;
+};
+
+} // namespace mural

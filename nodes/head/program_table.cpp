@@ -1,0 +1,173 @@
+#include "nodes/head/program_table.hpp"
+
+#include <algorithm>
+#include <poll.h>
+
+namespace mural {
+namespace {
+
+constexpr int64_t kEndPatienceMs = 5000;
+constexpr uint32_t kMostIds = 65535; // streams carry 16 bits of it, see wire::streamOf
+
+} // namespace
+
+ProgramTable::ProgramTable(ProgramTerms terms, NodeSet& nodes, Events events)
+    : terms_(std::move(terms))
+    , nodes_(nodes)
+    , events_(std::move(events)) {}
+
+ProgramTable::~ProgramTable() { endAll(); }
+
+Result<Admission> ProgramTable::admitProgram(pid_t pid) {
+    auto memory = CaptureMemory::create(terms_.chunkCount);
+    const std::lock_guard lock(mutex_);
+    if (!refusal_.empty()) return Error{refusal_};
+    if (!memory) return memory.error();
+    if (nextId_ > kMostIds) return Error{"this session has had 65535 programs; start a new one"};
+    const uint32_t id = nextId_++;
+    Admission admission;
+    admission.welcome = terms_.welcome;
+    admission.welcome.clientId = id;
+    admission.memoryFd = (*memory)->fd();
+    admission.extensions = terms_.extensions;
+    admitted_[id] = std::make_shared<CaptureClient>(id, pid, std::move(*memory), nodes_, *this);
+    return admission;
+}
+
+void ProgramTable::programWelcomed(uint32_t id, FileDescriptor socket) {
+    size_t count = 0;
+    {
+        const std::lock_guard lock(mutex_);
+        const auto found = admitted_.find(id);
+        if (found == admitted_.end()) return;
+        const auto client = found->second;
+        admitted_.erase(found);
+        if (!socket.valid()) return; // it left before it was let in
+        if (!refusal_.empty()) client->memory().setHeadGone(); // the session ended in between
+        client->start(std::move(socket));
+        clients_[id] = client;
+        count = clients_.size();
+    }
+    events_.countChanged(count);
+}
+
+void ProgramTable::programEnded(uint32_t id, const std::string& problem) {
+    std::string line;
+    size_t count = 0;
+    {
+        const std::lock_guard lock(mutex_);
+        const auto found = clients_.find(id);
+        if (found == clients_.end()) return;
+        if (!problem.empty())
+            line = found->second->describe() + " was dropped: " + problem + "; it goes on alone";
+        addCounts(goneCounts_, found->second->memory().counts());
+        gone_.push_back(found->second);
+        clients_.erase(found);
+        count = clients_.size();
+    }
+    const uint32_t argument = id;
+    nodes_.broadcast(wire::HeadCommand::ClientGone, std::as_bytes(std::span(&argument, 1)));
+    events_.gone(id, line);
+    events_.countChanged(count);
+}
+
+void ProgramTable::refuseFrom(const std::string& reason) {
+    const std::lock_guard lock(mutex_);
+    refusal_ = reason;
+}
+
+void ProgramTable::reply(uint32_t id, Reply reply) {
+    if (const auto client = find(id)) client->reply(std::move(reply));
+}
+
+void ProgramTable::credit(uint32_t id, uint32_t finished, uint32_t shown) {
+    const auto client = find(id);
+    if (!client) return;
+    client->memory().setFramesDone(terms_.framesDoneWhenShown ? shown : finished);
+    client->memory().setFramesShown(shown);
+}
+
+void ProgramTable::tellHeadGone() {
+    for (const auto& client : all()) client->memory().setHeadGone();
+}
+
+void ProgramTable::drainAll(Deadline deadline, const std::function<void()>& tick) {
+    constexpr int kSliceMs = 10;
+    const auto clients = all();
+    for (const auto& client : clients) client->drain();
+    const auto ended = [](const auto& client) { return client->pumpEnded(); };
+    while (!std::ranges::all_of(clients, ended) && !deadline.passed()) {
+        tick();
+        poll(nullptr, 0, kSliceMs);
+    }
+    for (const auto& client : clients)
+        if (!client->pumpEnded()) client->stop();
+}
+
+void ProgramTable::reap() {
+    std::vector<std::shared_ptr<CaptureClient>> ended;
+    {
+        const std::lock_guard lock(mutex_);
+        const auto isOver = [](const auto& client) { return client->pumpEnded(); };
+        const auto firstOver = std::partition(gone_.begin(), gone_.end(), std::not_fn(isOver));
+        ended.assign(std::make_move_iterator(firstOver), std::make_move_iterator(gone_.end()));
+        gone_.erase(firstOver, gone_.end());
+    }
+    // Joined here, outside of the lock.
+}
+
+void ProgramTable::endAll() {
+    constexpr int kSliceMs = 5;
+    const auto clients = all();
+    for (const auto& client : clients) {
+        client->memory().setHeadGone();
+        client->stop();
+    }
+    const auto ended = [](const auto& client) { return client->pumpEnded(); };
+    const Deadline deadline = Deadline::inMs(kEndPatienceMs);
+    while (!std::ranges::all_of(clients, ended) && !deadline.passed()) poll(nullptr, 0, kSliceMs);
+
+    Clients last;
+    Clients unwelcomed;
+    std::vector<std::shared_ptr<CaptureClient>> gone;
+    {
+        const std::lock_guard lock(mutex_);
+        for (const auto& [id, client] : clients_) addCounts(goneCounts_, client->memory().counts());
+        last.swap(clients_);
+        unwelcomed.swap(admitted_);
+        gone.swap(gone_);
+    }
+    // Joined here, outside of the lock.
+}
+
+CaptureCounts ProgramTable::counts() const {
+    const std::lock_guard lock(mutex_);
+    CaptureCounts sum = goneCounts_;
+    for (const auto& [id, client] : clients_) addCounts(sum, client->memory().counts());
+    return sum;
+}
+
+std::shared_ptr<CaptureClient> ProgramTable::find(uint32_t id) const {
+    const std::lock_guard lock(mutex_);
+    const auto found = clients_.find(id);
+    return found == clients_.end() ? nullptr : found->second;
+}
+
+std::vector<std::shared_ptr<CaptureClient>> ProgramTable::all() const {
+    const std::lock_guard lock(mutex_);
+    std::vector<std::shared_ptr<CaptureClient>> result;
+    for (const auto& [id, client] : clients_) result.push_back(client);
+    return result;
+}
+
+void ProgramTable::addCounts(CaptureCounts& sum, const CaptureCounts& counts) {
+    sum.verifiedFrames += counts.verifiedFrames;
+    sum.verifiedPixels += counts.verifiedPixels;
+    sum.differingPixels += counts.differingPixels;
+    sum.largestDifference = std::max(sum.largestDifference, counts.largestDifference);
+    sum.callsUnsupported += counts.callsUnsupported;
+    sum.roundTrips += counts.roundTrips;
+    sum.waitNs += counts.waitNs;
+}
+
+} // namespace mural

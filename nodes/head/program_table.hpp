@@ -1,0 +1,75 @@
+// The captured programs of the session: who may come in, who is there, and what those that have gone
+// left for the report.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "nodes/head/capture_client.hpp"
+#include "nodes/head/capture_server.hpp"
+
+namespace mural {
+
+struct ProgramTerms {
+    capture::Welcome welcome{}; // alike for all programs but for the id
+    std::string extensions;
+    bool framesDoneWhenShown = false; // --display app without latency
+    uint32_t chunkCount = capture::kDefaultChunks;
+};
+
+// All calls from any thread but for drainAll(), reap() and endAll() (one thread).
+class ProgramTable : public ProgramHost, public CaptureEvents {
+public:
+    struct Events {
+        std::function<void(size_t count)> countChanged;
+        std::function<void(uint32_t client, const std::string& line)> gone; // line: for the user, or empty
+    };
+
+    ProgramTable(ProgramTerms terms, NodeSet& nodes, Events events);
+    ~ProgramTable() override;
+
+    Result<Admission> admitProgram(pid_t pid) override;
+    void programWelcomed(uint32_t client, FileDescriptor socket) override;
+    void programEnded(uint32_t client, const std::string& problem) override;
+
+    void refuseFrom(const std::string& reason); // programs that come from now on
+    void reply(uint32_t client, Reply reply);
+    void credit(uint32_t client, uint32_t finished, uint32_t shown);
+    void tellHeadGone(); // all programs go on alone
+
+    // Everything published at this moment goes to the nodes; the pumps end, answers and credit still
+    // reach the programs. `tick` is called meanwhile.
+    void drainAll(Deadline deadline, const std::function<void()>& tick);
+    void reap();    // joins the threads of programs that have gone
+    void endAll();  // tells them and joins all; the nodes must not hold a pump up any more
+
+    [[nodiscard]] CaptureCounts counts() const; // over all programs, past and present
+
+private:
+    using Clients = std::map<uint32_t, std::shared_ptr<CaptureClient>>;
+
+    std::shared_ptr<CaptureClient> find(uint32_t client) const;
+    std::vector<std::shared_ptr<CaptureClient>> all() const;
+    static void addCounts(CaptureCounts& sum, const CaptureCounts& counts);
+
+    const ProgramTerms terms_;
+    NodeSet& nodes_;
+    const Events events_;
+
+    mutable std::mutex mutex_; // what follows
+    std::string refusal_;
+    uint32_t nextId_ = 1;
+    Clients admitted_; // not welcomed yet
+    Clients clients_;
+    std::vector<std::shared_ptr<CaptureClient>> gone_;
+    CaptureCounts goneCounts_;
+};
+
+} // namespace mural

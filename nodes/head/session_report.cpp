@@ -1,0 +1,76 @@
+#include "nodes/head/session_report.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "common/clock.hpp"
+
+namespace mural {
+namespace {
+
+using Json = nlohmann::json;
+
+double secondsOf(int64_t ns) { return static_cast<double>(ns) / static_cast<double>(kNsPerS); }
+
+} // namespace
+
+void readBye(const std::string& text, NodeTotals& totals) {
+    const Json json = Json::parse(text, nullptr, false);
+    if (!json.is_object()) return;
+    const auto commands = json.find("commands");
+    if (commands != json.end() && commands->is_number_integer()) totals.commands = commands->get<int64_t>();
+    const auto seconds = json.find("cpuSeconds");
+    if (seconds != json.end() && seconds->is_number()) totals.cpuSeconds = seconds->get<double>();
+}
+
+Json reportOf(const SessionNumbers& n) {
+    const double seconds = secondsOf(n.frames.latestNs - n.frames.firstNs);
+    const int64_t frames = n.frames.wallFrames;
+    int64_t calls = 0;
+    Json nodes = Json::array();
+    for (const NodeTotals& node : n.nodes) {
+        calls = std::max(calls, node.commands);
+        nodes.push_back({{"node", node.node},
+                         {"frames", node.frames},
+                         {"cpuSeconds", node.cpuSeconds},
+                         {"commands", node.commands},
+                         {"lost", node.lost}});
+    }
+    return {
+        {"event", "report"},
+        {"frames", frames},
+        {"seconds", seconds},
+        // Between the first and the last frame lie frames - 1 intervals.
+        {"framesPerSecond", seconds > 0 ? static_cast<double>(frames - 1) / seconds : 0.0},
+        {"bytesPerFrame", frames > 0 ? n.bytesSent / static_cast<uint64_t>(frames) : 0},
+        {"calls", calls},
+        {"roundTrips", n.programs.roundTrips},
+        {"waitSeconds", secondsOf(static_cast<int64_t>(n.programs.waitNs))},
+        {"verifiedFrames", n.programs.verifiedFrames},
+        {"verifiedPixels", n.programs.verifiedPixels},
+        {"differingPixels", n.programs.differingPixels},
+        {"largestDifference", n.programs.largestDifference},
+        {"callsUnsupported", n.programs.callsUnsupported},
+        {"savedPictures", n.output.savedPictures},
+        {"lastPicture", n.lastPicture},
+        {"nodes", nodes},
+    };
+}
+
+ProgressMeter::Rates ProgressMeter::sample(int64_t nowNs, int64_t frames, uint64_t bytes) {
+    const Sample now{nowNs, frames, bytes};
+    Rates rates;
+    if (!samples_.empty()) {
+        const Sample& then = samples_.front();
+        const int64_t newFrames = now.frames - then.frames;
+        const double seconds = secondsOf(now.atNs - then.atNs);
+        if (seconds > 0) rates.framesPerSecond = static_cast<double>(newFrames) / seconds;
+        if (newFrames > 0)
+            rates.bytesPerFrame = static_cast<int64_t>(now.bytes - then.bytes) / newFrames;
+    }
+    samples_.push_back(now);
+    while (samples_.size() > 2 && nowNs - samples_.front().atNs > kNsPerS) samples_.erase(samples_.begin());
+    return rates;
+}
+
+} // namespace mural

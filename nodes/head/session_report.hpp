@@ -1,0 +1,55 @@
+// The last line of a session: its numbers (docs/control-protocol.md).
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "nodes/head/capture_memory.hpp"
+#include "nodes/head/frame_tracker.hpp"
+#include "nodes/head/picture_output.hpp"
+
+namespace mural {
+
+struct NodeTotals {
+    int node = 0;
+    int64_t frames = 0;
+    double cpuSeconds = 0;
+    int64_t commands = 0;
+    bool lost = false;
+};
+
+// From a node's Bye; what is missing or odd stays 0.
+void readBye(const std::string& json, NodeTotals& totals);
+
+struct SessionNumbers {
+    FrameTotals frames;
+    uint64_t bytesSent = 0; // to each node
+    CaptureCounts programs;
+    OutputTotals output;
+    std::string lastPicture; // path
+    std::vector<NodeTotals> nodes;
+};
+
+nlohmann::json reportOf(const SessionNumbers& numbers);
+
+// Frames per second and bytes per frame of the last second or so. One thread.
+class ProgressMeter {
+public:
+    struct Rates {
+        double framesPerSecond = 0;
+        int64_t bytesPerFrame = 0;
+    };
+    Rates sample(int64_t nowNs, int64_t frames, uint64_t bytes);
+
+private:
+    struct Sample {
+        int64_t atNs = 0;
+        int64_t frames = 0;
+        uint64_t bytes = 0;
+    };
+    std::vector<Sample> samples_;
+};
+
+} // namespace mural

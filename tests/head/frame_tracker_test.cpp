@@ -1,0 +1,119 @@
+#include "nodes/head/frame_tracker.hpp"
+
+#include <gtest/gtest.h>
+#include <vector>
+
+namespace mural {
+namespace {
+
+class FrameTrackerTest : public testing::Test {
+protected:
+    FrameTracker tracker{2, [this](uint32_t client, uint32_t finished, uint32_t shown) {
+                             credits.push_back({client, finished, shown});
+                         }};
+    std::vector<std::vector<uint32_t>> credits; // {client, finished, shown}
+
+    bool done(int node, uint32_t frame, uint32_t window = 1, uint32_t width = 64, uint32_t client = 1) {
+        wire::FrameDoneMessage m{};
+        m.client = client;
+        m.window = window;
+        m.frame = frame;
+        m.width = width;
+        m.height = 10;
+        return tracker.frameDone(node, m, frame).ok();
+    }
+    using Credits = std::vector<std::vector<uint32_t>>;
+};
+
+TEST_F(FrameTrackerTest, theSlowestNodeCounts) {
+    done(0, 1);
+    done(0, 2);
+    EXPECT_TRUE(credits.empty());
+    done(1, 1);
+    EXPECT_EQ(credits, (Credits{{1, 1, 1}}));
+    done(1, 2);
+    EXPECT_EQ(credits.back(), (std::vector<uint32_t>{1, 2, 2}));
+}
+
+TEST_F(FrameTrackerTest, aLostNodeIsNotWaitedFor) {
+    done(0, 1);
+    done(0, 2);
+    tracker.nodeLost(1, 5);
+    EXPECT_EQ(credits, (Credits{{1, 2, 2}}));
+    done(0, 3);
+    EXPECT_EQ(credits.back()[1], 3u);
+    tracker.nodeLost(0, 6); // nobody is left: no credit out of nothing
+    EXPECT_EQ(credits.size(), 2u);
+}
+
+TEST_F(FrameTrackerTest, framesOfOtherThreadsMayOvertake) {
+    for (const int node : {0, 1}) {
+        done(node, 2);
+        done(node, 3);
+    }
+    EXPECT_TRUE(credits.empty());
+    done(0, 1);
+    done(1, 1);
+    EXPECT_EQ(credits, (Credits{{1, 3, 3}}));
+}
+
+TEST_F(FrameTrackerTest, aFrameThatNeverComesDoesNotStopTheProgram) {
+    for (uint32_t frame = 2; frame < 30; ++frame)
+        for (const int node : {0, 1}) done(node, frame);
+    ASSERT_FALSE(credits.empty());
+    EXPECT_EQ(credits.back()[1], 29u);
+}
+
+TEST_F(FrameTrackerTest, heldPicturesHoldOnlyWhatIsShown) {
+    tracker.pictureHeld(1, 1);
+    tracker.pictureHeld(1, 2);
+    for (const uint32_t frame : {1u, 2u})
+        for (const int node : {0, 1}) done(node, frame);
+    EXPECT_EQ(credits, (Credits{{1, 1, 0}, {1, 2, 0}}));
+    tracker.pictureReleased(1, 1);
+    EXPECT_EQ(credits.back(), (std::vector<uint32_t>{1, 2, 1}));
+    tracker.pictureReleased(1, 2);
+    EXPECT_EQ(credits.back(), (std::vector<uint32_t>{1, 2, 2}));
+}
+
+TEST_F(FrameTrackerTest, aRepeatedFrameIsAnError) {
+    EXPECT_TRUE(done(0, 1));
+    EXPECT_FALSE(done(0, 1));
+    EXPECT_FALSE(done(0, 0));
+}
+
+TEST_F(FrameTrackerTest, programsAreCountedApart) {
+    done(0, 1, 1, 64, 1);
+    done(1, 1, 1, 64, 2);
+    EXPECT_TRUE(credits.empty());
+    done(1, 1, 1, 64, 1);
+    EXPECT_EQ(credits, (Credits{{1, 1, 1}}));
+}
+
+TEST_F(FrameTrackerTest, theLargestWindowIsTheWall) {
+    uint32_t frame = 0;
+    const auto both = [&](uint32_t window, uint32_t width) {
+        ++frame;
+        done(0, frame, window, width);
+        done(1, frame, window, width);
+        return tracker.totals().mainFrame;
+    };
+    EXPECT_EQ(both(1, 10), 1); // a splash screen
+    EXPECT_EQ(both(1, 10), 2);
+    EXPECT_EQ(both(2, 50), 1); // the real one
+    EXPECT_EQ(both(1, 10), 1);
+    EXPECT_EQ(both(3, 50), 1); // of the same size: not larger
+    EXPECT_EQ(both(2, 20), 2); // made smaller
+    EXPECT_EQ(both(3, 50), 1);
+    EXPECT_EQ(tracker.totals().wallFrames, 5);
+    EXPECT_EQ(tracker.totals().firstNs, 1);
+    EXPECT_EQ(tracker.totals().latestNs, 7);
+    tracker.clientGone(1);
+    done(0, 1, 9, 5, 2);
+    done(1, 1, 9, 5, 2);
+    EXPECT_EQ(tracker.totals().mainFrame, 1);
+    EXPECT_EQ(tracker.totals().wallFrames, 6);
+}
+
+} // namespace
+} // namespace mural

@@ -1,0 +1,400 @@
+// The head as a whole, with fake nodes and fake programs.
+#include "tests/head/session_harness.hpp"
+
+#include <gtest/gtest.h>
+
+namespace mural {
+namespace {
+
+bool swapFrames(FakeProgram& program, uint32_t from, uint32_t to, uint32_t width = 64, uint32_t height = 48) {
+    for (uint32_t frame = from; frame <= to; ++frame)
+        if (!program.publish(kFakeSwap, {frame, 1, width, height})) return false;
+    return true;
+}
+
+std::vector<uint32_t> notesOf(FakeNode& node, uint32_t stream) {
+    std::vector<uint32_t> notes;
+    for (const auto& packet : node.packets())
+        if (packet.stream == stream && packet.words[1] == kFakeNote) notes.push_back(packet.words[2]);
+    return notes;
+}
+
+TEST(HeadSession, announcesWhatAllNodesHave) {
+    SessionHarness head(3);
+    head.config.latency = 2;
+    head.config.verifyEvery = 5;
+    head.config.policy = CapturePolicy::Full;
+    head.start();
+    const auto ready = head.waitFor("ready");
+    EXPECT_EQ(ready["nodes"].size(), 3u);
+    EXPECT_EQ(ready["nodes"][1]["where"], "local");
+    EXPECT_EQ(ready["nodes"][1]["gl"], "fake");
+    EXPECT_EQ(ready["explain"].size(), 4u);
+    FakeProgram program;
+    ASSERT_TRUE(program.connect(head.config.session));
+    EXPECT_EQ(head.waitFor("clients")["count"], 1);
+    EXPECT_EQ(program.welcome().refused, 0u);
+    EXPECT_EQ(program.welcome().nodeCount, 3u);
+    EXPECT_EQ(program.welcome().latency, 2u);
+    EXPECT_EQ(program.welcome().verifyEvery, 5u);
+    EXPECT_EQ(program.welcome().policy, capture::kPolicyFull);
+    EXPECT_EQ(program.welcome().nodeGlVersion, 40u);
+    EXPECT_EQ(program.text(), "GL_COMMON");
+    head.finish();
+    EXPECT_EQ(head.status(), 0);
+}
+
+TEST(HeadSession, everyNodeGetsEveryPacketInOrder) {
+    SessionHarness head(3);
+    head.start();
+    head.waitFor("ready");
+    FakeProgram a;
+    FakeProgram b;
+    ASSERT_TRUE(a.connect(head.config.session));
+    ASSERT_TRUE(b.connect(head.config.session));
+    constexpr uint32_t kNotes = 300; // more than the ring has chunks
+    for (uint32_t i = 0; i < kNotes; ++i) {
+        ASSERT_TRUE(a.publish(kFakeNote, {i}, 0));
+        ASSERT_TRUE(a.publish(kFakeNote, {i}, 3));
+        ASSERT_TRUE(b.publish(kFakeNote, {i}, 0));
+    }
+    const auto report = head.finish();
+    std::vector<uint32_t> expected(kNotes);
+    for (uint32_t i = 0; i < kNotes; ++i) expected[i] = i;
+    for (int node = 0; node < 3; ++node) {
+        EXPECT_EQ(notesOf(head.node(node), wire::streamOf(a.welcome().clientId, 0)), expected);
+        EXPECT_EQ(notesOf(head.node(node), wire::streamOf(a.welcome().clientId, 3)), expected);
+        EXPECT_EQ(notesOf(head.node(node), wire::streamOf(b.welcome().clientId, 0)), expected);
+        // Not only per stream: the whole order is the same.
+        const auto first = head.node(0).packets();
+        const auto mine = head.node(node).packets();
+        ASSERT_EQ(first.size(), mine.size());
+        for (size_t i = 1; i < mine.size(); ++i) EXPECT_EQ(first[i].words, mine[i].words);
+        EXPECT_EQ(mine.back().words[0], static_cast<uint32_t>(wire::HeadCommand::Finish));
+    }
+    EXPECT_EQ(report["calls"], 42);
+    EXPECT_EQ(report["nodes"][2]["lost"], false);
+}
+
+TEST(HeadSession, creditComesOnlyWhenAllNodesAreDone) {
+    std::atomic<bool> hold{true};
+    SessionHarness head(2);
+    head.behaviours[1].hold = nullptr;
+    head.start();
+    head.waitFor("ready");
+    FakeProgram program;
+    ASSERT_TRUE(program.connect(head.config.session));
+    ASSERT_TRUE(swapFrames(program, 1, 40));
+    EXPECT_TRUE(program.waitFramesDone(40));
+    EXPECT_EQ(program.header()->framesDone.load(), 40u);
+    const auto report = head.finish();
+    EXPECT_EQ(report["frames"], 40);
+    EXPECT_EQ(report["nodes"][0]["frames"], 40);
+    EXPECT_TRUE(program.waitHeadGone());
+}
+
+TEST(HeadSession, aSlowNodeHoldsTheProgramBack) {
+    std::atomic<bool> hold{false};
+    SessionHarness head(2);
+    head.pipeBytes = 4096;
+    head.behaviours[1].hold = &hold;
+    head.start();
+    head.waitFor("ready");
+    FakeProgram program;
+    ASSERT_TRUE(program.connect(head.config.session));
+    ASSERT_TRUE(swapFrames(program, 1, 1));
+    ASSERT_TRUE(program.waitFramesDone(1));
+    hold = true;
+    // More bytes than the pipe and all chunks hold: the publisher must block until the node reads on.
+    std::atomic<bool> done{false};
+    std::thread publisher([&] {
+        std::vector<uint32_t> words(2000, 0);
+        words[0] = 2000;
+        words[1] = kFakeNote;
+        for (int i = 0; i < 40; ++i)
+            if (!program.publishWords(words)) return;
+        done = true;
+    });
+    while (program.header()->freedTail.load() == program.header()->freedHead.load() ? false : !done) {
+        std::this_thread::yield(); // until all chunks are in use
+    }
+    EXPECT_FALSE(done);
+    EXPECT_EQ(program.header()->framesDone.load(), 1u);
+    hold = false;
+    publisher.join();
+    EXPECT_TRUE(done);
+    ASSERT_TRUE(swapFrames(program, 2, 2));
+    EXPECT_TRUE(program.waitFramesDone(2));
+    head.finish();
+}
+
+TEST(HeadSession, answersAreAssembledFromOneToFiveNodes) {
+    for (int nodes = 1; nodes <= 5; ++nodes) {
+        SessionHarness head(nodes);
+        head.start();
+        head.waitFor("ready");
+        FakeProgram program;
+        ASSERT_TRUE(program.connect(head.config.session));
+        ASSERT_TRUE(program.publish(kFakePixels, {1, 5, 7, 50, 30}));
+        ASSERT_TRUE(program.publish(kFakeBytes, {2}));
+        ASSERT_TRUE(program.publish(kFakeSum, {3}));
+        bool seen[4] = {};
+        for (int i = 0; i < 3; ++i) {
+            FakeProgram::Answer answer;
+            ASSERT_TRUE(program.readAnswer(answer));
+            ASSERT_LE(answer.header.requestId, 3u);
+            seen[answer.header.requestId] = true;
+            EXPECT_EQ(answer.header.failed, 0u);
+            const auto* words = reinterpret_cast<const uint32_t*>(answer.bytes.data());
+            if (answer.header.requestId == 1) {
+                EXPECT_EQ(answer.header.x, 5);
+                EXPECT_EQ(answer.header.y, 7);
+                EXPECT_EQ(answer.header.w, 50);
+                ASSERT_EQ(answer.header.h, 30);
+                ASSERT_EQ(answer.bytes.size(), 50u * 30 * 4);
+                for (uint32_t y = 0; y < 30; ++y)
+                    for (uint32_t x = 0; x < 50; ++x)
+                        ASSERT_EQ(words[y * 50 + x], (7 + y) * 1000 + 5 + x + 1) << x << ' ' << y;
+            }
+            if (answer.header.requestId == 2) {
+                EXPECT_EQ(answer.bytes.size(), 12u);
+            }
+            if (answer.header.requestId == 3) {
+                ASSERT_EQ(answer.bytes.size(), 16u);
+                EXPECT_EQ(words[0], 10u * static_cast<uint32_t>(nodes));
+                EXPECT_EQ(words[2], static_cast<uint32_t>(nodes * (nodes - 1) / 2));
+            }
+        }
+        EXPECT_TRUE(seen[1] && seen[2] && seen[3]);
+        head.finish();
+    }
+}
+
+TEST(HeadSession, anAnswerLargerThanTheReplyRingIsStreamed) {
+    SessionHarness head(2);
+    head.pipeBytes = size_t{16} << 20;
+    head.start();
+    head.waitFor("ready");
+    FakeProgram program;
+    ASSERT_TRUE(program.connect(head.config.session));
+    constexpr uint32_t kWords = 3 * capture::kReplyBytes / 4 + 5;
+    ASSERT_TRUE(program.publish(kFakeBytes, {9, kWords}));
+    FakeProgram::Answer answer;
+    ASSERT_TRUE(program.readAnswer(answer));
+    EXPECT_EQ(answer.header.sizeBytes, uint64_t{kWords} * 4);
+    const auto* words = reinterpret_cast<const uint32_t*>(answer.bytes.data());
+    for (uint32_t i = 0; i < kWords; ++i) ASSERT_EQ(words[i], 0x01020304u);
+    head.finish();
+}
+
+TEST(HeadSession, otherBuildsAndLatecomersAreRefused) {
+    SessionHarness head(1);
+    head.start();
+    head.waitFor("ready");
+    FakeProgram other;
+    ASSERT_TRUE(other.connect(head.config.session, kTestDigest + 1));
+    EXPECT_EQ(other.welcome().refused, 1u);
+    EXPECT_NE(other.text().find("different builds"), std::string::npos);
+    EXPECT_EQ(other.header(), nullptr);
+    FakeProgram right;
+    ASSERT_TRUE(right.connect(head.config.session));
+    EXPECT_EQ(right.welcome().refused, 0u);
+    head.finish();
+    FakeProgram late;
+    EXPECT_FALSE(late.connect(head.config.session)); // the name is gone with the session
+}
+
+struct Forgery {
+    const char* name;
+    std::function<void(FakeProgram&)> act;
+};
+
+TEST(HeadSession, forgedRingsDropTheProgramAndNothingElse) {
+    const Forgery forgeries[] = {
+        {"chunk", [](FakeProgram& p) { p.publishRaw({99999, 0, 64, 0, 0}); }},
+        {"begin after end", [](FakeProgram& p) { p.publishRaw({0, 64, 32, 0, 0}); }},
+        {"end", [](FakeProgram& p) { p.publishRaw({0, 0, capture::kChunkBytes + 4, 0, 0}); }},
+        {"odd", [](FakeProgram& p) { p.publishRaw({0, 0, 7, 0, 0}); }},
+        {"tail", [](FakeProgram& p) { p.header()->publishedTail = 0x7fffffff; }},
+        {"tail back", [](FakeProgram& p) { p.header()->publishedTail = 0xffffffff; }},
+        {"freed twice", [](FakeProgram& p) { p.publishRaw({0, 0, 0, 0, 1}); }},
+        {"offsets", [](FakeProgram& p) {
+             p.header()->publicationsAt = ~0ull >> 1;
+             p.header()->chunksAt = ~0ull >> 1;
+             p.header()->freedAt = ~0ull >> 1;
+             p.header()->chunkCount = 0x80000000;
+             p.header()->publishedTail = 0x7fffffff;
+         }},
+    };
+    SessionHarness head(2);
+    head.start();
+    head.waitFor("ready");
+    FakeProgram honest;
+    ASSERT_TRUE(honest.connect(head.config.session));
+    for (const Forgery& forgery : forgeries) {
+        FakeProgram program;
+        ASSERT_TRUE(program.connect(head.config.session));
+        forgery.act(program);
+        EXPECT_TRUE(program.waitHeadGone()) << forgery.name;
+        head.waitForSay("program " + std::to_string(program.welcome().clientId) + " (");
+    }
+    ASSERT_TRUE(swapFrames(honest, 1, 3));
+    EXPECT_TRUE(honest.waitFramesDone(3));
+    EXPECT_EQ(head.finish()["frames"], 3);
+}
+
+TEST(HeadSession, aProgramThatEndsIsDrainedAndItsContextsFreed) {
+    SessionHarness head(2);
+    head.start();
+    head.waitFor("ready");
+    uint32_t id = 0;
+    {
+        FakeProgram program;
+        ASSERT_TRUE(program.connect(head.config.session));
+        id = program.welcome().clientId;
+        program.header()->verifiedFrames = 3;
+        program.header()->largestDifference = 9;
+        ASSERT_TRUE(swapFrames(program, 1, 12));
+        program.disconnect();
+    }
+    while (head.waitFor("clients")["count"] != 0) {
+    }
+    const auto report = head.finish();
+    EXPECT_EQ(report["frames"], 12);
+    EXPECT_EQ(report["verifiedFrames"], 3);
+    EXPECT_EQ(report["largestDifference"], 9);
+    const auto packets = head.node(1).packets();
+    const std::vector<uint32_t> gone{static_cast<uint32_t>(wire::HeadCommand::ClientGone), id};
+    EXPECT_EQ(packets[packets.size() - 2].words, gone);
+}
+
+TEST(HeadSession, aNodeLostInMidFrameLeavesTheOthersGoingOn) {
+    for (const bool garbage : {false, true}) {
+        SessionHarness head(3);
+        (garbage ? head.behaviours[1].garbageAtFrame : head.behaviours[1].dieAtFrame) = 5;
+        head.start();
+        head.waitFor("ready");
+        FakeProgram program;
+        ASSERT_TRUE(program.connect(head.config.session));
+        ASSERT_TRUE(swapFrames(program, 1, 20));
+        EXPECT_TRUE(program.waitFramesDone(20));
+        const std::string said = head.waitForSay("was lost");
+        EXPECT_EQ(said.rfind("node 1 (local) was lost: ", 0), 0u) << said;
+        EXPECT_NE(said.find("its tiles stay as they were"), std::string::npos);
+        const auto report = head.finish();
+        EXPECT_EQ(report["nodes"][1]["lost"], true);
+        EXPECT_EQ(report["nodes"][0]["lost"], false);
+        EXPECT_EQ(report["frames"], 20);
+    }
+}
+
+TEST(HeadSession, aNodeLostInMidRequestDoesNotLoseTheAnswer) {
+    for (const bool half : {false, true}) {
+        SessionHarness head(3);
+        head.behaviours[2].dieAtRequest = 7;
+        head.behaviours[2].halfAnswer = half;
+        head.start();
+        head.waitFor("ready");
+        FakeProgram program;
+        ASSERT_TRUE(program.connect(head.config.session));
+        ASSERT_TRUE(program.publish(kFakePixels, {7, 0, 0, 64, 48}));
+        FakeProgram::Answer answer;
+        ASSERT_TRUE(program.readAnswer(answer));
+        EXPECT_EQ(answer.header.failed, 0u);
+        EXPECT_EQ(answer.header.w, half ? 64 : 42); // two of three columns
+        const auto* words = reinterpret_cast<const uint32_t*>(answer.bytes.data());
+        EXPECT_EQ(words[0], 1u);
+        if (half) {
+            EXPECT_EQ(words[63], 64u);       // the row that it had sent
+            EXPECT_EQ(words[64 + 63], 0u);   // and one that it had not
+            EXPECT_EQ(words[64 + 41], 1042u);
+        }
+        head.finish();
+    }
+}
+
+TEST(HeadSession, withoutNodesProgramsGoOnAlone) {
+    SessionHarness head(2);
+    head.behaviours[0].dieAtFrame = 3;
+    head.behaviours[1].dieAtFrame = 3;
+    head.start();
+    head.waitFor("ready");
+    FakeProgram program;
+    ASSERT_TRUE(program.connect(head.config.session));
+    ASSERT_TRUE(swapFrames(program, 1, 3));
+    EXPECT_TRUE(program.waitHeadGone());
+    head.waitForSay("no render node is left");
+    FakeProgram late;
+    ASSERT_TRUE(late.connect(head.config.session));
+    EXPECT_EQ(late.welcome().refused, 1u);
+    EXPECT_EQ(head.finish()["frames"], 2);
+}
+
+TEST(HeadSession, aNodeThatIsNeverReadyIsOneClearError) {
+    SessionHarness head(2);
+    head.behaviours[1].silentStart = true;
+    head.options.readyPatienceMs = 100;
+    head.start();
+    const auto error = head.waitFor("error");
+    EXPECT_NE(error["text"].get<std::string>().find("node 1 (local) was not ready"), std::string::npos) << error;
+}
+
+TEST(HeadSession, aNodeThatDoesNotSayByeEndsTheSessionAllTheSame) {
+    SessionHarness head(2);
+    head.behaviours[1].noBye = true;
+    head.start();
+    head.waitFor("ready");
+    const auto report = head.finish();
+    EXPECT_EQ(report["nodes"][1]["lost"], true);
+    EXPECT_EQ(report["nodes"][0]["lost"], false);
+}
+
+TEST(HeadSession, aNodeThatTakesNothingDoesNotHangTheEnd) {
+    std::atomic<bool> hold{false};
+    SessionHarness head(2);
+    head.pipeBytes = 4096;
+    head.behaviours[1].hold = &hold;
+    head.options.drainPatienceMs = 100;
+    head.start();
+    head.waitFor("ready");
+    FakeProgram program;
+    ASSERT_TRUE(program.connect(head.config.session));
+    hold = true;
+    std::vector<uint32_t> words(4000, 0);
+    words[0] = 4000;
+    words[1] = kFakeNote;
+    for (int i = 0; i < 10; ++i) ASSERT_TRUE(program.publishWords(words));
+    const auto report = head.finish();
+    EXPECT_EQ(report["nodes"][1]["lost"], true);
+    hold = false;
+}
+
+TEST(HeadSession, aBrokenControlConnectionEndsTheSession) {
+    SessionHarness head(2);
+    head.start();
+    head.waitFor("ready");
+    FakeProgram program;
+    ASSERT_TRUE(program.connect(head.config.session));
+    ASSERT_TRUE(swapFrames(program, 1, 4));
+    head.breakControl();
+    EXPECT_EQ(head.status(), 0);
+    EXPECT_TRUE(program.waitHeadGone());
+    EXPECT_EQ(program.header()->framesDone.load(), 4u); // drained all the same
+}
+
+TEST(HeadSession, saysWhenAsManyFramesAsAskedForAreOnTheWall) {
+    SessionHarness head(2);
+    head.config.frames = 5;
+    head.start();
+    head.waitFor("ready");
+    FakeProgram program;
+    ASSERT_TRUE(program.connect(head.config.session));
+    ASSERT_TRUE(swapFrames(program, 1, 5));
+    head.waitFor("frames-reached");
+    const auto report = head.finish();
+    EXPECT_EQ(report["frames"], 5);
+    EXPECT_GT(report["bytesPerFrame"].get<int>(), 20);
+}
+
+} // namespace
+} // namespace mural

@@ -1,0 +1,77 @@
+#include "nodes/head/node_gate.hpp"
+
+#include <gtest/gtest.h>
+#include <thread>
+
+namespace mural {
+namespace {
+
+constexpr int64_t kPatienceMs = 20'000;
+
+std::unique_ptr<Connection> come(const NodeGate& gate, const SessionSecret& secret) {
+    auto connection = connectTcp("127.0.0.1", static_cast<uint16_t>(gate.port()), Deadline::inMs(kPatienceMs));
+    if (!connection) return nullptr;
+    if (!(*connection)->write(secret, Deadline::inMs(kPatienceMs))) return nullptr;
+    (*connection)->flush();
+    return std::move(*connection);
+}
+
+std::unique_ptr<Connection> waitTaken(NodeGate& gate, int node) {
+    const Deadline deadline = Deadline::inMs(kPatienceMs);
+    while (!deadline.passed()) {
+        if (auto connection = gate.take(node)) return connection;
+        std::this_thread::yield();
+    }
+    return nullptr;
+}
+
+bool turnedAway(Connection& connection) {
+    std::byte byte{};
+    return !connection.read({&byte, 1}, Deadline::inMs(kPatienceMs)) && !connection.timedOut();
+}
+
+TEST(NodeGate, eachNodeIsKnownByItsSecret) {
+    auto gate = NodeGate::open(true);
+    ASSERT_TRUE(gate.ok()) << gate.error().message;
+    auto a = makeSessionSecret();
+    auto b = makeSessionSecret();
+    (*gate)->expect(4, *a);
+    (*gate)->expect(7, *b);
+    auto nodeB = come(**gate, *b);
+    auto nodeA = come(**gate, *a);
+    ASSERT_TRUE(nodeA && nodeB);
+    auto headB = waitTaken(**gate, 7);
+    auto headA = waitTaken(**gate, 4);
+    ASSERT_TRUE(headA && headB);
+    const std::byte sent{42};
+    ASSERT_TRUE(headB->write({&sent, 1}, Deadline::inMs(kPatienceMs)).ok());
+    headB->flush();
+    std::byte received{};
+    ASSERT_TRUE(nodeB->read({&received, 1}, Deadline::inMs(kPatienceMs)).ok());
+    EXPECT_EQ(received, sent);
+}
+
+TEST(NodeGate, strangersAreTurnedAwayAndSecretsAreGoodOnce) {
+    auto gate = NodeGate::open(true);
+    ASSERT_TRUE(gate.ok());
+    auto right = makeSessionSecret();
+    (*gate)->expect(0, *right);
+    // One that says nothing must not hold up the others.
+    auto silent = connectTcp("127.0.0.1", static_cast<uint16_t>((*gate)->port()), Deadline::inMs(kPatienceMs));
+    ASSERT_TRUE(silent.ok());
+    SessionSecret wrong = *right;
+    wrong[31] ^= std::byte{1};
+    auto stranger = come(**gate, wrong);
+    ASSERT_TRUE(stranger);
+    EXPECT_TRUE(turnedAway(*stranger));
+    EXPECT_EQ((*gate)->take(0), nullptr);
+    auto node = come(**gate, *right);
+    ASSERT_TRUE(node);
+    EXPECT_NE(waitTaken(**gate, 0), nullptr);
+    auto again = come(**gate, *right);
+    ASSERT_TRUE(again);
+    EXPECT_TRUE(turnedAway(*again));
+}
+
+} // namespace
+} // namespace mural

@@ -1,0 +1,198 @@
+// Pictures through the whole head: saved, shown, counted.
+#include "tests/head/session_harness.hpp"
+
+#include <gtest/gtest.h>
+#include <map>
+
+namespace mural {
+namespace {
+
+// What sinks were given; shared with the test.
+struct Shown {
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::map<std::string, std::vector<int64_t>> frames; // by sink
+    std::vector<uint32_t> lastPixels;
+    bool finished = false;
+    bool blocked = false;
+    bool failing = false;
+
+    size_t count(const std::string& sink) {
+        const std::lock_guard lock(mutex);
+        return frames[sink].size();
+    }
+    void block(bool on) {
+        const std::lock_guard lock(mutex);
+        blocked = on;
+        changed.notify_all();
+    }
+};
+
+class FakeSink : public PictureSink {
+public:
+    FakeSink(Shown& shown, std::string name) : shown_(shown), name_(std::move(name)) {}
+    Result<void> show(int64_t frame, const Picture& picture) override {
+        std::unique_lock lock(shown_.mutex);
+        shown_.changed.wait_for(lock, std::chrono::seconds(20), [this] { return !shown_.blocked; });
+        if (shown_.failing) return Error{"disk full"};
+        shown_.frames[name_].push_back(frame);
+        shown_.lastPixels.resize(picture.sizeBytes() / 4);
+        std::memcpy(shown_.lastPixels.data(), picture.bgra, picture.sizeBytes());
+        return {};
+    }
+    Result<void> finish() override {
+        const std::lock_guard lock(shown_.mutex);
+        shown_.finished = true;
+        return {};
+    }
+    [[nodiscard]] std::string describe() const override { return name_; }
+
+private:
+    Shown& shown_;
+    std::string name_;
+};
+
+void addSinks(SessionHarness& head, Shown& shown) {
+    for (auto& behaviour : head.behaviours) behaviour.pictures = true;
+    head.options.file = std::make_unique<FakeSink>(shown, "file");
+    head.options.openWindow = [&shown](uint64_t window) {
+        return Result<std::unique_ptr<PictureSink>>(
+            std::make_unique<FakeSink>(shown, "window " + std::to_string(window)));
+    };
+    head.config.out = "out";
+}
+
+bool swapFrame(FakeProgram& program, uint32_t frame, uint32_t window = 1, uint32_t width = 64) {
+    return program.publish(kFakeSwap, {frame, window, width, 48});
+}
+
+TEST(PictureSession, wallPicturesOfAllNodesAreSaved) {
+    Shown shown;
+    SessionHarness head(4);
+    addSinks(head, shown);
+    head.start();
+    head.waitFor("ready");
+    FakeProgram program;
+    ASSERT_TRUE(program.connect(head.config.session));
+    for (uint32_t frame = 1; frame <= 10; ++frame) ASSERT_TRUE(swapFrame(program, frame));
+    const auto report = head.finish();
+    EXPECT_EQ(report["savedPictures"], 10);
+    EXPECT_EQ(shown.frames["file"], (std::vector<int64_t>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10}));
+    EXPECT_TRUE(shown.finished);
+    ASSERT_EQ(shown.lastPixels.size(), 64u * 48);
+    for (uint32_t x = 0; x < 64; ++x) EXPECT_EQ(shown.lastPixels[x], 10 << 8 | x / 16);
+}
+
+TEST(PictureSession, onlyTheAskedFramesOfTheMainWindowAreSaved) {
+    Shown shown;
+    SessionHarness head(2);
+    addSinks(head, shown);
+    head.config.saveFrames = {2, 4, 99};
+    head.config.frames = 4;
+    head.start();
+    head.waitFor("ready");
+    FakeProgram program;
+    ASSERT_TRUE(program.connect(head.config.session));
+    uint32_t frame = 0;
+    for (int i = 0; i < 3; ++i) ASSERT_TRUE(swapFrame(program, ++frame, 7, 20)); // a splash screen
+    for (int i = 0; i < 5; ++i) {
+        ASSERT_TRUE(swapFrame(program, ++frame, 8, 64));
+        ASSERT_TRUE(swapFrame(program, ++frame, 7, 20));
+    }
+    head.waitFor("frames-reached");
+    const auto report = head.finish();
+    EXPECT_EQ(shown.frames["file"], (std::vector<int64_t>{2, 2, 4}));
+    EXPECT_EQ(report["savedPictures"], 3);
+}
+
+TEST(PictureSession, aSlowOutputHoldsNodesAndProgramBack) {
+    Shown shown;
+    SessionHarness head(2);
+    addSinks(head, shown);
+    head.start();
+    head.waitFor("ready");
+    FakeProgram program;
+    ASSERT_TRUE(program.connect(head.config.session));
+    shown.block(true);
+    for (uint32_t frame = 1; frame <= 12; ++frame) ASSERT_TRUE(swapFrame(program, frame));
+    ASSERT_TRUE(program.waitFramesDone(1));
+    // One being shown, three queued and one more per reader: the rest must wait.
+    EXPECT_LT(program.header()->framesDone.load(), 12u);
+    shown.block(false);
+    EXPECT_TRUE(program.waitFramesDone(12));
+    head.finish();
+    EXPECT_EQ(shown.frames["file"].size(), 12u);
+}
+
+TEST(PictureSession, inTheAppsWindowFramesCountWhenTheyAreShown) {
+    Shown shown;
+    SessionHarness head(2);
+    addSinks(head, shown);
+    head.config.out.clear();
+    head.options.file.reset();
+    head.config.display = Display::App;
+    head.config.latency = 0;
+    head.start();
+    head.waitFor("ready");
+    FakeProgram program;
+    ASSERT_TRUE(program.connect(head.config.session));
+    EXPECT_EQ(program.welcome().displayApp, 1u);
+    ASSERT_TRUE(swapFrame(program, 1, 5));
+    ASSERT_TRUE(program.waitFramesDone(1));
+    EXPECT_EQ(shown.count("window 5"), 1u) << "done before it was shown";
+    EXPECT_TRUE(program.waitFramesShown(1));
+    shown.block(true);
+    ASSERT_TRUE(swapFrame(program, 2, 5));
+    ASSERT_TRUE(program.publish(kFakeSum, {77}));
+    FakeProgram::Answer answer; // the nodes are past the frame then
+    ASSERT_TRUE(program.readAnswer(answer));
+    EXPECT_EQ(program.header()->framesDone.load(), 1u);
+    shown.block(false);
+    EXPECT_TRUE(program.waitFramesDone(2));
+    // A frame of a window without native window is shown nowhere, and does not hold the program up.
+    ASSERT_TRUE(swapFrame(program, 3, 0));
+    EXPECT_TRUE(program.waitFramesDone(3));
+    EXPECT_TRUE(program.waitFramesShown(3));
+    head.finish();
+    EXPECT_EQ(shown.frames["window 5"].size(), 2u);
+}
+
+TEST(PictureSession, withLatencyTheProgramRunsAheadOfTheScreen) {
+    Shown shown;
+    SessionHarness head(1);
+    addSinks(head, shown);
+    head.config.display = Display::App;
+    head.config.latency = 1;
+    head.start();
+    head.waitFor("ready");
+    FakeProgram program;
+    ASSERT_TRUE(program.connect(head.config.session));
+    shown.block(true);
+    ASSERT_TRUE(swapFrame(program, 1, 5));
+    EXPECT_TRUE(program.waitFramesDone(1));
+    EXPECT_EQ(program.header()->framesShown.load(), 0u);
+    shown.block(false);
+    EXPECT_TRUE(program.waitFramesShown(1));
+    head.finish();
+}
+
+TEST(PictureSession, aFailingFileIsOneLineAndTheSessionGoesOn) {
+    Shown shown;
+    shown.failing = true;
+    SessionHarness head(1);
+    addSinks(head, shown);
+    head.start();
+    head.waitFor("ready");
+    FakeProgram program;
+    ASSERT_TRUE(program.connect(head.config.session));
+    for (uint32_t frame = 1; frame <= 8; ++frame) ASSERT_TRUE(swapFrame(program, frame));
+    EXPECT_TRUE(program.waitFramesDone(8));
+    const auto report = head.finish();
+    EXPECT_EQ(report["savedPictures"], 0);
+    int complaints = 0;
+    for (const auto& event : head.seen) complaints += event["event"] == "say";
+    EXPECT_EQ(complaints, 1);
+}
+
+} // namespace
+} // namespace mural
