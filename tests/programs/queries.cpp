@@ -1,0 +1,158 @@
+// Queries: occlusion, boolean occlusion, primitives, timers, pipeline statistics, results into a buffer,
+// conditional rendering. What can be repeated is drawn: counts as bits and bars.
+#include "tests/programs/support/gl.hpp"
+#include "tests/programs/support/program.hpp"
+#include "tests/programs/support/shaders.hpp"
+#include "tests/programs/support/show.hpp"
+
+using namespace programs;
+
+namespace {
+
+GLuint vertexArray, program, names[12], resultBuffer, feedbackBuffer;
+
+void box(float x, float y, float w, float h, float depth) {
+    glUniform4f(0, x, y, w, h);
+    glUniform1f(1, depth);
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+}
+
+GLuint waitFor(GLuint query) {
+    GLuint result = 0;
+    glGetQueryObjectuiv(query, GL_QUERY_RESULT, &result);
+    return result;
+}
+
+// A box partly behind another one.
+void countSamples(int frame) {
+    box(-0.9F, -0.9F, 0.5F, 0.6F, 0.2F);
+    glBeginQuery(GL_SAMPLES_PASSED, names[0]);
+    box(-0.7F, -0.7F + 0.05F * float(frame), 0.6F, 0.5F, 0.6F);
+    glEndQuery(GL_SAMPLES_PASSED);
+    glBeginQuery(GL_ANY_SAMPLES_PASSED, names[1]);
+    box(-0.85F, -0.85F, 0.1F, 0.1F, 0.7F); // hidden
+    glEndQuery(GL_ANY_SAMPLES_PASSED);
+    glBeginQuery(GL_ANY_SAMPLES_PASSED_CONSERVATIVE, names[2]);
+    box(0, -0.9F, 0.2F, 0.3F, 0.3F);
+    glEndQuery(GL_ANY_SAMPLES_PASSED_CONSERVATIVE);
+    showBits(37, waitFor(names[0]));
+    showBits(36, waitFor(names[1]) * 2 + (waitFor(names[2]) != 0 ? 1U : 0U));
+    showBar(35, waitFor(names[0]) / 40);
+}
+
+void countPrimitives(int frame) {
+    glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, feedbackBuffer);
+    glBeginQuery(GL_PRIMITIVES_GENERATED, names[3]);
+    glBeginQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN, names[4]);
+    glBeginTransformFeedback(GL_TRIANGLES);
+    glUniform4f(0, 0.3F, -0.9F, 0.5F, 0.4F);
+    glDrawArraysInstanced(GL_TRIANGLES, 0, 3, 2 + frame * 2); // more than the buffer holds, at last
+    glEndTransformFeedback();
+    glEndQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN);
+    glEndQuery(GL_PRIMITIVES_GENERATED);
+    showBits(34, waitFor(names[3]) * 256 + waitFor(names[4]));
+}
+
+// Times differ from run to run: only that there are any is shown.
+void measureTime() {
+    glBeginQuery(GL_TIME_ELAPSED, names[5]);
+    box(0.5F, -0.3F, 0.3F, 0.3F, 0.4F);
+    glEndQuery(GL_TIME_ELAPSED);
+    glQueryCounter(names[6], GL_TIMESTAMP);
+    GLuint64 elapsed = 0;
+    GLuint64 stamp = 0;
+    glGetQueryObjectui64v(names[5], GL_QUERY_RESULT, &elapsed);
+    glGetQueryObjectui64v(names[6], GL_QUERY_RESULT, &stamp);
+    GLint64 now = 0;
+    glGetInteger64v(GL_TIMESTAMP, &now);
+    GLint bits = 0;
+    glGetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &bits);
+    showBits(33, (stamp != 0 ? 1U : 0U) | (GLuint64(now) >= stamp ? 2U : 0U) | (bits >= 30 ? 4U : 0U));
+}
+
+void renderConditionally(int frame) {
+    // Hidden and visible in turns.
+    glBeginQuery(GL_SAMPLES_PASSED, names[7]);
+    box(-0.85F, -0.85F, 0.2F, 0.2F, frame % 2 == 0 ? 0.9F : 0.1F);
+    glEndQuery(GL_SAMPLES_PASSED);
+    glBeginConditionalRender(names[7], GL_QUERY_WAIT);
+    box(-0.9F, 0, 0.3F, 0.3F, 0.2F);
+    glEndConditionalRender();
+    glBeginConditionalRender(names[7], GL_QUERY_WAIT_INVERTED);
+    box(-0.5F, 0, 0.3F, 0.3F, 0.2F);
+    glClear(0);
+    glEndConditionalRender();
+    glBeginConditionalRender(names[2], GL_QUERY_BY_REGION_WAIT);
+    box(-0.1F, 0, 0.3F, 0.3F, 0.2F);
+    glEndConditionalRender();
+}
+
+// A result that never leaves GL: written into a buffer, which is then read.
+void resultIntoBuffer(int frame) {
+    glBindBuffer(GL_QUERY_BUFFER, resultBuffer);
+    glBeginQuery(GL_SAMPLES_PASSED, names[8]);
+    box(0.3F, 0.05F * float(frame), 0.4F, 0.3F, 0.1F);
+    glEndQuery(GL_SAMPLES_PASSED);
+    glGetQueryObjectuiv(names[8], GL_QUERY_RESULT, nullptr);
+    glGetQueryObjectuiv(names[8], GL_QUERY_RESULT_AVAILABLE, reinterpret_cast<GLuint*>(8));
+    GLuint told[4] = {};
+    glGetBufferSubData(GL_QUERY_BUFFER, 0, sizeof told, told);
+    glBindBuffer(GL_QUERY_BUFFER, 0);
+    showBits(32, told[0]);
+}
+
+void countStatistics() {
+    glBeginQuery(GL_VERTICES_SUBMITTED_ARB, names[9]);
+    glBeginQuery(GL_VERTEX_SHADER_INVOCATIONS_ARB, names[10]);
+    box(0.75F, 0.1F, 0.2F, 0.2F, 0.1F);
+    glEndQuery(GL_VERTEX_SHADER_INVOCATIONS_ARB);
+    glEndQuery(GL_VERTICES_SUBMITTED_ARB);
+    showBits(31, waitFor(names[9]) * 256 + waitFor(names[10]));
+}
+
+void setUp() {
+    glGenVertexArrays(1, &vertexArray);
+    glBindVertexArray(vertexArray);
+    program = buildProgram(
+        {{GL_VERTEX_SHADER,
+          "#version 430\nlayout(location=0) uniform vec4 box; layout(location=1) uniform float depth; out vec3 tint;\n"
+          "void main() { vec2 c = vec2(gl_VertexID & 1, gl_VertexID >> 1); tint = vec3(c, depth);\n"
+          "gl_Position = vec4(box.xy + c * box.zw + vec2(0.02) * float(gl_InstanceID), depth, 1); }\n"},
+         {GL_FRAGMENT_SHADER, "#version 430\nin vec3 tint; out vec4 result; void main() { result = vec4(tint, 1); }\n"}},
+        [](unsigned linking) {
+            const char* const varying = "tint";
+            glTransformFeedbackVaryings(linking, 1, &varying, GL_INTERLEAVED_ATTRIBS);
+        });
+    glGenQueries(12, names);
+    const GLuint zeros[64] = {};
+    glGenBuffers(1, &resultBuffer);
+    glBindBuffer(GL_QUERY_BUFFER, resultBuffer);
+    glBufferData(GL_QUERY_BUFFER, 64, zeros, GL_DYNAMIC_COPY);
+    glBindBuffer(GL_QUERY_BUFFER, 0);
+    glGenBuffers(1, &feedbackBuffer);
+    glBindBuffer(GL_TRANSFORM_FEEDBACK_BUFFER, feedbackBuffer);
+    glBufferData(GL_TRANSFORM_FEEDBACK_BUFFER, 4 * 36, zeros, GL_DYNAMIC_COPY); // four triangles
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    const WindowSpec spec = {Profile::Core, 4, 5};
+    return runInGlxWindow(
+        argc,
+        argv,
+        spec,
+        [](Window&) { setUp(); },
+        [](Window&, int frame) {
+            glClearColor(0.05F, 0.1F, 0.1F, 1);
+            glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+            glEnable(GL_DEPTH_TEST);
+            glUseProgram(program);
+            countSamples(frame);
+            countPrimitives(frame);
+            measureTime();
+            renderConditionally(frame);
+            resultIntoBuffer(frame);
+            countStatistics();
+        });
+}
