@@ -69,7 +69,6 @@ GlFunctions::GlFunctions(const FindProc& find)
       texCoordPointer(AnyProc{find("glTexCoordPointer")}),
       texImage2D(AnyProc{find("glTexImage2D")}),
       texParameteri(AnyProc{find("glTexParameteri")}),
-      translatef(AnyProc{find("glTranslatef")}),
       useProgram(AnyProc{find("glUseProgram")}),
       vertex3f(AnyProc{find("glVertex3f")}),
       vertexAttribPointer(AnyProc{find("glVertexAttribPointer")}),
@@ -89,8 +88,6 @@ GlFunctions::GlFunctions(const FindProc& find)
       blitFramebuffer(AnyProc{find("glBlitFramebuffer")}),
       deleteFramebuffers(AnyProc{find("glDeleteFramebuffers")}),
       deleteRenderbuffers(AnyProc{find("glDeleteRenderbuffers")}),
-      drawBuffers(AnyProc{find("glDrawBuffers")}),
-      getStringi(AnyProc{find("glGetStringi")}),
-      flush(AnyProc{find("glFlush")}) {}
+      drawBuffers(AnyProc{find("glDrawBuffers")}) {}
 
 } // namespace mural::test

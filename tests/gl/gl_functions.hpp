@@ -72,7 +72,6 @@ struct GlFunctions {
     decltype(&glTexCoordPointer) texCoordPointer;
     decltype(&glTexImage2D) texImage2D;
     decltype(&glTexParameteri) texParameteri;
-    decltype(&glTranslatef) translatef;
     decltype(&glUseProgram) useProgram;
     decltype(&glVertex3f) vertex3f;
     decltype(&glVertexAttribPointer) vertexAttribPointer;
@@ -93,8 +92,6 @@ struct GlFunctions {
     decltype(&glDeleteFramebuffers) deleteFramebuffers;
     decltype(&glDeleteRenderbuffers) deleteRenderbuffers;
     decltype(&glDrawBuffers) drawBuffers;
-    decltype(&glGetStringi) getStringi;
-    decltype(&glFlush) flush;
 };
 
 } // namespace mural::test

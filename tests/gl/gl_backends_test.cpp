@@ -1,0 +1,425 @@
+// What every backend promises, on each of them: versions, buffers, errors that name the wish, probing.
+#include <algorithm>
+
+#include "nodes/gl/gl_probe.hpp"
+#include "tests/gl/backend_test.hpp"
+#include "tests/gl/scene.hpp"
+
+namespace mural::test {
+namespace {
+
+gl::ContextConfig version(int major, int minor, bool core = false, gl::Api api = gl::Api::Desktop) {
+    gl::ContextConfig config;
+    config.api = api;
+    config.major = major;
+    config.minor = minor;
+    config.core = core;
+    config.surface.width = config.surface.height = 16;
+    return config;
+}
+
+class Backends : public BackendTest, public testing::WithParamInterface<std::string> {
+protected:
+    void SetUp() override { open(GetParam()); }
+    void TearDown() override {
+        if (!platform_) return;
+        EXPECT_TRUE(platform_->makeCurrent(nullptr, nullptr, nullptr));
+    }
+
+    [[nodiscard]] bool isOsmesa() const { return GetParam() == "osmesa"; }
+
+    std::string errorOf(const gl::ContextConfig& config) {
+        auto context = platform_->createContext(config, nullptr);
+        return context ? "" : context.error().message;
+    }
+    std::string errorOf(const gl::SurfaceConfig& config) {
+        auto surface = platform_->createSurface(config);
+        return surface ? "" : surface.error().message;
+    }
+
+    // The red that both names of a buffer show after clearing one of them.
+    static int redOf(const GlFunctions& gl) {
+        uint8_t pixel[4] = {1, 2, 3, 4};
+        gl.readPixels(3, 3, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel);
+        return pixel[0];
+    }
+    static void clearRed(const GlFunctions& gl, int red) {
+        gl.clearColor(static_cast<float>(red) / 255.0f, 0, 0, 1);
+        gl.clear(GL_COLOR_BUFFER_BIT);
+    }
+};
+
+TEST_P(Backends, describeNamesBackendAndDriver) {
+    const std::string text = platform_->describe();
+    const std::string name = isOsmesa() ? "OSMesa" : GetParam() == "egl" ? "EGL" : "GLX";
+    EXPECT_EQ(text.rfind(name, 0), 0u) << text;
+    EXPECT_NE(text.find("."), std::string::npos) << text;
+}
+
+TEST_P(Backends, probeTellsVersionAndExtensions) {
+    for (const bool core : {false, true}) {
+        auto probed = gl::probe(*platform_, gl::Api::Desktop, core);
+        ASSERT_TRUE(probed) << probed.error().message;
+        EXPECT_GE(probed->glVersion, core ? 32 : 21);
+        EXPECT_TRUE(probed->has("GL_ARB_vertex_buffer_object") || core);
+        EXPECT_TRUE(probed->has("GL_ARB_debug_output"));
+        EXPECT_FALSE(probed->has("GL_ARB_debug"));
+        EXPECT_FALSE(probed->renderer.empty());
+        EXPECT_GE(probed->maxSurfaceSize, 4096);
+        EXPECT_EQ(probed->version.find("Core") != std::string::npos, core) << probed->version;
+    }
+    for (const gl::Api api : {gl::Api::Es1, gl::Api::Es2}) {
+        auto probed = gl::probe(*platform_, api, false);
+        EXPECT_EQ(probed.ok(), !isOsmesa());
+        if (!probed) continue;
+        EXPECT_TRUE(probed->es);
+        EXPECT_GE(probed->glVersion, api == gl::Api::Es1 ? 11 : 20);
+        EXPECT_GT(probed->extensions.size(), 10u);
+    }
+}
+
+TEST_P(Backends, probeLeavesNoContextCurrent) {
+    ASSERT_TRUE(gl::probe(*platform_, gl::Api::Desktop, false));
+    const GlFunctions gl(find());
+    EXPECT_EQ(gl.getString(GL_VERSION), nullptr);
+}
+
+// As glXCreateContext: the latest version that is compatible.
+TEST_P(Backends, oldVersionsGiveTheLatestCompatibleOne) {
+    const int latest = gl::probe(*platform_, gl::Api::Desktop, false)->glVersion;
+    for (const auto& [major, minor] : {std::pair{1, 0}, {1, 5}, {2, 1}, {3, 0}, {3, 1}, {3, 2}, {4, 5}}) {
+        Drawable drawable(*platform_, version(major, minor));
+        ASSERT_EQ(drawable.error, "") << major << "." << minor;
+        const GlFunctions gl(find());
+        const std::string text = reinterpret_cast<const char*>(gl.getString(GL_VERSION));
+        EXPECT_NE(text.find("Compatibility"), std::string::npos) << major << "." << minor << ": " << text;
+        EXPECT_EQ(text.substr(0, 3), std::to_string(latest / 10) + "." + std::to_string(latest % 10));
+    }
+}
+
+TEST_P(Backends, coreProfilesAreCore) {
+    for (const auto& [major, minor] : {std::pair{3, 1}, {3, 2}, {3, 3}, {4, 5}}) {
+        Drawable drawable(*platform_, version(major, minor, true));
+        ASSERT_EQ(drawable.error, "");
+        const GlFunctions gl(find());
+        GLint profile = 0;
+        gl.getIntegerv(GL_CONTEXT_PROFILE_MASK, &profile);
+        EXPECT_EQ(profile, GL_CONTEXT_CORE_PROFILE_BIT) << major << "." << minor;
+        gl.begin(GL_TRIANGLES); // gone from core
+        EXPECT_EQ(gl.getError(), static_cast<GLenum>(GL_INVALID_OPERATION));
+    }
+}
+
+TEST_P(Backends, flagsReachTheContext) {
+    if (isOsmesa()) {
+        gl::ContextConfig forward = version(3, 3, true);
+        forward.forwardCompatible = true;
+        EXPECT_NE(errorOf(forward).find("forward-compatible"), std::string::npos);
+        return;
+    }
+    gl::ContextConfig config = version(3, 3, true);
+    config.forwardCompatible = config.debug = config.robust = true;
+    if (const std::string robust = errorOf(config); !robust.empty()) { // Xvfb's GLX has no robust contexts
+        EXPECT_EQ(GetParam(), "glx");
+        EXPECT_NE(robust.find("robust"), std::string::npos) << robust;
+        config.robust = false;
+    }
+    Drawable drawable(*platform_, config);
+    ASSERT_EQ(drawable.error, "");
+    const GlFunctions gl(find());
+    GLint flags = 0;
+    gl.getIntegerv(GL_CONTEXT_FLAGS, &flags);
+    EXPECT_TRUE(flags & GL_CONTEXT_FLAG_FORWARD_COMPATIBLE_BIT);
+    EXPECT_TRUE(flags & GL_CONTEXT_FLAG_DEBUG_BIT);
+    EXPECT_EQ((flags & GL_CONTEXT_FLAG_ROBUST_ACCESS_BIT) != 0, config.robust);
+}
+
+TEST_P(Backends, framebuffersHaveTheBitsAskedFor) {
+    const int depths[][2] = {{16, 0}, {24, 0}, {24, 8}};
+    for (const auto& [depth, stencil] : depths)
+        for (const int alpha : {0, 8}) {
+            gl::ContextConfig config = version(1, 0);
+            config.surface.alpha = alpha;
+            config.surface.depth = depth;
+            config.surface.stencil = stencil;
+            Drawable drawable(*platform_, config);
+            ASSERT_EQ(drawable.error, "");
+            const GlFunctions gl(find());
+            auto bits = [&](GLenum name) {
+                GLint value = -1;
+                gl.getIntegerv(name, &value);
+                return value;
+            };
+            EXPECT_EQ(bits(GL_RED_BITS), 8);
+            EXPECT_EQ(bits(GL_ALPHA_BITS), drawable.surface->hiddenAlpha() ? 8 : alpha);
+            EXPECT_EQ(bits(GL_DEPTH_BITS), depth);
+            EXPECT_EQ(bits(GL_STENCIL_BITS), stencil);
+        }
+}
+
+TEST_P(Backends, impossibleWishesAreNamed) {
+    gl::SurfaceConfig config;
+    config.samples = 77;
+    EXPECT_NE(errorOf(config).find("samples 77"), std::string::npos) << errorOf(config);
+    config = {};
+    config.alpha = 3;
+    EXPECT_NE(errorOf(config).find("alpha 3"), std::string::npos);
+    config = {};
+    config.stereo = true;
+    EXPECT_NE(errorOf(config).find("stereo 1"), std::string::npos);
+    config = {};
+    config.accum = 16;
+    EXPECT_EQ(errorOf(config).find("accum 16") == std::string::npos, GetParam() == "glx") << errorOf(config);
+    config = {};
+    config.width = 20000;
+    EXPECT_NE(errorOf(config).find("20000x1"), std::string::npos) << errorOf(config);
+    EXPECT_NE(errorOf(version(7, 3, true)).find("OpenGL 7.3 core"), std::string::npos) << errorOf(version(7, 3, true));
+    EXPECT_NE(errorOf(version(9, 0, false, gl::Api::Es2)).find("OpenGL ES 9.0"), std::string::npos);
+    gl::ContextConfig bits = version(2, 1);
+    bits.surface.depth = 23;
+    EXPECT_NE(errorOf(bits).find("depth 23"), std::string::npos);
+}
+
+// See README.md of nodes/gl: the table that it prints is kept by this test.
+TEST_P(Backends, namesOfTheColorBuffers) {
+    for (const bool core : {false, true}) {
+        gl::ContextConfig config = version(core ? 3 : 1, core ? 3 : 0, core);
+        Drawable drawable(*platform_, config);
+        ASSERT_EQ(drawable.error, "");
+        const GlFunctions gl(find());
+        const bool single = drawable.surface->singleBuffered();
+        GLint first = 0;
+        gl.getIntegerv(GL_DRAW_BUFFER, &first);
+        EXPECT_EQ(first, single ? GL_FRONT : GL_BACK);
+        for (const GLenum name : {GL_FRONT, GL_BACK, GL_FRONT_LEFT, GL_BACK_LEFT, GL_FRONT_AND_BACK, GL_LEFT}) {
+            gl.drawBuffer(GL_FRONT_AND_BACK);
+            clearRed(gl, 10);
+            gl.drawBuffer(name);
+            clearRed(gl, 99);
+            const bool both = single || name == GL_FRONT_AND_BACK || name == GL_LEFT;
+            gl.readBuffer(GL_FRONT);
+            EXPECT_EQ(redOf(gl), both || name == GL_FRONT || name == GL_FRONT_LEFT ? 99 : 10) << name;
+            gl.readBuffer(GL_BACK);
+            EXPECT_EQ(redOf(gl), both || name == GL_BACK || name == GL_BACK_LEFT ? 99 : 10) << name;
+            EXPECT_EQ(gl.getError(), static_cast<GLenum>(GL_NO_ERROR)) << name;
+        }
+        for (const GLenum name : {GL_BACK_RIGHT, GL_RIGHT, GL_AUX0}) {
+            gl.drawBuffer(name);
+            EXPECT_EQ(gl.getError(), static_cast<GLenum>(GL_INVALID_OPERATION)) << name;
+        }
+        const GLenum back = GL_BACK;
+        gl.drawBuffers(1, &back);
+        EXPECT_EQ(gl.getError(), static_cast<GLenum>(GL_NO_ERROR));
+    }
+}
+
+// One buffer under two names is drawn to once: blending must not add up.
+TEST_P(Backends, frontAndBackBlendOnce) {
+    Drawable drawable(*platform_, version(1, 0));
+    ASSERT_EQ(drawable.error, "");
+    const GlFunctions gl(find());
+    gl.drawBuffer(GL_FRONT_AND_BACK);
+    clearRed(gl, 10);
+    gl.enable(GL_BLEND);
+    gl.blendFunc(GL_ONE, GL_ONE);
+    gl.color4f(20 / 255.0f, 0, 0, 0);
+    gl.begin(GL_TRIANGLES);
+    gl.vertex3f(-3, -3, 0);
+    gl.vertex3f(3, -3, 0);
+    gl.vertex3f(0, 5, 0);
+    gl.end();
+    gl.readBuffer(GL_BACK);
+    EXPECT_EQ(redOf(gl), 30);
+    gl.readBuffer(GL_FRONT);
+    EXPECT_EQ(redOf(gl), 30);
+}
+
+TEST_P(Backends, backIsTheOnlyNameInEs) {
+    if (isOsmesa()) return; // has no ES: see impossibleWishesAreNamed
+    Drawable drawable(*platform_, version(3, 0, false, gl::Api::Es2));
+    ASSERT_EQ(drawable.error, "");
+    const GlFunctions gl(find());
+    const GLenum back = GL_BACK, front = GL_FRONT;
+    gl.drawBuffers(1, &back);
+    gl.readBuffer(GL_BACK);
+    clearRed(gl, 60);
+    EXPECT_EQ(redOf(gl), 60);
+    EXPECT_EQ(gl.getError(), static_cast<GLenum>(GL_NO_ERROR));
+    gl.drawBuffers(1, &front);
+    EXPECT_NE(gl.getError(), static_cast<GLenum>(GL_NO_ERROR));
+}
+
+TEST_P(Backends, shareGroupsShareObjects) {
+    Drawable first(*platform_, version(2, 1));
+    ASSERT_EQ(first.error, "");
+    const GlFunctions gl(find());
+    GLuint texture = 0;
+    gl.genTextures(1, &texture);
+    gl.bindTexture(GL_TEXTURE_2D, texture);
+    const uint32_t texels[4] = {0x11223344, 0x55667788, 0x99aabbcc, 0xddeeff00};
+    gl.texImage2D(GL_TEXTURE_2D, 0, GL_RGBA, 2, 2, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels);
+    gl.finish();
+    {
+        Drawable second(*platform_, version(2, 1), first.context.get());
+        ASSERT_EQ(second.error, "");
+        gl.bindTexture(GL_TEXTURE_2D, texture);
+        uint32_t read[4] = {};
+        gl.getTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, read);
+        EXPECT_TRUE(std::equal(texels, texels + 4, read));
+    }
+    Drawable stranger(*platform_, version(2, 1));
+    ASSERT_EQ(stranger.error, "");
+    EXPECT_FALSE(gl.isTexture(texture));
+}
+
+// A window's new size is a new surface; the context and its objects stay.
+TEST_P(Backends, resizeByANewSurface) {
+    gl::ContextConfig config = version(1, 0);
+    Drawable drawable(*platform_, config);
+    ASSERT_EQ(drawable.error, "");
+    const GlFunctions gl(find());
+    GLuint texture = 0;
+    gl.genTextures(1, &texture);
+    gl.bindTexture(GL_TEXTURE_2D, texture);
+    for (const auto& [width, height] : {std::pair{300, 200}, {37, 911}, {1, 1}, {16, 16}}) {
+        config.surface.width = width;
+        config.surface.height = height;
+        auto surface = platform_->createSurface(config.surface);
+        ASSERT_TRUE(surface);
+        ASSERT_TRUE(platform_->makeCurrent(drawable.context.get(), surface->get(), surface->get()));
+        drawable.surface = std::move(surface.value());
+        EXPECT_EQ(drawable.surface->width(), width);
+        EXPECT_EQ(drawable.surface->height(), height);
+        EXPECT_TRUE(gl.isTexture(texture));
+        clearRed(gl, 0);
+        gl.enable(GL_SCISSOR_TEST);
+        gl.scissor(width - 1, height - 1, 50, 50);
+        clearRed(gl, 77);
+        gl.disable(GL_SCISSOR_TEST);
+        const Picture picture = readPicture(gl, config, config.surface);
+        const size_t lit = static_cast<size_t>(std::count(picture.color.begin(), picture.color.end(), 77));
+        EXPECT_EQ(lit, 1u) << width << "x" << height;
+        EXPECT_EQ(picture.color[picture.color.size() - 4], 77) << "upper right corner";
+    }
+}
+
+TEST_P(Backends, theLargestSurfaceDrawsToItsCorners) {
+    gl::ContextConfig config = version(1, 0);
+    config.surface.width = 16384;
+    config.surface.height = 64;
+    for (int turn = 0; turn < 2; turn++, std::swap(config.surface.width, config.surface.height)) {
+        Drawable drawable(*platform_, config);
+        ASSERT_EQ(drawable.error, "");
+        const GlFunctions gl(find());
+        gl.viewport(0, 0, config.surface.width, config.surface.height);
+        clearRed(gl, 5);
+        gl.color4f(1, 0, 0, 1);
+        gl.begin(GL_POINTS);
+        gl.vertex3f(1 - 1.0f / static_cast<float>(config.surface.width), 1 - 1.0f / static_cast<float>(config.surface.height), 0);
+        gl.end();
+        uint8_t pixel[4] = {};
+        gl.readPixels(config.surface.width - 1, config.surface.height - 1, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel);
+        EXPECT_EQ(pixel[0], 255);
+        EXPECT_EQ(redOf(gl), 5);
+    }
+}
+
+TEST_P(Backends, drawAndReadSurfacesMayDiffer) {
+    gl::ContextConfig config = version(1, 0);
+    Drawable drawable(*platform_, config);
+    ASSERT_EQ(drawable.error, "");
+    auto other = platform_->createSurface(config.surface);
+    ASSERT_TRUE(other);
+    const GlFunctions gl(find());
+    clearRed(gl, 40);
+    ASSERT_TRUE(platform_->makeCurrent(drawable.context.get(), other->get(), other->get()));
+    clearRed(gl, 50);
+    auto mixed = platform_->makeCurrent(drawable.context.get(), other->get(), drawable.surface.get());
+    if (isOsmesa()) {
+        ASSERT_FALSE(mixed);
+        EXPECT_NE(mixed.error().message.find("draw to one surface and read from another"), std::string::npos);
+        return;
+    }
+    ASSERT_TRUE(mixed) << mixed.error().message;
+    EXPECT_EQ(redOf(gl), 40);
+    clearRed(gl, 60); // into other
+    EXPECT_EQ(redOf(gl), 40);
+    ASSERT_TRUE(platform_->makeCurrent(drawable.context.get(), drawable.surface.get(), other->get()));
+    EXPECT_EQ(redOf(gl), 60);
+}
+
+// Objects can be made before there is a window.
+TEST_P(Backends, contextWithoutSurface) {
+    auto context = platform_->createContext(version(3, 3, true), nullptr);
+    ASSERT_TRUE(context);
+    auto current = platform_->makeCurrent(context->get(), nullptr, nullptr);
+    ASSERT_TRUE(current) << current.error().message;
+    const GlFunctions gl(find());
+    GLuint texture = 0;
+    gl.genTextures(1, &texture);
+    gl.bindTexture(GL_TEXTURE_2D, texture);
+    EXPECT_TRUE(gl.isTexture(texture));
+    EXPECT_EQ(gl.getError(), static_cast<GLenum>(GL_NO_ERROR));
+}
+
+TEST_P(Backends, oneContextServesSurfacesOfSeveralBits) {
+    gl::ContextConfig config = version(1, 0);
+    Drawable drawable(*platform_, config);
+    ASSERT_EQ(drawable.error, "");
+    gl::SurfaceConfig other = config.surface;
+    other.alpha = 8;
+    other.stencil = 0;
+    auto surface = platform_->createSurface(other);
+    ASSERT_TRUE(surface);
+    auto current = platform_->makeCurrent(drawable.context.get(), surface->get(), surface->get());
+    if (isOsmesa()) {
+        ASSERT_FALSE(current);
+        EXPECT_NE(current.error().message.find("different bits"), std::string::npos);
+        return;
+    }
+    ASSERT_TRUE(current) << current.error().message;
+    const GlFunctions gl(find());
+    GLint alpha = 0;
+    gl.getIntegerv(GL_ALPHA_BITS, &alpha);
+    EXPECT_EQ(alpha, 8);
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, Backends, testing::Values("egl", "osmesa", "glx"),
+                         [](const auto& chosen) { return chosen.param; });
+
+TEST(OpenPlatform, namesAreChecked) {
+    auto none = gl::openPlatform("metal");
+    ASSERT_FALSE(none);
+    EXPECT_NE(none.error().message.find("metal"), std::string::npos);
+    auto some = gl::openPlatform("auto");
+    ASSERT_TRUE(some) << some.error().message;
+    EXPECT_EQ((*some)->describe().rfind("EGL", 0), 0u);
+}
+
+TEST(OpenPlatform, glxSaysWhatIsMissing) {
+    unsetenv("DISPLAY");
+    auto none = gl::openPlatform("glx");
+    ASSERT_FALSE(none);
+    EXPECT_NE(none.error().message.find("DISPLAY"), std::string::npos);
+    setenv("DISPLAY", ":not-there", 1);
+    none = gl::openPlatform("glx");
+    ASSERT_FALSE(none);
+    EXPECT_NE(none.error().message.find(":not-there"), std::string::npos);
+}
+
+TEST(OpenPlatform, severalOfOneKindDoNotDisturbEachOther) {
+    auto first = gl::openPlatform("egl");
+    ASSERT_TRUE(first);
+    Drawable drawable(**first, version(1, 0));
+    {
+        auto second = gl::openPlatform("egl");
+        ASSERT_TRUE(second);
+    }
+    ASSERT_TRUE((*first)->makeCurrent(drawable.context.get(), drawable.surface.get(), drawable.surface.get()));
+    const GlFunctions gl([&](const char* name) { return (*first)->getProcAddress(name); });
+    EXPECT_NE(gl.getString(GL_VERSION), nullptr);
+    ASSERT_TRUE((*first)->makeCurrent(nullptr, nullptr, nullptr));
+}
+
+} // namespace
+} // namespace mural::test
