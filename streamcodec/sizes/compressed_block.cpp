@@ -29,9 +29,12 @@ bool astcBlock(const BlockShape (&shapes)[count],
     return true;
 }
 
-CompressedBlock fixedBlock(GLenum internalformat) {
+// Blocks of 4×4 texels: their bytes, or 0.
+uint32_t squareBlockBytes(GLenum internalformat) {
     switch (internalformat) {
     case GL_COMPRESSED_RGB_S3TC_DXT1_EXT:
+    case GL_RGB_S3TC: // S3_s3tc: the same blocks under older names
+    case GL_RGB4_S3TC:
     case GL_COMPRESSED_RGBA_S3TC_DXT1_EXT:
     case GL_COMPRESSED_SRGB_S3TC_DXT1_EXT:
     case GL_COMPRESSED_SRGB_ALPHA_S3TC_DXT1_EXT:
@@ -50,8 +53,12 @@ CompressedBlock fixedBlock(GLenum internalformat) {
     case GL_3DC_X_AMD:
     case GL_COMPRESSED_RGBA_PVRTC_4BPPV2_IMG:
     case GL_COMPRESSED_SRGB_ALPHA_PVRTC_4BPPV2_IMG:
-        return {4, 4, 1, 8, 1};
+        return 8;
     case GL_COMPRESSED_RGBA_S3TC_DXT3_EXT:
+    case GL_RGBA_S3TC:
+    case GL_RGBA4_S3TC:
+    case GL_RGBA_DXT5_S3TC:
+    case GL_RGBA4_DXT5_S3TC:
     case GL_COMPRESSED_RGBA_S3TC_DXT5_EXT:
     case GL_COMPRESSED_SRGB_ALPHA_S3TC_DXT3_EXT:
     case GL_COMPRESSED_SRGB_ALPHA_S3TC_DXT5_EXT:
@@ -71,7 +78,14 @@ CompressedBlock fixedBlock(GLenum internalformat) {
     case GL_ATC_RGBA_EXPLICIT_ALPHA_AMD:
     case GL_ATC_RGBA_INTERPOLATED_ALPHA_AMD:
     case GL_3DC_XY_AMD:
-        return {4, 4, 1, 16, 1};
+        return 16;
+    default:
+        return 0;
+    }
+}
+
+CompressedBlock otherBlock(GLenum internalformat) {
+    switch (internalformat) {
     case GL_COMPRESSED_RGB_FXT1_3DFX:
     case GL_COMPRESSED_RGBA_FXT1_3DFX:
         return {8, 4, 1, 16, 1};
@@ -124,7 +138,8 @@ CompressedBlock compressedBlock(GLenum internalformat) {
         astcBlock(kAstc3d, internalformat, GL_COMPRESSED_RGBA_ASTC_3x3x3_OES, block) ||
         astcBlock(kAstc3d, internalformat, GL_COMPRESSED_SRGB8_ALPHA8_ASTC_3x3x3_OES, block))
         return block;
-    return fixedBlock(internalformat);
+    const uint32_t bytes = squareBlockBytes(internalformat);
+    return bytes != 0 ? CompressedBlock{4, 4, 1, bytes, 1} : otherBlock(internalformat);
 }
 
 size_t compressedBytes(GLenum internalformat, GLsizei width, GLsizei height, GLsizei depth) {

@@ -7,30 +7,43 @@
 namespace mural::sizes {
 namespace {
 
-// A point of a surface: `uorder` rows of `vorder` points. A curve is one row.
+// `uorder` rows of `vorder` points; a curve is one row. Strides count values. components 0: GL
+// reads nothing.
 struct Points {
-    size_t components, ustride, uorder, vstride,
-        vorder; // strides in values; components 0: nothing is read
+    size_t components = 0;
+    size_t ustride = 0;
+    size_t uorder = 0;
+    size_t vstride = 0;
+    size_t vorder = 0;
 };
 
 bool isStride(GLint stride, uint32_t components) {
-    return stride > 0 && static_cast<uint32_t>(stride) >= components;
+    return components > 0 && stride > 0 && static_cast<uint32_t>(stride) >= components;
+}
+
+bool within(GLenum target, GLenum first, GLenum last) {
+    return target >= first && target <= last;
+}
+
+bool isCurve(GLenum target) {
+    return within(target, GL_MAP1_COLOR_4, GL_MAP1_VERTEX_4) ||
+           within(target, GL_MAP1_VERTEX_ATTRIB0_4_NV, GL_MAP1_VERTEX_ATTRIB15_4_NV);
 }
 
 Points curve(GLenum target, GLint stride, GLint order) {
     const uint32_t components = mapComponents(target);
-    if (components == 0 || order < 1 || !isStride(stride, components))
+    if (!isCurve(target) || order < 1 || !isStride(stride, components))
         return {};
     return {components, 0, 1, static_cast<size_t>(stride), static_cast<size_t>(order)};
 }
 
 Points surface(GLenum target, GLint ustride, GLint uorder, GLint vstride, GLint vorder) {
-    Points points = curve(target, vstride, vorder);
-    if (points.components == 0 || uorder < 1 || !isStride(ustride, mapComponents(target)))
+    const uint32_t components = mapComponents(target);
+    if (isCurve(target) || uorder < 1 || vorder < 1 || !isStride(ustride, components) ||
+        !isStride(vstride, components))
         return {};
-    points.ustride = static_cast<size_t>(ustride);
-    points.uorder = static_cast<size_t>(uorder);
-    return points;
+    return {components, static_cast<size_t>(ustride), static_cast<size_t>(uorder),
+            static_cast<size_t>(vstride), static_cast<size_t>(vorder)};
 }
 
 size_t values(const Points& points) {

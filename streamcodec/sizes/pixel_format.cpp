@@ -50,6 +50,43 @@ PackedType packedType(GLenum type) {
     }
 }
 
+uint32_t extensionComponents(GLenum format) {
+    switch (format) {
+    case GL_ALPHA_INTEGER_EXT:
+    case GL_LUMINANCE_INTEGER_EXT:
+        return 1;
+    case GL_LUMINANCE_ALPHA_INTEGER_EXT:
+    case GL_YCBCR_MESA:
+    case GL_YCBCR_422_APPLE:
+    case GL_RGB_422_APPLE:
+    case GL_RGB_RAW_422_APPLE:
+    case GL_YCRCB_422_SGIX:
+    case GL_422_EXT:
+    case GL_422_REV_EXT:
+    case GL_422_AVERAGE_EXT:
+    case GL_422_REV_AVERAGE_EXT:
+    case GL_DUDV_ATI:
+    case GL_HILO_NV:
+    case GL_DSDT_NV:
+        return 2;
+    case GL_SRGB: // as a client format: EXT_sRGB
+    case GL_YCRCB_444_SGIX:
+    case GL_YCRCB_SGIX:
+    case GL_DSDT_MAG_NV:
+        return 3;
+    case GL_ABGR_EXT:
+    case GL_SRGB_ALPHA:
+    case GL_CMYK_EXT:
+    case GL_YCRCBA_SGIX:
+    case GL_DSDT_MAG_VIB_NV:
+        return 4;
+    case GL_CMYKA_EXT:
+        return 5;
+    default:
+        return 0;
+    }
+}
+
 uint32_t scalarBytes(GLenum type) {
     switch (type) {
     case GL_BYTE:
@@ -87,8 +124,10 @@ bool fitsPacked(GLenum format, GLenum type, uint32_t channels) {
         return false;
     if (wantsPair)
         return true;
+    // NV_read_depth takes the word of depth and stencil for depth alone.
     if (channels == 2)
-        return format == GL_DEPTH_STENCIL;
+        return format == GL_DEPTH_STENCIL ||
+               (format == GL_DEPTH_COMPONENT && type == GL_UNSIGNED_INT_24_8);
     const uint32_t components = componentsOf(format);
     return components == channels || (type == GL_UNSIGNED_INT_2_10_10_10_REV && components == 3);
 }
@@ -109,50 +148,24 @@ uint32_t componentsOf(GLenum format) {
     case GL_RED_INTEGER:
     case GL_GREEN_INTEGER:
     case GL_BLUE_INTEGER:
-    case GL_ALPHA_INTEGER_EXT:
-    case GL_LUMINANCE_INTEGER_EXT:
         return 1;
     case GL_LUMINANCE_ALPHA:
-    case GL_LUMINANCE_ALPHA_INTEGER_EXT:
     case GL_RG:
     case GL_RG_INTEGER:
     case GL_DEPTH_STENCIL:
-    case GL_YCBCR_MESA:
-    case GL_YCBCR_422_APPLE:
-    case GL_RGB_422_APPLE:
-    case GL_RGB_RAW_422_APPLE:
-    case GL_YCRCB_422_SGIX:
-    case GL_422_EXT:
-    case GL_422_REV_EXT:
-    case GL_422_AVERAGE_EXT:
-    case GL_422_REV_AVERAGE_EXT:
-    case GL_DUDV_ATI:
-    case GL_HILO_NV:
-    case GL_DSDT_NV:
         return 2;
     case GL_RGB:
     case GL_BGR:
     case GL_RGB_INTEGER:
     case GL_BGR_INTEGER:
-    case GL_SRGB: // as a client format: EXT_sRGB
-    case GL_YCRCB_444_SGIX:
-    case GL_YCRCB_SGIX:
-    case GL_DSDT_MAG_NV:
         return 3;
     case GL_RGBA:
     case GL_BGRA:
     case GL_RGBA_INTEGER:
     case GL_BGRA_INTEGER:
-    case GL_ABGR_EXT:
-    case GL_SRGB_ALPHA:
-    case GL_CMYK_EXT:
-    case GL_YCRCBA_SGIX:
-    case GL_DSDT_MAG_VIB_NV:
         return 4;
-    case GL_CMYKA_EXT:
-        return 5;
     default:
-        return 0;
+        return extensionComponents(format);
     }
 }
 
