@@ -167,7 +167,7 @@ std::vector<Check> checkGl(bool& usable) {
             const auto found = gl::probe(**platform, gl::Api::Desktop, false);
             if (!found) return {false, found.error().message};
             const gl::GlProbe& p = found.value();
-            return {true, fmt::format("{}: {}, OpenGL {}, pictures up to {} pixels wide", p.backend, p.renderer, p.version, p.maxSurfaceSize)};
+            return {true, fmt::format("{}, pictures up to {} pixels wide", p.backend, p.maxSurfaceSize)};
         }, kGlMs);
         usable = usable || result.ok;
         const char* advice = "";

@@ -6,9 +6,9 @@
 
 namespace mural::cli {
 
-// Names that a program looks up must be found in the library first.
+// GLVND's entry into a vendor library: no other library that is loaded here has it.
 int preloadProbeCommand() {
-    void* found = dlsym(RTLD_DEFAULT, "glXSwapBuffers");
+    void* found = dlsym(RTLD_DEFAULT, "__glx_Main");
     Dl_info info{};
     if (found == nullptr || dladdr(found, &info) == 0 || info.dli_fname == nullptr) return 1;
     return std::string(info.dli_fname).ends_with(launch::kCaptureLibraryName) ? 0 : 1;
