@@ -62,6 +62,7 @@ int reasonFrom(int fd) {
 } // namespace
 
 void rememberSignals() {
+    if (remembered.known) return; // later they are ours already
     sigprocmask(SIG_SETMASK, nullptr, &remembered.mask);
     sigaction(SIGPIPE, nullptr, &remembered.pipe);
     remembered.known = true;

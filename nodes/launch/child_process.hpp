@@ -55,7 +55,7 @@ private:
 };
 
 // What the signal mask and dispositions were when this process began; children get them back.
-// Call once in main, before any signal is blocked or ignored.
+// To be called before any signal is blocked or ignored; only the first call counts.
 void rememberSignals();
 
 } // namespace mural::launch
