@@ -7,8 +7,10 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "streamcodec/sizes/evaluator_maps.hpp"
 #include "streamcodec/sizes/parameter_counts.hpp"
 #include "streamcodec/sizes/pixel_format.hpp"
+#include "streamcodec/sizes/vertex_types.hpp"
 
 namespace mural {
 

@@ -40,6 +40,8 @@ def decode(c):
             lines.append('if (!%s.covers(%s)) return false;' % (p.name, expr if p.how != 'packed' else 'vn(%s,1)' % expr))
         elif p.how == 'pixels':
             lines.append('if (!%s.covers(sizes::tightBytes(%s))) return false;' % (p.name, pixel_shape(c, int(p.expr))))
+        elif p.how == 'data' and p.expr is not True:
+            lines.append('if (!%s.covers(%s)) return false;' % (p.name, p.expr))
         elif p.how == 'text':
             lines.append('if (!%s.isText()) return false;' % p.name)
         if p.how in ('array', 'pixels', 'packed', 'made', 'text') and not nullable(c, p):
@@ -51,7 +53,7 @@ def argument(c, p):
     if p.how == 'skip':
         return None
     pointer = ctype(p.type)
-    if p.how in ('array', 'pixels', 'packed', 'text'):
+    if p.how in ('array', 'pixels', 'packed', 'text', 'data'):
         if p.how == 'array' and p.kind and p.length:
             return 'replay_.names(Kind::%s, %s.as<GLuint>(), %s)' % (p.kind, p.name, p.length)
         return 'static_cast<%s>(%s.pointer())' % (pointer, p.name)
@@ -108,8 +110,11 @@ def call(c):
         lines.append('replay_.bindName(Kind::Program, result, replay_.gl.%s(%s));' % (c.name, args))
         return lines + ['return true;']
     for p in c.params:
-        if p.how in ('pixels', 'packed'):
-            lines.append('replay_.unpackFor(%s);' % p.name)
+        if p.how in ('pixels', 'packed') or p.name == 'bitmap':
+            lines.append('if (!replay_.unpackFor(%s)) return true;' % p.name)
+        elif p.how == 'data' and p.expr is not True:
+            lines.append('if (!replay_.readable(%s, %s)) return true;' % (
+                p.name, 'GL_DRAW_INDIRECT_BUFFER_BINDING' if p.name == 'indirect' else 'GL_ELEMENT_ARRAY_BUFFER_BINDING'))
     lines.append('replay_.gl.%s(%s);' % (c.name, args))
     if c.name.startswith('glDelete'):
         for p in c.params:

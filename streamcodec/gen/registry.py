@@ -118,7 +118,7 @@ class Command:
             p.how = 'offset'
             return None
         if 'data.' + p.name in self.options:
-            p.how = 'data'
+            p.how, p.expr = 'data', self.options['data.' + p.name]
             return None
         if 'strings.' + p.name in self.options:
             p.how, p.expr = 'strings', self.options['strings.' + p.name]

@@ -1,0 +1,212 @@
+#include "nodes/node/node.hpp"
+
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "nodes/gl/gl_probe.hpp"
+#include "nodes/node/head_line.hpp"
+#include "nodes/node/tile_windows.hpp"
+#include "nodes/replay/replay.hpp"
+#include "nodes/session/session_config.hpp"
+
+namespace mural {
+
+namespace {
+
+uint64_t threadCpuNs() {
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<uint64_t>(t.tv_sec) * 1'000'000'000u + static_cast<uint64_t>(t.tv_nsec);
+}
+
+double processCpuSeconds() {
+    rusage r{};
+    getrusage(RUSAGE_SELF, &r);
+    return static_cast<double>(r.ru_utime.tv_sec + r.ru_stime.tv_sec) + 1e-6 * static_cast<double>(r.ru_utime.tv_usec + r.ru_stime.tv_usec);
+}
+
+std::string hostName() {
+    char name[256] = "";
+    gethostname(name, sizeof name - 1);
+    return name;
+}
+
+class Node {
+public:
+    explicit Node(std::unique_ptr<HeadLine> line) : line_(std::move(line)) {}
+
+    int run() {
+        while (!finished_ && !line_->broken()) {
+            std::span<const std::byte> payload;
+            const auto header = line_->next(payload);
+            if (!header) return finished_ ? 0 : 1; // the head is gone: nothing is left to do
+            if (header.value().stream == 0) {
+                if (!headCommand(payload)) return 1;
+            } else if (replay_ && !replay_->packet(header.value().stream, payload)) {
+                line_->sendText(wire::NodeMessage::Log, "a broken packet of a program's stream was dropped");
+            }
+        }
+        return line_->broken() ? 1 : 0;
+    }
+
+private:
+    bool headCommand(std::span<const std::byte> payload) {
+        uint32_t command = 0;
+        if (payload.size() < 4) return false;
+        std::memcpy(&command, payload.data(), 4);
+        const auto rest = payload.subspan(4);
+        switch (static_cast<wire::HeadCommand>(command)) {
+        case wire::HeadCommand::Setup: return setUp(std::string(reinterpret_cast<const char*>(rest.data()), rest.size()));
+        case wire::HeadCommand::ClientGone: {
+            uint32_t client = 0;
+            if (rest.size() < 4) return false;
+            std::memcpy(&client, rest.data(), 4);
+            if (replay_) replay_->clientGone(client);
+            return true;
+        }
+        case wire::HeadCommand::Finish:
+            sayBye();
+            finished_ = true;
+            return true;
+        }
+        return false;
+    }
+
+    bool setUp(const std::string& json) {
+        const auto setup = nodeSetupFromJson(json);
+        if (!setup) return fail(setup.error().message);
+        setup_ = setup.value();
+        auto platform = gl::openPlatform(setup_.glBackend);
+        if (!platform) return fail(platform.error().message);
+        nlohmann::json ready = probe(**platform);
+        if (setup_.wallWindows) {
+            auto windows = TileWindows::open(setup_);
+            if (!windows) return fail(windows.error().message);
+            windows_ = std::move(*windows);
+        }
+        ReplayConfig config;
+        config.node = setup_.node;
+        config.lean = setup_.tiling == Tiling::Lean;
+        config.grid = {setup_.columns, setup_.rows, config.lean ? 2 : 1};
+        config.region = {setup_.regionColumn, setup_.regionRow, setup_.regionColumns, setup_.regionRows};
+        if (const char* plant = std::getenv("MURAL_PLANT")) config.plant = plant;
+        ReplayOutputs outputs;
+        outputs.answer = [this](const wire::AnswerHeader& h, std::span<const std::byte> bytes) {
+            line_->send(wire::NodeMessage::Answer, std::as_bytes(std::span(&h, 1)), bytes);
+        };
+        outputs.frameDone = [this](const ReplayOutputs::Frame& f) { frameDone(f); };
+        outputs.log = [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); };
+        replay_ = std::make_unique<Replay>(std::move(*platform), config, std::move(outputs));
+        lastCpuNs_ = threadCpuNs();
+        line_->sendText(wire::NodeMessage::Ready, ready.dump());
+        return true;
+    }
+
+    bool fail(const std::string& why) {
+        line_->sendText(wire::NodeMessage::Log, why);
+        std::cerr << "mural node: " << why << '\n';
+        return false;
+    }
+
+    // What programs may be promised: what any kind of context offers here.
+    static nlohmann::json probe(gl::Platform& platform) {
+        nlohmann::json ready;
+        ready["host"] = hostName();
+        ready["pid"] = getpid();
+        std::set<std::string> extensions;
+        int best = 0;
+        const auto add = [&](gl::Api api, bool core) {
+            const auto p = gl::probe(platform, api, core);
+            if (!p) return;
+            extensions.insert(p.value().extensions.begin(), p.value().extensions.end());
+            if (api == gl::Api::Desktop && p.value().glVersion > best) best = p.value().glVersion;
+            if (!ready.contains("renderer")) ready["renderer"] = p.value().renderer + ", " + p.value().backend;
+        };
+        add(gl::Api::Desktop, false);
+        add(gl::Api::Desktop, true);
+        add(gl::Api::Es2, false);
+        add(gl::Api::Es1, false);
+        ready["glVersion"] = best;
+        ready["extensions"] = std::vector<std::string>(extensions.begin(), extensions.end());
+        return ready;
+    }
+
+    void frameDone(const ReplayOutputs::Frame& f) {
+        const uint64_t replayedNs = threadCpuNs();
+        if (f.pixels && !f.region.empty()) {
+            if (setup_.sendPictures) sendPicture(f, f.pixels(f.region));
+            if (windows_) showTiles(f);
+        }
+        wire::FrameDoneMessage done{};
+        done.client = f.client;
+        done.window = f.window;
+        done.frame = f.frame;
+        done.width = f.config.width;
+        done.height = f.config.height;
+        done.replayNs = replayedNs - lastCpuNs_;
+        lastCpuNs_ = threadCpuNs();
+        done.readbackNs = lastCpuNs_ - replayedNs;
+        line_->send(wire::NodeMessage::FrameDone, std::as_bytes(std::span(&done, 1)));
+    }
+
+    void sendPicture(const ReplayOutputs::Frame& f, const std::byte* pixels) {
+        wire::PictureHeader h{};
+        h.client = f.client;
+        h.window = f.window;
+        h.frame = f.frame;
+        h.x = f.region.x;
+        h.y = f.region.y;
+        h.w = f.region.w;
+        h.h = f.region.h;
+        h.windowWidth = f.config.width;
+        h.windowHeight = f.config.height;
+        h.nativeLow = f.config.nativeLow;
+        h.nativeHigh = f.config.nativeHigh;
+        line_->send(wire::NodeMessage::Picture, std::as_bytes(std::span(&h, 1)), {pixels, static_cast<size_t>(f.region.area()) * 4});
+    }
+
+    void showTiles(const ReplayOutputs::Frame& f) {
+        const auto shown = windows_->show(f);
+        if (!shown) {
+            line_->sendText(wire::NodeMessage::Log, "the wall windows are lost: " + shown.error().message);
+            windows_.reset();
+        }
+    }
+
+    void sayBye() {
+        nlohmann::json bye;
+        const ReplayCounts counts = replay_ ? replay_->counts() : ReplayCounts{};
+        bye["commands"] = counts.commands;
+        bye["malformed"] = counts.malformed;
+        bye["lacking"] = counts.lacking;
+        bye["frames"] = counts.frames;
+        bye["cpuSeconds"] = processCpuSeconds();
+        line_->sendText(wire::NodeMessage::Bye, bye.dump());
+    }
+
+    std::unique_ptr<HeadLine> line_;
+    NodeSetup setup_;
+    std::unique_ptr<TileWindows> windows_;
+    std::unique_ptr<Replay> replay_;
+    uint64_t lastCpuNs_ = 0;
+    bool finished_ = false;
+};
+
+} // namespace
+
+int runNode(const NodeOptions& options) {
+    auto line = HeadLine::open(options);
+    if (!line) {
+        std::cerr << "mural node: " << line.error().message << '\n';
+        return 1;
+    }
+    return Node(std::move(*line)).run();
+}
+
+} // namespace mural

@@ -1,0 +1,29 @@
+// The wall windows of one node: one per tile that it draws.
+#pragma once
+
+#include <memory>
+
+#include "nodes/output/wall_windows.hpp"
+#include "nodes/replay/replay.hpp"
+#include "nodes/session/session_config.hpp"
+
+namespace mural {
+
+class TileWindows {
+public:
+    static Result<std::unique_ptr<TileWindows>> open(const NodeSetup& setup);
+    // Shows the tiles of the main window (the largest that swaps); others are not on the wall.
+    Result<void> show(const ReplayOutputs::Frame& frame);
+
+private:
+    explicit TileWindows(const NodeSetup& setup) : setup_(setup) {}
+    Result<void> reopen(int width, int height);
+
+    NodeSetup setup_;
+    std::unique_ptr<WallWindows> windows_;
+    int width_ = 0, height_ = 0;
+    uint64_t mainWindow_ = 0; // client << 32 | window
+    std::vector<PixelViewport> tiles_;
+};
+
+} // namespace mural

@@ -1,0 +1,246 @@
+// Replays capture streams on this node's GL. One thread; all contexts of all programs.
+//
+// The generated replay calls GL for most commands; what the tiling changes, or what names this
+// node's objects in another way, is written by hand (replay_*.cpp).
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "common/pixel_viewport.hpp"
+#include "common/tile_grid.hpp"
+#include "gl_functions.hpp"
+#include "nodes/gl/gl_platform.hpp"
+#include "nodes/replay/args.hpp"
+#include "nodes/replay/name_table.hpp"
+#include "nodes/replay/replay_dispatch.hpp"
+#include "streamcodec/client_arrays.hpp"
+#include "streamcodec/sizes/pixel_format.hpp"
+#include "streamcodec/wire.hpp"
+
+namespace mural {
+
+// What a node is told about its part of every picture.
+struct ReplayConfig {
+    int node = 0;
+    TileGrid grid;
+    TileRegion region;
+    bool lean = false;     // framebuffers of the tile's size; false: of the picture's size (exact)
+    std::string plant;     // MURAL_PLANT: a fault on purpose, for tests of the tests
+};
+
+// What the replay hands out; called on the replay thread.
+struct ReplayOutputs {
+    // Part of an answer; `last` closes this node's part.
+    std::function<void(const wire::AnswerHeader&, std::span<const std::byte>)> answer;
+    // A frame of the window is complete. `pixels` reads the given rectangle (window coordinates),
+    // BGRA, rows bottom first, tightly packed; only valid during the call.
+    struct Frame {
+        uint32_t client, window, frame;
+        wire::WindowConfig config;
+        PixelViewport region; // this node's part
+        std::function<const std::byte*(const PixelViewport&)> pixels;
+    };
+    std::function<void(const Frame&)> frameDone;
+    std::function<void(const std::string&)> log;
+};
+
+struct ReplayCounts {
+    uint64_t commands = 0, malformed = 0, lacking = 0, glErrors = 0, frames = 0, bytes = 0;
+};
+
+class Replay : private BlobQueue {
+public:
+    Replay(std::unique_ptr<gl::Platform> platform, ReplayConfig config, ReplayOutputs outputs);
+    ~Replay() override;
+
+    // The payload of one packet. False: the stream is broken beyond this packet (the reason is logged).
+    bool packet(uint32_t stream, std::span<const std::byte> payload);
+    void clientGone(uint32_t client);
+    [[nodiscard]] const ReplayCounts& counts() const { return counts_; }
+
+    // ---- what the generated code uses
+    GlFunctions gl{};
+    GLuint name(Kind kind, GLuint app);
+    const GLuint* names(Kind kind, const GLuint* app, int64_t count);
+    void make(Kind kind, int64_t count, const GLuint* app, const std::function<void(GLuint*)>& call);
+    void bindName(Kind kind, GLuint app, GLuint ours);
+    void forget(Kind kind, const GLuint* app, int64_t count);
+    GLint uniformLocation(GLint location);
+    GLint uniformLocation(GLuint program, GLint location);
+    // Sets the unpack state that fits where the image is. False: an offset, and no buffer bound.
+    bool unpackFor(const Data& data);
+    // False: nothing there, or an offset while no buffer is bound at `binding`: GL would read wild memory.
+    bool readable(const Data& data, GLenum binding);
+    bool lacking(uint16_t opcode);
+    template <class T> T windowX(T x) const { return static_cast<T>(x - origin().x); }
+    template <class T> T windowY(T y) const { return static_cast<T>(y - origin().y); }
+    template <class T> std::array<T, 4> windowPosition(const T* v) const {
+        // The third value is read by the three-component forms, the fourth by MESA's.
+        return {windowX(v[0]), windowY(v[1]), v[2], v[3]};
+    }
+
+#include "replay_custom.inc"
+
+private:
+    struct Window {
+        wire::WindowConfig config{};
+        std::unique_ptr<gl::Surface> surface;
+        PixelViewport whole;  // 0, 0, width, height
+        PixelViewport region; // this node's part
+        PixelViewport drawn;  // what the scissor lets through: the region, larger with multisampling
+    };
+    struct ProgramInfo {
+        std::unordered_map<GLint, GLint> locations; // the program's → ours, only where they differ
+    };
+    struct ListItem {
+        GLuint native = 0;
+        std::vector<std::byte> record; // of a command that the node executes itself; empty: native
+    };
+    struct List {
+        std::vector<ListItem> items;
+    };
+    struct Shared { // what contexts share
+        NameTable tables[static_cast<int>(Kind::Count)];
+        std::unordered_map<uint64_t, GLsync> syncs;
+        std::unordered_map<GLuint, ProgramInfo> programs; // by the program's name
+        std::unordered_map<GLuint, List> lists;
+        NameTable framebuffersOfAll;
+    };
+    struct Scissor {
+        bool enabled = false;
+        PixelViewport box;
+    };
+    static constexpr int kViewports = 16;
+    struct SavedAttributes {
+        GLbitfield mask;
+        std::array<Scissor, kViewports> scissors;
+        GLuint listBase;
+        std::array<std::array<GLfloat, 4>, kViewports> viewports;
+        GLenum drawBuffer0, readBuffer0;
+        GLuint program;
+    };
+    struct PixelUnpack {
+        std::array<GLint, 8> values{}; // in the order of kUnpackNames; alignment is made 4
+        bool tight = false;            // what GL has now
+    };
+    struct ClientState {
+        GLbitfield mask;
+        PixelUnpack unpack;
+        std::array<GLint, 8> pack;
+        GLuint arrayBuffer;
+    };
+    struct ContextState {
+        uint32_t client = 0, id = 0;
+        std::unique_ptr<gl::Context> context;
+        std::shared_ptr<Shared> shared;
+        NameTable own[static_cast<int>(Kind::Count)];
+        wire::Api api = wire::Api::Desktop;
+        int version = 0;
+        bool core = false;
+        Window* draw = nullptr;
+        Window* read = nullptr;
+        bool everCurrent = false;
+        GLuint drawFramebuffer = 0, readFramebuffer = 0; // the program's names
+        GLuint arrayBuffer = 0, packBuffer = 0, unpackBuffer = 0; // our names
+        GLuint program = 0;                              // the program's name
+        std::array<Scissor, kViewports> scissors;
+        bool scissorsDiffer = false;                     // indexed commands were used
+        std::array<std::array<GLfloat, 4>, kViewports> viewports{};
+        bool viewportsDiffer = false;
+        GLenum drawBuffer0 = 0, readBuffer0 = 0;         // of the default framebuffer, the program's names
+        PixelUnpack unpack;
+        std::array<GLint, 8> pack{};
+        GLuint listBase = 0;
+        GLuint compiling = 0;                            // name of the list, 0: none
+        GLenum compileMode = 0;
+        List building;
+        std::vector<SavedAttributes> attributes;
+        std::vector<ClientState> clientAttributes;
+        std::vector<std::vector<std::byte>> arrayMemory; // spans of client arrays
+        GLuint fillFramebuffer = 0;
+    };
+    struct Stream {
+        ContextState* context = nullptr;
+        Window* draw = nullptr;
+        Window* read = nullptr;
+        std::deque<std::vector<std::byte>> blobs;
+        uint64_t blobMissing = 0; // bytes of the last blob that have not come
+    };
+    struct Client {
+        std::map<uint32_t, std::unique_ptr<ContextState>> contexts;
+        std::map<uint32_t, std::unique_ptr<Window>> windows;
+        std::map<uint32_t, Stream> streams;
+    };
+
+    std::span<const std::byte> takeBlob(bool& found) override;
+
+    // replay.cpp
+    bool record(std::span<const std::byte> bytes);
+    bool execute(uint16_t opcode, std::span<const std::byte> arguments);
+    bool makeStreamCurrent(uint32_t stream);
+    bool bindStream(Stream& s);
+    void loadFunctions();
+    NameTable& table(Kind kind);
+    GLuint generate(Kind kind);
+    bool splitsLists(uint16_t opcode, std::span<const std::byte> arguments) const;
+    // replay_own.cpp
+    bool own(uint16_t opcode, Args& in);
+    bool ownCreateContext(Args& in);
+    bool ownMakeCurrent(Args& in);
+    bool ownWindow(Args& in);
+    bool ownSwap(Args& in, bool front);
+    bool ownClientArrays(Args& in);
+    bool ownProgramLayout(Args& in);
+    bool ownBufferBytes(Args& in);
+    bool ownFillWindow(Args& in);
+    void fillDepthStencil(const PixelViewport& r, GLbitfield plane, const void* pixels);
+    void setArrayPointer(const client_arrays::ArrayRecord& a, const std::byte* first);
+    // replay_reads.cpp
+    bool ownRequestPixels(Args& in);
+    bool ownRequestTexImage(Args& in);
+    bool ownRequestQuery(Args& in);
+    void answerBytes(uint32_t request, wire::AnswerKind kind, std::span<const std::byte> bytes);
+    const std::byte* readRegion(const PixelViewport& r, GLenum format, GLenum type, size_t bytes);
+    const std::byte* readShown(Window& w, const PixelViewport& r);
+    void packTightly(bool tight);
+    // replay_tiling.cpp
+    [[nodiscard]] PixelViewport origin() const; // of this node's framebuffer in the window (lean)
+    void applyScissors();
+    void applyScissor(int index, bool all);
+    void applyViewports();
+    void restoreWindowState();
+    [[nodiscard]] bool drawsWindow() const { return c_->drawFramebuffer == 0; }
+    [[nodiscard]] GLenum windowBuffer(GLenum buffer, const Window* w) const;
+    void setUnpack(bool tight);
+    void pixelStore(GLenum pname, GLint value);
+    void bindFramebuffer(GLenum target, GLuint framebuffer, bool ext);
+    void arrayPointer(uint64_t pointer, const std::function<void(const void*)>& call);
+
+    std::unique_ptr<gl::Platform> platform_;
+    ReplayConfig config_;
+    ReplayOutputs out_;
+    ReplayCounts counts_;
+    std::map<uint32_t, Client> clients_;
+    bool loaded_ = false;
+    // what is current now
+    uint32_t stream_ = 0;
+    Stream* s_ = nullptr;
+    ContextState* c_ = nullptr;
+    ContextState* bound_ = nullptr; // what the platform has current
+    Window* boundDraw_ = nullptr;
+    Window* boundRead_ = nullptr;
+    std::vector<std::vector<std::byte>> taken_; // blobs of the record being replayed
+    std::vector<std::vector<GLuint>> scratch_;  // translated names of the record being replayed
+    size_t scratchUsed_ = 0;
+    std::vector<std::byte> pixels_;
+    std::vector<bool> saidLacking_;
+    std::unique_ptr<ContextState> none_; // stands in where a stream has no context
+};
+
+} // namespace mural

@@ -1,0 +1,291 @@
+// Commands whose objects or pointers mean something else on this node.
+#include <cstring>
+
+#include "gl_opcodes.hpp"
+#include "nodes/replay/replay.hpp"
+#include "streamcodec/sizes/vertex_types.hpp"
+
+namespace mural {
+
+// ---- buffers and vertex arrays
+
+void Replay::glBindBuffer(GLenum target, GLuint buffer) {
+    const GLuint ours = name(Kind::Buffer, buffer);
+    if (target == GL_ARRAY_BUFFER) c_->arrayBuffer = ours;
+    if (target == GL_PIXEL_PACK_BUFFER) c_->packBuffer = ours;
+    if (target == GL_PIXEL_UNPACK_BUFFER) c_->unpackBuffer = ours;
+    gl.glBindBuffer(target, ours);
+}
+void Replay::glDeleteBuffers(GLsizei n, const Data& buffers) {
+    if (n <= 0 || !buffers.pointer()) return;
+    const GLuint* ours = names(Kind::Buffer, buffers.as<GLuint>(), n);
+    for (GLsizei i = 0; i < n; ++i) {
+        if (ours[i] == 0) continue;
+        if (ours[i] == c_->arrayBuffer) c_->arrayBuffer = 0;
+        if (ours[i] == c_->packBuffer) c_->packBuffer = 0;
+        if (ours[i] == c_->unpackBuffer) c_->unpackBuffer = 0;
+    }
+    gl.glDeleteBuffers(n, ours);
+    forget(Kind::Buffer, buffers.as<GLuint>(), n);
+}
+void Replay::glBindVertexArray(GLuint array) { gl.glBindVertexArray(name(Kind::VertexArray, array)); }
+
+// Only offsets come this way (client memory: kOpClientArrays); without a buffer GL would read memory.
+void Replay::arrayPointer(uint64_t pointer, const std::function<void(const void*)>& call) {
+    if (c_->arrayBuffer == 0 && pointer != 0) return;
+    call(reinterpret_cast<const void*>(pointer));
+}
+void Replay::glVertexPointer(GLint size, GLenum type, GLsizei stride, uint64_t pointer) {
+    arrayPointer(pointer, [&](const void* p) { gl.glVertexPointer(size, type, stride, p); });
+}
+void Replay::glNormalPointer(GLenum type, GLsizei stride, uint64_t pointer) {
+    arrayPointer(pointer, [&](const void* p) { gl.glNormalPointer(type, stride, p); });
+}
+void Replay::glColorPointer(GLint size, GLenum type, GLsizei stride, uint64_t pointer) {
+    arrayPointer(pointer, [&](const void* p) { gl.glColorPointer(size, type, stride, p); });
+}
+void Replay::glSecondaryColorPointer(GLint size, GLenum type, GLsizei stride, uint64_t pointer) {
+    arrayPointer(pointer, [&](const void* p) { gl.glSecondaryColorPointer(size, type, stride, p); });
+}
+void Replay::glTexCoordPointer(GLint size, GLenum type, GLsizei stride, uint64_t pointer) {
+    arrayPointer(pointer, [&](const void* p) { gl.glTexCoordPointer(size, type, stride, p); });
+}
+void Replay::glFogCoordPointer(GLenum type, GLsizei stride, uint64_t pointer) {
+    arrayPointer(pointer, [&](const void* p) { gl.glFogCoordPointer(type, stride, p); });
+}
+void Replay::glIndexPointer(GLenum type, GLsizei stride, uint64_t pointer) {
+    arrayPointer(pointer, [&](const void* p) { gl.glIndexPointer(type, stride, p); });
+}
+void Replay::glEdgeFlagPointer(GLsizei stride, uint64_t pointer) {
+    arrayPointer(pointer, [&](const void* p) { gl.glEdgeFlagPointer(stride, p); });
+}
+void Replay::glPointSizePointerOES(GLenum type, GLsizei stride, uint64_t pointer) {
+    arrayPointer(pointer, [&](const void* p) { gl.glPointSizePointerOES(type, stride, p); });
+}
+void Replay::glVertexAttribPointer(GLuint index, GLint size, GLenum type, GLboolean normalized, GLsizei stride, uint64_t pointer) {
+    arrayPointer(pointer, [&](const void* p) { gl.glVertexAttribPointer(index, size, type, normalized, stride, p); });
+}
+void Replay::glVertexAttribIPointer(GLuint index, GLint size, GLenum type, GLsizei stride, uint64_t pointer) {
+    arrayPointer(pointer, [&](const void* p) { gl.glVertexAttribIPointer(index, size, type, stride, p); });
+}
+void Replay::glVertexAttribLPointer(GLuint index, GLint size, GLenum type, GLsizei stride, uint64_t pointer) {
+    arrayPointer(pointer, [&](const void* p) { gl.glVertexAttribLPointer(index, size, type, stride, p); });
+}
+
+namespace {
+// The indices of a multi draw as GL wants them; false: malformed.
+bool indexPointers(const Data& indices, const GLsizei* count, GLenum type, GLsizei drawcount, std::vector<const void*>& out) {
+    const auto bytes = indices.span();
+    if (bytes.size() < 8) return false;
+    uint32_t kind = 0;
+    std::memcpy(&kind, bytes.data(), 4);
+    const uint32_t element = sizes::typeBytes(type);
+    size_t at = 8;
+    for (GLsizei i = 0; i < drawcount; ++i) {
+        const size_t step = kind == 1 ? 8 : count[i] > 0 ? size_t{element} * static_cast<size_t>(count[i]) : 0;
+        if (step > bytes.size() - at) return false;
+        uint64_t offset = 0;
+        if (kind == 1) std::memcpy(&offset, bytes.data() + at, 8);
+        out.push_back(kind == 1 ? reinterpret_cast<const void*>(offset) : bytes.data() + at);
+        at += step;
+    }
+    return true;
+}
+} // namespace
+
+void Replay::glMultiDrawElements(GLenum mode, const Data& count, GLenum type, const Data& indices, GLsizei drawcount) {
+    std::vector<const void*> pointers;
+    if (drawcount > 0 && count.pointer() && indexPointers(indices, count.as<GLsizei>(), type, drawcount, pointers))
+        gl.glMultiDrawElements(mode, count.as<GLsizei>(), type, pointers.data(), drawcount);
+}
+void Replay::glMultiDrawElementsBaseVertex(GLenum mode, const Data& count, GLenum type, const Data& indices, GLsizei drawcount, const Data& basevertex) {
+    std::vector<const void*> pointers;
+    if (drawcount > 0 && count.pointer() && basevertex.pointer() && indexPointers(indices, count.as<GLsizei>(), type, drawcount, pointers))
+        gl.glMultiDrawElementsBaseVertex(mode, count.as<GLsizei>(), type, pointers.data(), drawcount, basevertex.as<GLint>());
+}
+
+// ---- programs
+
+void Replay::glShaderSource(GLuint shader, GLsizei count, const Data& string) {
+    StringList texts;
+    if (!texts.parse(string, count) || texts.count() == 0) return;
+    gl.glShaderSource(name(Kind::Program, shader), count, texts.pointers(), texts.lengths());
+}
+void Replay::glLinkProgram(GLuint program) {
+    const GLuint ours = name(Kind::Program, program);
+    gl.glLinkProgram(ours);
+}
+void Replay::glCreateShaderProgramv(GLenum type, GLsizei count, const Data& strings, GLuint result) {
+    StringList texts;
+    if (!gl.glCreateShaderProgramv || !texts.parse(strings, count) || texts.count() == 0) return;
+    bindName(Kind::Program, result, gl.glCreateShaderProgramv(type, count, texts.pointers()));
+}
+void Replay::glUseProgram(GLuint program) {
+    c_->program = program;
+    gl.glUseProgram(name(Kind::Program, program));
+}
+void Replay::glUniformBlockBinding(GLuint program, GLuint index, GLuint binding) {
+    gl.glUniformBlockBinding(name(Kind::Program, program), index, binding);
+}
+void Replay::glShaderStorageBlockBinding(GLuint program, GLuint index, GLuint binding) {
+    gl.glShaderStorageBlockBinding(name(Kind::Program, program), index, binding);
+}
+
+void Replay::glCopyImageSubData(GLuint srcName, GLenum srcTarget, GLint srcLevel, GLint srcX, GLint srcY, GLint srcZ, GLuint dstName, GLenum dstTarget, GLint dstLevel, GLint dstX, GLint dstY, GLint dstZ, GLsizei w, GLsizei h, GLsizei d) {
+    if (!gl.glCopyImageSubData) return;
+    const auto ours = [&](GLuint n, GLenum target) { return name(target == GL_RENDERBUFFER ? Kind::Renderbuffer : Kind::Texture, n); };
+    gl.glCopyImageSubData(ours(srcName, srcTarget), srcTarget, srcLevel, srcX, srcY, srcZ, ours(dstName, dstTarget), dstTarget, dstLevel, dstX, dstY, dstZ, w, h, d);
+}
+
+// ---- synchronisation: one thread replays all contexts in the program's order
+
+void Replay::glFenceSync(GLenum condition, GLbitfield flags, uint64_t result) {
+    if (gl.glFenceSync && c_->shared) c_->shared->syncs[result] = gl.glFenceSync(condition, flags);
+}
+void Replay::glWaitSync(uint64_t sync, GLbitfield flags, GLuint64 timeout) {
+    if (!c_->shared) return;
+    const auto it = c_->shared->syncs.find(sync);
+    if (it != c_->shared->syncs.end() && it->second) gl.glWaitSync(it->second, flags, timeout);
+}
+void Replay::glDeleteSync(uint64_t sync) {
+    if (!c_->shared) return;
+    const auto it = c_->shared->syncs.find(sync);
+    if (it == c_->shared->syncs.end()) return;
+    if (it->second) gl.glDeleteSync(it->second);
+    c_->shared->syncs.erase(it);
+}
+// The program's own context has waited already where it matters; a node need not stall its stream.
+void Replay::glFinish() { gl.glFlush(); }
+
+// Feedback and selection happen in the program's own context; nothing is drawn meanwhile.
+void Replay::glRenderMode(GLenum mode) {
+    if (mode == GL_RENDER) {
+        if (gl.glRenderMode) gl.glRenderMode(GL_RENDER);
+        return;
+    }
+    if (!gl.glRenderMode) return;
+    static GLuint nowhere[64];
+    static GLfloat nothing[64];
+    if (mode == GL_SELECT) gl.glSelectBuffer(64, nowhere);
+    else gl.glFeedbackBuffer(64, GL_2D, nothing);
+    gl.glRenderMode(mode);
+}
+
+// ---- display lists. A list of the program is one of ours, or several with commands between them
+// that the node executes itself because they depend on its tile or on the program's names.
+
+bool Replay::splitsLists(uint16_t opcode, std::span<const std::byte> arguments) const {
+    switch (opcode) {
+    case op::glEnable:
+    case op::glDisable: {
+        uint32_t cap = 0;
+        if (arguments.size() >= 4) std::memcpy(&cap, arguments.data(), 4);
+        return cap == GL_SCISSOR_TEST;
+    }
+    case op::glEnablei:
+    case op::glDisablei:
+    case op::glScissor:
+    case op::glScissorArrayv:
+    case op::glScissorIndexed:
+    case op::glScissorIndexedv:
+    case op::glPushAttrib:
+    case op::glPopAttrib:
+    case op::glDrawBuffer:
+    case op::glDrawBuffers:
+    case op::glReadBuffer:
+    case op::glCallList:
+    case op::glCallLists:
+    case op::glListBase:
+    case op::glUseProgram: return true;
+    case op::glViewport:
+    case op::glPolygonStipple: return config_.lean;
+    default: return false;
+    }
+}
+
+void Replay::glNewList(GLuint list, GLenum mode) {
+    if (c_->compiling || list == 0) return;
+    c_->compiling = list;
+    c_->compileMode = mode;
+    c_->building = {};
+    const GLuint first = gl.glGenLists(1);
+    c_->building.items.push_back({first, {}});
+    gl.glNewList(first, GL_COMPILE);
+}
+void Replay::glEndList() {
+    if (!c_->compiling) return;
+    gl.glEndList();
+    const GLuint list = c_->compiling;
+    c_->compiling = 0;
+    List& slot = c_->shared->lists[list];
+    for (const ListItem& item : slot.items) {
+        if (item.record.empty()) gl.glDeleteLists(item.native, 1);
+    }
+    slot = std::move(c_->building);
+    c_->building = {};
+    if (c_->compileMode == GL_COMPILE_AND_EXECUTE) glCallList(list);
+}
+void Replay::glCallList(GLuint list) {
+    const auto it = c_->shared->lists.find(list);
+    if (it == c_->shared->lists.end()) return;
+    static int depth = 0; // lists that call themselves end at GL_MAX_LIST_NESTING
+    if (depth >= 64) return;
+    ++depth;
+    for (size_t i = 0; i < it->second.items.size(); ++i) {
+        const ListItem& item = it->second.items[i];
+        if (item.record.empty()) {
+            gl.glCallList(item.native);
+            continue;
+        }
+        uint32_t header = 0;
+        std::memcpy(&header, item.record.data(), 4);
+        const std::span<const std::byte> bytes = item.record;
+        execute(static_cast<uint16_t>(header & 0xffff), bytes.subspan(header >> 16 == record::kLongForm ? 8 : 4));
+    }
+    --depth;
+}
+void Replay::glCallLists(GLsizei n, GLenum type, const Data& lists) {
+    if (!lists.pointer()) return;
+    const auto* p = lists.as<uint8_t>();
+    const auto read = [&]<class T>(GLsizei i, T) {
+        T value{};
+        std::memcpy(&value, p + static_cast<size_t>(i) * sizeof(T), sizeof(T));
+        return static_cast<GLuint>(static_cast<int64_t>(value));
+    };
+    for (GLsizei i = 0; i < n; ++i) {
+        GLuint offset = 0;
+        const auto* b = p + static_cast<size_t>(i) * (type == GL_2_BYTES ? 2 : type == GL_3_BYTES ? 3 : 4);
+        switch (type) {
+        case GL_BYTE: offset = read(i, GLbyte{}); break;
+        case GL_UNSIGNED_BYTE: offset = read(i, GLubyte{}); break;
+        case GL_SHORT: offset = read(i, GLshort{}); break;
+        case GL_UNSIGNED_SHORT: offset = read(i, GLushort{}); break;
+        case GL_INT: offset = read(i, GLint{}); break;
+        case GL_UNSIGNED_INT: offset = read(i, GLuint{}); break;
+        case GL_FLOAT: offset = read(i, GLfloat{}); break;
+        case GL_2_BYTES: offset = GLuint{b[0]} * 256 + b[1]; break;
+        case GL_3_BYTES: offset = GLuint{b[0]} * 65536 + GLuint{b[1]} * 256 + b[2]; break;
+        case GL_4_BYTES: offset = GLuint{b[0]} << 24 | GLuint{b[1]} << 16 | GLuint{b[2]} << 8 | b[3]; break;
+        default: return;
+        }
+        glCallList(c_->listBase + offset);
+    }
+}
+void Replay::glListBase(GLuint base) { c_->listBase = base; }
+void Replay::glGenLists(GLsizei, GLuint) {} // the program's names need none of ours yet
+void Replay::glDeleteLists(GLuint list, GLsizei range) {
+    auto& lists = c_->shared->lists;
+    for (GLsizei i = 0; i < range && !lists.empty(); ++i) {
+        const auto it = lists.find(list + static_cast<GLuint>(i));
+        if (it == lists.end()) {
+            if (range > 1 << 16 && i > 1 << 16) break; // a wild range: only what exists counts
+            continue;
+        }
+        for (const ListItem& item : it->second.items) {
+            if (item.record.empty()) gl.glDeleteLists(item.native, 1);
+        }
+        lists.erase(it);
+    }
+}
+
+} // namespace mural

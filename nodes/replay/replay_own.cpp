@@ -1,0 +1,303 @@
+// Mural's own records: contexts, windows, frames, client memory.
+#include <cstring>
+
+#include "nodes/replay/replay.hpp"
+#include "streamcodec/sizes/vertex_types.hpp"
+
+namespace mural {
+
+namespace {
+constexpr uint64_t kMaxBlobBytes = uint64_t{4} << 30;
+
+gl::SurfaceConfig surfaceConfig(const wire::WindowConfig& c, int width, int height) {
+    gl::SurfaceConfig s;
+    s.width = width;
+    s.height = height;
+    s.red = c.red;
+    s.green = c.green;
+    s.blue = c.blue;
+    s.alpha = c.alpha;
+    s.depth = c.depth;
+    s.stencil = c.stencil;
+    s.samples = c.samples;
+    s.accum = c.accum;
+    s.srgb = c.srgb != 0;
+    s.stereo = c.stereo != 0;
+    return s;
+}
+} // namespace
+
+bool Replay::own(uint16_t opcode, Args& in) {
+    switch (opcode) {
+    case wire::kOpBlobBegin: {
+        const auto bytes = in.get<uint64_t>();
+        if (!in.ok() || bytes > kMaxBlobBytes || s_->blobMissing) return false;
+        s_->blobs.emplace_back(); // grows with what really comes
+        s_->blobMissing = bytes;
+        return true;
+    }
+    case wire::kOpBlobData: {
+        const auto bytes = in.get<uint32_t>();
+        const auto* p = in.fixed<std::byte>(bytes);
+        if (!in.ok() || s_->blobs.empty() || bytes > s_->blobMissing) return false;
+        s_->blobs.back().insert(s_->blobs.back().end(), p, p + bytes);
+        s_->blobMissing -= bytes;
+        return true;
+    }
+    case wire::kOpCreateContext: return ownCreateContext(in);
+    case wire::kOpDestroyContext: return in.get<uint32_t>(), in.ok(); // objects may be shared: freed with the program
+    case wire::kOpMakeCurrent: return ownMakeCurrent(in);
+    case wire::kOpWindow: return ownWindow(in);
+    case wire::kOpDestroyWindow: {
+        const auto id = in.get<uint32_t>();
+        auto& windows = clients_[wire::clientOf(stream_)].windows;
+        const auto it = windows.find(id);
+        if (!in.ok()) return false;
+        if (it != windows.end() && it->second.get() != boundDraw_ && it->second.get() != boundRead_) it->second->surface.reset();
+        return true;
+    }
+    case wire::kOpSwap: return ownSwap(in, false);
+    case wire::kOpFrontPicture: return ownSwap(in, true);
+    case wire::kOpClientArrays: return ownClientArrays(in);
+    case wire::kOpRequestPixels: return ownRequestPixels(in);
+    case wire::kOpRequestTexImage: return ownRequestTexImage(in);
+    case wire::kOpRequestQuery: return ownRequestQuery(in);
+    case wire::kOpFillWindow: return ownFillWindow(in);
+    case wire::kOpProgramLayout: return ownProgramLayout(in);
+    case wire::kOpBufferBytes: return ownBufferBytes(in);
+    case wire::kOpFinish: {
+        const auto request = in.get<uint32_t>();
+        if (!in.ok()) return false;
+        if (gl.glFinish && bound_) gl.glFinish();
+        const uint64_t zero = 0;
+        answerBytes(request, wire::AnswerKind::Sum, std::as_bytes(std::span(&zero, 1)));
+        return true;
+    }
+    default: return false;
+    }
+}
+
+bool Replay::ownCreateContext(Args& in) {
+    const auto id = in.get<uint32_t>(), share = in.get<uint32_t>(), api = in.get<uint32_t>();
+    const auto major = in.get<uint32_t>(), minor = in.get<uint32_t>(), profile = in.get<uint32_t>(), flags = in.get<uint32_t>();
+    const auto* config = in.fixed<wire::WindowConfig>(sizeof(wire::WindowConfig));
+    if (!in.ok() || api > 2) return false;
+    Client& client = clients_[wire::clientOf(stream_)];
+    const auto sharer = client.contexts.find(share);
+    ContextState* with = sharer == client.contexts.end() ? nullptr : sharer->second.get();
+    auto c = std::make_unique<ContextState>();
+    gl::ContextConfig wish;
+    wish.api = static_cast<gl::Api>(api);
+    wish.major = static_cast<int>(major);
+    wish.minor = static_cast<int>(minor);
+    wish.core = profile & GL_CONTEXT_CORE_PROFILE_BIT;
+    wish.forwardCompatible = flags & GL_CONTEXT_FLAG_FORWARD_COMPATIBLE_BIT;
+    wish.debug = flags & GL_CONTEXT_FLAG_DEBUG_BIT;
+    wish.robust = flags & GL_CONTEXT_FLAG_ROBUST_ACCESS_BIT;
+    wish.surface = surfaceConfig(*config, 1, 1);
+    auto made = platform_->createContext(wish, with ? with->context.get() : nullptr);
+    if (!made) {
+        out_.log("no context like the program's can be made here: " + made.error().message);
+        return true;
+    }
+    c->client = wire::clientOf(stream_);
+    c->id = id;
+    c->context = std::move(*made);
+    c->shared = with ? with->shared : std::make_shared<Shared>();
+    c->api = static_cast<wire::Api>(api);
+    c->version = static_cast<int>(major * 10 + minor);
+    c->core = wish.core;
+    c->unpack.values[5] = c->pack[5] = 4; // alignment
+    c->drawBuffer0 = c->readBuffer0 = config->doubleBuffer || c->api != wire::Api::Desktop ? GL_BACK : GL_FRONT;
+    client.contexts[id] = std::move(c);
+    return true;
+}
+
+bool Replay::ownMakeCurrent(Args& in) {
+    const auto context = in.get<uint32_t>(), draw = in.get<uint32_t>(), read = in.get<uint32_t>();
+    if (!in.ok()) return false;
+    Client& client = clients_[wire::clientOf(stream_)];
+    const auto windowOf = [&](uint32_t id) -> Window* {
+        const auto it = client.windows.find(id);
+        return it == client.windows.end() ? nullptr : it->second.get();
+    };
+    const auto it = client.contexts.find(context);
+    s_->context = it == client.contexts.end() ? nullptr : it->second.get();
+    s_->draw = windowOf(draw);
+    s_->read = windowOf(read);
+    const bool first = s_->context && !s_->context->everCurrent;
+    if (!bindStream(*s_) || !first || c_ != s_->context) return c_ != nullptr;
+    // The first binding sets viewport and scissor to the window's size (GL 4.6 §13.6.1).
+    c_->everCurrent = true;
+    const PixelViewport whole = s_->draw ? s_->draw->whole : PixelViewport{};
+    for (auto& s : c_->scissors) s = {false, whole};
+    for (auto& v : c_->viewports) v = {0, 0, static_cast<GLfloat>(whole.w), static_cast<GLfloat>(whole.h)};
+    restoreWindowState();
+    return true;
+}
+
+bool Replay::ownWindow(Args& in) {
+    const auto id = in.get<uint32_t>();
+    const auto* config = in.fixed<wire::WindowConfig>(sizeof(wire::WindowConfig));
+    if (!in.ok() || config->width > 1 << 20 || config->height > 1 << 20) return false;
+    auto& slot = clients_[wire::clientOf(stream_)].windows[id];
+    if (!slot) slot = std::make_unique<Window>();
+    Window& w = *slot;
+    w.config = *config;
+    const auto width = static_cast<int32_t>(config->width), height = static_cast<int32_t>(config->height);
+    w.whole = {0, 0, width, height};
+    w.region = regionViewport(config_.grid, config_.region, width, height);
+    w.drawn = w.region;
+    if (config->samples > 0) {
+        // A driver may treat multisampled lines at scissor edges off its own raster of 64 pixels (accuracy, M4).
+        const int32_t x0 = w.region.x / 64 * 64, y0 = w.region.y / 64 * 64;
+        w.drawn = intersect({x0, y0, (w.region.right() + 63) / 64 * 64 - x0, (w.region.top() + 63) / 64 * 64 - y0}, w.whole);
+    }
+    const PixelViewport size = config_.lean ? w.region : w.whole;
+    if (w.surface && w.surface->width() == std::max(size.w, 1) && w.surface->height() == std::max(size.h, 1)) return true;
+    auto made = platform_->createSurface(surfaceConfig(*config, std::max(size.w, 1), std::max(size.h, 1)));
+    if (!made) {
+        out_.log("no framebuffer like the program's window (" + std::to_string(width) + "x" + std::to_string(height) + ") can be made: " + made.error().message);
+        return true;
+    }
+    const bool bound = &w == boundDraw_ || &w == boundRead_;
+    std::unique_ptr<gl::Surface> old = std::move(w.surface);
+    w.surface = std::move(*made);
+    if (bound) {
+        boundDraw_ = nullptr;
+        bound_ = nullptr;
+        (void)bindStream(*s_);
+    }
+    return true;
+}
+
+bool Replay::ownSwap(Args& in, bool) {
+    const auto window = in.get<uint32_t>(), frame = in.get<uint32_t>();
+    if (!in.ok()) return false;
+    auto& windows = clients_[wire::clientOf(stream_)].windows;
+    const auto it = windows.find(window);
+    ReplayOutputs::Frame f{};
+    f.client = wire::clientOf(stream_);
+    f.window = window;
+    f.frame = frame;
+    ++counts_.frames;
+    if (it != windows.end()) {
+        Window& w = *it->second;
+        f.config = w.config;
+        f.region = w.region;
+        if (bound_ && &w == boundDraw_) f.pixels = [this, &w](const PixelViewport& r) { return readShown(w, r); };
+    }
+    if (bound_ && gl.glFinish && !f.pixels) gl.glFinish();
+    out_.frameDone(f);
+    return true;
+}
+
+bool Replay::ownClientArrays(Args& in) {
+    using client_arrays::ArrayRecord;
+    const auto arrayCount = in.get<uint32_t>(), spanCount = in.get<uint32_t>();
+    if (!in.ok() || arrayCount > client_arrays::kSlots || spanCount > arrayCount) return false;
+    const auto* arrays = in.fixed<ArrayRecord>(arrayCount * sizeof(ArrayRecord));
+    if (!in.ok()) return false;
+    if (c_->arrayMemory.size() < spanCount) c_->arrayMemory.resize(spanCount);
+    for (uint32_t i = 0; i < spanCount; ++i) {
+        const Data d = in.data();
+        if (!in.ok()) return false;
+        // The draw may stand in another packet: its arrays must outlive this one.
+        c_->arrayMemory[i].assign(d.span().begin(), d.span().end());
+    }
+    for (uint32_t i = 0; i < arrayCount; ++i) {
+        const ArrayRecord& a = arrays[i];
+        const uint32_t element = sizes::attributeBytes(a.size, a.type);
+        if (a.slot >= client_arrays::kSlots || a.span >= spanCount || a.elementCount == 0) return false;
+        const uint64_t end = uint64_t{a.offsetBytes} + uint64_t{a.elementCount - 1} * a.strideBytes + element;
+        if (end > c_->arrayMemory[a.span].size()) return false;
+    }
+    if (c_ == none_.get()) return true;
+    if (c_->arrayBuffer && gl.glBindBuffer) gl.glBindBuffer(GL_ARRAY_BUFFER, 0);
+    for (uint32_t i = 0; i < arrayCount; ++i) {
+        const ArrayRecord& a = arrays[i];
+        const auto first = reinterpret_cast<uintptr_t>(c_->arrayMemory[a.span].data()) + a.offsetBytes;
+        setArrayPointer(a, reinterpret_cast<const std::byte*>(first - uintptr_t{a.firstElement} * a.strideBytes));
+    }
+    if (c_->arrayBuffer && gl.glBindBuffer) gl.glBindBuffer(GL_ARRAY_BUFFER, c_->arrayBuffer);
+    return true;
+}
+
+void Replay::setArrayPointer(const client_arrays::ArrayRecord& a, const std::byte* first) {
+    using namespace client_arrays;
+    const auto stride = static_cast<GLsizei>(a.strideBytes);
+    switch (a.slot) {
+    case kVertex: return gl.glVertexPointer(a.size, a.type, stride, first);
+    case kNormal: return gl.glNormalPointer(a.type, stride, first);
+    case kColor: return gl.glColorPointer(a.size, a.type, stride, first);
+    case kSecondaryColor: return gl.glSecondaryColorPointer(a.size, a.type, stride, first);
+    case kFogCoord: return gl.glFogCoordPointer(a.type, stride, first);
+    case kIndex: return gl.glIndexPointer(a.type, stride, first);
+    case kEdgeFlag: return gl.glEdgeFlagPointer(stride, first);
+    case kPointSize: return gl.glPointSizePointerOES ? gl.glPointSizePointerOES(a.type, stride, first) : void();
+    default: break;
+    }
+    if (a.slot < kGeneric0) {
+        GLint unit = 0;
+        if (gl.glClientActiveTexture) {
+            gl.glGetIntegerv(GL_CLIENT_ACTIVE_TEXTURE, &unit);
+            gl.glClientActiveTexture(GL_TEXTURE0 + a.slot - kTexCoord0);
+        }
+        gl.glTexCoordPointer(a.size, a.type, stride, first);
+        if (gl.glClientActiveTexture) gl.glClientActiveTexture(static_cast<GLenum>(unit));
+        return;
+    }
+    const GLuint index = a.slot - kGeneric0;
+    if (a.flags & kInteger) gl.glVertexAttribIPointer(index, a.size, a.type, stride, first);
+    else if (a.flags & kLong) gl.glVertexAttribLPointer(index, a.size, a.type, stride, first);
+    else gl.glVertexAttribPointer(index, a.size, a.type, a.flags & kNormalized, stride, first);
+}
+
+bool Replay::ownProgramLayout(Args& in) {
+    const auto program = in.get<uint32_t>();
+    const Data layout = in.data();
+    const auto bytes = layout.span();
+    if (!in.ok() || bytes.size() < 4) return false;
+    if (c_ == none_.get()) return true;
+    uint32_t count = 0;
+    std::memcpy(&count, bytes.data(), 4);
+    ProgramInfo info;
+    const GLuint ours = name(Kind::Program, program);
+    size_t at = 4;
+    for (uint32_t i = 0; i < count; ++i) {
+        GLint location = 0;
+        uint32_t length = 0;
+        if (bytes.size() - at < 8) return false;
+        std::memcpy(&location, bytes.data() + at, 4);
+        std::memcpy(&length, bytes.data() + at + 4, 4);
+        at += 8;
+        if (length > bytes.size() - at) return false;
+        const std::string text(reinterpret_cast<const char*>(bytes.data()) + at, length);
+        at = std::min(at + (size_t{length} + 3) / 4 * 4, bytes.size());
+        const GLint here = gl.glGetUniformLocation(ours, text.c_str());
+        if (here != location) info.locations[location] = here;
+    }
+    if (info.locations.empty()) c_->shared->programs.erase(program);
+    else c_->shared->programs[program] = std::move(info);
+    return true;
+}
+
+bool Replay::ownBufferBytes(Args& in) {
+    const auto buffer = in.get<uint32_t>();
+    const auto offset = in.get<uint64_t>();
+    const Data bytes = in.data();
+    if (!in.ok()) return false;
+    if (c_ == none_.get() || bytes.size() == 0) return true;
+    const GLuint ours = name(Kind::Buffer, buffer);
+    // A target that no draw reads, so that the program's bindings stay as they are.
+    const bool copyTarget = c_->version >= 31 || (c_->api != wire::Api::Desktop && c_->version >= 30);
+    const GLenum target = copyTarget ? GL_COPY_WRITE_BUFFER : GL_ARRAY_BUFFER;
+    GLint before = 0;
+    gl.glGetIntegerv(copyTarget ? GL_COPY_WRITE_BUFFER_BINDING : GL_ARRAY_BUFFER_BINDING, &before);
+    gl.glBindBuffer(target, ours);
+    gl.glBufferSubData(target, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes.size()), bytes.pointer());
+    gl.glBindBuffer(target, static_cast<GLuint>(before));
+    return true;
+}
+
+} // namespace mural

@@ -1,0 +1,214 @@
+// What the program or the wall wants to see of what this node drew.
+#include <algorithm>
+#include <cstring>
+
+#include "nodes/replay/replay.hpp"
+
+namespace mural {
+
+namespace {
+constexpr uint64_t kMaxAnswerBytes = uint64_t{2} << 30;
+}
+
+// The read framebuffer is the program's; pack state and pack buffer are set aside.
+const std::byte* Replay::readRegion(const PixelViewport& r, GLenum format, GLenum type, size_t bytes) {
+    pixels_.assign(std::max<size_t>(bytes, 1), std::byte{0});
+    if (r.empty() || !gl.glReadPixels) return pixels_.data();
+    if (c_->packBuffer) gl.glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+    packTightly(true);
+    const bool window = config_.lean && c_->readFramebuffer == 0 && c_->read;
+    const PixelViewport o = window ? c_->read->region : PixelViewport{};
+    gl.glReadPixels(r.x - o.x, r.y - o.y, r.w, r.h, format, type, pixels_.data());
+    packTightly(false);
+    if (c_->packBuffer) gl.glBindBuffer(GL_PIXEL_PACK_BUFFER, c_->packBuffer);
+    return pixels_.data();
+}
+
+bool Replay::ownRequestPixels(Args& in) {
+    const auto request = in.get<uint32_t>();
+    const auto x = in.get<int32_t>(), y = in.get<int32_t>(), w = in.get<int32_t>(), h = in.get<int32_t>();
+    const auto format = in.get<uint32_t>(), type = in.get<uint32_t>(), group = in.get<uint32_t>();
+    if (!in.ok() || w < 0 || h < 0 || group == 0 || group > 64 || uint64_t(w) * uint64_t(h) * group > kMaxAnswerBytes) return false;
+    const PixelViewport asked{x, y, w, h};
+    if (!bound_ || group != sizes::groupBytes(format, type)) {
+        answerBytes(request, wire::AnswerKind::Bytes, {});
+        return true;
+    }
+    if (c_->readFramebuffer != 0) { // every node has the whole of it
+        const size_t bytes = size_t(w) * size_t(h) * group;
+        answerBytes(request, wire::AnswerKind::Bytes, {readRegion(asked, format, type, bytes), bytes});
+        return true;
+    }
+    const PixelViewport part = c_->read ? intersect(asked, c_->read->region) : PixelViewport{};
+    const size_t bytes = static_cast<size_t>(part.area()) * group;
+    const std::byte* pixels = readRegion(part, format, type, bytes);
+    wire::AnswerHeader header{};
+    header.client = wire::clientOf(stream_);
+    header.requestId = request;
+    header.kind = static_cast<uint32_t>(wire::AnswerKind::Rectangle);
+    header.groupBytes = group;
+    header.x = part.x;
+    header.y = part.y;
+    header.w = part.w;
+    header.h = part.h;
+    header.last = 1;
+    out_.answer(header, {pixels, bytes});
+    return true;
+}
+
+void Replay::answerBytes(uint32_t request, wire::AnswerKind kind, std::span<const std::byte> bytes) {
+    wire::AnswerHeader header{};
+    header.client = wire::clientOf(stream_);
+    header.requestId = request;
+    header.kind = static_cast<uint32_t>(kind);
+    header.first = 1;
+    header.last = 1;
+    out_.answer(header, bytes);
+}
+
+bool Replay::ownRequestTexImage(Args& in) {
+    const auto request = in.get<uint32_t>(), byName = in.get<uint32_t>(), which = in.get<uint32_t>();
+    const auto level = in.get<int32_t>();
+    const auto format = in.get<uint32_t>(), type = in.get<uint32_t>();
+    const auto bytes = in.get<uint64_t>();
+    if (!in.ok() || bytes > kMaxAnswerBytes) return false;
+    pixels_.assign(static_cast<size_t>(bytes), std::byte{0});
+    if (bound_ && bytes > 0) {
+        if (c_->packBuffer) gl.glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+        packTightly(true);
+        // glGetn… and glGetTextureImage stay within the given size, whatever the level really is.
+        const auto room = static_cast<GLsizei>(std::min<uint64_t>(bytes, INT32_MAX));
+        if (byName && gl.glGetTextureImage) gl.glGetTextureImage(name(Kind::Texture, which), level, format, type, room, pixels_.data());
+        else if (!byName && gl.glGetnTexImageARB) gl.glGetnTexImageARB(which, level, format, type, room, pixels_.data());
+        else if (!byName && gl.glGetnTexImage) gl.glGetnTexImage(which, level, format, type, room, pixels_.data());
+        packTightly(false);
+        if (c_->packBuffer) gl.glBindBuffer(GL_PIXEL_PACK_BUFFER, c_->packBuffer);
+    }
+    answerBytes(request, wire::AnswerKind::Bytes, pixels_);
+    return true;
+}
+
+bool Replay::ownRequestQuery(Args& in) {
+    const auto request = in.get<uint32_t>(), query = in.get<uint32_t>(), pname = in.get<uint32_t>();
+    if (!in.ok()) return false;
+    uint64_t value = 0;
+    if (bound_ && gl.glGetQueryObjectui64v) {
+        GLuint64 result = 0;
+        gl.glGetQueryObjectui64v(name(Kind::Query, query), pname == GL_QUERY_RESULT_NO_WAIT ? GL_QUERY_RESULT : pname, &result);
+        value = result;
+    } else if (bound_ && gl.glGetQueryObjectuiv) {
+        GLuint result = 0;
+        gl.glGetQueryObjectuiv(name(Kind::Query, query), GL_QUERY_RESULT, &result);
+        value = result;
+    }
+    answerBytes(request, wire::AnswerKind::Sum, std::as_bytes(std::span(&value, 1)));
+    return true;
+}
+
+// The window's picture, whatever the program has bound; called at a swap.
+const std::byte* Replay::readShown(Window& w, const PixelViewport& r) {
+    const GLuint bound = c_->readFramebuffer;
+    const bool separate = c_->version >= 30;
+    const GLenum target = separate ? GL_READ_FRAMEBUFFER : GL_FRAMEBUFFER;
+    const GLuint draw = c_->drawFramebuffer;
+    if (bound && gl.glBindFramebuffer) gl.glBindFramebuffer(target, 0);
+    const bool otherRead = boundRead_ != &w;
+    if (otherRead) (void)platform_->makeCurrent(c_->context.get(), w.surface.get(), w.surface.get());
+    const bool chooses = c_->api == wire::Api::Desktop && gl.glReadBuffer;
+    if (chooses) gl.glReadBuffer(windowBuffer(w.config.doubleBuffer ? GL_BACK : GL_FRONT, &w));
+    c_->readFramebuffer = 0;
+    Window* read = c_->read;
+    c_->read = &w;
+    const size_t bytes = static_cast<size_t>(r.area()) * 4;
+    const bool bgra = c_->api == wire::Api::Desktop;
+    const std::byte* pixels = readRegion(r, bgra ? GL_BGRA : GL_RGBA, GL_UNSIGNED_BYTE, bytes);
+    for (size_t i = 0; !bgra && i < bytes; i += 4) std::swap(pixels_[i], pixels_[i + 2]);
+    c_->read = read;
+    c_->readFramebuffer = bound;
+    if (chooses) gl.glReadBuffer(windowBuffer(c_->readBuffer0, &w));
+    if (otherRead) (void)platform_->makeCurrent(c_->context.get(), w.surface.get(), boundRead_ ? boundRead_->surface.get() : nullptr);
+    if (bound && gl.glBindFramebuffer) gl.glBindFramebuffer(target, name(Kind::Framebuffer, separate ? bound : draw));
+    return pixels;
+}
+
+// Pixels of other tiles, put where a copy will read them. A blit from a texture: no other state counts.
+bool Replay::ownFillWindow(Args& in) {
+    const auto x = in.get<int32_t>(), y = in.get<int32_t>(), w = in.get<int32_t>(), h = in.get<int32_t>();
+    const auto plane = in.get<uint32_t>();
+    const Data data = in.data();
+    const uint64_t bytesPer = plane == GL_STENCIL_BUFFER_BIT ? 1 : 4;
+    if (!in.ok() || w <= 0 || h <= 0 || data.absent() || !data.covers(uint64_t(w) * uint64_t(h) * bytesPer) || data.isOffset()) return false;
+    if (!bound_ || !c_->read || !gl.glBlitFramebuffer || config_.lean) return true;
+    if (plane != GL_COLOR_BUFFER_BIT) {
+        fillDepthStencil({x, y, w, h}, plane, data.pointer());
+        return true;
+    }
+    // The window that is read becomes the one that is drawn to, as long as this takes.
+    const bool otherDraw = boundDraw_ != boundRead_;
+    if (otherDraw) (void)platform_->makeCurrent(c_->context.get(), boundRead_->surface.get(), boundRead_->surface.get());
+    GLint texture2d = 0, unit = 0;
+    gl.glGetIntegerv(GL_ACTIVE_TEXTURE, &unit);
+    gl.glGetIntegerv(GL_TEXTURE_BINDING_2D, &texture2d);
+    GLuint texture = 0;
+    gl.glGenTextures(1, &texture);
+    gl.glBindTexture(GL_TEXTURE_2D, texture);
+    if (c_->unpackBuffer) gl.glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    setUnpack(true);
+    gl.glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, w, h, 0, GL_RGBA, GL_UNSIGNED_BYTE, data.pointer());
+    if (c_->unpackBuffer) gl.glBindBuffer(GL_PIXEL_UNPACK_BUFFER, c_->unpackBuffer);
+    gl.glBindTexture(GL_TEXTURE_2D, static_cast<GLuint>(texture2d));
+    if (!c_->fillFramebuffer) gl.glGenFramebuffers(1, &c_->fillFramebuffer);
+    gl.glBindFramebuffer(GL_READ_FRAMEBUFFER, c_->fillFramebuffer);
+    gl.glFramebufferTexture2D(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, 0);
+    gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    const bool chooses = c_->api == wire::Api::Desktop && gl.glDrawBuffer;
+    if (chooses) gl.glDrawBuffer(windowBuffer(c_->readBuffer0, c_->read));
+    gl.glDisable(GL_SCISSOR_TEST);
+    const GLboolean srgb = c_->api == wire::Api::Desktop && gl.glIsEnabled(GL_FRAMEBUFFER_SRGB);
+    if (srgb) gl.glDisable(GL_FRAMEBUFFER_SRGB);
+    gl.glBlitFramebuffer(0, 0, w, h, x, y, x + w, y + h, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    if (srgb) gl.glEnable(GL_FRAMEBUFFER_SRGB);
+    if (chooses) gl.glDrawBuffer(windowBuffer(c_->drawBuffer0, c_->read));
+    gl.glFramebufferTexture2D(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 0, 0);
+    gl.glDeleteTextures(1, &texture);
+    gl.glBindFramebuffer(GL_READ_FRAMEBUFFER, name(Kind::Framebuffer, c_->readFramebuffer));
+    gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER, name(Kind::Framebuffer, c_->drawFramebuffer));
+    if (otherDraw) (void)platform_->makeCurrent(c_->context.get(), boundDraw_ ? boundDraw_->surface.get() : nullptr, boundRead_->surface.get());
+    c_->scissorsDiffer = true; // all viewports' enables were touched
+    applyScissors();
+    return true;
+}
+
+// Depth and stencil go in by glDrawPixels, which compatibility contexts have; it is exact for them.
+void Replay::fillDepthStencil(const PixelViewport& r, GLbitfield plane, const void* pixels) {
+    if (c_->core || c_->api != wire::Api::Desktop || !gl.glDrawPixels || !gl.glWindowPos2i || boundDraw_ != boundRead_) {
+        out_.log("depth of other tiles can't be put together in a core context yet: a copy of depth across tiles is incomplete");
+        return;
+    }
+    gl.glPushAttrib(GL_ALL_ATTRIB_BITS);
+    gl.glDisable(GL_SCISSOR_TEST);
+    for (const GLenum cap : {GLenum{GL_STENCIL_TEST}, GLenum{GL_ALPHA_TEST}, GLenum{GL_BLEND}, GLenum{GL_FOG}, GLenum{GL_TEXTURE_2D}, GLenum{GL_LIGHTING}}) gl.glDisable(cap);
+    if (c_->program) gl.glUseProgram(0);
+    gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    const bool depth = plane == GL_DEPTH_BUFFER_BIT;
+    gl.glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    if (depth) {
+        gl.glEnable(GL_DEPTH_TEST);
+        gl.glDepthFunc(GL_ALWAYS);
+        gl.glDepthMask(GL_TRUE);
+        gl.glPixelTransferf(GL_DEPTH_SCALE, 1);
+        gl.glPixelTransferf(GL_DEPTH_BIAS, 0);
+    }
+    gl.glPixelZoom(1, 1);
+    setUnpack(true);
+    if (c_->unpackBuffer) gl.glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    gl.glWindowPos2i(r.x, r.y);
+    gl.glDrawPixels(r.w, r.h, depth ? GL_DEPTH_COMPONENT : GL_STENCIL_INDEX, depth ? GL_UNSIGNED_INT : GL_UNSIGNED_BYTE, pixels);
+    if (c_->unpackBuffer) gl.glBindBuffer(GL_PIXEL_UNPACK_BUFFER, c_->unpackBuffer);
+    gl.glPopAttrib();
+    if (c_->program) gl.glUseProgram(name(Kind::Program, c_->program));
+    gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER, name(Kind::Framebuffer, c_->drawFramebuffer));
+    applyScissors();
+}
+
+} // namespace mural

@@ -1,0 +1,379 @@
+// Drawing only this node's part of a window.
+//
+// exact: the framebuffer has the window's size and everything outside the node's region is closed by
+// the scissor, together with the program's own scissor box: the spec demands that fragments do not
+// depend on the scissor, so what is drawn is bit for bit the whole picture's. lean: the framebuffer
+// has the region's size and window coordinates are translated. Framebuffer objects are drawn whole.
+// Source: design §4, accuracy M4 and M1.
+#include <algorithm>
+
+#include "nodes/replay/replay.hpp"
+
+namespace mural {
+
+namespace {
+
+// The order of PixelUnpack::values and ContextState::pack; alignment is the sixth.
+constexpr GLenum kUnpackNames[8] = {GL_UNPACK_SWAP_BYTES, GL_UNPACK_LSB_FIRST, GL_UNPACK_ROW_LENGTH, GL_UNPACK_SKIP_ROWS,
+                                    GL_UNPACK_SKIP_PIXELS, GL_UNPACK_ALIGNMENT, GL_UNPACK_SKIP_IMAGES, GL_UNPACK_IMAGE_HEIGHT};
+constexpr GLenum kPackNames[8] = {GL_PACK_SWAP_BYTES, GL_PACK_LSB_FIRST, GL_PACK_ROW_LENGTH, GL_PACK_SKIP_ROWS,
+                                  GL_PACK_SKIP_PIXELS, GL_PACK_ALIGNMENT, GL_PACK_SKIP_IMAGES, GL_PACK_IMAGE_HEIGHT};
+constexpr int kAlignment = 5;
+
+// Which of the eight the API knows.
+bool knows(wire::Api api, int version, int i, bool pack) {
+    if (api == wire::Api::Desktop) return true;
+    if (i == kAlignment) return true;
+    if (version < 30 || i < 2) return false;
+    return !(pack && i >= 6);
+}
+
+} // namespace
+
+PixelViewport Replay::origin() const {
+    if (!config_.lean || c_->drawFramebuffer != 0 || !c_->draw) return {};
+    return c_->draw->region;
+}
+
+void Replay::applyScissor(int index, bool all) {
+    const Scissor& app = c_->scissors[static_cast<size_t>(index)];
+    bool enabled = app.enabled;
+    PixelViewport box = app.box;
+    if (drawsWindow() && c_->draw) {
+        const PixelViewport part = c_->draw->drawn;
+        box = enabled ? intersect(part, box) : part;
+        enabled = true;
+        if (config_.lean && !box.empty()) {
+            box.x -= c_->draw->region.x;
+            box.y -= c_->draw->region.y;
+        }
+    }
+    if (all) {
+        enabled ? gl.glEnable(GL_SCISSOR_TEST) : gl.glDisable(GL_SCISSOR_TEST);
+        gl.glScissor(box.x, box.y, box.w, box.h);
+    } else {
+        const auto i = static_cast<GLuint>(index);
+        enabled ? gl.glEnablei(GL_SCISSOR_TEST, i) : gl.glDisablei(GL_SCISSOR_TEST, i);
+        gl.glScissorIndexed(i, box.x, box.y, box.w, box.h);
+    }
+}
+
+void Replay::applyScissors() {
+    if (!bound_ || !gl.glScissor) return;
+    if (!c_->scissorsDiffer || !gl.glScissorIndexed || !gl.glEnablei) return applyScissor(0, true);
+    for (int i = 0; i < kViewports; ++i) applyScissor(i, false);
+}
+
+void Replay::applyViewports() {
+    if (!bound_) return;
+    const PixelViewport o = origin();
+    const auto& v = c_->viewports[0];
+    if (!c_->viewportsDiffer || !gl.glViewportIndexedf) {
+        gl.glViewport(static_cast<GLint>(v[0]) - o.x, static_cast<GLint>(v[1]) - o.y, static_cast<GLsizei>(v[2]), static_cast<GLsizei>(v[3]));
+        return;
+    }
+    for (GLuint i = 0; i < kViewports; ++i) {
+        const auto& r = c_->viewports[i];
+        gl.glViewportIndexedf(i, r[0] - static_cast<GLfloat>(o.x), r[1] - static_cast<GLfloat>(o.y), r[2], r[3]);
+    }
+}
+
+// After another context, framebuffer or window became current.
+void Replay::restoreWindowState() {
+    if (!bound_ || !c_->everCurrent) return;
+    applyScissors();
+    if (config_.lean) applyViewports();
+}
+
+void Replay::glViewport(GLint x, GLint y, GLsizei width, GLsizei height) {
+    const std::array<GLfloat, 4> v{static_cast<GLfloat>(x), static_cast<GLfloat>(y), static_cast<GLfloat>(width), static_cast<GLfloat>(height)};
+    c_->viewports.fill(v);
+    c_->viewportsDiffer = false;
+    const PixelViewport o = origin();
+    gl.glViewport(x - o.x, y - o.y, width, height);
+}
+void Replay::glViewportArrayv(GLuint first, GLsizei count, const Data& v) {
+    if (count <= 0 || !v.pointer()) return;
+    for (GLsizei i = 0; i < count; ++i) glViewportIndexedfv(first + static_cast<GLuint>(i), v.as<GLfloat>() + 4 * i);
+}
+void Replay::glViewportIndexedf(GLuint index, GLfloat x, GLfloat y, GLfloat w, GLfloat h) {
+    if (index >= kViewports || !gl.glViewportIndexedf) return;
+    c_->viewports[index] = {x, y, w, h};
+    c_->viewportsDiffer = true;
+    const PixelViewport o = origin();
+    gl.glViewportIndexedf(index, x - static_cast<GLfloat>(o.x), y - static_cast<GLfloat>(o.y), w, h);
+}
+void Replay::glViewportIndexedfv(GLuint index, const GLfloat* v) { glViewportIndexedf(index, v[0], v[1], v[2], v[3]); }
+
+void Replay::glScissor(GLint x, GLint y, GLsizei width, GLsizei height) {
+    if (width < 0 || height < 0) return;
+    for (auto& s : c_->scissors) s.box = {x, y, width, height};
+    applyScissors();
+}
+void Replay::glScissorArrayv(GLuint first, GLsizei count, const Data& v) {
+    if (count <= 0 || !v.pointer()) return;
+    for (GLsizei i = 0; i < count; ++i) glScissorIndexedv(first + static_cast<GLuint>(i), v.as<GLint>() + 4 * i);
+}
+void Replay::glScissorIndexed(GLuint index, GLint left, GLint bottom, GLsizei width, GLsizei height) {
+    if (index >= kViewports || width < 0 || height < 0) return;
+    c_->scissors[index].box = {left, bottom, width, height};
+    c_->scissorsDiffer = true;
+    applyScissors();
+}
+void Replay::glScissorIndexedv(GLuint index, const GLint* v) { glScissorIndexed(index, v[0], v[1], v[2], v[3]); }
+
+void Replay::glEnable(GLenum cap) {
+    if (cap != GL_SCISSOR_TEST) return gl.glEnable(cap);
+    for (auto& s : c_->scissors) s.enabled = true;
+    applyScissors();
+}
+void Replay::glDisable(GLenum cap) {
+    if (cap != GL_SCISSOR_TEST) return gl.glDisable(cap);
+    for (auto& s : c_->scissors) s.enabled = false;
+    applyScissors();
+}
+void Replay::glEnablei(GLenum target, GLuint index) {
+    if (target != GL_SCISSOR_TEST) return gl.glEnablei ? gl.glEnablei(target, index) : void();
+    if (index >= kViewports) return;
+    c_->scissors[index].enabled = true;
+    c_->scissorsDiffer = true;
+    applyScissors();
+}
+void Replay::glDisablei(GLenum target, GLuint index) {
+    if (target != GL_SCISSOR_TEST) return gl.glDisablei ? gl.glDisablei(target, index) : void();
+    if (index >= kViewports) return;
+    c_->scissors[index].enabled = false;
+    c_->scissorsDiffer = true;
+    applyScissors();
+}
+
+// ---- framebuffers
+
+void Replay::bindFramebuffer(GLenum target, GLuint framebuffer, bool ext) {
+    const GLuint ours = name(Kind::Framebuffer, framebuffer);
+    if (ext) gl.glBindFramebufferEXT(target, ours);
+    else gl.glBindFramebuffer(target, ours);
+    if (target != GL_READ_FRAMEBUFFER) c_->drawFramebuffer = framebuffer;
+    if (target != GL_DRAW_FRAMEBUFFER) c_->readFramebuffer = framebuffer;
+    if (target != GL_READ_FRAMEBUFFER) restoreWindowState();
+}
+void Replay::glBindFramebuffer(GLenum target, GLuint framebuffer) { bindFramebuffer(target, framebuffer, !gl.glBindFramebuffer); }
+void Replay::glBindFramebufferEXT(GLenum target, GLuint framebuffer) { bindFramebuffer(target, framebuffer, gl.glBindFramebufferEXT != nullptr); }
+
+void Replay::glDeleteFramebuffers(GLsizei n, const Data& framebuffers) {
+    if (n <= 0 || !framebuffers.pointer()) return;
+    const auto* app = framebuffers.as<GLuint>();
+    gl.glDeleteFramebuffers(n, names(Kind::Framebuffer, app, n));
+    for (GLsizei i = 0; i < n; ++i) { // a bound one that is deleted leaves the window bound
+        if (app[i] != 0 && app[i] == c_->drawFramebuffer) c_->drawFramebuffer = 0;
+        if (app[i] != 0 && app[i] == c_->readFramebuffer) c_->readFramebuffer = 0;
+    }
+    forget(Kind::Framebuffer, app, n);
+    restoreWindowState();
+}
+
+// A surface with one colour buffer stands for the front and the back of the program's window: what
+// is shown is what was drawn last, and Mesa keeps the back buffer over a swap.
+GLenum Replay::windowBuffer(GLenum buffer, const Window* w) const {
+    if (!w || !w->surface || !w->surface->singleBuffered() || c_->api != wire::Api::Desktop) return buffer;
+    switch (buffer) {
+    case GL_BACK:
+    case GL_BACK_LEFT:
+    case GL_FRONT:
+    case GL_FRONT_LEFT:
+    case GL_LEFT:
+    case GL_FRONT_AND_BACK: return GL_FRONT_LEFT;
+    default: return buffer;
+    }
+}
+void Replay::glDrawBuffer(GLenum buf) {
+    if (drawsWindow()) c_->drawBuffer0 = buf;
+    gl.glDrawBuffer(drawsWindow() ? windowBuffer(buf, c_->draw) : buf);
+}
+void Replay::glDrawBuffers(GLsizei n, const Data& bufs) {
+    if (n <= 0 || !bufs.pointer() || !gl.glDrawBuffers) return gl.glDrawBuffers ? gl.glDrawBuffers(n, nullptr) : void();
+    std::vector<GLenum> list(bufs.as<GLenum>(), bufs.as<GLenum>() + n);
+    if (drawsWindow()) {
+        c_->drawBuffer0 = list[0];
+        for (GLenum& b : list) b = windowBuffer(b, c_->draw);
+    }
+    gl.glDrawBuffers(n, list.data());
+}
+void Replay::glReadBuffer(GLenum src) {
+    if (c_->readFramebuffer == 0) c_->readBuffer0 = src;
+    gl.glReadBuffer(c_->readFramebuffer == 0 ? windowBuffer(src, c_->read) : src);
+}
+void Replay::glNamedFramebufferDrawBuffer(GLuint framebuffer, GLenum buf) {
+    if (framebuffer == 0) c_->drawBuffer0 = buf;
+    gl.glNamedFramebufferDrawBuffer(name(Kind::Framebuffer, framebuffer), framebuffer == 0 ? windowBuffer(buf, c_->draw) : buf);
+}
+void Replay::glNamedFramebufferDrawBuffers(GLuint framebuffer, GLsizei n, const Data& bufs) {
+    if (n <= 0 || !bufs.pointer()) return;
+    std::vector<GLenum> list(bufs.as<GLenum>(), bufs.as<GLenum>() + n);
+    for (GLenum& b : list) b = framebuffer == 0 ? windowBuffer(b, c_->draw) : b;
+    gl.glNamedFramebufferDrawBuffers(name(Kind::Framebuffer, framebuffer), n, list.data());
+}
+void Replay::glNamedFramebufferReadBuffer(GLuint framebuffer, GLenum src) {
+    if (framebuffer == 0) c_->readBuffer0 = src;
+    gl.glNamedFramebufferReadBuffer(name(Kind::Framebuffer, framebuffer), framebuffer == 0 ? windowBuffer(src, c_->read) : src);
+}
+// Only a hint, and what it throws away may be another tile's: not done for windows.
+void Replay::glInvalidateFramebuffer(GLenum target, GLsizei n, const Data& attachments) {
+    if (!drawsWindow() && n > 0 && attachments.pointer() && gl.glInvalidateFramebuffer) gl.glInvalidateFramebuffer(target, n, attachments.as<GLenum>());
+}
+void Replay::glInvalidateSubFramebuffer(GLenum target, GLsizei n, const Data& attachments, GLint x, GLint y, GLsizei width, GLsizei height) {
+    if (!drawsWindow() && n > 0 && attachments.pointer() && gl.glInvalidateSubFramebuffer)
+        gl.glInvalidateSubFramebuffer(target, n, attachments.as<GLenum>(), x, y, width, height);
+}
+void Replay::glDiscardFramebufferEXT(GLenum target, GLsizei n, const Data& attachments) {
+    if (!drawsWindow() && n > 0 && attachments.pointer() && gl.glDiscardFramebufferEXT) gl.glDiscardFramebufferEXT(target, n, attachments.as<GLenum>());
+}
+
+// ---- attribute stacks: what the replay keeps for itself goes onto a stack of its own
+
+void Replay::glPushAttrib(GLbitfield mask) {
+    gl.glPushAttrib(mask);
+    if (c_->attributes.size() < 64)
+        c_->attributes.push_back({mask, c_->scissors, c_->listBase, c_->viewports, c_->drawBuffer0, c_->readBuffer0, c_->program});
+}
+void Replay::glPopAttrib() {
+    gl.glPopAttrib();
+    if (c_->attributes.empty()) return;
+    const SavedAttributes saved = c_->attributes.back();
+    c_->attributes.pop_back();
+    for (size_t i = 0; i < kViewports; ++i) {
+        if (saved.mask & (GL_SCISSOR_BIT | GL_ENABLE_BIT)) c_->scissors[i].enabled = saved.scissors[i].enabled;
+        if (saved.mask & GL_SCISSOR_BIT) c_->scissors[i].box = saved.scissors[i].box;
+    }
+    if (saved.mask & GL_LIST_BIT) c_->listBase = saved.listBase;
+    if (saved.mask & GL_VIEWPORT_BIT) c_->viewports = saved.viewports;
+    if (saved.mask & GL_COLOR_BUFFER_BIT) c_->drawBuffer0 = saved.drawBuffer0;
+    if (saved.mask & GL_PIXEL_MODE_BIT) c_->readBuffer0 = saved.readBuffer0;
+    if (saved.mask & (GL_SCISSOR_BIT | GL_ENABLE_BIT | GL_VIEWPORT_BIT)) restoreWindowState();
+}
+
+void Replay::glPushClientAttrib(GLbitfield mask) {
+    gl.glPushClientAttrib(mask);
+    if (c_->clientAttributes.size() < 64) c_->clientAttributes.push_back({mask, c_->unpack, c_->pack, c_->arrayBuffer});
+}
+void Replay::glPopClientAttrib() {
+    gl.glPopClientAttrib();
+    if (c_->clientAttributes.empty()) return;
+    const ClientState saved = c_->clientAttributes.back();
+    c_->clientAttributes.pop_back();
+    if (saved.mask & GL_CLIENT_PIXEL_STORE_BIT) {
+        c_->unpack = saved.unpack; // `tight` too: GL has gone back to what it had then
+        c_->pack = saved.pack;
+    }
+    if (saved.mask & GL_CLIENT_VERTEX_ARRAY_BIT) c_->arrayBuffer = saved.arrayBuffer;
+}
+
+// ---- pixel store: images from client memory come tightly packed, others lie in buffers as the
+// program's own state says
+
+void Replay::pixelStore(GLenum pname, GLint value) {
+    for (size_t i = 0; i < 8; ++i) {
+        if (pname == kUnpackNames[i]) c_->unpack.values[i] = value;
+        if (pname == kPackNames[i]) {
+            c_->pack[i] = value;
+            return gl.glPixelStorei(pname, value);
+        }
+        if (pname == kUnpackNames[i]) return c_->unpack.tight ? void() : gl.glPixelStorei(pname, value);
+    }
+    gl.glPixelStorei(pname, value);
+}
+void Replay::glPixelStorei(GLenum pname, GLint param) { pixelStore(pname, param); }
+void Replay::glPixelStoref(GLenum pname, GLfloat param) { pixelStore(pname, static_cast<GLint>(param + (param < 0 ? -0.5f : 0.5f))); }
+void Replay::glPixelStorex(GLenum pname, GLint param) { pixelStore(pname, param >> 16); }
+
+void Replay::setUnpack(bool tight) {
+    if (c_->unpack.tight == tight) return;
+    c_->unpack.tight = tight;
+    for (int i = 0; i < 8; ++i) {
+        const GLint value = tight ? (i == kAlignment ? 1 : 0) : c_->unpack.values[static_cast<size_t>(i)];
+        if (knows(c_->api, c_->version, i, false)) gl.glPixelStorei(kUnpackNames[i], value);
+    }
+}
+bool Replay::unpackFor(const Data& data) {
+    if (data.isOffset()) {
+        setUnpack(false);
+        return c_->unpackBuffer != 0;
+    }
+    if (!data.absent()) setUnpack(true);
+    return true;
+}
+bool Replay::readable(const Data& data, GLenum binding) {
+    if (!data.isOffset()) return !data.absent();
+    GLint buffer = 0;
+    gl.glGetIntegerv(binding, &buffer);
+    return buffer != 0;
+}
+void Replay::packTightly(bool tight) {
+    for (int i = 0; i < 8; ++i) {
+        const GLint value = tight ? (i == kAlignment ? 1 : 0) : c_->pack[static_cast<size_t>(i)];
+        if (knows(c_->api, c_->version, i, true)) gl.glPixelStorei(kPackNames[i], value);
+    }
+}
+
+// The pattern is fixed to the window: a translated framebuffer needs a rotated one.
+void Replay::glPolygonStipple(const Data& mask) {
+    if (!unpackFor(mask)) return;
+    const PixelViewport o = origin();
+    if ((o.x % 32 == 0 && o.y % 32 == 0) || !mask.pointer() || mask.isOffset()) return gl.glPolygonStipple(mask.as<GLubyte>());
+    GLubyte rotated[128];
+    for (int y = 0; y < 32; ++y) {
+        const auto* row = mask.as<GLubyte>() + 4 * ((y + o.y) % 32);
+        const uint32_t bits = uint32_t{row[0]} << 24 | uint32_t{row[1]} << 16 | uint32_t{row[2]} << 8 | row[3];
+        const int shift = o.x % 32;
+        const uint32_t turned = shift ? bits << shift | bits >> (32 - shift) : bits;
+        for (int k = 0; k < 4; ++k) rotated[4 * y + k] = static_cast<GLubyte>(turned >> (24 - 8 * k));
+    }
+    gl.glPolygonStipple(rotated);
+}
+
+// ---- copies out of the window
+
+namespace {
+template <class T> T shifted(T value, int32_t by, bool window) { return window ? value - by : value; }
+} // namespace
+
+#define MURAL_FROM_WINDOW                                                                          \
+    const bool window = config_.lean && c_->readFramebuffer == 0 && c_->read;                      \
+    const PixelViewport o = window ? c_->read->region : PixelViewport{};                           \
+    x = shifted(x, o.x, window);                                                                   \
+    y = shifted(y, o.y, window)
+
+void Replay::glCopyTexImage1D(GLenum target, GLint level, GLenum internalformat, GLint x, GLint y, GLsizei width, GLint border) {
+    MURAL_FROM_WINDOW;
+    gl.glCopyTexImage1D(target, level, internalformat, x, y, width, border);
+}
+void Replay::glCopyTexImage2D(GLenum target, GLint level, GLenum internalformat, GLint x, GLint y, GLsizei width, GLsizei height, GLint border) {
+    MURAL_FROM_WINDOW;
+    gl.glCopyTexImage2D(target, level, internalformat, x, y, width, height, border);
+}
+void Replay::glCopyTexSubImage1D(GLenum target, GLint level, GLint xoffset, GLint x, GLint y, GLsizei width) {
+    MURAL_FROM_WINDOW;
+    gl.glCopyTexSubImage1D(target, level, xoffset, x, y, width);
+}
+void Replay::glCopyTexSubImage2D(GLenum target, GLint level, GLint xoffset, GLint yoffset, GLint x, GLint y, GLsizei width, GLsizei height) {
+    MURAL_FROM_WINDOW;
+    gl.glCopyTexSubImage2D(target, level, xoffset, yoffset, x, y, width, height);
+}
+void Replay::glCopyTexSubImage3D(GLenum target, GLint level, GLint xoffset, GLint yoffset, GLint zoffset, GLint x, GLint y, GLsizei width, GLsizei height) {
+    MURAL_FROM_WINDOW;
+    gl.glCopyTexSubImage3D(target, level, xoffset, yoffset, zoffset, x, y, width, height);
+}
+void Replay::glCopyTextureSubImage1D(GLuint texture, GLint level, GLint xoffset, GLint x, GLint y, GLsizei width) {
+    MURAL_FROM_WINDOW;
+    gl.glCopyTextureSubImage1D(name(Kind::Texture, texture), level, xoffset, x, y, width);
+}
+void Replay::glCopyTextureSubImage2D(GLuint texture, GLint level, GLint xoffset, GLint yoffset, GLint x, GLint y, GLsizei width, GLsizei height) {
+    MURAL_FROM_WINDOW;
+    gl.glCopyTextureSubImage2D(name(Kind::Texture, texture), level, xoffset, yoffset, x, y, width, height);
+}
+void Replay::glCopyTextureSubImage3D(GLuint texture, GLint level, GLint xoffset, GLint yoffset, GLint zoffset, GLint x, GLint y, GLsizei width, GLsizei height) {
+    MURAL_FROM_WINDOW;
+    gl.glCopyTextureSubImage3D(name(Kind::Texture, texture), level, xoffset, yoffset, zoffset, x, y, width, height);
+}
+
+} // namespace mural
