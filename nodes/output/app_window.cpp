@@ -20,14 +20,16 @@ const xcb_visualtype_t* findVisual(const xcb_setup_t& setup, xcb_visualid_t id) 
              xcb_depth_next(&depth))
             for (auto visual = xcb_depth_visuals_iterator(depth.data); visual.rem > 0;
                  xcb_visualtype_next(&visual))
-                if (visual.data->visual_id == id) return visual.data;
+                if (visual.data->visual_id == id)
+                    return visual.data;
     return nullptr;
 }
 
 const xcb_format_t* findFormat(const xcb_setup_t& setup, int depth) {
     for (auto format = xcb_setup_pixmap_formats_iterator(&setup); format.rem > 0;
          xcb_format_next(&format))
-        if (format.data->depth == depth) return format.data;
+        if (format.data->depth == depth)
+            return format.data;
     return nullptr;
 }
 
@@ -37,14 +39,16 @@ Result<std::unique_ptr<AppWindow>> AppWindow::open(AppWindowConfig config) {
     const Deadline deadline = Deadline::inMs(config.timeoutMs);
     std::unique_ptr<AppWindow> window(new AppWindow(std::move(config)));
     auto connected = XConnection::open(window->config_.displayName, deadline);
-    if (!connected) return connected.error();
+    if (!connected)
+        return connected.error();
     window->x_ = std::move(connected.value());
     if (window->x_->setup().image_byte_order != XCB_IMAGE_ORDER_LSB_FIRST) {
         return Error{fmt::format("the X display '{}' is of a big-endian machine, which is not "
                                  "supported; show the pictures elsewhere",
                                  window->x_->displayName())};
     }
-    if (Result<void> adopted = window->adopt(deadline); !adopted) return adopted.error();
+    if (Result<void> adopted = window->adopt(deadline); !adopted)
+        return adopted.error();
     if (window->windowGone_) {
         return Error{fmt::format("the X display '{}' has no window {:#x}; check the window's id",
                                  window->x_->displayName(), window->config_.window)};
@@ -53,20 +57,26 @@ Result<std::unique_ptr<AppWindow>> AppWindow::open(AppWindowConfig config) {
 }
 
 Result<void> AppWindow::show(int64_t frame, const Picture& picture) {
-    if (picture.empty()) return Error{fmt::format("frame {} is empty: nothing to show", frame)};
+    if (picture.empty())
+        return Error{fmt::format("frame {} is empty: nothing to show", frame)};
     const Deadline deadline = Deadline::inMs(config_.timeoutMs);
     // What an earlier call left behind when its deadline passed: shared memory may still be read.
-    if (Result<void> settled = settle(0, deadline); !settled) return settled;
+    if (Result<void> settled = settle(0, deadline); !settled)
+        return settled;
     firstError_.reset();
     // More than one attempt: shared memory was refused, or the window's id names a new window now.
     for (int attempt = 0; attempt < 3; ++attempt) {
         if (windowGone_ || !converter_) {
-            if (Result<void> adopted = adopt(deadline); !adopted) return adopted;
-            if (windowGone_) return {};
+            if (Result<void> adopted = adopt(deadline); !adopted)
+                return adopted;
+            if (windowGone_)
+                return {};
         }
         Result<Outcome> outcome = showOnce(picture, deadline);
-        if (!outcome) return outcome.error();
-        if (outcome.value() == Outcome::Done) return {};
+        if (!outcome)
+            return outcome.error();
+        if (outcome.value() == Outcome::Done)
+            return {};
     }
     return Error{fmt::format("the window {:#x} of the X display '{}' takes no pictures (it changes "
                              "all the time)",
@@ -74,8 +84,7 @@ Result<void> AppWindow::show(int64_t frame, const Picture& picture) {
 }
 
 std::string AppWindow::describe() const {
-    return fmt::format("window {:#x} of the X display {} ({})", config_.window,
-                       x_->displayName(),
+    return fmt::format("window {:#x} of the X display {} ({})", config_.window, x_->displayName(),
                        shared_ != nullptr ? "shared memory" : "through the connection");
 }
 
@@ -98,10 +107,12 @@ Result<void> AppWindow::adopt(Deadline deadline) {
         return x_->describe(second);
     }
     windowGone_ = attributes == nullptr || geometry == nullptr;
-    if (windowGone_) return {};
+    if (windowGone_)
+        return {};
     if (Result<void> found = findConverter(attributes->visual, geometry->depth); !found)
         return found;
-    if (gc_ != 0) xcb_free_gc(c, gc_);
+    if (gc_ != 0)
+        xcb_free_gc(c, gc_);
     gc_ = xcb_generate_id(c);
     const uint32_t values[] = {XCB_SUBWINDOW_MODE_CLIP_BY_CHILDREN, 0 /* no exposure events */};
     xcb_create_gc(c, gc_, config_.window, XCB_GC_SUBWINDOW_MODE | XCB_GC_GRAPHICS_EXPOSURES,
@@ -119,9 +130,9 @@ Result<void> AppWindow::findConverter(xcb_visualid_t visualId, int depth) {
                                  "use an X screen of 16, 24 or 30 bits",
                                  config_.window, visualId, depth)};
     }
-    auto converter = PixelConverter::make({depth, format->bits_per_pixel, format->scanline_pad,
-                                           visual->red_mask, visual->green_mask,
-                                           visual->blue_mask});
+    auto converter =
+        PixelConverter::make({depth, format->bits_per_pixel, format->scanline_pad, visual->red_mask,
+                              visual->green_mask, visual->blue_mask});
     if (!converter) {
         return Error{fmt::format("window {:#x} cannot be drawn: {}; use an X screen of 24 bits",
                                  config_.window, converter.error().message)};
@@ -137,23 +148,27 @@ Result<AppWindow::Outcome> AppWindow::showOnce(const Picture& picture, Deadline 
     Result<void> put = sharedFor(sizeBytes, deadline)
                            ? putShared(picture, width, height, deadline)
                            : putInPieces(picture, width, height, deadline);
-    if (put) put = settle(0, deadline);
-    if (!put) return put.error();
+    if (put)
+        put = settle(0, deadline);
+    if (!put)
+        return put.error();
     return judge();
 }
 
 // True when there is shared memory of that size now.
 bool AppWindow::sharedFor(size_t sizeBytes, Deadline deadline) {
-    if (!config_.sharedMemory || sharedRefused_) return false;
-    if (shared_ && shared_->sizeBytes() >= sizeBytes) return true;
+    if (!config_.sharedMemory || sharedRefused_)
+        return false;
+    if (shared_ && shared_->sizeBytes() >= sizeBytes)
+        return true;
     shared_.reset();
     shared_ = SharedPixels::attach(*x_, sizeBytes, deadline);
     sharedRefused_ = shared_ == nullptr;
     return !sharedRefused_;
 }
 
-Result<void> AppWindow::putShared(const Picture& picture, int width, int height,
-                                  Deadline deadline) {
+Result<void>
+AppWindow::putShared(const Picture& picture, int width, int height, Deadline deadline) {
     convert(picture, {0, picture.height - height, width, height}, shared_->data());
     const auto w = static_cast<uint16_t>(width);
     const auto h = static_cast<uint16_t>(height);
@@ -165,13 +180,13 @@ Result<void> AppWindow::putShared(const Picture& picture, int width, int height,
 
 // In bands as high as one request allows; in columns too where even one row is too long. Never more
 // bytes unanswered than the socket takes at once: so no write can block past the deadline.
-Result<void> AppWindow::putInPieces(const Picture& picture, int width, int height,
-                                    Deadline deadline) {
+Result<void>
+AppWindow::putInPieces(const Picture& picture, int width, int height, Deadline deadline) {
     const size_t requestBytes = size_t{x_->setup().maximum_request_length} * 4;
     const size_t roomBytes =
         std::min({config_.pieceBytes, requestBytes - kPutImageHeaderBytes, x_->bytesInFlight()});
-    const int pieceWidth = std::clamp(static_cast<int>(roomBytes / converter_->bytesPerPixel()) - 4,
-                                      1, width);
+    const int pieceWidth =
+        std::clamp(static_cast<int>(roomBytes / converter_->bytesPerPixel()) - 4, 1, width);
     const int pieceHeight =
         std::clamp(static_cast<int>(roomBytes / converter_->rowBytes(pieceWidth)), 1, height);
     const size_t mostUnanswered = std::max<size_t>(x_->bytesInFlight() / roomBytes, 1);
@@ -183,18 +198,20 @@ Result<void> AppWindow::putInPieces(const Picture& picture, int width, int heigh
             piece_.resize(sizeBytes);
             convert(picture, {left, picture.height - top - h, w, h}, piece_.data());
             sent(xcb_put_image_checked(
-                x_->get(), XCB_IMAGE_FORMAT_Z_PIXMAP, config_.window, gc_,
-                static_cast<uint16_t>(w), static_cast<uint16_t>(h), static_cast<int16_t>(left),
-                static_cast<int16_t>(top), 0, static_cast<uint8_t>(converter_->format().depth),
-                static_cast<uint32_t>(sizeBytes), reinterpret_cast<uint8_t*>(piece_.data())));
-            if (Result<void> ready = settle(mostUnanswered - 1, deadline); !ready) return ready;
+                x_->get(), XCB_IMAGE_FORMAT_Z_PIXMAP, config_.window, gc_, static_cast<uint16_t>(w),
+                static_cast<uint16_t>(h), static_cast<int16_t>(left), static_cast<int16_t>(top), 0,
+                static_cast<uint8_t>(converter_->format().depth), static_cast<uint32_t>(sizeBytes),
+                reinterpret_cast<uint8_t*>(piece_.data())));
+            if (Result<void> ready = settle(mostUnanswered - 1, deadline); !ready)
+                return ready;
         }
     }
     return {};
 }
 
 // `part` in the picture's coordinates; X wants the topmost row first.
-void AppWindow::convert(const Picture& picture, const PixelViewport& part,
+void AppWindow::convert(const Picture& picture,
+                        const PixelViewport& part,
                         std::byte* target) const {
     const size_t rowBytes = converter_->rowBytes(part.w);
     for (int line = 0; line < part.h; ++line) {
@@ -218,14 +235,16 @@ Result<void> AppWindow::settle(size_t keep, Deadline deadline) {
             return x_->describe(answer);
         unanswered_.pop_front();
         XOwned<xcb_generic_error_t> error(xcb_request_check(x_->get(), put.request));
-        if (error != nullptr && firstError_ == nullptr) firstError_ = std::move(error);
+        if (error != nullptr && firstError_ == nullptr)
+            firstError_ = std::move(error);
     }
     return {};
 }
 
 // What the errors of one picture mean.
 Result<AppWindow::Outcome> AppWindow::judge() {
-    if (firstError_ == nullptr) return Outcome::Done;
+    if (firstError_ == nullptr)
+        return Outcome::Done;
     const XOwned<xcb_generic_error_t> error = std::move(firstError_);
     if (error->error_code == kBadDrawable || error->error_code == kBadWindow) {
         windowGone_ = true;

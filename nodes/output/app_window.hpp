@@ -1,7 +1,8 @@
 // Shows pictures in a window that belongs to another X client: the program's own window.
 //
-// Pixels are put 1:1, upper left corners together, clipped to the window; child windows stay on top, as
-// with OpenGL. A window that is gone, unmapped or of another size is not an error. One thread.
+// Pixels are put 1:1, upper left corners together, clipped to the window; child windows stay on
+// top, as with OpenGL. A window that is gone, unmapped or of another size is not an error. One
+// thread.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +20,8 @@
 namespace mural {
 
 struct AppWindowConfig {
-    std::string displayName; // empty: DISPLAY
-    uint32_t window = 0;     // XID
+    std::string displayName;   // empty: DISPLAY
+    uint32_t window = 0;       // XID
     int64_t timeoutMs = 5'000; // of open() and of each show(); a window manager may grab the server
     bool sharedMemory = true;  // where the server has it
     size_t pieceBytes = 32 * 1024; // without shared memory: pixels per request
@@ -48,7 +49,8 @@ private:
     };
     enum class Outcome { Done, Again };
 
-    explicit AppWindow(AppWindowConfig config) : config_(std::move(config)) {}
+    explicit AppWindow(AppWindowConfig config)
+        : config_(std::move(config)) {}
 
     Result<void> adopt(Deadline deadline);
     Result<void> findConverter(xcb_visualid_t visual, int depth);

@@ -25,7 +25,7 @@ namespace mural {
 namespace {
 
 constexpr int64_t kWaitSliceNs = 20 * kNsPerMs; // where the kernel can't tell us that a child ended
-constexpr int kUnknownStatus = 255 << 8;         // as if it had ended with exit code 255
+constexpr int kUnknownStatus = 255 << 8;        // as if it had ended with exit code 255
 constexpr int64_t kTermGraceMs = 2000;
 constexpr int kInputBufferBytes = 1 << 20;
 constexpr size_t kLargestText = size_t{4} << 20;
@@ -35,13 +35,15 @@ int pollMs(int64_t ns) {
 }
 
 void closeFd(int& fd) {
-    if (fd >= 0) ::close(fd);
+    if (fd >= 0)
+        ::close(fd);
     fd = -1;
 }
 
 std::string textOf(int fd) {
     struct stat status {};
-    if (fd < 0 || ::fstat(fd, &status) != 0) return {};
+    if (fd < 0 || ::fstat(fd, &status) != 0)
+        return {};
     std::string text(std::min(static_cast<size_t>(status.st_size), kLargestText), '\0');
     const ssize_t read = ::pread(fd, text.data(), text.size(), 0);
     text.resize(read < 0 ? 0 : static_cast<size_t>(read));
@@ -56,7 +58,8 @@ std::string lastLines(const std::string& text) {
         const size_t end = std::min(text.find_first_of("\r\n", begin), text.size());
         const std::string line = text.substr(begin, end - begin);
         begin = end + 1;
-        if (line.empty() || line.find("Last message repeated") != std::string::npos) continue;
+        if (line.empty() || line.find("Last message repeated") != std::string::npos)
+            continue;
         beforeLast = std::exchange(last, line);
     }
     return beforeLast.empty() ? last : beforeLast + "; " + last;
@@ -107,14 +110,16 @@ std::string findProgram(const std::string& name) {
         return ::stat(path.c_str(), &status) == 0 && S_ISREG(status.st_mode) &&
                ::access(path.c_str(), X_OK) == 0;
     };
-    if (name.find('/') != std::string::npos) return runnable(name) ? name : std::string();
+    if (name.find('/') != std::string::npos)
+        return runnable(name) ? name : std::string();
     const char* path = std::getenv("PATH");
     const std::string folders = path != nullptr ? path : "/usr/local/bin:/usr/bin:/bin";
     for (size_t begin = 0; begin <= folders.size();) {
         const size_t end = std::min(folders.find(':', begin), folders.size());
         const std::string folder = folders.substr(begin, end - begin);
         const std::string candidate = (folder.empty() ? "." : folder) + "/" + name;
-        if (runnable(candidate)) return candidate;
+        if (runnable(candidate))
+            return candidate;
         begin = end + 1;
     }
     return {};
@@ -134,15 +139,16 @@ EncoderProcess::start(const std::vector<std::string>& arguments) {
     process->errorFd_ = ::memfd_create("mural-encoder-errors", MFD_CLOEXEC);
     int failure = process->outputFd_ < 0 || process->errorFd_ < 0 ? errno : 0;
     if (failure == 0) {
-        failure = spawn(arguments, {ends[1], process->outputFd_, process->errorFd_},
-                        process->pid_);
-        if (failure != 0) process->pid_ = -1;
+        failure = spawn(arguments, {ends[1], process->outputFd_, process->errorFd_}, process->pid_);
+        if (failure != 0)
+            process->pid_ = -1;
     }
     ::close(ends[1]);
     if (failure != 0)
         return Error{fmt::format("cannot start {}: {}", arguments[0], std::strerror(failure))};
     process->pidFd_ = static_cast<int>(::syscall(SYS_pidfd_open, process->pid_, 0));
-    if (process->pidFd_ >= 0) ::fcntl(process->pidFd_, F_SETFD, FD_CLOEXEC);
+    if (process->pidFd_ >= 0)
+        ::fcntl(process->pidFd_, F_SETFD, FD_CLOEXEC);
     return process;
 }
 
@@ -156,20 +162,23 @@ EncoderProcess::~EncoderProcess() {
 
 Result<void> EncoderProcess::write(std::span<const std::byte> bytes, Deadline deadline) {
     while (!bytes.empty()) {
-        if (inputFd_ < 0 || ended(0)) return howItEnded();
+        if (inputFd_ < 0 || ended(0))
+            return howItEnded();
         const ssize_t sent =
             ::send(inputFd_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
         if (sent > 0) {
             bytes = bytes.subspan(static_cast<size_t>(sent));
             continue;
         }
-        if (errno == EINTR) continue;
+        if (errno == EINTR)
+            continue;
         if (errno != EAGAIN && errno != EWOULDBLOCK) {
             // It closed its input: it is about to end, or should.
             (void)ended(deadline.leftNs(kNsPerS));
             return howItEnded();
         }
-        if (deadline.passed()) return Error{fmt::format("{} takes no more data", program_)};
+        if (deadline.passed())
+            return Error{fmt::format("{} takes no more data", program_)};
         pollfd ready{inputFd_, POLLOUT, 0};
         ::poll(&ready, 1, pollMs(deadline.leftNs(kNsPerS)));
     }
@@ -179,13 +188,15 @@ Result<void> EncoderProcess::write(std::span<const std::byte> bytes, Deadline de
 Result<void> EncoderProcess::finish(Deadline deadline) {
     closeFd(inputFd_);
     while (!ended(deadline.leftNs(kNsPerS))) {
-        if (!deadline.passed()) continue;
+        if (!deadline.passed())
+            continue;
         kill();
         return Error{fmt::format("{} did not end in time and was stopped; its file may be "
                                  "incomplete",
                                  program_)};
     }
-    if (WIFEXITED(status_) && WEXITSTATUS(status_) == 0) return {};
+    if (WIFEXITED(status_) && WEXITSTATUS(status_) == 0)
+        return {};
     return howItEnded();
 }
 
@@ -199,12 +210,14 @@ bool EncoderProcess::ended(int64_t waitNs) {
     while (pid_ >= 0) {
         const pid_t reaped = ::waitpid(pid_, &status_, WNOHANG);
         if (reaped != 0 && !(reaped < 0 && errno == EINTR)) {
-            if (reaped < 0) status_ = kUnknownStatus; // somebody else has reaped it
+            if (reaped < 0)
+                status_ = kUnknownStatus; // somebody else has reaped it
             pid_ = -1;
             break;
         }
         const int64_t leftNs = untilNs - monotonicNowNs();
-        if (leftNs <= 0) return false;
+        if (leftNs <= 0)
+            return false;
         pollfd ready{pidFd_, POLLIN, 0}; // a negative descriptor: just a pause
         ::poll(&ready, 1, pollMs(pidFd_ >= 0 ? leftNs : std::min(leftNs, kWaitSliceNs)));
     }
@@ -212,7 +225,8 @@ bool EncoderProcess::ended(int64_t waitNs) {
 }
 
 Error EncoderProcess::howItEnded() {
-    if (pid_ >= 0) return {fmt::format("{} closed its input", program_)};
+    if (pid_ >= 0)
+        return {fmt::format("{} closed its input", program_)};
     std::string how = "ended";
     if (WIFSIGNALED(status_))
         how = fmt::format("was killed by signal {}", WTERMSIG(status_));
@@ -224,9 +238,11 @@ Error EncoderProcess::howItEnded() {
 
 void EncoderProcess::kill() {
     closeFd(inputFd_);
-    if (pid_ < 0 || ended(0)) return;
+    if (pid_ < 0 || ended(0))
+        return;
     ::kill(pid_, SIGTERM);
-    if (ended(kTermGraceMs * kNsPerMs)) return;
+    if (ended(kTermGraceMs * kNsPerMs))
+        return;
     ::kill(pid_, SIGKILL);
     (void)ended(kTermGraceMs * kNsPerMs); // a process in an uninterruptible wait is left to init
 }

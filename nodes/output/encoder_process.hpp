@@ -1,6 +1,7 @@
 // A child process that is fed through its standard input: started, fed with a deadline, and ended
-// for sure. It gets a process group of its own, so that Ctrl-C at the terminal does not end it before
-// it has completed its file; if this process dies, it reads the end of its input and completes.
+// for sure. It gets a process group of its own, so that Ctrl-C at the terminal does not end it
+// before it has completed its file; if this process dies, it reads the end of its input and
+// completes.
 #pragma once
 
 #include <cstddef>
@@ -20,8 +21,8 @@ std::string findProgram(const std::string& name);
 
 class EncoderProcess {
 public:
-    // arguments[0] is the program as findProgram() gives it. What the child writes to standard output
-    // is kept for output(), what it writes to standard error for its error messages.
+    // arguments[0] is the program as findProgram() gives it. What the child writes to standard
+    // output is kept for output(), what it writes to standard error for its error messages.
     static Result<std::unique_ptr<EncoderProcess>> start(const std::vector<std::string>& arguments);
 
     EncoderProcess(const EncoderProcess&) = delete;
@@ -53,7 +54,7 @@ private:
     int inputFd_ = -1;  // our end of a socket pair
     int outputFd_ = -1; // memory files
     int errorFd_ = -1;
-    int status_ = 0;    // of waitpid, once the child has ended
+    int status_ = 0; // of waitpid, once the child has ended
 };
 
 } // namespace mural

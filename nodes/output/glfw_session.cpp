@@ -24,7 +24,8 @@ int onXError(Display*, XErrorEvent*) {
     return 0;
 }
 
-// The connection broke. Xlib would end the process after this; instead all its calls fail from now on.
+// The connection broke. Xlib would end the process after this; instead all its calls fail from now
+// on.
 void onXLost(Display*, void*) {
     lost = true;
 }
@@ -38,15 +39,18 @@ class DisplayName {
 public:
     explicit DisplayName(const std::string& name) {
         const char* before = std::getenv("DISPLAY");
-        if (name.empty() || (before != nullptr && name == before)) return;
+        if (name.empty() || (before != nullptr && name == before))
+            return;
         changed_ = true;
-        if (before != nullptr) before_ = before;
+        if (before != nullptr)
+            before_ = before;
         ::setenv("DISPLAY", name.c_str(), 1);
     }
     DisplayName(const DisplayName&) = delete;
     DisplayName& operator=(const DisplayName&) = delete;
     ~DisplayName() {
-        if (!changed_) return;
+        if (!changed_)
+            return;
         if (before_)
             ::setenv("DISPLAY", before_->c_str(), 1);
         else
@@ -99,13 +103,15 @@ void GlfwSession::guardErrors() const {
 
 bool GlfwSession::sync() const {
     guardErrors();
-    if (!lost) XSync(glfwGetX11Display(), False);
+    if (!lost)
+        XSync(glfwGetX11Display(), False);
     return !lost;
 }
 
 void GlfwSession::waitForEvents(int wakeFd, int64_t timeoutNs) const {
     // What Xlib has read already, while it waited for an answer, does not make the socket readable.
-    if (!lost && XEventsQueued(glfwGetX11Display(), QueuedAlready) > 0) return;
+    if (!lost && XEventsQueued(glfwGetX11Display(), QueuedAlready) > 0)
+        return;
     pollfd ready[2] = {{lost ? -1 : ConnectionNumber(glfwGetX11Display()), POLLIN, 0},
                        {wakeFd, POLLIN, 0}};
     const int64_t timeoutMs = std::clamp<int64_t>(timeoutNs / kNsPerMs + 1, 1, 60'000);
@@ -118,7 +124,8 @@ bool GlfwSession::displayLost() const {
 
 std::string GlfwSession::takeError() {
     const char* text = nullptr;
-    if (glfwGetError(&text) == GLFW_NO_ERROR || text == nullptr) return {};
+    if (glfwGetError(&text) == GLFW_NO_ERROR || text == nullptr)
+        return {};
     return text;
 }
 

@@ -1,5 +1,5 @@
-// GLFW, started for one X display and ended again. GLFW is one per process and belongs to the thread that
-// started it: so does this.
+// GLFW, started for one X display and ended again. GLFW is one per process and belongs to the
+// thread that started it: so does this.
 #pragma once
 
 #include <memory>
@@ -26,7 +26,8 @@ public:
     // Lets the server do all that was sent. False when the display is lost.
     bool sync() const;
 
-    // Sleeps until the server has sent something, `wakeFd` (if not -1) is readable, or time is over.
+    // Sleeps until the server has sent something, `wakeFd` (if not -1) is readable, or time is
+    // over.
     void waitForEvents(int wakeFd, int64_t timeoutNs) const;
 
     [[nodiscard]] bool displayLost() const;
@@ -36,7 +37,8 @@ public:
     static std::string takeError();
 
 private:
-    explicit GlfwSession(std::string displayName) : displayName_(std::move(displayName)) {}
+    explicit GlfwSession(std::string displayName)
+        : displayName_(std::move(displayName)) {}
     std::string displayName_;
 };
 

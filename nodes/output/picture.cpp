@@ -24,10 +24,12 @@ void OwnedPicture::assign(const Picture& source) {
 }
 
 void copyInto(OwnedPicture& target, int x, int y, const Picture& source) {
-    if (source.empty()) return;
+    if (source.empty())
+        return;
     const PixelViewport part =
         intersect({x, y, source.width, source.height}, {0, 0, target.width(), target.height()});
-    if (part.empty()) return;
+    if (part.empty())
+        return;
     const size_t lineBytes = static_cast<size_t>(part.w) * kPictureBytesPerPixel;
     const size_t targetSkip = static_cast<size_t>(part.x) * kPictureBytesPerPixel;
     const size_t sourceSkip = static_cast<size_t>(part.x - x) * kPictureBytesPerPixel;
@@ -43,7 +45,8 @@ OwnedPicture cutOut(const Picture& source, const PixelViewport& rectangle) {
 
 void flipRows(OwnedPicture& picture) {
     for (int low = 0, high = picture.height() - 1; low < high; ++low, --high)
-        std::swap_ranges(picture.row(low), picture.row(low) + picture.rowBytes(), picture.row(high));
+        std::swap_ranges(picture.row(low), picture.row(low) + picture.rowBytes(),
+                         picture.row(high));
 }
 
 namespace {
@@ -76,14 +79,17 @@ bool sameColours(const std::byte* a, const std::byte* b, int width) {
 PictureDifference comparePictures(const Picture& expected, const Picture& actual) {
     PictureDifference result;
     result.sizesDiffer = expected.width != actual.width || expected.height != actual.height;
-    if (result.sizesDiffer) return result;
+    if (result.sizesDiffer)
+        return result;
     for (int y = 0; y < expected.height; ++y) {
         const std::byte* a = expected.row(y);
         const std::byte* b = actual.row(y);
-        if (sameColours(a, b, expected.width)) continue;
+        if (sameColours(a, b, expected.width))
+            continue;
         for (int x = 0; x < expected.width; ++x) {
             const int difference = largestChannelDifference(colourAt(a, x), colourAt(b, x));
-            if (difference == 0) continue;
+            if (difference == 0)
+                continue;
             if (result.differingPixels++ == 0) {
                 result.firstX = x;
                 result.firstY = y;
@@ -94,13 +100,14 @@ PictureDifference comparePictures(const Picture& expected, const Picture& actual
     return result;
 }
 
-std::string describe(const PictureDifference& difference, const Picture& expected,
-                     const Picture& actual) {
+std::string
+describe(const PictureDifference& difference, const Picture& expected, const Picture& actual) {
     if (difference.sizesDiffer)
         return fmt::format("sizes differ: {}x{} expected, {}x{} found", expected.width,
                            expected.height, actual.width, actual.height);
     const int64_t pixels = static_cast<int64_t>(expected.width) * expected.height;
-    if (difference.differingPixels == 0) return fmt::format("0 of {} pixels differ", pixels);
+    if (difference.differingPixels == 0)
+        return fmt::format("0 of {} pixels differ", pixels);
     return fmt::format("{} of {} pixels differ, by at most {}, first at x {}, y {}",
                        difference.differingPixels, pixels, difference.largestDifference,
                        difference.firstX, difference.firstY);

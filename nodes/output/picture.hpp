@@ -1,5 +1,5 @@
-// Finished pictures as the outputs take them: rows bottom first as in OpenGL, tightly packed, 4 bytes
-// per pixel B G R A. A carries nothing and is never compared or shown.
+// Finished pictures as the outputs take them: rows bottom first as in OpenGL, tightly packed, 4
+// bytes per pixel B G R A. A carries nothing and is never compared or shown.
 #pragma once
 
 #include <cstddef>
@@ -54,7 +54,8 @@ private:
     std::vector<std::byte> bytes_;
 };
 
-// Copies all of `source` with its lower left corner at (x, y) of `target`; what lies outside is dropped.
+// Copies all of `source` with its lower left corner at (x, y) of `target`; what lies outside is
+// dropped.
 void copyInto(OwnedPicture& target, int x, int y, const Picture& source);
 
 // The part of `source` inside `rectangle`; pixels of the rectangle outside of `source` are black.
@@ -64,10 +65,10 @@ OwnedPicture cutOut(const Picture& source, const PixelViewport& rectangle);
 void flipRows(OwnedPicture& picture);
 
 struct PictureDifference {
-    bool sizesDiffer = false;      // then nothing else is compared
-    int64_t differingPixels = 0;   // with any difference in B, G or R
-    int largestDifference = 0;     // of one channel, 0 to 255
-    int firstX = -1, firstY = -1;  // lowest row first, then from the left; -1 when there is none
+    bool sizesDiffer = false;     // then nothing else is compared
+    int64_t differingPixels = 0;  // with any difference in B, G or R
+    int largestDifference = 0;    // of one channel, 0 to 255
+    int firstX = -1, firstY = -1; // lowest row first, then from the left; -1 when there is none
 
     [[nodiscard]] bool same() const { return !sizesDiffer && differingPixels == 0; }
 };
@@ -75,7 +76,7 @@ struct PictureDifference {
 PictureDifference comparePictures(const Picture& expected, const Picture& actual);
 
 // One line for people, e.g. "12 of 307200 pixels differ, by at most 3, first at x 10, y 20".
-std::string describe(const PictureDifference& difference, const Picture& expected,
-                     const Picture& actual);
+std::string
+describe(const PictureDifference& difference, const Picture& expected, const Picture& actual);
 
 } // namespace mural

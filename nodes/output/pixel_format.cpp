@@ -12,12 +12,14 @@ static_assert(std::endian::native == std::endian::little, "pixels are written as
 namespace {
 
 bool contiguous(uint32_t mask) {
-    if (mask == 0) return false;
+    if (mask == 0)
+        return false;
     const uint32_t low = mask >> std::countr_zero(mask);
     return (low & (low + 1)) == 0;
 }
 
-// [OpenGL 4.6 §2.3.5] v8 / 255 * max, rounded: what OpenGL stores in a channel of fewer or more bits.
+// [OpenGL 4.6 §2.3.5] v8 / 255 * max, rounded: what OpenGL stores in a channel of fewer or more
+// bits.
 std::array<uint32_t, 256> channelTable(uint32_t mask) {
     const int shift = std::countr_zero(mask);
     const uint64_t largest = mask >> shift;
@@ -71,10 +73,18 @@ void PixelConverter::convertRow(const std::byte* bgra, int pixels, std::byte* ta
         return;
     }
     switch (bytesPerPixel_) {
-    case 1: convertByTable<1>(bgra, pixels, target); break;
-    case 2: convertByTable<2>(bgra, pixels, target); break;
-    case 3: convertByTable<3>(bgra, pixels, target); break;
-    default: convertByTable<4>(bgra, pixels, target); break;
+    case 1:
+        convertByTable<1>(bgra, pixels, target);
+        break;
+    case 2:
+        convertByTable<2>(bgra, pixels, target);
+        break;
+    case 3:
+        convertByTable<3>(bgra, pixels, target);
+        break;
+    default:
+        convertByTable<4>(bgra, pixels, target);
+        break;
     }
 }
 

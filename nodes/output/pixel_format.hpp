@@ -27,7 +27,8 @@ public:
     [[nodiscard]] size_t rowBytes(int width) const; // with its padding
     [[nodiscard]] const PixelFormat& format() const { return format_; }
 
-    // `bgra`: pixels as in Picture; writes pixels * bytesPerPixel() bytes, least significant byte first.
+    // `bgra`: pixels as in Picture; writes pixels * bytesPerPixel() bytes, least significant byte
+    // first.
     void convertRow(const std::byte* bgra, int pixels, std::byte* target) const;
 
 private:

@@ -13,8 +13,8 @@ namespace mural {
 class SharedPixels {
 public:
     // Null when the server can't: another machine, no MIT-SHM 1.2, not allowed. Not an error.
-    static std::unique_ptr<SharedPixels> attach(XConnection& x, size_t sizeBytes,
-                                                Deadline deadline);
+    static std::unique_ptr<SharedPixels>
+    attach(XConnection& x, size_t sizeBytes, Deadline deadline);
     SharedPixels(const SharedPixels&) = delete;
     SharedPixels& operator=(const SharedPixels&) = delete;
     ~SharedPixels();

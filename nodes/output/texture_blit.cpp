@@ -31,7 +31,8 @@ struct TextureBlit::Functions {
         const char* missing = nullptr;
         const auto get = [&](auto& function, const char* name) {
             function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(loader(name));
-            if (function == nullptr && missing == nullptr) missing = name;
+            if (function == nullptr && missing == nullptr)
+                missing = name;
         };
         get(bindFramebuffer, "glBindFramebuffer");
         get(bindTexture, "glBindTexture");
@@ -56,14 +57,16 @@ struct TextureBlit::Functions {
     }
 };
 
-TextureBlit::TextureBlit() : gl_(std::make_unique<Functions>()) {}
+TextureBlit::TextureBlit()
+    : gl_(std::make_unique<Functions>()) {}
 
 Result<std::unique_ptr<TextureBlit>> TextureBlit::create(Loader load) {
     std::unique_ptr<TextureBlit> blit(new TextureBlit);
     if (const char* missing = blit->gl_->load(load); missing != nullptr)
         return Error{fmt::format("the OpenGL of the wall windows has no {}", missing)};
     const GLubyte* name = blit->gl_->getString(GL_RENDERER);
-    if (name != nullptr) blit->renderer_ = reinterpret_cast<const char*>(name);
+    if (name != nullptr)
+        blit->renderer_ = reinterpret_cast<const char*>(name);
     blit->gl_->genTextures(1, &blit->texture_);
     blit->gl_->genFramebuffers(1, &blit->framebuffer_);
     blit->gl_->clearColor(0, 0, 0, 1);
@@ -71,12 +74,15 @@ Result<std::unique_ptr<TextureBlit>> TextureBlit::create(Loader load) {
 }
 
 TextureBlit::~TextureBlit() {
-    if (framebuffer_ != 0) gl_->deleteFramebuffers(1, &framebuffer_);
-    if (texture_ != 0) gl_->deleteTextures(1, &texture_);
+    if (framebuffer_ != 0)
+        gl_->deleteFramebuffers(1, &framebuffer_);
+    if (texture_ != 0)
+        gl_->deleteTextures(1, &texture_);
 }
 
 Result<void> TextureBlit::allocate(int width, int height) {
-    if (width == width_ && height == height_) return {};
+    if (width == width_ && height == height_)
+        return {};
     GLint largest = 0;
     gl_->getIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
     if (width > largest || height > largest) {
@@ -113,14 +119,16 @@ Result<void> TextureBlit::upload(const Picture& picture) {
 Result<void> TextureBlit::draw(int framebufferWidth, int framebufferHeight) {
     gl_->viewport(0, 0, framebufferWidth, framebufferHeight);
     gl_->bindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-    if (width_ < framebufferWidth || height_ < framebufferHeight) gl_->clear(GL_COLOR_BUFFER_BIT);
+    if (width_ < framebufferWidth || height_ < framebufferHeight)
+        gl_->clear(GL_COLOR_BUFFER_BIT);
     const int bottom = framebufferHeight - height_; // below 0 where the picture is higher
     gl_->bindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
     if (width_ > 0 && height_ > 0)
         gl_->blitFramebuffer(0, 0, width_, height_, 0, bottom, width_, bottom + height_,
                              GL_COLOR_BUFFER_BIT, GL_NEAREST);
     const GLenum error = gl_->getError();
-    if (error == GL_NO_ERROR) return {};
+    if (error == GL_NO_ERROR)
+        return {};
     return Error{fmt::format("drawing a tile of {}x{} failed on {}: OpenGL error {:#x}", width_,
                              height_, renderer_, error)};
 }

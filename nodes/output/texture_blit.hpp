@@ -1,6 +1,6 @@
-// Draws a picture 1:1 into the current window with OpenGL 3.0: uploaded as a texture and copied with
-// glBlitFramebuffer, which no state (blending, dithering, filtering, a rasterised edge) can change.
-// All calls with the window's context current, the destructor included.
+// Draws a picture 1:1 into the current window with OpenGL 3.0: uploaded as a texture and copied
+// with glBlitFramebuffer, which no state (blending, dithering, filtering, a rasterised edge) can
+// change. All calls with the window's context current, the destructor included.
 #pragma once
 
 #include <memory>

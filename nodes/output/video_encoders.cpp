@@ -13,8 +13,7 @@ namespace mural {
 namespace {
 
 // All of these keep R, G and B as they are: no conversion to Y'CbCr takes place.
-const VideoEncoding kX264{"libx264rgb",
-                          {"-c:v", "libx264rgb", "-preset", "ultrafast", "-qp", "0"}};
+const VideoEncoding kX264{"libx264rgb", {"-c:v", "libx264rgb", "-preset", "ultrafast", "-qp", "0"}};
 const VideoEncoding kFfv1{"ffv1", {"-c:v", "ffv1", "-level", "3", "-pix_fmt", "bgr0"}};
 const VideoEncoding kQuickTime{"qtrle", {"-c:v", "qtrle", "-pix_fmt", "rgb24"}};
 const VideoEncoding kPng{"png", {"-c:v", "png", "-pix_fmt", "rgb24"}};
@@ -40,7 +39,8 @@ const std::array<Container, 5>& containers() {
 
 const Container* findContainer(const std::string& suffix) {
     for (const Container& container : containers())
-        if (suffix == container.suffix) return &container;
+        if (suffix == container.suffix)
+            return &container;
     return nullptr;
 }
 
@@ -48,7 +48,8 @@ const Container* findContainer(const std::string& suffix) {
 
 std::string suffixOf(const std::string& path) {
     std::string suffix = std::filesystem::path(path).extension().string();
-    if (!suffix.empty()) suffix.erase(0, 1);
+    if (!suffix.empty())
+        suffix.erase(0, 1);
     std::transform(suffix.begin(), suffix.end(), suffix.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return suffix;
@@ -83,7 +84,8 @@ Result<VideoEncoding> chooseEncoding(const std::string& suffix,
     }
     std::string wanted;
     for (const VideoEncoding& encoding : container->encodings) {
-        if (encoders.count(encoding.encoder) != 0) return encoding;
+        if (encoders.count(encoding.encoder) != 0)
+            return encoding;
         wanted += (wanted.empty() ? "" : " or ") + encoding.encoder;
     }
     return Error{fmt::format("this ffmpeg has no lossless encoder for .{} ({}); install Debian's "

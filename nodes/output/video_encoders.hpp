@@ -17,7 +17,7 @@ struct VideoEncoding {
 // The suffix of `path` in lower case without its dot; empty when there is none.
 std::string suffixOf(const std::string& path);
 
-// True for the suffixes that openVideo… understands: mp4 mkv avi webm mov.
+// True for the suffixes that VideoFile writes: mp4 mkv avi webm mov.
 bool isVideoSuffix(const std::string& suffix);
 
 // Names from the output of `ffmpeg -hide_banner -encoders`.

@@ -1,5 +1,5 @@
-// Pictures as a video, through a child process `ffmpeg`. Lossless: the decoded video has exactly the
-// values that were drawn. Every frame that is shown is one frame of the video, at a fixed rate.
+// Pictures as a video, through a child process `ffmpeg`. Lossless: the decoded video has exactly
+// the values that were drawn. Every frame that is shown is one frame of the video, at a fixed rate.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ struct VideoConfig {
     std::string path; // suffix .mp4 .mkv .avi .webm or .mov
     int framesPerSecond = 30;
     std::string program = "ffmpeg";
-    int64_t frameTimeoutMs = 10'000;   // the encoder takes no data for so long: error
-    int64_t finishTimeoutMs = 120'000; // encoders hold frames back
+    int64_t frameTimeoutMs = 10'000;             // the encoder takes no data for so long: error
+    int64_t finishTimeoutMs = 120'000;           // encoders hold frames back
     std::function<void(const std::string&)> say; // one line for the user; may be empty
 };
 

@@ -10,15 +10,17 @@ namespace mural {
 Result<std::unique_ptr<WallScreen>> WallScreen::open(const WallWindowsConfig& config) {
     std::unique_ptr<WallScreen> screen(new WallScreen(config));
     Result<std::unique_ptr<GlfwSession>> session = GlfwSession::open(config.displayName);
-    if (!session) return session.error();
+    if (!session)
+        return session.error();
     screen->session_ = std::move(session.value());
-    Result<void> opened = screen->openWindows(config.drawing != WallDrawing::XPut);
-    const bool slow = opened && screen->windows_.front()->drawnBySoftware();
-    // Without OpenGL on the display, or with one that runs on the CPU, the X server is the better way.
-    // An error of the display itself comes again.
-    if (config.drawing == WallDrawing::Auto && (!opened || slow))
+    const bool automatic = config.drawing == WallDrawing::Auto;
+    const bool openGl = automatic ? WallWindow::openGlIsFast(*screen->session_)
+                                  : config.drawing == WallDrawing::OpenGl;
+    Result<void> opened = screen->openWindows(openGl);
+    if (!opened && automatic && openGl)
         opened = screen->openWindows(false);
-    if (!opened) return opened.error();
+    if (!opened)
+        return opened.error();
     return screen;
 }
 
@@ -36,10 +38,9 @@ Result<void> WallScreen::openWindows(bool openGl) {
         options.waitForRefresh = config_.waitForRefresh && i == 0;
         options.timeoutMs = config_.showTimeoutMs;
         Result<std::unique_ptr<WallWindow>> window = WallWindow::open(*session_, options);
-        if (!window) return window.error();
+        if (!window)
+            return window.error();
         windows_.push_back(std::move(window.value()));
-        // Known after the first window already: not worth opening the others.
-        if (config_.drawing == WallDrawing::Auto && windows_.front()->drawnBySoftware()) return {};
     }
     return checkDisplay();
 }
@@ -51,43 +52,52 @@ PixelViewport WallScreen::placeOf(const TileWindow& tile) const {
 }
 
 Result<void> WallScreen::checkDisplay() const {
-    if (session_->sync()) return {};
+    if (session_->sync())
+        return {};
     return Error{fmt::format("the connection to the X display '{}' is lost; restart its server and "
                              "the session",
                              session_->displayName())};
 }
 
 Result<void> WallScreen::show(std::vector<TileBuffer>& buffers) {
-    if (Result<void> there = checkDisplay(); !there) return there;
+    if (Result<void> there = checkDisplay(); !there)
+        return there;
     for (TileBuffer& buffer : buffers)
-        if (Result<void> drawn = windows_[buffer.tile]->draw(buffer.picture); !drawn) return drawn;
+        if (Result<void> drawn = windows_[buffer.tile]->draw(buffer.picture); !drawn)
+            return drawn;
     for (const TileBuffer& buffer : buffers)
-        if (Result<void> shown = windows_[buffer.tile]->present(); !shown) return shown;
+        if (Result<void> shown = windows_[buffer.tile]->present(); !shown)
+            return shown;
     for (const TileBuffer& buffer : buffers)
         windows_[buffer.tile]->finish();
     return checkDisplay();
 }
 
 Result<void> WallScreen::arrange(const std::vector<TileWindow>& tiles) {
-    if (Result<void> there = checkDisplay(); !there) return there;
+    if (Result<void> there = checkDisplay(); !there)
+        return there;
     config_.tiles = tiles;
     for (size_t i = 0; i < windows_.size(); ++i)
-        if (Result<void> moved = windows_[i]->move(placeOf(tiles[i])); !moved) return moved;
+        if (Result<void> moved = windows_[i]->move(placeOf(tiles[i])); !moved)
+            return moved;
     return checkDisplay();
 }
 
 Result<void> WallScreen::doWork() {
-    if (session_->displayLost()) return checkDisplay();
+    if (session_->displayLost())
+        return checkDisplay();
     session_->guardErrors();
     glfwPollEvents();
     for (const auto& window : windows_)
-        if (Result<void> redrawn = window->redrawIfUncovered(); !redrawn) return redrawn;
+        if (Result<void> redrawn = window->redrawIfUncovered(); !redrawn)
+            return redrawn;
     return {};
 }
 
 bool WallScreen::closeRequested() const {
     for (const auto& window : windows_)
-        if (window->closeRequested()) return true;
+        if (window->closeRequested())
+            return true;
     return false;
 }
 

@@ -28,6 +28,11 @@ public:
     };
 
     static Result<std::unique_ptr<WallWindow>> open(GlfwSession& session, const Options& options);
+
+    // True when OpenGL 3.0 is there on the display and runs on a graphics card. Nothing is seen of
+    // it.
+    static bool openGlIsFast(const GlfwSession& session);
+
     WallWindow(const WallWindow&) = delete;
     WallWindow& operator=(const WallWindow&) = delete;
     ~WallWindow();
@@ -42,10 +47,10 @@ public:
     Result<void> redrawIfUncovered();
     [[nodiscard]] bool closeRequested() const;
     [[nodiscard]] std::string drawnBy() const;
-    [[nodiscard]] bool drawnBySoftware() const;
 
 private:
-    explicit WallWindow(GlfwSession& session) : session_(session) {}
+    explicit WallWindow(GlfwSession& session)
+        : session_(session) {}
 
     Result<void> create(const Options& options);
     Result<void> createFullScreen(const Options& options);
@@ -60,8 +65,8 @@ private:
     int wantedWidth_ = 0; // what was last asked for; a window manager may not give it
     int wantedHeight_ = 0;
     std::string title_;
-    OwnedPicture kept_;                  // what the window shows
-    std::unique_ptr<TextureBlit> blit_;  // one of the two
+    OwnedPicture kept_;                 // what the window shows
+    std::unique_ptr<TextureBlit> blit_; // one of the two
     std::unique_ptr<AppWindow> painter_;
     bool uncovered_ = false;
 };
@@ -80,12 +85,15 @@ public:
 
     // Handles what the server has sent.
     Result<void> doWork();
-    void waitForEvents(int wakeFd, int64_t timeoutNs) { session_->waitForEvents(wakeFd, timeoutNs); }
+    void waitForEvents(int wakeFd, int64_t timeoutNs) {
+        session_->waitForEvents(wakeFd, timeoutNs);
+    }
     [[nodiscard]] bool closeRequested() const;
     [[nodiscard]] std::string describe() const;
 
 private:
-    explicit WallScreen(WallWindowsConfig config) : config_(std::move(config)) {}
+    explicit WallScreen(WallWindowsConfig config)
+        : config_(std::move(config)) {}
 
     Result<void> openWindows(bool openGl);
     [[nodiscard]] PixelViewport placeOf(const TileWindow& tile) const;

@@ -59,10 +59,32 @@ void setHints(const WallWindow::Options& options) {
     glfwWindowHint(GLFW_STENCIL_BITS, 0);
 }
 
+bool runsOnCpu(const std::string& renderer) {
+    for (const char* name : {"llvmpipe", "softpipe", "swrast", "Software Rasterizer"})
+        if (renderer.find(name) != std::string::npos)
+            return true;
+    return false;
+}
+
 } // namespace
 
-Result<std::unique_ptr<WallWindow>> WallWindow::open(GlfwSession& session,
-                                                     const Options& options) {
+bool WallWindow::openGlIsFast(const GlfwSession& session) {
+    setHints({});
+    GLFWwindow* hidden = glfwCreateWindow(16, 16, "Mural", nullptr, nullptr);
+    session.guardErrors();
+    if (hidden == nullptr) {
+        (void)GlfwSession::takeError();
+        return false;
+    }
+    glfwMakeContextCurrent(hidden);
+    bool fast = false;
+    if (auto blit = TextureBlit::create(glfwGetProcAddress); blit)
+        fast = !runsOnCpu(blit.value()->renderer());
+    glfwDestroyWindow(hidden);
+    return fast;
+}
+
+Result<std::unique_ptr<WallWindow>> WallWindow::open(GlfwSession& session, const Options& options) {
     std::unique_ptr<WallWindow> window(new WallWindow(session));
     window->fullScreen_ = options.fullScreen;
     window->title_ = options.title;
@@ -70,7 +92,8 @@ Result<std::unique_ptr<WallWindow>> WallWindow::open(GlfwSession& session,
     Result<void> created =
         options.fullScreen ? window->createFullScreen(options) : window->create(options);
     session.guardErrors();
-    if (!created) return created.error();
+    if (!created)
+        return created.error();
     // What the server paints where no picture is yet.
     Display* display = glfwGetX11Display();
     XSetWindowBackground(display, glfwGetX11Window(window->window_),
@@ -83,15 +106,18 @@ Result<std::unique_ptr<WallWindow>> WallWindow::open(GlfwSession& session,
         glfwSetInputMode(window->window_, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
     else
         glfwShowWindow(window->window_);
-    if (!session.sync()) return Error{fmt::format("{}: the display is lost", window->where())};
+    if (!session.sync())
+        return Error{fmt::format("{}: the display is lost", window->where())};
     if (Result<void> prepared = window->prepareDrawing(options); !prepared)
         return prepared.error();
     return window;
 }
 
 WallWindow::~WallWindow() {
-    if (window_ == nullptr) return;
-    if (blit_) glfwMakeContextCurrent(window_);
+    if (window_ == nullptr)
+        return;
+    if (blit_)
+        glfwMakeContextCurrent(window_);
     blit_.reset();
     painter_.reset();
     session_.guardErrors();
@@ -132,7 +158,8 @@ Result<void> WallWindow::prepareDrawing(const Options& options) {
         glfwMakeContextCurrent(window_);
         glfwSwapInterval(options.waitForRefresh ? 1 : 0);
         auto blit = TextureBlit::create(glfwGetProcAddress);
-        if (!blit) return blit.error();
+        if (!blit)
+            return blit.error();
         blit_ = std::move(blit.value());
     } else {
         AppWindowConfig config;
@@ -140,24 +167,28 @@ Result<void> WallWindow::prepareDrawing(const Options& options) {
         config.window = static_cast<uint32_t>(glfwGetX11Window(window_));
         config.timeoutMs = options.timeoutMs;
         auto painter = AppWindow::open(config);
-        if (!painter) return painter.error();
+        if (!painter)
+            return painter.error();
         painter_ = std::move(painter.value());
         XClearWindow(glfwGetX11Display(), glfwGetX11Window(window_));
         return {};
     }
-    if (Result<void> drawn = drawKept(); !drawn) return drawn;
+    if (Result<void> drawn = drawKept(); !drawn)
+        return drawn;
     return present();
 }
 
 Result<void> WallWindow::move(const PixelViewport& place) {
-    if (fullScreen_) return {};
+    if (fullScreen_)
+        return {};
     glfwSetWindowPos(window_, place.x, place.y);
     resize(std::max(place.w, 1), std::max(place.h, 1));
     return {};
 }
 
 void WallWindow::resize(int width, int height) {
-    if (fullScreen_ || (width == wantedWidth_ && height == wantedHeight_)) return;
+    if (fullScreen_ || (width == wantedWidth_ && height == wantedHeight_))
+        return;
     wantedWidth_ = width;
     wantedHeight_ = height;
     glfwSetWindowSize(window_, width, height);
@@ -167,19 +198,20 @@ void WallWindow::resize(int width, int height) {
         int realWidth = 0;
         int realHeight = 0;
         glfwGetFramebufferSize(window_, &realWidth, &realHeight);
-        if ((realWidth == width && realHeight == height) || deadline.passed()) return;
+        if ((realWidth == width && realHeight == height) || deadline.passed())
+            return;
         session_.waitForEvents(-1, deadline.leftNs());
     }
 }
 
 Result<void> WallWindow::draw(OwnedPicture& picture) {
-    const bool otherSize =
-        picture.width() != kept_.width() || picture.height() != kept_.height();
+    const bool otherSize = picture.width() != kept_.width() || picture.height() != kept_.height();
     resize(picture.width(), picture.height());
     std::swap(kept_, picture);
     if (blit_) {
         glfwMakeContextCurrent(window_);
-        if (Result<void> uploaded = blit_->upload(kept_.view()); !uploaded) return uploaded;
+        if (Result<void> uploaded = blit_->upload(kept_.view()); !uploaded)
+            return uploaded;
     } else if (otherSize) {
         // What the picture before left beside the new one; in order with the painter's connection.
         XClearWindow(glfwGetX11Display(), glfwGetX11Window(window_));
@@ -190,7 +222,8 @@ Result<void> WallWindow::draw(OwnedPicture& picture) {
 
 Result<void> WallWindow::drawKept() {
     uncovered_ = false;
-    if (!blit_) return {};
+    if (!blit_)
+        return {};
     int width = 0;
     int height = 0;
     glfwGetFramebufferSize(window_, &width, &height);
@@ -203,20 +236,25 @@ Result<void> WallWindow::present() {
         glfwSwapBuffers(window_);
         return {};
     }
-    if (kept_.view().empty()) return {};
+    if (kept_.view().empty())
+        return {};
     return painter_->show(0, kept_.view());
 }
 
 void WallWindow::finish() {
-    if (!blit_) return;
+    if (!blit_)
+        return;
     glfwMakeContextCurrent(window_);
     blit_->finish();
 }
 
 Result<void> WallWindow::redrawIfUncovered() {
-    if (!uncovered_) return {};
-    if (blit_) glfwMakeContextCurrent(window_);
-    if (Result<void> drawn = drawKept(); !drawn) return drawn;
+    if (!uncovered_)
+        return {};
+    if (blit_)
+        glfwMakeContextCurrent(window_);
+    if (Result<void> drawn = drawKept(); !drawn)
+        return drawn;
     return present();
 }
 
@@ -226,13 +264,6 @@ bool WallWindow::closeRequested() const {
 
 std::string WallWindow::drawnBy() const {
     return blit_ ? fmt::format("OpenGL, {}", blit_->renderer()) : "drawn by the X server";
-}
-
-bool WallWindow::drawnBySoftware() const {
-    if (!blit_) return false;
-    for (const char* name : {"llvmpipe", "softpipe", "swrast", "Software Rasterizer"})
-        if (blit_->renderer().find(name) != std::string::npos) return true;
-    return false;
 }
 
 std::string WallWindow::where() const {

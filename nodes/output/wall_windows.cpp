@@ -21,7 +21,6 @@ namespace mural {
 namespace {
 
 constexpr int64_t kIdleNs = 250 * kNsPerMs; // between looks at the display when nothing happens
-constexpr int64_t kCloseMs = 5'000;
 constexpr size_t kBuffersKept = 32;
 
 // Something to do in the windows' thread.
@@ -42,7 +41,8 @@ struct WallWindows::Shared {
     Shared(const Shared&) = delete;
     Shared& operator=(const Shared&) = delete;
     ~Shared() {
-        if (wakeFd >= 0) ::close(wakeFd);
+        if (wakeFd >= 0)
+            ::close(wakeFd);
     }
 
     const WallWindowsConfig config;
@@ -76,8 +76,10 @@ namespace {
 
 // Waits for a condition until the deadline; the lock is held.
 template <class Condition>
-bool waitUntil(std::condition_variable& changed, std::unique_lock<std::mutex>& lock,
-               Deadline deadline, Condition condition) {
+bool waitUntil(std::condition_variable& changed,
+               std::unique_lock<std::mutex>& lock,
+               Deadline deadline,
+               Condition condition) {
     return changed.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(kNsPerS * 3600)),
                             condition);
 }
@@ -106,11 +108,13 @@ void WallWindows::Shared::serve() {
         while (screen) {
             {
                 const std::lock_guard lock(mutex);
-                if (stop) break;
+                if (stop)
+                    break;
             }
             serveJobs(*screen.value());
             (void)screen.value()->doWork(); // what failed for good fails again for the next job
-            if (screen.value()->closeRequested()) closeRequested = true;
+            if (screen.value()->closeRequested())
+                closeRequested = true;
             screen.value()->waitForEvents(wakeFd, kIdleNs);
             uint64_t count = 0;
             (void)!::read(wakeFd, &count, sizeof count);
@@ -142,7 +146,8 @@ Result<void> WallWindows::Shared::run(std::function<Result<void>(WallScreen&)> w
     std::unique_lock lock(mutex);
     jobs.push_back(job);
     wake();
-    if (waitUntil(changed, lock, deadline, [&] { return job->done; })) return job->result;
+    if (waitUntil(changed, lock, deadline, [&] { return job->done; }))
+        return job->result;
     std::erase(jobs, job); // not begun: it won't be
     return notInTime(config.displayName);
 }
@@ -153,7 +158,8 @@ void WallWindows::Shared::end() {
         std::unique_lock lock(mutex);
         stop = true;
         wake();
-        finished = waitUntil(changed, lock, Deadline::inMs(kCloseMs), [&] { return ended; });
+        finished =
+            waitUntil(changed, lock, Deadline::inMs(config.showTimeoutMs), [&] { return ended; });
     }
     if (finished)
         thread.join();
@@ -163,7 +169,8 @@ void WallWindows::Shared::end() {
 
 OwnedPicture WallWindows::Shared::takeBuffer() {
     const std::lock_guard lock(mutex);
-    if (buffers.empty()) return {};
+    if (buffers.empty())
+        return {};
     OwnedPicture buffer = std::move(buffers.back());
     buffers.pop_back();
     return buffer;
@@ -172,24 +179,27 @@ OwnedPicture WallWindows::Shared::takeBuffer() {
 void WallWindows::Shared::giveBuffers(std::vector<WallScreen::TileBuffer>& used) {
     const std::lock_guard lock(mutex);
     for (WallScreen::TileBuffer& buffer : used)
-        if (buffers.size() < kBuffersKept) buffers.push_back(std::move(buffer.picture));
+        if (buffers.size() < kBuffersKept)
+            buffers.push_back(std::move(buffer.picture));
 }
 
 Result<std::unique_ptr<WallWindows>> WallWindows::open(const WallWindowsConfig& config) {
-    if (config.tiles.empty()) return Error{"a wall of windows needs at least one tile"};
+    if (config.tiles.empty())
+        return Error{"a wall of windows needs at least one tile"};
     auto shared = std::make_shared<Shared>(config);
-    if (shared->wakeFd < 0) return Error{"no event descriptor: too many open files; raise ulimit -n"};
+    if (shared->wakeFd < 0)
+        return Error{"no event descriptor: too many open files; raise ulimit -n"};
     shared->thread = std::thread([shared] { shared->serve(); });
     Result<void> opened;
     {
         std::unique_lock lock(shared->mutex);
-        const bool known =
-            waitUntil(shared->changed, lock, Deadline::inMs(config.openTimeoutMs),
-                      [&] { return shared->openKnown; });
+        const bool known = waitUntil(shared->changed, lock, Deadline::inMs(config.openTimeoutMs),
+                                     [&] { return shared->openKnown; });
         opened = known ? shared->opened : Result<void>(notInTime(config.displayName));
     }
     std::unique_ptr<WallWindows> windows(new WallWindows(std::move(shared)));
-    if (!opened) return opened.error(); // the destructor ends the thread
+    if (!opened)
+        return opened.error(); // the destructor ends the thread
     return windows;
 }
 

@@ -16,8 +16,8 @@ namespace mural {
 
 namespace {
 
-// The part of connecting for which xcb knows no deadline happens in a thread that is left alone when
-// the server doesn't answer; it then cleans up by itself.
+// The part of connecting for which xcb knows no deadline happens in a thread that is left alone
+// when the server doesn't answer; it then cleans up by itself.
 struct Attempt {
     std::mutex mutex;
     std::condition_variable done;
@@ -29,7 +29,8 @@ struct Attempt {
 void connectInto(const std::shared_ptr<Attempt>& attempt, const std::string& displayName) {
     xcb_connection_t* connection =
         xcb_connect(displayName.empty() ? nullptr : displayName.c_str(), nullptr);
-    // Asked here because later calls of the extension would wait for the answer, without a deadline.
+    // Asked here because later calls of the extension would wait for the answer, without a
+    // deadline.
     if (xcb_connection_has_error(connection) == 0)
         xcb_get_extension_data(connection, &xcb_shm_id);
     const std::lock_guard lock(attempt->mutex);
@@ -43,7 +44,8 @@ void connectInto(const std::shared_ptr<Attempt>& attempt, const std::string& dis
 }
 
 std::string nameOf(const std::string& displayName) {
-    if (!displayName.empty()) return displayName;
+    if (!displayName.empty())
+        return displayName;
     const char* fromEnvironment = std::getenv("DISPLAY");
     return fromEnvironment != nullptr ? fromEnvironment : "";
 }
@@ -64,7 +66,8 @@ Error cannotConnect(const std::string& name, int code) {
 Result<std::unique_ptr<XConnection>> XConnection::open(const std::string& displayName,
                                                        Deadline deadline) {
     const std::string name = nameOf(displayName);
-    if (name.empty()) return cannotConnect(name, 0);
+    if (name.empty())
+        return cannotConnect(name, 0);
     auto attempt = std::make_shared<Attempt>();
     std::thread(connectInto, attempt, name).detach();
     xcb_connection_t* connection = nullptr;
@@ -106,7 +109,9 @@ XConnection::~XConnection() {
     xcb_disconnect(connection_);
 }
 
-XAnswer XConnection::awaitRaw(unsigned sequence, Deadline deadline, void** reply,
+XAnswer XConnection::awaitRaw(unsigned sequence,
+                              Deadline deadline,
+                              void** reply,
                               XOwned<xcb_generic_error_t>* error) {
     xcb_flush(connection_);
     for (;;) {
@@ -116,18 +121,22 @@ XAnswer XConnection::awaitRaw(unsigned sequence, Deadline deadline, void** reply
         if (xcb_connection_has_error(connection_) != 0 && *reply == nullptr)
             return XAnswer::ConnectionLost;
         if (known != 0) {
-            if (*reply != nullptr) return XAnswer::Reply;
-            if (error != nullptr) *error = std::move(owned);
+            if (*reply != nullptr)
+                return XAnswer::Reply;
+            if (error != nullptr)
+                *error = std::move(owned);
             return XAnswer::Failed;
         }
         const int64_t leftNs = deadline.leftNs(kNsPerS);
-        if (leftNs == 0) return XAnswer::TimedOut;
+        if (leftNs == 0)
+            return XAnswer::TimedOut;
         pollfd ready{xcb_get_file_descriptor(connection_), POLLIN, 0};
         ::poll(&ready, 1, static_cast<int>((leftNs + kNsPerMs - 1) / kNsPerMs));
     }
 }
 
-XAnswer XConnection::check(xcb_void_cookie_t request, Deadline deadline,
+XAnswer XConnection::check(xcb_void_cookie_t request,
+                           Deadline deadline,
                            XOwned<xcb_generic_error_t>& error) {
     const unsigned fence = sendFence();
     const XAnswer answer = awaitFence(fence, deadline);
@@ -136,7 +145,8 @@ XAnswer XConnection::check(xcb_void_cookie_t request, Deadline deadline,
         xcb_discard_reply(connection_, request.sequence);
     }
     // Answered: the server is past the request, so this returns at once.
-    if (answer == XAnswer::Reply) error.reset(xcb_request_check(connection_, request));
+    if (answer == XAnswer::Reply)
+        error.reset(xcb_request_check(connection_, request));
     return answer;
 }
 

@@ -41,7 +41,9 @@ public:
     // Waits for the answer to a request that has one. Failed: `error` (if wanted) says why.
     // After TimedOut the same request can be waited for again.
     template <class Reply>
-    XAnswer await(unsigned sequence, Deadline deadline, XOwned<Reply>* reply,
+    XAnswer await(unsigned sequence,
+                  Deadline deadline,
+                  XOwned<Reply>* reply,
                   XOwned<xcb_generic_error_t>* error = nullptr) {
         void* raw = nullptr;
         const XAnswer answer = awaitRaw(sequence, deadline, &raw, error);
@@ -58,8 +60,8 @@ public:
         return await<xcb_get_input_focus_reply_t>(sequence, deadline, nullptr);
     }
 
-    // For a checked request without an answer: sends a fence and waits for it. `error` is empty when
-    // the server has accepted the request.
+    // For a checked request without an answer: sends a fence and waits for it. `error` is empty
+    // when the server has accepted the request.
     XAnswer check(xcb_void_cookie_t request, Deadline deadline, XOwned<xcb_generic_error_t>& error);
 
     // One line for the answers TimedOut and ConnectionLost.
@@ -68,7 +70,9 @@ public:
 private:
     XConnection(xcb_connection_t* connection, std::string displayName);
 
-    XAnswer awaitRaw(unsigned sequence, Deadline deadline, void** reply,
+    XAnswer awaitRaw(unsigned sequence,
+                     Deadline deadline,
+                     void** reply,
                      XOwned<xcb_generic_error_t>* error);
 
     xcb_connection_t* connection_;

@@ -76,12 +76,12 @@ TEST_F(AppWindows, showExactlyThroughTheConnection) {
     for (const size_t pieceBytes : {32'768, 1 << 20, 1204, 500, 1}) {
         AppWindowConfig config = configFor(window, false);
         config.pieceBytes = pieceBytes;
-        if (pieceBytes == 1) client_->resizeWindow(window, 20, 20);
+        if (pieceBytes == 1)
+            client_->resizeWindow(window, 20, 20);
         openOutput(config);
         const int width = pieceBytes == 1 ? 20 : 301;
         const int height = pieceBytes == 1 ? 20 : 203;
-        const OwnedPicture picture =
-            noisePicture(width, height, static_cast<uint32_t>(pieceBytes));
+        const OwnedPicture picture = noisePicture(width, height, static_cast<uint32_t>(pieceBytes));
         show(picture);
         EXPECT_FALSE(output_->usesSharedMemory());
         expectSeen(window, 0, 0, picture.view());
@@ -205,7 +205,8 @@ TEST_F(AppWindows, windowWithTheSameIdAgain) {
     xcb_visualid_t visual = 0;
     for (auto d = xcb_screen_allowed_depths_iterator(&client_->screen()); d.rem > 0;
          xcb_depth_next(&d))
-        if (d.data->depth == 32) visual = xcb_depth_visuals_iterator(d.data).data->visual_id;
+        if (d.data->depth == 32)
+            visual = xcb_depth_visuals_iterator(d.data).data->visual_id;
     xcb_create_colormap(client_->get(), 0, colours, client_->root(), visual);
     const uint32_t values[] = {0, 0, colours};
     xcb_create_window(client_->get(), 32, window, client_->root(), 0, 0, 80, 60, 0,
@@ -242,10 +243,20 @@ TEST_P(StoppedServer, deadlinePassesAndLaterItGoesOn) {
     const uint32_t window = client_->makeWindow(0, 0, 700, 500, 0);
     AppWindowConfig config = configFor(window, GetParam());
     config.timeoutMs = 150;
-    openOutput(config);
     const OwnedPicture first = noisePicture(700, 500, 1);
     const OwnedPicture second = noisePicture(700, 500, 2);
-    show(first);
+    // On a busy machine even a server that runs may be too slow for this deadline.
+    const auto showsSoon = [&](const OwnedPicture& picture) {
+        for (int i = 0; i < 100; ++i)
+            if (output_->show(1, picture.view()))
+                return true;
+        return false;
+    };
+    for (int i = 0; i < 100 && !output_; ++i)
+        if (auto output = AppWindow::open(config); output)
+            output_ = std::move(output.value());
+    ASSERT_NE(output_, nullptr);
+    ASSERT_TRUE(showsSoon(first));
     ASSERT_EQ(::kill(server_->pid(), SIGSTOP), 0);
     for (int i = 0; i < 3; ++i) {
         const int64_t beforeNs = monotonicNowNs();
@@ -260,11 +271,7 @@ TEST_P(StoppedServer, deadlinePassesAndLaterItGoesOn) {
     auto late = AppWindow::open(config);
     EXPECT_FALSE(late);
     ASSERT_EQ(::kill(server_->pid(), SIGCONT), 0);
-    // How soon the server is back depends on the machine's load.
-    Result<void> shown = output_->show(101, second.view());
-    for (int i = 0; i < 100 && !shown; ++i)
-        shown = output_->show(101, second.view());
-    ASSERT_TRUE(shown) << shown.error().message;
+    EXPECT_TRUE(showsSoon(second));
     expectSeen(window, 0, 0, second.view());
 }
 

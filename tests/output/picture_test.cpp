@@ -8,8 +8,9 @@ TEST(Picture, copyIntoDropsWhatLiesOutside) {
     const OwnedPicture whole = noisePicture(37, 23, 1);
     OwnedPicture built = plainPicture(37, 23, 0, 0, 0);
     // Four overlapping parts, each standing out of the target on two sides.
-    for (const PixelViewport part : {PixelViewport{-3, -5, 25, 20}, PixelViewport{20, -2, 30, 20},
-                                     PixelViewport{-1, 11, 25, 30}, PixelViewport{19, 13, 18, 10}}) {
+    for (const PixelViewport part :
+         {PixelViewport{-3, -5, 25, 20}, PixelViewport{20, -2, 30, 20},
+          PixelViewport{-1, 11, 25, 30}, PixelViewport{19, 13, 18, 10}}) {
         const OwnedPicture piece = cutOut(whole.view(), part);
         copyInto(built, part.x, part.y, piece.view());
     }

@@ -12,14 +12,17 @@ namespace mural::test {
 class ScratchFolder {
 public:
     ScratchFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "mural-output-XXXXXX").string();
-        if (::mkdtemp(name.data()) != nullptr) path_ = name;
+        std::string name =
+            (std::filesystem::temp_directory_path() / "mural-output-XXXXXX").string();
+        if (::mkdtemp(name.data()) != nullptr)
+            path_ = name;
     }
     ScratchFolder(const ScratchFolder&) = delete;
     ScratchFolder& operator=(const ScratchFolder&) = delete;
     ~ScratchFolder() {
         std::error_code error;
-        if (!path_.empty()) std::filesystem::remove_all(path_, error);
+        if (!path_.empty())
+            std::filesystem::remove_all(path_, error);
     }
 
     [[nodiscard]] std::string path(const std::string& name = {}) const {

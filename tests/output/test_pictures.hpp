@@ -39,7 +39,8 @@ inline OwnedPicture plainPicture(int width, int height, int red, int green, int 
 // For EXPECT_TRUE: says how many pixels differ, by how much and where.
 inline testing::AssertionResult samePictures(const Picture& expected, const Picture& actual) {
     const PictureDifference difference = comparePictures(expected, actual);
-    if (difference.same()) return testing::AssertionSuccess();
+    if (difference.same())
+        return testing::AssertionSuccess();
     return testing::AssertionFailure() << describe(difference, expected, actual);
 }
 

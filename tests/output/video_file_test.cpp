@@ -12,18 +12,20 @@ namespace mural::test {
 namespace {
 
 // All frames of a video, as pictures, decoded by ffmpeg without any change of their number.
-std::vector<OwnedPicture> decode(const ScratchFolder& scratch, const std::string& path, int width,
-                                 int height) {
+std::vector<OwnedPicture>
+decode(const ScratchFolder& scratch, const std::string& path, int width, int height) {
     const std::string raw = scratch.path("decoded");
     const std::string command = "ffmpeg -nostdin -y -v error -i " + path +
                                 " -vf vflip -fps_mode passthrough -f rawvideo -pix_fmt bgra " + raw;
-    if (std::system(command.c_str()) != 0) return {};
+    if (std::system(command.c_str()) != 0)
+        return {};
     std::vector<OwnedPicture> frames;
     std::ifstream file(raw, std::ios::binary);
     for (;;) {
         OwnedPicture frame(width, height);
         const auto sizeBytes = static_cast<std::streamsize>(frame.view().sizeBytes());
-        if (!file.read(reinterpret_cast<char*>(frame.data()), sizeBytes)) return frames;
+        if (!file.read(reinterpret_cast<char*>(frame.data()), sizeBytes))
+            return frames;
         frames.push_back(std::move(frame));
     }
 }
@@ -36,9 +38,9 @@ VideoConfig configFor(const std::string& path) {
 
 // An ffmpeg that knows all encoders and then does what `text` says.
 std::string fakeEncoder(const ScratchFolder& scratch, const std::string& text) {
-    return scratch.script("fake-ffmpeg",
-                          "if [ \"$2\" = -encoders ]; then\n"
-                          "echo ' V....D libx264rgb x'; exit 0\nfi\n" + text);
+    return scratch.script("fake-ffmpeg", "if [ \"$2\" = -encoders ]; then\n"
+                                         "echo ' V....D libx264rgb x'; exit 0\nfi\n" +
+                                             text);
 }
 
 } // namespace
@@ -57,7 +59,8 @@ TEST_P(VideoFormats, decodeBitExactly) {
     for (int i = 0; i < kFrames; ++i) {
         written.push_back(noisePicture(kWidth, kHeight, static_cast<uint32_t>(i)));
         // Two equal frames in a row must stay two frames.
-        if (i == 4) written.back().assign(written[3].view());
+        if (i == 4)
+            written.back().assign(written[3].view());
         Result<void> shown = video.value()->show(i + 1, written.back().view());
         ASSERT_TRUE(shown) << shown.error().message;
     }
@@ -70,7 +73,9 @@ TEST_P(VideoFormats, decodeBitExactly) {
         EXPECT_TRUE(samePictures(written[i].view(), decoded[i].view())) << "frame " << i;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, VideoFormats, testing::Values("mp4", "mkv", "avi", "webm", "mov"),
+INSTANTIATE_TEST_SUITE_P(All,
+                         VideoFormats,
+                         testing::Values("mp4", "mkv", "avi", "webm", "mov"),
                          [](const auto& format) { return format.param; });
 
 TEST(VideoFile, newSizeBeginsANumberedFile) {
@@ -130,7 +135,8 @@ TEST(VideoFile, killedEncoderIsNoticed) {
 TEST(VideoFile, encoderThatFailsIsQuoted) {
     const ScratchFolder scratch;
     VideoConfig config = configFor(scratch.path("run.mkv"));
-    config.program = fakeEncoder(scratch, "echo first >&2\necho 'disk quota is gone' >&2\nexit 3\n");
+    config.program =
+        fakeEncoder(scratch, "echo first >&2\necho 'disk quota is gone' >&2\nexit 3\n");
     auto video = VideoFile::open(std::move(config));
     ASSERT_TRUE(video) << video.error().message;
     const OwnedPicture picture = noisePicture(512, 512, 1); // more than the socket takes
@@ -138,7 +144,8 @@ TEST(VideoFile, encoderThatFailsIsQuoted) {
     for (int i = 1; i < 1000 && shown; ++i)
         shown = video.value()->show(i, picture.view());
     ASSERT_FALSE(shown);
-    EXPECT_NE(shown.error().message.find("exit code 3: first; disk quota is gone"), std::string::npos)
+    EXPECT_NE(shown.error().message.find("exit code 3: first; disk quota is gone"),
+              std::string::npos)
         << shown.error().message;
 }
 
@@ -150,7 +157,8 @@ TEST(VideoFile, realEncoderCannotWrite) {
     std::filesystem::remove(scratch.path("folder"));
     const OwnedPicture picture = noisePicture(16, 16, 1);
     Result<void> result = video.value()->show(1, picture.view());
-    if (result) result = video.value()->finish();
+    if (result)
+        result = video.value()->finish();
     ASSERT_FALSE(result);
     EXPECT_NE(result.error().message.find("No such file or directory"), std::string::npos)
         << result.error().message;
@@ -166,7 +174,8 @@ TEST(VideoFile, fullDiskIsSaid) {
         Result<void> result;
         for (int i = 1; i < 20 && result; ++i)
             result = video.value()->show(i, picture.view());
-        if (result) result = video.value()->finish();
+        if (result)
+            result = video.value()->finish();
         ASSERT_FALSE(result);
         EXPECT_NE(result.error().message.find("No space left on device"), std::string::npos)
             << result.error().message;

@@ -63,7 +63,8 @@ protected:
             const xcb_window_t child = xcb_query_tree_children(tree.get())[i];
             XOwned<xcb_get_geometry_reply_t> geometry(
                 xcb_get_geometry_reply(c, xcb_get_geometry(c, child), nullptr));
-            if (geometry && geometry->width == width && geometry->height == height) return child;
+            if (geometry && geometry->width == width && geometry->height == height)
+                return child;
         }
         return 0;
     }
@@ -72,7 +73,8 @@ protected:
     template <class Condition> static bool becomesTrue(Condition condition) {
         const Deadline deadline = Deadline::inMs(20'000);
         while (!condition()) {
-            if (deadline.passed()) return false;
+            if (deadline.passed())
+                return false;
             ::poll(nullptr, 0, 2);
         }
         return true;
@@ -100,7 +102,8 @@ TEST(PlaceTiles, originGoesFromLowerLeftToUpperLeft) {
 // A picture in four tiles of odd sizes is the picture again on the screen.
 TEST_P(DrawnWalls, tilesMakeThePictureExactly) {
     startServer();
-    const PixelViewport tiles[] = {{0, 0, 201, 99}, {201, 0, 150, 99}, {0, 99, 201, 131}, {201, 99, 150, 131}};
+    const PixelViewport tiles[] = {
+        {0, 0, 201, 99}, {201, 0, 150, 99}, {0, 99, 201, 131}, {201, 99, 150, 131}};
     WallWindowsConfig config = configFor(placeTiles(tiles, 230), GetParam());
     config.positionX = 17;
     config.positionY = 33;
@@ -129,7 +132,8 @@ TEST_P(DrawnWalls, tilesMakeThePictureExactly) {
 TEST_P(DrawnWalls, windowsTakeThePicturesSize) {
     startServer();
     openWall(configFor({{{0, 0, 100, 100}, 50, 60, "wall", -1}}, GetParam()));
-    for (const auto& size : {std::pair{100, 100}, std::pair{203, 157}, std::pair{31, 300}, std::pair{100, 100}}) {
+    for (const auto& size :
+         {std::pair{100, 100}, std::pair{203, 157}, std::pair{31, 300}, std::pair{100, 100}}) {
         const OwnedPicture picture =
             noisePicture(size.first, size.second, static_cast<uint32_t>(size.first));
         show(0, picture.view());
@@ -246,6 +250,31 @@ TEST_P(DrawnWalls, stoppedServerRunsIntoTheDeadline) {
     expectOnScreen(10, 10, picture.view());
 }
 
+TEST_P(DrawnWalls, openingOnAStoppedServerRunsIntoTheDeadline) {
+    startServer();
+    WallWindowsConfig config = configFor({{{0, 0, 120, 90}, 10, 10, "wall", -1}}, GetParam());
+    config.openTimeoutMs = 100;
+    config.showTimeoutMs = 100;
+    ASSERT_EQ(::kill(server_->pid(), SIGSTOP), 0);
+    auto late = WallWindows::open(config);
+    ASSERT_FALSE(late);
+    EXPECT_NE(late.error().message.find("in time"), std::string::npos) << late.error().message;
+    ASSERT_EQ(::kill(server_->pid(), SIGCONT), 0);
+    // As soon as the thread that was left behind has cleaned up.
+    config.openTimeoutMs = 20'000;
+    config.showTimeoutMs = 20'000;
+    EXPECT_TRUE(becomesTrue([&] {
+        auto wall = WallWindows::open(config);
+        if (wall)
+            wall_ = std::move(wall.value());
+        return wall_ != nullptr;
+    }));
+    ASSERT_NE(wall_, nullptr);
+    const OwnedPicture picture = noisePicture(120, 90, 1);
+    show(0, picture.view());
+    expectOnScreen(10, 10, picture.view());
+}
+
 TEST_P(DrawnWalls, serverThatEndsIsAnErrorAndNotOurEnd) {
     startServer();
     openWall(configFor({{{0, 0, 120, 90}, 10, 10, "wall", -1}}, GetParam()));
@@ -266,7 +295,8 @@ TEST_P(DrawnWalls, serverThatEndsIsAnErrorAndNotOurEnd) {
     expectOnScreen(10, 10, picture.view());
 }
 
-INSTANTIATE_TEST_SUITE_P(Ways, DrawnWalls,
+INSTANTIATE_TEST_SUITE_P(Ways,
+                         DrawnWalls,
                          testing::Values(WallDrawing::OpenGl, WallDrawing::XPut),
                          [](const auto& way) {
                              return way.param == WallDrawing::OpenGl ? "OpenGl" : "XPut";
