@@ -49,14 +49,16 @@ void drawWithPixelStore(unsigned frame) {
     glPixelStorei(GL_UNPACK_SKIP_ROWS, 2);
     glWindowPos2i(160, 5);
     glDrawPixels(19, 13, GL_RGB, GL_UNSIGNED_BYTE, noise(29 * 3 * 16, 90 + frame).data());
-    glPixelStorei(GL_UNPACK_SWAP_BYTES, GL_TRUE);
-    glWindowPos2i(185, 5);
-    glDrawPixels(19, 13, GL_RGB, GL_UNSIGNED_SHORT, noise(29 * 6 * 16, 91 + frame).data());
     glPixelStorei(GL_UNPACK_LSB_FIRST, GL_TRUE);
     glColor3f(0.3F, 1, 0.6F);
     glWindowPos2i(210, 5);
     glBitmap(21, 17, 2, 1, 0, 0, noise(512, 92 + frame).data());
     glPopClientAttrib();
+    // Without a row length: Mesa 22 swaps only the beginning of a larger picture.
+    glPixelStorei(GL_UNPACK_SWAP_BYTES, GL_TRUE);
+    glWindowPos2i(185, 5);
+    glDrawPixels(19, 13, GL_RGB, GL_UNSIGNED_SHORT, noise(19 * 6 * 16, 91 + frame).data());
+    glPixelStorei(GL_UNPACK_SWAP_BYTES, GL_FALSE);
     glColor3f(1, 0.5F, 0.5F);
     glWindowPos2i(235, 5);
     glBitmap(11, 15, 0, 0, 0, 0, noise(64, 93 + frame).data());

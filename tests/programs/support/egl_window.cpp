@@ -106,6 +106,14 @@ public:
         }
     }
 
+    void makeCurrentReading(Window& from) override {
+        bindApi();
+        const auto& other = static_cast<EglWindow&>(from);
+        if (eglMakeCurrent(display_, surface_, other.surface_, context_) != EGL_TRUE) {
+            fail("eglMakeCurrent with two windows failed (EGL error 0x%04x)", eglGetError());
+        }
+    }
+
     void release() override {
         bindApi();
         eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);

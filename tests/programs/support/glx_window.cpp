@@ -93,6 +93,13 @@ public:
         }
     }
 
+    void makeCurrentReading(Window& from) override {
+        const auto& other = static_cast<GlxWindow&>(from);
+        if (glXMakeContextCurrent(display_, window_->id(), other.window_->id(), context_) != True) {
+            fail("glXMakeContextCurrent with two windows failed");
+        }
+    }
+
     void release() override { glXMakeCurrent(display_, None, nullptr); }
     void swap() override { glXSwapBuffers(display_, window_->id()); }
 

@@ -1,6 +1,5 @@
 #include "tests/programs/support/program.hpp"
 
-#include <GL/gl.h>
 #include <cerrno>
 #include <cstdarg>
 #include <cstdio>
@@ -39,23 +38,6 @@ Options parseOptions(int argc, char** argv) {
         fail("--frames and --size want positive numbers");
     }
     return options;
-}
-
-void checkNoError(const char* where) {
-    const GLenum error = glGetError();
-    if (error != GL_NO_ERROR) {
-        fail("GL error 0x%04x %s", error, where);
-    }
-}
-
-void runFrames(Window& window, const Options& options, const Draw& draw) {
-    for (int frame = 0; frame < options.frames; ++frame) {
-        draw(window, frame);
-        char where[40];
-        std::snprintf(where, sizeof where, "in frame %d", frame);
-        checkNoError(where);
-        window.swap();
-    }
 }
 
 } // namespace programs

@@ -23,6 +23,8 @@ public:
     virtual ~Window() = default;
 
     virtual void makeCurrent() = 0;
+    // Draws here, reads from the other window, which is of the same kind.
+    virtual void makeCurrentReading(Window& from) = 0;
     virtual void release() = 0; // no context is current in this thread afterwards
     virtual void swap() = 0;
     virtual void resize(int width, int height) = 0; // returns when the server has done it

@@ -1,0 +1,118 @@
+"""The test programs: names, groups, what is special about each, and how to run one and keep its frames."""
+
+import os
+import signal
+import subprocess
+
+# Every program must be in one group; CTest runs one group per test.
+GROUPS = {
+    "vertices": ["immediate", "generic_attributes", "display_lists", "client_arrays", "draw_calls",
+                 "core_arrays", "buffers", "persistent_mapping", "evaluators"],
+    "pixels": ["textures_classic", "textures_modern", "framebuffers", "framebuffers_layered",
+               "pixels_draw", "pixels_read", "front_buffer", "single_buffered", "accum_buffer"],
+    "state": ["raster_state", "blend_modes", "clipping", "fixed_lighting", "feedback_select",
+              "attribute_stacks", "arb_programs"],
+    "shaders": ["glsl_legacy", "glsl_uniforms", "glsl_blocks", "glsl_stages", "compute_images",
+                "fragment_counters", "frag_coord", "queries", "direct_state_access"],
+    "windows": ["es1_scene", "es2_scene", "es3_scene", "egl_desktop", "egl_offscreen",
+                "several_windows", "shared_contexts", "threads_windows", "loader_thread",
+                "context_migration", "glx_pbuffers", "resize", "window_churn"],
+    "processes": ["route_dlsym", "route_deepbind", "route_glx_proc", "route_split_libraries",
+                  "route_egl_proc", "route_plugin", "exit_dirty", "exit_quick", "exit_three",
+                  "exit_abort", "exit_segv", "exit_term", "fork_child", "fork_exec"],
+}
+
+# The status that a program ends with when it is not 0, as subprocess tells it.
+STATUS = {"exit_three": 3, "exit_abort": -signal.SIGABRT, "exit_segv": -signal.SIGSEGV,
+          "exit_term": -signal.SIGTERM}
+
+# Frames that are shown by glFlush and not by a swap.
+FLUSHING = {"single_buffered"}
+
+
+def all_names():
+    return [name for names in GROUPS.values() for name in names]
+
+
+def choose(text):
+    """Names from a list of programs and groups, separated by commas; None: all."""
+    if not text:
+        return all_names()
+    chosen = []
+    for word in text.split(","):
+        found = GROUPS.get(word, [word] if word in all_names() else None)
+        if found is None:
+            raise SystemExit("unknown program \"%s\"; --list shows all" % word)
+        chosen += found
+    return chosen
+
+
+def clean_environment(display):
+    """Only what a program needs, so that results don't depend on the caller's settings."""
+    keep = ("PATH", "HOME", "TMPDIR", "XDG_RUNTIME_DIR", "LANG", "LC_ALL", "MURAL_PLANT",
+            "MURAL_LOG", "ASAN_OPTIONS", "UBSAN_OPTIONS", "LD_LIBRARY_PATH", "LIBGL_ALWAYS_SOFTWARE",
+            "EGL_PLATFORM", "LP_NUM_THREADS")
+    environment = {key: os.environ[key] for key in keep if key in os.environ}
+    environment["DISPLAY"] = display
+    return environment
+
+
+class Run:
+    """What one run of a program gave."""
+
+    def __init__(self, status, output, folder):
+        self.status = status  # None: it did not end in time
+        self.output = output
+        self.folder = folder
+
+    def frames(self):
+        """{"w0/f0003.ppm": path} of all pictures."""
+        found = {}
+        for drawable in sorted(os.listdir(self.folder)):
+            inside = os.path.join(self.folder, drawable)
+            if os.path.isdir(inside):
+                for name in sorted(os.listdir(inside)):
+                    found[drawable + "/" + name] = os.path.join(inside, name)
+        return found
+
+
+def stop_group(process):
+    """Ends all that the run has left in its session."""
+    try:
+        os.killpg(process.pid, signal.SIGKILL)
+    except ProcessLookupError:
+        pass
+
+
+def run_program(build, name, folder, display, size, frames, launcher=(), seconds=120):
+    """Runs a program, natively or behind `launcher`, with the grabbing library in front."""
+    os.makedirs(folder)
+    environment = clean_environment(display)
+    environment["GRAB_OUT"] = folder
+    if name in FLUSHING:
+        environment["GRAB_FLUSH"] = "1"
+    grab = os.path.join(build, "tests", "end_to_end", "grab.so")
+    # The shell puts our library in front of whatever the launcher preloads.
+    shell = 'LD_PRELOAD="%s${LD_PRELOAD:+ $LD_PRELOAD}" exec "$@"' % grab
+    program = os.path.join(build, "tests", "programs", name)
+    command = list(launcher) + ["sh", "-c", shell, "sh", program]
+    command += ["--size", size, "--frames", str(frames)]
+    log_path = folder + ".log"
+    with open(log_path, "wb") as log:
+        process = subprocess.Popen(command, env=environment, stdin=subprocess.DEVNULL, stdout=log,
+                                   stderr=subprocess.STDOUT, start_new_session=True)
+        try:
+            status = process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            status = None
+        stop_group(process)
+        process.wait()
+    with open(log_path, encoding="utf-8", errors="replace") as log:
+        return Run(status, log.read().strip(), folder)
+
+
+def same_status(native, through):
+    """A launcher tells death by a signal as 128 + its number, as shells do."""
+    if native is not None and native < 0:
+        return through in (native, 128 - native)
+    return native == through

@@ -1,0 +1,150 @@
+#!/usr/bin/env python3
+"""Runs the test programs natively and through Mural and compares all their frames, pixel by pixel.
+
+  run_exact.py --build build/release --programs immediate,pixels --layouts 1x1,2x2,3x1,7x5 --size 250x190
+  run_exact.py --build build/release --native      only twice natively: are the programs deterministic?
+  run_exact.py --list
+
+One line per program and layout: frames, differing pixels, largest difference, place. The status is 1
+when a pixel differs, a picture is missing, or a program ends otherwise than natively.
+"""
+
+import argparse
+import os
+import shutil
+import sys
+import tempfile
+import time
+
+import display
+import pictures
+import programs
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", default="build/release", help="the build folder")
+    parser.add_argument("--mural", help="the launcher; default BUILD/bin/mural")
+    parser.add_argument("--programs", help="programs and groups, separated by commas; default all")
+    parser.add_argument("--layouts", default="1x1,2x2,3x1,7x5", help="tiles, columns x rows")
+    parser.add_argument("--size", default="1000x777", help="of the programs' windows")
+    parser.add_argument("--frames", type=int, default=4)
+    parser.add_argument("--options", default="", help="more options for `mural run`, in one string")
+    parser.add_argument("--seconds", type=int, default=120, help="the longest that one run may take")
+    parser.add_argument("--native", action="store_true", help="compare two native runs")
+    parser.add_argument("--keep", metavar="FOLDER", help="keep all pictures and logs there")
+    parser.add_argument("--list", action="store_true", help="show the programs by group and stop")
+    return parser.parse_args()
+
+
+def list_programs():
+    for group, names in programs.GROUPS.items():
+        print("%s: %s" % (group, " ".join(names)))
+
+
+class Comparison:
+    """One program natively once, and then against any number of other runs."""
+
+    def __init__(self, arguments, display_name, folder):
+        self.arguments = arguments
+        self.display_name = display_name
+        self.folder = folder
+        self.failures = 0
+
+    def run(self, name, label, launcher=()):
+        arguments = self.arguments
+        folder = os.path.join(self.folder, name, label)
+        return programs.run_program(arguments.build, name, folder, self.display_name, arguments.size,
+                                    arguments.frames, launcher, arguments.seconds)
+
+    def launchers(self):
+        arguments = self.arguments
+        if arguments.native:
+            return {"native": []}
+        mural = arguments.mural or os.path.join(arguments.build, "bin", "mural")
+        options = arguments.options.split()
+        return {layout: [mural, "run", "--tiles", layout] + options + ["--"]
+                for layout in arguments.layouts.split(",")}
+
+    def check(self, name):
+        native = self.run(name, "reference")
+        wanted = programs.STATUS.get(name, 0)
+        if native.status != wanted or not native.frames():
+            self.report(name, "reference", 0, "fails natively: status %s, %d pictures%s" % (
+                native.status, len(native.frames()), said(native)))
+            return
+        for label, launcher in self.launchers().items():
+            start = time.monotonic()
+            through = self.run(name, label, launcher)
+            wrong = self.compare(native, through)
+            self.report(name, label, len(native.frames()), wrong, time.monotonic() - start)
+
+    def report(self, name, label, frames, wrong, seconds=0.0):
+        self.failures += wrong is not None
+        print("%-24s %-9s %3d frames  %s  (%.1f s)" % (
+            name, label, frames, "0 pixels differ" if wrong is None else "WRONG: " + wrong, seconds),
+            flush=True)
+
+    def compare(self, native, through):
+        """None when all is the same, else what is wrong."""
+        if not programs.same_status(native.status, through.status):
+            return "status %s instead of %s%s" % (
+                "none in time" if through.status is None else through.status, native.status, said(through))
+        expected, got = native.frames(), through.frames()
+        if set(expected) != set(got):
+            missing = sorted(set(expected) - set(got))
+            extra = sorted(set(got) - set(expected))
+            return "missing pictures: %s; unexpected: %s%s" % (
+                " ".join(missing) or "none", " ".join(extra) or "none", said(through))
+        difference = pictures.Difference()
+        wrong_frames = 0
+        for frame in expected:
+            with open(expected[frame], "rb") as first, open(got[frame], "rb") as second:
+                if first.read() == second.read():
+                    continue
+            wrong_frames += 1
+            self.compare_pictures(expected[frame], got[frame], frame, difference)
+        if wrong_frames == 0:
+            return None
+        return "%d pixels differ in %d frames, largest difference %d, %s%s" % (
+            difference.pixels, wrong_frames, difference.largest, difference.place, said(through))
+
+    def compare_pictures(self, expected, got, frame, difference):
+        first, second = pictures.read_ppm(expected), pictures.read_ppm(got)
+        difference.add_pictures(first, second, frame)
+        if self.arguments.keep:
+            pictures.write_difference(got[:-len(".ppm")] + ".difference.ppm", first, second)
+
+
+def said(run):
+    """The last lines that a failed run printed, on one line."""
+    lines = [line for line in run.output.splitlines() if line.strip()]
+    return "; it said: " + " | ".join(lines[-3:]) if lines else ""
+
+
+def main():
+    arguments = parse_arguments()
+    if arguments.list:
+        list_programs()
+        return 0
+    names = programs.choose(arguments.programs)
+    arguments.build = os.path.abspath(arguments.build)
+    folder = os.path.abspath(arguments.keep) if arguments.keep else tempfile.mkdtemp(prefix="run-exact.")
+    try:
+        with display.PrivateDisplay() as display_name:
+            comparison = Comparison(arguments, display_name, folder)
+            for name in names:
+                shutil.rmtree(os.path.join(folder, name), ignore_errors=True)
+                comparison.check(name)
+                if not arguments.keep:
+                    shutil.rmtree(os.path.join(folder, name), ignore_errors=True)
+    finally:
+        if not arguments.keep:
+            shutil.rmtree(folder, ignore_errors=True)
+    print("%d programs, %d comparisons wrong" % (len(names), comparison.failures))
+    return 1 if comparison.failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,24 @@
+// Reaches OpenGL as many toolkits do: dlopen("libGL.so.1") without making its names global, then dlsym
+// for every function, GLX included.
+#include <dlfcn.h>
+
+#include "tests/programs/routes/glx_functions.hpp"
+
+namespace {
+
+void* library;
+
+programs::GlFunction find(const char* name) {
+    return reinterpret_cast<programs::GlFunction>(dlsym(library, name));
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    const programs::Options options = programs::parseOptions(argc, argv);
+    library = dlopen("libGL.so.1", RTLD_LAZY | RTLD_LOCAL);
+    if (library == nullptr) {
+        programs::fail("no libGL.so.1: %s", dlerror());
+    }
+    return programs::runSceneByGlx(options, find, find);
+}

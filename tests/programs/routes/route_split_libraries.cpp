@@ -1,0 +1,22 @@
+// Windows from libGLX, drawing from libOpenGL, both linked: no libGL at all.
+#include <dlfcn.h>
+
+#include "tests/programs/routes/glx_functions.hpp"
+
+namespace {
+
+// The names of libraries that are linked, as the dynamic linker finds them for the program itself.
+programs::GlFunction find(const char* name) {
+    return reinterpret_cast<programs::GlFunction>(dlsym(RTLD_DEFAULT, name));
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    const programs::Options options = programs::parseOptions(argc, argv);
+    // Called by name as well, so that the program needs the library.
+    if (glXGetCurrentContext() != nullptr) {
+        programs::fail("a context before there is one");
+    }
+    return programs::runSceneByGlx(options, find, find);
+}
