@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "nodes/gl/dynamic_library.hpp"
 #include "nodes/gl/gl_info.hpp"
 
 namespace mural::gl {
@@ -83,6 +84,22 @@ TEST(VersionRequest, profilesBeginWith31) {
     EXPECT_EQ(versionRequest(wish).minor, 3);
     wish.api = Api::Es2;
     EXPECT_FALSE(versionRequest(wish).profile);
+}
+
+TEST(DynamicLibrary, saysWhatIsMissingAndHowToGetIt) {
+    auto library = DynamicLibrary::open({"libmural-not-there.so.1", "libmural-not-there.so"}, "mural-not-there");
+    ASSERT_FALSE(library);
+    EXPECT_NE(library.error().message.find("libmural-not-there.so.1"), std::string::npos);
+    EXPECT_NE(library.error().message.find("install the package mural-not-there"), std::string::npos);
+}
+
+TEST(DynamicLibrary, takesTheFirstThatIsThere) {
+    auto library = DynamicLibrary::open({"libmural-not-there.so", "libc.so.6"}, "libc6");
+    ASSERT_TRUE(library);
+    EXPECT_EQ(library->name(), "libc.so.6");
+    int (*found)(const char*) = nullptr;
+    EXPECT_TRUE(library->load(found, "puts"));
+    EXPECT_FALSE(library->load(found, "mural_not_there"));
 }
 
 TEST(GlVersion, isReadFromEveryForm) {
