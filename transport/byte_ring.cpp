@@ -4,14 +4,15 @@
 #include <cstring>
 
 #include "common/futex.hpp"
+#include "transport/streaming_copy.hpp"
 
 namespace mural {
 
 namespace {
 
-// Small enough to be in a core's own cache when the other side copies it out.
+// Both sides copy at the same time: one a piece while the other is at the next.
 uint32_t pieceFor(size_t capacityBytes) {
-    return static_cast<uint32_t>(std::clamp<size_t>(capacityBytes / 8, 16, size_t{128} * 1024));
+    return static_cast<uint32_t>(std::clamp<size_t>(capacityBytes / 8, 16, size_t{64} * 1024));
 }
 
 // The reader is woken early (it may draw what is there already), the writer late (a full ring means
@@ -83,9 +84,9 @@ size_t RingWriter::room(size_t wantedBytes) {
 void RingWriter::copyIn(std::span<const std::byte> bytes) {
     const uint32_t at = tail_ & (capacityBytes_ - 1);
     const size_t first = std::min<size_t>(bytes.size(), capacityBytes_ - at);
-    std::memcpy(data_ + at, bytes.data(), first);
+    streamingCopy(data_ + at, bytes.data(), first);
     if (first < bytes.size())
-        std::memcpy(data_, bytes.data() + first, bytes.size() - first);
+        streamingCopy(data_, bytes.data() + first, bytes.size() - first);
 }
 
 size_t RingWriter::write(std::span<const std::byte> bytes) {

@@ -1,7 +1,12 @@
 #include "transport/ring_connection.hpp"
 
+#include <algorithm>
 #include <poll.h>
 #include <unistd.h>
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
 
 namespace mural {
 
@@ -10,6 +15,26 @@ namespace {
 // A blocked side looks this often whether the other process lives: half of the 50 ms within which a
 // death is to be noticed.
 constexpr int64_t kSliceNs = 20 * kNsPerMs;
+
+// Looking again for a few microseconds costs less than a sleep and its wake-up. But in vain it
+// takes the CPU from others, perhaps from the very peer: so each failure halves the next try, a hit
+// restores it.
+constexpr int kMostSpins = 100;
+constexpr int kLeastSpins = 2;
+
+template <class Ready> bool spinUntil(Ready ready, int& spins) {
+    for (int i = 0; i < spins; ++i) {
+        if (ready()) {
+            spins = kMostSpins;
+            return true;
+        }
+#if defined(__SSE2__)
+        _mm_pause();
+#endif
+    }
+    spins = std::max(spins / 2, kLeastSpins);
+    return false;
+}
 
 } // namespace
 
@@ -85,6 +110,8 @@ Result<void> RingConnection::write(std::span<const std::byte> bytes, Deadline de
 // The deadline is honoured only after a look at the peer: a caller that polls with short deadlines
 // must learn of its death too.
 RingConnection::WaitEnd RingConnection::waitForData(Deadline deadline) {
+    if (spinUntil([this] { return reader_.hasData(); }, readSpins_))
+        return WaitEnd::Ready;
     for (bool slept = false;; slept = true) {
         if (reader_.hasData())
             return WaitEnd::Ready;
@@ -105,6 +132,8 @@ RingConnection::WaitEnd RingConnection::waitForData(Deadline deadline) {
 }
 
 RingConnection::WaitEnd RingConnection::waitForRoom(Deadline deadline) {
+    if (spinUntil([this] { return writer_.hasRoom(); }, writeSpins_))
+        return WaitEnd::Ready;
     for (bool slept = false;; slept = true) {
         if (outControl_.readerClosed.load(std::memory_order_acquire) != 0)
             return WaitEnd::PeerGone;

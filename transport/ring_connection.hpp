@@ -53,6 +53,8 @@ private:
     FileDescriptor peerSocket_;
     std::string description_;
     pid_t ownerPid_;
+    int readSpins_ = 2;  // the reader's: how often it looks again before it sleeps
+    int writeSpins_ = 2; // the writer's
     std::atomic<bool> closed_{false};
     std::atomic<bool> readTimedOut_{false};
     std::atomic<bool> writeTimedOut_{false};

@@ -1,7 +1,9 @@
 #include "transport/byte_ring.hpp"
 
 #include <array>
+#include <atomic>
 #include <gtest/gtest.h>
+#include <thread>
 #include <vector>
 
 #include "common/clock.hpp"
@@ -91,6 +93,41 @@ TEST(ByteRing, sleepReturnsAtOnceWhenThereIsSomething) {
     ring.reader.sleepUntilData(10 * kNsPerS);
     ring.writer.sleepUntilRoom(10 * kNsPerS);
     EXPECT_LT(monotonicNowNs() - beginNs, 5 * kNsPerS);
+}
+
+// Sleeps of 60 s that end early show that the wake-up came.
+TEST(ByteRing, wakesASleepingReaderAndASleepingWriter) {
+    Ring ring(4096);
+    std::vector<std::byte> bytes(4096);
+    const auto untilAsleep = [](const std::atomic<pid_t>& id) {
+        while (id == 0)
+            std::this_thread::yield();
+        ASSERT_TRUE(waitUntilAsleep(id, Deadline::inMs(20000)));
+    };
+    const int64_t beginNs = monotonicNowNs();
+    std::atomic<pid_t> id = 0;
+    std::thread reader([&] {
+        id = currentThread();
+        while (!ring.reader.hasData())
+            ring.reader.sleepUntilData(60 * kNsPerS);
+    });
+    untilAsleep(id);
+    ring.writer.write(bytes);
+    ring.writer.announce();
+    reader.join();
+    id = 0;
+    std::thread writer([&] {
+        id = currentThread();
+        while (!ring.writer.hasRoom())
+            ring.writer.sleepUntilRoom(60 * kNsPerS);
+    });
+    untilAsleep(id);
+    EXPECT_EQ(ring.reader.read(bytes), bytes.size());
+    ring.reader.announce();
+    writer.join();
+    EXPECT_LT(monotonicNowNs() - beginNs, 50 * kNsPerS);
+    EXPECT_EQ(ring.writer.wakeUps(), 1U);
+    EXPECT_EQ(ring.reader.wakeUps(), 1U);
 }
 
 TEST(ByteRing, noticesPositionsThatCantBe) {
