@@ -21,7 +21,7 @@ size_t bytesOfBits(size_t bits) {
 
 // The highest `bits` bits of a byte.
 uint8_t highBits(size_t bits) {
-    return bits >= 8 ? 0xff : static_cast<uint8_t>(0xff00u >> bits);
+    return static_cast<uint8_t>(bits >= 8 ? 0xff : 0xff00u >> bits);
 }
 
 } // namespace
@@ -35,7 +35,8 @@ void packBitmapRow(uint8_t* tight, const uint8_t* client, const BitmapRow& row) 
             bits |= clientByte(client, i + 1, row.lsbFirst);
         tight[i] = static_cast<uint8_t>(bits << row.firstBit >> 8);
     }
-    tight[tightSize - 1] &= highBits(row.width - (tightSize - 1) * 8);
+    uint8_t& last = tight[tightSize - 1];
+    last = static_cast<uint8_t>(last & highBits(row.width - (tightSize - 1) * 8));
 }
 
 void unpackBitmapRow(uint8_t* client, const uint8_t* tight, const BitmapRow& row) {
@@ -49,7 +50,7 @@ void unpackBitmapRow(uint8_t* client, const uint8_t* tight, const BitmapRow& row
         uint8_t value = static_cast<uint8_t>(bits >> row.firstBit);
         uint8_t mask = highBits(endBit - i * 8);
         if (i == 0)
-            mask &= static_cast<uint8_t>(0xff >> row.firstBit);
+            mask = static_cast<uint8_t>(mask & 0xff >> row.firstBit);
         if (row.lsbFirst) {
             value = reversed(value);
             mask = reversed(mask);

@@ -4,43 +4,41 @@ namespace mural::sizes {
 namespace {
 
 // Client indices have any alignment, and the memory has any type.
-using Byte = uint8_t;
-using Short __attribute__((aligned(1), may_alias)) = uint16_t;
-using Int __attribute__((aligned(1), may_alias)) = uint32_t;
+template <class Value> struct __attribute__((packed, may_alias)) Stored { Value value; };
 
-// Both loops have no branch: the compiler makes vector code of them. Value is the plain type.
-template <class Value, class Stored> IndexRange scanAll(const Stored* indices, size_t count) {
+// Both loops have no branch: the compiler makes vector code of them.
+template <class Value> IndexRange scanAll(const Stored<Value>* indices, size_t count) {
     Value lowest = static_cast<Value>(-1);
     Value highest = 0;
     for (size_t i = 0; i < count; ++i) {
-        const Value index = indices[i];
+        const Value index = indices[i].value;
         lowest = index < lowest ? index : lowest;
         highest = index > highest ? index : highest;
     }
     return {lowest, highest, true};
 }
 
-template <class Value, class Stored>
-IndexRange scanWithRestart(const Stored* indices, size_t count, Value restartIndex) {
+template <class Value>
+IndexRange scanWithRestart(const Stored<Value>* indices, size_t count, Value restartIndex) {
     Value lowest = static_cast<Value>(-1);
     Value highest = 0;
     for (size_t i = 0; i < count; ++i) {
-        const Value index = indices[i];
-        const Value forLowest = index == restartIndex ? static_cast<Value>(-1) : index;
-        const Value forHighest = index == restartIndex ? Value{0} : index;
+        const Value index = indices[i].value;
+        const Value hit = static_cast<Value>(index == restartIndex ? -1 : 0); // all bits, or none
+        const Value forLowest = static_cast<Value>(index | hit);
+        const Value forHighest = static_cast<Value>(index & ~hit);
         lowest = forLowest < lowest ? forLowest : lowest;
         highest = forHighest > highest ? forHighest : highest;
     }
     return {lowest, highest, true};
 }
 
-template <class Value, class Stored>
+template <class Value>
 IndexRange scan(const void* indices, size_t count, bool restart, uint32_t restartIndex) {
-    const auto* stored = static_cast<const Stored*>(indices);
+    const auto* stored = static_cast<const Stored<Value>*>(indices);
     if (!restart || restartIndex > static_cast<Value>(-1))
-        return scanAll<Value>(stored, count);
-    const IndexRange range =
-        scanWithRestart<Value>(stored, count, static_cast<Value>(restartIndex));
+        return scanAll(stored, count);
+    const IndexRange range = scanWithRestart(stored, count, static_cast<Value>(restartIndex));
     return range.min <= range.max ? range : IndexRange{};
 }
 
@@ -52,11 +50,11 @@ scanIndices(const void* indices, GLenum type, size_t count, bool restart, uint32
         return {};
     switch (type) {
     case GL_UNSIGNED_BYTE:
-        return scan<uint8_t, Byte>(indices, count, restart, restartIndex);
+        return scan<uint8_t>(indices, count, restart, restartIndex);
     case GL_UNSIGNED_SHORT:
-        return scan<uint16_t, Short>(indices, count, restart, restartIndex);
+        return scan<uint16_t>(indices, count, restart, restartIndex);
     case GL_UNSIGNED_INT:
-        return scan<uint32_t, Int>(indices, count, restart, restartIndex);
+        return scan<uint32_t>(indices, count, restart, restartIndex);
     default:
         return {};
     }

@@ -33,8 +33,8 @@
 namespace mural::sizes {
 
 // Values of gl<Name>*v for a pname. A pname that is not known here counts as one value: what
-// extensions add is nearly always a single number, and for a wrong pname GL reads nothing of what
-// is copied.
+// extensions add is nearly always a single number, and drivers read one value before they refuse a
+// pname (measured with Mesa). Callers look for null pointers.
 uint32_t texParameterCount(GLenum pname); // also glTextureParameter*, glMultiTexParameter*
 uint32_t texEnvCount(GLenum pname);       // also glMultiTexEnv*
 uint32_t texGenCount(GLenum pname);       // also glMultiTexGen*

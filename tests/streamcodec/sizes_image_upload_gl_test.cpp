@@ -60,8 +60,7 @@ public:
     Random& random() { return random_; }
     [[nodiscard]] uint32_t seed() const { return seed_; }
 
-    // snapshot: empty function where the result can't be read.
-    void check(const Image& image, const Upload& upload, const Snapshot& snapshot) {
+    PixelStore randomStore(const Image& image) {
         PixelStore store = random_.store(image.width, image.height);
         if (api_ != TestApi::Compatibility)
             store.swapBytes = store.lsbFirst = false;
@@ -71,8 +70,18 @@ public:
             store.swapBytes = false;
         if (store.swapBytes)
             store = swappedOnly(store);
-        if (mesaIgnoresStore(image))
-            store = tightStore();
+        return mesaIgnoresStore(image) ? tightStore() : store;
+    }
+
+    // snapshot: empty function where the result can't be read.
+    void check(const Image& image, const Upload& upload, const Snapshot& snapshot) {
+        check(image, randomStore(image), upload, snapshot);
+    }
+
+    void check(const Image& image,
+               const PixelStore& store,
+               const Upload& upload,
+               const Snapshot& snapshot) {
         SCOPED_TRACE("seed " + std::to_string(seed_) + " " + describe(image) +
                      sizes::describe(store));
         const ImageLayout layout = layoutOf(store, image.format, image.type, image.width,
@@ -110,7 +119,8 @@ private:
     // Calls GL with `pointer`, where bytes lie from offset `first` on.
     void
     runAt(uint8_t* pointer, const std::vector<uint8_t>& bytes, size_t first, const Upload& upload) {
-        std::memcpy(pointer + first, bytes.data() + first, bytes.size() - first);
+        if (bytes.size() > first)
+            std::memcpy(pointer + first, bytes.data() + first, bytes.size() - first);
         memory_.close();
         upload(pointer);
     }
@@ -414,7 +424,7 @@ TEST(SizesImageUploadGl, drawPixels) {
     EXPECT_GE(pairs, 50);
 }
 
-TEST(SizesImageUploadGl, bitmapsAndStipples) {
+TEST(SizesImageUploadGl, bitmaps) {
     const TestContext context(TestApi::Compatibility);
     if (!context.valid())
         GTEST_SKIP() << "no compatibility profile over EGL surfaceless here";
@@ -433,18 +443,30 @@ TEST(SizesImageUploadGl, bitmapsAndStipples) {
             glFlush(); // Mesa gathers small bitmaps
         };
         checker.check(image, draw, DrawTarget::read);
-        const Upload stipple = [](const void* bits) {
-            glPolygonStipple(static_cast<const GLubyte*>(bits));
-        };
-        const Snapshot stippleBits = [] {
-            setPixelStore(Direction::Pack, tightStore(), TestApi::Compatibility);
-            std::vector<uint8_t> bytes(128);
-            glGetPolygonStipple(bytes.data());
-            return bytes;
-        };
-        checker.check({GL_COLOR_INDEX, GL_BITMAP, 32, 32, 1, 2}, stipple, stippleBits);
         if (HasFailure())
             return;
+    }
+}
+
+TEST(SizesImageUploadGl, polygonStipples) {
+    const TestContext context(TestApi::Compatibility);
+    if (!context.valid())
+        GTEST_SKIP() << "no compatibility profile over EGL surfaceless here";
+    Checker checker(TestApi::Compatibility);
+    const Upload stipple = [](const void* bits) {
+        glPolygonStipple(static_cast<const GLubyte*>(bits));
+    };
+    const Snapshot stippleBits = [] {
+        setPixelStore(Direction::Pack, tightStore(), TestApi::Compatibility);
+        std::vector<uint8_t> bytes(128);
+        glGetPolygonStipple(bytes.data());
+        return bytes;
+    };
+    const Image image{GL_COLOR_INDEX, GL_BITMAP, 32, 32, 1, 2};
+    for (int round = 0; round < 100 && !HasFailure(); ++round) {
+        PixelStore store = checker.randomStore(image);
+        store.skipPixels &= ~7; // Mesa 22.3 writes beyond its copy when bits are shifted
+        checker.check(image, store, stipple, stippleBits);
     }
 }
 
