@@ -114,9 +114,7 @@ void learnVersion(Context& c) {
 } // namespace
 
 void refreshDrawLocally(ThreadState& t) {
-    Session* s = Session::current();
-    const bool full = !s || !s->alive() || s->welcome().policy == capture::kPolicyFull;
-    t.drawLocally = full || !t.context || t.context->compilingList || t.context->renderMode != GL_RENDER;
+    t.drawLocally = swapLocally() || !t.context || t.context->compilingList || t.context->renderMode != GL_RENDER;
 }
 
 Context* addContext(void* native, Context* shareWith, wire::Api api, const wire::WindowConfig& config) {
@@ -248,7 +246,8 @@ void flushedWindow(ThreadState& t) {
 
 bool swapLocally() {
     Session* s = Session::current();
-    return !s || !s->alive() || s->welcome().policy == capture::kPolicyFull;
+    // A verified run needs the program's own picture to compare with.
+    return !s || !s->alive() || s->welcome().policy == capture::kPolicyFull || s->welcome().verifyEvery > 0;
 }
 
 void endFrame(Window* w) {

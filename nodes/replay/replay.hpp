@@ -78,6 +78,8 @@ public:
     // False: nothing there, or an offset while no buffer is bound at `binding`: GL would read wild memory.
     bool readable(const Data& data, GLenum binding);
     bool lacking(uint16_t opcode);
+    // Runs `call` with the program's own scissor alone.
+    void withoutTile(const std::function<void()>& call);
     template <class T> T windowX(T x) const { return static_cast<T>(x - origin().x); }
     template <class T> T windowY(T y) const { return static_cast<T>(y - origin().y); }
     template <class T> std::array<T, 4> windowPosition(const T* v) const {
@@ -212,6 +214,7 @@ private:
     // replay_tiling.cpp
     [[nodiscard]] PixelViewport origin() const; // of this node's framebuffer in the window (lean)
     void applyScissors();
+    bool tileOff_ = false; // withoutTile is running
     void applyScissor(int index, bool all);
     void applyViewports();
     void restoreWindowState();

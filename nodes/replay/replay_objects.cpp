@@ -196,6 +196,10 @@ bool Replay::splitsLists(uint16_t opcode, std::span<const std::byte> arguments) 
     case op::glCallList:
     case op::glCallLists:
     case op::glListBase:
+    case op::glClear:
+    case op::glDrawPixels:
+    case op::glCopyPixels:
+    case op::glAccum:
     case op::glUseProgram: return true;
     case op::glViewport:
     case op::glPolygonStipple: return config_.lean;

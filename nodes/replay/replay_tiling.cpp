@@ -39,7 +39,7 @@ void Replay::applyScissor(int index, bool all) {
     const Scissor& app = c_->scissors[static_cast<size_t>(index)];
     bool enabled = app.enabled;
     PixelViewport box = app.box;
-    if (drawsWindow() && c_->draw) {
+    if (drawsWindow() && c_->draw && !tileOff_) {
         const PixelViewport part = c_->draw->drawn;
         box = enabled ? intersect(part, box) : part;
         enabled = true;
@@ -62,6 +62,16 @@ void Replay::applyScissors() {
     if (!bound_ || !gl.glScissor) return;
     if (!c_->scissorsDiffer || !gl.glScissorIndexed || !gl.glEnablei) return applyScissor(0, true);
     for (int i = 0; i < kViewports; ++i) applyScissor(i, false);
+}
+
+void Replay::withoutTile(const std::function<void()>& call) {
+    const bool cut = drawsWindow() && c_->draw && !config_.lean && c_->draw->drawn != c_->draw->whole;
+    if (!cut || c_->compiling) return call();
+    tileOff_ = true;
+    applyScissors();
+    call();
+    tileOff_ = false;
+    applyScissors();
 }
 
 void Replay::applyViewports() {

@@ -115,7 +115,8 @@ def call(c):
         elif p.how == 'data' and p.expr is not True:
             lines.append('if (!replay_.readable(%s, %s)) return true;' % (
                 p.name, 'GL_DRAW_INDIRECT_BUFFER_BINDING' if p.name == 'indirect' else 'GL_ELEMENT_ARRAY_BUFFER_BINDING'))
-    lines.append('replay_.gl.%s(%s);' % (c.name, args))
+    call_text = 'replay_.gl.%s(%s);' % (c.name, args)
+    lines.append('replay_.withoutTile([&] { %s });' % call_text if c.option('node') == 'whole' else call_text)
     if c.name.startswith('glDelete'):
         for p in c.params:
             if p.how == 'array' and p.kind:

@@ -185,6 +185,11 @@ def load(gl_xml, semantics):
     for element in root.find('commands'):
         c = Command(element)
         commands[c.name] = c
+    for feature in root.findall('feature'):
+        for require in feature.findall('require'):
+            for c in require.findall('command'):
+                commands[c.get('name')].feature = commands[c.get('name')].feature or feature.get('name')
+    root_aliases(commands)
     for pattern, options, number in read_semantics(semantics):
         hit = False
         for name in commands:
@@ -197,10 +202,6 @@ def load(gl_xml, semantics):
                 commands[name].options.update(options)
         if not hit:
             raise SystemExit('%s:%d: no command matches %s' % (semantics, number, pattern))
-    for feature in root.findall('feature'):
-        for require in feature.findall('require'):
-            for c in require.findall('command'):
-                commands[c.get('name')].feature = commands[c.get('name')].feature or feature.get('name')
     extensions = {}
     for ext in root.find('extensions'):
         names = [c.get('name') for r in ext.findall('require') for c in r.findall('command')]
@@ -209,8 +210,18 @@ def load(gl_xml, semantics):
             commands[n].extensions.append(ext.get('name'))
     for c in commands.values():
         c.classify()
-    # An alias is its canonical command under another name. Chains end at the one without alias.
+    return commands, extensions
+
+
+def root_aliases(commands):
+    """Groups of names for one command are led by the core name: drivers have it in every API."""
     for c in commands.values():
         while c.alias and commands[c.alias].alias:
             c.alias = commands[c.alias].alias
-    return commands, extensions
+    groups = {}
+    for c in commands.values():
+        groups.setdefault(c.alias or c.name, []).append(c)
+    for root, members in groups.items():
+        best = min(members, key=lambda c: (c.feature is None, not c.name.endswith('ARB'), not c.name.endswith('EXT'), len(c.name), c.name))
+        for c in members:
+            c.alias = None if c is best else best.name
