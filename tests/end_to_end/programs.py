@@ -84,11 +84,13 @@ def stop_group(process):
         pass
 
 
-def run_program(build, name, folder, display, size, frames, launcher=(), seconds=120):
+def run_program(build, name, folder, display, size, frames, launcher=(), seconds=120,
+                more_environment=None):
     """Runs a program, natively or behind `launcher`, with the grabbing library in front."""
     os.makedirs(folder)
     environment = clean_environment(display)
     environment["GRAB_OUT"] = folder
+    environment.update(more_environment or {})
     if name in FLUSHING:
         environment["GRAB_FLUSH"] = "1"
     grab = os.path.join(build, "tests", "end_to_end", "grab.so")

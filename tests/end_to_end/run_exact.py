@@ -30,7 +30,8 @@ def parse_arguments():
     parser.add_argument("--layouts", default="1x1,2x2,3x1,7x5", help="tiles, columns x rows")
     parser.add_argument("--size", default="1000x777", help="of the programs' windows")
     parser.add_argument("--frames", type=int, default=4)
-    parser.add_argument("--options", default="", help="more options for `mural run`, in one string")
+    parser.add_argument("--options", default="--display none",
+                        help="more options for `mural run`, in one string")
     parser.add_argument("--seconds", type=int, default=120, help="the longest that one run may take")
     parser.add_argument("--native", action="store_true", help="compare two native runs")
     parser.add_argument("--keep", metavar="FOLDER", help="keep all pictures and logs there")
@@ -52,11 +53,11 @@ class Comparison:
         self.folder = folder
         self.failures = 0
 
-    def run(self, name, label, launcher=()):
+    def run(self, name, label, launcher=(), environment=None):
         arguments = self.arguments
         folder = os.path.join(self.folder, name, label)
         return programs.run_program(arguments.build, name, folder, self.display_name, arguments.size,
-                                    arguments.frames, launcher, arguments.seconds)
+                                    arguments.frames, launcher, arguments.seconds, environment)
 
     def launchers(self):
         arguments = self.arguments
@@ -76,7 +77,9 @@ class Comparison:
             return
         for label, launcher in self.launchers().items():
             start = time.monotonic()
-            through = self.run(name, label, launcher)
+            # Natively for the second time, new memory isn't zero: it shows who reads what nobody wrote.
+            environment = {"MALLOC_PERTURB_": "165"} if self.arguments.native else None
+            through = self.run(name, label, launcher, environment)
             wrong = self.compare(native, through)
             self.report(name, label, len(native.frames()), wrong, time.monotonic() - start)
 

@@ -1,0 +1,299 @@
+#!/usr/bin/env python3
+"""What goes wrong, goes wrong well: render nodes and the head are killed, programs end in all ways,
+arguments are bad. In each case: the status, the number of lines said, and nothing left behind.
+
+  failures.py --build build/release [--cases node,head,ends,arguments] [--list]
+"""
+
+import argparse
+import os
+import signal
+import stat
+import sys
+import tempfile
+
+import display
+import programs
+import session
+
+CASES = {}  # name: function(context) → None or what is wrong
+
+
+def case(function):
+    CASES[function.__name__] = function
+    return function
+
+
+class Context:
+    def __init__(self, build, mural, display_name):
+        self.build = build
+        self.mural = mural
+        self.display = display_name
+
+    def program(self, name):
+        return os.path.join(self.build, "tests", "programs", name)
+
+    def run(self, program_command, options=("--tiles", "2x2", "--display", "none"), environment=None):
+        command = [self.mural, "run"] + list(options) + ["--"] + list(program_command)
+        return session.Session(command, self.display, environment)
+
+    def drawing(self, name, frames=5, **more):
+        return self.run([self.program(name), "--frames", str(frames), "--size", "250x190"], **more)
+
+
+def error_lines(run, words):
+    return [line for line in run.standard_error if any(word in line for word in words)]
+
+
+def check_end(run, wanted_status, frames=None):
+    """Status, frames drawn, nothing left: what every case wants."""
+    status = run.status()
+    if status != wanted_status:
+        return "status %s instead of %s; it said: %s" % (
+            "none in time" if status is None else status, wanted_status, " | ".join(run.standard_error[-3:]))
+    if frames is not None:
+        drawn = sum(line.startswith("frame ") for line in run.standard_output)
+        if drawn != frames:
+            return "the program drew %d frames instead of %d" % (drawn, frames)
+    left = run.left_behind()
+    return "left behind: " + ", ".join(left) if left else None
+
+
+def kill_all(pids):
+    for pid in pids:
+        os.kill(pid, signal.SIGKILL)
+
+
+def kill_during_run(context, pattern, how_many, after_line, words):
+    """Kills processes of the session while the program draws; the program must not notice."""
+    frames = 60
+    with context.drawing("long_run", frames) as run:
+        if after_line and not run.wait_for_line(after_line):
+            return "the program did not come to \"%s\": %s" % (after_line, " | ".join(run.standard_error[-3:]))
+        found = run.wait_for_processes(pattern, max(how_many, 1))
+        if not found:
+            return "no process fits \"%s\"" % pattern
+        kill_all(found if how_many == 0 else found[:how_many])
+        wrong = check_end(run, 0, frames)
+        said = error_lines(run, words)
+        if wrong is None and len(said) != max(how_many, 1):
+            wrong = "%d lines about it instead of %d: %s" % (len(said), max(how_many, 1), " | ".join(said))
+        return wrong
+
+
+NODE = r"mural node\b"
+HEAD = r"mural head\b"
+
+
+@case
+def node_killed_in_the_middle(context):
+    return kill_during_run(context, NODE, 1, "frame 20", ["was lost:"])
+
+
+@case
+def node_killed_at_the_start(context):
+    return kill_during_run(context, NODE, 1, "frame 0", ["was lost:"])
+
+
+@case
+def two_nodes_killed(context):
+    return kill_during_run(context, NODE, 2, "frame 10", ["was lost:"])
+
+
+@case
+def head_killed_in_the_middle(context):
+    return kill_during_run(context, HEAD, 1, "frame 20", ["the head process was lost"])
+
+
+@case
+def head_killed_at_the_start(context):
+    return kill_during_run(context, HEAD, 1, "frame 0", ["the head process was lost"])
+
+
+@case
+def all_nodes_killed(context):
+    with context.drawing("long_run", 60) as run:
+        if not run.wait_for_line("frame 20"):
+            return "the program did not start: " + " | ".join(run.standard_error[-3:])
+        kill_all(run.wait_for_processes(NODE, 4))
+        wrong = check_end(run, 0, 60)
+        if wrong is None and not error_lines(run, ["was lost"]):
+            wrong = "nobody said that the nodes were lost"
+        return wrong
+
+
+@case
+def node_stopped_and_continued(context):
+    """A node that only sleeps for a while is not lost."""
+    with context.drawing("long_run", 60) as run:
+        if not run.wait_for_line("frame 10"):
+            return "the program did not start: " + " | ".join(run.standard_error[-3:])
+        nodes = run.wait_for_processes(NODE, 1)
+        os.kill(nodes[0], signal.SIGSTOP)
+        run.wait_for_line("frame 59", 1)
+        os.kill(nodes[0], signal.SIGCONT)
+        wrong = check_end(run, 0, 60)
+        if wrong is None and error_lines(run, ["was lost"]):
+            wrong = "it was said to be lost: " + " | ".join(error_lines(run, ["was lost"]))
+        return wrong
+
+
+@case
+def program_killed(context):
+    with context.drawing("long_run", 1000) as run:
+        if not run.wait_for_line("frame 10"):
+            return "the program did not start: " + " | ".join(run.standard_error[-3:])
+        kill_all([pid for pid in run.processes(r"/long_run --frames") if pid not in run.processes(r"mural")])
+        return check_end(run, 128 + signal.SIGKILL)
+
+
+def interrupted(context, number):
+    with context.drawing("long_run", 100000) as run:
+        if not run.wait_for_line("frame 10"):
+            return "the program did not start: " + " | ".join(run.standard_error[-3:])
+        os.kill(run.process.pid, number)
+        status = run.status(30)
+        if status in (None, 0):
+            return "status %s after the signal" % status
+        left = run.left_behind()
+        return "left behind: " + ", ".join(left) if left else None
+
+
+@case
+def launcher_interrupted(context):
+    return interrupted(context, signal.SIGINT)
+
+
+@case
+def launcher_terminated(context):
+    return interrupted(context, signal.SIGTERM)
+
+
+@case
+def launcher_killed(context):
+    """kill -9 of `mural run` itself: the rest must find out by itself."""
+    return interrupted(context, signal.SIGKILL)
+
+
+def ends(name):
+    def check(context):
+        wanted = programs.STATUS.get(name, 0)
+        with context.drawing(name) as run:
+            return check_end(run, wanted if wanted >= 0 else 128 - wanted)
+    check.__name__ = "ends_" + name
+    case(check)
+
+
+for ending in ("exit_dirty", "exit_quick", "exit_three", "exit_abort", "exit_segv", "exit_term",
+               "fork_exec", "fork_child"):
+    ends(ending)
+
+
+@case
+def ends_launcher_script(context):
+    """A script that starts the program in the background and waits for it."""
+    script = "\"$0\" --frames 5 --size 250x190 & wait $!; exit 7"
+    with context.run(["sh", "-c", script, context.program("long_run")]) as run:
+        return check_end(run, 7, 5)
+
+
+@case
+def ends_script_that_execs(context):
+    with context.run(["sh", "-c", "exec \"$0\" --frames 5 --size 250x190", context.program("exit_three")]) as run:
+        return check_end(run, 3)
+
+
+@case
+def ends_program_without_gl(context):
+    with context.run(["sh", "-c", "exit 5"]) as run:
+        return check_end(run, 5)
+
+
+@case
+def ends_frames_reached(context):
+    options = ("--tiles", "2x1", "--display", "none", "--frames", "10")
+    with context.drawing("long_run", 100000, options=options) as run:
+        return check_end(run, 0)
+
+
+def complains(name, arguments, wanted_status, words, environment=None):
+    """One line on standard error that holds one of the words; nothing started."""
+    def check(context):
+        command = [argument.replace("{programs}", os.path.join(context.build, "tests", "programs"))
+                   for argument in arguments]
+        with session.Session([context.mural] + command, context.display, environment) as run:
+            status = run.status(30)
+            said = [line for line in run.standard_error if line.strip()]
+            if status not in wanted_status:
+                return "status %s instead of %s: %s" % (status, wanted_status, " | ".join(said))
+            if len(said) != 1 or not any(word in said[0] for word in words):
+                return "it said %d lines: %s" % (len(said), " | ".join(said))
+            left = run.left_behind()
+            return "left behind: " + ", ".join(left) if left else None
+    check.__name__ = "arguments_" + name
+    case(check)
+
+
+ANY = range(1, 128)
+complains("unknown_command", ["rin"], ANY, ["rin"])
+complains("unknown_option", ["run", "--tyles", "2x2", "--", "true"], [2], ["--tyles"])
+complains("tiles_zero", ["run", "--tiles", "0x2", "--", "true"], [2], ["--tiles"])
+complains("tiles_words", ["run", "--tiles", "many", "--", "true"], [2], ["--tiles"])
+complains("size_words", ["run", "--size", "big", "--", "true"], [2], ["--size"])
+complains("latency_negative", ["run", "--latency", "-1", "--", "true"], [2], ["--latency"])
+complains("unknown_gl", ["run", "--gl", "vulkan", "--", "true"], [2], ["--gl"])
+complains("save_without_out", ["run", "--save", "1", "--", "true"], [2], ["--save"])
+complains("more_nodes_than_tiles", ["run", "--tiles", "1x1", "--local-nodes", "3", "--", "true"], [2], ["node"])
+complains("no_program", ["run", "--tiles", "2x2"], [2], ["program"])
+complains("program_not_found", ["run", "--", "no-such-program-here"], [127], ["no-such-program-here"])
+complains("program_is_a_folder", ["run", "--", "/usr"], [126], ["/usr"])
+complains("not_executable", ["run", "--", "/etc/passwd"], [126], ["/etc/passwd"])
+complains("static_program", ["run", "--", "{programs}/static_program"], [2], ["static"])
+complains("display_missing", ["run", "--display", "app", "--", "{programs}/exit_quick"], ANY, ["display", "DISPLAY"],
+          {"DISPLAY": ":9876"})
+
+
+@case
+def arguments_setuid_program(context):
+    with tempfile.TemporaryDirectory(prefix="mural-setuid.") as folder:
+        copy = os.path.join(folder, "setuid_program")
+        with open(context.program("exit_quick"), "rb") as source, open(copy, "wb") as target:
+            target.write(source.read())
+        os.chmod(copy, 0o755 | stat.S_ISUID)
+        with context.run([copy]) as run:
+            status = run.status(30)
+            said = [line for line in run.standard_error if line.strip()]
+            if status != 2 or len(said) != 1 or "setuid" not in said[0]:
+                return "status %s, it said: %s" % (status, " | ".join(said))
+            return None
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", default="build/release", help="the build folder")
+    parser.add_argument("--mural", help="the launcher; default BUILD/bin/mural")
+    parser.add_argument("--cases", help="beginnings of the cases' names, separated by commas; default all")
+    parser.add_argument("--list", action="store_true", help="show the cases and stop")
+    arguments = parser.parse_args()
+    beginnings = tuple(arguments.cases.split(",")) if arguments.cases else ("",)
+    chosen = [name for name in CASES if name.startswith(beginnings)]
+    if arguments.list:
+        print("\n".join(chosen))
+        return 0
+    if not chosen:
+        raise SystemExit("no case begins with \"%s\"; --list shows all" % arguments.cases)
+    build = os.path.abspath(arguments.build)
+    mural = os.path.abspath(arguments.mural) if arguments.mural else os.path.join(build, "bin", "mural")
+    wrong = 0
+    with display.PrivateDisplay() as display_name:
+        context = Context(build, mural, display_name)
+        for name in chosen:
+            result = CASES[name](context)
+            wrong += result is not None
+            print("%-32s %s" % (name, "right" if result is None else "WRONG: " + result), flush=True)
+    print("%d cases, %d wrong" % (len(chosen), wrong))
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

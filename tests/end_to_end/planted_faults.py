@@ -1,0 +1,59 @@
+#!/usr/bin/env python3
+"""Shows that run_exact.py can fail: each fault that a render node makes on purpose must be found.
+
+MURAL_PLANT=opcode changes one argument of one command, shift moves one tile by a pixel, drop leaves
+out one frame's draws. Without a fault, the same comparison must be exact.
+"""
+
+import argparse
+import os
+import subprocess
+import sys
+
+FAULTS = ("opcode", "shift", "drop")
+PROGRAMS = "immediate,draw_calls,es2_scene"
+
+
+def compare(arguments, fault):
+    environment = dict(os.environ)
+    environment.pop("MURAL_PLANT", None)
+    if fault:
+        environment["MURAL_PLANT"] = fault
+    command = [sys.executable, os.path.join(os.path.dirname(os.path.abspath(__file__)), "run_exact.py"),
+               "--build", arguments.build, "--programs", arguments.programs, "--layouts", "2x2",
+               "--size", "250x190", "--seconds", "60"]
+    if arguments.mural:
+        command += ["--mural", arguments.mural]
+    done = subprocess.run(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          text=True, timeout=600, check=False)
+    return done.returncode, done.stdout
+
+
+def found_in(output):
+    """The programs in whose pictures the fault was seen: not by a crash, but by wrong pixels."""
+    return [line.split()[0] for line in output.splitlines() if "pixels differ in" in line]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", default="build/release")
+    parser.add_argument("--mural")
+    parser.add_argument("--programs", default=PROGRAMS)
+    arguments = parser.parse_args()
+    missed = 0
+    status, output = compare(arguments, None)
+    if status != 0:
+        print("without a fault the comparison must be exact, but:\n" + output)
+        return 1
+    print("no fault: exact")
+    for fault in FAULTS:
+        status, output = compare(arguments, fault)
+        seen = found_in(output)
+        right = status == 1 and bool(seen)
+        missed += not right
+        print("%-7s %s" % (fault, "found in " + " ".join(seen) if right else "MISSED:\n" + output))
+    return 1 if missed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
