@@ -262,6 +262,27 @@ TEST_P(ConnectionTest, deliversWhatWasWrittenBeforeClose) {
     EXPECT_FALSE(a().write(three, late()));
 }
 
+// The writer writes and closes just while the reader looks: many times, to meet each order of
+// events.
+TEST_P(ConnectionTest, losesNoLastByteToTheCloseAfterIt) {
+    for (int i = 0; i < 500; ++i) {
+        link();
+        std::atomic<bool> go = false;
+        std::thread writer([&] {
+            while (!go) {
+            }
+            const std::byte last{1};
+            (void)a().write(std::span(&last, 1), late());
+            a().close();
+        });
+        std::byte into{};
+        go = true;
+        const auto result = b().read(std::span(&into, 1), late());
+        writer.join();
+        ASSERT_TRUE(result) << "round " << i << ": " << result.error().message;
+    }
+}
+
 TEST_P(ConnectionTest, destroyingAnEndClosesIt) {
     link();
     pair_.a.reset();
