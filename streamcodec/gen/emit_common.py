@@ -51,6 +51,8 @@ struct GlFunctions {
     table += '''};
 // Where in GlFunctions the command or alias `name` stands, as an index of pointers; -1 unknown.
 int glFunctionIndex(const char* name);
+// The command at that index, under the name that leads its aliases.
+const char* glFunctionName(int index);
 // Fills the table: loader(name) for each command and, where that gives nothing, for its aliases.
 void loadGlFunctions(GlFunctions& table, void (*(*loader)(void* self, const char* name))(), void* self);
 } // namespace mural
@@ -67,7 +69,11 @@ constexpr Row kRows[] = { // sorted by name
     source += ''.join('    {"%s", %d},\n' % r for r in rows)
     source += '''};
 constexpr int kCount = sizeof(kRows) / sizeof(kRows[0]);
+constexpr const char* kNames[] = { // by index
+NAMES};
 } // namespace
+
+const char* glFunctionName(int index) { return kNames[index]; }
 
 int glFunctionIndex(const char* name) {
     int low = 0, high = kCount - 1;
@@ -82,6 +88,8 @@ int glFunctionIndex(const char* name) {
 
 void loadGlFunctions(GlFunctions& table, void (*(*loader)(void*, const char*))(), void* self) {
     auto** slots = reinterpret_cast<void (**)()>(&table);
+    int index = 0;
+    for (const char* name : kNames) slots[index++] = loader(self, name);
     for (const Row& row : kRows) {
         if (slots[row.index]) continue;
         slots[row.index] = loader(self, row.name);
@@ -89,6 +97,7 @@ void loadGlFunctions(GlFunctions& table, void (*(*loader)(void*, const char*))()
 }
 } // namespace mural
 '''
+    source = source.replace('NAMES', ''.join('    "%s",\n' % c.name for c in m.canonical))
     info = HEAD + '''#include "streamcodec/command_table.hpp"
 #include "streamcodec/registry_digest.hpp"
 namespace mural {
