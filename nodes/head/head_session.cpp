@@ -304,8 +304,10 @@ void HeadSession::finish() {
     programs_->endAll();
     reportProgress(monotonicNowNs());
     const Deadline deadline = Deadline::inMs(kProcessPatienceMs);
-    for (int node = 0; node < nodeCount_; ++node)
-        if (NodeProcess* process = nodes_.link(node).process()) process->waitEnded(deadline);
+    for (int node = 0; node < nodeCount_; ++node) {
+        NodeLink& link = nodes_.link(node);
+        if (link.process() != nullptr && link.saidBye()) link.process()->waitEnded(deadline);
+    }
     tearingDown_ = true;
     if (output_) output_->drop();
     nodes_.end();

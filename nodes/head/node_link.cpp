@@ -95,7 +95,10 @@ void NodeLink::readMessages() {
         Result<void> done = got ? readMessage(header) : Result<void>(got.error());
         if (!done) lose(done.error().message);
     }
-    if (!saidBye()) events_.nodeLost(place_.node, reasonOfEnd());
+    if (!saidBye()) {
+        events_.nodeLost(place_.node, reasonOfEnd());
+        if (process_) process_->kill(); // it may still run, and hold a GPU
+    }
     alive_ = false;
     readerEnded_ = true;
 }

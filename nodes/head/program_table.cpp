@@ -43,7 +43,7 @@ void ProgramTable::programWelcomed(uint32_t id, FileDescriptor socket) {
         const auto client = found->second;
         admitted_.erase(found);
         if (!socket.valid()) return; // it left before it was let in
-        if (!refusal_.empty()) client->memory().setHeadGone(); // the session ended in between
+        if (headGone_) client->memory().setHeadGone(); // the nodes were lost in between
         client->start(std::move(socket));
         clients_[id] = client;
         count = clients_.size();
@@ -88,11 +88,20 @@ void ProgramTable::credit(uint32_t id, uint32_t finished, uint32_t shown) {
 }
 
 void ProgramTable::tellHeadGone() {
+    {
+        const std::lock_guard lock(mutex_);
+        headGone_ = true;
+    }
     for (const auto& client : all()) client->memory().setHeadGone();
 }
 
 void ProgramTable::drainAll(Deadline deadline, const std::function<void()>& tick) {
     constexpr int kSliceMs = 10;
+    // Programs that are just being let in may have published already.
+    while (anyAdmitted() && !deadline.passed()) {
+        tick();
+        poll(nullptr, 0, kSliceMs);
+    }
     const auto clients = all();
     for (const auto& client : clients) client->drain();
     const auto ended = [](const auto& client) { return client->pumpEnded(); };
@@ -158,6 +167,11 @@ std::vector<std::shared_ptr<CaptureClient>> ProgramTable::all() const {
     std::vector<std::shared_ptr<CaptureClient>> result;
     for (const auto& [id, client] : clients_) result.push_back(client);
     return result;
+}
+
+bool ProgramTable::anyAdmitted() const {
+    const std::lock_guard lock(mutex_);
+    return !admitted_.empty();
 }
 
 void ProgramTable::addCounts(CaptureCounts& sum, const CaptureCounts& counts) {

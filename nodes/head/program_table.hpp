@@ -39,7 +39,7 @@ public:
     void programWelcomed(uint32_t client, FileDescriptor socket) override;
     void programEnded(uint32_t client, const std::string& problem) override;
 
-    void refuseFrom(const std::string& reason); // programs that come from now on
+    void refuseFrom(const std::string& reason); // programs that come from now on; before drainAll()
     void reply(uint32_t client, Reply reply);
     void credit(uint32_t client, uint32_t finished, uint32_t shown);
     void tellHeadGone(); // all programs go on alone
@@ -57,6 +57,7 @@ private:
 
     std::shared_ptr<CaptureClient> find(uint32_t client) const;
     std::vector<std::shared_ptr<CaptureClient>> all() const;
+    [[nodiscard]] bool anyAdmitted() const;
     static void addCounts(CaptureCounts& sum, const CaptureCounts& counts);
 
     const ProgramTerms terms_;
@@ -65,6 +66,7 @@ private:
 
     mutable std::mutex mutex_; // what follows
     std::string refusal_;
+    bool headGone_ = false;
     uint32_t nextId_ = 1;
     Clients admitted_; // not welcomed yet
     Clients clients_;

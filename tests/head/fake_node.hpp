@@ -41,7 +41,10 @@ public:
         , thread_([this] { work(); }) {}
     ~FakeNode() {
         stop_ = true;
-        thread_.join();
+        waitEnd();
+    }
+    void waitEnd() {
+        if (thread_.joinable()) thread_.join();
     }
 
     std::vector<Packet> packets() const {
@@ -69,10 +72,8 @@ private:
             note(header.stream, words);
             const bool goOn = header.stream == 0 ? command(words, bytes) : records(header.stream, words);
             connection_->flush();
-            if (!goOn) {
-                connection_->close();
-                return;
-            }
+            if (!goOn) connection_->close();
+            if (!goOn || saidBye_) return;
         }
     }
 
@@ -88,12 +89,15 @@ private:
             if (!setup) return false;
             setup_ = *setup;
             const std::string common = "GL_COMMON GL_ONLY_" + std::to_string(setup_.node);
-            const std::string ready = R"({"host":"h","pid":7,"renderer":"fake","glVersion":"4.)" +
+            const std::string ready = R"({"host":"h","pid":)" + std::to_string(getpid()) +
+                                      R"(,"renderer":"fake","glVersion":"4.)" +
                                       std::to_string(setup_.node) + R"( fake","extensions":")" + common + "\"}";
             if (!behaviour_.silentStart) sendText(wire::NodeMessage::Ready, ready);
         }
-        if (op(words) == static_cast<uint32_t>(wire::HeadCommand::Finish) && !behaviour_.noBye)
+        if (op(words) == static_cast<uint32_t>(wire::HeadCommand::Finish) && !behaviour_.noBye) {
             sendText(wire::NodeMessage::Bye, R"({"commands":42,"cpuSeconds":0.5})");
+            saidBye_ = true;
+        }
         return true;
     }
 
@@ -192,6 +196,7 @@ private:
     std::unique_ptr<Connection> connection_;
     FakeNodeBehaviour behaviour_;
     NodeSetup setup_;
+    bool saidBye_ = false;
     std::atomic<bool> stop_{false};
     mutable std::mutex mutex_;
     std::vector<Packet> packets_;

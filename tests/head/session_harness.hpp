@@ -2,6 +2,7 @@
 // connection.
 #pragma once
 
+#include <fcntl.h>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -37,11 +38,7 @@ public:
     }
 
     void start() {
-        int ends[2];
-        ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends), 0);
-        mine_ = FileDescriptor(ends[0]);
-        control_ = std::make_unique<ControlChannel>(FileDescriptor(ends[1]));
-        reader_ = std::make_unique<ControlChannel>(FileDescriptor(dup(ends[0])));
+        connectControl();
         SessionPlan plan = planSession(config, "here");
         std::vector<LaunchedNode> launched;
         for (const NodePlan& node : plan.nodes) {
@@ -53,6 +50,24 @@ public:
         }
         thread_ = std::thread([this, plan, nodes = std::move(launched)]() mutable {
             HeadSession session(config, plan, std::move(nodes), *control_, std::move(options));
+            status_ = session.run();
+        });
+    }
+
+    // The nodes are processes: `executable node …`.
+    void startProcesses(const std::string& executable) {
+        connectControl();
+        const SessionPlan plan = planSession(config, "here");
+        // Launched by the session's own thread: the nodes live as long as it.
+        thread_ = std::thread([this, plan, executable] {
+            auto nodes = launchNodes(plan, {executable, executable, ""}, Deadline::inMs(kTestPatienceMs),
+                                     [] { return false; });
+            if (!nodes) {
+                control_->error(nodes.error().message);
+                status_ = 1;
+                return;
+            }
+            HeadSession session(config, plan, std::move(*nodes), *control_, std::move(options));
             status_ = session.run();
         });
     }
@@ -106,6 +121,14 @@ public:
     std::vector<nlohmann::json> seen;
 
 private:
+    void connectControl() {
+        int ends[2];
+        ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends), 0);
+        mine_ = FileDescriptor(ends[0]);
+        control_ = std::make_unique<ControlChannel>(FileDescriptor(ends[1]));
+        reader_ = std::make_unique<ControlChannel>(FileDescriptor(fcntl(ends[0], F_DUPFD_CLOEXEC, 3)));
+    }
+
     FileDescriptor mine_;
     std::unique_ptr<ControlChannel> control_;
     std::unique_ptr<ControlChannel> reader_;

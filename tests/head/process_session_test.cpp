@@ -1,0 +1,134 @@
+// The head with nodes that are real processes: this very program, started again as `… node …`.
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <iostream>
+
+#include "nodes/session/session_secret.hpp"
+#include "tests/head/session_harness.hpp"
+
+namespace mural {
+namespace {
+
+std::string ownPath() { return std::filesystem::read_symlink("/proc/self/exe"); }
+
+std::unique_ptr<Connection> connectTo(const std::string& way, const std::string& target) {
+    if (way == "--connect-fd") {
+        auto shared = openSharedMemory(std::stoi(target));
+        return shared ? std::move(*shared) : nullptr;
+    }
+    std::string line;
+    std::getline(std::cin, line);
+    auto secret = sessionSecretFromHex(line);
+    const size_t colon = target.rfind(':');
+    auto tcp = connectTcp(target.substr(0, colon), static_cast<uint16_t>(std::stoi(target.substr(colon + 1))),
+                          Deadline::inMs(kTestPatienceMs));
+    if (!secret || !tcp || !(*tcp)->write(*secret, Deadline::inMs(kTestPatienceMs))) return nullptr;
+    (*tcp)->flush();
+    return std::move(*tcp);
+}
+
+bool swapFrames(FakeProgram& program, uint32_t from, uint32_t to) {
+    for (uint32_t frame = from; frame <= to; ++frame)
+        if (!program.publish(kFakeSwap, {frame, 1, 64, 48})) return false;
+    return true;
+}
+
+// Child processes of this one that have not been waited for.
+int childrenLeft() {
+    int count = 0;
+    for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
+        std::ifstream children(task.path() / "children");
+        for (pid_t pid = 0; children >> pid;) ++count;
+    }
+    return count;
+}
+
+int64_t descriptorsOpen() {
+    const auto folder = std::filesystem::directory_iterator("/proc/self/fd");
+    return std::distance(begin(folder), end(folder));
+}
+
+TEST(ProcessSession, nodesOverSharedMemoryAndTcpDrawTogether) {
+    const int64_t before = descriptorsOpen();
+    {
+        SessionHarness head(3);
+        head.config.localNodes = 1;
+        head.config.hosts = {"localhost", "127.0.0.1"};
+        head.startProcesses(ownPath());
+        const auto ready = head.waitFor("ready");
+        EXPECT_EQ(ready["nodes"][0]["where"], "local");
+        EXPECT_EQ(ready["nodes"][1]["where"], "localhost");
+        FakeProgram program;
+        ASSERT_TRUE(program.connect(head.config.session));
+        ASSERT_TRUE(swapFrames(program, 1, 50));
+        EXPECT_TRUE(program.waitFramesDone(50));
+        ASSERT_TRUE(program.publish(kFakePixels, {1, 0, 0, 64, 48}));
+        FakeProgram::Answer answer;
+        ASSERT_TRUE(program.readAnswer(answer));
+        EXPECT_EQ(answer.header.w, 64);
+        const auto report = head.finish();
+        EXPECT_EQ(report["frames"], 50);
+        for (const auto& node : report["nodes"]) EXPECT_EQ(node["lost"], false);
+    }
+    EXPECT_EQ(childrenLeft(), 0);
+    EXPECT_EQ(descriptorsOpen(), before);
+}
+
+TEST(ProcessSession, aKilledNodeIsNamedWithItsSignal) {
+    for (const bool tcp : {false, true}) {
+        SessionHarness head(2);
+        if (tcp) {
+            head.config.localNodes = 1;
+            head.config.hosts = {"localhost"};
+        }
+        head.startProcesses(ownPath());
+        const auto ready = head.waitFor("ready");
+        FakeProgram program;
+        ASSERT_TRUE(program.connect(head.config.session));
+        ASSERT_TRUE(swapFrames(program, 1, 3));
+        ASSERT_TRUE(program.waitFramesDone(3));
+        const pid_t victim = ready["nodes"][1]["pid"];
+        ASSERT_EQ(kill(victim, SIGKILL), 0);
+        ASSERT_TRUE(swapFrames(program, 4, 30));
+        EXPECT_TRUE(program.waitFramesDone(30));
+        const std::string said = head.waitForSay("was lost");
+        const std::string expected = std::string("node 1 (") + (tcp ? "localhost" : "local") + ", pid " +
+                                     std::to_string(victim) + ") was lost: signal 9";
+        EXPECT_EQ(said.rfind(expected, 0), 0u) << said;
+        const auto report = head.finish();
+        EXPECT_EQ(report["nodes"][1]["lost"], true);
+        EXPECT_EQ(report["frames"], 30);
+        EXPECT_EQ(childrenLeft(), 0);
+    }
+}
+
+TEST(ProcessSession, stoppedNodesAreEndedWithTheSession) {
+    SessionHarness head(2);
+    head.startProcesses(ownPath());
+    const auto ready = head.waitFor("ready");
+    ASSERT_EQ(kill(ready["nodes"][0]["pid"].get<pid_t>(), SIGSTOP), 0);
+    const auto report = head.finish();
+    EXPECT_EQ(report["nodes"][0]["lost"], true);
+    EXPECT_EQ(report["nodes"][1]["lost"], false);
+    EXPECT_EQ(childrenLeft(), 0);
+}
+
+} // namespace
+
+int nodeMain(const std::string& way, const std::string& target) {
+    auto connection = connectTo(way, target);
+    if (!connection) return 1;
+    FakeNode node(std::move(connection), {});
+    node.waitEnd();
+    return 0;
+}
+
+} // namespace mural
+
+int main(int argc, char** argv) {
+    if (argc == 4 && std::string(argv[1]) == "node") return mural::nodeMain(argv[2], argv[3]);
+    testing::InitGoogleTest(&argc, argv);
+    return RUN_ALL_TESTS();
+}
