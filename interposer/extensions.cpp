@@ -14,8 +14,7 @@ namespace mural {
 namespace {
 
 // Extensions without commands of their own that hand out things of this machine.
-const char* const kLocalOnly[] = {"GL_ARB_gl_spirv", "GL_ARB_spirv_extensions", "GL_ARB_bindless_texture", "GL_ARB_get_program_binary",
-                                  "GL_OES_get_program_binary", "GL_ARB_sparse_buffer", "GL_ARB_sparse_texture", "GL_AMD_pinned_memory",
+const char* const kLocalOnly[] = {"GL_ARB_gl_spirv", "GL_ARB_spirv_extensions", "GL_ARB_bindless_texture", "GL_ARB_sparse_buffer", "GL_ARB_sparse_texture", "GL_AMD_pinned_memory",
                                   "GL_OES_EGL_image_external", "GL_OES_EGL_image_external_essl3", "GL_EXT_EGL_image_storage"};
 const char* const kWindowSystemLocalOnly[] = {"GLX_EXT_texture_from_pixmap", "EGL_KHR_image", "EGL_KHR_image_base", "EGL_KHR_image_pixmap",
                                               "EGL_KHR_gl_texture_2D_image", "EGL_KHR_gl_texture_cubemap_image", "EGL_KHR_gl_texture_3D_image",

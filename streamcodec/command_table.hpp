@@ -23,7 +23,8 @@ struct ExtensionInfo {
 std::span<const CommandInfo> commandTable();
 std::span<const ExtensionInfo> extensionTable();
 const CommandInfo* findCommand(std::string_view name);
-// Unknown extensions (newer than the registry) are not carried.
+// Extensions that the registry does not know bring no commands that it knows: they change what
+// carried commands accept, and count as carried.
 bool extensionCarried(std::string_view name);
 
 } // namespace mural

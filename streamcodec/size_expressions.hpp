@@ -30,12 +30,16 @@ template <class P> uint64_t clearBytes(GLenum format, GLenum type, const P& p) {
     return given(p) ? sizes::groupBytes(format, type) : 0;
 }
 constexpr int clearValues(GLenum buffer) { return buffer == GL_COLOR ? 4 : 1; }
+inline uint64_t saturated(uint64_t values, uint32_t bytes) {
+    uint64_t product = 0;
+    return __builtin_mul_overflow(values, bytes, &product) ? UINT64_MAX : product;
+}
 // Values that glMap1/2 read, from the first to the last.
 inline uint64_t mapSpan1(GLenum target, GLint stride, GLint order, uint32_t bytes) {
-    return sizes::map1Values(target, stride, order) * bytes;
+    return saturated(sizes::map1Values(target, stride, order), bytes);
 }
 inline uint64_t mapSpan2(GLenum target, GLint us, GLint uo, GLint vs, GLint vo, uint32_t bytes) {
-    return sizes::map2Values(target, us, uo, vs, vo) * bytes;
+    return saturated(sizes::map2Values(target, us, uo, vs, vo), bytes);
 }
 
 } // namespace mural

@@ -19,6 +19,15 @@ void enableSlot(ThreadState& t, uint32_t slot, bool on) {
     if (t.context && slot < kSlots) t.context->arrays.current().enable(slot, on);
 }
 
+// The texture unit is named by the command: selected for it, then the program's own again.
+template <class Call> void withUnit(GLenum unit, Call&& call) {
+    GLint before = GL_TEXTURE0;
+    gReal.glGetIntegerv(GL_CLIENT_ACTIVE_TEXTURE, &before);
+    mural_glClientActiveTexture(unit);
+    call();
+    mural_glClientActiveTexture(static_cast<GLenum>(before));
+}
+
 } // namespace
 
 extern "C" {
@@ -162,6 +171,17 @@ void mural_glDisableClientState(GLenum array) {
     encode_glDisableClientState(t, array);
     gReal.glDisableClientState(array);
 }
+void mural_glMultiTexCoordPointerEXT(GLenum texunit, GLint size, GLenum type, GLsizei stride, const void* pointer) {
+    withUnit(texunit, [&] { mural_glTexCoordPointer(size, type, stride, pointer); });
+}
+void mural_glEnableClientStateiEXT(GLenum array, GLuint index) {
+    withUnit(GL_TEXTURE0 + index, [&] { mural_glEnableClientState(array); });
+}
+void mural_glDisableClientStateiEXT(GLenum array, GLuint index) {
+    withUnit(GL_TEXTURE0 + index, [&] { mural_glDisableClientState(array); });
+}
+void mural_glEnableClientStateIndexedEXT(GLenum array, GLuint index) { mural_glEnableClientStateiEXT(array, index); }
+void mural_glDisableClientStateIndexedEXT(GLenum array, GLuint index) { mural_glDisableClientStateiEXT(array, index); }
 void mural_glEnableVertexAttribArray(GLuint index) {
     ThreadState& t = *tThread;
     if (index < kGenerics) enableSlot(t, kGeneric0 + index, true);

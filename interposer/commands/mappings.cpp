@@ -242,4 +242,30 @@ void mural_glDeleteBuffers(GLsizei n, const GLuint* buffers) {
     gReal.glDeleteBuffers(n, buffers);
 }
 
+// The EXT forms differ in that they make the buffer when it has only a name yet; the driver does that.
+void* mural_glMapNamedBufferEXT(GLuint buffer, GLenum access) {
+    ThreadState& t = *tThread;
+    void* memory = gReal.glMapNamedBufferEXT(buffer, access);
+    GLint size = 0;
+    if (memory && t.context) {
+        gReal.glGetNamedBufferParameterivEXT(buffer, GL_BUFFER_SIZE, &size);
+        remember(t, buffer, memory, 0, static_cast<uint64_t>(size), accessBits(access));
+    }
+    return memory;
+}
+void* mural_glMapNamedBufferRangeEXT(GLuint buffer, GLintptr offset, GLsizeiptr length, GLbitfield access) {
+    ThreadState& t = *tThread;
+    void* memory = gReal.glMapNamedBufferRangeEXT(buffer, offset, length, access);
+    if (memory && t.context) remember(t, buffer, memory, static_cast<uint64_t>(offset), static_cast<uint64_t>(length), access);
+    return memory;
+}
+GLboolean mural_glUnmapNamedBufferEXT(GLuint buffer) {
+    endMap(*tThread, buffer, true);
+    return gReal.glUnmapNamedBufferEXT(buffer);
+}
+void mural_glFlushMappedNamedBufferRangeEXT(GLuint buffer, GLintptr offset, GLsizeiptr length) {
+    flushMap(*tThread, buffer, offset, length);
+    gReal.glFlushMappedNamedBufferRangeEXT(buffer, offset, length);
+}
+
 } // extern "C"

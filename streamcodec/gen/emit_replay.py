@@ -7,6 +7,7 @@ from registry import TYPE_BYTES
 
 NULLABLE = re.compile(r'gl(Named)?Buffer(Data|Storage)')
 WINDOW_POSITION = re.compile(r'glWindowPos')
+MAY_BE_OFFSET = ('pixels', 'packed', 'data')  # into a bound buffer; elsewhere GL would take it for an address
 RESULT = {4: 'GLuint', 8: 'uint64_t'}
 
 
@@ -23,7 +24,7 @@ def decode(c):
         if p.how == 'skip':
             continue
         if p.how in DATA_KINDS:
-            lines.append('const Data %s = in_.data();' % p.name)
+            lines.append('const Data %s = in_.%s();' % (p.name, 'data' if p.how in MAY_BE_OFFSET else 'values'))
         elif p.how == 'fixed':
             element = ctype(p.base) if p.base not in ('void', 'GLvoid') else 'std::byte'
             lines.append('const auto* %s = in_.fixed<%s>(%d);' % (p.name, element, p.expr))
@@ -63,7 +64,7 @@ def argument(c, p):
         if p.kind:
             return 'replay_.names(Kind::%s, %s, 1)' % (p.kind, p.name)
         if WINDOW_POSITION.match(c.name):
-            return 'replay_.windowPosition(%s).data()' % p.name
+            return 'replay_.windowPosition(%s, %d).data()' % (p.name, p.expr // TYPE_BYTES[p.base])
         return p.name
     if WINDOW_POSITION.match(c.name) and p.name in ('x', 'y'):
         return 'replay_.window%s(%s)' % (p.name.upper(), p.name)

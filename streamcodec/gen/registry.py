@@ -150,8 +150,11 @@ class Command:
         size = TYPE_BYTES.get(p.base, 1 if p.base in ('void', 'GLvoid') else 0)
         if not size:
             return 'type %s of %s is unknown' % (p.base, p.name)
+        product = re.fullmatch(r'(\w+)\*(\d+)', p.length)
         if p.length.isdigit():
             p.how, p.expr = 'fixed', int(p.length) * size
+        elif product:   # multiplied in 64 bits, or a wild count would look small
+            p.how, p.expr = 'array', 'vn(%s,%d)' % (product.group(1), int(product.group(2)) * size)
         else:
             p.how, p.expr = 'array', 'vn(%s,%d)' % (p.length, size)
         return None
