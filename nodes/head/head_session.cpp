@@ -14,6 +14,7 @@ constexpr int64_t kTickMs = 50;
 constexpr int64_t kProgressNs = 200 * kNsPerMs;  // at most 5 lines per second
 constexpr int64_t kProcessPatienceMs = 2000;     // from a node's Bye to the end of its process
 
+constexpr int64_t kOutputNewsMs = 20'000;        // `mural run` gives up a head that is silent
 bool wantsPictures(const SessionConfig& config) {
     return config.display == Display::App || !config.out.empty();
 }
@@ -298,8 +299,7 @@ void HeadSession::finish() {
     programs_->drainAll(Deadline::inMs(options_.drainPatienceMs),
                         [this] { nodes_.watch(monotonicNowNs()); });
     finishNodes();
-    if (output_ && !output_->finish(Deadline::inMs(options_.outputPatienceMs)))
-        control_.say("the last pictures could not be written in time; the output may be incomplete");
+    finishOutput();
     server_.reset();
     programs_->endAll();
     reportProgress(monotonicNowNs());
@@ -346,6 +346,18 @@ bool HeadSession::allReadersEnded() {
 
 SessionNumbers HeadSession::numbers() {
     SessionNumbers result;
+void HeadSession::finishOutput() {
+    if (!output_) return;
+    const Deadline deadline = Deadline::inMs(options_.outputPatienceMs);
+    while (!output_->finish(Deadline::inMs(std::min(kOutputNewsMs, options_.outputPatienceMs)))) {
+        if (deadline.passed()) {
+            control_.say("the last pictures could not be written in time; the output may be incomplete");
+            return;
+        }
+        control_.say("still writing the last pictures");
+    }
+}
+
     result.frames = frames_.totals();
     result.bytesSent = nodes_.bytesSent();
     result.programs = programs_->counts();

@@ -78,6 +78,7 @@ private:
     void finish();
     void finishNodes();
     void loseSilentNodes(int64_t sinceNs, bool all);
+    void finishOutput();
     bool allReadersEnded();
     SessionNumbers numbers();
     void noNodeIsLeft();
