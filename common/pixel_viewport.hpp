@@ -17,8 +17,12 @@ struct PixelViewport {
     [[nodiscard]] constexpr int64_t area() const {
         return empty() ? 0 : static_cast<int64_t>(w) * h;
     }
-    [[nodiscard]] constexpr int32_t right() const { return x + w; }
-    [[nodiscard]] constexpr int32_t top() const { return y + h; }
+    // Ends beyond what an int32_t holds (programs may ask for anything) count as the largest one.
+    [[nodiscard]] constexpr int32_t right() const { return end(x, w); }
+    [[nodiscard]] constexpr int32_t top() const { return end(y, h); }
+    [[nodiscard]] static constexpr int32_t end(int32_t from, int32_t size) {
+        return static_cast<int32_t>(std::clamp<int64_t>(int64_t{from} + size, INT32_MIN, INT32_MAX));
+    }
     [[nodiscard]] constexpr bool contains(const PixelViewport& o) const {
         return o.x >= x && o.y >= y && o.right() <= right() && o.top() <= top();
     }

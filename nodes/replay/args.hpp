@@ -84,6 +84,14 @@ public:
         return p ? Data::bytes(p, tag) : Data{};
     }
 
+    // The same where only bytes make sense: GL would take an offset for an address.
+    Data values() {
+        const Data d = data();
+        if (!d.isOffset()) return d;
+        ok_ = false;
+        return {};
+    }
+
 private:
     const std::byte* take(size_t bytes) {
         if (!ok_ || left() < bytes) {

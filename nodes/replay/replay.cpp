@@ -30,6 +30,7 @@ bool Replay::packet(uint32_t stream, std::span<const std::byte> payload) {
             if (payload.size() - at < 8) return false;
             std::memcpy(&length, payload.data() + at + 4, 4);
             words = length;
+            if (words < 2) return false; // the long header alone takes two
         }
         if (words == 0 || words * 4 > payload.size() - at) return false;
         if (!record(payload.subspan(at, words * 4))) return false;
@@ -46,13 +47,9 @@ bool Replay::record(std::span<const std::byte> bytes) {
     ++counts_.commands;
     bool ok = true;
     if (c_->compiling && splitsLists(opcode, arguments)) {
-        if (gl.glEndList) gl.glEndList();
-        c_->building.items.push_back({0, {bytes.begin(), bytes.end()}});
-        const GLuint next = gl.glGenLists(1);
-        c_->building.items.push_back({next, {}});
-        gl.glNewList(next, GL_COMPILE);
+        compileSplit(bytes);
     } else {
-        ok = execute(opcode, arguments);
+        ok = execute(opcode, arguments, *this);
     }
     taken_.clear();
     scratchUsed_ = 0;
@@ -64,8 +61,8 @@ bool Replay::record(std::span<const std::byte> bytes) {
     return ok;
 }
 
-bool Replay::execute(uint16_t opcode, std::span<const std::byte> arguments) {
-    Args in(arguments, *this);
+bool Replay::execute(uint16_t opcode, std::span<const std::byte> arguments, BlobQueue& blobs) {
+    Args in(arguments, blobs);
     if (opcode < wire::kFirstGlOpcode) return own(opcode, in);
     const ReplayFunction function = replayFunction(opcode);
     if (!function) return false;
@@ -125,6 +122,7 @@ void Replay::clientGone(uint32_t client) {
 std::span<const std::byte> Replay::takeBlob(bool& found) {
     found = s_ && !s_->blobs.empty() && (s_->blobs.size() > 1 || s_->blobMissing == 0);
     if (!found) return {};
+    s_->blobBytes -= s_->blobs.front().size();
     taken_.push_back(std::move(s_->blobs.front()));
     s_->blobs.pop_front();
     return taken_.back();

@@ -4,11 +4,14 @@
 // node's objects in another way, is written by hand (replay_*.cpp).
 #pragma once
 
+#include <array>
+#include <cstring>
 #include <deque>
 #include <functional>
 #include <map>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <unordered_map>
 #include <vector>
 
@@ -25,6 +28,13 @@
 
 namespace mural {
 
+// What a stream may make the node hold or do at once; far above what programs need.
+struct ReplayLimits {
+    uint64_t blobBytes = uint64_t{4} << 30;    // waiting in one stream
+    uint64_t answerBytes = uint64_t{2} << 30;  // one answer
+    uint32_t listCommands = 1u << 24;          // run by one call of a display list: nesting multiplies
+};
+
 // What a node is told about its part of every picture.
 struct ReplayConfig {
     int node = 0;
@@ -32,6 +42,7 @@ struct ReplayConfig {
     TileRegion region;
     bool lean = false;     // framebuffers of the tile's size; false: of the picture's size (exact)
     std::string plant;     // MURAL_PLANT: a fault on purpose, for tests of the tests
+    ReplayLimits limits;
 };
 
 // What the replay hands out; called on the replay thread.
@@ -77,14 +88,24 @@ public:
     bool unpackFor(const Data& data);
     // False: nothing there, or an offset while no buffer is bound at `binding`: GL would read wild memory.
     bool readable(const Data& data, GLenum binding);
+    bool indicesFit(const Data& indices);
     bool lacking(uint16_t opcode);
     // Runs `call` with the program's own scissor alone.
     void withoutTile(const std::function<void()>& call);
-    template <class T> T windowX(T x) const { return static_cast<T>(x - origin().x); }
-    template <class T> T windowY(T y) const { return static_cast<T>(y - origin().y); }
-    template <class T> std::array<T, 4> windowPosition(const T* v) const {
-        // The third value is read by the three-component forms, the fourth by MESA's.
-        return {windowX(v[0]), windowY(v[1]), v[2], v[3]};
+    template <class T> T windowX(T x) const { return moved(x, origin().x); }
+    template <class T> T windowY(T y) const { return moved(y, origin().y); }
+    // v: `count` values, 2 to 4, as they lie in the record (doubles at multiples of 4 bytes).
+    template <class T> std::array<T, 4> windowPosition(const T* v, int count) const {
+        std::array<T, 4> position{};
+        std::memcpy(position.data(), v, static_cast<size_t>(count) * sizeof(T));
+        position[0] = windowX(position[0]);
+        position[1] = windowY(position[1]);
+        return position;
+    }
+    // Coordinates may be any number: the difference wraps around instead of being undefined.
+    template <class T> static T moved(T value, int32_t by) {
+        if constexpr (std::is_integral_v<T>) return static_cast<T>(int64_t{value} - by);
+        else return static_cast<T>(value - static_cast<T>(by));
     }
 
 #include "replay_custom.inc"
@@ -103,6 +124,7 @@ private:
     struct ListItem {
         GLuint native = 0;
         std::vector<std::byte> record; // of a command that the node executes itself; empty: native
+        std::vector<std::vector<std::byte>> blobs; // that the record takes
     };
     struct List {
         std::vector<ListItem> items;
@@ -173,6 +195,7 @@ private:
         Window* read = nullptr;
         std::deque<std::vector<std::byte>> blobs;
         uint64_t blobMissing = 0; // bytes of the last blob that have not come
+        uint64_t blobBytes = 0;   // of all blobs, when complete
     };
     struct Client {
         std::map<uint32_t, std::unique_ptr<ContextState>> contexts;
@@ -184,15 +207,19 @@ private:
 
     // replay.cpp
     bool record(std::span<const std::byte> bytes);
-    bool execute(uint16_t opcode, std::span<const std::byte> arguments);
+    bool execute(uint16_t opcode, std::span<const std::byte> arguments, BlobQueue& blobs);
+    void compileSplit(std::span<const std::byte> bytes);
     bool makeStreamCurrent(uint32_t stream);
     bool bindStream(Stream& s);
     void loadFunctions();
     NameTable& table(Kind kind);
+    void runList(GLuint list);
     GLuint generate(Kind kind);
     bool splitsLists(uint16_t opcode, std::span<const std::byte> arguments) const;
     // replay_own.cpp
     bool own(uint16_t opcode, Args& in);
+    bool ownBlobBegin(Args& in);
+    bool ownDestroyWindow(Args& in);
     bool ownCreateContext(Args& in);
     bool ownMakeCurrent(Args& in);
     bool ownWindow(Args& in);
@@ -243,6 +270,8 @@ private:
     size_t scratchUsed_ = 0;
     std::vector<std::byte> pixels_;
     std::vector<bool> saidLacking_;
+    int listDepth_ = 0;         // display lists that are being run
+    uint32_t listCommands_ = 0; // run since the outermost one began
     std::unique_ptr<ContextState> none_; // stands in where a stream has no context
 };
 

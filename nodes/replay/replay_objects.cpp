@@ -93,14 +93,24 @@ bool indexPointers(const Data& indices, const GLsizei* count, GLenum type, GLsiz
 }
 } // namespace
 
+// Offsets only count with a buffer of indices bound, pointers only without.
+bool Replay::indicesFit(const Data& indices) {
+    uint32_t kind = 0;
+    GLint buffer = 0;
+    if (indices.span().size() < 8) return false;
+    std::memcpy(&kind, indices.span().data(), 4);
+    gl.glGetIntegerv(GL_ELEMENT_ARRAY_BUFFER_BINDING, &buffer);
+    return (kind == 1) == (buffer != 0);
+}
+
 void Replay::glMultiDrawElements(GLenum mode, const Data& count, GLenum type, const Data& indices, GLsizei drawcount) {
     std::vector<const void*> pointers;
-    if (drawcount > 0 && count.pointer() && indexPointers(indices, count.as<GLsizei>(), type, drawcount, pointers))
+    if (drawcount > 0 && count.pointer() && indicesFit(indices) && indexPointers(indices, count.as<GLsizei>(), type, drawcount, pointers))
         gl.glMultiDrawElements(mode, count.as<GLsizei>(), type, pointers.data(), drawcount);
 }
 void Replay::glMultiDrawElementsBaseVertex(GLenum mode, const Data& count, GLenum type, const Data& indices, GLsizei drawcount, const Data& basevertex) {
     std::vector<const void*> pointers;
-    if (drawcount > 0 && count.pointer() && basevertex.pointer() && indexPointers(indices, count.as<GLsizei>(), type, drawcount, pointers))
+    if (drawcount > 0 && count.pointer() && basevertex.pointer() && indicesFit(indices) && indexPointers(indices, count.as<GLsizei>(), type, drawcount, pointers))
         gl.glMultiDrawElementsBaseVertex(mode, count.as<GLsizei>(), type, pointers.data(), drawcount, basevertex.as<GLint>());
 }
 
@@ -213,7 +223,7 @@ void Replay::glNewList(GLuint list, GLenum mode) {
     c_->compileMode = mode;
     c_->building = {};
     const GLuint first = gl.glGenLists(1);
-    c_->building.items.push_back({first, {}});
+    c_->building.items.push_back({first, {}, {}});
     gl.glNewList(first, GL_COMPILE);
 }
 void Replay::glEndList() {
@@ -229,14 +239,52 @@ void Replay::glEndList() {
     c_->building = {};
     if (c_->compileMode == GL_COMPILE_AND_EXECUTE) glCallList(list);
 }
+
+// A command that the list can't hold natively goes between two native lists. What was spilled ahead of
+// it belongs to it, and is kept with it: the list may be called again and again.
+void Replay::compileSplit(std::span<const std::byte> bytes) {
+    gl.glEndList();
+    ListItem item{0, {bytes.begin(), bytes.end()}, {}};
+    for (bool found = true; found;) {
+        takeBlob(found);
+        if (found) item.blobs.push_back(std::move(taken_.back()));
+    }
+    c_->building.items.push_back(std::move(item));
+    const GLuint next = gl.glGenLists(1);
+    c_->building.items.push_back({next, {}, {}});
+    gl.glNewList(next, GL_COMPILE);
+}
+
+namespace {
+constexpr int kListNesting = 64; // GL_MAX_LIST_NESTING: lists that call themselves end there
+
+class ItemBlobs : public BlobQueue {
+public:
+    explicit ItemBlobs(const std::vector<std::vector<std::byte>>& blobs) : blobs_(blobs) {}
+    std::span<const std::byte> takeBlob(bool& found) override {
+        found = next_ < blobs_.size();
+        return found ? std::span<const std::byte>(blobs_[next_++]) : std::span<const std::byte>{};
+    }
+
+private:
+    const std::vector<std::vector<std::byte>>& blobs_;
+    size_t next_ = 0;
+};
+} // namespace
+
 void Replay::glCallList(GLuint list) {
+    if (listDepth_ == 0) listCommands_ = 0;
+    if (listDepth_ >= kListNesting) return;
+    ++listDepth_;
+    runList(list);
+    --listDepth_;
+}
+
+void Replay::runList(GLuint list) {
     const auto it = c_->shared->lists.find(list);
     if (it == c_->shared->lists.end()) return;
-    static int depth = 0; // lists that call themselves end at GL_MAX_LIST_NESTING
-    if (depth >= 64) return;
-    ++depth;
-    for (size_t i = 0; i < it->second.items.size(); ++i) {
-        const ListItem& item = it->second.items[i];
+    for (const ListItem& item : it->second.items) {
+        if (++listCommands_ > config_.limits.listCommands) return;
         if (item.record.empty()) {
             gl.glCallList(item.native);
             continue;
@@ -244,9 +292,11 @@ void Replay::glCallList(GLuint list) {
         uint32_t header = 0;
         std::memcpy(&header, item.record.data(), 4);
         const std::span<const std::byte> bytes = item.record;
-        execute(static_cast<uint16_t>(header & 0xffff), bytes.subspan(header >> 16 == record::kLongForm ? 8 : 4));
+        ItemBlobs blobs(item.blobs);
+        const size_t used = scratchUsed_;
+        execute(static_cast<uint16_t>(header & 0xffff), bytes.subspan(header >> 16 == record::kLongForm ? 8 : 4), blobs);
+        scratchUsed_ = used; // the caller's names stay, this command's are done with
     }
-    --depth;
 }
 void Replay::glCallLists(GLsizei n, GLenum type, const Data& lists) {
     if (!lists.pointer()) return;

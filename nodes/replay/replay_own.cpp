@@ -1,5 +1,6 @@
 // Mural's own records: contexts, windows, frames, client memory.
 #include <cstring>
+#include <utility>
 
 #include "nodes/replay/replay.hpp"
 #include "streamcodec/sizes/vertex_types.hpp"
@@ -7,7 +8,8 @@
 namespace mural {
 
 namespace {
-constexpr uint64_t kMaxBlobBytes = uint64_t{4} << 30;
+// More than any record takes (72 spans of client arrays): empty blobs must not pile up either.
+constexpr size_t kMaxBlobs = 256;
 
 gl::SurfaceConfig surfaceConfig(const wire::WindowConfig& c, int width, int height) {
     gl::SurfaceConfig s;
@@ -29,13 +31,7 @@ gl::SurfaceConfig surfaceConfig(const wire::WindowConfig& c, int width, int heig
 
 bool Replay::own(uint16_t opcode, Args& in) {
     switch (opcode) {
-    case wire::kOpBlobBegin: {
-        const auto bytes = in.get<uint64_t>();
-        if (!in.ok() || bytes > kMaxBlobBytes || s_->blobMissing) return false;
-        s_->blobs.emplace_back(); // grows with what really comes
-        s_->blobMissing = bytes;
-        return true;
-    }
+    case wire::kOpBlobBegin: return ownBlobBegin(in);
     case wire::kOpBlobData: {
         const auto bytes = in.get<uint32_t>();
         const auto* p = in.fixed<std::byte>(bytes);
@@ -48,14 +44,7 @@ bool Replay::own(uint16_t opcode, Args& in) {
     case wire::kOpDestroyContext: return in.get<uint32_t>(), in.ok(); // objects may be shared: freed with the program
     case wire::kOpMakeCurrent: return ownMakeCurrent(in);
     case wire::kOpWindow: return ownWindow(in);
-    case wire::kOpDestroyWindow: {
-        const auto id = in.get<uint32_t>();
-        auto& windows = clients_[wire::clientOf(stream_)].windows;
-        const auto it = windows.find(id);
-        if (!in.ok()) return false;
-        if (it != windows.end() && it->second.get() != boundDraw_ && it->second.get() != boundRead_) it->second->surface.reset();
-        return true;
-    }
+    case wire::kOpDestroyWindow: return ownDestroyWindow(in);
     case wire::kOpSwap: return ownSwap(in, false);
     case wire::kOpFrontPicture: return ownSwap(in, true);
     case wire::kOpClientArrays: return ownClientArrays(in);
@@ -77,12 +66,34 @@ bool Replay::own(uint16_t opcode, Args& in) {
     }
 }
 
+bool Replay::ownBlobBegin(Args& in) {
+    const auto bytes = in.get<uint64_t>();
+    if (!in.ok() || s_->blobMissing || s_->blobs.size() >= kMaxBlobs || s_->blobBytes > config_.limits.blobBytes ||
+        bytes > config_.limits.blobBytes - s_->blobBytes)
+        return false;
+    s_->blobs.emplace_back(); // grows with what really comes
+    s_->blobMissing = bytes;
+    s_->blobBytes += bytes;
+    return true;
+}
+
+bool Replay::ownDestroyWindow(Args& in) {
+    const auto id = in.get<uint32_t>();
+    auto& windows = clients_[wire::clientOf(stream_)].windows;
+    const auto it = windows.find(id);
+    if (!in.ok()) return false;
+    if (it != windows.end() && it->second.get() != boundDraw_ && it->second.get() != boundRead_) it->second->surface.reset();
+    return true;
+}
+
 bool Replay::ownCreateContext(Args& in) {
     const auto id = in.get<uint32_t>(), share = in.get<uint32_t>(), api = in.get<uint32_t>();
     const auto major = in.get<uint32_t>(), minor = in.get<uint32_t>(), profile = in.get<uint32_t>(), flags = in.get<uint32_t>();
     const auto* config = in.fixed<wire::WindowConfig>(sizeof(wire::WindowConfig));
     if (!in.ok() || api > 2) return false;
     Client& client = clients_[wire::clientOf(stream_)];
+    // Streams point at contexts: one that exists is never replaced.
+    if (id == 0 || client.contexts.count(id)) return false;
     const auto sharer = client.contexts.find(share);
     ContextState* with = sharer == client.contexts.end() ? nullptr : sharer->second.get();
     auto c = std::make_unique<ContextState>();
@@ -164,9 +175,11 @@ bool Replay::ownWindow(Args& in) {
     std::unique_ptr<gl::Surface> old = std::move(w.surface);
     w.surface = std::move(*made);
     if (bound) {
-        boundDraw_ = nullptr;
+        boundDraw_ = boundRead_ = nullptr;
         bound_ = nullptr;
         (void)bindStream(*s_);
+        // Another stream's context had it: that one binds the new surface with its next packet.
+        if (!bound_) (void)platform_->makeCurrent(nullptr, nullptr, nullptr);
     }
     return true;
 }
@@ -185,7 +198,13 @@ bool Replay::ownSwap(Args& in, bool) {
         Window& w = *it->second;
         f.config = w.config;
         f.region = w.region;
-        if (bound_ && &w == boundDraw_) f.pixels = [this, &w](const PixelViewport& r) { return readShown(w, r); };
+        // The thread that swaps need not be the one that has drawn: GLX takes any window.
+        if (bound_ && &w == boundDraw_ && w.surface) f.pixels = [this, &w](const PixelViewport& r) {
+            ContextState* const own = std::exchange(c_, bound_);
+            const std::byte* pixels = readShown(w, r);
+            c_ = own;
+            return pixels;
+        };
     }
     if (bound_ && gl.glFinish && !f.pixels) gl.glFinish();
     out_.frameDone(f);

@@ -1,14 +1,11 @@
 // What the program or the wall wants to see of what this node drew.
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 
 #include "nodes/replay/replay.hpp"
 
 namespace mural {
-
-namespace {
-constexpr uint64_t kMaxAnswerBytes = uint64_t{2} << 30;
-}
 
 // The read framebuffer is the program's; pack state and pack buffer are set aside.
 const std::byte* Replay::readRegion(const PixelViewport& r, GLenum format, GLenum type, size_t bytes) {
@@ -28,7 +25,7 @@ bool Replay::ownRequestPixels(Args& in) {
     const auto request = in.get<uint32_t>();
     const auto x = in.get<int32_t>(), y = in.get<int32_t>(), w = in.get<int32_t>(), h = in.get<int32_t>();
     const auto format = in.get<uint32_t>(), type = in.get<uint32_t>(), group = in.get<uint32_t>();
-    if (!in.ok() || w < 0 || h < 0 || group == 0 || group > 64 || uint64_t(w) * uint64_t(h) * group > kMaxAnswerBytes) return false;
+    if (!in.ok() || w < 0 || h < 0 || group == 0 || group > 64 || uint64_t(w) * uint64_t(h) > config_.limits.answerBytes / group) return false;
     const PixelViewport asked{x, y, w, h};
     if (!bound_ || group != sizes::groupBytes(format, type)) {
         answerBytes(request, wire::AnswerKind::Bytes, {});
@@ -71,7 +68,7 @@ bool Replay::ownRequestTexImage(Args& in) {
     const auto level = in.get<int32_t>();
     const auto format = in.get<uint32_t>(), type = in.get<uint32_t>();
     const auto bytes = in.get<uint64_t>();
-    if (!in.ok() || bytes > kMaxAnswerBytes) return false;
+    if (!in.ok() || bytes > config_.limits.answerBytes) return false;
     pixels_.assign(static_cast<size_t>(bytes), std::byte{0});
     if (bound_ && bytes > 0) {
         if (c_->packBuffer) gl.glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
@@ -137,7 +134,7 @@ bool Replay::ownFillWindow(Args& in) {
     const auto plane = in.get<uint32_t>();
     const Data data = in.data();
     const uint64_t bytesPer = plane == GL_STENCIL_BUFFER_BIT ? 1 : 4;
-    if (!in.ok() || w <= 0 || h <= 0 || data.absent() || !data.covers(uint64_t(w) * uint64_t(h) * bytesPer) || data.isOffset()) return false;
+    if (!in.ok() || w <= 0 || h <= 0 || data.absent() || data.isOffset() || data.size() / bytesPer / uint64_t(w) < uint64_t(h) || x > INT32_MAX - w || y > INT32_MAX - h) return false;
     if (!bound_ || !c_->read || !gl.glBlitFramebuffer || config_.lean) return true;
     if (plane != GL_COLOR_BUFFER_BIT) {
         fillDepthStencil({x, y, w, h}, plane, data.pointer());

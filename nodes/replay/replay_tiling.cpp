@@ -6,6 +6,7 @@
 // has the region's size and window coordinates are translated. Framebuffer objects are drawn whole.
 // Source: design §4, accuracy M4 and M1.
 #include <algorithm>
+#include <cstdint>
 
 #include "nodes/replay/replay.hpp"
 
@@ -19,6 +20,12 @@ constexpr GLenum kUnpackNames[8] = {GL_UNPACK_SWAP_BYTES, GL_UNPACK_LSB_FIRST, G
 constexpr GLenum kPackNames[8] = {GL_PACK_SWAP_BYTES, GL_PACK_LSB_FIRST, GL_PACK_ROW_LENGTH, GL_PACK_SKIP_ROWS,
                                   GL_PACK_SKIP_PIXELS, GL_PACK_ALIGNMENT, GL_PACK_SKIP_IMAGES, GL_PACK_IMAGE_HEIGHT};
 constexpr int kAlignment = 5;
+
+// The nearest int that there is; 0 for what is no number.
+GLint toInt(GLfloat value) {
+    if (!(value > -2147483648.0f)) return value <= -2147483648.0f ? INT32_MIN : 0;
+    return value < 2147483648.0f ? static_cast<GLint>(value) : INT32_MAX;
+}
 
 // Which of the eight the API knows.
 bool knows(wire::Api api, int version, int i, bool pack) {
@@ -79,7 +86,7 @@ void Replay::applyViewports() {
     const PixelViewport o = origin();
     const auto& v = c_->viewports[0];
     if (!c_->viewportsDiffer || !gl.glViewportIndexedf) {
-        gl.glViewport(static_cast<GLint>(v[0]) - o.x, static_cast<GLint>(v[1]) - o.y, static_cast<GLsizei>(v[2]), static_cast<GLsizei>(v[3]));
+        gl.glViewport(moved(toInt(v[0]), o.x), moved(toInt(v[1]), o.y), toInt(v[2]), toInt(v[3]));
         return;
     }
     for (GLuint i = 0; i < kViewports; ++i) {
@@ -100,7 +107,7 @@ void Replay::glViewport(GLint x, GLint y, GLsizei width, GLsizei height) {
     c_->viewports.fill(v);
     c_->viewportsDiffer = false;
     const PixelViewport o = origin();
-    gl.glViewport(x - o.x, y - o.y, width, height);
+    gl.glViewport(moved(x, o.x), moved(y, o.y), width, height);
 }
 void Replay::glViewportArrayv(GLuint first, GLsizei count, const Data& v) {
     if (count <= 0 || !v.pointer()) return;
@@ -293,7 +300,7 @@ void Replay::pixelStore(GLenum pname, GLint value) {
     gl.glPixelStorei(pname, value);
 }
 void Replay::glPixelStorei(GLenum pname, GLint param) { pixelStore(pname, param); }
-void Replay::glPixelStoref(GLenum pname, GLfloat param) { pixelStore(pname, static_cast<GLint>(param + (param < 0 ? -0.5f : 0.5f))); }
+void Replay::glPixelStoref(GLenum pname, GLfloat param) { pixelStore(pname, toInt(param + (param < 0 ? -0.5f : 0.5f))); }
 void Replay::glPixelStorex(GLenum pname, GLint param) { pixelStore(pname, param >> 16); }
 
 void Replay::setUnpack(bool tight) {
@@ -344,7 +351,7 @@ void Replay::glPolygonStipple(const Data& mask) {
 // ---- copies out of the window
 
 namespace {
-template <class T> T shifted(T value, int32_t by, bool window) { return window ? value - by : value; }
+GLint shifted(GLint value, int32_t by, bool window) { return window ? Replay::moved(value, by) : value; }
 } // namespace
 
 #define MURAL_FROM_WINDOW                                                                          \
