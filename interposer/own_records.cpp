@@ -108,20 +108,36 @@ void programLayout(ThreadState& t, GLuint program, const DataArg& layout) {
     endRecord(t, p, size);
 }
 
-void clientArrays(ThreadState& t, const client_arrays::ArrayRecord* arrays, uint32_t arrayCount, const DataArg* spans, uint32_t spanCount) {
-    uint32_t size = 12 + arrayCount * static_cast<uint32_t>(sizeof(client_arrays::ArrayRecord));
-    uint32_t inlineBytes = 0;
-    // Many middling spans would make a record larger than a chunk: the large ones go ahead.
+namespace {
+// A span is sent ahead of its record when it is large, or when the record would not fit into a chunk.
+constexpr uint32_t kMaxArrayRecordBytes = 128 * 1024;
+constexpr uint32_t kSmallSpanBytes = 1024; // 72 of them always fit
+
+uint32_t spanLimit(const DataArg* spans, uint32_t spanCount) {
+    uint64_t inlineBytes = 0;
     for (uint32_t i = 0; i < spanCount; ++i) inlineBytes += wireBytes(spans[i]);
-    for (uint32_t i = 0; i < spanCount; ++i) spillLarge(t, spans[i]);
-    size += inlineBytes;
+    return inlineBytes <= kMaxArrayRecordBytes ? record::kInlineBytes : kSmallSpanBytes;
+}
+} // namespace
+
+void clientArrays(ThreadState& t, const client_arrays::ArrayRecord* arrays, uint32_t arrayCount, const DataArg* spans, uint32_t spanCount) {
+    const uint32_t limit = spanLimit(spans, spanCount);
+    uint32_t size = 12 + arrayCount * static_cast<uint32_t>(sizeof(client_arrays::ArrayRecord));
+    for (uint32_t i = 0; i < spanCount; ++i) {
+        const bool ahead = spans[i].sizeBytes > limit;
+        if (ahead) spill(t, spans[i]);
+        size += ahead ? 4 : wireBytes(spans[i]);
+    }
     std::byte* p = beginRecord(t, wire::kOpClientArrays, size);
     if (!p) return;
     Writer w{p};
     w.put4(arrayCount);
     w.put4(spanCount);
     w.bytes(arrays, arrayCount * static_cast<uint32_t>(sizeof(client_arrays::ArrayRecord)));
-    for (uint32_t i = 0; i < spanCount; ++i) w.data(spans[i]);
+    for (uint32_t i = 0; i < spanCount; ++i) {
+        if (spans[i].sizeBytes > limit) w.put4(record::kTagBlob);
+        else w.data(spans[i]);
+    }
     endRecord(t, p, size);
 }
 
