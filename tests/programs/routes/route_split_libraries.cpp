@@ -14,9 +14,5 @@ programs::GlFunction find(const char* name) {
 
 int main(int argc, char** argv) {
     const programs::Options options = programs::parseOptions(argc, argv);
-    // Called by name as well, so that the program needs the library.
-    if (glXGetCurrentContext() != nullptr) {
-        programs::fail("a context before there is one");
-    }
     return programs::runSceneByGlx(options, find, find);
 }

@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+"""Runs tests of piglit (Debian package `piglit`), each natively and through Mural; the results must be
+the same. The tests look at their own pictures with glReadPixels, so this needs no stored results.
+
+  run_piglit.py --build build/release [--list piglit.txt] [--filter glsl] [--part 1/3] [--tiles 2x2]
+
+One line per test that differs; the status is 1 when one does, 77 when piglit is not installed.
+"""
+
+import argparse
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(HERE, "..", "end_to_end"))
+
+import display  # noqa: E402  (found by the path above)
+import programs  # noqa: E402
+
+ROOT = "/usr/lib/x86_64-linux-gnu/piglit"
+NOT_INSTALLED = 77
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", default="build/release")
+    parser.add_argument("--mural", help="the launcher; default BUILD/bin/mural")
+    parser.add_argument("--list", default=os.path.join(HERE, "piglit.txt"), help="one command per line")
+    parser.add_argument("--filter", default="", help="only commands that fit this pattern")
+    parser.add_argument("--part", default="1/1", help="K/N: each Nth command from the Kth on")
+    parser.add_argument("--tiles", default="2x2")
+    parser.add_argument("--seconds", type=int, default=60)
+    return parser.parse_args()
+
+
+def commands(arguments):
+    part, parts = (int(word) for word in arguments.part.split("/"))
+    with open(arguments.list, encoding="utf-8") as file:
+        lines = [line.strip() for line in file if line.strip() and not line.startswith("#")]
+    chosen = [line for line in lines if re.search(arguments.filter, line)]
+    return chosen[part - 1::parts]
+
+
+def results(output):
+    """The overall result and those of sub-tests, as piglit's tests print them."""
+    found = []
+    for line in output.splitlines():
+        if line.startswith("PIGLIT: "):
+            found.append(json.dumps(json.loads(line[len("PIGLIT: "):]), sort_keys=True))
+    return found
+
+
+def run(command, display_name, seconds, launcher=()):
+    words = command.split()
+    full = list(launcher) + [os.path.join(ROOT, "bin", words[0])] + words[1:] + ["-auto"]
+    environment = programs.clean_environment(display_name)
+    environment["PIGLIT_SOURCE_DIR"] = ROOT
+    process = subprocess.Popen(full, cwd=ROOT, env=environment, stdin=subprocess.DEVNULL,
+                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True)
+    try:
+        output = process.communicate(timeout=seconds)[0].decode(errors="replace")
+        return process.returncode, results(output), output
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        return None, [], process.communicate()[0].decode(errors="replace")
+
+
+def main():
+    arguments = parse_arguments()
+    if not os.path.isdir(ROOT):
+        print("piglit is not installed: apt-get install piglit")
+        return NOT_INSTALLED
+    mural = arguments.mural or os.path.join(os.path.abspath(arguments.build), "bin", "mural")
+    launcher = [mural, "run", "--tiles", arguments.tiles, "--display", "none", "--quiet", "--"]
+    wrong = 0
+    chosen = commands(arguments)
+    with display.PrivateDisplay() as display_name:
+        for command in chosen:
+            native_status, native, _ = run(command, display_name, arguments.seconds)
+            status, through, output = run(command, display_name, arguments.seconds, launcher)
+            if not native:
+                wrong += 1
+                print("%s: no result natively; take it out of the list" % command, flush=True)
+            elif native != through or not programs.same_status(native_status, status):
+                wrong += 1
+                said = [line for line in output.splitlines() if line.strip() and "PIGLIT" not in line]
+                print("%s: status %s, %s instead of status %s, %s; it said: %s" % (
+                    command, status, " ".join(through) or "no result", native_status, " ".join(native),
+                    " | ".join(said[-3:])), flush=True)
+    print("%d piglit tests, %d differ from the native run" % (len(chosen), wrong))
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
