@@ -1,0 +1,19 @@
+// A platform without GL: its functions do nothing but what callers rely on (names are made, answers
+// are written) and read as many bytes behind their pointers as GL would, so that a sanitizer sees a
+// length that was not checked.
+#pragma once
+
+#include <memory>
+
+#include "nodes/gl/gl_platform.hpp"
+
+namespace mural::fuzz {
+
+struct FakeGlOptions {
+    bool singleBuffered = false;
+    bool surfacesFail = false;
+};
+// One at a time per process.
+std::unique_ptr<gl::Platform> makeFakePlatform(const FakeGlOptions& options);
+
+} // namespace mural::fuzz

@@ -1,0 +1,242 @@
+// Streams that no encoder writes: class Replay refuses them, and keeps what it has.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <memory>
+
+#include "encoders.hpp"
+#include "interposer/own_records.hpp"
+#include "nodes/replay/replay.hpp"
+#include "tests/fuzz/fake_gl.hpp"
+#include "tests/interposer/encoder_harness.hpp"
+
+namespace mural {
+namespace {
+
+class ReplayTest : public ::testing::Test {
+protected:
+    void SetUp() override { start({}); }
+    void start(const ReplayLimits& limits) {
+        ReplayConfig config;
+        config.limits = limits;
+        ReplayOutputs out;
+        out.answer = [this](const wire::AnswerHeader& h, std::span<const std::byte> b) {
+            ++answers_;
+            header_ = h;
+            answerBytes_ = b.size();
+        };
+        out.frameDone = [this](const ReplayOutputs::Frame& f) {
+            frame_ = f;
+            pictureBytes_ = f.pixels ? static_cast<int64_t>(f.pixels(f.region) != nullptr) * f.region.area() * 4 : -1;
+        };
+        out.log = [this](const std::string& line) { log_ += line + "\n"; };
+        replay_ = std::make_unique<Replay>(fuzz::makeFakePlatform({}), config, out);
+    }
+
+    // What was encoded goes to the replay as packets of that thread of client 1.
+    bool send(uint32_t thread = 1) {
+        bool ok = true;
+        for (const auto& packet : encoder_.takePackets()) ok = replay_->packet(wire::streamOf(1, thread), packet) && ok;
+        return ok;
+    }
+    bool sendWords(const std::vector<uint32_t>& words) { return replay_->packet(wire::streamOf(1, 1), std::as_bytes(std::span(words))); }
+    static constexpr uint32_t head(uint32_t opcode, uint32_t words) { return opcode | words << 16; }
+
+    void begin(uint32_t thread = 1, uint32_t id = 1) {
+        wire::WindowConfig c{};
+        c.width = 64;
+        c.height = 32;
+        c.doubleBuffer = 1;
+        records::window(t_, id, c);
+        records::createContext(t_, {id, 0, 0, 4, 5, 0, 0, c});
+        records::makeCurrent(t_, id, id, id);
+        ASSERT_TRUE(send(thread));
+    }
+
+    testing::EncoderHarness encoder_;
+    ThreadState& t_ = encoder_.thread();
+    std::unique_ptr<Replay> replay_;
+    ReplayOutputs::Frame frame_{};
+    wire::AnswerHeader header_{};
+    int64_t pictureBytes_ = 0;
+    size_t answerBytes_ = 0;
+    int answers_ = 0;
+    std::string log_;
+};
+
+TEST_F(ReplayTest, AFrameComesOut) {
+    begin();
+    encode_glClear(t_, GL_COLOR_BUFFER_BIT);
+    records::swap(t_, 1, 7);
+    EXPECT_TRUE(send());
+    EXPECT_EQ(frame_.frame, 7u);
+    EXPECT_EQ(pictureBytes_, 64 * 32 * 4);
+    EXPECT_EQ(replay_->counts().malformed, 0u);
+}
+
+TEST_F(ReplayTest, BrokenHeadersEndThePacket) {
+    begin();
+    EXPECT_FALSE(sendWords({head(op::glEnd, 0)}));
+    EXPECT_FALSE(sendWords({head(op::glEnd, 2)}));
+    EXPECT_FALSE(sendWords({head(op::glEnd, record::kLongForm)}));
+    for (const uint32_t words : {0u, 1u, 3u, 0x40000000u, 0xffffffffu}) EXPECT_FALSE(sendWords({head(op::glEnd, record::kLongForm), words})) << words;
+    EXPECT_TRUE(sendWords({head(op::glEnd, record::kLongForm), 2}));
+    EXPECT_FALSE(sendWords({head(60, 1)}));     // an own opcode that does not exist
+    EXPECT_FALSE(sendWords({head(0xfff0, 1)})); // beyond all GL opcodes
+    EXPECT_TRUE(sendWords({head(op::glEnd, 1)}));
+    const std::byte odd[3] = {};
+    EXPECT_FALSE(replay_->packet(wire::streamOf(1, 1), odd));
+}
+
+TEST_F(ReplayTest, ShortArgumentsAreRefusedAndNamed) {
+    begin();
+    EXPECT_FALSE(sendWords({head(op::glVertex3f, 3), 0, 0}));
+    EXPECT_NE(log_.find("glVertex3f"), std::string::npos) << log_;
+    EXPECT_EQ(replay_->counts().malformed, 1u);
+    EXPECT_TRUE(sendWords({head(op::glVertex3f, 4), 0, 0, 0}));
+}
+
+TEST_F(ReplayTest, CountsThatOverflowAreRefused) {
+    begin();
+    // 0x10000001 matrices of 64 bytes: 16 bytes in 32-bit arithmetic.
+    EXPECT_FALSE(sendWords({head(op::glUniformMatrix4fv, 9), 0, 0x10000001, 0, 16, 0, 0, 0, 0}));
+    EXPECT_FALSE(sendWords({head(op::glUniform4fv, 8), 0, 0x40000001, 16, 0, 0, 0, 0}));
+}
+
+TEST_F(ReplayTest, OffsetsWhereOnlyBytesMakeSenseAreRefused) {
+    begin();
+    EXPECT_FALSE(sendWords({head(op::glDeleteTextures, 5), 1, record::kTagOffset, 64, 0}));
+    EXPECT_FALSE(sendWords({head(op::glCallLists, 6), 1, GL_UNSIGNED_BYTE, record::kTagOffset, 64, 0}));
+}
+
+TEST_F(ReplayTest, AContextIsNeverReplaced) {
+    begin();
+    wire::WindowConfig c{};
+    records::createContext(t_, {1, 0, 0, 4, 5, 0, 0, c});
+    EXPECT_FALSE(send());
+    records::createContext(t_, {0, 0, 0, 4, 5, 0, 0, c});
+    EXPECT_FALSE(send());
+    encode_glClear(t_, GL_COLOR_BUFFER_BIT);
+    EXPECT_TRUE(send());
+}
+
+TEST_F(ReplayTest, AWindowMayChangeUnderAnotherThreadsContext) {
+    begin(1);
+    wire::WindowConfig c{};
+    c.width = 128;
+    c.height = 32;
+    c.doubleBuffer = 1;
+    records::window(t_, 1, c);
+    records::swap(t_, 1, 1);
+    EXPECT_TRUE(send(2)); // a thread without a context
+    encode_glClear(t_, GL_COLOR_BUFFER_BIT);
+    records::swap(t_, 1, 2);
+    EXPECT_TRUE(send(1));
+    EXPECT_EQ(pictureBytes_, 128 * 32 * 4);
+    records::swap(t_, 1, 3); // GLX lets any thread swap any window
+    EXPECT_TRUE(send(2));
+    EXPECT_EQ(pictureBytes_, 128 * 32 * 4);
+    replay_->clientGone(1);
+    begin(1);
+}
+
+TEST_F(ReplayTest, BlobsAreBounded) {
+    start({.blobBytes = 1000});
+    begin();
+    records::blobBegin(t_, 1001);
+    EXPECT_FALSE(send());
+    const std::vector<std::byte> bytes(600);
+    records::blobBegin(t_, 600);
+    records::blobData(t_, bytes.data(), 600);
+    EXPECT_TRUE(send());
+    records::blobBegin(t_, 600);
+    EXPECT_FALSE(send()) << "600 bytes wait already";
+    EXPECT_TRUE(sendWords({head(op::glBufferData, 6), GL_ARRAY_BUFFER, 600, 0, record::kTagBlob, GL_STATIC_DRAW}));
+    records::blobBegin(t_, 600);
+    EXPECT_TRUE(send()) << "the others have been taken";
+    records::blobBegin(t_, 0);
+    EXPECT_FALSE(send()) << "the one before is not complete";
+    start({});
+    begin();
+    int taken = 0;
+    while (taken < 100000 && (records::blobBegin(t_, 0), send())) ++taken;
+    EXPECT_LT(taken, 1000) << "empty blobs must not pile up";
+}
+
+TEST_F(ReplayTest, AnIncompleteBlobIsNotTaken) {
+    begin();
+    records::blobBegin(t_, 8);
+    EXPECT_TRUE(send());
+    EXPECT_FALSE(sendWords({head(op::glBufferData, 6), GL_ARRAY_BUFFER, 8, 0, record::kTagBlob, GL_STATIC_DRAW}));
+}
+
+TEST_F(ReplayTest, ListsThatCallThemselvesEnd) {
+    start({.listCommands = 1000});
+    begin();
+    encode_glNewList(t_, 1, GL_COMPILE);
+    encode_glCallList(t_, 1);
+    encode_glCallList(t_, 1);
+    encode_glEndList(t_);
+    encode_glCallList(t_, 1);
+    EXPECT_TRUE(send());
+}
+
+TEST_F(ReplayTest, ListsKeepTheirLargeValues) {
+    begin();
+    const std::vector<std::byte> pixels(100 * 50 * 4, std::byte{1});
+    encode_glNewList(t_, 1, GL_COMPILE);
+    encode_glDrawPixels(t_, 100, 50, GL_RGBA, GL_UNSIGNED_BYTE, DataArg::of(pixels.data(), pixels.size()));
+    encode_glEndList(t_);
+    encode_glCallList(t_, 1);
+    encode_glCallList(t_, 1);
+    // The blob went into the list: the next value takes its own.
+    const std::vector<std::byte> data(20000);
+    encode_glBufferData(t_, GL_ARRAY_BUFFER, 20000, DataArg::of(data.data(), data.size()), GL_STATIC_DRAW);
+    EXPECT_TRUE(send());
+    EXPECT_FALSE(sendWords({head(op::glBufferData, 6), GL_ARRAY_BUFFER, 8, 0, record::kTagBlob, GL_STATIC_DRAW})) << "no blob is left over";
+}
+
+TEST_F(ReplayTest, RequestsAreBoundedAndAnswered) {
+    start({.answerBytes = 1 << 16});
+    begin();
+    records::requestPixels(t_, 1, 2147483647, 2147483647, 100, 100, GL_RGBA, GL_UNSIGNED_BYTE, 4);
+    EXPECT_TRUE(send());
+    EXPECT_EQ(answers_, 1);
+    EXPECT_EQ(answerBytes_, 0u);
+    records::requestPixels(t_, 2, -10, -10, 100, 100, GL_RGBA, GL_UNSIGNED_BYTE, 4);
+    EXPECT_TRUE(send());
+    EXPECT_EQ(answerBytes_, 64u * 32 * 4);
+    records::requestPixels(t_, 3, 0, 0, 2147483647, 2147483647, GL_RGBA, GL_UNSIGNED_BYTE, 4);
+    EXPECT_FALSE(send());
+    records::requestTexImage(t_, 4, 1, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, (1 << 16) + 1);
+    EXPECT_FALSE(send());
+    EXPECT_EQ(answers_, 2);
+}
+
+TEST_F(ReplayTest, ClientArraysStayWithinTheirSpans) {
+    begin();
+    const std::vector<std::byte> span(120);
+    const DataArg data = DataArg::of(span.data(), span.size());
+    client_arrays::ArrayRecord a{client_arrays::kVertex, 3, GL_FLOAT, 0, 12, 0, 0, 0, 10};
+    records::clientArrays(t_, &a, 1, &data, 1);
+    EXPECT_TRUE(send());
+    for (const auto& spoil : std::initializer_list<std::function<void(client_arrays::ArrayRecord&)>>{
+             [](auto& r) { r.elementCount = 11; }, [](auto& r) { r.elementCount = 0; }, [](auto& r) { r.elementCount = 0xffffffff; },
+             [](auto& r) { r.strideBytes = 0xffffffff; }, [](auto& r) { r.offsetBytes = 4; }, [](auto& r) { r.span = 1; },
+             [](auto& r) { r.slot = client_arrays::kSlots; }}) {
+        client_arrays::ArrayRecord bad = a;
+        spoil(bad);
+        records::clientArrays(t_, &bad, 1, &data, 1);
+        EXPECT_FALSE(send());
+    }
+}
+
+TEST_F(ReplayTest, GlWithoutAContextDoesNothing) {
+    encode_glClear(t_, GL_COLOR_BUFFER_BIT);
+    records::swap(t_, 1, 1);
+    EXPECT_TRUE(send());
+    EXPECT_EQ(pictureBytes_, -1);
+}
+
+} // namespace
+} // namespace mural

@@ -1,0 +1,159 @@
+#!/usr/bin/env python3
+"""Tests of streamcodec/gen: what comes out for a tiny registry, and what holds for the real one.
+
+  generator_test.py            runs the tests
+  generator_test.py --update   accepts what comes out now as golden.txt; read the difference first
+"""
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(HERE)))
+GEN = os.path.join(ROOT, 'streamcodec', 'gen')
+REAL = os.path.join(ROOT, 'streamcodec', 'registry')
+GOLDEN = os.path.join(HERE, 'golden.txt')
+GL_XML = next((p for p in ('/usr/share/khronos-api/gl.xml', '/usr/share/khronos-api/api/gl.xml') if os.path.exists(p)), None)
+GL_XML = os.environ.get('MURAL_GL_XML', GL_XML)
+sys.path.insert(0, GEN)
+import registry  # noqa: E402
+
+
+def generate(*options):
+    return subprocess.run([sys.executable, os.path.join(GEN, 'generate.py'), *options], capture_output=True, text=True)
+
+
+def read(path):
+    with open(path, encoding='utf-8') as f:
+        return f.read()
+
+
+def write(path, text):
+    with open(path, 'w', encoding='utf-8') as f:
+        f.write(text)
+
+
+def tiny(name):
+    return os.path.join(HERE, name)
+
+
+def generated(xml=tiny('gl.xml'), semantics=tiny('semantics.txt'), lock=tiny('opcodes.lock')):
+    """All files that come out, as one text."""
+    with tempfile.TemporaryDirectory() as out:
+        run = generate('--registry', xml, '--semantics', semantics, '--lock', lock, '--out', out)
+        if run.returncode != 0:
+            raise AssertionError(run.stderr)
+        return ''.join('==== %s\n%s' % (f, read(os.path.join(out, f))) for f in sorted(os.listdir(out)))
+
+
+class TinyRegistry(unittest.TestCase):
+    maxDiff = None
+
+    def test_output_is_as_agreed(self):
+        self.assertEqual(read(GOLDEN), generated())
+
+    def test_output_is_the_same_every_time(self):
+        self.assertEqual(generated(), generated())
+
+    def test_products_of_counts_are_made_in_64_bits(self):
+        self.assertIn('vn(count,16)', generated())
+        self.assertNotIn('count*4', generated())
+
+    def test_command_that_is_not_in_the_lock_is_not_carried(self):
+        with tempfile.TemporaryDirectory() as folder:
+            lock = os.path.join(folder, 'lock')
+            names = read(tiny('opcodes.lock'))
+            write(lock, names.replace('glVertex2s\n', ''))
+            text = generated(lock=lock)
+        self.assertIn('{"glVertex2s", "unsupported", "newer than opcodes.lock", false, 0}', text)
+        self.assertNotIn('encode_glVertex2s', text)
+
+    def test_update_of_the_lock_only_appends(self):
+        with tempfile.TemporaryDirectory() as folder:
+            lock = os.path.join(folder, 'lock')
+            write(lock, 'glUniform4fv\nglGone\n')
+            run = generate('--registry', tiny('gl.xml'), '--semantics', tiny('semantics.txt'), '--lock', lock, '--update-lock')
+            self.assertEqual(run.returncode, 0, run.stderr)
+            lines = [n for n in read(lock).splitlines() if n[0] != '#']
+        self.assertEqual(lines[:2], ['glUniform4fv', 'glGone'])
+        self.assertEqual(sorted(lines[2:]), ['glColor3ubv', 'glGenTextures', 'glGetFloatv', 'glOddPointersX', 'glTexImage1D', 'glVertex2s'])
+
+    def test_rule_that_matches_nothing_is_an_error(self):
+        with tempfile.TemporaryDirectory() as folder:
+            rules = os.path.join(folder, 'rules')
+            write(rules, 'glNoSuchCommand draw\n')
+            run = generate('--registry', tiny('gl.xml'), '--semantics', rules, '--lock', tiny('opcodes.lock'), '--out', folder)
+        self.assertNotEqual(run.returncode, 0)
+        self.assertIn('rules:1: no command matches glNoSuchCommand', run.stderr)
+
+
+@unittest.skipUnless(GL_XML, 'no gl.xml here: install khronos-api')
+class RealRegistry(unittest.TestCase):
+    CLASSES = {'state', 'object', 'draw', 'query', 'sync', 'transfer', 'frame', 'unsupported'}
+
+    @classmethod
+    def setUpClass(cls):
+        cls.commands, cls.extensions = registry.load(GL_XML, os.path.join(REAL, 'semantics.txt'))
+        cls.canonical = [c for c in cls.commands.values() if not c.alias]
+        cls.sent = [c for c in cls.canonical if c.sent]
+        cls.lock = [n for n in read(os.path.join(REAL, 'opcodes.lock')).splitlines() if n and n[0] != '#']
+
+    def test_every_command_has_a_class(self):
+        self.assertGreater(len(self.canonical), 2000)
+        self.assertEqual([], [c.name for c in self.canonical if c.command_class not in self.CLASSES])
+
+    def test_every_unsupported_command_has_a_reason(self):
+        self.assertEqual([], [c.name for c in self.canonical if c.command_class == 'unsupported' and not c.reason.strip()])
+
+    def test_opcodes_are_unique_and_complete(self):
+        self.assertEqual(len(self.lock), len(set(self.lock)))
+        self.assertEqual([], [c.name for c in self.canonical if c.name not in set(self.lock)])
+        self.assertLess(64 + len(self.lock), 0xffff)
+
+    def test_lock_only_grew(self):
+        """What git has of the lock is the beginning of what stands here."""
+        run = subprocess.run(['git', '-C', ROOT, 'show', 'HEAD:streamcodec/registry/opcodes.lock'], capture_output=True, text=True)
+        if run.returncode != 0:
+            self.skipTest('no git history here')
+        old = [n for n in run.stdout.splitlines() if n and n[0] != '#']
+        self.assertEqual(old, self.lock[:len(old)])
+
+    def test_no_generated_wrapper_writes_to_client_memory(self):
+        """Names that the driver makes are the one exception: they travel after the driver's own call."""
+        wrong = [(c.name, p.name) for c in self.sent if c.option('app') != 'custom' for p in c.params
+                 if p.pointers and not p.const and p.how != 'made']
+        self.assertEqual([], wrong)
+
+    def test_every_parameter_of_a_sent_command_travels(self):
+        self.assertEqual([], [(c.name, p.name) for c in self.sent for p in c.params if p.how is None])
+
+    def test_no_size_multiplies_in_32_bits(self):
+        wrong = [(c.name, p.expr) for c in self.sent for p in c.params if p.how == 'array' and re.search(r'\w\*\d|\d\*\w', str(p.expr))]
+        self.assertEqual([], wrong)
+
+    def test_arrays_of_names_are_as_long_as_they_are_read(self):
+        """replay_.names() reads `length` names: the size that is checked must be four bytes for each."""
+        wrong = [(c.name, p.expr) for c in self.sent for p in c.params if p.how == 'array' and p.kind and p.length
+                 and p.expr not in ('vn(%s,4)' % p.length, 'n4(%s,%s)' % (p.length, p.name))]
+        self.assertEqual([], wrong)
+
+    def test_core_commands_are_carried_or_explained(self):
+        """No command of a core version is left out by an accident of parsing."""
+        vague = ('is not described', 'no rule explains', 'is unknown')
+        wrong = [(c.name, c.reason) for c in self.canonical if c.feature and c.command_class == 'unsupported' and any(v in c.reason for v in vague)]
+        self.assertEqual([], wrong)
+
+    def test_aliases_lead_to_commands_that_have_a_class(self):
+        for c in self.commands.values():
+            if c.alias:
+                self.assertIsNone(self.commands[c.alias].alias, c.name)
+
+
+if __name__ == '__main__':
+    if sys.argv[1:] == ['--update']:
+        write(GOLDEN, generated())
+    else:
+        unittest.main()
