@@ -18,7 +18,7 @@ std::set<unsigned> toSet(hwloc_const_bitmap_t bitmap) {
     return cpus;
 }
 
-std::string busIdOf(const hwloc_pcidev_attr_s& pci) {
+std::string busIdOf(const hwloc_obj_attr_u::hwloc_pcidev_attr_s& pci) {
     std::array<char, 32> text{};
     std::snprintf(text.data(), text.size(), "%04x:%02x:%02x.%01x", static_cast<unsigned>(pci.domain), static_cast<unsigned>(pci.bus), static_cast<unsigned>(pci.dev), static_cast<unsigned>(pci.func));
     return text.data();

@@ -1,9 +1,14 @@
 #include <gtest/gtest.h>
 #include <sched.h>
+#include <unistd.h>
 
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
 #include <thread>
 
 #include "nodes/placement/placement.hpp"
+#include "two_packages.hpp"
 
 namespace mural {
 namespace {
@@ -32,6 +37,28 @@ TEST(PlaceThread, saysWhatItDoes) {
     }
     const cpu_set_t afterwards = coresOfThisThread();
     EXPECT_TRUE(CPU_EQUAL(&before, &afterwards));
+}
+
+// hwloc is told that core 0 and core 1 are two NUMA nodes; the better GPU cannot be told from the other
+// by its bus, so the first is taken: the one on core 0.
+TEST(PlaceThread, bindsToTheCoresNearTheDevice) {
+    const cpu_set_t before = coresOfThisThread();
+    if (!CPU_ISSET(0, &before) || !CPU_ISSET(1, &before)) GTEST_SKIP() << "cores 0 and 1 may not be used here";
+    const std::string path = testing::TempDir() + "mural_placement_" + std::to_string(getpid()) + ".xml";
+    std::ofstream(path) << twoPackagesXml(1);
+    setenv("HWLOC_XMLFILE", path.c_str(), 1);
+    setenv("HWLOC_THISSYSTEM", "1", 1);
+    std::thread([] {
+        const Placement placement = placeThread(DeviceKind::Gpu);
+        EXPECT_TRUE(placement.bound);
+        EXPECT_EQ(placement.description, "on cores 0, near PCI 0000:01:00.0 (of 2)");
+        const cpu_set_t after = coresOfThisThread();
+        EXPECT_EQ(CPU_COUNT(&after), 1);
+        EXPECT_TRUE(CPU_ISSET(0, &after));
+    }).join();
+    unsetenv("HWLOC_XMLFILE");
+    unsetenv("HWLOC_THISSYSTEM");
+    std::remove(path.c_str());
 }
 
 } // namespace
