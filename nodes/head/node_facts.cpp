@@ -54,6 +54,7 @@ Result<NodeFacts> nodeFactsFromJson(const std::string& text) {
     NodeFacts facts;
     facts.host = textOf(json, "host");
     facts.renderer = textOf(json, "renderer");
+    facts.placement = textOf(json, "placement");
     facts.glVersion = versionOf(json);
     facts.extensions = extensionsOf(json);
     const auto pid = json.find("pid");

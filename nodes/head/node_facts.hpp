@@ -13,6 +13,7 @@ struct NodeFacts {
     std::string host;
     int64_t pid = 0;
     std::string renderer;
+    std::string placement; // of the replay thread; for --explain
     int glVersion = 0; // 10 * major + minor, 0: unknown
     std::vector<std::string> extensions;
 };

@@ -33,6 +33,8 @@ Json reportOf(const SessionNumbers& n) {
         nodes.push_back({{"node", node.node},
                          {"frames", node.frames},
                          {"cpuSeconds", node.cpuSeconds},
+                         {"replaySeconds", node.replaySeconds},
+                         {"readbackSeconds", node.readbackSeconds},
                          {"commands", node.commands},
                          {"lost", node.lost}});
     }

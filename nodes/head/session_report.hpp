@@ -15,7 +15,9 @@ namespace mural {
 struct NodeTotals {
     int node = 0;
     int64_t frames = 0;
-    double cpuSeconds = 0;
+    double cpuSeconds = 0;      // of the whole process
+    double replaySeconds = 0;   // CPU time of its replay thread: drawing…
+    double readbackSeconds = 0; // …and reading the pictures
     int64_t commands = 0;
     bool lost = false;
 };

@@ -12,6 +12,7 @@
 #include "nodes/gl/gl_probe.hpp"
 #include "nodes/node/head_line.hpp"
 #include "nodes/node/tile_windows.hpp"
+#include "nodes/placement/placement.hpp"
 #include "nodes/replay/replay.hpp"
 #include "nodes/session/session_config.hpp"
 
@@ -29,6 +30,14 @@ double processCpuSeconds() {
     rusage r{};
     getrusage(RUSAGE_SELF, &r);
     return static_cast<double>(r.ru_utime.tv_sec + r.ru_stime.tv_sec) + 1e-6 * static_cast<double>(r.ru_utime.tv_usec + r.ru_stime.tv_usec);
+}
+
+// Near the GPU. Not where the CPU draws: the driver's threads need all cores then.
+std::string placeReplay(const NodeSetup& setup, const std::string& renderer) {
+    if (!setup.placeThreads) return "not placed: --no-placement";
+    for (const char* software : {"llvmpipe", "softpipe", "swrast", "SWR"})
+        if (renderer.find(software) != std::string::npos) return "not placed: drawn without a GPU";
+    return placeThread(DeviceKind::Gpu).description;
 }
 
 std::string hostName() {
@@ -85,6 +94,7 @@ private:
         auto platform = gl::openPlatform(setup_.glBackend);
         if (!platform) return fail(platform.error().message);
         nlohmann::json ready = probe(**platform);
+        ready["placement"] = placeReplay(setup_, ready.value("renderer", ""));
         if (setup_.wallWindows) {
             auto windows = TileWindows::open(setup_);
             if (!windows) return fail(windows.error().message);
