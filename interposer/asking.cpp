@@ -39,8 +39,10 @@ GLenum takeError(Context& c) {
     return gReal.glGetError();
 }
 
+GLenum driverError() { return gReal.glGetError(); }
+
 void stashError(Context& c, GLenum error) {
-    if (!c.stashedError) c.stashedError = error;
+    if (!c.stashedError) c.stashedError = error; // GL keeps the first
 }
 
 const void* askPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type) {

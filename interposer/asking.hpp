@@ -22,12 +22,14 @@ bool askFinish(ThreadState& t);
 // is kept for the program's next glGetError.
 template <class Call> bool raisesNothing(Context& c, Call&& call);
 GLenum takeError(Context& c);
+GLenum driverError();
 void stashError(Context& c, GLenum error);
 
 template <class Call> bool raisesNothing(Context& c, Call&& call) {
-    stashError(c, takeError(c));
+    const GLenum pending = takeError(c); // the program's own, not asked for yet: it comes first
     call();
-    const GLenum error = takeError(c);
+    const GLenum error = driverError();
+    stashError(c, pending);
     stashError(c, error);
     return error == GL_NO_ERROR;
 }

@@ -88,7 +88,7 @@ void verifyFrame(ThreadState& t, Window& w) {
     uint32_t largest = 0;
     for (size_t i = 0; theirs && i < pixels; ++i) {
         uint32_t worst = 0;
-        for (size_t k = 0; k < 3; ++k) {
+        for (size_t k = 0; k < 4; ++k) {
             const int d = mine[4 * i + k] - theirs[4 * i + k];
             const auto size = static_cast<uint32_t>(d < 0 ? -d : d);
             worst = size > worst ? size : worst;
