@@ -26,10 +26,9 @@ GLenum driverError();
 void stashError(Context& c, GLenum error);
 
 template <class Call> bool raisesNothing(Context& c, Call&& call) {
-    const GLenum pending = takeError(c); // the program's own, not asked for yet: it comes first
+    stashError(c, driverError()); // the program's own, not asked for yet, comes first
     call();
     const GLenum error = driverError();
-    stashError(c, pending);
     stashError(c, error);
     return error == GL_NO_ERROR;
 }
