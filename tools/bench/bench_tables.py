@@ -70,7 +70,7 @@ def _pixel_line(measured):
 def show(results, calls, cores):
     print("%d cores; medians; walls: tiles drawn by as many nodes (at most 4), all on this machine" % cores)
     if results:
-        _print_table("frames per second", ["program", "wall", "frames/s", "range", "of native", "bytes/frame"], _rate_rows(results))
+        _print_table("frames per second; bytes to each node, what the program sends at its start shared out over the frames", ["program", "wall", "frames/s", "range", "of native", "bytes/frame"], _rate_rows(results))
         _print_table("ms per frame (CPU: app and head whole processes, nodes their sum; replay and readback: the replay thread's CPU in the node that needs most)",
                      ["program", "wall", "elapsed", "app main thread CPU", "app CPU", "app blocked", "head CPU", "nodes CPU", "replay", "readback"],
                      _time_rows(results))
