@@ -5,6 +5,8 @@
 #include <poll.h>
 #include <thread>
 
+#include "nodes/placement/placement.hpp"
+
 namespace mural {
 namespace {
 
@@ -89,6 +91,7 @@ int HeadSession::run() {
 // ---- start
 
 Result<void> HeadSession::bringUp() {
+    placement_ = placeOwnThreads(); // before its threads start: they inherit it
     nodes_.startReading();
     for (const NodePlan& plan : plan_.nodes)
         nodes_.sendSetup(plan.node, toJson(setupOf(config_, plan_, plan)));
@@ -149,13 +152,26 @@ void HeadSession::openTables() {
     serving_ = true;
 }
 
-std::vector<std::string> HeadSession::explainLines() const {
+// Near the network card, when there is a network in between.
+std::string HeadSession::placeOwnThreads() const {
+    if (!config_.placeThreads) return "not placed: --no-placement";
+    if (config_.hosts.empty()) return "not placed: all nodes are on this machine";
+    return placeThread(DeviceKind::Network).description;
+}
+
+std::vector<std::string> HeadSession::explainLines() {
     std::vector<std::string> lines = plan_.explain;
     lines.push_back(config_.tiling == Tiling::Exact
                         ? "tiling exact: every node has a frame buffer of the whole picture and draws "
                           "its tiles only; no pixel differs from a single machine's"
                         : "tiling lean: frame buffers of the tiles' size; up to 0.25 % of the pixels "
                           "may differ, mostly by 1");
+    lines.push_back("threads of the head: " + placement_);
+    const std::lock_guard lock(mutex_);
+    for (const NodePlan& plan : plan_.nodes) {
+        const std::string& placement = facts_[static_cast<size_t>(plan.node)].placement;
+        if (!placement.empty()) lines.push_back("thread of node " + std::to_string(plan.node) + ": " + placement);
+    }
     return lines;
 }
 
@@ -239,8 +255,10 @@ Result<void> HeadSession::nodeFrameDone(int node, const wire::FrameDoneMessage& 
     }
     {
         const std::lock_guard lock(mutex_);
-        totals_[static_cast<size_t>(node)].cpuSeconds +=
-            static_cast<double>(message.replayNs) / static_cast<double>(kNsPerS);
+        NodeTotals& totals = totals_[static_cast<size_t>(node)];
+        totals.replaySeconds += static_cast<double>(message.replayNs) / static_cast<double>(kNsPerS);
+        totals.readbackSeconds += static_cast<double>(message.readbackNs) / static_cast<double>(kNsPerS);
+        totals.cpuSeconds = totals.replaySeconds + totals.readbackSeconds; // until its Bye knows better
     }
     return frames_.frameDone(node, message, monotonicNowNs());
 }

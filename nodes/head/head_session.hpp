@@ -68,7 +68,8 @@ private:
     Result<void> awaitReady();
     void openTables();
     void announceReady();
-    std::vector<std::string> explainLines() const;
+    std::string placeOwnThreads() const;
+    std::vector<std::string> explainLines();
 
     void serve();
     bool askedToFinish(Deadline deadline); // waits until then for the control connection
@@ -89,6 +90,7 @@ private:
     HeadOptions options_;
     const int nodeCount_;
     const bool sendsPictures_;
+    std::string placement_; // of the head's threads
 
     // In the order of construction; the nodes' readers use all of it and are ended before.
     FrameTracker frames_;
