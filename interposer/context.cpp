@@ -265,6 +265,7 @@ void endFrame(Window* w) {
     s->publish(t, false);
     s->waitForCredit(s->welcome().latency);
     updateWindowSize(t, *w);
+    t.context->sizeChecked = false;
     refreshDrawLocally(t);
 }
 

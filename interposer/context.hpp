@@ -24,7 +24,24 @@ struct ShareGroup {
     int persistentMaps = 0;
 };
 
+// One bit per query name. Names beyond are taken as false.
+class QueryBits {
+public:
+    void set(GLuint name, bool on) {
+        if (name >= kNames) return;
+        const uint64_t bit = uint64_t{1} << name % 64;
+        bits_[name / 64] = on ? bits_[name / 64] | bit : bits_[name / 64] & ~bit;
+    }
+    [[nodiscard]] bool get(GLuint name) const { return name < kNames && (bits_[name / 64] >> name % 64 & 1); }
+
+private:
+    static constexpr GLuint kNames = 16384;
+    uint64_t bits_[kNames / 64] = {};
+};
+
 struct Context {
+    bool sizeChecked = false;  // the window's size was asked since the last frame
+    QueryBits queryIsAny;      // ANY_SAMPLES_PASSED and its kin
     uint32_t id = 0;
     ShareGroup* group = nullptr;
     wire::Api api = wire::Api::Desktop;

@@ -29,7 +29,7 @@ void loadOwnNeeds() {
     static const char* const kNames[] = {
         "glGetString", "glGetStringi", "glGetIntegerv", "glGetError", "glGetInteger64v", "glGetBooleanv", "glIsEnabled",
         "glReadPixels", "glPixelStorei", "glBindBuffer", "glBindFramebuffer", "glReadBuffer", "glGetBufferParameteriv",
-        "glGetNamedBufferParameteriv", "glGetBufferSubData", "glGetNamedBufferSubData", "glMapBufferRange",
+        "glGetNamedBufferParameteriv", "glGetBufferSubData", "glGetNamedBufferSubData", "glMapBufferRange", "glUnmapBuffer",
         "glGetProgramiv", "glGetActiveUniform", "glGetActiveAttrib", "glGetUniformLocation", "glGetAttribLocation",
         "glGetTexLevelParameteriv", "glFinish", "glFlush", "glEnable", "glDisable", "glGetVertexAttribiv",
         "glGetActiveUniformBlockName", "glGetProgramResourceiv", "glGetProgramResourceName", "glGetProgramInterfaceiv",

@@ -91,16 +91,32 @@ GLint elementBufferBinding() {
     return buffer;
 }
 
+namespace {
+// A copy of a part of the bound element buffer. ES has no glGetBufferSubData: there it is mapped.
+const void* elementBufferContent(ThreadState& t, const Context& c, GLintptr offset, size_t bytes) {
+    void* copy = secondScratch(t, bytes);
+    if (!copy) return nullptr;
+    if (c.api == wire::Api::Desktop) {
+        gReal.glGetBufferSubData(GL_ELEMENT_ARRAY_BUFFER, offset, static_cast<GLsizeiptr>(bytes), copy);
+        return copy;
+    }
+    if (!gReal.glMapBufferRange || !gReal.glUnmapBuffer) return nullptr;
+    const void* mapped = gReal.glMapBufferRange(GL_ELEMENT_ARRAY_BUFFER, offset, static_cast<GLsizeiptr>(bytes), GL_MAP_READ_BIT);
+    if (!mapped) return nullptr;
+    std::memcpy(copy, mapped, bytes);
+    gReal.glUnmapBuffer(GL_ELEMENT_ARRAY_BUFFER);
+    return copy;
+}
+} // namespace
+
 VertexRange indexedRange(ThreadState& t, const Context& c, GLsizei count, GLenum type, const void* indices, GLint baseVertex) {
     const uint32_t bytes = sizes::typeBytes(type);
     if (count <= 0 || bytes == 0 || bytes > 4) return {};
     const auto n = static_cast<size_t>(count);
     const void* data = indices;
     if (elementBufferBinding() != 0) {
-        void* copy = secondScratch(t, n * bytes);
-        if (!copy) return {};
-        gReal.glGetBufferSubData(GL_ELEMENT_ARRAY_BUFFER, reinterpret_cast<GLintptr>(indices), static_cast<GLsizeiptr>(n * bytes), copy);
-        data = copy;
+        data = elementBufferContent(t, c, reinterpret_cast<GLintptr>(indices), n * bytes);
+        if (!data) return {};
     }
     bool restart = false;
     uint32_t restartIndex = 0;

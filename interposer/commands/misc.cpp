@@ -72,6 +72,23 @@ GLint mural_glRenderMode(GLenum mode) {
     return hits;
 }
 
+// Drivers look at the window's size when a program sets its viewport: so a resize takes effect there.
+void mural_glViewport(GLint x, GLint y, GLsizei width, GLsizei height) {
+    ThreadState& t = *tThread;
+    gReal.glViewport(x, y, width, height);
+    if (t.context && !t.context->sizeChecked) {
+        t.context->sizeChecked = true;
+        if (Window* w = findWindowById(t.context->drawWindow)) updateWindowSize(t, *w);
+    }
+    encode_glViewport(t, x, y, width, height);
+}
+void mural_glBeginQuery(GLenum target, GLuint id) {
+    ThreadState& t = *tThread;
+    if (t.context) t.context->queryIsAny.set(id, target == GL_ANY_SAMPLES_PASSED || target == GL_ANY_SAMPLES_PASSED_CONSERVATIVE);
+    encode_glBeginQuery(t, target, id);
+    gReal.glBeginQuery(target, id);
+}
+
 void mural_glFlush() {
     ThreadState& t = *tThread;
     encode_glFlush(t);

@@ -188,6 +188,7 @@ template <class T, class Local> void queryObject(GLuint id, GLenum pname, T* par
     if (!raisesNothing(*t.context, local) || !counts) return;
     uint64_t value = 0;
     if (!askQuery(t, id, pname, value)) return;
+    if (value > 1 && t.context->queryIsAny.get(id)) value = 1; // one answer of yes or no, from several tiles
     const uint64_t largest = static_cast<uint64_t>(sizeof(T) == 4 ? (static_cast<T>(-1) < 0 ? INT32_MAX : UINT32_MAX) : UINT64_MAX);
     *params = static_cast<T>(value < largest ? value : largest);
 }

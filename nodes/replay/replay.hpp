@@ -135,6 +135,7 @@ private:
         std::unordered_map<GLuint, ProgramInfo> programs; // by the program's name
         std::unordered_map<GLuint, List> lists;
         NameTable framebuffersOfAll;
+
     };
     struct Scissor {
         bool enabled = false;
@@ -159,7 +160,13 @@ private:
         std::array<GLint, 8> pack;
         GLuint arrayBuffer;
     };
+    // What kind of count a query is, and whether every node counts the same.
+    struct QueryInfo {
+        GLenum target = 0;
+        bool whole = false; // of a framebuffer object: drawn whole on every node
+    };
     struct ContextState {
+        std::unordered_map<GLuint, QueryInfo> queries; // by the program's name
         uint32_t client = 0, id = 0;
         std::unique_ptr<gl::Context> context;
         std::shared_ptr<Shared> shared;
@@ -209,6 +216,7 @@ private:
     bool record(std::span<const std::byte> bytes);
     bool execute(uint16_t opcode, std::span<const std::byte> arguments, BlobQueue& blobs);
     void compileSplit(std::span<const std::byte> bytes);
+    bool planted(uint16_t opcode);
     bool makeStreamCurrent(uint32_t stream);
     bool bindStream(Stream& s);
     void loadFunctions();

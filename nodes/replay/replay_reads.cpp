@@ -15,7 +15,8 @@ const std::byte* Replay::readRegion(const PixelViewport& r, GLenum format, GLenu
     packTightly(true);
     const bool window = config_.lean && c_->readFramebuffer == 0 && c_->read;
     const PixelViewport o = window ? c_->read->region : PixelViewport{};
-    gl.glReadPixels(r.x - o.x, r.y - o.y, r.w, r.h, format, type, pixels_.data());
+    const int32_t planted = config_.plant == "shift" && c_->readFramebuffer == 0 && r.x > 0 ? 1 : 0;
+    gl.glReadPixels(r.x - o.x - planted, r.y - o.y, r.w, r.h, format, type, pixels_.data());
     packTightly(false);
     if (c_->packBuffer) gl.glBindBuffer(GL_PIXEL_PACK_BUFFER, c_->packBuffer);
     return pixels_.data();
@@ -85,11 +86,21 @@ bool Replay::ownRequestTexImage(Args& in) {
     return true;
 }
 
+void Replay::glBeginQuery(GLenum target, GLuint id) {
+    c_->queries[id] = {target, c_->drawFramebuffer != 0};
+    gl.glBeginQuery(target, name(Kind::Query, id));
+}
+
+// Samples are counted tile by tile and added; what every node counts alike is taken from one.
 bool Replay::ownRequestQuery(Args& in) {
     const auto request = in.get<uint32_t>(), query = in.get<uint32_t>(), pname = in.get<uint32_t>();
     if (!in.ok()) return false;
+    const auto info = c_->queries.find(query);
+    const GLenum target = info == c_->queries.end() ? 0 : info->second.target;
+    const bool samples = target == GL_SAMPLES_PASSED || target == GL_ANY_SAMPLES_PASSED || target == GL_ANY_SAMPLES_PASSED_CONSERVATIVE;
+    const bool added = samples && !info->second.whole;
     uint64_t value = 0;
-    if (bound_ && gl.glGetQueryObjectui64v) {
+    if (bound_ && gl.glGetQueryObjectui64v && c_->api == wire::Api::Desktop) {
         GLuint64 result = 0;
         gl.glGetQueryObjectui64v(name(Kind::Query, query), pname == GL_QUERY_RESULT_NO_WAIT ? GL_QUERY_RESULT : pname, &result);
         value = result;
@@ -98,7 +109,7 @@ bool Replay::ownRequestQuery(Args& in) {
         gl.glGetQueryObjectuiv(name(Kind::Query, query), GL_QUERY_RESULT, &result);
         value = result;
     }
-    answerBytes(request, wire::AnswerKind::Sum, std::as_bytes(std::span(&value, 1)));
+    answerBytes(request, added ? wire::AnswerKind::Sum : wire::AnswerKind::Bytes, std::as_bytes(std::span(&value, 1)));
     return true;
 }
 
