@@ -45,13 +45,13 @@ void stashError(Context& c, GLenum error) {
     if (!c.stashedError) c.stashedError = error; // GL keeps the first
 }
 
-const void* askPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type) {
+const void* askPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type, bool plain) {
     const uint32_t group = sizes::groupBytes(format, type);
     if (w <= 0 || h <= 0 || group == 0) return nullptr;
     const uint64_t bytes = uint64_t(w) * uint64_t(h) * group;
     void* into = secondScratch(t, bytes);
     if (!into) return nullptr;
-    const bool ok = ask(t, into, bytes, [&](uint32_t request) { records::requestPixels(t, request, x, y, w, h, format, type, group); });
+    const bool ok = ask(t, into, bytes, [&](uint32_t request) { records::requestPixels(t, request, x, y, w, h, format, type, plain ? group | wire::kPlainTransfer : group); });
     return ok ? into : nullptr;
 }
 

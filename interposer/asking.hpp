@@ -13,7 +13,8 @@ struct Context;
 
 // The rectangle of the current read framebuffer, tightly packed, put together from all nodes; in
 // scratch memory of the thread. Null: no answer.
-const void* askPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type);
+// plain: without the program's pixel transfer.
+const void* askPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type, bool plain = false);
 const void* askTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type, uint64_t sizeBytes);
 bool askQuery(ThreadState& t, GLuint query, GLenum name, uint64_t& value);
 bool askFinish(ThreadState& t);

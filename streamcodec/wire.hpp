@@ -126,6 +126,9 @@ enum Op : uint16_t {
 };
 constexpr uint16_t kFirstGlOpcode = 64;
 
+// In groupBytes of kOpRequestPixels: without the program's pixel transfer (scale, bias, maps).
+constexpr uint32_t kPlainTransfer = 0x80000000;
+
 // What the app's drawable looks like; the nodes make their surfaces alike.
 struct WindowConfig {
     uint32_t width, height; // pixels

@@ -42,7 +42,7 @@ void gather(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield p
                            {GL_STENCIL_BUFFER_BIT, GL_STENCIL_INDEX, GL_UNSIGNED_BYTE, window->config.stencil, 1}};
     for (const Plane& p : kinds) {
         if (!(planes & p.bit) || p.bits == 0) continue;
-        const void* pixels = askPixels(t, gx, gy, gw, gh, p.format, p.type);
+        const void* pixels = askPixels(t, gx, gy, gw, gh, p.format, p.type, true);
         if (pixels) records::fillWindow(t, gx, gy, gw, gh, p.bit, DataArg::of(pixels, uint64_t(gw) * uint64_t(gh) * p.bytes));
     }
 }

@@ -246,6 +246,7 @@ private:
     const std::byte* readRegion(const PixelViewport& r, GLenum format, GLenum type, size_t bytes);
     const std::byte* readShown(Window& w, const PixelViewport& r);
     void packTightly(bool tight);
+    void withPlainTransfer(const std::function<void()>& call);
     // replay_tiling.cpp
     [[nodiscard]] PixelViewport origin() const; // of this node's framebuffer in the window (lean)
     void applyScissors();

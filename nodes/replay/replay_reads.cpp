@@ -22,10 +22,23 @@ const std::byte* Replay::readRegion(const PixelViewport& r, GLenum format, GLenu
     return pixels_.data();
 }
 
+// Pixel transfer (scale, bias, maps) belongs to the program's own reads and draws, not to ours.
+void Replay::withPlainTransfer(const std::function<void()>& call) {
+    const bool has = c_->api == wire::Api::Desktop && !c_->core && gl.glPixelTransferf && gl.glPushAttrib;
+    if (!has) return call();
+    gl.glPushAttrib(GL_PIXEL_MODE_BIT);
+    for (const GLenum scale : {GL_RED_SCALE, GL_GREEN_SCALE, GL_BLUE_SCALE, GL_ALPHA_SCALE, GL_DEPTH_SCALE}) gl.glPixelTransferf(scale, 1);
+    for (const GLenum bias : {GL_RED_BIAS, GL_GREEN_BIAS, GL_BLUE_BIAS, GL_ALPHA_BIAS, GL_DEPTH_BIAS, GL_INDEX_SHIFT, GL_INDEX_OFFSET, GL_MAP_COLOR, GL_MAP_STENCIL})
+        gl.glPixelTransferf(bias, 0);
+    call();
+    gl.glPopAttrib();
+}
+
 bool Replay::ownRequestPixels(Args& in) {
     const auto request = in.get<uint32_t>();
     const auto x = in.get<int32_t>(), y = in.get<int32_t>(), w = in.get<int32_t>(), h = in.get<int32_t>();
-    const auto format = in.get<uint32_t>(), type = in.get<uint32_t>(), group = in.get<uint32_t>();
+    const auto format = in.get<uint32_t>(), type = in.get<uint32_t>(), groupAndFlag = in.get<uint32_t>();
+    const uint32_t group = groupAndFlag & ~wire::kPlainTransfer;
     if (!in.ok() || w < 0 || h < 0 || group == 0 || group > 64 || uint64_t(w) * uint64_t(h) > config_.limits.answerBytes / group) return false;
     const PixelViewport asked{x, y, w, h};
     if (!bound_ || group != sizes::groupBytes(format, type)) {
@@ -39,7 +52,10 @@ bool Replay::ownRequestPixels(Args& in) {
     }
     const PixelViewport part = c_->read ? intersect(asked, c_->read->region) : PixelViewport{};
     const size_t bytes = static_cast<size_t>(part.area()) * group;
-    const std::byte* pixels = readRegion(part, format, type, bytes);
+    const std::byte* pixels = nullptr;
+    const auto read = [&] { pixels = readRegion(part, format, type, bytes); };
+    if (groupAndFlag & wire::kPlainTransfer) withPlainTransfer(read);
+    else read();
     wire::AnswerHeader header{};
     header.client = wire::clientOf(stream_);
     header.requestId = request;
@@ -129,7 +145,8 @@ const std::byte* Replay::readShown(Window& w, const PixelViewport& r) {
     c_->read = &w;
     const size_t bytes = static_cast<size_t>(r.area()) * 4;
     const bool bgra = c_->api == wire::Api::Desktop;
-    const std::byte* pixels = readRegion(r, bgra ? GL_BGRA : GL_RGBA, GL_UNSIGNED_BYTE, bytes);
+    const std::byte* pixels = nullptr;
+    withPlainTransfer([&] { pixels = readRegion(r, bgra ? GL_BGRA : GL_RGBA, GL_UNSIGNED_BYTE, bytes); });
     for (size_t i = 0; !bgra && i < bytes; i += 4) std::swap(pixels_[i], pixels_[i + 2]);
     c_->read = read;
     c_->readFramebuffer = bound;
@@ -162,7 +179,7 @@ bool Replay::ownFillWindow(Args& in) {
     gl.glBindTexture(GL_TEXTURE_2D, texture);
     if (c_->unpackBuffer) gl.glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
     setUnpack(true);
-    gl.glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, w, h, 0, GL_RGBA, GL_UNSIGNED_BYTE, data.pointer());
+    withPlainTransfer([&] { gl.glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, w, h, 0, GL_RGBA, GL_UNSIGNED_BYTE, data.pointer()); });
     if (c_->unpackBuffer) gl.glBindBuffer(GL_PIXEL_UNPACK_BUFFER, c_->unpackBuffer);
     gl.glBindTexture(GL_TEXTURE_2D, static_cast<GLuint>(texture2d));
     if (!c_->fillFramebuffer) gl.glGenFramebuffers(1, &c_->fillFramebuffer);

@@ -52,6 +52,8 @@ class Comparison:
         self.display_name = display_name
         self.folder = folder
         self.failures = 0
+        self.known = 0
+        self.healed = []
 
     def run(self, name, label, launcher=(), environment=None):
         arguments = self.arguments
@@ -84,6 +86,14 @@ class Comparison:
             self.report(name, label, len(native.frames()), wrong, time.monotonic() - start)
 
     def report(self, name, label, frames, wrong, seconds=0.0):
+        known = programs.KNOWN_DIFFERENCES.get(name) if label in self.launchers() and label != "native" else None
+        if known and wrong is not None and "pixels differ in" in wrong:
+            self.known += 1
+            wrong = "known to differ (%s): %s" % (known, wrong.split(",")[0])
+            print("%-24s %-9s %3d frames  %s  (%.1f s)" % (name, label, frames, wrong, seconds), flush=True)
+            return
+        if known and wrong is None and label not in ("1x1",):
+            self.healed.append(name)
         self.failures += wrong is not None
         print("%-24s %-9s %3d frames  %s  (%.1f s)" % (
             name, label, frames, "0 pixels differ" if wrong is None else "WRONG: " + wrong, seconds),
@@ -145,7 +155,9 @@ def main():
     finally:
         if not arguments.keep:
             shutil.rmtree(folder, ignore_errors=True)
-    print("%d programs, %d comparisons wrong" % (len(names), comparison.failures))
+    print("%d programs, %d comparisons wrong, %d known to differ" % (len(names), comparison.failures, comparison.known))
+    for name in comparison.healed:
+        print("%s is exact now: take it out of KNOWN_DIFFERENCES in programs.py" % name)
     return 1 if comparison.failures else 0
 
 
