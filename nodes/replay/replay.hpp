@@ -222,6 +222,7 @@ private:
     void loadFunctions();
     NameTable& table(Kind kind);
     void runList(GLuint list);
+    void runItem(const ListItem& item);
     GLuint generate(Kind kind);
     bool splitsLists(uint16_t opcode, std::span<const std::byte> arguments) const;
     // replay_own.cpp
@@ -245,6 +246,7 @@ private:
     void answerBytes(uint32_t request, wire::AnswerKind kind, std::span<const std::byte> bytes);
     const std::byte* readRegion(const PixelViewport& r, GLenum format, GLenum type, size_t bytes);
     const std::byte* readShown(Window& w, const PixelViewport& r);
+    const std::byte* readResolved(const PixelViewport& r, GLenum format, size_t bytes);
     void packTightly(bool tight);
     void withPlainTransfer(const std::function<void()>& call);
     // replay_tiling.cpp

@@ -1,5 +1,6 @@
 // Commands whose objects or pointers mean something else on this node.
 #include <cstring>
+#include <utility>
 
 #include "gl_opcodes.hpp"
 #include "nodes/replay/replay.hpp"
@@ -181,6 +182,23 @@ void Replay::glRenderMode(GLenum mode) {
     gl.glRenderMode(mode);
 }
 
+namespace {
+constexpr int kListNesting = 64; // GL_MAX_LIST_NESTING: lists that call themselves end there
+
+class ItemBlobs : public BlobQueue {
+public:
+    explicit ItemBlobs(const std::vector<std::vector<std::byte>>& blobs) : blobs_(blobs) {}
+    std::span<const std::byte> takeBlob(bool& found) override {
+        found = next_ < blobs_.size();
+        return found ? std::span<const std::byte>(blobs_[next_++]) : std::span<const std::byte>{};
+    }
+
+private:
+    const std::vector<std::vector<std::byte>>& blobs_;
+    size_t next_ = 0;
+};
+} // namespace
+
 // ---- display lists. A list of the program is one of ours, or several with commands between them
 // that the node executes itself because they depend on its tile or on the program's names.
 
@@ -224,7 +242,7 @@ void Replay::glNewList(GLuint list, GLenum mode) {
     c_->building = {};
     const GLuint first = gl.glGenLists(1);
     c_->building.items.push_back({first, {}, {}});
-    gl.glNewList(first, GL_COMPILE);
+    gl.glNewList(first, mode); // compile-and-execute is left to the driver: its playback may draw otherwise
 }
 void Replay::glEndList() {
     if (!c_->compiling) return;
@@ -237,7 +255,6 @@ void Replay::glEndList() {
     }
     slot = std::move(c_->building);
     c_->building = {};
-    if (c_->compileMode == GL_COMPILE_AND_EXECUTE) glCallList(list);
 }
 
 // A command that the list can't hold natively goes between two native lists. What was spilled ahead of
@@ -250,27 +267,16 @@ void Replay::compileSplit(std::span<const std::byte> bytes) {
         if (found) item.blobs.push_back(std::move(taken_.back()));
     }
     c_->building.items.push_back(std::move(item));
+    if (c_->compileMode == GL_COMPILE_AND_EXECUTE) {
+        const GLuint compiling = std::exchange(c_->compiling, 0);
+        runItem(c_->building.items.back());
+        c_->compiling = compiling;
+    }
     const GLuint next = gl.glGenLists(1);
     c_->building.items.push_back({next, {}, {}});
-    gl.glNewList(next, GL_COMPILE);
+    gl.glNewList(next, c_->compileMode);
 }
 
-namespace {
-constexpr int kListNesting = 64; // GL_MAX_LIST_NESTING: lists that call themselves end there
-
-class ItemBlobs : public BlobQueue {
-public:
-    explicit ItemBlobs(const std::vector<std::vector<std::byte>>& blobs) : blobs_(blobs) {}
-    std::span<const std::byte> takeBlob(bool& found) override {
-        found = next_ < blobs_.size();
-        return found ? std::span<const std::byte>(blobs_[next_++]) : std::span<const std::byte>{};
-    }
-
-private:
-    const std::vector<std::vector<std::byte>>& blobs_;
-    size_t next_ = 0;
-};
-} // namespace
 
 void Replay::glCallList(GLuint list) {
     if (listDepth_ == 0) listCommands_ = 0;
@@ -289,14 +295,19 @@ void Replay::runList(GLuint list) {
             gl.glCallList(item.native);
             continue;
         }
-        uint32_t header = 0;
-        std::memcpy(&header, item.record.data(), 4);
-        const std::span<const std::byte> bytes = item.record;
-        ItemBlobs blobs(item.blobs);
-        const size_t used = scratchUsed_;
-        execute(static_cast<uint16_t>(header & 0xffff), bytes.subspan(header >> 16 == record::kLongForm ? 8 : 4), blobs);
-        scratchUsed_ = used; // the caller's names stay, this command's are done with
+        runItem(item);
     }
+}
+
+// A command of a list that the node executes itself.
+void Replay::runItem(const ListItem& item) {
+    uint32_t header = 0;
+    std::memcpy(&header, item.record.data(), 4);
+    const std::span<const std::byte> bytes = item.record;
+    ItemBlobs blobs(item.blobs);
+    const size_t used = scratchUsed_;
+    execute(static_cast<uint16_t>(header & 0xffff), bytes.subspan(header >> 16 == record::kLongForm ? 8 : 4), blobs);
+    scratchUsed_ = used; // the caller's names stay, this command's are done with
 }
 void Replay::glCallLists(GLsizei n, GLenum type, const Data& lists) {
     if (!lists.pointer()) return;

@@ -146,13 +146,46 @@ const std::byte* Replay::readShown(Window& w, const PixelViewport& r) {
     const size_t bytes = static_cast<size_t>(r.area()) * 4;
     const bool bgra = c_->api == wire::Api::Desktop;
     const std::byte* pixels = nullptr;
-    withPlainTransfer([&] { pixels = readRegion(r, bgra ? GL_BGRA : GL_RGBA, GL_UNSIGNED_BYTE, bytes); });
+    const GLenum format = bgra ? GL_BGRA : GL_RGBA;
+    const bool resolves = w.config.samples > 0 && separate && gl.glBlitFramebuffer && gl.glRenderbufferStorage && !config_.lean && !r.empty();
+    if (resolves) pixels = readResolved(r, format, bytes);
+    else withPlainTransfer([&] { pixels = readRegion(r, format, GL_UNSIGNED_BYTE, bytes); });
     for (size_t i = 0; !bgra && i < bytes; i += 4) std::swap(pixels_[i], pixels_[i + 2]);
     c_->read = read;
     c_->readFramebuffer = bound;
     if (chooses) gl.glReadBuffer(windowBuffer(c_->readBuffer0, &w));
     if (otherRead) (void)platform_->makeCurrent(c_->context.get(), w.surface.get(), boundRead_ ? boundRead_->surface.get() : nullptr);
     if (bound && gl.glBindFramebuffer) gl.glBindFramebuffer(target, name(Kind::Framebuffer, separate ? bound : draw));
+    return pixels;
+}
+
+// A swap shows the resolved picture; glReadPixels of a multisampled window gives one sample (Mesa).
+// The window is bound for reading when this is called, and again afterwards.
+const std::byte* Replay::readResolved(const PixelViewport& r, GLenum format, size_t bytes) {
+    GLint renderbuffer = 0;
+    gl.glGetIntegerv(GL_RENDERBUFFER_BINDING, &renderbuffer);
+    GLuint buffer = 0, framebuffer = 0;
+    gl.glGenRenderbuffers(1, &buffer);
+    gl.glGenFramebuffers(1, &framebuffer);
+    gl.glBindRenderbuffer(GL_RENDERBUFFER, buffer);
+    gl.glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, r.w, r.h);
+    gl.glBindRenderbuffer(GL_RENDERBUFFER, static_cast<GLuint>(renderbuffer));
+    gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
+    gl.glFramebufferRenderbuffer(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, buffer);
+    gl.glDisable(GL_SCISSOR_TEST);
+    const bool srgb = c_->api == wire::Api::Desktop && gl.glIsEnabled(GL_FRAMEBUFFER_SRGB);
+    if (srgb) gl.glDisable(GL_FRAMEBUFFER_SRGB);
+    gl.glBlitFramebuffer(r.x, r.y, r.right(), r.top(), 0, 0, r.w, r.h, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    if (srgb) gl.glEnable(GL_FRAMEBUFFER_SRGB);
+    gl.glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
+    const std::byte* pixels = nullptr;
+    withPlainTransfer([&] { pixels = readRegion({0, 0, r.w, r.h}, format, GL_UNSIGNED_BYTE, bytes); });
+    gl.glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+    gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER, name(Kind::Framebuffer, c_->drawFramebuffer));
+    gl.glDeleteFramebuffers(1, &framebuffer);
+    gl.glDeleteRenderbuffers(1, &buffer);
+    c_->scissorsDiffer = c_->scissorsDiffer || gl.glScissorIndexed; // every viewport's enable was touched
+    applyScissors();
     return pixels;
 }
 

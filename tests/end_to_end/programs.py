@@ -125,6 +125,5 @@ KNOWN_DIFFERENCES = {
     "glsl_stages": "buffers written by transform feedback are read back from the program's own context",
     "fragment_counters": "atomic counters of fragment shaders count on each node",
     "queries": "results in query buffer objects and counters of several kinds",
-    "display_lists": "compile-and-execute runs at the end of the list",
     "client_arrays": "glArrayElement with memory changed between Begin and End",
 }
