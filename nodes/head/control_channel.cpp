@@ -9,8 +9,9 @@
 namespace mural {
 namespace {
 
-// `mural run` reads all the time; when it does not take a line for this long it is as good as gone.
-constexpr int64_t kWritePatienceMs = 2000;
+// `mural run` may be stopped for a while (Ctrl-Z). Lines wait for it, so that nobody here has to.
+constexpr size_t kMaxUnsentBytes = size_t{1} << 20;
+constexpr int64_t kLastLinesMs = 5000;
 constexpr size_t kMaxLineBytes = size_t{4} << 20;
 
 int pollMs(Deadline deadline) {
@@ -30,23 +31,29 @@ void ControlChannel::error(const std::string& text) { send({{"event", "error"}, 
 
 void ControlChannel::writeLine(const std::string& line) {
     const std::lock_guard lock(mutex_);
-    const Deadline deadline = Deadline::inMs(kWritePatienceMs);
-    size_t done = 0;
-    while (!broken_ && done < line.size()) {
-        const ssize_t n = ::send(fd_.get(), line.data() + done, line.size() - done,
-                                 MSG_NOSIGNAL | MSG_DONTWAIT);
-        if (n >= 0) {
-            done += static_cast<size_t>(n);
-            continue;
-        }
-        if (errno == EINTR) continue;
-        const bool full = errno == EAGAIN || errno == EWOULDBLOCK;
-        if (!full || deadline.passed()) {
-            broken_ = true;
-            return;
-        }
+    if (unsent_.size() > kMaxUnsentBytes) return; // nobody has read for a long time
+    unsent_ += line;
+    writeSome();
+}
+
+// As much as there is room for.
+void ControlChannel::writeSome() {
+    while (!broken_ && !unsent_.empty()) {
+        const ssize_t n = ::send(fd_.get(), unsent_.data(), unsent_.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+        if (n > 0) unsent_.erase(0, static_cast<size_t>(n));
+        if (n >= 0 || errno == EINTR) continue;
+        broken_ = errno != EAGAIN && errno != EWOULDBLOCK;
+        return;
+    }
+}
+
+ControlChannel::~ControlChannel() {
+    const Deadline deadline = Deadline::inMs(kLastLinesMs);
+    const std::lock_guard lock(mutex_);
+    while (!broken_ && !unsent_.empty() && !deadline.passed()) {
         pollfd room{fd_.get(), POLLOUT, 0};
         poll(&room, 1, pollMs(deadline));
+        writeSome();
     }
 }
 
@@ -65,9 +72,17 @@ std::optional<std::string> ControlChannel::receive(Deadline deadline) {
 // False when nothing more can be had now.
 bool ControlChannel::fill(Deadline deadline) {
     pollfd data{fd_.get(), POLLIN, 0};
+    {
+        const std::lock_guard lock(mutex_);
+        if (!unsent_.empty()) data.events |= POLLOUT;
+    }
     const int ready = poll(&data, 1, pollMs(deadline));
     if (ready < 0) return false; // a signal: the caller looks at its flag
     if (ready == 0) return !deadline.passed();
+    if ((data.revents & POLLOUT) != 0) {
+        const std::lock_guard lock(mutex_);
+        writeSome();
+    }
     char bytes[4096];
     const ssize_t n = recv(fd_.get(), bytes, sizeof(bytes), MSG_DONTWAIT);
     if (n > 0) {

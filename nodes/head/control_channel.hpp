@@ -13,10 +13,13 @@
 
 namespace mural {
 
-// send(), say() and progress() from any thread; the receiving calls from one.
+// send(), say() and error() from any thread, never blocking; the receiving calls from one.
 class ControlChannel {
 public:
     explicit ControlChannel(FileDescriptor fd) : fd_(std::move(fd)) {}
+    ControlChannel(const ControlChannel&) = delete;
+    ControlChannel& operator=(const ControlChannel&) = delete;
+    ~ControlChannel(); // waits a while until the last lines are written
 
     void send(const nlohmann::json& event);
     void say(const std::string& text); // one line for the user
@@ -29,13 +32,15 @@ public:
 
 private:
     void writeLine(const std::string& line);
+    void writeSome();
     bool fill(Deadline deadline);
     void markBroken();
     [[nodiscard]] bool markedBroken() const;
 
     FileDescriptor fd_;
-    mutable std::mutex mutex_; // writers, and broken_
     std::string received_;
+    mutable std::mutex mutex_; // what follows
+    std::string unsent_;
     bool broken_ = false;
 };
 

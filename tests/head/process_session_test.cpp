@@ -45,6 +45,19 @@ int childrenLeft() {
     return count;
 }
 
+// kill() returns before the process has stopped.
+bool stopped(pid_t pid) {
+    if (kill(pid, SIGSTOP) != 0) return false;
+    const Deadline deadline = Deadline::inMs(kTestPatienceMs);
+    while (!deadline.passed()) {
+        std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
+        std::string number, name, state;
+        if (stat >> number >> name >> state && state == "T") return true;
+        std::this_thread::yield();
+    }
+    return false;
+}
+
 int64_t descriptorsOpen() {
     const auto folder = std::filesystem::directory_iterator("/proc/self/fd");
     return std::distance(begin(folder), end(folder));
@@ -106,9 +119,10 @@ TEST(ProcessSession, aKilledNodeIsNamedWithItsSignal) {
 
 TEST(ProcessSession, stoppedNodesAreEndedWithTheSession) {
     SessionHarness head(2);
+    head.options.byePatienceMs = 3000;
     head.startProcesses(ownPath());
     const auto ready = head.waitFor("ready");
-    ASSERT_EQ(kill(ready["nodes"][0]["pid"].get<pid_t>(), SIGSTOP), 0);
+    ASSERT_TRUE(stopped(ready["nodes"][0]["pid"]));
     const auto report = head.finish();
     EXPECT_EQ(report["nodes"][0]["lost"], true);
     EXPECT_EQ(report["nodes"][1]["lost"], false);

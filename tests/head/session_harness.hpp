@@ -30,7 +30,7 @@ public:
         config.localNodes = nodes;
         options.registryDigest = kTestDigest;
         options.chunkCount = 16;
-        options.byePatienceMs = 300;
+        options.byePatienceMs = 1000;
     }
     ~SessionHarness() {
         mine_ = FileDescriptor(); // the head ends when its control connection breaks
