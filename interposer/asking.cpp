@@ -68,6 +68,12 @@ bool askQuery(ThreadState& t, GLuint query, GLenum name, uint64_t& value) {
     return ask(t, &value, sizeof value, [&](uint32_t request) { records::requestQuery(t, request, query, name); });
 }
 
+const void* askBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t sizeBytes) {
+    void* into = sizeBytes ? secondScratch(t, sizeBytes) : nullptr;
+    if (!into) return nullptr;
+    return ask(t, into, sizeBytes, [&](uint32_t request) { records::requestBuffer(t, request, buffer, offset, sizeBytes); }) ? into : nullptr;
+}
+
 bool askFinish(ThreadState& t) {
     uint64_t nothing = 0;
     return ask(t, &nothing, sizeof nothing, [&](uint32_t request) { records::requestFinish(t, request); });

@@ -17,6 +17,8 @@ struct Context;
 const void* askPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type, bool plain = false);
 const void* askTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type, uint64_t sizeBytes);
 bool askQuery(ThreadState& t, GLuint query, GLenum name, uint64_t& value);
+// Bytes of a buffer as the nodes have it; in scratch memory.
+const void* askBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t sizeBytes);
 bool askFinish(ThreadState& t);
 
 // Runs `call` on the program's own context for its error alone: true when it raised none. The error

@@ -22,6 +22,7 @@ struct ShareGroup {
     int threads = 0; // that have a context of the group current
     PersistentMap* maps = nullptr; // mappings of buffers that are not unmapped yet
     int persistentMaps = 0;
+    bool nodesWriteBuffers = false; // transform feedback or shaders have written into buffers
 };
 
 // One bit per query name. Names beyond are taken as false.

@@ -100,6 +100,10 @@ DataArg packStrings(ThreadState& t, GLsizei count, const GLchar* const* strings,
     return DataArg::of(out, total);
 }
 
+void buffersWrittenByNodes(ThreadState& t) {
+    if (t.context) t.context->group->nodesWriteBuffers = true;
+}
+
 void unsupportedCalled(const char* name, const char* reason) {
     if (Session* s = Session::current(); s && s->alive()) {
         if (s->header()->callsUnsupported.fetch_add(1, std::memory_order_relaxed) == 0)

@@ -109,6 +109,9 @@ DataArg packedSource(ThreadState& t, const void* data, GLsizei sizeBytes);
 // count strings as u32 lengths, then their bytes one after the other. lengths may be null.
 DataArg packStrings(ThreadState& t, GLsizei count, const GLchar* const* strings, const GLint* lengths);
 
+// From now on buffers may hold what only the nodes know (transform feedback, shader storage).
+void buffersWrittenByNodes(ThreadState& t);
+
 void unsupportedCalled(const char* name, const char* reason);
 
 } // namespace mural

@@ -5,6 +5,7 @@
 
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
+#include "interposer/asking.hpp"
 #include "interposer/context.hpp"
 #include "interposer/own_records.hpp"
 #include "interposer/real_gl.hpp"
@@ -125,6 +126,23 @@ void flushMap(ThreadState& t, GLuint buffer, GLintptr offset, GLsizeiptr length)
     ship(t, *m, static_cast<uint64_t>(offset), static_cast<uint64_t>(length));
 }
 
+// Brings the program's own copy up to date before it is read. Immutable storage without the dynamic
+// bit can't be written so; then what the program's own context has stands.
+void refresh(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t length) {
+    Context* c = t.context;
+    if (!c || !c->group->nodesWriteBuffers || t.drawLocally || buffer == 0 || length == 0) return;
+    const void* bytes = askBuffer(t, buffer, offset, length);
+    if (!bytes || !gReal.glBindBuffer) return;
+    GLint before = 0;
+    gReal.glGetIntegerv(GL_COPY_WRITE_BUFFER_BINDING, &before);
+    raisesNothing(*c, [&] {
+        gReal.glBindBuffer(GL_COPY_WRITE_BUFFER, buffer);
+        gReal.glBufferSubData(GL_COPY_WRITE_BUFFER, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(length), bytes);
+        gReal.glBindBuffer(GL_COPY_WRITE_BUFFER, static_cast<GLuint>(before));
+        driverError(); // ours, not the program's
+    });
+}
+
 GLbitfield accessBits(GLenum access) {
     return access == GL_READ_ONLY ? GL_MAP_READ_BIT : access == GL_WRITE_ONLY ? GL_MAP_WRITE_BIT : GL_MAP_READ_BIT | GL_MAP_WRITE_BIT;
 }
@@ -151,12 +169,15 @@ extern "C" {
 
 void* mural_glMapBuffer(GLenum target, GLenum access) {
     ThreadState& t = *tThread;
+    if (t.context && access != GL_WRITE_ONLY && t.context->group->nodesWriteBuffers) refresh(t, boundBuffer(target), 0, sizeOf(target));
     void* memory = gReal.glMapBuffer(target, access);
     if (memory && t.context) remember(t, boundBuffer(target), memory, 0, sizeOf(target), accessBits(access));
     return memory;
 }
 void* mural_glMapBufferRange(GLenum target, GLintptr offset, GLsizeiptr length, GLbitfield access) {
     ThreadState& t = *tThread;
+    if (t.context && (access & GL_MAP_READ_BIT) && offset >= 0 && length > 0)
+        refresh(t, boundBuffer(target), static_cast<uint64_t>(offset), static_cast<uint64_t>(length));
     void* memory = gReal.glMapBufferRange(target, offset, length, access);
     if (memory && t.context) remember(t, boundBuffer(target), memory, static_cast<uint64_t>(offset), static_cast<uint64_t>(length), access);
     return memory;
@@ -173,9 +194,22 @@ void* mural_glMapNamedBuffer(GLuint buffer, GLenum access) {
 }
 void* mural_glMapNamedBufferRange(GLuint buffer, GLintptr offset, GLsizeiptr length, GLbitfield access) {
     ThreadState& t = *tThread;
+    if ((access & GL_MAP_READ_BIT) && offset >= 0 && length > 0)
+        refresh(t, buffer, static_cast<uint64_t>(offset), static_cast<uint64_t>(length));
     void* memory = gReal.glMapNamedBufferRange(buffer, offset, length, access);
     if (memory && t.context) remember(t, buffer, memory, static_cast<uint64_t>(offset), static_cast<uint64_t>(length), access);
     return memory;
+}
+void mural_glGetBufferSubData(GLenum target, GLintptr offset, GLsizeiptr size, void* data) {
+    ThreadState& t = *tThread;
+    if (t.context && t.context->group->nodesWriteBuffers && offset >= 0 && size > 0)
+        refresh(t, boundBuffer(target), static_cast<uint64_t>(offset), static_cast<uint64_t>(size));
+    gReal.glGetBufferSubData(target, offset, size, data);
+}
+void mural_glGetNamedBufferSubData(GLuint buffer, GLintptr offset, GLsizeiptr size, void* data) {
+    ThreadState& t = *tThread;
+    if (offset >= 0 && size > 0) refresh(t, buffer, static_cast<uint64_t>(offset), static_cast<uint64_t>(size));
+    gReal.glGetNamedBufferSubData(buffer, offset, size, data);
 }
 GLboolean mural_glUnmapBuffer(GLenum target) {
     ThreadState& t = *tThread;

@@ -51,6 +51,7 @@ bool Replay::own(uint16_t opcode, Args& in) {
     case wire::kOpRequestPixels: return ownRequestPixels(in);
     case wire::kOpRequestTexImage: return ownRequestTexImage(in);
     case wire::kOpRequestQuery: return ownRequestQuery(in);
+    case wire::kOpRequestBuffer: return ownRequestBuffer(in);
     case wire::kOpFillWindow: return ownFillWindow(in);
     case wire::kOpProgramLayout: return ownProgramLayout(in);
     case wire::kOpBufferBytes: return ownBufferBytes(in);

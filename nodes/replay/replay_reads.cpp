@@ -102,6 +102,28 @@ bool Replay::ownRequestTexImage(Args& in) {
     return true;
 }
 
+// What transform feedback or shaders have written; the same on every node that runs all vertices.
+bool Replay::ownRequestBuffer(Args& in) {
+    const auto request = in.get<uint32_t>(), buffer = in.get<uint32_t>();
+    const auto offset = in.get<uint64_t>(), bytes = in.get<uint64_t>();
+    if (!in.ok() || bytes > config_.limits.answerBytes || offset > uint64_t{INT64_MAX} - bytes) return false;
+    pixels_.assign(static_cast<size_t>(bytes), std::byte{0});
+    if (bound_ && bytes > 0 && gl.glMapBufferRange && gl.glUnmapBuffer) {
+        GLint before = 0;
+        gl.glGetIntegerv(GL_COPY_READ_BUFFER_BINDING, &before);
+        gl.glBindBuffer(GL_COPY_READ_BUFFER, name(Kind::Buffer, buffer));
+        if (gl.glMemoryBarrier) gl.glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+        const void* from = gl.glMapBufferRange(GL_COPY_READ_BUFFER, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes), GL_MAP_READ_BIT);
+        if (from) {
+            std::memcpy(pixels_.data(), from, pixels_.size());
+            gl.glUnmapBuffer(GL_COPY_READ_BUFFER);
+        }
+        gl.glBindBuffer(GL_COPY_READ_BUFFER, static_cast<GLuint>(before));
+    }
+    answerBytes(request, wire::AnswerKind::Bytes, pixels_);
+    return true;
+}
+
 void Replay::glBeginQuery(GLenum target, GLuint id) {
     c_->queries[id] = {target, c_->drawFramebuffer != 0};
     gl.glBeginQuery(target, name(Kind::Query, id));

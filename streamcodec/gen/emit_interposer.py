@@ -90,6 +90,8 @@ def wrapper(c):
     out = 'extern "C" %s mural_%s(%s) {\n    ThreadState& self = *tThread;\n' % (ret, c.name, prototype(c))
     encode_args = ', '.join(['self'] + [data_argument(c, p) if p.how in DATA_KINDS else p.name
                                      for p in c.params if p.how != 'skip'])
+    if c.option('app') == 'writes':
+        out += '    buffersWrittenByNodes(self);\n'
     if c.command_class == 'object':
         if c.returns != 'void':
             out += '    const %s result = gReal.%s(%s);\n' % (ret, c.name, names)
