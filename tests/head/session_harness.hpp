@@ -30,6 +30,7 @@ public:
         config.localNodes = nodes;
         options.registryDigest = kTestDigest;
         options.chunkCount = 16;
+        config.placeThreads = false; // the tests own no processors
         options.byePatienceMs = 1000;
     }
     ~SessionHarness() {
