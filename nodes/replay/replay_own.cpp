@@ -207,7 +207,8 @@ bool Replay::ownSwap(Args& in, bool) {
             return pixels;
         };
     }
-    if (bound_ && gl.glFinish && !f.pixels) gl.glFinish();
+    // A frame counts when it is drawn, not when it is queued: pacing and frame rates depend on it.
+    if (bound_ && gl.glFinish) gl.glFinish();
     out_.frameDone(f);
     return true;
 }
