@@ -140,7 +140,7 @@ def node_stopped_and_continued(context):
 
 @case
 def program_killed(context):
-    with context.drawing("long_run", 1000) as run:
+    with context.drawing("long_run", 100000) as run:
         if not run.wait_for_line("frame 10"):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
         kill_all([pid for pid in run.processes(r"/long_run --frames") if pid not in run.processes(r"mural")])
