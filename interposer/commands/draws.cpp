@@ -1,6 +1,7 @@
 // Draws from vertex arrays.
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
+#include "interposer/commands/array_element.hpp"
 #include "interposer/commands/client_draw.hpp"
 #include "interposer/context.hpp"
 #include "interposer/real_gl.hpp"
@@ -250,8 +251,8 @@ void mural_glMultiDrawElementsIndirect(GLenum mode, GLenum type, const void* ind
 }
 void mural_glArrayElement(GLint i) {
     ThreadState& t = *tThread;
-    if (Context* c = t.context; c && c->arrays.anyClient()) sendClientArrays(t, *c, {i, i, 1, 0});
-    encode_glArrayElement(t, i);
+    if (Context* c = t.context; c && c->arrays.anyClient()) sendElement(t, *c, i);
+    else encode_glArrayElement(t, i);
     if (t.drawLocally) gReal.glArrayElement(i);
 }
 

@@ -64,6 +64,8 @@ public:
     virtual Result<std::unique_ptr<Context>> createContext(const ContextConfig& config, Context* shareWith) = 0;
     // Null context: release. Null surfaces: surfaceless (or a 1×1 dummy where that is unknown).
     virtual Result<void> makeCurrent(Context* context, Surface* draw, Surface* read) = 0;
+    // True: surfaces can have an accumulation buffer.
+    [[nodiscard]] virtual bool accumulates() const { return false; }
     // Entry point of the current API, null when unknown.
     virtual Proc getProcAddress(const char* name) = 0;
     [[nodiscard]] virtual std::string describe() const = 0; // e.g. "EGL surfaceless, Mesa 22.3.6"

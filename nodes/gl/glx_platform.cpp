@@ -62,6 +62,7 @@ public:
     Proc getProcAddress(const char* name) override {
         return display_->glx.getProcAddress(reinterpret_cast<const GLubyte*>(name));
     }
+    [[nodiscard]] bool accumulates() const override { return true; }
     [[nodiscard]] std::string describe() const override {
         return "GLX on " + display_->name + ", " + renderer_ + ", " + version_;
     }

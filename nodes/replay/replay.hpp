@@ -117,6 +117,7 @@ private:
         PixelViewport whole;  // 0, 0, width, height
         PixelViewport region; // this node's part
         PixelViewport drawn;  // what the scissor lets through: the region, larger with multisampling
+        std::vector<int16_t> accumulated; // of `drawn`, rows bottom first; empty: nothing yet
     };
     struct ProgramInfo {
         std::unordered_map<GLint, GLint> locations; // the program's → ours, only where they differ
@@ -250,6 +251,14 @@ private:
     const std::byte* readResolved(const PixelViewport& r, GLenum format, size_t bytes);
     void packTightly(bool tight);
     void withPlainTransfer(const std::function<void()>& call);
+    void fillColor(const PixelViewport& r, const void* rgba);
+    // replay_accum.cpp
+    bool accumulatesHere();
+    void forAccumulatedRows(const std::function<void(int16_t*, const PixelViewport&)>& call);
+    [[nodiscard]] PixelViewport accumulatedBox() const;
+    void accumulateColours(GLfloat value, bool add);
+    void returnAccumulated(GLfloat value);
+    bool saidAccumulation_ = false;
     // replay_tiling.cpp
     [[nodiscard]] PixelViewport origin() const; // of this node's framebuffer in the window (lean)
     void applyScissors();

@@ -11,7 +11,7 @@ namespace {
 // More than any record takes (72 spans of client arrays): empty blobs must not pile up either.
 constexpr size_t kMaxBlobs = 256;
 
-gl::SurfaceConfig surfaceConfig(const wire::WindowConfig& c, int width, int height) {
+gl::SurfaceConfig surfaceConfig(const wire::WindowConfig& c, int width, int height, bool accumulates) {
     gl::SurfaceConfig s;
     s.width = width;
     s.height = height;
@@ -22,7 +22,7 @@ gl::SurfaceConfig surfaceConfig(const wire::WindowConfig& c, int width, int heig
     s.depth = c.depth;
     s.stencil = c.stencil;
     s.samples = c.samples;
-    s.accum = c.accum;
+    s.accum = accumulates ? c.accum : 0; // the replay keeps one itself
     s.srgb = c.srgb != 0;
     s.stereo = c.stereo != 0;
     return s;
@@ -106,7 +106,7 @@ bool Replay::ownCreateContext(Args& in) {
     wish.forwardCompatible = flags & GL_CONTEXT_FLAG_FORWARD_COMPATIBLE_BIT;
     wish.debug = flags & GL_CONTEXT_FLAG_DEBUG_BIT;
     wish.robust = flags & GL_CONTEXT_FLAG_ROBUST_ACCESS_BIT;
-    wish.surface = surfaceConfig(*config, 1, 1);
+    wish.surface = surfaceConfig(*config, 1, 1, platform_->accumulates());
     auto made = platform_->createContext(wish, with ? with->context.get() : nullptr);
     if (!made) {
         out_.log("no context like the program's can be made here: " + made.error().message);
@@ -167,7 +167,7 @@ bool Replay::ownWindow(Args& in) {
     }
     const PixelViewport size = config_.lean ? w.region : w.whole;
     if (w.surface && w.surface->width() == std::max(size.w, 1) && w.surface->height() == std::max(size.h, 1)) return true;
-    auto made = platform_->createSurface(surfaceConfig(*config, std::max(size.w, 1), std::max(size.h, 1)));
+    auto made = platform_->createSurface(surfaceConfig(*config, std::max(size.w, 1), std::max(size.h, 1), platform_->accumulates()));
     if (!made) {
         out_.log("no framebuffer like the program's window (" + std::to_string(width) + "x" + std::to_string(height) + ") can be made: " + made.error().message);
         return true;

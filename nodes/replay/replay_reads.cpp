@@ -223,7 +223,13 @@ bool Replay::ownFillWindow(Args& in) {
         fillDepthStencil({x, y, w, h}, plane, data.pointer());
         return true;
     }
-    // The window that is read becomes the one that is drawn to, as long as this takes.
+    fillColor({x, y, w, h}, data.pointer());
+    return true;
+}
+
+// Colours into the window that is read, whatever the program has set.
+void Replay::fillColor(const PixelViewport& r, const void* rgba) {
+    // That window becomes the one that is drawn to, as long as this takes.
     const bool otherDraw = boundDraw_ != boundRead_;
     if (otherDraw) (void)platform_->makeCurrent(c_->context.get(), boundRead_->surface.get(), boundRead_->surface.get());
     GLint texture2d = 0, unit = 0;
@@ -234,7 +240,7 @@ bool Replay::ownFillWindow(Args& in) {
     gl.glBindTexture(GL_TEXTURE_2D, texture);
     if (c_->unpackBuffer) gl.glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
     setUnpack(true);
-    withPlainTransfer([&] { gl.glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, w, h, 0, GL_RGBA, GL_UNSIGNED_BYTE, data.pointer()); });
+    withPlainTransfer([&] { gl.glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, r.w, r.h, 0, GL_RGBA, GL_UNSIGNED_BYTE, rgba); });
     if (c_->unpackBuffer) gl.glBindBuffer(GL_PIXEL_UNPACK_BUFFER, c_->unpackBuffer);
     gl.glBindTexture(GL_TEXTURE_2D, static_cast<GLuint>(texture2d));
     if (!c_->fillFramebuffer) gl.glGenFramebuffers(1, &c_->fillFramebuffer);
@@ -246,7 +252,9 @@ bool Replay::ownFillWindow(Args& in) {
     gl.glDisable(GL_SCISSOR_TEST);
     const GLboolean srgb = c_->api == wire::Api::Desktop && gl.glIsEnabled(GL_FRAMEBUFFER_SRGB);
     if (srgb) gl.glDisable(GL_FRAMEBUFFER_SRGB);
-    gl.glBlitFramebuffer(0, 0, w, h, x, y, x + w, y + h, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    const PixelViewport o = config_.lean ? c_->read->region : PixelViewport{};
+    const int32_t x = r.x - o.x, y = r.y - o.y;
+    gl.glBlitFramebuffer(0, 0, r.w, r.h, x, y, x + r.w, y + r.h, GL_COLOR_BUFFER_BIT, GL_NEAREST);
     if (srgb) gl.glEnable(GL_FRAMEBUFFER_SRGB);
     if (chooses) gl.glDrawBuffer(windowBuffer(c_->drawBuffer0, c_->read));
     gl.glFramebufferTexture2D(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 0, 0);
@@ -256,7 +264,6 @@ bool Replay::ownFillWindow(Args& in) {
     if (otherDraw) (void)platform_->makeCurrent(c_->context.get(), boundDraw_ ? boundDraw_->surface.get() : nullptr, boundRead_->surface.get());
     c_->scissorsDiffer = true; // all viewports' enables were touched
     applyScissors();
-    return true;
 }
 
 // Depth and stencil go in by glDrawPixels, which compatibility contexts have; it is exact for them.

@@ -121,8 +121,6 @@ def same_status(native, through):
 
 # Programs whose pictures are not yet the native ones, and why (docs/exactness.md has the proofs).
 KNOWN_DIFFERENCES = {
-    "accum_buffer": "Mesa's EGL offers no accumulation buffer to the render nodes",
     "fragment_counters": "atomic counters of fragment shaders count on each node",
     "queries": "results in query buffer objects and counters of several kinds",
-    "client_arrays": "glArrayElement with memory changed between Begin and End",
 }
