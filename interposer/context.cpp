@@ -7,6 +7,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include "interposer/drawn_elsewhere.hpp"
 #include "interposer/log.hpp"
 #include "interposer/own_records.hpp"
 #include "interposer/real_gl.hpp"
@@ -200,6 +201,7 @@ void becameCurrent(Context* context, Window* draw, Window* read) {
         t.drawLocally = true;
         return;
     }
+    noteCalls(t);
     if (t.context && (t.context != context)) {
         records::makeCurrent(t, 0, 0, 0);
         leaveContext(t);
@@ -226,6 +228,7 @@ void becameCurrent(Context* context, Window* draw, Window* read) {
     context->readWindow = read ? read->id : 0;
     records::makeCurrent(t, context->id, context->drawWindow, context->readWindow);
     s->publish(t, false);
+    watchFromHere(t);
 }
 
 void updateWindowSize(ThreadState& t, Window& w) {
@@ -257,12 +260,18 @@ void endFrame(Window* w) {
         refreshDrawLocally(t);
         return;
     }
+    if (drawnElsewhere(t, *w)) {
+        s->die(nullptr);
+        refreshDrawLocally(t);
+        return;
+    }
     beforeDraw(t, *t.context);
     const uint32_t frame = s->nextFrame();
     const uint32_t every = s->welcome().verifyEvery;
     if (every && frame % every == 0) verifyFrame(t, *w);
     records::swap(t, w->id, frame);
     s->publish(t, false);
+    watchFromHere(t);
     s->waitForCredit(s->welcome().latency);
     updateWindowSize(t, *w);
     t.context->sizeChecked = false;

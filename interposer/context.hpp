@@ -41,6 +41,9 @@ private:
 };
 
 struct Context {
+    bool called = false;             // by a GL command that came through us
+    std::byte* quietSince = nullptr; // where the stream was when the last of our own records was written
+    int emptyFrames = 0;             // shown before the first such command
     bool sizeChecked = false;  // the window's size was asked since the last frame
     QueryBits queryIsAny;      // ANY_SAMPLES_PASSED and its kin
     uint32_t id = 0;

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "interposer/context.hpp"
+#include "interposer/lock.hpp"
 #include "interposer/real_gl.hpp"
 #include "interposer/session.hpp"
 #include "streamcodec/command_table.hpp"
@@ -92,6 +93,31 @@ void makeList(Context& c) {
     }
 }
 
+// Each text of a window system that was asked for, and what programs are told of it.
+struct Filtered {
+    const char* text;
+    const char* kept;
+    Filtered* next;
+};
+Filtered* filteredTexts = nullptr;
+Lock filterLock;
+
+void copyTold(const char* text, char* out) {
+    for (const char* p = text; *p;) {
+        const size_t length = std::strcspn(p, " ");
+        bool keep = length > 0;
+        for (const char* local : kWindowSystemLocalOnly) keep = keep && !(std::strlen(local) == length && !std::strncmp(local, p, length));
+        if (keep) {
+            std::memcpy(out, p, length);
+            out += length;
+            *out++ = ' ';
+        }
+        p += length;
+        while (*p == ' ') ++p;
+    }
+    *out = 0;
+}
+
 } // namespace
 
 const char* adjustedString(Context& c, GLenum name) {
@@ -122,23 +148,20 @@ GLint extensionCount(Context& c) {
 
 const char* filterWindowSystemExtensions(const char* text) {
     if (!text) return nullptr;
-    auto* out = static_cast<char*>(std::malloc(std::strlen(text) + 2));
-    if (!out) return text;
-    char* end = out;
-    for (const char* p = text; *p;) {
-        const size_t length = std::strcspn(p, " ");
-        bool keep = length > 0;
-        for (const char* local : kWindowSystemLocalOnly) keep = keep && !(std::strlen(local) == length && !std::strncmp(local, p, length));
-        if (keep) {
-            std::memcpy(end, p, length);
-            end += length;
-            *end++ = ' ';
-        }
-        p += length;
-        while (*p == ' ') ++p;
+    Guard guard(filterLock);
+    for (const Filtered* f = filteredTexts; f; f = f->next) {
+        if (!std::strcmp(f->text, text)) return f->kept;
     }
-    *end = 0;
-    return out;
+    const size_t length = std::strlen(text);
+    auto* made = static_cast<Filtered*>(std::malloc(sizeof(Filtered)));
+    auto* copy = static_cast<char*>(std::malloc(2 * length + 3));
+    if (!made || !copy) return text;
+    std::memcpy(copy, text, length + 1);
+    char* kept = copy + length + 1;
+    copyTold(text, kept);
+    *made = {copy, kept, filteredTexts};
+    filteredTexts = made;
+    return kept;
 }
 
 } // namespace mural

@@ -12,7 +12,8 @@ const char* adjustedString(Context& c, GLenum name);
 const char* extensionAt(Context& c, GLuint index);
 GLint extensionCount(Context& c);
 
-// A GLX or EGL extension string without what exists on one machine only; the result is kept.
+// A GLX or EGL extension string without what exists on one machine only. The answer for each text is
+// made once and kept: programs keep the pointer.
 const char* filterWindowSystemExtensions(const char* text);
 
 } // namespace mural

@@ -27,7 +27,7 @@ Entry wrapperFor(const char* name) {
 
 void loadOwnNeeds() {
     static const char* const kNames[] = {
-        "glGetString", "glGetStringi", "glGetIntegerv", "glGetError", "glGetInteger64v", "glGetBooleanv", "glIsEnabled",
+        "glGetString", "glGetStringi", "glGetIntegerv", "glGetFloatv", "glGetError", "glGetInteger64v", "glGetBooleanv", "glIsEnabled",
         "glReadPixels", "glPixelStorei", "glBindBuffer", "glBindFramebuffer", "glReadBuffer", "glGetBufferParameteriv",
         "glGetNamedBufferParameteriv", "glGetBufferSubData", "glGetNamedBufferSubData", "glMapBufferRange", "glUnmapBuffer",
         "glGetProgramiv", "glGetActiveUniform", "glGetActiveAttrib", "glGetUniformLocation", "glGetAttribLocation",

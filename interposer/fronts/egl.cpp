@@ -11,6 +11,7 @@
 
 #include "interposer/context.hpp"
 #include "interposer/extensions.hpp"
+#include "interposer/fronts/front.hpp"
 #include "interposer/fronts/own_functions.hpp"
 #include "interposer/log.hpp"
 #include "interposer/native_count.hpp"
@@ -24,9 +25,7 @@ namespace {
 void* (*vendorGetProcAddress)(const char*) = nullptr;
 
 Entry vendorEntry(const char* name) { return reinterpret_cast<Entry>(vendorGetProcAddress(name)); }
-template <class F> F* real(const char* name) { return reinterpret_cast<F*>(vendorEntry(name)); }
-
-uint8_t clampByte(EGLint v) { return static_cast<uint8_t>(v < 0 ? 0 : v > 255 ? 255 : v); }
+template <class F> F* real(const char* name) { return reinterpret_cast<F*>(eglFront().behind(name)); }
 
 wire::WindowConfig configOf(EGLDisplay dpy, EGLConfig config) {
     static auto* get = real<EGLBoolean(EGLDisplay, EGLConfig, EGLint, EGLint*)>("eglGetConfigAttrib");
@@ -147,40 +146,53 @@ EGLBoolean destroySurface(EGLDisplay dpy, EGLSurface surface) {
 const char* queryString(EGLDisplay dpy, EGLint name) {
     static auto* call = real<const char*(EGLDisplay, EGLint)>("eglQueryString");
     const char* text = call(dpy, name);
-    if (name != EGL_EXTENSIONS || dpy == EGL_NO_DISPLAY || nativeRun()) return text;
-    static const char* filtered = filterWindowSystemExtensions(text);
-    return filtered;
+    return name == EGL_EXTENSIONS && !nativeRun() ? filterWindowSystemExtensions(text) : text;
 }
 
-struct Row {
-    const char* name;
-    Entry entry;
-};
-#define ROW(name, function) {name, reinterpret_cast<Entry>(function)}
-const Row kOwn[] = {
-    ROW("eglCreateContext", createContext), ROW("eglDestroyContext", destroyedContext), ROW("eglMakeCurrent", makeCurrent),
-    ROW("eglSwapBuffers", swapBuffers), ROW("eglSwapBuffersWithDamageKHR", swapBuffersWithDamageKhr),
-    ROW("eglSwapBuffersWithDamageEXT", swapBuffersWithDamageExt), ROW("eglCreateWindowSurface", createWindowSurface),
-    ROW("eglCreatePlatformWindowSurface", createPlatformWindowSurface),
-    ROW("eglCreatePlatformWindowSurfaceEXT", createPlatformWindowSurfaceExt),
-    ROW("eglCreatePbufferSurface", createPbufferSurface), ROW("eglDestroySurface", destroySurface),
-    ROW("eglQueryString", queryString),
-};
-#undef ROW
+void* getProcAddress(const char* name) { return reinterpret_cast<void*>(eglFront().entryFor(name)); }
 
-void* getProcAddress(const char* name) {
-    for (const Row& row : kOwn) {
-        if (!std::strcmp(row.name, name)) return vendorEntry(name) ? reinterpret_cast<void*>(row.entry) : nullptr;
-    }
-    if (!nativeRun() && std::strncmp(name, "gl", 2) == 0) return reinterpret_cast<void*>(wrapperFor(name));
-    return reinterpret_cast<void*>(vendorEntry(name));
+const OwnEntry kOwn[] = {
+    ownEntry("eglCreateContext", createContext), ownEntry("eglDestroyContext", destroyedContext),
+    ownEntry("eglMakeCurrent", makeCurrent), ownEntry("eglSwapBuffers", swapBuffers),
+    ownEntry("eglSwapBuffersWithDamageKHR", swapBuffersWithDamageKhr),
+    ownEntry("eglSwapBuffersWithDamageEXT", swapBuffersWithDamageExt),
+    ownEntry("eglCreateWindowSurface", createWindowSurface),
+    ownEntry("eglCreatePlatformWindowSurface", createPlatformWindowSurface),
+    ownEntry("eglCreatePlatformWindowSurfaceEXT", createPlatformWindowSurfaceExt),
+    ownEntry("eglCreatePbufferSurface", createPbufferSurface), ownEntry("eglDestroySurface", destroySurface),
+    ownEntry("eglQueryString", queryString), ownEntry("eglGetProcAddress", getProcAddress),
+};
+constinit Front front("egl", kOwn);
+
+// Opens the library that a vendor file (JSON) names; null when there is none.
+void* openNamedBy(const char* vendorFile) {
+    FILE* file = fopen(vendorFile, "re");
+    if (!file) return nullptr;
+    char text[4096];
+    text[fread(text, 1, sizeof text - 1, file)] = 0;
+    fclose(file);
+    char* at = std::strstr(text, "\"library_path\"");
+    at = at ? std::strchr(at + sizeof "\"library_path\"" - 1, '"') : nullptr;
+    char* end = at ? std::strchr(++at, '"') : nullptr;
+    if (!end) return nullptr;
+    *end = 0;
+    return dlopen(at, RTLD_LAZY);
 }
 
-// The vendor libraries that the user's vendor files name, else the usual ones.
+// The vendor library that the user's own list of vendor files leads to, else the usual ones.
 void* openVendor() {
-    const char* wish = getenv("MURAL_REAL_EGL_VENDOR");
-    const char* const candidates[] = {wish && *wish ? wish : "libEGL_mesa.so.0", "libEGL_mesa.so.0", "libEGL_nvidia.so.0"};
-    for (const char* name : candidates) {
+    const char* list = getenv("MURAL_REAL_EGL_VENDORS");
+    while (list && *list) {
+        char path[4096];
+        const size_t length = std::strcspn(list, ":");
+        if (length > 0 && length < sizeof path) {
+            std::memcpy(path, list, length);
+            path[length] = 0;
+            if (void* handle = openNamedBy(path)) return handle;
+        }
+        list += length + (list[length] == ':');
+    }
+    for (const char* name : {"libEGL_mesa.so.0", "libEGL_nvidia.so.0"}) {
         if (void* handle = dlopen(name, RTLD_LAZY)) return handle;
     }
     say("no EGL driver is found (libEGL_mesa.so.0): install libegl-mesa0");
@@ -188,6 +200,8 @@ void* openVendor() {
 }
 
 } // namespace
+
+Front& eglFront() { return front; }
 
 bool askEglSize(const Window& w, uint32_t& width, uint32_t& height) {
     static auto* query = real<EGLBoolean(EGLDisplay, EGLSurface, EGLint, EGLint*)>("eglQuerySurface");
@@ -206,12 +220,10 @@ extern "C" __attribute__((visibility("default"))) EGLBoolean __egl_Main(uint32_t
     void* handle = mural::openVendor();
     auto* main = handle ? reinterpret_cast<Main*>(dlsym(handle, "__egl_Main")) : nullptr;
     if (!main || !main(version, exports, vendor, imports)) return EGL_FALSE;
+    if (!mural::claimProgram(mural::Way::Vendor)) return EGL_TRUE;
     mural::vendorGetProcAddress = imports->getProcAddress;
     imports->getProcAddress = mural::getProcAddress;
-    imports->isPatchSupported = nullptr;
-    imports->initiatePatch = nullptr;
-    imports->releasePatch = nullptr;
-    imports->patchThreadAttach = nullptr;
-    mural::setRealLoader(mural::vendorEntry);
+    mural::forbidPatching(*imports);
+    mural::front.attach(mural::vendorEntry);
     return EGL_TRUE;
 }

@@ -10,6 +10,7 @@
 
 #include "interposer/context.hpp"
 #include "interposer/extensions.hpp"
+#include "interposer/fronts/front.hpp"
 #include "interposer/fronts/glx_types.hpp"
 #include "interposer/fronts/own_functions.hpp"
 #include "interposer/log.hpp"
@@ -29,16 +30,14 @@ Entry vendorEntry(const char* name) {
     return reinterpret_cast<Entry>(vendorGetProcAddress(reinterpret_cast<const GLubyte*>(name)));
 }
 
-// The vendor's own GLX function.
-template <class F> F* real(const char* name) { return reinterpret_cast<F*>(vendorEntry(name)); }
+// The real library's own GLX function.
+template <class F> F* real(const char* name) { return reinterpret_cast<F*>(glxFront().behind(name)); }
 
 // Xlib's, from the copy that the program already has.
 template <class F> F* xlib(const char* name) {
     static void* handle = dlopen("libX11.so.6", RTLD_LAZY | RTLD_NOLOAD);
     return handle ? reinterpret_cast<F*>(dlsym(handle, name)) : nullptr;
 }
-
-uint8_t clampByte(int v) { return static_cast<uint8_t>(v < 0 ? 0 : v > 255 ? 255 : v); }
 
 // Bits of a visual or framebuffer configuration, by whichever question the caller has.
 template <class Ask> wire::WindowConfig configFrom(Ask ask) {
@@ -207,39 +206,44 @@ void destroyPixmap(Display* dpy, GLXPixmap pixmap) {
     call(dpy, pixmap);
 }
 
+// Three ways to ask for the extensions; only those that reach over one machine are told.
+const char* told(const char* text) { return nativeRun() ? text : filterWindowSystemExtensions(text); }
+
 const char* queryExtensionsString(Display* dpy, int screen) {
     static auto* call = real<const char*(Display*, int)>("glXQueryExtensionsString");
-    static const char* filtered = filterWindowSystemExtensions(call(dpy, screen));
-    return nativeRun() ? call(dpy, screen) : filtered;
+    return told(call(dpy, screen));
 }
 
-struct Row {
-    const char* name;
-    Entry entry;
-};
-#define ROW(name, function) {name, reinterpret_cast<Entry>(function)}
-const Row kOwn[] = {
-    ROW("glXCreateContext", createContext), ROW("glXCreateNewContext", createNewContext),
-    ROW("glXCreateContextWithConfigSGIX", createContextWithConfig), ROW("glXCreateContextAttribsARB", createContextAttribs),
-    ROW("glXDestroyContext", destroyedContext), ROW("glXMakeCurrent", makeCurrent),
-    ROW("glXMakeContextCurrent", makeContextCurrent), ROW("glXMakeCurrentReadSGI", makeCurrentRead),
-    ROW("glXSwapBuffers", swapBuffers), ROW("glXSwapBuffersMscOML", swapBuffersMsc),
-    ROW("glXCreateWindow", createWindow), ROW("glXDestroyWindow", destroyGlxWindow),
-    ROW("glXCreatePbuffer", createPbuffer), ROW("glXDestroyPbuffer", destroyPbuffer),
-    ROW("glXCreatePixmap", createPixmap), ROW("glXDestroyPixmap", destroyPixmap),
-    ROW("glXQueryExtensionsString", queryExtensionsString),
-};
-#undef ROW
+const char* getClientString(Display* dpy, int name) {
+    static auto* call = real<const char*(Display*, int)>("glXGetClientString");
+    const char* text = call(dpy, name);
+    return name == glx::kExtensions ? told(text) : text;
+}
+
+const char* queryServerString(Display* dpy, int screen, int name) {
+    static auto* call = real<const char*(Display*, int, int)>("glXQueryServerString");
+    const char* text = call(dpy, screen, name);
+    return name == glx::kExtensions ? told(text) : text;
+}
 
 void* getProcAddress(const GLubyte* name) {
-    const auto* text = reinterpret_cast<const char*>(name);
-    for (const Row& row : kOwn) {
-        if (!std::strcmp(row.name, text)) return vendorEntry(text) ? reinterpret_cast<void*>(row.entry) : nullptr;
-    }
-    if (nativeRun() || std::strncmp(text, "glX", 3) == 0) return reinterpret_cast<void*>(vendorEntry(text));
-    if (std::strncmp(text, "gl", 2) == 0) return reinterpret_cast<void*>(wrapperFor(text));
-    return reinterpret_cast<void*>(vendorEntry(text));
+    return reinterpret_cast<void*>(glxFront().entryFor(reinterpret_cast<const char*>(name)));
 }
+
+const OwnEntry kOwn[] = {
+    ownEntry("glXCreateContext", createContext), ownEntry("glXCreateNewContext", createNewContext),
+    ownEntry("glXCreateContextWithConfigSGIX", createContextWithConfig), ownEntry("glXCreateContextAttribsARB", createContextAttribs),
+    ownEntry("glXDestroyContext", destroyedContext), ownEntry("glXMakeCurrent", makeCurrent),
+    ownEntry("glXMakeContextCurrent", makeContextCurrent), ownEntry("glXMakeCurrentReadSGI", makeCurrentRead),
+    ownEntry("glXSwapBuffers", swapBuffers), ownEntry("glXSwapBuffersMscOML", swapBuffersMsc),
+    ownEntry("glXCreateWindow", createWindow), ownEntry("glXDestroyWindow", destroyGlxWindow),
+    ownEntry("glXCreatePbuffer", createPbuffer), ownEntry("glXDestroyPbuffer", destroyPbuffer),
+    ownEntry("glXCreatePixmap", createPixmap), ownEntry("glXDestroyPixmap", destroyPixmap),
+    ownEntry("glXQueryExtensionsString", queryExtensionsString), ownEntry("glXGetClientString", getClientString),
+    ownEntry("glXQueryServerString", queryServerString), ownEntry("glXGetProcAddress", getProcAddress),
+    ownEntry("glXGetProcAddressARB", getProcAddress),
+};
+constinit Front front("glX", kOwn);
 
 // The library of the vendor that really draws: what the user had set, NVIDIA's when the X server is
 // theirs, else Mesa's.
@@ -256,6 +260,8 @@ void* openVendor() {
 }
 
 } // namespace
+
+Front& glxFront() { return front; }
 
 bool askGlxSize(const Window& w, uint32_t& width, uint32_t& height) {
     auto* dpy = static_cast<Display*>(w.display);
@@ -284,13 +290,10 @@ extern "C" __attribute__((visibility("default"))) Bool __glx_Main(uint32_t versi
     void* handle = mural::openVendor();
     auto* main = handle ? reinterpret_cast<Main*>(dlsym(handle, "__glx_Main")) : nullptr;
     if (!main || !main(version, exports, vendor, imports)) return False;
+    if (!mural::claimProgram(mural::Way::Vendor)) return True;
     mural::vendorGetProcAddress = imports->getProcAddress;
     imports->getProcAddress = mural::getProcAddress;
-    // Patched entry points would go round the wrappers.
-    imports->isPatchSupported = nullptr;
-    imports->initiatePatch = nullptr;
-    imports->releasePatch = nullptr;
-    imports->patchThreadAttach = nullptr;
-    mural::setRealLoader(mural::vendorEntry);
+    mural::forbidPatching(*imports);
+    mural::front.attach(mural::vendorEntry);
     return True;
 }

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Generates the command table, the encoder, the wrappers and the replay from the OpenGL registry.
 
-  generate.py --registry gl.xml --out DIR            writes DIR/*.hpp, DIR/*.cpp
+  generate.py --registry gl.xml --glx-registry glx.xml --egl-header EGL/egl.h --out DIR
+                                                     writes DIR/*.hpp, DIR/*.cpp
   generate.py --registry gl.xml --update-lock        appends new commands to opcodes.lock
 
 Nothing that comes out stands in git. Opcodes are stable: streamcodec/registry/opcodes.lock only grows.
@@ -14,6 +15,7 @@ import zlib
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
 import emit_common        # noqa: E402
+import emit_front         # noqa: E402
 import emit_interposer    # noqa: E402
 import emit_replay        # noqa: E402
 import registry           # noqa: E402
@@ -50,6 +52,8 @@ def write_if_changed(path, text):
 def main():
     a = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     a.add_argument('--registry', required=True)
+    a.add_argument('--glx-registry')
+    a.add_argument('--egl-header')
     a.add_argument('--semantics', default=os.path.join(REGISTRY_DIR, 'semantics.txt'))
     a.add_argument('--lock', default=os.path.join(REGISTRY_DIR, 'opcodes.lock'))
     a.add_argument('--out')
@@ -74,6 +78,8 @@ def main():
     files.update(emit_common.emit(model))
     files.update(emit_interposer.emit(model))
     files.update(emit_replay.emit(model))
+    if o.glx_registry and o.egl_header:
+        files.update(emit_front.emit(model, o.glx_registry, o.egl_header))
     for name, text in files.items():
         write_if_changed(os.path.join(o.out, name), text)
 

@@ -1,0 +1,127 @@
+#include "interposer/bypass.hpp"
+
+#include <cstdarg>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fcntl.h>
+#include <initializer_list>
+#include <link.h>
+#include <unistd.h>
+
+#include "common/gl_library_names.hpp"
+#include "interposer/log.hpp"
+#include "interposer/session.hpp"
+
+namespace mural {
+
+namespace {
+
+// As it was at the start: programs change their environment, and it may be gone at the end.
+char notesPath[64];
+
+__attribute__((constructor)) void rememberNotes() {
+    const char* path = getenv("MURAL_SESSION") && !getenv("MURAL_DISABLE") ? getenv("MURAL_NOTES") : nullptr;
+    if (path && std::strlen(path) < sizeof notesPath) std::strcpy(notesPath, path);
+}
+
+bool note(const char* text, size_t length) {
+    const int fd = notesPath[0] ? open(notesPath, O_WRONLY | O_APPEND | O_CLOEXEC) : -1;
+    if (fd < 0) return false;
+    const bool written = write(fd, text, length) == static_cast<ssize_t>(length);
+    close(fd);
+    return written;
+}
+
+// One note about this process: what it is and which libraries it could have drawn by.
+struct Libraries {
+    char text[8192];
+    size_t length;
+    bool any;
+
+    bool add(const char* field) {
+        const size_t bytes = std::strlen(field);
+        if (length + bytes + 2 > sizeof text || std::strpbrk(field, "\t\n")) return false;
+        std::memcpy(text + length, field, bytes);
+        length += bytes;
+        text[length++] = '\t';
+        return true;
+    }
+};
+
+int addLibrary(dl_phdr_info* info, size_t, void* into) {
+    auto* libraries = static_cast<Libraries*>(into);
+    const char* slash = info->dlpi_name ? std::strrchr(info->dlpi_name, '/') : nullptr;
+    if (!slash) return 0;
+    for (const char* beginning : {"libGL", "libEGL", "libOSMesa", "libvulkan", "libX11.", "libxcb.", "libmural_front"}) {
+        if (!std::strncmp(slash + 1, beginning, std::strlen(beginning)) && !std::strstr(slash, "libGLX_mural") && libraries->add(info->dlpi_name))
+            libraries->any = true;
+    }
+    return 0;
+}
+
+// A process that ends and was never captured leaves word of what it had loaded: `mural run` tells the
+// user when nobody else was captured either.
+__attribute__((destructor)) void tellLibraries() {
+    if (!notesPath[0] || Session::current()) return;
+    static Libraries libraries;
+    libraries.add("ended");
+    char program[1024];
+    const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    program[length > 0 ? length : 0] = 0;
+    if (!libraries.add(length > 0 ? program : "a program")) return;
+    dl_iterate_phdr(addLibrary, &libraries);
+    if (!libraries.any) return;
+    libraries.text[libraries.length - 1] = '\n';
+    note(libraries.text, libraries.length);
+}
+
+struct OwnGl {
+    char path[1024];
+};
+
+int findOwnGl(dl_phdr_info* info, size_t, void* into) {
+    const ElfW(Dyn)* dynamic = nullptr;
+    for (int i = 0; i < info->dlpi_phnum; ++i) {
+        if (info->dlpi_phdr[i].p_type == PT_DYNAMIC) dynamic = reinterpret_cast<const ElfW(Dyn)*>(info->dlpi_addr + info->dlpi_phdr[i].p_vaddr);
+    }
+    if (!dynamic || !info->dlpi_name || !info->dlpi_name[0]) return 0;
+    const char* strings = nullptr;
+    for (const ElfW(Dyn)* d = dynamic; d->d_tag != DT_NULL; ++d) {
+        // The loader has made it an address, except in the vDSO.
+        if (d->d_tag == DT_STRTAB && d->d_un.d_ptr > info->dlpi_addr) strings = reinterpret_cast<const char*>(d->d_un.d_ptr);
+    }
+    bool isGl = false;
+    for (const ElfW(Dyn)* d = dynamic; strings && d->d_tag != DT_NULL; ++d) {
+        if (d->d_tag == DT_NEEDED && isGlvndDispatch(strings + d->d_un.d_val)) return 0;
+        if (d->d_tag == DT_SONAME) isGl = isGlLibraryName(strings + d->d_un.d_val);
+    }
+    if (!isGl) return 0;
+    snprintf(static_cast<OwnGl*>(into)->path, sizeof(OwnGl::path), "%s", info->dlpi_name);
+    return 1;
+}
+
+} // namespace
+
+void sayBypass(const char* format, ...) {
+    char line[1024] = "say\t";
+    constexpr int kPrefix = 4;
+    va_list arguments;
+    va_start(arguments, format);
+    int n = vsnprintf(line + kPrefix, sizeof line - kPrefix - 1, format, arguments);
+    va_end(arguments);
+    if (n < 0) return;
+    n += kPrefix;
+    if (n > static_cast<int>(sizeof line) - 2) n = sizeof line - 2;
+    line[n] = '\n';
+    if (note(line, static_cast<size_t>(n) + 1)) return;
+    line[n] = 0;
+    say("%s", line + kPrefix);
+}
+
+const char* loadedOwnGl() {
+    static OwnGl found;
+    return dl_iterate_phdr(findOwnGl, &found) ? found.path : nullptr;
+}
+
+} // namespace mural

@@ -1,0 +1,24 @@
+// What the preloaded front (interposer/preload) asks for: it has found that a program's GL library is
+// not GLVND's, and exports that library's names in front of it.
+#include "interposer/preload/link.hpp"
+
+#include <cstring>
+
+#include "interposer/bypass.hpp"
+#include "interposer/fronts/front.hpp"
+
+using namespace mural;
+
+extern "C" __attribute__((visibility("default"))) Entry mural_front_entry(const char* name, Loader library) {
+    if (!claimProgram(Way::Preload)) {
+        static bool told = false;
+        const char* own = loadedOwnGl();
+        if (own && !__atomic_exchange_n(&told, true, __ATOMIC_RELAXED))
+            sayBypass("the program uses two GL libraries; GLVND's is on the wall, what %s draws stays in the program's own window", own);
+        return nullptr;
+    }
+    // No lock: all callers bring the same loader.
+    if (!glxFront().attached()) glxFront().attach(library);
+    if (!eglFront().attached()) eglFront().attach(library);
+    return (std::strncmp(name, "egl", 3) ? glxFront() : eglFront()).replacementFor(name);
+}
