@@ -1,6 +1,9 @@
 #include "nodes/launch/elf_check.hpp"
 
+#include <algorithm>
 #include <cerrno>
+#include <cstddef>
+#include <cstddef>
 #include <cstring>
 #include <elf.h>
 #include <fcntl.h>
@@ -14,6 +17,8 @@ namespace {
 
 constexpr size_t kHeadBytes = 512; // the kernel reads 256 for "#!"; ELF headers are smaller
 constexpr size_t kMaxProgramHeaders = 4096;
+constexpr uint64_t kMaxPathBytes = 4096;
+constexpr uint64_t kMaxTableBytes = 64 << 20; // string tables of the largest libraries have a few MiB
 
 class File {
 public:
@@ -51,9 +56,49 @@ template <class Header, class Program> void readElf(const File& file, Executable
     const size_t wanted = programs.size() * sizeof(Program);
     if (file.readAt(programs.data(), wanted, header.e_phoff) != wanted) return;
     for (const Program& p : programs) {
-        if (p.p_type == PT_INTERP) facts.hasInterpreter = true;
+        if (p.p_type != PT_INTERP) continue;
+        facts.hasInterpreter = true;
+        std::string name(std::min<uint64_t>(p.p_filesz, kMaxPathBytes), '\0');
+        name.resize(file.readAt(name.data(), name.size(), p.p_offset));
+        facts.interpreter = name.substr(0, name.find('\0'));
     }
 }
+
+template <class T> std::vector<T> readTable(const File& file, uint64_t at, uint64_t sizeBytes) {
+    std::vector<T> rows(std::min(sizeBytes, kMaxTableBytes) / sizeof(T));
+    rows.resize(file.readAt(rows.data(), rows.size() * sizeof(T), at) / sizeof(T));
+    return rows;
+}
+
+// Where in the file the byte of this address stands; UINT64_MAX: nowhere.
+uint64_t offsetOf(const std::vector<Elf64_Phdr>& programs, uint64_t address) {
+    for (const Elf64_Phdr& p : programs) {
+        if (p.p_type == PT_LOAD && address >= p.p_vaddr && address - p.p_vaddr < p.p_filesz) return address - p.p_vaddr + p.p_offset;
+    }
+    return UINT64_MAX;
+}
+
+// The strings of a dynamic section, by their place in its string table.
+class Strings {
+public:
+    Strings(const File& file, const std::vector<Elf64_Phdr>& programs, const std::vector<Elf64_Dyn>& dynamic) {
+        uint64_t at = UINT64_MAX;
+        uint64_t sizeBytes = 0;
+        for (const Elf64_Dyn& d : dynamic) {
+            if (d.d_tag == DT_STRTAB) at = offsetOf(programs, d.d_un.d_ptr);
+            if (d.d_tag == DT_STRSZ) sizeBytes = d.d_un.d_val;
+        }
+        if (at != UINT64_MAX) bytes_ = readTable<char>(file, at, sizeBytes);
+    }
+    [[nodiscard]] std::string at(uint64_t place) const {
+        if (place >= bytes_.size()) return {};
+        const auto first = bytes_.begin() + static_cast<std::ptrdiff_t>(place);
+        return {first, std::find(first, bytes_.end(), '\0')};
+    }
+
+private:
+    std::vector<char> bytes_;
+};
 
 std::string_view trimmed(std::string_view s) {
     const auto first = s.find_first_not_of(" \t");
@@ -90,6 +135,30 @@ Result<ExecutableFacts> readExecutable(const std::string& path) {
         readScriptLine(text, facts);
     } else if (text.substr(0, text.find('\n')).find('\0') == std::string_view::npos) {
         facts.kind = FileKind::PlainScript; // the test that shells use: no zero byte in the first line
+    }
+    return facts;
+}
+
+Result<LibraryFacts> readLibrary(const std::string& path) {
+    const File file(path);
+    if (!file.opened()) return Error{path + " cannot be read: " + std::strerror(errno)};
+    Elf64_Ehdr header{};
+    const bool whole = file.readAt(&header, sizeof header, 0) == sizeof header;
+    if (!whole || std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 || header.e_ident[EI_CLASS] != ELFCLASS64 ||
+        header.e_phentsize != sizeof(Elf64_Phdr)) {
+        return Error{path + " is no 64-bit library; check the file"};
+    }
+    const auto programs = readTable<Elf64_Phdr>(file, header.e_phoff, uint64_t{header.e_phnum} * sizeof(Elf64_Phdr));
+    std::vector<Elf64_Dyn> dynamic;
+    for (const Elf64_Phdr& p : programs) {
+        if (p.p_type == PT_DYNAMIC) dynamic = readTable<Elf64_Dyn>(file, p.p_offset, p.p_filesz);
+    }
+    const Strings strings(file, programs, dynamic);
+    LibraryFacts facts;
+    for (const Elf64_Dyn& d : dynamic) {
+        if (d.d_tag == DT_NULL) break;
+        if (d.d_tag == DT_SONAME) facts.soname = strings.at(d.d_un.d_val);
+        if (d.d_tag == DT_NEEDED) facts.needed.push_back(strings.at(d.d_un.d_val));
     }
     return facts;
 }

@@ -15,6 +15,7 @@ constexpr std::string_view kEglVendors = "__EGL_VENDOR_LIBRARY_FILENAMES";
 constexpr std::string_view kRealGlxVendor = "MURAL_REAL_GLX_VENDOR";
 constexpr std::string_view kRealEglVendors = "MURAL_REAL_EGL_VENDORS";
 constexpr std::string_view kSession = "MURAL_SESSION";
+constexpr std::string_view kNotes = "MURAL_NOTES";
 constexpr std::string_view kOurVendor = "mural";
 
 std::string_view baseName(std::string_view path) {
@@ -113,34 +114,36 @@ Result<CaptureLibrary> findCaptureLibrary(const std::string& muralBinary) {
 std::string withoutCapture(std::string_view preload) {
     std::string kept;
     for (const auto entry : split(preload, " :")) {
-        if (baseName(entry) == kCaptureLibraryName) continue;
+        if (baseName(entry) == kCaptureLibraryName || baseName(entry) == kFrontLibraryName) continue;
         if (!kept.empty()) kept += ' ';
         kept += entry;
     }
     return kept;
 }
 
-std::string withCapture(std::string_view preload, std::string_view entry) {
+std::string withCapture(std::string_view preload, std::string_view entries) {
     std::string all = withoutCapture(preload);
     if (!all.empty()) all += ' ';
-    return all += entry;
+    return all += entries;
 }
 
-Result<void> addCapture(Environment& environment, const CaptureLibrary& library, const std::string& session) {
+Result<void> addCapture(Environment& environment, const CaptureLibrary& library, const std::string& session, Fronts fronts) {
     const std::string folder = library.library.substr(0, library.library.rfind('/'));
     if (folder.find_first_of(":;") != std::string::npos) {
         return Error{"the folder " + folder + " has a ':' or ';' in its name, which the loader cannot take; move Mural elsewhere"};
     }
-    std::string entry = library.library;
-    if (entry.find_first_of(" \t\n") != std::string::npos) {
-        // LD_PRELOAD cannot hold blanks: name the library alone and let the loader search its folder.
-        entry = kCaptureLibraryName;
+    std::string place = folder + "/";
+    if (place.find_first_of(" \t\n") != std::string::npos) {
+        // LD_PRELOAD cannot hold blanks: name the libraries alone and let the loader search their folder.
+        place.clear();
         const std::string searched = environment.get(kLibraryPath).value_or("");
         if (!(searched + ":").starts_with(folder + ":")) {
             environment.set(kLibraryPath, searched.empty() ? folder : folder + ":" + searched);
         }
     }
-    environment.set(kPreload, withCapture(environment.get(kPreload).value_or(""), entry));
+    std::string entries = place + std::string(kCaptureLibraryName);
+    if (fronts == Fronts::VendorAndPreload) entries += " " + place + std::string(kFrontLibraryName);
+    environment.set(kPreload, withCapture(environment.get(kPreload).value_or(""), entries));
     replaceVendor(environment, kGlxVendor, kRealGlxVendor, kOurVendor, environment.get(kGlxVendor) == kOurVendor);
     replaceVendor(environment, kEglVendors, kRealEglVendors, library.eglVendorFile,
                   isOurEglList(environment.get(kEglVendors).value_or("")));
@@ -153,6 +156,7 @@ void removeCapture(Environment& environment) {
     restoreVendor(environment, kEglVendors, kRealEglVendors, isOurEglList(environment.get(kEglVendors).value_or("")));
     environment.unset(kPreload);
     environment.unset(kSession);
+    environment.unset(kNotes);
 }
 
 } // namespace mural::launch

@@ -32,6 +32,8 @@ struct CaptureLibrary {
     std::string eglVendorFile; // …/mural_egl_vendor.json
 };
 constexpr std::string_view kCaptureLibraryName = "libGLX_mural.so.0";
+// In the same folder; only for programs whose GL library GLVND does not lead to.
+constexpr std::string_view kFrontLibraryName = "libmural_front.so";
 constexpr std::string_view kEglVendorFileName = "mural_egl_vendor.json";
 
 // Looks beside the binary as in the build tree (../lib) and as installed (../lib/mural).
@@ -42,11 +44,14 @@ std::string ownBinary();
 
 // LD_PRELOAD's value with every earlier entry of ours removed; other entries stay as they are.
 std::string withoutCapture(std::string_view preload);
-// The same with our entry after all others.
-std::string withCapture(std::string_view preload, std::string_view entry);
+// The same with our entries after all others.
+std::string withCapture(std::string_view preload, std::string_view entries);
+
+// What is preloaded: the library alone, or with it the front for GL libraries that are not GLVND's.
+enum class Fronts { Vendor, VendorAndPreload };
 
 // Adds preload and vendor variables; what they were before goes to MURAL_REAL_*. Idempotent.
-Result<void> addCapture(Environment& environment, const CaptureLibrary& library, const std::string& session);
+Result<void> addCapture(Environment& environment, const CaptureLibrary& library, const std::string& session, Fronts fronts = Fronts::Vendor);
 
 // For the head and the nodes: nothing of the capture and nothing preloaded (clock fakers and frame
 // grabbers are meant for the program).

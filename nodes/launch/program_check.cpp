@@ -19,7 +19,7 @@ bool isFile(const std::string& path, struct stat& facts) {
 }
 
 ProgramCheck failure(const std::string& path, int status, std::string message) {
-    return {path, status, std::move(message)};
+    return {path, {}, status, std::move(message)};
 }
 
 ProgramCheck verifyFile(const std::string& name, const std::string& path) {
@@ -33,7 +33,7 @@ ProgramCheck verifyFile(const std::string& name, const std::string& path) {
     if (access(path.c_str(), X_OK) != 0) {
         return failure(path, kExitNotExecutable, name + " may not be executed; give it the right: chmod +x " + path);
     }
-    return {path, 0, {}};
+    return {path, {}, 0, {}};
 }
 
 bool hasFileCapabilities(const std::string& path) {
@@ -77,7 +77,7 @@ ProgramCheck findProgram(const std::string& name, const std::string& searchPath)
         const std::string path = (folder.empty() ? "." : folder) + "/" + name;
         struct stat facts {};
         if (isFile(path, facts)) {
-            if (access(path.c_str(), X_OK) == 0) return {path, 0, {}};
+            if (access(path.c_str(), X_OK) == 0) return {path, {}, 0, {}};
             if (blocked.empty()) blocked = path;
         }
         at = end + 1;
@@ -96,7 +96,9 @@ ProgramCheck checkProgram(const std::string& name, const std::string& searchPath
         switch (facts.value().kind) {
         case FileKind::Elf: {
             const std::string obstacle = loaderObstacle(path, facts.value());
-            return obstacle.empty() ? found : failure(found.path, kExitUsage, obstacle);
+            if (!obstacle.empty()) return failure(found.path, kExitUsage, obstacle);
+            found.binary = path;
+            return found;
         }
         case FileKind::Script: {
             const ProgramCheck next = verifyFile(facts.value().scriptInterpreter, facts.value().scriptInterpreter);

@@ -13,6 +13,7 @@ constexpr int kExitNotFound = 127;
 
 struct ProgramCheck {
     std::string path;    // what to execute
+    std::string binary;  // the file that the loader starts for it: of a script, its interpreter
     int exitStatus = 0;  // 0: fine
     std::string message; // one line when it is not
     [[nodiscard]] bool ok() const { return exitStatus == 0; }

@@ -74,12 +74,15 @@ void ProgramSupervisor::readSignals() {
     }
 }
 
-bool ProgramSupervisor::anyoneLeft() const {
+std::vector<pid_t> ProgramSupervisor::processes() const {
+    std::vector<pid_t> found;
     for (const ProcessFacts& p : descendantsOf(getpid(), ours_)) {
-        if (p.state != 'Z' && !isOurs(p.session)) return true;
+        if (p.state != 'Z' && !isOurs(p.session)) found.push_back(p.pid);
     }
-    return false;
+    return found;
 }
+
+bool ProgramSupervisor::anyoneLeft() const { return !processes().empty(); }
 
 void ProgramSupervisor::end(int64_t graceMs) {
     askNewcomers();

@@ -11,6 +11,7 @@
 #include <optional>
 #include <set>
 #include <sys/types.h>
+#include <vector>
 
 #include "common/clock.hpp"
 #include "common/result.hpp"
@@ -37,6 +38,8 @@ public:
     [[nodiscard]] bool started() const { return program_.started(); }
     [[nodiscard]] bool programRunning() { return program_.running(); }
     [[nodiscard]] int exitStatus() const { return program_.exitStatus(); }
+    // The running ones of those: the program and its descendants.
+    [[nodiscard]] std::vector<pid_t> processes() const;
     // Processes below us other than ours and those that only wait to be collected.
     [[nodiscard]] bool anyoneLeft() const;
 

@@ -5,6 +5,7 @@
 #include <sys/random.h>
 #include <unistd.h>
 
+#include "nodes/launch/gl_libraries.hpp"
 #include "nodes/launch/program_check.hpp"
 #include "nodes/output/outputs.hpp"
 #include "tools/mural/commands.hpp"
@@ -67,6 +68,16 @@ Result<void> chooseDisplay(const RunOptions& options, PreparedRun& run) {
     return {};
 }
 
+// A program whose GL library is not GLVND's needs the preloaded front.
+launch::Fronts chooseFronts(const RunOptions& options, const launch::ProgramCheck& program, const launch::Environment& environment) {
+    if (options.front == FrontChoice::Preload) return launch::Fronts::VendorAndPreload;
+    if (options.front == FrontChoice::Glvnd || program.binary.empty()) return launch::Fronts::Vendor;
+    const auto own = launch::ownGlLibraries(program.binary, environment);
+    if (own.empty()) return launch::Fronts::Vendor;
+    if (options.config.explain) Console(true).error("front: preloaded, for " + own.front() + ", which GLVND does not lead to");
+    return launch::Fronts::VendorAndPreload;
+}
+
 int complain(const std::string& text, int status) {
     Console(true).error(text);
     return status;
@@ -89,7 +100,8 @@ int runCommand(const RunOptions& options) {
     run.programPath = program.path;
     const auto library = launch::findCaptureLibrary(launch::ownBinary());
     if (!library.ok()) return complain(library.error().message, launch::kExitUsage);
-    if (auto r = launch::addCapture(run.programEnvironment, library.value(), run.config.session); !r) return complain(r.error().message, launch::kExitUsage);
+    const launch::Fronts fronts = chooseFronts(options, program, run.programEnvironment);
+    if (auto r = launch::addCapture(run.programEnvironment, library.value(), run.config.session, fronts); !r) return complain(r.error().message, launch::kExitUsage);
     if (auto r = checkOutput(run.config.out); !r) return complain(r.error().message, launch::kExitUsage);
     if (auto r = chooseDisplay(options, run); !r) return complain(r.error().message, launch::kExitUsage);
 

@@ -199,6 +199,7 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
     command.add_option("--tiling", a.tiling, "exact: every pixel as on one machine; lean: less memory (exact)")->type_name("HOW");
     command.add_option("--policy", a.policy, "state: the program's own GL draws nothing; full: it draws too (state)")->type_name("WHAT");
     command.add_option("--gl", a.gl, "GL of the render nodes: auto, egl, osmesa, glx (auto)")->type_name("GL");
+    command.add_option("--front", a.front, "how the program's GL is caught: glvnd, preload (also a GL library of its own), auto: as its libraries want")->type_name("WAY");
     command.add_option("--latency", a.latency, "frames that the program may be ahead of the wall (1)")->type_name("N");
     command.add_flag("--verify{1}", a.verify, "compare every frame (=N: every Nth) with this machine's own picture");
     command.add_flag("--fullscreen", a.fullScreen, "wall windows without borders, one per monitor");
@@ -231,6 +232,8 @@ Result<RunOptions> runOptionsFrom(const RunArguments& a) {
     c.fullScreen = a.fullScreen;
     c.placeThreads = !a.noPlacement;
     c.explain = a.explain;
+    const Choice<FrontChoice> fronts[] = {{"auto", FrontChoice::Auto}, {"glvnd", FrontChoice::Glvnd}, {"preload", FrontChoice::Preload}};
+    if (auto r = choose("--front", a.front, fronts, options.front); !r) return r.error();
     options.displayChosen = a.display.has_value();
     options.native = a.native;
     options.quiet = a.quiet;

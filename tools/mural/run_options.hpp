@@ -14,9 +14,13 @@ class App;
 
 namespace mural::cli {
 
+// Whether GL libraries that GLVND does not lead to are caught as well.
+enum class FrontChoice { Auto, Glvnd, Preload };
+
 struct RunOptions {
     SessionConfig config;       // all but session and displayName
     bool displayChosen = false; // --display was given
+    FrontChoice front = FrontChoice::Auto;
     bool native = false;
     bool quiet = false;
     std::string reportFile;           // --report; empty: none
@@ -26,7 +30,7 @@ struct RunOptions {
 // The texts as they stand on the command line; checked and converted by runOptionsFrom.
 struct RunArguments {
     using Text = std::optional<std::string>;
-    Text tiles, size, position, nodes, out, save, display, tiling, policy, gl, launch, remoteMural;
+    Text tiles, size, position, nodes, out, save, display, tiling, policy, gl, launch, remoteMural, front;
     Text localNodes, frames, latency, report;
     std::string verify; // empty: not given
     bool fullScreen = false, noPlacement = false, explain = false, native = false, quiet = false;

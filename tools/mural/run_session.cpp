@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <optional>
 
+#include "nodes/launch/bypass_watch.hpp"
 #include "nodes/launch/program_check.hpp"
 #include "nodes/launch/program_supervisor.hpp"
 #include "tools/mural/head_control.hpp"
@@ -21,13 +22,15 @@ constexpr int64_t kFirstContextMs = 30'000;
 // …and how long what is left may live on once nobody draws any more.
 constexpr int64_t kAfterLastContextMs = 1'000;
 constexpr int64_t kWaitNoticeMs = 3'000;
+// A program that has made no context for so long may draw past us: its libraries are looked at.
+constexpr int64_t kUnseenMs = 10'000;
 // The head drains and writes pictures after the program's end; as long as it says something it may.
 constexpr int64_t kFinishSilenceMs = 120'000;
 
 class Session {
 public:
-    Session(PreparedRun& run, Console& console, launch::ProgramSupervisor& program)
-        : run_(run), console_(console), program_(program) {}
+    Session(PreparedRun& run, Console& console, launch::ProgramSupervisor& program, launch::BypassWatch& bypass)
+        : run_(run), console_(console), program_(program), bypass_(bypass) {}
 
     int perform() {
         auto head = HeadControl::start(run_.headCommand, run_.headEnvironment);
@@ -36,7 +39,9 @@ public:
         program_.leaveAlone(head_->process().pid());
         head_->send(toJson(run_.config));
         if (const auto failed = awaitReady()) return *failed;
+        run_.programEnvironment.set("MURAL_NOTES", bypass_.notesPath());
         if (!startProgram(run_, program_, console_)) return launch::kExitNotExecutable;
+        lookAt_ = Deadline::inMs(kUnseenMs);
         whileRunning();
         finish();
         return framesReached_ ? 0 : program_.exitStatus();
@@ -119,7 +124,11 @@ private:
     void tellReport() {
         writeReport(run_, report_->json, console_);
         for (const std::string& line : reportLines(*report_)) console_.say(line);
-        if (report_->frames > 0) return;
+        if (report_->frames > 0 || bypassSaid_) return;
+        if (const std::string bypass = everClients_ ? std::string() : bypass_.aboutEnded(); !bypass.empty()) {
+            console_.error("no frame was captured: " + bypass);
+            return;
+        }
         const std::string& name = run_.program.front();
         if (everClients_) {
             console_.error("no frame was captured: " + name + " made a GL context but never showed a picture (no buffer swap)");
@@ -128,10 +137,26 @@ private:
         }
     }
 
+    // What is said of programs that draw past us; at most one line of ours, beside what they say.
+    void watchBypass() {
+        for (const std::string& line : bypass_.news()) {
+            console_.error(line);
+            bypassSaid_ = true;
+        }
+        if (!lookAt_.passed()) return;
+        lookAt_ = Deadline::inMs(kUnseenMs);
+        if (everClients_ || bypassSaid_) return;
+        const std::string line = bypass_.lookAt(program_.processes());
+        if (line.empty()) return;
+        console_.error(line);
+        bypassSaid_ = true;
+    }
+
     void turn() {
         const bool wasConnected = head_->connected();
         waitTurn(run_, program_, wasConnected ? head_->fd() : -1);
         for (const std::string& line : head_->receive()) take(line);
+        watchBypass();
         if (wasConnected && !head_->connected() && ready_ && !report_) tellHeadLost();
     }
 
@@ -176,6 +201,9 @@ private:
     PreparedRun& run_;
     Console& console_;
     launch::ProgramSupervisor& program_;
+    launch::BypassWatch& bypass_;
+    Deadline lookAt_ = Deadline::never();
+    bool bypassSaid_ = false;
     std::unique_ptr<HeadControl> head_;
     bool ready_ = false;
     bool finishing_ = false;
@@ -195,8 +223,13 @@ int runSession(PreparedRun& run, Console& console) {
         console.error(program.error().message);
         return launch::kExitUsage;
     }
+    auto bypass = launch::BypassWatch::create();
+    if (!bypass) {
+        console.error(bypass.error().message);
+        return launch::kExitUsage;
+    }
     if (run.display) program.value()->leaveAlone(run.display->pid());
-    return Session(run, console, *program.value()).perform();
+    return Session(run, console, *program.value(), *bypass.value()).perform();
 }
 
 } // namespace mural::cli

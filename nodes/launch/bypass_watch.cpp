@@ -1,0 +1,160 @@
+#include "nodes/launch/bypass_watch.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <set>
+#include <string_view>
+#include <sys/mman.h>
+#include <unistd.h>
+#include <utility>
+
+#include "nodes/launch/environment.hpp"
+#include "nodes/launch/gl_libraries.hpp"
+
+namespace mural::launch {
+
+namespace {
+
+constexpr size_t kMaxEnded = 256; // programs that ended unseen; build tools and shells leave no note
+
+std::string_view baseName(std::string_view path) {
+    const auto slash = path.rfind('/');
+    return slash == std::string_view::npos ? path : path.substr(slash + 1);
+}
+
+// What is worth opening: the rest of a program's hundred libraries is not.
+bool mayDraw(std::string_view path) {
+    for (const char* beginning : {"libGL", "libEGL", "libOSMesa", "libvulkan", "libX11.", "libxcb."}) {
+        if (baseName(path).starts_with(beginning)) return true;
+    }
+    return false;
+}
+
+// Files that are mapped for execution, by /proc/PID/maps.
+UnseenProgram runningProgram(pid_t pid) {
+    UnseenProgram found;
+    char name[4096];
+    const std::string folder = "/proc/" + std::to_string(pid);
+    const ssize_t length = readlink((folder + "/exe").c_str(), name, sizeof name);
+    if (length > 0) found.program.assign(name, static_cast<size_t>(length));
+    std::ifstream maps(folder + "/maps");
+    std::set<std::string> paths;
+    for (std::string line; std::getline(maps, line);) {
+        const auto path = line.find('/');
+        if (path == std::string::npos || line.find(" r-xp ") == std::string::npos) continue;
+        paths.insert(line.substr(path));
+    }
+    found.libraries.assign(paths.begin(), paths.end());
+    return found;
+}
+
+struct Finding {
+    Drawing drawing = Drawing::None;
+    std::string program, library;
+    bool glvnd = false; // is there as well
+};
+
+// The way of drawing that is not GLVND's; the more special one when there are several.
+Finding findingOf(const UnseenProgram& program) {
+    Finding found{Drawing::None, std::string(baseName(program.program)), {}};
+    const auto rank = [](Drawing d) {
+        return d == Drawing::OwnGl ? 4 : d == Drawing::OffScreen ? 3 : d == Drawing::Vulkan ? 2 : d == Drawing::X11 ? 1 : 0;
+    };
+    bool fronted = false;
+    for (const std::string& path : program.libraries) fronted = fronted || baseName(path) == kFrontLibraryName;
+    for (const std::string& path : program.libraries) {
+        const Drawing drawing = mayDraw(path) ? drawingOf(path) : Drawing::None;
+        found.glvnd = found.glvnd || drawing == Drawing::Glvnd || (drawing == Drawing::OwnGl && fronted);
+        if (drawing == Drawing::OwnGl && fronted) continue; // would have been seen
+        if (rank(drawing) <= rank(found.drawing)) continue;
+        found.drawing = drawing;
+        found.library = path;
+    }
+    return found;
+}
+
+std::string describe(const Finding& f) {
+    switch (f.drawing) {
+    case Drawing::OwnGl:
+        return f.program + " draws by " + f.library + ", which GLVND does not lead to, and so past Mural; its window shows its own picture. "
+               "Run it with --front preload, or without that library (LD_LIBRARY_PATH)";
+    case Drawing::OffScreen:
+        return f.program + " draws by OSMesa (" + f.library + ") into its own memory, where Mural sees nothing; "
+               "its window shows its own picture. Run a build of it that uses GLX or EGL";
+    case Drawing::Vulkan:
+        return f.program + " seems to draw by Vulkan (" + f.library + "), which Mural does not carry; "
+               "its window shows its own picture. Choose OpenGL in its options";
+    case Drawing::X11:
+        if (f.glvnd) return {};
+        return f.program + " has a window but loads no GL library: it draws by X11 itself, which Mural does not carry. Choose OpenGL in its options";
+    default: return {};
+    }
+}
+
+} // namespace
+
+std::string describeBypass(const std::vector<UnseenProgram>& programs) {
+    Finding best;
+    std::string line;
+    for (const UnseenProgram& program : programs) {
+        const Finding found = findingOf(program);
+        const std::string text = describe(found);
+        // Of several programs, one that draws by X11 only may be the launcher's dialog.
+        if (text.empty() || (!line.empty() && (found.drawing == Drawing::X11 || best.drawing == Drawing::OwnGl))) continue;
+        best = found;
+        line = text;
+    }
+    return line;
+}
+
+Result<std::unique_ptr<BypassWatch>> BypassWatch::create() {
+    const int fd = memfd_create("mural-notes", MFD_CLOEXEC);
+    if (fd < 0) return Error{std::string("no memory for the programs' notes: ") + std::strerror(errno)};
+    return std::unique_ptr<BypassWatch>(new BypassWatch(fd));
+}
+
+BypassWatch::~BypassWatch() { close(fd_); }
+
+std::string BypassWatch::notesPath() const { return "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(fd_); }
+
+// Notes are lines of fields between tabs: "say" and a text, or "ended", the program, its libraries.
+void BypassWatch::readNotes() {
+    char part[16384];
+    std::string text;
+    for (ssize_t n = 0; (n = pread(fd_, part, sizeof part, static_cast<off_t>(read_ + text.size()))) > 0;) text.append(part, static_cast<size_t>(n));
+    const auto whole = text.rfind('\n');
+    if (whole == std::string::npos) return;
+    read_ += whole + 1;
+    for (size_t at = 0; at <= whole;) {
+        const size_t end = text.find('\n', at);
+        std::vector<std::string> fields;
+        for (size_t from = at; from <= end;) {
+            const size_t to = std::min(text.find('\t', from), end);
+            fields.push_back(text.substr(from, to - from));
+            from = to + 1;
+        }
+        at = end + 1;
+        if (fields.size() == 2 && fields[0] == "say") {
+            if (std::find(said_.begin(), said_.end(), fields[1]) != said_.end()) continue;
+            said_.push_back(fields[1]);
+            waiting_.push_back(fields[1]);
+        } else if (fields.size() > 2 && fields[0] == "ended" && ended_.size() < kMaxEnded) {
+            ended_.push_back({fields[1], {fields.begin() + 2, fields.end()}});
+        }
+    }
+}
+
+std::vector<std::string> BypassWatch::news() {
+    readNotes();
+    return std::exchange(waiting_, {});
+}
+
+std::string BypassWatch::lookAt(const std::vector<pid_t>& processes) const {
+    std::vector<UnseenProgram> programs;
+    for (const pid_t pid : processes) programs.push_back(runningProgram(pid));
+    return describeBypass(programs);
+}
+
+} // namespace mural::launch
