@@ -21,6 +21,7 @@ namespace {
 
 constexpr int64_t kSliceNs = 50 * kNsPerMs;   // how often a blocked thread looks whether the head lives
 constexpr int64_t kStuckNs = 60 * kNsPerS;    // a living head that gives nothing for so long is given up
+constexpr int64_t kShowNs = 5 * kNsPerS;      // for a finished picture to get into its window: the head's own patience
 
 Session* theSession = nullptr;
 bool tried = false;
@@ -170,7 +171,7 @@ bool Session::headAlive() {
         char byte;
         const bool open = !(p.revents & (POLLHUP | POLLERR)) && recv(socket_, &byte, 1, MSG_DONTWAIT | MSG_PEEK) != 0;
         if (!open) {
-            die("the head is gone");
+            die(nullptr); // `mural run`, which has started it, says so
             return false;
         }
     }
@@ -219,9 +220,10 @@ bool Session::takeChunk(ThreadState& t) {
                 return true;
             }
         }
+        const int64_t beforeNs = monotonicNowNs();
         futexWait(header_->freedTail, seen, kSliceNs);
-        const int64_t waitedNs = monotonicNowNs() - startedNs;
-        header_->waitNs.fetch_add(static_cast<uint64_t>(waitedNs < kSliceNs ? waitedNs : kSliceNs), std::memory_order_relaxed);
+        const int64_t nowNs = monotonicNowNs(), waitedNs = nowNs - startedNs;
+        header_->waitNs.fetch_add(static_cast<uint64_t>(nowNs - beforeNs), std::memory_order_relaxed);
         if (!headAlive()) return false;
         if (waitedNs > kStuckNs) die("the head frees no memory for 60 s");
     }
@@ -229,12 +231,13 @@ bool Session::takeChunk(ThreadState& t) {
 }
 
 void Session::waitForCredit(uint32_t latency) {
-    header_->framesSubmitted.store(framesSubmitted_, std::memory_order_relaxed);
+    const uint32_t submitted = framesSubmitted();
+    header_->framesSubmitted.store(submitted, std::memory_order_relaxed);
     const int64_t startedNs = monotonicNowNs();
     bool waited = false;
     while (alive()) {
         const uint32_t done = header_->framesDone.load(std::memory_order_acquire);
-        if (static_cast<int32_t>(framesSubmitted_ - done) <= static_cast<int32_t>(latency)) break;
+        if (static_cast<int32_t>(submitted - done) <= static_cast<int32_t>(latency)) break;
         waited = true;
         futexWait(header_->framesDone, done, kSliceNs);
         if (!headAlive()) break;
@@ -244,13 +247,25 @@ void Session::waitForCredit(uint32_t latency) {
 }
 
 void Session::waitShown() {
+    if (!alive() || !welcome_.displayApp) return;
+    const uint32_t submitted = framesSubmitted();
+    const auto missing = [&](uint32_t frame) { return static_cast<int32_t>(submitted - frame) > 0; };
     const int64_t startedNs = monotonicNowNs();
+    int64_t progressNs = startedNs;
+    uint32_t shownBefore = header_->framesShown.load(std::memory_order_acquire);
     while (alive()) {
         const uint32_t shown = header_->framesShown.load(std::memory_order_acquire);
-        if (static_cast<int32_t>(framesSubmitted_ - shown) <= 0) return;
+        if (!missing(shown)) break;
+        const int64_t nowNs = monotonicNowNs();
+        // The nodes may need long for a frame; what they have finished needs only the X server.
+        const bool drawing = missing(header_->framesDone.load(std::memory_order_acquire));
+        if (shown != shownBefore || drawing) progressNs = nowNs;
+        shownBefore = shown;
+        if (nowNs - progressNs > kShowNs || nowNs - startedNs > kStuckNs) break;
         futexWait(header_->framesShown, shown, kSliceNs);
-        if (!headAlive() || monotonicNowNs() - startedNs > kStuckNs) return;
+        if (!headAlive()) return;
     }
+    header_->waitNs.fetch_add(static_cast<uint64_t>(monotonicNowNs() - startedNs), std::memory_order_relaxed);
 }
 
 uint32_t Session::beginRequest() {

@@ -30,7 +30,7 @@ public:
     bool takeChunk(ThreadState& t);
     // Blocks until at most `latency` frames are on their way.
     void waitForCredit(uint32_t latency);
-    // Blocks until frame `frame` of this process is shown (--display app); bounded.
+    // Blocks until all frames of this process are in its windows (--display app); bounded.
     void waitShown();
 
     // One question to the nodes at a time per process.
@@ -41,19 +41,20 @@ public:
     bool answerBytes(void* into, uint64_t sizeBytes);
     void endRequest();
 
-    uint32_t nextFrame() { return ++framesSubmitted_; }
+    uint32_t nextFrame() { return __atomic_add_fetch(&framesSubmitted_, 1, __ATOMIC_RELAXED); }
     void die(const char* why);
 
 private:
     bool connect(const char* name);
     bool headAlive();
+    [[nodiscard]] uint32_t framesSubmitted() const { return __atomic_load_n(&framesSubmitted_, __ATOMIC_RELAXED); }
 
     capture::CaptureHeader* header_ = nullptr;
     capture::Welcome welcome_{};
     const char* extensions_ = "";
     int socket_ = -1;
     bool alive_ = false;
-    uint32_t framesSubmitted_ = 0;
+    uint32_t framesSubmitted_ = 0; // by all threads
     uint32_t lastRequest_ = 0;
 };
 

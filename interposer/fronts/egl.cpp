@@ -17,6 +17,7 @@
 #include "interposer/native_count.hpp"
 #include "interposer/real_gl.hpp"
 #include "interposer/session.hpp"
+#include "interposer/windows/shown.hpp"
 
 namespace mural {
 
@@ -105,6 +106,17 @@ EGLBoolean swapBuffersWithDamageExt(EGLDisplay dpy, EGLSurface surface, const EG
     return swapLocally() ? call(dpy, surface, rects, n) : EGL_TRUE;
 }
 
+EGLBoolean waitGl() {
+    static auto* call = real<EGLBoolean()>("eglWaitGL");
+    waitGlShown();
+    return call();
+}
+EGLBoolean waitClient() {
+    static auto* call = real<EGLBoolean()>("eglWaitClient");
+    waitGlShown();
+    return call();
+}
+
 EGLSurface createWindowSurface(EGLDisplay dpy, EGLConfig config, EGLNativeWindowType window, const EGLint* attributes) {
     static auto* call = real<EGLSurface(EGLDisplay, EGLConfig, EGLNativeWindowType, const EGLint*)>("eglCreateWindowSurface");
     const EGLSurface made = call(dpy, config, window, attributes);
@@ -154,6 +166,7 @@ void* getProcAddress(const char* name) { return reinterpret_cast<void*>(eglFront
 const OwnEntry kOwn[] = {
     ownEntry("eglCreateContext", createContext), ownEntry("eglDestroyContext", destroyedContext),
     ownEntry("eglMakeCurrent", makeCurrent), ownEntry("eglSwapBuffers", swapBuffers),
+    ownEntry("eglWaitGL", waitGl), ownEntry("eglWaitClient", waitClient),
     ownEntry("eglSwapBuffersWithDamageKHR", swapBuffersWithDamageKhr),
     ownEntry("eglSwapBuffersWithDamageEXT", swapBuffersWithDamageExt),
     ownEntry("eglCreateWindowSurface", createWindowSurface),

@@ -17,6 +17,7 @@
 #include "interposer/native_count.hpp"
 #include "interposer/real_gl.hpp"
 #include "interposer/session.hpp"
+#include "interposer/windows/shown.hpp"
 
 namespace mural {
 
@@ -156,6 +157,12 @@ int64_t swapBuffersMsc(Display* dpy, XID drawable, int64_t target, int64_t divis
     return swapLocally() ? call(dpy, drawable, target, divisor, remainder) : 0;
 }
 
+void waitGl() {
+    static auto* call = real<void()>("glXWaitGL");
+    waitGlShown();
+    call();
+}
+
 GLXWindow createWindow(Display* dpy, GLXFBConfig fb, ::Window window, const int* attributes) {
     static auto* call = real<GLXWindow(Display*, GLXFBConfig, ::Window, const int*)>("glXCreateWindow");
     const GLXWindow made = call(dpy, fb, window, attributes);
@@ -236,6 +243,7 @@ const OwnEntry kOwn[] = {
     ownEntry("glXDestroyContext", destroyedContext), ownEntry("glXMakeCurrent", makeCurrent),
     ownEntry("glXMakeContextCurrent", makeContextCurrent), ownEntry("glXMakeCurrentReadSGI", makeCurrentRead),
     ownEntry("glXSwapBuffers", swapBuffers), ownEntry("glXSwapBuffersMscOML", swapBuffersMsc),
+    ownEntry("glXWaitGL", waitGl),
     ownEntry("glXCreateWindow", createWindow), ownEntry("glXDestroyWindow", destroyGlxWindow),
     ownEntry("glXCreatePbuffer", createPbuffer), ownEntry("glXDestroyPbuffer", destroyPbuffer),
     ownEntry("glXCreatePixmap", createPixmap), ownEntry("glXDestroyPixmap", destroyPixmap),
