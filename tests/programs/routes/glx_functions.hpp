@@ -9,8 +9,10 @@
 
 namespace programs {
 
-// Runs the scene in a window; `findGlx` finds glX names and `findGl` gl names.
-inline int runSceneByGlx(const Options& options, FindFunction findGlx, FindFunction findGl) {
+// Runs the scene in a window; `findGlx` finds glX names and `findGl` gl names. `atEnd` may look at the
+// window after the last frame.
+inline int runSceneByGlx(const Options& options, FindFunction findGlx, FindFunction findGl,
+                         void (*atEnd)(Display*, ::Window, int width) = nullptr) {
     const auto chooseVisual = reinterpret_cast<decltype(&::glXChooseVisual)>(findGlx("glXChooseVisual"));
     const auto createContext = reinterpret_cast<decltype(&::glXCreateContext)>(findGlx("glXCreateContext"));
     const auto makeCurrent = reinterpret_cast<decltype(&::glXMakeCurrent)>(findGlx("glXMakeCurrent"));
@@ -32,6 +34,9 @@ inline int runSceneByGlx(const Options& options, FindFunction findGlx, FindFunct
     for (int frame = 0; frame < options.frames; ++frame) {
         scene.draw(frame, options.width, options.height);
         swapBuffers(display, window.id());
+    }
+    if (atEnd != nullptr) {
+        atEnd(display, window.id(), options.width);
     }
     makeCurrent(display, None, nullptr);
     destroyContext(display, context);

@@ -1,0 +1,92 @@
+#!/usr/bin/env python3
+"""Programs whose GL library GLVND does not lead to: caught by the preloaded front and exact, or told in
+one line that their calls go past Mural.
+
+  own_gl.py --build build/release [--cases caught,told] [--list]
+"""
+
+import json
+import os
+import sys
+import tempfile
+
+import failures
+
+failures.CASES.clear()  # only those of this file
+FRAMES = 4
+OPTIONS = ["--tiles", "2x2", "--display", "none", "--verify"]
+
+
+def libraries(context, kind):
+    return os.path.join(context.build, "tests", "programs", "own_gl", kind)
+
+
+def caught(case_name, program, kind, options=(), in_script=False):
+    """The program comes out exact, frame by frame, with the GL library of that folder."""
+    def check(context):
+        with tempfile.TemporaryDirectory(prefix="mural-own-gl.") as folder:
+            report_file = os.path.join(folder, "report.json")
+            command = [context.program(program), "--frames", str(FRAMES), "--size", "253x191"]
+            environment = {"LD_LIBRARY_PATH": libraries(context, kind)}
+            if in_script:
+                command = ["sh", "-c", 'LD_LIBRARY_PATH="$0" exec "$@"', libraries(context, kind)] + command
+                environment = None
+            with context.run(command, OPTIONS + ["--report", report_file] + list(options), environment) as run:
+                wrong = failures.check_end(run, 0)
+                if wrong is not None:
+                    return wrong
+                said = failures.error_lines(run, ["past Mural", "two GL libraries", "no frame was captured"])
+                if said:
+                    return "it said: " + " | ".join(said)
+            with open(report_file, encoding="utf-8") as file:
+                report = json.load(file)
+        if report["frames"] != FRAMES:
+            return "%d frames instead of %d" % (report["frames"], FRAMES)
+        if report["verifiedPixels"] == 0 or report["differingPixels"] != 0:
+            return "%d of %d pixels differ" % (report["differingPixels"], report["verifiedPixels"])
+        return None
+    check.__name__ = "caught_" + case_name
+    failures.case(check)
+
+
+for name in ("immediate", "client_arrays", "display_lists", "core_arrays", "textures_classic", "glsl_legacy",
+             "shared_contexts", "threads_windows", "route_dlsym", "route_deepbind", "route_glx_proc", "route_plugin"):
+    caught(name, name, "glx")
+caught("es2", "es2_scene", "egl")
+caught("egl_proc", "route_egl_proc", "egl")
+caught("once_by_both_fronts", "immediate", "forwarding")
+caught("once_by_both_fronts_dlsym", "route_dlsym", "forwarding")
+caught("glvnd_with_front", "immediate", "none", ("--front", "preload"))
+caught("glvnd_with_front_dlsym", "route_dlsym", "none", ("--front", "preload"))
+caught("in_script_when_asked", "immediate", "glx", ("--front", "preload"), in_script=True)
+
+
+def told(case_name, program, words, in_script=None, options=(), output=None):
+    """The program runs as without Mural, and one line says why nothing of it is on the wall."""
+    def check(context):
+        command = [context.program(program), "--frames", str(FRAMES), "--size", "253x191"]
+        if in_script is not None:
+            command = ["sh", "-c", 'LD_LIBRARY_PATH="$0" exec "$@"', libraries(context, in_script)] + command
+        with context.run(command, ["--tiles", "2x2", "--display", "none", "--quiet"] + list(options)) as run:
+            wrong = failures.check_end(run, 0)
+            if wrong is not None:
+                return wrong
+            said = [line for line in run.standard_error if line.startswith("mural:")]
+            if len(said) != 1 or not all(word in said[0] for word in words):
+                return "it said %d lines: %s" % (len(said), " | ".join(said))
+            if output is not None and output not in run.standard_output:
+                return "the program said: " + " | ".join(run.standard_output)
+            return None
+    check.__name__ = "told_" + case_name
+    failures.case(check)
+
+
+told("own_gl_in_script", "immediate", ["own_gl/glx/libGL.so.1", "--front preload"], "glx")
+told("own_gl_with_front_off", "immediate", ["own_gl/glx/libGL.so.1", "--front preload"], "glx", ("--front", "glvnd"))
+told("osmesa", "osmesa_window", ["OSMesa", "libOSMesa.so", "no frame was captured"])
+told("drawn_elsewhere", "route_glapi", ["go past Mural", "--front preload"], output="the window shows the picture")
+told("x11_only", "x11_window", ["loads no GL library"])
+
+
+if __name__ == "__main__":
+    sys.exit(failures.main())

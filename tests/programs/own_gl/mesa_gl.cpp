@@ -1,0 +1,55 @@
+// A libGL.so.1 as it was before GLVND: exports all names, and goes to Mesa's driver itself. GL names
+// through libglapi, as Mesa's own libGL did; GLX names to the functions of libGLX_mesa.so.0, past GLVND.
+#include <cstdlib>
+#include <cstring>
+#include <dlfcn.h>
+#include <X11/Xlib.h>
+#include <glvnd/libglxabi.h>
+
+#include "interposer/preload/thunks.hpp"
+
+namespace mural {
+
+namespace {
+
+using GlxLookup = void*(const unsigned char*);
+using GlLookup = Entry(const char*);
+
+// What libGLX would hand to the vendor; Mesa uses it only in its dispatch functions, which nobody asks for.
+__GLXapiExports exports;
+__GLXapiImports imports;
+
+GlxLookup* findGlx() {
+    void* driver = dlopen("libGLX_mesa.so.0", RTLD_NOW);
+    using Main = Bool(uint32_t, const __GLXapiExports*, __GLXvendorInfo*, __GLXapiImports*);
+    auto* main = driver ? reinterpret_cast<Main*>(dlsym(driver, "__glx_Main")) : nullptr;
+    if (!main || !main(GLX_VENDOR_ABI_VERSION, &exports, nullptr, &imports)) std::abort();
+    return imports.getProcAddress;
+}
+
+GlLookup* findGl() {
+    void* dispatch = dlopen("libglapi.so.0", RTLD_NOW);
+    auto* lookup = dispatch ? reinterpret_cast<GlLookup*>(dlsym(dispatch, "_glapi_get_proc_address")) : nullptr;
+    if (!lookup) std::abort();
+    return lookup;
+}
+
+void nothing() {}
+
+Entry lookUp(const char* name) {
+    static GlxLookup* glx = findGlx();
+    static GlLookup* gl = findGl();
+    const bool isGlx = std::strncmp(name, "glX", 3) == 0;
+    return isGlx ? reinterpret_cast<Entry>(glx(reinterpret_cast<const unsigned char*>(name))) : gl(name);
+}
+
+} // namespace
+
+Entry resolveSlot(int number) {
+    const Entry found = lookUp(thunkName(number));
+    if (!found) return nothing;
+    __atomic_store_n(&gSlots[number], found, __ATOMIC_RELEASE);
+    return found;
+}
+
+} // namespace mural
