@@ -22,6 +22,8 @@
 #include "nodes/replay/args.hpp"
 #include "nodes/replay/name_table.hpp"
 #include "nodes/replay/replay_dispatch.hpp"
+#include "nodes/replay/tiled_programs.hpp"
+#include "nodes/replay/tiling.hpp"
 #include "streamcodec/client_arrays.hpp"
 #include "streamcodec/sizes/pixel_format.hpp"
 #include "streamcodec/wire.hpp"
@@ -40,6 +42,7 @@ struct ReplayConfig {
     int node = 0;
     TileGrid grid;
     TileRegion region;
+    bool cull = true;      // whole primitives outside of the region are dropped by rewritten shaders
     bool lean = false;     // framebuffers of the tile's size; false: of the picture's size (exact)
     std::string plant;     // MURAL_PLANT: a fault on purpose, for tests of the tests
     ReplayLimits limits;
@@ -136,7 +139,7 @@ private:
         std::unordered_map<GLuint, ProgramInfo> programs; // by the program's name
         std::unordered_map<GLuint, List> lists;
         NameTable framebuffersOfAll;
-
+        TiledPrograms tiled;
     };
     struct Scissor {
         bool enabled = false;
@@ -165,6 +168,12 @@ private:
     struct QueryInfo {
         GLenum target = 0;
         bool whole = false; // of a framebuffer object: drawn whole on every node
+    };
+    // Pixels of the window that a copy will read, put together from all nodes (lean).
+    struct Gathered {
+        PixelViewport box; // empty: nothing waits
+        GLuint framebuffer = 0, color = 0, depthStencil = 0;
+        std::vector<uint32_t> depth; // until the stencil has come
     };
     struct ContextState {
         std::unordered_map<GLuint, QueryInfo> queries; // by the program's name
@@ -196,6 +205,12 @@ private:
         std::vector<ClientState> clientAttributes;
         std::vector<std::vector<std::byte>> arrayMemory; // spans of client arrays
         GLuint fillFramebuffer = 0;
+        Gathered gathered;
+        GLfloat cullMargin = 16;   // pixels; only grows: lists and stacks may bring wide lines back
+        bool lineStippled = false; // ever: a dropped piece of a strip would shift the pattern
+        bool clippingCounted = false; // a query counts what clipping gets or gives
+        bool arbPositions = false; // an ARB program reads the window's offset
+        bool pipelineBound = false;
     };
     struct Stream {
         ContextState* context = nullptr;
@@ -259,6 +274,17 @@ private:
     void accumulateColours(GLfloat value, bool add);
     void returnAccumulated(GLfloat value);
     bool saidAccumulation_ = false;
+    // replay_programs.cpp
+    [[nodiscard]] ShaderRewrites rewrites() const;
+    [[nodiscard]] bool esContext() const { return c_->api != wire::Api::Desktop; }
+    void applyTileValues();
+    void widen(GLfloat pixels);
+    // replay_copies.cpp
+    void gatherForCopy(const PixelViewport& r, GLbitfield plane, const void* pixels);
+    void gatherDepthStencil(Gathered& g, GLbitfield plane, const void* pixels);
+    void forgetGathered();
+    void fromWindow(const PixelViewport& source, const std::function<void(GLint, GLint)>& call);
+    void copyLevel(GLint x, GLint y, GLsizei w, GLsizei h, const std::function<void(GLint, GLint)>& call);
     // replay_tiling.cpp
     [[nodiscard]] PixelViewport origin() const; // of this node's framebuffer in the window (lean)
     void applyScissors();

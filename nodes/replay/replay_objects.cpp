@@ -122,19 +122,6 @@ void Replay::glShaderSource(GLuint shader, GLsizei count, const Data& string) {
     if (!texts.parse(string, count) || texts.count() == 0) return;
     gl.glShaderSource(name(Kind::Program, shader), count, texts.pointers(), texts.lengths());
 }
-void Replay::glLinkProgram(GLuint program) {
-    const GLuint ours = name(Kind::Program, program);
-    gl.glLinkProgram(ours);
-}
-void Replay::glCreateShaderProgramv(GLenum type, GLsizei count, const Data& strings, GLuint result) {
-    StringList texts;
-    if (!gl.glCreateShaderProgramv || !texts.parse(strings, count) || texts.count() == 0) return;
-    bindName(Kind::Program, result, gl.glCreateShaderProgramv(type, count, texts.pointers()));
-}
-void Replay::glUseProgram(GLuint program) {
-    c_->program = program;
-    gl.glUseProgram(name(Kind::Program, program));
-}
 void Replay::glUniformBlockBinding(GLuint program, GLuint index, GLuint binding) {
     gl.glUniformBlockBinding(name(Kind::Program, program), index, binding);
 }
@@ -230,6 +217,15 @@ bool Replay::splitsLists(uint16_t opcode, std::span<const std::byte> arguments) 
     case op::glAccum:
     case op::glUseProgram: return true;
     case op::glViewport:
+    case op::glViewportArrayv:
+    case op::glViewportIndexedf:
+    case op::glViewportIndexedfv: return config_.lean || rewrites().any();
+    case op::glBlitFramebuffer:
+    case op::glCopyTexImage1D:
+    case op::glCopyTexImage2D:
+    case op::glCopyTexSubImage1D:
+    case op::glCopyTexSubImage2D:
+    case op::glCopyTexSubImage3D:
     case op::glPolygonStipple: return config_.lean;
     default: return false;
     }
@@ -249,6 +245,7 @@ void Replay::glEndList() {
     gl.glEndList();
     const GLuint list = c_->compiling;
     c_->compiling = 0;
+    applyTileValues(); // what changed meanwhile
     List& slot = c_->shared->lists[list];
     for (const ListItem& item : slot.items) {
         if (item.record.empty()) gl.glDeleteLists(item.native, 1);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 
 #include "nodes/replay/replay.hpp"
 
@@ -124,9 +125,22 @@ bool Replay::ownRequestBuffer(Args& in) {
     return true;
 }
 
+namespace {
+bool countsClipping(GLenum target) { return target == GL_CLIPPING_INPUT_PRIMITIVES || target == GL_CLIPPING_OUTPUT_PRIMITIVES; }
+} // namespace
+
 void Replay::glBeginQuery(GLenum target, GLuint id) {
     c_->queries[id] = {target, c_->drawFramebuffer != 0};
     gl.glBeginQuery(target, name(Kind::Query, id));
+    if (!countsClipping(target)) return;
+    c_->clippingCounted = true;
+    applyTileValues();
+}
+void Replay::glEndQuery(GLenum target) {
+    gl.glEndQuery(target);
+    if (!countsClipping(target)) return;
+    c_->clippingCounted = false;
+    applyTileValues();
 }
 
 // Samples are counted tile by tile and added; what every node counts alike is taken from one.
@@ -169,7 +183,7 @@ const std::byte* Replay::readShown(Window& w, const PixelViewport& r) {
     const bool bgra = c_->api == wire::Api::Desktop;
     const std::byte* pixels = nullptr;
     const GLenum format = bgra ? GL_BGRA : GL_RGBA;
-    const bool resolves = w.config.samples > 0 && separate && gl.glBlitFramebuffer && gl.glRenderbufferStorage && !config_.lean && !r.empty();
+    const bool resolves = w.config.samples > 0 && separate && gl.glBlitFramebuffer && gl.glRenderbufferStorage && !r.empty();
     if (resolves) pixels = readResolved(r, format, bytes);
     else withPlainTransfer([&] { pixels = readRegion(r, format, GL_UNSIGNED_BYTE, bytes); });
     for (size_t i = 0; !bgra && i < bytes; i += 4) std::swap(pixels_[i], pixels_[i + 2]);
@@ -197,11 +211,14 @@ const std::byte* Replay::readResolved(const PixelViewport& r, GLenum format, siz
     gl.glDisable(GL_SCISSOR_TEST);
     const bool srgb = c_->api == wire::Api::Desktop && gl.glIsEnabled(GL_FRAMEBUFFER_SRGB);
     if (srgb) gl.glDisable(GL_FRAMEBUFFER_SRGB);
-    gl.glBlitFramebuffer(r.x, r.y, r.right(), r.top(), 0, 0, r.w, r.h, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    const PixelViewport o = config_.lean ? c_->read->region : PixelViewport{};
+    gl.glBlitFramebuffer(r.x - o.x, r.y - o.y, r.right() - o.x, r.top() - o.y, 0, 0, r.w, r.h, GL_COLOR_BUFFER_BIT, GL_NEAREST);
     if (srgb) gl.glEnable(GL_FRAMEBUFFER_SRGB);
     gl.glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
     const std::byte* pixels = nullptr;
+    Window* const window = std::exchange(c_->read, nullptr); // what is read now lies at 0, 0
     withPlainTransfer([&] { pixels = readRegion({0, 0, r.w, r.h}, format, GL_UNSIGNED_BYTE, bytes); });
+    c_->read = window;
     gl.glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
     gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER, name(Kind::Framebuffer, c_->drawFramebuffer));
     gl.glDeleteFramebuffers(1, &framebuffer);
@@ -218,7 +235,11 @@ bool Replay::ownFillWindow(Args& in) {
     const Data data = in.data();
     const uint64_t bytesPer = plane == GL_STENCIL_BUFFER_BIT ? 1 : 4;
     if (!in.ok() || w <= 0 || h <= 0 || data.absent() || data.isOffset() || data.size() / bytesPer / uint64_t(w) < uint64_t(h) || x > INT32_MAX - w || y > INT32_MAX - h) return false;
-    if (!bound_ || !c_->read || !gl.glBlitFramebuffer || config_.lean) return true;
+    if (bound_ && c_->read && config_.lean) {
+        gatherForCopy({x, y, w, h}, plane, data.pointer());
+        return true;
+    }
+    if (!bound_ || !c_->read || !gl.glBlitFramebuffer) return true;
     if (plane != GL_COLOR_BUFFER_BIT) {
         fillDepthStencil({x, y, w, h}, plane, data.pointer());
         return true;

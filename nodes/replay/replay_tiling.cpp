@@ -48,11 +48,12 @@ void Replay::applyScissor(int index, bool all) {
     PixelViewport box = app.box;
     if (drawsWindow() && c_->draw && !tileOff_) {
         const PixelViewport part = c_->draw->drawn;
-        box = enabled ? intersect(part, box) : part;
-        enabled = true;
-        if (config_.lean && !box.empty()) {
-            box.x -= c_->draw->region.x;
-            box.y -= c_->draw->region.y;
+        if (config_.lean) { // the framebuffer's edges are the tile's
+            box.x = moved(box.x, c_->draw->region.x);
+            box.y = moved(box.y, c_->draw->region.y);
+        } else {
+            box = enabled ? intersect(part, box) : part;
+            enabled = true;
         }
     }
     if (all) {
@@ -100,6 +101,7 @@ void Replay::restoreWindowState() {
     if (!bound_ || !c_->everCurrent) return;
     applyScissors();
     if (config_.lean) applyViewports();
+    applyTileValues();
 }
 
 void Replay::glViewport(GLint x, GLint y, GLsizei width, GLsizei height) {
@@ -108,6 +110,7 @@ void Replay::glViewport(GLint x, GLint y, GLsizei width, GLsizei height) {
     c_->viewportsDiffer = false;
     const PixelViewport o = origin();
     gl.glViewport(moved(x, o.x), moved(y, o.y), width, height);
+    applyTileValues();
 }
 void Replay::glViewportArrayv(GLuint first, GLsizei count, const Data& v) {
     if (count <= 0 || !v.pointer()) return;
@@ -119,6 +122,7 @@ void Replay::glViewportIndexedf(GLuint index, GLfloat x, GLfloat y, GLfloat w, G
     c_->viewportsDiffer = true;
     const PixelViewport o = origin();
     gl.glViewportIndexedf(index, x - static_cast<GLfloat>(o.x), y - static_cast<GLfloat>(o.y), w, h);
+    if (index == 0) applyTileValues();
 }
 void Replay::glViewportIndexedfv(GLuint index, const GLfloat* v) { glViewportIndexedf(index, v[0], v[1], v[2], v[3]); }
 
@@ -140,6 +144,10 @@ void Replay::glScissorIndexed(GLuint index, GLint left, GLint bottom, GLsizei wi
 void Replay::glScissorIndexedv(GLuint index, const GLint* v) { glScissorIndexed(index, v[0], v[1], v[2], v[3]); }
 
 void Replay::glEnable(GLenum cap) {
+    if (cap == GL_LINE_STIPPLE && !c_->lineStippled) {
+        c_->lineStippled = true;
+        applyTileValues();
+    }
     if (cap != GL_SCISSOR_TEST) return gl.glEnable(cap);
     for (auto& s : c_->scissors) s.enabled = true;
     applyScissors();
@@ -346,51 +354,6 @@ void Replay::glPolygonStipple(const Data& mask) {
         for (int k = 0; k < 4; ++k) rotated[4 * y + k] = static_cast<GLubyte>(turned >> (24 - 8 * k));
     }
     gl.glPolygonStipple(rotated);
-}
-
-// ---- copies out of the window
-
-namespace {
-GLint shifted(GLint value, int32_t by, bool window) { return window ? Replay::moved(value, by) : value; }
-} // namespace
-
-#define MURAL_FROM_WINDOW                                                                          \
-    const bool window = config_.lean && c_->readFramebuffer == 0 && c_->read;                      \
-    const PixelViewport o = window ? c_->read->region : PixelViewport{};                           \
-    x = shifted(x, o.x, window);                                                                   \
-    y = shifted(y, o.y, window)
-
-void Replay::glCopyTexImage1D(GLenum target, GLint level, GLenum internalformat, GLint x, GLint y, GLsizei width, GLint border) {
-    MURAL_FROM_WINDOW;
-    gl.glCopyTexImage1D(target, level, internalformat, x, y, width, border);
-}
-void Replay::glCopyTexImage2D(GLenum target, GLint level, GLenum internalformat, GLint x, GLint y, GLsizei width, GLsizei height, GLint border) {
-    MURAL_FROM_WINDOW;
-    gl.glCopyTexImage2D(target, level, internalformat, x, y, width, height, border);
-}
-void Replay::glCopyTexSubImage1D(GLenum target, GLint level, GLint xoffset, GLint x, GLint y, GLsizei width) {
-    MURAL_FROM_WINDOW;
-    gl.glCopyTexSubImage1D(target, level, xoffset, x, y, width);
-}
-void Replay::glCopyTexSubImage2D(GLenum target, GLint level, GLint xoffset, GLint yoffset, GLint x, GLint y, GLsizei width, GLsizei height) {
-    MURAL_FROM_WINDOW;
-    gl.glCopyTexSubImage2D(target, level, xoffset, yoffset, x, y, width, height);
-}
-void Replay::glCopyTexSubImage3D(GLenum target, GLint level, GLint xoffset, GLint yoffset, GLint zoffset, GLint x, GLint y, GLsizei width, GLsizei height) {
-    MURAL_FROM_WINDOW;
-    gl.glCopyTexSubImage3D(target, level, xoffset, yoffset, zoffset, x, y, width, height);
-}
-void Replay::glCopyTextureSubImage1D(GLuint texture, GLint level, GLint xoffset, GLint x, GLint y, GLsizei width) {
-    MURAL_FROM_WINDOW;
-    gl.glCopyTextureSubImage1D(name(Kind::Texture, texture), level, xoffset, x, y, width);
-}
-void Replay::glCopyTextureSubImage2D(GLuint texture, GLint level, GLint xoffset, GLint yoffset, GLint x, GLint y, GLsizei width, GLsizei height) {
-    MURAL_FROM_WINDOW;
-    gl.glCopyTextureSubImage2D(name(Kind::Texture, texture), level, xoffset, yoffset, x, y, width, height);
-}
-void Replay::glCopyTextureSubImage3D(GLuint texture, GLint level, GLint xoffset, GLint yoffset, GLint zoffset, GLint x, GLint y, GLsizei width, GLsizei height) {
-    MURAL_FROM_WINDOW;
-    gl.glCopyTextureSubImage3D(name(Kind::Texture, texture), level, xoffset, yoffset, zoffset, x, y, width, height);
 }
 
 } // namespace mural

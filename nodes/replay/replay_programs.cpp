@@ -1,0 +1,134 @@
+// Programs whose shaders know of the tile (tiling.hpp), and what else those shaders must be told.
+//
+// Values go to the current program when it becomes current and whenever something changes that they
+// depend on: viewport, framebuffer, window, widest line. In between, draws cost nothing more.
+#include <cmath>
+
+#include "nodes/replay/replay.hpp"
+#include "nodes/shaders/frag_coord.hpp"
+
+namespace mural {
+
+ShaderRewrites Replay::rewrites() const {
+    const TileRegion& r = config_.region;
+    const bool whole = r.columns == config_.grid.columns && r.rows == config_.grid.rows;
+    return {config_.cull && !whole, config_.lean && !whole};
+}
+
+void Replay::applyTileValues() {
+    if (!bound_ || !c_->shared || c_->compiling || (!c_->program && !c_->pipelineBound && !c_->arbPositions)) return;
+    TileValues values;
+    if (drawsWindow() && c_->draw && rewrites().any()) {
+        TilePlace place;
+        place.window = c_->draw->whole;
+        place.tile = config_.lean ? c_->draw->region : c_->draw->drawn;
+        place.viewport = c_->viewports[0];
+        place.marginPixels = c_->cullMargin;
+        place.mayCull = config_.cull && !c_->lineStippled && !c_->clippingCounted;
+        place.translated = config_.lean;
+        values = tileValues(place);
+    }
+    if (c_->program) c_->shared->tiled.apply(gl, name(Kind::Program, c_->program), values);
+    else if (c_->pipelineBound) c_->shared->tiled.applySeparable(gl, values);
+    if (!c_->arbPositions) return;
+    GLint count = 0;
+    gl.glGetProgramivARB(GL_FRAGMENT_PROGRAM_ARB, GL_MAX_PROGRAM_ENV_PARAMETERS_ARB, &count);
+    gl.glProgramEnvParameter4fvARB(GL_FRAGMENT_PROGRAM_ARB, static_cast<GLuint>(count - 1), values.offset.data());
+}
+
+// ---- shaders and programs
+
+void Replay::glCompileShader(GLuint shader) {
+    const GLuint ours = name(Kind::Program, shader);
+    if (c_->shared && rewrites().any()) c_->shared->tiled.compile(gl, ours);
+    else gl.glCompileShader(ours);
+}
+void Replay::glProgramParameteri(GLuint program, GLenum pname, GLint value) {
+    const GLuint ours = name(Kind::Program, program);
+    if (!gl.glProgramParameteri) return;
+    gl.glProgramParameteri(ours, pname, value);
+    if (pname == GL_PROGRAM_SEPARABLE && c_->shared) c_->shared->tiled.setSeparable(ours, value != 0);
+}
+void Replay::glLinkProgram(GLuint program) {
+    const GLuint ours = name(Kind::Program, program);
+    if (!c_->shared || !rewrites().any()) return gl.glLinkProgram(ours);
+    c_->shared->tiled.link(gl, ours, rewrites(), esContext());
+    applyTileValues(); // it may be the current one
+}
+void Replay::glCreateShaderProgramv(GLenum type, GLsizei count, const Data& strings, GLuint result) {
+    StringList texts;
+    if (!gl.glCreateShaderProgramv || !c_->shared || !texts.parse(strings, count) || texts.count() == 0) return;
+    bindName(Kind::Program, result, c_->shared->tiled.create(gl, type, count, texts.pointers(), rewrites(), esContext()));
+    applyTileValues();
+}
+void Replay::glUseProgram(GLuint program) {
+    c_->program = program;
+    gl.glUseProgram(name(Kind::Program, program));
+    applyTileValues();
+}
+void Replay::glBindProgramPipeline(GLuint pipeline) {
+    if (!gl.glBindProgramPipeline) return;
+    gl.glBindProgramPipeline(name(Kind::Pipeline, pipeline));
+    c_->pipelineBound = pipeline != 0;
+    applyTileValues();
+}
+void Replay::glUseProgramStages(GLuint pipeline, GLbitfield stages, GLuint program) {
+    if (!gl.glUseProgramStages) return;
+    gl.glUseProgramStages(name(Kind::Pipeline, pipeline), stages, name(Kind::Program, program));
+    applyTileValues();
+}
+
+void Replay::glProgramStringARB(GLenum target, GLenum format, GLsizei len, const Data& string) {
+    if (!gl.glProgramStringARB || len < 0) return;
+    const auto load = [&](GLsizei length, const void* text) {
+        gl.glProgramStringARB(target, format, length, text);
+        GLint at = -1;
+        gl.glGetIntegerv(GL_PROGRAM_ERROR_POSITION_ARB, &at);
+        return at < 0;
+    };
+    if (target == GL_FRAGMENT_PROGRAM_ARB && rewrites().windowCoordinates && gl.glGetProgramivARB && gl.glProgramEnvParameter4fvARB) {
+        GLint count = 0;
+        gl.glGetProgramivARB(target, GL_MAX_PROGRAM_ENV_PARAMETERS_ARB, &count);
+        const auto text = shaders::withWindowCoordinatesArb({string.as<char>(), static_cast<size_t>(len)}, count - 1);
+        if (text && load(static_cast<GLsizei>(text->size()), text->data())) {
+            c_->arbPositions = true;
+            return applyTileValues();
+        }
+    }
+    load(len, string.pointer());
+}
+
+// ---- how far a primitive's picture reaches beyond its vertices
+
+void Replay::widen(GLfloat pixels) {
+    const GLfloat margin = pixels / 2 + 2;
+    if (!(margin > c_->cullMargin)) return;
+    c_->cullMargin = margin;
+    applyTileValues();
+}
+void Replay::glLineWidth(GLfloat width) {
+    gl.glLineWidth(width);
+    widen(width);
+}
+void Replay::glPointSize(GLfloat size) {
+    gl.glPointSize(size);
+    widen(size);
+}
+void Replay::glLineWidthx(GLint width) {
+    if (gl.glLineWidthx) gl.glLineWidthx(width);
+    widen(static_cast<GLfloat>(width) / 65536);
+}
+void Replay::glLineWidthxOES(GLint width) {
+    if (gl.glLineWidthxOES) gl.glLineWidthxOES(width);
+    widen(static_cast<GLfloat>(width) / 65536);
+}
+void Replay::glPointSizex(GLint size) {
+    if (gl.glPointSizex) gl.glPointSizex(size);
+    widen(static_cast<GLfloat>(size) / 65536);
+}
+void Replay::glPointSizexOES(GLint size) {
+    if (gl.glPointSizexOES) gl.glPointSizexOES(size);
+    widen(static_cast<GLfloat>(size) / 65536);
+}
+
+} // namespace mural

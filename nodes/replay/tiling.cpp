@@ -1,0 +1,37 @@
+#include "nodes/replay/tiling.hpp"
+
+#include <cmath>
+
+namespace mural {
+
+namespace {
+
+// Viewports beyond this may be clamped by GL without a word: then nothing is known of where things land.
+constexpr GLfloat kLargestViewport = 16384;
+
+bool known(const std::array<GLfloat, 4>& v) {
+    for (const GLfloat value : v) {
+        if (!(std::fabs(value) <= kLargestViewport)) return false;
+    }
+    return v[2] >= 1 && v[3] >= 1;
+}
+
+} // namespace
+
+TileValues tileValues(const TilePlace& p) {
+    TileValues values;
+    if (p.translated) {
+        values.offset = {static_cast<GLfloat>(p.tile.x), static_cast<GLfloat>(p.tile.y),
+                         static_cast<GLfloat>(p.window.top() - p.tile.top()), 0};
+    }
+    if (!p.mayCull || p.tile == p.window || !known(p.viewport)) return values;
+    // A point of window coordinate x is at 2 (x - vx) / vw - 1 of the viewport's -1 to 1.
+    const auto edge = [](double position, GLfloat from, GLfloat size) { return static_cast<GLfloat>(2 * (position - from) / size - 1); };
+    const auto& v = p.viewport;
+    const double m = p.marginPixels;
+    values.cull = {edge(p.tile.x - m, v[0], v[2]), edge(p.tile.right() + m, v[0], v[2]), edge(p.tile.y - m, v[1], v[3]), edge(p.tile.top() + m, v[1], v[3]),
+                   1, p.marginPixels, 2 / v[2], 2 / v[3]};
+    return values;
+}
+
+} // namespace mural
