@@ -85,7 +85,7 @@ def stop_group(process):
 
 
 def run_program(build, name, folder, display, size, frames, launcher=(), seconds=120,
-                more_environment=None):
+                more_environment=None, library="grab.so"):
     """Runs a program, natively or behind `launcher`, with the grabbing library in front."""
     os.makedirs(folder)
     environment = clean_environment(display)
@@ -93,7 +93,7 @@ def run_program(build, name, folder, display, size, frames, launcher=(), seconds
     environment.update(more_environment or {})
     if name in FLUSHING:
         environment["GRAB_FLUSH"] = "1"
-    grab = os.path.join(build, "tests", "end_to_end", "grab.so")
+    grab = os.path.join(build, "tests", "end_to_end", library)
     # The shell puts our library in front of whatever the launcher preloads.
     shell = 'LD_PRELOAD="%s${LD_PRELOAD:+ $LD_PRELOAD}" exec "$@"' % grab
     program = os.path.join(build, "tests", "programs", name)

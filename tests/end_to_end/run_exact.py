@@ -21,8 +21,8 @@ import pictures
 import programs
 
 
-def parse_arguments():
-    parser = argparse.ArgumentParser(description=__doc__,
+def parse_arguments(description, add_arguments):
+    parser = argparse.ArgumentParser(description=description,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", default="build/release", help="the build folder")
     parser.add_argument("--mural", help="the launcher; default BUILD/bin/mural")
@@ -36,6 +36,7 @@ def parse_arguments():
     parser.add_argument("--native", action="store_true", help="compare two native runs")
     parser.add_argument("--keep", metavar="FOLDER", help="keep all pictures and logs there")
     parser.add_argument("--list", action="store_true", help="show the programs by group and stop")
+    add_arguments(parser)
     return parser.parse_args()
 
 
@@ -136,8 +137,8 @@ def said(run):
     return "; it said: " + " | ".join(lines[-3:]) if lines else ""
 
 
-def main():
-    arguments = parse_arguments()
+def main(description=__doc__, add_arguments=lambda parser: None, comparison_class=Comparison):
+    arguments = parse_arguments(description, add_arguments)
     if arguments.list:
         list_programs()
         return 0
@@ -146,7 +147,7 @@ def main():
     folder = os.path.abspath(arguments.keep) if arguments.keep else tempfile.mkdtemp(prefix="run-exact.")
     try:
         with display.PrivateDisplay() as display_name:
-            comparison = Comparison(arguments, display_name, folder)
+            comparison = comparison_class(arguments, display_name, folder)
             for name in names:
                 shutil.rmtree(os.path.join(folder, name), ignore_errors=True)
                 comparison.check(name)

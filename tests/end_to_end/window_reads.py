@@ -1,0 +1,36 @@
+#!/usr/bin/env python3
+"""Under --display app a program that reads its own window right after a swap finds that frame there.
+
+  window_reads.py --build build/release --programs immediate,resize --layouts 2x2 --size 250x190 --frames 4
+  window_reads.py --build build/release --read copy    through a pixmap instead of XGetImage
+
+As run_exact.py, but the pictures are what the windows show (window_grab.c), not what GL reads.
+"""
+
+import os
+import sys
+
+import programs
+import run_exact
+
+# Not threads_windows: its windows overlap, and a read finds whatever another thread has just shown there.
+PROGRAMS = "immediate,single_buffered,several_windows,resize,window_churn,es2_scene,egl_desktop"
+
+
+class WindowComparison(run_exact.Comparison):
+    def run(self, name, label, launcher=(), environment=None):
+        arguments = self.arguments
+        folder = os.path.join(self.folder, name, label)
+        environment = dict(environment or {}, GRAB_READ=arguments.read)
+        return programs.run_program(arguments.build, name, folder, self.display_name, arguments.size,
+                                    arguments.frames, launcher, arguments.seconds, environment,
+                                    library="window_grab.so")
+
+
+def add_arguments(parser):
+    parser.add_argument("--read", choices=("image", "copy"), default="image")
+    parser.set_defaults(options="--display app", programs=PROGRAMS)
+
+
+if __name__ == "__main__":
+    sys.exit(run_exact.main(__doc__, add_arguments, WindowComparison))
