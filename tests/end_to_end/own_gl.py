@@ -88,5 +88,15 @@ told("drawn_elsewhere", "route_glapi", ["go past Mural", "--front preload"], out
 told("x11_only", "x11_window", ["loads no GL library"])
 
 
+@failures.case
+def told_extensions_of_all_machines(context):
+    """No list of a window system's extensions names what only exists on one machine."""
+    with context.run([context.program("extension_strings")], ["--display", "none", "--quiet"]) as run:
+        wrong = failures.check_end(run, 0)
+        if wrong is None and run.standard_output != ["0 of 5 lists name what is on one machine only"]:
+            wrong = "the program said: " + " | ".join(run.standard_output)
+        return wrong
+
+
 if __name__ == "__main__":
     sys.exit(failures.main())

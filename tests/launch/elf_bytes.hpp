@@ -4,6 +4,7 @@
 #include <cstring>
 #include <elf.h>
 #include <string>
+#include <vector>
 
 namespace mural::test {
 
@@ -31,6 +32,42 @@ inline std::string elf32() {
     header.e_machine = EM_386;
     header.e_phentsize = sizeof(Elf32_Phdr);
     return {reinterpret_cast<const char*>(&header), sizeof header};
+}
+
+// A shared library that only has a name and needs others.
+inline std::string library64(const std::string& soname, const std::vector<std::string>& needed) {
+    std::string strings(1, '\0');
+    std::vector<Elf64_Dyn> dynamic;
+    const auto add = [&](Elf64_Sxword tag, const std::string& text) {
+        dynamic.push_back({tag, {strings.size()}});
+        strings += text + '\0';
+    };
+    for (const std::string& name : needed) add(DT_NEEDED, name);
+    add(DT_SONAME, soname);
+    Elf64_Ehdr header{};
+    std::memcpy(header.e_ident, ELFMAG, SELFMAG);
+    header.e_ident[EI_CLASS] = ELFCLASS64;
+    header.e_type = ET_DYN;
+    header.e_phoff = sizeof header;
+    header.e_phentsize = sizeof(Elf64_Phdr);
+    header.e_phnum = 2;
+    const uint64_t dynamicAt = sizeof header + 2 * sizeof(Elf64_Phdr);
+    const uint64_t stringsAt = dynamicAt + (dynamic.size() + 3) * sizeof(Elf64_Dyn);
+    constexpr uint64_t kBase = 0x10000; // addresses are not places in the file
+    dynamic.push_back({DT_STRTAB, {kBase + stringsAt}});
+    dynamic.push_back({DT_STRSZ, {strings.size()}});
+    dynamic.push_back({DT_NULL, {0}});
+    Elf64_Phdr programs[2] = {};
+    programs[0].p_type = PT_LOAD;
+    programs[0].p_vaddr = kBase;
+    programs[0].p_filesz = stringsAt + strings.size();
+    programs[1].p_type = PT_DYNAMIC;
+    programs[1].p_offset = dynamicAt;
+    programs[1].p_filesz = dynamic.size() * sizeof(Elf64_Dyn);
+    std::string bytes(reinterpret_cast<const char*>(&header), sizeof header);
+    bytes.append(reinterpret_cast<const char*>(programs), sizeof programs);
+    bytes.append(reinterpret_cast<const char*>(dynamic.data()), dynamic.size() * sizeof(Elf64_Dyn));
+    return bytes + strings;
 }
 
 } // namespace mural::test

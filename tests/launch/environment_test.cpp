@@ -46,6 +46,17 @@ TEST(CaptureEnvironment, setsAllThatBothFrontsNeed) {
     EXPECT_EQ(e.get("MURAL_REAL_EGL_VENDORS"), std::nullopt);
 }
 
+TEST(CaptureEnvironment, preloadsTheSecondFrontOnlyWhenAsked) {
+    const std::string both = kLibrary.library + " /opt/mural/lib/libmural_front.so";
+    Environment e({"LD_PRELOAD=/grab.so"});
+    ASSERT_TRUE(addCapture(e, kLibrary, "mural-1", Fronts::VendorAndPreload).ok());
+    EXPECT_EQ(e.get("LD_PRELOAD"), "/grab.so " + both);
+    ASSERT_TRUE(addCapture(e, kLibrary, "mural-1", Fronts::VendorAndPreload).ok());
+    EXPECT_EQ(e.get("LD_PRELOAD"), "/grab.so " + both);
+    ASSERT_TRUE(addCapture(e, kLibrary, "mural-1").ok());
+    EXPECT_EQ(e.get("LD_PRELOAD"), "/grab.so " + kLibrary.library);
+}
+
 TEST(CaptureEnvironment, keepsTheUsersVendorsAlsoWhenAddedTwice) {
     Environment e({"__GLX_VENDOR_LIBRARY_NAME=mesa", "__EGL_VENDOR_LIBRARY_FILENAMES=/v/50_mesa.json"});
     ASSERT_TRUE(addCapture(e, kLibrary, "mural-1").ok());

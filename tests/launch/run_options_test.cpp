@@ -47,6 +47,7 @@ TEST(RunOptions, readsEveryOption) {
         a.policy = "full";
         a.gl = "osmesa";
         a.latency = "0";
+        a.front = "preload";
         a.verify = "5";
         a.fullScreen = true;
         a.position = "-10,20";
@@ -76,6 +77,7 @@ TEST(RunOptions, readsEveryOption) {
     EXPECT_FALSE(c.placeThreads);
     EXPECT_EQ(c.launchCommand, "rsh");
     EXPECT_EQ(c.remoteMural, "/opt/mural");
+    EXPECT_EQ(o.front, FrontChoice::Preload);
 }
 
 TEST(RunOptions, nodesWithoutTilesGetOneEach) {
@@ -100,6 +102,7 @@ TEST(RunOptions, wrongValuesNameTheOptionAndWhatIsWanted) {
     EXPECT_NE(refusal([](RunArguments& a) { a.latency = "-1"; }).find("--latency"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.verify = "0"; }).find("--verify"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.gl = "vulkan"; }).find("auto, egl, osmesa, glx"), std::string::npos);
+    EXPECT_NE(refusal([](RunArguments& a) { a.front = "both"; }).find("auto, glvnd, preload"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.position = "1"; }).find("--position"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.nodes = "h1,-oProxyCommand=x"; }).find("--nodes"), std::string::npos);
 }

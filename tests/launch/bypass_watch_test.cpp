@@ -1,0 +1,80 @@
+#include "nodes/launch/bypass_watch.hpp"
+
+#include <fstream>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "tests/launch/elf_bytes.hpp"
+#include "tests/launch/temporary_folder.hpp"
+
+namespace mural::launch {
+namespace {
+
+class Bypass : public ::testing::Test {
+protected:
+    std::string library(const std::string& name, const std::vector<std::string>& needed) {
+        folder_.file(name, test::library64(name, needed), 0644);
+        return folder_.at(name);
+    }
+    test::TemporaryFolder folder_;
+};
+
+TEST_F(Bypass, aLibraryOfTheProgramsOwnIsNamed) {
+    const std::string own = library("libGL.so.1", {"libglapi.so.0"});
+    const std::string line = describeBypass({{"/opt/app/bin/app", {library("libX11.so.6", {}), own}}});
+    EXPECT_NE(line.find("app draws by " + own), std::string::npos) << line;
+    EXPECT_NE(line.find("--front preload"), std::string::npos) << line;
+    EXPECT_EQ(line.find('\n'), std::string::npos);
+}
+
+TEST_F(Bypass, withTheFrontInPlaceItWouldHaveBeenSeen) {
+    const std::string own = library("libGL.so.1", {"libglapi.so.0"});
+    EXPECT_EQ(describeBypass({{"app", {own, "/opt/mural/lib/libmural_front.so", library("libX11.so.6", {})}}}), "");
+}
+
+TEST_F(Bypass, offScreenAndVulkanAndX11AreToldApart) {
+    const std::string x11 = library("libX11.so.6", {});
+    EXPECT_NE(describeBypass({{"app", {x11, library("libOSMesa.so.8", {})}}}).find("OSMesa"), std::string::npos);
+    EXPECT_NE(describeBypass({{"app", {x11, library("libvulkan.so.1", {})}}}).find("Vulkan"), std::string::npos);
+    EXPECT_NE(describeBypass({{"app", {x11}}}).find("no GL library"), std::string::npos);
+    EXPECT_EQ(describeBypass({{"app", {x11, library("libGL.so.1", {"libGLdispatch.so.0"})}}}), ""); // it may yet draw
+    EXPECT_EQ(describeBypass({{"sh", {}}}), "");
+}
+
+TEST_F(Bypass, aLaunchersDialogDoesNotHideTheProgram) {
+    const std::string x11 = library("libX11.so.6", {});
+    const std::string own = library("libGL.so.1", {"libglapi.so.0"});
+    for (const auto& programs : {std::vector<UnseenProgram>{{"dialog", {x11}}, {"app", {own}}}, std::vector<UnseenProgram>{{"app", {own}}, {"dialog", {x11}}}}) {
+        EXPECT_EQ(describeBypass(programs).find("app draws by"), 0u);
+    }
+}
+
+TEST(BypassNotes, eachLineIsToldOnceAndHalfOnesWait) {
+    auto watch = BypassWatch::create();
+    ASSERT_TRUE(watch.ok());
+    BypassWatch& w = *watch.value();
+    std::ofstream notes(w.notesPath(), std::ios::app);
+    notes << "say\tfirst\nsay\tfirst\nnonsense\nsay\tsec" << std::flush;
+    EXPECT_EQ(w.news(), std::vector<std::string>{"first"});
+    notes << "ond\nsay\tfirst\n" << std::flush;
+    EXPECT_EQ(w.news(), std::vector<std::string>{"second"});
+    EXPECT_TRUE(w.news().empty());
+}
+
+TEST_F(Bypass, endedProgramsLeaveTheirLibraries) {
+    auto watch = BypassWatch::create();
+    ASSERT_TRUE(watch.ok());
+    std::ofstream(watch.value()->notesPath(), std::ios::app) << "ended\t/bin/app\t" << library("libOSMesa.so.8", {}) << "\n";
+    watch.value()->news();
+    EXPECT_NE(watch.value()->aboutEnded().find("app draws by OSMesa"), std::string::npos);
+}
+
+TEST(BypassNotes, runningProcessesAreLookedAt) {
+    auto watch = BypassWatch::create();
+    ASSERT_TRUE(watch.ok());
+    EXPECT_EQ(watch.value()->lookAt({}), "");
+    EXPECT_EQ(watch.value()->lookAt({-1}), ""); // gone meanwhile
+}
+
+} // namespace
+} // namespace mural::launch

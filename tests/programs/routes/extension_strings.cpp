@@ -1,0 +1,34 @@
+// Asks for the window systems' extensions in every way there is, and counts the lists that name what
+// only exists on one machine.
+#include <EGL/egl.h>
+#include <GL/glx.h>
+#include <cstdio>
+#include <cstring>
+#include <initializer_list>
+
+#include "tests/programs/support/program.hpp"
+#include "tests/programs/support/x_window.hpp"
+
+int main() {
+    Display* display = programs::openDisplayOnce();
+    const int screen = DefaultScreen(display);
+    const EGLDisplay egl = eglGetDisplay(reinterpret_cast<EGLNativeDisplayType>(display));
+    if (eglInitialize(egl, nullptr, nullptr) == EGL_FALSE) {
+        programs::fail("no EGL display");
+    }
+    int lists = 0;
+    int local = 0;
+    for (const char* list : {glXQueryExtensionsString(display, screen), glXGetClientString(display, GLX_EXTENSIONS),
+                             glXQueryServerString(display, screen, GLX_EXTENSIONS), eglQueryString(egl, EGL_EXTENSIONS),
+                             eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS)}) {
+        if (list == nullptr || *list == '\0') {
+            programs::fail("list %d is empty", lists);
+        }
+        ++lists;
+        const bool named = std::strstr(list, "texture_from_pixmap") != nullptr || std::strstr(list, "EGL_KHR_image_base") != nullptr;
+        local += named ? 1 : 0;
+    }
+    std::printf("%d of %d lists name what is on one machine only\n", local, lists);
+    eglTerminate(egl);
+    return 0;
+}
