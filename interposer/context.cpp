@@ -114,6 +114,47 @@ void learnVersion(Context& c) {
 
 } // namespace
 
+namespace {
+
+// A context that the nodes will be told to share with is still needed.
+bool sharerWaits(const Context& c) {
+    for (uint32_t i = 0; i < contextCount; ++i) {
+        if (contexts[i]->shareWith == &c && !contexts[i]->announced && !contexts[i]->destroyed) return true;
+    }
+    return false;
+}
+
+Context* nextDueContext() {
+    Guard guard(tableLock);
+    for (uint32_t i = 0; i < contextCount; ++i) {
+        if (contexts[i]->freeDue && !sharerWaits(*contexts[i])) {
+            contexts[i]->freeDue = false;
+            return contexts[i];
+        }
+    }
+    return nullptr;
+}
+
+Window* nextDueWindow() {
+    Guard guard(tableLock);
+    for (Window* w = windows; w; w = w->next) {
+        if (w->freeDue) {
+            w->freeDue = false;
+            return w;
+        }
+    }
+    return nullptr;
+}
+
+// Tells the nodes what the program has given up; a thread without a context leaves it to the next that has one.
+void freeDestroyed(ThreadState& t) {
+    if (!t.context) return;
+    while (const Context* c = nextDueContext()) records::destroyContext(t, c->id);
+    while (const Window* w = nextDueWindow()) records::destroyWindow(t, w->id);
+}
+
+} // namespace
+
 void refreshDrawLocally(ThreadState& t) {
     t.drawLocally = swapLocally() || !t.context || t.context->compilingList || t.context->renderMode != GL_RENDER;
 }
@@ -146,9 +187,9 @@ Context* findContext(void* native) {
 void destroyContext(void* native) {
     Context* c = findContext(native);
     if (!c) return;
-    c->destroyed = true; // its share group may live on; the nodes keep the context for it
-    ThreadState& t = *tThread;
-    if (t.context && t.context != c && c->announced) records::destroyContext(t, c->id);
+    c->destroyed = true;
+    c->freeDue = c->announced;
+    freeDestroyed(*tThread);
 }
 
 Window* addWindow(uintptr_t drawable, void* display, bool isEgl, const wire::WindowConfig& config, uint64_t native) {
@@ -187,10 +228,9 @@ Window* findWindowById(uint32_t id) {
 void destroyWindow(uintptr_t drawable, void* display) {
     Window* w = findWindow(drawable, display);
     if (!w) return;
-    ThreadState& t = *tThread;
-    if (w->announced) records::destroyWindow(t, w->id);
-    Guard guard(tableLock);
+    w->freeDue = w->announced;
     w->drawable = 0; // never found again; its number is not used again
+    freeDestroyed(*tThread);
 }
 
 void becameCurrent(Context* context, Window* draw, Window* read) {
@@ -227,6 +267,7 @@ void becameCurrent(Context* context, Window* draw, Window* read) {
     context->drawWindow = draw ? draw->id : 0;
     context->readWindow = read ? read->id : 0;
     records::makeCurrent(t, context->id, context->drawWindow, context->readWindow);
+    freeDestroyed(t);
     s->publish(t, false);
     watchFromHere(t);
 }

@@ -46,12 +46,15 @@ struct Context {
     int emptyFrames = 0;             // shown before the first such command
     bool sizeChecked = false;  // the window's size was asked since the last frame
     QueryBits queryIsAny;      // ANY_SAMPLES_PASSED and its kin
+    QueryBits queryIsTimestamp;
+    GLuint queryBuffer = 0;    // bound to GL_QUERY_BUFFER
     uint32_t id = 0;
     ShareGroup* group = nullptr;
     wire::Api api = wire::Api::Desktop;
     bool announced = false;    // the nodes know it
     bool core = false;
     bool destroyed = false;    // by the program, while still current
+    bool freeDue = false;      // the nodes have to be told
     int version = 0;           // 10 * major + minor, of the local context
     wire::WindowConfig config{};
     Context* shareWith = nullptr;
@@ -77,6 +80,7 @@ struct Window {
     void* display = nullptr;
     bool isEgl = false;
     bool announced = false;
+    bool freeDue = false;      // the program has destroyed it, the nodes have to be told
     uint64_t native = 0;       // X window
     wire::WindowConfig config{};
     std::byte* lastFlush = nullptr; // where the stream was at the last flush of a single-buffered window

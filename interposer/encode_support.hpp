@@ -111,6 +111,10 @@ DataArg packStrings(ThreadState& t, GLsizei count, const GLchar* const* strings,
 
 // From now on buffers may hold what only the nodes know (transform feedback, shader storage).
 void buffersWrittenByNodes(ThreadState& t);
+// True: shaders write into buffers that are bound there.
+constexpr bool writesThrough(GLenum target) {
+    return target == GL_SHADER_STORAGE_BUFFER || target == GL_ATOMIC_COUNTER_BUFFER || target == GL_TRANSFORM_FEEDBACK_BUFFER;
+}
 
 void unsupportedCalled(const char* name, const char* reason);
 

@@ -66,6 +66,7 @@ void requestQuery(ThreadState& t, uint32_t request, GLuint query, GLenum pname) 
     fixed(t, wire::kOpRequestQuery, request, query, pname);
 }
 void requestFinish(ThreadState& t, uint32_t request) { fixed(t, wire::kOpFinish, request); }
+void beginConditional(ThreadState& t, bool draws) { fixed(t, wire::kOpBeginConditional, uint32_t{draws}); }
 void requestBuffer(ThreadState& t, uint32_t request, GLuint buffer, uint64_t offset, uint64_t sizeBytes) {
     fixed(t, wire::kOpRequestBuffer, request, buffer, offset, sizeBytes);
 }

@@ -24,6 +24,7 @@ void requestPixels(ThreadState& t, uint32_t request, GLint x, GLint y, GLsizei w
 void requestTexImage(ThreadState& t, uint32_t request, uint32_t byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type, uint64_t sizeBytes);
 void requestQuery(ThreadState& t, uint32_t request, GLuint query, GLenum pname);
 void requestFinish(ThreadState& t, uint32_t request);
+void beginConditional(ThreadState& t, bool draws);
 void requestBuffer(ThreadState& t, uint32_t request, GLuint buffer, uint64_t offset, uint64_t sizeBytes);
 void fillWindow(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, uint32_t planes, const DataArg& pixels);
 void bufferBytes(ThreadState& t, GLuint buffer, uint64_t offset, const DataArg& bytes);

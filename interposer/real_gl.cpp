@@ -34,7 +34,7 @@ void loadOwnNeeds() {
         "glGetTexLevelParameteriv", "glFinish", "glFlush", "glEnable", "glDisable", "glGetVertexAttribiv",
         "glGetActiveUniformBlockName", "glGetProgramResourceiv", "glGetProgramResourceName", "glGetProgramInterfaceiv",
         "glGetBufferPointerv", "glGetTextureLevelParameteriv", "glGetNamedBufferParameteri64v", "glGetBufferParameteri64v",
-        "glBegin", "glEnd", "glClientActiveTexture", "glGetTextureParameteriv", "glGetFramebufferAttachmentParameteriv", "glCallList", "glCallLists"};
+        "glBegin", "glEnd", "glClientActiveTexture", "glBufferSubData", "glGetTextureParameteriv", "glGetFramebufferAttachmentParameteriv", "glCallList", "glCallLists"};
     for (const char* name : kNames) wrapperFor(name);
 }
 

@@ -122,6 +122,7 @@ enum Op : uint16_t {
     kOpBufferBytes = 16,   // u32 buffer, u64 offset, bytes: written through a mapping
     kOpFinish = 17,        // u32 request: answer when all before is done
     kOpFrontPicture = 18,  // u32 window, u32 frame: like Swap for a single-buffered window or front drawing
+    kOpBeginConditional = 19, // u32 draws: glBeginConditionalRender with the result known; 0: nothing is drawn
     kOpLastOwn = 63,
 };
 constexpr uint16_t kFirstGlOpcode = 64;

@@ -263,6 +263,7 @@ void mural_glBindVertexBuffers(GLuint first, GLsizei count, const GLuint* buffer
 void mural_glBindBuffer(GLenum target, GLuint buffer) {
     ThreadState& t = *tThread;
     if (t.context && target == GL_ARRAY_BUFFER) t.context->arrays.bindArrayBuffer(buffer);
+    if (t.context && target == GL_QUERY_BUFFER) t.context->queryBuffer = buffer;
     encode_glBindBuffer(t, target, buffer);
     gReal.glBindBuffer(target, buffer);
 }

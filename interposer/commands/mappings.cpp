@@ -271,6 +271,9 @@ void mural_glDeleteBuffers(GLsizei n, const GLuint* buffers) {
     if (t.context && n > 0 && buffers) {
         for (GLsizei i = 0; i < n; ++i) endMap(t, buffers[i], false);
         t.context->arrays.forgetBuffers(n, buffers);
+        for (GLsizei i = 0; i < n; ++i) {
+            if (buffers[i] == t.context->queryBuffer) t.context->queryBuffer = 0;
+        }
     }
     encode_glDeleteBuffers(t, n, DataArg::of(buffers, n > 0 ? uint64_t(n) * 4 : 0));
     gReal.glDeleteBuffers(n, buffers);

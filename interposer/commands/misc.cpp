@@ -82,12 +82,6 @@ void mural_glViewport(GLint x, GLint y, GLsizei width, GLsizei height) {
     }
     encode_glViewport(t, x, y, width, height);
 }
-void mural_glBeginQuery(GLenum target, GLuint id) {
-    ThreadState& t = *tThread;
-    if (t.context) t.context->queryIsAny.set(id, target == GL_ANY_SAMPLES_PASSED || target == GL_ANY_SAMPLES_PASSED_CONSERVATIVE);
-    encode_glBeginQuery(t, target, id);
-    gReal.glBeginQuery(target, id);
-}
 
 void mural_glFlush() {
     ThreadState& t = *tThread;

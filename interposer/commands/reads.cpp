@@ -177,37 +177,3 @@ void mural_glGetTextureSubImage(GLuint texture, GLint level, GLint xoffset, GLin
 }
 
 } // extern "C"
-
-namespace {
-
-// Counts of samples and primitives exist only where it was drawn; times are the local driver's.
-template <class T, class Local> void queryObject(GLuint id, GLenum pname, T* params, Local local) {
-    ThreadState& t = *tThread;
-    const bool counts = pname == GL_QUERY_RESULT || pname == GL_QUERY_RESULT_NO_WAIT;
-    if (!capturing(t) || t.drawLocally || !params || pname == GL_QUERY_RESULT_AVAILABLE) return local();
-    if (!raisesNothing(*t.context, local) || !counts) return;
-    uint64_t value = 0;
-    if (!askQuery(t, id, pname, value)) return;
-    if (value > 1 && t.context->queryIsAny.get(id)) value = 1; // one answer of yes or no, from several tiles
-    const uint64_t largest = static_cast<uint64_t>(sizeof(T) == 4 ? (static_cast<T>(-1) < 0 ? INT32_MAX : UINT32_MAX) : UINT64_MAX);
-    *params = static_cast<T>(value < largest ? value : largest);
-}
-
-} // namespace
-
-extern "C" {
-
-void mural_glGetQueryObjectiv(GLuint id, GLenum pname, GLint* params) {
-    queryObject(id, pname, params, [=] { gReal.glGetQueryObjectiv(id, pname, params); });
-}
-void mural_glGetQueryObjectuiv(GLuint id, GLenum pname, GLuint* params) {
-    queryObject(id, pname, params, [=] { gReal.glGetQueryObjectuiv(id, pname, params); });
-}
-void mural_glGetQueryObjecti64v(GLuint id, GLenum pname, GLint64* params) {
-    queryObject(id, pname, params, [=] { gReal.glGetQueryObjecti64v(id, pname, params); });
-}
-void mural_glGetQueryObjectui64v(GLuint id, GLenum pname, GLuint64* params) {
-    queryObject(id, pname, params, [=] { gReal.glGetQueryObjectui64v(id, pname, params); });
-}
-
-} // extern "C"

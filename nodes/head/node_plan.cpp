@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "nodes/head/tile_split.hpp"
+#include "nodes/session/stream_build.hpp"
 
 namespace mural {
 namespace {
@@ -76,6 +77,7 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
     setup.windowY = config.windowY;
     setup.placeThreads = config.placeThreads;
     setup.displayName = config.displayName;
+    setup.build = streamBuild();
     return setup;
 }
 

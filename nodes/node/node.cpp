@@ -15,6 +15,7 @@
 #include "nodes/placement/placement.hpp"
 #include "nodes/replay/replay.hpp"
 #include "nodes/session/session_config.hpp"
+#include "nodes/session/stream_build.hpp"
 
 namespace mural {
 
@@ -91,6 +92,8 @@ private:
         const auto setup = nodeSetupFromJson(json);
         if (!setup) return fail(setup.error().message);
         setup_ = setup.value();
+        if (setup_.build != streamBuild())
+            return fail("the head speaks another stream (" + (setup_.build.empty() ? "unnamed" : setup_.build) + ") than this node (" + streamBuild() + "): install the same version of mural on both machines");
         auto platform = gl::openPlatform(setup_.glBackend);
         if (!platform) return fail(platform.error().message);
         nlohmann::json ready = probe(**platform);

@@ -115,8 +115,10 @@ public:
 
 private:
     struct Window {
+        bool destroyed = false; // freed when it is current nowhere
         wire::WindowConfig config{};
         std::unique_ptr<gl::Surface> surface;
+        std::unique_ptr<gl::Context> filler; // draws depth and stencil where the program's context can't
         PixelViewport whole;  // 0, 0, width, height
         PixelViewport region; // this node's part
         PixelViewport drawn;  // what the scissor lets through: the region, larger with multisampling
@@ -139,6 +141,7 @@ private:
         std::unordered_map<GLuint, ProgramInfo> programs; // by the program's name
         std::unordered_map<GLuint, List> lists;
         NameTable framebuffersOfAll;
+        std::unordered_map<GLuint, bool> memoryWriters; // by our name: programs that were asked since their link
         TiledPrograms tiled;
     };
     struct Scissor {
@@ -164,10 +167,14 @@ private:
         std::array<GLint, 8> pack;
         GLuint arrayBuffer;
     };
-    // What kind of count a query is, and whether every node counts the same.
+    // A query is counted in pieces: what every node draws whole is counted once, the rest tile by tile.
+    struct QueryPiece {
+        GLuint ours;
+        bool whole;
+    };
     struct QueryInfo {
         GLenum target = 0;
-        bool whole = false; // of a framebuffer object: drawn whole on every node
+        std::vector<QueryPiece> pieces; // the first is the program's own query
     };
     // Pixels of the window that a copy will read, put together from all nodes (lean).
     struct Gathered {
@@ -177,7 +184,15 @@ private:
     };
     struct ContextState {
         std::unordered_map<GLuint, QueryInfo> queries; // by the program's name
+        std::map<GLenum, GLuint> counting;             // fragments now: the program's query by its target
+        bool countsWhole = false;                      // what drawsWhole() was when the last piece began
+        bool countedWhole = false;                     // a query that only whole pictures answer is active
+        bool memoryWritten = false;                    // fragment shaders write to memory: every node draws all
+        bool conditional = false, conditionMet = false;
+        GLuint queryBuffer = 0;                        // our name: results would go there
+        GLuint nothingCounted = 0;                     // a query whose result is 0
         uint32_t client = 0, id = 0;
+        bool destroyed = false; // freed when it is current nowhere
         std::unique_ptr<gl::Context> context;
         std::shared_ptr<Shared> shared;
         NameTable own[static_cast<int>(Kind::Count)];
@@ -224,6 +239,7 @@ private:
         std::map<uint32_t, std::unique_ptr<ContextState>> contexts;
         std::map<uint32_t, std::unique_ptr<Window>> windows;
         std::map<uint32_t, Stream> streams;
+        bool anyDestroyed = false;
     };
 
     std::span<const std::byte> takeBlob(bool& found) override;
@@ -243,8 +259,8 @@ private:
     bool splitsLists(uint16_t opcode, std::span<const std::byte> arguments) const;
     // replay_own.cpp
     bool own(uint16_t opcode, Args& in);
+    [[nodiscard]] gl::SurfaceConfig surfaceConfig(const wire::WindowConfig& c, int width, int height) const;
     bool ownBlobBegin(Args& in);
-    bool ownDestroyWindow(Args& in);
     bool ownCreateContext(Args& in);
     bool ownMakeCurrent(Args& in);
     bool ownWindow(Args& in);
@@ -258,7 +274,6 @@ private:
     // replay_reads.cpp
     bool ownRequestPixels(Args& in);
     bool ownRequestTexImage(Args& in);
-    bool ownRequestQuery(Args& in);
     bool ownRequestBuffer(Args& in);
     void answerBytes(uint32_t request, wire::AnswerKind kind, std::span<const std::byte> bytes);
     const std::byte* readRegion(const PixelViewport& r, GLenum format, GLenum type, size_t bytes);
@@ -267,6 +282,28 @@ private:
     void packTightly(bool tight);
     void withPlainTransfer(const std::function<void()>& call);
     void fillColor(const PixelViewport& r, const void* rgba);
+    // replay_fill.cpp
+    gl::Context* fillerOf(Window& w);
+    void fillByOtherContext(const PixelViewport& r, GLbitfield plane, const void* pixels);
+    // replay_release.cpp
+    bool ownDestroyContext(Args& in);
+    bool ownDestroyWindow(Args& in);
+    void unbindPlatform();
+    void freeDestroyed(Client& client);
+    // replay_queries.cpp
+    bool ownRequestQuery(Args& in);
+    bool ownBeginConditional(Args& in);
+    [[nodiscard]] bool drawsWhole() const;
+    void cutQueries();
+    void dropPieces(QueryInfo& query);
+    uint64_t queryResult(GLuint ours);
+    uint64_t readQuery(GLuint ours);
+    void resumeSamples();
+    // replay_memory_writes.cpp
+    void programChanged();
+    void programLinked(GLuint ours);
+    bool writesMemory(GLuint ours);
+    bool saidMemoryWrites_ = false;
     // replay_accum.cpp
     bool accumulatesHere();
     void forAccumulatedRows(const std::function<void(int16_t*, const PixelViewport&)>& call);

@@ -14,6 +14,7 @@ void Replay::glBindBuffer(GLenum target, GLuint buffer) {
     const GLuint ours = name(Kind::Buffer, buffer);
     if (target == GL_ARRAY_BUFFER) c_->arrayBuffer = ours;
     if (target == GL_PIXEL_PACK_BUFFER) c_->packBuffer = ours;
+    if (target == GL_QUERY_BUFFER) c_->queryBuffer = ours;
     if (target == GL_PIXEL_UNPACK_BUFFER) c_->unpackBuffer = ours;
     gl.glBindBuffer(target, ours);
 }
@@ -24,6 +25,7 @@ void Replay::glDeleteBuffers(GLsizei n, const Data& buffers) {
         if (ours[i] == 0) continue;
         if (ours[i] == c_->arrayBuffer) c_->arrayBuffer = 0;
         if (ours[i] == c_->packBuffer) c_->packBuffer = 0;
+        if (ours[i] == c_->queryBuffer) c_->queryBuffer = 0;
         if (ours[i] == c_->unpackBuffer) c_->unpackBuffer = 0;
     }
     gl.glDeleteBuffers(n, ours);

@@ -10,8 +10,9 @@ namespace mural {
 namespace {
 // More than any record takes (72 spans of client arrays): empty blobs must not pile up either.
 constexpr size_t kMaxBlobs = 256;
+} // namespace
 
-gl::SurfaceConfig surfaceConfig(const wire::WindowConfig& c, int width, int height, bool accumulates) {
+gl::SurfaceConfig Replay::surfaceConfig(const wire::WindowConfig& c, int width, int height) const {
     gl::SurfaceConfig s;
     s.width = width;
     s.height = height;
@@ -22,12 +23,11 @@ gl::SurfaceConfig surfaceConfig(const wire::WindowConfig& c, int width, int heig
     s.depth = c.depth;
     s.stencil = c.stencil;
     s.samples = c.samples;
-    s.accum = accumulates ? c.accum : 0; // the replay keeps one itself
+    s.accum = platform_->accumulates() ? c.accum : 0; // the replay keeps one itself
     s.srgb = c.srgb != 0;
     s.stereo = c.stereo != 0;
     return s;
 }
-} // namespace
 
 bool Replay::own(uint16_t opcode, Args& in) {
     switch (opcode) {
@@ -41,7 +41,7 @@ bool Replay::own(uint16_t opcode, Args& in) {
         return true;
     }
     case wire::kOpCreateContext: return ownCreateContext(in);
-    case wire::kOpDestroyContext: return in.get<uint32_t>(), in.ok(); // objects may be shared: freed with the program
+    case wire::kOpDestroyContext: return ownDestroyContext(in);
     case wire::kOpMakeCurrent: return ownMakeCurrent(in);
     case wire::kOpWindow: return ownWindow(in);
     case wire::kOpDestroyWindow: return ownDestroyWindow(in);
@@ -51,6 +51,7 @@ bool Replay::own(uint16_t opcode, Args& in) {
     case wire::kOpRequestPixels: return ownRequestPixels(in);
     case wire::kOpRequestTexImage: return ownRequestTexImage(in);
     case wire::kOpRequestQuery: return ownRequestQuery(in);
+    case wire::kOpBeginConditional: return ownBeginConditional(in);
     case wire::kOpRequestBuffer: return ownRequestBuffer(in);
     case wire::kOpFillWindow: return ownFillWindow(in);
     case wire::kOpProgramLayout: return ownProgramLayout(in);
@@ -78,15 +79,6 @@ bool Replay::ownBlobBegin(Args& in) {
     return true;
 }
 
-bool Replay::ownDestroyWindow(Args& in) {
-    const auto id = in.get<uint32_t>();
-    auto& windows = clients_[wire::clientOf(stream_)].windows;
-    const auto it = windows.find(id);
-    if (!in.ok()) return false;
-    if (it != windows.end() && it->second.get() != boundDraw_ && it->second.get() != boundRead_) it->second->surface.reset();
-    return true;
-}
-
 bool Replay::ownCreateContext(Args& in) {
     const auto id = in.get<uint32_t>(), share = in.get<uint32_t>(), api = in.get<uint32_t>();
     const auto major = in.get<uint32_t>(), minor = in.get<uint32_t>(), profile = in.get<uint32_t>(), flags = in.get<uint32_t>();
@@ -106,7 +98,7 @@ bool Replay::ownCreateContext(Args& in) {
     wish.forwardCompatible = flags & GL_CONTEXT_FLAG_FORWARD_COMPATIBLE_BIT;
     wish.debug = flags & GL_CONTEXT_FLAG_DEBUG_BIT;
     wish.robust = flags & GL_CONTEXT_FLAG_ROBUST_ACCESS_BIT;
-    wish.surface = surfaceConfig(*config, 1, 1, platform_->accumulates());
+    wish.surface = surfaceConfig(*config, 1, 1);
     auto made = platform_->createContext(wish, with ? with->context.get() : nullptr);
     if (!made) {
         out_.log("no context like the program's can be made here: " + made.error().message);
@@ -138,7 +130,9 @@ bool Replay::ownMakeCurrent(Args& in) {
     s_->draw = windowOf(draw);
     s_->read = windowOf(read);
     const bool first = s_->context && !s_->context->everCurrent;
-    if (!bindStream(*s_) || !first || c_ != s_->context) return c_ != nullptr;
+    const bool bound = bindStream(*s_);
+    freeDestroyed(client);
+    if (!bound || !first || c_ != s_->context) return c_ != nullptr;
     // The first binding sets viewport and scissor to the window's size (GL 4.6 §13.6.1).
     c_->everCurrent = true;
     const PixelViewport whole = s_->draw ? s_->draw->whole : PixelViewport{};
@@ -155,6 +149,7 @@ bool Replay::ownWindow(Args& in) {
     auto& slot = clients_[wire::clientOf(stream_)].windows[id];
     if (!slot) slot = std::make_unique<Window>();
     Window& w = *slot;
+    w.destroyed = false; // the program has bound it again
     w.config = *config;
     const auto width = static_cast<int32_t>(config->width), height = static_cast<int32_t>(config->height);
     w.whole = {0, 0, width, height};
@@ -167,7 +162,7 @@ bool Replay::ownWindow(Args& in) {
     }
     const PixelViewport size = config_.lean ? w.region : w.whole;
     if (w.surface && w.surface->width() == std::max(size.w, 1) && w.surface->height() == std::max(size.h, 1)) return true;
-    auto made = platform_->createSurface(surfaceConfig(*config, std::max(size.w, 1), std::max(size.h, 1), platform_->accumulates()));
+    auto made = platform_->createSurface(surfaceConfig(*config, std::max(size.w, 1), std::max(size.h, 1)));
     if (!made) {
         out_.log("no framebuffer like the program's window (" + std::to_string(width) + "x" + std::to_string(height) + ") can be made: " + made.error().message);
         return true;

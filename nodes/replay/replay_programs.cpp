@@ -18,7 +18,7 @@ ShaderRewrites Replay::rewrites() const {
 void Replay::applyTileValues() {
     if (!bound_ || !c_->shared || c_->compiling || (!c_->program && !c_->pipelineBound && !c_->arbPositions)) return;
     TileValues values;
-    if (drawsWindow() && c_->draw && rewrites().any()) {
+    if (c_->draw && rewrites().any() && !drawsWhole()) {
         TilePlace place;
         place.window = c_->draw->whole;
         place.tile = config_.lean ? c_->draw->region : c_->draw->drawn;
@@ -51,30 +51,35 @@ void Replay::glProgramParameteri(GLuint program, GLenum pname, GLint value) {
 }
 void Replay::glLinkProgram(GLuint program) {
     const GLuint ours = name(Kind::Program, program);
-    if (!c_->shared || !rewrites().any()) return gl.glLinkProgram(ours);
-    c_->shared->tiled.link(gl, ours, rewrites(), esContext());
+    if (!c_->shared || !rewrites().any()) gl.glLinkProgram(ours);
+    else c_->shared->tiled.link(gl, ours, rewrites(), esContext());
+    programLinked(ours);
     applyTileValues(); // it may be the current one
 }
 void Replay::glCreateShaderProgramv(GLenum type, GLsizei count, const Data& strings, GLuint result) {
     StringList texts;
     if (!gl.glCreateShaderProgramv || !c_->shared || !texts.parse(strings, count) || texts.count() == 0) return;
     bindName(Kind::Program, result, c_->shared->tiled.create(gl, type, count, texts.pointers(), rewrites(), esContext()));
+    programLinked(name(Kind::Program, result));
     applyTileValues();
 }
 void Replay::glUseProgram(GLuint program) {
     c_->program = program;
     gl.glUseProgram(name(Kind::Program, program));
+    programChanged();
     applyTileValues();
 }
 void Replay::glBindProgramPipeline(GLuint pipeline) {
     if (!gl.glBindProgramPipeline) return;
     gl.glBindProgramPipeline(name(Kind::Pipeline, pipeline));
     c_->pipelineBound = pipeline != 0;
+    programChanged();
     applyTileValues();
 }
 void Replay::glUseProgramStages(GLuint pipeline, GLbitfield stages, GLuint program) {
     if (!gl.glUseProgramStages) return;
     gl.glUseProgramStages(name(Kind::Pipeline, pipeline), stages, name(Kind::Program, program));
+    programChanged();
     applyTileValues();
 }
 

@@ -125,46 +125,6 @@ bool Replay::ownRequestBuffer(Args& in) {
     return true;
 }
 
-namespace {
-bool countsClipping(GLenum target) { return target == GL_CLIPPING_INPUT_PRIMITIVES || target == GL_CLIPPING_OUTPUT_PRIMITIVES; }
-} // namespace
-
-void Replay::glBeginQuery(GLenum target, GLuint id) {
-    c_->queries[id] = {target, c_->drawFramebuffer != 0};
-    gl.glBeginQuery(target, name(Kind::Query, id));
-    if (!countsClipping(target)) return;
-    c_->clippingCounted = true;
-    applyTileValues();
-}
-void Replay::glEndQuery(GLenum target) {
-    gl.glEndQuery(target);
-    if (!countsClipping(target)) return;
-    c_->clippingCounted = false;
-    applyTileValues();
-}
-
-// Samples are counted tile by tile and added; what every node counts alike is taken from one.
-bool Replay::ownRequestQuery(Args& in) {
-    const auto request = in.get<uint32_t>(), query = in.get<uint32_t>(), pname = in.get<uint32_t>();
-    if (!in.ok()) return false;
-    const auto info = c_->queries.find(query);
-    const GLenum target = info == c_->queries.end() ? 0 : info->second.target;
-    const bool samples = target == GL_SAMPLES_PASSED || target == GL_ANY_SAMPLES_PASSED || target == GL_ANY_SAMPLES_PASSED_CONSERVATIVE;
-    const bool added = samples && !info->second.whole;
-    uint64_t value = 0;
-    if (bound_ && gl.glGetQueryObjectui64v && c_->api == wire::Api::Desktop) {
-        GLuint64 result = 0;
-        gl.glGetQueryObjectui64v(name(Kind::Query, query), pname == GL_QUERY_RESULT_NO_WAIT ? GL_QUERY_RESULT : pname, &result);
-        value = result;
-    } else if (bound_ && gl.glGetQueryObjectuiv) {
-        GLuint result = 0;
-        gl.glGetQueryObjectuiv(name(Kind::Query, query), GL_QUERY_RESULT, &result);
-        value = result;
-    }
-    answerBytes(request, added ? wire::AnswerKind::Sum : wire::AnswerKind::Bytes, std::as_bytes(std::span(&value, 1)));
-    return true;
-}
-
 // The window's picture, whatever the program has bound; called at a swap.
 const std::byte* Replay::readShown(Window& w, const PixelViewport& r) {
     const GLuint bound = c_->readFramebuffer;
@@ -287,12 +247,9 @@ void Replay::fillColor(const PixelViewport& r, const void* rgba) {
     applyScissors();
 }
 
-// Depth and stencil go in by glDrawPixels, which compatibility contexts have; it is exact for them.
+// Depth and stencil go in by glDrawPixels where a context has it; it is exact for them.
 void Replay::fillDepthStencil(const PixelViewport& r, GLbitfield plane, const void* pixels) {
-    if (c_->core || c_->api != wire::Api::Desktop || !gl.glDrawPixels || !gl.glWindowPos2i || boundDraw_ != boundRead_) {
-        out_.log("depth of other tiles can't be put together in a core context yet: a copy of depth across tiles is incomplete");
-        return;
-    }
+    if (c_->core || c_->api != wire::Api::Desktop || !gl.glDrawPixels || !gl.glWindowPos2i || boundDraw_ != boundRead_) return fillByOtherContext(r, plane, pixels);
     gl.glPushAttrib(GL_ALL_ATTRIB_BITS);
     gl.glDisable(GL_SCISSOR_TEST);
     for (const GLenum cap : {GLenum{GL_STENCIL_TEST}, GLenum{GL_ALPHA_TEST}, GLenum{GL_BLEND}, GLenum{GL_FOG}, GLenum{GL_TEXTURE_2D}, GLenum{GL_LIGHTING}}) gl.glDisable(cap);

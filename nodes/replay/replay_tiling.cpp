@@ -46,7 +46,7 @@ void Replay::applyScissor(int index, bool all) {
     const Scissor& app = c_->scissors[static_cast<size_t>(index)];
     bool enabled = app.enabled;
     PixelViewport box = app.box;
-    if (drawsWindow() && c_->draw && !tileOff_) {
+    if (!drawsWhole() && c_->draw) {
         const PixelViewport part = c_->draw->drawn;
         if (config_.lean) { // the framebuffer's edges are the tile's
             box.x = moved(box.x, c_->draw->region.x);
@@ -68,6 +68,7 @@ void Replay::applyScissor(int index, bool all) {
 
 void Replay::applyScissors() {
     if (!bound_ || !gl.glScissor) return;
+    cutQueries();
     if (!c_->scissorsDiffer || !gl.glScissorIndexed || !gl.glEnablei) return applyScissor(0, true);
     for (int i = 0; i < kViewports; ++i) applyScissor(i, false);
 }

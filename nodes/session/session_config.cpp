@@ -75,6 +75,7 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("windowY", s.windowY);
     visit("placeThreads", s.placeThreads);
     visit("displayName", s.displayName);
+    visit("build", s.build);
 }
 
 template <class T> Json valueToJson(const T& value) {

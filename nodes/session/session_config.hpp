@@ -56,6 +56,7 @@ struct NodeSetup {
     int windowX = 0, windowY = 0;
     bool placeThreads = true;
     std::string displayName;
+    std::string build;            // streamBuild() of the head
 };
 
 std::string toJson(const NodeSetup& setup);

@@ -91,7 +91,8 @@ def wrapper(c):
     encode_args = ', '.join(['self'] + [data_argument(c, p) if p.how in DATA_KINDS else p.name
                                      for p in c.params if p.how != 'skip'])
     if c.option('app') == 'writes':
-        out += '    buffersWrittenByNodes(self);\n'
+        binds = c.name.startswith('glBindBuffer')
+        out += '    %sbuffersWrittenByNodes(self);\n' % ('if (writesThrough(target)) ' if binds else '')
     if c.command_class == 'object':
         if c.returns != 'void':
             out += '    const %s result = gReal.%s(%s);\n' % (ret, c.name, names)

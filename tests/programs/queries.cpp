@@ -93,6 +93,7 @@ void resultIntoBuffer(int frame) {
     glBeginQuery(GL_SAMPLES_PASSED, names[8]);
     box(0.3F, 0.05F * float(frame), 0.4F, 0.3F, 0.1F);
     glEndQuery(GL_SAMPLES_PASSED);
+    glFinish(); // llvmpipe writes 0 into the buffer when it is not ready
     glGetQueryObjectuiv(names[8], GL_QUERY_RESULT, nullptr);
     glGetQueryObjectuiv(names[8], GL_QUERY_RESULT_AVAILABLE, reinterpret_cast<GLuint*>(8));
     GLuint told[4] = {};

@@ -120,6 +120,48 @@ TEST_F(ReplayTest, AContextIsNeverReplaced) {
     EXPECT_TRUE(send());
 }
 
+// That it is freed shows in its number: it may be given again.
+TEST_F(ReplayTest, ADestroyedContextLivesUntilItIsReleased) {
+    begin();
+    wire::WindowConfig c{};
+    records::destroyContext(t_, 1);
+    encode_glClear(t_, GL_COLOR_BUFFER_BIT);
+    records::swap(t_, 1, 1);
+    EXPECT_TRUE(send());
+    EXPECT_EQ(pictureBytes_, 64 * 32 * 4);
+    records::createContext(t_, {1, 0, 0, 4, 5, 0, 0, c});
+    EXPECT_FALSE(send());
+    records::makeCurrent(t_, 0, 0, 0);
+    records::createContext(t_, {1, 0, 0, 4, 5, 0, 0, c});
+    EXPECT_TRUE(send());
+}
+
+TEST_F(ReplayTest, ADestroyedContextKeepsItsShareGroup) {
+    begin(1, 1);
+    wire::WindowConfig c{};
+    records::createContext(t_, {2, 1, 0, 4, 5, 0, 0, c});
+    records::destroyContext(t_, 1);
+    records::makeCurrent(t_, 2, 1, 1);
+    records::createContext(t_, {1, 2, 0, 4, 5, 0, 0, c}); // the first is gone
+    encode_glClear(t_, GL_COLOR_BUFFER_BIT);
+    records::swap(t_, 1, 1);
+    EXPECT_TRUE(send());
+    EXPECT_EQ(pictureBytes_, 64 * 32 * 4);
+}
+
+TEST_F(ReplayTest, ADestroyedWindowLivesUntilItIsReleased) {
+    begin();
+    records::destroyWindow(t_, 1);
+    encode_glClear(t_, GL_COLOR_BUFFER_BIT);
+    records::swap(t_, 1, 1);
+    EXPECT_TRUE(send());
+    EXPECT_EQ(pictureBytes_, 64 * 32 * 4);
+    records::makeCurrent(t_, 1, 0, 0);
+    records::swap(t_, 1, 2);
+    EXPECT_TRUE(send());
+    EXPECT_EQ(pictureBytes_, -1); // no such window any more
+}
+
 TEST_F(ReplayTest, AWindowMayChangeUnderAnotherThreadsContext) {
     begin(1);
     wire::WindowConfig c{};

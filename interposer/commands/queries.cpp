@@ -1,0 +1,144 @@
+// Queries: what they count happens on the nodes, so the nodes are asked, and their answers put together.
+#include "custom_wrappers.hpp"
+#include "encoders.hpp"
+#include "interposer/asking.hpp"
+#include "interposer/context.hpp"
+#include "interposer/own_records.hpp"
+#include "interposer/real_gl.hpp"
+#include "interposer/session.hpp"
+
+using namespace mural;
+
+namespace {
+
+bool capturing(const ThreadState& t) {
+    Session* s = Session::current();
+    return t.context && s && s->alive();
+}
+
+void begins(ThreadState& t, GLenum target, GLuint id) {
+    if (!t.context) return;
+    t.context->queryIsAny.set(id, target == GL_ANY_SAMPLES_PASSED || target == GL_ANY_SAMPLES_PASSED_CONSERVATIVE);
+    t.context->queryIsTimestamp.set(id, false);
+}
+
+bool isResult(GLenum pname) { return pname == GL_QUERY_RESULT || pname == GL_QUERY_RESULT_NO_WAIT; }
+
+// The result over all tiles. False: it is the local driver's.
+bool result(ThreadState& t, GLuint id, uint64_t& value) {
+    // A program compares time stamps with glGetInteger64v(GL_TIMESTAMP): one clock for both.
+    if (t.context->queryIsTimestamp.get(id) || !askQuery(t, id, GL_QUERY_RESULT, value)) return false;
+    if (value > 1 && t.context->queryIsAny.get(id)) value = 1; // yes or no, from several tiles
+    return true;
+}
+
+template <class T> T held(uint64_t value) {
+    const uint64_t largest = static_cast<uint64_t>(sizeof(T) == 4 ? (static_cast<T>(-1) < 0 ? INT32_MAX : UINT32_MAX) : UINT64_MAX);
+    return static_cast<T>(value < largest ? value : largest);
+}
+
+// The driver's own answer comes first: it gives the errors, and what does not come from rendering.
+template <class T, class Local> void intoMemory(ThreadState& t, GLuint id, GLenum pname, T* params, Local local) {
+    if (t.drawLocally || !params || !isResult(pname)) return local();
+    uint64_t value = 0;
+    if (raisesNothing(*t.context, local) && result(t, id, value)) *params = held<T>(value);
+}
+
+// The same into a buffer: the program's own context and the nodes have it then.
+template <class T, class Local> void intoBuffer(ThreadState& t, GLuint id, GLenum pname, GLuint buffer, GLintptr offset, Local local) {
+    if (!raisesNothing(*t.context, local)) return;
+    T written{};
+    GLint before = 0;
+    gReal.glGetIntegerv(GL_QUERY_BUFFER_BINDING, &before);
+    gReal.glBindBuffer(GL_QUERY_BUFFER, buffer);
+    gReal.glGetBufferSubData(GL_QUERY_BUFFER, offset, sizeof written, &written);
+    uint64_t value = 0;
+    if (isResult(pname) && result(t, id, value)) {
+        written = held<T>(value);
+        gReal.glBufferSubData(GL_QUERY_BUFFER, offset, sizeof written, &written);
+    }
+    gReal.glBindBuffer(GL_QUERY_BUFFER, static_cast<GLuint>(before));
+    records::bufferBytes(t, buffer, static_cast<uint64_t>(offset), DataArg::of(&written, sizeof written));
+}
+
+template <class T, class Local> void queryObject(GLuint id, GLenum pname, T* params, Local local) {
+    ThreadState& t = *tThread;
+    if (!capturing(t)) return local();
+    if (t.context->queryBuffer == 0) return intoMemory(t, id, pname, params, local);
+    intoBuffer<T>(t, id, pname, t.context->queryBuffer, reinterpret_cast<GLintptr>(params), local);
+}
+
+template <class T, class Local> void queryBufferObject(GLuint id, GLuint buffer, GLenum pname, GLintptr offset, Local local) {
+    ThreadState& t = *tThread;
+    if (!capturing(t)) return local();
+    intoBuffer<T>(t, id, pname, buffer, offset, local);
+}
+
+bool isInverted(GLenum mode) {
+    return mode == GL_QUERY_WAIT_INVERTED || mode == GL_QUERY_NO_WAIT_INVERTED || mode == GL_QUERY_BY_REGION_WAIT_INVERTED ||
+           mode == GL_QUERY_BY_REGION_NO_WAIT_INVERTED;
+}
+
+} // namespace
+
+extern "C" {
+
+void mural_glBeginQuery(GLenum target, GLuint id) {
+    ThreadState& t = *tThread;
+    begins(t, target, id);
+    encode_glBeginQuery(t, target, id);
+    gReal.glBeginQuery(target, id);
+}
+void mural_glBeginQueryIndexed(GLenum target, GLuint index, GLuint id) {
+    ThreadState& t = *tThread;
+    begins(t, target, id);
+    encode_glBeginQueryIndexed(t, target, index, id);
+    gReal.glBeginQueryIndexed(target, index, id);
+}
+void mural_glQueryCounter(GLuint id, GLenum target) {
+    ThreadState& t = *tThread;
+    if (t.context) t.context->queryIsTimestamp.set(id, target == GL_TIMESTAMP);
+    encode_glQueryCounter(t, id, target);
+    gReal.glQueryCounter(id, target);
+}
+
+// A node knows its own tiles only, and what it draws may depend on all: the whole picture's answer is
+// fetched and told to all nodes. In a display list the answer isn't there yet.
+void mural_glBeginConditionalRender(GLuint id, GLenum mode) {
+    ThreadState& t = *tThread;
+    if (!capturing(t) || t.context->compilingList) {
+        encode_glBeginConditionalRender(t, id, mode);
+        return gReal.glBeginConditionalRender(id, mode);
+    }
+    if (!raisesNothing(*t.context, [&] { gReal.glBeginConditionalRender(id, mode); })) return;
+    uint64_t value = 1;
+    result(t, id, value);
+    records::beginConditional(t, (value != 0) != isInverted(mode));
+}
+
+void mural_glGetQueryObjectiv(GLuint id, GLenum pname, GLint* params) {
+    queryObject(id, pname, params, [=] { gReal.glGetQueryObjectiv(id, pname, params); });
+}
+void mural_glGetQueryObjectuiv(GLuint id, GLenum pname, GLuint* params) {
+    queryObject(id, pname, params, [=] { gReal.glGetQueryObjectuiv(id, pname, params); });
+}
+void mural_glGetQueryObjecti64v(GLuint id, GLenum pname, GLint64* params) {
+    queryObject(id, pname, params, [=] { gReal.glGetQueryObjecti64v(id, pname, params); });
+}
+void mural_glGetQueryObjectui64v(GLuint id, GLenum pname, GLuint64* params) {
+    queryObject(id, pname, params, [=] { gReal.glGetQueryObjectui64v(id, pname, params); });
+}
+void mural_glGetQueryBufferObjectiv(GLuint id, GLuint buffer, GLenum pname, GLintptr offset) {
+    queryBufferObject<GLint>(id, buffer, pname, offset, [=] { gReal.glGetQueryBufferObjectiv(id, buffer, pname, offset); });
+}
+void mural_glGetQueryBufferObjectuiv(GLuint id, GLuint buffer, GLenum pname, GLintptr offset) {
+    queryBufferObject<GLuint>(id, buffer, pname, offset, [=] { gReal.glGetQueryBufferObjectuiv(id, buffer, pname, offset); });
+}
+void mural_glGetQueryBufferObjecti64v(GLuint id, GLuint buffer, GLenum pname, GLintptr offset) {
+    queryBufferObject<GLint64>(id, buffer, pname, offset, [=] { gReal.glGetQueryBufferObjecti64v(id, buffer, pname, offset); });
+}
+void mural_glGetQueryBufferObjectui64v(GLuint id, GLuint buffer, GLenum pname, GLintptr offset) {
+    queryBufferObject<GLuint64>(id, buffer, pname, offset, [=] { gReal.glGetQueryBufferObjectui64v(id, buffer, pname, offset); });
+}
+
+} // extern "C"

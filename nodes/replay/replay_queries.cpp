@@ -1,0 +1,166 @@
+// Queries over tiles. What a node draws of its tile alone is added to the other nodes' counts; what
+// every node draws whole (framebuffer objects, drawn pixels, memory-writing shaders) counts once: a query
+// is cut into pieces where that changes.
+#include <algorithm>
+#include <utility>
+
+#include "nodes/replay/replay.hpp"
+
+namespace mural {
+
+namespace {
+
+bool countsSamples(GLenum target) {
+    return target == GL_SAMPLES_PASSED || target == GL_ANY_SAMPLES_PASSED || target == GL_ANY_SAMPLES_PASSED_CONSERVATIVE;
+}
+// What the culling of primitives outside of the tile would change.
+bool countsClipping(GLenum target) { return target == GL_CLIPPING_INPUT_PRIMITIVES || target == GL_CLIPPING_OUTPUT_PRIMITIVES; }
+
+} // namespace
+
+// True: every node draws the same pixels now, not only its own.
+bool Replay::drawsWhole() const {
+    return !drawsWindow() || (!config_.lean && (tileOff_ || c_->memoryWritten || c_->countedWhole));
+}
+
+// Whoever changes what drawsWhole() says comes by here before anything is drawn.
+void Replay::cutQueries() {
+    const bool whole = drawsWhole();
+    if (whole == std::exchange(c_->countsWhole, whole) || c_->compiling) return;
+    for (const auto& [target, id] : c_->counting) {
+        gl.glEndQuery(target);
+        GLuint ours = 0;
+        gl.glGenQueries(1, &ours);
+        gl.glBeginQuery(target, ours);
+        c_->queries[id].pieces.push_back({ours, whole});
+    }
+}
+
+void Replay::dropPieces(QueryInfo& query) {
+    for (size_t i = 1; i < query.pieces.size(); ++i) gl.glDeleteQueries(1, &query.pieces[i].ours); // the first is the program's
+    query.pieces.clear();
+}
+
+void Replay::glBeginQuery(GLenum target, GLuint id) {
+    const GLuint ours = name(Kind::Query, id);
+    QueryInfo& query = c_->queries[id];
+    dropPieces(query);
+    query.target = target;
+    const bool multisampled = countsSamples(target) && drawsWindow() && c_->draw && c_->draw->config.samples > 0; // nodes' parts overlap then
+    if (multisampled || target == GL_FRAGMENT_SHADER_INVOCATIONS) {
+        c_->countedWhole = true;
+        applyScissors();
+    }
+    cutQueries();
+    query.pieces.push_back({ours, drawsWhole()});
+    if (countsSamples(target) || target == GL_FRAGMENT_SHADER_INVOCATIONS) c_->counting[target] = id;
+    gl.glBeginQuery(target, ours);
+    c_->clippingCounted = c_->clippingCounted || countsClipping(target);
+    applyTileValues();
+}
+
+void Replay::glEndQuery(GLenum target) {
+    gl.glEndQuery(target);
+    c_->counting.erase(target);
+    if (countsClipping(target)) c_->clippingCounted = false;
+    if (c_->counting.empty() && std::exchange(c_->countedWhole, false)) applyScissors();
+    applyTileValues();
+}
+
+void Replay::glBeginQueryIndexed(GLenum target, GLuint index, GLuint id) {
+    if (index == 0) return glBeginQuery(target, id);
+    if (gl.glBeginQueryIndexed) gl.glBeginQueryIndexed(target, index, name(Kind::Query, id));
+}
+void Replay::glEndQueryIndexed(GLenum target, GLuint index) {
+    if (index == 0) return glEndQuery(target);
+    if (gl.glEndQueryIndexed) gl.glEndQueryIndexed(target, index);
+}
+
+void Replay::glDeleteQueries(GLsizei n, const Data& ids) {
+    if (n <= 0 || !ids.pointer()) return;
+    const auto* app = ids.as<GLuint>();
+    gl.glDeleteQueries(n, names(Kind::Query, app, n));
+    for (GLsizei i = 0; i < n; ++i) {
+        const auto query = c_->queries.find(app[i]);
+        if (query == c_->queries.end()) continue;
+        std::erase_if(c_->counting, [&](const auto& active) { return active.second == app[i]; });
+        dropPieces(query->second);
+        c_->queries.erase(query);
+    }
+    forget(Kind::Query, app, n);
+}
+
+uint64_t Replay::queryResult(GLuint ours) {
+    if (c_->queryBuffer) gl.glBindBuffer(GL_QUERY_BUFFER, 0);
+    const uint64_t result = readQuery(ours);
+    if (c_->queryBuffer) gl.glBindBuffer(GL_QUERY_BUFFER, c_->queryBuffer);
+    return result;
+}
+
+uint64_t Replay::readQuery(GLuint ours) {
+    if (gl.glGetQueryObjectui64v && c_->api == wire::Api::Desktop) {
+        GLuint64 result = 0;
+        gl.glGetQueryObjectui64v(ours, GL_QUERY_RESULT, &result);
+        return result;
+    }
+    GLuint result = 0;
+    if (gl.glGetQueryObjectuiv) gl.glGetQueryObjectuiv(ours, GL_QUERY_RESULT, &result);
+    return result;
+}
+
+bool Replay::ownRequestQuery(Args& in) {
+    const auto request = in.get<uint32_t>(), query = in.get<uint32_t>(), pname = in.get<uint32_t>();
+    if (!in.ok()) return false;
+    uint64_t value = 0;
+    bool added = false;
+    const auto info = bound_ ? c_->queries.find(query) : c_->queries.end();
+    if (info != c_->queries.end()) {
+        const std::vector<QueryPiece>& pieces = info->second.pieces;
+        added = countsSamples(info->second.target) && std::any_of(pieces.begin(), pieces.end(), [](const QueryPiece& p) { return !p.whole; });
+        for (const QueryPiece& piece : pieces) {
+            if (!added || !piece.whole || config_.node == 0) value += queryResult(piece.ours);
+        }
+    } else if (bound_ && pname != 0) {
+        value = queryResult(name(Kind::Query, query));
+    }
+    answerBytes(request, added ? wire::AnswerKind::Sum : wire::AnswerKind::Bytes, std::as_bytes(std::span(&value, 1)));
+    return true;
+}
+
+// ---- conditional rendering, with a result that is known: draws are left out by a query that counts nothing
+
+bool Replay::ownBeginConditional(Args& in) {
+    const auto draws = in.get<uint32_t>();
+    if (!in.ok()) return false;
+    c_->conditional = draws == 0 && bound_ && gl.glBeginConditionalRender && gl.glGenQueries;
+    if (!c_->conditional) {
+        c_->conditionMet = true;
+        return true;
+    }
+    const bool counting = c_->counting.count(GL_SAMPLES_PASSED) > 0; // one of its kind at a time
+    if (!c_->nothingCounted) {
+        if (counting) gl.glEndQuery(GL_SAMPLES_PASSED);
+        gl.glGenQueries(1, &c_->nothingCounted);
+        gl.glBeginQuery(GL_SAMPLES_PASSED, c_->nothingCounted);
+        gl.glEndQuery(GL_SAMPLES_PASSED);
+        if (counting) resumeSamples();
+    }
+    gl.glBeginConditionalRender(c_->nothingCounted, GL_QUERY_WAIT);
+    return true;
+}
+
+void Replay::resumeSamples() {
+    QueryInfo& query = c_->queries[c_->counting[GL_SAMPLES_PASSED]];
+    GLuint ours = 0;
+    gl.glGenQueries(1, &ours);
+    gl.glBeginQuery(GL_SAMPLES_PASSED, ours);
+    query.pieces.push_back({ours, drawsWhole()});
+}
+
+void Replay::glEndConditionalRender() {
+    if (std::exchange(c_->conditionMet, false)) return;
+    c_->conditional = false;
+    if (gl.glEndConditionalRender) gl.glEndConditionalRender();
+}
+
+} // namespace mural

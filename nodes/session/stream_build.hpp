@@ -1,0 +1,20 @@
+// Which stream a program, its head and its nodes speak: the grammar and the command table. Both ends of a
+// link must name the same.
+#pragma once
+
+#include <cinttypes>
+#include <cstdio>
+#include <string>
+
+#include "streamcodec/registry_digest.hpp"
+#include "streamcodec/wire.hpp"
+
+namespace mural {
+
+inline std::string streamBuild() {
+    char text[48];
+    std::snprintf(text, sizeof text, "%u.%016" PRIx64, wire::kVersion, registryDigest());
+    return text;
+}
+
+} // namespace mural
