@@ -102,12 +102,12 @@ def two_nodes_killed(context):
 
 @case
 def head_killed_in_the_middle(context):
-    return kill_during_run(context, HEAD, 1, "frame 20", ["the head process was lost"])
+    return kill_during_run(context, HEAD, 1, "frame 20", ["head"])
 
 
 @case
 def head_killed_at_the_start(context):
-    return kill_during_run(context, HEAD, 1, "frame 0", ["the head process was lost"])
+    return kill_during_run(context, HEAD, 1, "frame 0", ["head"])
 
 
 @case
