@@ -35,7 +35,9 @@ void Replay::gatherForCopy(const PixelViewport& r, GLbitfield plane, const void*
     gl.glBindTexture(GL_TEXTURE_2D, texture);
     if (c_->unpackBuffer) gl.glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
     setUnpack(true);
-    const GLint srgbOrNot = c_->read->config.srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8;
+    // As the window: its values count as sRGB only where the program has asked for that.
+    const bool srgb = c_->read->config.srgb && c_->api == wire::Api::Desktop && gl.glIsEnabled(GL_FRAMEBUFFER_SRGB);
+    const GLint srgbOrNot = srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8;
     withPlainTransfer([&] {
         if (plane == GL_COLOR_BUFFER_BIT) gl.glTexImage2D(GL_TEXTURE_2D, 0, separate ? srgbOrNot : GL_RGBA, r.w, r.h, 0, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
         else gatherDepthStencil(g, plane, pixels);
