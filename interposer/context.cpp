@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "interposer/drawn_elsewhere.hpp"
+#include "interposer/draw_opcodes.hpp"
 #include "interposer/log.hpp"
 #include "interposer/own_records.hpp"
 #include "interposer/real_gl.hpp"
@@ -91,6 +92,23 @@ void announce(ThreadState& t, Window& w) {
     records::window(t, w.id, w.config);
 }
 
+// A drawable that no context holds any more is given up by GLX when it is a plain X window: it starts
+// anew, with a new size, when it is bound again. GLX windows, pbuffers and EGL surfaces stay.
+void release(Window* w) {
+    if (!w || --w->holders > 0 || w->isEgl || w->drawable != w->native) return;
+    w->sizeKnown = false;
+}
+
+void hold(Context& c, Window* draw, Window* read) {
+    Guard guard(tableLock);
+    Window* const before[2] = {c.held[0], c.held[1]};
+    c.held[0] = draw;
+    c.held[1] = read;
+    for (Window* w : {draw, read})
+        if (w) ++w->holders;
+    for (Window* w : before) release(w);
+}
+
 // Version and profile that the driver really gave; needs the context to be current.
 void learnVersion(Context& c) {
     const auto* text = reinterpret_cast<const char*>(gReal.glGetString(GL_VERSION));
@@ -100,6 +118,9 @@ void learnVersion(Context& c) {
         c.api = digits && *digits == '1' ? wire::Api::Es1 : wire::Api::Es2;
         text = digits ? digits : "2.0";
     }
+    // Mesa's software drivers give their buffers a size at the first binding and after a swap only.
+    const auto* renderer = reinterpret_cast<const char*>(gReal.glGetString(GL_RENDERER));
+    c.sizeAtViewport = !renderer || (!std::strstr(renderer, "llvmpipe") && !std::strstr(renderer, "softpipe"));
     c.version = (text[0] - '0') * 10 + (text[1] == '.' ? text[2] - '0' : 0);
     if (c.api == wire::Api::Desktop && c.version >= 32) {
         GLint mask = 0;
@@ -135,15 +156,25 @@ Context* nextDueContext() {
     return nullptr;
 }
 
+// X windows go without a word to GLX. Some that no context holds are kept: programs go to and fro.
+constexpr int kIdleWindows = 16;
+
 Window* nextDueWindow() {
     Guard guard(tableLock);
+    Window* oldest = nullptr;
+    int idle = 0;
     for (Window* w = windows; w; w = w->next) {
         if (w->freeDue) {
             w->freeDue = false;
             return w;
         }
+        if (!w->announced || w->holders > 0 || w->isEgl || w->drawable != w->native || w->drawable == 0) continue;
+        oldest = w;
+        ++idle;
     }
-    return nullptr;
+    if (idle <= kIdleWindows) return nullptr;
+    oldest->announced = false; // told anew when it is bound again
+    return oldest;
 }
 
 // Tells the nodes what the program has given up; a thread without a context leaves it to the next that has one.
@@ -187,6 +218,7 @@ Context* findContext(void* native) {
 void destroyContext(void* native) {
     Context* c = findContext(native);
     if (!c) return;
+    if (tThread->context != c) hold(*c, nullptr, nullptr);
     c->destroyed = true;
     c->freeDue = c->announced;
     freeDestroyed(*tThread);
@@ -259,11 +291,13 @@ void becameCurrent(Context* context, Window* draw, Window* read) {
     }
     refreshDrawLocally(t);
     announce(t, *context);
+    hold(*context, draw, read);
     for (Window* w : {draw, read}) {
         if (!w) continue;
-        updateWindowSize(t, *w);
+        if (!w->sizeKnown) updateWindowSize(t, *w);
         announce(t, *w);
     }
+    t.sizeDue = false;
     context->drawWindow = draw ? draw->id : 0;
     context->readWindow = read ? read->id : 0;
     records::makeCurrent(t, context->id, context->drawWindow, context->readWindow);
@@ -274,10 +308,18 @@ void becameCurrent(Context* context, Window* draw, Window* read) {
 
 void updateWindowSize(ThreadState& t, Window& w) {
     uint32_t width = 0, height = 0;
+    w.sizeKnown = true;
     if (!askWindowSize(w, width, height) || (width == w.config.width && height == w.config.height)) return;
     w.config.width = width;
     w.config.height = height;
     if (w.announced) records::window(t, w.id, w.config);
+}
+
+void beforeRecordAfterSwap(ThreadState& t, uint32_t opcode) {
+    if (!drawsIntoWindow(opcode)) return;
+    t.sizeDue = false;
+    Window* w = t.context ? findWindowById(t.context->drawWindow) : nullptr;
+    if (w && !w->sizeKnown) updateWindowSize(t, *w);
 }
 
 void flushedWindow(ThreadState& t) {
@@ -314,8 +356,9 @@ void endFrame(Window* w) {
     s->publish(t, false);
     watchFromHere(t);
     s->waitForCredit(s->welcome().latency);
-    updateWindowSize(t, *w);
-    t.context->sizeChecked = false;
+    w->sizeKnown = false;
+    t.sizeDue = true;
+    t.limit = nullptr;
     refreshDrawLocally(t);
 }
 

@@ -12,6 +12,7 @@
 
 namespace mural {
 
+struct Window;
 struct PersistentMap; // interposer/commands/mappings.cpp
 
 // Contexts that share objects. When more than one thread has one of them current, every record takes
@@ -44,7 +45,6 @@ struct Context {
     bool called = false;             // by a GL command that came through us
     std::byte* quietSince = nullptr; // where the stream was when the last of our own records was written
     int emptyFrames = 0;             // shown before the first such command
-    bool sizeChecked = false;  // the window's size was asked since the last frame
     QueryBits queryIsAny;      // ANY_SAMPLES_PASSED and its kin
     QueryBits queryIsTimestamp;
     GLuint queryBuffer = 0;    // bound to GL_QUERY_BUFFER
@@ -67,7 +67,9 @@ struct Context {
     bool compilingList = false;
     GLenum renderMode = GL_RENDER;
     bool firstCurrent = true;
-    uint32_t drawWindow = 0, readWindow = 0;
+    uint32_t drawWindow = 0, readWindow = 0; // 0: none; both stay when the context is released
+    Window* held[2] = {};      // what it was last bound to: a driver keeps these drawables alive
+    bool sizeAtViewport = false; // the driver looks at the window's size in glViewport too
     char* extensionText = nullptr; // filtered, made at the first question
     const char** extensionNames = nullptr;
     int extensionCount = -1;
@@ -81,6 +83,8 @@ struct Window {
     bool isEgl = false;
     bool announced = false;
     bool freeDue = false;      // the program has destroyed it, the nodes have to be told
+    bool sizeKnown = false;    // the driver's buffers have a size until the next swap
+    int holders = 0;           // contexts that were last bound to it
     uint64_t native = 0;       // X window
     wire::WindowConfig config{};
     std::byte* lastFlush = nullptr; // where the stream was at the last flush of a single-buffered window
@@ -102,8 +106,11 @@ void destroyWindow(uintptr_t drawable, void* display);
 
 // The driver has made `context` current with these drawables (null: none): says so in the stream.
 void becameCurrent(Context* context, Window* draw, Window* read);
-// The driver's idea of the window's size; announces a change.
+// Asks the window's size and announces a change. Done at the moments at which Mesa gives its buffers
+// a size: when the window is bound first, and at the first drawing after a swap.
 void updateWindowSize(ThreadState& t, Window& w);
+// While t.sizeDue: before each record, until one draws.
+void beforeRecordAfterSwap(ThreadState& t, uint32_t opcode);
 // The program shows the window's back buffer: a frame ends.
 void endFrame(Window* w);
 // glFlush or glFinish on a single-buffered window shows its picture: a frame, when something was drawn.

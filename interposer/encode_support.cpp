@@ -15,10 +15,17 @@ void goAlone(ThreadState& t) {
     t.chunk = UINT32_MAX;
     t.drawLocally = true;
 }
+
+// Under the lock, as another thread may close the fast path at this moment (enterGroup).
+void openFastPath(ThreadState& t) {
+    Guard guard(t.context->group->lock);
+    t.limit = t.shared ? nullptr : t.chunkEnd;
+}
 } // namespace
 
-std::byte* makeRoom(ThreadState& t, uint32_t sizeBytes) {
+std::byte* makeRoom(ThreadState& t, uint32_t opcode, uint32_t sizeBytes) {
     if (!t.context) return nullptr;
+    if (t.sizeDue) beforeRecordAfterSwap(t, opcode);
     Session* s = Session::current();
     if (!s || !s->alive()) {
         goAlone(t);
@@ -31,14 +38,15 @@ std::byte* makeRoom(ThreadState& t, uint32_t sizeBytes) {
         group.lastWriter = &t;
         t.locked = true;
     }
-    if (t.chunk != UINT32_MAX && t.cursor + sizeBytes <= t.chunkEnd) return t.cursor;
-    s->publish(t, true);
-    if (!s->takeChunk(t)) {
-        if (t.locked) unlockGroup(t);
-        goAlone(t);
-        return nullptr;
+    if (t.chunk == UINT32_MAX || t.cursor + sizeBytes > t.chunkEnd) {
+        s->publish(t, true);
+        if (!s->takeChunk(t)) {
+            if (t.locked) unlockGroup(t);
+            goAlone(t);
+            return nullptr;
+        }
     }
-    t.limit = t.shared ? nullptr : t.chunkEnd;
+    if (!t.shared && !t.sizeDue) openFastPath(t);
     return t.cursor;
 }
 

@@ -11,15 +11,16 @@
 
 namespace mural {
 
-// The slow path: takes a new chunk, or the share group's lock. Null: not capturing.
-std::byte* makeRoom(ThreadState& t, uint32_t sizeBytes);
+// The slow path: takes a new chunk, or the share group's lock, or finds out the window's size before
+// the first drawing after a swap. Null: not capturing.
+std::byte* makeRoom(ThreadState& t, uint32_t opcode, uint32_t sizeBytes);
 void unlockGroup(ThreadState& t);
 
 // Space for a record of sizeBytes (header included, a multiple of 4); returns where its arguments go.
 inline std::byte* beginRecord(ThreadState& t, uint32_t opcode, uint32_t sizeBytes) {
     std::byte* p = t.cursor;
     if (reinterpret_cast<uintptr_t>(p) + sizeBytes + 4 > reinterpret_cast<uintptr_t>(t.limit)) [[unlikely]] {
-        p = makeRoom(t, sizeBytes + 4);
+        p = makeRoom(t, opcode, sizeBytes + 4);
         if (!p) return nullptr;
     }
     const uint32_t words = sizeBytes / 4;

@@ -72,12 +72,11 @@ GLint mural_glRenderMode(GLenum mode) {
     return hits;
 }
 
-// Drivers look at the window's size when a program sets its viewport: so a resize takes effect there.
+// Some drivers look at the window's size when a program sets its viewport: a resize takes effect there.
 void mural_glViewport(GLint x, GLint y, GLsizei width, GLsizei height) {
     ThreadState& t = *tThread;
     gReal.glViewport(x, y, width, height);
-    if (t.context && !t.context->sizeChecked) {
-        t.context->sizeChecked = true;
+    if (t.context && t.context->sizeAtViewport) {
         if (Window* w = findWindowById(t.context->drawWindow)) updateWindowSize(t, *w);
     }
     encode_glViewport(t, x, y, width, height);

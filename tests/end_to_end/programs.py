@@ -16,7 +16,7 @@ GROUPS = {
                 "fragment_counters", "frag_coord", "many_triangles", "queries", "direct_state_access"],
     "windows": ["es1_scene", "es2_scene", "es3_scene", "egl_desktop", "egl_offscreen",
                 "several_windows", "shared_contexts", "threads_windows", "loader_thread",
-                "context_migration", "glx_pbuffers", "resize", "window_churn"],
+                "context_migration", "glx_pbuffers", "resize", "resize_moments", "window_churn"],
     "processes": ["route_dlsym", "route_deepbind", "route_glx_proc", "route_split_libraries",
                   "route_egl_proc", "route_plugin", "exit_dirty", "exit_quick", "exit_three",
                   "exit_abort", "exit_segv", "exit_term", "fork_child", "fork_exec"],
