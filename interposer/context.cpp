@@ -187,7 +187,7 @@ void freeDestroyed(ThreadState& t) {
 } // namespace
 
 void refreshDrawLocally(ThreadState& t) {
-    t.drawLocally = swapLocally() || !t.context || t.context->compilingList || t.context->renderMode != GL_RENDER;
+    t.drawLocally = swapLocally() || !t.context || t.context->compilingList || t.context->drawsPixmap || t.context->renderMode != GL_RENDER;
 }
 
 Context* addContext(void* native, Context* shareWith, wire::Api api, const wire::WindowConfig& config) {
@@ -289,6 +289,7 @@ void becameCurrent(Context* context, Window* draw, Window* read) {
         loadOwnNeeds();
         learnVersion(*context);
     }
+    context->drawsPixmap = draw && draw->isPixmap;
     refreshDrawLocally(t);
     announce(t, *context);
     hold(*context, draw, read);

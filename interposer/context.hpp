@@ -15,6 +15,23 @@ namespace mural {
 struct Window;
 struct PersistentMap; // interposer/commands/mappings.cpp
 
+// One bit per object name. Names beyond are taken as false.
+class NameBits {
+public:
+    void set(GLuint name, bool on) {
+        if (!known(name)) return;
+        const uint64_t bit = uint64_t{1} << name % 64;
+        bits_[name / 64] = on ? bits_[name / 64] | bit : bits_[name / 64] & ~bit;
+    }
+    [[nodiscard]] bool get(GLuint name) const { return known(name) && (bits_[name / 64] >> name % 64 & 1); }
+
+    [[nodiscard]] static bool known(GLuint name) { return name < kNames; }
+
+private:
+    static constexpr GLuint kNames = 16384;
+    uint64_t bits_[kNames / 64] = {};
+};
+
 // Contexts that share objects. When more than one thread has one of them current, every record takes
 // the lock, and the writer before is published first: so the stream keeps the order of the calls.
 struct ShareGroup {
@@ -23,30 +40,17 @@ struct ShareGroup {
     int threads = 0; // that have a context of the group current
     PersistentMap* maps = nullptr; // mappings of buffers that are not unmapped yet
     int persistentMaps = 0;
+    bool listsMoveRaster = false;   // some display list moves the raster position by glBitmap
+    NameBits listMovesRaster;       // this list does, or calls others, which may
     bool nodesWriteBuffers = false; // transform feedback or shaders have written into buffers
-};
-
-// One bit per query name. Names beyond are taken as false.
-class QueryBits {
-public:
-    void set(GLuint name, bool on) {
-        if (name >= kNames) return;
-        const uint64_t bit = uint64_t{1} << name % 64;
-        bits_[name / 64] = on ? bits_[name / 64] | bit : bits_[name / 64] & ~bit;
-    }
-    [[nodiscard]] bool get(GLuint name) const { return name < kNames && (bits_[name / 64] >> name % 64 & 1); }
-
-private:
-    static constexpr GLuint kNames = 16384;
-    uint64_t bits_[kNames / 64] = {};
 };
 
 struct Context {
     bool called = false;             // by a GL command that came through us
     std::byte* quietSince = nullptr; // where the stream was when the last of our own records was written
     int emptyFrames = 0;             // shown before the first such command
-    QueryBits queryIsAny;      // ANY_SAMPLES_PASSED and its kin
-    QueryBits queryIsTimestamp;
+    NameBits queryIsAny;      // ANY_SAMPLES_PASSED and its kin
+    NameBits queryIsTimestamp;
     GLuint queryBuffer = 0;    // bound to GL_QUERY_BUFFER
     uint32_t id = 0;
     ShareGroup* group = nullptr;
@@ -65,10 +69,12 @@ struct Context {
     VertexArrayMirror arrays;
     GLenum stashedError = 0;   // an error that we met while asking, for the program's next glGetError
     bool compilingList = false;
+    GLuint compiledList = 0;   // its name
     GLenum renderMode = GL_RENDER;
     bool firstCurrent = true;
     uint32_t drawWindow = 0, readWindow = 0; // 0: none; both stay when the context is released
     Window* held[2] = {};      // what it was last bound to: a driver keeps these drawables alive
+    bool drawsPixmap = false;  // its drawable is an X pixmap
     bool sizeAtViewport = false; // the driver looks at the window's size in glViewport too
     char* extensionText = nullptr; // filtered, made at the first question
     const char** extensionNames = nullptr;
@@ -81,6 +87,7 @@ struct Window {
     uintptr_t drawable = 0;    // GLXDrawable or EGLSurface
     void* display = nullptr;
     bool isEgl = false;
+    bool isPixmap = false;     // X requests read it, so the program's own GL draws into it, too
     bool announced = false;
     bool freeDue = false;      // the program has destroyed it, the nodes have to be told
     bool sizeKnown = false;    // the driver's buffers have a size until the next swap

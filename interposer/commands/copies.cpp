@@ -152,7 +152,12 @@ void mural_glBitmap(GLsizei width, GLsizei height, GLfloat xorig, GLfloat yorig,
     ThreadState& t = *tThread;
     encode_glBitmap(t, width, height, xorig, yorig, xmove, ymove, imageSource(t, bitmap, GL_COLOR_INDEX, GL_BITMAP, width, height, 1, 2));
     // The raster position moves in the program's own context too: an empty bitmap moves it as well.
-    if (t.drawLocally) gReal.glBitmap(width, height, xorig, yorig, xmove, ymove, bitmap);
+    if (t.context && t.context->compilingList) {
+        t.context->group->listsMoveRaster = true;
+        t.context->group->listMovesRaster.set(t.context->compiledList, true);
+    }
+    const bool isError = width < 0 || height < 0;
+    if (t.drawLocally || isError) gReal.glBitmap(width, height, xorig, yorig, xmove, ymove, bitmap);
     else gReal.glBitmap(0, 0, 0, 0, xmove, ymove, nullptr);
 }
 

@@ -21,13 +21,19 @@ void publish(ThreadState& t) {
     if (Session* s = Session::current(); s && t.context) s->publish(t, false);
 }
 
-// A list holds draws and state: the program's own context needs the state but must not draw.
-template <class Call> void callWithoutDrawing(ThreadState& t, Call&& call) {
-    if (t.drawLocally) return call();
-    const bool canDiscard = t.context && t.context->version >= 30 && gReal.glEnable;
+// A list holds draws and state: the program's own context needs the state but need not draw. Where a
+// bitmap may move the raster position it does draw, for a discarded bitmap moves nothing.
+template <class Call> void callWithoutDrawing(ThreadState& t, bool movesRaster, Call&& call) {
+    if (t.drawLocally || movesRaster) return call();
+    const bool canDiscard = t.context && t.context->version >= 30 && gReal.glEnable && gReal.glIsEnabled && !gReal.glIsEnabled(GL_RASTERIZER_DISCARD);
     if (canDiscard) gReal.glEnable(GL_RASTERIZER_DISCARD);
     call();
     if (canDiscard) gReal.glDisable(GL_RASTERIZER_DISCARD);
+}
+
+// A list that calls others moves the raster position when they do, whatever they will be by then.
+void noteListCall(const ThreadState& t) {
+    if (t.context && t.context->compilingList) t.context->group->listMovesRaster.set(t.context->compiledList, true);
 }
 } // namespace
 
@@ -40,6 +46,8 @@ void mural_glNewList(GLuint list, GLenum mode) {
     gReal.glNewList(list, mode);
     if (!t.context) return;
     t.context->compilingList = true;
+    t.context->compiledList = list;
+    t.context->group->listMovesRaster.set(list, false);
     refreshDrawLocally(t);
 }
 void mural_glEndList() {
@@ -53,12 +61,17 @@ void mural_glEndList() {
 void mural_glCallList(GLuint list) {
     ThreadState& t = *tThread;
     encode_glCallList(t, list);
-    callWithoutDrawing(t, [&] { gReal.glCallList(list); });
+    noteListCall(t);
+    const ShareGroup* group = t.context ? t.context->group : nullptr;
+    const bool moves = group && group->listsMoveRaster && (group->listMovesRaster.get(list) || !NameBits::known(list));
+    callWithoutDrawing(t, moves, [&] { gReal.glCallList(list); });
 }
 void mural_glCallLists(GLsizei n, GLenum type, const void* lists) {
     ThreadState& t = *tThread;
     encode_glCallLists(t, n, type, DataArg::of(lists, sizes::callListsBytes(n, type)));
-    callWithoutDrawing(t, [&] { gReal.glCallLists(n, type, lists); });
+    noteListCall(t);
+    const bool moves = t.context && t.context->group->listsMoveRaster; // mostly text
+    callWithoutDrawing(t, moves, [&] { gReal.glCallLists(n, type, lists); });
 }
 // Selection and feedback need vertices only: the program's own context does them.
 GLint mural_glRenderMode(GLenum mode) {

@@ -21,10 +21,19 @@ struct Clip {
     GLint x, y;
     GLsizei w, h;
 };
-bool clipToReadWindow(Context& c, Clip& r) {
+bool readsWindow(const Context& c) {
     GLint framebuffer = 0;
     gReal.glGetIntegerv(c.api == wire::Api::Desktop || c.version >= 30 ? GL_READ_FRAMEBUFFER_BINDING : GL_FRAMEBUFFER_BINDING, &framebuffer);
-    if (framebuffer != 0) return true;
+    return framebuffer == 0;
+}
+// A pixmap is drawn by the program's own GL too, and drivers let it have one buffer whatever its configuration
+// says: what is in it is known here. A bound pack buffer is the nodes' as well.
+bool readsOwnPixmap(Context& c) {
+    if (!c.drawsPixmap || c.readWindow != c.drawWindow || packBufferBound(c)) return false;
+    return readsWindow(c);
+}
+bool clipToReadWindow(Context& c, Clip& r) {
+    if (!readsWindow(c)) return true;
     const Window* w = findWindowById(c.readWindow);
     if (!w) return true;
     const int64_t x1 = int64_t{r.x} + r.w, y1 = int64_t{r.y} + r.h;
@@ -54,6 +63,10 @@ void deliver(ThreadState& t, const void* tight, void* pixels, const sizes::Image
 
 void readPixels(ThreadState& t, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type, void* pixels) {
     Context& c = *t.context;
+    if (readsOwnPixmap(c)) {
+        gReal.glReadPixels(x, y, width, height, format, type, pixels);
+        return;
+    }
     Clip clip{x, y, width, height};
     if (!clipToReadWindow(c, clip)) return;
     const void* tight = askPixels(t, clip.x, clip.y, clip.w, clip.h, format, type);

@@ -11,8 +11,10 @@
 #include "interposer/context.hpp"
 #include "interposer/extensions.hpp"
 #include "interposer/fronts/front.hpp"
+#include "interposer/fronts/glx_fonts.hpp"
 #include "interposer/fronts/glx_types.hpp"
 #include "interposer/fronts/own_functions.hpp"
+#include "interposer/fronts/xlib.hpp"
 #include "interposer/log.hpp"
 #include "interposer/native_count.hpp"
 #include "interposer/real_gl.hpp"
@@ -33,12 +35,6 @@ Entry vendorEntry(const char* name) {
 
 // The real library's own GLX function.
 template <class F> F* real(const char* name) { return reinterpret_cast<F*>(glxFront().behind(name)); }
-
-// Xlib's, from the copy that the program already has.
-template <class F> F* xlib(const char* name) {
-    static void* handle = dlopen("libX11.so.6", RTLD_LAZY | RTLD_NOLOAD);
-    return handle ? reinterpret_cast<F*>(dlsym(handle, name)) : nullptr;
-}
 
 // Bits of a visual or framebuffer configuration, by whichever question the caller has.
 template <class Ask> wire::WindowConfig configFrom(Ask ask) {
@@ -143,24 +139,38 @@ Bool makeCurrentRead(Display* dpy, XID draw, XID read, GLXContext context) {
     return madeCurrent(call(dpy, draw, read, context), dpy, draw, read, context);
 }
 
+bool swapsItself(XID drawable, Display* dpy) {
+    if (swapLocally()) return true;
+    const Window* w = findWindow(drawable, dpy);
+    return w && w->isPixmap;
+}
+
 void swapBuffers(Display* dpy, XID drawable) {
     static auto* call = real<void(Display*, XID)>("glXSwapBuffers");
     if (nativeRun()) countNativeFrame();
     else endFrame(findWindow(drawable, dpy));
-    if (swapLocally()) call(dpy, drawable);
+    if (swapsItself(drawable, dpy)) call(dpy, drawable);
 }
 
 int64_t swapBuffersMsc(Display* dpy, XID drawable, int64_t target, int64_t divisor, int64_t remainder) {
     static auto* call = real<int64_t(Display*, XID, int64_t, int64_t, int64_t)>("glXSwapBuffersMscOML");
     if (nativeRun()) countNativeFrame();
     else endFrame(findWindow(drawable, dpy));
-    return swapLocally() ? call(dpy, drawable, target, divisor, remainder) : 0;
+    return swapsItself(drawable, dpy) ? call(dpy, drawable, target, divisor, remainder) : 0;
 }
 
 void waitGl() {
     static auto* call = real<void()>("glXWaitGL");
     waitGlShown();
     call();
+}
+
+void useXFont(Font font, int first, int count, int listBase) {
+    static auto* call = real<void(Font, int, int, int)>("glXUseXFont");
+    const Context* c = tThread->context;
+    const Window* w = c ? findWindowById(c->drawWindow) : nullptr;
+    const bool ours = w && !w->isEgl && !nativeRun();
+    if (!ours || !listsFromXFont(static_cast<Display*>(w->display), font, first, count, listBase)) call(font, first, count, listBase);
 }
 
 GLXWindow createWindow(Display* dpy, GLXFBConfig fb, ::Window window, const int* attributes) {
@@ -190,25 +200,55 @@ GLXPbuffer createPbuffer(Display* dpy, GLXFBConfig fb, const int* attributes) {
     return made;
 }
 
+GLXPbuffer createSgixPbuffer(Display* dpy, GLXFBConfig fb, unsigned width, unsigned height, int* attributes) {
+    static auto* call = real<GLXPbuffer(Display*, GLXFBConfig, unsigned, unsigned, int*)>("glXCreateGLXPbufferSGIX");
+    const GLXPbuffer made = call(dpy, fb, width, height, attributes);
+    addPbuffer(dpy, fb, made);
+    return made;
+}
+
+void destroySgixPbuffer(Display* dpy, GLXPbuffer pbuffer) {
+    static auto* call = real<void(Display*, GLXPbuffer)>("glXDestroyGLXPbufferSGIX");
+    destroyWindow(pbuffer, dpy);
+    call(dpy, pbuffer);
+}
+
 void destroyPbuffer(Display* dpy, GLXPbuffer pbuffer) {
     static auto* call = real<void(Display*, GLXPbuffer)>("glXDestroyPbuffer");
     destroyWindow(pbuffer, dpy);
     call(dpy, pbuffer);
 }
 
+GLXPixmap createdPixmap(Display* dpy, GLXPixmap made, wire::WindowConfig config) {
+    if (!made || nativeRun()) return made;
+    config.isPbuffer = 1;
+    if (Window* w = addWindow(made, dpy, false, config, 0)) w->isPixmap = true;
+    return made;
+}
+
 GLXPixmap createPixmap(Display* dpy, GLXFBConfig fb, Pixmap pixmap, const int* attributes) {
     static auto* call = real<GLXPixmap(Display*, GLXFBConfig, Pixmap, const int*)>("glXCreatePixmap");
-    const GLXPixmap made = call(dpy, fb, pixmap, attributes);
-    if (made && !nativeRun()) {
-        wire::WindowConfig config = configOfFb(dpy, fb);
-        config.isPbuffer = 1;
-        addWindow(made, dpy, false, config, pixmap);
-    }
-    return made;
+    return createdPixmap(dpy, call(dpy, fb, pixmap, attributes), configOfFb(dpy, fb));
+}
+
+GLXPixmap createGlxPixmap(Display* dpy, XVisualInfo* visual, Pixmap pixmap) {
+    static auto* call = real<GLXPixmap(Display*, XVisualInfo*, Pixmap)>("glXCreateGLXPixmap");
+    return createdPixmap(dpy, call(dpy, visual, pixmap), configOfVisual(dpy, visual));
+}
+
+GLXPixmap createGlxPixmapWithConfig(Display* dpy, GLXFBConfig fb, Pixmap pixmap) {
+    static auto* call = real<GLXPixmap(Display*, GLXFBConfig, Pixmap)>("glXCreateGLXPixmapWithConfigSGIX");
+    return createdPixmap(dpy, call(dpy, fb, pixmap), configOfFb(dpy, fb));
 }
 
 void destroyPixmap(Display* dpy, GLXPixmap pixmap) {
     static auto* call = real<void(Display*, GLXPixmap)>("glXDestroyPixmap");
+    destroyWindow(pixmap, dpy);
+    call(dpy, pixmap);
+}
+
+void destroyGlxPixmap(Display* dpy, GLXPixmap pixmap) {
+    static auto* call = real<void(Display*, GLXPixmap)>("glXDestroyGLXPixmap");
     destroyWindow(pixmap, dpy);
     call(dpy, pixmap);
 }
@@ -243,10 +283,14 @@ const OwnEntry kOwn[] = {
     ownEntry("glXDestroyContext", destroyedContext), ownEntry("glXMakeCurrent", makeCurrent),
     ownEntry("glXMakeContextCurrent", makeContextCurrent), ownEntry("glXMakeCurrentReadSGI", makeCurrentRead),
     ownEntry("glXSwapBuffers", swapBuffers), ownEntry("glXSwapBuffersMscOML", swapBuffersMsc),
-    ownEntry("glXWaitGL", waitGl),
+    ownEntry("glXWaitGL", waitGl), ownEntry("glXUseXFont", useXFont),
     ownEntry("glXCreateWindow", createWindow), ownEntry("glXDestroyWindow", destroyGlxWindow),
     ownEntry("glXCreatePbuffer", createPbuffer), ownEntry("glXDestroyPbuffer", destroyPbuffer),
+    ownEntry("glXCreateGLXPbufferSGIX", createSgixPbuffer), ownEntry("glXDestroyGLXPbufferSGIX", destroySgixPbuffer),
     ownEntry("glXCreatePixmap", createPixmap), ownEntry("glXDestroyPixmap", destroyPixmap),
+    ownEntry("glXCreateGLXPixmap", createGlxPixmap), ownEntry("glXDestroyGLXPixmap", destroyGlxPixmap),
+    ownEntry("glXCreateGLXPixmapWithConfigSGIX", createGlxPixmapWithConfig),
+    ownEntry("glXDestroyGLXPixmap", destroyGlxPixmap),
     ownEntry("glXQueryExtensionsString", queryExtensionsString), ownEntry("glXGetClientString", getClientString),
     ownEntry("glXQueryServerString", queryServerString), ownEntry("glXGetProcAddress", getProcAddress),
     ownEntry("glXGetProcAddressARB", getProcAddress),
