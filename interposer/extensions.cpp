@@ -17,7 +17,10 @@ namespace {
 // Extensions without commands of their own that hand out things of this machine.
 const char* const kLocalOnly[] = {"GL_ARB_gl_spirv", "GL_ARB_spirv_extensions", "GL_ARB_bindless_texture", "GL_ARB_sparse_buffer", "GL_ARB_sparse_texture", "GL_AMD_pinned_memory",
                                   "GL_OES_EGL_image_external", "GL_OES_EGL_image_external_essl3", "GL_EXT_EGL_image_storage"};
-const char* const kWindowSystemLocalOnly[] = {"GLX_EXT_texture_from_pixmap", "EGL_KHR_image", "EGL_KHR_image_base", "EGL_KHR_image_pixmap",
+// The window system's. Parts of pictures are not shown, and the driver's own swaps, whose count and events
+// programs would wait for, do not happen.
+const char* const kWindowSystemLocalOnly[] = {"GLX_MESA_copy_sub_buffer", "GLX_INTEL_swap_event", "GLX_OML_sync_control", "EGL_NV_post_sub_buffer",
+                                              "EGL_NOK_swap_region", "EGL_NOK_swap_region2", "GLX_EXT_texture_from_pixmap", "EGL_KHR_image", "EGL_KHR_image_base", "EGL_KHR_image_pixmap",
                                               "EGL_KHR_gl_texture_2D_image", "EGL_KHR_gl_texture_cubemap_image", "EGL_KHR_gl_texture_3D_image",
                                               "EGL_KHR_gl_renderbuffer_image", "EGL_EXT_image_dma_buf_import", "EGL_EXT_image_dma_buf_import_modifiers",
                                               "EGL_MESA_image_dma_buf_export", "EGL_MESA_drm_image", "EGL_WL_bind_wayland_display",

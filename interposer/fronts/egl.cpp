@@ -106,6 +106,13 @@ EGLBoolean swapBuffersWithDamageExt(EGLDisplay dpy, EGLSurface surface, const EG
     return swapLocally() ? call(dpy, surface, rects, n) : EGL_TRUE;
 }
 
+// Not advertised; who calls it all the same shows the whole picture.
+EGLBoolean postSubBuffer(EGLDisplay dpy, EGLSurface surface, EGLint x, EGLint y, EGLint width, EGLint height) {
+    static auto* call = real<EGLBoolean(EGLDisplay, EGLSurface, EGLint, EGLint, EGLint, EGLint)>("eglPostSubBufferNV");
+    frameShown(dpy, surface);
+    return swapLocally() ? call(dpy, surface, x, y, width, height) : EGL_TRUE;
+}
+
 EGLBoolean waitGl() {
     static auto* call = real<EGLBoolean()>("eglWaitGL");
     waitGlShown();
@@ -166,7 +173,7 @@ void* getProcAddress(const char* name) { return reinterpret_cast<void*>(eglFront
 const OwnEntry kOwn[] = {
     ownEntry("eglCreateContext", createContext), ownEntry("eglDestroyContext", destroyedContext),
     ownEntry("eglMakeCurrent", makeCurrent), ownEntry("eglSwapBuffers", swapBuffers),
-    ownEntry("eglWaitGL", waitGl), ownEntry("eglWaitClient", waitClient),
+    ownEntry("eglPostSubBufferNV", postSubBuffer), ownEntry("eglWaitGL", waitGl), ownEntry("eglWaitClient", waitClient),
     ownEntry("eglSwapBuffersWithDamageKHR", swapBuffersWithDamageKhr),
     ownEntry("eglSwapBuffersWithDamageEXT", swapBuffersWithDamageExt),
     ownEntry("eglCreateWindowSurface", createWindowSurface),

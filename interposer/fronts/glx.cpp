@@ -159,6 +159,13 @@ int64_t swapBuffersMsc(Display* dpy, XID drawable, int64_t target, int64_t divis
     return swapsItself(drawable, dpy) ? call(dpy, drawable, target, divisor, remainder) : 0;
 }
 
+// Not advertised; who calls it all the same shows the whole picture.
+void copySubBuffer(Display* dpy, XID drawable, int x, int y, int width, int height) {
+    static auto* call = real<void(Display*, XID, int, int, int, int)>("glXCopySubBufferMESA");
+    if (!nativeRun()) endFrame(findWindow(drawable, dpy));
+    if (swapsItself(drawable, dpy)) call(dpy, drawable, x, y, width, height);
+}
+
 void waitGl() {
     static auto* call = real<void()>("glXWaitGL");
     waitGlShown();
@@ -283,7 +290,7 @@ const OwnEntry kOwn[] = {
     ownEntry("glXDestroyContext", destroyedContext), ownEntry("glXMakeCurrent", makeCurrent),
     ownEntry("glXMakeContextCurrent", makeContextCurrent), ownEntry("glXMakeCurrentReadSGI", makeCurrentRead),
     ownEntry("glXSwapBuffers", swapBuffers), ownEntry("glXSwapBuffersMscOML", swapBuffersMsc),
-    ownEntry("glXWaitGL", waitGl), ownEntry("glXUseXFont", useXFont),
+    ownEntry("glXCopySubBufferMESA", copySubBuffer), ownEntry("glXWaitGL", waitGl), ownEntry("glXUseXFont", useXFont),
     ownEntry("glXCreateWindow", createWindow), ownEntry("glXDestroyWindow", destroyGlxWindow),
     ownEntry("glXCreatePbuffer", createPbuffer), ownEntry("glXDestroyPbuffer", destroyPbuffer),
     ownEntry("glXCreateGLXPbufferSGIX", createSgixPbuffer), ownEntry("glXDestroyGLXPbufferSGIX", destroySgixPbuffer),
