@@ -46,15 +46,20 @@ wire::WindowConfig configOf(EGLDisplay dpy, EGLConfig config) {
     return c;
 }
 
-void addSurface(EGLDisplay dpy, EGLSurface surface, EGLConfig config, uint64_t native, const EGLint* attributes, bool pbuffer) {
-    if (!surface || nativeRun()) return;
+Window* addSurface(EGLDisplay dpy, EGLSurface surface, EGLConfig config, uint64_t native, const EGLint* attributes, bool pbuffer) {
+    if (!surface || nativeRun()) return nullptr;
     wire::WindowConfig c = configOf(dpy, config);
     c.isPbuffer = pbuffer;
     for (const EGLint* a = attributes; a && *a != EGL_NONE; a += 2) {
         if (a[0] == EGL_GL_COLORSPACE) c.srgb = a[1] == EGL_GL_COLORSPACE_SRGB;
         if (a[0] == EGL_RENDER_BUFFER && a[1] == EGL_SINGLE_BUFFER) c.doubleBuffer = 0;
     }
-    addWindow(reinterpret_cast<uintptr_t>(surface), dpy, true, c, native);
+    return addWindow(reinterpret_cast<uintptr_t>(surface), dpy, true, c, native);
+}
+
+EGLSurface addPixmap(EGLDisplay dpy, EGLSurface surface, EGLConfig config, const EGLint* attributes) {
+    if (Window* w = addSurface(dpy, surface, config, 0, attributes, true)) w->isPixmap = true;
+    return surface;
 }
 
 EGLContext createContext(EGLDisplay dpy, EGLConfig config, EGLContext share, const EGLint* attributes) {
@@ -90,27 +95,33 @@ void frameShown(EGLDisplay dpy, EGLSurface surface) {
     else endFrame(windowFor(dpy, surface));
 }
 
+bool swapsItself(EGLDisplay dpy, EGLSurface surface) {
+    if (swapLocally()) return true;
+    const Window* w = windowFor(dpy, surface);
+    return w && w->isPixmap;
+}
+
 EGLBoolean swapBuffers(EGLDisplay dpy, EGLSurface surface) {
     static auto* call = real<EGLBoolean(EGLDisplay, EGLSurface)>("eglSwapBuffers");
     frameShown(dpy, surface);
-    return swapLocally() ? call(dpy, surface) : EGL_TRUE;
+    return swapsItself(dpy, surface) ? call(dpy, surface) : EGL_TRUE;
 }
 EGLBoolean swapBuffersWithDamageKhr(EGLDisplay dpy, EGLSurface surface, const EGLint* rects, EGLint n) {
     static auto* call = real<EGLBoolean(EGLDisplay, EGLSurface, const EGLint*, EGLint)>("eglSwapBuffersWithDamageKHR");
     frameShown(dpy, surface);
-    return swapLocally() ? call(dpy, surface, rects, n) : EGL_TRUE;
+    return swapsItself(dpy, surface) ? call(dpy, surface, rects, n) : EGL_TRUE;
 }
 EGLBoolean swapBuffersWithDamageExt(EGLDisplay dpy, EGLSurface surface, const EGLint* rects, EGLint n) {
     static auto* call = real<EGLBoolean(EGLDisplay, EGLSurface, const EGLint*, EGLint)>("eglSwapBuffersWithDamageEXT");
     frameShown(dpy, surface);
-    return swapLocally() ? call(dpy, surface, rects, n) : EGL_TRUE;
+    return swapsItself(dpy, surface) ? call(dpy, surface, rects, n) : EGL_TRUE;
 }
 
 // Not advertised; who calls it all the same shows the whole picture.
 EGLBoolean postSubBuffer(EGLDisplay dpy, EGLSurface surface, EGLint x, EGLint y, EGLint width, EGLint height) {
     static auto* call = real<EGLBoolean(EGLDisplay, EGLSurface, EGLint, EGLint, EGLint, EGLint)>("eglPostSubBufferNV");
     frameShown(dpy, surface);
-    return swapLocally() ? call(dpy, surface, x, y, width, height) : EGL_TRUE;
+    return swapsItself(dpy, surface) ? call(dpy, surface, x, y, width, height) : EGL_TRUE;
 }
 
 EGLBoolean waitGl() {
@@ -131,18 +142,25 @@ EGLSurface createWindowSurface(EGLDisplay dpy, EGLConfig config, EGLNativeWindow
     return made;
 }
 
+// The attributes of platform functions as the other functions have them.
+struct Narrow {
+    explicit Narrow(const EGLAttrib* attributes) {
+        int n = 0;
+        for (; attributes && n < 32 && attributes[n] != EGL_NONE; n += 2) {
+            list[n] = static_cast<EGLint>(attributes[n]);
+            list[n + 1] = static_cast<EGLint>(attributes[n + 1]);
+        }
+        list[n] = EGL_NONE;
+    }
+    EGLint list[33];
+};
+
 // Platform surfaces of X11 take a pointer to the window's id (EXT_platform_x11, EXT_platform_xcb).
 EGLSurface createPlatformWindowSurface(EGLDisplay dpy, EGLConfig config, void* window, const EGLAttrib* attributes) {
     static auto* call = real<EGLSurface(EGLDisplay, EGLConfig, void*, const EGLAttrib*)>("eglCreatePlatformWindowSurface");
     const EGLSurface made = call(dpy, config, window, attributes);
-    EGLint narrow[33];
-    int n = 0;
-    for (; attributes && n < 32 && attributes[n] != EGL_NONE; n += 2) {
-        narrow[n] = static_cast<EGLint>(attributes[n]);
-        narrow[n + 1] = static_cast<EGLint>(attributes[n + 1]);
-    }
-    narrow[n] = EGL_NONE;
-    addSurface(dpy, made, config, window ? *static_cast<uint32_t*>(window) : 0, narrow, false);
+    const Narrow narrow(attributes);
+    addSurface(dpy, made, config, window ? *static_cast<uint32_t*>(window) : 0, narrow.list, false);
     return made;
 }
 EGLSurface createPlatformWindowSurfaceExt(EGLDisplay dpy, EGLConfig config, void* window, const EGLint* attributes) {
@@ -150,6 +168,18 @@ EGLSurface createPlatformWindowSurfaceExt(EGLDisplay dpy, EGLConfig config, void
     const EGLSurface made = call(dpy, config, window, attributes);
     addSurface(dpy, made, config, window ? *static_cast<uint32_t*>(window) : 0, attributes, false);
     return made;
+}
+EGLSurface createPixmapSurface(EGLDisplay dpy, EGLConfig config, EGLNativePixmapType pixmap, const EGLint* attributes) {
+    static auto* call = real<EGLSurface(EGLDisplay, EGLConfig, EGLNativePixmapType, const EGLint*)>("eglCreatePixmapSurface");
+    return addPixmap(dpy, call(dpy, config, pixmap, attributes), config, attributes);
+}
+EGLSurface createPlatformPixmapSurface(EGLDisplay dpy, EGLConfig config, void* pixmap, const EGLAttrib* attributes) {
+    static auto* call = real<EGLSurface(EGLDisplay, EGLConfig, void*, const EGLAttrib*)>("eglCreatePlatformPixmapSurface");
+    return addPixmap(dpy, call(dpy, config, pixmap, attributes), config, Narrow(attributes).list);
+}
+EGLSurface createPlatformPixmapSurfaceExt(EGLDisplay dpy, EGLConfig config, void* pixmap, const EGLint* attributes) {
+    static auto* call = real<EGLSurface(EGLDisplay, EGLConfig, void*, const EGLint*)>("eglCreatePlatformPixmapSurfaceEXT");
+    return addPixmap(dpy, call(dpy, config, pixmap, attributes), config, attributes);
 }
 EGLSurface createPbufferSurface(EGLDisplay dpy, EGLConfig config, const EGLint* attributes) {
     static auto* call = real<EGLSurface(EGLDisplay, EGLConfig, const EGLint*)>("eglCreatePbufferSurface");
@@ -179,6 +209,9 @@ const OwnEntry kOwn[] = {
     ownEntry("eglCreateWindowSurface", createWindowSurface),
     ownEntry("eglCreatePlatformWindowSurface", createPlatformWindowSurface),
     ownEntry("eglCreatePlatformWindowSurfaceEXT", createPlatformWindowSurfaceExt),
+    ownEntry("eglCreatePixmapSurface", createPixmapSurface),
+    ownEntry("eglCreatePlatformPixmapSurface", createPlatformPixmapSurface),
+    ownEntry("eglCreatePlatformPixmapSurfaceEXT", createPlatformPixmapSurfaceExt),
     ownEntry("eglCreatePbufferSurface", createPbufferSurface), ownEntry("eglDestroySurface", destroySurface),
     ownEntry("eglQueryString", queryString), ownEntry("eglGetProcAddress", getProcAddress),
 };

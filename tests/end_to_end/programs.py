@@ -14,7 +14,7 @@ GROUPS = {
               "attribute_stacks", "arb_programs"],
     "shaders": ["glsl_legacy", "glsl_uniforms", "glsl_blocks", "glsl_stages", "compute_images",
                 "fragment_counters", "frag_coord", "many_triangles", "queries", "direct_state_access"],
-    "windows": ["es1_scene", "es2_scene", "es3_scene", "egl_desktop", "egl_offscreen",
+    "windows": ["es1_scene", "es2_scene", "es3_scene", "egl_desktop", "egl_offscreen", "egl_pixmaps",
                 "several_windows", "shared_contexts", "threads_windows", "loader_thread",
                 "context_migration", "glx_pbuffers", "x_fonts", "x_pixmaps", "resize",
                 "resize_moments", "window_churn"],
