@@ -21,6 +21,7 @@ namespace mural {
 namespace {
 
 Lock tableLock;
+Lock announceLock; // taken before tableLock
 Context** contexts = nullptr;
 uint32_t contextCount = 0;
 Window* windows = nullptr;
@@ -76,14 +77,28 @@ void enterGroup(ThreadState& t, Context& c) {
     }
 }
 
+bool nodesHave(const Context& c) { return c.announced && (!c.destroyed || c.freeDue); }
+
+// Any context of the group that the nodes have serves as the one to share with. It need not be the one
+// that the program named: that may not have been current yet, so its version is not known; it is told
+// when it is, and shares then with this one. Only with the first of a group is there none.
+const Context* sharerOf(const Context& c) {
+    Guard guard(tableLock);
+    for (uint32_t i = 0; i < contextCount; ++i) {
+        if (contexts[i]->group == c.group && contexts[i] != &c && nodesHave(*contexts[i])) return contexts[i];
+    }
+    return nullptr;
+}
+
 void announce(ThreadState& t, Context& c) {
     if (c.announced) return;
-    if (c.shareWith && !c.shareWith->announced) announce(t, *c.shareWith);
-    c.announced = true;
-    const records::ContextInfo info{c.id, c.shareWith ? c.shareWith->id : 0, static_cast<uint32_t>(c.api),
+    Guard guard(announceLock); // two threads must not both be the first of a group
+    const Context* sharer = sharerOf(c);
+    const records::ContextInfo info{c.id, sharer ? sharer->id : 0, static_cast<uint32_t>(c.api),
                                     static_cast<uint32_t>(c.version / 10), static_cast<uint32_t>(c.version % 10),
                                     c.profileMask, c.flags, c.config};
     records::createContext(t, info);
+    c.announced = true;
 }
 
 void announce(ThreadState& t, Window& w) {
@@ -137,18 +152,22 @@ void learnVersion(Context& c) {
 
 namespace {
 
-// A context that the nodes will be told to share with is still needed.
-bool sharerWaits(const Context& c) {
+// The last of a group that the nodes have holds the objects for those that they have not been told of yet.
+bool holdsObjects(const Context& c) {
+    bool awaited = false;
     for (uint32_t i = 0; i < contextCount; ++i) {
-        if (contexts[i]->shareWith == &c && !contexts[i]->announced && !contexts[i]->destroyed) return true;
+        const Context& other = *contexts[i];
+        if (&other == &c || other.group != c.group) continue;
+        if (nodesHave(other)) return false;
+        awaited = awaited || (!other.announced && !other.destroyed);
     }
-    return false;
+    return awaited;
 }
 
 Context* nextDueContext() {
     Guard guard(tableLock);
     for (uint32_t i = 0; i < contextCount; ++i) {
-        if (contexts[i]->freeDue && !sharerWaits(*contexts[i])) {
+        if (contexts[i]->freeDue && !holdsObjects(*contexts[i])) {
             contexts[i]->freeDue = false;
             return contexts[i];
         }
@@ -195,7 +214,6 @@ Context* addContext(void* native, Context* shareWith, wire::Api api, const wire:
     if (!c) return nullptr;
     Guard guard(tableLock);
     c->native = native;
-    c->shareWith = shareWith;
     c->api = api;
     c->config = config;
     c->id = ++lastContext;

@@ -61,7 +61,6 @@ struct Context {
     bool freeDue = false;      // the nodes have to be told
     int version = 0;           // 10 * major + minor, of the local context
     wire::WindowConfig config{};
-    Context* shareWith = nullptr;
     uint32_t flags = 0;
     uint32_t profileMask = 0;
     void* native = nullptr;    // GLXContext or EGLContext
