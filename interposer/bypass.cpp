@@ -104,19 +104,15 @@ int findOwnGl(dl_phdr_info* info, size_t, void* into) {
 } // namespace
 
 void sayBypass(const char* format, ...) {
-    char line[1024] = "say\t";
-    constexpr int kPrefix = 4;
+    constexpr char kPrefix[] = "say\t";
+    char line[1024];
     va_list arguments;
     va_start(arguments, format);
-    int n = vsnprintf(line + kPrefix, sizeof line - kPrefix - 1, format, arguments);
+    const size_t length = formatLine(line, sizeof line, kPrefix, format, arguments);
     va_end(arguments);
-    if (n < 0) return;
-    n += kPrefix;
-    if (n > static_cast<int>(sizeof line) - 2) n = sizeof line - 2;
-    line[n] = '\n';
-    if (note(line, static_cast<size_t>(n) + 1)) return;
-    line[n] = 0;
-    say("%s", line + kPrefix);
+    if (length == 0 || note(line, length)) return;
+    line[length - 1] = 0;
+    say("%s", line + sizeof kPrefix - 1);
 }
 
 const char* loadedOwnGl() {

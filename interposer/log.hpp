@@ -1,7 +1,13 @@
 // One line to the user's stderr, by write(2): no locks, no allocation, no stdio of the host program.
 #pragma once
 
+#include <cstdarg>
+#include <cstddef>
+
 namespace mural {
+
+// prefix, the formatted text as far as there is room, and a newline; no terminator. Returns the length, 0: nothing.
+size_t formatLine(char* line, size_t sizeBytes, const char* prefix, const char* format, va_list arguments);
 
 // "mural: " + text + newline. printf formats.
 void say(const char* format, ...) __attribute__((format(printf, 1, 2)));

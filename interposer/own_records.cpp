@@ -3,19 +3,37 @@
 namespace mural::records {
 
 namespace {
-// A record of fixed size from plain values.
-template <class... T> bool fixed(ThreadState& t, uint16_t opcode, T... values) {
-    constexpr uint32_t kSize = 4 + (0 + ... + (sizeof(T) == 8 ? 8 : 4));
-    std::byte* p = beginRecord(t, opcode, kSize);
-    if (!p) return false;
-    Writer w{p};
+template <class... T> constexpr uint32_t kBytesOf = (0 + ... + (sizeof(T) == 8 ? 8 : 4));
+
+template <class... T> void putAll(Writer& w, T... values) {
     const auto put = [&](auto v) {
         if constexpr (sizeof(v) == 8) w.put8(v);
         else w.put4(v);
     };
     (put(values), ...);
+}
+
+// A record of fixed size from plain values.
+template <class... T> bool fixed(ThreadState& t, uint16_t opcode, T... values) {
+    constexpr uint32_t kSize = 4 + kBytesOf<T...>;
+    std::byte* p = beginRecord(t, opcode, kSize);
+    if (!p) return false;
+    Writer w{p};
+    putAll(w, values...);
     endRecord(t, p, kSize);
     return true;
+}
+
+// Plain values, then what stands behind a pointer.
+template <class... T> void withData(ThreadState& t, uint16_t opcode, const DataArg& data, T... values) {
+    spillLarge(t, data);
+    const uint32_t size = 4 + kBytesOf<T...> + wireBytes(data);
+    std::byte* p = beginRecord(t, opcode, size);
+    if (!p) return;
+    Writer w{p};
+    putAll(w, values...);
+    w.data(data);
+    endRecord(t, p, size);
 }
 
 void withConfig(ThreadState& t, uint16_t opcode, const uint32_t* words, uint32_t count, const wire::WindowConfig& config) {
@@ -72,41 +90,13 @@ void requestBuffer(ThreadState& t, uint32_t request, GLuint buffer, uint64_t off
 }
 
 void fillWindow(ThreadState& t, GLint x, GLint y, GLsizei width, GLsizei height, uint32_t planes, const DataArg& pixels) {
-    spillLarge(t, pixels);
-    const uint32_t size = 24 + wireBytes(pixels);
-    std::byte* p = beginRecord(t, wire::kOpFillWindow, size);
-    if (!p) return;
-    Writer w{p};
-    w.put4(x);
-    w.put4(y);
-    w.put4(width);
-    w.put4(height);
-    w.put4(planes);
-    w.data(pixels);
-    endRecord(t, p, size);
+    withData(t, wire::kOpFillWindow, pixels, x, y, width, height, planes);
 }
-
 void bufferBytes(ThreadState& t, GLuint buffer, uint64_t offset, const DataArg& bytes) {
-    spillLarge(t, bytes);
-    const uint32_t size = 16 + wireBytes(bytes);
-    std::byte* p = beginRecord(t, wire::kOpBufferBytes, size);
-    if (!p) return;
-    Writer w{p};
-    w.put4(buffer);
-    w.put8(offset);
-    w.data(bytes);
-    endRecord(t, p, size);
+    withData(t, wire::kOpBufferBytes, bytes, buffer, offset);
 }
-
 void programLayout(ThreadState& t, GLuint program, const DataArg& layout) {
-    spillLarge(t, layout);
-    const uint32_t size = 8 + wireBytes(layout);
-    std::byte* p = beginRecord(t, wire::kOpProgramLayout, size);
-    if (!p) return;
-    Writer w{p};
-    w.put4(program);
-    w.data(layout);
-    endRecord(t, p, size);
+    withData(t, wire::kOpProgramLayout, layout, program);
 }
 
 namespace {

@@ -96,6 +96,17 @@ int imageDimensions(GLenum target) {
     }
 }
 
+// A cube map's level is its six faces.
+Level levelOf(GLuint texture, GLint level, GLint& target) {
+    Level size;
+    gReal.glGetTextureParameteriv(texture, GL_TEXTURE_TARGET, &target);
+    gReal.glGetTextureLevelParameteriv(texture, level, GL_TEXTURE_WIDTH, &size.width);
+    gReal.glGetTextureLevelParameteriv(texture, level, GL_TEXTURE_HEIGHT, &size.height);
+    gReal.glGetTextureLevelParameteriv(texture, level, GL_TEXTURE_DEPTH, &size.depth);
+    if (target == GL_TEXTURE_CUBE_MAP) size.depth = 6;
+    return size;
+}
+
 void readTexture(ThreadState& t, bool byName, GLuint which, GLint level, GLenum format, GLenum type, void* pixels, const Level& size, int dimensions) {
     const size_t bytes = sizes::tightBytes(format, type, size.width, size.height, size.depth);
     const void* tight = bytes ? askTexImage(t, byName, which, level, format, type, bytes) : nullptr;
@@ -148,13 +159,8 @@ void mural_glGetTextureImage(GLuint texture, GLint level, GLenum format, GLenum 
     ThreadState& t = *tThread;
     if (!capturing(t)) return gReal.glGetTextureImage(texture, level, format, type, bufSize, pixels);
     if (!raisesNothing(*t.context, [&] { gReal.glGetTextureImage(texture, level, format, type, bufSize, pixels); })) return;
-    Level size;
     GLint target = 0;
-    gReal.glGetTextureParameteriv(texture, GL_TEXTURE_TARGET, &target);
-    gReal.glGetTextureLevelParameteriv(texture, level, GL_TEXTURE_WIDTH, &size.width);
-    gReal.glGetTextureLevelParameteriv(texture, level, GL_TEXTURE_HEIGHT, &size.height);
-    gReal.glGetTextureLevelParameteriv(texture, level, GL_TEXTURE_DEPTH, &size.depth);
-    if (target == GL_TEXTURE_CUBE_MAP) size.depth = 6;
+    const Level size = levelOf(texture, level, target);
     readTexture(t, true, texture, level, format, type, pixels, size, target == GL_TEXTURE_CUBE_MAP ? 3 : imageDimensions(static_cast<GLenum>(target)));
 }
 
@@ -164,13 +170,8 @@ void mural_glGetTextureSubImage(GLuint texture, GLint level, GLint xoffset, GLin
     const auto local = [&] { gReal.glGetTextureSubImage(texture, level, xoffset, yoffset, zoffset, width, height, depth, format, type, bufSize, pixels); };
     if (!capturing(t)) return local();
     if (!raisesNothing(*t.context, local)) return;
-    Level size;
     GLint target = 0;
-    gReal.glGetTextureParameteriv(texture, GL_TEXTURE_TARGET, &target);
-    gReal.glGetTextureLevelParameteriv(texture, level, GL_TEXTURE_WIDTH, &size.width);
-    gReal.glGetTextureLevelParameteriv(texture, level, GL_TEXTURE_HEIGHT, &size.height);
-    gReal.glGetTextureLevelParameteriv(texture, level, GL_TEXTURE_DEPTH, &size.depth);
-    if (target == GL_TEXTURE_CUBE_MAP) size.depth = 6;
+    const Level size = levelOf(texture, level, target);
     const size_t whole = sizes::tightBytes(format, type, size.width, size.height, size.depth);
     const auto* tight = static_cast<const std::byte*>(whole ? askTexImage(t, true, texture, level, format, type, whole) : nullptr);
     const size_t group = sizes::groupBytes(format, type);

@@ -184,26 +184,13 @@ Result<void> EglPlatform::makeCurrent(Context* context, Surface* draw, Surface* 
 }
 
 Result<void> EglPlatform::measure() {
-    SurfaceConfig config;
-    auto surface = createSurface(config);
-    if (!surface) return surface.error();
-    auto context = createContext(ContextConfig(), nullptr);
-    if (!context) { // a driver for embedded machines
-        ContextConfig es;
-        es.api = Api::Es2;
-        es.major = 2;
-        context = createContext(es, nullptr);
-    }
-    if (!context) return context.error();
-    if (auto current = makeCurrent(context->get(), surface->get(), surface->get()); !current) return current;
-    auto info = readGlInfo(*this);
-    auto released = makeCurrent(nullptr, nullptr, nullptr);
+    auto info = measureGl(*this, true);
     if (!info) return info.error();
     display_->maxSurfaceSize = std::min(kMaxSurfaceSize, info->maxSurfaceSize);
     display_->doubleBuffered = info->doubleBuffered;
     renderer_ = info->renderer;
     version_ = info->version;
-    return released;
+    return {};
 }
 
 } // namespace

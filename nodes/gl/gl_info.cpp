@@ -82,4 +82,22 @@ Result<GlInfo> readGlInfo(Platform& platform) {
     return info;
 }
 
+Result<GlInfo> measureGl(Platform& platform, bool embedded) {
+    auto surface = platform.createSurface(SurfaceConfig());
+    if (!surface) return surface.error();
+    auto context = platform.createContext(ContextConfig(), nullptr);
+    if (!context && embedded) {
+        ContextConfig es;
+        es.api = Api::Es2;
+        es.major = 2;
+        context = platform.createContext(es, nullptr);
+    }
+    if (!context) return context.error();
+    if (auto current = platform.makeCurrent(context->get(), surface->get(), surface->get()); !current) return current.error();
+    auto info = readGlInfo(platform);
+    auto released = platform.makeCurrent(nullptr, nullptr, nullptr);
+    if (info && !released) return released.error();
+    return info;
+}
+
 } // namespace mural::gl

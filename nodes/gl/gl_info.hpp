@@ -20,6 +20,10 @@ struct GlInfo {
 // A context of the platform must be current. Fails when the driver hands out no functions.
 Result<GlInfo> readGlInfo(Platform& platform);
 
+// The same of a platform that was just opened, by a context and a surface of its own: what no query of the
+// window system tells. Leaves no context current. embedded: a driver that has only OpenGL ES will do.
+Result<GlInfo> measureGl(Platform& platform, bool embedded);
+
 // "4.5 (Compatibility Profile) Mesa 22.3.6" → 45, "OpenGL ES-CM 1.1 Mesa" → 11; 0 when there is no number.
 int parseGlVersion(const std::string& version);
 

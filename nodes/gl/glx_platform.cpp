@@ -181,18 +181,12 @@ Result<void> GlxPlatform::makeCurrent(Context* context, Surface* draw, Surface* 
 }
 
 Result<void> GlxPlatform::measure() {
-    auto surface = createSurface(SurfaceConfig());
-    if (!surface) return surface.error();
-    auto context = createContext(ContextConfig(), nullptr);
-    if (!context) return context.error();
-    if (auto current = makeCurrent(context->get(), surface->get(), surface->get()); !current) return current;
-    auto info = readGlInfo(*this);
-    auto released = makeCurrent(nullptr, nullptr, nullptr);
+    auto info = measureGl(*this, false);
     if (!info) return info.error();
     display_->maxSurfaceSize = std::min(kMaxSurfaceSize, info->maxSurfaceSize);
     renderer_ = info->renderer;
     version_ = info->version;
-    return released;
+    return {};
 }
 
 } // namespace

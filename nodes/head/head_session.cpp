@@ -61,6 +61,7 @@ HeadSession::HeadSession(SessionConfig config,
     if (!sendsPictures_) return;
     PictureOutputConfig output;
     output.saveFrames = config_.saveFrames;
+    output.lastFrame = config_.frames;
     output.toNativeWindows = config_.display == Display::App;
     output.openWindow = options_.openWindow;
     output.done = [this](uint32_t client, uint32_t frame) { frames_.pictureReleased(client, frame); };

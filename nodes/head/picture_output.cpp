@@ -91,7 +91,8 @@ void PictureOutput::show(const WindowPicture& picture) {
     const int64_t mainFrame =
         mainWindow_.swapped(picture.client, picture.window, static_cast<uint32_t>(view.width),
                             static_cast<uint32_t>(view.height));
-    const bool wanted = mainFrame > 0 && (saveFrames_.empty() || saveFrames_.contains(mainFrame));
+    const bool inTime = config_.lastFrame == 0 || mainFrame <= config_.lastFrame;
+    const bool wanted = mainFrame > 0 && inTime && (saveFrames_.empty() || saveFrames_.contains(mainFrame));
     if (wanted && file_ && !fileFailed_) save(mainFrame, view);
     if (config_.toNativeWindows && picture.nativeWindow != 0) showInWindow(picture);
     if (mainFrame > 0) {

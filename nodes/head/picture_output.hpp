@@ -25,6 +25,7 @@ namespace mural {
 
 struct PictureOutputConfig {
     std::vector<int64_t> saveFrames; // of the main window, from 1; empty: all
+    int64_t lastFrame = 0;           // none behind it is saved: some come before the program has ended; 0: no limit
     bool toNativeWindows = false;    // --display app
     // Opens the sink of one native window.
     std::function<Result<std::unique_ptr<PictureSink>>(uint64_t nativeWindow)> openWindow;

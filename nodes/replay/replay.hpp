@@ -265,6 +265,7 @@ private:
     bool ownMakeCurrent(Args& in);
     bool ownWindow(Args& in);
     bool ownSwap(Args& in, bool front);
+    void waitUntilDrawn();
     bool ownClientArrays(Args& in);
     bool ownProgramLayout(Args& in);
     bool ownBufferBytes(Args& in);

@@ -105,6 +105,21 @@ TEST(PictureSession, onlyTheAskedFramesOfTheMainWindowAreSaved) {
     EXPECT_EQ(report["savedPictures"], 3);
 }
 
+TEST(PictureSession, noFrameBehindTheLastOneIsSaved) {
+    Shown shown;
+    SessionHarness head(2);
+    addSinks(head, shown);
+    head.config.frames = 3;
+    head.start();
+    head.waitFor("ready");
+    FakeProgram program;
+    ASSERT_TRUE(program.connect(head.config.session));
+    for (uint32_t frame = 1; frame <= 6; ++frame) ASSERT_TRUE(swapFrame(program, frame));
+    const auto report = head.finish();
+    EXPECT_EQ(shown.frames["file"], (std::vector<int64_t>{1, 2, 3}));
+    EXPECT_EQ(report["savedPictures"], 3);
+}
+
 TEST(PictureSession, aSlowOutputHoldsNodesAndProgramBack) {
     Shown shown;
     SessionHarness head(2);

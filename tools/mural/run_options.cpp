@@ -192,7 +192,7 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
     command.add_option("--nodes", a.nodes, "render nodes on these hosts, separated by commas")->type_name("H1,H2");
     command.add_option("--local-nodes", a.localNodes, "render nodes on this machine (as many as tiles, at most 4)")->type_name("N");
     command.add_option("--size", a.size, "size of the wall: the program runs on a private display of this size")->type_name("WxH");
-    command.add_option("--frames", a.frames, "end the program after this many frames")->type_name("N");
+    command.add_option("--frames", a.frames, "end the program after this many frames; no later one is saved")->type_name("N");
     command.add_option("--out", a.out, "write pictures into this folder (PNG), or a video (.mp4, .mkv, .webm, …)")->type_name("DIR|VIDEO");
     command.add_option("--save", a.save, "write only these frames, counted from 1")->type_name("1,30,90");
     command.add_option("--display", a.display, "where the wall is shown: app (the program's own window), windows (one per tile), none")->type_name("WHERE");
