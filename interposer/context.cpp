@@ -283,6 +283,21 @@ void destroyWindow(uintptr_t drawable, void* display) {
     freeDestroyed(*tThread);
 }
 
+void nativeWindowEnds(uint64_t native) {
+    bool any = false;
+    {
+        Guard guard(tableLock);
+        for (Window* w = windows; w; w = w->next) {
+            if (native == 0 || w->native != native || w->config.isPbuffer) continue;
+            any = true;
+            w->freeDue = w->freeDue || w->announced;
+            w->announced = false; // GLX windows and surfaces on it may still be bound
+            if (w->drawable == w->native) w->drawable = 0;
+        }
+    }
+    if (any) freeDestroyed(*tThread);
+}
+
 void becameCurrent(Context* context, Window* draw, Window* read) {
     ThreadState& t = ownThreadState();
     Session* s = Session::get();
@@ -341,11 +356,35 @@ void beforeRecordAfterSwap(ThreadState& t, uint32_t opcode) {
     if (w && !w->sizeKnown) updateWindowSize(t, *w);
 }
 
+namespace {
+
+bool drawsToFront() {
+    GLint framebuffer = 0, buffer = 0;
+    gReal.glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer);
+    if (framebuffer != 0) return true; // the window's draw buffer can't be asked for now
+    gReal.glGetIntegerv(GL_DRAW_BUFFER, &buffer);
+    return buffer != GL_BACK && buffer != GL_BACK_LEFT && buffer != GL_NONE;
+}
+
+// A window with two buffers goes on with its back buffer as it is: nothing but a picture of what is seen.
+void showFront(ThreadState& t, Window& w) {
+    Session* s = Session::current();
+    if (!s || !s->alive()) return;
+    t.context->frontDue = drawsToFront();
+    records::frontPicture(t, w.id, s->nextFrame());
+    s->publish(t, false);
+    s->waitForCredit(s->welcome().latency);
+    refreshDrawLocally(t);
+}
+
+} // namespace
+
 void flushedWindow(ThreadState& t) {
     if (!t.context) return;
     Window* w = findWindowById(t.context->drawWindow);
-    if (!w || w->config.doubleBuffer || t.cursor == w->lastFlush) return;
-    endFrame(w);
+    if (!w || t.cursor == w->lastFlush || (w->config.doubleBuffer && !t.context->frontDue)) return;
+    if (w->config.doubleBuffer) showFront(t, *w);
+    else endFrame(w);
     w->lastFlush = t.cursor;
 }
 

@@ -42,6 +42,9 @@ struct ShareGroup {
     int persistentMaps = 0;
     bool listsMoveRaster = false;   // some display list moves the raster position by glBitmap
     NameBits listMovesRaster;       // this list does, or calls others, which may
+    static constexpr int kConditions = 64;
+    GLuint listConditions[kConditions] = {}; // queries that conditional rendering in display lists asks
+    int listConditionCount = 0;
     bool nodesWriteBuffers = false; // transform feedback or shaders have written into buffers
 };
 
@@ -69,6 +72,7 @@ struct Context {
     GLenum stashedError = 0;   // an error that we met while asking, for the program's next glGetError
     bool compilingList = false;
     GLuint compiledList = 0;   // its name
+    bool frontDue = false;     // the front buffer was drawn to since the last flush, or will be
     GLenum renderMode = GL_RENDER;
     bool firstCurrent = true;
     uint32_t drawWindow = 0, readWindow = 0; // 0: none; both stay when the context is released
@@ -109,6 +113,8 @@ Window* addWindow(uintptr_t drawable, void* display, bool isEgl, const wire::Win
 Window* findWindow(uintptr_t drawable, void* display);
 Window* findWindowById(uint32_t id);
 void destroyWindow(uintptr_t drawable, void* display);
+// The program destroys an X window. Its number may be given to another.
+void nativeWindowEnds(uint64_t native);
 
 // The driver has made `context` current with these drawables (null: none): says so in the stream.
 void becameCurrent(Context* context, Window* draw, Window* read);
@@ -119,10 +125,16 @@ void updateWindowSize(ThreadState& t, Window& w);
 void beforeRecordAfterSwap(ThreadState& t, uint32_t opcode);
 // The program shows the window's back buffer: a frame ends.
 void endFrame(Window* w);
-// glFlush or glFinish on a single-buffered window shows its picture: a frame, when something was drawn.
+// glFlush or glFinish shows what was drawn into a front buffer: a frame, when something was drawn.
 void flushedWindow(ThreadState& t);
 // Whether the driver's own swap happens too.
 bool swapLocally();
+
+// Tells the nodes the results that conditional rendering in display lists needs (commands/queries.cpp).
+void tellListConditions(ThreadState& t);
+inline void beforeList(ThreadState& t) {
+    if (t.context && t.context->group->listConditionCount > 0) [[unlikely]] tellListConditions(t);
+}
 
 // Copies what persistent mappings have changed; called before anything that may read buffers.
 void shipPersistentMaps(ThreadState& t, ShareGroup& group);

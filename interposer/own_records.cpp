@@ -74,6 +74,8 @@ void window(ThreadState& t, uint32_t window, const wire::WindowConfig& config) {
 void destroyWindow(ThreadState& t, uint32_t window) { fixed(t, wire::kOpDestroyWindow, window); }
 void swap(ThreadState& t, uint32_t window, uint32_t frame) { fixed(t, wire::kOpSwap, window, frame); }
 
+void frontPicture(ThreadState& t, uint32_t window, uint32_t frame) { fixed(t, wire::kOpFrontPicture, window, frame); }
+
 void requestPixels(ThreadState& t, uint32_t request, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type, uint32_t groupBytes) {
     fixed(t, wire::kOpRequestPixels, request, x, y, w, h, format, type, groupBytes);
 }
@@ -85,6 +87,7 @@ void requestQuery(ThreadState& t, uint32_t request, GLuint query, GLenum pname) 
 }
 void requestFinish(ThreadState& t, uint32_t request) { fixed(t, wire::kOpFinish, request); }
 void beginConditional(ThreadState& t, bool draws) { fixed(t, wire::kOpBeginConditional, uint32_t{draws}); }
+void queryKnown(ThreadState& t, GLuint query, bool passed) { fixed(t, wire::kOpQueryKnown, query, uint32_t{passed}); }
 void requestBuffer(ThreadState& t, uint32_t request, GLuint buffer, uint64_t offset, uint64_t sizeBytes) {
     fixed(t, wire::kOpRequestBuffer, request, buffer, offset, sizeBytes);
 }

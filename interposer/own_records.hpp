@@ -20,11 +20,13 @@ void makeCurrent(ThreadState& t, uint32_t context, uint32_t draw, uint32_t read)
 void window(ThreadState& t, uint32_t window, const wire::WindowConfig& config);
 void destroyWindow(ThreadState& t, uint32_t window);
 void swap(ThreadState& t, uint32_t window, uint32_t frame);
+void frontPicture(ThreadState& t, uint32_t window, uint32_t frame);
 void requestPixels(ThreadState& t, uint32_t request, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type, uint32_t groupBytes);
 void requestTexImage(ThreadState& t, uint32_t request, uint32_t byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type, uint64_t sizeBytes);
 void requestQuery(ThreadState& t, uint32_t request, GLuint query, GLenum pname);
 void requestFinish(ThreadState& t, uint32_t request);
 void beginConditional(ThreadState& t, bool draws);
+void queryKnown(ThreadState& t, GLuint query, bool passed);
 void requestBuffer(ThreadState& t, uint32_t request, GLuint buffer, uint64_t offset, uint64_t sizeBytes);
 void fillWindow(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, uint32_t planes, const DataArg& pixels);
 void bufferBytes(ThreadState& t, GLuint buffer, uint64_t offset, const DataArg& bytes);

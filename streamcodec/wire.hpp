@@ -14,7 +14,7 @@
 namespace mural::wire {
 
 constexpr uint32_t kMagic = 0x4d52534d; // "MSRM"
-constexpr uint32_t kVersion = 1;
+constexpr uint32_t kVersion = 2;
 
 // Which capture stream a packet belongs to: client (app process) and thread of it.
 // streamOf(0, 0) is the head's own stream: its payload is one HeadCommand.
@@ -42,6 +42,8 @@ enum class NodeMessage : uint32_t {
     Picture = 4,   // PictureHeader + rows, when the picture store is not shared memory
     Log = 5,       // text: one line for the user
     Bye = 6,       // json: totals (commands, GL errors, replay time)
+    WindowGone = 7, // WindowGoneMessage: the program has destroyed it; after its last FrameDone
+    Alive = 8,     // nothing: every few seconds, also while the replay is at work
 };
 
 struct MessageHeader {
@@ -85,9 +87,17 @@ struct FrameDoneMessage {
     uint32_t frame;    // number of the frame of this client, from 1
     uint32_t width;    // of the window, pixels
     uint32_t height;
-    uint32_t reserved;
+    uint32_t flags;    // kDrawnWhole
     uint64_t replayNs; // CPU time of the replay thread since the frame before
     uint64_t readbackNs;
+};
+
+// Fragment shaders write to memory: every node draws all of what they draw.
+constexpr uint32_t kDrawnWhole = 1;
+
+struct WindowGoneMessage {
+    uint32_t client;
+    uint32_t window;
 };
 
 struct PictureHeader {
@@ -123,6 +133,7 @@ enum Op : uint16_t {
     kOpFinish = 17,        // u32 request: answer when all before is done
     kOpFrontPicture = 18,  // u32 window, u32 frame: like Swap for a single-buffered window or front drawing
     kOpBeginConditional = 19, // u32 draws: glBeginConditionalRender with the result known; 0: nothing is drawn
+    kOpQueryKnown = 20,    // u32 query, u32 passed: for conditional rendering in the display list that is called next
     kOpLastOwn = 63,
 };
 constexpr uint16_t kFirstGlOpcode = 64;

@@ -35,6 +35,10 @@ template <class Call> void callWithoutDrawing(ThreadState& t, bool movesRaster, 
 void noteListCall(const ThreadState& t) {
     if (t.context && t.context->compilingList) t.context->group->listMovesRaster.set(t.context->compiledList, true);
 }
+
+bool isFront(GLenum buffer) {
+    return buffer == GL_FRONT || buffer == GL_FRONT_LEFT || buffer == GL_FRONT_RIGHT || buffer == GL_FRONT_AND_BACK || buffer == GL_LEFT || buffer == GL_RIGHT;
+}
 } // namespace
 
 extern "C" {
@@ -60,6 +64,7 @@ void mural_glEndList() {
 }
 void mural_glCallList(GLuint list) {
     ThreadState& t = *tThread;
+    beforeList(t);
     encode_glCallList(t, list);
     noteListCall(t);
     const ShareGroup* group = t.context ? t.context->group : nullptr;
@@ -68,6 +73,7 @@ void mural_glCallList(GLuint list) {
 }
 void mural_glCallLists(GLsizei n, GLenum type, const void* lists) {
     ThreadState& t = *tThread;
+    beforeList(t);
     encode_glCallLists(t, n, type, DataArg::of(lists, sizes::callListsBytes(n, type)));
     noteListCall(t);
     const bool moves = t.context && t.context->group->listsMoveRaster; // mostly text
@@ -93,6 +99,21 @@ void mural_glViewport(GLint x, GLint y, GLsizei width, GLsizei height) {
         if (Window* w = findWindowById(t.context->drawWindow)) updateWindowSize(t, *w);
     }
     encode_glViewport(t, x, y, width, height);
+}
+
+// Which buffer is drawn to matters at the next flush: what is in front is shown by it.
+void mural_glDrawBuffer(GLenum buf) {
+    ThreadState& t = *tThread;
+    encode_glDrawBuffer(t, buf);
+    gReal.glDrawBuffer(buf);
+    if (t.context && isFront(buf)) t.context->frontDue = true;
+}
+void mural_glDrawBuffers(GLsizei n, const GLenum* bufs) {
+    ThreadState& t = *tThread;
+    encode_glDrawBuffers(t, n, DataArg::of(bufs, n > 0 ? uint64_t(n) * sizeof(GLenum) : 0));
+    gReal.glDrawBuffers(n, bufs);
+    for (GLsizei i = 0; t.context && i < n && bufs; ++i)
+        if (isFront(bufs[i])) t.context->frontDue = true;
 }
 
 void mural_glFlush() {

@@ -44,6 +44,22 @@ template <class T, class Local> void intoMemory(ThreadState& t, GLuint id, GLenu
     if (raisesNothing(*t.context, local) && result(t, id, value)) *params = held<T>(value);
 }
 
+// Writes bytes into the program's own buffer, by a copy: that is allowed for immutable ones, too.
+void writeBuffer(GLuint buffer, GLintptr offset, GLsizeiptr bytes, const void* data) {
+    GLuint between = 0;
+    GLint source = 0, target = 0;
+    gReal.glGetIntegerv(GL_COPY_READ_BUFFER_BINDING, &source);
+    gReal.glGetIntegerv(GL_COPY_WRITE_BUFFER_BINDING, &target);
+    gReal.glGenBuffers(1, &between);
+    gReal.glBindBuffer(GL_COPY_READ_BUFFER, between);
+    gReal.glBufferData(GL_COPY_READ_BUFFER, bytes, data, GL_STREAM_COPY);
+    gReal.glBindBuffer(GL_COPY_WRITE_BUFFER, buffer);
+    gReal.glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, offset, bytes);
+    gReal.glBindBuffer(GL_COPY_WRITE_BUFFER, static_cast<GLuint>(target));
+    gReal.glBindBuffer(GL_COPY_READ_BUFFER, static_cast<GLuint>(source));
+    gReal.glDeleteBuffers(1, &between);
+}
+
 // The same into a buffer: the program's own context and the nodes have it then.
 template <class T, class Local> void intoBuffer(ThreadState& t, GLuint id, GLenum pname, GLuint buffer, GLintptr offset, Local local) {
     if (!raisesNothing(*t.context, local)) return;
@@ -55,7 +71,7 @@ template <class T, class Local> void intoBuffer(ThreadState& t, GLuint id, GLenu
     uint64_t value = 0;
     if (isResult(pname) && result(t, id, value)) {
         written = held<T>(value);
-        gReal.glBufferSubData(GL_QUERY_BUFFER, offset, sizeof written, &written);
+        writeBuffer(buffer, offset, sizeof written, &written);
     }
     gReal.glBindBuffer(GL_QUERY_BUFFER, static_cast<GLuint>(before));
     records::bufferBytes(t, buffer, static_cast<uint64_t>(offset), DataArg::of(&written, sizeof written));
@@ -102,11 +118,44 @@ void mural_glQueryCounter(GLuint id, GLenum target) {
     gReal.glQueryCounter(id, target);
 }
 
+} // extern "C"
+
+namespace {
+
+void tellCondition(ThreadState& t, GLuint id) {
+    uint64_t value = 0;
+    if (gReal.glIsQuery && gReal.glIsQuery(id) && result(t, id, value)) records::queryKnown(t, id, value != 0);
+}
+
+// What a list that is being compiled will ask at each call.
+void noteListCondition(ThreadState& t, GLuint id) {
+    ShareGroup& group = *t.context->group;
+    for (int i = 0; i < group.listConditionCount; ++i)
+        if (group.listConditions[i] == id) return;
+    if (group.listConditionCount < ShareGroup::kConditions) group.listConditions[group.listConditionCount++] = id;
+}
+
+} // namespace
+
+namespace mural {
+void tellListConditions(ThreadState& t) {
+    if (!capturing(t) || t.context->compilingList) return;
+    const ShareGroup& group = *t.context->group;
+    for (int i = 0; i < group.listConditionCount; ++i) tellCondition(t, group.listConditions[i]);
+}
+} // namespace mural
+
+extern "C" {
+
 // A node knows its own tiles only, and what it draws may depend on all: the whole picture's answer is
-// fetched and told to all nodes. In a display list the answer isn't there yet.
+// fetched and told to all nodes; for a display list, when it is called.
 void mural_glBeginConditionalRender(GLuint id, GLenum mode) {
     ThreadState& t = *tThread;
     if (!capturing(t) || t.context->compilingList) {
+        if (capturing(t)) {
+            noteListCondition(t, id);
+            tellCondition(t, id); // the list may be executed while it is compiled
+        }
         encode_glBeginConditionalRender(t, id, mode);
         return gReal.glBeginConditionalRender(id, mode);
     }

@@ -2,72 +2,19 @@
 // wait for the pictures that are under way, then go on unchanged. The drawable is not looked at: a read
 // of a parent or of the root window contains our windows as well, and an X id does not tell what it is.
 // Grabbing the server waits, too: afterwards nobody else's picture would get through.
-//
-// These are names of libX11, libXext and libxcb. The preloaded library stands before them, so each is
-// passed on to the next one in the program's own order; nothing is ever loaded.
-#include <dlfcn.h>
 #include <X11/Xlib.h>
 #include <xcb/shm.h>
 #include <xcb/xcb.h>
 
+#include "interposer/windows/next_function.hpp"
 #include "interposer/windows/shown.hpp"
-
-#define MURAL_SHOWN extern "C" __attribute__((visibility("default")))
-
-namespace mural {
-
-namespace {
-
-constexpr const char* kXlib = "libX11.so.6";
-constexpr const char* kXext = "libXext.so.6";
-constexpr const char* kXcb = "libxcb.so.1";
-constexpr const char* kXcbShm = "libxcb-shm.so.0";
-
-struct NextFunction {
-    const char* name;
-    const char* library;
-    void* found = nullptr;
-
-    void* get() {
-        if (void* known = __atomic_load_n(&found, __ATOMIC_RELAXED)) return known;
-        // Stored, not returned: in a tail call glibc would look from our caller's place in the order.
-        void* volatile next = dlsym(RTLD_NEXT, name);
-        if (!next) { // the program has loaded the library out of everybody's sight
-            void* handle = dlopen(library, RTLD_LAZY | RTLD_NOLOAD);
-            if (handle) next = dlsym(handle, name);
-            if (handle) dlclose(handle);
-        }
-        __atomic_store_n(&found, next, __ATOMIC_RELAXED);
-        return next;
-    }
-};
-
-// The result of a request that cannot be made because the process has no such library.
-template <class Result> struct Nothing {
-    static Result value() { return Result{}; }
-};
-template <> struct Nothing<void> {
-    static void value() {}
-};
-
-// `like` names the function itself: its type is the next one's.
-template <class Result, class... Parameters, class... Arguments>
-Result passOn(NextFunction& next, Result (*like)(Parameters...), Arguments... arguments) {
-    (void)like;
-    waitWindowsShown();
-    auto* call = reinterpret_cast<Result (*)(Parameters...)>(next.get());
-    return call ? call(arguments...) : Nothing<Result>::value();
-}
-
-} // namespace
-
-} // namespace mural
 
 using namespace mural;
 
 #define PASS_ON(library, function, ...)          \
     static NextFunction next{#function, library}; \
-    return passOn(next, function, __VA_ARGS__)
+    waitWindowsShown();                           \
+    return callNext(next, function, __VA_ARGS__)
 
 // ---- Xlib
 

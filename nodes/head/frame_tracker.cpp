@@ -56,6 +56,11 @@ void FrameTracker::clientGone(uint32_t id) {
     mainWindow_.clientGone(id);
 }
 
+void FrameTracker::windowGone(uint32_t id, uint32_t window) {
+    const std::lock_guard lock(mutex_);
+    mainWindow_.windowGone(id, window);
+}
+
 void FrameTracker::pictureHeld(uint32_t id, uint32_t frame) {
     const std::lock_guard lock(mutex_);
     client(id).held.insert(frame);
@@ -93,9 +98,7 @@ void FrameTracker::giveCredit(uint32_t id, Client& c) {
 }
 
 void FrameTracker::count(uint32_t id, const Window& window, int64_t nowNs) {
-    const int64_t number = mainWindow_.swapped(id, window.id, window.width, window.height);
-    if (number == 0) return;
-    totals_.mainFrame = number;
+    if (mainWindow_.swapped(id, window.id, window.width, window.height) == 0) return;
     if (totals_.wallFrames++ == 0) totals_.firstNs = nowNs;
     totals_.latestNs = nowNs;
 }

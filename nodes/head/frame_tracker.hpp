@@ -10,13 +10,12 @@
 #include <vector>
 
 #include "common/result.hpp"
-#include "nodes/head/main_window.hpp"
+#include "nodes/output/main_window.hpp"
 #include "streamcodec/wire.hpp"
 
 namespace mural {
 
 struct FrameTotals {
-    int64_t mainFrame = 0;   // number of the main window's latest frame
     int64_t wallFrames = 0;  // frames of the main window, over changes of that window
     int64_t firstNs = 0;     // when the first and the latest of them were finished
     int64_t latestNs = 0;
@@ -33,6 +32,8 @@ public:
     Result<void> frameDone(int node, const wire::FrameDoneMessage& message, int64_t nowNs);
     void nodeLost(int node, int64_t nowNs);
     void clientGone(uint32_t client);
+    // No frame of it comes any more from any node.
+    void windowGone(uint32_t client, uint32_t window);
 
     // A picture that is about to be shown (--display app); held before its frame is finished.
     void pictureHeld(uint32_t client, uint32_t frame);

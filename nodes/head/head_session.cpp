@@ -49,6 +49,7 @@ HeadSession::HeadSession(SessionConfig config,
                 })
     , facts_(nodes.size())
     , ready_(nodes.size(), false)
+    , refusals_(nodes.size())
     , totals_(nodes.size()) {
     NodeEvents& events = *this; // a private base: make_unique could not convert
     for (int node = 0; node < nodeCount_; ++node) {
@@ -208,16 +209,20 @@ bool HeadSession::askedToFinish(Deadline deadline) {
     return known;
 }
 
+void HeadSession::watchNodes(int64_t nowNs) {
+    nodes_.watch(nowNs, options_.silencePatienceMs * kNsPerMs);
+}
+
 void HeadSession::tick() {
     const int64_t nowNs = monotonicNowNs();
-    nodes_.watch(nowNs);
+    watchNodes(nowNs);
     programs_->reap();
     reportProgress(nowNs);
 }
 
 void HeadSession::reportProgress(int64_t nowNs) {
     const FrameTotals totals = frames_.totals();
-    const int64_t onWall = sendsPictures_ ? output_->totals().mainFrame : totals.mainFrame;
+    const int64_t onWall = sendsPictures_ ? output_->totals().wallFrames : totals.wallFrames;
     if (config_.frames > 0 && onWall >= config_.frames && !framesReached_) {
         framesReached_ = true;
         control_.send({{"event", "frames-reached"}});
@@ -227,7 +232,7 @@ void HeadSession::reportProgress(int64_t nowNs) {
     lastProgressFrame_ = totals.wallFrames;
     const auto rates = meter_.sample(nowNs, totals.wallFrames, nodes_.bytesSent());
     control_.send({{"event", "frame"},
-                   {"frame", totals.mainFrame},
+                   {"frame", totals.wallFrames},
                    {"framesPerSecond", rates.framesPerSecond},
                    {"bytesPerFrame", rates.bytesPerFrame}});
 }
@@ -261,7 +266,15 @@ Result<void> HeadSession::nodeFrameDone(int node, const wire::FrameDoneMessage& 
         totals.readbackSeconds += static_cast<double>(message.readbackNs) / static_cast<double>(kNsPerS);
         totals.cpuSeconds = totals.replaySeconds + totals.readbackSeconds; // until its Bye knows better
     }
+    if (message.flags & wire::kDrawnWhole) sayDrawnWhole();
     return frames_.frameDone(node, message, monotonicNowNs());
+}
+
+void HeadSession::sayDrawnWhole() {
+    if (drawnWhole_.exchange(true)) return;
+    control_.say(config_.tiling == Tiling::Lean
+                     ? "fragment shaders write to memory: with --tiling lean each node writes its own tile's part only; use --tiling exact"
+                     : "fragment shaders write to memory: every node draws all of what they draw; more nodes do not make that faster");
 }
 
 Result<void> HeadSession::nodePicture(int node, const wire::PictureHeader& header, ByteBuffer rows) {
@@ -271,8 +284,34 @@ Result<void> HeadSession::nodePicture(int node, const wire::PictureHeader& heade
     return done;
 }
 
+// Frames of all nodes come before: only then another window is the main one.
+Result<void> HeadSession::nodeWindowGone(int node, const wire::WindowGoneMessage& message) {
+    windowGone({message.client, message.window}, node);
+    return {};
+}
+
+void HeadSession::windowGone(const std::pair<uint32_t, uint32_t>& window, int node) {
+    {
+        const std::lock_guard lock(mutex_);
+        std::vector<bool>& said = gone_.try_emplace(window, facts_.size(), false).first->second;
+        said[static_cast<size_t>(node)] = true;
+        for (size_t i = 0; i < said.size(); ++i)
+            if (!said[i] && !totals_[i].lost) return;
+        gone_.erase(window);
+    }
+    frames_.windowGone(window.first, window.second);
+    if (output_) output_->windowGone(window.first, window.second);
+}
+
 Result<void> HeadSession::nodeLog(int node, const std::string& text) {
     std::string line = text.substr(0, text.find('\n'));
+    {
+        const std::lock_guard lock(mutex_);
+        if (!ready_[static_cast<size_t>(node)]) { // why it will not start: said when it has ended
+            refusals_[static_cast<size_t>(node)] = line;
+            return {};
+        }
+    }
     control_.say("node " + std::to_string(node) + ": " + line);
     return {};
 }
@@ -294,13 +333,22 @@ void HeadSession::nodeLost(int node, const std::string& why) {
         totals_[static_cast<size_t>(node)].lost = true;
         last = ++lostNodes_ == nodeCount_;
         starting = !serving_;
-        if (starting && startFailure_.empty()) startFailure_ = name + " did not start: " + why;
+        if (starting && startFailure_.empty()) {
+            const std::string& refusal = refusals_[static_cast<size_t>(node)];
+            startFailure_ = name + " did not start: " + (refusal.empty() ? why : refusal);
+        }
     }
     if (starting) return;
     control_.say(nodes_.link(node).describe() + " was lost: " + why + "; its tiles stay as they were");
     answers_.nodeLost(node);
     pictures_.nodeLost(node);
     frames_.nodeLost(node, monotonicNowNs());
+    std::vector<std::pair<uint32_t, uint32_t>> waiting; // for this node's word
+    {
+        const std::lock_guard lock(mutex_);
+        for (const auto& entry : gone_) waiting.push_back(entry.first);
+    }
+    for (const auto& window : waiting) windowGone(window, node);
     if (last) noNodeIsLeft();
 }
 
@@ -316,7 +364,7 @@ void HeadSession::finish() {
     finishing_ = true;
     programs_->refuseFrom("the session is ending");
     programs_->drainAll(Deadline::inMs(options_.drainPatienceMs),
-                        [this] { nodes_.watch(monotonicNowNs()); });
+                        [this] { watchNodes(monotonicNowNs()); });
     finishNodes();
     finishOutput();
     server_.reset();
@@ -339,7 +387,7 @@ void HeadSession::finishNodes() {
     // Its own thread: a node that takes nothing would hold up the watch over the nodes.
     std::thread asking([this] { nodes_.broadcast(wire::HeadCommand::Finish, {}); });
     while (!allReadersEnded()) {
-        nodes_.watch(monotonicNowNs());
+        watchNodes(monotonicNowNs());
         loseSilentNodes(beganNs, deadline.passed());
         if (deadline.passed()) break; // a reader may hang in an output: that is seen to below
         poll(nullptr, 0, kSliceMs);
@@ -381,6 +429,7 @@ SessionNumbers HeadSession::numbers() {
     result.bytesSent = nodes_.bytesSent();
     result.programs = programs_->counts();
     if (output_) result.output = output_->totals();
+    result.drawnWhole = drawnWhole_;
     if (options_.lastPicture) result.lastPicture = options_.lastPicture();
     const std::lock_guard lock(mutex_);
     result.nodes = totals_;

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -39,6 +40,7 @@ struct HeadOptions {
     int64_t readyPatienceMs = 30'000;
     int64_t drainPatienceMs = 10'000;
     int64_t byePatienceMs = 10'000; // without anything from a node
+    int64_t silencePatienceMs = 20'000; // the same, while it is asked nothing; nodes say every 4 s that they live
     int64_t endPatienceMs = 60'000; // with
     int64_t outputPatienceMs = 150'000; // video encoders hold frames back
 };
@@ -60,6 +62,7 @@ private:
     Result<void> nodeAnswer(int node, const wire::AnswerHeader& header, ByteBuffer bytes) override;
     Result<void> nodeFrameDone(int node, const wire::FrameDoneMessage& message) override;
     Result<void> nodePicture(int node, const wire::PictureHeader& header, ByteBuffer rows) override;
+    Result<void> nodeWindowGone(int node, const wire::WindowGoneMessage& message) override;
     Result<void> nodeLog(int node, const std::string& text) override;
     Result<void> nodeBye(int node, const std::string& json) override;
     void nodeLost(int node, const std::string& why) override;
@@ -74,6 +77,9 @@ private:
     void serve();
     bool askedToFinish(Deadline deadline); // waits until then for the control connection
     void tick();
+    void sayDrawnWhole(); // once
+    void watchNodes(int64_t nowNs);
+    void windowGone(const std::pair<uint32_t, uint32_t>& window, int node); // client, window
     void reportProgress(int64_t nowNs);
 
     void finish();
@@ -104,6 +110,7 @@ private:
     std::atomic<bool> finishing_{false};
     std::atomic<bool> tearingDown_{false};
     std::atomic<bool> serving_{false};
+    std::atomic<bool> drawnWhole_{false}; // a program's fragment shaders write to memory
     ProgressMeter meter_;
     int64_t lastProgressNs_ = 0;
     int64_t lastProgressFrame_ = 0;
@@ -112,7 +119,9 @@ private:
     std::mutex mutex_; // what follows
     std::vector<NodeFacts> facts_;
     std::vector<bool> ready_;
+    std::vector<std::string> refusals_; // what nodes said before they were ready
     std::vector<NodeTotals> totals_;
+    std::map<std::pair<uint32_t, uint32_t>, std::vector<bool>> gone_; // windows, and which nodes have said so
     std::string startFailure_;
     int lostNodes_ = 0;
 };

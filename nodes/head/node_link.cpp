@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace mural {
 namespace {
 
 using wire::NodeMessage;
 
-// A node that takes nothing of a write for this long is lost, unless the head itself holds it up.
-constexpr int64_t kStuckNs = 20 * kNsPerS;
+constexpr int64_t kWatchGapNs = 2 * kNsPerS; // nobody has watched for longer: the head did not run
 constexpr int64_t kWriteLimitMs = 600'000;   // the last resort behind watch()
 constexpr int64_t kReadSliceMs = 100;        // between two looks whether the node was given up
 constexpr int64_t kMessageLimitMs = 60'000;  // from a message's header to its last byte
@@ -41,7 +41,7 @@ NodeLink::NodeLink(NodePlace place,
 NodeLink::~NodeLink() { end(); }
 
 void NodeLink::startReading() {
-    lastMessageNs_ = monotonicNowNs();
+    lastMessageNs_ = heardNs_ = monotonicNowNs();
     reader_ = std::thread([this] { readMessages(); });
 }
 
@@ -53,11 +53,9 @@ std::string NodeLink::describe() const {
 
 void NodeLink::send(std::span<const std::byte> header, std::span<const std::byte> payload) {
     if (!alive()) return;
-    writingSinceNs_ = monotonicNowNs();
     const Deadline deadline = Deadline::inMs(kWriteLimitMs);
     Result<void> written = connection_->write(header, deadline);
     if (written && !payload.empty()) written = connection_->write(payload, deadline);
-    writingSinceNs_ = 0;
     if (!written) lose(written.error().message);
 }
 
@@ -73,12 +71,12 @@ void NodeLink::lose(const std::string& why) {
     if (alive_.exchange(false)) connection_->close();
 }
 
-void NodeLink::watch(int64_t nowNs) {
-    if (!alive()) return;
-    const int64_t writingSince = writingSinceNs_;
-    if (writingSince == 0 || handlingSinceNs_ != 0) return;
-    const int64_t progressNs = std::max(writingSince, lastMessageNs_.load());
-    if (nowNs - progressNs > kStuckNs) lose("it took nothing for 20 s");
+void NodeLink::watch(int64_t nowNs, int64_t patienceNs) {
+    // The whole session may have slept, the head with it: what the nodes left unsaid then is no silence.
+    if (nowNs - std::exchange(watchedNs_, nowNs) > kWatchGapNs) excusedNs_ = nowNs;
+    if (!alive() || saidBye() || inMessage_) return;
+    if (nowNs - std::max(excusedNs_, heardNs_.load()) <= patienceNs) return;
+    lose("it said nothing for " + std::to_string(patienceNs / kNsPerS) + " s (stopped, or hung in its driver?)");
 }
 
 void NodeLink::end() {
@@ -92,7 +90,10 @@ void NodeLink::readMessages() {
         wire::MessageHeader header{};
         const Result<bool> got = readHeader(header);
         if (got && !got.value()) continue;
+        inMessage_ = true;
         Result<void> done = got ? readMessage(header) : Result<void>(got.error());
+        heardNs_ = monotonicNowNs();
+        inMessage_ = false;
         if (!done) lose(done.error().message);
     }
     if (!saidBye()) {
@@ -131,6 +132,15 @@ Result<void> NodeLink::readMessage(const wire::MessageHeader& header) {
         if (auto got = readStruct(message); !got) return got;
         return handle([&] { return events_.nodeFrameDone(place_.node, message); });
     }
+    case NodeMessage::WindowGone: {
+        wire::WindowGoneMessage message{};
+        if (header.sizeBytes != sizeof(message)) break;
+        if (auto got = readStruct(message); !got) return got;
+        return handle([&] { return events_.nodeWindowGone(place_.node, message); });
+    }
+    case NodeMessage::Alive:
+        if (header.sizeBytes != 0) break;
+        return {};
     }
     return Error{"it sent a message that makes no sense (type " + std::to_string(header.type) + ", " +
                  std::to_string(header.sizeBytes) + " bytes); is it of another build?"};

@@ -27,6 +27,7 @@ public:
     virtual Result<void> nodeAnswer(int node, const wire::AnswerHeader& header, ByteBuffer bytes) = 0;
     virtual Result<void> nodeFrameDone(int node, const wire::FrameDoneMessage& message) = 0;
     virtual Result<void> nodePicture(int node, const wire::PictureHeader& header, ByteBuffer rows) = 0;
+    virtual Result<void> nodeWindowGone(int node, const wire::WindowGoneMessage& message) = 0;
     virtual Result<void> nodeLog(int node, const std::string& text) = 0;
     virtual Result<void> nodeBye(int node, const std::string& json) = 0;
     // The last call for a node that did not say Bye; everything it had sent was handed on before.
@@ -55,8 +56,9 @@ public:
 
     // Ends the connection; the reader thread then reports the first reason given.
     void lose(const std::string& why);
-    // Called now and then: loses a node whose process has ended or that takes nothing for too long.
-    void watch(int64_t nowNs);
+    // Called often: loses a node that says nothing for so long. Nodes say that they are alive even while
+    // they draw (nodes/node/heartbeat.hpp); one that does not is stopped or hangs.
+    void watch(int64_t nowNs, int64_t patienceNs);
 
     [[nodiscard]] bool alive() const { return alive_.load(std::memory_order_acquire); }
     [[nodiscard]] bool saidBye() const { return saidBye_.load(std::memory_order_acquire); }
@@ -92,9 +94,12 @@ private:
     std::atomic<bool> alive_{true};
     std::atomic<bool> saidBye_{false};
     std::atomic<bool> readerEnded_{false};
-    std::atomic<int64_t> writingSinceNs_{0};  // 0: no write is in progress
+    int64_t watchedNs_ = 0; // the last watch()
+    int64_t excusedNs_ = 0; // silence before does not count
+    std::atomic<bool> inMessage_{false};      // the reader is between a message's header and its end
+    std::atomic<int64_t> heardNs_{0};         // when any message had been read
     std::atomic<int64_t> handlingSinceNs_{0}; // 0: the reader waits for the node, not the node for us
-    std::atomic<int64_t> lastMessageNs_{0};   // when the last message had been handled
+    std::atomic<int64_t> lastMessageNs_{0};   // when the last one but Alive had been handled
     std::mutex reasonMutex_;
     std::string reason_;
 };

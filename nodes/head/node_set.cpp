@@ -76,8 +76,8 @@ int NodeSet::livingCount() const {
         std::ranges::count_if(links_, [](const auto& link) { return link->alive(); }));
 }
 
-void NodeSet::watch(int64_t nowNs) {
-    for (auto& link : links_) link->watch(nowNs);
+void NodeSet::watch(int64_t nowNs, int64_t patienceNs) {
+    for (auto& link : links_) link->watch(nowNs, patienceNs);
 }
 
 void NodeSet::loseAll(const std::string& why) {

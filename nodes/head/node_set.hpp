@@ -30,7 +30,7 @@ public:
     [[nodiscard]] int livingCount() const;
     NodeLink& link(int node) { return *links_[static_cast<size_t>(node)]; }
 
-    void watch(int64_t nowNs);
+    void watch(int64_t nowNs, int64_t patienceNs);
     void loseAll(const std::string& why); // those that have not said Bye
     void end();
 

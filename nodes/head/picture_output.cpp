@@ -35,6 +35,13 @@ void PictureOutput::add(WindowPicture picture) {
     changed_.notify_all();
 }
 
+void PictureOutput::windowGone(uint32_t client, uint32_t window) {
+    WindowPicture last;
+    last.client = client;
+    last.window = window;
+    add(std::move(last));
+}
+
 void PictureOutput::clientGone(uint32_t client) {
     WindowPicture last;
     last.client = client;
@@ -72,7 +79,7 @@ void PictureOutput::work() {
         changed_.notify_all();
         lock.unlock();
         if (picture.picture) show(picture);
-        else forget(picture.client);
+        else forget(picture);
         lock.lock();
     }
     queue_.clear();
@@ -88,16 +95,16 @@ void PictureOutput::work() {
 
 void PictureOutput::show(const WindowPicture& picture) {
     const Picture view = picture.picture->view();
-    const int64_t mainFrame =
+    const int64_t wallFrame =
         mainWindow_.swapped(picture.client, picture.window, static_cast<uint32_t>(view.width),
                             static_cast<uint32_t>(view.height));
-    const bool inTime = config_.lastFrame == 0 || mainFrame <= config_.lastFrame;
-    const bool wanted = mainFrame > 0 && inTime && (saveFrames_.empty() || saveFrames_.contains(mainFrame));
-    if (wanted && file_ && !fileFailed_) save(mainFrame, view);
+    const bool inTime = config_.lastFrame == 0 || wallFrame <= config_.lastFrame;
+    const bool wanted = wallFrame > 0 && inTime && (saveFrames_.empty() || saveFrames_.contains(wallFrame));
+    if (wanted && file_ && !fileFailed_) save(wallFrame, view);
     if (config_.toNativeWindows && picture.nativeWindow != 0) showInWindow(picture);
-    if (mainFrame > 0) {
+    if (wallFrame > 0) {
         const std::lock_guard lock(mutex_);
-        totals_.mainFrame = mainFrame;
+        totals_.wallFrames = wallFrame;
     }
     config_.done(picture.client, picture.frame);
 }
@@ -116,6 +123,7 @@ void PictureOutput::save(int64_t frame, const Picture& picture) {
 
 void PictureOutput::showInWindow(const WindowPicture& picture) {
     const WindowKey key{picture.client, picture.nativeWindow};
+    nativeOf_[{picture.client, picture.window}] = picture.nativeWindow;
     auto found = windows_.find(key);
     if (found == windows_.end()) {
         if (windows_.size() >= kMostWindows) windows_.clear(); // mostly closed ones by then
@@ -129,8 +137,19 @@ void PictureOutput::showInWindow(const WindowPicture& picture) {
     if (!shown && complained_.insert(key).second) config_.say(shown.error().message);
 }
 
-void PictureOutput::forget(uint32_t client) {
+void PictureOutput::forget(const WindowPicture& gone) {
+    const uint32_t client = gone.client;
+    if (gone.window != 0) {
+        mainWindow_.windowGone(client, gone.window);
+        const auto native = nativeOf_.find({client, gone.window});
+        if (native == nativeOf_.end()) return;
+        windows_.erase({client, native->second});
+        complained_.erase({client, native->second});
+        nativeOf_.erase(native);
+        return;
+    }
     mainWindow_.clientGone(client);
+    std::erase_if(nativeOf_, [&](const auto& entry) { return entry.first.first == client; });
     std::erase_if(windows_, [&](const auto& entry) { return entry.first.first == client; });
     std::erase_if(complained_, [&](const WindowKey& key) { return key.first == client; });
 }

@@ -17,14 +17,14 @@
 #include <vector>
 
 #include "common/clock.hpp"
-#include "nodes/head/main_window.hpp"
+#include "nodes/output/main_window.hpp"
 #include "nodes/head/picture_assembler.hpp"
 #include "nodes/output/picture_sink.hpp"
 
 namespace mural {
 
 struct PictureOutputConfig {
-    std::vector<int64_t> saveFrames; // of the main window, from 1; empty: all
+    std::vector<int64_t> saveFrames; // of the wall, from 1; empty: all
     int64_t lastFrame = 0;           // none behind it is saved: some come before the program has ended; 0: no limit
     bool toNativeWindows = false;    // --display app
     // Opens the sink of one native window.
@@ -35,12 +35,12 @@ struct PictureOutputConfig {
 };
 
 struct OutputTotals {
-    int64_t mainFrame = 0;   // number of the main window's latest frame that is out
+    int64_t wallFrames = 0;  // of the main window that are out
     int64_t savedPictures = 0;
     int64_t lastSavedFrame = 0;
 };
 
-// add(), waitForRoom() and clientGone() from any thread.
+// add(), waitForRoom(), clientGone() and windowGone() from any thread.
 class PictureOutput {
 public:
     // file: null when nothing is saved. It is called by the output's thread only.
@@ -50,6 +50,7 @@ public:
     void add(WindowPicture picture); // never blocks
     void waitForRoom();              // until the queue is short again, or the output ends
     void clientGone(uint32_t client);
+    void windowGone(uint32_t client, uint32_t window); // after its last picture
 
     // Writes what is queued and completes the files; false when the deadline passed before that.
     bool finish(Deadline deadline);
@@ -63,7 +64,7 @@ private:
     void show(const WindowPicture& picture);
     void save(int64_t frame, const Picture& picture);
     void showInWindow(const WindowPicture& picture);
-    void forget(uint32_t client);
+    void forget(const WindowPicture& gone);
 
     const PictureOutputConfig config_;
     const std::set<int64_t> saveFrames_;
@@ -71,11 +72,12 @@ private:
     bool fileFailed_ = false;
     MainWindow mainWindow_;
     std::map<WindowKey, std::unique_ptr<PictureSink>> windows_; // null: it could not be opened
+    std::map<std::pair<uint32_t, uint32_t>, uint64_t> nativeOf_; // client, window: of those shown
     std::set<WindowKey> complained_;
 
     mutable std::mutex mutex_; // what follows
     std::condition_variable changed_;
-    std::deque<WindowPicture> queue_; // a null picture: the client is gone
+    std::deque<WindowPicture> queue_; // a null picture: the window, or (0) the client is gone
     OutputTotals totals_;
     bool finishing_ = false;
     bool dropped_ = false;

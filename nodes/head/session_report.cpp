@@ -52,6 +52,7 @@ Json reportOf(const SessionNumbers& n) {
         {"verifiedPixels", n.programs.verifiedPixels},
         {"differingPixels", n.programs.differingPixels},
         {"largestDifference", n.programs.largestDifference},
+        {"drawnWhole", n.drawnWhole},
         {"callsUnsupported", n.programs.callsUnsupported},
         {"savedPictures", n.output.savedPictures},
         {"lastPicture", n.lastPicture},

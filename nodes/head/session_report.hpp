@@ -31,6 +31,7 @@ struct SessionNumbers {
     CaptureCounts programs;
     OutputTotals output;
     std::string lastPicture; // path
+    bool drawnWhole = false; // fragment shaders write to memory
     std::vector<NodeTotals> nodes;
 };
 

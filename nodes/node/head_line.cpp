@@ -52,6 +52,16 @@ Result<wire::PacketHeader> HeadLine::next(std::span<const std::byte>& payload) {
 }
 
 void HeadLine::send(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b) {
+    const std::lock_guard lock(sending_);
+    sendLocked(type, a, b);
+}
+
+void HeadLine::sendIfFree(wire::NodeMessage type) {
+    const std::unique_lock lock(sending_, std::try_to_lock);
+    if (lock) sendLocked(type, {}, {});
+}
+
+void HeadLine::sendLocked(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b) {
     const wire::MessageHeader header{static_cast<uint32_t>(type), static_cast<uint32_t>(a.size() + b.size())};
     for (const auto part : {std::as_bytes(std::span(&header, 1)), a, b}) {
         if (broken_ || part.empty()) continue;

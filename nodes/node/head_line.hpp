@@ -1,7 +1,9 @@
 // The node's end of the connection to the head: messages out, packets in.
 #pragma once
 
+#include <atomic>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,17 +21,21 @@ public:
     // The next packet; its payload lives until the next call. Error: the head is gone.
     Result<wire::PacketHeader> next(std::span<const std::byte>& payload);
 
-    // One message of up to three parts, sent at once. Errors end the node: `broken()`.
+    // One message of up to three parts, sent at once, from any thread. Errors end the node: `broken()`.
     void send(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b = {});
+    // A message without contents; nothing when another is under way.
+    void sendIfFree(wire::NodeMessage type);
     void sendText(wire::NodeMessage type, const std::string& text);
     [[nodiscard]] bool broken() const { return broken_; }
 
 private:
+    void sendLocked(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b);
     explicit HeadLine(std::unique_ptr<Connection> connection) : connection_(std::move(connection)) {}
 
     std::unique_ptr<Connection> connection_;
     std::vector<std::byte> payload_;
-    bool broken_ = false;
+    std::mutex sending_;
+    std::atomic<bool> broken_{false};
 };
 
 } // namespace mural

@@ -11,6 +11,7 @@
 
 #include "nodes/gl/gl_probe.hpp"
 #include "nodes/node/head_line.hpp"
+#include "nodes/node/heartbeat.hpp"
 #include "nodes/node/tile_windows.hpp"
 #include "nodes/placement/placement.hpp"
 #include "nodes/replay/replay.hpp"
@@ -52,20 +53,26 @@ public:
     explicit Node(std::unique_ptr<HeadLine> line) : line_(std::move(line)) {}
 
     int run() {
+        Heartbeat heartbeat(*line_);
         while (!finished_ && !line_->broken()) {
             std::span<const std::byte> payload;
             const auto header = line_->next(payload);
             if (!header) return finished_ ? 0 : 1; // the head is gone: nothing is left to do
-            if (header.value().stream == 0) {
-                if (!headCommand(payload)) return 1;
-            } else if (replay_ && !replay_->packet(header.value().stream, payload)) {
-                line_->sendText(wire::NodeMessage::Log, "a broken packet of a program's stream was dropped");
-            }
+            heartbeat.begins();
+            if (!take(header.value(), payload)) return 1;
+            heartbeat.ended();
         }
         return line_->broken() ? 1 : 0;
     }
 
 private:
+    bool take(const wire::PacketHeader& header, std::span<const std::byte> payload) {
+        if (header.stream == 0) return headCommand(payload);
+        if (replay_ && !replay_->packet(header.stream, payload))
+            line_->sendText(wire::NodeMessage::Log, "a broken packet of a program's stream was dropped");
+        return true;
+    }
+
     bool headCommand(std::span<const std::byte> payload) {
         uint32_t command = 0;
         if (payload.size() < 4) return false;
@@ -78,6 +85,7 @@ private:
             if (rest.size() < 4) return false;
             std::memcpy(&client, rest.data(), 4);
             if (replay_) replay_->clientGone(client);
+            if (windows_) windows_->clientGone(client);
             return true;
         }
         case wire::HeadCommand::Finish:
@@ -115,6 +123,7 @@ private:
             line_->send(wire::NodeMessage::Answer, std::as_bytes(std::span(&h, 1)), bytes);
         };
         outputs.frameDone = [this](const ReplayOutputs::Frame& f) { frameDone(f); };
+        outputs.windowGone = [this](uint32_t client, uint32_t window) { windowGone(client, window); };
         outputs.log = [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); };
         replay_ = std::make_unique<Replay>(std::move(*platform), config, std::move(outputs));
         lastCpuNs_ = threadCpuNs();
@@ -123,8 +132,8 @@ private:
     }
 
     bool fail(const std::string& why) {
-        line_->sendText(wire::NodeMessage::Log, why);
-        std::cerr << "mural node: " << why << '\n';
+        line_->sendText(wire::NodeMessage::Log, why); // the head says it
+        if (line_->broken()) std::cerr << "mural node: " << why << '\n';
         return false;
     }
 
@@ -163,10 +172,17 @@ private:
         done.frame = f.frame;
         done.width = f.config.width;
         done.height = f.config.height;
+        done.flags = f.drawnWhole ? wire::kDrawnWhole : 0;
         done.replayNs = replayedNs - lastCpuNs_;
         lastCpuNs_ = threadCpuNs();
         done.readbackNs = lastCpuNs_ - replayedNs;
         line_->send(wire::NodeMessage::FrameDone, std::as_bytes(std::span(&done, 1)));
+    }
+
+    void windowGone(uint32_t client, uint32_t window) {
+        if (windows_) windows_->windowGone(client, window);
+        const wire::WindowGoneMessage gone{client, window};
+        line_->send(wire::NodeMessage::WindowGone, std::as_bytes(std::span(&gone, 1)));
     }
 
     void sendPicture(const ReplayOutputs::Frame& f, const std::byte* pixels) {

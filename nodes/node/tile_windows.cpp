@@ -39,9 +39,7 @@ Result<void> TileWindows::reopen(int width, int height) {
 
 Result<void> TileWindows::show(const ReplayOutputs::Frame& f) {
     const auto width = static_cast<int>(f.config.width), height = static_cast<int>(f.config.height);
-    const uint64_t window = uint64_t{f.client} << 32 | f.window;
-    if (window != mainWindow_ && int64_t{width} * height <= int64_t{width_} * height_) return {};
-    mainWindow_ = window;
+    if (mainWindow_.swapped(f.client, f.window, f.config.width, f.config.height) == 0) return {};
     if (!windows_ || width != width_ || height != height_) {
         const auto opened = reopen(width, height);
         if (!opened) return opened;

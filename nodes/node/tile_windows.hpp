@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "nodes/output/main_window.hpp"
 #include "nodes/output/wall_windows.hpp"
 #include "nodes/replay/replay.hpp"
 #include "nodes/session/session_config.hpp"
@@ -15,6 +16,9 @@ public:
     // Shows the tiles of the main window (the largest that swaps); others are not on the wall.
     Result<void> show(const ReplayOutputs::Frame& frame);
 
+    void windowGone(uint32_t client, uint32_t window) { mainWindow_.windowGone(client, window); }
+    void clientGone(uint32_t client) { mainWindow_.clientGone(client); }
+
 private:
     explicit TileWindows(const NodeSetup& setup) : setup_(setup) {}
     Result<void> reopen(int width, int height);
@@ -22,7 +26,7 @@ private:
     NodeSetup setup_;
     std::unique_ptr<WallWindows> windows_;
     int width_ = 0, height_ = 0;
-    uint64_t mainWindow_ = 0; // client << 32 | window
+    MainWindow mainWindow_;
     std::vector<PixelViewport> tiles_;
 };
 

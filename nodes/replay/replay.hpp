@@ -58,9 +58,11 @@ struct ReplayOutputs {
         uint32_t client, window, frame;
         wire::WindowConfig config;
         PixelViewport region; // this node's part
+        bool drawnWhole;      // fragment shaders write to memory: not cut to the part (lean: cut, and wrong)
         std::function<const std::byte*(const PixelViewport&)> pixels;
     };
     std::function<void(const Frame&)> frameDone;
+    std::function<void(uint32_t client, uint32_t window)> windowGone; // the program has destroyed it
     std::function<void(const std::string&)> log;
 };
 
@@ -149,6 +151,12 @@ private:
         PixelViewport box;
     };
     static constexpr int kViewports = 16;
+    // Of the program; alpha of a window that hides its own is never written.
+    struct ColorMasks {
+        std::array<std::array<GLboolean, 4>, 8> buffers;
+        bool differ = false; // indexed commands were used
+        ColorMasks() { buffers.fill({GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE}); }
+    };
     struct SavedAttributes {
         GLbitfield mask;
         std::array<Scissor, kViewports> scissors;
@@ -156,6 +164,7 @@ private:
         std::array<std::array<GLfloat, 4>, kViewports> viewports;
         GLenum drawBuffer0, readBuffer0;
         GLuint program;
+        ColorMasks colorMasks;
     };
     struct PixelUnpack {
         std::array<GLint, 8> values{}; // in the order of kUnpackNames; alignment is made 4
@@ -175,6 +184,7 @@ private:
     struct QueryInfo {
         GLenum target = 0;
         std::vector<QueryPiece> pieces; // the first is the program's own query
+        bool passed = true;             // as the program has told: of the whole picture
     };
     // Pixels of the window that a copy will read, put together from all nodes (lean).
     struct Gathered {
@@ -209,6 +219,7 @@ private:
         bool scissorsDiffer = false;                     // indexed commands were used
         std::array<std::array<GLfloat, 4>, kViewports> viewports{};
         bool viewportsDiffer = false;
+        ColorMasks colorMasks;
         GLenum drawBuffer0 = 0, readBuffer0 = 0;         // of the default framebuffer, the program's names
         PixelUnpack unpack;
         std::array<GLint, 8> pack{};
@@ -269,6 +280,8 @@ private:
     bool ownClientArrays(Args& in);
     bool ownProgramLayout(Args& in);
     bool ownBufferBytes(Args& in);
+    bool onlyCopiesWrite(GLenum target);
+    void copyIntoBuffer(GLenum target, uint64_t offset, std::span<const std::byte> bytes);
     bool ownFillWindow(Args& in);
     void fillDepthStencil(const PixelViewport& r, GLbitfield plane, const void* pixels);
     void setArrayPointer(const client_arrays::ArrayRecord& a, const std::byte* first);
@@ -278,12 +291,14 @@ private:
     bool ownRequestBuffer(Args& in);
     void answerBytes(uint32_t request, wire::AnswerKind kind, std::span<const std::byte> bytes);
     const std::byte* readRegion(const PixelViewport& r, GLenum format, GLenum type, size_t bytes);
-    const std::byte* readShown(Window& w, const PixelViewport& r);
+    const std::byte* readShown(Window& w, const PixelViewport& r, bool front);
     const std::byte* readResolved(const PixelViewport& r, GLenum format, size_t bytes);
     void packTightly(bool tight);
     void withPlainTransfer(const std::function<void()>& call);
     void fillColor(const PixelViewport& r, const void* rgba);
     // replay_fill.cpp
+    const GLfloat* depthAsFloats(const Window& w, const PixelViewport& r, const void* pixels);
+    std::vector<GLfloat> depths_;
     gl::Context* fillerOf(Window& w);
     void fillByOtherContext(const PixelViewport& r, GLbitfield plane, const void* pixels);
     // replay_release.cpp
@@ -294,6 +309,8 @@ private:
     // replay_queries.cpp
     bool ownRequestQuery(Args& in);
     bool ownBeginConditional(Args& in);
+    bool ownQueryKnown(Args& in);
+    void beginConditional(bool draws);
     [[nodiscard]] bool drawsWhole() const;
     void cutQueries();
     void dropPieces(QueryInfo& query);
@@ -304,7 +321,12 @@ private:
     void programChanged();
     void programLinked(GLuint ours);
     bool writesMemory(GLuint ours);
-    bool saidMemoryWrites_ = false;
+    bool drawnWhole_ = false; // since the last frame, fragment shaders that write to memory were current
+    // replay_color_masks.cpp
+    [[nodiscard]] bool hidesAlpha() const;
+    void applyColorMasks();
+    void makeOpaque();
+    bool alphaHides_ = false; // in any window
     // replay_accum.cpp
     bool accumulatesHere();
     void forAccumulatedRows(const std::function<void(int16_t*, const PixelViewport&)>& call);

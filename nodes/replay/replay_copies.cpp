@@ -128,6 +128,7 @@ void Replay::glBlitFramebuffer(GLint srcX0, GLint srcY0, GLint srcX1, GLint srcY
                                  moved(dstY1, o.y), mask, filter);
         });
     });
+    if ((mask & GL_COLOR_BUFFER_BIT) && hidesAlpha()) makeOpaque();
 }
 
 // By names: the same as with both bound, which is how it is done.

@@ -4,6 +4,20 @@
 
 namespace mural {
 
+// Depth comes as 32 bits that hold the window's, and goes back through a float in any case: the nearest one
+// gives all bits back (measured with Mesa, all of 2^19 values), while Mesa's own way from 32 bits cuts some off.
+const GLfloat* Replay::depthAsFloats(const Window& w, const PixelViewport& r, const void* pixels) {
+    const int bits = w.config.depth == 0 || w.config.depth > 32 ? 32 : w.config.depth;
+    const double largest = static_cast<double>((uint64_t{1} << bits) - 1);
+    depths_.resize(static_cast<size_t>(r.area()));
+    for (size_t i = 0; i < depths_.size(); ++i) {
+        uint32_t value = 0;
+        std::memcpy(&value, static_cast<const std::byte*>(pixels) + 4 * i, 4);
+        depths_[i] = static_cast<GLfloat>(static_cast<double>(value >> (32 - bits)) / largest);
+    }
+    return depths_.data();
+}
+
 gl::Context* Replay::fillerOf(Window& w) {
     if (w.filler) return w.filler.get();
     gl::ContextConfig wish;
@@ -30,7 +44,8 @@ void Replay::fillByOtherContext(const PixelViewport& r, GLbitfield plane, const 
         gl.glDepthFunc(GL_ALWAYS);
         gl.glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
         gl.glWindowPos2i(r.x, r.y);
-        gl.glDrawPixels(r.w, r.h, depth ? GL_DEPTH_COMPONENT : GL_STENCIL_INDEX, depth ? GL_UNSIGNED_INT : GL_UNSIGNED_BYTE, pixels);
+        if (depth) gl.glDrawPixels(r.w, r.h, GL_DEPTH_COMPONENT, GL_FLOAT, depthAsFloats(w, r, pixels));
+        else gl.glDrawPixels(r.w, r.h, GL_STENCIL_INDEX, GL_UNSIGNED_BYTE, pixels);
         gl.glFlush();
     }
     (void)platform_->makeCurrent(c_->context.get(), boundDraw_ ? boundDraw_->surface.get() : nullptr, w.surface.get());

@@ -56,9 +56,7 @@ void Replay::programChanged() {
     const bool writes = writesMemory(static_cast<GLuint>(fragment));
     if (writes == std::exchange(c_->memoryWritten, writes)) return;
     applyScissors();
-    if (!writes || std::exchange(saidMemoryWrites_, true)) return;
-    if (config_.lean) out_.log("fragment shaders write to memory: with --tiling lean each node counts its own tile only; use --tiling exact");
-    else out_.log("fragment shaders write to memory: every node draws all of what they draw");
+    drawnWhole_ = drawnWhole_ || writes;
 }
 
 } // namespace mural

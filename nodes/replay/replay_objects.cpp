@@ -217,7 +217,11 @@ bool Replay::splitsLists(uint16_t opcode, std::span<const std::byte> arguments) 
     case op::glDrawPixels:
     case op::glCopyPixels:
     case op::glAccum:
+    case op::glBeginConditionalRender:
+    case op::glEndConditionalRender:
     case op::glUseProgram: return true;
+    case op::glColorMask:
+    case op::glColorMaski: return alphaHides_;
     case op::glViewport:
     case op::glViewportArrayv:
     case op::glViewportIndexedf:

@@ -52,6 +52,7 @@ bool Replay::own(uint16_t opcode, Args& in) {
     case wire::kOpRequestTexImage: return ownRequestTexImage(in);
     case wire::kOpRequestQuery: return ownRequestQuery(in);
     case wire::kOpBeginConditional: return ownBeginConditional(in);
+    case wire::kOpQueryKnown: return ownQueryKnown(in);
     case wire::kOpRequestBuffer: return ownRequestBuffer(in);
     case wire::kOpFillWindow: return ownFillWindow(in);
     case wire::kOpProgramLayout: return ownProgramLayout(in);
@@ -167,6 +168,7 @@ bool Replay::ownWindow(Args& in) {
         out_.log("no framebuffer like the program's window (" + std::to_string(width) + "x" + std::to_string(height) + ") can be made: " + made.error().message);
         return true;
     }
+    alphaHides_ = alphaHides_ || (*made)->hiddenAlpha();
     const bool bound = &w == boundDraw_ || &w == boundRead_;
     std::unique_ptr<gl::Surface> old = std::move(w.surface);
     w.surface = std::move(*made);
@@ -193,7 +195,7 @@ void Replay::waitUntilDrawn() {
     if (!done && gl.glFinish) gl.glFinish();
 }
 
-bool Replay::ownSwap(Args& in, bool) {
+bool Replay::ownSwap(Args& in, bool front) {
     const auto window = in.get<uint32_t>(), frame = in.get<uint32_t>();
     if (!in.ok()) return false;
     auto& windows = clients_[wire::clientOf(stream_)].windows;
@@ -202,15 +204,16 @@ bool Replay::ownSwap(Args& in, bool) {
     f.client = wire::clientOf(stream_);
     f.window = window;
     f.frame = frame;
+    f.drawnWhole = std::exchange(drawnWhole_, bound_ && bound_->memoryWritten);
     ++counts_.frames;
     if (it != windows.end()) {
         Window& w = *it->second;
         f.config = w.config;
         f.region = w.region;
         // The thread that swaps need not be the one that has drawn: GLX takes any window.
-        if (bound_ && &w == boundDraw_ && w.surface) f.pixels = [this, &w](const PixelViewport& r) {
+        if (bound_ && &w == boundDraw_ && w.surface) f.pixels = [this, &w, front](const PixelViewport& r) {
             ContextState* const own = std::exchange(c_, bound_);
-            const std::byte* pixels = readShown(w, r);
+            const std::byte* pixels = readShown(w, r, front);
             c_ = own;
             return pixels;
         };
@@ -324,9 +327,31 @@ bool Replay::ownBufferBytes(Args& in) {
     GLint before = 0;
     gl.glGetIntegerv(copyTarget ? GL_COPY_WRITE_BUFFER_BINDING : GL_ARRAY_BUFFER_BINDING, &before);
     gl.glBindBuffer(target, ours);
-    gl.glBufferSubData(target, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes.size()), bytes.pointer());
+    if (copyTarget && onlyCopiesWrite(target)) copyIntoBuffer(target, offset, bytes.span());
+    else gl.glBufferSubData(target, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes.size()), bytes.pointer());
     gl.glBindBuffer(target, static_cast<GLuint>(before));
     return true;
+}
+
+// Immutable storage that the program may not write: GL itself may, as by a query's result.
+bool Replay::onlyCopiesWrite(GLenum target) {
+    if (!gl.glBufferStorage || !gl.glGetBufferParameteriv || !gl.glCopyBufferSubData || c_->api != wire::Api::Desktop || c_->version < 44) return false;
+    GLint immutable = 0, flags = 0;
+    gl.glGetBufferParameteriv(target, GL_BUFFER_IMMUTABLE_STORAGE, &immutable);
+    if (immutable) gl.glGetBufferParameteriv(target, GL_BUFFER_STORAGE_FLAGS, &flags);
+    return immutable && !(flags & GL_DYNAMIC_STORAGE_BIT);
+}
+
+void Replay::copyIntoBuffer(GLenum target, uint64_t offset, std::span<const std::byte> bytes) {
+    GLint before = 0;
+    GLuint between = 0;
+    gl.glGetIntegerv(GL_COPY_READ_BUFFER_BINDING, &before);
+    gl.glGenBuffers(1, &between);
+    gl.glBindBuffer(GL_COPY_READ_BUFFER, between);
+    gl.glBufferData(GL_COPY_READ_BUFFER, static_cast<GLsizeiptr>(bytes.size()), bytes.data(), GL_STREAM_COPY);
+    gl.glCopyBufferSubData(GL_COPY_READ_BUFFER, target, 0, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes.size()));
+    gl.glBindBuffer(GL_COPY_READ_BUFFER, static_cast<GLuint>(before));
+    gl.glDeleteBuffers(1, &between);
 }
 
 } // namespace mural

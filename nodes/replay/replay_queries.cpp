@@ -129,13 +129,40 @@ bool Replay::ownRequestQuery(Args& in) {
 
 // ---- conditional rendering, with a result that is known: draws are left out by a query that counts nothing
 
+namespace {
+bool isInverted(GLenum mode) {
+    return mode == GL_QUERY_WAIT_INVERTED || mode == GL_QUERY_NO_WAIT_INVERTED || mode == GL_QUERY_BY_REGION_WAIT_INVERTED ||
+           mode == GL_QUERY_BY_REGION_NO_WAIT_INVERTED;
+}
+} // namespace
+
+bool Replay::ownQueryKnown(Args& in) {
+    const auto query = in.get<uint32_t>(), passed = in.get<uint32_t>();
+    if (!in.ok()) return false;
+    const auto info = c_->queries.find(query);
+    if (info != c_->queries.end()) info->second.passed = passed != 0;
+    return true;
+}
+
+// Out of a display list: the program has told the result ahead of the call.
+void Replay::glBeginConditionalRender(GLuint id, GLenum mode) {
+    const auto info = c_->queries.find(id);
+    if (info == c_->queries.end()) return; // an error, and nothing is left out
+    beginConditional(info->second.passed != isInverted(mode));
+}
+
 bool Replay::ownBeginConditional(Args& in) {
     const auto draws = in.get<uint32_t>();
     if (!in.ok()) return false;
-    c_->conditional = draws == 0 && bound_ && gl.glBeginConditionalRender && gl.glGenQueries;
+    beginConditional(draws != 0);
+    return true;
+}
+
+void Replay::beginConditional(bool draws) {
+    c_->conditional = !draws && bound_ && gl.glBeginConditionalRender && gl.glGenQueries;
     if (!c_->conditional) {
         c_->conditionMet = true;
-        return true;
+        return;
     }
     const bool counting = c_->counting.count(GL_SAMPLES_PASSED) > 0; // one of its kind at a time
     if (!c_->nothingCounted) {
@@ -146,7 +173,6 @@ bool Replay::ownBeginConditional(Args& in) {
         if (counting) resumeSamples();
     }
     gl.glBeginConditionalRender(c_->nothingCounted, GL_QUERY_WAIT);
-    return true;
 }
 
 void Replay::resumeSamples() {

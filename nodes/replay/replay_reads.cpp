@@ -126,7 +126,7 @@ bool Replay::ownRequestBuffer(Args& in) {
 }
 
 // The window's picture, whatever the program has bound; called at a swap.
-const std::byte* Replay::readShown(Window& w, const PixelViewport& r) {
+const std::byte* Replay::readShown(Window& w, const PixelViewport& r, bool front) {
     const GLuint bound = c_->readFramebuffer;
     const bool separate = c_->version >= 30;
     const GLenum target = separate ? GL_READ_FRAMEBUFFER : GL_FRAMEBUFFER;
@@ -135,7 +135,7 @@ const std::byte* Replay::readShown(Window& w, const PixelViewport& r) {
     const bool otherRead = boundRead_ != &w;
     if (otherRead) (void)platform_->makeCurrent(c_->context.get(), w.surface.get(), w.surface.get());
     const bool chooses = c_->api == wire::Api::Desktop && gl.glReadBuffer;
-    if (chooses) gl.glReadBuffer(windowBuffer(w.config.doubleBuffer ? GL_BACK : GL_FRONT, &w));
+    if (chooses) gl.glReadBuffer(windowBuffer(w.config.doubleBuffer && !front ? GL_BACK : GL_FRONT, &w));
     c_->readFramebuffer = 0;
     Window* read = c_->read;
     c_->read = &w;
@@ -247,7 +247,7 @@ void Replay::fillColor(const PixelViewport& r, const void* rgba) {
     applyScissors();
 }
 
-// Depth and stencil go in by glDrawPixels where a context has it; it is exact for them.
+// Depth and stencil go in by glDrawPixels where a context has it.
 void Replay::fillDepthStencil(const PixelViewport& r, GLbitfield plane, const void* pixels) {
     if (c_->core || c_->api != wire::Api::Desktop || !gl.glDrawPixels || !gl.glWindowPos2i || boundDraw_ != boundRead_) return fillByOtherContext(r, plane, pixels);
     gl.glPushAttrib(GL_ALL_ATTRIB_BITS);
@@ -268,7 +268,8 @@ void Replay::fillDepthStencil(const PixelViewport& r, GLbitfield plane, const vo
     setUnpack(true);
     if (c_->unpackBuffer) gl.glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
     gl.glWindowPos2i(r.x, r.y);
-    gl.glDrawPixels(r.w, r.h, depth ? GL_DEPTH_COMPONENT : GL_STENCIL_INDEX, depth ? GL_UNSIGNED_INT : GL_UNSIGNED_BYTE, pixels);
+    if (depth) gl.glDrawPixels(r.w, r.h, GL_DEPTH_COMPONENT, GL_FLOAT, depthAsFloats(*c_->read, r, pixels));
+    else gl.glDrawPixels(r.w, r.h, GL_STENCIL_INDEX, GL_UNSIGNED_BYTE, pixels);
     if (c_->unpackBuffer) gl.glBindBuffer(GL_PIXEL_UNPACK_BUFFER, c_->unpackBuffer);
     gl.glPopAttrib();
     if (c_->program) gl.glUseProgram(name(Kind::Program, c_->program));

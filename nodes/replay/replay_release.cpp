@@ -1,6 +1,7 @@
 // Contexts and windows that the program has given up. As in GLX: what is still current lives until it is
 // released; a share group keeps its objects as long as one of its contexts lives.
 #include <algorithm>
+#include <vector>
 
 #include "nodes/replay/replay.hpp"
 
@@ -27,6 +28,7 @@ bool Replay::ownDestroyWindow(Args& in) {
     it->second->destroyed = true;
     client.anyDestroyed = true;
     freeDestroyed(client);
+    if (out_.windowGone) out_.windowGone(wire::clientOf(stream_), id);
     return true;
 }
 
@@ -64,7 +66,9 @@ void Replay::freeDestroyed(Client& client) {
             continue;
         }
         if (boundDraw_ == w || boundRead_ == w) unbindPlatform();
+        std::vector<gl::Context*> users;
         for (auto& [id, c] : client.contexts) {
+            if (c->draw == w || c->read == w) users.push_back(c->context.get());
             if (c->draw == w) c->draw = nullptr;
             if (c->read == w) c->read = nullptr;
         }
@@ -73,6 +77,9 @@ void Replay::freeDestroyed(Client& client) {
             if (s.read == w) s.read = nullptr;
         }
         it = client.windows.erase(it);
+        // Mesa's contexts keep the buffers of a surface that is gone until they are bound once more.
+        for (gl::Context* const c : users) (void)platform_->makeCurrent(c, nullptr, nullptr);
+        if (!users.empty()) unbindPlatform();
     }
     client.anyDestroyed = left;
     // What was unbound comes back for the stream that is being replayed.

@@ -101,6 +101,7 @@ void Replay::applyViewports() {
 void Replay::restoreWindowState() {
     if (!bound_ || !c_->everCurrent) return;
     applyScissors();
+    applyColorMasks();
     if (config_.lean) applyViewports();
     applyTileValues();
 }
@@ -260,7 +261,7 @@ void Replay::glDiscardFramebufferEXT(GLenum target, GLsizei n, const Data& attac
 void Replay::glPushAttrib(GLbitfield mask) {
     gl.glPushAttrib(mask);
     if (c_->attributes.size() < 64)
-        c_->attributes.push_back({mask, c_->scissors, c_->listBase, c_->viewports, c_->drawBuffer0, c_->readBuffer0, c_->program});
+        c_->attributes.push_back({mask, c_->scissors, c_->listBase, c_->viewports, c_->drawBuffer0, c_->readBuffer0, c_->program, c_->colorMasks});
 }
 void Replay::glPopAttrib() {
     gl.glPopAttrib();
@@ -273,7 +274,11 @@ void Replay::glPopAttrib() {
     }
     if (saved.mask & GL_LIST_BIT) c_->listBase = saved.listBase;
     if (saved.mask & GL_VIEWPORT_BIT) c_->viewports = saved.viewports;
-    if (saved.mask & GL_COLOR_BUFFER_BIT) c_->drawBuffer0 = saved.drawBuffer0;
+    if (saved.mask & GL_COLOR_BUFFER_BIT) {
+        c_->drawBuffer0 = saved.drawBuffer0;
+        c_->colorMasks = saved.colorMasks;
+        applyColorMasks(); // the framebuffer may be another one than at the push
+    }
     if (saved.mask & GL_PIXEL_MODE_BIT) c_->readBuffer0 = saved.readBuffer0;
     if (saved.mask & (GL_SCISSOR_BIT | GL_ENABLE_BIT | GL_VIEWPORT_BIT)) restoreWindowState();
 }

@@ -139,6 +139,21 @@ def node_stopped_and_continued(context):
 
 
 @case
+def node_stopped_for_good(context):
+    """A node that hangs is given up, by one line; the others and the program go on."""
+    with context.drawing("long_run", 60) as run:
+        if not run.wait_for_line("frame 10"):
+            return "the program did not start: " + " | ".join(run.standard_error[-3:])
+        node = run.wait_for_processes(NODE, 1)[0]
+        os.kill(node, signal.SIGSTOP)
+        wrong = check_end(run, 0, 60)
+        said = error_lines(run, ["was lost:"])
+        if wrong is None and (len(said) != 1 or "pid %d)" % node not in said[0]):
+            wrong = "not one line about node %d: %s" % (node, " | ".join(said))
+        return wrong
+
+
+@case
 def program_killed(context):
     with context.drawing("long_run", 100000) as run:
         if not run.wait_for_line("frame 10"):

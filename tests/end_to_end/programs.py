@@ -17,7 +17,7 @@ GROUPS = {
     "windows": ["es1_scene", "es2_scene", "es3_scene", "egl_desktop", "egl_offscreen", "egl_pixmaps",
                 "several_windows", "shared_contexts", "sharing_order", "threads_windows",
                 "loader_thread", "context_migration", "glx_pbuffers", "x_fonts", "x_pixmaps", "resize",
-                "resize_moments", "window_churn"],
+                "resize_moments", "window_churn", "window_switch"],
     "processes": ["route_dlsym", "route_deepbind", "route_glx_proc", "route_split_libraries",
                   "route_egl_proc", "route_plugin", "exit_dirty", "exit_quick", "exit_three",
                   "exit_abort", "exit_segv", "exit_term", "fork_child", "fork_exec"],
@@ -121,6 +121,4 @@ def same_status(native, through):
     return native == through
 
 # Programs whose pictures are not yet the native ones, and why (docs/exactness.md has the proofs).
-KNOWN_DIFFERENCES = {
-    "core_depth": "depth that is copied across tiles comes back within rounding, not in every bit",
-}
+KNOWN_DIFFERENCES = {}

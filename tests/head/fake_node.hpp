@@ -20,11 +20,14 @@ namespace mural {
 struct FakeNodeBehaviour {
     bool pictures = false;
     bool silentStart = false;      // never ready
+    bool refuses = false;          // says why, instead of being ready, and ends
+    bool drawsWhole = false;       // says so with every frame
     uint32_t dieAtFrame = 0;       // closes its connection instead of finishing this frame
     uint32_t dieAtRequest = 0;     // instead of answering
     uint32_t garbageAtFrame = 0;   // sends a message that makes no sense
     bool halfAnswer = false;       // the first part of an answer, then dies
     bool noBye = false;            // hangs at the end
+    bool alive = false;            // says so all the time
     std::atomic<bool>* hold = nullptr; // reads nothing while true
 };
 
@@ -63,6 +66,7 @@ private:
             }
             wire::PacketHeader header{};
             const auto got = connection_->read(std::as_writable_bytes(std::span(&header, 1)), Deadline::inMs(20));
+            if (behaviour_.alive) sendParts({static_cast<uint32_t>(wire::NodeMessage::Alive), 0}, {}, {});
             if (!got && connection_->timedOut()) continue;
             if (!got) return;
             std::vector<uint32_t> words(header.sizeBytes / 4 + 1);
@@ -87,6 +91,10 @@ private:
             const auto json = bytes.subspan(4);
             auto setup = nodeSetupFromJson({reinterpret_cast<const char*>(json.data()), json.size()});
             if (!setup) return false;
+            if (behaviour_.refuses) {
+                sendText(wire::NodeMessage::Log, "another build");
+                return false;
+            }
             setup_ = *setup;
             const std::string common = "GL_COMMON GL_ONLY_" + std::to_string(setup_.node);
             const std::string ready = R"({"host":"h","pid":)" + std::to_string(getpid()) +
@@ -107,6 +115,8 @@ private:
             const std::vector<uint32_t> a(words.begin() + static_cast<long>(at) + 2,
                                           words.begin() + static_cast<long>(at) + words[at]);
             if (words[at + 1] == kFakeSwap && !swap(client, a)) return false;
+            if (words[at + 1] == kFakeWindowGone)
+                sendStruct(wire::NodeMessage::WindowGone, wire::WindowGoneMessage{client, a[0]}, {});
             const bool asks = words[at + 1] >= kFakePixels && words[at + 1] <= kFakeSum;
             if (asks && !answer(client, words[at + 1], a)) return false;
         }
@@ -139,6 +149,7 @@ private:
         done.frame = frame;
         done.width = a[2];
         done.height = a[3];
+        done.flags = behaviour_.drawsWhole ? wire::kDrawnWhole : 0;
         sendStruct(wire::NodeMessage::FrameDone, done, {});
         return true;
     }

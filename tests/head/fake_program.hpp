@@ -27,6 +27,7 @@ enum FakeVerb : uint32_t {
     kFakeBytes = 3,   // request
     kFakeSum = 4,     // request
     kFakeNote = 5,    // anything: only noted
+    kFakeWindowGone = 6, // window
 };
 
 constexpr uint64_t kTestDigest = 0x1234567890abcdef;

@@ -96,23 +96,26 @@ TEST_F(FrameTrackerTest, theLargestWindowIsTheWall) {
         ++frame;
         done(0, frame, window, width);
         done(1, frame, window, width);
-        return tracker.totals().mainFrame;
+        return tracker.totals().wallFrames;
     };
     EXPECT_EQ(both(1, 10), 1); // a splash screen
     EXPECT_EQ(both(1, 10), 2);
-    EXPECT_EQ(both(2, 50), 1); // the real one
-    EXPECT_EQ(both(1, 10), 1);
-    EXPECT_EQ(both(3, 50), 1); // of the same size: not larger
-    EXPECT_EQ(both(2, 20), 2); // made smaller
-    EXPECT_EQ(both(3, 50), 1);
-    EXPECT_EQ(tracker.totals().wallFrames, 5);
+    EXPECT_EQ(both(2, 50), 3); // the real one: the wall's frames go on
+    EXPECT_EQ(both(1, 10), 3);
+    EXPECT_EQ(both(3, 50), 3); // of the same size: not larger
+    EXPECT_EQ(both(2, 20), 4); // made smaller
+    EXPECT_EQ(both(3, 50), 5);
     EXPECT_EQ(tracker.totals().firstNs, 1);
     EXPECT_EQ(tracker.totals().latestNs, 7);
+    tracker.windowGone(1, 3);
+    EXPECT_EQ(both(1, 10), 5); // the largest of those that are left is the next
+    EXPECT_EQ(both(2, 20), 6);
+    tracker.windowGone(1, 1); // another one
+    EXPECT_EQ(both(2, 20), 7);
     tracker.clientGone(1);
     done(0, 1, 9, 5, 2);
     done(1, 1, 9, 5, 2);
-    EXPECT_EQ(tracker.totals().mainFrame, 1);
-    EXPECT_EQ(tracker.totals().wallFrames, 6);
+    EXPECT_EQ(tracker.totals().wallFrames, 8);
 }
 
 } // namespace

@@ -128,6 +128,60 @@ TEST(HeadSession, aSlowNodeHoldsTheProgramBack) {
     head.finish();
 }
 
+// As after `kill -STOP`: nothing tells it but its silence.
+TEST(HeadSession, aNodeThatSaysNothingIsLostAndTheProgramGoesOn) {
+    std::atomic<bool> hold{false};
+    SessionHarness head(2);
+    head.options.silencePatienceMs = 1500;
+    head.behaviours[0].alive = true; // idle nodes say that they live
+    head.behaviours[1].alive = true;
+    head.behaviours[1].hold = &hold;
+    head.start();
+    head.waitFor("ready");
+    FakeProgram program;
+    ASSERT_TRUE(program.connect(head.config.session));
+    ASSERT_TRUE(swapFrames(program, 1, 1));
+    ASSERT_TRUE(program.waitFramesDone(1));
+    hold = true;
+    ASSERT_TRUE(swapFrames(program, 2, 3));
+    ASSERT_TRUE(program.publish(kFakeSum, {5}));
+    FakeProgram::Answer answer;
+    EXPECT_TRUE(program.readAnswer(answer));
+    EXPECT_TRUE(program.waitFramesDone(3));
+    const std::string said = head.waitForSay("was lost");
+    EXPECT_EQ(said.rfind("node 1 (local) was lost: it said nothing for", 0), 0u) << said;
+    const auto report = head.finish();
+    EXPECT_EQ(report["nodes"][0]["lost"], false);
+    EXPECT_EQ(report["nodes"][1]["lost"], true);
+    hold = false;
+}
+
+TEST(HeadSession, whyANodeRefusesIsTheOneLineOfTheEnd) {
+    SessionHarness head(2);
+    head.behaviours[1].refuses = true;
+    head.start();
+    const auto error = head.waitFor("error");
+    EXPECT_EQ(error["text"], "node 1 (local) did not start: another build");
+    for (const auto& event : head.seen) EXPECT_NE(event["event"], "say") << event;
+}
+
+TEST(HeadSession, whatEveryNodeDrawsWholeIsSaidOnce) {
+    SessionHarness head(2);
+    for (auto& behaviour : head.behaviours) behaviour.drawsWhole = true;
+    head.start();
+    head.waitFor("ready");
+    FakeProgram program;
+    ASSERT_TRUE(program.connect(head.config.session));
+    ASSERT_TRUE(swapFrames(program, 1, 3));
+    ASSERT_TRUE(program.waitFramesDone(3));
+    const auto report = head.finish();
+    EXPECT_EQ(report["drawnWhole"], true);
+    int said = 0;
+    for (const auto& event : head.seen)
+        said += event["event"] == "say" && event["text"].get<std::string>().find("every node draws all") != std::string::npos;
+    EXPECT_EQ(said, 1);
+}
+
 TEST(HeadSession, answersAreAssembledFromOneToFiveNodes) {
     for (int nodes = 1; nodes <= 5; ++nodes) {
         SessionHarness head(nodes);

@@ -101,8 +101,49 @@ TEST(PictureSession, onlyTheAskedFramesOfTheMainWindowAreSaved) {
     }
     head.waitFor("frames-reached");
     const auto report = head.finish();
-    EXPECT_EQ(shown.frames["file"], (std::vector<int64_t>{2, 2, 4}));
-    EXPECT_EQ(report["savedPictures"], 3);
+    EXPECT_EQ(shown.frames["file"], (std::vector<int64_t>{2, 4})); // of the wall: the splash screen's count, too
+    EXPECT_EQ(report["savedPictures"], 2);
+}
+
+TEST(PictureSession, whenTheMainWindowIsDestroyedTheNextLargestIsTheWall) {
+    Shown shown;
+    SessionHarness head(3);
+    addSinks(head, shown);
+    head.start();
+    head.waitFor("ready");
+    FakeProgram program;
+    ASSERT_TRUE(program.connect(head.config.session));
+    uint32_t frame = 0;
+    for (int i = 0; i < 2; ++i) ASSERT_TRUE(swapFrame(program, ++frame, 7, 20));
+    for (int i = 0; i < 3; ++i) ASSERT_TRUE(swapFrame(program, ++frame, 8, 64));
+    for (int i = 0; i < 2; ++i) ASSERT_TRUE(swapFrame(program, ++frame, 7, 20)); // not on the wall
+    ASSERT_TRUE(program.publish(kFakeWindowGone, {8}));
+    for (int i = 0; i < 4; ++i) ASSERT_TRUE(swapFrame(program, ++frame, 7, 20));
+    const auto report = head.finish();
+    EXPECT_EQ(shown.frames["file"], (std::vector<int64_t>{1, 2, 3, 4, 5, 6, 7, 8, 9}));
+    EXPECT_EQ(shown.lastPixels.size(), 20u * 48);
+    EXPECT_EQ(report["frames"], 9);
+}
+
+// The node that is lost would be waited for for ever.
+TEST(PictureSession, aLostNodeNeedNotSayThatAWindowIsGone) {
+    Shown shown;
+    SessionHarness head(2);
+    addSinks(head, shown);
+    head.behaviours[1].dieAtFrame = 2;
+    head.start();
+    head.waitFor("ready");
+    FakeProgram program;
+    ASSERT_TRUE(program.connect(head.config.session));
+    ASSERT_TRUE(swapFrame(program, 1, 8, 64));
+    ASSERT_TRUE(swapFrame(program, 2, 8, 64));
+    ASSERT_TRUE(program.waitFramesDone(2));
+    ASSERT_TRUE(program.publish(kFakeWindowGone, {8}));
+    ASSERT_TRUE(swapFrame(program, 3, 7, 20));
+    ASSERT_TRUE(program.waitFramesDone(3));
+    const auto report = head.finish();
+    EXPECT_EQ(report["frames"], 3);
+    EXPECT_EQ(shown.frames["file"].back(), 3);
 }
 
 TEST(PictureSession, noFrameBehindTheLastOneIsSaved) {

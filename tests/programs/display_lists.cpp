@@ -12,7 +12,7 @@ namespace {
 
 GLuint glyphs;  // 100 lists, each draws one small glyph and moves on
 GLuint scene, stateList, arrayList, pixelList, materialList;
-GLuint textureList;
+GLuint textureList, conditionList, condition;
 
 void drawGlyph(unsigned number) {
     Sequence numbers(number);
@@ -170,6 +170,28 @@ void makeMaterialList() {
     glEndList();
 }
 
+// What the list asks is known only when it is called.
+void makeConditionList() {
+    glGenQueries(1, &condition);
+    conditionList = glGenLists(1);
+    glNewList(conditionList, GL_COMPILE);
+    glBeginConditionalRender(condition, GL_QUERY_WAIT);
+    glColor3f(0.2F, 0.8F, 0.7F);
+    glRecti(110, 60, 145, 104);
+    glEndConditionalRender();
+    glEndList();
+}
+
+// Counted in a small place, seen in a large one: the two need not be on one node.
+void drawConditionally(int frame) {
+    glBeginQuery(GL_SAMPLES_PASSED, condition);
+    if (frame % 2 == 0) {
+        glRecti(5, 100, 12, 108);
+    }
+    glEndQuery(GL_SAMPLES_PASSED);
+    glCallList(conditionList);
+}
+
 void makeScene() {
     scene = glGenLists(1);
     glNewList(scene, GL_COMPILE);
@@ -270,6 +292,7 @@ int main(int argc, char** argv) {
             makeTextureList();
             makeStateList();
             makeMaterialList();
+            makeConditionList();
             makeScene();
         },
         [](Window& window, int frame) {
@@ -287,5 +310,7 @@ int main(int argc, char** argv) {
             glCallList(scene);
             callByAllTypes(frame);
             drawThroughCurrentState(frame);
+            drawConditionally(frame);
+            checkNoError("with lists");
         });
 }

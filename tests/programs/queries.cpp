@@ -9,7 +9,7 @@ using namespace programs;
 
 namespace {
 
-GLuint vertexArray, program, names[12], resultBuffer, feedbackBuffer;
+GLuint vertexArray, program, names[13], resultBuffer, feedbackBuffer, indirectBuffer;
 
 void box(float x, float y, float w, float h, float depth) {
     glUniform4f(0, x, y, w, h);
@@ -102,6 +102,27 @@ void resultIntoBuffer(int frame) {
     showBits(32, told[0]);
 }
 
+// The same into memory that only GL may write, where the next draw finds how often it is drawn.
+void resultIntoImmutableBuffer(int frame) {
+    glGenBuffers(1, &indirectBuffer);
+    glBindBuffer(GL_QUERY_BUFFER, indirectBuffer);
+    const GLuint draw[4] = {4, 7, 0, 0}; // vertices, instances, first vertex, first instance
+    glBufferStorage(GL_QUERY_BUFFER, sizeof draw, draw, 0);
+    glBeginQuery(GL_ANY_SAMPLES_PASSED, names[11]);
+    box(0.35F, 0.6F, 0.05F, 0.05F, frame % 2 == 0 ? 0.1F : 2.0F);
+    glEndQuery(GL_ANY_SAMPLES_PASSED);
+    glFinish();
+    glGetQueryObjectuiv(names[11], GL_QUERY_RESULT, reinterpret_cast<GLuint*>(4));
+    glBindBuffer(GL_QUERY_BUFFER, 0);
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, indirectBuffer);
+    glUniform4f(0, 0.45F, 0.5F, 0.3F, 0.2F);
+    glUniform1f(1, 0.3F);
+    glDrawArraysIndirect(GL_TRIANGLE_STRIP, nullptr);
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);
+    glDeleteBuffers(1, &indirectBuffer);
+    checkNoError("with a result in an immutable buffer");
+}
+
 void countStatistics() {
     glBeginQuery(GL_VERTICES_SUBMITTED_ARB, names[9]);
     glBeginQuery(GL_VERTEX_SHADER_INVOCATIONS_ARB, names[10]);
@@ -124,7 +145,7 @@ void setUp() {
             const char* const varying = "tint";
             glTransformFeedbackVaryings(linking, 1, &varying, GL_INTERLEAVED_ATTRIBS);
         });
-    glGenQueries(12, names);
+    glGenQueries(13, names);
     const GLuint zeros[64] = {};
     glGenBuffers(1, &resultBuffer);
     glBindBuffer(GL_QUERY_BUFFER, resultBuffer);
@@ -154,6 +175,7 @@ int main(int argc, char** argv) {
             measureTime();
             renderConditionally(frame);
             resultIntoBuffer(frame);
+            resultIntoImmutableBuffer(frame);
             countStatistics();
         });
 }

@@ -1,0 +1,51 @@
+// X requests that the preloaded library stands before: each goes on to the next function of its name in the
+// program's own order; nothing is ever loaded.
+#pragma once
+
+#include <dlfcn.h>
+
+namespace mural {
+
+constexpr const char* kXlib = "libX11.so.6";
+constexpr const char* kXext = "libXext.so.6";
+constexpr const char* kXcb = "libxcb.so.1";
+constexpr const char* kXcbShm = "libxcb-shm.so.0";
+
+struct NextFunction {
+    const char* name;
+    const char* library;
+    void* found = nullptr;
+
+    void* get() {
+        if (void* known = __atomic_load_n(&found, __ATOMIC_RELAXED)) return known;
+        // Stored, not returned: in a tail call glibc would look from our caller's place in the order.
+        void* volatile next = dlsym(RTLD_NEXT, name);
+        if (!next) { // the program has loaded the library out of everybody's sight
+            void* handle = dlopen(library, RTLD_LAZY | RTLD_NOLOAD);
+            if (handle) next = dlsym(handle, name);
+            if (handle) dlclose(handle);
+        }
+        __atomic_store_n(&found, next, __ATOMIC_RELAXED);
+        return next;
+    }
+};
+
+// The result of a request that cannot be made because the process has no such library.
+template <class Result> struct Nothing {
+    static Result value() { return Result{}; }
+};
+template <> struct Nothing<void> {
+    static void value() {}
+};
+
+// `like` names the function itself: its type is the next one's.
+template <class Result, class... Parameters, class... Arguments>
+Result callNext(NextFunction& next, Result (*like)(Parameters...), Arguments... arguments) {
+    (void)like;
+    auto* call = reinterpret_cast<Result (*)(Parameters...)>(next.get());
+    return call ? call(arguments...) : Nothing<Result>::value();
+}
+
+} // namespace mural
+
+#define MURAL_SHOWN extern "C" __attribute__((visibility("default")))

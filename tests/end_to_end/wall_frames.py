@@ -1,0 +1,67 @@
+#!/usr/bin/env python3
+"""What becomes a frame of the wall: the files of --out, one for each, in order, none written twice.
+
+  wall_frames.py --build build/release [--cases windows,front] [--list]
+"""
+
+import json
+import os
+import struct
+import sys
+import tempfile
+
+import failures
+
+failures.CASES.clear()  # only those of this file
+FRAMES = 3
+WIDTH, HEIGHT = 252, 190
+
+
+def saved(context, program, options=()):
+    """What is wrong, and the PNG files by their names' order: (width, height, bytes)."""
+    with tempfile.TemporaryDirectory(prefix="mural-wall-frames.") as folder:
+        report_file, out = os.path.join(folder, "report.json"), os.path.join(folder, "out")
+        command = [context.program(program), "--frames", str(FRAMES), "--size", "%dx%d" % (WIDTH, HEIGHT)]
+        more = ["--tiles", "2x2", "--display", "none", "--out", out, "--report", report_file]
+        with context.run(command, more + list(options)) as run:
+            wrong = failures.check_end(run, 0)
+            if wrong is not None:
+                return wrong, []
+        with open(report_file, encoding="utf-8") as file:
+            report = json.load(file)
+        files = []
+        for name in sorted(os.listdir(out)):
+            with open(os.path.join(out, name), "rb") as file:
+                data = file.read()
+            files.append(struct.unpack(">II", data[16:24]) + (data,))
+    if report["savedPictures"] != len(files) or report["frames"] != len(files):
+        wrong = "%d frames, %d saved, %d files" % (report["frames"], report["savedPictures"], len(files))
+    return wrong, files
+
+
+@failures.case
+def windows_change(context):
+    """Splash screen, main window, and what is left when that is destroyed."""
+    wrong, files = saved(context, "window_switch")
+    if wrong is not None:
+        return wrong
+    small, large = (WIDTH // 2, HEIGHT // 2), (WIDTH, HEIGHT)
+    sizes = [file[:2] for file in files]
+    wanted = [small] * FRAMES + [large] * FRAMES + [small] * FRAMES
+    return None if sizes == wanted else "pictures of the sizes %s" % sizes
+
+
+@failures.case
+def front_buffer_is_shown(context):
+    """Each swap, and each glFlush after drawing in front: every picture is another one."""
+    wrong, files = saved(context, "front_buffer")
+    if wrong is not None:
+        return wrong
+    if len(files) != 3 * FRAMES:
+        return "%d pictures instead of %d" % (len(files), 3 * FRAMES)
+    same = [i for i in range(1, len(files)) if files[i][2] == files[i - 1][2]]
+    return "pictures %s are as those before" % same if same else None
+
+
+if __name__ == "__main__":
+    sys.exit(failures.main())

@@ -1,0 +1,91 @@
+// The real node's main loop at a connection of the test's own.
+#include "nodes/node/node.hpp"
+
+#include <cstring>
+#include <gtest/gtest.h>
+#include <thread>
+#include <vector>
+
+#include "nodes/session/session_config.hpp"
+#include "nodes/session/stream_build.hpp"
+#include "streamcodec/wire.hpp"
+#include "transport/connection.hpp"
+
+namespace mural {
+namespace {
+
+constexpr int64_t kPatienceMs = 20'000;
+
+class NodeTest : public ::testing::Test {
+protected:
+    void SetUp() override {
+        auto offer = offerSharedMemory(size_t{1} << 20);
+        ASSERT_TRUE(offer.ok());
+        head_ = std::move(offer->connection);
+        node_ = std::thread([this, fd = offer->peerFd] {
+            NodeOptions options;
+            options.connectFd = fd;
+            status_ = runNode(options);
+        });
+    }
+    void TearDown() override {
+        if (head_) head_->close();
+        if (node_.joinable()) node_.join();
+    }
+
+    void sendSetup(const NodeSetup& setup) {
+        const std::string json = toJson(setup);
+        const auto command = static_cast<uint32_t>(wire::HeadCommand::Setup);
+        const wire::PacketHeader header{static_cast<uint32_t>(json.size() + 4), wire::streamOf(0, 0)};
+        ASSERT_TRUE(head_->write(std::as_bytes(std::span(&header, 1)), Deadline::inMs(kPatienceMs)));
+        ASSERT_TRUE(head_->write(std::as_bytes(std::span(&command, 1)), Deadline::inMs(kPatienceMs)));
+        ASSERT_TRUE(head_->write(std::as_bytes(std::span(json)), Deadline::inMs(kPatienceMs)));
+        head_->flush();
+    }
+    // The texts of that kind until the node ends; anything else fails.
+    std::vector<std::string> texts(wire::NodeMessage type) {
+        std::vector<std::string> all;
+        wire::MessageHeader header{};
+        while (head_->read(std::as_writable_bytes(std::span(&header, 1)), Deadline::inMs(kPatienceMs))) {
+            std::string text(header.sizeBytes, ' ');
+            if (!text.empty() && !head_->read(std::as_writable_bytes(std::span(text)), Deadline::inMs(kPatienceMs))) break;
+            if (header.type == static_cast<uint32_t>(wire::NodeMessage::Alive)) continue;
+            EXPECT_EQ(header.type, static_cast<uint32_t>(type)) << text;
+            all.push_back(text);
+        }
+        return all;
+    }
+    int status() {
+        node_.join();
+        return status_;
+    }
+
+    std::unique_ptr<Connection> head_;
+    std::thread node_;
+    int status_ = -1;
+};
+
+class ForeignBuild : public NodeTest, public ::testing::WithParamInterface<const char*> {};
+
+TEST_P(ForeignBuild, isRefusedWithOneLine) {
+    NodeSetup setup;
+    setup.build = GetParam();
+    ASSERT_NE(setup.build, streamBuild());
+    sendSetup(setup);
+    const auto lines = texts(wire::NodeMessage::Log);
+    ASSERT_EQ(lines.size(), 1u);
+    EXPECT_NE(lines[0].find("install the same version of mural on both machines"), std::string::npos) << lines[0];
+    EXPECT_NE(lines[0].find(setup.build.empty() ? "unnamed" : setup.build), std::string::npos) << lines[0];
+    EXPECT_EQ(lines[0].find('\n'), std::string::npos);
+    EXPECT_EQ(status(), 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Builds, ForeignBuild, ::testing::Values("", "1.0000000000000000", "4294967295.0000000000000000"));
+
+TEST_F(NodeTest, endsWithItsHead) {
+    head_->close();
+    EXPECT_EQ(status(), 1);
+}
+
+} // namespace
+} // namespace mural
