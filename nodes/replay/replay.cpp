@@ -71,9 +71,22 @@ bool Replay::execute(uint16_t opcode, std::span<const std::byte> arguments, Blob
     return function(*this, in);
 }
 
+#ifdef __SANITIZE_ADDRESS__
+namespace {
+// The first byte behind a block of memory: what the sanitized build must report.
+void readPastEnd(size_t sizeBytes) {
+    const std::vector<char> block(sizeBytes);
+    [[maybe_unused]] const char beyond = *static_cast<const volatile char*>(block.data() + sizeBytes);
+}
+} // namespace
+#endif
+
 // A fault on purpose (MURAL_PLANT): tests of the tests. True: the command is left out.
 bool Replay::planted(uint16_t opcode) {
     const bool draws = opcode == op::glBegin || opcode == op::glDrawArrays || opcode == op::glDrawElements || opcode == op::glCallList;
+#ifdef __SANITIZE_ADDRESS__
+    if (config_.plant == "overflow") readPastEnd(counts_.frames + 8);
+#endif
     if (config_.plant == "drop") return draws && counts_.frames == 1;
     if (config_.plant != "opcode" || !draws || counts_.frames == 0) return false;
     if (gl.glDepthFunc) gl.glDepthFunc(GL_NEVER); // as if one argument of the program's had been another

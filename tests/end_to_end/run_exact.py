@@ -59,6 +59,9 @@ class Comparison:
         self.known = 0
         self.healed = []
 
+    def finish(self):
+        """Whatever has to be looked at after all programs."""
+
     def run(self, name, label, launcher=(), environment=None):
         arguments = self.arguments
         folder = os.path.join(self.folder, name, label)
@@ -181,6 +184,7 @@ def main(description=__doc__, add_arguments=lambda parser: None, comparison_clas
                 comparison.check(name)
                 if not arguments.keep:
                     shutil.rmtree(os.path.join(folder, name), ignore_errors=True)
+            comparison.finish()
     finally:
         if not arguments.keep:
             shutil.rmtree(folder, ignore_errors=True)
