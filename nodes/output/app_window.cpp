@@ -49,10 +49,6 @@ Result<std::unique_ptr<AppWindow>> AppWindow::open(AppWindowConfig config) {
     }
     if (Result<void> adopted = window->adopt(deadline); !adopted)
         return adopted.error();
-    if (window->windowGone_) {
-        return Error{fmt::format("the X display '{}' has no window {:#x}; check the window's id",
-                                 window->x_->displayName(), window->config_.window)};
-    }
     return window;
 }
 

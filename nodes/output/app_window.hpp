@@ -29,7 +29,8 @@ struct AppWindowConfig {
 
 class AppWindow : public PictureSink {
 public:
-    // Fails without a display, without the window, or when its pixels can't be written.
+    // Fails without a display, or when the window's pixels can't be written. A window that is not there
+    // (any more: a program may end right after its last swap) is no error: windowGone() tells.
     static Result<std::unique_ptr<AppWindow>> open(AppWindowConfig config);
 
     // Returns when the server has done it. After a deadline has passed it can be called again.

@@ -219,12 +219,18 @@ TEST_F(AppWindows, windowWithTheSameIdAgain) {
     expectSeen(window, 0, 0, picture.view());
 }
 
+// A program may end right after its last swap: before the picture comes, and before this output is opened.
+TEST_F(AppWindows, windowThatWasGoneBeforeIsNoError) {
+    startServer();
+    auto output = AppWindow::open(configFor(0x7777777));
+    ASSERT_TRUE(output) << output.error().message;
+    EXPECT_TRUE(output.value()->windowGone());
+    EXPECT_TRUE(output.value()->show(1, noisePicture(20, 10, 7).view()));
+    EXPECT_TRUE(output.value()->windowGone());
+}
+
 TEST_F(AppWindows, whatIsMissingIsSaid) {
     startServer();
-    auto noWindow = AppWindow::open(configFor(0x7777777));
-    ASSERT_FALSE(noWindow);
-    EXPECT_NE(noWindow.error().message.find("no window 0x7777777"), std::string::npos)
-        << noWindow.error().message;
     AppWindowConfig config;
     config.displayName = ":64999";
     auto noServer = AppWindow::open(config);
