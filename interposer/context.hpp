@@ -42,6 +42,8 @@ struct ShareGroup {
     int persistentMaps = 0;
     bool listsMoveRaster = false;   // some display list moves the raster position by glBitmap
     NameBits listMovesRaster;       // this list does, or calls others, which may
+    NameBits listCompiled, listAsks; // holds conditional rendering, or calls a list that does or may
+    bool listsChange = false;        // a list was compiled again: what calls it may ask now
     static constexpr int kConditions = 64;
     GLuint listConditions[kConditions] = {}; // queries that conditional rendering in display lists asks
     int listConditionCount = 0;
@@ -54,6 +56,7 @@ struct Context {
     int emptyFrames = 0;             // shown before the first such command
     NameBits queryIsAny;      // ANY_SAMPLES_PASSED and its kin
     NameBits queryIsTimestamp;
+    NameBits queryBegun;
     GLuint queryBuffer = 0;    // bound to GL_QUERY_BUFFER
     uint32_t id = 0;
     ShareGroup* group = nullptr;
@@ -132,7 +135,13 @@ bool swapLocally();
 
 // Tells the nodes the results that conditional rendering in display lists needs (commands/queries.cpp).
 void tellListConditions(ThreadState& t);
-inline void beforeList(ThreadState& t) {
+inline bool listAsks(const ShareGroup& group, GLuint list) {
+    return group.listsChange || !NameBits::known(list) || !group.listCompiled.get(list) || group.listAsks.get(list);
+}
+inline void beforeList(ThreadState& t, GLuint list) {
+    if (t.context && t.context->group->listConditionCount > 0 && listAsks(*t.context->group, list)) [[unlikely]] tellListConditions(t);
+}
+inline void beforeLists(ThreadState& t) {
     if (t.context && t.context->group->listConditionCount > 0) [[unlikely]] tellListConditions(t);
 }
 

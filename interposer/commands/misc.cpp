@@ -32,8 +32,11 @@ template <class Call> void callWithoutDrawing(ThreadState& t, bool movesRaster, 
 }
 
 // A list that calls others moves the raster position when they do, whatever they will be by then.
-void noteListCall(const ThreadState& t) {
-    if (t.context && t.context->compilingList) t.context->group->listMovesRaster.set(t.context->compiledList, true);
+void noteListCall(const ThreadState& t, bool asks) {
+    if (!t.context || !t.context->compilingList) return;
+    ShareGroup& group = *t.context->group;
+    group.listMovesRaster.set(t.context->compiledList, true);
+    if (asks) group.listAsks.set(t.context->compiledList, true);
 }
 
 bool isFront(GLenum buffer) {
@@ -51,7 +54,11 @@ void mural_glNewList(GLuint list, GLenum mode) {
     if (!t.context) return;
     t.context->compilingList = true;
     t.context->compiledList = list;
-    t.context->group->listMovesRaster.set(list, false);
+    ShareGroup& group = *t.context->group;
+    group.listMovesRaster.set(list, false);
+    group.listAsks.set(list, false);
+    group.listsChange = group.listsChange || group.listCompiled.get(list);
+    group.listCompiled.set(list, true);
     refreshDrawLocally(t);
 }
 void mural_glEndList() {
@@ -64,18 +71,18 @@ void mural_glEndList() {
 }
 void mural_glCallList(GLuint list) {
     ThreadState& t = *tThread;
-    beforeList(t);
+    beforeList(t, list);
     encode_glCallList(t, list);
-    noteListCall(t);
+    noteListCall(t, t.context && listAsks(*t.context->group, list));
     const ShareGroup* group = t.context ? t.context->group : nullptr;
     const bool moves = group && group->listsMoveRaster && (group->listMovesRaster.get(list) || !NameBits::known(list));
     callWithoutDrawing(t, moves, [&] { gReal.glCallList(list); });
 }
 void mural_glCallLists(GLsizei n, GLenum type, const void* lists) {
     ThreadState& t = *tThread;
-    beforeList(t);
+    beforeLists(t);
     encode_glCallLists(t, n, type, DataArg::of(lists, sizes::callListsBytes(n, type)));
-    noteListCall(t);
+    noteListCall(t, true);
     const bool moves = t.context && t.context->group->listsMoveRaster; // mostly text
     callWithoutDrawing(t, moves, [&] { gReal.glCallLists(n, type, lists); });
 }

@@ -20,6 +20,7 @@ void begins(ThreadState& t, GLenum target, GLuint id) {
     if (!t.context) return;
     t.context->queryIsAny.set(id, target == GL_ANY_SAMPLES_PASSED || target == GL_ANY_SAMPLES_PASSED_CONSERVATIVE);
     t.context->queryIsTimestamp.set(id, false);
+    t.context->queryBegun.set(id, true);
 }
 
 bool isResult(GLenum pname) { return pname == GL_QUERY_RESULT || pname == GL_QUERY_RESULT_NO_WAIT; }
@@ -124,12 +125,13 @@ namespace {
 
 void tellCondition(ThreadState& t, GLuint id) {
     uint64_t value = 0;
-    if (gReal.glIsQuery && gReal.glIsQuery(id) && result(t, id, value)) records::queryKnown(t, id, value != 0);
+    if (t.context->queryBegun.get(id) && result(t, id, value)) records::queryKnown(t, id, value != 0);
 }
 
 // What a list that is being compiled will ask at each call.
 void noteListCondition(ThreadState& t, GLuint id) {
     ShareGroup& group = *t.context->group;
+    group.listAsks.set(t.context->compiledList, true);
     for (int i = 0; i < group.listConditionCount; ++i)
         if (group.listConditions[i] == id) return;
     if (group.listConditionCount < ShareGroup::kConditions) group.listConditions[group.listConditionCount++] = id;

@@ -3,6 +3,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
 #include <xcb/xcb.h>
 
 namespace mural::launch {
@@ -49,6 +52,21 @@ TEST(PrivateDisplay, hasTheAskedSizeAndOnlyTakesItsKey) {
     EXPECT_TRUE(displayUsable(d.name()));
 }
 
+// The server that listens on a display's socket; 0: nobody.
+pid_t ownerOf(const std::string& socketPath) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    socketPath.copy(address.sun_path, sizeof address.sun_path - 1);
+    const int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    ucred owner{};
+    socklen_t size = sizeof owner;
+    if (connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
+        getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &owner, &size) != 0)
+        owner.pid = 0;
+    close(fd);
+    return owner.pid;
+}
+
 TEST(PrivateDisplay, leavesNothingBehind) {
     auto display = PrivateDisplay::start(64, 64);
     ASSERT_TRUE(display.ok());
@@ -56,10 +74,13 @@ TEST(PrivateDisplay, leavesNothingBehind) {
     const std::string socket = "/tmp/.X11-unix/X" + name.substr(1);
     const pid_t pid = display.value()->pid();
     EXPECT_TRUE(std::filesystem::exists(socket));
+    EXPECT_EQ(ownerOf(socket), pid);
     display.value().reset();
-    EXPECT_FALSE(std::filesystem::exists(socket));
     EXPECT_FALSE(std::filesystem::exists("/proc/" + std::to_string(pid)));
-    EXPECT_FALSE(displayUsable(name));
+    // Another server may have taken the number at once: then the socket is that one's.
+    const pid_t owner = ownerOf(socket);
+    EXPECT_NE(owner, pid);
+    EXPECT_TRUE(owner != 0 || !std::filesystem::exists(socket));
 }
 
 TEST(PrivateDisplay, saysWhatXvfbSaysWhenItCannotStart) {
