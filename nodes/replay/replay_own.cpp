@@ -217,6 +217,11 @@ bool Replay::ownSwap(Args& in, bool front) {
             c_ = own;
             return pixels;
         };
+        // What this GL can't make is said, and black: the frame is one all the same.
+        else if (!bound_ || !w.surface) f.pixels = [black = std::vector<std::byte>()](const PixelViewport& r) mutable {
+            black.assign(static_cast<size_t>(r.area()) * 4, std::byte{0});
+            return static_cast<const std::byte*>(black.data());
+        };
     }
     // A frame counts when it is drawn, not when it is queued: pacing and frame rates depend on it.
     waitUntilDrawn();

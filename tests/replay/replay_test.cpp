@@ -74,6 +74,18 @@ TEST_F(ReplayTest, AFrameComesOut) {
     EXPECT_EQ(replay_->counts().malformed, 0u);
 }
 
+// A node that can't make the program's context shows black, and its frames count: nobody waits for them.
+TEST_F(ReplayTest, AFrameWithoutAContextIsBlack) {
+    wire::WindowConfig c{};
+    c.width = 64;
+    c.height = 32;
+    records::window(t_, 1, c);
+    records::swap(t_, 1, 3);
+    EXPECT_TRUE(send());
+    EXPECT_EQ(frame_.frame, 3u);
+    EXPECT_EQ(pictureBytes_, 64 * 32 * 4);
+}
+
 TEST_F(ReplayTest, BrokenHeadersEndThePacket) {
     begin();
     EXPECT_FALSE(sendWords({head(op::glEnd, 0)}));
