@@ -153,6 +153,30 @@ uint64_t sizeOf(GLenum target) {
     return static_cast<uint64_t>(size);
 }
 
+// By the buffer's name. What the nodes have written into it comes first, when it may be read.
+template <class Size, class Map> void* mapNamed(GLuint buffer, GLenum access, Size&& size, Map&& map) {
+    ThreadState& t = *tThread;
+    GLint bytes = 0;
+    if (t.context && access != GL_WRITE_ONLY && t.context->group->nodesWriteBuffers) {
+        size(&bytes);
+        refresh(t, buffer, 0, static_cast<uint64_t>(bytes));
+    }
+    void* memory = map();
+    if (memory && t.context) {
+        size(&bytes);
+        remember(t, buffer, memory, 0, static_cast<uint64_t>(bytes), accessBits(access));
+    }
+    return memory;
+}
+template <class Map> void* mapNamedRange(GLuint buffer, GLintptr offset, GLsizeiptr length, GLbitfield access, Map&& map) {
+    ThreadState& t = *tThread;
+    if (t.context && (access & GL_MAP_READ_BIT) && offset >= 0 && length > 0)
+        refresh(t, buffer, static_cast<uint64_t>(offset), static_cast<uint64_t>(length));
+    void* memory = map();
+    if (memory && t.context) remember(t, buffer, memory, static_cast<uint64_t>(offset), static_cast<uint64_t>(length), access);
+    return memory;
+}
+
 } // namespace
 
 void shipPersistentMaps(ThreadState& t, ShareGroup& group) {
@@ -183,22 +207,11 @@ void* mural_glMapBufferRange(GLenum target, GLintptr offset, GLsizeiptr length, 
     return memory;
 }
 void* mural_glMapNamedBuffer(GLuint buffer, GLenum access) {
-    ThreadState& t = *tThread;
-    void* memory = gReal.glMapNamedBuffer(buffer, access);
-    GLint size = 0;
-    if (memory && t.context) {
-        gReal.glGetNamedBufferParameteriv(buffer, GL_BUFFER_SIZE, &size);
-        remember(t, buffer, memory, 0, static_cast<uint64_t>(size), accessBits(access));
-    }
-    return memory;
+    const auto size = [=](GLint* bytes) { gReal.glGetNamedBufferParameteriv(buffer, GL_BUFFER_SIZE, bytes); };
+    return mapNamed(buffer, access, size, [=] { return gReal.glMapNamedBuffer(buffer, access); });
 }
 void* mural_glMapNamedBufferRange(GLuint buffer, GLintptr offset, GLsizeiptr length, GLbitfield access) {
-    ThreadState& t = *tThread;
-    if ((access & GL_MAP_READ_BIT) && offset >= 0 && length > 0)
-        refresh(t, buffer, static_cast<uint64_t>(offset), static_cast<uint64_t>(length));
-    void* memory = gReal.glMapNamedBufferRange(buffer, offset, length, access);
-    if (memory && t.context) remember(t, buffer, memory, static_cast<uint64_t>(offset), static_cast<uint64_t>(length), access);
-    return memory;
+    return mapNamedRange(buffer, offset, length, access, [=] { return gReal.glMapNamedBufferRange(buffer, offset, length, access); });
 }
 void mural_glGetBufferSubData(GLenum target, GLintptr offset, GLsizeiptr size, void* data) {
     ThreadState& t = *tThread;
@@ -281,20 +294,11 @@ void mural_glDeleteBuffers(GLsizei n, const GLuint* buffers) {
 
 // The EXT forms differ in that they make the buffer when it has only a name yet; the driver does that.
 void* mural_glMapNamedBufferEXT(GLuint buffer, GLenum access) {
-    ThreadState& t = *tThread;
-    void* memory = gReal.glMapNamedBufferEXT(buffer, access);
-    GLint size = 0;
-    if (memory && t.context) {
-        gReal.glGetNamedBufferParameterivEXT(buffer, GL_BUFFER_SIZE, &size);
-        remember(t, buffer, memory, 0, static_cast<uint64_t>(size), accessBits(access));
-    }
-    return memory;
+    const auto size = [=](GLint* bytes) { gReal.glGetNamedBufferParameterivEXT(buffer, GL_BUFFER_SIZE, bytes); };
+    return mapNamed(buffer, access, size, [=] { return gReal.glMapNamedBufferEXT(buffer, access); });
 }
 void* mural_glMapNamedBufferRangeEXT(GLuint buffer, GLintptr offset, GLsizeiptr length, GLbitfield access) {
-    ThreadState& t = *tThread;
-    void* memory = gReal.glMapNamedBufferRangeEXT(buffer, offset, length, access);
-    if (memory && t.context) remember(t, buffer, memory, static_cast<uint64_t>(offset), static_cast<uint64_t>(length), access);
-    return memory;
+    return mapNamedRange(buffer, offset, length, access, [=] { return gReal.glMapNamedBufferRangeEXT(buffer, offset, length, access); });
 }
 GLboolean mural_glUnmapNamedBufferEXT(GLuint buffer) {
     endMap(*tThread, buffer, true);

@@ -113,6 +113,18 @@ void showPicture(GLuint program, GLuint texture, float x, float y) {
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
+// What a shader has written is in a mapping by name, too.
+void showMapped(int row) {
+    const auto* whole = static_cast<const GLuint*>(glMapNamedBuffer(commandBuffer, GL_READ_ONLY));
+    const GLuint count = whole ? whole[0] : ~0U;
+    glUnmapNamedBuffer(commandBuffer);
+    const auto* part = static_cast<const GLuint*>(glMapNamedBufferRange(commandBuffer, 4, 8, GL_MAP_READ_BIT));
+    const GLuint instances = part ? part[0] : ~0U;
+    glUnmapNamedBuffer(commandBuffer);
+    showBits(row, count);
+    showBits(row + 1, instances);
+}
+
 void drawResults() {
     glDisableVertexAttribArray(0);
     showPicture(show, pictures[0], -0.95F, -0.95F);
@@ -133,6 +145,7 @@ void drawResults() {
     for (int i = 0; i < 8; ++i) {
         showBits(28 + i, tally[i]);
     }
+    showMapped(36);
 }
 
 } // namespace
