@@ -52,7 +52,7 @@ UnseenProgram runningProgram(pid_t pid) {
 
 struct Finding {
     Drawing drawing = Drawing::None;
-    std::string program, library;
+    std::string program, path; // of the library that draws
     bool glvnd = false; // is there as well
 };
 
@@ -70,7 +70,7 @@ Finding findingOf(const UnseenProgram& program) {
         if (drawing == Drawing::OwnGl && fronted) continue; // would have been seen
         if (rank(drawing) <= rank(found.drawing)) continue;
         found.drawing = drawing;
-        found.library = path;
+        found.path = path;
     }
     return found;
 }
@@ -78,13 +78,13 @@ Finding findingOf(const UnseenProgram& program) {
 std::string describe(const Finding& f) {
     switch (f.drawing) {
     case Drawing::OwnGl:
-        return f.program + " draws by " + f.library + ", which GLVND does not lead to, and so past Mural; its window shows its own picture. "
+        return f.program + " draws by " + f.path + ", which GLVND does not lead to, and so past Mural; its window shows its own picture. "
                "Run it with --front preload, or without that library (LD_LIBRARY_PATH)";
     case Drawing::OffScreen:
-        return f.program + " draws by OSMesa (" + f.library + ") into its own memory, where Mural sees nothing; "
+        return f.program + " draws by OSMesa (" + f.path + ") into its own memory, where Mural sees nothing; "
                "its window shows its own picture. Run a build of it that uses GLX or EGL";
     case Drawing::Vulkan:
-        return f.program + " seems to draw by Vulkan (" + f.library + "), which Mural does not carry; "
+        return f.program + " seems to draw by Vulkan (" + f.path + "), which Mural does not carry; "
                "its window shows its own picture. Choose OpenGL in its options";
     case Drawing::X11:
         if (f.glvnd) return {};

@@ -128,7 +128,7 @@ std::string withCapture(std::string_view preload, std::string_view entries) {
 }
 
 Result<void> addCapture(Environment& environment, const CaptureLibrary& library, const std::string& session, Fronts fronts) {
-    const std::string folder = library.library.substr(0, library.library.rfind('/'));
+    const std::string folder = library.path.substr(0, library.path.rfind('/'));
     if (folder.find_first_of(":;") != std::string::npos) {
         return Error{"the folder " + folder + " has a ':' or ';' in its name, which the loader cannot take; move Mural elsewhere"};
     }

@@ -28,7 +28,7 @@ private:
 
 // Where the capture library is; found relative to the mural binary.
 struct CaptureLibrary {
-    std::string library;       // …/libGLX_mural.so.0
+    std::string path;          // …/libGLX_mural.so.0
     std::string eglVendorFile; // …/mural_egl_vendor.json
 };
 constexpr std::string_view kCaptureLibraryName = "libGLX_mural.so.0";

@@ -1,4 +1,4 @@
-"""A private X server for the tests, found by its own choice of a free number."""
+"""A private X server for tests and measurements, found by its own choice of a free number."""
 
 import os
 import select

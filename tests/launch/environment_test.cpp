@@ -10,15 +10,15 @@ namespace {
 const CaptureLibrary kLibrary{"/opt/mural/lib/libGLX_mural.so.0", "/opt/mural/lib/mural_egl_vendor.json"};
 
 TEST(Preload, keepsOthersAndComesLast) {
-    EXPECT_EQ(withCapture("", kLibrary.library), kLibrary.library);
-    EXPECT_EQ(withCapture("/a.so", kLibrary.library), "/a.so " + kLibrary.library);
-    EXPECT_EQ(withCapture("/a.so:/b.so  c.so", kLibrary.library), "/a.so /b.so c.so " + kLibrary.library);
+    EXPECT_EQ(withCapture("", kLibrary.path), kLibrary.path);
+    EXPECT_EQ(withCapture("/a.so", kLibrary.path), "/a.so " + kLibrary.path);
+    EXPECT_EQ(withCapture("/a.so:/b.so  c.so", kLibrary.path), "/a.so /b.so c.so " + kLibrary.path);
 }
 
 TEST(Preload, isIdempotentAndRemovesAnEarlierMural) {
-    const std::string once = withCapture("/a.so", kLibrary.library);
-    EXPECT_EQ(withCapture(once, kLibrary.library), once);
-    EXPECT_EQ(withCapture("/old/libGLX_mural.so.0 /a.so", kLibrary.library), once);
+    const std::string once = withCapture("/a.so", kLibrary.path);
+    EXPECT_EQ(withCapture(once, kLibrary.path), once);
+    EXPECT_EQ(withCapture("/old/libGLX_mural.so.0 /a.so", kLibrary.path), once);
     EXPECT_EQ(withoutCapture("/old/libGLX_mural.so.0:/a.so:libGLX_mural.so.0"), "/a.so");
     EXPECT_EQ(withoutCapture("/x/notlibGLX_mural.so.0"), "/x/notlibGLX_mural.so.0");
 }
@@ -38,7 +38,7 @@ TEST(Environment, setReplacesAndGetWantsTheWholeName) {
 TEST(CaptureEnvironment, setsAllThatBothFrontsNeed) {
     Environment e({"LD_PRELOAD=/grab.so"});
     ASSERT_TRUE(addCapture(e, kLibrary, "mural-1").ok());
-    EXPECT_EQ(e.get("LD_PRELOAD"), "/grab.so " + kLibrary.library);
+    EXPECT_EQ(e.get("LD_PRELOAD"), "/grab.so " + kLibrary.path);
     EXPECT_EQ(e.get("__GLX_VENDOR_LIBRARY_NAME"), "mural");
     EXPECT_EQ(e.get("__EGL_VENDOR_LIBRARY_FILENAMES"), kLibrary.eglVendorFile);
     EXPECT_EQ(e.get("MURAL_SESSION"), "mural-1");
@@ -47,14 +47,14 @@ TEST(CaptureEnvironment, setsAllThatBothFrontsNeed) {
 }
 
 TEST(CaptureEnvironment, preloadsTheSecondFrontOnlyWhenAsked) {
-    const std::string both = kLibrary.library + " /opt/mural/lib/libmural_front.so";
+    const std::string both = kLibrary.path + " /opt/mural/lib/libmural_front.so";
     Environment e({"LD_PRELOAD=/grab.so"});
     ASSERT_TRUE(addCapture(e, kLibrary, "mural-1", Fronts::VendorAndPreload).ok());
     EXPECT_EQ(e.get("LD_PRELOAD"), "/grab.so " + both);
     ASSERT_TRUE(addCapture(e, kLibrary, "mural-1", Fronts::VendorAndPreload).ok());
     EXPECT_EQ(e.get("LD_PRELOAD"), "/grab.so " + both);
     ASSERT_TRUE(addCapture(e, kLibrary, "mural-1").ok());
-    EXPECT_EQ(e.get("LD_PRELOAD"), "/grab.so " + kLibrary.library);
+    EXPECT_EQ(e.get("LD_PRELOAD"), "/grab.so " + kLibrary.path);
 }
 
 TEST(CaptureEnvironment, keepsTheUsersVendorsAlsoWhenAddedTwice) {
@@ -99,9 +99,9 @@ TEST(CaptureLibraryPlace, isFoundInTheBuildTreeAndInstalled) {
     std::filesystem::create_directories(folder.at("lib/mural"));
     EXPECT_FALSE(findCaptureLibrary(folder.at("bin/mural")).ok());
     folder.file("lib/mural/libGLX_mural.so.0", "", 0644);
-    EXPECT_EQ(findCaptureLibrary(folder.at("bin/mural")).value().library, folder.at("lib/mural/libGLX_mural.so.0"));
+    EXPECT_EQ(findCaptureLibrary(folder.at("bin/mural")).value().path, folder.at("lib/mural/libGLX_mural.so.0"));
     folder.file("lib/libGLX_mural.so.0", "", 0644);
-    EXPECT_EQ(findCaptureLibrary(folder.at("bin/mural")).value().library, folder.at("lib/libGLX_mural.so.0"));
+    EXPECT_EQ(findCaptureLibrary(folder.at("bin/mural")).value().path, folder.at("lib/libGLX_mural.so.0"));
 }
 
 } // namespace

@@ -75,9 +75,9 @@ Check checkCaptureLibrary() {
     auto library = launch::findCaptureLibrary(launch::ownBinary());
     if (!library) return {Health::Bad, "library", library.error().message, "build or install all of Mural"};
     if (access(library->eglVendorFile.c_str(), R_OK) != 0) {
-        return {Health::Warn, "library", library->library + ", without " + library->eglVendorFile, "programs that use EGL are not captured; build or install all of Mural"};
+        return {Health::Warn, "library", library->path + ", without " + library->eglVendorFile, "programs that use EGL are not captured; build or install all of Mural"};
     }
-    return {Health::Ok, "library", library->library, {}};
+    return {Health::Ok, "library", library->path, {}};
 }
 
 Check checkPreload() {
@@ -95,10 +95,10 @@ Check checkPreload() {
     if (!child) return {Health::Bad, "preload", child.error().message, "check the installation"};
     if (!child->waitUntil(Deadline::inMs(kPreloadMs))) {
         child->end(Deadline::inMs(0));
-        return {Health::Bad, "preload", "a program with the library does not come to its end", "run: LD_DEBUG=libs LD_PRELOAD=" + library->library + " true"};
+        return {Health::Bad, "preload", "a program with the library does not come to its end", "run: LD_DEBUG=libs LD_PRELOAD=" + library->path + " true"};
     }
     if (child->exitStatus() != 0) {
-        return {Health::Bad, "preload", "the loader does not take the library (" + child->describeEnd() + ")", "run: LD_PRELOAD=" + library->library + " true, and read what the loader says"};
+        return {Health::Bad, "preload", "the loader does not take the library (" + child->describeEnd() + ")", "run: LD_PRELOAD=" + library->path + " true, and read what the loader says"};
     }
     return {Health::Ok, "preload", "the loader takes the library into programs", {}};
 }

@@ -6,13 +6,13 @@
 #include <glvnd/libeglabi.h>
 
 #include "interposer/preload/thunks.hpp"
+#include "tests/programs/own_gl/mesa_dispatch.hpp"
 
 namespace mural {
 
 namespace {
 
 using EglLookup = void*(const char*);
-using GlLookup = Entry(const char*);
 
 __EGLapiExports exports;
 __EGLapiImports imports;
@@ -24,15 +24,6 @@ EglLookup* findEgl() {
     if (!main || !main(EGL_VENDOR_ABI_VERSION, &exports, nullptr, &imports)) std::abort();
     return imports.getProcAddress;
 }
-
-GlLookup* findGl() {
-    void* dispatch = dlopen("libglapi.so.0", RTLD_NOW);
-    auto* lookup = dispatch ? reinterpret_cast<GlLookup*>(dlsym(dispatch, "_glapi_get_proc_address")) : nullptr;
-    if (!lookup) std::abort();
-    return lookup;
-}
-
-void nothing() {}
 
 } // namespace
 

@@ -7,13 +7,13 @@
 #include <glvnd/libglxabi.h>
 
 #include "interposer/preload/thunks.hpp"
+#include "tests/programs/own_gl/mesa_dispatch.hpp"
 
 namespace mural {
 
 namespace {
 
 using GlxLookup = void*(const unsigned char*);
-using GlLookup = Entry(const char*);
 
 // What libGLX would hand to the vendor; Mesa uses it only in its dispatch functions, which nobody asks for.
 __GLXapiExports exports;
@@ -26,15 +26,6 @@ GlxLookup* findGlx() {
     if (!main || !main(GLX_VENDOR_ABI_VERSION, &exports, nullptr, &imports)) std::abort();
     return imports.getProcAddress;
 }
-
-GlLookup* findGl() {
-    void* dispatch = dlopen("libglapi.so.0", RTLD_NOW);
-    auto* lookup = dispatch ? reinterpret_cast<GlLookup*>(dlsym(dispatch, "_glapi_get_proc_address")) : nullptr;
-    if (!lookup) std::abort();
-    return lookup;
-}
-
-void nothing() {}
 
 Entry lookUp(const char* name) {
     static GlxLookup* glx = findGlx();
