@@ -273,7 +273,7 @@ Result<void> HeadSession::nodeFrameDone(int node, const wire::FrameDoneMessage& 
 void HeadSession::sayDrawnWhole() {
     if (drawnWhole_.exchange(true)) return;
     control_.say(config_.tiling == Tiling::Lean
-                     ? "fragment shaders write to memory: with --tiling lean each node writes its own tile's part only; use --tiling exact"
+                     ? "fragment shaders write to memory: every node draws all of what they draw, into framebuffers of the window's size: tiling lean saves nothing there"
                      : "fragment shaders write to memory: every node draws all of what they draw; more nodes do not make that faster");
 }
 

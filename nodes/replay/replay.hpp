@@ -58,7 +58,7 @@ struct ReplayOutputs {
         uint32_t client, window, frame;
         wire::WindowConfig config;
         PixelViewport region; // this node's part
-        bool drawnWhole;      // fragment shaders write to memory: not cut to the part (lean: cut, and wrong)
+        bool drawnWhole;      // fragment shaders write to memory: not cut to the part
         std::function<const std::byte*(const PixelViewport&)> pixels;
     };
     std::function<void(const Frame&)> frameDone;
@@ -118,6 +118,8 @@ public:
 private:
     struct Window {
         bool destroyed = false; // freed when it is current nowhere
+        bool lean = false;      // the framebuffer has the region's size
+        bool widens = true;     // to the window's size, when that is needed; not when that has failed
         wire::WindowConfig config{};
         std::unique_ptr<gl::Surface> surface;
         std::unique_ptr<gl::Context> filler; // draws depth and stencil where the program's context can't
@@ -144,6 +146,7 @@ private:
         std::unordered_map<GLuint, List> lists;
         NameTable framebuffersOfAll;
         std::unordered_map<GLuint, bool> memoryWriters; // by our name: programs that were asked since their link
+        bool memoryWritten = false; // one of them writes (asked at the link with tiling lean only)
         TiledPrograms tiled;
     };
     struct Scissor {
@@ -321,6 +324,8 @@ private:
     void programChanged();
     void programLinked(GLuint ours);
     bool writesMemory(GLuint ours);
+    void widenToWindow(Window& w);
+    void copyTile(const Window& w, gl::Surface& from);
     bool drawnWhole_ = false; // since the last frame, fragment shaders that write to memory were current
     // replay_color_masks.cpp
     [[nodiscard]] bool hidesAlpha() const;
@@ -347,6 +352,8 @@ private:
     void copyLevel(GLint x, GLint y, GLsizei w, GLsizei h, const std::function<void(GLint, GLint)>& call);
     // replay_tiling.cpp
     [[nodiscard]] PixelViewport origin() const; // of this node's framebuffer in the window (lean)
+    [[nodiscard]] bool drawsLean() const { return c_->draw ? c_->draw->lean : config_.lean; }
+    [[nodiscard]] bool readsLean() const { return c_->read && c_->read->lean; }
     void applyScissors();
     bool tileOff_ = false; // withoutTile is running
     void applyScissor(int index, bool all);

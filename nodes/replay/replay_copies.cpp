@@ -67,7 +67,7 @@ void Replay::gatherDepthStencil(Gathered& g, GLbitfield plane, const void* pixel
 
 // Runs a copy that reads `source` of the read framebuffer; the call gets what to add to its coordinates.
 void Replay::fromWindow(const PixelViewport& source, const std::function<void(GLint, GLint)>& call) {
-    if (!config_.lean || c_->readFramebuffer != 0 || !c_->read) return call(0, 0);
+    if (!readsLean() || c_->readFramebuffer != 0) return call(0, 0);
     const PixelViewport box = c_->gathered.box;
     if (box.empty() || c_->compiling || !box.contains(intersect(source, c_->read->whole))) return call(-c_->read->region.x, -c_->read->region.y);
     const bool separate = c_->version >= 30 || c_->api == wire::Api::Desktop;

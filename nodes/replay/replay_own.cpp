@@ -148,7 +148,10 @@ bool Replay::ownWindow(Args& in) {
     const auto* config = in.fixed<wire::WindowConfig>(sizeof(wire::WindowConfig));
     if (!in.ok() || config->width > 1 << 20 || config->height > 1 << 20) return false;
     auto& slot = clients_[wire::clientOf(stream_)].windows[id];
-    if (!slot) slot = std::make_unique<Window>();
+    if (!slot) {
+        slot = std::make_unique<Window>();
+        slot->lean = config_.lean;
+    }
     Window& w = *slot;
     w.destroyed = false; // the program has bound it again
     w.config = *config;
@@ -161,7 +164,7 @@ bool Replay::ownWindow(Args& in) {
         const int32_t x0 = w.region.x / 64 * 64, y0 = w.region.y / 64 * 64;
         w.drawn = intersect({x0, y0, (w.region.right() + 63) / 64 * 64 - x0, (w.region.top() + 63) / 64 * 64 - y0}, w.whole);
     }
-    const PixelViewport size = config_.lean ? w.region : w.whole;
+    const PixelViewport size = w.lean ? w.region : w.whole;
     if (w.surface && w.surface->width() == std::max(size.w, 1) && w.surface->height() == std::max(size.h, 1)) return true;
     auto made = platform_->createSurface(surfaceConfig(*config, std::max(size.w, 1), std::max(size.h, 1)));
     if (!made) {

@@ -21,11 +21,11 @@ void Replay::applyTileValues() {
     if (c_->draw && rewrites().any() && !drawsWhole()) {
         TilePlace place;
         place.window = c_->draw->whole;
-        place.tile = config_.lean ? c_->draw->region : c_->draw->drawn;
+        place.tile = drawsLean() ? c_->draw->region : c_->draw->drawn;
         place.viewport = c_->viewports[0];
         place.marginPixels = c_->cullMargin;
         place.mayCull = config_.cull && !c_->lineStippled && !c_->clippingCounted;
-        place.translated = config_.lean;
+        place.translated = drawsLean();
         values = tileValues(place);
     }
     if (c_->program) c_->shared->tiled.apply(gl, name(Kind::Program, c_->program), values);

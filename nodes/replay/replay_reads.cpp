@@ -14,7 +14,7 @@ const std::byte* Replay::readRegion(const PixelViewport& r, GLenum format, GLenu
     if (r.empty() || !gl.glReadPixels) return pixels_.data();
     if (c_->packBuffer) gl.glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
     packTightly(true);
-    const bool window = config_.lean && c_->readFramebuffer == 0 && c_->read;
+    const bool window = readsLean() && c_->readFramebuffer == 0;
     const PixelViewport o = window ? c_->read->region : PixelViewport{};
     const int32_t planted = config_.plant == "shift" && c_->readFramebuffer == 0 && r.x > 0 ? 1 : 0;
     gl.glReadPixels(r.x - o.x - planted, r.y - o.y, r.w, r.h, format, type, pixels_.data());
@@ -171,7 +171,7 @@ const std::byte* Replay::readResolved(const PixelViewport& r, GLenum format, siz
     gl.glDisable(GL_SCISSOR_TEST);
     const bool srgb = c_->api == wire::Api::Desktop && gl.glIsEnabled(GL_FRAMEBUFFER_SRGB);
     if (srgb) gl.glDisable(GL_FRAMEBUFFER_SRGB);
-    const PixelViewport o = config_.lean ? c_->read->region : PixelViewport{};
+    const PixelViewport o = readsLean() ? c_->read->region : PixelViewport{};
     gl.glBlitFramebuffer(r.x - o.x, r.y - o.y, r.right() - o.x, r.top() - o.y, 0, 0, r.w, r.h, GL_COLOR_BUFFER_BIT, GL_NEAREST);
     if (srgb) gl.glEnable(GL_FRAMEBUFFER_SRGB);
     gl.glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
@@ -195,7 +195,7 @@ bool Replay::ownFillWindow(Args& in) {
     const Data data = in.data();
     const uint64_t bytesPer = plane == GL_STENCIL_BUFFER_BIT ? 1 : 4;
     if (!in.ok() || w <= 0 || h <= 0 || data.absent() || data.isOffset() || data.size() / bytesPer / uint64_t(w) < uint64_t(h) || x > INT32_MAX - w || y > INT32_MAX - h) return false;
-    if (bound_ && c_->read && config_.lean) {
+    if (bound_ && readsLean()) {
         gatherForCopy({x, y, w, h}, plane, data.pointer());
         return true;
     }
@@ -233,7 +233,7 @@ void Replay::fillColor(const PixelViewport& r, const void* rgba) {
     gl.glDisable(GL_SCISSOR_TEST);
     const GLboolean srgb = c_->api == wire::Api::Desktop && gl.glIsEnabled(GL_FRAMEBUFFER_SRGB);
     if (srgb) gl.glDisable(GL_FRAMEBUFFER_SRGB);
-    const PixelViewport o = config_.lean ? c_->read->region : PixelViewport{};
+    const PixelViewport o = readsLean() ? c_->read->region : PixelViewport{};
     const int32_t x = r.x - o.x, y = r.y - o.y;
     gl.glBlitFramebuffer(0, 0, r.w, r.h, x, y, x + r.w, y + r.h, GL_COLOR_BUFFER_BIT, GL_NEAREST);
     if (srgb) gl.glEnable(GL_FRAMEBUFFER_SRGB);

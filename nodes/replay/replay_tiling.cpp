@@ -38,7 +38,7 @@ bool knows(wire::Api api, int version, int i, bool pack) {
 } // namespace
 
 PixelViewport Replay::origin() const {
-    if (!config_.lean || c_->drawFramebuffer != 0 || !c_->draw) return {};
+    if (!drawsLean() || c_->drawFramebuffer != 0 || !c_->draw) return {};
     return c_->draw->region;
 }
 
@@ -48,7 +48,7 @@ void Replay::applyScissor(int index, bool all) {
     PixelViewport box = app.box;
     if (!drawsWhole() && c_->draw) {
         const PixelViewport part = c_->draw->drawn;
-        if (config_.lean) { // the framebuffer's edges are the tile's
+        if (drawsLean()) { // the framebuffer's edges are the tile's
             box.x = moved(box.x, c_->draw->region.x);
             box.y = moved(box.y, c_->draw->region.y);
         } else {
@@ -74,7 +74,7 @@ void Replay::applyScissors() {
 }
 
 void Replay::withoutTile(const std::function<void()>& call) {
-    const bool cut = drawsWindow() && c_->draw && !config_.lean && c_->draw->drawn != c_->draw->whole;
+    const bool cut = drawsWindow() && c_->draw && !drawsLean() && c_->draw->drawn != c_->draw->whole;
     if (!cut || c_->compiling) return call();
     tileOff_ = true;
     applyScissors();
@@ -100,6 +100,8 @@ void Replay::applyViewports() {
 // After another context, framebuffer or window became current.
 void Replay::restoreWindowState() {
     if (!bound_ || !c_->everCurrent) return;
+    const bool needsAll = drawsLean() && c_->draw && c_->shared && c_->shared->memoryWritten;
+    if (needsAll && c_->draw->widens && !c_->compiling) widenToWindow(*c_->draw);
     applyScissors();
     applyColorMasks();
     if (config_.lean) applyViewports();

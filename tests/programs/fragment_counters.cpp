@@ -37,6 +37,18 @@ void drawCounted(int frame) {
     glDeleteBuffers(1, &sums);
 }
 
+void makeCounting() {
+    counting = buildProgram(
+        {{GL_VERTEX_SHADER, "#version 430\nlayout(location=0) uniform float shift; void main() { vec2 c = vec2(gl_VertexID & 1, gl_VertexID >> 1);\n"
+                            "gl_Position = vec4(c * 1.4 - 0.9 + shift, 0, 1); }\n"},
+         {GL_FRAGMENT_SHADER, R"(#version 430
+        layout(binding=0, offset=0) uniform atomic_uint drawn; layout(binding=0, offset=4) uniform atomic_uint bright;
+        layout(std430, binding=3) buffer Sums { uint sum; uint columns[64]; };
+        out vec4 result; void main() { atomicCounterIncrement(drawn); uint x = uint(gl_FragCoord.x);
+        if ((x & 4u) != 0u) atomicCounterIncrement(bright); atomicAdd(sum, x & 3u); atomicMax(columns[x & 63u], uint(gl_FragCoord.y));
+        result = vec4(float(x & 7u) / 7.0, 0.4, 0.5, 1); })"}});
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -49,19 +61,18 @@ int main(int argc, char** argv) {
             glGenVertexArrays(1, &vertexArray);
             glBindVertexArray(vertexArray);
             glGenBuffers(1, &counterBuffer);
-            counting = buildProgram(
-                {{GL_VERTEX_SHADER, "#version 430\nlayout(location=0) uniform float shift; void main() { vec2 c = vec2(gl_VertexID & 1, gl_VertexID >> 1);\n"
-                                    "gl_Position = vec4(c * 1.4 - 0.9 + shift, 0, 1); }\n"},
-                 {GL_FRAGMENT_SHADER, R"(#version 430
-        layout(binding=0, offset=0) uniform atomic_uint drawn; layout(binding=0, offset=4) uniform atomic_uint bright;
-        layout(std430, binding=3) buffer Sums { uint sum; uint columns[64]; };
-        out vec4 result; void main() { atomicCounterIncrement(drawn); uint x = uint(gl_FragCoord.x);
-        if ((x & 4u) != 0u) atomicCounterIncrement(bright); atomicAdd(sum, x & 3u); atomicMax(columns[x & 63u], uint(gl_FragCoord.y));
-        result = vec4(float(x & 7u) / 7.0, 0.4, 0.5, 1); })"}});
         },
-        [](Window&, int frame) {
+        [](Window& window, int frame) {
             glClearColor(0.1F, 0.12F, 0.1F, 1);
             glClear(GL_COLOR_BUFFER_BIT);
-            drawCounted(frame);
+            for (int i = 0; i < 9; ++i) {
+                fillRectangle(window.width() * i / 9, window.height() * i / 9, 25, 15, {0.9F, float(i) / 9, 0.2F});
+            }
+            if (frame == 1) {
+                makeCounting(); // in the middle of a picture: what is drawn stays
+            }
+            if (frame > 0) {
+                drawCounted(frame);
+            }
         });
 }
