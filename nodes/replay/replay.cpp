@@ -109,6 +109,7 @@ bool Replay::bindStream(Stream& s) {
     const auto made = platform_->makeCurrent(s.context->context.get(), s.draw ? s.draw->surface.get() : nullptr, s.read ? s.read->surface.get() : nullptr);
     if (!made) {
         out_.log("a context can't be made current: " + made.error().message);
+        unbindPlatform(); // what is current after that, no driver tells
         c_ = none_.get();
         return true;
     }

@@ -2,6 +2,8 @@
 
 #include <GL/gl.h>
 #include <GL/glext.h>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <string>
 #include <unordered_map>
@@ -18,6 +20,7 @@ struct State {
     GLuint lastName = 0;
     GLint elementBuffer = 0, unpackBuffer = 0, packBuffer = 0;
     GLint maxSurface = 4096;
+    bool current = false; // a context is
 };
 State state;
 
@@ -109,24 +112,33 @@ void invalidate(GLenum, GLsizei n, const GLenum* attachments) { touch(attachment
 void texParameterfv(GLenum, GLenum name, const GLfloat* values) { touch(values, name == GL_TEXTURE_BORDER_COLOR ? 16 : 4); }
 void lightfv(GLenum, GLenum name, const GLfloat* values) { touch(values, name >= GL_AMBIENT && name <= GL_POSITION ? 16 : 4); }
 
-template <class F> gl::Proc proc(F* function) { return reinterpret_cast<gl::Proc>(function); }
+// Without a context GL does nothing, but libepoxy ends the process.
+template <auto function> struct InContext;
+template <class R, class... Arguments, R (*function)(Arguments...)> struct InContext<function> {
+    static R call(Arguments... arguments) {
+        if (state.current) return function(arguments...);
+        std::fputs("fake_gl: the replay calls GL while no context is current\n", stderr);
+        std::abort();
+    }
+};
+template <auto function> gl::Proc proc() { return reinterpret_cast<gl::Proc>(InContext<function>::call); }
 
 const std::unordered_map<std::string, gl::Proc>& special() {
     static const std::unordered_map<std::string, gl::Proc> table = {
-        {"glGetIntegerv", proc(getIntegerv)}, {"glGetQueryObjectui64v", proc(getUniform64)}, {"glGetQueryObjectuiv", proc(getUniform32)},
-        {"glGetUniformLocation", proc(uniformLocation)}, {"glBindBuffer", proc(bindBuffer)}, {"glBufferData", proc(bufferData)},
-        {"glBufferSubData", proc(bufferSubData)}, {"glTexImage2D", proc(texImage2d)}, {"glTexSubImage2D", proc(texSubImage2d)},
-        {"glTexImage3D", proc(texImage3d)}, {"glDrawPixels", proc(drawPixels)}, {"glBitmap", proc(bitmap)},
-        {"glPolygonStipple", proc(polygonStipple)}, {"glReadPixels", proc(readPixels)}, {"glGetnTexImageARB", proc(getTexImage)},
-        {"glGetnTexImage", proc(getTexImage)}, {"glGetTextureImage", proc(getTexImage)}, {"glDrawElements", proc(drawElements)},
-        {"glMultiDrawElements", proc(multiDrawElements)}, {"glMultiDrawArrays", proc(multiDrawArrays)}, {"glShaderSource", proc(shaderSource)},
-        {"glCreateShaderProgramv", proc(createShaderProgram)}, {"glUniform4fv", proc(uniform4fv)}, {"glUniformMatrix4fv", proc(uniformMatrix4fv)},
-        {"glUniformMatrix4dv", proc(uniformMatrix4dv)}, {"glLoadMatrixd", proc(readFixed<128>)}, {"glMultMatrixf", proc(readFixed<64>)},
-        {"glWindowPos2fv", proc(readFixed<8>)}, {"glWindowPos3dv", proc(readFixed<24>)}, {"glWindowPos4dvMESA", proc(readFixed<32>)},
-        {"glVertex3fv", proc(readFixed<12>)}, {"glDrawBuffers", proc(drawBuffers)}, {"glInvalidateFramebuffer", proc(invalidate)},
-        {"glTexParameterfv", proc(texParameterfv)}, {"glLightfv", proc(lightfv)}, {"glFenceSync", proc(makeFence)},
-        {"glGenLists", proc(makeLists)}, {"glCreateShader", proc(makeOne)}, {"glCreateProgram", proc(makeOne)},
-        {"glCreateTextures", proc(makeNamesOf)}, {"glCreateQueries", proc(makeNamesOf)}};
+        {"glGetIntegerv", proc<getIntegerv>()}, {"glGetQueryObjectui64v", proc<getUniform64>()}, {"glGetQueryObjectuiv", proc<getUniform32>()},
+        {"glGetUniformLocation", proc<uniformLocation>()}, {"glBindBuffer", proc<bindBuffer>()}, {"glBufferData", proc<bufferData>()},
+        {"glBufferSubData", proc<bufferSubData>()}, {"glTexImage2D", proc<texImage2d>()}, {"glTexSubImage2D", proc<texSubImage2d>()},
+        {"glTexImage3D", proc<texImage3d>()}, {"glDrawPixels", proc<drawPixels>()}, {"glBitmap", proc<bitmap>()},
+        {"glPolygonStipple", proc<polygonStipple>()}, {"glReadPixels", proc<readPixels>()}, {"glGetnTexImageARB", proc<getTexImage>()},
+        {"glGetnTexImage", proc<getTexImage>()}, {"glGetTextureImage", proc<getTexImage>()}, {"glDrawElements", proc<drawElements>()},
+        {"glMultiDrawElements", proc<multiDrawElements>()}, {"glMultiDrawArrays", proc<multiDrawArrays>()}, {"glShaderSource", proc<shaderSource>()},
+        {"glCreateShaderProgramv", proc<createShaderProgram>()}, {"glUniform4fv", proc<uniform4fv>()}, {"glUniformMatrix4fv", proc<uniformMatrix4fv>()},
+        {"glUniformMatrix4dv", proc<uniformMatrix4dv>()}, {"glLoadMatrixd", proc<readFixed<128>>()}, {"glMultMatrixf", proc<readFixed<64>>()},
+        {"glWindowPos2fv", proc<readFixed<8>>()}, {"glWindowPos3dv", proc<readFixed<24>>()}, {"glWindowPos4dvMESA", proc<readFixed<32>>()},
+        {"glVertex3fv", proc<readFixed<12>>()}, {"glDrawBuffers", proc<drawBuffers>()}, {"glInvalidateFramebuffer", proc<invalidate>()},
+        {"glTexParameterfv", proc<texParameterfv>()}, {"glLightfv", proc<lightfv>()}, {"glFenceSync", proc<makeFence>()},
+        {"glGenLists", proc<makeLists>()}, {"glCreateShader", proc<makeOne>()}, {"glCreateProgram", proc<makeOne>()},
+        {"glCreateTextures", proc<makeNamesOf>()}, {"glCreateQueries", proc<makeNamesOf>()}};
     return table;
 }
 
@@ -160,6 +172,7 @@ public:
         for (const gl::Surface* s : {draw_, read_, static_cast<const gl::Surface*>(draw), static_cast<const gl::Surface*>(read)}) {
             if (s) sink = static_cast<uint8_t>(s->width());
         }
+        state.current = context != nullptr;
         draw_ = context ? draw : nullptr;
         read_ = context ? read : nullptr;
         return {};
@@ -168,10 +181,10 @@ public:
         const std::string name = text;
         if (const auto it = special().find(name); it != special().end()) return it->second;
         if (name.starts_with("glGen") && name != "glGenerateMipmap" && name.find("Symbols") == std::string::npos && !name.starts_with("glGenerate") && name != "glGenPathsNV" && name != "glGenAsyncMarkersSGIX" && name != "glGenFragmentShadersATI" && name != "glGenVertexShadersEXT")
-            return proc(makeNames);
-        if (name.starts_with("glCreate") && name.ends_with("s")) return proc(makeNames);
-        if (name.starts_with("glDelete") && name.ends_with("s") && name != "glDeleteLists") return proc(readNames);
-        return proc(nothing);
+            return proc<makeNames>();
+        if (name.starts_with("glCreate") && name.ends_with("s")) return proc<makeNames>();
+        if (name.starts_with("glDelete") && name.ends_with("s") && name != "glDeleteLists") return proc<readNames>();
+        return proc<nothing>();
     }
     [[nodiscard]] std::string describe() const override { return "no GL at all"; }
 

@@ -1,6 +1,6 @@
 // A platform without GL: its functions do nothing but what callers rely on (names are made, answers
 // are written) and read as many bytes behind their pointers as GL would, so that a sanitizer sees a
-// length that was not checked.
+// length that was not checked. Called without a current context they end the process.
 #pragma once
 
 #include <memory>

@@ -197,6 +197,33 @@ void threads(Seed& s) {
     s.begin(1, 1);
 }
 
+// All that is not GL's own, while no context is current any more.
+void released(Seed& s) {
+    s.begin();
+    encode_glClear(s.t(), GL_COLOR_BUFFER_BIT);
+    records::makeCurrent(s.t(), 0, 0, 0);
+    records::destroyContext(s.t(), 1);
+    static const uint32_t words[64] = {1};
+    records::requestFinish(s.t(), 1);
+    records::swap(s.t(), 1, 1);
+    records::frontPicture(s.t(), 1, 2);
+    records::requestPixels(s.t(), 2, 0, 0, 4, 4, GL_RGBA, GL_UNSIGNED_BYTE, 4);
+    records::requestTexImage(s.t(), 3, 1, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, 64);
+    records::requestQuery(s.t(), 4, 1, GL_QUERY_RESULT);
+    records::requestBuffer(s.t(), 5, 1, 0, 64);
+    records::beginConditional(s.t(), true);
+    records::queryKnown(s.t(), 1, true);
+    records::fillWindow(s.t(), 2, 3, 4, 4, GL_COLOR_BUFFER_BIT, array(words));
+    records::fillWindow(s.t(), 2, 3, 4, 4, GL_DEPTH_BUFFER_BIT, array(words));
+    records::bufferBytes(s.t(), 1, 0, array(words));
+    records::programLayout(s.t(), 1, array(words));
+    const client_arrays::ArrayRecord arrays[] = {{client_arrays::kVertex, 3, GL_FLOAT, 0, 12, 0, 0, 0, 3}};
+    const DataArg spans[] = {array(words)};
+    records::clientArrays(s.t(), arrays, 1, spans, 1);
+    encode_glClear(s.t(), GL_COLOR_BUFFER_BIT);
+    records::destroyWindow(s.t(), 1);
+}
+
 } // namespace
 } // namespace mural
 
@@ -207,7 +234,8 @@ int main(int argc, char** argv) {
     }
     const struct { const char* name; void (*make)(mural::Seed&); } seeds[] = {
         {"immediate", mural::immediate}, {"lists", mural::lists}, {"objects", mural::objects},
-        {"shaders", mural::shaders}, {"client_memory", mural::clientMemory}, {"threads", mural::threads}};
+        {"shaders", mural::shaders}, {"client_memory", mural::clientMemory}, {"threads", mural::threads},
+        {"released", mural::released}};
     for (const auto& [name, make] : seeds) {
         for (const int options : {2, 7}) { // exact tiles; lean tiles with one colour buffer
             mural::Seed seed(static_cast<uint8_t>(options));
