@@ -11,6 +11,7 @@
 
 #include "nodes/gl/backends.hpp"
 #include "nodes/gl/egl_display.hpp"
+#include "nodes/gl/epoxy_functions.hpp"
 #include "nodes/gl/gl_info.hpp"
 
 namespace mural::gl {
@@ -91,7 +92,7 @@ public:
     Result<std::unique_ptr<Surface>> createSurface(const SurfaceConfig& wish) override;
     Result<std::unique_ptr<Context>> createContext(const ContextConfig& wish, Context* shareWith) override;
     Result<void> makeCurrent(Context* context, Surface* draw, Surface* read) override;
-    Proc getProcAddress(const char* name) override { return display_->egl.getProcAddress(name); }
+    Proc getProcAddress(const char* name) override { return throughEpoxy(name, display_->egl.getProcAddress(name)); }
     [[nodiscard]] std::string describe() const override {
         return "EGL " + display_->where + ", " + renderer_ + ", " + version_;
     }

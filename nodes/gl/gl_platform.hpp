@@ -66,7 +66,7 @@ public:
     virtual Result<void> makeCurrent(Context* context, Surface* draw, Surface* read) = 0;
     // True: surfaces can have an accumulation buffer.
     [[nodiscard]] virtual bool accumulates() const { return false; }
-    // Entry point of the current API, null when unknown.
+    // Entry point of all contexts, null when unknown. May be called only while a context is current.
     virtual Proc getProcAddress(const char* name) = 0;
     [[nodiscard]] virtual std::string describe() const = 0; // e.g. "EGL surfaceless, Mesa 22.3.6"
 };

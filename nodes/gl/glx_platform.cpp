@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "nodes/gl/backends.hpp"
+#include "nodes/gl/epoxy_functions.hpp"
 #include "nodes/gl/gl_info.hpp"
 #include "nodes/gl/glx_display.hpp"
 
@@ -60,7 +61,7 @@ public:
     Result<std::unique_ptr<Context>> createContext(const ContextConfig& wish, Context* shareWith) override;
     Result<void> makeCurrent(Context* context, Surface* draw, Surface* read) override;
     Proc getProcAddress(const char* name) override {
-        return display_->glx.getProcAddress(reinterpret_cast<const GLubyte*>(name));
+        return throughEpoxy(name, display_->glx.getProcAddress(reinterpret_cast<const GLubyte*>(name)));
     }
     [[nodiscard]] bool accumulates() const override { return true; }
     [[nodiscard]] std::string describe() const override {

@@ -15,6 +15,7 @@ import zlib
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
 import emit_common        # noqa: E402
+import emit_epoxy         # noqa: E402
 import emit_front         # noqa: E402
 import emit_interposer    # noqa: E402
 import emit_replay        # noqa: E402
@@ -78,6 +79,7 @@ def main():
     files.update(emit_common.emit(model))
     files.update(emit_interposer.emit(model))
     files.update(emit_replay.emit(model))
+    files.update(emit_epoxy.emit(model))
     if o.glx_registry and o.egl_header:
         files.update(emit_front.emit(model, o.glx_registry, o.egl_header))
     for name, text in files.items():

@@ -65,7 +65,9 @@ class Command:
         self.command_class = None
         self.reason = ''
         self.feature = None
+        self.core = {}               # API: its first version that has the command
         self.extensions = []
+        self.extension_apis = set()  # APIs that an extension of theirs adds the command to
 
     def option(self, key, default=None):
         return self.options.get(key, default)
@@ -191,7 +193,10 @@ def load(gl_xml, semantics):
     for feature in root.findall('feature'):
         for require in feature.findall('require'):
             for c in require.findall('command'):
-                commands[c.get('name')].feature = commands[c.get('name')].feature or feature.get('name')
+                command = commands[c.get('name')]
+                command.feature = command.feature or feature.get('name')
+                api, version = feature.get('api'), float(feature.get('number'))
+                command.core[api] = min(version, command.core.get(api, version))
     root_aliases(commands)
     for pattern, options, number in read_semantics(semantics):
         hit = False
@@ -211,6 +216,7 @@ def load(gl_xml, semantics):
         extensions[ext.get('name')] = (ext.get('supported'), names)
         for n in names:
             commands[n].extensions.append(ext.get('name'))
+            commands[n].extension_apis.update(ext.get('supported').split('|'))
     for c in commands.values():
         c.classify()
     return commands, extensions
