@@ -273,8 +273,8 @@ Result<void> HeadSession::nodeFrameDone(int node, const wire::FrameDoneMessage& 
 void HeadSession::sayDrawnWhole() {
     if (drawnWhole_.exchange(true)) return;
     control_.say(config_.tiling == Tiling::Lean
-                     ? "fragment shaders write to memory: every node draws all of what they draw, into framebuffers of the window's size: tiling lean saves nothing there"
-                     : "fragment shaders write to memory: every node draws all of what they draw; more nodes do not make that faster");
+                     ? "fragment shaders write to memory: every node draws all of the picture, into framebuffers of the window's size; tiling lean saves nothing there"
+                     : "fragment shaders write to memory: every node draws all of the picture; more nodes do not make that faster");
 }
 
 Result<void> HeadSession::nodePicture(int node, const wire::PictureHeader& header, ByteBuffer rows) {

@@ -58,7 +58,7 @@ struct ReplayOutputs {
         uint32_t client, window, frame;
         wire::WindowConfig config;
         PixelViewport region; // this node's part
-        bool drawnWhole;      // fragment shaders write to memory: not cut to the part
+        bool drawnWhole;      // fragment shaders write to memory: nothing is cut to the part
         std::function<const std::byte*(const PixelViewport&)> pixels;
     };
     std::function<void(const Frame&)> frameDone;
@@ -146,7 +146,7 @@ private:
         std::unordered_map<GLuint, List> lists;
         NameTable framebuffersOfAll;
         std::unordered_map<GLuint, bool> memoryWriters; // by our name: programs that were asked since their link
-        bool memoryWritten = false; // one of them writes (asked at the link with tiling lean only)
+        bool memoryWritten = false; // one of them writes: every node draws all
         TiledPrograms tiled;
     };
     struct Scissor {
@@ -200,7 +200,6 @@ private:
         std::map<GLenum, GLuint> counting;             // fragments now: the program's query by its target
         bool countsWhole = false;                      // what drawsWhole() was when the last piece began
         bool countedWhole = false;                     // a query that only whole pictures answer is active
-        bool memoryWritten = false;                    // fragment shaders write to memory: every node draws all
         bool conditional = false, conditionMet = false;
         GLuint queryBuffer = 0;                        // our name: results would go there
         GLuint nothingCounted = 0;                     // a query whose result is 0
@@ -324,9 +323,10 @@ private:
     void programChanged();
     void programLinked(GLuint ours);
     bool writesMemory(GLuint ours);
+    void noteMemoryWriter(GLuint ours);
+    [[nodiscard]] bool memoryWritten() const { return c_->shared && c_->shared->memoryWritten; }
     void widenToWindow(Window& w);
     void copyTile(const Window& w, gl::Surface& from);
-    bool drawnWhole_ = false; // since the last frame, fragment shaders that write to memory were current
     // replay_color_masks.cpp
     [[nodiscard]] bool hidesAlpha() const;
     void applyColorMasks();

@@ -1,7 +1,7 @@
 // Fragment shaders that write to memory (atomic counters, shader storage, images): what they leave there
-// must come from all fragments of the picture, on every node. Their draws are not cut to the tile. A tile's
-// framebuffer (lean) has no place for the others' fragments: from the link of such a program on, windows
-// have framebuffers of their own size.
+// must come from all fragments of the picture, on every node. Which these are, depth and stencil decide, which
+// any draw may have written: from the link of such a program on, nothing is cut to the tile. A tile's
+// framebuffer (lean) has no place for that: windows get framebuffers of their own size.
 #include <algorithm>
 #include <utility>
 
@@ -43,8 +43,12 @@ bool Replay::writesMemory(GLuint ours) {
 
 void Replay::programLinked(GLuint ours) {
     if (c_->shared) c_->shared->memoryWriters.erase(ours);
-    if (config_.lean && c_->shared && writesMemory(ours) && !std::exchange(c_->shared->memoryWritten, true)) restoreWindowState();
+    noteMemoryWriter(ours);
     programChanged();
+}
+
+void Replay::noteMemoryWriter(GLuint ours) {
+    if (writesMemory(ours) && !std::exchange(c_->shared->memoryWritten, true)) restoreWindowState();
 }
 
 // From now on the window is drawn as with tiling exact. What its tile holds stays; raster position and
@@ -72,6 +76,11 @@ void Replay::copyTile(const Window& w, gl::Surface& from) {
     gl.glDisable(GL_SCISSOR_TEST);
     const bool srgb = desktop && gl.glIsEnabled(GL_FRAMEBUFFER_SRGB);
     if (srgb) gl.glDisable(GL_FRAMEBUFFER_SRGB);
+    GLboolean deep = GL_TRUE; // what other tiles hold is not known: the program's cleared depth is likely
+    gl.glGetBooleanv(GL_DEPTH_WRITEMASK, &deep);
+    gl.glDepthMask(GL_TRUE);
+    gl.glClear(GL_DEPTH_BUFFER_BIT);
+    gl.glDepthMask(deep);
     const PixelViewport& r = w.region;
     const auto blit = [&](GLbitfield planes) { gl.glBlitFramebuffer(0, 0, r.w, r.h, r.x, r.y, r.right(), r.top(), planes, GL_NEAREST); };
     for (const GLenum buffer : {GL_FRONT, GL_BACK}) {
@@ -98,10 +107,7 @@ void Replay::programChanged() {
         gl.glGetIntegerv(GL_PROGRAM_PIPELINE_BINDING, &pipeline);
         if (pipeline) gl.glGetProgramPipelineiv(static_cast<GLuint>(pipeline), GL_FRAGMENT_SHADER, &fragment);
     }
-    const bool writes = writesMemory(static_cast<GLuint>(fragment));
-    if (writes == std::exchange(c_->memoryWritten, writes)) return;
-    applyScissors();
-    drawnWhole_ = drawnWhole_ || writes;
+    noteMemoryWriter(static_cast<GLuint>(fragment)); // one that was not linked here
 }
 
 } // namespace mural

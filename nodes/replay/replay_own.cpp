@@ -207,7 +207,7 @@ bool Replay::ownSwap(Args& in, bool front) {
     f.client = wire::clientOf(stream_);
     f.window = window;
     f.frame = frame;
-    f.drawnWhole = std::exchange(drawnWhole_, bound_ && bound_->memoryWritten);
+    f.drawnWhole = bound_ && bound_->shared && bound_->shared->memoryWritten;
     ++counts_.frames;
     if (it != windows.end()) {
         Window& w = *it->second;

@@ -20,7 +20,7 @@ bool countsClipping(GLenum target) { return target == GL_CLIPPING_INPUT_PRIMITIV
 
 // True: every node draws the same pixels now, not only its own.
 bool Replay::drawsWhole() const {
-    return !drawsWindow() || (!drawsLean() && (tileOff_ || c_->memoryWritten || c_->countedWhole));
+    return !drawsWindow() || (!drawsLean() && (tileOff_ || memoryWritten() || c_->countedWhole));
 }
 
 // Whoever changes what drawsWhole() says comes by here before anything is drawn.

@@ -9,7 +9,7 @@ using namespace programs;
 
 namespace {
 
-GLuint vertexArray, counting, counterBuffer;
+GLuint vertexArray, plain, counting, counterBuffer;
 
 // Sums that do not depend on the order of fragments.
 void drawCounted(int frame) {
@@ -22,9 +22,14 @@ void drawCounted(int frame) {
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, sums);
     glBufferData(GL_SHADER_STORAGE_BUFFER, sizeof zero, zero, GL_DYNAMIC_COPY);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, sums);
+    glEnable(GL_DEPTH_TEST); // what the depth of other draws hides is not counted
+    glUseProgram(plain);
+    glUniform1f(0, 0.3F);
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
     glUseProgram(counting);
     glUniform1f(0, 0.03F * float(frame));
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    glDisable(GL_DEPTH_TEST);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_ATOMIC_COUNTER_BARRIER_BIT);
     GLuint counts[2] = {};
     GLuint told[65] = {};
@@ -37,12 +42,19 @@ void drawCounted(int frame) {
     glDeleteBuffers(1, &sums);
 }
 
+void makePlain() {
+    plain = buildProgram(
+        {{GL_VERTEX_SHADER, "#version 430\nlayout(location=0) uniform float shift; void main() { vec2 c = vec2(gl_VertexID & 1, gl_VertexID >> 1);\n"
+                            "gl_Position = vec4(c * 0.9 - 0.9 + shift, -0.5, 1); }\n"},
+         {GL_FRAGMENT_SHADER, "#version 430\nout vec4 result; void main() { result = vec4(0.2, 0.8, 0.3, 1); }\n"}});
+}
+
 void makeCounting() {
     counting = buildProgram(
         {{GL_VERTEX_SHADER, "#version 430\nlayout(location=0) uniform float shift; void main() { vec2 c = vec2(gl_VertexID & 1, gl_VertexID >> 1);\n"
                             "gl_Position = vec4(c * 1.4 - 0.9 + shift, 0, 1); }\n"},
          {GL_FRAGMENT_SHADER, R"(#version 430
-        layout(binding=0, offset=0) uniform atomic_uint drawn; layout(binding=0, offset=4) uniform atomic_uint bright;
+        layout(early_fragment_tests) in; layout(binding=0, offset=0) uniform atomic_uint drawn; layout(binding=0, offset=4) uniform atomic_uint bright;
         layout(std430, binding=3) buffer Sums { uint sum; uint columns[64]; };
         out vec4 result; void main() { atomicCounterIncrement(drawn); uint x = uint(gl_FragCoord.x);
         if ((x & 4u) != 0u) atomicCounterIncrement(bright); atomicAdd(sum, x & 3u); atomicMax(columns[x & 63u], uint(gl_FragCoord.y));
@@ -61,10 +73,11 @@ int main(int argc, char** argv) {
             glGenVertexArrays(1, &vertexArray);
             glBindVertexArray(vertexArray);
             glGenBuffers(1, &counterBuffer);
+            makePlain();
         },
         [](Window& window, int frame) {
             glClearColor(0.1F, 0.12F, 0.1F, 1);
-            glClear(GL_COLOR_BUFFER_BIT);
+            glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
             for (int i = 0; i < 9; ++i) {
                 fillRectangle(window.width() * i / 9, window.height() * i / 9, 25, 15, {0.9F, float(i) / 9, 0.2F});
             }
