@@ -9,7 +9,6 @@
 #include <link.h>
 #include <unistd.h>
 
-#include "common/gl_library_names.hpp"
 #include "interposer/log.hpp"
 #include "interposer/session.hpp"
 
@@ -76,31 +75,6 @@ __attribute__((destructor)) void tellLibraries() {
     note(libraries.text, libraries.length);
 }
 
-struct OwnGl {
-    char path[1024];
-};
-
-int findOwnGl(dl_phdr_info* info, size_t, void* into) {
-    const ElfW(Dyn)* dynamic = nullptr;
-    for (int i = 0; i < info->dlpi_phnum; ++i) {
-        if (info->dlpi_phdr[i].p_type == PT_DYNAMIC) dynamic = reinterpret_cast<const ElfW(Dyn)*>(info->dlpi_addr + info->dlpi_phdr[i].p_vaddr);
-    }
-    if (!dynamic || !info->dlpi_name || !info->dlpi_name[0]) return 0;
-    const char* strings = nullptr;
-    for (const ElfW(Dyn)* d = dynamic; d->d_tag != DT_NULL; ++d) {
-        // The loader has made it an address, except in the vDSO.
-        if (d->d_tag == DT_STRTAB && d->d_un.d_ptr > info->dlpi_addr) strings = reinterpret_cast<const char*>(d->d_un.d_ptr);
-    }
-    bool isGl = false;
-    for (const ElfW(Dyn)* d = dynamic; strings && d->d_tag != DT_NULL; ++d) {
-        if (d->d_tag == DT_NEEDED && isGlvndDispatch(strings + d->d_un.d_val)) return 0;
-        if (d->d_tag == DT_SONAME) isGl = isGlLibraryName(strings + d->d_un.d_val);
-    }
-    if (!isGl) return 0;
-    snprintf(static_cast<OwnGl*>(into)->path, sizeof(OwnGl::path), "%s", info->dlpi_name);
-    return 1;
-}
-
 } // namespace
 
 void sayBypass(const char* format, ...) {
@@ -113,11 +87,6 @@ void sayBypass(const char* format, ...) {
     if (length == 0 || note(line, length)) return;
     line[length - 1] = 0;
     say("%s", line + sizeof kPrefix - 1);
-}
-
-const char* loadedOwnGl() {
-    static OwnGl found;
-    return dl_iterate_phdr(findOwnGl, &found) ? found.path : nullptr;
 }
 
 } // namespace mural

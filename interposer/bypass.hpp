@@ -7,7 +7,4 @@ namespace mural {
 // One line for the user.
 void sayBypass(const char* format, ...) __attribute__((format(printf, 1, 2)));
 
-// Path of a loaded GL library that GLVND does not lead to; null: none. Valid until the program ends.
-const char* loadedOwnGl();
-
 } // namespace mural

@@ -128,6 +128,7 @@ void hold(Context& c, Window* draw, Window* read) {
 void learnVersion(Context& c) {
     const auto* text = reinterpret_cast<const char*>(gReal.glGetString(GL_VERSION));
     if (!text) return;
+    c.isMesa = std::strstr(text, "Mesa");
     if (const char* es = std::strstr(text, "OpenGL ES")) {
         const char* digits = std::strpbrk(es, "0123456789");
         c.api = digits && *digits == '1' ? wire::Api::Es1 : wire::Api::Es2;
@@ -315,7 +316,8 @@ void becameCurrent(Context* context, Window* draw, Window* read) {
         refreshDrawLocally(t);
         return;
     }
-    if (!t.context) enterGroup(t, *context);
+    const bool entered = !t.context;
+    if (entered) enterGroup(t, *context);
     t.limit = nullptr; // the first record takes the slow path, which finds or takes a chunk
     if (context->firstCurrent) {
         context->firstCurrent = false;
@@ -323,6 +325,8 @@ void becameCurrent(Context* context, Window* draw, Window* read) {
         learnVersion(*context);
     }
     context->drawsPixmap = draw && draw->isPixmap;
+    const uint32_t drawWindow = draw ? draw->id : 0, readWindow = read ? read->id : 0;
+    const bool bound = entered || context->drawWindow != drawWindow || context->readWindow != readWindow;
     refreshDrawLocally(t);
     announce(t, *context);
     hold(*context, draw, read);
@@ -332,12 +336,13 @@ void becameCurrent(Context* context, Window* draw, Window* read) {
         announce(t, *w);
     }
     t.sizeDue = false;
-    context->drawWindow = draw ? draw->id : 0;
-    context->readWindow = read ? read->id : 0;
+    context->drawWindow = drawWindow;
+    context->readWindow = readWindow;
     records::makeCurrent(t, context->id, context->drawWindow, context->readWindow);
     freeDestroyed(t);
     s->publish(t, false);
     watchFromHere(t);
+    if (bound && draw) localPixelsBound(t, *draw);
 }
 
 void updateWindowSize(ThreadState& t, Window& w) {
@@ -346,6 +351,7 @@ void updateWindowSize(ThreadState& t, Window& w) {
     if (!askWindowSize(w, width, height) || (width == w.config.width && height == w.config.height)) return;
     w.config.width = width;
     w.config.height = height;
+    w.pixels.known = false;
     if (w.announced) records::window(t, w.id, w.config);
 }
 
@@ -392,6 +398,14 @@ bool swapLocally() {
     Session* s = Session::current();
     // A verified run needs the program's own picture to compare with.
     return !s || !s->alive() || s->welcome().policy == capture::kPolicyFull || s->welcome().verifyEvery > 0;
+}
+
+bool swapsItself(Window* w) {
+    if (w && w->drawnInPart) {
+        w->drawnInPart = false; // the next picture is whole
+        return false;
+    }
+    return swapLocally() || (w && w->isPixmap);
 }
 
 void endFrame(Window* w) {

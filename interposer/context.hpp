@@ -5,6 +5,7 @@
 #include <GL/gl.h>
 #include <cstdint>
 
+#include "interposer/local_pixels.hpp"
 #include "interposer/lock.hpp"
 #include "interposer/thread_state.hpp"
 #include "interposer/vertex_arrays.hpp"
@@ -74,13 +75,16 @@ struct Context {
     VertexArrayMirror arrays;
     GLenum stashedError = 0;   // an error that we met while asking, for the program's next glGetError
     bool compilingList = false;
+    bool drawsList = false;    // and executes it at once
     GLuint compiledList = 0;   // its name
     bool frontDue = false;     // the front buffer was drawn to since the last flush, or will be
     GLenum renderMode = GL_RENDER;
+    bool drawsSelection = false; // selects or gives feedback in the program's own context
     bool firstCurrent = true;
     uint32_t drawWindow = 0, readWindow = 0; // 0: none; both stay when the context is released
     Window* held[2] = {};      // what it was last bound to: a driver keeps these drawables alive
     bool drawsPixmap = false;  // its drawable is an X pixmap
+    bool isMesa = false;
     bool sizeAtViewport = false; // the driver looks at the window's size in glViewport too
     char* extensionText = nullptr; // filtered, made at the first question
     const char** extensionNames = nullptr;
@@ -101,6 +105,8 @@ struct Window {
     uint64_t native = 0;       // X window
     wire::WindowConfig config{};
     std::byte* lastFlush = nullptr; // where the stream was at the last flush of a single-buffered window
+    LocalPixels pixels;
+    bool drawnInPart = false;  // the back buffer lacks what the program has drawn through us
     Window* next = nullptr;
 };
 
@@ -130,8 +136,10 @@ void beforeRecordAfterSwap(ThreadState& t, uint32_t opcode);
 void endFrame(Window* w);
 // glFlush or glFinish shows what was drawn into a front buffer: a frame, when something was drawn.
 void flushedWindow(ThreadState& t);
-// Whether the driver's own swap happens too.
+// Whether frames are drawn and shown by the program's own GL, too.
 bool swapLocally();
+// Whether the driver's own swap of this window (null: one that we do not know) follows on endFrame.
+bool swapsItself(Window* w);
 
 // Tells the nodes the results that conditional rendering in display lists needs (commands/queries.cpp).
 void tellListConditions(ThreadState& t);

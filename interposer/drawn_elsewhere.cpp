@@ -6,8 +6,10 @@
 #include <cstring>
 
 #include "interposer/asking.hpp"
+#include "interposer/back_buffer.hpp"
 #include "interposer/bypass.hpp"
 #include "interposer/context.hpp"
+#include "interposer/loaded_gl.hpp"
 #include "interposer/real_gl.hpp"
 #include "interposer/session.hpp"
 
@@ -28,24 +30,35 @@ bool stateChanged(const Context& c) {
     if (c.version >= 20) gReal.glGetIntegerv(GL_ARRAY_BUFFER_BINDING, &buffer);
     bool enabled = false;
     for (const GLenum what : {GL_DEPTH_TEST, GL_BLEND, GL_CULL_FACE, GL_SCISSOR_TEST}) enabled = enabled || gReal.glIsEnabled(what);
+    driverError(); // of a state that this version lacks
     return program || buffer || texture || enabled || clear[0] != 0 || clear[1] != 0 || clear[2] != 0 || clear[3] != 0;
 }
 
 // Whether the back buffer holds more than one colour, by its lines in the middle of 16 parts.
-bool hasPicture(const Window& w) {
+bool hasPicture(Context& c, const Window& w) {
+    const BackBufferRead read(c, w, BackBufferRead::Where::Here);
+    if (!read.ready()) return false;
     const auto width = static_cast<GLsizei>(w.config.width), height = static_cast<GLsizei>(w.config.height);
     auto* line = static_cast<uint32_t*>(std::calloc(w.config.width, 4));
     if (!line) return false;
     bool first = true, several = false;
     uint32_t colour = 0;
     for (GLsizei i = 0; i < 16 && !several; ++i) {
-        gReal.glReadPixels(0, height * (2 * i + 1) / 32, width, 1, GL_RGBA, GL_UNSIGNED_BYTE, line);
+        read.pixels(0, height * (2 * i + 1) / 32, width, 1, line);
         if (first) colour = line[0];
         first = false;
         for (GLsizei x = 0; x < width; ++x) several = several || line[x] != colour;
     }
     std::free(line);
     return several;
+}
+
+void sayInPart() {
+    char libraries[700];
+    const bool any = librariesPastUs(libraries, sizeof libraries);
+    sayBypass("part of the program's GL calls go past Mural (by names of %s): its window shows its own picture from now on. "
+              "Try LD_PRELOAD=libGL.so.1, which puts GLVND's names before those of a linked library",
+              any ? libraries : "its driver");
 }
 
 } // namespace
@@ -58,12 +71,17 @@ void watchFromHere(ThreadState& t) {
     if (!t.context->called) t.context->quietSince = t.cursor;
 }
 
-bool drawnElsewhere(ThreadState& t, const Window& w) {
+bool drawnElsewhere(ThreadState& t, Window& w) {
     Context& c = *t.context;
     noteCalls(t);
-    if (c.called || c.drawWindow != w.id || !w.config.width) return false;
-    const bool proof = stateChanged(c) || (++c.emptyFrames >= kEmptyFrames && hasPicture(w));
-    takeError(c);
+    const bool changed = localPixelsChanged(t, w);
+    if (c.called) {
+        w.drawnInPart = changed;
+        if (changed) sayInPart();
+        return changed;
+    }
+    if (c.drawWindow != w.id || !w.config.width) return false;
+    const bool proof = changed || stateChanged(c) || (++c.emptyFrames >= kEmptyFrames && hasPicture(c, w));
     if (!proof) return false;
     const char* library = loadedOwnGl();
     sayBypass("the program shows pictures, but its GL calls go past Mural%s%s: its window shows its own picture from now on. "

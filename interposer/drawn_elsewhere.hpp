@@ -1,5 +1,6 @@
-// Pictures that are shown without one GL call through us: is the program's own context drawn into by
-// another way, or has the program not drawn yet?
+// Pictures that are drawn past us, all of them or in part. With no GL call through us: is the program's own
+// context drawn into by another way, or has the program not drawn yet? With calls through us, which we do not
+// let draw there: has something been drawn there all the same (local_pixels.hpp)?
 #pragma once
 
 namespace mural {
@@ -12,6 +13,6 @@ void noteCalls(ThreadState& t);
 void watchFromHere(ThreadState& t);
 // Before a picture goes out. True: the context is used past us; this has been said, and the program is
 // to go on alone.
-bool drawnElsewhere(ThreadState& t, const Window& w);
+bool drawnElsewhere(ThreadState& t, Window& w);
 
 } // namespace mural

@@ -28,7 +28,7 @@ Entry wrapperFor(const char* name) {
 void loadOwnNeeds() {
     static const char* const kNames[] = {
         "glGetString", "glGetStringi", "glGetIntegerv", "glGetFloatv", "glGetError", "glGetInteger64v", "glGetBooleanv", "glIsEnabled",
-        "glReadPixels", "glPixelStorei", "glBindBuffer", "glBindFramebuffer", "glReadBuffer", "glGetBufferParameteriv",
+        "glReadPixels", "glPixelStorei", "glIsFramebuffer", "glIsBuffer", "glBindBuffer", "glBindFramebuffer", "glReadBuffer", "glGetBufferParameteriv",
         "glGetNamedBufferParameteriv", "glGetBufferSubData", "glGetNamedBufferSubData", "glMapBufferRange", "glUnmapBuffer",
         "glGetProgramiv", "glGetActiveUniform", "glGetActiveAttrib", "glGetUniformLocation", "glGetAttribLocation",
         "glGetTexLevelParameteriv", "glFinish", "glFlush", "glEnable", "glDisable", "glGetVertexAttribiv",

@@ -24,11 +24,27 @@ void publish(ThreadState& t) {
 // A list holds draws and state: the program's own context needs the state but need not draw. Where a
 // bitmap may move the raster position it does draw, for a discarded bitmap moves nothing.
 template <class Call> void callWithoutDrawing(ThreadState& t, bool movesRaster, Call&& call) {
-    if (t.drawLocally || movesRaster) return call();
-    const bool canDiscard = t.context && t.context->version >= 30 && gReal.glEnable && gReal.glIsEnabled && !gReal.glIsEnabled(GL_RASTERIZER_DISCARD);
-    if (canDiscard) gReal.glEnable(GL_RASTERIZER_DISCARD);
+    if (t.drawLocally) return call();
+    if (movesRaster || !t.context || t.context->version < 30) {
+        ownDrawingBegins();
+        call();
+        return ownDrawingEnds();
+    }
+    const bool discards = gReal.glIsEnabled(GL_RASTERIZER_DISCARD);
+    if (!discards) gReal.glEnable(GL_RASTERIZER_DISCARD);
     call();
-    if (canDiscard) gReal.glDisable(GL_RASTERIZER_DISCARD);
+    if (!gReal.glIsEnabled(GL_RASTERIZER_DISCARD)) { // the list has put an end to it
+        ownDrawingBegins();
+        ownDrawingEnds();
+    }
+    if (!discards) gReal.glDisable(GL_RASTERIZER_DISCARD);
+}
+
+// What a list draws while it is compiled, and whatever selection and feedback let through.
+void setDrawing(bool& draws, bool now) {
+    if (draws == now) return;
+    draws = now;
+    (now ? ownDrawingBegins : ownDrawingEnds)();
 }
 
 // A list that calls others moves the raster position when they do, whatever they will be by then.
@@ -54,6 +70,7 @@ void mural_glNewList(GLuint list, GLenum mode) {
     if (!t.context) return;
     t.context->compilingList = true;
     t.context->compiledList = list;
+    setDrawing(t.context->drawsList, mode == GL_COMPILE_AND_EXECUTE);
     ShareGroup& group = *t.context->group;
     group.listMovesRaster.set(list, false);
     group.listAsks.set(list, false);
@@ -68,6 +85,7 @@ void mural_glEndList() {
     if (!t.context) return;
     t.context->compilingList = false;
     refreshDrawLocally(t);
+    setDrawing(t.context->drawsList, false);
 }
 void mural_glCallList(GLuint list) {
     ThreadState& t = *tThread;
@@ -90,10 +108,12 @@ void mural_glCallLists(GLsizei n, GLenum type, const void* lists) {
 GLint mural_glRenderMode(GLenum mode) {
     ThreadState& t = *tThread;
     encode_glRenderMode(t, mode);
+    if (t.context) setDrawing(t.context->drawsSelection, t.context->drawsSelection || mode != GL_RENDER);
     const GLint hits = gReal.glRenderMode(mode);
     if (t.context) {
         t.context->renderMode = mode;
         refreshDrawLocally(t);
+        setDrawing(t.context->drawsSelection, mode != GL_RENDER);
     }
     return hits;
 }

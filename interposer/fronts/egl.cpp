@@ -95,33 +95,27 @@ void frameShown(EGLDisplay dpy, EGLSurface surface) {
     else endFrame(windowFor(dpy, surface));
 }
 
-bool swapsItself(EGLDisplay dpy, EGLSurface surface) {
-    if (swapLocally()) return true;
-    const Window* w = windowFor(dpy, surface);
-    return w && w->isPixmap;
-}
-
 EGLBoolean swapBuffers(EGLDisplay dpy, EGLSurface surface) {
     static auto* call = real<EGLBoolean(EGLDisplay, EGLSurface)>("eglSwapBuffers");
     frameShown(dpy, surface);
-    return swapsItself(dpy, surface) ? call(dpy, surface) : EGL_TRUE;
+    return swapsItself(windowFor(dpy, surface)) ? call(dpy, surface) : EGL_TRUE;
 }
 EGLBoolean swapBuffersWithDamageKhr(EGLDisplay dpy, EGLSurface surface, const EGLint* rects, EGLint n) {
     static auto* call = real<EGLBoolean(EGLDisplay, EGLSurface, const EGLint*, EGLint)>("eglSwapBuffersWithDamageKHR");
     frameShown(dpy, surface);
-    return swapsItself(dpy, surface) ? call(dpy, surface, rects, n) : EGL_TRUE;
+    return swapsItself(windowFor(dpy, surface)) ? call(dpy, surface, rects, n) : EGL_TRUE;
 }
 EGLBoolean swapBuffersWithDamageExt(EGLDisplay dpy, EGLSurface surface, const EGLint* rects, EGLint n) {
     static auto* call = real<EGLBoolean(EGLDisplay, EGLSurface, const EGLint*, EGLint)>("eglSwapBuffersWithDamageEXT");
     frameShown(dpy, surface);
-    return swapsItself(dpy, surface) ? call(dpy, surface, rects, n) : EGL_TRUE;
+    return swapsItself(windowFor(dpy, surface)) ? call(dpy, surface, rects, n) : EGL_TRUE;
 }
 
 // Not advertised; who calls it all the same shows the whole picture.
 EGLBoolean postSubBuffer(EGLDisplay dpy, EGLSurface surface, EGLint x, EGLint y, EGLint width, EGLint height) {
     static auto* call = real<EGLBoolean(EGLDisplay, EGLSurface, EGLint, EGLint, EGLint, EGLint)>("eglPostSubBufferNV");
     frameShown(dpy, surface);
-    return swapsItself(dpy, surface) ? call(dpy, surface, x, y, width, height) : EGL_TRUE;
+    return swapsItself(windowFor(dpy, surface)) ? call(dpy, surface, x, y, width, height) : EGL_TRUE;
 }
 
 EGLBoolean waitGl() {

@@ -139,31 +139,25 @@ Bool makeCurrentRead(Display* dpy, XID draw, XID read, GLXContext context) {
     return madeCurrent(call(dpy, draw, read, context), dpy, draw, read, context);
 }
 
-bool swapsItself(XID drawable, Display* dpy) {
-    if (swapLocally()) return true;
-    const Window* w = findWindow(drawable, dpy);
-    return w && w->isPixmap;
-}
-
 void swapBuffers(Display* dpy, XID drawable) {
     static auto* call = real<void(Display*, XID)>("glXSwapBuffers");
     if (nativeRun()) countNativeFrame();
     else endFrame(findWindow(drawable, dpy));
-    if (swapsItself(drawable, dpy)) call(dpy, drawable);
+    if (swapsItself(findWindow(drawable, dpy))) call(dpy, drawable);
 }
 
 int64_t swapBuffersMsc(Display* dpy, XID drawable, int64_t target, int64_t divisor, int64_t remainder) {
     static auto* call = real<int64_t(Display*, XID, int64_t, int64_t, int64_t)>("glXSwapBuffersMscOML");
     if (nativeRun()) countNativeFrame();
     else endFrame(findWindow(drawable, dpy));
-    return swapsItself(drawable, dpy) ? call(dpy, drawable, target, divisor, remainder) : 0;
+    return swapsItself(findWindow(drawable, dpy)) ? call(dpy, drawable, target, divisor, remainder) : 0;
 }
 
 // Not advertised; who calls it all the same shows the whole picture.
 void copySubBuffer(Display* dpy, XID drawable, int x, int y, int width, int height) {
     static auto* call = real<void(Display*, XID, int, int, int, int)>("glXCopySubBufferMESA");
     if (!nativeRun()) endFrame(findWindow(drawable, dpy));
-    if (swapsItself(drawable, dpy)) call(dpy, drawable, x, y, width, height);
+    if (swapsItself(findWindow(drawable, dpy))) call(dpy, drawable, x, y, width, height);
 }
 
 void waitGl() {

@@ -6,6 +6,7 @@
 
 #include "interposer/bypass.hpp"
 #include "interposer/fronts/front.hpp"
+#include "interposer/loaded_gl.hpp"
 
 using namespace mural;
 

@@ -21,13 +21,13 @@ def libraries(context, kind):
     return os.path.join(context.build, "tests", "programs", "own_gl", kind)
 
 
-def caught(case_name, program, kind, options=(), in_script=False):
+def caught(case_name, program, kind, options=(), in_script=False, more=None):
     """The program comes out exact, frame by frame, with the GL library of that folder."""
     def check(context):
         with tempfile.TemporaryDirectory(prefix="mural-own-gl.") as folder:
             report_file = os.path.join(folder, "report.json")
             command = [context.program(program), "--frames", str(FRAMES), "--size", "253x191"]
-            environment = {"LD_LIBRARY_PATH": libraries(context, kind)}
+            environment = {"LD_LIBRARY_PATH": libraries(context, kind), **(more or {})}
             if in_script:
                 command = ["sh", "-c", 'LD_LIBRARY_PATH="$0" exec "$@"', libraries(context, kind)] + command
                 environment = None
@@ -58,6 +58,8 @@ caught("once_by_both_fronts", "immediate", "forwarding")
 caught("once_by_both_fronts_dlsym", "route_dlsym", "forwarding")
 caught("glvnd_with_front", "immediate", "none", ("--front", "preload"))
 caught("glvnd_with_front_dlsym", "route_dlsym", "none", ("--front", "preload"))
+# What the line of told_mixed_… advises.
+caught("mixed_linked_when_glvnd_is_first", "mixed_linked", "none", more={"LD_PRELOAD": "libGL.so.1"})
 caught("in_script_when_asked", "immediate", "glx", ("--front", "preload"), in_script=True)
 
 
@@ -67,16 +69,23 @@ def told(case_name, program, words, in_script=None, options=(), output=None):
         command = [context.program(program), "--frames", str(FRAMES), "--size", "253x191"]
         if in_script is not None:
             command = ["sh", "-c", 'LD_LIBRARY_PATH="$0" exec "$@"', libraries(context, in_script)] + command
-        with context.run(command, ["--tiles", "2x2", "--display", "none", "--quiet"] + list(options)) as run:
-            wrong = failures.check_end(run, 0)
-            if wrong is not None:
-                return wrong
-            said = [line for line in run.standard_error if line.startswith("mural:")]
-            if len(said) != 1 or not all(word in said[0] for word in words):
-                return "it said %d lines: %s" % (len(said), " | ".join(said))
-            if output is not None and output not in run.standard_output:
-                return "the program said: " + " | ".join(run.standard_output)
-            return None
+        with tempfile.TemporaryDirectory(prefix="mural-own-gl.") as folder:
+            report_file = os.path.join(folder, "report.json")
+            fixed = ["--tiles", "2x2", "--display", "none", "--quiet", "--report", report_file]
+            with context.run(command, fixed + list(options)) as run:
+                wrong = failures.check_end(run, 0)
+                if wrong is not None:
+                    return wrong
+            with open(report_file, encoding="utf-8") as file:
+                frames = json.load(file)["frames"]
+            if frames != 0:
+                return "%d frames are on the wall" % frames
+        said = [line for line in run.standard_error if line.startswith("mural:")]
+        if len(said) != 1 or not all(word in said[0] for word in words):
+            return "it said %d lines: %s" % (len(said), " | ".join(said))
+        if output is not None and output not in run.standard_output:
+            return "the program said: " + " | ".join(run.standard_output)
+        return None
     check.__name__ = "told_" + case_name
     failures.case(check)
 
@@ -85,7 +94,35 @@ told("own_gl_in_script", "immediate", ["own_gl/glx/libGL.so.1", "--front preload
 told("own_gl_with_front_off", "immediate", ["own_gl/glx/libGL.so.1", "--front preload"], "glx", ("--front", "glvnd"))
 told("osmesa", "osmesa_window", ["OSMesa", "libOSMesa.so", "no frame was captured"])
 told("drawn_elsewhere", "route_glapi", ["go past Mural", "--front preload"], output="the window shows the picture")
+for name, library in (("mixed_glx_driver", "libGLX_mesa.so.0"), ("mixed_glx_osmesa", "libOSMesa.so.8"),
+                      ("mixed_egl_osmesa", "libOSMesa.so.8"), ("mixed_linked", "libOSMesa.so.8")):
+    told(name, name, ["part of the program's GL calls", library, "LD_PRELOAD=libGL.so.1"], output="the window shows the whole picture")
 told("x11_only", "x11_window", ["loads no GL library"])
+
+
+def silent(program):
+    """Whatever changes the pixels of its own window is Mural's doing: nothing is said, all frames are on the wall."""
+    def check(context):
+        with tempfile.TemporaryDirectory(prefix="mural-own-gl.") as folder:
+            report_file = os.path.join(folder, "report.json")
+            with context.run([context.program(program), "--frames", "5", "--size", "253x191"],
+                             ["--tiles", "2x1", "--display", "none", "--quiet", "--report", report_file]) as run:
+                wrong = failures.check_end(run, 0)
+                if wrong is not None:
+                    return wrong
+                if run.standard_error:
+                    return "it said: " + " | ".join(run.standard_error)
+            with open(report_file, encoding="utf-8") as file:
+                frames = json.load(file)["frames"]
+        return None if frames >= 5 else "only %d frames are on the wall" % frames
+    check.__name__ = "silent_" + program
+    failures.case(check)
+
+
+for name in ("immediate", "display_lists", "x_fonts", "feedback_select", "pixels_draw", "pixels_read", "framebuffers",
+             "front_buffer", "single_buffered", "resize", "window_churn", "window_switch", "several_windows", "threads_windows",
+             "shared_contexts", "context_migration", "x_pixmaps", "es2_scene", "egl_desktop"):
+    silent(name)
 
 
 @failures.case

@@ -1,0 +1,40 @@
+// The window's back buffer in the program's own context, read without leaving a trace: what the program has
+// bound and set is put back, and its errors stay its own.
+#pragma once
+
+#include <GL/gl.h>
+
+namespace mural {
+
+struct Context;
+struct Window;
+
+class BackBufferRead {
+public:
+    // NodesToo: the nodes are told to read there as well, for a question in between.
+    enum class Where { Here, NodesToo };
+
+    BackBufferRead(Context& context, const Window& window, Where where);
+    ~BackBufferRead();
+    BackBufferRead(const BackBufferRead&) = delete;
+    BackBufferRead& operator=(const BackBufferRead&) = delete;
+
+    // False: something is bound that is deleted already and could not be bound again; nothing is read.
+    [[nodiscard]] bool ready() const { return ready_; }
+    // RGBA, one byte each, tightly packed; what lies outside the buffer is left as it is.
+    void pixels(GLint x, GLint y, GLsizei width, GLsizei height, void* into) const;
+
+private:
+    void bindWindow(const Window& window);
+    void setPack();
+
+    Context& context_;
+    Where where_;
+    bool ready_ = false;
+    GLenum target_;
+    GLint framebuffer_ = 0, packBuffer_ = 0, readBuffer_ = 0;
+    int firstPack_ = 0;
+    GLint pack_[6] = {};
+};
+
+} // namespace mural

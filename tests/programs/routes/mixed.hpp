@@ -1,0 +1,57 @@
+// For programs that draw into one context by two ways: what is new they find as they should, immediate mode
+// elsewhere, in a library that shares the driver's dispatch (MIXED_LIBRARY; not defined: whatever comes first
+// in the program's own order). They say at the end whether their window shows the whole picture.
+#pragma once
+
+#include <X11/Xutil.h>
+#include <cstdio>
+#include <cstring>
+#include <dlfcn.h>
+
+#include "tests/programs/routes/scene.hpp"
+#include "tests/programs/support/program.hpp"
+
+namespace programs {
+
+inline bool isImmediate(const char* name) {
+    for (const char* other : {"glBegin", "glEnd", "glVertex2f", "glColor3f", "glTexCoord2f", "glLoadIdentity", "glRotatef"}) {
+        if (std::strcmp(name, other) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+inline GlFunction findElsewhere(const char* name) {
+#ifdef MIXED_LIBRARY
+    static void* library = dlopen(MIXED_LIBRARY, RTLD_NOW | RTLD_LOCAL);
+    if (library == nullptr) {
+        fail("no library: %s", dlerror());
+    }
+#else
+    void* library = RTLD_DEFAULT;
+#endif
+    return reinterpret_cast<GlFunction>(dlsym(library, name));
+}
+
+// Changes of colour along a row: each half of the scene has many.
+inline int changesInRow(Display* display, ::Window window, int y, int width) {
+    XImage* image = XGetImage(display, window, 0, y, static_cast<unsigned>(width), 1, AllPlanes, ZPixmap);
+    int changes = 0;
+    for (int x = 1; image != nullptr && x < width; ++x) {
+        changes += XGetPixel(image, x, 0) != XGetPixel(image, x - 1, 0);
+    }
+    if (image != nullptr) {
+        XDestroyImage(image);
+    }
+    return changes;
+}
+
+// For the size 253x191: immediate mode draws above, buffers and shaders below.
+inline void sayWhetherWhole(Display* display, ::Window window, int width) {
+    XSync(display, False);
+    const bool above = changesInRow(display, window, 60, width) > 5, below = changesInRow(display, window, 140, width) > 5;
+    std::printf("the window shows %s\n", above && below ? "the whole picture" : above ? "the upper half" : below ? "the lower half" : "nothing");
+}
+
+} // namespace programs

@@ -1,0 +1,40 @@
+// Two ways into one context (mixed.hpp), with a window by EGL.
+#include <EGL/egl.h>
+
+#include "tests/programs/routes/mixed.hpp"
+#include "tests/programs/support/x_window.hpp"
+
+namespace {
+
+programs::GlFunction find(const char* name) {
+    return programs::isImmediate(name) ? programs::findElsewhere(name) : eglGetProcAddress(name);
+}
+
+// The program's only one, the last that the display has got.
+::Window ownWindow(Display* display) {
+    ::Window root = 0, parent = 0, *children = nullptr;
+    unsigned count = 0;
+    XQueryTree(display, DefaultRootWindow(display), &root, &parent, &children, &count);
+    const ::Window last = count > 0 ? children[count - 1] : root;
+    XFree(children);
+    return last;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    const programs::Options options = programs::parseOptions(argc, argv);
+    const auto window = programs::openEglWindow({}, options.width, options.height);
+    window->makeCurrent();
+    {
+        programs::Scene scene(find);
+        for (int frame = 0; frame < options.frames; ++frame) {
+            scene.draw(frame, options.width, options.height);
+            window->swap();
+        }
+    }
+    Display* display = programs::openDisplayOnce();
+    programs::sayWhetherWhole(display, ownWindow(display), options.width);
+    window->release();
+    return 0;
+}
