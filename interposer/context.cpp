@@ -210,6 +210,14 @@ void refreshDrawLocally(ThreadState& t) {
     t.drawLocally = swapLocally() || !t.context || t.context->compilingList || t.context->drawsPixmap || t.context->renderMode != GL_RENDER;
 }
 
+PrimitivePause::PrimitivePause(const ThreadState& t) : mode_(t.context && !t.drawLocally ? t.context->openPrimitive : kNoPrimitive) {
+    if (mode_ != kNoPrimitive) gReal.glEnd();
+}
+
+PrimitivePause::~PrimitivePause() {
+    if (mode_ != kNoPrimitive) gReal.glBegin(mode_);
+}
+
 Context* addContext(void* native, Context* shareWith, wire::Api api, const wire::WindowConfig& config) {
     auto* c = make<Context>();
     if (!c) return nullptr;

@@ -51,6 +51,9 @@ struct ShareGroup {
     bool nodesWriteBuffers = false; // transform feedback or shaders have written into buffers
 };
 
+// Context::openPrimitive outside of glBegin and glEnd.
+constexpr uint32_t kNoPrimitive = UINT32_MAX;
+
 struct Context {
     bool called = false;             // by a GL command that came through us
     std::byte* quietSince = nullptr; // where the stream was when the last of our own records was written
@@ -80,6 +83,7 @@ struct Context {
     bool frontDue = false;     // the front buffer was drawn to since the last flush, or will be
     GLenum renderMode = GL_RENDER;
     bool drawsSelection = false; // selects or gives feedback in the program's own context
+    uint32_t openPrimitive = kNoPrimitive; // the mode of glBegin until glEnd
     bool firstCurrent = true;
     uint32_t drawWindow = 0, readWindow = 0; // 0: none; both stay when the context is released
     Window* held[2] = {};      // what it was last bound to: a driver keeps these drawables alive
@@ -152,6 +156,19 @@ inline void beforeList(ThreadState& t, GLuint list) {
 inline void beforeLists(ThreadState& t) {
     if (t.context && t.context->group->listConditionCount > 0) [[unlikely]] tellListConditions(t);
 }
+
+// The driver takes few calls between glBegin and glEnd. Where it draws nothing its primitive can be
+// ended for a while: it has no vertices.
+class PrimitivePause {
+public:
+    explicit PrimitivePause(const ThreadState& t);
+    ~PrimitivePause();
+    PrimitivePause(const PrimitivePause&) = delete;
+    PrimitivePause& operator=(const PrimitivePause&) = delete;
+
+private:
+    uint32_t mode_;
+};
 
 // Copies what persistent mappings have changed; called before anything that may read buffers.
 void shipPersistentMaps(ThreadState& t, ShareGroup& group);

@@ -34,7 +34,9 @@ void loadOwnNeeds() {
         "glGetTexLevelParameteriv", "glFinish", "glFlush", "glEnable", "glDisable", "glGetVertexAttribiv",
         "glGetActiveUniformBlockName", "glGetProgramResourceiv", "glGetProgramResourceName", "glGetProgramInterfaceiv",
         "glGetBufferPointerv", "glGetTextureLevelParameteriv", "glGetNamedBufferParameteri64v", "glGetBufferParameteri64v",
-        "glBegin", "glEnd", "glClientActiveTexture", "glBufferSubData", "glGetTextureParameteriv", "glGetFramebufferAttachmentParameteriv", "glCallList", "glCallLists"};
+        "glBegin", "glEnd", "glClientActiveTexture", "glBufferSubData", "glGetTextureParameteriv", "glGetFramebufferAttachmentParameteriv", "glCallList", "glCallLists",
+        "glClear", "glDrawArrays", "glDrawElements", "glMultiDrawArraysIndirect", "glMultiDrawElementsIndirect", "glDispatchCompute", "glGetIntegeri_v",
+        "glDrawTransformFeedbackInstanced", "glDrawTransformFeedbackStreamInstanced", "glClearNamedFramebufferfv"};
     for (const char* name : kNames) wrapperFor(name);
 }
 

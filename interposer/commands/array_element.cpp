@@ -223,7 +223,7 @@ void sendSlot(ThreadState& t, uint32_t slot, Element& e) {
     else sendGeneric(t, slot - kGeneric0, e);
 }
 
-// The buffer that an array lies in, 0: the driver does not say (it is between glBegin and glEnd itself).
+// The buffer that an array lies in, 0: the driver does not say (it draws itself and is between glBegin and glEnd).
 GLint bufferOf(uint32_t slot) {
     static constexpr GLenum kBindings[] = {GL_VERTEX_ARRAY_BUFFER_BINDING, GL_NORMAL_ARRAY_BUFFER_BINDING, GL_COLOR_ARRAY_BUFFER_BINDING,
                                            GL_SECONDARY_COLOR_ARRAY_BUFFER_BINDING, GL_FOG_COORDINATE_ARRAY_BUFFER_BINDING,
@@ -243,7 +243,8 @@ GLint bufferOf(uint32_t slot) {
     return buffer;
 }
 
-bool copyFromBuffer(uint32_t slot, const std::byte* at, uint32_t bytes, std::byte* out) {
+bool copyFromBuffer(const ThreadState& t, uint32_t slot, const std::byte* at, uint32_t bytes, std::byte* out) {
+    const PrimitivePause pause(t);
     const GLint buffer = bufferOf(slot);
     if (buffer == 0) return false;
     GLint before = 0;
@@ -265,7 +266,7 @@ void sendArray(ThreadState& t, const VertexArray& va, uint32_t slot, GLint i) {
     const int64_t stride = a.stride > 0 ? a.stride : bytes;
     const auto* at = static_cast<const std::byte*>(a.pointer) + stride * i;
     if (va.isClient(slot)) std::memcpy(e.bytes, at, bytes);
-    else if (!copyFromBuffer(slot, at, bytes, e.bytes)) return;
+    else if (!copyFromBuffer(t, slot, at, bytes, e.bytes)) return;
     sendSlot(t, slot, e);
 }
 

@@ -3,6 +3,7 @@
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
 #include "interposer/asking.hpp"
+#include "interposer/commands/quiet.hpp"
 #include "interposer/context.hpp"
 #include "interposer/own_records.hpp"
 #include "interposer/real_gl.hpp"
@@ -128,7 +129,8 @@ void mural_glCopyPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum 
                               : type == GL_STENCIL ? GL_STENCIL_BUFFER_BIT : GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT;
     gather(t, x, y, width, height, planes);
     encode_glCopyPixels(t, x, y, width, height, type);
-    if (t.drawLocally) gReal.glCopyPixels(x, y, width, height, type);
+    if (t.drawLocally || width < 0 || height < 0) gReal.glCopyPixels(x, y, width, height, type);
+    else gReal.glCopyPixels(x, y, 0, 0, type);
 }
 void mural_glBlitFramebuffer(GLint srcX0, GLint srcY0, GLint srcX1, GLint srcY1, GLint dstX0, GLint dstY0, GLint dstX1, GLint dstY1, GLbitfield mask, GLenum filter) {
     ThreadState& t = *tThread;
@@ -136,7 +138,10 @@ void mural_glBlitFramebuffer(GLint srcX0, GLint srcY0, GLint srcX1, GLint srcY1,
     const GLint w = srcX0 < srcX1 ? srcX1 - srcX0 : srcX0 - srcX1, h = srcY0 < srcY1 ? srcY1 - srcY0 : srcY0 - srcY1;
     gather(t, x - 1, y - 1, w + 2, h + 2, mask); // linear filters read one pixel further
     encode_glBlitFramebuffer(t, srcX0, srcY0, srcX1, srcY1, dstX0, dstY0, dstX1, dstY1, mask, filter);
-    if (t.drawLocally) gReal.glBlitFramebuffer(srcX0, srcY0, srcX1, srcY1, dstX0, dstY0, dstX1, dstY1, mask, filter);
+    if (t.drawLocally) return gReal.glBlitFramebuffer(srcX0, srcY0, srcX1, srcY1, dstX0, dstY0, dstX1, dstY1, mask, filter);
+    quiet::blit({srcX0, srcY0, srcX1, srcY1}, {dstX0, dstY0, dstX1, dstY1}, [&](const quiet::Area& from, const quiet::Area& to) {
+        gReal.glBlitFramebuffer(from.x0, from.y0, from.x1, from.y1, to.x0, to.y0, to.x1, to.y1, mask, filter);
+    });
 }
 void mural_glBlitNamedFramebuffer(GLuint readFramebuffer, GLuint drawFramebuffer, GLint srcX0, GLint srcY0, GLint srcX1, GLint srcY1, GLint dstX0, GLint dstY0, GLint dstX1, GLint dstY1, GLbitfield mask, GLenum filter) {
     ThreadState& t = *tThread;
@@ -146,7 +151,10 @@ void mural_glBlitNamedFramebuffer(GLuint readFramebuffer, GLuint drawFramebuffer
         gather(t, x - 1, y - 1, w + 2, h + 2, mask);
     }
     encode_glBlitNamedFramebuffer(t, readFramebuffer, drawFramebuffer, srcX0, srcY0, srcX1, srcY1, dstX0, dstY0, dstX1, dstY1, mask, filter);
-    if (t.drawLocally) gReal.glBlitNamedFramebuffer(readFramebuffer, drawFramebuffer, srcX0, srcY0, srcX1, srcY1, dstX0, dstY0, dstX1, dstY1, mask, filter);
+    if (t.drawLocally) return gReal.glBlitNamedFramebuffer(readFramebuffer, drawFramebuffer, srcX0, srcY0, srcX1, srcY1, dstX0, dstY0, dstX1, dstY1, mask, filter);
+    quiet::blit({srcX0, srcY0, srcX1, srcY1}, {dstX0, dstY0, dstX1, dstY1}, [&](const quiet::Area& from, const quiet::Area& to) {
+        gReal.glBlitNamedFramebuffer(readFramebuffer, drawFramebuffer, from.x0, from.y0, from.x1, from.y1, to.x0, to.y0, to.x1, to.y1, mask, filter);
+    });
 }
 void mural_glBitmap(GLsizei width, GLsizei height, GLfloat xorig, GLfloat yorig, GLfloat xmove, GLfloat ymove, const GLubyte* bitmap) {
     ThreadState& t = *tThread;

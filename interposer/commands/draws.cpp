@@ -3,6 +3,7 @@
 #include "encoders.hpp"
 #include "interposer/commands/array_element.hpp"
 #include "interposer/commands/client_draw.hpp"
+#include "interposer/commands/quiet.hpp"
 #include "interposer/context.hpp"
 #include "interposer/real_gl.hpp"
 #include "streamcodec/sizes/vertex_types.hpp"
@@ -45,7 +46,8 @@ DataArg indirectSource(ThreadState& t, const void* indirect, bool withElements, 
     beforeDraw(t, *c);
     GLint buffer = 0;
     gReal.glGetIntegerv(GL_DRAW_INDIRECT_BUFFER_BINDING, &buffer);
-    if (buffer != 0 || c->core) return DataArg::offset(indirect);
+    const bool clientMemory = c->api == wire::Api::Desktop && !c->core;
+    if (buffer != 0 || !clientMemory) return DataArg::offset(indirect);
     return DataArg::of(indirect, sizes::indirectBytes(withElements, drawCount, stride));
 }
 
@@ -78,6 +80,14 @@ void indirectClientArrays(ThreadState& t, const DataArg& source, bool withElemen
     sendClientArrays(t, *c, all);
 }
 
+// How many of several draws the driver gets: none, unless one of them is an error; then it does none.
+GLsizei quietDraws(const ThreadState& t, const GLsizei* count, GLsizei drawcount) {
+    if (t.drawLocally || drawcount < 0) return drawcount;
+    for (GLsizei i = 0; i < drawcount; ++i)
+        if (count[i] < 0) return drawcount;
+    return 0;
+}
+
 } // namespace
 
 extern "C" {
@@ -86,60 +96,60 @@ void mural_glDrawArrays(GLenum mode, GLint first, GLsizei count) {
     ThreadState& t = *tThread;
     prepareArrays(t, first, count);
     encode_glDrawArrays(t, mode, first, count);
-    if (t.drawLocally) gReal.glDrawArrays(mode, first, count);
+    gReal.glDrawArrays(mode, first, quiet::count(t, count));
 }
 void mural_glDrawArraysInstanced(GLenum mode, GLint first, GLsizei count, GLsizei instancecount) {
     ThreadState& t = *tThread;
     prepareArrays(t, first, count, instancecount);
     encode_glDrawArraysInstanced(t, mode, first, count, instancecount);
-    if (t.drawLocally) gReal.glDrawArraysInstanced(mode, first, count, instancecount);
+    gReal.glDrawArraysInstanced(mode, first, quiet::count(t, count), instancecount);
 }
 void mural_glDrawArraysInstancedBaseInstance(GLenum mode, GLint first, GLsizei count, GLsizei instancecount, GLuint baseinstance) {
     ThreadState& t = *tThread;
     prepareArrays(t, first, count, instancecount, baseinstance);
     encode_glDrawArraysInstancedBaseInstance(t, mode, first, count, instancecount, baseinstance);
-    if (t.drawLocally) gReal.glDrawArraysInstancedBaseInstance(mode, first, count, instancecount, baseinstance);
+    gReal.glDrawArraysInstancedBaseInstance(mode, first, quiet::count(t, count), instancecount, baseinstance);
 }
 void mural_glDrawElements(GLenum mode, GLsizei count, GLenum type, const void* indices) {
     ThreadState& t = *tThread;
     encode_glDrawElements(t, mode, count, type, prepareElements(t, count, type, indices));
-    if (t.drawLocally) gReal.glDrawElements(mode, count, type, indices);
+    gReal.glDrawElements(mode, quiet::count(t, count), type, indices);
 }
 void mural_glDrawElementsBaseVertex(GLenum mode, GLsizei count, GLenum type, const void* indices, GLint basevertex) {
     ThreadState& t = *tThread;
     encode_glDrawElementsBaseVertex(t, mode, count, type, prepareElements(t, count, type, indices, basevertex), basevertex);
-    if (t.drawLocally) gReal.glDrawElementsBaseVertex(mode, count, type, indices, basevertex);
+    gReal.glDrawElementsBaseVertex(mode, quiet::count(t, count), type, indices, basevertex);
 }
 void mural_glDrawElementsInstanced(GLenum mode, GLsizei count, GLenum type, const void* indices, GLsizei instancecount) {
     ThreadState& t = *tThread;
     encode_glDrawElementsInstanced(t, mode, count, type, prepareElements(t, count, type, indices, 0, instancecount), instancecount);
-    if (t.drawLocally) gReal.glDrawElementsInstanced(mode, count, type, indices, instancecount);
+    gReal.glDrawElementsInstanced(mode, quiet::count(t, count), type, indices, instancecount);
 }
 void mural_glDrawElementsInstancedBaseVertex(GLenum mode, GLsizei count, GLenum type, const void* indices, GLsizei instancecount, GLint basevertex) {
     ThreadState& t = *tThread;
     encode_glDrawElementsInstancedBaseVertex(t, mode, count, type, prepareElements(t, count, type, indices, basevertex, instancecount), instancecount, basevertex);
-    if (t.drawLocally) gReal.glDrawElementsInstancedBaseVertex(mode, count, type, indices, instancecount, basevertex);
+    gReal.glDrawElementsInstancedBaseVertex(mode, quiet::count(t, count), type, indices, instancecount, basevertex);
 }
 void mural_glDrawElementsInstancedBaseInstance(GLenum mode, GLsizei count, GLenum type, const void* indices, GLsizei instancecount, GLuint baseinstance) {
     ThreadState& t = *tThread;
     encode_glDrawElementsInstancedBaseInstance(t, mode, count, type, prepareElements(t, count, type, indices, 0, instancecount, baseinstance), instancecount, baseinstance);
-    if (t.drawLocally) gReal.glDrawElementsInstancedBaseInstance(mode, count, type, indices, instancecount, baseinstance);
+    gReal.glDrawElementsInstancedBaseInstance(mode, quiet::count(t, count), type, indices, instancecount, baseinstance);
 }
 void mural_glDrawElementsInstancedBaseVertexBaseInstance(GLenum mode, GLsizei count, GLenum type, const void* indices, GLsizei instancecount, GLint basevertex, GLuint baseinstance) {
     ThreadState& t = *tThread;
     encode_glDrawElementsInstancedBaseVertexBaseInstance(t, mode, count, type, prepareElements(t, count, type, indices, basevertex, instancecount, baseinstance), instancecount, basevertex, baseinstance);
-    if (t.drawLocally) gReal.glDrawElementsInstancedBaseVertexBaseInstance(mode, count, type, indices, instancecount, basevertex, baseinstance);
+    gReal.glDrawElementsInstancedBaseVertexBaseInstance(mode, quiet::count(t, count), type, indices, instancecount, basevertex, baseinstance);
 }
 // start and end are promises that programs break; the indices themselves are what counts.
 void mural_glDrawRangeElements(GLenum mode, GLuint start, GLuint end, GLsizei count, GLenum type, const void* indices) {
     ThreadState& t = *tThread;
     encode_glDrawRangeElements(t, mode, start, end, count, type, prepareElements(t, count, type, indices));
-    if (t.drawLocally) gReal.glDrawRangeElements(mode, start, end, count, type, indices);
+    gReal.glDrawRangeElements(mode, start, end, quiet::count(t, count), type, indices);
 }
 void mural_glDrawRangeElementsBaseVertex(GLenum mode, GLuint start, GLuint end, GLsizei count, GLenum type, const void* indices, GLint basevertex) {
     ThreadState& t = *tThread;
     encode_glDrawRangeElementsBaseVertex(t, mode, start, end, count, type, prepareElements(t, count, type, indices, basevertex), basevertex);
-    if (t.drawLocally) gReal.glDrawRangeElementsBaseVertex(mode, start, end, count, type, indices, basevertex);
+    gReal.glDrawRangeElementsBaseVertex(mode, start, end, quiet::count(t, count), type, indices, basevertex);
 }
 
 void mural_glMultiDrawArrays(GLenum mode, const GLint* first, const GLsizei* count, GLsizei drawcount) {
@@ -158,7 +168,7 @@ void mural_glMultiDrawArrays(GLenum mode, const GLint* first, const GLsizei* cou
         }
     }
     encode_glMultiDrawArrays(t, mode, DataArg::of(first, 4 * n), DataArg::of(count, 4 * n), drawcount);
-    if (t.drawLocally) gReal.glMultiDrawArrays(mode, first, count, drawcount);
+    gReal.glMultiDrawArrays(mode, first, count, quietDraws(t, count, drawcount));
 }
 
 } // extern "C"
@@ -212,42 +222,46 @@ void mural_glMultiDrawElements(GLenum mode, const GLsizei* count, GLenum type, c
     ThreadState& t = *tThread;
     const DataArg data = multiIndices(t, count, type, indices, drawcount, nullptr);
     encode_glMultiDrawElements(t, mode, DataArg::of(count, drawcount > 0 ? 4 * uint64_t(drawcount) : 0), type, data, drawcount);
-    if (t.drawLocally) gReal.glMultiDrawElements(mode, count, type, indices, drawcount);
+    gReal.glMultiDrawElements(mode, count, type, indices, quietDraws(t, count, drawcount));
 }
 void mural_glMultiDrawElementsBaseVertex(GLenum mode, const GLsizei* count, GLenum type, const void* const* indices, GLsizei drawcount, const GLint* basevertex) {
     ThreadState& t = *tThread;
     const uint64_t bytes = drawcount > 0 ? 4 * uint64_t(drawcount) : 0;
     const DataArg data = multiIndices(t, count, type, indices, drawcount, basevertex);
     encode_glMultiDrawElementsBaseVertex(t, mode, DataArg::of(count, bytes), type, data, drawcount, DataArg::of(basevertex, bytes));
-    if (t.drawLocally) gReal.glMultiDrawElementsBaseVertex(mode, count, type, indices, drawcount, basevertex);
+    gReal.glMultiDrawElementsBaseVertex(mode, count, type, indices, quietDraws(t, count, drawcount), basevertex);
 }
 void mural_glDrawArraysIndirect(GLenum mode, const void* indirect) {
     ThreadState& t = *tThread;
     const DataArg source = indirectSource(t, indirect, false, 1, 0);
     indirectClientArrays(t, source, false, 0, 1, 0);
     encode_glDrawArraysIndirect(t, mode, source);
-    if (t.drawLocally) gReal.glDrawArraysIndirect(mode, indirect);
+    if (t.drawLocally || quiet::indirectIsWrong(t, indirect, sizes::indirectBytes(false, 1, 0))) gReal.glDrawArraysIndirect(mode, indirect);
+    else quiet::drawIndirect(t, mode, indirect, 0);
 }
 void mural_glDrawElementsIndirect(GLenum mode, GLenum type, const void* indirect) {
     ThreadState& t = *tThread;
     const DataArg source = indirectSource(t, indirect, true, 1, 0);
     indirectClientArrays(t, source, true, type, 1, 0);
     encode_glDrawElementsIndirect(t, mode, type, source);
-    if (t.drawLocally) gReal.glDrawElementsIndirect(mode, type, indirect);
+    if (t.drawLocally || quiet::indirectIsWrong(t, indirect, sizes::indirectBytes(true, 1, 0))) gReal.glDrawElementsIndirect(mode, type, indirect);
+    else quiet::drawElementsIndirect(t, mode, type, indirect, 0);
 }
 void mural_glMultiDrawArraysIndirect(GLenum mode, const void* indirect, GLsizei drawcount, GLsizei stride) {
     ThreadState& t = *tThread;
     const DataArg source = indirectSource(t, indirect, false, drawcount, stride);
     indirectClientArrays(t, source, false, 0, drawcount, stride);
     encode_glMultiDrawArraysIndirect(t, mode, source, drawcount, stride);
-    if (t.drawLocally) gReal.glMultiDrawArraysIndirect(mode, indirect, drawcount, stride);
+    if (t.drawLocally || drawcount < 0 || quiet::indirectIsWrong(t, indirect, sizes::indirectBytes(false, drawcount, stride))) gReal.glMultiDrawArraysIndirect(mode, indirect, drawcount, stride);
+    else quiet::drawIndirect(t, mode, indirect, stride);
 }
 void mural_glMultiDrawElementsIndirect(GLenum mode, GLenum type, const void* indirect, GLsizei drawcount, GLsizei stride) {
     ThreadState& t = *tThread;
     const DataArg source = indirectSource(t, indirect, true, drawcount, stride);
     indirectClientArrays(t, source, true, type, drawcount, stride);
     encode_glMultiDrawElementsIndirect(t, mode, type, source, drawcount, stride);
-    if (t.drawLocally) gReal.glMultiDrawElementsIndirect(mode, type, indirect, drawcount, stride);
+    if (t.drawLocally || drawcount < 0 || quiet::indirectIsWrong(t, indirect, sizes::indirectBytes(true, drawcount, stride))) gReal.glMultiDrawElementsIndirect(mode, type, indirect, drawcount, stride);
+    else quiet::drawElementsIndirect(t, mode, type, indirect, stride);
 }
 void mural_glArrayElement(GLint i) {
     ThreadState& t = *tThread;

@@ -24,6 +24,7 @@ void publish(ThreadState& t) {
 // A list holds draws and state: the program's own context needs the state but need not draw. Where a
 // bitmap may move the raster position it does draw, for a discarded bitmap moves nothing.
 template <class Call> void callWithoutDrawing(ThreadState& t, bool movesRaster, Call&& call) {
+    const PrimitivePause pause(t); // or the list's vertices would be the primitive's
     if (t.drawLocally) return call();
     if (movesRaster || !t.context || t.context->version < 30) {
         ownDrawingBegins();
@@ -201,6 +202,20 @@ void mural_glProgramBinary(GLuint program, GLenum binaryFormat, const void* bina
     if (!capturing(*tThread)) return gReal.glProgramBinary(program, binaryFormat, binary, length);
     stashError(*tThread->context, takeError(*tThread->context));
     stashError(*tThread->context, GL_INVALID_ENUM);
+}
+
+// The primitive stays empty in the program's own context, but the errors of what comes between are raised.
+void mural_glBegin(GLenum mode) {
+    ThreadState& t = *tThread;
+    encode_glBegin(t, mode);
+    gReal.glBegin(mode);
+    if (t.context && !t.context->compilingList && t.context->openPrimitive == kNoPrimitive) t.context->openPrimitive = mode;
+}
+void mural_glEnd() {
+    ThreadState& t = *tThread;
+    encode_glEnd(t);
+    gReal.glEnd();
+    if (t.context && !t.context->compilingList) t.context->openPrimitive = kNoPrimitive;
 }
 
 GLenum mural_glGetError() {

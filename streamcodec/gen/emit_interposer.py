@@ -4,6 +4,8 @@ import re
 from emit_common import HEAD, ctype, prototype
 from registry import TYPE_BYTES
 
+# Between glBegin and glEnd these make a vertex when the index is 0.
+PROVOKING = re.compile(r'glVertexAttribs?[ILP]?\d')
 DATA_KINDS = ('array', 'pixels', 'packed', 'data', 'made', 'text', 'strings')
 
 
@@ -103,8 +105,13 @@ def wrapper(c):
         out += '    encode_%s(%s);\n' % (c.name, encode_args)
         local = c.option('local') != 'no'
         if local and c.command_class == 'draw':
-            out += '    if (self.drawLocally) gReal.%s(%s);\n' % (c.name, names)
+            wrong = ' || !(%s)' % c.option('right') if c.option('right') else ''
+            out += '    if (self.drawLocally%s) gReal.%s(%s);\n' % (wrong, c.name, names)
+            if c.option('quiet'):
+                out += '    else %s;\n' % c.option('quiet')
         elif local:
+            if PROVOKING.match(c.name) and any(p.name == 'index' for p in c.params):
+                out += '    if (quiet::vertex(self, index)) return;\n'
             out += '    gReal.%s(%s);\n' % (c.name, names)
     return out + '}\n'
 
@@ -130,6 +137,7 @@ namespace mural {
 
     wrappers = HEAD + '''#include "custom_wrappers.hpp"
 #include "encoders.hpp"
+#include "interposer/commands/quiet.hpp"
 #include "interposer/real_gl.hpp"
 #include "interposer/wrapper_table.hpp"
 #include "streamcodec/size_expressions.hpp"

@@ -1,0 +1,106 @@
+#include "interposer/commands/quiet.hpp"
+
+namespace mural::quiet {
+
+namespace {
+
+// Every driver has as many draw buffers; a higher number may be an error, and the driver knows.
+constexpr GLint kSureDrawBuffers = 4;
+// Groups per dimension that every driver takes.
+constexpr GLuint kSureGroups = 65535;
+
+bool isDesktop(const ThreadState& t, int version) {
+    return t.context && t.context->api == wire::Api::Desktop && t.context->version >= version;
+}
+
+// The bound indirect buffer's part; false: there is none, or the part is not in it, or a program has it mapped.
+bool withinBuffer(GLenum target, GLenum binding, uint64_t offset, uint64_t sizeBytes) {
+    GLint buffer = 0, size = 0, mapped = GL_FALSE;
+    gReal.glGetIntegerv(binding, &buffer);
+    if (buffer == 0) return false;
+    gReal.glGetBufferParameteriv(target, GL_BUFFER_SIZE, &size);
+    gReal.glGetBufferParameteriv(target, GL_BUFFER_MAPPED, &mapped);
+    return mapped == GL_FALSE && size >= 0 && offset <= static_cast<uint64_t>(size) && sizeBytes <= static_cast<uint64_t>(size) - offset;
+}
+
+} // namespace
+
+bool clearsBuffer(GLenum buffer, GLint drawBuffer, bool color, GLenum plane) {
+    if (buffer == GL_COLOR && color) return drawBuffer >= 0 && drawBuffer < kSureDrawBuffers;
+    return buffer == plane && drawBuffer == 0;
+}
+
+void clearDepthStencil(GLuint framebuffer, GLenum buffer, GLint drawBuffer, GLfloat depth, GLint stencil) {
+    discarded([&] { // Mesa looks whether the framebuffer is complete only if it is going to clear, or for one plane
+        if (clearsBuffer(buffer, drawBuffer, false, GL_DEPTH_STENCIL)) gReal.glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &depth);
+        else gReal.glClearNamedFramebufferfi(framebuffer, buffer, drawBuffer, depth, stencil);
+    });
+}
+
+void rectangle(const ThreadState& t) {
+    gReal.glBegin(GL_QUADS); // what drivers make of it; between glBegin and glEnd an error
+    if (!t.context || t.context->openPrimitive == kNoPrimitive) gReal.glEnd();
+}
+
+void drawPixels(GLsizei width, GLsizei height, GLenum format, GLenum type, const void* pixels) {
+    const bool isError = width < 0 || height < 0;
+    gReal.glDrawPixels(isError ? width : 0, isError ? height : 0, format, type, pixels);
+}
+
+void accumulate(GLenum op, GLfloat value) {
+    if (op == GL_ACCUM || op == GL_LOAD || op == GL_ADD || op == GL_MULT || op == GL_RETURN) gReal.glAccum(GL_MULT, 1);
+    else gReal.glAccum(op, value);
+}
+
+void dispatch(GLuint x, GLuint y, GLuint z) {
+    const GLuint count[3] = {x, y, z};
+    for (GLuint i = 0; i < 3; ++i) {
+        GLint most = static_cast<GLint>(kSureGroups);
+        if (count[i] > kSureGroups && gReal.glGetIntegeri_v) gReal.glGetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, i, &most);
+        if (count[i] > static_cast<GLuint>(most)) return gReal.glDispatchCompute(x, y, z);
+    }
+    gReal.glDispatchCompute(0, 0, 0);
+}
+
+void dispatchIndirect(GLintptr indirect) {
+    constexpr uint64_t kCommandBytes = 12;
+    const bool right = indirect >= 0 && indirect % 4 == 0 &&
+                       withinBuffer(GL_DISPATCH_INDIRECT_BUFFER, GL_DISPATCH_INDIRECT_BUFFER_BINDING, static_cast<uint64_t>(indirect), kCommandBytes);
+    if (right) gReal.glDispatchCompute(0, 0, 0);
+    else gReal.glDispatchComputeIndirect(indirect);
+}
+
+void drawFeedback(const ThreadState& t, GLenum mode, GLuint id) {
+    if (isDesktop(t, 42)) gReal.glDrawTransformFeedbackInstanced(mode, id, 0);
+    else gReal.glDrawArrays(mode, 0, 0);
+}
+
+void drawFeedbackStream(const ThreadState& t, GLenum mode, GLuint id, GLuint stream) {
+    if (isDesktop(t, 42)) gReal.glDrawTransformFeedbackStreamInstanced(mode, id, stream, 0);
+    else gReal.glDrawArrays(mode, 0, 0);
+}
+
+bool indirectIsWrong(const ThreadState& t, const void* indirect, uint64_t sizeBytes) {
+    const auto offset = reinterpret_cast<uint64_t>(indirect);
+    if (offset % 4 != 0) return true;
+    GLint buffer = 0, array = 1;
+    gReal.glGetIntegerv(GL_DRAW_INDIRECT_BUFFER_BINDING, &buffer);
+    const bool compatible = t.context && t.context->api == wire::Api::Desktop && !t.context->core;
+    if (buffer == 0) return !compatible; // client memory
+    if (!isDesktop(t, 0)) gReal.glGetIntegerv(GL_VERTEX_ARRAY_BINDING, &array); // ES demands one
+    return array == 0 || !withinBuffer(GL_DRAW_INDIRECT_BUFFER, GL_DRAW_INDIRECT_BUFFER_BINDING, offset, sizeBytes);
+}
+
+void drawIndirect(const ThreadState& t, GLenum mode, const void* indirect, GLsizei stride) {
+    if (isDesktop(t, 43)) gReal.glMultiDrawArraysIndirect(mode, indirect, 0, stride);
+    else gReal.glDrawArrays(mode, 0, 0);
+}
+
+void drawElementsIndirect(const ThreadState& t, GLenum mode, GLenum type, const void* indirect, GLsizei stride) {
+    const bool isIndex = type == GL_UNSIGNED_BYTE || type == GL_UNSIGNED_SHORT || type == GL_UNSIGNED_INT;
+    if (isDesktop(t, 43)) gReal.glMultiDrawElementsIndirect(mode, type, indirect, 0, stride);
+    else if (!isIndex) gReal.glDrawElementsIndirect(mode, type, indirect); // which error comes first differs
+    else gReal.glDrawElements(mode, 0, type, nullptr);
+}
+
+} // namespace mural::quiet

@@ -1,0 +1,62 @@
+// Draws that draw nothing: with policy `state` a draw goes to the program's own context only for the
+// errors that it raises there. Each call below passes the checks of the one it stands for and then has
+// nothing to draw; arguments that are wrong by themselves go on as they are.
+// Measured against the real calls: tests/programs/draw_errors*.cpp.
+#pragma once
+
+#include "interposer/context.hpp"
+#include "interposer/real_gl.hpp"
+
+namespace mural::quiet {
+
+// Vertices, instances, draws: none of them, unless the number itself is an error.
+inline GLsizei none(GLsizei count) { return count < 0 ? count : 0; }
+
+// What the local call of a draw gets for its count.
+inline GLsizei count(const ThreadState& t, GLsizei count) { return t.drawLocally ? count : none(count); }
+
+inline void clear(GLbitfield mask) { gReal.glClear(mask & ~GLbitfield{GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT}); }
+
+// Whether glClearBuffer* and its kin have nothing against these arguments; `planes` are those of its type.
+bool clearsBuffer(GLenum buffer, GLint drawBuffer, bool color, GLenum plane);
+
+// For calls that no arguments make harmless: Mesa clears the bound framebuffer when the named one is not there.
+template <class Call> void discarded(Call&& call) {
+    const bool discards = gReal.glIsEnabled(GL_RASTERIZER_DISCARD);
+    if (!discards) gReal.glEnable(GL_RASTERIZER_DISCARD);
+    call();
+    if (!discards) gReal.glDisable(GL_RASTERIZER_DISCARD);
+}
+
+// glClearNamedFramebufferfi.
+void clearDepthStencil(GLuint framebuffer, GLenum buffer, GLint drawBuffer, GLfloat depth, GLint stencil);
+
+// True where generic attribute 0 would be a vertex of a primitive that shall stay empty.
+inline bool vertex(const ThreadState& t, GLuint index) {
+    return index == 0 && !t.drawLocally && t.context && t.context->openPrimitive != kNoPrimitive;
+}
+
+void rectangle(const ThreadState& t);
+void drawPixels(GLsizei width, GLsizei height, GLenum format, GLenum type, const void* pixels);
+void accumulate(GLenum op, GLfloat value);
+
+struct Area {
+    GLint x0, y0, x1, y1;
+};
+// Calls blit(source, destination) with areas that hold no pixel and are of equal or unequal size as these are.
+template <class Blit> void blit(const Area& from, const Area& to, Blit&& call) {
+    const bool sameSize = from.x1 - from.x0 == to.x1 - to.x0 && from.y1 - from.y0 == to.y1 - to.y0;
+    call(Area{0, 0, sameSize ? 0 : 1, sameSize ? 0 : 1}, Area{0, 0, 0, 0});
+}
+
+void dispatch(GLuint x, GLuint y, GLuint z);
+void dispatchIndirect(GLintptr indirect);
+void drawFeedback(const ThreadState& t, GLenum mode, GLuint id);
+void drawFeedbackStream(const ThreadState& t, GLenum mode, GLuint id, GLuint stream);
+
+// Indirect draws: true when the driver shall have the call as it is, for it is an error.
+bool indirectIsWrong(const ThreadState& t, const void* indirect, uint64_t sizeBytes);
+void drawIndirect(const ThreadState& t, GLenum mode, const void* indirect, GLsizei stride);
+void drawElementsIndirect(const ThreadState& t, GLenum mode, GLenum type, const void* indirect, GLsizei stride);
+
+} // namespace mural::quiet
