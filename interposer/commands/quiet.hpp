@@ -43,9 +43,11 @@ void accumulate(GLenum op, GLfloat value);
 struct Area {
     GLint x0, y0, x1, y1;
 };
-// Calls blit(source, destination) with areas that hold no pixel and are of equal or unequal size as these are.
+// Calls blit(source, destination) with areas that hold no pixel and are of equal or unequal size as these are,
+// turned over or not.
 template <class Blit> void blit(const Area& from, const Area& to, Blit&& call) {
-    const bool sameSize = from.x1 - from.x0 == to.x1 - to.x0 && from.y1 - from.y0 == to.y1 - to.y0;
+    const auto size = [](GLint a, GLint b) { return a < b ? int64_t{b} - a : int64_t{a} - b; };
+    const bool sameSize = size(from.x0, from.x1) == size(to.x0, to.x1) && size(from.y0, from.y1) == size(to.y0, to.y1);
     call(Area{0, 0, sameSize ? 0 : 1, sameSize ? 0 : 1}, Area{0, 0, 0, 0});
 }
 

@@ -10,6 +10,16 @@
 namespace mural {
 namespace {
 
+const char* explainTiling(Tiling tiling) {
+    switch (tiling) {
+    case Tiling::Culled:
+        return "tiling culled: as exact, and shaders drop what lies outside of a node's tiles; exact where windows and framebuffer objects have depth buffers";
+    case Tiling::Lean: return "tiling lean: frame buffers of the tiles' size; up to 0.25 % of the pixels may differ, mostly by 1";
+    case Tiling::Exact: break;
+    }
+    return "tiling exact: every node has a frame buffer of the whole picture and draws its tiles only; no pixel differs from a single machine's";
+}
+
 using Json = nlohmann::json;
 
 constexpr int64_t kTickMs = 50;
@@ -163,11 +173,7 @@ std::string HeadSession::placeOwnThreads() const {
 
 std::vector<std::string> HeadSession::explainLines() {
     std::vector<std::string> lines = plan_.explain;
-    lines.push_back(config_.tiling == Tiling::Exact
-                        ? "tiling exact: every node has a frame buffer of the whole picture and draws "
-                          "its tiles only; no pixel differs from a single machine's"
-                        : "tiling lean: frame buffers of the tiles' size; up to 0.25 % of the pixels "
-                          "may differ, mostly by 1");
+    lines.push_back(explainTiling(config_.tiling));
     lines.push_back("threads of the head: " + placement_);
     const std::lock_guard lock(mutex_);
     for (const NodePlan& plan : plan_.nodes) {

@@ -114,9 +114,9 @@ private:
         ReplayConfig config;
         config.node = setup_.node;
         config.lean = setup_.tiling == Tiling::Lean;
+        config.cull = setup_.tiling == Tiling::Culled;
         config.grid = {setup_.columns, setup_.rows, config.lean ? 2 : 1};
         config.region = {setup_.regionColumn, setup_.regionRow, setup_.regionColumns, setup_.regionRows};
-        if (const char* cull = std::getenv("MURAL_CULL")) config.cull = std::strcmp(cull, "off") != 0; // for measuring
         if (const char* plant = std::getenv("MURAL_PLANT")) config.plant = plant;
         ReplayOutputs outputs;
         outputs.answer = [this](const wire::AnswerHeader& h, std::span<const std::byte> bytes) {

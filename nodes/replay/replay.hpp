@@ -42,7 +42,7 @@ struct ReplayConfig {
     int node = 0;
     TileGrid grid;
     TileRegion region;
-    bool cull = true;      // whole primitives outside of the region are dropped by rewritten shaders
+    bool cull = false;     // whole primitives outside of the region are dropped by rewritten shaders
     bool lean = false;     // framebuffers of the tile's size; false: of the picture's size (exact)
     std::string plant;     // MURAL_PLANT: a fault on purpose, for tests of the tests
     ReplayLimits limits;

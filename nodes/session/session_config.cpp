@@ -15,6 +15,7 @@ using Json = nlohmann::json;
 template <class E> struct EnumNames;
 template <> struct EnumNames<Tiling> {
     static constexpr std::pair<Tiling, const char*> kAll[] = {{Tiling::Exact, "exact"},
+                                                              {Tiling::Culled, "culled"},
                                                               {Tiling::Lean, "lean"}};
 };
 template <> struct EnumNames<Display> {

@@ -10,7 +10,7 @@
 
 namespace mural {
 
-enum class Tiling { Exact, Lean };
+enum class Tiling { Exact, Culled, Lean };
 enum class Display { None, App, Windows };
 enum class CapturePolicy { State, Full };
 

@@ -58,7 +58,7 @@ TEST(SessionConfig, errorsNameTheField) {
         {R"({"columns":2.5})", "columns"},
         {R"({"columns":4294967296})", "columns"},
         {R"({"frames":18446744073709551615})", "frames"},
-        {R"({"tiling":"rough"})", "exact lean"},
+        {R"({"tiling":"rough"})", "exact culled lean"},
         {R"({"hosts":["a",1]})", "hosts"},
         {R"({"saveFrames":[0]})", "saveFrames"},
         {R"({"fullScreen":1})", "fullScreen"},

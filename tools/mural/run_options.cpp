@@ -95,7 +95,7 @@ Result<void> readNumber(std::string_view option, const RunArguments::Text& text,
 
 Result<void> readChoices(const RunArguments& a, SessionConfig& c) {
     const Choice<Display> displays[] = {{"app", Display::App}, {"windows", Display::Windows}, {"none", Display::None}};
-    const Choice<Tiling> tilings[] = {{"exact", Tiling::Exact}, {"lean", Tiling::Lean}};
+    const Choice<Tiling> tilings[] = {{"exact", Tiling::Exact}, {"culled", Tiling::Culled}, {"lean", Tiling::Lean}};
     const Choice<CapturePolicy> policies[] = {{"state", CapturePolicy::State}, {"full", CapturePolicy::Full}};
     const Choice<const char*> backends[] = {{"auto", "auto"}, {"egl", "egl"}, {"osmesa", "osmesa"}, {"glx", "glx"}};
     const char* backend = "auto";
@@ -196,7 +196,7 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
     command.add_option("--out", a.out, "write pictures into this folder (PNG), or a video (.mp4, .mkv, .webm, …)")->type_name("DIR|VIDEO");
     command.add_option("--save", a.save, "write only these frames, counted from 1")->type_name("1,30,90");
     command.add_option("--display", a.display, "where the wall is shown: app (the program's own window), windows (one per tile), none")->type_name("WHERE");
-    command.add_option("--tiling", a.tiling, "exact: every pixel as on one machine; lean: less memory (exact)")->type_name("HOW");
+    command.add_option("--tiling", a.tiling, "exact: every pixel as on one machine; culled: less work for much geometry, exact in windows with a depth buffer; lean: less memory (exact)")->type_name("HOW");
     command.add_option("--policy", a.policy, "state: the program's own GL draws nothing; full: it draws too (state)")->type_name("WHAT");
     command.add_option("--gl", a.gl, "GL of the render nodes: auto, egl, osmesa, glx (auto)")->type_name("GL");
     command.add_option("--front", a.front, "how the program's GL is caught: glvnd, preload (also a GL library of its own), auto: as its libraries want")->type_name("WAY");
