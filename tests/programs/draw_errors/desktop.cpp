@@ -1,8 +1,10 @@
 // What drawing commands say when something is wrong: the command's arguments, or the state it meets
 // (an incomplete framebuffer, mapped buffers, programs that don't fit). MURAL_CORE: in a core context.
 // Each row of the picture is the errors of one group of calls in one situation.
-#include "tests/programs/draw_errors/record.hpp"
 #include "tests/programs/support/gl.hpp"
+
+#include "tests/programs/draw_errors/buffers.hpp"
+#include "tests/programs/draw_errors/record.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
 #include "tests/programs/support/show.hpp"
@@ -191,27 +193,12 @@ struct Situation {
     std::function<void()> begin, end;
 };
 
-GLuint vertexArray, vertices, indices, indirect, feedback, emptyFramebuffer, integerFramebuffer, multisampledFramebuffer, conflictProgram, feedbackProgram,
+DrawBuffers buffers;
+GLuint feedback, emptyFramebuffer, integerFramebuffer, multisampledFramebuffer, conflictProgram, feedbackProgram,
     geometryProgram, tessellationProgram, computeProgram;
 
 void makeBuffers() {
-    const GLfloat corners[12] = {-1, -1, 0, 1, -1, 0, 0, 1, 0, 0, 0, 0};
-    const GLushort order[4] = {0, 1, 2, 0};
-    GLuint commands[64] = {3, 1, 0, 0, 0, 3, 1, 0, 0, 0};
-    glGenVertexArrays(1, &vertexArray);
-    glBindVertexArray(vertexArray);
-    glGenBuffers(1, &vertices);
-    glBindBuffer(GL_ARRAY_BUFFER, vertices);
-    glBufferData(GL_ARRAY_BUFFER, sizeof corners, corners, GL_STATIC_DRAW);
-    glEnableVertexAttribArray(0);
-    glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
-    glGenBuffers(1, &indices);
-    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices);
-    glBufferData(GL_ELEMENT_ARRAY_BUFFER, sizeof order, order, GL_STATIC_DRAW);
-    glGenBuffers(1, &indirect);
-    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, indirect);
-    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, indirect);
-    glBufferData(GL_DRAW_INDIRECT_BUFFER, sizeof commands, commands, GL_STATIC_DRAW);
+    buffers = makeDrawBuffers();
     glGenBuffers(1, &feedback);
     glBindBuffer(GL_TRANSFORM_FEEDBACK_BUFFER, feedback);
     glBufferData(GL_TRANSFORM_FEEDBACK_BUFFER, 4096, nullptr, GL_STATIC_DRAW);
@@ -286,14 +273,14 @@ std::vector<Situation> situations() {
         withProgram(tessellationProgram),
         withProgram(computeProgram),
         withProgram(0),
-        {[] { glBindVertexArray(0); }, [] { glBindVertexArray(vertexArray); }},
+        {[] { glBindVertexArray(0); }, [] { glBindVertexArray(buffers.vertexArray); }},
     };
     if (!kCore) {
         all.pop_back(); // client arrays would be read from nowhere
         all.push_back({[] { glEnable(GL_VERTEX_PROGRAM_ARB); }, [] { glDisable(GL_VERTEX_PROGRAM_ARB); }});
         all.push_back({[] { glRasterPos2f(9, 9); }, [] {}});
     } else {
-        all.push_back({[] { glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0); }, [] { glBindBuffer(GL_DRAW_INDIRECT_BUFFER, indirect); }});
+        all.push_back({[] { glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0); }, [] { glBindBuffer(GL_DRAW_INDIRECT_BUFFER, buffers.indirect); }});
     }
     return all;
 }

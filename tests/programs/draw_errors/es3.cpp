@@ -1,6 +1,7 @@
 // The same in OpenGL ES 3.1: indirect draws need buffers and a vertex array there.
 #include <GLES3/gl31.h>
 
+#include "tests/programs/draw_errors/buffers.hpp"
 #include "tests/programs/draw_errors/record.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -13,7 +14,8 @@ using namespace programs;
 
 namespace {
 
-GLuint vertexArray, vertices, indices, indirect, emptyFramebuffer, plainProgram, computeProgram;
+DrawBuffers buffers;
+GLuint emptyFramebuffer, plainProgram, computeProgram;
 
 const void* at(std::uintptr_t offset) { return reinterpret_cast<const void*>(offset); }
 
@@ -29,7 +31,7 @@ std::vector<std::function<void()>> calls() {
             all.push_back([=] { glDrawElementsInstanced(mode, count, GL_UNSIGNED_SHORT, nullptr, 1); });
             all.push_back([=] { glDrawRangeElements(mode, 3, 0, count, GL_UNSIGNED_SHORT, nullptr); });
         }
-        for (const std::uintptr_t offset : {0U, 2U, 56U, 4096U}) {
+        for (const std::uintptr_t offset : {0U, 2U, 252U, 4096U}) {
             all.push_back([=] { glDrawArraysIndirect(mode, at(offset)); });
             all.push_back([=] { glDrawElementsIndirect(mode, GL_UNSIGNED_SHORT, at(offset)); });
         }
@@ -64,30 +66,14 @@ std::vector<Situation> situations() {
         {[] { glBindFramebuffer(GL_FRAMEBUFFER, emptyFramebuffer); }, [] { glBindFramebuffer(GL_FRAMEBUFFER, 0); }},
         {[] { glUseProgram(computeProgram); }, [] { glUseProgram(plainProgram); }},
         {[] { glUseProgram(0); }, [] { glUseProgram(plainProgram); }},
-        {[] { glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0); }, [] { glBindBuffer(GL_DRAW_INDIRECT_BUFFER, indirect); }},
+        {[] { glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0); }, [] { glBindBuffer(GL_DRAW_INDIRECT_BUFFER, buffers.indirect); }},
         {[] { glMapBufferRange(GL_DRAW_INDIRECT_BUFFER, 0, 4, GL_MAP_WRITE_BIT); }, [] { glUnmapBuffer(GL_DRAW_INDIRECT_BUFFER); }},
         {[] { glMapBufferRange(GL_ARRAY_BUFFER, 0, 4, GL_MAP_WRITE_BIT); }, [] { glUnmapBuffer(GL_ARRAY_BUFFER); }},
     };
 }
 
 void makeObjects() {
-    const GLfloat corners[12] = {-1, -1, 0, 1, -1, 0, 0, 1, 0, 0, 0, 0};
-    const GLushort order[4] = {0, 1, 2, 0};
-    const GLuint commands[16] = {3, 1, 0, 0, 0, 3, 1};
-    glGenVertexArrays(1, &vertexArray);
-    glBindVertexArray(vertexArray);
-    glGenBuffers(1, &vertices);
-    glBindBuffer(GL_ARRAY_BUFFER, vertices);
-    glBufferData(GL_ARRAY_BUFFER, sizeof corners, corners, GL_STATIC_DRAW);
-    glEnableVertexAttribArray(0);
-    glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
-    glGenBuffers(1, &indices);
-    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices);
-    glBufferData(GL_ELEMENT_ARRAY_BUFFER, sizeof order, order, GL_STATIC_DRAW);
-    glGenBuffers(1, &indirect);
-    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, indirect);
-    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, indirect);
-    glBufferData(GL_DRAW_INDIRECT_BUFFER, sizeof commands, commands, GL_STATIC_DRAW);
+    buffers = makeDrawBuffers();
     glGenFramebuffers(1, &emptyFramebuffer);
     plainProgram = buildProgram({{GL_VERTEX_SHADER, "#version 310 es\nin vec4 p; void main() { gl_Position = p * 0.1; }"},
                                  {GL_FRAGMENT_SHADER, "#version 310 es\nprecision highp float; out vec4 o; void main() { o = vec4(0.5); }"}});

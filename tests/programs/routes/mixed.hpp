@@ -3,11 +3,11 @@
 // in the program's own order). They say at the end whether their window shows the whole picture.
 #pragma once
 
-#include <X11/Xutil.h>
 #include <cstdio>
 #include <cstring>
 #include <dlfcn.h>
 
+#include "tests/programs/routes/row_changes.hpp"
 #include "tests/programs/routes/scene.hpp"
 #include "tests/programs/support/program.hpp"
 
@@ -32,19 +32,6 @@ inline GlFunction findElsewhere(const char* name) {
     void* library = RTLD_DEFAULT;
 #endif
     return reinterpret_cast<GlFunction>(dlsym(library, name));
-}
-
-// Changes of colour along a row: each half of the scene has many.
-inline int changesInRow(Display* display, ::Window window, int y, int width) {
-    XImage* image = XGetImage(display, window, 0, y, static_cast<unsigned>(width), 1, AllPlanes, ZPixmap);
-    int changes = 0;
-    for (int x = 1; image != nullptr && x < width; ++x) {
-        changes += XGetPixel(image, x, 0) != XGetPixel(image, x - 1, 0);
-    }
-    if (image != nullptr) {
-        XDestroyImage(image);
-    }
-    return changes;
 }
 
 // For the size 253x191: immediate mode draws above, buffers and shaders below.

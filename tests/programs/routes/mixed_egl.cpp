@@ -1,6 +1,7 @@
 // Two ways into one context (mixed.hpp), with a window by EGL.
 #include <EGL/egl.h>
 
+#include "tests/programs/routes/egl_scene.hpp"
 #include "tests/programs/routes/mixed.hpp"
 #include "tests/programs/support/x_window.hpp"
 
@@ -24,17 +25,8 @@ programs::GlFunction find(const char* name) {
 
 int main(int argc, char** argv) {
     const programs::Options options = programs::parseOptions(argc, argv);
-    const auto window = programs::openEglWindow({}, options.width, options.height);
-    window->makeCurrent();
-    {
-        programs::Scene scene(find);
-        for (int frame = 0; frame < options.frames; ++frame) {
-            scene.draw(frame, options.width, options.height);
-            window->swap();
-        }
-    }
-    Display* display = programs::openDisplayOnce();
-    programs::sayWhetherWhole(display, ownWindow(display), options.width);
-    window->release();
-    return 0;
+    return programs::runSceneByEgl(options, find, [&] {
+        Display* display = programs::openDisplayOnce();
+        programs::sayWhetherWhole(display, ownWindow(display), options.width);
+    });
 }

@@ -1,10 +1,10 @@
 // A window by GLX, drawn into by another way: Mesa's inner dispatch, which the libGL of before GLVND
 // used. Says at the end whether the window shows the picture.
-#include <X11/Xutil.h>
 #include <cstdio>
 #include <dlfcn.h>
 
 #include "tests/programs/routes/glx_functions.hpp"
+#include "tests/programs/routes/row_changes.hpp"
 
 namespace {
 
@@ -19,22 +19,9 @@ programs::GlFunction findGl(const char* name) {
     return lookUp(name);
 }
 
-// The scene's frames are told apart from an empty window by their many colours.
-int coloursOf(Display* display, ::Window window, int width) {
-    XImage* image = XGetImage(display, window, 0, 60, static_cast<unsigned>(width), 1, AllPlanes, ZPixmap);
-    int changes = 0;
-    for (int x = 1; image != nullptr && x < width; ++x) {
-        changes += XGetPixel(image, x, 0) != XGetPixel(image, x - 1, 0);
-    }
-    if (image != nullptr) {
-        XDestroyImage(image);
-    }
-    return changes;
-}
-
 void sayWhatIsSeen(Display* display, ::Window window, int width) {
     XSync(display, False);
-    std::printf("the window shows %s\n", coloursOf(display, window, width) > 5 ? "the picture" : "nothing");
+    std::printf("the window shows %s\n", programs::changesInRow(display, window, 60, width) > 5 ? "the picture" : "nothing");
 }
 
 } // namespace
