@@ -44,7 +44,7 @@ public:
     [[nodiscard]] virtual int width() const = 0;
     [[nodiscard]] virtual int height() const = 0;
     // True: only one colour buffer, named GL_FRONT (EGL pbuffers of Mesa, OSMesa). The replay then
-    // maps GL_BACK* and GL_FRONT* to it.
+    // maps GL_BACK* and GL_FRONT* to it, and takes a second surface for the front where it is used.
     [[nodiscard]] virtual bool singleBuffered() const = 0;
     // True: the buffer has an alpha channel that was not asked for (OSMesa has no other 8-bit format). It
     // is 1 everywhere when the surface is made; the picture is exact as long as it stays so: the replay
@@ -64,6 +64,8 @@ public:
     virtual Result<std::unique_ptr<Context>> createContext(const ContextConfig& config, Context* shareWith) = 0;
     // Null context: release. Null surfaces: surfaceless (or a 1×1 dummy where that is unknown).
     virtual Result<void> makeCurrent(Context* context, Surface* draw, Surface* read) = 0;
+    // True: a context can draw to one surface and read from another.
+    [[nodiscard]] virtual bool readsOtherSurfaces() const { return true; }
     // True: surfaces can have an accumulation buffer.
     [[nodiscard]] virtual bool accumulates() const { return false; }
     // Entry point of all contexts, null when unknown. May be called only while a context is current.

@@ -204,6 +204,7 @@ public:
     Result<std::unique_ptr<Surface>> createSurface(const SurfaceConfig& wish) override;
     Result<std::unique_ptr<Context>> createContext(const ContextConfig& wish, Context* shareWith) override;
     Result<void> makeCurrent(Context* context, Surface* draw, Surface* read) override;
+    [[nodiscard]] bool readsOtherSurfaces() const override { return false; }
     Proc getProcAddress(const char* name) override {
         return reinterpret_cast<Proc>(state_->osmesa.getProcAddress(name));
     }

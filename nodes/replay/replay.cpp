@@ -106,19 +106,15 @@ bool Replay::bindStream(Stream& s) {
     c_ = s.context ? s.context : none_.get();
     if (!s.context) return true;
     if (bound_ == s.context && boundDraw_ == s.draw && boundRead_ == s.read) return true;
-    const auto made = platform_->makeCurrent(s.context->context.get(), s.draw ? s.draw->surface.get() : nullptr, s.read ? s.read->surface.get() : nullptr);
-    if (!made) {
-        out_.log("a context can't be made current: " + made.error().message);
-        unbindPlatform(); // what is current after that, no driver tells
-        c_ = none_.get();
-        return true;
-    }
     bound_ = s.context;
     boundDraw_ = s.draw;
     boundRead_ = s.read;
     s.context->draw = s.draw;
     s.context->read = s.read;
-    loadFunctions();
+    if (!bindSurfaces()) {
+        c_ = none_.get();
+        return true;
+    }
     restoreWindowState();
     return true;
 }

@@ -122,6 +122,9 @@ private:
         bool widens = true;     // to the window's size, when that is needed; not when that has failed
         wire::WindowConfig config{};
         std::unique_ptr<gl::Surface> surface;
+        std::unique_ptr<gl::Surface> front;  // where surfaces have one colour buffer: the front, once it is used
+        bool frontStale = false;             // its colours have to come from `surface`
+        gl::Surface* deep = nullptr;         // the one of both whose depth and stencil count
         std::unique_ptr<gl::Context> filler; // draws depth and stencil where the program's context can't
         PixelViewport whole;  // 0, 0, width, height
         PixelViewport region; // this node's part
@@ -327,6 +330,18 @@ private:
     [[nodiscard]] bool memoryWritten() const { return c_->shared && c_->shared->memoryWritten; }
     void widenToWindow(Window& w);
     void copyTile(const Window& w, gl::Surface& from);
+    // replay_front.cpp
+    [[nodiscard]] bool hasTwoSurfaces(const Window* w) const;
+    gl::Surface* surfaceOf(Window* w, GLenum buffer);
+    bool bindSurfaces();
+    void drawBufferOfWindow(GLenum buffer);
+    void readBufferOfWindow(GLenum buffer);
+    void buffersChanged(GLenum drawnBefore);
+    void backToFront(Window& w);
+    void showBack(Window& w);
+    void copySurface(gl::Surface& from, gl::Surface& to, GLbitfield planes);
+    void depthForReading();
+    void dropFront(Window& w);
     // replay_color_masks.cpp
     [[nodiscard]] bool hidesAlpha() const;
     void applyColorMasks();
@@ -379,6 +394,8 @@ private:
     ContextState* bound_ = nullptr; // what the platform has current
     Window* boundDraw_ = nullptr;
     Window* boundRead_ = nullptr;
+    gl::Surface* drawSurface_ = nullptr; // of boundDraw_ and boundRead_, while bound_ is set
+    gl::Surface* readSurface_ = nullptr;
     std::vector<std::vector<std::byte>> taken_; // blobs of the record being replayed
     std::vector<std::vector<GLuint>> scratch_;  // translated names of the record being replayed
     size_t scratchUsed_ = 0;

@@ -67,6 +67,7 @@ void Replay::gatherDepthStencil(Gathered& g, GLbitfield plane, const void* pixel
 
 // Runs a copy that reads `source` of the read framebuffer; the call gets what to add to its coordinates.
 void Replay::fromWindow(const PixelViewport& source, const std::function<void(GLint, GLint)>& call) {
+    if (c_->readFramebuffer == 0) depthForReading();
     if (!readsLean() || c_->readFramebuffer != 0) return call(0, 0);
     const PixelViewport box = c_->gathered.box;
     if (box.empty() || c_->compiling || !box.contains(intersect(source, c_->read->whole))) return call(-c_->read->region.x, -c_->read->region.y);
@@ -134,6 +135,7 @@ void Replay::glBlitFramebuffer(GLint srcX0, GLint srcY0, GLint srcX1, GLint srcY
 // By names: the same as with both bound, which is how it is done.
 void Replay::glBlitNamedFramebuffer(GLuint readFramebuffer, GLuint drawFramebuffer, GLint srcX0, GLint srcY0, GLint srcX1, GLint srcY1, GLint dstX0, GLint dstY0, GLint dstX1, GLint dstY1, GLbitfield mask, GLenum filter) {
     if (!gl.glBlitNamedFramebuffer) return;
+    if (readFramebuffer == 0) depthForReading();
     if (!config_.lean) {
         return withoutTile([&] {
             gl.glBlitNamedFramebuffer(name(Kind::Framebuffer, readFramebuffer), name(Kind::Framebuffer, drawFramebuffer), srcX0, srcY0, srcX1, srcY1, dstX0, dstY0, dstX1, dstY1, mask, filter);

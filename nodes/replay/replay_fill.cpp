@@ -36,7 +36,8 @@ gl::Context* Replay::fillerOf(Window& w) {
 void Replay::fillByOtherContext(const PixelViewport& r, GLbitfield plane, const void* pixels) {
     Window& w = *boundRead_;
     gl::Context* const filler = fillerOf(w);
-    if (!filler || !platform_->makeCurrent(filler, w.surface.get(), w.surface.get())) return;
+    gl::Surface* const deep = w.deep ? w.deep : w.surface.get();
+    if (!filler || !platform_->makeCurrent(filler, deep, deep)) return;
     const bool depth = plane == GL_DEPTH_BUFFER_BIT;
     if (gl.glDrawPixels && gl.glWindowPos2i) {
         gl.glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
@@ -48,7 +49,7 @@ void Replay::fillByOtherContext(const PixelViewport& r, GLbitfield plane, const 
         else gl.glDrawPixels(r.w, r.h, GL_STENCIL_INDEX, GL_UNSIGNED_BYTE, pixels);
         gl.glFlush();
     }
-    (void)platform_->makeCurrent(c_->context.get(), boundDraw_ ? boundDraw_->surface.get() : nullptr, w.surface.get());
+    (void)platform_->makeCurrent(c_->context.get(), drawSurface_, readSurface_);
 }
 
 } // namespace mural

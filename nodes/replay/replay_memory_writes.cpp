@@ -63,8 +63,9 @@ void Replay::widenToWindow(Window& w) {
     }
     const std::unique_ptr<gl::Surface> tile = std::exchange(w.surface, std::move(*made));
     w.lean = false;
+    dropFront(w);
     if (tile && gl.glBlitFramebuffer) copyTile(w, *tile);
-    (void)platform_->makeCurrent(c_->context.get(), w.surface.get(), boundRead_ ? boundRead_->surface.get() : nullptr);
+    (void)bindSurfaces();
 }
 
 // Into the window's new framebuffer, whatever the program has set. That one becomes current; buffers are chosen

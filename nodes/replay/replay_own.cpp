@@ -174,6 +174,8 @@ bool Replay::ownWindow(Args& in) {
     alphaHides_ = alphaHides_ || (*made)->hiddenAlpha();
     const bool bound = &w == boundDraw_ || &w == boundRead_;
     std::unique_ptr<gl::Surface> old = std::move(w.surface);
+    std::unique_ptr<gl::Surface> oldFront = std::move(w.front);
+    dropFront(w);
     w.surface = std::move(*made);
     if (bound) {
         boundDraw_ = boundRead_ = nullptr;
@@ -229,6 +231,7 @@ bool Replay::ownSwap(Args& in, bool front) {
     // A frame counts when it is drawn, not when it is queued: pacing and frame rates depend on it.
     waitUntilDrawn();
     out_.frameDone(f);
+    if (it != windows.end() && it->second->front && !front) showBack(*it->second);
     return true;
 }
 

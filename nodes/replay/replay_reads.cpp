@@ -51,6 +51,8 @@ bool Replay::ownRequestPixels(Args& in) {
         answerBytes(request, wire::AnswerKind::Bytes, {readRegion(asked, format, type, bytes), bytes});
         return true;
     }
+    const bool deep = format == GL_DEPTH_COMPONENT || format == GL_DEPTH_STENCIL || format == GL_STENCIL_INDEX;
+    if (deep) depthForReading();
     const PixelViewport part = c_->read ? intersect(asked, c_->read->region) : PixelViewport{};
     const size_t bytes = static_cast<size_t>(part.area()) * group;
     const std::byte* pixels = nullptr;
@@ -132,8 +134,9 @@ const std::byte* Replay::readShown(Window& w, const PixelViewport& r, bool front
     const GLenum target = separate ? GL_READ_FRAMEBUFFER : GL_FRAMEBUFFER;
     const GLuint draw = c_->drawFramebuffer;
     if (bound && gl.glBindFramebuffer) gl.glBindFramebuffer(target, 0);
-    const bool otherRead = boundRead_ != &w;
-    if (otherRead) (void)platform_->makeCurrent(c_->context.get(), w.surface.get(), w.surface.get());
+    gl::Surface* const shown = surfaceOf(&w, w.config.doubleBuffer && !front ? GL_BACK : GL_FRONT);
+    const bool otherRead = readSurface_ != shown;
+    if (otherRead) (void)platform_->makeCurrent(c_->context.get(), shown, shown);
     const bool chooses = c_->api == wire::Api::Desktop && gl.glReadBuffer;
     if (chooses) gl.glReadBuffer(windowBuffer(w.config.doubleBuffer && !front ? GL_BACK : GL_FRONT, &w));
     c_->readFramebuffer = 0;
@@ -150,7 +153,7 @@ const std::byte* Replay::readShown(Window& w, const PixelViewport& r, bool front
     c_->read = read;
     c_->readFramebuffer = bound;
     if (chooses) gl.glReadBuffer(windowBuffer(c_->readBuffer0, &w));
-    if (otherRead) (void)platform_->makeCurrent(c_->context.get(), w.surface.get(), boundRead_ ? boundRead_->surface.get() : nullptr);
+    if (otherRead) (void)platform_->makeCurrent(c_->context.get(), drawSurface_, readSurface_);
     if (bound && gl.glBindFramebuffer) gl.glBindFramebuffer(target, name(Kind::Framebuffer, separate ? bound : draw));
     return pixels;
 }
@@ -211,8 +214,8 @@ bool Replay::ownFillWindow(Args& in) {
 // Colours into the window that is read, whatever the program has set.
 void Replay::fillColor(const PixelViewport& r, const void* rgba) {
     // That window becomes the one that is drawn to, as long as this takes.
-    const bool otherDraw = boundDraw_ != boundRead_;
-    if (otherDraw) (void)platform_->makeCurrent(c_->context.get(), boundRead_->surface.get(), boundRead_->surface.get());
+    const bool otherDraw = drawSurface_ != readSurface_;
+    if (otherDraw) (void)platform_->makeCurrent(c_->context.get(), readSurface_, readSurface_);
     GLint texture2d = 0, unit = 0;
     gl.glGetIntegerv(GL_ACTIVE_TEXTURE, &unit);
     gl.glGetIntegerv(GL_TEXTURE_BINDING_2D, &texture2d);
@@ -242,7 +245,7 @@ void Replay::fillColor(const PixelViewport& r, const void* rgba) {
     gl.glDeleteTextures(1, &texture);
     gl.glBindFramebuffer(GL_READ_FRAMEBUFFER, name(Kind::Framebuffer, c_->readFramebuffer));
     gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER, name(Kind::Framebuffer, c_->drawFramebuffer));
-    if (otherDraw) (void)platform_->makeCurrent(c_->context.get(), boundDraw_ ? boundDraw_->surface.get() : nullptr, boundRead_->surface.get());
+    if (otherDraw) (void)platform_->makeCurrent(c_->context.get(), drawSurface_, readSurface_);
     c_->scissorsDiffer = true; // all viewports' enables were touched
     applyScissors();
 }

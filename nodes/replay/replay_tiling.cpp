@@ -7,6 +7,7 @@
 // Source: design §4, accuracy M4 and M1.
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
 #include "nodes/replay/replay.hpp"
 
@@ -201,8 +202,7 @@ void Replay::glDeleteFramebuffers(GLsizei n, const Data& framebuffers) {
     restoreWindowState();
 }
 
-// A surface with one colour buffer stands for the front and the back of the program's window: what
-// is shown is what was drawn last, and Mesa keeps the back buffer over a swap.
+// The one colour buffer of a surface, whichever of the window's it stands for (replay_front.cpp).
 GLenum Replay::windowBuffer(GLenum buffer, const Window* w) const {
     if (!w || !w->surface || !w->surface->singleBuffered() || c_->api != wire::Api::Desktop) return buffer;
     switch (buffer) {
@@ -215,36 +215,42 @@ GLenum Replay::windowBuffer(GLenum buffer, const Window* w) const {
     default: return buffer;
     }
 }
+void Replay::drawBufferOfWindow(GLenum buffer) { buffersChanged(std::exchange(c_->drawBuffer0, buffer)); }
+void Replay::readBufferOfWindow(GLenum buffer) {
+    c_->readBuffer0 = buffer;
+    buffersChanged(c_->drawBuffer0);
+}
 void Replay::glDrawBuffer(GLenum buf) {
-    if (drawsWindow()) c_->drawBuffer0 = buf;
     gl.glDrawBuffer(drawsWindow() ? windowBuffer(buf, c_->draw) : buf);
+    if (drawsWindow()) drawBufferOfWindow(buf);
 }
 void Replay::glDrawBuffers(GLsizei n, const Data& bufs) {
     if (n <= 0 || !bufs.pointer() || !gl.glDrawBuffers) return gl.glDrawBuffers ? gl.glDrawBuffers(n, nullptr) : void();
     std::vector<GLenum> list(bufs.as<GLenum>(), bufs.as<GLenum>() + n);
     if (drawsWindow()) {
-        c_->drawBuffer0 = list[0];
         for (GLenum& b : list) b = windowBuffer(b, c_->draw);
     }
     gl.glDrawBuffers(n, list.data());
+    if (drawsWindow()) drawBufferOfWindow(*bufs.as<GLenum>());
 }
 void Replay::glReadBuffer(GLenum src) {
-    if (c_->readFramebuffer == 0) c_->readBuffer0 = src;
     gl.glReadBuffer(c_->readFramebuffer == 0 ? windowBuffer(src, c_->read) : src);
+    if (c_->readFramebuffer == 0) readBufferOfWindow(src);
 }
 void Replay::glNamedFramebufferDrawBuffer(GLuint framebuffer, GLenum buf) {
-    if (framebuffer == 0) c_->drawBuffer0 = buf;
     gl.glNamedFramebufferDrawBuffer(name(Kind::Framebuffer, framebuffer), framebuffer == 0 ? windowBuffer(buf, c_->draw) : buf);
+    if (framebuffer == 0) drawBufferOfWindow(buf);
 }
 void Replay::glNamedFramebufferDrawBuffers(GLuint framebuffer, GLsizei n, const Data& bufs) {
     if (n <= 0 || !bufs.pointer()) return;
     std::vector<GLenum> list(bufs.as<GLenum>(), bufs.as<GLenum>() + n);
     for (GLenum& b : list) b = framebuffer == 0 ? windowBuffer(b, c_->draw) : b;
     gl.glNamedFramebufferDrawBuffers(name(Kind::Framebuffer, framebuffer), n, list.data());
+    if (framebuffer == 0) drawBufferOfWindow(*bufs.as<GLenum>());
 }
 void Replay::glNamedFramebufferReadBuffer(GLuint framebuffer, GLenum src) {
-    if (framebuffer == 0) c_->readBuffer0 = src;
     gl.glNamedFramebufferReadBuffer(name(Kind::Framebuffer, framebuffer), framebuffer == 0 ? windowBuffer(src, c_->read) : src);
+    if (framebuffer == 0) readBufferOfWindow(src);
 }
 // Only a hint, and what it throws away may be another tile's: not done for windows.
 void Replay::glInvalidateFramebuffer(GLenum target, GLsizei n, const Data& attachments) {
@@ -277,11 +283,11 @@ void Replay::glPopAttrib() {
     if (saved.mask & GL_LIST_BIT) c_->listBase = saved.listBase;
     if (saved.mask & GL_VIEWPORT_BIT) c_->viewports = saved.viewports;
     if (saved.mask & GL_COLOR_BUFFER_BIT) {
-        c_->drawBuffer0 = saved.drawBuffer0;
+        drawBufferOfWindow(saved.drawBuffer0);
         c_->colorMasks = saved.colorMasks;
         applyColorMasks(); // the framebuffer may be another one than at the push
     }
-    if (saved.mask & GL_PIXEL_MODE_BIT) c_->readBuffer0 = saved.readBuffer0;
+    if (saved.mask & GL_PIXEL_MODE_BIT) readBufferOfWindow(saved.readBuffer0);
     if (saved.mask & (GL_SCISSOR_BIT | GL_ENABLE_BIT | GL_VIEWPORT_BIT)) restoreWindowState();
 }
 

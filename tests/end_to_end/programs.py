@@ -9,7 +9,7 @@ GROUPS = {
     "vertices": ["immediate", "generic_attributes", "display_lists", "client_arrays", "draw_calls",
                  "core_arrays", "buffers", "persistent_mapping", "evaluators"],
     "pixels": ["textures_classic", "textures_modern", "framebuffers", "framebuffers_layered", "core_depth",
-               "pixels_draw", "pixels_read", "front_buffer", "single_buffered", "accum_buffer"],
+               "pixels_draw", "pixels_read", "front_buffer", "front_and_back", "single_buffered", "accum_buffer"],
     "state": ["raster_state", "blend_modes", "clipping", "fixed_lighting", "feedback_select",
               "attribute_stacks", "arb_programs"],
     "shaders": ["glsl_legacy", "glsl_uniforms", "glsl_blocks", "glsl_stages", "compute_images",
