@@ -55,7 +55,7 @@ const void* askPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GL
     return ok ? into : nullptr;
 }
 
-const void* askTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type, uint64_t sizeBytes) {
+void* askTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type, uint64_t sizeBytes) {
     void* into = secondScratch(t, sizeBytes);
     if (!into || sizeBytes == 0) return nullptr;
     const bool ok = ask(t, into, sizeBytes, [&](uint32_t request) {

@@ -15,7 +15,7 @@ struct Context;
 // scratch memory of the thread. Null: no answer.
 // plain: without the program's pixel transfer.
 const void* askPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type, bool plain = false);
-const void* askTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type, uint64_t sizeBytes);
+void* askTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type, uint64_t sizeBytes);
 bool askQuery(ThreadState& t, GLuint query, GLenum name, uint64_t& value);
 // Bytes of a buffer as the nodes have it; in scratch memory.
 const void* askBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t sizeBytes);

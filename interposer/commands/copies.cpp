@@ -3,6 +3,7 @@
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
 #include "interposer/asking.hpp"
+#include "interposer/commands/copies.hpp"
 #include "interposer/commands/quiet.hpp"
 #include "interposer/context.hpp"
 #include "interposer/own_records.hpp"
@@ -19,7 +20,21 @@ bool readsWindow(const Context& c) {
     return framebuffer == 0;
 }
 
-// Fetches the rectangle of the window from all nodes and gives it to all. Null planes: nothing to do.
+// What a copy into a texture level reads; `ask` gives the level's internal format. The copy itself raises the errors.
+template <class Ask> GLbitfield planesInto(ThreadState& t, Ask&& ask) {
+    Session* s = Session::current();
+    if (!t.context || !s || s->welcome().nodeCount < 2) return GL_COLOR_BUFFER_BIT;
+    GLint format = 0;
+    stashError(*t.context, driverError());
+    ask(&format);
+    (void)driverError();
+    return copies::planesOf(static_cast<GLenum>(format));
+}
+
+} // namespace
+
+namespace mural::copies {
+
 void gather(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes) {
     Session* s = Session::current();
     Context* c = t.context;
@@ -61,73 +76,29 @@ GLbitfield planesOf(GLenum internalFormat) {
     default: return GL_COLOR_BUFFER_BIT;
     }
 }
-
-// What a copy into the texture bound to `target` reads.
-GLbitfield planesOfLevel(ThreadState& t, GLenum target, GLint level) {
-    Session* s = Session::current();
-    if (!t.context || !s || s->welcome().nodeCount < 2 || !gReal.glGetTexLevelParameteriv) return GL_COLOR_BUFFER_BIT;
-    GLint format = 0;
-    gReal.glGetTexLevelParameteriv(target, level, GL_TEXTURE_INTERNAL_FORMAT, &format);
-    return planesOf(static_cast<GLenum>(format));
+GLbitfield planesOfBound(ThreadState& t, GLenum target, GLint level) {
+    if (!gReal.glGetTexLevelParameteriv) return GL_COLOR_BUFFER_BIT;
+    return planesInto(t, [=](GLint* format) { gReal.glGetTexLevelParameteriv(target, level, GL_TEXTURE_INTERNAL_FORMAT, format); });
+}
+GLbitfield planesOfTexture(ThreadState& t, GLuint texture, GLint level) {
+    return planesInto(t, [=](GLint* format) { gReal.glGetTextureLevelParameteriv(texture, level, GL_TEXTURE_INTERNAL_FORMAT, format); });
+}
+GLbitfield planesOfTextureTarget(ThreadState& t, GLuint texture, GLenum target, GLint level) {
+    return planesInto(t, [=](GLint* format) { gReal.glGetTextureLevelParameterivEXT(texture, target, level, GL_TEXTURE_INTERNAL_FORMAT, format); });
+}
+GLbitfield planesOfUnit(ThreadState& t, GLenum unit, GLenum target, GLint level) {
+    return planesInto(t, [=](GLint* format) { gReal.glGetMultiTexLevelParameterivEXT(unit, target, level, GL_TEXTURE_INTERNAL_FORMAT, format); });
 }
 
-} // namespace
+} // namespace mural::copies
 
 extern "C" {
 
-void mural_glCopyTexImage1D(GLenum target, GLint level, GLenum internalformat, GLint x, GLint y, GLsizei width, GLint border) {
-    ThreadState& t = *tThread;
-    gather(t, x, y, width, 1, planesOf(internalformat));
-    encode_glCopyTexImage1D(t, target, level, internalformat, x, y, width, border);
-    gReal.glCopyTexImage1D(target, level, internalformat, x, y, width, border);
-}
-void mural_glCopyTexImage2D(GLenum target, GLint level, GLenum internalformat, GLint x, GLint y, GLsizei width, GLsizei height, GLint border) {
-    ThreadState& t = *tThread;
-    gather(t, x, y, width, height, planesOf(internalformat));
-    encode_glCopyTexImage2D(t, target, level, internalformat, x, y, width, height, border);
-    gReal.glCopyTexImage2D(target, level, internalformat, x, y, width, height, border);
-}
-void mural_glCopyTexSubImage1D(GLenum target, GLint level, GLint xoffset, GLint x, GLint y, GLsizei width) {
-    ThreadState& t = *tThread;
-    gather(t, x, y, width, 1, planesOfLevel(t, target, level));
-    encode_glCopyTexSubImage1D(t, target, level, xoffset, x, y, width);
-    gReal.glCopyTexSubImage1D(target, level, xoffset, x, y, width);
-}
-void mural_glCopyTexSubImage2D(GLenum target, GLint level, GLint xoffset, GLint yoffset, GLint x, GLint y, GLsizei width, GLsizei height) {
-    ThreadState& t = *tThread;
-    gather(t, x, y, width, height, planesOfLevel(t, target, level));
-    encode_glCopyTexSubImage2D(t, target, level, xoffset, yoffset, x, y, width, height);
-    gReal.glCopyTexSubImage2D(target, level, xoffset, yoffset, x, y, width, height);
-}
-void mural_glCopyTexSubImage3D(GLenum target, GLint level, GLint xoffset, GLint yoffset, GLint zoffset, GLint x, GLint y, GLsizei width, GLsizei height) {
-    ThreadState& t = *tThread;
-    gather(t, x, y, width, height, planesOfLevel(t, target, level));
-    encode_glCopyTexSubImage3D(t, target, level, xoffset, yoffset, zoffset, x, y, width, height);
-    gReal.glCopyTexSubImage3D(target, level, xoffset, yoffset, zoffset, x, y, width, height);
-}
-void mural_glCopyTextureSubImage1D(GLuint texture, GLint level, GLint xoffset, GLint x, GLint y, GLsizei width) {
-    ThreadState& t = *tThread;
-    gather(t, x, y, width, 1, GL_COLOR_BUFFER_BIT);
-    encode_glCopyTextureSubImage1D(t, texture, level, xoffset, x, y, width);
-    gReal.glCopyTextureSubImage1D(texture, level, xoffset, x, y, width);
-}
-void mural_glCopyTextureSubImage2D(GLuint texture, GLint level, GLint xoffset, GLint yoffset, GLint x, GLint y, GLsizei width, GLsizei height) {
-    ThreadState& t = *tThread;
-    gather(t, x, y, width, height, GL_COLOR_BUFFER_BIT);
-    encode_glCopyTextureSubImage2D(t, texture, level, xoffset, yoffset, x, y, width, height);
-    gReal.glCopyTextureSubImage2D(texture, level, xoffset, yoffset, x, y, width, height);
-}
-void mural_glCopyTextureSubImage3D(GLuint texture, GLint level, GLint xoffset, GLint yoffset, GLint zoffset, GLint x, GLint y, GLsizei width, GLsizei height) {
-    ThreadState& t = *tThread;
-    gather(t, x, y, width, height, GL_COLOR_BUFFER_BIT);
-    encode_glCopyTextureSubImage3D(t, texture, level, xoffset, yoffset, zoffset, x, y, width, height);
-    gReal.glCopyTextureSubImage3D(texture, level, xoffset, yoffset, zoffset, x, y, width, height);
-}
 void mural_glCopyPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum type) {
     ThreadState& t = *tThread;
     const GLbitfield planes = type == GL_COLOR ? GL_COLOR_BUFFER_BIT : type == GL_DEPTH ? GL_DEPTH_BUFFER_BIT
                               : type == GL_STENCIL ? GL_STENCIL_BUFFER_BIT : GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT;
-    gather(t, x, y, width, height, planes);
+    copies::gather(t, x, y, width, height, planes);
     encode_glCopyPixels(t, x, y, width, height, type);
     if (t.drawLocally || width < 0 || height < 0) gReal.glCopyPixels(x, y, width, height, type);
     else gReal.glCopyPixels(x, y, 0, 0, type);
@@ -136,7 +107,7 @@ void mural_glBlitFramebuffer(GLint srcX0, GLint srcY0, GLint srcX1, GLint srcY1,
     ThreadState& t = *tThread;
     const GLint x = srcX0 < srcX1 ? srcX0 : srcX1, y = srcY0 < srcY1 ? srcY0 : srcY1;
     const GLint w = srcX0 < srcX1 ? srcX1 - srcX0 : srcX0 - srcX1, h = srcY0 < srcY1 ? srcY1 - srcY0 : srcY0 - srcY1;
-    gather(t, x - 1, y - 1, w + 2, h + 2, mask); // linear filters read one pixel further
+    copies::gather(t, x - 1, y - 1, w + 2, h + 2, mask); // linear filters read one pixel further
     encode_glBlitFramebuffer(t, srcX0, srcY0, srcX1, srcY1, dstX0, dstY0, dstX1, dstY1, mask, filter);
     if (t.drawLocally) return gReal.glBlitFramebuffer(srcX0, srcY0, srcX1, srcY1, dstX0, dstY0, dstX1, dstY1, mask, filter);
     quiet::blit({srcX0, srcY0, srcX1, srcY1}, {dstX0, dstY0, dstX1, dstY1}, [&](const quiet::Area& from, const quiet::Area& to) {
@@ -148,7 +119,7 @@ void mural_glBlitNamedFramebuffer(GLuint readFramebuffer, GLuint drawFramebuffer
     if (readFramebuffer == 0) {
         const GLint x = srcX0 < srcX1 ? srcX0 : srcX1, y = srcY0 < srcY1 ? srcY0 : srcY1;
         const GLint w = srcX0 < srcX1 ? srcX1 - srcX0 : srcX0 - srcX1, h = srcY0 < srcY1 ? srcY1 - srcY0 : srcY0 - srcY1;
-        gather(t, x - 1, y - 1, w + 2, h + 2, mask);
+        copies::gather(t, x - 1, y - 1, w + 2, h + 2, mask);
     }
     encode_glBlitNamedFramebuffer(t, readFramebuffer, drawFramebuffer, srcX0, srcY0, srcX1, srcY1, dstX0, dstY0, dstX1, dstY1, mask, filter);
     if (t.drawLocally) return gReal.glBlitNamedFramebuffer(readFramebuffer, drawFramebuffer, srcX0, srcY0, srcX1, srcY1, dstX0, dstY0, dstX1, dstY1, mask, filter);

@@ -96,15 +96,65 @@ int imageDimensions(GLenum target) {
     }
 }
 
-// A cube map's level is its six faces.
-Level levelOf(GLuint texture, GLint level, GLint& target) {
+struct Target {
+    GLenum target, binding;
+};
+constexpr Target kTargets[] = {{GL_TEXTURE_2D, GL_TEXTURE_BINDING_2D}, {GL_TEXTURE_CUBE_MAP, GL_TEXTURE_BINDING_CUBE_MAP}, {GL_TEXTURE_2D_ARRAY, GL_TEXTURE_BINDING_2D_ARRAY},
+                               {GL_TEXTURE_3D, GL_TEXTURE_BINDING_3D}, {GL_TEXTURE_CUBE_MAP_ARRAY, GL_TEXTURE_BINDING_CUBE_MAP_ARRAY}, {GL_TEXTURE_1D, GL_TEXTURE_BINDING_1D},
+                               {GL_TEXTURE_1D_ARRAY, GL_TEXTURE_BINDING_1D_ARRAY}, {GL_TEXTURE_RECTANGLE, GL_TEXTURE_BINDING_RECTANGLE}};
+
+GLint boundTo(const Target& t) {
+    GLint texture = 0;
+    gReal.glGetIntegerv(t.binding, &texture);
+    return texture;
+}
+
+// The target of a texture. Drivers tell it in core contexts only (Mesa), but let it be bound to no other.
+GLenum targetOf(Context& c, GLuint texture) {
+    GLint told = 0;
+    if (c.core && gReal.glGetTextureParameteriv) gReal.glGetTextureParameteriv(texture, GL_TEXTURE_TARGET, &told);
+    if (told) return static_cast<GLenum>(told);
+    stashError(c, driverError());
+    for (const Target& t : kTargets) {
+        const GLint before = boundTo(t);
+        gReal.glBindTexture(t.target, texture);
+        if (driverError() != GL_NO_ERROR) continue;
+        gReal.glBindTexture(t.target, static_cast<GLuint>(before));
+        return t.target;
+    }
+    return GL_TEXTURE_2D;
+}
+
+// ask(pname, &value) asks the driver.
+template <class Ask> Level levelOf(Ask&& ask) {
     Level size;
-    gReal.glGetTextureParameteriv(texture, GL_TEXTURE_TARGET, &target);
-    gReal.glGetTextureLevelParameteriv(texture, level, GL_TEXTURE_WIDTH, &size.width);
-    gReal.glGetTextureLevelParameteriv(texture, level, GL_TEXTURE_HEIGHT, &size.height);
-    gReal.glGetTextureLevelParameteriv(texture, level, GL_TEXTURE_DEPTH, &size.depth);
+    ask(GL_TEXTURE_WIDTH, &size.width);
+    ask(GL_TEXTURE_HEIGHT, &size.height);
+    ask(GL_TEXTURE_DEPTH, &size.depth);
+    return size;
+}
+
+// A cube map's level is its six faces.
+Level levelOf(Context& c, GLuint texture, GLint level, GLenum& target) {
+    Level size = levelOf([=](GLenum pname, GLint* value) { gReal.glGetTextureLevelParameteriv(texture, level, pname, value); });
+    target = targetOf(c, texture);
     if (target == GL_TEXTURE_CUBE_MAP) size.depth = 6;
     return size;
+}
+
+// Of an image by name: a cube map's faces are images one behind the other.
+int dimensionsByName(GLenum target) { return target == GL_TEXTURE_CUBE_MAP ? 3 : imageDimensions(target); }
+
+// Moves a part of a tight image to its beginning, where it is tight itself.
+void keepPart(std::byte* image, const Level& size, const Level& from, const Level& part, size_t groupBytes) {
+    const size_t rowBytes = groupBytes * static_cast<size_t>(part.width);
+    std::byte* out = image;
+    for (GLint z = 0; z < part.depth; ++z) {
+        for (GLint y = 0; y < part.height; ++y, out += rowBytes) {
+            const size_t row = (static_cast<size_t>(from.depth + z) * static_cast<size_t>(size.height) + static_cast<size_t>(from.height + y)) * static_cast<size_t>(size.width);
+            std::memmove(out, image + (row + static_cast<size_t>(from.width)) * groupBytes, rowBytes);
+        }
+    }
 }
 
 void readTexture(ThreadState& t, bool byName, GLuint which, GLint level, GLenum format, GLenum type, void* pixels, const Level& size, int dimensions) {
@@ -141,10 +191,7 @@ void mural_glGetTexImage(GLenum target, GLint level, GLenum format, GLenum type,
     ThreadState& t = *tThread;
     if (!capturing(t)) return gReal.glGetTexImage(target, level, format, type, pixels);
     if (!raisesNothing(*t.context, [&] { gReal.glGetTexImage(target, level, format, type, pixels); })) return;
-    Level size;
-    gReal.glGetTexLevelParameteriv(target, level, GL_TEXTURE_WIDTH, &size.width);
-    gReal.glGetTexLevelParameteriv(target, level, GL_TEXTURE_HEIGHT, &size.height);
-    gReal.glGetTexLevelParameteriv(target, level, GL_TEXTURE_DEPTH, &size.depth);
+    const Level size = levelOf([=](GLenum pname, GLint* value) { gReal.glGetTexLevelParameteriv(target, level, pname, value); });
     readTexture(t, false, target, level, format, type, pixels, size, imageDimensions(target));
 }
 
@@ -159,9 +206,39 @@ void mural_glGetTextureImage(GLuint texture, GLint level, GLenum format, GLenum 
     ThreadState& t = *tThread;
     if (!capturing(t)) return gReal.glGetTextureImage(texture, level, format, type, bufSize, pixels);
     if (!raisesNothing(*t.context, [&] { gReal.glGetTextureImage(texture, level, format, type, bufSize, pixels); })) return;
-    GLint target = 0;
-    const Level size = levelOf(texture, level, target);
-    readTexture(t, true, texture, level, format, type, pixels, size, target == GL_TEXTURE_CUBE_MAP ? 3 : imageDimensions(static_cast<GLenum>(target)));
+    GLenum target = 0;
+    const Level size = levelOf(*t.context, texture, level, target);
+    readTexture(t, true, texture, level, format, type, pixels, size, dimensionsByName(target));
+}
+
+// EXT_direct_state_access: the nodes read what is bound, so the texture is bound there as long as this takes.
+void mural_glGetTextureImageEXT(GLuint texture, GLenum target, GLint level, GLenum format, GLenum type, void* pixels) {
+    ThreadState& t = *tThread;
+    const auto local = [&] { gReal.glGetTextureImageEXT(texture, target, level, format, type, pixels); };
+    if (!capturing(t) || t.context->compilingList) return local();
+    if (!raisesNothing(*t.context, local)) return;
+    const bool isFace = target >= GL_TEXTURE_CUBE_MAP_POSITIVE_X && target <= GL_TEXTURE_CUBE_MAP_NEGATIVE_Z;
+    const GLenum bindTarget = isFace ? GL_TEXTURE_CUBE_MAP : target;
+    const Level size = levelOf([&](GLenum pname, GLint* value) { gReal.glGetTextureLevelParameterivEXT(texture, target, level, pname, value); });
+    for (const Target& kind : kTargets) {
+        if (kind.target != bindTarget) continue;
+        encode_glBindTexture(t, bindTarget, texture);
+        readTexture(t, false, target, level, format, type, pixels, size, imageDimensions(target));
+        encode_glBindTexture(t, bindTarget, static_cast<GLuint>(boundTo(kind)));
+    }
+}
+
+void mural_glGetMultiTexImageEXT(GLenum texunit, GLenum target, GLint level, GLenum format, GLenum type, void* pixels) {
+    ThreadState& t = *tThread;
+    const auto local = [&] { gReal.glGetMultiTexImageEXT(texunit, target, level, format, type, pixels); };
+    if (!capturing(t) || t.context->compilingList) return local();
+    if (!raisesNothing(*t.context, local)) return;
+    const Level size = levelOf([&](GLenum pname, GLint* value) { gReal.glGetMultiTexLevelParameterivEXT(texunit, target, level, pname, value); });
+    GLint unit = 0;
+    gReal.glGetIntegerv(GL_ACTIVE_TEXTURE, &unit);
+    encode_glActiveTexture(t, texunit);
+    readTexture(t, false, target, level, format, type, pixels, size, imageDimensions(target));
+    encode_glActiveTexture(t, static_cast<GLenum>(unit));
 }
 
 // A part: the whole level is asked for, the part copied out of it.
@@ -170,24 +247,15 @@ void mural_glGetTextureSubImage(GLuint texture, GLint level, GLint xoffset, GLin
     const auto local = [&] { gReal.glGetTextureSubImage(texture, level, xoffset, yoffset, zoffset, width, height, depth, format, type, bufSize, pixels); };
     if (!capturing(t)) return local();
     if (!raisesNothing(*t.context, local)) return;
-    GLint target = 0;
-    const Level size = levelOf(texture, level, target);
+    if (width <= 0 || height <= 0 || depth <= 0) return;
+    GLenum target = 0;
+    const Level size = levelOf(*t.context, texture, level, target);
     const size_t whole = sizes::tightBytes(format, type, size.width, size.height, size.depth);
-    const auto* tight = static_cast<const std::byte*>(whole ? askTexImage(t, true, texture, level, format, type, whole) : nullptr);
-    const size_t group = sizes::groupBytes(format, type);
-    if (!tight || width <= 0 || height <= 0 || depth <= 0) return;
-    const size_t rowBytes = group * static_cast<size_t>(width);
-    auto* part = static_cast<std::byte*>(scratchMemory(t, rowBytes * static_cast<size_t>(height) * static_cast<size_t>(depth)));
-    if (!part) return;
-    std::byte* out = part;
-    for (GLsizei z = 0; z < depth; ++z) {
-        for (GLsizei y = 0; y < height; ++y, out += rowBytes) {
-            const size_t row = (static_cast<size_t>(zoffset + z) * static_cast<size_t>(size.height) + static_cast<size_t>(yoffset + y)) * static_cast<size_t>(size.width);
-            std::memcpy(out, tight + (row + static_cast<size_t>(xoffset)) * group, rowBytes);
-        }
-    }
-    const sizes::ImageLayout layout = sizes::layoutOf(packStore(*t.context), format, type, width, height, depth, imageDimensions(static_cast<GLenum>(target)));
-    if (layout.known && !packBufferBound(*t.context)) sizes::unpackTight(pixels, part, layout);
+    auto* tight = static_cast<std::byte*>(whole ? askTexImage(t, true, texture, level, format, type, whole) : nullptr);
+    if (!tight) return;
+    keepPart(tight, size, {xoffset, yoffset, zoffset}, {width, height, depth}, sizes::groupBytes(format, type));
+    const sizes::ImageLayout layout = sizes::layoutOf(packStore(*t.context), format, type, width, height, depth, dimensionsByName(target));
+    if (layout.known) deliver(t, tight, pixels, layout);
 }
 
 } // extern "C"

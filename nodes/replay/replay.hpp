@@ -97,6 +97,8 @@ public:
     bool lacking(uint16_t opcode);
     // Runs `call` with the program's own scissor alone.
     void withoutTile(const std::function<void()>& call);
+    // Runs a copy out of the read framebuffer; the call gets where to read.
+    void copyLevel(GLint x, GLint y, GLsizei w, GLsizei h, const std::function<void(GLint, GLint)>& call);
     template <class T> T windowX(T x) const { return moved(x, origin().x); }
     template <class T> T windowY(T y) const { return moved(y, origin().y); }
     // v: `count` values, 2 to 4, as they lie in the record (doubles at multiples of 4 bytes).
@@ -364,7 +366,6 @@ private:
     void gatherDepthStencil(Gathered& g, GLbitfield plane, const void* pixels);
     void forgetGathered();
     void fromWindow(const PixelViewport& source, const std::function<void(GLint, GLint)>& call);
-    void copyLevel(GLint x, GLint y, GLsizei w, GLsizei h, const std::function<void(GLint, GLint)>& call);
     // replay_tiling.cpp
     [[nodiscard]] PixelViewport origin() const; // of this node's framebuffer in the window (lean)
     [[nodiscard]] bool drawsLean() const { return c_->draw ? c_->draw->lean : config_.lean; }

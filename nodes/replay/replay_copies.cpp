@@ -79,35 +79,9 @@ void Replay::fromWindow(const PixelViewport& source, const std::function<void(GL
     forgetGathered();
 }
 
+// Into a level of a texture: the call gets where to read.
 void Replay::copyLevel(GLint x, GLint y, GLsizei w, GLsizei h, const std::function<void(GLint, GLint)>& call) {
     fromWindow({x, y, w, h}, [&](GLint dx, GLint dy) { call(moved(x, -dx), moved(y, -dy)); });
-}
-
-// ---- into textures
-
-void Replay::glCopyTexImage1D(GLenum target, GLint level, GLenum internalformat, GLint x, GLint y, GLsizei width, GLint border) {
-    copyLevel(x, y, width, 1, [&](GLint fromX, GLint fromY) { gl.glCopyTexImage1D(target, level, internalformat, fromX, fromY, width, border); });
-}
-void Replay::glCopyTexImage2D(GLenum target, GLint level, GLenum internalformat, GLint x, GLint y, GLsizei width, GLsizei height, GLint border) {
-    copyLevel(x, y, width, height, [&](GLint fromX, GLint fromY) { gl.glCopyTexImage2D(target, level, internalformat, fromX, fromY, width, height, border); });
-}
-void Replay::glCopyTexSubImage1D(GLenum target, GLint level, GLint xoffset, GLint x, GLint y, GLsizei width) {
-    copyLevel(x, y, width, 1, [&](GLint fromX, GLint fromY) { gl.glCopyTexSubImage1D(target, level, xoffset, fromX, fromY, width); });
-}
-void Replay::glCopyTexSubImage2D(GLenum target, GLint level, GLint xoffset, GLint yoffset, GLint x, GLint y, GLsizei width, GLsizei height) {
-    copyLevel(x, y, width, height, [&](GLint fromX, GLint fromY) { gl.glCopyTexSubImage2D(target, level, xoffset, yoffset, fromX, fromY, width, height); });
-}
-void Replay::glCopyTexSubImage3D(GLenum target, GLint level, GLint xoffset, GLint yoffset, GLint zoffset, GLint x, GLint y, GLsizei width, GLsizei height) {
-    copyLevel(x, y, width, height, [&](GLint fromX, GLint fromY) { gl.glCopyTexSubImage3D(target, level, xoffset, yoffset, zoffset, fromX, fromY, width, height); });
-}
-void Replay::glCopyTextureSubImage1D(GLuint texture, GLint level, GLint xoffset, GLint x, GLint y, GLsizei width) {
-    copyLevel(x, y, width, 1, [&](GLint fromX, GLint fromY) { gl.glCopyTextureSubImage1D(name(Kind::Texture, texture), level, xoffset, fromX, fromY, width); });
-}
-void Replay::glCopyTextureSubImage2D(GLuint texture, GLint level, GLint xoffset, GLint yoffset, GLint x, GLint y, GLsizei width, GLsizei height) {
-    copyLevel(x, y, width, height, [&](GLint fromX, GLint fromY) { gl.glCopyTextureSubImage2D(name(Kind::Texture, texture), level, xoffset, yoffset, fromX, fromY, width, height); });
-}
-void Replay::glCopyTextureSubImage3D(GLuint texture, GLint level, GLint xoffset, GLint yoffset, GLint zoffset, GLint x, GLint y, GLsizei width, GLsizei height) {
-    copyLevel(x, y, width, height, [&](GLint fromX, GLint fromY) { gl.glCopyTextureSubImage3D(name(Kind::Texture, texture), level, xoffset, yoffset, zoffset, fromX, fromY, width, height); });
 }
 
 // ---- from framebuffer to framebuffer

@@ -101,7 +101,13 @@ def wrapper(c):
             out += '    encode_%s(%s, result);\n    return result;\n' % (c.name, encode_args)
         else:
             out += '    gReal.%s(%s);\n    encode_%s(%s);\n' % (c.name, names, c.name, encode_args)
+    elif c.option('app') == 'checked':
+        local = 'gReal.%s(%s)' % (c.name, names)
+        out += '    if (!self.context) return %s;\n' % local
+        out += '    if (raisesNothing(*self.context, [&] { %s; })) encode_%s(%s);\n' % (local, c.name, encode_args)
     else:
+        if c.option('copies'):
+            out += '    copies::gather(self, x, y, width, %s, %s);\n' % ('height' if c.param('height') else '1', c.option('copies'))
         out += '    encode_%s(%s);\n' % (c.name, encode_args)
         local = c.option('local') != 'no'
         if local and c.command_class == 'draw':
@@ -137,6 +143,8 @@ namespace mural {
 
     wrappers = HEAD + '''#include "custom_wrappers.hpp"
 #include "encoders.hpp"
+#include "interposer/asking.hpp"
+#include "interposer/commands/copies.hpp"
 #include "interposer/commands/quiet.hpp"
 #include "interposer/real_gl.hpp"
 #include "interposer/wrapper_table.hpp"

@@ -116,6 +116,10 @@ def call(c):
         elif p.how == 'data' and p.expr is not True:
             lines.append('if (!replay_.readable(%s, %s)) return true;' % (
                 p.name, 'GL_DRAW_INDIRECT_BUFFER_BINDING' if p.name == 'indirect' else 'GL_ELEMENT_ARRAY_BUFFER_BINDING'))
+    if c.option('copies'):
+        moved = ', '.join('from' + p.name.upper() if p.name in ('x', 'y') else argument(c, p) for p in c.params)
+        height = 'height' if c.param('height') else '1'
+        return lines + ['replay_.copyLevel(x, y, width, %s, [&](GLint fromX, GLint fromY) { replay_.gl.%s(%s); });' % (height, c.name, moved), 'return true;']
     call_text = 'replay_.gl.%s(%s);' % (c.name, args)
     lines.append('replay_.withoutTile([&] { %s });' % call_text if c.option('node') == 'whole' else call_text)
     if c.name.startswith('glDelete'):
