@@ -4,6 +4,7 @@
 #include <cstring>
 #include <linux/membarrier.h>
 #include <new>
+#include <sys/auxv.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -124,6 +125,15 @@ void hold(Context& c, Window* draw, Window* read) {
     for (Window* w : before) release(w);
 }
 
+// Core contexts have no indices in the program's memory, but Mesa takes them. Programs that are loaded high
+// have no memory below 4 GiB, so that their offsets are known without a question.
+uintptr_t lowestIndices(const Context& c) {
+    if (!c.core) return 0;
+    if (!c.isMesa) return UINTPTR_MAX;
+    constexpr uintptr_t kHigh = uintptr_t{1} << 32, kFirstPage = 4096;
+    return getauxval(AT_PHDR) >= kHigh ? kHigh : kFirstPage;
+}
+
 // Version and profile that the driver really gave; needs the context to be current.
 void learnVersion(Context& c) {
     const auto* text = reinterpret_cast<const char*>(gReal.glGetString(GL_VERSION));
@@ -147,6 +157,7 @@ void learnVersion(Context& c) {
         gReal.glGetIntegerv(GL_CONTEXT_FLAGS, &flags);
         c.flags = static_cast<uint32_t>(flags);
     }
+    c.indicesInMemoryFrom = lowestIndices(c);
 }
 
 } // namespace

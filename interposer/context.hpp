@@ -48,6 +48,8 @@ struct ShareGroup {
     static constexpr int kConditions = 64;
     GLuint listConditions[kConditions] = {}; // queries that conditional rendering in display lists asks
     int listConditionCount = 0;
+    NameBits listCounts;             // queries that display lists begin
+    bool allDrawn = false;           // by every node (copies::drawAll)
     bool nodesWriteBuffers = false; // transform feedback or shaders have written into buffers
 };
 
@@ -89,6 +91,7 @@ struct Context {
     Window* held[2] = {};      // what it was last bound to: a driver keeps these drawables alive
     bool drawsPixmap = false;  // its drawable is an X pixmap
     bool isMesa = false;
+    uintptr_t indicesInMemoryFrom = 0; // smaller pointers of indexed draws are offsets into a buffer in any case
     bool sizeAtViewport = false; // the driver looks at the window's size in glViewport too
     char* extensionText = nullptr; // filtered, made at the first question
     const char** extensionNames = nullptr;

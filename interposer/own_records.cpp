@@ -87,6 +87,7 @@ void requestQuery(ThreadState& t, uint32_t request, GLuint query, GLenum pname) 
 }
 void requestFinish(ThreadState& t, uint32_t request) { fixed(t, wire::kOpFinish, request); }
 void beginConditional(ThreadState& t, bool draws) { fixed(t, wire::kOpBeginConditional, uint32_t{draws}); }
+void drawAll(ThreadState& t) { fixed(t, wire::kOpDrawAll); }
 void queryKnown(ThreadState& t, GLuint query, bool passed) { fixed(t, wire::kOpQueryKnown, query, uint32_t{passed}); }
 void requestBuffer(ThreadState& t, uint32_t request, GLuint buffer, uint64_t offset, uint64_t sizeBytes) {
     fixed(t, wire::kOpRequestBuffer, request, buffer, offset, sizeBytes);

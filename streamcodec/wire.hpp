@@ -92,7 +92,7 @@ struct FrameDoneMessage {
     uint64_t readbackNs;
 };
 
-// Fragment shaders write to memory: every node draws all of what they draw.
+// Fragment shaders write to memory, or kOpDrawAll came: every node draws all.
 constexpr uint32_t kDrawnWhole = 1;
 
 struct WindowGoneMessage {
@@ -134,6 +134,7 @@ enum Op : uint16_t {
     kOpFrontPicture = 18,  // u32 window, u32 frame: like Swap for a single-buffered window or front drawing
     kOpBeginConditional = 19, // u32 draws: glBeginConditionalRender with the result known; 0: nothing is drawn
     kOpQueryKnown = 20,    // u32 query, u32 passed: for conditional rendering in the display list that is called next
+    kOpDrawAll = 21,       // from now on every node draws all of every window
     kOpLastOwn = 63,
 };
 constexpr uint16_t kFirstGlOpcode = 64;

@@ -35,10 +35,11 @@ template <class Ask> GLbitfield planesInto(ThreadState& t, Ask&& ask) {
 
 namespace mural::copies {
 
-void gather(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes) {
-    Session* s = Session::current();
-    Context* c = t.context;
-    if (!c || !s || !s->alive() || s->welcome().nodeCount < 2 || c->compilingList || !readsWindow(*c)) return;
+namespace {
+
+void gatherNow(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes) {
+    const Context* c = t.context;
+    if (!readsWindow(*c)) return;
     const Window* window = findWindowById(c->readWindow);
     if (!window) return;
     const int64_t x0 = x < 0 ? 0 : x, y0 = y < 0 ? 0 : y;
@@ -61,6 +62,27 @@ void gather(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield p
         const void* pixels = askPixels(t, gx, gy, gw, gh, p.format, p.type, true);
         if (pixels) records::fillWindow(t, gx, gy, gw, gh, p.bit, DataArg::of(pixels, uint64_t(gw) * uint64_t(gh) * p.bytes));
     }
+}
+
+bool severalNodes(const ThreadState& t) {
+    Session* s = Session::current();
+    return t.context && s && s->alive() && s->welcome().nodeCount > 1;
+}
+
+} // namespace
+
+void gather(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes) {
+    if (!severalNodes(t)) return;
+    if (t.context->compilingList) drawAll(t);
+    else gatherNow(t, x, y, w, h, planes);
+}
+
+void drawAll(ThreadState& t) {
+    if (!severalNodes(t) || t.context->group->allDrawn) return;
+    t.context->group->allDrawn = true;
+    records::drawAll(t);
+    if (const Window* window = findWindowById(t.context->readWindow)) // what other nodes have drawn of it until now
+        gatherNow(t, 0, 0, static_cast<GLsizei>(window->config.width), static_cast<GLsizei>(window->config.height), GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
 }
 
 GLbitfield planesOf(GLenum internalFormat) {

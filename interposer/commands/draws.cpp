@@ -24,6 +24,11 @@ inline void prepareArrays(ThreadState& t, GLint first, GLsizei count, GLsizei in
     if (c->arrays.anyClient()) [[unlikely]] sendClientArrays(t, *c, arraysRange(first, count, instances, baseInstance));
 }
 
+// Whether indices are the program's own memory.
+bool inMemory(const Context& c, const void* indices) {
+    return reinterpret_cast<uintptr_t>(indices) >= c.indicesInMemoryFrom && elementBufferBinding() == 0;
+}
+
 // The same with indices; says where these come from.
 DataArg prepareElements(ThreadState& t, GLsizei count, GLenum type, const void* indices, GLint baseVertex = 0, GLsizei instances = 1, GLuint baseInstance = 0) {
     Context* c = t.context;
@@ -35,7 +40,7 @@ DataArg prepareElements(ThreadState& t, GLsizei count, GLenum type, const void* 
         range.baseInstance = baseInstance;
         sendClientArrays(t, *c, range);
     }
-    if (c->core || elementBufferBinding() != 0) return DataArg::offset(indices);
+    if (!inMemory(*c, indices)) return DataArg::offset(indices);
     return DataArg::of(indices, count > 0 ? uint64_t(count) * sizes::typeBytes(type) : 0);
 }
 
@@ -193,7 +198,8 @@ DataArg multiIndices(ThreadState& t, const GLsizei* count, GLenum type, const vo
         }
         sendClientArrays(t, *c, all);
     }
-    const bool offsets = c->core || elementBufferBinding() != 0;
+    bool offsets = true;
+    for (size_t i = 0; i < n; ++i) offsets = offsets && !(count[i] > 0 && inMemory(*c, indices[i]));
     size_t total = 8;
     for (size_t i = 0; i < n; ++i) total += offsets ? 8 : count[i] > 0 ? static_cast<size_t>(count[i]) * bytes : 0;
     auto* out = static_cast<std::byte*>(scratchMemory(t, total));

@@ -2,6 +2,7 @@
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
 #include "interposer/asking.hpp"
+#include "interposer/commands/copies.hpp"
 #include "interposer/context.hpp"
 #include "interposer/own_records.hpp"
 #include "interposer/real_gl.hpp"
@@ -21,6 +22,11 @@ void begins(ThreadState& t, GLenum target, GLuint id) {
     t.context->queryIsAny.set(id, target == GL_ANY_SAMPLES_PASSED || target == GL_ANY_SAMPLES_PASSED_CONSERVATIVE);
     t.context->queryIsTimestamp.set(id, false);
     t.context->queryBegun.set(id, true);
+    if (!t.context->compilingList) return;
+    ShareGroup& group = *t.context->group;
+    group.listCounts.set(id, true);
+    for (int i = 0; i < group.listConditionCount; ++i)
+        if (group.listConditions[i] == id) copies::drawAll(t);
 }
 
 bool isResult(GLenum pname) { return pname == GL_QUERY_RESULT || pname == GL_QUERY_RESULT_NO_WAIT; }
@@ -132,6 +138,7 @@ void tellCondition(ThreadState& t, GLuint id) {
 void noteListCondition(ThreadState& t, GLuint id) {
     ShareGroup& group = *t.context->group;
     group.listAsks.set(t.context->compiledList, true);
+    if (group.listCounts.get(id) || !NameBits::known(id)) copies::drawAll(t);
     for (int i = 0; i < group.listConditionCount; ++i)
         if (group.listConditions[i] == id) return;
     if (group.listConditionCount < ShareGroup::kConditions) group.listConditions[group.listConditionCount++] = id;
@@ -141,7 +148,7 @@ void noteListCondition(ThreadState& t, GLuint id) {
 
 namespace mural {
 void tellListConditions(ThreadState& t) {
-    if (!capturing(t) || t.context->compilingList) return;
+    if (!capturing(t) || t.context->compilingList || t.context->group->allDrawn) return; // the nodes know it themselves
     const ShareGroup& group = *t.context->group;
     for (int i = 0; i < group.listConditionCount; ++i) tellCondition(t, group.listConditions[i]);
 }

@@ -279,8 +279,8 @@ Result<void> HeadSession::nodeFrameDone(int node, const wire::FrameDoneMessage& 
 void HeadSession::sayDrawnWhole() {
     if (drawnWhole_.exchange(true)) return;
     control_.say(config_.tiling == Tiling::Lean
-                     ? "fragment shaders write to memory: every node draws all of the picture, into framebuffers of the window's size; tiling lean saves nothing there"
-                     : "fragment shaders write to memory: every node draws all of the picture; more nodes do not make that faster");
+                     ? "fragment shaders write to memory, or display lists read the picture: every node draws all of it, into framebuffers of the window's size; tiling lean saves nothing there"
+                     : "fragment shaders write to memory, or display lists read the picture: every node draws all of it; more nodes do not make that faster");
 }
 
 Result<void> HeadSession::nodePicture(int node, const wire::PictureHeader& header, ByteBuffer rows) {

@@ -110,7 +110,7 @@ private:
     std::atomic<bool> finishing_{false};
     std::atomic<bool> tearingDown_{false};
     std::atomic<bool> serving_{false};
-    std::atomic<bool> drawnWhole_{false}; // a program's fragment shaders write to memory
+    std::atomic<bool> drawnWhole_{false}; // see SessionReport
     ProgressMeter meter_;
     int64_t lastProgressNs_ = 0;
     int64_t lastProgressFrame_ = 0;

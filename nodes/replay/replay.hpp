@@ -58,7 +58,7 @@ struct ReplayOutputs {
         uint32_t client, window, frame;
         wire::WindowConfig config;
         PixelViewport region; // this node's part
-        bool drawnWhole;      // fragment shaders write to memory: nothing is cut to the part
+        bool drawnWhole;      // nothing is cut to the part (Shared::allDrawn)
         std::function<const std::byte*(const PixelViewport&)> pixels;
     };
     std::function<void(const Frame&)> frameDone;
@@ -151,7 +151,7 @@ private:
         std::unordered_map<GLuint, List> lists;
         NameTable framebuffersOfAll;
         std::unordered_map<GLuint, bool> memoryWriters; // by our name: programs that were asked since their link
-        bool memoryWritten = false; // one of them writes: every node draws all
+        bool allDrawn = false; // by every node: one of them writes, or a display list needs more than a tile
         TiledPrograms tiled;
     };
     struct Scissor {
@@ -266,6 +266,7 @@ private:
     bool record(std::span<const std::byte> bytes);
     bool execute(uint16_t opcode, std::span<const std::byte> arguments, BlobQueue& blobs);
     void compileSplit(std::span<const std::byte> bytes);
+    void nextNativeList(const std::function<void()>& between);
     bool planted(uint16_t opcode);
     bool makeStreamCurrent(uint32_t stream);
     bool bindStream(Stream& s);
@@ -314,22 +315,24 @@ private:
     void unbindPlatform();
     void freeDestroyed(Client& client);
     // replay_queries.cpp
+    void aside(const std::function<void()>& call);
+    void beginPiece(GLenum target, GLuint query);
     bool ownRequestQuery(Args& in);
     bool ownBeginConditional(Args& in);
     bool ownQueryKnown(Args& in);
+    bool ownDrawAll(Args& in);
     void beginConditional(bool draws);
     [[nodiscard]] bool drawsWhole() const;
     void cutQueries();
     void dropPieces(QueryInfo& query);
     uint64_t queryResult(GLuint ours);
     uint64_t readQuery(GLuint ours);
-    void resumeSamples();
     // replay_memory_writes.cpp
     void programChanged();
     void programLinked(GLuint ours);
     bool writesMemory(GLuint ours);
     void noteMemoryWriter(GLuint ours);
-    [[nodiscard]] bool memoryWritten() const { return c_->shared && c_->shared->memoryWritten; }
+    [[nodiscard]] bool allDrawn() const { return c_->shared && c_->shared->allDrawn; }
     void widenToWindow(Window& w);
     void copyTile(const Window& w, gl::Surface& from);
     // replay_front.cpp

@@ -48,7 +48,7 @@ void Replay::programLinked(GLuint ours) {
 }
 
 void Replay::noteMemoryWriter(GLuint ours) {
-    if (writesMemory(ours) && !std::exchange(c_->shared->memoryWritten, true)) restoreWindowState();
+    if (writesMemory(ours) && !std::exchange(c_->shared->allDrawn, true)) restoreWindowState();
 }
 
 // From now on the window is drawn as with tiling exact. What its tile holds stays; raster position and
@@ -64,7 +64,7 @@ void Replay::widenToWindow(Window& w) {
     const std::unique_ptr<gl::Surface> tile = std::exchange(w.surface, std::move(*made));
     w.lean = false;
     dropFront(w);
-    if (tile && gl.glBlitFramebuffer) copyTile(w, *tile);
+    if (tile && gl.glBlitFramebuffer) aside([&] { copyTile(w, *tile); });
     (void)bindSurfaces();
 }
 

@@ -217,6 +217,10 @@ bool Replay::splitsLists(uint16_t opcode, std::span<const std::byte> arguments) 
     case op::glDrawPixels:
     case op::glCopyPixels:
     case op::glAccum:
+    case op::glBeginQuery:
+    case op::glEndQuery:
+    case op::glBeginQueryIndexed:
+    case op::glEndQueryIndexed:
     case op::glBeginConditionalRender:
     case op::glEndConditionalRender:
     case op::glUseProgram: return true;
@@ -263,18 +267,23 @@ void Replay::glEndList() {
 // A command that the list can't hold natively goes between two native lists. What was spilled ahead of
 // it belongs to it, and is kept with it: the list may be called again and again.
 void Replay::compileSplit(std::span<const std::byte> bytes) {
-    gl.glEndList();
     ListItem item{0, {bytes.begin(), bytes.end()}, {}};
     for (bool found = true; found;) {
         takeBlob(found);
         if (found) item.blobs.push_back(std::move(taken_.back()));
     }
     c_->building.items.push_back(std::move(item));
-    if (c_->compileMode == GL_COMPILE_AND_EXECUTE) {
-        const GLuint compiling = std::exchange(c_->compiling, 0);
-        runItem(c_->building.items.back());
-        c_->compiling = compiling;
-    }
+    nextNativeList([&] {
+        if (c_->compileMode == GL_COMPILE_AND_EXECUTE) runItem(c_->building.items.back());
+    });
+}
+
+// Goes on with another native list; what `between` calls is in none.
+void Replay::nextNativeList(const std::function<void()>& between) {
+    gl.glEndList();
+    const GLuint compiling = std::exchange(c_->compiling, 0);
+    between();
+    c_->compiling = compiling;
     const GLuint next = gl.glGenLists(1);
     c_->building.items.push_back({next, {}, {}});
     gl.glNewList(next, c_->compileMode);

@@ -53,6 +53,7 @@ bool Replay::own(uint16_t opcode, Args& in) {
     case wire::kOpRequestQuery: return ownRequestQuery(in);
     case wire::kOpBeginConditional: return ownBeginConditional(in);
     case wire::kOpQueryKnown: return ownQueryKnown(in);
+    case wire::kOpDrawAll: return ownDrawAll(in);
     case wire::kOpRequestBuffer: return ownRequestBuffer(in);
     case wire::kOpFillWindow: return ownFillWindow(in);
     case wire::kOpProgramLayout: return ownProgramLayout(in);
@@ -209,7 +210,7 @@ bool Replay::ownSwap(Args& in, bool front) {
     f.client = wire::clientOf(stream_);
     f.window = window;
     f.frame = frame;
-    f.drawnWhole = bound_ && bound_->shared && bound_->shared->memoryWritten;
+    f.drawnWhole = bound_ && bound_->shared && bound_->shared->allDrawn;
     ++counts_.frames;
     if (it != windows.end()) {
         Window& w = *it->second;

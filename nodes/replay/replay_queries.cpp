@@ -20,7 +20,7 @@ bool countsClipping(GLenum target) { return target == GL_CLIPPING_INPUT_PRIMITIV
 
 // True: every node draws the same pixels now, not only its own.
 bool Replay::drawsWhole() const {
-    return !drawsWindow() || (!drawsLean() && (tileOff_ || memoryWritten() || c_->countedWhole));
+    return !drawsWindow() || (!drawsLean() && (tileOff_ || allDrawn() || c_->countedWhole));
 }
 
 // Whoever changes what drawsWhole() says comes by here before anything is drawn.
@@ -29,11 +29,24 @@ void Replay::cutQueries() {
     if (whole == std::exchange(c_->countsWhole, whole) || c_->compiling) return;
     for (const auto& [target, id] : c_->counting) {
         gl.glEndQuery(target);
-        GLuint ours = 0;
-        gl.glGenQueries(1, &ours);
-        gl.glBeginQuery(target, ours);
-        c_->queries[id].pieces.push_back({ours, whole});
+        beginPiece(target, id);
     }
+}
+
+void Replay::beginPiece(GLenum target, GLuint query) {
+    GLuint ours = 0;
+    gl.glGenQueries(1, &ours);
+    gl.glBeginQuery(target, ours);
+    c_->queries[query].pieces.push_back({ours, drawsWhole()});
+}
+
+// For what is not the program's: nothing leaves it out, and nothing counts it.
+void Replay::aside(const std::function<void()>& call) {
+    if (c_->conditional) gl.glEndConditionalRender();
+    for (const auto& [target, id] : c_->counting) gl.glEndQuery(target);
+    call();
+    for (const auto& [target, id] : c_->counting) beginPiece(target, id);
+    if (c_->conditional) gl.glBeginConditionalRender(c_->nothingCounted, GL_QUERY_WAIT);
 }
 
 void Replay::dropPieces(QueryInfo& query) {
@@ -144,11 +157,20 @@ bool Replay::ownQueryKnown(Args& in) {
     return true;
 }
 
-// Out of a display list: the program has told the result ahead of the call.
+// Out of a display list: the program has told the result ahead of the call, or every node draws all and knows it.
 void Replay::glBeginConditionalRender(GLuint id, GLenum mode) {
     const auto info = c_->queries.find(id);
     if (info == c_->queries.end()) return; // an error, and nothing is left out
-    beginConditional(info->second.passed != isInverted(mode));
+    const std::vector<QueryPiece>& pieces = info->second.pieces;
+    bool passed = info->second.passed;
+    if (std::all_of(pieces.begin(), pieces.end(), [](const QueryPiece& p) { return p.whole; }))
+        passed = std::any_of(pieces.begin(), pieces.end(), [&](const QueryPiece& p) { return queryResult(p.ours) != 0; });
+    beginConditional(passed != isInverted(mode));
+}
+
+bool Replay::ownDrawAll(Args&) {
+    if (c_->shared && !std::exchange(c_->shared->allDrawn, true)) restoreWindowState();
+    return true;
 }
 
 bool Replay::ownBeginConditional(Args& in) {
@@ -170,17 +192,9 @@ void Replay::beginConditional(bool draws) {
         gl.glGenQueries(1, &c_->nothingCounted);
         gl.glBeginQuery(GL_SAMPLES_PASSED, c_->nothingCounted);
         gl.glEndQuery(GL_SAMPLES_PASSED);
-        if (counting) resumeSamples();
+        if (counting) beginPiece(GL_SAMPLES_PASSED, c_->counting[GL_SAMPLES_PASSED]);
     }
     gl.glBeginConditionalRender(c_->nothingCounted, GL_QUERY_WAIT);
-}
-
-void Replay::resumeSamples() {
-    QueryInfo& query = c_->queries[c_->counting[GL_SAMPLES_PASSED]];
-    GLuint ours = 0;
-    gl.glGenQueries(1, &ours);
-    gl.glBeginQuery(GL_SAMPLES_PASSED, ours);
-    query.pieces.push_back({ours, drawsWhole()});
 }
 
 void Replay::glEndConditionalRender() {

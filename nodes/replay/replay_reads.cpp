@@ -147,7 +147,7 @@ const std::byte* Replay::readShown(Window& w, const PixelViewport& r, bool front
     const std::byte* pixels = nullptr;
     const GLenum format = bgra ? GL_BGRA : GL_RGBA;
     const bool resolves = w.config.samples > 0 && separate && gl.glBlitFramebuffer && gl.glRenderbufferStorage && !r.empty();
-    if (resolves) pixels = readResolved(r, format, bytes);
+    if (resolves) aside([&] { pixels = readResolved(r, format, bytes); });
     else withPlainTransfer([&] { pixels = readRegion(r, format, GL_UNSIGNED_BYTE, bytes); });
     for (size_t i = 0; !bgra && i < bytes; i += 4) std::swap(pixels_[i], pixels_[i + 2]);
     c_->read = read;
@@ -203,11 +203,10 @@ bool Replay::ownFillWindow(Args& in) {
         return true;
     }
     if (!bound_ || !c_->read || !gl.glBlitFramebuffer) return true;
-    if (plane != GL_COLOR_BUFFER_BIT) {
-        fillDepthStencil({x, y, w, h}, plane, data.pointer());
-        return true;
-    }
-    fillColor({x, y, w, h}, data.pointer());
+    aside([&] {
+        if (plane != GL_COLOR_BUFFER_BIT) fillDepthStencil({x, y, w, h}, plane, data.pointer());
+        else fillColor({x, y, w, h}, data.pointer());
+    });
     return true;
 }
 

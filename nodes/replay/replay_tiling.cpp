@@ -101,7 +101,7 @@ void Replay::applyViewports() {
 // After another context, framebuffer or window became current.
 void Replay::restoreWindowState() {
     if (!bound_ || !c_->everCurrent) return;
-    const bool needsAll = drawsLean() && c_->draw && memoryWritten();
+    const bool needsAll = drawsLean() && c_->draw && allDrawn();
     if (needsAll && c_->draw->widens && !c_->compiling) widenToWindow(*c_->draw);
     applyScissors();
     applyColorMasks();

@@ -45,20 +45,20 @@ const Format kFormats[] = {
 };
 
 constexpr GLuint kPlaceBinding = 0, kValueBinding = 3, kInstanceBinding = 5;
-GLuint floatProgram, intProgram, doubleProgram;
+GLuint floatProgram, intProgram, doubleProgram, drawProgram;
 GLuint vertexArray, buffers[3];
 int cellIndex;
 
-std::string vertexSource(const char* type) {
-    return std::string("#version 430\nlayout(location=0) in vec2 place;\n") +
+std::string vertexSource(const char* type, const char* tint) {
+    return std::string("#version 430\n#extension GL_ARB_shader_draw_parameters : require\nlayout(location=0) in vec2 place;\n") +
            "layout(location=4) in " + type + " value;\nlayout(location=7) in vec2 shift;\n" +
            "layout(location=0) uniform vec2 offset; layout(location=1) uniform float scale;\n" +
-           "out vec4 color;\nvoid main() { color = vec4(abs(value)) * scale;\n" +
+           "out vec4 color;\nvoid main() { color = " + tint + " * scale;\n" +
            "gl_Position = vec4(place + offset + shift, 0, 1); }\n";
 }
 
-GLuint makeProgram(const char* type) {
-    return buildProgram({{GL_VERTEX_SHADER, vertexSource(type).c_str()},
+GLuint makeProgram(const char* type, const char* tint = "vec4(abs(value))") {
+    return buildProgram({{GL_VERTEX_SHADER, vertexSource(type, tint).c_str()},
                          {GL_FRAGMENT_SHADER,
                           "#version 430\nin vec4 color; out vec4 result;\n"
                           "void main() { result = vec4(color.rgb, 1); }\n"}});
@@ -157,10 +157,22 @@ void drawInterleaved(int frame) {
     glBindVertexBuffers(kValueBinding, 1, names + 1, offsets + 1, strides + 1);
 }
 
+// Indices in the program's memory, which Mesa takes in core contexts too; each of several draws has its number.
+void drawUnboundIndices() {
+    static const GLushort kFirst[] = {0, 1, 2}, kSecond[] = {3, 4, 5};
+    const void* const lists[] = {kFirst, kSecond, kSecond};
+    const GLsizei counts[] = {3, 0, 3};
+    useCell(drawProgram, 1);
+    glMultiDrawElements(GL_TRIANGLES, counts, GL_UNSIGNED_SHORT, lists, 3);
+    useCell(floatProgram, 1);
+    glDrawElements(GL_TRIANGLES, 3, GL_UNSIGNED_SHORT, kSecond);
+}
+
 void setUp() {
     floatProgram = makeProgram("vec4");
     intProgram = makeProgram("ivec4");
     doubleProgram = makeProgram("dvec4");
+    drawProgram = makeProgram("vec4", "vec4(1, 0.3 + 0.3 * float(gl_DrawIDARB), abs(value.x) * 0.01, 1)");
     glGenBuffers(3, buffers);
     const GLfloat places[] = {0, 0, 0, 0.25F, 0.1F, 0, 0.1F, 0.27F, 0.22F, 0.05F, 0.2F, 0.24F};
     const GLfloat shifts[] = {0, 0, 0.04F, 0.06F, 0.02F, 0.02F, 0, 0.05F};
@@ -199,6 +211,7 @@ int main(int argc, char** argv) {
             drawFormats(frame);
             drawHalvesAndDoubles(frame);
             drawInterleaved(frame);
+            drawUnboundIndices();
             GLint told = 0;
             glGetVertexAttribiv(4, GL_VERTEX_ATTRIB_ARRAY_TYPE, &told);
             showBits(37, std::uint32_t(told));

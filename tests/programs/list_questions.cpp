@@ -1,0 +1,146 @@
+// What depends on pixels of the whole picture in the middle of something: display lists that count samples and draw on
+// that condition, that copy out of the window and draw with the copy; copies within conditional rendering and within
+// queries.
+#include "tests/programs/support/gl.hpp"
+#include "tests/programs/support/program.hpp"
+#include "tests/programs/support/show.hpp"
+
+using namespace programs;
+
+namespace {
+
+GLuint texture, queries[3], conditionList, copyList, pixelsList, innerList;
+
+void texturedBox(int x, int y, int w, int h) {
+    glEnable(GL_TEXTURE_2D);
+    glBegin(GL_QUADS);
+    glTexCoord2f(0, 0);
+    glVertex2i(x, y);
+    glTexCoord2f(1, 0);
+    glVertex2i(x + w, y);
+    glTexCoord2f(1, 1);
+    glVertex2i(x + w, y + h);
+    glTexCoord2f(0, 1);
+    glVertex2i(x, y + h);
+    glEnd();
+    glDisable(GL_TEXTURE_2D);
+}
+
+// Counted in one corner, seen in the others.
+void compileCondition(GLenum mode) {
+    glNewList(conditionList, mode);
+    glColor3f(0, 0.6F, 0.2F);
+    glBeginQuery(GL_SAMPLES_PASSED, queries[0]);
+    glRecti(5, 5, 12, 12);
+    glEndQuery(GL_SAMPLES_PASSED);
+    glBeginConditionalRender(queries[0], GL_QUERY_WAIT);
+    glRecti(200, 5, 230, 40);
+    glRecti(5, 150, 30, 180);
+    glEndConditionalRender();
+    glBeginQuery(GL_SAMPLES_PASSED, queries[1]);
+    glEndQuery(GL_SAMPLES_PASSED);
+    glBeginConditionalRender(queries[1], GL_QUERY_WAIT);
+    glColor3f(1, 0, 0);
+    glRecti(0, 0, 250, 190);
+    glEndConditionalRender();
+    glEndList();
+}
+
+void compileCopies() {
+    glNewList(innerList, GL_COMPILE);
+    glColor3f(0.9F, 0.4F, 0);
+    glRecti(118, 80, 132, 100);
+    glEndList();
+    glNewList(copyList, GL_COMPILE);
+    glCallList(innerList); // on all tiles
+    glBindTexture(GL_TEXTURE_2D, texture);
+    glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 93, 63, 64, 64);
+    glColor3f(1, 1, 1);
+    texturedBox(10, 20, 60, 50);
+    texturedBox(170, 120, 60, 60);
+    glEndList();
+}
+
+void pattern(int frame) {
+    Sequence numbers(unsigned(frame) + 9);
+    glBegin(GL_TRIANGLES);
+    for (int i = 0; i < 60; ++i) {
+        glColor3f(numbers.unit(), numbers.unit(), numbers.unit());
+        glVertex3f(250 * numbers.unit(), 190 * numbers.unit(), numbers.unit() - 0.5F);
+    }
+    glEnd();
+}
+
+// Nothing is drawn under this condition, but copied.
+void copyConditionally() {
+    glBeginQuery(GL_SAMPLES_PASSED, queries[2]);
+    glEndQuery(GL_SAMPLES_PASSED);
+    glBindTexture(GL_TEXTURE_2D, texture);
+    glBeginConditionalRender(queries[2], GL_QUERY_WAIT);
+    glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 5, 3, 100, 70, 50, 40);
+    glColor3f(1, 0, 0);
+    glRecti(60, 60, 200, 150);
+    glEndConditionalRender();
+    glColor3f(1, 1, 1);
+    texturedBox(80, 10, 90, 40);
+}
+
+// Only what the program copies counts, not what comes from other tiles.
+void copyWhileCounting(int row) {
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_ALWAYS);
+    glRasterPos2i(60, 130);
+    glBeginQuery(GL_SAMPLES_PASSED, queries[2]);
+    glCopyPixels(80, 70, 90, 50, GL_DEPTH);
+    glEndQuery(GL_SAMPLES_PASSED);
+    glDisable(GL_DEPTH_TEST);
+    GLuint counted = 0;
+    glGetQueryObjectuiv(queries[2], GL_QUERY_RESULT, &counted);
+    showBits(row, counted);
+}
+
+void setUp(Window&) {
+    glGenQueries(3, queries);
+    glGenTextures(1, &texture);
+    glBindTexture(GL_TEXTURE_2D, texture);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 64, 64, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    conditionList = glGenLists(4);
+    copyList = conditionList + 1;
+    pixelsList = conditionList + 2;
+    innerList = conditionList + 3;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    return runInGlxWindow(argc, argv, {}, setUp, [](Window& window, int frame) {
+        glViewport(0, 0, window.width(), window.height());
+        glMatrixMode(GL_PROJECTION);
+        glLoadIdentity();
+        glOrtho(0, 250, 0, 190, -1, 1);
+        glMatrixMode(GL_MODELVIEW);
+        glClearColor(0.1F, 0.1F, 0.3F, 1);
+        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        pattern(frame);
+        copyConditionally();
+        copyWhileCounting(46);
+        if (frame == 0) { // in the middle of a picture
+            glNewList(pixelsList, GL_COMPILE_AND_EXECUTE);
+            glRasterPos2i(20, 100);
+            glCopyPixels(90, 60, 70, 60, GL_COLOR);
+            glEndList();
+            compileCopies();
+            compileCondition(GL_COMPILE_AND_EXECUTE);
+        } else {
+            glCallList(pixelsList);
+        }
+        if (frame == 2) compileCondition(GL_COMPILE);
+        glCallList(copyList);
+        glCallList(conditionList);
+        GLuint counted = 0;
+        glGetQueryObjectuiv(queries[0], GL_QUERY_RESULT, &counted);
+        showBits(45, counted);
+    });
+}
