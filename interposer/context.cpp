@@ -229,6 +229,12 @@ PrimitivePause::~PrimitivePause() {
     if (mode_ != kNoPrimitive) gReal.glBegin(mode_);
 }
 
+uint32_t announcedSharer(const Context& c) {
+    if (nodesHave(c)) return c.id;
+    const Context* sharer = sharerOf(c);
+    return sharer ? sharer->id : 0;
+}
+
 Context* addContext(void* native, Context* shareWith, wire::Api api, const wire::WindowConfig& config) {
     auto* c = make<Context>();
     if (!c) return nullptr;

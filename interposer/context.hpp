@@ -120,6 +120,8 @@ struct Window {
 // Sets drawLocally from policy, list compilation, render mode and whether the head lives.
 void refreshDrawLocally(ThreadState& t);
 
+// The id of a context that the nodes have and whose objects are c's; 0: they have none.
+uint32_t announcedSharer(const Context& c);
 // Registers a context that the driver has made. shareWith may be null.
 Context* addContext(void* native, Context* shareWith, wire::Api api, const wire::WindowConfig& config);
 Context* findContext(void* native);

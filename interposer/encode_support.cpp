@@ -16,6 +16,9 @@ void goAlone(ThreadState& t) {
     t.drawLocally = true;
 }
 
+// What EGL does without a current context.
+bool needsNoContext(uint32_t opcode) { return opcode == wire::kOpCreateImage || opcode == wire::kOpDestroyImage; }
+
 // Under the lock, as another thread may close the fast path at this moment (enterGroup).
 void openFastPath(ThreadState& t) {
     Guard guard(t.context->group->lock);
@@ -24,14 +27,14 @@ void openFastPath(ThreadState& t) {
 } // namespace
 
 std::byte* makeRoom(ThreadState& t, uint32_t opcode, uint32_t sizeBytes) {
-    if (!t.context) return nullptr;
+    if (!t.context && !needsNoContext(opcode)) return nullptr;
     if (t.sizeDue) beforeRecordAfterSwap(t, opcode);
     Session* s = Session::current();
     if (!s || !s->alive()) {
         goAlone(t);
         return nullptr;
     }
-    if (t.shared) {
+    if (t.context && t.shared) {
         ShareGroup& group = *t.context->group;
         group.lock.lock();
         if (group.lastWriter && group.lastWriter != &t) s->publish(*group.lastWriter, false);
@@ -46,7 +49,7 @@ std::byte* makeRoom(ThreadState& t, uint32_t opcode, uint32_t sizeBytes) {
             return nullptr;
         }
     }
-    if (!t.shared && !t.sizeDue) openFastPath(t);
+    if (t.context && !t.shared && !t.sizeDue) openFastPath(t);
     return t.cursor;
 }
 

@@ -103,6 +103,11 @@ void programLayout(ThreadState& t, GLuint program, const DataArg& layout) {
     withData(t, wire::kOpProgramLayout, layout, program);
 }
 
+void createImage(ThreadState& t, const ImageInfo& i) {
+    fixed(t, wire::kOpCreateImage, i.image, i.context, i.target, i.name, i.level, i.layer);
+}
+void destroyImage(ThreadState& t, uint64_t image) { fixed(t, wire::kOpDestroyImage, image); }
+
 namespace {
 // A span is sent ahead of its record when it is large, or when the record would not fit into a chunk.
 constexpr uint32_t kMaxArrayRecordBytes = 128 * 1024;

@@ -32,6 +32,13 @@ void requestBuffer(ThreadState& t, uint32_t request, GLuint buffer, uint64_t off
 void fillWindow(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, uint32_t planes, const DataArg& pixels);
 void bufferBytes(ThreadState& t, GLuint buffer, uint64_t offset, const DataArg& bytes);
 void programLayout(ThreadState& t, GLuint program, const DataArg& layout);
+struct ImageInfo {
+    uint64_t image;
+    uint32_t context, target, name;
+    int32_t level, layer;
+};
+void createImage(ThreadState& t, const ImageInfo& info);
+void destroyImage(ThreadState& t, uint64_t image);
 void clientArrays(ThreadState& t, const client_arrays::ArrayRecord* arrays, uint32_t arrayCount, const DataArg* spans, uint32_t spanCount);
 
 } // namespace mural::records

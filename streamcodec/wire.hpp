@@ -135,6 +135,8 @@ enum Op : uint16_t {
     kOpBeginConditional = 19, // u32 draws: glBeginConditionalRender with the result known; 0: nothing is drawn
     kOpQueryKnown = 20,    // u32 query, u32 passed: for conditional rendering in the display list that is called next
     kOpDrawAll = 21,       // from now on every node draws all of every window
+    kOpCreateImage = 22,   // u64 image, u32 context, u32 target, u32 name, i32 level, i32 layer: eglCreateImage of a GL object
+    kOpDestroyImage = 23,  // u64 image
     kOpLastOwn = 63,
 };
 constexpr uint16_t kFirstGlOpcode = 64;

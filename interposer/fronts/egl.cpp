@@ -11,6 +11,7 @@
 
 #include "interposer/context.hpp"
 #include "interposer/extensions.hpp"
+#include "interposer/fronts/egl_images.hpp"
 #include "interposer/fronts/front.hpp"
 #include "interposer/fronts/own_functions.hpp"
 #include "interposer/log.hpp"
@@ -207,6 +208,8 @@ const OwnEntry kOwn[] = {
     ownEntry("eglCreatePlatformPixmapSurface", createPlatformPixmapSurface),
     ownEntry("eglCreatePlatformPixmapSurfaceEXT", createPlatformPixmapSurfaceExt),
     ownEntry("eglCreatePbufferSurface", createPbufferSurface), ownEntry("eglDestroySurface", destroySurface),
+    ownEntry("eglCreateImage", createImage), ownEntry("eglCreateImageKHR", createImageKhr),
+    ownEntry("eglDestroyImage", destroyImage), ownEntry("eglDestroyImageKHR", destroyImageKhr),
     ownEntry("eglQueryString", queryString), ownEntry("eglGetProcAddress", getProcAddress),
 };
 constinit Front front("egl", kOwn);

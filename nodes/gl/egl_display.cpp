@@ -71,6 +71,10 @@ std::shared_ptr<EglDisplayState> initialize(const EglFunctions& egl,
     state->noConfigContext = state->has("EGL_KHR_no_config_context") || state->has("EGL_MESA_configless_context");
     state->surfaceless = state->has("EGL_KHR_surfaceless_context");
     state->colorspace = state->version >= 15 || state->has("EGL_KHR_gl_colorspace");
+    if (state->has("EGL_KHR_image_base")) {
+        loadExtension(egl, state->egl.createImage, "eglCreateImageKHR");
+        loadExtension(egl, state->egl.destroyImage, "eglDestroyImageKHR");
+    }
     if (state->version < 15 && !state->has("EGL_KHR_create_context")) {
         why += " " + state->where + ": no EGL_KHR_create_context;";
         return nullptr;

@@ -28,6 +28,9 @@ struct EglFunctions {
     decltype(&eglMakeCurrent) makeCurrent = nullptr;
     decltype(&eglQueryString) queryString = nullptr;
     decltype(&eglQuerySurface) querySurface = nullptr;
+    // Null where EGL_KHR_image_base is missing.
+    PFNEGLCREATEIMAGEKHRPROC createImage = nullptr;
+    PFNEGLDESTROYIMAGEKHRPROC destroyImage = nullptr;
     PFNEGLGETPLATFORMDISPLAYEXTPROC getPlatformDisplay = nullptr;
     // Null where the extensions of devices are missing.
     PFNEGLQUERYDEVICESEXTPROC queryDevices = nullptr;

@@ -60,6 +60,20 @@ private:
     std::unique_ptr<Surface> dummy_;
 };
 
+class EglImage final : public Image {
+public:
+    EglImage(SharedDisplay display, EGLImageKHR handle) : display_(std::move(display)), handle_(handle) {}
+    EglImage(const EglImage&) = delete;
+    EglImage& operator=(const EglImage&) = delete;
+    ~EglImage() override { display_->egl.destroyImage(display_->display, handle_); }
+
+    [[nodiscard]] void* handle() const override { return handle_; }
+
+private:
+    SharedDisplay display_;
+    EGLImageKHR handle_;
+};
+
 std::vector<EGLint> contextAttributes(const ContextConfig& config, const EglDisplayState& display) {
     const VersionRequest request = versionRequest(config);
     std::vector<EGLint> list{EGL_CONTEXT_MAJOR_VERSION, request.major, EGL_CONTEXT_MINOR_VERSION, request.minor};
@@ -92,6 +106,8 @@ public:
     Result<std::unique_ptr<Surface>> createSurface(const SurfaceConfig& wish) override;
     Result<std::unique_ptr<Context>> createContext(const ContextConfig& wish, Context* shareWith) override;
     Result<void> makeCurrent(Context* context, Surface* draw, Surface* read) override;
+    [[nodiscard]] std::vector<std::string> imageExtensions() const override;
+    Result<std::unique_ptr<Image>> createImage(const ImageSource& source) override;
     Proc getProcAddress(const char* name) override { return throughEpoxy(name, display_->egl.getProcAddress(name)); }
     [[nodiscard]] std::string describe() const override {
         return "EGL " + display_->where + ", " + renderer_ + ", " + version_;
@@ -182,6 +198,30 @@ Result<void> EglPlatform::makeCurrent(Context* context, Surface* draw, Surface* 
         return {};
     return Error{"EGL can't make the context current: " + takeEglError(egl) +
                  "; check that context and surfaces were made for the same kind of surface"};
+}
+
+std::vector<std::string> EglPlatform::imageExtensions() const {
+    std::vector<std::string> have;
+    if (!display_->egl.createImage || !display_->egl.destroyImage) return have;
+    for (const char* name : {"EGL_KHR_image_base", "EGL_KHR_gl_texture_2D_image", "EGL_KHR_gl_texture_cubemap_image",
+                             "EGL_KHR_gl_texture_3D_image", "EGL_KHR_gl_renderbuffer_image"})
+        if (display_->has(name)) have.emplace_back(name);
+    return have;
+}
+
+Result<std::unique_ptr<Image>> EglPlatform::createImage(const ImageSource& source) {
+    const EglFunctions& egl = display_->egl;
+    if (!egl.createImage || !egl.destroyImage) return Platform::createImage(source);
+    std::vector<EGLint> list{EGL_IMAGE_PRESERVED_KHR, EGL_TRUE};
+    if (source.target != EGL_GL_RENDERBUFFER_KHR) list.insert(list.end(), {EGL_GL_TEXTURE_LEVEL_KHR, source.level});
+    if (source.target == EGL_GL_TEXTURE_3D_KHR) list.insert(list.end(), {EGL_GL_TEXTURE_ZOFFSET_KHR, source.layer});
+    list.push_back(EGL_NONE);
+    auto* context = static_cast<EglContext*>(source.context);
+    EGLImageKHR handle = egl.createImage(display_->display, context->handle(), source.target,
+                                         reinterpret_cast<EGLClientBuffer>(uintptr_t{source.name}), list.data());
+    if (handle != EGL_NO_IMAGE_KHR) return std::unique_ptr<Image>(std::make_unique<EglImage>(display_, handle));
+    return Error{"EGL can't make an image of object " + std::to_string(source.name) + ": " + takeEglError(egl) +
+                 "; its format may be unknown to this driver"};
 }
 
 Result<void> EglPlatform::measure() {

@@ -4,6 +4,10 @@
 
 namespace mural::gl {
 
+Result<std::unique_ptr<Image>> Platform::createImage(const ImageSource&) {
+    return Error{describe() + " has no images: use --gl egl"};
+}
+
 Result<std::unique_ptr<Platform>> openPlatform(const std::string& name) {
     if (name == "egl") return openEgl();
     if (name == "osmesa") return openOsmesa();

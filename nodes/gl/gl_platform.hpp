@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "common/result.hpp"
 
@@ -57,6 +58,22 @@ public:
     virtual ~Context() = default;
 };
 
+// A picture that contexts of several share groups may use: an EGLImage.
+class Image {
+public:
+    virtual ~Image() = default;
+    [[nodiscard]] virtual void* handle() const = 0; // as glEGLImageTarget* takes it
+};
+
+// The level of a texture, or the renderbuffer, that an image is made of.
+struct ImageSource {
+    Context* context = nullptr; // of the share group whose object it is
+    unsigned target = 0;        // EGL_GL_TEXTURE_2D …
+    unsigned name = 0;
+    int level = 0;
+    int layer = 0;              // of a 3D texture
+};
+
 class Platform {
 public:
     virtual ~Platform() = default;
@@ -68,6 +85,9 @@ public:
     [[nodiscard]] virtual bool readsOtherSurfaces() const { return true; }
     // True: surfaces can have an accumulation buffer.
     [[nodiscard]] virtual bool accumulates() const { return false; }
+    // Extensions of EGL for images that this platform carries out; empty: there are no images.
+    [[nodiscard]] virtual std::vector<std::string> imageExtensions() const { return {}; }
+    virtual Result<std::unique_ptr<Image>> createImage(const ImageSource& source);
     // Entry point of all contexts, null when unknown. May be called only while a context is current.
     virtual Proc getProcAddress(const char* name) = 0;
     [[nodiscard]] virtual std::string describe() const = 0; // e.g. "EGL surfaceless, Mesa 22.3.6"

@@ -155,6 +155,9 @@ private:
         add(gl::Api::Desktop, true);
         add(gl::Api::Es2, false);
         add(gl::Api::Es1, false);
+        const std::vector<std::string> images = platform.imageExtensions();
+        extensions.insert(images.begin(), images.end());
+        if (images.empty()) std::erase_if(extensions, [](const std::string& name) { return name.find("_EGL_image") != std::string::npos; });
         ready["glVersion"] = best;
         ready["extensions"] = std::vector<std::string>(extensions.begin(), extensions.end());
         return ready;

@@ -257,6 +257,7 @@ private:
         std::map<uint32_t, std::unique_ptr<ContextState>> contexts;
         std::map<uint32_t, std::unique_ptr<Window>> windows;
         std::map<uint32_t, Stream> streams;
+        std::unordered_map<uint64_t, std::unique_ptr<gl::Image>> images; // by the program's handle
         bool anyDestroyed = false;
     };
 
@@ -309,6 +310,10 @@ private:
     std::vector<GLfloat> depths_;
     gl::Context* fillerOf(Window& w);
     void fillByOtherContext(const PixelViewport& r, GLbitfield plane, const void* pixels);
+    // replay_images.cpp
+    bool ownCreateImage(Args& in);
+    bool ownDestroyImage(Args& in);
+    void withImage(uint64_t image, const std::function<void(GLeglImageOES)>& call);
     // replay_release.cpp
     bool ownDestroyContext(Args& in);
     bool ownDestroyWindow(Args& in);

@@ -58,6 +58,8 @@ bool Replay::own(uint16_t opcode, Args& in) {
     case wire::kOpFillWindow: return ownFillWindow(in);
     case wire::kOpProgramLayout: return ownProgramLayout(in);
     case wire::kOpBufferBytes: return ownBufferBytes(in);
+    case wire::kOpCreateImage: return ownCreateImage(in);
+    case wire::kOpDestroyImage: return ownDestroyImage(in);
     case wire::kOpFinish: {
         const auto request = in.get<uint32_t>();
         if (!in.ok()) return false;

@@ -32,7 +32,7 @@ def fixed_bytes(c):
     for p in c.params:
         if p.how == 'scalar':
             total += max(4, TYPE_BYTES[p.base])
-        elif p.how in ('sync', 'offset'):
+        elif p.how in ('handle', 'offset'):
             total += 8
         elif p.how == 'fixed':
             total += (p.expr + 3) // 4 * 4
@@ -54,8 +54,8 @@ def encoder(c, opcode):
         elif p.how == 'offset':
             args.append('const void* %s' % p.name)
             puts.append('out_.put8(reinterpret_cast<uint64_t>(%s));' % p.name)
-        elif p.how == 'sync':
-            args.append('GLsync %s' % p.name)
+        elif p.how == 'handle':
+            args.append('%s %s' % (ctype(p.type), p.name))
             puts.append('out_.put8(reinterpret_cast<uint64_t>(%s));' % p.name)
         else:
             args.append('%s %s' % (ctype(p.type), p.name))

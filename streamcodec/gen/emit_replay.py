@@ -13,7 +13,7 @@ RESULT = {4: 'GLuint', 8: 'uint64_t'}
 
 def nullable(c, p):
     if p.how == 'array':
-        return bool(NULLABLE.match(c.name)) or p.expr.startswith(('n4', 'n8', 'clearBytes'))
+        return bool(NULLABLE.match(c.name)) or p.expr.startswith(('n4', 'n8', 'clearBytes', '0'))
     return p.how in ('pixels', 'packed') and 'Sub' not in c.name and c.name not in ('glDrawPixels', 'glPolygonStipple')
 
 
@@ -28,7 +28,7 @@ def decode(c):
         elif p.how == 'fixed':
             element = ctype(p.base) if p.base not in ('void', 'GLvoid') else 'std::byte'
             lines.append('const auto* %s = in_.fixed<%s>(%d);' % (p.name, element, p.expr))
-        elif p.how in ('offset', 'sync'):
+        elif p.how in ('offset', 'handle'):
             lines.append('const auto %s = in_.get<uint64_t>();' % p.name)
         else:
             lines.append('const auto %s = in_.%s<%s>();' % (p.name, 'get' if TYPE_BYTES[p.base] >= 4 else 'narrow', ctype(p.type)))
@@ -138,7 +138,7 @@ def custom_declaration(c):
             args.append('const Data& %s' % p.name)
         elif p.how == 'fixed':
             args.append('const %s* %s' % (ctype(p.base), p.name))
-        elif p.how in ('offset', 'sync'):
+        elif p.how in ('offset', 'handle'):
             args.append('uint64_t %s' % p.name)
         else:
             args.append('%s %s' % (ctype(p.type), p.name))

@@ -12,10 +12,11 @@ TYPE_BYTES = {
     'GLint': 4, 'GLuint': 4, 'GLenum': 4, 'GLsizei': 4, 'GLfloat': 4, 'GLbitfield': 4,
     'GLclampf': 4, 'GLfixed': 4, 'GLclampx': 4, 'GLhandleARB': 4,
     'GLdouble': 8, 'GLclampd': 8, 'GLint64': 8, 'GLuint64': 8, 'GLint64EXT': 8, 'GLuint64EXT': 8,
-    'GLintptr': 8, 'GLsizeiptr': 8, 'GLintptrARB': 8, 'GLsizeiptrARB': 8, 'GLsync': 8,
+    'GLintptr': 8, 'GLsizeiptr': 8, 'GLintptrARB': 8, 'GLsizeiptrARB': 8, 'GLsync': 8, 'GLeglImageOES': 8,
 }
 # Types that only make sense inside one process or have no carried command.
-FOREIGN_TYPES = ('GLeglImageOES', 'GLeglClientBufferEXT', 'GLVULKANPROCNV', 'GLvdpauSurfaceNV',
+HANDLE_TYPES = ('GLsync', 'GLeglImageOES')   # pointers of the program's that serve as names
+FOREIGN_TYPES = ('GLeglClientBufferEXT', 'GLVULKANPROCNV', 'GLvdpauSurfaceNV',
                  'GLDEBUGPROC', 'GLDEBUGPROCARB', 'GLDEBUGPROCAMD', 'GLDEBUGPROCKHR', '_cl_context', '_cl_event')
 
 KINDS = {'texture': 'Texture', 'buffer': 'Buffer', 'framebuffer': 'Framebuffer', 'renderbuffer': 'Renderbuffer',
@@ -112,7 +113,7 @@ class Command:
         if p.base in FOREIGN_TYPES or (p.pointers == 0 and p.base not in TYPE_BYTES):
             return 'parameter %s of type %s means something inside one process only' % (p.name, p.base)
         if p.pointers == 0:
-            p.how = 'sync' if p.base == 'GLsync' else 'scalar'
+            p.how = 'handle' if p.base in HANDLE_TYPES else 'scalar'
             if p.object_class is None and self.option('kind.' + p.name):
                 p.object_class = self.option('kind.' + p.name)
             return None

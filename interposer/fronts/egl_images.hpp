@@ -1,0 +1,15 @@
+// Images of GL objects (EGL 1.5 §3.9): each node makes its own of its own object. Images of other things
+// (pixmaps, dma-buf, Wayland buffers) exist on this machine only and are not told to programs.
+#pragma once
+
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+
+namespace mural {
+
+EGLImage createImage(EGLDisplay dpy, EGLContext context, EGLenum target, EGLClientBuffer buffer, const EGLAttrib* attributes);
+EGLImageKHR createImageKhr(EGLDisplay dpy, EGLContext context, EGLenum target, EGLClientBuffer buffer, const EGLint* attributes);
+EGLBoolean destroyImage(EGLDisplay dpy, EGLImage image);
+EGLBoolean destroyImageKhr(EGLDisplay dpy, EGLImageKHR image);
+
+} // namespace mural
