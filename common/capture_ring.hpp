@@ -4,6 +4,7 @@
 //   app thread → chunk (bump pointer)  → publication (chunk, range, stream) → head
 //   head       → freed chunk index     → app
 //   head       → reply ring (bytes)    → the one app thread that asked
+//   head       → table of answers      → query results that were asked for at the end of the query
 //
 // Producer side of publications and consumer side of freed chunks are guarded by one lock in the app
 // process; so both rings have one producer and one consumer each.
@@ -20,11 +21,20 @@
 namespace mural::capture {
 
 constexpr uint32_t kMagic = 0x4d55524c; // "MURL"
-constexpr uint32_t kVersion = 1;
+constexpr uint32_t kVersion = 2;
 constexpr uint32_t kChunkBytes = 256 * 1024;
 constexpr uint32_t kDefaultChunks = 256; // 64 MiB
 constexpr uint32_t kReplyBytes = 4 * 1024 * 1024;
 constexpr int kMaxWindows = 256;
+
+// Requests whose answers nobody waits for yet: ids with this bit. Their answers lie in a table, each at its id
+// modulo the table's size, until a later one takes the place.
+constexpr uint32_t kAskedAhead = 0x80000000;
+constexpr uint32_t kAheadAnswers = 1024;
+struct AheadAnswer {
+    std::atomic<uint32_t> request; // whose answer this is; 0: none yet. Stored last; futex
+    std::atomic<uint64_t> value;
+};
 
 // A range of one chunk that is complete and may be read.
 struct Publication {
@@ -72,6 +82,8 @@ struct alignas(64) CaptureHeader {
     std::atomic<uint64_t> callsUnsupported;
     std::atomic<uint64_t> roundTrips;
     std::atomic<uint64_t> waitNs; // app thread blocked on credit or ring space
+
+    alignas(64) AheadAnswer ahead[kAheadAnswers]; // the head writes
 };
 
 inline Publication* publications(CaptureHeader* h) {

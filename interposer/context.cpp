@@ -450,6 +450,7 @@ void endFrame(Window* w) {
     const uint32_t every = s->welcome().verifyEvery;
     if (every && frame % every == 0) verifyFrame(t, *w);
     records::swap(t, w->id, frame);
+    ++t.context->swaps;
     s->publish(t, false);
     watchFromHere(t);
     s->waitForCredit(s->welcome().latency);

@@ -7,6 +7,7 @@
 
 #include "interposer/local_pixels.hpp"
 #include "interposer/lock.hpp"
+#include "interposer/query_answers.hpp"
 #include "interposer/thread_state.hpp"
 #include "interposer/vertex_arrays.hpp"
 #include "streamcodec/wire.hpp"
@@ -64,6 +65,8 @@ struct Context {
     NameBits queryIsTimestamp;
     NameBits queryBegun;
     GLuint queryBuffer = 0;    // bound to GL_QUERY_BUFFER
+    QueryAnswers answers;
+    uint32_t swaps = 0;        // while it was current
     uint32_t id = 0;
     ShareGroup* group = nullptr;
     wire::Api api = wire::Api::Desktop;

@@ -271,10 +271,33 @@ void Session::waitShown() {
 uint32_t Session::beginRequest() {
     requestLock.lock();
     if (alive()) header_->roundTrips.fetch_add(1, std::memory_order_relaxed);
-    return ++lastRequest_;
+    lastRequest_ = (lastRequest_ + 1) & ~capture::kAskedAhead;
+    return lastRequest_;
 }
 
 void Session::endRequest() { requestLock.unlock(); }
+
+bool Session::aheadAnswer(uint32_t request, uint64_t& value) {
+    capture::AheadAnswer& answer = header_->ahead[request % capture::kAheadAnswers];
+    const int64_t startedNs = monotonicNowNs();
+    bool waited = false, known = false;
+    while (alive()) {
+        const uint32_t here = answer.request.load(std::memory_order_acquire);
+        if (here == request) {
+            value = answer.value.load(std::memory_order_relaxed);
+            std::atomic_thread_fence(std::memory_order_acquire);
+            known = answer.request.load(std::memory_order_relaxed) == request;
+            break;
+        }
+        const bool later = here != 0 && static_cast<int32_t>((here - request) << 1) > 0;
+        if (later || monotonicNowNs() - startedNs > kStuckNs) break; // then it is asked once more
+        waited = true;
+        futexWait(answer.request, here, kSliceNs);
+        if (!headAlive()) break;
+    }
+    if (waited) header_->waitNs.fetch_add(static_cast<uint64_t>(monotonicNowNs() - startedNs), std::memory_order_relaxed);
+    return known;
+}
 
 bool Session::answerBytes(void* into, uint64_t sizeBytes) {
     auto* p = static_cast<std::byte*>(into);

@@ -40,6 +40,10 @@ public:
     // The next bytes of the answer.
     bool answerBytes(void* into, uint64_t sizeBytes);
     void endRequest();
+    // The same for an answer that is read later: no round trip. Waits until it is there; false when the head died
+    // or the answer's place has been taken by another's.
+    uint32_t nextAhead() { return capture::kAskedAhead | __atomic_add_fetch(&lastAhead_, 1, __ATOMIC_RELAXED); }
+    bool aheadAnswer(uint32_t request, uint64_t& value);
 
     uint32_t nextFrame() { return __atomic_add_fetch(&framesSubmitted_, 1, __ATOMIC_RELAXED); }
     void die(const char* why);
@@ -56,6 +60,7 @@ private:
     bool alive_ = false;
     uint32_t framesSubmitted_ = 0; // by all threads
     uint32_t lastRequest_ = 0;
+    uint32_t lastAhead_ = 0;
 };
 
 } // namespace mural

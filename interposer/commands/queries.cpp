@@ -22,11 +22,15 @@ void begins(ThreadState& t, GLenum target, GLuint id) {
     t.context->queryIsAny.set(id, target == GL_ANY_SAMPLES_PASSED || target == GL_ANY_SAMPLES_PASSED_CONSERVATIVE);
     t.context->queryIsTimestamp.set(id, false);
     t.context->queryBegun.set(id, true);
-    if (!t.context->compilingList) return;
+    if (!t.context->compilingList) return t.context->answers.begun(target, id);
     ShareGroup& group = *t.context->group;
     group.listCounts.set(id, true);
     for (int i = 0; i < group.listConditionCount; ++i)
         if (group.listConditions[i] == id) copies::drawAll(t);
+}
+
+void ends(ThreadState& t, GLenum target) {
+    if (t.context && !t.context->compilingList) t.context->answers.ended(t, target, t.context->swaps);
 }
 
 bool isResult(GLenum pname) { return pname == GL_QUERY_RESULT || pname == GL_QUERY_RESULT_NO_WAIT; }
@@ -34,7 +38,12 @@ bool isResult(GLenum pname) { return pname == GL_QUERY_RESULT || pname == GL_QUE
 // The result over all tiles. False: it is the local driver's.
 bool result(ThreadState& t, GLuint id, uint64_t& value) {
     // A program compares time stamps with glGetInteger64v(GL_TIMESTAMP): one clock for both.
-    if (t.context->queryIsTimestamp.get(id) || !askQuery(t, id, GL_QUERY_RESULT, value)) return false;
+    if (t.context->queryIsTimestamp.get(id)) return false;
+    const bool keeps = !t.context->group->listCounts.get(id); // a list begins it whenever it is called
+    if (!keeps || !t.context->answers.find(id, t.context->swaps, value)) {
+        if (!askQuery(t, id, GL_QUERY_RESULT, value)) return false;
+        if (keeps) t.context->answers.keep(id, value);
+    }
     if (value > 1 && t.context->queryIsAny.get(id)) value = 1; // yes or no, from several tiles
     return true;
 }
@@ -112,9 +121,22 @@ void mural_glBeginQuery(GLenum target, GLuint id) {
     encode_glBeginQuery(t, target, id);
     gReal.glBeginQuery(target, id);
 }
+void mural_glEndQuery(GLenum target) {
+    ThreadState& t = *tThread;
+    encode_glEndQuery(t, target);
+    gReal.glEndQuery(target);
+    ends(t, target);
+}
+void mural_glEndQueryIndexed(GLenum target, GLuint index) {
+    ThreadState& t = *tThread;
+    encode_glEndQueryIndexed(t, target, index);
+    gReal.glEndQueryIndexed(target, index);
+    if (index == 0) ends(t, target);
+}
 void mural_glBeginQueryIndexed(GLenum target, GLuint index, GLuint id) {
     ThreadState& t = *tThread;
-    begins(t, target, id);
+    if (index == 0) begins(t, target, id);
+    else if (t.context) t.context->queryBegun.set(id, true);
     encode_glBeginQueryIndexed(t, target, index, id);
     gReal.glBeginQueryIndexed(target, index, id);
 }

@@ -1,6 +1,7 @@
 #include "nodes/head/capture_client.hpp"
 
 #include <chrono>
+#include <cstring>
 #include <fstream>
 #include <poll.h>
 
@@ -136,6 +137,11 @@ bool CaptureClient::programGone() const {
 }
 
 void CaptureClient::reply(Reply reply) {
+    if (reply.header.requestId & capture::kAskedAhead) {
+        uint64_t value = 0;
+        if (reply.bytes.size() >= sizeof value) std::memcpy(&value, reply.bytes.data(), sizeof value);
+        return memory_->answerAhead(reply.header.requestId, value);
+    }
     const std::lock_guard lock(mutex_);
     replyQueueBytes_ += reply.bytes.size();
     if (replyQueueBytes_ > kMaxQueuedBytes) {

@@ -147,6 +147,15 @@ void CaptureMemory::waitReplyRoom(int64_t timeoutNs) const {
     futexWait(shared_->replyHead, head, timeoutNs);
 }
 
+void CaptureMemory::answerAhead(uint32_t request, uint64_t value) {
+    capture::AheadAnswer& answer = shared_->ahead[request % capture::kAheadAnswers];
+    answer.request.store(0, std::memory_order_relaxed);
+    std::atomic_thread_fence(std::memory_order_release);
+    answer.value.store(value, std::memory_order_relaxed);
+    answer.request.store(request, std::memory_order_release);
+    futexWakeAll(answer.request);
+}
+
 void CaptureMemory::setFramesDone(uint32_t frames) { store(shared_->framesDone, frames); }
 void CaptureMemory::setFramesShown(uint32_t frames) { store(shared_->framesShown, frames); }
 

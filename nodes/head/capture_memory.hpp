@@ -55,6 +55,8 @@ public:
     // Writes as much as there is room for.
     size_t writeReply(std::span<const std::byte> bytes);
     void waitReplyRoom(int64_t timeoutNs) const;
+    // The answer to a request with capture::kAskedAhead, for the program to find when it wants it.
+    void answerAhead(uint32_t request, uint64_t value);
 
     void setFramesDone(uint32_t frames);
     void setFramesShown(uint32_t frames);

@@ -200,8 +200,13 @@ private:
         GLuint framebuffer = 0, color = 0, depthStencil = 0;
         std::vector<uint32_t> depth; // until the stencil has come
     };
+    struct AskedAhead { // answered at the next swap
+        uint32_t request;
+        GLuint query;
+    };
     struct ContextState {
         std::unordered_map<GLuint, QueryInfo> queries; // by the program's name
+        std::vector<AskedAhead> askedAhead;
         std::map<GLenum, GLuint> counting;             // fragments now: the program's query by its target
         bool countsWhole = false;                      // what drawsWhole() was when the last piece began
         bool countedWhole = false;                     // a query that only whole pictures answer is active
@@ -323,6 +328,8 @@ private:
     void aside(const std::function<void()>& call);
     void beginPiece(GLenum target, GLuint query);
     bool ownRequestQuery(Args& in);
+    void answerQuery(uint32_t request, GLuint query);
+    void answerAskedAhead();
     bool ownBeginConditional(Args& in);
     bool ownQueryKnown(Args& in);
     bool ownDrawAll(Args& in);

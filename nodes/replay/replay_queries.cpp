@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/capture_ring.hpp"
 #include "nodes/replay/replay.hpp"
 
 namespace mural {
@@ -57,6 +58,7 @@ void Replay::dropPieces(QueryInfo& query) {
 void Replay::glBeginQuery(GLenum target, GLuint id) {
     const GLuint ours = name(Kind::Query, id);
     QueryInfo& query = c_->queries[id];
+    std::erase_if(c_->askedAhead, [&](const AskedAhead& asked) { return asked.query == id; }); // nobody wants the old one
     dropPieces(query);
     query.target = target;
     const bool multisampled = countsSamples(target) && drawsWindow() && c_->draw && c_->draw->config.samples > 0; // nodes' parts overlap then
@@ -97,6 +99,7 @@ void Replay::glDeleteQueries(GLsizei n, const Data& ids) {
         const auto query = c_->queries.find(app[i]);
         if (query == c_->queries.end()) continue;
         std::erase_if(c_->counting, [&](const auto& active) { return active.second == app[i]; });
+        std::erase_if(c_->askedAhead, [&](const AskedAhead& asked) { return asked.query == app[i]; });
         dropPieces(query->second);
         c_->queries.erase(query);
     }
@@ -124,6 +127,24 @@ uint64_t Replay::readQuery(GLuint ours) {
 bool Replay::ownRequestQuery(Args& in) {
     const auto request = in.get<uint32_t>(), query = in.get<uint32_t>(), pname = in.get<uint32_t>();
     if (!in.ok()) return false;
+    constexpr size_t kMostAskedAhead = 65536;
+    if ((request & capture::kAskedAhead) && pname == GL_QUERY_RESULT && bound_) {
+        if (c_->askedAhead.size() < kMostAskedAhead) c_->askedAhead.push_back({request, query});
+    } else {
+        answerQuery(request, query);
+    }
+    return true;
+}
+
+// When a frame is complete: now no answer holds the drawing up.
+void Replay::answerAskedAhead() {
+    if (!bound_ || bound_->askedAhead.empty()) return;
+    ContextState* const own = std::exchange(c_, bound_);
+    for (const AskedAhead& asked : std::exchange(c_->askedAhead, {})) answerQuery(asked.request, asked.query);
+    c_ = own;
+}
+
+void Replay::answerQuery(uint32_t request, GLuint query) {
     uint64_t value = 0;
     bool added = false;
     const auto info = bound_ ? c_->queries.find(query) : c_->queries.end();
@@ -133,11 +154,10 @@ bool Replay::ownRequestQuery(Args& in) {
         for (const QueryPiece& piece : pieces) {
             if (!added || !piece.whole || config_.node == 0) value += queryResult(piece.ours);
         }
-    } else if (bound_ && pname != 0) {
+    } else if (bound_) {
         value = queryResult(name(Kind::Query, query));
     }
     answerBytes(request, added ? wire::AnswerKind::Sum : wire::AnswerKind::Bytes, std::as_bytes(std::span(&value, 1)));
-    return true;
 }
 
 // ---- conditional rendering, with a result that is known: draws are left out by a query that counts nothing
