@@ -13,7 +13,7 @@ namespace {
 template <class Send> bool ask(ThreadState& t, void* into, uint64_t sizeBytes, Send&& send) {
     Session* s = Session::current();
     if (!s || !s->alive() || !t.context) return false;
-    if (t.context->group->persistentMaps) shipPersistentMaps(t, *t.context->group);
+    buffersRead(t);
     const uint32_t request = s->beginRequest();
     send(request);
     s->publish(t, false);

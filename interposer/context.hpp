@@ -3,6 +3,7 @@
 #pragma once
 
 #include <GL/gl.h>
+#include <atomic>
 #include <cstdint>
 
 #include "interposer/local_pixels.hpp"
@@ -15,7 +16,7 @@
 namespace mural {
 
 struct Window;
-struct PersistentMap; // interposer/commands/mappings.cpp
+struct MappedBuffer; // interposer/mapped_buffers.cpp
 
 // One bit per object name. Names beyond are taken as false.
 class NameBits {
@@ -40,8 +41,10 @@ struct ShareGroup {
     Lock lock;
     ThreadState* lastWriter = nullptr;
     int threads = 0; // that have a context of the group current
-    PersistentMap* maps = nullptr; // mappings of buffers that are not unmapped yet
-    int persistentMaps = 0;
+    MappedBuffer* maps = nullptr; // mappings of buffers that are not unmapped yet
+    std::atomic<int> lastingMaps{0}; // persistent ones
+    Lock mapsLock;                // of the list; records are written under it
+    std::atomic<ThreadState*> mapsHolder{nullptr};
     bool listsMoveRaster = false;   // some display list moves the raster position by glBitmap
     NameBits listMovesRaster;       // this list does, or calls others, which may
     NameBits listCompiled, listAsks; // holds conditional rendering, or calls a list that does or may
@@ -52,6 +55,7 @@ struct ShareGroup {
     NameBits listCounts;             // queries that display lists begin
     bool allDrawn = false;           // by every node (copies::drawAll)
     bool nodesWriteBuffers = false; // transform feedback or shaders have written into buffers
+    NameBits nodesWrite;            // this buffer was bound where they do
 };
 
 // Context::openPrimitive outside of glBegin and glEnd.
@@ -178,10 +182,13 @@ private:
     uint32_t mode_;
 };
 
-// Copies what persistent mappings have changed; called before anything that may read buffers.
-void shipPersistentMaps(ThreadState& t, ShareGroup& group);
+// Ships what the program has changed in persistent mappings; called before anything that may read buffers.
+void shipLastingMaps(ThreadState& t);
 inline void beforeDraw(ThreadState& t, Context& c) {
-    if (c.group->persistentMaps > 0) [[unlikely]] shipPersistentMaps(t, *c.group);
+    if (c.group->lastingMaps.load(std::memory_order_relaxed) > 0) [[unlikely]] shipLastingMaps(t);
+}
+inline void buffersRead(ThreadState& t) {
+    if (t.context) beforeDraw(t, *t.context);
 }
 
 } // namespace mural

@@ -72,7 +72,10 @@ void spill(ThreadState& t, const DataArg& d) {
 
 DataArg imageSource(ThreadState& t, const void* pixels, GLenum format, GLenum type, GLsizei width, GLsizei height, GLsizei depth, int dimensions) {
     if (!t.context) return {};
-    if (unpackBufferBound(*t.context)) return DataArg::offset(pixels);
+    if (unpackBufferBound(*t.context)) {
+        buffersRead(t);
+        return DataArg::offset(pixels);
+    }
     if (!pixels) return {};
     const sizes::ImageLayout layout = sizes::layoutOf(unpackStore(*t.context), format, type, width, height, depth, dimensions);
     const size_t tight = layout.known ? sizes::tightBytes(layout) : 0;
@@ -86,7 +89,10 @@ DataArg imageSource(ThreadState& t, const void* pixels, GLenum format, GLenum ty
 
 DataArg packedSource(ThreadState& t, const void* data, GLsizei sizeBytes) {
     if (!t.context) return {};
-    if (unpackBufferBound(*t.context)) return DataArg::offset(data);
+    if (unpackBufferBound(*t.context)) {
+        buffersRead(t);
+        return DataArg::offset(data);
+    }
     return DataArg::of(data, sizeBytes > 0 ? static_cast<uint64_t>(sizeBytes) : 0);
 }
 
@@ -109,10 +115,6 @@ DataArg packStrings(ThreadState& t, GLsizei count, const GLchar* const* strings,
         text += length;
     }
     return DataArg::of(out, total);
-}
-
-void buffersWrittenByNodes(ThreadState& t) {
-    if (t.context) t.context->group->nodesWriteBuffers = true;
 }
 
 void unsupportedCalled(const char* name, const char* reason) {

@@ -110,8 +110,6 @@ DataArg packedSource(ThreadState& t, const void* data, GLsizei sizeBytes);
 // count strings as u32 lengths, then their bytes one after the other. lengths may be null.
 DataArg packStrings(ThreadState& t, GLsizei count, const GLchar* const* strings, const GLint* lengths);
 
-// From now on buffers may hold what only the nodes know (transform feedback, shader storage).
-void buffersWrittenByNodes(ThreadState& t);
 // True: shaders write into buffers that are bound there.
 constexpr bool writesThrough(GLenum target) {
     return target == GL_SHADER_STORAGE_BUFFER || target == GL_ATOMIC_COUNTER_BUFFER || target == GL_TRANSFORM_FEEDBACK_BUFFER;

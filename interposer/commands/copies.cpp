@@ -151,6 +151,7 @@ void mural_glBlitNamedFramebuffer(GLuint readFramebuffer, GLuint drawFramebuffer
 }
 void mural_glBitmap(GLsizei width, GLsizei height, GLfloat xorig, GLfloat yorig, GLfloat xmove, GLfloat ymove, const GLubyte* bitmap) {
     ThreadState& t = *tThread;
+    buffersRead(t);
     encode_glBitmap(t, width, height, xorig, yorig, xmove, ymove, imageSource(t, bitmap, GL_COLOR_INDEX, GL_BITMAP, width, height, 1, 2));
     // The raster position moves in the program's own context too: an empty bitmap moves it as well.
     if (t.context && t.context->compilingList) {

@@ -4,6 +4,7 @@
 #include "interposer/asking.hpp"
 #include "interposer/context.hpp"
 #include "interposer/extensions.hpp"
+#include "interposer/mapped_buffers.hpp"
 #include "interposer/own_records.hpp"
 #include "interposer/program_layout.hpp"
 #include "interposer/real_gl.hpp"
@@ -91,6 +92,7 @@ void mural_glEndList() {
 void mural_glCallList(GLuint list) {
     ThreadState& t = *tThread;
     beforeList(t, list);
+    buffersRead(t);
     encode_glCallList(t, list);
     noteListCall(t, t.context && listAsks(*t.context->group, list));
     const ShareGroup* group = t.context ? t.context->group : nullptr;
@@ -100,6 +102,7 @@ void mural_glCallList(GLuint list) {
 void mural_glCallLists(GLsizei n, GLenum type, const void* lists) {
     ThreadState& t = *tThread;
     beforeLists(t);
+    buffersRead(t);
     encode_glCallLists(t, n, type, DataArg::of(lists, sizes::callListsBytes(n, type)));
     noteListCall(t, true);
     const bool moves = t.context && t.context->group->listsMoveRaster; // mostly text
@@ -157,6 +160,7 @@ void mural_glFinish() {
     gReal.glFinish();
     publish(t);
     flushedWindow(t);
+    refreshMaps(t);
 }
 GLsync mural_glFenceSync(GLenum condition, GLbitfield flags) {
     ThreadState& t = *tThread;
@@ -168,7 +172,13 @@ GLsync mural_glFenceSync(GLenum condition, GLbitfield flags) {
 GLenum mural_glClientWaitSync(GLsync sync, GLbitfield flags, GLuint64 timeout) {
     ThreadState& t = *tThread;
     publish(t);
-    return gReal.glClientWaitSync(sync, flags, timeout);
+    const GLenum result = gReal.glClientWaitSync(sync, flags, timeout);
+    if (result == GL_ALREADY_SIGNALED || result == GL_CONDITION_SATISFIED) refreshMaps(t);
+    return result;
+}
+void mural_glGetSynciv(GLsync sync, GLenum pname, GLsizei count, GLsizei* length, GLint* values) {
+    gReal.glGetSynciv(sync, pname, count, length, values);
+    if (pname == GL_SYNC_STATUS && count > 0 && values && values[0] == GL_SIGNALED) refreshMaps(*tThread);
 }
 void mural_glWaitSync(GLsync sync, GLbitfield flags, GLuint64 timeout) {
     ThreadState& t = *tThread;
@@ -207,6 +217,7 @@ void mural_glProgramBinary(GLuint program, GLenum binaryFormat, const void* bina
 // The primitive stays empty in the program's own context, but the errors of what comes between are raised.
 void mural_glBegin(GLenum mode) {
     ThreadState& t = *tThread;
+    buffersRead(t);
     encode_glBegin(t, mode);
     gReal.glBegin(mode);
     if (t.context && !t.context->compilingList && t.context->openPrimitive == kNoPrimitive) t.context->openPrimitive = mode;

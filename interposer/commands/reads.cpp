@@ -3,6 +3,8 @@
 #include "encoders.hpp"
 #include "interposer/asking.hpp"
 #include "interposer/context.hpp"
+#include "interposer/mapped_buffers.hpp"
+#include "interposer/own_records.hpp"
 #include "interposer/pixel_store.hpp"
 #include "interposer/real_gl.hpp"
 #include "interposer/session.hpp"
@@ -57,8 +59,14 @@ void deliver(ThreadState& t, const void* tight, void* pixels, const sizes::Image
     const auto offset = reinterpret_cast<GLintptr>(pixels);
     gReal.glGetBufferSubData(GL_PIXEL_PACK_BUFFER, offset, static_cast<GLsizeiptr>(span), whole); // bytes between the rows stay
     sizes::unpackTight(whole, tight, layout);
-    gReal.glBufferSubData(GL_PIXEL_PACK_BUFFER, offset, static_cast<GLsizeiptr>(span), whole);
-    encode_glBufferSubData(t, GL_PIXEL_PACK_BUFFER, offset, static_cast<GLsizeiptr>(span), DataArg::of(whole, span));
+    GLint buffer = 0;
+    gReal.glGetIntegerv(GL_PIXEL_PACK_BUFFER_BINDING, &buffer);
+    if (t.context->version < (t.context->api == wire::Api::Desktop ? 31 : 30)) {
+        gReal.glBufferSubData(GL_PIXEL_PACK_BUFFER, offset, static_cast<GLsizeiptr>(span), whole);
+    } else {
+        writeOwnCopy(t, static_cast<GLuint>(buffer), static_cast<uint64_t>(offset), whole, span);
+    }
+    records::bufferBytes(t, static_cast<GLuint>(buffer), static_cast<uint64_t>(offset), DataArg::of(whole, span));
 }
 
 void readPixels(ThreadState& t, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type, void* pixels) {

@@ -303,6 +303,7 @@ private:
     bool ownRequestPixels(Args& in);
     bool ownRequestTexImage(Args& in);
     bool ownRequestBuffer(Args& in);
+    void readBuffer(GLuint ours, uint64_t offset);
     void answerBytes(uint32_t request, wire::AnswerKind kind, std::span<const std::byte> bytes);
     const std::byte* readRegion(const PixelViewport& r, GLenum format, GLenum type, size_t bytes);
     const std::byte* readShown(Window& w, const PixelViewport& r, bool front);

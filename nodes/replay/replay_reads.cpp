@@ -111,20 +111,37 @@ bool Replay::ownRequestBuffer(Args& in) {
     const auto offset = in.get<uint64_t>(), bytes = in.get<uint64_t>();
     if (!in.ok() || bytes > config_.limits.answerBytes || offset > uint64_t{INT64_MAX} - bytes) return false;
     pixels_.assign(static_cast<size_t>(bytes), std::byte{0});
-    if (bound_ && bytes > 0 && gl.glMapBufferRange && gl.glUnmapBuffer) {
-        GLint before = 0;
-        gl.glGetIntegerv(GL_COPY_READ_BUFFER_BINDING, &before);
-        gl.glBindBuffer(GL_COPY_READ_BUFFER, name(Kind::Buffer, buffer));
-        if (gl.glMemoryBarrier) gl.glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-        const void* from = gl.glMapBufferRange(GL_COPY_READ_BUFFER, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes), GL_MAP_READ_BIT);
-        if (from) {
-            std::memcpy(pixels_.data(), from, pixels_.size());
-            gl.glUnmapBuffer(GL_COPY_READ_BUFFER);
-        }
-        gl.glBindBuffer(GL_COPY_READ_BUFFER, static_cast<GLuint>(before));
-    }
+    if (bound_ && bytes > 0 && gl.glMapBufferRange && gl.glUnmapBuffer) readBuffer(name(Kind::Buffer, buffer), offset);
     answerBytes(request, wire::AnswerKind::Bytes, pixels_);
     return true;
+}
+
+// Into pixels_. Storage that may not be mapped for reading (immutable, of ES) is copied first.
+void Replay::readBuffer(GLuint ours, uint64_t offset) {
+    const auto bytes = static_cast<GLsizeiptr>(pixels_.size());
+    const bool desktop = c_->api == wire::Api::Desktop && gl.glGetBufferSubData;
+    GLint before = 0;
+    gl.glGetIntegerv(GL_COPY_READ_BUFFER_BINDING, &before);
+    gl.glBindBuffer(GL_COPY_READ_BUFFER, ours);
+    if (gl.glMemoryBarrier) gl.glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    if (desktop) {
+        gl.glGetBufferSubData(GL_COPY_READ_BUFFER, static_cast<GLintptr>(offset), bytes, pixels_.data());
+    } else {
+        GLint writeBefore = 0;
+        GLuint copy = 0;
+        gl.glGetIntegerv(GL_COPY_WRITE_BUFFER_BINDING, &writeBefore);
+        gl.glGenBuffers(1, &copy);
+        gl.glBindBuffer(GL_COPY_WRITE_BUFFER, copy);
+        gl.glBufferData(GL_COPY_WRITE_BUFFER, bytes, nullptr, GL_STREAM_READ);
+        gl.glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, static_cast<GLintptr>(offset), 0, bytes);
+        if (const void* from = gl.glMapBufferRange(GL_COPY_WRITE_BUFFER, 0, bytes, GL_MAP_READ_BIT)) {
+            std::memcpy(pixels_.data(), from, pixels_.size());
+            gl.glUnmapBuffer(GL_COPY_WRITE_BUFFER);
+        }
+        gl.glBindBuffer(GL_COPY_WRITE_BUFFER, static_cast<GLuint>(writeBefore));
+        gl.glDeleteBuffers(1, &copy);
+    }
+    gl.glBindBuffer(GL_COPY_READ_BUFFER, static_cast<GLuint>(before));
 }
 
 // The window's picture, whatever the program has bound; called at a swap.

@@ -93,8 +93,14 @@ def wrapper(c):
     encode_args = ', '.join(['self'] + [data_argument(c, p) if p.how in DATA_KINDS else p.name
                                      for p in c.params if p.how != 'skip'])
     if c.option('app') == 'writes':
-        binds = c.name.startswith('glBindBuffer')
-        out += '    %sbuffersWrittenByNodes(self);\n' % ('if (writesThrough(target)) ' if binds else '')
+        if c.name.startswith('glBindBuffers'):
+            out += '    if (writesThrough(target)) buffersMayBeWritten(self, count, buffers);\n'
+        elif c.name.startswith('glBindBuffer'):
+            out += '    if (writesThrough(target)) nodesMayWrite(self, buffer);\n'
+        else:
+            out += '    nodesMayWrite(self, 0);\n'
+    if c.option('reads') == 'buffers':
+        out += '    buffersRead(self);\n'
     if c.command_class == 'object':
         if c.returns != 'void':
             out += '    const %s result = gReal.%s(%s);\n' % (ret, c.name, names)
@@ -146,6 +152,8 @@ namespace mural {
 #include "interposer/asking.hpp"
 #include "interposer/commands/copies.hpp"
 #include "interposer/commands/quiet.hpp"
+#include "interposer/context.hpp"
+#include "interposer/mapped_buffers.hpp"
 #include "interposer/real_gl.hpp"
 #include "interposer/wrapper_table.hpp"
 #include "streamcodec/size_expressions.hpp"

@@ -39,6 +39,7 @@ bool isTight(const sizes::ImageLayout& layout) {
 }
 void say(const char*, ...) {}
 void beforeRecordAfterSwap(ThreadState&, uint32_t) {}
+void shipLastingMaps(ThreadState&) {}
 
 // Like thread_state.cpp, for one thread that never ends.
 void* scratchMemory(ThreadState& t, size_t bytes) {

@@ -1,0 +1,241 @@
+#include "interposer/mapped_buffers.hpp"
+
+#include <cstdlib>
+#include <new>
+
+#include "common/map_changes.hpp"
+#include "interposer/asking.hpp"
+#include "interposer/context.hpp"
+#include "interposer/own_records.hpp"
+#include "interposer/real_gl.hpp"
+#include "interposer/session.hpp"
+
+namespace mural {
+
+// One mapping that the program has open.
+struct MappedBuffer {
+    GLuint buffer;
+    std::byte* memory;
+    uint64_t offset, length; // in the buffer, bytes
+    GLbitfield access;
+    MapChanges changes;      // of persistent ones that are not flushed
+    MappedBuffer* next;
+
+    [[nodiscard]] bool has(GLbitfield bits) const { return (access & bits) != 0; }
+    // Written without a word to GL.
+    [[nodiscard]] bool silent() const { return has(GL_MAP_PERSISTENT_BIT) && has(GL_MAP_WRITE_BIT) && !has(GL_MAP_FLUSH_EXPLICIT_BIT); }
+};
+
+namespace {
+
+constexpr uint64_t kAskedBytes = uint64_t{16} << 20; // at once
+
+bool nodesDraw(const ThreadState& t) {
+    const Session* s = Session::current();
+    return t.context && s && s->alive() && !t.drawLocally;
+}
+
+// Holds the list of mappings. Asking the nodes under it ships mappings: by the same thread, which may.
+class MapsHeld {
+public:
+    explicit MapsHeld(ThreadState& t) : group_(*t.context->group), outer_(group_.mapsHolder.load(std::memory_order_relaxed) == &t) {
+        if (outer_) return;
+        group_.mapsLock.lock();
+        group_.mapsHolder.store(&t, std::memory_order_relaxed);
+    }
+    ~MapsHeld() {
+        if (outer_) return;
+        group_.mapsHolder.store(nullptr, std::memory_order_relaxed);
+        group_.mapsLock.unlock();
+    }
+    MapsHeld(const MapsHeld&) = delete;
+    MapsHeld& operator=(const MapsHeld&) = delete;
+
+private:
+    ShareGroup& group_;
+    bool outer_;
+};
+
+MappedBuffer* findMap(const ShareGroup& group, GLuint buffer) {
+    for (MappedBuffer* m = group.maps; m; m = m->next) {
+        if (m->buffer == buffer) return m;
+    }
+    return nullptr;
+}
+
+void ship(ThreadState& t, const MappedBuffer& m, uint64_t from, const std::byte* bytes, uint64_t count) {
+    records::bufferBytes(t, m.buffer, m.offset + from, DataArg::of(bytes, count));
+}
+
+void shipChanges(ThreadState& t, MappedBuffer& m) {
+    if (!m.changes.active()) return ship(t, m, 0, m.memory, m.length); // no memory to remember by
+    struct Shipping {
+        ThreadState& t;
+        MappedBuffer& m;
+    } shipping{t, m};
+    m.changes.collect(t.context->group->nodesWriteBuffers, [](void* self, size_t from, const std::byte* bytes, size_t count) {
+        const auto& its = *static_cast<Shipping*>(self);
+        ship(its.t, its.m, from, bytes, count);
+    }, &shipping);
+}
+
+bool mayBeWritten(const ShareGroup& group, GLuint buffer) {
+    return group.nodesWriteBuffers && (group.nodesWrite.get(buffer) || !NameBits::known(buffer));
+}
+
+bool immutable(GLenum target) {
+    GLint is = 0;
+    gReal.glGetBufferParameteriv(target, GL_BUFFER_IMMUTABLE_STORAGE, &is);
+    driverError(); // of drivers that know no such storage
+    return is != 0;
+}
+
+// Storage that no program may write, GL itself may: by a copy.
+void copyIntoBound(uint64_t offset, const void* bytes, uint64_t length) {
+    GLint before = 0;
+    GLuint between = 0;
+    gReal.glGetIntegerv(GL_COPY_READ_BUFFER_BINDING, &before);
+    gReal.glGenBuffers(1, &between);
+    gReal.glBindBuffer(GL_COPY_READ_BUFFER, between);
+    gReal.glBufferData(GL_COPY_READ_BUFFER, static_cast<GLsizeiptr>(length), bytes, GL_STREAM_COPY);
+    gReal.glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(length));
+    gReal.glBindBuffer(GL_COPY_READ_BUFFER, static_cast<GLuint>(before));
+    gReal.glDeleteBuffers(1, &between);
+    gReal.glFinish(); // it may be mapped
+}
+
+} // namespace
+
+void writeOwnCopy(ThreadState& t, GLuint buffer, uint64_t offset, const void* bytes, uint64_t length) {
+    GLint before = 0;
+    gReal.glGetIntegerv(GL_COPY_WRITE_BUFFER_BINDING, &before);
+    raisesNothing(*t.context, [&] {
+        gReal.glBindBuffer(GL_COPY_WRITE_BUFFER, buffer);
+        if (immutable(GL_COPY_WRITE_BUFFER)) copyIntoBound(offset, bytes, length);
+        else gReal.glBufferSubData(GL_COPY_WRITE_BUFFER, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(length), bytes);
+        gReal.glBindBuffer(GL_COPY_WRITE_BUFFER, static_cast<GLuint>(before));
+        driverError(); // ours, not the program's
+    });
+}
+
+void refreshBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t length) {
+    if (!nodesDraw(t) || !t.context->group->nodesWriteBuffers || buffer == 0 || !gReal.glBindBuffer) return;
+    for (uint64_t at = 0; at < length; at += kAskedBytes) {
+        const uint64_t count = length - at < kAskedBytes ? length - at : kAskedBytes;
+        const void* bytes = askBuffer(t, buffer, offset + at, count);
+        if (!bytes) return;
+        writeOwnCopy(t, buffer, offset + at, bytes, count);
+    }
+}
+
+void refreshForMap(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t length, GLbitfield access) {
+    constexpr GLbitfield kForgets = GL_MAP_INVALIDATE_RANGE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT | GL_MAP_FLUSH_EXPLICIT_BIT;
+    if (!t.context || !t.context->group->nodesWriteBuffers) return;
+    const bool shipsAll = !(access & kForgets) && mayBeWritten(*t.context->group, buffer);
+    if (access & GL_MAP_READ_BIT || shipsAll) refreshBuffer(t, buffer, offset, length);
+}
+
+namespace {
+
+// Only what differs is written: other threads may be writing elsewhere in the mapping.
+void showInMap(ThreadState& t, MappedBuffer& m, uint64_t from, const std::byte* bytes, uint64_t count) {
+    struct Showing {
+        ThreadState& t;
+        MappedBuffer& m;
+    } showing{t, m};
+    if (m.changes.active()) {
+        m.changes.accept(from, bytes, count, [](void* self, size_t at, const std::byte* news, size_t size) {
+            const auto& its = *static_cast<Showing*>(self);
+            writeOwnCopy(its.t, its.m.buffer, its.m.offset + at, news, size);
+        }, &showing);
+    } else if (std::memcmp(m.memory + from, bytes, count) != 0) {
+        writeOwnCopy(t, m.buffer, m.offset + from, bytes, count);
+    }
+}
+
+} // namespace
+
+void refreshMaps(ThreadState& t) {
+    if (!t.context || !t.context->group->lastingMaps || !t.context->group->nodesWriteBuffers || !nodesDraw(t)) return;
+    const ShareGroup& group = *t.context->group;
+    const MapsHeld held(t);
+    for (MappedBuffer* m = group.maps; m; m = m->next) {
+        // What the nodes have written is compared with, even where the program does not read it.
+        const bool stale = m->has(GL_MAP_READ_BIT) || mayBeWritten(group, m->buffer);
+        if (!m->has(GL_MAP_PERSISTENT_BIT) || !stale) continue;
+        for (uint64_t at = 0; at < m->length; at += kAskedBytes) {
+            const uint64_t count = m->length - at < kAskedBytes ? m->length - at : kAskedBytes;
+            const void* bytes = askBuffer(t, m->buffer, m->offset + at, count);
+            if (bytes) showInMap(t, *m, at, static_cast<const std::byte*>(bytes), count);
+        }
+    }
+}
+
+void copiedHere(ThreadState& t, GLuint buffer) {
+    if (!t.context->group->nodesWriteBuffers || !nodesDraw(t)) return;
+    const MapsHeld held(t);
+    MappedBuffer* m = findMap(*t.context->group, buffer);
+    if (!m || !m->changes.active()) return;
+    gReal.glFinish();
+    m->changes.accept(0, m->memory, m->length, [](void*, size_t, const std::byte*, size_t) {}, nullptr);
+}
+
+void nodesMayWrite(ThreadState& t, GLuint buffer) {
+    if (!t.context) return;
+    t.context->group->nodesWriteBuffers = true;
+    if (buffer) t.context->group->nodesWrite.set(buffer, true);
+}
+
+void buffersMayBeWritten(ThreadState& t, GLsizei count, const GLuint* buffers) {
+    nodesMayWrite(t, 0);
+    for (GLsizei i = 0; buffers && i < count; ++i) nodesMayWrite(t, buffers[i]);
+}
+
+void mapBegins(ThreadState& t, GLuint buffer, void* memory, uint64_t offset, uint64_t length, GLbitfield access) {
+    if (!t.context || !memory || !(access & (GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT))) return;
+    void* place = std::malloc(sizeof(MappedBuffer));
+    if (!place) return;
+    auto* m = new (place) MappedBuffer{buffer, static_cast<std::byte*>(memory), offset, length, access, {}, nullptr};
+    if (m->silent()) m->changes.begin(memory, length);
+    ShareGroup& group = *t.context->group;
+    const MapsHeld held(t);
+    m->next = group.maps;
+    group.maps = m;
+    if (m->has(GL_MAP_PERSISTENT_BIT)) ++group.lastingMaps;
+}
+
+void mapEnds(ThreadState& t, GLuint buffer, bool shipIt) {
+    if (!t.context || !t.context->group->maps) return;
+    ShareGroup& group = *t.context->group;
+    const MapsHeld held(t);
+    for (MappedBuffer** p = &group.maps; *p; p = &(*p)->next) {
+        MappedBuffer* m = *p;
+        if (m->buffer != buffer) continue;
+        if (shipIt && m->silent()) shipChanges(t, *m);
+        else if (shipIt && m->has(GL_MAP_WRITE_BIT) && !m->has(GL_MAP_FLUSH_EXPLICIT_BIT)) ship(t, *m, 0, m->memory, m->length);
+        *p = m->next;
+        if (m->has(GL_MAP_PERSISTENT_BIT)) --group.lastingMaps;
+        m->~MappedBuffer();
+        std::free(m);
+        return;
+    }
+}
+
+void mapFlushes(ThreadState& t, GLuint buffer, GLintptr offset, GLsizeiptr length) {
+    if (!t.context || !t.context->group->maps || offset < 0 || length <= 0) return;
+    const MapsHeld held(t);
+    const MappedBuffer* m = findMap(*t.context->group, buffer);
+    if (!m || static_cast<uint64_t>(offset + length) > m->length) return;
+    ship(t, *m, static_cast<uint64_t>(offset), m->memory + offset, static_cast<uint64_t>(length));
+}
+
+void shipLastingMaps(ThreadState& t) {
+    const Session* s = Session::current();
+    if (!s || !s->alive() || t.context->group->mapsHolder.load(std::memory_order_relaxed) == &t) return;
+    const MapsHeld held(t);
+    for (MappedBuffer* m = t.context->group->maps; m; m = m->next) {
+        if (m->silent()) shipChanges(t, *m);
+    }
+}
+
+} // namespace mural
