@@ -103,7 +103,6 @@ struct Context {
     char* extensionText = nullptr; // filtered, made at the first question
     const char** extensionNames = nullptr;
     int extensionCount = -1;
-    char versionText[160] = {};
 };
 
 struct Window {

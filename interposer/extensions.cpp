@@ -15,7 +15,7 @@ namespace mural {
 namespace {
 
 // Extensions without commands of their own that hand out things of this machine.
-const char* const kLocalOnly[] = {"GL_ARB_gl_spirv", "GL_ARB_spirv_extensions", "GL_ARB_bindless_texture", "GL_ARB_sparse_buffer", "GL_ARB_sparse_texture", "GL_AMD_pinned_memory"};
+const char* const kLocalOnly[] = {"GL_ARB_bindless_texture", "GL_ARB_sparse_buffer", "GL_ARB_sparse_texture", "GL_AMD_pinned_memory"};
 // The window system's. Parts of pictures are not shown, and the driver's own swaps, whose count and events
 // programs would wait for, do not happen.
 const char* const kWindowSystemLocalOnly[] = {"GLX_MESA_copy_sub_buffer", "GLX_INTEL_swap_event", "GLX_OML_sync_control", "EGL_NV_post_sub_buffer",
@@ -145,14 +145,6 @@ const char* adjustedString(Context& c, GLenum name) {
     if (name == GL_EXTENSIONS && !c.core) {
         makeList(c);
         return c.extensionText;
-    }
-    if (name == GL_VERSION && c.version == 46 && c.api == wire::Api::Desktop) {
-        // 4.6 asks for SPIR-V, which is not carried: the program is told 4.5.
-        if (!c.versionText[0]) {
-            snprintf(c.versionText, sizeof c.versionText, "%s", reinterpret_cast<const char*>(gReal.glGetString(name)));
-            if (!std::strncmp(c.versionText, "4.6", 3)) c.versionText[2] = '5';
-        }
-        return c.versionText;
     }
     return nullptr;
 }

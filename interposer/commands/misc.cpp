@@ -57,6 +57,14 @@ void noteListCall(const ThreadState& t, bool asks) {
     if (asks) group.listAsks.set(t.context->compiledList, true);
 }
 
+// SPIR-V: what both sides have.
+bool takesModules(Context& c) {
+    for (GLint i = 0; i < extensionCount(c); ++i) {
+        if (!std::strcmp(extensionAt(c, static_cast<GLuint>(i)), "GL_ARB_gl_spirv")) return true;
+    }
+    return false;
+}
+
 bool isFront(GLenum buffer) {
     return buffer == GL_FRONT || buffer == GL_FRONT_LEFT || buffer == GL_FRONT_RIGHT || buffer == GL_FRONT_AND_BACK || buffer == GL_LEFT || buffer == GL_RIGHT;
 }
@@ -207,6 +215,16 @@ GLuint mural_glCreateShaderProgramv(GLenum type, GLsizei count, const GLchar* co
     if (capturing(t) && program) sendLayout(t, program);
     return program;
 }
+// Modules are the same everywhere; other formats are of one driver, and not advertised.
+void mural_glShaderBinary(GLsizei count, const GLuint* shaders, GLenum binaryFormat, const void* binary, GLsizei length) {
+    ThreadState& t = *tThread;
+    if (binaryFormat == GL_SHADER_BINARY_FORMAT_SPIR_V || !capturing(t)) {
+        encode_glShaderBinary(t, count, DataArg::of(shaders, n4(count, shaders)), binaryFormat, DataArg::of(binary, vn(length, 1)), length);
+        return gReal.glShaderBinary(count, shaders, binaryFormat, binary, length);
+    }
+    stashError(*t.context, takeError(*t.context));
+    stashError(*t.context, GL_INVALID_ENUM);
+}
 // No format is advertised, so every binary is of the wrong one: the program links from source.
 void mural_glProgramBinary(GLuint program, GLenum binaryFormat, const void* binary, GLsizei length) {
     if (!capturing(*tThread)) return gReal.glProgramBinary(program, binaryFormat, binary, length);
@@ -250,11 +268,17 @@ const GLubyte* mural_glGetStringi(GLenum name, GLuint index) {
 }
 void mural_glGetIntegerv(GLenum pname, GLint* data) {
     ThreadState& t = *tThread;
+    if (pname == GL_SHADER_BINARY_FORMATS && capturing(t) && data) { // the driver may know more, for which there is no room
+        GLint formats = 0;
+        gReal.glGetIntegerv(GL_NUM_SHADER_BINARY_FORMATS, &formats);
+        if (formats > 0 && takesModules(*t.context)) *data = GL_SHADER_BINARY_FORMAT_SPIR_V;
+        return;
+    }
     gReal.glGetIntegerv(pname, data);
     if (!capturing(t) || !data) return;
     if (pname == GL_NUM_EXTENSIONS) *data = extensionCount(*t.context);
-    else if (pname == GL_NUM_PROGRAM_BINARY_FORMATS || pname == GL_NUM_SHADER_BINARY_FORMATS) *data = 0;
-    else if (pname == GL_MINOR_VERSION && t.context->version == 46 && t.context->api == wire::Api::Desktop) *data = 5;
+    else if (pname == GL_NUM_PROGRAM_BINARY_FORMATS) *data = 0;
+    else if (pname == GL_NUM_SHADER_BINARY_FORMATS) *data = *data > 0 && takesModules(*t.context) ? 1 : 0;
 }
 
 } // extern "C"

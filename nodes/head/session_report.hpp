@@ -31,7 +31,7 @@ struct SessionNumbers {
     CaptureCounts programs;
     OutputTotals output;
     std::string lastPicture; // path
-    bool drawnWhole = false; // fragment shaders write to memory, or display lists read the picture
+    bool drawnWhole = false; // see HeadSession::sayDrawnWhole
     std::vector<NodeTotals> nodes;
 };
 

@@ -151,6 +151,7 @@ private:
         std::unordered_map<GLuint, List> lists;
         NameTable framebuffersOfAll;
         std::unordered_map<GLuint, bool> memoryWriters; // by our name: programs that were asked since their link
+        std::unordered_map<GLuint, bool> placedModules; // by our shader's name: it holds a module that reads gl_FragCoord
         bool allDrawn = false; // by every node: one of them writes, or a display list needs more than a tile
         TiledPrograms tiled;
     };
@@ -345,6 +346,7 @@ private:
     void programLinked(GLuint ours);
     bool writesMemory(GLuint ours);
     void noteMemoryWriter(GLuint ours);
+    void noteModules(GLuint ours);
     [[nodiscard]] bool allDrawn() const { return c_->shared && c_->shared->allDrawn; }
     void widenToWindow(Window& w);
     void copyTile(const Window& w, gl::Surface& from);

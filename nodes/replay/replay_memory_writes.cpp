@@ -44,6 +44,7 @@ bool Replay::writesMemory(GLuint ours) {
 void Replay::programLinked(GLuint ours) {
     if (c_->shared) c_->shared->memoryWriters.erase(ours);
     noteMemoryWriter(ours);
+    noteModules(ours);
     programChanged();
 }
 

@@ -3,9 +3,13 @@
 // Values go to the current program when it becomes current and whenever something changes that they
 // depend on: viewport, framebuffer, window, widest line. In between, draws cost nothing more.
 #include <cmath>
+#include <cstring>
+#include <utility>
+#include <vector>
 
 #include "nodes/replay/replay.hpp"
 #include "nodes/shaders/frag_coord.hpp"
+#include "nodes/shaders/spirv_module.hpp"
 
 namespace mural {
 
@@ -42,6 +46,34 @@ void Replay::glCompileShader(GLuint shader) {
     const GLuint ours = name(Kind::Program, shader);
     if (c_->shared && rewrites().any()) c_->shared->tiled.compile(gl, ours);
     else gl.glCompileShader(ours);
+}
+// Modules are taken as they are: where coordinates would have to be the window's, windows are drawn whole.
+void Replay::glShaderBinary(GLsizei count, const Data& shaders, GLenum format, const Data& binary, GLsizei length) {
+    if (!gl.glShaderBinary || !c_->shared || count < 0 || length < 0 || shaders.size() < size_t{4} * static_cast<size_t>(count)) return;
+    std::vector<GLuint> ours(static_cast<size_t>(count));
+    const bool placed = shaders::moduleReadsFragCoord(binary.span());
+    for (size_t i = 0; i < ours.size(); ++i) {
+        GLuint theirs = 0;
+        std::memcpy(&theirs, shaders.as<std::byte>() + 4 * i, 4);
+        ours[i] = name(Kind::Program, theirs);
+        c_->shared->tiled.forget(ours[i]);
+        c_->shared->placedModules[ours[i]] = placed;
+    }
+    gl.glShaderBinary(count, ours.data(), format, binary.pointer(), length);
+}
+void Replay::glSpecializeShader(GLuint shader, const Data& entryPoint, GLuint count, const Data& indices, const Data& values) {
+    if (!gl.glSpecializeShader || indices.size() < size_t{4} * count || values.size() < size_t{4} * count) return;
+    gl.glSpecializeShader(name(Kind::Program, shader), entryPoint.as<GLchar>(), count, indices.as<GLuint>(), values.as<GLuint>());
+}
+void Replay::noteModules(GLuint ours) {
+    if (!c_->shared || !rewrites().windowCoordinates || c_->shared->placedModules.empty()) return;
+    GLuint attached[16] = {};
+    GLsizei count = 0;
+    gl.glGetAttachedShaders(ours, 16, &count, attached);
+    for (GLsizei i = 0; i < count; ++i) {
+        const auto found = c_->shared->placedModules.find(attached[i]);
+        if (found != c_->shared->placedModules.end() && found->second && !std::exchange(c_->shared->allDrawn, true)) restoreWindowState();
+    }
 }
 void Replay::glProgramParameteri(GLuint program, GLenum pname, GLint value) {
     const GLuint ours = name(Kind::Program, program);

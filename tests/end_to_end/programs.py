@@ -14,7 +14,7 @@ GROUPS = {
                "accum_buffer"],
     "state": ["raster_state", "blend_modes", "clipping", "fixed_lighting", "feedback_select",
               "attribute_stacks", "arb_programs", "list_questions"],
-    "shaders": ["glsl_legacy", "glsl_uniforms", "glsl_blocks", "glsl_stages", "compute_images",
+    "shaders": ["glsl_legacy", "glsl_uniforms", "glsl_blocks", "glsl_stages", "spirv_shaders", "compute_images",
                 "fragment_counters", "frag_coord", "many_triangles", "no_depth", "queries", "queries_later", "direct_state_access",
                 "draw_errors_compat", "draw_errors_core", "draw_errors_es3"],
     "windows": ["es1_scene", "es2_scene", "es3_scene", "egl_desktop", "egl_offscreen", "egl_images", "egl_pixmaps",
