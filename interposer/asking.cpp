@@ -51,8 +51,19 @@ const void* askPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GL
     const uint64_t bytes = uint64_t(w) * uint64_t(h) * group;
     void* into = secondScratch(t, bytes);
     if (!into) return nullptr;
-    const bool ok = ask(t, into, bytes, [&](uint32_t request) { records::requestPixels(t, request, x, y, w, h, format, type, plain ? group | wire::kPlainTransfer : group); });
-    return ok ? into : nullptr;
+    const KeptPixels::Kind kind{format, type, group, plain};
+    const KeptPixels::Box box{x, y, w, h};
+    if (t.pixels.find(t, kind, box, into)) return into;
+    const KeptPixels::Box wide = t.pixels.wider(t, kind, box);
+    const bool keeps = wide.w != w || wide.h != h;
+    const uint64_t wideBytes = keeps ? uint64_t(wide.w) * uint64_t(wide.h) * group : bytes;
+    void* const answer = keeps ? t.pixels.memory(wideBytes) : into;
+    const bool ok = answer && ask(t, answer, wideBytes, [&](uint32_t request) {
+        records::requestPixels(t, request, wide.x, wide.y, wide.w, wide.h, format, type, plain ? group | wire::kPlainTransfer : group);
+    });
+    if (!ok) return nullptr;
+    t.pixels.answered(t, kind, wide, keeps);
+    return !keeps || t.pixels.find(t, kind, box, into) ? into : nullptr;
 }
 
 void* askTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type, uint64_t sizeBytes) {

@@ -48,6 +48,7 @@ struct ShareGroup {
     bool listsMoveRaster = false;   // some display list moves the raster position by glBitmap
     NameBits listMovesRaster;       // this list does, or calls others, which may
     NameBits listCompiled, listAsks; // holds conditional rendering, or calls a list that does or may
+    NameBits listOpens, listCloses;  // leaves a primitive open that it has begun; ends one that it has not
     bool listsChange = false;        // a list was compiled again: what calls it may ask now
     static constexpr int kConditions = 64;
     GLuint listConditions[kConditions] = {}; // queries that conditional rendering in display lists asks
@@ -89,6 +90,7 @@ struct Context {
     bool compilingList = false;
     bool drawsList = false;    // and executes it at once
     GLuint compiledList = 0;   // its name
+    bool listPrimitive = false; // it is between glBegin and glEnd
     bool frontDue = false;     // the front buffer was drawn to since the last flush, or will be
     GLenum renderMode = GL_RENDER;
     bool drawsSelection = false; // selects or gives feedback in the program's own context

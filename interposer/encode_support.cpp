@@ -1,5 +1,8 @@
 #include "interposer/encode_support.hpp"
 
+#include <sys/uio.h>
+#include <unistd.h>
+
 #include "interposer/context.hpp"
 #include "interposer/log.hpp"
 #include "interposer/own_records.hpp"
@@ -115,6 +118,17 @@ DataArg packStrings(ThreadState& t, GLsizei count, const GLchar* const* strings,
         text += length;
     }
     return DataArg::of(out, total);
+}
+
+GLsizei readableElements(ThreadState& t, const void* value, GLsizei count, uint32_t elementBytes) {
+    constexpr uint64_t kMostBytes = 256 * 1024; // of all uniforms of a stage, far above what drivers have
+    const uint64_t wanted = uint64_t(count) * elementBytes < kMostBytes ? uint64_t(count) * elementBytes : kMostBytes;
+    void* const copy = t.context ? scratchMemory(t, wanted) : nullptr;
+    if (!copy) return 0;
+    const iovec to{copy, wanted}, from{const_cast<void*>(value), wanted};
+    const ssize_t there = process_vm_readv(getpid(), &to, 1, &from, 1, 0);
+    const uint64_t bytes = there > 0 ? static_cast<uint64_t>(there) : wanted; // not allowed here: the program knows best
+    return static_cast<GLsizei>(bytes / elementBytes);
 }
 
 void unsupportedCalled(const char* name, const char* reason) {

@@ -110,6 +110,11 @@ DataArg packedSource(ThreadState& t, const void* data, GLsizei sizeBytes);
 // count strings as u32 lengths, then their bytes one after the other. lengths may be null.
 DataArg packStrings(ThreadState& t, GLsizei count, const GLchar* const* strings, const GLint* lengths);
 
+// Of an array of uniforms: drivers take no more than the uniform has, whatever the count says, so behind that there
+// may be no memory. How many are there; asked for long ones only.
+constexpr GLsizei kSureElements = 256;
+GLsizei readableElements(ThreadState& t, const void* value, GLsizei count, uint32_t elementBytes);
+
 // True: shaders write into buffers that are bound there.
 constexpr bool writesThrough(GLenum target) {
     return target == GL_SHADER_STORAGE_BUFFER || target == GL_ATOMIC_COUNTER_BUFFER || target == GL_TRANSFORM_FEEDBACK_BUFFER;

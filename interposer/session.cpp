@@ -196,6 +196,7 @@ void Session::publish(ThreadState& t, bool last) {
     capture::publications(header_)[tail % header_->chunkCount] =
         {t.chunk, t.publishedBytes, end, t.stream, static_cast<uint16_t>(last)};
     t.publishedBytes = end;
+    ++t.publications;
     if (last) t.chunk = UINT32_MAX;
     header_->publishedTail.store(tail + 1, std::memory_order_release);
     futexWakeAll(header_->publishedTail);

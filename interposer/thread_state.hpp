@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "interposer/kept_pixels.hpp"
+
 namespace mural {
 
 struct Context; // interposer/context.hpp
@@ -22,6 +24,8 @@ struct ThreadState {
     uint16_t stream = 0;            // number of this thread in the session
     uint32_t chunk = UINT32_MAX;    // index of the chunk, UINT32_MAX: none
     uint32_t publishedBytes = 0;    // of the chunk; the rest up to cursor is not yet visible
+    uint32_t publications = 0;      // until now
+    KeptPixels pixels;
     ThreadState* next = nullptr;    // all threads of the process; never removed
     std::atomic<bool> gone{false};  // the thread has ended: its entry may be taken over
     void* scratch = nullptr;        // re-packed images, strings; grows, never shrinks

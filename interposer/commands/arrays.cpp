@@ -1,6 +1,7 @@
 // Vertex array state: kept in the mirror, sent only where it names buffers.
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
+#include "interposer/asking.hpp"
 #include "interposer/context.hpp"
 #include "interposer/real_gl.hpp"
 #include "streamcodec/sizes/vertex_types.hpp"
@@ -28,9 +29,34 @@ template <class Call> void withUnit(GLenum unit, Call&& call) {
     mural_glClientActiveTexture(static_cast<GLenum>(before));
 }
 
+// Mesa takes the client's arrays in glEnable and glDisable, too: the same as glEnableClientState there.
+bool isClientArray(GLenum cap) {
+    return (cap >= GL_VERTEX_ARRAY && cap <= GL_EDGE_FLAG_ARRAY) || cap == GL_FOG_COORD_ARRAY || cap == GL_SECONDARY_COLOR_ARRAY;
+}
+void switchClientArray(ThreadState& t, GLenum array, bool on) {
+    const auto local = [=] { on ? gReal.glEnable(array) : gReal.glDisable(array); };
+    if (!t.context || t.context->compilingList) return local(); // in a list it is the program's own context's alone
+    if (!raisesNothing(*t.context, local)) return;
+    enableSlot(t, t.context->arrays.slotOf(array), on);
+    on ? encode_glEnableClientState(t, array) : encode_glDisableClientState(t, array);
+}
+
 } // namespace
 
 extern "C" {
+
+void mural_glEnable(GLenum cap) {
+    ThreadState& t = *tThread;
+    if (isClientArray(cap)) [[unlikely]] return switchClientArray(t, cap, true);
+    encode_glEnable(t, cap);
+    gReal.glEnable(cap);
+}
+void mural_glDisable(GLenum cap) {
+    ThreadState& t = *tThread;
+    if (isClientArray(cap)) [[unlikely]] return switchClientArray(t, cap, false);
+    encode_glDisable(t, cap);
+    gReal.glDisable(cap);
+}
 
 void mural_glVertexPointer(GLint size, GLenum type, GLsizei stride, const void* pointer) {
     ThreadState& t = *tThread;

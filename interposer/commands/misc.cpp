@@ -22,24 +22,54 @@ void publish(ThreadState& t) {
     if (Session* s = Session::current(); s && t.context) s->publish(t, false);
 }
 
+// In a primitive that is thrown away: what the list may not do there raises its errors. `closes`: the list ends it.
+template <class Call> void callBetweenBeginAndEnd(Context& c, bool closes, Call&& call) {
+    const uint32_t mode = c.openPrimitive;
+    gReal.glEnd();
+    const bool discards = gReal.glIsEnabled(GL_RASTERIZER_DISCARD);
+    if (!discards) gReal.glEnable(GL_RASTERIZER_DISCARD);
+    raisesNothing(c, [&] {
+        gReal.glBegin(mode);
+        call();
+        if (!closes) gReal.glEnd();
+    });
+    if (!discards) gReal.glDisable(GL_RASTERIZER_DISCARD);
+    if (closes) c.openPrimitive = kNoPrimitive;
+    else gReal.glBegin(mode);
+}
+
+// After a list that begins a primitive and leaves it open. Which mode does not matter where nothing is drawn.
+void primitiveOpened(ThreadState& t, bool locallyOpen) {
+    if (!locallyOpen) gReal.glBegin(GL_POINTS);
+    if (t.context) t.context->openPrimitive = GL_POINTS;
+}
+
 // A list holds draws and state: the program's own context needs the state but need not draw. Where a
 // bitmap may move the raster position it does draw, for a discarded bitmap moves nothing.
-template <class Call> void callWithoutDrawing(ThreadState& t, bool movesRaster, Call&& call) {
+template <class Call> void callWithoutDrawing(ThreadState& t, bool movesRaster, bool opens, bool closes, Call&& call) {
+    if (t.drawLocally) {
+        call();
+        if (opens) primitiveOpened(t, true);
+        return;
+    }
+    if (t.context && t.context->openPrimitive != kNoPrimitive && t.context->version >= 30) return callBetweenBeginAndEnd(*t.context, closes, call);
     const PrimitivePause pause(t); // or the list's vertices would be the primitive's
-    if (t.drawLocally) return call();
     if (movesRaster || !t.context || t.context->version < 30) {
         ownDrawingBegins();
         call();
+        if (opens) primitiveOpened(t, true);
         return ownDrawingEnds();
     }
     const bool discards = gReal.glIsEnabled(GL_RASTERIZER_DISCARD);
     if (!discards) gReal.glEnable(GL_RASTERIZER_DISCARD);
     call();
+    if (opens) gReal.glEnd();
     if (!gReal.glIsEnabled(GL_RASTERIZER_DISCARD)) { // the list has put an end to it
         ownDrawingBegins();
         ownDrawingEnds();
     }
     if (!discards) gReal.glDisable(GL_RASTERIZER_DISCARD);
+    if (opens) primitiveOpened(t, false);
 }
 
 // What a list draws while it is compiled, and whatever selection and feedback let through.
@@ -49,12 +79,22 @@ void setDrawing(bool& draws, bool now) {
     (now ? ownDrawingBegins : ownDrawingEnds)();
 }
 
+void listEndsPrimitive(Context& c) {
+    if (!c.listPrimitive) c.group->listCloses.set(c.compiledList, true);
+    c.listPrimitive = false;
+}
+
 // A list that calls others moves the raster position when they do, whatever they will be by then.
 void noteListCall(const ThreadState& t, bool asks) {
     if (!t.context || !t.context->compilingList) return;
     ShareGroup& group = *t.context->group;
     group.listMovesRaster.set(t.context->compiledList, true);
     if (asks) group.listAsks.set(t.context->compiledList, true);
+}
+void notePrimitives(Context& c, GLuint called) {
+    if (!c.compilingList) return;
+    if (c.group->listCloses.get(called)) listEndsPrimitive(c);
+    if (c.group->listOpens.get(called)) c.listPrimitive = true;
 }
 
 // SPIR-V: what both sides have.
@@ -84,6 +124,9 @@ void mural_glNewList(GLuint list, GLenum mode) {
     ShareGroup& group = *t.context->group;
     group.listMovesRaster.set(list, false);
     group.listAsks.set(list, false);
+    group.listOpens.set(list, false);
+    group.listCloses.set(list, false);
+    t.context->listPrimitive = false;
     group.listsChange = group.listsChange || group.listCompiled.get(list);
     group.listCompiled.set(list, true);
     refreshDrawLocally(t);
@@ -94,6 +137,7 @@ void mural_glEndList() {
     gReal.glEndList();
     if (!t.context) return;
     t.context->compilingList = false;
+    if (t.context->listPrimitive) t.context->group->listOpens.set(t.context->compiledList, true);
     refreshDrawLocally(t);
     setDrawing(t.context->drawsList, false);
 }
@@ -105,7 +149,9 @@ void mural_glCallList(GLuint list) {
     noteListCall(t, t.context && listAsks(*t.context->group, list));
     const ShareGroup* group = t.context ? t.context->group : nullptr;
     const bool moves = group && group->listsMoveRaster && (group->listMovesRaster.get(list) || !NameBits::known(list));
-    callWithoutDrawing(t, moves, [&] { gReal.glCallList(list); });
+    if (t.context) notePrimitives(*t.context, list);
+    const bool live = group && !t.context->compilingList;
+    callWithoutDrawing(t, moves, live && group->listOpens.get(list), live && group->listCloses.get(list), [&] { gReal.glCallList(list); });
 }
 void mural_glCallLists(GLsizei n, GLenum type, const void* lists) {
     ThreadState& t = *tThread;
@@ -114,7 +160,7 @@ void mural_glCallLists(GLsizei n, GLenum type, const void* lists) {
     encode_glCallLists(t, n, type, DataArg::of(lists, sizes::callListsBytes(n, type)));
     noteListCall(t, true);
     const bool moves = t.context && t.context->group->listsMoveRaster; // mostly text
-    callWithoutDrawing(t, moves, [&] { gReal.glCallLists(n, type, lists); });
+    callWithoutDrawing(t, moves, false, false, [&] { gReal.glCallLists(n, type, lists); });
 }
 // Selection and feedback need vertices only: the program's own context does them.
 GLint mural_glRenderMode(GLenum mode) {
@@ -238,13 +284,17 @@ void mural_glBegin(GLenum mode) {
     buffersRead(t);
     encode_glBegin(t, mode);
     gReal.glBegin(mode);
-    if (t.context && !t.context->compilingList && t.context->openPrimitive == kNoPrimitive) t.context->openPrimitive = mode;
+    if (!t.context) return;
+    if (t.context->compilingList) t.context->listPrimitive = true;
+    else if (t.context->openPrimitive == kNoPrimitive) t.context->openPrimitive = mode;
 }
 void mural_glEnd() {
     ThreadState& t = *tThread;
     encode_glEnd(t);
     gReal.glEnd();
-    if (t.context && !t.context->compilingList) t.context->openPrimitive = kNoPrimitive;
+    if (!t.context) return;
+    if (t.context->compilingList) listEndsPrimitive(*t.context);
+    else t.context->openPrimitive = kNoPrimitive;
 }
 
 GLenum mural_glGetError() {
@@ -253,7 +303,7 @@ GLenum mural_glGetError() {
 }
 const GLubyte* mural_glGetString(GLenum name) {
     ThreadState& t = *tThread;
-    if (capturing(t)) {
+    if (capturing(t) && t.context->openPrimitive == kNoPrimitive) { // else an error
         if (const char* text = adjustedString(*t.context, name)) return reinterpret_cast<const GLubyte*>(text);
     }
     return gReal.glGetString(name);

@@ -1,5 +1,7 @@
 #include "interposer/commands/quiet.hpp"
 
+#include "interposer/pixel_store.hpp"
+
 namespace mural::quiet {
 
 namespace {
@@ -13,7 +15,14 @@ bool isDesktop(const ThreadState& t, int version) {
     return t.context && t.context->api == wire::Api::Desktop && t.context->version >= version;
 }
 
-// The bound indirect buffer's part; false: there is none, or the part is not in it, or a program has it mapped.
+bool outOfUnpackBuffer(Context& c, GLsizei width, GLsizei height, GLenum format, GLenum type, const void* offset) {
+    if (!unpackBufferBound(c) || width == 0 || height == 0) return false;
+    const sizes::ImageLayout layout = sizes::layoutOf(unpackStore(c), format, type, width, height, 1, 2);
+    return layout.known && !withinBuffer(GL_PIXEL_UNPACK_BUFFER, GL_PIXEL_UNPACK_BUFFER_BINDING, reinterpret_cast<uint64_t>(offset), sizes::spanBytes(layout));
+}
+
+} // namespace
+
 bool withinBuffer(GLenum target, GLenum binding, uint64_t offset, uint64_t sizeBytes) {
     GLint buffer = 0, size = 0, mapped = GL_FALSE;
     gReal.glGetIntegerv(binding, &buffer);
@@ -22,8 +31,6 @@ bool withinBuffer(GLenum target, GLenum binding, uint64_t offset, uint64_t sizeB
     gReal.glGetBufferParameteriv(target, GL_BUFFER_MAPPED, &mapped);
     return mapped == GL_FALSE && size >= 0 && offset <= static_cast<uint64_t>(size) && sizeBytes <= static_cast<uint64_t>(size) - offset;
 }
-
-} // namespace
 
 bool clearsBuffer(GLenum buffer, GLint drawBuffer, bool color, GLenum plane) {
     if (buffer == GL_COLOR && color) return drawBuffer >= 0 && drawBuffer < kSureDrawBuffers;
@@ -42,8 +49,8 @@ void rectangle(const ThreadState& t) {
     if (!t.context || t.context->openPrimitive == kNoPrimitive) gReal.glEnd();
 }
 
-void drawPixels(GLsizei width, GLsizei height, GLenum format, GLenum type, const void* pixels) {
-    const bool isError = width < 0 || height < 0;
+void drawPixels(const ThreadState& t, GLsizei width, GLsizei height, GLenum format, GLenum type, const void* pixels) {
+    const bool isError = width < 0 || height < 0 || (t.context && outOfUnpackBuffer(*t.context, width, height, format, type, pixels));
     gReal.glDrawPixels(isError ? width : 0, isError ? height : 0, format, type, pixels);
 }
 

@@ -37,7 +37,7 @@ inline bool vertex(const ThreadState& t, GLuint index) {
 }
 
 void rectangle(const ThreadState& t);
-void drawPixels(GLsizei width, GLsizei height, GLenum format, GLenum type, const void* pixels);
+void drawPixels(const ThreadState& t, GLsizei width, GLsizei height, GLenum format, GLenum type, const void* pixels);
 void accumulate(GLenum op, GLfloat value);
 
 struct Area {
@@ -55,6 +55,9 @@ void dispatch(GLuint x, GLuint y, GLuint z);
 void dispatchIndirect(GLintptr indirect);
 void drawFeedback(const ThreadState& t, GLenum mode, GLuint id);
 void drawFeedbackStream(const ThreadState& t, GLenum mode, GLuint id, GLuint stream);
+
+// A part of the buffer that is bound to target; false: there is none, or the part is not in it, or a program has it mapped.
+bool withinBuffer(GLenum target, GLenum binding, uint64_t offset, uint64_t sizeBytes);
 
 // Indirect draws: true when the driver shall have the call as it is, for it is an error.
 bool indirectIsWrong(const ThreadState& t, const void* indirect, uint64_t sizeBytes);

@@ -1,6 +1,7 @@
 // Pixels and texture images: drawn on the nodes, so read from the nodes.
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
+#include "interposer/commands/quiet.hpp"
 #include "interposer/asking.hpp"
 #include "interposer/context.hpp"
 #include "interposer/mapped_buffers.hpp"
@@ -67,6 +68,13 @@ void deliver(ThreadState& t, const void* tight, void* pixels, const sizes::Image
         writeOwnCopy(t, static_cast<GLuint>(buffer), static_cast<uint64_t>(offset), whole, span);
     }
     records::bufferBytes(t, static_cast<GLuint>(buffer), static_cast<uint64_t>(offset), DataArg::of(whole, span));
+}
+
+// Drivers look at that only when there is something to read.
+bool outOfPackBuffer(Context& c, GLsizei width, GLsizei height, GLenum format, GLenum type, const void* offset) {
+    if (!packBufferBound(c) || width == 0 || height == 0) return false;
+    const sizes::ImageLayout layout = sizes::layoutOf(packStore(c), format, type, width, height, 1, 2);
+    return layout.known && !quiet::withinBuffer(GL_PIXEL_PACK_BUFFER, GL_PIXEL_PACK_BUFFER_BINDING, reinterpret_cast<uint64_t>(offset), sizes::spanBytes(layout));
 }
 
 void readPixels(ThreadState& t, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type, void* pixels) {
@@ -180,9 +188,8 @@ extern "C" {
 void mural_glReadPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type, void* pixels) {
     ThreadState& t = *tThread;
     if (!capturing(t)) return gReal.glReadPixels(x, y, width, height, format, type, pixels);
-    const bool valid = raisesNothing(*t.context, [&] {
-        gReal.glReadPixels(x, y, width < 0 ? width : 0, height < 0 ? height : 0, format, type, pixels);
-    });
+    const bool isError = width < 0 || height < 0 || outOfPackBuffer(*t.context, width, height, format, type, pixels);
+    const bool valid = raisesNothing(*t.context, [&] { gReal.glReadPixels(x, y, isError ? width : 0, isError ? height : 0, format, type, pixels); });
     if (valid) readPixels(t, x, y, width, height, format, type, pixels);
 }
 

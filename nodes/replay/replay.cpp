@@ -46,7 +46,8 @@ bool Replay::record(std::span<const std::byte> bytes) {
     const auto arguments = bytes.subspan(header >> 16 == record::kLongForm ? 8 : 4);
     ++counts_.commands;
     bool ok = true;
-    if (c_->compiling && splitsLists(opcode, arguments)) {
+    if (c_->compiling && (opcode == op::glBegin || opcode == op::glEnd)) c_->compilesPrimitive = opcode == op::glBegin;
+    if (c_->compiling && splitsLists(opcode, arguments) && !compiledInPrimitive(opcode)) {
         compileSplit(bytes);
     } else {
         ok = execute(opcode, arguments, *this);

@@ -239,6 +239,7 @@ private:
         GLuint listBase = 0;
         GLuint compiling = 0;                            // name of the list, 0: none
         GLenum compileMode = 0;
+        bool compilesPrimitive = false;                  // between glBegin and glEnd
         List building;
         std::vector<SavedAttributes> attributes;
         std::vector<ClientState> clientAttributes;
@@ -283,6 +284,7 @@ private:
     void runItem(const ListItem& item);
     GLuint generate(Kind kind);
     bool splitsLists(uint16_t opcode, std::span<const std::byte> arguments) const;
+    bool compiledInPrimitive(uint16_t opcode) const;
     // replay_own.cpp
     bool own(uint16_t opcode, Args& in);
     [[nodiscard]] gl::SurfaceConfig surfaceConfig(const wire::WindowConfig& c, int width, int height) const;

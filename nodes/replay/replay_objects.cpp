@@ -241,10 +241,16 @@ bool Replay::splitsLists(uint16_t opcode, std::span<const std::byte> arguments) 
     }
 }
 
+// No list can be ended between glBegin and glEnd while it is executed: what is called there is called natively.
+bool Replay::compiledInPrimitive(uint16_t opcode) const {
+    return c_->compilesPrimitive && c_->compileMode == GL_COMPILE_AND_EXECUTE && (opcode == op::glCallList || opcode == op::glCallLists);
+}
+
 void Replay::glNewList(GLuint list, GLenum mode) {
     if (c_->compiling || list == 0) return;
     c_->compiling = list;
     c_->compileMode = mode;
+    c_->compilesPrimitive = false;
     c_->building = {};
     const GLuint first = gl.glGenLists(1);
     c_->building.items.push_back({first, {}, {}});

@@ -70,6 +70,13 @@ def encoder(c, opcode):
             '    endRecord(self, at_, size_);\n}\n' % (c.name, ', '.join(args), spills, size, opcode, '\n    '.join(puts)))
 
 
+def uniform_elements(c):
+    """Bytes of an element where drivers cut a count that is too large to the uniform's own; 0: no such command."""
+    value = c.param('value')
+    found = re.fullmatch(r'vn\(count,(\d+)\)', value.expr) if value and value.how == 'array' else None
+    return int(found.group(1)) if found and re.match(r'gl(Program)?Uniform', c.name) else 0
+
+
 def data_argument(c, p):
     if p.how == 'array':
         return 'DataArg::of(%s, %s)' % (p.name, p.expr)
@@ -114,6 +121,10 @@ def wrapper(c):
     else:
         if c.option('copies'):
             out += '    copies::gather(self, x, y, width, %s, %s);\n' % ('height' if c.param('height') else '1', c.option('copies'))
+        elements = uniform_elements(c)
+        if elements:
+            out += '    const GLsizei told = count;\n    if (count > kSureElements) [[unlikely]] count = readableElements(self, value, count, %d);\n' % elements
+            names = names.replace('count', 'told')
         out += '    encode_%s(%s);\n' % (c.name, encode_args)
         local = c.option('local') != 'no'
         if local and c.command_class == 'draw':

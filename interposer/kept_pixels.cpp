@@ -1,0 +1,75 @@
+#include "interposer/kept_pixels.hpp"
+
+#include <cstdlib>
+#include <cstring>
+
+#include "interposer/context.hpp"
+#include "interposer/real_gl.hpp"
+#include "interposer/thread_state.hpp"
+
+namespace mural {
+
+namespace {
+
+constexpr GLsizei kSmall = 64;  // pixels a side: larger reads come one at a time
+constexpr GLint kBlock = 256;   // what is fetched begins and ends at multiples of it
+
+const Window* windowRead(const Context& c) {
+    GLint framebuffer = 0;
+    gReal.glGetIntegerv(c.api == wire::Api::Desktop || c.version >= 30 ? GL_READ_FRAMEBUFFER_BINDING : GL_FRAMEBUFFER_BINDING, &framebuffer);
+    return framebuffer == 0 ? findWindowById(c.readWindow) : nullptr;
+}
+
+} // namespace
+
+bool KeptPixels::nothingSince(const ThreadState& t, const Kind& kind) const {
+    // Other threads' drawing leaves no trace in this one's stream.
+    return cursor_ && cursor_ == t.cursor && publications_ == t.publications && t.context && context_ == t.context->id && !t.shared && kind_ == kind;
+}
+
+bool KeptPixels::find(const ThreadState& t, const Kind& kind, const Box& box, void* into) const {
+    const bool inside = box.x >= box_.x && box.y >= box_.y && int64_t{box.x} + box.w <= int64_t{box_.x} + box_.w && int64_t{box.y} + box.h <= int64_t{box_.y} + box_.h;
+    if (!holds_ || !inside || !nothingSince(t, kind)) return false;
+    const size_t rowBytes = size_t(box.w) * kind.groupBytes, stride = size_t(box_.w) * kind.groupBytes;
+    const std::byte* from = bytes_ + size_t(box.y - box_.y) * stride + size_t(box.x - box_.x) * kind.groupBytes;
+    for (GLsizei row = 0; row < box.h; ++row) std::memcpy(static_cast<std::byte*>(into) + size_t(row) * rowBytes, from + size_t(row) * stride, rowBytes);
+    return true;
+}
+
+KeptPixels::Box KeptPixels::wider(const ThreadState& t, const Kind& kind, const Box& box) const {
+    constexpr GLint kFar = 1 << 20;
+    if (!nothingSince(t, kind) || box.w > kSmall || box.h > kSmall || box.x < 0 || box.y < 0 || box.x > kFar || box.y > kFar) return box;
+    const auto begin = [](GLint at) { return at / kBlock * kBlock; };
+    const auto end = [](GLint at) { return (at + kBlock - 1) / kBlock * kBlock; };
+    Box wide{begin(box.x), begin(box.y), 0, 0};
+    GLint right = end(box.x + box.w), top = end(box.y + box.h);
+    if (const Window* w = windowRead(*t.context)) {
+        if (box.x + box.w > w->config.width || box.y + box.h > w->config.height) return box;
+        if (right > w->config.width) right = w->config.width;
+        if (top > w->config.height) top = w->config.height;
+    }
+    wide.w = right - wide.x;
+    wide.h = top - wide.y;
+    return wide;
+}
+
+std::byte* KeptPixels::memory(size_t sizeBytes) {
+    holds_ = false;
+    if (sizeBytes > capacityBytes_) {
+        std::free(bytes_);
+        bytes_ = static_cast<std::byte*>(std::malloc(sizeBytes));
+        capacityBytes_ = bytes_ ? sizeBytes : 0;
+    }
+    return bytes_;
+}
+
+void KeptPixels::answered(const ThreadState& t, const Kind& kind, const Box& box, bool kept) {
+    cursor_ = t.context ? t.cursor : nullptr;
+    publications_ = t.publications;
+    context_ = t.context ? t.context->id : 0;
+    kind_ = kind;
+    box_ = box;
+    holds_ = kept;
+}
+
+} // namespace mural
