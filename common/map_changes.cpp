@@ -34,7 +34,7 @@ struct MapChanges::Pass {
     size_t quietFrom = 0, quietEnd = 0; // a run of pages to be locked
 };
 
-bool MapChanges::begin(void* memory, size_t sizeBytes) {
+bool MapChanges::begin(void* memory, size_t sizeBytes, bool mayWatch) {
     end();
     const size_t pages = sizeBytes / kPage + 2; // it may begin and end within pages
     reservedBytes_ = sizeBytes + pages;
@@ -44,7 +44,7 @@ bool MapChanges::begin(void* memory, size_t sizeBytes) {
     known_ = static_cast<std::byte*>(own);
     quiet_ = reinterpret_cast<uint8_t*>(known_ + sizeBytes);
     sizeBytes_ = sizeBytes;
-    if (sizeBytes > kComparedBytes) watch_.begin(memory, sizeBytes);
+    if (mayWatch && sizeBytes > kComparedBytes) watch_.begin(memory, sizeBytes);
     std::memcpy(known_, memory, sizeBytes);
     return true;
 }

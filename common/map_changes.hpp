@@ -14,8 +14,8 @@ namespace mural {
 class MapChanges {
 public:
     ~MapChanges() { end(); }
-    // From now on. False: no memory for the copy.
-    bool begin(void* memory, size_t sizeBytes);
+    // From now on. False: no memory for the copy. mayWatch: no one else can write the memory by another address.
+    bool begin(void* memory, size_t sizeBytes, bool mayWatch = true);
     void end();
     [[nodiscard]] bool active() const { return memory_ != nullptr; }
     [[nodiscard]] bool watched() const { return watch_.active(); }

@@ -70,6 +70,7 @@ struct Context {
     NameBits queryIsTimestamp;
     NameBits queryBegun;
     GLuint queryBuffer = 0;    // bound to GL_QUERY_BUFFER
+    GLuint pinnedBuffer = 0;   // bound to GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD
     QueryAnswers answers;
     uint32_t swaps = 0;        // while it was current
     uint32_t id = 0;

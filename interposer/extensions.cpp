@@ -9,20 +9,11 @@
 #include "interposer/real_gl.hpp"
 #include "interposer/session.hpp"
 #include "streamcodec/command_table.hpp"
+#include "streamcodec/local_extensions.hpp"
 
 namespace mural {
 
 namespace {
-
-// Extensions without commands of their own that hand out things of this machine.
-const char* const kLocalOnly[] = {"GL_ARB_bindless_texture", "GL_ARB_sparse_buffer", "GL_ARB_sparse_texture", "GL_AMD_pinned_memory"};
-// The window system's. Parts of pictures are not shown, and the driver's own swaps, whose count and events
-// programs would wait for, do not happen.
-const char* const kWindowSystemLocalOnly[] = {"GLX_MESA_copy_sub_buffer", "GLX_INTEL_swap_event", "GLX_OML_sync_control", "EGL_NV_post_sub_buffer",
-                                              "EGL_NOK_swap_region", "EGL_NOK_swap_region2", "GLX_EXT_texture_from_pixmap", "EGL_KHR_image", "EGL_KHR_image_pixmap",
-                                              "EGL_EXT_image_dma_buf_import", "EGL_EXT_image_dma_buf_import_modifiers",
-                                              "EGL_MESA_image_dma_buf_export", "EGL_MESA_drm_image", "EGL_WL_bind_wayland_display",
-                                              "EGL_WL_create_wayland_buffer_from_image", "EGL_KHR_cl_event2"};
 
 // Images of GL objects are carried where the nodes have images.
 const char* const kWindowSystemOfNodes[] = {"EGL_KHR_image_base", "EGL_KHR_gl_texture_2D_image", "EGL_KHR_gl_texture_cubemap_image",
@@ -31,6 +22,12 @@ const char* const kWindowSystemOfNodes[] = {"EGL_KHR_image_base", "EGL_KHR_gl_te
 bool oneOf(const char* const* names, size_t count, const char* name, size_t length) {
     for (size_t i = 0; i < count; ++i) {
         if (std::strlen(names[i]) == length && !std::strncmp(names[i], name, length)) return true;
+    }
+    return false;
+}
+template <size_t N> bool oneOf(const LocalExtension (&extensions)[N], const char* name, size_t length) {
+    for (const LocalExtension& e : extensions) {
+        if (std::strlen(e.name) == length && !std::strncmp(e.name, name, length)) return true;
     }
     return false;
 }
@@ -49,7 +46,7 @@ bool advertised(const char* name, size_t length) {
     std::memcpy(text + 1, name, length);
     text[length + 1] = ' ';
     text[length + 2] = 0;
-    if (!nodesHave(text) || oneOf(kLocalOnly, name, length)) return false;
+    if (!nodesHave(text) || oneOf(kLocalExtensions, name, length)) return false;
     text[length + 1] = 0;
     return extensionCarried(text + 1);
 }
@@ -118,7 +115,7 @@ Filtered* filteredTexts = nullptr;
 Lock filterLock;
 
 bool toldOf(const char* name, size_t length) {
-    if (length == 0 || oneOf(kWindowSystemLocalOnly, name, length)) return false;
+    if (length == 0 || oneOf(kLocalWindowExtensions, name, length)) return false;
     if (!oneOf(kWindowSystemOfNodes, name, length)) return true;
     char text[64];
     snprintf(text, sizeof text, " %.*s ", static_cast<int>(length), name);

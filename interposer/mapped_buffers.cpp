@@ -20,6 +20,7 @@ struct MappedBuffer {
     GLbitfield access;
     MapChanges changes;      // of persistent ones that are not flushed
     MappedBuffer* next;
+    bool pinned = false;     // memory of the program's own: no mapping of it that can end
 
     [[nodiscard]] bool has(GLbitfield bits) const { return (access & bits) != 0; }
     // Written without a word to GL.
@@ -191,17 +192,40 @@ void buffersMayBeWritten(ThreadState& t, GLsizei count, const GLuint* buffers) {
     for (GLsizei i = 0; buffers && i < count; ++i) nodesMayWrite(t, buffers[i]);
 }
 
-void mapBegins(ThreadState& t, GLuint buffer, void* memory, uint64_t offset, uint64_t length, GLbitfield access) {
-    if (!t.context || !memory || !(access & (GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT))) return;
+namespace {
+
+void begin(ThreadState& t, GLuint buffer, void* memory, uint64_t offset, uint64_t length, GLbitfield access, bool pinned) {
     void* place = std::malloc(sizeof(MappedBuffer));
     if (!place) return;
-    auto* m = new (place) MappedBuffer{buffer, static_cast<std::byte*>(memory), offset, length, access, {}, nullptr};
-    if (m->silent()) m->changes.begin(memory, length);
+    auto* m = new (place) MappedBuffer{buffer, static_cast<std::byte*>(memory), offset, length, access, {}, nullptr, pinned};
+    // Other processes may share the program's own memory, and it may do with it what it likes: no watching.
+    if (m->silent()) m->changes.begin(memory, length, !pinned);
     ShareGroup& group = *t.context->group;
     const MapsHeld held(t);
     m->next = group.maps;
     group.maps = m;
     if (m->has(GL_MAP_PERSISTENT_BIT)) ++group.lastingMaps;
+}
+
+bool isPinned(ThreadState& t, GLuint buffer) {
+    const MapsHeld held(t);
+    const MappedBuffer* m = findMap(*t.context->group, buffer);
+    return m && m->pinned;
+}
+
+} // namespace
+
+void mapBegins(ThreadState& t, GLuint buffer, void* memory, uint64_t offset, uint64_t length, GLbitfield access) {
+    if (!t.context || !memory || !(access & (GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT)) || isPinned(t, buffer)) return;
+    begin(t, buffer, memory, offset, length, access, false);
+}
+
+void pinBegins(ThreadState& t, GLuint buffer, void* memory, uint64_t length) {
+    if (t.context && memory && length > 0) begin(t, buffer, memory, 0, length, GL_MAP_READ_BIT | GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT, true);
+}
+
+void unmaps(ThreadState& t, GLuint buffer) {
+    if (t.context && t.context->group->maps && !isPinned(t, buffer)) mapEnds(t, buffer, true);
 }
 
 void mapEnds(ThreadState& t, GLuint buffer, bool shipIt) {

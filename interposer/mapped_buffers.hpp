@@ -11,8 +11,12 @@ struct ThreadState;
 
 // The program has mapped these bytes of the buffer at `memory`, with the access bits of glMapBufferRange.
 void mapBegins(ThreadState& t, GLuint buffer, void* memory, uint64_t offset, uint64_t length, GLbitfield access);
+// The buffer is the program's own memory from now on (AMD_pinned_memory): both sides write it at any time.
+void pinBegins(ThreadState& t, GLuint buffer, void* memory, uint64_t length);
 // Before it ends, by unmap, new storage or deletion; `ship` says whether its bytes still count.
 void mapEnds(ThreadState& t, GLuint buffer, bool ship);
+// Before the program unmaps it: pinned memory stays.
+void unmaps(ThreadState& t, GLuint buffer);
 void mapFlushes(ThreadState& t, GLuint buffer, GLintptr offset, GLsizeiptr length);
 
 // Brings the program's own copy of a buffer that the nodes may have written up to date, before it is read.

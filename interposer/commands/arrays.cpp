@@ -290,6 +290,10 @@ void mural_glBindBuffer(GLenum target, GLuint buffer) {
     ThreadState& t = *tThread;
     if (t.context && target == GL_ARRAY_BUFFER) t.context->arrays.bindArrayBuffer(buffer);
     if (t.context && target == GL_QUERY_BUFFER) t.context->queryBuffer = buffer;
+    if (t.context && target == GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD) { // of this process: the nodes have a buffer like others
+        t.context->pinnedBuffer = buffer;
+        return gReal.glBindBuffer(target, buffer);
+    }
     encode_glBindBuffer(t, target, buffer);
     gReal.glBindBuffer(target, buffer);
 }

@@ -16,6 +16,13 @@ VertexRange arraysRange(GLint first, GLsizei count, GLsizei instances = 1, GLuin
     return {first, int64_t{first} + count - 1, instances > 0 ? static_cast<uint32_t>(instances) : 0, baseInstance};
 }
 
+// Of IBM_multimode_draw_arrays: the modes lie `stride` bytes apart.
+GLenum modeAt(const GLenum* modes, GLsizei index, GLint stride) {
+    GLenum mode = 0;
+    std::memcpy(&mode, reinterpret_cast<const std::byte*>(modes) + ptrdiff_t{index} * stride, sizeof mode);
+    return mode;
+}
+
 // Everything that has to go ahead of a draw without indices.
 inline void prepareArrays(ThreadState& t, GLint first, GLsizei count, GLsizei instances = 1, GLuint baseInstance = 0) {
     Context* c = t.context;
@@ -157,6 +164,17 @@ void mural_glDrawRangeElementsBaseVertex(GLenum mode, GLuint start, GLuint end, 
     gReal.glDrawRangeElementsBaseVertex(mode, start, end, quiet::count(t, count), type, indices, basevertex);
 }
 
+// Draws one after the other, each of its own mode: as such they travel.
+void mural_glMultiModeDrawArraysIBM(const GLenum* mode, const GLint* first, const GLsizei* count, GLsizei primcount, GLint modestride) {
+    for (GLsizei i = 0; i < primcount; ++i) {
+        if (count[i] > 0) mural_glDrawArrays(modeAt(mode, i, modestride), first[i], count[i]);
+    }
+}
+void mural_glMultiModeDrawElementsIBM(const GLenum* mode, const GLsizei* count, GLenum type, const void* const* indices, GLsizei primcount, GLint modestride) {
+    for (GLsizei i = 0; i < primcount; ++i) {
+        if (count[i] > 0) mural_glDrawElements(modeAt(mode, i, modestride), count[i], type, indices[i]);
+    }
+}
 void mural_glMultiDrawArrays(GLenum mode, const GLint* first, const GLsizei* count, GLsizei drawcount) {
     ThreadState& t = *tThread;
     const auto n = drawcount > 0 ? uint64_t(drawcount) : 0;

@@ -1,6 +1,7 @@
 // Mapped buffers, and the commands that end mappings or change what they show.
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
+#include "interposer/asking.hpp"
 #include "interposer/context.hpp"
 #include "interposer/mapped_buffers.hpp"
 #include "interposer/real_gl.hpp"
@@ -25,12 +26,25 @@ GLuint boundBuffer(GLenum target) {
     case GL_SHADER_STORAGE_BUFFER: name = GL_SHADER_STORAGE_BUFFER_BINDING; break;
     case GL_ATOMIC_COUNTER_BUFFER: name = GL_ATOMIC_COUNTER_BUFFER_BINDING; break;
     case GL_TEXTURE_BUFFER: name = 0x8C2A; break; // GL_TEXTURE_BUFFER_BINDING has the target's value
+    case GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD: return tThread->context ? tThread->context->pinnedBuffer : 0;
     case GL_QUERY_BUFFER: name = GL_QUERY_BUFFER_BINDING; break;
     default: return 0;
     }
     GLint buffer = 0;
     gReal.glGetIntegerv(name, &buffer);
     return static_cast<GLuint>(buffer);
+}
+
+// The program's memory becomes a buffer; the nodes get one with a copy of it, without a change of its bindings.
+void pin(ThreadState& t, GLsizeiptr size, const void* data, GLenum usage) {
+    const GLenum target = GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD;
+    if (!raisesNothing(*t.context, [&] { gReal.glBufferData(target, size, data, usage); }) || size <= 0 || !data) return;
+    GLint before = 0;
+    gReal.glGetIntegerv(GL_COPY_WRITE_BUFFER_BINDING, &before);
+    encode_glBindBuffer(t, GL_COPY_WRITE_BUFFER, t.context->pinnedBuffer);
+    encode_glBufferData(t, GL_COPY_WRITE_BUFFER, size, DataArg::of(data, uint64_t(size)), usage);
+    encode_glBindBuffer(t, GL_COPY_WRITE_BUFFER, static_cast<GLuint>(before));
+    pinBegins(t, t.context->pinnedBuffer, const_cast<void*>(data), uint64_t(size));
 }
 
 bool mapsLast(const ThreadState& t) { return t.context && t.context->group->lastingMaps > 0; }
@@ -97,11 +111,11 @@ void mural_glGetNamedBufferSubData(GLuint buffer, GLintptr offset, GLsizeiptr si
 }
 GLboolean mural_glUnmapBuffer(GLenum target) {
     ThreadState& t = *tThread;
-    if (t.context && t.context->group->maps) mapEnds(t, boundBuffer(target), true);
+    if (t.context && t.context->group->maps) unmaps(t, boundBuffer(target));
     return gReal.glUnmapBuffer(target);
 }
 GLboolean mural_glUnmapNamedBuffer(GLuint buffer) {
-    mapEnds(*tThread, buffer, true);
+    unmaps(*tThread, buffer);
     return gReal.glUnmapNamedBuffer(buffer);
 }
 void mural_glFlushMappedBufferRange(GLenum target, GLintptr offset, GLsizeiptr length) {
@@ -119,6 +133,7 @@ void mural_glFlushMappedNamedBufferRange(GLuint buffer, GLintptr offset, GLsizei
 void mural_glBufferData(GLenum target, GLsizeiptr size, const void* data, GLenum usage) {
     ThreadState& t = *tThread;
     if (t.context && t.context->group->maps) mapEnds(t, boundBuffer(target), false);
+    if (t.context && target == GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD) return pin(t, size, data, usage);
     encode_glBufferData(t, target, size, DataArg::of(data, size > 0 ? uint64_t(size) : 0), usage);
     gReal.glBufferData(target, size, data, usage);
 }
@@ -130,6 +145,7 @@ void mural_glNamedBufferData(GLuint buffer, GLsizeiptr size, const void* data, G
 }
 void mural_glBufferSubData(GLenum target, GLintptr offset, GLsizeiptr size, const void* data) {
     ThreadState& t = *tThread;
+    if (t.context && target == GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD) return gReal.glBufferSubData(target, offset, size, data); // its memory changes
     encode_glBufferSubData(t, target, offset, size, DataArg::of(data, size > 0 ? uint64_t(size) : 0));
     gReal.glBufferSubData(target, offset, size, data);
 }
@@ -194,7 +210,7 @@ void* mural_glMapNamedBufferRangeEXT(GLuint buffer, GLintptr offset, GLsizeiptr 
     return mapRange(buffer, offset, length, access, [=] { return gReal.glMapNamedBufferRangeEXT(buffer, offset, length, access); });
 }
 GLboolean mural_glUnmapNamedBufferEXT(GLuint buffer) {
-    mapEnds(*tThread, buffer, true);
+    unmaps(*tThread, buffer);
     return gReal.glUnmapNamedBufferEXT(buffer);
 }
 void mural_glFlushMappedNamedBufferRangeEXT(GLuint buffer, GLintptr offset, GLsizeiptr length) {

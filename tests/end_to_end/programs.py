@@ -7,7 +7,7 @@ import subprocess
 # Every program must be in one group; CTest runs one group per test.
 GROUPS = {
     "vertices": ["immediate", "generic_attributes", "display_lists", "client_arrays", "draw_calls",
-                 "core_arrays", "buffers", "persistent_mapping", "persistent_frames",
+                 "core_arrays", "buffers", "persistent_mapping", "persistent_frames", "pinned_memory",
                  "evaluators"],
     "pixels": ["textures_classic", "textures_modern", "framebuffers", "framebuffers_layered", "core_depth",
                "pixels_draw", "pixels_read", "texture_reads", "front_buffer", "front_and_back", "single_buffered",

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "streamcodec/command_table.hpp"
+#include "streamcodec/local_extensions.hpp"
 #include "tools/mural/commands.hpp"
 
 namespace mural::cli {
@@ -12,6 +13,10 @@ int listCommandsCommand(bool onlyUnsupported) {
         (command.carried ? carried : left) += 1;
         if (onlyUnsupported && command.carried) continue;
         fmt::print("{}\t{}{}{}\n", command.name, command.commandClass, *command.reason != '\0' ? "\t" : "", command.reason);
+    }
+    if (onlyUnsupported) {
+        for (const LocalExtension& e : kLocalExtensions) fmt::print("{}\textension\t{}\n", e.name, e.why);
+        for (const LocalExtension& e : kLocalWindowExtensions) fmt::print("{}\textension\t{}\n", e.name, e.why);
     }
     fmt::print(stderr, "mural: {} commands are carried, {} are not\n", carried, left);
     return 0;
