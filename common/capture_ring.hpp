@@ -21,7 +21,7 @@
 namespace mural::capture {
 
 constexpr uint32_t kMagic = 0x4d55524c; // "MURL"
-constexpr uint32_t kVersion = 2;
+constexpr uint32_t kVersion = 3;
 constexpr uint32_t kChunkBytes = 256 * 1024;
 constexpr uint32_t kDefaultChunks = 256; // 64 MiB
 constexpr uint32_t kReplyBytes = 4 * 1024 * 1024;
@@ -45,6 +45,24 @@ struct Publication {
     uint16_t lastOfChunk; // 1: the chunk is free once this range has been read
 };
 static_assert(sizeof(Publication) == 16);
+
+// What a thread of the program waits for.
+enum class Wait : uint32_t {
+    Nothing = 0,
+    Room = 1,   // in the ring: the head has not read it yet, for nodes take no more
+    Frames = 2, // credit: the nodes draw the frames before
+    Answer = 3, // of the nodes, to a question: a round trip
+    Window = 4, // the picture is in the program's own window
+};
+constexpr uint32_t kWaits = 5;
+
+// How many round trips a command has caused. Written under the program's lock of questions; a name is
+// complete before its count is more than 0.
+struct TripCount {
+    char command[56]; // ends with 0
+    std::atomic<uint64_t> count;
+};
+constexpr uint32_t kTripCounts = 48; // the last one is for all that find no place
 
 struct alignas(64) CaptureHeader {
     uint32_t magic;
@@ -81,7 +99,12 @@ struct alignas(64) CaptureHeader {
     // Counters of the app's side, for the report.
     std::atomic<uint64_t> callsUnsupported;
     std::atomic<uint64_t> roundTrips;
-    std::atomic<uint64_t> waitNs; // app thread blocked on credit or ring space
+    std::atomic<uint64_t> waitNs[kWaits]; // its threads blocked, by what for
+    std::atomic<uint32_t> waitingFor;     // Wait, of the thread that began to wait last
+    // CPU time of the threads that show frames, and for how many frames it was added up.
+    std::atomic<uint64_t> frameCpuNs;
+    std::atomic<uint64_t> frameCpuFrames;
+    TripCount trips[kTripCounts];
 
     alignas(64) AheadAnswer ahead[kAheadAnswers]; // the head writes
 };
@@ -110,6 +133,10 @@ struct Hello {
     int32_t pid;
     uint32_t reserved;
 };
+
+// In place of a program `mural stat` may come: a Hello with this magic is answered with the session's state as JSON
+// (nodes/head/session_status.hpp), and the end of the connection.
+constexpr uint32_t kStatusMagic = 0x4d535441; // "MSTA"
 
 enum Policy : uint32_t { kPolicyState = 0, kPolicyFull = 1 };
 

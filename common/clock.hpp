@@ -18,6 +18,13 @@ inline int64_t monotonicNowNs() {
     return static_cast<int64_t>(t.tv_sec) * kNsPerS + t.tv_nsec;
 }
 
+// CPU time of the calling thread.
+inline int64_t threadCpuNowNs() {
+    timespec t{};
+    syscall(SYS_clock_gettime, CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<int64_t>(t.tv_sec) * kNsPerS + t.tv_nsec;
+}
+
 class Deadline {
 public:
     static Deadline inMs(int64_t ms) { return Deadline(monotonicNowNs() + ms * kNsPerMs); }

@@ -10,11 +10,11 @@ namespace mural {
 namespace {
 
 // Sends one question and reads its answer into scratch memory; `into` must hold sizeBytes.
-template <class Send> bool ask(ThreadState& t, void* into, uint64_t sizeBytes, Send&& send) {
+template <class Send> bool ask(ThreadState& t, const char* by, void* into, uint64_t sizeBytes, Send&& send) {
     Session* s = Session::current();
     if (!s || !s->alive() || !t.context) return false;
     buffersRead(t);
-    const uint32_t request = s->beginRequest();
+    const uint32_t request = s->beginRequest(by);
     send(request);
     s->publish(t, false);
     wire::ReplyHeader header{};
@@ -45,7 +45,7 @@ void stashError(Context& c, GLenum error) {
     if (!c.stashedError) c.stashedError = error; // GL keeps the first
 }
 
-const void* askPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type, bool plain) {
+const void* askPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type, bool plain, const char* by) {
     const uint32_t group = sizes::groupBytes(format, type);
     if (w <= 0 || h <= 0 || group == 0) return nullptr;
     const uint64_t bytes = uint64_t(w) * uint64_t(h) * group;
@@ -58,7 +58,7 @@ const void* askPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GL
     const bool keeps = wide.w != w || wide.h != h;
     const uint64_t wideBytes = keeps ? uint64_t(wide.w) * uint64_t(wide.h) * group : bytes;
     void* const answer = keeps ? t.pixels.memory(wideBytes) : into;
-    const bool ok = answer && ask(t, answer, wideBytes, [&](uint32_t request) {
+    const bool ok = answer && ask(t, by, answer, wideBytes, [&](uint32_t request) {
         records::requestPixels(t, request, wide.x, wide.y, wide.w, wide.h, format, type, plain ? group | wire::kPlainTransfer : group);
     });
     if (!ok) return nullptr;
@@ -66,28 +66,28 @@ const void* askPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GL
     return !keeps || t.pixels.find(t, kind, box, into) ? into : nullptr;
 }
 
-void* askTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type, uint64_t sizeBytes) {
+void* askTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type, uint64_t sizeBytes, const char* by) {
     void* into = secondScratch(t, sizeBytes);
     if (!into || sizeBytes == 0) return nullptr;
-    const bool ok = ask(t, into, sizeBytes, [&](uint32_t request) {
+    const bool ok = ask(t, by, into, sizeBytes, [&](uint32_t request) {
         records::requestTexImage(t, request, byName, targetOrTexture, level, format, type, sizeBytes);
     });
     return ok ? into : nullptr;
 }
 
-bool askQuery(ThreadState& t, GLuint query, GLenum name, uint64_t& value) {
-    return ask(t, &value, sizeof value, [&](uint32_t request) { records::requestQuery(t, request, query, name); });
+bool askQuery(ThreadState& t, GLuint query, GLenum name, uint64_t& value, const char* by) {
+    return ask(t, by, &value, sizeof value, [&](uint32_t request) { records::requestQuery(t, request, query, name); });
 }
 
-const void* askBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t sizeBytes) {
+const void* askBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t sizeBytes, const char* by) {
     void* into = sizeBytes ? secondScratch(t, sizeBytes) : nullptr;
     if (!into) return nullptr;
-    return ask(t, into, sizeBytes, [&](uint32_t request) { records::requestBuffer(t, request, buffer, offset, sizeBytes); }) ? into : nullptr;
+    return ask(t, by, into, sizeBytes, [&](uint32_t request) { records::requestBuffer(t, request, buffer, offset, sizeBytes); }) ? into : nullptr;
 }
 
-bool askFinish(ThreadState& t) {
+bool askFinish(ThreadState& t, const char* by) {
     uint64_t nothing = 0;
-    return ask(t, &nothing, sizeof nothing, [&](uint32_t request) { records::requestFinish(t, request); });
+    return ask(t, by, &nothing, sizeof nothing, [&](uint32_t request) { records::requestFinish(t, request); });
 }
 
 } // namespace mural

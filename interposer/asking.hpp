@@ -1,4 +1,5 @@
-// Questions that only the render nodes can answer. Each is a round trip: counted, shown by the report.
+// Questions that only the render nodes can answer. Each is a round trip: counted under the name of the command that
+// causes it, shown by the report and `mural stat`. Helpers hand `by` on, so that it is the wrapper's name.
 #pragma once
 
 #include <GL/gl.h>
@@ -14,12 +15,12 @@ struct Context;
 // The rectangle of the current read framebuffer, tightly packed, put together from all nodes; in
 // scratch memory of the thread. Null: no answer.
 // plain: without the program's pixel transfer.
-const void* askPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type, bool plain = false);
-void* askTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type, uint64_t sizeBytes);
-bool askQuery(ThreadState& t, GLuint query, GLenum name, uint64_t& value);
+const void* askPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type, bool plain = false, const char* by = __builtin_FUNCTION());
+void* askTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type, uint64_t sizeBytes, const char* by = __builtin_FUNCTION());
+bool askQuery(ThreadState& t, GLuint query, GLenum name, uint64_t& value, const char* by = __builtin_FUNCTION());
 // Bytes of a buffer as the nodes have it; in scratch memory.
-const void* askBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t sizeBytes);
-bool askFinish(ThreadState& t);
+const void* askBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t sizeBytes, const char* by = __builtin_FUNCTION());
+bool askFinish(ThreadState& t, const char* by = __builtin_FUNCTION());
 
 // Runs `call` on the program's own context for its error alone: true when it raised none. The error
 // is kept for the program's next glGetError.

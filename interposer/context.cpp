@@ -144,9 +144,9 @@ void learnVersion(Context& c) {
         c.api = digits && *digits == '1' ? wire::Api::Es1 : wire::Api::Es2;
         text = digits ? digits : "2.0";
     }
-    // Mesa's software drivers give their buffers a size at the first binding and after a swap only.
-    const auto* renderer = reinterpret_cast<const char*>(gReal.glGetString(GL_RENDERER));
-    c.sizeAtViewport = !renderer || (!std::strstr(renderer, "llvmpipe") && !std::strstr(renderer, "softpipe"));
+    // Mesa gives its buffers a size at the first binding and after a swap only: where the loader tells it of resizes, as
+    // those of GLX and EGL on X11 do, glViewport changes nothing.
+    c.sizeAtViewport = !c.isMesa;
     c.version = (text[0] - '0') * 10 + (text[1] == '.' ? text[2] - '0' : 0);
     if (c.api == wire::Api::Desktop && c.version >= 32) {
         GLint mask = 0;
@@ -458,6 +458,7 @@ void endFrame(Window* w) {
     t.sizeDue = true;
     t.limit = nullptr;
     refreshDrawLocally(t);
+    s->countFrameCpu(t);
 }
 
 } // namespace mural

@@ -160,15 +160,15 @@ bool swapLocally();
 bool swapsItself(Window* w);
 
 // Tells the nodes the results that conditional rendering in display lists needs (commands/queries.cpp).
-void tellListConditions(ThreadState& t);
+void tellListConditions(ThreadState& t, const char* by);
 inline bool listAsks(const ShareGroup& group, GLuint list) {
     return group.listsChange || !NameBits::known(list) || !group.listCompiled.get(list) || group.listAsks.get(list);
 }
-inline void beforeList(ThreadState& t, GLuint list) {
-    if (t.context && t.context->group->listConditionCount > 0 && listAsks(*t.context->group, list)) [[unlikely]] tellListConditions(t);
+inline void beforeList(ThreadState& t, GLuint list, const char* by = __builtin_FUNCTION()) {
+    if (t.context && t.context->group->listConditionCount > 0 && listAsks(*t.context->group, list)) [[unlikely]] tellListConditions(t, by);
 }
-inline void beforeLists(ThreadState& t) {
-    if (t.context && t.context->group->listConditionCount > 0) [[unlikely]] tellListConditions(t);
+inline void beforeLists(ThreadState& t, const char* by = __builtin_FUNCTION()) {
+    if (t.context && t.context->group->listConditionCount > 0) [[unlikely]] tellListConditions(t, by);
 }
 
 // The driver takes few calls between glBegin and glEnd. Where it draws nothing its primitive can be

@@ -119,21 +119,21 @@ void writeOwnCopy(ThreadState& t, GLuint buffer, uint64_t offset, const void* by
     });
 }
 
-void refreshBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t length) {
+void refreshBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t length, const char* by) {
     if (!nodesDraw(t) || !t.context->group->nodesWriteBuffers || buffer == 0 || !gReal.glBindBuffer) return;
     for (uint64_t at = 0; at < length; at += kAskedBytes) {
         const uint64_t count = length - at < kAskedBytes ? length - at : kAskedBytes;
-        const void* bytes = askBuffer(t, buffer, offset + at, count);
+        const void* bytes = askBuffer(t, buffer, offset + at, count, by);
         if (!bytes) return;
         writeOwnCopy(t, buffer, offset + at, bytes, count);
     }
 }
 
-void refreshForMap(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t length, GLbitfield access) {
+void refreshForMap(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t length, GLbitfield access, const char* by) {
     constexpr GLbitfield kForgets = GL_MAP_INVALIDATE_RANGE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT | GL_MAP_FLUSH_EXPLICIT_BIT;
     if (!t.context || !t.context->group->nodesWriteBuffers) return;
     const bool shipsAll = !(access & kForgets) && mayBeWritten(*t.context->group, buffer);
-    if (access & GL_MAP_READ_BIT || shipsAll) refreshBuffer(t, buffer, offset, length);
+    if (access & GL_MAP_READ_BIT || shipsAll) refreshBuffer(t, buffer, offset, length, by);
 }
 
 namespace {
@@ -156,7 +156,7 @@ void showInMap(ThreadState& t, MappedBuffer& m, uint64_t from, const std::byte* 
 
 } // namespace
 
-void refreshMaps(ThreadState& t) {
+void refreshMaps(ThreadState& t, const char* by) {
     if (!t.context || !t.context->group->lastingMaps || !t.context->group->nodesWriteBuffers || !nodesDraw(t)) return;
     const ShareGroup& group = *t.context->group;
     const MapsHeld held(t);
@@ -166,7 +166,7 @@ void refreshMaps(ThreadState& t) {
         if (!m->has(GL_MAP_PERSISTENT_BIT) || !stale) continue;
         for (uint64_t at = 0; at < m->length; at += kAskedBytes) {
             const uint64_t count = m->length - at < kAskedBytes ? m->length - at : kAskedBytes;
-            const void* bytes = askBuffer(t, m->buffer, m->offset + at, count);
+            const void* bytes = askBuffer(t, m->buffer, m->offset + at, count, by);
             if (bytes) showInMap(t, *m, at, static_cast<const std::byte*>(bytes), count);
         }
     }

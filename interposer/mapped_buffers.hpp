@@ -19,12 +19,13 @@ void mapEnds(ThreadState& t, GLuint buffer, bool ship);
 void unmaps(ThreadState& t, GLuint buffer);
 void mapFlushes(ThreadState& t, GLuint buffer, GLintptr offset, GLsizeiptr length);
 
+// Round trips of these are counted under `by`, the wrapper's name (interposer/asking.hpp).
 // Brings the program's own copy of a buffer that the nodes may have written up to date, before it is read.
-void refreshBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t length);
+void refreshBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t length, const char* by = __builtin_FUNCTION());
 // Before the buffer is mapped so: what is not written stays, and is not to go back as it was here.
-void refreshForMap(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t length, GLbitfield access);
+void refreshForMap(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t length, GLbitfield access, const char* by = __builtin_FUNCTION());
 // The program has waited for the GL: mappings that stay show what the nodes have written until then.
-void refreshMaps(ThreadState& t);
+void refreshMaps(ThreadState& t, const char* by = __builtin_FUNCTION());
 // From now on buffers may hold what only the nodes know; this one (0: any) is bound where shaders or
 // transform feedback write into it.
 void nodesMayWrite(ThreadState& t, GLuint buffer);

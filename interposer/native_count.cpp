@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "common/clock.hpp"
+#include "interposer/frame_cpu.hpp"
 
 namespace mural {
 
@@ -13,12 +14,14 @@ namespace {
 
 int64_t firstNs = 0;
 long frames = 0;
+uint64_t cpuNs = 0; // of the threads that show frames…
+long cpuFrames = 0; // …for so many frames
 
 void writeReport(const char* path, int64_t nowNs) {
     const int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
     if (fd < 0) return;
-    char line[64];
-    const int n = snprintf(line, sizeof line, "%ld %.6f\n", frames, static_cast<double>(nowNs - firstNs) / 1e9);
+    char line[128];
+    const int n = snprintf(line, sizeof line, "%ld %.6f %.6f %ld\n", frames, static_cast<double>(nowNs - firstNs) / 1e9, static_cast<double>(cpuNs) / 1e9, cpuFrames);
     [[maybe_unused]] const ssize_t written = write(fd, line, static_cast<size_t>(n));
     close(fd);
 }
@@ -34,6 +37,11 @@ void countNativeFrame() {
     const int64_t nowNs = monotonicNowNs();
     if (firstNs == 0) firstNs = nowNs; // the time of the first frame is start-up
     ++frames;
+    static thread_local constinit FrameCpu cpu __attribute__((tls_model("initial-exec")));
+    if (const uint64_t tookNs = cpu.afterFrame()) {
+        cpuNs += tookNs;
+        cpuFrames += FrameCpu::kFrames;
+    }
     static const char* const path = getenv("MURAL_NATIVE_REPORT");
     static const char* const limit = getenv("MURAL_NATIVE_FRAMES");
     static const long last = limit ? atol(limit) : 0;

@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
+#include <optional>
 #include <poll.h>
 #include <pthread.h>
 #include <sys/mman.h>
@@ -88,6 +89,40 @@ int connectAbstract(const char* name) {
     setsockopt(fd, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
     setsockopt(fd, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
     return fd;
+}
+
+// While it exists a thread waits; the header says so to `mural stat`, and for how long to the report.
+class Waiting {
+public:
+    Waiting(capture::CaptureHeader& header, capture::Wait what) : header_(header), what_(static_cast<uint32_t>(what)), sinceNs_(monotonicNowNs()) {
+        header_.waitingFor.store(what_, std::memory_order_relaxed);
+    }
+    ~Waiting() {
+        header_.waitNs[what_].fetch_add(static_cast<uint64_t>(forNs()), std::memory_order_relaxed);
+        header_.waitingFor.store(static_cast<uint32_t>(capture::Wait::Nothing), std::memory_order_relaxed);
+    }
+    Waiting(const Waiting&) = delete;
+    Waiting& operator=(const Waiting&) = delete;
+    [[nodiscard]] int64_t forNs() const { return monotonicNowNs() - sinceNs_; }
+
+private:
+    capture::CaptureHeader& header_;
+    uint32_t what_;
+    int64_t sinceNs_;
+};
+
+// Under the lock of questions.
+void countTrip(capture::CaptureHeader& header, const char* by) {
+    constexpr char kPrefix[] = "mural_"; // of wrappers
+    const char* command = std::strncmp(by, kPrefix, sizeof kPrefix - 1) == 0 ? by + sizeof kPrefix - 1 : by;
+    uint32_t i = 0;
+    for (; i + 1 < capture::kTripCounts && header.trips[i].command[0]; ++i)
+        if (std::strncmp(header.trips[i].command, command, sizeof header.trips[i].command - 1) == 0) break;
+    capture::TripCount& trips = header.trips[i];
+    if (i + 1 == capture::kTripCounts) command = "others";
+    if (!trips.command[0]) std::strncpy(trips.command, command, sizeof trips.command - 1);
+    trips.count.fetch_add(1, std::memory_order_release);
+    header.roundTrips.fetch_add(1, std::memory_order_relaxed);
 }
 
 // The ring belongs to the parent; a child that goes on without exec draws alone.
@@ -185,13 +220,16 @@ void Session::publish(ThreadState& t, bool last) {
     const auto end = static_cast<uint32_t>(__atomic_load_n(&t.cursor, __ATOMIC_ACQUIRE) - start);
     if (end == t.publishedBytes && !last) return;
     const uint32_t tail = header_->publishedTail.load(std::memory_order_relaxed);
-    const int64_t startedNs = monotonicNowNs();
     // A takeover publishes ranges of one chunk, so publications may outnumber chunks.
-    while (tail - header_->publishedHead.load(std::memory_order_acquire) >= header_->chunkCount) {
-        if (!headAlive()) return;
-        if (monotonicNowNs() - startedNs > kStuckNs) return die("the head takes nothing for 60 s");
-        timespec nap{0, 200'000};
-        syscall(SYS_nanosleep, &nap, nullptr);
+    const auto full = [&] { return tail - header_->publishedHead.load(std::memory_order_acquire) >= header_->chunkCount; };
+    if (full()) {
+        const Waiting waiting(*header_, capture::Wait::Room);
+        do {
+            if (!headAlive()) return;
+            if (waiting.forNs() > kStuckNs) return die("the head takes nothing for 60 s");
+            timespec nap{0, 200'000};
+            syscall(SYS_nanosleep, &nap, nullptr);
+        } while (full());
     }
     capture::publications(header_)[tail % header_->chunkCount] =
         {t.chunk, t.publishedBytes, end, t.stream, static_cast<uint16_t>(last)};
@@ -203,7 +241,7 @@ void Session::publish(ThreadState& t, bool last) {
 }
 
 bool Session::takeChunk(ThreadState& t) {
-    const int64_t startedNs = monotonicNowNs();
+    std::optional<Waiting> waiting;
     while (alive()) {
         uint32_t seen = 0;
         {
@@ -221,12 +259,13 @@ bool Session::takeChunk(ThreadState& t) {
                 return true;
             }
         }
-        const int64_t beforeNs = monotonicNowNs();
+        if (!waiting) {
+            waiting.emplace(*header_, capture::Wait::Room);
+        } else {
+            if (!headAlive()) return false;
+            if (waiting->forNs() > kStuckNs) die("the head frees no memory for 60 s");
+        }
         futexWait(header_->freedTail, seen, kSliceNs);
-        const int64_t nowNs = monotonicNowNs(), waitedNs = nowNs - startedNs;
-        header_->waitNs.fetch_add(static_cast<uint64_t>(nowNs - beforeNs), std::memory_order_relaxed);
-        if (!headAlive()) return false;
-        if (waitedNs > kStuckNs) die("the head frees no memory for 60 s");
     }
     return false;
 }
@@ -234,44 +273,52 @@ bool Session::takeChunk(ThreadState& t) {
 void Session::waitForCredit(uint32_t latency) {
     const uint32_t submitted = framesSubmitted();
     header_->framesSubmitted.store(submitted, std::memory_order_relaxed);
-    const int64_t startedNs = monotonicNowNs();
-    bool waited = false;
+    std::optional<Waiting> waiting;
     while (alive()) {
         const uint32_t done = header_->framesDone.load(std::memory_order_acquire);
-        if (static_cast<int32_t>(submitted - done) <= static_cast<int32_t>(latency)) break;
-        waited = true;
+        if (static_cast<int32_t>(submitted - done) <= static_cast<int32_t>(latency)) return;
+        if (!waiting) {
+            waiting.emplace(*header_, capture::Wait::Frames);
+        } else { // a wait that was in vain: nothing of this is looked at in most frames
+            if (!headAlive()) return;
+            if (waiting->forNs() > 10 * kStuckNs) die("no frame came back for 10 minutes");
+        }
         futexWait(header_->framesDone, done, kSliceNs);
-        if (!headAlive()) break;
-        if (monotonicNowNs() - startedNs > 10 * kStuckNs) die("no frame came back for 10 minutes");
     }
-    if (waited) header_->waitNs.fetch_add(static_cast<uint64_t>(monotonicNowNs() - startedNs), std::memory_order_relaxed);
+}
+
+void Session::countFrameCpu(ThreadState& t) {
+    const uint64_t tookNs = t.frameCpu.afterFrame();
+    if (tookNs == 0) return;
+    header_->frameCpuNs.fetch_add(tookNs, std::memory_order_relaxed);
+    header_->frameCpuFrames.fetch_add(FrameCpu::kFrames, std::memory_order_relaxed);
 }
 
 void Session::waitShown() {
     if (!alive() || !welcome_.displayApp) return;
     const uint32_t submitted = framesSubmitted();
     const auto missing = [&](uint32_t frame) { return static_cast<int32_t>(submitted - frame) > 0; };
-    const int64_t startedNs = monotonicNowNs();
-    int64_t progressNs = startedNs;
+    if (!missing(header_->framesShown.load(std::memory_order_acquire))) return;
+    const Waiting waiting(*header_, capture::Wait::Window);
+    int64_t progressNs = 0;
     uint32_t shownBefore = header_->framesShown.load(std::memory_order_acquire);
     while (alive()) {
         const uint32_t shown = header_->framesShown.load(std::memory_order_acquire);
         if (!missing(shown)) break;
-        const int64_t nowNs = monotonicNowNs();
+        const int64_t nowNs = waiting.forNs();
         // The nodes may need long for a frame; what they have finished needs only the X server.
         const bool drawing = missing(header_->framesDone.load(std::memory_order_acquire));
         if (shown != shownBefore || drawing) progressNs = nowNs;
         shownBefore = shown;
-        if (nowNs - progressNs > kShowNs || nowNs - startedNs > kStuckNs) break;
+        if (nowNs - progressNs > kShowNs || nowNs > kStuckNs) break;
         futexWait(header_->framesShown, shown, kSliceNs);
         if (!headAlive()) return;
     }
-    header_->waitNs.fetch_add(static_cast<uint64_t>(monotonicNowNs() - startedNs), std::memory_order_relaxed);
 }
 
-uint32_t Session::beginRequest() {
+uint32_t Session::beginRequest(const char* by) {
     requestLock.lock();
-    if (alive()) header_->roundTrips.fetch_add(1, std::memory_order_relaxed);
+    if (alive()) countTrip(*header_, by);
     lastRequest_ = (lastRequest_ + 1) & ~capture::kAskedAhead;
     return lastRequest_;
 }
@@ -280,8 +327,8 @@ void Session::endRequest() { requestLock.unlock(); }
 
 bool Session::aheadAnswer(uint32_t request, uint64_t& value) {
     capture::AheadAnswer& answer = header_->ahead[request % capture::kAheadAnswers];
-    const int64_t startedNs = monotonicNowNs();
-    bool waited = false, known = false;
+    std::optional<Waiting> waiting;
+    bool known = false;
     while (alive()) {
         const uint32_t here = answer.request.load(std::memory_order_acquire);
         if (here == request) {
@@ -291,29 +338,30 @@ bool Session::aheadAnswer(uint32_t request, uint64_t& value) {
             break;
         }
         const bool later = here != 0 && static_cast<int32_t>((here - request) << 1) > 0;
-        if (later || monotonicNowNs() - startedNs > kStuckNs) break; // then it is asked once more
-        waited = true;
+        if (later || (waiting && waiting->forNs() > kStuckNs)) break; // then it is asked once more
+        if (!waiting) waiting.emplace(*header_, capture::Wait::Answer);
         futexWait(answer.request, here, kSliceNs);
         if (!headAlive()) break;
     }
-    if (waited) header_->waitNs.fetch_add(static_cast<uint64_t>(monotonicNowNs() - startedNs), std::memory_order_relaxed);
     return known;
 }
 
 bool Session::answerBytes(void* into, uint64_t sizeBytes) {
     auto* p = static_cast<std::byte*>(into);
-    const int64_t startedNs = monotonicNowNs();
+    std::optional<Waiting> waiting;
     uint32_t head = header_->replyHead.load(std::memory_order_relaxed);
     while (sizeBytes > 0) {
         const uint32_t tail = header_->replyTail.load(std::memory_order_acquire);
         uint32_t have = tail - head;
         if (have == 0) {
-            futexWait(header_->replyTail, tail, kSliceNs);
-            if (!headAlive()) return false;
-            if (monotonicNowNs() - startedNs > kStuckNs) {
-                die("the nodes did not answer for 60 s");
-                return false;
+            if (!waiting) {
+                waiting.emplace(*header_, capture::Wait::Answer);
+            } else {
+                if (!headAlive()) return false;
+                if (waiting->forNs() > kStuckNs) die("the nodes did not answer for 60 s");
+                if (!alive()) return false;
             }
+            futexWait(header_->replyTail, tail, kSliceNs);
             continue;
         }
         const uint32_t at = head % header_->replyCapacity;

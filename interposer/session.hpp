@@ -33,8 +33,8 @@ public:
     // Blocks until all frames of this process are in its windows (--display app); bounded.
     void waitShown();
 
-    // One question to the nodes at a time per process.
-    uint32_t beginRequest();
+    // One question to the nodes at a time per process; `by` is the function that asks, counted under its name.
+    uint32_t beginRequest(const char* by);
     // The head of the answer; false when the head died (the request is over then).
     bool answerHeader(uint32_t request, wire::ReplyHeader& header);
     // The next bytes of the answer.
@@ -45,6 +45,8 @@ public:
     uint32_t nextAhead() { return capture::kAskedAhead | __atomic_add_fetch(&lastAhead_, 1, __ATOMIC_RELAXED); }
     bool aheadAnswer(uint32_t request, uint64_t& value);
 
+    // After each frame of the thread: what it costs the program.
+    void countFrameCpu(ThreadState& t);
     uint32_t nextFrame() { return __atomic_add_fetch(&framesSubmitted_, 1, __ATOMIC_RELAXED); }
     void die(const char* why);
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "interposer/frame_cpu.hpp"
 #include "interposer/kept_pixels.hpp"
 
 namespace mural {
@@ -32,6 +33,7 @@ struct ThreadState {
     size_t scratchBytes = 0;
     void* scratch2 = nullptr;
     size_t scratch2Bytes = 0;
+    FrameCpu frameCpu;
 };
 
 // Never null: threads without a context point at one idle state whose limit is null.

@@ -14,7 +14,7 @@
 namespace mural::wire {
 
 constexpr uint32_t kMagic = 0x4d52534d; // "MSRM"
-constexpr uint32_t kVersion = 2;
+constexpr uint32_t kVersion = 3;
 
 // Which capture stream a packet belongs to: client (app process) and thread of it.
 // streamOf(0, 0) is the head's own stream: its payload is one HeadCommand.
@@ -90,6 +90,7 @@ struct FrameDoneMessage {
     uint32_t flags;    // kDrawnWhole
     uint64_t replayNs; // CPU time of the replay thread since the frame before
     uint64_t readbackNs;
+    uint64_t calls;    // records of this client since its start, up to this frame
 };
 
 // Fragment shaders write to memory, or kOpDrawAll came: every node draws all.

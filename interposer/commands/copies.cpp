@@ -37,7 +37,7 @@ namespace mural::copies {
 
 namespace {
 
-void gatherNow(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes) {
+void gatherNow(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, const char* by) {
     const Context* c = t.context;
     if (!readsWindow(*c)) return;
     const Window* window = findWindowById(c->readWindow);
@@ -59,7 +59,7 @@ void gatherNow(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfiel
                            {GL_STENCIL_BUFFER_BIT, GL_STENCIL_INDEX, GL_UNSIGNED_BYTE, window->config.stencil, 1}};
     for (const Plane& p : kinds) {
         if (!(planes & p.bit) || p.bits == 0) continue;
-        const void* pixels = askPixels(t, gx, gy, gw, gh, p.format, p.type, true);
+        const void* pixels = askPixels(t, gx, gy, gw, gh, p.format, p.type, true, by);
         if (pixels) records::fillWindow(t, gx, gy, gw, gh, p.bit, DataArg::of(pixels, uint64_t(gw) * uint64_t(gh) * p.bytes));
     }
 }
@@ -71,18 +71,18 @@ bool severalNodes(const ThreadState& t) {
 
 } // namespace
 
-void gather(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes) {
+void gather(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, const char* by) {
     if (!severalNodes(t)) return;
-    if (t.context->compilingList) drawAll(t);
-    else gatherNow(t, x, y, w, h, planes);
+    if (t.context->compilingList) drawAll(t, by);
+    else gatherNow(t, x, y, w, h, planes, by);
 }
 
-void drawAll(ThreadState& t) {
+void drawAll(ThreadState& t, const char* by) {
     if (!severalNodes(t) || t.context->group->allDrawn) return;
     t.context->group->allDrawn = true;
     records::drawAll(t);
     if (const Window* window = findWindowById(t.context->readWindow)) // what other nodes have drawn of it until now
-        gatherNow(t, 0, 0, static_cast<GLsizei>(window->config.width), static_cast<GLsizei>(window->config.height), GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+        gatherNow(t, 0, 0, static_cast<GLsizei>(window->config.width), static_cast<GLsizei>(window->config.height), GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT, by);
 }
 
 GLbitfield planesOf(GLenum internalFormat) {

@@ -65,18 +65,18 @@ template <class Get> uint64_t sizeOfNamed(Get&& get, GLuint buffer) {
 }
 
 // What the nodes have written comes first, where it may be read or would be written over.
-template <class Size, class Map> void* mapWhole(GLuint buffer, GLenum access, Size&& size, Map&& map) {
+template <class Size, class Map> void* mapWhole(GLuint buffer, GLenum access, Size&& size, Map&& map, const char* by = __builtin_FUNCTION()) {
     ThreadState& t = *tThread;
     const GLbitfield bits = accessBits(access);
-    if (t.context && t.context->group->nodesWriteBuffers) refreshForMap(t, buffer, 0, size(), bits);
+    if (t.context && t.context->group->nodesWriteBuffers) refreshForMap(t, buffer, 0, size(), bits, by);
     void* memory = map();
     if (memory && t.context) mapBegins(t, buffer, memory, 0, size(), bits);
     return memory;
 }
-template <class Map> void* mapRange(GLuint buffer, GLintptr offset, GLsizeiptr length, GLbitfield access, Map&& map) {
+template <class Map> void* mapRange(GLuint buffer, GLintptr offset, GLsizeiptr length, GLbitfield access, Map&& map, const char* by = __builtin_FUNCTION()) {
     ThreadState& t = *tThread;
     const bool valid = offset >= 0 && length > 0;
-    if (valid) refreshForMap(t, buffer, static_cast<uint64_t>(offset), static_cast<uint64_t>(length), access);
+    if (valid) refreshForMap(t, buffer, static_cast<uint64_t>(offset), static_cast<uint64_t>(length), access, by);
     void* memory = map();
     if (valid) mapBegins(t, buffer, memory, static_cast<uint64_t>(offset), static_cast<uint64_t>(length), access);
     return memory;

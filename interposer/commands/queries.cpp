@@ -26,7 +26,7 @@ void begins(ThreadState& t, GLenum target, GLuint id) {
     ShareGroup& group = *t.context->group;
     group.listCounts.set(id, true);
     for (int i = 0; i < group.listConditionCount; ++i)
-        if (group.listConditions[i] == id) copies::drawAll(t);
+        if (group.listConditions[i] == id) copies::drawAll(t, "glBeginQuery");
 }
 
 void ends(ThreadState& t, GLenum target) {
@@ -36,12 +36,12 @@ void ends(ThreadState& t, GLenum target) {
 bool isResult(GLenum pname) { return pname == GL_QUERY_RESULT || pname == GL_QUERY_RESULT_NO_WAIT; }
 
 // The result over all tiles. False: it is the local driver's.
-bool result(ThreadState& t, GLuint id, uint64_t& value) {
+bool result(ThreadState& t, const char* by, GLuint id, uint64_t& value) {
     // A program compares time stamps with glGetInteger64v(GL_TIMESTAMP): one clock for both.
     if (t.context->queryIsTimestamp.get(id)) return false;
     const bool keeps = !t.context->group->listCounts.get(id); // a list begins it whenever it is called
     if (!keeps || !t.context->answers.find(id, t.context->swaps, value)) {
-        if (!askQuery(t, id, GL_QUERY_RESULT, value)) return false;
+        if (!askQuery(t, id, GL_QUERY_RESULT, value, by)) return false;
         if (keeps) t.context->answers.keep(id, value);
     }
     if (value > 1 && t.context->queryIsAny.get(id)) value = 1; // yes or no, from several tiles
@@ -54,10 +54,10 @@ template <class T> T held(uint64_t value) {
 }
 
 // The driver's own answer comes first: it gives the errors, and what does not come from rendering.
-template <class T, class Local> void intoMemory(ThreadState& t, GLuint id, GLenum pname, T* params, Local local) {
+template <class T, class Local> void intoMemory(ThreadState& t, const char* by, GLuint id, GLenum pname, T* params, Local local) {
     if (t.drawLocally || !params || !isResult(pname)) return local();
     uint64_t value = 0;
-    if (raisesNothing(*t.context, local) && result(t, id, value)) *params = held<T>(value);
+    if (raisesNothing(*t.context, local) && result(t, by, id, value)) *params = held<T>(value);
 }
 
 // Writes bytes into the program's own buffer, by a copy: that is allowed for immutable ones, too.
@@ -77,7 +77,7 @@ void writeBuffer(GLuint buffer, GLintptr offset, GLsizeiptr bytes, const void* d
 }
 
 // The same into a buffer: the program's own context and the nodes have it then.
-template <class T, class Local> void intoBuffer(ThreadState& t, GLuint id, GLenum pname, GLuint buffer, GLintptr offset, Local local) {
+template <class T, class Local> void intoBuffer(ThreadState& t, const char* by, GLuint id, GLenum pname, GLuint buffer, GLintptr offset, Local local) {
     if (!raisesNothing(*t.context, local)) return;
     T written{};
     GLint before = 0;
@@ -85,7 +85,7 @@ template <class T, class Local> void intoBuffer(ThreadState& t, GLuint id, GLenu
     gReal.glBindBuffer(GL_QUERY_BUFFER, buffer);
     gReal.glGetBufferSubData(GL_QUERY_BUFFER, offset, sizeof written, &written);
     uint64_t value = 0;
-    if (isResult(pname) && result(t, id, value)) {
+    if (isResult(pname) && result(t, by, id, value)) {
         written = held<T>(value);
         writeBuffer(buffer, offset, sizeof written, &written);
     }
@@ -93,17 +93,17 @@ template <class T, class Local> void intoBuffer(ThreadState& t, GLuint id, GLenu
     records::bufferBytes(t, buffer, static_cast<uint64_t>(offset), DataArg::of(&written, sizeof written));
 }
 
-template <class T, class Local> void queryObject(GLuint id, GLenum pname, T* params, Local local) {
+template <class T, class Local> void queryObject(GLuint id, GLenum pname, T* params, Local local, const char* by = __builtin_FUNCTION()) {
     ThreadState& t = *tThread;
     if (!capturing(t)) return local();
-    if (t.context->queryBuffer == 0) return intoMemory(t, id, pname, params, local);
-    intoBuffer<T>(t, id, pname, t.context->queryBuffer, reinterpret_cast<GLintptr>(params), local);
+    if (t.context->queryBuffer == 0) return intoMemory(t, by, id, pname, params, local);
+    intoBuffer<T>(t, by, id, pname, t.context->queryBuffer, reinterpret_cast<GLintptr>(params), local);
 }
 
-template <class T, class Local> void queryBufferObject(GLuint id, GLuint buffer, GLenum pname, GLintptr offset, Local local) {
+template <class T, class Local> void queryBufferObject(GLuint id, GLuint buffer, GLenum pname, GLintptr offset, Local local, const char* by = __builtin_FUNCTION()) {
     ThreadState& t = *tThread;
     if (!capturing(t)) return local();
-    intoBuffer<T>(t, id, pname, buffer, offset, local);
+    intoBuffer<T>(t, by, id, pname, buffer, offset, local);
 }
 
 bool isInverted(GLenum mode) {
@@ -151,16 +151,16 @@ void mural_glQueryCounter(GLuint id, GLenum target) {
 
 namespace {
 
-void tellCondition(ThreadState& t, GLuint id) {
+void tellCondition(ThreadState& t, const char* by, GLuint id) {
     uint64_t value = 0;
-    if (t.context->queryBegun.get(id) && result(t, id, value)) records::queryKnown(t, id, value != 0);
+    if (t.context->queryBegun.get(id) && result(t, by, id, value)) records::queryKnown(t, id, value != 0);
 }
 
 // What a list that is being compiled will ask at each call.
 void noteListCondition(ThreadState& t, GLuint id) {
     ShareGroup& group = *t.context->group;
     group.listAsks.set(t.context->compiledList, true);
-    if (group.listCounts.get(id) || !NameBits::known(id)) copies::drawAll(t);
+    if (group.listCounts.get(id) || !NameBits::known(id)) copies::drawAll(t, "glBeginConditionalRender");
     for (int i = 0; i < group.listConditionCount; ++i)
         if (group.listConditions[i] == id) return;
     if (group.listConditionCount < ShareGroup::kConditions) group.listConditions[group.listConditionCount++] = id;
@@ -169,10 +169,10 @@ void noteListCondition(ThreadState& t, GLuint id) {
 } // namespace
 
 namespace mural {
-void tellListConditions(ThreadState& t) {
+void tellListConditions(ThreadState& t, const char* by) {
     if (!capturing(t) || t.context->compilingList || t.context->group->allDrawn) return; // the nodes know it themselves
     const ShareGroup& group = *t.context->group;
-    for (int i = 0; i < group.listConditionCount; ++i) tellCondition(t, group.listConditions[i]);
+    for (int i = 0; i < group.listConditionCount; ++i) tellCondition(t, by, group.listConditions[i]);
 }
 } // namespace mural
 
@@ -185,14 +185,14 @@ void mural_glBeginConditionalRender(GLuint id, GLenum mode) {
     if (!capturing(t) || t.context->compilingList) {
         if (capturing(t)) {
             noteListCondition(t, id);
-            tellCondition(t, id); // the list may be executed while it is compiled
+            tellCondition(t, __func__, id); // the list may be executed while it is compiled
         }
         encode_glBeginConditionalRender(t, id, mode);
         return gReal.glBeginConditionalRender(id, mode);
     }
     if (!raisesNothing(*t.context, [&] { gReal.glBeginConditionalRender(id, mode); })) return;
     uint64_t value = 1;
-    result(t, id, value);
+    result(t, __func__, id, value);
     records::beginConditional(t, (value != 0) != isInverted(mode));
 }
 

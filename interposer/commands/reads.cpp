@@ -77,7 +77,7 @@ bool outOfPackBuffer(Context& c, GLsizei width, GLsizei height, GLenum format, G
     return layout.known && !quiet::withinBuffer(GL_PIXEL_PACK_BUFFER, GL_PIXEL_PACK_BUFFER_BINDING, reinterpret_cast<uint64_t>(offset), sizes::spanBytes(layout));
 }
 
-void readPixels(ThreadState& t, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type, void* pixels) {
+void readPixels(ThreadState& t, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type, void* pixels, const char* by = __builtin_FUNCTION()) {
     Context& c = *t.context;
     if (readsOwnPixmap(c)) {
         gReal.glReadPixels(x, y, width, height, format, type, pixels);
@@ -85,7 +85,7 @@ void readPixels(ThreadState& t, GLint x, GLint y, GLsizei width, GLsizei height,
     }
     Clip clip{x, y, width, height};
     if (!clipToReadWindow(c, clip)) return;
-    const void* tight = askPixels(t, clip.x, clip.y, clip.w, clip.h, format, type);
+    const void* tight = askPixels(t, clip.x, clip.y, clip.w, clip.h, format, type, false, by);
     if (!tight) {
         gReal.glReadPixels(x, y, width, height, format, type, pixels); // alone by now
         return;
@@ -173,9 +173,9 @@ void keepPart(std::byte* image, const Level& size, const Level& from, const Leve
     }
 }
 
-void readTexture(ThreadState& t, bool byName, GLuint which, GLint level, GLenum format, GLenum type, void* pixels, const Level& size, int dimensions) {
+void readTexture(ThreadState& t, bool byName, GLuint which, GLint level, GLenum format, GLenum type, void* pixels, const Level& size, int dimensions, const char* by = __builtin_FUNCTION()) {
     const size_t bytes = sizes::tightBytes(format, type, size.width, size.height, size.depth);
-    const void* tight = bytes ? askTexImage(t, byName, which, level, format, type, bytes) : nullptr;
+    const void* tight = bytes ? askTexImage(t, byName, which, level, format, type, bytes, by) : nullptr;
     if (!tight) return;
     const sizes::ImageLayout layout = sizes::layoutOf(packStore(*t.context), format, type, size.width, size.height, size.depth, dimensions);
     if (layout.known) deliver(t, tight, pixels, layout);

@@ -112,6 +112,7 @@ bool CaptureClient::pumpNext(CaptureMemory::Range& range) {
     if (!range.bytes.empty()) {
         nodes_.broadcast(wire::streamOf(id_, range.stream), range.bytes);
         unflushedBytes_ += range.bytes.size();
+        bytesSent_.fetch_add(range.bytes.size(), std::memory_order_relaxed);
     }
     if (!memory_->take(range)) {
         drop("it gave back more chunks than it took; was its shared memory overwritten?");

@@ -51,6 +51,9 @@ public:
     void reply(Reply reply);
     CaptureMemory& memory() { return *memory_; }
     [[nodiscard]] uint32_t id() const { return id_; }
+    [[nodiscard]] pid_t pid() const { return pid_; }
+    [[nodiscard]] const std::string& name() const { return name_; }
+    [[nodiscard]] uint64_t bytesSent() const { return bytesSent_.load(std::memory_order_relaxed); } // to each node
     [[nodiscard]] bool pumpEnded() const { return pumpEnded_.load(std::memory_order_acquire); }
     [[nodiscard]] std::string describe() const; // "program 2 (glxgears, pid 77)"
 
@@ -80,6 +83,7 @@ private:
     std::atomic<bool> draining_{false};
     std::atomic<uint32_t> drainTail_{0};
     std::atomic<bool> pumpEnded_{false};
+    std::atomic<uint64_t> bytesSent_{0};
 
     std::mutex mutex_; // what follows
     std::condition_variable replyQueued_;

@@ -37,6 +37,17 @@ void writeLayout(CaptureHeader& h, uint32_t chunkCount, uint32_t replyBytes) {
     h.totalBytes = h.chunksAt + uint64_t{chunkCount} * kChunkBytes;
 }
 
+// The program may have written anything there.
+std::string commandName(const capture::TripCount& trips) {
+    std::string name;
+    for (const char c : trips.command) {
+        const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+        if (!plain) break;
+        name += c;
+    }
+    return name.empty() ? "unknown" : name;
+}
+
 void store(std::atomic<uint32_t>& word, uint32_t value) {
     word.store(value, std::memory_order_release);
     futexWakeAll(word);
@@ -175,7 +186,15 @@ CaptureCounts CaptureMemory::counts() const {
     c.largestDifference = shared_->largestDifference.load();
     c.callsUnsupported = shared_->callsUnsupported.load();
     c.roundTrips = shared_->roundTrips.load();
-    c.waitNs = shared_->waitNs.load();
+    for (uint32_t i = 0; i < capture::kWaits; ++i) c.waitNs[i] = shared_->waitNs[i].load();
+    const uint32_t waiting = shared_->waitingFor.load();
+    if (waiting < capture::kWaits) c.waitingFor = static_cast<capture::Wait>(waiting);
+    for (const capture::TripCount& trips : shared_->trips) {
+        const uint64_t count = trips.count.load(std::memory_order_acquire);
+        if (count > 0) c.tripsBy[commandName(trips)] += count;
+    }
+    c.frameCpuNs = shared_->frameCpuNs.load();
+    c.frameCpuFrames = shared_->frameCpuFrames.load();
     return c;
 }
 

@@ -4,9 +4,12 @@
 // checked.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <span>
+#include <string>
 
 #include "common/capture_ring.hpp"
 #include "common/result.hpp"
@@ -22,7 +25,11 @@ struct CaptureCounts {
     uint32_t largestDifference = 0;
     uint64_t callsUnsupported = 0;
     uint64_t roundTrips = 0;
-    uint64_t waitNs = 0;
+    std::map<std::string, uint64_t> tripsBy; // command → round trips that it caused
+    std::array<uint64_t, capture::kWaits> waitNs{}; // by capture::Wait
+    capture::Wait waitingFor = capture::Wait::Nothing; // of a program that is there
+    uint64_t frameCpuNs = 0;
+    uint64_t frameCpuFrames = 0;
 };
 
 // Threads: one for publications and chunks, one for replies; the words of progress from any.

@@ -96,18 +96,20 @@ bool peerOf(int socket, ucred& peer) {
 
 Result<std::unique_ptr<CaptureServer>> CaptureServer::start(const std::string& session,
                                                             uint64_t digest,
-                                                            ProgramHost& host) {
+                                                            ProgramHost& host,
+                                                            std::function<std::string()> status) {
     auto listener = listenAbstract(session);
     if (!listener) return listener.error();
-    std::unique_ptr<CaptureServer> server(new CaptureServer(std::move(*listener), digest, host));
+    std::unique_ptr<CaptureServer> server(new CaptureServer(std::move(*listener), digest, host, std::move(status)));
     server->thread_ = std::thread([raw = server.get()] { raw->serve(); });
     return server;
 }
 
-CaptureServer::CaptureServer(FileDescriptor listener, uint64_t digest, ProgramHost& host)
+CaptureServer::CaptureServer(FileDescriptor listener, uint64_t digest, ProgramHost& host, std::function<std::string()> status)
     : listener_(std::move(listener))
     , digest_(digest)
-    , host_(host) {}
+    , host_(host)
+    , status_(std::move(status)) {}
 
 CaptureServer::~CaptureServer() {
     stop_ = true;
@@ -150,6 +152,7 @@ bool CaptureServer::settle(Newcomer& newcomer, bool readable) {
 }
 
 void CaptureServer::answer(FileDescriptor socket, const Hello& hello) {
+    if (hello.magic == capture::kStatusMagic) return tellStatus(socket.get());
     auto admission = judge(socket.get(), hello);
     if (!admission) {
         Welcome refusal{};
@@ -160,6 +163,13 @@ void CaptureServer::answer(FileDescriptor socket, const Hello& hello) {
     const bool sent =
         sendWelcome(socket.get(), admission->welcome, admission->extensions, admission->memoryFd);
     host_.programWelcomed(admission->welcome.clientId, sent ? std::move(socket) : FileDescriptor());
+}
+
+void CaptureServer::tellStatus(int socket) {
+    ucred peer{};
+    if (!peerOf(socket, peer) || (peer.uid != geteuid() && peer.uid != 0)) return;
+    const std::string text = status_();
+    sendAll(socket, std::as_bytes(std::span(text)), -1, Deadline::inMs(kWelcomePatienceMs));
 }
 
 Result<Admission> CaptureServer::judge(int socket, const Hello& hello) {

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <sys/types.h>
@@ -35,9 +36,11 @@ public:
 class CaptureServer {
 public:
     // digest: of the command table, must be equal at both ends.
+    // status: the session's state as JSON, for `mural stat`; called by the server's thread.
     static Result<std::unique_ptr<CaptureServer>> start(const std::string& session,
                                                         uint64_t digest,
-                                                        ProgramHost& host);
+                                                        ProgramHost& host,
+                                                        std::function<std::string()> status);
     CaptureServer(const CaptureServer&) = delete;
     CaptureServer& operator=(const CaptureServer&) = delete;
     ~CaptureServer(); // stops
@@ -50,16 +53,18 @@ private:
         size_t haveBytes = 0; // of hello
     };
 
-    CaptureServer(FileDescriptor listener, uint64_t digest, ProgramHost& host);
+    CaptureServer(FileDescriptor listener, uint64_t digest, ProgramHost& host, std::function<std::string()> status);
     void serve();
     void acceptOne();
     bool settle(Newcomer& newcomer, bool readable); // true: done with it, one way or the other
     void answer(FileDescriptor socket, const capture::Hello& hello);
     Result<Admission> judge(int socket, const capture::Hello& hello);
+    void tellStatus(int socket);
 
     const FileDescriptor listener_;
     const uint64_t digest_;
     ProgramHost& host_;
+    const std::function<std::string()> status_;
     std::vector<Newcomer> newcomers_; // connected, Hello not complete yet
     std::atomic<bool> stop_{false};
     std::thread thread_;

@@ -33,6 +33,7 @@ Result<void> FrameTracker::frameDone(int node, const wire::FrameDoneMessage& m, 
     if (repeated) return Error{"it finished frame " + std::to_string(m.frame) + " twice"};
     if (c.windows.size() >= kMostOpenFrames) return Error{"it is a million frames ahead"};
     ++framesOf_[static_cast<size_t>(node)];
+    c.calls = std::max(c.calls, m.calls);
     if (m.frame > c.finished) c.windows.try_emplace(m.frame, Window{m.window, m.width, m.height});
     progress.early.insert(m.frame);
     if (progress.early.size() > kMostEarly) progress.done = *progress.early.begin() - 1;
@@ -101,6 +102,12 @@ void FrameTracker::count(uint32_t id, const Window& window, int64_t nowNs) {
     if (mainWindow_.swapped(id, window.id, window.width, window.height) == 0) return;
     if (totals_.wallFrames++ == 0) totals_.firstNs = nowNs;
     totals_.latestNs = nowNs;
+}
+
+ClientProgress FrameTracker::progressOf(uint32_t id) const {
+    const std::lock_guard lock(mutex_);
+    const auto found = clients_.find(id);
+    return found == clients_.end() ? ClientProgress{} : ClientProgress{found->second.finished, found->second.calls};
 }
 
 FrameTotals FrameTracker::totals() const {

@@ -15,6 +15,12 @@
 
 namespace mural {
 
+// How far one program is.
+struct ClientProgress {
+    uint32_t finished = 0; // frames, by all living nodes
+    uint64_t calls = 0;    // up to there, as the node that is ahead says
+};
+
 struct FrameTotals {
     int64_t wallFrames = 0;  // frames of the main window, over changes of that window
     int64_t firstNs = 0;     // when the first and the latest of them were finished
@@ -39,6 +45,7 @@ public:
     void pictureHeld(uint32_t client, uint32_t frame);
     void pictureReleased(uint32_t client, uint32_t frame);
 
+    [[nodiscard]] ClientProgress progressOf(uint32_t client) const;
     [[nodiscard]] FrameTotals totals() const;
     [[nodiscard]] int64_t framesOf(int node) const; // messages of this node
 
@@ -58,6 +65,7 @@ private:
         std::map<uint32_t, Window> windows; // of frames that not all have finished
         std::multiset<uint32_t> held;
         uint32_t finished = 0; // by all living nodes
+        uint64_t calls = 0;
         uint32_t credited = 0; // what the program was last told of finished
         uint32_t shown = 0;
     };

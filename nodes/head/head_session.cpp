@@ -109,7 +109,7 @@ Result<void> HeadSession::bringUp() {
         nodes_.sendSetup(plan.node, toJson(setupOf(config_, plan_, plan)));
     if (auto ready = awaitReady(); !ready) return ready;
     openTables();
-    auto server = CaptureServer::start(config_.session, options_.registryDigest, *programs_);
+    auto server = CaptureServer::start(config_.session, options_.registryDigest, *programs_, [this] { return statusOf(status()).dump(); });
     if (!server) return server.error();
     server_ = std::move(*server);
     announceReady();
@@ -427,6 +427,29 @@ bool HeadSession::allReadersEnded() {
     for (int node = 0; node < nodeCount_; ++node)
         if (!nodes_.link(node).readerEnded()) return false;
     return true;
+}
+
+SessionStatus HeadSession::status() {
+    SessionStatus result;
+    result.session = config_.session;
+    result.runPid = getppid();
+    result.headPid = getpid();
+    result.nowNs = monotonicNowNs();
+    result.columns = config_.columns;
+    result.rows = config_.rows;
+    result.display = nameOf(config_.display);
+    result.wallFrames = frames_.totals().wallFrames;
+    result.programs = programs_->status();
+    for (ProgramStatus& program : result.programs) program.progress = frames_.progressOf(program.id);
+    const std::lock_guard lock(mutex_);
+    for (size_t i = 0; i < facts_.size(); ++i) {
+        NodeLink& link = nodes_.link(static_cast<int>(i));
+        NodeStatus node{totals_[i], link.place().where, facts_[i].pid, facts_[i].renderer, 0};
+        node.totals.frames = frames_.framesOf(node.totals.node);
+        node.silentSeconds = static_cast<double>(link.silentNs(result.nowNs)) / static_cast<double>(kNsPerS);
+        result.nodes.push_back(std::move(node));
+    }
+    return result;
 }
 
 SessionNumbers HeadSession::numbers() {

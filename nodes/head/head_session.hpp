@@ -26,6 +26,7 @@
 #include "nodes/head/picture_output.hpp"
 #include "nodes/head/program_table.hpp"
 #include "nodes/head/session_report.hpp"
+#include "nodes/head/session_status.hpp"
 #include "nodes/session/session_config.hpp"
 
 namespace mural {
@@ -88,6 +89,7 @@ private:
     void loseSilentNodes(int64_t sinceNs, bool all);
     bool allReadersEnded();
     SessionNumbers numbers();
+    SessionStatus status();
     void noNodeIsLeft();
 
     const SessionConfig config_;

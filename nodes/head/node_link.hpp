@@ -2,6 +2,7 @@
 // knowledge whether it lives.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <functional>
 #include <memory>
@@ -67,6 +68,8 @@ public:
     [[nodiscard]] int64_t lastProgressNs(int64_t nowNs) const {
         return handlingSinceNs_ != 0 ? nowNs : lastMessageNs_.load();
     }
+    // Since when nothing has come from it.
+    [[nodiscard]] int64_t silentNs(int64_t nowNs) const { return nowNs - std::min(nowNs, heardNs_.load()); }
     [[nodiscard]] const NodePlace& place() const { return place_; }
     [[nodiscard]] NodeProcess* process() { return process_.get(); }
     [[nodiscard]] std::string describe() const; // "node 2 (local, pid 77)"

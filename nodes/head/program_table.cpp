@@ -156,6 +156,21 @@ CaptureCounts ProgramTable::counts() const {
     return sum;
 }
 
+std::vector<ProgramStatus> ProgramTable::status() const {
+    std::vector<ProgramStatus> result;
+    for (const auto& client : all()) {
+        ProgramStatus program;
+        program.id = client->id();
+        program.pid = client->pid();
+        program.command = commandLineOf(client->pid());
+        if (program.command.empty()) program.command = client->name();
+        program.bytesSent = client->bytesSent();
+        program.counts = client->memory().counts();
+        result.push_back(std::move(program));
+    }
+    return result;
+}
+
 std::shared_ptr<CaptureClient> ProgramTable::find(uint32_t id) const {
     const std::lock_guard lock(mutex_);
     const auto found = clients_.find(id);
@@ -181,7 +196,10 @@ void ProgramTable::addCounts(CaptureCounts& sum, const CaptureCounts& counts) {
     sum.largestDifference = std::max(sum.largestDifference, counts.largestDifference);
     sum.callsUnsupported += counts.callsUnsupported;
     sum.roundTrips += counts.roundTrips;
-    sum.waitNs += counts.waitNs;
+    for (size_t i = 0; i < counts.waitNs.size(); ++i) sum.waitNs[i] += counts.waitNs[i];
+    for (const auto& [command, trips] : counts.tripsBy) sum.tripsBy[command] += trips;
+    sum.frameCpuNs += counts.frameCpuNs;
+    sum.frameCpuFrames += counts.frameCpuFrames;
 }
 
 } // namespace mural

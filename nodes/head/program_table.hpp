@@ -14,6 +14,7 @@
 
 #include "nodes/head/capture_client.hpp"
 #include "nodes/head/capture_server.hpp"
+#include "nodes/head/session_status.hpp"
 
 namespace mural {
 
@@ -51,6 +52,7 @@ public:
     void endAll();  // tells them and joins all; the nodes must not hold a pump up any more
 
     [[nodiscard]] CaptureCounts counts() const; // over all programs, past and present
+    [[nodiscard]] std::vector<ProgramStatus> status() const; // of those that are there, but for their frames
 
 private:
     using Clients = std::map<uint32_t, std::shared_ptr<CaptureClient>>;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "common/clock.hpp"
 
@@ -21,6 +22,24 @@ void readBye(const std::string& text, NodeTotals& totals) {
     if (commands != json.end() && commands->is_number_integer()) totals.commands = commands->get<int64_t>();
     const auto seconds = json.find("cpuSeconds");
     if (seconds != json.end() && seconds->is_number()) totals.cpuSeconds = seconds->get<double>();
+}
+
+std::string waitName(capture::Wait wait) {
+    switch (wait) {
+    case capture::Wait::Room: return "room";
+    case capture::Wait::Frames: return "frames";
+    case capture::Wait::Answer: return "answer";
+    case capture::Wait::Window: return "window";
+    case capture::Wait::Nothing: break;
+    }
+    return "nothing";
+}
+
+Json waitSecondsOf(const CaptureCounts& counts) {
+    Json seconds = Json::object();
+    for (uint32_t i = 1; i < capture::kWaits; ++i)
+        seconds[waitName(static_cast<capture::Wait>(i))] = secondsOf(static_cast<int64_t>(counts.waitNs[i]));
+    return seconds;
 }
 
 Json reportOf(const SessionNumbers& n) {
@@ -47,7 +66,11 @@ Json reportOf(const SessionNumbers& n) {
         {"bytesPerFrame", frames > 0 ? n.bytesSent / static_cast<uint64_t>(frames) : 0},
         {"calls", calls},
         {"roundTrips", n.programs.roundTrips},
-        {"waitSeconds", secondsOf(static_cast<int64_t>(n.programs.waitNs))},
+        {"roundTripsBy", n.programs.tripsBy},
+        {"waitSeconds", secondsOf(std::accumulate(n.programs.waitNs.begin(), n.programs.waitNs.end(), int64_t{0}))},
+        {"waitSecondsBy", waitSecondsOf(n.programs)},
+        {"frameCpuSeconds", secondsOf(static_cast<int64_t>(n.programs.frameCpuNs))},
+        {"frameCpuFrames", n.programs.frameCpuFrames},
         {"verifiedFrames", n.programs.verifiedFrames},
         {"verifiedPixels", n.programs.verifiedPixels},
         {"differingPixels", n.programs.differingPixels},

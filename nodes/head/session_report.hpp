@@ -37,6 +37,10 @@ struct SessionNumbers {
 
 nlohmann::json reportOf(const SessionNumbers& numbers);
 
+// "room", "frames", "answer", "window", "nothing".
+std::string waitName(capture::Wait wait);
+nlohmann::json waitSecondsOf(const CaptureCounts& counts); // {"room": 0.5, …}
+
 // Frames per second and bytes per frame of the last second or so. One thread.
 class ProgressMeter {
 public:

@@ -4,11 +4,13 @@
 #include <cstring>
 #include <ctime>
 #include <iostream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "common/clock.hpp"
 #include "nodes/gl/gl_probe.hpp"
 #include "nodes/node/head_line.hpp"
 #include "nodes/node/heartbeat.hpp"
@@ -22,11 +24,7 @@ namespace mural {
 
 namespace {
 
-uint64_t threadCpuNs() {
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return static_cast<uint64_t>(t.tv_sec) * 1'000'000'000u + static_cast<uint64_t>(t.tv_nsec);
-}
+uint64_t threadCpuNs() { return static_cast<uint64_t>(threadCpuNowNs()); }
 
 double processCpuSeconds() {
     rusage r{};
@@ -68,8 +66,13 @@ public:
 private:
     bool take(const wire::PacketHeader& header, std::span<const std::byte> payload) {
         if (header.stream == 0) return headCommand(payload);
-        if (replay_ && !replay_->packet(header.stream, payload))
+        if (!replay_) return true;
+        callsBefore_ = replay_->counts().commands;
+        clientInHand_ = wire::clientOf(header.stream);
+        if (!replay_->packet(header.stream, payload))
             line_->sendText(wire::NodeMessage::Log, "a broken packet of a program's stream was dropped");
+        calls_[clientInHand_] += replay_->counts().commands - callsBefore_;
+        callsBefore_ = replay_->counts().commands;
         return true;
     }
 
@@ -84,6 +87,7 @@ private:
             uint32_t client = 0;
             if (rest.size() < 4) return false;
             std::memcpy(&client, rest.data(), 4);
+            calls_.erase(client);
             if (replay_) replay_->clientGone(client);
             if (windows_) windows_->clientGone(client);
             return true;
@@ -179,6 +183,7 @@ private:
         done.replayNs = replayedNs - lastCpuNs_;
         lastCpuNs_ = threadCpuNs();
         done.readbackNs = lastCpuNs_ - replayedNs;
+        done.calls = calls_[f.client] + (f.client == clientInHand_ ? replay_->counts().commands - callsBefore_ : 0);
         line_->send(wire::NodeMessage::FrameDone, std::as_bytes(std::span(&done, 1)));
     }
 
@@ -228,6 +233,9 @@ private:
     std::unique_ptr<TileWindows> windows_;
     std::unique_ptr<Replay> replay_;
     uint64_t lastCpuNs_ = 0;
+    std::map<uint32_t, uint64_t> calls_; // by client, of packets that are done with
+    uint32_t clientInHand_ = 0;          // whose packet was taken last…
+    uint64_t callsBefore_ = 0;           // …and the records of all clients before it
     bool finished_ = false;
 };
 

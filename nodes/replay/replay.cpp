@@ -94,6 +94,7 @@ bool Replay::planted(uint16_t opcode) {
 #ifdef __SANITIZE_ADDRESS__
     if (config_.plant == "overflow") readPastEnd(counts_.frames + 8);
 #endif
+    if (config_.plant == "leak") return opcode == op::glDeleteTextures;
     if (config_.plant == "drop") return draws && counts_.frames == 1;
     if (config_.plant != "opcode" || !draws || counts_.frames == 0) return false;
     if (gl.glDepthFunc) gl.glDepthFunc(GL_NEVER); // as if one argument of the program's had been another

@@ -178,6 +178,12 @@ template <class Config> Result<Config> read(const std::string& line, const std::
 
 } // namespace
 
+const char* nameOf(Display display) {
+    for (const auto& [value, name] : EnumNames<Display>::kAll)
+        if (value == display) return name;
+    return "none";
+}
+
 std::string toJson(const SessionConfig& config) { return write(config); }
 
 Result<SessionConfig> sessionConfigFromJson(const std::string& line) {

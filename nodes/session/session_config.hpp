@@ -39,6 +39,8 @@ struct SessionConfig {
     std::string displayName;      // X display of the wall windows and of the app's window
 };
 
+const char* nameOf(Display display);
+
 std::string toJson(const SessionConfig& config); // one line
 Result<SessionConfig> sessionConfigFromJson(const std::string& line);
 

@@ -149,6 +149,7 @@ private:
         done.frame = frame;
         done.width = a[2];
         done.height = a[3];
+        done.calls = 7 * frame;
         done.flags = behaviour_.drawsWhole ? wire::kDrawnWhole : 0;
         sendStruct(wire::NodeMessage::FrameDone, done, {});
         return true;

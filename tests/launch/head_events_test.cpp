@@ -37,11 +37,18 @@ TEST(Report, saysWhatDiffersAndWhoWasLost) {
                               R"("verifiedPixels":70778880,"differingPixels":3,"largestDifference":2,"savedPictures":1,"lastPicture":"out/a.png",)"
                               R"("callsUnsupported":1,"nodes":[{"node":0,"frames":90},{"node":1,"frames":12,"lost":true}]})");
     EXPECT_EQ(reportLines(e.report), (std::vector<std::string>{
-                                         "90 frames in 1.5 s, 60.0 frames/s, 12.3 kB per frame to each node",
+                                         "90 frames in 1.5 s, 60.0 frames/s, 12.3 kB per frame to each node, 0 round trips",
                                          "verified 90 frames, 70778880 pixels: 3 differ, by up to 2 of 255",
                                          "saved 1 picture, the last in out/a.png",
                                          "1 call of commands that Mural does not carry yet; see mural list-commands --unsupported",
                                          "node 1 was lost after 12 frames"}));
+}
+
+TEST(Report, saysWhichCommandsCauseRoundTrips) {
+    const HeadEvent e = event(R"({"event":"report","frames":10,"seconds":1,"framesPerSecond":9,"bytesPerFrame":1,"roundTrips":5,)"
+                              R"("roundTripsBy":{"glGetQueryObjectuiv":1,"glReadPixels":4,"odd":"x"}})");
+    EXPECT_EQ(reportLines(e.report).front(), "10 frames in 1.0 s, 9.0 frames/s, 1 B per frame to each node, "
+                                             "5 round trips (0.50 per frame: glReadPixels 4, glGetQueryObjectuiv 1)");
 }
 
 TEST(Report, sizesHaveThreeDigits) {

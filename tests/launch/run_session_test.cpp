@@ -49,7 +49,7 @@ protected:
 TEST_F(RunSession, exitStatusIsTheProgramsAndTheReportIsTold) {
     const Outcome o = run("ok", "exit 7");
     EXPECT_EQ(o.status, 7);
-    EXPECT_EQ(o.words, "mural: 3 frames in 1.0 s, 3.0 frames/s, 0 B per frame to each node\n");
+    EXPECT_EQ(o.words, "mural: 3 frames in 1.0 s, 3.0 frames/s, 0 B per frame to each node, 0 round trips\n");
     EXPECT_EQ(run("ok", "kill -ABRT $$").status, 134);
     expectNobodyLeft();
 }

@@ -20,7 +20,7 @@ def _fields(stat):
     return stat[stat.rfind(b")") + 2:].split()
 
 
-def _descendants(root):
+def descendants(root):
     """pid → fields of its stat file, of root's descendants."""
     children, stats = {}, {}
     for entry in os.listdir("/proc"):
@@ -66,7 +66,7 @@ class CpuTimes:
 
     def _sample(self):
         moment = time.monotonic()
-        for pid, fields in _descendants(self.root).items():
+        for pid, fields in descendants(self.root).items():
             if fields[0] == b"Z":
                 continue
             words = _read("/proc/%d/cmdline" % pid).split(b"\0")[:-1]

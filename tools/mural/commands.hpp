@@ -11,6 +11,12 @@ namespace mural::cli {
 int runCommand(const RunOptions& options);
 int doctorCommand(bool asJson);
 int listCommandsCommand(bool onlyUnsupported);
+
+struct StatOptions {
+    bool asJson = false;
+    double watchSeconds = 0; // 0: once
+};
+int statCommand(const StatOptions& options);
 int versionCommand();
 
 // In a child of doctor, with the environment of a captured program: has the library come along?

@@ -22,6 +22,15 @@ std::string sizeText(double sizeBytes) {
     return fmt::format("{:.2f} GB", sizeBytes / 1e9);
 }
 
+std::string roundTripText(const std::map<std::string, int64_t>& countsBy) {
+    std::vector<std::pair<int64_t, std::string>> order;
+    for (const auto& [command, count] : countsBy) order.emplace_back(-count, command);
+    std::sort(order.begin(), order.end());
+    std::string text;
+    for (const auto& [negative, command] : order) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", command, -negative);
+    return text;
+}
+
 Console::Console(bool quiet)
     : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1), nextLine_(Deadline::inMs(terminal_ ? 0 : kLogMs)) {}
 
@@ -49,8 +58,11 @@ void Console::progress(int64_t frame, double framesPerSecond, double bytesPerFra
 
 std::vector<std::string> reportLines(const SessionReport& r) {
     std::vector<std::string> lines;
-    lines.push_back(fmt::format("{} frame{} in {:.1f} s, {:.1f} frames/s, {} per frame to each node", r.frames, plural(r.frames),
-                                r.seconds, r.framesPerSecond, sizeText(r.bytesPerFrame)));
+    std::string first = fmt::format("{} frame{} in {:.1f} s, {:.1f} frames/s, {} per frame to each node, {} round trip{}", r.frames, plural(r.frames),
+                                    r.seconds, r.framesPerSecond, sizeText(r.bytesPerFrame), r.roundTrips, plural(r.roundTrips));
+    if (r.roundTrips > 0 && r.frames > 0)
+        first += fmt::format(" ({:.2f} per frame: {})", static_cast<double>(r.roundTrips) / static_cast<double>(r.frames), roundTripText(r.roundTripsBy));
+    lines.push_back(first);
     if (r.verifiedFrames > 0) {
         std::string line = fmt::format("verified {} frame{}, {} pixels: {} differ", r.verifiedFrames, plural(r.verifiedFrames), r.verifiedPixels, r.differingPixels);
         if (r.differingPixels > 0) line += fmt::format(", by up to {} of 255", r.largestDifference);

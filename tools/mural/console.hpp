@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,9 @@ private:
 
 // The report's lines, in words.
 std::vector<std::string> reportLines(const SessionReport& report);
+
+// "glReadPixels 3, glGetQueryObjectuiv 2", the most frequent first; of counts by command.
+std::string roundTripText(const std::map<std::string, int64_t>& countsBy);
 
 // "812 B", "12.3 kB", "4.56 MB": powers of ten.
 std::string sizeText(double sizeBytes);

@@ -45,6 +45,11 @@ SessionReport reportFrom(const Json& j) {
     r.framesPerSecond = real(j, "framesPerSecond");
     r.bytesPerFrame = real(j, "bytesPerFrame");
     r.callsUnsupported = whole(j, "callsUnsupported");
+    r.roundTrips = whole(j, "roundTrips");
+    if (const auto by = j.find("roundTripsBy"); by != j.end() && by->is_object()) {
+        for (const auto& [command, count] : by->items())
+            if (count.is_number()) r.roundTripsBy[command] = count.get<int64_t>();
+    }
     r.verifiedFrames = whole(j, "verifiedFrames");
     r.verifiedPixels = whole(j, "verifiedPixels");
     r.differingPixels = whole(j, "differingPixels");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,8 @@ struct SessionReport {
     double framesPerSecond = 0;
     double bytesPerFrame = 0;
     int64_t callsUnsupported = 0;
+    int64_t roundTrips = 0;
+    std::map<std::string, int64_t> roundTripsBy; // command → how many it caused
     int64_t verifiedFrames = 0;
     int64_t verifiedPixels = 0;
     int64_t differingPixels = 0;

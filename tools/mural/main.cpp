@@ -72,7 +72,7 @@ class CommandLine {
 public:
     CommandLine() {
         app_.formatter(std::make_shared<HelpFormatter>());
-        app_.footer("mural COMMAND --help says more about each.\n\nExamples:\n  mural run --tiles 2x2 -- glxgears\n  mural doctor");
+        app_.footer("mural COMMAND --help says more about each.\n\nExamples:\n  mural run --tiles 2x2 -- glxgears\n  mural stat\n  mural doctor");
         addRun();
         addProcesses();
         addTools();
@@ -151,6 +151,12 @@ private:
         CLI::App& doctor = add("doctor", "look at what Mural needs on this machine", [this] { return mural::cli::doctorCommand(asJson_); },
                                "Examples:\n  mural doctor\n  mural doctor --json\n\nEach line is ok, warn or bad, with what to do.\nExit status: 0 when Mural can be used, 1 when something that it needs is missing.");
         doctor.add_flag("--json", asJson_, "for programs");
+        CLI::App& stat = add("stat", "look at the sessions that run: programs, frames, round trips, nodes", [this] { return mural::cli::statCommand(stat_); },
+                             "Examples:\n  mural stat                 one look, over a second\n  mural stat --watch 5       again every 5 seconds, until Ctrl-C\n  mural stat --json          for programs\n\n"
+                             "A round trip is a question that only the render nodes can answer (glReadPixels, results of queries): the program\nstands still for it.\n"
+                             "Exit status: 0, or 1 when no session of yours runs on this machine.");
+        stat.add_flag("--json", stat_.asJson, "one line of JSON for each look");
+        stat.add_option("--watch", stat_.watchSeconds, "look again and again, so many seconds apart")->type_name("SECONDS")->check(CLI::Range(0.1, 3600.0));
         CLI::App& list = add("list-commands", "list the GL, GLX and EGL commands and what becomes of them", [this] { return mural::cli::listCommandsCommand(onlyUnsupported_); },
                              "Examples:\n  mural list-commands\n  mural list-commands --unsupported\n\nOne command per line: name, class, and the reason when it is not carried.\nExit status: 0.");
         list.add_flag("--unsupported", onlyUnsupported_, "only those that are not carried");
@@ -166,6 +172,7 @@ private:
     int controlFd_ = -1;
     bool asJson_ = false;
     bool onlyUnsupported_ = false;
+    mural::cli::StatOptions stat_;
     std::function<int()> action_;
 };
 

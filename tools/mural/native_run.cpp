@@ -1,4 +1,4 @@
-// `mural run --native`: the interposer only counts frames and writes "frames seconds" into a file.
+// `mural run --native`: the interposer only counts frames and writes what it has counted into a file.
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -32,6 +32,8 @@ public:
     struct Count {
         int64_t frames = 0;
         double seconds = 0;
+        double cpuSeconds = 0;
+        int64_t cpuFrames = 0;
     };
     // The last complete line.
     [[nodiscard]] std::optional<Count> read() const {
@@ -45,9 +47,10 @@ public:
         for (const char* line = text; line != nullptr;) {
             const char* end = std::strchr(line, '\n');
             Count count;
-            long long frames = 0;
-            if (end != nullptr && std::sscanf(line, "%lld %lf", &frames, &count.seconds) == 2) {
+            long long frames = 0, cpuFrames = 0;
+            if (end != nullptr && std::sscanf(line, "%lld %lf %lf %lld", &frames, &count.seconds, &count.cpuSeconds, &cpuFrames) == 4) {
                 count.frames = frames;
+                count.cpuFrames = cpuFrames;
                 last = count;
             }
             line = end != nullptr ? end + 1 : nullptr;
@@ -67,7 +70,7 @@ void tell(const std::optional<NativeReport::Count>& count, const PreparedRun& ru
     // n pictures have n − 1 intervals between them.
     const double rate = count->seconds > 0 ? static_cast<double>(count->frames - 1) / count->seconds : 0.0;
     console.say(fmt::format("native: {} frames in {:.1f} s, {:.1f} frames/s", count->frames, count->seconds, rate));
-    writeReport(run, fmt::format(R"({{"event":"report","native":true,"frames":{},"seconds":{:.6f},"framesPerSecond":{:.3f}}})", count->frames, count->seconds, rate), console);
+    writeReport(run, fmt::format(R"({{"event":"report","native":true,"frames":{},"seconds":{:.6f},"framesPerSecond":{:.3f},"frameCpuSeconds":{:.6f},"frameCpuFrames":{}}})", count->frames, count->seconds, rate, count->cpuSeconds, count->cpuFrames), console);
 }
 
 // True when as many frames as asked for have been seen.

@@ -1,0 +1,51 @@
+// The state of a running session, for `mural stat`: totals and the moment they hold for. Whoever wants rates
+// asks twice.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <sys/types.h>
+#include <vector>
+
+#include "nodes/head/capture_memory.hpp"
+#include "nodes/head/frame_tracker.hpp"
+#include "nodes/head/session_report.hpp"
+
+namespace mural {
+
+struct ProgramStatus {
+    uint32_t id = 0;
+    pid_t pid = 0;
+    std::string command;
+    ClientProgress progress;
+    uint64_t bytesSent = 0; // to each node
+    CaptureCounts counts;
+};
+
+struct NodeStatus {
+    NodeTotals totals;
+    std::string where; // "local", or the host
+    int64_t pid = 0;
+    std::string gl;
+    double silentSeconds = 0; // since anything came from it
+};
+
+struct SessionStatus {
+    std::string session;
+    int64_t runPid = 0;
+    int64_t headPid = 0;
+    int64_t nowNs = 0;
+    int columns = 1, rows = 1;
+    std::string display; // app, windows, none
+    int64_t wallFrames = 0;
+    std::vector<ProgramStatus> programs;
+    std::vector<NodeStatus> nodes;
+};
+
+nlohmann::json statusOf(const SessionStatus& status);
+
+// A process's command line, its words separated by spaces; what is not printable is "?". Empty: it is gone.
+std::string commandLineOf(pid_t pid);
+
+} // namespace mural

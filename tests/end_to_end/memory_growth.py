@@ -1,0 +1,58 @@
+#!/usr/bin/env python3
+"""Nothing grows while a program makes and deletes objects of every kind in each frame: neither the program, nor the
+head, nor a render node, beyond what the program grows by natively. Then a node forgets to delete textures
+(MURAL_PLANT=leak): that must be found. tools/bench/memory shows the same over more frames.
+
+  memory_growth.py --build build/release
+"""
+
+import argparse
+import os
+import sys
+
+sys.dont_write_bytecode = True
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.append(os.path.join(os.path.dirname(os.path.dirname(HERE)), "tools", "bench"))
+
+import display  # noqa: E402
+import programs  # noqa: E402
+from memory_watch import MemoryWatch  # noqa: E402
+
+MARKS = (150, 450)
+MOST_GROWTH_MIB = 8.0  # heaps settle; a forgotten texture of each frame makes 19
+
+
+def growth(seen, role):
+    private = [max(memory["Private"] for memory in seen[mark][role]) for mark in MARKS]
+    return private[1] - private[0]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", default="build/release")
+    parser.add_argument("--mural")
+    arguments = parser.parse_args()
+    build = os.path.abspath(arguments.build)
+    mural = arguments.mural or os.path.join(build, "bin", "mural")
+    program = [os.path.join(build, "tests", "programs", "object_churn"), "--frames", "100000", "--size", "96x96"]
+    wall = ["--tiles", "2x1", "--display", "none"]
+    wrong = 0
+    with display.PrivateDisplay() as name:
+        environment = programs.clean_environment(name)
+        native = max(0.0, growth(MemoryWatch(mural, environment).run(["--native"], program, MARKS), "app"))
+        print("native: the program grows by %.1f MiB from frame %d to %d" % (native, *MARKS))
+        sound = MemoryWatch(mural, environment).run(wall, program, MARKS)
+        for role in ("app", "head", "node"):
+            grown = growth(sound, role)
+            right = grown <= native + MOST_GROWTH_MIB
+            wrong += not right
+            print("%-5s grows by %.1f MiB: %s" % (role, grown, "right" if right else "WRONG"))
+        leaky = growth(MemoryWatch(mural, {**environment, "MURAL_PLANT": "leak"}).run(wall, program, MARKS), "node")
+        right = leaky > native + MOST_GROWTH_MIB
+        wrong += not right
+        print("node that forgets textures grows by %.1f MiB: %s" % (leaky, "found" if right else "MISSED"))
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,70 @@
+#include "tools/mural/session_rates.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tools/mural/running_sessions.hpp"
+
+namespace mural::cli {
+namespace {
+
+using Json = nlohmann::json;
+
+Json look(double atSeconds, int frames, int calls, int bytes, int trips, double framesWait) {
+    return {{"session", "mural-7-0123456789abcdef"}, {"runPid", 7}, {"headPid", 8}, {"atSeconds", atSeconds}, {"tiles", "2x1"}, {"display", "app"}, {"frames", frames},
+            {"programs", {{{"client", 1}, {"pid", 9}, {"command", "glxgears -info"}, {"frames", frames}, {"calls", calls}, {"bytes", bytes}, {"roundTrips", trips},
+                           {"roundTripsBy", {{"glReadPixels", trips}}}, {"waitSeconds", {{"frames", framesWait}, {"room", 0.0}}}, {"waitingFor", "frames"}}}},
+            {"nodes", {{{"node", 0}, {"where", "local"}, {"pid", 10}, {"gl", "llvmpipe"}, {"state", "alive"}, {"silentSeconds", 0.1}, {"frames", frames},
+                        {"replaySeconds", atSeconds / 4}, {"readbackSeconds", 0.0}},
+                       {{"node", 1}, {"where", "wall2"}, {"pid", 11}, {"gl", "llvmpipe"}, {"state", "lost"}, {"frames", 3}}}}};
+}
+
+TEST(SessionRates, comeFromTheDifferenceOfTwoLooks) {
+    const auto both = withRates({look(10, 100, 1000, 5000, 4, 1.0)}, {look(12, 150, 2000, 105000, 29, 2.5)});
+    const Json& recent = both[0]["programs"][0]["recent"];
+    EXPECT_DOUBLE_EQ(recent["framesPerSecond"].get<double>(), 25);
+    EXPECT_DOUBLE_EQ(recent["callsPerFrame"].get<double>(), 20);
+    EXPECT_DOUBLE_EQ(recent["bytesPerFrame"].get<double>(), 2000);
+    EXPECT_DOUBLE_EQ(recent["roundTripsPerFrame"].get<double>(), 0.5);
+    EXPECT_DOUBLE_EQ(recent["waitShares"]["frames"].get<double>(), 0.75);
+    EXPECT_DOUBLE_EQ(both[0]["nodes"][0]["recent"]["busyShare"].get<double>(), 0.25);
+    EXPECT_EQ(statLines(both[0]), (std::vector<std::string>{
+                                      "session 7  2x1 tiles, display app, 150 frames on the wall; head 8",
+                                      "  program 9  glxgears -info",
+                                      "    150 frames, 25.0 frames/s, 20 calls and 2.0 kB per frame",
+                                      "    0.50 round trips per frame, 29 in all: glReadPixels 29",
+                                      "    waits 75 % of the time for the nodes to finish frames",
+                                      "  node 0  local, pid 10, llvmpipe: 150 frames, busy 25 %",
+                                      "  node 1  wall2, pid 11, llvmpipe: lost"}));
+}
+
+TEST(SessionRates, ofWhatStoodStillOrIsNewAreLeftOut) {
+    const auto still = withRates({look(10, 100, 1000, 5000, 0, 1.0)}, {look(11, 100, 1000, 5000, 0, 1.0)});
+    EXPECT_EQ(still[0]["programs"][0]["recent"].count("callsPerFrame"), 0u);
+    EXPECT_DOUBLE_EQ(still[0]["programs"][0]["recent"]["framesPerSecond"].get<double>(), 0);
+    const auto fresh = withRates({}, {look(11, 100, 1000, 5000, 0, 1.0)});
+    EXPECT_EQ(fresh[0]["programs"][0].count("recent"), 0u);
+    EXPECT_EQ(statLines(fresh[0])[3], "    0 in all: glReadPixels 0");
+}
+
+TEST(SessionRates, statesThatMakeNoSenseDoNoHarm) {
+    for (const char* text : {"{}", R"({"programs":[{}],"nodes":[{}]})", R"({"programs":7,"nodes":"x","atSeconds":[]})",
+                             R"({"programs":[1,null],"nodes":[[]]})", R"({"programs":[{"waitSeconds":{"frames":"x"},"client":1}],"nodes":[]})"}) {
+        const Json odd = Json::parse(text);
+        EXPECT_GE(statLines(withRates({odd}, {odd})[0]).size(), 1u) << text;
+    }
+}
+
+TEST(RunningSessions, areFoundByTheNamesOfTheirSockets) {
+    const std::string sockets = "Num       RefCount Protocol Flags    Type St Inode Path\n"
+                                "0000000000000000: 00000002 00000000 00010000 0001 01 411 @mural-123-00ff00ff00ff00ff\n"
+                                "0000000000000000: 00000003 00000000 00000000 0001 03 412 @mural-123-00ff00ff00ff00ff\n"
+                                "0000000000000000: 00000002 00000000 00010000 0001 01 413 @mural-test-123-1\n"
+                                "0000000000000000: 00000002 00000000 00010000 0001 01 414 /tmp/mural-9-00ff00ff00ff00ff\n"
+                                "0000000000000000: 00000002 00000000 00010000 0001 01 415 @mural-45-0123456789abcdef\n"
+                                "0000000000000000: 00000003 00000000 00000000 0002 01 416\n";
+    EXPECT_EQ(sessionNamesIn(sockets), (std::vector<std::string>{"mural-123-00ff00ff00ff00ff", "mural-45-0123456789abcdef"}));
+}
+
+} // namespace
+} // namespace mural::cli
