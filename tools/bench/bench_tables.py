@@ -21,7 +21,7 @@ def _slowest_node_ms(report, field):
     return _per_frame_ms(report, max(values)) if values else None
 
 
-def _print_table(title, heads, rows):
+def table(title, heads, rows):
     print("\n" + title)
     widths = [max(len(row[i]) for row in [heads] + rows) for i in range(len(heads))]
     for row in [heads] + rows:
@@ -70,11 +70,24 @@ def _pixel_line(measured):
 def show(results, calls, cores):
     print("%d cores; medians; walls: tiles drawn by as many nodes (at most 4), all on this machine" % cores)
     if results:
-        _print_table("frames per second; bytes to each node, what the program sends at its start shared out over the frames", ["program", "wall", "frames/s", "range", "of native", "bytes/frame"], _rate_rows(results))
-        _print_table("ms per frame (CPU: app and head whole processes, nodes their sum; replay and readback: the replay thread's CPU in the node that needs most)",
+        table("frames per second; bytes to each node, what the program sends at its start shared out over the frames", ["program", "wall", "frames/s", "range", "of native", "bytes/frame"], _rate_rows(results))
+        table("ms per frame (CPU: app and head whole processes, nodes their sum; replay and readback: the replay thread's CPU in the node that needs most)",
                      ["program", "wall", "elapsed", "app main thread CPU", "app CPU", "app blocked", "head CPU", "nodes CPU", "replay", "readback"],
                      _time_rows(results))
-        _print_table("pixels against native", ["program", "wall", "frames", "compared", "differ"], [_pixel_line(m) for m in results])
+        table("pixels against native", ["program", "wall", "frames", "compared", "differ"], [_pixel_line(m) for m in results])
     if calls:
-        rows = [[c["name"], "%.0f B" % c["bytes"], "%.1f" % c["nativeNs"], "%.1f" % c["muralNs"], "%+.1f" % c["overNs"], "%.1f" % c["copyNs"]] for c in calls]
-        _print_table("ns of the app's thread per call (CPU time)", ["call", "size", "direct", "mural", "over a direct call", "copy of as many bytes"], rows)
+        show_calls(calls)
+
+
+def show_calls(calls):
+    rows = [[c["name"], "%.0f B" % c["bytes"], "%.1f" % c["nativeNs"], "%.1f" % c["muralNs"], "%+.1f" % c["overNs"], "%.1f" % c["copyNs"],
+             "%.1f" % (c["overNs"] / c["copyNs"]) if c["copyNs"] > 0 else ""] for c in calls]
+    table("ns of the app's thread per call (CPU time)", ["call", "size", "direct", "mural", "over a direct call", "copy of as many bytes", "over / copy"], rows)
+
+
+def show_sweep(sweep):
+    """sweep: [(steps per frame, rows of measure_calls)]"""
+    rows = []
+    for index, call in enumerate(sweep[0][1]):
+        rows.append([call["name"], "%.0f B" % call["bytes"]] + ["%+.1f" % calls[index]["overNs"] for _, calls in sweep])
+    table("ns over a direct call, by how often the call is made in a frame", ["call", "size"] + ["%d" % steps for steps, _ in sweep], rows)
