@@ -11,7 +11,9 @@
 //
 // At the start every chunk's index lies in the freed ring: the app takes its chunks from there only.
 //
-// Layout of the mapping: CaptureHeader | publications | freed | reply bytes | chunks.
+//   head       → news slots (a ring)   → the app thread that looks first; full: news are lost
+//
+// Layout of the mapping: CaptureHeader | publications | freed | reply bytes | news | chunks.
 #pragma once
 
 #include <atomic>
@@ -21,11 +23,13 @@
 namespace mural::capture {
 
 constexpr uint32_t kMagic = 0x4d55524c; // "MURL"
-constexpr uint32_t kVersion = 3;
+constexpr uint32_t kVersion = 4;
 constexpr uint32_t kChunkBytes = 256 * 1024;
 constexpr uint32_t kDefaultChunks = 256; // 64 MiB
 constexpr uint32_t kReplyBytes = 4 * 1024 * 1024;
 constexpr int kMaxWindows = 256;
+constexpr uint32_t kNewsSlots = 64; // a power of two
+constexpr uint32_t kNewsTextBytes = 480;
 
 // Requests whose answers nobody waits for yet: ids with this bit. Their answers lie in a table, each at its id
 // modulo the table's size, until a later one takes the place.
@@ -64,6 +68,13 @@ struct TripCount {
 };
 constexpr uint32_t kTripCounts = 48; // the last one is for all that find no place
 
+// What a node's GL tells of a context: wire::News and its text.
+struct NewsSlot {
+    std::byte news[32];
+    char text[kNewsTextBytes];
+};
+static_assert(sizeof(NewsSlot) == 512);
+
 struct alignas(64) CaptureHeader {
     uint32_t magic;
     uint32_t version;
@@ -72,6 +83,7 @@ struct alignas(64) CaptureHeader {
     uint64_t publicationsAt;   // offsets in bytes from the start of the mapping
     uint64_t freedAt;
     uint64_t repliesAt;
+    uint64_t newsAt;
     uint64_t chunksAt;
     uint64_t totalBytes;
 
@@ -81,6 +93,9 @@ struct alignas(64) CaptureHeader {
     alignas(64) std::atomic<uint32_t> freedHead;     // app writes
     alignas(64) std::atomic<uint32_t> replyTail;     // head writes, bytes; futex
     alignas(64) std::atomic<uint32_t> replyHead;     // app writes, bytes; futex: head may wait for room
+
+    alignas(64) std::atomic<uint32_t> newsTail;      // head writes
+    alignas(64) std::atomic<uint32_t> newsHead;      // app writes
 
     // Frames that the nodes have finished, over all windows: the credit of the frame latency. futex.
     alignas(64) std::atomic<uint32_t> framesDone;
@@ -117,6 +132,9 @@ inline uint32_t* freed(CaptureHeader* h) {
 }
 inline std::byte* replies(CaptureHeader* h) {
     return reinterpret_cast<std::byte*>(h) + h->repliesAt;
+}
+inline NewsSlot* news(CaptureHeader* h) {
+    return reinterpret_cast<NewsSlot*>(reinterpret_cast<std::byte*>(h) + h->newsAt);
 }
 inline std::byte* chunk(CaptureHeader* h, uint32_t index) {
     return reinterpret_cast<std::byte*>(h) + h->chunksAt + size_t{index} * kChunkBytes;

@@ -1,6 +1,7 @@
 #include "interposer/asking.hpp"
 
 #include "interposer/context.hpp"
+#include "interposer/news.hpp"
 #include "interposer/own_records.hpp"
 #include "interposer/real_gl.hpp"
 #include "interposer/session.hpp"
@@ -24,6 +25,7 @@ template <class Send> bool ask(ThreadState& t, const char* by, void* into, uint6
         ok = s->answerBytes(into, wanted) && s->answerBytes(nullptr, header.sizeBytes - wanted) && !header.failed && header.sizeBytes == sizeBytes;
     }
     s->endRequest();
+    takeNews(t);
     if (!s->alive()) refreshDrawLocally(t);
     return ok;
 }
@@ -31,17 +33,20 @@ template <class Send> bool ask(ThreadState& t, const char* by, void* into, uint6
 } // namespace
 
 GLenum takeError(Context& c) {
-    if (c.stashedError) {
-        const GLenum error = c.stashedError;
-        c.stashedError = 0;
-        return error;
-    }
-    return gReal.glGetError();
+    GLenum error = c.stashedError;
+    c.stashedError = 0;
+    if (error) return error;
+    error = gReal.glGetError();
+    if (error == GL_OUT_OF_MEMORY) ++c.ownOutOfMemory;
+    if (error || !c.outOfMemoryDue) return error;
+    c.outOfMemoryDue = false;
+    return GL_OUT_OF_MEMORY;
 }
 
 GLenum driverError() { return gReal.glGetError(); }
 
 void stashError(Context& c, GLenum error) {
+    if (error == GL_OUT_OF_MEMORY) ++c.ownOutOfMemory;
     if (!c.stashedError) c.stashedError = error; // GL keeps the first
 }
 

@@ -11,6 +11,7 @@
 #include "interposer/drawn_elsewhere.hpp"
 #include "interposer/draw_opcodes.hpp"
 #include "interposer/log.hpp"
+#include "interposer/news.hpp"
 #include "interposer/own_records.hpp"
 #include "interposer/real_gl.hpp"
 #include "interposer/session.hpp"
@@ -97,7 +98,7 @@ void announce(ThreadState& t, Context& c) {
     const Context* sharer = sharerOf(c);
     const records::ContextInfo info{c.id, sharer ? sharer->id : 0, static_cast<uint32_t>(c.api),
                                     static_cast<uint32_t>(c.version / 10), static_cast<uint32_t>(c.version % 10),
-                                    c.profileMask, c.flags, c.config};
+                                    c.profileMask, c.losesOnReset ? c.flags | wire::kLosesOnReset : c.flags, c.config};
     records::createContext(t, info);
     c.announced = true;
 }
@@ -324,6 +325,12 @@ void nativeWindowEnds(uint64_t native) {
     if (any) freeDestroyed(*tThread);
 }
 
+void threadLeaves(ThreadState& t) {
+    if (!t.context) return;
+    records::makeCurrent(t, 0, 0, 0);
+    leaveContext(t);
+}
+
 void becameCurrent(Context* context, Window* draw, Window* read) {
     ThreadState& t = ownThreadState();
     Session* s = Session::get();
@@ -454,6 +461,7 @@ void endFrame(Window* w) {
     s->publish(t, false);
     watchFromHere(t);
     s->waitForCredit(s->welcome().latency);
+    takeNews(t);
     w->sizeKnown = false;
     t.sizeDue = true;
     t.limit = nullptr;

@@ -17,6 +17,7 @@ namespace mural {
 
 struct Window;
 struct MappedBuffer; // interposer/mapped_buffers.cpp
+struct DebugListener; // interposer/news.cpp
 
 // One bit per object name. Names beyond are taken as false.
 class NameBits {
@@ -88,6 +89,11 @@ struct Context {
 
     VertexArrayMirror arrays;
     GLenum stashedError = 0;   // an error that we met while asking, for the program's next glGetError
+    DebugListener* debug = nullptr; // what the program hears, and has heard
+    uint32_t ownOutOfMemory = 0, nodesOutOfMemory = 0; // errors of memory: raised here, told by the nodes
+    bool outOfMemoryDue = false;    // told by a node, not by glGetError yet
+    bool losesOnReset = false;      // the program has asked to be told when the context is lost
+    GLenum resetStatus = 0;         // what a node's driver told, not by glGetGraphicsResetStatus yet
     bool compilingList = false;
     bool drawsList = false;    // and executes it at once
     GLuint compiledList = 0;   // its name
@@ -145,6 +151,8 @@ void nativeWindowEnds(uint64_t native);
 
 // The driver has made `context` current with these drawables (null: none): says so in the stream.
 void becameCurrent(Context* context, Window* draw, Window* read);
+// A thread ends with a context current: it is free for other threads.
+void threadLeaves(ThreadState& t);
 // Asks the window's size and announces a change. Done at the moments at which Mesa gives its buffers
 // a size: when the window is bound first, and at the first drawing after a swap.
 void updateWindowSize(ThreadState& t, Window& w);

@@ -31,12 +31,12 @@ void loadOwnNeeds() {
         "glReadPixels", "glPixelStorei", "glIsFramebuffer", "glIsBuffer", "glBindBuffer", "glBindFramebuffer", "glReadBuffer", "glGetBufferParameteriv",
         "glGetNamedBufferParameteriv", "glGetBufferSubData", "glGetNamedBufferSubData", "glMapBufferRange", "glUnmapBuffer",
         "glGetProgramiv", "glGetActiveUniform", "glGetActiveAttrib", "glGetUniformLocation", "glGetAttribLocation",
-        "glGetTexLevelParameteriv", "glFinish", "glFlush", "glEnable", "glDisable", "glGetVertexAttribiv",
+        "glGetTexLevelParameteriv", "glGetTexImage", "glFinish", "glFlush", "glEnable", "glDisable", "glGetVertexAttribiv",
         "glGetActiveUniformBlockName", "glGetProgramResourceiv", "glGetProgramResourceName", "glGetProgramInterfaceiv",
         "glGetBufferPointerv", "glGetTextureLevelParameteriv", "glGetNamedBufferParameteri64v", "glGetBufferParameteri64v",
         "glBegin", "glEnd", "glClientActiveTexture", "glBufferSubData", "glGetTextureParameteriv", "glGetFramebufferAttachmentParameteriv", "glCallList", "glCallLists",
         "glClear", "glDrawArrays", "glDrawElements", "glMultiDrawArraysIndirect", "glMultiDrawElementsIndirect", "glDispatchCompute", "glGetIntegeri_v",
-        "glDrawTransformFeedbackInstanced", "glDrawTransformFeedbackStreamInstanced", "glClearNamedFramebufferfv"};
+        "glDebugMessageCallback", "glDebugMessageInsert", "glDrawTransformFeedbackInstanced", "glDrawTransformFeedbackStreamInstanced", "glClearNamedFramebufferfv"};
     for (const char* name : kNames) wrapperFor(name);
 }
 

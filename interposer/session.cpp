@@ -379,6 +379,18 @@ bool Session::answerBytes(void* into, uint64_t sizeBytes) {
     return true;
 }
 
+bool Session::takeNews(wire::News& news, char* text) {
+    if (header_->newsTail.load(std::memory_order_acquire) == newsTaken_) return false;
+    const capture::NewsSlot& slot = capture::news(header_)[newsTaken_ % capture::kNewsSlots];
+    std::memcpy(&news, slot.news, sizeof news);
+    if (news.textBytes > capture::kNewsTextBytes) news.textBytes = capture::kNewsTextBytes;
+    std::memcpy(text, slot.text, news.textBytes);
+    text[news.textBytes] = 0;
+    __atomic_store_n(&newsTaken_, newsTaken_ + 1, __ATOMIC_RELAXED);
+    header_->newsHead.store(newsTaken_, std::memory_order_release);
+    return true;
+}
+
 bool Session::answerHeader(uint32_t request, wire::ReplyHeader& header) {
     while (alive()) {
         if (!answerBytes(&header, sizeof header)) return false;

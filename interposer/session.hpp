@@ -48,6 +48,12 @@ public:
     // After each frame of the thread: what it costs the program.
     void countFrameCpu(ThreadState& t);
     uint32_t nextFrame() { return __atomic_add_fetch(&framesSubmitted_, 1, __ATOMIC_RELAXED); }
+    // The nodes have told something that no thread has taken yet.
+    [[nodiscard]] bool newsWaiting() const {
+        return header_ && header_->newsTail.load(std::memory_order_relaxed) != __atomic_load_n(&newsTaken_, __ATOMIC_RELAXED);
+    }
+    // The oldest; false: there is none. text has room for capture::kNewsTextBytes and an end. One thread at a time.
+    bool takeNews(wire::News& news, char* text);
     void die(const char* why);
 
 private:
@@ -63,6 +69,7 @@ private:
     uint32_t framesSubmitted_ = 0; // by all threads
     uint32_t lastRequest_ = 0;
     uint32_t lastAhead_ = 0;
+    uint32_t newsTaken_ = 0;
 };
 
 } // namespace mural

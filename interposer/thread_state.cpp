@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <pthread.h>
 
+#include "interposer/context.hpp"
 #include "interposer/lock.hpp"
 #include "interposer/session.hpp"
 
@@ -19,9 +20,9 @@ pthread_once_t endKeyOnce = PTHREAD_ONCE_INIT;
 // A thread ends: what it encoded is published, its entry waits for the next thread.
 void threadEnded(void* p) {
     auto* t = static_cast<ThreadState*>(p);
+    threadLeaves(*t);
     if (Session* s = Session::current()) s->publish(*t, true);
     t->cursor = t->limit = t->chunkEnd = nullptr;
-    t->context = nullptr;
     t->gone.store(true, std::memory_order_release);
 }
 

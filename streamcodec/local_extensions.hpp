@@ -22,7 +22,6 @@ inline constexpr LocalExtension kLocalWindowExtensions[] = {
     {"EGL_NOK_swap_region2", "parts of pictures are not shown"},
     {"GLX_INTEL_swap_event", "the driver's own swaps do not happen"},
     {"GLX_OML_sync_control", "the driver's own swaps do not happen"},
-    {"GLX_EXT_texture_from_pixmap", "pixmaps of other programs exist on one machine only"},
     {"EGL_KHR_image", "pixmaps of other programs exist on one machine only"},
     {"EGL_KHR_image_pixmap", "pixmaps of other programs exist on one machine only"},
     {"EGL_EXT_image_dma_buf_import", "external memory exists on one machine only"},

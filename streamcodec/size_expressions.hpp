@@ -6,6 +6,7 @@
 #include <GL/glext.h>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 #include "streamcodec/sizes/evaluator_maps.hpp"
 #include "streamcodec/sizes/parameter_counts.hpp"
@@ -28,6 +29,15 @@ template <class N, class P> uint64_t n8(N count, const P& p) { return given(p) ?
 // One pixel of (format, type), or nothing.
 template <class P> uint64_t clearBytes(GLenum format, GLenum type, const P& p) {
     return given(p) ? sizes::groupBytes(format, type) : 0;
+}
+// A text of `length` characters, or up to its end when that is negative. What is far too long for any
+// driver is an error of the program's, and need not be there.
+template <class P> uint64_t labelBytes(const P& p, GLsizei length) {
+    constexpr GLsizei kLongest = 1 << 16;
+    if (!given(p) || length > kLongest) return 0;
+    if (length >= 0) return static_cast<uint64_t>(length);
+    if constexpr (requires { p.absent(); }) return 0;
+    else return std::strlen(p) + 1;
 }
 constexpr int clearValues(GLenum buffer) { return buffer == GL_COLOR ? 4 : 1; }
 inline uint64_t saturated(uint64_t values, uint32_t bytes) {

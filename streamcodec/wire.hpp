@@ -44,6 +44,7 @@ enum class NodeMessage : uint32_t {
     Bye = 6,       // json: totals (commands, GL errors, replay time)
     WindowGone = 7, // WindowGoneMessage: the program has destroyed it; after its last FrameDone
     Alive = 8,     // nothing: every few seconds, also while the replay is at work
+    News = 9,      // News + text: what a node's GL tells of a program's context without being asked
 };
 
 struct MessageHeader {
@@ -79,6 +80,22 @@ struct ReplyHeader {
     uint32_t failed;     // 1: no node answered; sizeBytes is 0 then
 };
 static_assert(sizeof(ReplyHeader) == 40);
+
+enum class NewsKind : uint32_t {
+    DebugMessage = 1, // as glDebugMessageCallback has it
+    OutOfMemory = 2,  // GL_OUT_OF_MEMORY
+    ContextLost = 3,  // what glGetGraphicsResetStatus says stands in `type`
+};
+
+// Node → head, and from there into the program's shared memory (capture::NewsSlot).
+struct News {
+    uint32_t client;
+    uint32_t context;
+    uint32_t kind; // NewsKind
+    uint32_t source, type, id, severity;
+    uint32_t textBytes; // that follow, without an end
+};
+static_assert(sizeof(News) == 32);
 
 // A node sends the Picture of a frame before its FrameDone: what has no Picture by then has none.
 struct FrameDoneMessage {
@@ -154,6 +171,9 @@ struct WindowConfig {
     uint32_t nativeLow, nativeHigh; // X window id, 0 when there is none
 };
 static_assert(sizeof(WindowConfig) == 28);
+
+// In CreateContext's flags: the program wants to be told when the context is lost.
+constexpr uint32_t kLosesOnReset = 0x80000000;
 
 enum class Api : uint32_t { Desktop = 0, Es1 = 1, Es2 = 2 }; // Es2: ES 2 and later
 

@@ -5,6 +5,7 @@
 #include "interposer/context.hpp"
 #include "interposer/extensions.hpp"
 #include "interposer/mapped_buffers.hpp"
+#include "interposer/news.hpp"
 #include "interposer/own_records.hpp"
 #include "interposer/program_layout.hpp"
 #include "interposer/real_gl.hpp"
@@ -299,7 +300,9 @@ void mural_glEnd() {
 
 GLenum mural_glGetError() {
     ThreadState& t = *tThread;
-    return t.context ? takeError(*t.context) : gReal.glGetError();
+    if (!t.context) return gReal.glGetError();
+    takeNews(t);
+    return takeError(*t.context);
 }
 const GLubyte* mural_glGetString(GLenum name) {
     ThreadState& t = *tThread;

@@ -12,12 +12,14 @@
 #include "interposer/context.hpp"
 #include "interposer/extensions.hpp"
 #include "interposer/fronts/egl_images.hpp"
+#include "interposer/fronts/egl_syncs.hpp"
 #include "interposer/fronts/front.hpp"
 #include "interposer/fronts/own_functions.hpp"
 #include "interposer/log.hpp"
 #include "interposer/native_count.hpp"
 #include "interposer/real_gl.hpp"
 #include "interposer/session.hpp"
+#include "interposer/texture_from.hpp"
 #include "interposer/windows/shown.hpp"
 
 namespace mural {
@@ -69,7 +71,11 @@ EGLContext createContext(EGLDisplay dpy, EGLConfig config, EGLContext share, con
     const EGLContext made = call(dpy, config, share, attributes);
     if (made && !nativeRun()) {
         const bool desktop = queryApi && queryApi() == EGL_OPENGL_API;
-        addContext(made, findContext(share), desktop ? wire::Api::Desktop : wire::Api::Es2, configOf(dpy, config));
+        Context* c = addContext(made, findContext(share), desktop ? wire::Api::Desktop : wire::Api::Es2, configOf(dpy, config));
+        for (const EGLint* a = attributes; c && a && *a != EGL_NONE; a += 2) {
+            if (a[0] == EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY || a[0] == EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT)
+                c->losesOnReset = a[1] == EGL_LOSE_CONTEXT_ON_RESET;
+        }
     }
     return made;
 }
@@ -187,6 +193,17 @@ EGLBoolean destroySurface(EGLDisplay dpy, EGLSurface surface) {
     destroyWindow(reinterpret_cast<uintptr_t>(surface), dpy);
     return call(dpy, surface);
 }
+// The picture of a pbuffer becomes a texture: that of the nodes, put together, on each of them.
+EGLBoolean bindTexImage(EGLDisplay dpy, EGLSurface surface, EGLint buffer) {
+    static auto* call = real<EGLBoolean(EGLDisplay, EGLSurface, EGLint)>("eglBindTexImage");
+    static auto* query = real<EGLBoolean(EGLDisplay, EGLSurface, EGLint, EGLint*)>("eglQuerySurface");
+    const EGLBoolean ok = call(dpy, surface, buffer);
+    Window* w = ok && !nativeRun() ? windowFor(dpy, surface) : nullptr;
+    EGLint format = 0;
+    if (w && query && query(dpy, surface, EGL_TEXTURE_FORMAT, &format)) textureFromDrawn(*w, format == EGL_TEXTURE_RGBA);
+    return ok;
+}
+
 const char* queryString(EGLDisplay dpy, EGLint name) {
     static auto* call = real<const char*(EGLDisplay, EGLint)>("eglQueryString");
     const char* text = call(dpy, name);
@@ -210,6 +227,9 @@ const OwnEntry kOwn[] = {
     ownEntry("eglCreatePbufferSurface", createPbufferSurface), ownEntry("eglDestroySurface", destroySurface),
     ownEntry("eglCreateImage", createImage), ownEntry("eglCreateImageKHR", createImageKhr),
     ownEntry("eglDestroyImage", destroyImage), ownEntry("eglDestroyImageKHR", destroyImageKhr),
+    ownEntry("eglCreateSync", createSync), ownEntry("eglCreateSyncKHR", createSyncKhr),
+    ownEntry("eglClientWaitSync", clientWaitSync), ownEntry("eglClientWaitSyncKHR", clientWaitSyncKhr),
+    ownEntry("eglSignalSyncKHR", signalSync), ownEntry("eglBindTexImage", bindTexImage),
     ownEntry("eglQueryString", queryString), ownEntry("eglGetProcAddress", getProcAddress),
 };
 constinit Front front("egl", kOwn);

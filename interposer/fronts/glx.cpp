@@ -19,6 +19,7 @@
 #include "interposer/native_count.hpp"
 #include "interposer/real_gl.hpp"
 #include "interposer/session.hpp"
+#include "interposer/texture_from.hpp"
 #include "interposer/windows/shown.hpp"
 
 namespace mural {
@@ -108,7 +109,12 @@ GLXContext createContextWithConfig(Display* dpy, GLXFBConfig fb, int type, GLXCo
 
 GLXContext createContextAttribs(Display* dpy, GLXFBConfig fb, GLXContext share, Bool direct, const int* attributes) {
     static auto* call = real<GLXContext(Display*, GLXFBConfig, GLXContext, Bool, const int*)>("glXCreateContextAttribsARB");
-    return created(call(dpy, fb, share, direct, attributes), share, fb ? configOfFb(dpy, fb) : defaultConfig());
+    const GLXContext made = created(call(dpy, fb, share, direct, attributes), share, fb ? configOfFb(dpy, fb) : defaultConfig());
+    Context* c = made && !nativeRun() ? findContext(made) : nullptr;
+    for (const int* a = attributes; c && a && *a; a += 2) {
+        if (a[0] == glx::kResetStrategy) c->losesOnReset = a[1] == glx::kLoseOnReset;
+    }
+    return made;
 }
 
 void destroyedContext(Display* dpy, GLXContext context) {
@@ -254,6 +260,19 @@ void destroyGlxPixmap(Display* dpy, GLXPixmap pixmap) {
     call(dpy, pixmap);
 }
 
+// The driver copies the pixmap, or takes it as it is; the nodes get what the texture then shows.
+void bindTexImage(Display* dpy, XID drawable, int buffer, const int* attributes) {
+    static auto* call = real<void(Display*, XID, int, const int*)>("glXBindTexImageEXT");
+    static auto* query = real<void(Display*, XID, int, unsigned*)>("glXQueryDrawable");
+    call(dpy, drawable, buffer, attributes);
+    if (nativeRun() || !query) return;
+    unsigned target = 0, format = 0;
+    query(dpy, drawable, glx::kTextureTarget, &target);
+    query(dpy, drawable, glx::kTextureFormat, &format);
+    if (target == glx::kTexture2d || target == glx::kTextureRectangle)
+        textureFromLocal(target == glx::kTexture2d ? GL_TEXTURE_2D : GL_TEXTURE_RECTANGLE, format == glx::kTextureRgba);
+}
+
 // Three ways to ask for the extensions; only those that reach over one machine are told.
 const char* told(const char* text) { return nativeRun() ? text : filterWindowSystemExtensions(text); }
 
@@ -291,7 +310,7 @@ const OwnEntry kOwn[] = {
     ownEntry("glXCreatePixmap", createPixmap), ownEntry("glXDestroyPixmap", destroyPixmap),
     ownEntry("glXCreateGLXPixmap", createGlxPixmap), ownEntry("glXDestroyGLXPixmap", destroyGlxPixmap),
     ownEntry("glXCreateGLXPixmapWithConfigSGIX", createGlxPixmapWithConfig),
-    ownEntry("glXDestroyGLXPixmap", destroyGlxPixmap),
+    ownEntry("glXDestroyGLXPixmap", destroyGlxPixmap), ownEntry("glXBindTexImageEXT", bindTexImage),
     ownEntry("glXQueryExtensionsString", queryExtensionsString), ownEntry("glXGetClientString", getClientString),
     ownEntry("glXQueryServerString", queryServerString), ownEntry("glXGetProcAddress", getProcAddress),
     ownEntry("glXGetProcAddressARB", getProcAddress),

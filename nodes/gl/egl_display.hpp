@@ -53,6 +53,7 @@ struct EglDisplayState {
     // Measured when the platform is opened.
     int maxSurfaceSize = kMaxSurfaceSize;
     bool doubleBuffered = false;
+    bool tellsResets = true; // until a driver has refused
 
     [[nodiscard]] bool has(const char* extension) const;
 };

@@ -40,13 +40,14 @@ private:
 
 class EglContext final : public Context {
 public:
-    EglContext(SharedDisplay display, EGLContext handle, EGLenum api, std::unique_ptr<Surface> dummy)
-        : display_(std::move(display)), handle_(handle), api_(api), dummy_(std::move(dummy)) {}
+    EglContext(SharedDisplay display, EGLContext handle, EGLenum api, bool tellsReset, std::unique_ptr<Surface> dummy)
+        : display_(std::move(display)), handle_(handle), api_(api), tellsReset_(tellsReset), dummy_(std::move(dummy)) {}
     EglContext(const EglContext&) = delete;
     EglContext& operator=(const EglContext&) = delete;
     ~EglContext() override { display_->egl.destroyContext(display_->display, handle_); }
 
     [[nodiscard]] EGLContext handle() const { return handle_; }
+    [[nodiscard]] bool tellsReset() const override { return tellsReset_; }
     [[nodiscard]] EGLenum api() const { return api_; }
     // What is bound when the caller names no surface.
     [[nodiscard]] EGLSurface dummy() const {
@@ -57,6 +58,7 @@ private:
     SharedDisplay display_;
     EGLContext handle_;
     EGLenum api_;
+    bool tellsReset_;
     std::unique_ptr<Surface> dummy_;
 };
 
@@ -87,6 +89,7 @@ std::vector<EGLint> contextAttributes(const ContextConfig& config, const EglDisp
         if (config.forwardCompatible) list.insert(list.end(), {EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE, EGL_TRUE});
         if (config.debug) list.insert(list.end(), {EGL_CONTEXT_OPENGL_DEBUG, EGL_TRUE});
         if (config.robust) list.insert(list.end(), {EGL_CONTEXT_OPENGL_ROBUST_ACCESS, EGL_TRUE});
+        if (config.tellsReset) list.insert(list.end(), {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET});
     } else {
         EGLint flags = 0;
         if (config.forwardCompatible) flags |= EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE_BIT_KHR;
@@ -94,6 +97,8 @@ std::vector<EGLint> contextAttributes(const ContextConfig& config, const EglDisp
         if (config.robust && desktop) flags |= EGL_CONTEXT_OPENGL_ROBUST_ACCESS_BIT_KHR;
         if (flags) list.insert(list.end(), {EGL_CONTEXT_FLAGS_KHR, flags});
         if (config.robust && !desktop) list.insert(list.end(), {EGL_CONTEXT_OPENGL_ROBUST_ACCESS_EXT, EGL_TRUE});
+        if (config.tellsReset)
+            list.insert(list.end(), {desktop ? EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_KHR : EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT, EGL_LOSE_CONTEXT_ON_RESET_KHR});
     }
     list.push_back(EGL_NONE);
     return list;
@@ -171,16 +176,25 @@ Result<std::unique_ptr<Context>> EglPlatform::createContext(const ContextConfig&
     if (!egl.bindApi(api))
         return Error{"this EGL driver has no " + describeContext(wish) + ": try another --gl backend"};
     EGLContext share = shareWith ? static_cast<EglContext*>(shareWith)->handle() : EGL_NO_CONTEXT;
-    EGLContext handle = egl.createContext(display_->display,
-                                          display_->noConfigContext ? EGL_NO_CONFIG_KHR : config.value(),
-                                          share,
-                                          contextAttributes(wish, *display_).data());
+    const auto create = [&](bool tellsReset) {
+        ContextConfig with = wish;
+        with.tellsReset = tellsReset;
+        return egl.createContext(display_->display, display_->noConfigContext ? EGL_NO_CONFIG_KHR : config.value(), share, contextAttributes(with, *display_).data());
+    };
+    bool tellsReset = wish.tellsReset && display_->tellsResets;
+    EGLContext handle = create(tellsReset);
+    if (handle == EGL_NO_CONTEXT && tellsReset) { // contexts that share must all do so, or none
+        (void)egl.getError();
+        tellsReset = false;
+        handle = create(tellsReset);
+        if (handle != EGL_NO_CONTEXT) display_->tellsResets = false;
+    }
     const std::string why = handle == EGL_NO_CONTEXT ? takeEglError(egl) : "";
     egl.bindApi(currentApi_);
     if (handle == EGL_NO_CONTEXT)
         return Error{"EGL can't make an " + describeContext(wish) + " context" +
                      (shareWith ? " that shares objects" : "") + ": " + why + "; see mural doctor"};
-    return std::unique_ptr<Context>(std::make_unique<EglContext>(display_, handle, api, std::move(dummy)));
+    return std::unique_ptr<Context>(std::make_unique<EglContext>(display_, handle, api, tellsReset, std::move(dummy)));
 }
 
 Result<void> EglPlatform::makeCurrent(Context* context, Surface* draw, Surface* read) {

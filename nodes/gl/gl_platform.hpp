@@ -35,6 +35,7 @@ struct ContextConfig {
     bool forwardCompatible = false;
     bool debug = false;
     bool robust = false;
+    bool tellsReset = false; // when the driver can: glGetGraphicsResetStatus tells that the context is lost
     SurfaceConfig surface; // contexts are made for a kind of surface
 };
 
@@ -56,6 +57,8 @@ public:
 class Context {
 public:
     virtual ~Context() = default;
+    // glGetGraphicsResetStatus tells when it is lost.
+    [[nodiscard]] virtual bool tellsReset() const { return false; }
 };
 
 // A picture that contexts of several share groups may use: an EGLImage.

@@ -50,6 +50,7 @@ struct GlxDisplayState {
     bool noConfigContext = false;
     bool esProfile = false;
     bool robust = false;
+    bool tellsResets = true; // until a driver has refused
     std::vector<GLXFBConfig> configs; // those that double-buffered pbuffers can be made of
     std::vector<ConfigCandidate> candidates; // same order
     int maxSurfaceSize = kMaxSurfaceSize; // measured when the platform is opened

@@ -37,19 +37,21 @@ private:
 
 class GlxContext final : public Context {
 public:
-    GlxContext(SharedDisplay display, GLXContext handle, std::unique_ptr<GlxSurface> dummy)
-        : display_(std::move(display)), handle_(handle), dummy_(std::move(dummy)) {}
+    GlxContext(SharedDisplay display, GLXContext handle, bool tellsReset, std::unique_ptr<GlxSurface> dummy)
+        : display_(std::move(display)), handle_(handle), tellsReset_(tellsReset), dummy_(std::move(dummy)) {}
     GlxContext(const GlxContext&) = delete;
     GlxContext& operator=(const GlxContext&) = delete;
     ~GlxContext() override { display_->glx.destroyContext(display_->display, handle_); }
 
     [[nodiscard]] GLXContext handle() const { return handle_; }
+    [[nodiscard]] bool tellsReset() const override { return tellsReset_; }
     // Bound when the caller names no surface: GLX allows none only for some versions.
     [[nodiscard]] GLXPbuffer dummy() const { return dummy_->handle(); }
 
 private:
     SharedDisplay display_;
     GLXContext handle_;
+    bool tellsReset_;
     std::unique_ptr<GlxSurface> dummy_;
 };
 
@@ -138,6 +140,7 @@ std::vector<int> GlxPlatform::contextAttributes(const ContextConfig& wish) const
     if (wish.debug) flags |= GLX_CONTEXT_DEBUG_BIT_ARB;
     if (wish.robust) flags |= GLX_CONTEXT_ROBUST_ACCESS_BIT_ARB;
     if (flags) list.insert(list.end(), {GLX_CONTEXT_FLAGS_ARB, flags});
+    if (wish.tellsReset) list.insert(list.end(), {GLX_CONTEXT_RESET_NOTIFICATION_STRATEGY_ARB, GLX_LOSE_CONTEXT_ON_RESET_ARB});
     if (display_->noConfigContext) list.insert(list.end(), {GLX_SCREEN, display_->screen});
     list.push_back(0);
     return list;
@@ -152,19 +155,29 @@ Result<std::unique_ptr<Context>> GlxPlatform::createContext(const ContextConfig&
     auto dummy = createPbuffer(small);
     if (!dummy) return dummy.error();
     GLXContext share = shareWith ? static_cast<GlxContext*>(shareWith)->handle() : nullptr;
-    XErrorTrap trap(*display_);
-    GLXContext handle = display_->glx.createContextAttribs(display_->display,
-                                                           display_->noConfigContext ? nullptr : config.value(),
-                                                           share,
-                                                           1,
-                                                           contextAttributes(wish).data());
-    const std::string why = trap.take();
-    if (handle && !why.empty()) display_->glx.destroyContext(display_->display, handle);
+    std::string why;
+    const auto create = [&](bool tellsReset) {
+        ContextConfig with = wish;
+        with.tellsReset = tellsReset;
+        XErrorTrap trap(*display_);
+        GLXContext made = display_->glx.createContextAttribs(display_->display, display_->noConfigContext ? nullptr : config.value(), share, 1, contextAttributes(with).data());
+        why = trap.take();
+        if (!made || why.empty()) return made;
+        display_->glx.destroyContext(display_->display, made);
+        return GLXContext{};
+    };
+    bool tellsReset = wish.tellsReset && display_->robust && display_->tellsResets;
+    GLXContext handle = create(tellsReset);
+    if (!handle && tellsReset) { // contexts that share must all do so, or none
+        tellsReset = false;
+        handle = create(tellsReset);
+        if (handle) display_->tellsResets = false;
+    }
     if (!handle || !why.empty())
         return Error{"GLX can't make an " + describeContext(wish) + " context" +
                      (shareWith ? " that shares objects" : "") + ": " +
                      (why.empty() ? "the driver does not have it" : why) + "; see mural doctor"};
-    return std::unique_ptr<Context>(std::make_unique<GlxContext>(display_, handle, std::move(dummy.value())));
+    return std::unique_ptr<Context>(std::make_unique<GlxContext>(display_, handle, tellsReset, std::move(dummy.value())));
 }
 
 Result<void> GlxPlatform::makeCurrent(Context* context, Surface* draw, Surface* read) {

@@ -33,7 +33,8 @@ void writeLayout(CaptureHeader& h, uint32_t chunkCount, uint32_t replyBytes) {
     h.publicationsAt = roundUp(sizeof(CaptureHeader));
     h.freedAt = roundUp(h.publicationsAt + uint64_t{chunkCount} * sizeof(Publication));
     h.repliesAt = roundUp(h.freedAt + uint64_t{chunkCount} * sizeof(uint32_t));
-    h.chunksAt = roundUp(h.repliesAt + replyBytes);
+    h.newsAt = roundUp(h.repliesAt + replyBytes);
+    h.chunksAt = roundUp(h.newsAt + capture::kNewsSlots * sizeof(capture::NewsSlot));
     h.totalBytes = h.chunksAt + uint64_t{chunkCount} * kChunkBytes;
 }
 
@@ -84,6 +85,7 @@ CaptureMemory::CaptureMemory(FileDescriptor fd, std::byte* base, const CaptureHe
     , publicationsAt_(layout.publicationsAt)
     , freedAt_(layout.freedAt)
     , repliesAt_(layout.repliesAt)
+    , newsAt_(layout.newsAt)
     , chunksAt_(layout.chunksAt)
     , totalBytes_(layout.totalBytes) {
     auto* freed = reinterpret_cast<uint32_t*>(at(freedAt_));
@@ -165,6 +167,19 @@ void CaptureMemory::answerAhead(uint32_t request, uint64_t value) {
     answer.value.store(value, std::memory_order_relaxed);
     answer.request.store(request, std::memory_order_release);
     futexWakeAll(answer.request);
+}
+
+bool CaptureMemory::putNews(const wire::News& news, const std::string& text) {
+    static_assert(sizeof news == sizeof capture::NewsSlot::news);
+    const std::lock_guard lock(newsMutex_);
+    if (newsTail_ - shared_->newsHead.load(std::memory_order_acquire) >= capture::kNewsSlots) return false;
+    auto* slot = reinterpret_cast<capture::NewsSlot*>(at(newsAt_)) + newsTail_ % capture::kNewsSlots;
+    wire::News put = news;
+    put.textBytes = static_cast<uint32_t>(std::min<size_t>(text.size(), capture::kNewsTextBytes));
+    std::memcpy(slot->news, &put, sizeof put);
+    std::memcpy(slot->text, text.data(), put.textBytes);
+    shared_->newsTail.store(++newsTail_, std::memory_order_release);
+    return true;
 }
 
 void CaptureMemory::setFramesDone(uint32_t frames) { store(shared_->framesDone, frames); }

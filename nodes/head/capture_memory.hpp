@@ -8,11 +8,13 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 
 #include "common/capture_ring.hpp"
 #include "common/result.hpp"
+#include "streamcodec/wire.hpp"
 #include "transport/file_descriptor.hpp"
 
 namespace mural {
@@ -32,7 +34,7 @@ struct CaptureCounts {
     uint64_t frameCpuFrames = 0;
 };
 
-// Threads: one for publications and chunks, one for replies; the words of progress from any.
+// Threads: one for publications and chunks, one for replies; news and the words of progress from any.
 class CaptureMemory {
 public:
     // Both powers of two.
@@ -65,6 +67,9 @@ public:
     // The answer to a request with capture::kAskedAhead, for the program to find when it wants it.
     void answerAhead(uint32_t request, uint64_t value);
 
+    // False: the program has not looked at what it was told before.
+    bool putNews(const wire::News& news, const std::string& text);
+
     void setFramesDone(uint32_t frames);
     void setFramesShown(uint32_t frames);
     void setHeadGone(); // and wakes whoever sleeps on any word
@@ -79,10 +84,12 @@ private:
     capture::CaptureHeader* shared_;
     uint32_t chunkCount_;
     uint32_t replyCapacity_;
-    uint64_t publicationsAt_, freedAt_, repliesAt_, chunksAt_, totalBytes_;
+    uint64_t publicationsAt_, freedAt_, repliesAt_, newsAt_, chunksAt_, totalBytes_;
     uint32_t publishedHead_ = 0;
     uint32_t freedTail_ = 0;
     uint32_t replyTail_ = 0;
+    std::mutex newsMutex_;
+    uint32_t newsTail_ = 0;
 };
 
 } // namespace mural

@@ -156,6 +156,7 @@ void HeadSession::openTables() {
         control_.send({{"event", "clients"}, {"count", count}});
     };
     events.gone = [this](uint32_t client, const std::string& line) {
+        news_.programGone(client);
         frames_.clientGone(client);
         if (output_) output_->clientGone(client);
         if (!line.empty()) control_.say(line);
@@ -307,6 +308,11 @@ void HeadSession::windowGone(const std::pair<uint32_t, uint32_t>& window, int no
     }
     frames_.windowGone(window.first, window.second);
     if (output_) output_->windowGone(window.first, window.second);
+}
+
+Result<void> HeadSession::nodeNews(int node, const wire::News& news, const std::string& text) {
+    if (serving_ && news_.isNew(node, news, text)) programs_->news(news, text);
+    return {};
 }
 
 Result<void> HeadSession::nodeLog(int node, const std::string& text) {

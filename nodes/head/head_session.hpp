@@ -19,6 +19,7 @@
 #include "nodes/head/capture_server.hpp"
 #include "nodes/head/control_channel.hpp"
 #include "nodes/head/frame_tracker.hpp"
+#include "nodes/head/news_merger.hpp"
 #include "nodes/head/node_facts.hpp"
 #include "nodes/head/node_launcher.hpp"
 #include "nodes/head/node_set.hpp"
@@ -64,6 +65,7 @@ private:
     Result<void> nodeFrameDone(int node, const wire::FrameDoneMessage& message) override;
     Result<void> nodePicture(int node, const wire::PictureHeader& header, ByteBuffer rows) override;
     Result<void> nodeWindowGone(int node, const wire::WindowGoneMessage& message) override;
+    Result<void> nodeNews(int node, const wire::News& news, const std::string& text) override;
     Result<void> nodeLog(int node, const std::string& text) override;
     Result<void> nodeBye(int node, const std::string& json) override;
     void nodeLost(int node, const std::string& why) override;
@@ -103,6 +105,7 @@ private:
     // In the order of construction; the nodes' readers use all of it and are ended before.
     FrameTracker frames_;
     AnswerAssembler answers_;
+    NewsMerger news_;
     std::unique_ptr<PictureOutput> output_; // null: no pictures come
     PictureAssembler pictures_;
     NodeSet nodes_;

@@ -138,6 +138,8 @@ Result<void> NodeLink::readMessage(const wire::MessageHeader& header) {
         if (auto got = readStruct(message); !got) return got;
         return handle([&] { return events_.nodeWindowGone(place_.node, message); });
     }
+    case NodeMessage::News:
+        return readNews(header.sizeBytes);
     case NodeMessage::Alive:
         if (header.sizeBytes != 0) break;
         return {};
@@ -160,6 +162,17 @@ Result<void> NodeLink::readText(const wire::MessageHeader& header) {
         saidBye_ = done.ok();
         return done;
     });
+}
+
+Result<void> NodeLink::readNews(uint32_t sizeBytes) {
+    wire::News news{};
+    if (sizeBytes < sizeof(news) || sizeBytes > sizeof(news) + kMaxTextBytes) return Error{"it sent news of an impossible size"};
+    if (auto got = readStruct(news); !got) return got;
+    if (news.textBytes != sizeBytes - sizeof(news)) return Error{"it sent news whose size and text do not fit"};
+    auto bytes = readBytes(news.textBytes);
+    if (!bytes) return bytes.error();
+    const std::string text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    return handle([&] { return events_.nodeNews(place_.node, news, text); });
 }
 
 Result<void> NodeLink::readAnswer(uint32_t sizeBytes) {

@@ -29,6 +29,7 @@ public:
     virtual Result<void> nodeFrameDone(int node, const wire::FrameDoneMessage& message) = 0;
     virtual Result<void> nodePicture(int node, const wire::PictureHeader& header, ByteBuffer rows) = 0;
     virtual Result<void> nodeWindowGone(int node, const wire::WindowGoneMessage& message) = 0;
+    virtual Result<void> nodeNews(int node, const wire::News& news, const std::string& text) = 0;
     virtual Result<void> nodeLog(int node, const std::string& text) = 0;
     virtual Result<void> nodeBye(int node, const std::string& json) = 0;
     // The last call for a node that did not say Bye; everything it had sent was handed on before.
@@ -83,6 +84,7 @@ private:
     Result<void> readMessage(const wire::MessageHeader& header);
     Result<ByteBuffer> readBytes(size_t sizeBytes);
     template <class Header> Result<void> readStruct(Header& header);
+    Result<void> readNews(uint32_t sizeBytes);
     Result<void> readAnswer(uint32_t sizeBytes);
     Result<void> readPicture(uint32_t sizeBytes);
     Result<void> readText(const wire::MessageHeader& header);

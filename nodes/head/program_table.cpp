@@ -80,6 +80,10 @@ void ProgramTable::reply(uint32_t id, Reply reply) {
     if (const auto client = find(id)) client->reply(std::move(reply));
 }
 
+void ProgramTable::news(const wire::News& news, const std::string& text) {
+    if (const auto client = find(news.client)) (void)client->memory().putNews(news, text); // full: nobody looks
+}
+
 void ProgramTable::credit(uint32_t id, uint32_t finished, uint32_t shown) {
     const auto client = find(id);
     if (!client) return;

@@ -42,6 +42,7 @@ public:
 
     void refuseFrom(const std::string& reason); // programs that come from now on; before drainAll()
     void reply(uint32_t client, Reply reply);
+    void news(const wire::News& news, const std::string& text);
     void credit(uint32_t client, uint32_t finished, uint32_t shown);
     void tellHeadGone(); // all programs go on alone
 

@@ -128,6 +128,9 @@ private:
         };
         outputs.frameDone = [this](const ReplayOutputs::Frame& f) { frameDone(f); };
         outputs.windowGone = [this](uint32_t client, uint32_t window) { windowGone(client, window); };
+        outputs.news = [this](const wire::News& n, const std::string& text) {
+            line_->send(wire::NodeMessage::News, std::as_bytes(std::span(&n, 1)), std::as_bytes(std::span(text)));
+        };
         outputs.log = [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); };
         replay_ = std::make_unique<Replay>(std::move(*platform), config, std::move(outputs));
         lastCpuNs_ = threadCpuNs();

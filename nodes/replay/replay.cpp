@@ -1,6 +1,7 @@
 #include "nodes/replay/replay.hpp"
 
 #include <cstring>
+#include <string_view>
 
 #include "gl_opcodes.hpp"
 #include "streamcodec/opcode_names.hpp"
@@ -36,6 +37,7 @@ bool Replay::packet(uint32_t stream, std::span<const std::byte> payload) {
         if (!record(payload.subspan(at, words * 4))) return false;
         at += words * 4;
     }
+    tellMessages();
     return true;
 }
 
@@ -62,6 +64,25 @@ bool Replay::record(std::span<const std::byte> bytes) {
     return ok;
 }
 
+namespace {
+// Commands that may find no memory, each with its kin for other kinds of objects.
+bool allocates(uint16_t opcode) {
+    static const auto kAllocates = [] {
+        std::vector<bool> found(op::kLimit, false);
+        for (uint16_t o = wire::kFirstGlOpcode; o < op::kLimit; ++o) {
+            const char* text = glOpcodeName(o);
+            const std::string_view name = text ? text : "";
+            for (const std::string_view stem : {"glBufferData", "glBufferStorage", "glNamedBufferData", "glNamedBufferStorage", "glTexImage", "glTexStorage",
+                                                "glTextureStorage", "glTextureImage", "glMultiTexImage", "glCompressedTexImage", "glCopyTexImage", "glRenderbufferStorage",
+                                                "glNamedRenderbufferStorage", "glGenerateMipmap", "glGenerateTextureMipmap"})
+                if (name.starts_with(stem)) found[o] = true;
+        }
+        return found;
+    }();
+    return kAllocates[opcode];
+}
+} // namespace
+
 bool Replay::execute(uint16_t opcode, std::span<const std::byte> arguments, BlobQueue& blobs) {
     Args in(arguments, blobs);
     const bool drawing = opcode == wire::kOpRequestPixels || opcode == wire::kOpFillWindow || opcode == wire::kOpDrawAll;
@@ -75,7 +96,7 @@ bool Replay::execute(uint16_t opcode, std::span<const std::byte> arguments, Blob
     if (!function) return false;
     if (c_ == none_.get()) return true; // GL without a context does nothing
     if (!config_.plant.empty() && planted(opcode)) return true;
-    return function(*this, in);
+    return allocates(opcode) ? executeAllocating(function, in) : function(*this, in);
 }
 
 #ifdef __SANITIZE_ADDRESS__

@@ -5,11 +5,13 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstring>
 #include <deque>
 #include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <type_traits>
 #include <unordered_map>
@@ -64,6 +66,8 @@ struct ReplayOutputs {
     std::function<void(const Frame&)> frameDone;
     std::function<void(uint32_t client, uint32_t window)> windowGone; // the program has destroyed it
     std::function<void(const std::string&)> log;
+    // What this node's GL tells of a program's context.
+    std::function<void(const wire::News&, const std::string& text)> news;
 };
 
 struct ReplayCounts {
@@ -205,7 +209,21 @@ private:
         uint32_t request;
         GLuint query;
     };
+    // Messages of the driver, which may come from threads of its own.
+    struct DebugInbox {
+        struct Message {
+            uint32_t source, type, id, severity;
+            std::string text;
+        };
+        std::mutex mutex;
+        std::vector<Message> messages;
+        std::atomic<bool> any{false};
+    };
     struct ContextState {
+        DebugInbox debug;    // outlives the context
+        bool debugs = false;  // the program has asked for a debug context
+        bool listens = false; // the driver's messages go there
+        bool lost = false;    // the driver has reset it
         std::unordered_map<GLuint, QueryInfo> queries; // by the program's name
         std::vector<AskedAhead> askedAhead;
         std::map<GLenum, GLuint> counting;             // fragments now: the program's query by its target
@@ -323,6 +341,14 @@ private:
     bool ownCreateImage(Args& in);
     bool ownDestroyImage(Args& in);
     void withImage(uint64_t image, const std::function<void(GLeglImageOES)>& call);
+    // replay_news.cpp
+    void listenToDriver();
+    static void APIENTRY hearDriver(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length, const GLchar* text, const void* inbox);
+    void tellMessages();
+    void tell(wire::NewsKind kind, const DebugInbox::Message& message);
+    bool takeErrors();
+    void tellTroubles();
+    bool executeAllocating(ReplayFunction function, Args& in);
     // replay_release.cpp
     bool ownDestroyContext(Args& in);
     bool ownDestroyWindow(Args& in);

@@ -30,6 +30,7 @@ gl::SurfaceConfig Replay::surfaceConfig(const wire::WindowConfig& c, int width, 
 }
 
 bool Replay::own(uint16_t opcode, Args& in) {
+    tellMessages(); // before an answer that the program waits for
     switch (opcode) {
     case wire::kOpBlobBegin: return ownBlobBegin(in);
     case wire::kOpBlobData: {
@@ -102,6 +103,7 @@ bool Replay::ownCreateContext(Args& in) {
     wish.forwardCompatible = flags & GL_CONTEXT_FLAG_FORWARD_COMPATIBLE_BIT;
     wish.debug = flags & GL_CONTEXT_FLAG_DEBUG_BIT;
     wish.robust = flags & GL_CONTEXT_FLAG_ROBUST_ACCESS_BIT;
+    wish.tellsReset = true; // a node wants to know, whatever the program asked for
     wish.surface = surfaceConfig(*config, 1, 1);
     auto made = platform_->createContext(wish, with ? with->context.get() : nullptr);
     if (!made) {
@@ -115,6 +117,7 @@ bool Replay::ownCreateContext(Args& in) {
     c->api = static_cast<wire::Api>(api);
     c->version = static_cast<int>(major * 10 + minor);
     c->core = wish.core;
+    c->debugs = wish.debug;
     c->unpack.values[5] = c->pack[5] = 4; // alignment
     c->drawBuffer0 = c->readBuffer0 = config->doubleBuffer || c->api != wire::Api::Desktop ? GL_BACK : GL_FRONT;
     client.contexts[id] = std::move(c);
@@ -139,6 +142,7 @@ bool Replay::ownMakeCurrent(Args& in) {
     if (!bound || !first || c_ != s_->context) return c_ != nullptr;
     // The first binding sets viewport and scissor to the window's size (GL 4.6 §13.6.1).
     c_->everCurrent = true;
+    if (c_->debugs) listenToDriver();
     const PixelViewport whole = s_->draw ? s_->draw->whole : PixelViewport{};
     for (auto& s : c_->scissors) s = {false, whole};
     for (auto& v : c_->viewports) v = {0, 0, static_cast<GLfloat>(whole.w), static_cast<GLfloat>(whole.h)};
@@ -233,6 +237,7 @@ bool Replay::ownSwap(Args& in, bool front) {
     }
     // A frame counts when it is drawn, not when it is queued: pacing and frame rates depend on it.
     waitUntilDrawn();
+    tellTroubles();
     out_.frameDone(f);
     answerAskedAhead();
     if (it != windows.end() && it->second->front && !front) showBack(*it->second);

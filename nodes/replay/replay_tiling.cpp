@@ -153,6 +153,7 @@ void Replay::glEnable(GLenum cap) {
         c_->lineStippled = true;
         applyTileValues();
     }
+    if (cap == GL_DEBUG_OUTPUT) listenToDriver();
     if (cap != GL_SCISSOR_TEST) return gl.glEnable(cap);
     for (auto& s : c_->scissors) s.enabled = true;
     applyScissors();

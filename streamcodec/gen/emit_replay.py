@@ -13,7 +13,7 @@ RESULT = {4: 'GLuint', 8: 'uint64_t'}
 
 def nullable(c, p):
     if p.how == 'array':
-        return bool(NULLABLE.match(c.name)) or p.expr.startswith(('n4', 'n8', 'clearBytes', '0'))
+        return bool(NULLABLE.match(c.name)) or p.expr.startswith(('n4', 'n8', 'clearBytes', 'labelBytes', '0'))
     return p.how in ('pixels', 'packed') and 'Sub' not in c.name and c.name not in ('glDrawPixels', 'glPolygonStipple')
 
 

@@ -7,6 +7,7 @@ arguments are bad. In each case: the status, the number of lines said, and nothi
 
 import argparse
 import os
+import resource
 import signal
 import stat
 import sys
@@ -119,6 +120,26 @@ def all_nodes_killed(context):
         wrong = check_end(run, 0, 60)
         if wrong is None and not error_lines(run, ["was lost"]):
             wrong = "nobody said that the nodes were lost"
+        return wrong
+
+
+@case
+def node_without_memory(context):
+    """One node finds no memory for a texture: the program is told as by its own driver, once."""
+    frames = 60
+    with context.drawing("no_memory", frames) as run:
+        if not run.wait_for_line("frame 3"):
+            return "the program did not start: " + " | ".join(run.standard_error[-3:])
+        node = run.wait_for_processes(NODE, 1)[0]
+        with open("/proc/%d/statm" % node, encoding="ascii") as sizes:
+            pages = int(sizes.read().split()[0])
+        limit = pages * resource.getpagesize() + (3 << 20) # less than one texture
+        resource.prlimit(node, resource.RLIMIT_AS, (limit, limit))
+        wrong = check_end(run, 0, frames)
+        if wrong is None and run.standard_output.count("no memory") != 1:
+            wrong = "it was told %d times" % run.standard_output.count("no memory")
+        if wrong is None and len(error_lines(run, ["no memory for an object"])) == 0:
+            wrong = "nobody said which node had no memory"
         return wrong
 
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 
 #include "streamcodec/sizes/pixel_format.hpp"
 #include "streamcodec/sizes/vertex_types.hpp"
@@ -21,6 +22,10 @@ struct State {
     GLint elementBuffer = 0, unpackBuffer = 0, packBuffer = 0;
     GLint maxSurface = 4096;
     bool current = false; // a context is
+    GLenum error = 0;
+    GLDEBUGPROC callback = nullptr;
+    const void* callbackUser = nullptr;
+    FakeGlOptions options;
 };
 State state;
 
@@ -65,6 +70,7 @@ void readImage(const void* pixels, GLenum format, GLenum type, GLsizei w, GLsize
     if (pixels && !state.unpackBuffer) touch(pixels, sizes::tightBytes(format, type, w, h, d));
 }
 void texImage2d(GLenum, GLint, GLint, GLsizei w, GLsizei h, GLint, GLenum format, GLenum type, const void* pixels) {
+    if (state.options.largestTexture && int64_t{w} * h > state.options.largestTexture) state.error = GL_OUT_OF_MEMORY;
     readImage(pixels, format, type, w, h, 1);
 }
 void texSubImage2d(GLenum, GLint, GLint, GLint, GLsizei w, GLsizei h, GLenum format, GLenum type, const void* pixels) {
@@ -83,6 +89,18 @@ void readPixels(GLint, GLint, GLsizei w, GLsizei h, GLenum format, GLenum type, 
     if (pixels && !state.packBuffer) std::memset(pixels, 0x5a, sizes::tightBytes(format, type, w, h, 1));
 }
 void getTexImage(GLenum, GLint, GLenum, GLenum, GLsizei room, void* pixels) { std::memset(pixels, 0x5a, count(room, 1)); }
+
+GLenum getError() { return std::exchange(state.error, GL_NO_ERROR); }
+void setCallback(void* callback, const void* user) {
+    state.callback = reinterpret_cast<GLDEBUGPROC>(callback);
+    state.callbackUser = user;
+}
+void drawArrays(GLenum, GLint, GLsizei) {
+    if (!state.options.talks || !state.callback) return;
+    for (const GLenum source : {GL_DEBUG_SOURCE_API, GL_DEBUG_SOURCE_APPLICATION})
+        state.callback(source, GL_DEBUG_TYPE_PERFORMANCE, 7, GL_DEBUG_SEVERITY_LOW, -1, "a slow draw", state.callbackUser);
+}
+GLenum graphicsResetStatus() { return state.options.resetStatus; }
 
 void drawElements(GLenum, GLsizei n, GLenum type, const void* indices) {
     if (!state.elementBuffer) touch(indices, count(n, sizes::typeBytes(type)));
@@ -127,7 +145,8 @@ const std::unordered_map<std::string, gl::Proc>& special() {
     static const std::unordered_map<std::string, gl::Proc> table = {
         {"glGetIntegerv", proc<getIntegerv>()}, {"glGetQueryObjectui64v", proc<getUniform64>()}, {"glGetQueryObjectuiv", proc<getUniform32>()},
         {"glGetUniformLocation", proc<uniformLocation>()}, {"glBindBuffer", proc<bindBuffer>()}, {"glBufferData", proc<bufferData>()},
-        {"glBufferSubData", proc<bufferSubData>()}, {"glTexImage2D", proc<texImage2d>()}, {"glTexSubImage2D", proc<texSubImage2d>()},
+        {"glBufferSubData", proc<bufferSubData>()}, {"glTexImage2D", proc<texImage2d>()}, {"glGetError", proc<getError>()}, {"glDebugMessageCallback", proc<setCallback>()},
+        {"glDrawArrays", proc<drawArrays>()}, {"glGetGraphicsResetStatus", proc<graphicsResetStatus>()}, {"glTexSubImage2D", proc<texSubImage2d>()},
         {"glTexImage3D", proc<texImage3d>()}, {"glDrawPixels", proc<drawPixels>()}, {"glBitmap", proc<bitmap>()},
         {"glPolygonStipple", proc<polygonStipple>()}, {"glReadPixels", proc<readPixels>()}, {"glGetnTexImageARB", proc<getTexImage>()},
         {"glGetnTexImage", proc<getTexImage>()}, {"glGetTextureImage", proc<getTexImage>()}, {"glDrawElements", proc<drawElements>()},
@@ -154,10 +173,22 @@ private:
     bool single_;
 };
 
+class FakeContext : public gl::Context {
+public:
+    explicit FakeContext(bool tellsReset) : tellsReset_(tellsReset) {}
+    [[nodiscard]] bool tellsReset() const override { return tellsReset_; }
+
+private:
+    bool tellsReset_;
+};
+
 // Keeps count of what lives and what is current: a surface or context must not go while it is current.
 class FakePlatform : public gl::Platform {
 public:
-    explicit FakePlatform(const FakeGlOptions& options) : options_(options) { state = {}; }
+    explicit FakePlatform(const FakeGlOptions& options) : options_(options) {
+        state = {};
+        state.options = options;
+    }
     Result<std::unique_ptr<gl::Surface>> createSurface(const gl::SurfaceConfig& c) override {
         if (options_.surfacesFail || c.width > state.maxSurface || c.height > state.maxSurface) return Error{"too large"};
         return std::unique_ptr<gl::Surface>(new FakeSurface(c.width, c.height, options_.singleBuffered));
@@ -165,7 +196,7 @@ public:
     Result<std::unique_ptr<gl::Context>> createContext(const gl::ContextConfig& c, gl::Context* share) override {
         if (c.major > 9) return Error{"no such version"};
         if (share && !dynamic_cast<gl::Context*>(share)) return Error{"a share context that is gone"};
-        return std::make_unique<gl::Context>();
+        return std::unique_ptr<gl::Context>(new FakeContext(c.tellsReset));
     }
     Result<void> makeCurrent(gl::Context* context, gl::Surface* draw, gl::Surface* read) override {
         // What was current is flushed, what becomes current is looked at: both must be alive.

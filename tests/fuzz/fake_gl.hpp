@@ -12,6 +12,9 @@ namespace mural::fuzz {
 struct FakeGlOptions {
     bool singleBuffered = false;
     bool surfacesFail = false;
+    int largestTexture = 0;    // in pixels; beyond, there is no memory. 0: any
+    bool talks = false;        // each glDrawArrays sends a message of performance to the debug callback
+    unsigned resetStatus = 0;  // what contexts that tell resets say
 };
 // One at a time per process.
 std::unique_ptr<gl::Platform> makeFakePlatform(const FakeGlOptions& options);

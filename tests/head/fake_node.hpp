@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct FakeNodeBehaviour {
     bool silentStart = false;      // never ready
     bool refuses = false;          // says why, instead of being ready, and ends
     bool drawsWhole = false;       // says so with every frame
+    std::string news;              // a driver message with every frame
     uint32_t dieAtFrame = 0;       // closes its connection instead of finishing this frame
     uint32_t dieAtRequest = 0;     // instead of answering
     uint32_t garbageAtFrame = 0;   // sends a message that makes no sense
@@ -142,6 +144,11 @@ private:
             const uint32_t pixel = frame << 8 | static_cast<uint32_t>(setup_.node);
             const std::vector<uint32_t> rows(static_cast<size_t>(v.area()), pixel);
             sendStruct(wire::NodeMessage::Picture, header, std::as_bytes(std::span(rows)));
+        }
+        if (!behaviour_.news.empty()) {
+            const wire::News news{client, 7, static_cast<uint32_t>(wire::NewsKind::DebugMessage), 1, 2, static_cast<uint32_t>(setup_.node), 4,
+                                  static_cast<uint32_t>(behaviour_.news.size())};
+            sendStruct(wire::NodeMessage::News, news, std::as_bytes(std::span(behaviour_.news)));
         }
         wire::FrameDoneMessage done{};
         done.client = client;

@@ -44,6 +44,30 @@ TEST(HeadSession, announcesWhatAllNodesHave) {
     EXPECT_EQ(head.status(), 0);
 }
 
+TEST(HeadSession, aProgramHearsWhatTheNodesHaveToSayOnce) {
+    SessionHarness head(3);
+    for (auto& behaviour : head.behaviours) behaviour.news = "a slow draw" + std::string(600, '.');
+    head.start();
+    head.waitFor("ready");
+    FakeProgram program;
+    ASSERT_TRUE(program.connect(head.config.session));
+    ASSERT_TRUE(swapFrames(program, 1, 2));
+    ASSERT_TRUE(program.waitFramesDone(2));
+    ASSERT_EQ(program.header()->newsTail.load(), 2u); // from three nodes
+    wire::News news{};
+    const capture::NewsSlot& slot = capture::news(program.header())[1];
+    std::memcpy(&news, slot.news, sizeof news);
+    EXPECT_EQ(news.context, 7u);
+    EXPECT_EQ(news.textBytes, capture::kNewsTextBytes); // the rest of a long text is left out
+    EXPECT_EQ(std::string(slot.text, 11), "a slow draw");
+    // A program that never looks: news are lost, frames go on.
+    ASSERT_TRUE(swapFrames(program, 3, 100));
+    ASSERT_TRUE(program.waitFramesDone(100));
+    EXPECT_EQ(program.header()->newsTail.load(), capture::kNewsSlots);
+    head.finish();
+    EXPECT_EQ(head.status(), 0);
+}
+
 TEST(HeadSession, everyNodeGetsEveryPacketInOrder) {
     SessionHarness head(3);
     head.start();

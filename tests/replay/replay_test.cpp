@@ -16,7 +16,7 @@ namespace {
 class ReplayTest : public ::testing::Test {
 protected:
     void SetUp() override { start({}); }
-    void start(const ReplayLimits& limits) {
+    void start(const ReplayLimits& limits, const fuzz::FakeGlOptions& options = {}) {
         ReplayConfig config;
         config.limits = limits;
         ReplayOutputs out;
@@ -30,7 +30,14 @@ protected:
             pictureBytes_ = f.pixels ? static_cast<int64_t>(f.pixels(f.region) != nullptr) * f.region.area() * 4 : -1;
         };
         out.log = [this](const std::string& line) { log_ += line + "\n"; };
-        replay_ = std::make_unique<Replay>(fuzz::makeFakePlatform({}), config, out);
+        out.news = [this](const wire::News& n, const std::string& text) {
+            EXPECT_EQ(n.client, 1u);
+            EXPECT_EQ(n.context, 1u);
+            EXPECT_EQ(n.textBytes, text.size());
+            news_.push_back(n);
+            newsText_ = text;
+        };
+        replay_ = std::make_unique<Replay>(fuzz::makeFakePlatform(options), config, out);
     }
 
     // What was encoded goes to the replay as packets of that thread of client 1.
@@ -62,6 +69,8 @@ protected:
     size_t answerBytes_ = 0;
     int answers_ = 0;
     std::string log_;
+    std::vector<wire::News> news_;
+    std::string newsText_;
 };
 
 TEST_F(ReplayTest, AFrameComesOut) {
@@ -283,6 +292,57 @@ TEST_F(ReplayTest, ClientArraysStayWithinTheirSpans) {
         records::clientArrays(t_, &bad, 1, &data, 1);
         EXPECT_FALSE(send());
     }
+}
+
+TEST_F(ReplayTest, MemoryThatIsNotThereIsTold) {
+    start({}, {.largestTexture = 100});
+    begin();
+    encode_glTexImage2D(t_, GL_TEXTURE_2D, 0, GL_RGBA, 10, 10, 0, GL_RGBA, GL_UNSIGNED_BYTE, {});
+    EXPECT_TRUE(send());
+    EXPECT_TRUE(news_.empty());
+    encode_glTexImage2D(t_, GL_TEXTURE_2D, 0, GL_RGBA, 11, 10, 0, GL_RGBA, GL_UNSIGNED_BYTE, {});
+    records::swap(t_, 1, 1);
+    EXPECT_TRUE(send());
+    ASSERT_EQ(news_.size(), 1u); // the swap finds nothing more
+    EXPECT_EQ(news_[0].kind, static_cast<uint32_t>(wire::NewsKind::OutOfMemory));
+}
+
+TEST_F(ReplayTest, ALostContextIsToldOnce) {
+    start({}, {.resetStatus = GL_GUILTY_CONTEXT_RESET});
+    begin();
+    for (uint32_t frame = 1; frame < 4; ++frame) records::swap(t_, 1, frame);
+    EXPECT_TRUE(send());
+    ASSERT_EQ(news_.size(), 1u);
+    EXPECT_EQ(news_[0].kind, static_cast<uint32_t>(wire::NewsKind::ContextLost));
+    EXPECT_EQ(news_[0].type, GLenum{GL_GUILTY_CONTEXT_RESET});
+    EXPECT_NE(log_.find("lost"), std::string::npos);
+}
+
+TEST_F(ReplayTest, MessagesOfTheDriverAreToldWhereTheProgramListens) {
+    start({}, {.talks = true});
+    begin();
+    encode_glDrawArrays(t_, GL_POINTS, 0, 1);
+    EXPECT_TRUE(send());
+    EXPECT_TRUE(news_.empty()); // debug output is off
+    encode_glEnable(t_, GL_DEBUG_OUTPUT);
+    encode_glDrawArrays(t_, GL_POINTS, 0, 1);
+    EXPECT_TRUE(send());
+    ASSERT_EQ(news_.size(), 1u); // what comes from the program itself it knows
+    EXPECT_EQ(news_[0].kind, static_cast<uint32_t>(wire::NewsKind::DebugMessage));
+    EXPECT_EQ(news_[0].source, GLenum{GL_DEBUG_SOURCE_API});
+    EXPECT_EQ(newsText_, "a slow draw");
+}
+
+TEST_F(ReplayTest, LabelsStayWithinTheirRecord) {
+    begin();
+    const std::string text(30, 'x');
+    encode_glObjectLabel(t_, GL_TEXTURE, 1, 30, DataArg::of(text.data(), 30));
+    encode_glObjectLabel(t_, GL_TEXTURE, 1, -1, DataArg::text(text.c_str()));
+    encode_glObjectLabel(t_, GL_TEXTURE, 1, 0, {});
+    encode_glPushDebugGroup(t_, GL_DEBUG_SOURCE_APPLICATION, 1, -1, DataArg::of(text.data(), 30)); // without an end
+    EXPECT_TRUE(send());
+    encode_glObjectLabel(t_, GL_TEXTURE, 1, 31, DataArg::of(text.data(), 30));
+    EXPECT_FALSE(send());
 }
 
 TEST_F(ReplayTest, GlWithoutAContextDoesNothing) {

@@ -1,0 +1,43 @@
+#include "interposer/fronts/egl_syncs.hpp"
+
+#include "interposer/fronts/front.hpp"
+#include "interposer/session.hpp"
+#include "interposer/thread_state.hpp"
+
+namespace mural {
+
+namespace {
+template <class F> F* real(const char* name) { return reinterpret_cast<F*>(eglFront().behind(name)); }
+
+void publishOwn() {
+    if (Session* s = Session::current(); s && tThread->context) s->publish(*tThread, false);
+}
+} // namespace
+
+EGLSync createSync(EGLDisplay dpy, EGLenum type, const EGLAttrib* attributes) {
+    static auto* call = real<EGLSync(EGLDisplay, EGLenum, const EGLAttrib*)>("eglCreateSync");
+    publishOwn();
+    return call(dpy, type, attributes);
+}
+EGLSyncKHR createSyncKhr(EGLDisplay dpy, EGLenum type, const EGLint* attributes) {
+    static auto* call = real<EGLSyncKHR(EGLDisplay, EGLenum, const EGLint*)>("eglCreateSyncKHR");
+    publishOwn();
+    return call(dpy, type, attributes);
+}
+EGLint clientWaitSync(EGLDisplay dpy, EGLSync sync, EGLint flags, EGLTime timeout) {
+    static auto* call = real<EGLint(EGLDisplay, EGLSync, EGLint, EGLTime)>("eglClientWaitSync");
+    publishOwn();
+    return call(dpy, sync, flags, timeout);
+}
+EGLint clientWaitSyncKhr(EGLDisplay dpy, EGLSyncKHR sync, EGLint flags, EGLTimeKHR timeout) {
+    static auto* call = real<EGLint(EGLDisplay, EGLSyncKHR, EGLint, EGLTimeKHR)>("eglClientWaitSyncKHR");
+    publishOwn();
+    return call(dpy, sync, flags, timeout);
+}
+EGLBoolean signalSync(EGLDisplay dpy, EGLSyncKHR sync, EGLenum mode) {
+    static auto* call = real<EGLBoolean(EGLDisplay, EGLSyncKHR, EGLenum)>("eglSignalSyncKHR");
+    publishOwn();
+    return call(dpy, sync, mode);
+}
+
+} // namespace mural

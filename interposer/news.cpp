@@ -1,0 +1,192 @@
+#include "interposer/news.hpp"
+
+#include <cstdlib>
+#include <cstring>
+#include <new>
+
+#include "interposer/asking.hpp"
+#include "interposer/context.hpp"
+#include "interposer/lock.hpp"
+#include "interposer/log.hpp"
+#include "interposer/real_gl.hpp"
+#include "interposer/thread_state.hpp"
+
+namespace mural {
+
+// A message that the program's own driver has told is not told again when the nodes' drivers tell it,
+// who replay the same calls: the n-th of the nodes is new when fewer have come from here.
+struct DebugListener {
+    struct Told {
+        uint64_t hash;
+        uint32_t here, nodes;
+    };
+    static constexpr uint32_t kMessages = 256; // kinds that are remembered; the oldest goes
+    Lock lock; // drivers call back from threads of their own
+    GLDEBUGPROC callback = nullptr;
+    const void* user = nullptr;
+    Told told[kMessages] = {};
+    uint32_t next = 0;
+
+    Told& find(uint64_t hash) {
+        for (Told& t : told) {
+            if (t.hash == hash) return t;
+        }
+        Told& t = told[next++ % kMessages];
+        t = {hash, 0, 0};
+        return t;
+    }
+};
+
+namespace {
+
+struct Waiting {
+    wire::News news;
+    Waiting* next;
+    char text[capture::kNewsTextBytes + 1];
+};
+constexpr int kMostWaiting = 64; // for threads that do nothing; the oldest goes
+Lock newsLock;
+Waiting* waiting = nullptr; // in order
+int waitingCount = 0;
+
+// Numbers of messages differ from process to process, so they are no part of it.
+uint64_t hashOf(GLenum source, GLenum type, GLenum severity, const char* text, size_t length) {
+    uint64_t hash = 1469598103934665603u;
+    const auto add = [&](uint64_t value) { hash = (hash ^ value) * 1099511628211u; };
+    add(source);
+    add(type);
+    add(severity);
+    for (size_t i = 0; i < length; ++i) add(static_cast<unsigned char>(text[i]));
+    return hash | 1; // 0: nothing
+}
+
+void APIENTRY heardHere(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length, const GLchar* text, const void* user) {
+    auto& listener = *static_cast<DebugListener*>(const_cast<void*>(user));
+    GLDEBUGPROC callback = nullptr;
+    const void* with = nullptr;
+    {
+        Guard guard(listener.lock);
+        const size_t bytes = !text ? 0 : length < 0 ? std::strlen(text) : static_cast<size_t>(length);
+        ++listener.find(hashOf(source, type, severity, text, bytes < capture::kNewsTextBytes ? bytes : capture::kNewsTextBytes)).here;
+        callback = listener.callback;
+        with = listener.user;
+    }
+    if (callback) callback(source, type, id, severity, length, text, with);
+}
+
+void tellMessage(Context& c, const wire::News& n, const char* text) {
+    GLDEBUGPROC callback = nullptr;
+    const void* user = nullptr;
+    if (c.debug) {
+        Guard guard(c.debug->lock);
+        DebugListener::Told& told = c.debug->find(hashOf(n.source, n.type, n.severity, text, n.textBytes));
+        if (++told.nodes <= told.here) return;
+        callback = c.debug->callback;
+        user = c.debug->user;
+    }
+    if (callback) return callback(n.source, n.type, n.id, n.severity, static_cast<GLsizei>(n.textBytes), text, user);
+    // Errors and what compilers say stand in the driver's own log already.
+    if (n.type == GL_DEBUG_TYPE_ERROR || n.source == GL_DEBUG_SOURCE_SHADER_COMPILER || !gReal.glDebugMessageInsert) return;
+    gReal.glDebugMessageInsert(GL_DEBUG_SOURCE_THIRD_PARTY, n.type, n.id, n.severity, static_cast<GLsizei>(n.textBytes), text);
+}
+
+// The driver here, who had the same call, may have had no memory either.
+void tellOutOfMemory(Context& c) {
+    stashError(c, driverError()); // the program's own comes first
+    if (++c.nodesOutOfMemory > c.ownOutOfMemory) c.outOfMemoryDue = true;
+}
+
+void tellLost(Context& c, const wire::News& n) {
+    if (c.losesOnReset) {
+        c.resetStatus = n.type;
+        stashError(c, GL_CONTEXT_LOST);
+        return;
+    }
+    static bool once = false;
+    if (!__atomic_exchange_n(&once, true, __ATOMIC_RELAXED))
+        say("a node's graphics driver was reset, and this program did not ask to be told: its pictures are incomplete from now on; start it again");
+}
+
+void tell(Context& c, const Waiting& w) {
+    switch (static_cast<wire::NewsKind>(w.news.kind)) {
+    case wire::NewsKind::DebugMessage: return tellMessage(c, w.news, w.text);
+    case wire::NewsKind::OutOfMemory: return tellOutOfMemory(c);
+    case wire::NewsKind::ContextLost: return tellLost(c, w.news);
+    }
+}
+
+void dropOldest() {
+    Waiting* oldest = waiting;
+    waiting = oldest->next;
+    --waitingCount;
+    std::free(oldest);
+}
+
+void collect(Session& s) {
+    Waiting** end = &waiting;
+    while (*end) end = &(*end)->next;
+    while (s.newsWaiting()) {
+        auto* w = static_cast<Waiting*>(std::malloc(sizeof(Waiting)));
+        if (!w) return;
+        w->next = nullptr;
+        if (!s.takeNews(w->news, w->text)) return std::free(w);
+        *end = w;
+        end = &w->next;
+        if (++waitingCount > kMostWaiting) {
+            if (end == &waiting->next) end = &waiting;
+            dropOldest();
+        }
+    }
+}
+
+Waiting* takeFor(uint32_t context) {
+    for (Waiting** at = &waiting; *at; at = &(*at)->next) {
+        Waiting* w = *at;
+        if (w->news.context != context) continue;
+        *at = w->next;
+        --waitingCount;
+        return w;
+    }
+    return nullptr;
+}
+
+} // namespace
+
+void takeWaitingNews(ThreadState& t) {
+    Session* s = Session::current();
+    Context* c = t.context;
+    if (!c) return;
+    {
+        Guard guard(newsLock);
+        collect(*s);
+    }
+    for (;;) {
+        Waiting* w = nullptr;
+        {
+            Guard guard(newsLock);
+            w = takeFor(c->id);
+        }
+        if (!w) return;
+        tell(*c, *w);
+        std::free(w);
+    }
+}
+
+void listen(Context& c, GLDEBUGPROC callback, const void* user) {
+    if (!c.debug) {
+        void* memory = callback ? std::calloc(1, sizeof(DebugListener)) : nullptr;
+        if (memory) c.debug = new (memory) DebugListener;
+    }
+    if (!c.debug) return gReal.glDebugMessageCallback(reinterpret_cast<void*>(callback), user);
+    {
+        Guard guard(c.debug->lock);
+        c.debug->callback = callback;
+        c.debug->user = user;
+    }
+    gReal.glDebugMessageCallback(callback ? reinterpret_cast<void*>(&heardHere) : nullptr, callback ? c.debug : nullptr);
+}
+
+GLDEBUGPROC listener(const Context& c) { return c.debug ? c.debug->callback : nullptr; }
+const void* listenersUser(const Context& c) { return c.debug ? c.debug->user : nullptr; }
+
+} // namespace mural

@@ -1,0 +1,24 @@
+#include "nodes/head/news_merger.hpp"
+
+namespace mural {
+namespace {
+constexpr size_t kMostKinds = 4096; // of messages that are remembered; then the counts begin anew
+} // namespace
+
+bool NewsMerger::isNew(int node, const wire::News& news, const std::string& text) {
+    const std::lock_guard lock(mutex_);
+    if (counts_.size() >= kMostKinds) counts_.clear();
+    Count& count = counts_[{news.client, news.context, news.kind, news.source, news.type, news.severity, text}];
+    const auto index = static_cast<size_t>(node);
+    if (count.byNode.size() <= index) count.byNode.resize(index + 1);
+    if (++count.byNode[index] <= count.told) return false;
+    ++count.told;
+    return true;
+}
+
+void NewsMerger::programGone(uint32_t client) {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(counts_, [&](const auto& entry) { return std::get<0>(entry.first) == client; });
+}
+
+} // namespace mural

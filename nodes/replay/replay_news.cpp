@@ -1,0 +1,137 @@
+// What the program is told without having asked: messages of this node's driver, memory that could not be
+// had, a context that is lost.
+#include <string>
+#include <utility>
+
+#include "nodes/replay/replay.hpp"
+
+namespace mural {
+
+namespace {
+constexpr size_t kMostMessages = 64; // between two packets; the program learns of the first ones
+} // namespace
+
+void Replay::listenToDriver() {
+    if (c_->listens || c_ == none_.get() || !gl.glDebugMessageCallback) return;
+    c_->listens = true;
+    gl.glDebugMessageCallback(reinterpret_cast<void*>(&Replay::hearDriver), &c_->debug);
+}
+
+// What the program itself has said it knows.
+void APIENTRY Replay::hearDriver(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length, const GLchar* text, const void* inbox) {
+    if (source == GL_DEBUG_SOURCE_APPLICATION || source == GL_DEBUG_SOURCE_THIRD_PARTY || !text) return;
+    auto& box = *static_cast<DebugInbox*>(const_cast<void*>(inbox));
+    const std::lock_guard lock(box.mutex);
+    if (box.messages.size() >= kMostMessages) return;
+    box.messages.push_back({source, type, id, severity, length < 0 ? std::string(text) : std::string(text, static_cast<size_t>(length))});
+    box.any.store(true, std::memory_order_release);
+}
+
+void Replay::tell(wire::NewsKind kind, const DebugInbox::Message& m) {
+    if (!out_.news) return;
+    out_.news({c_->client, c_->id, static_cast<uint32_t>(kind), m.source, m.type, m.id, m.severity, static_cast<uint32_t>(m.text.size())}, m.text);
+}
+
+void Replay::tellMessages() {
+    if (!c_ || !c_->debug.any.load(std::memory_order_acquire)) return;
+    std::vector<DebugInbox::Message> messages;
+    {
+        const std::lock_guard lock(c_->debug.mutex);
+        messages.swap(c_->debug.messages);
+        c_->debug.any.store(false, std::memory_order_relaxed);
+    }
+    for (const auto& message : messages) tell(wire::NewsKind::DebugMessage, message);
+}
+
+// The program's own context raises all errors but those of this machine's memory. True: there was none.
+bool Replay::takeErrors() {
+    constexpr int kMostErrors = 8; // a lost context has them for ever
+    bool noMemory = false;
+    for (int i = 0; i < kMostErrors && gl.glGetError; ++i) {
+        const GLenum error = gl.glGetError();
+        if (error == GL_NO_ERROR) break;
+        ++counts_.glErrors;
+        noMemory = noMemory || error == GL_OUT_OF_MEMORY;
+    }
+    return noMemory;
+}
+
+// An error that was raised before would hide the one that is looked for.
+bool Replay::executeAllocating(ReplayFunction function, Args& in) {
+    (void)takeErrors();
+    const bool ok = function(*this, in);
+    if (takeErrors()) {
+        tell(wire::NewsKind::OutOfMemory, {});
+        out_.log("no memory for an object of the program's: it is told GL_OUT_OF_MEMORY");
+    }
+    return ok;
+}
+
+// ---- what programs write for tools, and what they want to hear
+
+namespace {
+std::string textOf(const Data& d, GLsizei length) {
+    const auto bytes = d.span();
+    const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    return length < 0 ? text.substr(0, text.find('\0')) : text.substr(0, static_cast<size_t>(length));
+}
+
+Kind kindOf(GLenum identifier) {
+    switch (identifier) {
+    case GL_BUFFER: return Kind::Buffer;
+    case GL_SHADER:
+    case GL_PROGRAM: return Kind::Program;
+    case GL_VERTEX_ARRAY: return Kind::VertexArray;
+    case GL_QUERY: return Kind::Query;
+    case GL_PROGRAM_PIPELINE: return Kind::Pipeline;
+    case GL_TRANSFORM_FEEDBACK: return Kind::TransformFeedback;
+    case GL_SAMPLER: return Kind::Sampler;
+    case GL_TEXTURE: return Kind::Texture;
+    case GL_RENDERBUFFER: return Kind::Renderbuffer;
+    case GL_FRAMEBUFFER: return Kind::Framebuffer;
+    default: return Kind::Count; // display lists: several of ours are one of the program's
+    }
+}
+} // namespace
+
+void Replay::glObjectLabel(GLenum identifier, GLuint object, GLsizei length, const Data& label) {
+    const Kind kind = kindOf(identifier);
+    const GLuint ours = kind == Kind::Count ? 0 : table(kind).find(object);
+    if (!ours || !gl.glObjectLabel) return;
+    const std::string text = textOf(label, length);
+    gl.glObjectLabel(identifier, ours, static_cast<GLsizei>(text.size()), label.absent() ? nullptr : text.c_str());
+}
+void Replay::glObjectPtrLabel(uint64_t ptr, GLsizei length, const Data& label) {
+    if (!c_->shared || !gl.glObjectPtrLabel) return;
+    const auto it = c_->shared->syncs.find(ptr);
+    if (it == c_->shared->syncs.end() || !it->second) return;
+    const std::string text = textOf(label, length);
+    gl.glObjectPtrLabel(it->second, static_cast<GLsizei>(text.size()), label.absent() ? nullptr : text.c_str());
+}
+void Replay::glPushDebugGroup(GLenum source, GLuint id, GLsizei length, const Data& message) {
+    const std::string text = textOf(message, length);
+    if (gl.glPushDebugGroup) gl.glPushDebugGroup(source, id, static_cast<GLsizei>(text.size()), text.c_str());
+}
+// The numbers of a driver's messages differ from process to process.
+void Replay::glDebugMessageControl(GLenum source, GLenum type, GLenum severity, GLsizei count, const Data&, GLboolean enabled) {
+    if (count == 0 && gl.glDebugMessageControl) gl.glDebugMessageControl(source, type, severity, 0, nullptr, enabled);
+}
+
+// What only drawing has found, at the end of a frame.
+void Replay::tellTroubles() {
+    if (!bound_) return;
+    ContextState* const own = std::exchange(c_, bound_);
+    if (takeErrors()) tell(wire::NewsKind::OutOfMemory, {});
+    if (!c_->lost && c_->context->tellsReset() && gl.glGetGraphicsResetStatus) {
+        const GLenum status = gl.glGetGraphicsResetStatus();
+        c_->lost = status != GL_NO_ERROR;
+        if (c_->lost) {
+            tell(wire::NewsKind::ContextLost, {0, status, 0, 0, {}});
+            out_.log("the graphics driver has lost a context (GPU reset): what the program draws with it is missing on this node's tiles; start the program again");
+        }
+    }
+    tellMessages();
+    c_ = own;
+}
+
+} // namespace mural

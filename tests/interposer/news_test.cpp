@@ -1,0 +1,143 @@
+// What the program hears of the nodes: neither what its own driver has told already, nor twice.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <deque>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "interposer/asking.hpp"
+#include "interposer/context.hpp"
+#include "interposer/log.hpp"
+#include "interposer/news.hpp"
+#include "interposer/real_gl.hpp"
+
+namespace mural {
+
+namespace {
+capture::CaptureHeader shared{};
+std::deque<std::pair<wire::News, std::string>> coming;
+std::vector<std::string> inserted;
+GLDEBUGPROC driverCallback = nullptr;
+const void* driverUser = nullptr;
+GLenum pendingError = GL_NO_ERROR;
+std::string said;
+} // namespace
+
+// ---- what news.cpp calls
+
+GlFunctions gReal{};
+Session* Session::current() {
+    static Session session;
+    session.header_ = &shared;
+    return &session;
+}
+bool Session::takeNews(wire::News& news, char* text) {
+    if (coming.empty()) return false;
+    news = coming.front().first;
+    std::memcpy(text, coming.front().second.c_str(), coming.front().second.size() + 1);
+    coming.pop_front();
+    ++newsTaken_;
+    return true;
+}
+GLenum driverError() { return std::exchange(pendingError, GL_NO_ERROR); }
+void stashError(Context& c, GLenum error) {
+    if (error == GL_OUT_OF_MEMORY) ++c.ownOutOfMemory;
+    if (!c.stashedError) c.stashedError = error;
+}
+void say(const char* format, ...) { said = format; }
+
+namespace {
+
+class NewsTest : public ::testing::Test {
+protected:
+    void SetUp() override {
+        gReal.glDebugMessageCallback = [](void* callback, const void* user) {
+            driverCallback = reinterpret_cast<GLDEBUGPROC>(callback);
+            driverUser = user;
+        };
+        gReal.glDebugMessageInsert = [](GLenum, GLenum, GLuint, GLenum, GLsizei, const GLchar* text) { inserted.emplace_back(text); };
+        inserted.clear();
+        said.clear();
+        context_.id = 3;
+        t_.context = &context_;
+    }
+    void comes(wire::NewsKind kind, const std::string& text = "", uint32_t type = 0, uint32_t context = 3) {
+        coming.push_back({{1, context, static_cast<uint32_t>(kind), GL_DEBUG_SOURCE_API, type, 5, GL_DEBUG_SEVERITY_LOW, static_cast<uint32_t>(text.size())}, text});
+        shared.newsTail.fetch_add(1);
+    }
+    void message(const std::string& text, uint32_t type = GL_DEBUG_TYPE_PERFORMANCE, uint32_t context = 3) {
+        comes(wire::NewsKind::DebugMessage, text, type, context);
+        takeNews(t_);
+    }
+    void fromDriver(const char* text) { driverCallback(GL_DEBUG_SOURCE_API, GL_DEBUG_TYPE_PERFORMANCE, 9, GL_DEBUG_SEVERITY_LOW, -1, text, driverUser); }
+
+    static void APIENTRY hear(GLenum, GLenum, GLuint, GLenum, GLsizei length, const GLchar* text, const void* user) {
+        static_cast<std::vector<std::string>*>(const_cast<void*>(user))->emplace_back(length < 0 ? std::string(text) : std::string(text, static_cast<size_t>(length)));
+    }
+    std::vector<std::string> heard_;
+    Context context_;
+    ThreadState t_;
+};
+
+TEST_F(NewsTest, MessagesReachTheCallbackOnce) {
+    listen(context_, hear, &heard_);
+    message("slow");
+    EXPECT_EQ(heard_, std::vector<std::string>({"slow"}));
+    fromDriver("slow"); // the program hears its own driver always
+    EXPECT_EQ(heard_.size(), 2u);
+    fromDriver("wrong");
+    message("wrong"); // the same call on the nodes
+    EXPECT_EQ(heard_, std::vector<std::string>({"slow", "slow", "wrong"}));
+    message("wrong"); // found by drawing alone
+    EXPECT_EQ(heard_.size(), 4u);
+    EXPECT_TRUE(inserted.empty());
+}
+
+TEST_F(NewsTest, WithoutACallbackTheDriverKeepsThem) {
+    message("slow");
+    message("error", GL_DEBUG_TYPE_ERROR); // stands in its log already
+    EXPECT_EQ(inserted, std::vector<std::string>({"slow"}));
+}
+
+TEST_F(NewsTest, OtherContextsWaitForTheirThread) {
+    listen(context_, hear, &heard_);
+    message("for another", GL_DEBUG_TYPE_PERFORMANCE, 4);
+    EXPECT_TRUE(heard_.empty());
+    for (int i = 0; i < 200; ++i) message("nobody takes this", GL_DEBUG_TYPE_PERFORMANCE, 77);
+    message("mine");
+    EXPECT_EQ(heard_, std::vector<std::string>({"mine"}));
+    context_.id = 77;
+    comes(wire::NewsKind::DebugMessage, "mine", 0);
+    takeNews(t_);
+    EXPECT_GE(heard_.size(), 2u);
+}
+
+TEST_F(NewsTest, NoMemoryIsAnErrorUnlessTheDriverHadNoneEither) {
+    comes(wire::NewsKind::OutOfMemory);
+    takeNews(t_);
+    EXPECT_TRUE(context_.outOfMemoryDue);
+    context_.outOfMemoryDue = false;
+    pendingError = GL_OUT_OF_MEMORY; // the driver's, not fetched yet
+    comes(wire::NewsKind::OutOfMemory);
+    comes(wire::NewsKind::OutOfMemory);
+    takeNews(t_);
+    EXPECT_EQ(context_.stashedError, GLenum{GL_OUT_OF_MEMORY});
+    EXPECT_TRUE(context_.outOfMemoryDue); // three on the nodes, one here
+}
+
+TEST_F(NewsTest, AResetIsAStatusWhereTheProgramHasAskedForIt) {
+    comes(wire::NewsKind::ContextLost, "", GL_INNOCENT_CONTEXT_RESET);
+    takeNews(t_);
+    EXPECT_EQ(context_.resetStatus, GLenum{GL_NO_ERROR});
+    EXPECT_FALSE(said.empty());
+    context_.losesOnReset = true;
+    comes(wire::NewsKind::ContextLost, "", GL_INNOCENT_CONTEXT_RESET);
+    takeNews(t_);
+    EXPECT_EQ(context_.resetStatus, GLenum{GL_INNOCENT_CONTEXT_RESET});
+    EXPECT_EQ(context_.stashedError, GLenum{GL_CONTEXT_LOST});
+}
+
+} // namespace
+} // namespace mural
