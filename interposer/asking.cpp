@@ -33,11 +33,10 @@ template <class Send> bool ask(ThreadState& t, const char* by, void* into, uint6
 } // namespace
 
 GLenum takeError(Context& c) {
-    GLenum error = c.stashedError;
+    const GLenum stashed = c.stashedError, error = gReal.glGetError();
     c.stashedError = 0;
-    if (error) return error;
-    error = gReal.glGetError();
     if (error == GL_OUT_OF_MEMORY) ++c.ownOutOfMemory;
+    if (stashed) return stashed; // a driver keeps the first only: what came after is lost natively, too
     if (error || !c.outOfMemoryDue) return error;
     c.outOfMemoryDue = false;
     return GL_OUT_OF_MEMORY;

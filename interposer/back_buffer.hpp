@@ -4,6 +4,8 @@
 
 #include <GL/gl.h>
 
+#include "interposer/pixel_store.hpp"
+
 namespace mural {
 
 struct Context;
@@ -26,15 +28,13 @@ public:
 
 private:
     void bindWindow(const Window& window);
-    void setPack();
 
     Context& context_;
     Where where_;
     bool ready_ = false;
     GLenum target_;
-    GLint framebuffer_ = 0, packBuffer_ = 0, readBuffer_ = 0;
-    int firstPack_ = 0;
-    GLint pack_[6] = {};
+    GLint framebuffer_ = 0, readBuffer_ = 0;
+    TightPack pack_;
 };
 
 } // namespace mural

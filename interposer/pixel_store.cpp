@@ -11,6 +11,9 @@ namespace {
 bool hasPixelBuffers(const Context& c) { return c.api == wire::Api::Desktop ? c.version >= 21 : c.version >= 30; }
 bool hasRowLength(const Context& c) { return c.api == wire::Api::Desktop || c.version >= 30; }
 
+// In the order in which the versions have brought them: ES 1 and 2 have the last only, ES 3 has no swapping.
+constexpr GLenum kPack[6] = {GL_PACK_SWAP_BYTES, GL_PACK_LSB_FIRST, GL_PACK_ROW_LENGTH, GL_PACK_SKIP_ROWS, GL_PACK_SKIP_PIXELS, GL_PACK_ALIGNMENT};
+
 GLint get(GLenum name) {
     GLint value = 0;
     gReal.glGetIntegerv(name, &value);
@@ -50,6 +53,24 @@ sizes::PixelStore packStore(const Context& c) {
     s.swapBytes = get(GL_PACK_SWAP_BYTES) != 0;
     s.lsbFirst = get(GL_PACK_LSB_FIRST) != 0;
     return s;
+}
+
+TightPack::TightPack(const Context& context) : first_(context.api == wire::Api::Desktop ? 0 : context.version >= 30 ? 2 : 5) {
+    if (packBufferBound(context)) buffer_ = get(GL_PIXEL_PACK_BUFFER_BINDING);
+    // What another context of the share group has deleted may still be bound here.
+    ready_ = !buffer_ || gReal.glIsBuffer(static_cast<GLuint>(buffer_));
+    if (!ready_) return;
+    if (buffer_) gReal.glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+    for (int i = first_; i < 6; ++i) {
+        values_[i] = get(kPack[i]);
+        gReal.glPixelStorei(kPack[i], i == 5 ? 1 : 0);
+    }
+}
+
+TightPack::~TightPack() {
+    if (!ready_) return;
+    for (int i = first_; i < 6; ++i) gReal.glPixelStorei(kPack[i], values_[i]);
+    if (buffer_) gReal.glBindBuffer(GL_PIXEL_PACK_BUFFER, static_cast<GLuint>(buffer_));
 }
 
 bool isTight(const sizes::ImageLayout& l) {

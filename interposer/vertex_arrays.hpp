@@ -45,6 +45,9 @@ public:
     [[nodiscard]] bool anyClient() const { return current_->anyClient(); }
 
     void bind(GLuint name);
+    // It has been bound before, so there is one.
+    [[nodiscard]] bool knows(GLuint name) const { return name == 0 || (name < namedCount_ && named_[name]); }
+    [[nodiscard]] GLuint currentName() const { return current_->name; }
     void remove(GLsizei n, const GLuint* names);
     void bindArrayBuffer(GLuint buffer) { arrayBuffer_ = buffer; }
     [[nodiscard]] GLuint arrayBuffer() const { return arrayBuffer_; }

@@ -11,20 +11,40 @@ using namespace mural::client_arrays;
 
 namespace {
 
-// True when the pointer is an offset that the nodes need now.
-bool set(ThreadState& t, uint32_t slot, GLint size, GLenum type, GLsizei stride, const void* pointer, uint32_t flags = 0) {
-    return t.context && !t.context->arrays.setPointer(slot, size, type, stride, flags, pointer);
+// What programs give all the time and no driver refuses.
+bool isUsual(const Context& c, GLint size, GLenum type, GLsizei stride) {
+    const bool floats = type == GL_FLOAT && size >= 3 && size <= 4, bytes = type == GL_UNSIGNED_BYTE && size == 4;
+    constexpr GLsizei kStride = 2048; // GL_MAX_VERTEX_ATTRIB_STRIDE is at least that
+    return (floats || bytes) && stride >= 0 && stride <= kStride && !c.core && (c.arrays.arrayBuffer() || c.arrays.currentName() == 0);
+}
+
+// The call goes to the program's own context; if it takes it, the mirror does, and `send` is called where the pointer is
+// an offset that the nodes need now.
+template <class Local, class Send>
+void point(uint32_t slot, GLint size, GLenum type, GLsizei stride, const void* pointer, uint32_t flags, Local&& local, Send&& send) {
+    ThreadState& t = *tThread;
+    if (!t.context) return local();
+    const bool fewTypes = slot == kVertex || slot == kNormal || (slot >= kTexCoord0 && slot < kTexCoord0 + kTexCoords);
+    const bool refusable = slot == kSecondaryColor || (fewTypes && type == GL_UNSIGNED_BYTE);
+    if (!refusable && isUsual(*t.context, size, type, stride)) local();
+    else if (!raisesNothing(*t.context, local)) return;
+    if (!t.context->arrays.setPointer(slot, size, type, stride, flags, pointer)) send(t);
 }
 
 void enableSlot(ThreadState& t, uint32_t slot, bool on) {
     if (t.context && slot < kSlots) t.context->arrays.current().enable(slot, on);
 }
 
+constexpr GLuint kUnitsOfAll = 2; // GL_MAX_TEXTURE_COORDS is at least that
+
 // The texture unit is named by the command: selected for it, then the program's own again.
 template <class Call> void withUnit(GLenum unit, Call&& call) {
     GLint before = GL_TEXTURE0;
     gReal.glGetIntegerv(GL_CLIENT_ACTIVE_TEXTURE, &before);
     mural_glClientActiveTexture(unit);
+    GLint now = GL_TEXTURE0;
+    gReal.glGetIntegerv(GL_CLIENT_ACTIVE_TEXTURE, &now);
+    if (static_cast<GLenum>(now) != unit) return; // there is no such unit
     call();
     mural_glClientActiveTexture(static_cast<GLenum>(before));
 }
@@ -59,70 +79,57 @@ void mural_glDisable(GLenum cap) {
 }
 
 void mural_glVertexPointer(GLint size, GLenum type, GLsizei stride, const void* pointer) {
-    ThreadState& t = *tThread;
-    if (set(t, kVertex, size, type, stride, pointer)) encode_glVertexPointer(t, size, type, stride, pointer);
-    gReal.glVertexPointer(size, type, stride, pointer);
+    point(kVertex, size, type, stride, pointer, 0, [=] { gReal.glVertexPointer(size, type, stride, pointer); },
+          [=](ThreadState& t) { encode_glVertexPointer(t, size, type, stride, pointer); });
 }
 void mural_glNormalPointer(GLenum type, GLsizei stride, const void* pointer) {
-    ThreadState& t = *tThread;
-    if (set(t, kNormal, 3, type, stride, pointer)) encode_glNormalPointer(t, type, stride, pointer);
-    gReal.glNormalPointer(type, stride, pointer);
+    point(kNormal, 3, type, stride, pointer, 0, [=] { gReal.glNormalPointer(type, stride, pointer); },
+          [=](ThreadState& t) { encode_glNormalPointer(t, type, stride, pointer); });
 }
 void mural_glColorPointer(GLint size, GLenum type, GLsizei stride, const void* pointer) {
-    ThreadState& t = *tThread;
-    if (set(t, kColor, size, type, stride, pointer)) encode_glColorPointer(t, size, type, stride, pointer);
-    gReal.glColorPointer(size, type, stride, pointer);
+    point(kColor, size, type, stride, pointer, 0, [=] { gReal.glColorPointer(size, type, stride, pointer); },
+          [=](ThreadState& t) { encode_glColorPointer(t, size, type, stride, pointer); });
 }
 void mural_glSecondaryColorPointer(GLint size, GLenum type, GLsizei stride, const void* pointer) {
-    ThreadState& t = *tThread;
-    if (set(t, kSecondaryColor, size, type, stride, pointer)) encode_glSecondaryColorPointer(t, size, type, stride, pointer);
-    gReal.glSecondaryColorPointer(size, type, stride, pointer);
+    point(kSecondaryColor, size, type, stride, pointer, 0, [=] { gReal.glSecondaryColorPointer(size, type, stride, pointer); },
+          [=](ThreadState& t) { encode_glSecondaryColorPointer(t, size, type, stride, pointer); });
 }
 void mural_glTexCoordPointer(GLint size, GLenum type, GLsizei stride, const void* pointer) {
-    ThreadState& t = *tThread;
-    const uint32_t slot = t.context ? t.context->arrays.texCoordSlot() : kTexCoord0;
-    if (set(t, slot, size, type, stride, pointer)) encode_glTexCoordPointer(t, size, type, stride, pointer);
-    gReal.glTexCoordPointer(size, type, stride, pointer);
+    const ThreadState& thread = *tThread;
+    const uint32_t slot = thread.context ? thread.context->arrays.texCoordSlot() : kTexCoord0;
+    point(slot, size, type, stride, pointer, 0, [=] { gReal.glTexCoordPointer(size, type, stride, pointer); },
+          [=](ThreadState& t) { encode_glTexCoordPointer(t, size, type, stride, pointer); });
 }
 void mural_glFogCoordPointer(GLenum type, GLsizei stride, const void* pointer) {
-    ThreadState& t = *tThread;
-    if (set(t, kFogCoord, 1, type, stride, pointer)) encode_glFogCoordPointer(t, type, stride, pointer);
-    gReal.glFogCoordPointer(type, stride, pointer);
+    point(kFogCoord, 1, type, stride, pointer, 0, [=] { gReal.glFogCoordPointer(type, stride, pointer); },
+          [=](ThreadState& t) { encode_glFogCoordPointer(t, type, stride, pointer); });
 }
 void mural_glIndexPointer(GLenum type, GLsizei stride, const void* pointer) {
-    ThreadState& t = *tThread;
-    if (set(t, kIndex, 1, type, stride, pointer)) encode_glIndexPointer(t, type, stride, pointer);
-    gReal.glIndexPointer(type, stride, pointer);
+    point(kIndex, 1, type, stride, pointer, 0, [=] { gReal.glIndexPointer(type, stride, pointer); },
+          [=](ThreadState& t) { encode_glIndexPointer(t, type, stride, pointer); });
 }
 void mural_glEdgeFlagPointer(GLsizei stride, const void* pointer) {
-    ThreadState& t = *tThread;
-    if (set(t, kEdgeFlag, 1, GL_UNSIGNED_BYTE, stride, pointer)) encode_glEdgeFlagPointer(t, stride, pointer);
-    gReal.glEdgeFlagPointer(stride, pointer);
+    point(kEdgeFlag, 1, GL_UNSIGNED_BYTE, stride, pointer, 0, [=] { gReal.glEdgeFlagPointer(stride, pointer); },
+          [=](ThreadState& t) { encode_glEdgeFlagPointer(t, stride, pointer); });
 }
 void mural_glPointSizePointerOES(GLenum type, GLsizei stride, const void* pointer) {
-    ThreadState& t = *tThread;
-    if (set(t, kPointSize, 1, type, stride, pointer)) encode_glPointSizePointerOES(t, type, stride, pointer);
-    gReal.glPointSizePointerOES(type, stride, pointer);
+    point(kPointSize, 1, type, stride, pointer, 0, [=] { gReal.glPointSizePointerOES(type, stride, pointer); },
+          [=](ThreadState& t) { encode_glPointSizePointerOES(t, type, stride, pointer); });
 }
 void mural_glVertexAttribPointer(GLuint index, GLint size, GLenum type, GLboolean normalized, GLsizei stride, const void* pointer) {
-    ThreadState& t = *tThread;
-    if (index < kGenerics) {
-        if (set(t, kGeneric0 + index, size, type, stride, pointer, normalized ? kNormalized : 0))
-            encode_glVertexAttribPointer(t, index, size, type, normalized, stride, pointer);
-    }
-    gReal.glVertexAttribPointer(index, size, type, normalized, stride, pointer);
+    if (index >= kGenerics) return gReal.glVertexAttribPointer(index, size, type, normalized, stride, pointer);
+    point(kGeneric0 + index, size, type, stride, pointer, normalized ? uint32_t{kNormalized} : 0, [=] { gReal.glVertexAttribPointer(index, size, type, normalized, stride, pointer); },
+          [=](ThreadState& t) { encode_glVertexAttribPointer(t, index, size, type, normalized, stride, pointer); });
 }
 void mural_glVertexAttribIPointer(GLuint index, GLint size, GLenum type, GLsizei stride, const void* pointer) {
-    ThreadState& t = *tThread;
-    if (index < kGenerics && set(t, kGeneric0 + index, size, type, stride, pointer, kInteger))
-        encode_glVertexAttribIPointer(t, index, size, type, stride, pointer);
-    gReal.glVertexAttribIPointer(index, size, type, stride, pointer);
+    if (index >= kGenerics) return gReal.glVertexAttribIPointer(index, size, type, stride, pointer);
+    point(kGeneric0 + index, size, type, stride, pointer, kInteger, [=] { gReal.glVertexAttribIPointer(index, size, type, stride, pointer); },
+          [=](ThreadState& t) { encode_glVertexAttribIPointer(t, index, size, type, stride, pointer); });
 }
 void mural_glVertexAttribLPointer(GLuint index, GLint size, GLenum type, GLsizei stride, const void* pointer) {
-    ThreadState& t = *tThread;
-    if (index < kGenerics && set(t, kGeneric0 + index, size, type, stride, pointer, kLong))
-        encode_glVertexAttribLPointer(t, index, size, type, stride, pointer);
-    gReal.glVertexAttribLPointer(index, size, type, stride, pointer);
+    if (index >= kGenerics) return gReal.glVertexAttribLPointer(index, size, type, stride, pointer);
+    point(kGeneric0 + index, size, type, stride, pointer, kLong, [=] { gReal.glVertexAttribLPointer(index, size, type, stride, pointer); },
+          [=](ThreadState& t) { encode_glVertexAttribLPointer(t, index, size, type, stride, pointer); });
 }
 
 // EXT_vertex_array: the same with a count, which nobody needs.
@@ -228,9 +235,10 @@ void mural_glVertexAttribDivisor(GLuint index, GLuint divisor) {
 }
 void mural_glClientActiveTexture(GLenum texture) {
     ThreadState& t = *tThread;
+    if (!t.context || (texture - GL_TEXTURE0 < kUnitsOfAll && !t.context->core)) gReal.glClientActiveTexture(texture);
+    else if (!raisesNothing(*t.context, [=] { gReal.glClientActiveTexture(texture); })) return;
     if (t.context) t.context->arrays.activeTexture(texture);
     encode_glClientActiveTexture(t, texture);
-    gReal.glClientActiveTexture(texture);
 }
 void mural_glPushClientAttrib(GLbitfield mask) {
     ThreadState& t = *tThread;
@@ -246,9 +254,10 @@ void mural_glPopClientAttrib() {
 }
 void mural_glBindVertexArray(GLuint array) {
     ThreadState& t = *tThread;
+    if (!t.context || t.context->arrays.knows(array)) gReal.glBindVertexArray(array);
+    else if (!raisesNothing(*t.context, [=] { gReal.glBindVertexArray(array); })) return;
     if (t.context) t.context->arrays.bind(array);
     encode_glBindVertexArray(t, array);
-    gReal.glBindVertexArray(array);
 }
 void mural_glDeleteVertexArrays(GLsizei n, const GLuint* arrays) {
     ThreadState& t = *tThread;
@@ -288,8 +297,12 @@ void mural_glBindVertexBuffers(GLuint first, GLsizei count, const GLuint* buffer
 }
 void mural_glBindBuffer(GLenum target, GLuint buffer) {
     ThreadState& t = *tThread;
+    if (t.context && target == GL_QUERY_BUFFER) { // OpenGL ES has none
+        if (!raisesNothing(*t.context, [=] { gReal.glBindBuffer(target, buffer); })) return;
+        t.context->queryBuffer = buffer;
+        return encode_glBindBuffer(t, target, buffer);
+    }
     if (t.context && target == GL_ARRAY_BUFFER) t.context->arrays.bindArrayBuffer(buffer);
-    if (t.context && target == GL_QUERY_BUFFER) t.context->queryBuffer = buffer;
     if (t.context && target == GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD) { // of this process: the nodes have a buffer like others
         t.context->pinnedBuffer = buffer;
         return gReal.glBindBuffer(target, buffer);

@@ -7,18 +7,13 @@
 #include "interposer/commands/quiet.hpp"
 #include "interposer/context.hpp"
 #include "interposer/own_records.hpp"
+#include "interposer/read_area.hpp"
 #include "interposer/real_gl.hpp"
 #include "interposer/session.hpp"
 
 using namespace mural;
 
 namespace {
-
-bool readsWindow(const Context& c) {
-    GLint framebuffer = 0;
-    gReal.glGetIntegerv(c.api == wire::Api::Desktop || c.version >= 30 ? GL_READ_FRAMEBUFFER_BINDING : GL_FRAMEBUFFER_BINDING, &framebuffer);
-    return framebuffer == 0;
-}
 
 // What a copy into a texture level reads; `ask` gives the level's internal format. The copy itself raises the errors.
 template <class Ask> GLbitfield planesInto(ThreadState& t, Ask&& ask) {

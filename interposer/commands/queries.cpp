@@ -1,4 +1,6 @@
 // Queries: what they count happens on the nodes, so the nodes are asked, and their answers put together.
+#include <cstring>
+
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
 #include "interposer/asking.hpp"
@@ -33,6 +35,16 @@ void ends(ThreadState& t, GLenum target) {
     if (t.context && !t.context->compilingList) t.context->answers.ended(t, target, t.context->swaps);
 }
 
+// A node makes pieces of a query when it begins: it hears of it only if it does.
+template <class Local, class Send> void beginQuery(GLenum target, GLuint index, GLuint id, Local&& local, Send&& send) {
+    ThreadState& t = *tThread;
+    if (!t.context) return local();
+    if (!raisesNothing(*t.context, local)) return;
+    if (index == 0) begins(t, target, id);
+    else t.context->queryBegun.set(id, true);
+    send(t);
+}
+
 bool isResult(GLenum pname) { return pname == GL_QUERY_RESULT || pname == GL_QUERY_RESULT_NO_WAIT; }
 
 // The result over all tiles. False: it is the local driver's.
@@ -60,20 +72,29 @@ template <class T, class Local> void intoMemory(ThreadState& t, const char* by, 
     if (raisesNothing(*t.context, local) && result(t, by, id, value)) *params = held<T>(value);
 }
 
-// Writes bytes into the program's own buffer, by a copy: that is allowed for immutable ones, too.
-void writeBuffer(GLuint buffer, GLintptr offset, GLsizeiptr bytes, const void* data) {
-    GLuint between = 0;
+// Writes bytes into the program's own buffer: mapped, and where it is immutable and must not be mapped, by a copy. A
+// buffer for the copy takes a name that the program would get next.
+void writeBuffer(Context& c, GLuint buffer, GLintptr offset, GLsizeiptr bytes, const void* data) {
     GLint source = 0, target = 0;
-    gReal.glGetIntegerv(GL_COPY_READ_BUFFER_BINDING, &source);
     gReal.glGetIntegerv(GL_COPY_WRITE_BUFFER_BINDING, &target);
-    gReal.glGenBuffers(1, &between);
-    gReal.glBindBuffer(GL_COPY_READ_BUFFER, between);
-    gReal.glBufferData(GL_COPY_READ_BUFFER, bytes, data, GL_STREAM_COPY);
     gReal.glBindBuffer(GL_COPY_WRITE_BUFFER, buffer);
-    gReal.glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, offset, bytes);
+    stashError(c, driverError());
+    void* const mapped = gReal.glMapBufferRange(GL_COPY_WRITE_BUFFER, offset, bytes, GL_MAP_WRITE_BIT);
+    if (mapped) {
+        std::memcpy(mapped, data, static_cast<size_t>(bytes));
+        gReal.glUnmapBuffer(GL_COPY_WRITE_BUFFER);
+    } else {
+        (void)driverError();
+        GLuint between = 0;
+        gReal.glGetIntegerv(GL_COPY_READ_BUFFER_BINDING, &source);
+        gReal.glGenBuffers(1, &between);
+        gReal.glBindBuffer(GL_COPY_READ_BUFFER, between);
+        gReal.glBufferData(GL_COPY_READ_BUFFER, bytes, data, GL_STREAM_COPY);
+        gReal.glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, offset, bytes);
+        gReal.glBindBuffer(GL_COPY_READ_BUFFER, static_cast<GLuint>(source));
+        gReal.glDeleteBuffers(1, &between);
+    }
     gReal.glBindBuffer(GL_COPY_WRITE_BUFFER, static_cast<GLuint>(target));
-    gReal.glBindBuffer(GL_COPY_READ_BUFFER, static_cast<GLuint>(source));
-    gReal.glDeleteBuffers(1, &between);
 }
 
 // The same into a buffer: the program's own context and the nodes have it then.
@@ -87,7 +108,7 @@ template <class T, class Local> void intoBuffer(ThreadState& t, const char* by, 
     uint64_t value = 0;
     if (isResult(pname) && result(t, by, id, value)) {
         written = held<T>(value);
-        writeBuffer(buffer, offset, sizeof written, &written);
+        writeBuffer(*t.context, buffer, offset, sizeof written, &written);
     }
     gReal.glBindBuffer(GL_QUERY_BUFFER, static_cast<GLuint>(before));
     records::bufferBytes(t, buffer, static_cast<uint64_t>(offset), DataArg::of(&written, sizeof written));
@@ -116,10 +137,7 @@ bool isInverted(GLenum mode) {
 extern "C" {
 
 void mural_glBeginQuery(GLenum target, GLuint id) {
-    ThreadState& t = *tThread;
-    begins(t, target, id);
-    encode_glBeginQuery(t, target, id);
-    gReal.glBeginQuery(target, id);
+    beginQuery(target, 0, id, [=] { gReal.glBeginQuery(target, id); }, [=](ThreadState& t) { encode_glBeginQuery(t, target, id); });
 }
 void mural_glEndQuery(GLenum target) {
     ThreadState& t = *tThread;
@@ -134,11 +152,8 @@ void mural_glEndQueryIndexed(GLenum target, GLuint index) {
     if (index == 0) ends(t, target);
 }
 void mural_glBeginQueryIndexed(GLenum target, GLuint index, GLuint id) {
-    ThreadState& t = *tThread;
-    if (index == 0) begins(t, target, id);
-    else if (t.context) t.context->queryBegun.set(id, true);
-    encode_glBeginQueryIndexed(t, target, index, id);
-    gReal.glBeginQueryIndexed(target, index, id);
+    beginQuery(target, index, id, [=] { gReal.glBeginQueryIndexed(target, index, id); },
+               [=](ThreadState& t) { encode_glBeginQueryIndexed(t, target, index, id); });
 }
 void mural_glQueryCounter(GLuint id, GLenum target) {
     ThreadState& t = *tThread;

@@ -1,4 +1,6 @@
 // Pixels and texture images: drawn on the nodes, so read from the nodes.
+#include <cstring>
+
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
 #include "interposer/commands/quiet.hpp"
@@ -7,6 +9,7 @@
 #include "interposer/mapped_buffers.hpp"
 #include "interposer/own_records.hpp"
 #include "interposer/pixel_store.hpp"
+#include "interposer/read_area.hpp"
 #include "interposer/real_gl.hpp"
 #include "interposer/session.hpp"
 
@@ -19,32 +22,17 @@ bool capturing(const ThreadState& t) {
     return t.context && s && s->alive();
 }
 
-// The part of the rectangle inside the read framebuffer: GL leaves memory for the rest untouched.
-struct Clip {
-    GLint x, y;
-    GLsizei w, h;
-};
-bool readsWindow(const Context& c) {
-    GLint framebuffer = 0;
-    gReal.glGetIntegerv(c.api == wire::Api::Desktop || c.version >= 30 ? GL_READ_FRAMEBUFFER_BINDING : GL_FRAMEBUFFER_BINDING, &framebuffer);
-    return framebuffer == 0;
-}
 // A pixmap is drawn by the program's own GL too, and drivers let it have one buffer whatever its configuration
 // says: what is in it is known here. A bound pack buffer is the nodes' as well.
 bool readsOwnPixmap(Context& c) {
     if (!c.drawsPixmap || c.readWindow != c.drawWindow || packBufferBound(c)) return false;
     return readsWindow(c);
 }
-bool clipToReadWindow(Context& c, Clip& r) {
-    if (!readsWindow(c)) return true;
-    const Window* w = findWindowById(c.readWindow);
-    if (!w) return true;
-    const int64_t x1 = int64_t{r.x} + r.w, y1 = int64_t{r.y} + r.h;
-    if (r.x < 0) r.x = 0;
-    if (r.y < 0) r.y = 0;
-    r.w = static_cast<GLsizei>((x1 < w->config.width ? x1 : int64_t{w->config.width}) - r.x);
-    r.h = static_cast<GLsizei>((y1 < w->config.height ? y1 : int64_t{w->config.height}) - r.y);
-    return r.w > 0 && r.h > 0;
+// Part of the bound pack buffer, as the program's own context has it.
+void packBytes(const Context& c, GLintptr offset, GLsizeiptr bytes, void* into) {
+    if (c.api == wire::Api::Desktop) return gReal.glGetBufferSubData(GL_PIXEL_PACK_BUFFER, offset, bytes, into);
+    if (const void* mapped = gReal.glMapBufferRange(GL_PIXEL_PACK_BUFFER, offset, bytes, GL_MAP_READ_BIT)) std::memcpy(into, mapped, static_cast<size_t>(bytes));
+    gReal.glUnmapBuffer(GL_PIXEL_PACK_BUFFER);
 }
 
 // Writes tight pixels where the pack state puts them: client memory, or the bound pack buffer (the
@@ -58,7 +46,7 @@ void deliver(ThreadState& t, const void* tight, void* pixels, const sizes::Image
     void* whole = scratchMemory(t, span);
     if (!whole) return;
     const auto offset = reinterpret_cast<GLintptr>(pixels);
-    gReal.glGetBufferSubData(GL_PIXEL_PACK_BUFFER, offset, static_cast<GLsizeiptr>(span), whole); // bytes between the rows stay
+    packBytes(*t.context, offset, static_cast<GLsizeiptr>(span), whole); // bytes between the rows stay
     sizes::unpackTight(whole, tight, layout);
     GLint buffer = 0;
     gReal.glGetIntegerv(GL_PIXEL_PACK_BUFFER_BINDING, &buffer);
@@ -83,8 +71,8 @@ void readPixels(ThreadState& t, GLint x, GLint y, GLsizei width, GLsizei height,
         gReal.glReadPixels(x, y, width, height, format, type, pixels);
         return;
     }
-    Clip clip{x, y, width, height};
-    if (!clipToReadWindow(c, clip)) return;
+    ReadArea clip{x, y, width, height};
+    if (!cutToReadFramebuffer(c, format, type, clip)) return;
     const void* tight = askPixels(t, clip.x, clip.y, clip.w, clip.h, format, type, false, by);
     if (!tight) {
         gReal.glReadPixels(x, y, width, height, format, type, pixels); // alone by now

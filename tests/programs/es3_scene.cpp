@@ -133,6 +133,27 @@ void box(GLuint program, float x, float y) {
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
+// A part of the window, through a buffer, as a texture.
+void drawRead() {
+    static GLuint buffer = 0;
+    static GLuint texture = 0;
+    if (buffer == 0) {
+        glGenBuffers(1, &buffer);
+        glGenTextures(1, &texture);
+    }
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, buffer);
+    const std::vector<GLubyte> before(32 * 32 * 4, 0x60);
+    glBufferData(GL_PIXEL_PACK_BUFFER, GLsizeiptr(before.size()), before.data(), GL_STREAM_READ);
+    glReadPixels(-8, 20, 32, 32, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer);
+    glBindTexture(GL_TEXTURE_2D, texture);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 32, 32, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    box(show, -0.55F, -0.95F);
+}
+
 void drawTextures(Window& window, int frame) {
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     glViewport(0, 0, 32, 32);
@@ -168,6 +189,7 @@ void drawTextures(Window& window, int frame) {
     glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
     glBlitFramebuffer(0, 0, 32, 32, window.width() - 50, 5, window.width() - 5, 60, GL_COLOR_BUFFER_BIT, GL_LINEAR);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+    drawRead();
     const GLsync fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
     glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, 10000000000ULL);
     glDeleteSync(fence);

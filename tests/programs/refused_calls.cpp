@@ -1,0 +1,138 @@
+// Calls that the GL refuses leave no trace: what comes after them draws, counts and reads as if they had not been.
+// Answers are shown as bits.
+#include "tests/programs/support/gl.hpp"
+#include "tests/programs/support/program.hpp"
+#include "tests/programs/support/show.hpp"
+
+#include <numeric>
+#include <vector>
+
+using namespace programs;
+
+namespace {
+
+unsigned errors() {
+    unsigned count = 0;
+    while (glGetError() != GL_NO_ERROR) {
+        ++count;
+    }
+    return count;
+}
+
+// An array in client memory after pointers, units and vertex arrays that there are not.
+void drawArrays(int frame) {
+    static const float corners[] = {-0.9F, -0.9F, 0, -0.1F, -0.9F, 0, -0.9F, -0.1F, 0, -0.1F, -0.1F, 0};
+    static const float colors[] = {1, 0, 0, 1, 0, 1, 0, 1, 0, 0, 1, 1, 1, 1, 0, 1};
+    static const float coordinates[] = {0, 0, 1, 0, 0, 1, 1, 1};
+    static const GLubyte texels[] = {255, 255, 255, 255, 90, 90, 90, 255, 120, 200, 40, 255, 10, 60, 250, 255};
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 2, 2, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glEnable(GL_TEXTURE_2D);
+    glVertexPointer(3, GL_FLOAT, 0, corners);
+    glColorPointer(4, GL_FLOAT, 0, colors);
+    glClientActiveTexture(GL_TEXTURE0 + 12);
+    glEnableClientStateiEXT(GL_TEXTURE_COORD_ARRAY, 31);
+    glTexCoordPointer(2, GL_FLOAT, 0, coordinates);
+    glVertexPointer(7, GL_FLOAT, 0, colors);
+    glVertexPointer(3, GL_UNSIGNED_BYTE, 0, colors);
+    glBindVertexArray(77);
+    glEnableClientState(GL_VERTEX_ARRAY);
+    glEnableClientState(GL_COLOR_ARRAY);
+    glEnableClientState(GL_TEXTURE_COORD_ARRAY);
+    showBar(0, errors());
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, frame % 2 == 0 ? 4 : 3);
+    glDisableClientState(GL_TEXTURE_COORD_ARRAY);
+    glDisable(GL_TEXTURE_2D);
+}
+
+// A query that did not begin counts nothing, and a condition that fails is one error.
+void count() {
+    GLuint query = 0;
+    glGenQueries(1, &query);
+    glBeginQuery(GL_SAMPLES_PASSED, 0);
+    glBeginQuery(GL_SAMPLES_PASSED, query);
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    glBeginQuery(GL_SAMPLES_PASSED, query + 1);
+    glEndQuery(GL_SAMPLES_PASSED);
+    GLuint samples = 0;
+    glGetQueryObjectuiv(query, GL_QUERY_RESULT, &samples);
+    showBits(2, samples);
+    showBar(3, errors());
+    glBeginConditionalRender(query + 9, GL_QUERY_WAIT);
+    glEndConditionalRender();
+    showBar(4, errors());
+    glDeleteQueries(1, &query);
+}
+
+// An answer that goes into a buffer takes no name of the program's.
+void answerIntoBuffer() {
+    GLuint query = 0;
+    GLuint buffers[2] = {};
+    glGenQueries(1, &query);
+    glBeginQuery(GL_ANY_SAMPLES_PASSED, query);
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    glEndQuery(GL_ANY_SAMPLES_PASSED);
+    glGenBuffers(1, &buffers[0]);
+    glBindBuffer(GL_QUERY_BUFFER, buffers[0]);
+    glBufferData(GL_QUERY_BUFFER, 16, nullptr, GL_STREAM_READ);
+    glGetQueryObjectuiv(query, GL_QUERY_RESULT, nullptr);
+    GLuint answer = 9;
+    glGetBufferSubData(GL_QUERY_BUFFER, 0, 4, &answer);
+    glBindBuffer(GL_QUERY_BUFFER, 0);
+    glGenBuffers(1, &buffers[1]);
+    showBits(5, answer);
+    showBits(6, buffers[1] - buffers[0]);
+    glDeleteBuffers(2, buffers);
+    glDeleteQueries(1, &query);
+}
+
+std::uint32_t sumOf(const std::vector<GLubyte>& bytes) { return std::accumulate(bytes.begin(), bytes.end(), 0U); }
+
+// Memory beside a framebuffer object is left as it is; a buffer that is too small is an error.
+void read() {
+    GLuint framebuffer = 0;
+    GLuint renderbuffer = 0;
+    glGenFramebuffers(1, &framebuffer);
+    glGenRenderbuffers(1, &renderbuffer);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glBindRenderbuffer(GL_RENDERBUFFER, renderbuffer);
+    glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, 20, 12);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, renderbuffer);
+    glClear(GL_COLOR_BUFFER_BIT);
+    std::uint32_t sums[4] = {};
+    const int places[4][2] = {{-3, -2}, {15, 8}, {20, 0}, {0, -16}};
+    for (int i = 0; i < 4; ++i) {
+        std::vector<GLubyte> pixels(16 * 16 * 4, 0x37);
+        glReadPixels(places[i][0], places[i][1], 16, 16, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+        sums[i] = sumOf(pixels);
+    }
+    GLuint buffer = 0;
+    glGenBuffers(1, &buffer);
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, buffer);
+    glBufferData(GL_PIXEL_PACK_BUFFER, 100, nullptr, GL_STREAM_READ);
+    glReadPixels(0, 0, 8, 8, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+    const unsigned failed = errors();
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    for (int i = 0; i < 4; ++i) {
+        showBits(8 + i, sums[i]);
+    }
+    showBar(12, failed);
+    glDeleteBuffers(1, &buffer);
+    glDeleteRenderbuffers(1, &renderbuffer);
+    glDeleteFramebuffers(1, &framebuffer);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    return runInGlxWindow(argc, argv, {}, [](Window&) {}, [](Window&, int frame) {
+        glClearColor(0.2F, 0.1F, 0.3F, 1);
+        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        drawArrays(frame);
+        count();
+        answerIntoBuffer();
+        read();
+    });
+}
