@@ -1,0 +1,310 @@
+// Any command of the registry with arguments that its groups allow, and now and then with wrong ones.
+#include "tests/programs/support/gl.hpp"
+
+#include <GL/glx.h>
+#include <algorithm>
+#include <cstring>
+
+#include "tests/fuzz/random_gl/image_formats.hpp"
+#include "tests/fuzz/random_gl/world.hpp"
+
+namespace fuzz {
+namespace {
+
+constexpr std::size_t kMaxParams = 24;
+constexpr std::size_t kOutputStep = 1 << 14; // for each pointer that something is written to
+
+bool bound(const World& w, GLenum query) {
+    GLint name = 0;
+    if (w.profile != Profile::Es1) {
+        glGetIntegerv(query, &name);
+    }
+    return name != 0;
+}
+
+void* offset(World& w, std::uint32_t step) {
+    return reinterpret_cast<void*>(std::uintptr_t{w.random.below(16)} * step); // NOLINT: an offset
+}
+
+class Call {
+public:
+    Call(World& w, const Command& command) : w_(w), command_(command) {
+        for (std::size_t i = 0; i < command.paramCount; ++i) {
+            draw(i);
+        }
+        adjust();
+        for (std::size_t i = 0; i < command.paramCount; ++i) {
+            point(i);
+        }
+    }
+
+    void make() {
+        void* const function = reinterpret_cast<void*>(glXGetProcAddress(reinterpret_cast<const GLubyte*>(command_.name)));
+        if (w_.trace) {
+            show();
+        }
+        const std::uint64_t result = command_.invoke(function, values_);
+        if (command_.returns && command_.made == Kind::Nothing) {
+            w_.observe(result);
+        }
+        w_.keep(command_.made, static_cast<GLuint>(result));
+        keepMade();
+        // What a call leaves in memory when it fails is anybody's guess.
+        const std::size_t errors = w_.errors.size();
+        w_.traceError();
+        if (outputBytes_ > 0 && !w_.insideBegin && !w_.failed() && w_.errors.size() == errors) {
+            w_.observe(output_, outputBytes_);
+        }
+    }
+
+private:
+    [[nodiscard]] const Param& param(std::size_t i) const { return command_.params[i]; }
+
+    Value* find(const char* name) {
+        for (std::size_t i = 0; i < command_.paramCount; ++i) {
+            if (std::strcmp(param(i).name, name) == 0) {
+                return &values_[i];
+            }
+        }
+        return nullptr;
+    }
+
+    std::uint32_t enumOf(std::uint16_t group) {
+        const auto& values = kGroups[w_.random.chance(3) ? 0 : group];
+        return values[w_.random.below(static_cast<std::uint32_t>(values.size()))];
+    }
+
+    std::uint32_t bitsOf(std::uint16_t group) {
+        const auto& values = kGroups[group];
+        if (group == 0 || values.empty() || w_.random.chance(2)) {
+            return w_.random.below(256);
+        }
+        std::uint32_t bits = 0;
+        for (std::uint32_t i = w_.random.below(4); i > 0; --i) {
+            bits |= values[w_.random.below(static_cast<std::uint32_t>(values.size()))];
+        }
+        return bits;
+    }
+
+    // What is not a pointer.
+    void draw(std::size_t i) {
+        const Param& p = param(i);
+        Value& value = values_[i];
+        value.whole = 0;
+        Random& random = w_.random;
+        switch (p.draw) {
+        case Draw::Enum: value.whole = enumOf(p.group); break;
+        case Draw::Bits: value.whole = bitsOf(p.group); break;
+        case Draw::Boolean: value.whole = random.below(2); break;
+        case Draw::Number:
+            value.whole = static_cast<std::uint64_t>(std::int64_t{random.between(p.low, p.high)});
+            if (random.chance(2)) {
+                value.whole = random.chance(50) ? ~std::uint64_t{0} : random.below(5000);
+            }
+            break;
+        case Draw::Real: {
+            const float real = random.chance(10) ? static_cast<float>(random.between(-4, 60)) : random.around();
+            if (p.type == Type::Single) {
+                value.single = real;
+            } else {
+                value.real = static_cast<double>(real);
+            }
+            break;
+        }
+        case Draw::Object: value.whole = w_.name(p.kind); break;
+        case Draw::Sync:
+            if (!w_.syncs.empty()) {
+                value.pointer = w_.syncs[random.below(static_cast<std::uint32_t>(w_.syncs.size()))];
+            }
+            break;
+        default: break;
+        }
+    }
+
+    // Formats and types that belong together, most of the time.
+    void adjust() {
+        Value* const format = find("format");
+        Value* const type = find("type");
+        Value* const internal = find("internalformat");
+        if ((format != nullptr && type != nullptr) || internal != nullptr) {
+            const ImageFormat& image = anyFormat(w_);
+            if (w_.random.chance(85)) {
+                set(format, image.format);
+                set(type, image.type);
+                set(internal, image.internal);
+            }
+        }
+        limit({"count", "drawcount", "instancecount", "primcount", "samples", "range", "n", "bufSize", "size", "length", "maxCount",
+               "propCount", "mapsize", "uorder", "vorder", "order", "ustride", "vstride", "stride", "imageSize", "basevertex",
+               "baseinstance", "first", "start", "un", "vn", "i", "numAttachments"}, 1000);
+        limit({"width", "height", "depth", "levels", "num_groups_x", "num_groups_y", "num_groups_z"}, 40);
+        // Mesa lets pixels go to buffers in OpenGL ES 1, too, which has no way to ask for the binding.
+        if (w_.profile == Profile::Es1 && std::strcmp(command_.name, "glBindBuffer") == 0) {
+            set(find("target"), w_.random.chance(50) ? GL_ARRAY_BUFFER : GL_ELEMENT_ARRAY_BUFFER);
+        }
+        if (std::strncmp(command_.name, "glPixelStore", 12) == 0) {
+            limit({"param"}, 48);
+        }
+        if (Value* const end = find("end"); end != nullptr && find("indices") != nullptr) {
+            end->whole = 300;
+        }
+    }
+
+    // Nothing draws or allocates for minutes.
+    void limit(std::initializer_list<const char*> names, std::int32_t highest) {
+        for (const char* const name : names) {
+            Value* const value = find(name);
+            if (value != nullptr && static_cast<std::int32_t>(value->whole) > highest) {
+                value->whole = 5;
+            }
+        }
+    }
+
+    static void set(Value* value, std::uint32_t to) {
+        if (value != nullptr) {
+            value->whole = to;
+        }
+    }
+
+    void point(std::size_t i) {
+        const Param& p = param(i);
+        Value& value = values_[i];
+        switch (p.draw) {
+        case Draw::Input: value.pointer = const_cast<void*>(inputOf(p.type, w_.random)); break;
+        case Draw::Text: value.pointer = const_cast<char*>(text(w_.random)); break;
+        case Draw::Names:
+            for (GLuint& name : array_) {
+                name = w_.name(p.kind);
+            }
+            value.pointer = array_;
+            break;
+        case Draw::Enums:
+            for (GLuint& one : array_) {
+                one = enumOf(p.group);
+            }
+            value.pointer = array_;
+            break;
+        case Draw::Made: value.pointer = made_; break;
+        case Draw::Unpack: value.pointer = unpacked(p); break;
+        case Draw::Pack: value.pointer = bound(w_, GL_PIXEL_PACK_BUFFER_BINDING) ? offset(w_, 4) : output(kOutputBytes / 2); break;
+        case Draw::Array: value.pointer = vertices(); break;
+        case Draw::Indices: value.pointer = indices(); break;
+        case Draw::Output: value.pointer = output(kOutputStep); break;
+        default: break;
+        }
+    }
+
+    void* unpacked(const Param& p) {
+        if (bound(w_, GL_PIXEL_UNPACK_BUFFER_BINDING)) {
+            return offset(w_, 4);
+        }
+        const Value* const type = find("type");
+        const bool floats = p.type == Type::Float || (type != nullptr && type->whole == GL_FLOAT);
+        return const_cast<void*>(inputOf(floats ? Type::Float : p.type == Type::Int ? Type::Int : Type::Byte, w_.random));
+    }
+
+    void* vertices() {
+        if (bound(w_, GL_ARRAY_BUFFER_BINDING) || !w_.clientArrays()) {
+            return offset(w_, 4);
+        }
+        return const_cast<void*>(vertexMemory(w_.random));
+    }
+
+    // Elements of a buffer may be anything: with vertices in client memory it is filled first.
+    void* indices() {
+        const Value* const type = find("type");
+        const auto typeEnum = static_cast<std::uint32_t>(type != nullptr ? type->whole : GL_UNSIGNED_BYTE);
+        GLint buffer = 0;
+        glGetIntegerv(GL_ELEMENT_ARRAY_BUFFER_BINDING, &buffer);
+        if (buffer != 0 && w_.clientArrays()) {
+            while (glGetError() != GL_NO_ERROR) {
+            }
+            glBufferData(GL_ELEMENT_ARRAY_BUFFER, 512, indexMemory(w_.random, typeEnum), GL_STATIC_DRAW);
+            if (glGetError() != GL_NO_ERROR) {
+                glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffer = 0);
+            }
+        }
+        if (!w_.clientArrays() && buffer == 0) { // Mesa takes the offset as a pointer
+            GLuint made = 0;
+            glGenBuffers(1, &made);
+            w_.keep(Kind::Buffer, made);
+            glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, made);
+            glBufferData(GL_ELEMENT_ARRAY_BUFFER, 512, indexMemory(w_.random, typeEnum), GL_STATIC_DRAW);
+            return offset(w_, 4);
+        }
+        if (buffer != 0) {
+            return offset(w_, 4);
+        }
+        return const_cast<void*>(indexMemory(w_.random, typeEnum));
+    }
+
+    void* output(std::size_t bytes) {
+        if (output_ == nullptr) {
+            const std::size_t all = bytes > kOutputStep ? bytes + 4 * kOutputStep : 6 * kOutputStep;
+            output_ = static_cast<std::byte*>(outputMemory(all));
+        }
+        std::byte* const here = output_ + outputBytes_;
+        outputBytes_ += bytes;
+        return here;
+    }
+
+    void keepMade() {
+        for (std::size_t i = 0; i < command_.paramCount; ++i) {
+            if (param(i).draw == Draw::Made) {
+                for (const GLuint name : made_) {
+                    w_.keep(param(i).kind, name);
+                }
+            }
+        }
+    }
+
+    void show() {
+        std::string shownArguments;
+        for (std::size_t i = 0; i < command_.paramCount; ++i) {
+            const Type type = param(i).type;
+            shownArguments += std::string(param(i).name) + "=";
+            if (param(i).draw == Draw::Real) {
+                shownArguments += shown(type == Type::Single ? static_cast<double>(values_[i].single) : values_[i].real);
+            } else if (param(i).draw == Draw::Text) {
+                shownArguments += static_cast<const char*>(values_[i].pointer);
+            } else {
+                shownArguments += param(i).type == Type::Pointer || param(i).draw >= Draw::Input ? shown(values_[i].pointer)
+                                                                                                     : shown(static_cast<std::int64_t>(values_[i].whole));
+            }
+            if (param(i).draw == Draw::Names || param(i).draw == Draw::Enums) {
+                shownArguments += ":" + shown(array_[0]) + "," + shown(array_[1]);
+            }
+            shownArguments += " ";
+        }
+        traceText(command_.name, shownArguments);
+    }
+
+    World& w_;
+    const Command& command_;
+    Value values_[kMaxParams];
+    GLuint array_[1024] = {};
+    GLuint made_[1024] = {};
+    std::byte* output_ = nullptr;
+    std::size_t outputBytes_ = 0;
+};
+
+} // namespace
+
+void callCommand(World& w, const Command& command) { Call(w, command).make(); }
+
+void callAny(World& w) {
+    const auto& families = w.families();
+    for (;;) {
+        const auto& family = families[w.random.below(static_cast<std::uint32_t>(families.size()))];
+        const Command& command = *family[w.random.below(static_cast<std::uint32_t>(family.size()))];
+        const bool deletes = std::string_view(command.name).starts_with("glDelete");
+        const bool gone = command.removed && w.profile == Profile::Core;
+        if ((deletes && !w.random.chance(25)) || (gone && !w.random.chance(6))) {
+            continue;
+        }
+        callCommand(w, command);
+        return;
+    }
+}
+
+} // namespace fuzz
