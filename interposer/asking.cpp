@@ -10,8 +10,8 @@ namespace mural {
 
 namespace {
 
-// Sends one question and reads its answer into scratch memory; `into` must hold sizeBytes.
-template <class Send> bool ask(ThreadState& t, const char* by, void* into, uint64_t sizeBytes, Send&& send) {
+// Sends one question and reads its answer into memory that room(sizeBytes) gives; null: it is not wanted.
+template <class Send, class Room> bool ask(ThreadState& t, const char* by, Room&& room, Send&& send) {
     Session* s = Session::current();
     if (!s || !s->alive() || !t.context) return false;
     buffersRead(t);
@@ -21,13 +21,18 @@ template <class Send> bool ask(ThreadState& t, const char* by, void* into, uint6
     wire::ReplyHeader header{};
     bool ok = s->answerHeader(request, header);
     if (ok) {
-        const uint64_t wanted = header.sizeBytes < sizeBytes ? header.sizeBytes : sizeBytes;
-        ok = s->answerBytes(into, wanted) && s->answerBytes(nullptr, header.sizeBytes - wanted) && !header.failed && header.sizeBytes == sizeBytes;
+        void* const into = header.failed ? nullptr : room(header.sizeBytes);
+        ok = s->answerBytes(into, header.sizeBytes) && into;
     }
     s->endRequest();
     takeNews(t);
     if (!s->alive()) refreshDrawLocally(t);
     return ok;
+}
+
+// The same where the size is known: `into` must hold sizeBytes.
+template <class Send> bool ask(ThreadState& t, const char* by, void* into, uint64_t sizeBytes, Send&& send) {
+    return ask(t, by, [=](uint64_t comes) { return comes == sizeBytes ? into : nullptr; }, send);
 }
 
 } // namespace
@@ -87,6 +92,15 @@ const void* askBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t s
     void* into = sizeBytes ? secondScratch(t, sizeBytes) : nullptr;
     if (!into) return nullptr;
     return ask(t, by, into, sizeBytes, [&](uint32_t request) { records::requestBuffer(t, request, buffer, offset, sizeBytes); }) ? into : nullptr;
+}
+
+const void* askProgram(ThreadState& t, GLuint program, uint64_t& sizeBytes, const char* by) {
+    void* into = nullptr;
+    const auto room = [&](uint64_t comes) {
+        sizeBytes = comes;
+        return into = comes ? secondScratch(t, comes) : nullptr;
+    };
+    return ask(t, by, room, [&](uint32_t request) { records::requestProgram(t, request, program); }) ? into : nullptr;
 }
 
 bool askFinish(ThreadState& t, const char* by) {

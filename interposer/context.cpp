@@ -135,6 +135,13 @@ uintptr_t lowestIndices(const Context& c) {
     return getauxval(AT_PHDR) >= kHigh ? kHigh : kFirstPage;
 }
 
+// OpenGL ES 3.0 §2.15.2: a draw that overruns the buffers is an error; not any more with geometry or tessellation shaders.
+bool feedbackCounts(const Context& c) {
+    if (c.api != wire::Api::Es2 || (c.version != 30 && c.version != 31)) return false;
+    const auto* extensions = reinterpret_cast<const char*>(gReal.glGetString(GL_EXTENSIONS));
+    return extensions && !std::strstr(extensions, "_geometry_shader") && !std::strstr(extensions, "_tessellation_shader");
+}
+
 // Version and profile that the driver really gave; needs the context to be current.
 void learnVersion(Context& c) {
     const auto* text = reinterpret_cast<const char*>(gReal.glGetString(GL_VERSION));
@@ -159,6 +166,7 @@ void learnVersion(Context& c) {
         c.flags = static_cast<uint32_t>(flags);
     }
     c.indicesInMemoryFrom = lowestIndices(c);
+    c.feedbackCounts = feedbackCounts(c);
 }
 
 } // namespace
@@ -219,7 +227,7 @@ void freeDestroyed(ThreadState& t) {
 } // namespace
 
 void refreshDrawLocally(ThreadState& t) {
-    t.drawLocally = swapLocally() || !t.context || t.context->compilingList || t.context->drawsPixmap || t.context->renderMode != GL_RENDER;
+    t.drawLocally = swapLocally() || !t.context || t.context->compilingList || t.context->drawsPixmap || t.context->renderMode != GL_RENDER || t.context->drawsFeedback;
 }
 
 PrimitivePause::PrimitivePause(const ThreadState& t) : mode_(t.context && !t.drawLocally ? t.context->openPrimitive : kNoPrimitive) {

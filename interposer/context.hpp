@@ -101,6 +101,8 @@ struct Context {
     bool frontDue = false;     // the front buffer was drawn to since the last flush, or will be
     GLenum renderMode = GL_RENDER;
     bool drawsSelection = false; // selects or gives feedback in the program's own context
+    bool feedbackCounts = false; // the driver counts vertices of transform feedback at the draw, for an error
+    bool drawsFeedback = false;  // such feedback is active: the program's own context draws, too
     uint32_t openPrimitive = kNoPrimitive; // the mode of glBegin until glEnd
     bool firstCurrent = true;
     uint32_t drawWindow = 0, readWindow = 0; // 0: none; both stay when the context is released

@@ -6,7 +6,7 @@ namespace {
 template <class... T> constexpr uint32_t kBytesOf = (0 + ... + (sizeof(T) == 8 ? 8 : 4));
 
 template <class... T> void putAll(Writer& w, T... values) {
-    const auto put = [&](auto v) {
+    [[maybe_unused]] const auto put = [&](auto v) {
         if constexpr (sizeof(v) == 8) w.put8(v);
         else w.put4(v);
     };
@@ -87,6 +87,7 @@ void requestQuery(ThreadState& t, uint32_t request, GLuint query, GLenum pname) 
 }
 void requestFinish(ThreadState& t, uint32_t request) { fixed(t, wire::kOpFinish, request); }
 void beginConditional(ThreadState& t, bool draws) { fixed(t, wire::kOpBeginConditional, uint32_t{draws}); }
+void requestProgram(ThreadState& t, uint32_t request, GLuint program) { fixed(t, wire::kOpRequestProgram, request, program); }
 void drawAll(ThreadState& t) { fixed(t, wire::kOpDrawAll); }
 void queryKnown(ThreadState& t, GLuint query, bool passed) { fixed(t, wire::kOpQueryKnown, query, uint32_t{passed}); }
 void requestBuffer(ThreadState& t, uint32_t request, GLuint buffer, uint64_t offset, uint64_t sizeBytes) {
@@ -107,6 +108,9 @@ void createImage(ThreadState& t, const ImageInfo& i) {
     fixed(t, wire::kOpCreateImage, i.image, i.context, i.target, i.name, i.level, i.layer);
 }
 void destroyImage(ThreadState& t, uint64_t image) { fixed(t, wire::kOpDestroyImage, image); }
+void programRecipe(ThreadState& t, GLuint program, const DataArg& recipe) {
+    withData(t, wire::kOpProgramRecipe, recipe, program);
+}
 
 namespace {
 // A span is sent ahead of its record when it is large, or when the record would not fit into a chunk.

@@ -27,6 +27,8 @@ void requestQuery(ThreadState& t, uint32_t request, GLuint query, GLenum pname);
 void requestFinish(ThreadState& t, uint32_t request);
 void beginConditional(ThreadState& t, bool draws);
 void drawAll(ThreadState& t);
+void requestProgram(ThreadState& t, uint32_t request, GLuint program);
+void programRecipe(ThreadState& t, GLuint program, const DataArg& recipe);
 void queryKnown(ThreadState& t, GLuint query, bool passed);
 void requestBuffer(ThreadState& t, uint32_t request, GLuint buffer, uint64_t offset, uint64_t sizeBytes);
 void fillWindow(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, uint32_t planes, const DataArg& pixels);

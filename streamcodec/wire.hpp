@@ -155,6 +155,8 @@ enum Op : uint16_t {
     kOpDrawAll = 21,       // from now on every node draws all of every window
     kOpCreateImage = 22,   // u64 image, u32 context, u32 target, u32 name, i32 level, i32 layer: eglCreateImage of a GL object
     kOpDestroyImage = 23,  // u64 image
+    kOpRequestProgram = 24, // u32 request, u32 program: what it was linked from
+    kOpProgramRecipe = 25,  // u32 program, such an answer: glProgramBinary; nothing: the binary was refused
     kOpLastOwn = 63,
 };
 constexpr uint16_t kFirstGlOpcode = 64;

@@ -1,6 +1,7 @@
 // Draws from vertex arrays.
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
+#include "interposer/asking.hpp"
 #include "interposer/commands/array_element.hpp"
 #include "interposer/commands/client_draw.hpp"
 #include "interposer/commands/quiet.hpp"
@@ -92,6 +93,14 @@ void indirectClientArrays(ThreadState& t, const DataArg& source, bool withElemen
     sendClientArrays(t, *c, all);
 }
 
+// While the driver counts the vertices of transform feedback it is asked first: the nodes' drivers may count none, and
+// would draw what is an error. False: it counts nothing, the caller goes on.
+template <class Local, class Send> bool drawnCounted(ThreadState& t, Local&& local, Send&& send) {
+    if (!t.drawLocally || !t.context || !t.context->drawsFeedback) return false;
+    if (raisesNothing(*t.context, local)) send();
+    return true;
+}
+
 // How many of several draws the driver gets: none, unless one of them is an error; then it does none.
 GLsizei quietDraws(const ThreadState& t, const GLsizei* count, GLsizei drawcount) {
     if (t.drawLocally || drawcount < 0) return drawcount;
@@ -106,14 +115,22 @@ extern "C" {
 
 void mural_glDrawArrays(GLenum mode, GLint first, GLsizei count) {
     ThreadState& t = *tThread;
-    prepareArrays(t, first, count);
-    encode_glDrawArrays(t, mode, first, count);
+    const auto send = [&] {
+        prepareArrays(t, first, count);
+        encode_glDrawArrays(t, mode, first, count);
+    };
+    if (drawnCounted(t, [&] { gReal.glDrawArrays(mode, first, count); }, send)) return;
+    send();
     gReal.glDrawArrays(mode, first, quiet::count(t, count));
 }
 void mural_glDrawArraysInstanced(GLenum mode, GLint first, GLsizei count, GLsizei instancecount) {
     ThreadState& t = *tThread;
-    prepareArrays(t, first, count, instancecount);
-    encode_glDrawArraysInstanced(t, mode, first, count, instancecount);
+    const auto send = [&] {
+        prepareArrays(t, first, count, instancecount);
+        encode_glDrawArraysInstanced(t, mode, first, count, instancecount);
+    };
+    if (drawnCounted(t, [&] { gReal.glDrawArraysInstanced(mode, first, count, instancecount); }, send)) return;
+    send();
     gReal.glDrawArraysInstanced(mode, first, quiet::count(t, count), instancecount);
 }
 void mural_glDrawArraysInstancedBaseInstance(GLenum mode, GLint first, GLsizei count, GLsizei instancecount, GLuint baseinstance) {
@@ -124,7 +141,9 @@ void mural_glDrawArraysInstancedBaseInstance(GLenum mode, GLint first, GLsizei c
 }
 void mural_glDrawElements(GLenum mode, GLsizei count, GLenum type, const void* indices) {
     ThreadState& t = *tThread;
-    encode_glDrawElements(t, mode, count, type, prepareElements(t, count, type, indices));
+    const auto send = [&] { encode_glDrawElements(t, mode, count, type, prepareElements(t, count, type, indices)); };
+    if (drawnCounted(t, [&] { gReal.glDrawElements(mode, count, type, indices); }, send)) return;
+    send();
     gReal.glDrawElements(mode, quiet::count(t, count), type, indices);
 }
 void mural_glDrawElementsBaseVertex(GLenum mode, GLsizei count, GLenum type, const void* indices, GLint basevertex) {

@@ -1,4 +1,6 @@
 // Display lists, synchronisation, programs and answers that are put right before the program sees them.
+#include <cstring>
+
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
 #include "interposer/asking.hpp"
@@ -85,6 +87,11 @@ void listEndsPrimitive(Context& c) {
     c.listPrimitive = false;
 }
 
+void drawFeedback(ThreadState& t, bool now) {
+    setDrawing(t.context->drawsFeedback, now);
+    refreshDrawLocally(t);
+}
+
 // A list that calls others moves the raster position when they do, whatever they will be by then.
 void noteListCall(const ThreadState& t, bool asks) {
     if (!t.context || !t.context->compilingList) return;
@@ -105,6 +112,7 @@ bool takesModules(Context& c) {
     }
     return false;
 }
+GLint textBytes(const GLchar* text, GLint length) { return length < 0 ? static_cast<GLint>(std::strlen(text)) : length; }
 
 bool isFront(GLenum buffer) {
     return buffer == GL_FRONT || buffer == GL_FRONT_LEFT || buffer == GL_FRONT_RIGHT || buffer == GL_FRONT_AND_BACK || buffer == GL_LEFT || buffer == GL_RIGHT;
@@ -175,6 +183,20 @@ GLint mural_glRenderMode(GLenum mode) {
         setDrawing(t.context->drawsSelection, mode != GL_RENDER);
     }
     return hits;
+}
+
+void mural_glBeginTransformFeedback(GLenum primitiveMode) {
+    ThreadState& t = *tThread;
+    nodesMayWrite(t, 0);
+    encode_glBeginTransformFeedback(t, primitiveMode);
+    gReal.glBeginTransformFeedback(primitiveMode);
+    if (t.context && t.context->feedbackCounts) drawFeedback(t, true);
+}
+void mural_glEndTransformFeedback() {
+    ThreadState& t = *tThread;
+    encode_glEndTransformFeedback(t);
+    gReal.glEndTransformFeedback();
+    if (t.context && t.context->feedbackCounts) drawFeedback(t, false);
 }
 
 // Some drivers look at the window's size when a program sets its viewport: a resize takes effect there.
@@ -272,11 +294,23 @@ void mural_glShaderBinary(GLsizei count, const GLuint* shaders, GLenum binaryFor
     stashError(*t.context, takeError(*t.context));
     stashError(*t.context, GL_INVALID_ENUM);
 }
-// No format is advertised, so every binary is of the wrong one: the program links from source.
-void mural_glProgramBinary(GLuint program, GLenum binaryFormat, const void* binary, GLsizei length) {
-    if (!capturing(*tThread)) return gReal.glProgramBinary(program, binaryFormat, binary, length);
-    stashError(*tThread->context, takeError(*tThread->context));
-    stashError(*tThread->context, GL_INVALID_ENUM);
+
+// Lengths below 0 stand for text up to its terminator.
+void mural_glNamedStringARB(GLenum type, GLint namelen, const GLchar* name, GLint stringlen, const GLchar* string) {
+    ThreadState& t = *tThread;
+    const auto local = [&] { gReal.glNamedStringARB(type, namelen, name, stringlen, string); };
+    if (!capturing(t)) return local();
+    if (!raisesNothing(*t.context, local)) return;
+    const GLint nameBytes = textBytes(name, namelen), stringBytes = textBytes(string, stringlen);
+    encode_glNamedStringARB(t, type, nameBytes, DataArg::of(name, vn(nameBytes, 1)), stringBytes, DataArg::of(string, vn(stringBytes, 1)));
+}
+void mural_glDeleteNamedStringARB(GLint namelen, const GLchar* name) {
+    ThreadState& t = *tThread;
+    const auto local = [&] { gReal.glDeleteNamedStringARB(namelen, name); };
+    if (!capturing(t)) return local();
+    if (!raisesNothing(*t.context, local)) return;
+    const GLint nameBytes = textBytes(name, namelen);
+    encode_glDeleteNamedStringARB(t, nameBytes, DataArg::of(name, vn(nameBytes, 1)));
 }
 
 // The primitive stays empty in the program's own context, but the errors of what comes between are raised.
@@ -330,7 +364,6 @@ void mural_glGetIntegerv(GLenum pname, GLint* data) {
     gReal.glGetIntegerv(pname, data);
     if (!capturing(t) || !data) return;
     if (pname == GL_NUM_EXTENSIONS) *data = extensionCount(*t.context);
-    else if (pname == GL_NUM_PROGRAM_BINARY_FORMATS) *data = 0;
     else if (pname == GL_NUM_SHADER_BINARY_FORMATS) *data = *data > 0 && takesModules(*t.context) ? 1 : 0;
 }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "streamcodec/record.hpp"
@@ -136,6 +137,11 @@ public:
     [[nodiscard]] const GLchar* const* pointers() const { return pointers_.data(); }
     [[nodiscard]] const GLint* lengths() const { return lengths_.data(); }
     [[nodiscard]] size_t count() const { return pointers_.size(); }
+    [[nodiscard]] std::string joined() const {
+        std::string all;
+        for (size_t i = 0; i < pointers_.size(); ++i) all.append(pointers_[i], static_cast<size_t>(lengths_[i]));
+        return all;
+    }
 
 private:
     std::vector<char> text_;

@@ -23,6 +23,7 @@
 #include "nodes/gl/gl_platform.hpp"
 #include "nodes/replay/args.hpp"
 #include "nodes/replay/name_table.hpp"
+#include "nodes/replay/program_recipes.hpp"
 #include "nodes/replay/replay_dispatch.hpp"
 #include "nodes/replay/tiled_programs.hpp"
 #include "nodes/replay/tiling.hpp"
@@ -158,6 +159,7 @@ private:
         std::unordered_map<GLuint, bool> placedModules; // by our shader's name: it holds a module that reads gl_FragCoord
         bool allDrawn = false; // by every node: one of them writes, or a display list needs more than a tile
         TiledPrograms tiled;
+        ProgramRecipes recipes;
     };
     struct Scissor {
         bool enabled = false;
@@ -402,7 +404,13 @@ private:
     void accumulateColours(GLfloat value, bool add);
     void returnAccumulated(GLfloat value);
     bool saidAccumulation_ = false;
+    // replay_binaries.cpp
+    bool ownRequestProgram(Args& in);
+    bool ownProgramRecipe(Args& in);
+    void linkFrom(GLuint ours, ProgramRecipe recipe);
     // replay_programs.cpp
+    void compileShader(GLuint ours);
+    void linkProgram(GLuint ours);
     [[nodiscard]] ShaderRewrites rewrites() const;
     [[nodiscard]] bool esContext() const { return c_->api != wire::Api::Desktop; }
     void applyTileValues();

@@ -119,11 +119,6 @@ void Replay::glMultiDrawElementsBaseVertex(GLenum mode, const Data& count, GLenu
 
 // ---- programs
 
-void Replay::glShaderSource(GLuint shader, GLsizei count, const Data& string) {
-    StringList texts;
-    if (!texts.parse(string, count) || texts.count() == 0) return;
-    gl.glShaderSource(name(Kind::Program, shader), count, texts.pointers(), texts.lengths());
-}
 void Replay::glUniformBlockBinding(GLuint program, GLuint index, GLuint binding) {
     gl.glUniformBlockBinding(name(Kind::Program, program), index, binding);
 }

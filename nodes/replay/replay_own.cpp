@@ -55,6 +55,8 @@ bool Replay::own(uint16_t opcode, Args& in) {
     case wire::kOpBeginConditional: return ownBeginConditional(in);
     case wire::kOpQueryKnown: return ownQueryKnown(in);
     case wire::kOpDrawAll: return ownDrawAll(in);
+    case wire::kOpRequestProgram: return ownRequestProgram(in);
+    case wire::kOpProgramRecipe: return ownProgramRecipe(in);
     case wire::kOpRequestBuffer: return ownRequestBuffer(in);
     case wire::kOpFillWindow: return ownFillWindow(in);
     case wire::kOpProgramLayout: return ownProgramLayout(in);

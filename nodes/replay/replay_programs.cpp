@@ -44,6 +44,10 @@ void Replay::applyTileValues() {
 
 void Replay::glCompileShader(GLuint shader) {
     const GLuint ours = name(Kind::Program, shader);
+    compileShader(ours);
+    if (c_->shared) c_->shared->recipes.compiled(gl, ours, false);
+}
+void Replay::compileShader(GLuint ours) {
     if (c_->shared && rewrites().any()) c_->shared->tiled.compile(gl, ours);
     else gl.glCompileShader(ours);
 }
@@ -57,6 +61,7 @@ void Replay::glShaderBinary(GLsizei count, const Data& shaders, GLenum format, c
         std::memcpy(&theirs, shaders.as<std::byte>() + 4 * i, 4);
         ours[i] = name(Kind::Program, theirs);
         c_->shared->tiled.forget(ours[i]);
+        c_->shared->recipes.forget(ours[i]);
         c_->shared->placedModules[ours[i]] = placed;
     }
     gl.glShaderBinary(count, ours.data(), format, binary.pointer(), length);
@@ -75,24 +80,45 @@ void Replay::noteModules(GLuint ours) {
         if (found != c_->shared->placedModules.end() && found->second && !std::exchange(c_->shared->allDrawn, true)) restoreWindowState();
     }
 }
+// Rewritten texts would be compiled without these paths: such shaders stay as they are.
+void Replay::glCompileShaderIncludeARB(GLuint shader, GLsizei count, const Data& path) {
+    StringList paths;
+    if (!gl.glCompileShaderIncludeARB || !paths.parse(path, count)) return;
+    const GLuint ours = name(Kind::Program, shader);
+    gl.glCompileShaderIncludeARB(ours, count, paths.pointers(), paths.lengths());
+    if (!c_->shared) return;
+    c_->shared->tiled.forget(ours);
+    c_->shared->recipes.compiled(gl, ours, true);
+}
 void Replay::glProgramParameteri(GLuint program, GLenum pname, GLint value) {
     const GLuint ours = name(Kind::Program, program);
     if (!gl.glProgramParameteri) return;
     gl.glProgramParameteri(ours, pname, value);
-    if (pname == GL_PROGRAM_SEPARABLE && c_->shared) c_->shared->tiled.setSeparable(ours, value != 0);
+    if (pname != GL_PROGRAM_SEPARABLE || !c_->shared) return;
+    c_->shared->tiled.setSeparable(ours, value != 0);
+    c_->shared->recipes.separable(ours, value != 0);
 }
 void Replay::glLinkProgram(GLuint program) {
     const GLuint ours = name(Kind::Program, program);
-    if (!c_->shared || !rewrites().any()) gl.glLinkProgram(ours);
-    else c_->shared->tiled.link(gl, ours, rewrites(), esContext());
+    linkProgram(ours);
+    if (c_->shared) c_->shared->recipes.linked(gl, ours);
     programLinked(ours);
     applyTileValues(); // it may be the current one
+}
+void Replay::linkProgram(GLuint ours) {
+    if (!c_->shared || !rewrites().any()) gl.glLinkProgram(ours);
+    else c_->shared->tiled.link(gl, ours, rewrites(), esContext());
 }
 void Replay::glCreateShaderProgramv(GLenum type, GLsizei count, const Data& strings, GLuint result) {
     StringList texts;
     if (!gl.glCreateShaderProgramv || !c_->shared || !texts.parse(strings, count) || texts.count() == 0) return;
     bindName(Kind::Program, result, c_->shared->tiled.create(gl, type, count, texts.pointers(), rewrites(), esContext()));
-    programLinked(name(Kind::Program, result));
+    const GLuint ours = name(Kind::Program, result);
+    ProgramRecipe recipe;
+    recipe.separable = true;
+    recipe.shaders.push_back({type, texts.joined()});
+    c_->shared->recipes.linkedFrom(ours, std::move(recipe));
+    programLinked(ours);
     applyTileValues();
 }
 void Replay::glUseProgram(GLuint program) {

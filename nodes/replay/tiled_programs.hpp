@@ -15,7 +15,7 @@ class TiledPrograms {
 public:
     // Instead of glCompileShader: the text is kept and compiled when a link shows what it must be.
     void compile(const GlFunctions& gl, GLuint shader);
-    // The shader holds a module now, which is never rewritten.
+    // The shader holds a module now, or was compiled in another way: never rewritten.
     void forget(GLuint shader) { shaders_.erase(shader); }
     // Instead of glLinkProgram. What does not compile or link rewritten is linked as it was.
     void link(const GlFunctions& gl, GLuint program, const ShaderRewrites& rewrites, bool es);

@@ -126,7 +126,7 @@ class Command:
         if 'strings.' + p.name in self.options:
             p.how, p.expr = 'strings', self.options['strings.' + p.name]
             return None
-        if self.option('strings.string') == p.name or self.option('strings.strings') == p.name:
+        if any(key.startswith('strings.') and value == p.name for key, value in self.options.items()):
             p.how = 'skip'
             return None
         if 'pixels.' + p.name in self.options:
@@ -198,8 +198,12 @@ def load(gl_xml, semantics):
                 command.feature = command.feature or feature.get('name')
                 api, version = feature.get('api'), float(feature.get('number'))
                 command.core[api] = min(version, command.core.get(api, version))
+    rules = read_semantics(semantics)
+    for name, options, _ in rules:
+        if 'alias' in options:
+            commands[name].alias = options['alias']
     root_aliases(commands)
-    for pattern, options, number in read_semantics(semantics):
+    for pattern, options, number in rules:
         hit = False
         for name in commands:
             if name == pattern or fnmatch.fnmatchcase(name, pattern):

@@ -93,6 +93,11 @@ void drawMultiple(bool fromBuffer) {
     glMultiDrawElements(GL_TRIANGLE_STRIP, indexCounts, GL_UNSIGNED_SHORT, starts, 2);
     enterCell();
     glMultiDrawElementsBaseVertex(GL_TRIANGLE_STRIP, indexCounts, GL_UNSIGNED_SHORT, starts, 2, bases);
+    const GLenum modes[][2] = {{GL_TRIANGLE_STRIP, 0}, {GL_LINES, 0}, {GL_TRIANGLES, 0}};
+    enterCell();
+    glMultiModeDrawArraysIBM(modes[0], firsts, counts, 3, sizeof modes[0]);
+    enterCell();
+    glMultiModeDrawElementsIBM(modes[0], indexCounts, GL_UNSIGNED_SHORT, starts, 2, sizeof modes[0]);
 }
 
 void drawPlain() {

@@ -1,6 +1,9 @@
 // OpenGL ES 1.1 through EGL: fixed-point and float entry points, arrays, matrices, lights, fog, textures.
+#include <EGL/egl.h>
 #include <GLES/gl.h>
 #include <GLES/glext.h>
+
+#include <cstring>
 
 #include "tests/programs/support/program.hpp"
 
@@ -33,6 +36,34 @@ void quad(float x, float y) {
     glLoadIdentity();
     glTranslatex(fixed(x), fixed(y), 0);
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+}
+
+template <class Function> Function find(const char* name) {
+    const auto found = reinterpret_cast<Function>(eglGetProcAddress(name));
+    if (!found) fail("%s is not there", name);
+    return found;
+}
+
+// The same commands by the names of OES_fixed_point.
+void drawInFog(int frame) {
+    const auto* extensions = reinterpret_cast<const char*>(glGetString(GL_EXTENSIONS));
+    if (!extensions || !std::strstr(extensions, "GL_OES_fixed_point")) fail("GL_OES_fixed_point is not there");
+    const GLfixed colour[] = {fixed(0.2F), fixed(0.7F), fixed(0.1F * float(frame)), fixed(1)};
+    find<PFNGLFOGXVOESPROC>("glFogxvOES")(GL_FOG_COLOR, colour);
+    find<PFNGLFOGXOESPROC>("glFogxOES")(GL_FOG_MODE, GL_LINEAR);
+    find<PFNGLFOGXOESPROC>("glFogxOES")(GL_FOG_START, fixed(-1));
+    find<PFNGLMATERIALXVOESPROC>("glMaterialxvOES")(GL_FRONT_AND_BACK, GL_AMBIENT, colour);
+    find<PFNGLLIGHTMODELXVOESPROC>("glLightModelxvOES")(GL_LIGHT_MODEL_AMBIENT, colour);
+    glEnable(GL_FOG);
+    glEnable(GL_LIGHTING);
+    find<PFNGLCOLOR4XOESPROC>("glColor4xOES")(fixed(1), fixed(0.3F), 0, fixed(1));
+    glLoadIdentity();
+    find<PFNGLTRANSLATEXOESPROC>("glTranslatexOES")(fixed(10), fixed(120), fixed(-0.5F));
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    glDisable(GL_LIGHTING);
+    glTranslatef(60, 0, 0.2F);
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    glDisable(GL_FOG);
 }
 
 void draw(int frame) {
@@ -79,6 +110,7 @@ void draw(int frame) {
     glLineWidthx(fixed(3));
     glTranslatef(60, 0, 0);
     glDrawArrays(GL_LINE_LOOP, 0, 4);
+    drawInFog(frame);
     glDisableClientState(GL_VERTEX_ARRAY);
 }
 

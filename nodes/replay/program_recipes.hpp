@@ -1,0 +1,67 @@
+// What a program was linked from, so that it can be linked again in another run: the node's half of program
+// binaries (docs/wire-format.md, "Recipes of programs"). One for all contexts that share. Names are this node's.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "gl_functions.hpp"
+
+namespace mural {
+
+struct ProgramRecipe {
+    struct Shader {
+        GLenum type = 0;
+        std::string text;
+    };
+    struct Output {
+        GLuint color = 0, index = 0;
+    };
+    bool separable = false;
+    std::vector<Shader> shaders;
+    std::map<std::string, Output> outputs; // as the program has bound them
+    GLenum varyingMode = 0;
+    std::vector<std::string> varyings;     // of transform feedback
+
+    [[nodiscard]] std::vector<std::byte> toBytes() const;
+    // Nothing where these bytes are none.
+    static std::optional<ProgramRecipe> fromBytes(std::span<const std::byte> bytes);
+};
+
+class ProgramRecipes {
+public:
+    void source(GLuint shader, std::string text) { shaders_[shader].given = std::move(text); }
+    // The shader holds a module now: programs with it have no recipe.
+    void forget(GLuint shader) { shaders_.erase(shader); }
+    void compiled(const GlFunctions& gl, GLuint shader, bool withIncludes);
+    void bindOutput(GLuint program, const char* name, const ProgramRecipe::Output& output) { programs_[program].next.outputs[name] = output; }
+    void varyings(GLuint program, GLenum mode, std::vector<std::string> names);
+    void separable(GLuint program, bool separable) { programs_[program].next.separable = separable; }
+    void linked(const GlFunctions& gl, GLuint program);
+    void linkedFrom(GLuint program, ProgramRecipe recipe);
+    void deleted(const GlFunctions& gl, GLuint shaderOrProgram);
+    // Of the last link; empty where there is none, or it can't be told.
+    [[nodiscard]] std::vector<std::byte> of(GLuint program) const;
+
+private:
+    struct Shader {
+        GLenum type = 0;
+        std::string given, compiled;
+        bool withIncludes = false; // named strings (ARB_shading_language_include): the text alone is not all
+    };
+    struct Program {
+        ProgramRecipe next;                // what the program's commands have set for the next link
+        std::optional<ProgramRecipe> last; // of the link that succeeded
+    };
+    std::unordered_map<GLuint, Shader> shaders_;
+    std::unordered_map<GLuint, Program> programs_;
+    std::set<GLuint> ending_; // deleted while something still has them
+};
+
+} // namespace mural
