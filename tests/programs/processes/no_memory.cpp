@@ -7,31 +7,33 @@
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 
+using namespace programs;
+
 int main(int argc, char** argv) {
-    static int told = -1; // in this frame
-    return programs::runInGlxWindow(
-        argc,
-        argv,
-        {},
-        [](programs::Window&) {},
-        [](programs::Window& window, int frame) {
-            programs::drawSimple(window, frame);
-            if (told < 0) {
-                GLuint texture = 0;
-                glGenTextures(1, &texture);
-                glBindTexture(GL_TEXTURE_2D, texture);
-                glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 1024, 1024, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
-                glBindTexture(GL_TEXTURE_2D, 0);
-            }
-            const GLenum error = glGetError();
-            if (error == GL_OUT_OF_MEMORY && told < 0) {
-                told = frame;
-                std::printf("no memory\n");
-            } else if (error != GL_NO_ERROR && (error != GL_OUT_OF_MEMORY || frame > told + 3)) {
-                programs::fail("GL error 0x%04x", error);
-            }
-            std::printf("frame %d\n", frame);
-            std::fflush(stdout);
-            usleep(2000);
-        });
+    const Options options = parseOptions(argc, argv);
+    const auto window = openGlxWindow({}, options.width, options.height);
+    window->makeCurrent();
+    int told = -1; // in this frame
+    for (int frame = 0; frame < options.frames; ++frame) {
+        drawSimple(*window, frame);
+        if (told < 0) {
+            GLuint texture = 0;
+            glGenTextures(1, &texture);
+            glBindTexture(GL_TEXTURE_2D, texture);
+            glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 1024, 1024, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+            glBindTexture(GL_TEXTURE_2D, 0);
+        }
+        const GLenum error = glGetError();
+        if (error == GL_OUT_OF_MEMORY && told < 0) {
+            told = frame;
+            std::printf("no memory\n");
+        } else if (error != GL_NO_ERROR && (error != GL_OUT_OF_MEMORY || frame > told + 3)) {
+            fail("GL error 0x%04x in frame %d", error, frame);
+        }
+        window->swap();
+        std::printf("frame %d\n", frame);
+        std::fflush(stdout);
+        usleep(2000);
+    }
+    return 0;
 }
