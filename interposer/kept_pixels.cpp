@@ -44,9 +44,10 @@ KeptPixels::Box KeptPixels::wider(const ThreadState& t, const Kind& kind, const 
     Box wide{begin(box.x), begin(box.y), 0, 0};
     GLint right = end(box.x + box.w), top = end(box.y + box.h);
     if (const Window* w = windowRead(*t.context)) {
-        if (box.x + box.w > w->config.width || box.y + box.h > w->config.height) return box;
-        if (right > w->config.width) right = w->config.width;
-        if (top > w->config.height) top = w->config.height;
+        const auto width = static_cast<GLint>(w->config.width), height = static_cast<GLint>(w->config.height);
+        if (box.x + box.w > width || box.y + box.h > height) return box;
+        if (right > width) right = width;
+        if (top > height) top = height;
     }
     wide.w = right - wide.x;
     wide.h = top - wide.y;

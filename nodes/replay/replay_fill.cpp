@@ -1,5 +1,5 @@
 // Depth and stencil of other tiles, put into windows of core and ES contexts: core contexts
-// have no glDrawPixels, so a context of another kind draws into the same window.
+// have no glDrawPixels, so a context of another kind draws into the same window. ES 1 has no blits either.
 #include "nodes/replay/replay.hpp"
 
 namespace mural {
@@ -38,14 +38,15 @@ void Replay::fillByOtherContext(const PixelViewport& r, GLbitfield plane, const 
     gl::Context* const filler = fillerOf(w);
     gl::Surface* const deep = w.deep ? w.deep : w.surface.get();
     if (!filler || !platform_->makeCurrent(filler, deep, deep)) return;
-    const bool depth = plane == GL_DEPTH_BUFFER_BIT;
+    const bool depth = plane == GL_DEPTH_BUFFER_BIT, colour = plane == GL_COLOR_BUFFER_BIT;
     if (gl.glDrawPixels && gl.glWindowPos2i) {
-        gl.glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+        gl.glColorMask(colour, colour, colour, colour);
         depth ? gl.glEnable(GL_DEPTH_TEST) : gl.glDisable(GL_DEPTH_TEST);
         gl.glDepthFunc(GL_ALWAYS);
         gl.glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
         gl.glWindowPos2i(r.x, r.y);
         if (depth) gl.glDrawPixels(r.w, r.h, GL_DEPTH_COMPONENT, GL_FLOAT, depthAsFloats(w, r, pixels));
+        else if (colour) gl.glDrawPixels(r.w, r.h, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
         else gl.glDrawPixels(r.w, r.h, GL_STENCIL_INDEX, GL_UNSIGNED_BYTE, pixels);
         gl.glFlush();
     }

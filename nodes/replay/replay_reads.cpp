@@ -229,6 +229,7 @@ bool Replay::ownFillWindow(Args& in) {
 
 // Colours into the window that is read, whatever the program has set.
 void Replay::fillColor(const PixelViewport& r, const void* rgba) {
+    if (c_->api == wire::Api::Es1) return fillByOtherContext(r, GL_COLOR_BUFFER_BIT, rgba);
     // That window becomes the one that is drawn to, as long as this takes.
     const bool otherDraw = drawSurface_ != readSurface_;
     if (otherDraw) (void)platform_->makeCurrent(c_->context.get(), readSurface_, readSurface_);

@@ -66,6 +66,30 @@ void drawInFog(int frame) {
     glDisable(GL_FOG);
 }
 
+// The middle of the window, where tiles meet, drawn again in a corner.
+void drawCopyOfWindow() {
+    const GLfloat corners[] = {190, 130, 240, 130, 190, 180, 240, 180};
+    const GLfloat coordinates[] = {0, 0, 1, 0, 0, 1, 1, 1};
+    GLint viewport[4] = {};
+    glGetIntegerv(GL_VIEWPORT, viewport);
+    GLuint copy = 0;
+    glGenTextures(1, &copy);
+    glBindTexture(GL_TEXTURE_2D, copy);
+    glTexParameterx(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glCopyTexImage2D(GL_TEXTURE_2D, 0, GL_RGB, viewport[2] / 2 - 32, viewport[3] / 2 - 32, 64, 64, 0);
+    glLoadIdentity();
+    glEnable(GL_TEXTURE_2D);
+    glTexEnvx(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, GL_REPLACE);
+    glEnableClientState(GL_TEXTURE_COORD_ARRAY);
+    glTexCoordPointer(2, GL_FLOAT, 0, coordinates);
+    glVertexPointer(2, GL_FLOAT, 0, corners);
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    glDisableClientState(GL_TEXTURE_COORD_ARRAY);
+    glDisable(GL_TEXTURE_2D);
+    glDeleteTextures(1, &copy);
+    glBindTexture(GL_TEXTURE_2D, texture);
+}
+
 void draw(int frame) {
     const GLbyte coordinates[] = {0, 0, 2, 0, 0, 2, 2, 2};
     const GLubyte colors[] = {255, 0, 0, 255, 0, 255, GLubyte(frame * 50), 255, 0, 0, 255, 255, 255, 255, 0, 255};
@@ -111,6 +135,7 @@ void draw(int frame) {
     glTranslatef(60, 0, 0);
     glDrawArrays(GL_LINE_LOOP, 0, 4);
     drawInFog(frame);
+    drawCopyOfWindow();
     glDisableClientState(GL_VERTEX_ARRAY);
 }
 
