@@ -68,7 +68,7 @@ Result<void> AnswerAssembler::add(int node, const AnswerHeader& header, ByteBuff
         if (header.groupBytes != r.groupBytes || all.area() * header.groupBytes > kMostReplyBytes)
             return contradiction(header);
     }
-    if (header.first != 0) r.firstNode = node;
+    if (header.first != 0 && (r.firstNode < 0 || node < r.firstNode)) r.firstNode = node;
     if (r.parts.size() >= kMostParts) return Error{"its answer comes in too many parts"};
     r.parts.push_back({node, where, std::move(bytes)});
     return {};
@@ -82,8 +82,9 @@ bool AnswerAssembler::allAnswered(const Request& request) const {
 
 bool AnswerAssembler::canDeliver(const Request& request) const {
     const bool bytes = request.kind == static_cast<uint32_t>(AnswerKind::Bytes);
-    if (bytes && request.firstNode >= 0 && request.last[static_cast<size_t>(request.firstNode)])
-        return true; // all hold the same: no need to wait for the others
+    // All hold the same, but for what nobody has written: always the first that lives speaks, so that two reads agree.
+    const auto speaker = static_cast<int>(std::ranges::find(living_, true) - living_.begin());
+    if (bytes && request.firstNode == speaker && request.last[static_cast<size_t>(speaker)]) return true;
     return allAnswered(request);
 }
 

@@ -86,6 +86,16 @@ TEST_F(AnswerAssemblerTest, bytesComeFromTheOneThatSpeaksForAll) {
     EXPECT_EQ(assembler.openRequests(), 0u);
 }
 
+// What nobody has written differs from node to node: two reads must not tell of two nodes.
+TEST_F(AnswerAssemblerTest, theFirstThatLivesSpeaksHoweverFastTheOthersAre) {
+    bytes(2, {7}, true);
+    bytes(1, {5}, true);
+    EXPECT_TRUE(replies.empty());
+    bytes(0, {3}, true);
+    ASSERT_EQ(replies.size(), 1u);
+    EXPECT_EQ(replyBytes(), (std::vector<uint8_t>{3}));
+}
+
 TEST_F(AnswerAssemblerTest, theSpeakerIsNotHeldUpByTheOthers) {
     bytes(0, {1}, true);
     ASSERT_EQ(replies.size(), 1u);
