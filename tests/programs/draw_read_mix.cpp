@@ -1,6 +1,7 @@
 // Drawing into one drawable and reading from another (glXMakeContextCurrent): windows, pbuffers and pixmaps
 // in all pairs, by glReadPixels, glCopyPixels, glCopyTexImage2D and glBlitFramebuffer.
 #include "tests/programs/support/gl.hpp"
+#include "tests/programs/support/glx_choice.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
 #include "tests/programs/support/x_window.hpp"
@@ -15,26 +16,6 @@ constexpr int kSize = 50;
 
 Display* display;
 GLXContext context;
-
-GLXFBConfig chooseConfig() {
-    const int attributes[] = {GLX_DRAWABLE_TYPE, GLX_WINDOW_BIT | GLX_PBUFFER_BIT | GLX_PIXMAP_BIT, GLX_DOUBLEBUFFER, True,
-                              GLX_RED_SIZE, 8, GLX_GREEN_SIZE, 8, GLX_BLUE_SIZE, 8, GLX_DEPTH_SIZE, 24, None};
-    int count = 0;
-    GLXFBConfig* found = glXChooseFBConfig(display, DefaultScreen(display), attributes, &count);
-    if (found == nullptr || count == 0) {
-        fail("no GLX configuration for all kinds of drawables");
-    }
-    GLXFBConfig config = found[0];
-    for (int i = count; i-- > 0;) { // the deepest come first; windows have 8 bits
-        int bits = 0;
-        glXGetFBConfigAttrib(display, found[i], GLX_RED_SIZE, &bits);
-        if (bits == 8) {
-            config = found[i];
-        }
-    }
-    XFree(found);
-    return config;
-}
 
 void use(GLXDrawable draw, GLXDrawable read) {
     if (glXMakeContextCurrent(display, draw, read, context) != True) {
@@ -90,7 +71,7 @@ void mix(GLXDrawable draw, GLXDrawable read, int x, int y) {
 int main(int argc, char** argv) {
     const Options options = parseOptions(argc, argv);
     display = openDisplayOnce();
-    const GLXFBConfig config = chooseConfig();
+    const GLXFBConfig config = chooseGlxConfig(display, GLX_WINDOW_BIT | GLX_PBUFFER_BIT | GLX_PIXMAP_BIT, 24);
     XVisualInfo* visual = glXGetVisualFromFBConfig(display, config);
     const XWindow first(*visual, 0, 0, options.width, options.height);
     const XWindow second(*visual, options.width, 0, options.width / 2, options.height / 2);

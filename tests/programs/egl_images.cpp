@@ -9,6 +9,7 @@
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
 #include "tests/programs/support/show.hpp"
+#include "tests/programs/support/textured_quad.hpp"
 #include "tests/programs/support/x_window.hpp"
 
 using namespace programs;
@@ -183,18 +184,6 @@ void showAndChange(EGLImage image, int x, int y, int frame) {
     glDrawPixels(kSize, kSize, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
 }
 
-void drawTextured(float x) {
-    glEnable(GL_TEXTURE_2D);
-    glBegin(GL_QUADS);
-    for (int i = 0; i < 4; ++i) {
-        const float u = i == 1 || i == 2 ? 1 : 0, v = i >= 2 ? 1 : 0;
-        glTexCoord2f(u, v);
-        glVertex2f(x + u * 0.45F, -0.8F + v * 0.7F + u * 0.1F);
-    }
-    glEnd();
-    glDisable(GL_TEXTURE_2D);
-}
-
 } // namespace
 
 int main(int argc, char** argv) {
@@ -231,7 +220,7 @@ int main(int argc, char** argv) {
                 intoTexture(GL_TEXTURE_2D, images[3]);
             }
             glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-            drawTextured(-0.95F + 0.6F * float(i));
+            drawTexturedQuad(-0.95F + 0.6F * float(i), -0.8F, 0.45F, 0.7F);
         }
         glDeleteTextures(2, textures);
         for (int i = 1; i < 4; ++i) {

@@ -4,6 +4,7 @@
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
+#include "tests/programs/support/textured_quad.hpp"
 
 using namespace programs;
 
@@ -52,18 +53,6 @@ void drawSource(const Source& s, unsigned seed) {
     checkNoError("in a pbuffer");
 }
 
-void drawTextured(float x) {
-    glEnable(GL_TEXTURE_2D);
-    glBegin(GL_QUADS);
-    for (int i = 0; i < 4; ++i) {
-        const float u = i == 1 || i == 2 ? 1 : 0, v = i >= 2 ? 1 : 0;
-        glTexCoord2f(u, v);
-        glVertex2f(x + u * 0.8F, -0.6F + v * 1.2F + u * 0.1F);
-    }
-    glEnd();
-    glDisable(GL_TEXTURE_2D);
-}
-
 } // namespace
 
 int main(int argc, char** argv) {
@@ -92,7 +81,7 @@ int main(int argc, char** argv) {
                 fail("eglBindTexImage failed (EGL error 0x%04x)", eglGetError());
             }
             glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
-            drawTextured(-0.9F + 0.95F * float(i));
+            drawTexturedQuad(-0.9F + 0.95F * float(i), -0.6F, 0.8F, 1.2F);
             eglReleaseTexImage(display, sources[i].surface, EGL_BACK_BUFFER);
         }
         checkNoError("with pbuffers as textures");

@@ -1,6 +1,7 @@
 // GLX pbuffers and pixmaps: drawn into, read back and shown in the window, read from while drawing into
 // the window, kept over frames, made and destroyed in between.
 #include "tests/programs/support/gl.hpp"
+#include "tests/programs/support/glx_choice.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
 
@@ -15,19 +16,6 @@ namespace {
 
 constexpr int kSize = 64;
 Display* display;
-
-GLXFBConfig chooseConfig() {
-    const int attributes[] = {GLX_DRAWABLE_TYPE, GLX_WINDOW_BIT | GLX_PBUFFER_BIT | GLX_PIXMAP_BIT, GLX_DOUBLEBUFFER, True,
-                              GLX_RED_SIZE, 8, GLX_GREEN_SIZE, 8, GLX_BLUE_SIZE, 8, GLX_DEPTH_SIZE, 24, None};
-    int count = 0;
-    GLXFBConfig* found = glXChooseFBConfig(display, DefaultScreen(display), attributes, &count);
-    if (found == nullptr || count == 0) {
-        fail("no GLX configuration for windows, pbuffers and pixmaps");
-    }
-    const GLXFBConfig config = found[0];
-    XFree(found);
-    return config;
-}
 
 GLXPbuffer makePbuffer(GLXFBConfig config) {
     const int attributes[] = {GLX_PBUFFER_WIDTH, kSize, GLX_PBUFFER_HEIGHT, kSize, GLX_PRESERVED_CONTENTS, True, None};
@@ -62,7 +50,7 @@ void require(Bool made, const char* what) {
 int main(int argc, char** argv) {
     const Options options = parseOptions(argc, argv);
     display = openDisplayOnce();
-    const GLXFBConfig config = chooseConfig();
+    const GLXFBConfig config = chooseGlxConfig(display, GLX_WINDOW_BIT | GLX_PBUFFER_BIT | GLX_PIXMAP_BIT, 24);
     XVisualInfo* visual = glXGetVisualFromFBConfig(display, config);
     const XWindow window(*visual, 0, 0, options.width, options.height);
     const GLXContext context = glXCreateNewContext(display, config, GLX_RGBA_TYPE, nullptr, True);

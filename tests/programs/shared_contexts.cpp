@@ -1,6 +1,7 @@
 // Two contexts by turns in one window: buffers, textures, programs, samplers, renderbuffers and syncs
 // are shared, vertex arrays, framebuffers and all state are not.
 #include "tests/programs/support/gl.hpp"
+#include "tests/programs/support/glx_choice.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
 #include "tests/programs/support/show.hpp"
@@ -17,18 +18,6 @@ Display* display;
 GLXContext contexts[2];
 GLuint program, buffer, texture;
 GLuint vertexArrays[2], framebuffers[2]; // the same numbers in both contexts
-
-GLXFBConfig chooseConfig() {
-    const int attributes[] = {GLX_DOUBLEBUFFER, True, GLX_RED_SIZE, 8, GLX_GREEN_SIZE, 8, GLX_BLUE_SIZE, 8, GLX_DEPTH_SIZE, 24, None};
-    int count = 0;
-    GLXFBConfig* found = glXChooseFBConfig(display, DefaultScreen(display), attributes, &count);
-    if (found == nullptr || count == 0) {
-        fail("no GLX configuration");
-    }
-    const GLXFBConfig config = found[0];
-    XFree(found);
-    return config;
-}
 
 void makeShared() {
     program = buildProgram(
@@ -98,7 +87,7 @@ void draw(const Options& options, int index, int frame) {
 int main(int argc, char** argv) {
     const Options options = parseOptions(argc, argv);
     display = openDisplayOnce();
-    const GLXFBConfig config = chooseConfig();
+    const GLXFBConfig config = chooseGlxConfig(display, GLX_WINDOW_BIT, 24);
     XVisualInfo* visual = glXGetVisualFromFBConfig(display, config);
     const XWindow window(*visual, 0, 0, options.width, options.height);
     for (int i = 0; i < 2; ++i) {

@@ -2,6 +2,7 @@
 // the objects first, the first joins later, and a third joins after the one that made the objects has gone.
 // Toolkits do so: the window's context names another that is bound only when its picture is needed.
 #include "tests/programs/support/gl.hpp"
+#include "tests/programs/support/glx_choice.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
 #include "tests/programs/support/show.hpp"
@@ -16,30 +17,6 @@ namespace {
 
 Display* display;
 GLuint program, texture;
-
-GLXFBConfig chooseConfig() {
-    const int attributes[] = {GLX_DOUBLEBUFFER, True, GLX_RED_SIZE, 8, GLX_GREEN_SIZE, 8, GLX_BLUE_SIZE, 8, None};
-    int count = 0;
-    GLXFBConfig* found = glXChooseFBConfig(display, DefaultScreen(display), attributes, &count);
-    if (found == nullptr || count == 0) {
-        fail("no GLX configuration");
-    }
-    const GLXFBConfig config = found[0];
-    XFree(found);
-    return config;
-}
-
-GLXContext makeCore(GLXFBConfig config, GLXContext share) {
-    static const auto create = reinterpret_cast<PFNGLXCREATECONTEXTATTRIBSARBPROC>(
-        glXGetProcAddress(reinterpret_cast<const GLubyte*>("glXCreateContextAttribsARB")));
-    const int attributes[] = {GLX_CONTEXT_MAJOR_VERSION_ARB, 3, GLX_CONTEXT_MINOR_VERSION_ARB, 3,
-                              GLX_CONTEXT_PROFILE_MASK_ARB, GLX_CONTEXT_CORE_PROFILE_BIT_ARB, None};
-    const GLXContext made = create(display, config, share, True, attributes);
-    if (made == nullptr) {
-        fail("no core context");
-    }
-    return made;
-}
 
 void use(const XWindow& window, GLXContext context) {
     if (glXMakeCurrent(display, window.id(), context) != True) {
@@ -79,12 +56,12 @@ void draw(float x, float y) {
 int main(int argc, char** argv) {
     const Options options = parseOptions(argc, argv);
     display = openDisplayOnce();
-    const GLXFBConfig config = chooseConfig();
+    const GLXFBConfig config = chooseGlxConfig(display, GLX_WINDOW_BIT);
     XVisualInfo* visual = glXGetVisualFromFBConfig(display, config);
     const XWindow window(*visual, 0, 0, options.width, options.height);
-    const GLXContext named = makeCore(config, nullptr); // never current before the others
-    const GLXContext maker = makeCore(config, named);
-    const GLXContext last = makeCore(config, maker);
+    const GLXContext named = makeCoreGlxContext(display, config, nullptr); // never current before the others
+    const GLXContext maker = makeCoreGlxContext(display, config, named);
+    const GLXContext last = makeCoreGlxContext(display, config, maker);
     use(window, maker);
     makeShared();
     for (int frame = 0; frame < options.frames; ++frame) {

@@ -1,6 +1,7 @@
 // Contexts without a window that share with a window's: one without any drawable (GL 3 and GLX_ARB_create_context
 // allow it), one on a pbuffer only, each in a thread of its own; and a thread that ends with its context current.
 #include "tests/programs/support/gl.hpp"
+#include "tests/programs/support/glx_choice.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
 #include "tests/programs/support/show.hpp"
@@ -17,37 +18,6 @@ namespace {
 constexpr int kSize = 40;
 
 Display* display;
-
-GLXFBConfig chooseConfig() {
-    const int attributes[] = {GLX_DRAWABLE_TYPE, GLX_WINDOW_BIT | GLX_PBUFFER_BIT, GLX_DOUBLEBUFFER, True, GLX_RED_SIZE, 8, GLX_GREEN_SIZE, 8, GLX_BLUE_SIZE, 8, None};
-    int count = 0;
-    GLXFBConfig* found = glXChooseFBConfig(display, DefaultScreen(display), attributes, &count);
-    if (found == nullptr || count == 0) {
-        fail("no GLX configuration for windows and pbuffers");
-    }
-    GLXFBConfig config = found[0];
-    for (int i = count; i-- > 0;) { // the deepest come first; windows have 8 bits
-        int bits = 0;
-        glXGetFBConfigAttrib(display, found[i], GLX_RED_SIZE, &bits);
-        if (bits == 8) {
-            config = found[i];
-        }
-    }
-    XFree(found);
-    return config;
-}
-
-GLXContext makeCore(GLXFBConfig config, GLXContext share) {
-    static const auto create = reinterpret_cast<PFNGLXCREATECONTEXTATTRIBSARBPROC>(
-        glXGetProcAddress(reinterpret_cast<const GLubyte*>("glXCreateContextAttribsARB")));
-    const int attributes[] = {GLX_CONTEXT_MAJOR_VERSION_ARB, 3, GLX_CONTEXT_MINOR_VERSION_ARB, 3,
-                              GLX_CONTEXT_PROFILE_MASK_ARB, GLX_CONTEXT_CORE_PROFILE_BIT_ARB, None};
-    const GLXContext made = create(display, config, share, True, attributes);
-    if (made == nullptr) {
-        fail("no core context");
-    }
-    return made;
-}
 
 void use(GLXDrawable drawable, GLXContext context) {
     if (glXMakeContextCurrent(display, drawable, drawable, context) != True) {
@@ -104,12 +74,12 @@ void paint(GLXDrawable drawable, GLXContext context, GLuint texture, unsigned se
 int main(int argc, char** argv) {
     const Options options = parseOptions(argc, argv);
     display = openDisplayOnce();
-    const GLXFBConfig config = chooseConfig();
+    const GLXFBConfig config = chooseGlxConfig(display, GLX_WINDOW_BIT | GLX_PBUFFER_BIT);
     XVisualInfo* visual = glXGetVisualFromFBConfig(display, config);
     const XWindow window(*visual, 0, 0, options.width, options.height);
     const int size[] = {GLX_PBUFFER_WIDTH, kSize, GLX_PBUFFER_HEIGHT, kSize, GLX_PRESERVED_CONTENTS, True, None};
     const GLXPbuffer pbuffer = glXCreatePbuffer(display, config, size);
-    const GLXContext shown = makeCore(config, nullptr), bare = makeCore(config, shown), aside = makeCore(config, bare);
+    const GLXContext shown = makeCoreGlxContext(display, config, nullptr), bare = makeCoreGlxContext(display, config, shown), aside = makeCoreGlxContext(display, config, bare);
     use(window.id(), shown);
     const GLuint textures[] = {makeTexture(), makeTexture()};
     const GLuint program = buildProgram(
