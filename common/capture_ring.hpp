@@ -23,7 +23,7 @@
 namespace mural::capture {
 
 constexpr uint32_t kMagic = 0x4d55524c; // "MURL"
-constexpr uint32_t kVersion = 4;
+constexpr uint32_t kVersion = 5;
 constexpr uint32_t kChunkBytes = 256 * 1024;
 constexpr uint32_t kDefaultChunks = 256; // 64 MiB
 constexpr uint32_t kReplyBytes = 4 * 1024 * 1024;
@@ -68,6 +68,23 @@ struct TripCount {
 };
 constexpr uint32_t kTripCounts = 48; // the last one is for all that find no place
 
+// What the head's reader of publications does. A wake costs the program a system call, so frames that come faster
+// than any display shows them are not announced: the reader naps then, and looks again by itself.
+enum class Reader : uint32_t {
+    Reads = 0,
+    Naps = 1,   // for kNapNs at most: woken only when a thread of the program waits for something
+    Sleeps = 2, // until it is woken
+};
+constexpr int64_t kNapNs = 100'000;
+
+// So far a program may be ahead of the nodes beyond the frames of Welcome.latency (unless that is 0): frames that
+// take longer are not affected, and one that does nothing but show frames sleeps once in a while, not in each.
+constexpr int64_t kAheadNs = 1'000'000;
+constexpr uint32_t kAheadFrames = 64; // a power of two
+
+// CaptureHeader::framesWanted: how many done frames a thread of the program sleeps for, and that it does.
+constexpr uint64_t kFramesWanted = uint64_t{1} << 32;
+
 // What a node's GL tells of a context: wire::News and its text.
 struct NewsSlot {
     std::byte news[32];
@@ -89,6 +106,7 @@ struct alignas(64) CaptureHeader {
 
     alignas(64) std::atomic<uint32_t> publishedTail; // app writes; futex: the head sleeps on it
     alignas(64) std::atomic<uint32_t> publishedHead; // head writes
+    alignas(64) std::atomic<uint32_t> reader;        // Reader; head writes
     alignas(64) std::atomic<uint32_t> freedTail;     // head writes; futex: the app sleeps on it
     alignas(64) std::atomic<uint32_t> freedHead;     // app writes
     alignas(64) std::atomic<uint32_t> replyTail;     // head writes, bytes; futex
@@ -99,6 +117,9 @@ struct alignas(64) CaptureHeader {
 
     // Frames that the nodes have finished, over all windows: the credit of the frame latency. futex.
     alignas(64) std::atomic<uint32_t> framesDone;
+    // kFramesWanted | frames: the head wakes who sleeps on framesDone when so many are done, and clears it. A thread
+    // that wants fewer than another may be woken with that one: all are on their way.
+    std::atomic<uint64_t> framesWanted;
     std::atomic<uint32_t> framesSubmitted; // app writes
     // Frames of the app's own window that are on the screen (--display app). futex.
     std::atomic<uint32_t> framesShown;

@@ -419,7 +419,7 @@ void showFront(ThreadState& t, Window& w) {
     t.context->frontDue = drawsToFront();
     records::frontPicture(t, w.id, s->nextFrame());
     s->publish(t, false);
-    s->waitForCredit(s->welcome().latency);
+    s->waitForCredit();
     refreshDrawLocally(t);
 }
 
@@ -466,9 +466,9 @@ void endFrame(Window* w) {
     if (every && frame % every == 0) verifyFrame(t, *w);
     records::swap(t, w->id, frame);
     ++t.context->swaps;
-    s->publish(t, false);
+    s->publish(t, false, false); // waitForCredit wakes the head when it has to
     watchFromHere(t);
-    s->waitForCredit(s->welcome().latency);
+    s->waitForCredit();
     takeNews(t);
     w->sizeKnown = false;
     t.sizeDue = true;

@@ -213,20 +213,38 @@ bool Session::headAlive() {
     return true;
 }
 
-void Session::publish(ThreadState& t, bool last) {
+void Session::publish(ThreadState& t, bool last, bool hurry) {
     if (!alive() || t.chunk == UINT32_MAX) return;
-    Guard guard(ringLock);
+    bool published = false;
+    {
+        Guard guard(ringLock);
+        published = publishLocked(t, last);
+    }
+    if (published || hurry) wakeReader(hurry);
+}
+
+// After a publication: what the reader does is read behind it, as the reader reads the publications behind that.
+void Session::wakeReader(bool fromNap) {
+    std::atomic_thread_fence(std::memory_order_seq_cst);
+    const auto reader = static_cast<capture::Reader>(header_->reader.load(std::memory_order_relaxed));
+    if (reader == capture::Reader::Sleeps || (fromNap && reader == capture::Reader::Naps)) futexWakeAll(header_->publishedTail);
+}
+
+bool Session::publishLocked(ThreadState& t, bool last) {
     std::byte* start = capture::chunk(header_, t.chunk);
     const auto end = static_cast<uint32_t>(__atomic_load_n(&t.cursor, __ATOMIC_ACQUIRE) - start);
-    if (end == t.publishedBytes && !last) return;
+    if (end == t.publishedBytes && !last) return false;
     const uint32_t tail = header_->publishedTail.load(std::memory_order_relaxed);
     // A takeover publishes ranges of one chunk, so publications may outnumber chunks.
     const auto full = [&] { return tail - header_->publishedHead.load(std::memory_order_acquire) >= header_->chunkCount; };
     if (full()) {
         const Waiting waiting(*header_, capture::Wait::Room);
         do {
-            if (!headAlive()) return;
-            if (waiting.forNs() > kStuckNs) return die("the head takes nothing for 60 s");
+            if (!headAlive()) return false;
+            if (waiting.forNs() > kStuckNs) {
+                die("the head takes nothing for 60 s");
+                return false;
+            }
             timespec nap{0, 200'000};
             syscall(SYS_nanosleep, &nap, nullptr);
         } while (full());
@@ -237,7 +255,7 @@ void Session::publish(ThreadState& t, bool last) {
     ++t.publications;
     if (last) t.chunk = UINT32_MAX;
     header_->publishedTail.store(tail + 1, std::memory_order_release);
-    futexWakeAll(header_->publishedTail);
+    return true;
 }
 
 bool Session::takeChunk(ThreadState& t) {
@@ -270,20 +288,32 @@ bool Session::takeChunk(ThreadState& t) {
     return false;
 }
 
-void Session::waitForCredit(uint32_t latency) {
+bool Session::mayGoAhead(uint32_t submitted, uint32_t done, int64_t nowNs) const {
+    if (welcome_.latency == 0 || submitted - done >= capture::kAheadFrames) return false;
+    const int64_t oldestNs = __atomic_load_n(&submittedNs_[(done + 1) % capture::kAheadFrames], __ATOMIC_RELAXED);
+    return nowNs - oldestNs < capture::kAheadNs;
+}
+
+void Session::waitForCredit() {
     const uint32_t submitted = framesSubmitted();
+    const int64_t nowNs = monotonicNowNs();
+    __atomic_store_n(&submittedNs_[submitted % capture::kAheadFrames], nowNs, __ATOMIC_RELAXED);
     header_->framesSubmitted.store(submitted, std::memory_order_relaxed);
-    std::optional<Waiting> waiting;
-    while (alive()) {
-        const uint32_t done = header_->framesDone.load(std::memory_order_acquire);
-        if (static_cast<int32_t>(submitted - done) <= static_cast<int32_t>(latency)) return;
-        if (!waiting) {
-            waiting.emplace(*header_, capture::Wait::Frames);
-        } else { // a wait that was in vain: nothing of this is looked at in most frames
+    const auto tooMany = [&](uint32_t done) { return static_cast<int32_t>(submitted - done) > static_cast<int32_t>(welcome_.latency); };
+    uint32_t done = header_->framesDone.load(std::memory_order_acquire);
+    if (!alive() || !tooMany(done) || mayGoAhead(submitted, done, nowNs)) return;
+    const Waiting waiting(*header_, capture::Wait::Frames);
+    wakeReader(true);
+    for (bool inVain = false; alive() && tooMany(done); inVain = true) {
+        if (inVain) { // nothing of this is looked at in most frames
             if (!headAlive()) return;
-            if (waiting->forNs() > 10 * kStuckNs) die("no frame came back for 10 minutes");
+            if (waiting.forNs() > 10 * kStuckNs) die("no frame came back for 10 minutes");
         }
-        futexWait(header_->framesDone, done, kSliceNs);
+        header_->framesWanted.store(capture::kFramesWanted | (submitted - welcome_.latency), std::memory_order_relaxed);
+        std::atomic_thread_fence(std::memory_order_seq_cst);
+        done = header_->framesDone.load(std::memory_order_acquire);
+        if (tooMany(done)) futexWait(header_->framesDone, done, kSliceNs);
+        done = header_->framesDone.load(std::memory_order_acquire);
     }
 }
 

@@ -24,12 +24,14 @@ public:
     // Extensions that all nodes have, with a space before and behind each.
     [[nodiscard]] const char* nodeExtensions() const { return extensions_; }
 
-    // Makes all complete records of the thread visible to the head. `last`: the chunk is used up.
-    void publish(ThreadState& t, bool last);
+    // Makes all complete records of the thread visible to the head. `last`: the chunk is used up. `hurry`: the
+    // head is to read it now, and not when its nap is over.
+    void publish(ThreadState& t, bool last, bool hurry = true);
     // A fresh chunk for the thread (after publish(t, true)); false when the head is gone.
     bool takeChunk(ThreadState& t);
-    // Blocks until at most `latency` frames are on their way.
-    void waitForCredit(uint32_t latency);
+    // Blocks until no more frames are on their way than the session's latency allows. Frames faster than
+    // capture::kAheadNs may be some more.
+    void waitForCredit();
     // Blocks until all frames of this process are in its windows (--display app); bounded.
     void waitShown();
 
@@ -59,6 +61,9 @@ public:
 private:
     bool connect(const char* name);
     bool headAlive();
+    [[nodiscard]] bool publishLocked(ThreadState& t, bool last); // false: there was nothing, or no room
+    void wakeReader(bool fromNap);
+    [[nodiscard]] bool mayGoAhead(uint32_t submitted, uint32_t done, int64_t nowNs) const;
     [[nodiscard]] uint32_t framesSubmitted() const { return __atomic_load_n(&framesSubmitted_, __ATOMIC_RELAXED); }
 
     capture::CaptureHeader* header_ = nullptr;
@@ -67,6 +72,7 @@ private:
     int socket_ = -1;
     bool alive_ = false;
     uint32_t framesSubmitted_ = 0; // by all threads
+    int64_t submittedNs_[capture::kAheadFrames] = {}; // of frame n at n modulo their number
     uint32_t lastRequest_ = 0;
     uint32_t lastAhead_ = 0;
     uint32_t newsTaken_ = 0;

@@ -80,16 +80,27 @@ void CaptureClient::pump() {
     CaptureMemory::Range range;
     bool gone = false;
     while (!stop_ && !drained()) {
-        if (pumpNext(range)) continue;
+        if (pumpNext(range)) {
+            arrived_ = true;
+            continue;
+        }
         flushNodes();
         if (stop_ || gone) break; // gone: and nothing has come since that was seen
         gone = programGone();
-        if (!gone) memory_->waitPublished(kPumpSliceNs);
+        if (!gone) waitForMore();
     }
     flushNodes();
     const bool inOrder = drained() && !gone && !stop_;
     if (!inOrder) reportEnd();
     pumpEnded_ = true;
+}
+
+void CaptureClient::waitForMore() {
+    const int64_t nowNs = monotonicNowNs();
+    if (arrived_) pace_.arrived(nowNs);
+    arrived_ = false;
+    const bool soon = pace_.moreSoon(nowNs);
+    memory_->waitPublished(soon ? capture::Reader::Naps : capture::Reader::Sleeps, soon ? capture::kNapNs : kPumpSliceNs);
 }
 
 void CaptureClient::reportEnd() {

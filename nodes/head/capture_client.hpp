@@ -11,6 +11,7 @@
 #include <sys/types.h>
 #include <thread>
 
+#include "nodes/head/arrival_pace.hpp"
 #include "nodes/head/byte_buffer.hpp"
 #include "nodes/head/capture_memory.hpp"
 #include "nodes/head/node_set.hpp"
@@ -59,6 +60,7 @@ public:
 
 private:
     void pump();
+    void waitForMore();
     void reportEnd();
     bool pumpNext(CaptureMemory::Range& range); // false: nothing there, or a corrupt ring
     [[nodiscard]] bool drained() const;
@@ -78,7 +80,9 @@ private:
     FileDescriptor socket_;
     std::thread pumpThread_;
     std::thread replyThread_;
-    size_t unflushedBytes_ = 0; // the pump's
+    size_t unflushedBytes_ = 0; // the pump's, as the next two
+    bool arrived_ = false;      // something since it last waited
+    ArrivalPace pace_;
     std::atomic<bool> stop_{false};
     std::atomic<bool> draining_{false};
     std::atomic<uint32_t> drainTail_{0};

@@ -134,8 +134,11 @@ uint32_t CaptureMemory::publishedTail() const {
     return shared_->publishedTail.load(std::memory_order_acquire);
 }
 
-void CaptureMemory::waitPublished(int64_t timeoutNs) const {
-    futexWait(shared_->publishedTail, publishedHead_, timeoutNs);
+void CaptureMemory::waitPublished(capture::Reader how, int64_t timeoutNs) {
+    shared_->reader.store(static_cast<uint32_t>(how), std::memory_order_relaxed);
+    std::atomic_thread_fence(std::memory_order_seq_cst); // either it sees this, or the look below what it has published
+    if (publishedTail() == publishedHead_) futexWait(shared_->publishedTail, publishedHead_, timeoutNs);
+    shared_->reader.store(static_cast<uint32_t>(capture::Reader::Reads), std::memory_order_relaxed);
 }
 
 void CaptureMemory::wakePump() const { futexWakeAll(shared_->publishedTail); }
@@ -182,7 +185,14 @@ bool CaptureMemory::putNews(const wire::News& news, const std::string& text) {
     return true;
 }
 
-void CaptureMemory::setFramesDone(uint32_t frames) { store(shared_->framesDone, frames); }
+void CaptureMemory::setFramesDone(uint32_t frames) {
+    shared_->framesDone.store(frames, std::memory_order_release);
+    std::atomic_thread_fence(std::memory_order_seq_cst);
+    uint64_t wanted = shared_->framesWanted.load(std::memory_order_relaxed);
+    if (!(wanted & capture::kFramesWanted) || static_cast<int32_t>(frames - static_cast<uint32_t>(wanted)) < 0) return;
+    shared_->framesWanted.compare_exchange_strong(wanted, 0); // or another thread has just said what it wants
+    futexWakeAll(shared_->framesDone);
+}
 void CaptureMemory::setFramesShown(uint32_t frames) { store(shared_->framesShown, frames); }
 
 void CaptureMemory::setHeadGone() {

@@ -58,7 +58,7 @@ public:
     bool take(const Range& range); // done with it; false: the ring of freed chunks is corrupt
     [[nodiscard]] uint32_t publishedTail() const;
     [[nodiscard]] uint32_t takenHead() const { return publishedHead_; }
-    void waitPublished(int64_t timeoutNs) const; // returns at once when there is something
+    void waitPublished(capture::Reader how, int64_t timeoutNs); // returns at once when there is something
     void wakePump() const;
 
     // Writes as much as there is room for.

@@ -28,7 +28,7 @@ Session* Session::current() {
     return session;
 }
 void Session::die(const char*) { alive_ = false; }
-void Session::publish(ThreadState& t, bool) { harness->publish(t); }
+void Session::publish(ThreadState& t, bool, bool) { harness->publish(t); }
 bool Session::takeChunk(ThreadState& t) { return harness->takeChunk(t); }
 
 bool unpackBufferBound(const Context&) { return harness && harness->unpackBuffer(); }

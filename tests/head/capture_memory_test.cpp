@@ -1,0 +1,111 @@
+// Who is woken, and who need not be: the reader of publications and a program that waits for frames.
+#include "nodes/head/capture_memory.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <thread>
+
+#include "common/clock.hpp"
+#include "common/futex.hpp"
+#include "nodes/head/arrival_pace.hpp"
+
+namespace mural {
+namespace {
+
+using capture::Reader;
+
+class CaptureMemoryTest : public ::testing::Test {
+protected:
+    void SetUp() override {
+        auto made = CaptureMemory::create(16, 4096);
+        ASSERT_TRUE(made) << made.error().message;
+        memory_ = std::move(made.value());
+        base_ = mmap(nullptr, sizeof(capture::CaptureHeader), PROT_READ | PROT_WRITE, MAP_SHARED, memory_->fd(), 0);
+        ASSERT_NE(base_, MAP_FAILED);
+        program_ = static_cast<capture::CaptureHeader*>(base_);
+    }
+    void TearDown() override { munmap(base_, sizeof(capture::CaptureHeader)); }
+
+    [[nodiscard]] Reader reader() const { return static_cast<Reader>(program_->reader.load()); }
+    // A thread of the program that sleeps until `frames` are done, as Session::waitForCredit.
+    void sleepForFrames(uint32_t frames) {
+        uint32_t done = 0;
+        while (static_cast<int32_t>((done = program_->framesDone.load()) - frames) < 0) {
+            program_->framesWanted = capture::kFramesWanted | frames;
+            futexWait(program_->framesDone, done, 10 * kNsPerS);
+            ++wakes_;
+        }
+    }
+    // Until the other thread says what it wants; 10 s at most.
+    [[nodiscard]] bool wantedIs(uint64_t value) const {
+        const Deadline deadline = Deadline::inMs(10'000);
+        while (program_->framesWanted.load() != value && !deadline.passed()) std::this_thread::yield();
+        return program_->framesWanted.load() == value;
+    }
+
+    std::unique_ptr<CaptureMemory> memory_;
+    void* base_ = nullptr;
+    capture::CaptureHeader* program_ = nullptr;
+    int wakes_ = 0;
+};
+
+TEST_F(CaptureMemoryTest, aNapEndsByItself) {
+    memory_->waitPublished(Reader::Naps, capture::kNapNs); // nobody wakes it
+    EXPECT_EQ(reader(), Reader::Reads);
+}
+
+TEST_F(CaptureMemoryTest, readsAtOnceWhatWasPublishedBeforeItSlept) {
+    program_->publishedTail = 1; // and nobody wakes it
+    const int64_t sinceNs = monotonicNowNs();
+    memory_->waitPublished(Reader::Sleeps, 60 * kNsPerS);
+    EXPECT_LT(monotonicNowNs() - sinceNs, 30 * kNsPerS);
+}
+
+TEST_F(CaptureMemoryTest, saysThatItSleeps) {
+    std::thread sleeper([&] { memory_->waitPublished(Reader::Sleeps, 10 * kNsPerS); });
+    const Deadline deadline = Deadline::inMs(10'000);
+    while (reader() != Reader::Sleeps && !deadline.passed()) std::this_thread::yield();
+    EXPECT_EQ(reader(), Reader::Sleeps);
+    program_->publishedTail = 1;
+    futexWakeAll(program_->publishedTail);
+    sleeper.join();
+    EXPECT_EQ(reader(), Reader::Reads);
+}
+
+TEST_F(CaptureMemoryTest, wakesAProgramWhenSoManyFramesAreDoneAndNotBefore) {
+    std::thread program([&] { sleepForFrames(5); });
+    ASSERT_TRUE(wantedIs(capture::kFramesWanted | 5));
+    for (uint32_t frame = 1; frame <= 5; ++frame) {
+        EXPECT_EQ(program_->framesWanted.load(), capture::kFramesWanted | 5) << frame; // nobody was woken to say it again
+        memory_->setFramesDone(frame);
+    }
+    program.join();
+    EXPECT_LE(wakes_, 5); // a word that changes just before it sleeps wakes it early
+    EXPECT_EQ(program_->framesWanted.load(), 0u);
+}
+
+TEST_F(CaptureMemoryTest, framesAreCountedAroundTheEndOfTheirNumbers) {
+    program_->framesDone = UINT32_MAX - 1;
+    std::thread program([&] { sleepForFrames(1); });
+    ASSERT_TRUE(wantedIs(capture::kFramesWanted | 1));
+    memory_->setFramesDone(UINT32_MAX);
+    EXPECT_TRUE(wantedIs(capture::kFramesWanted | 1));
+    memory_->setFramesDone(1);
+    program.join();
+}
+
+TEST(ArrivalPace, napsOnlyAfterTwoThatCameQuickly) {
+    ArrivalPace pace;
+    constexpr int64_t kQuickNs = ArrivalPace::kQuickNs;
+    EXPECT_FALSE(pace.moreSoon(0));
+    pace.arrived(0);
+    EXPECT_FALSE(pace.moreSoon(1));
+    pace.arrived(kQuickNs);
+    EXPECT_FALSE(pace.moreSoon(kQuickNs + 1));
+    pace.arrived(2 * kQuickNs - 1);
+    EXPECT_TRUE(pace.moreSoon(2 * kQuickNs));
+    EXPECT_FALSE(pace.moreSoon(3 * kQuickNs)); // nothing came
+}
+
+} // namespace
+} // namespace mural
