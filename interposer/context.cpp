@@ -8,6 +8,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include "interposer/default_samples.hpp"
 #include "interposer/drawn_elsewhere.hpp"
 #include "interposer/draw_opcodes.hpp"
 #include "interposer/log.hpp"
@@ -375,7 +376,7 @@ void becameCurrent(Context* context, Window* draw, Window* read) {
         if (!w->sizeKnown) updateWindowSize(t, *w);
         announce(t, *w);
     }
-    t.sizeDue = false;
+    t.drawingAwaited = context->hasDefaultSamples;
     context->drawWindow = drawWindow;
     context->readWindow = readWindow;
     records::makeCurrent(t, context->id, context->drawWindow, context->readWindow);
@@ -395,9 +396,10 @@ void updateWindowSize(ThreadState& t, Window& w) {
     if (w.announced) records::window(t, w.id, w.config);
 }
 
-void beforeRecordAfterSwap(ThreadState& t, uint32_t opcode) {
+void beforeAwaitedDrawing(ThreadState& t, uint32_t opcode) {
     if (!drawsIntoWindow(opcode)) return;
-    t.sizeDue = false;
+    t.drawingAwaited = t.context && t.context->hasDefaultSamples;
+    if (t.drawingAwaited) fitDefaultSamples(t);
     Window* w = t.context ? findWindowById(t.context->drawWindow) : nullptr;
     if (w && !w->sizeKnown) updateWindowSize(t, *w);
 }
@@ -471,7 +473,7 @@ void endFrame(Window* w) {
     s->waitForCredit();
     takeNews(t);
     w->sizeKnown = false;
-    t.sizeDue = true;
+    t.drawingAwaited = true;
     t.limit = nullptr;
     refreshDrawLocally(t);
     s->countFrameCpu(t);

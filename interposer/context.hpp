@@ -107,6 +107,7 @@ struct Context {
     bool firstCurrent = true;
     uint32_t drawWindow = 0, readWindow = 0; // 0: none; both stay when the context is released
     Window* held[2] = {};      // what it was last bound to: a driver keeps these drawables alive
+    bool hasDefaultSamples = false; // some framebuffer object has (interposer/default_samples.hpp)
     bool drawsPixmap = false;  // its drawable is an X pixmap
     bool isMesa = false;
     uintptr_t indicesInMemoryFrom = 0; // smaller pointers of indexed draws are offsets into a buffer in any case
@@ -158,8 +159,8 @@ void threadLeaves(ThreadState& t);
 // Asks the window's size and announces a change. Done at the moments at which Mesa gives its buffers
 // a size: when the window is bound first, and at the first drawing after a swap.
 void updateWindowSize(ThreadState& t, Window& w);
-// While t.sizeDue: before each record, until one draws.
-void beforeRecordAfterSwap(ThreadState& t, uint32_t opcode);
+// While t.drawingAwaited: before each record.
+void beforeAwaitedDrawing(ThreadState& t, uint32_t opcode);
 // The program shows the window's back buffer: a frame ends.
 void endFrame(Window* w);
 // glFlush or glFinish shows what was drawn into a front buffer: a frame, when something was drawn.

@@ -31,7 +31,7 @@ void openFastPath(ThreadState& t) {
 
 std::byte* makeRoom(ThreadState& t, uint32_t opcode, uint32_t sizeBytes) {
     if (!t.context && !needsNoContext(opcode)) return nullptr;
-    if (t.sizeDue) beforeRecordAfterSwap(t, opcode);
+    if (t.drawingAwaited) beforeAwaitedDrawing(t, opcode);
     Session* s = Session::current();
     if (!s || !s->alive()) {
         goAlone(t);
@@ -52,7 +52,7 @@ std::byte* makeRoom(ThreadState& t, uint32_t opcode, uint32_t sizeBytes) {
             return nullptr;
         }
     }
-    if (t.context && !t.shared && !t.sizeDue) openFastPath(t);
+    if (t.context && !t.shared && !t.drawingAwaited) openFastPath(t);
     return t.cursor;
 }
 

@@ -35,7 +35,7 @@ void loadOwnNeeds() {
         "glGetActiveUniformBlockName", "glGetProgramResourceiv", "glGetProgramResourceName", "glGetProgramInterfaceiv",
         "glGetBufferPointerv", "glGetTextureLevelParameteriv", "glGetNamedBufferParameteri64v", "glGetBufferParameteri64v",
         "glBegin", "glEnd", "glClientActiveTexture", "glBufferSubData", "glGetTextureParameteriv", "glGetFramebufferAttachmentParameteriv", "glCallList", "glCallLists",
-        "glClear", "glDrawArrays", "glDrawElements", "glMultiDrawArraysIndirect", "glMultiDrawElementsIndirect", "glDispatchCompute", "glGetIntegeri_v",
+        "glClear", "glCheckFramebufferStatus", "glDrawArrays", "glDrawElements", "glMultiDrawArraysIndirect", "glMultiDrawElementsIndirect", "glDispatchCompute", "glGetIntegeri_v",
         "glDebugMessageCallback", "glDebugMessageInsert", "glDrawTransformFeedbackInstanced", "glDrawTransformFeedbackStreamInstanced", "glClearNamedFramebufferfv"};
     for (const char* name : kNames) wrapperFor(name);
 }

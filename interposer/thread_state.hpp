@@ -21,7 +21,7 @@ struct ThreadState {
     bool drawLocally = true;        // draws go to the app's own context too
     bool locked = false;            // the share group's lock is held for the record being written
     bool shared = false;            // several threads use this share group: order every record
-    bool sizeDue = false;           // the next drawing finds out the window's size
+    bool drawingAwaited = false;    // the next drawing finds out the window's size, or more: beforeAwaitedDrawing
     uint16_t stream = 0;            // number of this thread in the session
     uint32_t chunk = UINT32_MAX;    // index of the chunk, UINT32_MAX: none
     uint32_t publishedBytes = 0;    // of the chunk; the rest up to cursor is not yet visible

@@ -38,7 +38,7 @@ bool isTight(const sizes::ImageLayout& layout) {
            (layout.images <= 1 || layout.imageStride == layout.rowBytes * layout.rows);
 }
 void say(const char*, ...) {}
-void beforeRecordAfterSwap(ThreadState&, uint32_t) {}
+void beforeAwaitedDrawing(ThreadState&, uint32_t) {}
 void shipLastingMaps(ThreadState&) {}
 
 // Like thread_state.cpp, for one thread that never ends.

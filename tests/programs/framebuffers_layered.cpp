@@ -1,5 +1,6 @@
 // A multisampled window, layered framebuffers filled by a geometry shader, cube map faces and 3D slices
-// as targets, sample masks, alpha to coverage, sample shading, blits of depth and stencil.
+// as targets, sample masks, alpha to coverage, sample shading, blits of depth and stencil; the number of samples
+// of a framebuffer without attachments before and after it is drawn to.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -13,7 +14,7 @@ namespace {
 
 constexpr int kSize = 32;
 GLuint layered, flat, perSample, vertexArray;
-GLuint arrayTexture, cubeTexture, volumeTexture, arrayFramebuffer, faceFramebuffer, stencilFramebuffer;
+GLuint arrayTexture, cubeTexture, volumeTexture, arrayFramebuffer, faceFramebuffer, stencilFramebuffer, emptyFramebuffer;
 GLuint showLayer, showCube, showVolume;
 
 const char* const kQuadVertex =
@@ -81,10 +82,10 @@ void setUp() {
     makeTarget(arrayTexture, GL_TEXTURE_2D_ARRAY);
     makeTarget(cubeTexture, GL_TEXTURE_CUBE_MAP);
     makeTarget(volumeTexture, GL_TEXTURE_3D);
-    GLuint framebuffers[3];
-    glGenFramebuffers(3, framebuffers);
+    GLuint framebuffers[4];
+    glGenFramebuffers(4, framebuffers);
     arrayFramebuffer = framebuffers[0], faceFramebuffer = framebuffers[1];
-    stencilFramebuffer = framebuffers[2];
+    stencilFramebuffer = framebuffers[2], emptyFramebuffer = framebuffers[3];
     glBindFramebuffer(GL_FRAMEBUFFER, arrayFramebuffer);
     glFramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, arrayTexture, 0);
     GLuint renderbuffer = 0;
@@ -121,6 +122,26 @@ void renderLayers(int frame) {
         fan(flat, float(frame + i), 0, 0, 0.8F, 6);
     }
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+
+std::uint32_t samplesNow() {
+    GLint samples = 0;
+    GLint buffers = 0;
+    glGetIntegerv(GL_SAMPLES, &samples);
+    glGetIntegerv(GL_SAMPLE_BUFFERS, &buffers);
+    return std::uint32_t(samples) | std::uint32_t(buffers) << 4;
+}
+
+std::uint32_t drawWithoutAttachments(int frame) {
+    glBindFramebuffer(GL_FRAMEBUFFER, emptyFramebuffer);
+    glFramebufferParameteri(GL_FRAMEBUFFER, GL_FRAMEBUFFER_DEFAULT_WIDTH, kSize);
+    glFramebufferParameteri(GL_FRAMEBUFFER, GL_FRAMEBUFFER_DEFAULT_HEIGHT, kSize);
+    glFramebufferParameteri(GL_FRAMEBUFFER, GL_FRAMEBUFFER_DEFAULT_SAMPLES, 3 - frame % 4);
+    const std::uint32_t before = samplesNow();
+    fan(flat, float(frame), 0, 0, 0.8F, 6);
+    const std::uint32_t after = samplesNow();
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    return before | after << 8;
 }
 
 void showTexture(GLuint program, GLenum target, GLuint texture, float layer, int cell) {
@@ -181,6 +202,7 @@ int main(int argc, char** argv) {
         [](Window&) { setUp(); },
         [](Window& window, int frame) {
             renderLayers(frame);
+            const std::uint32_t samples = drawWithoutAttachments(frame);
             glViewport(0, 0, window.width(), window.height());
             glClearColor(0.15F, 0.1F, 0.2F, 1);
             glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -192,5 +214,6 @@ int main(int argc, char** argv) {
             showTexture(showCube, GL_TEXTURE_CUBE_MAP, cubeTexture, -0.2F, 5);
             drawMultisampledShapes(frame);
             blitWindow(window);
+            showBits(1, samples);
         });
 }
