@@ -16,6 +16,7 @@
 #include "interposer/own_records.hpp"
 #include "interposer/real_gl.hpp"
 #include "interposer/session.hpp"
+#include "interposer/texture_from.hpp"
 #include "interposer/verify.hpp"
 #include "interposer/window_size.hpp"
 
@@ -311,9 +312,15 @@ Window* findWindowById(uint32_t id) {
     return nullptr;
 }
 
+Window* firstWindow() {
+    Guard guard(tableLock);
+    return windows;
+}
+
 void destroyWindow(uintptr_t drawable, void* display) {
     Window* w = findWindow(drawable, display);
     if (!w) return;
+    releaseDrawn(*w);
     w->freeDue = w->announced;
     w->drawable = 0; // never found again; its number is not used again
     freeDestroyed(*tThread);
@@ -349,6 +356,7 @@ void becameCurrent(Context* context, Window* draw, Window* read) {
         return;
     }
     noteCalls(t);
+    if (t.context) leavesDrawn(findWindowById(t.context->drawWindow));
     if (t.context && (t.context != context)) {
         records::makeCurrent(t, 0, 0, 0);
         leaveContext(t);
@@ -381,6 +389,7 @@ void becameCurrent(Context* context, Window* draw, Window* read) {
     context->readWindow = readWindow;
     records::makeCurrent(t, context->id, context->drawWindow, context->readWindow);
     freeDestroyed(t);
+    refreshBoundTextures(t);
     s->publish(t, false);
     watchFromHere(t);
     if (bound && draw) localPixelsBound(t, *draw);

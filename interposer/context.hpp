@@ -131,6 +131,10 @@ struct Window {
     wire::WindowConfig config{};
     std::byte* lastFlush = nullptr; // where the stream was at the last flush of a single-buffered window
     LocalPixels pixels;
+    GLuint boundTexture = 0;   // of boundGroup: shows what is drawn here (interposer/texture_from.hpp)
+    ShareGroup* boundGroup = nullptr;
+    bool boundAlpha = false;
+    bool boundTextureDue = false; // it was drawn to since
     bool drawnInPart = false;  // the back buffer lacks what the program has drawn through us
     Window* next = nullptr;
 };
@@ -148,6 +152,7 @@ void destroyContext(void* native);
 Window* addWindow(uintptr_t drawable, void* display, bool isEgl, const wire::WindowConfig& config, uint64_t native);
 Window* findWindow(uintptr_t drawable, void* display);
 Window* findWindowById(uint32_t id);
+Window* firstWindow(); // of all that there ever were, by `next`
 void destroyWindow(uintptr_t drawable, void* display);
 // The program destroys an X window. Its number may be given to another.
 void nativeWindowEnds(uint64_t native);

@@ -31,7 +31,7 @@ void loadOwnNeeds() {
         "glReadPixels", "glPixelStorei", "glIsFramebuffer", "glIsBuffer", "glBindBuffer", "glBindFramebuffer", "glReadBuffer", "glGetBufferParameteriv",
         "glGetNamedBufferParameteriv", "glGetBufferSubData", "glGetNamedBufferSubData", "glMapBufferRange", "glUnmapBuffer",
         "glGetProgramiv", "glGetActiveUniform", "glGetActiveAttrib", "glGetUniformLocation", "glGetAttribLocation",
-        "glGetTexLevelParameteriv", "glGetTexImage", "glFinish", "glFlush", "glEnable", "glDisable", "glGetVertexAttribiv",
+        "glGetTexLevelParameteriv", "glGetTexImage", "glFinish", "glFlush", "glIsTexture", "glEnable", "glDisable", "glGetVertexAttribiv",
         "glGetActiveUniformBlockName", "glGetProgramResourceiv", "glGetProgramResourceName", "glGetProgramInterfaceiv",
         "glGetBufferPointerv", "glGetTextureLevelParameteriv", "glGetNamedBufferParameteri64v", "glGetBufferParameteri64v",
         "glBegin", "glEnd", "glClientActiveTexture", "glBufferSubData", "glGetTextureParameteriv", "glGetFramebufferAttachmentParameteriv", "glCallList", "glCallLists",

@@ -1,5 +1,8 @@
 #include "interposer/texture_from.hpp"
 
+#include <atomic>
+#include <cstring>
+
 #include "encoders.hpp"
 #include "interposer/asking.hpp"
 #include "interposer/context.hpp"
@@ -82,20 +85,70 @@ void textureFromLocal(GLenum target, bool alpha) {
     upload(t, target, alpha, width, height, GL_BGRA, pixels);
 }
 
-void textureFromDrawn(Window& w, bool alpha) {
-    ThreadState& t = *tThread;
-    if (!capturing(t) || !w.announced) return; // nothing was drawn there yet
+namespace {
+
+// Of all windows; most programs have none.
+std::atomic<int> boundPbuffers{0};
+
+// Mesa draws to pbuffers from the top row down, as to windows, and its texture is the same memory: upside down.
+const void* asTheDriverHasIt(ThreadState& t, const void* pixels, GLint width, GLint height) {
+    if (!pixels || !t.context->isMesa) return pixels;
+    const size_t row = size_t(width) * 4, rows = size_t(height);
+    auto* turned = static_cast<std::byte*>(scratchMemory(t, row * rows));
+    for (size_t y = 0; turned && y < rows; ++y) std::memcpy(turned + y * row, static_cast<const std::byte*>(pixels) + (rows - 1 - y) * row, row);
+    return turned;
+}
+
+void textureFromDrawn(ThreadState& t, const Window& w) {
+    if (!w.announced) return; // nothing was drawn there yet
     const Context& c = *t.context;
     const bool separate = c.version >= 30;
     const GLenum target = separate ? GL_READ_FRAMEBUFFER : GL_FRAMEBUFFER;
     const GLint framebuffer = c.api == wire::Api::Es1 ? 0 : get(separate ? GL_READ_FRAMEBUFFER_BINDING : GL_FRAMEBUFFER_BINDING);
+    const auto bound = static_cast<GLuint>(get(GL_TEXTURE_BINDING_2D));
     records::makeCurrent(t, c.id, c.drawWindow, w.id);
     if (framebuffer) encode_glBindFramebuffer(t, target, 0);
     const auto width = static_cast<GLint>(w.config.width), height = static_cast<GLint>(w.config.height);
-    const void* pixels = askPixels(t, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, true);
+    const void* pixels = asTheDriverHasIt(t, askPixels(t, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, true), width, height);
     if (framebuffer) encode_glBindFramebuffer(t, target, static_cast<GLuint>(framebuffer));
     records::makeCurrent(t, c.id, c.drawWindow, c.readWindow);
-    if (pixels) upload(t, GL_TEXTURE_2D, alpha, width, height, GL_RGBA, pixels);
+    if (!pixels) return;
+    if (bound != w.boundTexture) encode_glBindTexture(t, GL_TEXTURE_2D, w.boundTexture);
+    upload(t, GL_TEXTURE_2D, w.boundAlpha, width, height, GL_RGBA, pixels);
+    if (bound != w.boundTexture) encode_glBindTexture(t, GL_TEXTURE_2D, bound);
+}
+
+} // namespace
+
+void bindDrawn(Window& w, bool alpha) {
+    ThreadState& t = *tThread;
+    if (!capturing(t)) return;
+    releaseDrawn(w);
+    w.boundTexture = static_cast<GLuint>(get(GL_TEXTURE_BINDING_2D));
+    w.boundGroup = t.context->group;
+    w.boundAlpha = alpha;
+    ++boundPbuffers;
+    textureFromDrawn(t, w);
+}
+
+void releaseDrawn(Window& w) {
+    if (!w.boundGroup) return;
+    w.boundGroup = nullptr;
+    w.boundTextureDue = false;
+    --boundPbuffers;
+}
+
+void leavesDrawn(Window* drawn) {
+    if (drawn && drawn->boundGroup) drawn->boundTextureDue = true;
+}
+
+void refreshBoundTextures(ThreadState& t) {
+    if (boundPbuffers.load(std::memory_order_relaxed) == 0 || !capturing(t)) return;
+    for (Window* w = firstWindow(); w; w = w->next) {
+        if (!w->boundTextureDue || w->boundGroup != t.context->group || w->id == t.context->drawWindow) continue;
+        w->boundTextureDue = false;
+        if (w->boundTexture == 0 || gReal.glIsTexture(w->boundTexture)) textureFromDrawn(t, *w);
+    }
 }
 
 } // namespace mural

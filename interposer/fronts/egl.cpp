@@ -200,7 +200,14 @@ EGLBoolean bindTexImage(EGLDisplay dpy, EGLSurface surface, EGLint buffer) {
     const EGLBoolean ok = call(dpy, surface, buffer);
     Window* w = ok && !nativeRun() ? windowFor(dpy, surface) : nullptr;
     EGLint format = 0;
-    if (w && query && query(dpy, surface, EGL_TEXTURE_FORMAT, &format)) textureFromDrawn(*w, format == EGL_TEXTURE_RGBA);
+    if (w && query && query(dpy, surface, EGL_TEXTURE_FORMAT, &format)) bindDrawn(*w, format == EGL_TEXTURE_RGBA);
+    return ok;
+}
+
+EGLBoolean releaseTexImage(EGLDisplay dpy, EGLSurface surface, EGLint buffer) {
+    static auto* call = real<EGLBoolean(EGLDisplay, EGLSurface, EGLint)>("eglReleaseTexImage");
+    const EGLBoolean ok = call(dpy, surface, buffer);
+    if (Window* w = ok ? windowFor(dpy, surface) : nullptr) releaseDrawn(*w);
     return ok;
 }
 
@@ -229,7 +236,7 @@ const OwnEntry kOwn[] = {
     ownEntry("eglDestroyImage", destroyImage), ownEntry("eglDestroyImageKHR", destroyImageKhr),
     ownEntry("eglCreateSync", createSync), ownEntry("eglCreateSyncKHR", createSyncKhr),
     ownEntry("eglClientWaitSync", clientWaitSync), ownEntry("eglClientWaitSyncKHR", clientWaitSyncKhr),
-    ownEntry("eglSignalSyncKHR", signalSync), ownEntry("eglBindTexImage", bindTexImage),
+    ownEntry("eglSignalSyncKHR", signalSync), ownEntry("eglBindTexImage", bindTexImage), ownEntry("eglReleaseTexImage", releaseTexImage),
     ownEntry("eglQueryString", queryString), ownEntry("eglGetProcAddress", getProcAddress),
 };
 constinit Front front("egl", kOwn);
