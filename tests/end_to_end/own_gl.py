@@ -135,5 +135,16 @@ def told_extensions_of_all_machines(context):
         return wrong
 
 
+@failures.case
+def told_memory_of_other_apis(context):
+    """Memory objects have no memory, and their device is none that another API could have."""
+    with context.run([context.program("memory_import")], ["--display", "none", "--quiet"]) as run:
+        wrong = failures.check_end(run, 0)
+        expected = "object 1, one UUID 1, import 0x%04x, descriptor left 1, storage 0x%04x" % (0x0502, 0x0502)
+        if wrong is None and run.standard_output != [expected]:
+            wrong = "the program said: " + " | ".join(run.standard_output)
+        return wrong
+
+
 if __name__ == "__main__":
     sys.exit(failures.main())

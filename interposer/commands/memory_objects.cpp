@@ -1,0 +1,52 @@
+// Memory of other programs' APIs (EXT_memory_object): no node could have it. Programs are told of a device and a
+// driver that are none of Vulkan's, which the extension has them compare before they share anything; who imports
+// all the same gets an error.
+#include <cstring>
+
+#include "custom_wrappers.hpp"
+#include "interposer/asking.hpp"
+#include "interposer/context.hpp"
+#include "interposer/log.hpp"
+#include "interposer/real_gl.hpp"
+#include "interposer/session.hpp"
+
+using namespace mural;
+
+namespace {
+
+constexpr GLubyte kUuid[GL_UUID_SIZE_EXT] = {0xb9, 0x1f, 0x6c, 0x4e, 0x72, 0x0a, 0x4d, 0x35, 0x8e, 0xc3, 0x1d, 0x58, 0xa7, 0x60, 0xf2, 0x94};
+
+bool capturing(const ThreadState& t) {
+    Session* s = Session::current();
+    return t.context && s && s->alive();
+}
+
+template <class Call> void getBytes(GLenum pname, GLubyte* data, Call&& call) {
+    const ThreadState& t = *tThread;
+    if (!capturing(t)) return call();
+    const bool isUuid = pname == GL_DEVICE_UUID_EXT || pname == GL_DRIVER_UUID_EXT;
+    if (raisesNothing(*t.context, call) && isUuid && data) std::memcpy(data, kUuid, sizeof kUuid);
+}
+
+} // namespace
+
+extern "C" {
+
+void mural_glGetUnsignedBytevEXT(GLenum pname, GLubyte* data) {
+    getBytes(pname, data, [&] { gReal.glGetUnsignedBytevEXT(pname, data); });
+}
+void mural_glGetUnsignedBytei_vEXT(GLenum target, GLuint index, GLubyte* data) {
+    getBytes(target, data, [&] { gReal.glGetUnsignedBytei_vEXT(target, index, data); });
+}
+
+// The descriptor stays the program's, as after every import that fails.
+void mural_glImportMemoryFdEXT(GLuint memory, GLuint64 size, GLenum handleType, GLint fd) {
+    const ThreadState& t = *tThread;
+    if (!capturing(t) || handleType != GL_HANDLE_TYPE_OPAQUE_FD_EXT) return gReal.glImportMemoryFdEXT(memory, size, handleType, fd);
+    static bool once = false;
+    if (!__atomic_exchange_n(&once, true, __ATOMIC_RELAXED)) say("memory of other APIs (glImportMemoryFdEXT) cannot be on the wall: the program gets an error");
+    stashError(*t.context, driverError());
+    stashError(*t.context, GL_INVALID_OPERATION);
+}
+
+} // extern "C"
