@@ -11,6 +11,7 @@
 
 #include "interposer/context.hpp"
 #include "interposer/extensions.hpp"
+#include "interposer/fronts/egl_displays.hpp"
 #include "interposer/fronts/egl_images.hpp"
 #include "interposer/fronts/egl_syncs.hpp"
 #include "interposer/fronts/front.hpp"
@@ -27,6 +28,7 @@ namespace mural {
 namespace {
 
 void* (*vendorGetProcAddress)(const char*) = nullptr;
+EGLDisplay (*vendorGetPlatformDisplay)(EGLenum, void*, const EGLAttrib*) = nullptr;
 
 Entry vendorEntry(const char* name) { return reinterpret_cast<Entry>(vendorGetProcAddress(name)); }
 template <class F> F* real(const char* name) { return reinterpret_cast<F*>(eglFront().behind(name)); }
@@ -217,6 +219,13 @@ const char* queryString(EGLDisplay dpy, EGLint name) {
     return name == EGL_EXTENSIONS && !nativeRun() ? filterWindowSystemExtensions(text) : text;
 }
 
+// eglGetDisplay and eglGetPlatformDisplay(EXT) come to vendors as this.
+EGLDisplay getPlatformDisplay(EGLenum platform, void* native, const EGLAttrib* attributes) {
+    const EGLDisplay made = vendorGetPlatformDisplay(platform, native, attributes);
+    rememberDisplay(made, platform, native);
+    return made;
+}
+
 void* getProcAddress(const char* name) { return reinterpret_cast<void*>(eglFront().entryFor(name)); }
 
 const OwnEntry kOwn[] = {
@@ -282,6 +291,7 @@ Front& eglFront() { return front; }
 
 bool askEglSize(const Window& w, uint32_t& width, uint32_t& height) {
     static auto* query = real<EGLBoolean(EGLDisplay, EGLSurface, EGLint, EGLint*)>("eglQuerySurface");
+    if (w.native && askXSize(w.display, w.native, width, height)) return width > 0 && height > 0;
     EGLint a = 0, b = 0;
     auto* surface = reinterpret_cast<EGLSurface>(w.drawable);
     if (!query || !query(w.display, surface, EGL_WIDTH, &a) || !query(w.display, surface, EGL_HEIGHT, &b)) return false;
@@ -300,6 +310,8 @@ extern "C" __attribute__((visibility("default"))) EGLBoolean __egl_Main(uint32_t
     if (!mural::claimProgram(mural::Way::Vendor)) return EGL_TRUE;
     mural::vendorGetProcAddress = imports->getProcAddress;
     imports->getProcAddress = mural::getProcAddress;
+    mural::vendorGetPlatformDisplay = imports->getPlatformDisplay;
+    imports->getPlatformDisplay = mural::getPlatformDisplay;
     mural::forbidPatching(*imports);
     mural::front.attach(mural::vendorEntry);
     return EGL_TRUE;
