@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Nothing grows while a program makes and deletes objects of every kind in each frame: neither the program, nor the
 head, nor a render node, beyond what the program grows by natively. Then a node forgets to delete textures
-(MURAL_PLANT=leak): that must be found. tools/bench/memory shows the same over more frames.
+(MURAL_PLANT=leak): that must be found. And large objects weigh natively what they weigh on a node, with what a node is
+besides; in the program they weigh no more than natively. tools/bench/memory shows the same over more frames.
 
   memory_growth.py --build build/release
 """
@@ -20,11 +21,31 @@ from memory_watch import MemoryWatch  # noqa: E402
 
 MARKS = (150, 450)
 MOST_GROWTH_MIB = 8.0  # heaps settle; a forgotten texture of each frame makes 19
+WEIGHT_MARKS = (4, 12)
+LEAST_WEIGHT_MIB = 200.0 # of large_objects natively: or the comparison says nothing
+MOST_NODE_SHARE = 1.3    # of the native run
 
 
 def growth(seen, role):
     private = [max(memory["Private"] for memory in seen[mark][role]) for mark in MARKS]
     return private[1] - private[0]
+
+
+def weight(seen, role):
+    return max(memory["Private"] for memory in seen[WEIGHT_MARKS[-1]][role])
+
+
+def heavy_objects(mural, environment, program, wall):
+    """How many of the comparisons are wrong. The ring is shared memory and not in these numbers."""
+    native = weight(MemoryWatch(mural, environment).run(["--native"], program, WEIGHT_MARKS), "app")
+    seen = MemoryWatch(mural, environment).run(wall, program, WEIGHT_MARKS)
+    app, node = weight(seen, "app"), weight(seen, "node")
+    results = (("large objects natively: %.0f MiB" % native, native >= LEAST_WEIGHT_MIB),
+               ("the program: %.0f MiB, %.2f x" % (app, app / native), app <= native + MOST_GROWTH_MIB),
+               ("a node: %.0f MiB, %.2f x" % (node, node / native), node <= MOST_NODE_SHARE * native))
+    for text, right in results:
+        print("%s: %s" % (text, "right" if right else "WRONG"))
+    return sum(not right for _, right in results)
 
 
 def main():
@@ -51,6 +72,8 @@ def main():
         right = leaky > native + MOST_GROWTH_MIB
         wrong += not right
         print("node that forgets textures grows by %.1f MiB: %s" % (leaky, "found" if right else "MISSED"))
+        heavy = [os.path.join(build, "tests", "programs", "large_objects"), "--frames", "100000", "--size", "96x96"]
+        wrong += heavy_objects(mural, environment, heavy, wall)
     return 1 if wrong else 0
 
 

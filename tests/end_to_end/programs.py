@@ -24,7 +24,7 @@ GROUPS = {
                 "texture_from_pixmap", "debug_messages",
                 "several_windows", "shared_contexts", "sharing_order", "threads_windows",
                 "loader_thread", "context_migration", "glx_pbuffers", "x_fonts", "x_pixmaps", "resize",
-                "resize_moments", "resize_threads", "churn_threads", "window_churn", "window_switch", "object_churn"],
+                "resize_moments", "resize_threads", "churn_threads", "window_churn", "window_switch", "object_churn", "large_objects"],
     "processes": ["route_dlsym", "route_deepbind", "route_glx_proc", "route_split_libraries",
                   "route_egl_proc", "route_plugin", "exit_dirty", "exit_quick", "exit_three",
                   "exit_abort", "exit_segv", "exit_term", "fork_child", "fork_exec"],
