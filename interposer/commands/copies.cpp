@@ -32,10 +32,9 @@ namespace mural::copies {
 
 namespace {
 
+// Of the window that the read framebuffer of the nodes is.
 void gatherNow(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, const char* by) {
-    const Context* c = t.context;
-    if (!readsWindow(*c)) return;
-    const Window* window = findWindowById(c->readWindow);
+    const Window* window = findWindowById(t.context->readWindow);
     if (!window) return;
     const int64_t x0 = x < 0 ? 0 : x, y0 = y < 0 ? 0 : y;
     const int64_t x1 = int64_t{x} + w < window->config.width ? int64_t{x} + w : window->config.width;
@@ -69,15 +68,21 @@ bool severalNodes(const ThreadState& t) {
 void gather(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, const char* by) {
     if (!severalNodes(t)) return;
     if (t.context->compilingList) drawAll(t, by);
-    else gatherNow(t, x, y, w, h, planes, by);
+    else if (readsWindow(*t.context)) gatherNow(t, x, y, w, h, planes, by);
 }
 
 void drawAll(ThreadState& t, const char* by) {
     if (!severalNodes(t) || t.context->group->allDrawn) return;
     t.context->group->allDrawn = true;
     records::drawAll(t);
-    if (const Window* window = findWindowById(t.context->readWindow)) // what other nodes have drawn of it until now
-        gatherNow(t, 0, 0, static_cast<GLsizei>(window->config.width), static_cast<GLsizei>(window->config.height), GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT, by);
+    const Window* window = findWindowById(t.context->readWindow);
+    if (!window) return;
+    GLint object = 0; // of the program, which reads from it
+    if (!readsWindow(*t.context) && gReal.glBindFramebuffer) gReal.glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &object);
+    if (object) encode_glBindFramebuffer(t, GL_READ_FRAMEBUFFER, 0);
+    constexpr GLbitfield kAll = GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT; // what other nodes have drawn until now
+    gatherNow(t, 0, 0, static_cast<GLsizei>(window->config.width), static_cast<GLsizei>(window->config.height), kAll, by);
+    if (object) encode_glBindFramebuffer(t, GL_READ_FRAMEBUFFER, static_cast<GLuint>(object));
 }
 
 GLbitfield planesOf(GLenum internalFormat) {

@@ -10,8 +10,8 @@ namespace mural::copies {
 // Fetches the planes of the rectangle from all nodes and gives them to all, where a window is read.
 void gather(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, const char* by = __builtin_FUNCTION());
 
-// For a display list that copies out of a window, or draws on a condition that it finds itself: nobody can be asked
-// in the middle of it, so from now on every node draws all.
+// From now on every node draws all. For fragment shaders that write to memory, and for a display list that copies out
+// of a window, or draws on a condition that it finds itself: nobody can be asked in the middle of it.
 void drawAll(ThreadState& t, const char* by = __builtin_FUNCTION());
 
 // The planes that a copy into an image reads: of this format, of a level of the texture that is bound, or named.

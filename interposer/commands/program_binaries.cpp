@@ -6,6 +6,7 @@
 #include "custom_wrappers.hpp"
 #include "interposer/asking.hpp"
 #include "interposer/context.hpp"
+#include "interposer/memory_writers.hpp"
 #include "interposer/own_records.hpp"
 #include "interposer/program_layout.hpp"
 #include "interposer/real_gl.hpp"
@@ -104,7 +105,9 @@ void mural_glProgramBinary(GLuint program, GLenum binaryFormat, const void* bina
     if (!raisesNothing(*t.context, [&] { gReal.glProgramBinary(program, binaryFormat, binary, driverBytes); })) return;
     if (!loads || !linked(program)) return records::programRecipe(t, program, {});
     bindAttributes(t, program);
-    records::programRecipe(t, program, DataArg::of(static_cast<const std::byte*>(binary) + footer.driverBytes, footer.recipeBytes));
+    const auto* const recipe = static_cast<const std::byte*>(binary) + footer.driverBytes;
+    noteMemoryWriter(t, program, recipe, footer.recipeBytes);
+    records::programRecipe(t, program, DataArg::of(recipe, footer.recipeBytes));
     sendLayout(t, program);
 }
 

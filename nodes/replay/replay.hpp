@@ -155,9 +155,8 @@ private:
         std::unordered_map<GLuint, ProgramInfo> programs; // by the program's name
         std::unordered_map<GLuint, List> lists;
         NameTable framebuffersOfAll;
-        std::unordered_map<GLuint, bool> memoryWriters; // by our name: programs that were asked since their link
         std::unordered_map<GLuint, bool> placedModules; // by our shader's name: it holds a module that reads gl_FragCoord
-        bool allDrawn = false; // by every node: one of them writes, or a display list needs more than a tile
+        bool allDrawn = false; // by every node: the program's side has asked for it, or a module reads gl_FragCoord
         TiledPrograms tiled;
         ProgramRecipes recipes;
     };
@@ -371,11 +370,7 @@ private:
     void dropPieces(QueryInfo& query);
     uint64_t queryResult(GLuint ours);
     uint64_t readQuery(GLuint ours);
-    // replay_memory_writes.cpp
-    void programChanged();
-    void programLinked(GLuint ours);
-    bool writesMemory(GLuint ours);
-    void noteMemoryWriter(GLuint ours);
+    // replay_widening.cpp
     void noteModules(GLuint ours);
     [[nodiscard]] bool allDrawn() const { return c_->shared && c_->shared->allDrawn; }
     void widenToWindow(Window& w);

@@ -65,7 +65,7 @@ bool Replay::ownProgramRecipe(Args& in) {
     const GLuint ours = name(Kind::Program, program);
     if (auto recipe = ProgramRecipe::fromBytes(bytes.span())) linkFrom(ours, std::move(*recipe));
     else if (gl.glProgramBinary) gl.glProgramBinary(ours, GL_PROGRAM_BINARY_FORMAT_MESA, "", 0); // not linked any more
-    programLinked(ours);
+    noteModules(ours);
     applyTileValues(); // it may be the current one
     return true;
 }

@@ -102,7 +102,7 @@ void Replay::glLinkProgram(GLuint program) {
     const GLuint ours = name(Kind::Program, program);
     linkProgram(ours);
     if (c_->shared) c_->shared->recipes.linked(gl, ours);
-    programLinked(ours);
+    noteModules(ours);
     applyTileValues(); // it may be the current one
 }
 void Replay::linkProgram(GLuint ours) {
@@ -118,26 +118,23 @@ void Replay::glCreateShaderProgramv(GLenum type, GLsizei count, const Data& stri
     recipe.separable = true;
     recipe.shaders.push_back({type, texts.joined()});
     c_->shared->recipes.linkedFrom(ours, std::move(recipe));
-    programLinked(ours);
+    noteModules(ours);
     applyTileValues();
 }
 void Replay::glUseProgram(GLuint program) {
     c_->program = program;
     gl.glUseProgram(name(Kind::Program, program));
-    programChanged();
     applyTileValues();
 }
 void Replay::glBindProgramPipeline(GLuint pipeline) {
     if (!gl.glBindProgramPipeline) return;
     gl.glBindProgramPipeline(name(Kind::Pipeline, pipeline));
     c_->pipelineBound = pipeline != 0;
-    programChanged();
     applyTileValues();
 }
 void Replay::glUseProgramStages(GLuint pipeline, GLbitfield stages, GLuint program) {
     if (!gl.glUseProgramStages) return;
     gl.glUseProgramStages(name(Kind::Pipeline, pipeline), stages, name(Kind::Program, program));
-    programChanged();
     applyTileValues();
 }
 

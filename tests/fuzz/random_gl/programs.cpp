@@ -93,6 +93,13 @@ void main() {
     uint value = values.length() > 3 ? values[(uint(gl_FragCoord.x) >> 4) & 3u] : 0u;
     result = varied + tint * 0.5 + float(value & 7u) * 0.05;
 })";
+constexpr const char* kCountingFragment = R"(#version 430
+layout(location = 4) uniform vec4 tint; in vec4 varied; out vec4 result;
+layout(std430, binding = 0) buffer Values { uint values[]; };
+void main() {
+    if (values.length() > 3) atomicAdd(values[(uint(gl_FragCoord.x) >> 4) & 3u], 1u);
+    result = varied + tint * 0.5;
+})";
 constexpr const char* kControl = R"(#version 400
 layout(vertices = 3) out;
 in vec4 varied[]; out vec4 tvaried[];
@@ -179,6 +186,7 @@ const std::vector<PoolProgram>& programPool() {
         {"ck", {{GL_VERTEX_SHADER, kCoreVertex}, {GL_GEOMETRY_SHADER, kGeometry}, {GL_FRAGMENT_SHADER, kGeometryFragment}}, "gvaried"},
         {"ck", {{GL_VERTEX_SHADER, kBlockVertex}, {GL_FRAGMENT_SHADER, kBlockFragment}}, "captured"},
         {"ck", {{GL_VERTEX_SHADER, kStorageVertex}, {GL_FRAGMENT_SHADER, kStorageFragment}}},
+        {"ck", {{GL_VERTEX_SHADER, kStorageVertex}, {GL_FRAGMENT_SHADER, kCountingFragment}}, nullptr, false, true},
         {"ck", {{GL_VERTEX_SHADER, kDoubles}, {GL_FRAGMENT_SHADER, kDoublesFragment}}},
         {"ck",
          {{GL_VERTEX_SHADER, kCoreVertex},

@@ -17,6 +17,7 @@ struct PoolProgram {
     std::vector<Source> sources;
     const char* captured = nullptr; // by transform feedback
     bool tessellates = false;
+    bool counts = false; // its fragments, in storage block 0
 };
 
 const std::vector<PoolProgram>& programPool();

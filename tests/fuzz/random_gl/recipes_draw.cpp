@@ -284,6 +284,12 @@ constexpr Recipe kRecipes[] = {
 
 } // namespace
 
+void drawBuffered(World& w) {
+    setVertexArray(w);
+    genericArrays(w);
+    drawAny(w);
+}
+
 std::span<const Recipe> drawRecipes() { return kRecipes; }
 
 } // namespace fuzz

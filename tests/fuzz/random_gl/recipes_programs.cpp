@@ -109,6 +109,35 @@ void dispatch(World& w) {
     }
 }
 
+// Draws of a program whose fragments are counted.
+void count(World& w) {
+    GLuint buffer = 0;
+    GL(glGenBuffers, 1, &buffer);
+    w.keep(Kind::Buffer, buffer);
+    const GLuint zeros[4] = {};
+    GL(glBindBuffer, GL_SHADER_STORAGE_BUFFER, buffer);
+    GL(glBufferData, GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(sizeof zeros), zeros, GL_DYNAMIC_COPY);
+    GL(glBindBufferBase, GL_SHADER_STORAGE_BUFFER, 0, buffer);
+    for (const PoolProgram& candidate : programPool()) {
+        if (candidate.counts && std::strchr(candidate.profiles, letter(w)) != nullptr) {
+            const GLuint program = build(w, candidate);
+            GL(glUseProgram, program);
+            feedUniforms(w, program);
+        }
+    }
+    drawBuffered(w);
+    if (!w.es()) {
+        GL(glMemoryBarrier, GL_ALL_BARRIER_BITS);
+        void* const out = outputMemory(sizeof zeros);
+        GL(glGetBufferSubData, GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(sizeof zeros), out);
+        w.observe(out, sizeof zeros);
+        if (w.trace) {
+            const auto* const counts = static_cast<const GLuint*>(out);
+            traceText("counted", shown(counts[0]) + " " + shown(counts[1]) + " " + shown(counts[2]) + " " + shown(counts[3]));
+        }
+    }
+}
+
 void pipeline(World& w) {
     GLuint pipeline = w.living(Kind::Pipeline);
     if (pipeline == 0) {
@@ -148,6 +177,7 @@ void arbProgram(World& w) {
 constexpr Recipe kRecipes[] = {
     {"program", buildAndUse, "ck3", 8}, {"use program", useAnyProgram, "ck3", 6}, {"blocks", bindBlocks, "ck3", 4},
     {"dispatch", dispatch, "ck3", 2},   {"pipeline", pipeline, "ck3", 2},         {"ARB program", arbProgram, "c", 4},
+    {"count", count, "ck", 2},
 };
 
 } // namespace

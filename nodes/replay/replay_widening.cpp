@@ -1,0 +1,57 @@
+// Where every node has to draw all (interposer/memory_writers.hpp), a tile's framebuffer (lean) has no place for it:
+// windows get framebuffers of their own size.
+#include <algorithm>
+#include <utility>
+
+#include "nodes/replay/replay.hpp"
+
+namespace mural {
+
+// From now on the window is drawn as with tiling exact. What its tile holds stays; raster position and
+// polygon stipple, where they were set before, stay the tile's.
+void Replay::widenToWindow(Window& w) {
+    w.widens = false;
+    auto made = platform_->createSurface(surfaceConfig(w.config, std::max(w.whole.w, 1), std::max(w.whole.h, 1)));
+    if (!made) {
+        out_.log("fragment shaders write to memory, which needs a framebuffer of the whole window (" + std::to_string(w.whole.w) + "x" + std::to_string(w.whole.h) +
+                 "), and none can be made: their memory holds this node's part only: " + made.error().message);
+        return;
+    }
+    const std::unique_ptr<gl::Surface> tile = std::exchange(w.surface, std::move(*made));
+    w.lean = false;
+    dropFront(w);
+    if (tile && gl.glBlitFramebuffer) aside([&] { copyTile(w, *tile); });
+    (void)bindSurfaces();
+}
+
+// Into the window's new framebuffer, whatever the program has set. That one becomes current; buffers are chosen
+// again, the scissor by whoever asked for this.
+void Replay::copyTile(const Window& w, gl::Surface& from) {
+    if (!platform_->makeCurrent(c_->context.get(), w.surface.get(), &from)) return;
+    const bool desktop = c_->api == wire::Api::Desktop;
+    gl.glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    gl.glDisable(GL_SCISSOR_TEST);
+    const bool srgb = desktop && gl.glIsEnabled(GL_FRAMEBUFFER_SRGB);
+    if (srgb) gl.glDisable(GL_FRAMEBUFFER_SRGB);
+    GLboolean deep = GL_TRUE; // what other tiles hold is not known: the program's cleared depth is likely
+    gl.glGetBooleanv(GL_DEPTH_WRITEMASK, &deep);
+    gl.glDepthMask(GL_TRUE);
+    gl.glClear(GL_DEPTH_BUFFER_BIT);
+    gl.glDepthMask(deep);
+    const PixelViewport& r = w.region;
+    const auto blit = [&](GLbitfield planes) { gl.glBlitFramebuffer(0, 0, r.w, r.h, r.x, r.y, r.right(), r.top(), planes, GL_NEAREST); };
+    for (const GLenum buffer : {GL_FRONT, GL_BACK}) {
+        if (buffer == GL_FRONT ? !desktop : desktop && (from.singleBuffered() || !w.config.doubleBuffer)) continue;
+        if (desktop) gl.glReadBuffer(windowBuffer(buffer, &w));
+        if (desktop) gl.glDrawBuffer(windowBuffer(buffer, &w));
+        blit(GL_COLOR_BUFFER_BIT);
+    }
+    blit(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+    if (desktop) gl.glReadBuffer(windowBuffer(c_->readBuffer0, &w));
+    if (desktop) gl.glDrawBuffer(windowBuffer(c_->drawBuffer0, &w));
+    if (srgb) gl.glEnable(GL_FRAMEBUFFER_SRGB);
+    gl.glBindFramebuffer(GL_READ_FRAMEBUFFER, name(Kind::Framebuffer, c_->readFramebuffer));
+    gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER, name(Kind::Framebuffer, c_->drawFramebuffer));
+}
+
+} // namespace mural
