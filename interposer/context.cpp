@@ -459,6 +459,18 @@ bool swapsItself(Window* w) {
     return swapLocally() || (w && w->isPixmap);
 }
 
+namespace {
+
+// Drivers gather what a list draws even where it is discarded (llvmpipe up to 36 MiB), and nobody swaps to end that.
+void flushLists(Context& c) {
+    constexpr uint32_t kMostLists = 32; // some 60 KiB each
+    if (c.listsUnflushed < kMostLists || swapLocally() || c.frontDue) return; // a flush would show what is in front
+    c.listsUnflushed = 0;
+    gReal.glFlush();
+}
+
+} // namespace
+
 void endFrame(Window* w) {
     ThreadState& t = *tThread;
     Session* s = Session::current();
@@ -477,6 +489,7 @@ void endFrame(Window* w) {
     if (every && frame % every == 0) verifyFrame(t, *w);
     records::swap(t, w->id, frame);
     ++t.context->swaps;
+    flushLists(*t.context);
     s->publish(t, false, false); // waitForCredit wakes the head when it has to
     watchFromHere(t);
     s->waitForCredit();

@@ -74,6 +74,7 @@ struct Context {
     GLuint pinnedBuffer = 0;   // bound to GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD
     QueryAnswers answers;
     uint32_t swaps = 0;        // while it was current
+    uint32_t listsUnflushed = 0; // called without drawing since the program's own driver was flushed
     uint32_t id = 0;
     ShareGroup* group = nullptr;
     wire::Api api = wire::Api::Desktop;

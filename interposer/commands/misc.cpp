@@ -73,6 +73,7 @@ template <class Call> void callWithoutDrawing(ThreadState& t, bool movesRaster, 
         ownDrawingEnds();
     }
     if (!discards) gReal.glDisable(GL_RASTERIZER_DISCARD);
+    ++t.context->listsUnflushed;
     if (opens) primitiveOpened(t, false);
 }
 
