@@ -356,7 +356,7 @@ void becameCurrent(Context* context, Window* draw, Window* read) {
         return;
     }
     noteCalls(t);
-    if (t.context) leavesDrawn(findWindowById(t.context->drawWindow));
+    leavesDrawn(t);
     if (t.context && (t.context != context)) {
         records::makeCurrent(t, 0, 0, 0);
         leaveContext(t);

@@ -138,8 +138,9 @@ void releaseDrawn(Window& w) {
     --boundPbuffers;
 }
 
-void leavesDrawn(Window* drawn) {
-    if (drawn && drawn->boundGroup) drawn->boundTextureDue = true;
+void leavesDrawn(const ThreadState& t) {
+    if (boundPbuffers.load(std::memory_order_relaxed) == 0 || !t.context) return;
+    if (Window* drawn = findWindowById(t.context->drawWindow); drawn && drawn->boundGroup) drawn->boundTextureDue = true;
 }
 
 void refreshBoundTextures(ThreadState& t) {

@@ -16,8 +16,8 @@ void textureFromLocal(GLenum target, bool alpha);
 // what a texture shows while its pbuffer is being drawn to, EGL leaves open.
 void bindDrawn(Window& w, bool alpha);
 void releaseDrawn(Window& w);
-// The thread that has drawn to `drawn` (null: none) is about to turn to another drawable.
-void leavesDrawn(Window* drawn);
+// The thread is about to turn to another drawable, or to none.
+void leavesDrawn(const ThreadState& t);
 // The context is current, with drawables that are known: textures of it whose pbuffers were drawn to are brought up to date.
 void refreshBoundTextures(ThreadState& t);
 
