@@ -230,6 +230,7 @@ void freeDestroyed(ThreadState& t) {
 
 void refreshDrawLocally(ThreadState& t) {
     t.drawLocally = swapLocally() || !t.context || t.context->compilingList || t.context->drawsPixmap || t.context->renderMode != GL_RENDER || t.context->drawsFeedback;
+    t.vertexLocally = t.drawLocally || !t.context->compatible();
 }
 
 PrimitivePause::PrimitivePause(const ThreadState& t) : mode_(t.context && !t.drawLocally ? t.context->openPrimitive : kNoPrimitive) {

@@ -80,6 +80,7 @@ struct Context {
     wire::Api api = wire::Api::Desktop;
     bool announced = false;    // the nodes know it
     bool core = false;
+    [[nodiscard]] bool compatible() const { return api == wire::Api::Desktop && !core; }
     bool destroyed = false;    // by the program, while still current
     bool freeDue = false;      // the nodes have to be told
     int version = 0;           // 10 * major + minor, of the local context

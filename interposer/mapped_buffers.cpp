@@ -84,14 +84,42 @@ bool mayBeWritten(const ShareGroup& group, GLuint buffer) {
     return group.nodesWriteBuffers && (group.nodesWrite.get(buffer) || !NameBits::known(buffer));
 }
 
-bool immutable(GLenum target) {
-    GLint is = 0;
-    gReal.glGetBufferParameteriv(target, GL_BUFFER_IMMUTABLE_STORAGE, &is);
+// Whether a program may replace the bytes of what is bound by glBufferSubData, and write them in a mapping.
+struct Writable {
+    bool immutable, replaced, mapped;
+};
+Writable writable(GLenum target) {
+    GLint immutable = 0, flags = 0;
+    gReal.glGetBufferParameteriv(target, GL_BUFFER_IMMUTABLE_STORAGE, &immutable);
+    if (immutable) gReal.glGetBufferParameteriv(target, GL_BUFFER_STORAGE_FLAGS, &flags);
     driverError(); // of drivers that know no such storage
-    return is != 0;
+    return {immutable != 0, !immutable || (flags & GL_DYNAMIC_STORAGE_BIT), (flags & GL_MAP_WRITE_BIT) != 0};
 }
 
-// Storage that no program may write, GL itself may: by a copy.
+// Storage that no program may write, GL itself may: by clears, a few bytes each. False: there are too many, or no such command.
+bool clearIntoBound(uint64_t offset, const void* bytes, uint64_t length) {
+    constexpr uint64_t kCleared = uint64_t{64} << 10;
+    if (!gReal.glClearBufferSubData || length > kCleared || offset % 4 != 0 || length % 4 != 0) return false;
+    constexpr GLenum kPlace[] = {GL_UNPACK_SWAP_BYTES, GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_ROWS, GL_UNPACK_SKIP_IMAGES};
+    GLint before[4] = {}; // Mesa looks there
+    for (int i = 0; i < 4; ++i) {
+        gReal.glGetIntegerv(kPlace[i], &before[i]);
+        gReal.glPixelStorei(kPlace[i], 0);
+    }
+    const bool fours = offset % 16 == 0 && length % 16 == 0;
+    const uint64_t step = fours ? 16 : 4;
+    for (uint64_t at = 0; at < length; at += step) {
+        gReal.glClearBufferSubData(GL_COPY_WRITE_BUFFER, fours ? GL_RGBA32UI : GL_R32UI, static_cast<GLintptr>(offset + at), static_cast<GLsizeiptr>(step),
+                                   fours ? GL_RGBA_INTEGER : GL_RED_INTEGER, GL_UNSIGNED_INT, static_cast<const std::byte*>(bytes) + at);
+    }
+    for (int i = 0; i < 4; ++i) gReal.glPixelStorei(kPlace[i], before[i]);
+    if (driverError() != GL_NO_ERROR) return false;
+    gReal.glFinish(); // it may be mapped
+    return true;
+}
+
+// By a copy. The buffer for it takes the name that the program's next one would have had natively: only where nothing
+// else is left.
 void copyIntoBound(uint64_t offset, const void* bytes, uint64_t length) {
     GLint before = 0;
     GLuint between = 0;
@@ -105,6 +133,26 @@ void copyIntoBound(uint64_t offset, const void* bytes, uint64_t length) {
     gReal.glFinish(); // it may be mapped
 }
 
+void writeBound(uint64_t offset, const void* bytes, uint64_t length) {
+    constexpr GLenum kTarget = GL_COPY_WRITE_BUFFER;
+    const auto at = static_cast<GLintptr>(offset);
+    const auto size = static_cast<GLsizeiptr>(length);
+    const Writable may = writable(kTarget);
+    if (may.replaced) {
+        gReal.glBufferSubData(kTarget, at, size, bytes);
+        if (may.immutable) gReal.glFinish(); // it may be mapped
+        return;
+    }
+    void* const mapped = may.mapped ? gReal.glMapBufferRange(kTarget, at, size, GL_MAP_WRITE_BIT) : nullptr;
+    driverError(); // it may be mapped by the program
+    if (mapped) {
+        std::memcpy(mapped, bytes, length);
+        gReal.glUnmapBuffer(kTarget);
+    } else if (!clearIntoBound(offset, bytes, length)) {
+        copyIntoBound(offset, bytes, length);
+    }
+}
+
 } // namespace
 
 void writeOwnCopy(ThreadState& t, GLuint buffer, uint64_t offset, const void* bytes, uint64_t length) {
@@ -112,8 +160,7 @@ void writeOwnCopy(ThreadState& t, GLuint buffer, uint64_t offset, const void* by
     gReal.glGetIntegerv(GL_COPY_WRITE_BUFFER_BINDING, &before);
     raisesNothing(*t.context, [&] {
         gReal.glBindBuffer(GL_COPY_WRITE_BUFFER, buffer);
-        if (immutable(GL_COPY_WRITE_BUFFER)) copyIntoBound(offset, bytes, length);
-        else gReal.glBufferSubData(GL_COPY_WRITE_BUFFER, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(length), bytes);
+        writeBound(offset, bytes, length);
         gReal.glBindBuffer(GL_COPY_WRITE_BUFFER, static_cast<GLuint>(before));
         driverError(); // ours, not the program's
     });

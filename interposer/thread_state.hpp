@@ -19,6 +19,7 @@ struct ThreadState {
     std::byte* chunkEnd = nullptr;  // real end of the chunk
     Context* context = nullptr;     // current context, null: none
     bool drawLocally = true;        // draws go to the app's own context too
+    bool vertexLocally = true;      // vertices too, or there are none: in contexts that know no glBegin they are errors
     bool locked = false;            // the share group's lock is held for the record being written
     bool shared = false;            // several threads use this share group: order every record
     bool drawingAwaited = false;    // the next drawing finds out the window's size, or more: beforeAwaitedDrawing

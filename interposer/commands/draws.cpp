@@ -310,7 +310,7 @@ void mural_glArrayElement(GLint i) {
     ThreadState& t = *tThread;
     if (Context* c = t.context; c && c->arrays.anyClient()) sendElement(t, *c, i);
     else encode_glArrayElement(t, i);
-    if (t.drawLocally) gReal.glArrayElement(i);
+    if (t.vertexLocally) gReal.glArrayElement(i);
 }
 
 } // extern "C"

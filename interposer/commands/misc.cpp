@@ -214,15 +214,17 @@ void mural_glViewport(GLint x, GLint y, GLsizei width, GLsizei height) {
 // Which buffer is drawn to matters at the next flush: what is in front is shown by it.
 void mural_glDrawBuffer(GLenum buf) {
     ThreadState& t = *tThread;
+    if (!t.context) return gReal.glDrawBuffer(buf);
+    if (!raisesNothing(*t.context, [&] { gReal.glDrawBuffer(buf); })) return;
     encode_glDrawBuffer(t, buf);
-    gReal.glDrawBuffer(buf);
-    if (t.context && isFront(buf)) t.context->frontDue = true;
+    if (isFront(buf)) t.context->frontDue = true;
 }
 void mural_glDrawBuffers(GLsizei n, const GLenum* bufs) {
     ThreadState& t = *tThread;
+    if (!t.context) return gReal.glDrawBuffers(n, bufs);
+    if (!raisesNothing(*t.context, [&] { gReal.glDrawBuffers(n, bufs); })) return;
     encode_glDrawBuffers(t, n, DataArg::of(bufs, n > 0 ? uint64_t(n) * sizeof(GLenum) : 0));
-    gReal.glDrawBuffers(n, bufs);
-    for (GLsizei i = 0; t.context && i < n && bufs; ++i)
+    for (GLsizei i = 0; i < n && bufs; ++i)
         if (isFront(bufs[i])) t.context->frontDue = true;
 }
 
@@ -325,7 +327,7 @@ void mural_glBegin(GLenum mode) {
     gReal.glBegin(mode);
     if (!t.context) return;
     if (t.context->compilingList) t.context->listPrimitive = true;
-    else if (t.context->openPrimitive == kNoPrimitive) t.context->openPrimitive = mode;
+    else if (t.context->openPrimitive == kNoPrimitive && mode <= GL_PATCHES && t.context->compatible()) t.context->openPrimitive = mode;
 }
 void mural_glEnd() {
     ThreadState& t = *tThread;

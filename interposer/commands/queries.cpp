@@ -1,11 +1,10 @@
 // Queries: what they count happens on the nodes, so the nodes are asked, and their answers put together.
-#include <cstring>
-
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
 #include "interposer/asking.hpp"
 #include "interposer/commands/copies.hpp"
 #include "interposer/context.hpp"
+#include "interposer/mapped_buffers.hpp"
 #include "interposer/own_records.hpp"
 #include "interposer/real_gl.hpp"
 #include "interposer/session.hpp"
@@ -72,31 +71,6 @@ template <class T, class Local> void intoMemory(ThreadState& t, const char* by, 
     if (raisesNothing(*t.context, local) && result(t, by, id, value)) *params = held<T>(value);
 }
 
-// Writes bytes into the program's own buffer: mapped, and where it is immutable and must not be mapped, by a copy. A
-// buffer for the copy takes a name that the program would get next.
-void writeBuffer(Context& c, GLuint buffer, GLintptr offset, GLsizeiptr bytes, const void* data) {
-    GLint source = 0, target = 0;
-    gReal.glGetIntegerv(GL_COPY_WRITE_BUFFER_BINDING, &target);
-    gReal.glBindBuffer(GL_COPY_WRITE_BUFFER, buffer);
-    stashError(c, driverError());
-    void* const mapped = gReal.glMapBufferRange(GL_COPY_WRITE_BUFFER, offset, bytes, GL_MAP_WRITE_BIT);
-    if (mapped) {
-        std::memcpy(mapped, data, static_cast<size_t>(bytes));
-        gReal.glUnmapBuffer(GL_COPY_WRITE_BUFFER);
-    } else {
-        (void)driverError();
-        GLuint between = 0;
-        gReal.glGetIntegerv(GL_COPY_READ_BUFFER_BINDING, &source);
-        gReal.glGenBuffers(1, &between);
-        gReal.glBindBuffer(GL_COPY_READ_BUFFER, between);
-        gReal.glBufferData(GL_COPY_READ_BUFFER, bytes, data, GL_STREAM_COPY);
-        gReal.glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, offset, bytes);
-        gReal.glBindBuffer(GL_COPY_READ_BUFFER, static_cast<GLuint>(source));
-        gReal.glDeleteBuffers(1, &between);
-    }
-    gReal.glBindBuffer(GL_COPY_WRITE_BUFFER, static_cast<GLuint>(target));
-}
-
 // The same into a buffer: the program's own context and the nodes have it then.
 template <class T, class Local> void intoBuffer(ThreadState& t, const char* by, GLuint id, GLenum pname, GLuint buffer, GLintptr offset, Local local) {
     if (!raisesNothing(*t.context, local)) return;
@@ -108,7 +82,7 @@ template <class T, class Local> void intoBuffer(ThreadState& t, const char* by, 
     uint64_t value = 0;
     if (isResult(pname) && result(t, by, id, value)) {
         written = held<T>(value);
-        writeBuffer(*t.context, buffer, offset, sizeof written, &written);
+        writeOwnCopy(t, buffer, static_cast<uint64_t>(offset), &written, sizeof written);
     }
     gReal.glBindBuffer(GL_QUERY_BUFFER, static_cast<GLuint>(before));
     records::bufferBytes(t, buffer, static_cast<uint64_t>(offset), DataArg::of(&written, sizeof written));

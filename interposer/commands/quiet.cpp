@@ -92,7 +92,7 @@ bool indirectIsWrong(const ThreadState& t, const void* indirect, uint64_t sizeBy
     if (offset % 4 != 0) return true;
     GLint buffer = 0, array = 1;
     gReal.glGetIntegerv(GL_DRAW_INDIRECT_BUFFER_BINDING, &buffer);
-    const bool compatible = t.context && t.context->api == wire::Api::Desktop && !t.context->core;
+    const bool compatible = t.context && t.context->compatible();
     if (buffer == 0) return !compatible; // client memory
     if (!isDesktop(t, 0)) gReal.glGetIntegerv(GL_VERTEX_ARRAY_BINDING, &array); // ES demands one
     return array == 0 || !withinBuffer(GL_DRAW_INDIRECT_BUFFER, GL_DRAW_INDIRECT_BUFFER_BINDING, offset, sizeBytes);

@@ -31,6 +31,9 @@ template <class Call> void discarded(Call&& call) {
 // glClearNamedFramebufferfi.
 void clearDepthStencil(GLuint framebuffer, GLenum buffer, GLint drawBuffer, GLfloat depth, GLint stencil);
 
+// What packed vertices and attributes may be.
+constexpr bool packed(GLenum type) { return type == GL_INT_2_10_10_10_REV || type == GL_UNSIGNED_INT_2_10_10_10_REV; }
+
 // True where generic attribute 0 would be a vertex of a primitive that shall stay empty.
 inline bool vertex(const ThreadState& t, GLuint index) {
     return index == 0 && !t.drawLocally && t.context && t.context->openPrimitive != kNoPrimitive;

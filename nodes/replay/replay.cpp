@@ -204,12 +204,17 @@ GLuint Replay::generate(Kind kind) {
     return made;
 }
 
+namespace {
+constexpr GLuint kNoObject = UINT32_MAX; // an error to the GL
+} // namespace
+
 GLuint Replay::name(Kind kind, GLuint app) {
     if (app == 0) return 0;
     GLuint ours = table(kind).find(app);
     if (ours) return ours;
     if (kind == Kind::Framebuffer && c_->shared) ours = c_->shared->framebuffersOfAll.find(app); // Mesa shares them
     if (ours) return ours;
+    if (c_->core) return kNoObject; // only names that were made before are any
     ours = generate(kind);
     if (!ours) return app; // an error there is an error here
     bindName(kind, app, ours);

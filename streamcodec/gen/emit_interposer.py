@@ -129,12 +129,14 @@ def wrapper(c):
         local = c.option('local') != 'no'
         if local and c.command_class == 'draw':
             wrong = ' || !(%s)' % c.option('right') if c.option('right') else ''
-            out += '    if (self.drawLocally%s) gReal.%s(%s);\n' % (wrong, c.name, names)
+            flag = 'drawLocally' if c.option('quiet') else 'vertexLocally'
+            out += '    if (self.%s%s) gReal.%s(%s);\n' % (flag, wrong, c.name, names)
             if c.option('quiet'):
                 out += '    else %s;\n' % c.option('quiet')
         elif local:
             if PROVOKING.match(c.name) and any(p.name == 'index' for p in c.params):
-                out += '    if (quiet::vertex(self, index)) return;\n'
+                right = '(%s) && ' % c.option('right') if c.option('right') else ''
+                out += '    if (%squiet::vertex(self, index)) return;\n' % right
             out += '    gReal.%s(%s);\n' % (c.name, names)
     return out + '}\n'
 

@@ -90,6 +90,24 @@ void drawCopyOfWindow() {
     glBindTexture(GL_TEXTURE_2D, texture);
 }
 
+// No context of OpenGL ES has these, but their names are known.
+void refuseEvaluators() {
+    const auto evaluate = reinterpret_cast<void (*)(GLfixed)>(eglGetProcAddress("glEvalCoord1xOES"));
+    const auto vertex = reinterpret_cast<void (*)(GLfixed, GLfixed)>(eglGetProcAddress("glVertex2xOES"));
+    if (evaluate == nullptr || vertex == nullptr) {
+        return;
+    }
+    evaluate(fixed(0.5F));
+    const bool one = glGetError() != GL_NO_ERROR;
+    vertex(fixed(1), fixed(1));
+    const bool other = glGetError() != GL_NO_ERROR;
+    glClearColorx(one ? fixed(1) : 0, other ? fixed(1) : 0, fixed(0.5F), fixed(1));
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(230, 170, 15, 15);
+    glClear(GL_COLOR_BUFFER_BIT);
+    glDisable(GL_SCISSOR_TEST);
+}
+
 void draw(int frame) {
     const GLbyte coordinates[] = {0, 0, 2, 0, 0, 2, 2, 2};
     const GLubyte colors[] = {255, 0, 0, 255, 0, 255, GLubyte(frame * 50), 255, 0, 0, 255, 255, 255, 255, 0, 255};
@@ -136,6 +154,7 @@ void draw(int frame) {
     glDrawArrays(GL_LINE_LOOP, 0, 4);
     drawInFog(frame);
     drawCopyOfWindow();
+    refuseEvaluators();
     glDisableClientState(GL_VERTEX_ARRAY);
 }
 

@@ -87,6 +87,23 @@ void answerIntoBuffer() {
     glDeleteQueries(1, &query);
 }
 
+// Packed vertices of a type that there is not, between the others.
+void packed() {
+    const GLenum types[] = {GL_INT_2_10_10_10_REV, GL_FLOAT, GL_UNSIGNED_INT_2_10_10_10_REV, GL_UNSIGNED_INT_10F_11F_11F_REV, 7};
+    unsigned failed[5] = {};
+    for (int i = 0; i < 5; ++i) {
+        glBegin(GL_TRIANGLES);
+        glVertexP3ui(types[i], 0x1ff);
+        glVertexAttribP4ui(0, types[i], GL_TRUE, 0x7fd00);
+        glVertexAttribP3ui(0, types[i], GL_TRUE, 0x1ff7f);
+        glEnd();
+        failed[i] = errors();
+    }
+    for (int i = 0; i < 5; ++i) {
+        showBar(14 + i, failed[i]);
+    }
+}
+
 std::uint32_t sumOf(const std::vector<GLubyte>& bytes) { return std::accumulate(bytes.begin(), bytes.end(), 0U); }
 
 // Memory beside a framebuffer object is left as it is; a buffer that is too small is an error.
@@ -134,5 +151,6 @@ int main(int argc, char** argv) {
         count();
         answerIntoBuffer();
         read();
+        packed();
     });
 }

@@ -157,13 +157,16 @@ public:
     }
 
     const char* step(World& w) {
+        const char* name = "a call";
         if (w.random.chance(50)) {
             callAny(w);
-            return "a call";
+        } else {
+            const Recipe& recipe = *book_[w.random.below(static_cast<std::uint32_t>(book_.size()))];
+            recipe.cook(w);
+            name = recipe.name;
         }
-        const Recipe& recipe = *book_[w.random.below(static_cast<std::uint32_t>(book_.size()))];
-        recipe.cook(w);
-        return recipe.name;
+        barrier(w);
+        return name;
     }
 
 private:

@@ -25,6 +25,7 @@ void begin(World& w);                // of a context: arrays that point somewher
 void clearAll(World& w);
 void pointAll(World& w, bool buffered); // every vertex array of what is bound: none that is enabled lacks memory
 void useAnyProgram(World& w);        // one of the pool's, with random uniforms
+void barrier(World& w);              // what shaders have written is there for all that reads: without it nothing is sure
 void drawBuffered(World& w);         // with the current program, from arrays in a buffer
 GLuint makeTexture(World& w, GLenum target); // with all its levels' contents; stays bound
 GLenum anyTarget(World& w);

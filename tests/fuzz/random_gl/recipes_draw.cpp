@@ -156,6 +156,12 @@ void drawAny(World& w) {
     }
 }
 
+void drawAnyInOrder(World& w) {
+    barrier(w);
+    drawAny(w);
+    barrier(w);
+}
+
 void setVertexArray(World& w) {
     if (w.random.chance(w.profile == Profile::Core ? 20 : 70)) {
         return;
@@ -186,15 +192,15 @@ void draw(World& w) {
         }
         classicArrays(w);
     }
-    drawAny(w);
+    drawAnyInOrder(w);
 }
 
 void drawAgain(World& w) {
     if (w.clientArrays() || w.random.chance(50)) {
-        drawAny(w);
+        drawAnyInOrder(w);
     } else {
         useAnyProgram(w);
-        drawAny(w);
+        drawAnyInOrder(w);
     }
 }
 
@@ -284,10 +290,16 @@ constexpr Recipe kRecipes[] = {
 
 } // namespace
 
+void barrier(World& w) {
+    if (!w.es()) {
+        GL(glMemoryBarrier, GL_ALL_BARRIER_BITS);
+    }
+}
+
 void drawBuffered(World& w) {
     setVertexArray(w);
     genericArrays(w);
-    drawAny(w);
+    drawAnyInOrder(w);
 }
 
 std::span<const Recipe> drawRecipes() { return kRecipes; }

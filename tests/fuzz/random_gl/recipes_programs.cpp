@@ -127,7 +127,6 @@ void count(World& w) {
     }
     drawBuffered(w);
     if (!w.es()) {
-        GL(glMemoryBarrier, GL_ALL_BARRIER_BITS);
         void* const out = outputMemory(sizeof zeros);
         GL(glGetBufferSubData, GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(sizeof zeros), out);
         w.observe(out, sizeof zeros);

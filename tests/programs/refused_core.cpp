@@ -1,0 +1,118 @@
+// What the GL refuses in a core context leaves its error and no other trace: calls of the compatibility profile, names
+// that were not made, draw buffers that there are not. Nor do buffers whose bytes come from shaders take names.
+#include "tests/programs/support/gl.hpp"
+#include "tests/programs/support/program.hpp"
+#include "tests/programs/support/shaders.hpp"
+#include "tests/programs/support/show.hpp"
+
+using namespace programs;
+
+namespace {
+
+GLuint writing;
+
+unsigned error() {
+    const GLenum first = glGetError();
+    while (glGetError() != GL_NO_ERROR) {
+    }
+    return first;
+}
+
+void callOldCommands() {
+    const GLfloat four[4] = {};
+    glVertex4fv(four);
+    showBits(0, error());
+    glVertex2i(1, 2);
+    showBits(1, error());
+    glVertexP3ui(GL_UNSIGNED_INT_2_10_10_10_REV, 7);
+    showBits(2, error());
+    glEvalCoord1f(0.5F);
+    showBits(3, error());
+    glEvalPoint2(1, 1);
+    showBits(4, error());
+    glArrayElement(0);
+    showBits(5, error());
+    glRecti(0, 0, 3, 3);
+    showBits(6, error());
+    glBegin(GL_TRIANGLES);
+    glVertexAttrib4fv(0, four);
+    showBits(7, error());
+    glEnd();
+    showBits(8, error());
+}
+
+// The window stays bound, and what is drawn to of it.
+void bindNothing() {
+    GLuint framebuffer = 0;
+    glGenFramebuffers(1, &framebuffer);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glDeleteFramebuffers(1, &framebuffer);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    showBits(10, error());
+    const GLenum wrong[] = {GL_FRONT, GL_COLOR_ATTACHMENT31};
+    glNamedFramebufferDrawBuffers(0, 2, wrong);
+    showBits(11, error());
+    glDrawBuffers(2, wrong);
+    showBits(12, error());
+    glDrawBuffer(GL_COLOR_ATTACHMENT0);
+    showBits(13, error());
+    fillRectangle(140, 20, 60, 30, {0.9F, 0.5F, 0.1F});
+}
+
+// The shader's words go to the buffer that was bound before.
+void writeWords(GLbitfield flags, int row) {
+    GLuint buffers[3] = {};
+    glGenBuffers(2, buffers);
+    const GLuint zeros[8] = {};
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffers[0]);
+    glBufferStorage(GL_SHADER_STORAGE_BUFFER, sizeof zeros, zeros, flags | GL_MAP_READ_BIT);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffers[0]);
+    glDeleteBuffers(1, &buffers[1]);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffers[1]);
+    showBits(row, error());
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffers[1]);
+    showBits(row + 1, error());
+    glUseProgram(writing);
+    glDispatchCompute(8, 1, 1);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    GLuint told[8] = {};
+    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof told, told);
+    showBits(row + 2, told[7]);
+    if (const void* const mapped = glMapBufferRange(GL_SHADER_STORAGE_BUFFER, 0, sizeof told, GL_MAP_READ_BIT)) {
+        showBits(row + 3, static_cast<const GLuint*>(mapped)[6]);
+        glUnmapBuffer(GL_SHADER_STORAGE_BUFFER);
+    }
+    glGenBuffers(1, &buffers[2]);
+    showBits(row + 4, buffers[2] - buffers[0]);
+    glDeleteBuffers(1, &buffers[0]);
+    glDeleteBuffers(1, &buffers[2]);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    const WindowSpec spec = {Profile::Core, 4, 5};
+    return runInGlxWindow(
+        argc,
+        argv,
+        spec,
+        [](Window&) {
+            GLuint vertexArray = 0;
+            glGenVertexArrays(1, &vertexArray);
+            glBindVertexArray(vertexArray);
+            writing = buildProgram({{GL_COMPUTE_SHADER, R"(#version 430
+                layout(local_size_x = 1) in; layout(std430, binding = 0) buffer Words { uint words[]; };
+                void main() { words[gl_GlobalInvocationID.x] += gl_GlobalInvocationID.x * 5u + 1u; })"}});
+        },
+        [](Window&, int frame) {
+            glClearColor(0.1F, 0.2F, 0.1F * float(frame), 1);
+            glClear(GL_COLOR_BUFFER_BIT);
+            callOldCommands();
+            bindNothing();
+            writeWords(GL_DYNAMIC_STORAGE_BIT, 15);
+            writeWords(GL_MAP_WRITE_BIT, 20);
+            glPixelStorei(GL_UNPACK_SKIP_PIXELS, 1);
+            writeWords(0, 25);
+            glPixelStorei(GL_UNPACK_SKIP_PIXELS, 0);
+        });
+}
