@@ -1,5 +1,8 @@
 #include "interposer/pixel_store.hpp"
 
+#include <GL/glext.h>
+
+#include "interposer/asking.hpp"
 #include "interposer/context.hpp"
 #include "interposer/real_gl.hpp"
 
@@ -52,6 +55,18 @@ sizes::PixelStore packStore(const Context& c) {
     s.skipImages = get(GL_PACK_SKIP_IMAGES);
     s.swapBytes = get(GL_PACK_SWAP_BYTES) != 0;
     s.lsbFirst = get(GL_PACK_LSB_FIRST) != 0;
+    return s;
+}
+
+sizes::PixelStore compressedPackStore(Context& c) {
+    sizes::PixelStore s = packStore(c);
+    if (c.api != wire::Api::Desktop) return s;
+    stashError(c, driverError());
+    s.compressedBlockWidth = get(GL_PACK_COMPRESSED_BLOCK_WIDTH);
+    s.compressedBlockHeight = get(GL_PACK_COMPRESSED_BLOCK_HEIGHT);
+    s.compressedBlockDepth = get(GL_PACK_COMPRESSED_BLOCK_DEPTH);
+    s.compressedBlockSize = get(GL_PACK_COMPRESSED_BLOCK_SIZE);
+    driverError(); // of drivers that have no such state
     return s;
 }
 

@@ -14,6 +14,8 @@ struct Context;
 [[nodiscard]] bool packBufferBound(const Context& c);
 [[nodiscard]] sizes::PixelStore unpackStore(const Context& c);
 [[nodiscard]] sizes::PixelStore packStore(const Context& c);
+// The same with what describes the blocks of compressed images.
+[[nodiscard]] sizes::PixelStore compressedPackStore(Context& c);
 // As long as it lives, the program's own context packs pixels tightly into client memory.
 class TightPack {
 public:

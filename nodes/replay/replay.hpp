@@ -255,6 +255,7 @@ private:
         GLenum drawBuffer0 = 0, readBuffer0 = 0;         // of the default framebuffer, the program's names
         PixelUnpack unpack;
         std::array<GLint, 8> pack{};
+        bool packsBlocks = false;                        // the program has said what compressed blocks are when packed
         GLuint listBase = 0;
         GLuint compiling = 0;                            // name of the list, 0: none
         GLenum compileMode = 0;
@@ -324,6 +325,8 @@ private:
     // replay_reads.cpp
     bool ownRequestPixels(Args& in);
     bool ownRequestTexImage(Args& in);
+    void readTexels(bool byName, GLuint which, GLint level, GLenum format, GLenum type);
+    void readBlocks(bool byName, GLuint which, GLint level);
     bool ownRequestBuffer(Args& in);
     void readBuffer(GLuint ours, uint64_t offset);
     void answerBytes(uint32_t request, wire::AnswerKind kind, std::span<const std::byte> bytes);

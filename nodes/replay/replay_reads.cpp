@@ -83,6 +83,29 @@ void Replay::answerBytes(uint32_t request, wire::AnswerKind kind, std::span<cons
     out_.answer(header, bytes);
 }
 
+// Into pixels_: glGetn… and glGetTextureImage stay within the given size, whatever the level really is.
+void Replay::readTexels(bool byName, GLuint which, GLint level, GLenum format, GLenum type) {
+    const auto room = static_cast<GLsizei>(std::min<size_t>(pixels_.size(), INT32_MAX));
+    if (byName && gl.glGetTextureImage) gl.glGetTextureImage(which, level, format, type, room, pixels_.data());
+    else if (!byName && gl.glGetnTexImageARB) gl.glGetnTexImageARB(which, level, format, type, room, pixels_.data());
+    else if (!byName && gl.glGetnTexImage) gl.glGetnTexImage(which, level, format, type, room, pixels_.data());
+}
+
+// The same of a compressed image, as it is. Mesa's glGetnCompressedTexImageARB does not look at the given size.
+void Replay::readBlocks(bool byName, GLuint which, GLint level) {
+    const auto room = static_cast<GLsizei>(std::min<size_t>(pixels_.size(), INT32_MAX));
+    constexpr GLenum kBlockNames[] = {GL_PACK_COMPRESSED_BLOCK_WIDTH, GL_PACK_COMPRESSED_BLOCK_HEIGHT, GL_PACK_COMPRESSED_BLOCK_DEPTH, GL_PACK_COMPRESSED_BLOCK_SIZE};
+    GLint blocks[4] = {}, needed = 0;
+    for (size_t i = 0; c_->packsBlocks && i < 4; ++i) {
+        gl.glGetIntegerv(kBlockNames[i], &blocks[i]);
+        gl.glPixelStorei(kBlockNames[i], 0);
+    }
+    if (!byName && gl.glGetTexLevelParameteriv) gl.glGetTexLevelParameteriv(which, level, GL_TEXTURE_COMPRESSED_IMAGE_SIZE, &needed);
+    if (byName && gl.glGetCompressedTextureImage) gl.glGetCompressedTextureImage(which, level, room, pixels_.data());
+    else if (needed > 0 && needed <= room && gl.glGetCompressedTexImage) gl.glGetCompressedTexImage(which, level, pixels_.data());
+    for (size_t i = 0; c_->packsBlocks && i < 4; ++i) gl.glPixelStorei(kBlockNames[i], blocks[i]);
+}
+
 bool Replay::ownRequestTexImage(Args& in) {
     const auto request = in.get<uint32_t>(), byName = in.get<uint32_t>(), which = in.get<uint32_t>();
     const auto level = in.get<int32_t>();
@@ -93,11 +116,9 @@ bool Replay::ownRequestTexImage(Args& in) {
     if (bound_ && bytes > 0) {
         if (c_->packBuffer) gl.glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
         packTightly(true);
-        // glGetn… and glGetTextureImage stay within the given size, whatever the level really is.
-        const auto room = static_cast<GLsizei>(std::min<uint64_t>(bytes, INT32_MAX));
-        if (byName && gl.glGetTextureImage) gl.glGetTextureImage(name(Kind::Texture, which), level, format, type, room, pixels_.data());
-        else if (!byName && gl.glGetnTexImageARB) gl.glGetnTexImageARB(which, level, format, type, room, pixels_.data());
-        else if (!byName && gl.glGetnTexImage) gl.glGetnTexImage(which, level, format, type, room, pixels_.data());
+        const GLuint image = byName ? name(Kind::Texture, which) : which;
+        if (format == 0) readBlocks(byName != 0, image, level);
+        else readTexels(byName != 0, image, level, format, type);
         packTightly(false);
         if (c_->packBuffer) gl.glBindBuffer(GL_PIXEL_PACK_BUFFER, c_->packBuffer);
     }

@@ -320,6 +320,7 @@ void Replay::pixelStore(GLenum pname, GLint value) {
         }
         if (pname == kUnpackNames[i]) return c_->unpack.tight ? void() : gl.glPixelStorei(pname, value);
     }
+    if (pname >= GL_PACK_COMPRESSED_BLOCK_WIDTH && pname <= GL_PACK_COMPRESSED_BLOCK_SIZE) c_->packsBlocks = true;
     gl.glPixelStorei(pname, value);
 }
 void Replay::glPixelStorei(GLenum pname, GLint param) { pixelStore(pname, param); }

@@ -1,0 +1,122 @@
+// Compressed images: their texels may come from rendering (copies, mipmaps, unpack buffers), so the nodes have them.
+#include "custom_wrappers.hpp"
+#include "interposer/asking.hpp"
+#include "interposer/commands/image_reads.hpp"
+#include "interposer/pixel_store.hpp"
+#include "streamcodec/sizes/compressed_block.hpp"
+
+using namespace mural;
+using namespace mural::image_reads;
+
+namespace {
+
+struct Image {
+    GLenum format = 0;
+    Level size;
+    int dimensions = 2;
+
+    // Bytes of the tight level; 0: not a format that is made of blocks.
+    [[nodiscard]] size_t bytes() const {
+        const size_t tight = sizes::compressedBytes(format, size.width, size.height, size.depth);
+        return tight == SIZE_MAX ? 0 : tight;
+    }
+};
+
+template <class Ask> Image imageOf(GLenum target, Ask&& ask) {
+    GLint format = 0;
+    ask(GL_TEXTURE_INTERNAL_FORMAT, &format);
+    return {static_cast<GLenum>(format), levelOf(ask), imageDimensions(target)};
+}
+
+Image imageByName(ThreadState& t, GLuint texture, GLint level) {
+    GLenum target = 0;
+    GLint format = 0;
+    gReal.glGetTextureLevelParameteriv(texture, level, GL_TEXTURE_INTERNAL_FORMAT, &format);
+    const Level size = levelOf(*t.context, texture, level, target);
+    return {static_cast<GLenum>(format), size, dimensionsByName(target)};
+}
+
+// Format 0 asks the nodes for the blocks as they are.
+std::byte* askBlocks(ThreadState& t, bool byName, GLuint which, GLint level, const Image& image, const char* by) {
+    const size_t bytes = image.bytes();
+    return static_cast<std::byte*>(bytes ? askTexImage(t, byName, which, level, 0, 0, bytes, by) : nullptr);
+}
+
+void deliverBlocks(ThreadState& t, const void* tight, void* pixels, GLenum format, const Level& size, int dimensions) {
+    const sizes::ImageLayout layout = sizes::compressedLayoutOf(compressedPackStore(*t.context), format, size.width, size.height, size.depth, dimensions);
+    if (layout.known) deliver(t, tight, pixels, layout);
+}
+
+void read(ThreadState& t, bool byName, GLuint which, GLint level, const Image& image, void* pixels, const char* by = __builtin_FUNCTION()) {
+    if (const void* tight = askBlocks(t, byName, which, level, image, by)) deliverBlocks(t, tight, pixels, image.format, image.size, image.dimensions);
+}
+
+Level inBlocks(const Level& texels, const sizes::CompressedBlock& block) {
+    const auto along = [](GLint count, uint32_t per) { return (count + static_cast<GLint>(per) - 1) / static_cast<GLint>(per); };
+    return {along(texels.width, block.width), along(texels.height, block.height), along(texels.depth, block.depth)};
+}
+
+// The driver's own answer comes first: it gives the errors, and the content where nodes have none.
+template <class Local> void readBound(GLenum target, GLint level, void* pixels, Local&& local, const char* by = __builtin_FUNCTION()) {
+    ThreadState& t = *tThread;
+    if (!capturing(t)) return local();
+    if (!raisesNothing(*t.context, local)) return;
+    const Image image = imageOf(target, [=](GLenum pname, GLint* value) { gReal.glGetTexLevelParameteriv(target, level, pname, value); });
+    read(t, false, target, level, image, pixels, by);
+}
+
+} // namespace
+
+extern "C" {
+
+void mural_glGetCompressedTexImage(GLenum target, GLint level, void* img) {
+    readBound(target, level, img, [=] { gReal.glGetCompressedTexImage(target, level, img); });
+}
+void mural_glGetnCompressedTexImage(GLenum target, GLint lod, GLsizei bufSize, void* pixels) {
+    readBound(target, lod, pixels, [=] { gReal.glGetnCompressedTexImage(target, lod, bufSize, pixels); });
+}
+void mural_glGetnCompressedTexImageARB(GLenum target, GLint lod, GLsizei bufSize, void* img) {
+    readBound(target, lod, img, [=] { gReal.glGetnCompressedTexImageARB(target, lod, bufSize, img); });
+}
+
+void mural_glGetCompressedTextureImage(GLuint texture, GLint level, GLsizei bufSize, void* pixels) {
+    ThreadState& t = *tThread;
+    const auto local = [&] { gReal.glGetCompressedTextureImage(texture, level, bufSize, pixels); };
+    if (!capturing(t)) return local();
+    if (raisesNothing(*t.context, local)) read(t, true, texture, level, imageByName(t, texture, level), pixels);
+}
+
+// A part: the whole level is asked for, the part's blocks are copied out of it.
+void mural_glGetCompressedTextureSubImage(GLuint texture, GLint level, GLint xoffset, GLint yoffset, GLint zoffset, GLsizei width, GLsizei height, GLsizei depth, GLsizei bufSize, void* pixels) {
+    ThreadState& t = *tThread;
+    const auto local = [&] { gReal.glGetCompressedTextureSubImage(texture, level, xoffset, yoffset, zoffset, width, height, depth, bufSize, pixels); };
+    if (!capturing(t)) return local();
+    if (!raisesNothing(*t.context, local) || width <= 0 || height <= 0 || depth <= 0) return;
+    const Image image = imageByName(t, texture, level);
+    std::byte* const tight = askBlocks(t, true, texture, level, image, __func__);
+    if (!tight) return;
+    const sizes::CompressedBlock block = sizes::compressedBlock(image.format);
+    const Level part{width, height, depth};
+    keepPart(tight, inBlocks(image.size, block), inBlocks({xoffset, yoffset, zoffset}, block), inBlocks(part, block), block.bytes);
+    deliverBlocks(t, tight, pixels, image.format, part, image.dimensions);
+}
+
+void mural_glGetCompressedTextureImageEXT(GLuint texture, GLenum target, GLint lod, void* img) {
+    ThreadState& t = *tThread;
+    const auto local = [&] { gReal.glGetCompressedTextureImageEXT(texture, target, lod, img); };
+    if (!capturing(t) || t.context->compilingList) return local();
+    if (!raisesNothing(*t.context, local)) return;
+    const Image image = imageOf(target, [=](GLenum pname, GLint* value) { gReal.glGetTextureLevelParameterivEXT(texture, target, lod, pname, value); });
+    whileBound(t, target, texture, [&] { read(t, false, target, lod, image, img, "glGetCompressedTextureImageEXT"); });
+}
+
+void mural_glGetCompressedMultiTexImageEXT(GLenum texunit, GLenum target, GLint lod, void* img) {
+    ThreadState& t = *tThread;
+    const auto local = [&] { gReal.glGetCompressedMultiTexImageEXT(texunit, target, lod, img); };
+    if (!capturing(t) || t.context->compilingList) return local();
+    if (!raisesNothing(*t.context, local)) return;
+    const Image image = imageOf(target, [=](GLenum pname, GLint* value) { gReal.glGetMultiTexLevelParameterivEXT(texunit, target, lod, pname, value); });
+    whileActive(t, texunit, [&] { read(t, false, target, lod, image, img, "glGetCompressedMultiTexImageEXT"); });
+}
+
+} // extern "C"
