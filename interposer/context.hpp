@@ -62,6 +62,7 @@ struct ShareGroup {
 
 // Context::openPrimitive outside of glBegin and glEnd.
 constexpr uint32_t kNoPrimitive = UINT32_MAX;
+constexpr int64_t kNoRestart = -1;
 
 struct Context {
     bool called = false;             // by a GL command that came through us
@@ -106,6 +107,7 @@ struct Context {
     bool feedbackCounts = false; // the driver counts vertices of transform feedback at the draw, for an error
     bool drawsFeedback = false;  // such feedback is active: the program's own context draws, too
     uint32_t openPrimitive = kNoPrimitive; // the mode of glBegin until glEnd
+    int64_t restartElement = kNoRestart;   // glArrayElement of it starts the primitive anew; asked for at glBegin
     bool firstCurrent = true;
     uint32_t drawWindow = 0, readWindow = 0; // 0: none; both stay when the context is released
     Window* held[2] = {};      // what it was last bound to: a driver keeps these drawables alive

@@ -273,6 +273,7 @@ void sendArray(ThreadState& t, const VertexArray& va, uint32_t slot, GLint i) {
 } // namespace
 
 void sendElement(ThreadState& t, Context& c, GLint i) {
+    if (static_cast<GLuint>(i) == c.restartElement) return encode_glPrimitiveRestartNV(t);
     const VertexArray& va = c.arrays.current();
     const auto enabled = [&](uint32_t slot) { return va.enabled[slot / 64] >> slot % 64 & 1; };
     for (uint32_t slot = kVertex + 1; slot < kSlots; ++slot) {

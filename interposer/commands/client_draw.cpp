@@ -109,6 +109,13 @@ const void* elementBufferContent(ThreadState& t, const Context& c, GLintptr offs
 }
 } // namespace
 
+int64_t restartIndexOf(const Context& c) {
+    if (c.api != wire::Api::Desktop || c.version < 31 || !gReal.glIsEnabled(GL_PRIMITIVE_RESTART)) return kNoRestart;
+    GLint index = 0;
+    gReal.glGetIntegerv(GL_PRIMITIVE_RESTART_INDEX, &index);
+    return static_cast<uint32_t>(index);
+}
+
 VertexRange indexedRange(ThreadState& t, const Context& c, GLsizei count, GLenum type, const void* indices, GLint baseVertex) {
     const uint32_t bytes = sizes::typeBytes(type);
     if (count <= 0 || bytes == 0 || bytes > 4) return {};
@@ -118,14 +125,9 @@ VertexRange indexedRange(ThreadState& t, const Context& c, GLsizei count, GLenum
         data = elementBufferContent(t, c, reinterpret_cast<GLintptr>(indices), n * bytes);
         if (!data) return {};
     }
-    bool restart = false;
-    uint32_t restartIndex = 0;
-    if (c.api == wire::Api::Desktop && c.version >= 31 && gReal.glIsEnabled(GL_PRIMITIVE_RESTART)) {
-        GLint index = 0;
-        gReal.glGetIntegerv(GL_PRIMITIVE_RESTART_INDEX, &index);
-        restart = true;
-        restartIndex = static_cast<uint32_t>(index);
-    }
+    const int64_t chosen = restartIndexOf(c);
+    bool restart = chosen >= 0;
+    auto restartIndex = static_cast<uint32_t>(chosen);
     const bool fixedKnown = c.api == wire::Api::Desktop ? c.version >= 43 : c.version >= 30;
     if (fixedKnown && gReal.glIsEnabled(GL_PRIMITIVE_RESTART_FIXED_INDEX)) {
         restart = true;

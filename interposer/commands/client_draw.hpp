@@ -22,6 +22,9 @@ void sendClientArrays(ThreadState& t, Context& c, const VertexRange& range);
 // buffer) name, with baseVertex added.
 VertexRange indexedRange(ThreadState& t, const Context& c, GLsizei count, GLenum type, const void* indices, GLint baseVertex);
 
+// The index at which the program has primitives start anew, or kNoRestart; not that of GL_PRIMITIVE_RESTART_FIXED_INDEX.
+int64_t restartIndexOf(const Context& c);
+
 GLint elementBufferBinding();
 
 } // namespace mural

@@ -4,6 +4,7 @@
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
 #include "interposer/asking.hpp"
+#include "interposer/commands/client_draw.hpp"
 #include "interposer/context.hpp"
 #include "interposer/extensions.hpp"
 #include "interposer/mapped_buffers.hpp"
@@ -324,6 +325,7 @@ void mural_glBegin(GLenum mode) {
     ThreadState& t = *tThread;
     buffersRead(t);
     encode_glBegin(t, mode);
+    if (Context* c = t.context; c && c->openPrimitive == kNoPrimitive) c->restartElement = c->arrays.anyClient() ? restartIndexOf(*c) : kNoRestart;
     gReal.glBegin(mode);
     if (!t.context) return;
     if (t.context->compilingList) t.context->listPrimitive = true;

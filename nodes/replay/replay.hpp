@@ -375,6 +375,9 @@ private:
     uint64_t readQuery(GLuint ours);
     // replay_widening.cpp
     void noteModules(GLuint ours);
+    [[nodiscard]] bool alone() const { // this node's part is the whole picture
+        return config_.region.columns == config_.grid.columns && config_.region.rows == config_.grid.rows;
+    }
     [[nodiscard]] bool allDrawn() const { return c_->shared && c_->shared->allDrawn; }
     void widenToWindow(Window& w);
     void copyTile(const Window& w, gl::Surface& from);

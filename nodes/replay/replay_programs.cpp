@@ -14,9 +14,7 @@
 namespace mural {
 
 ShaderRewrites Replay::rewrites() const {
-    const TileRegion& r = config_.region;
-    const bool whole = r.columns == config_.grid.columns && r.rows == config_.grid.rows;
-    return {config_.cull && !whole, config_.lean && !whole};
+    return {config_.cull && !alone(), config_.lean && !alone()};
 }
 
 void Replay::applyTileValues() {

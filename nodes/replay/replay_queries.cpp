@@ -177,13 +177,13 @@ bool Replay::ownQueryKnown(Args& in) {
     return true;
 }
 
-// Out of a display list: the program has told the result ahead of the call, or every node draws all and knows it.
+// Out of a display list: the program has told the result ahead of the call, or this node draws all and knows it.
 void Replay::glBeginConditionalRender(GLuint id, GLenum mode) {
     const auto info = c_->queries.find(id);
     if (info == c_->queries.end()) return; // an error, and nothing is left out
     const std::vector<QueryPiece>& pieces = info->second.pieces;
     bool passed = info->second.passed;
-    if (std::all_of(pieces.begin(), pieces.end(), [](const QueryPiece& p) { return p.whole; }))
+    if (alone() || std::all_of(pieces.begin(), pieces.end(), [](const QueryPiece& p) { return p.whole; }))
         passed = std::any_of(pieces.begin(), pieces.end(), [&](const QueryPiece& p) { return queryResult(p.ours) != 0; });
     beginConditional(passed != isInverted(mode));
 }

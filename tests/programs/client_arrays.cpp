@@ -252,6 +252,24 @@ void drawAnimated(int frame) {
     glDisableClientState(GL_VERTEX_ARRAY);
 }
 
+// Element 6 starts a new strip; as a vertex it would be far away.
+void drawElementsAnew() {
+    static const GLfloat places[] = {0, 0, 6, 14, 8, 2, 12, 0, 16, 14, 20, 2, 20, 20};
+    glEnableClientState(GL_VERTEX_ARRAY);
+    glVertexPointer(2, GL_FLOAT, 0, places);
+    glEnable(GL_PRIMITIVE_RESTART);
+    glPrimitiveRestartIndex(6);
+    glColor3f(0.2F, 0.9F, 0.9F);
+    enterCell();
+    glBegin(GL_TRIANGLE_STRIP);
+    for (const GLint element : {0, 1, 2, 6, 3, 4, 5}) {
+        glArrayElement(element);
+    }
+    glEnd();
+    glDisable(GL_PRIMITIVE_RESTART);
+    glDisableClientState(GL_VERTEX_ARRAY);
+}
+
 void drawMixedWithBuffers(int frame) {
     GLuint buffers[2];
     glGenBuffers(2, buffers);
@@ -350,6 +368,7 @@ int main(int argc, char** argv) {
             drawTextured(frame);
             drawInterleaved(frame);
             drawAnimated(frame);
+            drawElementsAnew();
             drawMixedWithBuffers(frame);
             drawAfterPoppedClientState(frame);
         });

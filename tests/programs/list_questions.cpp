@@ -43,6 +43,11 @@ void compileCondition(GLenum mode) {
     glColor3f(1, 0, 0);
     glRecti(0, 0, 250, 190);
     glEndConditionalRender();
+    glBeginQuery(GL_SAMPLES_PASSED, queries[0]); // again, with another result
+    glEndQuery(GL_SAMPLES_PASSED);
+    glBeginConditionalRender(queries[0], GL_QUERY_WAIT);
+    glRecti(0, 0, 40, 190);
+    glEndConditionalRender();
     glEndList();
 }
 
