@@ -67,6 +67,15 @@ void deliver(ThreadState& t, const void* tight, void* pixels, const sizes::Image
     records::bufferBytes(t, static_cast<GLuint>(buffer), static_cast<uint64_t>(offset), DataArg::of(whole, span));
 }
 
+void tellPackBuffer(ThreadState& t, const void* offset, size_t bytes) {
+    void* const written = bytes ? scratchMemory(t, bytes) : nullptr;
+    if (!written) return;
+    packBytes(*t.context, reinterpret_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes), written);
+    GLint buffer = 0;
+    gReal.glGetIntegerv(GL_PIXEL_PACK_BUFFER_BINDING, &buffer);
+    records::bufferBytes(t, static_cast<GLuint>(buffer), reinterpret_cast<uint64_t>(offset), DataArg::of(written, bytes));
+}
+
 int imageDimensions(GLenum target) {
     switch (target) {
     case GL_TEXTURE_1D: return 1;

@@ -19,6 +19,9 @@ struct Level {
 // program's own and the nodes').
 void deliver(ThreadState& t, const void* tight, void* pixels, const sizes::ImageLayout& layout);
 
+// The program's own context has written so many bytes into the bound pack buffer: the nodes get them.
+void tellPackBuffer(ThreadState& t, const void* offset, size_t bytes);
+
 // How many dimensions of an image of that target the pack state counts.
 int imageDimensions(GLenum target);
 // Of an image by name: a cube map's faces are images one behind the other.

@@ -5,6 +5,8 @@
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <vector>
 
 using namespace programs;
@@ -154,6 +156,37 @@ void readTransferred(Window& window) {
     glDrawPixels(kWidth, kHeight, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
 }
 
+// State that is packed as images are; the nodes draw with what came into the buffer.
+void readState(Window& window, unsigned frame) {
+    const auto* mapAt = reinterpret_cast<const void*>(256);
+    GLubyte pattern[128], solid[128];
+    Sequence numbers(frame + 9);
+    for (GLubyte& byte : pattern) byte = numbers.byte();
+    std::fill(std::begin(solid), std::end(solid), GLubyte(0xff));
+    GLfloat values[32];
+    for (GLfloat& value : values) value = numbers.unit();
+    glPolygonStipple(pattern);
+    glPixelMapfv(GL_PIXEL_MAP_I_TO_G, 32, values);
+    GLuint buffer = 0;
+    glGenBuffers(1, &buffer);
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, buffer);
+    glBufferData(GL_PIXEL_PACK_BUFFER, 512, nullptr, GL_DYNAMIC_COPY);
+    glGetPolygonStipple(nullptr);
+    glGetPixelMapfv(GL_PIXEL_MAP_I_TO_G, reinterpret_cast<GLfloat*>(256));
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+    glPolygonStipple(solid);
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer);
+    glPolygonStipple(nullptr);
+    enterCell(window);
+    glDrawPixels(8, 4, GL_LUMINANCE, GL_FLOAT, mapAt);
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    glDeleteBuffers(1, &buffer);
+    glEnable(GL_POLYGON_STIPPLE);
+    glColor3f(1, 0.6F, 0);
+    glRecti(window.width() - 70, window.height() / 2 - 15, window.width() - 5, window.height() / 2 + 25);
+    glDisable(GL_POLYGON_STIPPLE);
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -179,5 +212,6 @@ int main(int argc, char** argv) {
             readIntoBuffer(window, number);
             readDepthAndStencil(window, number);
             readTransferred(window);
+            readState(window, number);
         });
 }

@@ -1,0 +1,61 @@
+// State that is packed like images: the program's own context knows it. Where a pack buffer is bound the nodes' copy of
+// that gets the same bytes.
+#include "custom_wrappers.hpp"
+#include "interposer/asking.hpp"
+#include "interposer/commands/image_reads.hpp"
+#include "interposer/pixel_store.hpp"
+
+using namespace mural;
+using namespace mural::image_reads;
+
+namespace {
+
+// span() is how many bytes the query writes.
+template <class Local, class Span> void packed(const void* values, Local&& local, Span&& span) {
+    ThreadState& t = *tThread;
+    if (!capturing(t) || !packBufferBound(*t.context)) return local();
+    if (raisesNothing(*t.context, local)) tellPackBuffer(t, values, span());
+}
+
+template <class Value, class Local> void pixelMap(GLenum map, const Value* values, Local&& local) {
+    packed(values, local, [=] {
+        GLint count = 0;
+        gReal.glGetIntegerv(GL_PIXEL_MAP_I_TO_I_SIZE + (map - GL_PIXEL_MAP_I_TO_I), &count);
+        return static_cast<size_t>(count) * sizeof(Value);
+    });
+}
+
+template <class Local> void stipple(const void* pattern, Local&& local) {
+    packed(pattern, local, [] { return sizes::spanBytes(sizes::layoutOf(packStore(*tThread->context), GL_COLOR_INDEX, GL_BITMAP, 32, 32, 1, 2)); });
+}
+
+} // namespace
+
+extern "C" {
+
+void mural_glGetPixelMapfv(GLenum map, GLfloat* values) {
+    pixelMap(map, values, [=] { gReal.glGetPixelMapfv(map, values); });
+}
+void mural_glGetPixelMapuiv(GLenum map, GLuint* values) {
+    pixelMap(map, values, [=] { gReal.glGetPixelMapuiv(map, values); });
+}
+void mural_glGetPixelMapusv(GLenum map, GLushort* values) {
+    pixelMap(map, values, [=] { gReal.glGetPixelMapusv(map, values); });
+}
+void mural_glGetnPixelMapfvARB(GLenum map, GLsizei bufSize, GLfloat* values) {
+    pixelMap(map, values, [=] { gReal.glGetnPixelMapfvARB(map, bufSize, values); });
+}
+void mural_glGetnPixelMapuivARB(GLenum map, GLsizei bufSize, GLuint* values) {
+    pixelMap(map, values, [=] { gReal.glGetnPixelMapuivARB(map, bufSize, values); });
+}
+void mural_glGetnPixelMapusvARB(GLenum map, GLsizei bufSize, GLushort* values) {
+    pixelMap(map, values, [=] { gReal.glGetnPixelMapusvARB(map, bufSize, values); });
+}
+void mural_glGetPolygonStipple(GLubyte* mask) {
+    stipple(mask, [=] { gReal.glGetPolygonStipple(mask); });
+}
+void mural_glGetnPolygonStippleARB(GLsizei bufSize, GLubyte* pattern) {
+    stipple(pattern, [=] { gReal.glGetnPolygonStippleARB(bufSize, pattern); });
+}
+
+} // extern "C"
