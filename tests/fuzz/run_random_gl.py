@@ -3,6 +3,7 @@
 
   run_random_gl.py --build build/release --seconds 30                        seeds from 1 on, all profiles
   run_random_gl.py --build build/release --seconds 600 --first-seed 5000     a long hunt
+  run_random_gl.py --build build/release --seconds 20 --today                other seeds every day
   run_random_gl.py --build build/release --profiles core --seeds 17:17 --steps 200
   run_random_gl.py --build build/release --profiles core --case "17 3,9,12"  these steps of a seed, calls shown
 
@@ -24,7 +25,7 @@ import display   # noqa: E402
 import programs  # noqa: E402
 
 PROFILES = ["compat", "core", "es3", "es1"]
-BATCH = 12           # seeds of one run
+BATCH = 6            # seeds of one run
 LAST_LINE = "picture"
 
 
@@ -124,18 +125,16 @@ class Hunt:
         first, last = self.arguments.first_seed, None
         if self.arguments.seeds:
             first, last = (int(n) for n in self.arguments.seeds.split(":"))
-        starts = [first]
         if self.arguments.today:
-            starts.append(int(time.time()) // 86400 * 1000)
-            print("seeds from %d and, of today, from %d on" % tuple(starts), flush=True)
-        while last is None or starts[0] <= last:
-            for i, start in enumerate(starts):
-                end = start + BATCH - 1 if last is None else min(start + BATCH - 1, last)
-                starts[i] = end + 1
-                for profile in profiles:
-                    self.batch(profile, range(start, end + 1))
-                    if self.arguments.seconds and time.monotonic() - started > self.arguments.seconds:
-                        return
+            first = int(time.strftime("%Y%m%d", time.gmtime())) * 1000
+            print("seeds of today: --first-seed %d repeats them" % first, flush=True)
+        while last is None or first <= last:
+            end = first + BATCH - 1 if last is None else min(first + BATCH - 1, last)
+            for profile in profiles:
+                self.batch(profile, range(first, end + 1))
+                if self.arguments.seconds and time.monotonic() - started > self.arguments.seconds:
+                    return
+            first = end + 1
 
     def batch(self, profile, seeds):
         cases = [(seed, list(range(self.arguments.steps))) for seed in seeds]
@@ -219,7 +218,7 @@ def parse_arguments():
     parser.add_argument("--steps", type=int, default=150, help="of each seed")
     parser.add_argument("--seconds", type=float, help="stop after that long")
     parser.add_argument("--first-seed", type=int, default=1)
-    parser.add_argument("--today", action="store_true", help="by turns with seeds that are today's")
+    parser.add_argument("--today", action="store_true", help="seeds from one on that the date gives")
     parser.add_argument("--seeds", metavar="FIRST:LAST", help="these, and no more")
     parser.add_argument("--case", metavar="\"SEED STEPS\"", help="one case, with its calls")
     parser.add_argument("--limit", type=float, default=120, help="the longest that one run may take, in seconds")
