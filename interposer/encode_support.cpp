@@ -73,12 +73,7 @@ void spill(ThreadState& t, const DataArg& d) {
     }
 }
 
-DataArg imageSource(ThreadState& t, const void* pixels, GLenum format, GLenum type, GLsizei width, GLsizei height, GLsizei depth, int dimensions) {
-    if (!t.context) return {};
-    if (unpackBufferBound(*t.context)) {
-        buffersRead(t);
-        return DataArg::offset(pixels);
-    }
+static DataArg imageInMemory(ThreadState& t, const void* pixels, GLenum format, GLenum type, GLsizei width, GLsizei height, GLsizei depth, int dimensions) {
     if (!pixels) return {};
     const sizes::ImageLayout layout = sizes::layoutOf(unpackStore(*t.context), format, type, width, height, depth, dimensions);
     const size_t tight = layout.known ? sizes::tightBytes(layout) : 0;
@@ -88,6 +83,19 @@ DataArg imageSource(ThreadState& t, const void* pixels, GLenum format, GLenum ty
     if (!packed) return {};
     sizes::packTight(packed, pixels, layout);
     return DataArg::of(packed, tight);
+}
+
+DataArg imageSource(ThreadState& t, const void* pixels, GLenum format, GLenum type, GLsizei width, GLsizei height, GLsizei depth, int dimensions) {
+    if (!t.context) return {};
+    if (unpackBufferBound(*t.context)) {
+        buffersRead(t);
+        return DataArg::offset(pixels);
+    }
+    return imageInMemory(t, pixels, format, type, width, height, depth, dimensions);
+}
+
+DataArg elementSource(ThreadState& t, const void* element, GLenum format, GLenum type) {
+    return t.context ? imageInMemory(t, element, format, type, 1, 1, 1, 1) : DataArg{};
 }
 
 DataArg packedSource(ThreadState& t, const void* data, GLsizei sizeBytes) {

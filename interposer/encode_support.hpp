@@ -105,6 +105,8 @@ private:
 // context; re-packed tightly into scratch memory when rows are apart.
 DataArg imageSource(ThreadState& t, const void* pixels, GLenum format, GLenum type, GLsizei width,
                     GLsizei height, GLsizei depth, int dimensions);
+// The same for one pixel, which is in client memory whatever is bound.
+DataArg elementSource(ThreadState& t, const void* element, GLenum format, GLenum type);
 // The same for bytes that the pixel store does not rearrange (compressed images).
 DataArg packedSource(ThreadState& t, const void* data, GLsizei sizeBytes);
 // count strings as u32 lengths, then their bytes one after the other. lengths may be null.

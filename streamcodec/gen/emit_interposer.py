@@ -77,7 +77,14 @@ def uniform_elements(c):
     return int(found.group(1)) if found and re.match(r'gl(Program)?Uniform', c.name) else 0
 
 
+def is_element(c, p):
+    """One pixel that fills a buffer: drivers look for it where the unpack state says."""
+    return p.how == 'array' and p.expr.startswith('clearBytes') and 'Buffer' in c.name
+
+
 def data_argument(c, p):
+    if is_element(c, p):
+        return 'elementSource(self, %s, format, type)' % p.name
     if p.how == 'array':
         return 'DataArg::of(%s, %s)' % (p.name, p.expr)
     if p.how == 'text':

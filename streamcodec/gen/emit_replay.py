@@ -2,7 +2,7 @@
 import re
 
 from emit_common import HEAD, ctype
-from emit_interposer import DATA_KINDS, pixel_shape, result_bytes
+from emit_interposer import DATA_KINDS, is_element, pixel_shape, result_bytes
 from registry import TYPE_BYTES
 
 NULLABLE = re.compile(r'gl(Named)?Buffer(Data|Storage)')
@@ -111,7 +111,7 @@ def call(c):
         lines.append('replay_.bindName(Kind::Program, result, replay_.gl.%s(%s));' % (c.name, args))
         return lines + ['return true;']
     for p in c.params:
-        if p.how in ('pixels', 'packed') or p.name == 'bitmap':
+        if p.how in ('pixels', 'packed') or p.name == 'bitmap' or is_element(c, p):
             lines.append('if (!replay_.unpackFor(%s)) return true;' % p.name)
         elif p.how == 'data' and p.expr is not True:
             lines.append('if (!replay_.readable(%s, %s)) return true;' % (

@@ -1,5 +1,6 @@
 // What the GL refuses in a core context leaves its error and no other trace: calls of the compatibility profile, names
-// that were not made, draw buffers that there are not. Nor do buffers whose bytes come from shaders take names.
+// that were not made, draw buffers that there are not. What shaders wrote takes no names,
+// and what fills a buffer is found.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -88,6 +89,24 @@ void writeWords(GLbitfield flags, int row) {
     glDeleteBuffers(1, &buffers[2]);
 }
 
+// The word that fills a buffer lies where the unpack state says.
+void clearWithSkippedWords() {
+    const GLuint words[] = {11, 22, 33, 44};
+    GLuint buffer = 0;
+    glGenBuffers(1, &buffer);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffer);
+    glBufferData(GL_SHADER_STORAGE_BUFFER, sizeof words, nullptr, GL_DYNAMIC_COPY);
+    glPixelStorei(GL_UNPACK_SKIP_PIXELS, 2);
+    glClearBufferData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, words);
+    glPixelStorei(GL_UNPACK_SKIP_PIXELS, 0);
+    glClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, 8, 4, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+    GLuint told[4] = {};
+    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof told, told);
+    showBits(30, told[1]);
+    showBits(31, told[2]);
+    glDeleteBuffers(1, &buffer);
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -114,5 +133,6 @@ int main(int argc, char** argv) {
             glPixelStorei(GL_UNPACK_SKIP_PIXELS, 1);
             writeWords(0, 25);
             glPixelStorei(GL_UNPACK_SKIP_PIXELS, 0);
+            clearWithSkippedWords();
         });
 }
