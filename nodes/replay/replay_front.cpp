@@ -10,6 +10,7 @@ namespace mural {
 namespace {
 
 bool isBoth(GLenum buffer) { return buffer == GL_FRONT_AND_BACK || buffer == GL_LEFT || buffer == GL_RIGHT; }
+GLenum readFrom(GLenum buffer) { return isBoth(buffer) ? GL_FRONT : buffer; } // one of several
 bool isFront(GLenum buffer) { return buffer == GL_FRONT || buffer == GL_FRONT_LEFT || buffer == GL_FRONT_RIGHT; }
 
 constexpr GLbitfield kDeep = GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT;
@@ -41,7 +42,7 @@ gl::Surface* Replay::surfaceOf(Window* w, GLenum buffer) {
 bool Replay::bindSurfaces() {
     const auto bind = [&] {
         drawSurface_ = surfaceOf(boundDraw_, c_->drawBuffer0);
-        readSurface_ = surfaceOf(boundRead_, c_->readBuffer0);
+        readSurface_ = surfaceOf(boundRead_, readFrom(c_->readBuffer0));
         return platform_->makeCurrent(bound_->context.get(), drawSurface_, readSurface_);
     };
     auto made = bind();
@@ -68,7 +69,7 @@ bool Replay::bindSurfaces() {
 void Replay::buffersChanged(GLenum drawnBefore) {
     if (!bound_ || c_ != bound_) return;
     if (boundDraw_ && boundDraw_->front && isBoth(drawnBefore) && !isBoth(c_->drawBuffer0)) backToFront(*boundDraw_);
-    if (surfaceOf(boundDraw_, c_->drawBuffer0) != drawSurface_ || surfaceOf(boundRead_, c_->readBuffer0) != readSurface_) (void)bindSurfaces();
+    if (surfaceOf(boundDraw_, c_->drawBuffer0) != drawSurface_ || surfaceOf(boundRead_, readFrom(c_->readBuffer0)) != readSurface_) (void)bindSurfaces();
 }
 
 void Replay::backToFront(Window& w) {

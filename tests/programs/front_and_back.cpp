@@ -85,6 +85,7 @@ std::vector<Pixels> useBoth(const Window& window, int frame) {
     drawTriangles(unsigned(frame) + 15);
     glPopAttrib();
     read.push_back(readFrom(GL_FRONT, x, y)); // drawn anew since both were drawn
+    read.push_back(readFrom(GL_LEFT, x, y));  // of several buffers the front is read
     return read;
 }
 
