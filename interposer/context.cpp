@@ -11,6 +11,7 @@
 #include "interposer/default_samples.hpp"
 #include "interposer/drawn_elsewhere.hpp"
 #include "interposer/draw_opcodes.hpp"
+#include "interposer/known_objects.hpp"
 #include "interposer/log.hpp"
 #include "interposer/news.hpp"
 #include "interposer/own_records.hpp"
@@ -24,17 +25,7 @@ namespace mural {
 
 namespace {
 
-Lock tableLock;
-Lock announceLock; // taken before tableLock
-Context** contexts = nullptr;
-uint32_t contextCount = 0;
-Window* windows = nullptr;
-uint32_t lastContext = 0, lastWindow = 0;
-
-template <class T> T* make() {
-    void* memory = std::calloc(1, sizeof(T));
-    return memory ? new (memory) T : nullptr;
-}
+Lock announceLock; // taken before the tables' own
 
 // After this, every other thread either sees its limit gone at its next record, or had begun that
 // record before: so what it has completed may be published for it.
@@ -60,6 +51,7 @@ void leaveContext(ThreadState& t) {
     if (old->group->lastWriter == &t) old->group->lastWriter = nullptr;
     t.shared = false;
     t.context = nullptr;
+    if (old->destroyed) known::hold(*old, nullptr, nullptr);
 }
 
 // Threads of one share group order all their records from the moment that there are two of them.
@@ -81,23 +73,10 @@ void enterGroup(ThreadState& t, Context& c) {
     }
 }
 
-bool nodesHave(const Context& c) { return c.announced && (!c.destroyed || c.freeDue); }
-
-// Any context of the group that the nodes have serves as the one to share with. It need not be the one
-// that the program named: that may not have been current yet, so its version is not known; it is told
-// when it is, and shares then with this one. Only with the first of a group is there none.
-const Context* sharerOf(const Context& c) {
-    Guard guard(tableLock);
-    for (uint32_t i = 0; i < contextCount; ++i) {
-        if (contexts[i]->group == c.group && contexts[i] != &c && nodesHave(*contexts[i])) return contexts[i];
-    }
-    return nullptr;
-}
-
 void announce(ThreadState& t, Context& c) {
     if (c.announced) return;
     Guard guard(announceLock); // two threads must not both be the first of a group
-    const Context* sharer = sharerOf(c);
+    const Context* sharer = known::sharerOf(c);
     const records::ContextInfo info{c.id, sharer ? sharer->id : 0, static_cast<uint32_t>(c.api),
                                     static_cast<uint32_t>(c.version / 10), static_cast<uint32_t>(c.version % 10),
                                     c.profileMask, c.losesOnReset ? c.flags | wire::kLosesOnReset : c.flags, c.config};
@@ -109,23 +88,6 @@ void announce(ThreadState& t, Window& w) {
     if (w.announced) return;
     w.announced = true;
     records::window(t, w.id, w.config);
-}
-
-// A drawable that no context holds any more is given up by GLX when it is a plain X window: it starts
-// anew, with a new size, when it is bound again. GLX windows, pbuffers and EGL surfaces stay.
-void release(Window* w) {
-    if (!w || --w->holders > 0 || w->isEgl || w->drawable != w->native) return;
-    w->sizeKnown = false;
-}
-
-void hold(Context& c, Window* draw, Window* read) {
-    Guard guard(tableLock);
-    Window* const before[2] = {c.held[0], c.held[1]};
-    c.held[0] = draw;
-    c.held[1] = read;
-    for (Window* w : {draw, read})
-        if (w) ++w->holders;
-    for (Window* w : before) release(w);
 }
 
 // Core contexts have no indices in the program's memory, but Mesa takes them. Programs that are loaded high
@@ -175,55 +137,11 @@ void learnVersion(Context& c) {
 
 namespace {
 
-// The last of a group that the nodes have holds the objects for those that they have not been told of yet.
-bool holdsObjects(const Context& c) {
-    bool awaited = false;
-    for (uint32_t i = 0; i < contextCount; ++i) {
-        const Context& other = *contexts[i];
-        if (&other == &c || other.group != c.group) continue;
-        if (nodesHave(other)) return false;
-        awaited = awaited || (!other.announced && !other.destroyed);
-    }
-    return awaited;
-}
-
-Context* nextDueContext() {
-    Guard guard(tableLock);
-    for (uint32_t i = 0; i < contextCount; ++i) {
-        if (contexts[i]->freeDue && !holdsObjects(*contexts[i])) {
-            contexts[i]->freeDue = false;
-            return contexts[i];
-        }
-    }
-    return nullptr;
-}
-
-// X windows go without a word to GLX. Some that no context holds are kept: programs go to and fro.
-constexpr int kIdleWindows = 16;
-
-Window* nextDueWindow() {
-    Guard guard(tableLock);
-    Window* oldest = nullptr;
-    int idle = 0;
-    for (Window* w = windows; w; w = w->next) {
-        if (w->freeDue) {
-            w->freeDue = false;
-            return w;
-        }
-        if (!w->announced || w->holders > 0 || w->isEgl || w->drawable != w->native || w->drawable == 0) continue;
-        oldest = w;
-        ++idle;
-    }
-    if (idle <= kIdleWindows) return nullptr;
-    oldest->announced = false; // told anew when it is bound again
-    return oldest;
-}
-
 // Tells the nodes what the program has given up; a thread without a context leaves it to the next that has one.
 void freeDestroyed(ThreadState& t) {
     if (!t.context) return;
-    while (const Context* c = nextDueContext()) records::destroyContext(t, c->id);
-    while (const Window* w = nextDueWindow()) records::destroyWindow(t, w->id);
+    while (const uint32_t id = known::nextDueContext()) records::destroyContext(t, id);
+    while (const uint32_t id = known::nextDueWindow()) records::destroyWindow(t, id);
 }
 
 } // namespace
@@ -242,80 +160,18 @@ PrimitivePause::~PrimitivePause() {
 }
 
 uint32_t announcedSharer(const Context& c) {
-    if (nodesHave(c)) return c.id;
-    const Context* sharer = sharerOf(c);
+    if (known::nodesHave(c)) return c.id;
+    const Context* sharer = known::sharerOf(c);
     return sharer ? sharer->id : 0;
-}
-
-Context* addContext(void* native, Context* shareWith, wire::Api api, const wire::WindowConfig& config) {
-    auto* c = make<Context>();
-    if (!c) return nullptr;
-    Guard guard(tableLock);
-    c->native = native;
-    c->api = api;
-    c->config = config;
-    c->id = ++lastContext;
-    c->group = shareWith ? shareWith->group : make<ShareGroup>();
-    auto** larger = static_cast<Context**>(std::realloc(contexts, (contextCount + 1) * sizeof(Context*)));
-    if (!larger || !c->group) return nullptr;
-    contexts = larger;
-    contexts[contextCount++] = c;
-    return c;
-}
-
-Context* findContext(void* native) {
-    Guard guard(tableLock);
-    for (uint32_t i = contextCount; i-- > 0;) {
-        if (contexts[i]->native == native && !contexts[i]->destroyed) return contexts[i];
-    }
-    return nullptr;
 }
 
 void destroyContext(void* native) {
     Context* c = findContext(native);
     if (!c) return;
-    if (tThread->context != c) hold(*c, nullptr, nullptr);
+    if (tThread->context != c) known::hold(*c, nullptr, nullptr);
     c->destroyed = true;
     c->freeDue = c->announced;
     freeDestroyed(*tThread);
-}
-
-Window* addWindow(uintptr_t drawable, void* display, bool isEgl, const wire::WindowConfig& config, uint64_t native) {
-    auto* w = make<Window>();
-    if (!w) return nullptr;
-    Guard guard(tableLock);
-    w->id = ++lastWindow;
-    w->drawable = drawable;
-    w->display = display;
-    w->isEgl = isEgl;
-    w->native = native;
-    w->config = config;
-    w->config.nativeLow = static_cast<uint32_t>(native);
-    w->config.nativeHigh = static_cast<uint32_t>(native >> 32);
-    w->next = windows;
-    windows = w;
-    return w;
-}
-
-Window* findWindow(uintptr_t drawable, void* display) {
-    Guard guard(tableLock);
-    for (Window* w = windows; w; w = w->next) {
-        if (w->drawable == drawable && (w->display == display || !display)) return w;
-    }
-    return nullptr;
-}
-
-Window* findWindowById(uint32_t id) {
-    Guard guard(tableLock);
-    for (Window* w = windows; w; w = w->next) {
-        if (w->id == id) return w;
-    }
-    return nullptr;
-}
-
-Window* firstWindow() {
-    Guard guard(tableLock);
-    return windows;
 }
 
 void destroyWindow(uintptr_t drawable, void* display) {
@@ -328,18 +184,7 @@ void destroyWindow(uintptr_t drawable, void* display) {
 }
 
 void nativeWindowEnds(uint64_t native) {
-    bool any = false;
-    {
-        Guard guard(tableLock);
-        for (Window* w = windows; w; w = w->next) {
-            if (native == 0 || w->native != native || w->config.isPbuffer) continue;
-            any = true;
-            w->freeDue = w->freeDue || w->announced;
-            w->announced = false; // GLX windows and surfaces on it may still be bound
-            if (w->drawable == w->native) w->drawable = 0;
-        }
-    }
-    if (any) freeDestroyed(*tThread);
+    if (known::nativeEnds(native)) freeDestroyed(*tThread);
 }
 
 void threadLeaves(ThreadState& t) {
@@ -379,7 +224,7 @@ void becameCurrent(Context* context, Window* draw, Window* read) {
     const bool bound = entered || context->drawWindow != drawWindow || context->readWindow != readWindow;
     refreshDrawLocally(t);
     announce(t, *context);
-    hold(*context, draw, read);
+    known::hold(*context, draw, read);
     for (Window* w : {draw, read}) {
         if (!w) continue;
         if (!w->sizeKnown) updateWindowSize(t, *w);

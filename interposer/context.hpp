@@ -156,7 +156,7 @@ void destroyContext(void* native);
 Window* addWindow(uintptr_t drawable, void* display, bool isEgl, const wire::WindowConfig& config, uint64_t native);
 Window* findWindow(uintptr_t drawable, void* display);
 Window* findWindowById(uint32_t id);
-Window* firstWindow(); // of all that there ever were, by `next`
+Window* nextWindow(const Window* before); // null: the first. Those that are given up are among them
 void destroyWindow(uintptr_t drawable, void* display);
 // The program destroys an X window. Its number may be given to another.
 void nativeWindowEnds(uint64_t native);

@@ -271,6 +271,14 @@ void pinBegins(ThreadState& t, GLuint buffer, void* memory, uint64_t length) {
     if (t.context && memory && length > 0) begin(t, buffer, memory, 0, length, GL_MAP_READ_BIT | GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT, true);
 }
 
+void forgetMaps(ShareGroup& group) {
+    while (MappedBuffer* m = group.maps) {
+        group.maps = m->next;
+        m->~MappedBuffer();
+        std::free(m);
+    }
+}
+
 void unmaps(ThreadState& t, GLuint buffer) {
     if (t.context && t.context->group->maps && !isPinned(t, buffer)) mapEnds(t, buffer, true);
 }

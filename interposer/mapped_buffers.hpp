@@ -7,6 +7,7 @@
 
 namespace mural {
 
+struct ShareGroup;
 struct ThreadState;
 
 // The program has mapped these bytes of the buffer at `memory`, with the access bits of glMapBufferRange.
@@ -16,6 +17,8 @@ void pinBegins(ThreadState& t, GLuint buffer, void* memory, uint64_t length);
 // Before it ends, by unmap, new storage or deletion; `ship` says whether its bytes still count.
 void mapEnds(ThreadState& t, GLuint buffer, bool ship);
 // Before the program unmaps it: pinned memory stays.
+// The last context of the group is gone, and its mappings with it.
+void forgetMaps(ShareGroup& group);
 void unmaps(ThreadState& t, GLuint buffer);
 void mapFlushes(ThreadState& t, GLuint buffer, GLintptr offset, GLsizeiptr length);
 

@@ -186,6 +186,13 @@ void listen(Context& c, GLDEBUGPROC callback, const void* user) {
     gReal.glDebugMessageCallback(callback ? reinterpret_cast<void*>(&heardHere) : nullptr, callback ? c.debug : nullptr);
 }
 
+void forget(DebugListener& listener) {
+    Guard guard(listener.lock);
+    listener.callback = nullptr;
+    listener.user = nullptr;
+    for (DebugListener::Told& told : listener.told) told = {};
+}
+
 GLDEBUGPROC listener(const Context& c) { return c.debug ? c.debug->callback : nullptr; }
 const void* listenersUser(const Context& c) { return c.debug ? c.debug->user : nullptr; }
 

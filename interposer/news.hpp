@@ -10,6 +10,7 @@
 namespace mural {
 
 struct Context;
+struct DebugListener;
 struct ThreadState;
 
 // Hands the program what concerns the thread's context.
@@ -21,6 +22,8 @@ inline void takeNews(ThreadState& t) {
 
 // The callback of glDebugMessageCallback; null: messages go to the driver's log.
 void listen(Context& c, GLDEBUGPROC callback, const void* user);
+// Its context is gone: it tells nobody.
+void forget(DebugListener& listener);
 GLDEBUGPROC listener(const Context& c);
 const void* listenersUser(const Context& c);
 

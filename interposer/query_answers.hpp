@@ -4,6 +4,7 @@
 
 #include <GL/gl.h>
 #include <cstdint>
+#include <cstdlib>
 
 namespace mural {
 
@@ -11,6 +12,11 @@ struct ThreadState;
 
 class QueryAnswers {
 public:
+    QueryAnswers() = default;
+    QueryAnswers(const QueryAnswers&) = delete;
+    QueryAnswers& operator=(const QueryAnswers&) = delete;
+    ~QueryAnswers() { std::free(ended_); }
+
     void begun(GLenum target, GLuint query);
     void ended(ThreadState& t, GLenum target, uint32_t swaps);
     // The result, when it is known, or was asked for when the query ended before the last swap. False: ask now.

@@ -145,7 +145,7 @@ void leavesDrawn(const ThreadState& t) {
 
 void refreshBoundTextures(ThreadState& t) {
     if (boundPbuffers.load(std::memory_order_relaxed) == 0 || !capturing(t)) return;
-    for (Window* w = firstWindow(); w; w = w->next) {
+    for (Window* w = nextWindow(nullptr); w; w = nextWindow(w)) {
         if (!w->boundTextureDue || w->boundGroup != t.context->group || w->id == t.context->drawWindow) continue;
         w->boundTextureDue = false;
         if (w->boundTexture == 0 || gReal.glIsTexture(w->boundTexture)) textureFromDrawn(t, *w);

@@ -7,6 +7,7 @@
 #include <GL/glext.h>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 
 #include "streamcodec/client_arrays.hpp"
 
@@ -41,6 +42,15 @@ struct VertexArray {
 
 class VertexArrayMirror {
 public:
+    VertexArrayMirror() = default;
+    VertexArrayMirror(const VertexArrayMirror&) = delete;
+    VertexArrayMirror& operator=(const VertexArrayMirror&) = delete;
+    ~VertexArrayMirror() {
+        for (GLuint i = 0; i < namedCount_; ++i) std::free(named_[i]);
+        std::free(named_);
+        for (int i = 0; i < depth_; ++i) std::free(stack_[i].copy);
+    }
+
     [[nodiscard]] VertexArray& current() { return *current_; }
     [[nodiscard]] bool anyClient() const { return current_->anyClient(); }
 

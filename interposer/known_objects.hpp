@@ -1,0 +1,23 @@
+// All contexts and windows that the program has, and those that the nodes still have to be told the end of. What both
+// have given up lends its memory to the next one: programs that make and destroy them in each frame don't grow.
+#pragma once
+
+#include <cstdint>
+
+#include "interposer/context.hpp"
+
+namespace mural::known {
+
+[[nodiscard]] inline bool nodesHave(const Context& c) { return c.announced && (!c.destroyed || c.freeDue); }
+// Another context of its group that the nodes have; null: there is none.
+const Context* sharerOf(const Context& c);
+// The context is bound to these drawables (null: none), and no longer to those before.
+void hold(Context& c, Window* draw, Window* read);
+
+// Ids that the nodes are told the end of now, each once; 0: no more.
+uint32_t nextDueContext();
+uint32_t nextDueWindow();
+// An X window is destroyed. True: drawables of it are known.
+bool nativeEnds(uint64_t native);
+
+} // namespace mural::known
