@@ -356,20 +356,40 @@ void Replay::packTightly(bool tight) {
     }
 }
 
+namespace {
+
+// As a framebuffer needs it whose lower left corner is the window's (x, y).
+std::array<GLubyte, 128> turnedStipple(const GLubyte* pattern, int x, int y) {
+    std::array<GLubyte, 128> turned{};
+    const int shift = x % 32;
+    for (int row = 0; row < 32; ++row) {
+        const GLubyte* from = pattern + 4 * ((row + y) % 32);
+        const uint32_t bits = uint32_t{from[0]} << 24 | uint32_t{from[1]} << 16 | uint32_t{from[2]} << 8 | from[3];
+        const uint32_t moved = shift ? bits << shift | bits >> (32 - shift) : bits;
+        for (int k = 0; k < 4; ++k) turned[static_cast<size_t>(4 * row + k)] = static_cast<GLubyte>(moved >> (24 - 8 * k));
+    }
+    return turned;
+}
+
+} // namespace
+
 // The pattern is fixed to the window: a translated framebuffer needs a rotated one.
 void Replay::glPolygonStipple(const Data& mask) {
     if (!unpackFor(mask)) return;
     const PixelViewport o = origin();
-    if ((o.x % 32 == 0 && o.y % 32 == 0) || !mask.pointer() || mask.isOffset()) return gl.glPolygonStipple(mask.as<GLubyte>());
-    GLubyte rotated[128];
-    for (int y = 0; y < 32; ++y) {
-        const auto* row = mask.as<GLubyte>() + 4 * ((y + o.y) % 32);
-        const uint32_t bits = uint32_t{row[0]} << 24 | uint32_t{row[1]} << 16 | uint32_t{row[2]} << 8 | row[3];
-        const int shift = o.x % 32;
-        const uint32_t turned = shift ? bits << shift | bits >> (32 - shift) : bits;
-        for (int k = 0; k < 4; ++k) rotated[4 * y + k] = static_cast<GLubyte>(turned >> (24 - 8 * k));
-    }
-    gl.glPolygonStipple(rotated);
+    if ((o.x % 32 == 0 && o.y % 32 == 0) || (!mask.pointer() && !mask.isOffset())) return gl.glPolygonStipple(mask.as<GLubyte>());
+    if (!mask.isOffset()) return gl.glPolygonStipple(turnedStipple(mask.as<GLubyte>(), o.x, o.y).data());
+    gl.glPolygonStipple(mask.as<GLubyte>()); // out of a buffer: by GL, and back
+    GLubyte pattern[128] = {};
+    if (c_->packBuffer) gl.glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+    packTightly(true);
+    gl.glGetPolygonStipple(pattern);
+    packTightly(false);
+    if (c_->packBuffer) gl.glBindBuffer(GL_PIXEL_PACK_BUFFER, c_->packBuffer);
+    gl.glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    setUnpack(true);
+    gl.glPolygonStipple(turnedStipple(pattern, o.x, o.y).data());
+    gl.glBindBuffer(GL_PIXEL_UNPACK_BUFFER, c_->unpackBuffer);
 }
 
 } // namespace mural

@@ -36,7 +36,7 @@ def round_trips(case_name, program, at_most, options=()):
     failures.case(check)
 
 
-for name in ("immediate", "client_arrays", "core_arrays", "persistent_mapping", "glsl_uniforms", "textures_modern",
+for name in ("immediate", "client_arrays", "core_arrays", "persistent_mapping", "glsl_uniforms", "glsl_blocks", "arb_programs",
              "attribute_stacks", "evaluators", "clipping", "fixed_lighting", "many_triangles", "shared_contexts"):
     round_trips("draws_only_" + name, name, 0)
 # The results of the first two frames, as long as nobody knows yet that they are read later: six each.
