@@ -83,6 +83,15 @@ void VertexArrayMirror::push(GLbitfield mask) {
     s = {true, current_->name, arrayBuffer_, unit_, new (memory) VertexArray(*current_)};
 }
 
+void VertexArrayMirror::reset(GLbitfield mask) {
+    if (!(mask & GL_CLIENT_VERTEX_ARRAY_BIT)) return;
+    const GLuint name = current_->name;
+    *current_ = VertexArray{};
+    current_->name = name;
+    arrayBuffer_ = 0;
+    unit_ = 0;
+}
+
 void VertexArrayMirror::pop() {
     if (depth_ == 0) return;
     Saved& s = stack_[--depth_];

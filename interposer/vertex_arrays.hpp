@@ -71,6 +71,7 @@ public:
     [[nodiscard]] uint32_t slotOf(GLenum array) const;
 
     void push(GLbitfield mask);
+    void reset(GLbitfield mask); // EXT_direct_state_access: as in a new context
     void pop();
 
 private:

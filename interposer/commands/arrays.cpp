@@ -207,10 +207,13 @@ void mural_glDisableClientState(GLenum array) {
 void mural_glMultiTexCoordPointerEXT(GLenum texunit, GLint size, GLenum type, GLsizei stride, const void* pointer) {
     withUnit(texunit, [&] { mural_glTexCoordPointer(size, type, stride, pointer); });
 }
+// Of other arrays there is one only: an error.
 void mural_glEnableClientStateiEXT(GLenum array, GLuint index) {
+    if (array != GL_TEXTURE_COORD_ARRAY) return gReal.glEnableClientStateiEXT(array, index);
     withUnit(GL_TEXTURE0 + index, [&] { mural_glEnableClientState(array); });
 }
 void mural_glDisableClientStateiEXT(GLenum array, GLuint index) {
+    if (array != GL_TEXTURE_COORD_ARRAY) return gReal.glDisableClientStateiEXT(array, index);
     withUnit(GL_TEXTURE0 + index, [&] { mural_glDisableClientState(array); });
 }
 void mural_glEnableClientStateIndexedEXT(GLenum array, GLuint index) { mural_glEnableClientStateiEXT(array, index); }
@@ -245,6 +248,21 @@ void mural_glPushClientAttrib(GLbitfield mask) {
     if (t.context) t.context->arrays.push(mask);
     encode_glPushClientAttrib(t, mask);
     gReal.glPushClientAttrib(mask);
+}
+void mural_glPushClientAttribDefaultEXT(GLbitfield mask) {
+    ThreadState& t = *tThread;
+    if (t.context) {
+        t.context->arrays.push(mask);
+        t.context->arrays.reset(mask);
+    }
+    encode_glPushClientAttribDefaultEXT(t, mask);
+    gReal.glPushClientAttribDefaultEXT(mask);
+}
+void mural_glClientAttribDefaultEXT(GLbitfield mask) {
+    ThreadState& t = *tThread;
+    if (t.context) t.context->arrays.reset(mask);
+    encode_glClientAttribDefaultEXT(t, mask);
+    gReal.glClientAttribDefaultEXT(mask);
 }
 void mural_glPopClientAttrib() {
     ThreadState& t = *tThread;

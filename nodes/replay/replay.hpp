@@ -95,6 +95,8 @@ public:
     GLint uniformLocation(GLint location);
     GLint uniformLocation(GLuint program, GLint location);
     // Sets the unpack state that fits where the image is. False: an offset, and no buffer bound.
+    void clientStatePushed(GLbitfield mask);
+    void clientStateDefault(GLbitfield mask);
     bool unpackFor(const Data& data);
     // False: nothing there, or an offset while no buffer is bound at `binding`: GL would read wild memory.
     bool readable(const Data& data, GLenum binding);
@@ -188,7 +190,7 @@ private:
         GLbitfield mask;
         PixelUnpack unpack;
         std::array<GLint, 8> pack;
-        GLuint arrayBuffer;
+        GLuint arrayBuffer, packBuffer, unpackBuffer;
     };
     // A query is counted in pieces: what every node draws whole is counted once, the rest tile by tile.
     struct QueryPiece {

@@ -294,7 +294,29 @@ void Replay::glPopAttrib() {
 
 void Replay::glPushClientAttrib(GLbitfield mask) {
     gl.glPushClientAttrib(mask);
-    if (c_->clientAttributes.size() < 64) c_->clientAttributes.push_back({mask, c_->unpack, c_->pack, c_->arrayBuffer});
+    clientStatePushed(mask);
+}
+void Replay::glPushClientAttribDefaultEXT(GLbitfield mask) {
+    gl.glPushClientAttribDefaultEXT(mask);
+    clientStatePushed(mask);
+    clientStateDefault(mask);
+}
+void Replay::glClientAttribDefaultEXT(GLbitfield mask) {
+    gl.glClientAttribDefaultEXT(mask);
+    clientStateDefault(mask);
+}
+void Replay::clientStatePushed(GLbitfield mask) {
+    if (c_->clientAttributes.size() < 64)
+        c_->clientAttributes.push_back({mask, c_->unpack, c_->pack, c_->arrayBuffer, c_->packBuffer, c_->unpackBuffer});
+}
+void Replay::clientStateDefault(GLbitfield mask) {
+    if (mask & GL_CLIENT_PIXEL_STORE_BIT) {
+        c_->unpack = {};
+        c_->unpack.values[kAlignment] = 4;
+        c_->pack = c_->unpack.values;
+        c_->packBuffer = c_->unpackBuffer = 0;
+    }
+    if (mask & GL_CLIENT_VERTEX_ARRAY_BIT) c_->arrayBuffer = 0;
 }
 void Replay::glPopClientAttrib() {
     gl.glPopClientAttrib();
@@ -304,6 +326,8 @@ void Replay::glPopClientAttrib() {
     if (saved.mask & GL_CLIENT_PIXEL_STORE_BIT) {
         c_->unpack = saved.unpack; // `tight` too: GL has gone back to what it had then
         c_->pack = saved.pack;
+        c_->packBuffer = saved.packBuffer;
+        c_->unpackBuffer = saved.unpackBuffer;
     }
     if (saved.mask & GL_CLIENT_VERTEX_ARRAY_BIT) c_->arrayBuffer = saved.arrayBuffer;
 }

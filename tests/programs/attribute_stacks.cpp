@@ -112,6 +112,37 @@ void pushNested(Window& window, int frame) {
     showBits(35, glIsEnabled(GL_COLOR_ARRAY) == GL_TRUE ? 1U : 2U);
 }
 
+// EXT_direct_state_access: the client's state as in the beginning, on the stack or for good.
+void defaultClientState() {
+    GLubyte texels[16 * 16 * 4];
+    Sequence numbers(77);
+    for (GLubyte& value : texels) {
+        value = numbers.byte();
+    }
+    GLuint buffer = 0;
+    glGenBuffers(1, &buffer);
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer);
+    glBufferData(GL_PIXEL_UNPACK_BUFFER, sizeof texels, texels, GL_STATIC_DRAW);
+    glPixelStorei(GL_UNPACK_ROW_LENGTH, 13);
+    glPixelStorei(GL_UNPACK_SKIP_PIXELS, 2);
+    glPushClientAttribDefaultEXT(GL_CLIENT_PIXEL_STORE_BIT);
+    glWindowPos2i(5, 5);
+    glDrawPixels(8, 8, GL_RGBA, GL_UNSIGNED_BYTE, texels + 64); // no buffer is bound now
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer);
+    glWindowPos2i(15, 5);
+    glDrawPixels(8, 8, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    glPopClientAttrib();
+    glWindowPos2i(25, 5);
+    glDrawPixels(8, 8, GL_RGBA, GL_UNSIGNED_BYTE, nullptr); // the buffer again, and its rows
+    glClientAttribDefaultEXT(GL_CLIENT_PIXEL_STORE_BIT);
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer);
+    glWindowPos2i(35, 5);
+    glDrawPixels(8, 8, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    glDeleteBuffers(1, &buffer);
+}
+
 void setUp() {
     glGenTextures(2, textures);
     for (int i = 1; i >= 0; --i) {
@@ -143,6 +174,7 @@ int main(int argc, char** argv) {
             glLoadIdentity();
             glOrtho(0, 250, 0, 190, -1, 1);
             glMatrixMode(GL_MODELVIEW);
+            defaultClientState();
             pushEach(window, frame);
             pushNested(window, frame);
         });

@@ -1,5 +1,6 @@
 // OpenGL ES 2 through EGL: client arrays, textures of all its formats, cube maps, framebuffers,
 // glReadPixels shown again.
+#include <EGL/egl.h>
 #include <GLES2/gl2.h>
 #include <GLES2/gl2ext.h>
 
@@ -120,6 +121,31 @@ void drawColored(int frame, GLenum mode) {
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, 0);
 }
 
+template <class F> F entry(const char* name) { return reinterpret_cast<F>(eglGetProcAddress(name)); }
+
+// EXT_occlusion_query_boolean, answered by the nodes: a box is green where something was drawn, red where not.
+void drawCounted(int frame, int x, bool nothing) {
+    static const auto gen = entry<PFNGLGENQUERIESEXTPROC>("glGenQueriesEXT");
+    static const auto begin = entry<PFNGLBEGINQUERYEXTPROC>("glBeginQueryEXT");
+    static const auto end = entry<PFNGLENDQUERYEXTPROC>("glEndQueryEXT");
+    static const auto result = entry<PFNGLGETQUERYOBJECTUIVEXTPROC>("glGetQueryObjectuivEXT");
+    static const auto drop = entry<PFNGLDELETEQUERIESEXTPROC>("glDeleteQueriesEXT");
+    GLuint query = 0, any = 7;
+    gen(1, &query);
+    begin(GL_ANY_SAMPLES_PASSED_EXT, query);
+    if (nothing) glEnable(GL_SCISSOR_TEST), glScissor(0, 0, 0, 0);
+    drawColored(frame, GL_TRIANGLES);
+    glDisable(GL_SCISSOR_TEST);
+    end(GL_ANY_SAMPLES_PASSED_EXT);
+    result(query, GL_QUERY_RESULT_EXT, &any);
+    drop(1, &query);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(x, 2, 12, 12);
+    glClearColor(any == 0 ? 1.0F : 0.0F, any == 1 ? 1.0F : 0.0F, 0, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    glDisable(GL_SCISSOR_TEST);
+}
+
 void drawAll(Window& window, int frame) {
     glEnableVertexAttribArray(0);
     glEnableVertexAttribArray(1);
@@ -135,6 +161,8 @@ void drawAll(Window& window, int frame) {
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     drawColored(frame, GL_TRIANGLES);
     glDisable(GL_DEPTH_TEST);
+    drawCounted(frame + 3, 2, false);
+    drawCounted(frame + 3, 20, true);
     drawColored(frame + 1, GL_LINE_LOOP);
     drawColored(frame + 2, GL_POINTS);
     for (int i = 0; i < 5; ++i) {

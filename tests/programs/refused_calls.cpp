@@ -40,6 +40,8 @@ void drawArrays(int frame) {
     glEnableClientState(GL_VERTEX_ARRAY);
     glEnableClientState(GL_COLOR_ARRAY);
     glEnableClientState(GL_TEXTURE_COORD_ARRAY);
+    glDisableClientStateIndexedEXT(GL_COLOR_ARRAY, 1);
+    glBindProgramPipeline(77);
     showBar(0, errors());
     glDrawArrays(GL_TRIANGLE_STRIP, 0, frame % 2 == 0 ? 4 : 3);
     glDisableClientState(GL_TEXTURE_COORD_ARRAY);
