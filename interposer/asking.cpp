@@ -1,5 +1,7 @@
 #include "interposer/asking.hpp"
 
+#include <utility>
+
 #include "interposer/context.hpp"
 #include "interposer/news.hpp"
 #include "interposer/own_records.hpp"
@@ -37,20 +39,21 @@ template <class Send> bool ask(ThreadState& t, const char* by, void* into, uint6
 
 } // namespace
 
-GLenum takeError(Context& c) {
-    const GLenum stashed = c.stashedError, error = gReal.glGetError();
+GLenum takeError(ThreadState& t) {
+    Context& c = *t.context;
+    const GLenum later = gReal.glGetError(); // a driver keeps the first only: what came after is lost natively, too
+    const GLenum error = c.stashedError ? c.stashedError : later;
     c.stashedError = 0;
-    if (error == GL_OUT_OF_MEMORY) ++c.ownOutOfMemory;
-    if (stashed) return stashed; // a driver keeps the first only: what came after is lost natively, too
-    if (error || !c.outOfMemoryDue) return error;
-    c.outOfMemoryDue = false;
-    return GL_OUT_OF_MEMORY;
+    if (error) {
+        if (records::errorTold(t)) ++c.errorsTold;
+        return error;
+    }
+    return std::exchange(c.outOfMemoryDue, false) ? GL_OUT_OF_MEMORY : GL_NO_ERROR;
 }
 
 GLenum driverError() { return gReal.glGetError(); }
 
 void stashError(Context& c, GLenum error) {
-    if (error == GL_OUT_OF_MEMORY) ++c.ownOutOfMemory;
     if (!c.stashedError) c.stashedError = error; // GL keeps the first
 }
 

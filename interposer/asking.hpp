@@ -27,7 +27,7 @@ bool askFinish(ThreadState& t, const char* by = __builtin_FUNCTION());
 // Runs `call` on the program's own context for its error alone: true when it raised none. The error
 // is kept for the program's next glGetError.
 template <class Call> bool raisesNothing(Context& c, Call&& call);
-GLenum takeError(Context& c);
+GLenum takeError(ThreadState& t); // for the program
 GLenum driverError();
 void stashError(Context& c, GLenum error);
 

@@ -93,7 +93,7 @@ struct Context {
     VertexArrayMirror arrays;
     GLenum stashedError = 0;   // an error that we met while asking, for the program's next glGetError
     DebugListener* debug = nullptr; // what the program hears, and has heard
-    uint32_t ownOutOfMemory = 0, nodesOutOfMemory = 0; // errors of memory: raised here, told by the nodes
+    uint32_t errorsTold = 0;        // of the program's own GL; the nodes count along (wire::kOpErrorTold)
     bool outOfMemoryDue = false;    // told by a node, not by glGetError yet
     bool losesOnReset = false;      // the program has asked to be told when the context is lost
     GLenum resetStatus = 0;         // what a node's driver told, not by glGetGraphicsResetStatus yet

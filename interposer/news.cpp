@@ -90,10 +90,12 @@ void tellMessage(Context& c, const wire::News& n, const char* text) {
     gReal.glDebugMessageInsert(GL_DEBUG_SOURCE_THIRD_PARTY, n.type, n.id, n.severity, static_cast<GLsizei>(n.textBytes), text);
 }
 
-// The driver here, who had the same call, may have had no memory either.
-void tellOutOfMemory(Context& c) {
-    stashError(c, driverError()); // the program's own comes first
-    if (++c.nodesOutOfMemory > c.ownOutOfMemory) c.outOfMemoryDue = true;
+// GL keeps the first error until it is asked for. The driver here, who had the same call, may have had no memory
+// either, or an error before: where one was told since, or waits to be, it stands for both.
+void tellOutOfMemory(Context& c, const wire::News& n) {
+    if (n.type != c.errorsTold) return;
+    stashError(c, driverError());
+    if (!c.stashedError) c.outOfMemoryDue = true;
 }
 
 void tellLost(Context& c, const wire::News& n) {
@@ -110,7 +112,7 @@ void tellLost(Context& c, const wire::News& n) {
 void tell(Context& c, const Waiting& w) {
     switch (static_cast<wire::NewsKind>(w.news.kind)) {
     case wire::NewsKind::DebugMessage: return tellMessage(c, w.news, w.text);
-    case wire::NewsKind::OutOfMemory: return tellOutOfMemory(c);
+    case wire::NewsKind::OutOfMemory: return tellOutOfMemory(c, w.news);
     case wire::NewsKind::ContextLost: return tellLost(c, w.news);
     }
 }

@@ -83,7 +83,7 @@ static_assert(sizeof(ReplyHeader) == 40);
 
 enum class NewsKind : uint32_t {
     DebugMessage = 1, // as glDebugMessageCallback has it
-    OutOfMemory = 2,  // GL_OUT_OF_MEMORY
+    OutOfMemory = 2,  // GL_OUT_OF_MEMORY; how many kOpErrorTold came before stands in `type`
     ContextLost = 3,  // what glGetGraphicsResetStatus says stands in `type`
 };
 
@@ -157,6 +157,7 @@ enum Op : uint16_t {
     kOpDestroyImage = 23,  // u64 image
     kOpRequestProgram = 24, // u32 request, u32 program: what it was linked from
     kOpProgramRecipe = 25,  // u32 program, such an answer: glProgramBinary; nothing: the binary was refused
+    kOpErrorTold = 26,      // glGetError has told an error of the program's own GL
     kOpLastOwn = 63,
 };
 constexpr uint16_t kFirstGlOpcode = 64;

@@ -298,7 +298,7 @@ void mural_glShaderBinary(GLsizei count, const GLuint* shaders, GLenum binaryFor
         encode_glShaderBinary(t, count, DataArg::of(shaders, n4(count, shaders)), binaryFormat, DataArg::of(binary, vn(length, 1)), length);
         return gReal.glShaderBinary(count, shaders, binaryFormat, binary, length);
     }
-    stashError(*t.context, takeError(*t.context));
+    stashError(*t.context, driverError());
     stashError(*t.context, GL_INVALID_ENUM);
 }
 
@@ -344,7 +344,7 @@ GLenum mural_glGetError() {
     ThreadState& t = *tThread;
     if (!t.context) return gReal.glGetError();
     takeNews(t);
-    return takeError(*t.context);
+    return takeError(t);
 }
 const GLubyte* mural_glGetString(GLenum name) {
     ThreadState& t = *tThread;

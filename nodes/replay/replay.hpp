@@ -227,6 +227,7 @@ private:
         bool debugs = false;  // the program has asked for a debug context
         bool listens = false; // the driver's messages go there
         bool lost = false;    // the driver has reset it
+        uint32_t errorsTold = 0; // to the program, by its own GL
         std::unordered_map<GLuint, QueryInfo> queries; // by the program's name
         std::vector<AskedAhead> askedAhead;
         std::map<GLenum, GLuint> counting;             // fragments now: the program's query by its target

@@ -61,7 +61,7 @@ bool Replay::executeAllocating(ReplayFunction function, Args& in) {
     (void)takeErrors();
     const bool ok = function(*this, in);
     if (takeErrors()) {
-        tell(wire::NewsKind::OutOfMemory, {});
+        tell(wire::NewsKind::OutOfMemory, {0, c_->errorsTold, 0, 0, {}});
         out_.log("no memory for an object of the program's: it is told GL_OUT_OF_MEMORY");
     }
     return ok;
@@ -121,7 +121,7 @@ void Replay::glDebugMessageControl(GLenum source, GLenum type, GLenum severity, 
 void Replay::tellTroubles() {
     if (!bound_) return;
     ContextState* const own = std::exchange(c_, bound_);
-    if (takeErrors()) tell(wire::NewsKind::OutOfMemory, {});
+    if (takeErrors()) tell(wire::NewsKind::OutOfMemory, {0, c_->errorsTold, 0, 0, {}});
     if (!c_->lost && c_->context->tellsReset() && gl.glGetGraphicsResetStatus) {
         const GLenum status = gl.glGetGraphicsResetStatus();
         c_->lost = status != GL_NO_ERROR;

@@ -43,7 +43,6 @@ bool Session::takeNews(wire::News& news, char* text) {
 }
 GLenum driverError() { return std::exchange(pendingError, GL_NO_ERROR); }
 void stashError(Context& c, GLenum error) {
-    if (error == GL_OUT_OF_MEMORY) ++c.ownOutOfMemory;
     if (!c.stashedError) c.stashedError = error;
 }
 void say(const char* format, ...) { said = format; }
@@ -114,17 +113,28 @@ TEST_F(NewsTest, OtherContextsWaitForTheirThread) {
     EXPECT_GE(heard_.size(), 2u);
 }
 
-TEST_F(NewsTest, NoMemoryIsAnErrorUnlessTheDriverHadNoneEither) {
+TEST_F(NewsTest, NoMemoryIsAnErrorWhereTheDriverHasToldNone) {
     comes(wire::NewsKind::OutOfMemory);
     takeNews(t_);
     EXPECT_TRUE(context_.outOfMemoryDue);
-    context_.outOfMemoryDue = false;
-    pendingError = GL_OUT_OF_MEMORY; // the driver's, not fetched yet
-    comes(wire::NewsKind::OutOfMemory);
-    comes(wire::NewsKind::OutOfMemory);
+    EXPECT_EQ(context_.stashedError, GLenum{GL_NO_ERROR});
+}
+
+TEST_F(NewsTest, NoMemoryHidesBehindTheErrorThatStandsForIt) {
+    for (const GLenum own : {GL_OUT_OF_MEMORY, GL_INVALID_OPERATION}) {
+        pendingError = own; // the driver's, not fetched yet
+        comes(wire::NewsKind::OutOfMemory);
+        takeNews(t_);
+        EXPECT_EQ(std::exchange(context_.stashedError, 0), own);
+        EXPECT_FALSE(context_.outOfMemoryDue);
+    }
+    context_.errorsTold = 2; // the call came before the second
+    comes(wire::NewsKind::OutOfMemory, "", 1);
     takeNews(t_);
-    EXPECT_EQ(context_.stashedError, GLenum{GL_OUT_OF_MEMORY});
-    EXPECT_TRUE(context_.outOfMemoryDue); // three on the nodes, one here
+    EXPECT_FALSE(context_.outOfMemoryDue);
+    comes(wire::NewsKind::OutOfMemory, "", 2);
+    takeNews(t_);
+    EXPECT_TRUE(context_.outOfMemoryDue);
 }
 
 TEST_F(NewsTest, AResetIsAStatusWhereTheProgramHasAskedForIt) {

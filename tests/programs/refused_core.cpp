@@ -1,5 +1,5 @@
 // What the GL refuses in a core context leaves its error and no other trace: calls of the compatibility profile, names
-// that were not made, draw buffers that there are not. What shaders wrote takes no names,
+// that were not made, draw buffers that there are not, memory behind another error. What shaders wrote takes no names,
 // and what fills a buffer is found.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
@@ -107,6 +107,25 @@ void clearWithSkippedWords() {
     glDeleteBuffers(1, &buffer);
 }
 
+// Mesa has no memory for mipmaps of this format, and here an error comes before: nobody hears of the memory.
+void makeMipmapBehindAnError() {
+    const GLubyte blocks[16] = {};
+    GLuint textures[2] = {};
+    glGenTextures(2, textures);
+    glBindTexture(GL_TEXTURE_1D, textures[1]);
+    glBindTexture(GL_TEXTURE_2D, textures[0]);
+    glCompressedTexImage2D(GL_TEXTURE_2D, 0, GL_COMPRESSED_RGBA8_ETC2_EAC, 4, 4, 0, 16, blocks);
+    glBindTexture(GL_TEXTURE_2D, textures[1]);
+    glGenerateMipmap(GL_TEXTURE_2D);
+    showBits(32, error());
+    GLubyte pixel[4] = {};
+    glReadPixels(0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel); // the nodes have said by then what they lack
+    showBits(33, error());
+    glGenerateMipmap(GL_TEXTURE_2D);
+    showBits(34, error());
+    glDeleteTextures(2, textures);
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -134,5 +153,6 @@ int main(int argc, char** argv) {
             writeWords(0, 25);
             glPixelStorei(GL_UNPACK_SKIP_PIXELS, 0);
             clearWithSkippedWords();
+            makeMipmapBehindAnError();
         });
 }

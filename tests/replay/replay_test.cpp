@@ -305,6 +305,12 @@ TEST_F(ReplayTest, MemoryThatIsNotThereIsTold) {
     EXPECT_TRUE(send());
     ASSERT_EQ(news_.size(), 1u); // the swap finds nothing more
     EXPECT_EQ(news_[0].kind, static_cast<uint32_t>(wire::NewsKind::OutOfMemory));
+    EXPECT_EQ(news_[0].type, 0u);
+    records::errorTold(t_);
+    encode_glTexImage2D(t_, GL_TEXTURE_2D, 0, GL_RGBA, 11, 10, 0, GL_RGBA, GL_UNSIGNED_BYTE, {});
+    EXPECT_TRUE(send());
+    ASSERT_EQ(news_.size(), 2u);
+    EXPECT_EQ(news_[1].type, 1u); // the program has been told an error before
 }
 
 TEST_F(ReplayTest, ALostContextIsToldOnce) {
