@@ -1,0 +1,26 @@
+// Numbers in bytes that other machines read: least significant byte first, at any address.
+#pragma once
+
+#include <bit>
+#include <concepts>
+#include <cstddef>
+#include <cstring>
+
+namespace mural {
+
+template <std::unsigned_integral T> T loadLittle(const std::byte* at) {
+    T value;
+    std::memcpy(&value, at, sizeof value);
+    if constexpr (std::endian::native == std::endian::big) {
+        T turned = 0;
+        for (size_t i = 0; i < sizeof value; ++i) turned = static_cast<T>(turned << 8 | (value >> (8 * i) & 0xff));
+        return turned;
+    }
+    return value;
+}
+
+template <std::unsigned_integral T> void storeLittle(std::byte* at, T value) {
+    for (size_t i = 0; i < sizeof value; ++i) at[i] = static_cast<std::byte>(value >> (8 * i) & 0xff);
+}
+
+} // namespace mural

@@ -1,0 +1,90 @@
+// A network and a clock of numbers: datagrams are lost, doubled, late, out of order and too many for a link, all decided
+// by one seed. Hosts freeze, and their sockets overflow then.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <queue>
+#include <random>
+#include <span>
+#include <vector>
+
+namespace mural::rsp::test {
+
+// What happens to datagrams on the way to one host.
+struct LinkFaults {
+    double loss = 0;
+    double burstBegins = 0; // per datagram (Gilbert and Elliott): from then on all are lost …
+    double burstEnds = 1;   // … until this happens, per datagram
+    double twice = 0;
+    double late = 0; // share of datagrams that come lateNs later
+    int64_t lateNs = 0;
+    int64_t delayNs = 50'000;
+    int64_t jitterNs = 0;
+    double bytesPerS = 0; // 0: no limit
+    size_t queueBytes = 256 * 1024;
+    bool cut = false;
+};
+
+class SimulatedNetwork {
+public:
+    explicit SimulatedNetwork(uint64_t seed, size_t hosts) : random_(seed), hosts_(hosts) {}
+
+    using Handler = std::function<void(std::span<const std::byte>)>;
+    void onDatagram(size_t host, Handler handler) { hosts_[host].handler = std::move(handler); }
+    // Called at most when it said it wants to be (setTimer), and after datagrams have come.
+    void onTimer(size_t host, std::function<void()> timer) { hosts_[host].timer = std::move(timer); }
+    void setTimer(size_t host, int64_t atNs);
+
+    LinkFaults& faults(size_t host) { return hosts_[host].faults; }
+    void send(size_t to, std::span<const std::byte> datagram);
+
+    // A frozen host does nothing; its socket keeps so many datagrams.
+    void freeze(size_t host) { hosts_[host].frozen = true; }
+    void thaw(size_t host);
+    void setSocketDatagrams(size_t host, size_t count) { hosts_[host].socketDatagrams = count; }
+    [[nodiscard]] uint64_t overflowed(size_t host) const { return hosts_[host].overflowed; }
+    [[nodiscard]] uint64_t lost() const { return lost_; }
+
+    [[nodiscard]] int64_t nowNs() const { return nowNs_; }
+    void jumpClock(int64_t ns) { nowNs_ += ns; }
+    // Until `done` or the time is over; returns whether it was done.
+    bool run(int64_t untilNs, const std::function<bool()>& done);
+
+    uint64_t random() { return random_(); }
+    bool chance(double share) { return share > 0 && std::generate_canonical<double, 32>(random_) < share; }
+
+private:
+    struct Event {
+        int64_t atNs;
+        uint64_t number; // events of one time keep their order
+        size_t host;
+        bool timer;
+        std::vector<std::byte> datagram;
+        bool operator<(const Event& o) const { return atNs != o.atNs ? atNs > o.atNs : number > o.number; }
+    };
+    struct Host {
+        Handler handler;
+        std::function<void()> timer;
+        LinkFaults faults;
+        bool inBurst = false;
+        bool frozen = false;
+        int64_t linkFreeNs = 0;
+        int64_t timerNs = INT64_MAX;
+        size_t socketDatagrams = 4096;
+        uint64_t overflowed = 0;
+        std::vector<std::vector<std::byte>> socket; // while frozen
+    };
+    void deliver(Event& e);
+    [[nodiscard]] bool loses(Host& h);
+
+    std::mt19937_64 random_;
+    std::vector<Host> hosts_;
+    std::priority_queue<Event> events_;
+    uint64_t numbers_ = 0;
+    uint64_t lost_ = 0;
+    int64_t nowNs_ = 1'000'000'000;
+};
+
+} // namespace mural::rsp::test

@@ -1,0 +1,246 @@
+#include "transport/rsp/receive_window.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "common/little_endian.hpp"
+#include "transport/rsp/erasure_code.hpp"
+
+namespace mural::rsp {
+
+ReceiveWindow::ReceiveWindow(const StreamShape& shape, Sequence first)
+    : payloadBytes_(shape.payloadBytes), mask_(shape.windowDatagrams - 1),
+      payloads_(shape.payloadBytes * shape.windowDatagrams), lengths_(shape.windowDatagrams),
+      groupBases_(shape.windowDatagrams), groups_(shape.windowDatagrams), cumulative_(first), reading_(first),
+      forgotten_(first) {}
+
+bool ReceiveWindow::inWindow(Sequence s) const { return s >= forgotten_ && s - forgotten_ <= mask_; }
+
+bool ReceiveWindow::has(Sequence s) const { return s < cumulative_ || (inWindow(s) && lengths_[slot(s)] != 0); }
+
+std::span<const std::byte> ReceiveWindow::payload(Sequence s) const {
+    return std::span(payloads_).subspan(slot(s) * payloadBytes_, lengths_[slot(s)]);
+}
+
+// The group that `cumulative` stands in is kept whole while it may need its parity.
+Sequence ReceiveWindow::oldest() const {
+    if (cumulative_ == forgotten_) return forgotten_;
+    const Sequence base = groupBases_[slot(cumulative_ - 1)];
+    const Group& g = groups_[slot(base)];
+    const bool needed = g.known && g.base == base && !g.complete(); // else it is forgotten, or needs nothing
+    return earlier(reading_, needed ? base : cumulative_);
+}
+
+void ReceiveWindow::forget() {
+    for (const Sequence until = oldest(); forgotten_ < until; ++forgotten_) {
+        lengths_[slot(forgotten_)] = 0;
+        Group& g = groups_[slot(forgotten_)];
+        dropRows(g);
+        g = Group{};
+    }
+}
+
+void ReceiveWindow::dropRows(Group& g) {
+    rowsHeld_ -= g.rows.size();
+    g.rows.clear();
+}
+
+// Nothing when the group can't begin there.
+ReceiveWindow::Group* ReceiveWindow::groupAt(Sequence base) {
+    if (!inWindow(base)) return nullptr;
+    Group& g = groups_[slot(base)];
+    if (!g.known) {
+        g.known = true;
+        g.base = base;
+    }
+    return &g;
+}
+
+bool ReceiveWindow::learnSize(Group& g, uint8_t size) {
+    if (size == 0 || size == g.size) return true;
+    if (g.size != 0 || (size < kMostInGroup && g.have >> size != 0)) return false;
+    g.size = size;
+    return true;
+}
+
+void ReceiveWindow::store(Group& g, Sequence s, std::span<const std::byte> payload) {
+    std::memcpy(payloads_.data() + slot(s) * payloadBytes_, payload.data(), payload.size());
+    lengths_[slot(s)] = static_cast<uint16_t>(payload.size());
+    groupBases_[slot(s)] = g.base;
+    g.have |= 1u << (s - g.base);
+}
+
+ReceiveWindow::Took ReceiveWindow::takeData(const StreamDatagram& d) {
+    if (has(d.sequence)) {
+        ++counters_.duplicates;
+        // It may tell the size of a group that was open so far.
+        if (d.groupSize != 0) learnGroupSize(d.groupBase(), d.groupSize);
+        return Took::Known;
+    }
+    if (!inWindow(d.sequence)) {
+        ++counters_.outside;
+        return Took::Refused;
+    }
+    Group* g = groupAt(d.groupBase());
+    if (!g || d.payload.size() > payloadBytes_ || !learnSize(*g, d.groupSize) || (g->size != 0 && d.index >= g->size)) {
+        ++counters_.refused;
+        return Took::Refused;
+    }
+    ++counters_.datagrams;
+    store(*g, d.sequence, d.payload);
+    tryToComplete(*g);
+    advance();
+    return Took::New;
+}
+
+ReceiveWindow::Took ReceiveWindow::takeParity(const StreamDatagram& d) {
+    if (d.sequence < forgotten_) {
+        ++counters_.duplicates;
+        return Took::Known;
+    }
+    Group* g = groupAt(d.sequence);
+    const size_t bytes = d.payload.size();
+    if (!g || bytes > payloadBytes_ + kLengthBytes || !learnSize(*g, d.groupSize)) {
+        ++(g ? counters_.refused : counters_.outside);
+        return Took::Refused;
+    }
+    const auto sameRow = [&](const Row& r) { return r.row == d.row; };
+    if (g->missing() == 0 || std::ranges::any_of(g->rows, sameRow)) {
+        ++counters_.duplicates;
+        tryToComplete(*g); // its size may be new
+        advance();
+        return Took::Known;
+    }
+    if ((!g->rows.empty() && g->rows[0].symbol.size() != bytes) || rowsHeld_ > mask_) {
+        ++counters_.refused;
+        return Took::Refused;
+    }
+    ++counters_.datagrams;
+    ++rowsHeld_;
+    g->rows.push_back({d.row, {d.payload.begin(), d.payload.end()}});
+    tryToComplete(*g);
+    advance();
+    return Took::New;
+}
+
+void ReceiveWindow::learnGroupSize(Sequence base, uint8_t size) {
+    if (size == 0 || !inWindow(base)) return;
+    Group* g = groupAt(base);
+    if (!g || !learnSize(*g, size)) {
+        ++counters_.refused;
+        return;
+    }
+    tryToComplete(*g);
+    advance();
+}
+
+void ReceiveWindow::tryToComplete(Group& g) {
+    if (g.size == 0) return;
+    const uint32_t missing = g.missing();
+    if (missing == 0) return dropRows(g);
+    const auto count = static_cast<size_t>(std::popcount(missing));
+    if (count > g.rows.size()) return;
+    std::array<int, kMostInGroup> indices{};
+    size_t n = 0;
+    for (uint32_t left = missing; left != 0; left &= left - 1) indices[n++] = std::countr_zero(left);
+    recover(g, std::span(indices).first(count));
+    dropRows(g);
+}
+
+// Turns a row of all symbols into one of the missing ones.
+bool ReceiveWindow::addPresent(const Group& g, Row& row) const {
+    for (uint32_t left = g.have; left != 0; left &= left - 1) {
+        const int index = std::countr_zero(left);
+        const auto present = payload(g.base + index);
+        if (present.size() + kLengthBytes > row.symbol.size()) return false;
+        addSymbol(row.symbol, row.row, index, present);
+    }
+    return true;
+}
+
+bool ReceiveWindow::takeSymbol(Group& g, int index, std::span<const std::byte> symbol) {
+    const size_t bytes = loadLittle<uint16_t>(symbol.data());
+    const Sequence s = g.base + index;
+    if (bytes == 0 || bytes > payloadBytes_ || bytes + kLengthBytes > symbol.size() || !inWindow(s) || has(s)) return false;
+    store(g, s, symbol.subspan(kLengthBytes, bytes));
+    return true;
+}
+
+void ReceiveWindow::recover(Group& g, std::span<const int> missing) {
+    std::array<HeldRow, kMostInGroup> rows{};
+    for (size_t i = 0; i < missing.size(); ++i) {
+        if (!addPresent(g, g.rows[i])) {
+            ++counters_.refused;
+            return;
+        }
+        rows[i] = {g.rows[i].row, g.rows[i].symbol};
+    }
+    solveMissing(missing, std::span(rows).first(missing.size()), scratch_);
+    for (size_t i = 0; i < missing.size(); ++i) {
+        if (takeSymbol(g, missing[i], rows[i].symbol))
+            ++counters_.recovered;
+        else
+            ++counters_.refused;
+    }
+}
+
+void ReceiveWindow::advance() {
+    while (inWindow(cumulative_) && lengths_[slot(cumulative_)] != 0) ++cumulative_;
+    forget();
+}
+
+std::span<const std::byte> ReceiveWindow::readable() const {
+    if (reading_ == cumulative_) return {};
+    const size_t from = slot(reading_);
+    const size_t begin = from * payloadBytes_ + readBytes_;
+    const auto inOrder = std::min<size_t>(static_cast<size_t>(cumulative_ - reading_), mask_ + 1 - from);
+    size_t count = 0;
+    while (count < inOrder && lengths_[from + count] == payloadBytes_) ++count;
+    size_t end = (from + count) * payloadBytes_;
+    if (count < inOrder) end += lengths_[from + count];
+    return std::span(payloads_).subspan(begin, end - begin);
+}
+
+void ReceiveWindow::consume(size_t bytes) {
+    while (bytes > 0) {
+        const size_t count = std::min(bytes, lengths_[slot(reading_)] - readBytes_);
+        bytes -= count;
+        readBytes_ += count;
+        if (readBytes_ < lengths_[slot(reading_)]) return;
+        readBytes_ = 0;
+        ++reading_;
+    }
+    forget();
+}
+
+const ReceiveWindow::Group* ReceiveWindow::findGroup(Sequence s) const {
+    for (int i = 0; i < kMostInGroup && inWindow(s - i); ++i) {
+        const Group& g = groups_[slot(s - i)];
+        if (!g.known) continue;
+        return g.size == 0 || i < g.size ? &g : nullptr;
+    }
+    return nullptr;
+}
+
+Missing ReceiveWindow::missingFrom(Sequence from, Sequence until) const {
+    Sequence s = from;
+    while (s < until && has(s)) ++s;
+    if (s >= until) return {};
+    Missing m;
+    const Group* g = findGroup(s);
+    m.base = g ? g->base : s;
+    const int64_t most = std::min<int64_t>(kMostInGroup, until - m.base);
+    int64_t span = g && g->size != 0 ? std::min<int64_t>(g->size, most) : most;
+    for (int64_t i = s - m.base; i < span; ++i) {
+        const Sequence at = m.base + i;
+        // Another group begins here, so the one that nothing is known of has ended.
+        if (at != m.base && inWindow(at) && groups_[slot(at)].known) span = i;
+        else if (!has(at)) m.missing |= 1u << i;
+    }
+    m.span = static_cast<uint8_t>(span);
+    m.rows = g ? static_cast<uint8_t>(std::min<size_t>(255, g->rows.size())) : 0;
+    return m;
+}
+
+} // namespace mural::rsp

@@ -1,0 +1,42 @@
+// The number of a datagram in its stream: 32 bits that wrap. Two numbers are ordered by the shorter way from one to the
+// other (RFC 1982), so a window may hold at most 2^31 of them; ours hold 2^13.
+#pragma once
+
+#include <cstdint>
+
+namespace mural::rsp {
+
+class Sequence {
+public:
+    constexpr Sequence() = default;
+    constexpr explicit Sequence(uint32_t value) : value_(value) {}
+
+    [[nodiscard]] constexpr uint32_t value() const { return value_; }
+
+    constexpr Sequence& operator++() {
+        ++value_;
+        return *this;
+    }
+    constexpr Sequence& operator+=(int64_t n) {
+        value_ += static_cast<uint32_t>(n);
+        return *this;
+    }
+    friend constexpr Sequence operator+(Sequence s, int64_t n) { return s += n; }
+    friend constexpr Sequence operator-(Sequence s, int64_t n) { return s += -n; }
+    // How many steps lead from b to a; negative when a comes before b.
+    friend constexpr int64_t operator-(Sequence a, Sequence b) { return static_cast<int32_t>(a.value_ - b.value_); }
+
+    friend constexpr bool operator==(Sequence a, Sequence b) = default;
+    friend constexpr bool operator<(Sequence a, Sequence b) { return a - b < 0; }
+    friend constexpr bool operator>(Sequence a, Sequence b) { return b < a; }
+    friend constexpr bool operator<=(Sequence a, Sequence b) { return !(b < a); }
+    friend constexpr bool operator>=(Sequence a, Sequence b) { return !(a < b); }
+
+private:
+    uint32_t value_ = 0;
+};
+
+constexpr Sequence later(Sequence a, Sequence b) { return a < b ? b : a; }
+constexpr Sequence earlier(Sequence a, Sequence b) { return a < b ? a : b; }
+
+} // namespace mural::rsp
