@@ -32,8 +32,11 @@ void SimulatedNetwork::send(size_t to, std::span<const std::byte> datagram) {
     atNs += f.delayNs + (f.jitterNs > 0 ? static_cast<int64_t>(random_() % static_cast<uint64_t>(f.jitterNs)) : 0);
     if (chance(f.late)) atNs += f.lateNs;
     const int copies = chance(f.twice) ? 2 : 1;
-    for (int i = 0; i < copies; ++i)
-        events_.push({atNs, numbers_++, to, false, {datagram.begin(), datagram.end()}});
+    for (int i = 0; i < copies; ++i) {
+        Event e{atNs, numbers_++, to, false, {datagram.begin(), datagram.end()}};
+        if (chance(f.flipped)) e.datagram[random_() % e.datagram.size()] ^= static_cast<std::byte>(1 << random_() % 8);
+        events_.push(std::move(e));
+    }
 }
 
 void SimulatedNetwork::setTimer(size_t host, int64_t atNs) {
@@ -66,7 +69,7 @@ void SimulatedNetwork::thaw(size_t host) {
     Host& h = hosts_[host];
     h.frozen = false;
     h.timerNs = INT64_MAX;
-    for (const auto& datagram : h.socket) h.handler(datagram);
+    for (auto& datagram : h.socket) h.handler(datagram);
     h.socket.clear();
     h.timer();
 }

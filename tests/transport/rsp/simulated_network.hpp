@@ -18,6 +18,7 @@ struct LinkFaults {
     double burstBegins = 0; // per datagram (Gilbert and Elliott): from then on all are lost …
     double burstEnds = 1;   // … until this happens, per datagram
     double twice = 0;
+    double flipped = 0; // a bit in it is another
     double late = 0; // share of datagrams that come lateNs later
     int64_t lateNs = 0;
     int64_t delayNs = 50'000;
@@ -31,7 +32,7 @@ class SimulatedNetwork {
 public:
     explicit SimulatedNetwork(uint64_t seed, size_t hosts) : random_(seed), hosts_(hosts) {}
 
-    using Handler = std::function<void(std::span<const std::byte>)>;
+    using Handler = std::function<void(std::span<std::byte>)>;
     void onDatagram(size_t host, Handler handler) { hosts_[host].handler = std::move(handler); }
     // Called at most when it said it wants to be (setTimer), and after datagrams have come.
     void onTimer(size_t host, std::function<void()> timer) { hosts_[host].timer = std::move(timer); }

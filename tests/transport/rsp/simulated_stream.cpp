@@ -23,31 +23,33 @@ SenderSettings senderSettings(const StreamPlan& plan) {
 // Datagrams go out when the next one is asked for, or at the end.
 class SimulatedStream::Wire : public Outbox {
 public:
-    Wire(SimulatedStream& stream) : stream_(stream) {}
+    Wire(SimulatedStream& stream, DatagramSealer& sealer) : stream_(stream), sealer_(sealer) {}
     ~Wire() override { sendOut(); }
     std::span<std::byte> datagram(MemberId to, size_t bytes) override {
         sendOut();
         to_ = to;
-        datagram_.assign(bytes, std::byte{0});
-        return datagram_;
+        datagram_.assign(bytes + tagBytes(stream_.keys_.seal), std::byte{0});
+        return std::span(datagram_).first(bytes);
     }
 
 private:
     void sendOut() {
         if (datagram_.empty()) return;
+        sealer_.seal(datagram_);
         if (to_ != kEverybody) return stream_.network_.send(to_, datagram_);
         for (size_t i = 0; i < stream_.members_.size(); ++i) stream_.network_.send(host(i), datagram_);
     }
     SimulatedStream& stream_;
+    DatagramSealer& sealer_;
     MemberId to_ = 0;
     std::vector<std::byte> datagram_;
 };
 
 SimulatedStream::SimulatedStream(const StreamPlan& plan)
-    : plan_(plan), network_(plan.seed, kMostHosts), sender_(senderSettings(plan), Sequence(plan.first)) {
+    : plan_(plan), network_(plan.seed, kMostHosts), keys_(makeSessionKeys(plan.seal)), sealer_(keys_, 0), opener_(keys_), sender_(senderSettings(plan), Sequence(plan.first)) {
     network_.faults(0) = plan.toWriter;
-    network_.onDatagram(0, [this](std::span<const std::byte> d) {
-        if (const auto f = readFeedback(d)) sender_.input(*f, network_.nowNs());
+    network_.onDatagram(0, [this](std::span<std::byte> d) {
+        if (const auto f = readFeedback(opener_.open(d))) sender_.input(*f, network_.nowNs());
     });
     network_.onTimer(0, [this] { runSender(); });
     for (size_t i = 0; i < plan.members; ++i) join();
@@ -61,13 +63,17 @@ size_t SimulatedStream::join() {
     s.shape = plan_.shape;
     s.self = static_cast<MemberId>(host(i));
     s.socketDatagrams = plan_.socketDatagrams;
+    m.sealer = std::make_unique<DatagramSealer>(keys_, s.self);
+    m.opener = std::make_unique<DatagramOpener>(keys_);
+    m.opener->addMember(0);
+    opener_.addMember(s.self);
     m.receiver = std::make_unique<Receiver>(s, sender_.addMember(s.self, network_.nowNs()));
     m.readBytes = written_;
     m.lastProgressNs = m.readNs = network_.nowNs();
     network_.faults(host(i)) = plan_.toMembers;
     network_.setSocketDatagrams(host(i), plan_.socketDatagrams * 2); // repairs come above what the edge allows
-    network_.onDatagram(host(i), [this, &m](std::span<const std::byte> d) {
-        const auto datagram = readStream(d);
+    network_.onDatagram(host(i), [this, &m](std::span<std::byte> d) {
+        const auto datagram = readStream(m.opener->open(d));
         if (datagram && !m.gone) m.receiver->input(*datagram, network_.nowNs());
     });
     network_.onTimer(host(i), [this, i] { runMember(i); });
@@ -96,7 +102,7 @@ void SimulatedStream::write() {
 
 void SimulatedStream::runSender() {
     write();
-    Wire wire(*this);
+    Wire wire(*this, sealer_);
     const int64_t next = sender_.tick(network_.nowNs(), wire);
     network_.setTimer(0, std::max(next, network_.nowNs() + 1000));
 }
@@ -124,7 +130,7 @@ void SimulatedStream::runMember(size_t member) {
     SimulatedMember& m = members_[member];
     if (m.gone) return;
     read(m);
-    Wire wire(*this);
+    Wire wire(*this, *m.sealer);
     int64_t next = m.receiver->tick(network_.nowNs(), wire);
     if (m.readBytesPerS > 0 && !m.receiver->readable().empty()) next = std::min(next, network_.nowNs() + 1'000'000);
     network_.setTimer(host(member), std::max(next, network_.nowNs() + 1000));
@@ -138,6 +144,12 @@ bool SimulatedStream::allRead() const {
 uint64_t SimulatedStream::wrongBytes() const {
     uint64_t count = 0;
     for (const auto& m : members_) count += m.wrongBytes;
+    return count;
+}
+
+uint64_t SimulatedStream::refusedDatagrams() const {
+    uint64_t count = opener_.refused().forged;
+    for (const auto& m : members_) count += m.opener->refused().forged;
     return count;
 }
 

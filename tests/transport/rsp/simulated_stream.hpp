@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "tests/transport/rsp/simulated_network.hpp"
+#include "transport/rsp/datagram_seal.hpp"
 #include "transport/rsp/receiver.hpp"
 #include "transport/rsp/sender.hpp"
 
@@ -21,12 +22,15 @@ struct StreamPlan {
     RateSettings rate{};
     uint32_t socketDatagrams = 512;
     bool parity = true;
+    Seal seal = Seal::None;
     LinkFaults toMembers{};
     LinkFaults toWriter{};
 };
 
 struct SimulatedMember {
     std::unique_ptr<Receiver> receiver;
+    std::unique_ptr<DatagramSealer> sealer;
+    std::unique_ptr<DatagramOpener> opener;
     uint64_t readBytes = 0;  // place in the stream
     uint64_t wrongBytes = 0;
     double readBytesPerS = 0; // 0: at once
@@ -56,6 +60,7 @@ public:
     SimulatedMember& member(size_t i) { return members_[i]; }
     [[nodiscard]] size_t memberCount() const { return members_.size(); }
     [[nodiscard]] uint64_t wrongBytes() const;
+    [[nodiscard]] uint64_t refusedDatagrams() const;
     [[nodiscard]] uint64_t writtenBytes() const { return written_; }
     static constexpr size_t host(size_t member) { return member + 1; }
 
@@ -69,6 +74,9 @@ private:
 
     StreamPlan plan_;
     SimulatedNetwork network_;
+    SessionKeys keys_;
+    DatagramSealer sealer_;
+    DatagramOpener opener_;
     Sender sender_;
     std::deque<SimulatedMember> members_;
     uint64_t written_ = 0;

@@ -65,6 +65,18 @@ TEST(StreamSimulation, LateTwiceAndOutOfOrder) {
     EXPECT_LT(c.rows, c.datagrams / 20) << "of " << c.datagrams;
 }
 
+TEST(StreamSimulation, FlippedBits) {
+    for (const Seal seal : {Seal::Tag, bestEncryption()}) {
+        StreamPlan plan{.seed = 25, .members = 3, .bytes = 2 << 20, .flushEveryBytes = 20'000, .seal = seal};
+        plan.toMembers.flipped = plan.toWriter.flipped = 0.05;
+        SimulatedStream stream(plan);
+        ASSERT_TRUE(stream.run(60 * kNsPerS));
+        EXPECT_EQ(stream.wrongBytes(), 0u);
+        EXPECT_GT(stream.refusedDatagrams(), 100u);
+        EXPECT_EQ(stream.sender().counters().refused, 0u);
+    }
+}
+
 TEST(StreamSimulation, NumbersWrap) {
     for (const uint32_t first : {0xffffff9cu, 0x7fffff9cu, 0xffffffffu}) {
         StreamPlan plan{.seed = 31, .members = 3, .bytes = 4 << 20, .flushEveryBytes = 50'000, .first = first};
