@@ -116,7 +116,7 @@ struct Context {
     bool isMesa = false;
     uintptr_t indicesInMemoryFrom = 0; // smaller pointers of indexed draws are offsets into a buffer in any case
     bool sizeAtViewport = false; // the driver looks at the window's size in glViewport too
-    char* extensionText = nullptr; // filtered, made at the first question
+    char* extensionText = nullptr; // filtered, both made at the first question
     const char** extensionNames = nullptr;
     int extensionCount = -1;
 };

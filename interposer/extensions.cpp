@@ -51,57 +51,41 @@ bool advertised(const char* name, size_t length) {
     return extensionCarried(text + 1);
 }
 
-void append(Context& c, char*& out, const char* name, size_t length, int& capacity) {
-    if (!advertised(name, length)) return;
-    if (c.extensionCount + 1 > capacity) return;
-    std::memcpy(out, name, length);
-    c.extensionNames[c.extensionCount++] = out; // the blank behind it becomes the end in a second text
-    out += length;
-    *out++ = ' ';
-}
-
-// Both forms of the list: one text with blanks, and single names.
-void makeList(Context& c) {
-    if (c.extensionCount >= 0) return;
-    c.extensionCount = 0;
-    size_t total = 1;
-    GLint count = 0;
-    const bool indexed = c.version >= 30 && gReal.glGetStringi;
-    const char* whole = nullptr;
-    if (indexed) {
-        gReal.glGetIntegerv(GL_NUM_EXTENSIONS, &count);
-        for (GLint i = 0; i < count; ++i) total += std::strlen(reinterpret_cast<const char*>(gReal.glGetStringi(GL_EXTENSIONS, static_cast<GLuint>(i)))) + 1;
-    } else {
-        whole = reinterpret_cast<const char*>(gReal.glGetString(GL_EXTENSIONS));
-        if (!whole) return;
-        total += std::strlen(whole) + 1;
-        for (const char* p = whole; *p; ++p) count += *p == ' ';
-        ++count;
-    }
-    c.extensionText = static_cast<char*>(std::malloc(2 * total));
-    c.extensionNames = static_cast<const char**>(std::malloc(sizeof(char*) * (static_cast<size_t>(count) + 1)));
-    if (!c.extensionText || !c.extensionNames) return;
-    char* out = c.extensionText;
-    int capacity = count;
-    for (GLint i = 0; indexed && i < count; ++i) {
-        const auto* name = reinterpret_cast<const char*>(gReal.glGetStringi(GL_EXTENSIONS, static_cast<GLuint>(i)));
-        append(c, out, name, std::strlen(name), capacity);
-    }
-    for (const char* p = whole; p && *p;) {
+// A driver's text without the names that keep() refuses, in the driver's order: old programs look at the first few
+// kilobytes only, and drivers put what these know in front.
+template <typename Keep> void copyKept(const char* text, char* out, Keep keep) {
+    for (const char* p = text; *p;) {
         const size_t length = std::strcspn(p, " ");
-        append(c, out, p, length, capacity);
+        if (keep(p, length)) {
+            std::memcpy(out, p, length);
+            out += length;
+            *out++ = ' ';
+        }
         p += length;
         while (*p == ' ') ++p;
     }
     *out = 0;
-    // Names with an end of their own, behind the text.
-    char* single = c.extensionText + total;
-    for (int i = 0; i < c.extensionCount; ++i) {
-        const size_t length = std::strcspn(c.extensionNames[i], " ");
-        std::memcpy(single, c.extensionNames[i], length);
-        single[length] = 0;
-        c.extensionNames[i] = single;
-        single += length + 1;
+}
+
+void makeText(Context& c) {
+    if (c.extensionText) return;
+    const auto* whole = reinterpret_cast<const char*>(gReal.glGetString(GL_EXTENSIONS));
+    if (!whole) return;
+    c.extensionText = static_cast<char*>(std::malloc(std::strlen(whole) + 2));
+    if (c.extensionText) copyKept(whole, c.extensionText, advertised);
+}
+
+// The single names are the driver's, in an order of their own.
+void makeNames(Context& c) {
+    if (c.extensionCount >= 0 || c.version < 30 || !gReal.glGetStringi) return;
+    GLint count = 0;
+    gReal.glGetIntegerv(GL_NUM_EXTENSIONS, &count);
+    c.extensionNames = static_cast<const char**>(std::malloc(sizeof(char*) * (static_cast<size_t>(count) + 1)));
+    if (!c.extensionNames) return;
+    c.extensionCount = 0;
+    for (GLint i = 0; i < count; ++i) {
+        const auto* name = reinterpret_cast<const char*>(gReal.glGetStringi(GL_EXTENSIONS, static_cast<GLuint>(i)));
+        if (name && advertised(name, std::strlen(name))) c.extensionNames[c.extensionCount++] = name;
     }
 }
 
@@ -122,37 +106,23 @@ bool toldOf(const char* name, size_t length) {
     return nodesHave(text);
 }
 
-void copyTold(const char* text, char* out) {
-    for (const char* p = text; *p;) {
-        const size_t length = std::strcspn(p, " ");
-        if (toldOf(p, length)) {
-            std::memcpy(out, p, length);
-            out += length;
-            *out++ = ' ';
-        }
-        p += length;
-        while (*p == ' ') ++p;
-    }
-    *out = 0;
-}
-
 } // namespace
 
 const char* adjustedString(Context& c, GLenum name) {
     if (name == GL_EXTENSIONS && !c.core) {
-        makeList(c);
+        makeText(c);
         return c.extensionText;
     }
     return nullptr;
 }
 
 const char* extensionAt(Context& c, GLuint index) {
-    makeList(c);
-    return index < static_cast<GLuint>(c.extensionCount) ? c.extensionNames[index] : nullptr;
+    makeNames(c);
+    return c.extensionCount > 0 && index < static_cast<GLuint>(c.extensionCount) ? c.extensionNames[index] : nullptr;
 }
 
 GLint extensionCount(Context& c) {
-    makeList(c);
+    makeNames(c);
     return c.extensionCount;
 }
 
@@ -168,7 +138,7 @@ const char* filterWindowSystemExtensions(const char* text) {
     if (!made || !copy) return text;
     std::memcpy(copy, text, length + 1);
     char* kept = copy + length + 1;
-    copyTold(text, kept);
+    copyKept(text, kept, toldOf);
     *made = {copy, kept, filteredTexts};
     filteredTexts = made;
     return kept;

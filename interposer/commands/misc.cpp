@@ -355,7 +355,7 @@ const GLubyte* mural_glGetString(GLenum name) {
 }
 const GLubyte* mural_glGetStringi(GLenum name, GLuint index) {
     ThreadState& t = *tThread;
-    if (capturing(t) && name == GL_EXTENSIONS) {
+    if (capturing(t) && name == GL_EXTENSIONS && t.context->openPrimitive == kNoPrimitive) {
         if (const char* text = extensionAt(*t.context, index)) return reinterpret_cast<const GLubyte*>(text);
         return gReal.glGetStringi(name, UINT32_MAX); // for its error
     }
@@ -370,8 +370,8 @@ void mural_glGetIntegerv(GLenum pname, GLint* data) {
         return;
     }
     gReal.glGetIntegerv(pname, data);
-    if (!capturing(t) || !data) return;
-    if (pname == GL_NUM_EXTENSIONS) *data = extensionCount(*t.context);
+    if (!capturing(t) || !data || t.context->openPrimitive != kNoPrimitive) return;
+    if (pname == GL_NUM_EXTENSIONS) *data = extensionCount(*t.context) < 0 ? *data : extensionCount(*t.context);
     else if (pname == GL_NUM_SHADER_BINARY_FORMATS) *data = *data > 0 && takesModules(*t.context) ? 1 : 0;
 }
 

@@ -11,6 +11,7 @@ import sys
 import tempfile
 
 import failures
+import session
 
 failures.CASES.clear()  # only those of this file
 FRAMES = 4
@@ -133,6 +134,27 @@ def told_extensions_of_all_machines(context):
         if wrong is None and run.standard_output != ["0 of 5 lists name what is on one machine only"]:
             wrong = "the program said: " + " | ".join(run.standard_output)
         return wrong
+
+
+@failures.case
+def told_extensions_in_order(context):
+    """What is told of GL_EXTENSIONS stands in the driver's order: old programs see the first kilobytes of the text only."""
+    lists = []
+    for run in (session.Session([context.program("gl_extensions")], context.display),
+                context.run([context.program("gl_extensions")], ["--display", "none", "--quiet"])):
+        with run:
+            wrong = failures.check_end(run, 0)
+            if wrong is not None:
+                return wrong
+            lists.append([line.split() for line in run.standard_output])
+    native, told = lists
+    if [line[0] for line in told] != ["text", "names", "beyond"] or told[2] != native[2]:
+        return "the program said: %s, natively: %s" % (told, native)
+    for ours, drivers in zip(told[:2], native[:2]):
+        kept = [name for name in drivers if name in ours]
+        if ours != kept or len(ours) < 100:
+            return "%s: %d names, not in the driver's order" % (ours[0], len(ours) - 1)
+    return None
 
 
 @failures.case
