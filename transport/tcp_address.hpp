@@ -3,23 +3,15 @@
 
 #include <cstdint>
 #include <string>
-#include <sys/socket.h>
 #include <vector>
 
 #include "common/clock.hpp"
 #include "common/result.hpp"
+#include "transport/socket_address.hpp"
 
 namespace mural {
 
-struct TcpAddress {
-    sockaddr_storage storage{};
-    socklen_t sizeBytes = 0;
-
-    [[nodiscard]] const sockaddr* get() const {
-        return reinterpret_cast<const sockaddr*>(&storage);
-    }
-    [[nodiscard]] int family() const { return storage.ss_family; }
-};
+using TcpAddress = SocketAddress;
 
 enum class TcpRole { Connect, Listen };
 

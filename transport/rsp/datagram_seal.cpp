@@ -112,8 +112,9 @@ void ReplayWindow::came(uint64_t counter) {
 DatagramOpener::DatagramOpener(const SessionKeys& keys) : keys_(keys) {}
 
 void DatagramOpener::addMember(MemberId id) {
+    if (members_.contains(id)) return; // what came stays known
     auto member = std::unique_ptr<Member>(new Member{{keys_.seal, memberKey(keys_, id)}, {}});
-    members_.insert_or_assign(id, std::move(member));
+    members_.emplace(id, std::move(member));
 }
 
 void DatagramOpener::removeMember(MemberId id) { members_.erase(id); }

@@ -28,7 +28,7 @@ void Receiver::input(const StreamDatagram& d, int64_t nowNs) {
     const Sequence before = window_.cumulative();
     heardNs_ = nowNs;
     const auto lateUs = static_cast<int32_t>(newestUs_ - d.sentUs);
-    if (newestNs_ == 0 || lateUs <= 0) {
+    if (newestUs_ == 0 || lateUs <= 0) {
         newestUs_ = d.sentUs;
         newestNs_ = nowNs;
     }
@@ -76,6 +76,7 @@ int64_t Receiver::dueNs() const {
 }
 
 int64_t Receiver::tick(int64_t nowNs, Outbox& out) {
+    if (newestNs_ == 0) newestNs_ = nowNs; // nothing heard since then
     if (gaps_.look(nowNs)) newlyLost_ = true;
     countLost(gaps_.lostBefore());
     if (nowNs >= dueNs()) tell(nowNs, out);
@@ -90,7 +91,7 @@ void Receiver::tell(int64_t nowNs, Outbox& out) {
     f.edge = edgeNow();
     f.highest = later(gaps_.highest(), f.cumulative);
     f.echoUs = newestUs_;
-    f.heldUs = newestNs_ == 0 ? 0 : static_cast<uint32_t>((nowNs - newestNs_) / 1000);
+    f.heldUs = static_cast<uint32_t>((nowNs - newestNs_) / 1000);
     f.lost = lost_;
     f.dropped = dropped_;
     Sequence from = f.cumulative;

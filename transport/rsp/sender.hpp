@@ -28,7 +28,7 @@ struct SenderSettings {
 struct MemberState {
     Sequence cumulative;
     Sequence edge;
-    int64_t heardNs = 0;     // last
+    int64_t heardNs = 0;     // last time that it is known to have heard us
     int64_t movedNs = 0;     // last time that cumulative or edge moved, or nothing was owed
     int64_t roundTripNs = 0; // smoothed; 0: not known
     int64_t roundTripVarNs = 0;

@@ -37,7 +37,8 @@ void Sender::input(const Feedback& f, int64_t nowNs) {
         ++counters_.refused;
         return;
     }
-    m.heardNs = nowNs;
+    // Who speaks but hears nothing is as good as silent.
+    m.heardNs = std::max(m.heardNs, nowNs - int64_t{f.heldUs} * 1000);
     m.lost = f.lost;
     m.dropped = f.dropped;
     measureRoundTrip(m, f, nowNs);

@@ -1,6 +1,7 @@
 #include "tests/transport/rsp/simulated_network.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace mural::rsp::test {
 
@@ -33,10 +34,14 @@ void SimulatedNetwork::send(size_t to, std::span<const std::byte> datagram) {
     if (chance(f.late)) atNs += f.lateNs;
     const int copies = chance(f.twice) ? 2 : 1;
     for (int i = 0; i < copies; ++i) {
-        Event e{atNs, numbers_++, to, false, {datagram.begin(), datagram.end()}};
+        Event e{atNs, numbers_++, to, false, {datagram.begin(), datagram.end()}, {}};
         if (chance(f.flipped)) e.datagram[random_() % e.datagram.size()] ^= static_cast<std::byte>(1 << random_() % 8);
         events_.push(std::move(e));
     }
+}
+
+void SimulatedNetwork::sendReliably(size_t to, int64_t afterNs, std::function<void()> what) {
+    events_.push({nowNs_ + afterNs, numbers_++, to, false, {}, std::move(what)});
 }
 
 void SimulatedNetwork::setTimer(size_t host, int64_t atNs) {
@@ -45,20 +50,23 @@ void SimulatedNetwork::setTimer(size_t host, int64_t atNs) {
     Host& h = hosts_[host];
     if (h.timerNs <= atNs && h.timerNs > nowNs_) return; // comes earlier anyway, and then asks again
     h.timerNs = atNs;
-    events_.push({atNs, numbers_++, host, true, {}});
+    events_.push({atNs, numbers_++, host, true, {}, {}});
 }
 
 void SimulatedNetwork::deliver(Event& e) {
     Host& h = hosts_[e.host];
     if (h.frozen) {
         if (e.timer) return;
-        if (h.socket.size() < h.socketDatagrams) h.socket.push_back(std::move(e.datagram));
+        if (e.what) h.waiting.push_back(std::move(e.what));
+        else if (h.socket.size() < h.socketDatagrams) h.socket.push_back(std::move(e.datagram));
         else ++h.overflowed;
         return;
     }
     if (e.timer) {
         if (h.timerNs != e.atNs) return; // replaced by an earlier one
         h.timerNs = INT64_MAX;
+    } else if (e.what) {
+        e.what();
     } else {
         h.handler(e.datagram);
     }
@@ -71,6 +79,7 @@ void SimulatedNetwork::thaw(size_t host) {
     h.timerNs = INT64_MAX;
     for (auto& datagram : h.socket) h.handler(datagram);
     h.socket.clear();
+    for (auto& what : std::exchange(h.waiting, {})) what();
     h.timer();
 }
 

@@ -40,6 +40,8 @@ public:
 
     LinkFaults& faults(size_t host) { return hosts_[host].faults; }
     void send(size_t to, std::span<const std::byte> datagram);
+    // Something that happens at a host after a while, in order, whatever the faults; a frozen host does it later.
+    void sendReliably(size_t to, int64_t afterNs, std::function<void()> what);
 
     // A frozen host does nothing; its socket keeps so many datagrams.
     void freeze(size_t host) { hosts_[host].frozen = true; }
@@ -63,6 +65,7 @@ private:
         size_t host;
         bool timer;
         std::vector<std::byte> datagram;
+        std::function<void()> what;
         bool operator<(const Event& o) const { return atNs != o.atNs ? atNs > o.atNs : number > o.number; }
     };
     struct Host {
@@ -76,6 +79,7 @@ private:
         size_t socketDatagrams = 4096;
         uint64_t overflowed = 0;
         std::vector<std::vector<std::byte>> socket; // while frozen
+        std::vector<std::function<void()>> waiting;
     };
     void deliver(Event& e);
     [[nodiscard]] bool loses(Host& h);

@@ -1,0 +1,169 @@
+#include "transport/rsp/group_core.hpp"
+
+#include <algorithm>
+
+#include "common/little_endian.hpp"
+
+namespace mural::rsp {
+
+namespace {
+constexpr int64_t kBetweenProbesNs = 50'000'000;
+constexpr size_t kProbeHeadBytes = kHeadBytes + 4; // and the nonce; the rest fills the datagram up
+} // namespace
+
+// The group's datagrams go out once, and once more into each tunnel; a tunnelled member's all go through the host.
+class GroupCore::Datagrams : public Outbox {
+public:
+    explicit Datagrams(GroupCore& core) : core_(core) {}
+
+    std::span<std::byte> datagram(MemberId to, size_t bytes) override {
+        finish();
+        to_ = to;
+        const auto tunnelledPeer = [&](MemberId id) {
+            const auto found = core_.members_.find(id);
+            return found != core_.members_.end() && !found->second.multicast;
+        };
+        const auto anyTunnel = [&] {
+            return std::ranges::any_of(core_.members_, [](const auto& m) { return !m.second.multicast; });
+        };
+        copied_ = core_.tunnelled_ || (to == kEverybody ? anyTunnel() : tunnelledPeer(to));
+        if (!copied_) return core_.out_.datagram(to, bytes);
+        copy_.assign(bytes, std::byte{0});
+        return copy_;
+    }
+    // The last one is whole.
+    void finish() {
+        if (!copied_) return;
+        copied_ = false;
+        if (core_.tunnelled_) return core_.tunnel(to_, copy_);
+        bool anyDirect = false;
+        for (const auto& [id, m] : core_.members_) {
+            if (to_ != kEverybody && to_ != id) continue;
+            if (m.multicast) anyDirect = true;
+            else core_.tunnel(id, copy_);
+        }
+        if (anyDirect) std::ranges::copy(copy_, core_.out_.datagram(to_, copy_.size()).begin());
+    }
+
+private:
+    GroupCore& core_;
+    MemberId to_ = 0;
+    bool copied_ = false;
+    std::vector<std::byte> copy_;
+};
+
+GroupCore::GroupCore(const GroupSettings& settings, GroupOutput& out)
+    : settings_(settings), out_(out), datagrams_(std::make_unique<Datagrams>(*this)), probeNonce_(settings.probeSeed) {
+    if (!settings_.host) return;
+    shape_ = {settings_.datagramBytes - kStreamHeadBytes - kLengthBytes - tagBytes(settings_.keys.seal), settings_.windowDatagrams};
+    makeSender();
+    live_ = true;
+}
+
+GroupCore::~GroupCore() = default;
+
+void GroupCore::makeSender() {
+    SenderSettings s;
+    s.shape = shape_;
+    s.self = self_;
+    s.rate = settings_.rate;
+    s.parity = settings_.parity;
+    s.tagBytes = tagBytes(settings_.keys.seal);
+    s.heartbeatNs = settings_.heartbeatNs;
+    sender_ = std::make_unique<Sender>(s, Sequence(settings_.firstSequence));
+}
+
+Receiver* GroupCore::receiver(MemberId from) {
+    const auto found = receivers_.find(from);
+    return found == receivers_.end() ? nullptr : found->second.get();
+}
+
+void GroupCore::socketDropped(uint32_t count) {
+    if (count == dropped_) return;
+    dropped_ = count;
+    for (auto& [id, r] : receivers_) r->socketDropped(count);
+}
+
+void GroupCore::begin() {
+    Join join;
+    join.uuid = settings_.uuid;
+    join.udpPort = settings_.udpPort;
+    join.socketDatagrams = settings_.socketDatagrams;
+    join.mostDatagramBytes = settings_.mostDatagramBytes;
+    join.seals = settings_.seals;
+    join.multicast = settings_.multicast;
+    out_.control(kHost, join);
+}
+
+std::optional<MemberId> GroupCore::connected(const std::string& address, int64_t nowNs) {
+    if (nextId_ >= kEverybody) return {};
+    const auto id = static_cast<MemberId>(nextId_++);
+    candidates_[id] = {address, {}, false, 0, nowNs};
+    return id;
+}
+
+void GroupCore::disconnected(MemberId id, int64_t) {
+    if (!settings_.host) {
+        over_ = true;
+        return;
+    }
+    candidates_.erase(id);
+    remove(id, GoneReason::Cut);
+}
+
+void GroupCore::inputControl(MemberId from, const ControlMessage& message, int64_t nowNs) {
+    std::visit([&](const auto& m) { take(from, m, nowNs); }, message);
+    datagrams_->finish();
+}
+
+void GroupCore::inputDatagram(std::span<const std::byte> datagram, int64_t nowNs) {
+    const auto head = readHead(datagram);
+    if (!head) return;
+    if (head->type == Type::Probe) {
+        if (!settings_.host && !live_ && datagram.size() >= kProbeHeadBytes) {
+            const auto nonce = loadLittle<uint32_t>(datagram.data() + kHeadBytes);
+            if (nonce == probeNonce_) out_.control(kHost, Probed{nonce});
+        }
+    } else if (head->type == Type::Feedback) {
+        if (!sender_) return;
+        if (const auto f = readFeedback(datagram)) sender_->input(*f, nowNs);
+    } else if (Receiver* r = receiver(head->from); r && members_.contains(head->from)) {
+        if (const auto d = readStream(datagram)) r->input(*d, nowNs);
+    }
+}
+
+int64_t GroupCore::tick(int64_t nowNs) {
+    int64_t next = nowNs + settings_.heartbeatNs;
+    if (settings_.host) {
+        probe(nowNs);
+        if (!candidates_.empty()) next = std::min(next, nowNs + kBetweenProbesNs);
+    }
+    if (sender_ && live_) next = std::min(next, sender_->tick(nowNs, *datagrams_));
+    if (settings_.host) watchMembers(nowNs); // after the tick, which knows of jumps of the clock
+    for (auto& [id, r] : receivers_) {
+        if (members_.contains(id)) next = std::min(next, r->tick(nowNs, *datagrams_));
+    }
+    datagrams_->finish();
+    return next;
+}
+
+void GroupCore::tunnel(MemberId to, std::span<const std::byte> datagram) {
+    Tunnel t{to, {datagram.begin(), datagram.end()}};
+    out_.control(settings_.host ? to : kHost, t);
+}
+
+void GroupCore::part(MemberId id, GoneReason reason) {
+    if (members_.erase(id) == 0) return;
+    if (sender_) sender_->removeMember(id);
+    out_.memberGone(id, reason);
+}
+
+void GroupCore::meet(MemberId id, const MemberInfo& info, int64_t nowNs) {
+    members_[id] = info;
+    out_.memberCame(id, info);
+    const Sequence first = sender_->addMember(id, nowNs);
+    const StreamStart start{self_, id, first};
+    out_.control(settings_.host ? id : kHost, start);
+}
+
+} // namespace mural::rsp

@@ -1,0 +1,202 @@
+// How members come and go: the control messages of a group.
+#include <algorithm>
+
+#include "common/little_endian.hpp"
+#include "transport/rsp/group_core.hpp"
+
+namespace mural::rsp {
+
+namespace {
+constexpr int64_t kBetweenProbesNs = 50'000'000;
+constexpr int64_t kJoinNs = 10'000'000'000; // for the first word on a connection
+constexpr size_t kProbeHeadBytes = kHeadBytes + 4;
+constexpr size_t kMostMembers = 1000;
+constexpr size_t kLeastDatagramBytes = 512;
+constexpr uint32_t kMostWindow = 1u << 16;
+} // namespace
+
+// Host.
+void GroupCore::take(MemberId from, const Join& m, int64_t nowNs) {
+    const auto found = candidates_.find(from);
+    if (!settings_.host || found == candidates_.end() || found->second.joined) return;
+    std::string why;
+    if (members_.size() >= kMostMembers) why = "the group is full: " + std::to_string(kMostMembers) + " members";
+    if ((m.seals >> static_cast<int>(settings_.keys.seal) & 1) == 0)
+        why = std::string("this member can't do the session's encryption, ") + nameOf(settings_.keys.seal) + "; choose another for the session";
+    if (!why.empty()) {
+        out_.control(from, Refused{why});
+        candidates_.erase(found);
+        return out_.hangUp(from, why);
+    }
+    Candidate& c = found->second;
+    c.join = m;
+    c.joined = true;
+    c.nonce = ++probeNonce_;
+    c.untilNs = nowNs + settings_.probeNs;
+    probedNs_ = INT64_MIN; // at once
+    Welcome w;
+    w.self = from;
+    w.keys = settings_.keys;
+    w.group = settings_.group;
+    w.datagramBytes = settings_.datagramBytes;
+    w.windowDatagrams = settings_.windowDatagrams;
+    w.probeNonce = c.nonce;
+    out_.control(from, w);
+}
+
+// Member.
+void GroupCore::take(MemberId, const Welcome& m, int64_t) {
+    if (settings_.host || sender_) return;
+    const size_t overhead = kStreamHeadBytes + kLengthBytes + tagBytes(m.keys.seal);
+    if (m.datagramBytes < kLeastDatagramBytes || m.windowDatagrams < 64 || m.windowDatagrams > kMostWindow ||
+        (m.windowDatagrams & (m.windowDatagrams - 1)) != 0) {
+        over_ = true;
+        return out_.hangUp(kHost, "the host's settings make no sense; do both run the same version?");
+    }
+    self_ = m.self;
+    settings_.keys = m.keys;
+    probeNonce_ = m.probeNonce;
+    shape_ = {m.datagramBytes - overhead, m.windowDatagrams};
+    makeSender();
+    out_.welcomed(m);
+}
+
+void GroupCore::probe(int64_t nowNs) {
+    const bool send = nowNs - kBetweenProbesNs >= probedNs_;
+    std::vector<MemberId> late;
+    for (auto& [id, c] : candidates_) {
+        if (!c.joined) {
+            if (nowNs - c.untilNs > kJoinNs) out_.hangUp(id, "it connected and did not say what it wants");
+            continue;
+        }
+        if (!c.join.multicast || nowNs >= c.untilNs) {
+            late.push_back(id);
+            continue;
+        }
+        if (!send) continue;
+        probedNs_ = nowNs;
+        const size_t bytes = settings_.datagramBytes - tagBytes(settings_.keys.seal);
+        const auto d = out_.datagram(kEverybody, bytes);
+        std::ranges::fill(d, std::byte{0});
+        StreamDatagram head;
+        head.type = Type::Probe;
+        head.from = self_;
+        writeStreamHead(head, d);
+        storeLittle(d.data() + kHeadBytes, c.nonce);
+    }
+    for (const MemberId id : late) {
+        const Candidate c = candidates_.at(id);
+        candidates_.erase(id);
+        admit(id, {c.join.uuid, c.address, c.join.udpPort, false}, nowNs);
+    }
+}
+
+// Host.
+void GroupCore::take(MemberId from, const Probed& m, int64_t nowNs) {
+    const auto found = candidates_.find(from);
+    if (!settings_.host || found == candidates_.end() || !found->second.joined || found->second.nonce != m.nonce) return;
+    const Candidate c = found->second;
+    candidates_.erase(found);
+    admit(from, {c.join.uuid, c.address, c.join.udpPort, true}, nowNs);
+}
+
+// Everyone learns of the new one, and the new one of everyone, itself first.
+void GroupCore::admit(MemberId id, const MemberInfo& info, int64_t nowNs) {
+    const MemberCame came{id, info.uuid, info.address, info.udpPort, info.multicast};
+    out_.control(id, came);
+    out_.control(id, MemberCame{kHost, settings_.uuid, "", settings_.udpPort, info.multicast});
+    for (const auto& [other, m] : members_) {
+        // To a tunnelled member everything goes by the host.
+        out_.control(id, MemberCame{other, m.uuid, m.address, m.udpPort, m.multicast});
+        out_.control(other, came);
+    }
+    meet(id, info, nowNs);
+}
+
+// Member.
+void GroupCore::take(MemberId, const MemberCame& m, int64_t nowNs) {
+    if (settings_.host || !sender_) return;
+    if (m.id == self_) {
+        live_ = true;
+        tunnelled_ = !m.multicast;
+        return;
+    }
+    if (live_) meet(m.id, {m.uuid, m.address, m.udpPort, m.multicast}, nowNs);
+}
+
+void GroupCore::take(MemberId from, const StreamStart& m, int64_t) {
+    if (settings_.host && m.writer != from) return; // speaks for another
+    if (settings_.host && m.reader != self_) {
+        if (members_.contains(m.reader)) out_.control(m.reader, m);
+        return;
+    }
+    if (m.reader != self_ || !members_.contains(m.writer) || receivers_.contains(m.writer)) return;
+    ReceiverSettings s;
+    s.shape = shape_;
+    s.self = self_;
+    s.writer = m.writer;
+    s.socketDatagrams = settings_.socketDatagrams;
+    s.heartbeatNs = settings_.heartbeatNs;
+    receivers_[m.writer] = std::make_unique<Receiver>(s, m.first);
+}
+
+// Member.
+void GroupCore::take(MemberId, const MemberGone& m, int64_t) {
+    if (settings_.host) return;
+    if (m.id == self_) over_ = true;
+    part(m.id, m.reason);
+}
+
+void GroupCore::take(MemberId from, const Tunnel& m, int64_t nowNs) {
+    const auto head = readHead(m.datagram);
+    if (!head) return;
+    if (!settings_.host) return inputDatagram(m.datagram, nowNs);
+    if (head->from != from || !members_.contains(from)) return; // speaks for another
+    for (const auto& [id, other] : members_) {
+        if (id != from && (m.to == id || m.to == kEverybody)) out_.control(id, Tunnel{id, m.datagram});
+    }
+    if (m.to == self_ || m.to == kEverybody) inputDatagram(m.datagram, nowNs);
+}
+
+void GroupCore::take(MemberId, const Refused& m, int64_t) {
+    if (settings_.host) return;
+    over_ = true;
+    out_.hangUp(kHost, m.why);
+}
+
+// Host.
+void GroupCore::take(MemberId from, const Leave&, int64_t) {
+    if (!settings_.host) return;
+    candidates_.erase(from);
+    remove(from, GoneReason::Left);
+    out_.hangUp(from, "it left");
+}
+
+void GroupCore::take(MemberId from, const Ping& m, int64_t) {
+    if (!m.answer) out_.control(settings_.host ? from : kHost, Ping{m.number, true});
+}
+
+// Host: nobody waits for it any longer, and everyone knows.
+void GroupCore::remove(MemberId id, GoneReason reason) {
+    if (!members_.contains(id)) return;
+    part(id, reason);
+    for (const auto& [other, m] : members_) out_.control(other, MemberGone{id, reason});
+}
+
+// Host: a member that says nothing for long, or that everyone waits for.
+void GroupCore::watchMembers(int64_t nowNs) {
+    std::vector<std::pair<MemberId, GoneReason>> hopeless;
+    for (const auto& [id, m] : sender_->members()) {
+        if (nowNs - m.heardNs > settings_.silentNs)
+            hopeless.emplace_back(id, GoneReason::Silent);
+        else if (settings_.stalled == StallPolicy::Eject && sender_->waitsFor(m) && nowNs - m.movedNs > settings_.stalledNs)
+            hopeless.emplace_back(id, GoneReason::Stalled);
+    }
+    for (const auto& [id, reason] : hopeless) {
+        out_.control(id, MemberGone{id, reason});
+        out_.hangUp(id, reason == GoneReason::Silent ? "it has said nothing for too long" : "everyone waited for it for too long");
+        remove(id, reason);
+    }
+}
+
+} // namespace mural::rsp

@@ -1,0 +1,251 @@
+#include "transport/rsp/udp_socket.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <netinet/in.h>
+#include <netinet/udp.h>
+#include <sys/socket.h>
+
+#include "transport/system_error.hpp"
+#include "transport/tcp_address.hpp"
+
+#ifndef UDP_SEGMENT
+#define UDP_SEGMENT 103
+#endif
+#ifndef UDP_GRO
+#define UDP_GRO 104
+#endif
+
+namespace mural::rsp {
+
+namespace {
+
+constexpr size_t kReceiveSlots = 16;
+constexpr size_t kSlotBytes = 65'536; // what UDP_GRO may join
+constexpr int kMostRounds = 4;        // of kReceiveSlots, per call
+// A datagram of a common packet takes about this much of a socket's buffer beside its bytes.
+constexpr size_t kBookkeepingBytes = 832;
+
+template <class T> bool set(int fd, int level, int option, T value) {
+    return setsockopt(fd, level, option, &value, sizeof value) == 0;
+}
+
+Error failed(const std::string& what) { return Error{"can't " + what + ": " + errnoText(errno)}; }
+
+Result<void> chooseInterface(int fd, const NetworkInterface& interface, int family) {
+    bool good = false;
+    if (family == AF_INET) {
+        ip_mreqn request{};
+        request.imr_ifindex = static_cast<int>(interface.index);
+        good = set(fd, IPPROTO_IP, IP_MULTICAST_IF, request) && set(fd, IPPROTO_IP, IP_MULTICAST_LOOP, 1) &&
+               set(fd, IPPROTO_IP, IP_MULTICAST_TTL, 1) && set(fd, IPPROTO_IP, IP_MTU_DISCOVER, IP_PMTUDISC_DO);
+    } else {
+        good = set(fd, IPPROTO_IPV6, IPV6_MULTICAST_IF, interface.index) && set(fd, IPPROTO_IPV6, IPV6_MULTICAST_LOOP, 1) &&
+               set(fd, IPPROTO_IPV6, IPV6_MULTICAST_HOPS, 1) && set(fd, IPPROTO_IPV6, IPV6_MTU_DISCOVER, IPV6_PMTUDISC_DO);
+    }
+    if (!good) return failed("send multicast through network interface " + interface.name);
+    return {};
+}
+
+Result<void> joinGroup(int fd, const SocketAddress& group, const NetworkInterface& interface) {
+    group_req request{};
+    request.gr_interface = interface.index;
+    std::memcpy(&request.gr_group, &group.storage, group.sizeBytes);
+    const int level = group.family() == AF_INET ? IPPROTO_IP : IPPROTO_IPV6;
+    if (!set(fd, level, MCAST_JOIN_GROUP, request)) return failed("join the multicast group on " + interface.name);
+    return {};
+}
+
+} // namespace
+
+struct UdpSocket::Slots {
+    std::vector<std::byte> bytes = std::vector<std::byte>(kReceiveSlots * kSlotBytes);
+    std::array<mmsghdr, kReceiveSlots> messages{};
+    std::array<iovec, kReceiveSlots> pieces{};
+    std::array<SocketAddress, kReceiveSlots> from{};
+    std::array<std::array<char, 128>, kReceiveSlots> control{};
+
+    void reset() {
+        for (size_t i = 0; i < kReceiveSlots; ++i) {
+            pieces[i] = {bytes.data() + i * kSlotBytes, kSlotBytes};
+            msghdr& h = messages[i].msg_hdr;
+            h = {};
+            h.msg_name = &from[i].storage;
+            h.msg_namelen = sizeof from[i].storage;
+            h.msg_iov = &pieces[i];
+            h.msg_iovlen = 1;
+            h.msg_control = control[i].data();
+            h.msg_controllen = control[i].size();
+        }
+    }
+};
+
+void UdpSocket::FreeSlots::operator()(Slots* slots) const { delete slots; }
+
+void UdpSocket::prepare(size_t bufferBytes) {
+    const int fd = socket_.get();
+    const int wanted = static_cast<int>(std::min<size_t>(bufferBytes, size_t{1} << 30));
+    // The forced one is for root and goes beyond the system's limit.
+    if (!set(fd, SOL_SOCKET, SO_RCVBUFFORCE, wanted)) set(fd, SOL_SOCKET, SO_RCVBUF, wanted);
+    if (!set(fd, SOL_SOCKET, SO_SNDBUFFORCE, wanted)) set(fd, SOL_SOCKET, SO_SNDBUF, wanted);
+    int got = 0;
+    socklen_t size = sizeof got;
+    if (getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &got, &size) == 0) bufferBytes_ = static_cast<size_t>(got);
+    set(fd, SOL_SOCKET, SO_RXQ_OVFL, 1);
+    set(fd, IPPROTO_UDP, UDP_GRO, 1);
+    slots_.reset(new Slots);
+}
+
+Result<UdpSocket> UdpSocket::openGroup(const SocketAddress& group, const NetworkInterface& interface, size_t bufferBytes) {
+    FileDescriptor fd(::socket(group.family(), SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+    if (!fd.valid()) return failed("open a UDP socket");
+    UdpSocket socket(std::move(fd));
+    socket.prepare(bufferBytes);
+    set(socket.descriptor(), SOL_SOCKET, SO_REUSEADDR, 1);
+    if (bind(socket.descriptor(), group.get(), group.sizeBytes) != 0)
+        return failed("listen to the multicast group's port " + std::to_string(tcpPort(group)));
+    if (auto r = joinGroup(socket.descriptor(), group, interface); !r) return r.error();
+    // Only what came through this card.
+    set(socket.descriptor(), IPPROTO_IP, IP_MULTICAST_ALL, 0);
+    return socket;
+}
+
+Result<UdpSocket> UdpSocket::openOwn(const NetworkInterface& interface, int family, size_t bufferBytes) {
+    FileDescriptor fd(::socket(family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+    if (!fd.valid()) return failed("open a UDP socket");
+    UdpSocket socket(std::move(fd));
+    socket.prepare(bufferBytes);
+    if (auto r = chooseInterface(socket.descriptor(), interface, family); !r) return r.error();
+    const SocketAddress* own = interface.address(family);
+    if (!own || bind(socket.descriptor(), own->get(), own->sizeBytes) != 0)
+        return failed("take a UDP port on network interface " + interface.name);
+    return socket;
+}
+
+SocketAddress UdpSocket::localAddress() const { return localTcpAddress(socket_.get()); }
+
+uint32_t UdpSocket::capacity(size_t datagramBytes) const {
+    return static_cast<uint32_t>(std::max<size_t>(1, bufferBytes_ / (datagramBytes + kBookkeepingBytes)));
+}
+
+const char* UdpSocket::sendingBy() const {
+    return sending_ == Sending::Segments ? "UDP_SEGMENT" : sending_ == Sending::Several ? "sendmmsg" : "sendto";
+}
+
+int UdpSocket::sendSegments(const SocketAddress& to, std::span<std::byte> datagrams, size_t segmentBytes) const {
+    alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(uint16_t))> control{};
+    iovec piece{datagrams.data(), datagrams.size()};
+    msghdr message{};
+    message.msg_name = const_cast<sockaddr*>(to.get());
+    message.msg_namelen = to.sizeBytes;
+    message.msg_iov = &piece;
+    message.msg_iovlen = 1;
+    if (datagrams.size() > segmentBytes) {
+        message.msg_control = control.data();
+        message.msg_controllen = control.size();
+        cmsghdr* c = CMSG_FIRSTHDR(&message);
+        c->cmsg_level = IPPROTO_UDP;
+        c->cmsg_type = UDP_SEGMENT;
+        c->cmsg_len = CMSG_LEN(sizeof(uint16_t));
+        const auto bytes = static_cast<uint16_t>(segmentBytes);
+        std::memcpy(CMSG_DATA(c), &bytes, sizeof bytes);
+    }
+    return sendmsg(socket_.get(), &message, 0) < 0 ? errno : 0;
+}
+
+int UdpSocket::sendSeveral(const SocketAddress& to, std::span<std::byte> datagrams, size_t segmentBytes) const {
+    std::array<mmsghdr, kMostBatch> messages{};
+    std::array<iovec, kMostBatch> pieces{};
+    unsigned count = 0;
+    for (size_t at = 0; at < datagrams.size(); at += segmentBytes, ++count) {
+        pieces[count] = {datagrams.data() + at, std::min(segmentBytes, datagrams.size() - at)};
+        msghdr& h = messages[count].msg_hdr;
+        h.msg_name = const_cast<sockaddr*>(to.get());
+        h.msg_namelen = to.sizeBytes;
+        h.msg_iov = &pieces[count];
+        h.msg_iovlen = 1;
+    }
+    for (unsigned sent = 0; sent < count;) {
+        const int n = sendmmsg(socket_.get(), messages.data() + sent, count - sent, 0);
+        if (n < 0) return errno;
+        sent += static_cast<unsigned>(n);
+    }
+    return 0;
+}
+
+int UdpSocket::sendSingle(const SocketAddress& to, std::span<std::byte> datagrams, size_t segmentBytes) const {
+    for (size_t at = 0; at < datagrams.size(); at += segmentBytes) {
+        const size_t bytes = std::min(segmentBytes, datagrams.size() - at);
+        if (sendto(socket_.get(), datagrams.data() + at, bytes, 0, to.get(), to.sizeBytes) < 0) return errno;
+    }
+    return 0;
+}
+
+Result<void> UdpSocket::send(const SocketAddress& to, std::span<std::byte> datagrams, size_t segmentBytes) {
+    while (true) {
+        int code = 0;
+        switch (sending_) {
+        case Sending::Segments: code = sendSegments(to, datagrams, segmentBytes); break;
+        case Sending::Several: code = sendSeveral(to, datagrams, segmentBytes); break;
+        case Sending::Single: code = sendSingle(to, datagrams, segmentBytes); break;
+        }
+        switch (code) {
+        case 0:
+        case EAGAIN:
+        case ENOBUFS:
+        case ENOMEM:
+        case ECONNREFUSED: return {}; // lost, as on the way; the refusal is of an earlier datagram to a port now closed
+        case EINTR: continue;
+        case EIO:
+        case EINVAL:
+        case EOPNOTSUPP:
+        case ENOPROTOOPT:
+            if (sending_ == Sending::Segments) {
+                sending_ = Sending::Several;
+                continue;
+            }
+            break;
+        case ENOSYS:
+            if (sending_ == Sending::Several) {
+                sending_ = Sending::Single;
+                continue;
+            }
+            break;
+        default: break;
+        }
+        return Error{"can't send datagrams of " + std::to_string(segmentBytes) + " bytes: " + errnoText(code)};
+    }
+}
+
+bool UdpSocket::receive(const Handler& handler) {
+    Slots& s = *slots_;
+    for (int round = 0; round < kMostRounds; ++round) {
+        s.reset();
+        const int count = recvmmsg(socket_.get(), s.messages.data(), kReceiveSlots, MSG_DONTWAIT, nullptr);
+        if (count <= 0) return false;
+        for (size_t i = 0; i < static_cast<size_t>(count); ++i) {
+            msghdr& h = s.messages[i].msg_hdr;
+            const size_t bytes = s.messages[i].msg_len;
+            size_t segment = bytes;
+            for (cmsghdr* c = CMSG_FIRSTHDR(&h); c; c = CMSG_NXTHDR(&h, c)) {
+                if (c->cmsg_level == IPPROTO_UDP && c->cmsg_type == UDP_GRO) {
+                    int value = 0;
+                    std::memcpy(&value, CMSG_DATA(c), sizeof value);
+                    if (value > 0) segment = static_cast<size_t>(value);
+                } else if (c->cmsg_level == SOL_SOCKET && c->cmsg_type == SO_RXQ_OVFL) {
+                    std::memcpy(&dropped_, CMSG_DATA(c), sizeof dropped_);
+                }
+            }
+            s.from[i].sizeBytes = h.msg_namelen;
+            auto* data = static_cast<std::byte*>(s.pieces[i].iov_base);
+            for (size_t at = 0; at < bytes; at += segment)
+                handler({data + at, std::min(segment, bytes - at)}, s.from[i]);
+        }
+        if (static_cast<size_t>(count) < kReceiveSlots) return false;
+    }
+    return true;
+}
+
+} // namespace mural::rsp

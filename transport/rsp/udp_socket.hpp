@@ -1,0 +1,67 @@
+// UDP as RSP needs it: many datagrams per system call, and what the kernel dropped.
+//
+// Sending: up to 64 datagrams of one size go out as one (UDP_SEGMENT); where a kernel or card refuses that, by sendmmsg;
+// where that is missing, one by one. What was refused once is not tried again. Receiving: recvmmsg, and UDP_GRO where
+// there is.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/result.hpp"
+#include "transport/file_descriptor.hpp"
+#include "transport/rsp/network_interface.hpp"
+#include "transport/socket_address.hpp"
+
+namespace mural::rsp {
+
+constexpr size_t kMostBatchBytes = 65'000; // of one sending
+constexpr size_t kMostBatch = 64;          // datagrams
+
+class UdpSocket {
+public:
+    // For what is sent to the group.
+    static Result<UdpSocket> openGroup(const SocketAddress& group, const NetworkInterface& interface, size_t bufferBytes);
+    // For sending to the group and to members, and for what is sent to this member alone; any free port.
+    static Result<UdpSocket> openOwn(const NetworkInterface& interface, int family, size_t bufferBytes);
+
+    [[nodiscard]] int descriptor() const { return socket_.get(); }
+    [[nodiscard]] SocketAddress localAddress() const;
+
+    // Datagrams of segmentBytes each, the last may be shorter; at most kMostBatch and kMostBatchBytes. What the network
+    // has no room for is lost, as on the way. Errors: the network is gone; the datagrams are too long for it.
+    Result<void> send(const SocketAddress& to, std::span<std::byte> datagrams, size_t segmentBytes);
+
+    using Handler = std::function<void(std::span<std::byte> datagram, const SocketAddress& from)>;
+    // All that is there now, at most a few hundred; returns whether there may be more.
+    bool receive(const Handler& handler);
+
+    // So many datagrams were dropped because nobody fetched them.
+    [[nodiscard]] uint32_t dropped() const { return dropped_; }
+    // What the socket's buffer holds of datagrams of a size.
+    [[nodiscard]] uint32_t capacity(size_t datagramBytes) const;
+    [[nodiscard]] const char* sendingBy() const;
+
+private:
+    enum class Sending { Segments, Several, Single };
+    explicit UdpSocket(FileDescriptor socket) : socket_(std::move(socket)) {}
+    void prepare(size_t bufferBytes);
+    int sendSegments(const SocketAddress& to, std::span<std::byte> datagrams, size_t segmentBytes) const;
+    int sendSeveral(const SocketAddress& to, std::span<std::byte> datagrams, size_t segmentBytes) const;
+    int sendSingle(const SocketAddress& to, std::span<std::byte> datagrams, size_t segmentBytes) const;
+
+    struct Slots;
+    struct FreeSlots {
+        void operator()(Slots* slots) const;
+    };
+    FileDescriptor socket_;
+    Sending sending_ = Sending::Segments;
+    size_t bufferBytes_ = 0;
+    uint32_t dropped_ = 0;
+    std::unique_ptr<Slots, FreeSlots> slots_;
+};
+
+} // namespace mural::rsp
