@@ -23,7 +23,7 @@
 namespace mural::capture {
 
 constexpr uint32_t kMagic = 0x4d55524c; // "MURL"
-constexpr uint32_t kVersion = 5;
+constexpr uint32_t kVersion = 6;
 constexpr uint32_t kChunkBytes = 256 * 1024;
 constexpr uint32_t kDefaultChunks = 256; // 64 MiB
 constexpr uint32_t kReplyBytes = 4 * 1024 * 1024;
@@ -35,6 +35,8 @@ constexpr uint32_t kNewsTextBytes = 480;
 // modulo the table's size, until a later one takes the place.
 constexpr uint32_t kAskedAhead = 0x80000000;
 constexpr uint32_t kAheadAnswers = 1024;
+// Requests whose answers come as replies, but are read when the program needs them, if ever: ids with this bit.
+constexpr uint32_t kOwed = 0x40000000;
 struct AheadAnswer {
     std::atomic<uint32_t> request; // whose answer this is; 0: none yet. Stored last; futex
     std::atomic<uint64_t> value;

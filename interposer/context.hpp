@@ -8,6 +8,7 @@
 
 #include "interposer/local_pixels.hpp"
 #include "interposer/lock.hpp"
+#include "interposer/owed_reads.hpp"
 #include "interposer/query_answers.hpp"
 #include "interposer/thread_state.hpp"
 #include "interposer/vertex_arrays.hpp"
@@ -58,6 +59,7 @@ struct ShareGroup {
     bool allDrawn = false;           // by every node (copies::drawAll)
     bool nodesWriteBuffers = false; // transform feedback or shaders have written into buffers
     NameBits nodesWrite;            // this buffer was bound where they do
+    OwedReads owedReads;
 };
 
 // Context::openPrimitive outside of glBegin and glEnd.
@@ -211,6 +213,26 @@ inline void beforeDraw(ThreadState& t, Context& c) {
 }
 inline void buffersRead(ThreadState& t) {
     if (t.context) beforeDraw(t, *t.context);
+}
+
+// Before the program looks at the buffer's bytes or changes some: what it has read into it comes first.
+inline void settleReads(ThreadState& t, GLuint buffer, const char* by = __builtin_FUNCTION()) {
+    if (t.context && t.context->group->owedReads.count.load(std::memory_order_relaxed) > 0) [[unlikely]] settle(t, buffer, by);
+}
+// The same of the buffer that is bound there. Others than the pack buffer are owed nothing.
+inline void settleBound(ThreadState& t, GLenum target, const char* by = __builtin_FUNCTION()) {
+    if (target == GL_PIXEL_PACK_BUFFER && t.context && t.context->group->owedReads.count.load(std::memory_order_relaxed) > 0) [[unlikely]]
+        settle(t, boundPackBuffer(), by);
+}
+// Before a buffer is used for anything but reads into it and the program's own access: the nodes need its bytes.
+inline void bufferUsed(ThreadState& t, GLuint buffer, const char* by = __builtin_FUNCTION()) {
+    if (buffer && t.context && t.context->group->owedReads.onlyReadInto(buffer)) [[unlikely]] firstUse(t, buffer, by);
+}
+inline void boundUsed(ThreadState& t, GLenum target, const char* by = __builtin_FUNCTION()) {
+    if (target == GL_PIXEL_PACK_BUFFER && t.context) bufferUsed(t, boundPackBuffer(), by);
+}
+inline void buffersUsed(ThreadState& t, GLsizei count, const GLuint* buffers, const char* by = __builtin_FUNCTION()) {
+    for (GLsizei i = 0; buffers && i < count; ++i) bufferUsed(t, buffers[i], by);
 }
 
 } // namespace mural

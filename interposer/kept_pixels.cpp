@@ -54,6 +54,12 @@ KeptPixels::Box KeptPixels::wider(const ThreadState& t, const Kind& kind, const 
     return wide;
 }
 
+bool KeptPixels::inSeries(const ThreadState& t, const Kind& kind, const Box& box) {
+    constexpr uint32_t kMany = 16;
+    series_ = nothingSince(t, kind) && box.w <= kSmall && box.h <= kSmall ? series_ + 1 : 0;
+    return series_ >= kMany;
+}
+
 std::byte* KeptPixels::memory(size_t sizeBytes) {
     holds_ = false;
     if (sizeBytes > capacityBytes_) {

@@ -27,6 +27,8 @@ public:
     bool find(const ThreadState& t, const Kind& kind, const Box& box, void* into) const;
     // What to ask for in place of a box: more than it, when the last question stands right before in the stream.
     Box wider(const ThreadState& t, const Kind& kind, const Box& box) const;
+    // One more small read with nothing between them, after many: better a block than one by one.
+    bool inSeries(const ThreadState& t, const Kind& kind, const Box& box);
     // Memory for the answer to a wider question; null: there is none.
     std::byte* memory(size_t sizeBytes);
     // A question has been answered; `kept`: its pixels are in memory().
@@ -41,6 +43,7 @@ private:
     Kind kind_{};
     Box box_{};
     bool holds_ = false;
+    uint32_t series_ = 0;
     std::byte* bytes_ = nullptr;
     size_t capacityBytes_ = 0;
 };

@@ -52,6 +52,7 @@ void emptyOut(Context& c) {
     c.debug = debug;
     if (!group || isUsed(group)) return;
     forgetMaps(*group);
+    forgetReads(*group);
     group->~ShareGroup();
     std::free(group);
 }

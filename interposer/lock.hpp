@@ -19,6 +19,10 @@ public:
         }
         while (word_.exchange(2, std::memory_order_acquire) != 0) futexWait(word_, 2, 100'000'000);
     }
+    bool tryLock() {
+        uint32_t free = 0;
+        return word_.compare_exchange_strong(free, 1, std::memory_order_acquire);
+    }
     void unlock() {
         if (word_.exchange(0, std::memory_order_release) == 2) futexWakeAll(word_);
     }

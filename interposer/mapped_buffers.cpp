@@ -1,6 +1,7 @@
 #include "interposer/mapped_buffers.hpp"
 
 #include <cstdlib>
+#include <cstring>
 #include <new>
 
 #include "common/map_changes.hpp"
@@ -133,21 +134,40 @@ void copyIntoBound(uint64_t offset, const void* bytes, uint64_t length) {
     gReal.glFinish(); // it may be mapped
 }
 
-void writeBound(uint64_t offset, const void* bytes, uint64_t length) {
-    constexpr GLenum kTarget = GL_COPY_WRITE_BUFFER;
+// Where a buffer is bound for a moment: nothing draws from there.
+class OwnCopy {
+public:
+    OwnCopy(const Context& c, GLuint buffer) : copies_(c.version >= (c.api == wire::Api::Desktop ? 31 : 30)) {
+        gReal.glGetIntegerv(copies_ ? GL_COPY_WRITE_BUFFER_BINDING : GL_PIXEL_PACK_BUFFER_BINDING, &before_);
+        gReal.glBindBuffer(target(), buffer);
+    }
+    ~OwnCopy() {
+        gReal.glBindBuffer(target(), static_cast<GLuint>(before_));
+        driverError(); // ours, not the program's
+    }
+    OwnCopy(const OwnCopy&) = delete;
+    OwnCopy& operator=(const OwnCopy&) = delete;
+    [[nodiscard]] GLenum target() const { return copies_ ? GL_COPY_WRITE_BUFFER : GL_PIXEL_PACK_BUFFER; }
+
+private:
+    bool copies_;
+    GLint before_ = 0;
+};
+
+void writeBound(GLenum target, uint64_t offset, const void* bytes, uint64_t length) {
     const auto at = static_cast<GLintptr>(offset);
     const auto size = static_cast<GLsizeiptr>(length);
-    const Writable may = writable(kTarget);
+    const Writable may = writable(target);
     if (may.replaced) {
-        gReal.glBufferSubData(kTarget, at, size, bytes);
+        gReal.glBufferSubData(target, at, size, bytes);
         if (may.immutable) gReal.glFinish(); // it may be mapped
         return;
     }
-    void* const mapped = may.mapped ? gReal.glMapBufferRange(kTarget, at, size, GL_MAP_WRITE_BIT) : nullptr;
+    void* const mapped = may.mapped ? gReal.glMapBufferRange(target, at, size, GL_MAP_WRITE_BIT) : nullptr;
     driverError(); // it may be mapped by the program
     if (mapped) {
         std::memcpy(mapped, bytes, length);
-        gReal.glUnmapBuffer(kTarget);
+        gReal.glUnmapBuffer(target);
     } else if (!clearIntoBound(offset, bytes, length)) {
         copyIntoBound(offset, bytes, length);
     }
@@ -156,18 +176,39 @@ void writeBound(uint64_t offset, const void* bytes, uint64_t length) {
 } // namespace
 
 void writeOwnCopy(ThreadState& t, GLuint buffer, uint64_t offset, const void* bytes, uint64_t length) {
-    GLint before = 0;
-    gReal.glGetIntegerv(GL_COPY_WRITE_BUFFER_BINDING, &before);
-    raisesNothing(*t.context, [&] {
-        gReal.glBindBuffer(GL_COPY_WRITE_BUFFER, buffer);
-        writeBound(offset, bytes, length);
-        gReal.glBindBuffer(GL_COPY_WRITE_BUFFER, static_cast<GLuint>(before));
-        driverError(); // ours, not the program's
-    });
+    stashError(*t.context, driverError());
+    const OwnCopy own(*t.context, buffer);
+    writeBound(own.target(), offset, bytes, length);
+}
+
+bool ownSize(ThreadState& t, GLuint buffer, uint64_t& size) {
+    stashError(*t.context, driverError());
+    const OwnCopy own(*t.context, buffer);
+    GLint bytes = 0, mapped = GL_FALSE;
+    gReal.glGetBufferParameteriv(own.target(), GL_BUFFER_SIZE, &bytes);
+    gReal.glGetBufferParameteriv(own.target(), GL_BUFFER_MAPPED, &mapped);
+    size = bytes > 0 ? static_cast<uint64_t>(bytes) : 0;
+    return mapped == GL_FALSE;
+}
+
+bool readOwnCopy(ThreadState& t, GLuint buffer, uint64_t offset, void* into, uint64_t length) {
+    stashError(*t.context, driverError());
+    const OwnCopy own(*t.context, buffer);
+    const auto at = static_cast<GLintptr>(offset);
+    const auto size = static_cast<GLsizeiptr>(length);
+    if (t.context->api == wire::Api::Desktop) {
+        gReal.glGetBufferSubData(own.target(), at, size, into);
+        return driverError() == GL_NO_ERROR;
+    }
+    const void* const mapped = gReal.glMapBufferRange(own.target(), at, size, GL_MAP_READ_BIT);
+    if (!mapped) return false;
+    std::memcpy(into, mapped, length);
+    gReal.glUnmapBuffer(own.target());
+    return true;
 }
 
 void refreshBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t length, const char* by) {
-    if (!nodesDraw(t) || !t.context->group->nodesWriteBuffers || buffer == 0 || !gReal.glBindBuffer) return;
+    if (!nodesDraw(t) || !t.context->group->nodesWriteBuffers || buffer == 0 || !gReal.glBindBuffer || nodesLack(t, buffer)) return;
     for (uint64_t at = 0; at < length; at += kAskedBytes) {
         const uint64_t count = length - at < kAskedBytes ? length - at : kAskedBytes;
         const void* bytes = askBuffer(t, buffer, offset + at, count, by);

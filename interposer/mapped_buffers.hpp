@@ -37,5 +37,9 @@ void buffersMayBeWritten(ThreadState& t, GLsizei count, const GLuint* buffers);
 void copiedHere(ThreadState& t, GLuint buffer);
 // Writes into the program's own copy of a buffer, whatever its storage allows the program.
 void writeOwnCopy(ThreadState& t, GLuint buffer, uint64_t offset, const void* bytes, uint64_t length);
+// How large it is. False: it is mapped.
+bool ownSize(ThreadState& t, GLuint buffer, uint64_t& size);
+// Reads it. False: it is mapped, or not so large.
+bool readOwnCopy(ThreadState& t, GLuint buffer, uint64_t offset, void* into, uint64_t length);
 
 } // namespace mural

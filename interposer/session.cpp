@@ -14,6 +14,7 @@
 #include "common/clock.hpp"
 #include "interposer/lock.hpp"
 #include "interposer/log.hpp"
+#include "interposer/owed_answers.hpp"
 #include "streamcodec/registry_digest.hpp"
 
 namespace mural {
@@ -349,7 +350,7 @@ void Session::waitShown() {
 uint32_t Session::beginRequest(const char* by) {
     requestLock.lock();
     if (alive()) countTrip(*header_, by);
-    lastRequest_ = (lastRequest_ + 1) & ~capture::kAskedAhead;
+    lastRequest_ = (lastRequest_ + 1) & ~(capture::kAskedAhead | capture::kOwed);
     return lastRequest_;
 }
 
@@ -425,9 +426,46 @@ bool Session::answerHeader(uint32_t request, wire::ReplyHeader& header) {
     while (alive()) {
         if (!answerBytes(&header, sizeof header)) return false;
         if (header.requestId == request) return true;
-        if (!answerBytes(nullptr, header.sizeBytes)) return false; // late answer to a question given up
+        if (!takeOwed(header)) return false;
     }
     return false;
+}
+
+// An answer that is not the one waited for: owed, or late to a question given up.
+bool Session::takeOwed(const wire::ReplyHeader& header) {
+    void* const into = owed::placeOf(header.requestId, header.sizeBytes, header.failed != 0);
+    const bool read = answerBytes(into, header.sizeBytes);
+    owed::arrived(header.requestId, read && into);
+    return read;
+}
+
+bool Session::replyWaits() const {
+    return header_->replyTail.load(std::memory_order_acquire) - header_->replyHead.load(std::memory_order_relaxed) >= sizeof(wire::ReplyHeader);
+}
+
+bool Session::waitOwed(uint32_t request, const char* by) {
+    if (!owed::isAwaited(request)) return true;
+    if (!alive()) return false;
+    Guard guard(requestLock);
+    wakeReader(true);
+    bool counted = false;
+    while (owed::isAwaited(request)) {
+        if (!alive()) return false;
+        if (!counted && !replyWaits()) {
+            countTrip(*header_, by);
+            counted = true;
+        }
+        wire::ReplyHeader header{};
+        if (!answerBytes(&header, sizeof header) || !takeOwed(header)) return false;
+    }
+    return true;
+}
+
+void Session::takeArrived() {
+    if (!alive() || !requestLock.tryLock()) return; // who has it takes them, too
+    wire::ReplyHeader header{};
+    while (alive() && replyWaits() && answerBytes(&header, sizeof header) && takeOwed(header)) {}
+    requestLock.unlock();
 }
 
 } // namespace mural

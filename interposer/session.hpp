@@ -42,6 +42,13 @@ public:
     // The next bytes of the answer.
     bool answerBytes(void* into, uint64_t sizeBytes);
     void endRequest();
+    // The id of a question whose answer is taken later (interposer/owed_answers.hpp).
+    uint32_t nextOwed() { return capture::kOwed | (__atomic_add_fetch(&lastOwed_, 1, __ATOMIC_RELAXED) & (capture::kOwed - 1)); }
+    // Until it is here, or came as none; a round trip when it is not on its way from the head already. False: the head
+    // died.
+    bool waitOwed(uint32_t request, const char* by);
+    // Takes what has come of such answers, so that the head need not keep them.
+    void takeArrived();
     // The same for an answer that is read later: no round trip. Waits until it is there; false when the head died
     // or the answer's place has been taken by another's.
     uint32_t nextAhead() { return capture::kAskedAhead | __atomic_add_fetch(&lastAhead_, 1, __ATOMIC_RELAXED); }
@@ -60,6 +67,8 @@ public:
 
 private:
     bool connect(const char* name);
+    bool takeOwed(const wire::ReplyHeader& header);
+    [[nodiscard]] bool replyWaits() const;
     bool headAlive();
     [[nodiscard]] bool publishLocked(ThreadState& t, bool last); // false: there was nothing, or no room
     void wakeReader(bool fromNap);
@@ -75,6 +84,7 @@ private:
     int64_t submittedNs_[capture::kAheadFrames] = {}; // of frame n at n modulo their number
     uint32_t lastRequest_ = 0;
     uint32_t lastAhead_ = 0;
+    uint32_t lastOwed_ = 0;
     uint32_t newsTaken_ = 0;
 };
 

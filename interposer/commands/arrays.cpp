@@ -300,6 +300,7 @@ void mural_glBindVertexBuffer(GLuint bindingindex, GLuint buffer, GLintptr offse
         VertexArray& va = t.context->arrays.current();
         va.set(va.client, kGeneric0 + bindingindex, false);
     }
+    bufferUsed(t, buffer);
     encode_glBindVertexBuffer(t, bindingindex, buffer, offset, stride);
     gReal.glBindVertexBuffer(bindingindex, buffer, offset, stride);
 }
@@ -310,11 +311,13 @@ void mural_glBindVertexBuffers(GLuint first, GLsizei count, const GLuint* buffer
         va.set(va.client, kGeneric0 + i, false);
     }
     const auto n = count > 0 ? uint64_t(count) : 0;
+    buffersUsed(t, count, buffers);
     encode_glBindVertexBuffers(t, first, count, DataArg::of(buffers, n * 4), DataArg::of(offsets, n * 8), DataArg::of(strides, n * 4));
     gReal.glBindVertexBuffers(first, count, buffers, offsets, strides);
 }
 void mural_glBindBuffer(GLenum target, GLuint buffer) {
     ThreadState& t = *tThread;
+    if (target != GL_PIXEL_PACK_BUFFER) bufferUsed(t, buffer);
     if (t.context && target == GL_QUERY_BUFFER) { // OpenGL ES has none
         if (!raisesNothing(*t.context, [=] { gReal.glBindBuffer(target, buffer); })) return;
         t.context->queryBuffer = buffer;

@@ -42,13 +42,12 @@ std::byte* askBlocks(ThreadState& t, bool byName, GLuint which, GLint level, con
     return static_cast<std::byte*>(bytes ? askTexImage(t, byName, which, level, 0, 0, bytes, by) : nullptr);
 }
 
-void deliverBlocks(ThreadState& t, const void* tight, void* pixels, GLenum format, const Level& size, int dimensions) {
-    const sizes::ImageLayout layout = sizes::compressedLayoutOf(compressedPackStore(*t.context), format, size.width, size.height, size.depth, dimensions);
-    if (layout.known) deliver(t, tight, pixels, layout);
+sizes::ImageLayout layoutOf(ThreadState& t, GLenum format, const Level& size, int dimensions) {
+    return sizes::compressedLayoutOf(compressedPackStore(*t.context), format, size.width, size.height, size.depth, dimensions);
 }
 
 void read(ThreadState& t, bool byName, GLuint which, GLint level, const Image& image, void* pixels, const char* by = __builtin_FUNCTION()) {
-    if (const void* tight = askBlocks(t, byName, which, level, image, by)) deliverBlocks(t, tight, pixels, image.format, image.size, image.dimensions);
+    askAndDeliver(t, {byName, which, level, 0, 0, image.bytes()}, pixels, layoutOf(t, image.format, image.size, image.dimensions), by);
 }
 
 Level inBlocks(const Level& texels, const sizes::CompressedBlock& block) {
@@ -60,7 +59,7 @@ Level inBlocks(const Level& texels, const sizes::CompressedBlock& block) {
 template <class Local> void readBound(GLenum target, GLint level, void* pixels, Local&& local, const char* by = __builtin_FUNCTION()) {
     ThreadState& t = *tThread;
     if (!capturing(t)) return local();
-    if (!raisesNothing(*t.context, local)) return;
+    if (!packsHere(t, local, by)) return;
     const Image image = imageOf(target, [=](GLenum pname, GLint* value) { gReal.glGetTexLevelParameteriv(target, level, pname, value); });
     read(t, false, target, level, image, pixels, by);
 }
@@ -83,7 +82,7 @@ void mural_glGetCompressedTextureImage(GLuint texture, GLint level, GLsizei bufS
     ThreadState& t = *tThread;
     const auto local = [&] { gReal.glGetCompressedTextureImage(texture, level, bufSize, pixels); };
     if (!capturing(t)) return local();
-    if (raisesNothing(*t.context, local)) read(t, true, texture, level, imageByName(t, texture, level), pixels);
+    if (packsHere(t, local)) read(t, true, texture, level, imageByName(t, texture, level), pixels);
 }
 
 // A part: the whole level is asked for, the part's blocks are copied out of it.
@@ -91,21 +90,22 @@ void mural_glGetCompressedTextureSubImage(GLuint texture, GLint level, GLint xof
     ThreadState& t = *tThread;
     const auto local = [&] { gReal.glGetCompressedTextureSubImage(texture, level, xoffset, yoffset, zoffset, width, height, depth, bufSize, pixels); };
     if (!capturing(t)) return local();
-    if (!raisesNothing(*t.context, local) || width <= 0 || height <= 0 || depth <= 0) return;
+    if (!packsHere(t, local) || width <= 0 || height <= 0 || depth <= 0) return;
     const Image image = imageByName(t, texture, level);
     std::byte* const tight = askBlocks(t, true, texture, level, image, __func__);
     if (!tight) return;
     const sizes::CompressedBlock block = sizes::compressedBlock(image.format);
     const Level part{width, height, depth};
     keepPart(tight, inBlocks(image.size, block), inBlocks({xoffset, yoffset, zoffset}, block), inBlocks(part, block), block.bytes);
-    deliverBlocks(t, tight, pixels, image.format, part, image.dimensions);
+    const sizes::ImageLayout layout = layoutOf(t, image.format, part, image.dimensions);
+    if (layout.known) deliver(t, tight, pixels, layout);
 }
 
 void mural_glGetCompressedTextureImageEXT(GLuint texture, GLenum target, GLint lod, void* img) {
     ThreadState& t = *tThread;
     const auto local = [&] { gReal.glGetCompressedTextureImageEXT(texture, target, lod, img); };
     if (!capturing(t) || t.context->compilingList) return local();
-    if (!raisesNothing(*t.context, local)) return;
+    if (!packsHere(t, local)) return;
     const Image image = imageOf(target, [=](GLenum pname, GLint* value) { gReal.glGetTextureLevelParameterivEXT(texture, target, lod, pname, value); });
     whileBound(t, target, texture, [&] { read(t, false, target, lod, image, img, "glGetCompressedTextureImageEXT"); });
 }
@@ -114,7 +114,7 @@ void mural_glGetCompressedMultiTexImageEXT(GLenum texunit, GLenum target, GLint 
     ThreadState& t = *tThread;
     const auto local = [&] { gReal.glGetCompressedMultiTexImageEXT(texunit, target, lod, img); };
     if (!capturing(t) || t.context->compilingList) return local();
-    if (!raisesNothing(*t.context, local)) return;
+    if (!packsHere(t, local)) return;
     const Image image = imageOf(target, [=](GLenum pname, GLint* value) { gReal.glGetMultiTexLevelParameterivEXT(texunit, target, lod, pname, value); });
     whileActive(t, texunit, [&] { read(t, false, target, lod, image, img, "glGetCompressedMultiTexImageEXT"); });
 }

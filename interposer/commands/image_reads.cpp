@@ -12,13 +12,6 @@ namespace mural::image_reads {
 
 namespace {
 
-// Part of the bound pack buffer, as the program's own context has it.
-void packBytes(const Context& c, GLintptr offset, GLsizeiptr bytes, void* into) {
-    if (c.api == wire::Api::Desktop) return gReal.glGetBufferSubData(GL_PIXEL_PACK_BUFFER, offset, bytes, into);
-    if (const void* mapped = gReal.glMapBufferRange(GL_PIXEL_PACK_BUFFER, offset, bytes, GL_MAP_READ_BIT)) std::memcpy(into, mapped, static_cast<size_t>(bytes));
-    gReal.glUnmapBuffer(GL_PIXEL_PACK_BUFFER);
-}
-
 constexpr Target kTargets[] = {{GL_TEXTURE_2D, GL_TEXTURE_BINDING_2D}, {GL_TEXTURE_CUBE_MAP, GL_TEXTURE_BINDING_CUBE_MAP}, {GL_TEXTURE_2D_ARRAY, GL_TEXTURE_BINDING_2D_ARRAY},
                                {GL_TEXTURE_3D, GL_TEXTURE_BINDING_3D}, {GL_TEXTURE_CUBE_MAP_ARRAY, GL_TEXTURE_BINDING_CUBE_MAP_ARRAY}, {GL_TEXTURE_1D, GL_TEXTURE_BINDING_1D},
                                {GL_TEXTURE_1D_ARRAY, GL_TEXTURE_BINDING_1D_ARRAY}, {GL_TEXTURE_RECTANGLE, GL_TEXTURE_BINDING_RECTANGLE}};
@@ -54,26 +47,28 @@ void deliver(ThreadState& t, const void* tight, void* pixels, const sizes::Image
     const size_t span = sizes::spanBytes(layout);
     void* whole = scratchMemory(t, span);
     if (!whole) return;
-    const auto offset = reinterpret_cast<GLintptr>(pixels);
-    packBytes(*t.context, offset, static_cast<GLsizeiptr>(span), whole); // bytes between the rows stay
+    const GLuint buffer = boundPackBuffer();
+    const auto offset = reinterpret_cast<uint64_t>(pixels);
+    if (!readOwnCopy(t, buffer, offset, whole, span)) std::memset(whole, 0, span); // bytes between the rows stay
     sizes::unpackTight(whole, tight, layout);
-    GLint buffer = 0;
-    gReal.glGetIntegerv(GL_PIXEL_PACK_BUFFER_BINDING, &buffer);
-    if (t.context->version < (t.context->api == wire::Api::Desktop ? 31 : 30)) {
-        gReal.glBufferSubData(GL_PIXEL_PACK_BUFFER, offset, static_cast<GLsizeiptr>(span), whole);
-    } else {
-        writeOwnCopy(t, static_cast<GLuint>(buffer), static_cast<uint64_t>(offset), whole, span);
-    }
-    records::bufferBytes(t, static_cast<GLuint>(buffer), static_cast<uint64_t>(offset), DataArg::of(whole, span));
+    writeOwnCopy(t, buffer, offset, whole, span);
+    records::bufferBytes(t, buffer, offset, DataArg::of(whole, span));
+}
+
+void askAndDeliver(ThreadState& t, const ImageQuestion& q, void* pixels, const sizes::ImageLayout& layout, const char* by) {
+    if (q.sizeBytes == 0) return;
+    const bool owes = layout.known && packBufferBound(*t.context) &&
+                      oweTexImage(t, q.byName, q.targetOrTexture, q.level, q.format, q.type, q.sizeBytes, {reinterpret_cast<uint64_t>(pixels), layout}, by);
+    if (owes) return;
+    const void* const tight = askTexImage(t, q.byName, q.targetOrTexture, q.level, q.format, q.type, q.sizeBytes, by);
+    if (tight && layout.known) deliver(t, tight, pixels, layout);
 }
 
 void tellPackBuffer(ThreadState& t, const void* offset, size_t bytes) {
     void* const written = bytes ? scratchMemory(t, bytes) : nullptr;
-    if (!written) return;
-    packBytes(*t.context, reinterpret_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes), written);
-    GLint buffer = 0;
-    gReal.glGetIntegerv(GL_PIXEL_PACK_BUFFER_BINDING, &buffer);
-    records::bufferBytes(t, static_cast<GLuint>(buffer), reinterpret_cast<uint64_t>(offset), DataArg::of(written, bytes));
+    const GLuint buffer = boundPackBuffer();
+    const auto at = reinterpret_cast<uint64_t>(offset);
+    if (written && readOwnCopy(t, buffer, at, written, bytes)) records::bufferBytes(t, buffer, at, DataArg::of(written, bytes));
 }
 
 int imageDimensions(GLenum target) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "encoders.hpp"
+#include "interposer/asking.hpp"
 #include "interposer/context.hpp"
 #include "interposer/real_gl.hpp"
 #include "streamcodec/sizes/pixel_format.hpp"
@@ -18,6 +19,23 @@ struct Level {
 // Writes tight pixels where the pack state puts them: client memory, or the bound pack buffer (the
 // program's own and the nodes').
 void deliver(ThreadState& t, const void* tight, void* pixels, const sizes::ImageLayout& layout);
+
+struct ImageQuestion {
+    bool byName;
+    GLuint targetOrTexture;
+    GLint level;
+    GLenum format, type; // 0: the blocks of a compressed image
+    size_t sizeBytes;    // of the tight image; 0: it can't be asked for
+};
+// Asks the nodes for an image of a texture, and delivers it: later, where it goes into a pack buffer.
+void askAndDeliver(ThreadState& t, const ImageQuestion& question, void* pixels, const sizes::ImageLayout& layout, const char* by);
+
+// The program's own context packs something by `local`, its errors are kept: true when there was none. What the
+// bound pack buffer is still owed comes first.
+template <class Local> bool packsHere(ThreadState& t, Local&& local, const char* by = __builtin_FUNCTION()) {
+    settleBound(t, GL_PIXEL_PACK_BUFFER, by);
+    return raisesNothing(*t.context, local);
+}
 
 // The program's own context has written so many bytes into the bound pack buffer: the nodes get them.
 void tellPackBuffer(ThreadState& t, const void* offset, size_t bytes);

@@ -68,6 +68,7 @@ template <class Get> uint64_t sizeOfNamed(Get&& get, GLuint buffer) {
 template <class Size, class Map> void* mapWhole(GLuint buffer, GLenum access, Size&& size, Map&& map, const char* by = __builtin_FUNCTION()) {
     ThreadState& t = *tThread;
     const GLbitfield bits = accessBits(access);
+    settleReads(t, buffer, by);
     if (t.context && t.context->group->nodesWriteBuffers) refreshForMap(t, buffer, 0, size(), bits, by);
     void* memory = map();
     if (memory && t.context) mapBegins(t, buffer, memory, 0, size(), bits);
@@ -76,6 +77,8 @@ template <class Size, class Map> void* mapWhole(GLuint buffer, GLenum access, Si
 template <class Map> void* mapRange(GLuint buffer, GLintptr offset, GLsizeiptr length, GLbitfield access, Map&& map, const char* by = __builtin_FUNCTION()) {
     ThreadState& t = *tThread;
     const bool valid = offset >= 0 && length > 0;
+    if (access & GL_MAP_PERSISTENT_BIT) bufferUsed(t, buffer, by); // it is looked at without a word to GL
+    settleReads(t, buffer, by);
     if (valid) refreshForMap(t, buffer, static_cast<uint64_t>(offset), static_cast<uint64_t>(length), access, by);
     void* memory = map();
     if (valid) mapBegins(t, buffer, memory, static_cast<uint64_t>(offset), static_cast<uint64_t>(length), access);
@@ -100,23 +103,29 @@ void* mural_glMapNamedBufferRange(GLuint buffer, GLintptr offset, GLsizeiptr len
 }
 void mural_glGetBufferSubData(GLenum target, GLintptr offset, GLsizeiptr size, void* data) {
     ThreadState& t = *tThread;
+    settleBound(t, target);
     if (t.context && t.context->group->nodesWriteBuffers && offset >= 0 && size > 0)
         refreshBuffer(t, boundBuffer(target), static_cast<uint64_t>(offset), static_cast<uint64_t>(size));
     gReal.glGetBufferSubData(target, offset, size, data);
 }
 void mural_glGetNamedBufferSubData(GLuint buffer, GLintptr offset, GLsizeiptr size, void* data) {
     ThreadState& t = *tThread;
+    settleReads(t, buffer);
     if (offset >= 0 && size > 0) refreshBuffer(t, buffer, static_cast<uint64_t>(offset), static_cast<uint64_t>(size));
     gReal.glGetNamedBufferSubData(buffer, offset, size, data);
 }
 GLboolean mural_glUnmapBuffer(GLenum target) {
     ThreadState& t = *tThread;
     if (t.context && t.context->group->maps) unmaps(t, boundBuffer(target));
-    return gReal.glUnmapBuffer(target);
+    const GLboolean kept = gReal.glUnmapBuffer(target);
+    if (t.context && t.context->group->owedReads.dueAtUnmap.load(std::memory_order_relaxed)) [[unlikely]] unmappedHere(t, boundBuffer(target));
+    return kept;
 }
 GLboolean mural_glUnmapNamedBuffer(GLuint buffer) {
     unmaps(*tThread, buffer);
-    return gReal.glUnmapNamedBuffer(buffer);
+    const GLboolean kept = gReal.glUnmapNamedBuffer(buffer);
+    unmappedHere(*tThread, buffer);
+    return kept;
 }
 void mural_glFlushMappedBufferRange(GLenum target, GLintptr offset, GLsizeiptr length) {
     ThreadState& t = *tThread;
@@ -133,6 +142,8 @@ void mural_glFlushMappedNamedBufferRange(GLuint buffer, GLintptr offset, GLsizei
 void mural_glBufferData(GLenum target, GLsizeiptr size, const void* data, GLenum usage) {
     ThreadState& t = *tThread;
     if (t.context && t.context->group->maps) mapEnds(t, boundBuffer(target), false);
+    settleBound(t, target);
+    if (t.context && t.context->group->owedReads.dueAtUnmap.load(std::memory_order_relaxed)) [[unlikely]] newStorage(t, boundBuffer(target));
     if (t.context && target == GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD) return pin(t, size, data, usage);
     encode_glBufferData(t, target, size, DataArg::of(data, size > 0 ? uint64_t(size) : 0), usage);
     gReal.glBufferData(target, size, data, usage);
@@ -140,23 +151,29 @@ void mural_glBufferData(GLenum target, GLsizeiptr size, const void* data, GLenum
 void mural_glNamedBufferData(GLuint buffer, GLsizeiptr size, const void* data, GLenum usage) {
     ThreadState& t = *tThread;
     mapEnds(t, buffer, false);
+    settleReads(t, buffer);
+    newStorage(t, buffer);
     encode_glNamedBufferData(t, buffer, size, DataArg::of(data, size > 0 ? uint64_t(size) : 0), usage);
     gReal.glNamedBufferData(buffer, size, data, usage);
 }
 void mural_glBufferSubData(GLenum target, GLintptr offset, GLsizeiptr size, const void* data) {
     ThreadState& t = *tThread;
+    settleBound(t, target);
     if (t.context && target == GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD) return gReal.glBufferSubData(target, offset, size, data); // its memory changes
     encode_glBufferSubData(t, target, offset, size, DataArg::of(data, size > 0 ? uint64_t(size) : 0));
     gReal.glBufferSubData(target, offset, size, data);
 }
 void mural_glNamedBufferSubData(GLuint buffer, GLintptr offset, GLsizeiptr size, const void* data) {
     ThreadState& t = *tThread;
+    settleReads(t, buffer);
     encode_glNamedBufferSubData(t, buffer, offset, size, DataArg::of(data, size > 0 ? uint64_t(size) : 0));
     gReal.glNamedBufferSubData(buffer, offset, size, data);
 }
 // What the program's own context copies may be old: it is no writing of the program's.
 void mural_glCopyBufferSubData(GLenum readTarget, GLenum writeTarget, GLintptr readOffset, GLintptr writeOffset, GLsizeiptr size) {
     ThreadState& t = *tThread;
+    boundUsed(t, readTarget);
+    boundUsed(t, writeTarget);
     buffersRead(t);
     encode_glCopyBufferSubData(t, readTarget, writeTarget, readOffset, writeOffset, size);
     gReal.glCopyBufferSubData(readTarget, writeTarget, readOffset, writeOffset, size);
@@ -164,6 +181,8 @@ void mural_glCopyBufferSubData(GLenum readTarget, GLenum writeTarget, GLintptr r
 }
 void mural_glCopyNamedBufferSubData(GLuint readBuffer, GLuint writeBuffer, GLintptr readOffset, GLintptr writeOffset, GLsizeiptr size) {
     ThreadState& t = *tThread;
+    bufferUsed(t, readBuffer);
+    bufferUsed(t, writeBuffer);
     buffersRead(t);
     encode_glCopyNamedBufferSubData(t, readBuffer, writeBuffer, readOffset, writeOffset, size);
     gReal.glCopyNamedBufferSubData(readBuffer, writeBuffer, readOffset, writeOffset, size);
@@ -171,6 +190,8 @@ void mural_glCopyNamedBufferSubData(GLuint readBuffer, GLuint writeBuffer, GLint
 }
 void mural_glNamedCopyBufferSubDataEXT(GLuint readBuffer, GLuint writeBuffer, GLintptr readOffset, GLintptr writeOffset, GLsizeiptr size) {
     ThreadState& t = *tThread;
+    bufferUsed(t, readBuffer);
+    bufferUsed(t, writeBuffer);
     buffersRead(t);
     encode_glNamedCopyBufferSubDataEXT(t, readBuffer, writeBuffer, readOffset, writeOffset, size);
     gReal.glNamedCopyBufferSubDataEXT(readBuffer, writeBuffer, readOffset, writeOffset, size);
@@ -179,12 +200,14 @@ void mural_glNamedCopyBufferSubDataEXT(GLuint readBuffer, GLuint writeBuffer, GL
 // The nodes write into persistent storage through glBufferSubData: they need the dynamic bit.
 void mural_glBufferStorage(GLenum target, GLsizeiptr size, const void* data, GLbitfield flags) {
     ThreadState& t = *tThread;
+    settleBound(t, target);
     const GLbitfield wide = flags & GL_MAP_WRITE_BIT ? flags | GL_DYNAMIC_STORAGE_BIT : flags;
     encode_glBufferStorage(t, target, size, DataArg::of(data, size > 0 ? uint64_t(size) : 0), wide);
     gReal.glBufferStorage(target, size, data, flags);
 }
 void mural_glNamedBufferStorage(GLuint buffer, GLsizeiptr size, const void* data, GLbitfield flags) {
     ThreadState& t = *tThread;
+    settleReads(t, buffer);
     const GLbitfield wide = flags & GL_MAP_WRITE_BIT ? flags | GL_DYNAMIC_STORAGE_BIT : flags;
     encode_glNamedBufferStorage(t, buffer, size, DataArg::of(data, size > 0 ? uint64_t(size) : 0), wide);
     gReal.glNamedBufferStorage(buffer, size, data, flags);
@@ -192,7 +215,10 @@ void mural_glNamedBufferStorage(GLuint buffer, GLsizeiptr size, const void* data
 void mural_glDeleteBuffers(GLsizei n, const GLuint* buffers) {
     ThreadState& t = *tThread;
     if (t.context && n > 0 && buffers) {
-        for (GLsizei i = 0; i < n; ++i) mapEnds(t, buffers[i], true);
+        for (GLsizei i = 0; i < n; ++i) {
+            mapEnds(t, buffers[i], true);
+            forgetReads(t, buffers[i]);
+        }
         t.context->arrays.forgetBuffers(n, buffers);
         for (GLsizei i = 0; i < n; ++i) {
             if (buffers[i] == t.context->queryBuffer) t.context->queryBuffer = 0;
@@ -203,6 +229,12 @@ void mural_glDeleteBuffers(GLsizei n, const GLuint* buffers) {
 }
 
 // The EXT forms differ in that they make the buffer when it has only a name yet; the driver does that.
+void mural_glGetNamedBufferSubDataEXT(GLuint buffer, GLintptr offset, GLsizeiptr size, void* data) {
+    ThreadState& t = *tThread;
+    settleReads(t, buffer);
+    if (offset >= 0 && size > 0) refreshBuffer(t, buffer, static_cast<uint64_t>(offset), static_cast<uint64_t>(size));
+    gReal.glGetNamedBufferSubDataEXT(buffer, offset, size, data);
+}
 void* mural_glMapNamedBufferEXT(GLuint buffer, GLenum access) {
     return mapWhole(buffer, access, [=] { return sizeOfNamed(gReal.glGetNamedBufferParameterivEXT, buffer); }, [=] { return gReal.glMapNamedBufferEXT(buffer, access); });
 }
@@ -211,7 +243,9 @@ void* mural_glMapNamedBufferRangeEXT(GLuint buffer, GLintptr offset, GLsizeiptr 
 }
 GLboolean mural_glUnmapNamedBufferEXT(GLuint buffer) {
     unmaps(*tThread, buffer);
-    return gReal.glUnmapNamedBufferEXT(buffer);
+    const GLboolean kept = gReal.glUnmapNamedBufferEXT(buffer);
+    unmappedHere(*tThread, buffer);
+    return kept;
 }
 void mural_glFlushMappedNamedBufferRangeEXT(GLuint buffer, GLintptr offset, GLsizeiptr length) {
     mapFlushes(*tThread, buffer, offset, length);

@@ -11,22 +11,22 @@ using namespace mural::image_reads;
 namespace {
 
 // span() is how many bytes the query writes.
-template <class Local, class Span> void packed(const void* values, Local&& local, Span&& span) {
+template <class Local, class Span> void packed(const void* values, Local&& local, Span&& span, const char* by) {
     ThreadState& t = *tThread;
     if (!capturing(t) || !packBufferBound(*t.context)) return local();
-    if (raisesNothing(*t.context, local)) tellPackBuffer(t, values, span());
+    if (packsHere(t, local, by)) tellPackBuffer(t, values, span());
 }
 
-template <class Value, class Local> void pixelMap(GLenum map, const Value* values, Local&& local) {
+template <class Value, class Local> void pixelMap(GLenum map, const Value* values, Local&& local, const char* by = __builtin_FUNCTION()) {
     packed(values, local, [=] {
         GLint count = 0;
         gReal.glGetIntegerv(GL_PIXEL_MAP_I_TO_I_SIZE + (map - GL_PIXEL_MAP_I_TO_I), &count);
         return static_cast<size_t>(count) * sizeof(Value);
-    });
+    }, by);
 }
 
-template <class Local> void stipple(const void* pattern, Local&& local) {
-    packed(pattern, local, [] { return sizes::spanBytes(sizes::layoutOf(packStore(*tThread->context), GL_COLOR_INDEX, GL_BITMAP, 32, 32, 1, 2)); });
+template <class Local> void stipple(const void* pattern, Local&& local, const char* by = __builtin_FUNCTION()) {
+    packed(pattern, local, [] { return sizes::spanBytes(sizes::layoutOf(packStore(*tThread->context), GL_COLOR_INDEX, GL_BITMAP, 32, 32, 1, 2)); }, by);
 }
 
 } // namespace

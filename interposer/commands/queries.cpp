@@ -98,6 +98,7 @@ template <class T, class Local> void queryObject(GLuint id, GLenum pname, T* par
 template <class T, class Local> void queryBufferObject(GLuint id, GLuint buffer, GLenum pname, GLintptr offset, Local local, const char* by = __builtin_FUNCTION()) {
     ThreadState& t = *tThread;
     if (!capturing(t)) return local();
+    bufferUsed(t, buffer, by);
     intoBuffer<T>(t, by, id, pname, buffer, offset, local);
 }
 

@@ -38,32 +38,34 @@ void readPixels(ThreadState& t, GLint x, GLint y, GLsizei width, GLsizei height,
     }
     ReadArea clip{x, y, width, height};
     if (!cutToReadFramebuffer(c, format, type, clip)) return;
-    const void* tight = askPixels(t, clip.x, clip.y, clip.w, clip.h, format, type, false, by);
-    if (!tight) {
-        gReal.glReadPixels(x, y, width, height, format, type, pixels); // alone by now
-        return;
-    }
     sizes::PixelStore store = packStore(c);
     if (store.rowLength == 0) store.rowLength = width; // rows keep their distance when clipped
     store.skipPixels += clip.x - x;
     store.skipRows += clip.y - y;
     const sizes::ImageLayout layout = sizes::layoutOf(store, format, type, clip.w, clip.h, 1, 2);
+    if (packBufferBound(c)) {
+        if (layout.known && owePixels(t, clip, format, type, {reinterpret_cast<uint64_t>(pixels), layout}, by)) return;
+        settleBound(t, GL_PIXEL_PACK_BUFFER, by);
+    }
+    const void* tight = askPixels(t, clip.x, clip.y, clip.w, clip.h, format, type, false, by);
+    if (!tight) {
+        gReal.glReadPixels(x, y, width, height, format, type, pixels); // alone by now
+        return;
+    }
     if (layout.known) deliver(t, tight, pixels, layout);
 }
 
 void readTexture(ThreadState& t, bool byName, GLuint which, GLint level, GLenum format, GLenum type, void* pixels, const Level& size, int dimensions, const char* by = __builtin_FUNCTION()) {
     const size_t bytes = sizes::tightBytes(format, type, size.width, size.height, size.depth);
-    const void* tight = bytes ? askTexImage(t, byName, which, level, format, type, bytes, by) : nullptr;
-    if (!tight) return;
     const sizes::ImageLayout layout = sizes::layoutOf(packStore(*t.context), format, type, size.width, size.height, size.depth, dimensions);
-    if (layout.known) deliver(t, tight, pixels, layout);
+    askAndDeliver(t, {byName, which, level, format, type, bytes}, pixels, layout, by);
 }
 
 // The driver's own answer comes first: it gives the errors, and the content where nodes have none.
 template <class Local> void readBound(GLenum target, GLint level, GLenum format, GLenum type, void* pixels, Local&& local, const char* by = __builtin_FUNCTION()) {
     ThreadState& t = *tThread;
     if (!capturing(t)) return local();
-    if (!raisesNothing(*t.context, local)) return;
+    if (!packsHere(t, local, by)) return;
     const Level size = levelOf([=](GLenum pname, GLint* value) { gReal.glGetTexLevelParameteriv(target, level, pname, value); });
     readTexture(t, false, target, level, format, type, pixels, size, imageDimensions(target), by);
 }
@@ -84,7 +86,7 @@ void mural_glReadnPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum
     ThreadState& t = *tThread;
     if (!capturing(t)) return gReal.glReadnPixels(x, y, width, height, format, type, bufSize, data);
     // The driver's own read tells whether bufSize is enough; its pixels are written over.
-    const bool valid = raisesNothing(*t.context, [&] { gReal.glReadnPixels(x, y, width, height, format, type, bufSize, data); });
+    const bool valid = packsHere(t, [&] { gReal.glReadnPixels(x, y, width, height, format, type, bufSize, data); });
     if (valid) readPixels(t, x, y, width, height, format, type, data);
 }
 
@@ -101,7 +103,7 @@ void mural_glGetnTexImageARB(GLenum target, GLint level, GLenum format, GLenum t
 void mural_glGetTextureImage(GLuint texture, GLint level, GLenum format, GLenum type, GLsizei bufSize, void* pixels) {
     ThreadState& t = *tThread;
     if (!capturing(t)) return gReal.glGetTextureImage(texture, level, format, type, bufSize, pixels);
-    if (!raisesNothing(*t.context, [&] { gReal.glGetTextureImage(texture, level, format, type, bufSize, pixels); })) return;
+    if (!packsHere(t, [&] { gReal.glGetTextureImage(texture, level, format, type, bufSize, pixels); })) return;
     GLenum target = 0;
     const Level size = levelOf(*t.context, texture, level, target);
     readTexture(t, true, texture, level, format, type, pixels, size, dimensionsByName(target));
@@ -111,7 +113,7 @@ void mural_glGetTextureImageEXT(GLuint texture, GLenum target, GLint level, GLen
     ThreadState& t = *tThread;
     const auto local = [&] { gReal.glGetTextureImageEXT(texture, target, level, format, type, pixels); };
     if (!capturing(t) || t.context->compilingList) return local();
-    if (!raisesNothing(*t.context, local)) return;
+    if (!packsHere(t, local)) return;
     const Level size = levelOf([&](GLenum pname, GLint* value) { gReal.glGetTextureLevelParameterivEXT(texture, target, level, pname, value); });
     whileBound(t, target, texture, [&] { readTexture(t, false, target, level, format, type, pixels, size, imageDimensions(target), "glGetTextureImageEXT"); });
 }
@@ -120,7 +122,7 @@ void mural_glGetMultiTexImageEXT(GLenum texunit, GLenum target, GLint level, GLe
     ThreadState& t = *tThread;
     const auto local = [&] { gReal.glGetMultiTexImageEXT(texunit, target, level, format, type, pixels); };
     if (!capturing(t) || t.context->compilingList) return local();
-    if (!raisesNothing(*t.context, local)) return;
+    if (!packsHere(t, local)) return;
     const Level size = levelOf([&](GLenum pname, GLint* value) { gReal.glGetMultiTexLevelParameterivEXT(texunit, target, level, pname, value); });
     whileActive(t, texunit, [&] { readTexture(t, false, target, level, format, type, pixels, size, imageDimensions(target), "glGetMultiTexImageEXT"); });
 }
@@ -130,7 +132,7 @@ void mural_glGetTextureSubImage(GLuint texture, GLint level, GLint xoffset, GLin
     ThreadState& t = *tThread;
     const auto local = [&] { gReal.glGetTextureSubImage(texture, level, xoffset, yoffset, zoffset, width, height, depth, format, type, bufSize, pixels); };
     if (!capturing(t)) return local();
-    if (!raisesNothing(*t.context, local)) return;
+    if (!packsHere(t, local)) return;
     if (width <= 0 || height <= 0 || depth <= 0) return;
     GLenum target = 0;
     const Level size = levelOf(*t.context, texture, level, target);

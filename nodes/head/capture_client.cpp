@@ -176,20 +176,22 @@ void CaptureClient::writeReplies() {
         replies_.pop_front();
         replyQueueBytes_ -= reply.bytes.size();
         lock.unlock();
-        const bool written = writeAll(bytesOf(reply.header)) && writeAll(reply.bytes.span());
+        const bool awaited = (reply.header.requestId & capture::kOwed) == 0;
+        const bool written = writeAll(bytesOf(reply.header), awaited) && writeAll(reply.bytes.span(), awaited);
         lock.lock();
         if (!written) return;
     }
 }
 
-// False: the program is gone, dropped, or the session ends.
-bool CaptureClient::writeAll(std::span<const std::byte> bytes) {
-    Deadline deadline = Deadline::inMs(kReplyPatienceMs);
+// False: the program is gone, dropped, or the session ends. A program takes what it does not wait for when it likes.
+bool CaptureClient::writeAll(std::span<const std::byte> bytes, bool awaited) {
+    const auto patience = [awaited] { return awaited ? Deadline::inMs(kReplyPatienceMs) : Deadline::never(); };
+    Deadline deadline = patience();
     while (!bytes.empty()) {
         const size_t written = memory_->writeReply(bytes);
         bytes = bytes.subspan(written);
         if (written > 0) {
-            deadline = Deadline::inMs(kReplyPatienceMs);
+            deadline = patience();
             continue;
         }
         if (stop_ || programGone()) return false;

@@ -69,7 +69,7 @@ private:
     void drop(const std::string& problem);
 
     void writeReplies();
-    bool writeAll(std::span<const std::byte> bytes);
+    bool writeAll(std::span<const std::byte> bytes, bool awaited);
 
     const uint32_t id_;
     const pid_t pid_;

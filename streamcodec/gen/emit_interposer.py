@@ -100,12 +100,27 @@ def data_argument(c, p):
     raise SystemExit('%s: parameter %s needs app=custom' % (c.name, p.name))
 
 
+def buffer_uses(c):
+    """What a command does with buffers that reads may still be owed to."""
+    if c.option('owed') == 'settled':
+        buffer = next((p.name for p in c.params if p.kind == 'Buffer'), None)
+        return '    settleReads(self, %s);\n' % buffer if buffer else '    settleBound(self, target);\n'
+    out = ''
+    for p in c.params:
+        if p.kind == 'Buffer' and p.pointers == 0:
+            out += '    bufferUsed(self, %s);\n' % p.name
+        elif p.kind == 'Buffer' and p.const:
+            out += '    buffersUsed(self, %s, %s);\n' % (p.length or 'count', p.name)
+    return out
+
+
 def wrapper(c):
     ret = ctype(c.returns)
     names = ', '.join(p.name for p in c.params)
     out = 'extern "C" %s mural_%s(%s) {\n    ThreadState& self = *tThread;\n' % (ret, c.name, prototype(c))
     encode_args = ', '.join(['self'] + [data_argument(c, p) if p.how in DATA_KINDS else p.name
                                      for p in c.params if p.how != 'skip'])
+    out += buffer_uses(c)
     if c.option('app') == 'writes':
         if c.name.startswith('glBindBuffers'):
             out += '    if (writesThrough(target)) buffersMayBeWritten(self, count, buffers);\n'

@@ -406,6 +406,32 @@ TEST(HeadSession, aNodeLostInMidRequestDoesNotLoseTheAnswer) {
     }
 }
 
+// More than the ring of replies holds, several times over: the head keeps it, and goes on.
+TEST(HeadSession, answersThatAreOwedWaitForTheProgram) {
+    SessionHarness head(2);
+    head.start();
+    head.waitFor("ready");
+    FakeProgram program;
+    ASSERT_TRUE(program.connect(head.config.session));
+    constexpr uint32_t kOwedAnswers = 12, kWords = 300'000;
+    for (uint32_t i = 1; i <= kOwedAnswers; ++i) ASSERT_TRUE(program.publish(kFakeBytes, {capture::kOwed | i, kWords + i}));
+    ASSERT_TRUE(program.publish(kFakeSum, {77}));
+    ASSERT_TRUE(swapFrames(program, 1, 20));
+    ASSERT_TRUE(program.waitFramesDone(20));
+    for (uint32_t i = 1; i <= kOwedAnswers; ++i) {
+        FakeProgram::Answer answer;
+        ASSERT_TRUE(program.readAnswer(answer));
+        EXPECT_EQ(answer.header.requestId, capture::kOwed | i);
+        EXPECT_EQ(answer.header.failed, 0u);
+        EXPECT_EQ(answer.bytes.size(), (kWords + i) * 4u);
+    }
+    FakeProgram::Answer awaited;
+    ASSERT_TRUE(program.readAnswer(awaited));
+    EXPECT_EQ(awaited.header.requestId, 77u);
+    head.finish();
+    EXPECT_EQ(head.status(), 0);
+}
+
 TEST(HeadSession, withoutNodesProgramsGoOnAlone) {
     SessionHarness head(2);
     head.behaviours[0].dieAtFrame = 3;
