@@ -4,6 +4,8 @@
 #include <cstring>
 #include <new>
 
+#include "streamcodec/sizes/vertex_types.hpp"
+
 namespace mural {
 
 using namespace client_arrays;
@@ -53,9 +55,19 @@ bool VertexArrayMirror::setPointer(uint32_t slot, GLint size, GLenum type, GLsiz
     a.type = type;
     a.stride = stride;
     a.flags = flags;
+    a.relative = 0;
     const bool client = arrayBuffer_ == 0 && pointer != nullptr;
     va.set(va.client, slot, client);
     return client;
+}
+
+void VertexArrayMirror::setFormat(uint32_t slot, GLint size, GLenum type, uint32_t flags, GLuint relative) {
+    ArrayPointer& a = current_->slots[slot];
+    if (a.stride == 0) a.stride = static_cast<GLsizei>(sizes::attributeBytes(a.size, a.type)); // vertices stay where they are
+    a.size = size;
+    a.type = type;
+    a.flags = flags;
+    a.relative = relative;
 }
 
 uint32_t VertexArrayMirror::slotOf(GLenum array) const {

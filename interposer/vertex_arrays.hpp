@@ -20,6 +20,7 @@ struct ArrayPointer {
     GLsizei stride = 0;     // as given; 0: tightly packed
     uint32_t flags = 0;     // client_arrays::Flags
     GLuint divisor = 0;
+    GLuint relative = 0;    // from the pointer on, bytes: glVertexAttribFormat
 };
 
 // One vertex array object.
@@ -67,6 +68,8 @@ public:
 
     // True: the pointer is client memory, which travels at the draw; false: an offset, to be sent now.
     bool setPointer(uint32_t slot, GLint size, GLenum type, GLsizei stride, uint32_t flags, const void* pointer);
+    // glVertexAttribFormat: another view of what the slot points to.
+    void setFormat(uint32_t slot, GLint size, GLenum type, uint32_t flags, GLuint relative);
     // The slot of a glEnableClientState name, kSlots when it is none.
     [[nodiscard]] uint32_t slotOf(GLenum array) const;
 

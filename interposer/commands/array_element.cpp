@@ -264,7 +264,7 @@ void sendArray(ThreadState& t, const VertexArray& va, uint32_t slot, GLint i) {
     e.type = a.type;
     e.flags = a.flags;
     const int64_t stride = a.stride > 0 ? a.stride : bytes;
-    const auto* at = static_cast<const std::byte*>(a.pointer) + stride * i;
+    const auto* at = static_cast<const std::byte*>(a.pointer) + a.relative + stride * i;
     if (va.isClient(slot)) std::memcpy(e.bytes, at, bytes);
     else if (!copyFromBuffer(t, slot, at, bytes, e.bytes)) return;
     sendSlot(t, slot, e);

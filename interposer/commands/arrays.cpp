@@ -31,6 +31,16 @@ void point(uint32_t slot, GLint size, GLenum type, GLsizei stride, const void* p
     if (!t.context->arrays.setPointer(slot, size, type, stride, flags, pointer)) send(t);
 }
 
+// False: the program's own context does not take it.
+template <class Local> bool format(GLuint index, GLint size, GLenum type, uint32_t flags, GLuint relative, Local&& local) {
+    ThreadState& t = *tThread;
+    if (!t.context) return local(), false;
+    if (!raisesNothing(*t.context, local)) return false;
+    const GLuint offset = t.context->isMesa ? 0 : relative; // Mesa reads client memory from the pointer on in any case
+    if (index < kGenerics) t.context->arrays.setFormat(kGeneric0 + index, size, type, flags, offset);
+    return true;
+}
+
 void enableSlot(ThreadState& t, uint32_t slot, bool on) {
     if (t.context && slot < kSlots) t.context->arrays.current().enable(slot, on);
 }
@@ -284,7 +294,19 @@ void mural_glDeleteVertexArrays(GLsizei n, const GLuint* arrays) {
     gReal.glDeleteVertexArrays(n, arrays);
 }
 
-// Formats and bindings of ARB_vertex_attrib_binding name buffers, never client memory.
+// Bindings of ARB_vertex_attrib_binding name buffers, never client memory; formats say how either is read.
+void mural_glVertexAttribFormat(GLuint index, GLint size, GLenum type, GLboolean normalized, GLuint relative) {
+    if (format(index, size, type, normalized ? kNormalized : 0, relative, [=] { gReal.glVertexAttribFormat(index, size, type, normalized, relative); }))
+        encode_glVertexAttribFormat(*tThread, index, size, type, normalized, relative);
+}
+void mural_glVertexAttribIFormat(GLuint index, GLint size, GLenum type, GLuint relative) {
+    if (format(index, size, type, kInteger, relative, [=] { gReal.glVertexAttribIFormat(index, size, type, relative); }))
+        encode_glVertexAttribIFormat(*tThread, index, size, type, relative);
+}
+void mural_glVertexAttribLFormat(GLuint index, GLint size, GLenum type, GLuint relative) {
+    if (format(index, size, type, kLong, relative, [=] { gReal.glVertexAttribLFormat(index, size, type, relative); }))
+        encode_glVertexAttribLFormat(*tThread, index, size, type, relative);
+}
 void mural_glVertexAttribBinding(GLuint attribindex, GLuint bindingindex) {
     ThreadState& t = *tThread;
     if (t.context && attribindex < kGenerics && attribindex != bindingindex) {

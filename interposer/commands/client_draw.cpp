@@ -33,7 +33,7 @@ Source sourceOf(const VertexArray& va, uint32_t slot, const VertexRange& r) {
         s.first = static_cast<uint32_t>(r.first);
         s.count = static_cast<uint32_t>(r.last - r.first + 1);
     }
-    s.begin = static_cast<const std::byte*>(a.pointer) + static_cast<size_t>(s.first) * s.stride;
+    s.begin = static_cast<const std::byte*>(a.pointer) + a.relative + static_cast<size_t>(s.first) * s.stride;
     return s;
 }
 

@@ -212,6 +212,12 @@ void mural_glNamedBufferStorage(GLuint buffer, GLsizeiptr size, const void* data
     encode_glNamedBufferStorage(t, buffer, size, DataArg::of(data, size > 0 ? uint64_t(size) : 0), wide);
     gReal.glNamedBufferStorage(buffer, size, data, flags);
 }
+void mural_glNamedBufferStorageEXT(GLuint buffer, GLsizeiptr size, const void* data, GLbitfield flags) {
+    ThreadState& t = *tThread;
+    const GLbitfield wide = flags & GL_MAP_WRITE_BIT ? flags | GL_DYNAMIC_STORAGE_BIT : flags;
+    encode_glNamedBufferStorageEXT(t, buffer, size, DataArg::of(data, size > 0 ? uint64_t(size) : 0), wide);
+    gReal.glNamedBufferStorageEXT(buffer, size, data, flags);
+}
 void mural_glDeleteBuffers(GLsizei n, const GLuint* buffers) {
     ThreadState& t = *tThread;
     if (t.context && n > 0 && buffers) {

@@ -340,6 +340,18 @@ void mural_glEnd() {
     else t.context->openPrimitive = kNoPrimitive;
 }
 
+// In the program's own context primitives are empty, and Mesa may take the attributes that were set in an empty one for
+// current only behind the pop. Asking for one makes it take them all.
+void mural_glPopAttrib() {
+    ThreadState& t = *tThread;
+    encode_glPopAttrib(t);
+    if (const Context* c = t.context; c && !t.drawLocally && c->compatible() && c->openPrimitive == kNoPrimitive) {
+        GLfloat normal[3];
+        gReal.glGetFloatv(GL_CURRENT_NORMAL, normal);
+    }
+    gReal.glPopAttrib();
+}
+
 GLenum mural_glGetError() {
     ThreadState& t = *tThread;
     if (!t.context) return gReal.glGetError();

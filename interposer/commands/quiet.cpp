@@ -49,6 +49,12 @@ void rectangle(const ThreadState& t) {
     if (!t.context || t.context->openPrimitive == kNoPrimitive) gReal.glEnd();
 }
 
+// A mesh is primitives, one for each row, which may be errors. Here one of them, which is empty.
+void evalMesh2(GLenum mode, GLint i1, GLint i2, GLint j1, GLint j2) {
+    const bool begins = mode == GL_FILL ? j1 < j2 : mode == GL_LINE ? i1 <= i2 || j1 <= j2 : true;
+    gReal.glEvalMesh2(mode, 1, 0, begins ? 0 : 1, mode == GL_FILL ? 1 : 0);
+}
+
 void drawPixels(const ThreadState& t, GLsizei width, GLsizei height, GLenum format, GLenum type, const void* pixels) {
     const bool isError = width < 0 || height < 0 || (t.context && outOfUnpackBuffer(*t.context, width, height, format, type, pixels));
     gReal.glDrawPixels(isError ? width : 0, isError ? height : 0, format, type, pixels);

@@ -40,6 +40,7 @@ inline bool vertex(const ThreadState& t, GLuint index) {
 }
 
 void rectangle(const ThreadState& t);
+void evalMesh2(GLenum mode, GLint i1, GLint i2, GLint j1, GLint j2);
 void drawPixels(const ThreadState& t, GLsizei width, GLsizei height, GLenum format, GLenum type, const void* pixels);
 void accumulate(GLenum op, GLfloat value);
 

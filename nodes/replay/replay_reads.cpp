@@ -304,6 +304,11 @@ void Replay::fillDepthStencil(const PixelViewport& r, GLbitfield plane, const vo
         gl.glDepthMask(GL_TRUE);
         gl.glPixelTransferf(GL_DEPTH_SCALE, 1);
         gl.glPixelTransferf(GL_DEPTH_BIAS, 0);
+    } else {
+        gl.glStencilMaskSeparate(GL_FRONT_AND_BACK, ~0U);
+        gl.glPixelTransferi(GL_INDEX_SHIFT, 0);
+        gl.glPixelTransferi(GL_INDEX_OFFSET, 0);
+        gl.glPixelTransferi(GL_MAP_STENCIL, GL_FALSE);
     }
     gl.glPixelZoom(1, 1);
     setUnpack(true);

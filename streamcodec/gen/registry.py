@@ -201,7 +201,7 @@ def load(gl_xml, semantics):
     rules = read_semantics(semantics)
     for name, options, _ in rules:
         if 'alias' in options:
-            commands[name].alias = options['alias']
+            commands[name].alias = None if options['alias'] == 'none' else options['alias']
     root_aliases(commands)
     for pattern, options, number in rules:
         hit = False

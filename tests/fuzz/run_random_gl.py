@@ -8,7 +8,8 @@
   run_random_gl.py --build build/release --profiles core --case "17 3,9,12"  these steps of a seed, calls shown
 
 Each difference is made small (steps are left out while it stays) and shown with its calls. The status is 1 when there
-is one. Seeds that are not the same in two native runs, or end the native run, are counted and not held against Mural.
+is one. A node that is lost is one, too. Seeds that are not the same in two native runs, or end the native run, are counted and
+not held against Mural.
 """
 
 import argparse
@@ -27,6 +28,7 @@ import programs  # noqa: E402
 PROFILES = ["compat", "core", "es3", "es1"]
 BATCH = 6            # seeds of one run
 LAST_LINE = "picture"
+NODE_LOST = " was lost"
 
 
 class Transcript:
@@ -141,6 +143,9 @@ class Hunt:
         native = self.bench.run(profile, cases, True)
         through = self.bench.run(profile, cases, False)
         self.seeds += len(seeds)
+        if NODE_LOST in through.output and all(native.complete(i) for i in range(len(cases))):
+            print("%s seeds %d:%d: a node was lost" % (profile, seeds[0], seeds[-1]), flush=True)
+            self.faults.append((profile, seeds[0], cases[0][1]))
         for i, (seed, steps) in enumerate(cases):
             self.steps += len(steps)
             if not native.complete(i):

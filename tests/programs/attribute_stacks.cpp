@@ -112,6 +112,24 @@ void pushNested(Window& window, int frame) {
     showBits(35, glIsEnabled(GL_COLOR_ARRAY) == GL_TRUE ? 1U : 2U);
 }
 
+// What a primitive leaves current is gone after the pop, also when a texture has changed in between.
+void popBehindAPrimitive() {
+    glPushAttrib(GL_ALL_ATTRIB_BITS);
+    glBegin(GL_POINTS);
+    glNormal3f(0.5F, 0.25F, 1);
+    glVertex2f(3, 3);
+    glEnd();
+    GLuint texture = 0;
+    glGenTextures(1, &texture);
+    glBindTexture(GL_TEXTURE_2D, texture);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, 4, 4, 0, GL_RED, GL_UNSIGNED_BYTE, nullptr);
+    glPopAttrib();
+    GLfloat normal[3] = {};
+    glGetFloatv(GL_CURRENT_NORMAL, normal);
+    showBits(34, normal[0]);
+    glDeleteTextures(1, &texture);
+}
+
 // EXT_direct_state_access: the client's state as in the beginning, on the stack or for good.
 void defaultClientState() {
     GLubyte texels[16 * 16 * 4];
@@ -177,5 +195,6 @@ int main(int argc, char** argv) {
             defaultClientState();
             pushEach(window, frame);
             pushNested(window, frame);
+            popBehindAPrimitive();
         });
 }

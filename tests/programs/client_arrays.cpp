@@ -305,6 +305,20 @@ void drawMixedWithBuffers(int frame) {
     glDeleteBuffers(2, buffers);
 }
 
+// The same memory, read in another format from then on: its vertices stay where they were.
+void drawReformatted(int frame) {
+    const auto places = band<GLfloat>(4, 16, frame);
+    glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, 0, places.data());
+    glEnableVertexAttribArray(0);
+    glColor3f(0.9F, 0.4F, 0.7F);
+    for (const GLuint relative : {0U, 16U}) {
+        glVertexAttribFormat(0, 1, GL_FLOAT, GL_FALSE, relative); // x alone
+        enterCell();
+        glDrawArrays(GL_LINE_STRIP, 0, 11);
+    }
+    glDisableVertexAttribArray(0);
+}
+
 void drawAfterPoppedClientState(int frame) {
     const auto places = band<GLfloat>(2, 8, frame);
     const auto others = band<GLshort>(2, 4, frame + 1);
@@ -371,5 +385,6 @@ int main(int argc, char** argv) {
             drawElementsAnew();
             drawMixedWithBuffers(frame);
             drawAfterPoppedClientState(frame);
+            drawReformatted(frame);
         });
 }

@@ -205,6 +205,28 @@ void drawStencilAndDepth(unsigned frame) {
     glDisable(GL_DEPTH_TEST);
 }
 
+// Stencils that a draw has left get into other tiles whole, whatever the mask and the transfer are.
+void blitStencil(int width, int height) {
+    const int left = width / 2 - 20;
+    glEnable(GL_STENCIL_TEST);
+    glStencilFunc(GL_ALWAYS, 0xff, ~0U);
+    glStencilOp(GL_REPLACE, GL_REPLACE, GL_REPLACE);
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    glRecti(left, 5, left + 40, 20);
+    glStencilMaskSeparate(GL_FRONT, 0xb7);
+    glPixelTransferi(GL_INDEX_OFFSET, 9);
+    glBlitFramebuffer(left, 5, left + 40, 20, 20, height - 30, 60, height - 15, GL_STENCIL_BUFFER_BIT, GL_NEAREST);
+    glPixelTransferi(GL_INDEX_OFFSET, 0);
+    glStencilMask(~0U);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glStencilFunc(GL_EQUAL, 0xff, ~0U);
+    glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+    glColor3f(0.3F, 0.8F, 0.4F);
+    glRecti(0, 0, width, height);
+    glStencilFunc(GL_ALWAYS, 0, ~0U);
+    glDisable(GL_STENCIL_TEST);
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -226,6 +248,7 @@ int main(int argc, char** argv) {
             drawZoomed(number);
             drawTransferred(number);
             drawStencilAndDepth(number);
+            blitStencil(window.width(), window.height());
             copyPixels(window, number);
         });
 }

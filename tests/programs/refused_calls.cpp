@@ -2,6 +2,7 @@
 // Answers are shown as bits.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
+#include "tests/programs/support/shaders.hpp"
 #include "tests/programs/support/show.hpp"
 
 #include <numeric>
@@ -143,10 +144,56 @@ void read() {
     glDeleteFramebuffers(1, &framebuffer);
 }
 
+// A buffer that a call of EXT_direct_state_access names is there from then on, also when the call is refused.
+void nameBuffers() {
+    const GLuint words[] = {11, 22};
+    GLuint buffers[2] = {};
+    glGenBuffers(2, buffers);
+    glNamedBufferSubDataEXT(buffers[0], 8, 4, words);
+    const GLenum error = glGetError();
+    glNamedBufferStorageEXT(buffers[1], sizeof words, words, GL_MAP_READ_BIT);
+    GLuint told = 0;
+    glGetNamedBufferSubDataEXT(buffers[1], 4, 4, &told);
+    showBits(20, error);
+    showBits(21, glIsBuffer(buffers[0]) == GL_TRUE ? 1U : 2U);
+    showBits(22, told);
+    showBar(23, errors());
+    glDeleteBuffers(2, buffers);
+}
+
+// Meshes are lines and strips; the geometry shader takes triangles. Empty ones have no rows or rows of nothing.
+void mesh(GLuint triangles) {
+    const GLfloat places[] = {-0.9F, 0.5F, 0, -0.5F, 0.5F, 0, -0.9F, 0.9F, 0, -0.5F, 0.9F, 0};
+    glMap2f(GL_MAP2_VERTEX_3, 0, 1, 3, 2, 0, 1, 6, 2, places);
+    glEnable(GL_MAP2_VERTEX_3);
+    glMapGrid2f(2, 0, 1, 2, 0, 1);
+    glUseProgram(triangles);
+    const GLint ranges[][4] = {{0, 2, 0, 2}, {2, 0, 0, 2}, {0, 2, 2, 0}, {2, 0, 2, 0}, {0, 2, 1, 1}};
+    std::uint32_t failed = 0;
+    for (const GLenum mode : {GL_POINT, GL_LINE, GL_FILL}) {
+        for (const auto& r : ranges) {
+            glEvalMesh2(mode, r[0], r[1], r[2], r[3]);
+            failed = failed * 2 + errors();
+        }
+    }
+    glUseProgram(0);
+    glDisable(GL_MAP2_VERTEX_3);
+    showBits(24, failed);
+}
+
+GLuint triangleProgram() {
+    return buildProgram({{GL_VERTEX_SHADER, "#version 150 compatibility\nvoid main() { gl_Position = gl_Vertex; }"},
+                         {GL_GEOMETRY_SHADER, R"(#version 150 compatibility
+                             layout(triangles) in; layout(triangle_strip, max_vertices = 3) out;
+                             void main() { for (int i = 0; i < 3; ++i) { gl_Position = gl_in[i].gl_Position; EmitVertex(); } })"},
+                         {GL_FRAGMENT_SHADER, "#version 150 compatibility\nvoid main() { gl_FragColor = vec4(0.9, 0.6, 0.1, 1); }"}});
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
-    return runInGlxWindow(argc, argv, {}, [](Window&) {}, [](Window&, int frame) {
+    static GLuint triangles;
+    return runInGlxWindow(argc, argv, {}, [](Window&) { triangles = triangleProgram(); }, [](Window&, int frame) {
         glClearColor(0.2F, 0.1F, 0.3F, 1);
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
         drawArrays(frame);
@@ -154,5 +201,7 @@ int main(int argc, char** argv) {
         answerIntoBuffer();
         read();
         packed();
+        nameBuffers();
+        mesh(triangles);
     });
 }
