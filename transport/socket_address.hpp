@@ -1,7 +1,12 @@
 // An address of a socket, IPv4 or IPv6.
 #pragma once
 
+#include <cstdint>
+#include <string>
+#include <string_view>
 #include <sys/socket.h>
+
+#include "common/result.hpp"
 
 namespace mural {
 
@@ -15,5 +20,17 @@ struct SocketAddress {
     [[nodiscard]] sockaddr* get() { return reinterpret_cast<sockaddr*>(&storage); }
     [[nodiscard]] int family() const { return storage.ss_family; }
 };
+
+// Of numbers, not names: "10.0.0.1", "ff12::4".
+Result<SocketAddress> numericAddress(const std::string& host, uint16_t port);
+// "10.0.0.1:80", "[ff12::4]:80".
+Result<SocketAddress> numericEndpoint(std::string_view text);
+
+struct HostPort {
+    std::string host;
+    uint16_t port = 0;
+};
+// "host:port"; brackets around IPv6 numbers; the host may be empty.
+Result<HostPort> splitHostPort(std::string_view text);
 
 } // namespace mural

@@ -1,0 +1,164 @@
+// Groups over this machine's own network: real sockets, threads and keys.
+#include "transport/rsp/group.hpp"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+namespace mural::rsp {
+namespace {
+
+std::byte byteAt(uint64_t place) { return static_cast<std::byte>((place * 0x9e3779b97f4a7c15u) >> 56); }
+
+GroupOptions options(Seal seal) {
+    GroupOptions o;
+    // Any free port: tests run beside each other.
+    o.group = "239.255.77.86:" + std::to_string(20'000 + ::getpid() % 20'000);
+    o.interface = "lo";
+    o.control = "127.0.0.1:0";
+    o.secret.fill(std::byte{42});
+    o.seal = seal;
+    // Busy machines are slow; what is asked here is not how fast they are.
+    o.silentMs = o.stalledMs = 30'000;
+    o.probeMs = 10'000;
+    return o;
+}
+
+class GroupTest : public testing::TestWithParam<Seal> {};
+
+TEST_P(GroupTest, AHostAndThreeMembersShareABigStream) {
+    auto host = Group::host(options(GetParam()));
+    ASSERT_TRUE(host) << host.error().message;
+    GroupOptions join = options(GetParam());
+    join.control = (*host)->controlAddress();
+    std::vector<std::unique_ptr<Group>> members;
+    for (int i = 0; i < 3; ++i) {
+        auto member = Group::join(join, Deadline::inMs(10'000));
+        ASSERT_TRUE(member) << member.error().message;
+        members.push_back(std::move(*member));
+    }
+    ASSERT_TRUE((*host)->waitForMembers(3, Deadline::inMs(10'000)));
+    constexpr uint64_t kBytes = 8 << 20;
+    std::vector<std::thread> readers;
+    std::array<uint64_t, 3> read{};
+    std::array<uint64_t, 3> wrong{};
+    for (size_t i = 0; i < members.size(); ++i) {
+        readers.emplace_back([&, i] {
+            std::vector<std::byte> piece(65'536);
+            while (read[i] < kBytes) {
+                auto count = members[i]->read(kHost, piece, Deadline::inMs(30'000));
+                if (!count || *count == 0) return;
+                for (size_t b = 0; b < *count; ++b) wrong[i] += piece[b] != byteAt(read[i] + b);
+                read[i] += *count;
+            }
+        });
+    }
+    std::vector<std::byte> piece(50'000);
+    for (uint64_t at = 0; at < kBytes; at += piece.size()) {
+        const size_t count = std::min<uint64_t>(piece.size(), kBytes - at);
+        for (size_t b = 0; b < count; ++b) piece[b] = byteAt(at + b);
+        const auto written = (*host)->write(std::span(piece).first(count), Deadline::inMs(30'000));
+        ASSERT_TRUE(written) << written.error().message;
+    }
+    (*host)->flush();
+    EXPECT_TRUE((*host)->waitArrived(Deadline::inMs(30'000)));
+    for (auto& r : readers) r.join();
+    for (size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(read[i], kBytes) << i;
+        EXPECT_EQ(wrong[i], 0u) << i;
+    }
+    for (const auto& m : (*host)->report().members) EXPECT_TRUE(m.info.multicast) << m.id;
+}
+
+INSTANTIATE_TEST_SUITE_P(Seals, GroupTest, testing::Values(Seal::None, Seal::Tag, Seal::ChaCha), [](const auto& info) {
+    return std::string(info.param == Seal::None ? "None" : info.param == Seal::Tag ? "Tag" : "ChaCha");
+});
+
+TEST(Group, MembersWriteToo) {
+    auto host = Group::host(options(Seal::Tag));
+    ASSERT_TRUE(host) << host.error().message;
+    GroupOptions join = options(Seal::Tag);
+    join.control = (*host)->controlAddress();
+    auto a = Group::join(join, Deadline::inMs(10'000));
+    join.multicast = false; // through the host
+    auto b = Group::join(join, Deadline::inMs(10'000));
+    ASSERT_TRUE(a && b);
+    ASSERT_TRUE((*host)->waitForMembers(2, Deadline::inMs(10'000)) && (*a)->waitForMembers(2, Deadline::inMs(10'000)) &&
+                (*b)->waitForMembers(2, Deadline::inMs(10'000)));
+    std::array<Group*, 3> all{host->get(), a->get(), b->get()};
+    for (Group* g : all) {
+        const std::array<std::byte, 3> word{std::byte{1}, std::byte{2}, static_cast<std::byte>(g->self())};
+        ASSERT_TRUE(g->write(word, Deadline::inMs(5000)));
+        g->flush();
+    }
+    for (Group* reader : all) {
+        for (const MemberId from : reader->members()) {
+            std::array<std::byte, 3> word{};
+            size_t count = 0;
+            while (count < word.size()) {
+                auto n = reader->read(from, std::span(word).subspan(count), Deadline::inMs(5000));
+                ASSERT_TRUE(n) << n.error().message;
+                ASSERT_GT(*n, 0u);
+                count += *n;
+            }
+            EXPECT_EQ(word[2], static_cast<std::byte>(from));
+        }
+    }
+}
+
+TEST(Group, WhoLeavesIsMissedAndItsStreamEnds) {
+    auto host = Group::host(options(Seal::Tag));
+    ASSERT_TRUE(host) << host.error().message;
+    GroupOptions join = options(Seal::Tag);
+    join.control = (*host)->controlAddress();
+    auto a = Group::join(join, Deadline::inMs(10'000));
+    ASSERT_TRUE(a);
+    const MemberId id = (*a)->self();
+    ASSERT_TRUE((*host)->waitForMembers(1, Deadline::inMs(5000)));
+    auto accepted = (*host)->accept(Deadline::inMs(5000));
+    ASSERT_TRUE(accepted);
+    EXPECT_EQ(*accepted, id);
+    ASSERT_TRUE((*a)->write(std::array{std::byte{9}}, Deadline::inMs(5000)));
+    (*a)->flush();
+    ASSERT_TRUE((*a)->waitArrived(Deadline::inMs(5000)));
+    a->reset();
+    std::array<std::byte, 8> word{};
+    auto count = (*host)->read(id, word, Deadline::inMs(5000));
+    ASSERT_TRUE(count);
+    EXPECT_EQ(*count, 1u) << "what it wrote stays";
+    count = (*host)->read(id, word, Deadline::inMs(5000));
+    ASSERT_TRUE(count);
+    EXPECT_EQ(*count, 0u);
+}
+
+TEST(Group, AWrongSecretAndNoHostAreSaidInOneLine) {
+    auto host = Group::host(options(Seal::Tag));
+    ASSERT_TRUE(host) << host.error().message;
+    GroupOptions join = options(Seal::Tag);
+    join.control = (*host)->controlAddress();
+    join.secret.fill(std::byte{1});
+    const auto wrong = Group::join(join, Deadline::inMs(5000));
+    ASSERT_FALSE(wrong);
+    EXPECT_NE(wrong.error().message.find("secret"), std::string::npos) << wrong.error().message;
+    host->reset();
+    const auto none = Group::join(join, Deadline::inMs(5000));
+    ASSERT_FALSE(none);
+    EXPECT_NE(none.error().message.find(join.control), std::string::npos) << none.error().message;
+}
+
+TEST(Group, TheHostsEndIsTold) {
+    auto host = Group::host(options(Seal::Tag));
+    ASSERT_TRUE(host) << host.error().message;
+    GroupOptions join = options(Seal::Tag);
+    join.control = (*host)->controlAddress();
+    auto a = Group::join(join, Deadline::inMs(10'000));
+    ASSERT_TRUE(a);
+    host->reset();
+    std::array<std::byte, 8> word{};
+    auto count = (*a)->read(kHost, word, Deadline::inMs(5000));
+    ASSERT_FALSE(count);
+    EXPECT_EQ(count.error().message.find("deadline"), std::string::npos) << count.error().message;
+}
+
+} // namespace
+} // namespace mural::rsp

@@ -1,0 +1,52 @@
+// A control connection: TCP, Asio's, with a secure channel in it. All of it on the thread that runs the io_context.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <boost/asio/ip/tcp.hpp>
+
+#include "transport/rsp/control_message.hpp"
+#include "transport/secure_channel.hpp"
+
+namespace mural::rsp {
+
+class ControlLink : public std::enable_shared_from_this<ControlLink> {
+public:
+    using Socket = boost::asio::ip::tcp::socket;
+    struct Events {
+        std::function<void()> opened; // the peer knows the secret
+        std::function<void(const ControlMessage&)> message;
+        std::function<void(const std::string& why)> closed; // once, at the end; nothing comes after it
+    };
+    ControlLink(Socket socket, SecureChannel channel) : socket_(std::move(socket)), channel_(std::move(channel)) {}
+
+    void start(Events events);
+    void send(const ControlMessage& message);
+    // Sends what is to be sent and ends; closed() is told nothing.
+    void hangUp();
+    [[nodiscard]] std::string peerAddress() const;
+    [[nodiscard]] const std::string& name() const { return channel_.name(); }
+    [[nodiscard]] size_t waitingBytes() const { return writing_.size() + waiting_.size(); }
+
+private:
+    void flush();
+    void read();
+    void took(size_t bytes);
+    void close(const std::string& why);
+
+    Socket socket_;
+    SecureChannel channel_;
+    std::shared_ptr<const Events> events_; // shared: they may end this link while they run
+    bool wasOpen_ = false;
+    bool ended_ = false;
+    bool leaving_ = false;
+    std::vector<std::byte> in_ = std::vector<std::byte>(65'536);
+    std::vector<std::byte> writing_; // with the kernel
+    std::vector<std::byte> waiting_;
+};
+
+} // namespace mural::rsp

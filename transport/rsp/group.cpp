@@ -1,0 +1,140 @@
+#include "transport/rsp/group.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "transport/rsp/group_state.hpp"
+
+namespace mural::rsp {
+
+namespace {
+constexpr int64_t kSliceNs = 100'000'000; // how long a wait lasts at most before it looks again
+
+Error tooLate(const std::string& what) { return Error{"the deadline passed while waiting for " + what}; }
+} // namespace
+
+Group::Group(std::shared_ptr<State> state) : state_(std::move(state)) {}
+
+Group::~Group() { state_->stop(); }
+
+Result<std::unique_ptr<Group>> Group::host(const GroupOptions& options) {
+    auto state = std::make_shared<State>(options);
+    if (auto r = state->openHost(); !r) return r.error();
+    return std::unique_ptr<Group>(new Group(std::move(state)));
+}
+
+Result<std::unique_ptr<Group>> Group::join(const GroupOptions& options, Deadline deadline) {
+    auto state = std::make_shared<State>(options);
+    std::unique_ptr<Group> group(new Group(state));
+    if (auto r = state->openMember(deadline); !r) return r.error();
+    std::unique_lock lock(state->mutex);
+    while (!state->core->live() || !state->core->receiver(kHost)) {
+        if (!state->failure.empty()) return Error{state->failure};
+        if (deadline.passed()) return tooLate("the host to take this member in; does " + options.control + " answer?");
+        state->changed.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(kSliceNs)));
+    }
+    return group;
+}
+
+std::string Group::controlAddress() const { return state_->controlAddress; }
+
+MemberId Group::self() const {
+    const std::lock_guard lock(state_->mutex);
+    return state_->core->self();
+}
+
+std::vector<MemberId> Group::members() const {
+    const std::lock_guard lock(state_->mutex);
+    std::vector<MemberId> ids;
+    for (const auto& [id, info] : state_->core->members()) ids.push_back(id);
+    return ids;
+}
+
+Result<void> Group::waitForMembers(size_t count, Deadline deadline) {
+    std::unique_lock lock(state_->mutex);
+    while (state_->core->members().size() < count) {
+        if (!state_->failure.empty()) return Error{state_->failure};
+        if (deadline.passed())
+            return tooLate(std::to_string(count) + " members; " + std::to_string(state_->core->members().size()) + " are there");
+        state_->changed.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(kSliceNs)));
+    }
+    return {};
+}
+
+Result<MemberId> Group::accept(Deadline deadline) {
+    std::unique_lock lock(state_->mutex);
+    while (true) {
+        for (const auto& [id, info] : state_->core->members()) {
+            if (!state_->core->receiver(id) || state_->accepted.contains(id)) continue;
+            state_->accepted.insert(id);
+            return id;
+        }
+        if (!state_->failure.empty()) return Error{state_->failure};
+        if (deadline.passed()) return tooLate("a member");
+        state_->changed.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(kSliceNs)));
+    }
+}
+
+Result<void> Group::write(std::span<const std::byte> bytes, Deadline deadline) {
+    std::unique_lock lock(state_->mutex);
+    while (true) {
+        if (!state_->failure.empty()) return Error{state_->failure};
+        const size_t took = state_->core->sender()->write(bytes);
+        bytes = bytes.subspan(took);
+        if (took > 0) state_->pump();
+        if (bytes.empty()) return {};
+        if (took > 0) continue;
+        if (deadline.passed()) return tooLate("room in the stream; a member is slow");
+        state_->room.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(kSliceNs)));
+    }
+}
+
+void Group::flush() {
+    const std::lock_guard lock(state_->mutex);
+    state_->core->sender()->flush();
+    state_->pump();
+}
+
+Result<void> Group::waitArrived(Deadline deadline) {
+    std::unique_lock lock(state_->mutex);
+    while (!state_->core->sender()->allArrived()) {
+        if (!state_->failure.empty()) return Error{state_->failure};
+        if (deadline.passed()) return tooLate("all members to have everything");
+        state_->room.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(kSliceNs)));
+    }
+    return {};
+}
+
+Result<size_t> Group::read(MemberId from, std::span<std::byte> into, Deadline deadline) {
+    std::unique_lock lock(state_->mutex);
+    while (true) {
+        Receiver* r = state_->core->receiver(from);
+        size_t count = 0;
+        while (r && count < into.size()) {
+            const auto bytes = r->readable();
+            if (bytes.empty()) break;
+            const size_t n = std::min(bytes.size(), into.size() - count);
+            std::memcpy(into.data() + count, bytes.data(), n);
+            r->consume(n);
+            count += n;
+        }
+        if (count > 0) {
+            state_->pump();
+            return count;
+        }
+        if (!state_->core->members().contains(from)) {
+            state_->core->forget(from);
+            return size_t{0};
+        }
+        if (!state_->failure.empty()) return Error{state_->failure};
+        if (deadline.passed()) return tooLate("bytes of member " + std::to_string(from));
+        state_->data.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(kSliceNs)));
+    }
+}
+
+GroupReport Group::report() const {
+    const std::lock_guard lock(state_->mutex);
+    return state_->report();
+}
+
+} // namespace mural::rsp

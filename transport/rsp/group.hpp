@@ -1,0 +1,98 @@
+// A multicast group of this process: sockets, a thread and a lock around GroupCore. The host's clock, network and members
+// are real here; all that is decided is decided there.
+//
+// Threads: one thread of the group's own receives and keeps time; any thread may write, read, wait and ask. One at a time
+// writes; one at a time reads a member's stream.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/clock.hpp"
+#include "common/result.hpp"
+#include "transport/rsp/datagram_seal.hpp"
+#include "transport/rsp/group_core.hpp"
+#include "transport/secure_channel.hpp"
+
+namespace mural::rsp {
+
+struct GroupOptions {
+    std::string group = "239.255.77.85:4277"; // multicast address and port; IPv6 in brackets
+    std::string interface;                    // name or address; empty: the first that does multicast
+    std::string control = ":0";               // host: where it listens; member: where the host listens
+    std::string name = "member";              // by which the host knows the member's secret
+    ChannelSecret secret{};
+    bool multicast = true;
+    // The host's:
+    Seal seal = Seal::None;
+    double bytesPerS = 0;       // at most; 0: 0.9 of what the card says, else no limit but the window
+    size_t datagramBytes = 0;   // UDP payload; 0: what the card's packets hold
+    uint32_t windowDatagrams = 4096;
+    size_t socketBytes = size_t{8} << 20;
+    StallPolicy stalled = StallPolicy::Eject;
+    int64_t stalledMs = 2000;
+    int64_t silentMs = 1000;
+    int64_t probeMs = 300; // how long a member may take to see multicast
+    bool parity = true;
+};
+
+struct GroupReport {
+    SenderCounters sender;
+    RefusedDatagrams refused;
+    uint64_t sendings = 0; // system calls
+    uint32_t socketDropped = 0;
+    std::string sendingBy;
+    double bytesPerS = 0; // that the rate allows now
+    struct Stream {
+        MemberId from = 0;
+        ReceiveCounters received;
+        uint32_t lost = 0;
+        uint64_t feedback = 0;
+    };
+    std::vector<Stream> streams;
+    struct Member {
+        MemberId id = 0;
+        MemberInfo info;
+        MemberState state;
+        bool waitedFor = false;
+    };
+    std::vector<Member> members;
+};
+
+class Group {
+public:
+    static Result<std::unique_ptr<Group>> host(const GroupOptions& options);
+    // Returns when this process is a member, or the deadline has passed.
+    static Result<std::unique_ptr<Group>> join(const GroupOptions& options, Deadline deadline);
+    ~Group(); // leaves
+
+    // host:port at which members find the host.
+    [[nodiscard]] std::string controlAddress() const;
+    [[nodiscard]] MemberId self() const;
+    // The ids of all others now.
+    [[nodiscard]] std::vector<MemberId> members() const;
+    Result<void> waitForMembers(size_t count, Deadline deadline);
+    // A member whose stream has begun and that was not yet returned.
+    Result<MemberId> accept(Deadline deadline);
+
+    // Copies all of `bytes` into the stream, waiting for room. Errors: the deadline, the group's end.
+    Result<void> write(std::span<const std::byte> bytes, Deadline deadline);
+    void flush();
+    // All that was flushed is at all members.
+    Result<void> waitArrived(Deadline deadline);
+
+    // What is there of a member's stream, at least one byte; waits for it. 0: the member is gone, and all was read.
+    Result<size_t> read(MemberId from, std::span<std::byte> into, Deadline deadline);
+
+    [[nodiscard]] GroupReport report() const;
+
+private:
+    struct State;
+    explicit Group(std::shared_ptr<State> state);
+    std::shared_ptr<State> state_;
+};
+
+} // namespace mural::rsp

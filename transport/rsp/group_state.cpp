@@ -1,0 +1,361 @@
+#include "transport/rsp/group_state.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <netinet/in.h>
+#include <sodium.h>
+
+#include <boost/asio/post.hpp>
+
+#include "transport/tcp_address.hpp"
+
+namespace mural::rsp {
+
+namespace asio = boost::asio;
+using boost::system::error_code;
+
+namespace {
+
+constexpr double kShareOfLink = 0.9;
+constexpr size_t kUdpOverIpv4Bytes = 28;
+constexpr size_t kUdpOverIpv6Bytes = 48;
+constexpr size_t kMostDatagramBytes = 8972; // longer ones lose more at once than they save
+
+int64_t steadyNs() { return monotonicNowNs(); }
+
+} // namespace
+
+Group::State::State(const GroupOptions& options) : options_(options) {}
+
+Group::State::~State() { stop(); }
+
+Result<void> Group::State::openSockets() {
+    auto group = numericEndpoint(options_.group);
+    if (!group) return group.error();
+    group_ = *group;
+    auto interface = findInterface(options_.interface, group_.family());
+    if (!interface) return interface.error();
+    interface_ = *interface;
+    auto own = UdpSocket::openOwn(interface_, group_.family(), options_.socketBytes);
+    if (!own) return own.error();
+    own_.emplace(std::move(*own));
+    ownEvents_.emplace(context_, own_->descriptor());
+    outbox_.emplace(*own_);
+    outbox_->setGroup(group_);
+    return {};
+}
+
+Result<void> Group::State::joinMulticast() {
+    auto socket = UdpSocket::openGroup(group_, interface_, options_.socketBytes);
+    if (!socket) return socket.error();
+    groupSocket_.emplace(std::move(*socket));
+    groupEvents_.emplace(context_, groupSocket_->descriptor());
+    return {};
+}
+
+Result<void> Group::State::openCore(bool isHost) {
+    if (sodium_init() < 0) return Error{"libsodium can't find random numbers"};
+    GroupSettings s;
+    s.host = isHost;
+    randombytes_buf(s.uuid.data(), s.uuid.size());
+    randombytes_buf(&s.firstSequence, sizeof s.firstSequence);
+    randombytes_buf(&s.probeSeed, sizeof s.probeSeed);
+    s.multicast = options_.multicast;
+    s.udpPort = tcpPort(own_->localAddress());
+    const size_t overhead = group_.family() == AF_INET ? kUdpOverIpv4Bytes : kUdpOverIpv6Bytes;
+    const size_t most = std::min(interface_.mtuBytes - overhead, kMostDatagramBytes);
+    s.mostDatagramBytes = static_cast<uint16_t>(most);
+    s.datagramBytes = static_cast<uint16_t>(options_.datagramBytes != 0 ? options_.datagramBytes : most);
+    s.socketDatagrams = own_->capacity(s.datagramBytes);
+    s.seals = 0;
+    for (const Seal seal : {Seal::None, Seal::Tag, Seal::AesGcm, Seal::ChaCha})
+        if (available(seal)) s.seals |= static_cast<uint8_t>(1 << static_cast<int>(seal));
+    s.group = options_.group;
+    if (isHost) s.keys = makeSessionKeys(options_.seal);
+    s.windowDatagrams = options_.windowDatagrams;
+    s.rate.mostBytesPerS = options_.bytesPerS > 0 ? options_.bytesPerS : kShareOfLink * interface_.bytesPerS;
+    s.parity = options_.parity;
+    s.stalled = options_.stalled;
+    s.stalledNs = options_.stalledMs * kNsPerMs;
+    s.silentNs = options_.silentMs * kNsPerMs;
+    s.probeNs = options_.probeMs * kNsPerMs;
+    if (isHost) {
+        outbox_->useKeys(s.keys, kHost);
+        opener_.emplace(s.keys);
+    }
+    core = std::make_unique<GroupCore>(s, *this);
+    return {};
+}
+
+Result<void> Group::State::openHost() {
+    if (auto r = openSockets(); !r) return r.error();
+    // The host hears the other members' streams, too.
+    if (auto r = joinMulticast(); !r) return r.error();
+    if (auto r = openCore(true); !r) return r.error();
+    auto where = splitHostPort(options_.control);
+    if (!where) return where.error();
+    error_code failed;
+    const auto address = where->host.empty() ? asio::ip::address(asio::ip::address_v6::any()) : asio::ip::make_address(where->host, failed);
+    if (failed) return Error{"\"" + where->host + "\" is no address to listen at; give numbers"};
+    try {
+        acceptor_.emplace(context_, Tcp::endpoint(address, where->port));
+        controlAddress = tcpText(localTcpAddress(acceptor_->native_handle())).substr(std::strlen("tcp://"));
+    } catch (const boost::system::system_error& e) {
+        return Error{"can't listen at " + options_.control + ": " + e.code().message()};
+    }
+    acceptLinks();
+    startThread();
+    return {};
+}
+
+Result<void> Group::State::openMember(Deadline deadline) {
+    if (auto r = openSockets(); !r) return r.error();
+    if (auto r = openCore(false); !r) return r.error();
+    auto where = splitHostPort(options_.control);
+    if (!where) return where.error();
+    auto addresses = resolveTcp(where->host, where->port, TcpRole::Connect, deadline);
+    if (!addresses) return addresses.error();
+    Tcp::socket socket(context_);
+    error_code failed = asio::error::host_not_found;
+    for (const TcpAddress& a : *addresses) {
+        Tcp::endpoint end;
+        std::memcpy(end.data(), &a.storage, a.sizeBytes);
+        end.resize(a.sizeBytes);
+        socket = Tcp::socket(context_);
+        socket.connect(end, failed);
+        if (!failed) break;
+    }
+    if (failed) return Error{"can't reach the group's host at " + options_.control + ": " + failed.message()};
+    auto link = std::make_shared<ControlLink>(std::move(socket), SecureChannel::connecting(options_.name, options_.secret));
+    hostAddress_ = link->peerAddress();
+    asio::post(context_, [this, link] { startLink(kHost, link); });
+    startThread();
+    return {};
+}
+
+void Group::State::startThread() {
+    asio::post(context_, [this] {
+        hear(*own_, *ownEvents_);
+        if (groupSocket_) hear(*groupSocket_, *groupEvents_);
+        const std::lock_guard lock(mutex);
+        threadId_ = std::this_thread::get_id();
+        pump();
+    });
+    thread_ = std::thread([this] {
+        const auto work = asio::make_work_guard(context_);
+        context_.run();
+    });
+}
+
+void Group::State::stop() {
+    if (!thread_.joinable()) return;
+    asio::post(context_, [this] {
+        {
+            const std::lock_guard lock(mutex);
+            if (failure.empty()) failure = "this member has left the group";
+            if (links_.contains(kHost)) links_.at(kHost)->send(Leave{});
+        }
+        for (const auto& [id, link] : links_) link->hangUp();
+        // What was written last goes out as the sockets close; nobody is waited for.
+        asio::post(context_, [this] { context_.stop(); });
+    });
+    thread_.join();
+    ownEvents_->release();
+    if (groupEvents_) groupEvents_->release();
+    room.notify_all();
+    data.notify_all();
+    changed.notify_all();
+}
+
+void Group::State::fail(const std::string& why) {
+    if (failure.empty()) failure = why.empty() ? "the group's host has ended it" : why;
+    room.notify_all();
+    data.notify_all();
+    changed.notify_all();
+}
+
+void Group::State::acceptLinks() {
+    acceptor_->async_accept([this](const error_code& failed, Tcp::socket socket) {
+        if (failed == asio::error::operation_aborted) return;
+        if (!failed) {
+            const ChannelSecret secret = options_.secret;
+            auto channel = SecureChannel::accepting([secret](const std::string&) { return std::optional(secret); });
+            auto link = std::make_shared<ControlLink>(std::move(socket), std::move(channel));
+            strangers_.insert(link);
+            const auto id = std::make_shared<std::optional<MemberId>>();
+            ControlLink::Events events;
+            events.opened = [this, link, id] {
+                strangers_.erase(link);
+                const std::lock_guard lock(mutex);
+                *id = core->connected(link->peerAddress(), steadyNs());
+                if (*id) links_[**id] = link;
+            };
+            events.message = [this, id](const ControlMessage& m) {
+                if (!*id) return;
+                const std::lock_guard lock(mutex);
+                core->inputControl(**id, m, steadyNs());
+                pump();
+            };
+            events.closed = [this, link, id](const std::string&) {
+                strangers_.erase(link);
+                if (!*id) return;
+                const std::lock_guard lock(mutex);
+                links_.erase(**id);
+                core->disconnected(**id, steadyNs());
+                pump();
+            };
+            link->start(std::move(events));
+        }
+        acceptLinks();
+    });
+}
+
+// A member's link to the host.
+void Group::State::startLink(MemberId id, const std::shared_ptr<ControlLink>& link) {
+    links_[id] = link;
+    ControlLink::Events events;
+    events.opened = [this] {
+        const std::lock_guard lock(mutex);
+        core->begin();
+    };
+    events.message = [this](const ControlMessage& m) {
+        const std::lock_guard lock(mutex);
+        core->inputControl(kHost, m, steadyNs());
+        if (core->over()) fail("the group's host has removed this member; join again");
+        pump();
+        changed.notify_all();
+    };
+    events.closed = [this](const std::string& why) {
+        const std::lock_guard lock(mutex);
+        links_.clear();
+        core->disconnected(kHost, steadyNs());
+        fail(why);
+    };
+    link->start(std::move(events));
+}
+
+void Group::State::hear(UdpSocket& socket, asio::posix::stream_descriptor& descriptor) {
+    descriptor.async_wait(asio::posix::stream_descriptor::wait_read, [this, &socket, &descriptor](const error_code& failed) {
+        if (failed) return;
+        {
+            const std::lock_guard lock(mutex);
+            const int64_t now = steadyNs();
+            socket.receive([&](std::span<std::byte> bytes, const SocketAddress&) {
+                if (!opener_) return;
+                const auto opened = opener_->open(bytes);
+                if (!opened.empty()) core->inputDatagram(opened, now);
+            });
+            core->socketDropped((groupSocket_ ? groupSocket_->dropped() : 0) + own_->dropped());
+            pump();
+        }
+        hear(socket, descriptor);
+    });
+}
+
+void Group::State::pump() {
+    const int64_t next = core->tick(steadyNs());
+    outbox_->flush();
+    if (core->sender() && (core->sender()->roomBytes() > 0 || core->sender()->allArrived())) room.notify_one();
+    data.notify_all();
+    if (next >= timerNs_) return;
+    timerNs_ = next;
+    if (onThread()) return armTimer();
+    if (!std::exchange(timerPosted_, true)) {
+        asio::post(context_, [this] {
+            const std::lock_guard lock(mutex);
+            timerPosted_ = false;
+            armTimer();
+        });
+    }
+}
+
+void Group::State::armTimer() {
+    timer_.expires_after(std::chrono::nanoseconds(std::max<int64_t>(0, timerNs_ - steadyNs())));
+    timer_.async_wait([this](const error_code& failed) {
+        if (failed) return;
+        const std::lock_guard lock(mutex);
+        timerNs_ = INT64_MAX;
+        pump();
+    });
+}
+
+void Group::State::sendControl(MemberId to, const ControlMessage& message) {
+    const auto found = links_.find(to);
+    if (found != links_.end()) found->second->send(message);
+}
+
+// From a writer's thread too; the links belong to ours.
+void Group::State::control(MemberId to, const ControlMessage& message) {
+    asio::post(context_, [this, to, message] { sendControl(to, message); });
+}
+
+std::span<std::byte> Group::State::datagram(MemberId to, size_t bytes) { return outbox_->datagram(to, bytes); }
+
+void Group::State::welcomed(const Welcome& w) {
+    if (auto group = numericEndpoint(w.group)) group_ = *group;
+    outbox_->setGroup(group_);
+    outbox_->useKeys(w.keys, w.self);
+    opener_.emplace(w.keys);
+    opener_->addMember(kHost);
+    // Where that fails no probe comes, and the host sends through its connection.
+    if (options_.multicast && joinMulticast()) hear(*groupSocket_, *groupEvents_);
+}
+
+void Group::State::memberCame(MemberId id, const MemberInfo& info) {
+    opener_->addMember(id);
+    const std::string& host = info.address.empty() ? hostAddress_ : info.address;
+    if (auto address = numericAddress(host, info.udpPort)) {
+        // A peer that came over IPv6 with an IPv4 address in it.
+        auto* six = reinterpret_cast<sockaddr_in6*>(address->get());
+        if (address->family() == AF_INET6 && group_.family() == AF_INET && IN6_IS_ADDR_V4MAPPED(&six->sin6_addr)) {
+            sockaddr_in four{};
+            four.sin_family = AF_INET;
+            four.sin_port = six->sin6_port;
+            std::memcpy(&four.sin_addr, &six->sin6_addr.s6_addr[12], 4);
+            std::memcpy(&address->storage, &four, sizeof four);
+            address->sizeBytes = sizeof four;
+        }
+        outbox_->setMember(id, *address);
+    }
+    changed.notify_all();
+}
+
+void Group::State::memberGone(MemberId id, GoneReason) {
+    opener_->removeMember(id);
+    outbox_->removeMember(id);
+    data.notify_all();
+    changed.notify_all();
+}
+
+void Group::State::hangUp(MemberId id, const std::string& why) {
+    if (!core || id == kHost) fail(why);
+    asio::post(context_, [this, id] {
+        const auto found = links_.find(id);
+        if (found == links_.end()) return;
+        found->second->hangUp();
+        links_.erase(found);
+    });
+}
+
+GroupReport Group::State::report() const {
+    GroupReport r;
+    if (const Sender* s = core->sender()) {
+        r.sender = s->counters();
+        r.bytesPerS = s->rate().limited() ? s->rate().bytesPerS() : 0;
+        for (const auto& [id, state] : s->members()) {
+            const auto info = core->members().find(id);
+            r.members.push_back({id, info == core->members().end() ? MemberInfo{} : info->second, state, s->waitsFor(state)});
+        }
+    }
+    if (opener_) r.refused = opener_->refused();
+    r.sendings = outbox_->sendings();
+    r.sendingBy = own_->sendingBy();
+    r.socketDropped = (groupSocket_ ? groupSocket_->dropped() : 0) + own_->dropped();
+    for (const auto& [id, info] : core->members()) {
+        if (const Receiver* receiver = core->receiver(id))
+            r.streams.push_back({id, receiver->counters(), receiver->lost(), receiver->feedbackSent()});
+    }
+    return r;
+}
+
+} // namespace mural::rsp

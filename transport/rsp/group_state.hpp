@@ -1,0 +1,85 @@
+// What is behind a Group: its core, sockets, control connections and thread.
+#pragma once
+
+#include <condition_variable>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include "transport/rsp/batch_outbox.hpp"
+#include "transport/rsp/control_link.hpp"
+#include "transport/rsp/group.hpp"
+
+namespace mural::rsp {
+
+struct Group::State : GroupOutput {
+    explicit State(const GroupOptions& options);
+    ~State() override;
+
+    Result<void> openHost();
+    Result<void> openMember(Deadline deadline);
+    void stop();
+
+    // The following with the mutex held.
+    void pump(); // what is due now: sends, and wakes who waits
+    [[nodiscard]] GroupReport report() const;
+
+    // GroupOutput
+    void control(MemberId to, const ControlMessage& message) override;
+    std::span<std::byte> datagram(MemberId to, size_t bytes) override;
+    void welcomed(const Welcome& w) override;
+    void memberCame(MemberId id, const MemberInfo& info) override;
+    void memberGone(MemberId id, GoneReason reason) override;
+    void hangUp(MemberId id, const std::string& why) override;
+
+    mutable std::mutex mutex;
+    std::condition_variable room;    // for writers
+    std::condition_variable data;    // for readers
+    std::condition_variable changed; // members
+    std::unique_ptr<GroupCore> core;
+    std::string failure; // why the group is over; empty: it is not
+    std::set<MemberId> accepted;
+    std::string controlAddress;
+
+private:
+    using Tcp = boost::asio::ip::tcp;
+
+    Result<void> openSockets();
+    Result<void> joinMulticast();
+    Result<void> openCore(bool isHost);
+    void startThread();
+    void acceptLinks();
+    void startLink(MemberId id, const std::shared_ptr<ControlLink>& link);
+    void hear(UdpSocket& socket, boost::asio::posix::stream_descriptor& descriptor);
+    void armTimer();
+    void fail(const std::string& why);
+    [[nodiscard]] bool onThread() const { return std::this_thread::get_id() == threadId_; }
+    void sendControl(MemberId to, const ControlMessage& message);
+
+    GroupOptions options_;
+    SocketAddress group_;
+    NetworkInterface interface_;
+    boost::asio::io_context context_;
+    boost::asio::steady_timer timer_{context_};
+    std::optional<Tcp::acceptor> acceptor_;
+    std::optional<UdpSocket> own_;
+    std::optional<UdpSocket> groupSocket_;
+    std::optional<boost::asio::posix::stream_descriptor> ownEvents_;
+    std::optional<boost::asio::posix::stream_descriptor> groupEvents_;
+    std::optional<BatchOutbox> outbox_;
+    std::optional<DatagramOpener> opener_;
+    std::map<MemberId, std::shared_ptr<ControlLink>> links_;
+    std::set<std::shared_ptr<ControlLink>> strangers_; // have not shown that they know the secret
+    std::string hostAddress_;
+    int64_t timerNs_ = INT64_MAX;
+    bool timerPosted_ = false;
+    std::thread thread_;
+    std::thread::id threadId_; // told by itself
+};
+
+} // namespace mural::rsp

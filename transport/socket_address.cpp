@@ -1,0 +1,45 @@
+#include "transport/socket_address.hpp"
+
+#include <charconv>
+#include <cstring>
+#include <netdb.h>
+#include <netinet/in.h>
+
+namespace mural {
+
+Result<SocketAddress> numericAddress(const std::string& host, uint16_t port) {
+    addrinfo hints{};
+    hints.ai_family = AF_UNSPEC;
+    hints.ai_socktype = SOCK_DGRAM;
+    hints.ai_flags = AI_NUMERICHOST | AI_NUMERICSERV;
+    addrinfo* list = nullptr;
+    if (getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &list) != 0)
+        return Error{"\"" + host + "\" is no network address; give numbers, as 10.0.0.1 or ff12::4"};
+    SocketAddress address;
+    std::memcpy(&address.storage, list->ai_addr, list->ai_addrlen);
+    address.sizeBytes = list->ai_addrlen;
+    freeaddrinfo(list);
+    return address;
+}
+
+Result<HostPort> splitHostPort(std::string_view text) {
+    const size_t colon = text.rfind(':');
+    const Error wrong{"\"" + std::string(text) + "\" is not host:port; IPv6 numbers stand in brackets, as [::1]:80"};
+    if (colon == std::string_view::npos) return wrong;
+    std::string_view host = text.substr(0, colon);
+    const std::string_view digits = text.substr(colon + 1);
+    if (host.size() >= 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
+    else if (host.find(':') != std::string_view::npos) return wrong;
+    HostPort result{std::string(host), 0};
+    const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), result.port);
+    if (code != std::errc() || end != digits.data() + digits.size() || digits.empty()) return wrong;
+    return result;
+}
+
+Result<SocketAddress> numericEndpoint(std::string_view text) {
+    auto parts = splitHostPort(text);
+    if (!parts) return parts.error();
+    return numericAddress(parts->host, parts->port);
+}
+
+} // namespace mural
