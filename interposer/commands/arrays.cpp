@@ -296,7 +296,7 @@ void mural_glDeleteVertexArrays(GLsizei n, const GLuint* arrays) {
 
 // Bindings of ARB_vertex_attrib_binding name buffers, never client memory; formats say how either is read.
 void mural_glVertexAttribFormat(GLuint index, GLint size, GLenum type, GLboolean normalized, GLuint relative) {
-    if (format(index, size, type, normalized ? kNormalized : 0, relative, [=] { gReal.glVertexAttribFormat(index, size, type, normalized, relative); }))
+    if (format(index, size, type, normalized ? uint32_t{kNormalized} : 0, relative, [=] { gReal.glVertexAttribFormat(index, size, type, normalized, relative); }))
         encode_glVertexAttribFormat(*tThread, index, size, type, normalized, relative);
 }
 void mural_glVertexAttribIFormat(GLuint index, GLint size, GLenum type, GLuint relative) {

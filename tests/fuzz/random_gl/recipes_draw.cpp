@@ -17,7 +17,9 @@ GLenum anyPrimitive(World& w) {
     if (w.shaders() && w.random.chance(5)) {
         return w.random.chance(50) ? GL_PATCHES : GL_TRIANGLES_ADJACENCY;
     }
-    return w.random.of(kPrimitives);
+    const GLenum primitive = w.random.of(kPrimitives);
+    // Mesa's software driver draws points that are sprites a row beyond the scissor: in two tiles, counted twice.
+    return w.countsSamples && primitive == GL_POINTS ? GLenum{GL_LINES} : primitive;
 }
 
 const void* offsetOf(std::size_t bytes) {
@@ -50,7 +52,8 @@ void genericArrays(World& w) {
     constexpr GLenum types[] = {GL_FLOAT, GL_FLOAT, GL_FLOAT, GL_FLOAT, GL_BYTE, GL_UNSIGNED_BYTE, GL_SHORT, GL_UNSIGNED_SHORT};
     for (GLuint i = 0; i < 3; ++i) {
         const int size = w.random.between(2, 4);
-        if (w.random.chance(6)) {
+        // What a float input reads from integers is undefined: as colours the same everywhere, as positions nearly 0 by nearly 0.
+        if (w.random.chance(6) && i != 0) {
             GL(glVertexAttribIPointer, i, size, w.random.chance(50) ? GL_INT : GL_UNSIGNED_BYTE, 16, vertexPlace(w, buffered));
         } else {
             GL(glVertexAttribPointer, i, size, i == 0 ? GL_FLOAT : w.random.of(types), w.random.chance(40) ? GL_TRUE : GL_FALSE,

@@ -76,9 +76,11 @@ void query(World& w) {
     GL(glGenQueries, 1, &name);
     w.keep(Kind::Query, name);
     GL(glBeginQuery, target, name);
+    w.countsSamples = target == GL_SAMPLES_PASSED;
     for (std::uint32_t i = w.random.between(1, 2); i > 0; --i) {
         drawSomething(w);
     }
+    w.countsSamples = false;
     GL(glEndQuery, target);
     GLuint result = 0;
     GL(glGetQueryObjectuiv, name, GL_QUERY_RESULT, &result);

@@ -70,9 +70,10 @@ TEST_P(GroupTest, AHostAndThreeMembersShareABigStream) {
     for (const auto& m : (*host)->report().members) EXPECT_TRUE(m.info.multicast) << m.id;
 }
 
-INSTANTIATE_TEST_SUITE_P(Seals, GroupTest, testing::Values(Seal::None, Seal::Tag, Seal::ChaCha), [](const auto& info) {
-    return std::string(info.param == Seal::None ? "None" : info.param == Seal::Tag ? "Tag" : "ChaCha");
-});
+std::string testName(const testing::TestParamInfo<Seal>& tested) {
+    return tested.param == Seal::None ? "None" : tested.param == Seal::Tag ? "Tag" : "ChaCha";
+}
+INSTANTIATE_TEST_SUITE_P(Seals, GroupTest, testing::Values(Seal::None, Seal::Tag, Seal::ChaCha), testName);
 
 TEST(Group, MembersWriteToo) {
     auto host = Group::host(options(Seal::Tag));
