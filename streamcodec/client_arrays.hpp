@@ -26,7 +26,7 @@ struct ArrayRecord {
     uint32_t strideBytes;   // never 0
     uint32_t span;
     uint32_t offsetBytes;   // of this array's first element in the span
-    uint32_t firstElement;  // index of that element
+    int32_t firstElement;   // index of that element; below 0 where a draw begins before the array
     uint32_t elementCount;
 };
 

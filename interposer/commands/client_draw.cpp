@@ -17,7 +17,7 @@ struct Source {
     const std::byte* begin;  // of the first element that the draw reads
     uint32_t elementBytes;
     uint32_t stride;
-    uint32_t first;
+    int32_t first; // below 0: before the array, as drivers read it
     uint32_t count;
 };
 
@@ -27,13 +27,13 @@ Source sourceOf(const VertexArray& va, uint32_t slot, const VertexRange& r) {
     Source s{slot, nullptr, sizes::attributeBytes(a.size, a.type), 0, 0, 0};
     s.stride = a.stride > 0 ? static_cast<uint32_t>(a.stride) : s.elementBytes;
     if (a.divisor > 0) {
-        s.first = r.baseInstance;
+        s.first = static_cast<int32_t>(r.baseInstance);
         s.count = r.instances > 0 ? (r.instances - 1) / a.divisor + 1 : 0;
-    } else if (r.last >= r.first && r.first >= 0) {
-        s.first = static_cast<uint32_t>(r.first);
+    } else if (r.last >= r.first && r.first >= INT32_MIN && r.first <= INT32_MAX) {
+        s.first = static_cast<int32_t>(r.first);
         s.count = static_cast<uint32_t>(r.last - r.first + 1);
     }
-    s.begin = static_cast<const std::byte*>(a.pointer) + a.relative + static_cast<size_t>(s.first) * s.stride;
+    s.begin = static_cast<const std::byte*>(a.pointer) + a.relative + ptrdiff_t{s.first} * s.stride;
     return s;
 }
 

@@ -126,7 +126,7 @@ void mural_glDrawArrays(GLenum mode, GLint first, GLsizei count) {
 void mural_glDrawArraysInstanced(GLenum mode, GLint first, GLsizei count, GLsizei instancecount) {
     ThreadState& t = *tThread;
     const auto send = [&] {
-        prepareArrays(t, first, count, instancecount);
+        prepareArrays(t, first, first < 0 ? 0 : count, instancecount);
         encode_glDrawArraysInstanced(t, mode, first, count, instancecount);
     };
     if (drawnCounted(t, [&] { gReal.glDrawArraysInstanced(mode, first, count, instancecount); }, send)) return;
@@ -135,7 +135,7 @@ void mural_glDrawArraysInstanced(GLenum mode, GLint first, GLsizei count, GLsize
 }
 void mural_glDrawArraysInstancedBaseInstance(GLenum mode, GLint first, GLsizei count, GLsizei instancecount, GLuint baseinstance) {
     ThreadState& t = *tThread;
-    prepareArrays(t, first, count, instancecount, baseinstance);
+    prepareArrays(t, first, first < 0 ? 0 : count, instancecount, baseinstance);
     encode_glDrawArraysInstancedBaseInstance(t, mode, first, count, instancecount, baseinstance);
     gReal.glDrawArraysInstancedBaseInstance(mode, first, quiet::count(t, count), instancecount, baseinstance);
 }

@@ -272,7 +272,7 @@ bool Replay::ownClientArrays(Args& in) {
     for (uint32_t i = 0; i < arrayCount; ++i) {
         const ArrayRecord& a = arrays[i];
         const auto first = reinterpret_cast<uintptr_t>(c_->arrayMemory[a.span].data()) + a.offsetBytes;
-        setArrayPointer(a, reinterpret_cast<const std::byte*>(first - uintptr_t{a.firstElement} * a.strideBytes));
+        setArrayPointer(a, reinterpret_cast<const std::byte*>(first - static_cast<uintptr_t>(intptr_t{a.firstElement} * a.strideBytes)));
     }
     if (c_->arrayBuffer && gl.glBindBuffer) gl.glBindBuffer(GL_ARRAY_BUFFER, c_->arrayBuffer);
     return true;

@@ -340,6 +340,28 @@ void drawAfterPoppedClientState(int frame) {
     showBits(37, std::uint32_t(alignment));
 }
 
+// Draws that begin before their array read what stands there.
+void drawFromBefore(int frame) {
+    const auto places = band<GLfloat>(2, 8, frame);
+    const auto palette = colors(frame);
+    glEnableClientState(GL_VERTEX_ARRAY);
+    glEnableClientState(GL_COLOR_ARRAY);
+    glVertexPointer(2, GL_FLOAT, 0, &places[8 * 4]);
+    glColorPointer(4, GL_UNSIGNED_BYTE, 0, &palette[4 * 4]);
+    const GLint firsts[] = {-4, 3};
+    const GLsizei counts[] = {6, 4};
+    enterCell();
+    glMultiDrawArrays(GL_TRIANGLE_STRIP, firsts, counts, 2);
+    const GLubyte order[] = {1, 2, 3, 4, 5, 6};
+    enterCell();
+    glDrawElementsBaseVertex(GL_TRIANGLE_STRIP, 6, GL_UNSIGNED_BYTE, order, -4);
+    enterCell();
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, -1000000000, 6, 2); // an error
+    showBits(38, glGetError());
+    glDisableClientState(GL_COLOR_ARRAY);
+    glDisableClientState(GL_VERTEX_ARRAY);
+}
+
 void makeTextures() {
     GLubyte texels[4 * 4 * 3];
     Sequence numbers(8);
@@ -386,5 +408,6 @@ int main(int argc, char** argv) {
             drawMixedWithBuffers(frame);
             drawAfterPoppedClientState(frame);
             drawReformatted(frame);
+            drawFromBefore(frame);
         });
 }
