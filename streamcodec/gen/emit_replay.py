@@ -7,6 +7,7 @@ from registry import TYPE_BYTES
 
 NULLABLE = re.compile(r'gl(Named)?Buffer(Data|Storage)')
 WINDOW_POSITION = re.compile(r'glWindowPos')
+COUNT = re.compile(r'(?:vn|n4|n8)\((\w+),')
 MAY_BE_OFFSET = ('pixels', 'packed', 'data')  # into a bound buffer; elsewhere GL would take it for an address
 RESULT = {4: 'GLuint', 8: 'uint64_t'}
 
@@ -15,6 +16,13 @@ def nullable(c, p):
     if p.how == 'array':
         return bool(NULLABLE.match(c.name)) or p.expr.startswith(('n4', 'n8', 'clearBytes', 'labelBytes', '0'))
     return p.how in ('pixels', 'packed') and 'Sub' not in c.name and c.name not in ('glDrawPixels', 'glPolygonStipple')
+
+
+def negative_counts(c):
+    """Counts of values that would be an error below 0: the program has been told, and drivers copy so many (Mesa)."""
+    found = [COUNT.match(p.expr) for p in c.params if p.how == 'array']
+    counts = {match.group(1) for match in found if match} | {p.length for p in c.params if p.how == 'made'}
+    return [p.name for p in c.params if p.name in counts and p.how == 'scalar' and p.base in ('GLsizei', 'GLint', 'GLsizeiptr')]
 
 
 def decode(c):
@@ -35,6 +43,7 @@ def decode(c):
     if result_bytes(c):
         lines.append('const auto result = in_.get<%s>();' % RESULT[result_bytes(c)])
     lines.append('if (!in_.ok()) return false;')
+    lines += ['if (%s < 0) return true;' % name for name in negative_counts(c)]
     for p in c.params:
         if p.how == 'array' or p.how == 'made' or p.how == 'packed':
             expr = 'vn(%s,4)' % p.length if p.how == 'made' else p.expr

@@ -120,6 +120,8 @@ GLuint createShaderProgram(GLenum, GLsizei n, const GLchar* const* texts) {
     return makeOne();
 }
 void uniform4fv(GLint, GLsizei n, const GLfloat* values) { touch(values, count(n, 16)); }
+// As Mesa does: after the error of a negative count it copies so many.
+void programParameters(GLuint, GLenum, GLuint, GLsizei n, const GLfloat* values) { touch(values, static_cast<size_t>(n) * 16); }
 void uniformMatrix4fv(GLint, GLsizei n, GLboolean, const GLfloat* values) { touch(values, count(n, 64)); }
 void uniformMatrix4dv(GLint, GLsizei n, GLboolean, const GLdouble* values) { touch(values, count(n, 128)); }
 template <size_t bytes> void readFixed(const void* values) { touch(values, bytes); }
@@ -157,7 +159,7 @@ const std::unordered_map<std::string, gl::Proc>& special() {
         {"glVertex3fv", proc<readFixed<12>>()}, {"glDrawBuffers", proc<drawBuffers>()}, {"glInvalidateFramebuffer", proc<invalidate>()},
         {"glTexParameterfv", proc<texParameterfv>()}, {"glLightfv", proc<lightfv>()}, {"glFenceSync", proc<makeFence>()},
         {"glGenLists", proc<makeLists>()}, {"glCreateShader", proc<makeOne>()}, {"glCreateProgram", proc<makeOne>()},
-        {"glCreateTextures", proc<makeNamesOf>()}, {"glCreateQueries", proc<makeNamesOf>()}};
+        {"glNamedProgramLocalParameters4fvEXT", proc<programParameters>()}, {"glCreateTextures", proc<makeNamesOf>()}, {"glCreateQueries", proc<makeNamesOf>()}};
     return table;
 }
 

@@ -124,6 +124,17 @@ TEST_F(ReplayTest, CountsThatOverflowAreRefused) {
     EXPECT_FALSE(sendWords({head(op::glUniform4fv, 8), 0, 0x40000001, 16, 0, 0, 0, 0}));
 }
 
+TEST_F(ReplayTest, NegativeCountsDoNotReachTheDriver) {
+    begin();
+    const GLfloat values[8] = {};
+    for (const GLsizei count : {2, 0, -1, -5, INT32_MIN}) {
+        encode_glNamedProgramLocalParameters4fvEXT(t_, 1, GL_VERTEX_PROGRAM_ARB, 5, count, DataArg::of(values, count > 0 ? uint64_t(count) * 16 : 0));
+        EXPECT_TRUE(send()) << count;
+    }
+    EXPECT_TRUE(sendWords({head(op::glDeleteTextures, 4), 0xffffffff, 4, 1}));
+    EXPECT_EQ(replay_->counts().malformed, 0u);
+}
+
 TEST_F(ReplayTest, OffsetsWhereOnlyBytesMakeSenseAreRefused) {
     begin();
     EXPECT_FALSE(sendWords({head(op::glDeleteTextures, 5), 1, record::kTagOffset, 64, 0}));
