@@ -9,6 +9,7 @@
 #include "nodes/launch/program_check.hpp"
 #include "nodes/node/node.hpp"
 #include "tools/mural/commands.hpp"
+#include "tools/mural/netperf.hpp"
 
 namespace {
 
@@ -160,6 +161,12 @@ private:
         CLI::App& list = add("list-commands", "list the GL, GLX and EGL commands and what becomes of them", [this] { return mural::cli::listCommandsCommand(onlyUnsupported_); },
                              "Examples:\n  mural list-commands\n  mural list-commands --unsupported\n\nOne command per line: name, class, and the reason when it is not carried.\nExit status: 0.");
         list.add_flag("--unsupported", onlyUnsupported_, "only those that are not carried");
+        CLI::App& netperf = add("netperf", "measure reliable multicast between machines, or on this one", [this] { return mural::cli::netperfCommand(netperf_); },
+                                "Examples:\n  mural netperf                                             two receivers on this machine\n"
+                                "  mural netperf --members 4 --message 64                    how long a word takes to be everywhere\n"
+                                "  mural netperf send --members 3 --rate 900mbit --secret-file key\n"
+                                "  mural netperf receive --control wall0:4278 --secret-file key\n\nExit status: 0, or 1 when not everything arrived.");
+        mural::cli::describeNetperf(netperf, netperf_);
         add("version", "print the version", [] { return mural::cli::versionCommand(); }, "Example:\n  mural version\n\nExit status: 0.");
         add("preload-probe", "", [] { return mural::cli::preloadProbeCommand(); }, "").group("");
     }
@@ -173,6 +180,7 @@ private:
     bool asJson_ = false;
     bool onlyUnsupported_ = false;
     mural::cli::StatOptions stat_;
+    mural::cli::NetperfArguments netperf_;
     std::function<int()> action_;
 };
 

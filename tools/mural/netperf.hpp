@@ -1,0 +1,33 @@
+// mural netperf: how fast the network carries a stream to many, and how long a word takes to be at all of them.
+#pragma once
+
+#include <string>
+
+#include <CLI/App.hpp>
+
+namespace mural::cli {
+
+struct NetperfArguments {
+    std::string role = "local";
+    std::string group = "239.255.77.85:4277";
+    std::string interface;
+    std::string control = ":4278";
+    std::string secretFile;
+    std::string seal = "auto";
+    std::string rate = "0";
+    std::string bytes = "64M";
+    std::string message = "0";
+    std::string window = "4096";
+    unsigned members = 2;
+    unsigned count = 500;
+    size_t datagramBytes = 0;
+    double withinSeconds = 120;
+    bool noParity = false;
+    bool noMulticast = false;
+    bool asJson = false;
+};
+
+void describeNetperf(CLI::App& command, NetperfArguments& arguments);
+int netperfCommand(const NetperfArguments& arguments);
+
+} // namespace mural::cli

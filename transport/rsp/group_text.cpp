@@ -1,0 +1,79 @@
+#include "transport/rsp/group_text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <string_view>
+#include <utility>
+
+#include <sodium.h>
+
+namespace mural::rsp {
+
+namespace {
+
+constexpr size_t kLeastSecretBytes = 16;
+
+using Unit = std::pair<std::string_view, double>;
+
+// A number of 0 or more and one of the units, whatever its case.
+template <size_t N> Result<double> numberWithUnit(const std::string& text, const std::array<Unit, N>& units, const char* example) {
+    double value = 0;
+    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+    std::string unit(end, text.data() + text.size());
+    std::ranges::transform(unit, unit.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const auto found = std::ranges::find(units, unit, [](const Unit& u) { return std::string(u.first); });
+    if (code != std::errc() || !std::isfinite(value) || value < 0 || found == units.end())
+        return Error{"\"" + text + "\" is not understood; write it as " + example};
+    return value * found->second;
+}
+
+} // namespace
+
+Result<double> parseRate(const std::string& text) {
+    static constexpr std::array<Unit, 7> units{Unit{"kbit", 125}, Unit{"mbit", 125e3}, Unit{"gbit", 125e6}, Unit{"kb", 1e3},
+        Unit{"mb", 1e6}, Unit{"gb", 1e9}, Unit{"", 1}};
+    return numberWithUnit(text, units, "200mbit, 1gbit or 25MB");
+}
+
+Result<uint64_t> parseSize(const std::string& text) {
+    static constexpr std::array<Unit, 4> units{Unit{"k", 1024}, Unit{"m", 1048576}, Unit{"g", 1073741824}, Unit{"", 1}};
+    auto value = numberWithUnit(text, units, "1000000, 64k or 256M");
+    if (!value) return value.error();
+    return static_cast<uint64_t>(*value);
+}
+
+Result<Seal> parseSeal(const std::string& text) {
+    if (text == "auto") return bestEncryption();
+    for (const Seal seal : {Seal::None, Seal::Tag, Seal::AesGcm, Seal::ChaCha}) {
+        if (text != nameOf(seal)) continue;
+        if (!available(seal)) return Error{"this machine can't do " + text + "; use auto"};
+        return seal;
+    }
+    return Error{"there is no seal \"" + text + "\"; there are auto, siphash, aes-256-gcm, chacha20-poly1305 and none"};
+}
+
+Result<ChannelSecret> readSecret(const std::string& path) {
+    std::string bytes;
+    if (path == "-") {
+        bytes.assign(std::istreambuf_iterator<char>(std::cin), {});
+    } else {
+        std::ifstream file(path, std::ios::binary);
+        if (!file) return Error{path + ": can't read the secret; make one with: head -c 32 /dev/urandom | base64 > " + path};
+        bytes.assign(std::istreambuf_iterator<char>(file), {});
+    }
+    while (!bytes.empty() && (bytes.back() == '\n' || bytes.back() == '\r')) bytes.pop_back();
+    if (bytes.size() < kLeastSecretBytes) return Error{path + ": a secret has 16 bytes at least; make one with: head -c 32 /dev/urandom | base64"};
+    ChannelSecret secret;
+    if (sodium_init() < 0) return Error{"libsodium can't be used here"};
+    crypto_generichash(reinterpret_cast<unsigned char*>(secret.data()), secret.size(), reinterpret_cast<const unsigned char*>(bytes.data()),
+        bytes.size(), nullptr, 0);
+    return secret;
+}
+
+} // namespace mural::rsp
