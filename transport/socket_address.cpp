@@ -1,5 +1,6 @@
 #include "transport/socket_address.hpp"
 
+#include <array>
 #include <charconv>
 #include <cstring>
 #include <netdb.h>
@@ -20,6 +21,12 @@ Result<SocketAddress> numericAddress(const std::string& host, uint16_t port) {
     address.sizeBytes = list->ai_addrlen;
     freeaddrinfo(list);
     return address;
+}
+
+std::string numericText(const SocketAddress& address) {
+    std::array<char, NI_MAXHOST> text{};
+    if (getnameinfo(address.get(), address.sizeBytes, text.data(), text.size(), nullptr, 0, NI_NUMERICHOST) != 0) return {};
+    return text.data();
 }
 
 Result<HostPort> splitHostPort(std::string_view text) {

@@ -23,6 +23,12 @@ constexpr size_t kMostDatagramBytes = 8972; // longer ones lose more at once tha
 
 int64_t steadyNs() { return monotonicNowNs(); }
 
+// "::ffff:10.0.0.1" is how an IPv4 peer of an IPv6 socket looks.
+std::string withoutMapping(const std::string& address) {
+    constexpr std::string_view kMapping = "::ffff:";
+    return address.starts_with(kMapping) ? address.substr(kMapping.size()) : address;
+}
+
 } // namespace
 
 Group::State::State(const GroupOptions& options) : options_(options) {}
@@ -36,6 +42,10 @@ Result<void> Group::State::openSockets() {
     auto interface = findInterface(options_.interface, group_.family());
     if (!interface) return interface.error();
     interface_ = *interface;
+    if (auto all = networkInterfaces()) {
+        for (const NetworkInterface& i : *all)
+            for (const SocketAddress& a : i.addresses) ownAddresses_.insert(numericText(a));
+    }
     auto own = UdpSocket::openOwn(interface_, group_.family(), options_.socketBytes);
     if (!own) return own.error();
     own_.emplace(std::move(*own));
@@ -91,6 +101,7 @@ Result<void> Group::State::openHost() {
     if (auto r = openSockets(); !r) return r.error();
     // The host hears the other members' streams, too.
     if (auto r = joinMulticast(); !r) return r.error();
+    groupSocket_->ignoreMember(kHost);
     if (auto r = openCore(true); !r) return r.error();
     auto where = splitHostPort(options_.control);
     if (!where) return where.error();
@@ -189,6 +200,7 @@ void Group::State::acceptLinks() {
                 const std::lock_guard lock(mutex);
                 *id = core->connected(link->peerAddress(), steadyNs());
                 if (*id) links_[**id] = link;
+                updateLoop();
             };
             events.message = [this, id](const ControlMessage& m) {
                 if (!*id) return;
@@ -245,7 +257,7 @@ void Group::State::hear(UdpSocket& socket, asio::posix::stream_descriptor& descr
                 const auto opened = opener_->open(bytes);
                 if (!opened.empty()) core->inputDatagram(opened, now);
             });
-            core->socketDropped((groupSocket_ ? groupSocket_->dropped() : 0) + own_->dropped());
+            core->socketDropped(dropped());
             pump();
         }
         hear(socket, descriptor);
@@ -267,6 +279,21 @@ void Group::State::pump() {
             armTimer();
         });
     }
+}
+
+// Where no member is on this machine, the kernel need not bring back what we send.
+void Group::State::updateLoop() {
+    const auto isHere = [&](const std::string& address) { return ownAddresses_.contains(withoutMapping(address)); };
+    bool any = !hostAddress_.empty() && isHere(hostAddress_);
+    for (const auto& [id, link] : links_) any = any || isHere(link->peerAddress());
+    for (const auto& [id, info] : core->members()) any = any || isHere(info.address);
+    if (any == std::exchange(loop_, any)) return;
+    own_->setLoop(any);
+}
+
+// What the kernel drops of our own coming back is no loss.
+uint32_t Group::State::dropped() const {
+    return own_->dropped() + (groupSocket_ && !loop_ ? groupSocket_->dropped() : 0);
 }
 
 void Group::State::armTimer() {
@@ -298,31 +325,25 @@ void Group::State::welcomed(const Welcome& w) {
     opener_.emplace(w.keys);
     opener_->addMember(kHost);
     // Where that fails no probe comes, and the host sends through its connection.
-    if (options_.multicast && joinMulticast()) hear(*groupSocket_, *groupEvents_);
+    if (!options_.multicast || !joinMulticast()) return;
+    groupSocket_->ignoreMember(w.self);
+    hear(*groupSocket_, *groupEvents_);
 }
 
 void Group::State::memberCame(MemberId id, const MemberInfo& info) {
     opener_->addMember(id);
     const std::string& host = info.address.empty() ? hostAddress_ : info.address;
-    if (auto address = numericAddress(host, info.udpPort)) {
-        // A peer that came over IPv6 with an IPv4 address in it.
-        auto* six = reinterpret_cast<sockaddr_in6*>(address->get());
-        if (address->family() == AF_INET6 && group_.family() == AF_INET && IN6_IS_ADDR_V4MAPPED(&six->sin6_addr)) {
-            sockaddr_in four{};
-            four.sin_family = AF_INET;
-            four.sin_port = six->sin6_port;
-            std::memcpy(&four.sin_addr, &six->sin6_addr.s6_addr[12], 4);
-            std::memcpy(&address->storage, &four, sizeof four);
-            address->sizeBytes = sizeof four;
-        }
+    if (auto address = numericAddress(withoutMapping(host), info.udpPort)) {
         outbox_->setMember(id, *address);
     }
+    updateLoop();
     changed.notify_all();
 }
 
 void Group::State::memberGone(MemberId id, GoneReason) {
     opener_->removeMember(id);
     outbox_->removeMember(id);
+    updateLoop();
     data.notify_all();
     changed.notify_all();
 }
@@ -350,7 +371,7 @@ GroupReport Group::State::report() const {
     if (opener_) r.refused = opener_->refused();
     r.sendings = outbox_->sendings();
     r.sendingBy = own_->sendingBy();
-    r.socketDropped = (groupSocket_ ? groupSocket_->dropped() : 0) + own_->dropped();
+    r.socketDropped = dropped();
     for (const auto& [id, info] : core->members()) {
         if (const Receiver* receiver = core->receiver(id))
             r.streams.push_back({id, receiver->counters(), receiver->lost(), receiver->feedbackSent()});

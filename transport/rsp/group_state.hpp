@@ -58,6 +58,8 @@ private:
     void hear(UdpSocket& socket, boost::asio::posix::stream_descriptor& descriptor);
     void armTimer();
     void fail(const std::string& why);
+    void updateLoop();
+    [[nodiscard]] uint32_t dropped() const;
     [[nodiscard]] bool onThread() const { return std::this_thread::get_id() == threadId_; }
     void sendControl(MemberId to, const ControlMessage& message);
 
@@ -76,6 +78,8 @@ private:
     std::map<MemberId, std::shared_ptr<ControlLink>> links_;
     std::set<std::shared_ptr<ControlLink>> strangers_; // have not shown that they know the secret
     std::string hostAddress_;
+    std::set<std::string> ownAddresses_; // of this machine
+    bool loop_ = true;                   // members on this machine are reached
     int64_t timerNs_ = INT64_MAX;
     bool timerPosted_ = false;
     std::thread thread_;

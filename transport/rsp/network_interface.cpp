@@ -1,8 +1,6 @@
 #include "transport/rsp/network_interface.hpp"
 
 #include <algorithm>
-#include <arpa/inet.h>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -16,15 +14,6 @@
 namespace mural::rsp {
 
 namespace {
-
-std::string textOf(const SocketAddress& a) {
-    std::array<char, INET6_ADDRSTRLEN> text{};
-    const void* number = a.family() == AF_INET
-                             ? static_cast<const void*>(&reinterpret_cast<const sockaddr_in*>(a.get())->sin_addr)
-                             : static_cast<const void*>(&reinterpret_cast<const sockaddr_in6*>(a.get())->sin6_addr);
-    inet_ntop(a.family(), number, text.data(), text.size());
-    return text.data();
-}
 
 double numberIn(const std::string& path) {
     double value = 0;
@@ -78,7 +67,7 @@ Result<NetworkInterface> findInterface(std::string_view nameOrAddress, int famil
     std::string known;
     for (const NetworkInterface& i : *all) {
         known += (known.empty() ? "" : ", ") + i.name;
-        const auto isIt = [&](const SocketAddress& a) { return textOf(a) == nameOrAddress; };
+        const auto isIt = [&](const SocketAddress& a) { return numericText(a) == nameOrAddress; };
         if (i.name == nameOrAddress || std::ranges::any_of(i.addresses, isIt)) {
             if (i.address(family)) return i;
             return Error{"network interface " + i.name + " has no " + (family == AF_INET ? "IPv4" : "IPv6") +

@@ -4,6 +4,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <linux/filter.h>
 #include <netinet/in.h>
 #include <netinet/udp.h>
 #include <sys/socket.h>
@@ -122,6 +123,26 @@ Result<UdpSocket> UdpSocket::openOwn(const NetworkInterface& interface, int fami
     if (!own || bind(socket.descriptor(), own->get(), own->sizeBytes) != 0)
         return failed("take a UDP port on network interface " + interface.name);
     return socket;
+}
+
+void UdpSocket::setLoop(bool loop) {
+    const int value = loop ? 1 : 0;
+    if (!set(socket_.get(), IPPROTO_IP, IP_MULTICAST_LOOP, value)) set(socket_.get(), IPPROTO_IPV6, IPV6_MULTICAST_LOOP, value);
+}
+
+void UdpSocket::ignoreMember(MemberId self) {
+    // Behind the UDP header (8 bytes) stands ours, the member in its third and fourth byte; the filter loads big endian.
+    constexpr uint32_t place = 8 + 2;
+    const auto turned = static_cast<uint32_t>((self & 0xff) << 8 | self >> 8);
+    std::array<sock_filter, 4> program{{
+        {BPF_LD | BPF_H | BPF_ABS, 0, 0, place},
+        {BPF_JMP | BPF_JEQ | BPF_K, 0, 1, turned},
+        {BPF_RET | BPF_K, 0, 0, 0},
+        {BPF_RET | BPF_K, 0, 0, UINT32_MAX},
+    }};
+    const sock_fprog filter{static_cast<unsigned short>(program.size()), program.data()};
+    // Without it they are refused later.
+    set(socket_.get(), SOL_SOCKET, SO_ATTACH_FILTER, filter);
 }
 
 SocketAddress UdpSocket::localAddress() const { return localTcpAddress(socket_.get()); }

@@ -13,6 +13,7 @@
 
 #include "common/result.hpp"
 #include "transport/file_descriptor.hpp"
+#include "transport/rsp/datagram.hpp"
 #include "transport/rsp/network_interface.hpp"
 #include "transport/socket_address.hpp"
 
@@ -28,6 +29,11 @@ public:
     // For sending to the group and to members, and for what is sent to this member alone; any free port.
     static Result<UdpSocket> openOwn(const NetworkInterface& interface, int family, size_t bufferBytes);
 
+    // Whether what is sent to the group comes to members on this machine, too.
+    void setLoop(bool loop);
+    // What this member sent comes back to its own machine: dropped by the kernel, before it takes room here.
+    void ignoreMember(MemberId self);
+
     [[nodiscard]] int descriptor() const { return socket_.get(); }
     [[nodiscard]] SocketAddress localAddress() const;
 
@@ -39,7 +45,7 @@ public:
     // All that is there now, at most a few hundred; returns whether there may be more.
     bool receive(const Handler& handler);
 
-    // So many datagrams were dropped because nobody fetched them.
+    // So many datagrams were dropped because nobody fetched them. With ignoreMember, those that it drops count, too.
     [[nodiscard]] uint32_t dropped() const { return dropped_; }
     // What the socket's buffer holds of datagrams of a size.
     [[nodiscard]] uint32_t capacity(size_t datagramBytes) const;
