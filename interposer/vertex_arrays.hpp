@@ -60,6 +60,8 @@ public:
     [[nodiscard]] bool knows(GLuint name) const { return name == 0 || (name < namedCount_ && named_[name]); }
     [[nodiscard]] GLuint currentName() const { return current_->name; }
     void remove(GLsizei n, const GLuint* names);
+    // Of an array that there is, bound or not.
+    void enableIn(GLuint name, uint32_t slot, bool on) { find(name)->enable(slot, on); }
     void bindArrayBuffer(GLuint buffer) { arrayBuffer_ = buffer; }
     [[nodiscard]] GLuint arrayBuffer() const { return arrayBuffer_; }
     void forgetBuffers(GLsizei n, const GLuint* names);

@@ -45,6 +45,19 @@ void enableSlot(ThreadState& t, uint32_t slot, bool on) {
     if (t.context && slot < kSlots) t.context->arrays.current().enable(slot, on);
 }
 
+// The array is named by the command, which the driver has had: a name that it refused is none.
+void enableNamed(ThreadState& t, GLuint array, uint32_t slot, bool on) {
+    if (!t.context || slot >= kSlots) return;
+    VertexArrayMirror& mirror = t.context->arrays;
+    if (mirror.knows(array) || gReal.glIsVertexArray(array)) mirror.enableIn(array, slot, on);
+}
+uint32_t genericSlot(GLuint index) { return index < kGenerics ? kGeneric0 + index : kSlots; }
+// EXT_direct_state_access: GL_TEXTUREi are the arrays of that unit's coordinates.
+uint32_t namedSlot(ThreadState& t, GLenum array) {
+    if (array - GL_TEXTURE0 < kTexCoords) return kTexCoord0 + (array - GL_TEXTURE0);
+    return t.context ? t.context->arrays.slotOf(array) : kSlots;
+}
+
 constexpr GLuint kUnitsOfAll = 2; // GL_MAX_TEXTURE_COORDS is at least that
 
 // The texture unit is named by the command: selected for it, then the program's own again.
@@ -239,6 +252,42 @@ void mural_glDisableVertexAttribArray(GLuint index) {
     if (index < kGenerics) enableSlot(t, kGeneric0 + index, false);
     encode_glDisableVertexAttribArray(t, index);
     gReal.glDisableVertexAttribArray(index);
+}
+void mural_glEnableVertexArrayAttrib(GLuint vaobj, GLuint index) {
+    ThreadState& t = *tThread;
+    encode_glEnableVertexArrayAttrib(t, vaobj, index);
+    gReal.glEnableVertexArrayAttrib(vaobj, index);
+    enableNamed(t, vaobj, genericSlot(index), true);
+}
+void mural_glDisableVertexArrayAttrib(GLuint vaobj, GLuint index) {
+    ThreadState& t = *tThread;
+    encode_glDisableVertexArrayAttrib(t, vaobj, index);
+    gReal.glDisableVertexArrayAttrib(vaobj, index);
+    enableNamed(t, vaobj, genericSlot(index), false);
+}
+void mural_glEnableVertexArrayAttribEXT(GLuint vaobj, GLuint index) {
+    ThreadState& t = *tThread;
+    encode_glEnableVertexArrayAttribEXT(t, vaobj, index);
+    gReal.glEnableVertexArrayAttribEXT(vaobj, index);
+    enableNamed(t, vaobj, genericSlot(index), true);
+}
+void mural_glDisableVertexArrayAttribEXT(GLuint vaobj, GLuint index) {
+    ThreadState& t = *tThread;
+    encode_glDisableVertexArrayAttribEXT(t, vaobj, index);
+    gReal.glDisableVertexArrayAttribEXT(vaobj, index);
+    enableNamed(t, vaobj, genericSlot(index), false);
+}
+void mural_glEnableVertexArrayEXT(GLuint vaobj, GLenum array) {
+    ThreadState& t = *tThread;
+    encode_glEnableVertexArrayEXT(t, vaobj, array);
+    gReal.glEnableVertexArrayEXT(vaobj, array);
+    enableNamed(t, vaobj, namedSlot(t, array), true);
+}
+void mural_glDisableVertexArrayEXT(GLuint vaobj, GLenum array) {
+    ThreadState& t = *tThread;
+    encode_glDisableVertexArrayEXT(t, vaobj, array);
+    gReal.glDisableVertexArrayEXT(vaobj, array);
+    enableNamed(t, vaobj, namedSlot(t, array), false);
 }
 void mural_glVertexAttribDivisor(GLuint index, GLuint divisor) {
     ThreadState& t = *tThread;

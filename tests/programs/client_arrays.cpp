@@ -362,6 +362,23 @@ void drawFromBefore(int frame) {
     glDisableClientState(GL_VERTEX_ARRAY);
 }
 
+// Arrays switched by the name of their object, 0: the one that may stand in the program's memory.
+void drawSwitchedByName(int frame) {
+    const auto places = band<GLfloat>(4, 16, frame);
+    const auto palette = colors(frame);
+    glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, 0, places.data());
+    glVertexAttribPointer(3, 4, GL_UNSIGNED_BYTE, GL_TRUE, 0, palette.data()); // 3: the colour's alias
+    glColor3f(0.3F, 0.9F, 0.5F);
+    glEnableVertexArrayAttrib(0, 0);
+    glEnableVertexArrayAttrib(0, 3);
+    enterCell();
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 12);
+    glDisableVertexArrayAttrib(0, 3);
+    enterCell();
+    glDrawArrays(GL_LINE_STRIP, 0, 12);
+    glDisableVertexArrayAttrib(0, 0);
+}
+
 void makeTextures() {
     GLubyte texels[4 * 4 * 3];
     Sequence numbers(8);
@@ -409,5 +426,6 @@ int main(int argc, char** argv) {
             drawAfterPoppedClientState(frame);
             drawReformatted(frame);
             drawFromBefore(frame);
+            drawSwitchedByName(frame);
         });
 }
