@@ -75,6 +75,30 @@ void makeText(Context& c) {
     if (c.extensionText) copyKept(whole, c.extensionText, advertised);
 }
 
+// Programs keep these pointers for longer than Mesa keeps the driver that they point into: EGL unloads it with its last
+// display. So they are ours: the registry's, or copies that stay.
+struct KeptName {
+    KeptName* next;
+    char name[1];
+};
+KeptName* keptNames = nullptr;
+Lock keptLock;
+
+const char* keep(const char* name) {
+    const size_t length = std::strlen(name);
+    if (const char* registered = registeredExtension({name, length})) return registered;
+    Guard guard(keptLock);
+    for (const KeptName* k = keptNames; k; k = k->next) {
+        if (!std::strcmp(k->name, name)) return k->name;
+    }
+    auto* kept = static_cast<KeptName*>(std::malloc(sizeof(KeptName) + length));
+    if (!kept) return name;
+    std::memcpy(kept->name, name, length + 1);
+    kept->next = keptNames;
+    keptNames = kept;
+    return kept->name;
+}
+
 // The single names are the driver's, in an order of their own.
 void makeNames(Context& c) {
     if (c.extensionCount >= 0 || c.version < 30 || !gReal.glGetStringi) return;
@@ -85,7 +109,7 @@ void makeNames(Context& c) {
     c.extensionCount = 0;
     for (GLint i = 0; i < count; ++i) {
         const auto* name = reinterpret_cast<const char*>(gReal.glGetStringi(GL_EXTENSIONS, static_cast<GLuint>(i)));
-        if (name && advertised(name, std::strlen(name))) c.extensionNames[c.extensionCount++] = name;
+        if (name && advertised(name, std::strlen(name))) c.extensionNames[c.extensionCount++] = keep(name);
     }
 }
 

@@ -19,4 +19,9 @@ bool extensionCarried(std::string_view name) {
     return !e || e->carried;
 }
 
+const char* registeredExtension(std::string_view name) {
+    const ExtensionInfo* e = find(extensionTable(), name);
+    return e ? e->name : nullptr;
+}
+
 } // namespace mural

@@ -26,5 +26,7 @@ const CommandInfo* findCommand(std::string_view name);
 // Extensions that the registry does not know bring no commands that it knows: they change what
 // carried commands accept, and count as carried.
 bool extensionCarried(std::string_view name);
+// The registry's own text of that name, there for ever; null: it knows none.
+const char* registeredExtension(std::string_view name);
 
 } // namespace mural
