@@ -158,6 +158,16 @@ def told_extensions_in_order(context):
 
 
 @failures.case
+def told_names_stay(context):
+    """Names of extensions can be read when EGL has ended, and unloaded the driver."""
+    with context.run([context.program("kept_names")], ["--display", "none", "--quiet"]) as run:
+        wrong = failures.check_end(run, 0)
+        if wrong is None and run.standard_output != ["names, 0 gone"]:
+            wrong = "the program said: " + " | ".join(run.standard_output)
+        return wrong
+
+
+@failures.case
 def told_memory_of_other_apis(context):
     """Memory objects have no memory, and their device is none that another API could have."""
     with context.run([context.program("memory_import")], ["--display", "none", "--quiet"]) as run:
