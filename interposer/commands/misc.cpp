@@ -224,7 +224,8 @@ void mural_glDrawBuffers(GLsizei n, const GLenum* bufs) {
     ThreadState& t = *tThread;
     if (!t.context) return gReal.glDrawBuffers(n, bufs);
     if (!raisesNothing(*t.context, [&] { gReal.glDrawBuffers(n, bufs); })) return;
-    encode_glDrawBuffers(t, n, DataArg::of(bufs, n > 0 ? uint64_t(n) * sizeof(GLenum) : 0));
+    static const GLenum kNone = GL_NONE; // of no buffers it may be null, which nodes take for a call without its values
+    encode_glDrawBuffers(t, n, DataArg::of(bufs ? bufs : &kNone, n > 0 ? uint64_t(n) * sizeof(GLenum) : 0));
     for (GLsizei i = 0; i < n && bufs; ++i)
         if (isFront(bufs[i])) t.context->frontDue = true;
 }

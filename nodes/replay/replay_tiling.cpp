@@ -226,13 +226,13 @@ void Replay::glDrawBuffer(GLenum buf) {
     if (drawsWindow()) drawBufferOfWindow(buf);
 }
 void Replay::glDrawBuffers(GLsizei n, const Data& bufs) {
-    if (n <= 0 || !bufs.pointer() || !gl.glDrawBuffers) return gl.glDrawBuffers ? gl.glDrawBuffers(n, nullptr) : void();
-    std::vector<GLenum> list(bufs.as<GLenum>(), bufs.as<GLenum>() + n);
+    if (n < 0 || (n > 0 && !bufs.pointer()) || !gl.glDrawBuffers) return;
+    std::vector<GLenum> list(bufs.as<GLenum>(), bufs.as<GLenum>() + n); // none at all: nothing is drawn to
     if (drawsWindow()) {
         for (GLenum& b : list) b = windowBuffer(b, c_->draw);
     }
     gl.glDrawBuffers(n, list.data());
-    if (drawsWindow()) drawBufferOfWindow(*bufs.as<GLenum>());
+    if (drawsWindow()) drawBufferOfWindow(n > 0 ? *bufs.as<GLenum>() : GLenum{GL_NONE});
 }
 void Replay::glReadBuffer(GLenum src) {
     gl.glReadBuffer(c_->readFramebuffer == 0 ? windowBuffer(src, c_->read) : src);
@@ -243,11 +243,11 @@ void Replay::glNamedFramebufferDrawBuffer(GLuint framebuffer, GLenum buf) {
     if (framebuffer == 0) drawBufferOfWindow(buf);
 }
 void Replay::glNamedFramebufferDrawBuffers(GLuint framebuffer, GLsizei n, const Data& bufs) {
-    if (n <= 0 || !bufs.pointer()) return;
+    if (n < 0 || (n > 0 && !bufs.pointer())) return;
     std::vector<GLenum> list(bufs.as<GLenum>(), bufs.as<GLenum>() + n);
     for (GLenum& b : list) b = framebuffer == 0 ? windowBuffer(b, c_->draw) : b;
     gl.glNamedFramebufferDrawBuffers(name(Kind::Framebuffer, framebuffer), n, list.data());
-    if (framebuffer == 0) drawBufferOfWindow(*bufs.as<GLenum>());
+    if (framebuffer == 0) drawBufferOfWindow(n > 0 ? *bufs.as<GLenum>() : GLenum{GL_NONE});
 }
 void Replay::glNamedFramebufferReadBuffer(GLuint framebuffer, GLenum src) {
     gl.glNamedFramebufferReadBuffer(name(Kind::Framebuffer, framebuffer), framebuffer == 0 ? windowBuffer(src, c_->read) : src);

@@ -58,6 +58,13 @@ void bindNothing() {
     glDrawBuffer(GL_COLOR_ATTACHMENT0);
     showBits(13, error());
     fillRectangle(140, 20, 60, 30, {0.9F, 0.5F, 0.1F});
+    // To none of its buffers, this is not refused.
+    glNamedFramebufferDrawBuffers(0, 0, nullptr);
+    fillRectangle(150, 25, 10, 10, {0.1F, 0.5F, 0.9F});
+    glDrawBuffer(GL_BACK);
+    glDrawBuffers(0, nullptr);
+    fillRectangle(170, 25, 10, 10, {0.1F, 0.5F, 0.9F});
+    glDrawBuffer(GL_BACK);
 }
 
 // The shader's words go to the buffer that was bound before.
