@@ -354,6 +354,7 @@ private:
     void tellMessages();
     void tell(wire::NewsKind kind, const DebugInbox::Message& message);
     bool takeErrors();
+    bool errorTold();
     void tellTroubles();
     bool executeAllocating(ReplayFunction function, Args& in);
     // replay_release.cpp

@@ -56,6 +56,13 @@ bool Replay::takeErrors() {
     return noMemory;
 }
 
+// What lacked memory before the error that was told is told with it.
+bool Replay::errorTold() {
+    if (takeErrors()) tell(wire::NewsKind::OutOfMemory, {0, c_->errorsTold, 0, 0, {}});
+    ++c_->errorsTold;
+    return true;
+}
+
 // An error that was raised before would hide the one that is looked for.
 bool Replay::executeAllocating(ReplayFunction function, Args& in) {
     (void)takeErrors();

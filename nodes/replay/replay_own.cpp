@@ -55,7 +55,7 @@ bool Replay::own(uint16_t opcode, Args& in) {
     case wire::kOpBeginConditional: return ownBeginConditional(in);
     case wire::kOpQueryKnown: return ownQueryKnown(in);
     case wire::kOpDrawAll: return ownDrawAll(in);
-    case wire::kOpErrorTold: return ++c_->errorsTold, true;
+    case wire::kOpErrorTold: return errorTold();
     case wire::kOpRequestProgram: return ownRequestProgram(in);
     case wire::kOpProgramRecipe: return ownProgramRecipe(in);
     case wire::kOpRequestBuffer: return ownRequestBuffer(in);
