@@ -58,7 +58,7 @@ bool Replay::takeErrors() {
 
 // What lacked memory before the error that was told is told with it.
 bool Replay::errorTold() {
-    if (takeErrors()) tell(wire::NewsKind::OutOfMemory, {0, c_->errorsTold, 0, 0, {}});
+    if (bound_ == c_ && takeErrors()) tell(wire::NewsKind::OutOfMemory, {0, c_->errorsTold, 0, 0, {}});
     ++c_->errorsTold;
     return true;
 }

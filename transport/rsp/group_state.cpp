@@ -159,23 +159,29 @@ void Group::State::startThread() {
 }
 
 void Group::State::stop() {
-    if (!thread_.joinable()) return;
-    asio::post(context_, [this] {
-        {
-            const std::lock_guard lock(mutex);
-            if (failure.empty()) failure = "this member has left the group";
-            if (links_.contains(kHost)) links_.at(kHost)->send(Leave{});
-        }
-        for (const auto& [id, link] : links_) link->hangUp();
-        // What was written last goes out as the sockets close; nobody is waited for.
-        asio::post(context_, [this] { context_.stop(); });
-    });
-    thread_.join();
-    ownEvents_->release();
-    if (groupEvents_) groupEvents_->release();
-    room.notify_all();
-    data.notify_all();
-    changed.notify_all();
+    if (thread_.joinable()) {
+        asio::post(context_, [this] {
+            {
+                const std::lock_guard lock(mutex);
+                if (failure.empty()) failure = "this member has left the group";
+                if (links_.contains(kHost)) links_.at(kHost)->send(Leave{});
+            }
+            for (const auto& [id, link] : links_) link->hangUp();
+            for (const auto& link : strangers_) link->hangUp();
+            // What was written last goes out as the sockets close; nobody is waited for.
+            asio::post(context_, [this] { context_.stop(); });
+        });
+        thread_.join();
+        room.notify_all();
+        data.notify_all();
+        changed.notify_all();
+    }
+    // The sockets have owners.
+    for (auto* events : {&ownEvents_, &groupEvents_}) {
+        if (!*events) continue;
+        (*events)->release();
+        events->reset();
+    }
 }
 
 void Group::State::fail(const std::string& why) {
