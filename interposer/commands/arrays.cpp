@@ -52,6 +52,11 @@ void enableNamed(ThreadState& t, GLuint array, uint32_t slot, bool on) {
     if (mirror.knows(array) || gReal.glIsVertexArray(array)) mirror.enableIn(array, slot, on);
 }
 uint32_t genericSlot(GLuint index) { return index < kGenerics ? kGeneric0 + index : kSlots; }
+template <class Encode, class Real> void switchNamed(Encode encode, Real real, GLuint array, GLuint which, uint32_t slot, bool on) {
+    encode(*tThread, array, which);
+    real(array, which);
+    enableNamed(*tThread, array, slot, on);
+}
 // EXT_direct_state_access: GL_TEXTUREi are the arrays of that unit's coordinates.
 uint32_t namedSlot(ThreadState& t, GLenum array) {
     if (array - GL_TEXTURE0 < kTexCoords) return kTexCoord0 + (array - GL_TEXTURE0);
@@ -253,42 +258,12 @@ void mural_glDisableVertexAttribArray(GLuint index) {
     encode_glDisableVertexAttribArray(t, index);
     gReal.glDisableVertexAttribArray(index);
 }
-void mural_glEnableVertexArrayAttrib(GLuint vaobj, GLuint index) {
-    ThreadState& t = *tThread;
-    encode_glEnableVertexArrayAttrib(t, vaobj, index);
-    gReal.glEnableVertexArrayAttrib(vaobj, index);
-    enableNamed(t, vaobj, genericSlot(index), true);
-}
-void mural_glDisableVertexArrayAttrib(GLuint vaobj, GLuint index) {
-    ThreadState& t = *tThread;
-    encode_glDisableVertexArrayAttrib(t, vaobj, index);
-    gReal.glDisableVertexArrayAttrib(vaobj, index);
-    enableNamed(t, vaobj, genericSlot(index), false);
-}
-void mural_glEnableVertexArrayAttribEXT(GLuint vaobj, GLuint index) {
-    ThreadState& t = *tThread;
-    encode_glEnableVertexArrayAttribEXT(t, vaobj, index);
-    gReal.glEnableVertexArrayAttribEXT(vaobj, index);
-    enableNamed(t, vaobj, genericSlot(index), true);
-}
-void mural_glDisableVertexArrayAttribEXT(GLuint vaobj, GLuint index) {
-    ThreadState& t = *tThread;
-    encode_glDisableVertexArrayAttribEXT(t, vaobj, index);
-    gReal.glDisableVertexArrayAttribEXT(vaobj, index);
-    enableNamed(t, vaobj, genericSlot(index), false);
-}
-void mural_glEnableVertexArrayEXT(GLuint vaobj, GLenum array) {
-    ThreadState& t = *tThread;
-    encode_glEnableVertexArrayEXT(t, vaobj, array);
-    gReal.glEnableVertexArrayEXT(vaobj, array);
-    enableNamed(t, vaobj, namedSlot(t, array), true);
-}
-void mural_glDisableVertexArrayEXT(GLuint vaobj, GLenum array) {
-    ThreadState& t = *tThread;
-    encode_glDisableVertexArrayEXT(t, vaobj, array);
-    gReal.glDisableVertexArrayEXT(vaobj, array);
-    enableNamed(t, vaobj, namedSlot(t, array), false);
-}
+void mural_glEnableVertexArrayAttrib(GLuint vaobj, GLuint index) { switchNamed(encode_glEnableVertexArrayAttrib, gReal.glEnableVertexArrayAttrib, vaobj, index, genericSlot(index), true); }
+void mural_glDisableVertexArrayAttrib(GLuint vaobj, GLuint index) { switchNamed(encode_glDisableVertexArrayAttrib, gReal.glDisableVertexArrayAttrib, vaobj, index, genericSlot(index), false); }
+void mural_glEnableVertexArrayAttribEXT(GLuint vaobj, GLuint index) { switchNamed(encode_glEnableVertexArrayAttribEXT, gReal.glEnableVertexArrayAttribEXT, vaobj, index, genericSlot(index), true); }
+void mural_glDisableVertexArrayAttribEXT(GLuint vaobj, GLuint index) { switchNamed(encode_glDisableVertexArrayAttribEXT, gReal.glDisableVertexArrayAttribEXT, vaobj, index, genericSlot(index), false); }
+void mural_glEnableVertexArrayEXT(GLuint vaobj, GLenum array) { switchNamed(encode_glEnableVertexArrayEXT, gReal.glEnableVertexArrayEXT, vaobj, array, namedSlot(*tThread, array), true); }
+void mural_glDisableVertexArrayEXT(GLuint vaobj, GLenum array) { switchNamed(encode_glDisableVertexArrayEXT, gReal.glDisableVertexArrayEXT, vaobj, array, namedSlot(*tThread, array), false); }
 void mural_glVertexAttribDivisor(GLuint index, GLuint divisor) {
     ThreadState& t = *tThread;
     if (t.context && index < kGenerics) t.context->arrays.current().slots[kGeneric0 + index].divisor = divisor;

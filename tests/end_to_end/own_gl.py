@@ -126,14 +126,19 @@ for name in ("immediate", "display_lists", "x_fonts", "feedback_select", "pixels
     silent(name)
 
 
+def says(context, program, expected):
+    """What is wrong when a program's one line through Mural is another."""
+    with context.run([context.program(program)], ["--display", "none", "--quiet"]) as run:
+        wrong = failures.check_end(run, 0)
+        if wrong is None and run.standard_output != [expected]:
+            wrong = "the program said: " + " | ".join(run.standard_output)
+        return wrong
+
+
 @failures.case
 def told_extensions_of_all_machines(context):
     """No list of a window system's extensions names what only exists on one machine."""
-    with context.run([context.program("extension_strings")], ["--display", "none", "--quiet"]) as run:
-        wrong = failures.check_end(run, 0)
-        if wrong is None and run.standard_output != ["0 of 5 lists name what is on one machine only"]:
-            wrong = "the program said: " + " | ".join(run.standard_output)
-        return wrong
+    return says(context, "extension_strings", "0 of 5 lists name what is on one machine only")
 
 
 @failures.case
@@ -160,22 +165,14 @@ def told_extensions_in_order(context):
 @failures.case
 def told_names_stay(context):
     """Names of extensions can be read when EGL has ended, and unloaded the driver."""
-    with context.run([context.program("kept_names")], ["--display", "none", "--quiet"]) as run:
-        wrong = failures.check_end(run, 0)
-        if wrong is None and run.standard_output != ["names, 0 gone"]:
-            wrong = "the program said: " + " | ".join(run.standard_output)
-        return wrong
+    return says(context, "kept_names", "names, 0 gone")
 
 
 @failures.case
 def told_memory_of_other_apis(context):
     """Memory objects have no memory, and their device is none that another API could have."""
-    with context.run([context.program("memory_import")], ["--display", "none", "--quiet"]) as run:
-        wrong = failures.check_end(run, 0)
-        expected = "object 1, one UUID 1, import 0x%04x, descriptor left 1, storage 0x%04x" % (0x0502, 0x0502)
-        if wrong is None and run.standard_output != [expected]:
-            wrong = "the program said: " + " | ".join(run.standard_output)
-        return wrong
+    expected = "object 1, one UUID 1, import 0x%04x, descriptor left 1, storage 0x%04x" % (0x0502, 0x0502)
+    return says(context, "memory_import", expected)
 
 
 if __name__ == "__main__":

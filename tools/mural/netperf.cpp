@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/clock.hpp"
+#include "nodes/launch/program_check.hpp"
 #include "transport/rsp/group.hpp"
 #include "transport/rsp/group_text.hpp"
 
@@ -286,7 +287,10 @@ void describeNetperf(CLI::App& command, NetperfArguments& a) {
 
 int netperfCommand(const NetperfArguments& arguments) {
     auto plan = planOf(arguments);
-    if (!plan) return failed(plan.error().message);
+    if (!plan) {
+        failed(plan.error().message);
+        return launch::kExitUsage;
+    }
     if (arguments.role == "send") return sendRole(*plan, arguments);
     if (arguments.role == "receive") return receiveRole(*plan, arguments);
     return localRole(*plan, arguments);

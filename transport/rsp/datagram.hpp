@@ -41,9 +41,8 @@ constexpr size_t kWireOverheadBytes = 66;
 enum class Type : uint8_t { Data = 1, Parity = 2, Poll = 3, Feedback = 4, Probe = 5 };
 
 namespace flag {
-constexpr uint8_t kPoll = 1;    // answer at once
-constexpr uint8_t kRepair = 2;  // sent before
-constexpr uint8_t kLeaving = 4; // the last that comes from this member
+constexpr uint8_t kPoll = 1;   // answer at once
+constexpr uint8_t kRepair = 2; // sent before
 } // namespace flag
 
 struct Head {

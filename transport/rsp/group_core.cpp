@@ -6,11 +6,6 @@
 
 namespace mural::rsp {
 
-namespace {
-constexpr int64_t kBetweenProbesNs = 50'000'000;
-constexpr size_t kProbeHeadBytes = kHeadBytes + 4; // and the nonce; the rest fills the datagram up
-} // namespace
-
 // The group's datagrams go out once, and once more into each tunnel; a tunnelled member's all go through the host.
 class GroupCore::Datagrams : public Outbox {
 public:

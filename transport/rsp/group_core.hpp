@@ -19,6 +19,8 @@
 namespace mural::rsp {
 
 constexpr MemberId kHost = 0;
+constexpr int64_t kBetweenProbesNs = 50'000'000;
+constexpr size_t kProbeHeadBytes = kHeadBytes + 4; // and the nonce; the rest fills the datagram up
 
 // What is done about a member that the stream waits for.
 enum class StallPolicy : uint8_t {

@@ -7,9 +7,7 @@
 namespace mural::rsp {
 
 namespace {
-constexpr int64_t kBetweenProbesNs = 50'000'000;
 constexpr int64_t kJoinNs = 10'000'000'000; // for the first word on a connection
-constexpr size_t kProbeHeadBytes = kHeadBytes + 4;
 constexpr size_t kMostMembers = 1000;
 constexpr size_t kLeastDatagramBytes = 512;
 constexpr uint32_t kMostWindow = 1u << 16;

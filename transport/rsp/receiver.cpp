@@ -14,7 +14,7 @@ constexpr int64_t kLeastSpacingNs = 500'000; // between what is told without a p
 Receiver::Receiver(const ReceiverSettings& settings, Sequence first)
     : settings_(settings), window_(settings.shape, first), gaps_(first),
       ackEvery_(std::max(1u, std::min(settings.shape.windowDatagrams, settings.socketDatagrams) / 8)),
-      sinceAck_(settings.self * 37u % ackEvery_), toldEdge_(first), toldCumulative_(first), countedLost_(first),
+      sinceAck_(settings.self * 37u % ackEvery_), toldEdge_(first), countedLost_(first),
       repairNs_(kFirstRepairNs) {}
 
 // Neither the ring nor, while this process sleeps, the socket may overflow. What was said once is not taken back.
@@ -105,7 +105,6 @@ void Receiver::tell(int64_t nowNs, Outbox& out) {
     writeFeedback(f, out.datagram(settings_.writer, feedbackBytes(f)));
     toldNs_ = nowNs;
     toldEdge_ = f.edge;
-    toldCumulative_ = f.cumulative;
     sinceAck_ = 0;
     tellNow_ = newlyLost_ = false;
     ++feedbackSent_;

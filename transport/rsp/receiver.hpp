@@ -54,7 +54,6 @@ private:
     uint32_t ackEvery_;
     uint32_t sinceAck_;       // datagrams
     Sequence toldEdge_;
-    Sequence toldCumulative_;
     Sequence countedLost_;
     uint32_t lost_ = 0;
     uint32_t dropped_ = 0;

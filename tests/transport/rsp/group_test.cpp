@@ -24,20 +24,34 @@ GroupOptions options(Seal seal) {
     return o;
 }
 
+// A host, and how others join it.
+struct Hosted {
+    std::unique_ptr<Group> host;
+    GroupOptions join;
+};
+void startHost(Hosted& h, Seal seal) {
+    auto host = Group::host(options(seal));
+    ASSERT_TRUE(host) << host.error().message;
+    h.host = std::move(*host);
+    h.join = options(seal);
+    h.join.control = h.host->controlAddress();
+}
+#define HOSTED(name, seal) \
+    Hosted name; \
+    ASSERT_NO_FATAL_FAILURE(startHost(name, seal))
+
 class GroupTest : public testing::TestWithParam<Seal> {};
 
 TEST_P(GroupTest, AHostAndThreeMembersShareABigStream) {
-    auto host = Group::host(options(GetParam()));
-    ASSERT_TRUE(host) << host.error().message;
-    GroupOptions join = options(GetParam());
-    join.control = (*host)->controlAddress();
+    HOSTED(hosted, GetParam());
+    auto& [host, join] = hosted;
     std::vector<std::unique_ptr<Group>> members;
     for (int i = 0; i < 3; ++i) {
         auto member = Group::join(join, Deadline::inMs(10'000));
         ASSERT_TRUE(member) << member.error().message;
         members.push_back(std::move(*member));
     }
-    ASSERT_TRUE((*host)->waitForMembers(3, Deadline::inMs(10'000)));
+    ASSERT_TRUE(host->waitForMembers(3, Deadline::inMs(10'000)));
     constexpr uint64_t kBytes = 8 << 20;
     std::vector<std::thread> readers;
     std::array<uint64_t, 3> read{};
@@ -57,17 +71,17 @@ TEST_P(GroupTest, AHostAndThreeMembersShareABigStream) {
     for (uint64_t at = 0; at < kBytes; at += piece.size()) {
         const size_t count = std::min<uint64_t>(piece.size(), kBytes - at);
         for (size_t b = 0; b < count; ++b) piece[b] = byteAt(at + b);
-        const auto written = (*host)->write(std::span(piece).first(count), Deadline::inMs(30'000));
+        const auto written = host->write(std::span(piece).first(count), Deadline::inMs(30'000));
         ASSERT_TRUE(written) << written.error().message;
     }
-    (*host)->flush();
-    EXPECT_TRUE((*host)->waitArrived(Deadline::inMs(30'000)));
+    host->flush();
+    EXPECT_TRUE(host->waitArrived(Deadline::inMs(30'000)));
     for (auto& r : readers) r.join();
     for (size_t i = 0; i < 3; ++i) {
         EXPECT_EQ(read[i], kBytes) << i;
         EXPECT_EQ(wrong[i], 0u) << i;
     }
-    for (const auto& m : (*host)->report().members) EXPECT_TRUE(m.info.multicast) << m.id;
+    for (const auto& m : host->report().members) EXPECT_TRUE(m.info.multicast) << m.id;
 }
 
 std::string testName(const testing::TestParamInfo<Seal>& tested) {
@@ -76,17 +90,15 @@ std::string testName(const testing::TestParamInfo<Seal>& tested) {
 INSTANTIATE_TEST_SUITE_P(Seals, GroupTest, testing::Values(Seal::None, Seal::Tag, Seal::ChaCha), testName);
 
 TEST(Group, MembersWriteToo) {
-    auto host = Group::host(options(Seal::Tag));
-    ASSERT_TRUE(host) << host.error().message;
-    GroupOptions join = options(Seal::Tag);
-    join.control = (*host)->controlAddress();
+    HOSTED(hosted, Seal::Tag);
+    auto& [host, join] = hosted;
     auto a = Group::join(join, Deadline::inMs(10'000));
     join.multicast = false; // through the host
     auto b = Group::join(join, Deadline::inMs(10'000));
     ASSERT_TRUE(a && b);
-    ASSERT_TRUE((*host)->waitForMembers(2, Deadline::inMs(10'000)) && (*a)->waitForMembers(2, Deadline::inMs(10'000)) &&
+    ASSERT_TRUE(host->waitForMembers(2, Deadline::inMs(10'000)) && (*a)->waitForMembers(2, Deadline::inMs(10'000)) &&
                 (*b)->waitForMembers(2, Deadline::inMs(10'000)));
-    std::array<Group*, 3> all{host->get(), a->get(), b->get()};
+    std::array<Group*, 3> all{host.get(), a->get(), b->get()};
     for (Group* g : all) {
         const std::array<std::byte, 3> word{std::byte{1}, std::byte{2}, static_cast<std::byte>(g->self())};
         ASSERT_TRUE(g->write(word, Deadline::inMs(5000)));
@@ -108,15 +120,13 @@ TEST(Group, MembersWriteToo) {
 }
 
 TEST(Group, WhoLeavesIsMissedAndItsStreamEnds) {
-    auto host = Group::host(options(Seal::Tag));
-    ASSERT_TRUE(host) << host.error().message;
-    GroupOptions join = options(Seal::Tag);
-    join.control = (*host)->controlAddress();
+    HOSTED(hosted, Seal::Tag);
+    auto& [host, join] = hosted;
     auto a = Group::join(join, Deadline::inMs(10'000));
     ASSERT_TRUE(a);
     const MemberId id = (*a)->self();
-    ASSERT_TRUE((*host)->waitForMembers(1, Deadline::inMs(5000)));
-    auto accepted = (*host)->accept(Deadline::inMs(5000));
+    ASSERT_TRUE(host->waitForMembers(1, Deadline::inMs(5000)));
+    auto accepted = host->accept(Deadline::inMs(5000));
     ASSERT_TRUE(accepted);
     EXPECT_EQ(*accepted, id);
     ASSERT_TRUE((*a)->write(std::array{std::byte{9}}, Deadline::inMs(5000)));
@@ -124,37 +134,33 @@ TEST(Group, WhoLeavesIsMissedAndItsStreamEnds) {
     ASSERT_TRUE((*a)->waitArrived(Deadline::inMs(5000)));
     a->reset();
     std::array<std::byte, 8> word{};
-    auto count = (*host)->read(id, word, Deadline::inMs(5000));
+    auto count = host->read(id, word, Deadline::inMs(5000));
     ASSERT_TRUE(count);
     EXPECT_EQ(*count, 1u) << "what it wrote stays";
-    count = (*host)->read(id, word, Deadline::inMs(5000));
+    count = host->read(id, word, Deadline::inMs(5000));
     ASSERT_TRUE(count);
     EXPECT_EQ(*count, 0u);
 }
 
 TEST(Group, AWrongSecretAndNoHostAreSaidInOneLine) {
-    auto host = Group::host(options(Seal::Tag));
-    ASSERT_TRUE(host) << host.error().message;
-    GroupOptions join = options(Seal::Tag);
-    join.control = (*host)->controlAddress();
+    HOSTED(hosted, Seal::Tag);
+    auto& [host, join] = hosted;
     join.secret.fill(std::byte{1});
     const auto wrong = Group::join(join, Deadline::inMs(5000));
     ASSERT_FALSE(wrong);
     EXPECT_NE(wrong.error().message.find("secret"), std::string::npos) << wrong.error().message;
-    host->reset();
+    host.reset();
     const auto none = Group::join(join, Deadline::inMs(5000));
     ASSERT_FALSE(none);
     EXPECT_NE(none.error().message.find(join.control), std::string::npos) << none.error().message;
 }
 
 TEST(Group, TheHostsEndIsTold) {
-    auto host = Group::host(options(Seal::Tag));
-    ASSERT_TRUE(host) << host.error().message;
-    GroupOptions join = options(Seal::Tag);
-    join.control = (*host)->controlAddress();
+    HOSTED(hosted, Seal::Tag);
+    auto& [host, join] = hosted;
     auto a = Group::join(join, Deadline::inMs(10'000));
     ASSERT_TRUE(a);
-    host->reset();
+    host.reset();
     std::array<std::byte, 8> word{};
     auto count = (*a)->read(kHost, word, Deadline::inMs(5000));
     ASSERT_FALSE(count);
