@@ -4,7 +4,7 @@
 //   pipe:                 two ends in one process
 //   shm:                  shared memory between processes of one machine (ends passed by descriptor)
 //   tcp://host:port       TCP
-//   rsp://…               reliable multicast (see docs/decisions; not in this build)
+//   rsp://group:port?…    reliable multicast (transport/rsp/group_description.hpp)
 //
 // Threads: one thread may read while another writes; neither end is for two readers or two writers.
 // Source: thesis, chapter "Collage", Connection.

@@ -1,6 +1,8 @@
 #include "transport/connection_description.hpp"
 
+#include <algorithm>
 #include <charconv>
+#include <utility>
 
 #include "transport/tcp_address.hpp"
 
@@ -10,10 +12,11 @@ namespace {
 
 constexpr std::string_view kTcp = "tcp://";
 constexpr std::string_view kShm = "shm:";
+constexpr std::string_view kRsp = "rsp://";
 
 Error invalid(std::string_view text, const std::string& why) {
     return Error{"connection \"" + std::string(text) + "\": " + why +
-                 "; write tcp://host:port, shm:descriptor or pipe:"};
+                 "; write tcp://host:port, rsp://group:port, shm:descriptor or pipe:"};
 }
 
 template <class Number> bool parseNumber(std::string_view text, Number& into) {
@@ -22,8 +25,8 @@ template <class Number> bool parseNumber(std::string_view text, Number& into) {
     return code == std::errc() && stop == end;
 }
 
-Result<ConnectionDescription> parseTcp(std::string_view text) {
-    const std::string_view rest = text.substr(kTcp.size());
+// host:port, from `rest` on.
+Result<ConnectionDescription> parseEndpoint(std::string_view text, std::string_view rest) {
     const size_t colon = rest.rfind(':');
     if (colon == std::string_view::npos)
         return invalid(text, "the port is missing");
@@ -46,11 +49,30 @@ Result<ConnectionDescription> parseTcp(std::string_view text) {
     return result;
 }
 
+Result<ConnectionDescription> parseRsp(std::string_view text) {
+    const std::string_view rest = text.substr(kRsp.size());
+    const size_t question = rest.find('?');
+    auto result = parseEndpoint(text, rest.substr(0, question));
+    if (!result) return result.error();
+    result->kind = ConnectionDescription::Kind::Rsp;
+    if (result->host.empty()) return invalid(text, "the group's address is missing, such as 239.255.77.85");
+    std::string_view list = question == std::string_view::npos ? std::string_view() : rest.substr(question + 1);
+    while (!list.empty()) {
+        const std::string_view pair = list.substr(0, list.find('&'));
+        list.remove_prefix(std::min(list.size(), pair.size() + 1));
+        const size_t equals = pair.find('=');
+        if (equals == 0 || equals == std::string_view::npos) return invalid(text, "parameters are written name=value, with & in between");
+        const std::string name(pair.substr(0, equals));
+        if (!result->parameters.emplace(name, pair.substr(equals + 1)).second) return invalid(text, name + " is given twice");
+    }
+    return result;
+}
+
 } // namespace
 
 Result<ConnectionDescription> parseConnectionDescription(std::string_view text) {
     if (text.starts_with(kTcp))
-        return parseTcp(text);
+        return parseEndpoint(text, text.substr(kTcp.size()));
     if (text == "pipe:")
         return ConnectionDescription{};
     if (text.starts_with(kShm)) {
@@ -62,8 +84,8 @@ Result<ConnectionDescription> parseConnectionDescription(std::string_view text) 
         }
         return result;
     }
-    if (text.starts_with("rsp:"))
-        return invalid(text, "reliable multicast is not in this build");
+    if (text.starts_with(kRsp))
+        return parseRsp(text);
     return invalid(text, "unknown kind");
 }
 
@@ -75,35 +97,16 @@ std::string toText(const ConnectionDescription& description) {
         return description.descriptor < 0 ? "shm:"
                                           : "shm:" + std::to_string(description.descriptor);
     case ConnectionDescription::Kind::Tcp:
+        return tcpText(description.host, description.port);
+    case ConnectionDescription::Kind::Rsp:
         break;
     }
-    return tcpText(description.host, description.port);
-}
-
-Result<std::unique_ptr<Connection>> connectTo(std::string_view text, Deadline deadline) {
-    const auto description = parseConnectionDescription(text);
-    if (!description)
-        return description.error();
-    const ConnectionDescription& to = description.value();
-    if (to.kind == ConnectionDescription::Kind::Tcp) {
-        if (to.host.empty() || to.port == 0)
-            return invalid(text, "connecting needs a host and a port");
-        return connectTcp(to.host, to.port, deadline);
+    std::string text = std::string(kRsp) + endpointText(description.host, description.port);
+    char separator = '?';
+    for (const auto& [name, value] : description.parameters) {
+        text += std::exchange(separator, '&') + name + "=" + value;
     }
-    if (to.kind == ConnectionDescription::Kind::SharedMemory && to.descriptor >= 0) {
-        return openSharedMemory(to.descriptor);
-    }
-    return invalid(text, "has no other end to connect to");
-}
-
-Result<std::unique_ptr<Listener>> listenAt(std::string_view text) {
-    const auto description = parseConnectionDescription(text);
-    if (!description)
-        return description.error();
-    if (description.value().kind != ConnectionDescription::Kind::Tcp) {
-        return invalid(text, "only TCP can listen");
-    }
-    return listenTcp(description.value().host, description.value().port);
+    return text;
 }
 
 } // namespace mural

@@ -2,34 +2,32 @@
 //   pipe:              both ends in this process
 //   shm:               shared memory, not yet offered;  shm:7  the offer inherited as descriptor 7
 //   tcp://host:port    TCP; IPv6 numbers in brackets
+//   rsp://group:port?parameter=value&…   a multicast group; parameters: transport/rsp/group_description.hpp
+// transport/connect.hpp connects and listens by such a text.
 #pragma once
 
 #include <cstdint>
-#include <memory>
+#include <map>
 #include <string>
 #include <string_view>
 
-#include "transport/connection.hpp"
+#include "common/result.hpp"
 
 namespace mural {
 
 struct ConnectionDescription {
-    enum class Kind { Pipe, SharedMemory, Tcp };
+    enum class Kind { Pipe, SharedMemory, Tcp, Rsp };
 
     Kind kind = Kind::Pipe;
-    std::string host;    // tcp, without brackets; empty only for listening: every address
-    uint16_t port = 0;   // tcp; 0: any free one, for listening
+    std::string host;    // tcp, without brackets; empty only for listening: every address. rsp: the group's address
+    uint16_t port = 0;   // tcp, rsp; 0: any free one, for listening
     int descriptor = -1; // shm
+    std::map<std::string, std::string> parameters{}; // rsp
 
     friend bool operator==(const ConnectionDescription&, const ConnectionDescription&) = default;
 };
 
 Result<ConnectionDescription> parseConnectionDescription(std::string_view text);
 std::string toText(const ConnectionDescription& description);
-
-// Connects to where the text leads: tcp://… or shm:N.
-Result<std::unique_ptr<Connection>> connectTo(std::string_view text, Deadline deadline);
-// Listens where the text says: tcp://host:port.
-Result<std::unique_ptr<Listener>> listenAt(std::string_view text);
 
 } // namespace mural

@@ -1,5 +1,7 @@
 #include "transport/ring_connection.hpp"
 
+#include "transport/connection_error.hpp"
+
 #include <algorithm>
 #include <poll.h>
 #include <unistd.h>
@@ -176,18 +178,14 @@ Error RingConnection::failed(const char* verb, WaitEnd why, size_t doneBytes, si
         why == WaitEnd::PeerGone || (why == WaitEnd::DeadlinePassed && doneBytes == 0);
     if (!usable)
         close();
-    const char* reason = "the other end is gone; its own messages say why";
+    const char* reason = ending::kPeerGone;
     if (why == WaitEnd::ClosedHere)
-        reason = "closed at this end";
+        reason = ending::kClosedHere;
     if (why == WaitEnd::Damaged)
         reason = "the other process has damaged the shared memory; end it";
-    if (why == WaitEnd::DeadlinePassed) {
-        reason = usable ? "deadline passed, the other end is alive but idle; try again later"
-                        : "deadline passed in the middle of a message, the connection is closed; "
-                          "connect again";
-    }
-    return Error{description_ + " " + verb + ", " + std::to_string(doneBytes) + " of " +
-                 std::to_string(wantedBytes) + " bytes done: " + reason};
+    if (why == WaitEnd::DeadlinePassed)
+        reason = usable ? ending::kIdle : ending::kCutInHalf;
+    return connectionError(description_, verb, doneBytes, wantedBytes, reason);
 }
 
 } // namespace mural

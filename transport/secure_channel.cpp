@@ -71,6 +71,7 @@ struct SecureChannel::State {
     void makeKeys() { crypto_kx_keypair(raw(publicKey.data()), raw(secretKey.data())); }
     bool agree(std::span<const std::byte> peerKey);
     void startSending(const std::array<std::byte, crypto_kx_SESSIONKEYBYTES>& key);
+    [[nodiscard]] size_t stepBytes() const;
     Result<size_t> takeHello(std::vector<Bytes>& messages);
     Result<size_t> takeHostKey();
     Result<size_t> takeMemberProof();
@@ -186,6 +187,20 @@ Result<size_t> SecureChannel::State::takeNext(std::vector<Bytes>& messages) {
     return Error{"the channel has failed before"};
 }
 
+// Of the step that is next, as far as what is there tells.
+size_t SecureChannel::State::stepBytes() const {
+    constexpr size_t kHelloHeadBytes = kMagic.size() + 1;
+    switch (step) {
+    case Step::Hello: return in.size() < kHelloHeadBytes ? kHelloHeadBytes : kHelloHeadBytes + std::to_integer<size_t>(in[kMagic.size()]) + kPublicBytes;
+    case Step::HostKey: return kPublicBytes + kProofBytes;
+    case Step::MemberProof: return kProofBytes;
+    case Step::Header: return kHeaderBytes;
+    case Step::Records: return in.size() < kLengthBytes ? kLengthBytes : kLengthBytes + loadLittle<uint32_t>(in.data());
+    case Step::Dead: break;
+    }
+    return 1;
+}
+
 SecureChannel::SecureChannel(std::unique_ptr<State> state) : state_(std::move(state)) {}
 SecureChannel::SecureChannel(SecureChannel&&) noexcept = default;
 SecureChannel& SecureChannel::operator=(SecureChannel&&) noexcept = default;
@@ -256,6 +271,7 @@ void SecureChannel::finish() {
 }
 
 std::vector<std::byte> SecureChannel::takeOutput() { return std::exchange(state_->out, {}); }
+size_t SecureChannel::wantsBytes() const { return state_->stepBytes() - std::min(state_->in.size(), state_->stepBytes() - 1); }
 bool SecureChannel::open() const { return state_->step == State::Step::Records; }
 bool SecureChannel::finished() const { return state_->finished; }
 const std::string& SecureChannel::name() const { return state_->name; }

@@ -44,6 +44,8 @@ public:
     Result<void> input(std::span<const std::byte> bytes, std::vector<std::vector<std::byte>>& messages);
     // Errors: the message is too long, the channel is not open, or ended.
     Result<void> send(std::span<const std::byte> message);
+    // How many more bytes of the peer it can't do without: less make no message whole, and bring no step further.
+    [[nodiscard]] size_t wantsBytes() const;
     // The last that is sent; the peer can tell it from a connection that was cut.
     void finish();
     // What is to be written to the peer now.

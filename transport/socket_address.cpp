@@ -23,6 +23,11 @@ Result<SocketAddress> numericAddress(const std::string& host, uint16_t port) {
     return address;
 }
 
+bool SocketAddress::isMulticast() const {
+    if (family() == AF_INET) return IN_MULTICAST(ntohl(reinterpret_cast<const sockaddr_in*>(&storage)->sin_addr.s_addr));
+    return family() == AF_INET6 && IN6_IS_ADDR_MULTICAST(&reinterpret_cast<const sockaddr_in6*>(&storage)->sin6_addr);
+}
+
 std::string numericText(const SocketAddress& address) {
     std::array<char, NI_MAXHOST> text{};
     if (getnameinfo(address.get(), address.sizeBytes, text.data(), text.size(), nullptr, 0, NI_NUMERICHOST) != 0) return {};
@@ -41,6 +46,11 @@ Result<HostPort> splitHostPort(std::string_view text) {
     const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), result.port);
     if (code != std::errc() || end != digits.data() + digits.size() || digits.empty()) return wrong;
     return result;
+}
+
+std::string endpointText(const std::string& host, uint16_t port) {
+    const bool brackets = host.find(':') != std::string::npos;
+    return (brackets ? "[" + host + "]" : host) + ":" + std::to_string(port);
 }
 
 Result<SocketAddress> numericEndpoint(std::string_view text) {

@@ -19,6 +19,7 @@ struct SocketAddress {
     }
     [[nodiscard]] sockaddr* get() { return reinterpret_cast<sockaddr*>(&storage); }
     [[nodiscard]] int family() const { return storage.ss_family; }
+    [[nodiscard]] bool isMulticast() const;
 };
 
 // Of numbers, not names: "10.0.0.1", "ff12::4".
@@ -34,5 +35,7 @@ struct HostPort {
 };
 // "host:port"; brackets around IPv6 numbers; the host may be empty.
 Result<HostPort> splitHostPort(std::string_view text);
+// The other way round.
+std::string endpointText(const std::string& host, uint16_t port);
 
 } // namespace mural

@@ -102,8 +102,7 @@ resolveTcp(const std::string& host, uint16_t port, TcpRole role, Deadline deadli
 }
 
 std::string tcpText(const std::string& host, uint16_t port) {
-    const bool brackets = host.find(':') != std::string::npos;
-    return "tcp://" + (brackets ? "[" + host + "]" : host) + ":" + std::to_string(port);
+    return "tcp://" + endpointText(host, port);
 }
 
 std::string tcpText(const TcpAddress& address) {

@@ -9,6 +9,7 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
+#include "transport/connection_error.hpp"
 #include "transport/socket_wait.hpp"
 #include "transport/system_error.hpp"
 #include "transport/tcp_address.hpp"
@@ -151,7 +152,10 @@ Result<void> TcpConnection::write(std::span<const std::byte> bytes, Deadline dea
         gather(bytes);
     } else {
         const End end = sendAll(bytes, deadline, sentBytes);
-        if (end != End::Done) {
+        const bool restFits = end == End::DeadlinePassed && sentBytes > 0 && bytes.size() - sentBytes <= kBufferBytes;
+        if (restFits) {
+            gather(bytes.subspan(sentBytes)); // all before it has gone out
+        } else if (end != End::Done) {
             if (end == End::DeadlinePassed && sentBytes == 0)
                 writeTimedOut_.store(true);
             return failed("write", end, writeCode_, sentBytes, bytes.size());
@@ -232,20 +236,14 @@ Error TcpConnection::failed(
     const bool usable = end == End::PeerGone || (end == End::DeadlinePassed && doneBytes == 0);
     if (!usable)
         endStream();
-    std::string reason = "the other end is gone";
+    std::string reason = ending::kPeerGone;
     if (end == End::PeerGone && code != 0)
         reason += " (" + errnoText(code) + ")";
-    if (end == End::PeerGone)
-        reason += "; its own messages say why";
     if (end == End::ClosedHere)
-        reason = "closed at this end";
-    if (end == End::DeadlinePassed) {
-        reason = usable ? "deadline passed, the other end is idle or slow; try again later"
-                        : "deadline passed in the middle of a message, the connection is closed; "
-                          "connect again";
-    }
-    return Error{description_ + " " + verb + ", " + std::to_string(doneBytes) + " of " +
-                 std::to_string(wantedBytes) + " bytes done: " + reason};
+        reason = ending::kClosedHere;
+    if (end == End::DeadlinePassed)
+        reason = usable ? ending::kIdle : ending::kCutInHalf;
+    return connectionError(description_, verb, doneBytes, wantedBytes, reason);
 }
 
 } // namespace mural

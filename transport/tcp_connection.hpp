@@ -23,6 +23,7 @@ public:
     ~TcpConnection() override;
 
     Result<void> read(std::span<std::byte> into, Deadline deadline) override;
+    // Up to 64 KiB are never cut in half by a deadline: none of them or all have been taken then.
     Result<void> write(std::span<const std::byte> bytes, Deadline deadline) override;
     // Waits for a full socket until the deadline of the last write, and a second at least; what
     // does not go out then goes first with the next write or flush.

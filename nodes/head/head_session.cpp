@@ -20,6 +20,10 @@ const char* explainTiling(Tiling tiling) {
     return "tiling exact: every node has a frame buffer of the whole picture and draws its tiles only; no pixel differs from a single machine's";
 }
 
+const char* whyOwnStreams(const std::string& stream) {
+    return stream == "tcp" ? "--stream tcp" : "there are no two other machines";
+}
+
 using Json = nlohmann::json;
 
 constexpr int64_t kTickMs = 50;
@@ -105,8 +109,15 @@ int HeadSession::run() {
 Result<void> HeadSession::bringUp() {
     placement_ = placeOwnThreads(); // before its threads start: they inherit it
     nodes_.startReading();
-    for (const NodePlan& plan : plan_.nodes)
-        nodes_.sendSetup(plan.node, toJson(setupOf(config_, plan_, plan)));
+    openMulticast();
+    for (const NodePlan& plan : plan_.nodes) {
+        NodeSetup setup = setupOf(config_, plan_, plan);
+        if (nodes_.link(plan.node).byMulticast()) {
+            setup.stream = nodes_.multicast()->invitation(plan.where);
+            setup.streamSecret = toHex(nodes_.multicast()->secret());
+        }
+        nodes_.sendSetup(plan.node, toJson(setup));
+    }
     if (auto ready = awaitReady(); !ready) return ready;
     openTables();
     auto server = CaptureServer::start(config_.session, options_.registryDigest, *programs_, [this] { return statusOf(status()).dump(); });
@@ -114,6 +125,24 @@ Result<void> HeadSession::bringUp() {
     server_ = std::move(*server);
     announceReady();
     return {};
+}
+
+// One stream for all nodes of other machines. Without it each gets its own, as ever.
+void HeadSession::openMulticast() {
+    const std::vector<int> nodes = nodesForMulticast(config_.stream, plan_);
+    if (nodes.empty()) {
+        streamLine_ = config_.hosts.empty() ? "" : std::string("the stream goes to each node by its own connection: ") + whyOwnStreams(config_.stream);
+        return;
+    }
+    auto multicast = NodeMulticast::open(config_.stream, plan_.nodes[static_cast<size_t>(nodes.front())].where);
+    if (!multicast) {
+        streamLine_ = "the stream goes to each node by its own connection: no multicast: " + multicast.error().message;
+        control_.say(streamLine_ + "; mural doctor --network says what to mend");
+        return;
+    }
+    streamLine_ = "the stream goes to " + std::to_string(nodes.size()) + " nodes at once, by reliable multicast: " + (*multicast)->describe();
+    nodes_.multicastBy(std::move(*multicast));
+    for (const int node : nodes) nodes_.link(node).setByMulticast(true);
 }
 
 Result<void> HeadSession::awaitReady() {
@@ -175,6 +204,7 @@ std::string HeadSession::placeOwnThreads() const {
 std::vector<std::string> HeadSession::explainLines() {
     std::vector<std::string> lines = plan_.explain;
     lines.push_back(explainTiling(config_.tiling));
+    if (!streamLine_.empty()) lines.push_back(streamLine_);
     lines.push_back("threads of the head: " + placement_);
     const std::lock_guard lock(mutex_);
     for (const NodePlan& plan : plan_.nodes) {
@@ -217,7 +247,9 @@ bool HeadSession::askedToFinish(Deadline deadline) {
 }
 
 void HeadSession::watchNodes(int64_t nowNs) {
-    nodes_.watch(nowNs, options_.silencePatienceMs * kNsPerMs);
+    nodes_.watch(nowNs, options_.silencePatienceMs * kNsPerMs, [this](int node) {
+        control_.say(nodes_.link(node).describe() + ": multicast does not reach it; its stream goes through its own connection (TCP); mural doctor --network says why");
+    });
 }
 
 void HeadSession::tick() {
@@ -252,6 +284,10 @@ Result<void> HeadSession::nodeReady(int node, const std::string& json) {
     const auto index = static_cast<size_t>(node);
     const std::lock_guard lock(mutex_);
     if (ready_[index]) return Error{"it said twice that it is ready"};
+    if (!facts->ownStream.empty()) {
+        nodes_.link(node).setByMulticast(false);
+        control_.say(nodes_.link(node).describe() + ": its stream goes through its own connection (TCP), not by multicast: " + facts->ownStream);
+    }
     facts_[index] = std::move(*facts);
     ready_[index] = true;
     return {};

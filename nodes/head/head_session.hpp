@@ -71,6 +71,7 @@ private:
     void nodeLost(int node, const std::string& why) override;
 
     Result<void> bringUp();
+    void openMulticast();
     Result<void> awaitReady();
     void openTables();
     void announceReady();
@@ -101,6 +102,7 @@ private:
     const int nodeCount_;
     const bool sendsPictures_;
     std::string placement_; // of the head's threads
+    std::string streamLine_; // how the stream travels, for --explain; empty: in this machine's memory
 
     // In the order of construction; the nodes' readers use all of it and are ended before.
     FrameTracker frames_;

@@ -14,6 +14,7 @@ struct NodeFacts {
     int64_t pid = 0;
     std::string renderer;
     std::string placement; // of the replay thread; for --explain
+    std::string ownStream; // why its packets can't come by multicast; empty: they do, or nobody asked it to
     int glVersion = 0; // 10 * major + minor, 0: unknown
     std::vector<std::string> extensions;
 };

@@ -4,11 +4,14 @@
 #include <poll.h>
 #include <string>
 
+#include "transport/secure_connection.hpp"
+
 namespace mural {
 namespace {
 
 constexpr int64_t kAcceptSliceMs = 100;
 constexpr int64_t kProofPatienceMs = 5000;
+const std::string kName = "node";
 constexpr int kMostChecked = 32; // strangers that keep silent at the same time
 
 int portOf(const std::string& description) {
@@ -21,8 +24,19 @@ int portOf(const std::string& description) {
 
 } // namespace
 
+std::string NodeGate::nameOf(int node) { return kName + std::to_string(node); }
+
+std::optional<int> NodeGate::nodeOf(const std::string& name) {
+    int node = -1;
+    const char* const end = name.data() + name.size();
+    if (!name.starts_with(kName)) return {};
+    const auto [stop, code] = std::from_chars(name.data() + kName.size(), end, node);
+    if (code != std::errc() || stop != end || node < 0) return {};
+    return node;
+}
+
 Result<std::unique_ptr<NodeGate>> NodeGate::open(bool loopbackOnly) {
-    auto listener = listenTcp(loopbackOnly ? "127.0.0.1" : "0.0.0.0", 0);
+    auto listener = listenTcp(loopbackOnly ? "127.0.0.1" : "", 0);
     if (!listener) return listener.error();
     const int port = portOf((*listener)->describe());
     return std::unique_ptr<NodeGate>(new NodeGate(std::move(*listener), port));
@@ -40,7 +54,7 @@ NodeGate::~NodeGate() {
 
 void NodeGate::expect(int node, const SessionSecret& secret) {
     const std::lock_guard lock(mutex_);
-    expected_[node] = secret;
+    expected_[nameOf(node)] = {node, secret};
 }
 
 std::unique_ptr<Connection> NodeGate::take(int node) {
@@ -70,22 +84,23 @@ void NodeGate::acceptAll() {
     for (auto& checker : checkers_) checker.join();
 }
 
-void NodeGate::check(std::unique_ptr<Connection> connection) {
-    SessionSecret shown{};
-    const Deadline deadline = Deadline::inMs(kProofPatienceMs);
-    Result<void> got = Error{};
-    while (!got && !deadline.passed() && !stop_) {
-        got = connection->read(shown, Deadline::inMs(kAcceptSliceMs));
-        if (!got && !connection->timedOut()) return;
-    }
-    if (!got) return;
+std::optional<SessionSecret> NodeGate::secretOf(const std::string& name) {
     const std::lock_guard lock(mutex_);
-    int node = -1;
-    for (const auto& [candidate, secret] : expected_)
-        if (sameSecret(secret, shown)) node = candidate;
-    if (node < 0) return;
-    expected_.erase(node); // good for one connection
-    arrived_[node] = std::move(connection);
+    const auto found = expected_.find(name);
+    if (found == expected_.end()) return {};
+    return found->second.second;
+}
+
+void NodeGate::check(std::unique_ptr<Connection> connection) {
+    auto shown = SecureConnection::accepting(
+        std::move(connection), [this](const std::string& name) { return secretOf(name); }, Deadline::inMs(kProofPatienceMs),
+        [this] { return stop_.load(); });
+    if (!shown) return;
+    const std::lock_guard lock(mutex_);
+    const auto found = expected_.find((*shown)->name());
+    if (found == expected_.end()) return; // good for one connection
+    arrived_[found->second.first] = std::move(*shown);
+    expected_.erase(found);
 }
 
 } // namespace mural

@@ -1,11 +1,13 @@
-// Where render nodes come in over TCP. Who can't show a secret that a node was given is sent away;
-// nothing else of what he sends is looked at.
+// Where render nodes come in over TCP, encrypted. Who can't show the secret that the node of his name was given is sent
+// away; nothing else of what he sends is looked at.
 #pragma once
 
 #include <atomic>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -26,17 +28,20 @@ public:
     [[nodiscard]] int port() const { return port_; }
     void expect(int node, const SessionSecret& secret);
     std::unique_ptr<Connection> take(int node); // null: it has not come yet
+    static std::string nameOf(int node); // by which a node says who it is
+    static std::optional<int> nodeOf(const std::string& name);
 
 private:
     NodeGate(std::unique_ptr<Listener> listener, int port);
     void acceptAll();
     void check(std::unique_ptr<Connection> connection);
+    std::optional<SessionSecret> secretOf(const std::string& name);
 
     const std::unique_ptr<Listener> listener_;
     const int port_;
     std::atomic<bool> stop_{false};
     std::mutex mutex_;
-    std::map<int, SessionSecret> expected_;
+    std::map<std::string, std::pair<int, SessionSecret>> expected_; // by name
     std::map<int, std::unique_ptr<Connection>> arrived_;
     std::atomic<int> checking_{0};
     std::vector<std::thread> checkers_; // the accepting thread's

@@ -1,17 +1,13 @@
 #include "nodes/head/node_launcher.hpp"
 
 #include <algorithm>
-#include <cstring>
-#include <netdb.h>
-#include <netinet/in.h>
-#include <arpa/inet.h>
 #include <poll.h>
 #include <sstream>
-#include <sys/socket.h>
 #include <unistd.h>
 
 #include "nodes/head/node_gate.hpp"
 #include "transport/file_descriptor.hpp"
+#include "transport/route.hpp"
 
 namespace mural {
 namespace {
@@ -22,26 +18,14 @@ std::string nameOf(const NodePlan& plan) {
     return "node " + std::to_string(plan.node) + " (" + plan.where + ")";
 }
 
-// The address under which `host` reaches this machine; the own name when that can't be found out.
-std::string addressTowards(const std::string& host) {
+// host:port at which `host` reaches the gate; the own name when the way there can't be found out.
+std::string endpointTowards(const std::string& host, uint16_t port) {
+    constexpr int64_t kLookupMs = 5000;
+    const std::string machine = host.substr(host.find('@') + 1); // user@host
+    if (const auto own = ownAddressTowards(machine, Deadline::inMs(kLookupMs))) return endpointText(numericText(*own), port);
     char name[256] = "localhost";
     gethostname(name, sizeof(name) - 1);
-    addrinfo hints{};
-    hints.ai_family = AF_INET;
-    hints.ai_socktype = SOCK_DGRAM;
-    addrinfo* found = nullptr;
-    const std::string machine = host.substr(host.find('@') + 1); // user@host
-    if (getaddrinfo(machine.c_str(), "9", &hints, &found) != 0) return name;
-    // Connecting a datagram socket sends nothing but chooses the route.
-    const FileDescriptor fd(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
-    sockaddr_in own{};
-    socklen_t size = sizeof(own);
-    char text[INET_ADDRSTRLEN] = {};
-    const bool known = connect(fd.get(), found->ai_addr, found->ai_addrlen) == 0 &&
-                       getsockname(fd.get(), reinterpret_cast<sockaddr*>(&own), &size) == 0 &&
-                       inet_ntop(AF_INET, &own.sin_addr, text, sizeof(text)) != nullptr;
-    freeaddrinfo(found);
-    return known ? text : name;
+    return endpointText(name, port);
 }
 
 // For the shell that the launch command runs on the host.
@@ -59,16 +43,16 @@ std::vector<std::string> words(const std::string& text) {
     return all;
 }
 
-NodeCommand tcpCommand(const NodePlan& plan, const LaunchOptions& options, int port) {
+NodeCommand tcpCommand(const NodePlan& plan, const LaunchOptions& options, uint16_t port) {
     NodeCommand command;
-    const std::string endpoint = ":" + std::to_string(port);
+    const std::string name = NodeGate::nameOf(plan.node);
     if (plan.reach == NodeReach::Tcp) {
-        command.arguments = {options.executable, "node", "--connect", "127.0.0.1" + endpoint};
+        command.arguments = {options.executable, "node", "--name", name, "--connect", endpointText("127.0.0.1", port)};
         return command;
     }
     command.arguments = words(options.launchCommand);
-    for (const std::string& word : {plan.where, quoted(options.remoteMural), std::string("node"),
-                                    std::string("--connect"), addressTowards(plan.where) + endpoint})
+    for (const std::string& word : {plan.where, quoted(options.remoteMural), std::string("node"), std::string("--name"), name,
+                                    std::string("--connect"), endpointTowards(plan.where, port)})
         command.arguments.push_back(word);
     return command;
 }
@@ -90,7 +74,7 @@ Result<void> startLocal(LaunchedNode& node, const LaunchOptions& options) {
 Result<void> startTcp(LaunchedNode& node, const LaunchOptions& options, NodeGate& gate) {
     const auto secret = makeSessionSecret();
     if (!secret) return secret.error();
-    NodeCommand command = tcpCommand(node.plan, options, gate.port());
+    NodeCommand command = tcpCommand(node.plan, options, static_cast<uint16_t>(gate.port()));
     command.standardInput = toHex(secret.value()) + "\n";
     gate.expect(node.plan.node, secret.value());
     auto process = NodeProcess::start(command);

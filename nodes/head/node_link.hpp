@@ -56,6 +56,10 @@ public:
     void send(std::span<const std::byte> header, std::span<const std::byte> payload);
     void flush();
 
+    // Its packets come another way (NodeMulticast), all but its setup.
+    void setByMulticast(bool by) { byMulticast_ = by; }
+    [[nodiscard]] bool byMulticast() const { return byMulticast_; }
+
     // Ends the connection; the reader thread then reports the first reason given.
     void lose(const std::string& why);
     // Called often: loses a node that says nothing for so long. Nodes say that they are alive even while
@@ -98,6 +102,7 @@ private:
     std::thread reader_;
     std::atomic<bool> alive_{true};
     std::atomic<bool> saidBye_{false};
+    std::atomic<bool> byMulticast_{false};
     std::atomic<bool> readerEnded_{false};
     int64_t watchedNs_ = 0; // the last watch()
     int64_t excusedNs_ = 0; // silence before does not count

@@ -42,19 +42,38 @@ bool NodeSet::broadcast(wire::HeadCommand command, Deadline deadline) {
     std::unique_lock lock(sendMutex_, std::chrono::nanoseconds(deadline.leftNs(60 * kNsPerS)));
     if (!lock.owns_lock()) return false;
     const bool sent = sendLocked(wire::streamOf(0, 0), commandBytes(command, {}));
-    for (auto& link : links_) link->flush();
+    flushLocked();
     return sent;
 }
 
 bool NodeSet::sendLocked(uint32_t stream, std::span<const std::byte> payload) {
     const wire::PacketHeader header{static_cast<uint32_t>(payload.size()), stream};
     bool any = false;
+    bool byMulticast = false;
     for (auto& link : links_) {
-        link->send(bytesOf(header), payload);
+        if (link->byMulticast()) byMulticast = byMulticast || link->alive();
+        else link->send(bytesOf(header), payload);
         any = any || link->alive();
     }
+    if (byMulticast) multicastLocked(bytesOf(header), payload);
     bytesSent_.fetch_add(sizeof(header) + payload.size(), std::memory_order_relaxed);
     return any;
+}
+
+void NodeSet::multicastLocked(std::span<const std::byte> header, std::span<const std::byte> payload) {
+    constexpr int64_t kWriteLimitMs = 600'000; // the last resort behind watch()
+    const Deadline deadline = Deadline::inMs(kWriteLimitMs);
+    Result<void> written = multicast_->write(header, deadline);
+    if (written && !payload.empty()) written = multicast_->write(payload, deadline);
+    if (written) return;
+    for (auto& link : links_)
+        if (link->byMulticast()) link->lose("the multicast group failed: " + written.error().message);
+}
+
+void NodeSet::flushLocked() {
+    for (auto& link : links_)
+        if (!link->byMulticast()) link->flush();
+    if (multicast_) multicast_->flush();
 }
 
 void NodeSet::sendSetup(int node, const std::string& json) {
@@ -68,7 +87,7 @@ void NodeSet::sendSetup(int node, const std::string& json) {
 
 void NodeSet::flush() {
     const std::lock_guard lock(sendMutex_);
-    for (auto& link : links_) link->flush();
+    flushLocked();
 }
 
 int NodeSet::livingCount() const {
@@ -76,8 +95,18 @@ int NodeSet::livingCount() const {
         std::ranges::count_if(links_, [](const auto& link) { return link->alive(); }));
 }
 
-void NodeSet::watch(int64_t nowNs, int64_t patienceNs) {
+void NodeSet::watch(int64_t nowNs, int64_t patienceNs, const std::function<void(int)>& rerouted) {
     for (auto& link : links_) link->watch(nowNs, patienceNs);
+    if (!multicast_) return;
+    for (const NodeMulticast::Change& change : multicast_->takeChanges()) {
+        NodeLink& link = *links_[static_cast<size_t>(change.node)];
+        if (!link.alive() || link.saidBye()) continue;
+        if (change.gone) link.lose(change.why);
+        else rerouted(change.node);
+    }
+    // A writer may wait for room that a dead node will never make.
+    for (auto& link : links_)
+        if (link->byMulticast() && !link->alive()) multicast_->remove(link->place().node, "the head has lost it");
 }
 
 void NodeSet::loseAll(const std::string& why) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -10,12 +11,16 @@
 #include <vector>
 
 #include "nodes/head/node_link.hpp"
+#include "nodes/head/node_multicast.hpp"
 
 namespace mural {
 
 class NodeSet {
 public:
     void add(std::unique_ptr<NodeLink> link); // before any other call
+    // Carries the packets of the links that say so; before the first broadcast.
+    void multicastBy(std::unique_ptr<NodeMulticast> multicast) { multicast_ = std::move(multicast); }
+    [[nodiscard]] NodeMulticast* multicast() { return multicast_.get(); }
     void startReading();
 
     // False when no node lives. Blocks while a node's connection is full.
@@ -30,7 +35,9 @@ public:
     [[nodiscard]] int livingCount() const;
     NodeLink& link(int node) { return *links_[static_cast<size_t>(node)]; }
 
-    void watch(int64_t nowNs, int64_t patienceNs);
+    // Also whom the multicast group has lost, and the group loses whom we have. `rerouted` hears of nodes that multicast
+    // does not reach.
+    void watch(int64_t nowNs, int64_t patienceNs, const std::function<void(int)>& rerouted);
     void loseAll(const std::string& why); // those that have not said Bye
     void end();
 
@@ -40,6 +47,10 @@ public:
 private:
     bool sendLocked(uint32_t stream, std::span<const std::byte> payload);
 
+    void multicastLocked(std::span<const std::byte> header, std::span<const std::byte> payload);
+    void flushLocked();
+
+    std::unique_ptr<NodeMulticast> multicast_; // null: every node has a stream of its own
     std::vector<std::unique_ptr<NodeLink>> links_;
     std::timed_mutex sendMutex_;
     std::atomic<uint64_t> bytesSent_{0};

@@ -3,6 +3,12 @@
 #include <iostream>
 
 #include "nodes/session/session_secret.hpp"
+#include "transport/connection_description.hpp"
+#include "transport/route.hpp"
+#include "transport/rsp/group_connection.hpp"
+#include "transport/rsp/group_description.hpp"
+#include "transport/secure_connection.hpp"
+#include "transport/socket_address.hpp"
 
 namespace mural {
 
@@ -10,42 +16,59 @@ namespace {
 
 constexpr int64_t kSendMs = 20'000;
 constexpr int64_t kConnectMs = 20'000;
+constexpr int64_t kJoinMs = 10'000;
 
-// host:port, and the secret that proves that this node was asked for.
-Result<std::unique_ptr<Connection>> connectByTcp(const std::string& address) {
-    const size_t colon = address.rfind(':');
-    if (colon == std::string::npos) return Error{"--connect " + address + ": give it as HOST:PORT"};
-    std::string host = address.substr(0, colon);
-    if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
-    const long port = std::strtol(address.c_str() + colon + 1, nullptr, 10);
-    if (port < 1 || port > 65535) return Error{"--connect " + address + ": the port is no number from 1 to 65535"};
+// host:port, and the secret that proves that this node was asked for, and the head to it that it is the head.
+Result<std::unique_ptr<Connection>> connectByTcp(const NodeOptions& options) {
+    auto where = splitHostPort(options.connect);
+    if (!where || where->host.empty() || where->port == 0) return Error{"--connect " + options.connect + ": give it as HOST:PORT, with a port from 1 to 65535"};
     std::string line;
     std::getline(std::cin, line);
     const auto secret = sessionSecretFromHex(line);
     if (!secret) return Error{"no session secret on standard input: nodes are started by `mural run --nodes`"};
-    auto connection = connectTcp(host, static_cast<uint16_t>(port), Deadline::inMs(kConnectMs));
+    const Deadline deadline = Deadline::inMs(kConnectMs);
+    auto connection = connectTcp(where->host, where->port, deadline);
     if (!connection) return connection.error();
-    const auto sent = (*connection)->write(secret.value(), Deadline::inMs(kSendMs));
-    if (!sent) return sent.error();
-    (*connection)->flush();
-    return std::move(*connection);
+    auto secure = SecureConnection::connecting(std::move(*connection), options.name, secret.value(), deadline);
+    if (!secure) return secure.error();
+    return std::unique_ptr<Connection>(std::move(*secure));
 }
 
 } // namespace
 
 Result<std::unique_ptr<HeadLine>> HeadLine::open(const NodeOptions& options) {
-    auto connection = options.connectFd >= 0 ? openSharedMemory(options.connectFd) : connectByTcp(options.connect);
+    auto connection = options.connectFd >= 0 ? openSharedMemory(options.connectFd) : connectByTcp(options);
     if (!connection) return connection.error();
     return std::unique_ptr<HeadLine>(new HeadLine(std::move(*connection)));
 }
 
+Result<void> HeadLine::follow(const std::string& stream, const std::string& secretHex, const std::string& name) {
+    auto description = parseConnectionDescription(stream);
+    if (!description) return description.error();
+    auto options = rsp::groupOptionsOf(*description);
+    if (!options) return options.error();
+    const auto secret = sessionSecretFromHex(secretHex);
+    if (!secret) return secret.error();
+    options->secret = secret.value();
+    options->name = name;
+    // The network card by which the head is reached.
+    auto head = splitHostPort(options->control);
+    if (!head) return head.error();
+    if (const auto own = ownAddressTowards(head->host, Deadline::inMs(kJoinMs))) options->interface = numericText(*own);
+    auto joined = rsp::joinGroup(*options, Deadline::inMs(kJoinMs));
+    if (!joined) return joined.error();
+    stream_ = std::move(*joined);
+    return {};
+}
+
 Result<wire::PacketHeader> HeadLine::next(std::span<const std::byte>& payload) {
+    Connection& stream = stream_ ? *stream_ : *connection_;
     wire::PacketHeader header{};
-    const auto got = connection_->read(std::as_writable_bytes(std::span(&header, 1)), Deadline::never());
+    const auto got = stream.read(std::as_writable_bytes(std::span(&header, 1)), Deadline::never());
     if (!got) return got.error();
     if (header.sizeBytes > wire::kMaxPacketBytes) return Error{"the head sent a packet of " + std::to_string(header.sizeBytes) + " bytes: it is of another build"};
     payload_.resize(header.sizeBytes);
-    const auto rest = connection_->read(payload_, Deadline::inMs(kSendMs));
+    const auto rest = stream.read(payload_, Deadline::inMs(kSendMs));
     if (!rest) return rest.error();
     payload = payload_;
     return header;

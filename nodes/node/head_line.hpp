@@ -18,6 +18,9 @@ class HeadLine {
 public:
     static Result<std::unique_ptr<HeadLine>> open(const NodeOptions& options);
 
+    // From now on packets come by this multicast group (rsp://…), no longer by the connection.
+    Result<void> follow(const std::string& stream, const std::string& secretHex, const std::string& name);
+
     // The next packet; its payload lives until the next call. Error: the head is gone.
     Result<wire::PacketHeader> next(std::span<const std::byte>& payload);
 
@@ -32,7 +35,8 @@ private:
     void sendLocked(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b);
     explicit HeadLine(std::unique_ptr<Connection> connection) : connection_(std::move(connection)) {}
 
-    std::unique_ptr<Connection> connection_;
+    const std::unique_ptr<Connection> connection_;
+    std::unique_ptr<Connection> stream_; // null: packets come by connection_
     std::vector<std::byte> payload_;
     std::mutex sending_;
     std::atomic<bool> broken_{false};

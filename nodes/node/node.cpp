@@ -48,7 +48,7 @@ std::string hostName() {
 
 class Node {
 public:
-    explicit Node(std::unique_ptr<HeadLine> line) : line_(std::move(line)) {}
+    Node(std::unique_ptr<HeadLine> line, std::string name) : line_(std::move(line)), name_(std::move(name)) {}
 
     int run() {
         Heartbeat heartbeat(*line_);
@@ -110,6 +110,10 @@ private:
         if (!platform) return fail(platform.error().message);
         nlohmann::json ready = probe(**platform);
         ready["placement"] = placeReplay(setup_, ready.value("renderer", ""));
+        if (!setup_.stream.empty()) {
+            const auto followed = line_->follow(setup_.stream, setup_.streamSecret, name_);
+            if (!followed) ready["ownStream"] = followed.error().message;
+        }
         if (setup_.wallWindows) {
             auto windows = TileWindows::open(setup_);
             if (!windows) return fail(windows.error().message);
@@ -231,7 +235,8 @@ private:
         line_->sendText(wire::NodeMessage::Bye, bye.dump());
     }
 
-    std::unique_ptr<HeadLine> line_;
+    const std::unique_ptr<HeadLine> line_;
+    const std::string name_; // by which the head knows this node
     NodeSetup setup_;
     std::unique_ptr<TileWindows> windows_;
     std::unique_ptr<Replay> replay_;
@@ -250,7 +255,7 @@ int runNode(const NodeOptions& options) {
         std::cerr << "mural node: " << line.error().message << '\n';
         return 1;
     }
-    return Node(std::move(*line)).run();
+    return Node(std::move(*line), options.name).run();
 }
 
 } // namespace mural

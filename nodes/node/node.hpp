@@ -8,6 +8,7 @@ namespace mural {
 struct NodeOptions {
     int connectFd = -1;  // shared memory, inherited from the head
     std::string connect; // or host:port; the session's secret comes on standard input
+    std::string name;    // with it: by which the head knows that secret
 };
 
 // Until the head says that it is over, or is gone. Returns the process's exit status.

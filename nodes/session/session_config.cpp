@@ -36,6 +36,7 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("localNodes", c.localNodes, 0);
     visit("hosts", c.hosts);
     visit("launchCommand", c.launchCommand);
+    visit("stream", c.stream);
     visit("remoteMural", c.remoteMural);
     visit("tiling", c.tiling);
     visit("display", c.display);
@@ -76,6 +77,8 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("windowY", s.windowY);
     visit("placeThreads", s.placeThreads);
     visit("displayName", s.displayName);
+    visit("stream", s.stream);
+    visit("streamSecret", s.streamSecret);
     visit("build", s.build);
 }
 

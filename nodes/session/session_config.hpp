@@ -21,6 +21,7 @@ struct SessionConfig {
     int localNodes = 0;           // --local-nodes; 0: min(columns * rows, 4) when there are no hosts
     std::vector<std::string> hosts; // --nodes
     std::string launchCommand = "ssh -o BatchMode=yes"; // --launch: prefix that runs a command on a host
+    std::string stream = "auto";  // --stream: how it travels to other machines: auto, tcp, rsp://…
     std::string remoteMural;      // --remote-mural: path of mural on the hosts; empty: this one's path
     Tiling tiling = Tiling::Exact;
     Display display = Display::None;
@@ -58,6 +59,8 @@ struct NodeSetup {
     int windowX = 0, windowY = 0;
     bool placeThreads = true;
     std::string displayName;
+    std::string stream;           // rsp://…: the group to join; its packets come there. Empty: on this connection
+    std::string streamSecret;     // of that group, in hex
     std::string build;            // streamBuild() of the head
 };
 

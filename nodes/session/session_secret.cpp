@@ -45,21 +45,15 @@ Result<SessionSecret> sessionSecretFromHex(const std::string& line) {
     const std::string hex = line.substr(0, line.find_last_not_of("\r\n") + 1);
     const Error error{"the session's secret on standard input is not a line of 64 hex digits; "
                       "`mural head` starts nodes with it"};
-    if (hex.size() != 2 * kSecretBytes) return error;
+    if (hex.size() != 2 * kChannelSecretBytes) return error;
     SessionSecret secret;
-    for (size_t i = 0; i < kSecretBytes; ++i) {
+    for (size_t i = 0; i < kChannelSecretBytes; ++i) {
         const int high = hexDigit(hex[2 * i]);
         const int low = hexDigit(hex[2 * i + 1]);
         if (high < 0 || low < 0) return error;
         secret[i] = static_cast<std::byte>(high << 4 | low);
     }
     return secret;
-}
-
-bool sameSecret(const SessionSecret& a, const SessionSecret& b) {
-    unsigned difference = 0;
-    for (size_t i = 0; i < kSecretBytes; ++i) difference |= std::to_integer<unsigned>(a[i] ^ b[i]);
-    return difference == 0;
 }
 
 } // namespace mural

@@ -3,17 +3,20 @@
 #include <gtest/gtest.h>
 #include <thread>
 
+#include "transport/secure_connection.hpp"
+
 namespace mural {
 namespace {
 
 constexpr int64_t kPatienceMs = 20'000;
 
-std::unique_ptr<Connection> come(const NodeGate& gate, const SessionSecret& secret) {
+// Null: turned away.
+std::unique_ptr<Connection> come(const NodeGate& gate, int node, const SessionSecret& secret) {
     auto connection = connectTcp("127.0.0.1", static_cast<uint16_t>(gate.port()), Deadline::inMs(kPatienceMs));
     if (!connection) return nullptr;
-    if (!(*connection)->write(secret, Deadline::inMs(kPatienceMs))) return nullptr;
-    (*connection)->flush();
-    return std::move(*connection);
+    auto secure = SecureConnection::connecting(std::move(*connection), NodeGate::nameOf(node), secret, Deadline::inMs(kPatienceMs));
+    if (!secure) return nullptr;
+    return std::move(*secure);
 }
 
 std::unique_ptr<Connection> waitTaken(NodeGate& gate, int node) {
@@ -25,11 +28,6 @@ std::unique_ptr<Connection> waitTaken(NodeGate& gate, int node) {
     return nullptr;
 }
 
-bool turnedAway(Connection& connection) {
-    std::byte byte{};
-    return !connection.read({&byte, 1}, Deadline::inMs(kPatienceMs)) && !connection.timedOut();
-}
-
 TEST(NodeGate, eachNodeIsKnownByItsSecret) {
     auto gate = NodeGate::open(true);
     ASSERT_TRUE(gate.ok()) << gate.error().message;
@@ -37,8 +35,8 @@ TEST(NodeGate, eachNodeIsKnownByItsSecret) {
     auto b = makeSessionSecret();
     (*gate)->expect(4, *a);
     (*gate)->expect(7, *b);
-    auto nodeB = come(**gate, *b);
-    auto nodeA = come(**gate, *a);
+    auto nodeB = come(**gate, 7, *b);
+    auto nodeA = come(**gate, 4, *a);
     ASSERT_TRUE(nodeA && nodeB);
     auto headB = waitTaken(**gate, 7);
     auto headA = waitTaken(**gate, 4);
@@ -61,16 +59,18 @@ TEST(NodeGate, strangersAreTurnedAwayAndSecretsAreGoodOnce) {
     ASSERT_TRUE(silent.ok());
     SessionSecret wrong = *right;
     wrong[31] ^= std::byte{1};
-    auto stranger = come(**gate, wrong);
-    ASSERT_TRUE(stranger);
-    EXPECT_TRUE(turnedAway(*stranger));
+    EXPECT_EQ(come(**gate, 0, wrong), nullptr);
+    EXPECT_EQ(come(**gate, 1, *right), nullptr);
     EXPECT_EQ((*gate)->take(0), nullptr);
-    auto node = come(**gate, *right);
+    auto node = come(**gate, 0, *right);
     ASSERT_TRUE(node);
     EXPECT_NE(waitTaken(**gate, 0), nullptr);
-    auto again = come(**gate, *right);
-    ASSERT_TRUE(again);
-    EXPECT_TRUE(turnedAway(*again));
+    EXPECT_EQ(come(**gate, 0, *right), nullptr);
+}
+
+TEST(NodeGate, namesTellTheirNodes) {
+    EXPECT_EQ(NodeGate::nodeOf(NodeGate::nameOf(17)), 17);
+    for (const char* other : {"", "node", "node-1", "node1x", "nod1"}) EXPECT_FALSE(NodeGate::nodeOf(other)) << other;
 }
 
 } // namespace

@@ -7,26 +7,28 @@
 
 #include "nodes/session/session_secret.hpp"
 #include "tests/head/session_harness.hpp"
+#include "transport/secure_connection.hpp"
+#include "transport/socket_address.hpp"
 
 namespace mural {
 namespace {
 
 std::string ownPath() { return std::filesystem::read_symlink("/proc/self/exe"); }
 
-std::unique_ptr<Connection> connectTo(const std::string& way, const std::string& target) {
-    if (way == "--connect-fd") {
-        auto shared = openSharedMemory(std::stoi(target));
+// As `mural node` does: --connect-fd N, or --name NAME --connect HOST:PORT.
+std::unique_ptr<Connection> connectAs(const std::vector<std::string>& arguments) {
+    if (arguments[0] == "--connect-fd") {
+        auto shared = openSharedMemory(std::stoi(arguments[1]));
         return shared ? std::move(*shared) : nullptr;
     }
     std::string line;
     std::getline(std::cin, line);
     auto secret = sessionSecretFromHex(line);
-    const size_t colon = target.rfind(':');
-    auto tcp = connectTcp(target.substr(0, colon), static_cast<uint16_t>(std::stoi(target.substr(colon + 1))),
-                          Deadline::inMs(kTestPatienceMs));
-    if (!secret || !tcp || !(*tcp)->write(*secret, Deadline::inMs(kTestPatienceMs))) return nullptr;
-    (*tcp)->flush();
-    return std::move(*tcp);
+    auto where = splitHostPort(arguments[3]);
+    auto tcp = connectTcp(where->host, where->port, Deadline::inMs(kTestPatienceMs));
+    if (!secret || !tcp) return nullptr;
+    auto secure = SecureConnection::connecting(std::move(*tcp), arguments[1], *secret, Deadline::inMs(kTestPatienceMs));
+    return secure ? std::move(*secure) : nullptr;
 }
 
 bool swapFrames(FakeProgram& program, uint32_t from, uint32_t to) {
@@ -131,8 +133,8 @@ TEST(ProcessSession, stoppedNodesAreEndedWithTheSession) {
 
 } // namespace
 
-int nodeMain(const std::string& way, const std::string& target) {
-    auto connection = connectTo(way, target);
+int nodeMain(const std::vector<std::string>& arguments) {
+    auto connection = connectAs(arguments);
     if (!connection) return 1;
     FakeNode node(std::move(connection), {});
     node.waitEnd();
@@ -142,7 +144,7 @@ int nodeMain(const std::string& way, const std::string& target) {
 } // namespace mural
 
 int main(int argc, char** argv) {
-    if (argc == 4 && std::string(argv[1]) == "node") return mural::nodeMain(argv[2], argv[3]);
+    if (argc >= 4 && std::string(argv[1]) == "node") return mural::nodeMain({argv + 2, argv + argc});
     testing::InitGoogleTest(&argc, argv);
     return RUN_ALL_TESTS();
 }

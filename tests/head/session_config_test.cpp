@@ -91,17 +91,14 @@ TEST(NodeSetup, roundTripAndRegionCheck) {
     EXPECT_FALSE(nodeSetupFromJson(toJson(s)).ok());
 }
 
-TEST(SessionSecret, hexRoundTripAndComparison) {
+TEST(SessionSecret, hexRoundTrip) {
     auto a = makeSessionSecret();
     auto b = makeSessionSecret();
     ASSERT_TRUE(a.ok() && b.ok());
-    EXPECT_FALSE(sameSecret(*a, *b));
+    EXPECT_NE(*a, *b);
     auto back = sessionSecretFromHex(toHex(*a) + "\n");
     ASSERT_TRUE(back.ok());
-    EXPECT_TRUE(sameSecret(*a, *back));
-    SessionSecret other = *a;
-    other[31] ^= std::byte{1};
-    EXPECT_FALSE(sameSecret(*a, other));
+    EXPECT_EQ(*a, *back);
     EXPECT_FALSE(sessionSecretFromHex(toHex(*a).substr(1)).ok());
     EXPECT_FALSE(sessionSecretFromHex(std::string(64, 'g')).ok());
 }

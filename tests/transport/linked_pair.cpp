@@ -8,10 +8,13 @@
 #include <cstring>
 #include <fstream>
 #include <sched.h>
+#include <thread>
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include "transport/connection_description.hpp"
+#include "transport/connect.hpp"
+#include "transport/rsp/group_connection.hpp"
+#include "transport/secure_connection.hpp"
 
 namespace mural::test {
 
@@ -36,17 +39,60 @@ LinkedPair makeTcpPair() {
     return {std::move(*a), std::move(*b)};
 }
 
+LinkedPair makeSecurePair() {
+    LinkedPair plain = makeTcpPair();
+    if (!plain.a) return {};
+    const ChannelSecret secret{std::byte{7}};
+    std::unique_ptr<Connection> b;
+    std::thread accepting([&] {
+        auto made = SecureConnection::accepting(std::move(plain.b), [&](const std::string&) { return std::optional(secret); }, Deadline::inMs(5000));
+        if (worked(made)) b = std::move(*made);
+    });
+    auto a = SecureConnection::connecting(std::move(plain.a), "a", secret, Deadline::inMs(5000));
+    accepting.join();
+    if (!worked(a) || !b) return {};
+    return {std::move(*a), std::move(b)};
+}
+
+LinkedPair makeRspPair() {
+    rsp::GroupOptions options;
+    options.group = "239.255.77.87:" + std::to_string(20'000 + getpid() % 20'000); // tests run beside each other
+    options.interface = "lo";
+    options.control = "127.0.0.1:0";
+    options.silentMs = options.stalledMs = 30'000; // busy machines
+    options.probeMs = 10'000;
+    options.stalled = rsp::StallPolicy::Wait;
+    options.windowDatagrams = 256;
+    auto listener = rsp::hostGroup(options);
+    if (!worked(listener)) return {};
+    options.control = (*listener)->describe().substr((*listener)->describe().rfind('=') + 1);
+    auto a = rsp::joinGroup(options, Deadline::inMs(10'000));
+    if (!worked(a)) return {};
+    auto b = (*listener)->accept(Deadline::inMs(10'000));
+    if (!worked(b)) return {};
+    return {std::move(*a), std::move(*b)};
+}
+
 } // namespace
 
 std::string linkName(LinkKind kind) {
-    if (kind == LinkKind::Pipe)
-        return "Pipe";
-    return kind == LinkKind::SharedMemory ? "SharedMemory" : "Tcp";
+    switch (kind) {
+    case LinkKind::Pipe: return "Pipe";
+    case LinkKind::SharedMemory: return "SharedMemory";
+    case LinkKind::Tcp: return "Tcp";
+    case LinkKind::Secure: return "Secure";
+    case LinkKind::Rsp: break;
+    }
+    return "Rsp";
 }
 
 LinkedPair makeLinkedPair(LinkKind kind, size_t capacityBytes) {
     if (kind == LinkKind::Tcp)
         return makeTcpPair();
+    if (kind == LinkKind::Secure)
+        return makeSecurePair();
+    if (kind == LinkKind::Rsp)
+        return makeRspPair();
     if (kind == LinkKind::Pipe) {
         auto pair = makePipe(capacityBytes);
         if (!worked(pair))

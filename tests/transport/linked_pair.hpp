@@ -14,8 +14,8 @@
 
 namespace mural::test {
 
-enum class LinkKind { Pipe, SharedMemory, Tcp };
-inline constexpr std::array kAllLinkKinds = {LinkKind::Pipe, LinkKind::SharedMemory, LinkKind::Tcp};
+enum class LinkKind { Pipe, SharedMemory, Tcp, Secure, Rsp };
+inline constexpr std::array kAllLinkKinds = {LinkKind::Pipe, LinkKind::SharedMemory, LinkKind::Tcp, LinkKind::Secure, LinkKind::Rsp};
 std::string linkName(LinkKind kind);
 
 // Both ends in this process; capacity counts for the rings only. Empty pointers when it failed (the

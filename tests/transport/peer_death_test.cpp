@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "tests/transport/linked_pair.hpp"
-#include "transport/connection_description.hpp"
+#include "transport/connect.hpp"
 
 namespace mural::test {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "transport/connection.hpp"
-#include "transport/connection_description.hpp"
+#include "transport/connect.hpp"
 
 namespace mural {
 

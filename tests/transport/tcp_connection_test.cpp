@@ -5,6 +5,7 @@
 #include <unistd.h>
 #include <vector>
 
+#include "transport/connect.hpp"
 #include "transport/connection_description.hpp"
 #include "transport/tcp_address.hpp"
 

@@ -140,7 +140,8 @@ private:
         CLI::App& node = add("node", "render node process (started by the head, here or on another host)", [this] { return runNode(); },
                              "Examples:\n  mural node --connect-fd 3           shared memory with a head on this machine\n  mural node --connect wall0:4711     a head on another machine\n\nExit status: 0, or 1 when the node could not draw.");
         node.add_option("--connect-fd", node_.connectFd, "descriptor of shared memory with the head")->check(CLI::NonNegativeNumber);
-        node.add_option("--connect", node_.connect, "HOST:PORT of the head")->type_name("HOST:PORT");
+        node.add_option("--connect", node_.connect, "HOST:PORT of the head; the session's secret comes on standard input")->type_name("HOST:PORT");
+        node.add_option("--name", node_.name, "with --connect: by which the head knows this node's secret")->type_name("NAME");
     }
 
     int runNode() {

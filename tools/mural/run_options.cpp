@@ -10,6 +10,8 @@
 #include <utility>
 
 #include "nodes/launch/private_display.hpp"
+#include "transport/connection_description.hpp"
+#include "transport/rsp/group_description.hpp"
 
 namespace mural::cli {
 
@@ -135,6 +137,16 @@ std::pair<int, int> gridFor(int nodes) {
     return {nodes / rows, rows};
 }
 
+Result<void> checkStream(const std::string& stream) {
+    if (stream == "auto" || stream == "tcp") return {};
+    auto parsed = parseConnectionDescription(stream);
+    if (!parsed || parsed->kind != ConnectionDescription::Kind::Rsp)
+        return badValue("--stream", stream, "must be auto, tcp, or a multicast group such as rsp://239.255.77.1:4277?rate=800mbit");
+    auto options = rsp::groupOptionsOf(*parsed);
+    if (!options) return Error{"--stream: " + options.error().message};
+    return {};
+}
+
 Result<void> readNodes(const RunArguments& a, SessionConfig& c) {
     int64_t local = 0;
     if (auto r = readNumber("--local-nodes", a.localNodes, 1, kMaxNodes, local); !r) return r;
@@ -152,6 +164,10 @@ Result<void> readNodes(const RunArguments& a, SessionConfig& c) {
         return Error{fmt::format("{} render nodes for {} tiles: each node needs a tile; give more --tiles or fewer nodes", asked, c.columns * c.rows)};
     }
     if (a.launch) c.launchCommand = *a.launch;
+    if (a.stream) {
+        c.stream = *a.stream;
+        if (auto r = checkStream(c.stream); !r) return r;
+    }
     c.remoteMural = a.remoteMural.value_or("");
     return {};
 }
@@ -208,6 +224,7 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
     command.add_flag("--explain", a.explain, "say which decomposition and rewriting were chosen, and why");
     command.add_flag("--native", a.native, "run without Mural, and only count frames and time");
     command.add_option("--launch", a.launch, "command that runs a command on a host (ssh -o BatchMode=yes)")->type_name("CMD");
+    command.add_option("--stream", a.stream, "how the stream travels to other machines: auto (by multicast when there are two or more), tcp (to each), or rsp://GROUP:PORT?interface=…&rate=… (auto)")->type_name("HOW");
     command.add_option("--remote-mural", a.remoteMural, "path of mural on the hosts (this one's)")->type_name("PATH");
     command.add_option("--report", a.report, "write the final report into this file, as one line of JSON")->type_name("FILE");
     command.add_flag("--quiet", a.quiet, "say nothing but errors");

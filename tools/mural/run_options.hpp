@@ -30,7 +30,7 @@ struct RunOptions {
 // The texts as they stand on the command line; checked and converted by runOptionsFrom.
 struct RunArguments {
     using Text = std::optional<std::string>;
-    Text tiles, size, position, nodes, out, save, display, tiling, policy, gl, launch, remoteMural, front;
+    Text tiles, size, position, nodes, out, save, display, tiling, policy, gl, launch, stream, remoteMural, front;
     Text localNodes, frames, latency, report;
     std::string verify; // empty: not given
     bool fullScreen = false, noPlacement = false, explain = false, native = false, quiet = false;

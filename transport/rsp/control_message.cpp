@@ -154,7 +154,7 @@ void get(Reader& r, MemberGone& m) {
     uint8_t reason = 0;
     r.number(m.id);
     r.number(reason);
-    if (reason > static_cast<uint8_t>(GoneReason::Cut)) r.fail();
+    if (reason > static_cast<uint8_t>(GoneReason::Removed)) r.fail();
     m.reason = static_cast<GoneReason>(reason);
 }
 void put(Writer& w, const Tunnel& m) {
@@ -178,6 +178,9 @@ void get(Reader& r, Ping& m) {
     r.number(m.number);
     r.flag(m.answer);
 }
+
+void put(Writer& w, const Rerouted& m) { w.number(m.id); }
+void get(Reader& r, Rerouted& m) { r.number(m.id); }
 
 // The alternative's place in the variant is its number on the wire.
 template <size_t I = 0> std::optional<ControlMessage> decodeKind(size_t kind, Reader& r) {

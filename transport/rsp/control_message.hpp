@@ -53,7 +53,7 @@ struct StreamStart {
     MemberId reader = 0;
     Sequence first;
 };
-enum class GoneReason : uint8_t { Left = 0, Silent = 1, Stalled = 2, Cut = 3 };
+enum class GoneReason : uint8_t { Left = 0, Silent = 1, Stalled = 2, Cut = 3, Removed = 4 };
 struct MemberGone {
     MemberId id = 0;
     GoneReason reason = GoneReason::Left;
@@ -68,12 +68,16 @@ struct Refused {
     std::string why;
 };
 struct Leave {};
+// Host to all: multicast does not reach this member any longer; its datagrams go by Tunnel from now on.
+struct Rerouted {
+    MemberId id = 0;
+};
 struct Ping {
     uint64_t number = 0;
     bool answer = false;
 };
 
-using ControlMessage = std::variant<Join, Welcome, Probed, MemberCame, StreamStart, MemberGone, Tunnel, Refused, Leave, Ping>;
+using ControlMessage = std::variant<Join, Welcome, Probed, MemberCame, StreamStart, MemberGone, Tunnel, Refused, Leave, Ping, Rerouted>;
 
 [[nodiscard]] std::vector<std::byte> encode(const ControlMessage& message);
 [[nodiscard]] std::optional<ControlMessage> decode(std::span<const std::byte> bytes);

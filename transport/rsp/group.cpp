@@ -50,6 +50,11 @@ std::vector<MemberId> Group::members() const {
     return ids;
 }
 
+bool Group::isMember(MemberId id) const {
+    const std::lock_guard lock(state_->mutex);
+    return state_->failure.empty() && state_->core->members().contains(id);
+}
+
 Result<void> Group::waitForMembers(size_t count, Deadline deadline) {
     std::unique_lock lock(state_->mutex);
     while (state_->core->members().size() < count) {
@@ -59,6 +64,17 @@ Result<void> Group::waitForMembers(size_t count, Deadline deadline) {
         state_->changed.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(kSliceNs)));
     }
     return {};
+}
+
+std::vector<MemberEvent> Group::takeEvents() {
+    const std::lock_guard lock(state_->mutex);
+    return std::exchange(state_->news, {});
+}
+
+void Group::remove(MemberId id, const std::string& why) {
+    const std::lock_guard lock(state_->mutex);
+    state_->core->expel(id, GoneReason::Removed, why);
+    state_->pump();
 }
 
 Result<MemberId> Group::accept(Deadline deadline) {
@@ -75,18 +91,29 @@ Result<MemberId> Group::accept(Deadline deadline) {
     }
 }
 
-Result<void> Group::write(std::span<const std::byte> bytes, Deadline deadline) {
+void Group::leave() { state_->stop(); }
+
+Result<size_t> Group::writeSome(std::span<const std::byte> bytes, Deadline deadline) {
     std::unique_lock lock(state_->mutex);
     while (true) {
         if (!state_->failure.empty()) return Error{state_->failure};
         const size_t took = state_->core->sender()->write(bytes);
-        bytes = bytes.subspan(took);
-        if (took > 0) state_->pump();
-        if (bytes.empty()) return {};
-        if (took > 0) continue;
+        if (took > 0 || bytes.empty()) {
+            if (state_->core->sender()->canSend()) state_->pump();
+            return took;
+        }
         if (deadline.passed()) return tooLate("room in the stream; a member is slow");
         state_->room.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(kSliceNs)));
     }
+}
+
+Result<void> Group::write(std::span<const std::byte> bytes, Deadline deadline) {
+    while (!bytes.empty()) {
+        auto took = writeSome(bytes, deadline);
+        if (!took) return took.error();
+        bytes = bytes.subspan(*took);
+    }
+    return {};
 }
 
 void Group::flush() {

@@ -34,7 +34,7 @@ struct GroupOptions {
     size_t socketBytes = size_t{8} << 20;
     StallPolicy stalled = StallPolicy::Eject;
     int64_t stalledMs = 2000;
-    int64_t silentMs = 1000;
+    int64_t silentMs = 1000; // after half of it, and of stalledMs, who lacks datagrams gets them by its connection
     int64_t probeMs = 300; // how long a member may take to see multicast
     bool parity = true;
 };
@@ -62,6 +62,15 @@ struct GroupReport {
     std::vector<Member> members;
 };
 
+// What has become of a member, in the order in which it happened.
+struct MemberEvent {
+    enum class Kind { Came, Rerouted, Gone };
+    Kind kind = Kind::Came;
+    MemberId id = 0;
+    MemberInfo info;                      // multicast: it is reached by it
+    GoneReason reason = GoneReason::Left; // Gone
+};
+
 class Group {
 public:
     static Result<std::unique_ptr<Group>> host(const GroupOptions& options);
@@ -74,10 +83,19 @@ public:
     [[nodiscard]] MemberId self() const;
     // The ids of all others now.
     [[nodiscard]] std::vector<MemberId> members() const;
+    [[nodiscard]] bool isMember(MemberId id) const;
     Result<void> waitForMembers(size_t count, Deadline deadline);
+    // Those since the last call.
+    std::vector<MemberEvent> takeEvents();
+    // Host: nobody waits for this member any longer; its group is over.
+    void remove(MemberId id, const std::string& why);
     // A member whose stream has begun and that was not yet returned.
     Result<MemberId> accept(Deadline deadline);
 
+    // Leaves the group: all waits in it end, and so does what others hear. What came can still be read.
+    void leave();
+    // Copies as much of `bytes` as there is room for, at least one; waits for that. Errors: the deadline, the group's end.
+    Result<size_t> writeSome(std::span<const std::byte> bytes, Deadline deadline);
     // Copies all of `bytes` into the stream, waiting for room. Errors: the deadline, the group's end.
     Result<void> write(std::span<const std::byte> bytes, Deadline deadline);
     void flush();

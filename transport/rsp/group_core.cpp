@@ -90,10 +90,10 @@ void GroupCore::begin() {
     out_.control(kHost, join);
 }
 
-std::optional<MemberId> GroupCore::connected(const std::string& address, int64_t nowNs) {
+std::optional<MemberId> GroupCore::connected(const std::string& address, const std::string& name, int64_t nowNs) {
     if (nextId_ >= kEverybody) return {};
     const auto id = static_cast<MemberId>(nextId_++);
-    candidates_[id] = {address, {}, false, 0, nowNs};
+    candidates_[id] = {address, name, {}, false, 0, nowNs};
     return id;
 }
 

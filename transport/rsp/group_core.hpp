@@ -54,6 +54,7 @@ struct GroupSettings {
 
 struct MemberInfo {
     Uuid uuid{};
+    std::string name;    // by which it showed that it knows the secret; only the host knows it
     std::string address; // as the host sees it
     uint16_t udpPort = 0;
     bool multicast = false;
@@ -75,6 +76,8 @@ public:
     virtual void welcomed(const Welcome& w) = 0;
     virtual void memberCame(MemberId id, const MemberInfo& info) = 0;
     virtual void memberGone(MemberId id, GoneReason reason) = 0;
+    // Multicast does not reach it any longer; it goes on through its control connection.
+    virtual void memberRerouted(MemberId id) = 0;
     // The control connection is to be ended.
     virtual void hangUp(MemberId id, const std::string& why) = 0;
 };
@@ -87,7 +90,7 @@ public:
     // Member: the control connection is open.
     void begin();
     // Host: a control connection is open; returns the id it is known by from now on; nothing when there are no more ids.
-    std::optional<MemberId> connected(const std::string& address, int64_t nowNs);
+    std::optional<MemberId> connected(const std::string& address, const std::string& name, int64_t nowNs);
     // The control connection has ended (host: of that member).
     void disconnected(MemberId id, int64_t nowNs);
     void inputControl(MemberId from, const ControlMessage& message, int64_t nowNs);
@@ -95,6 +98,8 @@ public:
     void inputDatagram(std::span<const std::byte> datagram, int64_t nowNs);
     void socketDropped(uint32_t count);
     int64_t tick(int64_t nowNs);
+    // Host: nobody waits for it any longer, and it learns so.
+    void expel(MemberId id, GoneReason reason, const std::string& why);
 
     // This one's own stream. There is none before the group has taken us in.
     [[nodiscard]] Sender* sender() { return sender_.get(); }
@@ -111,6 +116,7 @@ private:
     // Host: who has connected and is not yet one of the group.
     struct Candidate {
         std::string address;
+        std::string name;
         Join join;
         bool joined = false;
         uint32_t nonce = 0;
@@ -128,6 +134,7 @@ private:
     void take(MemberId from, const Refused& m, int64_t nowNs);
     void take(MemberId from, const Leave& m, int64_t nowNs);
     void take(MemberId from, const Ping& m, int64_t nowNs);
+    void take(MemberId from, const Rerouted& m, int64_t nowNs);
 
     void admit(MemberId id, const MemberInfo& info, int64_t nowNs);
     void meet(MemberId id, const MemberInfo& info, int64_t nowNs);
@@ -136,6 +143,7 @@ private:
     void makeSender();
     void probe(int64_t nowNs);
     void watchMembers(int64_t nowNs);
+    void reroute(MemberId id);
     void tunnel(MemberId to, std::span<const std::byte> datagram);
 
     GroupSettings settings_;

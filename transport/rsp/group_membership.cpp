@@ -85,7 +85,7 @@ void GroupCore::probe(int64_t nowNs) {
     for (const MemberId id : late) {
         const Candidate c = candidates_.at(id);
         candidates_.erase(id);
-        admit(id, {c.join.uuid, c.address, c.join.udpPort, false}, nowNs);
+        admit(id, {c.join.uuid, c.name, c.address, c.join.udpPort, false}, nowNs);
     }
 }
 
@@ -95,7 +95,7 @@ void GroupCore::take(MemberId from, const Probed& m, int64_t nowNs) {
     if (!settings_.host || found == candidates_.end() || !found->second.joined || found->second.nonce != m.nonce) return;
     const Candidate c = found->second;
     candidates_.erase(found);
-    admit(from, {c.join.uuid, c.address, c.join.udpPort, true}, nowNs);
+    admit(from, {c.join.uuid, c.name, c.address, c.join.udpPort, true}, nowNs);
 }
 
 // Everyone learns of the new one, and the new one of everyone, itself first.
@@ -119,7 +119,7 @@ void GroupCore::take(MemberId, const MemberCame& m, int64_t nowNs) {
         tunnelled_ = !m.multicast;
         return;
     }
-    if (live_) meet(m.id, {m.uuid, m.address, m.udpPort, m.multicast}, nowNs);
+    if (live_) meet(m.id, {m.uuid, "", m.address, m.udpPort, m.multicast}, nowNs);
 }
 
 void GroupCore::take(MemberId from, const StreamStart& m, int64_t) {
@@ -174,6 +174,33 @@ void GroupCore::take(MemberId from, const Ping& m, int64_t) {
     if (!m.answer) out_.control(settings_.host ? from : kHost, Ping{m.number, true});
 }
 
+// Member.
+void GroupCore::take(MemberId, const Rerouted& m, int64_t) {
+    if (settings_.host) return;
+    if (m.id == self_) tunnelled_ = true;
+    const auto found = members_.find(m.id);
+    if (found == members_.end()) return;
+    found->second.multicast = false;
+    out_.memberRerouted(m.id);
+}
+
+// Host: what it lacks is repaired as ever, but each datagram goes into its connection, too.
+void GroupCore::reroute(MemberId id) {
+    members_.at(id).multicast = false;
+    out_.control(id, Rerouted{id});
+    for (const auto& [other, m] : members_)
+        if (other != id) out_.control(other, Rerouted{id});
+    sender_->ask();
+    out_.memberRerouted(id);
+}
+
+void GroupCore::expel(MemberId id, GoneReason reason, const std::string& why) {
+    if (!settings_.host || !members_.contains(id)) return;
+    out_.control(id, MemberGone{id, reason});
+    out_.hangUp(id, why);
+    remove(id, reason);
+}
+
 // Host: nobody waits for it any longer, and everyone knows.
 void GroupCore::remove(MemberId id, GoneReason reason) {
     if (!members_.contains(id)) return;
@@ -181,20 +208,25 @@ void GroupCore::remove(MemberId id, GoneReason reason) {
     for (const auto& [other, m] : members_) out_.control(other, MemberGone{id, reason});
 }
 
-// Host: a member that says nothing for long, or that everyone waits for.
+// Host: a member that says nothing for long, or that everyone waits for. Whom multicast may have ceased to reach is tried by
+// its connection for half of that time.
 void GroupCore::watchMembers(int64_t nowNs) {
     std::vector<std::pair<MemberId, GoneReason>> hopeless;
+    std::vector<MemberId> unreached;
     for (const auto& [id, m] : sender_->members()) {
-        if (nowNs - m.heardNs > settings_.silentNs)
+        const int64_t quietNs = nowNs - m.heardNs;
+        const int64_t stillNs = sender_->waitsFor(m) ? nowNs - m.movedNs : 0;
+        const bool lacks = sender_->lacks(m);
+        if (quietNs > settings_.silentNs)
             hopeless.emplace_back(id, GoneReason::Silent);
-        else if (settings_.stalled == StallPolicy::Eject && sender_->waitsFor(m) && nowNs - m.movedNs > settings_.stalledNs)
+        else if (settings_.stalled == StallPolicy::Eject && stillNs > settings_.stalledNs)
             hopeless.emplace_back(id, GoneReason::Stalled);
+        else if (members_.at(id).multicast && (quietNs > settings_.silentNs / 2 || (lacks && stillNs > settings_.stalledNs / 2)))
+            unreached.push_back(id);
     }
-    for (const auto& [id, reason] : hopeless) {
-        out_.control(id, MemberGone{id, reason});
-        out_.hangUp(id, reason == GoneReason::Silent ? "it has said nothing for too long" : "everyone waited for it for too long");
-        remove(id, reason);
-    }
+    for (const auto& [id, reason] : hopeless)
+        expel(id, reason, reason == GoneReason::Silent ? "it has said nothing for too long" : "everyone waited for it for too long");
+    for (const MemberId id : unreached) reroute(id);
 }
 
 } // namespace mural::rsp

@@ -204,7 +204,7 @@ void Group::State::acceptLinks() {
             events.opened = [this, link, id] {
                 strangers_.erase(link);
                 const std::lock_guard lock(mutex);
-                *id = core->connected(link->peerAddress(), steadyNs());
+                *id = core->connected(link->peerAddress(), link->name(), steadyNs());
                 if (*id) links_[**id] = link;
                 updateLoop();
             };
@@ -342,11 +342,27 @@ void Group::State::memberCame(MemberId id, const MemberInfo& info) {
     if (auto address = numericAddress(withoutMapping(host), info.udpPort)) {
         outbox_->setMember(id, *address);
     }
+    known_[id] = info;
+    note({MemberEvent::Kind::Came, id, info, {}});
     updateLoop();
     changed.notify_all();
 }
 
-void Group::State::memberGone(MemberId id, GoneReason) {
+// Nobody may ever ask: the oldest go.
+void Group::State::note(const MemberEvent& event) {
+    constexpr size_t kMostEvents = 4096;
+    if (news.size() >= kMostEvents) news.erase(news.begin());
+    news.push_back(event);
+}
+
+void Group::State::memberRerouted(MemberId id) {
+    known_[id].multicast = false;
+    note({MemberEvent::Kind::Rerouted, id, known_[id], {}});
+}
+
+void Group::State::memberGone(MemberId id, GoneReason reason) {
+    note({MemberEvent::Kind::Gone, id, known_[id], reason});
+    known_.erase(id);
     opener_->removeMember(id);
     outbox_->removeMember(id);
     updateLoop();

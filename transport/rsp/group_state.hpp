@@ -35,6 +35,7 @@ struct Group::State : GroupOutput {
     void welcomed(const Welcome& w) override;
     void memberCame(MemberId id, const MemberInfo& info) override;
     void memberGone(MemberId id, GoneReason reason) override;
+    void memberRerouted(MemberId id) override;
     void hangUp(MemberId id, const std::string& why) override;
 
     mutable std::mutex mutex;
@@ -44,6 +45,7 @@ struct Group::State : GroupOutput {
     std::unique_ptr<GroupCore> core;
     std::string failure; // why the group is over; empty: it is not
     std::set<MemberId> accepted;
+    std::vector<MemberEvent> news; // of members, not yet asked for
     std::string controlAddress;
 
 private:
@@ -59,6 +61,7 @@ private:
     void armTimer();
     void fail(const std::string& why);
     void updateLoop();
+    void note(const MemberEvent& event);
     [[nodiscard]] uint32_t dropped() const;
     [[nodiscard]] bool onThread() const { return std::this_thread::get_id() == threadId_; }
     void sendControl(MemberId to, const ControlMessage& message);
@@ -76,6 +79,7 @@ private:
     std::optional<BatchOutbox> outbox_;
     std::optional<DatagramOpener> opener_;
     std::map<MemberId, std::shared_ptr<ControlLink>> links_;
+    std::map<MemberId, MemberInfo> known_; // those of whom memberGone has not yet told
     std::set<std::shared_ptr<ControlLink>> strangers_; // have not shown that they know the secret
     std::string hostAddress_;
     std::set<std::string> ownAddresses_; // of this machine

@@ -58,11 +58,16 @@ public:
     void removeMember(MemberId id);
     [[nodiscard]] const std::map<MemberId, MemberState>& members() const { return members_; }
 
+    // Members say at once what they lack.
+    void ask() { pollNow_ = true; }
+
     // Copies what there is room for; returns how much. Without members all is taken, and nobody gets it.
     size_t write(std::span<const std::byte> bytes) { return window_.write(bytes); }
     // What was written goes out now, and members say at once that they have it.
     void flush();
     [[nodiscard]] size_t roomBytes() const { return window_.roomBytes(); }
+    // Something that was not sent yet may be: a whole datagram, or what was flushed.
+    [[nodiscard]] bool canSend() const { return next_ < limit(); }
     // All that was flushed has arrived everywhere.
     [[nodiscard]] bool allArrived() const { return acknowledged_ == window_.filled(); }
 
@@ -75,6 +80,8 @@ public:
     [[nodiscard]] bool waitsFor(const MemberState& m) const {
         return m.cumulative != next_ || (m.edge <= next_ && next_ != window_.filled());
     }
+    // Whether something that it has room for was sent and did not arrive, or not yet.
+    [[nodiscard]] bool lacks(const MemberState& m) const { return m.cumulative < earlier(m.edge, next_); }
     [[nodiscard]] const RateControl& rate() const { return rate_; }
     [[nodiscard]] Sequence next() const { return next_; }
 

@@ -32,6 +32,7 @@ public:
     void welcomed(const Welcome& w) override { useKeys(w.keys, w.self); }
     void memberCame(MemberId id, const MemberInfo&) override { opener_->addMember(id); }
     void memberGone(MemberId id, GoneReason reason) override { gone[id] = reason; }
+    void memberRerouted(MemberId id) override { rerouted.insert(id); }
     void hangUp(MemberId id, const std::string& why) override;
 
     void run();
@@ -41,6 +42,7 @@ public:
     std::map<MemberId, uint64_t> beganAt; // place in the writer's stream
     uint64_t wrongBytes = 0;
     std::map<MemberId, GoneReason> gone;
+    std::set<MemberId> rerouted;
     bool dead = false;
     bool reads = true;
     std::string hungUp; // why
@@ -80,7 +82,7 @@ public:
         if (change) change(s);
         const size_t place = add(s);
         network.sendReliably(0, kControlNs, [this, place] {
-            const auto id = processes[0].core.connected("simulated", network.nowNs());
+            const auto id = processes[0].core.connected("simulated", "place" + std::to_string(place), network.nowNs());
             ids_[*id] = place;
             network.sendReliably(place, kControlNs, [this, place] { processes[place].core.begin(); });
         });
@@ -169,7 +171,7 @@ void Process::useKeys(const SessionKeys& keys, MemberId self) {
 void Process::control(MemberId to, const ControlMessage& message) {
     const auto bytes = encode(message);
     const auto place = place_ == 0 ? group_.placeOf(to) : size_t{0};
-    if (!place || dead) return;
+    if (!place || dead || group_.network.faults(place_).cut || group_.network.faults(*place).cut) return;
     group_.network.sendReliably(*place, kControlNs, [this, bytes, place] {
         Process& other = group_.processes[*place];
         const auto decoded = decode(bytes);
@@ -301,6 +303,35 @@ TEST(GroupSimulation, ASilentMemberIsRemovedWithinItsTime) {
     group.processes[2].dead = true;
     ASSERT_TRUE(group.run(20 * kNsPerS, [&] { return group.processes[0].written == 60 << 20 && group.allRead(); }));
     EXPECT_EQ(group.wrongBytes(), 0u);
+}
+
+TEST(GroupSimulation, WhomMulticastCeasesToReachGoesOnThroughTheHost) {
+    SimulatedGroup group(11, [](GroupSettings& s) { s.rate.mostBytesPerS = 20e6; });
+    for (int i = 0; i < 3; ++i) group.join();
+    ASSERT_TRUE(group.run(kNsPerS, [&] { return group.allLive(); }));
+    for (auto& p : group.processes) p.write(20 << 20);
+    group.run(200 * kNsPerMs, [] { return false; });
+    group.deaf = {2}; // as a switch that forgets who listens
+    const MemberId deaf = *group.idOf(2);
+    ASSERT_TRUE(group.run(2 * kNsPerS, [&] { return group.processes[1].rerouted.contains(deaf); }));
+    EXPECT_TRUE(group.processes[0].rerouted.contains(deaf));
+    ASSERT_TRUE(group.run(60 * kNsPerS, [&] { return group.processes[3].written == 20 << 20 && group.allRead(); }));
+    EXPECT_EQ(group.wrongBytes(), 0u);
+    for (const auto& p : group.processes) EXPECT_TRUE(p.gone.empty());
+    EXPECT_TRUE(group.processes[0].core.members().at(*group.idOf(1)).multicast);
+}
+
+TEST(GroupSimulation, ASlowReaderIsNotTakenForUnreached) {
+    SimulatedGroup group(12, [](GroupSettings& s) { s.stalled = StallPolicy::Wait; });
+    for (int i = 0; i < 2; ++i) group.join();
+    ASSERT_TRUE(group.run(kNsPerS, [&] { return group.allLive(); }));
+    group.processes[2].reads = false;
+    group.processes[0].write(8 << 20);
+    const auto allDone = [&] { return group.processes[0].written == 8 << 20 && group.allRead(); };
+    EXPECT_FALSE(group.run(10 * kNsPerS, allDone));
+    EXPECT_TRUE(group.processes[0].rerouted.empty());
+    group.processes[2].reads = true;
+    EXPECT_TRUE(group.run(10 * kNsPerS, allDone));
 }
 
 TEST(GroupSimulation, WhoDoesNotReadIsWaitedForOrEjectedAsIsAsked) {

@@ -1,0 +1,63 @@
+// The one stream to the nodes of other machines: a multicast group whose host is the head. What is written goes out once,
+// however many nodes there are (transport/rsp).
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/clock.hpp"
+#include "common/result.hpp"
+#include "nodes/head/node_plan.hpp"
+#include "nodes/session/session_secret.hpp"
+#include "transport/rsp/group.hpp"
+
+namespace mural {
+
+// Which of the planned nodes get the stream by multicast, as the user's --stream says.
+std::vector<int> nodesForMulticast(const std::string& stream, const SessionPlan& plan);
+
+// All calls from any thread.
+class NodeMulticast {
+public:
+    // `stream`: auto or rsp://…; the network is the one that leads to `host`.
+    static Result<std::unique_ptr<NodeMulticast>> open(const std::string& stream, const std::string& host);
+
+    // What the node on `host` is told to join with: description and secret.
+    [[nodiscard]] std::string invitation(const std::string& host) const;
+    [[nodiscard]] const SessionSecret& secret() const { return secret_; }
+
+    Result<void> write(std::span<const std::byte> bytes, Deadline deadline);
+    void flush();
+    // Nobody waits for this node any longer.
+    void remove(int node, const std::string& why);
+
+    // What became of a member since the last call.
+    struct Change {
+        int node = 0;
+        bool gone = false; // else: multicast does not reach it (any longer); it goes on through its connection
+        std::string why;   // gone
+    };
+    std::vector<Change> takeChanges();
+    // The nodes for which the stream waits now.
+    [[nodiscard]] std::vector<int> waitsFor() const;
+    [[nodiscard]] std::string describe() const; // for --explain
+    [[nodiscard]] rsp::GroupReport report() const { return group_->report(); }
+
+private:
+    NodeMulticast(std::unique_ptr<rsp::Group> group, const rsp::GroupOptions& options);
+    [[nodiscard]] rsp::MemberId memberOf(int node) const;
+
+    const std::unique_ptr<rsp::Group> group_;
+    const std::string description_;
+    const std::string groupAddress_;
+    const SessionSecret secret_;
+    uint16_t controlPort_ = 0;
+    mutable std::mutex mutex_;
+    std::map<rsp::MemberId, int> nodes_; // those that have come and are not gone
+};
+
+} // namespace mural
