@@ -247,8 +247,9 @@ bool HeadSession::askedToFinish(Deadline deadline) {
 }
 
 void HeadSession::watchNodes(int64_t nowNs) {
-    nodes_.watch(nowNs, options_.silencePatienceMs * kNsPerMs, [this](int node) {
-        control_.say(nodes_.link(node).describe() + ": multicast does not reach it; its stream goes through its own connection (TCP); mural doctor --network says why");
+    nodes_.watch(nowNs, options_.silencePatienceMs * kNsPerMs, [this](int node, bool multicast) {
+        control_.say(nodes_.link(node).describe() +
+                     (multicast ? ": multicast reaches it again" : ": it does not answer to multicast; its stream goes through its own connection (TCP); mural doctor --network may say why"));
     });
 }
 

@@ -28,10 +28,10 @@ std::string freshGroup(int family) {
 
 const char* textOf(rsp::GoneReason reason) {
     switch (reason) {
-    case rsp::GoneReason::Left: return "it left the multicast group";
     case rsp::GoneReason::Silent: return "nothing came from it, neither by multicast nor by its connection (stopped, or its network cut?)";
     case rsp::GoneReason::Stalled: return "it took nothing of the stream for too long";
-    case rsp::GoneReason::Cut: return "its connection to the multicast group ended";
+    case rsp::GoneReason::Left:
+    case rsp::GoneReason::Cut:
     case rsp::GoneReason::Removed: break;
     }
     return "it was given up";
@@ -118,11 +118,14 @@ std::vector<NodeMulticast::Change> NodeMulticast::takeChanges() {
         if (!node) continue;
         if (event.kind == rsp::MemberEvent::Kind::Gone) {
             nodes_.erase(event.id);
-            changes.push_back({*node, true, textOf(event.reason)});
+            // Who leaves or ends says so on its own connection, too, and there what it said before comes first.
+            const bool itself = event.reason == rsp::GoneReason::Left || event.reason == rsp::GoneReason::Cut;
+            if (!itself) changes.push_back({*node, true, false, textOf(event.reason)});
             continue;
         }
         nodes_[event.id] = *node;
-        if (!event.info.multicast) changes.push_back({*node, false, {}});
+        const bool asHoped = event.kind == rsp::MemberEvent::Kind::Came && event.info.multicast;
+        if (!asHoped) changes.push_back({*node, false, event.info.multicast, {}});
     }
     return changes;
 }

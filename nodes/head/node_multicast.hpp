@@ -38,8 +38,9 @@ public:
     // What became of a member since the last call.
     struct Change {
         int node = 0;
-        bool gone = false; // else: multicast does not reach it (any longer); it goes on through its connection
-        std::string why;   // gone
+        bool gone = false;      // else: how it is reached has changed, or is not by multicast from the beginning
+        bool multicast = false; // by it; else through its connection
+        std::string why;        // gone
     };
     std::vector<Change> takeChanges();
     // The nodes for which the stream waits now.

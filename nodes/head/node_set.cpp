@@ -95,14 +95,14 @@ int NodeSet::livingCount() const {
         std::ranges::count_if(links_, [](const auto& link) { return link->alive(); }));
 }
 
-void NodeSet::watch(int64_t nowNs, int64_t patienceNs, const std::function<void(int)>& rerouted) {
+void NodeSet::watch(int64_t nowNs, int64_t patienceNs, const std::function<void(int, bool)>& rerouted) {
     for (auto& link : links_) link->watch(nowNs, patienceNs);
     if (!multicast_) return;
     for (const NodeMulticast::Change& change : multicast_->takeChanges()) {
         NodeLink& link = *links_[static_cast<size_t>(change.node)];
         if (!link.alive() || link.saidBye()) continue;
         if (change.gone) link.lose(change.why);
-        else rerouted(change.node);
+        else rerouted(change.node, change.multicast);
     }
     // A writer may wait for room that a dead node will never make.
     for (auto& link : links_)

@@ -36,8 +36,8 @@ public:
     NodeLink& link(int node) { return *links_[static_cast<size_t>(node)]; }
 
     // Also whom the multicast group has lost, and the group loses whom we have. `rerouted` hears of nodes that multicast
-    // does not reach.
-    void watch(int64_t nowNs, int64_t patienceNs, const std::function<void(int)>& rerouted);
+    // does not reach (false), or does again.
+    void watch(int64_t nowNs, int64_t patienceNs, const std::function<void(int, bool)>& rerouted);
     void loseAll(const std::string& why); // those that have not said Bye
     void end();
 

@@ -179,8 +179,16 @@ void get(Reader& r, Ping& m) {
     r.flag(m.answer);
 }
 
-void put(Writer& w, const Rerouted& m) { w.number(m.id); }
-void get(Reader& r, Rerouted& m) { r.number(m.id); }
+void put(Writer& w, const Rerouted& m) {
+    w.number(m.id);
+    w.flag(m.multicast);
+    w.number(m.probeNonce);
+}
+void get(Reader& r, Rerouted& m) {
+    r.number(m.id);
+    r.flag(m.multicast);
+    r.number(m.probeNonce);
+}
 
 // The alternative's place in the variant is its number on the wire.
 template <size_t I = 0> std::optional<ControlMessage> decodeKind(size_t kind, Reader& r) {

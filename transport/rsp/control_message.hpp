@@ -68,9 +68,11 @@ struct Refused {
     std::string why;
 };
 struct Leave {};
-// Host to all: multicast does not reach this member any longer; its datagrams go by Tunnel from now on.
+// Host to all: multicast does not reach this member any longer, its datagrams go by Tunnel from now on; or it does again.
 struct Rerouted {
     MemberId id = 0;
+    bool multicast = false;
+    uint32_t probeNonce = 0; // comes in the probes that the member answers when one reaches it
 };
 struct Ping {
     uint64_t number = 0;

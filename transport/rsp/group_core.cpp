@@ -115,7 +115,7 @@ void GroupCore::inputDatagram(std::span<const std::byte> datagram, int64_t nowNs
     const auto head = readHead(datagram);
     if (!head) return;
     if (head->type == Type::Probe) {
-        if (!settings_.host && !live_ && datagram.size() >= kProbeHeadBytes) {
+        if (!settings_.host && (!live_ || tunnelled_) && datagram.size() >= kProbeHeadBytes) {
             const auto nonce = loadLittle<uint32_t>(datagram.data() + kHeadBytes);
             if (nonce == probeNonce_) out_.control(kHost, Probed{nonce});
         }
@@ -131,6 +131,7 @@ int64_t GroupCore::tick(int64_t nowNs) {
     int64_t next = nowNs + settings_.heartbeatNs;
     if (settings_.host) {
         probe(nowNs);
+        probeUnreached(nowNs);
         if (!candidates_.empty()) next = std::min(next, nowNs + kBetweenProbesNs);
     }
     if (sender_ && live_) next = std::min(next, sender_->tick(nowNs, *datagrams_));

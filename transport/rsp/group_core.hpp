@@ -76,8 +76,8 @@ public:
     virtual void welcomed(const Welcome& w) = 0;
     virtual void memberCame(MemberId id, const MemberInfo& info) = 0;
     virtual void memberGone(MemberId id, GoneReason reason) = 0;
-    // Multicast does not reach it any longer; it goes on through its control connection.
-    virtual void memberRerouted(MemberId id) = 0;
+    // Multicast does not reach it any longer, and it goes on through its control connection; or it does again.
+    virtual void memberRerouted(MemberId id, bool multicast) = 0;
     // The control connection is to be ended.
     virtual void hangUp(MemberId id, const std::string& why) = 0;
 };
@@ -122,6 +122,12 @@ private:
         uint32_t nonce = 0;
         int64_t untilNs = 0;
     };
+    // Host: whom multicast does not reach. It is tried again now and then.
+    struct Unreached {
+        uint32_t nonce = 0;
+        int64_t againNs = 0; // the next probe
+        int64_t waitNs = 0;  // until the one after it; grows each time that it ceases to be reached
+    };
     class Datagrams; // the Outbox that knows the tunnels
 
     void take(MemberId from, const Join& m, int64_t nowNs);
@@ -143,7 +149,9 @@ private:
     void makeSender();
     void probe(int64_t nowNs);
     void watchMembers(int64_t nowNs);
-    void reroute(MemberId id);
+    void reroute(MemberId id, bool multicast, int64_t nowNs);
+    void sendProbe(uint32_t nonce);
+    void probeUnreached(int64_t nowNs);
     void tunnel(MemberId to, std::span<const std::byte> datagram);
 
     GroupSettings settings_;
@@ -157,6 +165,7 @@ private:
     std::map<MemberId, std::unique_ptr<Receiver>> receivers_;
     std::map<MemberId, MemberInfo> members_; // without this one
     std::map<MemberId, Candidate> candidates_;
+    std::map<MemberId, Unreached> unreached_;
     bool tunnelled_ = false; // this member is reached by the control connection alone
     uint32_t probeNonce_ = 0;
     uint32_t nextId_ = 1; // no id comes twice: its key would be used with the same counters again

@@ -8,6 +8,8 @@ namespace mural::rsp {
 
 namespace {
 constexpr int64_t kJoinNs = 10'000'000'000; // for the first word on a connection
+constexpr int64_t kTryAgainNs = 3'000'000'000; // whether multicast reaches a member after all
+constexpr int64_t kMostTryAgainNs = 60'000'000'000;
 constexpr size_t kMostMembers = 1000;
 constexpr size_t kLeastDatagramBytes = 512;
 constexpr uint32_t kMostWindow = 1u << 16;
@@ -73,26 +75,41 @@ void GroupCore::probe(int64_t nowNs) {
         }
         if (!send) continue;
         probedNs_ = nowNs;
-        const size_t bytes = settings_.datagramBytes - tagBytes(settings_.keys.seal);
-        const auto d = out_.datagram(kEverybody, bytes);
-        std::ranges::fill(d, std::byte{0});
-        StreamDatagram head;
-        head.type = Type::Probe;
-        head.from = self_;
-        writeStreamHead(head, d);
-        storeLittle(d.data() + kHeadBytes, c.nonce);
+        sendProbe(c.nonce);
     }
     for (const MemberId id : late) {
         const Candidate c = candidates_.at(id);
         candidates_.erase(id);
+        if (c.join.multicast) unreached_[id] = {c.nonce, nowNs + kTryAgainNs, kTryAgainNs};
         admit(id, {c.join.uuid, c.name, c.address, c.join.udpPort, false}, nowNs);
+    }
+}
+
+void GroupCore::sendProbe(uint32_t nonce) {
+    const auto d = out_.datagram(kEverybody, settings_.datagramBytes - tagBytes(settings_.keys.seal));
+    std::ranges::fill(d, std::byte{0});
+    StreamDatagram head;
+    head.type = Type::Probe;
+    head.from = self_;
+    writeStreamHead(head, d);
+    storeLittle(d.data() + kHeadBytes, nonce);
+}
+
+void GroupCore::probeUnreached(int64_t nowNs) {
+    for (auto& [id, u] : unreached_) {
+        if (nowNs < u.againNs || members_.at(id).multicast) continue;
+        u.againNs = nowNs + u.waitNs;
+        sendProbe(u.nonce);
     }
 }
 
 // Host.
 void GroupCore::take(MemberId from, const Probed& m, int64_t nowNs) {
+    if (!settings_.host) return;
+    if (const auto u = unreached_.find(from); u != unreached_.end() && u->second.nonce == m.nonce && !members_.at(from).multicast)
+        return reroute(from, true, nowNs);
     const auto found = candidates_.find(from);
-    if (!settings_.host || found == candidates_.end() || !found->second.joined || found->second.nonce != m.nonce) return;
+    if (found == candidates_.end() || !found->second.joined || found->second.nonce != m.nonce) return;
     const Candidate c = found->second;
     candidates_.erase(found);
     admit(from, {c.join.uuid, c.name, c.address, c.join.udpPort, true}, nowNs);
@@ -177,21 +194,30 @@ void GroupCore::take(MemberId from, const Ping& m, int64_t) {
 // Member.
 void GroupCore::take(MemberId, const Rerouted& m, int64_t) {
     if (settings_.host) return;
-    if (m.id == self_) tunnelled_ = true;
+    if (m.id == self_) {
+        tunnelled_ = !m.multicast;
+        probeNonce_ = m.probeNonce;
+    }
     const auto found = members_.find(m.id);
     if (found == members_.end()) return;
-    found->second.multicast = false;
-    out_.memberRerouted(m.id);
+    found->second.multicast = m.multicast;
+    out_.memberRerouted(m.id, m.multicast);
 }
 
-// Host: what it lacks is repaired as ever, but each datagram goes into its connection, too.
-void GroupCore::reroute(MemberId id) {
-    members_.at(id).multicast = false;
-    out_.control(id, Rerouted{id});
+// Host: what it lacks is repaired as ever, but each datagram goes into its connection, too; or does no longer.
+void GroupCore::reroute(MemberId id, bool multicast, int64_t nowNs) {
+    members_.at(id).multicast = multicast;
+    Unreached& u = unreached_[id];
+    if (!multicast) {
+        u.waitNs = u.waitNs == 0 ? kTryAgainNs : std::min(2 * u.waitNs, kMostTryAgainNs);
+        u.againNs = nowNs + u.waitNs;
+        u.nonce = ++probeNonce_;
+    }
+    out_.control(id, Rerouted{id, multicast, u.nonce});
     for (const auto& [other, m] : members_)
-        if (other != id) out_.control(other, Rerouted{id});
+        if (other != id) out_.control(other, Rerouted{id, multicast, 0});
     sender_->ask();
-    out_.memberRerouted(id);
+    out_.memberRerouted(id, multicast);
 }
 
 void GroupCore::expel(MemberId id, GoneReason reason, const std::string& why) {
@@ -204,6 +230,7 @@ void GroupCore::expel(MemberId id, GoneReason reason, const std::string& why) {
 // Host: nobody waits for it any longer, and everyone knows.
 void GroupCore::remove(MemberId id, GoneReason reason) {
     if (!members_.contains(id)) return;
+    unreached_.erase(id);
     part(id, reason);
     for (const auto& [other, m] : members_) out_.control(other, MemberGone{id, reason});
 }
@@ -226,7 +253,7 @@ void GroupCore::watchMembers(int64_t nowNs) {
     }
     for (const auto& [id, reason] : hopeless)
         expel(id, reason, reason == GoneReason::Silent ? "it has said nothing for too long" : "everyone waited for it for too long");
-    for (const MemberId id : unreached) reroute(id);
+    for (const MemberId id : unreached) reroute(id, false, nowNs);
 }
 
 } // namespace mural::rsp

@@ -355,8 +355,8 @@ void Group::State::note(const MemberEvent& event) {
     news.push_back(event);
 }
 
-void Group::State::memberRerouted(MemberId id) {
-    known_[id].multicast = false;
+void Group::State::memberRerouted(MemberId id, bool multicast) {
+    known_[id].multicast = multicast;
     note({MemberEvent::Kind::Rerouted, id, known_[id], {}});
 }
 

@@ -35,7 +35,7 @@ struct Group::State : GroupOutput {
     void welcomed(const Welcome& w) override;
     void memberCame(MemberId id, const MemberInfo& info) override;
     void memberGone(MemberId id, GoneReason reason) override;
-    void memberRerouted(MemberId id) override;
+    void memberRerouted(MemberId id, bool multicast) override;
     void hangUp(MemberId id, const std::string& why) override;
 
     mutable std::mutex mutex;

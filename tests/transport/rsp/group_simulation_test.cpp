@@ -32,7 +32,7 @@ public:
     void welcomed(const Welcome& w) override { useKeys(w.keys, w.self); }
     void memberCame(MemberId id, const MemberInfo&) override { opener_->addMember(id); }
     void memberGone(MemberId id, GoneReason reason) override { gone[id] = reason; }
-    void memberRerouted(MemberId id) override { rerouted.insert(id); }
+    void memberRerouted(MemberId id, bool multicast) override { multicast ? rerouted.erase(id) : static_cast<size_t>(rerouted.insert(id).second); }
     void hangUp(MemberId id, const std::string& why) override;
 
     void run();
@@ -319,6 +319,24 @@ TEST(GroupSimulation, WhomMulticastCeasesToReachGoesOnThroughTheHost) {
     EXPECT_EQ(group.wrongBytes(), 0u);
     for (const auto& p : group.processes) EXPECT_TRUE(p.gone.empty());
     EXPECT_TRUE(group.processes[0].core.members().at(*group.idOf(1)).multicast);
+}
+
+TEST(GroupSimulation, WhomMulticastReachesAgainIsSentToByItAgain) {
+    SimulatedGroup group(13, [](GroupSettings& s) { s.rate.mostBytesPerS = 5e6; });
+    for (int i = 0; i < 3; ++i) group.join();
+    group.deaf = {2}; // from the beginning
+    ASSERT_TRUE(group.run(kNsPerS, [&] { return group.allLive(); }));
+    const MemberId deaf = *group.idOf(2);
+    for (auto& p : group.processes) p.write(40 << 20);
+    EXPECT_FALSE(group.run(5 * kNsPerS, [&] { return group.processes[0].core.members().at(deaf).multicast; }));
+    group.deaf = {};
+    ASSERT_TRUE(group.run(5 * kNsPerS, [&] { return group.processes[3].core.members().at(deaf).multicast; }));
+    EXPECT_TRUE(group.processes[0].core.members().at(deaf).multicast);
+    group.deaf = {2}; // and it ceases to, once more
+    ASSERT_TRUE(group.run(3 * kNsPerS, [&] { return group.processes[3].rerouted.contains(deaf); }));
+    ASSERT_TRUE(group.run(90 * kNsPerS, [&] { return group.processes[2].written == 40 << 20 && group.allRead(); }));
+    EXPECT_EQ(group.wrongBytes(), 0u);
+    for (const auto& p : group.processes) EXPECT_TRUE(p.gone.empty());
 }
 
 TEST(GroupSimulation, ASlowReaderIsNotTakenForUnreached) {
