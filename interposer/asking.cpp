@@ -4,6 +4,7 @@
 
 #include "interposer/context.hpp"
 #include "interposer/news.hpp"
+#include "interposer/open_primitive.hpp"
 #include "interposer/own_records.hpp"
 #include "interposer/real_gl.hpp"
 #include "interposer/session.hpp"
@@ -42,6 +43,7 @@ template <class Send> bool ask(ThreadState& t, const char* by, void* into, uint6
 GLenum takeError(ThreadState& t) {
     Context& c = *t.context;
     const GLenum later = gReal.glGetError(); // a driver keeps the first only: what came after is lost natively, too
+    if (c.stashedError && !later && c.compatible() && answersNothing()) return GL_NO_ERROR;
     const GLenum error = c.stashedError ? c.stashedError : later;
     c.stashedError = 0;
     if (error) {
@@ -52,6 +54,8 @@ GLenum takeError(ThreadState& t) {
 }
 
 GLenum driverError() { return gReal.glGetError(); }
+
+bool executesInPrimitive(const Context& c) { return c.drawsList && answersNothing(); }
 
 void stashError(Context& c, GLenum error) {
     if (!c.stashedError) c.stashedError = error; // GL keeps the first

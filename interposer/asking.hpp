@@ -29,6 +29,8 @@ bool askFinish(ThreadState& t, const char* by = __builtin_FUNCTION());
 template <class Call> bool raisesNothing(Context& c, Call&& call);
 GLenum takeError(ThreadState& t); // for the program
 GLenum driverError();
+// A list that is executed as it is compiled may leave the driver in a primitive: then it has refused the call.
+bool executesInPrimitive(const Context& c);
 void stashError(Context& c, GLenum error);
 
 template <class Call> bool raisesNothing(Context& c, Call&& call) {
@@ -36,7 +38,7 @@ template <class Call> bool raisesNothing(Context& c, Call&& call) {
     call();
     const GLenum error = driverError();
     stashError(c, error);
-    return error == GL_NO_ERROR;
+    return error == GL_NO_ERROR && !executesInPrimitive(c);
 }
 
 } // namespace mural

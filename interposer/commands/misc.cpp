@@ -127,9 +127,9 @@ extern "C" {
 // Lists are compiled whole in the program's own context: if the head is lost they still draw.
 void mural_glNewList(GLuint list, GLenum mode) {
     ThreadState& t = *tThread;
+    if (!t.context) return gReal.glNewList(list, mode);
+    if (!raisesNothing(*t.context, [&] { gReal.glNewList(list, mode); })) return;
     encode_glNewList(t, list, mode);
-    gReal.glNewList(list, mode);
-    if (!t.context) return;
     t.context->compilingList = true;
     t.context->compiledList = list;
     setDrawing(t.context->drawsList, mode == GL_COMPILE_AND_EXECUTE);

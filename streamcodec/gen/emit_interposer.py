@@ -6,6 +6,9 @@ from registry import TYPE_BYTES
 
 # Between glBegin and glEnd these make a vertex when the index is 0.
 PROVOKING = re.compile(r'glVertexAttribs?[ILP]?\d')
+# What a program may call between glBegin and glEnd.
+IN_PRIMITIVE = re.compile(r'gl((Begin|End|CallLists?|PrimitiveRestartNV)$|(Vertex|Color|SecondaryColor|Normal|TexCoord|MultiTexCoord)P?\d'
+                          r'|VertexAttribs?[ILP]?\d|Index([dfisx]|ub)v?|FogCoord[dfh]|EdgeFlagv?$|Material[fix]|ArrayElement|Eval(Coord|Point))')
 DATA_KINDS = ('array', 'pixels', 'packed', 'data', 'made', 'text', 'strings')
 
 
@@ -114,10 +117,19 @@ def buffer_uses(c):
     return out
 
 
+def outside_primitive(c):
+    """Wrappers written by hand are not reached between glBegin and glEnd, where drivers refuse the command."""
+    names = ', '.join(p.name for p in c.params)
+    return ('extern "C" %s outside_%s(%s) {\n    if (refusedInPrimitive(*tThread)) [[unlikely]] return gReal.%s(%s);\n    return mural_%s(%s);\n}\n'
+            % (ctype(c.returns), c.name, prototype(c), c.name, names, c.name, names))
+
+
 def wrapper(c):
     ret = ctype(c.returns)
     names = ', '.join(p.name for p in c.params)
     out = 'extern "C" %s mural_%s(%s) {\n    ThreadState& self = *tThread;\n' % (ret, c.name, prototype(c))
+    if not IN_PRIMITIVE.match(c.name):
+        out += '    if (refusedInPrimitive(self)) [[unlikely]] return gReal.%s(%s);\n' % (c.name, names)
     encode_args = ', '.join(['self'] + [data_argument(c, p) if p.how in DATA_KINDS else p.name
                                      for p in c.params if p.how != 'skip'])
     out += buffer_uses(c)
@@ -189,6 +201,7 @@ namespace mural {
 #include "interposer/commands/quiet.hpp"
 #include "interposer/context.hpp"
 #include "interposer/mapped_buffers.hpp"
+#include "interposer/open_primitive.hpp"
 #include "interposer/real_gl.hpp"
 #include "interposer/wrapper_table.hpp"
 #include "streamcodec/size_expressions.hpp"
@@ -200,7 +213,9 @@ using namespace mural;
             body += unsupported(c)
             rows.append('unsupported')
         elif c.option('app') == 'custom':
-            rows.append('wrapped')
+            outside = not IN_PRIMITIVE.match(c.name)
+            body += outside_primitive(c) if outside else ''
+            rows.append('outside' if outside else 'wrapped')
         elif c.sent and c.name in m.opcode:
             body += wrapper(c)
             rows.append('wrapped')
@@ -208,7 +223,8 @@ using namespace mural;
             rows.append('direct')   # a query: the driver's own entry point, at no cost
     wrappers += body + '\nnamespace mural {\nnamespace {\nusing Entry = void (*)();\nconst Entry kWrappers[] = { // in the order of GlFunctions\n'
     for c, row in zip(m.canonical, rows):
-        wrappers += '    %s,\n' % ('nullptr' if row == 'direct' else 'reinterpret_cast<Entry>(mural_%s)' % c.name)
+        front = 'outside' if row == 'outside' else 'mural'
+        wrappers += '    %s,\n' % ('nullptr' if row == 'direct' else 'reinterpret_cast<Entry>(%s_%s)' % (front, c.name))
     wrappers += '};\nconst bool kCarried[] = {\n'
     wrappers += ''.join('    %s,\n' % ('false' if row == 'unsupported' else 'true') for row in rows)
     wrappers += '''};

@@ -181,6 +181,72 @@ void mesh(GLuint triangles) {
     showBits(24, failed);
 }
 
+// Between glBegin and glEnd nothing is taken but vertices: neither the state nor memory changes. A glBegin that is refused
+// begins nothing.
+void inPrimitive() {
+    const GLubyte rows[3][8] = {{90, 200, 40, 9, 9, 9, 9, 9}, {10, 250, 120, 9, 9, 9, 9, 9}, {255, 30, 180, 9, 9, 9, 9, 9}};
+    std::vector<GLubyte> pixels(64, 0x37);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 8);
+    glColor3f(0.3F, 0.7F, 0.9F);
+    glBegin(GL_TRIANGLES);
+    glScissor(4, 4, 3, 3);
+    glEnable(GL_SCISSOR_TEST);
+    glViewport(0, 0, 9, 9);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 1, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+    glDrawPixels(1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+    glNewList(1, GL_COMPILE);
+    glVertex2f(0.5F, -0.9F);
+    glVertex2f(0.9F, -0.9F);
+    glReadPixels(0, 0, 4, 4, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+    glVertex2f(0.7F, -0.3F);
+    glEnd();
+    showBar(25, errors());
+    glWindowPos2i(200, 100);
+    glPixelZoom(7, 7);
+    glDrawPixels(3, 3, GL_LUMINANCE, GL_UNSIGNED_BYTE, rows);
+    glPixelZoom(1, 1);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    showBits(26, sumOf(pixels));
+
+    GLuint incomplete = 0;
+    glGenFramebuffers(1, &incomplete);
+    glBindFramebuffer(GL_FRAMEBUFFER, incomplete);
+    glBegin(GL_QUADS);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glColor3f(0.9F, 0.2F, 0.3F);
+    glEnd();
+    glRectf(0.5F, 0.1F, 0.9F, 0.3F);
+    glDeleteFramebuffers(1, &incomplete);
+    showBar(27, errors());
+}
+
+// Mesa executes what is compiled when it is gathered, and a primitive that gets another attribute in its middle in two parts:
+// behind glEnd it still takes itself to be in between.
+void inExecutedList() {
+    const GLuint list = glGenLists(1);
+    std::uint32_t told[4] = {};
+    glNewList(list, GL_COMPILE_AND_EXECUTE);
+    glVertexAttribIFormat(9, 1, 0x905d, 31);
+    glBegin(GL_TRIANGLES);
+    glVertex2f(-0.9F, 0.1F);
+    glSecondaryColor3f(0.1F, 0.4F, 0.2F);
+    glVertex2f(-0.5F, 0.1F);
+    glFogCoordf(0.25F);
+    glVertex2f(-0.7F, 0.4F);
+    glEnd();
+    told[0] = glGetError();
+    glFlush();
+    told[1] = glGetError();
+    glEndList();
+    told[2] = glGetError();
+    told[3] = glGetError();
+    for (int i = 0; i < 4; ++i) {
+        showBits(28 + i, told[i]);
+    }
+    glDeleteLists(list, 1);
+}
+
 GLuint triangleProgram() {
     return buildProgram({{GL_VERTEX_SHADER, "#version 150 compatibility\nvoid main() { gl_Position = gl_Vertex; }"},
                          {GL_GEOMETRY_SHADER, R"(#version 150 compatibility
@@ -203,5 +269,7 @@ int main(int argc, char** argv) {
         packed();
         nameBuffers();
         mesh(triangles);
+        inPrimitive();
+        inExecutedList();
     });
 }
