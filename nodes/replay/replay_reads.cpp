@@ -56,7 +56,9 @@ bool Replay::ownRequestPixels(Args& in) {
     const PixelViewport part = c_->read ? intersect(asked, c_->read->region) : PixelViewport{};
     const size_t bytes = static_cast<size_t>(part.area()) * group;
     const std::byte* pixels = nullptr;
-    const auto read = [&] { pixels = readRegion(part, format, type, bytes); };
+    // Colours of no buffer are asked for by copies that are errors; Mesa reads through a null pointer there in OpenGL ES.
+    const bool nothing = !deep && c_->readBuffer0 == GL_NONE;
+    const auto read = [&] { pixels = readRegion(nothing ? PixelViewport{} : part, format, type, bytes); };
     if (groupAndFlag & wire::kPlainTransfer) withPlainTransfer(read);
     else read();
     wire::AnswerHeader header{};
@@ -175,7 +177,7 @@ const std::byte* Replay::readShown(Window& w, const PixelViewport& r, bool front
     gl::Surface* const shown = surfaceOf(&w, w.config.doubleBuffer && !front ? GL_BACK : GL_FRONT);
     const bool otherRead = readSurface_ != shown;
     if (otherRead) (void)platform_->makeCurrent(c_->context.get(), shown, shown);
-    const bool chooses = c_->api == wire::Api::Desktop && gl.glReadBuffer;
+    const bool chooses = (c_->api == wire::Api::Desktop || separate) && gl.glReadBuffer;
     if (chooses) gl.glReadBuffer(windowBuffer(w.config.doubleBuffer && !front ? GL_BACK : GL_FRONT, &w));
     c_->readFramebuffer = 0;
     Window* read = c_->read;
@@ -236,6 +238,7 @@ bool Replay::ownFillWindow(Args& in) {
     const Data data = in.data();
     const uint64_t bytesPer = plane == GL_STENCIL_BUFFER_BIT ? 1 : 4;
     if (!in.ok() || w <= 0 || h <= 0 || data.absent() || data.isOffset() || data.size() / bytesPer / uint64_t(w) < uint64_t(h) || x > INT32_MAX - w || y > INT32_MAX - h) return false;
+    if (plane == GL_COLOR_BUFFER_BIT && c_->readBuffer0 == GL_NONE) return true; // the copy is an error
     if (bound_ && readsLean()) {
         gatherForCopy({x, y, w, h}, plane, data.pointer());
         return true;

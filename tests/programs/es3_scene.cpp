@@ -195,6 +195,16 @@ void drawTextures(Window& window, int frame) {
     glDeleteSync(fence);
 }
 
+// Copies out of no buffer are errors; the frame is shown all the same.
+void readNothing() {
+    glReadBuffer(GL_BACK);
+    showBits(38, std::uint32_t{glGetError()});
+    glReadBuffer(GL_NONE);
+    glBindTexture(GL_TEXTURE_2D, targets[0]);
+    glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 5, 5, 16, 16);
+    showBits(39, std::uint32_t{glGetError()});
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -212,8 +222,10 @@ int main(int argc, char** argv) {
         },
         [](Window& window, int frame) {
             glClearColor(0.1F, 0.15F, 0.15F, 1);
+            glReadBuffer(GL_BACK);
             glClear(GL_COLOR_BUFFER_BIT);
             drawBlocks(frame);
             drawTextures(window, frame);
+            readNothing();
         });
 }
