@@ -100,18 +100,24 @@ Writable writable(GLenum target) {
 // Storage that no program may write, GL itself may: by clears, a few bytes each. False: there are too many, or no such command.
 bool clearIntoBound(uint64_t offset, const void* bytes, uint64_t length) {
     constexpr uint64_t kCleared = uint64_t{64} << 10;
-    if (!gReal.glClearBufferSubData || length > kCleared || offset % 4 != 0 || length % 4 != 0) return false;
+    if (!gReal.glClearBufferSubData || length > kCleared) return false;
     constexpr GLenum kPlace[] = {GL_UNPACK_SWAP_BYTES, GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_ROWS, GL_UNPACK_SKIP_IMAGES};
     GLint before[4] = {}; // Mesa looks there
     for (int i = 0; i < 4; ++i) {
         gReal.glGetIntegerv(kPlace[i], &before[i]);
         gReal.glPixelStorei(kPlace[i], 0);
     }
-    const bool fours = offset % 16 == 0 && length % 16 == 0;
-    const uint64_t step = fours ? 16 : 4;
-    for (uint64_t at = 0; at < length; at += step) {
-        gReal.glClearBufferSubData(GL_COPY_WRITE_BUFFER, fours ? GL_RGBA32UI : GL_R32UI, static_cast<GLintptr>(offset + at), static_cast<GLsizeiptr>(step),
-                                   fours ? GL_RGBA_INTEGER : GL_RED_INTEGER, GL_UNSIGNED_INT, static_cast<const std::byte*>(bytes) + at);
+    struct Element {
+        uint64_t bytes; // begins and ends at multiples of them
+        GLenum internal, format, type;
+    };
+    constexpr Element kElements[] = {{16, GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT}, {4, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT}, {1, GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE}};
+    for (uint64_t at = 0; at < length;) {
+        const Element* e = kElements;
+        while ((offset + at) % e->bytes != 0 || length - at < e->bytes) ++e;
+        gReal.glClearBufferSubData(GL_COPY_WRITE_BUFFER, e->internal, static_cast<GLintptr>(offset + at), static_cast<GLsizeiptr>(e->bytes), e->format, e->type,
+                                   static_cast<const std::byte*>(bytes) + at);
+        at += e->bytes;
     }
     for (int i = 0; i < 4; ++i) gReal.glPixelStorei(kPlace[i], before[i]);
     if (driverError() != GL_NO_ERROR) return false;

@@ -53,9 +53,11 @@ void enableNamed(ThreadState& t, GLuint array, uint32_t slot, bool on) {
 }
 uint32_t genericSlot(GLuint index) { return index < kGenerics ? kGeneric0 + index : kSlots; }
 template <class Encode, class Real> void switchNamed(Encode encode, Real real, GLuint array, GLuint which, uint32_t slot, bool on) {
-    encode(*tThread, array, which);
-    real(array, which);
-    enableNamed(*tThread, array, slot, on);
+    ThreadState& t = *tThread;
+    if (!t.context) return real(array, which);
+    if (!raisesNothing(*t.context, [&] { real(array, which); })) return; // EXT_direct_state_access knows no array 0
+    encode(t, array, which);
+    enableNamed(t, array, slot, on);
 }
 // EXT_direct_state_access: GL_TEXTUREi are the arrays of that unit's coordinates.
 uint32_t namedSlot(ThreadState& t, GLenum array) {

@@ -42,6 +42,7 @@ void drawArrays(int frame) {
     glEnableClientState(GL_COLOR_ARRAY);
     glEnableClientState(GL_TEXTURE_COORD_ARRAY);
     glDisableClientStateIndexedEXT(GL_COLOR_ARRAY, 1);
+    glDisableVertexArrayEXT(0, GL_COLOR_ARRAY);
     glBindProgramPipeline(77);
     showBar(0, errors());
     glDrawArrays(GL_TRIANGLE_STRIP, 0, frame % 2 == 0 ? 4 : 3);
@@ -247,6 +248,27 @@ void inExecutedList() {
     glDeleteLists(list, 1);
 }
 
+// A program that is not there does not take the place of the current one.
+void useNoProgram(GLuint shifted) {
+    const GLuint unlinked = glCreateProgram();
+    glUseProgram(shifted);
+    glUniform2d(glGetUniformLocation(shifted, "offset"), 0.3, -0.7);
+    glUniform1f(glGetUniformLocation(shifted, "red"), 0.9F);
+    glUseProgram(unlinked);
+    glUniform1f(glGetUniformLocation(shifted, "red"), 0.4F);
+    glRectf(0, 0, 0.2F, 0.1F);
+    glUseProgram(0);
+    glDeleteProgram(unlinked);
+    showBar(32, errors());
+}
+
+GLuint shiftedProgram() {
+    return buildProgram({{GL_VERTEX_SHADER, R"(#version 410 compatibility
+                             uniform dvec2 offset; uniform mat2x3 unused;
+                             void main() { gl_Position = gl_Vertex + vec4(vec2(offset) + (unused * vec2(0.1)).xy, 0, 0); })"},
+                         {GL_FRAGMENT_SHADER, "#version 410 compatibility\nuniform float red; void main() { gl_FragColor = vec4(red, 0.6, 0.5, 1); }"}});
+}
+
 GLuint triangleProgram() {
     return buildProgram({{GL_VERTEX_SHADER, "#version 150 compatibility\nvoid main() { gl_Position = gl_Vertex; }"},
                          {GL_GEOMETRY_SHADER, R"(#version 150 compatibility
@@ -259,7 +281,9 @@ GLuint triangleProgram() {
 
 int main(int argc, char** argv) {
     static GLuint triangles;
-    return runInGlxWindow(argc, argv, {}, [](Window&) { triangles = triangleProgram(); }, [](Window&, int frame) {
+    static GLuint shifted;
+    const auto begin = [](Window&) { triangles = triangleProgram(), shifted = shiftedProgram(); };
+    return runInGlxWindow(argc, argv, {}, begin, [](Window&, int frame) {
         glClearColor(0.2F, 0.1F, 0.3F, 1);
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
         drawArrays(frame);
@@ -269,6 +293,7 @@ int main(int argc, char** argv) {
         packed();
         nameBuffers();
         mesh(triangles);
+        useNoProgram(shifted);
         inPrimitive();
         inExecutedList();
     });

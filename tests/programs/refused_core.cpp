@@ -83,6 +83,9 @@ void writeWords(GLbitfield flags, int row) {
     glUseProgram(writing);
     glDispatchCompute(8, 1, 1);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    GLubyte bytes[22] = {}; // from anywhere to anywhere
+    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 5, sizeof bytes, bytes);
+    showBits(row + 2, std::uint32_t{bytes[3]} << 24U | std::uint32_t{bytes[7]} << 16U | std::uint32_t{bytes[19]} << 8U | bytes[21]);
     GLuint told[8] = {};
     glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof told, told);
     showBits(row + 2, told[7]);
