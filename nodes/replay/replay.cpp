@@ -96,6 +96,7 @@ bool Replay::execute(uint16_t opcode, std::span<const std::byte> arguments, Blob
     if (!function) return false;
     if (c_ == none_.get()) return true; // GL without a context does nothing
     if (!config_.plant.empty() && planted(opcode)) return true;
+    noteBitmaps(opcode);
     return allocates(opcode) ? executeAllocating(function, in) : function(*this, in);
 }
 

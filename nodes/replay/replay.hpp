@@ -258,6 +258,7 @@ private:
         GLenum drawBuffer0 = 0, readBuffer0 = 0;         // of the default framebuffer, the program's names
         PixelUnpack unpack;
         std::array<GLint, 8> pack{};
+        bool gathersBitmaps = false;                     // the driver may hold some back (replay_bitmaps.cpp)
         bool packsBlocks = false;                        // the program has said what compressed blocks are when packed
         GLuint listBase = 0;
         GLuint compiling = 0;                            // name of the list, 0: none
@@ -397,6 +398,9 @@ private:
     void copySurface(gl::Surface& from, gl::Surface& to, GLbitfield planes);
     void depthForReading();
     void dropFront(Window& w);
+    // replay_bitmaps.cpp
+    void noteBitmaps(uint16_t opcode);
+    void settleBitmaps();
     // replay_color_masks.cpp
     [[nodiscard]] bool hidesAlpha() const;
     void applyColorMasks();

@@ -2,6 +2,7 @@
 // bias, glRasterPos in all forms, glWindowPos, stencil and depth pixels.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
+#include "tests/programs/support/shaders.hpp"
 #include "tests/programs/support/show.hpp"
 
 #include <vector>
@@ -227,14 +228,53 @@ void blitStencil(int width, int height) {
     glDisable(GL_STENCIL_TEST);
 }
 
+// Mesa gathers bitmaps and draws them where a texture is read. Before that it must have looked at the sampler that the program
+// uses by then: the question for samples makes it look.
+void readBehindBitmaps(GLuint program) {
+    const std::vector<GLubyte> bits(16, 0xd7);
+    std::vector<GLubyte> seen(16 * 16 * 4);
+    GLuint framebuffer = 0;
+    GLuint texture = 0;
+    GLint samples = 0;
+    glGenFramebuffers(1, &framebuffer);
+    glGenTextures(1, &texture);
+    glBindTexture(GL_TEXTURE_2D, texture);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 16, 16, 0, GL_RGBA, GL_UNSIGNED_BYTE, seen.data());
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, 0);
+    glColor3f(0.9F, 0.9F, 0.2F);
+    glWindowPos2i(3, 3);
+    glUseProgram(program);
+    glUniform1i(glGetUniformLocation(program, "image"), 1);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glBitmap(8, 8, 0, 0, 3, 0, bits.data());
+    glUniform1i(glGetUniformLocation(program, "image"), 3);
+    glDrawBuffer(GL_COLOR_ATTACHMENT0);
+    glGetIntegerv(GL_SAMPLES, &samples);
+    glGetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, seen.data());
+    glUseProgram(0);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glWindowPos2i(220, 5);
+    glDrawPixels(16, 16, GL_RGBA, GL_UNSIGNED_BYTE, seen.data());
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    glDeleteFramebuffers(1, &framebuffer);
+    glDeleteTextures(1, &texture);
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
+    static GLuint sampling;
     return runInGlxWindow(
         argc,
         argv,
         {},
-        [](Window&) {},
+        [](Window&) {
+            const char* const fragment = R"(#version 130
+                uniform usampler2D image;
+                void main() { gl_FragColor = vec4(texelFetch(image, ivec2(0), 0) + 1u) * 0.5; })";
+            sampling = buildProgram({{GL_VERTEX_SHADER, "void main() { gl_Position = gl_Vertex; }"}, {GL_FRAGMENT_SHADER, fragment}});
+        },
         [](Window& window, int frame) {
             glClearColor(0.1F, 0.1F, 0.1F, 1);
             glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
@@ -250,5 +290,6 @@ int main(int argc, char** argv) {
             drawStencilAndDepth(number);
             blitStencil(window.width(), window.height());
             copyPixels(window, number);
+            readBehindBitmaps(sampling);
         });
 }

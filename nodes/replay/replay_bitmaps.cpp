@@ -1,0 +1,22 @@
+// Mesa gathers what glBitmap draws, and draws it before the next command that needs it: with the state of that moment. What
+// the node does by itself between the two must not be that moment.
+#include "gl_opcodes.hpp"
+#include "nodes/replay/replay.hpp"
+
+namespace mural {
+
+void Replay::noteBitmaps(uint16_t opcode) {
+    if (opcode == op::glBitmap || opcode == op::glCallList || opcode == op::glCallLists) c_->gathersBitmaps = true;
+}
+
+// With the program's own state, as the command would that comes next.
+void Replay::settleBitmaps() {
+    if (!bound_ || c_ != bound_ || !c_->gathersBitmaps || c_->compiling || !gl.glBegin || !gl.glEnd || !gl.glFlush) return;
+    if (!gl.glGetString(GL_VENDOR)) return; // between glBegin and glEnd, where nothing is answered
+    c_->gathersBitmaps = false;
+    gl.glBegin(GL_POINTS); // Mesa looks at programs and samplers here; where it had not yet, it read through a null pointer
+    gl.glEnd();
+    gl.glFlush();
+}
+
+} // namespace mural
