@@ -35,7 +35,7 @@ void Receiver::input(const StreamDatagram& d, int64_t nowNs) {
     const bool repair = (d.flags & flag::kRepair) != 0;
     if (d.type == Type::Poll) {
         window_.learnGroupSize(d.sequence, d.groupSize);
-        gaps_.polled(later(d.next, gaps_.lostBefore()));
+        polled(d.next);
     } else if (d.type == Type::Parity) {
         if (window_.takeParity(d) == ReceiveWindow::Took::New) ++sinceAck_;
     } else {
@@ -44,13 +44,19 @@ void Receiver::input(const StreamDatagram& d, int64_t nowNs) {
         if (took == ReceiveWindow::Took::New) ++sinceAck_;
         if (!repair && d.sequence < gaps_.lostBefore() && lateUs > 0) gaps_.cameLate(int64_t{lateUs} * 1000);
         gaps_.arrived(d.sequence, nowNs);
-        if (d.flags & flag::kPoll) gaps_.polled(later(d.next, gaps_.lostBefore()));
+        if (d.flags & flag::kPoll) polled(d.next);
     }
     if (d.flags & flag::kPoll) tellNow_ = true;
     if (repair && window_.cumulative() > before && askedNs_ != INT64_MIN) {
         const int64_t tookNs = nowNs - askedNs_;
         repairNs_ = std::clamp(repairNs_ + (2 * tookNs - repairNs_) / 4, kLeastRepairNs, kMostRepairNs);
     }
+}
+
+// No writer sends behind the window; one that says so would have us count what never was.
+void Receiver::polled(Sequence next) {
+    const Sequence edge = window_.oldest() + settings_.shape.windowDatagrams;
+    gaps_.polled(later(earlier(next, edge), gaps_.lostBefore()));
 }
 
 void Receiver::countLost(Sequence before) {

@@ -45,6 +45,7 @@ private:
     [[nodiscard]] bool anyLost() const { return window_.cumulative() < gaps_.lostBefore(); }
     [[nodiscard]] bool roomIsNews() const;
     [[nodiscard]] int64_t dueNs() const;
+    void polled(Sequence next);
     void countLost(Sequence before);
     void tell(int64_t nowNs, Outbox& out);
 

@@ -1,7 +1,7 @@
-// Replays the given inputs, then random mutations of them for some seconds: the fuzz test where there is
-// no libFuzzer. replay_fuzz_regression [--seconds N] [--seed N] FILES…
-// The mutation that is being replayed stands in the file last_input of the working directory when a
-// sanitizer stops the program.
+// Gives a fuzz target the given inputs, then random mutations of them for some seconds: the fuzz test where there is
+// no libFuzzer. TARGET_regression [--seconds N] [--seed N] FILES…
+// The mutation that was being tried stands in the file last_input of the working directory when a sanitizer, or the
+// target itself, stops the program.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -13,18 +13,18 @@
 #include <string>
 #include <vector>
 
-#include "tests/fuzz/replay_harness.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
 
 namespace {
 
 using Input = std::vector<std::byte>;
-using mural::fuzz::replayBytes;
+using mural::fuzz::fuzzOne;
 
 Input readFile(const std::string& path) {
     std::ifstream in(path, std::ios::binary);
     const std::vector<char> text{std::istreambuf_iterator<char>(in), {}};
     if (!in && text.empty()) {
-        std::fprintf(stderr, "replay_fuzz_regression: %s can't be read\n", path.c_str());
+        std::fprintf(stderr, "fuzz: %s can't be read\n", path.c_str());
         std::exit(1);
     }
     const auto* p = reinterpret_cast<const std::byte*>(text.data());
@@ -50,8 +50,8 @@ private:
         switch (below(5)) {
         case 0: input[at] ^= static_cast<std::byte>(1u << below(8)); break;
         case 1:
-        case 2: { // records are made of words, which start behind the options byte
-            const size_t word = at / 4 * 4 + 1;
+        case 2: { // the stream's records are made of words, which start behind the options byte; the network's are not
+            const size_t word = below(2) ? at / 4 * 4 + 1 : at;
             if (word + 4 <= input.size()) std::memcpy(input.data() + word, &kWords[below(std::size(kWords))], 4);
             break;
         }
@@ -74,7 +74,7 @@ void keep(const Input& input) {
 
 int main(int argc, char** argv) {
     double seconds = 0;
-    uint64_t seed = 1, runs = 0, commands = 0;
+    uint64_t seed = 1, runs = 0, meant = 0;
     std::vector<Input> seeds;
     for (int i = 1; i < argc; ++i) {
         const std::string argument = argv[i];
@@ -85,18 +85,18 @@ int main(int argc, char** argv) {
         } else seeds.push_back(readFile(argument));
     }
     if (seeds.empty()) {
-        std::fprintf(stderr, "replay_fuzz_regression: no input; give files or folders\n");
+        std::fprintf(stderr, "fuzz: no input; give files or folders\n");
         return 1;
     }
-    for (const Input& input : seeds) commands += replayBytes(input).commands;
-    std::printf("%zu inputs, %llu commands\n", seeds.size(), static_cast<unsigned long long>(commands));
-    if (commands == 0) return 1; // a corpus that does nothing tests nothing
+    for (const Input& input : seeds) meant += fuzzOne(input);
+    std::printf("%zu inputs, %llu things in them\n", seeds.size(), static_cast<unsigned long long>(meant));
+    if (meant == 0) return 1; // a corpus that does nothing tests nothing
     Mutator mutator(seed);
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
     for (; std::chrono::steady_clock::now() < end; ++runs) {
         const Input input = mutator.mutate(seeds);
         keep(input);
-        replayBytes(input);
+        fuzzOne(input);
     }
     std::printf("%llu mutations\n", static_cast<unsigned long long>(runs));
 }

@@ -1,0 +1,30 @@
+// Where a fuzzed end's datagrams go: a short queue, from which the input has them delivered, changed or lost.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "transport/rsp/outbox.hpp"
+
+namespace mural::fuzz {
+
+class DatagramPipe : public rsp::Outbox {
+public:
+    std::span<std::byte> datagram(rsp::MemberId, size_t bytes) override {
+        if (queue_.size() == kMost) queue_.pop_front();
+        return queue_.emplace_back(bytes);
+    }
+    std::optional<std::vector<std::byte>> take() {
+        if (queue_.empty()) return {};
+        std::vector<std::byte> first = std::move(queue_.front());
+        queue_.pop_front();
+        return first;
+    }
+
+private:
+    static constexpr size_t kMost = 512;
+    std::deque<std::vector<std::byte>> queue_;
+};
+
+} // namespace mural::fuzz
