@@ -3,32 +3,51 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <ifaddrs.h>
+#include <linux/ethtool.h>
+#include <linux/sockios.h>
 #include <memory>
 #include <net/if.h>
 #include <netinet/in.h>
+#include <sys/ioctl.h>
 
+#include "transport/file_descriptor.hpp"
 #include "transport/system_error.hpp"
 
 namespace mural::rsp {
 
 namespace {
 
-double numberIn(const std::string& path) {
-    double value = 0;
-    std::ifstream(path) >> value;
-    return value;
-}
+// Asks the kernel about an interface of this process's own network: /sys may be another's (unshare, containers).
+class InterfaceQuestion {
+public:
+    explicit InterfaceQuestion(const std::string& name) : socket_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+        name.copy(request_.ifr_name, sizeof request_.ifr_name - 1);
+    }
+    // 0: it does not tell.
+    size_t mtuBytes() { return ask(SIOCGIFMTU) && request_.ifr_mtu > 0 ? static_cast<size_t>(request_.ifr_mtu) : 0; }
+    double bytesPerS() {
+        ethtool_cmd link{};
+        link.cmd = ETHTOOL_GSET;
+        request_.ifr_data = reinterpret_cast<char*>(&link);
+        if (!ask(SIOCETHTOOL)) return 0;
+        const uint32_t mbit = ethtool_cmd_speed(&link);
+        return mbit == 0 || mbit == static_cast<uint32_t>(SPEED_UNKNOWN) || mbit == UINT16_MAX ? 0 : mbit * 1e6 / 8;
+    }
+
+private:
+    bool ask(unsigned long what) { return ioctl(socket_.get(), what, &request_) == 0; }
+    FileDescriptor socket_;
+    ifreq request_{};
+};
 
 NetworkInterface describe(const ifaddrs& each) {
     NetworkInterface i;
     i.name = each.ifa_name;
     i.index = if_nametoindex(each.ifa_name);
-    const std::string folder = "/sys/class/net/" + i.name;
-    if (const double mtu = numberIn(folder + "/mtu"); mtu >= 68) i.mtuBytes = static_cast<size_t>(mtu);
-    // In Mbit/s; -1 where a link has none, as those of virtual machines.
-    if (const double speed = numberIn(folder + "/speed"); speed > 0) i.bytesPerS = speed * 1e6 / 8;
+    InterfaceQuestion question(i.name);
+    if (const size_t mtu = question.mtuBytes(); mtu >= 68) i.mtuBytes = mtu;
+    i.bytesPerS = question.bytesPerS();
     i.multicast = (each.ifa_flags & IFF_MULTICAST) != 0;
     i.loopback = (each.ifa_flags & IFF_LOOPBACK) != 0;
     return i;

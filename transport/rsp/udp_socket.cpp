@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cerrno>
 #include <cstring>
 #include <linux/filter.h>
@@ -26,8 +27,10 @@ namespace {
 constexpr size_t kReceiveSlots = 16;
 constexpr size_t kSlotBytes = 65'536; // what UDP_GRO may join
 constexpr int kMostRounds = 4;        // of kReceiveSlots, per call
-// A datagram of a common packet takes about this much of a socket's buffer beside its bytes.
-constexpr size_t kBookkeepingBytes = 832;
+// What a datagram takes of a socket's buffer: a piece of memory of the next power of two, for its headers and the kernel's
+// notes behind it, too, and a description of it.
+constexpr size_t kHeadersAndNotesBytes = 426;
+constexpr size_t kDescriptionBytes = 256;
 
 template <class T> bool set(int fd, int level, int option, T value) {
     return setsockopt(fd, level, option, &value, sizeof value) == 0;
@@ -148,7 +151,7 @@ void UdpSocket::ignoreMember(MemberId self) {
 SocketAddress UdpSocket::localAddress() const { return localTcpAddress(socket_.get()); }
 
 uint32_t UdpSocket::capacity(size_t datagramBytes) const {
-    return static_cast<uint32_t>(std::max<size_t>(1, bufferBytes_ / (datagramBytes + kBookkeepingBytes)));
+    return static_cast<uint32_t>(std::max<size_t>(1, bufferBytes_ / (std::bit_ceil(datagramBytes + kHeadersAndNotesBytes) + kDescriptionBytes)));
 }
 
 const char* UdpSocket::sendingBy() const {

@@ -47,6 +47,8 @@ public:
 
     // So many datagrams were dropped because nobody fetched them. With ignoreMember, those that it drops count, too.
     [[nodiscard]] uint32_t dropped() const { return dropped_; }
+    // What the kernel gave for receiving; it counts its own bookkeeping in.
+    [[nodiscard]] size_t bufferBytes() const { return bufferBytes_; }
     // What the socket's buffer holds of datagrams of a size.
     [[nodiscard]] uint32_t capacity(size_t datagramBytes) const;
     [[nodiscard]] const char* sendingBy() const;
