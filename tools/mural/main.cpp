@@ -10,6 +10,8 @@
 #include "nodes/node/node.hpp"
 #include "tools/mural/commands.hpp"
 #include "tools/mural/netperf.hpp"
+#include "tools/mural/network/network_doctor.hpp"
+#include "tools/mural/network/probe_member.hpp"
 
 namespace {
 
@@ -150,9 +152,7 @@ private:
     }
 
     void addTools() {
-        CLI::App& doctor = add("doctor", "look at what Mural needs on this machine", [this] { return mural::cli::doctorCommand(asJson_); },
-                               "Examples:\n  mural doctor\n  mural doctor --json\n\nEach line is ok, warn or bad, with what to do.\nExit status: 0 when Mural can be used, 1 when something that it needs is missing.");
-        doctor.add_flag("--json", asJson_, "for programs");
+        addDoctor();
         CLI::App& stat = add("stat", "look at the sessions that run: programs, frames, round trips, nodes", [this] { return mural::cli::statCommand(stat_); },
                              "Examples:\n  mural stat                 one look, over a second\n  mural stat --watch 5       again every 5 seconds, until Ctrl-C\n  mural stat --json          for programs\n\n"
                              "A round trip is a question that only the render nodes can answer (glReadPixels, results of queries): the program\nstands still for it.\n"
@@ -170,7 +170,20 @@ private:
         mural::cli::describeNetperf(netperf, netperf_);
         add("version", "print the version", [] { return mural::cli::versionCommand(); }, "Example:\n  mural version\n\nExit status: 0.");
         add("preload-probe", "", [] { return mural::cli::preloadProbeCommand(); }, "").group("");
+        add("network-member", "", [] { return mural::cli::networkMemberCommand(); }, "").group("");
     }
+
+    void addDoctor() {
+        CLI::App& doctor = add("doctor", "look at what Mural needs on this machine, or at the network", [this] { return runDoctor(); },
+                               "Examples:\n  mural doctor\n  mural doctor --json\n  mural doctor --network                      this machine's own sockets and limits\n"
+                               "  mural doctor --network wall1,wall2          multicast, datagram size, rate and losses to these hosts\n\n"
+                               "Each line is ok, warn or bad, with what to do.\nExit status: 0 when Mural can be used, 1 when something must be mended, 2 for a bad argument.");
+        doctor.option_defaults()->take_last();
+        doctor.add_flag("--json", asJson_, "for programs");
+        network_ = mural::cli::describeNetworkDoctor(doctor, networkArguments_);
+    }
+
+    int runDoctor() { return network_->count() > 0 ? mural::cli::networkDoctorCommand(networkArguments_, asJson_) : mural::cli::doctorCommand(asJson_); }
 
     CLI::App app_{"Mural: unmodified OpenGL programs on display walls and clusters.", "mural"};
     SplitLine line_;
@@ -182,6 +195,8 @@ private:
     bool onlyUnsupported_ = false;
     mural::cli::StatOptions stat_;
     mural::cli::NetperfArguments netperf_;
+    mural::cli::NetworkArguments networkArguments_;
+    CLI::Option* network_ = nullptr;
     std::function<int()> action_;
 };
 

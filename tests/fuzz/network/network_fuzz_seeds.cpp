@@ -8,6 +8,7 @@
 #include "tests/fuzz/network/group_steps.hpp"
 #include "tests/fuzz/network/secure_channel_steps.hpp"
 #include "tests/fuzz/network/stream_steps.hpp"
+#include "tools/mural/network/probe_datagram.hpp"
 #include "transport/rsp/control_message.hpp"
 
 namespace mural::fuzz {
@@ -151,6 +152,14 @@ void groups(const std::filesystem::path& folder) {
     }
 }
 
+void probes(const std::filesystem::path& folder) {
+    for (const cli::ProbeWay way : cli::kProbeWays) {
+        Bytes bytes(60);
+        cli::writeProbe({7, way, true, static_cast<uint16_t>(bytes.size())}, bytes);
+        Seed().raw(bytes).save(folder, "probe_datagram", "way_" + std::to_string(static_cast<int>(way)));
+    }
+}
+
 void channels(const std::filesystem::path& folder) {
     constexpr unsigned kHostsStep = 0x80;
     for (const bool same : {true, false}) {
@@ -186,4 +195,5 @@ int main(int argc, char** argv) {
     mural::fuzz::streams(argv[1]);
     mural::fuzz::groups(argv[1]);
     mural::fuzz::channels(argv[1]);
+    mural::fuzz::probes(argv[1]);
 }

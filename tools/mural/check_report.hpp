@@ -1,0 +1,15 @@
+// How the doctor's checks are told: a line each, or JSON.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "tools/mural/doctor_checks.hpp"
+
+namespace mural::cli {
+
+void printChecks(const std::vector<Check>& checks);
+nlohmann::json toJson(const std::vector<Check>& checks);
+// Nothing is bad.
+bool usable(const std::vector<Check>& checks);
+
+} // namespace mural::cli

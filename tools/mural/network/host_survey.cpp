@@ -1,0 +1,197 @@
+#include "tools/mural/network/host_survey.hpp"
+
+#include <algorithm>
+#include <poll.h>
+
+#include "transport/socket_address.hpp"
+
+namespace mural::cli {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr int64_t kAnswerMs = 10'000;
+constexpr int64_t kJoinMs = 15'000;
+constexpr int64_t kArriveMs = 20'000;   // what a stream may take to be everywhere after its end
+constexpr int64_t kUnderWayMs = 150;    // of a probe
+constexpr unsigned kCopies = 5;         // of each probe: one that comes is enough
+constexpr int kBetweenProbesMs = 1;
+constexpr size_t kExactBytes = 4;       // a largest size is found within so many
+constexpr size_t kPieceBytes = 64 * 1024;
+constexpr size_t kLeastSessionBytes = 512; // of a session's datagrams
+
+// Packets as networks have them: tunnels, PPPoE, Ethernet, and cards with long packets.
+constexpr size_t kKnownPackets[] = {1280, 1400, 1450, 1492, 1500, 2304, 4352, 8192, 9000};
+
+std::string textOf(const json& j, const char* name) {
+    const auto found = j.find(name);
+    return found != j.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+uint64_t numberOf(const json& j, const char* name) {
+    const auto found = j.find(name);
+    return found != j.end() && found->is_number_unsigned() ? found->get<uint64_t>() : 0;
+}
+
+void takeTroubles(const json& answer, HostMeasured& m) {
+    const auto list = answer.find("troubles");
+    if (list == answer.end() || !list->is_array()) return;
+    for (size_t i = 0; i < std::min(list->size(), m.ways.size()); ++i) {
+        if ((*list)[i].is_string() && !(*list)[i].get<std::string>().empty()) m.ways[i].trouble = "there: " + (*list)[i].get<std::string>();
+    }
+}
+
+} // namespace
+
+Result<void> HostSurvey::greet(Deadline deadline) {
+    auto hello = process_.hear(deadline);
+    if (!hello) return hello.error();
+    m_.version = textOf(*hello, "version");
+    m_.reached = textOf(*hello, "reached");
+    m_.own = textOf(*hello, "own");
+    m_.unreachedWhy = textOf(*hello, "why");
+    if (hello->contains("facts") && (*hello)["facts"].is_object()) m_.facts = machineFactsFrom((*hello)["facts"]);
+    takeTroubles(*hello, m_);
+    if (m_.reached.empty()) return {};
+    auto single = numericAddress(m_.own, static_cast<uint16_t>(numberOf(*hello, "port")));
+    if (!single) return Error{"it tells no address of its own"};
+    single_ = *single;
+    return {};
+}
+
+Result<void> HostSurvey::measure() {
+    std::vector<size_t> sizes{kLeastProbeBytes};
+    if (auto r = probeThere(sizes, {std::begin(kProbeWays), std::end(kProbeWays)}); !r) return r;
+    if (auto r = probeBack(); !r) return r;
+    for (const ProbeWay way : {ProbeWay::Single, ProbeWay::Group}) {
+        if (!m_.way(way).to) continue;
+        if (auto r = findLargest(way); !r) return r;
+    }
+    for (const ProbeWay way : kProbeWays) {
+        if (m_.way(way).trouble.empty()) m_.way(way).trouble = sockets_.trouble(way);
+    }
+    if (auto r = stream(); !r) m_.streamFailure = r.error().message;
+    return lookAgain();
+}
+
+// What arrives is noted in m_, and the largest of the first way in seenBytes_.
+Result<void> HostSurvey::probeThere(const std::vector<size_t>& sizes, const std::vector<ProbeWay>& ways) {
+    for (unsigned copy = 0; copy < kCopies; ++copy) {
+        for (const ProbeWay way : ways) {
+            for (const size_t size : sizes) {
+                sockets_.send(way, size, single_);
+                poll(nullptr, 0, kBetweenProbesMs);
+            }
+        }
+    }
+    poll(nullptr, 0, kUnderWayMs);
+    auto answer = process_.ask({{"do", "seen"}}, Deadline::inMs(kAnswerMs));
+    if (!answer) return answer.error();
+    seenBytes_ = 0;
+    const auto seen = answer->find("seen");
+    if (seen == answer->end() || !seen->is_array()) return Error{"it does not tell what it has seen"};
+    for (const json& each : *seen) {
+        const uint64_t number = each.is_object() ? numberOf(each, "way") : ~uint64_t{0};
+        if (number >= m_.ways.size()) continue;
+        const auto way = static_cast<ProbeWay>(number);
+        const size_t size = numberOf(each, "size");
+        m_.way(way).to = m_.way(way).toLater = true;
+        m_.way(way).largestBytes = std::max(m_.way(way).largestBytes, size);
+        if (way == ways.front()) seenBytes_ = std::max(seenBytes_, size);
+    }
+    return {};
+}
+
+Result<void> HostSurvey::probeBack() {
+    (void)sockets_.take();
+    const json order{{"do", "send"}, {"to", m_.reached}, {"port", sockets_.port()}, {"sizes", {kLeastProbeBytes}}, {"copies", kCopies}};
+    auto answer = process_.ask(order, Deadline::inMs(kAnswerMs));
+    if (!answer) return answer.error();
+    takeTroubles(*answer, m_);
+    (void)sockets_.listen(Deadline::inMs(kUnderWayMs));
+    for (const auto& [probe, count] : sockets_.take()) m_.way(probe.way).from = true;
+    return {};
+}
+
+// The known sizes first; then between the largest that came and the smallest that did not.
+Result<void> HostSurvey::findLargest(ProbeWay way) {
+    // Cards take somewhat more than they say; what they can't answer with is of no use.
+    const size_t theirs = m_.facts.mtuBytes > plan_.headerBytes + kLeastProbeBytes ? m_.facts.mtuBytes - plan_.headerBytes : plan_.cardBytes;
+    const size_t most = std::min(plan_.cardBytes, theirs);
+    std::vector<size_t> sizes{kLeastProbeBytes};
+    for (const size_t packet : kKnownPackets) {
+        if (packet - plan_.headerBytes < most) sizes.push_back(packet - plan_.headerBytes);
+    }
+    sizes.push_back(most);
+    if (auto r = probeThere(sizes, {way}); !r) return r;
+    size_t comes = seenBytes_;
+    if (comes >= most || comes == 0) return {};
+    size_t comesNot = *std::ranges::upper_bound(sizes, comes);
+    while (comesNot - comes > kExactBytes) {
+        const size_t middle = comes + (comesNot - comes) / 2;
+        if (auto r = probeThere({middle}, {way}); !r) return r;
+        (seenBytes_ == middle ? comes : comesNot) = middle;
+    }
+    return {};
+}
+
+Result<void> HostSurvey::stream() {
+    rsp::GroupOptions options = plan_.group;
+    // As long as they arrive: the rate is that of a session that is set up for this network.
+    const size_t largest = m_.way(ProbeWay::Group).largestBytes;
+    if (largest >= kLeastSessionBytes && largest < plan_.cardBytes) options.datagramBytes = largest;
+    auto group = rsp::Group::host(options);
+    if (!group) return group.error();
+    auto where = splitHostPort((*group)->controlAddress());
+    if (!where) return where.error();
+    const bool brackets = m_.reached.find(':') != std::string::npos;
+    const std::string control = (brackets ? "[" + m_.reached + "]" : m_.reached) + ":" + std::to_string(where->port);
+    auto joined = process_.ask({{"do", "join"}, {"control", control}}, Deadline::inMs(kJoinMs));
+    if (!joined) return joined.error();
+    if (!joined->contains("joined") || (*joined)["joined"] != true) return Error{"it could not join the group: " + textOf(*joined, "why")};
+    auto r = streamTo(**group);
+    group->reset();
+    auto left = process_.ask({{"do", "leave"}}, Deadline::inMs(kAnswerMs));
+    if (!r) return r;
+    if (!left) return left.error();
+    m_.queueDropped = numberOf(*left, "queueDropped");
+    return {};
+}
+
+Result<void> HostSurvey::streamTo(rsp::Group& group) {
+    if (auto r = group.waitForMembers(1, Deadline::inMs(kJoinMs)); !r) return r;
+    const std::vector<std::byte> piece(kPieceBytes);
+    const int64_t beganNs = monotonicNowNs();
+    const Deadline writing = Deadline::inMs(static_cast<int64_t>(plan_.seconds * 1000));
+    uint64_t bytes = 0;
+    do {
+        if (auto r = group.write(piece, Deadline::inMs(kArriveMs)); !r) return r;
+        bytes += piece.size();
+    } while (!writing.passed());
+    group.flush();
+    if (auto r = group.waitArrived(Deadline::inMs(kArriveMs)); !r) return r;
+    const double tookS = static_cast<double>(monotonicNowNs() - beganNs) * 1e-9;
+    const rsp::GroupReport report = group.report();
+    // Without members a stream goes nowhere, very fast.
+    if (report.members.size() != 1) return Error{"the host's member was lost during the stream: it said nothing, or did not take it"};
+    const auto& member = report.members.front();
+    m_.multicast = member.info.multicast;
+    m_.datagrams = report.sender.datagrams;
+    m_.bytesPerS = static_cast<double>(bytes) / tookS;
+    const double sent = static_cast<double>(std::max<uint64_t>(1, report.sender.datagrams));
+    const uint32_t onTheWay = member.state.lost - std::min(member.state.lost, member.state.dropped);
+    m_.lostShare = std::min(1.0, onTheWay / sent);
+    m_.droppedShare = std::min(1.0, member.state.dropped / sent);
+    return {};
+}
+
+Result<void> HostSurvey::lookAgain() {
+    if (m_.reached.empty()) return {};
+    const bool arrived = m_.way(ProbeWay::Group).to;
+    for (WayMeasured& way : m_.ways) way.toLater = false;
+    if (!arrived) return {};
+    return probeThere({kLeastProbeBytes}, {ProbeWay::Group});
+}
+
+} // namespace mural::cli

@@ -1,0 +1,17 @@
+// `mural doctor --network`: measures, judges, prints.
+#pragma once
+
+#include "tools/mural/network/network_arguments.hpp"
+
+namespace CLI {
+class App;
+class Option;
+}
+
+namespace mural::cli {
+
+// Adds the options to doctor and returns --network, which the others need; `arguments` must outlive the parsing.
+CLI::Option* describeNetworkDoctor(CLI::App& doctor, NetworkArguments& arguments);
+int networkDoctorCommand(const NetworkArguments& arguments, bool asJson);
+
+} // namespace mural::cli

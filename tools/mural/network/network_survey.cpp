@@ -1,0 +1,189 @@
+#include "tools/mural/network/network_survey.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <netinet/in.h>
+#include <sstream>
+
+#include "nodes/launch/environment.hpp"
+#include "nodes/session/session_secret.hpp"
+#include "tools/mural/commands.hpp"
+#include "tools/mural/network/host_survey.hpp"
+#include "transport/rsp/group_text.hpp"
+#include "transport/tcp_address.hpp"
+
+namespace mural::cli {
+
+namespace {
+
+constexpr int64_t kStartMs = 30'000; // of all members together, as of a session's nodes
+constexpr int64_t kResolveMs = 5'000;
+constexpr size_t kUdpOverIpv4Bytes = 28;
+constexpr size_t kUdpOverIpv6Bytes = 48;
+constexpr size_t kMostDatagramBytes = 8972; // as RSP
+
+std::vector<std::string> split(const std::string& text, char separator) {
+    std::vector<std::string> parts;
+    std::istringstream stream(text);
+    for (std::string part; std::getline(stream, part, separator);)
+        if (!part.empty()) parts.push_back(part);
+    return parts;
+}
+
+// For the shell that the launch command runs on the host.
+std::string quoted(const std::string& word) {
+    if (word.find_first_of(" \t\"'\\$`*?[]()<>|&;!#~") == std::string::npos) return word;
+    std::string result = "'";
+    for (const char c : word) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return result + "'";
+}
+
+std::vector<std::string> memberCommand(const NetworkArguments& a, const std::string& host) {
+    if (a.hosts.empty()) return {launch::ownBinary(), "network-member"};
+    std::vector<std::string> command = split(a.launchCommand, ' ');
+    for (const std::string& word : {host, quoted(a.remoteMural.empty() ? launch::ownBinary() : a.remoteMural), std::string("network-member")}) command.push_back(word);
+    return command;
+}
+
+// Which of our addresses the kernel would send from to a host; empty: its name is not known here.
+std::string ownAddressTowards(const std::string& host) {
+    auto addresses = resolveTcp(host.substr(host.find('@') + 1), 9, TcpRole::Connect, Deadline::inMs(kResolveMs));
+    if (!addresses) return {};
+    for (const TcpAddress& a : *addresses) {
+        // Connecting a datagram socket sends nothing but chooses the route.
+        const FileDescriptor fd(::socket(a.family(), SOCK_DGRAM | SOCK_CLOEXEC, 0));
+        if (::connect(fd.get(), a.get(), a.sizeBytes) == 0) return numericText(localTcpAddress(fd.get()));
+    }
+    return {};
+}
+
+struct Started {
+    std::unique_ptr<ProbeProcess> process;
+    std::unique_ptr<HostSurvey> survey;
+};
+
+class Surveying {
+public:
+    explicit Surveying(const NetworkArguments& a) : a_(a) {}
+
+    Result<Survey> run(const std::function<void(const std::string&)>& progress) {
+        if (auto r = open(); !r) return r.error();
+        const std::vector<std::string> hosts = a_.hosts.empty() ? std::vector<std::string>{"this machine"} : split(a_.hosts, ',');
+        // Measured are kept by pointers.
+        survey_.hosts.resize(hosts.size());
+        for (size_t i = 0; i < hosts.size(); ++i) survey_.hosts[i].host = hosts[i];
+        for (HostMeasured& h : survey_.hosts) started_.push_back(start(h));
+        const Deadline deadline = Deadline::inMs(kStartMs);
+        for (size_t i = 0; i < hosts.size(); ++i) {
+            if (!started_[i].survey) continue;
+            progress(hosts[i]);
+            look(started_[i], survey_.hosts[i], deadline);
+        }
+        // Switches forget groups after a while: the first hosts are looked at once more.
+        for (size_t i = 0; i + 1 < hosts.size(); ++i) {
+            if (started_[i].survey && survey_.hosts[i].failure.empty()) note(started_[i].survey->lookAgain(), survey_.hosts[i]);
+        }
+        return std::move(survey_);
+    }
+
+private:
+    Result<void> open() {
+        auto group = numericEndpoint(a_.group);
+        if (!group) return group.error();
+        auto rate = rsp::parseRate(a_.rate);
+        if (!rate) return rate.error();
+        const auto secret = makeSessionSecret(), number = makeSessionSecret();
+        if (!secret) return secret.error();
+        if (!number) return number.error();
+        secret_ = secret.value();
+        std::memcpy(&number_, number.value().data(), sizeof number_);
+        // By default the card that leads to the first host.
+        std::string wanted = a_.interface;
+        if (wanted.empty() && !a_.hosts.empty()) wanted = ownAddressTowards(split(a_.hosts, ',').front());
+        auto interface = rsp::findInterface(wanted, group->family());
+        if (!interface && a_.interface.empty()) interface = rsp::findInterface("", group->family());
+        if (!interface) return interface.error();
+        interface_ = *interface;
+        auto sockets = ProbeSockets::open(*group, interface_, number_, true);
+        if (!sockets) return sockets.error();
+        sockets_.emplace(std::move(*sockets));
+        plan_.group.group = a_.group;
+        plan_.group.interface = interface_.name;
+        plan_.group.secret = secret_;
+        plan_.group.seal = rsp::bestEncryption();
+        plan_.group.bytesPerS = *rate;
+        plan_.headerBytes = group->family() == AF_INET ? kUdpOverIpv4Bytes : kUdpOverIpv6Bytes;
+        plan_.cardBytes = std::min(interface_.mtuBytes - plan_.headerBytes, kMostDatagramBytes);
+        plan_.seconds = a_.seconds;
+        survey_.here = {muralVersion(), readMachineFacts(interface_, sockets_->bufferBytes()), a_.group, plan_.headerBytes, plan_.cardBytes};
+        // Where members find out that they can connect to us.
+        auto listening = rsp::Group::host(plan_.group);
+        if (!listening) return listening.error();
+        listening_ = std::move(*listening);
+        return {};
+    }
+
+    // All our addresses, that towards the host first.
+    [[nodiscard]] std::vector<std::string> addressesFor(const std::string& towards) const {
+        std::vector<std::string> texts;
+        if (!towards.empty()) texts.push_back(towards);
+        auto all = rsp::networkInterfaces();
+        if (!all) return texts;
+        for (const rsp::NetworkInterface& i : *all) {
+            if (i.loopback && !a_.hosts.empty()) continue;
+            for (const SocketAddress& address : i.addresses) {
+                const std::string text = numericText(address);
+                if (text.find('%') == std::string::npos && std::ranges::find(texts, text) == texts.end()) texts.push_back(text);
+            }
+        }
+        return texts;
+    }
+
+    Started start(HostMeasured& h) {
+        auto process = ProbeProcess::start(memberCommand(a_, h.host));
+        if (!process) {
+            h.failure = process.error().message;
+            return {};
+        }
+        const SocketAddress* ours = interface_.address(numericEndpoint(a_.group)->family());
+        const std::string towards = a_.hosts.empty() ? (ours ? numericText(*ours) : "") : ownAddressTowards(h.host);
+        if (auto way = rsp::findInterface(towards, AF_INET); way && !towards.empty()) h.interfaceTowards = way->name;
+        auto port = splitHostPort(listening_->controlAddress());
+        const nlohmann::json order{{"secret", toHex(secret_)}, {"addresses", addressesFor(towards)}, {"port", port ? port->port : 0}, {"group", a_.group},
+            {"interface", a_.hosts.empty() ? interface_.name : ""}, {"survey", number_}};
+        if (auto r = (*process)->say(order); !r) {
+            h.failure = r.error().message;
+            return {};
+        }
+        Started s;
+        s.process = std::move(*process);
+        s.survey = std::make_unique<HostSurvey>(plan_, *sockets_, *s.process, h);
+        return s;
+    }
+
+    static void look(Started& s, HostMeasured& h, Deadline deadline) {
+        note(s.survey->greet(deadline), h);
+        if (h.failure.empty() && !h.reached.empty()) note(s.survey->measure(), h);
+    }
+    static void note(const Result<void>& r, HostMeasured& h) {
+        if (!r) h.failure = r.error().message;
+    }
+
+    const NetworkArguments& a_;
+    Survey survey_;
+    SurveyPlan plan_;
+    SessionSecret secret_{};
+    uint64_t number_ = 0; // of this survey; goes over the network unhidden
+    rsp::NetworkInterface interface_;
+    std::optional<ProbeSockets> sockets_;
+    std::unique_ptr<rsp::Group> listening_;
+    std::vector<Started> started_;
+};
+
+} // namespace
+
+Result<Survey> surveyNetwork(const NetworkArguments& arguments, const std::function<void(const std::string& host)>& progress) {
+    return Surveying(arguments).run(progress);
+}
+
+} // namespace mural::cli

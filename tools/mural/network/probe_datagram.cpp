@@ -1,0 +1,35 @@
+#include "tools/mural/network/probe_datagram.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <string_view>
+
+#include "common/little_endian.hpp"
+
+namespace mural::cli {
+
+namespace {
+constexpr std::string_view kMagic = "MURALNP1";
+}
+
+void writeProbe(const ProbeDatagram& probe, std::span<std::byte> into) {
+    std::ranges::fill(into, std::byte{0});
+    std::memcpy(into.data(), kMagic.data(), kMagic.size());
+    storeLittle(into.data() + 8, probe.survey);
+    into[16] = static_cast<std::byte>(probe.way);
+    into[17] = std::byte{probe.fromDoctor};
+    storeLittle(into.data() + 18, probe.sizeBytes);
+}
+
+std::optional<ProbeDatagram> readProbe(std::span<const std::byte> d) {
+    if (d.size() < kLeastProbeBytes || std::memcmp(d.data(), kMagic.data(), kMagic.size()) != 0) return {};
+    ProbeDatagram p;
+    p.survey = loadLittle<uint64_t>(d.data() + 8);
+    p.way = static_cast<ProbeWay>(d[16]);
+    p.fromDoctor = d[17] == std::byte{1};
+    p.sizeBytes = loadLittle<uint16_t>(d.data() + 18);
+    if (p.way > ProbeWay::LinkLocal || d[17] > std::byte{1} || p.sizeBytes != d.size()) return {};
+    return p;
+}
+
+} // namespace mural::cli

@@ -1,0 +1,206 @@
+#include "tools/mural/network/probe_member.hpp"
+
+#include <atomic>
+#include <csignal>
+#include <sys/socket.h>
+#include <thread>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "nodes/session/session_secret.hpp"
+#include "tools/mural/commands.hpp"
+#include "tools/mural/network/line_channel.hpp"
+#include "tools/mural/network/machine_facts.hpp"
+#include "tools/mural/network/probe_sockets.hpp"
+#include "transport/rsp/group.hpp"
+#include "transport/socket_wait.hpp"
+#include "transport/system_error.hpp"
+#include "transport/tcp_address.hpp"
+
+namespace mural::cli {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr int64_t kSilenceMs = 60'000;
+constexpr int64_t kConnectMs = 2'000; // per address
+constexpr int64_t kJoinMs = 10'000;
+constexpr int64_t kSpeakMs = 10'000;
+constexpr int kBetweenProbesMs = 1;
+
+// How this machine gets to the doctor's.
+struct Route {
+    std::string reached; // address of the doctor's machine
+    std::string own;     // ours, as the kernel chose it
+    std::string why;     // nothing was reached
+};
+
+Route findRoute(const std::vector<std::string>& addresses, uint16_t port) {
+    Route route;
+    for (const std::string& host : addresses) {
+        auto address = numericAddress(host, port);
+        if (!address) continue;
+        const FileDescriptor fd(::socket(address->family(), SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+        int code = ::connect(fd.get(), address->get(), address->sizeBytes) == 0 ? 0 : errno;
+        if (code == EINPROGRESS) {
+            socklen_t size = sizeof code;
+            if (waitForSocket(fd.get(), POLLOUT, Deadline::inMs(kConnectMs)) == 0) code = ETIMEDOUT;
+            else if (getsockopt(fd.get(), SOL_SOCKET, SO_ERROR, &code, &size) != 0) code = errno;
+        }
+        if (code == 0) return {host, numericText(localTcpAddress(fd.get())), {}};
+        route.why += fmt::format("{}{}: {}", route.why.empty() ? "" : ", ", host, errnoText(code));
+    }
+    return route;
+}
+
+// A member of the doctor's group that reads all that comes.
+class Reading {
+public:
+    explicit Reading(std::unique_ptr<rsp::Group> group) : group_(std::move(group)), thread_([this] { read(); }) {}
+    ~Reading() {
+        stop_ = true;
+        thread_.join();
+    }
+    [[nodiscard]] json report() const {
+        const rsp::GroupReport r = group_->report();
+        return {{"bytes", bytes_.load()}, {"socketDropped", r.socketDropped}, {"refused", r.refused.all()}, {"queueDropped", droppedByQueues() - queueDropped_}};
+    }
+
+private:
+    void read() {
+        std::vector<std::byte> piece(256 * 1024);
+        while (!stop_) {
+            auto count = group_->read(rsp::kHost, piece, Deadline::inMs(100));
+            if (count && *count == 0) return; // the doctor has what it wanted
+            if (count) bytes_ += *count;
+        }
+    }
+    std::unique_ptr<rsp::Group> group_;
+    const uint64_t queueDropped_ = droppedByQueues();
+    std::atomic<uint64_t> bytes_ = 0;
+    std::atomic<bool> stop_ = false;
+    std::thread thread_;
+};
+
+class Member {
+public:
+    explicit Member(LineChannel lines) : lines_(std::move(lines)) {}
+
+    int run() {
+        auto first = lines_.read(Deadline::inMs(kSilenceMs));
+        if (!first) return failed("no word from mural doctor on standard input: " + first.error().message + "; it is started by mural doctor --network");
+        try {
+            if (auto r = begin(json::parse(*first)); !r) return failed(r.error().message);
+            return converse();
+        } catch (const json::exception& e) {
+            return failed(std::string("what mural doctor says makes no sense here: ") + e.what() + "; do both run the same version?");
+        }
+    }
+
+private:
+    int failed(const std::string& why) {
+        fmt::print(stderr, "mural network-member: {}\n", why);
+        (void)lines_.write(json{{"failed", why}}.dump(), Deadline::inMs(kSpeakMs));
+        return 1;
+    }
+
+    Result<void> begin(const json& order) {
+        auto secret = sessionSecretFromHex(order.at("secret").get<std::string>());
+        if (!secret) return secret.error();
+        auto group = numericEndpoint(order.at("group").get<std::string>());
+        if (!group) return group.error();
+        const Route route = findRoute(order.at("addresses").get<std::vector<std::string>>(), order.at("port").get<uint16_t>());
+        // By default the interface that leads to the doctor.
+        std::string wanted = order.at("interface").get<std::string>();
+        if (wanted.empty()) wanted = route.own;
+        auto interface = rsp::findInterface(wanted, group->family());
+        if (!interface) interface = rsp::findInterface("", group->family());
+        if (!interface) return interface.error();
+        auto sockets = ProbeSockets::open(*group, *interface, order.at("survey").get<uint64_t>(), false);
+        if (!sockets) return sockets.error();
+        sockets_.emplace(std::move(*sockets));
+        options_.secret = *secret;
+        options_.group = order.at("group").get<std::string>();
+        options_.interface = interface->name;
+        const json hello{{"version", muralVersion()}, {"reached", route.reached}, {"own", route.own}, {"why", route.why}, {"port", sockets_->port()},
+            {"troubles", troubles()}, {"facts", toJson(readMachineFacts(*interface, sockets_->bufferBytes()))}};
+        return lines_.write(hello.dump(), Deadline::inMs(kSpeakMs));
+    }
+
+    int converse() {
+        Deadline deadline = Deadline::inMs(kSilenceMs);
+        while (sockets_->listen(deadline, lines_.readableFd())) {
+            auto line = lines_.read(Deadline::inMs(kSpeakMs));
+            if (!line) return 0; // the doctor has ended
+            if (auto r = lines_.write(answer(json::parse(*line)).dump(), Deadline::inMs(kSpeakMs)); !r) return 0;
+            deadline = Deadline::inMs(kSilenceMs);
+        }
+        return failed("mural doctor has said nothing for a minute; start it again");
+    }
+
+    json answer(const json& order) {
+        const auto what = order.at("do").get<std::string>();
+        if (what == "seen") return seen();
+        if (what == "send") return send(order);
+        if (what == "join") return join(order);
+        if (what == "leave") {
+            const json report = reading_ ? reading_->report() : json::object();
+            reading_.reset();
+            return report;
+        }
+        return {{"failed", "there is no \"" + what + "\" here; do both run the same version?"}};
+    }
+
+    json seen() {
+        (void)sockets_->listen(Deadline::inMs(0)); // what is there already
+        json list = json::array();
+        for (const auto& [probe, count] : sockets_->take()) list.push_back({{"way", static_cast<int>(probe.way)}, {"size", probe.sizeBytes}, {"count", count}});
+        return {{"seen", list}};
+    }
+
+    json send(const json& order) {
+        auto to = numericAddress(order.at("to").get<std::string>(), order.at("port").get<uint16_t>());
+        if (!to) return {{"failed", to.error().message}};
+        for (unsigned copy = 0; copy < order.at("copies").get<unsigned>(); ++copy) {
+            for (const ProbeWay way : kProbeWays) {
+                for (const json& size : order.at("sizes")) {
+                    sockets_->send(way, std::clamp<size_t>(size.get<size_t>(), kLeastProbeBytes, 65'000), *to);
+                    poll(nullptr, 0, kBetweenProbesMs);
+                }
+            }
+        }
+        return {{"troubles", troubles()}};
+    }
+
+    json join(const json& order) {
+        rsp::GroupOptions options = options_;
+        options.control = order.at("control").get<std::string>();
+        reading_.reset();
+        auto group = rsp::Group::join(options, Deadline::inMs(kJoinMs));
+        if (!group) return {{"joined", false}, {"why", group.error().message}};
+        reading_.emplace(std::move(*group));
+        return {{"joined", true}, {"why", ""}};
+    }
+
+    [[nodiscard]] json troubles() const {
+        json list = json::array();
+        for (const ProbeWay way : kProbeWays) list.push_back(sockets_->trouble(way));
+        return list;
+    }
+
+    LineChannel lines_;
+    std::optional<ProbeSockets> sockets_;
+    rsp::GroupOptions options_;
+    std::optional<Reading> reading_;
+};
+
+} // namespace
+
+int networkMemberCommand() {
+    std::signal(SIGPIPE, SIG_IGN);
+    return Member(LineChannel(FileDescriptor(STDIN_FILENO), FileDescriptor(STDOUT_FILENO))).run();
+}
+
+} // namespace mural::cli

@@ -1,0 +1,67 @@
+#include "tools/mural/network/probe_process.hpp"
+
+#include <csignal>
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "nodes/launch/environment.hpp"
+#include "transport/system_error.hpp"
+
+namespace mural::cli {
+
+namespace {
+constexpr int64_t kSpeakMs = 5'000;
+constexpr int64_t kEndMs = 2'000;
+} // namespace
+
+Result<std::unique_ptr<ProbeProcess>> ProbeProcess::start(const std::vector<std::string>& command) {
+    int toIt[2];
+    int fromIt[2];
+    if (pipe2(toIt, O_CLOEXEC) != 0) return Error{"no pipe: " + errnoText(errno)};
+    const FileDescriptor itsInput(toIt[0]);
+    FileDescriptor ours(toIt[1]);
+    if (pipe2(fromIt, O_CLOEXEC) != 0) return Error{"no pipe: " + errnoText(errno)};
+    FileDescriptor heard(fromIt[0]);
+    const FileDescriptor itsOutput(fromIt[1]);
+    launch::Environment environment = launch::Environment::current();
+    launch::removeCapture(environment);
+    launch::SpawnRequest request;
+    request.file = command.front();
+    request.arguments = command;
+    request.environment = environment.entries();
+    request.inputFd = itsInput.get();
+    request.outputFd = itsOutput.get();
+    request.ownSession = true;
+    request.signalWhenWeDie = SIGKILL;
+    auto process = launch::ChildProcess::start(request);
+    if (!process) return process.error();
+    return std::unique_ptr<ProbeProcess>(new ProbeProcess(*process, LineChannel(std::move(heard), std::move(ours))));
+}
+
+ProbeProcess::~ProbeProcess() {
+    lines_.closeWriting(); // it ends by itself then
+    if (process_.waitUntil(Deadline::inMs(kEndMs))) return;
+    process_.signalGroup(SIGKILL);
+    process_.end(Deadline::inMs(0));
+}
+
+Result<void> ProbeProcess::say(const nlohmann::json& words) { return lines_.write(words.dump(), Deadline::inMs(kSpeakMs)); }
+
+Result<nlohmann::json> ProbeProcess::hear(Deadline deadline) {
+    auto line = lines_.read(deadline);
+    if (!line) {
+        const bool ended = process_.waitUntil(Deadline::inMs(200));
+        return Error{ended ? "it ended: " + process_.describeEnd() : line.error().message};
+    }
+    auto answer = nlohmann::json::parse(*line, nullptr, false);
+    if (!answer.is_object()) return Error{"it says \"" + line->substr(0, 80) + "\", which is no answer"};
+    if (answer.contains("failed") && answer["failed"].is_string()) return Error{answer["failed"].get<std::string>()};
+    return answer;
+}
+
+Result<nlohmann::json> ProbeProcess::ask(const nlohmann::json& words, Deadline deadline) {
+    if (auto r = say(words); !r) return r.error();
+    return hear(deadline);
+}
+
+} // namespace mural::cli

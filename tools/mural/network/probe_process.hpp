@@ -1,0 +1,34 @@
+// `mural network-member` on a host, as the doctor sees it: started by the launch command, spoken to by lines.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "common/result.hpp"
+#include "nodes/launch/child_process.hpp"
+#include "tools/mural/network/line_channel.hpp"
+
+namespace mural::cli {
+
+class ProbeProcess {
+public:
+    static Result<std::unique_ptr<ProbeProcess>> start(const std::vector<std::string>& command);
+    ProbeProcess(const ProbeProcess&) = delete;
+    ProbeProcess& operator=(const ProbeProcess&) = delete;
+    ~ProbeProcess(); // ends it, and all that it has started
+
+    Result<void> say(const nlohmann::json& words);
+    // An object. Errors: the process has ended, says nothing, says that it failed, or what is no JSON.
+    Result<nlohmann::json> hear(Deadline deadline);
+    Result<nlohmann::json> ask(const nlohmann::json& words, Deadline deadline);
+
+private:
+    ProbeProcess(launch::ChildProcess process, LineChannel lines) : process_(std::move(process)), lines_(std::move(lines)) {}
+    launch::ChildProcess process_;
+    LineChannel lines_;
+};
+
+} // namespace mural::cli

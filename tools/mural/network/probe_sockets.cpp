@@ -1,0 +1,66 @@
+#include "tools/mural/network/probe_sockets.hpp"
+
+#include <poll.h>
+
+#include "transport/tcp_address.hpp"
+
+namespace mural::cli {
+
+namespace {
+// For experiments; never forwarded, and never filtered by switches that snoop (RFC 3692, RFC 4541).
+constexpr const char* kLinkLocal4 = "224.0.0.254";
+constexpr const char* kLinkLocal6 = "ff02::114";
+} // namespace
+
+Result<ProbeSockets> ProbeSockets::open(const SocketAddress& group, const rsp::NetworkInterface& interface, uint64_t survey, bool doctor) {
+    auto linkLocal = numericAddress(group.family() == AF_INET ? kLinkLocal4 : kLinkLocal6, tcpPort(group));
+    if (!linkLocal) return linkLocal.error();
+    auto own = rsp::UdpSocket::openOwn(interface, group.family(), kWantedBufferBytes);
+    if (!own) return own.error();
+    ProbeSockets sockets(std::move(*own), survey, doctor);
+    sockets.group_ = group;
+    sockets.linkLocal_ = *linkLocal;
+    const auto join = [&](ProbeWay way, const SocketAddress& address, std::optional<rsp::UdpSocket>& into) {
+        auto socket = rsp::UdpSocket::openGroup(address, interface, kWantedBufferBytes);
+        if (socket) into.emplace(std::move(*socket));
+        else sockets.troubles_[static_cast<size_t>(way)] = socket.error().message;
+    };
+    join(ProbeWay::Group, group, sockets.inGroup_);
+    join(ProbeWay::LinkLocal, *linkLocal, sockets.inLinkLocal_);
+    return sockets;
+}
+
+uint16_t ProbeSockets::port() const { return tcpPort(own_.localAddress()); }
+
+void ProbeSockets::send(ProbeWay way, size_t sizeBytes, const SocketAddress& single) {
+    std::vector<std::byte> datagram(sizeBytes);
+    writeProbe({survey_, way, doctor_, static_cast<uint16_t>(sizeBytes)}, datagram);
+    const SocketAddress& to = way == ProbeWay::Single ? single : way == ProbeWay::Group ? group_ : linkLocal_;
+    // That long ones are refused here is known by what arrives.
+    if (auto r = own_.send(to, datagram, sizeBytes); !r && sizeBytes == kLeastProbeBytes) troubles_[static_cast<size_t>(way)] = r.error().message;
+}
+
+void ProbeSockets::hear(rsp::UdpSocket& socket, bool multicast) {
+    const auto take = [&](std::span<std::byte> bytes, const SocketAddress&) {
+        const auto probe = readProbe(bytes);
+        if (!probe || probe->survey != survey_ || probe->fromDoctor == doctor_ || (probe->way != ProbeWay::Single) != multicast) return;
+        ++seen_[{probe->way, probe->sizeBytes}];
+    };
+    while (socket.receive(take)) {}
+}
+
+bool ProbeSockets::listen(Deadline deadline, int alsoFd) {
+    while (true) {
+        std::array<pollfd, 4> look{{{own_.descriptor(), POLLIN, 0}, {inGroup_ ? inGroup_->descriptor() : -1, POLLIN, 0},
+            {inLinkLocal_ ? inLinkLocal_->descriptor() : -1, POLLIN, 0}, {alsoFd, POLLIN, 0}}};
+        const int64_t leftNs = deadline.leftNs(kNsPerS);
+        (void)poll(look.data(), look.size(), static_cast<int>((leftNs + kNsPerMs - 1) / kNsPerMs));
+        hear(own_, false);
+        if (inGroup_) hear(*inGroup_, true);
+        if (inLinkLocal_) hear(*inLinkLocal_, true);
+        if (look[3].revents != 0) return true;
+        if (deadline.passed()) return false;
+    }
+}
+
+} // namespace mural::cli
