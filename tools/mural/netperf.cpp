@@ -8,10 +8,10 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "common/clock.hpp"
 #include "nodes/launch/program_check.hpp"
+#include "tools/mural/netperf_measured.hpp"
 #include "transport/rsp/group.hpp"
 #include "transport/rsp/group_text.hpp"
 
@@ -19,7 +19,6 @@ namespace mural::cli {
 
 namespace {
 
-using nlohmann::json;
 using rsp::Group;
 
 constexpr size_t kPieceBytes = 256 * 1024;
@@ -78,74 +77,6 @@ Result<Plan> planOf(const NetperfArguments& a) {
     return plan;
 }
 
-// What one end measured.
-struct Measured {
-    std::string role;
-    uint64_t bytes = 0;
-    double elapsedS = 0;
-    double cpuS = 0;
-    std::vector<double> latenciesUs; // sorted
-    rsp::GroupReport report;
-
-    [[nodiscard]] double mbit() const { return elapsedS > 0 ? static_cast<double>(bytes) * 8e-6 / elapsedS : 0; }
-    [[nodiscard]] double cpuPerGB() const { return bytes > 0 ? cpuS / (static_cast<double>(bytes) * 1e-9) : 0; }
-    [[nodiscard]] double latencyUs(double share) const {
-        if (latenciesUs.empty()) return 0;
-        const auto at = static_cast<size_t>(share * static_cast<double>(latenciesUs.size()));
-        return latenciesUs[std::min(at, latenciesUs.size() - 1)];
-    }
-};
-
-json toJson(const Measured& m) {
-    const rsp::SenderCounters& s = m.report.sender;
-    json j{{"role", m.role}, {"bytes", m.bytes}, {"seconds", m.elapsedS}, {"mbit", m.mbit()}, {"cpuSeconds", m.cpuS},
-        {"cpuSecondsPerGB", m.cpuPerGB()}, {"datagrams", s.datagrams}, {"parity", s.rows}, {"resent", s.resent}, {"polls", s.polls},
-        {"feedback", s.feedback}, {"sendings", m.report.sendings}, {"sendingBy", m.report.sendingBy},
-        {"socketDropped", m.report.socketDropped}, {"refused", m.report.refused.all()}};
-    if (!m.latenciesUs.empty()) {
-        j["latencyUs"] = {{"p50", m.latencyUs(0.5)}, {"p90", m.latencyUs(0.9)}, {"p99", m.latencyUs(0.99)}, {"max", m.latenciesUs.back()},
-            {"count", m.latenciesUs.size()}};
-    }
-    for (const auto& stream : m.report.streams) {
-        j["streams"].push_back({{"from", stream.from}, {"datagrams", stream.received.datagrams}, {"recovered", stream.received.recovered},
-            {"duplicates", stream.received.duplicates}, {"lost", stream.lost}, {"feedback", stream.feedback}});
-    }
-    for (const auto& member : m.report.members) {
-        j["members"].push_back({{"id", member.id}, {"address", member.info.address}, {"multicast", member.info.multicast},
-            {"roundTripUs", static_cast<double>(member.state.roundTripNs) * 1e-3}, {"lost", member.state.lost}, {"dropped", member.state.dropped}});
-    }
-    return j;
-}
-
-void printTable(const Measured& m) {
-    const rsp::SenderCounters& s = m.report.sender;
-    fmt::print("{}: {} bytes in {:.3f} s = {:.1f} Mbit/s, CPU {:.2f} s per GB\n", m.role, m.bytes, m.elapsedS, m.mbit(), m.cpuPerGB());
-    if (!m.latenciesUs.empty()) {
-        fmt::print("  until all have a message: p50 {:.0f} us, p90 {:.0f}, p99 {:.0f}, longest {:.0f} ({} messages)\n", m.latencyUs(0.5),
-            m.latencyUs(0.9), m.latencyUs(0.99), m.latenciesUs.back(), m.latenciesUs.size());
-    }
-    if (s.datagrams > 0) {
-        fmt::print("  {} datagrams in {} sendings by {}; {} of parity, {} sent again, {} polls, {} answers\n", s.datagrams, m.report.sendings,
-            m.report.sendingBy, s.rows, s.resent, s.polls, s.feedback);
-    }
-    for (const auto& member : m.report.members) {
-        fmt::print("  member {} at {}: {}, round trip {:.0f} us, lost {}, dropped by its socket {}\n", member.id, member.info.address,
-            member.info.multicast ? "multicast" : "through the host's connection", static_cast<double>(member.state.roundTripNs) * 1e-3,
-            member.state.lost, member.state.dropped);
-    }
-    for (const auto& stream : m.report.streams) {
-        if (stream.received.datagrams == 0) continue;
-        fmt::print("  {} datagrams, {} put back from parity, {} twice, {} lost on the way\n", stream.received.datagrams,
-            stream.received.recovered, stream.received.duplicates, stream.lost);
-    }
-}
-
-void print(const Measured& m, bool asJson) {
-    if (asJson) fmt::print("{}\n", toJson(m).dump());
-    else printTable(m);
-    std::fflush(stdout);
-}
-
 Result<void> sendMessages(Group& group, const NetperfArguments& a, uint64_t messageBytes, Deadline deadline, Measured& m) {
     const std::vector<std::byte> message(messageBytes, std::byte{7});
     for (size_t i = 0; i < a.count + kWarmUp; ++i) {
@@ -176,6 +107,7 @@ Result<Measured> send(Group& group, const Plan& plan, const NetperfArguments& a)
     m.role = "sender";
     const Deadline deadline = Deadline::inMs(static_cast<int64_t>(a.withinSeconds * 1000));
     if (auto r = group.waitForMembers(a.members, deadline); !r) return r.error();
+    const size_t membersAtFirst = group.members().size();
     const double began = nowS();
     const double cpuBegan = cpuS();
     auto r = plan.messageBytes > 0 ? sendMessages(group, a, plan.messageBytes, deadline, m) : sendBytes(group, plan.bytes, deadline, m);
@@ -183,21 +115,25 @@ Result<Measured> send(Group& group, const Plan& plan, const NetperfArguments& a)
     m.elapsedS = nowS() - began;
     m.cpuS = cpuS() - cpuBegan;
     m.report = group.report();
+    m.membersLost = membersAtFirst - std::min(membersAtFirst, m.report.members.size());
     return m;
 }
 
-// Until the sender leaves. The time is that of the first byte to the last.
+// Until the sender leaves, or is cut off. The time is that of the first byte to the last.
 Result<Measured> receive(Group& group, const NetperfArguments& a) {
     Measured m;
     m.role = "receiver " + std::to_string(group.self());
+    m.timeline = Timeline(static_cast<int64_t>(a.timelineMs) * kNsPerMs);
     std::vector<std::byte> piece(kPieceBytes);
     double firstS = 0;
     double cpuBegan = 0;
     while (true) {
         auto count = group.read(rsp::kHost, piece, Deadline::inMs(static_cast<int64_t>(a.withinSeconds * 1000)));
-        if (!count && m.bytes == 0) return count.error();
+        if (!count) m.cut = count.error().message;
         if (!count || *count == 0) break; // the sender has what it wanted
-        const double now = nowS();
+        const int64_t nowNs = monotonicNowNs();
+        const double now = static_cast<double>(nowNs) * 1e-9;
+        m.timeline.add(*count, nowNs);
         if (m.bytes == 0) {
             firstS = now;
             cpuBegan = cpuS();
@@ -205,8 +141,8 @@ Result<Measured> receive(Group& group, const NetperfArguments& a) {
         m.bytes += *count;
         m.elapsedS = now - firstS;
         m.cpuS = cpuS() - cpuBegan;
-        m.report = group.report();
     }
+    m.report = group.report();
     return m;
 }
 
@@ -218,8 +154,9 @@ int failed(const std::string& why) {
 int sendRole(const Plan& plan, const NetperfArguments& a) {
     auto group = Group::host(plan.options);
     if (!group) return failed(group.error().message);
-    if (!a.asJson) fmt::print("waiting for {} receivers; start each with: mural netperf receive --control HOST:PORT --secret-file …, the host listens at {}\n", a.members, (*group)->controlAddress());
-    std::fflush(stdout);
+    // Not among the results.
+    fmt::print(stderr, "waiting for {} receivers; start each with: mural netperf receive --control HOST:PORT --secret-file …, the host listens at {}\n",
+        a.members, (*group)->controlAddress());
     auto m = send(**group, plan, a);
     if (!m) return failed(m.error().message);
     print(*m, a.asJson);
@@ -227,12 +164,16 @@ int sendRole(const Plan& plan, const NetperfArguments& a) {
 }
 
 int receiveRole(const Plan& plan, const NetperfArguments& a) {
+    const int64_t joinBeganNs = monotonicNowNs();
     auto group = Group::join(plan.options, Deadline::inMs(static_cast<int64_t>(a.withinSeconds * 1000)));
     if (!group) return failed(group.error().message);
+    const int64_t joinedNs = monotonicNowNs();
     auto m = receive(**group, a);
     if (!m) return failed(m.error().message);
+    m->joinBeganNs = joinBeganNs;
+    m->joinedNs = joinedNs;
     print(*m, a.asJson);
-    return 0;
+    return m->cut.empty() ? 0 : failed("the stream ended after " + std::to_string(m->bytes) + " bytes, before its end: " + m->cut);
 }
 
 // All in one process, over the loopback.
@@ -259,7 +200,10 @@ int localRole(const Plan& plan, const NetperfArguments& a) {
     for (auto& r : readers) r.join();
     if (!sent) return failed(sent.error().message);
     print(*sent, a.asJson);
-    for (const Measured& m : received) print(m, a.asJson);
+    for (const Measured& m : received) {
+        print(m, a.asJson);
+        if (!m.cut.empty()) return failed(m.role + ": " + m.cut);
+    }
     return 0;
 }
 
@@ -280,6 +224,7 @@ void describeNetperf(CLI::App& command, NetperfArguments& a) {
     command.add_option("--datagram", a.datagramBytes, "bytes of a datagram; 0: what the interface carries whole")->check(CLI::Range(0, 65'000));
     command.add_option("--window", a.window, "datagrams under way at most, a power of two");
     command.add_option("--within", a.withinSeconds, "give up after so many seconds")->type_name("SECONDS")->check(CLI::Range(0.1, 86'400.0));
+    command.add_option("--timeline", a.timelineMs, "with --json: tell the bytes of every so many milliseconds, too")->type_name("MS")->check(CLI::Range(0, 10'000));
     command.add_flag("--no-parity", a.noParity, "mend losses by sending again, to compare");
     command.add_flag("--no-multicast", a.noMulticast, "receive: through the host's connection");
     command.add_flag("--json", a.asJson, "one line of JSON for each end");

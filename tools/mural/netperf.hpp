@@ -21,6 +21,7 @@ struct NetperfArguments {
     unsigned members = 2;
     unsigned count = 500;
     size_t datagramBytes = 0;
+    unsigned timelineMs = 0;
     double withinSeconds = 120;
     bool noParity = false;
     bool noMulticast = false;

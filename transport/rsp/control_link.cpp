@@ -54,7 +54,7 @@ void ControlLink::hangUp() {
 void ControlLink::read() {
     socket_.async_read_some(asio::buffer(in_), [self = shared_from_this()](const error_code& failed, size_t bytes) {
         if (self->ended_) return;
-        if (failed) return self->close(failed == asio::error::eof ? "the peer ended the connection" : failed.message());
+        if (failed) return self->close(failed == asio::error::eof ? "the peer broke off without a goodbye" : failed.message());
         self->took(bytes);
         if (!self->ended_) self->read();
     });
@@ -74,7 +74,7 @@ void ControlLink::took(size_t bytes) {
     }
     if (!good) return close(good.error().message);
     flush();
-    if (channel_.finished()) close("the peer ended the connection");
+    if (channel_.finished()) close("");
 }
 
 void ControlLink::close(const std::string& why) {

@@ -20,7 +20,7 @@ public:
     struct Events {
         std::function<void()> opened; // the peer knows the secret
         std::function<void(const ControlMessage&)> message;
-        std::function<void(const std::string& why)> closed; // once, at the end; nothing comes after it
+        std::function<void(const std::string& why)> closed; // once, at the end; empty: the peer said goodbye
     };
     ControlLink(Socket socket, SecureChannel channel) : socket_(std::move(socket)), channel_(std::move(channel)) {}
 

@@ -153,6 +153,7 @@ Result<size_t> Group::read(MemberId from, std::span<std::byte> into, Deadline de
             state_->core->forget(from);
             return size_t{0};
         }
+        if (from == kHost && state_->hostLeft) return size_t{0};
         if (!state_->failure.empty()) return Error{state_->failure};
         if (deadline.passed()) return tooLate("bytes of member " + std::to_string(from));
         state_->data.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(kSliceNs)));

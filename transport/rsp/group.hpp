@@ -102,7 +102,8 @@ public:
     // All that was flushed is at all members.
     Result<void> waitArrived(Deadline deadline);
 
-    // What is there of a member's stream, at least one byte; waits for it. 0: the member is gone, and all was read.
+    // What is there of a member's stream, at least one byte; waits for it. 0: the member is gone, and all was read. A host
+    // that is cut off is an error, for with it the group ends.
     Result<size_t> read(MemberId from, std::span<std::byte> into, Deadline deadline);
 
     [[nodiscard]] GroupReport report() const;

@@ -247,7 +247,8 @@ void Group::State::startLink(MemberId id, const std::shared_ptr<ControlLink>& li
         const std::lock_guard lock(mutex);
         links_.clear();
         core->disconnected(kHost, steadyNs());
-        fail(why);
+        hostLeft = why.empty() && failure.empty();
+        fail(why.empty() || !failure.empty() ? why : "the group's host was cut off: " + why);
     };
     link->start(std::move(events));
 }

@@ -44,6 +44,7 @@ struct Group::State : GroupOutput {
     std::condition_variable changed; // members
     std::unique_ptr<GroupCore> core;
     std::string failure; // why the group is over; empty: it is not
+    bool hostLeft = false; // the host ended the group in order: that is its stream's end, no failure of it
     std::set<MemberId> accepted;
     std::vector<MemberEvent> news; // of members, not yet asked for
     std::string controlAddress;

@@ -1,0 +1,63 @@
+#!/usr/bin/env python3
+"""How `mural netperf receive` ends: a sender that is done is its success, one that is killed or that it can't reach is not.
+
+  netperf_ends.py MURAL
+"""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+
+WAIT_SECONDS = 30
+
+
+def start(words):
+    return subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def start_pair(mural, secret, size):
+    """(sender, receiver), over the loopback."""
+    common = ["--interface", "lo", "--group", "239.255.77.87:%d" % (20000 + os.getpid() % 20000), "--secret-file", secret,
+              "--within", str(WAIT_SECONDS)]
+    sender = start([mural, "netperf", "send", "--members", "1", "--bytes", size, "--rate", "80mbit", "--control", "127.0.0.1:0"] + common)
+    said = sender.stderr.readline()
+    found = re.search(r"listens at (\S+)", said)
+    if not found:
+        sys.exit("netperf_ends: the sender does not say where it listens: %r" % said)
+    return sender, start([mural, "netperf", "receive", "--json", "--control", found.group(1)] + common)
+
+
+def expect(what, good, told):
+    if not good:
+        sys.exit("netperf_ends: %s: %r" % (what, told))
+
+
+def main():
+    mural = sys.argv[1]
+    with tempfile.NamedTemporaryFile("w") as secret:
+        secret.write("a secret of these two tests\n")
+        secret.flush()
+
+        sender, receiver = start_pair(mural, secret.name, "2M")
+        told = receiver.communicate(timeout=WAIT_SECONDS)
+        expect("a sender that is done is no success", receiver.returncode == 0 and '"bytes":2097152' in told[0], told)
+        sender.communicate(timeout=WAIT_SECONDS)
+
+        sender, receiver = start_pair(mural, secret.name, "1G")
+        try:
+            receiver.wait(timeout=1.5)  # it is in the middle of the stream
+        except subprocess.TimeoutExpired:
+            pass
+        sender.send_signal(signal.SIGKILL)
+        told = receiver.communicate(timeout=WAIT_SECONDS)
+        sender.communicate()
+        expect("a killed sender is no failure", receiver.returncode == 1, told)
+        expect("a killed sender is not told in one line", re.fullmatch(r"mural netperf: the stream ended after \d+ bytes.*cut off.*\n", told[1]), told)
+        expect("what was measured before is not told", '"cut":' in told[0], told)
+
+
+if __name__ == "__main__":
+    main()
