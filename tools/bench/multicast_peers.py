@@ -1,0 +1,219 @@
+"""Other ways to bring the same bytes to many: what RSP is measured against. Built from netlab's harnesses, or Debian's programs."""
+
+import os
+import re
+import shutil
+import subprocess
+
+from netlab_rig import numbers_of, wait_all
+from stream_result import StreamFailed, StreamResult
+
+UDP_HEAD_BYTES = 28
+WIRE_BYTES = 66  # Ethernet, IPv4 and UDP around a payload, gap and preamble included
+LIMIT_SECONDS = 25
+
+
+def finish(name, programs, seconds=LIMIT_SECONDS):
+    done = wait_all(programs, seconds)
+    for program, finished in zip(programs, done):
+        if finished is None:
+            for other in programs:
+                other.end()
+            raise StreamFailed("%s: not done after %d s" % (name, seconds))
+        if finished.status != 0:
+            raise StreamFailed("%s: status %d: %s" % (name, finished.status, (finished.wrong or finished.said).strip().split("\n")[-1]))
+    return done
+
+
+class Harness:
+    """A peer that netlab has a program for, in C++."""
+
+    def __init__(self, folder, name, source, flags=()):
+        """Builds it; self.missing says what stands in the way."""
+        self.path = os.path.join(folder, name)
+        self.missing = ""
+        command = ["g++", "-O2", "-std=c++17", "-w", "-o", self.path, source] + list(flags)
+        built = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, check=False)
+        if built.returncode != 0:
+            errors = [line for line in built.stderr.decode(errors="replace").split("\n") if "error" in line]
+            self.missing = errors[0] if errors else "it can't be built"
+
+
+class Raw(Harness):
+    """Multicast without any care: what the network and this machine can do."""
+
+    def __init__(self, netlab_folder, folder):
+        super().__init__(folder, "mcraw", os.path.join(netlab_folder, "mcraw.cpp"))
+
+    def stream(self, rig, receivers, seconds, wire_mbit, sending="gso", batch=1):
+        payload = rig.mtu - UDP_HEAD_BYTES
+        rate = wire_mbit * payload / (payload + WIRE_BYTES)
+        common = ["239.1.1.1", "6000"]
+        hosts = [rig.start(host, [self.path, "recv"] + common + [rig.address(host), "mode=mmsg", "secs=%g" % seconds])
+                 for host in range(1, receivers + 1)]
+        self._wait_for_joins(hosts)
+        sender = rig.start(0, [self.path, "send"] + common + [rig.address(0), "mode=" + sending, "size=%d" % payload, "batch=%d" % batch,
+                                                               "secs=%g" % seconds, "rate=%g" % rate])
+        done = finish("raw", [sender] + hosts)
+        told = [numbers_of(d.said) for d in done]
+        return StreamResult(min(t["gbit"] for t in told[1:]) * 1000, told[0]["cpu_s_per_GB"],
+                            sum(t["cpu_s_per_GB"] for t in told[1:]) / receivers)
+
+    @staticmethod
+    def _wait_for_joins(hosts):
+        wait_all(hosts, 0.3)  # they say nothing when they listen
+
+
+class OwnProgram:
+    """A peer whose harness sends `bytes=` and tells `gbit=` and `cpu_s_per_GB=` at each end."""
+
+    def __init__(self, name, harness, package, share=lambda receivers: 1.0):
+        """share: of the bytes of others, so that its runs last about as long."""
+        self.name, self.harness, self.package, self.share = name, harness, package, share
+
+    @property
+    def missing(self):
+        return self.harness.missing
+
+    def sender_words(self, rig, receivers, size_bytes, wire_mbit):
+        raise NotImplementedError
+
+    def receiver_words(self, rig, host, size_bytes):
+        raise NotImplementedError
+
+    def stream(self, rig, receivers, size_bytes, wire_mbit):
+        size_bytes = int(size_bytes * self.share(receivers))
+        hosts = [rig.start(host, [self.harness.path, "recv"] + self.receiver_words(rig, host, size_bytes)) for host in range(1, receivers + 1)]
+        if self.name != "TCP":
+            wait_all(hosts, 0.3)  # until they have joined
+        sender = rig.start(0, [self.harness.path, "send"] + self.sender_words(rig, receivers, size_bytes, wire_mbit))
+        done = finish(self.name, [sender] + hosts)
+        told = [numbers_of(d.said) for d in done]
+        for host, t in enumerate(told):
+            if t.get("bytes", 0) < size_bytes:
+                raise StreamFailed("%s: host %d has %d of %d bytes" % (self.name, host, t.get("bytes", 0), size_bytes))
+        # Some begin to count late: none is faster than its sender.
+        mbit = min([t["gbit"] for t in told[1:]] + ([told[0]["gbit"]] if self.name == "NORM" else [])) * 1000
+        return StreamResult(mbit, told[0].get("cpu_s_per_GB"), sum(t["cpu_s_per_GB"] for t in told[1:]) / receivers)
+
+
+class Norm(OwnProgram):
+    def sender_words(self, rig, receivers, size_bytes, wire_mbit):
+        # Without congestion control, at a rate of its payload; parity costs it more than it brings.
+        return ["n=%d" % receivers, "bytes=%d" % size_bytes, "rate=%g" % (wire_mbit or 4000), "par=0", "if=eth0"]
+
+    def receiver_words(self, rig, host, size_bytes):
+        return ["id=%d" % host, "bytes=%d" % size_bytes, "if=eth0"]
+
+    def messages(self, rig, receivers, message_bytes, count):
+        hosts = [rig.start(host, [self.harness.path, "recv", "id=%d" % host, "bytes=1", "if=eth0"]) for host in range(1, receivers + 1)]
+        wait_all(hosts, 0.3)
+        sender = rig.start(0, [self.harness.path, "send", "n=%d" % receivers, "msg=%d" % message_bytes, "count=%d" % count, "rate=180", "par=0", "if=eth0"])
+        try:
+            told = numbers_of(finish(self.name, [sender], 12)[0].said)
+        finally:
+            rig.end_programs()
+        return {"p50": told["p50us"], "p99": told["p99us"]}
+
+
+class Pgm(OwnProgram):
+    def sender_words(self, rig, receivers, size_bytes, wire_mbit):
+        return ["bytes=%d" % size_bytes, "rate=%g" % (wire_mbit or 4000), "ip=" + rig.address(0)]
+
+    def receiver_words(self, rig, host, size_bytes):
+        return ["bytes=%d" % size_bytes, "ip=" + rig.address(host)]
+
+
+class Tcp(OwnProgram):
+    def sender_words(self, rig, receivers, size_bytes, wire_mbit):
+        return ["n=%d" % receivers, "bytes=%d" % size_bytes]
+
+    def receiver_words(self, rig, host, size_bytes):
+        return ["bytes=%d" % size_bytes, "server=" + rig.address(0)]
+
+    def messages(self, rig, receivers, message_bytes, count):
+        sender = rig.start(0, [self.harness.path, "send", "n=%d" % receivers, "msg=%d" % message_bytes, "count=%d" % count])
+        hosts = [rig.start(host, [self.harness.path, "recv", "msg=%d" % message_bytes, "server=" + rig.address(0)]) for host in range(1, receivers + 1)]
+        told = numbers_of(finish(self.name, [sender] + hosts, 40)[0].said)
+        return {"p50": told["p50us"], "p99": told["p99us"]}
+
+
+class Files:
+    """What both file senders need: a file of the size, and where to put copies."""
+
+    def __init__(self, folder, name, program, package):
+        self.name, self.package = name, package
+        self.folder = os.path.join(folder, program)
+        os.makedirs(self.folder, exist_ok=True)
+        self.missing = "" if shutil.which(program) else "not installed"
+        self.share = lambda receivers: 1.0
+
+    def file_of(self, size_bytes):
+        path = os.path.join(self.folder, "sent-%d" % size_bytes)
+        if not os.path.exists(path):
+            with open(path, "wb") as file:
+                file.truncate(size_bytes)
+        return path
+
+
+class Uftp(Files):
+    def __init__(self, folder):
+        super().__init__(folder, "UFTP", "uftp", "uftp")
+
+    def stream(self, rig, receivers, size_bytes, wire_mbit):
+        path = self.file_of(size_bytes)
+        hosts, ids = [], []
+        for host in range(1, receivers + 1):
+            into = os.path.join(self.folder, "host-%d" % host)
+            shutil.rmtree(into, ignore_errors=True) # what an earlier run left there
+            os.makedirs(into)
+            hosts.append(rig.start(host, ["uftpd", "-d", "-I", "eth0", "-D", into, "-B", "4194304"]))
+            ids.append("0x" + "".join("%02X" % int(part) for part in rig.address(host).split(".")))
+        wait_all(hosts, 0.4)
+        rate = str(round(wire_mbit * 1000)) if wire_mbit else "-1"
+        try:
+            done = finish(self.name, [rig.start(0, ["uftp", "-R", rate, "-I", "eth0", "-B", "4194304", "-b", "1400", "-H", ",".join(ids), path])])[0]
+        finally:
+            ended = [host.end() for host in hosts]
+        kept = re.search(r"Total elapsed time: ([0-9.]+) s", done.said + done.wrong)
+        whole = [os.path.getsize(os.path.join(self.folder, "host-%d" % h, os.path.basename(path))) for h in range(1, receivers + 1)
+                 if os.path.exists(os.path.join(self.folder, "host-%d" % h, os.path.basename(path)))]
+        if not kept or whole != [size_bytes] * receivers:
+            raise StreamFailed("UFTP: not all receivers have the file")
+        gigabytes = size_bytes * 1e-9
+        return StreamResult(size_bytes * 8e-6 / max(0.001, float(kept.group(1))), done.cpu_seconds / gigabytes,
+                            sum(e.cpu_seconds for e in ended) / receivers / gigabytes)
+
+
+class Udpcast(Files):
+    def __init__(self, folder):
+        super().__init__(folder, "udpcast", "udp-sender", "udpcast")
+
+    def stream(self, rig, receivers, size_bytes, wire_mbit):
+        path = self.file_of(size_bytes)
+        common = ["--nokbd", "--interface", "eth0", "--mcast-rdv-address", "239.1.1.3"]
+        hosts = [rig.start(host, ["udp-receiver", "--file", "/dev/null"] + common) for host in range(1, receivers + 1)]
+        wait_all(hosts, 0.3)
+        pace = ["--max-bitrate", "%dk" % round(wire_mbit * 1000)] if wire_mbit else []
+        sender = rig.start(0, ["udp-sender", "--file", path, "--min-receivers", str(receivers), "--full-duplex"] + pace + common)
+        done = finish(self.name, [sender] + hosts, 15)
+        rates = []
+        for finished in done[1:]:
+            found = re.findall(r"\(\s*([0-9.]+) ([KMG]?)bps\)", finished.said + finished.wrong)
+            if not found:
+                raise StreamFailed("udpcast: a receiver tells no rate")
+            rates.append(float(found[-1][0]) * {"": 1e-6, "K": 1e-3, "M": 1.0, "G": 1e3}[found[-1][1]])
+        gigabytes = size_bytes * 1e-9
+        return StreamResult(min(rates), done[0].cpu_seconds / gigabytes, sum(d.cpu_seconds for d in done[1:]) / receivers / gigabytes)
+
+
+def all_peers(netlab_folder, folder):
+    """Those whose `missing` is empty can run."""
+    sources = os.path.join(netlab_folder, "peers")
+
+    def harness(name, *flags):
+        return Harness(folder, name, os.path.join(sources, name + ".cpp"), flags)
+    return [Norm("NORM", harness("normpeer", "-lnorm"), "libnorm-dev"),
+            Pgm("OpenPGM", harness("pgmpeer", "-I/usr/include/pgm-5.3", "-lpgm"), "libpgm-dev"),
+            Tcp("TCP", harness("tcpfan"), "g++", lambda receivers: 1.0 / receivers),
+            Uftp(folder), Udpcast(folder)]
