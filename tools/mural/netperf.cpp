@@ -126,7 +126,7 @@ Result<Measured> receive(Group& group, const NetperfArguments& a) {
     m.timeline = Timeline(static_cast<int64_t>(a.timelineMs) * kNsPerMs);
     std::vector<std::byte> piece(kPieceBytes);
     double firstS = 0;
-    double cpuBegan = 0;
+    double cpuBegan = cpuS();
     while (true) {
         auto count = group.read(rsp::kHost, piece, Deadline::inMs(static_cast<int64_t>(a.withinSeconds * 1000)));
         if (!count) m.cut = count.error().message;
@@ -140,8 +140,8 @@ Result<Measured> receive(Group& group, const NetperfArguments& a) {
         }
         m.bytes += *count;
         m.elapsedS = now - firstS;
-        m.cpuS = cpuS() - cpuBegan;
     }
+    m.cpuS = cpuS() - cpuBegan;
     m.report = group.report();
     return m;
 }

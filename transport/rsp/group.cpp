@@ -103,7 +103,9 @@ Result<size_t> Group::writeSome(std::span<const std::byte> bytes, Deadline deadl
             return took;
         }
         if (deadline.passed()) return tooLate("room in the stream; a member is slow");
+        state_->waitingForRoom = true;
         state_->room.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(kSliceNs)));
+        state_->waitingForRoom = false;
     }
 }
 
@@ -127,7 +129,7 @@ Result<void> Group::waitArrived(Deadline deadline) {
     while (!state_->core->sender()->allArrived()) {
         if (!state_->failure.empty()) return Error{state_->failure};
         if (deadline.passed()) return tooLate("all members to have everything");
-        state_->room.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(kSliceNs)));
+        state_->arrived.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(kSliceNs)));
     }
     return {};
 }
@@ -156,7 +158,9 @@ Result<size_t> Group::read(MemberId from, std::span<std::byte> into, Deadline de
         if (from == kHost && state_->hostLeft) return size_t{0};
         if (!state_->failure.empty()) return Error{state_->failure};
         if (deadline.passed()) return tooLate("bytes of member " + std::to_string(from));
+        const auto waiting = state_->waitingForData.insert(from);
         state_->data.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(kSliceNs)));
+        state_->waitingForData.erase(waiting);
     }
 }
 

@@ -34,7 +34,9 @@ struct GroupOptions {
     size_t socketBytes = size_t{8} << 20;
     StallPolicy stalled = StallPolicy::Eject;
     int64_t stalledMs = 2000;
-    int64_t silentMs = 1000; // after half of it, and of stalledMs, who lacks datagrams gets them by its connection
+    // A process that is stopped for a second is still one of us. After half of it, and of stalledMs, who lacks datagrams
+    // gets them by its connection.
+    int64_t silentMs = 1120;
     int64_t probeMs = 300; // how long a member may take to see multicast
     bool parity = true;
 };

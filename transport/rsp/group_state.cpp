@@ -173,6 +173,7 @@ void Group::State::stop() {
         });
         thread_.join();
         room.notify_all();
+        arrived.notify_all();
         data.notify_all();
         changed.notify_all();
     }
@@ -187,6 +188,7 @@ void Group::State::stop() {
 void Group::State::fail(const std::string& why) {
     if (failure.empty()) failure = why.empty() ? "the group's host has ended it" : why;
     room.notify_all();
+    arrived.notify_all();
     data.notify_all();
     changed.notify_all();
 }
@@ -274,17 +276,30 @@ void Group::State::hear(UdpSocket& socket, asio::posix::stream_descriptor& descr
 void Group::State::pump() {
     const int64_t next = core->tick(steadyNs());
     outbox_->flush();
-    if (core->sender() && (core->sender()->roomBytes() > 0 || core->sender()->allArrived())) room.notify_one();
-    data.notify_all();
-    if (next >= timerNs_) return;
-    timerNs_ = next;
-    if (onThread()) return armTimer();
-    if (!std::exchange(timerPosted_, true)) {
-        asio::post(context_, [this] {
-            const std::lock_guard lock(mutex);
-            timerPosted_ = false;
+    if (next < timerNs_) {
+        timerNs_ = next;
+        if (onThread()) {
             armTimer();
-        });
+        } else if (!std::exchange(timerPosted_, true)) {
+            asio::post(context_, [this] {
+                const std::lock_guard lock(mutex);
+                timerPosted_ = false;
+                armTimer();
+            });
+        }
+    }
+    wakeWaiting();
+}
+
+// The last thing before the lock is given back: who is woken wants it.
+void Group::State::wakeWaiting() {
+    if (const Sender* s = core->sender()) {
+        if (waitingForRoom && s->muchRoom()) room.notify_all();
+        if (s->allArrived()) arrived.notify_all();
+    }
+    for (const MemberId id : waitingForData) {
+        const Receiver* r = core->receiver(id);
+        if (r && !r->readable().empty()) return data.notify_all();
     }
 }
 

@@ -39,9 +39,13 @@ struct Group::State : GroupOutput {
     void hangUp(MemberId id, const std::string& why) override;
 
     mutable std::mutex mutex;
-    std::condition_variable room;    // for writers
+    std::condition_variable room;    // for the writer
+    std::condition_variable arrived; // for who waits until all have everything
     std::condition_variable data;    // for readers
     std::condition_variable changed; // members
+    // Nobody is woken for what it does not wait for: a wake costs more than a datagram.
+    bool waitingForRoom = false;
+    std::multiset<MemberId> waitingForData; // of these members
     std::unique_ptr<GroupCore> core;
     std::string failure; // why the group is over; empty: it is not
     bool hostLeft = false; // the host ended the group in order: that is its stream's end, no failure of it
@@ -60,6 +64,7 @@ private:
     void startLink(MemberId id, const std::shared_ptr<ControlLink>& link);
     void hear(UdpSocket& socket, boost::asio::posix::stream_descriptor& descriptor);
     void armTimer();
+    void wakeWaiting();
     void fail(const std::string& why);
     void updateLoop();
     void note(const MemberEvent& event);

@@ -9,13 +9,20 @@ namespace {
 constexpr double kLossNoticed = 0.005;  // below this share nothing is asked
 constexpr double kCrowded = 0.02;       // above the floor
 constexpr double kMostDecrease = 0.2;   // at once
-constexpr double kIncrease = 5.0 / 1000; // of the highest rate, per round
-constexpr double kBucketS = 0.001;
-constexpr double kLeastBucketBytes = 48 * 1024.0; // one batch
+constexpr double kIncreasePerS = 0.1;   // of the highest rate
+constexpr int64_t kMostRiseNs = 1'000'000'000; // for which a single round may rise
+constexpr double kFloorFalls = 1.0 / 8; // of the difference, per round that loses less
+constexpr double kChance = 3.0;         // standard deviations
+// The bucket is what a process that was not scheduled for a while makes good. Queues on the way hold more than that.
+constexpr double kBucketS = 0.005;
+constexpr double kLeastBucketBytes = 48 * 1024.0;
+constexpr double kMostBucketBytes = 384 * 1024.0;
+constexpr double kBatchS = 0.001;
 } // namespace
 
 RateControl::RateControl(const RateSettings& settings)
-    : most_(settings.mostBytesPerS), least_(most_ * settings.leastShare), rate_(most_) {}
+    : most_(settings.mostBytesPerS), least_(most_ * settings.leastShare), rate_(most_),
+      depth_(std::clamp(most_ * kBucketS, kLeastBucketBytes, kMostBucketBytes)) {}
 
 int64_t RateControl::roundNs(int64_t roundTripNs) { return std::max<int64_t>(50'000'000, 4 * roundTripNs); }
 
@@ -26,30 +33,37 @@ void RateControl::decideAfterTrial(double lostShare, int64_t nowNs) {
     nextTrialNs_ = nowNs + kBetweenTrialsNs;
 }
 
-void RateControl::roundEnded(double lostShare, int64_t nowNs) {
-    if (most_ <= 0) return;
+void RateControl::rise(int64_t elapsedNs) {
+    const double elapsedS = static_cast<double>(std::min(elapsedNs, kMostRiseNs)) * 1e-9;
+    rate_ = std::min(most_, rate_ + kIncreasePerS * most_ * elapsedS);
+}
+
+void RateControl::roundEnded(double lostShare, int64_t datagrams, int64_t nowNs) {
+    if (most_ <= 0 || datagrams <= 0) return;
+    const int64_t elapsedNs = roundNs_ == INT64_MIN ? 0 : nowNs - roundNs_;
+    roundNs_ = nowNs;
     if (trialRoundsLeft_ > 0) {
         if (--trialRoundsLeft_ == 0) decideAfterTrial(lostShare, nowNs);
         return;
     }
-    floor_ = std::min(floor_, lostShare);
+    if (lostShare < floor_) floor_ += (lostShare - floor_) * kFloorFalls;
     const double crowding = lostShare - floor_;
+    const double chance = kChance * std::sqrt(std::max(floor_, kLossNoticed) / static_cast<double>(datagrams));
     if (lostShare > kLossNoticed && nowNs >= nextTrialNs_ && crowding < kMostDecrease) {
         trialRoundsLeft_ = kTrialRounds;
         return;
     }
-    if (crowding > kCrowded)
+    if (crowding > kCrowded + chance)
         rate_ = std::max(least_, rate_ * (1 - std::min(crowding, kMostDecrease)));
     else
-        rate_ = std::min(most_, rate_ + kIncrease * most_);
+        rise(elapsedNs);
 }
 
 void RateControl::refill(int64_t nowNs) {
-    const double depth = std::max(kLeastBucketBytes, most_ * kBucketS);
     if (refilledNs_ == INT64_MIN) {
-        tokens_ = depth;
+        tokens_ = depth_;
     } else if (nowNs > refilledNs_) {
-        tokens_ = std::min(depth, tokens_ + bytesPerS() * static_cast<double>(nowNs - refilledNs_) * 1e-9);
+        tokens_ = std::min(depth_, tokens_ + bytesPerS() * static_cast<double>(nowNs - refilledNs_) * 1e-9);
     }
     refilledNs_ = std::max(refilledNs_, nowNs);
 }
@@ -61,6 +75,8 @@ bool RateControl::take(double bytes, int64_t nowNs) {
     tokens_ -= bytes;
     return true;
 }
+
+double RateControl::batchBytes() const { return bytesPerS() * kBatchS; }
 
 int64_t RateControl::whenNs(double bytes, int64_t nowNs) const {
     if (most_ <= 0 || tokens_ >= bytes) return nowNs;

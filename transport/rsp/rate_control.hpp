@@ -19,16 +19,19 @@ class RateControl {
 public:
     explicit RateControl(const RateSettings& settings);
 
-    // What came of the datagrams of one round at the member that lost most: shares of 1.
-    void roundEnded(double lostShare, int64_t nowNs);
+    // Of so many datagrams of one round, the member that lost most lost this share of 1. Few datagrams prove little: what
+    // may be chance is not taken for crowding.
+    void roundEnded(double lostShare, int64_t datagrams, int64_t nowNs);
     // Rounds are as long as it takes for losses to be told, and to be more than chance.
     [[nodiscard]] static int64_t roundNs(int64_t roundTripNs);
 
     // Whether a datagram of so many bytes may go now; then its tokens are taken.
     bool take(double bytes, int64_t nowNs);
     void giveBack(double bytes) { tokens_ += bytes; }
-    // When a batch of so many bytes may go. INT64_MAX never occurs.
+    // When so many bytes may go. INT64_MAX never occurs.
     [[nodiscard]] int64_t whenNs(double bytes, int64_t nowNs) const;
+    // How much is worth waking up for: every wake costs at all ends, and so do datagrams that come one by one.
+    [[nodiscard]] double batchBytes() const;
 
     [[nodiscard]] bool limited() const { return most_ > 0; }
     [[nodiscard]] double bytesPerS() const;
@@ -37,6 +40,7 @@ public:
 private:
     void refill(int64_t nowNs);
     void decideAfterTrial(double lostShare, int64_t nowNs);
+    void rise(int64_t elapsedNs);
 
     static constexpr double kTrialRate = 0.85; // of the rate, during an experiment
     static constexpr int64_t kBetweenTrialsNs = 2'000'000'000;
@@ -46,7 +50,9 @@ private:
     double least_;
     double rate_;
     double tokens_ = 0;
+    double depth_;
     int64_t refilledNs_ = INT64_MIN;
+    int64_t roundNs_ = INT64_MIN; // when the last one ended
     double floor_ = 0;
     int trialRoundsLeft_ = 0;
     int64_t nextTrialNs_ = INT64_MIN;

@@ -12,7 +12,8 @@ constexpr int kMostRepairCredit = 64;
 constexpr int64_t kMostPollNs = 50'000'000;
 constexpr int64_t kLeastPollNs = 300'000;
 constexpr int64_t kUnknownRoundTripNs = 10'000'000;
-constexpr int kBatch = 8;                // datagrams that are worth waking up for
+constexpr int kLeastBatch = 8;           // datagrams that are worth waking up for
+constexpr double kMostBatchBytes = 65'000; // that a single sending takes
 
 uint32_t toUs(int64_t ns) { return static_cast<uint32_t>(ns / 1000); }
 
@@ -190,6 +191,13 @@ int64_t Sender::pollWhenNeeded(int64_t nowNs, Outbox& out) {
     return std::min(pollAtNs_, sentNs_ + settings_.heartbeatNs);
 }
 
+// The end of a flush does not wait for tokens of datagrams that do not exist.
+double Sender::batchBytes(double datagramBytes) const {
+    const double worthIt = std::min(kMostBatchBytes, std::max(rate_.batchBytes(), kLeastBatch * datagramBytes));
+    const auto waiting = static_cast<double>(std::max<int64_t>(1, limit() - next_)) * datagramBytes;
+    return repairs_.empty() ? std::min(worthIt, waiting) : worthIt;
+}
+
 int64_t Sender::tick(int64_t nowNs, Outbox& out) {
     if (sentNs_ == INT64_MIN) sentNs_ = nowNs;
     surviveJump(nowNs);
@@ -204,7 +212,7 @@ int64_t Sender::tick(int64_t nowNs, Outbox& out) {
     const auto bytes = static_cast<double>(
         kWireOverheadBytes + kStreamHeadBytes + kLengthBytes + settings_.shape.payloadBytes + settings_.tagBytes);
     while (true) {
-        if (!rate_.take(bytes, nowNs)) return std::min(rate_.whenNs(bytes * kBatch, nowNs), nowNs + settings_.heartbeatNs);
+        if (!rate_.take(bytes, nowNs)) return std::min(rate_.whenNs(batchBytes(bytes), nowNs), nowNs + settings_.heartbeatNs);
         const bool more = next_ < limit();
         if ((repairCredit_ > 0 || !more) && sendRepair(nowNs, out)) continue;
         if (!more) break;

@@ -68,6 +68,8 @@ public:
     [[nodiscard]] size_t roomBytes() const { return window_.roomBytes(); }
     // Something that was not sent yet may be: a whole datagram, or what was flushed.
     [[nodiscard]] bool canSend() const { return next_ < limit(); }
+    // Enough that a writer who waits for room need not soon wait again.
+    [[nodiscard]] bool muchRoom() const { return window_.roomBytes() >= settings_.shape.payloadBytes * settings_.shape.windowDatagrams / 8; }
     // All that was flushed has arrived everywhere.
     [[nodiscard]] bool allArrived() const { return acknowledged_ == window_.filled(); }
 
@@ -89,6 +91,7 @@ private:
     [[nodiscard]] Sequence limit() const;
     [[nodiscard]] int64_t pollDelayNs() const;
     [[nodiscard]] int64_t largestRoundTripNs() const;
+    [[nodiscard]] double batchBytes(double datagramBytes) const;
     bool sendRepair(int64_t nowNs, Outbox& out);
     void sendData(int64_t nowNs, Outbox& out);
     void skipAll();

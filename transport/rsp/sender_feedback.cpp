@@ -12,6 +12,7 @@ namespace {
 constexpr int64_t kJumpNs = 250'000'000; // between two ticks: this process did not run
 constexpr int kMostRowsAhead = 4;
 constexpr double kNeedSmoothing = 1.0 / 64; // per group
+constexpr int64_t kLeastRoundDatagrams = 256; // fewer tell little of losses
 constexpr int64_t kSaneRoundTripNs = 10'000'000'000;
 } // namespace
 
@@ -127,16 +128,17 @@ void Sender::endRound(int64_t nowNs) {
     if (roundBeganNs_ == INT64_MIN) roundBeganNs_ = nowNs;
     if (nowNs - roundBeganNs_ < RateControl::roundNs(largestRoundTripNs())) return;
     const auto sent = next_ - roundNext_;
+    if (sent < kLeastRoundDatagrams) return;
     double worst = 0;
     for (auto& [id, m] : members_) {
         const uint32_t before = std::exchange(roundLost_[id], m.lost);
         const uint32_t lost = m.lost - before;
-        m.lostShare = sent > 0 ? std::min(1.0, static_cast<double>(lost) / static_cast<double>(sent)) : 0;
+        m.lostShare = std::min(1.0, static_cast<double>(lost) / static_cast<double>(sent));
         worst = std::max(worst, m.lostShare);
     }
     roundBeganNs_ = nowNs;
     roundNext_ = next_;
-    if (sent >= kMostInGroup) rate_.roundEnded(worst, nowNs);
+    rate_.roundEnded(worst, sent, nowNs);
 }
 
 // When this process has not run for a while, that is nobody's silence but ours.
