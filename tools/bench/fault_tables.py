@@ -14,6 +14,7 @@ FAULT_AT_SECONDS = 1.0   # after the stream began
 FROZEN_SECONDS = 1.0
 AVERAGED_SECONDS = 0.05  # a rate is one over so long
 FULL_RATE = 0.9          # of the rate before
+BEGINS_SECONDS = 0.4     # a pause that comes later has other causes: in this time the window is used up
 
 
 def _median(values):
@@ -144,15 +145,19 @@ class Flow:
         first, last = max(0, first), min(last, len(self.bytes))
         return sum(self.bytes[first:last]) / ((last - first) * self.step) if last > first else 0.0
 
-    def resumed_after(self, moment, within=3.0):
-        """Seconds from a moment until bytes come again after the longest pause that follows it; 0: there is none."""
+    def resumed_after(self, moment):
+        """Seconds from a moment until bytes come again after the longest pause that begins soon after it; 0: there is none."""
         first = max(0, int((moment - self.began) / self.step))
-        longest, resumed, pause = 0, 0.0, 0
-        for index in range(first, min(len(self.bytes), first + int(within / self.step))):
-            pause = 0 if self.bytes[index] else pause + 1
-            if pause > longest:
-                longest, resumed = pause, self.began + (index + 1) * self.step - moment
-        return resumed if longest > 1 else 0.0
+        last = first + int(BEGINS_SECONDS / self.step)
+        longest, resumed, began = 1, 0.0, None
+        for index in range(first, len(self.bytes)):
+            if not self.bytes[index]:
+                began = index if began is None else began
+            elif began is not None:
+                if index - began > longest and began <= last:
+                    longest, resumed = index - began, self.began + index * self.step - moment
+                began = None
+        return resumed
 
     def full_after(self, moment, wanted, within=2.0):
         """Seconds from a moment until the rate of the time that follows is `wanted`; None: never."""

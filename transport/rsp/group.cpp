@@ -143,7 +143,10 @@ Result<size_t> Group::read(MemberId from, std::span<std::byte> into, Deadline de
             const auto bytes = r->readable();
             if (bytes.empty()) break;
             const size_t n = std::min(bytes.size(), into.size() - count);
+            // Without the lock: until they are consumed these bytes stay where they are, and more come meanwhile.
+            lock.unlock();
             std::memcpy(into.data() + count, bytes.data(), n);
+            lock.lock();
             r->consume(n);
             count += n;
         }

@@ -11,7 +11,7 @@ namespace mural::rsp {
 
 ReceiveWindow::ReceiveWindow(const StreamShape& shape, Sequence first)
     : payloadBytes_(shape.payloadBytes), mask_(shape.windowDatagrams - 1),
-      payloads_(shape.payloadBytes * shape.windowDatagrams), lengths_(shape.windowDatagrams),
+      payloads_(std::make_unique_for_overwrite<std::byte[]>(shape.payloadBytes * shape.windowDatagrams)), lengths_(shape.windowDatagrams),
       groupBases_(shape.windowDatagrams), groups_(shape.windowDatagrams), cumulative_(first), reading_(first),
       forgotten_(first) {}
 
@@ -20,7 +20,7 @@ bool ReceiveWindow::inWindow(Sequence s) const { return s >= forgotten_ && s - f
 bool ReceiveWindow::has(Sequence s) const { return s < cumulative_ || (inWindow(s) && lengths_[slot(s)] != 0); }
 
 std::span<const std::byte> ReceiveWindow::payload(Sequence s) const {
-    return std::span(payloads_).subspan(slot(s) * payloadBytes_, lengths_[slot(s)]);
+    return {payloads_.get() + slot(s) * payloadBytes_, lengths_[slot(s)]};
 }
 
 // The group that `cumulative` stands in is kept whole while it may need its parity.
@@ -65,7 +65,7 @@ bool ReceiveWindow::learnSize(Group& g, uint8_t size) {
 }
 
 void ReceiveWindow::store(Group& g, Sequence s, std::span<const std::byte> payload) {
-    std::memcpy(payloads_.data() + slot(s) * payloadBytes_, payload.data(), payload.size());
+    std::memcpy(payloads_.get() + slot(s) * payloadBytes_, payload.data(), payload.size());
     lengths_[slot(s)] = static_cast<uint16_t>(payload.size());
     groupBases_[slot(s)] = g.base;
     g.have |= 1u << (s - g.base);
@@ -199,7 +199,7 @@ std::span<const std::byte> ReceiveWindow::readable() const {
     while (count < inOrder && lengths_[from + count] == payloadBytes_) ++count;
     size_t end = (from + count) * payloadBytes_;
     if (count < inOrder) end += lengths_[from + count];
-    return std::span(payloads_).subspan(begin, end - begin);
+    return {payloads_.get() + begin, end - begin};
 }
 
 void ReceiveWindow::consume(size_t bytes) {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -76,7 +77,7 @@ private:
 
     size_t payloadBytes_;
     uint32_t mask_;
-    std::vector<std::byte> payloads_;
+    std::unique_ptr<std::byte[]> payloads_; // as SendWindow's
     std::vector<uint16_t> lengths_;    // 0: not here
     std::vector<Sequence> groupBases_; // by datagram, of those that are here
     std::vector<Group> groups_;        // by the group's first datagram

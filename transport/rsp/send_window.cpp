@@ -7,7 +7,7 @@ namespace mural::rsp {
 
 SendWindow::SendWindow(const StreamShape& shape, Sequence first)
     : payloadBytes_(shape.payloadBytes), mask_(shape.windowDatagrams - 1),
-      payloads_(shape.payloadBytes * shape.windowDatagrams), lengths_(shape.windowDatagrams),
+      payloads_(std::make_unique_for_overwrite<std::byte[]>(shape.payloadBytes * shape.windowDatagrams)), lengths_(shape.windowDatagrams),
       groupBases_(shape.windowDatagrams), groupSizes_(shape.windowDatagrams), base_(first), filled_(first),
       groupBase_(first) {}
 
@@ -20,7 +20,7 @@ size_t SendWindow::write(std::span<const std::byte> bytes) {
     size_t written = 0;
     while (written < bytes.size() && filled_ - base_ <= mask_) {
         const size_t count = std::min(bytes.size() - written, payloadBytes_ - openBytes_);
-        std::memcpy(payloads_.data() + slot(filled_) * payloadBytes_ + openBytes_, bytes.data() + written, count);
+        std::memcpy(payloads_.get() + slot(filled_) * payloadBytes_ + openBytes_, bytes.data() + written, count);
         openBytes_ += count;
         written += count;
         if (openBytes_ == payloadBytes_) closeDatagram();
@@ -49,7 +49,7 @@ void SendWindow::flush() {
 }
 
 std::span<const std::byte> SendWindow::payload(Sequence s) const {
-    return std::span(payloads_).subspan(slot(s) * payloadBytes_, lengths_[slot(s)]);
+    return {payloads_.get() + slot(s) * payloadBytes_, lengths_[slot(s)]};
 }
 
 SendWindow::Group SendWindow::groupOf(Sequence s) const {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -52,7 +53,8 @@ private:
 
     size_t payloadBytes_;
     uint32_t mask_;
-    std::vector<std::byte> payloads_; // one after the other, payloadBytes_ each
+    // One after the other, payloadBytes_ each. Not filled with zeros: a stream that carries nothing takes no memory.
+    std::unique_ptr<std::byte[]> payloads_;
     std::vector<uint16_t> lengths_;
     std::vector<Sequence> groupBases_; // by datagram
     std::vector<uint8_t> groupSizes_;  // by the group's first datagram

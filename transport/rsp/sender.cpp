@@ -26,8 +26,9 @@ Sender::Sender(const SenderSettings& settings, Sequence first)
 Sequence Sender::addMember(MemberId id, int64_t nowNs) {
     window_.flush(); // so that it begins with a group
     MemberState m;
-    m.cumulative = window_.filled();
-    m.edge = m.cumulative + settings_.firstEdge;
+    // Nothing is for it before its first word: where its stream begins is told through the control connection, which
+    // datagrams overtake; what came before that would be lost, and taken for a crowded link's losses.
+    m.cumulative = m.edge = window_.filled();
     m.heardNs = m.movedNs = nowNs;
     members_[id] = m;
     updateEdge();

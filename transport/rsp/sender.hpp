@@ -20,7 +20,6 @@ struct SenderSettings {
     RateSettings rate;
     size_t tagBytes = 0;    // what the seal adds to each datagram, for the rate
     bool parity = true;     // false: losses are mended by sending the datagrams again, to measure against
-    uint32_t firstEdge = 64; // datagrams that a new member may be sent before it has said what it takes
     int64_t heartbeatNs = 100'000'000;
 };
 

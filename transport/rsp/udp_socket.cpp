@@ -27,10 +27,10 @@ namespace {
 constexpr size_t kReceiveSlots = 16;
 constexpr size_t kSlotBytes = 65'536; // what UDP_GRO may join
 constexpr int kMostRounds = 4;        // of kReceiveSlots, per call
-// What a datagram takes of a socket's buffer: a piece of memory of the next power of two, for its headers and the kernel's
-// notes behind it, too, and a description of it.
-constexpr size_t kHeadersAndNotesBytes = 426;
-constexpr size_t kDescriptionBytes = 256;
+// What a datagram takes of a socket's buffer: the kernel's memory for it comes in powers of two, with room for heads and
+// fragments, and for what tells of it.
+constexpr size_t kPacketRoomBytes = 448;
+constexpr size_t kPacketDescriptorBytes = 256;
 
 template <class T> bool set(int fd, int level, int option, T value) {
     return setsockopt(fd, level, option, &value, sizeof value) == 0;
@@ -151,7 +151,8 @@ void UdpSocket::ignoreMember(MemberId self) {
 SocketAddress UdpSocket::localAddress() const { return localTcpAddress(socket_.get()); }
 
 uint32_t UdpSocket::capacity(size_t datagramBytes) const {
-    return static_cast<uint32_t>(std::max<size_t>(1, bufferBytes_ / (std::bit_ceil(datagramBytes + kHeadersAndNotesBytes) + kDescriptionBytes)));
+    const size_t each = std::bit_ceil(datagramBytes + kPacketRoomBytes) + kPacketDescriptorBytes;
+    return static_cast<uint32_t>(std::max<size_t>(1, bufferBytes_ / each));
 }
 
 const char* UdpSocket::sendingBy() const {
