@@ -52,7 +52,7 @@ def latency(bench):
                 bench.say("acknowledged flush, loss of %s: round %d of %d" % (share, index + 1, bench.rounds))
                 got["rsp"].append(_attempt(bench, "acknowledged flush", lambda: bench.rsp.messages(rig, receivers, 64, bench.messages, PACE * LINK_MBIT)))
                 for peer in timed:
-                    count = bench.messages if peer.name == "TCP" and share == "0" else min(bench.messages, 100)
+                    count = bench.messages if peer.name == "TCP" and share == "0" else min(bench.messages, 100 if peer.name == "TCP" else 40)
                     got[peer.name].append(_attempt(bench, "acknowledged flush", lambda: peer.messages(rig, receivers, 64, count), essential=False))
             rig.loss("0")
             tcp = got.get("TCP", [])

@@ -10,7 +10,7 @@ from stream_result import StreamFailed, StreamResult
 
 UDP_HEAD_BYTES = 28
 WIRE_BYTES = 66  # Ethernet, IPv4 and UDP around a payload, gap and preamble included
-LIMIT_SECONDS = 25
+LIMIT_SECONDS = 12
 
 
 def finish(name, programs, seconds=LIMIT_SECONDS):
@@ -67,6 +67,8 @@ class Raw(Harness):
 class OwnProgram:
     """A peer whose harness sends `bytes=` and tells `gbit=` and `cpu_s_per_GB=` at each end."""
 
+    may_miss_bytes = 0
+
     def __init__(self, name, harness, package, share=lambda receivers: 1.0):
         """share: of the bytes of others, so that its runs last about as long."""
         self.name, self.harness, self.package, self.share = name, harness, package, share
@@ -90,7 +92,7 @@ class OwnProgram:
         done = finish(self.name, [sender] + hosts)
         told = [numbers_of(d.said) for d in done]
         for host, t in enumerate(told):
-            if t.get("bytes", 0) < size_bytes:
+            if t.get("bytes", 0) < size_bytes - self.may_miss_bytes:
                 raise StreamFailed("%s: host %d has %d of %d bytes" % (self.name, host, t.get("bytes", 0), size_bytes))
         # Some begin to count late: none is faster than its sender.
         mbit = min([t["gbit"] for t in told[1:]] + ([told[0]["gbit"]] if self.name == "NORM" else [])) * 1000
@@ -98,6 +100,8 @@ class OwnProgram:
 
 
 class Norm(OwnProgram):
+    may_miss_bytes = 64 * 1400  # a stream begins where a receiver first hears of it: a block at most
+
     def sender_words(self, rig, receivers, size_bytes, wire_mbit):
         # Without congestion control, at a rate of its payload; parity costs it more than it brings.
         return ["n=%d" % receivers, "bytes=%d" % size_bytes, "rate=%g" % (wire_mbit or 4000), "par=0", "if=eth0"]
@@ -110,7 +114,7 @@ class Norm(OwnProgram):
         wait_all(hosts, 0.3)
         sender = rig.start(0, [self.harness.path, "send", "n=%d" % receivers, "msg=%d" % message_bytes, "count=%d" % count, "rate=180", "par=0", "if=eth0"])
         try:
-            told = numbers_of(finish(self.name, [sender], 12)[0].said)
+            told = numbers_of(finish(self.name, [sender], 8)[0].said)
         finally:
             rig.end_programs()
         return {"p50": told["p50us"], "p99": told["p99us"]}

@@ -30,6 +30,13 @@ class Cell:
             self.results.append(None)
             self.failures.append(str(failure))
 
+    def hopeless(self):
+        return len(self.failures) >= 2 and not self.known()
+
+    def give_up(self):
+        self.results.append(None)
+        self.failures.append("given up after the failures before")
+
     def known(self, field="mbit"):
         return [getattr(r, field) for r in self.results if r is not None and getattr(r, field) is not None]
 

@@ -25,9 +25,12 @@ def mbit_of(rate):
 
 
 def fill(bench, cells, runs, what):
-    """cells[name].add(runs[name]) by turns, as many rounds as are wanted."""
+    """cells[name].add(runs[name]) by turns, as many rounds as are wanted. Who only fails is given up: it takes long."""
     for index in range(bench.rounds):
         for name, run in runs.items():
+            if name != "rsp" and cells[name].hopeless():
+                cells[name].give_up()
+                continue
             bench.say("%s: round %d of %d: %s" % (what, index + 1, bench.rounds, name))
             cells[name].add(run)
 
@@ -58,13 +61,13 @@ def goodput(bench):
 def _stream_runs(bench, rig, receivers, size_bytes, pace):
     runs = {"rsp": lambda: bench.rsp.stream(rig, receivers, size_bytes, pace, seal=bench.seal)}
     for peer in bench.peers:
-        runs[peer.name] = lambda peer=peer: peer.stream(rig, receivers, size_bytes, pace)
+        runs[peer.name] = lambda peer=peer: peer.stream(rig, receivers, int(size_bytes * bench.peer_share), pace)
     return runs
 
 
 def loss(bench):
     """Rates at independent losses, and the repairs that they cost, with parity and by plain sending again."""
-    link, receivers, losses = "200mbit", bench.many, ["0", "0.1%", "1%", "5%"]
+    link, receivers, losses = "200mbit", bench.many, bench.losses
     pace = PACE * mbit_of(link)
     size = size_for(bench.loss_seconds, pace)
     names = ["rsp", "plain", "raw"] + [peer.name for peer in bench.peers]

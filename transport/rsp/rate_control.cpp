@@ -6,8 +6,8 @@
 namespace mural::rsp {
 
 namespace {
-constexpr double kLossNoticed = 0.005;  // below this share nothing is asked
-constexpr double kCrowded = 0.02;       // above the floor
+constexpr double kCrowded = 0.02;       // above the floor; fewer losses are mended, and nothing is asked
+constexpr double kLeastFloor = 0.005;   // of which chance is reckoned
 constexpr double kMostDecrease = 0.2;   // at once
 constexpr double kIncreasePerS = 0.1;   // of the highest rate
 constexpr int64_t kMostRiseNs = 1'000'000'000; // for which a single round may rise
@@ -48,8 +48,8 @@ void RateControl::roundEnded(double lostShare, int64_t datagrams, int64_t nowNs)
     }
     if (lostShare < floor_) floor_ += (lostShare - floor_) * kFloorFalls;
     const double crowding = lostShare - floor_;
-    const double chance = kChance * std::sqrt(std::max(floor_, kLossNoticed) / static_cast<double>(datagrams));
-    if (lostShare > kLossNoticed && nowNs >= nextTrialNs_ && crowding < kMostDecrease) {
+    const double chance = kChance * std::sqrt(std::max(floor_, kLeastFloor) / static_cast<double>(datagrams));
+    if (lostShare > kCrowded && nowNs >= nextTrialNs_ && crowding < kMostDecrease) {
         trialRoundsLeft_ = kTrialRounds;
         return;
     }
