@@ -136,8 +136,8 @@ void HeadSession::openMulticast() {
     }
     auto multicast = NodeMulticast::open(config_.stream, plan_.nodes[static_cast<size_t>(nodes.front())].where);
     if (!multicast) {
-        streamLine_ = "the stream goes to each node by its own connection: no multicast: " + multicast.error().message;
-        control_.say(streamLine_ + "; mural doctor --network says what to mend");
+        streamLine_ = "the stream goes to each node by its own connection: no multicast: " + multicast.error().message + "; mural doctor --network says what to mend";
+        if (!config_.explain) control_.say(streamLine_);
         return;
     }
     streamLine_ = "the stream goes to " + std::to_string(nodes.size()) + " nodes at once, by reliable multicast: " + (*multicast)->describe();

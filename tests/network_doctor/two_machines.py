@@ -11,61 +11,16 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), 'end_to_end'))
+import own_network  # noqa: E402
+from own_network import sh  # noqa: E402
+
 HERE, THERE = '10.78.0.1', '10.78.0.2'
-SKIP = 77
-
-# The doctor's machine is the namespace that this runs in; "switch" and "there" are two more.
-LAYOUT = '''
-mount -t tmpfs none /run
-ip netns add switch
-ip netns add there
-ip link set lo up
-ip link add eth0 type veth peer name port0 netns switch
-ip -n there link add eth0 type veth peer name port1 netns switch
-ip -n switch link add bridge type bridge stp_state 0 forward_delay 0 mcast_snooping 0
-for port in port0 port1; do ip -n switch link set $port mtu 9000 master bridge up; done
-ip -n switch link set bridge mtu 9000 up
-ip link set eth0 up mtu 9000
-ip addr add %s/24 dev eth0
-ip -n there link set lo up
-ip -n there link set eth0 up mtu 9000
-ip -n there addr add %s/24 dev eth0
-''' % (HERE, THERE)
-
-# What is cut at the other machine; netdev rules see all that comes in, as a switch would.
-RULES = '''
-add table netdev faults
-add chain netdev faults in { type filter hook ingress device "eth0" priority 0; }
-add rule netdev faults in %s drop
-'''
-
-
-def sh(script):
-    done = subprocess.run(['sh', '-ec', script], capture_output=True, text=True, timeout=60)
-    if done.returncode != 0:
-        raise RuntimeError((done.stderr.strip().splitlines() or ['exit status %d' % done.returncode])[-1])
-
-
-def there(script):
-    sh("ip netns exec there sh -ec '%s'" % script)
-
-
-def drop(what):
-    rules = RULES % what
-    subprocess.run(['ip', 'netns', 'exec', 'there', 'nft', '-f', '-'], input=rules, text=True, check=True, timeout=60, capture_output=True)
-
-
-def heal():
-    there('nft delete table netdev faults')
 
 
 class Doctor:
-    def __init__(self, mural, folder):
-        self.mural = mural
-        self.launch = os.path.join(folder, 'launch')
-        with open(self.launch, 'w', encoding='utf-8') as f:
-            f.write('#!/bin/sh\n# HOST COMMAND...: runs it there, as ssh would\nshift\nexec ip netns exec there sh -c "$*"\n')
-        os.chmod(self.launch, 0o755)
+    def __init__(self, mural, launch):
+        self.mural, self.launch = mural, launch
 
     def ask(self, *options):
         command = [self.mural, 'doctor', '--network', THERE, '--launch', self.launch, '--seconds', '0.3', '--rate', '200mbit', '--json', *options]
@@ -89,7 +44,16 @@ def check(what, holds, report):
     return holds
 
 
-def cases(doctor):
+def cases(doctor, network):
+    def there(script):
+        network.at('there', script)
+
+    def drop(what):
+        network.drop('there', what)
+
+    def heal():
+        network.heal('there')
+
     report, host = doctor.ask()
     yield check('a good network', not bad(report) and host['stream']['multicast'] and host['ways']['group']['largestBytes'] == 8972, report)
 
@@ -130,35 +94,15 @@ def cases(doctor):
     yield check('healed', not bad(report), report)
 
 
-def inside(mural):
-    try:
-        sh(LAYOUT)
-        drop('ip daddr 192.0.2.1')
-        heal()
-    except (RuntimeError, OSError, subprocess.SubprocessError) as e:
-        print('skipped: this machine makes no networks of namespaces: %s' % e)
-        return SKIP
-    with tempfile.TemporaryDirectory() as folder:
-        return 0 if all(list(cases(Doctor(mural, folder)))) else 1
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--mural', required=True)
-    parser.add_argument('--inside', action='store_true', help='used by the script itself')
     a = parser.parse_args()
-    if a.inside:
-        sys.exit(inside(a.mural))
-    try:
-        allowed = subprocess.run(['unshare', '-Urnm', 'true'], capture_output=True, text=True, timeout=20)
-        why = allowed.stderr.strip() if allowed.returncode else ''
-    except OSError as e:
-        why = str(e)
-    if why:
-        print('skipped: unshare -Urnm: %s' % why)
-        sys.exit(SKIP)
-    # In a process group of its own, so that all of it ends with the test.
-    os.execvp('unshare', ['unshare', '-Urnm', '--kill-child', '--pid', '--fork', sys.executable, os.path.abspath(__file__), '--mural', os.path.abspath(a.mural), '--inside'])
+    own_network.enter(own_processes=True)
+    network = own_network.OwnNetwork(HERE, {'there': THERE}, mtu=9000)
+    with tempfile.TemporaryDirectory() as folder:
+        doctor = Doctor(os.path.abspath(a.mural), network.launch_script(os.path.join(folder, 'launch')))
+        sys.exit(0 if all(list(cases(doctor, network))) else 1)
 
 
 main()

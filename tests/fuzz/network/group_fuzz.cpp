@@ -38,6 +38,7 @@ public:
     void welcomed(const Welcome&) override {}
     void memberCame(MemberId, const MemberInfo&) override {}
     void memberGone(MemberId, GoneReason) override {}
+    void memberRerouted(MemberId, bool) override {}
     void hangUp(MemberId id, const std::string&) override { hungUp.push_back(id); }
 
     void read() {
@@ -66,7 +67,7 @@ GroupSettings settings(bool host) {
 class Pair {
 public:
     Pair() : host_(settings(true)), member_(settings(false)) {
-        open_.push_back(*host_.core.connected("192.0.2.1", nowNs_));
+        open_.push_back(*host_.core.connected("192.0.2.1", "member", nowNs_));
         member_.core.begin();
     }
     uint64_t step(InputReader& in) {
@@ -83,7 +84,7 @@ private:
         case GroupStep::Wait: nowNs_ += int64_t{in.word()} * 1000; break;
         case GroupStep::Connect:
             if (open_.size() >= kMostConnections) break;
-            if (const auto id = host_.core.connected("192.0.2.2", nowNs_)) open_.push_back(*id);
+            if (const auto id = host_.core.connected("192.0.2.2", "other", nowNs_)) open_.push_back(*id);
             break;
         case GroupStep::Disconnect: disconnect(in.byte()); break;
         case GroupStep::ControlToHost: {

@@ -1,0 +1,128 @@
+#!/usr/bin/env python3
+"""Render nodes on other machines (own_network.py): the stream goes to them by multicast, or by their own connections where
+that does not reach them, and every pixel is a native run's, whatever is lost on the way.
+
+  network_nodes.py --build build/release [--cases good,loss]
+Exit status 77: this machine allows no namespaces, and why.
+"""
+
+import argparse
+import os
+import sys
+import tempfile
+
+import display
+import own_network
+import session
+
+HERE = "10.79.0.1"
+NODES = {"wall1": "10.79.0.2", "wall2": "10.79.0.3"}
+MULTICAST = "by reliable multicast"
+UNREACHED = "does not answer to multicast"
+NO_MULTICAST = "ip daddr 239.0.0.0/8"
+
+
+class Lab:
+    def __init__(self, mural, program, network, launch, display_name):
+        self.mural, self.program, self.network, self.launch, self.display = mural, program, network, launch, display_name
+
+    def run(self, frames, *options):
+        command = [self.mural, "run", "--tiles", "2x1", "--nodes", ",".join(NODES.values()), "--launch", self.launch,
+                   "--display", "none", "--explain", "--verify", *options, "--", self.program, "--frames", str(frames), "--size", "250x190"]
+        return session.Session(command, self.display)
+
+
+def finished(run, wants=(), wants_not=("was lost",)):
+    """Nothing, or what is wrong with a run that should now end well."""
+    status = run.status()
+    said = "\n".join(run.standard_error)
+    if status != 0:
+        return "status %s; it said:\n%s" % (status, said)
+    missing = [text for text in (*wants, " 0 differ") if text not in said]
+    extra = [text for text in wants_not if text in said]
+    if missing or extra:
+        return "missing: %s, too much: %s; it said:\n%s" % (missing, extra, said)
+    left = run.left_behind()
+    return "left behind: %s" % left if left else None
+
+
+def good(lab):
+    with lab.run(60) as run:
+        return finished(run, [MULTICAST], ["was lost", "TCP"])
+
+
+def loss(lab):
+    for name in NODES:
+        lab.network.drop(name, "meta l4proto udp numgen random mod 100 < 3")
+    with lab.run(60) as run:
+        return finished(run, [MULTICAST], ["was lost", "TCP"])
+
+
+def tcp(lab):
+    with lab.run(30, "--stream", "tcp") as run:
+        return finished(run, ["its own connection: --stream tcp"], ["was lost", MULTICAST])
+
+
+def not_reached(lab):
+    lab.network.drop("wall2", NO_MULTICAST)
+    with lab.run(60) as run:
+        return finished(run, [MULTICAST, "node 1 (10.79.0.3", UNREACHED])
+
+
+def no_group(lab):
+    with lab.run(30, "--stream", "rsp://239.255.77.3:4277?interface=nowhere0") as run:
+        return finished(run, ["its own connection: no multicast", "nowhere0"], ["was lost", MULTICAST])
+
+
+def ceases_and_returns(lab):
+    with lab.run(4000) as run:
+        if not run.wait_for_line("frame 30"):
+            return "it did not begin: %s" % run.standard_error
+        lab.network.drop("wall1", NO_MULTICAST)
+        if not run.wait_for_line(UNREACHED):
+            return "nobody noticed that multicast ceased"
+        lab.network.heal("wall1")
+        if not run.wait_for_line("multicast reaches it again"):
+            return "nobody noticed that multicast came back"
+        return finished(run)
+
+
+def killed(lab):
+    with lab.run(400) as run:
+        if not run.wait_for_line("frame 30"):
+            return "it did not begin: %s" % run.standard_error
+        victim = run.wait_for_processes(r"^\S*mural node", 2)[0]
+        os.kill(victim, 9)
+        wanted = [MULTICAST, "was lost after"]
+        status = run.status()
+        said = "\n".join(run.standard_error)
+        drawn = sum(line.startswith("frame ") for line in run.standard_output)
+        good = status == 0 and all(text in said for text in wanted) and drawn == 400
+        return None if good else "status %s, %d frames; it said:\n%s" % (status, drawn, said)
+
+
+CASES = {f.__name__: f for f in (good, loss, tcp, not_reached, no_group, ceases_and_returns, killed)}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--build", required=True)
+    parser.add_argument("--cases", default=",".join(CASES))
+    arguments = parser.parse_args()
+    own_network.enter()
+    network = own_network.OwnNetwork(HERE, NODES)
+    build = os.path.abspath(arguments.build)
+    failed = 0
+    with tempfile.TemporaryDirectory() as folder, display.PrivateDisplay() as display_name:
+        lab = Lab(os.path.join(build, "bin", "mural"), os.path.join(build, "tests", "programs", "long_run"), network,
+                  network.launch_script(os.path.join(folder, "launch")), display_name)
+        for name in arguments.cases.split(","):
+            wrong = CASES[name](lab)
+            for machine in NODES:
+                network.at(machine, "nft flush ruleset")
+            print("%s: %s" % (name, "ok" if wrong is None else "FAILED: " + wrong), flush=True)
+            failed += wrong is not None
+    sys.exit(1 if failed else 0)
+
+
+main()

@@ -1,0 +1,93 @@
+"""A network of a test's own: machines (network namespaces) on one bridge, within namespaces of users, mounts and networks that
+need no rights where the kernel lets users have them. Faults are made by rules at a machine's card.
+
+  own_network.enter()                    starts the script again, inside; or says why not, and ends with 77
+  network = own_network.OwnNetwork(...)  may only be made there
+"""
+
+import os
+import subprocess
+import sys
+
+SKIP = 77
+INSIDE = "MURAL_TEST_OWN_NETWORK"
+
+# Rules of netdev see all that comes in, as a switch would.
+RULES = """
+add table netdev faults
+add chain netdev faults in { type filter hook ingress device "eth0" priority 0; }
+add rule netdev faults in %s drop
+"""
+
+
+def skip(why):
+    print("skipped: %s" % why, flush=True)
+    sys.exit(SKIP)
+
+
+def enter(own_processes=False):
+    """own_processes: those that the script starts end with it, whatever happens; their numbers are then not those of /proc."""
+    if os.environ.get(INSIDE):
+        return
+    command = ["unshare", "-Urnm", "--kill-child", "--fork"] + (["--pid"] if own_processes else [])
+    try:
+        allowed = subprocess.run(command + ["true"], capture_output=True, text=True, timeout=20, check=False)
+        why = allowed.stderr.strip() if allowed.returncode else ""
+    except OSError as e:
+        why = str(e)
+    if why:
+        skip("unshare -Urnm: " + why)
+    os.environ[INSIDE] = "1"
+    os.execvp("unshare", command + [sys.executable, os.path.abspath(sys.argv[0])] + sys.argv[1:])
+
+
+def sh(script):
+    done = subprocess.run(["sh", "-ec", script], capture_output=True, text=True, timeout=60, check=False)
+    if done.returncode != 0:
+        raise RuntimeError((done.stderr.strip().splitlines() or ["exit status %d" % done.returncode])[-1])
+
+
+class OwnNetwork:
+    """{name: address} of the other machines; this one has `here`. All have an eth0 in one /24."""
+
+    def __init__(self, here, others, mtu=1500):
+        self.others = others
+        try:
+            self._build(here, mtu)
+            for name in others:
+                self.drop(name, "ip daddr 192.0.2.1")  # whether rules can be made at all
+                self.heal(name)
+        except (RuntimeError, OSError, subprocess.SubprocessError) as e:
+            skip("this machine makes no networks of namespaces: %s" % e)
+
+    def _build(self, here, mtu):
+        sh("mount -t tmpfs none /run; ip netns add switch; ip link set lo up")
+        sh("ip -n switch link add bridge mtu %d type bridge stp_state 0 forward_delay 0 mcast_snooping 0" % mtu)
+        sh("ip -n switch link set bridge up; ip link add eth0 mtu %d type veth peer name port0 mtu %d netns switch" % (mtu, mtu))
+        sh("ip addr add %s/24 dev eth0; ip link set eth0 up; ip -n switch link set port0 master bridge up" % here)
+        for number, (name, address) in enumerate(self.others.items(), 1):
+            port = "port%d" % number
+            sh("ip netns add %s; ip -n %s link set lo up" % (name, name))
+            sh("ip -n %s link add eth0 mtu %d type veth peer name %s mtu %d netns switch" % (name, mtu, port, mtu))
+            sh("ip -n %s addr add %s/24 dev eth0; ip -n %s link set eth0 up" % (name, address, name))
+            sh("ip -n switch link set %s master bridge up" % port)
+
+    def at(self, name, script):
+        sh("ip netns exec %s sh -ec '%s'" % (name, script))
+
+    def drop(self, name, what):
+        subprocess.run(["ip", "netns", "exec", name, "nft", "-f", "-"], input=RULES % what, text=True, check=True, timeout=60,
+                       capture_output=True)
+
+    def heal(self, name):
+        self.at(name, "nft delete table netdev faults")
+
+    def launch_script(self, path):
+        """What `--launch` wants: HOST COMMAND..., with an address as HOST."""
+        with open(path, "w", encoding="utf-8") as file:
+            file.write("#!/bin/sh\n# HOST COMMAND...: runs it there, as ssh would\ncase $1 in\n")
+            for name, address in self.others.items():
+                file.write("%s) machine=%s ;;\n" % (address, name))
+            file.write("esac\nshift\nexec ip netns exec $machine sh -c \"$*\"\n")
+        os.chmod(path, 0o755)
+        return path
