@@ -114,6 +114,16 @@ size_t AnswerAssembler::openRequests() const {
     return requests_.size();
 }
 
+std::vector<int> AnswerAssembler::missing(uint32_t client) const {
+    const std::lock_guard lock(mutex_);
+    std::vector<int> nodes;
+    const auto oldest = requests_.lower_bound({client, 0});
+    const bool known = oldest != requests_.end() && oldest->first.first == client;
+    for (size_t node = 0; node < living_.size(); ++node)
+        if (living_[node] && (!known || !oldest->second.last[node])) nodes.push_back(static_cast<int>(node));
+    return nodes;
+}
+
 Reply AnswerAssembler::assemble(uint32_t requestId, const Request& request) {
     Reply reply;
     reply.header.requestId = requestId;

@@ -29,6 +29,8 @@ public:
     void nodeLost(int node);
 
     [[nodiscard]] size_t openRequests() const;
+    // The nodes whose answer to the client's oldest open request is missing.
+    [[nodiscard]] std::vector<int> missing(uint32_t client) const;
 
 private:
     using Key = std::pair<uint32_t, uint32_t>; // client, request

@@ -110,6 +110,17 @@ ClientProgress FrameTracker::progressOf(uint32_t id) const {
     return found == clients_.end() ? ClientProgress{} : ClientProgress{found->second.finished, found->second.calls};
 }
 
+std::vector<int> FrameTracker::behind(uint32_t id) const {
+    const std::lock_guard lock(mutex_);
+    std::vector<int> nodes;
+    const auto found = clients_.find(id);
+    if (found == clients_.end()) return nodes;
+    const Client& c = found->second;
+    for (size_t node = 0; node < c.nodes.size(); ++node)
+        if (living_[node] && c.nodes[node].done <= c.finished) nodes.push_back(static_cast<int>(node));
+    return nodes;
+}
+
 FrameTotals FrameTracker::totals() const {
     const std::lock_guard lock(mutex_);
     return totals_;

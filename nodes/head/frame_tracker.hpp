@@ -46,6 +46,8 @@ public:
     void pictureReleased(uint32_t client, uint32_t frame);
 
     [[nodiscard]] ClientProgress progressOf(uint32_t client) const;
+    // The nodes that others wait for: they have not finished the frame after `finished`.
+    [[nodiscard]] std::vector<int> behind(uint32_t client) const;
     [[nodiscard]] FrameTotals totals() const;
     [[nodiscard]] int64_t framesOf(int node) const; // messages of this node
 

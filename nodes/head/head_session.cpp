@@ -248,6 +248,10 @@ bool HeadSession::askedToFinish(Deadline deadline) {
 
 void HeadSession::watchNodes(int64_t nowNs) {
     nodes_.watch(nowNs, options_.silencePatienceMs * kNsPerMs, [this](int node, bool multicast) {
+        {
+            const std::lock_guard lock(mutex_);
+            multicast ? rerouted_.erase(node) : static_cast<size_t>(rerouted_.insert(node).second);
+        }
         control_.say(nodes_.link(node).describe() +
                      (multicast ? ": multicast reaches it again" : ": it does not answer to multicast; its stream goes through its own connection (TCP); mural doctor --network may say why"));
     });
@@ -472,6 +476,20 @@ bool HeadSession::allReadersEnded() {
     return true;
 }
 
+std::vector<int> HeadSession::waitsFor(const ProgramStatus& program) {
+    switch (program.counts.waitingFor) {
+    case capture::Wait::Frames: return frames_.behind(program.id);
+    case capture::Wait::Answer: return answers_.missing(program.id);
+    case capture::Wait::Room: return nodes_.full();
+    default: return {};
+    }
+}
+
+std::string HeadSession::streamOf(const NodePlan& plan) {
+    if (plan.reach == NodeReach::SharedMemory) return "memory";
+    return nodes_.link(plan.node).byMulticast() && !rerouted_.contains(plan.node) ? "multicast" : "TCP";
+}
+
 SessionStatus HeadSession::status() {
     SessionStatus result;
     result.session = config_.session;
@@ -483,11 +501,14 @@ SessionStatus HeadSession::status() {
     result.display = nameOf(config_.display);
     result.wallFrames = frames_.totals().wallFrames;
     result.programs = programs_->status();
-    for (ProgramStatus& program : result.programs) program.progress = frames_.progressOf(program.id);
+    for (ProgramStatus& program : result.programs) {
+        program.progress = frames_.progressOf(program.id);
+        program.waitsForNodes = waitsFor(program);
+    }
     const std::lock_guard lock(mutex_);
     for (size_t i = 0; i < facts_.size(); ++i) {
         NodeLink& link = nodes_.link(static_cast<int>(i));
-        NodeStatus node{totals_[i], link.place().where, facts_[i].pid, facts_[i].renderer, 0};
+        NodeStatus node{totals_[i], link.place().where, facts_[i].pid, facts_[i].renderer, 0, streamOf(plan_.nodes[i])};
         node.totals.frames = frames_.framesOf(node.totals.node);
         node.silentSeconds = static_cast<double>(link.silentNs(result.nowNs)) / static_cast<double>(kNsPerS);
         result.nodes.push_back(std::move(node));

@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -93,6 +94,8 @@ private:
     bool allReadersEnded();
     SessionNumbers numbers();
     SessionStatus status();
+    std::vector<int> waitsFor(const ProgramStatus& program);
+    std::string streamOf(const NodePlan& plan); // with the mutex
     void noNodeIsLeft();
 
     const SessionConfig config_;
@@ -126,6 +129,7 @@ private:
     std::mutex mutex_; // what follows
     std::vector<NodeFacts> facts_;
     std::vector<bool> ready_;
+    std::set<int> rerouted_; // nodes that multicast does not reach
     std::vector<std::string> refusals_; // what nodes said before they were ready
     std::vector<NodeTotals> totals_;
     std::map<std::pair<uint32_t, uint32_t>, std::vector<bool>> gone_; // windows, and which nodes have said so

@@ -52,17 +52,30 @@ bool NodeSet::sendLocked(uint32_t stream, std::span<const std::byte> payload) {
     bool byMulticast = false;
     for (auto& link : links_) {
         if (link->byMulticast()) byMulticast = byMulticast || link->alive();
-        else link->send(bytesOf(header), payload);
+        else sendTo(*link, bytesOf(header), payload);
         any = any || link->alive();
     }
     if (byMulticast) multicastLocked(bytesOf(header), payload);
+    sendingTo_ = kNobody;
     bytesSent_.fetch_add(sizeof(header) + payload.size(), std::memory_order_relaxed);
     return any;
+}
+
+void NodeSet::sendTo(NodeLink& link, std::span<const std::byte> header, std::span<const std::byte> payload) {
+    sendingTo_ = link.place().node;
+    link.send(header, payload);
+}
+
+std::vector<int> NodeSet::full() const {
+    const int to = sendingTo_;
+    if (to == kMulticast) return multicast_->waitsFor();
+    return to == kNobody ? std::vector<int>() : std::vector<int>{to};
 }
 
 void NodeSet::multicastLocked(std::span<const std::byte> header, std::span<const std::byte> payload) {
     constexpr int64_t kWriteLimitMs = 600'000; // the last resort behind watch()
     const Deadline deadline = Deadline::inMs(kWriteLimitMs);
+    sendingTo_ = kMulticast;
     Result<void> written = multicast_->write(header, deadline);
     if (written && !payload.empty()) written = multicast_->write(payload, deadline);
     if (written) return;

@@ -41,6 +41,9 @@ public:
     void loseAll(const std::string& why); // those that have not said Bye
     void end();
 
+    // The nodes that packets can't go to now: their connections are full. Empty: none is being waited for.
+    [[nodiscard]] std::vector<int> full() const;
+
     // Bytes that each node was sent, packet headers included.
     [[nodiscard]] uint64_t bytesSent() const { return bytesSent_.load(std::memory_order_relaxed); }
 
@@ -48,12 +51,15 @@ private:
     bool sendLocked(uint32_t stream, std::span<const std::byte> payload);
 
     void multicastLocked(std::span<const std::byte> header, std::span<const std::byte> payload);
+    void sendTo(NodeLink& link, std::span<const std::byte> header, std::span<const std::byte> payload);
     void flushLocked();
 
     std::unique_ptr<NodeMulticast> multicast_; // null: every node has a stream of its own
     std::vector<std::unique_ptr<NodeLink>> links_;
     std::timed_mutex sendMutex_;
     std::atomic<uint64_t> bytesSent_{0};
+    static constexpr int kNobody = -1, kMulticast = -2;
+    std::atomic<int> sendingTo_{kNobody}; // the node whose connection is being written to
 };
 
 } // namespace mural

@@ -25,6 +25,7 @@ Json programJson(const ProgramStatus& program) {
         {"roundTripsBy", program.counts.tripsBy},
         {"waitSeconds", waitSecondsOf(program.counts)},
         {"waitingFor", waitName(program.counts.waitingFor)},
+        {"waitsForNodes", program.waitsForNodes},
     };
 }
 
@@ -36,6 +37,7 @@ Json nodeJson(const NodeStatus& node) {
         {"gl", node.gl},
         {"state", node.totals.lost ? "lost" : "alive"},
         {"silentSeconds", node.silentSeconds},
+        {"stream", node.stream},
         {"frames", node.totals.frames},
         {"replaySeconds", node.totals.replaySeconds},
         {"readbackSeconds", node.totals.readbackSeconds},

@@ -21,6 +21,7 @@ struct ProgramStatus {
     ClientProgress progress;
     uint64_t bytesSent = 0; // to each node
     CaptureCounts counts;
+    std::vector<int> waitsForNodes; // now
 };
 
 struct NodeStatus {
@@ -29,6 +30,7 @@ struct NodeStatus {
     int64_t pid = 0;
     std::string gl;
     double silentSeconds = 0; // since anything came from it
+    std::string stream;       // how its packets travel: memory, TCP, multicast
 };
 
 struct SessionStatus {

@@ -6,6 +6,7 @@
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import tempfile
@@ -47,6 +48,21 @@ def running_session(context):
         text = stat(context).stdout.decode()
         wrong += ["text"] if "session %d " % run.process.pid not in text or "0.00 round trips per frame" not in text else []
         return "wrong are %s in %s\n%s" % (", ".join(wrong), session, text) if wrong else None
+
+
+@failures.case
+def who_is_waited_for(context):
+    """A node that is stopped is named as the one that the program waits for."""
+    with context.run([context.program("long_run"), "--frames", "1000000", "--size", "250x190"], ["--tiles", "3x1", "--display", "none"]) as run:
+        if not run.wait_for_line("frame 50"):
+            return "no frames: %s" % " | ".join(run.standard_error[-3:])
+        stopped = next(n for n in own_session(context, run)["nodes"] if n["node"] == 1)
+        os.kill(stopped["pid"], signal.SIGSTOP)
+        session = own_session(context, run)
+        text = stat(context).stdout.decode()
+        os.kill(stopped["pid"], signal.SIGCONT)
+        waited = session["programs"][0]["waitsForNodes"]
+        return None if waited == [1] and "now for node 1" in text else "waited for is %s\n%s" % (waited, text)
 
 
 @failures.case

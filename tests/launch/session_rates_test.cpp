@@ -13,10 +13,10 @@ using Json = nlohmann::json;
 Json look(double atSeconds, int frames, int calls, int bytes, int trips, double framesWait) {
     return {{"session", "mural-7-0123456789abcdef"}, {"runPid", 7}, {"headPid", 8}, {"atSeconds", atSeconds}, {"tiles", "2x1"}, {"display", "app"}, {"frames", frames},
             {"programs", {{{"client", 1}, {"pid", 9}, {"command", "glxgears -info"}, {"frames", frames}, {"calls", calls}, {"bytes", bytes}, {"roundTrips", trips},
-                           {"roundTripsBy", {{"glReadPixels", trips}}}, {"waitSeconds", {{"frames", framesWait}, {"room", 0.0}}}, {"waitingFor", "frames"}}}},
+                           {"roundTripsBy", {{"glReadPixels", trips}}}, {"waitSeconds", {{"frames", framesWait}, {"room", 0.0}}}, {"waitingFor", "frames"}, {"waitsForNodes", {1, 3}}}}},
             {"nodes", {{{"node", 0}, {"where", "local"}, {"pid", 10}, {"gl", "llvmpipe"}, {"state", "alive"}, {"silentSeconds", 0.1}, {"frames", frames},
                         {"replaySeconds", atSeconds / 4}, {"readbackSeconds", 0.0}},
-                       {{"node", 1}, {"where", "wall2"}, {"pid", 11}, {"gl", "llvmpipe"}, {"state", "lost"}, {"frames", 3}}}}};
+                       {{"node", 1}, {"where", "wall2"}, {"stream", "multicast"}, {"pid", 11}, {"gl", "llvmpipe"}, {"state", "lost"}, {"frames", 3}}}}};
 }
 
 TEST(SessionRates, comeFromTheDifferenceOfTwoLooks) {
@@ -33,9 +33,9 @@ TEST(SessionRates, comeFromTheDifferenceOfTwoLooks) {
                                       "  program 9  glxgears -info",
                                       "    150 frames, 25.0 frames/s, 20 calls and 2.0 kB per frame",
                                       "    0.50 round trips per frame, 29 in all: glReadPixels 29",
-                                      "    waits 75 % of the time for the nodes to finish frames",
+                                      "    waits 75 % of the time for the nodes to finish frames, now for node 1, 3",
                                       "  node 0  local, pid 10, llvmpipe: 150 frames, busy 25 %",
-                                      "  node 1  wall2, pid 11, llvmpipe: lost"}));
+                                      "  node 1  wall2, by multicast, pid 11, llvmpipe: lost"}));
 }
 
 TEST(SessionRates, ofWhatStoodStillOrIsNewAreLeftOut) {

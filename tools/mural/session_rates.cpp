@@ -86,7 +86,11 @@ std::string waitText(const Json& program) {
         most = number(shares, name);
         what = words;
     }
-    return what == nullptr ? "does not wait" : fmt::format("waits {:.0f} % of the time {}", 100 * std::min(most, 1.0), what);
+    std::string nodes;
+    for (const Json& node : part(program, "waitsForNodes"))
+        if (node.is_number_integer()) nodes += fmt::format("{}{}", nodes.empty() ? "" : ", ", node.get<int>());
+    if (!nodes.empty()) nodes = ", now for node " + nodes;
+    return (what == nullptr ? "does not wait" : fmt::format("waits {:.0f} % of the time {}", 100 * std::min(most, 1.0), what)) + nodes;
 }
 
 std::string tripsText(const Json& program) {
@@ -118,7 +122,9 @@ void addNode(const Json& node, std::vector<std::string>& lines) {
         if (node.contains("recent")) state += fmt::format(", busy {:.0f} %", 100 * number(part(node, "recent"), "busyShare"));
         if (number(node, "silentSeconds") > 5) state += fmt::format(", silent for {:.0f} s", number(node, "silentSeconds"));
     }
-    lines.push_back(fmt::format("  node {:.0f}  {}, pid {:.0f}, {}: {}", number(node, "node"), text(node, "where"), number(node, "pid"), text(node, "gl"), state));
+    const std::string stream = text(node, "stream");
+    const std::string by = stream.empty() || stream == "memory" ? "" : ", by " + stream;
+    lines.push_back(fmt::format("  node {:.0f}  {}{}, pid {:.0f}, {}: {}", number(node, "node"), text(node, "where"), by, number(node, "pid"), text(node, "gl"), state));
 }
 
 } // namespace
