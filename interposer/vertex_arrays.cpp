@@ -61,8 +61,8 @@ bool VertexArrayMirror::setPointer(uint32_t slot, GLint size, GLenum type, GLsiz
     return client;
 }
 
-void VertexArrayMirror::setFormat(uint32_t slot, GLint size, GLenum type, uint32_t flags, GLuint relative) {
-    ArrayPointer& a = current_->slots[slot];
+void VertexArrayMirror::setFormat(GLuint array, uint32_t slot, GLint size, GLenum type, uint32_t flags, GLuint relative) {
+    ArrayPointer& a = find(array)->slots[slot];
     if (a.stride == 0) a.stride = static_cast<GLsizei>(sizes::attributeBytes(a.size, a.type)); // vertices stay where they are
     a.size = size;
     a.type = type;

@@ -71,7 +71,7 @@ public:
     // True: the pointer is client memory, which travels at the draw; false: an offset, to be sent now.
     bool setPointer(uint32_t slot, GLint size, GLenum type, GLsizei stride, uint32_t flags, const void* pointer);
     // glVertexAttribFormat: another view of what the slot points to.
-    void setFormat(uint32_t slot, GLint size, GLenum type, uint32_t flags, GLuint relative);
+    void setFormat(GLuint array, uint32_t slot, GLint size, GLenum type, uint32_t flags, GLuint relative);
     // The slot of a glEnableClientState name, kSlots when it is none.
     [[nodiscard]] uint32_t slotOf(GLenum array) const;
 

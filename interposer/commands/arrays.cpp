@@ -31,14 +31,21 @@ void point(uint32_t slot, GLint size, GLenum type, GLsizei stride, const void* p
     if (!t.context->arrays.setPointer(slot, size, type, stride, flags, pointer)) send(t);
 }
 
-// False: the program's own context does not take it.
-template <class Local> bool format(GLuint index, GLint size, GLenum type, uint32_t flags, GLuint relative, Local&& local) {
+// Of the array that is named. False: the program's own context does not take it.
+template <class Local> bool formatOf(GLuint array, GLuint index, GLint size, GLenum type, uint32_t flags, GLuint relative, Local&& local) {
     ThreadState& t = *tThread;
     if (!t.context) return local(), false;
     if (!raisesNothing(*t.context, local)) return false;
     const GLuint offset = t.context->isMesa ? 0 : relative; // Mesa reads client memory from the pointer on in any case
-    if (index < kGenerics) t.context->arrays.setFormat(kGeneric0 + index, size, type, flags, offset);
+    if (index < kGenerics) t.context->arrays.setFormat(array, kGeneric0 + index, size, type, flags, offset);
     return true;
+}
+template <class Local> bool format(GLuint index, GLint size, GLenum type, uint32_t flags, GLuint relative, Local&& local) {
+    return formatOf(tThread->context ? tThread->context->arrays.currentName() : 0, index, size, type, flags, relative, local);
+}
+
+template <class Encode, class Real> void formatNamed(Encode encode, Real real, GLuint array, GLuint index, GLint size, GLenum type, uint32_t flags, GLuint relative) {
+    if (formatOf(array, index, size, type, flags, relative, [=] { real(array, index, size, type, relative); })) encode(*tThread, array, index, size, type, relative);
 }
 
 void enableSlot(ThreadState& t, uint32_t slot, bool on) {
@@ -333,6 +340,18 @@ void mural_glVertexAttribLFormat(GLuint index, GLint size, GLenum type, GLuint r
     if (format(index, size, type, kLong, relative, [=] { gReal.glVertexAttribLFormat(index, size, type, relative); }))
         encode_glVertexAttribLFormat(*tThread, index, size, type, relative);
 }
+void mural_glVertexArrayAttribFormat(GLuint vaobj, GLuint index, GLint size, GLenum type, GLboolean normalized, GLuint relative) {
+    if (formatOf(vaobj, index, size, type, normalized ? uint32_t{kNormalized} : 0, relative, [=] { gReal.glVertexArrayAttribFormat(vaobj, index, size, type, normalized, relative); }))
+        encode_glVertexArrayAttribFormat(*tThread, vaobj, index, size, type, normalized, relative);
+}
+void mural_glVertexArrayAttribIFormat(GLuint vaobj, GLuint index, GLint size, GLenum type, GLuint relative) { formatNamed(encode_glVertexArrayAttribIFormat, gReal.glVertexArrayAttribIFormat, vaobj, index, size, type, kInteger, relative); }
+void mural_glVertexArrayAttribLFormat(GLuint vaobj, GLuint index, GLint size, GLenum type, GLuint relative) { formatNamed(encode_glVertexArrayAttribLFormat, gReal.glVertexArrayAttribLFormat, vaobj, index, size, type, kLong, relative); }
+void mural_glVertexArrayVertexAttribFormatEXT(GLuint vaobj, GLuint index, GLint size, GLenum type, GLboolean normalized, GLuint relative) {
+    if (formatOf(vaobj, index, size, type, normalized ? uint32_t{kNormalized} : 0, relative, [=] { gReal.glVertexArrayVertexAttribFormatEXT(vaobj, index, size, type, normalized, relative); }))
+        encode_glVertexArrayVertexAttribFormatEXT(*tThread, vaobj, index, size, type, normalized, relative);
+}
+void mural_glVertexArrayVertexAttribIFormatEXT(GLuint vaobj, GLuint index, GLint size, GLenum type, GLuint relative) { formatNamed(encode_glVertexArrayVertexAttribIFormatEXT, gReal.glVertexArrayVertexAttribIFormatEXT, vaobj, index, size, type, kInteger, relative); }
+void mural_glVertexArrayVertexAttribLFormatEXT(GLuint vaobj, GLuint index, GLint size, GLenum type, GLuint relative) { formatNamed(encode_glVertexArrayVertexAttribLFormatEXT, gReal.glVertexArrayVertexAttribLFormatEXT, vaobj, index, size, type, kLong, relative); }
 void mural_glVertexAttribBinding(GLuint attribindex, GLuint bindingindex) {
     ThreadState& t = *tThread;
     if (t.context && attribindex < kGenerics && attribindex != bindingindex) {

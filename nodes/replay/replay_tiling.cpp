@@ -253,6 +253,24 @@ void Replay::glNamedFramebufferReadBuffer(GLuint framebuffer, GLenum src) {
     gl.glNamedFramebufferReadBuffer(name(Kind::Framebuffer, framebuffer), framebuffer == 0 ? windowBuffer(src, c_->read) : src);
     if (framebuffer == 0) readBufferOfWindow(src);
 }
+// EXT_direct_state_access: the same.
+void Replay::glFramebufferDrawBufferEXT(GLuint framebuffer, GLenum mode) {
+    if (!gl.glFramebufferDrawBufferEXT) return;
+    gl.glFramebufferDrawBufferEXT(name(Kind::Framebuffer, framebuffer), framebuffer == 0 ? windowBuffer(mode, c_->draw) : mode);
+    if (framebuffer == 0) drawBufferOfWindow(mode);
+}
+void Replay::glFramebufferDrawBuffersEXT(GLuint framebuffer, GLsizei n, const Data& bufs) {
+    if (n < 0 || (n > 0 && !bufs.pointer()) || !gl.glFramebufferDrawBuffersEXT) return;
+    std::vector<GLenum> list(bufs.as<GLenum>(), bufs.as<GLenum>() + n);
+    for (GLenum& b : list) b = framebuffer == 0 ? windowBuffer(b, c_->draw) : b;
+    gl.glFramebufferDrawBuffersEXT(name(Kind::Framebuffer, framebuffer), n, list.data());
+    if (framebuffer == 0) drawBufferOfWindow(n > 0 ? *bufs.as<GLenum>() : GLenum{GL_NONE});
+}
+void Replay::glFramebufferReadBufferEXT(GLuint framebuffer, GLenum mode) {
+    if (!gl.glFramebufferReadBufferEXT) return;
+    gl.glFramebufferReadBufferEXT(name(Kind::Framebuffer, framebuffer), framebuffer == 0 ? windowBuffer(mode, c_->read) : mode);
+    if (framebuffer == 0) readBufferOfWindow(mode);
+}
 // Only a hint, and what it throws away may be another tile's: not done for windows.
 void Replay::glInvalidateFramebuffer(GLenum target, GLsizei n, const Data& attachments) {
     if (!drawsWindow() && n > 0 && attachments.pointer() && gl.glInvalidateFramebuffer) gl.glInvalidateFramebuffer(target, n, attachments.as<GLenum>());

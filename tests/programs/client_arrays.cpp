@@ -315,6 +315,8 @@ void drawReformatted(int frame) {
         glVertexAttribFormat(0, 1, GL_FLOAT, GL_FALSE, relative); // x alone
         enterCell();
         glDrawArrays(GL_LINE_STRIP, 0, 11);
+        glVertexArrayAttribFormat(0, 0, 2, GL_FLOAT, GL_FALSE, relative);
+        glDrawArrays(GL_LINE_STRIP, 0, 6);
     }
     glDisableVertexAttribArray(0);
 }

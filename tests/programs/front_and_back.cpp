@@ -30,7 +30,7 @@ void clearColour(float red, float green, float blue) {
 
 Pixels readFrom(GLenum buffer, int x, int y, GLenum format = GL_RGBA) {
     Pixels pixels(kWidth * kHeight * 4);
-    glReadBuffer(buffer);
+    format == GL_RGBA ? glReadBuffer(buffer) : glFramebufferReadBufferEXT(0, buffer);
     glReadPixels(x, y, kWidth, kHeight, format, format == GL_DEPTH_COMPONENT ? GL_UNSIGNED_INT : GL_UNSIGNED_BYTE, pixels.data());
     return pixels;
 }
@@ -60,7 +60,7 @@ std::vector<Pixels> useBoth(const Window& window, int frame) {
     drawTriangles(unsigned(frame) + 40);
     glDrawBuffer(GL_BACK);
     drawTriangles(unsigned(frame) + 70);
-    std::vector<Pixels> read{readFrom(GL_FRONT, x, y), readFrom(GL_BACK, x, y), readFrom(GL_FRONT, x, y, GL_DEPTH_COMPONENT), copied(GL_FRONT, x, y)};
+    std::vector<Pixels> read{readFrom(GL_FRONT, x, y), readFrom(GL_BACK, x, y), readFrom(GL_FRONT, x, y, GL_RGB), copied(GL_FRONT, x, y), readFrom(GL_FRONT, x, y, GL_DEPTH_COMPONENT)};
     glDisable(GL_DEPTH_TEST);
     glDrawBuffer(GL_FRONT);
     glReadBuffer(GL_BACK);
