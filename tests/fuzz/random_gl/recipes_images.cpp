@@ -117,6 +117,9 @@ void bindTextures(World& w) {
     GL(glActiveTexture, GL_TEXTURE0 + w.random.below(4));
     GL(glBindTexture, anyTarget(w), w.living(Kind::Texture));
     if (w.random.chance(20)) {
+        if (w.shaders()) { // a texture that gets levels moves; Mesa tells framebuffers when they are bound
+            GL(glBindFramebuffer, GL_FRAMEBUFFER, 0);
+        }
         GL(glGenerateMipmap, GL_TEXTURE_2D);
     }
     GL(glActiveTexture, GL_TEXTURE0);

@@ -55,6 +55,7 @@ public:
     bool failed(); // since it was asked last
     void traceError();
     bool insideBegin = false;
+    bool compilesList = false;
     bool countsSamples = false; // a query does
     std::vector<GLenum> errors;
 
