@@ -7,6 +7,10 @@ namespace mural::rsp {
 namespace asio = boost::asio;
 using boost::system::error_code;
 
+namespace {
+constexpr std::chrono::seconds kGoodbye{2};
+} // namespace
+
 void ControlLink::start(Events events) {
     events_ = std::make_shared<const Events>(std::move(events));
     error_code ignored;
@@ -32,7 +36,8 @@ void ControlLink::flush() {
     waiting_.insert(waiting_.end(), more.begin(), more.end());
     if (ended_ || !writing_.empty()) return;
     if (waiting_.empty()) {
-        if (leaving_) close("");
+        error_code ignored;
+        if (leaving_) socket_.shutdown(Socket::shutdown_send, ignored);
         return;
     }
     writing_.swap(waiting_);
@@ -48,6 +53,9 @@ void ControlLink::hangUp() {
     leaving_ = true;
     events_.reset();
     channel_.finish();
+    goodbye_.emplace(socket_.get_executor());
+    goodbye_->expires_after(kGoodbye);
+    goodbye_->async_wait([self = shared_from_this()](const error_code&) { self->close(""); });
     flush();
 }
 
@@ -81,6 +89,7 @@ void ControlLink::close(const std::string& why) {
     if (std::exchange(ended_, true)) return;
     error_code ignored;
     socket_.close(ignored);
+    if (goodbye_) goodbye_->cancel();
     if (const auto events = std::exchange(events_, nullptr)) events->closed(why);
 }
 

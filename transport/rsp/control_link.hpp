@@ -3,11 +3,13 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
 
 #include "transport/rsp/control_message.hpp"
 #include "transport/secure_channel.hpp"
@@ -26,8 +28,10 @@ public:
 
     void start(Events events);
     void send(const ControlMessage& message);
-    // Sends what is to be sent and ends; closed() is told nothing.
+    // Sends what is to be sent, and ends when the peer has it, or does not take it within two seconds; closed() is told
+    // nothing. A socket closed at once would lose the goodbye with the first lost segment, or with what was not yet read.
     void hangUp();
+    [[nodiscard]] bool ended() const { return ended_; }
     [[nodiscard]] std::string peerAddress() const;
     [[nodiscard]] const std::string& name() const { return channel_.name(); }
     [[nodiscard]] size_t waitingBytes() const { return writing_.size() + waiting_.size(); }
@@ -44,6 +48,7 @@ private:
     bool wasOpen_ = false;
     bool ended_ = false;
     bool leaving_ = false;
+    std::optional<boost::asio::steady_timer> goodbye_;
     std::vector<std::byte> in_ = std::vector<std::byte>(65'536);
     std::vector<std::byte> writing_; // with the kernel
     std::vector<std::byte> waiting_;

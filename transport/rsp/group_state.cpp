@@ -8,6 +8,7 @@
 #include <boost/asio/post.hpp>
 
 #include "transport/tcp_address.hpp"
+#include "transport/tcp_race.hpp"
 
 namespace mural::rsp {
 
@@ -17,6 +18,7 @@ using boost::system::error_code;
 namespace {
 
 constexpr double kShareOfLink = 0.9;
+constexpr int64_t kGoodbyeMs = 1000; // how long a leaving member waits until the others know
 constexpr size_t kUdpOverIpv4Bytes = 28;
 constexpr size_t kUdpOverIpv6Bytes = 48;
 constexpr size_t kMostDatagramBytes = 8972; // longer ones lose more at once than they save
@@ -126,17 +128,10 @@ Result<void> Group::State::openMember(Deadline deadline) {
     if (!where) return where.error();
     auto addresses = resolveTcp(where->host, where->port, TcpRole::Connect, deadline);
     if (!addresses) return addresses.error();
-    Tcp::socket socket(context_);
-    error_code failed = asio::error::host_not_found;
-    for (const TcpAddress& a : *addresses) {
-        Tcp::endpoint end;
-        std::memcpy(end.data(), &a.storage, a.sizeBytes);
-        end.resize(a.sizeBytes);
-        socket = Tcp::socket(context_);
-        socket.connect(end, failed);
-        if (!failed) break;
-    }
-    if (failed) return Error{"can't reach the group's host at " + options_.control + ": " + failed.message()};
+    auto connected = connectRacing(*addresses, deadline);
+    if (!connected) return Error{"can't reach the group's host at " + options_.control + ": " + connected.error().message};
+    const bool isIpv4 = localTcpAddress(connected->get()).family() == AF_INET;
+    Tcp::socket socket(context_, isIpv4 ? Tcp::v4() : Tcp::v6(), connected->release());
     auto link = std::make_shared<ControlLink>(std::move(socket), SecureChannel::connecting(options_.name, options_.secret));
     hostAddress_ = link->peerAddress();
     asio::post(context_, [this, link] { startLink(kHost, link); });
@@ -166,10 +161,10 @@ void Group::State::stop() {
                 if (failure.empty()) failure = "this member has left the group";
                 if (links_.contains(kHost)) links_.at(kHost)->send(Leave{});
             }
+            if (acceptor_) acceptor_->close();
             for (const auto& [id, link] : links_) link->hangUp();
             for (const auto& link : strangers_) link->hangUp();
-            // What was written last goes out as the sockets close; nobody is waited for.
-            asio::post(context_, [this] { context_.stop(); });
+            endWhenSaid(Deadline::inMs(kGoodbyeMs));
         });
         thread_.join();
         room.notify_all();
@@ -183,6 +178,14 @@ void Group::State::stop() {
         (*events)->release();
         events->reset();
     }
+}
+
+// The goodbyes arrive, or nobody takes them in time.
+void Group::State::endWhenSaid(Deadline deadline) {
+    const bool all = std::ranges::all_of(links_, [](const auto& l) { return l.second->ended(); });
+    if (all || deadline.passed()) return context_.stop();
+    goodbyeTimer_.expires_after(std::chrono::milliseconds(2));
+    goodbyeTimer_.async_wait([this, deadline](const error_code&) { endWhenSaid(deadline); });
 }
 
 void Group::State::fail(const std::string& why) {

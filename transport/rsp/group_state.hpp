@@ -65,6 +65,7 @@ private:
     void hear(UdpSocket& socket, boost::asio::posix::stream_descriptor& descriptor);
     void armTimer();
     void wakeWaiting();
+    void endWhenSaid(Deadline deadline);
     void fail(const std::string& why);
     void updateLoop();
     void note(const MemberEvent& event);
@@ -77,6 +78,7 @@ private:
     NetworkInterface interface_;
     boost::asio::io_context context_;
     boost::asio::steady_timer timer_{context_};
+    boost::asio::steady_timer goodbyeTimer_{context_};
     std::optional<Tcp::acceptor> acceptor_;
     std::optional<UdpSocket> own_;
     std::optional<UdpSocket> groupSocket_;
