@@ -1,0 +1,84 @@
+// What losses do to the rate: a bad link's nothing, a crowded one's enough, chance nothing.
+#include "transport/rsp/rate_control.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+namespace mural::rsp {
+namespace {
+
+constexpr double kMost = 25e6;
+constexpr double kDatagramBytes = 1538;
+constexpr int64_t kRoundNs = 50'000'000;
+
+// The share that the unluckiest of so many members has lost of a round, as rounds are counted: with 256 datagrams or more.
+struct Rounds {
+    std::mt19937 random{7};
+    int64_t nowNs = 0;
+
+    void run(RateControl& rate, int count, int members, auto lossAt) {
+        for (int i = 0; i < count; ++i) {
+            const double perS = rate.bytesPerS() / kDatagramBytes;
+            const auto datagrams = static_cast<int>(std::max(256.0, perS * 1e-9 * kRoundNs));
+            std::binomial_distribution<int> lost(datagrams, lossAt(rate.bytesPerS()));
+            int worst = 0;
+            for (int m = 0; m < members; ++m) worst = std::max(worst, lost(random));
+            nowNs += static_cast<int64_t>(datagrams / perS * 1e9);
+            rate.roundEnded(static_cast<double>(worst) / datagrams, datagrams, nowNs);
+        }
+    }
+};
+
+TEST(RateControl, ABadLinkIsNotTakenForACrowdedOne) {
+    for (const double share : {0.001, 0.01, 0.05, 0.15}) {
+        RateControl rate({kMost});
+        Rounds rounds;
+        double sum = 0;
+        for (int i = 0; i < 400; ++i) {
+            rounds.run(rate, 1, 8, [&](double) { return share; });
+            sum += rate.bytesPerS();
+        }
+        EXPECT_GT(sum / 400, 0.93 * kMost) << share;
+    }
+}
+
+TEST(RateControl, ACrowdedLinkIsGivenRoom) {
+    RateControl rate({kMost});
+    Rounds rounds;
+    const double room = 0.4 * kMost;
+    rounds.run(rate, 400, 4, [&](double bytesPerS) { return std::clamp(1 - room / bytesPerS, 0.0, 1.0); });
+    double sum = 0;
+    for (int i = 0; i < 200; ++i) {
+        rounds.run(rate, 1, 4, [&](double bytesPerS) { return std::clamp(1 - room / bytesPerS, 0.0, 1.0); });
+        sum += rate.bytesPerS();
+    }
+    EXPECT_LT(sum / 200, 1.25 * room);
+    EXPECT_GT(sum / 200, 0.75 * room);
+}
+
+TEST(RateControl, ItRisesAgain) {
+    RateControl rate({kMost});
+    Rounds rounds;
+    rounds.run(rate, 100, 4, [](double bytesPerS) { return std::clamp(1 - 0.1 * kMost / bytesPerS, 0.0, 1.0); });
+    ASSERT_LT(rate.bytesPerS(), 0.5 * kMost);
+    const int64_t beganNs = rounds.nowNs;
+    while (rate.bytesPerS() < 0.99 * kMost && rounds.nowNs - beganNs < 20'000'000'000) rounds.run(rate, 1, 4, [](double) { return 0.0; });
+    EXPECT_GT(rate.bytesPerS(), 0.98 * kMost) << "within 20 s";
+}
+
+TEST(RateControl, TheBucketMakesGoodWhatASleepMissed) {
+    RateControl rate({kMost});
+    while (rate.take(kDatagramBytes, 0)) {}
+    double sent = 0;
+    while (rate.take(kDatagramBytes, 4'000'000)) sent += kDatagramBytes;
+    EXPECT_NEAR(sent, kMost * 0.004, 2 * kDatagramBytes);
+    // But not of any sleep: queues on the way are not endless.
+    sent = 0;
+    while (rate.take(kDatagramBytes, 1'000'000'000)) sent += kDatagramBytes;
+    EXPECT_LT(sent, kMost * 0.006);
+}
+
+} // namespace
+} // namespace mural::rsp
