@@ -48,11 +48,12 @@ struct Area {
     GLint x0, y0, x1, y1;
 };
 // Calls blit(source, destination) with areas that hold no pixel and are of equal or unequal size as these are,
-// turned over or not.
+// turned over or not; OpenGL ES wants areas with samples to be in the same place, too.
 template <class Blit> void blit(const Area& from, const Area& to, Blit&& call) {
     const auto size = [](GLint a, GLint b) { return a < b ? int64_t{b} - a : int64_t{a} - b; };
     const bool sameSize = size(from.x0, from.x1) == size(to.x0, to.x1) && size(from.y0, from.y1) == size(to.y0, to.y1);
-    call(Area{0, 0, sameSize ? 0 : 1, sameSize ? 0 : 1}, Area{0, 0, 0, 0});
+    const GLint to0 = sameSize && from.x0 == to.x0 && from.y0 == to.y0 && from.x1 == to.x1 && from.y1 == to.y1 ? 0 : 1;
+    call(Area{0, 0, sameSize ? 0 : 1, sameSize ? 0 : 1}, Area{to0, to0, to0, to0});
 }
 
 void dispatch(GLuint x, GLuint y, GLuint z);

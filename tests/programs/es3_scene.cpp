@@ -205,6 +205,23 @@ void readNothing() {
     showBits(39, std::uint32_t{glGetError()});
 }
 
+// Samples are resolved in their place only.
+void resolveElsewhere() {
+    GLuint renderbuffer = 0;
+    GLuint samples = 0;
+    glGenRenderbuffers(1, &renderbuffer);
+    glGenFramebuffers(1, &samples);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, samples);
+    glBindRenderbuffer(GL_RENDERBUFFER, renderbuffer);
+    glRenderbufferStorageMultisample(GL_RENDERBUFFER, 4, GL_RGB8, 16, 16);
+    glFramebufferRenderbuffer(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, renderbuffer);
+    glBlitFramebuffer(0, 0, 8, 8, 100, 100, 108, 108, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    const GLenum error = glGetError();
+    glDeleteFramebuffers(1, &samples);
+    glDeleteRenderbuffers(1, &renderbuffer);
+    showBits(40, std::uint32_t{error});
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -226,6 +243,7 @@ int main(int argc, char** argv) {
             glClear(GL_COLOR_BUFFER_BIT);
             drawBlocks(frame);
             drawTextures(window, frame);
+            resolveElsewhere();
             readNothing();
         });
 }
