@@ -45,6 +45,9 @@ public:
     [[nodiscard]] virtual bool alive() const = 0;
     [[nodiscard]] virtual std::string describe() const = 0;
 
+    // What a UDP datagram may hold to reach the other end in one packet, as far as both ends' cards know; 0: not by packets.
+    [[nodiscard]] virtual size_t datagramBytes() const { return 0; }
+
     // Bytes since the start, for the report.
     [[nodiscard]] virtual uint64_t bytesWritten() const = 0;
     [[nodiscard]] virtual uint64_t bytesRead() const = 0;

@@ -134,7 +134,9 @@ void HeadSession::openMulticast() {
         streamLine_ = config_.hosts.empty() ? "" : std::string("the stream goes to each node by its own connection: ") + whyOwnStreams(config_.stream);
         return;
     }
-    auto multicast = NodeMulticast::open(config_.stream, plan_.nodes[static_cast<size_t>(nodes.front())].where);
+    size_t datagramBytes = SIZE_MAX;
+    for (const int node : nodes) datagramBytes = std::min(datagramBytes, nodes_.link(node).datagramBytes());
+    auto multicast = NodeMulticast::open(config_.stream, plan_.nodes[static_cast<size_t>(nodes.front())].where, datagramBytes);
     if (!multicast) {
         streamLine_ = "the stream goes to each node by its own connection: no multicast: " + multicast.error().message + "; mural doctor --network says what to mend";
         if (!config_.explain) control_.say(streamLine_);

@@ -53,7 +53,7 @@ std::vector<int> nodesForMulticast(const std::string& stream, const SessionPlan&
     return nodes;
 }
 
-Result<std::unique_ptr<NodeMulticast>> NodeMulticast::open(const std::string& stream, const std::string& host) {
+Result<std::unique_ptr<NodeMulticast>> NodeMulticast::open(const std::string& stream, const std::string& host, size_t datagramBytes) {
     const auto own = ownAddressTowards(machineOf(host), Deadline::inMs(kLookupMs));
     ConnectionDescription description;
     if (stream == "auto") {
@@ -67,6 +67,7 @@ Result<std::unique_ptr<NodeMulticast>> NodeMulticast::open(const std::string& st
     if (!options) return options.error();
     const auto& given = description.parameters;
     if (!given.contains("interface") && own) options->interface = numericText(*own);
+    if (!given.contains("datagram")) options->datagramBytes = std::min(datagramBytes, rsp::kMostDatagramBytes);
     if (!given.contains("control")) options->control = ":0";
     if (!given.contains("stalled")) options->stalled = rsp::StallPolicy::Wait;
     if (!given.contains("silent-ms")) options->silentMs = kSilentMs;
@@ -80,7 +81,8 @@ Result<std::unique_ptr<NodeMulticast>> NodeMulticast::open(const std::string& st
 
 NodeMulticast::NodeMulticast(std::unique_ptr<rsp::Group> group, const rsp::GroupOptions& options)
     : group_(std::move(group))
-    , description_(options.group + " on " + (options.interface.empty() ? "the first network" : options.interface) + ", " + rsp::nameOf(options.seal))
+    , description_(options.group + " on " + (options.interface.empty() ? "the first network" : options.interface) + ", " + rsp::nameOf(options.seal) +
+                   (options.datagramBytes > 0 ? ", datagrams of " + std::to_string(options.datagramBytes) + " bytes" : ""))
     , groupAddress_(options.group)
     , secret_(options.secret) {
     if (auto control = splitHostPort(group_->controlAddress())) controlPort_ = control->port;

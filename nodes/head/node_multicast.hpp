@@ -23,8 +23,9 @@ std::vector<int> nodesForMulticast(const std::string& stream, const SessionPlan&
 // All calls from any thread.
 class NodeMulticast {
 public:
-    // `stream`: auto or rsp://…; the network is the one that leads to `host`.
-    static Result<std::unique_ptr<NodeMulticast>> open(const std::string& stream, const std::string& host);
+    // `stream`: auto or rsp://…; the network is the one that leads to `host`. Unless `stream` says it, datagrams have at most
+    // `datagramBytes`, which all nodes' cards take; 0: what the own card takes.
+    static Result<std::unique_ptr<NodeMulticast>> open(const std::string& stream, const std::string& host, size_t datagramBytes);
 
     // What the node on `host` is told to join with: description and secret.
     [[nodiscard]] std::string invitation(const std::string& host) const;

@@ -48,7 +48,7 @@ def finished(run, wants=(), wants_not=("was lost",)):
 
 def good(lab):
     with lab.run(60) as run:
-        return finished(run, [MULTICAST], ["was lost", "TCP"])
+        return finished(run, [MULTICAST, "datagrams of 8972 bytes"], ["was lost", "TCP"])
 
 
 def loss(lab):
@@ -56,6 +56,15 @@ def loss(lab):
         lab.network.drop(name, "meta l4proto udp numgen random mod 100 < 3")
     with lab.run(60) as run:
         return finished(run, [MULTICAST], ["was lost", "TCP"])
+
+
+def short_packets(lab):
+    """One node's card takes packets of 1500 bytes only: so do all datagrams."""
+    lab.network.at("wall2", "ip link set eth0 mtu 1500")
+    with lab.run(30) as run:
+        wrong = finished(run, [MULTICAST, "datagrams of 1472 bytes"], ["was lost", "TCP"])
+    lab.network.at("wall2", "ip link set eth0 mtu 9000")
+    return wrong
 
 
 def tcp(lab):
@@ -101,7 +110,7 @@ def killed(lab):
         return None if good else "status %s, %d frames; it said:\n%s" % (status, drawn, said)
 
 
-CASES = {f.__name__: f for f in (good, loss, tcp, not_reached, no_group, ceases_and_returns, killed)}
+CASES = {f.__name__: f for f in (good, loss, short_packets, tcp, not_reached, no_group, ceases_and_returns, killed)}
 
 
 def main():
@@ -110,7 +119,7 @@ def main():
     parser.add_argument("--cases", default=",".join(CASES))
     arguments = parser.parse_args()
     own_network.enter()
-    network = own_network.OwnNetwork(HERE, NODES)
+    network = own_network.OwnNetwork(HERE, NODES, mtu=9000)
     build = os.path.abspath(arguments.build)
     failed = 0
     with tempfile.TemporaryDirectory() as folder, display.PrivateDisplay() as display_name:

@@ -19,6 +19,8 @@
 
 namespace mural::rsp {
 
+constexpr size_t kMostDatagramBytes = 8972; // longer ones lose more at once than they save
+
 struct GroupOptions {
     std::string group = "239.255.77.85:4277"; // multicast address and port; IPv6 in brackets
     std::string interface;                    // name or address; empty: the first that does multicast

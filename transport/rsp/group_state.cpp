@@ -21,7 +21,6 @@ constexpr double kShareOfLink = 0.9;
 constexpr int64_t kGoodbyeMs = 1000; // how long a leaving member waits until the others know
 constexpr size_t kUdpOverIpv4Bytes = 28;
 constexpr size_t kUdpOverIpv6Bytes = 48;
-constexpr size_t kMostDatagramBytes = 8972; // longer ones lose more at once than they save
 
 int64_t steadyNs() { return monotonicNowNs(); }
 
