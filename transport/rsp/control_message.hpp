@@ -12,10 +12,9 @@
 
 #include "transport/rsp/keys.hpp"
 #include "transport/rsp/sequence.hpp"
+#include "transport/uuid.hpp"
 
 namespace mural::rsp {
-
-using Uuid = std::array<std::byte, 16>;
 
 // Member to host, first.
 struct Join {

@@ -99,7 +99,6 @@ void UdpSocket::prepare(size_t bufferBytes) {
     if (getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &got, &size) == 0) bufferBytes_ = static_cast<size_t>(got);
     set(fd, SOL_SOCKET, SO_RXQ_OVFL, 1);
     set(fd, IPPROTO_UDP, UDP_GRO, 1);
-    slots_.reset(new Slots);
 }
 
 Result<UdpSocket> UdpSocket::openGroup(const SocketAddress& group, const NetworkInterface& interface, size_t bufferBytes) {
@@ -108,7 +107,10 @@ Result<UdpSocket> UdpSocket::openGroup(const SocketAddress& group, const Network
     UdpSocket socket(std::move(fd));
     socket.prepare(bufferBytes);
     set(socket.descriptor(), SOL_SOCKET, SO_REUSEADDR, 1);
-    if (bind(socket.descriptor(), group.get(), group.sizeBytes) != 0)
+    SocketAddress place = group;
+    // A group of IPv6 within a link is one of each card.
+    if (auto* six = reinterpret_cast<sockaddr_in6*>(&place.storage); place.family() == AF_INET6 && IN6_IS_ADDR_MC_LINKLOCAL(&six->sin6_addr)) six->sin6_scope_id = interface.index;
+    if (bind(socket.descriptor(), place.get(), place.sizeBytes) != 0)
         return failed("listen to the multicast group's port " + std::to_string(tcpPort(group)));
     if (auto r = joinGroup(socket.descriptor(), group, interface); !r) return r.error();
     // Only what came through this card.
@@ -245,6 +247,7 @@ Result<void> UdpSocket::send(const SocketAddress& to, std::span<std::byte> datag
 }
 
 bool UdpSocket::receive(const Handler& handler) {
+    if (!slots_) slots_.reset(new Slots); // not for those that only send
     Slots& s = *slots_;
     for (int round = 0; round < kMostRounds; ++round) {
         s.reset();

@@ -9,6 +9,7 @@
 #include "tests/fuzz/network/secure_channel_steps.hpp"
 #include "tests/fuzz/network/stream_steps.hpp"
 #include "tools/mural/network/probe_datagram.hpp"
+#include "transport/discovery/announcement.hpp"
 #include "transport/rsp/control_message.hpp"
 
 namespace mural::fuzz {
@@ -152,6 +153,14 @@ void groups(const std::filesystem::path& folder) {
     }
 }
 
+void announcements(const std::filesystem::path& folder) {
+    Announcement a{AnnouncementKind::Here, 4278, {}, "wall1", "0.1.0"};
+    Seed().raw(encode(a)).save(folder, "announcement", "here");
+    a.kind = AnnouncementKind::Gone;
+    Seed().raw(encode(a)).save(folder, "announcement", "gone");
+    Seed().raw(encode(Announcement{AnnouncementKind::Asked, 0, {}, "", ""})).save(folder, "announcement", "asked");
+}
+
 void probes(const std::filesystem::path& folder) {
     for (const cli::ProbeWay way : cli::kProbeWays) {
         Bytes bytes(60);
@@ -196,4 +205,5 @@ int main(int argc, char** argv) {
     mural::fuzz::groups(argv[1]);
     mural::fuzz::channels(argv[1]);
     mural::fuzz::probes(argv[1]);
+    mural::fuzz::announcements(argv[1]);
 }

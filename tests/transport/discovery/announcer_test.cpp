@@ -1,0 +1,68 @@
+#include "transport/discovery/announcer.hpp"
+
+#include <gtest/gtest.h>
+
+namespace mural {
+namespace {
+
+constexpr int64_t kMs = 1'000'000;
+
+class Told {
+public:
+    Told() : announcer_(Announcement{AnnouncementKind::Here, 4278, {}, "wall1", "0.1.0"}, 7) {}
+    // Until a time, as a loop would that comes when it is told to; asked every so often, 0: never.
+    void run(int64_t untilNs, int64_t askedEveryNs) {
+        int64_t askNs = askedEveryNs;
+        while (nowNs_ < untilNs) {
+            const int64_t nextNs = announcer_.tick(nowNs_, [&](std::span<const std::byte> bytes) {
+                EXPECT_TRUE(decodeAnnouncement(bytes));
+                saidNs.push_back(nowNs_);
+            });
+            ASSERT_GT(nextNs, nowNs_);
+            nowNs_ = nextNs;
+            if (askedEveryNs != 0 && askNs <= nextNs) {
+                nowNs_ = askNs;
+                askNs += askedEveryNs;
+                announcer_.heard({AnnouncementKind::Asked, 0, {}, "", ""}, nowNs_);
+            }
+        }
+    }
+    std::vector<int64_t> saidNs;
+
+private:
+    Announcer announcer_;
+    int64_t nowNs_ = 0;
+};
+
+TEST(Announcer, SaysItEverySecond) {
+    Told told;
+    told.run(10'500 * kMs, 0);
+    EXPECT_EQ(told.saidNs.size(), 11u);
+}
+
+TEST(Announcer, AnswersSoon) {
+    Told told;
+    told.run(1'400 * kMs, 1'300 * kMs);
+    ASSERT_EQ(told.saidNs.size(), 3u);
+    EXPECT_LT(told.saidNs.back(), 1'350 * kMs);
+}
+
+// A thousand questions a second are answered as five are.
+TEST(Announcer, IsNotMadeToShout) {
+    Told told;
+    told.run(10'000 * kMs, kMs);
+    EXPECT_LE(told.saidNs.size(), 51u);
+    EXPECT_GE(told.saidNs.size(), 35u);
+    for (size_t i = 1; i < told.saidNs.size(); ++i) EXPECT_GE(told.saidNs[i] - told.saidNs[i - 1], Announcer::kLeastBetweenNs);
+}
+
+TEST(Announcer, OthersWordsAreNoQuestions) {
+    Announcer announcer({AnnouncementKind::Here, 1, {}, "a", "0"}, 1);
+    const int64_t dueNs = announcer.tick(0, [](auto) {});
+    announcer.heard({AnnouncementKind::Here, 1, {}, "b", "0"}, kMs);
+    EXPECT_EQ(announcer.tick(kMs, [](auto) { FAIL(); }), dueNs);
+    EXPECT_EQ(decodeAnnouncement(announcer.farewell())->kind, AnnouncementKind::Gone);
+}
+
+} // namespace
+} // namespace mural

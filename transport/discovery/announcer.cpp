@@ -1,0 +1,28 @@
+#include "transport/discovery/announcer.hpp"
+
+#include <algorithm>
+
+namespace mural {
+
+void Announcer::heard(const Announcement& a, int64_t nowNs) {
+    if (a.kind != AnnouncementKind::Asked) return;
+    const int64_t answerNs = nowNs + static_cast<int64_t>(random_() % static_cast<uint64_t>(kMostAnswerNs));
+    dueNs_ = std::min(dueNs_, std::max(answerNs, saidNs_ + kLeastBetweenNs));
+}
+
+int64_t Announcer::tick(int64_t nowNs, const std::function<void(std::span<const std::byte>)>& say) {
+    if (nowNs >= dueNs_) {
+        say(encode(self_));
+        saidNs_ = nowNs;
+        dueNs_ = nowNs + kEveryNs;
+    }
+    return dueNs_;
+}
+
+std::vector<std::byte> Announcer::farewell() const {
+    Announcement last = self_;
+    last.kind = AnnouncementKind::Gone;
+    return encode(last);
+}
+
+} // namespace mural

@@ -1,0 +1,71 @@
+#include "transport/discovery/announcing.hpp"
+
+#include <algorithm>
+#include <random>
+#include <sys/eventfd.h>
+
+#include "transport/discovery/beacon_sockets.hpp"
+#include "transport/socket_wait.hpp"
+#include "transport/system_error.hpp"
+
+namespace mural {
+
+namespace {
+constexpr int64_t kLookAtCardsNs = 5 * kNsPerS;
+constexpr int64_t kMostWaitNs = kNsPerS;
+
+Deadline until(int64_t atNs) { return Deadline::inMs(std::clamp<int64_t>((atNs - monotonicNowNs() + kNsPerMs - 1) / kNsPerMs, 0, kMostWaitNs / kNsPerMs)); }
+} // namespace
+
+Result<std::unique_ptr<Announcing>> Announcing::start(const Announcement& self, const DiscoveryOptions& options) {
+    FileDescriptor stop(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
+    if (!stop.valid()) return Error{"no eventfd for announcing: " + errnoText(errno)};
+    return std::unique_ptr<Announcing>(new Announcing(self, options, std::move(stop)));
+}
+
+Announcing::Announcing(const Announcement& self, const DiscoveryOptions& options, FileDescriptor stop) : self_(self), options_(options), stop_(std::move(stop)) {
+    self_.kind = AnnouncementKind::Here;
+    if (options_.avahi) publisher_ = std::make_unique<AvahiPublisher>(self_);
+    if (options_.beacon) thread_ = std::thread([this] { run(); });
+}
+
+Announcing::~Announcing() {
+    (void)eventfd_write(stop_.get(), 1);
+    if (thread_.joinable()) thread_.join();
+}
+
+std::string Announcing::beaconTrouble() const {
+    const std::lock_guard lock(mutex_);
+    return trouble_;
+}
+
+// Cards come and go: a machine may be started before its network is.
+void Announcing::run() {
+    Announcer announcer(self_, std::random_device{}());
+    while (true) {
+        const std::string cards = BeaconSockets::fingerprint();
+        auto sockets = BeaconSockets::open(options_.interface);
+        {
+            const std::lock_guard lock(mutex_);
+            trouble_ = sockets ? "" : sockets.error().message;
+        }
+        int64_t lookNs = monotonicNowNs() + kLookAtCardsNs;
+        if (!sockets) {
+            if (waitForSocket(stop_.get(), POLLIN, Deadline::inMs(kLookAtCardsNs / kNsPerMs)) != 0) return;
+            continue;
+        }
+        while (true) {
+            const int64_t nextNs = announcer.tick(monotonicNowNs(), [&](std::span<const std::byte> bytes) { sockets->say(bytes); });
+            const auto hear = [&](const Announcement& a, const std::string&) { announcer.heard(a, monotonicNowNs()); };
+            if (sockets->listen(until(nextNs), stop_.get(), hear)) {
+                sockets->say(announcer.farewell());
+                return;
+            }
+            if (monotonicNowNs() < lookNs) continue;
+            if (BeaconSockets::fingerprint() != cards) break;
+            lookNs = monotonicNowNs() + kLookAtCardsNs;
+        }
+    }
+}
+
+} // namespace mural

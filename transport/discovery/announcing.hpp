@@ -1,0 +1,39 @@
+// A node that waits, announced for as long as this lives: by the beacon, and by Avahi where it runs.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "transport/discovery/announcer.hpp"
+#include "transport/discovery/avahi_publisher.hpp"
+#include "transport/discovery/discovery.hpp"
+#include "transport/file_descriptor.hpp"
+
+namespace mural {
+
+class Announcing {
+public:
+    // `self` is told as it is; its kind is Here.
+    static Result<std::unique_ptr<Announcing>> start(const Announcement& self, const DiscoveryOptions& options);
+    ~Announcing(); // says farewell
+
+    // Why nobody finds us by a means now; empty: somebody may.
+    [[nodiscard]] std::string beaconTrouble() const;
+    [[nodiscard]] std::string avahiTrouble() const { return publisher_ ? publisher_->trouble() : std::string(); }
+
+private:
+    Announcing(const Announcement& self, const DiscoveryOptions& options, FileDescriptor stop);
+    void run();
+
+    Announcement self_;
+    DiscoveryOptions options_;
+    FileDescriptor stop_; // readable: end
+    std::unique_ptr<AvahiPublisher> publisher_;
+    mutable std::mutex mutex_;
+    std::string trouble_;
+    std::thread thread_;
+};
+
+} // namespace mural

@@ -1,0 +1,25 @@
+// Finds nodes that Avahi knows of, for as long as this lives.
+#pragma once
+
+#include <functional>
+
+#include "transport/discovery/announcement.hpp"
+#include "transport/discovery/avahi_thread.hpp"
+
+namespace mural {
+
+class AvahiBrowser {
+public:
+    // Both from a thread of its own.
+    using Found = std::function<void(const Announcement& node, const std::string& address)>;
+    using Lost = std::function<void(const Uuid& uuid)>;
+    AvahiBrowser(Found found, Lost lost);
+    [[nodiscard]] std::string trouble() const { return thread_.trouble(); }
+
+private:
+    struct Search;
+    explicit AvahiBrowser(const std::shared_ptr<Search>& search);
+    AvahiThread thread_;
+};
+
+} // namespace mural

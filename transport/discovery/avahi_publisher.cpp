@@ -1,0 +1,59 @@
+#include "transport/discovery/avahi_publisher.hpp"
+
+#include "transport/discovery/avahi_library.hpp"
+
+namespace mural {
+
+// Only the thread's.
+struct AvahiPublisher::Service {
+    Announcement self;
+    std::string name; // another one when somebody has it already
+    const AvahiLibrary* library = nullptr;
+    std::shared_ptr<AvahiThread::Shared> shared;
+    AvahiEntryGroup* group = nullptr; // the client's
+
+    void add();
+    static void changed(AvahiEntryGroup*, AvahiEntryGroupState state, void* data);
+};
+
+void AvahiPublisher::Service::add() {
+    AvahiStringList* facts = nullptr;
+    facts = library->stringListAddPair(facts, "uuid", uuidText(self.uuid).c_str());
+    facts = library->stringListAddPair(facts, "version", self.version.c_str());
+    facts = library->stringListAddPair(facts, "name", self.name.c_str());
+    int code = library->entryGroupAddService(group, AVAHI_IF_UNSPEC, AVAHI_PROTO_UNSPEC, static_cast<AvahiPublishFlags>(0), name.c_str(), kAvahiServiceType, nullptr, nullptr, self.port, facts);
+    library->stringListFree(facts);
+    if (code == 0) code = library->entryGroupCommit(group);
+    if (code == AVAHI_ERR_COLLISION) return changed(group, AVAHI_ENTRY_GROUP_COLLISION, this);
+    if (code != 0) shared->setTrouble(std::string("Avahi: ") + library->strerror(code));
+}
+
+void AvahiPublisher::Service::changed(AvahiEntryGroup* g, AvahiEntryGroupState state, void* data) {
+    auto& s = *static_cast<Service*>(data);
+    s.group = g; // the first call comes before it is known
+    if (state == AVAHI_ENTRY_GROUP_COLLISION) {
+        char* other = s.library->alternativeServiceName(s.name.c_str());
+        if (!other) return;
+        s.name = other;
+        s.library->free(other);
+        s.library->entryGroupReset(g);
+        s.add();
+    } else if (state == AVAHI_ENTRY_GROUP_FAILURE) {
+        s.shared->setTrouble("Avahi: the service could not be announced");
+    }
+}
+
+AvahiPublisher::AvahiPublisher(const Announcement& self) : AvahiPublisher(std::make_shared<Service>(Service{self, self.name, nullptr, nullptr, nullptr})) {}
+
+AvahiPublisher::AvahiPublisher(const std::shared_ptr<Service>& service)
+    : thread_([service](const AvahiLibrary& library, AvahiClient* client, const std::shared_ptr<AvahiThread::Shared>& shared) {
+          service->library = &library;
+          service->shared = shared;
+          if (!service->group) service->group = library.entryGroupNew(client, Service::changed, service.get());
+          if (!service->group) return shared->setTrouble(std::string("Avahi: ") + library.strerror(library.clientErrno(client)));
+          library.entryGroupReset(service->group);
+          service->add();
+      },
+      [service] { service->group = nullptr; }) {}
+
+} // namespace mural

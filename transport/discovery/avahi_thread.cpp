@@ -1,0 +1,83 @@
+#include "transport/discovery/avahi_thread.hpp"
+
+#include <chrono>
+#include <thread>
+
+#include "common/clock.hpp"
+#include "transport/discovery/avahi_library.hpp"
+
+namespace mural {
+
+namespace {
+
+constexpr int kSliceMs = 100;
+constexpr int64_t kAgainMs = 5'000; // the daemon may be started later
+constexpr auto kMostEnd = std::chrono::seconds(1);
+
+using Shared = AvahiThread::Shared;
+
+struct Conversation {
+    const AvahiLibrary& library;
+    std::shared_ptr<Shared> shared;
+    const AvahiThread::Ready& ready;
+    bool failed = false;
+};
+
+void clientChanged(AvahiClient* client, AvahiClientState state, void* data) {
+    auto& c = *static_cast<Conversation*>(data);
+    if (state == AVAHI_CLIENT_S_RUNNING) {
+        c.shared->setTrouble({});
+        c.ready(c.library, client, c.shared);
+    } else if (state == AVAHI_CLIENT_FAILURE) {
+        c.shared->setTrouble(std::string("Avahi: ") + c.library.strerror(c.library.clientErrno(client)));
+        c.failed = true;
+    }
+}
+
+// Until the daemon goes, or the end.
+void talk(const AvahiLibrary& library, const std::shared_ptr<Shared>& shared, const AvahiThread::Ready& ready, const AvahiThread::Lost& lost) {
+    AvahiSimplePoll* poll = library.simplePollNew();
+    if (!poll) return shared->setTrouble("Avahi: no memory");
+    Conversation c{library, shared, ready};
+    int code = 0;
+    if (AvahiClient* client = library.clientNew(library.simplePollGet(poll), static_cast<AvahiClientFlags>(0), clientChanged, &c, &code)) {
+        while (!shared->stop && !c.failed && library.simplePollIterate(poll, kSliceMs) == 0) {}
+        lost();
+        library.clientFree(client);
+    } else {
+        shared->setTrouble(std::string("Avahi: ") + library.strerror(code));
+    }
+    library.simplePollFree(poll);
+}
+
+void run(const std::shared_ptr<Shared>& shared, const AvahiThread::Ready& ready, const AvahiThread::Lost& lost) {
+    std::string why;
+    const AvahiLibrary* library = AvahiLibrary::get(why);
+    if (!library) shared->setTrouble(why);
+    while (library && !shared->stop) {
+        talk(*library, shared, ready, lost);
+        for (const Deadline again = Deadline::inMs(kAgainMs); !shared->stop && !again.passed();) std::this_thread::sleep_for(std::chrono::milliseconds(kSliceMs));
+    }
+    const std::lock_guard lock(shared->mutex);
+    shared->ended = true;
+    shared->changed.notify_all();
+}
+
+} // namespace
+
+AvahiThread::AvahiThread(Ready ready, Lost lost) : shared_(std::make_shared<Shared>()) {
+    std::thread([shared = shared_, ready = std::move(ready), lost = std::move(lost)] { run(shared, ready, lost); }).detach();
+}
+
+AvahiThread::~AvahiThread() {
+    shared_->stop = true;
+    std::unique_lock lock(shared_->mutex);
+    shared_->changed.wait_for(lock, kMostEnd, [this] { return shared_->ended; });
+}
+
+std::string AvahiThread::trouble() const {
+    const std::lock_guard lock(shared_->mutex);
+    return shared_->trouble;
+}
+
+} // namespace mural

@@ -1,0 +1,79 @@
+#include "transport/discovery/discovery.hpp"
+
+#include <algorithm>
+#include <mutex>
+#include <optional>
+#include <poll.h>
+
+#include "transport/discovery/avahi_browser.hpp"
+#include "transport/discovery/beacon_sockets.hpp"
+
+namespace mural {
+
+namespace {
+
+// A question may get lost: it is asked again, less and less often.
+constexpr int64_t kFirstPauseMs = 100;
+constexpr int64_t kMostPauseMs = 1'000;
+constexpr int64_t kSliceMs = 50;
+
+// Shared with Avahi's thread, which may outlive the search.
+struct Found {
+    std::mutex mutex;
+    NodeTable table;
+};
+
+int64_t sooner(Deadline deadline, int64_t ms) { return std::min(ms, deadline.leftNs(ms * kNsPerMs) / kNsPerMs + 1); }
+
+} // namespace
+
+Discovered discoverNodes(const DiscoveryOptions& options, Deadline deadline, const std::function<bool(const std::vector<FoundNode>&)>& enough) {
+    Discovered result;
+    const auto found = std::make_shared<Found>();
+    std::optional<AvahiBrowser> browser;
+    if (options.avahi) {
+        browser.emplace(
+            [found](const Announcement& a, const std::string& address) {
+                const std::lock_guard lock(found->mutex);
+                found->table.foundByAvahi(a, address);
+            },
+            [found](const Uuid& uuid) {
+                const std::lock_guard lock(found->mutex);
+                found->table.lostByAvahi(uuid);
+            });
+    }
+    std::optional<BeaconSockets> sockets;
+    if (options.beacon) {
+        auto opened = BeaconSockets::open(options.interface);
+        if (opened) sockets.emplace(std::move(*opened));
+        else result.beaconTrouble = opened.error().message;
+    }
+    Announcement question;
+    question.kind = AnnouncementKind::Asked;
+    const auto asked = encode(question);
+    int64_t pauseMs = kFirstPauseMs;
+    Deadline again = Deadline::inMs(0);
+    do {
+        if (sockets && again.passed()) {
+            sockets->say(asked);
+            again = Deadline::inMs(pauseMs);
+            pauseMs = std::min(2 * pauseMs, kMostPauseMs);
+        }
+        const Deadline slice = Deadline::inMs(sooner(deadline, kSliceMs));
+        if (sockets) {
+            (void)sockets->listen(slice, -1, [&](const Announcement& a, const std::string& from) {
+                const std::lock_guard lock(found->mutex);
+                found->table.heardBeacon(a, from, monotonicNowNs());
+            });
+        } else {
+            poll(nullptr, 0, static_cast<int>(slice.leftNs() / kNsPerMs));
+        }
+        const std::lock_guard lock(found->mutex);
+        found->table.expire(monotonicNowNs());
+        result.nodes = found->table.nodes();
+    } while (!deadline.passed() && !(enough && enough(result.nodes)));
+    if (browser) result.avahiTrouble = browser->trouble();
+    return result;
+}
+
+} // namespace mural

@@ -1,0 +1,80 @@
+#include "transport/discovery/node_table.hpp"
+
+#include <algorithm>
+
+namespace mural {
+
+namespace {
+void addAddress(FoundNode& node, const std::string& address) {
+    if (address.empty() || node.addresses.size() >= NodeTable::kMostAddresses) return;
+    if (std::ranges::find(node.addresses, address) == node.addresses.end()) node.addresses.push_back(address);
+}
+} // namespace
+
+NodeTable::Entry* NodeTable::entry(const Announcement& a) {
+    const auto found = entries_.find(a.uuid);
+    if (found == entries_.end() && entries_.size() >= kMostNodes) return nullptr;
+    Entry& e = found == entries_.end() ? entries_[a.uuid] : found->second;
+    // It may have been started again, elsewhere: what it says now counts.
+    if (e.node.port != a.port) e.node.addresses.clear();
+    e.node.uuid = a.uuid;
+    e.node.name = a.name;
+    e.node.version = a.version;
+    e.node.port = a.port;
+    return &e;
+}
+
+void NodeTable::heardBeacon(const Announcement& a, const std::string& from, int64_t nowNs) {
+    if (a.kind == AnnouncementKind::Gone) {
+        if (const auto found = entries_.find(a.uuid); found != entries_.end()) {
+            found->second.node.byBeacon = false;
+            remove(found);
+        }
+        return;
+    }
+    if (a.kind != AnnouncementKind::Here) return;
+    Entry* e = entry(a);
+    if (!e) return;
+    e->node.byBeacon = true;
+    e->heardNs = nowNs;
+    addAddress(e->node, from);
+}
+
+void NodeTable::foundByAvahi(const Announcement& a, const std::string& address) {
+    Entry* e = entry(a);
+    if (!e) return;
+    e->node.byAvahi = true;
+    addAddress(e->node, address);
+}
+
+void NodeTable::lostByAvahi(const Uuid& uuid) {
+    const auto found = entries_.find(uuid);
+    if (found == entries_.end()) return;
+    found->second.node.byAvahi = false;
+    remove(found);
+}
+
+// Unless it is known by the other means.
+void NodeTable::remove(std::map<Uuid, Entry>::iterator at) {
+    if (!at->second.node.byBeacon && !at->second.node.byAvahi) entries_.erase(at);
+}
+
+void NodeTable::expire(int64_t nowNs) {
+    for (auto at = entries_.begin(); at != entries_.end();) {
+        const auto next = std::next(at);
+        if (at->second.node.byBeacon && nowNs - at->second.heardNs > kSilentNs) {
+            at->second.node.byBeacon = false;
+            remove(at);
+        }
+        at = next;
+    }
+}
+
+std::vector<FoundNode> NodeTable::nodes() const {
+    std::vector<FoundNode> all;
+    for (const auto& [uuid, e] : entries_) all.push_back(e.node);
+    std::ranges::stable_sort(all, {}, &FoundNode::name);
+    return all;
+}
+
+} // namespace mural

@@ -1,0 +1,48 @@
+// The nodes that have been found, each once, whatever it was found by. Without sockets and clock.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "transport/discovery/announcement.hpp"
+
+namespace mural {
+
+struct FoundNode {
+    Uuid uuid{};
+    std::string name;
+    std::string version;
+    uint16_t port = 0;
+    std::vector<std::string> addresses; // as they came in; IPv6's own links with "%eth0"
+    bool byBeacon = false;
+    bool byAvahi = false;
+};
+
+class NodeTable {
+public:
+    // A beacon is heard no more after this long.
+    static constexpr int64_t kSilentNs = 3'500'000'000;
+    // Whoever fills the network with made-up nodes finds an end here.
+    static constexpr size_t kMostNodes = 1024;
+    static constexpr size_t kMostAddresses = 16;
+
+    void heardBeacon(const Announcement& a, const std::string& from, int64_t nowNs);
+    void foundByAvahi(const Announcement& a, const std::string& address);
+    void lostByAvahi(const Uuid& uuid);
+    void expire(int64_t nowNs);
+
+    // By name, then UUID.
+    [[nodiscard]] std::vector<FoundNode> nodes() const;
+
+private:
+    struct Entry {
+        FoundNode node;
+        int64_t heardNs = 0;
+    };
+    Entry* entry(const Announcement& a);
+    void remove(std::map<Uuid, Entry>::iterator at);
+    std::map<Uuid, Entry> entries_;
+};
+
+} // namespace mural
