@@ -9,9 +9,11 @@
 #include "nodes/launch/program_check.hpp"
 #include "nodes/node/node.hpp"
 #include "tools/mural/commands.hpp"
+#include "tools/mural/discover.hpp"
 #include "tools/mural/netperf.hpp"
 #include "tools/mural/network/network_doctor.hpp"
 #include "tools/mural/network/probe_member.hpp"
+#include "tools/mural/waiting_commands.hpp"
 
 namespace {
 
@@ -61,8 +63,8 @@ class HelpFormatter : public CLI::Formatter {
 public:
     std::string make_usage(const CLI::App* app, std::string) const override {
         if (app->get_parent() == nullptr) return "Usage: mural COMMAND [OPTIONS]\n";
-        const bool takesProgram = app->get_name() == "run";
-        return "Usage: mural " + app->get_name() + " [OPTIONS]" + (takesProgram ? " -- PROGRAM ARGUMENTS..." : "") + "\n";
+        const std::string rest = app->get_name() == "run" ? " -- PROGRAM ARGUMENTS..." : app->get_name() == "call" ? " HOST MURAL ARGUMENTS..." : "";
+        return "Usage: mural " + app->get_name() + " [OPTIONS]" + rest + "\n";
     }
     std::string make_option_name(const CLI::Option* option, bool positional) const override {
         const std::string name = CLI::Formatter::make_option_name(option, positional);
@@ -139,15 +141,29 @@ private:
         CLI::App& head = add("head", "head process of a session (started by mural run)", [this] { return mural::runHead(controlFd_); },
                              "Example:\n  mural head --control-fd 3     speaks docs/control-protocol.md on descriptor 3\n\nExit status: 0, or 1 when the session could not start.");
         head.add_option("--control-fd", controlFd_, "descriptor of the conversation with mural run")->required()->check(CLI::NonNegativeNumber);
-        CLI::App& node = add("node", "render node process (started by the head, here or on another host)", [this] { return runNode(); },
-                             "Examples:\n  mural node --connect-fd 3           shared memory with a head on this machine\n  mural node --connect wall0:4711     a head on another machine\n\nExit status: 0, or 1 when the node could not draw.");
+        CLI::App& node = add("node", "render node process (started by the head, here or on another host), or one that waits for heads", [this] { return runNode(); },
+                             "Examples:\n  mural node --connect-fd 3           shared memory with a head on this machine\n  mural node --connect wall0:4711     a head on another machine\n"
+                             "  mural node --wait --secret key      waits for heads that know what stands in the file\n\nExit status: 0, 1 when the node could not draw or wait, 2 for a bad argument.");
+        mural::cli::describeWait(node, wait_);
+        call_ = &add("call", "start a node where mural node --wait runs: a launch command for mural run and mural doctor", [this] { return runCall(); },
+                     "Examples:\n  mural run --nodes wall1,wall2 --launch \"mural call --secret key\" -- glxgears\n"
+                     "  mural doctor --network @wall1 --launch \"mural call --secret key\"\n\nThe host: a name or address, with :PORT where it is not 4279, or @NAME, as mural discover lists it.\n"
+                     "Exit status: the node's; 1 when it can't be had, 2 for a bad argument.");
+        mural::cli::describeCall(*call_, callArguments_);
         node.add_option("--connect-fd", node_.connectFd, "descriptor of shared memory with the head")->check(CLI::NonNegativeNumber);
         node.add_option("--connect", node_.connect, "HOST:PORT of the head; the session's secret comes on standard input")->type_name("HOST:PORT");
         node.add_option("--name", node_.name, "with --connect: by which the head knows this node's secret")->type_name("NAME");
     }
 
+    int runCall() {
+        callArguments_.command = programOf(*call_, line_);
+        return mural::cli::callCommand(callArguments_);
+    }
+
     int runNode() {
-        if ((node_.connectFd >= 0) == !node_.connect.empty()) return usageError("mural node", "exactly one of --connect-fd and --connect is needed");
+        if (wait_.wait && (node_.connectFd >= 0 || !node_.connect.empty())) return usageError("mural node", "--wait goes with neither --connect nor --connect-fd");
+        if (wait_.wait) return mural::cli::waitCommand(wait_);
+        if ((node_.connectFd >= 0) == !node_.connect.empty()) return usageError("mural node", "exactly one of --connect-fd, --connect and --wait is needed");
         return mural::runNode(node_);
     }
 
@@ -168,6 +184,11 @@ private:
                                 "  mural netperf send --members 3 --rate 900mbit --secret-file key\n"
                                 "  mural netperf receive --control wall0:4278 --secret-file key\n\nExit status: 0, or 1 when not everything arrived.");
         mural::cli::describeNetperf(netperf, netperf_);
+        CLI::App& discover = add("discover", "find the nodes that wait for heads on this network", [this] { return mural::cli::discoverCommand(discover_); },
+                                 "Examples:\n  mural discover\n  mural discover --seconds 5 --json\n  mural discover --interface eth1 --no-avahi\n\n"
+                                 "Found are machines on which `mural node --wait` runs; who they are is shown by the secret alone, when a session begins.\n"
+                                 "Exit status: 0, 1 when none was found, 2 for a bad argument.");
+        mural::cli::describeDiscover(discover, discover_);
         add("version", "print the version", [] { return mural::cli::versionCommand(); }, "Example:\n  mural version\n\nExit status: 0.");
         add("preload-probe", "", [] { return mural::cli::preloadProbeCommand(); }, "").group("");
         add("network-member", "", [] { return mural::cli::networkMemberCommand(); }, "").group("");
@@ -188,12 +209,16 @@ private:
     CLI::App app_{"Mural: unmodified OpenGL programs on display walls and clusters.", "mural"};
     SplitLine line_;
     CLI::App* run_ = nullptr;
+    CLI::App* call_ = nullptr;
+    mural::cli::CallArguments callArguments_;
+    mural::cli::WaitArguments wait_;
     mural::cli::RunArguments runArguments_;
     mural::NodeOptions node_;
     int controlFd_ = -1;
     bool asJson_ = false;
     bool onlyUnsupported_ = false;
     mural::cli::StatOptions stat_;
+    mural::cli::DiscoverArguments discover_;
     mural::cli::NetperfArguments netperf_;
     mural::cli::NetworkArguments networkArguments_;
     CLI::Option* network_ = nullptr;

@@ -1,0 +1,37 @@
+// Node messages over a TCP connection with a secure channel in it; each call has a deadline.
+#pragma once
+
+#include <deque>
+
+#include "common/clock.hpp"
+#include "common/result.hpp"
+#include "nodes/waiting/node_message.hpp"
+#include "transport/file_descriptor.hpp"
+#include "transport/secure_channel.hpp"
+
+namespace mural {
+
+class ChannelSocket {
+public:
+    // The socket does not block.
+    ChannelSocket(FileDescriptor socket, SecureChannel channel) : socket_(std::move(socket)), channel_(std::move(channel)) {}
+
+    // Until the peer has shown that it knows the secret.
+    Result<void> open(Deadline deadline);
+    Result<void> send(const NodeMessage& message, Deadline deadline);
+    // Waits for the next one.
+    Result<NodeMessage> receive(Deadline deadline);
+    // Takes what has come, without waiting. Errors: the peer has gone, or sends what is no message.
+    Result<void> fetch();
+    std::optional<NodeMessage> next();
+
+    [[nodiscard]] int descriptor() const { return socket_.get(); }
+
+private:
+    Result<void> flush(Deadline deadline);
+    FileDescriptor socket_;
+    SecureChannel channel_;
+    std::deque<NodeMessage> messages_;
+};
+
+} // namespace mural

@@ -1,0 +1,92 @@
+#include "nodes/waiting/node_call.hpp"
+
+#include <array>
+#include <cerrno>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "nodes/waiting/channel_socket.hpp"
+#include "transport/socket_wait.hpp"
+#include "transport/system_error.hpp"
+#include "transport/tcp_address.hpp"
+#include "transport/tcp_connection.hpp"
+
+namespace mural {
+
+namespace {
+
+constexpr int64_t kConnectMs = 5'000; // per address
+constexpr int64_t kProofMs = 10'000;
+constexpr int64_t kSendMs = 10'000;
+
+Result<FileDescriptor> connectTo(const NodeCall& call) {
+    std::string why;
+    for (const std::string& host : call.addresses) {
+        auto addresses = resolveTcp(host, call.port, TcpRole::Connect, Deadline::inMs(kConnectMs));
+        if (!addresses) {
+            why = addresses.error().message;
+            continue;
+        }
+        for (const TcpAddress& address : *addresses) {
+            FileDescriptor fd(::socket(address.family(), SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+            int code = ::connect(fd.get(), address.get(), address.sizeBytes) == 0 ? 0 : errno;
+            socklen_t size = sizeof code;
+            if (code == EINPROGRESS && waitForSocket(fd.get(), POLLOUT, Deadline::inMs(kConnectMs)) == 0) code = ETIMEDOUT;
+            else if (code == EINPROGRESS) (void)getsockopt(fd.get(), SOL_SOCKET, SO_ERROR, &code, &size);
+            if (code == 0 && prepareTcpSocket(fd.get())) return fd;
+            why = numericText(address) + ": " + errnoText(code);
+        }
+    }
+    return Error{"no connection to port " + std::to_string(call.port) + ": " + (why.empty() ? "no address to try" : why) + "; does `mural node --wait` run there?"};
+}
+
+Result<void> writeAll(int fd, std::span<const std::byte> bytes) {
+    for (size_t at = 0; at < bytes.size();) {
+        const ssize_t n = ::write(fd, bytes.data() + at, bytes.size() - at);
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) return Error{"can't write what the node says: " + errnoText(errno)};
+        at += static_cast<size_t>(n);
+    }
+    return {};
+}
+
+} // namespace
+
+Result<int> callNode(const NodeCall& call) {
+    auto socket = connectTo(call);
+    if (!socket) return socket.error();
+    ChannelSocket channel(std::move(*socket), SecureChannel::connecting("head", call.secret));
+    if (auto r = channel.open(Deadline::inMs(kProofMs)); !r) return r.error();
+    if (auto r = channel.send(orderMessage(call.arguments), Deadline::inMs(kSendMs)); !r) return r.error();
+    bool input = true;
+    while (true) {
+        while (auto m = channel.next()) {
+            if (m->kind == NodeMessageKind::Refused) return Error{"the node there refused: " + textOf(m->body)};
+            if (m->kind == NodeMessageKind::Ended) return m->body.empty() ? 1 : std::to_integer<int>(m->body.front());
+            if (m->kind != NodeMessageKind::Output && m->kind != NodeMessageKind::Errors) continue;
+            if (auto r = writeAll(m->kind == NodeMessageKind::Output ? STDOUT_FILENO : STDERR_FILENO, m->body); !r) return r.error();
+        }
+        // A session lasts as long as it lasts: a head that is gone without a word is told by TCP's keepalive, within 14 s.
+        std::array<pollfd, 2> look{{{channel.descriptor(), POLLIN, 0}, {input ? STDIN_FILENO : -1, POLLIN, 0}}};
+        if (poll(look.data(), look.size(), -1) < 0 && errno != EINTR) return Error{"can't wait for the node: " + errnoText(errno)};
+        if (look[0].revents != 0) {
+            if (auto r = channel.fetch(); !r) {
+                // What it said last comes first.
+                for (auto m = channel.next(); m; m = channel.next())
+                    if (m->kind == NodeMessageKind::Ended && !m->body.empty()) return std::to_integer<int>(m->body.front());
+                return Error{"the node there is lost: " + r.error().message};
+            }
+        }
+        if (look[1].revents != 0) {
+            std::array<std::byte, 4096> piece;
+            const ssize_t n = ::read(STDIN_FILENO, piece.data(), piece.size());
+            if (n < 0 && errno == EINTR) continue;
+            input = n > 0;
+            const NodeMessage m = n > 0 ? NodeMessage{NodeMessageKind::Input, {piece.begin(), piece.begin() + n}} : NodeMessage{NodeMessageKind::InputEnd, {}};
+            if (auto r = channel.send(m, Deadline::inMs(kSendMs)); !r) return r.error();
+        }
+    }
+}
+
+} // namespace mural

@@ -1,0 +1,42 @@
+#include "nodes/waiting/node_message.hpp"
+
+#include <gtest/gtest.h>
+
+#include "nodes/waiting/ordered_process.hpp"
+
+namespace mural {
+namespace {
+
+using Arguments = std::vector<std::string>;
+
+TEST(NodeMessage, OrdersAreReadAsTheyWereWritten) {
+    const Arguments arguments{"node", "", "--connect", "wall0:4711"};
+    const auto message = decodeNodeMessage(encode(orderMessage(arguments)));
+    ASSERT_TRUE(message);
+    EXPECT_EQ(orderArguments(*message), arguments);
+}
+
+TEST(NodeMessage, WhatIsOutOfBoundsIsNone) {
+    EXPECT_FALSE(decodeNodeMessage({}));
+    const std::vector<std::byte> unknown{std::byte{7}};
+    EXPECT_FALSE(decodeNodeMessage(unknown));
+    EXPECT_FALSE(decodeNodeMessage(std::vector<std::byte>(kMostNodeMessageBytes + 2)));
+    EXPECT_FALSE(orderArguments(orderMessage({})));
+    EXPECT_FALSE(orderArguments(orderMessage(Arguments(kMostOrderArguments + 1, "x"))));
+    EXPECT_FALSE(orderArguments(orderMessage({std::string(kMostOrderBytes, 'x')})));
+    NodeMessage cut = orderMessage({"node"});
+    cut.body.pop_back();
+    EXPECT_FALSE(orderArguments(cut));
+    EXPECT_FALSE(orderArguments(textMessage(NodeMessageKind::Input, std::string("node\0", 5))));
+}
+
+TEST(NodeMessage, OnlyNodesMayBeOrdered) {
+    EXPECT_TRUE(mayBeOrdered({"node", "--connect", "wall0:4711"}));
+    EXPECT_TRUE(mayBeOrdered({"network-member"}));
+    for (const Arguments& a : {Arguments{"run", "--", "sh"}, {"node"}, {"node", "--wait"}, {"node", "--connect", "--wait"}, {"node", "--connect-fd", "3"}, {"node", "--connect", "a:1", "x"},
+             {"network-member", "x"}, {"doctor"}, {}})
+        EXPECT_FALSE(mayBeOrdered(a)) << (a.empty() ? "nothing" : a.front());
+}
+
+} // namespace
+} // namespace mural
