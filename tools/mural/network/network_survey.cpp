@@ -45,11 +45,12 @@ std::vector<std::string> memberCommand(const NetworkArguments& a, const std::str
     return command;
 }
 
-// Which of our addresses the kernel would send from to a host; empty: its name is not known here.
-std::string ownAddressTowards(const std::string& host) {
+// Which of our addresses the kernel would send from to a host; empty: its name is not known here, or not of this family.
+std::string ownAddressTowards(const std::string& host, int family) {
     auto addresses = resolveTcp(host.substr(host.find('@') + 1), 9, TcpRole::Connect, Deadline::inMs(kResolveMs));
     if (!addresses) return {};
     for (const TcpAddress& a : *addresses) {
+        if (a.family() != family) continue;
         // Connecting a datagram socket sends nothing but chooses the route.
         const FileDescriptor fd(::socket(a.family(), SOCK_DGRAM | SOCK_CLOEXEC, 0));
         if (::connect(fd.get(), a.get(), a.sizeBytes) == 0) return numericText(localTcpAddress(fd.get()));
@@ -90,6 +91,7 @@ private:
     Result<void> open() {
         auto group = numericEndpoint(a_.group);
         if (!group) return group.error();
+        family_ = group->family();
         auto rate = rsp::parseRate(a_.rate);
         if (!rate) return rate.error();
         const auto secret = makeSessionSecret(), number = makeSessionSecret();
@@ -99,7 +101,7 @@ private:
         std::memcpy(&number_, number.value().data(), sizeof number_);
         // By default the card that leads to the first host.
         std::string wanted = a_.interface;
-        if (wanted.empty() && !a_.hosts.empty()) wanted = ownAddressTowards(split(a_.hosts, ',').front());
+        if (wanted.empty() && !a_.hosts.empty()) wanted = ownAddressTowards(split(a_.hosts, ',').front(), family_);
         auto interface = rsp::findInterface(wanted, group->family());
         if (!interface && a_.interface.empty()) interface = rsp::findInterface("", group->family());
         if (!interface) return interface.error();
@@ -123,7 +125,7 @@ private:
         return {};
     }
 
-    // All our addresses, that towards the host first.
+    // All our addresses of the group's family, that towards the host first: members answer datagrams where they connect to.
     [[nodiscard]] std::vector<std::string> addressesFor(const std::string& towards) const {
         std::vector<std::string> texts;
         if (!towards.empty()) texts.push_back(towards);
@@ -133,6 +135,7 @@ private:
             if (i.loopback && !a_.hosts.empty()) continue;
             for (const SocketAddress& address : i.addresses) {
                 const std::string text = numericText(address);
+                if (address.family() != family_) continue;
                 if (text.find('%') == std::string::npos && std::ranges::find(texts, text) == texts.end()) texts.push_back(text);
             }
         }
@@ -145,9 +148,9 @@ private:
             h.failure = process.error().message;
             return {};
         }
-        const SocketAddress* ours = interface_.address(numericEndpoint(a_.group)->family());
-        const std::string towards = a_.hosts.empty() ? (ours ? numericText(*ours) : "") : ownAddressTowards(h.host);
-        if (auto way = rsp::findInterface(towards, AF_INET); way && !towards.empty()) h.interfaceTowards = way->name;
+        const SocketAddress* ours = interface_.address(family_);
+        const std::string towards = a_.hosts.empty() ? (ours ? numericText(*ours) : "") : ownAddressTowards(h.host, family_);
+        if (auto way = rsp::findInterface(towards, family_); way && !towards.empty()) h.interfaceTowards = way->name;
         auto port = splitHostPort(listening_->controlAddress());
         const nlohmann::json order{{"secret", toHex(secret_)}, {"addresses", addressesFor(towards)}, {"port", port ? port->port : 0}, {"group", a_.group},
             {"interface", a_.hosts.empty() ? interface_.name : ""}, {"survey", number_}};
@@ -174,6 +177,7 @@ private:
     SurveyPlan plan_;
     SessionSecret secret_{};
     uint64_t number_ = 0; // of this survey; goes over the network unhidden
+    int family_ = 0; // of the group's address
     rsp::NetworkInterface interface_;
     std::optional<ProbeSockets> sockets_;
     std::unique_ptr<rsp::Group> listening_;
