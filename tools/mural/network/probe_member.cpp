@@ -24,7 +24,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int64_t kSilenceMs = 60'000;
+constexpr int64_t kSilenceMs = 600'000; // others are looked at meanwhile
 constexpr int64_t kConnectMs = 2'000; // per address
 constexpr int64_t kJoinMs = 10'000;
 constexpr int64_t kSpeakMs = 10'000;
@@ -137,7 +137,7 @@ private:
             if (auto r = lines_.write(answer(json::parse(*line)).dump(), Deadline::inMs(kSpeakMs)); !r) return 0;
             deadline = Deadline::inMs(kSilenceMs);
         }
-        return failed("mural doctor has said nothing for a minute; start it again");
+        return failed("mural doctor has said nothing for ten minutes; start it again");
     }
 
     json answer(const json& order) {

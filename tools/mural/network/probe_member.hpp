@@ -7,7 +7,7 @@
 //   {"do": "send", "to", "port", "sizes", "copies"}   → {"troubles"}: probes of all ways to the doctor
 //   {"do": "join", "control"}                         → {"joined", "why"}: becomes a member of the doctor's group, and reads
 //   {"do": "leave"}                                   → {"bytes", "socketDropped", "refused", "queueDropped"}
-//   the end of standard input ends it; so does a minute without a word
+//   the end of standard input ends it; so do ten minutes without a word
 #pragma once
 
 namespace mural::cli {
