@@ -21,6 +21,11 @@
 
 namespace mural {
 
+struct NetworkPath {
+    std::string ownAddress;   // numeric, of this end
+    size_t datagramBytes = 0; // what a UDP datagram may hold to arrive in one packet, as far as both ends' cards know
+};
+
 class Connection {
 public:
     Connection() = default;
@@ -45,8 +50,8 @@ public:
     [[nodiscard]] virtual bool alive() const = 0;
     [[nodiscard]] virtual std::string describe() const = 0;
 
-    // What a UDP datagram may hold to reach the other end in one packet, as far as both ends' cards know; 0: not by packets.
-    [[nodiscard]] virtual size_t datagramBytes() const { return 0; }
+    // What it knows of the network in between; nothing: there is none.
+    [[nodiscard]] virtual NetworkPath path() const { return {}; }
 
     // Bytes since the start, for the report.
     [[nodiscard]] virtual uint64_t bytesWritten() const = 0;

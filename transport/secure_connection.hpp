@@ -36,7 +36,7 @@ public:
     [[nodiscard]] bool timedOut() const override { return !closed_ && (readTimedOut_ || writeTimedOut_); }
     [[nodiscard]] bool alive() const override { return !closed_ && over_->alive(); }
     [[nodiscard]] std::string describe() const override { return over_->describe() + ", encrypted"; }
-    [[nodiscard]] size_t datagramBytes() const override { return over_->datagramBytes(); }
+    [[nodiscard]] NetworkPath path() const override { return over_->path(); }
     // Of the stream, without what the encryption adds.
     [[nodiscard]] uint64_t bytesWritten() const override { return bytesWritten_; }
     [[nodiscard]] uint64_t bytesRead() const override { return bytesRead_; }

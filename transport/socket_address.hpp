@@ -24,7 +24,7 @@ struct SocketAddress {
 
 // Of numbers, not names: "10.0.0.1", "ff12::4".
 Result<SocketAddress> numericAddress(const std::string& host, uint16_t port);
-// The other way round, without the port.
+// The other way round, without the port; IPv4 mapped into IPv6 as IPv4.
 std::string numericText(const SocketAddress& address);
 // "10.0.0.1:80", "[ff12::4]:80".
 Result<SocketAddress> numericEndpoint(std::string_view text);

@@ -219,14 +219,15 @@ void TcpConnection::flush() {
         writeTimedOut_.store(true);
 }
 
-size_t TcpConnection::datagramBytes() const {
+NetworkPath TcpConnection::path() const {
     constexpr size_t kTcpHeadBytes = 20;
     constexpr size_t kTimestampBytes = 12; // on each segment, where both ends do so
     constexpr size_t kUdpHeadBytes = 8;
     tcp_info info{};
     socklen_t sizeBytes = sizeof info;
-    if (getsockopt(socket_.get(), IPPROTO_TCP, TCP_INFO, &info, &sizeBytes) != 0) return 0;
-    return info.tcpi_snd_mss + (info.tcpi_options & TCPI_OPT_TIMESTAMPS ? kTimestampBytes : 0) + kTcpHeadBytes - kUdpHeadBytes;
+    if (getsockopt(socket_.get(), IPPROTO_TCP, TCP_INFO, &info, &sizeBytes) != 0) return {};
+    return {numericText(localTcpAddress(socket_.get())),
+            info.tcpi_snd_mss + (info.tcpi_options & TCPI_OPT_TIMESTAMPS ? kTimestampBytes : 0) + kTcpHeadBytes - kUdpHeadBytes};
 }
 
 bool TcpConnection::timedOut() const {

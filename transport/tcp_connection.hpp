@@ -35,7 +35,7 @@ public:
     // False as soon as the other end is closed or dead; what it has written can still be read.
     [[nodiscard]] bool alive() const override;
     [[nodiscard]] std::string describe() const override { return description_; }
-    [[nodiscard]] size_t datagramBytes() const override; // from the segments that both ends agreed on
+    [[nodiscard]] NetworkPath path() const override; // from the segments that both ends agreed on
     [[nodiscard]] uint64_t bytesWritten() const override { return bytesWritten_; }
     [[nodiscard]] uint64_t bytesRead() const override { return bytesRead_; }
 

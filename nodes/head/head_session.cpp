@@ -113,7 +113,7 @@ Result<void> HeadSession::bringUp() {
     for (const NodePlan& plan : plan_.nodes) {
         NodeSetup setup = setupOf(config_, plan_, plan);
         if (nodes_.link(plan.node).byMulticast()) {
-            setup.stream = nodes_.multicast()->invitation(plan.where);
+            setup.stream = nodes_.multicast()->invitation();
             setup.streamSecret = toHex(nodes_.multicast()->secret());
         }
         nodes_.sendSetup(plan.node, toJson(setup));
@@ -134,9 +134,9 @@ void HeadSession::openMulticast() {
         streamLine_ = config_.hosts.empty() ? "" : std::string("the stream goes to each node by its own connection: ") + whyOwnStreams(config_.stream);
         return;
     }
-    size_t datagramBytes = SIZE_MAX;
-    for (const int node : nodes) datagramBytes = std::min(datagramBytes, nodes_.link(node).datagramBytes());
-    auto multicast = NodeMulticast::open(config_.stream, plan_.nodes[static_cast<size_t>(nodes.front())].where, datagramBytes);
+    NetworkPath path = nodes_.link(nodes.front()).path();
+    for (const int node : nodes) path.datagramBytes = std::min(path.datagramBytes, nodes_.link(node).path().datagramBytes);
+    auto multicast = NodeMulticast::open(config_.stream, path);
     if (!multicast) {
         streamLine_ = "the stream goes to each node by its own connection: no multicast: " + multicast.error().message + "; mural doctor --network says what to mend";
         if (!config_.explain) control_.say(streamLine_);

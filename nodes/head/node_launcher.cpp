@@ -18,9 +18,11 @@ std::string nameOf(const NodePlan& plan) {
     return "node " + std::to_string(plan.node) + " (" + plan.where + ")";
 }
 
-// host:port at which `host` reaches the gate; the own name when the way there can't be found out.
+// host:port at which `host` reaches the gate; the own name when the way there can't be found out. Of a node that is called by
+// the name under which it announces itself, only what calls it knows the way: no host.
 std::string endpointTowards(const std::string& host, uint16_t port) {
     constexpr int64_t kLookupMs = 5000;
+    if (host.starts_with("@")) return endpointText("", port);
     const std::string machine = host.substr(host.find('@') + 1); // user@host
     if (const auto own = ownAddressTowards(machine, Deadline::inMs(kLookupMs))) return endpointText(numericText(*own), port);
     char name[256] = "localhost";
@@ -47,11 +49,11 @@ NodeCommand tcpCommand(const NodePlan& plan, const LaunchOptions& options, uint1
     NodeCommand command;
     const std::string name = NodeGate::nameOf(plan.node);
     if (plan.reach == NodeReach::Tcp) {
-        command.arguments = {options.executable, "node", "--name", name, "--connect", endpointText("127.0.0.1", port)};
+        command.arguments = {options.executable, "node", "--as", name, "--connect", endpointText("127.0.0.1", port)};
         return command;
     }
     command.arguments = words(options.launchCommand);
-    for (const std::string& word : {plan.where, quoted(options.remoteMural), std::string("node"), std::string("--name"), name,
+    for (const std::string& word : {plan.where, quoted(options.remoteMural), std::string("node"), std::string("--as"), name,
                                     std::string("--connect"), endpointTowards(plan.where, port)})
         command.arguments.push_back(word);
     return command;

@@ -56,7 +56,7 @@ public:
     void send(std::span<const std::byte> header, std::span<const std::byte> payload);
     void flush();
 
-    [[nodiscard]] size_t datagramBytes() const { return connection_->datagramBytes(); }
+    [[nodiscard]] NetworkPath path() const { return connection_->path(); }
     // Its packets come another way (NodeMulticast), all but its setup.
     void setByMulticast(bool by) { byMulticast_ = by; }
     [[nodiscard]] bool byMulticast() const { return byMulticast_; }

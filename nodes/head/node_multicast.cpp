@@ -2,11 +2,9 @@
 
 #include <random>
 #include <set>
-#include <sys/socket.h>
 
 #include "nodes/head/node_gate.hpp"
 #include "transport/connection_description.hpp"
-#include "transport/route.hpp"
 #include "transport/rsp/group_description.hpp"
 #include "transport/socket_address.hpp"
 
@@ -14,16 +12,15 @@ namespace mural {
 namespace {
 
 constexpr uint16_t kPort = 4277;
-constexpr int64_t kLookupMs = 5000;
 // A node that draws for long, or is stopped for a moment, is waited for: the head has its own patience with nodes.
 constexpr int64_t kSilentMs = 5000;
 
 std::string machineOf(const std::string& host) { return host.substr(host.find('@') + 1); } // user@host
 
 // Another group for each session, so that none hears what is not for it.
-std::string freshGroup(int family) {
+std::string freshGroup(const std::string& ownAddress) {
     const auto last = std::to_string(std::random_device()() % 254 + 1);
-    return family == AF_INET6 ? endpointText("ff15::4d75:7261:" + last, kPort) : endpointText("239.255.77." + last, kPort);
+    return ownAddress.find(':') != std::string::npos ? endpointText("ff15::4d75:7261:" + last, kPort) : endpointText("239.255.77." + last, kPort);
 }
 
 const char* textOf(rsp::GoneReason reason) {
@@ -53,11 +50,10 @@ std::vector<int> nodesForMulticast(const std::string& stream, const SessionPlan&
     return nodes;
 }
 
-Result<std::unique_ptr<NodeMulticast>> NodeMulticast::open(const std::string& stream, const std::string& host, size_t datagramBytes) {
-    const auto own = ownAddressTowards(machineOf(host), Deadline::inMs(kLookupMs));
+Result<std::unique_ptr<NodeMulticast>> NodeMulticast::open(const std::string& stream, const NetworkPath& path) {
     ConnectionDescription description;
     if (stream == "auto") {
-        description = *parseConnectionDescription("rsp://" + freshGroup(own ? own->family() : AF_INET));
+        description = *parseConnectionDescription("rsp://" + freshGroup(path.ownAddress));
     } else {
         auto given = parseConnectionDescription(stream);
         if (!given) return given.error();
@@ -66,8 +62,8 @@ Result<std::unique_ptr<NodeMulticast>> NodeMulticast::open(const std::string& st
     auto options = rsp::groupOptionsOf(description);
     if (!options) return options.error();
     const auto& given = description.parameters;
-    if (!given.contains("interface") && own) options->interface = numericText(*own);
-    if (!given.contains("datagram")) options->datagramBytes = std::min(datagramBytes, rsp::kMostDatagramBytes);
+    if (!given.contains("interface")) options->interface = path.ownAddress;
+    if (!given.contains("datagram")) options->datagramBytes = std::min(path.datagramBytes, rsp::kMostDatagramBytes);
     if (!given.contains("control")) options->control = ":0";
     if (!given.contains("stalled")) options->stalled = rsp::StallPolicy::Wait;
     if (!given.contains("silent-ms")) options->silentMs = kSilentMs;
@@ -88,11 +84,7 @@ NodeMulticast::NodeMulticast(std::unique_ptr<rsp::Group> group, const rsp::Group
     if (auto control = splitHostPort(group_->controlAddress())) controlPort_ = control->port;
 }
 
-std::string NodeMulticast::invitation(const std::string& host) const {
-    const auto own = ownAddressTowards(machineOf(host), Deadline::inMs(kLookupMs));
-    const std::string address = own ? numericText(*own) : "localhost";
-    return "rsp://" + groupAddress_ + "?control=" + endpointText(address, controlPort_);
-}
+std::string NodeMulticast::invitation() const { return "rsp://" + groupAddress_ + "?control=" + endpointText("", controlPort_); }
 
 Result<void> NodeMulticast::write(std::span<const std::byte> bytes, Deadline deadline) { return group_->write(bytes, deadline); }
 void NodeMulticast::flush() { group_->flush(); }

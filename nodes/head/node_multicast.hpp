@@ -13,6 +13,7 @@
 #include "common/result.hpp"
 #include "nodes/head/node_plan.hpp"
 #include "nodes/session/session_secret.hpp"
+#include "transport/connection.hpp"
 #include "transport/rsp/group.hpp"
 
 namespace mural {
@@ -23,12 +24,13 @@ std::vector<int> nodesForMulticast(const std::string& stream, const SessionPlan&
 // All calls from any thread.
 class NodeMulticast {
 public:
-    // `stream`: auto or rsp://…; the network is the one that leads to `host`. Unless `stream` says it, datagrams have at most
-    // `datagramBytes`, which all nodes' cards take; 0: what the own card takes.
-    static Result<std::unique_ptr<NodeMulticast>> open(const std::string& stream, const std::string& host, size_t datagramBytes);
+    // `stream`: auto or rsp://…. Unless that says otherwise, the group is on the network of `path`, the way to a node, and its
+    // datagrams are as long as that says.
+    static Result<std::unique_ptr<NodeMulticast>> open(const std::string& stream, const NetworkPath& path);
 
-    // What the node on `host` is told to join with: description and secret.
-    [[nodiscard]] std::string invitation(const std::string& host) const;
+    // What nodes are told to join with: description and secret. The control port is at the address by which they reach the
+    // head.
+    [[nodiscard]] std::string invitation() const;
     [[nodiscard]] const SessionSecret& secret() const { return secret_; }
 
     Result<void> write(std::span<const std::byte> bytes, Deadline deadline);

@@ -4,7 +4,6 @@
 
 #include "nodes/session/session_secret.hpp"
 #include "transport/connection_description.hpp"
-#include "transport/route.hpp"
 #include "transport/rsp/group_connection.hpp"
 #include "transport/rsp/group_description.hpp"
 #include "transport/secure_connection.hpp"
@@ -39,7 +38,9 @@ Result<std::unique_ptr<Connection>> connectByTcp(const NodeOptions& options) {
 Result<std::unique_ptr<HeadLine>> HeadLine::open(const NodeOptions& options) {
     auto connection = options.connectFd >= 0 ? openSharedMemory(options.connectFd) : connectByTcp(options);
     if (!connection) return connection.error();
-    return std::unique_ptr<HeadLine>(new HeadLine(std::move(*connection)));
+    std::unique_ptr<HeadLine> line(new HeadLine(std::move(*connection)));
+    if (auto head = splitHostPort(options.connect)) line->headHost_ = head->host;
+    return line;
 }
 
 Result<void> HeadLine::follow(const std::string& stream, const std::string& secretHex, const std::string& name) {
@@ -51,10 +52,11 @@ Result<void> HeadLine::follow(const std::string& stream, const std::string& secr
     if (!secret) return secret.error();
     options->secret = secret.value();
     options->name = name;
-    // The network card by which the head is reached.
-    auto head = splitHostPort(options->control);
-    if (!head) return head.error();
-    if (const auto own = ownAddressTowards(head->host, Deadline::inMs(kJoinMs))) options->interface = numericText(*own);
+    // The card and the address by which the head is reached.
+    auto control = splitHostPort(options->control);
+    if (!control) return control.error();
+    options->control = endpointText(headHost_, control->port);
+    options->interface = connection_->path().ownAddress;
     auto joined = rsp::joinGroup(*options, Deadline::inMs(kJoinMs));
     if (!joined) return joined.error();
     stream_ = std::move(*joined);

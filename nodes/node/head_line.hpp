@@ -36,6 +36,7 @@ private:
     explicit HeadLine(std::unique_ptr<Connection> connection) : connection_(std::move(connection)) {}
 
     const std::unique_ptr<Connection> connection_;
+    std::string headHost_; // empty: shared memory
     std::unique_ptr<Connection> stream_; // null: packets come by connection_
     std::vector<std::byte> payload_;
     std::mutex sending_;

@@ -119,7 +119,11 @@ private:
 
 bool mayBeOrdered(const std::vector<std::string>& a) {
     if (a.size() == 1) return a[0] == "network-member";
-    return a.size() == 3 && a[0] == "node" && a[1] == "--connect" && !a[2].starts_with("-");
+    return a.size() == 5 && a[0] == "node" && a[1] == "--as" && !a[2].starts_with("-") && a[3] == "--connect" && !a[4].starts_with("-");
+}
+
+void completeOrder(std::vector<std::string>& a, const std::string& peer) {
+    if (a.size() == 5 && a[4].starts_with(":")) a[4] = (peer.find(':') == std::string::npos ? peer : "[" + peer + "]") + a[4];
 }
 
 Result<std::string> runOrdered(const std::string& executable, const std::vector<std::string>& arguments, ChannelSocket& channel, const std::atomic<bool>& stop) {

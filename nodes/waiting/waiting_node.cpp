@@ -87,8 +87,9 @@ void WaitingNode::take(FileDescriptor socket, const std::string& peer) {
     };
     auto order = channel.receive(Deadline::inMs(kProofMs));
     if (!order) return say(peer + " ordered nothing: " + order.error().message);
-    const auto arguments = orderArguments(*order);
+    auto arguments = orderArguments(*order);
     if (!arguments || !mayBeOrdered(*arguments)) return refuse("only render nodes can be ordered here; do both run the same version?");
+    completeOrder(*arguments, peer);
     if (!enter(peer)) return refuse("another head has its nodes here; try again when it has ended");
     say(peer + " has a " + arguments->front() + " here now");
     auto how = runOrdered(options_.executable, *arguments, channel, stop_);

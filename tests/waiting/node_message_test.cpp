@@ -31,9 +31,9 @@ TEST(NodeMessage, WhatIsOutOfBoundsIsNone) {
 }
 
 TEST(NodeMessage, OnlyNodesMayBeOrdered) {
-    EXPECT_TRUE(mayBeOrdered({"node", "--connect", "wall0:4711"}));
+    EXPECT_TRUE(mayBeOrdered({"node", "--as", "node3", "--connect", "wall0:4711"}));
     EXPECT_TRUE(mayBeOrdered({"network-member"}));
-    for (const Arguments& a : {Arguments{"run", "--", "sh"}, {"node"}, {"node", "--wait"}, {"node", "--connect", "--wait"}, {"node", "--connect-fd", "3"}, {"node", "--connect", "a:1", "x"},
+    for (const Arguments& a : {Arguments{"run", "--", "sh"}, {"node"}, {"node", "--wait"}, {"node", "--connect", "wall0:4711"}, {"node", "--as", "x", "--connect", "--wait"}, {"node", "--as", "--wait", "--connect", "a:1"}, {"node", "--connect-fd", "3"}, {"node", "--as", "x", "--connect", "a:1", "x"},
              {"network-member", "x"}, {"doctor"}, {}})
         EXPECT_FALSE(mayBeOrdered(a)) << (a.empty() ? "nothing" : a.front());
 }

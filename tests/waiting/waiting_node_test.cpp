@@ -19,7 +19,7 @@ namespace mural {
 namespace {
 
 constexpr int64_t kMs = 10'000;
-const std::vector<std::string> kNode{"node", "--connect", "wall0:4711"};
+const std::vector<std::string> kNode{"node", "--as", "node3", "--connect", "wall0:4711"};
 
 // Says what it is called with and its number, then each line that it hears; "end" ends it.
 constexpr const char* kScript = R"(#!/bin/sh

@@ -152,7 +152,7 @@ private:
         mural::cli::describeCall(*call_, callArguments_);
         node.add_option("--connect-fd", node_.connectFd, "descriptor of shared memory with the head")->check(CLI::NonNegativeNumber);
         node.add_option("--connect", node_.connect, "HOST:PORT of the head; the session's secret comes on standard input")->type_name("HOST:PORT");
-        node.add_option("--name", node_.name, "with --connect: by which the head knows this node's secret")->type_name("NAME");
+        node.add_option("--as", node_.name, "with --connect: by which the head knows this node's secret")->type_name("NAME");
     }
 
     int runCall() {
