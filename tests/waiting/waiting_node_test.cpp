@@ -1,6 +1,7 @@
 // A waiting node with a script in place of mural, and heads that are what they should be, or are not.
 #include "nodes/waiting/waiting_node.hpp"
 
+#include <array>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -107,14 +108,30 @@ TEST_F(Waiting, RunsWhatIsOrderedAndTellsHowItEnded) {
     EXPECT_EQ(hear(*channel, NodeMessageKind::Ended, "7").substr(1), "exit status 7");
 }
 
-// The end of the input comes with the order itself: nothing of it may be lost.
+// Order and input in one piece: nothing of it may be lost.
 TEST_F(Waiting, InputThatComesWithTheOrderIsHeard) {
-    const auto channel = head();
-    ASSERT_TRUE(channel);
-    ASSERT_TRUE(channel->send(textMessage(NodeMessageKind::Input, "early\n"), Deadline::inMs(kMs)));
-    ASSERT_TRUE(channel->send({NodeMessageKind::InputEnd, {}}, Deadline::inMs(kMs)));
-    EXPECT_NE(hear(*channel, NodeMessageKind::Output, "early").find("heard early"), std::string::npos);
-    EXPECT_EQ(hear(*channel, NodeMessageKind::Ended, "3").substr(1), "exit status 3");
+    FileDescriptor fd = connect(1);
+    SecureChannel secure = SecureChannel::connecting("head", secret_);
+    const auto write = [&] {
+        const auto bytes = secure.takeOutput();
+        EXPECT_EQ(::send(fd.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL), static_cast<ssize_t>(bytes.size()));
+    };
+    write();
+    std::vector<std::vector<std::byte>> none;
+    while (!secure.open()) {
+        std::array<std::byte, 1024> piece;
+        ASSERT_NE(waitForSocket(fd.get(), POLLIN, Deadline::inMs(kMs)), 0);
+        const ssize_t n = ::recv(fd.get(), piece.data(), piece.size(), 0);
+        ASSERT_GT(n, 0);
+        ASSERT_TRUE(secure.input(std::span(piece).first(static_cast<size_t>(n)), none));
+        write();
+    }
+    for (const NodeMessage& m : {orderMessage(kNode), textMessage(NodeMessageKind::Input, "early\n"), NodeMessage{NodeMessageKind::InputEnd, {}}})
+        ASSERT_TRUE(secure.send(encode(m)));
+    write();
+    ChannelSocket channel(std::move(fd), std::move(secure));
+    EXPECT_NE(hear(channel, NodeMessageKind::Output, "early").find("heard early"), std::string::npos);
+    EXPECT_EQ(hear(channel, NodeMessageKind::Ended, "3").substr(1), "exit status 3");
 }
 
 TEST_F(Waiting, WhoDoesNotKnowTheSecretGetsNothing) {

@@ -34,10 +34,19 @@ TEST(Discovery, WhoWaitsIsFoundAtOnceAndGoneAtOnce) {
     if (!d.beaconTrouble.empty() && d.nodes.empty()) GTEST_SKIP() << "no multicast here: " << d.beaconTrouble;
     EXPECT_TRUE(both(d.nodes));
     EXPECT_LT(monotonicNowNs() - beganNs, 5 * kNsPerS);
-    first->reset();
-    const Discovered later = discoverNodes(kBeacon, Deadline::inMs(700));
+    // Its last word, long before its silence would tell.
+    int64_t endedNs = 0;
+    const auto gone = [&](const std::vector<FoundNode>& nodes) {
+        if (endedNs == 0 && both(nodes)) {
+            first->reset();
+            endedNs = monotonicNowNs();
+        }
+        return endedNs != 0 && !has(nodes, one);
+    };
+    const Discovered later = discoverNodes(kBeacon, Deadline::inMs(10'000), gone);
     EXPECT_FALSE(has(later.nodes, one));
     EXPECT_TRUE(has(later.nodes, two));
+    EXPECT_LT(monotonicNowNs() - endedNs, NodeTable::kSilentNs - kNsPerS);
 }
 
 TEST(Discovery, WhatIsTurnedOffFindsNothing) {
