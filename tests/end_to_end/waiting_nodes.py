@@ -67,6 +67,10 @@ class Case:
                 names = sorted(os.listdir(expected))
                 same = filecmp.cmpfiles(expected, drawn, names, shallow=False)[0]
                 self.check('they draw the same', len(names) == int(FRAMES) and sorted(same) == names, str(names))
+                by_name, drawn = self.pictures('by_name', '--nodes', '@test%d' % os.getpid(), '--tiles', '2x1', '--launch', self.call(secret) + ' --discovery beacon')
+                self.check('a node that is called by its name', by_name.returncode == 0, by_name.stderr)
+                same = filecmp.cmpfiles(expected, drawn, names, shallow=False)[0]
+                self.check('it draws the same', sorted(same) == names, str(same))
                 refused, _ = self.pictures('refused', '--nodes', HOST, '--launch', self.call(wrong))
                 self.check('not without the secret', refused.returncode != 0 and 'secret' in refused.stderr, refused.stderr)
                 found = run([self.mural, 'discover', '--seconds', '3', '--no-avahi', '--json'])
