@@ -11,6 +11,7 @@ from stream_result import StreamFailed, StreamResult
 UDP_HEAD_BYTES = 28
 WIRE_BYTES = 66  # Ethernet, IPv4 and UDP around a payload, gap and preamble included
 LIMIT_SECONDS = 12
+JOIN_SECONDS = 0.3  # until receivers are in the group: they say nothing of it
 
 
 def finish(name, programs, seconds=LIMIT_SECONDS):
@@ -51,7 +52,7 @@ class Raw(Harness):
         common = ["239.1.1.1", "6000"]
         hosts = [rig.start(host, [self.path, "recv"] + common + [rig.address(host), "mode=mmsg", "secs=%g" % seconds])
                  for host in range(1, receivers + 1)]
-        self._wait_for_joins(hosts)
+        wait_all(hosts, JOIN_SECONDS)
         sender = rig.start(0, [self.path, "send"] + common + [rig.address(0), "mode=" + sending, "size=%d" % payload, "batch=%d" % batch,
                                                                "secs=%g" % seconds, "rate=%g" % rate])
         done = finish("raw", [sender] + hosts)
@@ -59,15 +60,13 @@ class Raw(Harness):
         return StreamResult(min(t["gbit"] for t in told[1:]) * 1000, told[0]["cpu_s_per_GB"],
                             sum(t["cpu_s_per_GB"] for t in told[1:]) / receivers)
 
-    @staticmethod
-    def _wait_for_joins(hosts):
-        wait_all(hosts, 0.3)  # they say nothing when they listen
-
 
 class OwnProgram:
     """A peer whose harness sends `bytes=` and tells `gbit=` and `cpu_s_per_GB=` at each end."""
 
     may_miss_bytes = 0
+    joins = True         # receivers need a moment until they are in the group
+    counts_late = False  # a receiver's time begins behind its first byte: none is faster than its sender
 
     def __init__(self, name, harness, package, share=lambda receivers: 1.0):
         """share: of the bytes of others, so that its runs last about as long."""
@@ -86,20 +85,20 @@ class OwnProgram:
     def stream(self, rig, receivers, size_bytes, wire_mbit):
         size_bytes = int(size_bytes * self.share(receivers))
         hosts = [rig.start(host, [self.harness.path, "recv"] + self.receiver_words(rig, host, size_bytes)) for host in range(1, receivers + 1)]
-        if self.name != "TCP":
-            wait_all(hosts, 0.3)  # until they have joined
+        if self.joins:
+            wait_all(hosts, JOIN_SECONDS)
         sender = rig.start(0, [self.harness.path, "send"] + self.sender_words(rig, receivers, size_bytes, wire_mbit))
         done = finish(self.name, [sender] + hosts)
         told = [numbers_of(d.said) for d in done]
         for host, t in enumerate(told):
             if t.get("bytes", 0) < size_bytes - self.may_miss_bytes:
                 raise StreamFailed("%s: host %d has %d of %d bytes" % (self.name, host, t.get("bytes", 0), size_bytes))
-        # Some begin to count late: none is faster than its sender.
-        mbit = min([t["gbit"] for t in told[1:]] + ([told[0]["gbit"]] if self.name == "NORM" else [])) * 1000
+        mbit = min(t["gbit"] for t in (told if self.counts_late else told[1:])) * 1000
         return StreamResult(mbit, told[0].get("cpu_s_per_GB"), sum(t["cpu_s_per_GB"] for t in told[1:]) / receivers)
 
 
 class Norm(OwnProgram):
+    counts_late = True
     may_miss_bytes = 64 * 1400  # a stream begins where a receiver first hears of it: a block at most
 
     def sender_words(self, rig, receivers, size_bytes, wire_mbit):
@@ -111,7 +110,7 @@ class Norm(OwnProgram):
 
     def messages(self, rig, receivers, message_bytes, count):
         hosts = [rig.start(host, [self.harness.path, "recv", "id=%d" % host, "bytes=1", "if=eth0"]) for host in range(1, receivers + 1)]
-        wait_all(hosts, 0.3)
+        wait_all(hosts, JOIN_SECONDS)
         sender = rig.start(0, [self.harness.path, "send", "n=%d" % receivers, "msg=%d" % message_bytes, "count=%d" % count, "rate=180", "par=0", "if=eth0"])
         try:
             told = numbers_of(finish(self.name, [sender], 8)[0].said)
@@ -129,6 +128,8 @@ class Pgm(OwnProgram):
 
 
 class Tcp(OwnProgram):
+    joins = False
+
     def sender_words(self, rig, receivers, size_bytes, wire_mbit):
         return ["n=%d" % receivers, "bytes=%d" % size_bytes]
 
@@ -197,7 +198,7 @@ class Udpcast(Files):
         path = self.file_of(size_bytes)
         common = ["--nokbd", "--interface", "eth0", "--mcast-rdv-address", "239.1.1.3"]
         hosts = [rig.start(host, ["udp-receiver", "--file", "/dev/null"] + common) for host in range(1, receivers + 1)]
-        wait_all(hosts, 0.3)
+        wait_all(hosts, JOIN_SECONDS)
         pace = ["--max-bitrate", "%dk" % round(wire_mbit * 1000)] if wire_mbit else []
         sender = rig.start(0, ["udp-sender", "--file", path, "--min-receivers", str(receivers), "--full-duplex"] + pace + common)
         done = finish(self.name, [sender] + hosts, 15)

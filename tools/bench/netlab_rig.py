@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from signal import SIGCONT, SIGKILL, SIGTERM
 
 SKIPPED = 77  # exit status: the bench can't run here
 INSIDE = "MURAL_BENCH_INSIDE"
@@ -65,10 +66,10 @@ class Program:
 
     def end(self):
         """Ends it for good."""
-        self.signal(18)  # SIGCONT: one that is stopped could not end
-        self.signal(15)
+        self.signal(SIGCONT)  # one that is stopped could not end
+        self.signal(SIGTERM)
         if not self.wait(2):
-            self.signal(9)
+            self.signal(SIGKILL)
             self.wait(5)
         return self.finished
 
