@@ -101,7 +101,7 @@ protected:
 TEST_F(Waiting, RunsWhatIsOrderedAndTellsHowItEnded) {
     const auto channel = head();
     ASSERT_TRUE(channel);
-    EXPECT_EQ(hear(*channel, NodeMessageKind::Output, "\n"), "node --connect wall0:4711\n");
+    EXPECT_EQ(hear(*channel, NodeMessageKind::Output, "\n"), "node --as node3 --connect wall0:4711\n");
     ASSERT_TRUE(channel->send(textMessage(NodeMessageKind::Input, "hello\n"), Deadline::inMs(kMs)));
     EXPECT_EQ(hear(*channel, NodeMessageKind::Output, "\n"), "heard hello\n");
     ASSERT_TRUE(channel->send(textMessage(NodeMessageKind::Input, "end\n"), Deadline::inMs(kMs)));
@@ -155,7 +155,7 @@ TEST_F(Waiting, TakesOneHeadAtATimeWithAllItsNodes) {
     hear(*first, NodeMessageKind::Output, "\n");
     const auto second = head(1);
     ASSERT_TRUE(second);
-    EXPECT_EQ(hear(*second, NodeMessageKind::Output, "\n"), "node --connect wall0:4711\n");
+    EXPECT_EQ(hear(*second, NodeMessageKind::Output, "\n"), "node --as node3 --connect wall0:4711\n");
     const auto stranger = head(2);
     ASSERT_TRUE(stranger);
     EXPECT_NE(hear(*stranger, NodeMessageKind::Refused, "another").find("another head"), std::string::npos);
