@@ -324,7 +324,6 @@ private:
     bool onlyCopiesWrite(GLenum target);
     void copyIntoBuffer(GLenum target, uint64_t offset, std::span<const std::byte> bytes);
     bool ownFillWindow(Args& in);
-    void fillDepthStencil(const PixelViewport& r, GLbitfield plane, const void* pixels);
     void setArrayPointer(const client_arrays::ArrayRecord& a, const std::byte* first);
     // replay_reads.cpp
     bool ownRequestPixels(Args& in);

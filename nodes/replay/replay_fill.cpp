@@ -1,5 +1,6 @@
-// Depth and stencil of other tiles, put into windows of core and ES contexts: core contexts
-// have no glDrawPixels, so a context of another kind draws into the same window. ES 1 has no blits either.
+// Depth and stencil of other tiles, put into windows: by glDrawPixels, which core and ES contexts lack, and which in the
+// program's own takes part in all that is bound there (programs, pipelines, discarding). So a context of the node's draws
+// into the same window. ES 1 has no blits for colours either.
 #include "nodes/replay/replay.hpp"
 
 namespace mural {

@@ -245,7 +245,7 @@ bool Replay::ownFillWindow(Args& in) {
     }
     if (!bound_ || !c_->read || !gl.glBlitFramebuffer) return true;
     aside([&] {
-        if (plane != GL_COLOR_BUFFER_BIT) fillDepthStencil({x, y, w, h}, plane, data.pointer());
+        if (plane != GL_COLOR_BUFFER_BIT) fillByOtherContext({x, y, w, h}, plane, data.pointer());
         else fillColor({x, y, w, h}, data.pointer());
     });
     return true;
@@ -288,41 +288,6 @@ void Replay::fillColor(const PixelViewport& r, const void* rgba) {
     gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER, name(Kind::Framebuffer, c_->drawFramebuffer));
     if (otherDraw) (void)platform_->makeCurrent(c_->context.get(), drawSurface_, readSurface_);
     c_->scissorsDiffer = true; // all viewports' enables were touched
-    applyScissors();
-}
-
-// Depth and stencil go in by glDrawPixels where a context has it.
-void Replay::fillDepthStencil(const PixelViewport& r, GLbitfield plane, const void* pixels) {
-    if (c_->core || c_->api != wire::Api::Desktop || !gl.glDrawPixels || !gl.glWindowPos2i || boundDraw_ != boundRead_) return fillByOtherContext(r, plane, pixels);
-    gl.glPushAttrib(GL_ALL_ATTRIB_BITS);
-    gl.glDisable(GL_SCISSOR_TEST);
-    for (const GLenum cap : {GLenum{GL_STENCIL_TEST}, GLenum{GL_ALPHA_TEST}, GLenum{GL_BLEND}, GLenum{GL_FOG}, GLenum{GL_TEXTURE_2D}, GLenum{GL_LIGHTING}}) gl.glDisable(cap);
-    if (c_->program) gl.glUseProgram(0);
-    gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-    const bool depth = plane == GL_DEPTH_BUFFER_BIT;
-    gl.glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-    if (depth) {
-        gl.glEnable(GL_DEPTH_TEST);
-        gl.glDepthFunc(GL_ALWAYS);
-        gl.glDepthMask(GL_TRUE);
-        gl.glPixelTransferf(GL_DEPTH_SCALE, 1);
-        gl.glPixelTransferf(GL_DEPTH_BIAS, 0);
-    } else {
-        gl.glStencilMaskSeparate(GL_FRONT_AND_BACK, ~0U);
-        gl.glPixelTransferi(GL_INDEX_SHIFT, 0);
-        gl.glPixelTransferi(GL_INDEX_OFFSET, 0);
-        gl.glPixelTransferi(GL_MAP_STENCIL, GL_FALSE);
-    }
-    gl.glPixelZoom(1, 1);
-    setUnpack(true);
-    if (c_->unpackBuffer) gl.glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
-    gl.glWindowPos2i(r.x, r.y);
-    if (depth) gl.glDrawPixels(r.w, r.h, GL_DEPTH_COMPONENT, GL_FLOAT, depthAsFloats(*c_->read, r, pixels));
-    else gl.glDrawPixels(r.w, r.h, GL_STENCIL_INDEX, GL_UNSIGNED_BYTE, pixels);
-    if (c_->unpackBuffer) gl.glBindBuffer(GL_PIXEL_UNPACK_BUFFER, c_->unpackBuffer);
-    gl.glPopAttrib();
-    if (c_->program) gl.glUseProgram(name(Kind::Program, c_->program));
-    gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER, name(Kind::Framebuffer, c_->drawFramebuffer));
     applyScissors();
 }
 

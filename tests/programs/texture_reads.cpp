@@ -77,7 +77,9 @@ void copyOut(const Window& window) {
     glBindTexture(GL_TEXTURE_2D, flat);
     glCopyMultiTexSubImage2DEXT(GL_TEXTURE0, GL_TEXTURE_2D, 0, 0, 0, x, y - 5, kSize, kSize);
     glBindTexture(GL_TEXTURE_2D, 0);
+    glEnable(GL_RASTERIZER_DISCARD); // of draws only
     glCopyTextureImage2DEXT(depth, GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, x, y, kSize, kSize, 0);
+    glDisable(GL_RASTERIZER_DISCARD);
 }
 
 void showReads() {
