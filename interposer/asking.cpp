@@ -61,13 +61,13 @@ void stashError(Context& c, GLenum error) {
     if (!c.stashedError) c.stashedError = error; // GL keeps the first
 }
 
-const void* askPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type, bool plain, const char* by) {
+const void* askPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type, uint32_t how, const char* by) {
     const uint32_t group = sizes::groupBytes(format, type);
     if (w <= 0 || h <= 0 || group == 0) return nullptr;
     const uint64_t bytes = uint64_t(w) * uint64_t(h) * group;
     void* into = secondScratch(t, bytes);
     if (!into) return nullptr;
-    const KeptPixels::Kind kind{format, type, group, plain};
+    const KeptPixels::Kind kind{format, type, group, how};
     const KeptPixels::Box box{x, y, w, h};
     if (t.pixels.find(t, kind, box, into)) return into;
     const KeptPixels::Box wide = t.pixels.wider(t, kind, box);
@@ -75,7 +75,7 @@ const void* askPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GL
     const uint64_t wideBytes = keeps ? uint64_t(wide.w) * uint64_t(wide.h) * group : bytes;
     void* const answer = keeps ? t.pixels.memory(wideBytes) : into;
     const bool ok = answer && ask(t, by, answer, wideBytes, [&](uint32_t request) {
-        records::requestPixels(t, request, wide.x, wide.y, wide.w, wide.h, format, type, plain ? group | wire::kPlainTransfer : group);
+        records::requestPixels(t, request, wide.x, wide.y, wide.w, wide.h, format, type, group | how);
     });
     if (!ok) return nullptr;
     t.pixels.answered(t, kind, wide, keeps);

@@ -14,8 +14,8 @@ struct Context;
 
 // The rectangle of the current read framebuffer, tightly packed, put together from all nodes; in
 // scratch memory of the thread. Null: no answer.
-// plain: without the program's pixel transfer.
-const void* askPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type, bool plain = false, const char* by = __builtin_FUNCTION());
+// how: flags of groupBytes (streamcodec/wire.hpp).
+const void* askPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type, uint32_t how = 0, const char* by = __builtin_FUNCTION());
 void* askTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type, uint64_t sizeBytes, const char* by = __builtin_FUNCTION());
 bool askQuery(ThreadState& t, GLuint query, GLenum name, uint64_t& value, const char* by = __builtin_FUNCTION());
 // Bytes of a buffer as the nodes have it; in scratch memory.

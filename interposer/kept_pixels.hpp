@@ -15,7 +15,7 @@ public:
     struct Kind {
         GLenum format, type;
         uint32_t groupBytes;
-        bool plain;
+        uint32_t how; // flags of wire.hpp
         bool operator==(const Kind&) const = default;
     };
     struct Box {

@@ -109,7 +109,7 @@ void textureFromDrawn(ThreadState& t, const Window& w) {
     records::makeCurrent(t, c.id, c.drawWindow, w.id);
     if (framebuffer) encode_glBindFramebuffer(t, target, 0);
     const auto width = static_cast<GLint>(w.config.width), height = static_cast<GLint>(w.config.height);
-    const void* pixels = asTheDriverHasIt(t, askPixels(t, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, true), width, height);
+    const void* pixels = asTheDriverHasIt(t, askPixels(t, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, wire::kPlainTransfer), width, height);
     if (framebuffer) encode_glBindFramebuffer(t, target, static_cast<GLuint>(framebuffer));
     records::makeCurrent(t, c.id, c.drawWindow, c.readWindow);
     if (!pixels) return;

@@ -19,7 +19,7 @@ const void* readBoth(ThreadState& t, Window& w, void* mine) {
     if (!read.ready()) return nullptr;
     const auto width = static_cast<GLsizei>(w.config.width), height = static_cast<GLsizei>(w.config.height);
     read.pixels(0, 0, width, height, mine);
-    return askPixels(t, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, false, "--verify");
+    return askPixels(t, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, 0, "--verify");
 }
 
 // MURAL_VERIFY_DUMP=folder: both pictures of frames that differ, as PPM.

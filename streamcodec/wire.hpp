@@ -164,6 +164,10 @@ constexpr uint16_t kFirstGlOpcode = 64;
 
 // In groupBytes of kOpRequestPixels: without the program's pixel transfer (scale, bias, maps).
 constexpr uint32_t kPlainTransfer = 0x80000000;
+// There, too: each pixel's samples put together, as a copy of the window has them.
+constexpr uint32_t kResolved = 0x40000000;
+// In planes of kOpFillWindow: for the copy that is next. A window with samples stays as it is.
+constexpr uint32_t kForCopy = 0x80000000;
 
 // What the app's drawable looks like; the nodes make their surfaces alike.
 struct WindowConfig {

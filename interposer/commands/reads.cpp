@@ -47,7 +47,7 @@ void readPixels(ThreadState& t, GLint x, GLint y, GLsizei width, GLsizei height,
         if (layout.known && owePixels(t, clip, format, type, {reinterpret_cast<uint64_t>(pixels), layout}, by)) return;
         settleBound(t, GL_PIXEL_PACK_BUFFER, by);
     }
-    const void* tight = askPixels(t, clip.x, clip.y, clip.w, clip.h, format, type, false, by);
+    const void* tight = askPixels(t, clip.x, clip.y, clip.w, clip.h, format, type, 0, by);
     if (!tight) {
         gReal.glReadPixels(x, y, width, height, format, type, pixels); // alone by now
         return;

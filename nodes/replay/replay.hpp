@@ -202,7 +202,7 @@ private:
         std::vector<QueryPiece> pieces; // the first is the program's own query
         bool passed = true;             // as the program has told: of the whole picture
     };
-    // Pixels of the window that a copy will read, put together from all nodes (lean).
+    // Pixels of the window that a copy will read, put together from all nodes (lean, and windows with samples).
     struct Gathered {
         PixelViewport box; // empty: nothing waits
         GLuint framebuffer = 0, color = 0, depthStencil = 0;
@@ -335,6 +335,7 @@ private:
     void answerBytes(uint32_t request, wire::AnswerKind kind, std::span<const std::byte> bytes);
     const std::byte* readRegion(const PixelViewport& r, GLenum format, GLenum type, size_t bytes);
     const std::byte* readShown(Window& w, const PixelViewport& r, bool front);
+    [[nodiscard]] bool resolves(const Window& w) const;
     const std::byte* readResolved(const PixelViewport& r, GLenum format, size_t bytes);
     void packTightly(bool tight);
     void withPlainTransfer(const std::function<void()>& call);

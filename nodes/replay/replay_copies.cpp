@@ -1,8 +1,8 @@
 // Copies out of and into the window.
 //
 // What other tiles hold comes first (kOpFillWindow). exact: it is put into the window itself. lean: the
-// window's framebuffer has no room for it; it goes into a framebuffer object of the copied rectangle,
-// and the copy reads from there.
+// window's framebuffer has no room for it; and a window with samples shall keep them: it goes into a framebuffer
+// object of the copied rectangle, and the copy reads from there.
 #include <algorithm>
 
 #include "nodes/replay/replay.hpp"
@@ -68,9 +68,12 @@ void Replay::gatherDepthStencil(Gathered& g, GLbitfield plane, const void* pixel
 // Runs a copy that reads `source` of the read framebuffer; the call gets what to add to its coordinates.
 void Replay::fromWindow(const PixelViewport& source, const std::function<void(GLint, GLint)>& call) {
     if (c_->readFramebuffer == 0) depthForReading();
-    if (!readsLean() || c_->readFramebuffer != 0) return call(0, 0);
     const PixelViewport box = c_->gathered.box;
-    if (box.empty() || c_->compiling || !box.contains(intersect(source, c_->read->whole))) return call(-c_->read->region.x, -c_->read->region.y);
+    if (!c_->read || (!readsLean() && box.empty()) || c_->readFramebuffer != 0) return call(0, 0);
+    if (box.empty() || c_->compiling || !box.contains(intersect(source, c_->read->whole))) {
+        const PixelViewport o = readsLean() ? c_->read->region : PixelViewport{};
+        return call(-o.x, -o.y);
+    }
     const bool separate = c_->version >= 30 || c_->api == wire::Api::Desktop;
     const GLenum target = separate ? GL_READ_FRAMEBUFFER : GL_FRAMEBUFFER;
     gl.glBindFramebuffer(target, c_->gathered.framebuffer);
@@ -110,7 +113,7 @@ void Replay::glBlitFramebuffer(GLint srcX0, GLint srcY0, GLint srcX1, GLint srcY
 void Replay::glBlitNamedFramebuffer(GLuint readFramebuffer, GLuint drawFramebuffer, GLint srcX0, GLint srcY0, GLint srcX1, GLint srcY1, GLint dstX0, GLint dstY0, GLint dstX1, GLint dstY1, GLbitfield mask, GLenum filter) {
     if (!gl.glBlitNamedFramebuffer) return;
     if (readFramebuffer == 0) depthForReading();
-    if (!config_.lean) {
+    if (!config_.lean && c_->gathered.box.empty()) {
         return withoutTile([&] {
             gl.glBlitNamedFramebuffer(name(Kind::Framebuffer, readFramebuffer), name(Kind::Framebuffer, drawFramebuffer), srcX0, srcY0, srcX1, srcY1, dstX0, dstY0, dstX1, dstY1, mask, filter);
         });

@@ -38,9 +38,10 @@ void Replay::withPlainTransfer(const std::function<void()>& call) {
 bool Replay::ownRequestPixels(Args& in) {
     const auto request = in.get<uint32_t>();
     const auto x = in.get<int32_t>(), y = in.get<int32_t>(), w = in.get<int32_t>(), h = in.get<int32_t>();
-    const auto format = in.get<uint32_t>(), type = in.get<uint32_t>(), groupAndFlag = in.get<uint32_t>();
-    const uint32_t group = groupAndFlag & ~wire::kPlainTransfer;
+    const auto format = in.get<uint32_t>(), type = in.get<uint32_t>(), groupAndFlags = in.get<uint32_t>();
+    const uint32_t group = groupAndFlags & ~(wire::kPlainTransfer | wire::kResolved);
     if (!in.ok() || w < 0 || h < 0 || group == 0 || group > 64 || uint64_t(w) * uint64_t(h) > config_.limits.answerBytes / group) return false;
+    if ((groupAndFlags & wire::kResolved) && (format != GL_RGBA || type != GL_UNSIGNED_BYTE)) return false;
     const PixelViewport asked{x, y, w, h};
     if (!bound_ || group != sizes::groupBytes(format, type)) {
         answerBytes(request, wire::AnswerKind::Bytes, {});
@@ -59,7 +60,8 @@ bool Replay::ownRequestPixels(Args& in) {
     // Colours of no buffer are asked for by copies that are errors; Mesa reads through a null pointer there in OpenGL ES.
     const bool nothing = !deep && c_->readBuffer0 == GL_NONE;
     const auto read = [&] { pixels = readRegion(nothing ? PixelViewport{} : part, format, type, bytes); };
-    if (groupAndFlag & wire::kPlainTransfer) withPlainTransfer(read);
+    if ((groupAndFlags & wire::kResolved) && !nothing && !part.empty() && resolves(*c_->read)) aside([&] { pixels = readResolved(part, format, bytes); });
+    else if (groupAndFlags & wire::kPlainTransfer) withPlainTransfer(read);
     else read();
     wire::AnswerHeader header{};
     header.client = wire::clientOf(stream_);
@@ -186,8 +188,7 @@ const std::byte* Replay::readShown(Window& w, const PixelViewport& r, bool front
     const bool bgra = c_->api == wire::Api::Desktop;
     const std::byte* pixels = nullptr;
     const GLenum format = bgra ? GL_BGRA : GL_RGBA;
-    const bool resolves = w.config.samples > 0 && separate && gl.glBlitFramebuffer && gl.glRenderbufferStorage && !r.empty();
-    if (resolves) aside([&] { pixels = readResolved(r, format, bytes); });
+    if (resolves(w) && !r.empty()) aside([&] { pixels = readResolved(r, format, bytes); });
     else withPlainTransfer([&] { pixels = readRegion(r, format, GL_UNSIGNED_BYTE, bytes); });
     for (size_t i = 0; !bgra && i < bytes; i += 4) std::swap(pixels_[i], pixels_[i + 2]);
     c_->read = read;
@@ -197,6 +198,8 @@ const std::byte* Replay::readShown(Window& w, const PixelViewport& r, bool front
     if (bound && gl.glBindFramebuffer) gl.glBindFramebuffer(target, name(Kind::Framebuffer, separate ? bound : draw));
     return pixels;
 }
+
+bool Replay::resolves(const Window& w) const { return w.config.samples > 0 && c_->version >= 30 && gl.glBlitFramebuffer && gl.glRenderbufferStorage; }
 
 // A swap shows the resolved picture; glReadPixels of a multisampled window gives one sample (Mesa).
 // The window is bound for reading when this is called, and again afterwards.
@@ -234,16 +237,17 @@ const std::byte* Replay::readResolved(const PixelViewport& r, GLenum format, siz
 // Pixels of other tiles, put where a copy will read them. A blit from a texture: no other state counts.
 bool Replay::ownFillWindow(Args& in) {
     const auto x = in.get<int32_t>(), y = in.get<int32_t>(), w = in.get<int32_t>(), h = in.get<int32_t>();
-    const auto plane = in.get<uint32_t>();
+    const auto planeAndFlag = in.get<uint32_t>(), plane = planeAndFlag & ~wire::kForCopy;
     const Data data = in.data();
     const uint64_t bytesPer = plane == GL_STENCIL_BUFFER_BIT ? 1 : 4;
     if (!in.ok() || w <= 0 || h <= 0 || data.absent() || data.isOffset() || data.size() / bytesPer / uint64_t(w) < uint64_t(h) || x > INT32_MAX - w || y > INT32_MAX - h) return false;
     if (plane == GL_COLOR_BUFFER_BIT && c_->readBuffer0 == GL_NONE) return true; // the copy is an error
-    if (bound_ && readsLean()) {
+    if (bound_ && (readsLean() || ((planeAndFlag & wire::kForCopy) && c_->read && resolves(*c_->read)))) {
         gatherForCopy({x, y, w, h}, plane, data.pointer());
         return true;
     }
     if (!bound_ || !c_->read || !gl.glBlitFramebuffer) return true;
+    forgetGathered(); // of another window
     aside([&] {
         if (plane != GL_COLOR_BUFFER_BIT) fillByOtherContext({x, y, w, h}, plane, data.pointer());
         else fillColor({x, y, w, h}, data.pointer());

@@ -7,6 +7,7 @@
 #include "tests/programs/support/show.hpp"
 
 #include <string>
+#include <vector>
 
 using namespace programs;
 
@@ -14,7 +15,7 @@ namespace {
 
 constexpr int kSize = 32;
 GLuint layered, flat, perSample, vertexArray;
-GLuint arrayTexture, cubeTexture, volumeTexture, arrayFramebuffer, faceFramebuffer, stencilFramebuffer, emptyFramebuffer;
+GLuint arrayTexture, cubeTexture, volumeTexture, copied, arrayFramebuffer, faceFramebuffer, stencilFramebuffer, emptyFramebuffer;
 GLuint showLayer, showCube, showVolume;
 
 const char* const kQuadVertex =
@@ -76,9 +77,9 @@ void setUp() {
     glGenVertexArrays(1, &vertexArray);
     glBindVertexArray(vertexArray);
     makePrograms();
-    GLuint textures[3];
-    glGenTextures(3, textures);
-    arrayTexture = textures[0], cubeTexture = textures[1], volumeTexture = textures[2];
+    GLuint textures[4];
+    glGenTextures(4, textures);
+    arrayTexture = textures[0], cubeTexture = textures[1], volumeTexture = textures[2], copied = textures[3];
     makeTarget(arrayTexture, GL_TEXTURE_2D_ARRAY);
     makeTarget(cubeTexture, GL_TEXTURE_CUBE_MAP);
     makeTarget(volumeTexture, GL_TEXTURE_3D);
@@ -186,7 +187,24 @@ void blitWindow(Window& window) {
     glBindFramebuffer(GL_FRAMEBUFFER, stencilFramebuffer);
     GLubyte pixel[4] = {};
     glReadPixels(kSize / 2, kSize / 2, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel);
+    std::vector<GLubyte> read(std::size_t(kSize) * kSize * 4);
+    std::uint32_t sum = 0;
+    const auto add = [&] {
+        for (const GLubyte value : read) {
+            sum = sum * 31 + value;
+        }
+    };
+    glReadPixels(0, 0, kSize, kSize, GL_RGBA, GL_UNSIGNED_BYTE, read.data());
+    add();
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    // Once more as a texture, and the window itself: its samples are still there.
+    glReadPixels(w / 8, h * 5 / 8, kSize, kSize, GL_RGBA, GL_UNSIGNED_BYTE, read.data());
+    add();
+    glBindTexture(GL_TEXTURE_2D, copied);
+    glCopyTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, w / 8, h * 5 / 8, kSize, kSize, 0);
+    glGetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, read.data());
+    add();
+    showBits(2, sum);
     showBits(0, std::uint32_t(pixel[0]) | std::uint32_t(pixel[1]) << 8 | std::uint32_t(pixel[2]) << 16);
 }
 
