@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "tests/fuzz/random_gl/image_formats.hpp"
-#include "tests/fuzz/random_gl/world.hpp"
+#include "tests/fuzz/random_gl/recipes.hpp"
 
 namespace fuzz {
 namespace {
@@ -300,6 +300,11 @@ void callAny(World& w) {
         const bool deletes = std::string_view(command.name).starts_with("glDelete");
         const bool gone = command.removed && w.profile == Profile::Core;
         if ((deletes && !w.random.chance(25)) || (gone && !w.random.chance(6))) {
+            continue;
+        }
+        const std::string_view name = command.name;
+        const bool draws = name.starts_with("glDrawArrays") || name.starts_with("glDrawElements") || name.starts_with("glDrawRange") || name.starts_with("glMultiDraw");
+        if (draws && !drawsAnything(w)) {
             continue;
         }
         callCommand(w, command);

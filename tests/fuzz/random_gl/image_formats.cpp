@@ -61,7 +61,7 @@ bool fits(const World& w, const ImageFormat& format) {
     const bool legacy = format.internal == GL_ALPHA || (format.internal >= GL_LUMINANCE && format.internal <= GL_LUMINANCE_ALPHA) ||
                         format.internal == GL_INTENSITY || format.internal == GL_LUMINANCE16;
     switch (w.profile) {
-    case Profile::Compat: return format.format != GL_RG; // scaled on its way in, Mesa 22.3.6 skips no pixels of it
+    case Profile::Compat: return true;
     case Profile::Core: return !legacy;
     case Profile::Es1: return format.classic;
     case Profile::Es3: return format.es;

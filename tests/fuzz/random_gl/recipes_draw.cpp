@@ -134,6 +134,9 @@ void drawElements(World& w, GLenum mode, int count) {
 }
 
 void drawAny(World& w) {
+    if (!drawsAnything(w)) {
+        return;
+    }
     const GLenum mode = anyPrimitive(w);
     const int count = w.random.between(3, 18);
     const int first = w.random.below(6);
@@ -235,7 +238,9 @@ void drawIndirect(World& w) {
         GL(glBufferData, GL_ELEMENT_ARRAY_BUFFER, 256, indexMemory(w.random, type), GL_STATIC_DRAW);
     }
     const GLenum mode = anyPrimitive(w);
-    if (indexed && (w.es() || w.random.chance(50))) {
+    if (!drawsAnything(w)) {
+        // Nothing, then.
+    } else if (indexed && (w.es() || w.random.chance(50))) {
         GL(glDrawElementsIndirect, mode, type, offsetOf(0));
     } else if (indexed) {
         GL(glMultiDrawElementsIndirect, mode, type, offsetOf(0), 3, 20);

@@ -124,6 +124,7 @@ void feedback(World& w) {
     const std::size_t bytes = 8192;
     void* const memory = lateMemory(bytes);
     const bool selects = w.random.chance(50);
+    GL(glShadeModel, GL_SMOOTH); // flat, Mesa 22.3.6 gives clipped vertices colours of memory that nobody has written
     if (selects) {
         GL(glSelectBuffer, w.random.chance(80) ? 1000 : 9, static_cast<GLuint*>(memory));
     } else {

@@ -21,6 +21,20 @@ const PoolProgram& anyProgram(World& w) {
     }
 }
 
+bool hasVertexShader(GLuint program) {
+    GLuint shaders[8] = {};
+    GLsizei count = 0;
+    glGetAttachedShaders(program, 8, &count, shaders);
+    for (GLsizei i = 0; i < count; ++i) {
+        GLint type = 0;
+        glGetShaderiv(shaders[i], GL_SHADER_TYPE, &type);
+        if (type == GL_VERTEX_SHADER) {
+            return true;
+        }
+    }
+    return false;
+}
+
 void feedUniforms(World& w, GLuint program) {
     const GLint color = GL(glGetUniformLocation, program, "tint");
     GL(glUniform4fv, color, 1, static_cast<const float*>(inputOf(Type::Float, w.random)));
@@ -180,6 +194,24 @@ constexpr Recipe kRecipes[] = {
 };
 
 } // namespace
+
+bool drawsAnything(World& w) {
+    if (!w.shaders() || w.profile == Profile::Compat) {
+        return true;
+    }
+    GLint current = 0;
+    glGetIntegerv(GL_CURRENT_PROGRAM, &current);
+    if (current != 0) {
+        return hasVertexShader(static_cast<GLuint>(current));
+    }
+    GLint pipeline = 0;
+    GLint vertexProgram = 0;
+    glGetIntegerv(GL_PROGRAM_PIPELINE_BINDING, &pipeline);
+    if (pipeline != 0) {
+        glGetProgramPipelineiv(static_cast<GLuint>(pipeline), GL_VERTEX_SHADER, &vertexProgram);
+    }
+    return vertexProgram != 0;
+}
 
 void useAnyProgram(World& w) {
     const GLuint program = w.living(Kind::Program);
