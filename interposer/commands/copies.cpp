@@ -59,6 +59,15 @@ void gatherNow(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfiel
     }
 }
 
+// The nodes read the window in between, and not the object that the program has bound for reading.
+template <class Gather> void readingWindow(ThreadState& t, Gather&& gather) {
+    GLint object = 0;
+    if (!readsWindow(*t.context) && gReal.glBindFramebuffer) gReal.glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &object);
+    if (object) encode_glBindFramebuffer(t, GL_READ_FRAMEBUFFER, 0);
+    gather();
+    if (object) encode_glBindFramebuffer(t, GL_READ_FRAMEBUFFER, static_cast<GLuint>(object));
+}
+
 bool severalNodes(const ThreadState& t) {
     Session* s = Session::current();
     return t.context && s && s->alive() && s->welcome().nodeCount > 1;
@@ -72,18 +81,19 @@ void gather(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield p
     else if (readsWindow(*t.context)) gatherNow(t, x, y, w, h, planes, true, samples, by);
 }
 
+void gatherNamed(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, const char* by) {
+    if (severalNodes(t)) readingWindow(t, [&] { gatherNow(t, x, y, w, h, planes, true, Samples::Resolved, by); });
+}
+
 void drawAll(ThreadState& t, const char* by) {
     if (!severalNodes(t) || t.context->group->allDrawn) return;
     t.context->group->allDrawn = true;
     records::drawAll(t);
     const Window* window = findWindowById(t.context->readWindow);
     if (!window) return;
-    GLint object = 0; // of the program, which reads from it
-    if (!readsWindow(*t.context) && gReal.glBindFramebuffer) gReal.glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &object);
-    if (object) encode_glBindFramebuffer(t, GL_READ_FRAMEBUFFER, 0);
     constexpr GLbitfield kAll = GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT; // what other nodes have drawn until now
-    gatherNow(t, 0, 0, static_cast<GLsizei>(window->config.width), static_cast<GLsizei>(window->config.height), kAll, false, Samples::First, by);
-    if (object) encode_glBindFramebuffer(t, GL_READ_FRAMEBUFFER, static_cast<GLuint>(object));
+    const auto width = static_cast<GLsizei>(window->config.width), height = static_cast<GLsizei>(window->config.height);
+    readingWindow(t, [&] { gatherNow(t, 0, 0, width, height, kAll, false, Samples::First, by); });
 }
 
 GLbitfield planesOf(GLenum internalFormat) {
@@ -142,7 +152,7 @@ void mural_glBlitNamedFramebuffer(GLuint readFramebuffer, GLuint drawFramebuffer
     if (readFramebuffer == 0) {
         const GLint x = srcX0 < srcX1 ? srcX0 : srcX1, y = srcY0 < srcY1 ? srcY0 : srcY1;
         const GLint w = srcX0 < srcX1 ? srcX1 - srcX0 : srcX0 - srcX1, h = srcY0 < srcY1 ? srcY1 - srcY0 : srcY0 - srcY1;
-        copies::gather(t, x - 1, y - 1, w + 2, h + 2, mask);
+        copies::gatherNamed(t, x - 1, y - 1, w + 2, h + 2, mask);
     }
     encode_glBlitNamedFramebuffer(t, readFramebuffer, drawFramebuffer, srcX0, srcY0, srcX1, srcY1, dstX0, dstY0, dstX1, dstY1, mask, filter);
     if (t.drawLocally) return gReal.glBlitNamedFramebuffer(readFramebuffer, drawFramebuffer, srcX0, srcY0, srcX1, srcY1, dstX0, dstY0, dstX1, dstY1, mask, filter);

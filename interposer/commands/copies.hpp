@@ -13,6 +13,9 @@ enum class Samples { Resolved, First };
 // Fetches the planes of the rectangle from all nodes and gives them to all, where a window is read.
 void gather(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, Samples samples = Samples::Resolved, const char* by = __builtin_FUNCTION());
 
+// The same for a command that names the window, whatever is bound for reading. Display lists hold none.
+void gatherNamed(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, const char* by = __builtin_FUNCTION());
+
 // From now on every node draws all. For fragment shaders that write to memory, and for a display list that copies out
 // of a window, or draws on a condition that it finds itself: nobody can be asked in the middle of it.
 void drawAll(ThreadState& t, const char* by = __builtin_FUNCTION());

@@ -6,6 +6,7 @@
 #include "tests/programs/support/show.hpp"
 
 #include <cstring>
+#include <vector>
 
 using namespace programs;
 
@@ -107,6 +108,18 @@ void drawWindow(Window& window, int frame) {
     }
     glEndQuery(GL_SAMPLES_PASSED);
     glBlitNamedFramebuffer(framebuffers[1], 0, 0, 0, kSize, kSize, 10, window.height() - 60, 90, window.height() - 10, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    // Out of the window by its name, while an object is bound for reading.
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffers[0]);
+    glBlitNamedFramebuffer(0, framebuffers[1], 0, 0, window.width(), window.height(), 0, 0, kSize, kSize, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffers[1]);
+    std::vector<GLubyte> small(std::size_t(kSize) * kSize * 4);
+    glReadPixels(0, 0, kSize, kSize, GL_RGBA, GL_UNSIGNED_BYTE, small.data());
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+    std::uint32_t sum = 0;
+    for (const GLubyte value : small) {
+        sum = sum * 31 + value;
+    }
+    showBits(3, sum);
     GLuint passed = 0;
     glGetQueryObjectuiv(query, GL_QUERY_RESULT, &passed);
     showBits(0, passed);
