@@ -182,7 +182,9 @@ private:
                                 "Examples:\n  mural netperf                                             two receivers on this machine\n"
                                 "  mural netperf --members 4 --message 64                    how long a word takes to be everywhere\n"
                                 "  mural netperf send --members 3 --rate 900mbit --secret-file key\n"
-                                "  mural netperf receive --control wall0:4278 --secret-file key\n\nExit status: 0, or 1 when not everything arrived.");
+                                "  mural netperf receive --control wall0:4278 --secret-file key\n"
+                                "  mural netperf send --stream 'rsp://239.255.77.85:4277?interface=eth1&silent-ms=20000&secret=key'\n\n"
+                                "Receivers check each byte. Exit status: 0, or 1 when not everything arrived as it was sent.");
         mural::cli::describeNetperf(netperf, netperf_);
         CLI::App& discover = add("discover", "find the nodes that wait for heads on this network", [this] { return mural::cli::discoverCommand(discover_); },
                                  "Examples:\n  mural discover\n  mural discover --seconds 5 --json\n  mural discover --interface eth1 --no-avahi\n\n"

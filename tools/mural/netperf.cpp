@@ -12,7 +12,9 @@
 #include "common/clock.hpp"
 #include "nodes/launch/program_check.hpp"
 #include "tools/mural/netperf_measured.hpp"
+#include "tools/mural/stream_pattern.hpp"
 #include "transport/rsp/group.hpp"
+#include "transport/rsp/group_description.hpp"
 #include "transport/rsp/group_text.hpp"
 
 namespace mural::cli {
@@ -40,9 +42,21 @@ struct Plan {
     uint64_t messageBytes = 0;
 };
 
-Result<Plan> planOf(const NetperfArguments& a) {
-    Plan plan;
-    rsp::GroupOptions& o = plan.options;
+// By --stream: address and secret may stand there, or in options of their own.
+Result<rsp::GroupOptions> optionsOfStream(const NetperfArguments& a, bool& needsSecret) {
+    auto description = parseConnectionDescription(a.stream);
+    if (!description) return description.error();
+    if (description->kind != ConnectionDescription::Kind::Rsp)
+        return Error{"--stream \"" + a.stream + "\" is no group; give rsp://239.255.77.85:4277?parameter=value&…"};
+    auto options = rsp::groupOptionsOf(*description);
+    if (!options) return options.error();
+    if (!description->parameters.contains("control")) options->control = a.control;
+    needsSecret = !description->parameters.contains("secret");
+    return options;
+}
+
+Result<rsp::GroupOptions> optionsOf(const NetperfArguments& a) {
+    rsp::GroupOptions o;
     o.group = a.group;
     o.interface = a.interface;
     o.control = a.control;
@@ -55,22 +69,30 @@ Result<Plan> planOf(const NetperfArguments& a) {
     auto rate = rsp::parseRate(a.rate);
     if (!rate) return rate.error();
     o.bytesPerS = *rate;
-    auto bytes = rsp::parseSize(a.bytes);
-    auto message = rsp::parseSize(a.message);
     auto window = rsp::parseSize(a.window);
-    if (!bytes) return bytes.error();
-    if (!message) return message.error();
     if (!window) return window.error();
     if (*window < 64 || *window > 65'536 || (*window & (*window - 1)) != 0) return Error{"a window has 64 to 65536 datagrams, a power of two"};
     o.windowDatagrams = static_cast<uint32_t>(*window);
-    plan.bytes = *bytes;
-    plan.messageBytes = *message;
+    return o;
+}
+
+Result<Plan> planOf(const NetperfArguments& a) {
+    bool needsSecret = true;
+    auto options = a.stream.empty() ? optionsOf(a) : optionsOfStream(a, needsSecret);
+    auto bytes = rsp::parseSize(a.bytes);
+    auto message = rsp::parseSize(a.message);
+    if (!options) return options.error();
+    if (!bytes) return bytes.error();
+    if (!message) return message.error();
+    Plan plan{*options, *bytes, *message};
+    rsp::GroupOptions& o = plan.options;
     if (a.role == "local") {
-        o.interface = a.interface.empty() ? "lo" : a.interface;
+        if (o.interface.empty()) o.interface = "lo";
         o.control = "127.0.0.1:0";
         return plan;
     }
-    if (a.secretFile.empty()) return Error{"--secret-file is needed: sender and receivers show each other that they know it"};
+    if (!needsSecret) return plan;
+    if (a.secretFile.empty()) return Error{"--secret-file is needed (or secret=FILE in --stream): sender and receivers show each other that they know it"};
     auto secret = rsp::readSecret(a.secretFile);
     if (!secret) return secret.error();
     o.secret = *secret;
@@ -78,8 +100,9 @@ Result<Plan> planOf(const NetperfArguments& a) {
 }
 
 Result<void> sendMessages(Group& group, const NetperfArguments& a, uint64_t messageBytes, Deadline deadline, Measured& m) {
-    const std::vector<std::byte> message(messageBytes, std::byte{7});
+    std::vector<std::byte> message(messageBytes);
     for (size_t i = 0; i < a.count + kWarmUp; ++i) {
+        fillPattern(message, i * messageBytes);
         const double began = nowS();
         if (auto r = group.write(message, deadline); !r) return r;
         group.flush();
@@ -92,9 +115,10 @@ Result<void> sendMessages(Group& group, const NetperfArguments& a, uint64_t mess
 }
 
 Result<void> sendBytes(Group& group, uint64_t bytes, Deadline deadline, Measured& m) {
-    const std::vector<std::byte> piece(kPieceBytes, std::byte{5});
+    std::vector<std::byte> piece(kPieceBytes);
     while (m.bytes < bytes) {
         const size_t count = std::min<uint64_t>(piece.size(), bytes - m.bytes);
+        fillPattern(std::span(piece).first(count), m.bytes);
         if (auto r = group.write(std::span(piece).first(count), deadline); !r) return r;
         m.bytes += count;
     }
@@ -119,21 +143,25 @@ Result<Measured> send(Group& group, const Plan& plan, const NetperfArguments& a)
     return m;
 }
 
-// Until the sender leaves, or is cut off. The time is that of the first byte to the last.
+// Until the sender leaves, or is cut off, or this end wants to leave. The time is that of the first byte to the last.
 Result<Measured> receive(Group& group, const NetperfArguments& a) {
     Measured m;
     m.role = "receiver " + std::to_string(group.self());
     m.timeline = Timeline(static_cast<int64_t>(a.timelineMs) * kNsPerMs);
     std::vector<std::byte> piece(kPieceBytes);
+    PatternCheck check;
+    const Deadline leave = a.leaveAfterSeconds > 0 ? Deadline::inMs(static_cast<int64_t>(a.leaveAfterSeconds * 1000)) : Deadline::never();
+    const auto withinNs = static_cast<int64_t>(a.withinSeconds * kNsPerS);
     double firstS = 0;
     double cpuBegan = cpuS();
-    while (true) {
-        auto count = group.read(rsp::kHost, piece, Deadline::inMs(static_cast<int64_t>(a.withinSeconds * 1000)));
-        if (!count) m.cut = count.error().message;
+    while (!leave.passed()) {
+        auto count = group.read(rsp::kHost, piece, Deadline::inMs(leave.leftNs(withinNs) / kNsPerMs + 1));
+        if (!count && !leave.passed()) m.cut = count.error().message;
         if (!count || *count == 0) break; // the sender has what it wanted
         const int64_t nowNs = monotonicNowNs();
         const double now = static_cast<double>(nowNs) * 1e-9;
         m.timeline.add(*count, nowNs);
+        check.take(std::span(piece).first(*count));
         if (m.bytes == 0) {
             firstS = now;
             cpuBegan = cpuS();
@@ -142,6 +170,8 @@ Result<Measured> receive(Group& group, const NetperfArguments& a) {
         m.elapsedS = now - firstS;
     }
     m.cpuS = cpuS() - cpuBegan;
+    m.beganAt = check.beganAt();
+    m.wrong = check.fault();
     m.report = group.report();
     return m;
 }
@@ -149,6 +179,10 @@ Result<Measured> receive(Group& group, const NetperfArguments& a) {
 int failed(const std::string& why) {
     fmt::print(stderr, "mural netperf: {}\n", why);
     return 1;
+}
+
+std::string faultOf(const Measured& m) {
+    return "what came is not what was sent: " + m.wrong + "; with any seal but none this is a fault of mural, please report it";
 }
 
 int sendRole(const Plan& plan, const NetperfArguments& a) {
@@ -173,6 +207,7 @@ int receiveRole(const Plan& plan, const NetperfArguments& a) {
     m->joinBeganNs = joinBeganNs;
     m->joinedNs = joinedNs;
     print(*m, a.asJson);
+    if (!m->wrong.empty()) return failed(faultOf(*m));
     return m->cut.empty() ? 0 : failed("the stream ended after " + std::to_string(m->bytes) + " bytes, before its end: " + m->cut);
 }
 
@@ -203,6 +238,7 @@ int localRole(const Plan& plan, const NetperfArguments& a) {
     for (const Measured& m : received) {
         print(m, a.asJson);
         if (!m.cut.empty()) return failed(m.role + ": " + m.cut);
+        if (!m.wrong.empty()) return failed(m.role + ": " + faultOf(m));
     }
     return 0;
 }
@@ -215,6 +251,7 @@ void describeNetperf(CLI::App& command, NetperfArguments& a) {
     command.add_option("--bytes", a.bytes, "how much is sent: 64M")->type_name("SIZE");
     command.add_option("--message", a.message, "send messages of this size instead, each when all have the one before")->type_name("SIZE");
     command.add_option("--count", a.count, "so many messages")->check(CLI::Range(1, 10'000'000));
+    auto* stream = command.add_option("--stream", a.stream, "the group as a description, rsp://GROUP:PORT?parameter=value&…, instead of the options for one of them (docs/transport.md lists them)");
     command.add_option("--rate", a.rate, "at most: 200mbit, 1gbit; 0: nine tenths of what the card tells")->type_name("RATE");
     command.add_option("--group", a.group, "multicast address and port")->type_name("ADDRESS:PORT");
     command.add_option("--interface", a.interface, "network interface, by name or address");
@@ -224,10 +261,13 @@ void describeNetperf(CLI::App& command, NetperfArguments& a) {
     command.add_option("--datagram", a.datagramBytes, "bytes of a datagram; 0: what the interface carries whole")->check(CLI::Range(0, 65'000));
     command.add_option("--window", a.window, "datagrams under way at most, a power of two");
     command.add_option("--within", a.withinSeconds, "give up after so many seconds")->type_name("SECONDS")->check(CLI::Range(0.1, 86'400.0));
+    command.add_option("--leave-after", a.leaveAfterSeconds, "receive: leave the group so many seconds after joining")->type_name("SECONDS")->check(CLI::Range(0.0, 86'400.0));
     command.add_option("--timeline", a.timelineMs, "with --json: tell the bytes of every so many milliseconds, too")->type_name("MS")->check(CLI::Range(0, 10'000));
     command.add_flag("--no-parity", a.noParity, "mend losses by sending again, to compare");
     command.add_flag("--no-multicast", a.noMulticast, "receive: through the host's connection");
     command.add_flag("--json", a.asJson, "one line of JSON for each end");
+    for (const char* single : {"--rate", "--group", "--interface", "--seal", "--datagram", "--window", "--no-parity", "--no-multicast"})
+        stream->excludes(command.get_option(single));
 }
 
 int netperfCommand(const NetperfArguments& arguments) {

@@ -9,6 +9,7 @@ namespace mural::cli {
 
 struct NetperfArguments {
     std::string role = "local";
+    std::string stream; // a group's description; instead of the single options below
     std::string group = "239.255.77.85:4277";
     std::string interface;
     std::string control = ":4278";
@@ -23,6 +24,7 @@ struct NetperfArguments {
     size_t datagramBytes = 0;
     unsigned timelineMs = 0;
     double withinSeconds = 120;
+    double leaveAfterSeconds = 0; // 0: stays to the end
     bool noParity = false;
     bool noMulticast = false;
     bool asJson = false;

@@ -34,6 +34,8 @@ json toJson(const Measured& m) {
         {"feedback", s.feedback}, {"sendings", m.report.sendings}, {"sendingBy", m.report.sendingBy},
         {"socketDropped", m.report.socketDropped}, {"rateMbit", m.report.bytesPerS * 8e-6}, {"refused", m.report.refused.all()}, {"membersLost", m.membersLost}};
     if (!m.cut.empty()) j["cut"] = m.cut;
+    if (!m.wrong.empty()) j["wrong"] = m.wrong;
+    if (m.joinedNs != 0) j["firstByte"] = m.beganAt;
     if (m.joinedNs != 0) j["join"] = {{"beganAt", secondsOf(m.joinBeganNs)}, {"joinedAt", secondsOf(m.joinedNs)}, {"seconds", m.joinS()}};
     if (!m.latenciesUs.empty()) {
         j["latencyUs"] = {{"p50", m.latencyUs(0.5)}, {"p90", m.latencyUs(0.9)}, {"p99", m.latencyUs(0.99)}, {"max", m.latenciesUs.back()},

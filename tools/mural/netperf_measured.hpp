@@ -37,7 +37,9 @@ struct Measured {
     std::vector<double> latenciesUs; // sorted
     Timeline timeline;
     rsp::GroupReport report;
+    uint64_t beganAt = 0; // a receiver's: place of its first byte in the stream
     std::string cut; // why the stream ended before its end; empty: it did not
+    std::string wrong; // which byte is not the one that was sent; empty: none
 
     [[nodiscard]] double mbit() const { return elapsedS > 0 ? static_cast<double>(bytes) * 8e-6 / elapsedS : 0; }
     [[nodiscard]] double cpuPerGB() const { return bytes > 0 ? cpuS / (static_cast<double>(bytes) * 1e-9) : 0; }

@@ -1,0 +1,91 @@
+#include "tools/mural/stream_pattern.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "common/little_endian.hpp"
+
+namespace mural::cli {
+
+namespace {
+
+// Word n is (n + 1) times an odd number modulo 2^64, so each word is another one, and the inverse tells which.
+constexpr size_t kWordBytes = 8;
+constexpr uint64_t kFactor = 0x9e3779b97f4a7c15u;
+
+constexpr uint64_t inverseOf(uint64_t odd) {
+    uint64_t inverse = odd; // right in 3 bits; each step of Newton's doubles them
+    for (int i = 0; i < 5; ++i) inverse *= 2 - odd * inverse;
+    return inverse;
+}
+static_assert(kFactor * inverseOf(kFactor) == 1);
+
+constexpr uint64_t kMostWords = uint64_t{1} << 60; // what is beyond that is chance
+
+} // namespace
+
+void fillPattern(std::span<std::byte> into, uint64_t place) {
+    uint64_t word = (place / kWordBytes + 1) * kFactor;
+    const size_t skipped = place % kWordBytes;
+    std::array<std::byte, kWordBytes> cut;
+    if (skipped != 0) {
+        storeLittle(cut.data(), word);
+        const size_t count = std::min(into.size(), kWordBytes - skipped);
+        std::copy_n(cut.begin() + static_cast<std::ptrdiff_t>(skipped), count, into.begin());
+        into = into.subspan(count);
+        word += kFactor;
+    }
+    for (; into.size() >= kWordBytes; into = into.subspan(kWordBytes), word += kFactor) storeLittle(into.data(), word);
+    storeLittle(cut.data(), word);
+    std::copy_n(cut.begin(), into.size(), into.begin());
+}
+
+std::optional<uint64_t> findPattern(std::span<const std::byte> bytes) {
+    if (bytes.size() < kFindBytes) return {};
+    for (size_t skipped = 0; skipped < kWordBytes; ++skipped) {
+        const uint64_t word = loadLittle<uint64_t>(bytes.data() + skipped);
+        const uint64_t place = (word * inverseOf(kFactor) - 1) * kWordBytes;
+        if (place / kWordBytes >= kMostWords || place < skipped) continue;
+        if (loadLittle<uint64_t>(bytes.data() + skipped + kWordBytes) != word + kFactor) continue;
+        return place - skipped;
+    }
+    return {};
+}
+
+void PatternCheck::take(std::span<const std::byte> bytes) {
+    if (!fault_.empty()) return;
+    if (found_) return compare(bytes);
+    first_.insert(first_.end(), bytes.begin(), bytes.end());
+    if (first_.size() < kFindBytes) return;
+    const auto place = findPattern(first_);
+    if (!place) {
+        fault_ = "the first bytes that came are of no place in the stream";
+        return;
+    }
+    found_ = true;
+    place_ = beganAt_ = *place;
+    compare(first_);
+    first_ = {};
+}
+
+void PatternCheck::compare(std::span<const std::byte> bytes) {
+    std::array<std::byte, 4096> right;
+    while (!bytes.empty()) {
+        const auto piece = bytes.first(std::min(bytes.size(), right.size()));
+        const auto expected = std::span(right).first(piece.size());
+        fillPattern(expected, place_);
+        if (!std::ranges::equal(piece, expected)) {
+            const auto wrongAt = static_cast<size_t>(std::ranges::mismatch(piece, expected).in1 - piece.begin());
+            const uint64_t place = place_ + wrongAt;
+            const auto came = findPattern(bytes.subspan(wrongAt));
+            fault_ = came && *came != place ? fmt::format("at byte {} came what belongs at byte {}", place, *came) : fmt::format("byte {} was changed", place);
+            return;
+        }
+        place_ += piece.size();
+        bytes = bytes.subspan(piece.size());
+    }
+}
+
+} // namespace mural::cli
