@@ -8,6 +8,7 @@ namespace mural::rsp {
 
 namespace {
 bool isAfter(uint32_t aUs, uint32_t bUs) { return static_cast<int32_t>(aUs - bUs) > 0; }
+constexpr auto kOldestFirst = [](Sequence a, Sequence b) { return a > b; }; // of a heap
 } // namespace
 
 RepairPlan::RepairPlan(uint32_t windowDatagrams) : mask_(windowDatagrams - 1), states_(windowDatagrams) {}
@@ -49,6 +50,7 @@ void RepairPlan::enqueue(State& s) {
     if (s.queued) return;
     s.queued = true;
     queue_.push_back(s.base);
+    std::ranges::push_heap(queue_, kOldestFirst);
 }
 
 void RepairPlan::want(const SendWindow::Group& group, uint32_t missing, int rowsHeld, uint32_t echoUs) {
@@ -93,17 +95,12 @@ std::optional<RepairPlan::Repair> RepairPlan::takeFrom(State& s, uint32_t sentUs
 
 std::optional<RepairPlan::Repair> RepairPlan::take(
     Sequence oldest, std::optional<Sequence> partial, bool blocked, uint32_t sentUs) {
-    for (size_t turns = queue_.size(); turns > 0 && !queue_.empty();) {
+    while (!queue_.empty()) {
         const Sequence base = queue_.front();
         State& s = states_[base.value() & mask_];
         const bool live = s.base == base && base >= oldest;
         if (live && partial == base) {
-            if (!blocked) {
-                queue_.push_back(base);
-                queue_.pop_front();
-                --turns;
-                continue;
-            }
+            if (!blocked) return {}; // it is the newest: none waits behind it
             s.rowsWanted = s.rowsSent;
             s.resend |= std::exchange(s.missing, 0);
         }
@@ -111,8 +108,8 @@ std::optional<RepairPlan::Repair> RepairPlan::take(
             if (const auto repair = takeFrom(s, sentUs)) return repair;
         }
         if (s.base == base) s.queued = false;
-        queue_.pop_front();
-        --turns;
+        std::ranges::pop_heap(queue_, kOldestFirst);
+        queue_.pop_back();
     }
     return {};
 }

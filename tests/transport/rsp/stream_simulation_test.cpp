@@ -182,6 +182,23 @@ TEST(StreamSimulation, ALinkThatIsCutAndHealsLosesNothing) {
     EXPECT_EQ(stream.wrongBytes(), 0u);
 }
 
+// Nothing comes for 200 ms, now here, now there. Who is held by what it lost then for 2 s is removed, and must not come near.
+TEST(StreamSimulation, BurstsHoldNoMemberForLong) {
+    StreamPlan plan{.seed = 115, .members = 3, .bytes = 16 << 20, .shape = {1430, 4096}, .rate = {80 * kMbit}, .socketDatagrams = 4096};
+    SimulatedStream stream(plan);
+    const auto setCut = [&](size_t member, bool cut) { stream.network().faults(SimulatedStream::host(member)).cut = cut; };
+    stream.run(100 * kNsPerMs, [] { return false; });
+    for (int i = 0; i < 8; ++i) {
+        setCut(i % 2 * 2, true);
+        stream.run(200 * kNsPerMs, [] { return false; });
+        setCut(i % 2 * 2, false);
+        stream.run(50 * kNsPerMs, [] { return false; });
+    }
+    EXPECT_TRUE(stream.run(60 * kNsPerS));
+    EXPECT_EQ(stream.wrongBytes(), 0u);
+    for (const size_t member : {0, 2}) EXPECT_LT(stream.member(member).longestStallNs, kNsPerS) << "member " << member;
+}
+
 TEST(StreamSimulation, MembersComeAndGoWhileItFlows) {
     StreamPlan plan{.seed = 121, .members = 2, .bytes = 48 << 20, .flushEveryBytes = 30'000, .rate = {185 * kMbit}};
     plan.toMembers.loss = plan.toWriter.loss = 0.02;

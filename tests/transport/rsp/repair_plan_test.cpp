@@ -1,0 +1,62 @@
+// What a writer repairs, in which order, and that nothing is sent twice while it may be under way.
+#include <gtest/gtest.h>
+
+#include "transport/rsp/repair_plan.hpp"
+
+namespace mural::rsp {
+namespace {
+
+constexpr Sequence kFirst{0xffffffe0u}; // the second group begins with 0
+
+SendWindow::Group groupAt(RepairPlan& plan, int number) {
+    const SendWindow::Group group{kFirst + number * kMostInGroup, kMostInGroup, kMostInGroup};
+    plan.begin(group.base);
+    return group;
+}
+
+std::optional<RepairPlan::Repair> take(RepairPlan& plan, uint32_t sentUs) { return plan.take(kFirst, {}, false, sentUs); }
+
+TEST(RepairPlan, RowsUnderWayAreNotSentAgain) {
+    RepairPlan plan(1024);
+    const auto group = groupAt(plan, 0);
+    plan.want(group, 0b111, 0, 100);
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(take(plan, 1000));
+    EXPECT_FALSE(take(plan, 1000));
+    plan.want(group, 0b111, 0, 500); // told before the rows can have come
+    EXPECT_FALSE(take(plan, 1500));
+    plan.want(group, 0b111, 1, 1000); // one has come, and two are lost
+    EXPECT_EQ(take(plan, 1600)->place, 3);
+    EXPECT_EQ(take(plan, 1600)->place, 4);
+    EXPECT_FALSE(take(plan, 1600));
+}
+
+TEST(RepairPlan, WhatIsUnderWayAgainIsNotSentAgain) {
+    RepairPlan plan(1024);
+    const auto group = groupAt(plan, 0);
+    plan.wantAgain(group, 0b101, 100);
+    EXPECT_EQ(take(plan, 1000)->place, 0);
+    EXPECT_EQ(take(plan, 1000)->place, 2);
+    plan.wantAgain(group, 0b101, 500);
+    EXPECT_FALSE(take(plan, 1500));
+    plan.wantAgain(group, 0b100, 1000);
+    EXPECT_EQ(take(plan, 1600)->place, 2);
+}
+
+TEST(RepairPlan, TheOldestGroupComesFirst) {
+    RepairPlan plan(1024);
+    std::vector<SendWindow::Group> groups;
+    for (int i = 0; i < 5; ++i) groups.push_back(groupAt(plan, i));
+    for (const size_t i : {3, 1, 4, 0, 2}) plan.want(groups[i], 1, 0, 100);
+    EXPECT_EQ(take(plan, 1000)->base, groups[0].base);
+    EXPECT_EQ(take(plan, 1000)->base, groups[1].base);
+    plan.want(groups[0], 1, 0, 1000); // lost again: readers wait for it
+    EXPECT_EQ(take(plan, 1100)->base, groups[0].base);
+    // What all have is no longer of interest; what is not sent whole waits.
+    EXPECT_EQ(plan.take(groups[3].base, {}, false, 1100)->base, groups[3].base);
+    EXPECT_FALSE(plan.take(groups[3].base, groups[4].base, false, 1100));
+    EXPECT_EQ(plan.take(groups[3].base, {}, false, 1100)->base, groups[4].base);
+    EXPECT_TRUE(plan.empty() || !take(plan, 1100));
+}
+
+} // namespace
+} // namespace mural::rsp
