@@ -15,9 +15,10 @@ INSIDE = "MURAL_TEST_OWN_NETWORK"
 # Rules of netdev see all that comes in, as a switch would.
 RULES = """
 add table netdev faults
-add chain netdev faults in { type filter hook ingress device "eth0" priority 0; }
-add rule netdev faults in %s drop
+add chain netdev faults in { type filter hook ingress device "%s" priority 0; }
 """
+# Of a longer way: a packet of 1514 bytes takes 2.4 ms, and those behind it wait.
+DETOUR_RATE = "5mbit"
 
 
 def skip(why):
@@ -48,12 +49,15 @@ def sh(script):
 
 
 class OwnNetwork:
-    """{name: address} of the other machines; this one has `here`. All have an eth0 in one /24."""
+    """{name: address} of the other machines; this one has `here`. All have an eth0 in one /24. single_packets: what a sender
+    gives to its card as one leaves it as the packets of the wire, so faults are of each alone."""
 
-    def __init__(self, here, others, mtu=1500):
+    def __init__(self, here, others, mtu=1500, single_packets=False):
         self.others = others
         try:
             self._build(here, mtu)
+            for at in (["ip"] + ["ip -n " + name for name in others]) if single_packets else []:
+                sh(at + " link set dev eth0 gso_max_segs 1")
             for name in others:
                 self.drop(name, "ip daddr 192.0.2.1")  # whether rules can be made at all
                 self.heal(name)
@@ -75,12 +79,49 @@ class OwnNetwork:
     def at(self, name, script):
         sh("ip netns exec %s sh -ec '%s'" % (name, script))
 
+    def start(self, name, script):
+        """A shell's script there, beside this one."""
+        return subprocess.Popen(["ip", "netns", "exec", name, "sh", "-ec", script], stdin=subprocess.DEVNULL)
+
+    def rules(self, name, card, *rules):
+        text = RULES % card + "".join("add rule netdev faults in %s\n" % rule for rule in rules)
+        done = subprocess.run(["ip", "netns", "exec", name, "nft", "-f", "-"], input=text, text=True, check=False, timeout=60, capture_output=True)
+        if done.returncode != 0:
+            raise RuntimeError("nft at %s: %s" % (name, done.stderr.strip()))
+
     def drop(self, name, what):
-        subprocess.run(["ip", "netns", "exec", name, "nft", "-f", "-"], input=RULES % what, text=True, check=True, timeout=60,
-                       capture_output=True)
+        self.rules(name, "eth0", what + " drop")
 
     def heal(self, name):
         self.at(name, "nft delete table netdev faults")
+
+    def mend(self):
+        """No rules anywhere, all cables in."""
+        for name in ("switch", *self.others):
+            self.at(name, "nft flush ruleset")
+        for name in self.others:
+            self.join(name)
+
+    def port(self, name):
+        return "port%d" % (1 + list(self.others).index(name))
+
+    def cut(self, name):
+        sh("ip -n switch link set %s down" % self.port(name))
+
+    def join(self, name):
+        sh("ip -n switch link set %s up" % self.port(name))
+
+    def detour(self, what):
+        """What comes from this machine and is chosen comes to all others later than what was sent after it."""
+        sh("ip -n switch link add slow0 mtu 1500 type veth peer name slow1; ip -n switch link set slow0 up")
+        sh("ip -n switch link set slow1 master bridge up; tc -n switch qdisc add dev slow0 root tbf rate %s burst 2kb limit 1mb" % DETOUR_RATE)
+        # Nobody lives there: nothing is learnt from it, nothing goes to it.
+        sh("ip -n switch link set slow1 type bridge_slave learning off flood off mcast_flood off bcast_flood off")
+        self.rules("switch", "port0", what + " counter fwd to \"slow0\"")
+
+    def end_detour(self):
+        self.at("switch", "nft flush ruleset")
+        sh("ip -n switch link del slow0")
 
     def launch_script(self, path):
         """What `--launch` wants: HOST COMMAND..., with an address as HOST."""

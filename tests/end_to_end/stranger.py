@@ -1,0 +1,71 @@
+"""One who is on the network and does not know the secret: sends to a group's port what it has heard there, again, changed and cut,
+and what was never sent. Run by network_faults.py; tells on one line how many datagrams of each it sent.
+
+  stranger.py GROUP PORT ADDRESS SECONDS    ADDRESS: of its own card
+"""
+
+import os
+import random
+import socket
+import struct
+import sys
+import time
+
+KEPT = 5000
+
+
+def group_socket(group, port, address):
+    s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    s.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    s.bind((group, port))
+    s.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, struct.pack("4s4s", socket.inet_aton(group), socket.inet_aton(address)))
+    s.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(address))
+    s.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_LOOP, 0)
+    s.setblocking(False)
+    return s
+
+
+def changed(datagram):
+    """One bit is another, or the counter is one that never was, or the end is missing."""
+    made = bytearray(datagram)
+    kind = random.randrange(3)
+    if kind == 0:
+        made[random.randrange(len(made))] ^= 1 << random.randrange(8)
+    elif kind == 1:
+        made[8:16] = struct.pack("<Q", struct.unpack("<Q", made[8:16])[0] + random.randrange(1, 1 << 40))
+    else:
+        del made[random.randrange(len(made)):]
+    return bytes(made)
+
+
+def main():
+    group, port, address, seconds = sys.argv[1], int(sys.argv[2]), sys.argv[3], float(sys.argv[4])
+    s = group_socket(group, port, address)
+    heard, sent = [], {"heard": 0, "replayed": 0, "changed": 0, "random": 0}
+    until = time.monotonic() + seconds
+    while time.monotonic() < until:
+        try:
+            for _ in range(100):
+                datagram = s.recv(65536)
+                if len(datagram) < 16:
+                    continue
+                sent["heard"] += 1
+                if len(heard) < KEPT:
+                    heard.append(datagram)
+                else:
+                    heard[random.randrange(KEPT)] = datagram
+        except BlockingIOError:
+            pass
+        for _ in range(5):
+            made = {"random": os.urandom(random.randrange(1473))}
+            if heard:
+                made["replayed"] = random.choice(heard)
+                made["changed"] = changed(random.choice(heard[-100:]))
+            for kind, datagram in made.items():
+                s.sendto(datagram, (group, port))
+                sent[kind] += 1
+        time.sleep(0.005)
+    print(" ".join("%s %d" % item for item in sent.items()), flush=True)
+
+
+main()
