@@ -102,10 +102,7 @@ Result<size_t> Group::writeSome(std::span<const std::byte> bytes, Deadline deadl
             if (state_->core->sender()->canSend()) state_->pump();
             return took;
         }
-        if (deadline.passed()) return tooLate("room in the stream; a member is slow");
-        state_->waitingForRoom = true;
-        state_->room.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(kSliceNs)));
-        state_->waitingForRoom = false;
+        if (!state_->wait(lock, state_->room, deadline)) return tooLate("room in the stream; a member is slow");
     }
 }
 
@@ -128,8 +125,7 @@ Result<void> Group::waitArrived(Deadline deadline) {
     std::unique_lock lock(state_->mutex);
     while (!state_->core->sender()->allArrived()) {
         if (!state_->failure.empty()) return Error{state_->failure};
-        if (deadline.passed()) return tooLate("all members to have everything");
-        state_->arrived.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(kSliceNs)));
+        if (!state_->wait(lock, state_->arrived, deadline)) return tooLate("all members to have everything");
     }
     return {};
 }
@@ -160,10 +156,10 @@ Result<size_t> Group::read(MemberId from, std::span<std::byte> into, Deadline de
         }
         if (from == kHost && state_->hostLeft) return size_t{0};
         if (!state_->failure.empty()) return Error{state_->failure};
-        if (deadline.passed()) return tooLate("bytes of member " + std::to_string(from));
         const auto waiting = state_->waitingForData.insert(from);
-        state_->data.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(kSliceNs)));
+        const bool inTime = state_->wait(lock, state_->data, deadline);
         state_->waitingForData.erase(waiting);
+        if (!inTime) return tooLate("bytes of member " + std::to_string(from));
     }
 }
 

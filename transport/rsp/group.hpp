@@ -1,8 +1,8 @@
 // A multicast group of this process: sockets, a thread and a lock around GroupCore. The host's clock, network and members
 // are real here; all that is decided is decided there.
 //
-// Threads: one thread of the group's own receives and keeps time; any thread may write, read, wait and ask. One at a time
-// writes; one at a time reads a member's stream.
+// Threads: any thread may write, read, wait and ask. One at a time writes; one at a time reads a member's stream. Who
+// waits for bytes, room or arrival receives and keeps time meanwhile; when nobody does, a thread of the group's own.
 #pragma once
 
 #include <array>

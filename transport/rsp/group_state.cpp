@@ -50,7 +50,11 @@ Result<void> Group::State::openSockets() {
     auto own = UdpSocket::openOwn(interface_, group_.family(), options_.socketBytes);
     if (!own) return own.error();
     own_.emplace(std::move(*own));
-    ownEvents_.emplace(context_, own_->descriptor());
+    auto arrivals = Arrivals::open();
+    if (!arrivals) return arrivals.error();
+    arrivals_.emplace(std::move(*arrivals));
+    if (auto r = arrivals_->add(own_->descriptor()); !r) return r.error();
+    watched_.emplace(context_, arrivals_->watched());
     outbox_.emplace(*own_);
     outbox_->setGroup(group_);
     return {};
@@ -60,8 +64,7 @@ Result<void> Group::State::joinMulticast() {
     auto socket = UdpSocket::openGroup(group_, interface_, options_.socketBytes);
     if (!socket) return socket.error();
     groupSocket_.emplace(std::move(*socket));
-    groupEvents_.emplace(context_, groupSocket_->descriptor());
-    return {};
+    return arrivals_->add(groupSocket_->descriptor());
 }
 
 Result<void> Group::State::openCore(bool isHost) {
@@ -140,10 +143,8 @@ Result<void> Group::State::openMember(Deadline deadline) {
 
 void Group::State::startThread() {
     asio::post(context_, [this] {
-        hear(*own_, *ownEvents_);
-        if (groupSocket_) hear(*groupSocket_, *groupEvents_);
+        watch();
         const std::lock_guard lock(mutex);
-        threadId_ = std::this_thread::get_id();
         pump();
     });
     thread_ = std::thread([this] {
@@ -157,7 +158,7 @@ void Group::State::stop() {
         asio::post(context_, [this] {
             {
                 const std::lock_guard lock(mutex);
-                if (failure.empty()) failure = "this member has left the group";
+                fail("this member has left the group");
                 if (links_.contains(kHost)) links_.at(kHost)->send(Leave{});
             }
             if (acceptor_) acceptor_->close();
@@ -166,17 +167,10 @@ void Group::State::stop() {
             endWhenSaid(Deadline::inMs(kGoodbyeMs));
         });
         thread_.join();
-        room.notify_all();
-        arrived.notify_all();
-        data.notify_all();
-        changed.notify_all();
     }
-    // The sockets have owners.
-    for (auto* events : {&ownEvents_, &groupEvents_}) {
-        if (!*events) continue;
-        (*events)->release();
-        events->reset();
-    }
+    // The descriptor has an owner.
+    if (watched_) watched_->release();
+    watched_.reset();
 }
 
 // The goodbyes arrive, or nobody takes them in time.
@@ -189,10 +183,7 @@ void Group::State::endWhenSaid(Deadline deadline) {
 
 void Group::State::fail(const std::string& why) {
     if (failure.empty()) failure = why.empty() ? "the group's host has ended it" : why;
-    room.notify_all();
-    arrived.notify_all();
-    data.notify_all();
-    changed.notify_all();
+    wakeAll();
 }
 
 void Group::State::acceptLinks() {
@@ -234,7 +225,10 @@ void Group::State::acceptLinks() {
 
 // A member's link to the host.
 void Group::State::startLink(MemberId id, const std::shared_ptr<ControlLink>& link) {
-    links_[id] = link;
+    {
+        const std::lock_guard lock(mutex);
+        links_[id] = link;
+    }
     ControlLink::Events events;
     events.opened = [this] {
         const std::lock_guard lock(mutex);
@@ -257,54 +251,6 @@ void Group::State::startLink(MemberId id, const std::shared_ptr<ControlLink>& li
     link->start(std::move(events));
 }
 
-void Group::State::hear(UdpSocket& socket, asio::posix::stream_descriptor& descriptor) {
-    descriptor.async_wait(asio::posix::stream_descriptor::wait_read, [this, &socket, &descriptor](const error_code& failed) {
-        if (failed) return;
-        {
-            const std::lock_guard lock(mutex);
-            const int64_t now = steadyNs();
-            socket.receive([&](std::span<std::byte> bytes, const SocketAddress&) {
-                if (!opener_) return;
-                const auto opened = opener_->open(bytes);
-                if (!opened.empty()) core->inputDatagram(opened, now);
-            });
-            core->socketDropped(dropped());
-            pump();
-        }
-        hear(socket, descriptor);
-    });
-}
-
-void Group::State::pump() {
-    const int64_t next = core->tick(steadyNs());
-    outbox_->flush();
-    if (next < timerNs_) {
-        timerNs_ = next;
-        if (onThread()) {
-            armTimer();
-        } else if (!std::exchange(timerPosted_, true)) {
-            asio::post(context_, [this] {
-                const std::lock_guard lock(mutex);
-                timerPosted_ = false;
-                armTimer();
-            });
-        }
-    }
-    wakeWaiting();
-}
-
-// The last thing before the lock is given back: who is woken wants it.
-void Group::State::wakeWaiting() {
-    if (const Sender* s = core->sender()) {
-        if (waitingForRoom && s->muchRoom()) room.notify_all();
-        if (s->allArrived()) arrived.notify_all();
-    }
-    for (const MemberId id : waitingForData) {
-        const Receiver* r = core->receiver(id);
-        if (r && !r->readable().empty()) return data.notify_all();
-    }
-}
-
 // Where no member is on this machine, the kernel need not bring back what we send.
 void Group::State::updateLoop() {
     const auto isHere = [&](const std::string& address) { return ownAddresses_.contains(withoutMapping(address)); };
@@ -320,22 +266,12 @@ uint32_t Group::State::dropped() const {
     return own_->dropped() + (groupSocket_ && !loop_ ? groupSocket_->dropped() : 0);
 }
 
-void Group::State::armTimer() {
-    timer_.expires_after(std::chrono::nanoseconds(std::max<int64_t>(0, timerNs_ - steadyNs())));
-    timer_.async_wait([this](const error_code& failed) {
-        if (failed) return;
-        const std::lock_guard lock(mutex);
-        timerNs_ = INT64_MAX;
-        pump();
-    });
-}
-
 void Group::State::sendControl(MemberId to, const ControlMessage& message) {
     const auto found = links_.find(to);
     if (found != links_.end()) found->second->send(message);
 }
 
-// From a writer's thread too; the links belong to ours.
+// From any thread; the links belong to the group's own, and change with the lock held.
 void Group::State::control(MemberId to, const ControlMessage& message) {
     asio::post(context_, [this, to, message] { sendControl(to, message); });
 }
@@ -351,7 +287,6 @@ void Group::State::welcomed(const Welcome& w) {
     // Where that fails no probe comes, and the host sends through its connection.
     if (!options_.multicast || !joinMulticast()) return;
     groupSocket_->ignoreMember(w.self);
-    hear(*groupSocket_, *groupEvents_);
 }
 
 void Group::State::memberCame(MemberId id, const MemberInfo& info) {
@@ -384,17 +319,19 @@ void Group::State::memberGone(MemberId id, GoneReason reason) {
     opener_->removeMember(id);
     outbox_->removeMember(id);
     updateLoop();
-    data.notify_all();
+    wake(data);
     changed.notify_all();
 }
 
 void Group::State::hangUp(MemberId id, const std::string& why) {
     if (!core || id == kHost) fail(why);
     asio::post(context_, [this, id] {
-        const auto found = links_.find(id);
-        if (found == links_.end()) return;
-        found->second->hangUp();
-        links_.erase(found);
+        std::shared_ptr<ControlLink> link;
+        {
+            const std::lock_guard lock(mutex);
+            if (auto found = links_.extract(id)) link = std::move(found.mapped());
+        }
+        if (link) link->hangUp();
     });
 }
 

@@ -11,6 +11,7 @@
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/steady_timer.hpp>
 
+#include "transport/rsp/arrivals.hpp"
 #include "transport/rsp/batch_outbox.hpp"
 #include "transport/rsp/control_link.hpp"
 #include "transport/rsp/group.hpp"
@@ -26,7 +27,7 @@ struct Group::State : GroupOutput {
     void stop();
 
     // The following with the mutex held.
-    void pump(); // what is due now: sends, and wakes who waits
+    void pump(int64_t nowNs = monotonicNowNs()); // what is due now: sends, and wakes who waits
     [[nodiscard]] GroupReport report() const;
 
     // GroupOutput
@@ -39,13 +40,20 @@ struct Group::State : GroupOutput {
     void hangUp(MemberId id, const std::string& why) override;
 
     mutable std::mutex mutex;
-    std::condition_variable room;    // for the writer
-    std::condition_variable arrived; // for who waits until all have everything
-    std::condition_variable data;    // for readers
-    std::condition_variable changed; // members
     // Nobody is woken for what it does not wait for: a wake costs more than a datagram.
-    bool waitingForRoom = false;
+    struct Waits {
+        std::condition_variable wake;
+        size_t sleeping = 0; // threads; the leader is none of them
+    };
+    Waits room;    // for the writer
+    Waits arrived; // for who waits until all have everything
+    Waits data;    // for readers
+    std::condition_variable changed; // members
     std::multiset<MemberId> waitingForData; // of these members
+    // Sleeps until there may be news, or a slice of time is over; false: the deadline has passed before. The first one that
+    // waits leads: it sees to the sockets and the timer, and the group's thread sleeps on.
+    bool wait(std::unique_lock<std::mutex>& lock, Waits& what, Deadline deadline);
+
     std::unique_ptr<GroupCore> core;
     std::string failure; // why the group is over; empty: it is not
     bool hostLeft = false; // the host ended the group in order: that is its stream's end, no failure of it
@@ -62,28 +70,32 @@ private:
     void startThread();
     void acceptLinks();
     void startLink(MemberId id, const std::shared_ptr<ControlLink>& link);
-    void hear(UdpSocket& socket, boost::asio::posix::stream_descriptor& descriptor);
-    void armTimer();
+    void watch();
+    void receive(std::span<const int> sockets, int64_t nowNs);
+    void armTimer(int64_t atNs);
     void wakeWaiting();
+    void wake(Waits& what);
+    void wakeAll();
     void endWhenSaid(Deadline deadline);
     void fail(const std::string& why);
     void updateLoop();
     void note(const MemberEvent& event);
     [[nodiscard]] uint32_t dropped() const;
-    [[nodiscard]] bool onThread() const { return std::this_thread::get_id() == threadId_; }
     void sendControl(MemberId to, const ControlMessage& message);
 
     GroupOptions options_;
     SocketAddress group_;
     NetworkInterface interface_;
     boost::asio::io_context context_;
-    boost::asio::steady_timer timer_{context_};
     boost::asio::steady_timer goodbyeTimer_{context_};
     std::optional<Tcp::acceptor> acceptor_;
     std::optional<UdpSocket> own_;
     std::optional<UdpSocket> groupSocket_;
-    std::optional<boost::asio::posix::stream_descriptor> ownEvents_;
-    std::optional<boost::asio::posix::stream_descriptor> groupEvents_;
+    std::optional<Arrivals> arrivals_;
+    std::optional<boost::asio::posix::stream_descriptor> watched_; // wakes the group's thread while nobody leads
+    const Waits* leaderWaitsFor_ = nullptr;                        // nullptr: nobody leads
+    bool leaderSleeps_ = false;
+    bool leaderCalled_ = false; // there may be what it waits for
     std::optional<BatchOutbox> outbox_;
     std::optional<DatagramOpener> opener_;
     std::map<MemberId, std::shared_ptr<ControlLink>> links_;
@@ -93,9 +105,7 @@ private:
     std::set<std::string> ownAddresses_; // of this machine
     bool loop_ = true;                   // members on this machine are reached
     int64_t timerNs_ = INT64_MAX;
-    bool timerPosted_ = false;
     std::thread thread_;
-    std::thread::id threadId_; // told by itself
 };
 
 } // namespace mural::rsp

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <semaphore>
 #include <thread>
 
 namespace mural::rsp {
@@ -117,6 +118,154 @@ TEST(Group, MembersWriteToo) {
             EXPECT_EQ(word[2], static_cast<std::byte>(from));
         }
     }
+}
+
+// Reads a word of a member's stream.
+Result<void> readWord(Group& group, MemberId from, Deadline deadline) {
+    std::array<std::byte, 64> word{};
+    for (size_t have = 0; have < word.size();) {
+        auto count = group.read(from, std::span(word).subspan(have), deadline);
+        if (!count) return count.error();
+        if (*count == 0) return Error{"the stream ended"};
+        have += *count;
+    }
+    return {};
+}
+
+Result<void> writeWord(Group& group, Deadline deadline) {
+    if (auto r = group.write(std::array<std::byte, 64>{}, deadline); !r) return r;
+    group.flush();
+    return {};
+}
+
+// Everybody waits for everybody: three threads at the host, and one of them sees to the sockets.
+TEST(Group, WordsGoAndComeWhoeverSeesToTheSockets) {
+    HOSTED(hosted, Seal::Tag);
+    auto& [host, join] = hosted;
+    constexpr int kRounds = 300;
+    auto direct = Group::join(join, Deadline::inMs(10'000));
+    join.multicast = false;
+    auto tunnelled = Group::join(join, Deadline::inMs(10'000));
+    ASSERT_TRUE(direct && tunnelled);
+    ASSERT_TRUE(host->waitForMembers(2, Deadline::inMs(10'000)));
+    for (int i = 0; i < 2; ++i) ASSERT_TRUE(host->accept(Deadline::inMs(10'000)));
+    const Deadline deadline = Deadline::inMs(20'000);
+    std::array<std::string, 4> failures;
+    std::vector<std::thread> threads;
+    for (size_t i = 0; i < 2; ++i) {
+        Group& member = i == 0 ? **direct : **tunnelled;
+        threads.emplace_back([&failures, &member, i, deadline] {
+            for (int round = 0; round < kRounds && failures[i].empty(); ++round) {
+                auto r = readWord(member, kHost, deadline);
+                if (r) r = writeWord(member, deadline);
+                if (!r) failures[i] = r.error().message;
+            }
+        });
+    }
+    for (size_t i = 0; i < 2; ++i) {
+        const MemberId from = (i == 0 ? *direct : *tunnelled)->self();
+        threads.emplace_back([&failures, &host = *host, from, i, deadline] {
+            for (int round = 0; round < kRounds && failures[2 + i].empty(); ++round) {
+                if (auto r = readWord(host, from, deadline); !r) failures[2 + i] = r.error().message;
+            }
+        });
+    }
+    Result<void> written;
+    for (int round = 0; round < kRounds && written; ++round) {
+        written = writeWord(*host, deadline);
+        if (written) written = host->waitArrived(deadline);
+    }
+    for (auto& t : threads) t.join();
+    EXPECT_TRUE(written) << written.error().message;
+    for (const std::string& failure : failures) EXPECT_EQ(failure, "");
+}
+
+// Each word is written when the one before was read. A wake that is lost costs 100 ms, and so many the deadline.
+void expectEachWordWakes(Group& writer, Group& reader, MemberId from) {
+    constexpr int kRounds = 200;
+    const Deadline deadline = Deadline::inMs(8'000);
+    std::counting_semaphore<kRounds> wordsRead(0);
+    std::thread thread([&] {
+        for (int i = 0; i < kRounds; ++i) {
+            const auto r = readWord(reader, from, deadline);
+            EXPECT_TRUE(r) << r.error().message;
+            if (!r) return;
+            wordsRead.release();
+        }
+    });
+    bool inTime = true;
+    for (int i = 0; i < kRounds && inTime; ++i) {
+        EXPECT_TRUE(writeWord(writer, deadline));
+        inTime = wordsRead.try_acquire_for(std::chrono::nanoseconds(deadline.leftNs()));
+    }
+    EXPECT_TRUE(inTime);
+    thread.join();
+}
+
+// A tunnelled reader waits at sockets where nothing comes, and nothing is due: the group's thread, to which it comes, wakes it.
+TEST(Group, WhatComesByTheConnectionWakesWhoSeesToTheSockets) {
+    HOSTED(hosted, Seal::Tag);
+    auto& [host, join] = hosted;
+    join.multicast = false;
+    auto member = Group::join(join, Deadline::inMs(10'000));
+    ASSERT_TRUE(member);
+    ASSERT_TRUE(host->waitForMembers(1, Deadline::inMs(10'000)));
+    expectEachWordWakes(*host, **member, kHost);
+}
+
+// Who waits for a silent member sees to the sockets for who waits for another.
+TEST(Group, WhoSeesToTheSocketsWakesTheOthers) {
+    HOSTED(hosted, Seal::Tag);
+    auto& [host, join] = hosted;
+    auto silent = Group::join(join, Deadline::inMs(10'000));
+    auto member = Group::join(join, Deadline::inMs(10'000));
+    ASSERT_TRUE(silent && member);
+    ASSERT_TRUE(host->waitForMembers(2, Deadline::inMs(10'000)));
+    for (int i = 0; i < 2; ++i) ASSERT_TRUE(host->accept(Deadline::inMs(10'000)));
+    std::thread leader([&] { EXPECT_TRUE(readWord(*host, (*silent)->self(), Deadline::inMs(30'000))); });
+    std::this_thread::sleep_for(std::chrono::milliseconds(20)); // it most likely waits by then; the test holds without
+    expectEachWordWakes(**member, *host, (*member)->self());
+    EXPECT_TRUE(writeWord(**silent, Deadline::inMs(10'000)));
+    leader.join();
+}
+
+// The member's reader has seen to its sockets, and now does something else: the group's thread answers.
+TEST(Group, WhoDoesNotReadStillAnswers) {
+    HOSTED(hosted, Seal::Tag);
+    auto& [host, join] = hosted;
+    auto member = Group::join(join, Deadline::inMs(10'000));
+    ASSERT_TRUE(member);
+    ASSERT_TRUE(host->waitForMembers(1, Deadline::inMs(10'000)));
+    std::thread reader([&] { EXPECT_TRUE(readWord(**member, kHost, Deadline::inMs(10'000))); });
+    std::this_thread::sleep_for(std::chrono::milliseconds(20)); // it most likely waits by then; the test holds without
+    ASSERT_TRUE(writeWord(*host, Deadline::inMs(10'000)));
+    reader.join();
+    constexpr int kWords = 50;
+    for (int i = 0; i < kWords; ++i) {
+        ASSERT_TRUE(writeWord(*host, Deadline::inMs(10'000)));
+        const auto arrived = host->waitArrived(Deadline::inMs(10'000));
+        ASSERT_TRUE(arrived) << arrived.error().message;
+    }
+    for (int i = 0; i < kWords; ++i) EXPECT_TRUE(readWord(**member, kHost, Deadline::inMs(10'000)));
+}
+
+// Nothing comes: a wait ends with its deadline, and when another thread leaves the group.
+TEST(Group, WaitsEndWithTheirDeadlineAndWithTheGroup) {
+    HOSTED(hosted, Seal::Tag);
+    auto& [host, join] = hosted;
+    auto member = Group::join(join, Deadline::inMs(10'000));
+    ASSERT_TRUE(member);
+    const auto late = readWord(**member, kHost, Deadline::inMs(30));
+    ASSERT_FALSE(late);
+    EXPECT_NE(late.error().message.find("deadline"), std::string::npos) << late.error().message;
+    std::thread reader([&] {
+        const auto ended = readWord(**member, kHost, Deadline::inMs(60'000));
+        ASSERT_FALSE(ended);
+        EXPECT_NE(ended.error().message.find("left the group"), std::string::npos) << ended.error().message;
+    });
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    (*member)->leave();
+    reader.join();
 }
 
 TEST(Group, WhoLeavesIsMissedAndItsStreamEnds) {
