@@ -1,6 +1,8 @@
 #include "transport/connect.hpp"
 
 #include "transport/connection_description.hpp"
+#include "transport/plugin/plugin_connection.hpp"
+#include "transport/plugin/plugin_library.hpp"
 #include "transport/rsp/group_connection.hpp"
 #include "transport/rsp/group_description.hpp"
 
@@ -29,6 +31,11 @@ Result<std::unique_ptr<Connection>> connectTo(std::string_view text, Deadline de
         if (!to.parameters.contains("control")) return useless(text, "joining needs control=HOST:PORT, where the group's host listens");
         return rsp::joinGroup(*options, deadline);
     }
+    case Kind::Plugin: {
+        const auto plugin = openPlugin(to.scheme);
+        if (!plugin) return plugin.error();
+        return connectByPlugin(*plugin.value(), std::string(text), deadline);
+    }
     case Kind::Pipe: break;
     }
     return useless(text, "has no other end to connect to; give tcp://host:port, shm:descriptor or rsp://group:port?control=host:port");
@@ -39,6 +46,11 @@ Result<std::unique_ptr<Listener>> listenAt(std::string_view text) {
     if (!parsed) return parsed.error();
     const ConnectionDescription& at = parsed.value();
     if (at.kind == Kind::Tcp) return listenTcp(at.host, at.port);
+    if (at.kind == Kind::Plugin) {
+        const auto plugin = openPlugin(at.scheme);
+        if (!plugin) return plugin.error();
+        return listenByPlugin(*plugin.value(), std::string(text));
+    }
     if (at.kind != Kind::Rsp) return useless(text, "nobody can listen there; give tcp://host:port or rsp://group:port");
     auto options = rsp::groupOptionsOf(at);
     if (!options) return options.error();

@@ -13,10 +13,11 @@ namespace {
 constexpr std::string_view kTcp = "tcp://";
 constexpr std::string_view kShm = "shm:";
 constexpr std::string_view kRsp = "rsp://";
+constexpr std::string_view kAuthority = "://"; // a plug-in's scheme stands before it
 
 Error invalid(std::string_view text, const std::string& why) {
     return Error{"connection \"" + std::string(text) + "\": " + why +
-                 "; write tcp://host:port, rsp://group:port, shm:descriptor or pipe:"};
+                 "; write tcp://host:port, rsp://group:port, shm:descriptor, pipe:, or a plug-in's scheme://host:port"};
 }
 
 template <class Number> bool parseNumber(std::string_view text, Number& into) {
@@ -49,13 +50,11 @@ Result<ConnectionDescription> parseEndpoint(std::string_view text, std::string_v
     return result;
 }
 
-Result<ConnectionDescription> parseRsp(std::string_view text) {
-    const std::string_view rest = text.substr(kRsp.size());
+// host:port?parameter=value&…, from `rest` on.
+Result<ConnectionDescription> parseWithParameters(std::string_view text, std::string_view rest) {
     const size_t question = rest.find('?');
     auto result = parseEndpoint(text, rest.substr(0, question));
     if (!result) return result.error();
-    result->kind = ConnectionDescription::Kind::Rsp;
-    if (result->host.empty()) return invalid(text, "the group's address is missing, such as 239.255.77.85");
     std::string_view list = question == std::string_view::npos ? std::string_view() : rest.substr(question + 1);
     while (!list.empty()) {
         const std::string_view pair = list.substr(0, list.find('&'));
@@ -65,6 +64,27 @@ Result<ConnectionDescription> parseRsp(std::string_view text) {
         const std::string name(pair.substr(0, equals));
         if (!result->parameters.emplace(name, pair.substr(equals + 1)).second) return invalid(text, name + " is given twice");
     }
+    return result;
+}
+
+Result<ConnectionDescription> parseRsp(std::string_view text) {
+    auto result = parseWithParameters(text, text.substr(kRsp.size()));
+    if (!result) return result.error();
+    result->kind = ConnectionDescription::Kind::Rsp;
+    if (result->host.empty()) return invalid(text, "the group's address is missing, such as 239.255.77.85");
+    return result;
+}
+
+// The scheme becomes part of a file's name: only letters and digits.
+bool isScheme(std::string_view text) {
+    return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); });
+}
+
+Result<ConnectionDescription> parsePlugin(std::string_view text, std::string_view scheme) {
+    auto result = parseWithParameters(text, text.substr(scheme.size() + kAuthority.size()));
+    if (!result) return result.error();
+    result->kind = ConnectionDescription::Kind::Plugin;
+    result->scheme = scheme;
     return result;
 }
 
@@ -86,6 +106,8 @@ Result<ConnectionDescription> parseConnectionDescription(std::string_view text) 
     }
     if (text.starts_with(kRsp))
         return parseRsp(text);
+    const std::string_view scheme = text.substr(0, text.find(kAuthority));
+    if (scheme.size() < text.size() && isScheme(scheme)) return parsePlugin(text, scheme);
     return invalid(text, "unknown kind");
 }
 
@@ -99,9 +121,11 @@ std::string toText(const ConnectionDescription& description) {
     case ConnectionDescription::Kind::Tcp:
         return tcpText(description.host, description.port);
     case ConnectionDescription::Kind::Rsp:
+    case ConnectionDescription::Kind::Plugin:
         break;
     }
-    std::string text = std::string(kRsp) + endpointText(description.host, description.port);
+    const bool plugin = description.kind == ConnectionDescription::Kind::Plugin;
+    std::string text = (plugin ? description.scheme + std::string(kAuthority) : std::string(kRsp)) + endpointText(description.host, description.port);
     char separator = '?';
     for (const auto& [name, value] : description.parameters) {
         text += std::exchange(separator, '&') + name + "=" + value;

@@ -3,6 +3,7 @@
 //   shm:               shared memory, not yet offered;  shm:7  the offer inherited as descriptor 7
 //   tcp://host:port    TCP; IPv6 numbers in brackets
 //   rsp://group:port?parameter=value&…   a multicast group; parameters: transport/rsp/group_description.hpp
+//   scheme://host:port?parameter=value&… any other scheme: the plug-in of that name (transport/plugin/transport_plugin.h)
 // transport/connect.hpp connects and listens by such a text.
 #pragma once
 
@@ -16,13 +17,14 @@
 namespace mural {
 
 struct ConnectionDescription {
-    enum class Kind { Pipe, SharedMemory, Tcp, Rsp };
+    enum class Kind { Pipe, SharedMemory, Tcp, Rsp, Plugin };
 
     Kind kind = Kind::Pipe;
-    std::string host;    // tcp, without brackets; empty only for listening: every address. rsp: the group's address
-    uint16_t port = 0;   // tcp, rsp; 0: any free one, for listening
+    std::string host;    // without brackets; empty only for listening: every address. rsp: the group's address
+    uint16_t port = 0;   // all but pipe and shm; 0: any free one, for listening
     int descriptor = -1; // shm
-    std::map<std::string, std::string> parameters{}; // rsp
+    std::map<std::string, std::string> parameters{}; // rsp, plug-ins
+    std::string scheme{}; // plug-ins: a to z, 0 to 9
 
     friend bool operator==(const ConnectionDescription&, const ConnectionDescription&) = default;
 };

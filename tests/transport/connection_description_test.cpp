@@ -20,6 +20,7 @@ TEST(ConnectionDescription, readsWhatItWrites) {
         {.kind = Kind::Tcp, .host = "", .port = 0},
         {.kind = Kind::Rsp, .host = "239.255.77.85", .port = 4277},
         {.kind = Kind::Rsp, .host = "ff15::4d:1", .port = 4277, .parameters = {{"interface", "eth1"}, {"rate", "800mbit"}}},
+        {.kind = Kind::Plugin, .host = "::1", .port = 4000, .parameters = {{"provider", "tcp"}}, .scheme = "fabric"},
     };
     for (const auto& each : all) {
         const auto back = parseConnectionDescription(toText(each));
@@ -31,7 +32,11 @@ TEST(ConnectionDescription, readsWhatItWrites) {
 TEST(ConnectionDescription, refusesWithTheReason) {
     const std::pair<const char*, const char*> all[] = {
         {"", "unknown kind"},
-        {"udp://a:1", "unknown kind"},
+        {"Udp://a:1", "unknown kind"},
+        {"://a:1", "unknown kind"},
+        {"../x://a:1", "unknown kind"},
+        {"udp://a", "port is missing"},
+        {"udp://a:1?b", "name=value"},
         {"tcp:/host:1", "unknown kind"},
         {"pipe:x", "unknown kind"},
         {"tcp://host", "port is missing"},
@@ -89,7 +94,7 @@ TEST(ConnectionDescription, groupsHaveParameters) {
 }
 
 TEST(ConnectionDescription, connectsOnlyToWhatHasAnOtherEnd) {
-    for (const char* text : {"pipe:", "shm:", "tcp://:80", "tcp://localhost:0", "nonsense", "rsp://239.0.0.1:5000"}) {
+    for (const char* text : {"pipe:", "shm:", "tcp://:80", "tcp://localhost:0", "nonsense", "rsp://239.0.0.1:5000", "nobodyhas://a:1"}) {
         EXPECT_FALSE(connectTo(text, Deadline::inMs(100))) << text;
     }
     EXPECT_FALSE(listenAt("shm:"));

@@ -23,6 +23,9 @@ Deadline late() {
 
 class ConnectionTest : public testing::TestWithParam<LinkKind> {
 protected:
+    void SetUp() override {
+        if (const std::string why = whyNoLinks(GetParam()); !why.empty()) GTEST_SKIP() << why;
+    }
     void link(size_t capacityBytes = kCapacityBytes) {
         pair_ = makeLinkedPair(GetParam(), capacityBytes);
         ASSERT_TRUE(pair_.a && pair_.b);

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "transport/connect.hpp"
+#include "transport/plugin/plugin_library.hpp"
 #include "transport/rsp/group_connection.hpp"
 #include "transport/secure_connection.hpp"
 
@@ -54,6 +55,20 @@ LinkedPair makeSecurePair() {
     return {std::move(*a), std::move(b)};
 }
 
+LinkedPair makeFabricPair() {
+    auto listener = listenAt("fabric://127.0.0.1:0");
+    if (!worked(listener)) return {};
+    std::unique_ptr<Connection> b;
+    std::thread accepting([&] {
+        auto made = (*listener)->accept(Deadline::inMs(5000));
+        if (worked(made)) b = std::move(*made);
+    });
+    auto a = connectTo((*listener)->describe(), Deadline::inMs(5000));
+    accepting.join();
+    if (!worked(a) || !b) return {};
+    return {std::move(*a), std::move(b)};
+}
+
 LinkedPair makeRspPair() {
     rsp::GroupOptions options;
     options.group = "239.255.77.87:" + std::to_string(20'000 + getpid() % 20'000); // tests run beside each other
@@ -81,9 +96,22 @@ std::string linkName(LinkKind kind) {
     case LinkKind::SharedMemory: return "SharedMemory";
     case LinkKind::Tcp: return "Tcp";
     case LinkKind::Secure: return "Secure";
+    case LinkKind::Fabric: return "Fabric";
     case LinkKind::Rsp: break;
     }
     return "Rsp";
+}
+
+// A build with libfabric has the plug-in, so that there a missing one fails; at run time libfabric itself may be gone.
+std::string whyNoLinks(LinkKind kind) {
+    if (kind != LinkKind::Fabric) return {};
+#ifdef MURAL_HAS_FABRIC
+    const auto plugin = openPlugin("fabric");
+    const bool libraryGone = !plugin && plugin.error().message.find("libfabric.so") != std::string::npos;
+    return libraryGone ? plugin.error().message : std::string();
+#else
+    return "this build has no libfabric (Debian's libfabric-dev)";
+#endif
 }
 
 LinkedPair makeLinkedPair(LinkKind kind, size_t capacityBytes) {
@@ -91,6 +119,8 @@ LinkedPair makeLinkedPair(LinkKind kind, size_t capacityBytes) {
         return makeTcpPair();
     if (kind == LinkKind::Secure)
         return makeSecurePair();
+    if (kind == LinkKind::Fabric)
+        return makeFabricPair();
     if (kind == LinkKind::Rsp)
         return makeRspPair();
     if (kind == LinkKind::Pipe) {

@@ -14,9 +14,12 @@
 
 namespace mural::test {
 
-enum class LinkKind { Pipe, SharedMemory, Tcp, Secure, Rsp };
-inline constexpr std::array kAllLinkKinds = {LinkKind::Pipe, LinkKind::SharedMemory, LinkKind::Tcp, LinkKind::Secure, LinkKind::Rsp};
+enum class LinkKind { Pipe, SharedMemory, Tcp, Secure, Fabric, Rsp };
+inline constexpr std::array kAllLinkKinds = {LinkKind::Pipe,   LinkKind::SharedMemory, LinkKind::Tcp,
+                                            LinkKind::Secure, LinkKind::Fabric,       LinkKind::Rsp};
 std::string linkName(LinkKind kind);
+// Why this build or machine has no such links; empty: it has. Only plug-ins may be missing.
+std::string whyNoLinks(LinkKind kind);
 
 // Both ends in this process; capacity counts for the rings only. Empty pointers when it failed (the
 // reason is on stderr).

@@ -1,0 +1,26 @@
+// Which provider of libfabric, at which address: from a description fabric://host:port?provider=NAME.
+#pragma once
+
+#include <vector>
+
+#include "common/clock.hpp"
+#include "common/result.hpp"
+#include "transport/connection_description.hpp"
+#include "transport/fabric/fabric_handle.hpp"
+
+namespace mural::fabric {
+
+enum class Role { Connect, Listen };
+
+// What fits, best first as libfabric says; never empty. Connection-oriented endpoints only.
+Result<std::vector<Info>> findProviders(const ConnectionDescription& description, Role role, Deadline deadline);
+
+Result<SharedFabric> openFabric(const fi_info& info);
+
+// "fabric://host:port?provider=tcp"
+std::string fabricText(const std::string& host, uint16_t port, const std::string& provider);
+// The same of an address that libfabric gives; `otherwise` where that is none of IP.
+std::string fabricText(const void* address, size_t sizeBytes, const std::string& provider, const std::string& otherwise);
+std::string providerOf(const fi_info& info);
+
+} // namespace mural::fabric

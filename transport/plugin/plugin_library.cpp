@@ -1,0 +1,51 @@
+#include "transport/plugin/plugin_library.hpp"
+
+#include <dlfcn.h>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
+
+namespace mural {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Newer tables only grow; but what a function means may have changed, so versions must be the same.
+std::string whyUnfit(const mural_transport_plugin* plugin, const std::string& scheme) {
+    if (!plugin) return "its " MURAL_TRANSPORT_PLUGIN_ENTRY "() gives nothing";
+    if (plugin->version != MURAL_TRANSPORT_PLUGIN_VERSION)
+        return "it is made for version " + std::to_string(plugin->version) + " of the plug-in interface, this Mural has version " +
+               std::to_string(MURAL_TRANSPORT_PLUGIN_VERSION);
+    if (plugin->size_bytes < sizeof *plugin) return "its table is cut short";
+    if (!plugin->scheme || scheme != plugin->scheme) return std::string("it carries the scheme \"") + (plugin->scheme ? plugin->scheme : "") + "\"";
+    return {};
+}
+
+} // namespace
+
+std::string pluginFolder() {
+    std::error_code failed;
+    const fs::path program = fs::read_symlink("/proc/self/exe", failed);
+    const fs::path libraries = program.parent_path().parent_path() / "lib";
+    const fs::path own = libraries / "mural";
+    return (fs::is_directory(own, failed) ? own : libraries).string();
+}
+
+Result<const mural_transport_plugin*> openPlugin(const std::string& scheme, const std::string& folder) {
+    const std::string file = (fs::path(folder) / ("libmural_transport_" + scheme + ".so")).string();
+    const std::string what = "transport " + scheme + ": ";
+    std::error_code failed;
+    if (!fs::exists(file, failed)) return Error{what + "there is no plug-in " + file + "; check the scheme, or build or install the plug-in"};
+    void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
+    if (!library) {
+        const char* said = dlerror(); // names the file
+        return Error{what + "can't load the plug-in: " + (said ? said : file) + "; install what it needs"};
+    }
+    const auto entry = reinterpret_cast<mural_transport_plugin_entry>(dlsym(library, MURAL_TRANSPORT_PLUGIN_ENTRY));
+    const std::string unfit = entry ? whyUnfit(entry(), scheme) : "it has no function " MURAL_TRANSPORT_PLUGIN_ENTRY;
+    if (!unfit.empty()) return Error{what + file + " is no plug-in for this: " + unfit + "; build it with this Mural's transport_plugin.h"};
+    return entry();
+}
+
+} // namespace mural
