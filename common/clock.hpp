@@ -29,6 +29,9 @@ class Deadline {
 public:
     static Deadline inMs(int64_t ms) { return Deadline(monotonicNowNs() + ms * kNsPerMs); }
     static Deadline never() { return Deadline(INT64_MAX); }
+    // A time of monotonicNowNs(), and back; INT64_MAX: never.
+    static Deadline at(int64_t ns) { return Deadline(ns); }
+    [[nodiscard]] int64_t atNs() const { return atNs_; }
 
     [[nodiscard]] bool passed() const { return atNs_ != INT64_MAX && monotonicNowNs() >= atNs_; }
     // Time left in ns, 0 when passed; capped so that callers can wait in slices.

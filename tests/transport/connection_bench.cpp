@@ -1,6 +1,6 @@
 // Throughput of each kind of connection against memcpy of the same bytes, and the time of a
 // question with its answer. Both are measured alternately; the median and the spread of the ratio
-// are printed.
+// are printed. All kinds, or those that are named: mural_transport_bench Tcp Fabric
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
@@ -115,18 +115,21 @@ void benchAnswers(LinkKind kind) {
 
 } // namespace mural::test
 
-int main() {
+int main(int count, char** arguments) {
     using namespace mural::test;
-    std::printf("kind,capacityBytes,pieceBytes,GB/s,ratioToMemcpy,ratioMin,ratioMax\n");
+    const std::vector<std::string> wanted(arguments + 1, arguments + count);
     std::vector<LinkKind> kinds;
     for (const LinkKind kind : kAllLinkKinds) {
+        if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), linkName(kind)) == wanted.end()) continue;
         const std::string why = whyNoLinks(kind);
         if (why.empty()) kinds.push_back(kind);
         else std::fprintf(stderr, "no %s: %s\n", linkName(kind).c_str(), why.c_str());
     }
+    require(kinds.size() >= std::max<size_t>(wanted.size(), 1), "a kind that was named is missing");
+    std::printf("kind,capacityBytes,pieceBytes,GB/s,ratioToMemcpy,ratioMin,ratioMax\n");
     for (const LinkKind kind : kinds) {
         for (const size_t capacity : {size_t{1} << 20, size_t{16} << 20}) {
-            if (kind == LinkKind::Tcp && capacity != size_t{1} << 20)
+            if ((kind == LinkKind::Tcp || kind == LinkKind::Fabric) && capacity != size_t{1} << 20)
                 continue;
             benchStream(kind, capacity, 64, size_t{32} << 20);
             benchStream(kind, capacity, 4096, size_t{256} << 20);

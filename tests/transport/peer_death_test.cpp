@@ -30,10 +30,10 @@ Deadline late() {
 class PeerProcess {
 public:
     PeerProcess(LinkKind kind, size_t capacityBytes, const Role& role) {
-        if (kind == LinkKind::Tcp) {
-            startTcp(role);
-        } else {
+        if (kind == LinkKind::SharedMemory) {
             startSharedMemory(capacityBytes, role);
+        } else {
+            startListening(kind == LinkKind::Tcp ? "tcp://127.0.0.1:0" : "fabric://127.0.0.1:0", role);
         }
     }
     PeerProcess(const PeerProcess&) = delete;
@@ -71,8 +71,8 @@ private:
         connection_ = std::move(offer->connection);
     }
 
-    void startTcp(const Role& role) {
-        auto listener = listenTcp("127.0.0.1", 0);
+    void startListening(const char* at, const Role& role) {
+        auto listener = listenAt(at);
         if (!listener)
             return;
         pid_ = fork();
@@ -92,7 +92,12 @@ private:
     std::unique_ptr<Connection> connection_;
 };
 
-class PeerDeathTest : public testing::TestWithParam<LinkKind> {};
+class PeerDeathTest : public testing::TestWithParam<LinkKind> {
+protected:
+    void SetUp() override {
+        if (const std::string why = whyNoLinks(GetParam()); !why.empty()) GTEST_SKIP() << why;
+    }
+};
 
 // Calls `blocked` on a thread, kills the peer while that sleeps, gives the time until it returned.
 template <class Blocked> int64_t killWhileBlockedNs(PeerProcess& peer, Blocked blocked) {
@@ -192,7 +197,7 @@ TEST_P(PeerDeathTest, inTheMiddleOfAMessage) {
 
 INSTANTIATE_TEST_SUITE_P(BetweenProcesses,
                          PeerDeathTest,
-                         testing::Values(LinkKind::SharedMemory, LinkKind::Tcp),
+                         testing::Values(LinkKind::SharedMemory, LinkKind::Tcp, LinkKind::Fabric),
                          [](const auto& param) { return linkName(param.param); });
 
 } // namespace mural::test

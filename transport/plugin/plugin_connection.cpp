@@ -6,8 +6,6 @@ namespace {
 
 using Plugin = mural_transport_plugin;
 
-int64_t waitNs(Deadline deadline) { return deadline.leftNs(MURAL_TRANSPORT_WAIT_FOREVER); }
-
 Error said(mural_transport_error& error) {
     error.text[sizeof error.text - 1] = 0;
     return Error{error.text[0] ? error.text : "the transport plug-in failed without a word"};
@@ -20,12 +18,12 @@ public:
 
     Result<void> read(std::span<std::byte> into, Deadline deadline) override {
         mural_transport_error error{};
-        if (plugin_.read(connection_, into.data(), into.size(), waitNs(deadline), &error)) return {};
+        if (plugin_.read(connection_, into.data(), into.size(), deadline.atNs(), &error)) return {};
         return said(error);
     }
     Result<void> write(std::span<const std::byte> bytes, Deadline deadline) override {
         mural_transport_error error{};
-        if (plugin_.write(connection_, bytes.data(), bytes.size(), waitNs(deadline), &error)) return {};
+        if (plugin_.write(connection_, bytes.data(), bytes.size(), deadline.atNs(), &error)) return {};
         return said(error);
     }
     void flush() override { plugin_.flush(connection_); }
@@ -49,7 +47,7 @@ public:
     Result<std::unique_ptr<Connection>> accept(Deadline deadline) override {
         mural_transport_error error{};
         mural_transport_connection* made = nullptr;
-        if (!plugin_.accept(listener_, waitNs(deadline), &made, &error)) return said(error);
+        if (!plugin_.accept(listener_, deadline.atNs(), &made, &error)) return said(error);
         return std::unique_ptr<Connection>(std::make_unique<PluginConnection>(plugin_, made));
     }
     [[nodiscard]] std::string describe() const override { return plugin_.listener_description(listener_); }
@@ -64,7 +62,7 @@ private:
 Result<std::unique_ptr<Connection>> connectByPlugin(const Plugin& plugin, const std::string& description, Deadline deadline) {
     mural_transport_error error{};
     mural_transport_connection* made = nullptr;
-    if (!plugin.connect(description.c_str(), waitNs(deadline), &made, &error)) return said(error);
+    if (!plugin.connect(description.c_str(), deadline.atNs(), &made, &error)) return said(error);
     return std::unique_ptr<Connection>(std::make_unique<PluginConnection>(plugin, made));
 }
 

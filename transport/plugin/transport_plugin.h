@@ -5,7 +5,7 @@
  *
  * Plain C, so that compiler and C++ library may differ. In C++, exported_transport.hpp makes the table of a Connection and a
  * Listener. What each function promises is what transport/connection.hpp says of the method of its name: one thread reads
- * while another writes, flush and close come from any thread, and no wait is longer than its wait_ns.
+ * while another writes, flush and close come from any thread, and no wait goes on after its deadline_ns.
  */
 #ifndef MURAL_TRANSPORT_PLUGIN_H
 #define MURAL_TRANSPORT_PLUGIN_H
@@ -21,8 +21,8 @@ extern "C" {
 #define MURAL_TRANSPORT_PLUGIN_VERSION 1
 #define MURAL_TRANSPORT_PLUGIN_ENTRY "mural_get_transport_plugin"
 
-/* wait_ns: time left in nanoseconds; 0: take only what is there; this: no limit. */
-#define MURAL_TRANSPORT_WAIT_FOREVER INT64_MAX
+/* deadline_ns: nanoseconds of CLOCK_MONOTONIC; in the past: take only what is there; this: no limit. */
+#define MURAL_TRANSPORT_NO_DEADLINE INT64_MAX
 
 struct mural_transport_connection;
 struct mural_transport_listener;
@@ -39,15 +39,15 @@ struct mural_transport_plugin {
     const char* scheme;  /* as in the library's name */
 
     /* description: the whole text, as the user wrote it. */
-    int (*connect)(const char* description, int64_t wait_ns, struct mural_transport_connection** into, struct mural_transport_error* error);
+    int (*connect)(const char* description, int64_t deadline_ns, struct mural_transport_connection** into, struct mural_transport_error* error);
     int (*listen)(const char* description, struct mural_transport_listener** into, struct mural_transport_error* error);
 
-    int (*accept)(struct mural_transport_listener*, int64_t wait_ns, struct mural_transport_connection** into, struct mural_transport_error* error);
+    int (*accept)(struct mural_transport_listener*, int64_t deadline_ns, struct mural_transport_connection** into, struct mural_transport_error* error);
     const char* (*listener_description)(const struct mural_transport_listener*); /* stays until free */
     void (*free_listener)(struct mural_transport_listener*);
 
-    int (*read)(struct mural_transport_connection*, void* into, size_t size_bytes, int64_t wait_ns, struct mural_transport_error* error);
-    int (*write)(struct mural_transport_connection*, const void* bytes, size_t size_bytes, int64_t wait_ns, struct mural_transport_error* error);
+    int (*read)(struct mural_transport_connection*, void* into, size_t size_bytes, int64_t deadline_ns, struct mural_transport_error* error);
+    int (*write)(struct mural_transport_connection*, const void* bytes, size_t size_bytes, int64_t deadline_ns, struct mural_transport_error* error);
     void (*flush)(struct mural_transport_connection*);
     void (*close)(struct mural_transport_connection*);
     int (*timed_out)(const struct mural_transport_connection*);

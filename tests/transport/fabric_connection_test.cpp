@@ -1,0 +1,101 @@
+// What only libfabric's connections do; what all do is in connection_test.cpp.
+#include <gtest/gtest.h>
+#include <thread>
+#include <vector>
+
+#include "tests/transport/linked_pair.hpp"
+#include "transport/connect.hpp"
+#include "transport/connection_description.hpp"
+
+namespace mural::test {
+
+namespace {
+
+class FabricTest : public testing::Test {
+protected:
+    void SetUp() override {
+        if (const std::string why = whyNoLinks(LinkKind::Fabric); !why.empty()) GTEST_SKIP() << why;
+    }
+};
+
+template <class T> void expectError(const Result<T>& result, const std::string& reason) {
+    ASSERT_FALSE(result);
+    EXPECT_NE(result.error().message.find(reason), std::string::npos) << result.error().message;
+    EXPECT_EQ(result.error().message.find('\n'), std::string::npos) << result.error().message;
+}
+
+} // namespace
+
+TEST_F(FabricTest, saysWhichProviderItHas) {
+    auto listener = listenAt("fabric://127.0.0.1:0?provider=tcp");
+    ASSERT_TRUE(listener) << listener.error().message;
+    const auto text = (*listener)->describe();
+    const auto description = parseConnectionDescription(text);
+    ASSERT_TRUE(description) << text;
+    EXPECT_EQ(description.value().host, "127.0.0.1");
+    EXPECT_NE(description.value().port, 0);
+    EXPECT_EQ(description.value().parameters.at("provider"), "tcp") << text;
+}
+
+TEST_F(FabricTest, refusesWithTheReason) {
+    const Deadline deadline = Deadline::inMs(5000);
+    expectError(listenAt("fabric://127.0.0.1:0?provider=carrierpigeon"), "no provider");
+    expectError(listenAt("fabric://127.0.0.1:0?speed=1"), "there is no parameter \"speed\"");
+    expectError(connectTo("fabric://:80", deadline), "needs a host and a port");
+    expectError(connectTo("fabric://nobody.invalid:80", deadline), "fabric://nobody.invalid:80: can't find the host");
+    expectError(connectTo("fabric://127.0.0.1:1?provider=tcp", deadline), "can't connect");
+    EXPECT_FALSE(deadline.passed());
+}
+
+TEST_F(FabricTest, keepsItsDeadlines) {
+    auto listener = listenAt("fabric://127.0.0.1:0");
+    ASSERT_TRUE(listener) << listener.error().message;
+    const int64_t beginNs = monotonicNowNs();
+    expectError((*listener)->accept(Deadline::inMs(50)), "nobody connected");
+    expectError(connectTo((*listener)->describe(), Deadline::inMs(50)), "deadline passed");
+    const int64_t tookNs = monotonicNowNs() - beginNs;
+    EXPECT_GE(tookNs, 100 * kNsPerMs);
+    EXPECT_LT(tookNs, 5 * kNsPerS);
+}
+
+// Both directions wait: one sleeps at libfabric's descriptors, the other for what that one finds.
+TEST_F(FabricTest, sleepsWhileItWaits) {
+    LinkedPair link = makeLinkedPair(LinkKind::Fabric, 0);
+    ASSERT_TRUE(link.a && link.b);
+    const std::vector<std::byte> all(size_t{96} << 20);
+    int64_t writerNs = 0;
+    std::thread writer([&] {
+        const int64_t beginNs = threadCpuNowNs();
+        EXPECT_FALSE(link.a->write(all, Deadline::inMs(600))) << "nobody reads";
+        writerNs = threadCpuNowNs() - beginNs;
+    });
+    std::byte one{};
+    const int64_t beginNs = threadCpuNowNs();
+    EXPECT_FALSE(link.a->read(std::span(&one, 1), Deadline::inMs(500)));
+    const int64_t readerNs = threadCpuNowNs() - beginNs;
+    writer.join();
+    EXPECT_LT(readerNs, 100 * kNsPerMs) << "busy waiting";
+    EXPECT_LT(writerNs, 100 * kNsPerMs) << "busy waiting";
+}
+
+// All that was written arrives, also what the other end had no room for when the writer closed; with answers unread on the way.
+TEST_F(FabricTest, closeLosesNothing) {
+    constexpr size_t kBytes = 1'000'000; // nearly the window
+    for (int round = 0; round < 20; ++round) {
+        LinkedPair link = makeLinkedPair(LinkKind::Fabric, 0);
+        ASSERT_TRUE(link.a && link.b);
+        std::vector<std::byte> sent(kBytes);
+        ByteStream(static_cast<uint64_t>(round)).fill(sent);
+        ASSERT_TRUE(link.b->write(sent, Deadline::inMs(5000))); // a never reads it
+        ASSERT_TRUE(link.a->write(sent, Deadline::inMs(5000)));
+        link.a.reset();
+        std::vector<std::byte> got(kBytes);
+        for (size_t at = 0; at < kBytes; at += 10'000) {
+            const auto result = link.b->read(std::span(got).subspan(at, 10'000), Deadline::inMs(5000));
+            ASSERT_TRUE(result) << result.error().message;
+        }
+        EXPECT_EQ(got, sent);
+    }
+}
+
+} // namespace mural::test
