@@ -78,6 +78,26 @@ TEST_F(FabricTest, sleepsWhileItWaits) {
     EXPECT_LT(writerNs, 100 * kNsPerMs) << "busy waiting";
 }
 
+// By credits, not by what libfabric or a socket would take beyond them: cards with RDMA take nothing.
+TEST_F(FabricTest, aSlowReaderHoldsTheWriterAtTheWindow) {
+    constexpr size_t kMessageBytes = (size_t{64} << 10) - 8;
+    constexpr size_t kWindow = 16;
+    LinkedPair link = makeLinkedPair(LinkKind::Fabric, 0);
+    ASSERT_TRUE(link.a && link.b);
+    const std::vector<std::byte> piece(kMessageBytes);
+    std::vector<std::byte> got(kMessageBytes);
+    for (int round = 0; round < 3; ++round) {
+        size_t written = 0;
+        while (written < 100 && link.a->write(piece, Deadline::inMs(50))) ++written;
+        EXPECT_LE(written, kWindow + 1) << "the window, and one that is gathered";
+        EXPECT_GE(written, kWindow - 4) << "the reader may have one still, and owe three credits";
+        EXPECT_TRUE(link.a->timedOut());
+        std::thread flushing([&] { link.a->flush(); }); // the gathered one goes when there are credits
+        for (size_t i = 0; i < written; ++i) ASSERT_TRUE(link.b->read(got, Deadline::inMs(5000))) << i;
+        flushing.join();
+    }
+}
+
 // All that was written arrives, also what the other end had no room for when the writer closed; with answers unread on the way.
 TEST_F(FabricTest, closeLosesNothing) {
     constexpr size_t kBytes = 1'000'000; // nearly the window
