@@ -152,12 +152,12 @@ bool Endpoint::mayExpectWakeUp() {
 bool Endpoint::sleep(Deadline deadline) {
     pollfd looks[] = {{queueDescriptor_, POLLIN, 0}, {events_.descriptor(), POLLIN, 0}, {wake_.get(), POLLIN, 0}};
     const int64_t leftNs = deadline.leftNs(kSliceMs * kNsPerMs);
-    poll(looks, 3, static_cast<int>((leftNs + kNsPerMs - 1) / kNsPerMs)); // interrupted: the caller looks again
+    const int came = poll(looks, 3, static_cast<int>((leftNs + kNsPerMs - 1) / kNsPerMs)); // interrupted: the caller looks again
     if (looks[2].revents != 0) {
         eventfd_t times = 0;
         eventfd_read(wake_.get(), &times);
     }
-    return looks[1].revents != 0;
+    return came <= 0 || looks[1].revents != 0;
 }
 
 void Endpoint::wake() { eventfd_write(wake_.get(), 1); }

@@ -47,7 +47,7 @@ public:
     void shutDown() { fi_shutdown(endpoint_.get(), 0); }
 
     // True when there may be sleep: nothing came since the last look. Then sleep() waits for something to come;
-    // true: an event, such as the end, may be among it.
+    // true: look for events, such as the end, too.
     bool mayExpectWakeUp();
     bool sleep(Deadline deadline);
     void wake();
