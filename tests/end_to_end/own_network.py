@@ -30,16 +30,20 @@ def enter(own_processes=False):
     """own_processes: those that the script starts end with it, whatever happens; their numbers are then not those of /proc."""
     if os.environ.get(INSIDE):
         return
-    command = ["unshare", "-Urnm", "--kill-child", "--fork"] + (["--pid"] if own_processes else [])
-    try:
-        allowed = subprocess.run(command + ["true"], capture_output=True, text=True, timeout=20, check=False)
-        why = allowed.stderr.strip() if allowed.returncode else ""
-    except OSError as e:
-        why = str(e)
-    if why:
-        skip("unshare -Urnm: " + why)
-    os.environ[INSIDE] = "1"
-    os.execvp("unshare", command + [sys.executable, os.path.abspath(sys.argv[0])] + sys.argv[1:])
+    reasons = []
+    # In a chroot nobody may have users of his own; root needs none.
+    for namespaces in ["-Urnm"] + (["-nm"] if os.getuid() == 0 else []):
+        command = ["unshare", namespaces, "--kill-child", "--fork"] + (["--pid"] if own_processes else [])
+        try:
+            allowed = subprocess.run(command + ["true"], capture_output=True, text=True, timeout=20, check=False)
+            why = allowed.stderr.strip() if allowed.returncode else ""
+        except OSError as e:
+            why = str(e)
+        if not why:
+            os.environ[INSIDE] = "1"
+            os.execvp("unshare", command + [sys.executable, os.path.abspath(sys.argv[0])] + sys.argv[1:])
+        reasons.append("unshare %s: %s" % (namespaces, why))
+    skip("; ".join(reasons))
 
 
 def sh(script):
