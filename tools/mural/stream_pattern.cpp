@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 
 #include <fmt/format.h>
 
@@ -76,7 +77,7 @@ void PatternCheck::compare(std::span<const std::byte> bytes) {
         const auto piece = bytes.first(std::min(bytes.size(), right.size()));
         const auto expected = std::span(right).first(piece.size());
         fillPattern(expected, place_);
-        if (!std::ranges::equal(piece, expected)) {
+        if (std::memcmp(piece.data(), expected.data(), piece.size()) != 0) { // std::equal goes byte by byte here
             const auto wrongAt = static_cast<size_t>(std::ranges::mismatch(piece, expected).in1 - piece.begin());
             const uint64_t place = place_ + wrongAt;
             const auto came = findPattern(bytes.subspan(wrongAt));
