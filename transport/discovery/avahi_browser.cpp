@@ -12,16 +12,16 @@ namespace mural {
 struct AvahiBrowser::Search {
     Found found;
     Lost lost;
-    const AvahiLibrary* library = nullptr;
+    const AvahiLibrary* avahi = nullptr;
     AvahiServiceBrowser* browser = nullptr; // the client's
     std::map<std::string, Uuid> known;      // by the service's name
 
     [[nodiscard]] std::string fact(AvahiStringList* facts, const char* name) const {
-        AvahiStringList* pair = library->stringListFind(facts, name);
+        AvahiStringList* pair = avahi->stringListFind(facts, name);
         char* value = nullptr;
-        if (!pair || library->stringListGetPair(pair, nullptr, &value, nullptr) != 0 || !value) return {};
+        if (!pair || avahi->stringListGetPair(pair, nullptr, &value, nullptr) != 0 || !value) return {};
         const std::string text = value;
-        library->free(value);
+        avahi->free(value);
         return text;
     }
     static void browsed(AvahiServiceBrowser* browser, AvahiIfIndex interface, AvahiProtocol protocol, AvahiBrowserEvent event, const char* name, const char* type, const char* domain,
@@ -37,7 +37,7 @@ void AvahiBrowser::Search::browsed(AvahiServiceBrowser*, AvahiIfIndex interface,
     auto& s = *static_cast<Search*>(data);
     if (event == AVAHI_BROWSER_NEW) {
         // It gives itself back when it has answered.
-        (void)s.library->serviceResolverNew(s.client, interface, protocol, name, type, domain, AVAHI_PROTO_UNSPEC, static_cast<AvahiLookupFlags>(0), resolved, data);
+        (void)s.avahi->serviceResolverNew(s.client, interface, protocol, name, type, domain, AVAHI_PROTO_UNSPEC, static_cast<AvahiLookupFlags>(0), resolved, data);
     } else if (event == AVAHI_BROWSER_REMOVE) {
         if (const auto at = s.known.find(name); at != s.known.end()) {
             s.lost(at->second);
@@ -52,7 +52,7 @@ void AvahiBrowser::Search::resolved(AvahiServiceResolver* resolver, AvahiIfIndex
     const auto uuid = event == AVAHI_RESOLVER_FOUND ? uuidFromText(s.fact(facts, "uuid")) : std::nullopt;
     if (uuid && address && port != 0) {
         char text[AVAHI_ADDRESS_STR_MAX] = {};
-        s.library->addressSnprint(text, sizeof text, address);
+        s.avahi->addressSnprint(text, sizeof text, address);
         std::string where = text;
         char card[IF_NAMESIZE] = {};
         if (where.starts_with("fe80:") && interface >= 0 && if_indextoname(static_cast<unsigned>(interface), card)) where += std::string("%") + card;
@@ -63,18 +63,18 @@ void AvahiBrowser::Search::resolved(AvahiServiceResolver* resolver, AvahiIfIndex
             s.found(*a, where);
         }
     }
-    s.library->serviceResolverFree(resolver);
+    s.avahi->serviceResolverFree(resolver);
 }
 
 AvahiBrowser::AvahiBrowser(Found found, Lost lost) : AvahiBrowser(std::make_shared<Search>(Search{std::move(found), std::move(lost), nullptr, nullptr, {}, nullptr})) {}
 
 AvahiBrowser::AvahiBrowser(const std::shared_ptr<Search>& search)
-    : thread_([search](const AvahiLibrary& library, AvahiClient* client, const std::shared_ptr<AvahiThread::Shared>& shared) {
-          search->library = &library;
+    : thread_([search](const AvahiLibrary& avahi, AvahiClient* client, const std::shared_ptr<AvahiThread::Shared>& shared) {
+          search->avahi = &avahi;
           search->client = client;
           if (search->browser) return;
-          search->browser = library.serviceBrowserNew(client, AVAHI_IF_UNSPEC, AVAHI_PROTO_UNSPEC, kAvahiServiceType, nullptr, static_cast<AvahiLookupFlags>(0), Search::browsed, search.get());
-          if (!search->browser) shared->setTrouble(std::string("Avahi: ") + library.strerror(library.clientErrno(client)));
+          search->browser = avahi.serviceBrowserNew(client, AVAHI_IF_UNSPEC, AVAHI_PROTO_UNSPEC, kAvahiServiceType, nullptr, static_cast<AvahiLookupFlags>(0), Search::browsed, search.get());
+          if (!search->browser) shared->setTrouble(std::string("Avahi: ") + avahi.strerror(avahi.clientErrno(client)));
       },
       [search] { search->browser = nullptr; }) {}
 

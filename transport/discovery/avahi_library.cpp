@@ -7,7 +7,7 @@ namespace mural {
 namespace {
 
 struct Opened {
-    AvahiLibrary library{};
+    AvahiLibrary avahi{};
     std::string why; // empty: it is there
 };
 
@@ -24,7 +24,7 @@ Opened open() {
         o.why = "libavahi-client is not installed (Debian's libavahi-client3)";
         return o;
     }
-    AvahiLibrary& l = o.library;
+    AvahiLibrary& l = o.avahi;
     find(handle, "avahi_simple_poll_new", l.simplePollNew, o.why);
     find(handle, "avahi_simple_poll_free", l.simplePollFree, o.why);
     find(handle, "avahi_simple_poll_get", l.simplePollGet, o.why);
@@ -55,7 +55,7 @@ Opened open() {
 const AvahiLibrary* AvahiLibrary::get(std::string& why) {
     static const Opened opened = open();
     why = opened.why;
-    return why.empty() ? &opened.library : nullptr;
+    return why.empty() ? &opened.avahi : nullptr;
 }
 
 } // namespace mural

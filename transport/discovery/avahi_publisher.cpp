@@ -8,7 +8,7 @@ namespace mural {
 struct AvahiPublisher::Service {
     Announcement self;
     std::string name; // another one when somebody has it already
-    const AvahiLibrary* library = nullptr;
+    const AvahiLibrary* avahi = nullptr;
     std::shared_ptr<AvahiThread::Shared> shared;
     AvahiEntryGroup* group = nullptr; // the client's
 
@@ -18,25 +18,25 @@ struct AvahiPublisher::Service {
 
 void AvahiPublisher::Service::add() {
     AvahiStringList* facts = nullptr;
-    facts = library->stringListAddPair(facts, "uuid", uuidText(self.uuid).c_str());
-    facts = library->stringListAddPair(facts, "version", self.version.c_str());
-    facts = library->stringListAddPair(facts, "name", self.name.c_str());
-    int code = library->entryGroupAddService(group, AVAHI_IF_UNSPEC, AVAHI_PROTO_UNSPEC, static_cast<AvahiPublishFlags>(0), name.c_str(), kAvahiServiceType, nullptr, nullptr, self.port, facts);
-    library->stringListFree(facts);
-    if (code == 0) code = library->entryGroupCommit(group);
+    facts = avahi->stringListAddPair(facts, "uuid", uuidText(self.uuid).c_str());
+    facts = avahi->stringListAddPair(facts, "version", self.version.c_str());
+    facts = avahi->stringListAddPair(facts, "name", self.name.c_str());
+    int code = avahi->entryGroupAddService(group, AVAHI_IF_UNSPEC, AVAHI_PROTO_UNSPEC, static_cast<AvahiPublishFlags>(0), name.c_str(), kAvahiServiceType, nullptr, nullptr, self.port, facts);
+    avahi->stringListFree(facts);
+    if (code == 0) code = avahi->entryGroupCommit(group);
     if (code == AVAHI_ERR_COLLISION) return changed(group, AVAHI_ENTRY_GROUP_COLLISION, this);
-    if (code != 0) shared->setTrouble(std::string("Avahi: ") + library->strerror(code));
+    if (code != 0) shared->setTrouble(std::string("Avahi: ") + avahi->strerror(code));
 }
 
 void AvahiPublisher::Service::changed(AvahiEntryGroup* g, AvahiEntryGroupState state, void* data) {
     auto& s = *static_cast<Service*>(data);
     s.group = g; // the first call comes before it is known
     if (state == AVAHI_ENTRY_GROUP_COLLISION) {
-        char* other = s.library->alternativeServiceName(s.name.c_str());
+        char* other = s.avahi->alternativeServiceName(s.name.c_str());
         if (!other) return;
         s.name = other;
-        s.library->free(other);
-        s.library->entryGroupReset(g);
+        s.avahi->free(other);
+        s.avahi->entryGroupReset(g);
         s.add();
     } else if (state == AVAHI_ENTRY_GROUP_FAILURE) {
         s.shared->setTrouble("Avahi: the service could not be announced");
@@ -46,12 +46,12 @@ void AvahiPublisher::Service::changed(AvahiEntryGroup* g, AvahiEntryGroupState s
 AvahiPublisher::AvahiPublisher(const Announcement& self) : AvahiPublisher(std::make_shared<Service>(Service{self, self.name, nullptr, nullptr, nullptr})) {}
 
 AvahiPublisher::AvahiPublisher(const std::shared_ptr<Service>& service)
-    : thread_([service](const AvahiLibrary& library, AvahiClient* client, const std::shared_ptr<AvahiThread::Shared>& shared) {
-          service->library = &library;
+    : thread_([service](const AvahiLibrary& avahi, AvahiClient* client, const std::shared_ptr<AvahiThread::Shared>& shared) {
+          service->avahi = &avahi;
           service->shared = shared;
-          if (!service->group) service->group = library.entryGroupNew(client, Service::changed, service.get());
-          if (!service->group) return shared->setTrouble(std::string("Avahi: ") + library.strerror(library.clientErrno(client)));
-          library.entryGroupReset(service->group);
+          if (!service->group) service->group = avahi.entryGroupNew(client, Service::changed, service.get());
+          if (!service->group) return shared->setTrouble(std::string("Avahi: ") + avahi.strerror(avahi.clientErrno(client)));
+          avahi.entryGroupReset(service->group);
           service->add();
       },
       [service] { service->group = nullptr; }) {}

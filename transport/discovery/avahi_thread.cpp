@@ -17,7 +17,7 @@ constexpr auto kMostEnd = std::chrono::seconds(1);
 using Shared = AvahiThread::Shared;
 
 struct Conversation {
-    const AvahiLibrary& library;
+    const AvahiLibrary& avahi;
     std::shared_ptr<Shared> shared;
     const AvahiThread::Ready& ready;
     bool failed = false;
@@ -27,35 +27,35 @@ void clientChanged(AvahiClient* client, AvahiClientState state, void* data) {
     auto& c = *static_cast<Conversation*>(data);
     if (state == AVAHI_CLIENT_S_RUNNING) {
         c.shared->setTrouble({});
-        c.ready(c.library, client, c.shared);
+        c.ready(c.avahi, client, c.shared);
     } else if (state == AVAHI_CLIENT_FAILURE) {
-        c.shared->setTrouble(std::string("Avahi: ") + c.library.strerror(c.library.clientErrno(client)));
+        c.shared->setTrouble(std::string("Avahi: ") + c.avahi.strerror(c.avahi.clientErrno(client)));
         c.failed = true;
     }
 }
 
 // Until the daemon goes, or the end.
-void talk(const AvahiLibrary& library, const std::shared_ptr<Shared>& shared, const AvahiThread::Ready& ready, const AvahiThread::Lost& lost) {
-    AvahiSimplePoll* poll = library.simplePollNew();
+void talk(const AvahiLibrary& avahi, const std::shared_ptr<Shared>& shared, const AvahiThread::Ready& ready, const AvahiThread::Lost& lost) {
+    AvahiSimplePoll* poll = avahi.simplePollNew();
     if (!poll) return shared->setTrouble("Avahi: no memory");
-    Conversation c{library, shared, ready};
+    Conversation c{avahi, shared, ready};
     int code = 0;
-    if (AvahiClient* client = library.clientNew(library.simplePollGet(poll), static_cast<AvahiClientFlags>(0), clientChanged, &c, &code)) {
-        while (!shared->stop && !c.failed && library.simplePollIterate(poll, kSliceMs) == 0) {}
+    if (AvahiClient* client = avahi.clientNew(avahi.simplePollGet(poll), static_cast<AvahiClientFlags>(0), clientChanged, &c, &code)) {
+        while (!shared->stop && !c.failed && avahi.simplePollIterate(poll, kSliceMs) == 0) {}
         lost();
-        library.clientFree(client);
+        avahi.clientFree(client);
     } else {
-        shared->setTrouble(std::string("Avahi: ") + library.strerror(code));
+        shared->setTrouble(std::string("Avahi: ") + avahi.strerror(code));
     }
-    library.simplePollFree(poll);
+    avahi.simplePollFree(poll);
 }
 
 void run(const std::shared_ptr<Shared>& shared, const AvahiThread::Ready& ready, const AvahiThread::Lost& lost) {
     std::string why;
-    const AvahiLibrary* library = AvahiLibrary::get(why);
-    if (!library) shared->setTrouble(why);
-    while (library && !shared->stop) {
-        talk(*library, shared, ready, lost);
+    const AvahiLibrary* avahi = AvahiLibrary::get(why);
+    if (!avahi) shared->setTrouble(why);
+    while (avahi && !shared->stop) {
+        talk(*avahi, shared, ready, lost);
         for (const Deadline again = Deadline::inMs(kAgainMs); !shared->stop && !again.passed();) std::this_thread::sleep_for(std::chrono::milliseconds(kSliceMs));
     }
     const std::lock_guard lock(shared->mutex);
