@@ -32,7 +32,7 @@ json toJson(const Measured& m) {
     json j{{"role", m.role}, {"bytes", m.bytes}, {"seconds", m.elapsedS}, {"mbit", m.mbit()}, {"cpuSeconds", m.cpuS},
         {"cpuSecondsPerGB", m.cpuPerGB()}, {"datagrams", s.datagrams}, {"parity", s.rows}, {"resent", s.resent}, {"polls", s.polls},
         {"feedback", s.feedback}, {"sendings", m.report.sendings}, {"sendingBy", m.report.sendingBy},
-        {"socketDropped", m.report.socketDropped}, {"rateMbit", m.report.bytesPerS * 8e-6}, {"refused", m.report.refused.all()}, {"membersLost", m.membersLost}};
+        {"socketDropped", m.report.socketDropped}, {"rateMbit", m.report.bytesPerS * 8e-6}, {"refused", m.report.refused.all()}, {"replayed", m.report.refused.replayed}, {"forged", m.report.refused.forged}, {"membersLost", m.membersLost}};
     if (!m.cut.empty()) j["cut"] = m.cut;
     if (!m.wrong.empty()) j["wrong"] = m.wrong;
     if (m.joinedNs != 0) j["firstByte"] = m.beganAt;
