@@ -104,7 +104,7 @@ struct FrameDoneMessage {
     uint32_t frame;    // number of the frame of this client, from 1
     uint32_t width;    // of the window, pixels
     uint32_t height;
-    uint32_t flags;    // kDrawnWhole
+    uint32_t flags;    // kDrawnWhole, kKeepsPicture
     uint64_t replayNs; // CPU time of the replay thread since the frame before
     uint64_t readbackNs;
     uint64_t calls;    // records of this client since its start, up to this frame
@@ -112,6 +112,8 @@ struct FrameDoneMessage {
 
 // Fragment shaders write to memory, or kOpDrawAll came: every node draws all.
 constexpr uint32_t kDrawnWhole = 1;
+// Frames build on the one before: nodes that take turns all draw all of them.
+constexpr uint32_t kKeepsPicture = 2;
 
 struct WindowGoneMessage {
     uint32_t client;

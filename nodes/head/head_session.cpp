@@ -5,6 +5,7 @@
 #include <poll.h>
 #include <thread>
 
+#include "nodes/head/pass_composition.hpp"
 #include "nodes/placement/placement.hpp"
 
 namespace mural {
@@ -31,6 +32,17 @@ constexpr int64_t kProgressNs = 200 * kNsPerMs;  // at most 5 lines per second
 constexpr int64_t kOutputNewsMs = 20'000;        // `mural run` gives up a head that is silent
 constexpr int64_t kProcessPatienceMs = 2000;     // from a node's Bye to the end of its process
 
+std::vector<int> picturesOf(const SessionPlan& plan) {
+    std::vector<int> pictures;
+    for (const NodePlan& node : plan.nodes) pictures.push_back(node.picture);
+    return pictures;
+}
+
+PictureAssembler::Compose composeBy(const PassCounts& counts) {
+    if (picturesOf(counts) == 1) return {};
+    return [counts](const std::vector<Picture>& passes, OwnedPicture& into) { composePasses(counts, passes, into); };
+}
+
 bool wantsPictures(const SessionConfig& config) {
     return config.display == Display::App || !config.out.empty();
 }
@@ -56,7 +68,8 @@ HeadSession::HeadSession(SessionConfig config,
                [this](uint32_t client, Reply reply) {
                    if (serving_) programs_->reply(client, std::move(reply));
                })
-    , pictures_(nodeCount_,
+    , pictures_(picturesOf(plan_),
+                composeBy(config_.passes),
                 [this](WindowPicture picture) {
                     frames_.pictureHeld(picture.client, picture.frame);
                     output_->add(std::move(picture));
@@ -317,6 +330,7 @@ Result<void> HeadSession::nodeFrameDone(int node, const wire::FrameDoneMessage& 
         totals.cpuSeconds = totals.replaySeconds + totals.readbackSeconds; // until its Bye knows better
     }
     if (message.flags & wire::kDrawnWhole) sayDrawnWhole();
+    if (message.flags & wire::kKeepsPicture) sayKeepsPicture();
     return frames_.frameDone(node, message, monotonicNowNs());
 }
 
@@ -325,6 +339,11 @@ void HeadSession::sayDrawnWhole() {
     control_.say(config_.tiling == Tiling::Lean
                      ? "fragment shaders write to memory, SPIR-V modules read gl_FragCoord, or display lists read the picture: every node draws all of it, into framebuffers of the window's size; tiling lean saves nothing there"
                      : "fragment shaders write to memory, or display lists read the picture: every node draws all of it; more nodes do not make that faster");
+}
+
+void HeadSession::sayKeepsPicture() {
+    if (keepsPicture_.exchange(true)) return;
+    control_.say("frames are drawn over the picture before them (no clear, accumulation, or the front buffer): every node draws every frame; --dplex does not make that faster");
 }
 
 Result<void> HeadSession::nodePicture(int node, const wire::PictureHeader& header, ByteBuffer rows) {

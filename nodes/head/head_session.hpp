@@ -83,6 +83,7 @@ private:
     bool askedToFinish(Deadline deadline); // waits until then for the control connection
     void tick();
     void sayDrawnWhole(); // once
+    void sayKeepsPicture(); // once
     void watchNodes(int64_t nowNs);
     void windowGone(const std::pair<uint32_t, uint32_t>& window, int node); // client, window
     void reportProgress(int64_t nowNs);
@@ -120,6 +121,7 @@ private:
     std::atomic<bool> finishing_{false};
     std::atomic<bool> tearingDown_{false};
     std::atomic<bool> serving_{false};
+    std::atomic<bool> keepsPicture_{false};
     std::atomic<bool> drawnWhole_{false}; // see SessionReport
     ProgressMeter meter_;
     int64_t lastProgressNs_ = 0;

@@ -21,36 +21,47 @@ std::string countOf(int count, const char* one) {
 
 std::string describeRegion(const NodePlan& plan) {
     const TileRegion& r = plan.region;
-    return "node " + std::to_string(plan.node) + " (" + plan.where + ") draws " +
+    const std::string pass = describe(plan.pass);
+    return "node " + std::to_string(plan.node) + " (" + plan.where + ") draws " + (pass.empty() ? "" : pass + ": ") +
            countOf(r.columns * r.rows, "tile") + ": columns " + std::to_string(r.column) + " to " +
            std::to_string(r.column + r.columns - 1) + ", rows " + std::to_string(r.row) + " to " +
            std::to_string(r.row + r.rows - 1) + " (row 0 is the lowest)";
 }
 
+// Node processes for each of `passes`; the first passes get one more where it does not come out even.
+int nodesOfPass(int nodes, int passes, int pass) { return nodes / passes + (pass < nodes % passes ? 1 : 0); }
+
 } // namespace
 
 SessionPlan planSession(const SessionConfig& config, const std::string& ownHost) {
     const int tiles = config.columns * config.rows;
+    const std::vector<RenderPass> passes = passesOf(config.passes);
+    const auto passCount = static_cast<int>(passes.size());
     int localNodes = config.localNodes;
-    if (localNodes == 0 && config.hosts.empty()) localNodes = std::min(tiles, kMostLocalByDefault);
-    const int wanted = localNodes + static_cast<int>(config.hosts.size());
-    const int count = std::min(wanted, tiles);
+    if (localNodes == 0 && config.hosts.empty()) localNodes = std::max(passCount, std::min(tiles, kMostLocalByDefault));
+    const int asked = localNodes + static_cast<int>(config.hosts.size());
+    const int wanted = std::max(asked, passCount);
+    const int count = std::min(wanted, tiles * passCount);
 
     SessionPlan plan;
-    const std::vector<TileRegion> regions = splitGrid(config.columns, config.rows, count);
-    for (int i = 0; i < count; ++i) {
-        NodePlan node;
-        node.node = i;
-        node.where = "local";
-        node.region = regions[static_cast<size_t>(i)];
-        if (i >= localNodes) {
-            node.where = config.hosts[static_cast<size_t>(i - localNodes)];
-            node.reach = reachOf(node.where, ownHost);
+    for (int p = 0; p < passCount; ++p) {
+        for (const TileRegion& region : splitGrid(config.columns, config.rows, nodesOfPass(count, passCount, p))) {
+            NodePlan node;
+            node.node = static_cast<int>(plan.nodes.size());
+            node.where = "local";
+            node.pass = passes[static_cast<size_t>(p)];
+            node.picture = pictureOf(config.passes, node.pass);
+            node.region = region;
+            const int place = node.node % asked; // more passes than nodes were given: several on each machine
+            if (place >= localNodes) {
+                node.where = config.hosts[static_cast<size_t>(place - localNodes)];
+                node.reach = reachOf(node.where, ownHost);
+            }
+            plan.explain.push_back(describeRegion(node));
+            plan.nodes.push_back(node);
         }
-        plan.explain.push_back(describeRegion(node));
-        plan.nodes.push_back(node);
     }
-    if (wanted > tiles) {
+    if (wanted > tiles * passCount) {
         plan.warnings.push_back(countOf(wanted, "render node") + " asked for, but there " +
                                 (tiles == 1 ? "is " : "are ") + countOf(tiles, "tile") + ": only " +
                                 countOf(count, "node") + " started; --tiles makes more tiles");
@@ -68,6 +79,10 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
     setup.regionRow = node.region.row;
     setup.regionColumns = node.region.columns;
     setup.regionRows = node.region.rows;
+    setup.pass = node.pass;
+    setup.answers = node.picture == 0;
+    setup.eyeBase = config.eyeBase;
+    setup.focusDistance = config.focusDistance;
     setup.tiling = config.tiling;
     setup.glBackend = config.glBackend;
     setup.sendPictures = config.display == Display::App || !config.out.empty();

@@ -19,6 +19,8 @@ struct NodePlan {
     int node = 0;
     std::string where; // "local" or the host
     NodeReach reach = NodeReach::SharedMemory;
+    RenderPass pass;
+    int picture = 0; // of the pass: see pictureOf
     TileRegion region;
 };
 

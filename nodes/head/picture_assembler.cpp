@@ -13,7 +13,7 @@ using wire::PictureHeader;
 constexpr uint32_t kMaxSide = 32768;
 constexpr uint64_t kMaxPixels = uint64_t{1} << 28; // 16384 * 16384
 constexpr size_t kMostOpenPictures = 4096;
-constexpr size_t kKeptWindows = 8;  // more windows than that rarely swap
+constexpr size_t kKeptWindows = 8;  // more windows than that rarely swap; of each pass
 constexpr size_t kKeptPictures = 6; // latest, in the output's queue, being shown
 
 bool sensible(const PictureHeader& h) {
@@ -27,8 +27,14 @@ bool sensible(const PictureHeader& h) {
 } // namespace
 
 PictureAssembler::PictureAssembler(int nodes, Deliver deliver)
+    : PictureAssembler(std::vector<int>(static_cast<size_t>(nodes), 0), {}, std::move(deliver)) {}
+
+PictureAssembler::PictureAssembler(std::vector<int> passOf, Compose compose, Deliver deliver)
     : deliver_(std::move(deliver))
-    , living_(static_cast<size_t>(nodes), true) {}
+    , compose_(std::move(compose))
+    , passOf_(std::move(passOf))
+    , passes_(passOf_.empty() ? 1 : 1 + *std::ranges::max_element(passOf_))
+    , living_(passOf_.size(), true) {}
 
 Result<void> PictureAssembler::part(int node, const PictureHeader& header, ByteBuffer rows) {
     const auto index = static_cast<size_t>(node);
@@ -41,7 +47,7 @@ Result<void> PictureAssembler::part(int node, const PictureHeader& header, ByteB
     open.done.resize(living_.size(), false);
     if (open.done[index]) return Error{"it sent two parts of one picture"};
     open.done[index] = true;
-    open.parts.push_back({header, std::move(rows)});
+    open.parts.push_back({passOf_[index], header, std::move(rows)});
     if (complete(open)) finish(at);
     return {};
 }
@@ -87,18 +93,40 @@ PictureAssembler::OpenPictures::iterator PictureAssembler::finish(OpenPictures::
         result.frame = frame;
         const PictureHeader& header = at->second.parts.back().header;
         result.nativeWindow = uint64_t{header.nativeHigh} << 32 | header.nativeLow;
-        result.picture = assemble({client, window}, at->second);
+        result.picture = assemble(client, window, at->second);
         if (result.picture) deliver_(std::move(result));
     }
     return open_.erase(at);
 }
 
 // Null when there is no memory for it.
-std::shared_ptr<const OwnedPicture> PictureAssembler::assemble(const WindowKey& key, const Open& open) {
-    const PictureHeader& size = open.parts.back().header;
+std::shared_ptr<const OwnedPicture> PictureAssembler::assemble(uint32_t client, uint32_t window, const Open& open) {
+    if (!compose_) return assemblePass({client, window, 0}, open);
+    std::vector<std::shared_ptr<const OwnedPicture>> pictures;
+    std::vector<Picture> views;
+    for (int pass = 0; pass < passes_; ++pass) {
+        pictures.push_back(assemblePass({client, window, pass}, open));
+        if (!pictures.back()) return nullptr;
+        views.push_back(pictures.back()->view());
+    }
+    auto whole = spare();
+    try {
+        compose_(views, *whole);
+    } catch (const std::bad_alloc&) {
+        return nullptr;
+    }
+    return whole;
+}
+
+// A pass of which nothing came (its nodes are lost) stays as it was; never seen, it is black.
+std::shared_ptr<const OwnedPicture> PictureAssembler::assemblePass(const WindowKey& key, const Open& open) {
+    const auto mine = [&](const Part& part) { return part.pass == std::get<2>(key) && part.header.windowWidth > 0; };
+    const auto any = std::ranges::find_if(open.parts, mine);
+    const auto before = latestOf(key);
+    if (any == open.parts.end() && before) return before;
+    const PictureHeader& size = any != open.parts.end() ? any->header : open.parts.back().header;
     const auto width = static_cast<int>(size.windowWidth);
     const auto height = static_cast<int>(size.windowHeight);
-    const auto before = latestOf(key);
     auto picture = spare();
     try {
         picture->resize(width, height);
@@ -106,7 +134,8 @@ std::shared_ptr<const OwnedPicture> PictureAssembler::assemble(const WindowKey& 
         return nullptr;
     }
     int64_t covered = 0;
-    for (const Part& part : open.parts) covered += int64_t{part.header.w} * part.header.h;
+    for (const Part& part : open.parts)
+        if (mine(part)) covered += int64_t{part.header.w} * part.header.h;
     if (covered < int64_t{width} * height) {
         const bool sameSize = before && before->width() == width && before->height() == height;
         if (sameSize)
@@ -115,8 +144,7 @@ std::shared_ptr<const OwnedPicture> PictureAssembler::assemble(const WindowKey& 
             std::memset(picture->data(), 0, picture->view().sizeBytes());
     }
     for (const Part& part : open.parts)
-        copyInto(*picture, part.header.x, part.header.y,
-                 Picture{part.header.w, part.header.h, part.rows.data()});
+        if (mine(part)) copyInto(*picture, part.header.x, part.header.y, Picture{part.header.w, part.header.h, part.rows.data()});
     keepLatest(key, picture);
     return picture;
 }
@@ -129,7 +157,7 @@ std::shared_ptr<OwnedPicture> PictureAssembler::spare() {
         return picture;
     }
     auto picture = std::make_shared<OwnedPicture>();
-    if (made_.size() < kKeptPictures) made_.push_back(picture);
+    if (made_.size() < kKeptPictures * static_cast<size_t>(compose_ ? passes_ + 1 : 1)) made_.push_back(picture);
     return picture;
 }
 
@@ -142,7 +170,7 @@ std::shared_ptr<const OwnedPicture> PictureAssembler::latestOf(const WindowKey& 
 void PictureAssembler::keepLatest(const WindowKey& key, std::shared_ptr<const OwnedPicture> picture) {
     std::erase_if(latest_, [&](const auto& entry) { return entry.first == key; });
     latest_.emplace_front(key, std::move(picture));
-    if (latest_.size() > kKeptWindows) latest_.pop_back();
+    if (latest_.size() > kKeptWindows * static_cast<size_t>(passes_)) latest_.pop_back();
 }
 
 } // namespace mural

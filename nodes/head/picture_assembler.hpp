@@ -26,6 +26,7 @@ struct WindowPicture {
     std::shared_ptr<const OwnedPicture> picture;
 };
 
+// Sessions with several passes (render_pass.hpp) get a picture of each, put together by `compose`.
 // A picture is whole when every living node has sent its part or has finished the frame without one.
 // Where a node was lost, the picture keeps what that window's picture before had there.
 // All calls from any thread. `deliver` is called under the lock, so in the order of frames: it must
@@ -34,7 +35,12 @@ class PictureAssembler {
 public:
     using Deliver = std::function<void(WindowPicture picture)>;
 
+    // Pictures of the passes in their order, none empty, to the picture of the frame.
+    using Compose = std::function<void(const std::vector<Picture>& passes, OwnedPicture& into)>;
+
     PictureAssembler(int nodes, Deliver deliver);
+    // passOf: the picture that each node draws a part of.
+    PictureAssembler(std::vector<int> passOf, Compose compose, Deliver deliver);
 
     Result<void> part(int node, const wire::PictureHeader& header, ByteBuffer rows);
     void frameDone(int node, uint32_t client, uint32_t window, uint32_t frame);
@@ -42,9 +48,10 @@ public:
 
 private:
     using Key = std::tuple<uint32_t, uint32_t, uint32_t>; // client, window, frame
-    using WindowKey = std::pair<uint32_t, uint32_t>;
+    using WindowKey = std::tuple<uint32_t, uint32_t, int>; // client, window, pass
 
     struct Part {
+        int pass;
         wire::PictureHeader header{};
         ByteBuffer rows;
     };
@@ -56,13 +63,17 @@ private:
 
     [[nodiscard]] bool complete(const Open& open) const;
     OpenPictures::iterator finish(OpenPictures::iterator at);
-    std::shared_ptr<const OwnedPicture> assemble(const WindowKey& key, const Open& open);
+    std::shared_ptr<const OwnedPicture> assemble(uint32_t client, uint32_t window, const Open& open);
+    std::shared_ptr<const OwnedPicture> assemblePass(const WindowKey& key, const Open& open);
     std::shared_ptr<OwnedPicture> spare();
     std::shared_ptr<const OwnedPicture> latestOf(const WindowKey& key) const;
     void keepLatest(const WindowKey& key, std::shared_ptr<const OwnedPicture> picture);
 
     std::mutex mutex_;
     const Deliver deliver_;
+    const Compose compose_;
+    const std::vector<int> passOf_;
+    const int passes_;
     std::vector<bool> living_;
     OpenPictures open_;
     std::vector<std::shared_ptr<OwnedPicture>> made_; // memory of pictures, for the next ones

@@ -125,6 +125,10 @@ private:
         config.cull = setup_.tiling == Tiling::Culled;
         config.grid = {setup_.columns, setup_.rows, config.lean ? 2 : 1};
         config.region = {setup_.regionColumn, setup_.regionRow, setup_.regionColumns, setup_.regionRows};
+        config.pass = setup_.pass;
+        config.answers = setup_.answers;
+        config.eyeBase = setup_.eyeBase;
+        config.focusDistance = setup_.focusDistance;
         if (const char* plant = std::getenv("MURAL_PLANT")) config.plant = plant;
         ReplayOutputs outputs;
         outputs.answer = [this](const wire::AnswerHeader& h, std::span<const std::byte> bytes) {
@@ -186,7 +190,7 @@ private:
         done.frame = f.frame;
         done.width = f.config.width;
         done.height = f.config.height;
-        done.flags = f.drawnWhole ? wire::kDrawnWhole : 0;
+        done.flags = (f.drawnWhole ? wire::kDrawnWhole : 0) | (f.keepsPicture ? wire::kKeepsPicture : 0);
         done.replayNs = replayedNs - lastCpuNs_;
         lastCpuNs_ = threadCpuNs();
         done.readbackNs = lastCpuNs_ - replayedNs;
@@ -209,8 +213,8 @@ private:
         h.y = f.region.y;
         h.w = f.region.w;
         h.h = f.region.h;
-        h.windowWidth = f.config.width;
-        h.windowHeight = f.config.height;
+        h.windowWidth = static_cast<uint32_t>(f.picture.w);
+        h.windowHeight = static_cast<uint32_t>(f.picture.h);
         h.nativeLow = f.config.nativeLow;
         h.nativeHigh = f.config.nativeHigh;
         line_->send(wire::NodeMessage::Picture, std::as_bytes(std::span(&h, 1)), {pixels, static_cast<size_t>(f.region.area()) * 4});

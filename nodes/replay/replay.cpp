@@ -97,7 +97,11 @@ bool Replay::execute(uint16_t opcode, std::span<const std::byte> arguments, Blob
     if (c_ == none_.get()) return true; // GL without a context does nothing
     if (!config_.plant.empty() && planted(opcode)) return true;
     noteBitmaps(opcode);
-    return allocates(opcode) ? executeAllocating(function, in) : function(*this, in);
+    if (takesTurns()) noteTurn(opcode, arguments);
+    if (seesWithOtherEye()) noteEye(opcode, arguments);
+    const bool done = allocates(opcode) ? executeAllocating(function, in) : function(*this, in);
+    if (seesWithOtherEye()) noteEyeAfter(opcode);
+    return done;
 }
 
 #ifdef __SANITIZE_ADDRESS__

@@ -27,6 +27,7 @@
 #include "nodes/replay/replay_dispatch.hpp"
 #include "nodes/replay/tiled_programs.hpp"
 #include "nodes/replay/tiling.hpp"
+#include "nodes/session/render_pass.hpp"
 #include "streamcodec/client_arrays.hpp"
 #include "streamcodec/sizes/pixel_format.hpp"
 #include "streamcodec/wire.hpp"
@@ -45,6 +46,9 @@ struct ReplayConfig {
     int node = 0;
     TileGrid grid;
     TileRegion region;
+    RenderPass pass;
+    bool answers = true;   // questions about pictures; false: nodes of another pass do
+    double eyeBase = 0.05, focusDistance = 1; // in the program's units
     bool cull = false;     // whole primitives outside of the region are dropped by rewritten shaders
     bool lean = false;     // framebuffers of the tile's size; false: of the picture's size (exact)
     std::string plant;     // MURAL_PLANT: a fault on purpose, for tests of the tests
@@ -60,8 +64,10 @@ struct ReplayOutputs {
     struct Frame {
         uint32_t client, window, frame;
         wire::WindowConfig config;
-        PixelViewport region; // this node's part
+        PixelViewport region; // this node's part of the picture
+        PixelViewport picture; // all of it: the window's size, or every nth pixel of it
         bool drawnWhole;      // nothing is cut to the part (Shared::allDrawn)
+        bool keepsPicture;    // drawn by all nodes, whoever's turn it is (Window::keepsPicture)
         std::function<const std::byte*(const PixelViewport&)> pixels;
     };
     std::function<void(const Frame&)> frameDone;
@@ -136,8 +142,15 @@ private:
         gl::Surface* deep = nullptr;         // the one of both whose depth and stencil count
         std::unique_ptr<gl::Context> filler; // draws depth and stencil where the program's context can't
         PixelViewport whole;  // 0, 0, width, height
-        PixelViewport region; // this node's part
+        PixelViewport part;   // this node's, by the grid
+        PixelViewport region; // the same, or nothing while it is another node's turn
         PixelViewport drawn;  // what the scissor lets through: the region, larger with multisampling
+        int64_t turn = 0;          // frames that have begun (replay_turns.cpp)…
+        bool turnOver = false;     // …the latest is complete: the next command that draws begins another
+        GLbitfield cleared = 0;    // whole buffers, since the frame began
+        bool plain = true;         // drawn without the kernel of this pass: its pixels are picked at the end…
+        bool copied = true;        // …because the frame before copied or read pixels of the window
+        bool keepsPicture = false; // a frame builds on the one before it: every node draws all of them
         std::vector<int16_t> accumulated; // of `drawn`, rows bottom first; empty: nothing yet
     };
     struct ProgramInfo {
@@ -161,6 +174,8 @@ private:
         bool allDrawn = false; // by every node: the program's side has asked for it, or a module reads gl_FragCoord
         TiledPrograms tiled;
         ProgramRecipes recipes;
+        std::unordered_map<GLuint, double> fieldScales; // by the program's name: x of its projection (replay_eyes.cpp)
+        double fieldScale = 0;                          // of the last projection in any buffer; 0: none was seen
     };
     struct Scissor {
         bool enabled = false;
@@ -275,6 +290,9 @@ private:
         bool clippingCounted = false; // a query counts what clipping gets or gives
         bool arbPositions = false; // an ARB program reads the window's offset
         bool pipelineBound = false;
+        // Fixed function, seen by another eye: GL's projection is not the program's (replay_eyes.cpp).
+        bool projectionShifted = false;
+        std::array<GLfloat, 16> ownProjection{}, shiftedProjection{};
     };
     struct Stream {
         ContextState* context = nullptr;
@@ -381,11 +399,42 @@ private:
     // replay_widening.cpp
     void noteModules(GLuint ours);
     [[nodiscard]] bool alone() const { // this node's part is the whole picture
-        return config_.region.columns == config_.grid.columns && config_.region.rows == config_.grid.rows;
+        return config_.region.columns == config_.grid.columns && config_.region.rows == config_.grid.rows && !takesTurns();
     }
     [[nodiscard]] bool allDrawn() const { return c_->shared && c_->shared->allDrawn; }
     void widenToWindow(Window& w);
     void copyTile(const Window& w, gl::Surface& from);
+    // replay_turns.cpp
+    [[nodiscard]] bool takesTurns() const { return config_.pass.period > 1; }
+    [[nodiscard]] bool learnsTurns(const Window& w) const;
+    void placePart(Window& w);
+    void noteTurn(uint16_t opcode, std::span<const std::byte> arguments);
+    void beginTurn(Window& w);
+    void turnDrawn(Window& w, bool shownInFront);
+    [[nodiscard]] GLbitfield clearsWhole(GLbitfield mask) const;
+    [[nodiscard]] GLbitfield needsCleared() const;
+    // replay_passes.cpp
+    [[nodiscard]] bool hasKernel() const { return config_.pass.kernelWidth * config_.pass.kernelHeight > 1; }
+    [[nodiscard]] bool interleaves(const Window* w) const { return hasKernel() && w && !w->plain; }
+    [[nodiscard]] bool movesPicture() const { return config_.pass.samples > 1 || interleaves(c_->draw); }
+    [[nodiscard]] PixelViewport inKernel(const PixelViewport& r) const;
+    const std::byte* readEveryNth(Window& w, const PixelViewport& r, bool front);
+    const std::byte* readRepeated(const PixelViewport& part, GLenum format, GLenum type, size_t group);
+    [[nodiscard]] bool movesByShaders() const;
+    [[nodiscard]] bool seesWithOtherEye() const { return config_.pass.eye != Eye::Cyclop; }
+    [[nodiscard]] double eyeOffset() const { return (config_.pass.eye == Eye::Left ? -0.5 : 0.5) * config_.eyeBase; }
+    [[nodiscard]] std::array<double, 2> placeInPicture(double x, double y) const;
+    [[nodiscard]] RenderPass passOfWindow() const;
+    void applyMovedViewports();
+    std::array<GLfloat, 8> moveOf(GLuint program) const;
+    // replay_eyes.cpp
+    void noteEye(uint16_t opcode, std::span<const std::byte> arguments);
+    void noteEyeAfter(uint16_t opcode);
+    void noteProjections(std::span<const std::byte> bytes, bool doubles);
+    void noteMatrices(GLuint program, const Data& values, GLsizei count, bool transposed, bool doubles);
+    [[nodiscard]] bool drawsFixed() const;
+    void shiftProjection();
+    void unshiftProjection();
     // replay_front.cpp
     [[nodiscard]] bool hasTwoSurfaces(const Window* w) const;
     gl::Surface* surfaceOf(Window* w, GLenum buffer);

@@ -68,6 +68,7 @@ void Replay::gatherDepthStencil(Gathered& g, GLbitfield plane, const void* pixel
 // Runs a copy that reads `source` of the read framebuffer; the call gets what to add to its coordinates.
 void Replay::fromWindow(const PixelViewport& source, const std::function<void(GLint, GLint)>& call) {
     if (c_->readFramebuffer == 0) depthForReading();
+    if (c_->readFramebuffer == 0 && c_->read) c_->read->copied = true;
     const PixelViewport box = c_->gathered.box;
     if (!c_->read || (!readsLean() && box.empty()) || c_->readFramebuffer != 0) return call(0, 0);
     if (box.empty() || c_->compiling || !box.contains(intersect(source, c_->read->whole))) {

@@ -224,7 +224,7 @@ bool Replay::splitsLists(uint16_t opcode, std::span<const std::byte> arguments) 
     case op::glViewport:
     case op::glViewportArrayv:
     case op::glViewportIndexedf:
-    case op::glViewportIndexedfv: return config_.lean || rewrites().any();
+    case op::glViewportIndexedfv: return config_.lean || movesPicture() || rewrites().any();
     case op::glBlitFramebuffer:
     case op::glCopyTexImage1D:
     case op::glCopyTexImage2D:

@@ -169,14 +169,9 @@ bool Replay::ownWindow(Args& in) {
     w.config = *config;
     const auto width = static_cast<int32_t>(config->width), height = static_cast<int32_t>(config->height);
     w.whole = {0, 0, width, height};
-    w.region = regionViewport(config_.grid, config_.region, width, height);
-    w.drawn = w.region;
-    if (config->samples > 0) {
-        // A driver may treat multisampled lines at scissor edges off its own raster of 64 pixels (accuracy, M4).
-        const int32_t x0 = w.region.x / 64 * 64, y0 = w.region.y / 64 * 64;
-        w.drawn = intersect({x0, y0, (w.region.right() + 63) / 64 * 64 - x0, (w.region.top() + 63) / 64 * 64 - y0}, w.whole);
-    }
-    const PixelViewport size = w.lean ? w.region : w.whole;
+    w.part = regionViewport(config_.grid, config_.region, width, height);
+    placePart(w);
+    const PixelViewport size = w.lean ? w.part : w.whole;
     if (w.surface && w.surface->width() == std::max(size.w, 1) && w.surface->height() == std::max(size.h, 1)) return true;
     auto made = platform_->createSurface(surfaceConfig(*config, std::max(size.w, 1), std::max(size.h, 1)));
     if (!made) {
@@ -226,11 +221,13 @@ bool Replay::ownSwap(Args& in, bool front) {
     if (it != windows.end()) {
         Window& w = *it->second;
         f.config = w.config;
-        f.region = w.region;
+        f.region = hasKernel() && !w.region.empty() ? inKernel(w.part) : w.region;
+        f.picture = hasKernel() ? inKernel(w.whole) : w.whole;
+        f.keepsPicture = w.keepsPicture;
         // The thread that swaps need not be the one that has drawn: GLX takes any window.
         if (bound_ && &w == boundDraw_ && w.surface) f.pixels = [this, &w, front](const PixelViewport& r) {
             ContextState* const own = std::exchange(c_, bound_);
-            const std::byte* pixels = readShown(w, r, front);
+            const std::byte* pixels = hasKernel() && w.plain && !r.empty() ? readEveryNth(w, r, front) : readShown(w, r, front);
             c_ = own;
             return pixels;
         };
@@ -245,6 +242,7 @@ bool Replay::ownSwap(Args& in, bool front) {
     tellTroubles();
     out_.frameDone(f);
     answerAskedAhead();
+    if (it != windows.end()) turnDrawn(*it->second, front);
     if (it != windows.end() && it->second->front && !front) showBack(*it->second);
     return true;
 }

@@ -14,7 +14,8 @@
 namespace mural {
 
 ShaderRewrites Replay::rewrites() const {
-    return {config_.cull && !alone(), config_.lean && !alone()};
+    const bool moved = seesWithOtherEye() || movesByShaders();
+    return {config_.cull && !alone() && !moved, config_.lean && !alone(), moved};
 }
 
 void Replay::applyTileValues() {
@@ -30,6 +31,7 @@ void Replay::applyTileValues() {
         place.translated = drawsLean();
         values = tileValues(place);
     }
+    if (rewrites().moved && drawsWindow() && c_->draw) values.move = moveOf(c_->program);
     if (c_->program) c_->shared->tiled.apply(gl, name(Kind::Program, c_->program), values);
     else if (c_->pipelineBound) c_->shared->tiled.applySeparable(gl, values);
     if (!c_->arbPositions) return;

@@ -21,7 +21,7 @@ bool countsClipping(GLenum target) { return target == GL_CLIPPING_INPUT_PRIMITIV
 
 // True: every node draws the same pixels now, not only its own.
 bool Replay::drawsWhole() const {
-    return !drawsWindow() || (!drawsLean() && (tileOff_ || allDrawn() || c_->countedWhole));
+    return !drawsWindow() || (!drawsLean() && (tileOff_ || allDrawn() || c_->countedWhole || (c_->draw && (c_->draw->keepsPicture || learnsTurns(*c_->draw)))));
 }
 
 // Whoever changes what drawsWhole() says comes by here before anything is drawn.
@@ -152,7 +152,7 @@ void Replay::answerQuery(uint32_t request, GLuint query) {
         const std::vector<QueryPiece>& pieces = info->second.pieces;
         added = countsSamples(info->second.target) && std::any_of(pieces.begin(), pieces.end(), [](const QueryPiece& p) { return !p.whole; });
         for (const QueryPiece& piece : pieces) {
-            if (!added || !piece.whole || config_.node == 0) value += queryResult(piece.ours);
+            if (!added || (piece.whole ? config_.node == 0 : config_.answers)) value += queryResult(piece.ours);
         }
     } else if (bound_) {
         value = queryResult(name(Kind::Query, query));

@@ -54,12 +54,14 @@ bool Replay::ownRequestPixels(Args& in) {
     }
     const bool deep = format == GL_DEPTH_COMPONENT || format == GL_DEPTH_STENCIL || format == GL_STENCIL_INDEX;
     if (deep) depthForReading();
-    const PixelViewport part = c_->read ? intersect(asked, c_->read->region) : PixelViewport{};
+    const bool repeats = c_->read && interleaves(c_->read) && !c_->read->region.empty();
+    const PixelViewport part = c_->read && config_.answers ? intersect(asked, repeats ? c_->read->part : c_->read->region) : PixelViewport{};
+    if (c_->read) c_->read->copied = true;
     const size_t bytes = static_cast<size_t>(part.area()) * group;
     const std::byte* pixels = nullptr;
     // Colours of no buffer are asked for by copies that are errors; Mesa reads through a null pointer there in OpenGL ES.
     const bool nothing = !deep && c_->readBuffer0 == GL_NONE;
-    const auto read = [&] { pixels = readRegion(nothing ? PixelViewport{} : part, format, type, bytes); };
+    const auto read = [&] { pixels = repeats && !nothing && !part.empty() ? readRepeated(part, format, type, group) : readRegion(nothing ? PixelViewport{} : part, format, type, bytes); };
     if ((groupAndFlags & wire::kResolved) && !nothing && !part.empty() && resolves(*c_->read)) aside([&] { pixels = readResolved(part, format, bytes); });
     else if (groupAndFlags & wire::kPlainTransfer) withPlainTransfer(read);
     else read();
@@ -247,6 +249,9 @@ bool Replay::ownFillWindow(Args& in) {
         return true;
     }
     if (!bound_ || !c_->read || !gl.glBlitFramebuffer) return true;
+    c_->read->copied = true;
+    if (interleaves(c_->read)) return true; // as a kernel has it, there is no room for them
+    if (!config_.answers && c_->read->region == c_->read->whole) return true; // another pass's pixels; all of this one's are here
     forgetGathered(); // of another window
     aside([&] {
         if (plane != GL_COLOR_BUFFER_BIT) fillByOtherContext({x, y, w, h}, plane, data.pointer());

@@ -46,7 +46,7 @@ PixelViewport Replay::origin() const {
 void Replay::applyScissor(int index, bool all) {
     const Scissor& app = c_->scissors[static_cast<size_t>(index)];
     bool enabled = app.enabled;
-    PixelViewport box = app.box;
+    PixelViewport box = drawsWindow() && interleaves(c_->draw) ? inKernel(app.box) : app.box;
     if (!drawsWhole() && c_->draw) {
         const PixelViewport part = c_->draw->drawn;
         if (drawsLean()) { // the framebuffer's edges are the tile's
@@ -86,6 +86,7 @@ void Replay::withoutTile(const std::function<void()>& call) {
 
 void Replay::applyViewports() {
     if (!bound_) return;
+    if (movesPicture() && drawsWindow() && !movesByShaders()) return applyMovedViewports();
     const PixelViewport o = origin();
     const auto& v = c_->viewports[0];
     if (!c_->viewportsDiffer || !gl.glViewportIndexedf) {
@@ -105,7 +106,7 @@ void Replay::restoreWindowState() {
     if (needsAll && c_->draw->widens && !c_->compiling) widenToWindow(*c_->draw);
     applyScissors();
     applyColorMasks();
-    if (config_.lean) applyViewports();
+    if (config_.lean || movesPicture()) applyViewports();
     applyTileValues();
 }
 
@@ -113,6 +114,10 @@ void Replay::glViewport(GLint x, GLint y, GLsizei width, GLsizei height) {
     const std::array<GLfloat, 4> v{static_cast<GLfloat>(x), static_cast<GLfloat>(y), static_cast<GLfloat>(width), static_cast<GLfloat>(height)};
     c_->viewports.fill(v);
     c_->viewportsDiffer = false;
+    if (movesPicture()) {
+        applyViewports();
+        return applyTileValues();
+    }
     const PixelViewport o = origin();
     gl.glViewport(moved(x, o.x), moved(y, o.y), width, height);
     applyTileValues();
@@ -125,6 +130,10 @@ void Replay::glViewportIndexedf(GLuint index, GLfloat x, GLfloat y, GLfloat w, G
     if (index >= kViewports || !gl.glViewportIndexedf) return;
     c_->viewports[index] = {x, y, w, h};
     c_->viewportsDiffer = true;
+    if (movesPicture()) {
+        applyViewports();
+        return applyTileValues();
+    }
     const PixelViewport o = origin();
     gl.glViewportIndexedf(index, x - static_cast<GLfloat>(o.x), y - static_cast<GLfloat>(o.y), w, h);
     if (index == 0) applyTileValues();

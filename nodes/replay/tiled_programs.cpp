@@ -4,6 +4,7 @@
 
 #include "nodes/shaders/cull_distances.hpp"
 #include "nodes/shaders/frag_coord.hpp"
+#include "nodes/shaders/moved_position.hpp"
 
 namespace mural {
 
@@ -78,19 +79,19 @@ std::vector<TiledPrograms::Part> TiledPrograms::rewritten(const GlFunctions& gl,
     }
     const auto separable = separable_.find(program);
     // The stage behind a separable one may be another program's, which must see the same block.
-    if (!rewrites.cull || !last || (separable != separable_.end() && separable->second)) return parts;
+    if (!(rewrites.cull || rewrites.moved) || !last || (separable != separable_.end() && separable->second)) return parts;
     std::vector<std::string> texts;
     for (const Part& p : parts) {
         if (shaders_[p.shader].type == last) texts.push_back(shaders_[p.shader].text);
     }
     const auto stage = last == GL_VERTEX_SHADER ? shaders::LastStage::Vertex
                        : last == GL_GEOMETRY_SHADER ? shaders::LastStage::Geometry : shaders::LastStage::TessEvaluation;
-    const auto patched = shaders::withCullDistances(texts, stage, es);
+    const auto patched = rewrites.moved ? shaders::withMovedPosition(texts, stage, es) : shaders::withCullDistances(texts, stage, es);
     size_t next = 0;
     for (Part& p : parts) {
         if (!patched || shaders_[p.shader].type != last) continue;
-        p.cull = (*patched)[next] != texts[next];
-        if (p.cull) p.wanted = (*patched)[next];
+        p.lastStage = (*patched)[next] != texts[next];
+        if (p.lastStage) p.wanted = (*patched)[next];
         ++next;
     }
     return parts;
@@ -113,9 +114,9 @@ void TiledPrograms::link(const GlFunctions& gl, GLuint program, const ShaderRewr
     programs_.erase(program);
     std::vector<Part> parts = rewritten(gl, program, rewrites, es);
     if (!linkParts(gl, program, parts)) {
-        const bool both = std::any_of(parts.begin(), parts.end(), [](const Part& p) { return p.cull; });
+        const bool both = std::any_of(parts.begin(), parts.end(), [](const Part& p) { return p.lastStage; });
         for (Part& p : parts) {
-            if (p.cull || !both) p.wanted.clear();
+            if (p.lastStage || !both) p.wanted.clear();
         }
         if (!linkParts(gl, program, parts)) { // without the coordinates too
             for (Part& p : parts) p.wanted.clear();
@@ -131,8 +132,9 @@ void TiledPrograms::remember(const GlFunctions& gl, GLuint program, bool separab
     Program p;
     p.cull = gl.glGetUniformLocation(program, shaders::kCullUniform);
     p.offset = gl.glGetUniformLocation(program, shaders::kOffsetUniform);
+    p.move = gl.glGetUniformLocation(program, shaders::kMoveUniform);
     p.separable = separable;
-    if (p.cull >= 0 || p.offset >= 0) programs_[program] = p;
+    if (p.cull >= 0 || p.offset >= 0 || p.move >= 0) programs_[program] = p;
 }
 
 GLuint TiledPrograms::create(const GlFunctions& gl, GLenum type, GLsizei count, const GLchar* const* texts, const ShaderRewrites& rewrites, bool es) {
@@ -160,6 +162,7 @@ void TiledPrograms::apply(const GlFunctions& gl, GLuint program, const TileValue
     Program& p = it->second;
     if (p.cull >= 0 && p.sent.cull != values.cull) gl.glUniform4fv(p.cull, 2, values.cull.data());
     if (p.offset >= 0 && p.sent.offset != values.offset) gl.glUniform4fv(p.offset, 1, values.offset.data());
+    if (p.move >= 0 && p.sent.move != values.move) gl.glUniform4fv(p.move, 2, values.move.data());
     p.sent = values;
 }
 

@@ -35,14 +35,14 @@ private:
         std::string compiled; // that the object now holds; empty: not compiled yet
     };
     struct Program {
-        GLint cull = -1, offset = -1; // locations
+        GLint cull = -1, offset = -1, move = -1; // locations
         bool separable = false;
         TileValues sent;              // zeros, as after a link
     };
     struct Part {
         GLuint shader;
         std::string wanted; // the rewritten text; empty: the program's own
-        bool cull;          // by which rewriting
+        bool lastStage;     // by which rewriting
     };
 
     std::vector<Part> rewritten(const GlFunctions& gl, GLuint program, const ShaderRewrites& rewrites, bool es);

@@ -13,13 +13,15 @@ namespace mural {
 struct ShaderRewrites {
     bool cull = false;              // whole primitives outside of the tile are dropped
     bool windowCoordinates = false; // gl_FragCoord is the window's: the framebuffer is the tile's
-    [[nodiscard]] bool any() const { return cull || windowCoordinates; }
+    bool moved = false;             // positions as another eye sees them, or moved in the viewport; instead of cull
+    [[nodiscard]] bool any() const { return cull || windowCoordinates || moved; }
 };
 
 // Values of the uniforms that the rewritings bring in.
 struct TileValues {
     std::array<GLfloat, 8> cull{};   // shaders::kCullUniform
     std::array<GLfloat, 4> offset{}; // shaders::kOffsetUniform
+    std::array<GLfloat, 8> move{};   // shaders::kMoveUniform
 };
 
 // Where drawing goes: all rectangles in the window's coordinates.

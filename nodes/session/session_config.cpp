@@ -26,6 +26,14 @@ template <> struct EnumNames<CapturePolicy> {
     static constexpr std::pair<CapturePolicy, const char*> kAll[] = {
         {CapturePolicy::State, "state"}, {CapturePolicy::Full, "full"}};
 };
+template <> struct EnumNames<Eye> {
+    static constexpr std::pair<Eye, const char*> kAll[] = {{Eye::Cyclop, "cyclop"}, {Eye::Left, "left"}, {Eye::Right, "right"}};
+};
+template <> struct EnumNames<StereoMode> {
+    static constexpr std::pair<StereoMode, const char*> kAll[] = {
+        {StereoMode::Off, "off"},          {StereoMode::Anaglyph, "anaglyph"}, {StereoMode::SideBySide, "side-by-side"},
+        {StereoMode::TopBottom, "top-bottom"}, {StereoMode::Left, "left"},     {StereoMode::Right, "right"}};
+};
 
 template <class Config, class Visitor>
     requires std::is_same_v<std::remove_const_t<Config>, SessionConfig>
@@ -38,6 +46,13 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("launchCommand", c.launchCommand);
     visit("stream", c.stream);
     visit("remoteMural", c.remoteMural);
+    visit("stereo", c.passes.stereo);
+    visit("kernelWidth", c.passes.kernelWidth, 1);
+    visit("kernelHeight", c.passes.kernelHeight, 1);
+    visit("samples", c.passes.samples, 1);
+    visit("period", c.passes.period, 1);
+    visit("eyeBase", c.eyeBase);
+    visit("focusDistance", c.focusDistance);
     visit("tiling", c.tiling);
     visit("display", c.display);
     visit("policy", c.policy);
@@ -68,6 +83,18 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("regionRow", s.regionRow, 0);
     visit("regionColumns", s.regionColumns, 1);
     visit("regionRows", s.regionRows, 1);
+    visit("eye", s.pass.eye);
+    visit("kernelX", s.pass.kernelX, 0);
+    visit("kernelY", s.pass.kernelY, 0);
+    visit("kernelWidth", s.pass.kernelWidth, 1);
+    visit("kernelHeight", s.pass.kernelHeight, 1);
+    visit("sample", s.pass.sample, 0);
+    visit("samples", s.pass.samples, 1);
+    visit("phase", s.pass.phase, 0);
+    visit("period", s.pass.period, 1);
+    visit("answers", s.answers);
+    visit("eyeBase", s.eyeBase);
+    visit("focusDistance", s.focusDistance);
     visit("tiling", s.tiling);
     visit("glBackend", s.glBackend);
     visit("sendPictures", s.sendPictures);
@@ -96,6 +123,12 @@ template <class T> Json valueToJson(const T& value) {
 std::string readValue(const Json& j, std::string& into, int64_t) {
     if (!j.is_string()) return "a text";
     into = j.get<std::string>();
+    return {};
+}
+
+std::string readValue(const Json& j, double& into, int64_t) {
+    if (!j.is_number()) return "a number";
+    into = j.get<double>();
     return {};
 }
 
@@ -202,6 +235,9 @@ Result<NodeSetup> nodeSetupFromJson(const std::string& line) {
                         setup->regionColumns <= setup->columns - setup->regionColumn &&
                         setup->regionRows <= setup->rows - setup->regionRow;
     if (!inside) return Error{"node setup: the region lies outside of the tile grid"};
+    const RenderPass& p = setup->pass;
+    if (p.kernelX >= p.kernelWidth || p.kernelY >= p.kernelHeight || p.sample >= p.samples || p.phase >= p.period)
+        return Error{"node setup: its pass is none of the session's"};
     return setup;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/result.hpp"
+#include "nodes/session/render_pass.hpp"
 
 namespace mural {
 
@@ -23,6 +24,9 @@ struct SessionConfig {
     std::string launchCommand = "ssh -o BatchMode=yes"; // --launch: prefix that runs a command on a host
     std::string stream = "auto";  // --stream: how it travels to other machines: auto, tcp, rsp://…
     std::string remoteMural;      // --remote-mural: path of mural on the hosts; empty: this one's path
+    PassCounts passes;            // --stereo, --pixel, --subpixel, --dplex
+    double eyeBase = 0.05;        // --eye-base: distance of the eyes, in the program's units
+    double focusDistance = 1;     // --focus: where both eyes see the same, in the program's units
     Tiling tiling = Tiling::Exact;
     Display display = Display::None;
     CapturePolicy policy = CapturePolicy::State;
@@ -51,6 +55,9 @@ struct NodeSetup {
     int nodeCount = 1;
     int columns = 1, rows = 1;
     int regionColumn = 0, regionRow = 0, regionColumns = 1, regionRows = 1;
+    RenderPass pass;
+    bool answers = true; // what programs read of windows is this pass's
+    double eyeBase = 0.05, focusDistance = 1; // see SessionConfig
     Tiling tiling = Tiling::Exact;
     std::string glBackend = "auto";
     bool sendPictures = false;    // Picture messages to the head at every swap

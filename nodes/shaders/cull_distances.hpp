@@ -5,8 +5,9 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
+
+#include "nodes/shaders/last_stage.hpp"
 
 namespace mural::shaders {
 
@@ -14,8 +15,6 @@ namespace mural::shaders {
 //   [0] = left, right, lower, upper edge in normalised device coordinates
 //   [1] = 0: nothing is dropped; pixels by which the edges lie outside of the tile; size of a pixel in x, y
 inline constexpr const char* kCullUniform = "muralCullPlanes";
-
-enum class LastStage { Vertex, TessEvaluation, Geometry };
 
 // es: in an ES context. `sources`: all texts of that stage, of which one holds main(). The same number comes back, patched where
 // needed; nothing when the stage must stay as it is (gl_ClipVertex, cull distances of its own, several

@@ -20,6 +20,8 @@ namespace {
 constexpr int kMaxTilesPerSide = 256;
 constexpr int kMaxNodes = 1024;
 constexpr int kMaxLatency = 64;
+constexpr int kMaxPasses = 256;
+constexpr int kMaxKernel = 16; // columns or rows
 
 constexpr const char* kFooter = R"(Examples:
   mural run -- glxgears                                  one node, into the program's own window
@@ -27,6 +29,8 @@ constexpr const char* kFooter = R"(Examples:
                                                          90 frames on 4 local nodes, as PNG files
   mural run --tiles 4x2 --nodes wall1,wall2 --display windows --fullscreen -- app
   mural run --size 7680x4320 --out wall.mp4 -- app       the program sees a screen of that size
+  mural run --subpixel 4 -- glxgears                     each pixel is the mean of 4 samples, one node for each
+  mural run --stereo anaglyph --eye-base 1 --focus 40 -- glxgears
   mural run --native --frames 500 -- glxgears            without Mural, for comparison
 
 Exit status: the program's own; 128 + n when signal n ended it; 0 when --frames ended it.
@@ -159,9 +163,10 @@ Result<void> readNodes(const RunArguments& a, SessionConfig& c) {
         if (bad) return badValue("--nodes", *a.nodes, "must be host names separated by commas, such as wall1,wall2");
     }
     const int asked = c.localNodes + static_cast<int>(c.hosts.size());
-    if (asked > 0 && !a.tiles) std::tie(c.columns, c.rows) = gridFor(asked);
-    if (asked > c.columns * c.rows) {
-        return Error{fmt::format("{} render nodes for {} tiles: each node needs a tile; give more --tiles or fewer nodes", asked, c.columns * c.rows)};
+    const auto passes = static_cast<int>(passesOf(c.passes).size());
+    if (asked > 0 && !a.tiles) std::tie(c.columns, c.rows) = gridFor(std::max(1, asked / passes));
+    if (asked > c.columns * c.rows * passes) {
+        return Error{fmt::format("{} render nodes for {} tiles{}: each node needs a tile; give more --tiles or fewer nodes", asked, c.columns * c.rows, passes > 1 ? fmt::format(" in {} passes", passes) : "")};
     }
     if (a.launch) c.launchCommand = *a.launch;
     if (a.stream) {
@@ -169,6 +174,47 @@ Result<void> readNodes(const RunArguments& a, SessionConfig& c) {
         if (auto r = checkStream(c.stream); !r) return r;
     }
     c.remoteMural = a.remoteMural.value_or("");
+    return {};
+}
+
+Result<void> readReal(std::string_view option, const RunArguments::Text& text, double lowest, double& into) {
+    if (!text) return {};
+    double value = 0;
+    const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), value);
+    const bool read = error == std::errc() && end == text->data() + text->size();
+    if (!read || !(value >= lowest) || value > 1e9) return badValue(option, *text, fmt::format("must be a number from {} on, in the program's units, such as 0.5", lowest));
+    into = value;
+    return {};
+}
+
+Result<void> readCount(std::string_view option, const RunArguments::Text& text, int highest, int& into) {
+    int64_t value = into;
+    if (auto r = readNumber(option, text, 1, highest, value); !r) return r;
+    into = static_cast<int>(value);
+    return {};
+}
+
+// By what frames are drawn in several passes.
+Result<void> readPasses(const RunArguments& a, SessionConfig& c) {
+    const Choice<StereoMode> modes[] = {{"off", StereoMode::Off},          {"anaglyph", StereoMode::Anaglyph}, {"side-by-side", StereoMode::SideBySide},
+                                        {"top-bottom", StereoMode::TopBottom}, {"left", StereoMode::Left},     {"right", StereoMode::Right}};
+    PassCounts& p = c.passes;
+    if (auto r = choose("--stereo", a.stereo, modes, p.stereo); !r) return r;
+    if (auto r = readReal("--eye-base", a.eyeBase, 0, c.eyeBase); !r) return r;
+    if (auto r = readReal("--focus", a.focus, 1e-9, c.focusDistance); !r) return r;
+    if ((a.eyeBase || a.focus) && p.stereo == StereoMode::Off) return Error{std::string(a.eyeBase ? "--eye-base" : "--focus") + " is for stereo; add --stereo, such as --stereo anaglyph"};
+    if (a.pixel) {
+        const auto columns = wholeNumber(*a.pixel, 1, kMaxKernel);
+        const auto kernel = columns ? std::optional(std::pair(static_cast<int>(*columns), 1)) : pairOf(*a.pixel, 'x', 1, kMaxKernel);
+        if (!kernel) return badValue("--pixel", *a.pixel, fmt::format("must be a number of nodes or COLUMNSxROWS, each from 1 to {}, such as 2x2", kMaxKernel));
+        std::tie(p.kernelWidth, p.kernelHeight) = *kernel;
+    }
+    if (auto r = readCount("--subpixel", a.subpixel, kMaxPasses, p.samples); !r) return r;
+    if (auto r = readCount("--dplex", a.dplex, kMaxPasses, p.period); !r) return r;
+    const size_t passes = passesOf(p).size();
+    if (passes > kMaxPasses) return Error{fmt::format("--stereo, --pixel, --subpixel and --dplex make {} passes together; at most {} can be drawn", passes, kMaxPasses)};
+    if (passes > 1 && c.tiling == Tiling::Lean) return Error{"--tiling lean does not go with --stereo, --pixel, --subpixel or --dplex; leave it out"};
+    if (p.period > 1 && !a.latency) c.latency = p.period; // turns overlap only so
     return {};
 }
 
@@ -211,6 +257,12 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
     command.add_option("--frames", a.frames, "end the program after this many frames; no later one is saved")->type_name("N");
     command.add_option("--out", a.out, "write pictures into this folder (PNG), or a video (.mp4, .mkv, .webm, …)")->type_name("DIR|VIDEO");
     command.add_option("--save", a.save, "write only these frames, counted from 1")->type_name("1,30,90");
+    command.add_option("--stereo", a.stereo, "two eyes from a program that knows one: anaglyph, side-by-side, top-bottom, or left, right alone (off)")->type_name("MODE");
+    command.add_option("--eye-base", a.eyeBase, "distance of the eyes, in the program's units (0.05)")->type_name("D");
+    command.add_option("--focus", a.focus, "distance at which both eyes see the same, in the program's units (1)")->type_name("D");
+    command.add_option("--subpixel", a.subpixel, "antialiasing: every pixel is the mean of N jittered pictures, each drawn by nodes of its own (1)")->type_name("N");
+    command.add_option("--pixel", a.pixel, "interleaved pixels: each node draws every Nth column (or one pixel of each CxR), with little memory; approximate (1)")->type_name("N|CxR");
+    command.add_option("--dplex", a.dplex, "time-multiplex: N nodes take turns at whole frames (1)")->type_name("N");
     command.add_option("--display", a.display, "where the wall is shown: app (the program's own window), windows (one per tile), none")->type_name("WHERE");
     command.add_option("--tiling", a.tiling, "exact: every pixel as on one machine; culled: less work for much geometry, exact in windows with a depth buffer; lean: less memory (exact)")->type_name("HOW");
     command.add_option("--policy", a.policy, "state: the program's own GL draws nothing; full: it draws too (state)")->type_name("WHAT");
@@ -236,11 +288,12 @@ Result<RunOptions> runOptionsFrom(const RunArguments& a) {
     SessionConfig& c = options.config;
     if (auto r = readChoices(a, c); !r) return r.error();
     if (auto r = readSizes(a, c); !r) return r.error();
-    if (auto r = readNodes(a, c); !r) return r.error();
     if (auto r = readNumber("--frames", a.frames, 1, INT64_MAX, c.frames); !r) return r.error();
     int64_t latency = c.latency;
     if (auto r = readNumber("--latency", a.latency, 0, kMaxLatency, latency); !r) return r.error();
     c.latency = static_cast<int>(latency);
+    if (auto r = readPasses(a, c); !r) return r.error();
+    if (auto r = readNodes(a, c); !r) return r.error();
     int64_t verify = 0;
     if (auto r = readNumber("--verify", a.verify.empty() ? RunArguments::Text() : a.verify, 1, INT32_MAX, verify); !r) return r.error();
     c.verifyEvery = static_cast<int>(verify);

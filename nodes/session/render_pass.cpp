@@ -1,0 +1,78 @@
+#include "nodes/session/render_pass.hpp"
+
+namespace mural {
+
+namespace {
+
+// The digits of i in base 2, mirrored at the point: 0, 1/2, 1/4, 3/4, …
+double radicalInverse(int i) {
+    double value = 0, digit = 0.5;
+    for (; i > 0; i /= 2, digit /= 2) value += i % 2 * digit;
+    return value;
+}
+
+std::array<double, 2> pointOf(int sample, int samples) {
+    return {(sample + 0.5) / samples, radicalInverse(sample)};
+}
+
+} // namespace
+
+std::vector<Eye> eyesOf(StereoMode mode) {
+    switch (mode) {
+    case StereoMode::Off: return {Eye::Cyclop};
+    case StereoMode::Left: return {Eye::Left};
+    case StereoMode::Right: return {Eye::Right};
+    default: return {Eye::Left, Eye::Right};
+    }
+}
+
+std::vector<RenderPass> passesOf(const PassCounts& counts) {
+    std::vector<RenderPass> passes;
+    RenderPass p;
+    p.kernelWidth = counts.kernelWidth;
+    p.kernelHeight = counts.kernelHeight;
+    p.samples = counts.samples;
+    p.period = counts.period;
+    for (const Eye eye : eyesOf(counts.stereo)) {
+        p.eye = eye;
+        for (p.kernelY = 0; p.kernelY < counts.kernelHeight; ++p.kernelY)
+            for (p.kernelX = 0; p.kernelX < counts.kernelWidth; ++p.kernelX)
+                for (p.sample = 0; p.sample < counts.samples; ++p.sample)
+                    for (p.phase = 0; p.phase < counts.period; ++p.phase) passes.push_back(p);
+    }
+    return passes;
+}
+
+int pictureOf(const PassCounts& counts, const RenderPass& pass) {
+    const int eye = pass.eye == Eye::Right && eyesOf(counts.stereo).size() > 1 ? 1 : 0;
+    return ((eye * counts.kernelHeight + pass.kernelY) * counts.kernelWidth + pass.kernelX) * counts.samples + pass.sample;
+}
+
+int picturesOf(const PassCounts& counts) {
+    return static_cast<int>(eyesOf(counts.stereo).size()) * counts.kernelHeight * counts.kernelWidth * counts.samples;
+}
+
+std::array<double, 2> jitterOf(int sample, int samples) {
+    if (samples <= 1) return {0, 0};
+    double meanX = 0, meanY = 0;
+    for (int i = 0; i < samples; ++i) {
+        const auto p = pointOf(i, samples);
+        meanX += p[0] / samples;
+        meanY += p[1] / samples;
+    }
+    const auto p = pointOf(sample, samples);
+    return {p[0] - meanX, p[1] - meanY};
+}
+
+std::string describe(const RenderPass& pass) {
+    std::string text;
+    const auto add = [&](const std::string& what) { text += (text.empty() ? "" : ", ") + what; };
+    if (pass.eye != Eye::Cyclop) add(pass.eye == Eye::Left ? "left eye" : "right eye");
+    if (pass.kernelWidth * pass.kernelHeight > 1)
+        add("pixel " + std::to_string(pass.kernelX) + "," + std::to_string(pass.kernelY) + " of each " + std::to_string(pass.kernelWidth) + "x" + std::to_string(pass.kernelHeight));
+    if (pass.samples > 1) add("sample " + std::to_string(pass.sample + 1) + " of " + std::to_string(pass.samples));
+    if (pass.period > 1) add("frames " + std::to_string(pass.phase) + ", " + std::to_string(pass.phase + pass.period) + ", …");
+    return text;
+}
+
+} // namespace mural

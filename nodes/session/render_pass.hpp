@@ -1,0 +1,58 @@
+// What a picture is drawn for beside its place on the wall: an eye, a pixel of a kernel, a sample of a
+// pixel, a turn in time. A session that decomposes by any of them draws every frame in several passes, each by
+// nodes of its own; the head puts the passes' pictures together.
+// Source: thesis, "Scalable Rendering" (stereo, pixel, subpixel and time-multiplex compounds).
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace mural {
+
+enum class Eye { Cyclop, Left, Right };
+
+enum class StereoMode {
+    Off,
+    Anaglyph,   // left in red, right in green and blue
+    SideBySide, // left half and right half, each the whole picture at half its width
+    TopBottom,  // left above right, each at half its height
+    Left,       // one eye alone: for two sessions, or to look at it
+    Right
+};
+
+struct RenderPass {
+    Eye eye = Eye::Cyclop;
+    int kernelX = 0, kernelY = 0; // which pixel of a kernel…
+    int kernelWidth = 1, kernelHeight = 1; // …of so many columns and rows; row 0 is the lowest
+    int sample = 0, samples = 1;  // which of the jittered pictures that are averaged
+    int phase = 0, period = 1;    // draws the frames n with n mod period == phase
+
+    bool operator==(const RenderPass&) const = default;
+};
+
+// How many of each; 1 of everything is a session without passes.
+struct PassCounts {
+    StereoMode stereo = StereoMode::Off;
+    int kernelWidth = 1, kernelHeight = 1;
+    int samples = 1;
+    int period = 1;
+};
+
+[[nodiscard]] std::vector<Eye> eyesOf(StereoMode mode);
+
+// All passes: by eye, then by row and column of the kernel, then by sample, then by phase.
+[[nodiscard]] std::vector<RenderPass> passesOf(const PassCounts& counts);
+
+// Passes that differ in their phase alone make one picture: its index in that order.
+[[nodiscard]] int pictureOf(const PassCounts& counts, const RenderPass& pass);
+[[nodiscard]] int picturesOf(const PassCounts& counts);
+
+// Where sample i of n lies in its pixel, each coordinate in (-1/2, 1/2), (0, 0) being its centre: points of a
+// Hammersley set, shifted so that their mean is the centre and no picture moves.
+[[nodiscard]] std::array<double, 2> jitterOf(int sample, int samples);
+
+// One word or two for --explain: "left eye", "sample 2 of 4", "" when it is the plain picture.
+[[nodiscard]] std::string describe(const RenderPass& pass);
+
+} // namespace mural
