@@ -32,6 +32,7 @@ enum class HeadCommand : uint32_t {
     Setup = 1,      // json: tiles, regions, outputs, backend, rewriting mode (nodes/node/setup.hpp)
     ClientGone = 2, // u32 client: free its contexts
     Finish = 3,     // no more packets: answer Bye and exit
+    Exchange = 4,   // json: by the number of each node that puts pictures together, HOST:PORT where it listens
 };
 
 // Node → head.
@@ -104,7 +105,7 @@ struct FrameDoneMessage {
     uint32_t frame;    // number of the frame of this client, from 1
     uint32_t width;    // of the window, pixels
     uint32_t height;
-    uint32_t flags;    // kDrawnWhole, kKeepsPicture
+    uint32_t flags;    // kDrawnWhole, kKeepsPicture, kNotSplit
     uint64_t replayNs; // CPU time of the replay thread since the frame before
     uint64_t readbackNs;
     uint64_t calls;    // records of this client since its start, up to this frame
@@ -114,6 +115,8 @@ struct FrameDoneMessage {
 constexpr uint32_t kDrawnWhole = 1;
 // Frames build on the one before: nodes that take turns all draw all of them.
 constexpr uint32_t kKeepsPicture = 2;
+// Nothing of the frame was shared between the nodes that draw ranges.
+constexpr uint32_t kNotSplit = 4;
 
 struct WindowGoneMessage {
     uint32_t client;

@@ -7,6 +7,7 @@
 
 #include "nodes/head/pass_composition.hpp"
 #include "nodes/placement/placement.hpp"
+#include "nodes/session/session_secret.hpp"
 
 namespace mural {
 namespace {
@@ -123,8 +124,14 @@ Result<void> HeadSession::bringUp() {
     placement_ = placeOwnThreads(); // before its threads start: they inherit it
     nodes_.startReading();
     openMulticast();
+    if (config_.passes.ranges > 1) {
+        const auto secret = makeSessionSecret();
+        if (!secret) return secret.error();
+        exchangeSecret_ = toHex(secret.value());
+    }
     for (const NodePlan& plan : plan_.nodes) {
         NodeSetup setup = setupOf(config_, plan_, plan);
+        setup.exchangeSecret = exchangeSecret_;
         if (nodes_.link(plan.node).byMulticast()) {
             setup.stream = nodes_.multicast()->invitation();
             setup.streamSecret = toHex(nodes_.multicast()->secret());
@@ -132,6 +139,7 @@ Result<void> HeadSession::bringUp() {
         nodes_.sendSetup(plan.node, toJson(setup));
     }
     if (auto ready = awaitReady(); !ready) return ready;
+    introduceNodes();
     openTables();
     auto server = CaptureServer::start(config_.session, options_.registryDigest, *programs_, [this] { return statusOf(status()).dump(); });
     if (!server) return server.error();
@@ -158,6 +166,20 @@ void HeadSession::openMulticast() {
     streamLine_ = "the stream goes to " + std::to_string(nodes.size()) + " nodes at once, by reliable multicast: " + (*multicast)->describe();
     nodes_.multicastBy(std::move(*multicast));
     for (const int node : nodes) nodes_.link(node).setByMulticast(true);
+}
+
+// Nodes that draw ranges of one picture learn where it is put together.
+void HeadSession::introduceNodes() {
+    Json collectors = Json::object();
+    {
+        const std::lock_guard lock(mutex_);
+        for (size_t i = 0; i < facts_.size(); ++i)
+            if (!facts_[i].exchange.empty()) collectors[std::to_string(i)] = facts_[i].exchange;
+    }
+    if (collectors.empty()) return;
+    const std::string text = collectors.dump();
+    nodes_.broadcast(wire::HeadCommand::Exchange, std::as_bytes(std::span(text.data(), text.size())));
+    nodes_.flush();
 }
 
 Result<void> HeadSession::awaitReady() {
@@ -331,6 +353,7 @@ Result<void> HeadSession::nodeFrameDone(int node, const wire::FrameDoneMessage& 
     }
     if (message.flags & wire::kDrawnWhole) sayDrawnWhole();
     if (message.flags & wire::kKeepsPicture) sayKeepsPicture();
+    if (plan_.nodes[static_cast<size_t>(node)].pass.ranges > 1) countSplit(message.flags);
     return frames_.frameDone(node, message, monotonicNowNs());
 }
 
@@ -339,6 +362,14 @@ void HeadSession::sayDrawnWhole() {
     control_.say(config_.tiling == Tiling::Lean
                      ? "fragment shaders write to memory, SPIR-V modules read gl_FragCoord, or display lists read the picture: every node draws all of it, into framebuffers of the window's size; tiling lean saves nothing there"
                      : "fragment shaders write to memory, or display lists read the picture: every node draws all of it; more nodes do not make that faster");
+}
+
+// A program of which nothing can be shared gains nothing: said once, when that is clear.
+void HeadSession::countSplit(uint32_t flags) {
+    constexpr int64_t kFrames = 100;
+    if (!(flags & wire::kNotSplit)) unsplitFrames_ = INT64_MIN / 2;
+    else if (++unsplitFrames_ == kFrames * nodeCount_)
+        control_.say("none of the program's first frames has draws that nodes can share (opaque, with a depth test, into its window, behind a clear of colour and depth): one node draws all; --db does not make that faster");
 }
 
 void HeadSession::sayKeepsPicture() {

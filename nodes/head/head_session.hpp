@@ -73,6 +73,7 @@ private:
 
     Result<void> bringUp();
     void openMulticast();
+    void introduceNodes();
     Result<void> awaitReady();
     void openTables();
     void announceReady();
@@ -84,6 +85,7 @@ private:
     void tick();
     void sayDrawnWhole(); // once
     void sayKeepsPicture(); // once
+    void countSplit(uint32_t flags);
     void watchNodes(int64_t nowNs);
     void windowGone(const std::pair<uint32_t, uint32_t>& window, int node); // client, window
     void reportProgress(int64_t nowNs);
@@ -121,6 +123,8 @@ private:
     std::atomic<bool> finishing_{false};
     std::atomic<bool> tearingDown_{false};
     std::atomic<bool> serving_{false};
+    std::string exchangeSecret_;   // of nodes that draw ranges, in hex
+    std::atomic<int64_t> unsplitFrames_{0}; // by the collectors, since the start
     std::atomic<bool> keepsPicture_{false};
     std::atomic<bool> drawnWhole_{false}; // see SessionReport
     ProgressMeter meter_;

@@ -55,6 +55,7 @@ Result<NodeFacts> nodeFactsFromJson(const std::string& text) {
     facts.host = textOf(json, "host");
     facts.renderer = textOf(json, "renderer");
     facts.placement = textOf(json, "placement");
+    facts.exchange = textOf(json, "exchange");
     facts.ownStream = textOf(json, "ownStream");
     facts.glVersion = versionOf(json);
     facts.extensions = extensionsOf(json);

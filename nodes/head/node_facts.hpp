@@ -15,6 +15,7 @@ struct NodeFacts {
     std::string renderer;
     std::string placement; // of the replay thread; for --explain
     std::string ownStream; // why its packets can't come by multicast; empty: they do, or nobody asked it to
+    std::string exchange;  // HOST:PORT where it takes other nodes' pictures; no host: this machine; empty: it does not
     int glVersion = 0; // 10 * major + minor, 0: unknown
     std::vector<std::string> extensions;
 };

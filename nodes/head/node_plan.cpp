@@ -35,36 +35,43 @@ int nodesOfPass(int nodes, int passes, int pass) { return nodes / passes + (pass
 
 SessionPlan planSession(const SessionConfig& config, const std::string& ownHost) {
     const int tiles = config.columns * config.rows;
+    const int ranges = config.passes.ranges;
     const std::vector<RenderPass> passes = passesOf(config.passes);
     const auto passCount = static_cast<int>(passes.size());
     int localNodes = config.localNodes;
-    if (localNodes == 0 && config.hosts.empty()) localNodes = std::max(passCount, std::min(tiles, kMostLocalByDefault));
+    if (localNodes == 0 && config.hosts.empty()) localNodes = std::max(passCount * ranges, std::min(tiles, kMostLocalByDefault));
     const int asked = localNodes + static_cast<int>(config.hosts.size());
-    const int wanted = std::max(asked, passCount);
-    const int count = std::min(wanted, tiles * passCount);
+    const int wanted = std::max(asked, passCount * ranges);
+    const int count = std::min(wanted, tiles * passCount * ranges);
 
     SessionPlan plan;
     for (int p = 0; p < passCount; ++p) {
-        for (const TileRegion& region : splitGrid(config.columns, config.rows, nodesOfPass(count, passCount, p))) {
-            NodePlan node;
-            node.node = static_cast<int>(plan.nodes.size());
-            node.where = "local";
-            node.pass = passes[static_cast<size_t>(p)];
-            node.picture = pictureOf(config.passes, node.pass);
-            node.region = region;
-            const int place = node.node % asked; // more passes than nodes were given: several on each machine
-            if (place >= localNodes) {
-                node.where = config.hosts[static_cast<size_t>(place - localNodes)];
-                node.reach = reachOf(node.where, ownHost);
+        for (const TileRegion& region : splitGrid(config.columns, config.rows, std::max(1, nodesOfPass(count / ranges, passCount, p)))) {
+            const auto collector = static_cast<int>(plan.nodes.size());
+            for (int range = 0; range < ranges; ++range) {
+                NodePlan node;
+                node.node = static_cast<int>(plan.nodes.size());
+                node.where = "local";
+                node.pass = passes[static_cast<size_t>(p)];
+                node.pass.range = range;
+                node.picture = pictureOf(config.passes, node.pass);
+                node.region = region;
+                node.collector = collector;
+                const int place = node.node % asked; // more passes than nodes were given: several on each machine
+                if (place >= localNodes) {
+                    node.where = config.hosts[static_cast<size_t>(place - localNodes)];
+                    node.reach = reachOf(node.where, ownHost);
+                }
+                plan.explain.push_back(describeRegion(node));
+                plan.nodes.push_back(node);
             }
-            plan.explain.push_back(describeRegion(node));
-            plan.nodes.push_back(node);
         }
     }
-    if (wanted > tiles * passCount) {
+    const auto started = static_cast<int>(plan.nodes.size());
+    if (wanted > started) {
         plan.warnings.push_back(countOf(wanted, "render node") + " asked for, but there " +
                                 (tiles == 1 ? "is " : "are ") + countOf(tiles, "tile") + ": only " +
-                                countOf(count, "node") + " started; --tiles makes more tiles");
+                                countOf(started, "node") + " started; --tiles makes more tiles");
     }
     return plan;
 }
@@ -80,7 +87,8 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
     setup.regionColumns = node.region.columns;
     setup.regionRows = node.region.rows;
     setup.pass = node.pass;
-    setup.answers = node.picture == 0;
+    setup.collector = node.collector;
+    setup.answers = node.picture == 0 && node.pass.range == 0;
     setup.eyeBase = config.eyeBase;
     setup.focusDistance = config.focusDistance;
     setup.tiling = config.tiling;

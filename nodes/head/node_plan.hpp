@@ -22,6 +22,7 @@ struct NodePlan {
     RenderPass pass;
     int picture = 0; // of the pass: see pictureOf
     TileRegion region;
+    int collector = 0; // the node that puts the ranges of this picture together: this one, when range is 0
 };
 
 struct SessionPlan {

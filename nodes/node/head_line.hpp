@@ -30,6 +30,9 @@ public:
     void sendIfFree(wire::NodeMessage type);
     void sendText(wire::NodeMessage type, const std::string& text);
     [[nodiscard]] bool broken() const { return broken_; }
+    // By which the head is reached, and the address that reaches it; empty: by shared memory.
+    [[nodiscard]] const std::string& headHost() const { return headHost_; }
+    [[nodiscard]] std::string ownAddress() const { return connection_->path().ownAddress; }
 
 private:
     void sendLocked(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b);

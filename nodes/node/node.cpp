@@ -9,8 +9,10 @@
 #include <set>
 #include <sys/resource.h>
 #include <unistd.h>
+#include <utility>
 
 #include "common/clock.hpp"
+#include "nodes/exchange/picture_exchange.hpp"
 #include "nodes/gl/gl_probe.hpp"
 #include "nodes/node/head_line.hpp"
 #include "nodes/node/heartbeat.hpp"
@@ -18,7 +20,9 @@
 #include "nodes/placement/placement.hpp"
 #include "nodes/replay/replay.hpp"
 #include "nodes/session/session_config.hpp"
+#include "nodes/session/session_secret.hpp"
 #include "nodes/session/stream_build.hpp"
+#include "transport/socket_address.hpp"
 
 namespace mural {
 
@@ -45,6 +49,9 @@ std::string hostName() {
     gethostname(name, sizeof name - 1);
     return name;
 }
+
+constexpr int64_t kMeetMs = 10'000;
+constexpr int64_t kPartMs = 20'000; // as long as the head waits for a silent node
 
 class Node {
 public:
@@ -92,6 +99,7 @@ private:
             if (windows_) windows_->clientGone(client);
             return true;
         }
+        case wire::HeadCommand::Exchange: return meet(std::string(reinterpret_cast<const char*>(rest.data()), rest.size()));
         case wire::HeadCommand::Finish:
             sayBye();
             finished_ = true;
@@ -113,6 +121,13 @@ private:
         if (!setup_.stream.empty()) {
             const auto followed = line_->follow(setup_.stream, setup_.streamSecret, name_);
             if (!followed) ready["ownStream"] = followed.error().message;
+        }
+        if (setup_.pass.ranges > 1 && setup_.pass.range == 0) {
+            const auto secret = sessionSecretFromHex(setup_.exchangeSecret);
+            auto exchange = secret ? PictureExchange::collecting(secret.value()) : Result<std::unique_ptr<PictureExchange>>(secret.error());
+            if (!exchange) return fail("no pictures of other nodes can be taken: " + exchange.error().message);
+            exchange_ = std::move(*exchange);
+            ready["exchange"] = endpointText(line_->ownAddress(), exchange_->port());
         }
         if (setup_.wallWindows) {
             auto windows = TileWindows::open(setup_);
@@ -139,11 +154,49 @@ private:
         outputs.news = [this](const wire::News& n, const std::string& text) {
             line_->send(wire::NodeMessage::News, std::as_bytes(std::span(&n, 1)), std::as_bytes(std::span(text)));
         };
+        outputs.sendPart = [this](const PicturePart& part) { return sendPart(part); };
+        outputs.receivePart = [this](int rank, PicturePart& part) { return receivePart(rank, part); };
         outputs.log = [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); };
         replay_ = std::make_unique<Replay>(std::move(*platform), config, std::move(outputs));
         lastCpuNs_ = threadCpuNs();
         line_->sendText(wire::NodeMessage::Ready, ready.dump());
         return true;
+    }
+
+    // The node that puts together what this one draws a range of.
+    bool meet(const std::string& text) {
+        const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+        if (setup_.pass.range == 0) return true; // it is others who come here
+        auto where = splitHostPort(json.is_object() ? json.value(std::to_string(setup_.collector), "") : "");
+        const auto secret = sessionSecretFromHex(setup_.exchangeSecret);
+        if (!where || !secret) return fail("the head named no node to send pictures to: install the same version of mural on all machines");
+        // No address: it runs where the head does.
+        const std::string host = !where->host.empty() ? where->host : line_->headHost().empty() ? "127.0.0.1" : line_->headHost();
+        auto exchange = PictureExchange::contributing(host, where->port, setup_.pass.range, secret.value(), Deadline::inMs(kMeetMs));
+        if (exchange) exchange_ = std::move(*exchange);
+        else line_->sendText(wire::NodeMessage::Log, "the node that puts pictures together is not reached at " + endpointText(host, where->port) + ": " + exchange.error().message + "; what this node draws is missing");
+        return true;
+    }
+
+    bool sendPart(const PicturePart& part) {
+        if (!exchange_) return false;
+        const auto sent = exchange_->send(part, Deadline::inMs(kPartMs));
+        if (!sent) lostExchange(sent.error().message);
+        return sent.ok();
+    }
+
+    bool receivePart(int rank, PicturePart& part) {
+        auto received = exchange_ ? exchange_->receive(rank, Deadline::inMs(kPartMs)) : Result<PicturePart>(Error{"there is no exchange"});
+        if (!received) {
+            lostExchange(received.error().message);
+            return false;
+        }
+        part = std::move(*received);
+        return true;
+    }
+
+    void lostExchange(const std::string& why) {
+        if (!std::exchange(saidLost_, true)) line_->sendText(wire::NodeMessage::Log, "a range of the picture is missing from now on: " + why);
     }
 
     bool fail(const std::string& why) {
@@ -190,7 +243,7 @@ private:
         done.frame = f.frame;
         done.width = f.config.width;
         done.height = f.config.height;
-        done.flags = (f.drawnWhole ? wire::kDrawnWhole : 0) | (f.keepsPicture ? wire::kKeepsPicture : 0);
+        done.flags = (f.drawnWhole ? wire::kDrawnWhole : 0) | (f.keepsPicture ? wire::kKeepsPicture : 0) | (f.notSplit ? wire::kNotSplit : 0);
         done.replayNs = replayedNs - lastCpuNs_;
         lastCpuNs_ = threadCpuNs();
         done.readbackNs = lastCpuNs_ - replayedNs;
@@ -249,6 +302,8 @@ private:
     uint32_t clientInHand_ = 0;          // whose packet was taken last…
     uint64_t callsBefore_ = 0;           // …and the records of all clients before it
     bool finished_ = false;
+    std::unique_ptr<PictureExchange> exchange_; // null: no other node has a part of this one's picture
+    bool saidLost_ = false;
 };
 
 } // namespace

@@ -52,6 +52,7 @@ bool Replay::record(std::span<const std::byte> bytes) {
     if (c_->compiling && splitsLists(opcode, arguments) && !compiledInPrimitive(opcode)) {
         compileSplit(bytes);
     } else {
+        if (takesRanges() && c_->compiling) noteCompiled(opcode, arguments);
         ok = execute(opcode, arguments, *this);
     }
     taken_.clear();
@@ -91,6 +92,7 @@ bool Replay::execute(uint16_t opcode, std::span<const std::byte> arguments, Blob
         nextNativeList([&] { ok = own(opcode, in); });
         return ok;
     }
+    if (takesRanges() && (opcode == wire::kOpRequestPixels || opcode == wire::kOpFillWindow)) composeBound();
     if (opcode < wire::kFirstGlOpcode) return own(opcode, in);
     const ReplayFunction function = replayFunction(opcode);
     if (!function) return false;
@@ -99,6 +101,10 @@ bool Replay::execute(uint16_t opcode, std::span<const std::byte> arguments, Blob
     noteBitmaps(opcode);
     if (takesTurns()) noteTurn(opcode, arguments);
     if (seesWithOtherEye()) noteEye(opcode, arguments);
+    if (takesRanges()) {
+        Args piece(noteRange(opcode, arguments), blobs);
+        return allocates(opcode) ? executeAllocating(function, piece) : function(*this, piece);
+    }
     const bool done = allocates(opcode) ? executeAllocating(function, in) : function(*this, in);
     if (seesWithOtherEye()) noteEyeAfter(opcode);
     return done;
@@ -140,6 +146,7 @@ bool Replay::bindStream(Stream& s) {
     c_ = s.context ? s.context : none_.get();
     if (!s.context) return true;
     if (bound_ == s.context && boundDraw_ == s.draw && boundRead_ == s.read) return true;
+    if (takesRanges()) composeBound(); // while its window is bound
     bound_ = s.context;
     boundDraw_ = s.draw;
     boundRead_ = s.read;

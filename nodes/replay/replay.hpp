@@ -21,6 +21,7 @@
 #include "common/tile_grid.hpp"
 #include "gl_functions.hpp"
 #include "nodes/gl/gl_platform.hpp"
+#include "nodes/exchange/picture_part.hpp"
 #include "nodes/replay/args.hpp"
 #include "nodes/replay/name_table.hpp"
 #include "nodes/replay/program_recipes.hpp"
@@ -68,11 +69,16 @@ struct ReplayOutputs {
         PixelViewport picture; // all of it: the window's size, or every nth pixel of it
         bool drawnWhole;      // nothing is cut to the part (Shared::allDrawn)
         bool keepsPicture;    // drawn by all nodes, whoever's turn it is (Window::keepsPicture)
+        bool notSplit;        // nothing was shared between ranges, though there are several
         std::function<const std::byte*(const PixelViewport&)> pixels;
     };
     std::function<void(const Frame&)> frameDone;
     std::function<void(uint32_t client, uint32_t window)> windowGone; // the program has destroyed it
     std::function<void(const std::string&)> log;
+    // Nodes that draw ranges of one picture (replay_range.cpp): to the one that puts it together, and there from the
+    // others. False: it is lost.
+    std::function<bool(const PicturePart&)> sendPart;
+    std::function<bool(int rank, PicturePart&)> receivePart;
     // What this node's GL tells of a program's context.
     std::function<void(const wire::News&, const std::string& text)> news;
 };
@@ -131,6 +137,22 @@ public:
 #include "replay_custom.inc"
 
 private:
+    // How far a frame of a window is that nodes share by ranges.
+    struct RangeFrame {
+        enum class Phase : uint8_t {
+            Fresh, // nothing is drawn
+            Split, // each node has drawn its range
+            Whole  // put together: the collector draws the rest
+        } phase = Phase::Fresh;
+        GLbitfield cleared = 0; // whole buffers, since the frame began
+        uint64_t cost = 0;      // of all draws so far, vertices…
+        uint64_t lastTotal = 0; // …and in the frame before; 0: nothing is known
+        uint64_t serial = 0;    // exchanges of this window
+        GLenum function = 0;    // of all draws that were shared
+        bool muted = false;     // another node draws this
+        bool wasSplit = false;
+        uint32_t clearedColour = 0, clearedDepth = 0;
+    };
     struct Window {
         bool destroyed = false; // freed when it is current nowhere
         bool lean = false;      // the framebuffer has the region's size
@@ -150,6 +172,7 @@ private:
         GLbitfield cleared = 0;    // whole buffers, since the frame began
         bool plain = true;         // drawn without the kernel of this pass: its pixels are picked at the end…
         bool copied = true;        // …because the frame before copied or read pixels of the window
+        RangeFrame range;
         bool keepsPicture = false; // a frame builds on the one before it: every node draws all of them
         std::vector<int16_t> accumulated; // of `drawn`, rows bottom first; empty: nothing yet
     };
@@ -158,6 +181,8 @@ private:
     };
     struct ListItem {
         GLuint native = 0;
+        uint32_t vertices = 0; // that the native list draws, about
+        bool plain = true;     // it changes nothing that decides whether draws may be shared
         std::vector<std::byte> record; // of a command that the node executes itself; empty: native
         std::vector<std::vector<std::byte>> blobs; // that the record takes
     };
@@ -175,6 +200,7 @@ private:
         TiledPrograms tiled;
         ProgramRecipes recipes;
         std::unordered_map<GLuint, double> fieldScales; // by the program's name: x of its projection (replay_eyes.cpp)
+        std::unordered_map<GLuint, bool> primitiveIds;  // our programs that number primitives: not cut into pieces
         double fieldScale = 0;                          // of the last projection in any buffer; 0: none was seen
     };
     struct Scissor {
@@ -292,6 +318,12 @@ private:
         bool pipelineBound = false;
         // Fixed function, seen by another eye: GL's projection is not the program's (replay_eyes.cpp).
         bool projectionShifted = false;
+        // Ranges: whether draws may be shared, as long as no state changes (replay_range.cpp).
+        bool rangeKnown = false, mayShare = false;
+        bool writesMemory = false; // storage or images were bound: vertex shaders may write there
+        bool feedsBack = false;    // transform feedback
+        int activeQueries = 0;
+        bool inPrimitive = false;
         std::array<GLfloat, 16> ownProjection{}, shiftedProjection{};
     };
     struct Stream {
@@ -435,6 +467,27 @@ private:
     [[nodiscard]] bool drawsFixed() const;
     void shiftProjection();
     void unshiftProjection();
+    // replay_range.cpp
+    [[nodiscard]] bool takesRanges() const { return config_.pass.ranges > 1; }
+    [[nodiscard]] bool collects() const { return config_.pass.range == 0; }
+    std::span<const std::byte> noteRange(uint16_t opcode, std::span<const std::byte> arguments);
+    std::span<const std::byte> noteRangeDraw(Window& w, uint16_t opcode, std::span<const std::byte> arguments);
+    void noteRangeState(uint16_t opcode, std::span<const std::byte> arguments);
+    void noteCompiled(uint16_t opcode, std::span<const std::byte> arguments);
+    bool noteRangeList(const ListItem& item);
+    void notePrimitiveIds(GLuint ours);
+    [[nodiscard]] bool mayShare();
+    bool shares(Window& w, uint64_t cost, uint64_t& first, uint64_t& last);
+    void beginSplit(Window& w);
+    void drawRest(Window& w);
+    void mute(Window& w, bool muted);
+    void composeRanges(Window& w);
+    void composeBound();
+    void rangeDrawn(Window& w);
+    bool readPart(Window& w, const PixelViewport& box, PicturePart& part);
+    void writePart(Window& w, const PicturePart& part);
+    std::vector<std::byte> sliced_; // arguments of a draw of which this node draws a piece
+    bool saidExchangeLost_ = false;
     // replay_front.cpp
     [[nodiscard]] bool hasTwoSurfaces(const Window* w) const;
     gl::Surface* surfaceOf(Window* w, GLenum buffer);

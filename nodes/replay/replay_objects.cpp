@@ -248,7 +248,7 @@ void Replay::glNewList(GLuint list, GLenum mode) {
     c_->compilesPrimitive = false;
     c_->building = {};
     const GLuint first = gl.glGenLists(1);
-    c_->building.items.push_back({first, {}, {}});
+    c_->building.items.push_back({.native = first, .record = {}, .blobs = {}});
     gl.glNewList(first, mode); // compile-and-execute is left to the driver: its playback may draw otherwise
 }
 void Replay::glEndList() {
@@ -268,7 +268,7 @@ void Replay::glEndList() {
 // A command that the list can't hold natively goes between two native lists. What was spilled ahead of
 // it belongs to it, and is kept with it: the list may be called again and again.
 void Replay::compileSplit(std::span<const std::byte> bytes) {
-    ListItem item{0, {bytes.begin(), bytes.end()}, {}};
+    ListItem item{.record = {bytes.begin(), bytes.end()}, .blobs = {}};
     for (bool found = true; found;) {
         takeBlob(found);
         if (found) item.blobs.push_back(std::move(taken_.back()));
@@ -286,7 +286,7 @@ void Replay::nextNativeList(const std::function<void()>& between) {
     between();
     c_->compiling = compiling;
     const GLuint next = gl.glGenLists(1);
-    c_->building.items.push_back({next, {}, {}});
+    c_->building.items.push_back({.native = next, .record = {}, .blobs = {}});
     gl.glNewList(next, c_->compileMode);
 }
 
@@ -305,6 +305,7 @@ void Replay::runList(GLuint list) {
     for (const ListItem& item : it->second.items) {
         if (++listCommands_ > config_.limits.listCommands) return;
         if (item.record.empty()) {
+            if (takesRanges() && !c_->compiling && !noteRangeList(item)) c_->rangeKnown = false;
             gl.glCallList(item.native);
             continue;
         }

@@ -220,6 +220,8 @@ bool Replay::ownSwap(Args& in, bool front) {
     ++counts_.frames;
     if (it != windows.end()) {
         Window& w = *it->second;
+        if (takesRanges()) rangeDrawn(w);
+        f.notSplit = takesRanges() && !w.range.wasSplit;
         f.config = w.config;
         f.region = hasKernel() && !w.region.empty() ? inKernel(w.part) : w.region;
         f.picture = hasKernel() ? inKernel(w.whole) : w.whole;

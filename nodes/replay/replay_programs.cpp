@@ -103,6 +103,7 @@ void Replay::glLinkProgram(GLuint program) {
     linkProgram(ours);
     if (c_->shared) c_->shared->recipes.linked(gl, ours);
     noteModules(ours);
+    if (takesRanges()) notePrimitiveIds(ours);
     applyTileValues(); // it may be the current one
 }
 void Replay::linkProgram(GLuint ours) {

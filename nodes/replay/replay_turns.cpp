@@ -54,8 +54,9 @@ bool Replay::learnsTurns(const Window& w) const { return takesTurns() && w.turn 
 void Replay::placePart(Window& w) {
     const bool mine = !takesTurns() || w.turn % config_.pass.period == config_.pass.phase;
     w.region = !mine ? PixelViewport{} : interleaves(&w) ? inKernel(w.part) : w.part;
-    w.drawn = w.region;
-    if (w.config.samples == 0 || w.region.empty()) return;
+    w.drawn = w.range.muted ? PixelViewport{} : w.region;
+    if (takesRanges() && !collects()) w.region = {}; // the collector's
+    if (w.config.samples == 0 || w.region.empty() || w.drawn.empty()) return;
     // A driver may treat multisampled lines at scissor edges off its own raster of 64 pixels (accuracy, M4).
     const int32_t x0 = w.region.x / 64 * 64, y0 = w.region.y / 64 * 64;
     w.drawn = intersect({x0, y0, (w.region.right() + 63) / 64 * 64 - x0, (w.region.top() + 63) / 64 * 64 - y0}, w.whole);

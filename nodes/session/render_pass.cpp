@@ -33,6 +33,7 @@ std::vector<RenderPass> passesOf(const PassCounts& counts) {
     p.kernelHeight = counts.kernelHeight;
     p.samples = counts.samples;
     p.period = counts.period;
+    p.ranges = counts.ranges;
     for (const Eye eye : eyesOf(counts.stereo)) {
         p.eye = eye;
         for (p.kernelY = 0; p.kernelY < counts.kernelHeight; ++p.kernelY)
@@ -72,6 +73,7 @@ std::string describe(const RenderPass& pass) {
         add("pixel " + std::to_string(pass.kernelX) + "," + std::to_string(pass.kernelY) + " of each " + std::to_string(pass.kernelWidth) + "x" + std::to_string(pass.kernelHeight));
     if (pass.samples > 1) add("sample " + std::to_string(pass.sample + 1) + " of " + std::to_string(pass.samples));
     if (pass.period > 1) add("frames " + std::to_string(pass.phase) + ", " + std::to_string(pass.phase + pass.period) + ", …");
+    if (pass.ranges > 1) add("range " + std::to_string(pass.range + 1) + " of " + std::to_string(pass.ranges));
     return text;
 }
 

@@ -1,5 +1,5 @@
 // What a picture is drawn for beside its place on the wall: an eye, a pixel of a kernel, a sample of a
-// pixel, a turn in time. A session that decomposes by any of them draws every frame in several passes, each by
+// pixel, a turn in time, a range of what is drawn. A session that decomposes by any of them draws every frame in several passes, each by
 // nodes of its own; the head puts the passes' pictures together.
 // Source: thesis, "Scalable Rendering" (stereo, pixel, subpixel and time-multiplex compounds).
 #pragma once
@@ -27,6 +27,7 @@ struct RenderPass {
     int kernelWidth = 1, kernelHeight = 1; // …of so many columns and rows; row 0 is the lowest
     int sample = 0, samples = 1;  // which of the jittered pictures that are averaged
     int phase = 0, period = 1;    // draws the frames n with n mod period == phase
+    int range = 0, ranges = 1;    // which part of a frame's draws, in their order (sort-last)
 
     bool operator==(const RenderPass&) const = default;
 };
@@ -37,11 +38,13 @@ struct PassCounts {
     int kernelWidth = 1, kernelHeight = 1;
     int samples = 1;
     int period = 1;
+    int ranges = 1;
 };
 
 [[nodiscard]] std::vector<Eye> eyesOf(StereoMode mode);
 
-// All passes: by eye, then by row and column of the kernel, then by sample, then by phase.
+// All passes: by eye, then by row and column of the kernel, then by sample, then by phase. Each stands for as many nodes
+// as there are ranges: they draw one picture together.
 [[nodiscard]] std::vector<RenderPass> passesOf(const PassCounts& counts);
 
 // Passes that differ in their phase alone make one picture: its index in that order.

@@ -51,6 +51,7 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("kernelHeight", c.passes.kernelHeight, 1);
     visit("samples", c.passes.samples, 1);
     visit("period", c.passes.period, 1);
+    visit("ranges", c.passes.ranges, 1);
     visit("eyeBase", c.eyeBase);
     visit("focusDistance", c.focusDistance);
     visit("tiling", c.tiling);
@@ -92,6 +93,8 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("samples", s.pass.samples, 1);
     visit("phase", s.pass.phase, 0);
     visit("period", s.pass.period, 1);
+    visit("range", s.pass.range, 0);
+    visit("ranges", s.pass.ranges, 1);
     visit("answers", s.answers);
     visit("eyeBase", s.eyeBase);
     visit("focusDistance", s.focusDistance);
@@ -106,6 +109,8 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("displayName", s.displayName);
     visit("stream", s.stream);
     visit("streamSecret", s.streamSecret);
+    visit("collector", s.collector, 0);
+    visit("exchangeSecret", s.exchangeSecret);
     visit("build", s.build);
 }
 
@@ -236,7 +241,7 @@ Result<NodeSetup> nodeSetupFromJson(const std::string& line) {
                         setup->regionRows <= setup->rows - setup->regionRow;
     if (!inside) return Error{"node setup: the region lies outside of the tile grid"};
     const RenderPass& p = setup->pass;
-    if (p.kernelX >= p.kernelWidth || p.kernelY >= p.kernelHeight || p.sample >= p.samples || p.phase >= p.period)
+    if (p.kernelX >= p.kernelWidth || p.kernelY >= p.kernelHeight || p.sample >= p.samples || p.phase >= p.period || p.range >= p.ranges)
         return Error{"node setup: its pass is none of the session's"};
     return setup;
 }

@@ -24,7 +24,7 @@ struct SessionConfig {
     std::string launchCommand = "ssh -o BatchMode=yes"; // --launch: prefix that runs a command on a host
     std::string stream = "auto";  // --stream: how it travels to other machines: auto, tcp, rsp://…
     std::string remoteMural;      // --remote-mural: path of mural on the hosts; empty: this one's path
-    PassCounts passes;            // --stereo, --pixel, --subpixel, --dplex
+    PassCounts passes;            // --stereo, --pixel, --subpixel, --dplex, --db
     double eyeBase = 0.05;        // --eye-base: distance of the eyes, in the program's units
     double focusDistance = 1;     // --focus: where both eyes see the same, in the program's units
     Tiling tiling = Tiling::Exact;
@@ -68,6 +68,8 @@ struct NodeSetup {
     std::string displayName;
     std::string stream;           // rsp://…: the group to join; its packets come there. Empty: on this connection
     std::string streamSecret;     // of that group, in hex
+    int collector = 0;            // the node that puts together what this one draws a range of
+    std::string exchangeSecret;   // of the nodes that draw ranges of one picture, in hex; empty: they do not
     std::string build;            // streamBuild() of the head
 };
 

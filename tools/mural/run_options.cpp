@@ -163,7 +163,7 @@ Result<void> readNodes(const RunArguments& a, SessionConfig& c) {
         if (bad) return badValue("--nodes", *a.nodes, "must be host names separated by commas, such as wall1,wall2");
     }
     const int asked = c.localNodes + static_cast<int>(c.hosts.size());
-    const auto passes = static_cast<int>(passesOf(c.passes).size());
+    const int passes = static_cast<int>(passesOf(c.passes).size()) * c.passes.ranges;
     if (asked > 0 && !a.tiles) std::tie(c.columns, c.rows) = gridFor(std::max(1, asked / passes));
     if (asked > c.columns * c.rows * passes) {
         return Error{fmt::format("{} render nodes for {} tiles{}: each node needs a tile; give more --tiles or fewer nodes", asked, c.columns * c.rows, passes > 1 ? fmt::format(" in {} passes", passes) : "")};
@@ -211,9 +211,10 @@ Result<void> readPasses(const RunArguments& a, SessionConfig& c) {
     }
     if (auto r = readCount("--subpixel", a.subpixel, kMaxPasses, p.samples); !r) return r;
     if (auto r = readCount("--dplex", a.dplex, kMaxPasses, p.period); !r) return r;
-    const size_t passes = passesOf(p).size();
-    if (passes > kMaxPasses) return Error{fmt::format("--stereo, --pixel, --subpixel and --dplex make {} passes together; at most {} can be drawn", passes, kMaxPasses)};
-    if (passes > 1 && c.tiling == Tiling::Lean) return Error{"--tiling lean does not go with --stereo, --pixel, --subpixel or --dplex; leave it out"};
+    if (auto r = readCount("--db", a.db, kMaxPasses, p.ranges); !r) return r;
+    const size_t passes = passesOf(p).size() * static_cast<size_t>(p.ranges);
+    if (passes > kMaxPasses) return Error{fmt::format("--stereo, --pixel, --subpixel, --dplex and --db make {} passes together; at most {} can be drawn", passes, kMaxPasses)};
+    if (passes > 1 && c.tiling == Tiling::Lean) return Error{"--tiling lean does not go with --stereo, --pixel, --subpixel, --dplex or --db; leave it out"};
     if (p.period > 1 && !a.latency) c.latency = p.period; // turns overlap only so
     return {};
 }
@@ -263,6 +264,7 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
     command.add_option("--subpixel", a.subpixel, "antialiasing: every pixel is the mean of N jittered pictures, each drawn by nodes of its own (1)")->type_name("N");
     command.add_option("--pixel", a.pixel, "interleaved pixels: each node draws every Nth column (or one pixel of each CxR), with little memory; approximate (1)")->type_name("N|CxR");
     command.add_option("--dplex", a.dplex, "time-multiplex: N nodes take turns at whole frames (1)")->type_name("N");
+    command.add_option("--db", a.db, "sort-last: N nodes share what is drawn, by ranges of each frame's draws, and compose by depth (1)")->type_name("N");
     command.add_option("--display", a.display, "where the wall is shown: app (the program's own window), windows (one per tile), none")->type_name("WHERE");
     command.add_option("--tiling", a.tiling, "exact: every pixel as on one machine; culled: less work for much geometry, exact in windows with a depth buffer; lean: less memory (exact)")->type_name("HOW");
     command.add_option("--policy", a.policy, "state: the program's own GL draws nothing; full: it draws too (state)")->type_name("WHAT");

@@ -31,7 +31,7 @@ struct RunOptions {
 struct RunArguments {
     using Text = std::optional<std::string>;
     Text tiles, size, position, nodes, out, save, display, tiling, policy, gl, launch, stream, remoteMural, front;
-    Text stereo, eyeBase, focus, pixel, subpixel, dplex;
+    Text stereo, eyeBase, focus, pixel, subpixel, dplex, db;
     Text localNodes, frames, latency, report;
     std::string verify; // empty: not given
     bool fullScreen = false, noPlacement = false, explain = false, native = false, quiet = false;

@@ -1,0 +1,385 @@
+// Sort-last: the nodes of one picture share its opaque draws, each a contiguous range of them in their order; then the
+// collector puts the pictures together by depth, and draws what is left alone.
+//
+//   Fresh    the frame's clears: all nodes
+//   Split    depth-tested, opaque draws: each node its range; the others' are cut off by the scissor, or drawn of no vertices
+//   Whole    from the first draw on that depends on what lies under it (blending, stencil, no depth test, …), or when
+//            the picture is read: the collector has the whole picture and draws the rest of the frame
+//
+// Which draws are shared follows from the stream and the state alone, and ranges from what the frame before has cost, so
+// all nodes agree without a word. Draws are folded in their order by the depth test itself, so the picture is the one of
+// a single machine, bit for bit (accuracy 4). Framebuffer objects are drawn by all.
+#include <algorithm>
+#include <cstring>
+#include <string_view>
+#include <utility>
+
+#include "gl_opcodes.hpp"
+#include "nodes/replay/replay.hpp"
+#include "streamcodec/opcode_names.hpp"
+
+namespace mural {
+
+namespace {
+
+enum class RangeUse : uint8_t { None, State, Clear, Draw, Begin, End, Vertex, Read, Memory, Feedback, Query };
+
+RangeUse classify(uint16_t opcode, std::string_view name) {
+    const auto starts = [&](std::string_view stem) { return name.starts_with(stem); };
+    if (opcode == op::glBegin) return RangeUse::Begin;
+    if (opcode == op::glEnd) return RangeUse::End;
+    if (opcode == op::glClear) return RangeUse::Clear;
+    if (starts("glClearBuffer") || starts("glClearNamedFramebuffer") || starts("glAccum") || starts("glCopy") || starts("glBlit") || starts("glReadPixels") || starts("glDrawPixels") || starts("glBitmap")) return RangeUse::Read;
+    if (starts("glBeginTransformFeedback") || starts("glEndTransformFeedback") || starts("glDrawTransformFeedback")) return RangeUse::Feedback;
+    if (starts("glBeginQuery") || starts("glEndQuery") || starts("glBeginConditional") || starts("glEndConditional")) return RangeUse::Query;
+    if (starts("glBindImageTexture") || starts("glBindBufferBase") || starts("glBindBufferRange") || starts("glBindBuffersBase") || starts("glBindBuffersRange")) return RangeUse::Memory;
+    if (starts("glDrawBuffer")) return RangeUse::State;
+    for (const std::string_view stem : {"glDraw", "glMultiDraw", "glMultiMode", "glRect", "glEvalMesh"})
+        if (starts(stem)) return RangeUse::Draw;
+    if (starts("glVertex") && !starts("glVertexA") && !starts("glVertexB") && !starts("glVertexPointer")) return RangeUse::Vertex;
+    for (const std::string_view stem : {"glEnable", "glDisable", "glDepth", "glBlend", "glColorMask", "glStencil", "glLogicOp", "glPopAttrib", "glUseProgram", "glBindProgramPipeline", "glBindFramebuffer", "glClipControl", "glReadBuffer", "glRenderMode"})
+        if (starts(stem)) return RangeUse::State;
+    return RangeUse::None;
+}
+
+RangeUse useOf(uint16_t opcode) {
+    static const auto kUses = [] {
+        std::vector<RangeUse> uses(op::kLimit, RangeUse::None);
+        for (uint16_t o = wire::kFirstGlOpcode; o < op::kLimit; ++o)
+            if (const char* name = glOpcodeName(o)) uses[o] = classify(o, name);
+        return uses;
+    }();
+    return kUses[opcode];
+}
+
+// Draws whose vertices can be cut into pieces: where their count and their first vertex stand among the arguments,
+// all of four bytes.
+struct Cuttable {
+    int count = -1, first = -1, type = -1, indices = -1, instances = -1;
+};
+
+Cuttable cuttable(uint16_t opcode) {
+    switch (opcode) {
+    case op::glDrawArrays: return {.count = 2, .first = 1};
+    case op::glDrawArraysInstanced: return {.count = 2, .first = 1, .instances = 3};
+    case op::glDrawElements: return {.count = 1, .type = 2, .indices = 3};
+    case op::glDrawElementsBaseVertex: return {.count = 1, .type = 2, .indices = 3};
+    case op::glDrawRangeElements: return {.count = 3, .type = 4, .indices = 5};
+    default: return {};
+    }
+}
+
+uint32_t wordAt(std::span<const std::byte> bytes, int index) {
+    uint32_t word = 0;
+    if (index >= 0 && bytes.size() >= 4 * (static_cast<size_t>(index) + 1)) std::memcpy(&word, bytes.data() + 4 * static_cast<size_t>(index), 4);
+    return word;
+}
+void setWord(std::vector<std::byte>& bytes, int index, uint32_t word) { std::memcpy(bytes.data() + 4 * static_cast<size_t>(index), &word, 4); }
+
+// Vertices of a primitive that stands for itself; 0: they hang together.
+uint32_t verticesOf(uint32_t mode) {
+    switch (mode) {
+    case GL_POINTS: return 1;
+    case GL_LINES: return 2;
+    case GL_TRIANGLES: return 3;
+    case GL_QUADS: return 4;
+    default: return 0;
+    }
+}
+
+uint32_t indexBytes(uint32_t type) { return type == GL_UNSIGNED_INT ? 4 : type == GL_UNSIGNED_SHORT ? 2 : 1; }
+
+constexpr uint64_t kUnknownCost = 64; // of draws whose vertices are not counted
+
+} // namespace
+
+// ---- state
+
+bool Replay::mayShare() {
+    if (c_->rangeKnown) return c_->mayShare;
+    c_->rangeKnown = true;
+    c_->mayShare = false;
+    const auto on = [&](GLenum cap) { return gl.glIsEnabled(cap) != GL_FALSE; };
+    if (c_->api != wire::Api::Desktop || !c_->draw || c_->read != c_->draw || c_->draw->config.samples > 0 || c_->draw->config.depth == 0) return false;
+    if (!on(GL_DEPTH_TEST) || on(GL_BLEND) || on(GL_STENCIL_TEST) || on(GL_COLOR_LOGIC_OP)) return false;
+    if (!c_->core && on(GL_INDEX_LOGIC_OP)) return false;
+    GLboolean depthMask = GL_FALSE;
+    gl.glGetBooleanv(GL_DEPTH_WRITEMASK, &depthMask);
+    GLint function = 0;
+    gl.glGetIntegerv(GL_DEPTH_FUNC, &function);
+    if (!depthMask || (function != GL_LESS && function != GL_LEQUAL && function != GL_GREATER && function != GL_GEQUAL)) return false;
+    for (const auto& mask : c_->colorMasks.buffers)
+        if (!mask[0] || !mask[1] || !mask[2] || !mask[3]) return false;
+    if (c_->drawBuffer0 != GL_BACK && c_->drawBuffer0 != GL_BACK_LEFT) return false;
+    c_->mayShare = true;
+    return true;
+}
+
+void Replay::noteRangeState(uint16_t opcode, std::span<const std::byte> arguments) {
+    c_->rangeKnown = false;
+    const std::string_view name = glOpcodeName(opcode);
+    switch (useOf(opcode)) {
+    case RangeUse::Memory: {
+        const uint32_t target = wordAt(arguments, 0);
+        if (name.starts_with("glBindImage") || target == GL_SHADER_STORAGE_BUFFER || target == GL_ATOMIC_COUNTER_BUFFER) c_->writesMemory = true;
+        break;
+    }
+    case RangeUse::Feedback:
+        if (!name.starts_with("glDraw")) c_->feedsBack = name.starts_with("glBegin");
+        break;
+    case RangeUse::Query: c_->activeQueries = std::max(0, c_->activeQueries + (name.starts_with("glBegin") ? 1 : -1)); break;
+    default: break;
+    }
+}
+
+void Replay::notePrimitiveIds(GLuint ours) {
+    GLuint attached[64] = {};
+    GLsizei count = 0;
+    gl.glGetAttachedShaders(ours, 64, &count, attached);
+    bool numbers = count == 0;
+    for (GLsizei i = 0; i < count; ++i) {
+        GLint length = 0;
+        gl.glGetShaderiv(attached[i], GL_SHADER_SOURCE_LENGTH, &length);
+        std::string text(static_cast<size_t>(std::max(length, 1)), '\0');
+        gl.glGetShaderSource(attached[i], static_cast<GLsizei>(text.size()), nullptr, text.data());
+        numbers = numbers || length <= 1 || text.find("gl_PrimitiveID") != std::string::npos;
+    }
+    if (c_->shared) c_->shared->primitiveIds[ours] = numbers;
+}
+
+// What a native list holds is told while it is compiled.
+void Replay::noteCompiled(uint16_t opcode, std::span<const std::byte> arguments) {
+    if (c_->building.items.empty()) return;
+    ListItem& item = c_->building.items.back();
+    switch (useOf(opcode)) {
+    case RangeUse::Vertex: ++item.vertices; break;
+    case RangeUse::Draw: item.vertices += std::max<uint32_t>(1, cuttable(opcode).count >= 0 ? wordAt(arguments, cuttable(opcode).count) : static_cast<uint32_t>(kUnknownCost)); break;
+    case RangeUse::None:
+    case RangeUse::Begin:
+    case RangeUse::End: break;
+    default: item.plain = false;
+    }
+}
+
+// ---- the frame
+
+void Replay::mute(Window& w, bool muted) {
+    if (w.range.muted == muted) return;
+    w.range.muted = muted;
+    placePart(w);
+    if (&w == boundDraw_) applyScissors();
+}
+
+void Replay::beginSplit(Window& w) {
+    RangeFrame& r = w.range;
+    GLint function = 0;
+    gl.glGetIntegerv(GL_DEPTH_FUNC, &function);
+    r.function = static_cast<GLenum>(function);
+    r.phase = RangeFrame::Phase::Split;
+    r.wasSplit = r.wasSplit || r.lastTotal > 0;
+    if (!collects() || w.part.empty()) return;
+    PicturePart pixel; // as the clears have left it
+    if (!readPart(w, {w.part.x, w.part.y, 1, 1}, pixel)) return;
+    r.clearedColour = pixel.colour[0];
+    r.clearedDepth = pixel.depth[0];
+}
+
+// Whether the window's next draws, of `cost`, are shared; then this node's are those from `first` up to `last`.
+bool Replay::shares(Window& w, uint64_t cost, uint64_t& first, uint64_t& last) {
+    RangeFrame& r = w.range;
+    if (r.phase == RangeFrame::Phase::Whole) return false;
+    constexpr GLbitfield kNeeded = GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT;
+    const bool may = mayShare() && !allDrawn() && !c_->writesMemory && !c_->feedsBack && c_->activeQueries == 0 && (r.cleared & kNeeded) == kNeeded;
+    GLint function = 0;
+    if (may && r.phase == RangeFrame::Phase::Split) gl.glGetIntegerv(GL_DEPTH_FUNC, &function);
+    if (!may || (function != 0 && static_cast<GLenum>(function) != r.function)) {
+        drawRest(w);
+        return false;
+    }
+    if (r.phase == RangeFrame::Phase::Fresh) beginSplit(w);
+    const auto ranges = static_cast<uint64_t>(config_.pass.ranges), mine = static_cast<uint64_t>(config_.pass.range);
+    // In the first frame nothing is known: the collector draws it.
+    const uint64_t from = r.lastTotal ? r.lastTotal * mine / ranges : mine == 0 ? 0 : UINT64_MAX;
+    const uint64_t to = r.lastTotal ? (mine + 1 == ranges ? UINT64_MAX : r.lastTotal * (mine + 1) / ranges) : mine == 0 ? UINT64_MAX : UINT64_MAX;
+    const uint64_t at = r.cost;
+    r.cost += cost;
+    first = std::clamp(from, at, at + cost) - at;
+    last = std::clamp(to, at, at + cost) - at;
+    return true;
+}
+
+// The picture is put together, and the rest of the frame is the collector's.
+void Replay::drawRest(Window& w) {
+    if (w.range.phase == RangeFrame::Phase::Whole) return;
+    composeRanges(w);
+    w.range.phase = RangeFrame::Phase::Whole;
+    mute(w, !collects());
+}
+
+std::span<const std::byte> Replay::noteRangeDraw(Window& w, uint16_t opcode, std::span<const std::byte> arguments) {
+    const Cuttable c = cuttable(opcode);
+    const uint32_t count = wordAt(arguments, c.count), each = verticesOf(wordAt(arguments, 0));
+    const uint64_t instances = c.instances >= 0 ? wordAt(arguments, c.instances) : 1;
+    const uint64_t cost = c.count >= 0 ? std::max<uint64_t>(1, std::min<uint64_t>(count, INT32_MAX) * std::min<uint64_t>(instances, 1u << 20)) : kUnknownCost;
+    uint64_t first = 0, last = 0;
+    if (!shares(w, cost, first, last)) return arguments;
+    const auto numbers = c_->shared->primitiveIds.find(name(Kind::Program, c_->program));
+    bool cuts = c.count >= 0 && each > 0 && count <= INT32_MAX && instances == 1 && !c_->pipelineBound && (c_->program == 0 || (numbers != c_->shared->primitiveIds.end() && !numbers->second));
+    if (cuts && c.indices >= 0) cuts = wordAt(arguments, c.indices) == record::kTagOffset && !gl.glIsEnabled(GL_PRIMITIVE_RESTART) && (c_->version < 43 || !gl.glIsEnabled(GL_PRIMITIVE_RESTART_FIXED_INDEX));
+    if (!cuts) { // whole: of the node in whose range it begins
+        mute(w, first != 0 || last == 0);
+        return arguments;
+    }
+    const auto edge = [&](uint64_t at) { return static_cast<uint32_t>(at >= cost ? count : (at + each - 1) / each * each); };
+    const uint32_t from = std::min(edge(first), count), to = std::min(edge(last), count);
+    mute(w, false);
+    if (from == 0 && to == count) return arguments;
+    sliced_.assign(arguments.begin(), arguments.end());
+    setWord(sliced_, c.count, to > from ? to - from : 0);
+    if (c.first >= 0) setWord(sliced_, c.first, wordAt(arguments, c.first) + from);
+    if (c.indices >= 0 && arguments.size() >= 4 * (static_cast<size_t>(c.indices) + 3)) {
+        uint64_t offset = 0;
+        std::memcpy(&offset, arguments.data() + 4 * (static_cast<size_t>(c.indices) + 1), 8);
+        offset += uint64_t{from} * indexBytes(wordAt(arguments, c.type));
+        std::memcpy(sliced_.data() + 4 * (static_cast<size_t>(c.indices) + 1), &offset, 8);
+    }
+    return sliced_;
+}
+
+// Before any command; the arguments with which it is to be called.
+std::span<const std::byte> Replay::noteRange(uint16_t opcode, std::span<const std::byte> arguments) {
+    const RangeUse use = useOf(opcode);
+    if (use == RangeUse::None || !bound_ || c_->compiling) return arguments;
+    if (use == RangeUse::State || use == RangeUse::Memory || use == RangeUse::Query || use == RangeUse::Feedback) {
+        noteRangeState(opcode, arguments);
+        if (use != RangeUse::Feedback) return arguments;
+    }
+    // The window may be what is read, too.
+    if (use == RangeUse::Read && c_->readFramebuffer == 0 && c_->read && c_->read == c_->draw) drawRest(*c_->read);
+    if (!drawsWindow() || !c_->draw) return arguments;
+    Window& w = *c_->draw;
+    uint64_t first = 0, last = 0;
+    switch (use) {
+    case RangeUse::Clear: {
+        const uint32_t mask = wordAt(arguments, 0);
+        if (w.range.phase == RangeFrame::Phase::Fresh) w.range.cleared |= clearsWhole(mask);
+        else drawRest(w);
+        return arguments;
+    }
+    case RangeUse::Read:
+    case RangeUse::Feedback: drawRest(w); return arguments;
+    case RangeUse::Begin:
+        c_->inPrimitive = true;
+        if (shares(w, 1, first, last)) mute(w, first != 0 || last == 0);
+        return arguments;
+    case RangeUse::End: c_->inPrimitive = false; return arguments;
+    case RangeUse::Vertex:
+        if (w.range.phase == RangeFrame::Phase::Split) ++w.range.cost;
+        return arguments;
+    case RangeUse::Draw: return noteRangeDraw(w, opcode, arguments);
+    default: return arguments;
+    }
+}
+
+// A native list is one piece. False: what it changes decides about later draws.
+bool Replay::noteRangeList(const ListItem& item) {
+    if (!bound_ || !drawsWindow() || !c_->draw || c_->inPrimitive) return item.plain;
+    Window& w = *c_->draw;
+    if (!item.plain) {
+        drawRest(w);
+        return false;
+    }
+    uint64_t first = 0, last = 0;
+    if (item.vertices > 0 && shares(w, item.vertices, first, last)) mute(w, first != 0 || last == 0);
+    return true;
+}
+
+// ---- pictures
+
+bool Replay::readPart(Window& w, const PixelViewport& box, PicturePart& part) {
+    const GLuint bound = c_->readFramebuffer;
+    if (bound && gl.glBindFramebuffer) gl.glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+    c_->readFramebuffer = 0;
+    gl.glReadBuffer(windowBuffer(c_->drawBuffer0, &w));
+    depthForReading();
+    const auto pixels = static_cast<size_t>(box.area());
+    part.client = wire::clientOf(stream_);
+    part.box = box;
+    part.serial = w.range.serial;
+    part.colour.resize(pixels);
+    part.depth.resize(pixels);
+    aside([&] {
+        withPlainTransfer([&] {
+            std::memcpy(part.colour.data(), readRegion(box, GL_RGBA, GL_UNSIGNED_BYTE, pixels * 4), pixels * 4);
+            std::memcpy(part.depth.data(), readRegion(box, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, pixels * 4), pixels * 4);
+        });
+    });
+    gl.glReadBuffer(windowBuffer(c_->readBuffer0, &w));
+    c_->readFramebuffer = bound;
+    if (bound && gl.glBindFramebuffer) gl.glBindFramebuffer(GL_READ_FRAMEBUFFER, name(Kind::Framebuffer, bound));
+    return true;
+}
+
+void Replay::writePart(Window&, const PicturePart& part) {
+    const GLenum reads = std::exchange(c_->readBuffer0, c_->drawBuffer0);
+    aside([&] {
+        fillColor(part.box, part.colour.data());
+        fillByOtherContext(part.box, GL_DEPTH_BUFFER_BIT, part.depth.data());
+    });
+    c_->readBuffer0 = reads;
+    if (c_->readFramebuffer == 0) gl.glReadBuffer(windowBuffer(reads, c_->read));
+}
+
+void Replay::composeRanges(Window& w) {
+    RangeFrame& r = w.range;
+    if (r.phase != RangeFrame::Phase::Split || &w != boundDraw_) return;
+    r.phase = RangeFrame::Phase::Whole;
+    mute(w, false);
+    if (r.lastTotal == 0 || w.part.empty()) return; // all of it was the collector's
+    PicturePart part;
+    ++r.serial;
+    readPart(w, w.part, part);
+    if (!collects()) {
+        if (out_.sendPart) (void)out_.sendPart(part);
+        return;
+    }
+    const DepthOrder order = r.function == GL_LESS ? DepthOrder::Less : r.function == GL_LEQUAL ? DepthOrder::LessOrEqual
+                             : r.function == GL_GREATER ? DepthOrder::Greater : DepthOrder::GreaterOrEqual;
+    for (int rank = 1; rank < config_.pass.ranges; ++rank) {
+        PicturePart later;
+        if (!out_.receivePart || !out_.receivePart(rank, later)) continue; // its share is missing
+        if (config_.plant == "range") continue; // a fault on purpose, for tests of the tests
+        if (later.serial == part.serial && later.box == part.box) mergeByDepth(part, later, order, r.clearedColour, r.clearedDepth);
+        else if (!std::exchange(saidExchangeLost_, true)) out_.log("ranges of different frames came together: this picture is incomplete");
+    }
+    writePart(w, part);
+}
+
+// The bound window is about to be read, or to be left.
+void Replay::composeBound() {
+    if (!bound_ || !boundDraw_) return;
+    ContextState* const own = std::exchange(c_, bound_);
+    if (drawsWindow() && boundDraw_->range.phase == RangeFrame::Phase::Split && !c_->compiling) drawRest(*boundDraw_);
+    c_ = own;
+}
+
+void Replay::rangeDrawn(Window& w) {
+    RangeFrame& r = w.range;
+    ContextState* const own = std::exchange(c_, bound_ ? bound_ : c_);
+    if (&w == boundDraw_ && bound_) {
+        const GLuint framebuffer = c_->drawFramebuffer;
+        if (framebuffer != 0 && gl.glBindFramebuffer) glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+        composeRanges(w);
+        mute(w, false);
+        if (framebuffer != 0 && gl.glBindFramebuffer) glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
+    }
+    c_ = own;
+    const uint64_t total = r.cost, serial = r.serial;
+    const bool split = r.wasSplit;
+    r = {};
+    r.lastTotal = total;
+    r.serial = serial;
+    r.wasSplit = split;
+}
+
+} // namespace mural
