@@ -1,0 +1,39 @@
+#include "balancer/config/diagnostics.hpp"
+
+namespace mural::config {
+
+namespace {
+
+// A file that is no configuration at all has something wrong in every word.
+constexpr size_t kMostLines = 200;
+
+} // namespace
+
+void Diagnostics::add(Diagnostic d) {
+    if (d.severity == Severity::Error) ++errors_;
+    if (all_.size() < kMostLines) all_.push_back(std::move(d));
+    else if (d.severity == Severity::Error && errors_ == 1) all_.back() = std::move(d); // the only one must not be lost
+}
+
+void Diagnostics::warn(SourcePosition at, std::string what, std::string remedy) {
+    add({strict_ ? Severity::Error : Severity::Warning, at, std::move(what), std::move(remedy)});
+}
+
+void Diagnostics::error(SourcePosition at, std::string what, std::string remedy) {
+    add({Severity::Error, at, std::move(what), std::move(remedy)});
+}
+
+std::string Diagnostics::text(const Diagnostic& d) const {
+    std::string where = file_;
+    if (d.at.line > 0) where += ":" + std::to_string(d.at.line) + ":" + std::to_string(d.at.column);
+    return where + ": " + d.what + (d.remedy.empty() ? "" : "; " + d.remedy);
+}
+
+std::string Diagnostics::firstError() const {
+    for (const Diagnostic& d : all_) {
+        if (d.severity == Severity::Error) return text(d);
+    }
+    return {};
+}
+
+} // namespace mural::config

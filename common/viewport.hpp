@@ -1,0 +1,68 @@
+// A part of something, as fractions of its size: x, y of the lower left corner, width, height. The whole is 0 0 1 1.
+// Source: thesis, "Compounds": viewport. How fractions become pixels decides whether neighbours meet: positions are
+// rounded, sizes follow from them.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/pixel_viewport.hpp"
+
+namespace mural {
+
+struct Viewport {
+    double x = 0;
+    double y = 0;
+    double w = 1;
+    double h = 1;
+
+    [[nodiscard]] constexpr bool empty() const { return !(w > 0) || !(h > 0); }
+    [[nodiscard]] constexpr bool full() const { return x == 0 && y == 0 && w == 1 && h == 1; }
+    friend constexpr bool operator==(const Viewport&, const Viewport&) = default;
+};
+
+// `inner`, given as part of `outer`, as part of what `outer` is a part of.
+[[nodiscard]] constexpr Viewport compose(const Viewport& outer, const Viewport& inner) {
+    return {outer.x + inner.x * outer.w, outer.y + inner.y * outer.h, inner.w * outer.w, inner.h * outer.h};
+}
+
+// The other way: `part` and `whole` of the same thing; `part` as part of `whole`. `whole` must not be empty.
+[[nodiscard]] constexpr Viewport relativeTo(const Viewport& part, const Viewport& whole) {
+    return {(part.x - whole.x) / whole.w, (part.y - whole.y) / whole.h, part.w / whole.w, part.h / whole.h};
+}
+
+// The common part; an empty viewport when there is none. Edges that differ by less than what decimal fractions lose
+// in arithmetic (.1 + .7 is not .8) have nothing in common.
+[[nodiscard]] constexpr Viewport intersect(const Viewport& a, const Viewport& b) {
+    constexpr double kNothing = 1e-9;
+    const double x0 = std::max(a.x, b.x);
+    const double y0 = std::max(a.y, b.y);
+    const double w = std::min(a.x + a.w, b.x + b.w) - x0;
+    const double h = std::min(a.y + a.h, b.y + b.h) - y0;
+    if (!(w > kNothing) || !(h > kNothing)) return {0, 0, 0, 0};
+    return {x0, y0, w, h};
+}
+
+// The pixel that a position in fractions of a size falls into. A position that misses a pixel's edge only by what
+// decimal fractions lose in arithmetic is on it, so that .1 + .7 and .8 are the same edge.
+[[nodiscard]] inline int32_t pixelEdge(double fraction, int32_t size) {
+    constexpr double kRoundingPixels = 1e-6;
+    const double edge = std::trunc(fraction * size + kRoundingPixels);
+    return static_cast<int32_t>(std::clamp(edge, double{INT32_MIN / 2}, double{INT32_MAX / 2}));
+}
+
+// The pixels of a part of `whole`. Neighbours whose decimal values agree neither overlap nor leave a gap.
+[[nodiscard]] inline PixelViewport apply(const PixelViewport& whole, const Viewport& part) {
+    const int32_t x0 = pixelEdge(part.x, whole.w);
+    const int32_t y0 = pixelEdge(part.y, whole.h);
+    return {whole.x + x0, whole.y + y0, pixelEdge(part.x + part.w, whole.w) - x0, pixelEdge(part.y + part.h, whole.h) - y0};
+}
+
+// Which part of `whole` the pixels of `part` are. `whole` must not be empty.
+[[nodiscard]] constexpr Viewport relativeTo(const PixelViewport& part, const PixelViewport& whole) {
+    if (part == whole) return {};
+    const double w = whole.w, h = whole.h;
+    return {(part.x - whole.x) / w, (part.y - whole.y) / h, part.w / w, part.h / h};
+}
+
+} // namespace mural
