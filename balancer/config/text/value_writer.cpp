@@ -1,0 +1,53 @@
+#include "balancer/config/text/value_writer.hpp"
+
+#include <charconv>
+
+namespace mural::config {
+
+namespace {
+
+template <class... T> std::string list(const T&... values) {
+    std::string text = "[";
+    ((text += " " + valueText(values)), ...);
+    return text + " ]";
+}
+
+uint32_t number(int32_t value) { return static_cast<uint32_t>(value); }
+
+} // namespace
+
+std::string numberText(double value) {
+    char text[400]; // the longest has 323 zeros behind the point and 17 digits behind them
+    const auto [end, error] = std::to_chars(text, text + sizeof text, value, std::chars_format::fixed);
+    return {text, error == std::errc{} ? end : text};
+}
+
+std::string valueText(const std::string& value) { return "\"" + value + "\""; }
+std::string valueText(char value) { return std::string("'") + value + "'"; }
+std::string valueText(const Viewport& v) { return list(v.x, v.y, v.w, v.h); }
+std::string valueText(const Vector3& v) { return list(v.x, v.y, v.z); }
+std::string valueText(const Degrees2& v) { return list(v.x, v.y); }
+std::string valueText(const Range& r) { return list(r.start, r.end); }
+std::string valueText(const Zoom& z) { return list(z.x, z.y); }
+std::string valueText(const PixelKernel& k) { return list(number(k.x), number(k.y), number(k.w), number(k.h)); }
+std::string valueText(const SubPixel& s) { return list(number(s.index), number(s.size)); }
+std::string valueText(const Bezel& b) { return list(b.left, b.right, b.bottom, b.top); }
+
+std::string valueText(const Reference& value) {
+    return std::visit([](const auto& v) { return valueText(v); }, value);
+}
+
+std::string valueText(const LayoutReference& value) {
+    if (const auto* name = std::get_if<std::string>(&value)) return valueText(*name);
+    if (const auto* index = std::get_if<uint32_t>(&value)) return valueText(*index);
+    return "OFF";
+}
+
+std::string valueText(const ChannelReference& value) {
+    if (const auto* name = std::get_if<std::string>(&value)) return valueText(*name);
+    std::string text = "(";
+    for (const auto& [step, reference] : std::get<ChannelPath>(value).steps) text += " " + valueText(step) + " " + valueText(reference);
+    return text + " )";
+}
+
+} // namespace mural::config
