@@ -35,10 +35,15 @@ struct Viewport {
 // in arithmetic (.1 + .7 is not .8) have nothing in common.
 [[nodiscard]] constexpr Viewport intersect(const Viewport& a, const Viewport& b) {
     constexpr double kNothing = 1e-9;
+    const auto size = [](double from, double a0, double aSize, double b0, double bSize) {
+        if (from == a0 && a0 + aSize <= b0 + bSize) return aSize; // as it is, without a loss
+        if (from == b0 && b0 + bSize <= a0 + aSize) return bSize;
+        return std::min(a0 + aSize, b0 + bSize) - from;
+    };
     const double x0 = std::max(a.x, b.x);
     const double y0 = std::max(a.y, b.y);
-    const double w = std::min(a.x + a.w, b.x + b.w) - x0;
-    const double h = std::min(a.y + a.h, b.y + b.h) - y0;
+    const double w = size(x0, a.x, a.w, b.x, b.w);
+    const double h = size(y0, a.y, a.h, b.y, b.h);
     if (!(w > kNothing) || !(h > kNothing)) return {0, 0, 0, 0};
     return {x0, y0, w, h};
 }

@@ -1,0 +1,79 @@
+// What files mean that were written for versions of the format before 1.1 and 1.2.
+#include <functional>
+
+#include "balancer/config/resolving/attribute_filler.hpp"
+#include "balancer/config/resolving/resolver.hpp"
+
+namespace mural::config {
+
+namespace {
+
+// Views that compounds below (and including) this one show.
+void eachShownView(ResolvedConfig& config, Index compound, const std::function<void(ResolvedChannel&)>& use) {
+    const ResolvedCompound& c = config.compounds[Resolver::at(compound)];
+    if (c.destination != kNone) {
+        ResolvedChannel& channel = config.channels[Resolver::at(c.destination)];
+        if (channel.isDestination()) use(channel);
+        return;
+    }
+    for (const Index child : c.children) eachShownView(config, child, use);
+}
+
+} // namespace
+
+// Before 1.1, stereo was what compounds have eyes for; mono needed no word.
+void mendVersion10(Resolver& r) {
+    if (r.file.version >= 1.1) return;
+    ResolvedConfig& config = r.out;
+    if (config.nodes.size() > 1 && config.serverConnections.empty()) {
+        Connection any;
+        fillAttributes(any, "CONNECTION", r.defaults);
+        any.port = 0;
+        config.serverConnections.push_back(any);
+    }
+    if (config.nodes.size() > 1 && config.nodes.front().connections.empty()) {
+        Connection any;
+        fillAttributes(any, "CONNECTION", r.defaults);
+        config.nodes.front().connections.push_back(any);
+    }
+    std::vector<EyeSet> eyes(config.segments.size());
+    for (size_t i = 0; i < config.compounds.size(); ++i) {
+        ResolvedCompound& c = config.compounds[i];
+        if (c.channel != kNone && c.channel == c.destination && config.channels[Resolver::at(c.channel)].isDestination()) {
+            EyeSet own = kAllEyes;
+            for (Index up = static_cast<Index>(i); up != kNone; up = config.compounds[Resolver::at(up)].parent) {
+                if (!config.compounds[Resolver::at(up)].eyes) continue;
+                own = *config.compounds[Resolver::at(up)].eyes;
+                break;
+            }
+            EyeSet& segment = eyes[Resolver::at(config.channels[Resolver::at(c.channel)].segment)];
+            segment = segment | own | EyeSet{Eye::Cyclop};
+        }
+        if (!c.eyes || c.eyes->has(Eye::Cyclop)) continue;
+        eachShownView(config, static_cast<Index>(i), [&](ResolvedChannel& channel) { config.views[Resolver::at(channel.view)].mode = ViewMode::Stereo; });
+    }
+    for (ResolvedCompound& c : config.compounds) {
+        if (c.eyes) c.eyes->add(Eye::Cyclop);
+    }
+    for (size_t s = 0; s < eyes.size(); ++s) {
+        if (!eyes[s].empty()) config.segments[s].eyes = eyes[s];
+    }
+}
+
+// Before 1.2, a node was started on the host that its connection listens on.
+void mendVersion11(Resolver& r) {
+    const bool old = r.file.version < 1.2;
+    for (ResolvedNode& node : r.out.nodes) {
+        const std::string listens = node.connections.empty() ? "" : node.connections.front().hostname.value_or("");
+        if (node.isApplication || listens.empty()) continue;
+        if (!node.host.empty()) {
+            if (old && node.host != listens) r.diagnostics.warn(node.at, "this node has a host and its connection has one, before version 1.2 the connection's counts", "say #Equalizer 1.2 ascii, or give one of them");
+            if (old) node.host = listens;
+            continue;
+        }
+        if (!old) r.diagnostics.warn(node.at, "this node has no host, it is started on that of its first connection, " + listens, "write host \"" + listens + "\"");
+        node.host = listens;
+    }
+}
+
+} // namespace mural::config
