@@ -328,9 +328,9 @@ void mural_glBegin(GLenum mode) {
     encode_glBegin(t, mode);
     if (Context* c = t.context; c && c->openPrimitive == kNoPrimitive) c->restartElement = c->arrays.anyClient() ? restartIndexOf(*c) : kNoRestart;
     gReal.glBegin(mode);
-    if (!t.context) return;
+    if (!t.context || mode > GL_PATCHES) return; // refused
     if (t.context->compilingList) t.context->listPrimitive = true;
-    else if (t.context->openPrimitive == kNoPrimitive && mode <= GL_PATCHES && t.context->compatible()) t.context->openPrimitive = mode;
+    else if (t.context->openPrimitive == kNoPrimitive && t.context->compatible()) t.context->openPrimitive = mode;
 }
 void mural_glEnd() {
     ThreadState& t = *tThread;

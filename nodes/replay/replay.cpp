@@ -48,9 +48,9 @@ bool Replay::record(std::span<const std::byte> bytes) {
     const auto arguments = bytes.subspan(header >> 16 == record::kLongForm ? 8 : 4);
     ++counts_.commands;
     bool ok = true;
-    if (c_->compiling && (opcode == op::glBegin || opcode == op::glEnd)) c_->compilesPrimitive = opcode == op::glBegin;
-    if (c_->compiling && splitsLists(opcode, arguments) && !compiledInPrimitive(opcode)) {
-        compileSplit(bytes);
+    if (c_->compiling) notePrimitive(opcode, arguments);
+    if (c_->compiling && splitsLists(opcode, arguments)) {
+        ok = compileSplitting(opcode, bytes, arguments);
     } else {
         if (takesRanges() && c_->compiling) noteCompiled(opcode, arguments);
         ok = execute(opcode, arguments, *this);

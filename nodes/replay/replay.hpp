@@ -358,7 +358,8 @@ private:
     void runItem(const ListItem& item);
     GLuint generate(Kind kind);
     bool splitsLists(uint16_t opcode, std::span<const std::byte> arguments) const;
-    bool compiledInPrimitive(uint16_t opcode) const;
+    void notePrimitive(uint16_t opcode, std::span<const std::byte> arguments);
+    bool compileSplitting(uint16_t opcode, std::span<const std::byte> bytes, std::span<const std::byte> arguments);
     // replay_own.cpp
     bool own(uint16_t opcode, Args& in);
     [[nodiscard]] gl::SurfaceConfig surfaceConfig(const wire::WindowConfig& c, int width, int height) const;

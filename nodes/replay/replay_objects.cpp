@@ -236,9 +236,26 @@ bool Replay::splitsLists(uint16_t opcode, std::span<const std::byte> arguments) 
     }
 }
 
-// No list can be ended between glBegin and glEnd while it is executed: what is called there is called natively.
-bool Replay::compiledInPrimitive(uint16_t opcode) const {
-    return c_->compilesPrimitive && c_->compileMode == GL_COMPILE_AND_EXECUTE && (opcode == op::glCallList || opcode == op::glCallLists);
+// While a list is compiled. A glBegin that is an error begins nothing.
+void Replay::notePrimitive(uint16_t opcode, std::span<const std::byte> arguments) {
+    if (opcode == op::glEnd) c_->compilesPrimitive = false;
+    uint32_t mode = GL_PATCHES + 1;
+    if (opcode == op::glBegin && arguments.size() >= 4) std::memcpy(&mode, arguments.data(), 4);
+    if (mode <= GL_PATCHES) c_->compilesPrimitive = true;
+}
+
+// A command that splits lists. Between glBegin and glEnd GL takes none of them but calls of lists: the others are errors
+// there, which the program's own list raises, and would end the native list within its primitive. Nor can a list be ended
+// there while it is executed: what it calls is called natively.
+bool Replay::compileSplitting(uint16_t opcode, std::span<const std::byte> bytes, std::span<const std::byte> arguments) {
+    const bool callsList = opcode == op::glCallList || opcode == op::glCallLists;
+    if (c_->compilesPrimitive && !callsList) {
+        for (bool found = true; found;) takeBlob(found);
+        return true;
+    }
+    if (c_->compilesPrimitive && c_->compileMode == GL_COMPILE_AND_EXECUTE) return execute(opcode, arguments, *this);
+    compileSplit(bytes);
+    return true;
 }
 
 void Replay::glNewList(GLuint list, GLenum mode) {

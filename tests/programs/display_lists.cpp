@@ -5,6 +5,7 @@
 #include "tests/programs/support/show.hpp"
 
 #include <string>
+#include <vector>
 
 using namespace programs;
 
@@ -278,6 +279,50 @@ void drawThroughCurrentState(int frame) {
     glDeleteLists(open, 1);
 }
 
+GLuint errorDigit() {
+    const GLenum error = glGetError();
+    return error == GL_NO_ERROR ? 15 : error & 7U;
+}
+
+// Between glBegin and glEnd GL refuses what isn't a vertex and goes on with the primitive, while it compiles and when the
+// list is called. A glBegin that is refused begins nothing: the scissor behind it counts.
+void compileErrors(int frame, GLenum mode) {
+    const GLenum none = GL_NONE;
+    const std::vector<GLubyte> gray(98 * 42 * 4, 90), light(98 * 42 * 4, 210);
+    const GLuint wrong = glGenLists(1);
+    glNewList(wrong, mode);
+    glBegin(GL_PATCHES + 20);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(228, 64, 14, 12);
+    glColor3f(0.1F, 0.2F, 0.9F);
+    glRecti(225, 60, 245, 90);
+    glDisable(GL_SCISSOR_TEST);
+    glBegin(GL_POLYGON);
+    glDrawBuffers(1, &none);
+    glColor3f(0.4F, 0.9F, 0.1F * float(frame));
+    glVertex2f(180, 60);
+    glScissor(0, 0, 5, 5);
+    glVertex2f(215, 62);
+    glColor3f(0.9F, 0.3F, 0.5F);
+    glPopAttrib();
+    glVertex2f(220, 95);
+    glUseProgram(77);
+    glDrawPixels(98, 42, GL_RGBA, GL_UNSIGNED_BYTE, gray.data()); // large: travels ahead of its command
+    glVertex2f(178, 100);
+    glEnd();
+    glEndList();
+    glRasterPos2f(1, 72);
+    glDrawPixels(98, 42, GL_RGBA, GL_UNSIGNED_BYTE, light.data());
+    GLuint errors = 0;
+    for (int i = 0; i < 4; ++i) errors = errors * 16 + errorDigit();
+    glTranslatef(0, 45, 0);
+    glCallList(wrong);
+    for (int i = 0; i < 4; ++i) errors = errors * 16 + errorDigit();
+    showBits(0, errors);
+    glTranslatef(0, -45, 0);
+    glDeleteLists(wrong, 1);
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -312,5 +357,6 @@ int main(int argc, char** argv) {
             drawThroughCurrentState(frame);
             drawConditionally(frame);
             checkNoError("with lists");
+            compileErrors(frame, frame % 2 == 0 ? GL_COMPILE : GL_COMPILE_AND_EXECUTE);
         });
 }
