@@ -290,7 +290,34 @@ private:
 
 } // namespace
 
-void callCommand(World& w, const Command& command) { Call(w, command).make(); }
+namespace {
+// Mesa keeps components of an attribute that it should set to 0 and 1 when it is given with few, with more and with few
+// again, until vertices are flushed: each seed gives as many all the time.
+bool changesSize(const World& w, std::string_view name) {
+    if (w.profile == Profile::Es1) { // takes four only
+        return false;
+    }
+    constexpr std::string_view attributes[] = {"glTexCoord", "glMultiTexCoord", "glVertexAttrib", "glColor"};
+    for (const std::string_view attribute : attributes) {
+        const std::size_t digit = name.find_first_of("1234", attribute.size());
+        if (!name.starts_with(attribute) || digit == std::string_view::npos || digit > attribute.size() + 2) {
+            continue;
+        }
+        const int size = name[digit] - '0';
+        // These of NV_vertex_program give colours and texture coordinates, too.
+        const bool aliases = name.starts_with("glVertexAttrib") && name.ends_with("NV");
+        return attribute == "glColor" ? (size == 4) != (w.attributeSize == 4) : size != w.attributeSize || (aliases && size != 4);
+    }
+    return false;
+}
+} // namespace
+
+void callCommand(World& w, const Command& command) {
+    Call call(w, command);
+    if (!changesSize(w, command.name)) {
+        call.make();
+    }
+}
 
 void callAny(World& w) {
     const auto& families = w.families();

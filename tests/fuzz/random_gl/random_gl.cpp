@@ -211,6 +211,7 @@ void runCase(const Case& one, const Settings& s, Kitchen& kitchen, Transcript& t
     World w(s.profile, extensions.empty() ? contextExtensions(s.profile) : extensions, s.trace);
     constexpr std::uint64_t kBegin = ~std::uint64_t{0};
     w.random = Random(one.seed, kBegin);
+    w.attributeSize = static_cast<int>(one.seed % 4) + 1;
     begin(w);
     transcript.write(one.id, "begin", "", w);
     for (const std::uint64_t step : one.steps) {

@@ -56,6 +56,7 @@ public:
     void traceError();
     bool insideBegin = false;
     bool compilesList = false;
+    int attributeSize = 4; // components that attributes of vertices are given
     bool countsSamples = false; // a query does
     std::vector<GLenum> errors;
 
