@@ -503,6 +503,7 @@ private:
     void dropFront(Window& w);
     // replay_bitmaps.cpp
     void noteBitmaps(uint16_t opcode);
+    static bool leavesBitmaps(uint16_t opcode);
     void settleBitmaps();
     // replay_color_masks.cpp
     [[nodiscard]] bool hidesAlpha() const;

@@ -9,6 +9,23 @@ void Replay::noteBitmaps(uint16_t opcode) {
     if (opcode == op::glBitmap || opcode == op::glCallList || opcode == op::glCallLists) c_->gathersBitmaps = true;
 }
 
+// What neither draws nor changes what draws: the driver goes on gathering, as it does without these.
+bool Replay::leavesBitmaps(uint16_t opcode) {
+    switch (opcode) {
+    case wire::kOpBlobBegin:
+    case wire::kOpBlobData:
+    case wire::kOpClientArrays:
+    case wire::kOpRequestBuffer:
+    case wire::kOpRequestQuery:
+    case wire::kOpRequestProgram:
+    case wire::kOpQueryKnown:
+    case wire::kOpProgramLayout:
+    case wire::kOpBufferBytes:
+    case wire::kOpErrorTold: return true;
+    default: return false;
+    }
+}
+
 // With the program's own state, as the command would that comes next.
 void Replay::settleBitmaps() {
     if (!bound_ || c_ != bound_ || !c_->gathersBitmaps || c_->compiling || !gl.glBegin || !gl.glEnd || !gl.glFlush) return;

@@ -31,8 +31,7 @@ gl::SurfaceConfig Replay::surfaceConfig(const wire::WindowConfig& c, int width, 
 
 bool Replay::own(uint16_t opcode, Args& in) {
     tellMessages(); // before an answer that the program waits for
-    const bool bringsData = opcode == wire::kOpBlobBegin || opcode == wire::kOpBlobData || opcode == wire::kOpClientArrays || opcode == wire::kOpErrorTold;
-    if (!bringsData) settleBitmaps();
+    if (!leavesBitmaps(opcode)) settleBitmaps();
     switch (opcode) {
     case wire::kOpBlobBegin: return ownBlobBegin(in);
     case wire::kOpBlobData: {

@@ -261,10 +261,31 @@ void readBehindBitmaps(GLuint program) {
     glDeleteTextures(1, &texture);
 }
 
+// They are drawn with the uniforms that the program has by then. A question for what a shader has written is not that moment.
+void askBehindBitmaps(GLuint tinting, GLuint writing, GLuint buffer) {
+    const std::vector<GLubyte> bits(16, 0xe9);
+    GLfloat written[4] = {};
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffer);
+    glUseProgram(writing);
+    glDispatchCompute(1, 1, 1);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    glUseProgram(tinting);
+    const GLint tint = glGetUniformLocation(tinting, "tint");
+    glUniform4f(tint, 1, 0.2F, 0.1F, 1);
+    glWindowPos2i(200, 30);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glBitmap(8, 8, 0, 0, 0, 0, bits.data());
+    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof written, written);
+    glUniform4fv(tint, 1, written);
+    glFlush();
+    glUseProgram(0);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
-    static GLuint sampling;
+    static GLuint sampling, tinting, writing, written;
     return runInGlxWindow(
         argc,
         argv,
@@ -273,7 +294,16 @@ int main(int argc, char** argv) {
             const char* const fragment = R"(#version 130
                 uniform usampler2D image;
                 void main() { gl_FragColor = vec4(texelFetch(image, ivec2(0), 0) + 1u) * 0.5; })";
-            sampling = buildProgram({{GL_VERTEX_SHADER, "void main() { gl_Position = gl_Vertex; }"}, {GL_FRAGMENT_SHADER, fragment}});
+            const char* const vertex = "void main() { gl_Position = gl_Vertex; }";
+            sampling = buildProgram({{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, fragment}});
+            tinting = buildProgram({{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, "uniform vec4 tint; void main() { gl_FragColor = tint; }"}});
+            writing = buildProgram({{GL_COMPUTE_SHADER, R"(#version 430
+                layout(local_size_x = 4) in;
+                layout(std430) buffer Values { float values[]; };
+                void main() { values[gl_LocalInvocationID.x] = 1.0 - 0.2 * float(gl_LocalInvocationID.x); })"}});
+            glGenBuffers(1, &written);
+            glBindBuffer(GL_SHADER_STORAGE_BUFFER, written);
+            glBufferData(GL_SHADER_STORAGE_BUFFER, 4 * sizeof(GLfloat), nullptr, GL_DYNAMIC_COPY);
         },
         [](Window& window, int frame) {
             glClearColor(0.1F, 0.1F, 0.1F, 1);
@@ -291,5 +321,6 @@ int main(int argc, char** argv) {
             blitStencil(window.width(), window.height());
             copyPixels(window, number);
             readBehindBitmaps(sampling);
+            askBehindBitmaps(tinting, writing, written);
         });
 }
