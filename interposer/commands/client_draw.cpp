@@ -21,12 +21,12 @@ struct Source {
     uint32_t count;
 };
 
-// The part of one array that the draw reads; count 0: none.
-Source sourceOf(const VertexArray& va, uint32_t slot, const VertexRange& r) {
+// The part of one array that the draw reads; count 0: none. Display lists hold vertices and know no divisors.
+Source sourceOf(const VertexArray& va, uint32_t slot, const VertexRange& r, bool compiled) {
     const ArrayPointer& a = va.slots[slot];
     Source s{slot, nullptr, sizes::attributeBytes(a.size, a.type), 0, 0, 0};
     s.stride = a.stride > 0 ? static_cast<uint32_t>(a.stride) : s.elementBytes;
-    if (a.divisor > 0) {
+    if (a.divisor > 0 && !compiled) {
         s.first = static_cast<int32_t>(r.baseInstance);
         s.count = r.instances > 0 ? (r.instances - 1) / a.divisor + 1 : 0;
     } else if (r.last >= r.first && r.first >= INT32_MIN && r.first <= INT32_MAX) {
@@ -43,11 +43,11 @@ bool sharesSpan(const Source& s, const Source& with, const std::byte* spanBegin)
            s.begin + s.elementBytes <= spanBegin + s.stride;
 }
 
-int collect(const VertexArray& va, const VertexRange& range, Source* out) {
+int collect(const VertexArray& va, const VertexRange& range, bool compiled, Source* out) {
     int n = 0;
     for (uint32_t slot = 0; slot < kSlots; ++slot) {
         if (!va.isClient(slot)) continue;
-        const Source s = sourceOf(va, slot, range);
+        const Source s = sourceOf(va, slot, range, compiled);
         if (s.count == 0 || s.elementBytes == 0) continue;
         int at = n++;
         for (; at > 0 && out[at - 1].begin > s.begin; --at) out[at] = out[at - 1]; // by address
@@ -61,7 +61,7 @@ int collect(const VertexArray& va, const VertexRange& range, Source* out) {
 void sendClientArrays(ThreadState& t, Context& c, const VertexRange& range) {
     const VertexArray& va = c.arrays.current();
     Source sources[kSlots];
-    const int n = collect(va, range, sources);
+    const int n = collect(va, range, c.compilingList, sources);
     if (n == 0) return;
     ArrayRecord records[kSlots];
     DataArg spans[kSlots];

@@ -279,6 +279,24 @@ void drawThroughCurrentState(int frame) {
     glDeleteLists(open, 1);
 }
 
+// A list has the vertices, one for each element: it knows no instances.
+void compileInstanced(int frame) {
+    const auto x = static_cast<GLfloat>(10 + frame);
+    const GLfloat places[8] = {x, 120, x + 20, 122, x + 22, 134, x + 3, 130};
+    const GLuint list = glGenLists(1);
+    glEnableVertexAttribArray(0);
+    glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, places);
+    glVertexAttribDivisor(0, 2);
+    glNewList(list, GL_COMPILE);
+    glDrawArrays(GL_QUADS, 0, 4);
+    glEndList();
+    glVertexAttribDivisor(0, 0);
+    glDisableVertexAttribArray(0);
+    glColor3f(0.2F, 0.9F, 0.8F);
+    glCallList(list);
+    glDeleteLists(list, 1);
+}
+
 GLuint errorDigit() {
     const GLenum error = glGetError();
     return error == GL_NO_ERROR ? 15 : error & 7U;
@@ -356,6 +374,7 @@ int main(int argc, char** argv) {
             callByAllTypes(frame);
             drawThroughCurrentState(frame);
             drawConditionally(frame);
+            compileInstanced(frame);
             checkNoError("with lists");
             compileErrors(frame, frame % 2 == 0 ? GL_COMPILE : GL_COMPILE_AND_EXECUTE);
         });

@@ -26,6 +26,17 @@ void* offset(World& w, std::uint32_t step) {
     return reinterpret_cast<void*>(std::uintptr_t{w.random.below(16)} * step); // NOLINT: an offset
 }
 
+// How many components the command gives an attribute; 0: none.
+int attributeSize(std::string_view name) {
+    for (const std::string_view attribute : {"glTexCoord", "glMultiTexCoord", "glVertexAttrib", "glColor"}) {
+        const std::size_t digit = name.find_first_of("1234", attribute.size());
+        if (name.starts_with(attribute) && digit != std::string_view::npos && digit <= attribute.size() + 2) {
+            return name[digit] - '0';
+        }
+    }
+    return 0;
+}
+
 class Call {
 public:
     Call(World& w, const Command& command) : w_(w), command_(command) {
@@ -36,6 +47,26 @@ public:
         for (std::size_t i = 0; i < command.paramCount; ++i) {
             point(i);
         }
+    }
+
+    // Attributes of vertices with which Mesa 22.3.6 does what nobody can tell (docs/exactness.md).
+    bool isDefined() {
+        const std::string_view name = command_.name;
+        constexpr std::string_view others[] = {"glNormal3", "glFogCoord", "glSecondaryColor3", "glIndex", "glEdgeFlag", "glMaterial"};
+        const int size = w_.profile == Profile::Es1 ? 0 : attributeSize(name);
+        const bool other = std::any_of(std::begin(others), std::end(others), [&](std::string_view start) { return name.starts_with(start); });
+        if (w_.compilesList && w_.behindVertex && (size != 0 || other)) {
+            return false;
+        }
+        const bool attribute0 = name.starts_with("glVertexAttrib") && find("index") != nullptr && find("index")->whole == 0;
+        if (w_.insideBegin && attribute0 && name.starts_with("glVertexAttribI")) {
+            return false; // a position of whole numbers
+        }
+        w_.behindVertex = w_.behindVertex || (w_.insideBegin && (attribute0 || name.starts_with("glVertex2") || name.starts_with("glVertex3") ||
+                                                                 name.starts_with("glVertex4") || name.starts_with("glEval")));
+        // These of NV_vertex_program give colours and texture coordinates, too.
+        const bool aliases = name.starts_with("glVertexAttrib") && name.ends_with("NV");
+        return size == 0 || (name.starts_with("glColor") ? (size == 4) == (w_.attributeSize == 4) : size == w_.attributeSize && (!aliases || size == 4));
     }
 
     void make() {
@@ -290,31 +321,9 @@ private:
 
 } // namespace
 
-namespace {
-// Mesa keeps components of an attribute that it should set to 0 and 1 when it is given with few, with more and with few
-// again, until vertices are flushed: each seed gives as many all the time.
-bool changesSize(const World& w, std::string_view name) {
-    if (w.profile == Profile::Es1) { // takes four only
-        return false;
-    }
-    constexpr std::string_view attributes[] = {"glTexCoord", "glMultiTexCoord", "glVertexAttrib", "glColor"};
-    for (const std::string_view attribute : attributes) {
-        const std::size_t digit = name.find_first_of("1234", attribute.size());
-        if (!name.starts_with(attribute) || digit == std::string_view::npos || digit > attribute.size() + 2) {
-            continue;
-        }
-        const int size = name[digit] - '0';
-        // These of NV_vertex_program give colours and texture coordinates, too.
-        const bool aliases = name.starts_with("glVertexAttrib") && name.ends_with("NV");
-        return attribute == "glColor" ? (size == 4) != (w.attributeSize == 4) : size != w.attributeSize || (aliases && size != 4);
-    }
-    return false;
-}
-} // namespace
-
 void callCommand(World& w, const Command& command) {
     Call call(w, command);
-    if (!changesSize(w, command.name)) {
+    if (call.isDefined()) {
         call.make();
     }
 }

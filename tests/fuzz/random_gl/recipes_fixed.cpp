@@ -40,10 +40,7 @@ const std::vector<const Command*>& vertexCommands(const World& w) {
 
 void vertices(World& w) {
     const auto& commands = vertexCommands(w);
-    GLenum mode = w.random.of(kModes);
-    if (w.compilesList && mode == GL_LINE_LOOP) { // with an attribute behind its first vertex Mesa takes indices of lists for vertices
-        mode = GL_LINE_STRIP;
-    }
+    const GLenum mode = w.random.of(kModes);
     if (!w.compilesList) { // vertices after a glBegin that was refused are undefined
         (void)w.failed();
         w.insideBegin = true;
@@ -64,9 +61,10 @@ void vertices(World& w) {
             callAny(w);
         }
         GL(glVertex3f, w.random.around(), w.random.around(), w.random.around() * 0.7F);
+        w.behindVertex = true;
     }
     call(w, "glEnd", glEnd);
-    w.insideBegin = false;
+    w.insideBegin = w.behindVertex = false;
     GL(glFlush);
 }
 

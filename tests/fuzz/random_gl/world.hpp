@@ -55,6 +55,7 @@ public:
     bool failed(); // since it was asked last
     void traceError();
     bool insideBegin = false;
+    bool behindVertex = false; // the first of a primitive
     bool compilesList = false;
     int attributeSize = 4; // components that attributes of vertices are given
     bool countsSamples = false; // a query does
