@@ -1,0 +1,182 @@
+#include "compositor/assembly/assembly.hpp"
+
+#include <cstring>
+#include <string>
+
+#include "compositor/kernels/blend_over.hpp"
+#include "compositor/kernels/interleave_pixels.hpp"
+#include "compositor/kernels/z_select.hpp"
+
+namespace mural::compositor {
+
+namespace {
+
+std::string sizeText(const PlaneView& p) { return std::to_string(p.width) + "x" + std::to_string(p.height) + " " + nameOf(p.format); }
+std::string orderText(const DrawOrder& o) { return std::to_string(o.first) + " to " + std::to_string(o.end); }
+
+Error mismatch(const char* what, const PlaneView& into, const PlaneView& part, const char* next) {
+    return Error{std::string(what) + ": the part is " + sizeText(part) + ", the picture " + sizeText(into) + "; " + next};
+}
+
+Error misplaced(const char* what, const PixelViewport& into, const PixelViewport& part) {
+    const auto text = [](const PixelViewport& v) { return std::to_string(v.w) + "x" + std::to_string(v.h) + " at " + std::to_string(v.x) + "," + std::to_string(v.y); };
+    return Error{std::string(what) + ": the drawn part " + text(part) + " is not inside the picture " + text(into) + "; give both the same frame of reference"};
+}
+
+// The drawn rectangles of `part` in the pixels of `into`, and how to go back.
+struct Placement {
+    int32_t dx, dy;
+    [[nodiscard]] PixelViewport inTarget(const PixelViewport& r) const { return {r.x + dx, r.y + dy, r.w, r.h}; }
+};
+
+Result<Placement> place(const char* what, const Image& into, const Image& part) {
+    const Placement p{part.x - into.x, part.y - into.y};
+    for (const PixelViewport& r : part.drawn.rectangles()) {
+        PixelViewport inPicture = r;
+        inPicture.x += part.x;
+        inPicture.y += part.y;
+        if (!into.area().contains(inPicture)) return misplaced(what, into.area(), inPicture);
+    }
+    return p;
+}
+
+// Afterwards the picture holds both.
+void take(Image& into, const Image& part, const Placement& p) {
+    for (const PixelViewport& r : part.drawn.rectangles()) into.drawn.add(p.inTarget(r));
+    into.drawn.simplify();
+}
+
+} // namespace
+
+Result<void> assembleCopy(Image& into, const Image& part) {
+    const char* what = "copying a part";
+    auto placed = place(what, into, part);
+    if (!placed) return placed.error();
+    const auto copy = [&](std::optional<Plane>& to, const std::optional<Plane>& from) {
+        if (!to || !from) return true;
+        if (to->format() != from->format()) return false;
+        for (const PixelViewport& r : part.drawn.rectangles()) copyPlane(to->view().part(placed->inTarget(r)), from->view().part(r));
+        return true;
+    };
+    if (!copy(into.colour, part.colour)) return mismatch(what, into.colour->view(), part.colour->view(), "read both back in one format");
+    if (!copy(into.depth, part.depth)) return mismatch(what, into.depth->view(), part.depth->view(), "read both back in one format");
+    take(into, part, *placed);
+    return {};
+}
+
+Result<void> assembleDepth(Image& into, const Image& part, const DepthAssembly& how) {
+    const char* what = "composing by depth";
+    if (!into.depth || !part.depth) return Error{std::string(what) + ": a picture has no depth plane; read depth back for both"};
+    if (into.depth->format() != part.depth->format() || !isDepth(part.depth->format())) return mismatch(what, into.depth->view(), part.depth->view(), "read depth back in one format");
+    if (into.colour.has_value() != part.colour.has_value()) return Error{std::string(what) + ": only one of the pictures has colour; read colour back for both"};
+    if (into.colour && into.colour->format() != part.colour->format()) return mismatch(what, into.colour->view(), part.colour->view(), "read colour back in one format");
+    if (!apart(into.order, part.order))
+        return Error{std::string(what) + ": parts " + orderText(part.order) + " of the draw order lie in between " + orderText(into.order) + "; compose only ranges that are apart"};
+    auto placed = place(what, into, part);
+    if (!placed) return placed.error();
+    DepthRule rule;
+    rule.function = how.function;
+    rule.format = part.depth->format() == PlaneFormat::D24S8 ? DepthFormat::D24S8 : DepthFormat::D32F;
+    if (how.coverage == Coverage::Stencil && rule.format != DepthFormat::D24S8) return Error{std::string(what) + ": " + nameOf(part.depth->format()) + " has no stencil to tell what was drawn; use D24S8"};
+    rule.sourceIsLater = part.order.first >= into.order.end;
+    rule.coverage = how.coverage;
+    rule.clearBits = how.clearBits;
+    for (const PixelViewport& r : part.drawn.rectangles()) {
+        const MutablePlaneView depth = into.depth->view().part(placed->inTarget(r));
+        const PlaneView sourceDepth = part.depth->view().part(r);
+        MutablePlaneView colour;
+        PlaneView sourceColour;
+        ZRow row;
+        if (into.colour) {
+            colour = into.colour->view().part(placed->inTarget(r));
+            sourceColour = part.colour->view().part(r);
+            row.colourBytes = bytesPerPixel(colour.format);
+        }
+        row.count = static_cast<size_t>(r.w);
+        for (int32_t y = 0; y < r.h; ++y) {
+            row.depth = reinterpret_cast<uint32_t*>(depth.row(y));
+            row.sourceDepth = reinterpret_cast<const uint32_t*>(sourceDepth.row(y));
+            if (into.colour) {
+                row.colour = colour.row(y);
+                row.sourceColour = sourceColour.row(y);
+            }
+            zSelectRow(row, rule);
+        }
+    }
+    take(into, part, *placed);
+    into.order = joined(into.order, part.order);
+    return {};
+}
+
+Result<void> assembleBlended(Image& into, const Image& part) {
+    const char* what = "blending";
+    if (!into.colour || !part.colour) return Error{std::string(what) + ": a picture has no colour plane; read colour back for both"};
+    if (into.colour->format() != part.colour->format()) return mismatch(what, into.colour->view(), part.colour->view(), "read colour back in one format");
+    if (!adjacent(into.order, part.order))
+        return Error{std::string(what) + ": parts " + orderText(part.order) + " of the draw order are no neighbours of " + orderText(into.order) + "; blend what comes in between first"};
+    auto placed = place(what, into, part);
+    if (!placed) return placed.error();
+    const SourceSide side = part.order.first == into.order.end ? SourceSide::InFront : SourceSide::Behind;
+    for (const PixelViewport& r : part.drawn.rectangles()) {
+        const MutablePlaneView to = into.colour->view().part(placed->inTarget(r));
+        const PlaneView from = part.colour->view().part(r);
+        for (int32_t y = 0; y < r.h; ++y) blendOverRow(to.format, to.row(y), from.row(y), static_cast<size_t>(r.w), side);
+    }
+    take(into, part, *placed);
+    into.order = joined(into.order, part.order);
+    return {};
+}
+
+namespace {
+
+Result<void> checkKernel(const PlaneView& picture, const PlaneView& part, const PixelKernel& k) {
+    const char* what = "interleaving pixels";
+    if (k.columns < 1 || k.rows < 1 || k.column < 0 || k.row < 0 || k.column >= k.columns || k.row >= k.rows)
+        return Error{std::string(what) + ": there is no part " + std::to_string(k.column) + "," + std::to_string(k.row) + " in a kernel of " + std::to_string(k.columns) + "x" + std::to_string(k.rows) + "; check the compound"};
+    PlaneView wanted = picture;
+    wanted.width = k.column < picture.width ? k.partWidth(picture.width) : 0;
+    wanted.height = k.row < picture.height ? k.partHeight(picture.height) : 0;
+    if (!sameShape(wanted, part)) return Error{std::string(what) + ": the part is " + sizeText(part) + " and not " + sizeText(wanted) + "; draw it with its kernel's size"};
+    return {};
+}
+
+} // namespace
+
+Result<void> interleavePixels(const MutablePlaneView& into, const PlaneView& part, const PixelKernel& kernel) {
+    if (auto checked = checkKernel(into, part, kernel); !checked) return checked;
+    const size_t pixel = bytesPerPixel(into.format);
+    for (int32_t y = 0; y < part.height && part.width > 0; ++y)
+        interleaveRow(into.row(kernel.row + y * kernel.rows) + static_cast<size_t>(kernel.column) * pixel, part.row(y), static_cast<size_t>(part.width), static_cast<size_t>(kernel.columns), pixel);
+    return {};
+}
+
+Result<void> deinterleavePixels(const MutablePlaneView& part, const PlaneView& from, const PixelKernel& kernel) {
+    if (auto checked = checkKernel(from, part, kernel); !checked) return checked;
+    const size_t pixel = bytesPerPixel(from.format);
+    for (int32_t y = 0; y < part.height && part.width > 0; ++y)
+        deinterleaveRow(part.row(y), from.row(kernel.row + y * kernel.rows) + static_cast<size_t>(kernel.column) * pixel, static_cast<size_t>(part.width), static_cast<size_t>(kernel.columns), pixel);
+    return {};
+}
+
+ChannelMask channelMaskOf(PlaneFormat format, const ColourMask& mask) {
+    ChannelMask bytes{};
+    const bool taken[4] = {mask.red, mask.green, mask.blue, mask.alpha};
+    if (format == PlaneFormat::Rgb10A2) {
+        const uint32_t word = (mask.red ? 0x3ffu : 0) | (mask.green ? 0x3ffu << 10 : 0) | (mask.blue ? 0x3ffu << 20 : 0) | (mask.alpha ? 0x3u << 30 : 0);
+        for (size_t at = 0; at < bytes.size(); at += sizeof word) std::memcpy(bytes.data() + at, &word, sizeof word);
+        return bytes;
+    }
+    const size_t component = bytesPerPixel(format) / 4;
+    for (size_t at = 0; at < bytes.size(); ++at) bytes[at] = taken[at / component % 4] ? std::byte{0xff} : std::byte{0};
+    return bytes;
+}
+
+Result<void> assembleMasked(const MutablePlaneView& into, const PlaneView& part, const ColourMask& mask) {
+    if (!sameShape(into, part)) return mismatch("mixing by colour mask", into, part, "draw both eyes in one size and format");
+    if (isDepth(into.format)) return Error{std::string("mixing by colour mask: ") + nameOf(into.format) + " has no colours; give colour planes"};
+    const ChannelMask bytes = channelMaskOf(into.format, mask);
+    for (int32_t y = 0; y < into.height; ++y) maskChannelsRow(into.row(y), part.row(y), into.rowBytes(), bytes);
+    return {};
+}
+
+} // namespace mural::compositor

@@ -1,0 +1,69 @@
+// Pixels in memory: views, which own nothing, and Plane, which does. Row 0 is the lowest one, as OpenGL reads pictures.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "common/pixel_viewport.hpp"
+#include "compositor/image/plane_format.hpp"
+
+namespace mural::compositor {
+
+// Byte is std::byte or const std::byte. Rows need no alignment beyond that of bytes.
+template <class Byte> struct BasicPlaneView {
+    PlaneFormat format = PlaneFormat::Rgba8;
+    int32_t width = 0;
+    int32_t height = 0;
+    ptrdiff_t strideBytes = 0; // from a row to the one above
+    Byte* pixels = nullptr;
+
+    [[nodiscard]] Byte* row(int32_t y) const { return pixels + y * strideBytes; }
+    [[nodiscard]] size_t rowBytes() const { return static_cast<size_t>(width) * bytesPerPixel(format); }
+    [[nodiscard]] size_t sizeBytes() const { return rowBytes() * static_cast<size_t>(height); }
+    [[nodiscard]] bool empty() const { return width <= 0 || height <= 0; }
+    // A part of it; `area` lies inside.
+    [[nodiscard]] BasicPlaneView part(const PixelViewport& area) const {
+        return {format, area.w, area.h, strideBytes, row(area.y) + static_cast<ptrdiff_t>(static_cast<size_t>(area.x) * bytesPerPixel(format))};
+    }
+    operator BasicPlaneView<const std::byte>() const { return {format, width, height, strideBytes, pixels}; } // NOLINT(google-explicit-constructor)
+};
+using PlaneView = BasicPlaneView<const std::byte>;
+using MutablePlaneView = BasicPlaneView<std::byte>;
+
+[[nodiscard]] inline bool sameShape(const PlaneView& a, const PlaneView& b) {
+    return a.format == b.format && a.width == b.width && a.height == b.height;
+}
+
+// Rows stand one behind the other without gaps.
+class Plane {
+public:
+    Plane() = default;
+    Plane(PlaneFormat format, int32_t width, int32_t height)
+        : format_(format), width_(width), height_(height),
+          pixels_(static_cast<size_t>(width) * static_cast<size_t>(height) * bytesPerPixel(format)) {}
+
+    [[nodiscard]] MutablePlaneView view() { return {format_, width_, height_, stride(), pixels_.data()}; }
+    [[nodiscard]] PlaneView view() const { return {format_, width_, height_, stride(), pixels_.data()}; }
+    [[nodiscard]] PlaneFormat format() const { return format_; }
+    [[nodiscard]] int32_t width() const { return width_; }
+    [[nodiscard]] int32_t height() const { return height_; }
+    [[nodiscard]] std::vector<std::byte>& bytes() { return pixels_; }
+    [[nodiscard]] const std::vector<std::byte>& bytes() const { return pixels_; }
+    friend bool operator==(const Plane&, const Plane&) = default;
+
+private:
+    [[nodiscard]] ptrdiff_t stride() const { return static_cast<ptrdiff_t>(static_cast<size_t>(width_) * bytesPerPixel(format_)); }
+    PlaneFormat format_ = PlaneFormat::Rgba8;
+    int32_t width_ = 0;
+    int32_t height_ = 0;
+    std::vector<std::byte> pixels_;
+};
+
+// Both have the same shape.
+inline void copyPlane(const MutablePlaneView& to, const PlaneView& from) {
+    for (int32_t y = 0; y < from.height; ++y) std::memcpy(to.row(y), from.row(y), from.rowBytes());
+}
+
+} // namespace mural::compositor

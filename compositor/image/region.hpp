@@ -1,0 +1,39 @@
+// A set of pixels as rectangles that don't overlap: what of a picture is drawn, or is carried.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/pixel_viewport.hpp"
+
+namespace mural::compositor {
+
+class Region {
+public:
+    Region() = default;
+    explicit Region(const PixelViewport& area) { add(area); }
+
+    // Pixels that are in it already are not added again. Cost: the rectangles there are.
+    void add(const PixelViewport& area);
+    void add(const Region& other);
+    void subtract(const PixelViewport& area);
+    void move(int32_t dx, int32_t dy);
+    // Joins rectangles that together are one.
+    void simplify();
+
+    [[nodiscard]] bool empty() const { return rectangles_.empty(); }
+    [[nodiscard]] int64_t area() const;
+    [[nodiscard]] PixelViewport bounds() const;
+    [[nodiscard]] bool contains(int32_t x, int32_t y) const;
+    [[nodiscard]] bool covers(const PixelViewport& area) const;
+    [[nodiscard]] Region intersected(const PixelViewport& area) const;
+    [[nodiscard]] Region intersected(const Region& other) const;
+    // In no order that means something.
+    [[nodiscard]] std::span<const PixelViewport> rectangles() const { return rectangles_; }
+
+private:
+    std::vector<PixelViewport> rectangles_;
+};
+
+} // namespace mural::compositor
