@@ -1,0 +1,144 @@
+// Packing of 64 bytes by widths, for strip_code.cpp: included once per instruction set. No branch depends on the width, for
+// widths change from block to block: what a width does not need is written too, and then overwritten.
+#if defined(MURAL_PACK_BITS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef MURAL_PACK_BITS_INL
+#undef MURAL_PACK_BITS_INL
+#else
+#define MURAL_PACK_BITS_INL
+#endif
+
+#include <cstddef>
+#include <cstdint>
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace mural::compositor::bitplane::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+#if HWY_TARGET != HWY_SCALAR && !HWY_HAVE_SCALABLE
+
+using Bytes16 = hn::Full128<uint8_t>;
+using Halves16 = hn::Full128<uint16_t>;
+using V16 = hn::Vec<Bytes16>;
+
+// Shifts of bytes as shifts of pairs: what comes over from the neighbour is masked off, or is 0.
+inline V16 left(V16 v, int bits) { return hn::BitCast(Bytes16(), hn::ShiftLeftSame(hn::BitCast(Halves16(), v), bits)); }
+inline V16 right(V16 v, int bits) { return hn::BitCast(Bytes16(), hn::ShiftRightSame(hn::BitCast(Halves16(), v), bits)); }
+
+#if HWY_MAX_BYTES >= 32
+
+using Bytes32 = hn::Simd<uint8_t, 32, 0>;
+using Halves32 = hn::Simd<uint16_t, 16, 0>;
+using V32 = hn::Vec<Bytes32>;
+inline V32 left(V32 v, int bits) { return hn::BitCast(Bytes32(), hn::ShiftLeftSame(hn::BitCast(Halves32(), v), bits)); }
+inline V32 right(V32 v, int bits) { return hn::BitCast(Bytes32(), hn::ShiftRightSame(hn::BitCast(Halves32(), v), bits)); }
+
+// 64 bytes as two vectors. width 1 to 8.
+inline uint8_t* packChannel(const uint8_t* bytes, unsigned width, uint8_t* into) {
+    const Bytes32 d;
+    const Bytes16 dh;
+    const V32 a = hn::Load(d, bytes), b = hn::Load(d, bytes + 32);
+    if (width == 8) {
+        hn::StoreU(a, d, into);
+        hn::StoreU(b, d, into + 32);
+        return into + 64;
+    }
+    const V32 four = hn::Set(d, 0x0f);
+    hn::StoreU(hn::Or(hn::And(a, four), left(hn::And(b, four), 4)), d, into);
+    const V32 two = hn::Set(d, 3);
+    const int shift2 = static_cast<int>(width & 4);
+    const V32 x = hn::Or(hn::And(right(a, shift2), two), left(hn::And(right(b, shift2), two), 4));
+    hn::StoreU(hn::Or(hn::LowerHalf(dh, x), left(hn::UpperHalf(dh, x), 2)), dh, into + 8 * (width & 4));
+    const V32 one = hn::Set(d, 1);
+    const int shift1 = static_cast<int>(width & 6);
+    const V32 y = hn::Or(hn::And(right(a, shift1), one), left(hn::And(right(b, shift1), one), 4));
+    const V16 z = hn::Or(hn::LowerHalf(dh, y), left(hn::UpperHalf(dh, y), 2));
+    hn::StoreU(hn::Or(z, left(hn::ShiftRightBytes<8>(dh, z), 1)), dh, into + 8 * (width & 6)); // the lower half counts
+    return into + 8 * width;
+}
+
+inline const uint8_t* unpackChannel(const uint8_t* from, unsigned width, uint8_t* bytes) {
+    const Bytes32 d;
+    const Bytes16 dh;
+    if (width == 8) {
+        hn::Store(hn::LoadU(d, from), d, bytes);
+        hn::Store(hn::LoadU(d, from + 32), d, bytes + 32);
+        return from + 64;
+    }
+    const V32 four = hn::Set(d, width & 4 ? 0x0f : 0);
+    const V32 p4 = hn::LoadU(d, from);
+    const V16 p2 = hn::LoadU(dh, from + 8 * (width & 4));
+    const V16 p1 = hn::LoadU(dh, from + 8 * (width & 6));
+    const V32 two = hn::Set(d, width & 2 ? 3 : 0);
+    const V32 x = hn::Combine(d, right(p2, 2), p2);
+    const V32 one = hn::Set(d, width & 1 ? 1 : 0);
+    const hn::Full128<uint64_t> d64;
+    const V16 halves = hn::BitCast(dh, hn::InterleaveLower(d64, hn::BitCast(d64, p1), hn::BitCast(d64, right(p1, 1))));
+    const V32 y = hn::Combine(d, right(halves, 2), halves);
+    const int shift2 = static_cast<int>(width & 4), shift1 = static_cast<int>(width & 6);
+    const auto join = [&](V32 v4, V32 v2, V32 v1) {
+        return hn::Or(hn::And(v4, four), hn::Or(left(hn::And(v2, two), shift2), left(hn::And(v1, one), shift1)));
+    };
+    hn::Store(join(p4, x, y), d, bytes);
+    hn::Store(join(right(p4, 4), right(x, 4), right(y, 4)), d, bytes + 32);
+    return from + 8 * width;
+}
+
+#else
+
+// 64 bytes as four vectors.
+inline uint8_t* packChannel(const uint8_t* bytes, unsigned width, uint8_t* into) {
+    const Bytes16 d;
+    const V16 a = hn::Load(d, bytes), b = hn::Load(d, bytes + 16), c = hn::Load(d, bytes + 32), e = hn::Load(d, bytes + 48);
+    if (width == 8) {
+        hn::StoreU(a, d, into);
+        hn::StoreU(b, d, into + 16);
+        hn::StoreU(c, d, into + 32);
+        hn::StoreU(e, d, into + 48);
+        return into + 64;
+    }
+    const V16 four = hn::Set(d, 0x0f);
+    hn::StoreU(hn::Or(hn::And(a, four), left(hn::And(c, four), 4)), d, into);
+    hn::StoreU(hn::Or(hn::And(b, four), left(hn::And(e, four), 4)), d, into + 16);
+    const auto fold = [&](V16 mask, int shift) {
+        const V16 low = hn::Or(hn::And(right(a, shift), mask), left(hn::And(right(c, shift), mask), 4));
+        const V16 high = hn::Or(hn::And(right(b, shift), mask), left(hn::And(right(e, shift), mask), 4));
+        return hn::Or(low, left(high, 2));
+    };
+    hn::StoreU(fold(hn::Set(d, 3), static_cast<int>(width & 4)), d, into + 8 * (width & 4));
+    const V16 z = fold(hn::Set(d, 1), static_cast<int>(width & 6));
+    hn::StoreU(hn::Or(z, left(hn::ShiftRightBytes<8>(d, z), 1)), d, into + 8 * (width & 6));
+    return into + 8 * width;
+}
+
+inline const uint8_t* unpackChannel(const uint8_t* from, unsigned width, uint8_t* bytes) {
+    const Bytes16 d;
+    if (width == 8) {
+        for (size_t i = 0; i < 64; i += 16) hn::Store(hn::LoadU(d, from + i), d, bytes + i);
+        return from + 64;
+    }
+    const hn::Full128<uint64_t> d64;
+    const V16 four = hn::Set(d, width & 4 ? 0x0f : 0), two = hn::Set(d, width & 2 ? 3 : 0), one = hn::Set(d, width & 1 ? 1 : 0);
+    const V16 p1 = hn::LoadU(d, from + 8 * (width & 6));
+    V16 x = hn::LoadU(d, from + 8 * (width & 4));
+    V16 y = hn::BitCast(d, hn::InterleaveLower(d64, hn::BitCast(d64, p1), hn::BitCast(d64, right(p1, 1))));
+    const V16 low = hn::LoadU(d, from), high = hn::LoadU(d, from + 16);
+    const int shift2 = static_cast<int>(width & 4), shift1 = static_cast<int>(width & 6);
+    for (size_t part = 0; part < 4; ++part) {
+        const V16 p4 = part == 0 ? low : part == 1 ? high : right(part == 2 ? low : high, 4);
+        hn::Store(hn::Or(hn::And(p4, four), hn::Or(left(hn::And(x, two), shift2), left(hn::And(y, one), shift1))), d, bytes + 16 * part);
+        x = right(x, 2);
+        y = right(y, 2);
+    }
+    return from + 8 * width;
+}
+
+#endif
+#endif
+
+} // namespace mural::compositor::bitplane::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,29 @@
+// A plane's rows compressed as bytes, or another codec's bytes compressed once more (then behind their size, 4 bytes).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "compositor/codecs/codec.hpp"
+#include "compositor/codecs/general/byte_compressor.hpp"
+
+namespace mural::compositor {
+
+class CompressedCodec : public Codec {
+public:
+    // inner: null for the plain rows.
+    CompressedCodec(std::string name, std::unique_ptr<Codec> inner, std::unique_ptr<ByteCompressor> compressor)
+        : name_(std::move(name)), inner_(std::move(inner)), compressor_(std::move(compressor)) {}
+
+    [[nodiscard]] size_t boundBytes(const PlaneShape& shape) const override;
+    [[nodiscard]] Result<size_t> encode(const PlaneView& plane, std::span<std::byte> into) override;
+    [[nodiscard]] Result<void> decode(std::span<const std::byte> bytes, const MutablePlaneView& into) override;
+
+private:
+    std::string name_;
+    std::unique_ptr<Codec> inner_;
+    std::unique_ptr<ByteCompressor> compressor_;
+    std::vector<std::byte> scratch_;
+};
+
+} // namespace mural::compositor

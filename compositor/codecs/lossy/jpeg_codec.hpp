@@ -1,0 +1,28 @@
+// JPEG by libjpeg-turbo, and alpha as it is. RGBA8.
+#pragma once
+
+#include "compositor/codecs/lossy/alpha_plane.hpp"
+
+namespace mural::compositor {
+
+class JpegCodec : public Codec {
+public:
+    // quality: 1 to 100. halfColour: colour at half the resolution (4:2:0).
+    JpegCodec(int quality, bool halfColour);
+    ~JpegCodec() override;
+    JpegCodec(const JpegCodec&) = delete;
+    JpegCodec& operator=(const JpegCodec&) = delete;
+
+    [[nodiscard]] size_t boundBytes(const PlaneShape& shape) const override;
+    [[nodiscard]] Result<size_t> encode(const PlaneView& plane, std::span<std::byte> into) override;
+    [[nodiscard]] Result<void> decode(std::span<const std::byte> bytes, const MutablePlaneView& into) override;
+
+private:
+    int quality_;
+    int subsampling_;
+    void* compressor_;
+    void* decompressor_;
+    AlphaPlane alpha_;
+};
+
+} // namespace mural::compositor

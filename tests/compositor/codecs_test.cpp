@@ -1,0 +1,175 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "compositor/codecs/registry.hpp"
+#include "tests/compositor/random_bytes.hpp"
+#include "tests/compositor/test_planes.hpp"
+
+namespace mural::compositor::test {
+namespace {
+
+constexpr std::pair<int32_t, int32_t> kSizes[] = {{1, 1}, {3, 2}, {16, 4}, {17, 5}, {63, 65}, {257, 66}, {301, 129}, {512, 64}};
+constexpr std::byte kUntouched{0xa7};
+
+// A plane amid others: with a stride, and bytes around that nobody may touch.
+struct Framed {
+    explicit Framed(const PlaneShape& s) : strideBytes(s.rowBytes() + 40), memory(strideBytes * static_cast<size_t>(s.height + 2) + 80, kUntouched), shape(s) {}
+    MutablePlaneView view() { return {shape.format, shape.width, shape.height, static_cast<ptrdiff_t>(strideBytes), memory.data() + strideBytes + 20}; }
+    [[nodiscard]] bool frameIsWhole() {
+        for (int32_t y = 0; y < shape.height; ++y) std::fill_n(view().row(y), shape.rowBytes(), kUntouched);
+        return std::ranges::all_of(memory, [](std::byte b) { return b == kUntouched; });
+    }
+    size_t strideBytes;
+    std::vector<std::byte> memory;
+    PlaneShape shape;
+};
+
+bool samePixels(const PlaneView& a, const PlaneView& b) {
+    for (int32_t y = 0; y < a.height; ++y)
+        if (std::memcmp(a.row(y), b.row(y), a.rowBytes()) != 0) return false;
+    return true;
+}
+
+void expectLossless(Codec& codec, const Plane& plane, const std::string& what) {
+    const PlaneShape shape = shapeOf(plane.view());
+    Framed source(shape), target(shape);
+    copyPlane(source.view(), plane.view());
+    std::vector<std::byte> bytes(codec.boundBytes(shape) + 64, kUntouched);
+    auto size = codec.encode(source.view(), std::span(bytes).first(bytes.size() - 64));
+    ASSERT_TRUE(size) << what << size.error().message;
+    ASSERT_LE(*size, bytes.size() - 64) << what;
+    ASSERT_TRUE(std::all_of(bytes.end() - 64, bytes.end(), [](std::byte b) { return b == kUntouched; })) << what << ": wrote behind its bound";
+    const std::vector<std::byte> exact(bytes.begin(), bytes.begin() + static_cast<ptrdiff_t>(*size)); // so a sanitizer sees the first byte behind
+    auto decoded = codec.decode(exact, target.view());
+    ASSERT_TRUE(decoded) << what << decoded.error().message;
+    ASSERT_TRUE(samePixels(target.view(), plane.view())) << what;
+    ASSERT_TRUE(target.frameIsWhole()) << what << ": wrote outside of the plane";
+    // Tight planes take other ways through some codecs.
+    Plane tight(plane.format(), plane.width(), plane.height());
+    ASSERT_TRUE(codec.decode(exact, tight.view())) << what;
+    ASSERT_EQ(tight, plane) << what;
+}
+
+class EveryLosslessCodec : public testing::TestWithParam<std::string> {};
+
+TEST_P(EveryLosslessCodec, GivesBackEveryBit) {
+    CodecRegistry registry;
+    auto codec = registry.make(GetParam());
+    ASSERT_TRUE(codec);
+    std::mt19937 random(1);
+    for (const PlaneFormat format : kEveryFormat)
+        for (const Content content : kEveryContent)
+            for (const auto& [width, height] : kSizes)
+                expectLossless(**codec, makePlane(random, format, content, width, height), GetParam() + " " + nameOf(format) + " content " + std::to_string(static_cast<int>(content)) + " " + std::to_string(width) + "x" + std::to_string(height) + ": ");
+}
+
+TEST_P(EveryLosslessCodec, EmptyPlanesAreNoBytes) {
+    CodecRegistry registry;
+    auto codec = registry.make(GetParam());
+    Plane empty(PlaneFormat::Rgba8, 0, 5);
+    auto size = (*codec)->encode(empty.view(), {});
+    ASSERT_TRUE(size);
+    EXPECT_EQ(*size, 0u);
+    EXPECT_TRUE((*codec)->decode({}, empty.view()));
+    const std::byte one[1] = {};
+    EXPECT_FALSE((*codec)->decode(one, empty.view()));
+}
+
+// Every shorter piece, and every plane of another shape: an error or a plane, and nothing outside of it.
+TEST_P(EveryLosslessCodec, WhatIsCutShortIsRefused) {
+    CodecRegistry registry;
+    auto codec = registry.make(GetParam());
+    std::mt19937 random(2);
+    const Plane plane = makePlane(random, PlaneFormat::Rgba8, Content::Mixed, 37, 21);
+    std::vector<std::byte> bytes((*codec)->boundBytes(shapeOf(plane.view())));
+    auto size = (*codec)->encode(plane.view(), bytes);
+    ASSERT_TRUE(size);
+    Framed target(shapeOf(plane.view()));
+    for (size_t cut = 0; cut < *size; ++cut) {
+        const std::vector<std::byte> piece(bytes.begin(), bytes.begin() + static_cast<ptrdiff_t>(cut));
+        ASSERT_FALSE((*codec)->decode(piece, target.view())) << cut << " of " << *size;
+    }
+    bytes.resize(*size);
+    bytes.push_back(std::byte{0});
+    EXPECT_FALSE((*codec)->decode(bytes, target.view())) << "a byte too many";
+    EXPECT_TRUE(target.frameIsWhole());
+}
+
+INSTANTIATE_TEST_SUITE_P(Codecs, EveryLosslessCodec, testing::Values("raw", "rle64", "rle-components", "rle-swizzled", "bitplane", "slope", "bitplane-zstd", "slope-zstd", "lz4", "zstd"),
+                         [](const auto& test) {
+                             std::string name = test.param;
+                             std::ranges::replace(name, '-', '_');
+                             return name;
+                         });
+
+TEST(BitplaneCodecs, AreTheSameOnEveryInstructionSet) {
+    CodecRegistry registry;
+    std::mt19937 random(3);
+    const Plane plane = makePlane(random, PlaneFormat::Rgba8, Content::Mixed, 301, 129);
+    std::vector<std::byte> first;
+    forEachTarget([&](const char* target) {
+        auto codec = registry.make("bitplane");
+        std::vector<std::byte> bytes((*codec)->boundBytes(shapeOf(plane.view())));
+        bytes.resize((*codec)->encode(plane.view(), bytes).value());
+        if (first.empty()) first = bytes;
+        EXPECT_EQ(bytes, first) << target;
+    });
+}
+
+TEST(BitplaneCodecs, NoiseIsNotMadeLargerThanByItsTables) {
+    CodecRegistry registry;
+    std::mt19937 random(4);
+    const Plane noise = makePlane(random, PlaneFormat::Rgba8, Content::Noise, 512, 128);
+    for (const char* name : {"bitplane", "slope"}) {
+        auto codec = registry.make(name);
+        std::vector<std::byte> bytes((*codec)->boundBytes(shapeOf(noise.view())));
+        EXPECT_EQ((*codec)->encode(noise.view(), bytes).value(), noise.bytes().size() + 4 * 5);
+    }
+}
+
+double worstError(const Plane& a, const Plane& b) {
+    double worst = 0;
+    for (size_t i = 0; i < a.bytes().size(); ++i) worst = std::max(worst, std::abs(1.0 * std::to_integer<int>(a.bytes()[i]) - std::to_integer<int>(b.bytes()[i])));
+    return worst;
+}
+
+TEST(LossyCodecs, AreNearOnSmoothPicturesAndKeepAlpha) {
+    CodecRegistry registry;
+    std::mt19937 random(5);
+    for (const auto& [name, most] : {std::pair{"yuv420", 4.0}, {"jpeg-95", 12.0}, {"jpeg-100", 4.0}})
+        for (const auto& [width, height] : kSizes)
+            for (const bool mixedAlpha : {false, true}) {
+                Plane plane = makePlane(random, PlaneFormat::Rgba8, Content::Surface, width, height);
+                for (size_t i = 3; mixedAlpha && i < plane.bytes().size(); i += 4) plane.bytes()[i] = static_cast<std::byte>(random());
+                auto codec = registry.make(name);
+                ASSERT_TRUE(codec);
+                std::vector<std::byte> bytes((*codec)->boundBytes(shapeOf(plane.view())));
+                auto size = (*codec)->encode(plane.view(), bytes);
+                ASSERT_TRUE(size) << size.error().message;
+                bytes.resize(*size);
+                Plane back(PlaneFormat::Rgba8, width, height);
+                const auto decoded = (*codec)->decode(bytes, back.view());
+                ASSERT_TRUE(decoded) << decoded.error().message;
+                EXPECT_LE(worstError(plane, back), most) << name << " " << width << "x" << height;
+                for (size_t i = 3; i < plane.bytes().size(); i += 4) ASSERT_EQ(back.bytes()[i], plane.bytes()[i]) << name;
+                for (size_t cut = 0; cut < bytes.size(); cut += 1 + bytes.size() / 50) EXPECT_FALSE((*codec)->decode(std::span(bytes).first(cut), back.view())) << name << " " << cut;
+            }
+}
+
+TEST(CodecRegistry, LossyOnesAreTakenByNameOnly) {
+    CodecRegistry registry;
+    ASSERT_TRUE(registry.make("jpeg-90"));
+    for (const PlaneFormat format : kEveryFormat)
+        for (const CodecInfo& c : registry.losslessFor(format)) EXPECT_TRUE(c.lossless && c.name != "yuv420" && !c.name.starts_with("jpeg")) << c.name;
+    EXPECT_FALSE(registry.find("yuv420").value().lossless);
+    EXPECT_FALSE(registry.find("jpeg-90").value().takes(PlaneFormat::D24S8));
+    for (const char* name : {"", "jpeg-", "jpeg-0", "jpeg-101", "jpeg-9x", "gif"}) {
+        const auto none = registry.make(name);
+        ASSERT_FALSE(none) << name;
+        EXPECT_NE(none.error().message.find("there are raw, "), std::string::npos);
+    }
+}
+
+} // namespace
+} // namespace mural::compositor::test
