@@ -113,7 +113,7 @@ struct FrameDoneMessage {
 
 // Fragment shaders write to memory, or kOpDrawAll came: every node draws all.
 constexpr uint32_t kDrawnWhole = 1;
-// Frames build on the one before: nodes that take turns all draw all of them.
+// Frames build on the one before: of nodes that take turns one goes on drawing them.
 constexpr uint32_t kKeepsPicture = 2;
 // Nothing of the frame was shared between the nodes that draw ranges.
 constexpr uint32_t kNotSplit = 4;

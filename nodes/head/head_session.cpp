@@ -374,7 +374,7 @@ void HeadSession::countSplit(uint32_t flags) {
 
 void HeadSession::sayKeepsPicture() {
     if (keepsPicture_.exchange(true)) return;
-    control_.say("frames are drawn over the picture before them (no clear, accumulation, or the front buffer): every node draws every frame; --dplex does not make that faster");
+    control_.say("frames are drawn over the picture before them (no clear, accumulation, or the front buffer): one node goes on drawing them; --dplex does not make that faster");
 }
 
 Result<void> HeadSession::nodePicture(int node, const wire::PictureHeader& header, ByteBuffer rows) {

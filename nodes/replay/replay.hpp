@@ -68,7 +68,7 @@ struct ReplayOutputs {
         PixelViewport region; // this node's part of the picture
         PixelViewport picture; // all of it: the window's size, or every nth pixel of it
         bool drawnWhole;      // nothing is cut to the part (Shared::allDrawn)
-        bool keepsPicture;    // drawn by all nodes, whoever's turn it is (Window::keepsPicture)
+        bool keepsPicture;    // frames build on the one before: one node goes on drawing them
         bool notSplit;        // nothing was shared between ranges, though there are several
         std::function<const std::byte*(const PixelViewport&)> pixels;
     };
@@ -167,13 +167,17 @@ private:
         PixelViewport part;   // this node's, by the grid
         PixelViewport region; // the same, or nothing while it is another node's turn
         PixelViewport drawn;  // what the scissor lets through: the region, larger with multisampling
-        int64_t turn = 0;          // frames that have begun (replay_turns.cpp)…
-        bool turnOver = false;     // …the latest is complete: the next command that draws begins another
+        int64_t frames = 0;        // that have begun, and turns that have (replay_turns.cpp)
+        int64_t turn = 0;
+        bool turnOver = false;     // the frame is complete: the next command that draws begins another
+        bool undecided = false;    // it has only cleared: the next node's turn may begin…
+        bool fresh = false;        // …and has, with this frame
+        int64_t kept = 0;          // frames in a row that have built on the one before
         GLbitfield cleared = 0;    // whole buffers, since the frame began
         bool plain = true;         // drawn without the kernel of this pass: its pixels are picked at the end…
         bool copied = true;        // …because the frame before copied or read pixels of the window
         RangeFrame range;
-        bool keepsPicture = false; // a frame builds on the one before it: every node draws all of them
+        bool keepsPicture = false; // the turn never ends
         std::vector<int16_t> accumulated; // of `drawn`, rows bottom first; empty: nothing yet
     };
     struct ProgramInfo {
@@ -443,6 +447,11 @@ private:
     void placePart(Window& w);
     void noteTurn(uint16_t opcode, std::span<const std::byte> arguments);
     void beginTurn(Window& w);
+    void decideTurn(Window& w, bool builds);
+    void keepTurn(Window& w);
+    [[nodiscard]] bool hasTurn(const Window& w, int64_t turn) const;
+    [[nodiscard]] bool keepsTurn(const Window& w) const;
+    [[nodiscard]] GLbitfield clearsOf(uint16_t opcode, std::span<const std::byte> arguments) const;
     void turnDrawn(Window& w, bool shownInFront);
     [[nodiscard]] GLbitfield clearsWhole(GLbitfield mask) const;
     [[nodiscard]] GLbitfield needsCleared() const;

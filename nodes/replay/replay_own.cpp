@@ -224,7 +224,7 @@ bool Replay::ownSwap(Args& in, bool front) {
         f.config = w.config;
         f.region = hasKernel() && !w.region.empty() ? inKernel(w.part) : w.region;
         f.picture = hasKernel() ? inKernel(w.whole) : w.whole;
-        f.keepsPicture = w.keepsPicture;
+        f.keepsPicture = keepsTurn(w);
         // The thread that swaps need not be the one that has drawn: GLX takes any window.
         if (bound_ && &w == boundDraw_ && w.surface) f.pixels = [this, &w, front](const PixelViewport& r) {
             ContextState* const own = std::exchange(c_, bound_);

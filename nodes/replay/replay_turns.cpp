@@ -2,9 +2,13 @@
 // empty then, so that scissors, answers, counts and pictures need no rule of their own. Framebuffer objects are drawn by
 // all: their contents outlive frames.
 //
-// Only frames that clear their window before they draw there can be drawn by a node that has not drawn the one
-// before. Whether a program does that is seen by every node alike: the first frames are drawn by all, and from the
-// first one on that builds on what was there, all frames of that window are.
+// A frame that clears its window before it draws there begins the next node's turn. One that builds on the picture
+// before it stays with the node that has that picture. Which of both it is shows when it first does more than clear; until
+// then both nodes clear. Every node sees the same commands, and so decides the same.
+//
+// Accumulation and front buffers hold what earlier frames left there, whoever has cleared: from then on one node goes on
+// drawing the window. So it does where a frame turns out too late to want an older depth or stencil buffer; the first
+// frames are drawn by all nodes, that such programs are found before it matters.
 // Source: thesis, "Time-Multiplex (DPlex)".
 #include <cstring>
 #include <string_view>
@@ -19,6 +23,8 @@ namespace mural {
 namespace {
 
 constexpr int64_t kLearnedFrames = 2;
+constexpr int64_t kKeptFrames = 8; // in a row: then it is said that turns do not help
+constexpr GLbitfield kBuffers = GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT;
 
 enum class WindowUse : uint8_t { None, Clears, Draws };
 
@@ -39,7 +45,7 @@ WindowUse useOf(uint16_t opcode) {
         std::vector<WindowUse> uses(op::kLimit, WindowUse::None);
         for (uint16_t o = wire::kFirstGlOpcode; o < op::kLimit; ++o) {
             const char* name = glOpcodeName(o);
-            if (name && draws(name)) uses[o] = o == op::glClear ? WindowUse::Clears : WindowUse::Draws;
+            if (name && draws(name)) uses[o] = o == op::glClear || std::string_view(name).starts_with("glClearBuffer") ? WindowUse::Clears : WindowUse::Draws;
         }
         return uses;
     }();
@@ -48,29 +54,54 @@ WindowUse useOf(uint16_t opcode) {
 
 } // namespace
 
-bool Replay::learnsTurns(const Window& w) const { return takesTurns() && w.turn < kLearnedFrames; }
+// Which buffers of the window a command that clears is about.
+GLbitfield Replay::clearsOf(uint16_t opcode, std::span<const std::byte> arguments) const {
+    GLuint words[2] = {};
+    std::memcpy(words, arguments.data(), std::min(arguments.size(), sizeof words));
+    if (opcode == op::glClear) return words[0];
+    switch (words[0]) { // glClearBuffer…
+    case GL_COLOR: return GL_COLOR_BUFFER_BIT;
+    case GL_DEPTH: return GL_DEPTH_BUFFER_BIT;
+    case GL_STENCIL: return GL_STENCIL_BUFFER_BIT;
+    case GL_DEPTH_STENCIL: return GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT;
+    default: return 0;
+    }
+}
+
+bool Replay::learnsTurns(const Window& w) const { return takesTurns() && w.frames < kLearnedFrames; }
+
+bool Replay::hasTurn(const Window& w, int64_t turn) const { return !takesTurns() || turn % config_.pass.period == config_.pass.phase; }
 
 // After its size or the turn has changed.
 void Replay::placePart(Window& w) {
-    const bool mine = !takesTurns() || w.turn % config_.pass.period == config_.pass.phase;
-    w.region = !mine ? PixelViewport{} : interleaves(&w) ? inKernel(w.part) : w.part;
-    w.drawn = w.range.muted ? PixelViewport{} : w.region;
+    const PixelViewport part = interleaves(&w) ? inKernel(w.part) : w.part;
+    w.region = hasTurn(w, w.turn) ? part : PixelViewport{};
+    w.drawn = w.region;
+    if (w.undecided && hasTurn(w, w.turn + 1)) w.drawn = part;
+    if (w.range.muted) w.drawn = {};
     if (takesRanges() && !collects()) w.region = {}; // the collector's
-    if (w.config.samples == 0 || w.region.empty() || w.drawn.empty()) return;
+    if (w.config.samples == 0 || w.drawn.empty()) return;
     // A driver may treat multisampled lines at scissor edges off its own raster of 64 pixels (accuracy, M4).
-    const int32_t x0 = w.region.x / 64 * 64, y0 = w.region.y / 64 * 64;
-    w.drawn = intersect({x0, y0, (w.region.right() + 63) / 64 * 64 - x0, (w.region.top() + 63) / 64 * 64 - y0}, w.whole);
+    const int32_t x0 = w.drawn.x / 64 * 64, y0 = w.drawn.y / 64 * 64;
+    w.drawn = intersect({x0, y0, (w.drawn.right() + 63) / 64 * 64 - x0, (w.drawn.top() + 63) / 64 * 64 - y0}, w.whole);
 }
 
-// Which of the buffers a glClear with this mask gives one value everywhere.
+// Which of the buffers a clear, as the state is now, gives one value everywhere.
 GLbitfield Replay::clearsWhole(GLbitfield mask) const {
-    GLbitfield cleared = mask & GL_STENCIL_BUFFER_BIT;
-    if (c_->scissors[0].enabled) return 0;
+    const bool discards = c_->version >= 30 && gl.glIsEnabled(GL_RASTERIZER_DISCARD);
+    if (c_->scissors[0].enabled || c_->conditional || discards) return 0;
+    const wire::WindowConfig& w = c_->draw->config;
     const auto& colours = c_->colorMasks.buffers[0];
-    if (colours[0] && colours[1] && colours[2]) cleared |= mask & GL_COLOR_BUFFER_BIT;
+    const bool front = w.doubleBuffer && (c_->drawBuffer0 == GL_FRONT || c_->drawBuffer0 == GL_FRONT_LEFT || c_->drawBuffer0 == GL_FRONT_RIGHT || c_->drawBuffer0 == GL_NONE);
+    GLbitfield cleared = 0;
+    if (colours[0] && colours[1] && colours[2] && (colours[3] || w.alpha == 0) && !front) cleared |= mask & GL_COLOR_BUFFER_BIT;
     GLboolean depth = GL_TRUE;
+    GLint stencil = 255;
     if (mask & GL_DEPTH_BUFFER_BIT) gl.glGetBooleanv(GL_DEPTH_WRITEMASK, &depth);
-    return depth ? cleared | (mask & GL_DEPTH_BUFFER_BIT) : cleared;
+    if (mask & GL_STENCIL_BUFFER_BIT) gl.glGetIntegerv(GL_STENCIL_WRITEMASK, &stencil);
+    if (depth) cleared |= mask & GL_DEPTH_BUFFER_BIT;
+    if ((stencil & 255) == 255) cleared |= mask & GL_STENCIL_BUFFER_BIT;
+    return cleared;
 }
 
 // What a draw, as the state is now, would find there of an earlier frame.
@@ -88,29 +119,44 @@ void Replay::noteTurn(uint16_t opcode, std::span<const std::byte> arguments) {
     if (use == WindowUse::None || !drawsWindow() || !c_->draw || c_->compiling) return;
     Window& w = *c_->draw;
     if (w.turnOver) beginTurn(w);
-    constexpr GLbitfield kAll = GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT;
-    if (w.keepsPicture || w.cleared == kAll) return;
-    if (use == WindowUse::Clears && arguments.size() >= 4) {
-        GLbitfield mask = 0;
-        std::memcpy(&mask, arguments.data(), 4);
-        w.cleared |= clearsWhole(mask);
-        if (!(mask & ~kAll)) return;
-    }
-    // Accumulation buffers are there to add up frames.
-    const bool accumulates = opcode == op::glAccum || use == WindowUse::Clears;
-    if (!accumulates && (needsCleared() & ~w.cleared) == 0) return;
-    w.keepsPicture = true;
-    restoreWindowState();
+    if (w.keepsPicture) return;
+    const GLbitfield clears = use == WindowUse::Clears ? clearsOf(opcode, arguments) : 0;
+    if (opcode == op::glAccum || (clears & GL_ACCUM_BUFFER_BIT)) return keepTurn(w);
+    const GLbitfield whole = clearsWhole(clears);
+    w.cleared |= whole;
+    if (use == WindowUse::Clears && (clears & kBuffers & ~whole) == 0) return;
+    const bool builds = ((use == WindowUse::Clears ? clears & kBuffers : needsCleared()) & ~w.cleared) != 0;
+    if (w.undecided) return decideTurn(w, builds);
+    if (builds && w.fresh) keepTurn(w); // too late to find out
 }
 
 // The window's part is last frame's until somebody draws: what is read before that is last frame's, too.
 void Replay::beginTurn(Window& w) {
     w.turnOver = false;
     w.cleared = 0;
-    ++w.turn;
+    w.fresh = false;
+    ++w.frames;
+    w.undecided = !w.keepsPicture;
     placePart(w);
     restoreWindowState();
 }
+
+void Replay::decideTurn(Window& w, bool builds) {
+    w.undecided = false;
+    w.fresh = !builds;
+    w.kept = builds ? w.kept + 1 : 0;
+    if (w.fresh) ++w.turn;
+    placePart(w);
+    restoreWindowState();
+}
+
+// From now on it is the turn of the node whose turn it is.
+void Replay::keepTurn(Window& w) {
+    w.keepsPicture = true;
+    if (w.undecided) decideTurn(w, true);
+}
+
+bool Replay::keepsTurn(const Window& w) const { return w.keepsPicture || w.kept >= kKeptFrames; }
 
 void Replay::turnDrawn(Window& w, bool shownInFront) {
     if (hasKernel()) {

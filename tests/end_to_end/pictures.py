@@ -1,4 +1,8 @@
-"""Pictures of frames: reading PPM, comparing pixel by pixel, writing what differs."""
+"""Pictures of frames: reading PPM and PNG, comparing pixel by pixel, writing what differs."""
+
+import math
+import struct
+import zlib
 
 
 class Picture:
@@ -15,6 +19,58 @@ def read_ppm(path):
         raise ValueError("%s is not a whole picture" % path)
     step = width * 3
     return Picture(width, height, [pixels[y * step:(y + 1) * step] for y in range(height)])
+
+
+def read_png(path):
+    """PNG of 8 bits per channel, RGB, as --out writes it."""
+    with open(path, "rb") as file:
+        data = file.read()
+    if data[:8] != b"\x89PNG\r\n\x1a\n":
+        raise ValueError("%s is no PNG file" % path)
+    at, packed = 8, b""
+    while at < len(data):
+        length, kind = struct.unpack(">I4s", data[at:at + 8])
+        if kind == b"IHDR":
+            width, height, depth, colour = struct.unpack(">IIBB", data[at + 8:at + 18])
+        if kind == b"IDAT":
+            packed += data[at + 8:at + 8 + length]
+        at += 12 + length
+    if (depth, colour) != (8, 2):
+        raise ValueError("%s is not RGB of 8 bits" % path)
+    raw, step, rows = zlib.decompress(packed), 3 * width, []
+    above = bytes(step)
+    for y in range(height):
+        start = y * (step + 1)
+        above = _unfiltered(raw[start], raw[start + 1:start + 1 + step], above)
+        rows.append(above)
+    return Picture(width, height, rows)
+
+
+def _unfiltered(kind, row, above):
+    if kind == 0:
+        return bytes(row)
+    if kind == 2:
+        return bytes((a + b) & 255 for a, b in zip(row, above))
+    out = bytearray(row)
+    for i in range(len(out)):
+        left, corner = (out[i - 3], above[i - 3]) if i >= 3 else (0, 0)
+        if kind == 1:
+            by = left
+        elif kind == 3:
+            by = (left + above[i]) // 2
+        else:
+            by = min((abs(above[i] - corner), 0, left), (abs(left - corner), 1, above[i]),
+                     (abs(left + above[i] - 2 * corner), 2, corner))[2]
+        out[i] = (out[i] + by) & 255
+    return bytes(out)
+
+
+def decibels(first, second):
+    """Peak signal to noise ratio of two pictures of one size."""
+    squares = sum((a - b) ** 2 for x, y in zip(first.rows, second.rows) if x != y for a, b in zip(x, y))
+    if squares == 0:
+        return math.inf
+    return 10 * math.log10(255 ** 2 * first.width * first.height * 3 / squares)
 
 
 class Difference:

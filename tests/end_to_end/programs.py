@@ -11,7 +11,7 @@ GROUPS = {
                  "evaluators"],
     "pixels": ["textures_classic", "textures_modern", "framebuffers", "framebuffers_layered", "core_depth",
                "pixels_draw", "pixels_read", "texture_reads", "sized_reads", "compressed_reads", "reads_later", "reads_owed", "reads_threads",
-               "front_buffer", "front_and_back", "single_buffered",
+               "front_buffer", "front_and_back", "single_buffered", "frames_kept",
                "accum_buffer"],
     "state": ["raster_state", "blend_modes", "clipping", "fixed_lighting", "feedback_select",
               "attribute_stacks", "arb_programs", "odd_calls", "list_questions", "refused_calls", "refused_core"],
@@ -94,7 +94,7 @@ def stop_group(process):
 
 
 def run_program(build, name, folder, display, size, frames, launcher=(), seconds=120,
-                more_environment=None, library="grab.so"):
+                more_environment=None, library="grab.so", arguments=()):
     """Runs a program, natively or behind `launcher`, with the grabbing library in front."""
     os.makedirs(folder)
     environment = clean_environment(display)
@@ -107,7 +107,7 @@ def run_program(build, name, folder, display, size, frames, launcher=(), seconds
     shell = 'LD_PRELOAD="%s${LD_PRELOAD:+ $LD_PRELOAD}" exec "$@"' % grab
     program = os.path.join(build, "tests", "programs", name)
     command = list(launcher) + ["sh", "-c", shell, "sh", program]
-    command += ["--size", size, "--frames", str(frames)]
+    command += ["--size", size, "--frames", str(frames)] + list(arguments)
     log_path = folder + ".log"
     with open(log_path, "wb") as log:
         process = subprocess.Popen(command, env=environment, stdin=subprocess.DEVNULL, stdout=log,

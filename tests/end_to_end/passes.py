@@ -1,0 +1,281 @@
+#!/usr/bin/env python3
+"""Frames drawn in several passes: eyes, samples, pixels of a kernel, turns. Programs that can do natively what a pass
+does are the reference; the pictures of passes are put together once more, by this script.
+
+  passes.py --build build/release [--cases stereo,subpixel] [--list]
+"""
+
+import os
+import sys
+import tempfile
+
+import failures
+import pictures
+import programs
+
+failures.CASES.clear()  # only those of this file
+FRAMES = 4
+SIZE = (253, 191)
+WAYS = ("fixed", "legacy", "matrices", "mvp", "block", "geometry", "tessellation")
+EYE, FOCUS = 0.3, 6.0
+
+
+def case(function):
+    """The case's result, after what it has measured."""
+    def measured(context):
+        notes = []
+        wrong = function(context, notes)
+        if notes:
+            print("%-32s %s" % (function.__name__, "; ".join(notes)))
+        return wrong
+    measured.__name__ = function.__name__
+    failures.case(measured)
+    return function
+
+
+def native(context, program, arguments=(), size=SIZE, frames=FRAMES):
+    """The pictures of all frames of the first window, without Mural."""
+    with tempfile.TemporaryDirectory(prefix="mural-passes.") as folder:
+        run = programs.run_program(context.build, program, os.path.join(folder, "native"), context.display,
+                                   "%dx%d" % size, frames, arguments=arguments)
+        if run.status != 0:
+            raise SystemExit("%s fails natively: %s" % (program, run.output))
+        return [pictures.read_ppm(path) for name, path in sorted(run.frames().items()) if name.startswith("w0/")]
+
+
+def through(context, options, program, arguments=(), size=SIZE, frames=FRAMES):
+    """The pictures that the head has put together, in the order of --out."""
+    with tempfile.TemporaryDirectory(prefix="mural-passes.") as folder:
+        command = [context.program(program), "--frames", str(frames), "--size", "%dx%d" % size] + list(arguments)
+        with context.run(command, ["--display", "none", "--out", folder] + list(options)) as run:
+            wrong = failures.check_end(run, 0)
+            if wrong is not None:
+                raise AssertionError(wrong)
+        return [pictures.read_png(os.path.join(folder, name)) for name in sorted(os.listdir(folder))]
+
+
+def differing(expected, got):
+    """None, or how many pixels differ and where."""
+    if len(expected) != len(got):
+        return "%d pictures instead of %d" % (len(got), len(expected))
+    difference = pictures.Difference()
+    for number, (first, second) in enumerate(zip(expected, got)):
+        difference.add_pictures(first, second, "frame %d" % number)
+    return None if difference.pixels == 0 else "%d pixels differ, largest %d, %s" % (
+        difference.pixels, difference.largest, difference.place)
+
+
+def first_wrong(results):
+    """The first of {what: None or what is wrong} that is wrong."""
+    return next(("%s: %s" % item for item in results.items() if item[1] is not None), None)
+
+
+# ---- turns
+
+def by_turns(context, program, turns, frames=9):
+    return differing(native(context, program, frames=frames), through(context, ["--dplex", str(turns)], program, frames=frames))
+
+
+@case
+def dplex_pictures_are_all_there(context, notes):
+    """Every frame, in its order, from programs that clear, that do not, and that copy their window."""
+    return first_wrong({program: by_turns(context, program, 3) for program in ("immediate", "es2_scene", "core_arrays", "frames_kept", "pixels_read")})
+
+
+@case
+def dplex_shares_the_work(context, notes):
+    """A program that clears is drawn by all nodes in turn: no node owns more than its share."""
+    frames = 30
+    options = ["--display", "none", "--dplex", "3", "--explain"]
+    with context.drawing("long_run", frames, options=options) as run:
+        wrong = failures.check_end(run, 0, frames)
+        said = [line for line in run.standard_error if "one node goes on drawing" in line]
+    return wrong or (said[0] if said else None)
+
+
+# ---- samples
+
+def jitter(sample, samples):
+    """Where the sample lies in its pixel: a Hammersley set whose mean is the pixel's centre."""
+    def point(i):
+        value, digit, n = 0.0, 0.5, i
+        while n:
+            value, digit, n = value + (n & 1) * digit, digit / 2, n >> 1
+        return (i + 0.5) / samples, value
+    points = [point(i) for i in range(samples)]
+    return tuple(points[sample][k] - sum(p[k] for p in points) / samples for k in range(2))
+
+
+def largest_error(samples, got):
+    """Of a picture against the mean of others, not rounded."""
+    largest, n = 0.0, len(samples)
+    for y, row in enumerate(got.rows):
+        for values in zip(row, *(picture.rows[y] for picture in samples)):
+            largest = max(largest, abs(values[0] - sum(values[1:]) / n))
+    return largest
+
+
+def sampled(context, program, arguments, samples, size=SIZE):
+    """The largest error of Mural's pictures against the native mean."""
+    moved = []
+    for sample in range(samples):
+        x, y = jitter(sample, samples)
+        moved.append(native(context, program, list(arguments) + ["--move", "%.17g,%.17g" % (-x, -y)], size))
+    got = through(context, ["--subpixel", str(samples)], program, arguments, size)
+    if len(got) != len(moved[0]):
+        raise AssertionError("%d pictures instead of %d" % (len(got), len(moved[0])))
+    plain = native(context, program, arguments, size)
+    if all(picture.rows == other.rows for picture, other in zip(got, plain)):
+        raise AssertionError("nothing was sampled")
+    return max(largest_error([frames[i] for frames in moved], picture) for i, picture in enumerate(got))
+
+
+def sampled_ways(context, notes, scenes):
+    wrong = None
+    for program, arguments, samples, size in scenes:
+        error = sampled(context, program, arguments, samples, size)
+        name = "%s %d" % (" ".join(arguments[1:]) or program, samples)
+        notes.append("%s: %.3f" % (name, error))
+        if error > 1:
+            wrong = wrong or "%s: largest error %.3f" % (name, error)
+    return wrong
+
+
+@case
+def subpixel_is_the_mean(context, notes):
+    return sampled_ways(context, notes, [
+        ("pass_scene", ["--draw", "fixed"], 2, SIZE), ("pass_scene", ["--draw", "mvp"], 4, SIZE), ("pass_scene", ["--draw", "geometry"], 3, (160, 121)),
+        ("pass_scene_es2", [], 2, SIZE), ("pass_scene_es2", [], 4, (250, 190))])
+
+
+# ---- pixels of a kernel
+
+@case
+def pixel_polygons_are_near(context, notes):
+    wrong = None
+    plain = native(context, "pass_scene", ["--draw", "mvp"])
+    for kernel in ("2x1", "3", "2x2", "3x2"):
+        got = through(context, ["--pixel", kernel], "pass_scene", ["--draw", "mvp"])
+        worst = min(pictures.decibels(a, b) for a, b in zip(plain, got))
+        notes.append("%s: %.1f dB" % (kernel, worst))
+        if len(got) != len(plain) or worst < 40:
+            wrong = wrong or "%s: %d pictures, %.1f dB" % (kernel, len(got), worst)
+        if all(a.rows == b.rows for a, b in zip(plain[1:], got[1:])):
+            wrong = wrong or "%s: the kernel was not used" % kernel
+    return wrong
+
+
+@case
+def pixel_is_exact_where_windows_are_read(context, notes):
+    return first_wrong({"%s %s" % (program, kernel): differing(native(context, program), through(context, ["--pixel", kernel], program))
+                        for program in ("pixels_read", "es2_scene") for kernel in ("2x1", "3x2")})
+
+
+# ---- eyes
+
+def overlay(picture):
+    """The quarter of the picture that no eye sees in perspective."""
+    return [row[:3 * (picture.width // 2 - 1)] for row in picture.rows[(picture.height + 1) // 2 + 1:]]
+
+
+def seen(context, program, arguments, eye):
+    """How near Mural's picture for an eye is to the native one, and whether its overlay is as it was."""
+    base = ["--eye-base", str(2 * EYE), "--focus", str(FOCUS)]
+    got = through(context, ["--stereo", "left" if eye < 0 else "right"] + base, program, arguments)
+    wanted = native(context, program, list(arguments) + ["--eye", "%g,%g" % (eye, FOCUS)])
+    plain = native(context, program, arguments)
+    if len(got) != len(wanted):
+        raise AssertionError("%d pictures instead of %d" % (len(got), len(wanted)))
+    worst = min(pictures.decibels(a, b) for a, b in zip(wanted, got))
+    kept = all(overlay(a) == overlay(b) for a, b in zip(plain, got))
+    return worst, kept, min(pictures.decibels(a, b) for a, b in zip(plain, wanted))
+
+
+def seen_ways(context, notes, scenes):
+    wrong = None
+    for program, arguments in scenes:
+        name = arguments[-1] if arguments else program
+        for eye in (-EYE, EYE):
+            worst, kept, apart = seen(context, program, arguments, eye)
+            notes.append("%s %s: %.1f dB (%.1f from the middle)" % (name, "left" if eye < 0 else "right", worst, apart))
+            if worst < 40 or not kept:
+                wrong = wrong or "%s: %.1f dB%s" % (name, worst, "" if kept else ", the overlay has moved")
+    return wrong
+
+
+@case
+def stereo_eyes_fixed_and_es(context, notes):
+    return seen_ways(context, notes, [("pass_scene", ["--draw", way]) for way in ("fixed", "legacy")] + [("pass_scene_es2", [])])
+
+
+@case
+def stereo_eyes_by_shaders(context, notes):
+    return seen_ways(context, notes, [("pass_scene", ["--draw", way]) for way in ("matrices", "mvp", "block", "geometry", "tessellation")])
+
+
+def eyes(context):
+    base = ["--eye-base", str(2 * EYE), "--focus", str(FOCUS)]
+    show = lambda mode, *more: through(context, ["--stereo", mode] + base + list(more), "pass_scene", ["--draw", "mvp"])
+    return show, show("left"), show("right")
+
+
+def anaglyph(left, right):
+    rows = []
+    for a, b in zip(left.rows, right.rows):
+        row = bytearray(b)
+        row[0::3] = a[0::3]
+        rows.append(bytes(row))
+    return pictures.Picture(left.width, left.height, rows)
+
+
+def halved(row, width):
+    """Means of two neighbours, halves rounded up."""
+    out = bytearray()
+    for x in range(0, 2 * width, 2):
+        a = row[3 * x:3 * x + 3]
+        b = row[3 * x + 3:3 * x + 6] or a
+        out += bytes((p + q + 1) // 2 for p, q in zip(a, b))
+    return bytes(out)
+
+
+def side_by_side(left, right):
+    half = (left.width + 1) // 2
+    return pictures.Picture(left.width, left.height, [halved(a, half) + halved(b, left.width - half) for a, b in zip(left.rows, right.rows)])
+
+
+@case
+def stereo_pictures_are_put_together(context, notes):
+    show, left, right = eyes(context)
+    turned = show("anaglyph", "--dplex", "2")
+    both = [anaglyph(a, b) for a, b in zip(left, right)]
+    return first_wrong({"anaglyph": differing(both, show("anaglyph")), "with dplex": differing(both, turned),
+                        "side by side": differing([side_by_side(a, b) for a, b in zip(left, right)], show("side-by-side"))})
+
+
+# ---- several at once
+
+@case
+def subpixel_with_tiles(context, notes):
+    plain, tiled = (through(context, ["--subpixel", "2"] + more, "pass_scene", ["--draw", "mvp"]) for more in ([], ["--tiles", "2x1", "--local-nodes", "4"]))
+    return differing(plain, tiled)
+
+
+@case
+def node_of_a_pass_is_killed(context, notes):
+    """One line says so, all frames are there, the other passes go on."""
+    frames = 60
+    with tempfile.TemporaryDirectory(prefix="mural-passes.") as out:
+        with context.drawing("long_run", frames, options=["--display", "none", "--subpixel", "3", "--out", out]) as run:
+            if not run.wait_for_line("frame 20"):
+                return "the program did not start: " + " | ".join(run.standard_error[-3:])
+            failures.kill_all(run.wait_for_processes(failures.NODE, 3)[:1])
+            wrong = failures.check_end(run, 0, frames)
+            said = failures.error_lines(run, ["was lost:"])
+        saved = len(os.listdir(out))
+    if wrong is None and (len(said) != 1 or saved != frames):
+        wrong = "%d lines about it, %d pictures instead of %d" % (len(said), saved, frames)
+    return wrong
+
+
+if __name__ == "__main__":
+    sys.exit(failures.main())

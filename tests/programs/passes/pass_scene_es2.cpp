@@ -1,0 +1,64 @@
+// The scene of pass_scene by OpenGL ES 2, which has no viewports in fractions: shaders move the picture.
+#include <EGL/egl.h>
+#include <GLES2/gl2.h>
+
+#include "tests/programs/passes/pass_options.hpp"
+#include "tests/programs/support/program.hpp"
+#include "tests/programs/support/shaders.hpp"
+
+using namespace programs;
+
+namespace {
+
+PassOptions options;
+GLuint scene = 0, overlay = 0;
+
+void setUp() {
+    const char* const fragment = "precision mediump float; varying vec3 tint; void main() { gl_FragColor = vec4(tint, 1.0); }\n";
+    const auto bind = [](unsigned p) { glBindAttribLocation(p, 0, "place"), glBindAttribLocation(p, 1, "tone"); };
+    scene = buildProgram({{GL_VERTEX_SHADER, "attribute vec3 place; attribute vec3 tone; uniform mat4 whole; uniform vec4 by; varying vec3 tint;\n"
+                                             "void main() { tint = tone; gl_Position = whole * vec4(place, 1.0); gl_Position.xy += gl_Position.xy * by.xy + by.zw * gl_Position.w; }\n"},
+                          {GL_FRAGMENT_SHADER, fragment}},
+                         bind);
+    overlay = buildProgram({{GL_VERTEX_SHADER, "attribute vec3 place; uniform vec4 by; varying vec3 tint;\n"
+                                               "void main() { tint = vec3(place.xy + 1.0, 0.5); gl_Position = vec4(place, 1.0); gl_Position.xy += gl_Position.xy * by.xy + by.zw * gl_Position.w; }\n"},
+                            {GL_FRAGMENT_SHADER, fragment}},
+                           bind);
+}
+
+void use(GLuint program, const Window& window) {
+    glUseProgram(program);
+    glUniform4f(glGetUniformLocation(program, "by"), 0, 0, 2 * options.moveX / float(window.width()), 2 * options.moveY / float(window.height()));
+}
+
+void draw(const Window& window, int frame) {
+    glViewport(0, 0, window.width(), window.height());
+    glClearColor(0.1F, 0.15F, 0.2F, 1);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    glEnable(GL_DEPTH_TEST);
+    use(scene, window);
+    const Matrix whole = multiply(projectionOf(options, window.width(), window.height()), modelViewOf(frame));
+    glUniformMatrix4fv(glGetUniformLocation(scene, "whole"), 1, GL_FALSE, whole.data());
+    glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 24, sceneVertices());
+    glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, 24, sceneVertices() + 3);
+    glEnableVertexAttribArray(0);
+    glEnableVertexAttribArray(1);
+    glDrawArrays(GL_TRIANGLES, 0, kSceneVertices);
+    glDisableVertexAttribArray(1);
+    glDisable(GL_DEPTH_TEST);
+    use(overlay, window);
+    const GLfloat corners[] = {-1, -1, 0, 0, -1, 0, -1, 0, 0, 0, 0, 0};
+    glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 0, corners);
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    options = takePassOptions(argc, argv);
+    WindowSpec spec;
+    spec.profile = Profile::Es;
+    spec.major = 2;
+    return runInEglWindow(
+        argc, argv, spec, [](Window&) { setUp(); }, [](Window& window, int frame) { draw(window, frame); });
+}
