@@ -54,6 +54,7 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
                 node.where = "local";
                 node.pass = passes[static_cast<size_t>(p)];
                 node.pass.range = range;
+                node.pass.share = {static_cast<double>(range) / ranges, static_cast<double>(range + 1) / ranges};
                 node.picture = pictureOf(config.passes, node.pass);
                 node.region = region;
                 node.collector = collector;
@@ -86,6 +87,8 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
     setup.regionRow = node.region.row;
     setup.regionColumns = node.region.columns;
     setup.regionRows = node.region.rows;
+    setup.hasArea = node.area.has_value();
+    setup.area = node.area.value_or(Viewport{});
     setup.pass = node.pass;
     setup.collector = node.collector;
     setup.answers = node.picture == 0 && node.pass.range == 0;

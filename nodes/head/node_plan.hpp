@@ -1,6 +1,7 @@
 // Which nodes a session has, where they run and what each draws. Pure.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct NodePlan {
     RenderPass pass;
     int picture = 0; // of the pass: see pictureOf
     TileRegion region;
+    std::optional<Viewport> area; // instead of tiles: of the picture
     int collector = 0; // the node that puts the ranges of this picture together: this one, when range is 0
 };
 

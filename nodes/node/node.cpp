@@ -140,6 +140,7 @@ private:
         config.cull = setup_.tiling == Tiling::Culled;
         config.grid = {setup_.columns, setup_.rows, config.lean ? 2 : 1};
         config.region = {setup_.regionColumn, setup_.regionRow, setup_.regionColumns, setup_.regionRows};
+        if (setup_.hasArea) config.area = setup_.area;
         config.pass = setup_.pass;
         config.answers = setup_.answers;
         config.eyeBase = setup_.eyeBase;

@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <unordered_map>
@@ -19,6 +20,7 @@
 
 #include "common/pixel_viewport.hpp"
 #include "common/tile_grid.hpp"
+#include "common/viewport.hpp"
 #include "gl_functions.hpp"
 #include "nodes/gl/gl_platform.hpp"
 #include "nodes/exchange/picture_part.hpp"
@@ -47,6 +49,7 @@ struct ReplayConfig {
     int node = 0;
     TileGrid grid;
     TileRegion region;
+    std::optional<Viewport> area; // instead of tiles
     RenderPass pass;
     bool answers = true;   // questions about pictures; false: nodes of another pass do
     double eyeBase = 0.05, focusDistance = 1; // in the program's units
@@ -436,6 +439,7 @@ private:
     // replay_widening.cpp
     void noteModules(GLuint ours);
     [[nodiscard]] bool alone() const { // this node's part is the whole picture
+        if (config_.area) return config_.area->full() && !takesTurns();
         return config_.region.columns == config_.grid.columns && config_.region.rows == config_.grid.rows && !takesTurns();
     }
     [[nodiscard]] bool allDrawn() const { return c_->shared && c_->shared->allDrawn; }

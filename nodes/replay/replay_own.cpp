@@ -168,7 +168,7 @@ bool Replay::ownWindow(Args& in) {
     w.config = *config;
     const auto width = static_cast<int32_t>(config->width), height = static_cast<int32_t>(config->height);
     w.whole = {0, 0, width, height};
-    w.part = regionViewport(config_.grid, config_.region, width, height);
+    w.part = config_.area ? intersect(apply(w.whole, *config_.area), w.whole) : regionViewport(config_.grid, config_.region, width, height);
     placePart(w);
     const PixelViewport size = w.lean ? w.part : w.whole;
     if (w.surface && w.surface->width() == std::max(size.w, 1) && w.surface->height() == std::max(size.h, 1)) return true;

@@ -197,10 +197,10 @@ bool Replay::shares(Window& w, uint64_t cost, uint64_t& first, uint64_t& last) {
         return false;
     }
     if (r.phase == RangeFrame::Phase::Fresh) beginSplit(w);
-    const auto ranges = static_cast<uint64_t>(config_.pass.ranges), mine = static_cast<uint64_t>(config_.pass.range);
-    // In the first frame nothing is known: the collector draws it.
-    const uint64_t from = r.lastTotal ? r.lastTotal * mine / ranges : mine == 0 ? 0 : UINT64_MAX;
-    const uint64_t to = r.lastTotal ? (mine + 1 == ranges ? UINT64_MAX : r.lastTotal * (mine + 1) / ranges) : mine == 0 ? UINT64_MAX : UINT64_MAX;
+    // In the first frame nothing is known: the collector draws it. What is more than in the frame before is the last one's.
+    const auto costAt = [&](double share) { return share >= 1 ? UINT64_MAX : static_cast<uint64_t>(static_cast<double>(r.lastTotal) * share); };
+    const uint64_t from = r.lastTotal ? costAt(config_.pass.share.start) : collects() ? 0 : UINT64_MAX;
+    const uint64_t to = r.lastTotal ? costAt(config_.pass.share.end) : UINT64_MAX;
     const uint64_t at = r.cost;
     r.cost += cost;
     first = std::clamp(from, at, at + cost) - at;

@@ -8,9 +8,10 @@
 #include <string>
 #include <vector>
 
-namespace mural {
+#include "common/eye.hpp"
+#include "common/range.hpp"
 
-enum class Eye { Cyclop, Left, Right };
+namespace mural {
 
 enum class StereoMode {
     Off,
@@ -27,7 +28,8 @@ struct RenderPass {
     int kernelWidth = 1, kernelHeight = 1; // …of so many columns and rows; row 0 is the lowest
     int sample = 0, samples = 1;  // which of the jittered pictures that are averaged
     int phase = 0, period = 1;    // draws the frames n with n mod period == phase
-    int range = 0, ranges = 1;    // which part of a frame's draws, in their order (sort-last)
+    int range = 0, ranges = 1;    // which of the nodes that share a frame's draws in their order (sort-last)…
+    Range share;                  // …and which part of them it draws
 
     bool operator==(const RenderPass&) const = default;
 };

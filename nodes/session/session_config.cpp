@@ -84,6 +84,13 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("regionRow", s.regionRow, 0);
     visit("regionColumns", s.regionColumns, 1);
     visit("regionRows", s.regionRows, 1);
+    visit("hasArea", s.hasArea);
+    visit("areaX", s.area.x);
+    visit("areaY", s.area.y);
+    visit("areaWidth", s.area.w);
+    visit("areaHeight", s.area.h);
+    visit("shareStart", s.pass.share.start);
+    visit("shareEnd", s.pass.share.end);
     visit("eye", s.pass.eye);
     visit("kernelX", s.pass.kernelX, 0);
     visit("kernelY", s.pass.kernelY, 0);

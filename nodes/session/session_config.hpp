@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/result.hpp"
+#include "common/viewport.hpp"
 #include "nodes/session/render_pass.hpp"
 
 namespace mural {
@@ -55,6 +56,8 @@ struct NodeSetup {
     int nodeCount = 1;
     int columns = 1, rows = 1;
     int regionColumn = 0, regionRow = 0, regionColumns = 1, regionRows = 1;
+    bool hasArea = false;         // its part is not one of tiles, but
+    Viewport area;                // this one of the picture
     RenderPass pass;
     bool answers = true; // what programs read of windows is this pass's
     double eyeBase = 0.05, focusDistance = 1; // see SessionConfig
