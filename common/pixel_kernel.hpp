@@ -18,9 +18,11 @@ struct PixelKernel {
     friend constexpr bool operator==(const PixelKernel&, const PixelKernel&) = default;
 };
 
-// One of `inner`'s pixels within those that `outer` left.
+// `inner`'s pixels among those that `outer` left: pixel i of the result is pixel inner.x + inner.w·i of `outer`, so that
+// a picture may be put together at each level. (Equalizer multiplies the other way round, and its pictures are right
+// only when all is put together at the top.)
 [[nodiscard]] constexpr PixelKernel compose(const PixelKernel& outer, const PixelKernel& inner) {
-    return {outer.x * inner.w + inner.x, outer.y * inner.h + inner.y, outer.w * inner.w, outer.h * inner.h};
+    return {outer.x + outer.w * inner.x, outer.y + outer.h * inner.y, outer.w * inner.w, outer.h * inner.h};
 }
 
 // The area that holds a kernel's pixels side by side. Where the kernel does not divide the area, the last column or

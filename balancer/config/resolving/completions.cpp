@@ -38,9 +38,10 @@ bool isIdle(const ResolvedConfig& config, Index compound) {
     return c.tasks && c.tasks->empty() && below;
 }
 
-bool isShown(const ResolvedConfig& config, Index channel) {
+// By one of the first `segments` segments.
+bool isShown(const ResolvedConfig& config, Index channel, size_t segments) {
     return config.channels[Resolver::at(channel)].isDestination() ||
-           std::any_of(config.segments.begin(), config.segments.end(), [&](const ResolvedSegment& s) { return s.channel == channel; });
+           std::any_of(config.segments.begin(), config.segments.begin() + static_cast<std::ptrdiff_t>(segments), [&](const ResolvedSegment& s) { return s.channel == channel; });
 }
 
 // The first compound with a channel on its way from the root: it says what is shown.
@@ -92,11 +93,12 @@ void addOutputCompounds(Resolver& r) {
 // Files from before canvases existed: their compounds say what is shown.
 void addDestinationViews(Resolver& r) {
     ResolvedConfig& config = r.out;
+    const size_t written = config.segments.size();
     for (const Index root : std::vector<Index>(config.roots)) {
         Index canvas = kNone, view = kNone;
         for (const Index i : compoundsInOrder(config, root)) {
             ResolvedCompound& c = config.compounds[Resolver::at(i)];
-            if (!isDestination(config, c) || isShown(config, c.channel) || isIdle(config, i)) continue;
+            if (!isDestination(config, c) || isShown(config, c.channel, written) || isIdle(config, i)) continue;
             if (canvas == kNone) {
                 const ResolvedCompound& top = config.compounds[Resolver::at(root)];
                 ResolvedLayout layout;

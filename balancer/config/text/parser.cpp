@@ -67,7 +67,7 @@ private:
         if (!tokens_.expect('{', "server")) return;
         while (!tokens_.ended() && !tokens_.peek().is('}')) {
             const Token& token = tokens_.take();
-            if (token.kind == TokenKind::Word && token.text == "connection") sections_.readSection("connection", file_.serverConnections.emplace_back());
+            if (token.kind == TokenKind::Word && token.text == "connection") sections_.readSection("connection", token.at, file_.serverConnections.emplace_back());
             else if (token.kind == TokenKind::Word && token.text == "config") readConfig(token);
             else if (token.kind == TokenKind::Word) skip(token, "server");
             else return tokens_.fail(token.at, shown(token) + " belongs to no field of section server", "remove it, or look for a bracket that is missing before");
@@ -78,11 +78,11 @@ private:
     void readConfig(const Token& token) {
         if (!haveConfig_) {
             haveConfig_ = true;
-            return sections_.readSection("config", file_.config);
+            return sections_.readSection("config", token.at, file_.config);
         }
         tokens_.warn(token.at, "there is a second configuration, it is left out", "write it into a file of its own");
         Config unused;
-        sections_.readSection("config", unused);
+        sections_.readSection("config", token.at, unused);
     }
 
     void skip(const Token& token, const std::string& where) {

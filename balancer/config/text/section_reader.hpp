@@ -10,9 +10,9 @@ class SectionReader {
 public:
     explicit SectionReader(TokenReader& tokens) : tokens_(tokens) {}
 
-    // "{ ... }"; name: for messages.
-    template <class Section> void readSection(std::string_view name, Section& section) {
-        if constexpr (requires { section.at; }) section.at = tokens_.peek().at;
+    // "{ ... }"; name and place of its word: for messages.
+    template <class Section> void readSection(std::string_view name, SourcePosition at, Section& section) {
+        if constexpr (requires { section.at; }) section.at = at;
         if (depth_ >= kDeepest) return tokens_.fail(tokens_.peek().at, "more than " + std::to_string(kDeepest) + " sections stand in each other", "check the brackets");
         ++depth_;
         if (tokens_.expect('{', name)) {
@@ -56,25 +56,25 @@ public:
         if (isNext(word)) ValueReader(tokens_, word).read(targets.emplace_back());
     }
     template <class T> void section(std::string_view word, std::optional<T>& target) {
-        if (isNext(word)) readSection(word, target.emplace());
+        if (isNext(word)) readSection(word, wordAt_, target.emplace());
     }
     template <class T> void sections(std::string_view word, std::vector<T>& targets) {
-        if (isNext(word)) readSection(word, targets.emplace_back());
+        if (isNext(word)) readSection(word, wordAt_, targets.emplace_back());
     }
     template <class T> void merged(std::string_view word, T& target) {
-        if (isNext(word)) readSection(word, target);
+        if (isNext(word)) readSection(word, wordAt_, target);
     }
     void merged(std::string_view word, std::optional<Node>& target) {
-        if (isNext(word)) readSection(word, target ? *target : target.emplace());
+        if (isNext(word)) readSection(word, wordAt_, target ? *target : target.emplace());
     }
     void surface(std::optional<ProjectionSurface>& target) {
         if (isNext("wall")) {
             Wall wall;
-            readSection("wall", wall);
+            readSection("wall", wordAt_, wall);
             target = wall;
         } else if (isNext("projection")) {
             Projection projection;
-            readSection("projection", projection);
+            readSection("projection", wordAt_, projection);
             target = projection;
         }
     }
@@ -102,7 +102,7 @@ private:
         E equalizer;
         const std::string_view word = sectionName(equalizer);
         if (!isNext(word)) return;
-        readSection(word, equalizer);
+        readSection(word, wordAt_, equalizer);
         targets.emplace_back(std::move(equalizer));
     }
 
@@ -127,6 +127,7 @@ private:
             return tokens_.fail(token.at, shown(token) + " belongs to no field of section " + std::string(name), "remove it, or look for a bracket that is missing before");
         }
         tokens_.take();
+        wordAt_ = token.at;
         if (readNamed(token.text, section) || readOldField(token, section)) return;
         if constexpr (requires { section.at; }) {
             if (const std::string_view today = todaysWord(name, token.text); !today.empty()) {
@@ -158,6 +159,7 @@ private:
 
     TokenReader& tokens_;
     std::string_view word_;
+    SourcePosition wordAt_;
     bool matched_ = true;
     int depth_ = 0;
     NodeAttributes oldLaunch_; // launch command in a connection: the node around it takes it

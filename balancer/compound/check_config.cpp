@@ -1,0 +1,99 @@
+#include "balancer/compound/check_config.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+#include "balancer/compound/check_frames.hpp"
+#include "balancer/compound/plan_frame.hpp"
+
+namespace mural::compound {
+
+namespace {
+
+size_t at(Index index) { return ResolvedConfig::at(index); }
+
+std::string nameOr(const std::string& name, size_t number) { return name.empty() ? "number " + std::to_string(number) : "\"" + name + "\""; }
+
+// Frame numbers after which everything repeats; no more than can be tried.
+uint64_t repeatsAfter(const ResolvedConfig& config) {
+    constexpr uint64_t kMost = 64;
+    uint64_t all = 1;
+    for (const config::ResolvedCompound& c : config.compounds) all = std::min(kMost, std::lcm(all, uint64_t{std::max(1u, std::min(c.period.value_or(1), 64u))}));
+    return all;
+}
+
+// Tries every layout, mono and stereo, and all frame numbers until they repeat.
+void checkDeadlocks(const ResolvedConfig& config, config::Diagnostics& diagnostics) {
+    size_t layouts = 1;
+    for (const config::ResolvedCanvas& c : config.canvases) layouts = std::max(layouts, c.layouts.size());
+    FrameInput input = firstFrame(config);
+    std::set<std::string> said;
+    for (size_t layout = 0; layout < layouts; ++layout) {
+        input.activeLayouts.assign(config.canvases.size(), static_cast<Index>(layout));
+        for (const auto mode : {config::ViewMode::Mono, config::ViewMode::Stereo}) {
+            input.views.assign(config.views.size(), ViewState{mode, 1, {}});
+            for (input.frameNumber = 0; input.frameNumber < repeatsAfter(config); ++input.frameNumber) {
+                const FramePlan plan = planFrame(config, input);
+                if (plan.deadlock.empty()) continue;
+                std::string circle;
+                for (const Index f : plan.deadlock) circle += (circle.empty() ? "\"" : ", \"") + plan.frames[at(f)].name + "\"";
+                if (!said.insert(circle).second) continue;
+                const PlannedFrame& first = plan.frames[at(plan.deadlock.front())];
+                diagnostics.error(config.compounds[at(first.compound)].at, (plan.deadlock.size() == 1 ? "frame " + circle + " waits for itself" : "frames " + circle + " wait for each other") + ": nothing is ever drawn",
+                                  "let one of them be read back before it is needed");
+            }
+        }
+    }
+}
+
+void checkEqualizers(const ResolvedConfig& config, config::Diagnostics& diagnostics) {
+    for (const config::ResolvedCompound& c : config.compounds) {
+        for (const config::Equalizer& e : c.equalizers) {
+            const bool divides = std::holds_alternative<config::LoadEqualizer>(e) || std::holds_alternative<config::TreeEqualizer>(e);
+            const config::SourcePosition place = std::visit([](const auto& one) { return one.at; }, e);
+            if (divides && c.children.size() < 2) diagnostics.warn(place, "this equalizer has nothing to divide: its compound has fewer than two children", "put it into the compound whose children it balances");
+            if (divides && c.destination == kNone) diagnostics.warn(place, "this equalizer stands in a compound without a channel", "put it into the compound that has the destination's channel");
+        }
+    }
+}
+
+void checkDisplays(const ResolvedConfig& config, config::Diagnostics& diagnostics) {
+    std::vector<bool> seen(config.views.size(), false), used(config.layouts.size(), false);
+    for (const config::ResolvedChannel& c : config.channels) {
+        if (c.isDestination()) seen[at(c.view)] = true;
+    }
+    for (const config::ResolvedCanvas& c : config.canvases) {
+        for (const Index l : c.layouts) {
+            if (l != kNone) used[at(l)] = true;
+        }
+    }
+    for (size_t l = 0; l < used.size(); ++l) {
+        if (!used[l]) diagnostics.warn(config.layouts[l].at, "layout " + nameOr(config.layouts[l].name, l) + " is on no canvas and never shown", "name it in a canvas, or remove it");
+    }
+    for (size_t v = 0; v < seen.size(); ++v) {
+        if (!seen[v] && used[at(config.views[v].layout)]) diagnostics.warn(config.views[v].at, "view " + nameOr(config.views[v].name, v) + " falls onto no segment and is never shown", "move its viewport over a segment");
+    }
+}
+
+// Of two channels with one name only the first can be meant.
+void checkNames(const ResolvedConfig& config, config::Diagnostics& diagnostics) {
+    std::set<std::string> names;
+    for (const config::ResolvedChannel& c : config.channels) {
+        if (c.isDestination() || c.name.empty() || names.insert(c.name).second) continue;
+        diagnostics.warn(c.at, "there is a channel \"" + c.name + "\" already, this one can't be named", "give it another name");
+    }
+}
+
+} // namespace
+
+void checkConfig(const ResolvedConfig& config, config::Diagnostics& diagnostics) {
+    checkNames(config, diagnostics);
+    checkDisplays(config, diagnostics);
+    checkEqualizers(config, diagnostics);
+    checkFrames(config, diagnostics);
+    if (config.channels.empty()) diagnostics.warn({}, "there is no channel, so nothing is drawn", "define a node with a pipe, a window and a channel");
+    if (diagnostics.errors() == 0) checkDeadlocks(config, diagnostics);
+}
+
+} // namespace mural::compound

@@ -1,0 +1,156 @@
+// Which picture goes from whom to whom, and where it is put. Frames are linked by their names, within one tree and eye.
+#include <algorithm>
+
+#include "balancer/compound/planner.hpp"
+#include "balancer/compound/tiles.hpp"
+
+namespace mural::compound {
+
+namespace {
+
+size_t at(Index index) { return ResolvedConfig::at(index); }
+
+Index pipeOf(const ResolvedConfig& config, Index channel) { return config.windows[at(config.channels[at(channel)].window)].pipe; }
+
+int32_t scaled(int32_t size, double by) { return std::max(1, static_cast<int32_t>(std::lround(size * by))); }
+
+// A kernel among the pixels of another one; one pixel of each block when they do not fit.
+struct RelativeAxis {
+    int32_t kernel, step;
+};
+RelativeAxis relative(const PixelAxis& of, const PixelAxis& to) {
+    if (of.step % to.step != 0 || (of.kernel - to.kernel) % to.step != 0 || of.kernel < to.kernel) return {0, 1};
+    return {(of.kernel - to.kernel) / to.step, of.step / to.step};
+}
+
+// Where pixel 0 of a picture that begins `offset` pixels into a context goes among the taker's pixels.
+double placeOf(const PixelAxis& giver, int32_t offset, const PixelAxis& taker) {
+    const double destination = giver.origin + giver.scale * giver.step * offset; // of the block that it is in
+    return (destination - taker.origin) / (taker.scale * taker.step);
+}
+
+} // namespace
+
+void Planner::linkFrames(Eye eye) {
+    offers_.clear();
+    outputs_.assign(active_.size(), {});
+    inputs_.assign(active_.size(), {});
+    const size_t first = plan_.frames.size();
+    for (const ActiveCompound& a : active_) {
+        if (a.tasks.has(Task::Readback)) offerFrames(a, eye);
+    }
+    for (const ActiveCompound& a : active_) {
+        if (a.tasks.has(Task::Assemble)) takeFrames(a);
+    }
+    // What nobody takes is not read back.
+    for (auto& outputs : outputs_) {
+        std::erase_if(outputs, [&](Index f) { return plan_.frames[at(f)].consumers.empty(); });
+    }
+    // Screens that only show others' pictures are not cleared for eyes that those have no picture for.
+    for (size_t i = 0; i < active_.size(); ++i) {
+        const bool shows = active_[i].tasks.has(Task::Assemble) && config_.compounds[at(active_[i].compound)].isGenerated;
+        if (shows && inputs_[i].empty()) active_[i].tasks = {};
+    }
+    dropUnused(first);
+}
+
+// Frames without a taker leave the list; what refers to those behind them follows.
+void Planner::dropUnused(size_t first) {
+    std::vector<Index> now(plan_.frames.size() - first, kNone);
+    size_t kept = first;
+    for (size_t f = first; f < plan_.frames.size(); ++f) {
+        if (plan_.frames[f].consumers.empty()) continue;
+        now[f - first] = static_cast<Index>(kept);
+        if (kept != f) plan_.frames[kept] = std::move(plan_.frames[f]);
+        ++kept;
+    }
+    plan_.frames.resize(kept);
+    for (auto& outputs : outputs_) {
+        for (Index& f : outputs) f = now[at(f) - first];
+    }
+    for (auto& inputs : inputs_) {
+        for (FrameUse& use : inputs) use.frame = now[at(use.frame) - first];
+    }
+}
+
+void Planner::offerFrames(const ActiveCompound& active, Eye eye) {
+    const config::ResolvedCompound& c = config_.compounds[at(active.compound)];
+    const Inherited& i = active.inherited;
+    const RenderContext& context = plan_.contexts[at(active.context)];
+    for (const config::ResolvedFrame& f : c.outputFrames) {
+        if (offers_.contains(f.name)) continue; // the first one counts; said when the file is checked
+        PlannedFrame frame;
+        frame.name = f.name;
+        frame.compound = active.compound;
+        frame.channel = i.executing;
+        frame.eye = eye;
+        frame.type = f.type;
+        frame.buffers = f.buffers.value_or(i.buffers);
+        frame.codec = f.codec;
+        frame.exact = f.exact;
+        frame.area = apply(context.viewport, f.viewport);
+        if (frame.area.empty() || frame.buffers.empty()) continue;
+        // What is drawn too large is made smaller before it is sent; textures stay where they are, and as they are.
+        if (f.type == config::FrameType::Memory) {
+            const Zoom wanted = f.zoom.value_or(Zoom{1 / i.zoom.x, 1 / i.zoom.y});
+            frame.zoom = {std::min(1., wanted.x), std::min(1., wanted.y)};
+        }
+        frame.size = {scaled(frame.area.w, frame.zoom.x), scaled(frame.area.h, frame.zoom.y)};
+        frame.range = i.range;
+        frame.pixel = i.pixel;
+        frame.subPixel = i.subPixel;
+        frame.perTile = !c.inputQueues.empty();
+        offers_[f.name] = {activeOf_[at(active.compound)], static_cast<Index>(plan_.frames.size())};
+        outputs_[activeOf_[at(active.compound)]].push_back(static_cast<Index>(plan_.frames.size()));
+        plan_.frames.push_back(std::move(frame));
+    }
+}
+
+void Planner::takeFrames(const ActiveCompound& active) {
+    for (const config::ResolvedFrame& wanted : config_.compounds[at(active.compound)].inputFrames) {
+        const auto offer = offers_.find(wanted.name);
+        if (offer == offers_.end()) continue; // nobody makes it in this frame: it is not waited for
+        PlannedFrame& frame = plan_.frames[at(offer->second.frame)];
+        FrameUse use;
+        use.frame = offer->second.frame;
+        use.codec = wanted.codec != "auto" ? wanted.codec : frame.codec;
+        use.exact = wanted.exact && frame.exact;
+        placeFrame(active, wanted, active_[offer->second.active], frame, use);
+        frame.consumers.push_back(active.inherited.executing);
+        if (pipeOf(config_, frame.channel) != pipeOf(config_, active.inherited.executing)) frame.type = config::FrameType::Memory;
+        inputs_[activeOf_[at(active.compound)]].push_back(std::move(use));
+    }
+}
+
+void Planner::placeFrame(const ActiveCompound& taker, const config::ResolvedFrame& wanted, const ActiveCompound& giver, const PlannedFrame& frame, FrameUse& use) const {
+    const RenderContext& to = plan_.contexts[at(taker.context)];
+    const RenderContext& from = plan_.contexts[at(giver.context)];
+    use.clip = intersect(to.viewport, apply(to.viewport, wanted.viewport));
+    if (giver.inherited.destination != taker.inherited.destination) {
+        // Another screen with the same picture: as large as it is there.
+        use.x = to.viewport.x;
+        use.y = to.viewport.y;
+        use.zoom = wanted.zoom.value_or(Zoom{to.viewport.w / double(frame.size.w), to.viewport.h / double(frame.size.h)});
+        return;
+    }
+    const RelativeAxis x = relative(giver.inherited.x, taker.inherited.x), y = relative(giver.inherited.y, taker.inherited.y);
+    use.kernel = {x.kernel, y.kernel, x.step, y.step};
+    use.x = to.viewport.x + static_cast<int32_t>(std::lround(placeOf(from.x, frame.area.x - from.viewport.x, to.x)));
+    use.y = to.viewport.y + static_cast<int32_t>(std::lround(placeOf(from.y, frame.area.y - from.viewport.y, to.y)));
+    const Zoom own = wanted.zoom ? Zoom{wanted.zoom->x / from.zoom.x, wanted.zoom->y / from.zoom.y} : Zoom{from.x.scale / to.x.scale, from.y.scale / to.y.scale};
+    use.zoom = {own.x / frame.zoom.x, own.y / frame.zoom.y};
+}
+
+void Planner::addQueues() {
+    queues_.clear();
+    for (const ActiveCompound& a : active_) {
+        if (a.context == kNone) continue;
+        for (const config::ResolvedQueue& q : config_.compounds[at(a.compound)].outputQueues) {
+            if (queues_.contains(q.name)) continue;
+            queues_[q.name] = static_cast<Index>(plan_.queues.size());
+            plan_.queues.push_back({q.name, a.context, tilesOf(plan_.contexts[at(a.context)].area, q.size)});
+        }
+    }
+}
+
+} // namespace mural::compound

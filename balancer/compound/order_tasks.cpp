@@ -1,0 +1,128 @@
+// A pipe draws for all of its channels, one task after the other. Each channel's tasks have their order, and assembling
+// waits for the frames that it takes: between that, any order will do in which nothing waits for what comes later.
+#include <algorithm>
+#include <queue>
+
+#include "balancer/compound/planner.hpp"
+
+namespace mural::compound {
+
+namespace {
+
+size_t at(Index index) { return ResolvedConfig::at(index); }
+
+// The tasks of all channels as one list; who must come before whom.
+struct TaskGraph {
+    std::vector<PipeStep> steps;
+    std::vector<std::vector<size_t>> next;
+    std::vector<size_t> missing; // how many come before it and are not done
+    std::vector<size_t> makerOf; // of each frame
+
+    // overlaps: pairs of channels that draw into the same pixels; the first is done before the second begins.
+    TaskGraph(const FramePlan& plan, const std::vector<std::pair<size_t, size_t>>& overlaps) : makerOf(plan.frames.size(), SIZE_MAX) {
+        std::vector<size_t> first(plan.channels.size());
+        for (size_t c = 0; c < plan.channels.size(); ++c) {
+            first[c] = steps.size();
+            for (size_t t = 0; t < plan.channels[c].tasks.size(); ++t) {
+                for (const Index f : plan.channels[c].tasks[t].outputs) makerOf[at(f)] = steps.size();
+                steps.push_back({c, t});
+            }
+        }
+        next.resize(steps.size());
+        missing.resize(steps.size(), 0);
+        for (size_t i = 0; i < steps.size(); ++i) {
+            if (steps[i].task > 0) addEdge(i - 1, i);
+            for (const FrameUse& use : taskOf(plan, i).inputs) {
+                if (makerOf[at(use.frame)] != SIZE_MAX) addEdge(makerOf[at(use.frame)], i);
+            }
+        }
+        for (const auto& [one, other] : overlaps) addEdge(first[one] + plan.channels[one].tasks.size() - 1, first[other]);
+    }
+
+    [[nodiscard]] const PlannedTask& taskOf(const FramePlan& plan, size_t i) const { return plan.channels[steps[i].channel].tasks[steps[i].task]; }
+
+private:
+    void addEdge(size_t from, size_t to) {
+        next[from].push_back(to);
+        ++missing[to];
+    }
+};
+
+// Of what is left when nothing can go on: the frames of one circle.
+std::vector<Index> circleOf(const FramePlan& plan, const TaskGraph& graph, const std::vector<bool>& done) {
+    // From any task that is left, go to one before it that is left, until one comes again.
+    std::vector<size_t> before(graph.steps.size(), SIZE_MAX);
+    for (size_t i = 0; i < graph.steps.size(); ++i) {
+        for (const size_t n : graph.next[i]) {
+            if (!done[i] && !done[n]) before[n] = i;
+        }
+    }
+    size_t one = 0;
+    while (done[one]) ++one;
+    for (size_t i = 0; i < graph.steps.size(); ++i) one = before[one];
+    std::vector<Index> frames;
+    size_t here = one;
+    do {
+        for (const FrameUse& use : graph.taskOf(plan, here).inputs) {
+            if (graph.makerOf[at(use.frame)] == before[here]) {
+                frames.push_back(use.frame);
+                break;
+            }
+        }
+        here = before[here];
+    } while (here != one);
+    return frames;
+}
+
+std::vector<std::pair<size_t, size_t>> overlapsOf(const ResolvedConfig& config, const FramePlan& plan, const DisplaySizes& sizes) {
+    std::vector<std::pair<size_t, size_t>> pairs;
+    const auto channel = [&](size_t c) { return at(plan.channels[c].channel); };
+    for (size_t one = 0; one < plan.channels.size(); ++one) {
+        for (size_t other = one + 1; other < plan.channels.size(); ++other) {
+            if (config.channels[channel(one)].window != config.channels[channel(other)].window) continue;
+            if (!intersect(sizes.channels[channel(one)], sizes.channels[channel(other)]).empty()) pairs.emplace_back(one, other);
+        }
+    }
+    return pairs;
+}
+
+// False when there is no order; then `circle` holds the frames that wait for each other.
+bool order(const ResolvedConfig& config, FramePlan& plan, const std::vector<std::pair<size_t, size_t>>& overlaps, std::vector<Index>& circle) {
+    TaskGraph graph(plan, overlaps);
+    // The earliest of those that can go.
+    std::priority_queue<size_t, std::vector<size_t>, std::greater<>> ready;
+    std::vector<bool> done(graph.steps.size(), false);
+    for (size_t i = 0; i < graph.steps.size(); ++i) {
+        if (graph.missing[i] == 0) ready.push(i);
+    }
+    plan.pipes.assign(config.pipes.size(), {});
+    size_t count = 0;
+    while (!ready.empty()) {
+        const size_t i = ready.top();
+        ready.pop();
+        done[i] = true;
+        ++count;
+        const Index channel = plan.channels[graph.steps[i].channel].channel;
+        plan.pipes[at(config.windows[at(config.channels[at(channel)].window)].pipe)].push_back(graph.steps[i]);
+        for (const size_t n : graph.next[i]) {
+            if (--graph.missing[n] == 0) ready.push(n);
+        }
+    }
+    if (count == graph.steps.size()) return true;
+    plan.pipes.clear();
+    circle = circleOf(plan, graph, done);
+    return false;
+}
+
+} // namespace
+
+void orderTasks(const ResolvedConfig& config, const DisplaySizes& sizes, FramePlan& plan) {
+    // Channels that the file names stand before the destination channels that show their window.
+    std::sort(plan.channels.begin(), plan.channels.end(), [](const ChannelPlan& a, const ChannelPlan& b) { return a.channel < b.channel; });
+    std::vector<Index> circle;
+    if (order(config, plan, overlapsOf(config, plan, sizes), circle)) return;
+    plan.interleaved = order(config, plan, {}, circle);
+    if (!plan.interleaved) plan.deadlock = circle;
+}
+
+} // namespace mural::compound
