@@ -5,6 +5,7 @@
 #include <set>
 
 #include "balancer/compound/check_frames.hpp"
+#include "balancer/compound/even_split.hpp"
 #include "balancer/compound/plan_frame.hpp"
 
 namespace mural::compound {

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <set>
 
+#include "balancer/compound/even_split.hpp"
 #include "balancer/compound/inheritance.hpp"
 
 namespace mural::compound {

@@ -41,11 +41,4 @@ struct FrameInput {
     double farPlane = 100;
 };
 
-// With everything as the file has it.
-inline FrameInput firstFrame(const ResolvedConfig& config) {
-    FrameInput input;
-    input.sizes = displaySizes(config);
-    return input;
-}
-
 } // namespace mural::compound

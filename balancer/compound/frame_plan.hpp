@@ -44,7 +44,8 @@ struct PlannedTask {
     Task kind = Task::Clear;
     Index context = kNone;          // in FramePlan::contexts
     std::vector<Index> outputs;     // of Readback: in FramePlan::frames
-    std::vector<FrameUse> inputs;   // of Assemble
+    // Of Assemble. When one of them was read back from this channel, it stands for what is there: that is replaced.
+    std::vector<FrameUse> inputs;
     Index queue = kNone;            // of Draw: takes its work from it; in FramePlan::queues
 };
 

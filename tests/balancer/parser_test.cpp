@@ -117,7 +117,7 @@ TEST(Parser, loadBalancersOfEarlyReleases) {
     Parsed p = inCompound("loadBalancer { mode DB damping .3 boundary .01 }");
     EXPECT_EQ(std::get<LoadEqualizer>(compoundOf(p).equalizers.at(0)).mode, SplitMode::Db);
     EXPECT_EQ(std::get<LoadEqualizer>(compoundOf(p).equalizers.at(0)).damping, .3);
-    EXPECT_EQ(p.lines.at(0), "f:1:31: loadBalancer is called load_equalizer today; write load_equalizer");
+    EXPECT_EQ(p.lines.at(0), "f:1:30: loadBalancer is called load_equalizer today; write load_equalizer");
     EXPECT_TRUE(std::holds_alternative<FramerateEqualizer>(compoundOf(inCompound("loadBalancer { mode DPLEX }")).equalizers.at(0)));
     EXPECT_EQ(std::get<DfrEqualizer>(compoundOf(inCompound("loadBalancer { mode DFR framerate 20 }")).equalizers.at(0)).frameRate, 20);
     for (const char* mode : {"MONITOR", "DDS"}) {
@@ -143,7 +143,7 @@ TEST(Parser, resourcesOfEarlyReleases) {
     EXPECT_EQ(windowOf(p).attributes.hintStereo, value::kOn);
     EXPECT_EQ(windowOf(p).attributes.hintFullscreen, value::kOff);
     EXPECT_EQ(windowOf(p).attributes.planesStencil, 8);
-    EXPECT_EQ(p.lines.size(), 13u);
+    EXPECT_EQ(p.lines.size(), 14u);
 }
 
 TEST(Parser, otherWordsOfEarlyReleases) {

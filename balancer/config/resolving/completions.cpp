@@ -68,6 +68,14 @@ void useShownChannels(Resolver& r) {
         }
     }
     linkChannels(config);
+    // Below, the same name means the picture that is being made, when it fills the channel: what is drawn there is part of it.
+    for (ResolvedCompound& c : config.compounds) {
+        if (c.channel == kNone || c.channel == c.destination || config.channels[Resolver::at(c.channel)].isDestination()) continue;
+        const ResolvedChannel& shown = config.channels[Resolver::at(c.destination)];
+        if (!shown.isDestination() || config.segments[Resolver::at(shown.segment)].channel != c.channel) continue;
+        if (shown.viewport == config.channels[Resolver::at(c.channel)].viewport) c.channel = c.destination;
+    }
+    linkChannels(config);
 }
 
 void addOutputCompounds(Resolver& r) {

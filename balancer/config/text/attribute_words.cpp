@@ -28,8 +28,8 @@ const AttributeWord* findAttributeWord(std::string_view word) {
 }
 
 std::string attributeText(int32_t value, AttributeKind kind) {
-    if (value > kOff && kind == AttributeKind::Affinity) return "CORE " + std::to_string(value - kCore);
-    if (value < -1000 && kind == AttributeKind::Affinity && value >= kSocket) return "SOCKET " + std::to_string(value - kSocket);
+    if (value > kOff && value - kCore <= kMostCores && kind == AttributeKind::Affinity) return "CORE " + std::to_string(value - kCore);
+    if (value >= kSocket && value - kSocket <= kMostCores && kind == AttributeKind::Affinity) return "SOCKET " + std::to_string(value - kSocket);
     if (value == kFastest && kind == AttributeKind::Statistics) return "FASTEST";
     if (value < 0 || kind != AttributeKind::Number) {
         for (const AttributeWord& w : kWords) {

@@ -15,6 +15,9 @@ struct AttributeWord {
     bool old = false;         // understood, and written in another way
 };
 
+// The numbers of SOCKET and CORE; above, they would be other attribute values.
+inline constexpr int32_t kMostCores = 60'000;
+
 // Null when nothing is called so.
 const AttributeWord* findAttributeWord(std::string_view word);
 

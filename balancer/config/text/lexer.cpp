@@ -18,7 +18,7 @@ public:
 
     TokenList run() {
         if (text_.starts_with("\xef\xbb\xbf")) at_ = 3; // byte order mark
-        while (at_ < text_.size() && !stopped_) step();
+        while (at_ < text_.size() && !list_.failed) step();
         trimHeading();
         list_.tokens.push_back({TokenKind::End, text_.substr(text_.size()), here()});
         return std::move(list_);
@@ -93,7 +93,7 @@ private:
         const size_t end = text_.find_first_of("\"\n", from);
         if (end == std::string_view::npos || text_[end] == '\n') {
             diagnostics_.error(at, "this text has no end", "close it with \" on the same line");
-            stopped_ = true;
+            list_.failed = true;
             return;
         }
         add(TokenKind::String, from, end - from, at);
@@ -170,7 +170,6 @@ private:
     size_t at_ = 0;
     size_t lineStart_ = 0;
     int32_t line_ = 1;
-    bool stopped_ = false;
 };
 
 } // namespace

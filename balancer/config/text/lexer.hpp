@@ -31,9 +31,10 @@ struct TokenList {
     double version = 0; // of the header line "#Equalizer 1.2 ascii"; 0 without one
     std::vector<std::string> heading; // comments before the first token
     std::vector<Token> tokens;        // the last one is End
+    bool failed = false;              // a text has no end: the tokens stop there
 };
 
-// The tokens point into `text`. After an error (a string without end) the list stops there.
+// The tokens point into `text`.
 TokenList tokenize(std::string_view text, Diagnostics& diagnostics);
 
 } // namespace mural::config

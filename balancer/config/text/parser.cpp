@@ -102,7 +102,7 @@ private:
 
 ConfigFile parseConfig(std::string_view text, Diagnostics& diagnostics) {
     const TokenList list = tokenize(text, diagnostics);
-    if (diagnostics.errors() > 0 && list.tokens.size() == 1) return {};
+    if (list.failed) return {};
     return Parser(list, diagnostics).run();
 }
 

@@ -1,0 +1,178 @@
+// Carries out a plan without drawing: each pixel holds what was drawn into it, and for which pixel of the destination.
+// At the end every pixel that is shown must have been drawn for itself, all of its range and every subpixel once.
+#pragma once
+
+#include <algorithm>
+#include <map>
+#include <string>
+
+#include "balancer/compound/frame_plan.hpp"
+#include "balancer/compound/tiles.hpp"
+
+namespace mural::compound::testing {
+
+// One thing that is in a pixel.
+struct Share {
+    int32_t x, y; // of the destination that it was drawn for, from its corner
+    Range range;
+    SubPixel sample;
+    Index destination;
+};
+using Pixel = std::vector<Share>;
+
+struct Picture {
+    std::map<std::pair<int32_t, int32_t>, Pixel> pixels;
+};
+
+class SymbolicWall {
+public:
+    SymbolicWall(const ResolvedConfig& config, const FrameInput& input, const FramePlan& plan) : config_(config), input_(input), plan_(plan) {}
+
+    // What is wrong, empty when everything was drawn once.
+    std::string run() {
+        if (!plan_.deadlock.empty()) return "deadlock";
+        frames_.resize(plan_.frames.size());
+        ready_.assign(plan_.frames.size(), false);
+        std::vector<size_t> next(plan_.pipes.size(), 0);
+        for (bool moved = true; moved;) {
+            moved = false;
+            for (size_t p = 0; p < next.size(); ++p) {
+                while (next[p] < plan_.pipes[p].size() && perform(plan_.pipes[p][next[p]])) {
+                    ++next[p];
+                    moved = true;
+                }
+            }
+        }
+        if (!fault_.empty()) return fault_;
+        for (size_t p = 0; p < next.size(); ++p) {
+            if (next[p] < plan_.pipes[p].size()) return "pipe " + std::to_string(p) + " stands still at its task " + std::to_string(next[p]);
+        }
+        return {};
+    }
+
+private:
+    using Pixels = std::map<std::pair<int32_t, int32_t>, Pixel>;
+
+    // A buffer for each window and eye; interleaved channels have their own.
+    Pixels& pixelsOf(const RenderContext& c) {
+        const Index window = config_.channels[ResolvedConfig::at(c.channel)].window;
+        return buffers_[{plan_.interleaved ? c.channel + 100'000 : window, c.eye}];
+    }
+
+    bool perform(const PipeStep& step) {
+        const PlannedTask& task = plan_.channels[step.channel].tasks[step.task];
+        const RenderContext& c = plan_.contexts[ResolvedConfig::at(task.context)];
+        for (const FrameUse& use : task.inputs) {
+            if (!ready_[ResolvedConfig::at(use.frame)]) return false;
+        }
+        switch (task.kind) {
+        case Task::Clear: clear(c); break;
+        case Task::Draw: draw(task, c); break;
+        case Task::Assemble:
+            for (const FrameUse& use : task.inputs) {
+                if (plan_.frames[ResolvedConfig::at(use.frame)].channel == c.channel) assemble(c, use, true);
+            }
+            for (const FrameUse& use : task.inputs) assemble(c, use, false);
+            break;
+        case Task::Readback:
+            for (const Index f : task.outputs) readBack(c, f);
+            break;
+        }
+        if (step.task + 1 == plan_.channels[step.channel].tasks.size() && fault_.empty()) check(plan_.channels[step.channel]);
+        return true;
+    }
+
+    void clear(const RenderContext& c) {
+        for (int32_t y = c.viewport.y; y < c.viewport.top(); ++y) {
+            for (int32_t x = c.viewport.x; x < c.viewport.right(); ++x) pixelsOf(c)[{x, y}].clear();
+        }
+    }
+
+    static int32_t pixelOf(const PixelAxis& axis, int32_t i) { return static_cast<int32_t>(std::lround(axis.origin + axis.scale * (axis.kernel + i * axis.step))); }
+
+    void drawInto(Pixels& pixels, const RenderContext& c, int32_t toX, int32_t toY) {
+        for (int32_t y = 0; y < c.viewport.h; ++y) {
+            for (int32_t x = 0; x < c.viewport.w; ++x) pixels[{toX + x, toY + y}].push_back({pixelOf(c.x, x), pixelOf(c.y, y), c.range, c.subPixel, c.destination});
+        }
+    }
+
+    // Tiles are drawn, handed over and put together one by one: here all by the first who asks, each at its place.
+    void draw(const PlannedTask& task, const RenderContext& c) {
+        if (task.queue == kNone) return drawInto(pixelsOf(c), c, c.viewport.x, c.viewport.y);
+        const PlannedQueue& queue = plan_.queues[ResolvedConfig::at(task.queue)];
+        if (!takenQueues_.insert({task.queue, true}).second) return;
+        const RenderContext& divided = plan_.contexts[ResolvedConfig::at(queue.context)];
+        for (const PlannedTile& tile : queue.tiles) {
+            const RenderContext one = contextOfTile(c, divided, tile);
+            drawInto(pixelsOf(c), one, c.viewport.x + tile.area.x - divided.area.x, c.viewport.y + tile.area.y - divided.area.y);
+        }
+    }
+
+    void readBack(const RenderContext& c, Index f) {
+        const PixelViewport& area = plan_.frames[ResolvedConfig::at(f)].area;
+        auto& picture = frames_[ResolvedConfig::at(f)];
+        for (int32_t y = 0; y < area.h; ++y) {
+            for (int32_t x = 0; x < area.w; ++x) picture[{x, y}] = pixelsOf(c)[{area.x + x, area.y + y}];
+        }
+        ready_[ResolvedConfig::at(f)] = true;
+    }
+
+    // Whole pictures replace what was there; parts of the range and samples are joined with it.
+    // removes: only takes away what is there, since it is in the picture.
+    void assemble(const RenderContext& c, const FrameUse& use, bool removes) {
+        const PlannedFrame& frame = plan_.frames[ResolvedConfig::at(use.frame)];
+        const bool replaces = !frame.buffers.has(config::Buffer::Depth) && frame.range.full() && frame.subPixel.whole();
+        for (const auto& [at, pixel] : frames_[ResolvedConfig::at(use.frame)]) {
+            const int32_t x = use.x + use.kernel.x + use.kernel.w * at.first, y = use.y + use.kernel.y + use.kernel.h * at.second;
+            if (x < use.clip.x || y < use.clip.y || x >= use.clip.right() || y >= use.clip.top()) continue;
+            Pixel& to = pixelsOf(c)[{x, y}];
+            if (frame.perTile && pixel.empty()) continue; // somebody else has taken that tile
+            if (replaces || removes) to.clear();
+            if (!removes) to.insert(to.end(), pixel.begin(), pixel.end());
+        }
+    }
+
+    // A destination that is done must be whole, in each eye that it was drawn for.
+    void check(const ChannelPlan& done) {
+        const PixelViewport& channel = input_.sizes.channels[ResolvedConfig::at(done.channel)];
+        for (const Eye eye : kEyes) {
+            const auto drawn = std::find_if(plan_.contexts.begin(), plan_.contexts.end(), [&](const RenderContext& c) { return c.channel == done.channel && c.destination == done.channel && c.view != kNone && c.eye == eye; });
+            if (drawn == plan_.contexts.end()) continue;
+            for (int32_t i = 0; i < channel.w * channel.h && fault_.empty(); ++i) {
+                const int32_t x = i % channel.w, y = i / channel.w;
+                const std::string wrong = faultOf(pixelsOf(*drawn)[{channel.x + x, channel.y + y}], x, y, done.channel);
+                if (!wrong.empty()) fault_ = "channel " + config_.channels[ResolvedConfig::at(done.channel)].name + " eye " + nameOf(eye) + " pixel " + std::to_string(x) + " " + std::to_string(y) + ": " + wrong;
+            }
+        }
+    }
+
+    static std::string faultOf(Pixel pixel, int32_t x, int32_t y, Index destination) {
+        if (pixel.empty()) return "nothing was drawn";
+        std::sort(pixel.begin(), pixel.end(), [](const Share& a, const Share& b) { return std::pair(a.sample.index, a.range.start) < std::pair(b.sample.index, b.range.start); });
+        int32_t samples = 0;
+        for (size_t i = 0; i < pixel.size(); ++samples) {
+            double end = 0;
+            const size_t first = i;
+            for (; i < pixel.size() && pixel[i].sample == pixel[first].sample; ++i) {
+                const Share& s = pixel[i];
+                if (s.destination == destination && (s.x != x || s.y != y)) return "drawn for pixel " + std::to_string(s.x) + " " + std::to_string(s.y);
+                if (std::abs(s.range.start - end) > 1e-9) return "the range " + std::to_string(end) + " is followed by " + std::to_string(s.range.start);
+                end = s.range.end;
+            }
+            if (std::abs(end - 1) > 1e-9) return "the range ends at " + std::to_string(end);
+            if (pixel[first].sample.index != samples) return "sample " + std::to_string(samples) + " is missing";
+        }
+        return samples == pixel.front().sample.size ? "" : std::to_string(samples) + " samples of " + std::to_string(pixel.front().sample.size);
+    }
+
+    const ResolvedConfig& config_;
+    const FrameInput& input_;
+    const FramePlan& plan_;
+    std::map<std::pair<Index, Eye>, Pixels> buffers_;
+    std::vector<Pixels> frames_;
+    std::vector<bool> ready_;
+    std::map<Index, bool> takenQueues_;
+    std::string fault_;
+};
+
+} // namespace mural::compound::testing
