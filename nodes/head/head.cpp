@@ -1,3 +1,4 @@
+#include "nodes/head/config_plan.hpp"
 #include "nodes/head/head.hpp"
 
 #include <csignal>
@@ -71,12 +72,21 @@ Result<void> addOutputs(const SessionConfig& config, ControlChannel& control, He
     return {};
 }
 
+Result<SessionPlan> makePlan(const SessionConfig& config, const std::string& host) {
+    if (config.configFile.empty()) return planSession(config, host);
+    const auto loaded = compound::loadConfig(config.configFile, compound::processEnvironment);
+    if (!loaded.ok()) return Error{loaded.diagnostics.firstError()};
+    return planOf(loaded, {host, config.here, config.layouts});
+}
+
 Result<int> runSession(ControlChannel& control) {
     auto config = receiveConfig(control);
     if (!config) return config.error();
     char host[256] = "localhost";
     gethostname(host, sizeof(host) - 1);
-    SessionPlan plan = planSession(*config, host);
+    auto planned = makePlan(*config, host);
+    if (!planned) return planned.error();
+    SessionPlan plan = std::move(*planned);
     HeadOptions options;
     options.registryDigest = registryDigest();
     options.interrupted = [] { return asked != 0; };

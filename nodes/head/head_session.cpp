@@ -5,7 +5,6 @@
 #include <poll.h>
 #include <thread>
 
-#include "nodes/head/pass_composition.hpp"
 #include "nodes/placement/placement.hpp"
 #include "nodes/session/session_secret.hpp"
 
@@ -39,9 +38,9 @@ std::vector<int> picturesOf(const SessionPlan& plan) {
     return pictures;
 }
 
-PictureAssembler::Compose composeBy(const PassCounts& counts) {
-    if (picturesOf(counts) == 1) return {};
-    return [counts](const std::vector<Picture>& passes, OwnedPicture& into) { composePasses(counts, passes, into); };
+PictureAssembler::Compose composeBy(const WallComposition& wall) {
+    if (picturesOf(wall) == 1) return {};
+    return [wall](const std::vector<Picture>& passes, OwnedPicture& into) { composeWall(wall, passes, into); };
 }
 
 bool wantsPictures(const SessionConfig& config) {
@@ -70,7 +69,7 @@ HeadSession::HeadSession(SessionConfig config,
                    if (serving_) programs_->reply(client, std::move(reply));
                })
     , pictures_(picturesOf(plan_),
-                composeBy(config_.passes),
+                composeBy(plan_.wall),
                 [this](WindowPicture picture) {
                     frames_.pictureHeld(picture.client, picture.frame);
                     output_->add(std::move(picture));
@@ -124,7 +123,7 @@ Result<void> HeadSession::bringUp() {
     placement_ = placeOwnThreads(); // before its threads start: they inherit it
     nodes_.startReading();
     openMulticast();
-    if (config_.passes.ranges > 1) {
+    if (std::ranges::any_of(plan_.nodes, [](const NodePlan& n) { return n.pass.ranges > 1; })) {
         const auto secret = makeSessionSecret();
         if (!secret) return secret.error();
         exchangeSecret_ = toHex(secret.value());

@@ -10,11 +10,6 @@ namespace {
 
 constexpr int kMostLocalByDefault = 4;
 
-NodeReach reachOf(const std::string& host, const std::string& ownHost) {
-    const bool here = host == "localhost" || host == "127.0.0.1" || host == ownHost;
-    return here ? NodeReach::Tcp : NodeReach::LaunchCommand;
-}
-
 std::string countOf(int count, const char* one) {
     return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
 }
@@ -33,6 +28,11 @@ int nodesOfPass(int nodes, int passes, int pass) { return nodes / passes + (pass
 
 } // namespace
 
+NodeReach reachOf(const std::string& host, const std::string& ownHost) {
+    const bool here = host == "localhost" || host == "127.0.0.1" || host == ownHost;
+    return here ? NodeReach::Tcp : NodeReach::LaunchCommand;
+}
+
 SessionPlan planSession(const SessionConfig& config, const std::string& ownHost) {
     const int tiles = config.columns * config.rows;
     const int ranges = config.passes.ranges;
@@ -45,6 +45,7 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
     const int count = std::min(wanted, tiles * passCount * ranges);
 
     SessionPlan plan;
+    plan.wall = compositionOf(config.passes);
     for (int p = 0; p < passCount; ++p) {
         for (const TileRegion& region : splitGrid(config.columns, config.rows, std::max(1, nodesOfPass(count / ranges, passCount, p)))) {
             const auto collector = static_cast<int>(plan.nodes.size());
@@ -56,6 +57,7 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
                 node.pass.range = range;
                 node.pass.share = {static_cast<double>(range) / ranges, static_cast<double>(range + 1) / ranges};
                 node.picture = pictureOf(config.passes, node.pass);
+                node.answers = node.picture == 0 && range == 0;
                 node.region = region;
                 node.collector = collector;
                 const int place = node.node % asked; // more passes than nodes were given: several on each machine
@@ -91,7 +93,7 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
     setup.area = node.area.value_or(Viewport{});
     setup.pass = node.pass;
     setup.collector = node.collector;
-    setup.answers = node.picture == 0 && node.pass.range == 0;
+    setup.answers = node.answers;
     setup.eyeBase = config.eyeBase;
     setup.focusDistance = config.focusDistance;
     setup.tiling = config.tiling;

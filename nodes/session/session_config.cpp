@@ -46,6 +46,9 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("launchCommand", c.launchCommand);
     visit("stream", c.stream);
     visit("remoteMural", c.remoteMural);
+    visit("configFile", c.configFile);
+    visit("here", c.here);
+    visit("layouts", c.layouts);
     visit("stereo", c.passes.stereo);
     visit("kernelWidth", c.passes.kernelWidth, 1);
     visit("kernelHeight", c.passes.kernelHeight, 1);

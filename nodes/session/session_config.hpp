@@ -25,6 +25,9 @@ struct SessionConfig {
     std::string launchCommand = "ssh -o BatchMode=yes"; // --launch: prefix that runs a command on a host
     std::string stream = "auto";  // --stream: how it travels to other machines: auto, tcp, rsp://…
     std::string remoteMural;      // --remote-mural: path of mural on the hosts; empty: this one's path
+    std::string configFile;       // --config; empty: what follows says it
+    bool here = false;            // --here: all its nodes on this machine
+    std::vector<std::string> layouts; // --layout: of its canvases
     PassCounts passes;            // --stereo, --pixel, --subpixel, --dplex, --db
     double eyeBase = 0.05;        // --eye-base: distance of the eyes, in the program's units
     double focusDistance = 1;     // --focus: where both eyes see the same, in the program's units

@@ -107,6 +107,7 @@ int runCommand(const RunOptions& options) {
 
     run.headCommand = {launch::ownBinary(), "head"};
     Console console(options.quiet);
+    for (const std::string& notice : options.notices) console.say(notice);
     return options.native ? runNative(run, console) : runSession(run, console);
 }
 

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "nodes/head/config_plan.hpp"
 #include "nodes/launch/private_display.hpp"
 #include "transport/connection_description.hpp"
 #include "transport/rsp/group_description.hpp"
@@ -31,6 +32,7 @@ constexpr const char* kFooter = R"(Examples:
   mural run --size 7680x4320 --out wall.mp4 -- app       the program sees a screen of that size
   mural run --subpixel 4 -- glxgears                     each pixel is the mean of 4 samples, one node for each
   mural run --stereo anaglyph --eye-base 1 --focus 40 -- glxgears
+  mural run --config wall.eqc -- app                     wall, nodes and compounds by a file
   mural run --native --frames 500 -- glxgears            without Mural, for comparison
 
 Exit status: the program's own; 128 + n when signal n ended it; 0 when --frames ended it.
@@ -219,6 +221,45 @@ Result<void> readPasses(const RunArguments& a, SessionConfig& c) {
     return {};
 }
 
+// Wall and nodes are the file's; what options say beside it would contradict it.
+Result<void> readConfigFile(const RunArguments& a, RunOptions& options) {
+    SessionConfig& c = options.config;
+    if (!a.config) {
+        if (!a.layouts.empty() || a.here) return Error{std::string(a.here ? "--here" : "--layout") + " is for a configuration file; add --config FILE"};
+        return {};
+    }
+    const std::pair<const char*, bool> contradicting[] = {{"--tiles", a.tiles.has_value()}, {"--nodes", a.nodes.has_value()}, {"--local-nodes", a.localNodes.has_value()}, {"--stereo", a.stereo.has_value()},
+                                                          {"--pixel", a.pixel.has_value()}, {"--subpixel", a.subpixel.has_value()}, {"--dplex", a.dplex.has_value()}, {"--db", a.db.has_value()}};
+    for (const auto& [option, given] : contradicting)
+        if (given) return Error{fmt::format("{} and --config both say who draws what; leave one of them out", option)};
+    if (c.tiling == Tiling::Lean) return Error{"--tiling lean does not go with --config; leave it out"};
+    const auto loaded = compound::loadConfig(*a.config, compound::processEnvironment);
+    for (const config::Diagnostic& d : loaded.diagnostics.all())
+        if (d.severity == config::Severity::Warning) options.notices.push_back(loaded.diagnostics.text(d));
+    if (!loaded.ok()) return Error{loaded.diagnostics.firstError() + (loaded.diagnostics.errors() > 1 ? fmt::format(" (and {} more: mural config check {})", loaded.diagnostics.errors() - 1, *a.config) : "")};
+    const ConfigWishes wishes{"", a.here, a.layouts};
+    auto plan = planOf(loaded, wishes);
+    if (!plan) return plan.error();
+    std::error_code failed;
+    c.configFile = std::filesystem::absolute(*a.config, failed).string();
+    c.here = a.here;
+    c.layouts = a.layouts;
+    const int processes = static_cast<int>(plan->nodes.size());
+    if (processes > kMaxNodes) return Error{fmt::format("{}: {} render nodes; at most {} can run", *a.config, processes, kMaxNodes)};
+    for (const NodePlan& node : plan->nodes)
+        if (node.reach == NodeReach::LaunchCommand) c.hosts.push_back(node.where);
+    int turns = 1;
+    for (const NodePlan& node : plan->nodes) turns = std::max(turns, node.pass.period);
+    if (!a.latency) c.latency = std::max({1, turns, std::min(static_cast<int>(loaded.resolved.latency), kMaxLatency)});
+    if (a.size || a.tiles) return {};
+    const compound::PixelSize wall = wallSizeOf(loaded, wishes);
+    if (wall.w > launch::kMaxScreenSize || wall.h > launch::kMaxScreenSize || wall.w < 1 || wall.h < 1)
+        return Error{fmt::format("{}: its wall has {}x{} pixels, a screen has at most {} in each direction; give a smaller one by --size WxH", *a.config, wall.w, wall.h, launch::kMaxScreenSize)};
+    c.width = wall.w;
+    c.height = wall.h;
+    return {};
+}
+
 Result<void> readOutput(const RunArguments& a, SessionConfig& c) {
     if (a.out && a.out->empty()) return badValue("--out", "", "must be a folder or a video file, such as --out shots");
     c.out = a.out.value_or("");
@@ -258,6 +299,9 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
     command.add_option("--frames", a.frames, "end the program after this many frames; no later one is saved")->type_name("N");
     command.add_option("--out", a.out, "write pictures into this folder (PNG), or a video (.mp4, .mkv, .webm, …)")->type_name("DIR|VIDEO");
     command.add_option("--save", a.save, "write only these frames, counted from 1")->type_name("1,30,90");
+    command.add_option("--config", a.config, "wall, nodes and compounds by a configuration file (.eqc)")->type_name("FILE");
+    command.add_option("--layout", a.layouts, "show this layout of the file's canvases; may be given for each")->type_name("NAME")->take_all();
+    command.add_flag("--here", a.here, "run all nodes of the file on this machine");
     command.add_option("--stereo", a.stereo, "two eyes from a program that knows one: anaglyph, side-by-side, top-bottom, or left, right alone (off)")->type_name("MODE");
     command.add_option("--eye-base", a.eyeBase, "distance of the eyes, in the program's units (0.05)")->type_name("D");
     command.add_option("--focus", a.focus, "distance at which both eyes see the same, in the program's units (1)")->type_name("D");
@@ -296,6 +340,7 @@ Result<RunOptions> runOptionsFrom(const RunArguments& a) {
     c.latency = static_cast<int>(latency);
     if (auto r = readPasses(a, c); !r) return r.error();
     if (auto r = readNodes(a, c); !r) return r.error();
+    if (auto r = readConfigFile(a, options); !r) return r.error();
     int64_t verify = 0;
     if (auto r = readNumber("--verify", a.verify.empty() ? RunArguments::Text() : a.verify, 1, INT32_MAX, verify); !r) return r.error();
     c.verifyEvery = static_cast<int>(verify);

@@ -1,4 +1,4 @@
-#include "nodes/head/pass_composition.hpp"
+#include "nodes/head/wall_composition.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -76,29 +76,69 @@ void topBottom(const Picture& left, const Picture& right, OwnedPicture& into) {
     halveInto(into, left, 0, left.height - half, left.width, half, false);
 }
 
+// One eye's picture of a part: samples averaged, kernels interleaved.
+void composeEye(const PassCounts& counts, std::span<const Picture> pictures, OwnedPicture& into) {
+    std::vector<OwnedPicture> parts(static_cast<size_t>(counts.kernelWidth * counts.kernelHeight));
+    const auto samples = static_cast<size_t>(counts.samples);
+    for (size_t i = 0; i < parts.size(); ++i) average(pictures.subspan(i * samples, samples), parts[i]);
+    if (parts.size() == 1) into = std::move(parts.front());
+    else interleave(counts, parts, into);
+}
+
+bool isEmpty(const Picture& p) { return p.empty(); }
+
 } // namespace
 
-void composePasses(const PassCounts& counts, const std::vector<Picture>& passes, OwnedPicture& into) {
-    into.resize(0, 0);
-    const bool empty = std::any_of(passes.begin(), passes.end(), [](const Picture& p) { return p.empty(); });
-    if (empty || passes.size() != static_cast<size_t>(picturesOf(counts))) return;
-    const auto kernels = static_cast<size_t>(counts.kernelWidth * counts.kernelHeight);
-    const size_t eyes = eyesOf(counts.stereo).size();
-    std::vector<OwnedPicture> eyePictures(eyes);
-    size_t at = 0;
-    for (OwnedPicture& eye : eyePictures) {
-        std::vector<OwnedPicture> parts(kernels);
-        for (OwnedPicture& part : parts) {
-            average(std::span(passes).subspan(at, static_cast<size_t>(counts.samples)), part);
-            at += static_cast<size_t>(counts.samples);
-        }
-        if (kernels == 1) eye = std::move(parts.front());
-        else interleave(counts, parts, eye);
+WallComposition compositionOf(const PassCounts& counts) {
+    WallComposition wall;
+    wall.stereo = counts.stereo;
+    WallPart part;
+    part.counts = counts;
+    part.counts.stereo = StereoMode::Off;
+    for (const Eye eye : eyesOf(counts.stereo)) {
+        part.eye = eye;
+        wall.parts.push_back(part);
+        part.firstPicture += picturesOf(part.counts);
     }
-    if (eyes == 1) into = std::move(eyePictures.front());
-    else if (counts.stereo == StereoMode::Anaglyph) anaglyph(eyePictures[0].view(), eyePictures[1].view(), into);
-    else if (counts.stereo == StereoMode::TopBottom) topBottom(eyePictures[0].view(), eyePictures[1].view(), into);
-    else sideBySide(eyePictures[0].view(), eyePictures[1].view(), into);
+    return wall;
+}
+
+int picturesOf(const WallComposition& wall) {
+    int pictures = 0;
+    for (const WallPart& part : wall.parts) pictures = std::max(pictures, part.firstPicture + picturesOf(part.counts));
+    return pictures;
+}
+
+void composeWall(const WallComposition& wall, const std::vector<Picture>& pictures, OwnedPicture& into) {
+    into.resize(0, 0);
+    OwnedPicture eyes[2]; // of the left (or only) and the right one
+    const bool two = std::any_of(wall.parts.begin(), wall.parts.end(), [](const WallPart& p) { return p.eye == Eye::Left; }) &&
+                     std::any_of(wall.parts.begin(), wall.parts.end(), [](const WallPart& p) { return p.eye == Eye::Right; });
+    for (const WallPart& part : wall.parts) {
+        const auto first = static_cast<size_t>(part.firstPicture);
+        const auto count = static_cast<size_t>(picturesOf(part.counts));
+        if (first + count > pictures.size()) continue;
+        const std::span own = std::span(pictures).subspan(first, count);
+        if (std::any_of(own.begin(), own.end(), isEmpty)) continue;
+        OwnedPicture whole;
+        composeEye(part.counts, own, whole);
+        const PixelViewport all{0, 0, whole.width(), whole.height()};
+        const PixelViewport area = intersect(apply(all, part.area), all);
+        const OwnedPicture cut = area == all ? std::move(whole) : cutOut(whole.view(), area);
+        for (int eye = 0; eye < (two ? 2 : 1); ++eye) {
+            if (two && part.eye == (eye == 0 ? Eye::Right : Eye::Left)) continue;
+            OwnedPicture& target = eyes[eye];
+            if (target.width() != all.w || target.height() != all.h) {
+                target.resize(all.w, all.h);
+                std::memset(target.data(), 0, target.view().sizeBytes());
+            }
+            copyInto(target, area.x, area.y, cut.view());
+        }
+    }
+    if (!two || eyes[0].width() != eyes[1].width() || eyes[0].height() != eyes[1].height()) into = std::move(eyes[0]);
+    else if (wall.stereo == StereoMode::SideBySide) sideBySide(eyes[0].view(), eyes[1].view(), into);
+    else if (wall.stereo == StereoMode::TopBottom) topBottom(eyes[0].view(), eyes[1].view(), into);
+    else anaglyph(eyes[0].view(), eyes[1].view(), into);
 }
 
 } // namespace mural

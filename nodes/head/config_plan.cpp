@@ -1,0 +1,257 @@
+#include "nodes/head/config_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+#include <tuple>
+
+#include "balancer/compound/even_split.hpp"
+#include "balancer/compound/plan_frame.hpp"
+
+namespace mural {
+
+namespace {
+
+using compound::FrameInput;
+using compound::FramePlan;
+using compound::LoadedConfig;
+using compound::RenderContext;
+using config::Index;
+using config::kNone;
+using config::ResolvedConfig;
+
+constexpr uint32_t kMostTurns = 64; // of periods that have no common end
+
+size_t at(Index index) { return ResolvedConfig::at(index); }
+
+// One draw of the compound tree.
+struct Draw {
+    RenderContext context;
+    Viewport area; // of the canvas
+};
+
+std::string nameOf(const config::ResolvedChannel& channel, Index index) { return channel.name.empty() ? "channel " + std::to_string(index) : channel.name; }
+
+class Planner {
+public:
+    Planner(const LoadedConfig& loaded, const ConfigWishes& wishes) : config_(loaded.resolved), file_(loaded.diagnostics.file()), wishes_(wishes) {}
+
+    Result<SessionPlan> plan() {
+        if (auto chosen = chooseLayouts(); !chosen) return chosen.error();
+        gather();
+        if (draws_.empty()) return Error{file_ + ": nothing of it draws: it has no canvas with segments, or no compound with channels; mural config print --resolved shows what it has"};
+        if (auto done = placeParts(); !done) return done.error();
+        placeNodes();
+        tell();
+        return std::move(plan_);
+    }
+
+    compound::PixelSize wallSize() {
+        if (!chooseLayouts()) return {0, 0};
+        const compound::DisplaySizes sizes = compound::displaySizes(config_);
+        for (const config::ResolvedCanvas& canvas : config_.canvases) {
+            for (const Index s : canvas.segments) {
+                const config::ResolvedSegment& segment = config_.segments[at(s)];
+                if (segment.channel == kNone || segment.viewport.empty()) continue;
+                const PixelViewport& pixels = sizes.channels[at(segment.channel)];
+                return {static_cast<int32_t>(std::lround(pixels.w / segment.viewport.w)), static_cast<int32_t>(std::lround(pixels.h / segment.viewport.h))};
+            }
+        }
+        return {0, 0};
+    }
+
+private:
+    Result<void> chooseLayouts() {
+        input_ = compound::firstFrame(config_);
+        input_.activeLayouts.resize(config_.canvases.size(), 0);
+        for (const std::string& wanted : wishes_.layouts) {
+            bool found = false;
+            for (size_t c = 0; c < config_.canvases.size(); ++c) {
+                const auto& layouts = config_.canvases[c].layouts;
+                for (size_t i = 0; i < layouts.size(); ++i) {
+                    if (layouts[i] == kNone || config_.layouts[at(layouts[i])].name != wanted) continue;
+                    input_.activeLayouts[c] = static_cast<Index>(i);
+                    found = true;
+                }
+            }
+            if (!found) return Error{"--layout \"" + wanted + "\": no canvas of " + file_ + " has such a layout; mural config print shows them"};
+        }
+        return {};
+    }
+
+    // The draws of all turns, each once.
+    void gather() {
+        uint32_t period = 1;
+        for (const config::ResolvedCompound& c : config_.compounds) {
+            const uint32_t own = std::max<uint32_t>(1, c.period.value_or(1));
+            period = std::min(kMostTurns, std::lcm(period, std::min(own, kMostTurns)));
+        }
+        std::set<std::tuple<Index, Index, Index, Eye>> seen;
+        for (uint32_t frame = 0; frame < period; ++frame) {
+            input_.frameNumber = frame;
+            const FramePlan plan = compound::planFrame(config_, input_);
+            std::map<Index, std::vector<size_t>> workers; // by their queue: their draws
+            for (const compound::ChannelPlan& channel : plan.channels) {
+                for (const compound::PlannedTask& task : channel.tasks) {
+                    if (task.kind != config::Task::Draw || task.context == kNone) continue;
+                    const RenderContext& c = plan.contexts[at(task.context)];
+                    if (c.view == kNone || !seen.emplace(c.compound, c.destination, c.view, c.eye).second) continue;
+                    draws_.push_back({c, compose(config_.views[at(c.view)].viewport, c.part)});
+                    if (task.queue != kNone) workers[task.queue].push_back(draws_.size() - 1);
+                }
+            }
+            for (const auto& [queue, draws] : workers) dealOut(plan, plan.queues[at(queue)], draws);
+        }
+    }
+
+    // Queues are dealt out evenly, in strips of the picture or of the range.
+    void dealOut(const FramePlan& plan, const compound::PlannedQueue& queue, const std::vector<size_t>& draws) {
+        const RenderContext& divided = plan.contexts[at(queue.context)];
+        const bool chunks = !queue.tiles.empty() && std::any_of(queue.tiles.begin(), queue.tiles.end(), [&](const compound::PlannedTile& t) { return t.range != divided.range; });
+        const double n = static_cast<double>(draws.size());
+        for (size_t i = 0; i < draws.size(); ++i) {
+            Draw& d = draws_[draws[i]];
+            const double from = static_cast<double>(i) / n, to = static_cast<double>(i + 1) / n;
+            const Viewport whole = compose(config_.views[at(divided.view)].viewport, divided.part);
+            d.area = chunks ? whole : compose(whole, Viewport{0, from, 1, to - from});
+            d.context.range = chunks ? compose(divided.range, Range{from, to}) : divided.range;
+        }
+        plan_.explain.push_back("queue \"" + queue.name + "\": its " + (chunks ? "chunks" : "tiles") + " are dealt out evenly to " + std::to_string(draws.size()) + " nodes");
+    }
+
+    // Destinations with their eyes, and which pictures they are made of.
+    Result<void> placeParts() {
+        using Key = std::tuple<Index, Eye>;
+        std::map<Key, std::vector<size_t>> parts;
+        for (size_t i = 0; i < draws_.size(); ++i) parts[{draws_[i].context.destination, draws_[i].context.eye}].push_back(i);
+        int next = 0;
+        for (const auto& [key, draws] : parts) {
+            const RenderContext& first = draws_[draws.front()].context;
+            const config::ResolvedChannel& channel = config_.channels[at(first.destination)];
+            WallPart part;
+            part.name = nameOf(channel, first.destination);
+            part.eye = first.eye;
+            part.area = destinationArea(draws);
+            part.counts.kernelWidth = first.pixel.w;
+            part.counts.kernelHeight = first.pixel.h;
+            part.counts.samples = first.subPixel.size;
+            part.firstPicture = next;
+            std::set<int> made;
+            for (const size_t i : draws) {
+                const RenderContext& c = draws_[i].context;
+                const PassCounts& n = part.counts;
+                if (c.pixel.w != n.kernelWidth || c.pixel.h != n.kernelHeight || c.subPixel.size != n.samples)
+                    return Error{file_ + ":" + std::to_string(config_.compounds[at(c.compound)].at.line) + ": channel \"" + part.name + "\" is put together of parts with different pixel or subpixel kernels; give all of them the same"};
+                const int picture = next + pictureOf(n, passOf(c));
+                pictures_.resize(draws_.size(), 0);
+                pictures_[i] = picture;
+                made.insert(picture);
+            }
+            if (static_cast<int>(made.size()) < picturesOf(part.counts))
+                plan_.warnings.push_back(file_ + ": channel \"" + part.name + "\": some pixels or samples of its kernel are drawn by no compound, they stay black");
+            next += picturesOf(part.counts);
+            if (first.stereoMode == compound::StereoMode::Anaglyph) anaglyph_ = true;
+            plan_.wall.parts.push_back(part);
+        }
+        plan_.wall.stereo = anaglyph_ ? StereoMode::Anaglyph : StereoMode::SideBySide;
+        return {};
+    }
+
+    // The box of all that is drawn for it.
+    [[nodiscard]] Viewport destinationArea(const std::vector<size_t>& draws) const {
+        double x0 = 1e9, y0 = 1e9, x1 = -1e9, y1 = -1e9;
+        for (const size_t i : draws) {
+            const Viewport& a = draws_[i].area;
+            x0 = std::min(x0, a.x);
+            y0 = std::min(y0, a.y);
+            x1 = std::max(x1, a.x + a.w);
+            y1 = std::max(y1, a.y + a.h);
+        }
+        return {x0, y0, x1 - x0, y1 - y0};
+    }
+
+    static RenderPass passOf(const RenderContext& c) {
+        RenderPass p;
+        p.eye = c.eye;
+        p.kernelX = c.pixel.x;
+        p.kernelY = c.pixel.y;
+        p.kernelWidth = c.pixel.w;
+        p.kernelHeight = c.pixel.h;
+        p.sample = c.subPixel.index;
+        p.samples = c.subPixel.size;
+        p.phase = static_cast<int>(c.phase);
+        p.period = static_cast<int>(c.period);
+        p.share = c.range;
+        return p;
+    }
+
+    // Nodes in the order of their groups: draws of one area of one picture that differ in their range alone.
+    void placeNodes() {
+        using Key = std::tuple<int, uint32_t, double, double, double, double>;
+        std::map<Key, std::vector<size_t>> groups;
+        for (size_t i = 0; i < draws_.size(); ++i) {
+            const Viewport& a = draws_[i].area;
+            groups[{pictures_[i], draws_[i].context.phase, a.x, a.y, a.w, a.h}].push_back(i);
+        }
+        for (auto& [key, draws] : groups) {
+            std::sort(draws.begin(), draws.end(), [&](size_t a, size_t b) { return draws_[a].context.range.start < draws_[b].context.range.start; });
+            const auto collector = static_cast<int>(plan_.nodes.size());
+            int rank = 0;
+            for (const size_t i : draws) {
+                const RenderContext& c = draws_[i].context;
+                NodePlan node;
+                node.node = static_cast<int>(plan_.nodes.size());
+                node.pass = passOf(c);
+                node.pass.range = rank++;
+                node.pass.ranges = static_cast<int>(draws.size());
+                node.picture = pictures_[i];
+                node.area = draws_[i].area;
+                node.collector = collector;
+                node.answers = node.pass.range == 0 && c.eye != Eye::Right && c.pixel.x == 0 && c.pixel.y == 0 && c.subPixel.index == 0;
+                placeOnHost(node, c);
+                plan_.nodes.push_back(node);
+                channels_.push_back(c.channel);
+            }
+        }
+    }
+
+    void placeOnHost(NodePlan& node, const RenderContext& c) const {
+        const config::ResolvedPipe& pipe = config_.pipeOf(config_.channels[at(c.channel)]);
+        const config::ResolvedNode& machine = config_.nodes[at(pipe.node)];
+        node.where = "local";
+        if (wishes_.here || machine.isApplication || machine.host.empty()) return;
+        node.where = machine.host;
+        node.reach = reachOf(machine.host, wishes_.ownHost);
+    }
+
+    void tell() {
+        for (size_t i = 0; i < plan_.nodes.size(); ++i) {
+            const NodePlan& n = plan_.nodes[i];
+            const std::string pass = describe(n.pass);
+            char area[96];
+            std::snprintf(area, sizeof area, "%.4g %.4g %.4g %.4g", n.area->x, n.area->y, n.area->w, n.area->h);
+            plan_.explain.push_back("node " + std::to_string(n.node) + " (" + n.where + ") draws for channel \"" + nameOf(config_.channels[at(channels_[i])], channels_[i]) + "\" " +
+                                    (pass.empty() ? "" : pass + ", ") + "the part [ " + area + " ] of the wall");
+        }
+    }
+
+    const ResolvedConfig& config_;
+    const std::string file_;
+    const ConfigWishes& wishes_;
+    FrameInput input_;
+    std::vector<Draw> draws_;
+    std::vector<int> pictures_;   // of each draw
+    std::vector<Index> channels_; // of each node
+    bool anaglyph_ = false;
+    SessionPlan plan_;
+};
+
+} // namespace
+
+Result<SessionPlan> planOf(const LoadedConfig& loaded, const ConfigWishes& wishes) { return Planner(loaded, wishes).plan(); }
+
+compound::PixelSize wallSizeOf(const LoadedConfig& loaded, const ConfigWishes& wishes) { return Planner(loaded, wishes).wallSize(); }
+
+} // namespace mural
