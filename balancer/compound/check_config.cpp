@@ -38,10 +38,12 @@ void checkDeadlocks(const ResolvedConfig& config, config::Diagnostics& diagnosti
                 const FramePlan plan = planFrame(config, input);
                 if (plan.deadlock.empty()) continue;
                 std::string circle;
-                for (const Index f : plan.deadlock) circle += (circle.empty() ? "\"" : ", \"") + plan.frames[at(f)].name + "\"";
+                std::set<std::string> names; // in the same order wherever the circle was entered
+                for (const Index f : plan.deadlock) names.insert(plan.frames[at(f)].name);
+                for (const std::string& name : names) circle += (circle.empty() ? "\"" : ", \"") + name + "\"";
                 if (!said.insert(circle).second) continue;
                 const PlannedFrame& first = plan.frames[at(plan.deadlock.front())];
-                diagnostics.error(config.compounds[at(first.compound)].at, (plan.deadlock.size() == 1 ? "frame " + circle + " waits for itself" : "frames " + circle + " wait for each other") + ": nothing is ever drawn",
+                diagnostics.error(config.compounds[at(first.compound)].at, (names.size() == 1 ? "frame " + circle + " waits for itself" : "frames " + circle + " wait for each other") + ": nothing is ever drawn",
                                   "let one of them be read back before it is needed");
             }
         }

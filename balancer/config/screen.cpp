@@ -23,7 +23,8 @@ Vector3 rowOf(const Matrix4& t, size_t row) { return {t.m[row][0], t.m[row][1], 
 
 bool Screen::usable() const {
     constexpr double kSquare = 1e-3; // a millimetre per metre
-    return width > 0 && height > 0 && std::isfinite(width) && std::isfinite(height) && std::abs(dot(right, up)) < kSquare;
+    constexpr double kLargest = 1e6; // metres; an angle of 180 degrees sees more
+    return width > 0 && height > 0 && width < kLargest && height < kLargest && std::abs(dot(right, up)) < kSquare;
 }
 
 Matrix4 Screen::fromRoom() const {

@@ -146,23 +146,23 @@ private:
         }
     }
 
-    static std::string faultOf(Pixel pixel, int32_t x, int32_t y, Index destination) {
+    static std::string faultOf(const Pixel& pixel, int32_t x, int32_t y, Index destination) {
         if (pixel.empty()) return "nothing was drawn";
-        std::sort(pixel.begin(), pixel.end(), [](const Share& a, const Share& b) { return std::pair(a.sample.index, a.range.start) < std::pair(b.sample.index, b.range.start); });
-        int32_t samples = 0;
-        for (size_t i = 0; i < pixel.size(); ++samples) {
-            double end = 0;
-            const size_t first = i;
-            for (; i < pixel.size() && pixel[i].sample == pixel[first].sample; ++i) {
-                const Share& s = pixel[i];
-                if (s.destination == destination && (s.x != x || s.y != y)) return "drawn for pixel " + std::to_string(s.x) + " " + std::to_string(s.y);
-                if (std::abs(s.range.start - end) > 1e-9) return "the range " + std::to_string(end) + " is followed by " + std::to_string(s.range.start);
-                end = s.range.end;
-            }
-            if (std::abs(end - 1) > 1e-9) return "the range ends at " + std::to_string(end);
-            if (pixel[first].sample.index != samples) return "sample " + std::to_string(samples) + " is missing";
+        std::vector<std::pair<double, double>> edges; // of ranges: how much weight begins or ends there
+        for (const Share& s : pixel) {
+            if (s.destination == destination && (s.x != x || s.y != y)) return "drawn for pixel " + std::to_string(s.x) + " " + std::to_string(s.y);
+            edges.emplace_back(s.range.start, 1. / s.sample.size);
+            edges.emplace_back(s.range.end, -1. / s.sample.size);
         }
-        return samples == pixel.front().sample.size ? "" : std::to_string(samples) + " samples of " + std::to_string(pixel.front().sample.size);
+        std::sort(edges.begin(), edges.end());
+        if (std::abs(edges.front().first) > 1e-9 || std::abs(edges.back().first - 1) > 1e-9) return "the range is " + std::to_string(edges.front().first) + " to " + std::to_string(edges.back().first);
+        double weight = 0; // of all samples, 1 in each part of the range
+        for (size_t i = 0; i < edges.size(); ++i) {
+            weight += edges[i].second;
+            const bool sameEdge = i + 1 < edges.size() && edges[i + 1].first - edges[i].first < 1e-9;
+            if (!sameEdge && i + 1 < edges.size() && std::abs(weight - 1) > 1e-9) return "from range " + std::to_string(edges[i].first) + " on it is drawn " + std::to_string(weight) + " times";
+        }
+        return {};
     }
 
     const ResolvedConfig& config_;

@@ -191,6 +191,7 @@ void addCopies(Resolver& r) {
             for (const Index copy : copies) {
                 const Index shown = addGenerated(config, group, "", copy, at);
                 config.compounds[Resolver::at(shown)].tasks = TaskSet{Task::Clear, Task::Assemble};
+                config.compounds[Resolver::at(shown)].eyes = kAllEyes; // those that the picture is made for
                 config.compounds[Resolver::at(shown)].inputFrames.push_back(frame);
             }
         }
