@@ -1,0 +1,95 @@
+// Every short form is a configuration that reads back, has no fault, and shows every pixel once.
+#include <gtest/gtest.h>
+
+#include "balancer/compound/even_split.hpp"
+#include "balancer/compound/load_config.hpp"
+#include "balancer/compound/plan_frame.hpp"
+#include "balancer/config/short_forms.hpp"
+#include "balancer/config/text/parser.hpp"
+#include "balancer/config/text/writer.hpp"
+#include "tests/balancer/symbolic_wall.hpp"
+
+namespace mural::compound {
+
+namespace {
+
+using config::ShortForm;
+using config::StereoForm;
+
+LoadedConfig loaded(const ShortForm& form) {
+    const auto file = config::shortForm(form);
+    EXPECT_TRUE(file.ok()) << file.error().message;
+    return loadConfig(file.value(), "short", [](const std::string&) { return std::nullopt; });
+}
+
+void expectWhole(ShortForm form) {
+    form.width = 37; // does not divide
+    form.height = 23;
+    const LoadedConfig one = loaded(form);
+    for (const auto& d : one.diagnostics.all()) ADD_FAILURE() << one.diagnostics.text(d);
+    const std::string text = config::writeConfig(one.file);
+    config::Diagnostics diagnostics("short");
+    EXPECT_TRUE(config::parseConfig(text, diagnostics) == one.file) << text;
+    EXPECT_TRUE(diagnostics.all().empty());
+    FrameInput input = firstFrame(one.resolved);
+    for (input.frameNumber = 0; input.frameNumber < 4; ++input.frameNumber) {
+        const FramePlan plan = planFrame(one.resolved, input);
+        EXPECT_FALSE(plan.channels.empty());
+        EXPECT_EQ(testing::SymbolicWall(one.resolved, input, plan).run(), "") << text;
+    }
+}
+
+} // namespace
+
+TEST(ShortForms, eachAlone) {
+    for (const auto member : {&ShortForm::columns, &ShortForm::rows, &ShortForm::ranges, &ShortForm::pixels, &ShortForm::samples, &ShortForm::frames}) {
+        for (const int n : {1, 2, 3, 7}) {
+            ShortForm form;
+            form.*member = n;
+            expectWhole(form);
+        }
+    }
+    for (const auto stereo : {StereoForm::Anaglyph, StereoForm::Quad, StereoForm::Passive, StereoForm::SideBySide}) {
+        ShortForm form;
+        form.stereo = stereo;
+        expectWhole(form);
+    }
+}
+
+TEST(ShortForms, allTogether) {
+    for (const auto stereo : {StereoForm::None, StereoForm::Anaglyph, StereoForm::Passive}) {
+        ShortForm form;
+        form.columns = form.ranges = form.pixels = form.samples = form.frames = 2;
+        form.nodes = {"a", "b", "c"};
+        form.stereo = stereo;
+        expectWhole(form);
+    }
+}
+
+TEST(ShortForms, nodesTakeTurns) {
+    ShortForm form;
+    form.columns = form.rows = 2;
+    form.nodes = {"a", "b"};
+    const LoadedConfig one = loaded(form);
+    ASSERT_EQ(one.resolved.nodes.size(), 3u); // the application's, which draws nothing
+    EXPECT_EQ(one.resolved.nodes[1].host, "a");
+    EXPECT_EQ(one.resolved.nodes[1].pipes.size(), 2u);
+    EXPECT_EQ(one.resolved.segments[1].viewport, (Viewport{.5, 0, .5, .5}));
+    EXPECT_EQ(one.resolved.windows.size(), 4u);
+}
+
+TEST(ShortForms, senselessOnesAreRefused) {
+    ShortForm form;
+    form.ranges = 0;
+    EXPECT_EQ(config::shortForm(form).error().message, "--db can't be 0; give 1 or more");
+    form.ranges = 4097;
+    EXPECT_FALSE(config::shortForm(form).ok());
+    form = {};
+    form.columns = 3000;
+    EXPECT_EQ(config::shortForm(form).error().message, "a picture of 1920x1080 pixels can't be divided so; give another size");
+    form = {};
+    form.nodes = {"a\"b"};
+    EXPECT_FALSE(config::shortForm(form).ok());
+}
+
+} // namespace mural::compound
