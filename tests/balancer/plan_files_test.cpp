@@ -60,4 +60,13 @@ TEST(PlanFiles, showEveryPixelOnce) {
     if (config::testing::exampleFiles().empty()) GTEST_SKIP() << config::testing::noExamples();
 }
 
+TEST(PlanFiles, ownFilesHaveNoFault) {
+    EXPECT_GE(config::testing::ownFiles().size(), 10u);
+    for (const auto& path : config::testing::ownFiles()) {
+        const LoadedConfig loaded = loadConfig(path.string(), noEnvironment);
+        for (const auto& d : loaded.diagnostics.all()) ADD_FAILURE() << loaded.diagnostics.text(d);
+        EXPECT_FALSE(loaded.file.heading.empty()) << path << " does not say what it is for";
+    }
+}
+
 } // namespace mural::compound
