@@ -1,0 +1,50 @@
+#include "compositor/selector/tile_class.hpp"
+
+#include <cstring>
+
+#include "compositor/codecs/bitplane/word_arithmetic.hpp"
+
+namespace mural::compositor {
+
+namespace {
+
+constexpr int32_t kSampledAcross = 16, kSampledUp = 12;
+constexpr int kSamples = kSampledAcross * kSampledUp;
+
+uint32_t wordAt(const std::byte* at) {
+    uint32_t word;
+    std::memcpy(&word, at, sizeof word);
+    return word;
+}
+
+// Whether little is left when the word above is taken away, as the bit-plane codecs do.
+bool isNear(bitplane::Arithmetic a, uint32_t word, uint32_t above) {
+    const uint32_t residual = bitplane::residualOf(a, bitplane::subtract(a, bitplane::turned(a, word), bitplane::turned(a, above)));
+    if (a == bitplane::Arithmetic::Bytes) return (residual & 0xf0f0f0f0u) == 0;
+    if (a == bitplane::Arithmetic::Halves) return (residual & 0xff00ff00u) == 0;
+    return residual < 1u << 16;
+}
+
+} // namespace
+
+TileClass classify(const PlaneView& plane) {
+    if (plane.width < 1 || plane.height < 2) return {plane.format, Activity::Busy};
+    const bitplane::Arithmetic arithmetic = bitplane::arithmeticOf(plane.format);
+    const size_t pixelBytes = bytesPerPixel(plane.format);
+    int equal = 0, near = 0;
+    for (int32_t j = 0; j < kSampledUp; ++j)
+        for (int32_t i = 0; i < kSampledAcross; ++i) {
+            // Not in columns: what stands upright would be met by all or by none.
+            const auto y = static_cast<int32_t>(1 + static_cast<int64_t>(plane.height - 2) * j / (kSampledUp - 1));
+            const auto x = static_cast<int32_t>((static_cast<int64_t>(plane.width) * (i * kSampledUp + j * 5 % kSampledUp)) / (kSampledAcross * kSampledUp));
+            const size_t at = static_cast<size_t>(x) * pixelBytes;
+            const uint32_t word = wordAt(plane.row(y) + at), above = wordAt(plane.row(y - 1) + at);
+            equal += word == above;
+            near += isNear(arithmetic, word, above);
+        }
+    if (equal >= kSamples * 31 / 32) return {plane.format, Activity::Still};
+    if (equal >= kSamples * 5 / 8) return {plane.format, Activity::Flat};
+    return {plane.format, near >= kSamples * 5 / 8 ? Activity::Smooth : Activity::Busy};
+}
+
+} // namespace mural::compositor
