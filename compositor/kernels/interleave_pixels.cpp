@@ -60,6 +60,7 @@ void interleaveRowScalar(std::byte* row, const std::byte* part, size_t count, si
 
 // A store per pixel: what bounds it is the memory of the row, of which it touches every line.
 void interleaveRow(std::byte* row, const std::byte* part, size_t count, size_t step, size_t pixelBytes) {
+    if (count == 0) return; // and no addresses
     if (step == 1) std::memcpy(row, part, count * pixelBytes);
     else if (pixelBytes == 4) scatter<4>(row, part, count, step);
     else if (pixelBytes == 8) scatter<8>(row, part, count, step);
@@ -67,6 +68,7 @@ void interleaveRow(std::byte* row, const std::byte* part, size_t count, size_t s
 }
 
 void deinterleaveRow(std::byte* part, const std::byte* row, size_t count, size_t step, size_t pixelBytes) {
+    if (count == 0) return;
     if (step == 1) std::memcpy(part, row, count * pixelBytes);
     else if (pixelBytes == 4) gather<4>(part, row, count, step);
     else if (pixelBytes == 8) gather<8>(part, row, count, step);

@@ -14,11 +14,13 @@ constexpr double kSizeWeight = 0.4;
 constexpr double kLinkWeight = 0.25;
 // Sizes are exact: one that is so far from what was expected means that the content is another.
 constexpr double kContentChange = 1.5;
+constexpr double kSizeChange = 0.02; // of the raw size: what small pieces do does not matter
 constexpr double kLinkChange = 1.5;
 // Trying: one piece in so many.
 constexpr uint64_t kTryNew = 4;
 constexpr uint64_t kTryStale = 8;
 constexpr uint64_t kTryAgain = 64;
+constexpr double kStaleShares = 5;
 // What was spent long ago, perhaps over another link, pays for nothing now: per piece.
 constexpr double kForget = 1.0 / 256;
 // Under Pipelined all three times count a little: of two codecs that the link hides, the cheaper one is taken.
@@ -63,23 +65,26 @@ size_t CodecSelector::bestOf(const ClassState& s) const {
     return best;
 }
 
-// Another codec than the best that this piece shall be tried with; or the best.
+// Another codec than the best that this piece shall be tried with; or the best. Of those whose excess can be paid, what is
+// stale comes first, and then what was measured longest ago.
 size_t CodecSelector::toTry(const ClassState& s, size_t best, uint64_t rawBytes) const {
-    size_t oldest = best;
+    size_t tried = best;
     for (size_t i = 0; i < s.codecs.size(); ++i) {
         const Estimate& e = s.codecs[i];
         if (i == best) continue;
         if (e.reports == 0) {
-            // The first pieces of all must be measured somehow: raw first, it costs the least.
+            // How large raw pieces are is known: over a slow link they are not even tried.
+            if (i == raw_ && s.codecs[best].reports > 0 && kNsPerSec / linkBytesPerSec_ > nsPerByte(s.codecs[best])) continue;
             if (s.pieces % kTryNew == 0 || s.codecs[best].reports == 0) return i;
             continue;
         }
-        if (oldest == best || (e.stale && !s.codecs[oldest].stale) || (e.stale == s.codecs[oldest].stale && e.measuredAt < s.codecs[oldest].measuredAt)) oldest = i;
+        // What is stale may be as cheap as any: more is risked for it.
+        const double excess = std::max(0.0, nsPerByte(e) - nsPerByte(s.codecs[best])) * static_cast<double>(rawBytes);
+        if (s.exploredNs + excess > options_.exploreShare * s.spentNs * (e.stale ? kStaleShares : 1)) continue;
+        const Estimate& other = s.codecs[tried];
+        if (tried == best || (e.stale && !other.stale) || (e.stale == other.stale && e.measuredAt < other.measuredAt)) tried = i;
     }
-    if (oldest == best || s.pieces % (s.codecs[oldest].stale ? kTryStale : kTryAgain) != 0) return best;
-    // One that was much worse is tried seldom: its excess must fit in the share.
-    const double excess = std::max(0.0, nsPerByte(s.codecs[oldest]) - nsPerByte(s.codecs[best])) * static_cast<double>(rawBytes);
-    return s.exploredNs + excess <= options_.exploreShare * s.spentNs ? oldest : best;
+    return tried != best && s.pieces % (s.codecs[tried].stale ? kTryStale : kTryAgain) == 0 ? tried : best;
 }
 
 size_t CodecSelector::choose(const TileClass& tile, uint64_t rawBytes) {
@@ -102,15 +107,20 @@ void CodecSelector::encoded(const TileClass& tile, size_t codec, uint64_t rawByt
     Estimate& e = s.codecs[codec];
     const double encode = static_cast<double>(std::max<int64_t>(encodeNs, 1)) / static_cast<double>(rawBytes);
     const double size = static_cast<double>(encodedBytes) / static_cast<double>(rawBytes);
-    if (e.reports > 0 && !e.stale && farther(size, e.encodedPerByte) > kContentChange && std::abs(size - e.encodedPerByte) > 0.02) {
+    const double expected = nsPerByte(e);
+    const bool isOther = e.reports > 0 && !e.stale && farther(size, e.encodedPerByte) > kContentChange && std::abs(size - e.encodedPerByte) > kSizeChange;
+    if (isOther)
         for (Estimate& other : s.codecs) other.stale = true;
-    }
     if (e.reports == 0 || e.stale) {
         e.encodeNsPerByte = encode;
         e.encodedPerByte = size;
     } else {
         e.encodeNsPerByte += kTimeWeight * (encode - e.encodeNsPerByte);
         e.encodedPerByte += kSizeWeight * (size - e.encodedPerByte);
+    }
+    if (isOther) { // as if it had always been so: that pays for trying the others
+        s.spentNs *= nsPerByte(e) / expected;
+        s.exploredNs = 0;
     }
     ++e.reports;
     e.stale = false;
@@ -131,8 +141,17 @@ void CodecSelector::transferred(uint64_t bytes, int64_t ns) {
     const bool isFar = farther(rate, linkBytesPerSec_) > kLinkChange;
     // Twice in a row as far off: the link is another one now.
     const bool again = isFar && lastLinkRate_ > 0 && farther(rate, lastLinkRate_) < kLinkChange;
-    if (linkReports_++ == 0 || again) linkBytesPerSec_ = rate;
-    else linkBytesPerSec_ += kLinkWeight * (rate - linkBytesPerSec_);
+    const double measured = linkReports_++ == 0 || again ? rate : linkBytesPerSec_ + kLinkWeight * (rate - linkBytesPerSec_);
+    // What pieces took over the old link is no measure for what may be spent over this one.
+    std::vector<double> before;
+    for (const auto& [tile, s] : classes_) before.push_back(nsPerByte(s.codecs[s.chosen]));
+    linkBytesPerSec_ = measured;
+    auto old = before.begin();
+    for (auto& [tile, s] : classes_) {
+        const double change = nsPerByte(s.codecs[s.chosen]) / *old++;
+        s.spentNs *= change;
+        s.exploredNs *= change;
+    }
     lastLinkRate_ = isFar ? rate : 0;
 }
 

@@ -30,7 +30,7 @@ struct SelectorOptions {
 class CodecSelector {
 public:
     // Names; one of them is "raw", which wins wherever no codec is worth its time. Only lossless ones belong here
-    // (CodecRegistry::losslessFor), unless the user named others.
+    // (CodecRegistry::losslessFor), unless the user named others. They are tried in this order.
     explicit CodecSelector(std::vector<std::string> codecs, SelectorOptions options = {});
 
     // The index of the codec to use for the next piece of this class.

@@ -86,6 +86,7 @@ TEST(Bitplane, ImpossibleStripsAreRefused) {
     bytes[2] = std::byte{0x08};
     EXPECT_EQ(parseStrip(bytes, 1, strip), bytes.size());
     EXPECT_EQ(parseStrip(std::span(bytes).first(67), 1, strip), 0u) << "cut short";
+    bytes.resize(4 + 16 * 8 * 4); // room for what no width takes
     for (unsigned width = 9; width < 16; ++width) {
         bytes[2] = static_cast<std::byte>(width);
         EXPECT_EQ(parseStrip(bytes, 1, strip), 0u) << width;

@@ -80,6 +80,19 @@ TEST(CodecSelector, FollowsContentAndLink) {
     }
 }
 
+// What the other codecs made of the old content says nothing of the new one.
+TEST(CodecSelector, TriesAllAnewWhenTheContentIsAnother) {
+    const std::vector<Model> before = {{0.15, 0.15, 1}, {0.12, 0.12, 0.05}, {0.2, 0.16, 0.9}, {0.3, 0.15, 0.9}, {0.6, 0.3, 0.9}};
+    std::vector<Model> after = before;
+    after[1].size = 0.6;
+    after[4].size = 0.05;
+    Simulation s(Overlap::Pipelined, 0.1);
+    s.run(before, 1e9 / 8, 1000);
+    EXPECT_EQ(s.selector().name(s.selector().best(kClass)), "bitplane");
+    s.run(after, 1e9 / 8, 50);
+    EXPECT_EQ(s.selector().name(s.selector().best(kClass)), "zstd");
+}
+
 TEST(CodecSelector, RawEscapesFromWhatCannotBeCompressed) {
     const std::vector<Model> noise = {{0.15, 0.15, 1}, {0.5, 0.2, 1.001}, {0.8, 0.3, 1.002}, {0.3, 0.15, 1.004}, {0.5, 0.2, 1.001}};
     for (const double gbit : kGbit) {
