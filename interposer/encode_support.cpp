@@ -98,13 +98,13 @@ DataArg elementSource(ThreadState& t, const void* element, GLenum format, GLenum
     return t.context ? imageInMemory(t, element, format, type, 1, 1, 1, 1) : DataArg{};
 }
 
-DataArg packedSource(ThreadState& t, const void* data, GLsizei sizeBytes) {
+DataArg packedSource(ThreadState& t, const void* data, uint64_t sizeBytes) {
     if (!t.context) return {};
     if (unpackBufferBound(*t.context)) {
         buffersRead(t);
         return DataArg::offset(data);
     }
-    return DataArg::of(data, sizeBytes > 0 ? static_cast<uint64_t>(sizeBytes) : 0);
+    return DataArg::of(data, sizeBytes);
 }
 
 DataArg packStrings(ThreadState& t, GLsizei count, const GLchar* const* strings, const GLint* lengths) {

@@ -108,7 +108,7 @@ DataArg imageSource(ThreadState& t, const void* pixels, GLenum format, GLenum ty
 // The same for one pixel, which is in client memory whatever is bound.
 DataArg elementSource(ThreadState& t, const void* element, GLenum format, GLenum type);
 // The same for bytes that the pixel store does not rearrange (compressed images).
-DataArg packedSource(ThreadState& t, const void* data, GLsizei sizeBytes);
+DataArg packedSource(ThreadState& t, const void* data, uint64_t sizeBytes);
 // count strings as u32 lengths, then their bytes one after the other. lengths may be null.
 DataArg packStrings(ThreadState& t, GLsizei count, const GLchar* const* strings, const GLint* lengths);
 

@@ -95,7 +95,7 @@ def data_argument(c, p):
     if p.how == 'made':
         return 'DataArg::of(%s, vn(%s,4))' % (p.name, p.length)
     if p.how == 'packed':
-        return 'packedSource(self, %s, %s)' % (p.name, p.expr)
+        return 'packedSource(self, %s, vn(%s,1))' % (p.name, p.expr)
     if p.how == 'strings':
         return 'packStrings(self, %s, %s, %s)' % ('count', p.name, 'nullptr' if p.expr == '-' else p.expr)
     if p.how == 'pixels':

@@ -139,6 +139,13 @@ void drawTransferred(unsigned frame) {
     glPixelMapfv(GL_PIXEL_MAP_R_TO_R, 16, map);
     glPixelMapusv(GL_PIXEL_MAP_G_TO_G, 8, shorts);
     glPixelMapuiv(GL_PIXEL_MAP_B_TO_B, 4, ints);
+    GLuint buffer = 0; // the last but one anew, out of a buffer
+    glGenBuffers(1, &buffer);
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer);
+    glBufferData(GL_PIXEL_UNPACK_BUFFER, sizeof shorts, shorts, GL_STATIC_DRAW);
+    glPixelMapusv(GL_PIXEL_MAP_G_TO_G, 4, reinterpret_cast<const GLushort*>(8));
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    glDeleteBuffers(1, &buffer);
     glPixelTransferi(GL_MAP_COLOR, GL_TRUE);
     glWindowPos2i(35, 95);
     glDrawPixels(16, 12, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
