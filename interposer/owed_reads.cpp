@@ -35,7 +35,8 @@ Session* sessionFor(const ThreadState& t) {
 
 void put(ThreadState& t, const OwedRead& read) {
     const sizes::ImageLayout& layout = read.place.layout;
-    if (isTight(layout)) return writeOwnCopy(t, read.buffer, read.place.offset + static_cast<uint64_t>(layout.firstByte), read.answer->bytes, read.answer->sizeBytes);
+    keepPart(read.answer->bytes, read.place.part);
+    if (isTight(layout)) return writeOwnCopy(t, read.buffer, read.place.offset + static_cast<uint64_t>(layout.firstByte), read.answer->bytes, sizes::tightBytes(layout));
     const size_t span = sizes::spanBytes(layout);
     void* const whole = scratchMemory(t, span);
     if (!whole || !readOwnCopy(t, read.buffer, read.place.offset, whole, span)) return; // bytes between the rows stay

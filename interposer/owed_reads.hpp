@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstdint>
 
+#include "interposer/image_part.hpp"
 #include "interposer/lock.hpp"
 #include "streamcodec/sizes/pixel_format.hpp"
 
@@ -50,10 +51,11 @@ struct OwedReads {
     [[nodiscard]] bool onlyReadInto(GLuint buffer) const { return SharedNameBits::known(buffer) && !usedElsewhere.get(buffer); }
 };
 
-// The image's place in the bound pack buffer.
+// The image's place in the bound pack buffer, and what of the answer goes there.
 struct PackPlace {
     uint64_t offset;
     sizes::ImageLayout layout;
+    ImagePart part{};
 };
 
 // Both: false when this one has to be read now: the buffer is used for other things, or there is no memory.

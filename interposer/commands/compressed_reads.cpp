@@ -36,12 +36,6 @@ Image imageByName(ThreadState& t, GLuint texture, GLint level) {
     return {static_cast<GLenum>(format), size, dimensionsByName(target)};
 }
 
-// Format 0 asks the nodes for the blocks as they are.
-std::byte* askBlocks(ThreadState& t, bool byName, GLuint which, GLint level, const Image& image, const char* by) {
-    const size_t bytes = image.bytes();
-    return static_cast<std::byte*>(bytes ? askTexImage(t, byName, which, level, 0, 0, bytes, by) : nullptr);
-}
-
 sizes::ImageLayout layoutOf(ThreadState& t, GLenum format, const Level& size, int dimensions) {
     return sizes::compressedLayoutOf(compressedPackStore(*t.context), format, size.width, size.height, size.depth, dimensions);
 }
@@ -92,13 +86,10 @@ void mural_glGetCompressedTextureSubImage(GLuint texture, GLint level, GLint xof
     if (!capturing(t)) return local();
     if (!packsHere(t, local) || width <= 0 || height <= 0 || depth <= 0) return;
     const Image image = imageByName(t, texture, level);
-    std::byte* const tight = askBlocks(t, true, texture, level, image, __func__);
-    if (!tight) return;
     const sizes::CompressedBlock block = sizes::compressedBlock(image.format);
-    const Level part{width, height, depth};
-    keepPart(tight, inBlocks(image.size, block), inBlocks({xoffset, yoffset, zoffset}, block), inBlocks(part, block), block.bytes);
-    const sizes::ImageLayout layout = layoutOf(t, image.format, part, image.dimensions);
-    if (layout.known) deliver(t, tight, pixels, layout);
+    const Level size{width, height, depth};
+    const ImagePart part{inBlocks(image.size, block), inBlocks({xoffset, yoffset, zoffset}, block), inBlocks(size, block), block.bytes};
+    askAndDeliver(t, {true, texture, level, 0, 0, image.bytes(), part}, pixels, layoutOf(t, image.format, size, image.dimensions), __func__);
 }
 
 void mural_glGetCompressedTextureImageEXT(GLuint texture, GLenum target, GLint lod, void* img) {

@@ -58,10 +58,12 @@ void deliver(ThreadState& t, const void* tight, void* pixels, const sizes::Image
 void askAndDeliver(ThreadState& t, const ImageQuestion& q, void* pixels, const sizes::ImageLayout& layout, const char* by) {
     if (q.sizeBytes == 0) return;
     const bool owes = layout.known && packBufferBound(*t.context) &&
-                      oweTexImage(t, q.byName, q.targetOrTexture, q.level, q.format, q.type, q.sizeBytes, {reinterpret_cast<uint64_t>(pixels), layout}, by);
+                      oweTexImage(t, q.byName, q.targetOrTexture, q.level, q.format, q.type, q.sizeBytes, {reinterpret_cast<uint64_t>(pixels), layout, q.part}, by);
     if (owes) return;
-    const void* const tight = askTexImage(t, q.byName, q.targetOrTexture, q.level, q.format, q.type, q.sizeBytes, by);
-    if (tight && layout.known) deliver(t, tight, pixels, layout);
+    void* const image = askTexImage(t, q.byName, q.targetOrTexture, q.level, q.format, q.type, q.sizeBytes, by);
+    if (!image || !layout.known) return;
+    keepPart(static_cast<std::byte*>(image), q.part);
+    deliver(t, image, pixels, layout);
 }
 
 void tellPackBuffer(ThreadState& t, const void* offset, size_t bytes) {
@@ -88,17 +90,6 @@ Level levelOf(Context& c, GLuint texture, GLint level, GLenum& target) {
     target = targetOf(c, texture);
     if (target == GL_TEXTURE_CUBE_MAP) size.depth = 6;
     return size;
-}
-
-void keepPart(std::byte* image, const Level& size, const Level& from, const Level& part, size_t groupBytes) {
-    const size_t rowBytes = groupBytes * static_cast<size_t>(part.width);
-    std::byte* out = image;
-    for (GLint z = 0; z < part.depth; ++z) {
-        for (GLint y = 0; y < part.height; ++y, out += rowBytes) {
-            const size_t row = (static_cast<size_t>(from.depth + z) * static_cast<size_t>(size.height) + static_cast<size_t>(from.height + y)) * static_cast<size_t>(size.width);
-            std::memmove(out, image + (row + static_cast<size_t>(from.width)) * groupBytes, rowBytes);
-        }
-    }
 }
 
 const Target* targetWithImages(GLenum target) {

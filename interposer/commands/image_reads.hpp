@@ -5,14 +5,11 @@
 #include "encoders.hpp"
 #include "interposer/asking.hpp"
 #include "interposer/context.hpp"
+#include "interposer/image_part.hpp"
 #include "interposer/real_gl.hpp"
 #include "streamcodec/sizes/pixel_format.hpp"
 
 namespace mural::image_reads {
-
-struct Level {
-    GLint width = 0, height = 0, depth = 0;
-};
 
 [[nodiscard]] bool capturing(const ThreadState& t);
 
@@ -26,8 +23,9 @@ struct ImageQuestion {
     GLint level;
     GLenum format, type; // 0: the blocks of a compressed image
     size_t sizeBytes;    // of the tight image; 0: it can't be asked for
+    ImagePart part{};    // of it that is wanted
 };
-// Asks the nodes for an image of a texture, and delivers it: later, where it goes into a pack buffer.
+// Asks the nodes for an image of a texture, and delivers it or a part: later, where it goes into a pack buffer.
 void askAndDeliver(ThreadState& t, const ImageQuestion& question, void* pixels, const sizes::ImageLayout& layout, const char* by);
 
 // The program's own context packs something by `local`, its errors are kept: true when there was none. What the
@@ -55,9 +53,6 @@ template <class Ask> Level levelOf(Ask&& ask) {
 }
 // A cube map's level is its six faces.
 Level levelOf(Context& c, GLuint texture, GLint level, GLenum& target);
-
-// Moves a part of a tight image to its beginning, where it is tight itself. In pixels, or in blocks.
-void keepPart(std::byte* image, const Level& size, const Level& from, const Level& part, size_t groupBytes);
 
 struct Target {
     GLenum target, binding;

@@ -137,11 +137,9 @@ void mural_glGetTextureSubImage(GLuint texture, GLint level, GLint xoffset, GLin
     GLenum target = 0;
     const Level size = levelOf(*t.context, texture, level, target);
     const size_t whole = sizes::tightBytes(format, type, size.width, size.height, size.depth);
-    auto* tight = static_cast<std::byte*>(whole ? askTexImage(t, true, texture, level, format, type, whole) : nullptr);
-    if (!tight) return;
-    keepPart(tight, size, {xoffset, yoffset, zoffset}, {width, height, depth}, sizes::groupBytes(format, type));
     const sizes::ImageLayout layout = sizes::layoutOf(packStore(*t.context), format, type, width, height, depth, dimensionsByName(target));
-    if (layout.known) deliver(t, tight, pixels, layout);
+    const ImagePart part{size, {xoffset, yoffset, zoffset}, {width, height, depth}, sizes::groupBytes(format, type)};
+    askAndDeliver(t, {true, texture, level, format, type, whole, part}, pixels, layout, __func__);
 }
 
 } // extern "C"

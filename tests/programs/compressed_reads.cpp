@@ -98,6 +98,27 @@ void readParts() {
                               GL_PACK_ROW_LENGTH, GL_PACK_SKIP_PIXELS, GL_PACK_SKIP_ROWS}) glPixelStorei(name, 0);
 }
 
+// Parts go into a buffer that is looked at when all are asked for, one of them with blocks that lie apart.
+void readPartsIntoBuffer() {
+    const auto at = [](std::uintptr_t offset) { return reinterpret_cast<void*>(offset); }; // NOLINT(performance-no-int-to-ptr): an offset
+    GLuint parts = 0;
+    glGenBuffers(1, &parts);
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, parts);
+    const std::vector<GLubyte> known(kBuffer, 0x4b);
+    glBufferData(GL_PIXEL_PACK_BUFFER, kBuffer, known.data(), GL_STREAM_READ);
+    glGetCompressedTextureSubImage(flat, 0, 8, 4, 0, 12, 20, 1, 3 * 5 * 8, at(8));
+    glGetCompressedTextureSubImage(cube, 0, 4, 12, 1, 28, 16, 3, 7 * 4 * 3 * 8, at(256));
+    glGetTextureSubImage(wide, 0, 1, 2, 0, 5, 3, 1, GL_RG_INTEGER, GL_UNSIGNED_INT, 5 * 3 * 8, at(1024));
+    glPixelStorei(GL_PACK_ROW_LENGTH, 20);
+    glPixelStorei(GL_PACK_SKIP_PIXELS, 2);
+    glGetTextureSubImage(filled, 0, 4, 8, 0, 16, 8, 1, GL_RED, GL_UNSIGNED_BYTE, 1000, at(1280));
+    glPixelStorei(GL_PACK_ROW_LENGTH, 0);
+    glPixelStorei(GL_PACK_SKIP_PIXELS, 0);
+    show("parts in a buffer", [](void* to) { glGetBufferSubData(GL_PIXEL_PACK_BUFFER, 0, kBuffer, to); });
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+    glDeleteBuffers(1, &parts);
+}
+
 void readIntoBuffer() {
     glBindBuffer(GL_PIXEL_PACK_BUFFER, packed);
     glGetCompressedTexImage(GL_TEXTURE_2D, 0, reinterpret_cast<void*>(std::uintptr_t(16))); // NOLINT(performance-no-int-to-ptr): an offset
@@ -122,6 +143,7 @@ int main(int argc, char** argv) {
         row = 0;
         readWhole();
         readParts();
+        readPartsIntoBuffer();
         readIntoBuffer();
     });
 }
