@@ -70,6 +70,19 @@ void VertexArrayMirror::setFormat(GLuint array, uint32_t slot, GLint size, GLenu
     a.relative = relative;
 }
 
+bool VertexArrayMirror::anyInMemory(GLuint name, uint32_t first, uint32_t end) {
+    const VertexArray* const va = find(name);
+    for (uint32_t slot = first; slot < end; ++slot) {
+        if (va->client[slot / 64] >> slot % 64 & 1) return true;
+    }
+    return false;
+}
+
+void VertexArrayMirror::moveToBuffer(GLuint name, uint32_t first, uint32_t end) {
+    VertexArray* const va = find(name);
+    for (uint32_t slot = first; slot < end; ++slot) va->set(va->client, slot, false);
+}
+
 uint32_t VertexArrayMirror::slotOf(GLenum array) const {
     switch (array) {
     case GL_VERTEX_ARRAY: return kVertex;

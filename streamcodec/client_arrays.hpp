@@ -16,6 +16,10 @@ constexpr uint32_t kTexCoords = 32;
 constexpr uint32_t kGenerics = 32;
 constexpr uint32_t kSlots = kGeneric0 + kGenerics;
 
+// kSlots: there is none.
+constexpr uint32_t genericSlot(uint32_t index) { return index < kGenerics ? kGeneric0 + index : kSlots; }
+constexpr uint32_t coordinateSlot(uint32_t unit) { return unit < kTexCoords ? kTexCoord0 + unit : kSlots; }
+
 enum Flags : uint32_t { kNormalized = 1, kInteger = 2, kLong = 4 };
 
 struct ArrayRecord {

@@ -58,7 +58,6 @@ void enableNamed(ThreadState& t, GLuint array, uint32_t slot, bool on) {
     VertexArrayMirror& mirror = t.context->arrays;
     if (mirror.knows(array) || gReal.glIsVertexArray(array)) mirror.enableIn(array, slot, on);
 }
-uint32_t genericSlot(GLuint index) { return index < kGenerics ? kGeneric0 + index : kSlots; }
 template <class Encode, class Real> void switchNamed(Encode encode, Real real, GLuint array, GLuint which, uint32_t slot, bool on) {
     ThreadState& t = *tThread;
     if (!t.context) return real(array, which);
@@ -273,12 +272,6 @@ void mural_glEnableVertexArrayAttribEXT(GLuint vaobj, GLuint index) { switchName
 void mural_glDisableVertexArrayAttribEXT(GLuint vaobj, GLuint index) { switchNamed(encode_glDisableVertexArrayAttribEXT, gReal.glDisableVertexArrayAttribEXT, vaobj, index, genericSlot(index), false); }
 void mural_glEnableVertexArrayEXT(GLuint vaobj, GLenum array) { switchNamed(encode_glEnableVertexArrayEXT, gReal.glEnableVertexArrayEXT, vaobj, array, namedSlot(*tThread, array), true); }
 void mural_glDisableVertexArrayEXT(GLuint vaobj, GLenum array) { switchNamed(encode_glDisableVertexArrayEXT, gReal.glDisableVertexArrayEXT, vaobj, array, namedSlot(*tThread, array), false); }
-void mural_glVertexAttribDivisor(GLuint index, GLuint divisor) {
-    ThreadState& t = *tThread;
-    if (t.context && index < kGenerics) t.context->arrays.current().slots[kGeneric0 + index].divisor = divisor;
-    encode_glVertexAttribDivisor(t, index, divisor);
-    gReal.glVertexAttribDivisor(index, divisor);
-}
 void mural_glClientActiveTexture(GLenum texture) {
     ThreadState& t = *tThread;
     if (!t.context || (texture - GL_TEXTURE0 < kUnitsOfAll && !t.context->core)) gReal.glClientActiveTexture(texture);
@@ -327,7 +320,7 @@ void mural_glDeleteVertexArrays(GLsizei n, const GLuint* arrays) {
     gReal.glDeleteVertexArrays(n, arrays);
 }
 
-// Bindings of ARB_vertex_attrib_binding name buffers, never client memory; formats say how either is read.
+// Formats say how client memory is read, too.
 void mural_glVertexAttribFormat(GLuint index, GLint size, GLenum type, GLboolean normalized, GLuint relative) {
     if (format(index, size, type, normalized ? uint32_t{kNormalized} : 0, relative, [=] { gReal.glVertexAttribFormat(index, size, type, normalized, relative); }))
         encode_glVertexAttribFormat(*tThread, index, size, type, normalized, relative);
@@ -352,36 +345,6 @@ void mural_glVertexArrayVertexAttribFormatEXT(GLuint vaobj, GLuint index, GLint 
 }
 void mural_glVertexArrayVertexAttribIFormatEXT(GLuint vaobj, GLuint index, GLint size, GLenum type, GLuint relative) { formatNamed(encode_glVertexArrayVertexAttribIFormatEXT, gReal.glVertexArrayVertexAttribIFormatEXT, vaobj, index, size, type, kInteger, relative); }
 void mural_glVertexArrayVertexAttribLFormatEXT(GLuint vaobj, GLuint index, GLint size, GLenum type, GLuint relative) { formatNamed(encode_glVertexArrayVertexAttribLFormatEXT, gReal.glVertexArrayVertexAttribLFormatEXT, vaobj, index, size, type, kLong, relative); }
-void mural_glVertexAttribBinding(GLuint attribindex, GLuint bindingindex) {
-    ThreadState& t = *tThread;
-    if (t.context && attribindex < kGenerics && attribindex != bindingindex) {
-        VertexArray& va = t.context->arrays.current();
-        va.set(va.client, kGeneric0 + attribindex, false);
-    }
-    encode_glVertexAttribBinding(t, attribindex, bindingindex);
-    gReal.glVertexAttribBinding(attribindex, bindingindex);
-}
-void mural_glBindVertexBuffer(GLuint bindingindex, GLuint buffer, GLintptr offset, GLsizei stride) {
-    ThreadState& t = *tThread;
-    if (t.context && bindingindex < kGenerics) {
-        VertexArray& va = t.context->arrays.current();
-        va.set(va.client, kGeneric0 + bindingindex, false);
-    }
-    bufferUsed(t, buffer);
-    encode_glBindVertexBuffer(t, bindingindex, buffer, offset, stride);
-    gReal.glBindVertexBuffer(bindingindex, buffer, offset, stride);
-}
-void mural_glBindVertexBuffers(GLuint first, GLsizei count, const GLuint* buffers, const GLintptr* offsets, const GLsizei* strides) {
-    ThreadState& t = *tThread;
-    for (GLuint i = first; t.context && count > 0 && i < first + GLuint(count) && i < kGenerics; ++i) {
-        VertexArray& va = t.context->arrays.current();
-        va.set(va.client, kGeneric0 + i, false);
-    }
-    const auto n = count > 0 ? uint64_t(count) : 0;
-    buffersUsed(t, count, buffers);
-    encode_glBindVertexBuffers(t, first, count, DataArg::of(buffers, n * 4), DataArg::of(offsets, n * 8), DataArg::of(strides, n * 4));
-    gReal.glBindVertexBuffers(first, count, buffers, offsets, strides);
-}
 void mural_glBindBuffer(GLenum target, GLuint buffer) {
     ThreadState& t = *tThread;
     if (target != GL_PIXEL_PACK_BUFFER) bufferUsed(t, buffer);

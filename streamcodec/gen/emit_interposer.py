@@ -132,6 +132,8 @@ def wrapper(c):
         out += '    if (refusedInPrimitive(self)) [[unlikely]] return gReal.%s(%s);\n' % (c.name, names)
     encode_args = ', '.join(['self'] + [data_argument(c, p) if p.how in DATA_KINDS else p.name
                                      for p in c.params if p.how != 'skip'])
+    if c.option('array'):
+        out += '    const ArrayWatch watch(self, vaobj, %s);\n' % c.option('array')
     out += buffer_uses(c)
     if c.option('app') == 'writes':
         if c.name.startswith('glBindBuffers'):
@@ -196,6 +198,7 @@ namespace mural {
 
     wrappers = HEAD + '''#include "custom_wrappers.hpp"
 #include "encoders.hpp"
+#include "interposer/array_watch.hpp"
 #include "interposer/asking.hpp"
 #include "interposer/commands/copies.hpp"
 #include "interposer/commands/quiet.hpp"

@@ -400,6 +400,38 @@ void makeTextures() {
     }
 }
 
+// Arrays of object 0 that move from memory to a buffer, or get a divisor, by their name. What is refused moves none.
+void drawMovedByName(int frame) {
+    const auto y = static_cast<GLfloat>(frame);
+    const GLfloat before[] = {0, 0, 12, 0, 6, 9}, after[] = {14, y, 26, y, 20, 9};
+    GLuint buffer = 0;
+    glGenBuffers(1, &buffer);
+    glBindBuffer(GL_ARRAY_BUFFER, buffer);
+    glBufferData(GL_ARRAY_BUFFER, sizeof after, after, GL_STATIC_DRAW);
+    glBindBuffer(GL_ARRAY_BUFFER, 0);
+    enterCell();
+    glEnableVertexAttribArray(0);
+    glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, before);
+    glVertexArrayVertexBuffer(0, 0, buffer, 0, -1);
+    if (glGetError() != GL_INVALID_VALUE) fail("a stride below 0 is no error");
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    const GLintptr offset = 0;
+    const GLsizei stride = 2 * sizeof(GLfloat);
+    if (frame % 2 == 0) glVertexArrayVertexBuffer(0, 0, buffer, offset, stride);
+    else glVertexArrayVertexBuffers(0, 0, 1, &buffer, &offset, &stride);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDeleteBuffers(1, &buffer);
+    enterCell();
+    glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, after);
+    if (frame % 2 == 0) glVertexArrayBindingDivisor(0, 0, 1);
+    else glVertexBindingDivisor(0, 1);
+    glPointSize(4);
+    glDrawArraysInstanced(GL_POINTS, 0, 1, 3);
+    glPointSize(1);
+    glVertexAttribDivisor(0, 0);
+    glDisableVertexAttribArray(0);
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -429,5 +461,6 @@ int main(int argc, char** argv) {
             drawReformatted(frame);
             drawFromBefore(frame);
             drawSwitchedByName(frame);
+            drawMovedByName(frame);
         });
 }

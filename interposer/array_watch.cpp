@@ -1,0 +1,24 @@
+#include "interposer/array_watch.hpp"
+
+#include "interposer/asking.hpp"
+#include "interposer/context.hpp"
+
+namespace mural {
+
+ArrayWatch::ArrayWatch(const ThreadState& t, GLuint array, uint32_t slot, uint32_t count) : array_(array), first_(slot), end_(slot) {
+    constexpr uint32_t kSlots = client_arrays::kSlots;
+    if (!t.context || slot >= kSlots || !t.context->arrays.knows(array)) return;
+    end_ = count < kSlots - slot ? slot + count : kSlots;
+    if (!t.context->arrays.anyInMemory(array, first_, end_)) return;
+    context_ = t.context;
+    stashError(*context_, driverError()); // the program's own, not asked for yet
+}
+
+ArrayWatch::~ArrayWatch() {
+    if (!context_) return;
+    const GLenum error = driverError();
+    stashError(*context_, error);
+    if (error == GL_NO_ERROR) context_->arrays.moveToBuffer(array_, first_, end_);
+}
+
+} // namespace mural
