@@ -33,7 +33,7 @@ namespace mural::copies {
 namespace {
 
 // Of the window that the read framebuffer of the nodes is.
-void gatherNow(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, bool forCopy, Samples samples, const char* by) {
+void gatherNow(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, bool forCopy, const char* by) {
     const Window* window = findWindowById(t.context->readWindow);
     if (!window) return;
     const int64_t x0 = x < 0 ? 0 : x, y0 = y < 0 ? 0 : y;
@@ -53,7 +53,7 @@ void gatherNow(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfiel
                            {GL_STENCIL_BUFFER_BIT, GL_STENCIL_INDEX, GL_UNSIGNED_BYTE, window->config.stencil, 1}};
     for (const Plane& p : kinds) {
         if (!(planes & p.bit) || p.bits == 0) continue;
-        const bool resolves = p.bit == GL_COLOR_BUFFER_BIT && window->config.samples > 0 && samples == Samples::Resolved;
+        const bool resolves = p.bit == GL_COLOR_BUFFER_BIT && window->config.samples > 0;
         const void* pixels = askPixels(t, gx, gy, gw, gh, p.format, p.type, wire::kPlainTransfer | (resolves ? wire::kResolved : 0), by);
         if (pixels) records::fillWindow(t, gx, gy, gw, gh, forCopy ? p.bit | wire::kForCopy : p.bit, DataArg::of(pixels, uint64_t(gw) * uint64_t(gh) * p.bytes));
     }
@@ -75,14 +75,24 @@ bool severalNodes(const ThreadState& t) {
 
 } // namespace
 
-void gather(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, Samples samples, const char* by) {
+void gather(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, const char* by) {
     if (!severalNodes(t)) return;
     if (t.context->compilingList) drawAll(t, by);
-    else if (readsWindow(*t.context)) gatherNow(t, x, y, w, h, planes, true, samples, by);
+    else if (readsWindow(*t.context)) gatherNow(t, x, y, w, h, planes, true, by);
+}
+
+// Within a window with samples drivers copy all of them, which a node has only of what it has drawn.
+void gatherForPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, const char* by) {
+    if (!severalNodes(t)) return;
+    const Window* const read = readsWindow(*t.context) ? findWindowById(t.context->readWindow) : nullptr;
+    GLint drawn = 0;
+    if (read && read->config.samples > 0) gReal.glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &drawn);
+    if (read && read->config.samples > 0 && drawn == 0) drawAll(t, by);
+    else gather(t, x, y, w, h, planes, by);
 }
 
 void gatherNamed(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, const char* by) {
-    if (severalNodes(t)) readingWindow(t, [&] { gatherNow(t, x, y, w, h, planes, true, Samples::Resolved, by); });
+    if (severalNodes(t)) readingWindow(t, [&] { gatherNow(t, x, y, w, h, planes, true, by); });
 }
 
 void drawAll(ThreadState& t, const char* by) {
@@ -93,7 +103,7 @@ void drawAll(ThreadState& t, const char* by) {
     if (!window) return;
     constexpr GLbitfield kAll = GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT; // what other nodes have drawn until now
     const auto width = static_cast<GLsizei>(window->config.width), height = static_cast<GLsizei>(window->config.height);
-    readingWindow(t, [&] { gatherNow(t, 0, 0, width, height, kAll, false, Samples::First, by); });
+    readingWindow(t, [&] { gatherNow(t, 0, 0, width, height, kAll, false, by); });
 }
 
 GLbitfield planesOf(GLenum internalFormat) {
@@ -131,7 +141,7 @@ void mural_glCopyPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum 
     ThreadState& t = *tThread;
     const GLbitfield planes = type == GL_COLOR ? GL_COLOR_BUFFER_BIT : type == GL_DEPTH ? GL_DEPTH_BUFFER_BIT
                               : type == GL_STENCIL ? GL_STENCIL_BUFFER_BIT : GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT;
-    copies::gather(t, x, y, width, height, planes, copies::Samples::First);
+    copies::gatherForPixels(t, x, y, width, height, planes);
     encode_glCopyPixels(t, x, y, width, height, type);
     if (t.drawLocally || width < 0 || height < 0) gReal.glCopyPixels(x, y, width, height, type);
     else gReal.glCopyPixels(x, y, 0, 0, type);

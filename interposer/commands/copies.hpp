@@ -7,17 +7,17 @@
 
 namespace mural::copies {
 
-// What a copy gets of a window with samples. Mesa's glCopyPixels takes them as they are; glReadPixels tells the first.
-enum class Samples { Resolved, First };
+// Fetches the planes of the rectangle from all nodes and gives them to all, where a window is read. Samples come resolved.
+void gather(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, const char* by = __builtin_FUNCTION());
 
-// Fetches the planes of the rectangle from all nodes and gives them to all, where a window is read.
-void gather(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, Samples samples = Samples::Resolved, const char* by = __builtin_FUNCTION());
+// Before glCopyPixels.
+void gatherForPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, const char* by = __builtin_FUNCTION());
 
 // The same for a command that names the window, whatever is bound for reading. Display lists hold none.
 void gatherNamed(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, const char* by = __builtin_FUNCTION());
 
-// From now on every node draws all. For fragment shaders that write to memory, and for a display list that copies out
-// of a window, or draws on a condition that it finds itself: nobody can be asked in the middle of it.
+// From now on every node draws all. For fragment shaders that write to memory, for a display list that copies out
+// of a window, or draws on a condition that it finds itself: nobody can be asked in the middle of it; and for copies of samples.
 void drawAll(ThreadState& t, const char* by = __builtin_FUNCTION());
 
 // The planes that a copy into an image reads: of this format, of a level of the texture that is bound, or named.

@@ -359,8 +359,8 @@ Result<void> HeadSession::nodeFrameDone(int node, const wire::FrameDoneMessage& 
 void HeadSession::sayDrawnWhole() {
     if (drawnWhole_.exchange(true)) return;
     control_.say(config_.tiling == Tiling::Lean
-                     ? "fragment shaders write to memory, SPIR-V modules read gl_FragCoord, or display lists read the picture: every node draws all of it, into framebuffers of the window's size; tiling lean saves nothing there"
-                     : "fragment shaders write to memory, or display lists read the picture: every node draws all of it; more nodes do not make that faster");
+                     ? "fragment shaders write to memory, SPIR-V modules read gl_FragCoord, display lists read the picture, or samples of it are copied: every node draws all of it, into framebuffers of the window's size; tiling lean saves nothing there"
+                     : "fragment shaders write to memory, display lists read the picture, or samples of it are copied: every node draws all of it; more nodes do not make that faster");
 }
 
 // A program of which nothing can be shared gains nothing: said once, when that is clear.

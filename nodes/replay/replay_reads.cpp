@@ -260,7 +260,17 @@ bool Replay::ownFillWindow(Args& in) {
     return true;
 }
 
-// Colours into the window that is read, whatever the program has set.
+namespace {
+// What of r lies around the hole.
+std::array<PixelViewport, 4> around(const PixelViewport& r, const PixelViewport& hole) {
+    if (hole.empty()) return {r};
+    const auto box = [&](int32_t x0, int32_t y0, int32_t x1, int32_t y1) { return intersect(r, {x0, y0, x1 - x0, y1 - y0}); };
+    return {box(r.x, r.y, hole.x, r.top()), box(hole.right(), r.y, r.right(), r.top()), box(hole.x, r.y, hole.right(), hole.y),
+            box(hole.x, hole.top(), hole.right(), r.top())};
+}
+} // namespace
+
+// Colours into the window that is read, whatever the program has set. Its own part of a window with samples keeps them.
 void Replay::fillColor(const PixelViewport& r, const void* rgba) {
     if (c_->api == wire::Api::Es1) return fillByOtherContext(r, GL_COLOR_BUFFER_BIT, rgba);
     // That window becomes the one that is drawn to, as long as this takes.
@@ -287,8 +297,10 @@ void Replay::fillColor(const PixelViewport& r, const void* rgba) {
     const GLboolean srgb = c_->api == wire::Api::Desktop && gl.glIsEnabled(GL_FRAMEBUFFER_SRGB);
     if (srgb) gl.glDisable(GL_FRAMEBUFFER_SRGB);
     const PixelViewport o = readsLean() ? c_->read->region : PixelViewport{};
-    const int32_t x = r.x - o.x, y = r.y - o.y;
-    gl.glBlitFramebuffer(0, 0, r.w, r.h, x, y, x + r.w, y + r.h, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    for (const PixelViewport& part : around(r, c_->read->config.samples > 0 ? intersect(r, c_->read->drawn) : PixelViewport{})) {
+        const int32_t x = part.x - r.x, y = part.y - r.y, toX = part.x - o.x, toY = part.y - o.y;
+        if (!part.empty()) gl.glBlitFramebuffer(x, y, x + part.w, y + part.h, toX, toY, toX + part.w, toY + part.h, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    }
     if (srgb) gl.glEnable(GL_FRAMEBUFFER_SRGB);
     if (chooses) gl.glDrawBuffer(windowBuffer(c_->drawBuffer0, c_->read));
     gl.glFramebufferTexture2D(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 0, 0);

@@ -10,7 +10,7 @@ GROUPS = {
                  "core_arrays", "buffers", "persistent_mapping", "persistent_frames", "pinned_memory",
                  "evaluators"],
     "pixels": ["textures_classic", "textures_modern", "framebuffers", "framebuffers_layered", "core_depth",
-               "pixels_draw", "pixels_read", "texture_reads", "sized_reads", "compressed_reads", "reads_later", "reads_owed", "reads_threads",
+               "pixels_draw", "copied_samples", "pixels_read", "texture_reads", "sized_reads", "compressed_reads", "reads_later", "reads_owed", "reads_threads",
                "front_buffer", "front_and_back", "single_buffered", "frames_kept",
                "accum_buffer"],
     "state": ["raster_state", "blend_modes", "clipping", "fixed_lighting", "feedback_select",
