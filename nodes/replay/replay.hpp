@@ -331,6 +331,8 @@ private:
         bool feedsBack = false;    // transform feedback
         int activeQueries = 0;
         bool inPrimitive = false;
+        bool projectionKnown = false; // as it is, for shaders that may read it
+        double fixedScale = 0;        // of its x; 0: no perspective
         std::array<GLfloat, 16> ownProjection{}, shiftedProjection{};
     };
     struct Stream {
@@ -453,7 +455,7 @@ private:
     void beginTurn(Window& w);
     void decideTurn(Window& w, bool builds);
     void keepTurn(Window& w);
-    [[nodiscard]] bool hasTurn(const Window& w, int64_t turn) const;
+    [[nodiscard]] bool hasTurn(int64_t turn) const;
     [[nodiscard]] bool keepsTurn(const Window& w) const;
     [[nodiscard]] GLbitfield clearsOf(uint16_t opcode, std::span<const std::byte> arguments) const;
     void turnDrawn(Window& w, bool shownInFront);
@@ -476,8 +478,10 @@ private:
     // replay_eyes.cpp
     void noteEye(uint16_t opcode, std::span<const std::byte> arguments);
     void noteEyeAfter(uint16_t opcode);
-    void noteProjections(std::span<const std::byte> bytes, bool doubles);
+    void noteProjections(std::span<const std::byte> bytes);
+    void noteFixedProjection();
     void noteMatrices(GLuint program, const Data& values, GLsizei count, bool transposed, bool doubles);
+    [[nodiscard]] bool hasFixedMatrices() const;
     [[nodiscard]] bool drawsFixed() const;
     void shiftProjection();
     void unshiftProjection();

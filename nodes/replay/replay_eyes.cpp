@@ -4,12 +4,13 @@
 // projection's scale of x. No other coordinate changes, so depth tests decide as they did.
 //
 // Shaders get K by a uniform (nodes/shaders/moved_position), its scale from the matrices that the program hands to
-// them: of any matrix that ends in a perspective one, the first row's length over the fourth's. Fixed function gets a
-// projection of its own while it draws.
+// them: of any matrix that ends in a perspective one, the first row's length beside the fourth over the fourth's. Shaders
+// that get none are taken to use the fixed function's. Fixed function gets a projection of its own while it draws.
 // Source: thesis, "Stereo Rendering"; design 4.
 #include <cmath>
 #include <cstring>
 #include <string_view>
+#include <utility>
 
 #include "gl_opcodes.hpp"
 #include "nodes/replay/replay.hpp"
@@ -45,13 +46,17 @@ EyeUse useOf(uint16_t opcode) {
     return kUses[opcode];
 }
 
-// Columns of four, as OpenGL keeps them. 0: no perspective.
+// Columns of four, as OpenGL keeps them. What the first row has along the fourth is a shear of the frustum, no scale.
+// 0: no perspective.
 double fieldScaleOf(const double (&m)[16]) {
     for (const double value : m)
         if (!std::isfinite(value)) return 0;
-    const double x = std::sqrt(m[0] * m[0] + m[4] * m[4] + m[8] * m[8]);
-    const double w = std::sqrt(m[3] * m[3] + m[7] * m[7] + m[11] * m[11]);
-    return w > 1e-9 && x > 1e-9 ? x / w : 0;
+    const double ww = m[3] * m[3] + m[7] * m[7] + m[11] * m[11];
+    if (ww <= 1e-18) return 0;
+    const double shear = (m[0] * m[3] + m[4] * m[7] + m[8] * m[11]) / ww;
+    const double x = m[0] - shear * m[3], y = m[4] - shear * m[7], z = m[8] - shear * m[11];
+    const double scale = std::sqrt((x * x + y * y + z * z) / ww);
+    return scale > 1e-9 ? scale : 0;
 }
 
 template <class T> double fieldScaleAt(const std::byte* from, bool transposed) {
@@ -81,9 +86,8 @@ class NoBlobs : public BlobQueue {
 
 } // namespace
 
-bool Replay::drawsFixed() const {
-    return c_->program == 0 && !c_->pipelineBound && c_->api != wire::Api::Es2 && !c_->core && gl.glLoadMatrixf && gl.glMatrixMode;
-}
+bool Replay::hasFixedMatrices() const { return c_->api != wire::Api::Es2 && !c_->core && gl.glLoadMatrixf && gl.glMatrixMode; }
+bool Replay::drawsFixed() const { return c_->program == 0 && !c_->pipelineBound && hasFixedMatrices(); }
 
 void Replay::shiftProjection() {
     if (c_->projectionShifted) return;
@@ -116,6 +120,18 @@ void Replay::unshiftProjection() {
     gl.glMatrixMode(static_cast<GLenum>(mode));
 }
 
+// Before shaders draw that may read the fixed function's matrices.
+void Replay::noteFixedProjection() {
+    if (c_->projectionKnown || !hasFixedMatrices()) return;
+    c_->projectionKnown = true;
+    GLfloat p[16];
+    gl.glGetFloatv(GL_PROJECTION_MATRIX, p);
+    double m[16];
+    for (size_t i = 0; i < 16; ++i) m[i] = static_cast<double>(p[i]);
+    const double scale = fieldScaleOf(m);
+    if (std::exchange(c_->fixedScale, scale) != scale) applyTileValues();
+}
+
 void Replay::noteMatrices(GLuint program, const Data& values, GLsizei count, bool transposed, bool doubles) {
     const size_t bytes = doubles ? 128 : 64;
     if (!c_->shared || values.absent() || values.isOffset()) return;
@@ -131,10 +147,10 @@ void Replay::noteMatrices(GLuint program, const Data& values, GLsizei count, boo
 }
 
 // Blocks of uniforms: small buffers are looked through for a projection.
-void Replay::noteProjections(std::span<const std::byte> bytes, bool) {
+void Replay::noteProjections(std::span<const std::byte> bytes) {
     constexpr size_t kMostBytes = 4096;
     if (!c_->shared || bytes.size() > kMostBytes) return;
-    for (size_t at = 0; at + 64 <= bytes.size(); at += 16) {
+    for (size_t at = 0; at + 64 <= bytes.size(); at += 4) {
         const double scale = projectionAt(bytes.data() + at);
         if (scale == 0) continue;
         const bool changed = std::fabs(c_->shared->fieldScale - scale) > 1e-4 * scale;
@@ -146,14 +162,18 @@ void Replay::noteProjections(std::span<const std::byte> bytes, bool) {
 void Replay::noteEye(uint16_t opcode, std::span<const std::byte> arguments) {
     const EyeUse use = useOf(opcode);
     if (use == EyeUse::None || !bound_ || c_->compiling) return;
-    if (use == EyeUse::Matrix) return drawsFixed() || c_->projectionShifted ? unshiftProjection() : void();
+    if (use == EyeUse::Matrix) {
+        c_->projectionKnown = false;
+        return unshiftProjection();
+    }
     if (use == EyeUse::Draw || use == EyeUse::List) {
-        const bool shifts = drawsFixed() && drawsWindow() && c_->draw;
-        return shifts ? shiftProjection() : unshiftProjection();
+        if (drawsFixed() && drawsWindow() && c_->draw) return shiftProjection();
+        unshiftProjection();
+        return noteFixedProjection();
     }
     NoBlobs none;
     Args in(arguments, none);
-    if (use == EyeUse::Buffer) return noteProjections(arguments, false);
+    if (use == EyeUse::Buffer) return noteProjections(arguments);
     const std::string_view name = glOpcodeName(opcode);
     const bool named = name.starts_with("glProgram");
     if (name.find("4x") != std::string_view::npos) return; // not square
@@ -167,7 +187,9 @@ void Replay::noteEye(uint16_t opcode, std::span<const std::byte> arguments) {
 
 // A list may have brought a projection of its own.
 void Replay::noteEyeAfter(uint16_t opcode) {
-    if (useOf(opcode) != EyeUse::List || !bound_ || !c_->projectionShifted) return;
+    if (useOf(opcode) != EyeUse::List || !bound_) return;
+    c_->projectionKnown = false;
+    if (!c_->projectionShifted) return;
     std::array<GLfloat, 16> now{};
     gl.glGetFloatv(GL_PROJECTION_MATRIX, now.data());
     if (now != c_->shiftedProjection) c_->projectionShifted = false;

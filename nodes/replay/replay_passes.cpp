@@ -91,7 +91,7 @@ std::array<GLfloat, 8> Replay::moveOf(GLuint program) const {
     }
     if (seesWithOtherEye()) {
         // Without any matrix to go by: a field of view of 60 degrees from bottom to top.
-        double scale = c_->shared->fieldScale;
+        double scale = c_->fixedScale > 0 ? c_->fixedScale : c_->shared->fieldScale;
         const auto own = c_->shared->fieldScales.find(program);
         if (own != c_->shared->fieldScales.end()) scale = own->second;
         if (scale <= 0) scale = 1.7320508 * std::max(1.0f, v[3]) / std::max(1.0f, v[2]);

@@ -335,7 +335,7 @@ void Replay::composeRanges(Window& w) {
     if (r.phase != RangeFrame::Phase::Split || &w != boundDraw_) return;
     r.phase = RangeFrame::Phase::Whole;
     mute(w, false);
-    if (r.lastTotal == 0 || w.part.empty() || !hasTurn(w, w.turn)) return; // all of it was the collector's, or others'
+    if (r.lastTotal == 0 || w.part.empty() || !hasTurn(w.turn)) return; // all of it was the collector's, or others'
     PicturePart part;
     ++r.serial;
     readPart(w, w.part, part);

@@ -70,14 +70,14 @@ GLbitfield Replay::clearsOf(uint16_t opcode, std::span<const std::byte> argument
 
 bool Replay::learnsTurns(const Window& w) const { return takesTurns() && w.frames < kLearnedFrames; }
 
-bool Replay::hasTurn(const Window& w, int64_t turn) const { return !takesTurns() || turn % config_.pass.period == config_.pass.phase; }
+bool Replay::hasTurn(int64_t turn) const { return !takesTurns() || turn % config_.pass.period == config_.pass.phase; }
 
 // After its size or the turn has changed.
 void Replay::placePart(Window& w) {
     const PixelViewport part = interleaves(&w) ? inKernel(w.part) : w.part;
-    w.region = hasTurn(w, w.turn) ? part : PixelViewport{};
+    w.region = hasTurn(w.turn) ? part : PixelViewport{};
     w.drawn = w.region;
-    if (w.undecided && hasTurn(w, w.turn + 1)) w.drawn = part;
+    if (w.undecided && hasTurn(w.turn + 1)) w.drawn = part;
     if (w.range.muted) w.drawn = {};
     if (takesRanges() && !collects()) w.region = {}; // the collector's
     if (w.config.samples == 0 || w.drawn.empty()) return;
