@@ -51,7 +51,7 @@ public:
 class Args {
 public:
     Args(std::span<const std::byte> arguments, BlobQueue& blobs)
-        : at_(arguments.data()), end_(arguments.data() + arguments.size()), blobs_(blobs) {}
+        : at_(arguments.data()), end_(arguments.data() + arguments.size()), blobs_(&blobs) {}
 
     [[nodiscard]] bool ok() const { return ok_; }
     [[nodiscard]] size_t left() const { return static_cast<size_t>(end_ - at_); }
@@ -76,7 +76,7 @@ public:
         if (tag == record::kTagOffset) return Data::offset(get<uint64_t>());
         if (tag == record::kTagBlob) {
             bool found = false;
-            const auto blob = blobs_.takeBlob(found);
+            const auto blob = blobs_->takeBlob(found);
             ok_ = ok_ && found;
             return found ? Data::bytes(blob.data(), blob.size()) : Data{};
         }
@@ -106,7 +106,7 @@ private:
 
     const std::byte* at_;
     const std::byte* end_;
-    BlobQueue& blobs_;
+    BlobQueue* blobs_;
     bool ok_ = true;
 };
 

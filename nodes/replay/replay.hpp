@@ -13,6 +13,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <type_traits>
 #include <unordered_map>
@@ -181,6 +182,8 @@ private:
         bool copied = true;        // …because the frame before copied or read pixels of the window
         RangeFrame range;
         bool keepsPicture = false; // the turn never ends
+        bool sceneElsewhere = false;    // in this frame a scene is drawn into a framebuffer object (replay_scenes.cpp)
+        bool sceneWasElsewhere = false; // …in the frame before
         std::vector<int16_t> accumulated; // of `drawn`, rows bottom first; empty: nothing yet
     };
     struct ProgramInfo {
@@ -208,6 +211,7 @@ private:
         ProgramRecipes recipes;
         std::unordered_map<GLuint, double> fieldScales; // by the program's name: x of its projection (replay_eyes.cpp)
         std::unordered_map<GLuint, bool> primitiveIds;  // our programs that number primitives: not cut into pieces
+        std::unordered_map<GLuint, bool> memoryWriters; // by the program's name, once it was used (replay_left_out.cpp)
         double fieldScale = 0;                          // of the last projection in any buffer; 0: none was seen
     };
     struct Scissor {
@@ -323,12 +327,16 @@ private:
         bool clippingCounted = false; // a query counts what clipping gets or gives
         bool arbPositions = false; // an ARB program reads the window's offset
         bool pipelineBound = false;
+        std::set<GLenum> openQueries; // that count anything
+        bool feedsBack = false;       // transform feedback may be active
+        // Of what is drawn into now, as the last draw has found it (replay_scenes.cpp).
+        bool attachmentsKnown = false, depthAttached = false, sceneSized = false, depthTested = false;
         // Fixed function, seen by another eye: GL's projection is not the program's (replay_eyes.cpp).
         bool projectionShifted = false;
         // Ranges: whether draws may be shared, as long as no state changes (replay_range.cpp).
         bool rangeKnown = false, mayShare = false;
         bool writesMemory = false; // storage or images were bound: vertex shaders may write there
-        bool feedsBack = false;    // transform feedback
+        bool rangeFeedsBack = false; // transform feedback
         int activeQueries = 0;
         bool inPrimitive = false;
         bool projectionKnown = false; // as it is, for shaders that may read it
@@ -464,17 +472,24 @@ private:
     // replay_passes.cpp
     [[nodiscard]] bool hasKernel() const { return config_.pass.kernelWidth * config_.pass.kernelHeight > 1; }
     [[nodiscard]] bool interleaves(const Window* w) const { return hasKernel() && w && !w->plain; }
-    [[nodiscard]] bool movesPicture() const { return config_.pass.samples > 1 || interleaves(c_->draw); }
-    [[nodiscard]] PixelViewport inKernel(const PixelViewport& r) const;
+    [[nodiscard]] bool movesPicture() const { return config_.pass.samples > 1 || hasKernel(); }
     const std::byte* readEveryNth(Window& w, const PixelViewport& r, bool front);
     const std::byte* readRepeated(const PixelViewport& part, GLenum format, GLenum type, size_t group);
     [[nodiscard]] bool movesByShaders() const;
     [[nodiscard]] bool seesWithOtherEye() const { return config_.pass.eye != Eye::Cyclop; }
     [[nodiscard]] double eyeOffset() const { return (config_.pass.eye == Eye::Left ? -0.5 : 0.5) * config_.eyeBase; }
-    [[nodiscard]] std::array<double, 2> placeInPicture(double x, double y) const;
-    [[nodiscard]] RenderPass passOfWindow() const;
+    [[nodiscard]] RenderPass passOfDraws() const;
     void applyMovedViewports();
     std::array<GLfloat, 8> moveOf(GLuint program) const;
+    // replay_scenes.cpp
+    [[nodiscard]] bool isSeen() const;
+    [[nodiscard]] bool drawsScene() const;
+    bool hasDepthAttached();
+    void noteScene();
+    // replay_left_out.cpp
+    bool mayWriteMemory(GLuint program);
+    bool leavesOut(uint16_t opcode);
+    void exchangeDraws();
     // replay_eyes.cpp
     void noteEye(uint16_t opcode, std::span<const std::byte> arguments);
     void noteEyeAfter(uint16_t opcode);
@@ -588,6 +603,7 @@ private:
     std::vector<bool> saidLacking_;
     int listDepth_ = 0;         // display lists that are being run
     uint32_t listCommands_ = 0; // run since the outermost one began
+    std::unique_ptr<GlFunctions> leftOut_; // for draws that are left out; null: none was yet
     std::unique_ptr<ContextState> none_; // stands in where a stream has no context
 };
 

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "gl_opcodes.hpp"
+#include "nodes/replay/field_scale.hpp"
 #include "nodes/replay/replay.hpp"
 #include "streamcodec/opcode_names.hpp"
 
@@ -20,11 +21,13 @@ namespace mural {
 
 namespace {
 
-enum class EyeUse : uint8_t { None, Matrix, Draw, List, Uniform, Buffer };
+enum class EyeUse : uint8_t { None, Matrix, Draw, List, Uniform, Buffer, Framebuffer };
 
 EyeUse classify(std::string_view name) {
     const auto starts = [&](std::string_view stem) { return name.starts_with(stem); };
     if (starts("glUniformMatrix4") || starts("glProgramUniformMatrix4")) return EyeUse::Uniform;
+    for (const std::string_view stem : {"glBindFramebuffer", "glFramebuffer", "glNamedFramebuffer", "glDeleteFramebuffers", "glDeleteTextures", "glDeleteRenderbuffers"})
+        if (starts(stem)) return EyeUse::Framebuffer;
     if (starts("glUniform") || starts("glProgramUniform")) return EyeUse::None;
     if (starts("glBufferData") || starts("glBufferSubData") || starts("glNamedBuffer") || starts("glBufferStorage")) return EyeUse::Buffer;
     for (const std::string_view stem : {"glRotate", "glTranslate", "glScale", "glFrustum", "glOrtho", "glLoadIdentity", "glLoadTranspose", "glMultTranspose", "glLoadMatrix", "glMultMatrix", "glPushMatrix", "glPopMatrix", "glMatrix"})
@@ -44,37 +47,6 @@ EyeUse useOf(uint16_t opcode) {
         return uses;
     }();
     return kUses[opcode];
-}
-
-// Columns of four, as OpenGL keeps them. What the first row has along the fourth is a shear of the frustum, no scale.
-// 0: no perspective.
-double fieldScaleOf(const double (&m)[16]) {
-    for (const double value : m)
-        if (!std::isfinite(value)) return 0;
-    const double ww = m[3] * m[3] + m[7] * m[7] + m[11] * m[11];
-    if (ww <= 1e-18) return 0;
-    const double shear = (m[0] * m[3] + m[4] * m[7] + m[8] * m[11]) / ww;
-    const double x = m[0] - shear * m[3], y = m[4] - shear * m[7], z = m[8] - shear * m[11];
-    const double scale = std::sqrt((x * x + y * y + z * z) / ww);
-    return scale > 1e-9 ? scale : 0;
-}
-
-template <class T> double fieldScaleAt(const std::byte* from, bool transposed) {
-    T values[16];
-    std::memcpy(values, from, sizeof values);
-    double m[16];
-    for (size_t i = 0; i < 16; ++i) m[i] = static_cast<double>(transposed ? values[i % 4 * 4 + i / 4] : values[i]);
-    return fieldScaleOf(m);
-}
-
-// A projection as it is: nothing but a scale, a shear and depth. Other sixteen numbers of a buffer rarely look so.
-double projectionAt(const std::byte* from) {
-    float m[16];
-    std::memcpy(m, from, sizeof m);
-    for (const int zero : {1, 2, 3, 4, 6, 7, 12, 13, 15})
-        if (m[zero] != 0) return 0;
-    if (std::fabs(m[11]) != 1 || m[0] == 0 || m[5] == 0 || m[14] == 0 || !std::isfinite(m[0])) return 0;
-    return std::fabs(static_cast<double>(m[0]));
 }
 
 class NoBlobs : public BlobQueue {
@@ -126,9 +98,7 @@ void Replay::noteFixedProjection() {
     c_->projectionKnown = true;
     GLfloat p[16];
     gl.glGetFloatv(GL_PROJECTION_MATRIX, p);
-    double m[16];
-    for (size_t i = 0; i < 16; ++i) m[i] = static_cast<double>(p[i]);
-    const double scale = fieldScaleOf(m);
+    const double scale = fieldScaleOf(p);
     if (std::exchange(c_->fixedScale, scale) != scale) applyTileValues();
 }
 
@@ -137,7 +107,7 @@ void Replay::noteMatrices(GLuint program, const Data& values, GLsizei count, boo
     if (!c_->shared || values.absent() || values.isOffset()) return;
     for (GLsizei i = 0; i < count && values.size() >= bytes * (static_cast<size_t>(i) + 1); ++i) {
         const std::byte* at = values.as<std::byte>() + bytes * static_cast<size_t>(i);
-        const double scale = doubles ? fieldScaleAt<double>(at, transposed) : fieldScaleAt<float>(at, transposed);
+        const double scale = fieldScaleAt(at, doubles, transposed);
         if (scale == 0) continue;
         double& known = c_->shared->fieldScales[program];
         const bool changed = std::fabs(known - scale) > 1e-4 * scale;
@@ -150,30 +120,32 @@ void Replay::noteMatrices(GLuint program, const Data& values, GLsizei count, boo
 void Replay::noteProjections(std::span<const std::byte> bytes) {
     constexpr size_t kMostBytes = 4096;
     if (!c_->shared || bytes.size() > kMostBytes) return;
-    for (size_t at = 0; at + 64 <= bytes.size(); at += 4) {
-        const double scale = projectionAt(bytes.data() + at);
-        if (scale == 0) continue;
-        const bool changed = std::fabs(c_->shared->fieldScale - scale) > 1e-4 * scale;
-        c_->shared->fieldScale = scale;
-        if (changed) applyTileValues();
-    }
+    const double scale = lastProjectionIn(bytes);
+    if (scale == 0) return;
+    const bool changed = std::fabs(c_->shared->fieldScale - scale) > 1e-4 * scale;
+    c_->shared->fieldScale = scale;
+    if (changed) applyTileValues();
 }
 
 void Replay::noteEye(uint16_t opcode, std::span<const std::byte> arguments) {
     const EyeUse use = useOf(opcode);
     if (use == EyeUse::None || !bound_ || c_->compiling) return;
+    if (use == EyeUse::Framebuffer) c_->attachmentsKnown = false;
+    if (use == EyeUse::Draw || use == EyeUse::List) noteScene();
+    if (!seesWithOtherEye()) return;
     if (use == EyeUse::Matrix) {
         c_->projectionKnown = false;
         return unshiftProjection();
     }
     if (use == EyeUse::Draw || use == EyeUse::List) {
-        if (drawsFixed() && drawsWindow() && c_->draw) return shiftProjection();
+        if (drawsFixed() && isSeen() && c_->draw) return shiftProjection();
         unshiftProjection();
         return noteFixedProjection();
     }
     NoBlobs none;
     Args in(arguments, none);
     if (use == EyeUse::Buffer) return noteProjections(arguments);
+    if (use != EyeUse::Uniform) return;
     const std::string_view name = glOpcodeName(opcode);
     const bool named = name.starts_with("glProgram");
     if (name.find("4x") != std::string_view::npos) return; // not square

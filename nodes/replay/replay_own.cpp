@@ -2,6 +2,7 @@
 #include <cstring>
 #include <utility>
 
+#include "nodes/replay/pass_place.hpp"
 #include "nodes/replay/replay.hpp"
 #include "streamcodec/sizes/vertex_types.hpp"
 
@@ -222,8 +223,8 @@ bool Replay::ownSwap(Args& in, bool front) {
         if (takesRanges()) rangeDrawn(w);
         f.notSplit = takesRanges() && !w.range.wasSplit;
         f.config = w.config;
-        f.region = hasKernel() && !w.region.empty() ? inKernel(w.part) : w.region;
-        f.picture = hasKernel() ? inKernel(w.whole) : w.whole;
+        f.region = hasKernel() && !w.region.empty() ? inKernel(config_.pass, w.part) : w.region;
+        f.picture = hasKernel() ? inKernel(config_.pass, w.whole) : w.whole;
         f.keepsPicture = keepsTurn(w);
         // The thread that swaps need not be the one that has drawn: GLX takes any window.
         if (bound_ && &w == boundDraw_ && w.surface) f.pixels = [this, &w, front](const PixelViewport& r) {

@@ -14,7 +14,7 @@
 namespace mural {
 
 ShaderRewrites Replay::rewrites() const {
-    const bool moved = seesWithOtherEye() || movesByShaders();
+    const bool moved = seesWithOtherEye() || (movesPicture() && movesByShaders());
     return {config_.cull && !alone() && !moved, config_.lean && !alone(), moved};
 }
 
@@ -31,7 +31,7 @@ void Replay::applyTileValues() {
         place.translated = drawsLean();
         values = tileValues(place);
     }
-    if (rewrites().moved && drawsWindow() && c_->draw) values.move = moveOf(c_->program);
+    if (rewrites().moved && isSeen() && c_->draw) values.move = moveOf(c_->program);
     if (c_->program) c_->shared->tiled.apply(gl, name(Kind::Program, c_->program), values);
     else if (c_->pipelineBound) c_->shared->tiled.applySeparable(gl, values);
     if (!c_->arbPositions) return;
@@ -107,6 +107,7 @@ void Replay::glLinkProgram(GLuint program) {
     applyTileValues(); // it may be the current one
 }
 void Replay::linkProgram(GLuint ours) {
+    if (c_->shared) c_->shared->memoryWriters.clear();
     if (!c_->shared || !rewrites().any()) gl.glLinkProgram(ours);
     else c_->shared->tiled.link(gl, ours, rewrites(), esContext());
 }

@@ -71,12 +71,14 @@ void Replay::glBeginQuery(GLenum target, GLuint id) {
     if (countsSamples(target) || target == GL_FRAGMENT_SHADER_INVOCATIONS) c_->counting[target] = id;
     gl.glBeginQuery(target, ours);
     c_->clippingCounted = c_->clippingCounted || countsClipping(target);
+    if (!countsSamples(target)) c_->openQueries.insert(target);
     applyTileValues();
 }
 
 void Replay::glEndQuery(GLenum target) {
     gl.glEndQuery(target);
     c_->counting.erase(target);
+    c_->openQueries.erase(target);
     if (countsClipping(target)) c_->clippingCounted = false;
     if (c_->counting.empty() && std::exchange(c_->countedWhole, false)) applyScissors();
     applyTileValues();
@@ -84,10 +86,12 @@ void Replay::glEndQuery(GLenum target) {
 
 void Replay::glBeginQueryIndexed(GLenum target, GLuint index, GLuint id) {
     if (index == 0) return glBeginQuery(target, id);
+    c_->openQueries.insert(target);
     if (gl.glBeginQueryIndexed) gl.glBeginQueryIndexed(target, index, name(Kind::Query, id));
 }
 void Replay::glEndQueryIndexed(GLenum target, GLuint index) {
     if (index == 0) return glEndQuery(target);
+    c_->openQueries.erase(target);
     if (gl.glEndQueryIndexed) gl.glEndQueryIndexed(target, index);
 }
 

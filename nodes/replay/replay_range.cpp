@@ -125,7 +125,7 @@ void Replay::noteRangeState(uint16_t opcode, std::span<const std::byte> argument
         break;
     }
     case RangeUse::Feedback:
-        if (!name.starts_with("glDraw")) c_->feedsBack = name.starts_with("glBegin");
+        if (!name.starts_with("glDraw")) c_->rangeFeedsBack = name.starts_with("glBegin");
         break;
     case RangeUse::Query: c_->activeQueries = std::max(0, c_->activeQueries + (name.starts_with("glBegin") ? 1 : -1)); break;
     default: break;
@@ -189,7 +189,7 @@ bool Replay::shares(Window& w, uint64_t cost, uint64_t& first, uint64_t& last) {
     RangeFrame& r = w.range;
     if (r.phase == RangeFrame::Phase::Whole) return false;
     constexpr GLbitfield kNeeded = GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT;
-    const bool may = mayShare() && !allDrawn() && !c_->writesMemory && !c_->feedsBack && c_->activeQueries == 0 && (r.cleared & kNeeded) == kNeeded;
+    const bool may = mayShare() && !allDrawn() && !c_->writesMemory && !c_->rangeFeedsBack && c_->activeQueries == 0 && (r.cleared & kNeeded) == kNeeded;
     GLint function = 0;
     if (may && r.phase == RangeFrame::Phase::Split) gl.glGetIntegerv(GL_DEPTH_FUNC, &function);
     if (!may || (function != 0 && static_cast<GLenum>(function) != r.function)) {

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "nodes/replay/pass_place.hpp"
 #include "nodes/replay/replay.hpp"
 
 namespace mural {
@@ -46,7 +47,7 @@ PixelViewport Replay::origin() const {
 void Replay::applyScissor(int index, bool all) {
     const Scissor& app = c_->scissors[static_cast<size_t>(index)];
     bool enabled = app.enabled;
-    PixelViewport box = drawsWindow() && interleaves(c_->draw) ? inKernel(app.box) : app.box;
+    PixelViewport box = drawsWindow() && interleaves(c_->draw) ? inKernel(config_.pass, app.box) : app.box;
     if (!drawsWhole() && c_->draw) {
         const PixelViewport part = c_->draw->drawn;
         if (drawsLean()) { // the framebuffer's edges are the tile's
@@ -86,7 +87,7 @@ void Replay::withoutTile(const std::function<void()>& call) {
 
 void Replay::applyViewports() {
     if (!bound_) return;
-    if (movesPicture() && drawsWindow() && !movesByShaders()) return applyMovedViewports();
+    if (movesPicture() && !movesByShaders()) return applyMovedViewports();
     const PixelViewport o = origin();
     const auto& v = c_->viewports[0];
     if (!c_->viewportsDiffer || !gl.glViewportIndexedf) {

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "gl_opcodes.hpp"
+#include "nodes/replay/pass_place.hpp"
 #include "nodes/replay/replay.hpp"
 #include "streamcodec/opcode_names.hpp"
 
@@ -26,7 +27,7 @@ constexpr int64_t kLearnedFrames = 2;
 constexpr int64_t kKeptFrames = 8; // in a row: then it is said that turns do not help
 constexpr GLbitfield kBuffers = GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT;
 
-enum class WindowUse : uint8_t { None, Clears, Draws };
+enum class WindowUse : uint8_t { None, Clears, Draws, FeedbackBegins, FeedbackEnds };
 
 bool draws(std::string_view name) {
     if (name.starts_with("glDrawBuffer")) return false;
@@ -45,7 +46,10 @@ WindowUse useOf(uint16_t opcode) {
         std::vector<WindowUse> uses(op::kLimit, WindowUse::None);
         for (uint16_t o = wire::kFirstGlOpcode; o < op::kLimit; ++o) {
             const char* name = glOpcodeName(o);
-            if (name && draws(name)) uses[o] = o == op::glClear || std::string_view(name).starts_with("glClearBuffer") ? WindowUse::Clears : WindowUse::Draws;
+            const std::string_view text = name ? name : "";
+            if (text.starts_with("glBeginTransformFeedback") || text.starts_with("glResumeTransformFeedback")) uses[o] = WindowUse::FeedbackBegins;
+            else if (text.starts_with("glEndTransformFeedback")) uses[o] = WindowUse::FeedbackEnds;
+            else if (draws(text)) uses[o] = o == op::glClear || text.starts_with("glClearBuffer") ? WindowUse::Clears : WindowUse::Draws;
         }
         return uses;
     }();
@@ -74,7 +78,7 @@ bool Replay::hasTurn(int64_t turn) const { return !takesTurns() || turn % config
 
 // After its size or the turn has changed.
 void Replay::placePart(Window& w) {
-    const PixelViewport part = interleaves(&w) ? inKernel(w.part) : w.part;
+    const PixelViewport part = interleaves(&w) ? inKernel(config_.pass, w.part) : w.part;
     w.region = hasTurn(w.turn) ? part : PixelViewport{};
     w.drawn = w.region;
     if (w.undecided && hasTurn(w.turn + 1)) w.drawn = part;
@@ -116,7 +120,8 @@ GLbitfield Replay::needsCleared() const {
 // Before any command that may change pixels of the window.
 void Replay::noteTurn(uint16_t opcode, std::span<const std::byte> arguments) {
     const WindowUse use = useOf(opcode);
-    if (use == WindowUse::None || !drawsWindow() || !c_->draw || c_->compiling) return;
+    if (use == WindowUse::FeedbackBegins || use == WindowUse::FeedbackEnds) c_->feedsBack = use == WindowUse::FeedbackBegins;
+    if ((use != WindowUse::Clears && use != WindowUse::Draws) || !drawsWindow() || !c_->draw || c_->compiling) return;
     Window& w = *c_->draw;
     if (w.turnOver) beginTurn(w);
     if (w.keepsPicture) return;
@@ -159,6 +164,7 @@ void Replay::keepTurn(Window& w) {
 bool Replay::keepsTurn(const Window& w) const { return w.keepsPicture || w.kept >= kKeptFrames; }
 
 void Replay::turnDrawn(Window& w, bool shownInFront) {
+    w.sceneWasElsewhere = std::exchange(w.sceneElsewhere, false);
     if (hasKernel()) {
         const bool plain = std::exchange(w.plain, std::exchange(w.copied, false));
         if (plain != w.plain) {

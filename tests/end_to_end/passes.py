@@ -153,11 +153,12 @@ def subpixel_is_the_mean(context, notes):
 @case
 def pixel_polygons_are_near(context, notes):
     wrong = None
-    plain = native(context, "pass_scene", ["--draw", "mvp"])
-    for kernel in ("2x1", "3", "2x2", "3x2"):
-        got = through(context, ["--pixel", kernel], "pass_scene", ["--draw", "mvp"])
+    for program, arguments, kernel in (("pass_scene", ["--draw", "mvp"], "2x1"), ("pass_scene", ["--draw", "fixed"], "3"), ("pass_scene", ["--draw", "mvp"], "2x2"),
+                                       ("pass_scene", ["--draw", "geometry"], "3x2"), ("pass_scene_es2", [], "2x2")):
+        plain = native(context, program, arguments)
+        got = through(context, ["--pixel", kernel], program, arguments)
         worst = min(pictures.decibels(a, b) for a, b in zip(plain, got))
-        notes.append("%s: %.1f dB" % (kernel, worst))
+        notes.append("%s %s: %.1f dB" % (arguments[-1] if arguments else program, kernel, worst))
         if len(got) != len(plain) or worst < 40:
             wrong = wrong or "%s: %d pictures, %.1f dB" % (kernel, len(got), worst)
         if all(a.rows == b.rows for a, b in zip(plain[1:], got[1:])):
@@ -206,6 +207,13 @@ def seen_ways(context, notes, scenes):
 @case
 def stereo_eyes_fixed_and_es(context, notes):
     return seen_ways(context, notes, [("pass_scene", ["--draw", way]) for way in ("fixed", "legacy")] + [("pass_scene_es2", [])])
+
+
+@case
+def scenes_drawn_elsewhere(context, notes):
+    """Into a framebuffer object, and then shown: what moves is the scene, not the quad or blit, nor its shadow map."""
+    scenes = [("pass_scene", ["--draw", way]) for way in ("framebuffer", "blit")]
+    return seen_ways(context, notes, scenes) or sampled_ways(context, notes, [scene + (2, SIZE) for scene in scenes])
 
 
 @case

@@ -1,0 +1,28 @@
+// Where the pixels of a pass lie in the picture of a frame (nodes/session/render_pass.hpp).
+#pragma once
+
+#include <array>
+
+#include "common/pixel_viewport.hpp"
+#include "nodes/session/render_pass.hpp"
+
+namespace mural {
+
+// Where window coordinates of the whole picture lie in this pass's: pixel i of a kernel of n columns shows what is at
+// n i + its column + 1/2, and a sample what lies off its pixel's centre.
+[[nodiscard]] std::array<double, 2> placeInPass(const RenderPass& pass, double x, double y);
+
+// Which pixels of the pass's picture show what is in `r` of the window.
+[[nodiscard]] PixelViewport inKernel(const RenderPass& pass, const PixelViewport& r);
+
+// From the first to the last pixel of the window that pixels `r` of the pass show.
+[[nodiscard]] PixelViewport shownByKernel(const RenderPass& pass, const PixelViewport& r);
+
+// The pass's pixels that stand for the pixels `r` of the window, each for those of its kernel.
+[[nodiscard]] PixelViewport standingFor(const RenderPass& pass, const PixelViewport& r);
+
+// What moves positions so within a viewport x, y, width, height: scale - 1 in x, y, then offset in x, y, of normalised
+// device coordinates (shaders::kMoveUniform).
+[[nodiscard]] std::array<float, 4> moveInViewport(const RenderPass& pass, const std::array<float, 4>& viewport);
+
+} // namespace mural

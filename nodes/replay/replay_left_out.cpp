@@ -1,0 +1,88 @@
+// Draw calls of frames that are another node's turn: they change no pixel here, and are left out where they change
+// nothing else either. What follows of them in the stream is taken as ever: only GL's own functions do nothing.
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+#include "gl_opcodes.hpp"
+#include "nodes/replay/replay.hpp"
+#include "streamcodec/opcode_names.hpp"
+
+namespace mural {
+
+namespace {
+
+using F = GlFunctions;
+constexpr auto kDraws = std::tuple(
+    &F::glDrawArrays, &F::glDrawArraysIndirect, &F::glDrawArraysInstanced, &F::glDrawArraysInstancedBaseInstance, &F::glDrawElements,
+    &F::glDrawElementsBaseVertex, &F::glDrawElementsIndirect, &F::glDrawElementsInstanced, &F::glDrawElementsInstancedBaseInstance,
+    &F::glDrawElementsInstancedBaseVertex, &F::glDrawElementsInstancedBaseVertexBaseInstance, &F::glDrawRangeElements,
+    &F::glDrawRangeElementsBaseVertex, &F::glMultiDrawArrays, &F::glMultiDrawArraysIndirect, &F::glMultiDrawElements,
+    &F::glMultiDrawElementsBaseVertex, &F::glMultiDrawElementsIndirect);
+
+template <class... A> void leaveOut(void (*&function)(A...)) {
+    if (function) function = [](A...) {};
+}
+
+template <class Call> void forEachDraw(Call&& call) {
+    std::apply([&](auto... members) { (call(members), ...); }, kDraws);
+}
+
+bool maybeLeftOut(std::string_view name) {
+    for (const std::string_view stem : {"glDrawArrays", "glDrawElements", "glDrawRangeElements", "glMultiDrawArrays", "glMultiDrawElements"})
+        if (name.starts_with(stem)) return true;
+    return false;
+}
+
+bool isDraw(uint16_t opcode) {
+    static const auto kFound = [] {
+        std::vector<bool> found(op::kLimit, false);
+        for (uint16_t o = wire::kFirstGlOpcode; o < op::kLimit; ++o)
+            if (const char* name = glOpcodeName(o)) found[o] = maybeLeftOut(name);
+        return found;
+    }();
+    return kFound[opcode];
+}
+
+} // namespace
+
+// Any stage of it: storage blocks, counters or images. Pipelines are not looked at.
+bool Replay::mayWriteMemory(GLuint program) {
+    const bool can = c_->version >= (c_->api == wire::Api::Desktop ? 42 : 31);
+    if (!can || program == 0) return c_->pipelineBound;
+    const auto known = c_->shared->memoryWriters.find(program);
+    if (known != c_->shared->memoryWriters.end()) return known->second;
+    bool writes = !gl.glGetProgramInterfaceiv || !gl.glGetActiveUniformsiv;
+    const GLuint ours = name(Kind::Program, program);
+    for (const GLenum kind : {GL_SHADER_STORAGE_BLOCK, GL_ATOMIC_COUNTER_BUFFER}) {
+        GLint count = 0;
+        if (!writes) gl.glGetProgramInterfaceiv(ours, kind, GL_ACTIVE_RESOURCES, &count);
+        writes = writes || count > 0;
+    }
+    GLint uniforms = 0;
+    if (!writes) gl.glGetProgramiv(ours, GL_ACTIVE_UNIFORMS, &uniforms);
+    for (GLuint i = 0; i < static_cast<GLuint>(uniforms) && !writes; ++i) {
+        GLint type = 0;
+        gl.glGetActiveUniformsiv(ours, 1, &i, GL_UNIFORM_TYPE, &type);
+        writes = type >= GL_IMAGE_1D && type <= GL_UNSIGNED_INT_IMAGE_2D_MULTISAMPLE_ARRAY;
+    }
+    return c_->shared->memoryWriters[program] = writes;
+}
+
+bool Replay::leavesOut(uint16_t opcode) {
+    if (!isDraw(opcode) || !drawsWindow() || !c_->draw || c_->compiling || !c_->shared) return false;
+    const Window& w = *c_->draw;
+    const bool drawsHere = drawsWhole() || !w.drawn.empty() || w.whole.empty();
+    return !drawsHere && c_->openQueries.empty() && !c_->feedsBack && !mayWriteMemory(c_->program);
+}
+
+// Twice: as it was.
+void Replay::exchangeDraws() {
+    if (!leftOut_) {
+        leftOut_ = std::make_unique<GlFunctions>(gl);
+        forEachDraw([&](auto member) { leaveOut((*leftOut_).*member); });
+    }
+    forEachDraw([&](auto member) { std::swap(gl.*member, (*leftOut_).*member); });
+}
+
+} // namespace mural
