@@ -9,6 +9,7 @@
 
 #include "balancer/compound/even_split.hpp"
 #include "balancer/compound/plan_frame.hpp"
+#include "balancer/config/screen.hpp"
 
 namespace mural {
 
@@ -41,10 +42,13 @@ public:
     Result<SessionPlan> plan() {
         if (auto chosen = chooseLayouts(); !chosen) return chosen.error();
         gather();
+        if (auto chosen = chooseCanvas(); !chosen) return chosen.error();
         if (draws_.empty()) return Error{file_ + ": nothing of it draws: it has no canvas with segments, or no compound with channels; mural config print --resolved shows what it has"};
         if (auto done = placeParts(); !done) return done.error();
         placeNodes();
+        takeObserver();
         tell();
+        warnOfAngles();
         return std::move(plan_);
     }
 
@@ -52,6 +56,7 @@ public:
         if (!chooseLayouts()) return {0, 0};
         const compound::DisplaySizes sizes = compound::displaySizes(config_);
         for (const config::ResolvedCanvas& canvas : config_.canvases) {
+            if (!wishes_.canvas.empty() && canvas.name != wishes_.canvas) continue;
             for (const Index s : canvas.segments) {
                 const config::ResolvedSegment& segment = config_.segments[at(s)];
                 if (segment.channel == kNone || segment.viewport.empty()) continue;
@@ -104,6 +109,28 @@ private:
             }
             for (const auto& [queue, draws] : workers) dealOut(plan, plan.queues[at(queue)], draws);
         }
+    }
+
+    [[nodiscard]] Index canvasOf(const Draw& d) const {
+        const Index segment = config_.channels[at(d.context.destination)].segment;
+        return segment == kNone ? kNone : config_.segments[at(segment)].canvas;
+    }
+
+    // Each canvas is a wall of its own, and the session shows one.
+    Result<void> chooseCanvas() {
+        std::set<Index> canvases;
+        for (const Draw& d : draws_) canvases.insert(canvasOf(d));
+        Index chosen = canvases.empty() ? kNone : *canvases.begin();
+        if (!wishes_.canvas.empty()) {
+            const auto named = std::find_if(canvases.begin(), canvases.end(), [&](Index c) { return c != kNone && config_.canvases[at(c)].name == wishes_.canvas; });
+            if (named == canvases.end()) return Error{"--canvas \"" + wishes_.canvas + "\": " + file_ + " shows nothing on a canvas of this name; mural config print shows them"};
+            chosen = *named;
+        } else if (canvases.size() > 1) {
+            plan_.warnings.push_back(file_ + ": of its " + std::to_string(canvases.size()) + " canvases the first is shown; --canvas NAME shows another");
+        }
+        std::erase_if(draws_, [&](const Draw& d) { return canvasOf(d) != chosen; });
+        canvas_ = chosen;
+        return {};
     }
 
     // Queues are dealt out evenly, in strips of the picture or of the range.
@@ -226,12 +253,39 @@ private:
         node.reach = reachOf(machine.host, wishes_.ownHost);
     }
 
+    // Of the first view in stereo.
+    void takeObserver() {
+        for (const Draw& d : draws_) {
+            const Index o = config_.views[at(d.context.view)].observer;
+            if (d.context.eye == Eye::Cyclop || o == kNone) continue;
+            const config::ResolvedObserver& observer = config_.observers[at(o)];
+            plan_.eyeBase = length(observer.eyeRight - observer.eyeLeft);
+            plan_.focusDistance = observer.focusDistance;
+            return;
+        }
+    }
+
+    // A program that knows nothing of the room draws one flat picture.
+    void warnOfAngles() {
+        std::optional<Vector3> first;
+        std::set<Index> segments;
+        for (const Draw& d : draws_) segments.insert(config_.channels[at(d.context.destination)].segment);
+        for (const Index s : segments) {
+            if (s == kNone) continue;
+            const config::Screen screen = config::screenOf(config_.segments[at(s)].surface);
+            if (!first) first = screen.normal;
+            if (dot(*first, screen.normal) > 1 - 1e-6) continue;
+            plan_.warnings.push_back(file_ + ": its screens stand at angles to each other; a program's picture is laid over them as over a flat wall");
+            return;
+        }
+    }
+
     void tell() {
         for (size_t i = 0; i < plan_.nodes.size(); ++i) {
             const NodePlan& n = plan_.nodes[i];
             const std::string pass = describe(n.pass);
             char area[96];
-            std::snprintf(area, sizeof area, "%.4g %.4g %.4g %.4g", n.area->x, n.area->y, n.area->w, n.area->h);
+            std::snprintf(area, sizeof area, "%.9g %.9g %.9g %.9g", n.area->x, n.area->y, n.area->w, n.area->h);
             plan_.explain.push_back("node " + std::to_string(n.node) + " (" + n.where + ") draws for channel \"" + nameOf(config_.channels[at(channels_[i])], channels_[i]) + "\" " +
                                     (pass.empty() ? "" : pass + ", ") + "the part [ " + area + " ] of the wall");
         }
@@ -244,6 +298,7 @@ private:
     std::vector<Draw> draws_;
     std::vector<int> pictures_;   // of each draw
     std::vector<Index> channels_; // of each node
+    Index canvas_ = kNone;
     bool anaglyph_ = false;
     SessionPlan plan_;
 };

@@ -14,6 +14,7 @@ namespace mural {
 struct ConfigWishes {
     std::string ownHost;
     bool here = false;                // all nodes on this machine
+    std::string canvas;               // name of the one to show; empty: the first that shows anything
     std::vector<std::string> layouts; // names of those to show; canvases without any show their first
 };
 

@@ -32,6 +32,7 @@ struct NodePlan {
 struct SessionPlan {
     std::vector<NodePlan> nodes;
     WallComposition wall;
+    std::optional<double> eyeBase, focusDistance; // that a configuration file says, in metres
     std::vector<std::string> explain; // lines for --explain
     std::vector<std::string> warnings; // lines that every user should see
 };

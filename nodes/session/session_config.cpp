@@ -48,6 +48,7 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("remoteMural", c.remoteMural);
     visit("configFile", c.configFile);
     visit("here", c.here);
+    visit("canvas", c.canvas);
     visit("layouts", c.layouts);
     visit("stereo", c.passes.stereo);
     visit("kernelWidth", c.passes.kernelWidth, 1);

@@ -27,6 +27,7 @@ struct SessionConfig {
     std::string remoteMural;      // --remote-mural: path of mural on the hosts; empty: this one's path
     std::string configFile;       // --config; empty: what follows says it
     bool here = false;            // --here: all its nodes on this machine
+    std::string canvas;           // --canvas
     std::vector<std::string> layouts; // --layout: of its canvases
     PassCounts passes;            // --stereo, --pixel, --subpixel, --dplex, --db
     double eyeBase = 0.05;        // --eye-base: distance of the eyes, in the program's units

@@ -1,4 +1,5 @@
 // Finds out all that can be wrong before anything is started, then runs the session.
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fmt/format.h>
@@ -86,6 +87,10 @@ int complain(const std::string& text, int status) {
 } // namespace
 
 int runCommand(const RunOptions& options) {
+    if (!options.configText.empty()) {
+        std::fputs(options.configText.c_str(), stdout);
+        return 0;
+    }
     PreparedRun run;
     run.config = options.config;
     run.config.session = newSessionName();

@@ -9,6 +9,9 @@
 #include <string_view>
 #include <utility>
 
+#include "balancer/config/short_forms.hpp"
+#include "balancer/config/text/parser.hpp"
+#include "balancer/config/text/writer.hpp"
 #include "nodes/head/config_plan.hpp"
 #include "nodes/launch/private_display.hpp"
 #include "transport/connection_description.hpp"
@@ -204,7 +207,7 @@ Result<void> readPasses(const RunArguments& a, SessionConfig& c) {
     if (auto r = choose("--stereo", a.stereo, modes, p.stereo); !r) return r;
     if (auto r = readReal("--eye-base", a.eyeBase, 0, c.eyeBase); !r) return r;
     if (auto r = readReal("--focus", a.focus, 1e-9, c.focusDistance); !r) return r;
-    if ((a.eyeBase || a.focus) && p.stereo == StereoMode::Off) return Error{std::string(a.eyeBase ? "--eye-base" : "--focus") + " is for stereo; add --stereo, such as --stereo anaglyph"};
+    if ((a.eyeBase || a.focus) && p.stereo == StereoMode::Off && !a.config) return Error{std::string(a.eyeBase ? "--eye-base" : "--focus") + " is for stereo; add --stereo, such as --stereo anaglyph"};
     if (a.pixel) {
         const auto columns = wholeNumber(*a.pixel, 1, kMaxKernel);
         const auto kernel = columns ? std::optional(std::pair(static_cast<int>(*columns), 1)) : pairOf(*a.pixel, 'x', 1, kMaxKernel);
@@ -225,7 +228,7 @@ Result<void> readPasses(const RunArguments& a, SessionConfig& c) {
 Result<void> readConfigFile(const RunArguments& a, RunOptions& options) {
     SessionConfig& c = options.config;
     if (!a.config) {
-        if (!a.layouts.empty() || a.here) return Error{std::string(a.here ? "--here" : "--layout") + " is for a configuration file; add --config FILE"};
+        if (!a.layouts.empty() || a.here || a.canvas) return Error{std::string(a.here ? "--here" : a.canvas ? "--canvas" : "--layout") + " is for a configuration file; add --config FILE"};
         return {};
     }
     const std::pair<const char*, bool> contradicting[] = {{"--tiles", a.tiles.has_value()}, {"--nodes", a.nodes.has_value()}, {"--local-nodes", a.localNodes.has_value()}, {"--stereo", a.stereo.has_value()},
@@ -237,13 +240,16 @@ Result<void> readConfigFile(const RunArguments& a, RunOptions& options) {
     for (const config::Diagnostic& d : loaded.diagnostics.all())
         if (d.severity == config::Severity::Warning) options.notices.push_back(loaded.diagnostics.text(d));
     if (!loaded.ok()) return Error{loaded.diagnostics.firstError() + (loaded.diagnostics.errors() > 1 ? fmt::format(" (and {} more: mural config check {})", loaded.diagnostics.errors() - 1, *a.config) : "")};
-    const ConfigWishes wishes{"", a.here, a.layouts};
+    const ConfigWishes wishes{"", a.here, a.canvas.value_or(""), a.layouts};
     auto plan = planOf(loaded, wishes);
     if (!plan) return plan.error();
     std::error_code failed;
     c.configFile = std::filesystem::absolute(*a.config, failed).string();
     c.here = a.here;
+    c.canvas = wishes.canvas;
     c.layouts = a.layouts;
+    if (!a.eyeBase) c.eyeBase = plan->eyeBase.value_or(c.eyeBase);
+    if (!a.focus) c.focusDistance = plan->focusDistance.value_or(c.focusDistance);
     const int processes = static_cast<int>(plan->nodes.size());
     if (processes > kMaxNodes) return Error{fmt::format("{}: {} render nodes; at most {} can run", *a.config, processes, kMaxNodes)};
     for (const NodePlan& node : plan->nodes)
@@ -258,6 +264,34 @@ Result<void> readConfigFile(const RunArguments& a, RunOptions& options) {
     c.width = wall.w;
     c.height = wall.h;
     return {};
+}
+
+// The file that says the same as the options, to go on from.
+Result<std::string> configTextOf(const RunArguments& a, const SessionConfig& c) {
+    if (a.config) {
+        config::Diagnostics ignored(*a.config);
+        return config::writeConfig(config::readConfigFile(*a.config, ignored));
+    }
+    config::ShortForm form;
+    form.columns = c.columns;
+    form.rows = c.rows;
+    form.nodes = c.hosts;
+    form.ranges = c.passes.ranges;
+    form.pixels = c.passes.kernelWidth;
+    form.samples = c.passes.samples;
+    form.frames = c.passes.period;
+    if (c.passes.kernelHeight > 1) return Error{"--print-config: a pixel kernel of several rows has no short form; write it as pixel [ x y width height ] into a file"};
+    switch (c.passes.stereo) {
+    case StereoMode::Off: break;
+    case StereoMode::Anaglyph: form.stereo = config::StereoForm::Anaglyph; break;
+    case StereoMode::SideBySide: form.stereo = config::StereoForm::SideBySide; break;
+    default: return Error{"--print-config: a configuration has no such stereo mode; anaglyph and side-by-side it has"};
+    }
+    if (c.width > 0) form.width = c.width;
+    if (c.height > 0) form.height = c.height;
+    auto file = config::shortForm(form);
+    if (!file) return file.error();
+    return config::writeConfig(*file);
 }
 
 Result<void> readOutput(const RunArguments& a, SessionConfig& c) {
@@ -300,8 +334,10 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
     command.add_option("--out", a.out, "write pictures into this folder (PNG), or a video (.mp4, .mkv, .webm, …)")->type_name("DIR|VIDEO");
     command.add_option("--save", a.save, "write only these frames, counted from 1")->type_name("1,30,90");
     command.add_option("--config", a.config, "wall, nodes and compounds by a configuration file (.eqc)")->type_name("FILE");
+    command.add_option("--canvas", a.canvas, "show this canvas of the file (its first)")->type_name("NAME");
     command.add_option("--layout", a.layouts, "show this layout of the file's canvases; may be given for each")->type_name("NAME")->take_all();
     command.add_flag("--here", a.here, "run all nodes of the file on this machine");
+    command.add_flag("--print-config", a.printConfig, "print the configuration file that the other options stand for, and run nothing");
     command.add_option("--stereo", a.stereo, "two eyes from a program that knows one: anaglyph, side-by-side, top-bottom, or left, right alone (off)")->type_name("MODE");
     command.add_option("--eye-base", a.eyeBase, "distance of the eyes, in the program's units (0.05)")->type_name("D");
     command.add_option("--focus", a.focus, "distance at which both eyes see the same, in the program's units (1)")->type_name("D");
@@ -357,6 +393,12 @@ Result<RunOptions> runOptionsFrom(const RunArguments& a) {
     if (a.report && a.report->empty()) return badValue("--report", "", "must be a file, such as --report report.json");
     options.reportFile = a.report.value_or("");
     options.program = a.program;
+    if (a.printConfig) {
+        auto text = configTextOf(a, c);
+        if (!text) return text.error();
+        options.configText = std::move(*text);
+        return options;
+    }
     if (options.program.empty()) return Error{"no program was given; put it after --, such as: mural run --tiles 2x2 -- glxgears"};
     return options;
 }

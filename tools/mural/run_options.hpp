@@ -23,6 +23,7 @@ struct RunOptions {
     FrontChoice front = FrontChoice::Auto;
     bool native = false;
     bool quiet = false;
+    std::string configText;           // --print-config: the configuration that the options stand for; empty: not asked for
     std::vector<std::string> notices; // what the configuration file should be mended in
     std::string reportFile;           // --report; empty: none
     std::vector<std::string> program; // name and arguments
@@ -32,9 +33,9 @@ struct RunOptions {
 struct RunArguments {
     using Text = std::optional<std::string>;
     Text tiles, size, position, nodes, out, save, display, tiling, policy, gl, launch, stream, remoteMural, front;
-    Text config;
+    Text config, canvas;
     std::vector<std::string> layouts;
-    bool here = false;
+    bool here = false, printConfig = false;
     Text stereo, eyeBase, focus, pixel, subpixel, dplex, db;
     Text localNodes, frames, latency, report;
     std::string verify; // empty: not given

@@ -1,0 +1,186 @@
+#!/usr/bin/env python3
+"""Runs a real program by configuration files, all nodes on this machine, and looks at what the wall shows.
+
+  configurations.py --build build/release [--files a.eqc,b.eqc] [--shared] [--size 320x240]
+
+Without --files: all of configs/; with --shared also the example files beside the tree (or in MURAL_SHARED), when they are
+there. A file without stereo shows, over every part of the wall that it draws, exactly the native picture: 0 pixels differ.
+Of one with stereo the picture is put together from the runs of each eye alone, and compared with that.
+"""
+
+import argparse
+import glob
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+import display
+import programs
+
+PROGRAM = "fixed_lighting"
+FRAMES = 3
+SKIPPED = 77
+
+
+def read_png(path):
+    """(width, height, RGB rows) of a PNG by ImageMagick-free means: mural writes 8-bit RGB without interlace."""
+    import struct
+    import zlib
+    with open(path, "rb") as file:
+        data = file.read()
+    at, packed, width, height, kind = 8, b"", 0, 0, 0
+    while at < len(data):
+        size, name = struct.unpack(">I4s", data[at:at + 8])
+        body = data[at + 8:at + 8 + size]
+        if name == b"IHDR":
+            width, height, _, kind = struct.unpack(">IIBB", body[:10])
+        if name == b"IDAT":
+            packed += body
+        at += 12 + size
+    step = {2: 3, 6: 4}[kind]
+    raw, rows, before = zlib.decompress(packed), [], bytes(width * step)
+    for y in range(height):
+        mode, line = raw[y * (width * step + 1)], bytearray(raw[y * (width * step + 1) + 1:(y + 1) * (width * step + 1)])
+        for x in range(len(line)):
+            a = line[x - step] if x >= step else 0
+            b, c = before[x], before[x - step] if x >= step else 0
+            if mode == 1:
+                line[x] = (line[x] + a) & 255
+            elif mode == 2:
+                line[x] = (line[x] + b) & 255
+            elif mode == 3:
+                line[x] = (line[x] + (a + b) // 2) & 255
+            elif mode == 4:
+                p = a + b - c
+                pa, pb, pc = abs(p - a), abs(p - b), abs(p - c)
+                line[x] = (line[x] + (a if pa <= pb and pa <= pc else b if pb <= pc else c)) & 255
+        before = bytes(line)
+        rows.append(b"".join(before[i:i + 3] for i in range(0, len(before), step)))
+    return width, height, rows
+
+
+class Run:
+    def __init__(self, arguments, display_name):
+        self.arguments, self.display = arguments, display_name
+
+    def picture(self, options):
+        """The last frame, and what was said. Raises RuntimeError with the program's words."""
+        a = self.arguments
+        with tempfile.TemporaryDirectory(prefix="mural-configurations.") as folder:
+            out = os.path.join(folder, "out")
+            command = [os.path.join(a.build, "bin", "mural"), "run", "--size", a.size, "--display", "none", "--explain",
+                       "--out", out, "--save", str(FRAMES), "--frames", str(FRAMES)] + options
+            command += ["--", os.path.join(a.build, "tests", "programs", PROGRAM), "--size", a.size, "--frames", str(FRAMES + 1)]
+            done = subprocess.run(command, env=programs.clean_environment(self.display), stdin=subprocess.DEVNULL,
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=a.seconds, check=False)
+            said = done.stdout.decode(errors="replace")
+            files = sorted(glob.glob(os.path.join(out, "*.png")))
+            if done.returncode != 0 or not files:
+                raise RuntimeError("status %d, %d pictures: %s" % (done.returncode, len(files), said.strip().splitlines()[-1:]))
+            return read_png(files[-1]), said
+
+
+def difference(expected, shown, areas):
+    """Pixels that differ inside of the areas, and how many lie outside of all of them."""
+    width, height, rows = expected
+    if (shown[0], shown[1]) != (width, height):
+        return width * height, 0
+    covered = [bytearray(width) for _ in range(height)]
+    for x, y, w, h in areas:
+        x0, x1 = int(x * width + 1e-6), int((x + w) * width + 1e-6)
+        y0, y1 = int(y * height + 1e-6), int((y + h) * height + 1e-6)
+        for row in range(max(0, height - y1), min(height, height - y0)):
+            for column in range(max(0, x0), min(width, x1)):
+                covered[row][column] = 1
+    wrong = outside = 0
+    for y in range(height):
+        outside += width - sum(covered[y])
+        if rows[y] == shown[2][y]:
+            continue
+        wrong += sum(1 for x in range(width) if covered[y][x] and rows[y][3 * x:3 * x + 3] != shown[2][y][3 * x:3 * x + 3])
+    return wrong, outside
+
+
+def side_by_side(left, right):
+    width, height = left[0], left[1]
+    half = (width + 1) // 2
+    rows = []
+    for l, r in zip(left[2], right[2]):
+        row = bytearray()
+        for source, count in ((l, half), (r, width - half)):
+            for x in range(count):
+                a, b = 2 * x, min(2 * x + 1, width - 1)
+                row += bytes((source[3 * a + k] + source[3 * b + k] + 1) // 2 for k in range(3))
+        rows.append(bytes(row))
+    return width, height, rows
+
+
+def check(run, path, native):
+    """None, or what is wrong; and a line about what was seen."""
+    shown, said = run.picture(["--config", path, "--here"])
+    nodes = re.findall(r"node \d+ \(local\) draws for channel .*?part \[ (\S+) (\S+) (\S+) (\S+) \]", said)
+    areas = [tuple(float(v) for v in node) for node in nodes]
+    if not areas:
+        return "no node is told of", ""
+    # Antialiased, or every nth pixel: as the short form draws it.
+    samples, kernel = re.search(r"sample \d+ of (\d+)", said), re.search(r"of each (\d+x\d+)", said)
+    options = (["--subpixel", samples.group(1)] if samples else []) + (["--pixel", kernel.group(1)] if kernel else [])
+    expected, against = native, "the native picture"
+    if options:
+        expected, against = run.picture(options)[0], " ".join(options)
+        if samples and expected[2] == native[2]:
+            return "samples change nothing", ""
+    eyes = [word for word in ("left eye", "right eye") if word in said]
+    if eyes:
+        flat = run.picture(["--config", path, "--here", "--eye-base", "0"])[0]
+        apart = run.picture(["--config", path, "--here", "--eye-base", "0.5"])[0]
+        if apart[2] == flat[2]:
+            return "the eyes see the same, however far apart", ""
+        # Without a distance between them both eyes see what one sees.
+        against += " for both eyes"
+        if flat[2] != expected[2]:
+            expected, areas, shown = side_by_side(expected, expected), [(0, 0, 1, 1)], flat
+        else:
+            shown = flat
+    wrong, outside = difference(expected, shown, areas)
+    total = native[0] * native[1]
+    about = "%d nodes, %d of %d pixels differ from %s, %d outside of all parts" % (len(nodes), wrong, total - outside, against, outside)
+    return (None if wrong == 0 else about), about
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", default="build/release")
+    parser.add_argument("--files", help="configuration files, separated by commas")
+    parser.add_argument("--shared", action="store_true", help="also the example files beside the tree")
+    parser.add_argument("--size", default="321x243")
+    parser.add_argument("--seconds", type=int, default=60, help="the longest that one run may take")
+    a = parser.parse_args()
+    root = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+    files = a.files.split(",") if a.files else sorted(glob.glob(os.path.join(root, "configs", "*.eqc")))
+    if a.shared:
+        shared = sorted(glob.glob(os.path.join(os.environ.get("MURAL_SHARED", os.path.join(root, "..", "shared")), "eqc", "*.eqc")))
+        if not shared:
+            print("no example files; MURAL_SHARED says where shared is")
+            return SKIPPED
+        files = shared
+    failures = 0
+    with display.PrivateDisplay() as name:
+        run = Run(a, name)
+        native = run.picture([])[0]
+        for path in files:
+            try:
+                wrong, about = check(run, path, native)
+            except (RuntimeError, subprocess.TimeoutExpired) as error:
+                wrong, about = str(error), ""
+            failures += wrong is not None
+            print("%-28s %s" % (os.path.basename(path), "WRONG: " + wrong if wrong is not None else about), flush=True)
+    print("%d files, %d wrong" % (len(files), failures))
+    return 1 if failures or not files else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,123 @@
+#include "nodes/head/config_plan.hpp"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <set>
+
+#include "tests/balancer/example_files.hpp"
+
+namespace mural {
+namespace {
+
+compound::LoadedConfig load(const std::string& name) {
+    return compound::loadConfig(std::string(MURAL_SOURCE_DIR) + "/configs/" + name, [](const std::string&) { return std::optional<std::string>(); });
+}
+SessionPlan planOfFile(const std::string& name, bool here = true) {
+    const auto loaded = load(name);
+    EXPECT_TRUE(loaded.ok()) << loaded.diagnostics.firstError();
+    auto plan = planOf(loaded, {"me", here, "", {}});
+    EXPECT_TRUE(plan.ok()) << (plan.ok() ? "" : plan.error().message);
+    return plan.ok() ? std::move(*plan) : SessionPlan{};
+}
+
+TEST(ConfigPlan, rangesShareAPictureAndACollector) {
+    const SessionPlan plan = planOfFile("db.eqc");
+    ASSERT_GE(plan.nodes.size(), 2u);
+    double end = 0;
+    for (const NodePlan& n : plan.nodes) {
+        EXPECT_EQ(n.picture, 0);
+        EXPECT_EQ(n.collector, 0);
+        EXPECT_EQ(n.pass.ranges, static_cast<int>(plan.nodes.size()));
+        EXPECT_EQ(n.pass.range, n.node) << "in the order of their ranges";
+        EXPECT_DOUBLE_EQ(n.pass.share.start, end);
+        EXPECT_EQ(n.answers, n.node == 0);
+        end = n.pass.share.end;
+    }
+    EXPECT_DOUBLE_EQ(end, 1);
+}
+
+TEST(ConfigPlan, partsOfTheWallLieSideBySide) {
+    // The monitors of the first have frames, behind which nothing is drawn.
+    for (const auto& [file, whole] : {std::pair("wall-2x2.eqc", 0.930896), std::pair("2d.eqc", 1.0)}) {
+        const SessionPlan plan = planOfFile(file);
+        double covered = 0;
+        for (const NodePlan& n : plan.nodes) {
+            ASSERT_TRUE(n.area.has_value());
+            EXPECT_EQ(n.pass.ranges, 1);
+            covered += n.area->w * n.area->h;
+            for (const NodePlan& other : plan.nodes) EXPECT_TRUE(other.node == n.node || intersect(*n.area, *other.area).empty()) << file;
+        }
+        EXPECT_NEAR(covered, whole, 1e-6) << file;
+        EXPECT_EQ(picturesOf(plan.wall), static_cast<int>(plan.wall.parts.size())) << "one for each destination";
+    }
+}
+
+TEST(ConfigPlan, turnsDrawOnePicture) {
+    const SessionPlan plan = planOfFile("dplex.eqc");
+    ASSERT_GE(plan.nodes.size(), 2u);
+    std::vector<bool> phases(static_cast<size_t>(plan.nodes.front().pass.period), false);
+    for (const NodePlan& n : plan.nodes) {
+        EXPECT_EQ(n.picture, 0);
+        EXPECT_EQ(n.pass.ranges, 1);
+        phases[static_cast<size_t>(n.pass.phase)] = true;
+    }
+    EXPECT_EQ(std::count(phases.begin(), phases.end(), true), static_cast<long>(phases.size()));
+}
+
+TEST(ConfigPlan, samplesAndPixelsAreWhole) {
+    const SessionPlan samples = planOfFile("subpixel.eqc"), pixels = planOfFile("pixel.eqc");
+    EXPECT_EQ(picturesOf(samples.wall), samples.wall.parts.front().counts.samples);
+    EXPECT_GT(samples.wall.parts.front().counts.samples, 1);
+    EXPECT_EQ(picturesOf(pixels.wall), pixels.wall.parts.front().counts.kernelWidth * pixels.wall.parts.front().counts.kernelHeight);
+    EXPECT_GT(picturesOf(pixels.wall), 1);
+    for (const SessionPlan* plan : {&samples, &pixels}) {
+        std::set<int> made;
+        for (const NodePlan& n : plan->nodes) made.insert(n.picture);
+        EXPECT_EQ(static_cast<int>(made.size()), picturesOf(plan->wall));
+        EXPECT_TRUE(plan->warnings.empty()) << plan->warnings.front();
+    }
+}
+
+TEST(ConfigPlan, eyesComeTogether) {
+    const SessionPlan plan = planOfFile("stereo-anaglyph.eqc");
+    EXPECT_EQ(plan.wall.stereo, StereoMode::Anaglyph);
+    ASSERT_EQ(plan.wall.parts.size(), 2u);
+    EXPECT_NE(plan.wall.parts[0].eye, plan.wall.parts[1].eye);
+    EXPECT_NEAR(plan.eyeBase.value_or(0), .065, 1e-9) << "the observer's";
+    EXPECT_EQ(planOfFile("stereo-passive.eqc").wall.stereo, StereoMode::SideBySide);
+}
+
+TEST(ConfigPlan, theWallHasThePixelsOfItsSegments) {
+    const auto loaded = load("wall-2x2.eqc");
+    const auto size = wallSizeOf(loaded, {"me", true, "", {}});
+    EXPECT_GT(size.w, 0);
+    EXPECT_GT(size.h, 0);
+    int tiles = 0;
+    for (const config::ResolvedSegment& s : loaded.resolved.segments) tiles += s.channel != config::kNone;
+    EXPECT_EQ(tiles, 4);
+}
+
+TEST(ConfigPlan, aLayoutThatThereIsNot) {
+    const auto plan = planOf(load("db.eqc"), {"me", true, "", {"nowhere"}});
+    ASSERT_FALSE(plan.ok());
+    EXPECT_NE(plan.error().message.find("--layout \"nowhere\""), std::string::npos) << plan.error().message;
+}
+
+TEST(ConfigPlan, everyExampleFileCanBePlanned) {
+    const auto files = config::testing::exampleFiles();
+    if (files.empty()) GTEST_SKIP() << "no example files at " << config::testing::exampleFolder() << "; MURAL_SHARED says where shared is";
+    for (const auto& file : files) {
+        const auto loaded = compound::loadConfig(file.string(), [](const std::string&) { return std::optional<std::string>(); });
+        ASSERT_TRUE(loaded.ok()) << loaded.diagnostics.firstError();
+        auto plan = planOf(loaded, {"me", true, "", {}});
+        EXPECT_TRUE(plan.ok()) << (plan.ok() ? "" : plan.error().message);
+        if (!plan) continue;
+        for (const NodePlan& n : plan->nodes) {
+            EXPECT_LT(n.picture, picturesOf(plan->wall)) << file;
+            EXPECT_EQ(n.reach, NodeReach::SharedMemory) << "--here";
+        }
+    }
+}
+
+} // namespace
+} // namespace mural
