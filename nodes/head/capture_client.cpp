@@ -10,7 +10,6 @@ namespace {
 
 constexpr int64_t kPumpSliceNs = 50 * kNsPerMs;      // between two looks whether the program lives
 constexpr size_t kFlushBytes = size_t{64} * 1024;    // nodes begin with what they have by then
-constexpr int64_t kReplyPatienceMs = 30'000;         // without the program taking a byte
 constexpr size_t kMaxQueuedBytes = size_t{1} << 31;  // answers that the program asked for but does not take
 
 std::string nameOf(pid_t pid) {
@@ -30,13 +29,15 @@ CaptureClient::CaptureClient(uint32_t id,
                              pid_t pid,
                              std::unique_ptr<CaptureMemory> memory,
                              NodeSet& nodes,
-                             CaptureEvents& events)
+                             CaptureEvents& events,
+                             int64_t replyPatienceMs)
     : id_(id)
     , pid_(pid)
     , name_(nameOf(pid))
     , memory_(std::move(memory))
     , nodes_(nodes)
-    , events_(events) {}
+    , events_(events)
+    , replyPatienceMs_(replyPatienceMs) {}
 
 CaptureClient::~CaptureClient() {
     stop();
@@ -185,7 +186,7 @@ void CaptureClient::writeReplies() {
 
 // False: the program is gone, dropped, or the session ends. A program takes what it does not wait for when it likes.
 bool CaptureClient::writeAll(std::span<const std::byte> bytes, bool awaited) {
-    const auto patience = [awaited] { return awaited ? Deadline::inMs(kReplyPatienceMs) : Deadline::never(); };
+    const auto patience = [this, awaited] { return awaited ? Deadline::inMs(replyPatienceMs_) : Deadline::never(); };
     Deadline deadline = patience();
     while (!bytes.empty()) {
         const size_t written = memory_->writeReply(bytes);
@@ -196,7 +197,7 @@ bool CaptureClient::writeAll(std::span<const std::byte> bytes, bool awaited) {
         }
         if (stop_ || programGone()) return false;
         if (deadline.passed()) {
-            drop("it did not read its answer for 30 s");
+            drop("it did not read its answer for " + std::to_string(replyPatienceMs_ / 1000) + " s");
             return false;
         }
         memory_->waitReplyRoom(kPumpSliceNs);

@@ -40,7 +40,8 @@ public:
                   pid_t pid,
                   std::unique_ptr<CaptureMemory> memory,
                   NodeSet& nodes,
-                  CaptureEvents& events);
+                  CaptureEvents& events,
+                  int64_t replyPatienceMs);
     ~CaptureClient(); // stop()
 
     void start(FileDescriptor socket);
@@ -77,6 +78,7 @@ private:
     const std::unique_ptr<CaptureMemory> memory_;
     NodeSet& nodes_;
     CaptureEvents& events_;
+    const int64_t replyPatienceMs_; // without the program taking a byte of an answer that it waits for
     FileDescriptor socket_;
     std::thread pumpThread_;
     std::thread replyThread_;

@@ -216,6 +216,7 @@ void HeadSession::openTables() {
     }
     terms.framesDoneWhenShown = config_.display == Display::App && config_.latency == 0;
     terms.chunkCount = options_.chunkCount;
+    terms.replyPatienceMs = options_.replyPatienceMs;
     ProgramTable::Events events;
     events.countChanged = [this](size_t count) {
         control_.send({{"event", "clients"}, {"count", count}});

@@ -23,6 +23,7 @@ struct ProgramTerms {
     std::string extensions;
     bool framesDoneWhenShown = false; // --display app without latency
     uint32_t chunkCount = capture::kDefaultChunks;
+    int64_t replyPatienceMs = 30'000;
 };
 
 // All calls from any thread but for drainAll(), reap() and endAll() (one thread).

@@ -406,9 +406,13 @@ TEST(HeadSession, aNodeLostInMidRequestDoesNotLoseTheAnswer) {
     }
 }
 
-// More than the ring of replies holds, several times over: the head keeps it, and goes on.
+constexpr int64_t kShortPatienceMs = 300;
+
+// More than the ring of replies holds, several times over: the head keeps it, and goes on. The program takes none of it for
+// longer than it may leave an answer that it waits for.
 TEST(HeadSession, answersThatAreOwedWaitForTheProgram) {
     SessionHarness head(2);
+    head.options.replyPatienceMs = kShortPatienceMs;
     head.start();
     head.waitFor("ready");
     FakeProgram program;
@@ -417,7 +421,9 @@ TEST(HeadSession, answersThatAreOwedWaitForTheProgram) {
     for (uint32_t i = 1; i <= kOwedAnswers; ++i) ASSERT_TRUE(program.publish(kFakeBytes, {capture::kOwed | i, kWords + i}));
     ASSERT_TRUE(program.publish(kFakeSum, {77}));
     ASSERT_TRUE(swapFrames(program, 1, 20));
-    ASSERT_TRUE(program.waitFramesDone(20));
+    ASSERT_TRUE(program.waitFramesDone(20)); // the ring is full by then
+    std::this_thread::sleep_for(std::chrono::milliseconds(4 * kShortPatienceMs));
+    EXPECT_EQ(program.header()->headGone.load(), 0u);
     for (uint32_t i = 1; i <= kOwedAnswers; ++i) {
         FakeProgram::Answer answer;
         ASSERT_TRUE(program.readAnswer(answer));
@@ -430,6 +436,19 @@ TEST(HeadSession, answersThatAreOwedWaitForTheProgram) {
     EXPECT_EQ(awaited.header.requestId, 77u);
     head.finish();
     EXPECT_EQ(head.status(), 0);
+}
+
+TEST(HeadSession, whoDoesNotReadTheAnswerThatItWaitsForIsDropped) {
+    SessionHarness head(2);
+    head.options.replyPatienceMs = kShortPatienceMs;
+    head.start();
+    head.waitFor("ready");
+    FakeProgram program;
+    ASSERT_TRUE(program.connect(head.config.session));
+    ASSERT_TRUE(program.publish(kFakeBytes, {1, capture::kReplyBytes / 4 + 1}));
+    EXPECT_TRUE(program.waitHeadGone());
+    head.waitForSay("did not read its answer");
+    head.finish();
 }
 
 TEST(HeadSession, withoutNodesProgramsGoOnAlone) {
