@@ -29,6 +29,15 @@ GLint toInt(GLfloat value) {
     return value < 2147483648.0f ? static_cast<GLint>(value) : INT32_MAX;
 }
 
+// Viewports and boxes that are set together: one that is an error keeps all of them as they were.
+template <class T> bool areBoxes(GLuint most, GLuint first, GLsizei count, const T* v) {
+    if (!v || count <= 0 || first >= most || static_cast<GLuint>(count) > most - first) return false;
+    for (GLsizei i = 0; i < count; ++i) {
+        if (v[4 * i + 2] < 0 || v[4 * i + 3] < 0) return false;
+    }
+    return true;
+}
+
 // Which of the eight the API knows.
 bool knows(wire::Api api, int version, int i, bool pack) {
     if (api == wire::Api::Desktop) return true;
@@ -112,6 +121,7 @@ void Replay::restoreWindowState() {
 }
 
 void Replay::glViewport(GLint x, GLint y, GLsizei width, GLsizei height) {
+    if (width < 0 || height < 0) return;
     const std::array<GLfloat, 4> v{static_cast<GLfloat>(x), static_cast<GLfloat>(y), static_cast<GLfloat>(width), static_cast<GLfloat>(height)};
     c_->viewports.fill(v);
     c_->viewportsDiffer = false;
@@ -124,11 +134,11 @@ void Replay::glViewport(GLint x, GLint y, GLsizei width, GLsizei height) {
     applyTileValues();
 }
 void Replay::glViewportArrayv(GLuint first, GLsizei count, const Data& v) {
-    if (count <= 0 || !v.pointer()) return;
+    if (!areBoxes(kViewports, first, count, v.as<GLfloat>())) return;
     for (GLsizei i = 0; i < count; ++i) glViewportIndexedfv(first + static_cast<GLuint>(i), v.as<GLfloat>() + 4 * i);
 }
 void Replay::glViewportIndexedf(GLuint index, GLfloat x, GLfloat y, GLfloat w, GLfloat h) {
-    if (index >= kViewports || !gl.glViewportIndexedf) return;
+    if (index >= kViewports || w < 0 || h < 0 || !gl.glViewportIndexedf) return;
     c_->viewports[index] = {x, y, w, h};
     c_->viewportsDiffer = true;
     if (movesPicture()) {
@@ -147,7 +157,7 @@ void Replay::glScissor(GLint x, GLint y, GLsizei width, GLsizei height) {
     applyScissors();
 }
 void Replay::glScissorArrayv(GLuint first, GLsizei count, const Data& v) {
-    if (count <= 0 || !v.pointer()) return;
+    if (!areBoxes(kViewports, first, count, v.as<GLint>())) return;
     for (GLsizei i = 0; i < count; ++i) glScissorIndexedv(first + static_cast<GLuint>(i), v.as<GLint>() + 4 * i);
 }
 void Replay::glScissorIndexed(GLuint index, GLint left, GLint bottom, GLsizei width, GLsizei height) {

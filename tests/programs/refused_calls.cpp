@@ -277,6 +277,28 @@ GLuint triangleProgram() {
                          {GL_FRAGMENT_SHADER, "#version 150 compatibility\nvoid main() { gl_FragColor = vec4(0.9, 0.6, 0.1, 1); }"}});
 }
 
+// Several viewports or boxes at once, one of which is an error: none of them changes.
+void boxes(int frame) {
+    const float viewports[] = {10, 10, 30, 30, 5, 5, -1, 5};
+    const int scissors[] = {3, 3, 9, 9, 1, 1, 4, -4};
+    glViewportArrayv(0, 2, viewports);
+    glViewportArrayv(15, 2, viewports);
+    glViewportIndexedf(0, 4, 4, 20, -3);
+    glViewport(1, 2, -3, 4);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(100, 130, 60, 50);
+    glScissorArrayv(0, 2, scissors);
+    glScissorIndexed(0, 1, 1, -2, 2);
+    showBits(12, errors());
+    glEnable(GL_SCISSOR_TEST); // showBits has its own
+    glScissor(100, 130, 60, 50);
+    glScissorArrayv(0, 2, scissors);
+    (void)errors();
+    glColor3f(0.9F, 0.2F * float(frame), 0.4F);
+    glRectf(-0.3F, 0.2F, 0.4F, 0.95F);
+    glDisable(GL_SCISSOR_TEST);
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -296,5 +318,6 @@ int main(int argc, char** argv) {
         useNoProgram(shifted);
         inPrimitive();
         inExecutedList();
+        boxes(frame);
     });
 }
