@@ -55,7 +55,7 @@ public:
         constexpr std::string_view others[] = {"glNormal3", "glFogCoord", "glSecondaryColor3", "glIndex", "glEdgeFlag", "glMaterial"};
         const int size = w_.profile == Profile::Es1 ? 0 : attributeSize(name);
         const bool other = std::any_of(std::begin(others), std::end(others), [&](std::string_view start) { return name.starts_with(start); });
-        if (w_.compilesList && w_.behindVertex && (size != 0 || other)) {
+        if (w_.compilesList && ((w_.behindVertex && (size != 0 || other)) || (w_.insideBegin && name.starts_with("glEval")))) {
             return false;
         }
         const bool attribute0 = name.starts_with("glVertexAttrib") && find("index") != nullptr && find("index")->whole == 0;
