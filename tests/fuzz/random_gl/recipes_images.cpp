@@ -21,7 +21,7 @@ void plainUnpack(World& w) {
         // Scaled on their way into textures (glPixelTransfer), Mesa 22.3.6 skips no pixels.
         const int skipped = w.random.between(0, 3);
         GL(glPixelStorei, GL_UNPACK_SKIP_PIXELS, w.profile == Profile::Compat ? 0 : skipped);
-        if (skipped != 0) { // Mesa swaps as many pixels of each row as if none were skipped: the last ones are anything
+        if (skipped != 0 && !w.es()) { // Mesa swaps as many pixels of each row as if none were skipped: the last ones are anything
             GL(glPixelStorei, GL_UNPACK_SWAP_BYTES, 0);
         }
     }
