@@ -9,6 +9,7 @@
 #include "nodes/launch/program_check.hpp"
 #include "nodes/node/node.hpp"
 #include "tools/mural/commands.hpp"
+#include "tools/mural/config/config_command.hpp"
 #include "tools/mural/discover.hpp"
 #include "tools/mural/netperf.hpp"
 #include "tools/mural/network/network_doctor.hpp"
@@ -191,9 +192,20 @@ private:
                                  "Found are machines on which `mural node --wait` runs; who they are is shown by the secret alone, when a session begins.\n"
                                  "Exit status: 0, 1 when none was found, 2 for a bad argument.");
         mural::cli::describeDiscover(discover, discover_);
+        addConfig();
         add("version", "print the version", [] { return mural::cli::versionCommand(); }, "Example:\n  mural version\n\nExit status: 0.");
         add("preload-probe", "", [] { return mural::cli::preloadProbeCommand(); }, "").group("");
         add("network-member", "", [] { return mural::cli::networkMemberCommand(); }, "").group("");
+    }
+
+    void addConfig() {
+        CLI::App& config = add("config", "check, print or draw a configuration file", [this] { return mural::cli::configCommand(config_); },
+                               "Examples:\n  mural config check wall.eqc                       what is in it, and what is wrong with it\n"
+                               "  mural config print wall.eqc                       the same in today's words\n"
+                               "  mural config print wall.eqc --resolved --frame 2  what every channel does in frame 2\n"
+                               "  mural config draw wall.eqc --out wall.svg         displays, machines and compounds as a picture\n\n"
+                               "docs/configuration.md describes the format. Exit status: 0, 1 when the output can't be written, 2 for errors in the file.");
+        mural::cli::describeConfig(config, config_);
     }
 
     void addDoctor() {
@@ -220,6 +232,7 @@ private:
     bool asJson_ = false;
     bool onlyUnsupported_ = false;
     mural::cli::StatOptions stat_;
+    mural::cli::ConfigArguments config_;
     mural::cli::DiscoverArguments discover_;
     mural::cli::NetperfArguments netperf_;
     mural::cli::NetworkArguments networkArguments_;

@@ -1,0 +1,107 @@
+#include "tools/mural/config/config_command.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <fmt/format.h>
+#include <fstream>
+
+#include "balancer/compound/even_split.hpp"
+#include "balancer/compound/load_config.hpp"
+#include "balancer/compound/plan_frame.hpp"
+#include "balancer/config/text/writer.hpp"
+#include "balancer/drawing/config_drawing.hpp"
+#include "nodes/launch/program_check.hpp"
+#include "tools/mural/config/config_summary.hpp"
+#include "tools/mural/config/plan_text.hpp"
+
+namespace mural::cli {
+
+namespace {
+
+using compound::LoadedConfig;
+
+void printDiagnostics(const LoadedConfig& loaded, std::FILE* where) {
+    for (const config::Diagnostic& d : loaded.diagnostics.all()) fmt::print(where, "{}{}\n", d.severity == config::Severity::Error ? "error: " : "warning: ", loaded.diagnostics.text(d));
+}
+
+int check(const LoadedConfig& loaded) {
+    printDiagnostics(loaded, stdout);
+    if (loaded.ok()) {
+        for (const std::string& line : summaryOf(loaded)) fmt::print("{}\n", line);
+    }
+    const auto warnings = loaded.diagnostics.all().size() - std::min(loaded.diagnostics.all().size(), static_cast<size_t>(loaded.diagnostics.errors()));
+    fmt::print("{}: {} error{}, {} warning{}\n", loaded.diagnostics.file(), loaded.diagnostics.errors(), loaded.diagnostics.errors() == 1 ? "" : "s", warnings, warnings == 1 ? "" : "s");
+    return loaded.ok() ? 0 : launch::kExitUsage;
+}
+
+// Shows the layout on every canvas that has it; false when none has.
+bool showLayout(const config::ResolvedConfig& c, const std::string& name, compound::FrameInput& input) {
+    bool found = false;
+    input.activeLayouts.assign(c.canvases.size(), 0);
+    for (size_t canvas = 0; canvas < c.canvases.size(); ++canvas) {
+        for (size_t l = 0; l < c.canvases[canvas].layouts.size(); ++l) {
+            const compound::Index layout = c.canvases[canvas].layouts[l];
+            if (layout == compound::kNone || (c.layouts[config::ResolvedConfig::at(layout)].name != name && std::to_string(layout) != name)) continue;
+            input.activeLayouts[canvas] = static_cast<compound::Index>(l);
+            found = true;
+        }
+    }
+    return found;
+}
+
+Result<std::string> resolvedText(const LoadedConfig& loaded, const ConfigArguments& a) {
+    compound::FrameInput input = compound::firstFrame(loaded.resolved);
+    input.frameNumber = a.frame;
+    if (!a.layout.empty() && !showLayout(loaded.resolved, a.layout, input)) return Error{"no canvas has a layout " + a.layout + "; name one that mural config draw shows, or its number"};
+    if (!a.stereo.empty()) input.views.assign(loaded.resolved.views.size(), {a.stereo == "on" ? config::ViewMode::Stereo : config::ViewMode::Mono, 1, {}});
+    return planText(loaded.resolved, compound::planFrame(loaded.resolved, input));
+}
+
+Result<std::string> outputOf(const LoadedConfig& loaded, const ConfigArguments& a) {
+    if (a.verb == "draw") {
+        const std::string name = a.file.substr(a.file.find_last_of('/') + 1);
+        return drawing::drawConfig(loaded.resolved, loaded.resolved.name.empty() ? name : loaded.resolved.name + " (" + name + ")", loaded.file.heading);
+    }
+    return a.resolved ? resolvedText(loaded, a) : config::writeConfig(loaded.file);
+}
+
+int write(const std::string& text, const std::string& path) {
+    if (path.empty()) {
+        fmt::print("{}", text);
+        return std::fflush(stdout) == 0 ? 0 : 1;
+    }
+    std::ofstream out(path, std::ios::binary | std::ios::trunc);
+    out << text;
+    out.close();
+    if (out) return 0;
+    fmt::print(stderr, "mural config: {} can't be written: {}; name another file with --out\n", path, std::strerror(errno));
+    return 1;
+}
+
+} // namespace
+
+void describeConfig(CLI::App& command, ConfigArguments& a) {
+    command.add_option("VERB", a.verb, "check, print or draw")->required()->check(CLI::IsMember({"check", "print", "draw"}));
+    command.add_option("FILE", a.file, "the configuration, in Equalizer's format (.eqc)")->required();
+    command.add_flag("--strict", a.strict, "warnings are errors");
+    command.add_option("--out", a.out, "print, draw: into this file, not to standard output")->type_name("FILE");
+    command.add_flag("--resolved", a.resolved, "print: what every channel does in a frame, with its contexts, instead of the configuration");
+    command.add_option("--frame", a.frame, "with --resolved: the frame's number (0)")->type_name("NUMBER");
+    command.add_option("--layout", a.layout, "with --resolved: the layout that is shown, by name or number")->type_name("NAME");
+    command.add_option("--stereo", a.stereo, "with --resolved: on or off (as each view says)")->check(CLI::IsMember({"on", "off"}));
+}
+
+int configCommand(const ConfigArguments& a) {
+    const LoadedConfig loaded = compound::loadConfig(a.file, compound::processEnvironment, a.strict);
+    if (a.verb == "check") return check(loaded);
+    printDiagnostics(loaded, stderr);
+    if (!loaded.ok()) return launch::kExitUsage;
+    const auto text = outputOf(loaded, a);
+    if (!text) {
+        fmt::print(stderr, "mural config: {}\n", text.error().message);
+        return launch::kExitUsage;
+    }
+    return write(text.value(), a.out);
+}
+
+} // namespace mural::cli
