@@ -240,7 +240,7 @@ private:
 
 Box drawCompounds(Svg& svg, const ResolvedConfig& config, Point corner, double width) {
     constexpr double kTreeGap = 46;
-    double x = corner.x, y = corner.y, row = 0, right = corner.x + 640;
+    double x = corner.x, y = corner.y, row = 0, right = corner.x + 780;
     svg.text({x, y + 2}, "clear, draw, join (assemble), read (back): what a box does; arrows: pictures on their way; thick borders: what is shown; dashed: not in the file", {10, "#7b8794", false, Align::Left});
     y += 18;
     for (const Index root : config.roots) {

@@ -37,8 +37,8 @@ void nameSegment(Svg& svg, const ResolvedConfig& config, const config::ResolvedS
     const double middle = seen.y + seen.h / 2 + static_cast<double>(stacked) * 30;
     svg.text({seen.x + seen.w / 2, middle}, channelName(config, s), {12, "#111820", true, Align::Middle}, seen.w - 6);
     std::string text = s.channel == kNone ? "" : nodeName(config, config.pipeOf(config.channels[at(s.channel)]).node);
-    if (const std::string eyes = eyesText(s.eyes); !eyes.empty()) text += (text.empty() ? "" : ", ") + eyes;
-    if (!s.copies.empty()) text += ", copied to " + config.channels[at(s.copies.front())].name + (s.copies.size() > 1 ? fmt::format(" and {} more", s.copies.size() - 1) : "");
+    if (const std::string eyes = eyesText(s.eyes); !eyes.empty()) text += (text.empty() ? "" : " · ") + eyes;
+    if (!s.copies.empty()) text += " · copied to " + config.channels[at(s.copies.front())].name + (s.copies.size() > 1 ? fmt::format(" and {} more", s.copies.size() - 1) : "");
     svg.text({seen.x + seen.w / 2, middle + 14}, text, {9.5, "#52606d", false, Align::Middle}, seen.w - 6);
 }
 

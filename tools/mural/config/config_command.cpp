@@ -1,5 +1,6 @@
 #include "tools/mural/config/config_command.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include "balancer/compound/plan_frame.hpp"
 #include "balancer/config/text/writer.hpp"
 #include "balancer/drawing/config_drawing.hpp"
+#include "common/result.hpp"
 #include "nodes/launch/program_check.hpp"
 #include "tools/mural/config/config_summary.hpp"
 #include "tools/mural/config/plan_text.hpp"
