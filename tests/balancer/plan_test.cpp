@@ -198,6 +198,41 @@ TEST(Plan, timeMultiplex) {
     EXPECT_EQ(c.channels[static_cast<size_t>(plan(c, config::ViewMode::Mono, 1).frames.at(0).channel)].name, "t");
 }
 
+TEST(Plan, leavesDoNotClearWhatOthersDrew) {
+    const ResolvedConfig c = resolved(kWall + "compound { channel ( ) compound { range [ 0 .5 ] } compound { range [ .5 1 ] } compound { channel \"d\" viewport [ 0 0 1 0 ] } }");
+    const FramePlan p = plan(c);
+    ASSERT_EQ(p.channels.size(), 1u);
+    std::vector<Task> kinds;
+    for (const PlannedTask& t : p.channels[0].tasks) kinds.push_back(t.kind);
+    EXPECT_EQ(kinds, (std::vector<Task>{Task::Clear, Task::Draw, Task::Draw}));
+}
+
+// A channel that works for another screen, and waits for it, and shows its own picture in the same window: that comes
+// when the work is done, although it could go on before.
+TEST(Plan, channelsOfOneWindowDoNotDisturbEachOther) {
+    const ResolvedConfig c = resolved("layout { view { } } canvas { layout 0 wall { } segment { channel \"s\" viewport [ 0 0 .5 1 ] } segment { channel \"d\" viewport [ .5 0 .5 1 ] } }"
+                                      " compound { channel ( segment 1 ) compound { outputframe { name \"x\" } } compound { channel \"s\" task [ CLEAR ASSEMBLE READBACK ] inputframe { name \"x\" } outputframe { name \"y\" } }"
+                                      " inputframe { name \"y\" } } compound { channel ( segment 0 ) }");
+    const FramePlan p = plan(c);
+    EXPECT_FALSE(p.interleaved);
+    bool shown = false, worked = false;
+    for (const PipeStep& step : p.pipes.at(0)) {
+        const config::ResolvedChannel& channel = c.channels[static_cast<size_t>(p.channels[step.channel].channel)];
+        if (channel.name != "s") continue;
+        shown = shown || channel.isDestination();
+        worked = worked || !channel.isDestination();
+        EXPECT_FALSE(shown && !channel.isDestination());
+    }
+    EXPECT_TRUE(shown && worked);
+}
+
+TEST(Plan, ofTwoFramesOfOneNameTheFirstIsTaken) {
+    const ResolvedConfig c = resolved(kWall + "compound { channel ( ) compound { channel \"t\" outputframe { name \"f\" } } compound { channel \"s\" outputframe { name \"f\" } } inputframe { name \"f\" } }");
+    const FramePlan p = plan(c);
+    ASSERT_EQ(p.frames.size(), 1u);
+    EXPECT_EQ(c.channels[static_cast<size_t>(p.frames[0].channel)].name, "t");
+}
+
 TEST(Plan, barriersNameTheirWindows) {
     const ResolvedConfig c = resolved("layout { view { } } canvas { layout 0 swapbarrier { name \"w\" } segment { channel \"d\" } segment { channel \"t\" } }");
     const FramePlan p = plan(c);

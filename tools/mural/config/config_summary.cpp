@@ -34,9 +34,8 @@ std::vector<std::string> summaryOf(const compound::LoadedConfig& loaded) {
         generated += one.isGenerated ? 1 : 0;
         for (const config::Equalizer& e : one.equalizers) ++equalizers[std::string(std::visit([](const auto& which) { return config::sectionName(which); }, e))];
     }
-    std::string line = fmt::format("compounds   {} in {}, {}", counted(c.compounds.size(), "compound"), counted(c.roots.size(), "tree"), counted(outputs, "frame"));
-    if (generated > 0) line += fmt::format(", {} of them not in the file", generated);
-    lines.push_back(line);
+    const std::string unwritten = generated > 0 ? fmt::format(" ({} of them not in the file)", generated) : "";
+    lines.push_back(fmt::format("compounds   {}{} in {}, {}", counted(c.compounds.size(), "compound"), unwritten, counted(c.roots.size(), "tree"), counted(outputs, "frame")));
     if (!equalizers.empty()) {
         std::string names;
         for (const auto& [name, count] : equalizers) names += (names.empty() ? "" : ", ") + (count > 1 ? fmt::format("{} {}", count, name) : name);
