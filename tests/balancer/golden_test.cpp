@@ -4,6 +4,7 @@
 
 #include "balancer/config/resolve.hpp"
 #include "balancer/config/text/parser.hpp"
+#include "balancer/config/text/section_fields.hpp"
 #include "balancer/config/text/value_writer.hpp"
 #include "tests/balancer/example_files.hpp"
 
@@ -53,6 +54,123 @@ struct CompoundCounts {
     }
 };
 
+// What a file makes use of, in the words of the table.
+class Features {
+public:
+    explicit Features(const ConfigFile& file) : file_(file) {
+        const Config& c = file.config;
+        if (c.latency) has("latency=" + std::to_string(*c.latency));
+        if (c.appNode) node(*c.appNode);
+        for (const Node& n : c.nodes) node(n);
+        for (const Connection& one : file.serverConnections) connection(one);
+        if (c.observers.size() > 1) has("multi-observer");
+        for (const Observer& o : c.observers) {
+            if (o.focusDistance || o.focusMode) has("focus");
+            if (o.vrpnTracker) has("vrpn");
+        }
+        for (const Layout& l : c.layouts) {
+            for (const View& v : l.views) {
+                if (v.mode == ViewMode::Stereo) has("view-STEREO");
+                surface(v.surface, "view-frustum");
+            }
+        }
+        for (const Canvas& one : c.canvases) canvas(one);
+        for (const Compound& one : c.compounds) compound(one);
+    }
+
+    [[nodiscard]] std::string text() const {
+        std::string all;
+        for (const std::string& f : features_) all += (all.empty() ? "" : ", ") + f;
+        return all.empty() ? "-" : all;
+    }
+
+private:
+    void has(const std::string& feature) { features_.insert(feature); }
+
+    // Set to this, here or for all.
+    [[nodiscard]] bool is(const Attribute& own, const char* global, const std::function<bool(int32_t)>& wanted) const {
+        const auto found = file_.globals.find(global);
+        const bool all = found != file_.globals.end() && wanted(std::get<int32_t>(found->second));
+        return all || (own && wanted(*own));
+    }
+
+    void surface(const std::optional<ProjectionSurface>& s, const char* feature) {
+        if (!s) return;
+        if (*feature != '\0') has(feature);
+        const auto* wall = std::get_if<Wall>(&*s);
+        if (wall == nullptr) has("projection");
+        else if (wall->type == WallType::Hmd) has("HMD");
+    }
+
+    void connection(const Connection& c) {
+        if (c.type == ConnectionType::Rsp) has("conn:RSP");
+    }
+
+    void node(const Node& n) {
+        for (const Connection& c : n.connections) connection(c);
+        for (const Pipe& p : n.pipes) {
+            if (is(p.attributes.hintThread, "EQ_PIPE_IATTR_HINT_THREAD", [](int32_t v) { return v == value::kOff; })) has("nonthreaded");
+            for (const Window& w : p.windows) window(w);
+        }
+    }
+
+    void window(const Window& w) {
+        const WindowAttributes& a = w.attributes;
+        if (is(a.hintFullscreen, "EQ_WINDOW_IATTR_HINT_FULLSCREEN", [](int32_t v) { return v == value::kOn; })) has("fullscreen");
+        if (is(a.hintDrawable, "EQ_WINDOW_IATTR_HINT_DRAWABLE", [](int32_t v) { return v == value::kFbo; })) has("FBO-drawable");
+        if (is(a.planesSamples, "EQ_WINDOW_IATTR_PLANES_SAMPLES", [](int32_t v) { return v > 0; })) has("multisample");
+        if (is(a.planesColor, "EQ_WINDOW_IATTR_PLANES_COLOR", [](int32_t v) { return v == value::kRgba16f; })) has("RGBA16F");
+        if (is(a.planesColor, "EQ_WINDOW_IATTR_PLANES_COLOR", [](int32_t v) { return v == value::kRgba32f; })) has("RGBA32F");
+        for (const Channel& c : w.channels) {
+            if (c.attributes.dumpImage) has("dump_image");
+        }
+    }
+
+    void barrier(const std::optional<SwapBarrier>& b, const char* feature) {
+        if (!b) return;
+        has(b->nvGroup || b->nvBarrier ? "NV_swap" : feature);
+    }
+
+    void canvas(const Canvas& c) {
+        barrier(c.swapBarrier, "canvas/segment-swapbarrier");
+        surface(c.surface, "");
+        for (const Segment& s : c.segments) {
+            if (s.eyes) has("segment-eye");
+            barrier(s.swapBarrier, "canvas/segment-swapbarrier");
+            surface(s.surface, "segment-frustum");
+        }
+    }
+
+    void compound(const Compound& c) {
+        if (c.tasks) has("task-list");
+        if (c.eyes) has("eye");
+        if (c.viewport) has("2D-viewport");
+        if (c.range) has("DB-range");
+        if (c.period) has("DPlex");
+        if (c.pixel) has("pixel");
+        if (c.subPixel) has("subpixel");
+        if (c.surface) has("compound-frustum");
+        barrier(c.swapBarrier, "swapbarrier");
+        if (c.attributes.stereoMode == value::kAnaglyph) has("stereo:ANAGLYPH");
+        for (const Equalizer& e : c.equalizers) {
+            const std::string name(std::visit([](const auto& one) { return sectionName(one); }, e));
+            const auto* load = std::get_if<LoadEqualizer>(&e);
+            has(load != nullptr && load->mode ? name + "." + std::string(wordOf(*load->mode)) : name);
+        }
+        for (const auto* frames : {&c.outputFrames, &c.inputFrames}) {
+            for (const Frame& f : *frames) {
+                if (f.type == FrameType::Texture) has("texture-frame");
+                if (f.buffers) has("frame-buffer");
+                if (f.viewport) has("frame-viewport");
+            }
+        }
+        for (const Compound& child : c.children) compound(child);
+    }
+
+    const ConfigFile& file_;
+    std::set<std::string> features_;
+};
+
 Row found(const ConfigFile& file, const ResolvedConfig& resolved) {
     Row row;
     const Config& c = file.config;
@@ -79,6 +197,7 @@ Row found(const ConfigFile& file, const ResolvedConfig& resolved) {
     counts.add(c.compounds, 1);
     row.compounds = std::to_string(counts.compounds) + " (" + std::to_string(counts.depth) + ")";
     row.frames = joined({counts.outputs, counts.inputs});
+    row.features = Features(file).text();
     return row;
 }
 
@@ -102,6 +221,7 @@ TEST(ExampleFiles, holdWhatTheirTableSays) {
         EXPECT_EQ(now.canvases, row.canvases);
         EXPECT_EQ(now.compounds, row.compounds);
         EXPECT_EQ(now.frames, row.frames);
+        EXPECT_EQ(now.features, row.features);
     }
 }
 
