@@ -20,7 +20,10 @@ std::string nameOr(const std::string& name, size_t number) { return name.empty()
 uint64_t repeatsAfter(const ResolvedConfig& config) {
     constexpr uint64_t kMost = 64;
     uint64_t all = 1;
-    for (const config::ResolvedCompound& c : config.compounds) all = std::min(kMost, std::lcm(all, uint64_t{std::max(1u, std::min(c.period.value_or(1), 64u))}));
+    for (const config::ResolvedCompound& c : config.compounds) {
+        const uint64_t period = std::clamp<uint64_t>(c.period.value_or(1), 1, kMost);
+        all = std::min(kMost, std::lcm(all, period));
+    }
     return all;
 }
 
@@ -43,7 +46,8 @@ void checkDeadlocks(const ResolvedConfig& config, config::Diagnostics& diagnosti
                 for (const std::string& name : names) circle += (circle.empty() ? "\"" : ", \"") + name + "\"";
                 if (!said.insert(circle).second) continue;
                 const PlannedFrame& first = plan.frames[at(plan.deadlock.front())];
-                diagnostics.error(config.compounds[at(first.compound)].at, (names.size() == 1 ? "frame " + circle + " waits for itself" : "frames " + circle + " wait for each other") + ": nothing is ever drawn",
+                const std::string who = names.size() == 1 ? "frame " + circle + " waits for itself" : "frames " + circle + " wait for each other";
+                diagnostics.error(config.compounds[at(first.compound)].at, who + ": nothing is ever drawn",
                                   "let one of them be read back before it is needed");
             }
         }
@@ -55,8 +59,10 @@ void checkEqualizers(const ResolvedConfig& config, config::Diagnostics& diagnost
         for (const config::Equalizer& e : c.equalizers) {
             const bool divides = std::holds_alternative<config::LoadEqualizer>(e) || std::holds_alternative<config::TreeEqualizer>(e);
             const config::SourcePosition place = std::visit([](const auto& one) { return one.at; }, e);
-            if (divides && c.children.size() < 2) diagnostics.warn(place, "this equalizer has nothing to divide: its compound has fewer than two children", "put it into the compound whose children it balances");
-            if (divides && c.destination == kNone) diagnostics.warn(place, "this equalizer stands in a compound without a channel", "put it into the compound that has the destination's channel");
+            if (divides && c.children.size() < 2) diagnostics.warn(place,
+                "this equalizer has nothing to divide: its compound has fewer than two children", "put it into the compound whose children it balances");
+            if (divides && c.destination == kNone) diagnostics.warn(place, "this equalizer stands in a compound without a channel",
+                                                                    "put it into the compound that has the destination's channel");
         }
     }
 }
@@ -72,10 +78,12 @@ void checkDisplays(const ResolvedConfig& config, config::Diagnostics& diagnostic
         }
     }
     for (size_t l = 0; l < used.size(); ++l) {
-        if (!used[l]) diagnostics.warn(config.layouts[l].at, "layout " + nameOr(config.layouts[l].name, l) + " is on no canvas and never shown", "name it in a canvas, or remove it");
+        if (!used[l]) diagnostics.warn(config.layouts[l].at, "layout " + nameOr(config.layouts[l].name, l) + " is on no canvas and never shown",
+                                       "name it in a canvas, or remove it");
     }
     for (size_t v = 0; v < seen.size(); ++v) {
-        if (!seen[v] && used[at(config.views[v].layout)]) diagnostics.warn(config.views[v].at, "view " + nameOr(config.views[v].name, v) + " falls onto no segment and is never shown", "move its viewport over a segment");
+        if (!seen[v] && used[at(config.views[v].layout)]) diagnostics.warn(config.views[v].at,
+            "view " + nameOr(config.views[v].name, v) + " falls onto no segment and is never shown", "move its viewport over a segment");
     }
 }
 

@@ -122,7 +122,8 @@ void Planner::takeFrames(const ActiveCompound& active) {
     }
 }
 
-void Planner::placeFrame(const ActiveCompound& taker, const config::ResolvedFrame& wanted, const ActiveCompound& giver, const PlannedFrame& frame, FrameUse& use) const {
+void Planner::placeFrame(const ActiveCompound& taker, const config::ResolvedFrame& wanted, const ActiveCompound& giver, const PlannedFrame& frame,
+                         FrameUse& use) const {
     const RenderContext& to = plan_.contexts[at(taker.context)];
     const RenderContext& from = plan_.contexts[at(giver.context)];
     use.clip = intersect(to.viewport, apply(to.viewport, wanted.viewport));
@@ -137,7 +138,8 @@ void Planner::placeFrame(const ActiveCompound& taker, const config::ResolvedFram
     use.kernel = {x.kernel, y.kernel, x.step, y.step};
     use.x = to.viewport.x + static_cast<int32_t>(std::lround(placeOf(from.x, frame.area.x - from.viewport.x, to.x)));
     use.y = to.viewport.y + static_cast<int32_t>(std::lround(placeOf(from.y, frame.area.y - from.viewport.y, to.y)));
-    const Zoom own = wanted.zoom ? Zoom{wanted.zoom->x / from.zoom.x, wanted.zoom->y / from.zoom.y} : Zoom{from.x.scale / to.x.scale, from.y.scale / to.y.scale};
+    const Zoom inherited{from.x.scale / to.x.scale, from.y.scale / to.y.scale};
+    const Zoom own = wanted.zoom ? Zoom{wanted.zoom->x / from.zoom.x, wanted.zoom->y / from.zoom.y} : inherited;
     use.zoom = {own.x / frame.zoom.x, own.y / frame.zoom.y};
 }
 

@@ -23,7 +23,8 @@ config::Screen destinationScreen(const ResolvedConfig& config, const FrameInput&
 Viewport coverage(const ResolvedConfig& config, const config::ResolvedChannel& channel);
 
 // Sets frusta and head transforms of a context that shows the part `shown` of the destination.
-void setFrusta(const config::Screen& screen, const Eyes& eyes, const Inherited& inherited, const Viewport& shown, const FrameInput& input, RenderContext& context);
+void setFrusta(const config::Screen& screen, const Eyes& eyes, const Inherited& inherited, const Viewport& shown, const FrameInput& input,
+               RenderContext& context);
 
 // Cuts what a destination's frustum shows to a part of it.
 Frustum partOf(const Frustum& whole, const Viewport& part);

@@ -43,8 +43,9 @@ void setStereo(const ResolvedConfig& config, const Inherited& i, RenderContext& 
     if (c.eye == Eye::Cyclop || c.channel != c.destination) return;
     if (c.stereoMode == StereoMode::Quad) c.drawBuffer = c.eye == Eye::Left ? DrawBuffer::BackLeft : DrawBuffer::BackRight;
     if (c.stereoMode != StereoMode::Anaglyph) return;
-    const auto& mask = c.eye == Eye::Left ? i.attributes.anaglyphLeftMask : i.attributes.anaglyphRightMask;
-    c.colorMask = mask.value_or(c.eye == Eye::Left ? config::ColorMask{config::ColorComponent::Red} : config::ColorMask{config::ColorComponent::Green, config::ColorComponent::Blue});
+    using config::ColorComponent;
+    if (c.eye == Eye::Left) c.colorMask = i.attributes.anaglyphLeftMask.value_or(config::ColorMask{ColorComponent::Red});
+    else c.colorMask = i.attributes.anaglyphRightMask.value_or(config::ColorMask{ColorComponent::Green, ColorComponent::Blue});
 }
 
 } // namespace

@@ -18,7 +18,10 @@ struct ActiveCompound {
 
 class Planner {
 public:
-    Planner(const ResolvedConfig& config, const FrameInput& input) : config_(config), input_(input), channelPlans_(config.channels.size(), SIZE_MAX) { plan_.frameNumber = input.frameNumber; }
+    Planner(const ResolvedConfig& config, const FrameInput& input)
+        : config_(config), input_(input), channelPlans_(config.channels.size(), SIZE_MAX) {
+        plan_.frameNumber = input.frameNumber;
+    }
     FramePlan run();
 
 private:
@@ -34,7 +37,8 @@ private:
     void linkFrames(Eye eye);
     void offerFrames(const ActiveCompound& active, Eye eye);
     void takeFrames(const ActiveCompound& active);
-    void placeFrame(const ActiveCompound& taker, const config::ResolvedFrame& wanted, const ActiveCompound& giver, const PlannedFrame& frame, FrameUse& use) const;
+    void placeFrame(const ActiveCompound& taker, const config::ResolvedFrame& wanted, const ActiveCompound& giver, const PlannedFrame& frame,
+                    FrameUse& use) const;
     void dropUnused(size_t first);
     void addQueues();
 

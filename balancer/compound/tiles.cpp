@@ -36,7 +36,8 @@ std::vector<PlannedTile> tilesOf(const PixelViewport& area, const config::Pixels
     for (int64_t row = 0; row < rows; ++row) {
         for (int64_t i = 0; i < columns; ++i) {
             const int64_t column = row % 2 == 0 ? i : columns - 1 - i;
-            const PixelViewport tile{static_cast<int32_t>(area.x + column * w), static_cast<int32_t>(area.y + row * h), static_cast<int32_t>(std::min(w, area.w - column * w)),
+            const PixelViewport tile{static_cast<int32_t>(area.x + column * w), static_cast<int32_t>(area.y + row * h),
+                                     static_cast<int32_t>(std::min(w, area.w - column * w)),
                                      static_cast<int32_t>(std::min(h, area.h - row * h))};
             tiles.push_back({tile, relativeTo(tile, area), {}});
         }

@@ -29,7 +29,8 @@ double between(double from, double to) { return std::round(1e6 * (to - from)) / 
 class Maker {
 public:
     explicit Maker(const ShortForm& form) : form_(form) {
-        for (const Level level : {Level{Level::Kind::Frames, form.frames}, {Level::Kind::Ranges, form.ranges}, {Level::Kind::Pixels, form.pixels}, {Level::Kind::Samples, form.samples}}) {
+        for (const Level level : {Level{Level::Kind::Frames, form.frames}, {Level::Kind::Ranges, form.ranges}, {Level::Kind::Pixels, form.pixels},
+                                  {Level::Kind::Samples, form.samples}}) {
             if (level.count > 1) levels_.push_back(level);
         }
     }
@@ -169,7 +170,8 @@ private:
 
 Result<ConfigFile> shortForm(const ShortForm& form) {
     int64_t channels = 1;
-    for (const Named n : {Named{"tiles", form.columns}, {"tiles", form.rows}, {"db", form.ranges}, {"pixel", form.pixels}, {"subpixel", form.samples}, {"dplex", form.frames}}) {
+    for (const Named n : {Named{"tiles", form.columns}, {"tiles", form.rows}, {"db", form.ranges}, {"pixel", form.pixels}, {"subpixel", form.samples},
+                          {"dplex", form.frames}}) {
         if (n.value < 1) return Error{std::string("--") + n.option + " can't be " + std::to_string(n.value) + "; give 1 or more"};
         channels = std::min(channels * n.value, kMostChannels + 1);
     }

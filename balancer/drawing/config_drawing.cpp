@@ -19,8 +19,10 @@ struct Colors {
 };
 
 // Told apart also by those who do not tell red from green (after Okabe and Ito).
-constexpr auto kColors = std::to_array<Colors>({{"#0072b2", "#d6e8f4"}, {"#d55e00", "#fae0cd"}, {"#009e73", "#d3efe6"}, {"#a5539a", "#f1dfee"}, {"#b8860b", "#f8eccb"},
-                                                {"#2f9fd8", "#dbf0fb"}, {"#6b6b6b", "#e6e6e6"}, {"#8c564b", "#ecdfdc"}, {"#5b5bd6", "#e1e1fa"}, {"#4f7f1f", "#e2edd5"}});
+constexpr auto kColors = std::to_array<Colors>({
+    {"#0072b2", "#d6e8f4"}, {"#d55e00", "#fae0cd"}, {"#009e73", "#d3efe6"}, {"#a5539a", "#f1dfee"}, {"#b8860b", "#f8eccb"},
+    {"#2f9fd8", "#dbf0fb"}, {"#6b6b6b", "#e6e6e6"}, {"#8c564b", "#ecdfdc"}, {"#5b5bd6", "#e1e1fa"}, {"#4f7f1f", "#e2edd5"},
+});
 
 const Colors& colors(Index node) { return kColors[static_cast<size_t>(std::max<Index>(0, node)) % kColors.size()]; }
 
@@ -36,12 +38,13 @@ Index colorIndex(const ResolvedConfig& config, Index pipe) {
     return drawing == 1 ? pipe : config.pipes[ResolvedConfig::at(pipe)].node;
 }
 
-std::string colorOf(const ResolvedConfig& config, Index channel) {
-    return nodeColor(channel == kNone ? kGrey : colorIndex(config, config.windows[ResolvedConfig::at(config.channels[ResolvedConfig::at(channel)].window)].pipe));
+Index channelColor(const ResolvedConfig& config, Index channel) {
+    if (channel == kNone) return kGrey;
+    return colorIndex(config, config.windows[ResolvedConfig::at(config.channels[ResolvedConfig::at(channel)].window)].pipe);
 }
-std::string paleColorOf(const ResolvedConfig& config, Index channel) {
-    return paleNodeColor(channel == kNone ? kGrey : colorIndex(config, config.windows[ResolvedConfig::at(config.channels[ResolvedConfig::at(channel)].window)].pipe));
-}
+
+std::string colorOf(const ResolvedConfig& config, Index channel) { return nodeColor(channelColor(config, channel)); }
+std::string paleColorOf(const ResolvedConfig& config, Index channel) { return paleNodeColor(channelColor(config, channel)); }
 
 std::string nameOr(const std::string& name, std::string_view otherwise, size_t number) { return name.empty() ? fmt::format("{} {}", otherwise, number) : name; }
 

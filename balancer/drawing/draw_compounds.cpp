@@ -23,7 +23,8 @@ std::string fraction(double value) { return fmt::format("{:.3g}", value); }
 // What a compound says itself, a line each.
 std::vector<std::string> wordsOf(const ResolvedCompound& c) {
     std::vector<std::string> words;
-    if (!c.viewport.full()) words.push_back(fmt::format("viewport {} {} {} {}", fraction(c.viewport.x), fraction(c.viewport.y), fraction(c.viewport.w), fraction(c.viewport.h)));
+    if (!c.viewport.full()) words.push_back(fmt::format("viewport {} {} {} {}", fraction(c.viewport.x), fraction(c.viewport.y),
+                                                        fraction(c.viewport.w), fraction(c.viewport.h)));
     if (!c.range.full()) words.push_back(fmt::format("range {} to {}", fraction(c.range.start), fraction(c.range.end)));
     if (!c.pixel.whole()) words.push_back(fmt::format("pixel {} {} of {} x {}", c.pixel.x, c.pixel.y, c.pixel.w, c.pixel.h));
     if (!c.subPixel.whole()) words.push_back(fmt::format("sample {} of {}", c.subPixel.index, c.subPixel.size));
@@ -44,7 +45,7 @@ std::vector<std::string> wordsOf(const ResolvedCompound& c) {
 // As the planner decides it, whatever is active.
 config::TaskSet tasksOf(const ResolvedConfig& config, const ResolvedCompound& c) {
     if (c.executing == kNone) return {};
-    config::TaskSet tasks = c.tasks.value_or(c.isLeaf() ? config::TaskSet{Task::Clear, Task::Draw, Task::Assemble, Task::Readback} : config::TaskSet{Task::Clear, Task::Assemble, Task::Readback});
+    config::TaskSet tasks = c.tasks.value_or(config::TaskSet{Task::Clear, Task::Draw, Task::Assemble, Task::Readback});
     for (Index up = c.parent; up != kNone && !c.tasks && c.isLeaf(); up = config.compounds[at(up)].parent) {
         if (config.compounds[at(up)].executing == c.executing) tasks.remove(Task::Clear);
     }
@@ -203,7 +204,8 @@ private:
 
     void drawBox(Svg& svg, const ResolvedCompound& c, const Box& box) const {
         const std::string color = colorOf(config_, c.executing);
-        svg.rect(box, {.fill = "#ffffff", .stroke = color, .strokeWidth = c.channel != kNone && c.channel == c.destination ? 2.2 : 1.2, .rounding = 5, .dash = c.isGenerated ? "4 3" : ""},
+        svg.rect(box, {.fill = "#ffffff", .stroke = color, .strokeWidth = c.channel != kNone && c.channel == c.destination ? 2.2 : 1.2, .rounding = 5,
+                       .dash = c.isGenerated ? "4 3" : ""},
                  c.isGenerated ? "not in the file: it follows from the canvases" : "");
         svg.rect({box.x, box.y, box.w, kTop - 4}, {.fill = paleColorOf(config_, c.executing), .rounding = 5, .dash = {}});
         svg.text({box.x + box.w / 2, box.y + 14}, titleOf(config_, c), {11, "#111820", c.channel != kNone, Align::Middle}, box.w - 10);

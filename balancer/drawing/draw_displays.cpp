@@ -12,7 +12,9 @@ namespace {
 size_t at(Index index) { return ResolvedConfig::at(index); }
 
 // A part of a canvas (whose y goes up) within its box (whose y goes down).
-Box partOf(const Box& whole, const Viewport& part) { return {whole.x + part.x * whole.w, whole.y + (1 - part.y - part.h) * whole.h, part.w * whole.w, part.h * whole.h}; }
+Box partOf(const Box& whole, const Viewport& part) {
+    return {whole.x + part.x * whole.w, whole.y + (1 - part.y - part.h) * whole.h, part.w * whole.w, part.h * whole.h};
+}
 
 std::string eyesText(EyeSet eyes) {
     if (eyes == kAllEyes) return {};
@@ -23,10 +25,13 @@ std::string eyesText(EyeSet eyes) {
     return text + (text.find(',') == std::string::npos ? " eye" : " eyes");
 }
 
-std::string channelName(const ResolvedConfig& config, const config::ResolvedSegment& s) { return s.channel == kNone ? "no channel" : config.channels[at(s.channel)].name; }
+std::string channelName(const ResolvedConfig& config, const config::ResolvedSegment& s) {
+    return s.channel == kNone ? "no channel" : config.channels[at(s.channel)].name;
+}
 
 void drawSegment(Svg& svg, const ResolvedConfig& config, const config::ResolvedSegment& s, const Box& canvas) {
-    const std::string tip = fmt::format("segment {}: channel {}, viewport {:.4g} {:.4g} {:.4g} {:.4g}", s.name, channelName(config, s), s.viewport.x, s.viewport.y, s.viewport.w, s.viewport.h);
+    const std::string tip = fmt::format("segment {}: channel {}, viewport {:.4g} {:.4g} {:.4g} {:.4g}", s.name, channelName(config, s), s.viewport.x,
+                                        s.viewport.y, s.viewport.w, s.viewport.h);
     if (!(s.outer == s.viewport)) svg.rect(partOf(canvas, s.outer), {.fill = "#3e4c59", .dash = {}}, "bezel");
     svg.rect(partOf(canvas, s.viewport), {.fill = paleColorOf(config, s.channel), .stroke = colorOf(config, s.channel), .strokeWidth = 1.5, .dash = {}}, tip);
 }
@@ -38,7 +43,8 @@ void nameSegment(Svg& svg, const ResolvedConfig& config, const config::ResolvedS
     svg.text({seen.x + seen.w / 2, middle}, channelName(config, s), {12, "#111820", true, Align::Middle}, seen.w - 6);
     std::string text = s.channel == kNone ? "" : nodeName(config, config.pipeOf(config.channels[at(s.channel)]).node);
     if (const std::string eyes = eyesText(s.eyes); !eyes.empty()) text += (text.empty() ? "" : " · ") + eyes;
-    if (!s.copies.empty()) text += " · copied to " + config.channels[at(s.copies.front())].name + (s.copies.size() > 1 ? fmt::format(" and {} more", s.copies.size() - 1) : "");
+    if (!s.copies.empty()) text += " · copied to " + config.channels[at(s.copies.front())].name;
+    if (s.copies.size() > 1) text += fmt::format(" and {} more", s.copies.size() - 1);
     svg.text({seen.x + seen.w / 2, middle + 14}, text, {9.5, "#52606d", false, Align::Middle}, seen.w - 6);
 }
 
@@ -55,8 +61,10 @@ void drawLayout(Svg& svg, const ResolvedConfig& config, const config::ResolvedCa
     for (size_t i = 0; i < l.views.size(); ++i) {
         const config::ResolvedView& v = config.views[at(l.views[i])];
         const Box part = partOf(box, v.viewport);
-        svg.rect({part.x + 2, part.y + 2, part.w - 4, part.h - 4}, {.fill = "#ffd166", .stroke = "#b7791f", .rounding = 2, .dash = v.surface ? "" : "3 2", .opacity = .55}, v.surface ? "a view with a wall of its own" : "a view");
-        const std::string text = (l.views.size() > 1 || !v.name.empty() ? nameOr(v.name, "view", i) : "") + (v.mode == config::ViewMode::Stereo ? " stereo" : "");
+        const Style style{.fill = "#ffd166", .stroke = "#b7791f", .rounding = 2, .dash = v.surface ? "" : "3 2", .opacity = .55};
+        svg.rect({part.x + 2, part.y + 2, part.w - 4, part.h - 4}, style, v.surface ? "a view with a wall of its own" : "a view");
+        std::string text = l.views.size() > 1 || !v.name.empty() ? nameOr(v.name, "view", i) : "";
+        if (v.mode == config::ViewMode::Stereo) text += " stereo";
         svg.text({part.x + part.w / 2, part.y + part.h / 2 + 3}, text, {9, "#5c3c00", false, Align::Middle}, part.w - 6);
     }
 }
@@ -71,13 +79,15 @@ Box drawDisplays(Svg& svg, const ResolvedConfig& config, Point corner, double wi
         const double aspect = aspectOf(c);
         const double w = std::min(kCanvasWidth, kCanvasHeight * aspect), h = w / aspect;
         const config::Screen screen = config::screenOf(c.surface);
-        svg.text({corner.x, y + 8}, fmt::format("canvas {}, {:.3g} x {:.3g} m", nameOr(c.name, "", i), screen.width, screen.height), {11, "#52606d", false, Align::Left});
+        svg.text({corner.x, y + 8}, fmt::format("canvas {}, {:.3g} x {:.3g} m", nameOr(c.name, "", i), screen.width, screen.height),
+                 {11, "#52606d", false, Align::Left});
         const Box box{corner.x, y + 18, w, h};
         svg.rect(box, {.fill = "#f0f2f5", .stroke = "#7b8794", .dash = "5 3"});
         for (const Index s : c.segments) drawSegment(svg, config, config.segments[at(s)], box);
         for (size_t s = 0; s < c.segments.size(); ++s) {
             const config::ResolvedSegment& segment = config.segments[at(c.segments[s])];
-            const auto stacked = std::count_if(c.segments.begin(), c.segments.begin() + static_cast<std::ptrdiff_t>(s), [&](Index other) { return config.segments[at(other)].viewport == segment.viewport; });
+            const auto stacked = std::count_if(c.segments.begin(), c.segments.begin() + static_cast<std::ptrdiff_t>(s),
+                                               [&](Index other) { return config.segments[at(other)].viewport == segment.viewport; });
             nameSegment(svg, config, segment, box, static_cast<size_t>(stacked));
         }
         double x = box.right() + 34, top = y + 18, lowest = box.bottom();

@@ -38,7 +38,10 @@ std::string pipeText(const config::ResolvedPipe& p, size_t number) {
 
 double heightOfPipe(const ResolvedConfig& config, const config::ResolvedPipe& p) {
     double h = kPipeHead + kPad;
-    for (const Index w : p.windows) h += kWindowHead + static_cast<double>(namedChannels(config, config.windows[at(w)]).size()) * (kChannelHeight + 3) + kPad + 4;
+    for (const Index w : p.windows) {
+        const auto channels = static_cast<double>(namedChannels(config, config.windows[at(w)]).size());
+        h += kWindowHead + channels * (kChannelHeight + 3) + kPad + 4;
+    }
     return h;
 }
 
@@ -56,8 +59,10 @@ void drawPipe(Svg& svg, const ResolvedConfig& config, Index index, size_t number
         svg.text({inner.x + 6, inner.y + 12}, windowText(window), {9, "#52606d", false, Align::Left}, inner.w - 12);
         double cy = inner.y + kWindowHead;
         for (const Index c : channels) {
-            svg.rect({inner.x + 5, cy, inner.w - 10, kChannelHeight - 1}, {.fill = paleNodeColor(colorIndex(config, index)), .stroke = nodeColor(colorIndex(config, index)), .rounding = 3, .dash = {}});
-            svg.text({inner.x + inner.w / 2, cy + 14.5}, nameOr(config.channels[at(c)].name, "channel", static_cast<size_t>(c)), {10.5, "#111820", false, Align::Middle}, inner.w - 18);
+            svg.rect({inner.x + 5, cy, inner.w - 10, kChannelHeight - 1},
+                     {.fill = paleNodeColor(colorIndex(config, index)), .stroke = nodeColor(colorIndex(config, index)), .rounding = 3, .dash = {}});
+            svg.text({inner.x + inner.w / 2, cy + 14.5}, nameOr(config.channels[at(c)].name, "channel", static_cast<size_t>(c)),
+                     {10.5, "#111820", false, Align::Middle}, inner.w - 18);
             cy += kChannelHeight + 3;
         }
         y = inner.bottom() + kPad;

@@ -41,7 +41,8 @@ bool isIdle(const ResolvedConfig& config, Index compound) {
 // By one of the first `segments` segments.
 bool isShown(const ResolvedConfig& config, Index channel, size_t segments) {
     return config.channels[Resolver::at(channel)].isDestination() ||
-           std::any_of(config.segments.begin(), config.segments.begin() + static_cast<std::ptrdiff_t>(segments), [&](const ResolvedSegment& s) { return s.channel == channel; });
+           std::any_of(config.segments.begin(), config.segments.begin() + static_cast<std::ptrdiff_t>(segments),
+                       [&](const ResolvedSegment& s) { return s.channel == channel; });
 }
 
 // The first compound with a channel on its way from the root: it says what is shown.
@@ -61,7 +62,8 @@ void useShownChannels(Resolver& r) {
         for (size_t channel = 0; channel < config.channels.size(); ++channel) {
             const ResolvedChannel& shown = config.channels[channel];
             if (!shown.isDestination() || config.segments[Resolver::at(shown.segment)].channel != c.channel) continue;
-            const bool used = std::any_of(config.compounds.begin(), config.compounds.end(), [&](const ResolvedCompound& other) { return other.channel == static_cast<Index>(channel); });
+            const bool used = std::any_of(config.compounds.begin(), config.compounds.end(),
+                                          [&](const ResolvedCompound& other) { return other.channel == static_cast<Index>(channel); });
             if (used) continue;
             c.channel = static_cast<Index>(channel);
             break;

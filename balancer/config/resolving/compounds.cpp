@@ -18,12 +18,15 @@ std::string shown(const Reference& reference) {
 // Follows the steps of "( canvas X segment Y layout Z view W )". Without a step it is the first one of each.
 class PathFollower {
 public:
-    PathFollower(const Resolver& r) : c_(r.out), segment_(firstOf(c_.canvases, &ResolvedCanvas::segments)), view_(firstOf(c_.layouts, &ResolvedLayout::views)) {}
+    explicit PathFollower(const Resolver& r)
+        : c_(r.out), segment_(firstOf(c_.canvases, &ResolvedCanvas::segments)), view_(firstOf(c_.layouts, &ResolvedLayout::views)) {}
 
     // What is missing, empty when the way can be gone.
     std::string follow(const ChannelPath& path) {
         for (const auto& [step, reference] : path.steps) {
-            if (!take(step, reference)) return "there is no " + std::string(wordOf(step)) + " " + shown(reference) + (step == PathStep::Segment && canvas_ != kNone ? " in that canvas" : step == PathStep::View && layout_ != kNone ? " in that layout" : "");
+            if (take(step, reference)) continue;
+            const bool inCanvas = step == PathStep::Segment && canvas_ != kNone, inLayout = step == PathStep::View && layout_ != kNone;
+            return "there is no " + std::string(wordOf(step)) + " " + shown(reference) + (inCanvas ? " in that canvas" : inLayout ? " in that layout" : "");
         }
         if (segment_ == kNone) return "the canvas has no segment";
         if (view_ == kNone) return "the layout has no view";
@@ -39,7 +42,8 @@ private:
     }
 
     // Among `members` of a chosen whole, or among all when none was chosen; numbers then count in the first whole.
-    template <class T, class Whole> Index find(const Reference& reference, const std::vector<T>& all, const std::vector<Index>* members, const std::vector<Whole>& wholes, std::vector<Index> Whole::*of) const {
+    template <class T, class Whole> Index find(const Reference& reference, const std::vector<T>& all, const std::vector<Index>* members,
+                                               const std::vector<Whole>& wholes, std::vector<Index> Whole::*of) const {
         if (const auto* name = std::get_if<std::string>(&reference)) {
             if (members == nullptr) return Resolver::named(all, *name);
             const auto found = std::find_if(members->begin(), members->end(), [&](Index i) { return all[Resolver::at(i)].name == *name; });
@@ -68,7 +72,8 @@ private:
             const auto& views = c_.layouts[Resolver::at(layout_)].views;
             view_ = views.empty() ? kNone : views.front();
         } else if (step == PathStep::Segment) {
-            segment_ = find(reference, c_.segments, canvas_ == kNone ? nullptr : &c_.canvases[Resolver::at(canvas_)].segments, c_.canvases, &ResolvedCanvas::segments);
+            segment_ = find(reference, c_.segments, canvas_ == kNone ? nullptr : &c_.canvases[Resolver::at(canvas_)].segments, c_.canvases,
+                            &ResolvedCanvas::segments);
             return segment_ != kNone;
         } else {
             view_ = find(reference, c_.views, layout_ == kNone ? nullptr : &c_.layouts[Resolver::at(layout_)].views, c_.layouts, &ResolvedLayout::views);
@@ -98,7 +103,8 @@ Index channelOf(Resolver& r, const ChannelReference& reference, SourcePosition a
         const ResolvedSegment& s = r.out.segments[Resolver::at(way.segment())];
         const ResolvedView& v = r.out.views[Resolver::at(way.view())];
         const std::string& layout = r.out.layouts[Resolver::at(v.layout)].name;
-        r.diagnostics.error(at, "no view of layout \"" + layout + "\" that is meant here is seen on segment \"" + s.name + "\"", "show the layout on that canvas, or name another segment or view");
+        r.diagnostics.error(at, "no view of layout \"" + layout + "\" that is meant here is seen on segment \"" + s.name + "\"",
+                            "show the layout on that canvas, or name another segment or view");
     }
     return channel;
 }
@@ -125,7 +131,8 @@ ResolvedFrame frameOf(Resolver& r, const Frame& f) {
 }
 
 // Values that no compound can have are as if they were not given.
-template <class T, class Good> void take(Resolver& r, const std::optional<T>& given, T& target, SourcePosition at, const char* what, const char* remedy, Good good) {
+template <class T, class Good> void take(Resolver& r, const std::optional<T>& given, T& target, SourcePosition at, const char* what,
+                                         const char* remedy, Good good) {
     if (!given) return;
     if (good(*given)) target = *given;
     else r.diagnostics.warn(at, std::string(what) + ", it is left out", remedy);
@@ -136,9 +143,12 @@ void takeParameters(Resolver& r, const Compound& c, ResolvedCompound& to) {
          [](const Viewport& v) { return v.w >= 0 && v.h >= 0 && v.x >= 0 && v.y >= 0 && v.x + v.w <= 1.001 && v.y + v.h <= 1.001; });
     take(r, c.range, to.range, c.at, "the range of this compound ends before it begins or lies outside of 0 to 1", "give two numbers from 0 to 1",
          [](const Range& v) { return v.start >= 0 && v.end >= v.start && v.end <= 1.001; });
-    take(r, c.zoom, to.zoom, c.at, "a zoom must be above 0 and sensible, this one", "give two numbers above 0", [](const Zoom& z) { return z.valid() && z.x <= 1000 && z.y <= 1000; });
-    take(r, c.pixel, to.pixel, c.at, "this pixel kernel has no pixel", "give x, y, width and height: 0 <= x < width, 0 <= y < height", [](const PixelKernel& k) { return k.valid() && k.w <= 4096 && k.h <= 4096; });
-    take(r, c.subPixel, to.subPixel, c.at, "there is no such subpixel", "give its number and how many there are: 0 <= number < count", [](const SubPixel& s) { return s.valid() && s.size <= 65536; });
+    take(r, c.zoom, to.zoom, c.at, "this zoom is not above 0, or above 1000", "give two numbers above 0",
+         [](const Zoom& z) { return z.valid() && z.x <= 1000 && z.y <= 1000; });
+    take(r, c.pixel, to.pixel, c.at, "this pixel kernel has no pixel", "give x, y, width and height: 0 <= x < width, 0 <= y < height",
+         [](const PixelKernel& k) { return k.valid() && k.w <= 4096 && k.h <= 4096; });
+    take(r, c.subPixel, to.subPixel, c.at, "there is no such subpixel", "give its number and how many there are: 0 <= number < count",
+         [](const SubPixel& s) { return s.valid() && s.size <= 65536; });
     if (c.period && *c.period > 0) to.period = c.period;
     else if (c.period) r.diagnostics.warn(c.at, "a period of 0 frames is none, it is left out", "give 1 or more");
     to.phase = c.phase;
@@ -156,7 +166,8 @@ Index addCompound(Resolver& r, const Compound& c, Index parent) {
     compound.equalizers = c.equalizers;
     compound.at = c.at;
     takeParameters(r, c, compound);
-    if (c.surface && !screenOf(*c.surface).usable()) r.diagnostics.error(c.at, "the wall or projection of this compound has no area", "give a rectangle, or distance and angles above 0");
+    if (c.surface && !screenOf(*c.surface).usable()) r.diagnostics.error(c.at, "the wall or projection of this compound has no area",
+                                                                         "give a rectangle, or distance and angles above 0");
     if (c.channel) compound.channel = channelOf(r, *c.channel, c.at);
     for (const Frame& f : c.outputFrames) compound.outputFrames.push_back(frameOf(r, f));
     for (const Frame& f : c.inputFrames) compound.inputFrames.push_back(frameOf(r, f));

@@ -29,7 +29,8 @@ Viewport areaOf(Resolver& r, const std::optional<Viewport>& given, SourcePositio
 
 void checkSurface(Resolver& r, const ProjectionSurface& surface) {
     if (screenOf(surface).usable()) return;
-    if (const auto* wall = std::get_if<Wall>(&surface)) r.diagnostics.error(wall->at, "this wall is no rectangle", "give three corners of one, with right angles and an area");
+    if (const auto* wall = std::get_if<Wall>(&surface)) r.diagnostics.error(wall->at, "this wall is no rectangle",
+                                                                            "give three corners of one, with right angles and an area");
     else r.diagnostics.error(std::get<Projection>(surface).at, "this projection shows nothing", "give a distance above 0 and angles between 0 and 180 degrees");
 }
 
@@ -46,7 +47,8 @@ void addObservers(Resolver& r) {
         observer.opencvCamera = o.opencvCamera.value_or(value::kOff);
         observer.vrpnTracker = o.vrpnTracker.value_or("");
         observer.at = o.at;
-        if (!(observer.focusDistance > 0)) r.diagnostics.error(o.at, "a focus distance of " + std::to_string(observer.focusDistance) + " m is none", "give one above 0");
+        if (!(observer.focusDistance > 0)) r.diagnostics.error(o.at, "a focus distance of " + std::to_string(observer.focusDistance) + " m is none",
+                                                               "give one above 0");
         r.out.observers.push_back(observer);
     }
 }
@@ -142,7 +144,8 @@ void addCanvas(Resolver& r, const Canvas& c) {
 // The part of a channel that shows `area` of its segment.
 Viewport partOfChannel(const Viewport& channel, const Viewport& area) {
     if (!inPixels(channel)) return compose(channel, area);
-    const PixelViewport whole{static_cast<int32_t>(channel.x), static_cast<int32_t>(channel.y), static_cast<int32_t>(channel.w), static_cast<int32_t>(channel.h)};
+    const PixelViewport whole{static_cast<int32_t>(channel.x), static_cast<int32_t>(channel.y), static_cast<int32_t>(channel.w),
+                              static_cast<int32_t>(channel.h)};
     const PixelViewport part = apply(whole, area);
     return {double(part.x), double(part.y), double(part.w), double(part.h)};
 }

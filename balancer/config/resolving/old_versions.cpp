@@ -67,11 +67,13 @@ void mendVersion11(Resolver& r) {
         const std::string listens = node.connections.empty() ? "" : node.connections.front().hostname.value_or("");
         if (node.isApplication || listens.empty()) continue;
         if (!node.host.empty()) {
-            if (old && node.host != listens) r.diagnostics.warn(node.at, "this node has a host and its connection has one, before version 1.2 the connection's counts", "say #Equalizer 1.2 ascii, or give one of them");
+            if (old && node.host != listens) r.diagnostics.warn(node.at,
+                "this node has a host and its connection has one, before version 1.2 the connection's counts", "say #Equalizer 1.2 ascii, or give one of them");
             if (old) node.host = listens;
             continue;
         }
-        if (!old) r.diagnostics.warn(node.at, "this node has no host, it is started on that of its first connection, " + listens, "write host \"" + listens + "\"");
+        if (!old) r.diagnostics.warn(node.at, "this node has no host, it is started on that of its first connection, " + listens,
+                                     "write host \"" + listens + "\"");
         node.host = listens;
     }
 }

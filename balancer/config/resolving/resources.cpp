@@ -12,7 +12,8 @@ namespace {
 Viewport areaOf(Resolver& r, const std::optional<Viewport>& given, SourcePosition at, const char* of) {
     if (!given) return {};
     if (given->w > 0 && given->h > 0 && given->w <= 1e6 && given->h <= 1e6 && std::abs(given->x) <= 1e6 && std::abs(given->y) <= 1e6) return *given;
-    r.diagnostics.warn(at, std::string("the viewport of this ") + of + " has no size, or one that no screen has, it is the whole", "give x, y, width and height in pixels, or as parts of 1");
+    r.diagnostics.warn(at, std::string("the viewport of this ") + of + " has no size, or one that no screen has, it is the whole",
+                       "give x, y, width and height in pixels, or as parts of 1");
     return {};
 }
 
@@ -64,7 +65,8 @@ void addPipes(Resolver& r, Index node, const std::vector<Pipe>& pipes) {
         pipe.at = p.at;
         if (p.viewport) {
             const Viewport v = areaOf(r, p.viewport, p.at, "pipe");
-            if (inPixels(v)) pipe.viewport = PixelViewport{static_cast<int32_t>(v.x), static_cast<int32_t>(v.y), static_cast<int32_t>(v.w), static_cast<int32_t>(v.h)};
+            if (inPixels(v)) pipe.viewport = PixelViewport{static_cast<int32_t>(v.x), static_cast<int32_t>(v.y), static_cast<int32_t>(v.w),
+                                                           static_cast<int32_t>(v.h)};
         }
         fillAttributes(pipe.attributes, "PIPE", r.defaults);
         const Index index = Resolver::add(r.out.pipes, pipe);

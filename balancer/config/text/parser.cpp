@@ -19,7 +19,8 @@ public:
     Parser(const TokenList& list, Diagnostics& diagnostics) : tokens_(list.tokens, diagnostics), sections_(tokens_) {
         file_.version = list.version;
         file_.heading = list.heading;
-        if (list.version > kCurrentVersion) diagnostics.warn({1, 1}, "the file has a later version of the format than 1.2", "look at what is said to be unknown");
+        if (list.version > kCurrentVersion) diagnostics.warn({1, 1}, "the file has a later version of the format than 1.2",
+                                                             "look at what is said to be unknown");
     }
 
     ConfigFile run() {
@@ -59,7 +60,8 @@ private:
     void readGlobal(const Token& token) {
         const GlobalAttribute* attribute = findGlobalAttribute(token.text);
         if (attribute == nullptr) return skip(token, "global");
-        if (attribute->name != token.text) tokens_.warn(token.at, std::string(token.text) + " is called " + std::string(attribute->name) + " today", "rename it");
+        if (attribute->name != token.text) tokens_.warn(token.at, std::string(token.text) + " is called " + std::string(attribute->name) + " today",
+                                                        "rename it");
         if (const auto value = readGlobalValue(tokens_, *attribute)) file_.globals[std::string(attribute->name)] = *value;
     }
 
@@ -67,10 +69,16 @@ private:
         if (!tokens_.expect('{', "server")) return;
         while (!tokens_.ended() && !tokens_.peek().is('}')) {
             const Token& token = tokens_.take();
-            if (token.kind == TokenKind::Word && token.text == "connection") sections_.readSection("connection", token.at, file_.serverConnections.emplace_back());
-            else if (token.kind == TokenKind::Word && token.text == "config") readConfig(token);
-            else if (token.kind == TokenKind::Word) skip(token, "server");
-            else return tokens_.fail(token.at, shown(token) + " belongs to no field of section server", "remove it, or look for a bracket that is missing before");
+            if (token.kind == TokenKind::Word && token.text == "connection") {
+                sections_.readSection("connection", token.at, file_.serverConnections.emplace_back());
+            } else if (token.kind == TokenKind::Word && token.text == "config") {
+                readConfig(token);
+            } else if (token.kind == TokenKind::Word) {
+                skip(token, "server");
+            } else {
+                return tokens_.fail(token.at, shown(token) + " belongs to no field of section server",
+                                    "remove it, or look for a bracket that is missing before");
+            }
         }
         tokens_.expect('}', "section server");
     }

@@ -13,7 +13,8 @@ public:
     // "{ ... }"; name and place of its word: for messages.
     template <class Section> void readSection(std::string_view name, SourcePosition at, Section& section) {
         if constexpr (requires { section.at; }) section.at = at;
-        if (depth_ >= kDeepest) return tokens_.fail(tokens_.peek().at, "more than " + std::to_string(kDeepest) + " sections stand in each other", "check the brackets");
+        if (depth_ >= kDeepest) return tokens_.fail(tokens_.peek().at, "more than " + std::to_string(kDeepest) + " sections stand in each other",
+                                                    "check the brackets");
         ++depth_;
         if (tokens_.expect('{', name)) {
             while (!tokens_.ended() && !tokens_.peek().is('}')) readField(name, section);
@@ -124,7 +125,8 @@ private:
     template <class Section> void readField(std::string_view name, Section& section) {
         const Token& token = tokens_.peek();
         if (token.kind != TokenKind::Word) {
-            return tokens_.fail(token.at, shown(token) + " belongs to no field of section " + std::string(name), "remove it, or look for a bracket that is missing before");
+            return tokens_.fail(token.at, shown(token) + " belongs to no field of section " + std::string(name),
+                                "remove it, or look for a bracket that is missing before");
         }
         tokens_.take();
         wordAt_ = token.at;

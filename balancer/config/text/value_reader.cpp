@@ -177,7 +177,8 @@ void ValueReader::readAttribute(int32_t& value) {
     if (word->takesNumber) {
         uint32_t number = 0;
         read(number);
-        if (number > static_cast<uint32_t>(kMostCores)) return tokens_.fail(token.at, std::string(field_) + " names core or socket " + std::to_string(number), "count them from 0, up to " + std::to_string(kMostCores));
+        if (number > static_cast<uint32_t>(kMostCores)) return tokens_.fail(token.at,
+            std::string(field_) + " names core or socket " + std::to_string(number), "count them from 0, up to " + std::to_string(kMostCores));
         value += static_cast<int32_t>(number);
     }
 }

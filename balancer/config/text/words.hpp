@@ -32,16 +32,19 @@ inline constexpr auto spellings(FocusMode) {
                                                {"relative_to_observer", FocusMode::RelativeToObserver}});
 }
 inline constexpr auto spellings(SplitMode) {
-    return std::to_array<Spelling<SplitMode>>({{"2D", SplitMode::TwoD}, {"DB", SplitMode::Db}, {"HORIZONTAL", SplitMode::Horizontal}, {"VERTICAL", SplitMode::Vertical}});
+    return std::to_array<Spelling<SplitMode>>({{"2D", SplitMode::TwoD}, {"DB", SplitMode::Db}, {"HORIZONTAL", SplitMode::Horizontal},
+                                               {"VERTICAL", SplitMode::Vertical}});
 }
-// From the fourth line on: types of early releases, and what comes nearest to them today.
+// In the last two lines: types of early releases, and what comes nearest to them today.
 inline constexpr auto spellings(ConnectionType) {
     return std::to_array<Spelling<ConnectionType>>({{"TCPIP", ConnectionType::Tcp}, {"PIPE", ConnectionType::Pipe}, {"RSP", ConnectionType::Rsp},
                                                     {"RDMA", ConnectionType::Rdma}, {"UDT", ConnectionType::Udt},
-                                                    {"SDP", ConnectionType::Tcp}, {"IB", ConnectionType::Rdma}, {"MCIP", ConnectionType::Rsp}, {"PGM", ConnectionType::Rsp}});
+                                                    {"SDP", ConnectionType::Tcp}, {"IB", ConnectionType::Rdma},
+                                                    {"MCIP", ConnectionType::Rsp}, {"PGM", ConnectionType::Rsp}});
 }
 inline constexpr auto spellings(PathStep) {
-    return std::to_array<Spelling<PathStep>>({{"canvas", PathStep::Canvas}, {"segment", PathStep::Segment}, {"layout", PathStep::Layout}, {"view", PathStep::View}});
+    return std::to_array<Spelling<PathStep>>({{"canvas", PathStep::Canvas}, {"segment", PathStep::Segment}, {"layout", PathStep::Layout},
+                                              {"view", PathStep::View}});
 }
 
 template <class E> constexpr std::string_view wordOf(E value) {

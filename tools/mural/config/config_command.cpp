@@ -23,7 +23,9 @@ namespace {
 using compound::LoadedConfig;
 
 void printDiagnostics(const LoadedConfig& loaded, std::FILE* where) {
-    for (const config::Diagnostic& d : loaded.diagnostics.all()) fmt::print(where, "{}{}\n", d.severity == config::Severity::Error ? "error: " : "warning: ", loaded.diagnostics.text(d));
+    for (const config::Diagnostic& d : loaded.diagnostics.all()) {
+        fmt::print(where, "{}{}\n", d.severity == config::Severity::Error ? "error: " : "warning: ", loaded.diagnostics.text(d));
+    }
 }
 
 int check(const LoadedConfig& loaded) {
@@ -32,7 +34,8 @@ int check(const LoadedConfig& loaded) {
         for (const std::string& line : summaryOf(loaded)) fmt::print("{}\n", line);
     }
     const auto warnings = loaded.diagnostics.all().size() - std::min(loaded.diagnostics.all().size(), static_cast<size_t>(loaded.diagnostics.errors()));
-    fmt::print("{}: {} error{}, {} warning{}\n", loaded.diagnostics.file(), loaded.diagnostics.errors(), loaded.diagnostics.errors() == 1 ? "" : "s", warnings, warnings == 1 ? "" : "s");
+    fmt::print("{}: {} error{}, {} warning{}\n", loaded.diagnostics.file(), loaded.diagnostics.errors(), loaded.diagnostics.errors() == 1 ? "" : "s",
+               warnings, warnings == 1 ? "" : "s");
     return loaded.ok() ? 0 : launch::kExitUsage;
 }
 
@@ -54,7 +57,9 @@ bool showLayout(const config::ResolvedConfig& c, const std::string& name, compou
 Result<std::string> resolvedText(const LoadedConfig& loaded, const ConfigArguments& a) {
     compound::FrameInput input = compound::firstFrame(loaded.resolved);
     input.frameNumber = a.frame;
-    if (!a.layout.empty() && !showLayout(loaded.resolved, a.layout, input)) return Error{"no canvas has a layout " + a.layout + "; name one that mural config draw shows, or its number"};
+    if (!a.layout.empty() && !showLayout(loaded.resolved, a.layout, input)) {
+        return Error{"no canvas has a layout " + a.layout + "; name one that mural config draw shows, or its number"};
+    }
     if (!a.stereo.empty()) input.views.assign(loaded.resolved.views.size(), {a.stereo == "on" ? config::ViewMode::Stereo : config::ViewMode::Mono, 1, {}});
     return planText(loaded.resolved, compound::planFrame(loaded.resolved, input));
 }

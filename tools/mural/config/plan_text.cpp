@@ -20,7 +20,9 @@ const char* wordOf(Task task) {
     return "";
 }
 
-std::string called(const char* what, const std::string& name, Index index) { return name.empty() ? fmt::format("{} {}", what, index) : fmt::format("{} \"{}\"", what, name); }
+std::string called(const char* what, const std::string& name, Index index) {
+    return name.empty() ? fmt::format("{} {}", what, index) : fmt::format("{} \"{}\"", what, name);
+}
 
 std::string areaText(const PixelViewport& v) { return fmt::format("[ {} {} {} {} ]", v.x, v.y, v.w, v.h); }
 std::string partText(const Viewport& v) { return fmt::format("[ {:.6g} {:.6g} {:.6g} {:.6g} ]", v.x, v.y, v.w, v.h); }
@@ -86,7 +88,8 @@ std::string planText(const config::ResolvedConfig& config, const FramePlan& plan
         text += fmt::format("channel \"{}\"", channel.name);
         if (channel.isDestination()) {
             const config::ResolvedView& v = config.views[at(channel.view)];
-            text += fmt::format(", {} on {}", called("layout", config.layouts[at(v.layout)].name, v.layout), called("segment", config.segments[at(channel.segment)].name, channel.segment));
+            text += fmt::format(", {} on {}", called("layout", config.layouts[at(v.layout)].name, v.layout),
+                                called("segment", config.segments[at(channel.segment)].name, channel.segment));
         }
         text += "\n";
         for (const PlannedTask& task : c.tasks) text += taskText(plan, task);
