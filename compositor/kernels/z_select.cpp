@@ -5,6 +5,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "compositor/kernels/z_select.cpp"
 #include <hwy/foreach_target.h>
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -73,6 +74,9 @@ template <class D> void selectColours(D du, const ZRow& row, size_t i, hn::Mask<
     }
 }
 
+// Hardware looks ahead within a page only. Colours are not asked for: most are not needed where little is covered.
+constexpr size_t kAhead = 512;
+
 // Returns how many pixels it did: whole vectors.
 template <SourceWins W, bool kFloat, bool kCovered> size_t selectRow(const ZRow& row, const Constants& c) {
     const hn::ScalableTag<uint32_t> du;
@@ -85,6 +89,8 @@ template <SourceWins W, bool kFloat, bool kCovered> size_t selectRow(const ZRow&
     const auto earlierSource = c.earlierSource ? all : hn::Not(all);
     size_t i = 0;
     for (; i + step <= row.count; i += step) {
+        hwy::Prefetch(row.depth + i + kAhead);
+        hwy::Prefetch(row.sourceDepth + i + kAhead);
         const auto there = hn::LoadU(du, row.depth + i);
         const auto source = hn::LoadU(du, row.sourceDepth + i);
         auto win = all;

@@ -9,24 +9,28 @@ namespace {
 
 constexpr double kNsPerSec = 1e9;
 // Of a new report; so that one piece that was interrupted does not turn the choice.
-constexpr double kTimeWeight = 0.2;
-constexpr double kSizeWeight = 0.4;
+constexpr double kWeight = 0.1;
+constexpr double kMeasuredWeight = 0.5; // there are fewer of these
+constexpr double kRecentWeight = 0.3;
 constexpr double kLinkWeight = 0.25;
-// Sizes are exact: one that is so far from what was expected means that the content is another.
-constexpr double kContentChange = 1.5;
+// Pieces differ, also of one class; but when the last few are so far from those before, the content is another one.
+constexpr double kContentChange = 2;
 constexpr double kSizeChange = 0.02; // of the raw size: what small pieces do does not matter
+constexpr uint64_t kSettled = 16;    // pieces before it may be another one again
 constexpr double kLinkChange = 1.5;
-// Trying: one piece in so many.
-constexpr uint64_t kTryNew = 4;
-constexpr uint64_t kTryStale = 8;
-constexpr uint64_t kTryAgain = 64;
-constexpr double kStaleShares = 5;
-// What was spent long ago, perhaps over another link, pays for nothing now: per piece.
-constexpr double kForget = 1.0 / 256;
+// One piece in so many may be measured with another codec; mostly the share is what bounds it.
+constexpr uint64_t kMeasureEvery = 4;
+constexpr double kStaleShares = 3; // of the share: what is stale may be as good as any
+// What a codec is thought to take before it was measured, against the best one.
+constexpr double kNewEncode = 8, kNewDecode = 4;
+// What was spent long ago pays for nothing now: per piece.
+constexpr double kForget = 1.0 / 1024;
 // Under Pipelined all three times count a little: of two codecs that the link hides, the cheaper one is taken.
 constexpr double kHiddenShare = 1.0 / 64;
 
 double farther(double a, double b) { return std::max(a, b) / std::max(std::min(a, b), 1e-12); }
+void approach(double& value, double report, double weight) { value += weight * (report - value); }
+double perByte(int64_t ns, uint64_t rawBytes) { return static_cast<double>(std::max<int64_t>(ns, 1)) / static_cast<double>(rawBytes); }
 
 } // namespace
 
@@ -38,10 +42,7 @@ CodecSelector::CodecSelector(std::vector<std::string> codecs, SelectorOptions op
 
 CodecSelector::ClassState& CodecSelector::stateOf(const TileClass& tile) {
     ClassState& s = classes_[tile];
-    if (s.codecs.empty()) {
-        s.codecs.resize(codecs_.size());
-        s.chosen = raw_;
-    }
+    s.codecs.resize(codecs_.size());
     return s;
 }
 
@@ -55,84 +56,121 @@ double CodecSelector::nsPerByte(const Estimate& e) const {
 
 size_t CodecSelector::bestOf(const ClassState& s) const {
     size_t best = s.codecs.size();
-    for (size_t i = 0; i < s.codecs.size(); ++i) {
-        if (s.codecs[i].reports == 0) continue;
-        if (best == s.codecs.size() || nsPerByte(s.codecs[i]) < nsPerByte(s.codecs[best])) best = i;
-    }
-    if (best == s.codecs.size()) return raw_;
-    // A measured old value is worth less than a fresh one that is nearly as good.
-    if (s.codecs[best].stale && s.codecs[s.chosen].reports > 0 && !s.codecs[s.chosen].stale && nsPerByte(s.codecs[s.chosen]) < 1.1 * nsPerByte(s.codecs[best])) return s.chosen;
-    return best;
+    for (size_t i = 0; i < s.codecs.size(); ++i)
+        if (s.codecs[i].reports > 0 && (best == s.codecs.size() || nsPerByte(s.codecs[i]) < nsPerByte(s.codecs[best]))) best = i;
+    if (best != s.codecs.size()) return best;
+    return raw_ == 0 && s.codecs.size() > 1 ? 1 : 0; // nothing is known: the first one that compresses
 }
 
-// Another codec than the best that this piece shall be tried with; or the best. Of those whose excess can be paid, what is
-// stale comes first, and then what was measured longest ago.
-size_t CodecSelector::toTry(const ClassState& s, size_t best, uint64_t rawBytes) const {
-    size_t tried = best;
+// What it takes to measure a codec; of one that never was, a guess.
+double CodecSelector::measuringNsPerByte(const ClassState& s, size_t codec, size_t best) const {
+    const Estimate& e = s.codecs[codec];
+    if (e.reports > 0) return e.encodeNsPerByte + (e.decodeKnown ? e.decodeNsPerByte : e.encodeNsPerByte);
+    const Estimate& b = s.codecs[best];
+    const double decode = b.decodeKnown ? b.decodeNsPerByte : b.encodeNsPerByte;
+    return codec == raw_ ? b.encodeNsPerByte + decode : kNewEncode * b.encodeNsPerByte + kNewDecode * decode;
+}
+
+// Of those that can be paid for, what is stale or new comes first, and then what was measured longest ago.
+std::optional<size_t> CodecSelector::toMeasure(const ClassState& s, size_t best, uint64_t rawBytes) const {
+    if (s.codecs[best].reports == 0 || s.pieces % kMeasureEvery != 0) return std::nullopt; // of the first piece, nothing is to be compared with
+    std::optional<size_t> found;
     for (size_t i = 0; i < s.codecs.size(); ++i) {
         const Estimate& e = s.codecs[i];
         if (i == best) continue;
-        if (e.reports == 0) {
-            // How large raw pieces are is known: over a slow link they are not even tried.
-            if (i == raw_ && s.codecs[best].reports > 0 && kNsPerSec / linkBytesPerSec_ > nsPerByte(s.codecs[best])) continue;
-            if (s.pieces % kTryNew == 0 || s.codecs[best].reports == 0) return i;
-            continue;
-        }
-        // What is stale may be as cheap as any: more is risked for it.
-        const double excess = std::max(0.0, nsPerByte(e) - nsPerByte(s.codecs[best])) * static_cast<double>(rawBytes);
-        if (s.exploredNs + excess > options_.exploreShare * s.spentNs * (e.stale ? kStaleShares : 1)) continue;
-        const Estimate& other = s.codecs[tried];
-        if (tried == best || (e.stale && !other.stale) || (e.stale == other.stale && e.measuredAt < other.measuredAt)) tried = i;
+        const double most = options_.measureShare * (e.stale ? kStaleShares : 1) * s.spentNs;
+        const bool known = i != raw_ || e.reports > 0; // copying is cheap, and a fast link can't wait for it
+        if (known && s.measuringNs + measuringNsPerByte(s, i, best) * static_cast<double>(rawBytes) > most) continue;
+        const Estimate* other = found ? &s.codecs[*found] : nullptr;
+        if (!other || (e.stale && !other->stale) || (e.stale == other->stale && e.measuredAt < other->measuredAt)) found = i;
     }
-    return tried != best && s.pieces % (s.codecs[tried].stale ? kTryStale : kTryAgain) == 0 ? tried : best;
+    return found;
 }
 
-size_t CodecSelector::choose(const TileClass& tile, uint64_t rawBytes) {
+CodecSelector::Choice CodecSelector::choose(const TileClass& tile, uint64_t rawBytes) {
     ClassState& s = stateOf(tile);
     const size_t best = bestOf(s);
-    const size_t tried = toTry(s, best, rawBytes);
     ++s.pieces;
     if (s.codecs[best].reports > 0) {
-        s.exploredNs *= 1 - kForget;
-        s.spentNs += nsPerByte(s.codecs[best]) * static_cast<double>(rawBytes) - s.spentNs * kForget;
-        if (tried != best && s.codecs[tried].reports > 0) s.exploredNs += std::max(0.0, nsPerByte(s.codecs[tried]) - nsPerByte(s.codecs[best])) * static_cast<double>(rawBytes);
+        const double pieceNs = nsPerByte(s.codecs[best]) * static_cast<double>(rawBytes);
+        // Never more than if all had been like this one: what a slow link or hard content took pays for nothing now.
+        s.spentNs = std::min(s.spentNs * (1 - kForget) + pieceNs, pieceNs / kForget);
+        s.measuringNs = std::min(s.measuringNs * (1 - kForget), options_.measureShare * s.spentNs);
     }
-    if (tried == best) s.chosen = best;
-    return tried;
+    const std::optional<size_t> measure = toMeasure(s, best, rawBytes);
+    if (measure) s.measuringNs += measuringNsPerByte(s, *measure, best) * static_cast<double>(rawBytes);
+    return {best, measure};
+}
+
+// When sizes have moved far, all others may be better or worse than they were.
+void CodecSelector::noticeChange(ClassState& s, Estimate& e) {
+    if (s.pieces < s.changedAt + kSettled || farther(e.recentPerByte, e.encodedPerByte) < kContentChange || std::abs(e.recentPerByte - e.encodedPerByte) < kSizeChange) return;
+    for (Estimate& other : s.codecs) other.stale = true;
+    e.stale = false;
+    const double before = nsPerByte(e);
+    e.encodedPerByte = e.recentPerByte;
+    s.changedAt = s.pieces;
+    // As if it had always been so: that pays for measuring the others.
+    s.spentNs *= std::max(1.0, nsPerByte(e) / before);
+    s.measuringNs = 0;
 }
 
 void CodecSelector::encoded(const TileClass& tile, size_t codec, uint64_t rawBytes, uint64_t encodedBytes, int64_t encodeNs) {
     if (rawBytes == 0 || codec >= codecs_.size()) return;
     ClassState& s = stateOf(tile);
     Estimate& e = s.codecs[codec];
-    const double encode = static_cast<double>(std::max<int64_t>(encodeNs, 1)) / static_cast<double>(rawBytes);
     const double size = static_cast<double>(encodedBytes) / static_cast<double>(rawBytes);
-    const double expected = nsPerByte(e);
-    const bool isOther = e.reports > 0 && !e.stale && farther(size, e.encodedPerByte) > kContentChange && std::abs(size - e.encodedPerByte) > kSizeChange;
-    if (isOther)
-        for (Estimate& other : s.codecs) other.stale = true;
-    if (e.reports == 0 || e.stale) {
+    const double encode = perByte(encodeNs, rawBytes);
+    if (e.reports++ == 0) {
         e.encodeNsPerByte = encode;
-        e.encodedPerByte = size;
+        e.encodedPerByte = e.recentPerByte = size;
+        e.stale = false;
     } else {
-        e.encodeNsPerByte += kTimeWeight * (encode - e.encodeNsPerByte);
-        e.encodedPerByte += kSizeWeight * (size - e.encodedPerByte);
+        const double before = e.encodedPerByte;
+        approach(e.encodeNsPerByte, encode, kWeight);
+        approach(e.encodedPerByte, size, kWeight);
+        approach(e.recentPerByte, size, kRecentWeight);
+        noticeChange(s, e);
+        // What became larger with this codec did with the others, until they are measured: all but raw.
+        for (size_t i = 0; i < s.codecs.size() && codec != raw_ && before > 0; ++i) {
+            Estimate& other = s.codecs[i];
+            if (i == codec || i == raw_ || other.reports == 0) continue;
+            other.encodedPerByte = other.recentPerByte = std::min(1.0, other.encodedPerByte * e.encodedPerByte / before);
+        }
     }
-    if (isOther) { // as if it had always been so: that pays for trying the others
-        s.spentNs *= nsPerByte(e) / expected;
-        s.exploredNs = 0;
-    }
-    ++e.reports;
-    e.stale = false;
     e.measuredAt = s.pieces;
+    s.used = codec;
+    s.usedPerByte = size;
+    s.usedEncodeNs = encode;
 }
 
 void CodecSelector::decoded(const TileClass& tile, size_t codec, uint64_t rawBytes, int64_t decodeNs) {
     if (rawBytes == 0 || codec >= codecs_.size()) return;
     Estimate& e = stateOf(tile).codecs[codec];
-    const double decode = static_cast<double>(std::max<int64_t>(decodeNs, 1)) / static_cast<double>(rawBytes);
-    e.decodeNsPerByte = e.decodeKnown && farther(decode, e.decodeNsPerByte) < 4 ? e.decodeNsPerByte + kTimeWeight * (decode - e.decodeNsPerByte) : decode;
+    const double decode = perByte(decodeNs, rawBytes);
+    approach(e.decodeNsPerByte, decode, e.decodeKnown ? kWeight : 1);
     e.decodeKnown = true;
+}
+
+void CodecSelector::measured(const TileClass& tile, size_t codec, uint64_t rawBytes, uint64_t encodedBytes, int64_t encodeNs, int64_t decodeNs) {
+    if (rawBytes == 0 || codec >= codecs_.size()) return;
+    ClassState& s = stateOf(tile);
+    Estimate& e = s.codecs[codec];
+    const Estimate& used = s.codecs[s.used];
+    // As it would have been on a piece like the others: this one may be easy or hard for all codecs.
+    const double ofSize = codec == raw_ || s.used == raw_ || s.usedPerByte <= 0 ? 1 : used.encodedPerByte / s.usedPerByte;
+    const double size = std::min(1.1, static_cast<double>(encodedBytes) / static_cast<double>(rawBytes) * ofSize);
+    const double ofTime = std::clamp(used.encodeNsPerByte / std::max(s.usedEncodeNs, 1e-9), 0.5, 2.0);
+    const double weight = e.reports == 0 || e.stale ? 1 : kMeasuredWeight;
+    approach(e.encodeNsPerByte, perByte(encodeNs, rawBytes) * ofTime, weight);
+    // A piece of which hardly anything is left says little about sizes: the others are what the link carries.
+    approach(e.encodedPerByte, size, weight == 1 ? 1 : weight * std::clamp(s.usedPerByte / std::max(used.encodedPerByte, 1e-9), 0.05, 1.0));
+    e.recentPerByte = e.encodedPerByte;
+    approach(e.decodeNsPerByte, perByte(decodeNs, rawBytes) * ofTime, e.decodeKnown ? weight : 1);
+    e.decodeKnown = true;
+    e.stale = false;
+    ++e.reports;
+    e.measuredAt = s.pieces;
 }
 
 void CodecSelector::transferred(uint64_t bytes, int64_t ns) {
@@ -141,18 +179,9 @@ void CodecSelector::transferred(uint64_t bytes, int64_t ns) {
     const bool isFar = farther(rate, linkBytesPerSec_) > kLinkChange;
     // Twice in a row as far off: the link is another one now.
     const bool again = isFar && lastLinkRate_ > 0 && farther(rate, lastLinkRate_) < kLinkChange;
-    const double measured = linkReports_++ == 0 || again ? rate : linkBytesPerSec_ + kLinkWeight * (rate - linkBytesPerSec_);
-    // What pieces took over the old link is no measure for what may be spent over this one.
-    std::vector<double> before;
-    for (const auto& [tile, s] : classes_) before.push_back(nsPerByte(s.codecs[s.chosen]));
-    linkBytesPerSec_ = measured;
-    auto old = before.begin();
-    for (auto& [tile, s] : classes_) {
-        const double change = nsPerByte(s.codecs[s.chosen]) / *old++;
-        s.spentNs *= change;
-        s.exploredNs *= change;
-    }
     lastLinkRate_ = isFar ? rate : 0;
+    if (linkReports_++ == 0 || again) linkBytesPerSec_ = rate;
+    else approach(linkBytesPerSec_, rate, kLinkWeight);
 }
 
 size_t CodecSelector::best(const TileClass& tile) const {

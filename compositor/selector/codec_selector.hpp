@@ -1,12 +1,14 @@
 // Chooses, for one link, the codec that gets a piece of a picture across in the least time. All it knows is what it is told
 // of pieces before: it has no clock and no thread, and the same reports give the same choices.
 //
-// Time of a piece: encoding, its bytes over the link, decoding. Each is measured per class of pieces and codec; a codec that
-// was not measured yet, or not since the content changed, is tried on one piece in a few.
+// Time of a piece: encoding, its bytes over the link, decoding. Each is estimated per class of pieces and codec. The others
+// than the best codec are measured on the side: on a piece in a few, one of them encodes and decodes it too, and nothing of
+// that is sent. Both outcomes of one piece are compared, so it does not matter that pieces differ.
 #pragma once
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,8 +24,7 @@ enum class Overlap : uint8_t {
 
 struct SelectorOptions {
     Overlap overlap = Overlap::Pipelined;
-    // Parts of the time that trying others may cost, once all were measured.
-    double exploreShare = 0.02;
+    double measureShare = 0.02;      // of the time of pieces, for measuring others on the side
     double startBytesPerSec = 125e6; // of the link, until it is measured
 };
 
@@ -33,19 +34,26 @@ public:
     // (CodecRegistry::losslessFor), unless the user named others. They are tried in this order.
     explicit CodecSelector(std::vector<std::string> codecs, SelectorOptions options = {});
 
-    // The index of the codec to use for the next piece of this class.
-    [[nodiscard]] size_t choose(const TileClass& tile, uint64_t rawBytes);
+    // Indices of codecs: the one to use for the next piece of this class, and perhaps one to measure on it.
+    struct Choice {
+        size_t codec = 0;
+        std::optional<size_t> measure;
+    };
+    [[nodiscard]] Choice choose(const TileClass& tile, uint64_t rawBytes);
     [[nodiscard]] const std::string& name(size_t codec) const { return codecs_[codec]; }
 
-    // What came of it. Times are CPU or wall time of one piece; decoding is told when the receiver's answer comes, or never,
-    // and is then taken to last as long as encoding.
+    // What came of the codec that was used. Times are those of one thread. Decoding is told when the receiver's answer comes,
+    // or never, and is then taken to last as long as encoding.
     void encoded(const TileClass& tile, size_t codec, uint64_t rawBytes, uint64_t encodedBytes, int64_t encodeNs);
     void decoded(const TileClass& tile, size_t codec, uint64_t rawBytes, int64_t decodeNs);
+    // What came of the one that was to be measured, on the piece that encoded() has told of last. Decoding may have been
+    // measured here.
+    void measured(const TileClass& tile, size_t codec, uint64_t rawBytes, uint64_t encodedBytes, int64_t encodeNs, int64_t decodeNs);
     // The link carried so much in a time in which it was never idle.
     void transferred(uint64_t bytes, int64_t ns);
 
     [[nodiscard]] double linkBytesPerSec() const { return linkBytesPerSec_; }
-    // As it would be chosen now, without trying others; and how long it is thought to take. 0 ns: nothing is known.
+    // What would be used now, and how long a codec is thought to take; 0 ns: nothing is known.
     [[nodiscard]] size_t best(const TileClass& tile) const;
     [[nodiscard]] double expectedNsPerByte(const TileClass& tile, size_t codec) const;
 
@@ -54,6 +62,7 @@ private:
         double encodeNsPerByte = 0;
         double decodeNsPerByte = 0;
         double encodedPerByte = 1;
+        double recentPerByte = 1; // of the last few pieces
         uint64_t reports = 0;
         bool decodeKnown = false;
         bool stale = true; // not measured since the content changed
@@ -62,15 +71,20 @@ private:
     struct ClassState {
         std::vector<Estimate> codecs;
         uint64_t pieces = 0;
-        double spentNs = 0;    // what the last pieces took, as estimated
-        double exploredNs = 0; // what of that trying others cost
-        size_t chosen = 0;
+        uint64_t changedAt = 0; // when the content became another
+        double spentNs = 0;     // what the last pieces took, as estimated
+        double measuringNs = 0; // what measuring others took
+        size_t used = 0;        // by the last piece, and what it became
+        double usedPerByte = 1;
+        double usedEncodeNs = 0; // per byte
     };
 
     ClassState& stateOf(const TileClass& tile);
     [[nodiscard]] double nsPerByte(const Estimate& e) const;
     [[nodiscard]] size_t bestOf(const ClassState& s) const;
-    [[nodiscard]] size_t toTry(const ClassState& s, size_t best, uint64_t rawBytes) const;
+    [[nodiscard]] double measuringNsPerByte(const ClassState& s, size_t codec, size_t best) const;
+    [[nodiscard]] std::optional<size_t> toMeasure(const ClassState& s, size_t best, uint64_t rawBytes) const;
+    void noticeChange(ClassState& s, Estimate& e);
 
     std::vector<std::string> codecs_;
     SelectorOptions options_;

@@ -42,6 +42,7 @@ TileClass classify(const PlaneView& plane) {
             equal += word == above;
             near += isNear(arithmetic, word, above);
         }
+    if (equal == kSamples) return {plane.format, Activity::Empty};
     if (equal >= kSamples * 31 / 32) return {plane.format, Activity::Still};
     if (equal >= kSamples * 5 / 8) return {plane.format, Activity::Flat};
     return {plane.format, near >= kSamples * 5 / 8 ? Activity::Smooth : Activity::Busy};

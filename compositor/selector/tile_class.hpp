@@ -9,7 +9,8 @@
 namespace mural::compositor {
 
 enum class Activity : uint8_t {
-    Still,  // nearly all pixels are those above them
+    Empty,  // all pixels of the sample are those above them
+    Still,  // nearly all are
     Flat,   // most are
     Smooth, // most are near
     Busy,

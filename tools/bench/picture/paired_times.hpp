@@ -1,0 +1,41 @@
+// Times of this thread's CPU beside those of memcpy, taken in turns so that both meet the same machine. Buffers are changed
+// with every turn: what is measured comes from memory, not from the caches.
+#pragma once
+
+#include <algorithm>
+#include <cstring>
+#include <vector>
+
+#include "common/clock.hpp"
+
+namespace mural::bench {
+
+constexpr size_t kRotatedBytes = size_t{256} << 20; // per set of buffers, more than caches hold
+
+[[nodiscard]] inline size_t buffersFor(size_t sizeBytes, bool quick) { return quick ? 2 : std::max<size_t>(3, kRotatedBytes / std::max<size_t>(sizeBytes, 1)); }
+
+// Zeroed pages are not there yet: written once.
+class RotatedBuffers {
+public:
+    RotatedBuffers(size_t count, size_t sizeBytes) : buffers_(count, std::vector<std::byte>(sizeBytes, std::byte{1})) {}
+    std::vector<std::byte>& at(size_t turn) { return buffers_[turn % buffers_.size()]; }
+    [[nodiscard]] size_t count() const { return buffers_.size(); }
+
+private:
+    std::vector<std::vector<std::byte>> buffers_;
+};
+
+template <class Do> double cpuNsOf(Do&& work) {
+    const int64_t from = threadCpuNowNs();
+    work();
+    return static_cast<double>(threadCpuNowNs() - from);
+}
+
+[[nodiscard]] inline double medianOf(std::vector<double> values) {
+    if (values.empty()) return 0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+} // namespace mural::bench
