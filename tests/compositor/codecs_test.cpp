@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "compositor/codecs/registry.hpp"
+#include "compositor/codecs/rle/rle_components_codec.hpp"
 #include "tests/compositor/random_bytes.hpp"
 #include "tests/compositor/test_planes.hpp"
 
@@ -102,6 +103,18 @@ INSTANTIATE_TEST_SUITE_P(Codecs, EveryLosslessCodec, testing::Values("raw", "rle
                              std::ranges::replace(name, '-', '_');
                              return name;
                          });
+
+TEST(RleSwizzled, StreamsHoldPairsOfBitsTheHighOnesFirst) {
+    std::mt19937 random(6);
+    for (int i = 0; i < 1000; ++i) {
+        const auto word = static_cast<uint32_t>(random());
+        uint32_t expected = 0;
+        for (unsigned stream = 0; stream < 4; ++stream)
+            for (unsigned c = 0; c < 4; ++c) expected |= (word >> (8 * c + 6 - 2 * stream) & 3) << (8 * stream + 6 - 2 * c);
+        ASSERT_EQ(swizzledWord(word), expected);
+        ASSERT_EQ(swizzledWord(expected), word);
+    }
+}
 
 TEST(BitplaneCodecs, AreTheSameOnEveryInstructionSet) {
     CodecRegistry registry;

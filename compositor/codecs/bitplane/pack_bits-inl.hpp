@@ -24,19 +24,19 @@ using Halves16 = hn::Full128<uint16_t>;
 using V16 = hn::Vec<Bytes16>;
 
 // Shifts of bytes as shifts of pairs: what comes over from the neighbour is masked off, or is 0.
-inline V16 left(V16 v, int bits) { return hn::BitCast(Bytes16(), hn::ShiftLeftSame(hn::BitCast(Halves16(), v), bits)); }
-inline V16 right(V16 v, int bits) { return hn::BitCast(Bytes16(), hn::ShiftRightSame(hn::BitCast(Halves16(), v), bits)); }
+HWY_INLINE V16 left(V16 v, int bits) { return hn::BitCast(Bytes16(), hn::ShiftLeftSame(hn::BitCast(Halves16(), v), bits)); }
+HWY_INLINE V16 right(V16 v, int bits) { return hn::BitCast(Bytes16(), hn::ShiftRightSame(hn::BitCast(Halves16(), v), bits)); }
 
 #if HWY_MAX_BYTES >= 32
 
 using Bytes32 = hn::Simd<uint8_t, 32, 0>;
 using Halves32 = hn::Simd<uint16_t, 16, 0>;
 using V32 = hn::Vec<Bytes32>;
-inline V32 left(V32 v, int bits) { return hn::BitCast(Bytes32(), hn::ShiftLeftSame(hn::BitCast(Halves32(), v), bits)); }
-inline V32 right(V32 v, int bits) { return hn::BitCast(Bytes32(), hn::ShiftRightSame(hn::BitCast(Halves32(), v), bits)); }
+HWY_INLINE V32 left(V32 v, int bits) { return hn::BitCast(Bytes32(), hn::ShiftLeftSame(hn::BitCast(Halves32(), v), bits)); }
+HWY_INLINE V32 right(V32 v, int bits) { return hn::BitCast(Bytes32(), hn::ShiftRightSame(hn::BitCast(Halves32(), v), bits)); }
 
 // 64 bytes as two vectors. width 1 to 8.
-inline uint8_t* packChannel(const uint8_t* bytes, unsigned width, uint8_t* into) {
+HWY_INLINE uint8_t* packChannel(const uint8_t* bytes, unsigned width, uint8_t* into) {
     const Bytes32 d;
     const Bytes16 dh;
     const V32 a = hn::Load(d, bytes), b = hn::Load(d, bytes + 32);
@@ -59,7 +59,7 @@ inline uint8_t* packChannel(const uint8_t* bytes, unsigned width, uint8_t* into)
     return into + 8 * width;
 }
 
-inline const uint8_t* unpackChannel(const uint8_t* from, unsigned width, uint8_t* bytes) {
+HWY_INLINE const uint8_t* unpackChannel(const uint8_t* from, unsigned width, uint8_t* bytes) {
     const Bytes32 d;
     const Bytes16 dh;
     if (width == 8) {
@@ -89,7 +89,7 @@ inline const uint8_t* unpackChannel(const uint8_t* from, unsigned width, uint8_t
 #else
 
 // 64 bytes as four vectors.
-inline uint8_t* packChannel(const uint8_t* bytes, unsigned width, uint8_t* into) {
+HWY_INLINE uint8_t* packChannel(const uint8_t* bytes, unsigned width, uint8_t* into) {
     const Bytes16 d;
     const V16 a = hn::Load(d, bytes), b = hn::Load(d, bytes + 16), c = hn::Load(d, bytes + 32), e = hn::Load(d, bytes + 48);
     if (width == 8) {
@@ -113,7 +113,7 @@ inline uint8_t* packChannel(const uint8_t* bytes, unsigned width, uint8_t* into)
     return into + 8 * width;
 }
 
-inline const uint8_t* unpackChannel(const uint8_t* from, unsigned width, uint8_t* bytes) {
+HWY_INLINE const uint8_t* unpackChannel(const uint8_t* from, unsigned width, uint8_t* bytes) {
     const Bytes16 d;
     if (width == 8) {
         for (size_t i = 0; i < 64; i += 16) hn::Store(hn::LoadU(d, from + i), d, bytes + i);

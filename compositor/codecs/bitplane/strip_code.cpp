@@ -42,20 +42,20 @@ constexpr size_t kSteps = kBlockColumns / kLanes;
 
 template <Arithmetic A> using Lane = std::conditional_t<A == Arithmetic::Bytes, uint8_t, std::conditional_t<A == Arithmetic::Halves, uint16_t, uint32_t>>;
 
-template <Arithmetic A> W subtracted(W a, W b) {
+template <Arithmetic A> HWY_INLINE W subtracted(W a, W b) {
     const hn::Repartition<Lane<A>, Words> d;
     return hn::BitCast(Words(), hn::Sub(hn::BitCast(d, a), hn::BitCast(d, b)));
 }
-template <Arithmetic A> W added(W a, W b) {
+template <Arithmetic A> HWY_INLINE W added(W a, W b) {
     const hn::Repartition<Lane<A>, Words> d;
     return hn::BitCast(Words(), hn::Add(hn::BitCast(d, a), hn::BitCast(d, b)));
 }
-template <Arithmetic A> W foldedLanes(W v) {
+template <Arithmetic A> HWY_INLINE W foldedLanes(W v) {
     const hn::Repartition<std::make_signed_t<Lane<A>>, Words> d;
     const auto s = hn::BitCast(d, v);
     return hn::BitCast(Words(), hn::Xor(hn::Add(s, s), hn::BroadcastSignBit(s)));
 }
-template <Arithmetic A> W unfoldedLanes(W v) {
+template <Arithmetic A> HWY_INLINE W unfoldedLanes(W v) {
     using T = Lane<A>;
     const hn::Repartition<T, Words> d;
     const auto sign = hn::Sub(hn::Zero(d), hn::And(hn::BitCast(d, v), hn::Set(d, T{1})));
@@ -67,12 +67,12 @@ template <Arithmetic A> W unfoldedLanes(W v) {
         return hn::BitCast(Words(), hn::Xor(hn::ShiftRight<1>(hn::BitCast(d, v)), sign));
     }
 }
-template <Arithmetic A> W loadTurned(const std::byte* at) {
+template <Arithmetic A> HWY_INLINE W loadTurned(const std::byte* at) {
     const W v = hn::LoadU(Words(), reinterpret_cast<const uint32_t*>(at));
     if constexpr (A == Arithmetic::RotatedWords) return hn::RotateRight<8>(v);
     else return v;
 }
-template <Arithmetic A> void storeTurnedBack(W v, std::byte* at) {
+template <Arithmetic A> HWY_INLINE void storeTurnedBack(W v, std::byte* at) {
     if constexpr (A == Arithmetic::RotatedWords) hn::StoreU(hn::RotateRight<24>(v), Words(), reinterpret_cast<uint32_t*>(at));
     else hn::StoreU(v, Words(), reinterpret_cast<uint32_t*>(at));
 }
@@ -82,7 +82,7 @@ struct Four {
 };
 
 // Byte i of word j becomes byte j of word i, in every lane: rows of words to channels of rows, and back.
-Four transposed(const Four& v) {
+HWY_INLINE Four transposed(const Four& v) {
     const Words w;
     const hn::Repartition<uint16_t, Words> d16;
     const hn::Repartition<uint8_t, Words> d8;
@@ -94,7 +94,7 @@ Four transposed(const Four& v) {
 }
 
 // The four rows' differences to what was predicted.
-template <Arithmetic A, Predictor P, bool kFirst> Four differences(const StripSource& s, size_t byte) {
+template <Arithmetic A, Predictor P, bool kFirst> HWY_INLINE Four differences(const StripSource& s, size_t byte) {
     const W above = loadTurned<A>(s.above + byte);
     const W r0 = loadTurned<A>(s.rows + byte), r1 = loadTurned<A>(s.rows + s.strideBytes + byte);
     const W r2 = loadTurned<A>(s.rows + 2 * s.strideBytes + byte), r3 = loadTurned<A>(s.rows + 3 * s.strideBytes + byte);
@@ -110,10 +110,10 @@ template <Arithmetic A, Predictor P, bool kFirst> Four differences(const StripSo
     return d;
 }
 
-W ored(const Four& f) { return hn::Or(hn::Or(f.a, f.b), hn::Or(f.c, f.d)); }
-bool isZero(W v) { return hn::AllTrue(Words(), hn::Eq(v, hn::Zero(Words()))); }
+HWY_INLINE W ored(const Four& f) { return hn::Or(hn::Or(f.a, f.b), hn::Or(f.c, f.d)); }
+HWY_INLINE bool isZero(W v) { return hn::AllTrue(Words(), hn::Eq(v, hn::Zero(Words()))); }
 
-template <Arithmetic A> Four residuals(Four d) {
+template <Arithmetic A> HWY_INLINE Four residuals(Four d) {
     if constexpr (A == Arithmetic::Bytes) {
         Four c = transposed(d);
         c.a = subtracted<A>(c.a, c.b);
@@ -125,7 +125,7 @@ template <Arithmetic A> Four residuals(Four d) {
 }
 
 using Quad = hn::Full128<uint32_t>;
-template <class V> hn::Vec<Quad> foldedToQuad(V v) {
+template <class V> HWY_INLINE hn::Vec<Quad> foldedToQuad(V v) {
     if constexpr (kLanes == 16) {
         const hn::Half<Words> half;
         const auto h = hn::Or(hn::LowerHalf(half, v), hn::UpperHalf(half, v));
@@ -138,7 +138,7 @@ template <class V> hn::Vec<Quad> foldedToQuad(V v) {
 }
 
 // The widths of the four channels, from their bytes or-ed together.
-uint16_t widthsOf(const Four& channels) {
+HWY_INLINE uint16_t widthsOf(const Four& channels) {
     const Quad d;
     const hn::Full128<uint64_t> d64;
     const auto a = foldedToQuad(channels.a), b = foldedToQuad(channels.b), c = foldedToQuad(channels.c), e = foldedToQuad(channels.d);
@@ -190,7 +190,7 @@ template <Arithmetic A, Predictor P, bool kFirst> size_t encodeAs(const StripSou
     return static_cast<size_t>(out - reinterpret_cast<uint8_t*>(into));
 }
 
-template <Arithmetic A, Predictor P, bool kFirst> void rebuild(const StripTarget& t, size_t byte, const Four& difference) {
+template <Arithmetic A, Predictor P, bool kFirst> HWY_INLINE void rebuild(const StripTarget& t, size_t byte, const Four& difference) {
     const W above = loadTurned<A>(t.above + byte);
     Four d = difference;
     if constexpr (P == Predictor::Slope) {
@@ -208,7 +208,7 @@ template <Arithmetic A, Predictor P, bool kFirst> void rebuild(const StripTarget
     storeTurnedBack<A>(r3, t.rows + 3 * t.strideBytes + byte);
 }
 
-template <Arithmetic A> Four differencesOf(const Four& r) {
+template <Arithmetic A> HWY_INLINE Four differencesOf(const Four& r) {
     if constexpr (A == Arithmetic::Bytes) {
         Four c{unfoldedLanes<A>(r.a), unfoldedLanes<A>(r.b), unfoldedLanes<A>(r.c), unfoldedLanes<A>(r.d)};
         c.a = added<A>(c.a, c.b);

@@ -27,6 +27,12 @@ bool isUniform(const TileShape& s, const std::byte* rows, ptrdiff_t strideBytes)
     return true;
 }
 
+// The rows of the next strip, while this one is worked on: a tile's rows are short, and hardware looks ahead along them only.
+void askForNextStrip(const std::byte* nextRow, ptrdiff_t strideBytes, size_t rowBytes) {
+    for (unsigned y = 0; y < kStripRows; ++y)
+        for (size_t at = 0; at < rowBytes; at += 64) __builtin_prefetch(nextRow + y * strideBytes + at);
+}
+
 // The last column and row once more, up to whole blocks: their residuals are those of their neighbours, or zero.
 void padTile(const TileShape& s, const std::byte* rows, ptrdiff_t strideBytes, std::byte* into) {
     const size_t paddedBytes = size_t{4} * kBlockColumns * wholeBlocks(s);
@@ -65,6 +71,7 @@ size_t TileCoder::encode(const TileShape& shape, const std::byte* rows, ptrdiff_
     size_t size = 1;
     for (unsigned y = 0; y < shape.rows; y += kStripRows) {
         const std::byte* row = pixels + y * stride;
+        if (y + 2 * kStripRows <= shape.rows) askForNextStrip(row + kStripRows * stride, stride, rowBytes);
         const StripKind kind{shape.arithmetic, predictor, y == 0};
         const StripSource source{row, stride, y == 0 ? scratch_->above : row - stride, y == 0 ? nullptr : row - 2 * stride, wholeBlocks(shape)};
         size += encodeStrip(source, kind, into + size);
@@ -115,6 +122,7 @@ const char* TileCoder::decodeStrips(const TileShape& shape, std::span<const std:
         if (size == 0) return "a strip is cut short or holds an impossible width";
         left = left.subspan(size);
         std::byte* row = rows + y * strideBytes;
+        if (y + 2 * kStripRows <= shape.rows) askForNextStrip(row + kStripRows * strideBytes, strideBytes, size_t{4} * shape.columns);
         const StripKind kind{shape.arithmetic, predictor, y == 0};
         const StripTarget target{row, strideBytes, y == 0 ? scratch_->above : row - strideBytes, y == 0 ? nullptr : row - 2 * strideBytes, wholeBlocks(shape)};
         decodeStrip(strip, kind, target);

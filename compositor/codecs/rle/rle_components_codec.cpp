@@ -73,11 +73,12 @@ private:
 
 } // namespace
 
+// Bytes and pairs of bits change places: a matrix of 4 x 4 pairs, transposed by halves and then within them.
 uint32_t swizzledWord(uint32_t word) {
-    uint32_t swizzled = 0;
-    for (unsigned stream = 0; stream < kStreams; ++stream)
-        for (unsigned c = 0; c < 4; ++c) swizzled |= (word >> (8 * c + 6 - 2 * stream) & 3) << (8 * stream + 6 - 2 * c);
-    return swizzled;
+    const uint32_t halves = (word ^ word >> 20) & 0x00000f0f;
+    word ^= halves ^ halves << 20;
+    const uint32_t pairs = (word ^ word >> 10) & 0x00330033;
+    return word ^ pairs ^ pairs << 10;
 }
 
 size_t RleComponentsCodec::boundBytes(const PlaneShape& shape) const {
