@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "compositor/codecs/bitplane/bitplane_codec.hpp"
 #include "compositor/codecs/registry.hpp"
 #include "compositor/codecs/rle/rle_components_codec.hpp"
 #include "tests/compositor/random_bytes.hpp"
@@ -128,6 +129,23 @@ TEST(BitplaneCodecs, AreTheSameOnEveryInstructionSet) {
         if (first.empty()) first = bytes;
         EXPECT_EQ(bytes, first) << target;
     });
+}
+
+TEST(BitplaneCodecs, TilesOneByOneAreThePlane) {
+    std::mt19937 random(7);
+    for (const PlaneFormat format : kEveryFormat)
+        for (const auto& [width, height] : kSizes) {
+            const Plane plane = makePlane(random, format, Content::Mixed, width, height);
+            Plane together(format, width, height);
+            BitplaneCodec codec(bitplane::Predictor::Above);
+            std::vector<std::byte> bytes(codec.boundBytes(shapeOf(plane.view())));
+            bytes.resize(codec.encode(plane.view(), bytes).value());
+            const auto put = [&](const PixelViewport& area, const PlaneView& tile) { copyPlane(together.view().part(area), tile); };
+            const auto decoded = codec.decodeTiles(bytes, shapeOf(plane.view()), put);
+            ASSERT_TRUE(decoded) << decoded.error().message;
+            ASSERT_EQ(together, plane) << compositor::nameOf(format) << " " << width << "x" << height;
+            EXPECT_FALSE(codec.decodeTiles(std::span(bytes).first(bytes.size() - 1), shapeOf(plane.view()), put));
+        }
 }
 
 TEST(BitplaneCodecs, NoiseIsNotMadeLargerThanByItsTables) {

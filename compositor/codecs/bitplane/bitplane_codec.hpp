@@ -1,8 +1,10 @@
 // The bit-plane codec: a table of tile sizes, then the tiles, row by row from the lowest.
 #pragma once
 
-#include <memory>
+#include <functional>
+#include <vector>
 
+#include "common/pixel_viewport.hpp"
 #include "compositor/codecs/bitplane/tile_code.hpp"
 #include "compositor/codecs/codec.hpp"
 
@@ -17,10 +19,16 @@ public:
     [[nodiscard]] Result<size_t> encode(const PlaneView& plane, std::span<std::byte> into) override;
     [[nodiscard]] Result<void> decode(std::span<const std::byte> bytes, const MutablePlaneView& into) override;
 
+    // The same tile by tile: each is decoded into memory that stays in the caches, and handed over with its place in the plane.
+    // So a kernel takes it from there, and the plane is never written. After an error, some tiles were handed over.
+    using EachTile = std::function<void(const PixelViewport& area, const PlaneView& tile)>;
+    [[nodiscard]] Result<void> decodeTiles(std::span<const std::byte> bytes, const PlaneShape& shape, const EachTile& each);
+
 private:
     [[nodiscard]] const char* name() const { return predictor_ == bitplane::Predictor::Slope ? "slope" : "bitplane"; }
     bitplane::Predictor predictor_;
     bitplane::TileCoder coder_;
+    std::vector<std::byte> tile_; // of decodeTiles
 };
 
 } // namespace mural::compositor

@@ -5,6 +5,7 @@
 #include <functional>
 #include <random>
 
+#include "compositor/codecs/bitplane/bitplane_codec.hpp"
 #include "compositor/image/region_of_interest.hpp"
 #include "compositor/image/tile_hash.hpp"
 #include "compositor/kernels/average_sums.hpp"
@@ -164,6 +165,46 @@ void benchSearches(const std::vector<NamedPlane>& planes, const BenchOptions& op
     }
 }
 
+// A layer that comes encoded is blended over a picture: tile by tile, or after all of it was decoded.
+void benchFused(const std::vector<NamedPlane>& planes, const BenchOptions& options, Faults& faults) {
+    fmt::print("\ndecoding a layer and blending it, as multiples of memcpy's speed: whole planes, and tile by tile\n");
+    for (const NamedPlane& p : planes) {
+        if (p.plane.format() != PlaneFormat::Rgba8) continue;
+        BitplaneCodec codec(bitplane::Predictor::Above);
+        const PlaneShape shape = shapeOf(p.plane.view());
+        std::vector<std::byte> bytes(codec.boundBytes(shape));
+        const auto size = codec.encode(p.plane.view(), bytes);
+        if (!size) {
+            faults.push_back(p.name + ": " + size.error().message);
+            continue;
+        }
+        bytes.resize(size.value());
+        const size_t buffers = buffersFor(shape.sizeBytes(), options.quick);
+        std::vector<Plane> pictures(buffers, p.plane), layers(buffers, p.plane);
+        std::vector<double> whole, fused;
+        for (size_t turn = 0; turn < static_cast<size_t>(options.turns); ++turn) {
+            Plane& picture = pictures[turn % buffers];
+            Plane& other = pictures[(turn + buffers / 2) % buffers];
+            picture = other = p.plane;
+            Plane& layer = layers[turn % buffers];
+            const double copied = cpuNsOf([&] { std::memcpy(layers[(turn + 1) % buffers].bytes().data(), layers[(turn + buffers / 2) % buffers].bytes().data(), shape.sizeBytes()); });
+            bool right = true;
+            whole.push_back(copied / cpuNsOf([&] {
+                                right &= codec.decode(bytes, layer.view()).ok();
+                                for (int32_t y = 0; y < shape.height; ++y) blendOverRow(shape.format, picture.view().row(y), layer.view().row(y), static_cast<size_t>(shape.width), SourceSide::InFront);
+                            }));
+            fused.push_back(copied / cpuNsOf([&] {
+                                right &= codec.decodeTiles(bytes, shape, [&](const PixelViewport& area, const PlaneView& tile) {
+                                    const MutablePlaneView to = other.view().part(area);
+                                    for (int32_t y = 0; y < area.h; ++y) blendOverRow(shape.format, to.row(y), tile.row(y), static_cast<size_t>(area.w), SourceSide::InFront);
+                                }).ok();
+                            }));
+            if (!right || !(picture == other)) faults.push_back(p.name + ": blending tile by tile gives another picture than blending it whole");
+        }
+        fmt::print("{:<26} {:>5.2f}   {:>5.2f}\n", p.name, medianOf(whole), medianOf(fused));
+    }
+}
+
 void benchIcet(const BenchOptions& options, Faults& faults) {
     void* library = dlopen(options.icetLibrary.c_str(), RTLD_NOW | RTLD_LOCAL);
     const auto open = library ? reinterpret_cast<int (*)(int, int)>(dlsym(library, "icet_bench_open")) : nullptr;
@@ -220,6 +261,7 @@ Faults benchKernels(const std::vector<NamedPlane>& planes, const BenchOptions& o
         }
         fmt::print("{:<26} {:>5.2f} ({:.2f} to {:.2f})   pixel by pixel {:>5.2f}\n", k.name, medianOf(fast), *std::ranges::min_element(fast), *std::ranges::max_element(fast), medianOf(plain));
     }
+    benchFused(planes, options, faults);
     benchSearches(planes, options);
     if (!options.icetLibrary.empty()) benchIcet(options, faults);
     return faults;
