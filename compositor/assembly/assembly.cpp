@@ -129,32 +129,37 @@ Result<void> assembleBlended(Image& into, const Image& part) {
 
 namespace {
 
-Result<void> checkKernel(const PlaneView& picture, const PlaneView& part, const PixelKernel& k) {
+// How many of a kernel's pixels a row of `size` has, from `first` on each `step`.
+int32_t countOf(int32_t size, int32_t first, int32_t step) { return first < size ? (size - first + step - 1) / step : 0; }
+
+// The part of the part that lies within the picture.
+Result<PixelViewport> withinPicture(const PlaneView& picture, const PlaneView& part, const PixelKernel& k) {
     const char* what = "interleaving pixels";
-    if (k.columns < 1 || k.rows < 1 || k.column < 0 || k.row < 0 || k.column >= k.columns || k.row >= k.rows)
-        return Error{std::string(what) + ": there is no part " + std::to_string(k.column) + "," + std::to_string(k.row) + " in a kernel of " + std::to_string(k.columns) + "x" + std::to_string(k.rows) + "; check the compound"};
-    PlaneView wanted = picture;
-    wanted.width = k.column < picture.width ? k.partWidth(picture.width) : 0;
-    wanted.height = k.row < picture.height ? k.partHeight(picture.height) : 0;
-    if (!sameShape(wanted, part)) return Error{std::string(what) + ": the part is " + sizeText(part) + " and not " + sizeText(wanted) + "; draw it with its kernel's size"};
-    return {};
+    if (!k.valid()) return Error{std::string(what) + ": there is no pixel " + std::to_string(k.x) + "," + std::to_string(k.y) + " in a kernel of " + std::to_string(k.w) + "x" + std::to_string(k.h) + "; check the compound"};
+    const PixelViewport within{0, 0, countOf(picture.width, k.x, k.w), countOf(picture.height, k.y, k.h)};
+    const PixelViewport most = apply({0, 0, picture.width, picture.height}, k);
+    if (part.format != picture.format || part.width < within.w || part.height < within.h || part.width > most.w || part.height > most.h)
+        return Error{std::string(what) + ": the part is " + sizeText(part) + " and not " + std::to_string(within.w) + "x" + std::to_string(within.h) + " " + nameOf(picture.format) + "; draw it with its kernel's size"};
+    return within;
 }
 
 } // namespace
 
 Result<void> interleavePixels(const MutablePlaneView& into, const PlaneView& part, const PixelKernel& kernel) {
-    if (auto checked = checkKernel(into, part, kernel); !checked) return checked;
+    const auto within = withinPicture(into, part, kernel);
+    if (!within) return within.error();
     const size_t pixel = bytesPerPixel(into.format);
-    for (int32_t y = 0; y < part.height && part.width > 0; ++y)
-        interleaveRow(into.row(kernel.row + y * kernel.rows) + static_cast<size_t>(kernel.column) * pixel, part.row(y), static_cast<size_t>(part.width), static_cast<size_t>(kernel.columns), pixel);
+    for (int32_t y = 0; y < within.value().h && within.value().w > 0; ++y)
+        interleaveRow(into.row(kernel.y + y * kernel.h) + static_cast<size_t>(kernel.x) * pixel, part.row(y), static_cast<size_t>(within.value().w), static_cast<size_t>(kernel.w), pixel);
     return {};
 }
 
 Result<void> deinterleavePixels(const MutablePlaneView& part, const PlaneView& from, const PixelKernel& kernel) {
-    if (auto checked = checkKernel(from, part, kernel); !checked) return checked;
+    const auto within = withinPicture(from, part, kernel);
+    if (!within) return within.error();
     const size_t pixel = bytesPerPixel(from.format);
-    for (int32_t y = 0; y < part.height && part.width > 0; ++y)
-        deinterleaveRow(part.row(y), from.row(kernel.row + y * kernel.rows) + static_cast<size_t>(kernel.column) * pixel, static_cast<size_t>(part.width), static_cast<size_t>(kernel.columns), pixel);
+    for (int32_t y = 0; y < within.value().h && within.value().w > 0; ++y)
+        deinterleaveRow(part.row(y), from.row(kernel.y + y * kernel.h) + static_cast<size_t>(kernel.x) * pixel, static_cast<size_t>(within.value().w), static_cast<size_t>(kernel.w), pixel);
     return {};
 }
 

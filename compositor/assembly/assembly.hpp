@@ -2,6 +2,7 @@
 // what comes out depends on the pictures and their orders only, never on which of them came first.
 #pragma once
 
+#include "common/pixel_kernel.hpp"
 #include "common/result.hpp"
 #include "compositor/image/image.hpp"
 #include "compositor/kernels/depth_function.hpp"
@@ -24,20 +25,10 @@ struct DepthAssembly {
 // Premultiplied colours; the later picture is in front. Orders must be adjacent: nothing may be missing in between.
 [[nodiscard]] Result<void> assembleBlended(Image& into, const Image& part);
 
-// Where the pixels of a part go: part (column, row) of `columns` x `rows` holds each pixel (column + i * columns, row + j * rows).
-struct PixelKernel {
-    int32_t columns = 1;
-    int32_t rows = 1;
-    int32_t column = 0;
-    int32_t row = 0;
-
-    // Of this part, of a picture of width x height: no part is larger than it must be, and none lacks a pixel.
-    [[nodiscard]] int32_t partWidth(int32_t width) const { return (width - column + columns - 1) / columns; }
-    [[nodiscard]] int32_t partHeight(int32_t height) const { return (height - row + rows - 1) / rows; }
-};
-// The part has exactly the size that the kernel says. Planes of one format.
+// Pixel decomposition: the part's pixels are those of the kernel. It may have a column and a row more, which stand outside of
+// the picture where the kernel does not divide it (common/pixel_kernel.hpp); they are left out. Planes of one format.
 [[nodiscard]] Result<void> interleavePixels(const MutablePlaneView& into, const PlaneView& part, const PixelKernel& kernel);
-// The other way: takes the part out of a picture.
+// The other way: takes the part out of a picture. What of it stands outside stays as it is.
 [[nodiscard]] Result<void> deinterleavePixels(const MutablePlaneView& part, const PlaneView& from, const PixelKernel& kernel);
 
 struct ColourMask {

@@ -114,21 +114,26 @@ TEST(InterleavePixels, SizesThatDoNotDivide) {
                 whole.bytes() = randomBytes(random, whole.bytes().size());
                 for (int32_t row = rows - 1; row >= 0; --row)
                     for (int32_t column = 0; column < columns; ++column) {
-                        const PixelKernel k{columns, rows, column, row};
-                        Plane part(format, column < width ? k.partWidth(width) : 0, row < height ? k.partHeight(height) : 0);
-                        ASSERT_TRUE(deinterleavePixels(part.view(), whole.view(), k));
-                        for (int32_t y = 0; y < part.height(); ++y)
-                            for (int32_t x = 0; x < part.width(); ++x)
-                                ASSERT_EQ(std::memcmp(part.view().row(y) + static_cast<size_t>(x) * bytesPerPixel(format),
-                                                      whole.view().row(row + y * rows) + static_cast<size_t>(column + x * columns) * bytesPerPixel(format), bytesPerPixel(format)), 0);
-                        ASSERT_TRUE(interleavePixels(put.view(), part.view(), k));
+                        const PixelKernel k{column, row, columns, rows};
+                        const int32_t partWidth = column < width ? (width - column + columns - 1) / columns : 0, partHeight = row < height ? (height - row + rows - 1) / rows : 0;
+                        // With just its pixels, or with a column and a row outside of the picture.
+                        for (const PixelViewport& size : {PixelViewport{0, 0, partWidth, partHeight}, apply({0, 0, width, height}, k)}) {
+                            Plane part(format, size.w, size.h);
+                            ASSERT_TRUE(deinterleavePixels(part.view(), whole.view(), k));
+                            for (int32_t y = 0; y < partHeight; ++y)
+                                for (int32_t x = 0; x < partWidth; ++x)
+                                    ASSERT_EQ(std::memcmp(part.view().row(y) + static_cast<size_t>(x) * bytesPerPixel(format),
+                                                          whole.view().row(row + y * rows) + static_cast<size_t>(column + x * columns) * bytesPerPixel(format), bytesPerPixel(format)), 0);
+                            ASSERT_TRUE(interleavePixels(put.view(), part.view(), k));
+                        }
                     }
                 ASSERT_EQ(put, whole) << columns << "x" << rows << " of " << width << "x" << height;
             }
-    Plane whole(PlaneFormat::Rgba8, 5, 5), part(PlaneFormat::Rgba8, 2, 5);
-    EXPECT_FALSE(interleavePixels(whole.view(), part.view(), {2, 1, 0, 0})) << "that part has 3 columns";
-    EXPECT_TRUE(interleavePixels(whole.view(), part.view(), {2, 1, 1, 0}));
-    EXPECT_FALSE(interleavePixels(whole.view(), part.view(), {2, 1, 2, 0}));
+    Plane whole(PlaneFormat::Rgba8, 5, 5), two(PlaneFormat::Rgba8, 2, 5), four(PlaneFormat::Rgba8, 4, 5);
+    EXPECT_FALSE(interleavePixels(whole.view(), two.view(), {0, 0, 2, 1})) << "that part has 3 columns";
+    EXPECT_TRUE(interleavePixels(whole.view(), two.view(), {1, 0, 2, 1}));
+    EXPECT_FALSE(interleavePixels(whole.view(), four.view(), {1, 0, 2, 1})) << "and this is too many";
+    EXPECT_FALSE(interleavePixels(whole.view(), two.view(), {2, 0, 2, 1}));
 }
 
 TEST(AssembleMasked, ComponentsOfEveryFormat) {
