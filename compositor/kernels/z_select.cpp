@@ -55,9 +55,14 @@ template <SourceWins W, class D> auto winsFloat(D du, hn::Vec<D> source, hn::Vec
     }
 }
 
+// Hardware looks ahead within a page only. Colours are asked for where some are taken: there more will be.
+constexpr size_t kAhead = 512;
+
 template <class D> void selectColours(D du, const ZRow& row, size_t i, hn::Mask<D> win) {
     if (row.colourBytes == 4) {
         auto* to = reinterpret_cast<uint32_t*>(row.colour) + i;
+        hwy::Prefetch(to + kAhead);
+        hwy::Prefetch(reinterpret_cast<const uint32_t*>(row.sourceColour) + i + kAhead);
         const auto source = hn::LoadU(du, reinterpret_cast<const uint32_t*>(row.sourceColour) + i);
         hn::StoreU(hn::IfThenElse(win, source, hn::LoadU(du, to)), du, to);
         return;
@@ -73,9 +78,6 @@ template <class D> void selectColours(D du, const ZRow& row, size_t i, hn::Mask<
         else std::memcpy(row.colour + at, row.sourceColour + at, 16);
     }
 }
-
-// Hardware looks ahead within a page only. Colours are not asked for: most are not needed where little is covered.
-constexpr size_t kAhead = 512;
 
 // Returns how many pixels it did: whole vectors.
 template <SourceWins W, bool kFloat, bool kCovered> size_t selectRow(const ZRow& row, const Constants& c) {
