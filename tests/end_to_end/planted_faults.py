@@ -2,7 +2,8 @@
 """Shows that run_exact.py can fail: each fault that a render node makes on purpose must be found.
 
 MURAL_PLANT=opcode changes one argument of one command, shift moves one tile by a pixel, drop leaves
-out one frame's draws. Without a fault, the same comparison must be exact.
+out one frame's draws; of nodes that share draws, range loses the others' pictures, and tie lets the
+earlier draw win where depths are equal. Without a fault, the same comparison must be exact.
 """
 
 import argparse
@@ -10,18 +11,20 @@ import os
 import subprocess
 import sys
 
-FAULTS = ("opcode", "shift", "drop")
 PROGRAMS = "immediate,draw_calls,es2_scene"
+RANGES = ["--programs", "fixed_lighting,range_ties", "--layouts", "1x1", "--options", "--display none --db 2", "--frames", "4"]
+# What is run, and the faults that it must find.
+SETTINGS = ((["--layouts", "2x2"], ("opcode", "shift", "drop")), (RANGES, ("range", "tie")))
 
 
-def compare(arguments, fault):
+def compare(arguments, setting, fault):
     environment = dict(os.environ)
     environment.pop("MURAL_PLANT", None)
     if fault:
         environment["MURAL_PLANT"] = fault
     command = [sys.executable, os.path.join(os.path.dirname(os.path.abspath(__file__)), "run_exact.py"),
-               "--build", arguments.build, "--programs", arguments.programs, "--layouts", "2x2",
-               "--size", "250x190", "--seconds", "60"]
+               "--build", arguments.build, "--programs", arguments.programs,
+               "--size", "250x190", "--seconds", "60"] + setting
     if arguments.mural:
         command += ["--mural", arguments.mural]
     done = subprocess.run(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
@@ -41,17 +44,18 @@ def main():
     parser.add_argument("--programs", default=PROGRAMS)
     arguments = parser.parse_args()
     missed = 0
-    status, output = compare(arguments, None)
-    if status != 0:
-        print("without a fault the comparison must be exact, but:\n" + output)
-        return 1
-    print("no fault: exact")
-    for fault in FAULTS:
-        status, output = compare(arguments, fault)
-        seen = found_in(output)
-        right = status == 1 and bool(seen)
-        missed += not right
-        print("%-7s %s" % (fault, "found in " + " ".join(seen) if right else "MISSED:\n" + output))
+    for setting, faults in SETTINGS:
+        status, output = compare(arguments, setting, None)
+        if status != 0:
+            print("without a fault the comparison must be exact, but:\n" + output)
+            return 1
+        print("no fault: exact")
+        for fault in faults:
+            status, output = compare(arguments, setting, fault)
+            seen = found_in(output)
+            right = status == 1 and bool(seen)
+            missed += not right
+            print("%-7s %s" % (fault, "found in " + " ".join(seen) if right else "MISSED:\n" + output))
     return 1 if missed else 0
 
 
