@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdlib>
 #include <cstring>
 #include <new>
 
@@ -118,13 +119,16 @@ std::shared_ptr<const OwnedPicture> PictureAssembler::assemble(uint32_t client, 
     return whole;
 }
 
-// A pass of which nothing came (its nodes are lost) stays as it was; never seen, it is black.
+// A pass of which nothing came (its nodes are lost) stays as it was; never seen, or of a window of another size, it is
+// black.
 std::shared_ptr<const OwnedPicture> PictureAssembler::assemblePass(const WindowKey& key, const Open& open) {
     const auto mine = [&](const Part& part) { return part.pass == std::get<2>(key) && part.header.windowWidth > 0; };
     const auto any = std::ranges::find_if(open.parts, mine);
     const auto before = latestOf(key);
-    if (any == open.parts.end() && before) return before;
-    const PictureHeader& size = any != open.parts.end() ? any->header : open.parts.back().header;
+    const auto seen = std::ranges::find_if(open.parts, [](const Part& part) { return part.header.windowWidth > 0; });
+    const PictureHeader& size = any != open.parts.end() ? any->header : seen->header;
+    const auto near = [](int now, uint32_t wanted) { return std::abs(now - static_cast<int>(wanted)) <= 1; }; // kernels' sizes differ by 1
+    if (any == open.parts.end() && before && near(before->width(), size.windowWidth) && near(before->height(), size.windowHeight)) return before;
     const auto width = static_cast<int>(size.windowWidth);
     const auto height = static_cast<int>(size.windowHeight);
     auto picture = spare();

@@ -11,6 +11,11 @@ namespace {
 
 uint8_t byteAt(const Picture& p, size_t i) { return std::to_integer<uint8_t>(p.bgra[i]); }
 
+// Where a lost node's part was kept, a window may have had another size then: what is not there is black.
+void fit(OwnedPicture& picture, int width, int height) {
+    if (picture.width() != width || picture.height() != height) picture = cutOut(picture.view(), {0, 0, width, height});
+}
+
 // Sums of 32 bits hold 2^24 samples; halves are rounded up.
 void average(std::span<const Picture> samples, OwnedPicture& into) {
     into.assign(samples.front());
@@ -18,17 +23,25 @@ void average(std::span<const Picture> samples, OwnedPicture& into) {
     const size_t bytes = into.view().sizeBytes();
     const auto count = static_cast<uint32_t>(samples.size());
     std::vector<uint32_t> sums(bytes, count / 2);
-    for (const Picture& p : samples)
-        for (size_t i = 0; i < std::min(bytes, p.sizeBytes()); ++i) sums[i] += byteAt(p, i);
+    for (const Picture& p : samples) {
+        OwnedPicture fitted;
+        const bool fits = p.width == into.width() && p.height == into.height();
+        if (!fits) fitted = cutOut(p, {0, 0, into.width(), into.height()});
+        const Picture sample = fits ? p : fitted.view();
+        for (size_t i = 0; i < bytes; ++i) sums[i] += byteAt(sample, i);
+    }
     for (size_t i = 0; i < bytes; ++i) into.data()[i] = static_cast<std::byte>(sums[i] / count);
 }
 
 // Kernel pixel (i, j) of each picture is pixel (i * columns + its column, j * rows + its row) of the whole.
-void interleave(const PassCounts& counts, const std::vector<OwnedPicture>& parts, OwnedPicture& into) {
-    const auto at = [&](int x, int y) -> const OwnedPicture& { return parts[static_cast<size_t>(y * counts.kernelWidth + x)]; };
+void interleave(const PassCounts& counts, std::vector<OwnedPicture>& parts, OwnedPicture& into) {
+    const auto at = [&](int x, int y) -> OwnedPicture& { return parts[static_cast<size_t>(y * counts.kernelWidth + x)]; };
     int width = 0, height = 0;
     for (int x = 0; x < counts.kernelWidth; ++x) width += at(x, 0).width();
     for (int y = 0; y < counts.kernelHeight; ++y) height += at(0, y).height();
+    for (int y = 0; y < counts.kernelHeight; ++y)
+        for (int x = 0; x < counts.kernelWidth; ++x)
+            fit(at(x, y), (width - x + counts.kernelWidth - 1) / counts.kernelWidth, (height - y + counts.kernelHeight - 1) / counts.kernelHeight);
     into.resize(width, height);
     for (int y = 0; y < height; ++y) {
         for (int k = 0; k < counts.kernelWidth; ++k) {
@@ -135,6 +148,7 @@ void composeWall(const WallComposition& wall, const std::vector<Picture>& pictur
             copyInto(target, area.x, area.y, cut.view());
         }
     }
+    if (two && !eyes[0].view().empty() && !eyes[1].view().empty()) fit(eyes[1], eyes[0].width(), eyes[0].height());
     if (!two || eyes[0].width() != eyes[1].width() || eyes[0].height() != eyes[1].height()) into = std::move(eyes[0]);
     else if (wall.stereo == StereoMode::SideBySide) sideBySide(eyes[0].view(), eyes[1].view(), into);
     else if (wall.stereo == StereoMode::TopBottom) topBottom(eyes[0].view(), eyes[1].view(), into);

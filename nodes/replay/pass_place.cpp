@@ -1,5 +1,6 @@
 #include "nodes/replay/pass_place.hpp"
 
+#include <algorithm>
 #include <cstdint>
 
 namespace mural {
@@ -7,10 +8,12 @@ namespace mural {
 namespace {
 
 // The first pixel of a kernel's column at or behind a place of the window.
-int32_t firstBehind(int64_t at, int column, int columns) {
+int64_t firstBehind(int64_t at, int column, int columns) {
     const int64_t n = at - column;
-    return static_cast<int32_t>(n > 0 ? (n + columns - 1) / columns : -(-n / columns));
+    return n > 0 ? (n + columns - 1) / columns : -(-n / columns);
 }
+
+int32_t narrow(int64_t value) { return static_cast<int32_t>(std::clamp<int64_t>(value, INT32_MIN, INT32_MAX)); }
 
 } // namespace
 
@@ -20,9 +23,9 @@ std::array<double, 2> placeInPass(const RenderPass& p, double x, double y) {
 }
 
 PixelViewport inKernel(const RenderPass& p, const PixelViewport& r) {
-    const int32_t x0 = firstBehind(r.x, p.kernelX, p.kernelWidth), x1 = firstBehind(int64_t{r.x} + r.w, p.kernelX, p.kernelWidth);
-    const int32_t y0 = firstBehind(r.y, p.kernelY, p.kernelHeight), y1 = firstBehind(int64_t{r.y} + r.h, p.kernelY, p.kernelHeight);
-    return {x0, y0, x1 - x0, y1 - y0};
+    const int64_t x0 = firstBehind(r.x, p.kernelX, p.kernelWidth), x1 = firstBehind(int64_t{r.x} + r.w, p.kernelX, p.kernelWidth);
+    const int64_t y0 = firstBehind(r.y, p.kernelY, p.kernelHeight), y1 = firstBehind(int64_t{r.y} + r.h, p.kernelY, p.kernelHeight);
+    return {narrow(x0), narrow(y0), narrow(x1 - x0), narrow(y1 - y0)};
 }
 
 PixelViewport shownByKernel(const RenderPass& p, const PixelViewport& r) {

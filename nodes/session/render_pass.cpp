@@ -11,10 +11,6 @@ double radicalInverse(int i) {
     return value;
 }
 
-std::array<double, 2> pointOf(int sample, int samples) {
-    return {(sample + 0.5) / samples, radicalInverse(sample)};
-}
-
 } // namespace
 
 std::vector<Eye> eyesOf(StereoMode mode) {
@@ -55,14 +51,9 @@ int picturesOf(const PassCounts& counts) {
 
 std::array<double, 2> jitterOf(int sample, int samples) {
     if (samples <= 1) return {0, 0};
-    double meanX = 0, meanY = 0;
-    for (int i = 0; i < samples; ++i) {
-        const auto p = pointOf(i, samples);
-        meanX += p[0] / samples;
-        meanY += p[1] / samples;
-    }
-    const auto p = pointOf(sample, samples);
-    return {p[0] - meanX, p[1] - meanY};
+    int row = 0; // by the order of radical inverses
+    for (int i = 0; i < samples; ++i) row += radicalInverse(i) < radicalInverse(sample);
+    return {(sample + 0.5) / samples - 0.5, (row + 0.5) / samples - 0.5};
 }
 
 std::string describe(const RenderPass& pass) {

@@ -53,8 +53,8 @@ struct PassCounts {
 [[nodiscard]] int pictureOf(const PassCounts& counts, const RenderPass& pass);
 [[nodiscard]] int picturesOf(const PassCounts& counts);
 
-// Where sample i of n lies in its pixel, each coordinate in (-1/2, 1/2), (0, 0) being its centre: points of a
-// Hammersley set, shifted so that their mean is the centre and no picture moves.
+// Where sample i of n lies in its pixel, each coordinate in (-1/2, 1/2), (0, 0) being its centre: one sample in each of n
+// columns and n rows, the rows in the order of a Hammersley set; their mean is the centre, so that no picture moves.
 [[nodiscard]] std::array<double, 2> jitterOf(int sample, int samples);
 
 // One word or two for --explain: "left eye", "sample 2 of 4", "" when it is the plain picture.

@@ -63,5 +63,85 @@ TEST(NodePlan, setupsSayWhatEachNodeDraws) {
     EXPECT_EQ(tiles, 4);
 }
 
+// ---- passes
+
+TEST(NodePlan, everyPassHasANodeByDefault) {
+    SessionConfig config;
+    config.passes.samples = 3;
+    config.passes.stereo = StereoMode::Anaglyph;
+    const SessionPlan plan = planSession(config, "me");
+    ASSERT_EQ(plan.nodes.size(), 6u);
+    for (int i = 0; i < 6; ++i) {
+        EXPECT_EQ(plan.nodes[static_cast<size_t>(i)].picture, i);
+        EXPECT_EQ(plan.nodes[static_cast<size_t>(i)].pass.sample, i % 3);
+    }
+    EXPECT_TRUE(plan.warnings.empty());
+    EXPECT_NE(plan.explain[4].find("right eye, sample 2 of 3"), std::string::npos) << plan.explain[4];
+}
+
+TEST(NodePlan, fewerHostsThanPassesTakeSeveral) {
+    SessionConfig config;
+    config.passes.samples = 5;
+    config.hosts = {"a", "b"};
+    const SessionPlan plan = planSession(config, "me");
+    ASSERT_EQ(plan.nodes.size(), 5u);
+    for (size_t i = 0; i < 5; ++i) {
+        EXPECT_EQ(plan.nodes[i].where, i % 2 ? "b" : "a");
+        EXPECT_EQ(plan.nodes[i].reach, NodeReach::LaunchCommand);
+    }
+}
+
+TEST(NodePlan, moreNodesThanPassesShareTheirTiles) {
+    SessionConfig config;
+    config.passes.stereo = StereoMode::SideBySide;
+    config.columns = 2;
+    config.rows = 2;
+    config.localNodes = 5;
+    const SessionPlan plan = planSession(config, "me");
+    ASSERT_EQ(plan.nodes.size(), 5u);
+    int tiles[2] = {}, nodes[2] = {};
+    for (const NodePlan& node : plan.nodes) {
+        tiles[node.picture] += node.region.columns * node.region.rows;
+        ++nodes[node.picture];
+    }
+    EXPECT_EQ(tiles[0], 4) << "each pass covers the picture";
+    EXPECT_EQ(tiles[1], 4);
+    EXPECT_EQ(nodes[0], 3) << "the first has one more";
+    EXPECT_EQ(nodes[1], 2);
+}
+
+TEST(NodePlan, moreNodesThanTilesInPassesAreNotStarted) {
+    SessionConfig config;
+    config.passes.samples = 2;
+    config.localNodes = 9;
+    config.columns = 2;
+    const SessionPlan plan = planSession(config, "me");
+    EXPECT_EQ(plan.nodes.size(), 4u);
+    EXPECT_EQ(plan.warnings.size(), 1u);
+}
+
+TEST(NodePlan, onlyTheFirstPictureAnswers) {
+    SessionConfig config;
+    config.passes.samples = 2;
+    config.passes.period = 2;
+    config.columns = 2;
+    config.localNodes = 8;
+    config.eyeBase = 0.25;
+    config.focusDistance = 8;
+    const SessionPlan plan = planSession(config, "me");
+    ASSERT_EQ(plan.nodes.size(), 8u);
+    for (const NodePlan& node : plan.nodes) {
+        const NodeSetup setup = setupOf(config, plan, node);
+        EXPECT_EQ(setup.answers, node.pass.sample == 0);
+        EXPECT_EQ(setup.pass, node.pass);
+        EXPECT_EQ(setup.eyeBase, 0.25);
+        EXPECT_EQ(setup.focusDistance, 8);
+        auto back = nodeSetupFromJson(toJson(setup));
+        ASSERT_TRUE(back.ok()) << back.error().message;
+        EXPECT_EQ((*back).pass, node.pass);
+        EXPECT_EQ((*back).answers, setup.answers);
+    }
+}
+
 } // namespace
 } // namespace mural

@@ -43,6 +43,36 @@ TEST(SessionConfig, everyFieldSurvivesARoundTrip) {
     EXPECT_NE(json, toJson(SessionConfig{}));
 }
 
+TEST(SessionConfig, passesSurviveARoundTrip) {
+    SessionConfig c;
+    c.passes = {StereoMode::TopBottom, 3, 2, 4, 5};
+    c.eyeBase = 0.0625;
+    c.focusDistance = 1e6;
+    auto back = sessionConfigFromJson(toJson(c));
+    ASSERT_TRUE(back.ok()) << back.error().message;
+    EXPECT_EQ(toJson(*back), toJson(c));
+    EXPECT_EQ(passesOf((*back).passes), passesOf(c.passes));
+    EXPECT_EQ((*back).eyeBase, 0.0625);
+    EXPECT_EQ((*back).focusDistance, 1e6);
+}
+
+TEST(SessionConfig, passesThatAreNoneOfTheSessionsAreRefused) {
+    NodeSetup setup;
+    setup.pass = {Eye::Right, 1, 2, 2, 3, 0, 4, 1, 2};
+    ASSERT_TRUE(nodeSetupFromJson(toJson(setup)).ok());
+    const auto refused = [&](auto change) {
+        NodeSetup bad = setup;
+        change(bad.pass);
+        return !nodeSetupFromJson(toJson(bad)).ok();
+    };
+    EXPECT_TRUE(refused([](RenderPass& p) { p.kernelX = 2; }));
+    EXPECT_TRUE(refused([](RenderPass& p) { p.kernelY = 3; }));
+    EXPECT_TRUE(refused([](RenderPass& p) { p.sample = 4; }));
+    EXPECT_TRUE(refused([](RenderPass& p) { p.phase = 2; }));
+    EXPECT_TRUE(refused([](RenderPass& p) { p.samples = 0; }));
+    EXPECT_TRUE(refused([](RenderPass& p) { p.kernelX = -1; }));
+}
+
 TEST(SessionConfig, missingFieldsKeepTheirDefaults) {
     const auto c = sessionConfigFromJson(R"({"session":"s"})");
     ASSERT_TRUE(c.ok());
@@ -55,6 +85,11 @@ TEST(SessionConfig, errorsNameTheField) {
         {R"({"colums":2})", "colums"},
         {R"({"columns":"2"})", "columns"},
         {R"({"columns":0})", "columns"},
+        {R"({"stereo":"both"})", "stereo"},
+        {R"({"samples":0})", "samples"},
+        {R"({"kernelWidth":-1})", "kernelWidth"},
+        {R"({"period":"2"})", "period"},
+        {R"({"eyeBase":"wide"})", "eyeBase"},
         {R"({"columns":2.5})", "columns"},
         {R"({"columns":4294967296})", "columns"},
         {R"({"frames":18446744073709551615})", "frames"},

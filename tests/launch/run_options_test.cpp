@@ -107,6 +107,57 @@ TEST(RunOptions, wrongValuesNameTheOptionAndWhatIsWanted) {
     EXPECT_NE(refusal([](RunArguments& a) { a.nodes = "h1,-oProxyCommand=x"; }).find("--nodes"), std::string::npos);
 }
 
+TEST(RunOptions, passesAreRead) {
+    const RunOptions o = accepted([](RunArguments& a) {
+        a.stereo = "anaglyph";
+        a.eyeBase = "0.25";
+        a.focus = "40";
+        a.pixel = "3x2";
+        a.subpixel = "4";
+        a.dplex = "5";
+    });
+    const PassCounts& p = o.config.passes;
+    EXPECT_EQ(p.stereo, StereoMode::Anaglyph);
+    EXPECT_EQ(o.config.eyeBase, 0.25);
+    EXPECT_EQ(o.config.focusDistance, 40);
+    EXPECT_EQ(std::pair(p.kernelWidth, p.kernelHeight), std::pair(3, 2));
+    EXPECT_EQ(p.samples, 4);
+    EXPECT_EQ(p.period, 5);
+    EXPECT_EQ(o.config.latency, 5) << "turns overlap only so";
+    EXPECT_EQ(accepted([](RunArguments& a) { a.dplex = "3"; a.latency = "1"; }).config.latency, 1);
+    const PassCounts row = accepted([](RunArguments& a) { a.pixel = "5"; }).config.passes;
+    EXPECT_EQ(std::pair(row.kernelWidth, row.kernelHeight), std::pair(5, 1));
+    const char* const modes[] = {"off", "anaglyph", "side-by-side", "top-bottom", "left", "right"};
+    for (size_t i = 0; i < 6; ++i) EXPECT_EQ(accepted([&](RunArguments& a) { a.stereo = modes[i]; }).config.passes.stereo, static_cast<StereoMode>(i));
+}
+
+TEST(RunOptions, nodesOfSeveralPassesShareTheTiles) {
+    EXPECT_EQ(accepted([](RunArguments& a) { a.subpixel = "4"; a.localNodes = "4"; }).config.columns, 1);
+    const RunOptions o = accepted([](RunArguments& a) { a.subpixel = "2"; a.localNodes = "8"; });
+    EXPECT_EQ(std::pair(o.config.columns, o.config.rows), std::pair(2, 2));
+    EXPECT_NE(refusal([](RunArguments& a) { a.subpixel = "2"; a.tiles = "2x1"; a.localNodes = "5"; }).find("5 render nodes for 2 tiles in 2 passes"), std::string::npos);
+}
+
+TEST(RunOptions, wrongPassesNameTheOptionAndWhatIsWanted) {
+    const auto names = [](const char* option, auto change) {
+        const std::string said = refusal(change);
+        EXPECT_EQ(said.rfind(option, 0), 0u) << said;
+        EXPECT_EQ(said.find('\n'), std::string::npos);
+    };
+    for (const char* bad : {"0", "17", "2x17", "0x2", "x", "2x", ""}) names("--pixel \"", [&](RunArguments& a) { a.pixel = bad; });
+    for (const char* bad : {"0", "257", "-1", "2.5", ""}) {
+        names("--subpixel", [&](RunArguments& a) { a.subpixel = bad; });
+        names("--dplex", [&](RunArguments& a) { a.dplex = bad; });
+    }
+    names("--stereo", [](RunArguments& a) { a.stereo = "both"; });
+    for (const char* bad : {"-1", "nan", "inf", "1e10", "wide", "1 ", ""}) names("--eye-base", [&](RunArguments& a) { a.stereo = "left"; a.eyeBase = bad; });
+    for (const char* bad : {"0", "-3", "nan", "far"}) names("--focus", [&](RunArguments& a) { a.stereo = "left"; a.focus = bad; });
+    names("--eye-base is for stereo", [](RunArguments& a) { a.eyeBase = "1"; });
+    names("--focus is for stereo", [](RunArguments& a) { a.focus = "1"; });
+    EXPECT_NE(refusal([](RunArguments& a) { a.subpixel = "16"; a.pixel = "4x4"; a.stereo = "anaglyph"; }).find("512 passes together; at most 256"), std::string::npos);
+    names("--tiling lean does not go with", [](RunArguments& a) { a.subpixel = "2"; a.tiling = "lean"; });
+}
+
 TEST(RunOptions, optionsThatMeanNothingTogetherAreRefused) {
     EXPECT_NE(refusal([](RunArguments& a) { a.save = "1"; }).find("--out"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.fullScreen = true; }).find("--display windows"), std::string::npos);

@@ -1,0 +1,104 @@
+#include "nodes/replay/pass_place.hpp"
+
+#include <gtest/gtest.h>
+#include <limits>
+
+namespace mural {
+namespace {
+
+RenderPass kernel(int x, int y, int width, int height) {
+    RenderPass p;
+    p.kernelX = x;
+    p.kernelY = y;
+    p.kernelWidth = width;
+    p.kernelHeight = height;
+    return p;
+}
+
+TEST(PassPlace, plainPassesMoveNothing) {
+    for (const double x : {0.0, 3.5, 16384.0}) EXPECT_EQ(placeInPass({}, x, -x), (std::array<double, 2>{x, -x}));
+    EXPECT_EQ(inKernel({}, {-3, 4, 7, 9}), (PixelViewport{-3, 4, 7, 9}));
+    EXPECT_EQ(moveInViewport({}, {10, 20, 300, 200}), (std::array<float, 4>{}));
+}
+
+// The centre of pixel i of a pass is that of the window's pixel which it shows.
+TEST(PassPlace, centresOfKernelPixelsMeet) {
+    for (int width = 1; width <= 5; ++width)
+        for (int k = 0; k < width; ++k)
+            for (int i = 0; i < 4; ++i) {
+                const auto at = placeInPass(kernel(k, 0, width, 1), width * i + k + 0.5, 0);
+                EXPECT_DOUBLE_EQ(at[0], i + 0.5) << k << " of " << width;
+            }
+}
+
+TEST(PassPlace, samplesLieBesideTheCentre) {
+    RenderPass p;
+    p.samples = 4;
+    for (p.sample = 0; p.sample < 4; ++p.sample) {
+        const auto jitter = jitterOf(p.sample, 4);
+        const auto at = placeInPass(p, 10.5 + jitter[0], 20.5 + jitter[1]);
+        EXPECT_DOUBLE_EQ(at[0], 10.5);
+        EXPECT_DOUBLE_EQ(at[1], 20.5);
+    }
+}
+
+// Against counting: pixel x of the window belongs to column x mod width.
+TEST(PassPlace, kernelsOfRectangles) {
+    for (int width = 1; width <= 4; ++width)
+        for (int k = 0; k < width; ++k)
+            for (int x = 0; x < 9; ++x)
+                for (int w = 0; w < 9; ++w) {
+                    int first = -1, count = 0;
+                    for (int at = x; at < x + w; ++at) {
+                        if (at % width != k) continue;
+                        if (first < 0) first = at / width;
+                        ++count;
+                    }
+                    const PixelViewport got = inKernel(kernel(k, 0, width, 1), {x, 0, w, 1});
+                    EXPECT_EQ(got.w, count) << x << "+" << w << ", " << k << " of " << width;
+                    if (count > 0) { EXPECT_EQ(got.x, first); }
+                    EXPECT_EQ(inKernel(kernel(0, k, 1, width), {0, x, 1, w}).h, count);
+                }
+}
+
+TEST(PassPlace, kernelsOfAWindowCoverItOnce) {
+    const PixelViewport window{0, 0, 253, 191};
+    int64_t pixels = 0;
+    for (int y = 0; y < 2; ++y)
+        for (int x = 0; x < 3; ++x) pixels += inKernel(kernel(x, y, 3, 2), window).area();
+    EXPECT_EQ(pixels, window.area());
+}
+
+TEST(PassPlace, shownPixelsAndThoseThatStandForThem) {
+    const RenderPass p = kernel(1, 0, 3, 2);
+    EXPECT_EQ(shownByKernel(p, {2, 1, 4, 3}), (PixelViewport{7, 2, 10, 5}));
+    EXPECT_EQ(inKernel(p, shownByKernel(p, {2, 1, 4, 3})), (PixelViewport{2, 1, 4, 3}));
+    EXPECT_EQ(standingFor(p, {5, 3, 2, 2}), (PixelViewport{1, 1, 2, 2}));
+    EXPECT_EQ(standingFor(p, {3, 2, 3, 2}), (PixelViewport{1, 1, 1, 1}));
+}
+
+TEST(PassPlace, anyRectangleOfAProgramIsAnswered) {
+    constexpr int32_t kMost = std::numeric_limits<int32_t>::max(), kLeast = std::numeric_limits<int32_t>::min();
+    for (const PixelViewport& r : {PixelViewport{kMost, kMost, kMost, kMost}, PixelViewport{kLeast, kLeast, kMost, kMost}, PixelViewport{kLeast, 0, kLeast, 1}})
+        for (const int width : {1, 2, 16}) (void)inKernel(kernel(width - 1, 0, width, 1), r);
+    EXPECT_EQ(moveInViewport(kernel(0, 0, 2, 1), {0, 0, 0, 10}), (std::array<float, 4>{}));
+    EXPECT_EQ(moveInViewport(kernel(0, 0, 2, 1), {0, 0, std::numeric_limits<float>::quiet_NaN(), 10}), (std::array<float, 4>{}));
+}
+
+// A position that is moved in its viewport lands where a moved viewport puts the position.
+TEST(PassPlace, movesInAViewportAreMovedViewports) {
+    RenderPass p = kernel(2, 1, 3, 2);
+    p.samples = 5;
+    p.sample = 3;
+    const std::array<float, 4> v{30, 40, 640, 360};
+    const auto move = moveInViewport(p, v);
+    for (const double ndc : {-1.0, -0.3, 0.0, 0.7, 1.0}) {
+        const auto wanted = placeInPass(p, v[0] + (ndc + 1) * v[2] / 2, v[1] + (ndc + 1) * v[3] / 2);
+        const double x = ndc + ndc * static_cast<double>(move[0]) + static_cast<double>(move[2]), y = ndc + ndc * static_cast<double>(move[1]) + static_cast<double>(move[3]);
+        EXPECT_NEAR(v[0] + (x + 1) * v[2] / 2, wanted[0], 1e-3);
+        EXPECT_NEAR(v[1] + (y + 1) * v[3] / 2, wanted[1], 1e-3);
+    }
+}
+
+} // namespace
+} // namespace mural
