@@ -11,6 +11,7 @@
 #include "nodes/output/app_window.hpp"
 #include "nodes/output/outputs.hpp"
 #include "nodes/output/png_files.hpp"
+#include "nodes/output/wall_sink.hpp"
 #include "streamcodec/registry_digest.hpp"
 
 namespace mural {
@@ -59,6 +60,14 @@ Result<void> addOutputs(const SessionConfig& config, ControlChannel& control, He
         auto opened = AppWindow::open(target);
         if (!opened) return Result<std::unique_ptr<PictureSink>>(opened.error());
         return Result<std::unique_ptr<PictureSink>>(std::move(*opened));
+    };
+    options.openWall = [config] {
+        WallWindowsConfig wall;
+        wall.displayName = config.displayName;
+        wall.positionX = config.windowX;
+        wall.positionY = config.windowY;
+        wall.fullScreen = config.fullScreen;
+        return Result<std::unique_ptr<PictureSink>>(std::make_unique<WallSink>(std::move(wall), TileGrid{config.columns, config.rows, 1}));
     };
     if (config.out.empty()) return {};
     OutputOptions output;

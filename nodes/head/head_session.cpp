@@ -44,7 +44,7 @@ PictureAssembler::Compose composeBy(const WallComposition& wall) {
 }
 
 bool wantsPictures(const SessionConfig& config) {
-    return config.display == Display::App || !config.out.empty();
+    return config.display == Display::App || !config.out.empty() || headShowsWall(config);
 }
 
 } // namespace
@@ -92,6 +92,7 @@ HeadSession::HeadSession(SessionConfig config,
     output.lastFrame = config_.frames;
     output.toNativeWindows = config_.display == Display::App;
     output.openWindow = options_.openWindow;
+    if (headShowsWall(config_)) output.openWall = options_.openWall;
     output.done = [this](uint32_t client, uint32_t frame) { frames_.pictureReleased(client, frame); };
     output.say = [this](const std::string& text) { control_.say(text); };
     output_ = std::make_unique<PictureOutput>(std::move(output), std::move(options_.file));

@@ -38,6 +38,7 @@ struct HeadOptions {
     std::unique_ptr<PictureSink> file; // of --out; null: none
     std::function<std::string()> lastPicture; // path of the last file; may be empty
     std::function<Result<std::unique_ptr<PictureSink>>(uint64_t nativeWindow)> openWindow;
+    std::function<Result<std::unique_ptr<PictureSink>>()> openWall; // where the head shows the wall (headShowsWall)
     std::function<bool()> interrupted; // a signal asks to finish; may be empty
     uint32_t chunkCount = capture::kDefaultChunks;
     int64_t readyPatienceMs = 30'000;

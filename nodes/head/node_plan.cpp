@@ -98,8 +98,8 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
     setup.focusDistance = config.focusDistance;
     setup.tiling = config.tiling;
     setup.glBackend = config.glBackend;
-    setup.sendPictures = config.display == Display::App || !config.out.empty();
-    setup.wallWindows = config.display == Display::Windows;
+    setup.sendPictures = config.display == Display::App || !config.out.empty() || headShowsWall(config);
+    setup.wallWindows = config.display == Display::Windows && !headShowsWall(config);
     setup.fullScreen = config.fullScreen;
     setup.windowX = config.windowX;
     setup.windowY = config.windowY;

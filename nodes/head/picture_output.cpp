@@ -85,6 +85,7 @@ void PictureOutput::work() {
     queue_.clear();
     lock.unlock();
     windows_.clear();
+    wall_.reset();
     if (file_) {
         if (const auto finished = file_->finish(); !finished) config_.say(finished.error().message);
     }
@@ -101,6 +102,7 @@ void PictureOutput::show(const WindowPicture& picture) {
     const bool inTime = config_.lastFrame == 0 || wallFrame <= config_.lastFrame;
     const bool wanted = wallFrame > 0 && inTime && (saveFrames_.empty() || saveFrames_.contains(wallFrame));
     if (wanted && file_ && !fileFailed_) save(wallFrame, view);
+    if (wallFrame > 0 && config_.openWall) showOnWall(wallFrame, view);
     if (config_.toNativeWindows && picture.nativeWindow != 0) showInWindow(picture);
     if (wallFrame > 0) {
         const std::lock_guard lock(mutex_);
@@ -119,6 +121,18 @@ void PictureOutput::save(int64_t frame, const Picture& picture) {
     const std::lock_guard lock(mutex_);
     ++totals_.savedPictures;
     totals_.lastSavedFrame = frame;
+}
+
+void PictureOutput::showOnWall(int64_t frame, const Picture& picture) {
+    if (wallFailed_) return;
+    if (!wall_) {
+        auto opened = config_.openWall();
+        if (opened) wall_ = std::move(*opened);
+        else config_.say(opened.error().message);
+    }
+    const auto shown = wall_ ? wall_->show(frame, picture) : Result<void>();
+    if (!shown) config_.say(shown.error().message + "; the wall's windows show no further pictures");
+    wallFailed_ = !wall_ || !shown;
 }
 
 void PictureOutput::showInWindow(const WindowPicture& picture) {

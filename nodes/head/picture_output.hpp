@@ -1,6 +1,7 @@
 // The thread that shows and saves finished pictures.
 //
 //   wall picture (main window) → file sink (--out), all frames or those of --save
+//   the same → windows of the wall (--display windows with several passes)
 //   every window with a native X window → that window (--display app)
 #pragma once
 
@@ -29,6 +30,8 @@ struct PictureOutputConfig {
     bool toNativeWindows = false;    // --display app
     // Opens the sink of one native window.
     std::function<Result<std::unique_ptr<PictureSink>>(uint64_t nativeWindow)> openWindow;
+    // Opens the windows of the wall, where the head has them; empty: nodes have, or nobody.
+    std::function<Result<std::unique_ptr<PictureSink>>()> openWall;
     // From the output's thread, when a picture has gone wherever it had to.
     std::function<void(uint32_t client, uint32_t frame)> done;
     std::function<void(const std::string&)> say;
@@ -64,12 +67,15 @@ private:
     void show(const WindowPicture& picture);
     void save(int64_t frame, const Picture& picture);
     void showInWindow(const WindowPicture& picture);
+    void showOnWall(int64_t frame, const Picture& picture);
     void forget(const WindowPicture& gone);
 
     const PictureOutputConfig config_;
     const std::set<int64_t> saveFrames_;
     std::unique_ptr<PictureSink> file_;
     bool fileFailed_ = false;
+    std::unique_ptr<PictureSink> wall_;
+    bool wallFailed_ = false;
     MainWindow mainWindow_;
     std::map<WindowKey, std::unique_ptr<PictureSink>> windows_; // null: it could not be opened
     std::map<std::pair<uint32_t, uint32_t>, uint64_t> nativeOf_; // client, window: of those shown

@@ -1,6 +1,6 @@
 #include "nodes/node/tile_windows.hpp"
 
-#include <cstring>
+#include "nodes/output/wall_layout.hpp"
 
 namespace mural {
 
@@ -10,21 +10,12 @@ Result<std::unique_ptr<TileWindows>> TileWindows::open(const NodeSetup& setup) {
 
 Result<void> TileWindows::reopen(int width, int height) {
     const TileGrid grid{setup_.columns, setup_.rows, setup_.tiling == Tiling::Lean ? 2 : 1};
-    tiles_.clear();
-    std::vector<int> numbers;
-    for (int row = setup_.regionRow; row < setup_.regionRow + setup_.regionRows; ++row) {
-        for (int column = setup_.regionColumn; column < setup_.regionColumn + setup_.regionColumns; ++column) {
-            tiles_.push_back(tileViewport(grid, column, row, width, height));
-            numbers.push_back((setup_.rows - 1 - row) * setup_.columns + column); // reading order
-        }
-    }
+    const TileRegion region{setup_.regionColumn, setup_.regionRow, setup_.regionColumns, setup_.regionRows};
     WallWindowsConfig config;
     config.displayName = setup_.displayName;
-    config.tiles = placeTiles(tiles_, height);
-    for (size_t i = 0; i < config.tiles.size(); ++i) {
-        config.tiles[i].title = "Mural tile " + std::to_string(numbers[i]);
-        config.tiles[i].monitor = numbers[i];
-    }
+    config.tiles = windowsOfTiles(grid, region, width, height);
+    tiles_.clear();
+    for (const TileWindow& window : config.tiles) tiles_.push_back(window.tile);
     config.positionX = setup_.windowX;
     config.positionY = setup_.windowY;
     config.fullScreen = setup_.fullScreen;

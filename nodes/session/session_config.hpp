@@ -54,6 +54,9 @@ const char* nameOf(Display display);
 std::string toJson(const SessionConfig& config); // one line
 Result<SessionConfig> sessionConfigFromJson(const std::string& line);
 
+// Nodes show their own tiles in windows of the wall; what only several passes together make, the head shows.
+[[nodiscard]] bool headShowsWall(const SessionConfig& config);
+
 // What one node is told first (HeadCommand::Setup).
 struct NodeSetup {
     int node = 0;

@@ -6,8 +6,12 @@ does are the reference; the pictures of passes are put together once more, by th
 """
 
 import os
+import shutil
+import struct
+import subprocess
 import sys
 import tempfile
+import time
 
 import failures
 import pictures
@@ -96,14 +100,11 @@ def dplex_shares_the_work(context, notes):
 # ---- samples
 
 def jitter(sample, samples):
-    """Where the sample lies in its pixel: a Hammersley set whose mean is the pixel's centre."""
-    def point(i):
-        value, digit, n = 0.0, 0.5, i
-        while n:
-            value, digit, n = value + (n & 1) * digit, digit / 2, n >> 1
-        return (i + 0.5) / samples, value
-    points = [point(i) for i in range(samples)]
-    return tuple(points[sample][k] - sum(p[k] for p in points) / samples for k in range(2))
+    """Where the sample lies in its pixel: in column i of n, and in the row of its place among the radical inverses."""
+    def radical_inverse(i):
+        return int(bin(i)[:1:-1], 2) / 2 ** (len(bin(i)) - 2)
+    order = sorted(range(samples), key=radical_inverse)
+    return (sample + 0.5) / samples - 0.5, (order.index(sample) + 0.5) / samples - 0.5
 
 
 def largest_error(samples, got):
@@ -266,6 +267,58 @@ def stereo_pictures_are_put_together(context, notes):
 def subpixel_with_tiles(context, notes):
     plain, tiled = (through(context, ["--subpixel", "2"] + more, "pass_scene", ["--draw", "mvp"]) for more in ([], ["--tiles", "2x1", "--local-nodes", "4"]))
     return differing(plain, tiled)
+
+
+def window_pixels(context, titles, seconds):
+    """The rows of the windows with these titles once all show something; None: not in time."""
+    environment = dict(os.environ, DISPLAY=context.display)
+    deadline = time.monotonic() + seconds
+    while time.monotonic() < deadline:
+        dumps = [subprocess.run(["xwd", "-silent", "-name", title], env=environment, capture_output=True, check=False).stdout for title in titles]
+        shown = [xwd_rows(dump) for dump in dumps if dump]
+        if len(shown) == len(titles) and all(any(any(row) for row in rows) for rows in shown):
+            return shown
+        time.sleep(0.1)
+    return None
+
+
+def xwd_rows(dump):
+    """RGB rows of a window dump with 32 bits per pixel."""
+    header = struct.unpack(">25I", dump[:100])
+    size, width, height, little, step, colours = header[0], header[4], header[5], header[7] == 0, header[12], header[19]
+    start = size + 12 * colours
+    order = (2, 1, 0) if little else (1, 2, 3)
+    rows = []
+    for y in range(height):
+        row = dump[start + y * step:start + y * step + 4 * width]
+        out = bytearray(3 * width)
+        for k in range(3):
+            out[k::3] = row[order[k]::4]
+        rows.append(bytes(out))
+    return rows
+
+
+@case
+def wall_windows_show_all_passes(context, notes):
+    """--display windows: each tile's window has its part of the picture that --out gets."""
+    if shutil.which("xwd") is None:
+        raise SystemExit("xwd is not installed: apt-get install x11-apps")
+    with tempfile.TemporaryDirectory(prefix="mural-passes.") as out:
+        options = ["--display", "windows", "--tiles", "2x1", "--local-nodes", "4", "--subpixel", "2", "--position", "40,30", "--out", out]
+        size, frames = (252, 190), 100000
+        command = [context.program("pass_scene"), "--size", "%dx%d" % size, "--frames", str(frames), "--draw", "mvp"]
+        with context.run(command, options + ["--frames", "400"]) as run:
+            shown = window_pixels(context, ["Mural tile 0", "Mural tile 1"], 30)
+            status = run.status()
+        if shown is None:
+            return "no windows of the wall were seen"
+        if status != 0:
+            return "status %s" % status
+        saved = [pictures.read_png(os.path.join(out, name)) for name in sorted(os.listdir(out))]
+    half = 3 * (size[0] // 2)
+    tiles = [[[row[:half] for row in p.rows] for p in saved], [[row[half:] for row in p.rows] for p in saved]]
+    missing = [i for i in range(2) if shown[i] not in tiles[i]]
+    return "windows %s show no part of any saved picture" % missing if missing else None
 
 
 @case
