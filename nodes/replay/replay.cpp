@@ -101,6 +101,7 @@ bool Replay::execute(uint16_t opcode, std::span<const std::byte> arguments, Blob
     noteBitmaps(opcode);
     if (takesTurns()) noteTurn(opcode, arguments);
     if (seesWithOtherEye() || config_.pass.samples > 1) noteEye(opcode, arguments);
+    if (hasKernel()) noteKernel(opcode);
     const bool leftOut = takesTurns() && leavesOut(opcode);
     if (leftOut) exchangeDraws();
     if (takesRanges()) in = Args(noteRange(opcode, arguments), blobs); // a piece of it, or nothing

@@ -179,7 +179,7 @@ private:
         int64_t kept = 0;          // frames in a row that have built on the one before
         GLbitfield cleared = 0;    // whole buffers, since the frame began
         bool plain = true;         // drawn without the kernel of this pass: its pixels are picked at the end…
-        bool copied = true;        // …because the frame before copied or read pixels of the window
+        bool copied = true;        // …because the frame before read or copied pixels there
         RangeFrame range;
         bool keepsPicture = false; // the turn never ends
         bool sceneElsewhere = false;    // in this frame a scene is drawn into a framebuffer object (replay_scenes.cpp)
@@ -470,6 +470,7 @@ private:
     [[nodiscard]] GLbitfield clearsWhole(GLbitfield mask) const;
     [[nodiscard]] GLbitfield needsCleared() const;
     // replay_passes.cpp
+    void noteKernel(uint16_t opcode);
     [[nodiscard]] bool hasKernel() const { return config_.pass.kernelWidth * config_.pass.kernelHeight > 1; }
     [[nodiscard]] bool interleaves(const Window* w) const { return hasKernel() && w && !w->plain; }
     [[nodiscard]] bool movesPicture() const { return config_.pass.samples > 1 || hasKernel(); }

@@ -3,8 +3,8 @@
 // all: their contents outlive frames.
 //
 // A frame that clears its window before it draws there begins the next node's turn. One that builds on the picture
-// before it stays with the node that has that picture. Which of both it is shows when it first does more than clear; until
-// then both nodes clear. Every node sees the same commands, and so decides the same.
+// before it stays with the node that has that picture. Which of both it is shows when it first does more than clear; clears
+// are done by all nodes. Every node sees the same commands, and so decides the same.
 //
 // Accumulation and front buffers hold what earlier frames left there, whoever has cleared: from then on one node goes on
 // drawing the window. So it does where a frame turns out too late to want an older depth or stencil buffer; the first
@@ -29,13 +29,18 @@ constexpr GLbitfield kBuffers = GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_S
 
 enum class WindowUse : uint8_t { None, Clears, Draws, FeedbackBegins, FeedbackEnds };
 
+bool clearsBuffer(std::string_view name) {
+    return name == "glClear" || name == "glClearBufferfv" || name == "glClearBufferfi" || name == "glClearBufferiv" || name == "glClearBufferuiv";
+}
+
 bool draws(std::string_view name) {
     if (name.starts_with("glDrawBuffer")) return false;
+    if (clearsBuffer(name)) return true;
     for (const std::string_view stem : {"glDraw", "glMultiDraw", "glMultiMode", "glBegin", "glCallList", "glRect", "glEvalMesh", "glBitmap", "glCopyPixels", "glBlit", "glAccum", "glClear"}) {
         if (!name.starts_with(stem)) continue;
         // State, not drawing: glClearColor, glBeginQuery, …
         if (stem == "glBegin") return name == "glBegin";
-        if (stem == "glClear") return name == "glClear" || name.starts_with("glClearBuffer") || name.starts_with("glClearNamedFramebuffer");
+        if (stem == "glClear") return name.starts_with("glClearNamedFramebuffer");
         return true;
     }
     return false;
@@ -49,7 +54,7 @@ WindowUse useOf(uint16_t opcode) {
             const std::string_view text = name ? name : "";
             if (text.starts_with("glBeginTransformFeedback") || text.starts_with("glResumeTransformFeedback")) uses[o] = WindowUse::FeedbackBegins;
             else if (text.starts_with("glEndTransformFeedback")) uses[o] = WindowUse::FeedbackEnds;
-            else if (draws(text)) uses[o] = o == op::glClear || text.starts_with("glClearBuffer") ? WindowUse::Clears : WindowUse::Draws;
+            else if (draws(text)) uses[o] = clearsBuffer(text) ? WindowUse::Clears : WindowUse::Draws;
         }
         return uses;
     }();
@@ -81,7 +86,6 @@ void Replay::placePart(Window& w) {
     const PixelViewport part = interleaves(&w) ? inKernel(config_.pass, w.part) : w.part;
     w.region = hasTurn(w.turn) ? part : PixelViewport{};
     w.drawn = w.region;
-    if (w.undecided && hasTurn(w.turn + 1)) w.drawn = part;
     if (w.range.muted) w.drawn = {};
     if (takesRanges() && !collects()) w.region = {}; // the collector's
     if (w.config.samples == 0 || w.drawn.empty()) return;
@@ -142,8 +146,7 @@ void Replay::beginTurn(Window& w) {
     w.fresh = false;
     ++w.frames;
     w.undecided = !w.keepsPicture;
-    placePart(w);
-    restoreWindowState();
+    restoreWindowState(); // the frames that all draw may be over
 }
 
 void Replay::decideTurn(Window& w, bool builds) {

@@ -168,9 +168,10 @@ def pixel_polygons_are_near(context, notes):
 
 
 @case
-def pixel_is_exact_where_windows_are_read(context, notes):
-    return first_wrong({"%s %s" % (program, kernel): differing(native(context, program), through(context, ["--pixel", kernel], program))
-                        for program in ("pixels_read", "es2_scene") for kernel in ("2x1", "3x2")})
+def pixel_is_exact_where_pixels_are_copied(context, notes):
+    programs_of = (("pixels_read", []), ("es2_scene", []), ("pass_scene", ["--draw", "blit"]))
+    return first_wrong({"%s %s" % (program, kernel): differing(native(context, program, arguments), through(context, ["--pixel", kernel], program, arguments))
+                        for program, arguments in programs_of for kernel in ("2x1", "3x2")})
 
 
 # ---- eyes
