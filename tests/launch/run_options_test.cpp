@@ -155,6 +155,8 @@ TEST(RunOptions, wrongPassesNameTheOptionAndWhatIsWanted) {
     names("--eye-base is for stereo", [](RunArguments& a) { a.eyeBase = "1"; });
     names("--focus is for stereo", [](RunArguments& a) { a.focus = "1"; });
     EXPECT_NE(refusal([](RunArguments& a) { a.subpixel = "16"; a.pixel = "4x4"; a.stereo = "anaglyph"; }).find("512 passes together; at most 256"), std::string::npos);
+    names("--verify compares with", [](RunArguments& a) { a.subpixel = "2"; a.verify = "1"; });
+    EXPECT_EQ(accepted([](RunArguments& a) { a.dplex = "2"; a.verify = "1"; }).config.verifyEvery, 1);
     names("--tiling lean does not go with", [](RunArguments& a) { a.subpixel = "2"; a.tiling = "lean"; });
 }
 

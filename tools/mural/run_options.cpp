@@ -380,6 +380,8 @@ Result<RunOptions> runOptionsFrom(const RunArguments& a) {
     int64_t verify = 0;
     if (auto r = readNumber("--verify", a.verify.empty() ? RunArguments::Text() : a.verify, 1, INT32_MAX, verify); !r) return r.error();
     c.verifyEvery = static_cast<int>(verify);
+    if (verify > 0 && (c.passes.stereo != StereoMode::Off || c.passes.samples > 1))
+        return Error{"--verify compares with the program's own picture, which --stereo and --subpixel change; leave one of them out"};
     if (auto r = readOutput(a, c); !r) return r.error();
     if (auto r = checkTogether(a, c); !r) return r.error();
     c.fullScreen = a.fullScreen;
