@@ -31,13 +31,21 @@ uint64_t repeatsAfter(const ResolvedConfig& config) {
 void checkDeadlocks(const ResolvedConfig& config, config::Diagnostics& diagnostics) {
     size_t layouts = 1;
     for (const config::ResolvedCanvas& c : config.canvases) layouts = std::max(layouts, c.layouts.size());
+    constexpr size_t kMostCompounds = 20'000'000; // a few seconds
     FrameInput input = firstFrame(config);
     std::set<std::string> said;
+    size_t tried = 0;
     for (size_t layout = 0; layout < layouts; ++layout) {
         input.activeLayouts.assign(config.canvases.size(), static_cast<Index>(layout));
         for (const auto mode : {config::ViewMode::Mono, config::ViewMode::Stereo}) {
             input.views.assign(config.views.size(), ViewState{mode, 1, {}});
             for (input.frameNumber = 0; input.frameNumber < repeatsAfter(config); ++input.frameNumber) {
+                tried += config.compounds.size();
+                if (tried > kMostCompounds) {
+                    diagnostics.warn({}, "there are more layouts and frame numbers than can be tried for frames that wait for each other",
+                                     "divide the file, or give shorter periods");
+                    return;
+                }
                 const FramePlan plan = planFrame(config, input);
                 if (plan.deadlock.empty()) continue;
                 std::string circle;

@@ -88,7 +88,7 @@ void Planner::offerFrames(const ActiveCompound& active, Eye eye) {
         frame.buffers = f.buffers.value_or(i.buffers);
         frame.codec = f.codec;
         frame.exact = f.exact;
-        frame.area = apply(context.viewport, f.viewport);
+        frame.area = intersect(context.viewport, apply(context.viewport, f.viewport));
         if (frame.area.empty() || frame.buffers.empty()) continue;
         // What is drawn too large is made smaller before it is sent; textures stay where they are, and as they are.
         if (f.type == config::FrameType::Memory) {
