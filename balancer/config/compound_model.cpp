@@ -1,8 +1,22 @@
 #include "balancer/config/compound_model.hpp"
 
+#include <tuple>
+
 namespace mural::config {
 
-// Outside of the class: a defaulted comparison cannot compare the children of its own, unfinished type.
-bool operator==(const Compound& a, const Compound& b) = default;
+namespace {
+
+// Member by member: a defaulted comparison of a type that holds a list of its own kind stops clang 14. A member that is
+// added and not named here is an error of the compiler's.
+auto membersOf(const Compound& c) {
+    const auto& [name, channel, tasks, eyes, buffers, viewport, range, period, phase, zoom, pixel, subPixel, surface, attributes, equalizers,
+                 swapBarrier, outputTiles, inputTiles, children, outputFrames, inputFrames, at] = c;
+    return std::tie(name, channel, tasks, eyes, buffers, viewport, range, period, phase, zoom, pixel, subPixel, surface, attributes, equalizers,
+                    swapBarrier, outputTiles, inputTiles, children, outputFrames, inputFrames, at);
+}
+
+} // namespace
+
+bool operator==(const Compound& a, const Compound& b) { return membersOf(a) == membersOf(b); }
 
 } // namespace mural::config

@@ -21,7 +21,7 @@ uint64_t fuzzOne(std::span<const std::byte> input) {
     const std::string written = config::writeConfig(file);
     config::Diagnostics again("written");
     must(config::parseConfig(written, again) == file, "what is written reads back");
-    must(again.all().empty(), "what is written needs no remark");
+    must(again.all().empty() || file.version > config::kCurrentVersion, "what is written needs no remark");
     const config::ResolvedConfig resolved = config::resolve(file, {}, diagnostics);
     if (diagnostics.errors() == 0) compound::checkConfig(resolved, diagnostics);
     return 1 + resolved.compounds.size();
