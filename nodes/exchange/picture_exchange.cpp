@@ -35,8 +35,8 @@ int PictureExchange::rankOf(const std::string& name) {
     return error == std::errc() && end == name.data() + name.size() ? rank : 0;
 }
 
-Result<std::unique_ptr<PictureExchange>> PictureExchange::collecting(const ChannelSecret& secret) {
-    auto listener = listenTcp("", 0);
+Result<std::unique_ptr<PictureExchange>> PictureExchange::collecting(const ChannelSecret& secret, bool loopbackOnly) {
+    auto listener = listenTcp(loopbackOnly ? "127.0.0.1" : "", 0);
     if (!listener) return listener.error();
     auto where = parseConnectionDescription((*listener)->describe());
     if (!where) return where.error();

@@ -20,7 +20,8 @@ namespace mural {
 class PictureExchange {
 public:
     // Listens for contributors on a free port: port(). They are let in by a thread of its own.
-    static Result<std::unique_ptr<PictureExchange>> collecting(const ChannelSecret& secret);
+    // loopbackOnly: all of them run on this machine.
+    static Result<std::unique_ptr<PictureExchange>> collecting(const ChannelSecret& secret, bool loopbackOnly);
     // rank: of this contributor, from 1 on.
     static Result<std::unique_ptr<PictureExchange>> contributing(const std::string& host, uint16_t port, int rank, const ChannelSecret& secret, Deadline deadline);
     ~PictureExchange();

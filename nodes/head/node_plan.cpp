@@ -94,6 +94,7 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
     setup.pass = node.pass;
     setup.collector = node.collector;
     setup.answers = node.answers;
+    setup.exchangeHere = std::none_of(plan.nodes.begin(), plan.nodes.end(), [&](const NodePlan& other) { return other.collector == node.collector && other.reach == NodeReach::LaunchCommand; });
     setup.eyeBase = config.eyeBase;
     setup.focusDistance = config.focusDistance;
     setup.tiling = config.tiling;

@@ -124,10 +124,10 @@ private:
         }
         if (setup_.pass.ranges > 1 && setup_.pass.range == 0) {
             const auto secret = sessionSecretFromHex(setup_.exchangeSecret);
-            auto exchange = secret ? PictureExchange::collecting(secret.value()) : Result<std::unique_ptr<PictureExchange>>(secret.error());
+            auto exchange = secret ? PictureExchange::collecting(secret.value(), setup_.exchangeHere) : Result<std::unique_ptr<PictureExchange>>(secret.error());
             if (!exchange) return fail("no pictures of other nodes can be taken: " + exchange.error().message);
             exchange_ = std::move(*exchange);
-            ready["exchange"] = endpointText(line_->ownAddress(), exchange_->port());
+            ready["exchange"] = endpointText(setup_.exchangeHere ? "127.0.0.1" : line_->ownAddress(), exchange_->port());
         }
         if (setup_.wallWindows) {
             auto windows = TileWindows::open(setup_);

@@ -122,6 +122,7 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("streamSecret", s.streamSecret);
     visit("collector", s.collector, 0);
     visit("exchangeSecret", s.exchangeSecret);
+    visit("exchangeHere", s.exchangeHere);
     visit("build", s.build);
 }
 

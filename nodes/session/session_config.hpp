@@ -80,6 +80,7 @@ struct NodeSetup {
     std::string streamSecret;     // of that group, in hex
     int collector = 0;            // the node that puts together what this one draws a range of
     std::string exchangeSecret;   // of the nodes that draw ranges of one picture, in hex; empty: they do not
+    bool exchangeHere = false;    // all of those run on this machine
     std::string build;            // streamBuild() of the head
 };
 
