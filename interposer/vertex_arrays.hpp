@@ -63,6 +63,7 @@ public:
     // Of an array that there is, bound or not.
     void enableIn(GLuint name, uint32_t slot, bool on) { find(name)->enable(slot, on); }
     void divide(GLuint name, uint32_t slot, GLuint divisor) { find(name)->slots[slot].divisor = divisor; }
+    [[nodiscard]] GLuint divisor(GLuint name, uint32_t slot) { return find(name)->slots[slot].divisor; }
     // Whether any of the slots from first on points to client memory, enabled or not; and that none does any more.
     [[nodiscard]] bool anyInMemory(GLuint name, uint32_t first, uint32_t end);
     void moveToBuffer(GLuint name, uint32_t first, uint32_t end);

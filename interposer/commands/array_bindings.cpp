@@ -2,6 +2,7 @@
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
 #include "interposer/array_watch.hpp"
+#include "interposer/asking.hpp"
 #include "interposer/context.hpp"
 #include "interposer/real_gl.hpp"
 
@@ -12,16 +13,23 @@ namespace {
 
 GLuint currentArray(const ThreadState& t) { return t.context ? t.context->arrays.currentName() : 0; }
 
-void divide(ThreadState& t, GLuint array, GLuint index, GLuint divisor) {
-    if (!t.context || index >= kGenerics) return;
+// The mirror takes a divisor that the program's own context takes: OpenGL ES has none for bindings of array 0, for one.
+// The driver is asked for its error only where the mirror has another divisor.
+template <class Local, class Send> void divide(GLuint array, GLuint index, GLuint divisor, Local&& local, Send&& send) {
+    ThreadState& t = *tThread;
+    if (!t.context) return local();
     VertexArrayMirror& mirror = t.context->arrays;
-    if (mirror.knows(array) || gReal.glIsVertexArray(array)) mirror.divide(array, genericSlot(index), divisor);
+    const bool isNews = index >= kGenerics || !mirror.knows(array) || mirror.divisor(array, genericSlot(index)) != divisor;
+    if (!isNews) local();
+    else if (!raisesNothing(*t.context, local)) return;
+    if (isNews && index < kGenerics) mirror.divide(array, genericSlot(index), divisor);
+    send(t);
 }
 template <class Encode, class Real> void divideNamed(Encode encode, Real real, GLuint array, GLuint index, GLuint divisor) {
-    ThreadState& t = *tThread;
-    encode(t, array, index, divisor);
-    real(array, index, divisor);
-    divide(t, array, index, divisor);
+    divide(array, index, divisor, [=] { real(array, index, divisor); }, [=](ThreadState& t) { encode(t, array, index, divisor); });
+}
+template <class Encode, class Real> void divideBound(Encode encode, Real real, GLuint index, GLuint divisor) {
+    divide(currentArray(*tThread), index, divisor, [=] { real(index, divisor); }, [=](ThreadState& t) { encode(t, index, divisor); });
 }
 template <class Encode, class Real> void bindNamed(Encode encode, Real real, GLuint array, GLuint index, GLuint binding) {
     ThreadState& t = *tThread;
@@ -34,18 +42,8 @@ template <class Encode, class Real> void bindNamed(Encode encode, Real real, GLu
 
 extern "C" {
 
-void mural_glVertexAttribDivisor(GLuint index, GLuint divisor) {
-    ThreadState& t = *tThread;
-    divide(t, currentArray(t), index, divisor);
-    encode_glVertexAttribDivisor(t, index, divisor);
-    gReal.glVertexAttribDivisor(index, divisor);
-}
-void mural_glVertexBindingDivisor(GLuint bindingindex, GLuint divisor) {
-    ThreadState& t = *tThread;
-    divide(t, currentArray(t), bindingindex, divisor);
-    encode_glVertexBindingDivisor(t, bindingindex, divisor);
-    gReal.glVertexBindingDivisor(bindingindex, divisor);
-}
+void mural_glVertexAttribDivisor(GLuint index, GLuint divisor) { divideBound(encode_glVertexAttribDivisor, gReal.glVertexAttribDivisor, index, divisor); }
+void mural_glVertexBindingDivisor(GLuint bindingindex, GLuint divisor) { divideBound(encode_glVertexBindingDivisor, gReal.glVertexBindingDivisor, bindingindex, divisor); }
 void mural_glVertexArrayBindingDivisor(GLuint vaobj, GLuint bindingindex, GLuint divisor) { divideNamed(encode_glVertexArrayBindingDivisor, gReal.glVertexArrayBindingDivisor, vaobj, bindingindex, divisor); }
 void mural_glVertexArrayVertexBindingDivisorEXT(GLuint vaobj, GLuint bindingindex, GLuint divisor) { divideNamed(encode_glVertexArrayVertexBindingDivisorEXT, gReal.glVertexArrayVertexBindingDivisorEXT, vaobj, bindingindex, divisor); }
 void mural_glVertexArrayVertexAttribDivisorEXT(GLuint vaobj, GLuint index, GLuint divisor) { divideNamed(encode_glVertexArrayVertexAttribDivisorEXT, gReal.glVertexArrayVertexAttribDivisorEXT, vaobj, index, divisor); }

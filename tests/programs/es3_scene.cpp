@@ -222,6 +222,19 @@ void resolveElsewhere() {
     showBits(40, std::uint32_t{error});
 }
 
+// A divisor for a binding of array 0 is refused, and the array stays as it was: one value for each vertex.
+void drawFromMemory() {
+    static const GLfloat corners[4][4] = {{0.5F, 0.5F, 0.9F, 0.3F}, {0.6F, 0.45F, 0.2F, 0.8F}, {0.55F, 0.7F, 0.4F, 0.6F}, {0.8F, 0.75F, 0.7F, 0.9F}};
+    glBindBuffer(GL_ARRAY_BUFFER, 0);
+    glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, 0, corners);
+    glEnableVertexAttribArray(0);
+    glVertexBindingDivisor(0, 2);
+    showBits(41, std::uint32_t{glGetError()});
+    glUseProgram(blocks);
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    glDisableVertexAttribArray(0);
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -242,6 +255,7 @@ int main(int argc, char** argv) {
             glReadBuffer(GL_BACK);
             glClear(GL_COLOR_BUFFER_BIT);
             drawBlocks(frame);
+            drawFromMemory();
             drawTextures(window, frame);
             resolveElsewhere();
             readNothing();
