@@ -49,9 +49,14 @@ public:
         }
     }
 
-    // Attributes of vertices with which Mesa 22.3.6 does what nobody can tell (docs/exactness.md).
+    // Vertices outside of glBegin and glEnd, and attributes with which Mesa 22.3.6 does what nobody can tell (docs/exactness.md).
     bool isDefined() {
         const std::string_view name = command_.name;
+        const bool vertex = name.starts_with("glVertex2") || name.starts_with("glVertex3") || name.starts_with("glVertex4") ||
+                            name.starts_with("glEvalCoord") || name.starts_with("glEvalPoint");
+        if (vertex && !w_.insideBegin) {
+            return false;
+        }
         constexpr std::string_view others[] = {"glNormal3", "glFogCoord", "glSecondaryColor3", "glIndex", "glEdgeFlag", "glMaterial"};
         const int size = w_.profile == Profile::Es1 ? 0 : attributeSize(name);
         const bool other = std::any_of(std::begin(others), std::end(others), [&](std::string_view start) { return name.starts_with(start); });
@@ -62,8 +67,7 @@ public:
         if (w_.insideBegin && attribute0 && name.starts_with("glVertexAttribI")) {
             return false; // a position of whole numbers
         }
-        w_.behindVertex = w_.behindVertex || (w_.insideBegin && (attribute0 || name.starts_with("glVertex2") || name.starts_with("glVertex3") ||
-                                                                 name.starts_with("glVertex4") || name.starts_with("glEval")));
+        w_.behindVertex = w_.behindVertex || (w_.insideBegin && (attribute0 || vertex || name.starts_with("glEval")));
         // These of NV_vertex_program give colours and texture coordinates, too.
         const bool aliases = name.starts_with("glVertexAttrib") && name.ends_with("NV");
         return size == 0 || (name.starts_with("glColor") ? (size == 4) == (w_.attributeSize == 4) : size == w_.attributeSize && (!aliases || size == 4));

@@ -26,7 +26,8 @@ const void* offsetOf(std::size_t bytes) {
     return reinterpret_cast<const void*>(bytes); // NOLINT: an offset into a buffer
 }
 
-// Floats in a buffer that is bound then.
+// Floats in a buffer that is bound then: enough for all elements. Vertices behind its end are 0, 0, 0, 0 in Mesa, without a
+// place in the window.
 void vertexBuffer(World& w) {
     GLuint buffer = w.living(Kind::Buffer);
     if (buffer == 0 || w.random.chance(30)) {
@@ -34,7 +35,7 @@ void vertexBuffer(World& w) {
         w.keep(Kind::Buffer, buffer);
     }
     GL(glBindBuffer, GL_ARRAY_BUFFER, buffer);
-    GL(glBufferData, GL_ARRAY_BUFFER, w.random.between(100, 800) * 4, inputOf(Type::Float, w.random), GL_STATIC_DRAW);
+    GL(glBufferData, GL_ARRAY_BUFFER, w.random.between(320, 800) * 4, inputOf(Type::Float, w.random), GL_STATIC_DRAW);
 }
 
 const void* vertexPlace(World& w, bool buffered) {
