@@ -576,11 +576,13 @@ private:
     void applyViewports();
     void restoreWindowState();
     [[nodiscard]] bool drawsWindow() const { return c_->drawFramebuffer == 0; }
+    // replay_framebuffers.cpp
     [[nodiscard]] GLenum windowBuffer(GLenum buffer, const Window* w) const;
+    void bindFramebuffer(GLenum target, GLuint framebuffer, bool ext);
+    // replay_pixel_store.cpp
     void setUnpack(bool tight);
     void pixelStore(GLenum pname, GLint value);
-    void bindFramebuffer(GLenum target, GLuint framebuffer, bool ext);
-    void arrayPointer(uint64_t pointer, const std::function<void(const void*)>& call);
+    void arrayPointer(uint64_t pointer, const std::function<void(const void*)>& call); // replay_objects.cpp
 
     std::unique_ptr<gl::Platform> platform_;
     ReplayConfig config_;

@@ -5,29 +5,15 @@
 // depend on the scissor, so what is drawn is bit for bit the whole picture's. lean: the framebuffer
 // has the region's size and window coordinates are translated. Framebuffer objects are drawn whole.
 // Source: design §4, accuracy M4 and M1.
-#include <algorithm>
 #include <cstdint>
-#include <utility>
 
 #include "nodes/replay/pass_place.hpp"
 #include "nodes/replay/replay.hpp"
+#include "nodes/replay/to_int.hpp"
 
 namespace mural {
 
 namespace {
-
-// The order of PixelUnpack::values and ContextState::pack; alignment is the sixth.
-constexpr GLenum kUnpackNames[8] = {GL_UNPACK_SWAP_BYTES, GL_UNPACK_LSB_FIRST, GL_UNPACK_ROW_LENGTH, GL_UNPACK_SKIP_ROWS,
-                                    GL_UNPACK_SKIP_PIXELS, GL_UNPACK_ALIGNMENT, GL_UNPACK_SKIP_IMAGES, GL_UNPACK_IMAGE_HEIGHT};
-constexpr GLenum kPackNames[8] = {GL_PACK_SWAP_BYTES, GL_PACK_LSB_FIRST, GL_PACK_ROW_LENGTH, GL_PACK_SKIP_ROWS,
-                                  GL_PACK_SKIP_PIXELS, GL_PACK_ALIGNMENT, GL_PACK_SKIP_IMAGES, GL_PACK_IMAGE_HEIGHT};
-constexpr int kAlignment = 5;
-
-// The nearest int that there is; 0 for what is no number.
-GLint toInt(GLfloat value) {
-    if (!(value > -2147483648.0f)) return value <= -2147483648.0f ? INT32_MIN : 0;
-    return value < 2147483648.0f ? static_cast<GLint>(value) : INT32_MAX;
-}
 
 // Viewports and boxes that are set together: one that is an error keeps all of them as they were.
 template <class T> bool areBoxes(GLuint most, GLuint first, GLsizei count, const T* v) {
@@ -36,14 +22,6 @@ template <class T> bool areBoxes(GLuint most, GLuint first, GLsizei count, const
         if (v[4 * i + 2] < 0 || v[4 * i + 3] < 0) return false;
     }
     return true;
-}
-
-// Which of the eight the API knows.
-bool knows(wire::Api api, int version, int i, bool pack) {
-    if (api == wire::Api::Desktop) return true;
-    if (i == kAlignment) return true;
-    if (version < 30 || i < 2) return false;
-    return !(pack && i >= 6);
 }
 
 } // namespace
@@ -198,112 +176,7 @@ void Replay::glDisablei(GLenum target, GLuint index) {
     applyScissors();
 }
 
-// ---- framebuffers
-
-void Replay::bindFramebuffer(GLenum target, GLuint framebuffer, bool ext) {
-    const GLuint ours = name(Kind::Framebuffer, framebuffer);
-    if (ext) gl.glBindFramebufferEXT(target, ours);
-    else gl.glBindFramebuffer(target, ours);
-    if (target != GL_READ_FRAMEBUFFER) c_->drawFramebuffer = framebuffer;
-    if (target != GL_DRAW_FRAMEBUFFER) c_->readFramebuffer = framebuffer;
-    if (target != GL_READ_FRAMEBUFFER) restoreWindowState();
-}
-void Replay::glBindFramebuffer(GLenum target, GLuint framebuffer) { bindFramebuffer(target, framebuffer, !gl.glBindFramebuffer); }
-void Replay::glBindFramebufferEXT(GLenum target, GLuint framebuffer) { bindFramebuffer(target, framebuffer, gl.glBindFramebufferEXT != nullptr); }
-
-void Replay::glDeleteFramebuffers(GLsizei n, const Data& framebuffers) {
-    if (n <= 0 || !framebuffers.pointer()) return;
-    const auto* app = framebuffers.as<GLuint>();
-    gl.glDeleteFramebuffers(n, names(Kind::Framebuffer, app, n));
-    for (GLsizei i = 0; i < n; ++i) { // a bound one that is deleted leaves the window bound
-        if (app[i] != 0 && app[i] == c_->drawFramebuffer) c_->drawFramebuffer = 0;
-        if (app[i] != 0 && app[i] == c_->readFramebuffer) c_->readFramebuffer = 0;
-    }
-    forget(Kind::Framebuffer, app, n);
-    restoreWindowState();
-}
-
-// The one colour buffer of a surface, whichever of the window's it stands for (replay_front.cpp).
-GLenum Replay::windowBuffer(GLenum buffer, const Window* w) const {
-    if (!w || !w->surface || !w->surface->singleBuffered() || c_->api != wire::Api::Desktop) return buffer;
-    switch (buffer) {
-    case GL_BACK:
-    case GL_BACK_LEFT:
-    case GL_FRONT:
-    case GL_FRONT_LEFT:
-    case GL_LEFT:
-    case GL_FRONT_AND_BACK: return GL_FRONT_LEFT;
-    default: return buffer;
-    }
-}
-void Replay::drawBufferOfWindow(GLenum buffer) { buffersChanged(std::exchange(c_->drawBuffer0, buffer)); }
-void Replay::readBufferOfWindow(GLenum buffer) {
-    c_->readBuffer0 = buffer;
-    buffersChanged(c_->drawBuffer0);
-}
-void Replay::glDrawBuffer(GLenum buf) {
-    gl.glDrawBuffer(drawsWindow() ? windowBuffer(buf, c_->draw) : buf);
-    if (drawsWindow()) drawBufferOfWindow(buf);
-}
-void Replay::glDrawBuffers(GLsizei n, const Data& bufs) {
-    if (n < 0 || (n > 0 && !bufs.pointer()) || !gl.glDrawBuffers) return;
-    std::vector<GLenum> list(bufs.as<GLenum>(), bufs.as<GLenum>() + n); // none at all: nothing is drawn to
-    if (drawsWindow()) {
-        for (GLenum& b : list) b = windowBuffer(b, c_->draw);
-    }
-    gl.glDrawBuffers(n, list.data());
-    if (drawsWindow()) drawBufferOfWindow(n > 0 ? *bufs.as<GLenum>() : GLenum{GL_NONE});
-}
-void Replay::glReadBuffer(GLenum src) {
-    gl.glReadBuffer(c_->readFramebuffer == 0 ? windowBuffer(src, c_->read) : src);
-    if (c_->readFramebuffer == 0) readBufferOfWindow(src);
-}
-void Replay::glNamedFramebufferDrawBuffer(GLuint framebuffer, GLenum buf) {
-    gl.glNamedFramebufferDrawBuffer(name(Kind::Framebuffer, framebuffer), framebuffer == 0 ? windowBuffer(buf, c_->draw) : buf);
-    if (framebuffer == 0) drawBufferOfWindow(buf);
-}
-void Replay::glNamedFramebufferDrawBuffers(GLuint framebuffer, GLsizei n, const Data& bufs) {
-    if (n < 0 || (n > 0 && !bufs.pointer())) return;
-    std::vector<GLenum> list(bufs.as<GLenum>(), bufs.as<GLenum>() + n);
-    for (GLenum& b : list) b = framebuffer == 0 ? windowBuffer(b, c_->draw) : b;
-    gl.glNamedFramebufferDrawBuffers(name(Kind::Framebuffer, framebuffer), n, list.data());
-    if (framebuffer == 0) drawBufferOfWindow(n > 0 ? *bufs.as<GLenum>() : GLenum{GL_NONE});
-}
-void Replay::glNamedFramebufferReadBuffer(GLuint framebuffer, GLenum src) {
-    gl.glNamedFramebufferReadBuffer(name(Kind::Framebuffer, framebuffer), framebuffer == 0 ? windowBuffer(src, c_->read) : src);
-    if (framebuffer == 0) readBufferOfWindow(src);
-}
-// EXT_direct_state_access: the same.
-void Replay::glFramebufferDrawBufferEXT(GLuint framebuffer, GLenum mode) {
-    if (!gl.glFramebufferDrawBufferEXT) return;
-    gl.glFramebufferDrawBufferEXT(name(Kind::Framebuffer, framebuffer), framebuffer == 0 ? windowBuffer(mode, c_->draw) : mode);
-    if (framebuffer == 0) drawBufferOfWindow(mode);
-}
-void Replay::glFramebufferDrawBuffersEXT(GLuint framebuffer, GLsizei n, const Data& bufs) {
-    if (n < 0 || (n > 0 && !bufs.pointer()) || !gl.glFramebufferDrawBuffersEXT) return;
-    std::vector<GLenum> list(bufs.as<GLenum>(), bufs.as<GLenum>() + n);
-    for (GLenum& b : list) b = framebuffer == 0 ? windowBuffer(b, c_->draw) : b;
-    gl.glFramebufferDrawBuffersEXT(name(Kind::Framebuffer, framebuffer), n, list.data());
-    if (framebuffer == 0) drawBufferOfWindow(n > 0 ? *bufs.as<GLenum>() : GLenum{GL_NONE});
-}
-void Replay::glFramebufferReadBufferEXT(GLuint framebuffer, GLenum mode) {
-    if (!gl.glFramebufferReadBufferEXT) return;
-    gl.glFramebufferReadBufferEXT(name(Kind::Framebuffer, framebuffer), framebuffer == 0 ? windowBuffer(mode, c_->read) : mode);
-    if (framebuffer == 0) readBufferOfWindow(mode);
-}
-// Only a hint, and what it throws away may be another tile's: not done for windows.
-void Replay::glInvalidateFramebuffer(GLenum target, GLsizei n, const Data& attachments) {
-    if (!drawsWindow() && n > 0 && attachments.pointer() && gl.glInvalidateFramebuffer) gl.glInvalidateFramebuffer(target, n, attachments.as<GLenum>());
-}
-void Replay::glInvalidateSubFramebuffer(GLenum target, GLsizei n, const Data& attachments, GLint x, GLint y, GLsizei width, GLsizei height) {
-    if (!drawsWindow() && n > 0 && attachments.pointer() && gl.glInvalidateSubFramebuffer)
-        gl.glInvalidateSubFramebuffer(target, n, attachments.as<GLenum>(), x, y, width, height);
-}
-void Replay::glDiscardFramebufferEXT(GLenum target, GLsizei n, const Data& attachments) {
-    if (!drawsWindow() && n > 0 && attachments.pointer() && gl.glDiscardFramebufferEXT) gl.glDiscardFramebufferEXT(target, n, attachments.as<GLenum>());
-}
-
-// ---- attribute stacks: what the replay keeps for itself goes onto a stack of its own
+// ---- attribute stack: what the replay keeps for itself goes onto a stack of its own
 
 void Replay::glPushAttrib(GLbitfield mask) {
     gl.glPushAttrib(mask);
@@ -328,94 +201,6 @@ void Replay::glPopAttrib() {
     }
     if (saved.mask & GL_PIXEL_MODE_BIT) readBufferOfWindow(saved.readBuffer0);
     if (saved.mask & (GL_SCISSOR_BIT | GL_ENABLE_BIT | GL_VIEWPORT_BIT)) restoreWindowState();
-}
-
-void Replay::glPushClientAttrib(GLbitfield mask) {
-    gl.glPushClientAttrib(mask);
-    clientStatePushed(mask);
-}
-void Replay::glPushClientAttribDefaultEXT(GLbitfield mask) {
-    gl.glPushClientAttribDefaultEXT(mask);
-    clientStatePushed(mask);
-    clientStateDefault(mask);
-}
-void Replay::glClientAttribDefaultEXT(GLbitfield mask) {
-    gl.glClientAttribDefaultEXT(mask);
-    clientStateDefault(mask);
-}
-void Replay::clientStatePushed(GLbitfield mask) {
-    if (c_->clientAttributes.size() < 64)
-        c_->clientAttributes.push_back({mask, c_->unpack, c_->pack, c_->arrayBuffer, c_->packBuffer, c_->unpackBuffer});
-}
-void Replay::clientStateDefault(GLbitfield mask) {
-    if (mask & GL_CLIENT_PIXEL_STORE_BIT) {
-        c_->unpack = {};
-        c_->unpack.values[kAlignment] = 4;
-        c_->pack = c_->unpack.values;
-        c_->packBuffer = c_->unpackBuffer = 0;
-    }
-    if (mask & GL_CLIENT_VERTEX_ARRAY_BIT) c_->arrayBuffer = 0;
-}
-void Replay::glPopClientAttrib() {
-    gl.glPopClientAttrib();
-    if (c_->clientAttributes.empty()) return;
-    const ClientState saved = c_->clientAttributes.back();
-    c_->clientAttributes.pop_back();
-    if (saved.mask & GL_CLIENT_PIXEL_STORE_BIT) {
-        c_->unpack = saved.unpack; // `tight` too: GL has gone back to what it had then
-        c_->pack = saved.pack;
-        c_->packBuffer = saved.packBuffer;
-        c_->unpackBuffer = saved.unpackBuffer;
-    }
-    if (saved.mask & GL_CLIENT_VERTEX_ARRAY_BIT) c_->arrayBuffer = saved.arrayBuffer;
-}
-
-// ---- pixel store: images from client memory come tightly packed, others lie in buffers as the
-// program's own state says
-
-void Replay::pixelStore(GLenum pname, GLint value) {
-    for (size_t i = 0; i < 8; ++i) {
-        if (pname == kUnpackNames[i]) c_->unpack.values[i] = value;
-        if (pname == kPackNames[i]) {
-            c_->pack[i] = value;
-            return gl.glPixelStorei(pname, value);
-        }
-        if (pname == kUnpackNames[i]) return c_->unpack.tight ? void() : gl.glPixelStorei(pname, value);
-    }
-    if (pname >= GL_PACK_COMPRESSED_BLOCK_WIDTH && pname <= GL_PACK_COMPRESSED_BLOCK_SIZE) c_->packsBlocks = true;
-    gl.glPixelStorei(pname, value);
-}
-void Replay::glPixelStorei(GLenum pname, GLint param) { pixelStore(pname, param); }
-void Replay::glPixelStoref(GLenum pname, GLfloat param) { pixelStore(pname, toInt(param + (param < 0 ? -0.5f : 0.5f))); }
-void Replay::glPixelStorex(GLenum pname, GLint param) { pixelStore(pname, param >> 16); }
-
-void Replay::setUnpack(bool tight) {
-    if (c_->unpack.tight == tight) return;
-    c_->unpack.tight = tight;
-    for (int i = 0; i < 8; ++i) {
-        const GLint value = tight ? (i == kAlignment ? 1 : 0) : c_->unpack.values[static_cast<size_t>(i)];
-        if (knows(c_->api, c_->version, i, false)) gl.glPixelStorei(kUnpackNames[i], value);
-    }
-}
-bool Replay::unpackFor(const Data& data) {
-    if (data.isOffset()) {
-        setUnpack(false);
-        return c_->unpackBuffer != 0;
-    }
-    if (!data.absent()) setUnpack(true);
-    return true;
-}
-bool Replay::readable(const Data& data, GLenum binding) {
-    if (!data.isOffset()) return !data.absent();
-    GLint buffer = 0;
-    gl.glGetIntegerv(binding, &buffer);
-    return buffer != 0;
-}
-void Replay::packTightly(bool tight) {
-    for (int i = 0; i < 8; ++i) {
-        const GLint value = tight ? (i == kAlignment ? 1 : 0) : c_->pack[static_cast<size_t>(i)];
-        if (knows(c_->api, c_->version, i, true)) gl.glPixelStorei(kPackNames[i], value);
-    }
 }
 
 namespace {

@@ -1,0 +1,111 @@
+// Framebuffers and the buffers that are drawn to and read from: the window's are those that its surface has.
+#include <utility>
+
+#include "nodes/replay/replay.hpp"
+
+namespace mural {
+
+void Replay::bindFramebuffer(GLenum target, GLuint framebuffer, bool ext) {
+    const GLuint ours = name(Kind::Framebuffer, framebuffer);
+    if (ext) gl.glBindFramebufferEXT(target, ours);
+    else gl.glBindFramebuffer(target, ours);
+    if (target != GL_READ_FRAMEBUFFER) c_->drawFramebuffer = framebuffer;
+    if (target != GL_DRAW_FRAMEBUFFER) c_->readFramebuffer = framebuffer;
+    if (target != GL_READ_FRAMEBUFFER) restoreWindowState();
+}
+void Replay::glBindFramebuffer(GLenum target, GLuint framebuffer) { bindFramebuffer(target, framebuffer, !gl.glBindFramebuffer); }
+void Replay::glBindFramebufferEXT(GLenum target, GLuint framebuffer) { bindFramebuffer(target, framebuffer, gl.glBindFramebufferEXT != nullptr); }
+
+void Replay::glDeleteFramebuffers(GLsizei n, const Data& framebuffers) {
+    if (n <= 0 || !framebuffers.pointer()) return;
+    const auto* app = framebuffers.as<GLuint>();
+    gl.glDeleteFramebuffers(n, names(Kind::Framebuffer, app, n));
+    for (GLsizei i = 0; i < n; ++i) { // a bound one that is deleted leaves the window bound
+        if (app[i] != 0 && app[i] == c_->drawFramebuffer) c_->drawFramebuffer = 0;
+        if (app[i] != 0 && app[i] == c_->readFramebuffer) c_->readFramebuffer = 0;
+    }
+    forget(Kind::Framebuffer, app, n);
+    restoreWindowState();
+}
+
+// The one colour buffer of a surface, whichever of the window's it stands for (replay_front.cpp).
+GLenum Replay::windowBuffer(GLenum buffer, const Window* w) const {
+    if (!w || !w->surface || !w->surface->singleBuffered() || c_->api != wire::Api::Desktop) return buffer;
+    switch (buffer) {
+    case GL_BACK:
+    case GL_BACK_LEFT:
+    case GL_FRONT:
+    case GL_FRONT_LEFT:
+    case GL_LEFT:
+    case GL_FRONT_AND_BACK: return GL_FRONT_LEFT;
+    default: return buffer;
+    }
+}
+void Replay::drawBufferOfWindow(GLenum buffer) { buffersChanged(std::exchange(c_->drawBuffer0, buffer)); }
+void Replay::readBufferOfWindow(GLenum buffer) {
+    c_->readBuffer0 = buffer;
+    buffersChanged(c_->drawBuffer0);
+}
+void Replay::glDrawBuffer(GLenum buf) {
+    gl.glDrawBuffer(drawsWindow() ? windowBuffer(buf, c_->draw) : buf);
+    if (drawsWindow()) drawBufferOfWindow(buf);
+}
+void Replay::glDrawBuffers(GLsizei n, const Data& bufs) {
+    if (n < 0 || (n > 0 && !bufs.pointer()) || !gl.glDrawBuffers) return;
+    std::vector<GLenum> list(bufs.as<GLenum>(), bufs.as<GLenum>() + n); // none at all: nothing is drawn to
+    if (drawsWindow()) {
+        for (GLenum& b : list) b = windowBuffer(b, c_->draw);
+    }
+    gl.glDrawBuffers(n, list.data());
+    if (drawsWindow()) drawBufferOfWindow(n > 0 ? *bufs.as<GLenum>() : GLenum{GL_NONE});
+}
+void Replay::glReadBuffer(GLenum src) {
+    gl.glReadBuffer(c_->readFramebuffer == 0 ? windowBuffer(src, c_->read) : src);
+    if (c_->readFramebuffer == 0) readBufferOfWindow(src);
+}
+void Replay::glNamedFramebufferDrawBuffer(GLuint framebuffer, GLenum buf) {
+    gl.glNamedFramebufferDrawBuffer(name(Kind::Framebuffer, framebuffer), framebuffer == 0 ? windowBuffer(buf, c_->draw) : buf);
+    if (framebuffer == 0) drawBufferOfWindow(buf);
+}
+void Replay::glNamedFramebufferDrawBuffers(GLuint framebuffer, GLsizei n, const Data& bufs) {
+    if (n < 0 || (n > 0 && !bufs.pointer())) return;
+    std::vector<GLenum> list(bufs.as<GLenum>(), bufs.as<GLenum>() + n);
+    for (GLenum& b : list) b = framebuffer == 0 ? windowBuffer(b, c_->draw) : b;
+    gl.glNamedFramebufferDrawBuffers(name(Kind::Framebuffer, framebuffer), n, list.data());
+    if (framebuffer == 0) drawBufferOfWindow(n > 0 ? *bufs.as<GLenum>() : GLenum{GL_NONE});
+}
+void Replay::glNamedFramebufferReadBuffer(GLuint framebuffer, GLenum src) {
+    gl.glNamedFramebufferReadBuffer(name(Kind::Framebuffer, framebuffer), framebuffer == 0 ? windowBuffer(src, c_->read) : src);
+    if (framebuffer == 0) readBufferOfWindow(src);
+}
+// EXT_direct_state_access: the same.
+void Replay::glFramebufferDrawBufferEXT(GLuint framebuffer, GLenum mode) {
+    if (!gl.glFramebufferDrawBufferEXT) return;
+    gl.glFramebufferDrawBufferEXT(name(Kind::Framebuffer, framebuffer), framebuffer == 0 ? windowBuffer(mode, c_->draw) : mode);
+    if (framebuffer == 0) drawBufferOfWindow(mode);
+}
+void Replay::glFramebufferDrawBuffersEXT(GLuint framebuffer, GLsizei n, const Data& bufs) {
+    if (n < 0 || (n > 0 && !bufs.pointer()) || !gl.glFramebufferDrawBuffersEXT) return;
+    std::vector<GLenum> list(bufs.as<GLenum>(), bufs.as<GLenum>() + n);
+    for (GLenum& b : list) b = framebuffer == 0 ? windowBuffer(b, c_->draw) : b;
+    gl.glFramebufferDrawBuffersEXT(name(Kind::Framebuffer, framebuffer), n, list.data());
+    if (framebuffer == 0) drawBufferOfWindow(n > 0 ? *bufs.as<GLenum>() : GLenum{GL_NONE});
+}
+void Replay::glFramebufferReadBufferEXT(GLuint framebuffer, GLenum mode) {
+    if (!gl.glFramebufferReadBufferEXT) return;
+    gl.glFramebufferReadBufferEXT(name(Kind::Framebuffer, framebuffer), framebuffer == 0 ? windowBuffer(mode, c_->read) : mode);
+    if (framebuffer == 0) readBufferOfWindow(mode);
+}
+// Only a hint, and what it throws away may be another tile's: not done for windows.
+void Replay::glInvalidateFramebuffer(GLenum target, GLsizei n, const Data& attachments) {
+    if (!drawsWindow() && n > 0 && attachments.pointer() && gl.glInvalidateFramebuffer) gl.glInvalidateFramebuffer(target, n, attachments.as<GLenum>());
+}
+void Replay::glInvalidateSubFramebuffer(GLenum target, GLsizei n, const Data& attachments, GLint x, GLint y, GLsizei width, GLsizei height) {
+    if (!drawsWindow() && n > 0 && attachments.pointer() && gl.glInvalidateSubFramebuffer)
+        gl.glInvalidateSubFramebuffer(target, n, attachments.as<GLenum>(), x, y, width, height);
+}
+void Replay::glDiscardFramebufferEXT(GLenum target, GLsizei n, const Data& attachments) {
+    if (!drawsWindow() && n > 0 && attachments.pointer() && gl.glDiscardFramebufferEXT) gl.glDiscardFramebufferEXT(target, n, attachments.as<GLenum>());
+}
+
+} // namespace mural

@@ -1,0 +1,15 @@
+// Floats that GL takes for whole numbers.
+#pragma once
+
+#include <GL/gl.h>
+#include <cstdint>
+
+namespace mural {
+
+// The nearest int that there is; 0 for what is no number.
+inline GLint toInt(GLfloat value) {
+    if (!(value > -2147483648.0f)) return value <= -2147483648.0f ? INT32_MIN : 0;
+    return value < 2147483648.0f ? static_cast<GLint>(value) : INT32_MAX;
+}
+
+} // namespace mural
