@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "balancer/compound/frusta.hpp"
-#include "balancer/compound/jitter.hpp"
 #include "balancer/compound/planner.hpp"
 
 namespace mural::compound {

@@ -3,6 +3,7 @@
 
 #include "balancer/compound/frame_input.hpp"
 #include "common/frustum.hpp"
+#include "common/jitter.hpp"
 
 namespace mural::compound {
 
@@ -21,11 +22,6 @@ struct PixelAxis {
     // around the middle of the one that it stands for.
     [[nodiscard]] double first() const { return origin + scale * (kernel + .5 - step / 2.); }
     [[nodiscard]] double last(int32_t n) const { return first() + scale * step * n; }
-};
-
-struct Jitter {
-    double x = 0; // pixels to the right, from -0.5 to 0.5
-    double y = 0;
 };
 
 struct RenderContext {

@@ -1,17 +1,8 @@
 #include "nodes/session/render_pass.hpp"
 
+#include "common/jitter.hpp"
+
 namespace mural {
-
-namespace {
-
-// The digits of i in base 2, mirrored at the point: 0, 1/2, 1/4, 3/4, …
-double radicalInverse(int i) {
-    double value = 0, digit = 0.5;
-    for (; i > 0; i /= 2, digit /= 2) value += i % 2 * digit;
-    return value;
-}
-
-} // namespace
 
 std::vector<Eye> eyesOf(StereoMode mode) {
     switch (mode) {
@@ -50,10 +41,8 @@ int picturesOf(const PassCounts& counts) {
 }
 
 std::array<double, 2> jitterOf(int sample, int samples) {
-    if (samples <= 1) return {0, 0};
-    int row = 0; // by the order of radical inverses
-    for (int i = 0; i < samples; ++i) row += radicalInverse(i) < radicalInverse(sample);
-    return {(sample + 0.5) / samples - 0.5, (row + 0.5) / samples - 0.5};
+    const Jitter jitter = jitterOf(SubPixel{sample, samples});
+    return {jitter.x, jitter.y};
 }
 
 std::string describe(const RenderPass& pass) {

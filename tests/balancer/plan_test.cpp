@@ -3,7 +3,6 @@
 
 #include "balancer/compound/check_config.hpp"
 #include "balancer/compound/even_split.hpp"
-#include "balancer/compound/jitter.hpp"
 #include "balancer/compound/plan_frame.hpp"
 #include "balancer/config/resolve.hpp"
 #include "balancer/config/text/parser.hpp"
