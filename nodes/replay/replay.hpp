@@ -206,6 +206,7 @@ private:
         std::unordered_map<GLuint, List> lists;
         NameTable framebuffersOfAll;
         std::unordered_map<GLuint, bool> placedModules; // by our shader's name: it holds a module that reads gl_FragCoord
+        bool listsHoldBitmaps = false; // one of them at least
         bool allDrawn = false; // by every node: the program's side has asked for it, or a module reads gl_FragCoord
         TiledPrograms tiled;
         ProgramRecipes recipes;

@@ -5,8 +5,12 @@
 
 namespace mural {
 
+// Lists gather some only when any of them holds one: what settleBitmaps() does is not without a trace (Mesa takes
+// materials that are on their way, where a colour would have followed them).
 void Replay::noteBitmaps(uint16_t opcode) {
-    if (opcode == op::glBitmap || opcode == op::glCallList || opcode == op::glCallLists) c_->gathersBitmaps = true;
+    if (opcode == op::glBitmap && c_->compiling && c_->shared) c_->shared->listsHoldBitmaps = true;
+    const bool listed = (opcode == op::glCallList || opcode == op::glCallLists) && c_->shared && c_->shared->listsHoldBitmaps;
+    if (opcode == op::glBitmap || listed) c_->gathersBitmaps = true;
 }
 
 // What neither draws nor changes what draws: the driver goes on gathering, as it does without these.

@@ -14,7 +14,7 @@ GROUPS = {
                "front_buffer", "front_and_back", "single_buffered", "frames_kept",
                "accum_buffer"],
     "state": ["raster_state", "blend_modes", "clipping", "fixed_lighting", "feedback_select",
-              "attribute_stacks", "range_ties", "arb_programs", "odd_calls", "list_questions", "refused_calls", "refused_core"],
+              "attribute_stacks", "list_materials", "range_ties", "arb_programs", "odd_calls", "list_questions", "refused_calls", "refused_core"],
     "shaders": ["glsl_legacy", "glsl_uniforms", "glsl_blocks", "glsl_stages", "spirv_shaders", "compute_images",
                 "fragment_counters", "fragment_sums", "frag_coord", "many_triangles", "no_depth", "queries", "queries_later",
                 "direct_state_access", "program_binaries", "shader_includes",
