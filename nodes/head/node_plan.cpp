@@ -100,7 +100,7 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
     setup.tiling = config.tiling;
     setup.glBackend = config.glBackend;
     setup.sendPictures = config.display == Display::App || !config.out.empty() || headShowsWall(config);
-    setup.wallWindows = config.display == Display::Windows && !headShowsWall(config);
+    setup.wallWindows = config.display == Display::Windows && !headShowsWall(config) && node.pass.range == 0; // the collector has the picture
     setup.fullScreen = config.fullScreen;
     setup.windowX = config.windowX;
     setup.windowY = config.windowY;

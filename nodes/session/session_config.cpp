@@ -245,7 +245,7 @@ Result<SessionConfig> sessionConfigFromJson(const std::string& line) {
 
 std::string toJson(const NodeSetup& setup) { return write(setup); }
 
-bool headShowsWall(const SessionConfig& c) { return c.display == Display::Windows && passesOf(c.passes).size() > 1; }
+bool headShowsWall(const SessionConfig& c) { return c.display == Display::Windows && (passesOf(c.passes).size() > 1 || !c.configFile.empty()); }
 
 Result<NodeSetup> nodeSetupFromJson(const std::string& line) {
     auto setup = read<NodeSetup>(line, "node setup");

@@ -143,5 +143,21 @@ TEST(NodePlan, onlyTheFirstPictureAnswers) {
     }
 }
 
+TEST(NodePlan, ofNodesThatShareDrawsOneHasTheWindow) {
+    SessionConfig config;
+    config.passes.ranges = 3;
+    config.display = Display::Windows;
+    const SessionPlan plan = planSession(config, "me");
+    ASSERT_EQ(plan.nodes.size(), 3u);
+    for (const NodePlan& node : plan.nodes) {
+        const NodeSetup setup = setupOf(config, plan, node);
+        EXPECT_EQ(setup.wallWindows, node.node == 0);
+        EXPECT_EQ(setup.collector, 0);
+        EXPECT_TRUE(setup.exchangeHere);
+    }
+    config.configFile = "wall.eqc"; // the head shows those
+    EXPECT_FALSE(setupOf(config, plan, plan.nodes[0]).wallWindows);
+}
+
 } // namespace
 } // namespace mural
