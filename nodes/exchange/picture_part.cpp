@@ -18,12 +18,15 @@ template <class Passes> void merge(PicturePart& into, const PicturePart& later, 
 
 } // namespace
 
-void mergeByDepth(PicturePart& into, const PicturePart& later, DepthOrder order, uint32_t clearedColour, uint32_t clearedDepth) {
-    switch (order) {
-    case DepthOrder::Less: return merge(into, later, clearedColour, clearedDepth, [](uint32_t a, uint32_t b) { return a < b; });
-    case DepthOrder::LessOrEqual: return merge(into, later, clearedColour, clearedDepth, [](uint32_t a, uint32_t b) { return a <= b; });
-    case DepthOrder::Greater: return merge(into, later, clearedColour, clearedDepth, [](uint32_t a, uint32_t b) { return a > b; });
-    case DepthOrder::GreaterOrEqual: return merge(into, later, clearedColour, clearedDepth, [](uint32_t a, uint32_t b) { return a >= b; });
+void mergeByDepth(PicturePart& into, const PicturePart& later, compositor::DepthFunction function, uint32_t clearedColour, uint32_t clearedDepth) {
+    using compositor::DepthFunction;
+    const auto with = [&](const auto& passes) { merge(into, later, clearedColour, clearedDepth, passes); };
+    switch (function) {
+    case DepthFunction::Less: return with([](uint32_t a, uint32_t b) { return a < b; });
+    case DepthFunction::LessOrEqual: return with([](uint32_t a, uint32_t b) { return a <= b; });
+    case DepthFunction::Greater: return with([](uint32_t a, uint32_t b) { return a > b; });
+    case DepthFunction::GreaterOrEqual: return with([](uint32_t a, uint32_t b) { return a >= b; });
+    default: return; // draws by these are not shared
     }
 }
 

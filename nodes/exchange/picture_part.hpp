@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/pixel_viewport.hpp"
+#include "compositor/kernels/depth_function.hpp"
 
 namespace mural {
 
@@ -16,12 +17,10 @@ struct PicturePart {
     std::vector<uint32_t> depth;    // [y][x], 0 to 2^32 - 1
 };
 
-// Which of two depths hides the other.
-enum class DepthOrder : uint32_t { Less, LessOrEqual, Greater, GreaterOrEqual };
-
 // Lays `later`, drawn after all that is in `into`, over it as one machine's depth test would have: pixel by pixel, the
 // later wins when the test passes. What `later` has not drawn has the values that both were cleared to.
-// Both have one box. Source: accuracy 4 (fold in draw order).
-void mergeByDepth(PicturePart& into, const PicturePart& later, DepthOrder order, uint32_t clearedColour, uint32_t clearedDepth);
+// Both have one box. function: Less, LessOrEqual, Greater or GreaterOrEqual; with others nothing is laid over. Windows may
+// have 32 whole bits of depth, which is neither of compositor/image's formats. Source: accuracy 4 (fold in draw order).
+void mergeByDepth(PicturePart& into, const PicturePart& later, compositor::DepthFunction function, uint32_t clearedColour, uint32_t clearedDepth);
 
 } // namespace mural

@@ -343,14 +343,14 @@ void Replay::composeRanges(Window& w) {
         if (out_.sendPart) (void)out_.sendPart(part);
         return;
     }
-    const DepthOrder order = r.function == GL_LESS ? DepthOrder::Less : r.function == GL_LEQUAL ? DepthOrder::LessOrEqual
-                             : r.function == GL_GREATER ? DepthOrder::Greater : DepthOrder::GreaterOrEqual;
-    const DepthOrder merged = config_.plant == "tie" ? (order == DepthOrder::Less ? DepthOrder::LessOrEqual : DepthOrder::Less) : order;
+    using compositor::DepthFunction;
+    auto function = static_cast<DepthFunction>(r.function - GL_NEVER); // numbered as GL's
+    if (config_.plant == "tie") function = function == DepthFunction::Less ? DepthFunction::LessOrEqual : DepthFunction::Less;
     for (int rank = 1; rank < config_.pass.ranges; ++rank) {
         PicturePart later;
         if (!out_.receivePart || !out_.receivePart(rank, later)) continue; // its share is missing
         if (config_.plant == "range") continue; // a fault on purpose, for tests of the tests
-        if (later.serial == part.serial && later.box == part.box) mergeByDepth(part, later, merged, r.clearedColour, r.clearedDepth);
+        if (later.serial == part.serial && later.box == part.box) mergeByDepth(part, later, function, r.clearedColour, r.clearedDepth);
         else if (!std::exchange(saidExchangeLost_, true)) out_.log("ranges of different frames came together: this picture is incomplete");
     }
     writePart(w, part);

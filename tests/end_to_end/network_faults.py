@@ -171,29 +171,26 @@ def need(good, what):
         raise Wrong(what)
 
 
-def receiver_killed(lab):
-    total = 2 * RATE_BYTES_PER_S
+def others_go_on(lab, seconds, lose):
+    """lose(receiver) takes the second of three away in the middle of a stream; the two others get all of it."""
+    total = seconds * RATE_BYTES_PER_S
     sender, receivers = lab.begin(total)
     time.sleep(0.5)
-    receivers[1].signal(signal.SIGKILL)
+    lose(receivers[1])
     told = whole([receivers[0], receivers[2]], total)
     content(sender, members_lost=1)
     gap = max(longest_gap_s(m) for m in told)
     need(gap <= MOST_GAP_S, "the others stood still for %.2f s" % gap)
     return "longest gap %.2f s" % gap
+
+
+def receiver_killed(lab):
+    return others_go_on(lab, 2, lambda receiver: receiver.signal(signal.SIGKILL))
 
 
 def receiver_cut_off(lab):
     """No word of its end reaches anyone: it is removed for its silence."""
-    total = 4 * RATE_BYTES_PER_S
-    sender, receivers = lab.begin(total)
-    time.sleep(0.5)
-    lab.network.cut("wall2")
-    told = whole([receivers[0], receivers[2]], total)
-    content(sender, members_lost=1)
-    gap = max(longest_gap_s(m) for m in told)
-    need(gap <= MOST_GAP_S, "the others stood still for %.2f s" % gap)
-    return "longest gap %.2f s" % gap
+    return others_go_on(lab, 4, lambda receiver: lab.network.cut("wall2"))
 
 
 def receiver_frozen(lab):
