@@ -43,7 +43,7 @@ enum class NodeMessage : uint32_t {
     Picture = 4,   // PictureHeader + rows, when the picture store is not shared memory
     Log = 5,       // text: one line for the user
     Bye = 6,       // json: totals (commands, GL errors, replay time)
-    WindowGone = 7, // WindowGoneMessage: the program has destroyed it; after its last FrameDone
+    WindowGone = 7, // WindowGoneMessage: the program has destroyed it, or has gone; after its last FrameDone
     Alive = 8,     // nothing: every few seconds, also while the replay is at work
     News = 9,      // News + text: what a node's GL tells of a program's context without being asked
 };
@@ -120,8 +120,9 @@ constexpr uint32_t kNotSplit = 4;
 
 struct WindowGoneMessage {
     uint32_t client;
-    uint32_t window;
+    uint32_t window; // kAllWindows: the program is gone, and the node has freed what was its own
 };
+constexpr uint32_t kAllWindows = 0;
 
 struct PictureHeader {
     uint32_t client;

@@ -224,8 +224,6 @@ void HeadSession::openTables() {
     };
     events.gone = [this](uint32_t client, const std::string& line) {
         news_.programGone(client);
-        frames_.clientGone(client);
-        if (output_) output_->clientGone(client);
         if (!line.empty()) control_.say(line);
     };
     programs_ = std::make_unique<ProgramTable>(std::move(terms), nodes_, std::move(events));
@@ -385,7 +383,7 @@ Result<void> HeadSession::nodePicture(int node, const wire::PictureHeader& heade
     return done;
 }
 
-// Frames of all nodes come before: only then another window is the main one.
+// Frames of all nodes come before: only then another window is the main one, or the program forgotten.
 Result<void> HeadSession::nodeWindowGone(int node, const wire::WindowGoneMessage& message) {
     windowGone({message.client, message.window}, node);
     return {};
@@ -400,8 +398,16 @@ void HeadSession::windowGone(const std::pair<uint32_t, uint32_t>& window, int no
             if (!said[i] && !totals_[i].lost) return;
         gone_.erase(window);
     }
-    frames_.windowGone(window.first, window.second);
-    if (output_) output_->windowGone(window.first, window.second);
+    const auto [client, id] = window;
+    if (id != wire::kAllWindows) {
+        frames_.windowGone(client, id);
+        if (output_) output_->windowGone(client, id);
+        return;
+    }
+    frames_.clientGone(client);
+    if (!sendsPictures_) return;
+    pictures_.clientGone(client);
+    output_->clientGone(client);
 }
 
 Result<void> HeadSession::nodeNews(int node, const wire::News& news, const std::string& text) {

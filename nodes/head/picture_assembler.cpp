@@ -43,61 +43,69 @@ Result<void> PictureAssembler::part(int node, const PictureHeader& header, ByteB
     const std::lock_guard lock(mutex_);
     if (!living_[index]) return {};
     if (open_.size() >= kMostOpenPictures) return Error{"it is thousands of pictures ahead"};
-    const auto at = open_.try_emplace({header.client, header.window, header.frame}).first;
+    const auto at = opened(header.client, header.window, header.frame);
     Open& open = at->second;
-    open.done.resize(living_.size(), false);
     if (open.done[index]) return Error{"it sent two parts of one picture"};
     open.done[index] = true;
     open.parts.push_back({passOf_[index], header, std::move(rows)});
-    if (complete(open)) finish(at);
+    settle(at);
     return {};
 }
 
 void PictureAssembler::frameDone(int node, uint32_t client, uint32_t window, uint32_t frame) {
+    const auto index = static_cast<size_t>(node);
     const std::lock_guard lock(mutex_);
-    const auto at = open_.find({client, window, frame});
-    if (at == open_.end()) {
-        // Without a part of anybody yet there is nothing to complete; but others may still send
-        // theirs, and must not wait for this node.
-        Open open;
-        open.done.resize(living_.size(), false);
-        open.done[static_cast<size_t>(node)] = true;
-        if (!complete(open) && open_.size() < kMostOpenPictures)
-            open_.emplace(Key{client, window, frame}, std::move(open));
-        return;
-    }
-    at->second.done[static_cast<size_t>(node)] = true;
-    if (complete(at->second)) finish(at);
+    if (!living_[index]) return;
+    const auto at = opened(client, window, frame);
+    at->second.done[index] = at->second.finished[index] = true;
+    settle(at);
 }
 
 void PictureAssembler::nodeLost(int node) {
     const std::lock_guard lock(mutex_);
     living_[static_cast<size_t>(node)] = false;
-    for (auto at = open_.begin(); at != open_.end();) // frames of a window in their order
-        at = complete(at->second) ? finish(at) : std::next(at);
+    for (auto at = open_.begin(); at != open_.end();) at = settle(at); // frames of a window in their order
 }
 
-bool PictureAssembler::complete(const Open& open) const {
+void PictureAssembler::clientGone(uint32_t client) {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(open_, [&](const auto& entry) { return std::get<0>(entry.first) == client; });
+    std::erase_if(latest_, [&](const auto& entry) { return std::get<0>(entry.first) == client; });
+}
+
+PictureAssembler::OpenPictures::iterator PictureAssembler::opened(uint32_t client, uint32_t window, uint32_t frame) {
+    const auto at = open_.try_emplace({client, window, frame}).first;
+    at->second.done.resize(living_.size(), false);
+    at->second.finished.resize(living_.size(), false);
+    return at;
+}
+
+// Delivers the picture when no part is awaited, and forgets it when nobody will speak of it again. The next one.
+PictureAssembler::OpenPictures::iterator PictureAssembler::settle(OpenPictures::iterator at) {
+    Open& open = at->second;
+    if (!open.delivered && allLiving(open.done)) {
+        open.delivered = true;
+        deliver(at->first, open);
+        open.parts.clear();
+    }
+    return allLiving(open.finished) ? open_.erase(at) : std::next(at);
+}
+
+bool PictureAssembler::allLiving(const std::vector<bool>& nodes) const {
     for (size_t node = 0; node < living_.size(); ++node)
-        if (living_[node] && !open.done[node]) return false;
+        if (living_[node] && !nodes[node]) return false;
     return true;
 }
 
-PictureAssembler::OpenPictures::iterator PictureAssembler::finish(OpenPictures::iterator at) {
-    const auto& [client, window, frame] = at->first;
-    const bool visible = std::ranges::any_of(
-        at->second.parts, [](const Part& part) { return part.header.windowWidth > 0; });
-    if (visible) {
-        WindowPicture result;
-        result.client = client;
-        result.window = window;
-        result.frame = frame;
-        const PictureHeader& header = at->second.parts.back().header;
-        result.nativeWindow = uint64_t{header.nativeHigh} << 32 | header.nativeLow;
-        result.picture = assemble(client, window, at->second);
-        if (result.picture) deliver_(std::move(result));
-    }
-    return open_.erase(at);
+void PictureAssembler::deliver(const Key& key, const Open& open) {
+    const bool visible = std::ranges::any_of(open.parts, [](const Part& part) { return part.header.windowWidth > 0; });
+    if (!visible) return;
+    WindowPicture result;
+    std::tie(result.client, result.window, result.frame) = key;
+    const PictureHeader& header = open.parts.back().header;
+    result.nativeWindow = uint64_t{header.nativeHigh} << 32 | header.nativeLow;
+    result.picture = assemble(result.client, result.window, open);
+    if (result.picture) deliver_(std::move(result));
 }
 
 // Null when there is no memory for it.

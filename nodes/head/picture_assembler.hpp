@@ -45,6 +45,7 @@ public:
     Result<void> part(int node, const wire::PictureHeader& header, ByteBuffer rows);
     void frameDone(int node, uint32_t client, uint32_t window, uint32_t frame);
     void nodeLost(int node);
+    void clientGone(uint32_t client); // no node sends anything of it any more
 
 private:
     using Key = std::tuple<uint32_t, uint32_t, uint32_t>; // client, window, frame
@@ -55,14 +56,19 @@ private:
         wire::PictureHeader header{};
         ByteBuffer rows;
     };
+    // Kept until all nodes have finished the frame: who sent a part says so after it.
     struct Open {
         std::vector<Part> parts;
-        std::vector<bool> done; // per node
+        std::vector<bool> done;     // per node: no part of it is awaited
+        std::vector<bool> finished; // per node
+        bool delivered = false;
     };
     using OpenPictures = std::map<Key, Open>;
 
-    [[nodiscard]] bool complete(const Open& open) const;
-    OpenPictures::iterator finish(OpenPictures::iterator at);
+    OpenPictures::iterator opened(uint32_t client, uint32_t window, uint32_t frame);
+    OpenPictures::iterator settle(OpenPictures::iterator at);
+    [[nodiscard]] bool allLiving(const std::vector<bool>& nodes) const;
+    void deliver(const Key& key, const Open& open);
     std::shared_ptr<const OwnedPicture> assemble(uint32_t client, uint32_t window, const Open& open);
     std::shared_ptr<const OwnedPicture> assemblePass(const WindowKey& key, const Open& open);
     std::shared_ptr<OwnedPicture> spare();

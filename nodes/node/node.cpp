@@ -97,6 +97,7 @@ private:
             calls_.erase(client);
             if (replay_) replay_->clientGone(client);
             if (windows_) windows_->clientGone(client);
+            sayWindowGone(client, wire::kAllWindows);
             return true;
         }
         case wire::HeadCommand::Exchange: return meet(std::string(reinterpret_cast<const char*>(rest.data()), rest.size()));
@@ -254,6 +255,10 @@ private:
 
     void windowGone(uint32_t client, uint32_t window) {
         if (windows_) windows_->windowGone(client, window);
+        sayWindowGone(client, window);
+    }
+
+    void sayWindowGone(uint32_t client, uint32_t window) {
         const wire::WindowGoneMessage gone{client, window};
         line_->send(wire::NodeMessage::WindowGone, std::as_bytes(std::span(&gone, 1)));
     }

@@ -75,6 +75,7 @@ private:
             const auto bytes = std::as_writable_bytes(std::span(words)).first(header.sizeBytes);
             if (!connection_->read(bytes, Deadline::inMs(kTestPatienceMs))) return;
             words.resize(header.sizeBytes / 4);
+            while (behaviour_.hold != nullptr && *behaviour_.hold && !stop_) std::this_thread::yield(); // since it was asked for
             note(header.stream, words);
             const bool goOn = header.stream == 0 ? command(words, bytes) : records(header.stream, words);
             connection_->flush();
@@ -104,6 +105,8 @@ private:
                                       std::to_string(setup_.node) + R"( fake","extensions":")" + common + "\"}";
             if (!behaviour_.silentStart) sendText(wire::NodeMessage::Ready, ready);
         }
+        if (op(words) == static_cast<uint32_t>(wire::HeadCommand::ClientGone))
+            sendStruct(wire::NodeMessage::WindowGone, wire::WindowGoneMessage{words.at(1), wire::kAllWindows}, {});
         if (op(words) == static_cast<uint32_t>(wire::HeadCommand::Finish) && !behaviour_.noBye) {
             sendText(wire::NodeMessage::Bye, R"({"commands":42,"cpuSeconds":0.5})");
             saidBye_ = true;

@@ -72,6 +72,30 @@ TEST_F(PictureAssemblerTest, aFinishedFrameNeedsNoPart) {
     EXPECT_EQ(pictures.size(), 2u);
 }
 
+// By turns: one has a part, the other none; who had one finishes the frame behind it.
+TEST_F(PictureAssemblerTest, anyNumberOfFramesInTurns) {
+    constexpr uint32_t kFrames = 20'000;
+    for (uint32_t frame = 1; frame <= kFrames; ++frame) {
+        const int drawer = static_cast<int>(frame % 2);
+        assembler.frameDone(1 - drawer, 1, 1, frame);
+        ASSERT_TRUE(part(drawer, frame, frame)) << frame;
+        ASSERT_EQ(pictures.size(), 1u);
+        pictures.clear();
+        assembler.frameDone(drawer, 1, 1, frame);
+    }
+}
+
+TEST_F(PictureAssemblerTest, nothingIsKeptOfAProgramThatHasGone) {
+    part(0, 1, 10);
+    part(1, 1, 11);
+    part(0, 2, 20);
+    assembler.clientGone(1);
+    assembler.nodeLost(1);
+    EXPECT_EQ(pictures.size(), 1u);
+    part(0, 3, 30);
+    EXPECT_EQ(pixels(1), (Pixels{30, 30, 0, 0}));
+}
+
 TEST_F(PictureAssemblerTest, windowsAreApart) {
     part(0, 1, 10, 1);
     part(1, 2, 21, 2);

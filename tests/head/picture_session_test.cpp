@@ -125,6 +125,33 @@ TEST(PictureSession, whenTheMainWindowIsDestroyedTheNextLargestIsTheWall) {
     EXPECT_EQ(report["frames"], 9);
 }
 
+// Nodes may be frames behind when a program ends: what still comes is of the window that was the main one.
+TEST(PictureSession, aProgramIsForgottenAfterItsLastPicture) {
+    Shown shown;
+    SessionHarness head(2);
+    addSinks(head, shown);
+    std::atomic<bool> hold{false};
+    head.behaviours[1].hold = &hold;
+    head.start();
+    head.waitFor("ready");
+    {
+        FakeProgram program;
+        ASSERT_TRUE(program.connect(head.config.session));
+        ASSERT_TRUE(swapFrame(program, 1, 7, 64));
+        ASSERT_TRUE(swapFrame(program, 2, 8, 64));
+        ASSERT_TRUE(program.waitFramesDone(2));
+        hold = true;
+        ASSERT_TRUE(swapFrame(program, 3, 8, 64));
+        program.disconnect();
+    }
+    while (head.waitFor("clients")["count"] != 0) {
+    }
+    hold = false;
+    const auto report = head.finish();
+    EXPECT_EQ(shown.frames["file"], (std::vector<int64_t>{1})) << "the other window's are none of the wall's";
+    EXPECT_EQ(report["frames"], 1);
+}
+
 // The node that is lost would be waited for for ever.
 TEST(PictureSession, aLostNodeNeedNotSayThatAWindowIsGone) {
     Shown shown;
