@@ -136,7 +136,8 @@ void setFrusta(const Screen& given, const Eyes& eyes, const Inherited& i, const 
 
     const OffAxis edges = edgesFrom(screen, eye, input.nearPlane / std::abs(eye.z));
     context.behindScreen = edges.mirrored;
-    context.perspective = partOf({edges.left, edges.right, edges.bottom, edges.top, input.nearPlane, input.farPlane}, shown);
+    context.destinationPerspective = {edges.left, edges.right, edges.bottom, edges.top, input.nearPlane, input.farPlane};
+    context.perspective = partOf(context.destinationPerspective, shown);
     const OffAxis flat = edgesFrom(screen, cyclop, 1);
     context.orthographic = partOf({flat.left, flat.right, flat.bottom, flat.top, input.nearPlane, input.farPlane}, shown);
 

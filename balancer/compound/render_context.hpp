@@ -52,6 +52,7 @@ struct RenderContext {
     StereoMode stereoMode = StereoMode::Passive;
 
     Frustum perspective;
+    Frustum destinationPerspective; // of all the destination's pixels
     Matrix4 perspectiveHead; // from the room to the eye, looking at the screen
     Frustum orthographic;
     Matrix4 orthographicHead;

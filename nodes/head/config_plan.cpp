@@ -8,8 +8,8 @@
 #include <tuple>
 
 #include "balancer/compound/even_split.hpp"
+#include "balancer/compound/frusta.hpp"
 #include "balancer/compound/plan_frame.hpp"
-#include "balancer/config/screen.hpp"
 
 namespace mural {
 
@@ -45,10 +45,10 @@ public:
         if (auto chosen = chooseCanvas(); !chosen) return chosen.error();
         if (draws_.empty()) return Error{file_ + ": nothing of it draws: it has no canvas with segments, or no compound with channels; mural config print --resolved shows what it has"};
         if (auto done = placeParts(); !done) return done.error();
+        lookIntoRoom();
         placeNodes();
         takeObserver();
         tell();
-        warnOfAngles();
         return std::move(plan_);
     }
 
@@ -71,6 +71,8 @@ private:
     Result<void> chooseLayouts() {
         input_ = compound::firstFrame(config_);
         input_.activeLayouts.resize(config_.canvases.size(), 0);
+        input_.views.resize(config_.views.size());
+        for (compound::ViewState& view : input_.views) view.modelUnit = wishes_.modelUnit;
         for (const std::string& wanted : wishes_.layouts) {
             bool found = false;
             for (size_t c = 0; c < config_.canvases.size(); ++c) {
@@ -235,6 +237,7 @@ private:
                 node.pass.ranges = static_cast<int>(draws.size());
                 node.picture = pictures_[i];
                 node.area = draws_[i].area;
+                node.screen = screenOf(c);
                 node.collector = collector;
                 node.answers = node.pass.range == 0 && c.eye != Eye::Right && c.pixel.x == 0 && c.pixel.y == 0 && c.subPixel.index == 0;
                 placeOnHost(node, c);
@@ -265,19 +268,30 @@ private:
         }
     }
 
-    // A program that knows nothing of the room draws one flat picture.
-    void warnOfAngles() {
-        std::optional<Vector3> first;
-        std::set<Index> segments;
-        for (const Draw& d : draws_) segments.insert(config_.channels[at(d.context.destination)].segment);
-        for (const Index s : segments) {
-            if (s == kNone) continue;
-            const config::Screen screen = config::screenOf(config_.segments[at(s)].surface);
-            if (!first) first = screen.normal;
-            if (dot(*first, screen.normal) > 1 - 1e-6) continue;
-            plan_.warnings.push_back(file_ + ": its screens stand at angles to each other; a program's picture is laid over them as over a flat wall");
-            return;
-        }
+    // Screens that look another way than the first one.
+    [[nodiscard]] bool standAtAngles() const {
+        const auto normal = [](const RenderContext& c) { return transformDirection(rigidInverse(c.perspectiveHead), {0, 0, 1}); };
+        return std::any_of(draws_.begin(), draws_.end(), [&](const Draw& d) { return dot(normal(d.context), normal(draws_.front().context)) < 1 - 1e-6; });
+    }
+
+    void lookIntoRoom() {
+        const bool atAngles = standAtAngles();
+        inRoom_ = wishes_.frusta == Frusta::Room || (wishes_.frusta == Frusta::Auto && atAngles);
+        if (inRoom_) plan_.explain.push_back(std::string(atAngles ? "its screens stand at angles to each other: " : "") + "each screen shows the scene from the observer's eyes (--frusta program: all of them one flat picture)");
+        else if (atAngles) plan_.explain.push_back("its screens stand at angles to each other; the program's picture is laid over them as over a flat wall (--frusta program)");
+        if (!inRoom_) return;
+        std::set<Index> behind;
+        for (const Draw& d : draws_)
+            if (d.context.behindScreen && behind.insert(d.context.destination).second)
+                plan_.warnings.push_back(file_ + ": the observer's eyes are behind the screen of channel \"" + nameOf(config_.channels[at(d.context.destination)], d.context.destination) + "\"; it shows its part of the program's own picture");
+    }
+
+    [[nodiscard]] std::optional<ScreenView> screenOf(const RenderContext& c) const {
+        if (!inRoom_ || c.behindScreen) return {};
+        const Frustum& f = c.destinationPerspective;
+        const double n = f.nearPlane;
+        const Viewport area = compose(config_.views[at(c.view)].viewport, compound::coverage(config_, config_.channels[at(c.destination)]));
+        return ScreenView{area, f.left / n, f.right / n, f.bottom / n, f.top / n, c.perspectiveHead};
     }
 
     void tell() {
@@ -300,6 +314,7 @@ private:
     std::vector<Index> channels_; // of each node
     Index canvas_ = kNone;
     bool anaglyph_ = false;
+    bool inRoom_ = false;
     SessionPlan plan_;
 };
 

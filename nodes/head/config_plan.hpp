@@ -1,8 +1,8 @@
 // Which nodes a session has that a configuration file describes, what each draws, and how the wall's picture is put
 // together. Pure.
 //
-// The program's picture is the canvas' surface: each draw of the compound tree becomes a render node that draws its
-// part of it, its eye, pixels, samples, turns and ranges. What frames and readback move between channels of the file,
+// The program's picture is the canvas' surface, or, where its screens stand in a room, the scene that each of them shows:
+// each draw of the compound tree becomes a render node that draws its part of it, its eye, pixels, samples, turns and ranges. What frames and readback move between channels of the file,
 // the session moves as it does without one: ranges from node to node, everything else to the head.
 #pragma once
 
@@ -16,6 +16,8 @@ struct ConfigWishes {
     bool here = false;                // all nodes on this machine
     std::string canvas;               // name of the one to show; empty: the first that shows anything
     std::vector<std::string> layouts; // names of those to show; canvases without any show their first
+    Frusta frusta = Frusta::Auto;
+    double modelUnit = 1;             // of the program, to the metre of the file
 };
 
 // Errors: there is nothing to draw, or a mix of decompositions that can't be put together yet; one line.

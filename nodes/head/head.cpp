@@ -85,7 +85,7 @@ Result<SessionPlan> makePlan(const SessionConfig& config, const std::string& hos
     if (config.configFile.empty()) return planSession(config, host);
     const auto loaded = compound::loadConfig(config.configFile, compound::processEnvironment);
     if (!loaded.ok()) return Error{loaded.diagnostics.firstError()};
-    return planOf(loaded, {host, config.here, config.canvas, config.layouts});
+    return planOf(loaded, {host, config.here, config.canvas, config.layouts, config.frusta, config.modelUnit});
 }
 
 Result<int> runSession(ControlChannel& control) {

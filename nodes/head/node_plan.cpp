@@ -92,6 +92,7 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
     setup.hasArea = node.area.has_value();
     setup.area = node.area.value_or(Viewport{});
     setup.pass = node.pass;
+    setup.screen = node.screen;
     setup.collector = node.collector;
     setup.answers = node.answers;
     setup.exchangeHere = std::none_of(plan.nodes.begin(), plan.nodes.end(), [&](const NodePlan& other) { return other.collector == node.collector && other.reach == NodeReach::LaunchCommand; });

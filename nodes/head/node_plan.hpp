@@ -26,6 +26,7 @@ struct NodePlan {
     bool answers = true; // what programs read of windows
     TileRegion region;
     std::optional<Viewport> area; // instead of tiles: of the picture
+    std::optional<ScreenView> screen; // of a room
     int collector = 0; // the node that puts the ranges of this picture together: this one, when range is 0
 };
 

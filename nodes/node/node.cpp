@@ -144,6 +144,7 @@ private:
         if (setup_.hasArea) config.area = setup_.area;
         config.pass = setup_.pass;
         config.answers = setup_.answers;
+        config.screen = setup_.screen;
         config.eyeBase = setup_.eyeBase;
         config.focusDistance = setup_.focusDistance;
         if (const char* plant = std::getenv("MURAL_PLANT")) config.plant = plant;

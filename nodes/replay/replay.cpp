@@ -100,14 +100,14 @@ bool Replay::execute(uint16_t opcode, std::span<const std::byte> arguments, Blob
     if (!config_.plant.empty() && planted(opcode)) return true;
     noteBitmaps(opcode);
     if (takesTurns()) noteTurn(opcode, arguments);
-    if (seesWithOtherEye() || config_.pass.samples > 1) noteEye(opcode, arguments);
+    if (movesView() || config_.pass.samples > 1) noteEye(opcode, arguments);
     if (hasKernel()) noteKernel(opcode);
     const bool leftOut = takesTurns() && leavesOut(opcode);
     if (leftOut) exchangeDraws();
     if (takesRanges()) in = Args(noteRange(opcode, arguments), blobs); // a piece of it, or nothing
     const bool done = allocates(opcode) ? executeAllocating(function, in) : function(*this, in);
     if (leftOut) exchangeDraws();
-    if (seesWithOtherEye()) noteEyeAfter(opcode);
+    if (movesView()) noteEyeAfter(opcode);
     return done;
 }
 

@@ -29,8 +29,10 @@
 #include "nodes/replay/name_table.hpp"
 #include "nodes/replay/program_recipes.hpp"
 #include "nodes/replay/replay_dispatch.hpp"
+#include "nodes/replay/seen_projection.hpp"
 #include "nodes/replay/tiled_programs.hpp"
 #include "nodes/replay/tiling.hpp"
+#include "nodes/replay/view_move.hpp"
 #include "nodes/session/render_pass.hpp"
 #include "streamcodec/client_arrays.hpp"
 #include "streamcodec/sizes/pixel_format.hpp"
@@ -54,6 +56,7 @@ struct ReplayConfig {
     RenderPass pass;
     bool answers = true;   // questions about pictures; false: nodes of another pass do
     double eyeBase = 0.05, focusDistance = 1; // in the program's units
+    std::optional<ScreenView> screen;         // then the eye is in it
     bool cull = false;     // whole primitives outside of the region are dropped by rewritten shaders
     bool lean = false;     // framebuffers of the tile's size; false: of the picture's size (exact)
     std::string plant;     // MURAL_PLANT: a fault on purpose, for tests of the tests
@@ -210,10 +213,10 @@ private:
         bool allDrawn = false; // by every node: the program's side has asked for it, or a module reads gl_FragCoord
         TiledPrograms tiled;
         ProgramRecipes recipes;
-        std::unordered_map<GLuint, double> fieldScales; // by the program's name: x of its projection (replay_eyes.cpp)
+        std::unordered_map<GLuint, SeenProjection> projections; // by the program's name (replay_eyes.cpp)
         std::unordered_map<GLuint, bool> primitiveIds;  // our programs that number primitives: not cut into pieces
         std::unordered_map<GLuint, bool> memoryWriters; // by the program's name, once it was used (replay_left_out.cpp)
-        double fieldScale = 0;                          // of the last projection in any buffer; 0: none was seen
+        SeenProjection projection;                      // the last one in any buffer
     };
     struct Scissor {
         bool enabled = false;
@@ -341,7 +344,7 @@ private:
         int activeQueries = 0;
         bool inPrimitive = false;
         bool projectionKnown = false; // as it is, for shaders that may read it
-        double fixedScale = 0;        // of its x; 0: no perspective
+        SeenProjection fixedProjection;
         std::array<GLfloat, 16> ownProjection{}, shiftedProjection{};
     };
     struct Stream {
@@ -478,11 +481,11 @@ private:
     const std::byte* readEveryNth(Window& w, const PixelViewport& r, bool front);
     const std::byte* readRepeated(const PixelViewport& part, GLenum format, GLenum type, size_t group);
     [[nodiscard]] bool movesByShaders() const;
-    [[nodiscard]] bool seesWithOtherEye() const { return config_.pass.eye != Eye::Cyclop; }
+    [[nodiscard]] bool movesView() const { return config_.pass.eye != Eye::Cyclop || config_.screen; }
     [[nodiscard]] double eyeOffset() const { return (config_.pass.eye == Eye::Left ? -0.5 : 0.5) * config_.eyeBase; }
     [[nodiscard]] RenderPass passOfDraws() const;
     void applyMovedViewports();
-    std::array<GLfloat, 8> moveOf(GLuint program) const;
+    std::array<GLfloat, 20> moveOf(GLuint program) const;
     // replay_scenes.cpp
     [[nodiscard]] bool isSeen() const;
     [[nodiscard]] bool drawsScene() const;
@@ -497,6 +500,8 @@ private:
     void noteEyeAfter(uint16_t opcode);
     void noteProjections(std::span<const std::byte> bytes);
     void noteFixedProjection();
+    [[nodiscard]] SeenProjection projectionOf(GLuint program) const;
+    [[nodiscard]] ViewMove viewMove(const SeenProjection& seen) const;
     void noteMatrices(GLuint program, const Data& values, GLsizei count, bool transposed, bool doubles);
     [[nodiscard]] bool hasFixedMatrices() const;
     [[nodiscard]] bool drawsFixed() const;

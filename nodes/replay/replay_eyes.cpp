@@ -1,19 +1,15 @@
-// The picture of another eye than the program's: a shift of positions by their depth, off-axis as two eyes see one
-// screen. With eye distance e from the centre and distance of focus f, in eye coordinates x - e before the projection,
-// and the frustum sheared so that what lies at f stays where it is: x_clip + K (w / f - 1), K = e times the
-// projection's scale of x. No other coordinate changes, so depth tests decide as they did.
+// The picture of another eye than the program's, or on a screen that stands elsewhere in the room: positions are moved in
+// clip coordinates (view_move.hpp).
 //
-// Shaders get K by a uniform (nodes/shaders/moved_position), its scale from the matrices that the program hands to
-// them: of any matrix that ends in a perspective one, the first row's length beside the fourth over the fourth's. Shaders
-// that get none are taken to use the fixed function's. Fixed function gets a projection of its own while it draws.
+// Shaders get that by uniforms (nodes/shaders/moved_position); how the program looks at its scene is told by the matrices
+// that it hands to them (seen_projection.hpp). Shaders that get none are taken to use the fixed function's. Fixed function
+// gets a projection of its own while it draws.
 // Source: thesis, "Stereo Rendering"; design 4.
-#include <cmath>
-#include <cstring>
+#include <algorithm>
 #include <string_view>
 #include <utility>
 
 #include "gl_opcodes.hpp"
-#include "nodes/replay/field_scale.hpp"
 #include "nodes/replay/replay.hpp"
 #include "streamcodec/opcode_names.hpp"
 
@@ -32,6 +28,7 @@ EyeUse classify(std::string_view name) {
     if (starts("glBufferData") || starts("glBufferSubData") || starts("glNamedBuffer") || starts("glBufferStorage")) return EyeUse::Buffer;
     for (const std::string_view stem : {"glRotate", "glTranslate", "glScale", "glFrustum", "glOrtho", "glLoadIdentity", "glLoadTranspose", "glMultTranspose", "glLoadMatrix", "glMultMatrix", "glPushMatrix", "glPopMatrix", "glMatrix"})
         if (starts(stem) && name != "glMatrixMode") return EyeUse::Matrix;
+    if (starts("glViewport")) return EyeUse::Matrix;
     if (starts("glCallList")) return EyeUse::List;
     if (starts("glDrawBuffer")) return EyeUse::None;
     for (const std::string_view stem : {"glDraw", "glMultiDraw", "glMultiMode", "glRect", "glEvalMesh", "glRasterPos"})
@@ -61,19 +58,37 @@ class NoBlobs : public BlobQueue {
 bool Replay::hasFixedMatrices() const { return c_->api != wire::Api::Es2 && !c_->core && gl.glLoadMatrixf && gl.glMatrixMode; }
 bool Replay::drawsFixed() const { return c_->program == 0 && !c_->pipelineBound && hasFixedMatrices(); }
 
+// What a program's shaders look at the scene with.
+SeenProjection Replay::projectionOf(GLuint program) const {
+    const auto own = c_->shared->projections.find(program);
+    if (own != c_->shared->projections.end()) return own->second;
+    if (c_->fixedProjection.perspective()) return c_->fixedProjection;
+    if (c_->shared->projection.perspective()) return c_->shared->projection;
+    // Without any matrix to go by: a field of view of 60 degrees from bottom to top.
+    const auto& v = c_->viewports[0];
+    constexpr double kScale = 1.7320508;
+    return {kScale * static_cast<double>(std::max(1.0F, v[3]) / std::max(1.0F, v[2])), kScale, 0, 0, 1, 1};
+}
+
+// Screens of a room show what goes to the whole picture; a part of it that has a viewport of its own stays where it is.
+ViewMove Replay::viewMove(const SeenProjection& seen) const {
+    if (!config_.screen) return eyeMove(seen, eyeOffset(), config_.focusDistance);
+    const auto& v = c_->viewports[0];
+    const PixelViewport& whole = c_->draw->whole;
+    const bool all = v[0] == 0 && v[1] == 0 && v[2] == static_cast<GLfloat>(whole.w) && v[3] == static_cast<GLfloat>(whole.h);
+    return all ? screenMove(seen, *config_.screen) : ViewMove{};
+}
+
 void Replay::shiftProjection() {
     if (c_->projectionShifted) return;
     std::array<GLfloat, 16>& p = c_->ownProjection;
     gl.glGetFloatv(GL_PROJECTION_MATRIX, p.data());
     double m[16];
     for (size_t i = 0; i < 16; ++i) m[i] = static_cast<double>(p[i]);
-    const double scale = fieldScaleOf(m);
-    if (scale == 0) return; // no perspective: both eyes see the same
-    const double w = std::sqrt(m[3] * m[3] + m[7] * m[7] + m[11] * m[11]);
-    const double k = scale * w * eyeOffset();
-    c_->shiftedProjection = p;
-    for (size_t column = 0; column < 4; ++column)
-        c_->shiftedProjection[4 * column] = static_cast<GLfloat>(m[4 * column] + k / (w * config_.focusDistance) * m[4 * column + 3] - (column == 3 ? k : 0));
+    const SeenProjection seen = seenProjection(m);
+    if (!seen.perspective()) return; // from everywhere the same
+    viewMove(seen).apply(m, seen.unit);
+    for (size_t i = 0; i < 16; ++i) c_->shiftedProjection[i] = static_cast<GLfloat>(m[i]);
     GLint mode = 0;
     gl.glGetIntegerv(GL_MATRIX_MODE, &mode);
     gl.glMatrixMode(GL_PROJECTION);
@@ -98,8 +113,10 @@ void Replay::noteFixedProjection() {
     c_->projectionKnown = true;
     GLfloat p[16];
     gl.glGetFloatv(GL_PROJECTION_MATRIX, p);
-    const double scale = fieldScaleOf(p);
-    if (std::exchange(c_->fixedScale, scale) != scale) applyTileValues();
+    const SeenProjection seen = seenProjection(p);
+    if (c_->fixedProjection.near(seen)) return;
+    c_->fixedProjection = seen;
+    applyTileValues();
 }
 
 void Replay::noteMatrices(GLuint program, const Data& values, GLsizei count, bool transposed, bool doubles) {
@@ -107,12 +124,12 @@ void Replay::noteMatrices(GLuint program, const Data& values, GLsizei count, boo
     if (!c_->shared || values.absent() || values.isOffset()) return;
     for (GLsizei i = 0; i < count && values.size() >= bytes * (static_cast<size_t>(i) + 1); ++i) {
         const std::byte* at = values.as<std::byte>() + bytes * static_cast<size_t>(i);
-        const double scale = fieldScaleAt(at, doubles, transposed);
-        if (scale == 0) continue;
-        double& known = c_->shared->fieldScales[program];
-        const bool changed = std::fabs(known - scale) > 1e-4 * scale;
-        known = scale;
-        if (changed && program == c_->program) applyTileValues();
+        const SeenProjection seen = seenProjectionAt(at, doubles, transposed);
+        if (!seen.perspective()) continue;
+        SeenProjection& known = c_->shared->projections[program];
+        if (known.near(seen)) continue;
+        known = seen;
+        if (program == c_->program) applyTileValues();
     }
 }
 
@@ -120,11 +137,11 @@ void Replay::noteMatrices(GLuint program, const Data& values, GLsizei count, boo
 void Replay::noteProjections(std::span<const std::byte> bytes) {
     constexpr size_t kMostBytes = 4096;
     if (!c_->shared || bytes.size() > kMostBytes) return;
-    const double scale = lastProjectionIn(bytes);
-    if (scale == 0) return;
-    const bool changed = std::fabs(c_->shared->fieldScale - scale) > 1e-4 * scale;
-    c_->shared->fieldScale = scale;
-    if (changed) applyTileValues();
+    const SeenProjection seen = lastProjectionIn(bytes);
+    if (!seen.perspective()) return;
+    if (c_->shared->projection.near(seen)) return;
+    c_->shared->projection = seen;
+    applyTileValues();
 }
 
 void Replay::noteEye(uint16_t opcode, std::span<const std::byte> arguments) {
@@ -132,7 +149,7 @@ void Replay::noteEye(uint16_t opcode, std::span<const std::byte> arguments) {
     if (use == EyeUse::None || !bound_ || c_->compiling) return;
     if (use == EyeUse::Framebuffer) c_->attachmentsKnown = false;
     if (use == EyeUse::Draw || use == EyeUse::List) noteScene();
-    if (!seesWithOtherEye()) return;
+    if (!movesView()) return;
     if (use == EyeUse::Matrix) {
         c_->projectionKnown = false;
         return unshiftProjection();

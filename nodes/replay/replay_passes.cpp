@@ -78,19 +78,16 @@ void Replay::applyMovedViewports() {
 }
 
 // Values for shaders::kMoveUniform.
-std::array<GLfloat, 8> Replay::moveOf(GLuint program) const {
-    std::array<GLfloat, 8> move{};
-    const auto& v = c_->viewports[0];
-    if (movesPicture() && movesByShaders()) std::ranges::copy(moveInViewport(passOfDraws(), v), move.begin());
-    if (seesWithOtherEye()) {
-        // Without any matrix to go by: a field of view of 60 degrees from bottom to top.
-        double scale = c_->fixedScale > 0 ? c_->fixedScale : c_->shared->fieldScale;
-        const auto own = c_->shared->fieldScales.find(program);
-        if (own != c_->shared->fieldScales.end()) scale = own->second;
-        if (scale <= 0) scale = 1.7320508 * std::max(1.0f, v[3]) / std::max(1.0f, v[2]);
-        move[4] = static_cast<GLfloat>(scale * eyeOffset());
-        move[5] = static_cast<GLfloat>(1 / config_.focusDistance);
-    }
+std::array<GLfloat, 20> Replay::moveOf(GLuint program) const {
+    std::array<GLfloat, 20> move{};
+    if (movesPicture() && movesByShaders()) std::ranges::copy(moveInViewport(passOfDraws(), c_->viewports[0]), move.begin());
+    if (!movesView()) return move;
+    const ViewMove view = viewMove(projectionOf(program));
+    const auto put = [&](size_t at, const std::array<double, 4>& row) { std::ranges::transform(row, move.begin() + static_cast<long>(at), [](double v) { return static_cast<GLfloat>(v); }); };
+    put(4, view.x);
+    put(8, view.y);
+    put(12, view.w);
+    move[16] = static_cast<GLfloat>(view.z);
     return move;
 }
 

@@ -14,7 +14,7 @@
 namespace mural {
 
 ShaderRewrites Replay::rewrites() const {
-    const bool moved = seesWithOtherEye() || (movesPicture() && movesByShaders());
+    const bool moved = movesView() || (movesPicture() && movesByShaders());
     return {config_.cull && !alone() && !moved, config_.lean && !alone(), moved};
 }
 

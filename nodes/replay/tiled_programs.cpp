@@ -162,7 +162,7 @@ void TiledPrograms::apply(const GlFunctions& gl, GLuint program, const TileValue
     Program& p = it->second;
     if (p.cull >= 0 && p.sent.cull != values.cull) gl.glUniform4fv(p.cull, 2, values.cull.data());
     if (p.offset >= 0 && p.sent.offset != values.offset) gl.glUniform4fv(p.offset, 1, values.offset.data());
-    if (p.move >= 0 && p.sent.move != values.move) gl.glUniform4fv(p.move, 2, values.move.data());
+    if (p.move >= 0 && p.sent.move != values.move) gl.glUniform4fv(p.move, static_cast<GLsizei>(values.move.size() / 4), values.move.data());
     p.sent = values;
 }
 

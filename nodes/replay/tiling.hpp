@@ -21,7 +21,7 @@ struct ShaderRewrites {
 struct TileValues {
     std::array<GLfloat, 8> cull{};   // shaders::kCullUniform
     std::array<GLfloat, 4> offset{}; // shaders::kOffsetUniform
-    std::array<GLfloat, 8> move{};   // shaders::kMoveUniform
+    std::array<GLfloat, 20> move{};   // shaders::kMoveUniform
 };
 
 // Where drawing goes: all rectangles in the window's coordinates.

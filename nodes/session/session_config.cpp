@@ -26,6 +26,9 @@ template <> struct EnumNames<CapturePolicy> {
     static constexpr std::pair<CapturePolicy, const char*> kAll[] = {
         {CapturePolicy::State, "state"}, {CapturePolicy::Full, "full"}};
 };
+template <> struct EnumNames<Frusta> {
+    static constexpr std::pair<Frusta, const char*> kAll[] = {{Frusta::Auto, "auto"}, {Frusta::Program, "program"}, {Frusta::Room, "room"}};
+};
 template <> struct EnumNames<Eye> {
     static constexpr std::pair<Eye, const char*> kAll[] = {{Eye::Cyclop, "cyclop"}, {Eye::Left, "left"}, {Eye::Right, "right"}};
 };
@@ -50,6 +53,8 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("here", c.here);
     visit("canvas", c.canvas);
     visit("layouts", c.layouts);
+    visit("frusta", c.frusta);
+    visit("modelUnit", c.modelUnit);
     visit("stereo", c.passes.stereo);
     visit("kernelWidth", c.passes.kernelWidth, 1);
     visit("kernelHeight", c.passes.kernelHeight, 1);
@@ -93,6 +98,7 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("areaY", s.area.y);
     visit("areaWidth", s.area.w);
     visit("areaHeight", s.area.h);
+    visit("screen", s.screen);
     visit("shareStart", s.pass.share.start);
     visit("shareEnd", s.pass.share.end);
     visit("eye", s.pass.eye);
@@ -124,6 +130,16 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("exchangeSecret", s.exchangeSecret);
     visit("exchangeHere", s.exchangeHere);
     visit("build", s.build);
+}
+
+// Area, edges, and the upper three rows of the matrix: nothing when there is none.
+Json valueToJson(const std::optional<ScreenView>& screen) {
+    Json numbers = Json::array();
+    if (!screen) return numbers;
+    for (const double n : {screen->area.x, screen->area.y, screen->area.w, screen->area.h, screen->left, screen->right, screen->bottom, screen->top}) numbers.push_back(n);
+    for (size_t row = 0; row < 3; ++row)
+        for (const double n : screen->fromProgram.m[row]) numbers.push_back(n);
+    return numbers;
 }
 
 template <class T> Json valueToJson(const T& value) {
@@ -193,6 +209,19 @@ template <class T> std::string readValue(const Json& j, std::vector<T>& into, in
         if (!wanted.empty()) return "a list, each entry " + wanted;
         into.push_back(std::move(value));
     }
+    return {};
+}
+
+std::string readValue(const Json& j, std::optional<ScreenView>& into, int64_t least) {
+    std::vector<double> n;
+    const std::string wanted = readValue(j, n, least);
+    if (!wanted.empty()) return wanted;
+    if (n.empty()) return {};
+    if (n.size() != 20) return "a list of 20 numbers";
+    ScreenView& s = into.emplace();
+    s.area = {n[0], n[1], n[2], n[3]};
+    s.left = n[4], s.right = n[5], s.bottom = n[6], s.top = n[7];
+    for (size_t i = 0; i < 12; ++i) s.fromProgram.m[i / 4][i % 4] = n[8 + i];
     return {};
 }
 

@@ -3,18 +3,26 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/result.hpp"
 #include "common/viewport.hpp"
 #include "nodes/session/render_pass.hpp"
+#include "nodes/session/screen_view.hpp"
 
 namespace mural {
 
 enum class Tiling { Exact, Culled, Lean };
 enum class Display { None, App, Windows };
 enum class CapturePolicy { State, Full };
+// Where walls are looked at from, with a configuration file.
+enum class Frusta {
+    Auto,    // from the room where screens stand at angles, else as the program does
+    Program, // all screens as one flat picture, the program's
+    Room     // each screen from the observer's eyes
+};
 
 struct SessionConfig {
     std::string session;          // abstract Unix socket name that programs connect to
@@ -29,6 +37,8 @@ struct SessionConfig {
     bool here = false;            // --here: all its nodes on this machine
     std::string canvas;           // --canvas
     std::vector<std::string> layouts; // --layout: of its canvases
+    Frusta frusta = Frusta::Auto; // --frusta
+    double modelUnit = 1;         // --model-unit: of the program, to the metre of the file
     PassCounts passes;            // --stereo, --pixel, --subpixel, --dplex, --db
     double eyeBase = 0.05;        // --eye-base: distance of the eyes, in the program's units
     double focusDistance = 1;     // --focus: where both eyes see the same, in the program's units
@@ -66,6 +76,7 @@ struct NodeSetup {
     bool hasArea = false;         // its part is not one of tiles, but
     Viewport area;                // this one of the picture
     RenderPass pass;
+    std::optional<ScreenView> screen; // of a room; else the part is one of a flat wall, seen as the program sees it
     bool answers = true; // what programs read of windows is this pass's
     double eyeBase = 0.05, focusDistance = 1; // see SessionConfig
     Tiling tiling = Tiling::Exact;

@@ -1,4 +1,4 @@
-// Positions as another eye sees them, or for another place in the viewport: the last stage before the rasteriser
+// Positions as another eye or a screen that stands elsewhere sees them, or for another place in the viewport: the last stage before the rasteriser
 // moves gl_Position.
 #pragma once
 
@@ -10,10 +10,11 @@
 
 namespace mural::shaders {
 
-// Two vec4 in the patched program, zeros: nothing moves.
+// Five vec4 in the patched program, zeros: nothing moves.
 //   [0] = scale - 1 in x, y and offset in x, y of normalised device coordinates
-//   [1] = shift of the eye as x of clip coordinates; 1 / distance of focus in units of w; 0; 0
-// Positions with w = 1 are not seen in perspective: no eye shifts them.
+//   [1], [2], [3] = what is added to x, y and w of clip coordinates: so much of x, y, w and 1
+//   [4].x = so much of what is added to w is added to z
+// Positions with w = 1 are not seen in perspective: no eye moves them.
 inline constexpr const char* kMoveUniform = "muralMove";
 
 // As withVertexCode. Transform feedback that is declared in the text keeps its positions: then nothing comes back.

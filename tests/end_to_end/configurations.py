@@ -5,7 +5,7 @@
 
 Without --files: all of configs/; with --shared also the example files beside the tree (or in MURAL_SHARED), when they are
 there. A file without stereo shows, over every part of the wall that it draws, exactly the native picture: 0 pixels differ.
-Of one with stereo the picture is put together from the runs of each eye alone, and compared with that.
+Screens at angles are laid flat for that (passes.py looks into rooms). Of one with stereo the picture is put together from the runs of each eye alone, and compared with that.
 """
 
 import argparse
@@ -120,7 +120,7 @@ def side_by_side(left, right):
 
 def check(run, path, native):
     """None, or what is wrong; and a line about what was seen."""
-    shown, said = run.picture(["--config", path, "--here"])
+    shown, said = run.picture(["--config", path, "--here", "--frusta", "program"])
     nodes = re.findall(r"node \d+ \(local\) draws for channel .*?part \[ (\S+) (\S+) (\S+) (\S+) \]", said)
     areas = [tuple(float(v) for v in node) for node in nodes]
     if not areas:
@@ -135,8 +135,8 @@ def check(run, path, native):
             return "samples change nothing", ""
     eyes = [word for word in ("left eye", "right eye") if word in said]
     if eyes:
-        flat = run.picture(["--config", path, "--here", "--eye-base", "0"])[0]
-        apart = run.picture(["--config", path, "--here", "--eye-base", "0.5"])[0]
+        flat = run.picture(["--config", path, "--here", "--frusta", "program", "--eye-base", "0"])[0]
+        apart = run.picture(["--config", path, "--here", "--frusta", "program", "--eye-base", "0.5"])[0]
         if apart[2] == flat[2]:
             return "the eyes see the same, however far apart", ""
         # Without a distance between them both eyes see what one sees.

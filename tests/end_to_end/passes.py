@@ -5,6 +5,7 @@ does are the reference; the pictures of passes are put together once more, by th
   passes.py --build build/release [--cases stereo,subpixel] [--list]
 """
 
+import math
 import os
 import shutil
 import struct
@@ -260,6 +261,90 @@ def stereo_pictures_are_put_together(context, notes):
     both = [anaglyph(a, b) for a, b in zip(left, right)]
     return first_wrong({"anaglyph": differing(both, show("anaglyph")), "with dplex": differing(both, turned),
                         "side by side": differing([side_by_side(a, b) for a, b in zip(left, right)], show("side-by-side"))})
+
+
+# ---- screens of a room
+
+ROOM = """#Equalizer 1.2 ascii
+server { config {
+    node { pipe { window { viewport [ 0 0 %(w)d %(h)d ] channel { name "left" } } } }
+    node { pipe { window { viewport [ 0 0 %(w)d %(h)d ] channel { name "front" } } } }
+    node { pipe { window { viewport [ 0 0 %(w)d %(h)d ] channel { name "right" } } } }
+    observer { eye_cyclop [ .2 -.1 .3 ] }
+    layout { view { observer 0 } }
+    canvas { layout 0
+        segment { channel "left" viewport [ 0 0 .333333333333333333 1 ]
+            wall { bottom_left [ -1 -.75 1 ] bottom_right [ -1 -.75 -1 ] top_left [ -1 .75 1 ] } }
+        segment { channel "front" viewport [ .333333333333333333 0 .333333333333333333 1 ]
+            wall { bottom_left [ -1 -.75 -1 ] bottom_right [ 1 -.75 -1 ] top_left [ -1 .75 -1 ] } }
+        segment { channel "right" viewport [ .666666666666666667 0 .333333333333333333 1 ]
+            wall { bottom_left [ 1 -.75 -1 ] bottom_right [ 1 -.75 1 ] top_left [ 1 .75 -1 ] } } }
+    %(compounds)s } }
+"""
+# The front wall by two nodes.
+SHARED_WALL = """
+    node { pipe { window { viewport [ 0 0 %(w)d %(h)d ] channel { name "helper" } } } }
+    compound {
+        compound { channel "left" }
+        compound { channel "right" }
+        compound { channel "front"
+            compound { viewport [ 0 0 .4 1 ] }
+            compound { channel "helper" viewport [ .4 0 .6 1 ] outputframe { name "rest" } }
+            inputframe { name "rest" } } }
+"""
+# As the eye in ROOM sees them: distance, left and right edge, degrees to the left.
+WALLS = ((1.2, -0.7, 1.3, 90), (1.3, -1.2, 0.8, 0), (0.8, -1.3, 0.7, -90))
+
+
+def in_room(context, program, arguments, size, compounds=""):
+    words = {"w": size[0], "h": size[1]}
+    with tempfile.TemporaryDirectory(prefix="mural-room.") as folder:
+        path = os.path.join(folder, "room.eqc")
+        with open(path, "w", encoding="ascii") as file:
+            file.write(ROOM % dict(words, compounds=compounds % words))
+        return through(context, ["--config", path], program, arguments, (3 * size[0], size[1]))
+
+
+def room_ways(context, notes, scenes, size=(160, 120)):
+    """Every wall of a room against a native picture with that wall's frustum."""
+    wrong = None
+    for program, arguments in scenes:
+        arguments = list(arguments) + ["--around"]
+        got = in_room(context, program, arguments, size)
+        worst, apart = math.inf, math.inf
+        # Over its right upper corner this one lays what a light sees.
+        has_shadow = "framebuffer" in arguments
+        columns = size[0] * 3 // 4 if has_shadow else size[0]
+        for wall, (distance, left, right, degrees) in enumerate(WALLS[:2] if has_shadow else WALLS):
+            edges = (left / distance, right / distance, -0.65 / distance, 0.85 / distance, degrees, 0.2, -0.1, 0.3)
+            wanted = native(context, program, arguments + ["--screen", ",".join("%.9g" % edge for edge in edges)], size)
+            for number, (a, b) in enumerate(zip(wanted, got)):
+                # The overlay lies over the lower left quarter of the whole wall.
+                upper = slice(0, size[1] // 2)
+                start = 3 * wall * size[0]
+                part = pictures.Picture(columns, size[1] // 2, [row[start:start + 3 * columns] for row in b.rows[upper]])
+                want = pictures.Picture(columns, size[1] // 2, [row[:3 * columns] for row in a.rows[upper]])
+                worst = min(worst, pictures.decibels(want, part))
+                if len(set(want.rows)) < 10 and number == 0:
+                    wrong = wrong or "wall %d shows next to nothing" % wall
+            apart = min(apart, len(wanted) - len(got))
+        notes.append("%s: %.1f dB" % (arguments[1] if len(arguments) > 1 else program, worst))
+        if worst < 40 or apart != 0:
+            wrong = wrong or "%s: %.1f dB" % (arguments[1], worst)
+    return wrong
+
+
+@case
+def room_screens(context, notes):
+    """Walls at right angles, seen from beside the middle: each as a program with that wall's frustum draws it."""
+    return room_ways(context, notes, [("pass_scene", ["--draw", way]) for way in ("fixed", "legacy", "matrices", "mvp", "block", "geometry", "framebuffer")] + [("pass_scene_es2", [])])
+
+
+@case
+def room_walls_are_shared(context, notes):
+    """A wall that two nodes draw has no seam."""
+    arguments, size = ["--draw", "mvp", "--around"], (160, 120)
+    return differing(in_room(context, "pass_scene", arguments, size), in_room(context, "pass_scene", arguments, size, SHARED_WALL))
 
 
 # ---- several at once

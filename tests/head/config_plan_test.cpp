@@ -97,6 +97,47 @@ TEST(ConfigPlan, theWallHasThePixelsOfItsSegments) {
     EXPECT_EQ(tiles, 4);
 }
 
+TEST(ConfigPlan, screensAtAnglesAreARoom) {
+    const SessionPlan plan = planOfFile("cave.eqc");
+    ASSERT_EQ(plan.nodes.size(), 3u);
+    const double xs[] = {-1, 0, 1}; // where the middle of each wall is seen
+    for (size_t i = 0; i < 3; ++i) {
+        const NodePlan& n = plan.nodes[i];
+        ASSERT_TRUE(n.screen) << i;
+        EXPECT_NEAR(n.screen->area.x, n.area->x, 1e-12);
+        EXPECT_NEAR(n.screen->left, -1, 1e-12);
+        EXPECT_NEAR(n.screen->right, 1, 1e-12);
+        EXPECT_NEAR(n.screen->top, .75, 1e-12);
+        const Vector3 middle = transformPoint(n.screen->fromProgram, {xs[i], 0, i == 1 ? -1. : 0.});
+        EXPECT_NEAR(middle.x, 0, 1e-12) << i;
+        EXPECT_NEAR(middle.z, -1, 1e-12) << i;
+        EXPECT_EQ(nodeSetupFromJson(toJson(setupOf({}, plan, n)))->screen, n.screen);
+    }
+}
+
+TEST(ConfigPlan, whoSaysWhereWallsAreLookedAtFrom) {
+    const auto screens = [](const std::string& file, Frusta frusta) {
+        auto plan = planOf(load(file), {"me", true, "", {}, frusta});
+        EXPECT_TRUE(plan.ok());
+        return std::ranges::count_if(plan->nodes, [](const NodePlan& n) { return n.screen.has_value(); });
+    };
+    EXPECT_EQ(screens("cave.eqc", Frusta::Program), 0);
+    EXPECT_EQ(screens("cave.eqc", Frusta::Auto), 3);
+    EXPECT_EQ(screens("wall-2x2.eqc", Frusta::Auto), 0) << "flat";
+    EXPECT_EQ(screens("wall-2x2.eqc", Frusta::Room), 4);
+}
+
+// An eye half a metre to the right is half a metre in the program's units, whatever these are.
+TEST(ConfigPlan, eyesAreInTheProgramsUnits) {
+    const auto loaded = load("stereo-passive.eqc");
+    for (const double unit : {1., 100.}) {
+        auto plan = planOf(loaded, {"me", true, "", {}, Frusta::Room, unit});
+        ASSERT_TRUE(plan.ok());
+        for (const NodePlan& n : plan->nodes)
+            EXPECT_NEAR(n.screen->fromProgram.m[0][3], (n.pass.eye == Eye::Left ? .0325 : -.0325) * unit, 1e-9);
+    }
+}
+
 TEST(ConfigPlan, aLayoutThatThereIsNot) {
     const auto plan = planOf(load("db.eqc"), {"me", true, "", {"nowhere"}});
     ASSERT_FALSE(plan.ok());

@@ -90,6 +90,7 @@ TEST(SessionConfig, errorsNameTheField) {
         {R"({"kernelWidth":-1})", "kernelWidth"},
         {R"({"period":"2"})", "period"},
         {R"({"eyeBase":"wide"})", "eyeBase"},
+        {R"({"frusta":"cave"})", "auto program room"},
         {R"({"columns":2.5})", "columns"},
         {R"({"columns":4294967296})", "columns"},
         {R"({"frames":18446744073709551615})", "frames"},

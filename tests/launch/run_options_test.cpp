@@ -152,6 +152,9 @@ TEST(RunOptions, wrongPassesNameTheOptionAndWhatIsWanted) {
     names("--stereo", [](RunArguments& a) { a.stereo = "both"; });
     for (const char* bad : {"-1", "nan", "inf", "1e10", "wide", "1 ", ""}) names("--eye-base", [&](RunArguments& a) { a.stereo = "left"; a.eyeBase = bad; });
     for (const char* bad : {"0", "-3", "nan", "far"}) names("--focus", [&](RunArguments& a) { a.stereo = "left"; a.focus = bad; });
+    names("--frusta is for a configuration file", [](RunArguments& a) { a.frusta = "room"; });
+    names("--frusta", [](RunArguments& a) { a.config = std::string(MURAL_SOURCE_DIR) + "/configs/cave.eqc"; a.frusta = "cave"; });
+    names("--model-unit", [](RunArguments& a) { a.config = std::string(MURAL_SOURCE_DIR) + "/configs/cave.eqc"; a.modelUnit = "0"; });
     names("--eye-base is for stereo", [](RunArguments& a) { a.eyeBase = "1"; });
     names("--focus is for stereo", [](RunArguments& a) { a.focus = "1"; });
     EXPECT_NE(refusal([](RunArguments& a) { a.subpixel = "16"; a.pixel = "4x4"; a.stereo = "anaglyph"; }).find("512 passes together; at most 256"), std::string::npos);

@@ -224,11 +224,19 @@ Result<void> readPasses(const RunArguments& a, SessionConfig& c) {
     return {};
 }
 
+Result<void> readFrusta(const RunArguments& a, SessionConfig& c) {
+    const Choice<Frusta> all[] = {{"auto", Frusta::Auto}, {"program", Frusta::Program}, {"room", Frusta::Room}};
+    if (auto r = choose("--frusta", a.frusta, all, c.frusta); !r) return r;
+    return readReal("--model-unit", a.modelUnit, 1e-9, c.modelUnit);
+}
+
 // Wall and nodes are the file's; what options say beside it would contradict it.
 Result<void> readConfigFile(const RunArguments& a, RunOptions& options) {
     SessionConfig& c = options.config;
     if (!a.config) {
-        if (!a.layouts.empty() || a.here || a.canvas) return Error{std::string(a.here ? "--here" : a.canvas ? "--canvas" : "--layout") + " is for a configuration file; add --config FILE"};
+        const std::pair<const char*, bool> ofFiles[] = {{"--here", a.here}, {"--canvas", a.canvas.has_value()}, {"--layout", !a.layouts.empty()}, {"--frusta", a.frusta.has_value()}, {"--model-unit", a.modelUnit.has_value()}};
+        for (const auto& [option, given] : ofFiles)
+            if (given) return Error{fmt::format("{} is for a configuration file; add --config FILE", option)};
         return {};
     }
     const std::pair<const char*, bool> contradicting[] = {{"--tiles", a.tiles.has_value()}, {"--nodes", a.nodes.has_value()}, {"--local-nodes", a.localNodes.has_value()}, {"--stereo", a.stereo.has_value()},
@@ -240,7 +248,8 @@ Result<void> readConfigFile(const RunArguments& a, RunOptions& options) {
     for (const config::Diagnostic& d : loaded.diagnostics.all())
         if (d.severity == config::Severity::Warning) options.notices.push_back(loaded.diagnostics.text(d));
     if (!loaded.ok()) return Error{loaded.diagnostics.firstError() + (loaded.diagnostics.errors() > 1 ? fmt::format(" (and {} more: mural config check {})", loaded.diagnostics.errors() - 1, *a.config) : "")};
-    const ConfigWishes wishes{"", a.here, a.canvas.value_or(""), a.layouts};
+    if (auto r = readFrusta(a, c); !r) return r;
+    const ConfigWishes wishes{"", a.here, a.canvas.value_or(""), a.layouts, c.frusta, c.modelUnit};
     auto plan = planOf(loaded, wishes);
     if (!plan) return plan.error();
     std::error_code failed;
@@ -335,6 +344,8 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
     command.add_option("--save", a.save, "write only these frames, counted from 1")->type_name("1,30,90");
     command.add_option("--config", a.config, "wall, nodes and compounds by a configuration file (.eqc)")->type_name("FILE");
     command.add_option("--canvas", a.canvas, "show this canvas of the file (its first)")->type_name("NAME");
+    command.add_option("--frusta", a.frusta, "screens of the file show one flat picture, the program's, or each the scene as it is seen from the room: auto, program, room (auto: the room's where screens stand at angles)")->type_name("WHOSE");
+    command.add_option("--model-unit", a.modelUnit, "length of a metre of the room in the program's units (1)")->type_name("N");
     command.add_option("--layout", a.layouts, "show this layout of the file's canvases; may be given for each")->type_name("NAME")->take_all();
     command.add_flag("--here", a.here, "run all nodes of the file on this machine");
     command.add_flag("--print-config", a.printConfig, "print the configuration file that the other options stand for, and run nothing");

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <cstring>
+#include <optional>
 #include <vector>
 
 #include "tests/programs/support/program.hpp"
@@ -21,7 +22,13 @@ PassOptions takePassOptions(int& argc, char** argv) {
         if (std::strcmp(argv[i], "--draw") == 0) options.draw = value, ++i;
         else if (std::strcmp(argv[i], "--move") == 0) pair(options.moveX, options.moveY);
         else if (std::strcmp(argv[i], "--eye") == 0) pair(options.eye, options.focus);
-        else argv[kept++] = argv[i];
+        else if (std::strcmp(argv[i], "--around") == 0) options.around = true;
+        else if (std::strcmp(argv[i], "--screen") == 0) {
+            PassOptions::Screen s{};
+            if (std::sscanf(value, "%f,%f,%f,%f,%f,%f,%f,%f", &s.left, &s.right, &s.bottom, &s.top, &s.degrees, &s.x, &s.y, &s.z) != 8) fail("--screen wants eight numbers, not \"%s\"", value);
+            options.screen = s;
+            ++i;
+        } else argv[kept++] = argv[i];
     }
     argc = kept;
     return options;
@@ -29,6 +36,13 @@ PassOptions takePassOptions(int& argc, char** argv) {
 
 Matrix projectionOf(const PassOptions& options, int width, int height) {
     constexpr float kNear = 1.5F, kFar = 40, kHalfHeight = 0.9F;
+    if (options.screen) {
+        const PassOptions::Screen& s = *options.screen;
+        Matrix m = perspective((s.right - s.left) / 2 * kNear, (s.top - s.bottom) / 2 * kNear, kNear, kFar);
+        m[8] = (s.right + s.left) / (s.right - s.left);
+        m[9] = (s.top + s.bottom) / (s.top - s.bottom);
+        return multiply(m, multiply(rotationY(-s.degrees / 180 * 3.14159265F), translation(-s.x, -s.y, -s.z)));
+    }
     const float halfWidth = kHalfHeight * float(width) / float(height);
     Matrix m = perspective(halfWidth, kHalfHeight, kNear, kFar);
     const float shift = -options.eye * kNear / options.focus; // of the frustum's left and right, at the near plane
@@ -36,7 +50,8 @@ Matrix projectionOf(const PassOptions& options, int width, int height) {
     return multiply(m, translation(-options.eye, 0, 0));
 }
 
-Matrix modelViewOf(int frame) {
+Matrix modelViewOf(const PassOptions& options, int frame) {
+    if (options.around) return multiply(scaling(3, 3, 3), multiply(rotationY(0.3F * float(frame) + 0.2F), rotationZ(0.1F * float(frame))));
     return multiply(translation(0.2F, -0.1F, -7), multiply(rotationY(0.3F * float(frame) + 0.2F), rotationZ(0.1F * float(frame))));
 }
 

@@ -2,6 +2,7 @@
 // with samples beside the centres of their pixels. So there is something to compare with.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "tests/programs/support/matrix.hpp"
@@ -12,6 +13,13 @@ struct PassOptions {
     std::string draw = "fixed";     // --draw WAY
     float moveX = 0, moveY = 0;     // --move X,Y: the picture, in pixels
     float eye = 0, focus = 1;       // --eye X,DISTANCE: place of the eye, and where all eyes see the same
+    // --screen LEFT,RIGHT,BOTTOM,TOP,DEGREES,X,Y,Z: a screen with these edges at distance 1, to whose left one turns by so
+    // much, seen from there
+    struct Screen {
+        float left, right, bottom, top, degrees, x, y, z;
+    };
+    std::optional<Screen> screen;
+    bool around = false; // --around: the scene is on all sides
 };
 
 // Takes them out of the arguments.
@@ -21,7 +29,7 @@ PassOptions takePassOptions(int& argc, char** argv);
 Matrix projectionOf(const PassOptions& options, int width, int height);
 
 // Of the scene; things turn with the frames.
-Matrix modelViewOf(int frame);
+Matrix modelViewOf(const PassOptions& options, int frame);
 
 // Triangles in front of the eyes, some through each other: place, tone, 6 floats per vertex.
 constexpr int kSceneVertices = 3 * 96;

@@ -102,7 +102,7 @@ void moveViewport(const Window& window, bool moved) {
 }
 
 void drawScene(const Window& window, int frame) {
-    const Matrix projection = projectionOf(options, window.width(), window.height()), modelView = modelViewOf(frame);
+    const Matrix projection = projectionOf(options, window.width(), window.height()), modelView = modelViewOf(options, frame);
     const Matrix whole = multiply(projection, modelView);
     glEnable(GL_DEPTH_TEST);
     if (options.draw == "fixed" || options.draw == "legacy") {

@@ -37,7 +37,7 @@ void draw(const Window& window, int frame) {
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     glEnable(GL_DEPTH_TEST);
     use(scene, window);
-    const Matrix whole = multiply(projectionOf(options, window.width(), window.height()), modelViewOf(frame));
+    const Matrix whole = multiply(projectionOf(options, window.width(), window.height()), modelViewOf(options, frame));
     glUniformMatrix4fv(glGetUniformLocation(scene, "whole"), 1, GL_FALSE, whole.data());
     glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 24, sceneVertices());
     glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, 24, sceneVertices() + 3);

@@ -1,4 +1,4 @@
-#include "nodes/replay/field_scale.hpp"
+#include "nodes/replay/seen_projection.hpp"
 
 #include <cmath>
 #include <cstring>
@@ -21,20 +21,20 @@ Matrix product(const Matrix& a, const Matrix& b) {
 double scaleOf(const Matrix& m) {
     double plain[16];
     std::copy(m.begin(), m.end(), plain);
-    return fieldScaleOf(plain);
+    return seenProjection(plain).scaleX;
 }
 Matrix frustum(double l, double r, double b, double t, double n, double f) {
     return {2 * n / (r - l), 0, 0, 0, 0, 2 * n / (t - b), 0, 0, (r + l) / (r - l), (t + b) / (t - b), -(f + n) / (f - n), -1, 0, 0, -2 * f * n / (f - n), 0};
 }
 Matrix turned(double angle) { return {std::cos(angle), 0, -std::sin(angle), 0, 0, 1, 0, 0, std::sin(angle), 0, std::cos(angle), 0, 3, -2, -9, 1}; }
 
-TEST(FieldScale, ofProjectionsAlone) {
+TEST(SeenProjection, ofProjectionsAlone) {
     EXPECT_DOUBLE_EQ(scaleOf(frustum(-2, 2, -1, 1, 3, 50)), 1.5);
     EXPECT_NEAR(scaleOf(frustum(-1, 3, -1, 1, 3, 50)), 1.5, 1e-12) << "sheared";
     EXPECT_NEAR(scaleOf(frustum(-2, 2, -1, 1, 3, 1e9)), 1.5, 1e-12);
 }
 
-TEST(FieldScale, ofProductsWithViewsAndModels) {
+TEST(SeenProjection, ofProductsWithViewsAndModels) {
     const Matrix p = frustum(-1, 3, -1, 1, 3, 50);
     EXPECT_NEAR(scaleOf(product(p, turned(0.7))), 1.5, 1e-12);
     Matrix small = turned(-1.1);
@@ -42,7 +42,7 @@ TEST(FieldScale, ofProductsWithViewsAndModels) {
     EXPECT_NEAR(scaleOf(product(p, small)), 1.5, 1e-9);
 }
 
-TEST(FieldScale, matricesWithoutPerspectiveHaveNone) {
+TEST(SeenProjection, matricesWithoutPerspectiveHaveNone) {
     EXPECT_EQ(scaleOf(turned(0.3)), 0);
     EXPECT_EQ(scaleOf({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1}), 0);
     EXPECT_EQ(scaleOf({}), 0);
@@ -53,26 +53,26 @@ TEST(FieldScale, matricesWithoutPerspectiveHaveNone) {
     EXPECT_EQ(scaleOf(bad), 0);
 }
 
-TEST(FieldScale, inAllLayoutsOfUniforms) {
+TEST(SeenProjection, inAllLayoutsOfUniforms) {
     const Matrix p = product(frustum(-2, 2, -1, 1, 3, 50), turned(0.2));
     float single[16], turnedOver[16];
     for (size_t i = 0; i < 16; ++i) single[i] = static_cast<float>(p[i]), turnedOver[i % 4 * 4 + i / 4] = static_cast<float>(p[i]);
-    EXPECT_NEAR(fieldScaleAt(reinterpret_cast<const std::byte*>(single), false, false), 1.5, 1e-5);
-    EXPECT_NEAR(fieldScaleAt(reinterpret_cast<const std::byte*>(turnedOver), false, true), 1.5, 1e-5);
-    EXPECT_NEAR(fieldScaleAt(reinterpret_cast<const std::byte*>(p.data()), true, false), 1.5, 1e-12);
+    EXPECT_NEAR(seenProjectionAt(reinterpret_cast<const std::byte*>(single), false, false).scaleX, 1.5, 1e-5);
+    EXPECT_NEAR(seenProjectionAt(reinterpret_cast<const std::byte*>(turnedOver), false, true).scaleX, 1.5, 1e-5);
+    EXPECT_NEAR(seenProjectionAt(reinterpret_cast<const std::byte*>(p.data()), true, false).scaleX, 1.5, 1e-12);
 }
 
-TEST(FieldScale, projectionsInBuffersAreFound) {
+TEST(SeenProjection, projectionsInBuffersAreFound) {
     const Matrix p = frustum(-2, 2, -1, 1, 3, 50);
     std::vector<float> values(7, 0.25f);
     for (const double v : p) values.push_back(static_cast<float>(v));
     values.insert(values.end(), 9, 1.0f);
-    EXPECT_NEAR(lastProjectionIn(std::as_bytes(std::span(values))), 1.5, 1e-6);
+    EXPECT_NEAR(lastProjectionIn(std::as_bytes(std::span(values))).scaleX, 1.5, 1e-6);
     values.resize(7 + 15);
-    EXPECT_EQ(lastProjectionIn(std::as_bytes(std::span(values))), 0) << "cut off";
-    EXPECT_EQ(lastProjectionIn({}), 0);
+    EXPECT_EQ(lastProjectionIn(std::as_bytes(std::span(values))).scaleX, 0) << "cut off";
+    EXPECT_EQ(lastProjectionIn({}).scaleX, 0);
     const std::vector<float> zeros(64, 0.0f);
-    EXPECT_EQ(lastProjectionIn(std::as_bytes(std::span(zeros))), 0);
+    EXPECT_EQ(lastProjectionIn(std::as_bytes(std::span(zeros))).scaleX, 0);
 }
 
 } // namespace
