@@ -46,10 +46,15 @@ template <class Local, class Send> void beginQuery(GLenum target, GLuint index, 
 
 bool isResult(GLenum pname) { return pname == GL_QUERY_RESULT || pname == GL_QUERY_RESULT_NO_WAIT; }
 
+// It has counted nothing, and the driver knows all there is to know. A list begins its queries whenever it is called.
+bool neverBegun(const ThreadState& t, GLuint id) {
+    return NameBits::known(id) && !t.context->queryBegun.get(id) && !t.context->group->listCounts.get(id);
+}
+
 // The result over all tiles. False: it is the local driver's.
 bool result(ThreadState& t, const char* by, GLuint id, uint64_t& value) {
     // A program compares time stamps with glGetInteger64v(GL_TIMESTAMP): one clock for both.
-    if (t.context->queryIsTimestamp.get(id)) return false;
+    if (t.context->queryIsTimestamp.get(id) || neverBegun(t, id)) return false;
     const bool keeps = !t.context->group->listCounts.get(id); // a list begins it whenever it is called
     if (!keeps || !t.context->answers.find(id, t.context->swaps, value)) {
         if (!askQuery(t, id, GL_QUERY_RESULT, value, by)) return false;
@@ -130,6 +135,13 @@ void mural_glBeginQueryIndexed(GLenum target, GLuint index, GLuint id) {
     beginQuery(target, index, id, [=] { gReal.glBeginQueryIndexed(target, index, id); },
                [=](ThreadState& t) { encode_glBeginQueryIndexed(t, target, index, id); });
 }
+void mural_glDeleteQueries(GLsizei n, const GLuint* ids) {
+    ThreadState& t = *tThread;
+    if (t.context && ids)
+        for (GLsizei i = 0; i < n; ++i) t.context->queryBegun.set(ids[i], false); // the name may come again
+    encode_glDeleteQueries(t, n, DataArg::of(ids, n > 0 ? uint64_t(n) * 4 : 0));
+    gReal.glDeleteQueries(n, ids);
+}
 void mural_glQueryCounter(GLuint id, GLenum target) {
     ThreadState& t = *tThread;
     if (t.context) t.context->queryIsTimestamp.set(id, target == GL_TIMESTAMP);
@@ -181,6 +193,7 @@ void mural_glBeginConditionalRender(GLuint id, GLenum mode) {
         return gReal.glBeginConditionalRender(id, mode);
     }
     if (!raisesNothing(*t.context, [&] { gReal.glBeginConditionalRender(id, mode); })) return;
+    if (neverBegun(t, id)) return encode_glBeginConditionalRender(t, id, mode); // all drivers know the same of it
     uint64_t value = 1;
     result(t, __func__, id, value);
     records::beginConditional(t, (value != 0) != isInverted(mode));

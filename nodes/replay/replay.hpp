@@ -290,6 +290,8 @@ private:
         bool countsWhole = false;                      // what drawsWhole() was when the last piece began
         bool countedWhole = false;                     // a query that only whole pictures answer is active
         bool conditional = false, conditionMet = false;
+        GLuint condition = 0;                          // our name of the query that decides, and how
+        GLenum conditionMode = 0;
         GLuint queryBuffer = 0;                        // our name: results would go there
         GLuint nothingCounted = 0;                     // a query whose result is 0
         uint32_t client = 0, id = 0;
@@ -445,6 +447,7 @@ private:
     bool ownQueryKnown(Args& in);
     bool ownDrawAll(Args& in);
     void beginConditional(bool draws);
+    void askDriver(GLuint ours, GLenum mode);
     [[nodiscard]] bool drawsWhole() const;
     void cutQueries();
     void dropPieces(QueryInfo& query);

@@ -47,7 +47,7 @@ void Replay::aside(const std::function<void()>& call) {
     for (const auto& [target, id] : c_->counting) gl.glEndQuery(target);
     call();
     for (const auto& [target, id] : c_->counting) beginPiece(target, id);
-    if (c_->conditional) gl.glBeginConditionalRender(c_->nothingCounted, GL_QUERY_WAIT);
+    if (c_->conditional) gl.glBeginConditionalRender(c_->condition, c_->conditionMode);
 }
 
 void Replay::dropPieces(QueryInfo& query) {
@@ -184,7 +184,7 @@ bool Replay::ownQueryKnown(Args& in) {
 // Out of a display list: the program has told the result ahead of the call, or this node draws all and knows it.
 void Replay::glBeginConditionalRender(GLuint id, GLenum mode) {
     const auto info = c_->queries.find(id);
-    if (info == c_->queries.end()) return; // an error, and nothing is left out
+    if (info == c_->queries.end()) return askDriver(name(Kind::Query, id), mode); // never begun: it knows what that means
     const std::vector<QueryPiece>& pieces = info->second.pieces;
     bool passed = info->second.passed;
     if (alone() || std::all_of(pieces.begin(), pieces.end(), [](const QueryPiece& p) { return p.whole; }))
@@ -205,8 +205,7 @@ bool Replay::ownBeginConditional(Args& in) {
 }
 
 void Replay::beginConditional(bool draws) {
-    c_->conditional = !draws && bound_ && gl.glBeginConditionalRender && gl.glGenQueries;
-    if (!c_->conditional) {
+    if (draws || !bound_ || !gl.glBeginConditionalRender || !gl.glGenQueries) {
         c_->conditionMet = true;
         return;
     }
@@ -218,7 +217,14 @@ void Replay::beginConditional(bool draws) {
         gl.glEndQuery(GL_SAMPLES_PASSED);
         if (counting) beginPiece(GL_SAMPLES_PASSED, c_->counting[GL_SAMPLES_PASSED]);
     }
-    gl.glBeginConditionalRender(c_->nothingCounted, GL_QUERY_WAIT);
+    askDriver(c_->nothingCounted, GL_QUERY_WAIT);
+}
+
+void Replay::askDriver(GLuint ours, GLenum mode) {
+    c_->conditional = bound_ && gl.glBeginConditionalRender;
+    c_->condition = ours;
+    c_->conditionMode = mode;
+    if (c_->conditional) gl.glBeginConditionalRender(ours, mode);
 }
 
 void Replay::glEndConditionalRender() {

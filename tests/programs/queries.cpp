@@ -1,5 +1,5 @@
 // Queries: occlusion, boolean occlusion, primitives, timers, pipeline statistics, results into a buffer,
-// conditional rendering. What can be repeated is drawn: counts as bits and bars.
+// conditional rendering, none that began. What can be repeated is drawn: counts as bits and bars.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -123,6 +123,40 @@ void resultIntoImmutableBuffer(int frame) {
     checkNoError("with a result in an immutable buffer");
 }
 
+// Queries that are made and never begin: drivers differ in what they write, and in what such a condition leaves out.
+// The name is that of one that has counted.
+void neverBegun() {
+    GLuint query = 0;
+    glGenQueries(1, &query);
+    glBeginQuery(GL_SAMPLES_PASSED, query);
+    box(0.85F, 0.85F, 0.1F, 0.1F, 0.1F);
+    glEndQuery(GL_SAMPLES_PASSED);
+    showBits(30, waitFor(query));
+    glDeleteQueries(1, &query);
+    glCreateQueries(GL_SAMPLES_PASSED, 1, &query);
+    showBits(29, waitFor(query));
+
+    const GLuint64 before[2] = {0x123456789abcdefULL, 0xfedcba987654321ULL};
+    GLuint buffer = 0;
+    glCreateBuffers(1, &buffer);
+    glNamedBufferData(buffer, sizeof before, before, GL_STATIC_COPY);
+    glGetQueryBufferObjectui64v(query, buffer, GL_QUERY_RESULT, 3);
+    GLuint now[4] = {};
+    glGetNamedBufferSubData(buffer, 0, sizeof now, now);
+    for (int i = 0; i < 4; ++i) showBits(28 - i, now[i]);
+    glDeleteBuffers(1, &buffer);
+
+    glBeginConditionalRender(query, GL_QUERY_WAIT);
+    box(-0.9F, 0.35F, 0.3F, 0.3F, 0.2F);
+    glClear(0);
+    glEndConditionalRender();
+    glBeginConditionalRender(query, GL_QUERY_WAIT_INVERTED);
+    box(-0.5F, 0.35F, 0.3F, 0.3F, 0.2F);
+    glEndConditionalRender();
+    glDeleteQueries(1, &query);
+    checkNoError("with a query that never began");
+}
+
 void countStatistics() {
     glBeginQuery(GL_VERTICES_SUBMITTED_ARB, names[9]);
     glBeginQuery(GL_VERTEX_SHADER_INVOCATIONS_ARB, names[10]);
@@ -176,6 +210,7 @@ int main(int argc, char** argv) {
             renderConditionally(frame);
             resultIntoBuffer(frame);
             resultIntoImmutableBuffer(frame);
+            neverBegun();
             countStatistics();
         });
 }
