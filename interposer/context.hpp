@@ -102,7 +102,7 @@ struct Context {
     bool compilingList = false;
     bool drawsList = false;    // and executes it at once
     GLuint compiledList = 0;   // its name
-    bool listPrimitive = false; // it is between glBegin and glEnd
+    bool listPrimitive = false; // it is between glBegin and glEnd, where lists take what makes vertices
     bool frontDue = false;     // the front buffer was drawn to since the last flush, or will be
     GLenum renderMode = GL_RENDER;
     bool drawsSelection = false; // selects or gives feedback in the program's own context

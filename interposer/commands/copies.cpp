@@ -77,6 +77,7 @@ bool severalNodes(const ThreadState& t) {
 
 void gather(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, const char* by) {
     if (!severalNodes(t)) return;
+    if (t.context->listPrimitive) return; // where the list takes no copies
     if (t.context->compilingList) drawAll(t, by);
     else if (readsWindow(*t.context)) gatherNow(t, x, y, w, h, planes, true, by);
 }
@@ -87,7 +88,7 @@ void gatherForPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLb
     const Window* const read = readsWindow(*t.context) ? findWindowById(t.context->readWindow) : nullptr;
     GLint drawn = 0;
     if (read && read->config.samples > 0) gReal.glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &drawn);
-    if (read && read->config.samples > 0 && drawn == 0) drawAll(t, by);
+    if (read && read->config.samples > 0 && drawn == 0 && !t.context->compilingList) drawAll(t, by);
     else gather(t, x, y, w, h, planes, by);
 }
 

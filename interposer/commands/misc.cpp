@@ -1,5 +1,6 @@
 // Display lists, synchronisation, programs and answers that are put right before the program sees them.
 #include <cstring>
+#include <utility>
 
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
@@ -138,7 +139,6 @@ void mural_glNewList(GLuint list, GLenum mode) {
     group.listAsks.set(list, false);
     group.listOpens.set(list, false);
     group.listCloses.set(list, false);
-    t.context->listPrimitive = false;
     group.listsChange = group.listsChange || group.listCompiled.get(list);
     group.listCompiled.set(list, true);
     refreshDrawLocally(t);
@@ -149,7 +149,7 @@ void mural_glEndList() {
     gReal.glEndList();
     if (!t.context) return;
     t.context->compilingList = false;
-    if (t.context->listPrimitive) t.context->group->listOpens.set(t.context->compiledList, true);
+    if (std::exchange(t.context->listPrimitive, false)) t.context->group->listOpens.set(t.context->compiledList, true);
     refreshDrawLocally(t);
     setDrawing(t.context->drawsList, false);
 }

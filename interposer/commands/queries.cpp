@@ -19,7 +19,7 @@ bool capturing(const ThreadState& t) {
 }
 
 void begins(ThreadState& t, GLenum target, GLuint id) {
-    if (!t.context) return;
+    if (!t.context || t.context->listPrimitive) return; // the list takes none there
     t.context->queryIsAny.set(id, target == GL_ANY_SAMPLES_PASSED || target == GL_ANY_SAMPLES_PASSED_CONSERVATIVE);
     t.context->queryIsTimestamp.set(id, false);
     t.context->queryBegun.set(id, true);
@@ -185,7 +185,7 @@ extern "C" {
 void mural_glBeginConditionalRender(GLuint id, GLenum mode) {
     ThreadState& t = *tThread;
     if (!capturing(t) || t.context->compilingList) {
-        if (capturing(t)) {
+        if (capturing(t) && !t.context->listPrimitive) {
             noteListCondition(t, id);
             tellCondition(t, __func__, id); // the list may be executed while it is compiled
         }

@@ -248,6 +248,26 @@ void inExecutedList() {
     glDeleteLists(list, 1);
 }
 
+// Copies, and conditions, between glBegin and glEnd of a list: it takes none, and nobody asks what the picture is by then.
+void copyInListPrimitive() {
+    const GLuint list = glGenLists(1);
+    GLuint query = 0;
+    glGenQueries(1, &query);
+    glNewList(list, GL_COMPILE_AND_EXECUTE);
+    glBegin(GL_TRIANGLES);
+    glVertex2f(-0.4F, 0.1F);
+    glCopyTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 0, 0, 64, 64, 0);
+    glVertex2f(-0.1F, 0.1F);
+    glBeginQuery(GL_SAMPLES_PASSED, query);
+    glBeginConditionalRender(query, GL_QUERY_WAIT);
+    glVertex2f(-0.2F, 0.5F);
+    glEnd();
+    glEndList();
+    showBits(33, GLuint(errors()));
+    glDeleteQueries(1, &query);
+    glDeleteLists(list, 1);
+}
+
 // A program that is not there does not take the place of the current one.
 void useNoProgram(GLuint shifted) {
     const GLuint unlinked = glCreateProgram();
@@ -318,6 +338,7 @@ int main(int argc, char** argv) {
         useNoProgram(shifted);
         inPrimitive();
         inExecutedList();
+        copyInListPrimitive();
         boxes(frame);
     });
 }
