@@ -27,10 +27,18 @@ void plainUnpack(World& w) {
     }
 }
 
+// Mesa 22.3.6 takes some depths on their way into textures as if they were not swapped.
+void swapNoDepths(World& w, const ImageFormat& f) {
+    if (!w.es() && (f.format == GL_DEPTH_COMPONENT || f.format == GL_DEPTH_STENCIL)) {
+        GL(glPixelStorei, GL_UNPACK_SWAP_BYTES, 0);
+    }
+}
+
 // One level, with contents.
 void image(World& w, GLenum target, int level, int size, const ImageFormat& f) {
     const int side = std::max(1, size >> level);
     const auto internal = static_cast<GLint>(f.internal);
+    swapNoDepths(w, f);
     const void* const data = pixels(w, f.type);
     switch (target) {
     case GL_TEXTURE_1D: GL(glTexImage1D, target, level, internal, side, 0, f.format, f.type, data); break;
@@ -78,6 +86,7 @@ void storage(World& w) {
     w.keep(Kind::Texture, name);
     GL(glBindTexture, target, name);
     plainUnpack(w);
+    swapNoDepths(w, f);
     if (layers) {
         GL(glTexStorage3D, target, 2, f.internal, 16, 12, 3);
         GL(glTexSubImage3D, target, 0, 0, 0, 0, 16, 12, 3, f.format, f.type, pixels(w, f.type));
