@@ -204,7 +204,20 @@ void blit(World& w) {
        mask == GL_COLOR_BUFFER_BIT && w.random.chance(40) ? GL_LINEAR : GL_NEAREST);
 }
 
+// Scaled or mapped on their way from a window into a texture, Mesa 22.3.6 takes all rows but the first from before its memory.
+void plainTransfer(World& w) {
+    for (const GLenum scale : {GL_RED_SCALE, GL_GREEN_SCALE, GL_BLUE_SCALE, GL_ALPHA_SCALE}) {
+        GL(glPixelTransferf, scale, 1.0F);
+    }
+    for (const GLenum bias : {GL_RED_BIAS, GL_GREEN_BIAS, GL_BLUE_BIAS, GL_ALPHA_BIAS, GL_MAP_COLOR}) {
+        GL(glPixelTransferf, bias, 0.0F);
+    }
+}
+
 void copyTexture(World& w) {
+    if (w.profile == Profile::Compat) {
+        plainTransfer(w);
+    }
     if (w.shaders() && w.random.chance(70)) {
         GL(glBindFramebuffer, GL_READ_FRAMEBUFFER, 0);
         GL(glReadBuffer, GL_BACK);
