@@ -1,0 +1,23 @@
+// Streaming: the last rank sends to the one before it, which folds and sends on, down to the collector. Each carries one picture, to
+// one neighbour, and each link only goes one way. Bands follow each other, so that all ranks fold at once after the first few.
+// Source: Roth, Reiners, "Sorted pipeline image composition" (2006); thesis, "DB with streaming".
+#include <algorithm>
+
+#include "compositor/strategies/schedule_maker.hpp"
+
+namespace mural::compositor {
+
+namespace {
+
+constexpr int32_t kLeastRows = 64; // of a band: smaller ones cost more than their latency wins
+constexpr int kMostBands = 16;
+
+} // namespace
+
+void makeStreaming(ScheduleMaker& maker) {
+    const int bands = std::clamp(static_cast<int>(maker.rows() / kLeastRows), 1, kMostBands);
+    for (int b = 0; b < bands; ++b)
+        for (int rank = maker.ranks() - 1; rank > 0; --rank) maker.transfer({rank, rank - 1, maker.band(b, bands), Step::Kind::FoldLater, 0});
+}
+
+} // namespace mural::compositor

@@ -1,0 +1,19 @@
+// 2-3 swap: as binary swap, by groups of two and three, so that every number of nodes takes part from the first step on.
+// Differs from the paper in that merged groups may have different sizes at any level: the bands of a group that is smaller are
+// cut where those of the others lie.
+// Source: Yu, Wang, Ma, "Massively parallel volume rendering using 2-3 swap image compositing" (2008).
+#include "compositor/strategies/swap_groups.hpp"
+
+namespace mural::compositor {
+
+void makeTwoThreeSwap(ScheduleMaker& maker) {
+    std::vector<int> all;
+    for (int rank = 0; rank < maker.ranks(); ++rank) all.push_back(rank);
+    swapGroups(maker, all, [](int size) -> std::vector<int> {
+        if (size % 2 == 0) return {size / 2, size / 2};
+        if (size % 3 == 0) return {size / 3, size / 3, size / 3};
+        return {(size + 1) / 2, size / 2};
+    });
+}
+
+} // namespace mural::compositor

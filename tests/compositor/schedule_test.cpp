@@ -1,0 +1,168 @@
+// Schedules as all ranks would run them, with what each holds of every row: who has drawn it.
+#include <algorithm>
+#include <deque>
+#include <gtest/gtest.h>
+#include <map>
+#include <string>
+
+#include "compositor/image/draw_order.hpp"
+#include "compositor/strategies/schedule.hpp"
+
+namespace mural::compositor {
+namespace {
+
+using Held = std::vector<DrawOrder>; // by row: whose draws; empty: it was given away
+
+struct Message {
+    RowRange rows;
+    Held held;
+    int waits = 0;
+};
+
+// Runs a schedule; the first thing that is wrong, or nothing.
+class Simulation {
+public:
+    Simulation(const Schedule& schedule, int32_t rows) : schedule_(schedule), rows_(rows) {
+        for (uint32_t rank = 0; rank < schedule.size(); ++rank) held_.emplace_back(static_cast<size_t>(rows), DrawOrder{rank, rank + 1});
+    }
+
+    std::string wrong() {
+        std::vector<size_t> next(schedule_.size(), 0);
+        std::vector<int> waits(schedule_.size(), 0);
+        for (bool moved = true; moved;) {
+            moved = false;
+            for (size_t rank = 0; rank < schedule_.size(); ++rank) {
+                while (next[rank] < schedule_[rank].size() && take(rank, schedule_[rank][next[rank]], waits[rank])) {
+                    ++next[rank];
+                    moved = true;
+                }
+                if (!wrong_.empty()) return wrong_;
+            }
+        }
+        for (size_t rank = 0; rank < schedule_.size(); ++rank)
+            if (next[rank] < schedule_[rank].size()) return "rank " + std::to_string(rank) + " waits for ever in step " + std::to_string(next[rank]);
+        for (const auto& [way, messages] : under_)
+            if (!messages.empty()) return "nobody takes what rank " + std::to_string(way.first) + " sends to " + std::to_string(way.second);
+        const DrawOrder all{0, static_cast<uint32_t>(schedule_.size())};
+        for (int32_t y = 0; y < rows_; ++y)
+            if (held_[0][static_cast<size_t>(y)] != all) return "row " + std::to_string(y) + " of the collector does not hold all";
+        return {};
+    }
+
+private:
+    // False: it waits.
+    bool take(size_t rank, const Step& step, int& waits) {
+        const auto peer = static_cast<size_t>(step.peer);
+        if (peer >= schedule_.size() || peer == rank || step.rows.empty() || step.rows.first < 0 || step.rows.end > rows_) {
+            wrong_ = "rank " + std::to_string(rank) + " has a step of no sense";
+            return false;
+        }
+        Held& own = held_[rank];
+        if (!step.receives()) {
+            Message m{step.rows, {}, waits};
+            for (int32_t y = step.rows.first; y < step.rows.end; ++y) {
+                DrawOrder& row = own[static_cast<size_t>(y)];
+                if (row.empty()) wrong_ = "rank " + std::to_string(rank) + " sends row " + std::to_string(y) + ", which it has given away";
+                m.held.push_back(row);
+                row = {0, 0};
+            }
+            under_[{rank, peer}].push_back(m);
+            return wrong_.empty();
+        }
+        auto& coming = under_[{peer, rank}];
+        if (coming.empty()) return false;
+        const Message m = coming.front();
+        coming.pop_front();
+        if (m.rows != step.rows) wrong_ = "rank " + std::to_string(rank) + " expects other rows than come";
+        if (m.waits != step.stage) wrong_ = "the stage is " + std::to_string(step.stage) + " and not " + std::to_string(m.waits);
+        waits = std::max(waits, m.waits + 1);
+        for (size_t i = 0; wrong_.empty() && i < m.held.size(); ++i) fold(own[static_cast<size_t>(step.rows.first) + i], m.held[i], step.kind);
+        return wrong_.empty();
+    }
+
+    void fold(DrawOrder& own, const DrawOrder& theirs, Step::Kind kind) {
+        const bool fits = kind == Step::Kind::Place ? own.empty() : kind == Step::Kind::FoldEarlier ? !own.empty() && theirs.end == own.first : !own.empty() && own.end == theirs.first;
+        if (!fits) wrong_ = "draws " + std::to_string(theirs.first) + " to " + std::to_string(theirs.end) + " are no neighbours of " + std::to_string(own.first) + " to " + std::to_string(own.end);
+        own = own.empty() ? theirs : joined(own, theirs);
+    }
+
+    const Schedule& schedule_;
+    int32_t rows_;
+    std::vector<Held> held_; // by rank
+    std::map<std::pair<size_t, size_t>, std::deque<Message>> under_;
+    std::string wrong_;
+};
+
+TEST(Schedule, everyRowOfEveryRankReachesTheCollectorOnceAndInOrder) {
+    for (const Strategy strategy : kEveryStrategy)
+        for (int ranks = 1; ranks <= 33; ++ranks)
+            for (const int32_t rows : {1, 2, 7, 64, 191, 1080}) {
+                const Schedule schedule = makeSchedule(strategy, ranks, rows);
+                ASSERT_EQ(schedule.size(), static_cast<size_t>(ranks));
+                EXPECT_EQ(Simulation(schedule, rows).wrong(), "") << nameOf(strategy) << ", " << ranks << " ranks, " << rows << " rows";
+            }
+}
+
+TEST(Schedule, picturesWithoutRowsNeedNoStep) {
+    for (const Strategy strategy : kEveryStrategy)
+        for (const auto& steps : makeSchedule(strategy, 5, 0)) EXPECT_TRUE(steps.empty());
+}
+
+// What every rank sends, in whole pictures.
+double mostSent(Strategy strategy, int ranks) {
+    constexpr int32_t kRows = 6720;
+    double most = 0;
+    for (const auto& steps : makeSchedule(strategy, ranks, kRows)) {
+        double sent = 0;
+        for (const Step& s : steps)
+            if (!s.receives()) sent += s.rows.count();
+        most = std::max(most, sent / kRows);
+    }
+    return most;
+}
+
+int stagesOf(Strategy strategy, int ranks) {
+    int most = 0;
+    for (const auto& steps : makeSchedule(strategy, ranks, 6720))
+        for (const Step& s : steps) most = std::max(most, s.receives() ? s.stage + 1 : 0);
+    return most;
+}
+
+TEST(Schedule, eachStrategyCarriesWhatItPromises) {
+    EXPECT_DOUBLE_EQ(mostSent(Strategy::Serial, 8), 1);
+    EXPECT_EQ(stagesOf(Strategy::Serial, 8), 1);
+    EXPECT_DOUBLE_EQ(mostSent(Strategy::DirectSend, 8), 1); // 7/8 swapped, 1/8 gathered
+    EXPECT_EQ(stagesOf(Strategy::DirectSend, 8), 2);
+    EXPECT_DOUBLE_EQ(mostSent(Strategy::BinarySwap, 8), 1); // 1/2 + 1/4 + 1/8 swapped, 1/8 gathered
+    EXPECT_EQ(stagesOf(Strategy::BinarySwap, 8), 4);
+    EXPECT_DOUBLE_EQ(mostSent(Strategy::TwoThreeSwap, 9), 1); // 2/3 + 2/9 swapped, 1/9 gathered
+    EXPECT_EQ(stagesOf(Strategy::TwoThreeSwap, 9), 3);
+    EXPECT_LT(mostSent(Strategy::TwoThreeSwap, 7), 1.5); // cuts that do not fit cost a little
+    EXPECT_EQ(stagesOf(Strategy::RadixK, 16), 3);           // 8 x 2
+    EXPECT_EQ(stagesOf(Strategy::RadixK, 7), 2);
+    EXPECT_EQ(stagesOf(Strategy::RadixK, 31), 4); // one is folded, then 6 x 5
+    EXPECT_DOUBLE_EQ(mostSent(Strategy::Streaming, 8), 1);
+}
+
+// The check above has to see what goes wrong.
+TEST(Schedule, faultsAreSeen) {
+    const auto broken = [](auto&& change) {
+        Schedule s = makeSchedule(Strategy::BinarySwap, 4, 8);
+        change(s);
+        return Simulation(s, 8).wrong();
+    };
+    EXPECT_EQ(broken([](Schedule&) {}), "");
+    EXPECT_NE(broken([](Schedule& s) { s[3].pop_back(); }), "");                                                   // a band is not sent
+    EXPECT_NE(broken([](Schedule& s) { s[0].pop_back(); }), "");                                                   // or not taken
+    EXPECT_NE(broken([](Schedule& s) { std::swap(s[0][0], s[0][1]); s[1] = {s[1][1], s[1][0]}; }), "");            // both wait first
+    EXPECT_NE(broken([](Schedule& s) { s[0][1].kind = Step::Kind::FoldEarlier; }), "");                            // order swapped
+    EXPECT_NE(broken([](Schedule& s) { s[2][0].peer = 1; }), "");
+}
+
+TEST(Strategy, namesAreRead) {
+    for (const Strategy s : kEveryStrategy) EXPECT_EQ(strategyNamed(nameOf(s)), s);
+    EXPECT_FALSE(strategyNamed("swap"));
+}
+
+} // namespace
+} // namespace mural::compositor
