@@ -2,6 +2,9 @@
 // Source: thesis, "Compounds": range.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
+
 namespace mural {
 
 struct Range {
@@ -13,10 +16,22 @@ struct Range {
     friend constexpr bool operator==(const Range&, const Range&) = default;
 };
 
-// `inner`, given as part of `outer`, as part of what `outer` is a part of.
+// `inner`, given as part of `outer`, as part of what `outer` is a part of. What ends with `outer` ends at the same number:
+// 0.3 + (0.9 - 0.3) is not 0.9, and what begins at 0.9 would not meet it.
 [[nodiscard]] constexpr Range compose(const Range& outer, const Range& inner) {
     const double size = outer.end - outer.start;
-    return {outer.start + inner.start * size, outer.start + inner.end * size};
+    const auto at = [&](double place) { return place == 1 ? outer.end : outer.start + place * size; };
+    return {at(inner.start), at(inner.end)};
+}
+
+// How many of `count` things lie before a place of the range. A place that misses the edge of one only by what decimal
+// fractions lose in arithmetic is on it, as with pixelEdge, so that neighbours share all of them, each once.
+[[nodiscard]] inline uint64_t countBefore(double place, uint64_t count) {
+    if (!(place > 0)) return 0;
+    if (place >= 1) return count;
+    const auto whole = static_cast<double>(count);
+    const double before = place * whole + std::max(1e-6, whole * 1e-15);
+    return before >= whole ? count : static_cast<uint64_t>(before);
 }
 
 } // namespace mural

@@ -198,7 +198,7 @@ bool Replay::shares(Window& w, uint64_t cost, uint64_t& first, uint64_t& last) {
     }
     if (r.phase == RangeFrame::Phase::Fresh) beginSplit(w);
     // In the first frame nothing is known: the collector draws it. What is more than in the frame before is the last one's.
-    const auto costAt = [&](double share) { return share >= 1 ? UINT64_MAX : static_cast<uint64_t>(static_cast<double>(r.lastTotal) * share); };
+    const auto costAt = [&](double share) { return share >= 1 ? UINT64_MAX : countBefore(share, r.lastTotal); };
     const uint64_t from = r.lastTotal ? costAt(config_.pass.share.start) : collects() ? 0 : UINT64_MAX;
     const uint64_t to = r.lastTotal ? costAt(config_.pass.share.end) : UINT64_MAX;
     const uint64_t at = r.cost;

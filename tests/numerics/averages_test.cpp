@@ -1,0 +1,76 @@
+// Means of 1 to 256 pictures: the nearest value, always, and no drift in either direction.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "compositor/assembly/average.hpp"
+
+namespace mural::compositor {
+namespace {
+
+Plane meanOf(const std::vector<Plane>& pictures) {
+    Average average(PlaneFormat::Rgba8, pictures[0].width(), pictures[0].height());
+    for (const Plane& p : pictures) EXPECT_TRUE(average.add(p.view()));
+    Plane mean(PlaneFormat::Rgba8, pictures[0].width(), pictures[0].height());
+    EXPECT_TRUE(average.write(mean.view()));
+    return mean;
+}
+
+// All 256 values in one picture of 64 pixels.
+Plane allValues() {
+    Plane p(PlaneFormat::Rgba8, 64, 1);
+    for (size_t i = 0; i < 256; ++i) p.bytes()[i] = static_cast<std::byte>(i);
+    return p;
+}
+
+TEST(Averages, ofOnePictureManyTimesIsThatPicture) {
+    for (size_t n = 1; n <= 256; ++n) ASSERT_EQ(meanOf(std::vector<Plane>(n, allValues())), allValues()) << n << " pictures";
+}
+
+// With k of n pictures one step above the others, the exact mean is value + k/n: each way to round is met, ties too.
+TEST(Averages, areTheNearestValue) {
+    Plane above = allValues();
+    for (auto& b : above.bytes()) b = static_cast<std::byte>(std::min(255U, std::to_integer<unsigned>(b) + 1));
+    for (size_t n = 1; n <= 256; ++n)
+        for (const size_t k : {size_t{0}, size_t{1}, n / 2, (n + 1) / 2, n - 1, n}) {
+            if (k > n) continue;
+            std::vector<Plane> pictures(k, above);
+            pictures.resize(n, allValues());
+            const Plane mean = meanOf(pictures);
+            for (size_t i = 0; i < 256; ++i) {
+                const unsigned wanted = i == 255 ? 255 : static_cast<unsigned>(i) + (2 * k >= n ? 1 : 0);
+                ASSERT_EQ(std::to_integer<unsigned>(mean.bytes()[i]), k == 0 ? i : wanted) << k << " of " << n << " pictures one above " << i;
+            }
+        }
+}
+
+// The mean of the errors: rounding that always went up, or down, would show as half a unit.
+TEST(Averages, doNotDrift) {
+    std::mt19937 random(11);
+    for (const size_t n : {3, 5, 16, 17, 64, 255, 256}) {
+        std::vector<Plane> pictures;
+        std::vector<unsigned> sums(4 * 4096, 0);
+        for (size_t i = 0; i < n; ++i) {
+            pictures.emplace_back(PlaneFormat::Rgba8, 64, 64);
+            for (size_t b = 0; b < sums.size(); ++b) {
+                const unsigned value = random() % 256;
+                pictures.back().bytes()[b] = static_cast<std::byte>(value);
+                sums[b] += value;
+            }
+        }
+        const Plane mean = meanOf(pictures);
+        double drift = 0;
+        for (size_t b = 0; b < sums.size(); ++b) {
+            const double error = std::to_integer<unsigned>(mean.bytes()[b]) - static_cast<double>(sums[b]) / static_cast<double>(n);
+            ASSERT_LE(std::abs(error), 0.5) << n;
+            drift += error / static_cast<double>(sums.size());
+        }
+        // A tie goes up: one of n sums, for even n, by half a unit.
+        const double ties = n % 2 ? 0 : 0.5 / static_cast<double>(n);
+        EXPECT_NEAR(drift, ties, 0.012) << n; // 4 standard deviations of 16384 errors
+    }
+}
+
+} // namespace
+} // namespace mural::compositor
