@@ -47,6 +47,7 @@ public:
         if (auto done = placeParts(); !done) return done.error();
         lookIntoRoom();
         placeNodes();
+        placeWindows();
         takeObserver();
         tell();
         return std::move(plan_);
@@ -254,6 +255,56 @@ private:
         if (wishes_.here || machine.isApplication || machine.host.empty()) return;
         node.where = machine.host;
         node.reach = reachOf(machine.host, wishes_.ownHost);
+    }
+
+    // Nodes show what they draw where the file has their channel's window, if every channel of the wall is drawn by its own
+    // node as it is shown. Otherwise the head shows the wall.
+    void placeWindows() {
+        std::vector<NodePlan*> shows;
+        for (const WallPart& part : plan_.wall.parts) {
+            const bool plain = part.counts.kernelWidth * part.counts.kernelHeight * part.counts.samples == 1;
+            NodePlan* drawer = nullptr;
+            int pictures = 0;
+            for (NodePlan& n : plan_.nodes) {
+                if (n.picture != part.firstPicture || n.pass.range != 0) continue;
+                ++pictures;
+                drawer = &n;
+            }
+            if (!plain || pictures != 1 || drawer->pass.period > 1 || !same(*drawer->area, part.area) || !isDestination(*drawer)) return headShowsIt();
+            shows.push_back(drawer);
+        }
+        for (size_t a = 0; a < shows.size(); ++a)
+            for (size_t b = 0; b < a; ++b) {
+                const bool sameChannel = channels_[node(*shows[a])] == channels_[node(*shows[b])];
+                if (sameChannel || (wishes_.here && !intersect(*shows[a]->area, *shows[b]->area).empty())) return headShowsIt();
+            }
+        for (NodePlan* n : shows) n->window = windowOf(channels_[node(*n)]);
+    }
+
+    static bool same(const Viewport& a, const Viewport& b) {
+        constexpr double kRounding = 1e-9;
+        return std::abs(a.x - b.x) < kRounding && std::abs(a.y - b.y) < kRounding && std::abs(a.w - b.w) < kRounding && std::abs(a.h - b.h) < kRounding;
+    }
+    void headShowsIt() { plan_.nodesShowWall = false; }
+    static size_t node(const NodePlan& n) { return static_cast<size_t>(n.node); }
+
+    [[nodiscard]] bool isDestination(const NodePlan& n) const { return config_.channels[at(channels_[node(n)])].isDestination(); }
+
+    // With all nodes here windows lie as on the wall, as a picture of it.
+    [[nodiscard]] NodeWindow windowOf(Index index) const {
+        const config::ResolvedChannel& channel = config_.channels[at(index)];
+        const config::ResolvedWindow& window = config_.windows[at(channel.window)];
+        const config::ResolvedPipe& pipe = config_.pipes[at(window.pipe)];
+        NodeWindow shown;
+        shown.title = "Mural " + nameOf(channel, index);
+        if (wishes_.here) return shown;
+        const compound::DisplaySizes& sizes = input_.sizes;
+        shown.asOnWall = false;
+        shown.x = sizes.windows[at(channel.window)].x + sizes.channels[at(index)].x;
+        shown.y = sizes.windows[at(channel.window)].y + sizes.channels[at(index)].y;
+        shown.fullScreen = window.attributes.hintFullscreen == config::value::kOn;
+        if (pipe.device || pipe.port) shown.displayName = ":" + std::to_string(pipe.port.value_or(0)) + "." + std::to_string(pipe.device.value_or(0));
+        return shown;
     }
 
     // Of the first view in stereo.

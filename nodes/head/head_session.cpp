@@ -43,8 +43,8 @@ PictureAssembler::Compose composeBy(const WallComposition& wall) {
     return [wall](const std::vector<Picture>& passes, OwnedPicture& into) { composeWall(wall, passes, into); };
 }
 
-bool wantsPictures(const SessionConfig& config) {
-    return config.display == Display::App || !config.out.empty() || headShowsWall(config);
+bool wantsPictures(const SessionConfig& config, const SessionPlan& plan) {
+    return config.display == Display::App || !config.out.empty() || headShowsWall(config, plan);
 }
 
 } // namespace
@@ -59,7 +59,7 @@ HeadSession::HeadSession(SessionConfig config,
     , control_(control)
     , options_(std::move(options))
     , nodeCount_(static_cast<int>(nodes.size()))
-    , sendsPictures_(wantsPictures(config_))
+    , sendsPictures_(wantsPictures(config_, plan_))
     , frames_(nodeCount_,
               [this](uint32_t client, uint32_t finished, uint32_t shown) {
                   if (serving_) programs_->credit(client, finished, shown);
@@ -92,7 +92,7 @@ HeadSession::HeadSession(SessionConfig config,
     output.lastFrame = config_.frames;
     output.toNativeWindows = config_.display == Display::App;
     output.openWindow = options_.openWindow;
-    if (headShowsWall(config_)) output.openWall = options_.openWall;
+    if (headShowsWall(config_, plan_)) output.openWall = options_.openWall;
     output.done = [this](uint32_t client, uint32_t frame) { frames_.pictureReleased(client, frame); };
     output.say = [this](const std::string& text) { control_.say(text); };
     output_ = std::make_unique<PictureOutput>(std::move(output), std::move(options_.file));

@@ -46,6 +46,7 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
 
     SessionPlan plan;
     plan.wall = compositionOf(config.passes);
+    plan.nodesShowWall = passCount == 1;
     for (int p = 0; p < passCount; ++p) {
         for (const TileRegion& region : splitGrid(config.columns, config.rows, std::max(1, nodesOfPass(count / ranges, passCount, p)))) {
             const auto collector = static_cast<int>(plan.nodes.size());
@@ -79,6 +80,8 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
     return plan;
 }
 
+bool headShowsWall(const SessionConfig& config, const SessionPlan& plan) { return config.display == Display::Windows && !plan.nodesShowWall; }
+
 NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node) {
     NodeSetup setup;
     setup.node = node.node;
@@ -100,13 +103,16 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
     setup.focusDistance = config.focusDistance;
     setup.tiling = config.tiling;
     setup.glBackend = config.glBackend;
-    setup.sendPictures = config.display == Display::App || !config.out.empty() || headShowsWall(config);
-    setup.wallWindows = config.display == Display::Windows && !headShowsWall(config) && node.pass.range == 0; // the collector has the picture
-    setup.fullScreen = config.fullScreen;
-    setup.windowX = config.windowX;
-    setup.windowY = config.windowY;
+    setup.sendPictures = config.display == Display::App || !config.out.empty() || headShowsWall(config, plan);
+    setup.wallWindows = config.display == Display::Windows && plan.nodesShowWall && node.pass.range == 0; // the collector has the picture
+    const NodeWindow window = node.window.value_or(NodeWindow{});
+    setup.windowTitle = window.title;
+    setup.windowAsOnWall = window.asOnWall;
+    setup.fullScreen = config.fullScreen || window.fullScreen;
+    setup.windowX = config.windowX + window.x;
+    setup.windowY = config.windowY + window.y;
     setup.placeThreads = config.placeThreads;
-    setup.displayName = config.displayName;
+    setup.displayName = window.displayName.empty() ? config.displayName : window.displayName;
     setup.build = streamBuild();
     return setup;
 }

@@ -17,6 +17,15 @@ enum class NodeReach {
     LaunchCommand // a process of another machine
 };
 
+// Where a node shows its own part of the wall, on its machine.
+struct NodeWindow {
+    std::string title;
+    std::string displayName; // empty: the session's
+    bool asOnWall = true;    // its place on the screen is that on the wall; else:
+    int x = 0, y = 0;        // of its upper left corner
+    bool fullScreen = false;
+};
+
 struct NodePlan {
     int node = 0;
     std::string where; // "local" or the host
@@ -27,12 +36,14 @@ struct NodePlan {
     TileRegion region;
     std::optional<Viewport> area; // instead of tiles: of the picture
     std::optional<ScreenView> screen; // of a room
+    std::optional<NodeWindow> window; // instead of those of tiles
     int collector = 0; // the node that puts the ranges of this picture together: this one, when range is 0
 };
 
 struct SessionPlan {
     std::vector<NodePlan> nodes;
     WallComposition wall;
+    bool nodesShowWall = true; // what each draws is a part of the wall's picture as it is
     std::optional<double> eyeBase, focusDistance; // that a configuration file says, in metres
     std::vector<std::string> explain; // lines for --explain
     std::vector<std::string> warnings; // lines that every user should see
@@ -43,6 +54,9 @@ struct SessionPlan {
 NodeReach reachOf(const std::string& host, const std::string& ownHost);
 
 SessionPlan planSession(const SessionConfig& config, const std::string& ownHost);
+
+// --display windows: whether the head opens one, with the whole wall, as only several pictures together make it.
+[[nodiscard]] bool headShowsWall(const SessionConfig& config, const SessionPlan& plan);
 
 NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node);
 

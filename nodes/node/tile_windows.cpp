@@ -8,12 +8,24 @@ Result<std::unique_ptr<TileWindows>> TileWindows::open(const NodeSetup& setup) {
     return std::unique_ptr<TileWindows>(new TileWindows(setup)); // the windows come with the first picture's size
 }
 
-Result<void> TileWindows::reopen(int width, int height) {
+// The window of an area, or those of tiles.
+std::vector<TileWindow> TileWindows::windowsFor(int width, int height) const {
+    if (setup_.hasArea) {
+        const PixelViewport whole{0, 0, width, height};
+        const PixelViewport tile = intersect(apply(whole, setup_.area), whole);
+        std::vector<TileWindow> windows = placeTiles(std::span(&tile, 1), height);
+        windows[0].title = setup_.windowTitle;
+        if (!setup_.windowAsOnWall) windows[0].screenX = windows[0].screenY = 0;
+        return windows;
+    }
     const TileGrid grid{setup_.columns, setup_.rows, setup_.tiling == Tiling::Lean ? 2 : 1};
-    const TileRegion region{setup_.regionColumn, setup_.regionRow, setup_.regionColumns, setup_.regionRows};
+    return windowsOfTiles(grid, {setup_.regionColumn, setup_.regionRow, setup_.regionColumns, setup_.regionRows}, width, height);
+}
+
+Result<void> TileWindows::reopen(int width, int height) {
     WallWindowsConfig config;
     config.displayName = setup_.displayName;
-    config.tiles = windowsOfTiles(grid, region, width, height);
+    config.tiles = windowsFor(width, height);
     tiles_.clear();
     for (const TileWindow& window : config.tiles) tiles_.push_back(window.tile);
     config.positionX = setup_.windowX;

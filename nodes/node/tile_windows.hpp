@@ -1,4 +1,4 @@
-// The wall windows of one node: one per tile that it draws.
+// The wall windows of one node: one per tile that it draws, or one of its area.
 #pragma once
 
 #include <memory>
@@ -21,6 +21,7 @@ public:
 
 private:
     explicit TileWindows(const NodeSetup& setup) : setup_(setup) {}
+    [[nodiscard]] std::vector<TileWindow> windowsFor(int width, int height) const;
     Result<void> reopen(int width, int height);
 
     NodeSetup setup_;

@@ -119,6 +119,8 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("glBackend", s.glBackend);
     visit("sendPictures", s.sendPictures);
     visit("wallWindows", s.wallWindows);
+    visit("windowTitle", s.windowTitle);
+    visit("windowAsOnWall", s.windowAsOnWall);
     visit("fullScreen", s.fullScreen);
     visit("windowX", s.windowX);
     visit("windowY", s.windowY);
@@ -273,8 +275,6 @@ Result<SessionConfig> sessionConfigFromJson(const std::string& line) {
 }
 
 std::string toJson(const NodeSetup& setup) { return write(setup); }
-
-bool headShowsWall(const SessionConfig& c) { return c.display == Display::Windows && (passesOf(c.passes).size() > 1 || !c.configFile.empty()); }
 
 Result<NodeSetup> nodeSetupFromJson(const std::string& line) {
     auto setup = read<NodeSetup>(line, "node setup");

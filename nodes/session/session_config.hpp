@@ -64,9 +64,6 @@ const char* nameOf(Display display);
 std::string toJson(const SessionConfig& config); // one line
 Result<SessionConfig> sessionConfigFromJson(const std::string& line);
 
-// Nodes show their own tiles in windows of the wall; what only several passes together make, the head shows.
-[[nodiscard]] bool headShowsWall(const SessionConfig& config);
-
 // What one node is told first (HeadCommand::Setup).
 struct NodeSetup {
     int node = 0;
@@ -83,6 +80,8 @@ struct NodeSetup {
     std::string glBackend = "auto";
     bool sendPictures = false;    // Picture messages to the head at every swap
     bool wallWindows = false;     // open one window per tile
+    std::string windowTitle;      // of the one that shows its area
+    bool windowAsOnWall = true;   // its place on the screen is that on the wall, moved by windowX and windowY; else just there
     bool fullScreen = false;
     int windowX = 0, windowY = 0;
     bool placeThreads = true;

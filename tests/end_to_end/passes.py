@@ -341,6 +341,30 @@ def room_screens(context, notes):
 
 
 @case
+def room_walls_have_windows(context, notes):
+    """--display windows: the node of each wall shows it in a window of its own; they lie side by side."""
+    if shutil.which("xwd") is None:
+        raise SystemExit("xwd is not installed: apt-get install x11-apps")
+    size, names = (160, 120), ("left", "front", "right")
+    with tempfile.TemporaryDirectory(prefix="mural-room.") as folder:
+        path, out = os.path.join(folder, "room.eqc"), os.path.join(folder, "out")
+        with open(path, "w", encoding="ascii") as file:
+            file.write(ROOM % {"w": size[0], "h": size[1], "compounds": ""})
+        command = [context.program("pass_scene"), "--size", "%dx%d" % (3 * size[0], size[1]), "--frames", "100000", "--draw", "mvp", "--around"]
+        with context.run(command, ["--config", path, "--here", "--display", "windows", "--out", out, "--frames", "400"]) as run:
+            shown = window_pixels(context, ["Mural " + name for name in names], 30)
+            status = run.status()
+        if shown is None:
+            return "no windows of the wall were seen"
+        if status != 0:
+            return "status %s" % status
+        saved = [pictures.read_png(os.path.join(out, name)) for name in sorted(os.listdir(out))]
+    walls = [[[row[3 * i * size[0]:3 * (i + 1) * size[0]] for row in p.rows] for p in saved] for i in range(3)]
+    missing = [names[i] for i in range(3) if shown[i] not in walls[i]]
+    return "windows %s show no part of any saved picture" % missing if missing else None
+
+
+@case
 def room_walls_are_shared(context, notes):
     """A wall that two nodes draw has no seam."""
     arguments, size = ["--draw", "mvp", "--around"], (160, 120)

@@ -138,6 +138,38 @@ TEST(ConfigPlan, eyesAreInTheProgramsUnits) {
     }
 }
 
+TEST(ConfigPlan, nodesShowTheirOwnChannels) {
+    SessionConfig windows;
+    windows.display = Display::Windows;
+    windows.windowX = 5;
+    const SessionPlan plan = planOfFile("wall-2x2.eqc", false);
+    EXPECT_FALSE(headShowsWall(windows, plan));
+    std::set<std::string> displays;
+    for (const NodePlan& n : plan.nodes) {
+        const NodeSetup setup = setupOf(windows, plan, n);
+        EXPECT_TRUE(setup.wallWindows);
+        EXPECT_TRUE(setup.fullScreen) << "as the file says";
+        EXPECT_FALSE(setup.windowAsOnWall);
+        EXPECT_EQ(setup.windowX, 5);
+        EXPECT_EQ(setup.windowTitle.find("Mural "), 0u);
+        EXPECT_FALSE(setup.sendPictures) << "nothing is shown or saved elsewhere";
+        displays.insert(setup.displayName);
+    }
+    EXPECT_EQ(displays, (std::set<std::string>{":0.0", ":0.1"}));
+    const SessionPlan here = planOfFile("wall-2x2.eqc");
+    EXPECT_FALSE(headShowsWall(windows, here));
+    for (const NodePlan& n : here.nodes) EXPECT_TRUE(setupOf(windows, here, n).windowAsOnWall && !setupOf(windows, here, n).fullScreen);
+}
+
+// Of ranges the node that has the picture shows it; what several pictures make, and eyes on one screen, the head.
+TEST(ConfigPlan, whoShowsWhatSeveralDraw) {
+    SessionConfig windows;
+    windows.display = Display::Windows;
+    for (const char* file : {"db.eqc", "cave.eqc"}) EXPECT_FALSE(headShowsWall(windows, planOfFile(file))) << file;
+    for (const char* file : {"2d.eqc", "subpixel.eqc", "pixel.eqc", "dplex.eqc", "stereo-anaglyph.eqc", "stereo-passive.eqc"}) EXPECT_TRUE(headShowsWall(windows, planOfFile(file))) << file;
+    EXPECT_FALSE(headShowsWall(windows, planOfFile("stereo-passive.eqc", false))) << "each eye has a projector";
+}
+
 TEST(ConfigPlan, aLayoutThatThereIsNot) {
     const auto plan = planOf(load("db.eqc"), {"me", true, "", {"nowhere"}});
     ASSERT_FALSE(plan.ok());
