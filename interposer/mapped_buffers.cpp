@@ -32,10 +32,9 @@ namespace {
 
 constexpr uint64_t kAskedBytes = uint64_t{16} << 20; // at once
 
-bool nodesDraw(const ThreadState& t) {
-    const Session* s = Session::current();
-    return t.context && s && s->alive() && !t.drawLocally;
-}
+// And the program's own context does not: what they have written into buffers is theirs alone, also for one that selects, or
+// compiles a list, by now.
+bool nodesDraw(const ThreadState& t) { return t.context && !swapLocally() && !t.context->drawsPixmap && !t.context->drawsFeedback; }
 
 // Holds the list of mappings. Asking the nodes under it ships mappings: by the same thread, which may.
 class MapsHeld {

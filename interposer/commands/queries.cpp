@@ -69,9 +69,12 @@ template <class T> T held(uint64_t value) {
     return static_cast<T>(value < largest ? value : largest);
 }
 
+// What queries count the program's own context counts as well. Not so while it compiles a list: it drew none of what was before.
+bool drawsAllItself(const ThreadState& t) { return swapLocally() || t.context->drawsPixmap; }
+
 // The driver's own answer comes first: it gives the errors, and what does not come from rendering.
 template <class T, class Local> void intoMemory(ThreadState& t, const char* by, GLuint id, GLenum pname, T* params, Local local) {
-    if (t.drawLocally || !params || !isResult(pname)) return local();
+    if (drawsAllItself(t) || !params || !isResult(pname)) return local();
     uint64_t value = 0;
     if (raisesNothing(*t.context, local) && result(t, by, id, value)) *params = held<T>(value);
 }

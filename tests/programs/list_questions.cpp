@@ -1,15 +1,17 @@
 // What depends on pixels of the whole picture in the middle of something: display lists that count samples and draw on
 // that condition, that copy out of the window and draw with the copy; copies within conditional rendering and within
-// queries.
+// queries. And questions in the middle of a list and of a selection, about what was drawn before.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
+#include "tests/programs/support/shaders.hpp"
 #include "tests/programs/support/show.hpp"
 
 using namespace programs;
 
 namespace {
 
-GLuint texture, queries[3], conditionList, copyList, pixelsList, innerList;
+GLuint texture, queries[3], conditionList, copyList, pixelsList, innerList, askingList;
+GLuint feedbackBuffer, feedbackProgram;
 
 void texturedBox(int x, int y, int w, int h) {
     glEnable(GL_TEXTURE_2D);
@@ -104,17 +106,65 @@ void copyWhileCounting(int row) {
     showBits(row, counted);
 }
 
+GLuint counted() {
+    GLuint result = 0;
+    glGetQueryObjectuiv(queries[2], GL_QUERY_RESULT, &result);
+    return result;
+}
+
+GLuint written() {
+    GLuint result = 0;
+    glGetBufferSubData(GL_TRANSFORM_FEEDBACK_BUFFER, 4, sizeof result, &result);
+    return result;
+}
+
+// Transform feedback of a point, and of a box the samples, while something else begins. Nothing is drawn before the answers.
+void ask(int frame, GLenum listMode, bool selects, int row) {
+    const GLfloat nothing[4] = {};
+    glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, feedbackBuffer);
+    glBufferData(GL_TRANSFORM_FEEDBACK_BUFFER, sizeof nothing, nothing, GL_DYNAMIC_READ);
+    glUseProgram(feedbackProgram);
+    glBeginTransformFeedback(GL_POINTS);
+    glBegin(GL_POINTS);
+    glVertex2i(frame + 3, row);
+    glEnd();
+    glEndTransformFeedback();
+    glUseProgram(0);
+    glBeginQuery(GL_SAMPLES_PASSED, queries[2]);
+    glRecti(100 + frame, row, 140, row + 9);
+    glEndQuery(GL_SAMPLES_PASSED);
+    GLuint names[4] = {}, answers[2] = {};
+    if (selects) {
+        glSelectBuffer(4, names);
+        glRenderMode(GL_SELECT);
+    }
+    if (listMode != 0) glNewList(askingList, listMode);
+    answers[0] = counted();
+    answers[1] = written();
+    if (listMode != 0) glEndList();
+    if (selects) glRenderMode(GL_RENDER);
+    showBits(row / 4, answers[0]);
+    showBits(row / 4 + 1, answers[1]);
+}
+
 void setUp(Window&) {
     glGenQueries(3, queries);
+    glGenBuffers(1, &feedbackBuffer);
+    feedbackProgram = buildProgram({{GL_VERTEX_SHADER, "#version 130\nout vec2 place;\nvoid main() { place = gl_Vertex.xy; gl_Position = gl_Vertex; }\n"}},
+                                   [](unsigned linking) {
+                                       const char* const varying = "place";
+                                       glTransformFeedbackVaryings(linking, 1, &varying, GL_INTERLEAVED_ATTRIBS);
+                                   });
     glGenTextures(1, &texture);
     glBindTexture(GL_TEXTURE_2D, texture);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 64, 64, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
-    conditionList = glGenLists(4);
+    conditionList = glGenLists(5);
     copyList = conditionList + 1;
     pixelsList = conditionList + 2;
     innerList = conditionList + 3;
+    askingList = conditionList + 4;
 }
 
 } // namespace
@@ -129,6 +179,9 @@ int main(int argc, char** argv) {
         glClearColor(0.1F, 0.1F, 0.3F, 1);
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
         pattern(frame);
+        ask(frame, GL_COMPILE, false, 100);
+        ask(frame, GL_COMPILE_AND_EXECUTE, false, 112);
+        ask(frame, 0, true, 124);
         copyConditionally();
         copyWhileCounting(46);
         if (frame == 0) { // in the middle of a picture
