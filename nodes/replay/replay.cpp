@@ -87,7 +87,9 @@ bool allocates(uint16_t opcode) {
 bool Replay::execute(uint16_t opcode, std::span<const std::byte> arguments, BlobQueue& blobs) {
     Args in(arguments, blobs);
     const bool drawing = opcode == wire::kOpRequestPixels || opcode == wire::kOpFillWindow || opcode == wire::kOpDrawAll;
-    if (drawing && c_->compiling) {
+    // A read is in no list itself, and between glBegin and glEnd ending the native one would cut the primitive in two.
+    const bool readsInPrimitive = opcode == wire::kOpRequestPixels && c_->compilesPrimitive;
+    if (drawing && c_->compiling && !readsInPrimitive) {
         bool ok = true;
         nextNativeList([&] { ok = own(opcode, in); });
         return ok;

@@ -147,6 +147,24 @@ void ask(int frame, GLenum listMode, bool selects, int row) {
     showBits(row / 4 + 1, answers[1]);
 }
 
+// Between glBegin and glEnd of a list, which holds no reads: they are answered at once, and the primitive stays whole.
+void readInPrimitive(GLenum mode, GLenum listMode, int row) {
+    GLuint pixels[2 * 2] = {};
+    glNewList(askingList, listMode);
+    glColor3f(0.2F, 0.9F, 0.7F);
+    glBegin(mode);
+    glVertex2i(150, row);
+    glVertex2i(240, row + 5);
+    glReadPixels(120, 104, 2, 2, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
+    glVertex2i(230, row + 30);
+    glVertex2i(60, row + 22);
+    glEnd();
+    glEndList();
+    glCallList(askingList);
+    showBits(row / 4, pixels[0]);
+    showBits(row / 4 + 1, pixels[3]);
+}
+
 void setUp(Window&) {
     glGenQueries(3, queries);
     glGenBuffers(1, &feedbackBuffer);
@@ -182,6 +200,9 @@ int main(int argc, char** argv) {
         ask(frame, GL_COMPILE, false, 100);
         ask(frame, GL_COMPILE_AND_EXECUTE, false, 112);
         ask(frame, 0, true, 124);
+        readInPrimitive(GL_QUADS, GL_COMPILE, 4);
+        readInPrimitive(GL_LINE_LOOP, GL_COMPILE, 24);
+        readInPrimitive(GL_QUADS, GL_COMPILE_AND_EXECUTE, 48);
         copyConditionally();
         copyWhileCounting(46);
         if (frame == 0) { // in the middle of a picture

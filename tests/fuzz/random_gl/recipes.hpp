@@ -25,6 +25,7 @@ void begin(World& w);                // of a context: arrays that point somewher
 void clearAll(World& w);
 void pointAll(World& w, bool buffered); // every vertex array of what is bound: none that is enabled lacks memory
 void useAnyProgram(World& w);        // one of the pool's, with random uniforms
+void useNoGeometryShader(World& w);  // before lists: Mesa draws line loops and strips of theirs that it does not take
 void barrier(World& w);              // what shaders have written is there for all that reads: without it nothing is sure
 bool drawsAnything(World& w);        // false: no vertex shader, where there is no other way. Undefined, and Mesa draws otherwise after it
 void drawBuffered(World& w);         // with the current program, from arrays in a buffer

@@ -87,6 +87,7 @@ GLuint listName(World& w) {
 // A list calls only lists with smaller names: no circles.
 void compileList(World& w) {
     const GLuint list = listName(w);
+    useNoGeometryShader(w);
     GL(glNewList, list, w.random.chance(50) ? GL_COMPILE : GL_COMPILE_AND_EXECUTE);
     w.compilesList = true;
     for (std::uint32_t i = w.random.below(8); i > 0; --i) {
@@ -105,6 +106,7 @@ void compileList(World& w) {
 }
 
 void runLists(World& w) {
+    useNoGeometryShader(w);
     if (w.random.chance(60)) {
         GL(glCallList, w.name(Kind::List));
         return;

@@ -21,14 +21,14 @@ const PoolProgram& anyProgram(World& w) {
     }
 }
 
-bool hasVertexShader(GLuint program) {
+bool hasShader(GLuint program, GLenum wanted) {
     GLuint shaders[8] = {};
     GLsizei count = 0;
     glGetAttachedShaders(program, 8, &count, shaders);
     for (GLsizei i = 0; i < count; ++i) {
         GLint type = 0;
         glGetShaderiv(shaders[i], GL_SHADER_TYPE, &type);
-        if (type == GL_VERTEX_SHADER) {
+        if (type == static_cast<GLint>(wanted)) {
             return true;
         }
     }
@@ -195,6 +195,23 @@ constexpr Recipe kRecipes[] = {
 
 } // namespace
 
+void useNoGeometryShader(World& w) {
+    GLint current = 0;
+    GLint pipeline = 0;
+    GLint geometry = 0;
+    glGetIntegerv(GL_CURRENT_PROGRAM, &current);
+    glGetIntegerv(GL_PROGRAM_PIPELINE_BINDING, &pipeline);
+    if (current != 0 && hasShader(static_cast<GLuint>(current), GL_GEOMETRY_SHADER)) {
+        GL(glUseProgram, 0U);
+    }
+    if (pipeline != 0) {
+        glGetProgramPipelineiv(static_cast<GLuint>(pipeline), GL_GEOMETRY_SHADER, &geometry);
+    }
+    if (geometry != 0) {
+        GL(glBindProgramPipeline, 0U);
+    }
+}
+
 bool drawsAnything(World& w) {
     if (!w.shaders() || w.profile == Profile::Compat) {
         return true;
@@ -202,7 +219,7 @@ bool drawsAnything(World& w) {
     GLint current = 0;
     glGetIntegerv(GL_CURRENT_PROGRAM, &current);
     if (current != 0) {
-        return hasVertexShader(static_cast<GLuint>(current));
+        return hasShader(static_cast<GLuint>(current), GL_VERTEX_SHADER);
     }
     GLint pipeline = 0;
     GLint vertexProgram = 0;
