@@ -21,14 +21,14 @@ const PoolProgram& anyProgram(World& w) {
     }
 }
 
-bool hasShader(GLuint program, GLenum wanted) {
+bool hasVertexShader(GLuint program) {
     GLuint shaders[8] = {};
     GLsizei count = 0;
     glGetAttachedShaders(program, 8, &count, shaders);
     for (GLsizei i = 0; i < count; ++i) {
         GLint type = 0;
         glGetShaderiv(shaders[i], GL_SHADER_TYPE, &type);
-        if (type == static_cast<GLint>(wanted)) {
+        if (type == GL_VERTEX_SHADER) {
             return true;
         }
     }
@@ -201,9 +201,14 @@ void useNoGeometryShader(World& w) {
     GLint geometry = 0;
     glGetIntegerv(GL_CURRENT_PROGRAM, &current);
     glGetIntegerv(GL_PROGRAM_PIPELINE_BINDING, &pipeline);
-    if (current != 0 && hasShader(static_cast<GLuint>(current), GL_GEOMETRY_SHADER)) {
-        GL(glUseProgram, 0U);
+    if (current != 0) {
+        (void)w.failed();
+        glGetProgramiv(static_cast<GLuint>(current), GL_GEOMETRY_VERTICES_OUT, &geometry);
+        if (glGetError() == GL_NO_ERROR) { // an error without a geometry shader
+            GL(glUseProgram, 0U);
+        }
     }
+    geometry = 0;
     if (pipeline != 0) {
         glGetProgramPipelineiv(static_cast<GLuint>(pipeline), GL_GEOMETRY_SHADER, &geometry);
     }
@@ -219,7 +224,7 @@ bool drawsAnything(World& w) {
     GLint current = 0;
     glGetIntegerv(GL_CURRENT_PROGRAM, &current);
     if (current != 0) {
-        return hasShader(static_cast<GLuint>(current), GL_VERTEX_SHADER);
+        return hasVertexShader(static_cast<GLuint>(current));
     }
     GLint pipeline = 0;
     GLint vertexProgram = 0;
