@@ -180,6 +180,13 @@ private:
         if (std::strncmp(command_.name, "glPixelStore", 12) == 0) {
             limit({"param"}, 48);
         }
+        // Mesa 22.3.6 adds the count to -1, finds nothing wrong and goes to what stands before the first.
+        const bool overflows = std::strstr(command_.name, "ProgramLocalParameter") != nullptr || std::strcmp(command_.name, "glScissorArrayv") == 0;
+        for (Value* const value : {find("index"), find("first")}) {
+            if (overflows && value != nullptr && value->whole == ~0U) {
+                value->whole = 1000;
+            }
+        }
         if (Value* const end = find("end"); end != nullptr && find("indices") != nullptr) {
             end->whole = 300;
         }
