@@ -144,7 +144,7 @@ void renderbuffer(World& w, GLenum attachment, GLenum format) {
     GL(glGenRenderbuffers, 1, &buffer);
     w.keep(Kind::Renderbuffer, buffer);
     GL(glBindRenderbuffer, GL_RENDERBUFFER, buffer);
-    GL(glRenderbufferStorage, GL_RENDERBUFFER, format, 40, 30);
+    GL(glRenderbufferStorage, GL_RENDERBUFFER, format, 40, 40); // as large as textures: Mesa reads behind the end of a smaller one
     GL(glFramebufferRenderbuffer, GL_FRAMEBUFFER, attachment, GL_RENDERBUFFER, buffer);
 }
 
