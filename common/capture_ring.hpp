@@ -23,7 +23,7 @@
 namespace mural::capture {
 
 constexpr uint32_t kMagic = 0x4d55524c; // "MURL"
-constexpr uint32_t kVersion = 6;
+constexpr uint32_t kVersion = 7;
 constexpr uint32_t kChunkBytes = 256 * 1024;
 constexpr uint32_t kDefaultChunks = 256; // 64 MiB
 constexpr uint32_t kReplyBytes = 4 * 1024 * 1024;
@@ -133,6 +133,7 @@ struct alignas(64) CaptureHeader {
     alignas(64) std::atomic<uint64_t> verifiedFrames;
     std::atomic<uint64_t> verifiedPixels;
     std::atomic<uint64_t> differingPixels;
+    std::atomic<uint64_t> squaredDifference; // of all components, added up
     std::atomic<uint32_t> largestDifference;
     // Counters of the app's side, for the report.
     std::atomic<uint64_t> callsUnsupported;

@@ -46,7 +46,7 @@ void verifyFrame(ThreadState& t, Window& w) {
     auto* mine = static_cast<uint8_t*>(std::malloc(pixels * 4));
     if (!mine) return;
     const auto* theirs = static_cast<const uint8_t*>(readBoth(t, w, mine));
-    uint64_t differing = 0;
+    uint64_t differing = 0, squared = 0;
     uint32_t largest = 0;
     for (size_t i = 0; theirs && i < pixels; ++i) {
         uint32_t worst = 0;
@@ -54,6 +54,7 @@ void verifyFrame(ThreadState& t, Window& w) {
             const int d = mine[4 * i + k] - theirs[4 * i + k];
             const auto size = static_cast<uint32_t>(d < 0 ? -d : d);
             worst = size > worst ? size : worst;
+            squared += uint64_t{size} * size;
         }
         differing += worst > 0;
         largest = worst > largest ? worst : largest;
@@ -63,6 +64,7 @@ void verifyFrame(ThreadState& t, Window& w) {
         const uint64_t frame = h->verifiedFrames.fetch_add(1) + 1;
         h->verifiedPixels.fetch_add(pixels);
         h->differingPixels.fetch_add(differing);
+        h->squaredDifference.fetch_add(squared);
         if (largest > h->largestDifference.load()) h->largestDifference.store(largest);
         if (differing) {
             dump(w, static_cast<uint32_t>(frame), "native", mine);

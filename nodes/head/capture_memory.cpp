@@ -208,6 +208,7 @@ CaptureCounts CaptureMemory::counts() const {
     c.verifiedFrames = shared_->verifiedFrames.load();
     c.verifiedPixels = shared_->verifiedPixels.load();
     c.differingPixels = shared_->differingPixels.load();
+    c.squaredDifference = shared_->squaredDifference.load();
     c.largestDifference = shared_->largestDifference.load();
     c.callsUnsupported = shared_->callsUnsupported.load();
     c.roundTrips = shared_->roundTrips.load();

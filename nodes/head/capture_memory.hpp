@@ -24,6 +24,7 @@ struct CaptureCounts {
     uint64_t verifiedFrames = 0;
     uint64_t verifiedPixels = 0;
     uint64_t differingPixels = 0;
+    uint64_t squaredDifference = 0;
     uint32_t largestDifference = 0;
     uint64_t callsUnsupported = 0;
     uint64_t roundTrips = 0;

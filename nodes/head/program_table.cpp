@@ -197,6 +197,7 @@ void ProgramTable::addCounts(CaptureCounts& sum, const CaptureCounts& counts) {
     sum.verifiedFrames += counts.verifiedFrames;
     sum.verifiedPixels += counts.verifiedPixels;
     sum.differingPixels += counts.differingPixels;
+    sum.squaredDifference += counts.squaredDifference;
     sum.largestDifference = std::max(sum.largestDifference, counts.largestDifference);
     sum.callsUnsupported += counts.callsUnsupported;
     sum.roundTrips += counts.roundTrips;

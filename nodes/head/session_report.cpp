@@ -74,6 +74,7 @@ Json reportOf(const SessionNumbers& n) {
         {"verifiedFrames", n.programs.verifiedFrames},
         {"verifiedPixels", n.programs.verifiedPixels},
         {"differingPixels", n.programs.differingPixels},
+        {"squaredDifference", n.programs.squaredDifference},
         {"largestDifference", n.programs.largestDifference},
         {"drawnWhole", n.drawnWhole},
         {"callsUnsupported", n.programs.callsUnsupported},

@@ -1,6 +1,7 @@
 #include "tools/mural/console.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -66,6 +67,7 @@ std::vector<std::string> reportLines(const SessionReport& r) {
     if (r.verifiedFrames > 0) {
         std::string line = fmt::format("verified {} frame{}, {} pixels: {} differ", r.verifiedFrames, plural(r.verifiedFrames), r.verifiedPixels, r.differingPixels);
         if (r.differingPixels > 0) line += fmt::format(", by up to {} of 255", r.largestDifference);
+        if (r.squaredDifference > 0) line += fmt::format(", PSNR {:.1f} dB", 10 * std::log10(255.0 * 255 * 4 * static_cast<double>(r.verifiedPixels) / static_cast<double>(r.squaredDifference)));
         lines.push_back(line);
     }
     if (r.savedPictures > 0) {

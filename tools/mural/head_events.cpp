@@ -53,6 +53,7 @@ SessionReport reportFrom(const Json& j) {
     r.verifiedFrames = whole(j, "verifiedFrames");
     r.verifiedPixels = whole(j, "verifiedPixels");
     r.differingPixels = whole(j, "differingPixels");
+    r.squaredDifference = whole(j, "squaredDifference");
     r.largestDifference = whole(j, "largestDifference");
     r.savedPictures = whole(j, "savedPictures");
     r.lastPicture = text(j, "lastPicture");

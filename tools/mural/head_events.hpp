@@ -28,6 +28,7 @@ struct SessionReport {
     int64_t verifiedFrames = 0;
     int64_t verifiedPixels = 0;
     int64_t differingPixels = 0;
+    int64_t squaredDifference = 0; // of all components, alpha among them
     int64_t largestDifference = 0;
     int64_t savedPictures = 0;
     std::string lastPicture;
