@@ -8,6 +8,7 @@
 #include "nodes/head/head.hpp"
 #include "nodes/launch/program_check.hpp"
 #include "nodes/node/node.hpp"
+#include "tools/mural/accuracy/accuracy_command.hpp"
 #include "tools/mural/commands.hpp"
 #include "tools/mural/config/config_command.hpp"
 #include "tools/mural/discover.hpp"
@@ -64,7 +65,7 @@ class HelpFormatter : public CLI::Formatter {
 public:
     std::string make_usage(const CLI::App* app, std::string) const override {
         if (app->get_parent() == nullptr) return "Usage: mural COMMAND [OPTIONS]\n";
-        const std::string rest = app->get_name() == "run" ? " -- PROGRAM ARGUMENTS..." : app->get_name() == "call" ? " HOST MURAL ARGUMENTS..." : "";
+        const std::string rest = app->get_name() == "run" ? " -- PROGRAM ARGUMENTS..." : app->get_name() == "bench" ? " accuracy [-- PROGRAM ARGUMENTS...]" : app->get_name() == "call" ? " HOST MURAL ARGUMENTS..." : "";
         return "Usage: mural " + app->get_name() + " [OPTIONS]" + rest + "\n";
     }
     std::string make_option_name(const CLI::Option* option, bool positional) const override {
@@ -192,10 +193,28 @@ private:
                                  "Found are machines on which `mural node --wait` runs; who they are is shown by the secret alone, when a session begins.\n"
                                  "Exit status: 0, 1 when none was found, 2 for a bad argument.");
         mural::cli::describeDiscover(discover, discover_);
+        addBench();
         addConfig();
         add("version", "print the version", [] { return mural::cli::versionCommand(); }, "Example:\n  mural version\n\nExit status: 0.");
         add("preload-probe", "", [] { return mural::cli::preloadProbeCommand(); }, "").group("");
         add("network-member", "", [] { return mural::cli::networkMemberCommand(); }, "").group("");
+    }
+
+    void addBench() {
+        CLI::App& bench = add("bench", "measure how far pictures are from those of one machine", [this] { return runBench(); },
+                              "Examples:\n  mural bench accuracy                              every decomposition, composition and codec, on Mural's own scenes\n"
+                              "  mural bench accuracy --quick                      one of each kind, on small pictures\n"
+                              "  mural bench accuracy --json a.json --svg a.svg    the same for programs, and as a picture\n"
+                              "  mural bench accuracy --frames 60 -- glxgears      a program of yours, each frame against what its own context draws\n\n"
+                              "Everything runs on this machine and a private display. docs/accuracy.md says what the bounds are, and why.\n"
+                              "Exit status: 0, 1 when a bound is broken or a file can't be written, 2 when nothing could be measured.");
+        mural::cli::describeBench(bench, bench_);
+    }
+
+    int runBench() {
+        bench_.program = line_.program;
+        if (line_.separated && bench_.program.empty()) return usageError("mural bench", "no program stands after --");
+        return mural::cli::benchCommand(bench_);
     }
 
     void addConfig() {
@@ -232,6 +251,7 @@ private:
     bool asJson_ = false;
     bool onlyUnsupported_ = false;
     mural::cli::StatOptions stat_;
+    mural::cli::BenchArguments bench_;
     mural::cli::ConfigArguments config_;
     mural::cli::DiscoverArguments discover_;
     mural::cli::NetperfArguments netperf_;

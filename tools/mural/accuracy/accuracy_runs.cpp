@@ -1,0 +1,137 @@
+#include "tools/mural/accuracy/accuracy_runs.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <fcntl.h>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <unistd.h>
+
+#include "nodes/launch/child_process.hpp"
+#include "nodes/launch/program_check.hpp"
+#include "nodes/output/png_files.hpp"
+
+namespace mural::cli {
+
+namespace {
+
+constexpr int64_t kRunMs = 300'000; // of one run; slow machines need a tenth of it
+constexpr int64_t kEndMs = 10'000;
+
+std::string textOf(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+}
+
+std::string lastLine(std::string text) {
+    while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) text.pop_back();
+    return text.substr(text.find_last_of('\n') + 1);
+}
+
+Result<OwnedPicture> readPpm(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::string magic;
+    int width = 0, height = 0, most = 0;
+    file >> magic >> width >> height >> most;
+    file.get();
+    constexpr int kLargest = 1 << 16;
+    if (!file || magic != "P6" || most != 255 || width <= 0 || height <= 0 || width > kLargest || height > kLargest)
+        return Error{path + " is no PPM picture of 8 bits; was the disk full?"};
+    OwnedPicture picture(width, height);
+    std::vector<char> row(static_cast<size_t>(width) * 3);
+    for (int y = height; y-- > 0;) { // files begin at the top
+        if (!file.read(row.data(), static_cast<std::streamsize>(row.size()))) return Error{path + " ends too early; was the disk full?"};
+        for (size_t x = 0; x < static_cast<size_t>(width); ++x)
+            for (size_t c = 0; c < 4; ++c) picture.row(y)[4 * x + c] = c < 3 ? static_cast<std::byte>(row[3 * x + 2 - c]) : std::byte{255};
+    }
+    return picture;
+}
+
+} // namespace
+
+Result<ScratchFolder> ScratchFolder::make() {
+    std::error_code error;
+    const std::filesystem::path all = std::filesystem::temp_directory_path(error);
+    std::string path = (error ? std::filesystem::path("/tmp") : all) / "mural-accuracy.XXXXXX";
+    if (mkdtemp(path.data()) == nullptr) return Error{"no folder for pictures: " + path + ": " + std::strerror(errno) + "; set TMPDIR to one that can be written"};
+    return ScratchFolder(path);
+}
+
+ScratchFolder::~ScratchFolder() {
+    std::error_code ignored;
+    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
+}
+
+Result<AccuracyRuns> AccuracyRuns::open() {
+    auto scratch = ScratchFolder::make();
+    if (!scratch) return scratch.error();
+    auto display = launch::PrivateDisplay::start(launch::kDefaultScreenWidth, launch::kDefaultScreenHeight);
+    if (!display) return display.error();
+    return AccuracyRuns(std::move(*display), std::move(*scratch));
+}
+
+Result<std::string> AccuracyRuns::native(const Words& program) const { return perform(program, program.front()); }
+
+Result<std::string> AccuracyRuns::mural(const Words& options, const Words& program) const {
+    Words command{launch::ownBinary(), "run", "--quiet", "--display", "none"};
+    std::string name = "mural run";
+    for (const std::string& o : options) name += " " + o;
+    command.insert(command.end(), options.begin(), options.end());
+    command.emplace_back("--");
+    command.insert(command.end(), program.begin(), program.end());
+    return perform(command, name);
+}
+
+Result<std::string> AccuracyRuns::perform(const Words& command, const std::string& name) const {
+    const std::string said = scratch_.path() + "/said", complained = scratch_.path() + "/complained";
+    launch::SpawnRequest request;
+    request.file = command.front();
+    request.arguments = command;
+    launch::Environment environment = launch::Environment::current();
+    launch::removeCapture(environment);
+    display_->use(environment);
+    request.environment = environment.entries();
+    request.outputFd = ::open(said.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    request.errorFd = ::open(complained.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    request.signalWhenWeDie = SIGTERM;
+    auto child = request.outputFd >= 0 && request.errorFd >= 0 ? launch::ChildProcess::start(request) : Result<launch::ChildProcess>(Error{scratch_.path() + " can't be written: " + std::strerror(errno)});
+    if (request.outputFd >= 0) close(request.outputFd);
+    if (request.errorFd >= 0) close(request.errorFd);
+    if (!child) return child.error();
+    if (!child->waitUntil(Deadline::inMs(kRunMs))) {
+        child->end(Deadline::inMs(kEndMs));
+        return Error{name + " did not end within " + std::to_string(kRunMs / 1000) + " s and was ended"};
+    }
+    if (child->exitStatus() == 0) return textOf(said);
+    const std::string why = lastLine(textOf(complained));
+    return Error{name + ": " + (why.empty() ? child->describeEnd() : why)};
+}
+
+Result<std::string> AccuracyRuns::scenesProgram() {
+    const std::string path = std::filesystem::path(launch::ownBinary()).parent_path() / "mural-scenes";
+    if (access(path.c_str(), X_OK) == 0) return path;
+    return Error{path + " is not there: build the target mural-scenes, or give a program after --"};
+}
+
+Result<std::vector<OwnedPicture>> readPictures(const std::string& folder) {
+    std::vector<std::filesystem::path> paths;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) paths.push_back(entry.path());
+    if (error) return Error{folder + " can't be read: " + error.message()};
+    std::ranges::sort(paths);
+    std::vector<OwnedPicture> pictures;
+    for (const auto& path : paths) {
+        auto picture = path.extension() == ".ppm" ? readPpm(path) : readPng(path);
+        if (!picture) return picture.error();
+        pictures.push_back(std::move(*picture));
+    }
+    return pictures;
+}
+
+} // namespace mural::cli

@@ -1,0 +1,16 @@
+// What was measured: a table for people, JSON for programs.
+#pragma once
+
+#include <string>
+
+#include "tools/mural/accuracy/accuracy_row.hpp"
+
+namespace mural::cli {
+
+[[nodiscard]] std::string tableOf(const AccuracyReport& report);
+[[nodiscard]] std::string jsonOf(const AccuracyReport& report);
+
+// "0", "12", "1 234 567".
+[[nodiscard]] std::string spaced(int64_t number);
+
+} // namespace mural::cli

@@ -1,0 +1,192 @@
+#include "tools/mural/accuracy/scene_rows.hpp"
+
+#include <fmt/format.h>
+
+#include "common/jitter.hpp"
+#include "tools/mural/accuracy/scenes/scene_names.hpp"
+
+namespace mural::cli {
+
+namespace {
+
+constexpr int kRounds = 2; // of all scenes: nodes that share draws go by what the frame before has cost
+constexpr double kEye = 0.3, kFocus = 6;
+
+// What is promised of each scene, in the order of kSceneNames: triangles, lighting, textures, lines, blending, depths.
+using Bounds = std::vector<Bound>;
+
+const Bound kNotPromised{};
+
+} // namespace
+
+struct SceneRows::Way {
+    enum class Reference { Native, LeftEye, RightEye, BothEyes, Mean };
+
+    std::string name;
+    Words options; // of mural run
+    Bounds bounds; // one: all scenes together
+    Reference reference = Reference::Native;
+    int samples = 1;
+    bool quick = false; // measured with --quick, too
+};
+
+// Bounds: exact where the method is exact; otherwise what docs/accuracy.md says, with the reasons.
+std::vector<SceneRows::Way> SceneRows::ways() {
+    using R = Way::Reference;
+    const Bounds exact{Bound::exact()};
+    const Words eyes{"--eye-base", fmt::format("{}", 2 * kEye), "--focus", fmt::format("{}", kFocus)};
+    const auto eye = [&](const std::string& mode, const Words& more = {}) {
+        Words options{"--stereo", mode};
+        options.insert(options.end(), eyes.begin(), eyes.end());
+        options.insert(options.end(), more.begin(), more.end());
+        return options;
+    };
+    const Bound moved{0.005, {}, 50.0};
+    const Bounds movedScenes{moved, moved, {{}, {}, 45.0}, {{}, {}, 40.0}, moved, kNotPromised};
+    const Bound mean{0.001, {}, 60.0};
+    const Bounds meanScenes{mean, mean, mean, mean, mean, kNotPromised};
+    const Bound kernelOfPolygons{{}, {}, 40.0};
+    const Bounds kernels{kernelOfPolygons, kernelOfPolygons, kNotPromised, kNotPromised, kernelOfPolygons, kNotPromised};
+    const Bound lean{0.0025, {}, 50.0};
+    return {
+        {"2D, 2x2 tiles", {"--tiles", "2x2"}, exact, R::Native, 1, true},
+        {"2D, 3x1 tiles that do not divide", {"--tiles", "3x1"}, exact},
+        {"2D, 7x5 tiles on 4 nodes, unevenly", {"--tiles", "7x5", "--local-nodes", "4"}, exact},
+        {"2D, tiling culled, 3x2", {"--tiles", "3x2", "--tiling", "culled"}, exact, R::Native, 1, true},
+        {"DB, 2 ranges", {"--db", "2"}, exact},
+        {"DB, 3 ranges", {"--db", "3"}, exact, R::Native, 1, true},
+        {"DPlex, 3 turns", {"--dplex", "3"}, exact, R::Native, 1, true},
+        {"mixed: 2x1 tiles of 2 ranges", {"--tiles", "2x1", "--db", "2", "--local-nodes", "4"}, exact, R::Native, 1, true},
+        {"mixed: 2 turns of 1x2 tiles", {"--dplex", "2", "--tiles", "1x2", "--local-nodes", "4"}, exact},
+        {"2D, tiling lean, 2x2", {"--tiles", "2x2", "--tiling", "lean"}, {lean, lean, {{}, {}, 45.0}, lean, lean, kNotPromised}, R::Native, 1, true},
+        {"stereo, left eye", eye("left"), movedScenes, R::LeftEye, 1, true},
+        {"stereo, right eye of 2x1 tiles", eye("right", {"--tiles", "2x1", "--local-nodes", "2"}), movedScenes, R::RightEye},
+        {"stereo, anaglyph", eye("anaglyph"), movedScenes, R::BothEyes},
+        {"subpixel, 2 samples", {"--subpixel", "2"}, meanScenes, R::Mean, 2, true},
+        {"subpixel, 4 samples", {"--subpixel", "4"}, meanScenes, R::Mean, 4},
+        {"mixed: 2x1 tiles of 2 samples", {"--subpixel", "2", "--tiles", "2x1", "--local-nodes", "4"}, meanScenes, R::Mean, 2},
+        {"pixel, kernel of 2x1", {"--pixel", "2x1"}, kernels},
+        {"pixel, kernel of 2x2", {"--pixel", "2x2"}, kernels, R::Native, 1, true},
+        {"pixel, kernel of 3x1", {"--pixel", "3"}, kernels},
+    };
+}
+
+Words SceneRows::program(const Words& more) const {
+    auto path = AccuracyRuns::scenesProgram();
+    Words words{path ? *path : "mural-scenes", "--size", quick_ ? "253x191" : "1021x767", "--frames", std::to_string(kRounds * scenes::kSceneNames.size())};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+}
+
+std::string SceneRows::subject() const {
+    const OwnedPicture& first = native_.front();
+    return fmt::format("{} scenes of mural-scenes, {} frames of {}x{} pixels", scenes::kSceneNames.size(), native_.size(), first.width(), first.height());
+}
+
+Result<std::vector<OwnedPicture>> SceneRows::drawNatively(const Words& more) {
+    auto folder = ScratchFolder::make();
+    if (!folder) return folder.error();
+    Words arguments{"--save", folder->path()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    auto said = runs_.native(program(arguments));
+    if (!said) return said.error();
+    gl_ = said->substr(0, said->find('\n'));
+    return readPictures(folder->path());
+}
+
+Result<std::vector<OwnedPicture>> SceneRows::drawByMural(const Words& options) {
+    auto folder = ScratchFolder::make();
+    if (!folder) return folder.error();
+    Words all = options;
+    all.insert(all.end(), {"--out", folder->path()});
+    if (auto said = runs_.mural(all, program({})); !said) return said.error();
+    return readPictures(folder->path());
+}
+
+Result<void> SceneRows::prepare() {
+    if (auto path = AccuracyRuns::scenesProgram(); !path) return path.error();
+    auto drawn = drawNatively({});
+    if (!drawn) return drawn.error();
+    native_ = std::move(*drawn);
+    if (native_.size() != kRounds * scenes::kSceneNames.size()) return Error{"the scenes were not all drawn; run mural-scenes by itself to see why"};
+    return {};
+}
+
+// Of as many pictures as samples, each with its viewport moved: to the nearest value, halves up, as `mural run` rounds.
+Result<std::vector<OwnedPicture>> SceneRows::meanOf(int samples) {
+    std::vector<std::vector<unsigned>> sums;
+    std::vector<OwnedPicture> mean;
+    for (int i = 0; i < samples; ++i) {
+        const Jitter jitter = jitterOf({i, samples});
+        auto drawn = drawNatively({"--move", fmt::format("{:.17g},{:.17g}", -jitter.x, -jitter.y)});
+        if (!drawn) return drawn.error();
+        if (mean.empty()) mean = std::move(*drawn);
+        else if (drawn->size() != mean.size()) return Error{"the scenes were not all drawn"};
+        sums.resize(mean.size());
+        for (size_t p = 0; p < mean.size(); ++p) {
+            const Picture from = i == 0 ? mean[p].view() : (*drawn)[p].view();
+            sums[p].resize(from.sizeBytes());
+            for (size_t b = 0; b < sums[p].size(); ++b) sums[p][b] += std::to_integer<unsigned>(from.bgra[b]);
+        }
+    }
+    const auto n = static_cast<unsigned>(samples);
+    for (size_t p = 0; p < mean.size(); ++p)
+        for (size_t b = 0; b < sums[p].size(); ++b) mean[p].data()[b] = static_cast<std::byte>((2 * sums[p][b] + n) / (2 * n));
+    return mean;
+}
+
+Result<std::vector<OwnedPicture>> SceneRows::anaglyph() {
+    auto left = drawNatively({"--eye", fmt::format("{},{}", -kEye, kFocus)}), right = drawNatively({"--eye", fmt::format("{},{}", kEye, kFocus)});
+    if (!left) return left.error();
+    if (!right) return right.error();
+    if (left->size() != right->size()) return Error{"the scenes were not all drawn"};
+    for (size_t p = 0; p < right->size(); ++p)
+        for (size_t b = 2; b < (*right)[p].view().sizeBytes(); b += 4) (*right)[p].data()[b] = (*left)[p].data()[b]; // red
+    return right;
+}
+
+Result<std::vector<OwnedPicture>> SceneRows::referenceOf(const Way& way) {
+    using R = Way::Reference;
+    switch (way.reference) {
+    case R::LeftEye: return drawNatively({"--eye", fmt::format("{},{}", -kEye, kFocus)});
+    case R::RightEye: return drawNatively({"--eye", fmt::format("{},{}", kEye, kFocus)});
+    case R::BothEyes: return anaglyph();
+    case R::Mean: return meanOf(way.samples);
+    case R::Native: break;
+    }
+    std::vector<OwnedPicture> copies;
+    for (const OwnedPicture& p : native_) copies.emplace_back(p.view());
+    return copies;
+}
+
+void SceneRows::measure(std::vector<AccuracyRow>& rows) {
+    using R = Way::Reference;
+    const auto& names = scenes::kSceneNames;
+    for (const Way& way : ways()) {
+        if (quick_ && !way.quick) continue;
+        say_(way.name);
+        const bool exact = way.bounds.size() == 1;
+        AccuracyRow row;
+        row.group = exact ? "Decompositions that are exact" : "Decompositions that round otherwise, or approximate";
+        row.reference = way.reference == R::Native ? "native" : way.reference == R::Mean ? fmt::format("mean of {} native", way.samples)
+                      : way.reference == R::BothEyes ? "two native eyes" : "native eye";
+        auto wanted = referenceOf(way);
+        auto got = wanted ? drawByMural(way.options) : Result<std::vector<OwnedPicture>>(wanted.error());
+        if (!got || got->size() != wanted->size()) {
+            row.what = way.name;
+            row.bound = way.bounds.front();
+            row.failure = got ? fmt::format("{} pictures came instead of {}", got->size(), wanted->size()) : got.error().message;
+            rows.push_back(row);
+            continue;
+        }
+        for (size_t scene = 0; scene < way.bounds.size(); ++scene) {
+            row.what = exact ? way.name : way.name + ": " + names[scene];
+            row.bound = way.bounds[scene];
+            row.error = {};
+            for (size_t p = exact ? 0 : scene; p < got->size(); p += exact ? 1 : names.size()) row.error.add(errorOf((*wanted)[p].view(), (*got)[p].view()));
+            rows.push_back(row);
+        }
+    }
+}
+
+} // namespace mural::cli

@@ -1,0 +1,38 @@
+// Decompositions: the scenes natively, and by every way in which Mural divides a picture.
+#pragma once
+
+#include "tools/mural/accuracy/accuracy_row.hpp"
+#include "tools/mural/accuracy/accuracy_runs.hpp"
+
+namespace mural::cli {
+
+class SceneRows {
+public:
+    SceneRows(const AccuracyRuns& runs, bool quick, SayProgress say) : runs_(runs), quick_(quick), say_(std::move(say)) {}
+
+    // Draws what is compared with. Errors: there are no scenes, or no GL.
+    Result<void> prepare();
+    void measure(std::vector<AccuracyRow>& rows);
+
+    [[nodiscard]] const std::vector<OwnedPicture>& nativePictures() const { return native_; }
+    [[nodiscard]] std::string subject() const;
+    [[nodiscard]] const std::string& gl() const { return gl_; }
+
+private:
+    struct Way;
+    static std::vector<Way> ways();
+    [[nodiscard]] Words program(const Words& more) const;
+    Result<std::vector<OwnedPicture>> drawNatively(const Words& more);
+    Result<std::vector<OwnedPicture>> drawByMural(const Words& options);
+    Result<std::vector<OwnedPicture>> referenceOf(const Way& way);
+    Result<std::vector<OwnedPicture>> meanOf(int samples);
+    Result<std::vector<OwnedPicture>> anaglyph();
+
+    const AccuracyRuns& runs_;
+    bool quick_;
+    SayProgress say_;
+    std::string gl_;
+    std::vector<OwnedPicture> native_;
+};
+
+} // namespace mural::cli

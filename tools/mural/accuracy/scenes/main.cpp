@@ -1,0 +1,79 @@
+// mural-scenes: draws the scenes of `mural bench accuracy`, frame by frame, without a clock.
+#define GL_GLEXT_PROTOTYPES
+#include <GL/gl.h>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "tools/mural/accuracy/scenes/scene_window.hpp"
+#include "tools/mural/accuracy/scenes/scenes.hpp"
+
+namespace {
+
+using mural::scenes::Look;
+
+struct Options {
+    int width = 509, height = 383, frames = 6;
+    std::string save; // folder; empty: nothing is saved
+    Look look;
+};
+
+const char* const kUsage = "usage: mural-scenes [--size WxH] [--frames N] [--save FOLDER] [--move X,Y] [--eye E,FOCUS]\n";
+
+bool take(const std::string& name, const char* value, Options& o) {
+    if (name == "--size") return std::sscanf(value, "%dx%d", &o.width, &o.height) == 2 && o.width > 0 && o.height > 0;
+    if (name == "--frames") return std::sscanf(value, "%d", &o.frames) == 1 && o.frames > 0;
+    if (name == "--move") return std::sscanf(value, "%f,%f", &o.look.moveX, &o.look.moveY) == 2;
+    if (name == "--eye") return std::sscanf(value, "%f,%f", &o.look.eye, &o.look.focus) == 2;
+    o.save = value;
+    return name == "--save" && *value != '\0';
+}
+
+// The window's back buffer as a PPM file, the topmost row first.
+void save(const Options& o, int frame) {
+    std::vector<unsigned char> pixels(static_cast<size_t>(o.width) * static_cast<size_t>(o.height) * 3);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, o.width, o.height, GL_RGB, GL_UNSIGNED_BYTE, pixels.data());
+    char name[32];
+    std::snprintf(name, sizeof name, "/frame-%06d.ppm", frame + 1);
+    FILE* file = std::fopen((o.save + name).c_str(), "wb");
+    if (file == nullptr) throw std::runtime_error("can't write " + o.save + name);
+    std::fprintf(file, "P6\n%d %d\n255\n", o.width, o.height);
+    const size_t row = static_cast<size_t>(o.width) * 3;
+    for (int y = o.height; y-- > 0;) std::fwrite(pixels.data() + static_cast<size_t>(y) * row, 1, row, file);
+    if (std::fclose(file) != 0) throw std::runtime_error("can't write " + o.save + name + ": no space?");
+}
+
+int drawAll(const Options& o) {
+    std::string why;
+    const auto window = mural::scenes::SceneWindow::open(o.width, o.height, why);
+    if (!window) throw std::runtime_error(why);
+    std::printf("%s, %s\n", reinterpret_cast<const char*>(glGetString(GL_RENDERER)), reinterpret_cast<const char*>(glGetString(GL_VERSION)));
+    const mural::scenes::Scenes scenes(o.width, o.height, o.look);
+    for (int frame = 0; frame < o.frames; ++frame) {
+        scenes.draw(frame);
+        if (const GLenum error = glGetError(); error != GL_NO_ERROR) throw std::runtime_error("GL error " + std::to_string(error) + " in frame " + std::to_string(frame));
+        if (!o.save.empty()) save(o, frame);
+        window->show();
+    }
+    return 0;
+}
+
+} // namespace
+
+int main(int count, char** arguments) {
+    Options options;
+    for (int i = 1; i < count; i += 2)
+        if (i + 1 >= count || !take(arguments[i], arguments[i + 1], options)) {
+            std::fprintf(stderr, "mural-scenes: %s is no option, or its value is none\n%s", arguments[i], kUsage);
+            return 2;
+        }
+    try {
+        return drawAll(options);
+    } catch (const std::runtime_error& error) {
+        std::fprintf(stderr, "mural-scenes: %s\n", error.what());
+        return 1;
+    }
+}
