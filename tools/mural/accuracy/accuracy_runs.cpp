@@ -20,6 +20,7 @@ namespace mural::cli {
 namespace {
 
 constexpr int64_t kRunMs = 300'000; // of one run; slow machines need a tenth of it
+constexpr int64_t kFrameMs = 1'000; // and of each frame that a user asks for
 constexpr int64_t kEndMs = 10'000;
 
 std::string textOf(const std::string& path) {
@@ -76,19 +77,19 @@ Result<AccuracyRuns> AccuracyRuns::open() {
     return AccuracyRuns(std::move(*display), std::move(*scratch));
 }
 
-Result<std::string> AccuracyRuns::native(const Words& program) const { return perform(program, program.front()); }
+Result<std::string> AccuracyRuns::native(const Words& program) const { return perform(program, program.front(), kRunMs); }
 
-Result<std::string> AccuracyRuns::mural(const Words& options, const Words& program) const {
+Result<std::string> AccuracyRuns::mural(const Words& options, const Words& program, int64_t frames) const {
     Words command{launch::ownBinary(), "run", "--quiet", "--display", "none"};
     std::string name = "mural run";
     for (const std::string& o : options) name += " " + o;
     command.insert(command.end(), options.begin(), options.end());
     command.emplace_back("--");
     command.insert(command.end(), program.begin(), program.end());
-    return perform(command, name);
+    return perform(command, name, kRunMs + frames * kFrameMs);
 }
 
-Result<std::string> AccuracyRuns::perform(const Words& command, const std::string& name) const {
+Result<std::string> AccuracyRuns::perform(const Words& command, const std::string& name, int64_t limitMs) const {
     const std::string said = scratch_.path() + "/said", complained = scratch_.path() + "/complained";
     launch::SpawnRequest request;
     request.file = command.front();
@@ -104,9 +105,9 @@ Result<std::string> AccuracyRuns::perform(const Words& command, const std::strin
     if (request.outputFd >= 0) close(request.outputFd);
     if (request.errorFd >= 0) close(request.errorFd);
     if (!child) return child.error();
-    if (!child->waitUntil(Deadline::inMs(kRunMs))) {
+    if (!child->waitUntil(Deadline::inMs(limitMs))) {
         child->end(Deadline::inMs(kEndMs));
-        return Error{name + " did not end within " + std::to_string(kRunMs / 1000) + " s and was ended"};
+        return Error{name + " did not end within " + std::to_string(limitMs / 1000) + " s and was ended"};
     }
     if (child->exitStatus() == 0) return textOf(said);
     const std::string why = lastLine(textOf(complained));

@@ -35,14 +35,14 @@ public:
 
     // A program to its end, without Mural: what it has printed. Errors hold the last line that it said.
     [[nodiscard]] Result<std::string> native(const Words& program) const;
-    // The same by `mural run OPTIONS -- PROGRAM`.
-    [[nodiscard]] Result<std::string> mural(const Words& options, const Words& program) const;
+    // The same by `mural run OPTIONS -- PROGRAM`. frames: how many it is asked for, where that decides how long it may take.
+    [[nodiscard]] Result<std::string> mural(const Words& options, const Words& program, int64_t frames = 0) const;
     // Beside the binary; an error when it is not there.
     [[nodiscard]] static Result<std::string> scenesProgram();
 
 private:
     AccuracyRuns(std::unique_ptr<launch::PrivateDisplay> display, ScratchFolder scratch) : display_(std::move(display)), scratch_(std::move(scratch)) {}
-    [[nodiscard]] Result<std::string> perform(const Words& command, const std::string& name) const;
+    [[nodiscard]] Result<std::string> perform(const Words& command, const std::string& name, int64_t limitMs) const;
 
     std::unique_ptr<launch::PrivateDisplay> display_;
     ScratchFolder scratch_; // what the processes say

@@ -54,7 +54,7 @@ void measureProgram(const AccuracyRuns& runs, const Words& program, int64_t fram
         const std::string report = folder ? folder->path() + "/report.json" : "";
         Words options = way.options;
         options.insert(options.end(), {"--verify", "--frames", std::to_string(frames), "--report", report});
-        const auto done = folder ? runs.mural(options, program) : Result<std::string>(folder.error());
+        const auto done = folder ? runs.mural(options, program, frames) : Result<std::string>(folder.error());
         const auto error = done ? errorOfReport(report) : Result<MeasuredError>(done.error());
         if (error) row.error = error.value();
         else row.failure = error.error().message;
