@@ -9,8 +9,8 @@
 #include <set>
 #include <vector>
 
+#include "common/main_window.hpp"
 #include "common/result.hpp"
-#include "nodes/output/main_window.hpp"
 #include "streamcodec/wire.hpp"
 
 namespace mural {

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "common/clock.hpp"
-#include "nodes/output/main_window.hpp"
+#include "common/main_window.hpp"
 #include "nodes/head/picture_assembler.hpp"
 #include "nodes/output/picture_sink.hpp"
 

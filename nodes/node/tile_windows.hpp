@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "nodes/output/main_window.hpp"
+#include "common/main_window.hpp"
 #include "nodes/output/wall_windows.hpp"
 #include "nodes/replay/replay.hpp"
 #include "nodes/session/session_config.hpp"

@@ -1,0 +1,148 @@
+#include "recording/file_reader.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <zstd.h>
+
+#include "recording/checksum.hpp"
+#include "streamcodec/registry_digest.hpp"
+#include "streamcodec/wire.hpp"
+
+namespace mural::recording {
+namespace {
+
+template <class T> std::span<std::byte> bytesOf(T& value) { return std::as_writable_bytes(std::span(&value, 1)); }
+
+bool soundShape(const BlockHeader& h) {
+    return h.magic == kBlockMagic && h.rawBytes <= kMaxBlockBytes && h.packedBytes <= ZSTD_COMPRESSBOUND(kMaxBlockBytes);
+}
+
+std::string atByte(uint64_t offset) { return " at byte " + std::to_string(offset); }
+
+} // namespace
+
+Result<std::unique_ptr<FileReader>> FileReader::open(const std::string& path) {
+    FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+    if (!file.valid()) return Error{"recording " + path + ": can't be read: " + std::strerror(errno) + "; check the name"};
+    return open(std::move(file), path);
+}
+
+Result<std::unique_ptr<FileReader>> FileReader::open(FileDescriptor file, const std::string& name) {
+    struct stat about {};
+    if (fstat(file.get(), &about) != 0 || !S_ISREG(about.st_mode)) return Error{"recording " + name + ": is not a file; give one that mural run --record has made"};
+    std::unique_ptr<FileReader> reader(new FileReader(std::move(file), name));
+    reader->sizeBytes_ = static_cast<uint64_t>(about.st_size);
+    if (auto r = reader->readHeader(); !r) return r.error();
+    auto indexed = reader->readIndex();
+    if (!indexed) return indexed.error();
+    if (indexed.value()) return reader;
+    if (auto r = reader->findBlocks(); !r) return r.error();
+    return reader;
+}
+
+FileReader::FileReader(FileDescriptor file, std::string name) : file_(std::move(file)), name_(std::move(name)), unpacker_(ZSTD_createDCtx()) {}
+
+FileReader::~FileReader() { ZSTD_freeDCtx(unpacker_); }
+
+Error FileReader::damaged(uint64_t offset, const std::string& what) const {
+    return Error{"recording " + name_ + " is damaged" + atByte(offset) + ": " + what + "; take another copy of it, or record again"};
+}
+
+bool FileReader::readAt(uint64_t offset, std::span<std::byte> into) const {
+    while (!into.empty()) {
+        const ssize_t n = pread(file_.get(), into.data(), into.size(), static_cast<off_t>(offset));
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return false;
+        offset += static_cast<uint64_t>(n);
+        into = into.subspan(static_cast<size_t>(n));
+    }
+    return true;
+}
+
+Result<void> FileReader::readHeader() {
+    Header header{};
+    const bool read = readAt(0, bytesOf(header));
+    if (!read || std::memcmp(header.magic, kMagic, sizeof kMagic) != 0)
+        return Error{name_ + " is not a recording of Mural; give a file that mural run --record has made"};
+    if (header.version != kVersion) {
+        return Error{"recording " + name_ + " has version " + std::to_string(header.version) + " of the format, this Mural reads version " + std::to_string(kVersion) +
+                     "; use the Mural that it was made with, or a newer one"};
+    }
+    blocksAt_ = sizeof header + header.aboutBytes;
+    if (header.aboutBytes > kMaxAboutBytes || blocksAt_ > sizeBytes_) return damaged(0, "its header is longer than the file");
+    std::string text(header.aboutBytes, '\0');
+    if (!readAt(sizeof header, std::as_writable_bytes(std::span(text)))) return damaged(sizeof header, "its header can't be read");
+    if (checksumOf({beforeChecksum(header), std::as_bytes(std::span(text))}) != header.checksum) return damaged(0, "its header is not as it was written");
+    auto about = aboutFromJson(text);
+    if (!about) return damaged(sizeof header, about.error().message);
+    about_ = std::move(*about);
+    if (header.wireVersion == wire::kVersion && header.registryDigest == registryDigest()) return {};
+    return Error{"recording " + name_ + " was made by a Mural with other commands (version " + about_.version + "); use that one to read it, or record again"};
+}
+
+Result<bool> FileReader::readIndex() {
+    Trailer trailer{};
+    if (sizeBytes_ < blocksAt_ + sizeof trailer || !readAt(sizeBytes_ - sizeof trailer, bytesOf(trailer))) return false;
+    if (std::memcmp(trailer.magic, kEndMagic, sizeof kEndMagic) != 0) return false;
+    const uint64_t end = sizeBytes_ - sizeof trailer, at = trailer.indexOffset;
+    IndexHeader header{};
+    if (checksumOf({beforeChecksum(trailer)}) != trailer.checksum || at < blocksAt_ || at > end || end - at < sizeof header || !readAt(at, bytesOf(header)))
+        return damaged(end, "its last bytes are not as they were written");
+    if (header.magic != kIndexMagic || (end - at - sizeof header) / sizeof(IndexRow) != header.blocks || (end - at - sizeof header) % sizeof(IndexRow) != 0)
+        return damaged(at, "there is no index");
+    blocks_.resize(header.blocks);
+    const auto rows = std::as_writable_bytes(std::span(blocks_));
+    if (!readAt(at + sizeof header, rows) || checksumOf({beforeChecksum(header), rows}) != header.checksum) return damaged(at, "its index is not as it was written");
+    frames_ = static_cast<int64_t>(header.frames);
+    blocksEnd_ = at;
+    uint64_t last = blocksAt_;
+    for (const IndexRow& row : blocks_) { // without gaps: nothing lies in between unread
+        BlockHeader block{};
+        if (row.offset != last || last + sizeof block > blocksEnd_ || !readAt(last, bytesOf(block)) || !soundShape(block)) return damaged(row.offset, "there is no block");
+        last += sizeof block + block.packedBytes;
+    }
+    if (last != blocksEnd_) return damaged(last, "its blocks end elsewhere");
+    return true;
+}
+
+Result<void> FileReader::findBlocks() {
+    uint64_t at = blocksAt_;
+    BlockHeader block{};
+    while (sizeBytes_ - at >= sizeof block && readAt(at, bytesOf(block)) && soundShape(block) && sizeBytes_ - at - sizeof block >= block.packedBytes) {
+        blocks_.push_back({at, block.firstFrame, block.framesEnded, block.entries});
+        frames_ += block.framesEnded;
+        at += sizeof block + block.packedBytes;
+    }
+    blocksEnd_ = at;
+    notice_ = "recording " + name_ + ": its end is missing (was the head killed, or the file cut?); " + std::to_string(frames_) + " whole frames are there, up to byte " +
+              std::to_string(at) + " of " + std::to_string(sizeBytes_);
+    return {};
+}
+
+Result<std::span<const std::byte>> FileReader::read(size_t number) {
+    const IndexRow& row = blocks_[number];
+    BlockHeader header{};
+    if (!readAt(row.offset, bytesOf(header)) || !soundShape(header) || row.offset + sizeof header + header.packedBytes > blocksEnd_) return damaged(row.offset, "there is no block");
+    packed_.resize(header.packedBytes);
+    if (!readAt(row.offset + sizeof header, packed_)) return damaged(row.offset, "a block can't be read");
+    const bool same = header.firstFrame == row.firstFrame && header.framesEnded == row.framesEnded && header.entries == row.entries;
+    if (!same || checksumOf({beforeChecksum(header), packed_}) != header.checksum) return damaged(row.offset, "a block is not as it was written");
+    raw_.resize(header.rawBytes);
+    const size_t rawBytes = ZSTD_decompressDCtx(unpacker_, raw_.data(), raw_.size(), packed_.data(), packed_.size());
+    if (ZSTD_isError(rawBytes) || rawBytes != header.rawBytes) return damaged(row.offset, "a block can't be unpacked");
+    EntryWalk walk(raw_);
+    Entry entry;
+    ClientEvent event;
+    uint32_t entries = 0;
+    while (walk.next(entry)) {
+        ++entries;
+        if (entry.stream == 0 && !parseEvent(entry.payload, event)) return damaged(row.offset, "an event in a block is unknown");
+    }
+    if (walk.malformed() || entries != header.entries) return damaged(row.offset, "the entries of a block are not entries");
+    return std::span<const std::byte>(raw_);
+}
+
+} // namespace mural::recording

@@ -1,0 +1,87 @@
+// Layout of recordings: GL streams of programs in a file. Numbers are little-endian; docs/recording.md has the grammar.
+//
+//   file    = Header about Block* Index Trailer
+//   Block   = BlockHeader, entries packed by zstd
+//   entries = (EntryHeader payload, padded to kEntryAlign)*
+//   Index   = IndexHeader IndexRow*
+//
+// Each part has a checksum (XXH3, 64 bits) over its other bytes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace mural::recording {
+
+constexpr char kMagic[8] = {'M', 'U', 'R', 'A', 'L', 'R', 'E', 'C'};
+constexpr char kEndMagic[8] = {'M', 'U', 'R', 'A', 'L', 'E', 'N', 'D'};
+constexpr uint32_t kVersion = 1;
+constexpr uint32_t kBlockMagic = 0x4b434c42; // "BLCK"
+constexpr uint32_t kIndexMagic = 0x58444e49; // "INDX"
+
+struct Header {
+    char magic[8];
+    uint32_t version;
+    uint32_t wireVersion;    // of the records: wire::kVersion
+    uint64_t registryDigest; // the same: which commands there are
+    uint32_t aboutBytes;     // JSON that follows (recording/about.hpp)
+    uint32_t reserved;
+    uint64_t checksum;       // of the fields above and of the JSON
+};
+static_assert(sizeof(Header) == 40);
+constexpr uint32_t kMaxAboutBytes = 1u << 20;
+
+struct BlockHeader {
+    uint32_t magic;
+    uint32_t packedBytes; // that follow
+    uint32_t rawBytes;    // of the entries
+    uint32_t entries;
+    uint64_t firstFrame;  // the frame of the wall that is under way where the block begins, from 1
+    uint32_t framesEnded; // in it
+    uint32_t reserved;
+    uint64_t checksum;    // of the fields above and of the packed bytes
+};
+static_assert(sizeof(BlockHeader) == 40);
+// A block ends with the frame in which it gets so large, or in the middle of one that is larger by far.
+constexpr size_t kBlockBytes = size_t{1} << 20;
+constexpr size_t kMaxBlockBytes = size_t{8} << 20;
+
+struct EntryHeader {
+    uint32_t sizeBytes; // of the payload
+    uint32_t stream;    // client << 16 | thread, as in wire::PacketHeader; 0: the payload is an Event
+    uint64_t timeNs;    // since the recording began
+};
+static_assert(sizeof(EntryHeader) == 16);
+constexpr size_t kEntryAlign = 8;
+constexpr size_t entryBytes(size_t payloadBytes) { return sizeof(EntryHeader) + (payloadBytes + kEntryAlign - 1) / kEntryAlign * kEntryAlign; }
+
+// First word of an entry of stream 0.
+enum class Event : uint32_t {
+    ClientCame = 1, // u32 client, i32 pid, its name
+    ClientGone = 2, // u32 client
+};
+
+struct IndexHeader {
+    uint32_t magic;
+    uint32_t blocks;
+    uint64_t frames;   // of the wall, in the whole file
+    uint64_t checksum; // of the fields above and of the rows
+};
+static_assert(sizeof(IndexHeader) == 24);
+
+struct IndexRow {
+    uint64_t offset; // of the block in the file
+    uint64_t firstFrame;
+    uint32_t framesEnded;
+    uint32_t entries;
+};
+static_assert(sizeof(IndexRow) == 24);
+
+struct Trailer {
+    uint64_t indexOffset;
+    uint64_t checksum; // of the field above
+    char magic[8];
+};
+static_assert(sizeof(Trailer) == 24);
+
+} // namespace mural::recording

@@ -1,0 +1,65 @@
+// The records of a packet, one after another (docs/wire-format.md), without looking into their arguments.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+
+#include "streamcodec/record.hpp"
+
+namespace mural::recording {
+
+struct RecordView {
+    uint16_t opcode = 0;
+    size_t offset = 0;                     // in the packet, bytes
+    size_t sizeBytes = 0;                  // with its header
+    std::span<const std::byte> arguments;
+};
+
+class RecordWalk {
+public:
+    explicit RecordWalk(std::span<const std::byte> packet) : packet_(packet) {}
+
+    // False at the end, and where a record is longer than what is left: malformed() then.
+    bool next(RecordView& record) {
+        const size_t left = packet_.size() - at_;
+        if (left == 0 || malformed_) return false;
+        uint64_t words = 0;
+        size_t headerBytes = 4;
+        if (left >= 4) words = word(at_) >> 16;
+        if (words == record::kLongForm && left >= 8) {
+            headerBytes = 8;
+            words = word(at_ + 4);
+        }
+        malformed_ = words * 4 < headerBytes || words * 4 > left;
+        if (malformed_) return false;
+        record.opcode = static_cast<uint16_t>(word(at_));
+        record.offset = at_;
+        record.sizeBytes = static_cast<size_t>(words) * 4;
+        record.arguments = packet_.subspan(at_ + headerBytes, record.sizeBytes - headerBytes);
+        at_ += record.sizeBytes;
+        return true;
+    }
+    [[nodiscard]] bool malformed() const { return malformed_; }
+
+private:
+    [[nodiscard]] uint32_t word(size_t at) const {
+        uint32_t value = 0;
+        std::memcpy(&value, packet_.data() + at, sizeof value);
+        return value;
+    }
+
+    std::span<const std::byte> packet_;
+    size_t at_ = 0;
+    bool malformed_ = false;
+};
+
+// A word of a record's arguments; 0 behind their end.
+inline uint32_t argumentWord(const RecordView& record, size_t index) {
+    uint32_t value = 0;
+    if ((index + 1) * 4 <= record.arguments.size()) std::memcpy(&value, record.arguments.data() + index * 4, sizeof value);
+    return value;
+}
+
+} // namespace mural::recording

@@ -1,0 +1,57 @@
+// Which record of a stream ends which frame of the wall: as the head counts them for --out and --frames.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <utility>
+
+#include "common/main_window.hpp"
+#include "recording/record_walk.hpp"
+#include "streamcodec/wire.hpp"
+
+namespace mural::recording {
+
+class WallFrames {
+public:
+    // Returns the number of the frame that the record has ended; 0: it has not.
+    int64_t record(uint32_t stream, const RecordView& r) {
+        const uint32_t client = wire::clientOf(stream), window = argumentWord(r, 0);
+        switch (r.opcode) {
+        case wire::kOpWindow: sizes_[{client, window}] = {argumentWord(r, 1), argumentWord(r, 2)}; return 0;
+        case wire::kOpDestroyWindow:
+            sizes_.erase({client, window});
+            mainWindow_.windowGone(client, window);
+            return 0;
+        case wire::kOpSwap:
+        case wire::kOpFrontPicture: break;
+        default: return 0;
+        }
+        if (argumentWord(r, 1) == 0) return 0; // nobody sees it (wire::kUnseenFrame)
+        const auto found = sizes_.find({client, window});
+        const auto [width, height] = found == sizes_.end() ? std::pair(0u, 0u) : found->second;
+        const int64_t frame = mainWindow_.swapped(client, window, width, height);
+        if (frame > 0) frames_ = frame;
+        return frame;
+    }
+    // All records of a packet; returns how many frames it has ended.
+    uint32_t packet(uint32_t stream, std::span<const std::byte> payload) {
+        RecordWalk walk(payload);
+        RecordView r;
+        uint32_t ended = 0;
+        while (walk.next(r)) ended += record(stream, r) > 0;
+        return ended;
+    }
+    void clientGone(uint32_t client) {
+        mainWindow_.clientGone(client);
+        std::erase_if(sizes_, [client](const auto& entry) { return entry.first.first == client; });
+    }
+    [[nodiscard]] int64_t frames() const { return frames_; } // that have ended
+
+private:
+    std::map<std::pair<uint32_t, uint32_t>, std::pair<uint32_t, uint32_t>> sizes_; // client, window → width, height
+    MainWindow mainWindow_;
+    int64_t frames_ = 0;
+};
+
+} // namespace mural::recording
