@@ -1,9 +1,10 @@
 #include "nodes/exchange/picture_exchange.hpp"
 
+#include <array>
 #include <charconv>
 #include <chrono>
-#include <cstring>
 
+#include "common/little_endian.hpp"
 #include "transport/connection_description.hpp"
 #include "transport/secure_connection.hpp"
 
@@ -14,19 +15,12 @@ namespace {
 const std::string kName = "range";
 constexpr int64_t kAcceptSliceMs = 100;
 constexpr int64_t kProofPatienceMs = 5000;
-constexpr uint64_t kMostPixels = uint64_t{1} << 28;
 
-// As it crosses the network, little-endian.
-struct Header {
-    uint32_t client, window;
-    uint64_t serial;
-    int32_t x, y, w, h;
-};
-static_assert(sizeof(Header) == 32);
-
-Result<void> readAll(Connection& c, void* into, size_t bytes, Deadline deadline) { return c.read({static_cast<std::byte*>(into), bytes}, deadline); }
+std::string rangeText(int rank) { return "range " + std::to_string(rank + 1); }
 
 } // namespace
+
+std::string PictureExchange::nameOf(int rank) { return kName + std::to_string(rank); }
 
 int PictureExchange::rankOf(const std::string& name) {
     int rank = 0;
@@ -35,26 +29,24 @@ int PictureExchange::rankOf(const std::string& name) {
     return error == std::errc() && end == name.data() + name.size() ? rank : 0;
 }
 
-Result<std::unique_ptr<PictureExchange>> PictureExchange::collecting(const ChannelSecret& secret, bool loopbackOnly) {
+Result<void> PictureExchange::listen(bool loopbackOnly) {
     auto listener = listenTcp(loopbackOnly ? "127.0.0.1" : "", 0);
     if (!listener) return listener.error();
     auto where = parseConnectionDescription((*listener)->describe());
     if (!where) return where.error();
-    std::unique_ptr<PictureExchange> exchange(new PictureExchange());
-    exchange->port_ = where->port;
-    exchange->listener_ = std::move(*listener);
-    exchange->thread_ = std::thread([e = exchange.get(), secret] { e->letIn(secret); });
-    return exchange;
+    port_ = where->port;
+    listener_ = std::move(*listener);
+    thread_ = std::thread([this] { letIn(); });
+    return {};
 }
 
-Result<std::unique_ptr<PictureExchange>> PictureExchange::contributing(const std::string& host, uint16_t port, int rank, const ChannelSecret& secret, Deadline deadline) {
+Result<void> PictureExchange::connectTo(int rank, const std::string& host, uint16_t port, Deadline deadline) {
     auto connection = connectTcp(host, port, deadline);
     if (!connection) return connection.error();
-    auto secure = SecureConnection::connecting(std::move(*connection), kName + std::to_string(rank), secret, deadline);
+    auto secure = SecureConnection::connecting(std::move(*connection), nameOf(rank_), secret_, deadline);
     if (!secure) return secure.error();
-    std::unique_ptr<PictureExchange> exchange(new PictureExchange());
-    exchange->connections_[0] = std::move(*secure);
-    return exchange;
+    add(rank, std::move(*secure));
+    return {};
 }
 
 PictureExchange::~PictureExchange() {
@@ -65,7 +57,16 @@ PictureExchange::~PictureExchange() {
     if (thread_.joinable()) thread_.join();
 }
 
-void PictureExchange::letIn(const ChannelSecret& secret) {
+void PictureExchange::add(int rank, std::unique_ptr<Connection> connection) {
+    const std::lock_guard lock(mutex_);
+    Peer& peer = peers_[rank];
+    if (peer.connection || peer.gone) return; // the first one counts
+    peer.connection = std::move(connection);
+    peer.sender = std::make_unique<PartSender>(*peer.connection);
+    arrived_.notify_all();
+}
+
+void PictureExchange::letIn() {
     const auto stopped = [this] {
         const std::lock_guard lock(mutex_);
         return stop_;
@@ -73,64 +74,69 @@ void PictureExchange::letIn(const ChannelSecret& secret) {
     while (!stopped()) {
         auto connection = listener_->accept(Deadline::inMs(kAcceptSliceMs));
         if (!connection) continue;
-        const auto find = [&](const std::string& name) { return rankOf(name) > 0 ? std::optional(secret) : std::nullopt; };
+        const auto find = [&](const std::string& name) { return rankOf(name) > rank_ ? std::optional(secret_) : std::nullopt; };
         auto shown = SecureConnection::accepting(std::move(*connection), find, Deadline::inMs(kProofPatienceMs), stopped);
         if (!shown) continue;
         const int rank = rankOf((*shown)->name());
-        const std::lock_guard lock(mutex_);
-        connections_.try_emplace(rank, std::move(*shown)); // the first one counts
-        arrived_.notify_all();
+        add(rank, std::move(*shown));
     }
 }
 
-Result<void> PictureExchange::send(const PicturePart& part, Deadline deadline) {
-    std::unique_ptr<Connection>& connection = connections_[0];
-    if (!connection) return Error{"the node that puts pictures together is gone"};
-    const Header header{part.client, part.window, part.serial, part.box.x, part.box.y, part.box.w, part.box.h};
-    auto done = connection->write(std::as_bytes(std::span(&header, 1)), deadline);
-    if (done) done = connection->write(std::as_bytes(std::span(part.colour)), deadline);
-    if (done) done = connection->write(std::as_bytes(std::span(part.depth)), deadline);
-    if (done) connection->flush();
-    else connection.reset();
-    return done;
-}
-
-Result<PicturePart> PictureExchange::receive(int rank, Deadline deadline) {
-    Connection* connection = nullptr;
-    {
-        std::unique_lock lock(mutex_);
-        while (!connections_.contains(rank)) {
-            if (deadline.passed()) {
-                connections_[rank] = nullptr;
-                return Error{"no connection of range " + std::to_string(rank + 1) + " came"};
-            }
+Result<PictureExchange::Peer*> PictureExchange::peerOf(int rank, Deadline deadline) {
+    std::unique_lock lock(mutex_);
+    Peer& peer = peers_[rank];
+    while (!peer.connection && !peer.gone) {
+        if (rank < rank_) peer.gone = true; // it was to be connected to before
+        else if (deadline.passed()) peer.gone = true;
+        else {
             arrived_.wait_for(lock, std::chrono::milliseconds(kAcceptSliceMs));
+            continue;
         }
-        connection = connections_[rank].get();
+        return Error{"no connection of " + rangeText(rank) + " came"};
     }
-    if (!connection) return Error{"range " + std::to_string(rank + 1) + " is gone"};
-    const auto take = [&]() -> Result<PicturePart> {
-        Header header{};
-        if (auto r = readAll(*connection, &header, sizeof header, deadline); !r) return r.error();
-        PicturePart part;
-        part.client = header.client;
-        part.window = header.window;
-        part.serial = header.serial;
-        part.box = {header.x, header.y, header.w, header.h};
-        if (header.w < 0 || header.h < 0 || uint64_t(header.w) * uint64_t(header.h) > kMostPixels) return Error{"a picture of no sensible size"};
-        const auto pixels = static_cast<size_t>(header.w) * static_cast<size_t>(header.h);
-        part.colour.resize(pixels);
-        part.depth.resize(pixels);
-        if (auto r = readAll(*connection, part.colour.data(), pixels * 4, deadline); !r) return r.error();
-        if (auto r = readAll(*connection, part.depth.data(), pixels * 4, deadline); !r) return r.error();
-        return part;
+    if (peer.gone) return Error{rangeText(rank) + " is gone"};
+    return &peer;
+}
+
+void PictureExchange::giveUp(int rank) {
+    const std::lock_guard lock(mutex_);
+    Peer& peer = peers_[rank];
+    peer.gone = true;
+    if (peer.connection) peer.connection->close();
+}
+
+Result<void> PictureExchange::send(int rank, std::vector<std::byte> message, Deadline deadline) {
+    auto peer = peerOf(rank, deadline);
+    if (!peer) return peer.error();
+    bytesSent_ += message.size();
+    auto sent = (*peer)->sender->send(std::move(message), deadline);
+    if (sent) return sent;
+    giveUp(rank);
+    return Error{rangeText(rank) + ": " + sent.error().message};
+}
+
+Result<std::vector<std::byte>> PictureExchange::receive(int rank, size_t mostBytes, Deadline deadline) {
+    auto peer = peerOf(rank, deadline);
+    if (!peer) return peer.error();
+    const auto take = [&](Connection& c) -> Result<std::vector<std::byte>> {
+        std::array<std::byte, 4> size;
+        if (auto r = c.read(size, deadline); !r) return r.error();
+        const size_t bytes = loadLittle<uint32_t>(size.data());
+        if (bytes > mostBytes) return Error{"a picture of " + std::to_string(bytes) + " bytes came where " + std::to_string(mostBytes) + " are the most"};
+        std::vector<std::byte> message(bytes);
+        if (auto r = c.read(message, deadline); !r) return r.error();
+        return message;
     };
-    auto part = take();
-    if (!part) {
-        const std::lock_guard lock(mutex_);
-        connections_[rank] = nullptr;
-    }
-    return part;
+    auto message = take(*(*peer)->connection);
+    if (message) return message;
+    giveUp(rank);
+    return Error{rangeText(rank) + ": " + message.error().message};
+}
+
+LinkTransfer PictureExchange::takeTransfer(int rank) {
+    const std::lock_guard lock(mutex_);
+    const auto peer = peers_.find(rank);
+    return peer == peers_.end() || !peer->second.sender ? LinkTransfer{} : peer->second.sender->takeTransfer();
 }
 
 } // namespace mural

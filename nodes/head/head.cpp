@@ -1,10 +1,11 @@
-#include "nodes/head/config_plan.hpp"
 #include "nodes/head/head.hpp"
 
 #include <csignal>
 #include <fcntl.h>
 #include <unistd.h>
 
+#include "nodes/head/composition_choice.hpp"
+#include "nodes/head/config_plan.hpp"
 #include "nodes/head/head_session.hpp"
 #include "nodes/launch/child_process.hpp"
 #include "nodes/launch/environment.hpp"
@@ -85,7 +86,9 @@ Result<SessionPlan> makePlan(const SessionConfig& config, const std::string& hos
     if (config.configFile.empty()) return planSession(config, host);
     const auto loaded = compound::loadConfig(config.configFile, compound::processEnvironment);
     if (!loaded.ok()) return Error{loaded.diagnostics.firstError()};
-    return planOf(loaded, {host, config.here, config.canvas, config.layouts, config.frusta, config.modelUnit});
+    auto plan = planOf(loaded, {host, config.here, config.canvas, config.layouts, config.frusta, config.modelUnit});
+    if (plan) chooseComposition(*plan, config.composition);
+    return plan;
 }
 
 Result<int> runSession(ControlChannel& control) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "nodes/head/composition_choice.hpp"
 #include "nodes/head/tile_split.hpp"
 #include "nodes/session/stream_build.hpp"
 
@@ -71,6 +72,7 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
             }
         }
     }
+    chooseComposition(plan, config.composition);
     const auto started = static_cast<int>(plan.nodes.size());
     if (wanted > started) {
         plan.warnings.push_back(countOf(wanted, "render node") + " asked for, but there " +
@@ -97,6 +99,7 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
     setup.pass = node.pass;
     setup.screen = node.screen;
     setup.collector = node.collector;
+    setup.composition = nameOf(node.composition.value_or(compositor::Strategy::Serial));
     setup.answers = node.answers;
     setup.exchangeHere = std::none_of(plan.nodes.begin(), plan.nodes.end(), [&](const NodePlan& other) { return other.collector == node.collector && other.reach == NodeReach::LaunchCommand; });
     setup.eyeBase = config.eyeBase;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/tile_grid.hpp"
+#include "compositor/strategies/strategy.hpp"
 #include "nodes/head/wall_composition.hpp"
 #include "nodes/session/session_config.hpp"
 
@@ -37,7 +38,8 @@ struct NodePlan {
     std::optional<Viewport> area; // instead of tiles: of the picture
     std::optional<ScreenView> screen; // of a room
     std::optional<NodeWindow> window; // instead of those of tiles
-    int collector = 0; // the node that puts the ranges of this picture together: this one, when range is 0
+    int collector = 0; // the node that has the picture of all ranges: this one, when range is 0; range r is node collector + r
+    std::optional<compositor::Strategy> composition; // how they put it together; before chooseComposition: what a file says
 };
 
 struct SessionPlan {

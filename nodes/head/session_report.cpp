@@ -20,6 +20,8 @@ void readBye(const std::string& text, NodeTotals& totals) {
     if (!json.is_object()) return;
     const auto commands = json.find("commands");
     if (commands != json.end() && commands->is_number_integer()) totals.commands = commands->get<int64_t>();
+    const auto exchanged = json.find("exchangeBytes");
+    if (exchanged != json.end() && exchanged->is_number_integer()) totals.exchangeBytes = exchanged->get<int64_t>();
     const auto seconds = json.find("cpuSeconds");
     if (seconds != json.end() && seconds->is_number()) totals.cpuSeconds = seconds->get<double>();
 }
@@ -55,6 +57,7 @@ Json reportOf(const SessionNumbers& n) {
                          {"replaySeconds", node.replaySeconds},
                          {"readbackSeconds", node.readbackSeconds},
                          {"commands", node.commands},
+                         {"exchangeBytes", node.exchangeBytes},
                          {"lost", node.lost}});
     }
     return {

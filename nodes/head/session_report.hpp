@@ -19,6 +19,7 @@ struct NodeTotals {
     double replaySeconds = 0;   // CPU time of its replay thread: drawing…
     double readbackSeconds = 0; // …and reading the pictures
     int64_t commands = 0;
+    int64_t exchangeBytes = 0;  // of pictures, to other nodes
     bool lost = false;
 };
 

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "common/clock.hpp"
+#include "nodes/exchange/picture_composer.hpp"
 #include "nodes/exchange/picture_exchange.hpp"
 #include "nodes/gl/gl_probe.hpp"
 #include "nodes/node/head_line.hpp"
@@ -51,7 +52,6 @@ std::string hostName() {
 }
 
 constexpr int64_t kMeetMs = 10'000;
-constexpr int64_t kPartMs = 20'000; // as long as the head waits for a silent node
 
 class Node {
 public:
@@ -123,12 +123,8 @@ private:
             const auto followed = line_->follow(setup_.stream, setup_.streamSecret, name_);
             if (!followed) ready["ownStream"] = followed.error().message;
         }
-        if (setup_.pass.ranges > 1 && setup_.pass.range == 0) {
-            const auto secret = sessionSecretFromHex(setup_.exchangeSecret);
-            auto exchange = secret ? PictureExchange::collecting(secret.value(), setup_.exchangeHere) : Result<std::unique_ptr<PictureExchange>>(secret.error());
-            if (!exchange) return fail("no pictures of other nodes can be taken: " + exchange.error().message);
-            exchange_ = std::move(*exchange);
-            ready["exchange"] = endpointText(setup_.exchangeHere ? "127.0.0.1" : line_->ownAddress(), exchange_->port());
+        if (setup_.pass.ranges > 1) {
+            if (auto opened = openExchange(ready); !opened) return fail(opened.error().message);
         }
         if (setup_.wallWindows) {
             auto windows = TileWindows::open(setup_);
@@ -157,8 +153,7 @@ private:
         outputs.news = [this](const wire::News& n, const std::string& text) {
             line_->send(wire::NodeMessage::News, std::as_bytes(std::span(&n, 1)), std::as_bytes(std::span(text)));
         };
-        outputs.sendPart = [this](const PicturePart& part) { return sendPart(part); };
-        outputs.receivePart = [this](int rank, PicturePart& part) { return receivePart(rank, part); };
+        if (composer_) outputs.composeParts = [this](PicturePart& part, const FoldRule& rule) { return composer_->compose(part, rule); };
         outputs.log = [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); };
         replay_ = std::make_unique<Replay>(std::move(*platform), config, std::move(outputs));
         lastCpuNs_ = threadCpuNs();
@@ -166,40 +161,42 @@ private:
         return true;
     }
 
-    // The node that puts together what this one draws a range of.
+    // With the nodes that draw the other ranges of this one's picture.
+    Result<void> openExchange(nlohmann::json& ready) {
+        const auto secret = sessionSecretFromHex(setup_.exchangeSecret);
+        if (!secret) return Error{"the head gave no secret for pictures between nodes: " + secret.error().message};
+        ComposerConfig composer;
+        const auto strategy = compositor::strategyNamed(setup_.composition);
+        if (!strategy) return Error{"the head names a composition that there is not, \"" + setup_.composition + "\": install the same version of mural on both machines"};
+        composer.strategy = *strategy;
+        composer.rank = setup_.pass.range;
+        composer.ranks = setup_.pass.ranges;
+        if (const char* plant = std::getenv("MURAL_PLANT")) composer.plant = plant;
+        exchange_ = std::make_unique<PictureExchange>(composer.rank, secret.value());
+        composer_ = std::make_unique<PictureComposer>(composer, *exchange_, [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); });
+        const bool comeHere = composer.rank + 1 < composer.ranks && (composer.rank == 0 || !isStar());
+        if (!comeHere) return {};
+        if (auto listening = exchange_->listen(setup_.exchangeHere); !listening) return Error{"no pictures of other nodes can be taken: " + listening.error().message};
+        ready["exchange"] = endpointText(setup_.exchangeHere ? "127.0.0.1" : line_->ownAddress(), exchange_->port());
+        return {};
+    }
+
+    // Nodes send to the collector only.
+    [[nodiscard]] bool isStar() const { return setup_.composition == compositor::nameOf(compositor::Strategy::Serial); }
+
+    // The nodes with the ranges before this one's; the others come here.
     bool meet(const std::string& text) {
         const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
-        if (setup_.pass.range == 0) return true; // it is others who come here
-        auto where = splitHostPort(json.is_object() ? json.value(std::to_string(setup_.collector), "") : "");
-        const auto secret = sessionSecretFromHex(setup_.exchangeSecret);
-        if (!where || !secret) return fail("the head named no node to send pictures to: install the same version of mural on all machines");
-        // No address: it runs where the head does.
-        const std::string host = !where->host.empty() ? where->host : line_->headHost().empty() ? "127.0.0.1" : line_->headHost();
-        auto exchange = PictureExchange::contributing(host, where->port, setup_.pass.range, secret.value(), Deadline::inMs(kMeetMs));
-        if (exchange) exchange_ = std::move(*exchange);
-        else line_->sendText(wire::NodeMessage::Log, "the node that puts pictures together is not reached at " + endpointText(host, where->port) + ": " + exchange.error().message + "; what this node draws is missing");
-        return true;
-    }
-
-    bool sendPart(const PicturePart& part) {
-        if (!exchange_) return false;
-        const auto sent = exchange_->send(part, Deadline::inMs(kPartMs));
-        if (!sent) lostExchange(sent.error().message);
-        return sent.ok();
-    }
-
-    bool receivePart(int rank, PicturePart& part) {
-        auto received = exchange_ ? exchange_->receive(rank, Deadline::inMs(kPartMs)) : Result<PicturePart>(Error{"there is no exchange"});
-        if (!received) {
-            lostExchange(received.error().message);
-            return false;
+        const int before = isStar() ? std::min(1, setup_.pass.range) : setup_.pass.range;
+        for (int rank = 0; rank < before; ++rank) {
+            auto where = splitHostPort(json.is_object() ? json.value(std::to_string(setup_.collector + rank), "") : "");
+            if (!where || !exchange_) return fail("the head named no node to send pictures to: install the same version of mural on all machines");
+            // No address: it runs where the head does.
+            const std::string host = !where->host.empty() ? where->host : line_->headHost().empty() ? "127.0.0.1" : line_->headHost();
+            const auto connected = exchange_->connectTo(rank, host, where->port, Deadline::inMs(kMeetMs));
+            if (!connected) line_->sendText(wire::NodeMessage::Log, "the node with range " + std::to_string(rank + 1) + " is not reached at " + endpointText(host, where->port) + ": " + connected.error().message + "; what nodes would send each other there is missing");
         }
-        part = std::move(*received);
         return true;
-    }
-
-    void lostExchange(const std::string& why) {
-        if (!std::exchange(saidLost_, true)) line_->sendText(wire::NodeMessage::Log, "a range of the picture is missing from now on: " + why);
     }
 
     bool fail(const std::string& why) {
@@ -296,6 +293,7 @@ private:
         bye["lacking"] = counts.lacking;
         bye["frames"] = counts.frames;
         bye["cpuSeconds"] = processCpuSeconds();
+        if (exchange_) bye["exchangeBytes"] = exchange_->bytesSent();
         line_->sendText(wire::NodeMessage::Bye, bye.dump());
     }
 
@@ -310,7 +308,7 @@ private:
     uint64_t callsBefore_ = 0;           // …and the records of all clients before it
     bool finished_ = false;
     std::unique_ptr<PictureExchange> exchange_; // null: no other node has a part of this one's picture
-    bool saidLost_ = false;
+    std::unique_ptr<PictureComposer> composer_; // by it
 };
 
 } // namespace

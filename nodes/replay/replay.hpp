@@ -23,8 +23,9 @@
 #include "common/tile_grid.hpp"
 #include "common/viewport.hpp"
 #include "gl_functions.hpp"
-#include "nodes/gl/gl_platform.hpp"
+#include "nodes/exchange/part_fold.hpp"
 #include "nodes/exchange/picture_part.hpp"
+#include "nodes/gl/gl_platform.hpp"
 #include "nodes/replay/args.hpp"
 #include "nodes/replay/name_table.hpp"
 #include "nodes/replay/program_recipes.hpp"
@@ -82,10 +83,9 @@ struct ReplayOutputs {
     std::function<void(const Frame&)> frameDone;
     std::function<void(uint32_t client, uint32_t window)> windowGone; // the program has destroyed it
     std::function<void(const std::string&)> log;
-    // Nodes that draw ranges of one picture (replay_range.cpp): to the one that puts it together, and there from the
-    // others. False: it is lost.
-    std::function<bool(const PicturePart&)> sendPart;
-    std::function<bool(int rank, PicturePart&)> receivePart;
+    // Nodes that draw ranges of one picture (replay_range.cpp): puts together what all have drawn. Afterwards the collector's
+    // part is the whole picture; returns the area of it that may have changed.
+    std::function<PixelViewport(PicturePart&, const FoldRule&)> composeParts;
     // What this node's GL tells of a program's context.
     std::function<void(const wire::News&, const std::string& text)> news;
 };
@@ -158,7 +158,7 @@ private:
         GLenum function = 0;    // of all draws that were shared
         bool muted = false;     // another node draws this
         bool wasSplit = false;
-        uint32_t clearedColour = 0, clearedDepth = 0;
+        FoldRule rule;          // how the nodes' pictures are laid over each other
     };
     struct Window {
         bool destroyed = false; // freed when it is current nowhere
@@ -527,10 +527,10 @@ private:
     void composeRanges(Window& w);
     void composeBound();
     void rangeDrawn(Window& w);
-    bool readPart(Window& w, const PixelViewport& box, PicturePart& part);
-    void writePart(Window& w, const PicturePart& part);
+    int depthBitsOfWindow();
+    void readPart(Window& w, const PixelViewport& box, PicturePart& part);
+    void writePart(const PicturePart& part, const PixelViewport& area);
     std::vector<std::byte> sliced_; // arguments of a draw of which this node draws a piece
-    bool saidExchangeLost_ = false;
     // replay_front.cpp
     [[nodiscard]] bool hasTwoSurfaces(const Window* w) const;
     gl::Surface* surfaceOf(Window* w, GLenum buffer);

@@ -8,7 +8,7 @@
 //
 // Which draws are shared follows from the stream and the state alone, and ranges from what the frame before has cost, so
 // all nodes agree without a word. Draws are folded in their order by the depth test itself, so the picture is the one of
-// a single machine, bit for bit (accuracy 4). Framebuffer objects are drawn by all.
+// a single machine, bit for bit (accuracy 4). Framebuffer objects are drawn by all. How the pictures become one: nodes/exchange.
 #include <algorithm>
 #include <cstring>
 #include <string_view>
@@ -177,11 +177,21 @@ void Replay::beginSplit(Window& w) {
     r.function = static_cast<GLenum>(function);
     r.phase = RangeFrame::Phase::Split;
     r.wasSplit = r.wasSplit || r.lastTotal > 0;
-    if (!collects() || w.part.empty()) return;
+    if (r.lastTotal == 0 || w.part.empty()) return;
     PicturePart pixel; // as the clears have left it
-    if (!readPart(w, {w.part.x, w.part.y, 1, 1}, pixel)) return;
-    r.clearedColour = pixel.colour[0];
-    r.clearedDepth = pixel.depth[0];
+    readPart(w, {w.part.x, w.part.y, 1, 1}, pixel);
+    r.rule.clearedColour = pixel.colour[0];
+    r.rule.clearedDepth = pixel.depth[0];
+    r.rule.function = static_cast<compositor::DepthFunction>(r.function - GL_NEVER); // numbered as GL's
+    r.rule.deep = depthBitsOfWindow() > 24;
+}
+
+// Of the bound window's depth buffer; it may have more than the program has asked for.
+int Replay::depthBitsOfWindow() {
+    GLint bits = 0;
+    if (!c_->core) gl.glGetIntegerv(GL_DEPTH_BITS, &bits);
+    else gl.glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_DEPTH, GL_FRAMEBUFFER_ATTACHMENT_DEPTH_SIZE, &bits);
+    return bits > 0 ? bits : 32;
 }
 
 // Whether the window's next draws, of `cost`, are shared; then this node's are those from `first` up to `last`.
@@ -296,16 +306,14 @@ bool Replay::noteRangeList(const ListItem& item) {
 
 // ---- pictures
 
-bool Replay::readPart(Window& w, const PixelViewport& box, PicturePart& part) {
+void Replay::readPart(Window& w, const PixelViewport& box, PicturePart& part) {
     const GLuint bound = c_->readFramebuffer;
     if (bound && gl.glBindFramebuffer) gl.glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
     c_->readFramebuffer = 0;
     gl.glReadBuffer(windowBuffer(c_->drawBuffer0, &w));
     depthForReading();
     const auto pixels = static_cast<size_t>(box.area());
-    part.client = wire::clientOf(stream_);
-    part.box = box;
-    part.serial = w.range.serial;
+    part.id = {wire::clientOf(stream_), w.range.serial, box};
     part.colour.resize(pixels);
     part.depth.resize(pixels);
     aside([&] {
@@ -317,14 +325,21 @@ bool Replay::readPart(Window& w, const PixelViewport& box, PicturePart& part) {
     gl.glReadBuffer(windowBuffer(c_->readBuffer0, &w));
     c_->readFramebuffer = bound;
     if (bound && gl.glBindFramebuffer) gl.glBindFramebuffer(GL_READ_FRAMEBUFFER, name(Kind::Framebuffer, bound));
-    return true;
 }
 
-void Replay::writePart(Window&, const PicturePart& part) {
+// `area` of the part, in its own pixels, into the bound window.
+void Replay::writePart(const PicturePart& part, const PixelViewport& area) {
+    std::vector<uint32_t> colour, depth;
+    for (int32_t y = 0; y < area.h; ++y) {
+        const auto from = static_cast<ptrdiff_t>(part.at(area.x, area.y + y));
+        colour.insert(colour.end(), part.colour.begin() + from, part.colour.begin() + from + area.w);
+        depth.insert(depth.end(), part.depth.begin() + from, part.depth.begin() + from + area.w);
+    }
+    const PixelViewport inWindow{part.id.box.x + area.x, part.id.box.y + area.y, area.w, area.h};
     const GLenum reads = std::exchange(c_->readBuffer0, c_->drawBuffer0);
     aside([&] {
-        fillColor(part.box, part.colour.data());
-        fillByOtherContext(part.box, GL_DEPTH_BUFFER_BIT, part.depth.data());
+        fillColor(inWindow, colour.data());
+        fillByOtherContext(inWindow, GL_DEPTH_BUFFER_BIT, depth.data());
     });
     c_->readBuffer0 = reads;
     if (c_->readFramebuffer == 0) gl.glReadBuffer(windowBuffer(reads, c_->read));
@@ -339,21 +354,9 @@ void Replay::composeRanges(Window& w) {
     PicturePart part;
     ++r.serial;
     readPart(w, w.part, part);
-    if (!collects()) {
-        if (out_.sendPart) (void)out_.sendPart(part);
-        return;
-    }
-    using compositor::DepthFunction;
-    auto function = static_cast<DepthFunction>(r.function - GL_NEVER); // numbered as GL's
-    if (config_.plant == "tie") function = function == DepthFunction::Less ? DepthFunction::LessOrEqual : DepthFunction::Less;
-    for (int rank = 1; rank < config_.pass.ranges; ++rank) {
-        PicturePart later;
-        if (!out_.receivePart || !out_.receivePart(rank, later)) continue; // its share is missing
-        if (config_.plant == "range") continue; // a fault on purpose, for tests of the tests
-        if (later.serial == part.serial && later.box == part.box) mergeByDepth(part, later, function, r.clearedColour, r.clearedDepth);
-        else if (!std::exchange(saidExchangeLost_, true)) out_.log("ranges of different frames came together: this picture is incomplete");
-    }
-    writePart(w, part);
+    if (!out_.composeParts) return;
+    const PixelViewport changed = out_.composeParts(part, r.rule);
+    if (collects() && !changed.empty()) writePart(part, changed);
 }
 
 // The bound window is about to be read, or to be left.

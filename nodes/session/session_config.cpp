@@ -61,6 +61,7 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("samples", c.passes.samples, 1);
     visit("period", c.passes.period, 1);
     visit("ranges", c.passes.ranges, 1);
+    visit("composition", c.composition);
     visit("eyeBase", c.eyeBase);
     visit("focusDistance", c.focusDistance);
     visit("tiling", c.tiling);
@@ -129,6 +130,7 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("stream", s.stream);
     visit("streamSecret", s.streamSecret);
     visit("collector", s.collector, 0);
+    visit("composition", s.composition);
     visit("exchangeSecret", s.exchangeSecret);
     visit("exchangeHere", s.exchangeHere);
     visit("build", s.build);

@@ -40,6 +40,7 @@ struct SessionConfig {
     Frusta frusta = Frusta::Auto; // --frusta
     double modelUnit = 1;         // --model-unit: of the program, to the metre of the file
     PassCounts passes;            // --stereo, --pixel, --subpixel, --dplex, --db
+    std::string composition = "auto"; // --composition: auto, or a compositor::Strategy by its name
     double eyeBase = 0.05;        // --eye-base: distance of the eyes, in the program's units
     double focusDistance = 1;     // --focus: where both eyes see the same, in the program's units
     Tiling tiling = Tiling::Exact;
@@ -88,7 +89,8 @@ struct NodeSetup {
     std::string displayName;
     std::string stream;           // rsp://…: the group to join; its packets come there. Empty: on this connection
     std::string streamSecret;     // of that group, in hex
-    int collector = 0;            // the node that puts together what this one draws a range of
+    int collector = 0;            // the node that has the picture that this one draws a range of; ranges follow it, one node each
+    std::string composition = "serial"; // compositor::Strategy by which they put it together
     std::string exchangeSecret;   // of the nodes that draw ranges of one picture, in hex; empty: they do not
     bool exchangeHere = false;    // all of those run on this machine
     std::string build;            // streamBuild() of the head

@@ -2,8 +2,9 @@
 """Shows that run_exact.py can fail: each fault that a render node makes on purpose must be found.
 
 MURAL_PLANT=opcode changes one argument of one command, shift moves one tile by a pixel, drop leaves
-out one frame's draws; of nodes that share draws, range loses the others' pictures, and tie lets the
-earlier draw win where depths are equal. Without a fault, the same comparison must be exact.
+out one frame's draws; of nodes that share draws, range loses the others' pictures, tie lets the
+earlier draw win where depths are equal, order takes later draws for earlier ones, and band loses a band that a node
+has put together. Without a fault, the same comparison must be exact.
 """
 
 import argparse
@@ -13,8 +14,9 @@ import sys
 
 PROGRAMS = "immediate,draw_calls,es2_scene"
 RANGES = ["--programs", "fixed_lighting,range_ties", "--layouts", "1x1", "--options", "--display none --db 2", "--frames", "4"]
+SWAPS = ["--programs", "range_ties", "--layouts", "1x1", "--options", "--display none --db 3 --composition direct-send", "--frames", "4"]
 # What is run, and the faults that it must find.
-SETTINGS = ((["--layouts", "2x2"], ("opcode", "shift", "drop")), (RANGES, ("range", "tie")))
+SETTINGS = ((["--layouts", "2x2"], ("opcode", "shift", "drop")), (RANGES, ("range", "tie", "order")), (SWAPS, ("band", "order")))
 
 
 def compare(arguments, setting, fault):

@@ -131,6 +131,15 @@ TEST(RunOptions, passesAreRead) {
     for (size_t i = 0; i < 6; ++i) EXPECT_EQ(accepted([&](RunArguments& a) { a.stereo = modes[i]; }).config.passes.stereo, static_cast<StereoMode>(i));
 }
 
+TEST(RunOptions, compositionIsForNodesThatShareDraws) {
+    EXPECT_EQ(accepted([](RunArguments& a) { a.db = "3"; }).config.composition, "auto");
+    for (const char* how : {"auto", "serial", "direct-send", "binary-swap", "2-3-swap", "radix-k", "streaming"})
+        EXPECT_EQ(accepted([&](RunArguments& a) { a.db = "3"; a.composition = how; }).config.composition, how);
+    EXPECT_EQ(refusal([](RunArguments& a) { a.db = "3"; a.composition = "swap"; }),
+              "--composition \"swap\": must be one of auto, serial, direct-send, binary-swap, 2-3-swap, radix-k, streaming");
+    EXPECT_EQ(refusal([](RunArguments& a) { a.composition = "serial"; }), "--composition is for nodes that share draws; add --db N, such as --db 4");
+}
+
 TEST(RunOptions, nodesOfSeveralPassesShareTheTiles) {
     EXPECT_EQ(accepted([](RunArguments& a) { a.subpixel = "4"; a.localNodes = "4"; }).config.columns, 1);
     const RunOptions o = accepted([](RunArguments& a) { a.subpixel = "2"; a.localNodes = "8"; });

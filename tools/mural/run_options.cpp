@@ -12,6 +12,7 @@
 #include "balancer/config/short_forms.hpp"
 #include "balancer/config/text/parser.hpp"
 #include "balancer/config/text/writer.hpp"
+#include "compositor/strategies/strategy.hpp"
 #include "nodes/head/config_plan.hpp"
 #include "nodes/launch/private_display.hpp"
 #include "transport/connection_description.hpp"
@@ -217,6 +218,13 @@ Result<void> readPasses(const RunArguments& a, SessionConfig& c) {
     if (auto r = readCount("--subpixel", a.subpixel, kMaxPasses, p.samples); !r) return r;
     if (auto r = readCount("--dplex", a.dplex, kMaxPasses, p.period); !r) return r;
     if (auto r = readCount("--db", a.db, kMaxPasses, p.ranges); !r) return r;
+    if (a.composition) {
+        std::string names = "auto";
+        for (const compositor::Strategy s : compositor::kEveryStrategy) names += std::string(", ") + nameOf(s);
+        if (*a.composition != "auto" && !compositor::strategyNamed(*a.composition)) return badValue("--composition", *a.composition, "must be one of " + names);
+        if (p.ranges == 1 && !a.config) return Error{"--composition is for nodes that share draws; add --db N, such as --db 4"};
+        c.composition = *a.composition;
+    }
     const size_t passes = passesOf(p).size() * static_cast<size_t>(p.ranges);
     if (passes > kMaxPasses) return Error{fmt::format("--stereo, --pixel, --subpixel, --dplex and --db make {} passes together; at most {} can be drawn", passes, kMaxPasses)};
     if (passes > 1 && c.tiling == Tiling::Lean) return Error{"--tiling lean does not go with --stereo, --pixel, --subpixel, --dplex or --db; leave it out"};
@@ -356,6 +364,7 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
     command.add_option("--pixel", a.pixel, "interleaved pixels: each node draws every Nth column (or one pixel of each CxR), with little memory; approximate (1)")->type_name("N|CxR");
     command.add_option("--dplex", a.dplex, "time-multiplex: N nodes take turns at whole frames (1)")->type_name("N");
     command.add_option("--db", a.db, "sort-last: N nodes share what is drawn, by ranges of each frame's draws, and compose by depth (1)")->type_name("N");
+    command.add_option("--composition", a.composition, "how they put their picture together: serial, direct-send, binary-swap, 2-3-swap, radix-k, streaming, or auto, by their number (auto)")->type_name("HOW");
     command.add_option("--display", a.display, "where the wall is shown: app (the program's own window), windows (one per tile), none")->type_name("WHERE");
     command.add_option("--tiling", a.tiling, "exact: every pixel as on one machine; culled: less work for much geometry, exact in windows with a depth buffer; lean: less memory (exact)")->type_name("HOW");
     command.add_option("--policy", a.policy, "state: the program's own GL draws nothing; full: it draws too (state)")->type_name("WHAT");

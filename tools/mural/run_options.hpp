@@ -36,7 +36,7 @@ struct RunArguments {
     Text config, canvas, frusta, modelUnit;
     std::vector<std::string> layouts;
     bool here = false, printConfig = false;
-    Text stereo, eyeBase, focus, pixel, subpixel, dplex, db;
+    Text stereo, eyeBase, focus, pixel, subpixel, dplex, db, composition;
     Text localNodes, frames, latency, report;
     std::string verify; // empty: not given
     bool fullScreen = false, noPlacement = false, explain = false, native = false, quiet = false;

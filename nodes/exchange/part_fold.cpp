@@ -1,0 +1,67 @@
+#include "nodes/exchange/part_fold.hpp"
+
+#include "compositor/kernels/z_select.hpp"
+
+namespace mural {
+
+namespace {
+
+using compositor::DepthFunction;
+
+// Depths of up to 24 bits, as OpenGL hands them out with 32: the upper 24 tell them apart, in their order.
+constexpr unsigned kSpareBits = 8;
+
+template <class Passes> void foldWith(const FoldRow& r, FoldSide side, const FoldRule& rule, const Passes& passes) {
+    for (size_t i = 0; i < r.count; ++i) {
+        if (r.otherDepth[i] == rule.clearedDepth && r.otherColour[i] == rule.clearedColour) continue;
+        const bool own = r.depth[i] != rule.clearedDepth || r.colour[i] != rule.clearedColour;
+        if (own && !(side == FoldSide::Later ? passes(r.otherDepth[i], r.depth[i]) : !passes(r.depth[i], r.otherDepth[i]))) continue;
+        r.colour[i] = r.otherColour[i];
+        r.depth[i] = r.otherDepth[i];
+    }
+}
+
+// Pixel by pixel, as it reads: for depths of more than 24 bits, which are in none of the formats that the compositor's kernel knows
+// (32 whole bits; its 32 are floats).
+void foldDeep(const FoldRow& r, FoldSide side, const FoldRule& rule) {
+    switch (rule.function) {
+    case DepthFunction::Less: return foldWith(r, side, rule, [](uint32_t later, uint32_t earlier) { return later < earlier; });
+    case DepthFunction::LessOrEqual: return foldWith(r, side, rule, [](uint32_t later, uint32_t earlier) { return later <= earlier; });
+    case DepthFunction::Greater: return foldWith(r, side, rule, [](uint32_t later, uint32_t earlier) { return later > earlier; });
+    case DepthFunction::GreaterOrEqual: return foldWith(r, side, rule, [](uint32_t later, uint32_t earlier) { return later >= earlier; });
+    default: return; // draws by these are not shared
+    }
+}
+
+// What was drawn at the clear depth (a sky under GL_LEQUAL) is told from what was not drawn by its colour alone, which the kernel
+// does not look at. Nothing but the same can lie under it.
+void foldAtClearDepth(const FoldRow& r, FoldSide side, const FoldRule& rule) {
+    const uint32_t clear = rule.clearedDepth >> kSpareBits;
+    for (size_t i = 0; i < r.count; ++i) {
+        if (r.otherDepth[i] >> kSpareBits != clear || r.otherColour[i] == rule.clearedColour || r.depth[i] >> kSpareBits != clear) continue;
+        if (side == FoldSide::Later || r.colour[i] == rule.clearedColour) r.colour[i] = r.otherColour[i];
+    }
+}
+
+} // namespace
+
+void foldRow(const FoldRow& row, FoldSide side, const FoldRule& rule) {
+    if (rule.deep) return foldDeep(row, side, rule);
+    compositor::ZRow z;
+    z.depth = row.depth;
+    z.colour = reinterpret_cast<std::byte*>(row.colour);
+    z.sourceDepth = row.otherDepth;
+    z.sourceColour = reinterpret_cast<const std::byte*>(row.otherColour);
+    z.count = row.count;
+    compositor::DepthRule how;
+    how.function = rule.function;
+    how.format = compositor::DepthFormat::D24S8;
+    how.sourceIsLater = side == FoldSide::Later;
+    how.coverage = compositor::Coverage::NotClear;
+    how.clearBits = rule.clearedDepth;
+    compositor::zSelectRow(z, how);
+    const bool equalPasses = rule.function == DepthFunction::LessOrEqual || rule.function == DepthFunction::GreaterOrEqual;
+    if (equalPasses) foldAtClearDepth(row, side, rule);
+}
+
+} // namespace mural

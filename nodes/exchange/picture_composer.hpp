@@ -1,0 +1,49 @@
+// Puts a picture together of what the nodes of several ranges have drawn, by a schedule that all of them know.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <set>
+#include <string>
+
+#include "compositor/strategies/schedule.hpp"
+#include "nodes/exchange/part_message.hpp"
+#include "nodes/exchange/part_routes.hpp"
+
+namespace mural {
+
+struct ComposerConfig {
+    compositor::Strategy strategy = compositor::Strategy::Serial;
+    int rank = 0, ranks = 1;
+    int64_t partMs = 20'000; // how long another's part is waited for; as long as the head waits for a silent node
+    int64_t stageMs = 5'000; // and for each wait that the other may have before it sends: a lost node must not make others seem lost
+    std::string plant;       // MURAL_PLANT: a fault on purpose, for tests of the tests
+};
+
+class PictureComposer {
+public:
+    using Log = std::function<void(const std::string&)>;
+    PictureComposer(ComposerConfig config, PartRoutes& routes, Log log);
+
+    // Each node calls this with what it has drawn. Afterwards the collector's part is the whole picture; the others' hold anything.
+    // Returns the area of the part that may have changed. What nodes have drawn that are lost is missing: said once for each.
+    PixelViewport compose(PicturePart& part, const FoldRule& rule);
+
+private:
+    void send(const PicturePart& part, const compositor::Step& step, const FoldRule& rule);
+    void take(PicturePart& part, const compositor::Step& step, const FoldRule& rule, int64_t beganNs);
+    void put(PicturePart& part, const ArrivedPiece& piece, compositor::Step::Kind kind, const FoldRule& rule);
+    void lost(int rank, const std::string& why);
+
+    const ComposerConfig config_;
+    PartRoutes& routes_;
+    const Log log_;
+    int32_t rows_ = -1;
+    std::vector<compositor::Step> steps_;   // of this rank, for so many rows
+    std::map<int, PlaneEncoder> encoders_;  // of each link
+    PlaneDecoder decoder_;
+    PixelViewport changed_;
+    std::set<int> lost_;
+};
+
+} // namespace mural

@@ -1,0 +1,32 @@
+#!/usr/bin/env python3
+"""Pictures that nodes put together in every way that there is, compared with the native ones, pixel by pixel.
+
+  compositions.py --build build/release --programs range_ties --counts 2,3,4,5 --size 253x191
+"""
+
+import os
+import sys
+
+import run_exact
+
+STRATEGIES = ("serial", "direct-send", "binary-swap", "2-3-swap", "radix-k", "streaming")
+
+
+class Compositions(run_exact.Comparison):
+    """One program natively once, and then shared by so many nodes, by each strategy."""
+
+    def launchers(self):
+        arguments = self.arguments
+        mural = arguments.mural or os.path.join(arguments.build, "bin", "mural")
+        start = [mural, "run", "--report", self.report_file()] + arguments.options.split()
+        return {"%s.%s" % (strategy, count): start + ["--db", count, "--composition", strategy, "--"]
+                for count in arguments.counts.split(",") for strategy in arguments.strategies.split(",")}
+
+
+def add_arguments(parser):
+    parser.add_argument("--counts", default="2,3,4,5", help="of nodes")
+    parser.add_argument("--strategies", default=",".join(STRATEGIES))
+
+
+if __name__ == "__main__":
+    sys.exit(run_exact.main(__doc__, add_arguments, Compositions))

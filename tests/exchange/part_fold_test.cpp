@@ -1,0 +1,53 @@
+#include <gtest/gtest.h>
+
+#include "tests/exchange/test_parts.hpp"
+
+namespace mural::test {
+namespace {
+
+void fold(PicturePart& into, const PicturePart& other, FoldSide side, const FoldRule& rule) {
+    foldRow({into.colour.data(), into.depth.data(), other.colour.data(), other.depth.data(), into.colour.size()}, side, rule);
+}
+
+// Three nodes draw a third each; however they are paired, it is the picture of one that draws all.
+TEST(PartFold, isThePictureOfOneMachineHoweverPartsArePaired) {
+    std::mt19937 random(5);
+    for (const auto function : kOrders)
+        for (const bool deep : {false, true})
+            for (int round = 0; round < 40; ++round) {
+                const FoldRule rule = ruleOf(function, deep);
+                PicturePart whole = clearedPart(37, 3, rule);
+                std::vector<PicturePart> parts(3, whole);
+                for (PicturePart& part : parts)
+                    for (const Fragment& f : fragmentsOf(random, whole.colour.size(), rule)) {
+                        draw(whole, f.at, f.colour, f.depth, rule);
+                        draw(part, f.at, f.colour, f.depth, rule);
+                    }
+                PicturePart left = parts[0];
+                fold(left, parts[1], FoldSide::Later, rule);
+                fold(left, parts[2], FoldSide::Later, rule);
+                PicturePart right = parts[2];
+                fold(right, parts[1], FoldSide::Earlier, rule);
+                fold(right, parts[0], FoldSide::Earlier, rule);
+                PicturePart middle = parts[1];
+                fold(middle, parts[2], FoldSide::Later, rule);
+                fold(middle, parts[0], FoldSide::Earlier, rule);
+                for (const PicturePart* made : {&left, &right, &middle}) {
+                    ASSERT_EQ(made->colour, whole.colour) << "function " << static_cast<int>(function) << (deep ? ", deep" : "");
+                    ASSERT_EQ(made->depth, whole.depth);
+                }
+            }
+}
+
+// Of 32 bits the lowest count too.
+TEST(PartFold, deepBuffersAreComparedWhole) {
+    const FoldRule rule = ruleOf(compositor::DepthFunction::Less, true);
+    PicturePart into = clearedPart(1, 1, rule), later = into;
+    draw(into, 0, 1, 0x80000001u, rule);
+    draw(later, 0, 2, 0x80000000u, rule);
+    fold(into, later, FoldSide::Later, rule);
+    EXPECT_EQ(into.colour[0], 2u);
+}
+
+} // namespace
+} // namespace mural::test

@@ -1,0 +1,114 @@
+#include <gtest/gtest.h>
+
+#include "nodes/exchange/part_message.hpp"
+#include "tests/exchange/test_parts.hpp"
+
+namespace mural::test {
+namespace {
+
+using compositor::DepthFunction;
+using compositor::RowRange;
+
+// Some rectangles of surfaces, edges and noise.
+PicturePart drawnPart(std::mt19937& random, int32_t width, int32_t height, const FoldRule& rule) {
+    PicturePart part = clearedPart(width, height, rule);
+    for (int i = 0; i < 4; ++i) {
+        const auto x0 = static_cast<int32_t>(random() % static_cast<uint32_t>(width)), y0 = static_cast<int32_t>(random() % static_cast<uint32_t>(height));
+        const bool noise = random() % 3 == 0;
+        for (int32_t y = y0; y < std::min(height, y0 + 90); ++y)
+            for (int32_t x = x0; x < std::min(width, x0 + 130); ++x) {
+                const auto depth = noise ? static_cast<uint32_t>(random()) : static_cast<uint32_t>(0x300000 + 97 * x + 31 * y);
+                draw(part, part.at(x, y), noise ? static_cast<uint32_t>(random()) : 0xff00a000u + static_cast<uint32_t>(x), rule.deep ? depth : widened(depth & 0xffffff), rule);
+            }
+    }
+    return part;
+}
+
+Result<void> unpackInto(PicturePart& into, std::span<const std::byte> message, const RowRange& rows, const FoldRule& rule) {
+    PlaneDecoder decoder;
+    return unpackPart(message, into.id, rows, rule, decoder, [&](const ArrivedPiece& p) {
+        ASSERT_TRUE((PixelViewport{0, rows.first, into.id.box.w, rows.count()}.contains(p.area)));
+        for (int32_t y = 0; y < p.area.h; ++y)
+            for (int32_t x = 0; x < p.area.w; ++x) {
+                into.colour[into.at(p.area.x + x, p.area.y + y)] = p.colour[y * p.area.w + x];
+                into.depth[into.at(p.area.x + x, p.area.y + y)] = p.depth[y * p.area.w + x];
+            }
+    });
+}
+
+TEST(PartMessage, rowsArriveAsTheyWere) {
+    std::mt19937 random(11);
+    PlaneEncoder encoder;
+    for (int round = 0; round < 60; ++round) {
+        const FoldRule rule = ruleOf(kOrders[round % 4], round % 3 == 0);
+        const auto width = static_cast<int32_t>(1 + random() % 400), height = static_cast<int32_t>(1 + random() % 300);
+        const PicturePart part = drawnPart(random, width, height, rule);
+        const auto first = static_cast<int32_t>(random() % static_cast<uint32_t>(height));
+        const RowRange rows{first, first + 1 + static_cast<int32_t>(random() % static_cast<uint32_t>(height - first))};
+        const auto message = packPart(part, rows, rule, encoder);
+        EXPECT_LE(message.size(), boundBytesOf(part.id.box, rows));
+        PicturePart back = clearedPart(width, height, rule);
+        const auto done = unpackInto(back, message, rows, rule);
+        ASSERT_TRUE(done) << done.error().message;
+        for (int32_t y = 0; y < height; ++y)
+            for (int32_t x = 0; x < width; ++x) {
+                const bool sent = y >= rows.first && y < rows.end;
+                ASSERT_EQ(back.colour[back.at(x, y)], sent ? part.colour[part.at(x, y)] : rule.clearedColour);
+                ASSERT_EQ(back.depth[back.at(x, y)], sent ? part.depth[part.at(x, y)] : rule.clearedDepth);
+            }
+        encoder.transferred(1 << 20, round % 2 ? 1'000'000 : 100'000'000); // links that change, so that codecs do
+    }
+}
+
+TEST(PartMessage, whatIsNotDrawnIsNotSent) {
+    const FoldRule rule = ruleOf(DepthFunction::Less, false);
+    PlaneEncoder encoder;
+    PicturePart part = clearedPart(1920, 1080, rule);
+    EXPECT_EQ(packPart(part, {0, 1080}, rule, encoder).size(), 40u);
+    draw(part, part.at(1000, 500), 1, 0, rule);
+    EXPECT_LT(packPart(part, {0, 1080}, rule, encoder).size(), 1000u);
+}
+
+TEST(PartMessage, noiseGrowsByNoMoreThanItsHeads) {
+    std::mt19937 random(2);
+    const FoldRule rule = ruleOf(DepthFunction::Less, true);
+    PicturePart part = clearedPart(300, 200, rule);
+    for (auto& word : part.colour) word = static_cast<uint32_t>(random());
+    for (auto& word : part.depth) word = static_cast<uint32_t>(random());
+    PlaneEncoder encoder;
+    for (int i = 0; i < 20; ++i) EXPECT_LE(packPart(part, {0, 200}, rule, encoder).size(), boundBytesOf(part.id.box, {0, 200}));
+}
+
+TEST(PartMessage, otherPicturesAreToldApart) {
+    const FoldRule rule = ruleOf(DepthFunction::Less, false);
+    PlaneEncoder encoder;
+    PicturePart part = clearedPart(64, 64, rule);
+    const auto message = packPart(part, {0, 32}, rule, encoder);
+    EXPECT_TRUE(unpackInto(part, message, {0, 32}, rule));
+    EXPECT_FALSE(unpackInto(part, message, {32, 64}, rule));
+    ++part.id.serial;
+    EXPECT_EQ(unpackInto(part, message, {0, 32}, rule).error().message, "parts of different pictures came together: this one is incomplete");
+}
+
+TEST(PartMessage, damageIsAnErrorOfOneLine) {
+    std::mt19937 random(3);
+    const FoldRule rule = ruleOf(DepthFunction::Less, false);
+    PlaneEncoder encoder;
+    PicturePart part = drawnPart(random, 200, 150, rule);
+    const auto message = packPart(part, {0, 150}, rule, encoder);
+    int refused = 0;
+    for (int i = 0; i < 3000; ++i) {
+        auto damaged = message;
+        if (i % 3 == 0) damaged.resize(random() % damaged.size());
+        else for (uint32_t n = 0; n < 1 + random() % 4; ++n) damaged[random() % std::min<size_t>(damaged.size(), i % 2 ? 120 : SIZE_MAX)] = static_cast<std::byte>(random());
+        PicturePart into = clearedPart(200, 150, rule);
+        const auto done = unpackInto(into, damaged, {0, 150}, rule);
+        if (done) continue;
+        ++refused;
+        EXPECT_EQ(done.error().message.find('\n'), std::string::npos);
+    }
+    EXPECT_GT(refused, 1000);
+}
+
+} // namespace
+} // namespace mural::test
