@@ -9,9 +9,9 @@ namespace {
 // Member by member: a defaulted comparison of a type that holds a list of its own kind stops clang 14. A member that is
 // added and not named here is an error of the compiler's.
 auto membersOf(const Compound& c) {
-    const auto& [name, channel, tasks, eyes, buffers, viewport, range, period, phase, zoom, pixel, subPixel, surface, attributes, equalizers,
+    const auto& [name, channel, tasks, eyes, buffers, viewport, range, period, phase, zoom, pixel, subPixel, composition, surface, attributes, equalizers,
                  swapBarrier, outputTiles, inputTiles, children, outputFrames, inputFrames, at] = c;
-    return std::tie(name, channel, tasks, eyes, buffers, viewport, range, period, phase, zoom, pixel, subPixel, surface, attributes, equalizers,
+    return std::tie(name, channel, tasks, eyes, buffers, viewport, range, period, phase, zoom, pixel, subPixel, composition, surface, attributes, equalizers,
                     swapBarrier, outputTiles, inputTiles, children, outputFrames, inputFrames, at);
 }
 

@@ -138,6 +138,7 @@ struct Compound {
     std::optional<Zoom> zoom;
     std::optional<PixelKernel> pixel;
     std::optional<SubPixel> subPixel;
+    std::optional<std::string> composition; // by name, or "auto": how the channels that draw its ranges put them together
     std::optional<ProjectionSurface> surface;
     CompoundAttributes attributes;
     std::vector<Equalizer> equalizers;

@@ -137,6 +137,7 @@ struct ResolvedCompound {
     Zoom zoom;
     PixelKernel pixel;
     SubPixel subPixel;
+    std::string composition; // its own, or the nearest above; empty: nothing is said
     std::optional<ProjectionSurface> surface;
     CompoundAttributes attributes; // its own; of roots: complete
     std::vector<Equalizer> equalizers;

@@ -122,6 +122,7 @@ private:
         Compound root;
         root.channel = ChannelPath{{{PathStep::Segment, segment}, {PathStep::Layout, std::string("whole")}}};
         if (form_.ranges > 1) root.buffers = BufferSet{Buffer::Color, Buffer::Depth};
+        if (form_.ranges > 1 && !form_.composition.empty()) root.composition = form_.composition;
         if (form_.stereo == StereoForm::Anaglyph) root.attributes.stereoMode = value::kAnaglyph;
         if (form_.stereo == StereoForm::Quad) root.attributes.stereoMode = value::kQuad;
         if (form_.frames > 1) root.equalizers.emplace_back(FramerateEqualizer{});

@@ -21,6 +21,7 @@ struct ShortForm {
     int32_t rows = 1;
     std::vector<std::string> nodes; // hosts; none: all is drawn on this machine
     int32_t ranges = 1;             // --db
+    std::string composition;        // --composition, of the ranges; empty: nothing is said
     int32_t pixels = 1;             // --pixel
     int32_t samples = 1;            // --subpixel
     int32_t frames = 1;             // --dplex

@@ -9,10 +9,14 @@ void chooseComposition(SessionPlan& plan, const std::string& wish) {
     for (NodePlan& node : plan.nodes) {
         const int ranges = node.pass.ranges;
         if (ranges < 2) continue;
+        // All of one picture go by one schedule: the first one's.
+        if (node.pass.range != 0) {
+            node.composition = plan.nodes[static_cast<size_t>(node.collector)].composition;
+            continue;
+        }
         const bool chosen = asked || node.composition;
         if (asked) node.composition = asked;
         else if (!node.composition) node.composition = compositor::chooseStrategy(ranges);
-        if (node.pass.range != 0) continue;
         plan.explain.push_back("nodes " + std::to_string(node.node) + " to " + std::to_string(node.node + ranges - 1) + " put their picture together by " + nameOf(*node.composition) +
                                (chosen ? ", as asked" : std::string(": ") + compositor::whyStrategy(ranges)));
     }

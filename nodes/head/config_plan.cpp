@@ -46,7 +46,7 @@ public:
         if (draws_.empty()) return Error{file_ + ": nothing of it draws: it has no canvas with segments, or no compound with channels; mural config print --resolved shows what it has"};
         if (auto done = placeParts(); !done) return done.error();
         lookIntoRoom();
-        placeNodes();
+        if (auto placed = placeNodes(); !placed) return placed.error();
         placeWindows();
         takeObserver();
         tell();
@@ -218,7 +218,7 @@ private:
     }
 
     // Nodes in the order of their groups: draws of one area of one picture that differ in their range alone.
-    void placeNodes() {
+    Result<void> placeNodes() {
         using Key = std::tuple<int, uint32_t, double, double, double, double>;
         std::map<Key, std::vector<size_t>> groups;
         for (size_t i = 0; i < draws_.size(); ++i) {
@@ -240,12 +240,24 @@ private:
                 node.area = draws_[i].area;
                 node.screen = screenOf(c);
                 node.collector = collector;
+                if (auto named = takeComposition(node, config_.compounds[at(c.compound)]); !named) return named;
                 node.answers = node.pass.range == 0 && c.eye != Eye::Right && c.pixel.x == 0 && c.pixel.y == 0 && c.subPixel.index == 0;
                 placeOnHost(node, c);
                 plan_.nodes.push_back(node);
                 channels_.push_back(c.channel);
             }
         }
+        return {};
+    }
+
+    // Where a file says nothing, the number of nodes does, later.
+    [[nodiscard]] Result<void> takeComposition(NodePlan& node, const config::ResolvedCompound& compound) const {
+        if (compound.composition.empty() || compound.composition == "auto") return {};
+        node.composition = compositor::strategyNamed(compound.composition);
+        if (node.composition) return {};
+        std::string names = "auto";
+        for (const compositor::Strategy s : compositor::kEveryStrategy) names += std::string(", ") + nameOf(s);
+        return Error{file_ + ":" + std::to_string(compound.at.line) + ": mural_composition \"" + compound.composition + "\": must be one of " + names};
     }
 
     void placeOnHost(NodePlan& node, const RenderContext& c) const {

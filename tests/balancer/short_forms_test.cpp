@@ -78,6 +78,16 @@ TEST(ShortForms, nodesTakeTurns) {
     EXPECT_EQ(one.resolved.windows.size(), 4u);
 }
 
+TEST(ShortForms, compositionIsInheritedByTheRanges) {
+    ShortForm form;
+    form.ranges = 3;
+    form.composition = "2-3-swap";
+    const LoadedConfig three = loaded(form);
+    for (const auto& c : three.resolved.compounds) EXPECT_EQ(c.composition, "2-3-swap");
+    form.ranges = 1; // nothing is put together
+    for (const auto& c : loaded(form).resolved.compounds) EXPECT_EQ(c.composition, "");
+}
+
 TEST(ShortForms, senselessOnesAreRefused) {
     ShortForm form;
     form.ranges = 0;

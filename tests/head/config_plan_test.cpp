@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 #include <set>
 
+#include "balancer/config/short_forms.hpp"
+#include "compositor/strategies/choose_strategy.hpp"
+#include "nodes/head/composition_choice.hpp"
 #include "tests/balancer/example_files.hpp"
 
 namespace mural {
@@ -34,6 +37,30 @@ TEST(ConfigPlan, rangesShareAPictureAndACollector) {
         end = n.pass.share.end;
     }
     EXPECT_DOUBLE_EQ(end, 1);
+}
+
+SessionPlan planOfRanges(const std::string& composition) {
+    config::ShortForm form;
+    form.ranges = 5;
+    form.composition = composition;
+    const auto file = config::shortForm(form);
+    const auto loaded = compound::loadConfig(file.value(), "ranges.eqc", [](const std::string&) { return std::optional<std::string>(); });
+    auto plan = planOf(loaded, {"me", true, "", {}});
+    EXPECT_TRUE(plan.ok()) << (plan.ok() ? "" : plan.error().message);
+    return plan.ok() ? std::move(*plan) : SessionPlan{};
+}
+
+TEST(ConfigPlan, filesSayHowRangesAreComposed) {
+    using compositor::Strategy;
+    const auto chosen = [](SessionPlan plan, const std::string& wish) {
+        chooseComposition(plan, wish);
+        for (const NodePlan& n : plan.nodes) EXPECT_EQ(n.composition, plan.nodes[0].composition);
+        return plan.nodes[0].composition.value_or(Strategy::Serial);
+    };
+    EXPECT_EQ(chosen(planOfRanges("streaming"), "auto"), Strategy::Streaming);
+    EXPECT_EQ(chosen(planOfRanges("streaming"), "radix-k"), Strategy::RadixK) << "the command line counts before the file";
+    EXPECT_EQ(chosen(planOfRanges("auto"), "auto"), compositor::chooseStrategy(5));
+    EXPECT_EQ(chosen(planOfRanges(""), "auto"), compositor::chooseStrategy(5));
 }
 
 TEST(ConfigPlan, partsOfTheWallLieSideBySide) {

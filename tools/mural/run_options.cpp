@@ -294,6 +294,7 @@ Result<std::string> configTextOf(const RunArguments& a, const SessionConfig& c) 
     form.rows = c.rows;
     form.nodes = c.hosts;
     form.ranges = c.passes.ranges;
+    if (c.composition != "auto") form.composition = c.composition;
     form.pixels = c.passes.kernelWidth;
     form.samples = c.passes.samples;
     form.frames = c.passes.period;

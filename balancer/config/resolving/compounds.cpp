@@ -161,6 +161,7 @@ Index addCompound(Resolver& r, const Compound& c, Index parent) {
     compound.tasks = c.tasks;
     compound.eyes = c.eyes;
     compound.buffers = c.buffers;
+    compound.composition = c.composition.value_or(parent == kNone ? std::string() : r.out.compounds[Resolver::at(parent)].composition);
     compound.surface = c.surface;
     compound.attributes = c.attributes;
     compound.equalizers = c.equalizers;

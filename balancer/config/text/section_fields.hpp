@@ -244,6 +244,7 @@ void fields(auto& walk, Is<Compound> auto& c) {
     walk.value("zoom", c.zoom);
     walk.value("pixel", c.pixel);
     walk.value("subpixel", c.subPixel);
+    walk.value("mural_composition", c.composition);
     walk.surface(c.surface);
     walk.merged("attributes", c.attributes);
     walk.equalizers(c.equalizers);
