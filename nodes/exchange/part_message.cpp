@@ -16,7 +16,7 @@ using compositor::RowRange;
 
 // Coarser than the compositor's own: a piece has a head, and codecs like wide ones.
 constexpr int32_t kTilePixels = 64;
-constexpr size_t kHeadBytes = 40, kPieceBytes = 28;
+constexpr size_t kHeadBytes = 44, kPieceBytes = 28;
 
 // 32 whole bits of depth travel as any words: what loses nothing does not ask what they mean.
 PlaneFormat depthFormatOf(const FoldRule& rule) { return rule.deep ? PlaneFormat::D32F : PlaneFormat::D24S8; }
@@ -37,7 +37,7 @@ PlaneView viewOf(const std::vector<uint32_t>& words, const PicturePart& part, Pl
 
 } // namespace
 
-std::vector<std::byte> packPart(const PicturePart& part, const RowRange& rows, const FoldRule& rule, PlaneEncoder& encoder) {
+std::vector<std::byte> packPart(const PicturePart& part, const RowRange& rows, const FoldRule& rule, PartState state, PlaneEncoder& encoder) {
     const PixelViewport band{0, rows.first, part.id.box.w, rows.count()};
     const PlaneView colour = viewOf(part.colour, part, PlaneFormat::Rgba8).part(band), depth = viewOf(part.depth, part, depthFormatOf(rule)).part(band);
     const compositor::Region drawn =
@@ -46,6 +46,7 @@ std::vector<std::byte> packPart(const PicturePart& part, const RowRange& rows, c
     put32(message, part.id.client);
     put64(message, part.id.serial);
     for (const int32_t v : {part.id.box.x, part.id.box.y, part.id.box.w, part.id.box.h, rows.first, rows.end}) put32(message, v);
+    put32(message, static_cast<int64_t>(state));
     put32(message, static_cast<int64_t>(drawn.rectangles().size()));
     for (const PixelViewport& r : drawn.rectangles()) {
         const size_t head = message.size();
@@ -66,13 +67,14 @@ size_t boundBytesOf(const PixelViewport& box, const RowRange& rows) {
     return kHeadBytes + tiles(box.w) * tiles(rows.count()) * kPieceBytes + static_cast<size_t>(box.w) * static_cast<size_t>(rows.count()) * 8;
 }
 
-Result<void> unpackPart(std::span<const std::byte> message, const PictureId& id, const RowRange& rows, const FoldRule& rule, PlaneDecoder& decoder,
-                        const std::function<void(const ArrivedPiece&)>& each) {
+Result<PartState> unpackPart(std::span<const std::byte> message, const PictureId& id, const RowRange& rows, const FoldRule& rule, PlaneDecoder& decoder,
+                             const std::function<void(const ArrivedPiece&)>& each) {
     const auto damaged = [](const std::string& what) { return Error{"a damaged part of a picture came: " + what}; };
     if (message.size() < kHeadBytes) return damaged("it is cut short");
     const PictureId came{loadLittle<uint32_t>(message.data()), loadLittle<uint64_t>(message.data() + 4), {int32At(message, 12), int32At(message, 16), int32At(message, 20), int32At(message, 24)}};
     if (came != id || RowRange{int32At(message, 28), int32At(message, 32)} != rows) return Error{"parts of different pictures came together: this one is incomplete"};
-    const uint32_t pieces = loadLittle<uint32_t>(message.data() + 36);
+    const PartState state = int32At(message, 36) == 0 ? PartState::Complete : PartState::Incomplete;
+    const uint32_t pieces = loadLittle<uint32_t>(message.data() + 40);
     const PixelViewport band{0, rows.first, id.box.w, rows.count()};
     int64_t left = band.area(); // pieces do not overlap: what unpacks to more is made to keep this node busy
     std::vector<uint32_t> colour, depth;
@@ -96,7 +98,8 @@ Result<void> unpackPart(std::span<const std::byte> message, const PictureId& id,
         each({area, colour.data(), depth.data()});
         rest = rest.subspan(colourBytes + depthBytes);
     }
-    return rest.empty() ? Result<void>() : damaged("it is longer than its pieces");
+    if (!rest.empty()) return damaged("it is longer than its pieces");
+    return state;
 }
 
 } // namespace mural

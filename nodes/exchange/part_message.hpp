@@ -13,8 +13,11 @@
 
 namespace mural {
 
+// Whether all is in it that its ranks have drawn, or a node was lost on the way.
+enum class PartState : uint8_t { Complete, Incomplete };
+
 // What of these rows is not as the clears have left it.
-std::vector<std::byte> packPart(const PicturePart& part, const compositor::RowRange& rows, const FoldRule& rule, PlaneEncoder& encoder);
+std::vector<std::byte> packPart(const PicturePart& part, const compositor::RowRange& rows, const FoldRule& rule, PartState state, PlaneEncoder& encoder);
 
 // The most bytes that packPart makes of such rows.
 [[nodiscard]] size_t boundBytesOf(const PixelViewport& box, const compositor::RowRange& rows);
@@ -26,7 +29,7 @@ struct ArrivedPiece {
     const uint32_t* depth;
 };
 // Any bytes may come in. Errors: it is no such message, or of another picture or other rows; pieces before the damage have been told.
-Result<void> unpackPart(std::span<const std::byte> message, const PictureId& id, const compositor::RowRange& rows, const FoldRule& rule, PlaneDecoder& decoder,
-                        const std::function<void(const ArrivedPiece&)>& each);
+Result<PartState> unpackPart(std::span<const std::byte> message, const PictureId& id, const compositor::RowRange& rows, const FoldRule& rule, PlaneDecoder& decoder,
+                             const std::function<void(const ArrivedPiece&)>& each);
 
 } // namespace mural

@@ -1,14 +1,38 @@
 #include "nodes/exchange/picture_composer.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace mural {
 
 using compositor::Step;
+using compositor::Strategy;
 
 PictureComposer::PictureComposer(ComposerConfig config, PartRoutes& routes, Log log) : config_(std::move(config)), routes_(routes), log_(std::move(log)) {}
 
+// The collector's word on this picture: one byte, 1 for serially.
+void PictureComposer::agree() {
+    if (std::exchange(agreed_, false) || config_.strategy == Strategy::Serial || config_.rank == 0 || lost_.contains(0)) return;
+    auto word = routes_.receive(0, 1, Deadline::inMs(config_.wordMs));
+    if (!word || word->size() != 1) return lost(0, word ? "range 1 said how to go on in a way that is none" : word.error().message);
+    if (word->front() != std::byte{0}) serially();
+}
+
+// Those who are left send to the collector directly, from the next picture on.
+void PictureComposer::tellNext() {
+    if (config_.strategy == Strategy::Serial || config_.rank != 0) return;
+    for (int rank = 1; rank < config_.ranks; ++rank)
+        if (!lost_.contains(rank)) (void)routes_.send(rank, {std::byte{incomplete_}}, Deadline::inMs(config_.partMs));
+    if (incomplete_) serially();
+}
+
+void PictureComposer::serially() {
+    config_.strategy = Strategy::Serial;
+    rows_ = -1;
+}
+
 PixelViewport PictureComposer::compose(PicturePart& part, const FoldRule& rule) {
+    agree();
     const int64_t beganNs = monotonicNowNs();
     if (rows_ != part.id.box.h) {
         rows_ = part.id.box.h;
@@ -22,6 +46,7 @@ PixelViewport PictureComposer::compose(PicturePart& part, const FoldRule& rule) 
         if (step.receives()) take(part, step, used, beganNs);
         else send(part, step, used);
     }
+    tellNext();
     return changed_;
 }
 
@@ -29,7 +54,7 @@ void PictureComposer::send(const PicturePart& part, const Step& step, const Fold
     if (lost_.contains(step.peer)) return;
     PlaneEncoder& encoder = encoders_[step.peer];
     if (const LinkTransfer t = routes_.takeTransfer(step.peer); t.bytes > 0) encoder.transferred(t.bytes, t.ns);
-    if (auto sent = routes_.send(step.peer, packPart(part, step.rows, rule, encoder), Deadline::inMs(config_.partMs)); !sent) lost(step.peer, sent.error().message);
+    if (auto sent = routes_.send(step.peer, packPart(part, step.rows, rule, incomplete_ ? PartState::Incomplete : PartState::Complete, encoder), Deadline::inMs(config_.partMs)); !sent) lost(step.peer, sent.error().message);
 }
 
 void PictureComposer::take(PicturePart& part, const Step& step, const FoldRule& rule, int64_t beganNs) {
@@ -41,8 +66,11 @@ void PictureComposer::take(PicturePart& part, const Step& step, const FoldRule& 
     // Faults on purpose: what others drew is lost, a band is, the order of draws is swapped.
     if (config_.plant == "range" || (config_.plant == "band" && kind == Step::Kind::Place && step.peer == config_.ranks - 1)) return;
     if (config_.plant == "order" && kind != Step::Kind::Place) kind = kind == Step::Kind::FoldLater ? Step::Kind::FoldEarlier : Step::Kind::FoldLater;
-    const auto done = unpackPart(*message, part.id, step.rows, rule, decoder_, [&](const ArrivedPiece& piece) { put(part, piece, kind, rule); });
-    if (done) return;
+    auto done = unpackPart(*message, part.id, step.rows, rule, decoder_, [&](const ArrivedPiece& piece) { put(part, piece, kind, rule); });
+    if (done) {
+        incomplete_ = incomplete_ || *done == PartState::Incomplete;
+        return;
+    }
     routes_.giveUp(step.peer);
     lost(step.peer, "range " + std::to_string(step.peer + 1) + ": " + done.error().message);
 }
@@ -62,6 +90,7 @@ void PictureComposer::put(PicturePart& part, const ArrivedPiece& piece, Step::Ki
 }
 
 void PictureComposer::lost(int rank, const std::string& why) {
+    incomplete_ = true;
     if (lost_.insert(rank).second) log_("a range of the picture is missing from now on: " + why);
 }
 

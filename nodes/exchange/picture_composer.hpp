@@ -1,4 +1,8 @@
 // Puts a picture together of what the nodes of several ranges have drawn, by a schedule that all of them know.
+//
+// A node that is lost takes along what others have sent it to be folded, in that picture. So where the strategy is not serial, the
+// collector tells all after each picture how the next is put together: as before, or, once anything was missing, serially; then
+// only what the lost node draws is missing. Parts say whether anything is missing in them.
 #pragma once
 
 #include <functional>
@@ -16,6 +20,7 @@ struct ComposerConfig {
     compositor::Strategy strategy = compositor::Strategy::Serial;
     int rank = 0, ranks = 1;
     int64_t partMs = 20'000; // how long another's part is waited for; as long as the head waits for a silent node
+    int64_t wordMs = 60'000; // how long for the collector's word; it may have to wait for lost nodes first
     int64_t stageMs = 5'000; // and for each wait that the other may have before it sends: a lost node must not make others seem lost
     std::string plant;       // MURAL_PLANT: a fault on purpose, for tests of the tests
 };
@@ -30,12 +35,15 @@ public:
     PixelViewport compose(PicturePart& part, const FoldRule& rule);
 
 private:
+    void agree();
+    void tellNext();
+    void serially();
     void send(const PicturePart& part, const compositor::Step& step, const FoldRule& rule);
     void take(PicturePart& part, const compositor::Step& step, const FoldRule& rule, int64_t beganNs);
     void put(PicturePart& part, const ArrivedPiece& piece, compositor::Step::Kind kind, const FoldRule& rule);
     void lost(int rank, const std::string& why);
 
-    const ComposerConfig config_;
+    ComposerConfig config_; // its strategy becomes serial when nodes were lost
     PartRoutes& routes_;
     const Log log_;
     int32_t rows_ = -1;
@@ -44,6 +52,8 @@ private:
     PlaneDecoder decoder_;
     PixelViewport changed_;
     std::set<int> lost_;
+    bool incomplete_ = false; // something is missing, here or in what has come
+    bool agreed_ = true;      // the first picture needs no word
 };
 
 } // namespace mural

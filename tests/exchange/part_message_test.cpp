@@ -24,7 +24,7 @@ PicturePart drawnPart(std::mt19937& random, int32_t width, int32_t height, const
     return part;
 }
 
-Result<void> unpackInto(PicturePart& into, std::span<const std::byte> message, const RowRange& rows, const FoldRule& rule) {
+Result<PartState> unpackInto(PicturePart& into, std::span<const std::byte> message, const RowRange& rows, const FoldRule& rule) {
     PlaneDecoder decoder;
     return unpackPart(message, into.id, rows, rule, decoder, [&](const ArrivedPiece& p) {
         ASSERT_TRUE((PixelViewport{0, rows.first, into.id.box.w, rows.count()}.contains(p.area)));
@@ -45,10 +45,10 @@ TEST(PartMessage, rowsArriveAsTheyWere) {
         const PicturePart part = drawnPart(random, width, height, rule);
         const auto first = static_cast<int32_t>(random() % static_cast<uint32_t>(height));
         const RowRange rows{first, first + 1 + static_cast<int32_t>(random() % static_cast<uint32_t>(height - first))};
-        const auto message = packPart(part, rows, rule, encoder);
+        const auto message = packPart(part, rows, rule, PartState::Complete, encoder);
         EXPECT_LE(message.size(), boundBytesOf(part.id.box, rows));
         PicturePart back = clearedPart(width, height, rule);
-        const auto done = unpackInto(back, message, rows, rule);
+        auto done = unpackInto(back, message, rows, rule);
         ASSERT_TRUE(done) << done.error().message;
         for (int32_t y = 0; y < height; ++y)
             for (int32_t x = 0; x < width; ++x) {
@@ -64,9 +64,9 @@ TEST(PartMessage, whatIsNotDrawnIsNotSent) {
     const FoldRule rule = ruleOf(DepthFunction::Less, false);
     PlaneEncoder encoder;
     PicturePart part = clearedPart(1920, 1080, rule);
-    EXPECT_EQ(packPart(part, {0, 1080}, rule, encoder).size(), 40u);
+    EXPECT_EQ(packPart(part, {0, 1080}, rule, PartState::Complete, encoder).size(), 44u);
     draw(part, part.at(1000, 500), 1, 0, rule);
-    EXPECT_LT(packPart(part, {0, 1080}, rule, encoder).size(), 1000u);
+    EXPECT_LT(packPart(part, {0, 1080}, rule, PartState::Complete, encoder).size(), 1000u);
 }
 
 TEST(PartMessage, noiseGrowsByNoMoreThanItsHeads) {
@@ -76,15 +76,15 @@ TEST(PartMessage, noiseGrowsByNoMoreThanItsHeads) {
     for (auto& word : part.colour) word = static_cast<uint32_t>(random());
     for (auto& word : part.depth) word = static_cast<uint32_t>(random());
     PlaneEncoder encoder;
-    for (int i = 0; i < 20; ++i) EXPECT_LE(packPart(part, {0, 200}, rule, encoder).size(), boundBytesOf(part.id.box, {0, 200}));
+    for (int i = 0; i < 20; ++i) EXPECT_LE(packPart(part, {0, 200}, rule, PartState::Complete, encoder).size(), boundBytesOf(part.id.box, {0, 200}));
 }
 
 TEST(PartMessage, otherPicturesAreToldApart) {
     const FoldRule rule = ruleOf(DepthFunction::Less, false);
     PlaneEncoder encoder;
     PicturePart part = clearedPart(64, 64, rule);
-    const auto message = packPart(part, {0, 32}, rule, encoder);
-    EXPECT_TRUE(unpackInto(part, message, {0, 32}, rule));
+    const auto message = packPart(part, {0, 32}, rule, PartState::Incomplete, encoder);
+    EXPECT_EQ(*unpackInto(part, message, {0, 32}, rule), PartState::Incomplete);
     EXPECT_FALSE(unpackInto(part, message, {32, 64}, rule));
     ++part.id.serial;
     EXPECT_EQ(unpackInto(part, message, {0, 32}, rule).error().message, "parts of different pictures came together: this one is incomplete");
@@ -95,14 +95,14 @@ TEST(PartMessage, damageIsAnErrorOfOneLine) {
     const FoldRule rule = ruleOf(DepthFunction::Less, false);
     PlaneEncoder encoder;
     PicturePart part = drawnPart(random, 200, 150, rule);
-    const auto message = packPart(part, {0, 150}, rule, encoder);
+    const auto message = packPart(part, {0, 150}, rule, PartState::Complete, encoder);
     int refused = 0;
     for (int i = 0; i < 3000; ++i) {
         auto damaged = message;
         if (i % 3 == 0) damaged.resize(random() % damaged.size());
         else for (uint32_t n = 0; n < 1 + random() % 4; ++n) damaged[random() % std::min<size_t>(damaged.size(), i % 2 ? 120 : SIZE_MAX)] = static_cast<std::byte>(random());
         PicturePart into = clearedPart(200, 150, rule);
-        const auto done = unpackInto(into, damaged, {0, 150}, rule);
+        auto done = unpackInto(into, damaged, {0, 150}, rule);
         if (done) continue;
         ++refused;
         EXPECT_EQ(done.error().message.find('\n'), std::string::npos);

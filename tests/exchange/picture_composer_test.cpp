@@ -20,14 +20,14 @@ class FakeNetwork {
 public:
     void put(int from, int to, std::vector<std::byte> message) {
         const std::lock_guard lock(mutex_);
-        bytes_ += message.size();
+        if (isCut(from, to)) return;
         under_[{from, to}].push_back(std::move(message));
         changed_.notify_all();
     }
     Result<std::vector<std::byte>> take(int from, int to, Deadline deadline) {
         std::unique_lock lock(mutex_);
         auto& coming = under_[{from, to}];
-        if (!changed_.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs()), [&] { return !coming.empty() || gone_.contains(from); }) || coming.empty())
+        if (!changed_.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs()), [&] { return !coming.empty() || gone_.contains(from) || isCut(from, to); }) || coming.empty())
             return Error{"range " + std::to_string(from + 1) + " is gone"};
         auto message = std::move(coming.front());
         coming.pop_front();
@@ -38,14 +38,16 @@ public:
         gone_.insert(rank);
         changed_.notify_all();
     }
-    size_t bytes() const { return bytes_; }
+    // Nothing gets from one to the other, neither way.
+    void cut(int a, int b) { cut_ = {a, b}; }
 
 private:
+    [[nodiscard]] bool isCut(int a, int b) const { return cut_ == std::pair(std::min(a, b), std::max(a, b)); }
     std::mutex mutex_;
     std::condition_variable changed_;
     std::map<std::pair<int, int>, std::deque<std::vector<std::byte>>> under_;
     std::set<int> gone_;
-    std::atomic<size_t> bytes_{0};
+    std::pair<int, int> cut_{-1, -1};
 };
 
 class FakeRoutes final : public PartRoutes {
@@ -104,7 +106,7 @@ Outcome compose(const Scene& scene, Strategy strategy, const std::string& plant 
         if (rank == lost) continue;
         nodes.emplace_back([&, rank] {
             FakeRoutes routes(network, rank);
-            PictureComposer composer({strategy, rank, ranks, partMs, 200, plant}, routes, [&](const std::string& line) {
+            PictureComposer composer({strategy, rank, ranks, partMs, 60'000, 200, plant}, routes, [&](const std::string& line) {
                 const std::lock_guard lock(mutex);
                 outcome.lines.push_back(line);
             });
@@ -145,7 +147,7 @@ TEST(PictureComposer, picturesFollowEachOther) {
         for (int rank = 0; rank < 5; ++rank)
             nodes.emplace_back([&, rank] {
                 FakeRoutes routes(network, rank);
-                PictureComposer composer({strategy, rank, 5, 20'000, 5'000, ""}, routes, [&](const std::string&) { ++wrong; });
+                PictureComposer composer({strategy, rank, 5, 20'000, 60'000, 5'000, ""}, routes, [&](const std::string&) { ++wrong; });
                 for (const Scene& scene : scenes) {
                     PicturePart part = scene.parts[static_cast<size_t>(rank)];
                     composer.compose(part, scene.rule);
@@ -177,6 +179,58 @@ TEST(PictureComposer, aLostNodeHoldsUpNobody) {
             ASSERT_FALSE(made.lines.empty());
             for (const std::string& line : made.lines) EXPECT_EQ(line, "a range of the picture is missing from now on: range " + std::to_string(lost + 1) + " is gone");
         }
+}
+
+PicturePart foldedWithout(const Scene& scene, int lost) {
+    PicturePart picture = scene.parts[0];
+    for (size_t rank = 1; rank < scene.parts.size(); ++rank) {
+        const PicturePart& part = scene.parts[rank];
+        if (static_cast<int>(rank) != lost) foldRow({picture.colour.data(), picture.depth.data(), part.colour.data(), part.depth.data(), part.colour.size()}, FoldSide::Later, scene.rule);
+    }
+    return picture;
+}
+
+// Three pictures by nodes of which one is gone (lost), or two can't reach each other (cut); the last one.
+PicturePart thirdPicture(const Scene& scene, Strategy strategy, int lost, std::pair<int, int> cut) {
+    FakeNetwork network;
+    if (lost >= 0) network.lose(lost);
+    network.cut(cut.first, cut.second);
+    PicturePart last;
+    std::vector<std::thread> nodes;
+    const int ranks = static_cast<int>(scene.parts.size());
+    for (int rank = 0; rank < ranks; ++rank) {
+        if (rank == lost) continue;
+        nodes.emplace_back([&, rank] {
+            FakeRoutes routes(network, rank);
+            PictureComposer composer({strategy, rank, ranks, 20'000, 60'000, 5'000, ""}, routes, [](const std::string&) {});
+            for (uint64_t serial = 1; serial <= 3; ++serial) {
+                PicturePart part = scene.parts[static_cast<size_t>(rank)];
+                part.id.serial = serial;
+                composer.compose(part, scene.rule);
+                if (rank == 0) last = std::move(part);
+            }
+        });
+    }
+    for (std::thread& node : nodes) node.join();
+    return last;
+}
+
+// From the next picture on, or the one after, nothing is missing but what the lost node draws.
+TEST(PictureComposer, afterALossOnlyWhatTheLostNodeDrawsIsMissing) {
+    std::mt19937 random(43);
+    const Scene scene = sceneOf(random, 7, ruleOf(DepthFunction::LessOrEqual, false), 60, 150);
+    for (const Strategy strategy : kEveryStrategy)
+        for (int lost = 1; lost < 7; ++lost) {
+            const PicturePart expected = foldedWithout(scene, lost);
+            EXPECT_EQ(thirdPicture(scene, strategy, lost, {-1, -1}).colour, expected.colour) << nameOf(strategy) << " without " << lost;
+        }
+}
+
+TEST(PictureComposer, nodesThatCanNotReachEachOtherSendToTheCollector) {
+    std::mt19937 random(47);
+    const Scene scene = sceneOf(random, 6, ruleOf(DepthFunction::Less, false), 60, 150);
+    for (const Strategy strategy : kEveryStrategy)
+        for (const auto& cut : {std::pair(1, 2), std::pair(2, 3), std::pair(3, 5)}) EXPECT_EQ(thirdPicture(scene, strategy, -1, cut).colour, scene.whole.colour) << nameOf(strategy);
 }
 
 // One that is silent: those who wait for it are not taken for lost themselves.
