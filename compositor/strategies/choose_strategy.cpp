@@ -4,21 +4,16 @@ namespace mural::compositor {
 
 namespace {
 
-// Up to here the collector takes no more than two others' pictures, and every other way carries some of them twice.
-constexpr int kMostSerial = 3;
-// Up to here direct send has small numbers of pieces, in the least steps that there are beyond one.
-constexpr int kMostDirect = 8;
+// Up to here a chain was measured, or its waits are few enough; more than that follow each other in every picture.
+constexpr int kLongestChain = 16;
 
 } // namespace
 
-Strategy chooseStrategy(int ranks) { return ranks <= kMostSerial ? Strategy::Serial : ranks <= kMostDirect ? Strategy::DirectSend : Strategy::RadixK; }
+Strategy chooseStrategy(int ranks) { return ranks <= kLongestChain ? Strategy::Streaming : Strategy::RadixK; }
 
 const char* whyStrategy(int ranks) {
-    switch (chooseStrategy(ranks)) {
-    case Strategy::Serial: return "few nodes, nothing is carried twice";
-    case Strategy::DirectSend: return "each folds one band, in two steps";
-    default: return "many nodes, each folds a band in rounds of up to eight";
-    }
+    if (chooseStrategy(ranks) == Strategy::Streaming) return "each folds into what its neighbour sends, the collector least of all";
+    return "a chain of so many would be long; each folds a band, in rounds of up to eight";
 }
 
 } // namespace mural::compositor

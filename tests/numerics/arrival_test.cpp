@@ -9,7 +9,7 @@
 
 #include "compositor/assembly/assembly.hpp"
 #include "compositor/assembly/average.hpp"
-#include "nodes/exchange/picture_part.hpp"
+#include "nodes/exchange/part_fold.hpp"
 
 namespace mural::compositor {
 namespace {
@@ -130,18 +130,16 @@ TEST(Arrival, rangesOfNodesAreOnePicture) {
             const size_t parts = 1 + random() % 9;
             const std::vector<size_t> edges = edgesOf(random, list.size(), parts);
             const Drawn whole = draw(list, 0, list.size(), f), nothing = draw(list, 0, 0, f);
-            PicturePart sum;
-            for (size_t p = 0; p < parts; ++p) {
-                Drawn d = draw(list, edges[p], edges[p + 1], f);
-                PicturePart part;
-                part.box = {0, 0, kWidth, kHeight};
-                part.colour = std::move(d.colour);
-                part.depth = std::move(d.depth);
-                if (p == 0) sum = part;
-                else mergeByDepth(sum, part, f, nothing.colour[0], nothing.depth[0]);
+            for (const bool deep : {false, true}) { // by the kernel, and pixel by pixel
+                const FoldRule rule{f, nothing.colour[0], nothing.depth[0], deep};
+                Drawn sum = draw(list, edges[0], edges[1], f);
+                for (size_t p = 1; p < parts; ++p) {
+                    const Drawn part = draw(list, edges[p], edges[p + 1], f);
+                    foldRow({sum.colour.data(), sum.depth.data(), part.colour.data(), part.depth.data(), kPixels}, FoldSide::Later, rule);
+                }
+                ASSERT_EQ(sum.colour, whole.colour) << "seed " << seed << ", " << parts << " parts, function " << static_cast<int>(f);
+                ASSERT_EQ(sum.depth, whole.depth) << "seed " << seed;
             }
-            ASSERT_EQ(sum.colour, whole.colour) << "seed " << seed << ", " << parts << " parts, function " << static_cast<int>(f);
-            ASSERT_EQ(sum.depth, whole.depth) << "seed " << seed;
         }
 }
 
