@@ -12,6 +12,7 @@ import signal
 import stat
 import sys
 import tempfile
+import time
 
 import display
 import programs
@@ -99,6 +100,41 @@ def node_killed_at_the_start(context):
 @case
 def two_nodes_killed(context):
     return kill_during_run(context, NODE, 2, "frame 10", ["was lost:"])
+
+
+def range_lost(context, composition):
+    """One of the nodes that share draws is killed: what it draws is missing, which is said, and nobody waits for long."""
+    frames = 200
+    with context.drawing("fixed_lighting", frames, options=("--display", "none", "--db", "4", "--composition", composition)) as run:
+        if not run.wait_for_line("frame 20"):
+            return "the program did not start: " + " | ".join(run.standard_error[-3:])
+        found = run.wait_for_processes(NODE, 4)
+        if len(found) < 4:
+            return "%d of 4 nodes run" % len(found)
+        started = time.monotonic()
+        kill_all(sorted(found)[2:3])
+        wrong = check_end(run, 0, frames)
+        said = error_lines(run, ["a range of the picture is missing from now on: range 3"])
+        if wrong is None and not said:
+            wrong = "nobody said that a range is missing: " + " | ".join(run.standard_error[-3:])
+        if wrong is None and time.monotonic() - started > 60:
+            wrong = "it took %d s" % (time.monotonic() - started)
+        return wrong
+
+
+@case
+def range_lost_serial(context):
+    return range_lost(context, "serial")
+
+
+@case
+def range_lost_direct_send(context):
+    return range_lost(context, "direct-send")
+
+
+@case
+def range_lost_streaming(context):
+    return range_lost(context, "streaming")
 
 
 @case
