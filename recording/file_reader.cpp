@@ -122,7 +122,13 @@ Result<void> FileReader::findBlocks() {
     return {};
 }
 
-Result<std::span<const std::byte>> FileReader::read(size_t number) {
+Result<void> FileReader::verify() {
+    for (size_t i = 0; i < blocks_.size(); ++i)
+        if (const auto block = readPacked(i); !block) return block.error();
+    return {};
+}
+
+Result<BlockHeader> FileReader::readPacked(size_t number) {
     const IndexRow& row = blocks_[number];
     BlockHeader header{};
     if (!readAt(row.offset, bytesOf(header)) || !soundShape(header) || row.offset + sizeof header + header.packedBytes > blocksEnd_) return damaged(row.offset, "there is no block");
@@ -130,6 +136,14 @@ Result<std::span<const std::byte>> FileReader::read(size_t number) {
     if (!readAt(row.offset + sizeof header, packed_)) return damaged(row.offset, "a block can't be read");
     const bool same = header.firstFrame == row.firstFrame && header.framesEnded == row.framesEnded && header.entries == row.entries;
     if (!same || checksumOf({beforeChecksum(header), packed_}) != header.checksum) return damaged(row.offset, "a block is not as it was written");
+    return header;
+}
+
+Result<std::span<const std::byte>> FileReader::read(size_t number) {
+    const IndexRow& row = blocks_[number];
+    const auto packed = readPacked(number);
+    if (!packed) return packed.error();
+    const BlockHeader& header = packed.value();
     raw_.resize(header.rawBytes);
     const size_t rawBytes = ZSTD_decompressDCtx(unpacker_, raw_.data(), raw_.size(), packed_.data(), packed_.size());
     if (ZSTD_isError(rawBytes) || rawBytes != header.rawBytes) return damaged(row.offset, "a block can't be unpacked");

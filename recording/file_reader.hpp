@@ -32,6 +32,8 @@ public:
     [[nodiscard]] int64_t frames() const { return frames_; } // of the wall
     [[nodiscard]] uint64_t sizeBytes() const { return sizeBytes_; }
 
+    // That every block is as it was written, without unpacking them.
+    Result<void> verify();
     // The block's entries, all of them sound; they lie in memory of the reader until the next call.
     Result<std::span<const std::byte>> read(size_t block);
 
@@ -40,6 +42,7 @@ private:
     Result<void> readHeader();
     Result<bool> readIndex(); // false: there is no trailer
     Result<void> findBlocks();
+    Result<BlockHeader> readPacked(size_t block); // into packed_
     bool readAt(uint64_t offset, std::span<std::byte> into) const;
     [[nodiscard]] Error damaged(uint64_t offset, const std::string& what) const;
 

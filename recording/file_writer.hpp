@@ -38,6 +38,7 @@ public:
     Result<void> finish();
 
     [[nodiscard]] bool hasUnwritten() const { return !raw_.empty(); }
+    [[nodiscard]] int64_t framesSeen() const { return frames_.frames(); } // also those that are not in the file yet
     [[nodiscard]] const WriterTotals& totals() const { return totals_; }
 
     static constexpr int kDefaultLevel = 1;

@@ -103,8 +103,11 @@ void StreamRecorder::work() {
 Result<void> StreamRecorder::writeAll(std::span<const std::byte> entries) {
     EntryWalk walk(entries);
     Entry entry;
-    while (walk.next(entry))
+    while (walk.next(entry)) {
+        const bool late = config_.lastFrame > 0 && writer_->framesSeen() >= config_.lastFrame && entry.stream != 0;
+        if (late) continue;
         if (auto r = writer_->append(entry); !r) return r;
+    }
     return {};
 }
 

@@ -19,6 +19,7 @@ namespace mural::recording {
 struct RecorderConfig {
     size_t queueBytes = size_t{64} << 20; // full: senders wait
     int64_t patienceMs = 5'000;           // while nothing of a full queue is taken: then the recording ends
+    int64_t lastFrame = 0;                // of the wall: no packet behind it is recorded; 0: all
     int64_t wholeEveryMs = 1'000;         // what is older is in the file, whatever becomes of the head
     std::function<void(const std::string&)> say;
 };

@@ -27,7 +27,7 @@ public:
         case wire::kOpFrontPicture: break;
         default: return 0;
         }
-        if (argumentWord(r, 1) == 0) return 0; // nobody sees it (wire::kUnseenFrame)
+        if (argumentWord(r, 1) == wire::kUnseenFrame) return 0;
         const auto found = sizes_.find({client, window});
         const auto [width, height] = found == sizes_.end() ? std::pair(0u, 0u) : found->second;
         const int64_t frame = mainWindow_.swapped(client, window, width, height);

@@ -175,6 +175,9 @@ constexpr uint32_t kResolved = 0x40000000;
 // In planes of kOpFillWindow: for the copy that is next. A window with samples stays as it is.
 constexpr uint32_t kForCopy = 0x80000000;
 
+// In kOpSwap and kOpFrontPicture: drawn and counted as any other, but no picture is sent and no credit given.
+constexpr uint32_t kUnseenFrame = 0;
+
 // What the app's drawable looks like; the nodes make their surfaces alike.
 struct WindowConfig {
     uint32_t width, height; // pixels

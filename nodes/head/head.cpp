@@ -103,6 +103,14 @@ Result<int> runSession(ControlChannel& control) {
     options.registryDigest = registryDigest();
     options.interrupted = [] { return asked != 0; };
     if (const auto outputs = addOutputs(*config, control, options); !outputs) return outputs.error();
+    if (!config->record.empty()) {
+        recording::RecorderConfig recorder;
+        recorder.lastFrame = config->frames;
+        recorder.say = [&control](const std::string& text) { control.say(text); };
+        auto made = recording::StreamRecorder::create(config->record, std::move(recorder));
+        if (!made) return made.error();
+        options.recorder = std::move(*made);
+    }
     auto nodes = launch(*config, plan, control);
     if (!nodes) return nodes.error();
     HeadSession session(*config, std::move(plan), std::move(*nodes), control, std::move(options));

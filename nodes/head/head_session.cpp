@@ -208,7 +208,8 @@ void HeadSession::openTables() {
     welcome.policy = config_.policy == CapturePolicy::Full ? capture::kPolicyFull : capture::kPolicyState;
     welcome.latency = static_cast<uint32_t>(config_.latency);
     welcome.verifyEvery = static_cast<uint32_t>(config_.verifyEvery);
-    welcome.nodeCount = static_cast<uint32_t>(nodeCount_);
+    // What is recorded shall play on any number of nodes: the program fetches what it copies from a window, as with several.
+    welcome.nodeCount = static_cast<uint32_t>(options_.recorder ? std::max(nodeCount_, 2) : nodeCount_);
     welcome.displayApp = config_.display == Display::App ? 1 : 0;
     {
         const std::lock_guard lock(mutex_);
@@ -218,16 +219,33 @@ void HeadSession::openTables() {
     terms.framesDoneWhenShown = config_.display == Display::App && config_.latency == 0;
     terms.chunkCount = options_.chunkCount;
     terms.replyPatienceMs = options_.replyPatienceMs;
+    beginRecording();
     ProgramTable::Events events;
+    events.came = [this](const CaptureClient& client) {
+        if (options_.recorder) options_.recorder->event({recording::Event::ClientCame, client.id(), client.pid(), client.name()});
+    };
     events.countChanged = [this](size_t count) {
         control_.send({{"event", "clients"}, {"count", count}});
     };
     events.gone = [this](uint32_t client, const std::string& line) {
         news_.programGone(client);
+        if (options_.recorder) options_.recorder->event({recording::Event::ClientGone, client, 0, ""});
         if (!line.empty()) control_.say(line);
     };
     programs_ = std::make_unique<ProgramTable>(std::move(terms), nodes_, std::move(events));
     serving_ = true;
+}
+
+void HeadSession::beginRecording() {
+    if (!options_.recorder) return;
+    recording::About about;
+    about.version = MURAL_VERSION;
+    {
+        const std::lock_guard lock(mutex_);
+        for (const NodeFacts& facts : facts_) about.nodes.push_back(facts.renderer + ", GL " + std::to_string(facts.glVersion / 10) + "." + std::to_string(facts.glVersion % 10));
+    }
+    options_.recorder->begin(about);
+    nodes_.recordBy(options_.recorder.get());
 }
 
 // Near the network card, when there is a network in between.
@@ -481,6 +499,7 @@ void HeadSession::finish() {
     finishOutput();
     server_.reset();
     programs_->endAll();
+    if (options_.recorder) recorded_ = options_.recorder->finish(Deadline::inMs(options_.recordPatienceMs));
     reportProgress(monotonicNowNs());
     const Deadline deadline = Deadline::inMs(kProcessPatienceMs);
     for (int node = 0; node < nodeCount_; ++node) {
@@ -583,6 +602,8 @@ SessionNumbers HeadSession::numbers() {
     if (output_) result.output = output_->totals();
     result.drawnWhole = drawnWhole_;
     if (options_.lastPicture) result.lastPicture = options_.lastPicture();
+    if (options_.recorder) result.recording = config_.record;
+    result.recorded = recorded_;
     const std::lock_guard lock(mutex_);
     result.nodes = totals_;
     for (NodeTotals& totals : result.nodes) totals.frames = frames_.framesOf(totals.node);

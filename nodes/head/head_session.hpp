@@ -39,6 +39,7 @@ struct HeadOptions {
     std::function<std::string()> lastPicture; // path of the last file; may be empty
     std::function<Result<std::unique_ptr<PictureSink>>(uint64_t nativeWindow)> openWindow;
     std::function<Result<std::unique_ptr<PictureSink>>()> openWall; // where the head shows the wall (headShowsWall)
+    std::unique_ptr<recording::StreamRecorder> recorder; // of --record; null: none
     std::function<bool()> interrupted; // a signal asks to finish; may be empty
     uint32_t chunkCount = capture::kDefaultChunks;
     int64_t readyPatienceMs = 30'000;
@@ -48,6 +49,7 @@ struct HeadOptions {
     int64_t silencePatienceMs = 20'000; // the same, while it is asked nothing; nodes say every 4 s that they live
     int64_t endPatienceMs = 60'000; // with
     int64_t outputPatienceMs = 150'000; // video encoders hold frames back
+    int64_t recordPatienceMs = 60'000; // until the end of the recording is written
 };
 
 // run() by one thread, the one that has launched the nodes.
@@ -78,6 +80,7 @@ private:
     void introduceNodes();
     Result<void> awaitReady();
     void openTables();
+    void beginRecording();
     void announceReady();
     std::string placeOwnThreads() const;
     std::vector<std::string> explainLines();
@@ -133,6 +136,7 @@ private:
     int64_t lastProgressNs_ = 0;
     int64_t lastProgressFrame_ = 0;
     bool framesReached_ = false;
+    recording::WriterTotals recorded_;
 
     std::mutex mutex_; // what follows
     std::vector<NodeFacts> facts_;

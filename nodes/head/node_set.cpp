@@ -29,6 +29,7 @@ void NodeSet::startReading() {
 
 bool NodeSet::broadcast(uint32_t stream, std::span<const std::byte> payload) {
     const std::lock_guard lock(sendMutex_);
+    if (recorder_) recorder_->packet(stream, payload);
     return sendLocked(stream, payload);
 }
 

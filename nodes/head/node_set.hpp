@@ -12,6 +12,7 @@
 
 #include "nodes/head/node_link.hpp"
 #include "nodes/head/node_multicast.hpp"
+#include "recording/stream_recorder.hpp"
 
 namespace mural {
 
@@ -21,6 +22,8 @@ public:
     // Carries the packets of the links that say so; before the first broadcast.
     void multicastBy(std::unique_ptr<NodeMulticast> multicast) { multicast_ = std::move(multicast); }
     [[nodiscard]] NodeMulticast* multicast() { return multicast_.get(); }
+    // Gets all packets of programs, in the order in which the nodes do; outlives their senders. Before the first broadcast.
+    void recordBy(recording::StreamRecorder* recorder) { recorder_ = recorder; }
     void startReading();
 
     // False when no node lives. Blocks while a node's connection is full.
@@ -54,6 +57,7 @@ private:
     void sendTo(NodeLink& link, std::span<const std::byte> header, std::span<const std::byte> payload);
     void flushLocked();
 
+    recording::StreamRecorder* recorder_ = nullptr; // null: nothing is recorded
     std::unique_ptr<NodeMulticast> multicast_; // null: every node has a stream of its own
     std::vector<std::unique_ptr<NodeLink>> links_;
     std::timed_mutex sendMutex_;

@@ -44,6 +44,7 @@ void ProgramTable::programWelcomed(uint32_t id, FileDescriptor socket) {
         admitted_.erase(found);
         if (!socket.valid()) return; // it left before it was let in
         if (headGone_) client->memory().setHeadGone(); // the nodes were lost in between
+        events_.came(*client);
         client->start(std::move(socket));
         clients_[id] = client;
         count = clients_.size();

@@ -30,6 +30,7 @@ struct ProgramTerms {
 class ProgramTable : public ProgramHost, public CaptureEvents {
 public:
     struct Events {
+        std::function<void(const CaptureClient& client)> came; // before its first packet
         std::function<void(size_t count)> countChanged;
         std::function<void(uint32_t client, const std::string& line)> gone; // line: for the user, or empty
     };

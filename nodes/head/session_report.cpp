@@ -83,6 +83,9 @@ Json reportOf(const SessionNumbers& n) {
         {"callsUnsupported", n.programs.callsUnsupported},
         {"savedPictures", n.output.savedPictures},
         {"lastPicture", n.lastPicture},
+        {"recording", n.recording},
+        {"recordedFrames", n.recorded.frames},
+        {"recordedBytes", n.recorded.fileBytes},
         {"nodes", nodes},
     };
 }

@@ -9,6 +9,7 @@
 #include "nodes/head/capture_memory.hpp"
 #include "nodes/head/frame_tracker.hpp"
 #include "nodes/head/picture_output.hpp"
+#include "recording/file_writer.hpp"
 
 namespace mural {
 
@@ -32,6 +33,8 @@ struct SessionNumbers {
     CaptureCounts programs;
     OutputTotals output;
     std::string lastPicture; // path
+    std::string recording;   // path of --record; empty: none
+    recording::WriterTotals recorded;
     bool drawnWhole = false; // see HeadSession::sayDrawnWhole
     std::vector<NodeTotals> nodes;
 };

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "nodes/replay/args.hpp"
+#include "streamcodec/args.hpp"
 
 namespace mural {
 

@@ -242,7 +242,7 @@ bool Replay::ownSwap(Args& in, bool front) {
     // A frame counts when it is drawn, not when it is queued: pacing and frame rates depend on it.
     waitUntilDrawn();
     tellTroubles();
-    out_.frameDone(f);
+    if (frame != wire::kUnseenFrame) out_.frameDone(f);
     answerAskedAhead();
     if (it != windows.end()) turnDrawn(*it->second, front);
     if (it != windows.end() && it->second->front && !front) showBack(*it->second);

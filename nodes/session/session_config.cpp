@@ -73,6 +73,7 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("frames", c.frames, 0);
     visit("out", c.out);
     visit("saveFrames", c.saveFrames, 1);
+    visit("record", c.record);
     visit("width", c.width, 0);
     visit("height", c.height, 0);
     visit("fullScreen", c.fullScreen);

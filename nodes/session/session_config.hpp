@@ -52,6 +52,7 @@ struct SessionConfig {
     int64_t frames = 0;           // --frames; 0: until the program ends
     std::string out;              // --out: folder (PNG) or video file; empty: none
     std::vector<int64_t> saveFrames; // --save 1,30,90: only these; empty: all
+    std::string record;           // --record: file of the programs' streams; empty: none
     int width = 0, height = 0;    // --size; 0: the program's own
     bool fullScreen = false;      // --fullscreen: wall windows without borders, one per monitor
     int windowX = 0, windowY = 0; // --position of the wall's upper left corner

@@ -18,6 +18,7 @@ import emit_common        # noqa: E402
 import emit_epoxy         # noqa: E402
 import emit_front         # noqa: E402
 import emit_interposer    # noqa: E402
+import emit_parameters    # noqa: E402
 import emit_replay        # noqa: E402
 import registry           # noqa: E402
 
@@ -80,6 +81,7 @@ def main():
     files.update(emit_interposer.emit(model))
     files.update(emit_replay.emit(model))
     files.update(emit_epoxy.emit(model))
+    files.update(emit_parameters.emit(model, o.registry))
     if o.glx_registry and o.egl_header:
         files.update(emit_front.emit(model, o.glx_registry, o.egl_header))
     for name, text in files.items():

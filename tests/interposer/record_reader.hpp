@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "nodes/replay/args.hpp"
+#include "streamcodec/args.hpp"
 #include "streamcodec/wire.hpp"
 
 namespace mural::testing {

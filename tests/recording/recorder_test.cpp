@@ -48,6 +48,19 @@ TEST_F(Recorder, keepsTheOrderThroughASmallQueue) {
     EXPECT_TRUE(said_.empty());
 }
 
+TEST_F(Recorder, endsWithTheLastFrame) {
+    RecorderConfig config;
+    config.lastFrame = 3;
+    auto r = recorder(config);
+    r->begin({});
+    for (uint32_t i = 1; i <= 10; ++i) r->packet(wire::streamOf(1, 0), PacketBuilder().swap(1, i).bytes());
+    r->event({Event::ClientGone, 1, 0, ""});
+    EXPECT_EQ(r->finish(Deadline::inMs(20'000)).frames, 3);
+    auto reader = FileReader::open(path_);
+    ASSERT_TRUE(reader);
+    EXPECT_EQ(entriesOf(**reader).size(), 4u);
+}
+
 TEST_F(Recorder, aFullDiskEndsItWithOneLine) {
     auto r = recorder({}, "/dev/full");
     r->begin({});

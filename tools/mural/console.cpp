@@ -73,6 +73,9 @@ std::vector<std::string> reportLines(const SessionReport& r) {
     if (r.savedPictures > 0) {
         lines.push_back(fmt::format("saved {} picture{}, the last in {}", r.savedPictures, plural(r.savedPictures), r.lastPicture));
     }
+    if (!r.recording.empty()) {
+        lines.push_back(fmt::format("recorded {} frame{} in {}, {}", r.recordedFrames, plural(r.recordedFrames), r.recording, sizeText(static_cast<double>(r.recordedBytes))));
+    }
     if (r.callsUnsupported > 0) {
         lines.push_back(fmt::format("{} call{} of commands that Mural does not carry yet; see mural list-commands --unsupported", r.callsUnsupported, plural(r.callsUnsupported)));
     }

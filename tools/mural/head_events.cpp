@@ -57,6 +57,9 @@ SessionReport reportFrom(const Json& j) {
     r.largestDifference = whole(j, "largestDifference");
     r.savedPictures = whole(j, "savedPictures");
     r.lastPicture = text(j, "lastPicture");
+    r.recording = text(j, "recording");
+    r.recordedFrames = whole(j, "recordedFrames");
+    r.recordedBytes = whole(j, "recordedBytes");
     if (const auto nodes = j.find("nodes"); nodes != j.end() && nodes->is_array()) {
         for (const Json& n : *nodes) {
             if (n.is_object()) r.nodes.push_back({whole(n, "node"), whole(n, "frames"), real(n, "cpuSeconds"), truth(n, "lost")});

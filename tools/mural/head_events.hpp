@@ -32,6 +32,9 @@ struct SessionReport {
     int64_t largestDifference = 0;
     int64_t savedPictures = 0;
     std::string lastPicture;
+    std::string recording; // path; empty: none was made
+    int64_t recordedFrames = 0;
+    int64_t recordedBytes = 0;
     std::vector<NodeReport> nodes;
     std::string json; // the whole, as the head said it
 };

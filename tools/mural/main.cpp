@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <fmt/format.h>
 #include <functional>
 
@@ -9,12 +10,16 @@
 #include "nodes/launch/program_check.hpp"
 #include "nodes/node/node.hpp"
 #include "tools/mural/accuracy/accuracy_command.hpp"
+#include "nodes/player/player.hpp"
 #include "tools/mural/commands.hpp"
 #include "tools/mural/config/config_command.hpp"
 #include "tools/mural/discover.hpp"
+#include "tools/mural/dump_command.hpp"
 #include "tools/mural/netperf.hpp"
 #include "tools/mural/network/network_doctor.hpp"
 #include "tools/mural/network/probe_member.hpp"
+#include "tools/mural/replay_command.hpp"
+#include "tools/mural/trim_command.hpp"
 #include "tools/mural/waiting_commands.hpp"
 
 namespace {
@@ -65,7 +70,7 @@ class HelpFormatter : public CLI::Formatter {
 public:
     std::string make_usage(const CLI::App* app, std::string) const override {
         if (app->get_parent() == nullptr) return "Usage: mural COMMAND [OPTIONS]\n";
-        const std::string rest = app->get_name() == "run" ? " -- PROGRAM ARGUMENTS..." : app->get_name() == "bench" ? " accuracy [-- PROGRAM ARGUMENTS...]" : app->get_name() == "call" ? " HOST MURAL ARGUMENTS..." : "";
+        const std::string rest = app->get_name() == "run" ? " -- PROGRAM ARGUMENTS..." : app->get_name() == "bench" ? " accuracy [-- PROGRAM ARGUMENTS...]" : app->get_name() == "replay" || app->get_name() == "dump" ? " FILE" : app->get_name() == "trim" ? " FILE FRAMES" : app->get_name() == "call" ? " HOST MURAL ARGUMENTS..." : "";
         return "Usage: mural " + app->get_name() + " [OPTIONS]" + rest + "\n";
     }
     std::string make_option_name(const CLI::Option* option, bool positional) const override {
@@ -81,6 +86,7 @@ public:
         app_.formatter(std::make_shared<HelpFormatter>());
         app_.footer("mural COMMAND --help says more about each.\n\nExamples:\n  mural run --tiles 2x2 -- glxgears\n  mural stat\n  mural doctor");
         addRun();
+        addRecordings();
         addProcesses();
         addTools();
     }
@@ -137,6 +143,34 @@ private:
         const auto options = mural::cli::runOptionsFrom(runArguments_);
         if (!options.ok()) return usageError("mural run", options.error().message);
         return mural::cli::runCommand(options.value());
+    }
+
+    void addRecordings() {
+        CLI::App& replay = add("replay", "play a recording of mural run --record on a wall of render nodes", [this] { return runReplay(); }, "");
+        mural::cli::describeReplay(replay, replay_);
+        CLI::App& dump = add("dump", "print the calls of a recording", [this] { return mural::cli::dumpCommand(dump_); }, "");
+        mural::cli::describeDump(dump, dump_);
+        CLI::App& trim = add("trim", "keep some frames of a recording, with what they need", [this] { return mural::cli::trimCommand(trim_); }, "");
+        mural::cli::describeTrim(trim, trim_);
+        CLI::App& play = add("play", "", [this] { return runPlay(); }, "");
+        play.group("");
+        play.add_option("FILE", play_.file)->required();
+        play.add_flag("--pace", play_.pace);
+        play.add_flag("--loop", play_.loop);
+    }
+
+    int runReplay() {
+        const auto options = mural::cli::replayOptionsFrom(replay_);
+        if (!options.ok()) return usageError("mural replay", options.error().message);
+        return mural::cli::replayCommand(options.value(), replay_.file);
+    }
+
+    // The program of a replay: what stands in MURAL_SESSION is its head.
+    int runPlay() {
+        const char* session = std::getenv("MURAL_SESSION");
+        if (session == nullptr) return usageError("mural play", "there is no session; it is started by mural replay");
+        play_.session = session;
+        return mural::playRecording(play_);
     }
 
     void addProcesses() {
@@ -247,6 +281,10 @@ private:
     mural::cli::WaitArguments wait_;
     mural::cli::RunArguments runArguments_;
     mural::NodeOptions node_;
+    mural::cli::ReplayArguments replay_;
+    mural::PlayOptions play_;
+    mural::cli::DumpArguments dump_;
+    mural::cli::TrimArguments trim_;
     int controlFd_ = -1;
     bool asJson_ = false;
     bool onlyUnsupported_ = false;

@@ -36,6 +36,7 @@ constexpr const char* kFooter = R"(Examples:
   mural run --size 7680x4320 --out wall.mp4 -- app       the program sees a screen of that size
   mural run --subpixel 4 -- glxgears                     each pixel is the mean of 4 samples, one node for each
   mural run --stereo anaglyph --eye-base 1 --focus 40 -- glxgears
+  mural run --record app.mural -- app                    its GL stream as a file, for mural replay, dump and trim
   mural run --config wall.eqc -- app                     wall, nodes and compounds by a file
   mural run --native --frames 500 -- glxgears            without Mural, for comparison
 
@@ -315,6 +316,8 @@ Result<std::string> configTextOf(const RunArguments& a, const SessionConfig& c) 
 Result<void> readOutput(const RunArguments& a, SessionConfig& c) {
     if (a.out && a.out->empty()) return badValue("--out", "", "must be a folder or a video file, such as --out shots");
     c.out = a.out.value_or("");
+    if (a.record && a.record->empty()) return badValue("--record", "", "must be a file, such as --record app.mural");
+    c.record = a.record.value_or("");
     if (!a.save) return {};
     if (!a.out) return Error{"--save needs --out: say where the pictures go, such as --out shots"};
     for (const std::string& part : listOf(*a.save)) {
@@ -331,8 +334,8 @@ Result<void> checkTogether(const RunArguments& a, const SessionConfig& c) {
     if ((a.fullScreen || a.position.has_value()) && c.display != Display::Windows) {
         return Error{std::string(a.fullScreen ? "--fullscreen" : "--position") + " is for wall windows; add --display windows"};
     }
-    if (a.native && (a.out.has_value() || c.verifyEvery > 0)) {
-        return Error{std::string(c.verifyEvery > 0 ? "--verify" : "--out") + " needs captured frames; leave --native out"};
+    if (a.native && (a.out.has_value() || a.record.has_value() || c.verifyEvery > 0)) {
+        return Error{std::string(c.verifyEvery > 0 ? "--verify" : a.out ? "--out" : "--record") + " needs captured frames; leave --native out"};
     }
     if (c.width > 0 && (c.columns > c.width || c.rows > c.height)) {
         return Error{fmt::format("{}x{} tiles do not fit in {}x{} pixels; give fewer tiles", c.columns, c.rows, c.width, c.height)};
@@ -351,6 +354,7 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
     command.add_option("--frames", a.frames, "end the program after this many frames; no later one is saved")->type_name("N");
     command.add_option("--out", a.out, "write pictures into this folder (PNG), or a video (.mp4, .mkv, .webm, …)")->type_name("DIR|VIDEO");
     command.add_option("--save", a.save, "write only these frames, counted from 1")->type_name("1,30,90");
+    command.add_option("--record", a.record, "record the program's GL stream into this file, for mural replay")->type_name("FILE");
     command.add_option("--config", a.config, "wall, nodes and compounds by a configuration file (.eqc)")->type_name("FILE");
     command.add_option("--canvas", a.canvas, "show this canvas of the file (its first)")->type_name("NAME");
     command.add_option("--frusta", a.frusta, "screens of the file show one flat picture, the program's, or each the scene as it is seen from the room: auto, program, room (auto: the room's where screens stand at angles)")->type_name("WHOSE");

@@ -37,7 +37,7 @@ struct RunArguments {
     std::vector<std::string> layouts;
     bool here = false, printConfig = false;
     Text stereo, eyeBase, focus, pixel, subpixel, dplex, db, composition;
-    Text localNodes, frames, latency, report;
+    Text localNodes, frames, latency, report, record;
     std::string verify; // empty: not given
     bool fullScreen = false, noPlacement = false, explain = false, native = false, quiet = false;
     std::vector<std::string> program;

@@ -1,0 +1,203 @@
+#include "nodes/player/player.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <map>
+#include <memory>
+#include <ctime>
+#include <vector>
+
+#include "common/futex.hpp"
+#include "nodes/player/capture_link.hpp"
+#include "nodes/player/player_windows.hpp"
+#include "recording/file_reader.hpp"
+#include "recording/record_walk.hpp"
+
+namespace mural {
+namespace {
+
+using recording::RecordView;
+
+constexpr int64_t kWelcomePatienceMs = 30'000;
+constexpr int64_t kRoomPatienceMs = 60'000;
+constexpr int64_t kFramePatienceMs = 600'000; // as programs have
+constexpr int64_t kLeavePatienceMs = 5'000;
+constexpr int64_t kSliceNs = 10 * kNsPerMs;   // between two looks at what other programs are answered
+constexpr uint64_t kMostUnanswered = 16;      // so much is drawn ahead of answers that nobody reads
+
+bool asksForReply(uint16_t opcode) {
+    switch (opcode) {
+    case wire::kOpRequestPixels:
+    case wire::kOpRequestTexImage:
+    case wire::kOpRequestBuffer:
+    case wire::kOpRequestQuery:
+    case wire::kOpRequestProgram:
+    case wire::kOpFinish: return true;
+    default: return false;
+    }
+}
+
+class Player {
+public:
+    explicit Player(const PlayOptions& options) : options_(options), windows_("Mural: " + options.file) {}
+
+    Result<void> play(recording::FileReader& reader, bool& unreadable) {
+        beganNs_ = monotonicNowNs();
+        firstNs_ = -1;
+        for (size_t i = 0; i < reader.blocks().size(); ++i) {
+            auto block = reader.read(i);
+            unreadable = !block;
+            if (!block) return block.error();
+            recording::EntryWalk walk(*block);
+            recording::Entry entry;
+            while (walk.next(entry))
+                if (auto r = perform(entry); !r) return r;
+        }
+        while (!links_.empty())
+            if (auto r = leave(links_.begin()->first); !r) return r;
+        return {};
+    }
+
+private:
+    // Waits on the word until done() holds; the answers to all programs are dropped meanwhile.
+    template <class Done> Result<void> await(CaptureLink& link, const std::atomic<uint32_t>& word, int64_t patienceMs, const char* what, Done done) {
+        const Deadline deadline = Deadline::inMs(patienceMs);
+        while (true) {
+            const uint32_t value = word.load(std::memory_order_acquire);
+            if (done()) return {};
+            dropAnswers();
+            if (link.headGone() || link.gone(0)) return Error{"the session has ended before the recording"};
+            if (deadline.passed()) return Error{std::string("the session ") + what + " for " + std::to_string(patienceMs / 1000) + " s; mural stat says what it waits for"};
+            futexWait(word, value, deadline.leftNs(kSliceNs));
+        }
+    }
+
+    void dropAnswers() {
+        for (auto& [client, link] : links_) (void)link->unanswered();
+    }
+
+    void keepPace(uint64_t timeNs) {
+        if (firstNs_ < 0) firstNs_ = static_cast<int64_t>(timeNs);
+        const Deadline due = Deadline::at(beganNs_ + static_cast<int64_t>(timeNs) - firstNs_);
+        while (!due.passed()) {
+            dropAnswers();
+            const int64_t leftNs = due.leftNs(kSliceNs);
+            const timespec slice{0, static_cast<long>(leftNs)};
+            nanosleep(&slice, nullptr);
+        }
+    }
+
+    Result<void> perform(const recording::Entry& entry) {
+        if (options_.pace) keepPace(entry.timeNs);
+        if (entry.stream == 0) {
+            recording::ClientEvent event;
+            const bool gone = recording::parseEvent(entry.payload, event) && event.kind == recording::Event::ClientGone;
+            return gone ? leave(event.client) : Result<void>();
+        }
+        auto link = linkOf(wire::clientOf(entry.stream));
+        if (!link) return link.error();
+        return send(**link, entry.stream, entry.payload);
+    }
+
+    Result<CaptureLink*> linkOf(uint32_t client) {
+        auto& link = links_[client];
+        if (link) return link.get();
+        auto connected = CaptureLink::connect(options_.session, Deadline::inMs(kWelcomePatienceMs));
+        if (!connected) {
+            links_.erase(client);
+            return connected.error();
+        }
+        link = std::move(*connected);
+        return link.get();
+    }
+
+    Result<void> send(CaptureLink& link, uint32_t stream, std::span<const std::byte> packet) {
+        if (packet.size() > capture::kChunkBytes) return Error{"the recording has a packet of " + std::to_string(packet.size()) + " bytes, which no program can send; record again"};
+        // Nodes get the packets of all programs in the order in which they were recorded.
+        if (last_ != nullptr && last_ != &link)
+            if (auto r = await(*last_, last_->chunkWord(), kRoomPatienceMs, "took nothing", [&] { return last_->allTaken(); }); !r) return r;
+        last_ = &link;
+        uint32_t frame = wire::kUnseenFrame;
+        if (auto r = await(link, link.answersWord(), kRoomPatienceMs, "gave no answer", [&] { return link.unanswered() <= kMostUnanswered; }); !r) return r;
+        if (auto r = prepare(link, stream, packet, frame); !r) return r;
+        const auto thread = static_cast<uint16_t>(stream);
+        if (auto r = await(link, link.chunkWord(), kRoomPatienceMs, "took nothing", [&] { return link.publish(thread, packet_); }); !r) return r;
+        if (frame == wire::kUnseenFrame) return {};
+        link.submitted(frame);
+        return await(link, link.framesWord(), kFramePatienceMs, "finished no frame", [&] { return link.mayGoOn(frame); });
+    }
+
+    // packet_ is what is sent: the recorded packet, with windows that are there. frame: that it shows last, if any.
+    Result<void> prepare(CaptureLink& link, uint32_t stream, std::span<const std::byte> packet, uint32_t& frame) {
+        packet_.assign(packet.begin(), packet.end());
+        recording::RecordWalk walk(packet);
+        RecordView r;
+        while (walk.next(r)) {
+            const uint32_t first = recording::argumentWord(r, 0);
+            if (r.opcode == wire::kOpSwap || r.opcode == wire::kOpFrontPicture) frame = std::max(frame, recording::argumentWord(r, 1));
+            else if (asksForReply(r.opcode) && !(first & capture::kAskedAhead)) link.asked();
+            else if (!link.welcome().displayApp) continue;
+            else if (r.opcode == wire::kOpDestroyWindow) windows_.destroy(wire::clientOf(stream), first);
+            else if (r.opcode == wire::kOpWindow)
+                if (auto shown = showWindow(stream, r); !shown) return shown;
+        }
+        return {};
+    }
+
+    Result<void> showWindow(uint32_t stream, const RecordView& r) {
+        wire::WindowConfig config{};
+        if (r.arguments.size() < 4 + sizeof config) return {};
+        std::memcpy(&config, r.arguments.data() + 4, sizeof config);
+        if ((config.nativeLow == 0 && config.nativeHigh == 0) || config.isPbuffer) return {};
+        auto shown = windows_.show(wire::clientOf(stream), recording::argumentWord(r, 0), config.width, config.height);
+        if (!shown) return shown.error();
+        config.nativeLow = *shown;
+        config.nativeHigh = 0;
+        std::memcpy(packet_.data() + r.offset + r.sizeBytes - r.arguments.size() + 4, &config, sizeof config);
+        return {};
+    }
+
+    Result<void> leave(uint32_t client) {
+        const auto found = links_.find(client);
+        if (found == links_.end()) return {};
+        CaptureLink& link = *found->second;
+        const auto taken = await(link, link.chunkWord(), kRoomPatienceMs, "took nothing", [&] { return link.allTaken(); });
+        link.leave();
+        // The next program's packets come behind the nodes' word that this one has gone.
+        const Deadline deadline = Deadline::inMs(kLeavePatienceMs);
+        while (taken && !deadline.passed() && !link.gone(kSliceNs / kNsPerMs)) dropAnswers();
+        if (last_ == &link) last_ = nullptr;
+        links_.erase(found);
+        return taken;
+    }
+
+    const PlayOptions& options_;
+    PlayerWindows windows_;
+    std::map<uint32_t, std::unique_ptr<CaptureLink>> links_; // by the client's recorded number
+    CaptureLink* last_ = nullptr;                            // to whom the last packet went
+    std::vector<std::byte> packet_;
+    int64_t beganNs_ = 0;
+    int64_t firstNs_ = -1; // recorded time of the first entry
+};
+
+int complain(const std::string& text, int status) {
+    std::fprintf(stderr, "mural: %s\n", text.c_str());
+    return status;
+}
+
+} // namespace
+
+int playRecording(const PlayOptions& options) {
+    constexpr int kFailed = 1, kUnreadable = 2;
+    auto reader = recording::FileReader::open(options.file);
+    if (!reader) return complain(reader.error().message, kUnreadable);
+    Player player(options);
+    do {
+        bool unreadable = false;
+        if (const auto played = player.play(**reader, unreadable); !played) return complain(played.error().message, unreadable ? kUnreadable : kFailed);
+    } while (options.loop && !(*reader)->blocks().empty());
+    return 0;
+}
+
+} // namespace mural

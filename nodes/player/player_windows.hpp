@@ -1,0 +1,32 @@
+// Windows in place of those that the recorded program had (--display app): the head shows pictures in them. Used by one thread.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "common/result.hpp"
+#include "nodes/output/x_connection.hpp"
+#include "streamcodec/wire.hpp"
+
+namespace mural {
+
+class PlayerWindows {
+public:
+    explicit PlayerWindows(std::string title) : title_(std::move(title)) {}
+    // The window of that size, made or resized; its id on the display.
+    Result<uint32_t> show(uint32_t client, uint32_t window, uint32_t width, uint32_t height);
+    void destroy(uint32_t client, uint32_t window);
+
+private:
+    Result<void> open();
+    Result<uint32_t> make(uint32_t width, uint32_t height);
+
+    const std::string title_;
+    std::unique_ptr<XConnection> x_; // with the first window
+    std::map<std::pair<uint32_t, uint32_t>, xcb_window_t> windows_;
+};
+
+} // namespace mural

@@ -1,0 +1,136 @@
+#include "recording/dump/dump.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <fnmatch.h>
+#include <map>
+
+#include "recording/dump/record_text.hpp"
+#include "recording/wall_frames.hpp"
+
+namespace mural::recording {
+namespace {
+
+struct Count {
+    uint64_t calls = 0;
+    uint64_t bytes = 0;
+};
+
+class Dump {
+public:
+    Dump(const DumpOptions& options, const std::function<bool(const std::string&)>& line) : options_(options), line_(line) {}
+
+    // False: no more is wanted.
+    bool entry(const Entry& e) {
+        frame_ = frames_.frames() + 1;
+        if (frame_ > options_.lastFrame) return false;
+        return e.stream == 0 ? event(e) : packet(e);
+    }
+    bool finish() { return !options_.summary || (endFrame() && totals()); }
+
+private:
+    [[nodiscard]] bool inRange() const { return frame_ >= options_.firstFrame && frame_ <= options_.lastFrame; }
+
+    bool wanted(const std::string& name) const {
+        const auto fits = [&](const std::string& pattern) { return fnmatch(pattern.c_str(), name.c_str(), 0) == 0; };
+        return options_.calls.empty() || std::ranges::any_of(options_.calls, fits);
+    }
+
+    bool event(const Entry& e) {
+        ClientEvent event;
+        if (!parseEvent(e.payload, event)) return true;
+        if (event.kind == Event::ClientGone) frames_.clientGone(event.client);
+        if (!inRange() || options_.summary || !options_.calls.empty()) return true;
+        return line_(event.kind == Event::ClientCame ? fmt::format("{:6} {}    program came: {}, pid {}", frame_, event.client, event.name, event.pid)
+                                                     : fmt::format("{:6} {}    program gone", frame_, event.client));
+    }
+
+    bool packet(const Entry& e) {
+        RecordWalk walk(e.payload);
+        RecordView r;
+        while (walk.next(r)) {
+            frame_ = frames_.frames() + 1;
+            const bool shows = inRange();
+            const bool go = options_.summary ? !shows || count(r) : call(e.stream, r, shows);
+            const bool ended = frames_.record(e.stream, r) > 0;
+            if (!go || (ended && shows && options_.summary && !endFrame())) return false;
+        }
+        if (walk.malformed() && inRange() && !options_.summary) return line_(fmt::format("{:6} {}.{:<2} malformed record", frame_, wire::clientOf(e.stream), e.stream & 0xffff));
+        return true;
+    }
+
+    bool call(uint32_t stream, const RecordView& r, bool shows) {
+        const std::string text = recordText(r, blobs_[stream]); // also where nothing is shown: it takes its blobs
+        if (!shows || !wanted(nameOf(r.opcode))) return true;
+        return line_(fmt::format("{:6} {}.{:<2} {}", frame_, wire::clientOf(stream), stream & 0xffff, text));
+    }
+
+    bool count(const RecordView& r) {
+        const std::string& name = nameOf(r.opcode);
+        if (!wanted(name)) return true;
+        for (Count* c : {&ofFrame_[name], &total_[name]}) {
+            ++c->calls;
+            c->bytes += r.sizeBytes;
+        }
+        return true;
+    }
+
+    const std::string& nameOf(uint16_t opcode) {
+        std::string& name = names_[opcode];
+        if (name.empty()) name = recordName(opcode);
+        return name;
+    }
+
+    bool endFrame() {
+        if (ofFrame_.empty()) return true;
+        Count all;
+        for (const auto& [name, c] : ofFrame_) {
+            all.calls += c.calls;
+            all.bytes += c.bytes;
+        }
+        if (!line_(fmt::format("frame {}: {} calls, {} bytes", frame_, all.calls, all.bytes))) return false;
+        const bool shown = table(ofFrame_);
+        ofFrame_.clear();
+        return shown;
+    }
+
+    bool totals() {
+        if (!line_("all frames:")) return false;
+        return table(total_);
+    }
+
+    bool table(const std::map<std::string, Count>& counts) {
+        std::vector<std::pair<std::string, Count>> rows(counts.begin(), counts.end());
+        std::ranges::stable_sort(rows, [](const auto& a, const auto& b) { return a.second.bytes > b.second.bytes; });
+        return std::ranges::all_of(rows, [&](const auto& row) { return line_(fmt::format("  {:10} {:12} bytes  {}", row.second.calls, row.second.bytes, row.first)); });
+    }
+
+    const DumpOptions& options_;
+    const std::function<bool(const std::string&)>& line_;
+    WallFrames frames_;
+    int64_t frame_ = 1; // that is under way
+    std::map<uint32_t, StreamBlobs> blobs_;
+    std::map<uint16_t, std::string> names_;
+    std::map<std::string, Count> ofFrame_, total_;
+};
+
+} // namespace
+
+Result<void> dump(FileReader& reader, const DumpOptions& options, const std::function<bool(const std::string&)>& line) {
+    Dump dump(options, line);
+    for (size_t i = 0; i < reader.blocks().size(); ++i) {
+        auto block = reader.read(i);
+        if (!block) return block.error();
+        EntryWalk walk(*block);
+        Entry entry;
+        while (walk.next(entry)) {
+            if (dump.entry(entry)) continue;
+            dump.finish();
+            return {};
+        }
+    }
+    dump.finish();
+    return {};
+}
+
+} // namespace mural::recording

@@ -1,0 +1,20 @@
+// Values of records as text.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "streamcodec/command_parameters.hpp"
+
+namespace mural::recording {
+
+std::string enumText(uint16_t group, uint32_t value);
+std::string bitsText(uint16_t group, uint32_t value);
+std::string numberText(Element element, uint16_t group, const std::byte* at);
+// The first ones, and how many bytes there are in all.
+std::string arrayText(Element element, uint16_t group, std::span<const std::byte> bytes);
+// In quotes; its beginning, where it is long.
+std::string quoted(std::span<const std::byte> bytes);
+
+} // namespace mural::recording

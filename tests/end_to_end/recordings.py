@@ -1,0 +1,350 @@
+#!/usr/bin/env python3
+"""Recordings of programs' GL streams: what is replayed, on any nodes, shows what the program has shown natively.
+
+  recordings.py --build build/release [--cases replay,trim] [--list]
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import failures
+import pictures
+import programs
+import session
+
+failures.CASES.clear()  # only those of this file
+FRAMES = 6
+SIZE = (253, 191)
+RECORD = ("--display", "none", "--tiles", "1x1")
+
+
+class Workplace:
+    """A folder with recordings and pictures, and the commands that make them."""
+
+    def __init__(self, context, folder):
+        self.context = context
+        self.folder = folder
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def session(self, arguments, environment=None):
+        return session.Session([self.context.mural] + list(arguments), self.context.display, environment)
+
+    def record(self, program, options=RECORD, arguments=(), frames=FRAMES, status=0):
+        """The pictures of --out of the run that is recorded, into a.mural."""
+        out = self.path("live")
+        shutil.rmtree(out, ignore_errors=True)
+        command = [self.context.program(program), "--size", "%dx%d" % SIZE, "--frames", str(frames)] + list(arguments)
+        with self.context.run(command, list(options) + ["--record", self.path("a.mural"), "--out", out]) as run:
+            self.check(run, status)
+        return shown(out)
+
+    def replay(self, options, file="a.mural", environment=None):
+        out = self.path("replayed")
+        shutil.rmtree(out, ignore_errors=True)
+        with self.session(["replay", self.path(file), "--display", "none", "--out", out] + list(options), environment) as run:
+            self.check(run, 0)
+        return shown(out)
+
+    def trim(self, frames, file="a.mural", into="b.mural"):
+        """What is said about it."""
+        done = self.mural("trim", self.path(file), frames, "-o", self.path(into))
+        if done.returncode != 0:
+            raise AssertionError("trim fails: " + done.stderr)
+        return done.stdout + done.stderr
+
+    def mural(self, *arguments):
+        return subprocess.run([self.context.mural] + list(arguments), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=60,
+                              env=programs.clean_environment(self.context.display), check=False)
+
+    def native(self, program, arguments=(), frames=FRAMES):
+        """The pictures of all frames, by window."""
+        shutil.rmtree(self.path("native"), ignore_errors=True)
+        run = programs.run_program(self.context.build, program, self.path("native"), self.context.display, "%dx%d" % SIZE, frames, arguments=arguments)
+        if run.status != 0:
+            raise AssertionError("%s fails natively: %s" % (program, run.output))
+        windows = {}
+        for name, path in sorted(run.frames().items()):
+            windows.setdefault(name.split("/")[0], []).append(pictures.read_ppm(path))
+        return windows
+
+    @staticmethod
+    def check(run, status):
+        wrong = failures.check_end(run, status)
+        if wrong is not None:
+            raise AssertionError(wrong)
+
+
+def shown(folder):
+    names = sorted(os.listdir(folder)) if os.path.isdir(folder) else []
+    return [pictures.read_png(os.path.join(folder, name)) for name in names]
+
+
+def differing(expected, got):
+    """None, or how many pixels differ and where."""
+    if not expected or len(expected) != len(got):
+        return "%d pictures instead of %d" % (len(got), len(expected))
+    difference = pictures.Difference()
+    for number, (first, second) in enumerate(zip(expected, got)):
+        difference.add_pictures(first, second, "frame %d" % (number + 1))
+    return None if difference.pixels == 0 else "%d pixels differ, largest %d, %s" % (difference.pixels, difference.largest, difference.place)
+
+
+def unlike_all(windows, got):
+    """None when the pictures are those of one of the windows."""
+    wrong = {name: differing(expected, got) for name, expected in windows.items()}
+    return None if None in wrong.values() else "; ".join("%s: %s" % item for item in wrong.items())
+
+
+def case(function):
+    def performed(context):
+        with tempfile.TemporaryDirectory(prefix="mural-recordings.") as folder:
+            try:
+                return function(Workplace(context, folder))
+            except AssertionError as error:
+                return str(error)
+    performed.__name__ = function.__name__
+    failures.case(performed)
+    return function
+
+
+# ---- what is replayed is what was drawn
+
+def replayed(place, program, layouts):
+    windows = place.native(program)
+    wrong = unlike_all(windows, place.record(program))
+    if wrong is not None:
+        return "recorded: " + wrong
+    for options in layouts:
+        wrong = unlike_all(windows, place.replay(options))
+        if wrong is not None:
+            return "%s: %s" % (" ".join(options), wrong)
+    return None
+
+
+def all_replayed(place, names, layouts=(("--tiles", "1x1"), ("--tiles", "2x2"))):
+    wrong = {name: replayed(place, name, layouts) for name in names}
+    return next(("%s: %s" % item for item in wrong.items() if item[1] is not None), None)
+
+
+@case
+def replay_vertices(place):
+    """Calls of all kinds: at once, in lists, from the program's memory, from buffers and mappings; large values."""
+    return all_replayed(place, ("immediate", "display_lists", "client_arrays", "core_arrays", "persistent_frames", "large_objects"))
+
+
+@case
+def replay_reads(place):
+    """Questions whose answers nobody reads, and copies of windows: recorded with one node, they go with four."""
+    return all_replayed(place, ("pixels_read", "reads_owed", "queries_later", "accum_buffer", "frames_kept", "front_and_back"))
+
+
+@case
+def replay_threads(place):
+    return all_replayed(place, ("loader_thread", "shared_contexts", "threads_windows", "glsl_uniforms", "es2_scene"))
+
+
+@case
+def replay_shared_work(place):
+    """The same file with turns and with ranges of draws."""
+    return all_replayed(place, ("immediate", "fixed_lighting"), (("--dplex", "2"), ("--db", "2")))
+
+
+@case
+def replay_windows(place):
+    """Windows that come and go, and several processes: the wall shows what it showed."""
+    for program in ("several_windows", "window_switch", "window_churn", "fork_child", "fork_exec"):
+        live = place.record(program)
+        for tiles in ("1x1", "2x2"):
+            wrong = differing(live, place.replay(["--tiles", tiles]))
+            if wrong is not None:
+                return "%s, %s: %s" % (program, tiles, wrong)
+    return None
+
+
+@case
+def replay_on_a_display(place):
+    """Windows of its own for the program's."""
+    live = place.record("immediate")
+    out = place.path("replayed")
+    with place.session(["replay", place.path("a.mural"), "--display", "app", "--tiles", "2x1", "--out", out]) as run:
+        place.check(run, 0)
+    return differing(live, shown(out))
+
+
+@case
+def replay_finds_a_planted_fault(place):
+    """A node that draws something else than was recorded is seen."""
+    live = place.record("immediate")
+    for fault in ("opcode", "drop"):
+        if differing(live, place.replay(["--tiles", "2x2"], environment={"MURAL_PLANT": fault})) is None:
+            return "the fault %s was not seen" % fault
+    return None
+
+
+@case
+def replay_again_and_again(place):
+    """--loop goes on until --frames; --pace takes as long as it took."""
+    live = place.record("immediate")
+    return differing(live + live + live[:2], place.replay(["--loop", "--pace", "--frames", str(2 * FRAMES + 2)]))
+
+
+@case
+def replay_of_a_replay(place):
+    live = place.record("immediate")
+    place.replay(["--tiles", "2x1", "--record", place.path("b.mural")])
+    return differing(live, place.replay(["--tiles", "1x2"], "b.mural"))
+
+
+# ---- recordings that end early
+
+@case
+def killed_head_leaves_what_is_whole(place):
+    with place.context.drawing("long_run", 60, options=list(RECORD) + ["--record", place.path("a.mural")]) as run:
+        if not run.wait_for_line("frame 20"):
+            return "the program did not start: " + " | ".join(run.standard_error[-3:])
+        killer = run.wait_for_processes(failures.HEAD)
+        run.wait_for_line("frame 50")
+        failures.kill_all(killer)
+        run.status()
+    done = place.mural("dump", place.path("a.mural"), "--summary")
+    if done.returncode == 2 and "is not a recording" in done.stderr:
+        return "not even the header was written"
+    if done.returncode != 0 or done.stderr.count("\n") != 1 or "its end is missing" not in done.stderr:
+        return "status %d, %s" % (done.returncode, done.stderr)
+    frames = int(re.search(r"(\d+) whole frames", done.stderr).group(1))
+    return None if len(place.replay(["--tiles", "2x1"])) >= frames else "not all whole frames were shown"
+
+
+@case
+def full_disk_ends_the_recording_only(place):
+    with place.context.drawing("long_run", 60, options=list(RECORD) + ["--record", "/dev/full"]) as run:
+        wrong = failures.check_end(run, 0, 60)
+        said = failures.error_lines(run, ["No space left"])
+    return wrong or (None if len(said) == 1 and "the program goes on" in said[0] else "it said: " + " | ".join(run.standard_error))
+
+
+@case
+def arguments_that_are_wrong(place):
+    """Each is one line with what to do, and status 2."""
+    with open(place.path("text"), "w", encoding="utf-8") as file:
+        file.write("no recording\n" * 10)
+    place.record("immediate", frames=2)
+    with open(place.path("a.mural"), "rb") as file:
+        whole = bytearray(file.read())
+    whole[len(whole) // 2] ^= 0x40
+    with open(place.path("damaged"), "wb") as file:
+        file.write(whole)
+    wrong = []
+    commands = {"is not a recording": ["replay", place.path("text")], "can't be read": ["replay", place.path("nowhere")], "is damaged": ["replay", place.path("damaged")],
+                "can't be written": ["run", "--record", "/nowhere/a.mural", "--display", "none", "--", place.context.program("immediate")],
+                "is not a recording ": ["dump", place.path("text")], "is damaged ": ["dump", place.path("damaged")], "--frames \"7-3\"": ["dump", place.path("a.mural"), "--frames", "7-3"],
+                "what is being replayed": ["replay", place.path("a.mural"), "--record", place.path("a.mural")]}
+    for words, command in commands.items():
+        done = place.mural(*command)
+        if done.returncode != 2 or done.stderr.count("\n") != 1 or words.strip() not in done.stderr:
+            wrong.append("mural %s: status %d, %s" % (" ".join(command), done.returncode, done.stderr.strip()))
+    return "; ".join(wrong) or None
+
+
+# ---- trim
+
+def trimmed(place, program, frames=(3, 5), options=("--tiles", "2x2")):
+    """None when a part shows what the whole shows there; and what was said of it."""
+    live = place.record(program)
+    said = place.trim("%d-%d" % frames)
+    return differing(live[frames[0] - 1:frames[1]], place.replay(options, "b.mural")), said
+
+
+def all_trimmed(place, names, **more):
+    for name in names:
+        wrong, said = trimmed(place, name, **more)
+        if wrong is not None:
+            return "%s: %s; %s" % (name, wrong, said)
+    return None
+
+
+def draws_left_out(said):
+    return int(re.search(r"(\d+) of \d+ draws", said).group(1))
+
+
+@case
+def trim_leaves_out_what_nobody_sees(place):
+    for program in ("immediate", "client_arrays", "core_arrays", "many_triangles"):
+        wrong, said = trimmed(place, program)
+        if wrong is not None or draws_left_out(said) == 0:
+            return "%s: %s; %s" % (program, wrong, said)
+    return None
+
+
+@case
+def trim_keeps_what_later_frames_need(place):
+    """Kept pictures, copies, textures drawn into, accumulation, the front buffer, memory that shaders write."""
+    return all_trimmed(place, ("frames_kept", "pixels_read", "framebuffers", "accum_buffer", "front_and_back", "queries", "fragment_counters", "display_lists"))
+
+
+@case
+def trim_to_one_frame(place):
+    """The last one, with objects and state of all before; of several windows."""
+    return all_trimmed(place, ("textures_classic", "glsl_uniforms", "persistent_frames", "several_windows", "fork_child"), frames=(FRAMES, FRAMES), options=("--tiles", "2x1"))
+
+
+@case
+def trim_of_a_part(place):
+    live = place.record("immediate")
+    place.trim("2-5")
+    place.trim("2-3", "b.mural", "c.mural")
+    return differing(live[2:4], place.replay(["--dplex", "2"], "c.mural"))
+
+
+@case
+def trim_refuses(place):
+    place.record("immediate", frames=2)
+    for frames, words in (("2-3", "the recording has 2 frames; give some of them, such as 1-2"), ("0-1", "must be N or N-M"), ("x", "must be N or N-M")):
+        done = place.mural("trim", place.path("a.mural"), frames, "-o", place.path("b.mural"))
+        if done.returncode != 2 or done.stderr.count("\n") != 1 or words not in done.stderr:
+            return "%s: status %d, %s" % (frames, done.returncode, done.stderr)
+    done = place.mural("trim", place.path("a.mural"), "1", "-o", place.path("a.mural"))
+    return None if done.returncode == 2 and "is what is being trimmed" in done.stderr else done.stderr
+
+
+# ---- dump
+
+@case
+def dump_tells_the_calls(place):
+    place.record("immediate", frames=2)
+    done = place.mural("dump", place.path("a.mural"))
+    lines = done.stdout.splitlines()
+    for wanted in (r"^     1 1    program came: immediate, pid \d+$", r"^     1 1\.\d+ +Mural\.CreateContext\(context=1, share=0, api=0, .*double\)$", r"^     2 1\.\d+ +Mural\.Swap\(window=1, frame=2\)$",
+                   r"^     1 1\.\d+ +glClear\(mask=GL_DEPTH_BUFFER_BIT\|.*GL_COLOR_BUFFER_BIT\)$", r"^     1 1\.\d+ +glBegin\(mode=GL_TRIANGLES\)$", r"^     1 1\.\d+ +glVertex3f\(x=[-0-9.]+, y=[-0-9.]+, z=[-0-9.]+\)$"):
+        if not any(re.match(wanted, line) for line in lines):
+            return "no line is like %s among %d" % (wanted, len(lines))
+    if any("malformed" in line or "unknown" in line for line in lines):
+        return "malformed: " + next(line for line in lines if "malformed" in line or "unknown" in line)
+    second = place.mural("dump", place.path("a.mural"), "--frames", "2", "--calls", "glBegin,Mural.S*").stdout.splitlines()
+    if [line for line in lines if line.startswith("     2 ") and re.search(r" (glBegin|Mural\.S\w*)\(", line)] != second:
+        return "--frames and --calls choose otherwise"
+    summary = place.mural("dump", place.path("a.mural"), "--summary").stdout
+    counted = int(re.search(r"all frames:(?:\n.*)*?\n +(\d+) +\d+ bytes  glBegin\n", summary).group(1))
+    return None if counted == sum(" glBegin(" in line for line in lines) else "the summary counts %d glBegin" % counted
+
+
+@case
+def dump_understands_all_programs(place):
+    """No record of these is malformed to the printer."""
+    for program in ("client_arrays", "glsl_stages", "textures_modern", "buffers", "display_lists", "feedback_select", "egl_images", "compute_images", "arb_programs"):
+        place.record(program, frames=2)
+        done = place.mural("dump", place.path("a.mural"))
+        odd = [line for line in done.stdout.splitlines() if "malformed" in line or ", unknown" in line]
+        if done.returncode != 0 or odd or not done.stdout:
+            return "%s: %s" % (program, odd[:1] or done.stderr)
+    return None
+
+
+if __name__ == "__main__":
+    sys.exit(failures.main())

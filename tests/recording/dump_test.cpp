@@ -1,0 +1,59 @@
+// Records as text.
+#include <GL/gl.h>
+#include <GL/glext.h>
+#include <gtest/gtest.h>
+
+#include "gl_opcodes.hpp"
+#include "recording/dump/record_text.hpp"
+#include "recording/dump/value_text.hpp"
+#include "tests/recording/recorded.hpp"
+
+namespace mural::recording {
+namespace {
+
+std::string textOf(uint16_t opcode, const std::vector<uint32_t>& arguments) {
+    PacketBuilder packet;
+    packet.record(opcode, arguments);
+    RecordWalk walk(packet.bytes());
+    RecordView r;
+    StreamBlobs blobs;
+    return walk.next(r) ? recordText(r, blobs) : "no record";
+}
+
+TEST(RecordText, namesEnumsByTheirGroup) {
+    EXPECT_EQ(textOf(op::glBegin, {GL_TRIANGLES}), "glBegin(mode=GL_TRIANGLES)");
+    EXPECT_EQ(textOf(op::glBlendFunc, {GL_ONE, GL_ZERO}), "glBlendFunc(sfactor=GL_ONE, dfactor=GL_ZERO)");
+    EXPECT_EQ(textOf(op::glClear, {0x4000 | 0x80000000}), "glClear(mask=GL_COLOR_BUFFER_BIT|0x80000000)");
+    EXPECT_EQ(textOf(op::glBegin, {0xabcdef}), "glBegin(mode=0xabcdef)");
+    EXPECT_EQ(textOf(op::glDepthMask, {1}), "glDepthMask(flag=GL_TRUE)");
+}
+
+TEST(RecordText, showsValuesAndTexts) {
+    EXPECT_EQ(textOf(op::glVertex2f, {0x3f800000, 0xbf000000}), "glVertex2f(x=1, y=-0.5)");
+    EXPECT_EQ(textOf(op::glVertex2fv, {0x3f800000, 0xbf000000}), "glVertex2fv(v=[1, -0.5])");
+    EXPECT_EQ(textOf(op::glDeleteTextures, {2, 8, 5, 6}), "glDeleteTextures(n=2, textures=[5, 6])");
+    EXPECT_EQ(textOf(op::glDeleteTextures, {2, record::kTagNull}), "glDeleteTextures(n=2, textures=NULL)");
+    EXPECT_EQ(textOf(op::glDrawElements, {GL_LINES, 2, GL_UNSIGNED_BYTE, record::kTagOffset, 16, 0}), "glDrawElements(mode=GL_LINES, count=2, type=GL_UNSIGNED_BYTE, indices=offset 16)");
+    EXPECT_EQ(textOf(op::glShaderSource, {3, 1, 8, 4, 0x0a226f76}), "glShaderSource(shader=3, count=1, string=[\"vo\\\"\\n\"])");
+    EXPECT_EQ(textOf(op::glCreateShader, {GL_VERTEX_SHADER, 9}), "glCreateShader(type=GL_VERTEX_SHADER, made=9)");
+    EXPECT_EQ(textOf(wire::kOpSwap, {1, 5}), "Mural.Swap(window=1, frame=5)");
+}
+
+TEST(RecordText, saysWhatIsNone) {
+    EXPECT_EQ(textOf(op::glVertex2f, {0}), "glVertex2f(x=0, y=0), malformed");
+    EXPECT_EQ(textOf(op::glDeleteTextures, {2, 400, 5}), "glDeleteTextures(n=2, textures=NULL), malformed");
+    EXPECT_EQ(textOf(op::glDeleteTextures, {2, record::kTagBlob}), "glDeleteTextures(n=2, textures=NULL), malformed");
+    EXPECT_EQ(textOf(60, {0}), "opcode 60(4 bytes), unknown");
+    EXPECT_EQ(textOf(wire::kOpClientArrays, {1000, 1}), "Mural.ClientArrays(malformed)");
+}
+
+TEST(ValueText, isShortForLongValues) {
+    const std::vector<uint16_t> many(1000, 7);
+    EXPECT_EQ(arrayText(Element::U16, 0, std::as_bytes(std::span(many))), "[7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, … 1000 in all]");
+    EXPECT_EQ(arrayText(Element::Bytes, 0, std::as_bytes(std::span(many))), "<2000 bytes>");
+    const std::string text(200, 'x');
+    EXPECT_EQ(quoted(std::as_bytes(std::span(text))), "\"" + std::string(120, 'x') + "…\" (200 bytes)");
+}
+
+} // namespace
+} // namespace mural::recording

@@ -1,0 +1,21 @@
+// What runs and replays find out before a session starts.
+#pragma once
+
+#include <string>
+
+#include "common/result.hpp"
+#include "tools/mural/run_options.hpp"
+#include "tools/mural/run_session.hpp"
+
+namespace mural::cli {
+
+// Names are guessed by nobody else and fit into an abstract socket's.
+std::string newSessionName();
+
+// What can be said about --out before the first picture; the head opens it.
+Result<void> checkOutput(const std::string& out);
+
+// Which display the program and the wall get; starts a private one where the wall needs it, or the program does.
+Result<void> chooseDisplay(const RunOptions& options, bool programNeedsOne, PreparedRun& run);
+
+} // namespace mural::cli

@@ -1,0 +1,56 @@
+#include "tools/mural/trim_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fmt/format.h>
+
+#include "nodes/launch/program_check.hpp"
+#include "recording/trim/trim.hpp"
+#include "tools/mural/console.hpp"
+#include "tools/mural/frame_range.hpp"
+
+namespace mural::cli {
+
+namespace {
+
+constexpr const char* kFooter = R"(Examples:
+  mural trim app.mural 30-90 -o part.mural       frames 30 to 90
+  mural trim app.mural 47 -o frame.mural         one frame
+  mural replay frame.mural --out shots
+
+Kept of the frames before is all that makes objects or changes state. Draws into windows are left out where a later clear covers
+them before anybody looks; where that is not certain, they are kept, and the reason is said.
+Exit status: 0, 2 for a bad argument, a recording that can't be read, or a file that can't be written.)";
+
+} // namespace
+
+void describeTrim(CLI::App& command, TrimArguments& a) {
+    command.add_option("FILE", a.file, "recording, made by mural run --record")->required();
+    command.add_option("FRAMES", a.frames, "N-M, or N alone, counted from 1")->required();
+    command.add_option("-o,--out", a.out, "the file that is made")->type_name("FILE")->required();
+    command.footer(kFooter);
+}
+
+int trimCommand(const TrimArguments& a) {
+    Console console(false);
+    const auto complain = [&](const std::string& text) {
+        console.error(text);
+        return launch::kExitUsage;
+    };
+    const auto range = frameRangeOf(a.frames);
+    if (!range) return complain("frames \"" + a.frames + "\": must be N or N-M, counted from 1, such as 30-90 (see mural trim --help)");
+    auto reader = recording::FileReader::open(a.file);
+    if (!reader) return complain(reader.error().message);
+    std::error_code none;
+    if (std::filesystem::equivalent(a.file, a.out, none)) return complain("-o " + a.out + " is what is being trimmed; give another file");
+    if (!reader.value()->notice().empty()) console.error(reader.value()->notice());
+    const auto trimmed = recording::trim(**reader, range->first, range->second, a.out);
+    if (!trimmed) return complain(trimmed.error().message);
+    const recording::TrimReport& r = trimmed.value();
+    console.say(fmt::format("{} of {} frames in {}, {}; of the frames before, {} of {} records were left out, {} of {} draws", r.frames, reader.value()->frames(), a.out,
+                            sizeText(static_cast<double>(r.fileBytes)), r.recordsDropped, r.recordsBefore, r.drawsDropped, r.drawsBefore));
+    for (const auto& [client, why] : r.doubts) console.say(fmt::format("all draws of program {} were kept: {}", client, why));
+    return 0;
+}
+
+} // namespace mural::cli
