@@ -176,6 +176,8 @@ TEST(RunOptions, optionsThatMeanNothingTogetherAreRefused) {
     EXPECT_NE(refusal([](RunArguments& a) { a.save = "1"; }).find("--out"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.fullScreen = true; }).find("--display windows"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.native = true; a.out = "x"; }).find("--native"), std::string::npos);
+    EXPECT_EQ(refusal([](RunArguments& a) { a.native = true; a.record = "x"; }), "--record needs captured frames; leave --native out");
+    EXPECT_NE(refusal([](RunArguments& a) { a.record = ""; }).find("--record"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.tiles = "2x2"; a.localNodes = "5"; }).find("5 render nodes for 4 tiles"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.tiles = "4x4"; a.size = "3x100"; }).find("do not fit"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.program.clear(); }).find("no program"), std::string::npos);

@@ -54,6 +54,7 @@ int replayCommand(const RunOptions& options, const std::string& file) {
     auto reader = recording::FileReader::open(file);
     if (!reader) return complain(reader.error());
     if (const auto whole = reader.value()->verify(); !whole) return complain(whole.error());
+    if (reader.value()->frames() == 0) return complain(Error{"recording " + file + " has no frame: its program showed no picture; mural dump prints its calls"});
     if (!reader.value()->notice().empty()) console.error(reader.value()->notice());
     PreparedRun run;
     run.config = options.config;
