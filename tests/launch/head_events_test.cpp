@@ -34,8 +34,7 @@ TEST(HeadEvents, nothingFromOutsideThrows) {
 
 TEST(Report, saysWhatDiffersAndWhoWasLost) {
     const HeadEvent e = event(R"({"event":"report","frames":90,"seconds":1.5,"framesPerSecond":60.0,"bytesPerFrame":12345,"verifiedFrames":90,)"
-                              R"("verifiedPixels":70778880,"differingPixels":3,"largestDifference":2,"squaredDifference":9,"savedPictures":1,"lastPicture":"out/a.png",)"
-                              R"("verifiedPixels":70778880,"differingPixels":3,"largestDifference":2,"savedPictures":1,"lastPicture":"out/a.png","recording":"a.mural","recordedFrames":90,"recordedBytes":1234567,)"
+                              R"("verifiedPixels":70778880,"differingPixels":3,"largestDifference":2,"squaredDifference":9,"savedPictures":1,"lastPicture":"out/a.png","recording":"a.mural","recordedFrames":90,"recordedBytes":1234567,)"
                               R"("callsUnsupported":1,"nodes":[{"node":0,"frames":90},{"node":1,"frames":12,"lost":true}]})");
     EXPECT_EQ(reportLines(e.report), (std::vector<std::string>{
                                          "90 frames in 1.5 s, 60.0 frames/s, 12.3 kB per frame to each node, 0 round trips",

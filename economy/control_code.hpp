@@ -1,0 +1,96 @@
+// The control bytes of a batch: what to do, and how often. docs/economy.md has the grammar.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace mural::economy {
+
+enum class Do : uint8_t {
+    Run = 0,     // n items come as they came before
+    Patch = 1,   // the next item with n spans of changed words
+    NewText = 2, // n words
+    NewPage = 3, // n words; 0: a whole page
+    Skip = 4,    // n items do not come
+    Seek = 5,    // what comes next came n items ago
+    Pages = 6,   // n pages of the store, one after the other, from the slot that follows
+    Other = 7,   // n: which
+};
+
+enum class Other : uint32_t {
+    End = 1,    // of the packet
+    Stream = 2, // the packet is of the stream that follows; without: of the one before
+    Bytes = 3,  // as many as follow, which are no items
+};
+
+// In front of a number: three bits of Do, five of the number; 31: the rest follows in sevens, lowest first.
+class ControlWriter {
+public:
+    void put(Do what, uint32_t n) {
+        const uint32_t low = n < 31 ? n : 31;
+        bytes_.push_back(static_cast<std::byte>(static_cast<uint32_t>(what) << 5 | low));
+        if (low == 31) number(n - 31);
+    }
+    void put(Other what) { put(Do::Other, static_cast<uint32_t>(what)); }
+    void number(uint32_t n) {
+        for (; n >= 128; n >>= 7) bytes_.push_back(static_cast<std::byte>(n | 128));
+        bytes_.push_back(static_cast<std::byte>(n));
+    }
+    // Words left as they are, then words changed (at least one): four bits of each; 15: the rest follows.
+    void span(uint32_t kept, uint32_t changed) {
+        const uint32_t high = kept < 15 ? kept : 15, low = changed - 1 < 15 ? changed - 1 : 15;
+        bytes_.push_back(static_cast<std::byte>(high << 4 | low));
+        if (high == 15) number(kept - 15);
+        if (low == 15) number(changed - 1 - 15);
+    }
+    static uint32_t spanBytes(uint32_t kept, uint32_t changed) { return 1 + (kept >= 15) + (changed >= 16); } // of most
+    [[nodiscard]] std::vector<std::byte>& bytes() { return bytes_; }
+
+private:
+    std::vector<std::byte> bytes_;
+};
+
+// After the end, or a number that is too large, everything is 0 and bad() is true.
+class ControlReader {
+public:
+    explicit ControlReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+    [[nodiscard]] bool atEnd() const { return at_ == bytes_.size(); }
+    [[nodiscard]] bool bad() const { return bad_; }
+    [[nodiscard]] std::span<const std::byte> left() const { return bytes_.subspan(at_); }
+    Do what(uint32_t& n) {
+        const uint32_t b = byte();
+        n = b & 31;
+        if (n == 31) n = plus(31, number());
+        return static_cast<Do>(b >> 5);
+    }
+    uint32_t number() {
+        uint64_t n = 0;
+        for (uint32_t shift = 0; shift < 35; shift += 7) {
+            const uint32_t b = byte();
+            n |= uint64_t{b & 127} << shift;
+            if (b < 128) return n <= UINT32_MAX ? static_cast<uint32_t>(n) : fail();
+        }
+        return fail();
+    }
+    void span(uint32_t& kept, uint32_t& changed) {
+        const uint32_t b = byte();
+        kept = b >> 4, changed = b & 15;
+        if (kept == 15) kept = plus(15, number());
+        if (changed == 15) changed = plus(15, number());
+        changed = plus(1, changed);
+    }
+
+private:
+    uint32_t byte() { return at_ < bytes_.size() ? static_cast<uint32_t>(bytes_[at_++]) : fail(); }
+    uint32_t plus(uint32_t a, uint32_t b) { return b <= UINT32_MAX - a ? a + b : fail(); }
+    uint32_t fail() {
+        bad_ = true;
+        return 0;
+    }
+    std::span<const std::byte> bytes_;
+    size_t at_ = 0;
+    bool bad_ = false;
+};
+
+} // namespace mural::economy

@@ -1,0 +1,61 @@
+// All that both sides remember. Packer and unpacker change it by the same calls in the same order, so a reference is a place
+// in it and needs no name.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "economy/item.hpp"
+#include "economy/item_log.hpp"
+#include "economy/limits.hpp"
+#include "economy/page_store.hpp"
+#include "economy/text_ring.hpp"
+
+namespace mural::economy {
+
+class History {
+public:
+    explicit History(const Limits& limits) : limits_(limits), text_(limits.textBytes), pages_(limits.storeBytes) {}
+
+    [[nodiscard]] bool ready() const { return pages_.ready(); }
+
+    [[nodiscard]] std::span<const std::byte> bytesOf(Item item) const {
+        return item.page ? pages_.bytes(item.where, item.sizeBytes) : text_.at(item.where, item.sizeBytes);
+    }
+    // An item that comes once more, as its stream's log shall have it.
+    [[nodiscard]] Item again(Item item) {
+        if (item.page) pages_.use(item.where);
+        else if (text_.old(item.where)) item.where = text_.add(text_.at(item.where, item.sizeBytes));
+        return item;
+    }
+    [[nodiscard]] Item addText(std::span<const std::byte> bytes) { return {text_.add(bytes), static_cast<uint32_t>(bytes.size()), 0}; }
+    [[nodiscard]] Item addPage(uint32_t slot, std::span<const std::byte> bytes) {
+        pages_.fill(slot, bytes);
+        return {slot, static_cast<uint32_t>(bytes.size()), 1};
+    }
+    [[nodiscard]] PageStore& pages() { return pages_; }
+
+    // The log of a stream. A new one takes the place of the one that was unused for longest.
+    struct Opened {
+        size_t place = 0;
+        bool fresh = false; // nothing is in it
+    };
+    [[nodiscard]] Opened open(uint32_t stream);
+    [[nodiscard]] ItemLog& log(size_t place) { return *streams_[place].log; }
+
+private:
+    struct Stream {
+        uint32_t stream = 0;
+        uint64_t usedAt = 0;
+        std::unique_ptr<ItemLog> log;
+    };
+    const Limits limits_;
+    TextRing text_;
+    PageStore pages_;
+    std::vector<Stream> streams_;
+    uint64_t opened_ = 0;
+};
+
+} // namespace mural::economy

@@ -1,0 +1,31 @@
+#include "economy/page_store.hpp"
+
+#include <cstdlib>
+#include <cstring>
+
+namespace mural::economy {
+
+void PageStore::Free::operator()(std::byte* p) const { std::free(p); }
+
+PageStore::PageStore(uint64_t sizeBytes)
+    : capacity_(static_cast<uint32_t>(sizeBytes / kPageBytes)), bytes_(static_cast<std::byte*>(std::calloc(capacity_, kPageBytes))) {}
+
+uint32_t PageStore::take() {
+    if (sizes_.size() < capacity_) {
+        sizes_.push_back(0);
+        used_.push_back(0);
+        return static_cast<uint32_t>(sizes_.size() - 1);
+    }
+    const auto next = [this](uint32_t slot) { return slot + 1 == capacity_ ? 0 : slot + 1; };
+    for (; used_[hand_]; hand_ = next(hand_)) used_[hand_] = 0;
+    const uint32_t slot = hand_;
+    hand_ = next(hand_);
+    return slot;
+}
+
+void PageStore::fill(uint32_t slot, std::span<const std::byte> page) {
+    std::memmove(bytes_.get() + size_t{slot} * kPageBytes, page.data(), page.size());
+    sizes_[slot] = static_cast<uint16_t>(page.size());
+}
+
+} // namespace mural::economy

@@ -1,0 +1,143 @@
+#include "economy/section_codec.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <lz4.h>
+#include <zstd.h>
+
+namespace mural::economy {
+
+namespace {
+
+constexpr int kZstdLevel = 1;
+constexpr int kZstdWindowLog = 20;  // 1 MiB, per section and side
+constexpr size_t kLz4Window = 65536;
+constexpr size_t kLz4PieceBytes = size_t{1} << 20; // of a section, as LZ4 takes no more than an int
+
+char* chars(std::byte* bytes) { return reinterpret_cast<char*>(bytes); }
+const char* chars(const std::byte* bytes) { return reinterpret_cast<const char*>(bytes); }
+
+void putSize(std::vector<std::byte>& into, uint32_t size) {
+    const auto* p = reinterpret_cast<const std::byte*>(&size);
+    into.insert(into.end(), p, p + sizeof size);
+}
+
+} // namespace
+
+struct SectionCompressor::State {
+    std::unique_ptr<ZSTD_CCtx, size_t (*)(ZSTD_CCtx*)> zstd{nullptr, ZSTD_freeCCtx};
+    std::unique_ptr<LZ4_stream_t, int (*)(LZ4_stream_t*)> lz4{nullptr, LZ4_freeStream};
+    std::vector<std::byte> window; // of LZ4: the bytes before, and behind them the ones in hand
+    size_t windowBytes = 0;
+
+    bool byZstd(std::span<const std::byte> bytes, std::vector<std::byte>& into) {
+        if (!zstd) {
+            zstd.reset(ZSTD_createCCtx());
+            if (!zstd) return false;
+            ZSTD_CCtx_setParameter(zstd.get(), ZSTD_c_compressionLevel, kZstdLevel);
+            ZSTD_CCtx_setParameter(zstd.get(), ZSTD_c_windowLog, kZstdWindowLog);
+            ZSTD_CCtx_setParameter(zstd.get(), ZSTD_c_contentSizeFlag, 0);
+        }
+        ZSTD_inBuffer in{bytes.data(), bytes.size(), 0};
+        size_t left = 1;
+        for (size_t room = ZSTD_compressBound(bytes.size()) + 64; left != 0; room = 1024) {
+            const size_t before = into.size();
+            into.resize(before + room);
+            ZSTD_outBuffer out{into.data() + before, room, 0};
+            left = ZSTD_compressStream2(zstd.get(), &out, &in, ZSTD_e_flush);
+            into.resize(before + out.pos);
+            if (ZSTD_isError(left)) return false;
+        }
+        return true;
+    }
+
+    bool byLz4(std::span<const std::byte> bytes, std::vector<std::byte>& into) {
+        if (!lz4) {
+            lz4.reset(LZ4_createStream());
+            window.resize(kLz4Window + kLz4PieceBytes);
+            if (!lz4) return false;
+        }
+        while (!bytes.empty()) {
+            const auto piece = bytes.first(std::min(bytes.size(), kLz4PieceBytes));
+            bytes = bytes.subspan(piece.size());
+            const int room = LZ4_compressBound(static_cast<int>(piece.size()));
+            putSize(into, 0);
+            const size_t before = into.size();
+            into.resize(before + static_cast<size_t>(room));
+            // Only what follows the window in memory is compressed with all of it.
+            std::byte* const copy = window.data() + windowBytes;
+            std::memcpy(copy, piece.data(), piece.size());
+            const int size = LZ4_compress_fast_continue(lz4.get(), chars(copy), chars(into.data() + before), static_cast<int>(piece.size()), room, 1);
+            if (size <= 0) return false;
+            into.resize(before + static_cast<size_t>(size));
+            std::memcpy(into.data() + before - 4, &size, 4);
+            windowBytes = static_cast<size_t>(LZ4_saveDict(lz4.get(), chars(window.data()), static_cast<int>(kLz4Window)));
+        }
+        return true;
+    }
+};
+
+SectionCompressor::SectionCompressor() : state_(std::make_unique<State>()) {}
+SectionCompressor::~SectionCompressor() = default;
+SectionCompressor::SectionCompressor(SectionCompressor&&) noexcept = default;
+
+bool SectionCompressor::compress(Coding coding, std::span<const std::byte> bytes, std::vector<std::byte>& into) {
+    return coding == Coding::Zstd ? state_->byZstd(bytes, into) : state_->byLz4(bytes, into);
+}
+
+struct SectionDecompressor::State {
+    std::unique_ptr<ZSTD_DCtx, size_t (*)(ZSTD_DCtx*)> zstd{nullptr, ZSTD_freeDCtx};
+    std::vector<std::byte> window; // of LZ4: the last bytes before, at its end
+
+    bool byZstd(std::span<const std::byte> bytes, std::span<std::byte> into) {
+        if (!zstd) {
+            zstd.reset(ZSTD_createDCtx());
+            if (!zstd) return false;
+            ZSTD_DCtx_setParameter(zstd.get(), ZSTD_d_windowLogMax, kZstdWindowLog); // no more memory, whatever comes
+        }
+        ZSTD_inBuffer in{bytes.data(), bytes.size(), 0};
+        ZSTD_outBuffer out{into.data(), into.size(), 0};
+        while (in.pos < in.size || out.pos < out.size) {
+            const size_t inBefore = in.pos, outBefore = out.pos;
+            if (ZSTD_isError(ZSTD_decompressStream(zstd.get(), &out, &in))) return false;
+            if (in.pos == inBefore && out.pos == outBefore) return false; // fewer bytes than it says
+        }
+        std::byte more{};
+        ZSTD_outBuffer behind{&more, 1, 0};
+        return !ZSTD_isError(ZSTD_decompressStream(zstd.get(), &behind, &in)) && behind.pos == 0;
+    }
+
+    bool byLz4(std::span<const std::byte> bytes, std::span<std::byte> into) {
+        while (!into.empty()) {
+            uint32_t size = 0;
+            if (bytes.size() < 4) return false;
+            std::memcpy(&size, bytes.data(), 4);
+            bytes = bytes.subspan(4);
+            const auto piece = into.first(std::min(into.size(), kLz4PieceBytes));
+            if (size > bytes.size()) return false;
+            const int got = LZ4_decompress_safe_usingDict(chars(bytes.data()), chars(piece.data()), static_cast<int>(size), static_cast<int>(piece.size()),
+                                                          chars(window.data()), static_cast<int>(window.size()));
+            if (got < 0 || static_cast<size_t>(got) != piece.size()) return false;
+            remember(piece);
+            bytes = bytes.subspan(size);
+            into = into.subspan(piece.size());
+        }
+        return bytes.empty();
+    }
+    void remember(std::span<const std::byte> piece) {
+        const auto last = piece.last(std::min(piece.size(), kLz4Window));
+        const size_t kept = std::min(window.size(), kLz4Window - last.size());
+        window.erase(window.begin(), window.end() - static_cast<std::ptrdiff_t>(kept));
+        window.insert(window.end(), last.begin(), last.end());
+    }
+};
+
+SectionDecompressor::SectionDecompressor() : state_(std::make_unique<State>()) {}
+SectionDecompressor::~SectionDecompressor() = default;
+SectionDecompressor::SectionDecompressor(SectionDecompressor&&) noexcept = default;
+
+bool SectionDecompressor::decompress(Coding coding, std::span<const std::byte> bytes, std::span<std::byte> into) {
+    return coding == Coding::Zstd ? state_->byZstd(bytes, into) : state_->byLz4(bytes, into);
+}
+
+} // namespace mural::economy

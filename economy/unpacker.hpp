@@ -1,0 +1,57 @@
+// The node's side: batches become the packets again that went in, byte for byte. It trusts nothing that it reads: what no packer
+// writes is an error, and nothing after it can be read. One thread.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "common/result.hpp"
+#include "economy/batch.hpp"
+#include "economy/control_code.hpp"
+#include "economy/history.hpp"
+
+namespace mural::economy {
+
+class Unpacker {
+public:
+    explicit Unpacker(const Limits& limits);
+
+    // False: there was no memory for the store.
+    [[nodiscard]] bool ready() const { return history_.ready(); }
+
+    // A batch, which lives until its last packet is taken.
+    void begin(const SectionBytes& sections);
+    // The next packet of it, which lives until the next call; false: there is none.
+    Result<bool> next(uint32_t& stream, std::span<const std::byte>& packet);
+
+    // For tests of the tests: GL commands of which words have changed come as they were.
+    void loseWords() { loseWords_ = true; }
+
+private:
+    using Problem = const char*; // null: none
+    Problem step(Do what, uint32_t n);
+    Problem run(uint32_t n);
+    Problem patch(uint32_t spans);
+    Problem fresh(uint32_t sizeBytes, bool page);
+    Problem pages(uint32_t n);
+    Problem other(uint32_t n);
+    [[nodiscard]] Item keep(std::span<const std::byte> bytes, bool page);
+    [[nodiscard]] bool take(Section section, size_t sizeBytes, std::span<const std::byte>& into);
+    [[nodiscard]] bool room(size_t sizeBytes);
+    std::span<std::byte> put(std::span<const std::byte> bytes);
+
+    History history_;
+    const std::unique_ptr<std::byte[]> packet_; // as large as packets may be
+    size_t packetBytes_ = 0;
+    SectionBytes sections_;
+    ControlReader control_{{}};
+    uint32_t stream_ = 0;
+    ItemLog* log_ = nullptr; // null: the packet has not begun
+    bool ended_ = false;
+    uint64_t batchBytes_ = 0;
+    bool loseWords_ = false;
+};
+
+} // namespace mural::economy

@@ -1,0 +1,88 @@
+// A packer and an unpacker with what lies between them; and packets to give to them.
+#pragma once
+
+#include <cstring>
+#include <functional>
+#include <gtest/gtest.h>
+#include <random>
+#include <span>
+#include <vector>
+
+#include "economy/batch_codec.hpp"
+#include "economy/packer.hpp"
+#include "economy/unpacker.hpp"
+
+namespace mural::economy::testing {
+
+using Bytes = std::vector<std::byte>;
+
+struct Packet {
+    uint32_t stream = 0x10000;
+    Bytes bytes;
+    bool operator==(const Packet&) const = default;
+};
+
+inline Limits tinyLimits() { return {.storeBytes = 8 * kPageBytes, .textBytes = 4096, .logItems = 64, .streams = 2}; }
+
+class BothSides {
+public:
+    explicit BothSides(const Limits& limits) : packer(limits), unpacker(limits), encoder_([] { return int64_t{0}; }) {}
+
+    // Sends one batch; returns its size on the wire.
+    size_t send(const std::vector<Packet>& packets) {
+        for (const Packet& p : packets) packer.add(p.stream, p.bytes);
+        staged = packer.stagedBytes();
+        auto batch = encoder_.encode(packer.sections(), 8);
+        if (!batch) {
+            ADD_FAILURE() << batch.error().message;
+            return 0;
+        }
+        const Bytes wire(batch->begin(), batch->end());
+        packer.clear();
+        auto sections = decoder_.decode(wire);
+        if (!sections) {
+            ADD_FAILURE() << sections.error().message;
+            return 0;
+        }
+        unpacker.begin(*sections);
+        for (const Packet& sent : packets) {
+            Packet got;
+            std::span<const std::byte> bytes;
+            auto more = unpacker.next(got.stream, bytes);
+            if (!more || !*more) {
+                ADD_FAILURE() << (more ? "a packet is missing" : more.error().message);
+                return 0;
+            }
+            got.bytes.assign(bytes.begin(), bytes.end());
+            EXPECT_TRUE(got == sent);
+        }
+        Packet none;
+        std::span<const std::byte> bytes;
+        auto more = unpacker.next(none.stream, bytes);
+        EXPECT_TRUE(more && !*more) << "more than was sent";
+        return wire.size();
+    }
+    size_t send(Bytes packet) { return send({Packet{0x10000, std::move(packet)}}); }
+
+    Packer packer;
+    Unpacker unpacker;
+    uint64_t staged = 0; // of the last batch
+
+private:
+    BatchEncoder encoder_;
+    BatchDecoder decoder_;
+};
+
+// A record of `words` words, the header one of them; `fill` makes the others.
+inline void addRecord(Bytes& to, uint16_t opcode, uint32_t words, const std::function<uint32_t()>& fill) {
+    const auto add = [&](uint32_t word) {
+        const auto* p = reinterpret_cast<const std::byte*>(&word);
+        to.insert(to.end(), p, p + 4);
+    };
+    const bool isLong = words >= 0xffff;
+    add(opcode | (isLong ? 0xffffu : words) << 16);
+    if (isLong) add(words);
+    for (uint32_t i = isLong ? 2 : 1; i < words; ++i) add(fill());
+}
+
+} // namespace mural::economy::testing

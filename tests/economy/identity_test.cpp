@@ -1,0 +1,99 @@
+// What comes out is what went in: random streams, with histories so small that all of it is overwritten again and again.
+#include "tests/economy/both_sides.hpp"
+
+namespace mural::economy::testing {
+namespace {
+
+// Frames like programs' frames: records of a small set, some changed, moved, left out, some long, some that make no sense.
+class RandomProgram {
+public:
+    explicit RandomProgram(uint32_t seed) : random_(seed) {
+        for (int i = 0; i < 60; ++i) records_.push_back(record());
+    }
+
+    Bytes frame() {
+        for (uint32_t n = below(6); n > 0; --n) change();
+        Bytes bytes;
+        const uint32_t from = below(4) ? 0 : below(records_.size());
+        for (size_t i = from; i < records_.size(); ++i)
+            if (below(40)) bytes.insert(bytes.end(), records_[i].begin(), records_[i].end());
+        if (below(10) == 0) odd(bytes);
+        return bytes;
+    }
+    uint32_t below(size_t n) { return static_cast<uint32_t>(random_() % n); }
+
+private:
+    Bytes record() {
+        Bytes bytes;
+        uint32_t words = 1 + below(8);
+        if (below(12) == 0) words = 1 + below(400);
+        if (below(20) == 0) words = 1 + below(20'000);
+        if (below(200) == 0) words = 0xffff + below(3);
+        const uint32_t kind = below(3), same = static_cast<uint32_t>(random_());
+        addRecord(bytes, static_cast<uint16_t>(64 + below(9)), words, [&] { return kind == 0 ? static_cast<uint32_t>(random_()) : kind == 1 ? same : below(3); });
+        return bytes;
+    }
+    void change() {
+        Bytes& r = records_[below(records_.size())];
+        switch (below(5)) {
+        case 0: r = record(); break;
+        case 1: records_.insert(records_.begin() + below(records_.size()), record()); break;
+        case 2: records_.erase(records_.begin() + below(records_.size())); break;
+        case 3: std::rotate(records_.begin(), records_.begin() + below(records_.size()), records_.end()); break;
+        default:
+            for (uint32_t n = 1 + below(20); n > 0 && r.size() > 8; --n) r[8 + below(r.size() - 8)] = static_cast<std::byte>(below(256));
+        }
+    }
+    void odd(Bytes& bytes) {
+        switch (below(3)) {
+        case 0: bytes.resize(bytes.size() - std::min<size_t>(bytes.size(), below(9))); break;          // cut in a record
+        case 1: bytes.insert(bytes.end(), 1 + below(30), std::byte{0}); break;                         // a record without length
+        default: bytes.insert(bytes.begin(), {std::byte{64}, std::byte{0}, std::byte{0xff}, std::byte{0xff}}); // a length that is none
+        }
+    }
+
+    std::mt19937 random_;
+    std::vector<Bytes> records_;
+};
+
+void compare(const Limits& limits, uint32_t seed, uint32_t streams, int frames) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    BothSides sides(limits);
+    std::vector<RandomProgram> programs;
+    for (uint32_t i = 0; i < streams; ++i) programs.emplace_back(seed * 100 + i);
+    std::mt19937 random(seed);
+    for (int frame = 0; frame < frames && !::testing::Test::HasFailure(); ++frame) {
+        std::vector<Packet> packets;
+        for (uint32_t n = 1 + random() % 3; n > 0; --n) {
+            const auto stream = static_cast<uint32_t>(random() % streams);
+            Bytes bytes = programs[stream].frame();
+            bytes.resize(std::min<size_t>(bytes.size(), 1 << 20));
+            // Anywhere, as publications end where they must: here even within records.
+            const size_t cut = random() % (bytes.size() + 1);
+            packets.push_back({stream, Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(cut))});
+            packets.push_back({stream, Bytes(bytes.begin() + static_cast<std::ptrdiff_t>(cut), bytes.end())});
+        }
+        sides.send(packets);
+    }
+}
+
+TEST(Identity, withRoom) {
+    for (uint32_t seed = 1; seed <= 4; ++seed) compare(Limits{.storeBytes = 64 << 20, .textBytes = 1 << 20, .logItems = 1 << 16, .streams = 8}, seed, 3, 60);
+}
+
+TEST(Identity, withoutRoom) {
+    for (uint32_t seed = 1; seed <= 20; ++seed) compare(tinyLimits(), seed, 1 + seed % 5, 60);
+}
+
+TEST(Identity, logsOfOneItemAndOnePage) {
+    for (uint32_t seed = 1; seed <= 6; ++seed) compare({.storeBytes = kPageBytes, .textBytes = 4096, .logItems = 1, .streams = 1}, seed, 2, 60);
+}
+
+TEST(Identity, emptyPackets) {
+    BothSides sides{tinyLimits()};
+    sides.send(std::vector<Packet>{{0, {}}, {0xffffffff, {}}, {0, {}}});
+    sides.send(std::vector<Packet>{});
+}
+
+} // namespace
+} // namespace mural::economy::testing

@@ -1,0 +1,154 @@
+// What goes over the wire for what programs do from frame to frame.
+#include <utility>
+
+#include "tests/economy/both_sides.hpp"
+
+namespace mural::economy::testing {
+namespace {
+
+// A frame of many small records; `frame` stands in the last, as in Swap.
+Bytes frameOf(uint32_t frame, uint32_t records = 2000) {
+    std::mt19937 random(7);
+    Bytes bytes;
+    for (uint32_t i = 0; i < records; ++i) addRecord(bytes, static_cast<uint16_t>(64 + random() % 200), 1 + random() % 6, [&] { return static_cast<uint32_t>(random()); });
+    addRecord(bytes, 8, 3, [&, window = true]() mutable { return std::exchange(window, false) ? 1 : frame; });
+    return bytes;
+}
+
+Bytes textureOf(const Bytes& pixels) {
+    Bytes bytes;
+    for (size_t at = 0; at < pixels.size(); at += 65536) {
+        const size_t size = std::min<size_t>(65536, pixels.size() - at);
+        size_t word = 0;
+        addRecord(bytes, 2, static_cast<uint32_t>(2 + size / 4), [&] {
+            uint32_t value = static_cast<uint32_t>(size);
+            if (word > 0) std::memcpy(&value, pixels.data() + at + (word - 1) * 4, 4);
+            ++word;
+            return value;
+        });
+    }
+    return bytes;
+}
+
+Bytes noise(size_t size, uint32_t seed) {
+    std::mt19937 random(seed);
+    Bytes bytes(size);
+    for (size_t i = 0; i + 4 <= size; i += 4) {
+        const auto word = static_cast<uint32_t>(random());
+        std::memcpy(bytes.data() + i, &word, 4);
+    }
+    return bytes;
+}
+
+// A frame's bytes as packets of at most a chunk, as programs send them.
+std::vector<Packet> packetsOf(const Bytes& records, size_t pieceBytes = 3 * 65544) {
+    std::vector<Packet> packets;
+    for (size_t at = 0; at < records.size(); at += pieceBytes)
+        packets.push_back({0x10000, Bytes(records.begin() + static_cast<std::ptrdiff_t>(at), records.begin() + static_cast<std::ptrdiff_t>(std::min(records.size(), at + pieceBytes)))});
+    return packets;
+}
+
+TEST(Packer, aFrameEqualToTheLastCostsAFewBytes) {
+    BothSides sides{Limits{}};
+    const size_t first = sides.send(frameOf(1));
+    EXPECT_GT(first, 10'000u);
+    EXPECT_LE(sides.send(frameOf(2)), 24u);
+    for (uint32_t frame = 3; frame < 50; ++frame) EXPECT_LE(sides.send(frameOf(frame)), 16u) << frame;
+}
+
+TEST(Packer, insertedMissingAndMovedRecordsCostWhatTheyAre) {
+    BothSides sides{Limits{}};
+    std::vector<Bytes> records;
+    std::mt19937 random(3);
+    for (int i = 0; i < 1000; ++i) {
+        Bytes record;
+        addRecord(record, static_cast<uint16_t>(64 + i % 17), 6, [&] { return static_cast<uint32_t>(random()); });
+        records.push_back(record);
+    }
+    const auto frame = [&] {
+        Bytes bytes;
+        for (const Bytes& r : records) bytes.insert(bytes.end(), r.begin(), r.end());
+        return bytes;
+    };
+    sides.send(frame());
+    sides.send(frame());
+    Bytes inserted;
+    addRecord(inserted, 64, 6, [&] { return static_cast<uint32_t>(random()); });
+    records.insert(records.begin() + 100, inserted);
+    EXPECT_LE(sides.send(frame()), 60u);
+    records.erase(records.begin() + 500, records.begin() + 503);
+    EXPECT_LE(sides.send(frame()), 30u);
+    std::rotate(records.begin() + 200, records.begin() + 300, records.begin() + 800);
+    EXPECT_LE(sides.send(frame()), 40u);
+}
+
+TEST(Packer, changedWordsGoAlone) {
+    BothSides sides{Limits{}};
+    const auto frame = [](uint32_t moved) {
+        Bytes bytes;
+        for (uint32_t object = 0; object < 100; ++object) addRecord(bytes, 99, 18, [&, i = 0u]() mutable { return ++i == 13 ? moved * object : object + i; });
+        return bytes;
+    };
+    sides.send(frame(1));
+    sides.send(frame(2));
+    EXPECT_EQ(sides.packer.counts().patches, 99u); // that of object 0 has not changed
+    EXPECT_LE(sides.staged, 99u * 6 + 12);
+}
+
+TEST(Packer, aTextureThatComesAgainCostsNothing) {
+    BothSides sides{Limits{}};
+    const auto packets = packetsOf(textureOf(noise(8 << 20, 5)));
+    EXPECT_GT(sides.send(packets), size_t{8} << 20);
+    sides.send(packets);
+    EXPECT_LE(sides.send(packets), 150u);
+}
+
+TEST(Packer, aPatchOfATextureCostsAboutThePatch) {
+    BothSides sides{Limits{}};
+    Bytes pixels = noise(8 << 20, 5); // 2048 × 1024
+    sides.send(packetsOf(textureOf(pixels)));
+    for (uint32_t frame = 0; frame < 4; ++frame) {
+        const Bytes patch = noise(size_t{64} * 256, 100 + frame);
+        for (size_t row = 0; row < 64; ++row) std::copy_n(patch.begin() + static_cast<std::ptrdiff_t>(row * 256), 256, pixels.begin() + static_cast<std::ptrdiff_t>((row + 10 * frame) * 8192 + 1024));
+        EXPECT_LE(sides.send(packetsOf(textureOf(pixels))), frame == 0 ? 22'000u : 17'500u) << frame;
+    }
+    EXPECT_LE(sides.send(packetsOf(textureOf(pixels))), 150u);
+}
+
+TEST(Packer, pagesThatAnotherStreamHasSentAreReferences) {
+    BothSides sides{Limits{}};
+    const Bytes texture = textureOf(noise(1 << 20, 9));
+    for (const Packet& p : packetsOf(texture)) sides.send({p});
+    size_t sum = 0;
+    for (Packet p : packetsOf(texture)) {
+        p.stream = 0x20003;
+        sum += sides.send({p});
+    }
+    EXPECT_LE(sum, 400u);
+}
+
+// Flat colours are many equal pages: they must not cost a reference each.
+TEST(Packer, equalPagesAreRunsToo) {
+    BothSides sides{Limits{}};
+    Bytes pixels(4 << 20, std::byte{7});
+    std::fill(pixels.begin() + (1 << 20), pixels.begin() + (1 << 20) + 9000, std::byte{9});
+    const auto packets = packetsOf(textureOf(pixels));
+    EXPECT_LE(sides.send(packets), 2000u);
+    sides.send(packets);
+    EXPECT_LE(sides.send(packets), 100u);
+}
+
+TEST(Packer, whatIsUsedStaysWhenTheStoreIsFull) {
+    Limits limits;
+    limits.storeBytes = 4 << 20;
+    BothSides sides{limits};
+    const auto kept = packetsOf(textureOf(noise(1 << 20, 1)));
+    sides.send(kept);
+    for (uint32_t i = 0; i < 20; ++i) { // 20 MiB pass by
+        sides.send(packetsOf(textureOf(noise(1 << 20, 50 + i))));
+        EXPECT_LE(sides.send(kept), 400u) << i;
+    }
+}
+
+} // namespace
+} // namespace mural::economy::testing

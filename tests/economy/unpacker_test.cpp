@@ -1,0 +1,63 @@
+// What no packer writes.
+#include "tests/economy/both_sides.hpp"
+
+namespace mural::economy::testing {
+namespace {
+
+std::string problemOf(Unpacker& unpacker, const std::function<void(ControlWriter&)>& write, size_t literalBytes = 0) {
+    ControlWriter control;
+    write(control);
+    const Bytes literals(literalBytes);
+    unpacker.begin({control.bytes(), literals, literals, literals});
+    for (int packets = 0; packets < 1000; ++packets) {
+        uint32_t stream = 0;
+        std::span<const std::byte> bytes;
+        auto more = unpacker.next(stream, bytes);
+        if (!more) return more.error().message;
+        if (!*more) return "";
+    }
+    return "endless";
+}
+
+std::string problemOf(const std::function<void(ControlWriter&)>& write, size_t literalBytes = 0) {
+    Unpacker unpacker(tinyLimits());
+    return problemOf(unpacker, write, literalBytes);
+}
+
+TEST(Unpacker, tellsWhatIsWrong) {
+    const auto has = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos && text.find("; head and nodes must be") != std::string::npos; };
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::Run, 1); }), "an item that is not remembered"));
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::Patch, 1); }), "a change of an item that is not remembered"));
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::NewText, 2); }, 4), "fewer bytes than it names"));
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::NewText, 0); }), "impossible size"));
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::NewText, 257); }, 2000), "impossible size"));
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::NewPage, 1024); }, 5000), "impossible size"));
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::Seek, 1); }), "before the first"));
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::Pages, 1), c.number(0); }), "not in the store"));
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::Pages, 2), c.number(UINT32_MAX); }), "not in the store"));
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::Other, 9); }), "unknown"));
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Other::Stream); }), "in the middle"));
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::NewText, 1), c.put(Other::Stream), c.number(1); }, 4), "another stream"));
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::NewText, 2), c.put(Do::Skip, 1), c.put(Do::Patch, 1), c.span(2, 1); }, 8), "not remembered"));
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::NewText, 2), c.put(Do::Patch, 1), c.span(0, 2), c.put(Do::Patch, 1), c.span(0, 2); }, 8), "fewer words"));
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::NewText, 2), c.put(Do::Seek, 1), c.put(Do::Patch, 1), c.span(UINT32_MAX, 1); }, 8), "behind the end"));
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::NewText, 2), c.put(Do::Seek, 1), c.put(Do::Patch, 9), c.span(0, 1), c.span(1, 1); }, 8), "behind the end"));
+    EXPECT_EQ(problemOf([](ControlWriter& c) { c.put(Do::NewText, 2), c.put(Do::Seek, 1), c.put(Do::Patch, 1), c.span(1, 1), c.put(Other::End); }, 8), "");
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::NewText, 2); }, 8), "in the middle of a packet"));
+}
+
+// A few bytes must not make a node write for ever, or into more memory than a packet has.
+TEST(Unpacker, packetsAndBatchesHaveAnEnd) {
+    EXPECT_NE(problemOf([](ControlWriter& c) { c.put(Do::NewText, 256), c.put(Do::Seek, 1), c.put(Do::Run, UINT32_MAX); }, 1024).find("too large"), std::string::npos);
+    EXPECT_NE(problemOf([](ControlWriter& c) { c.put(Other::Bytes), c.number(UINT32_MAX); }, 1024).find("too large"), std::string::npos);
+    Limits limits = tinyLimits();
+    Unpacker unpacker(limits);
+    const auto many = [](ControlWriter& c) {
+        c.put(Do::NewText, 256);
+        for (int i = 0; i < 100; ++i) c.put(Do::Seek, 1), c.put(Do::Run, 1000), c.put(Other::End);
+    };
+    EXPECT_NE(problemOf(unpacker, many, 1024).find("too large"), std::string::npos);
+}
+
+} // namespace
+} // namespace mural::economy::testing
