@@ -14,7 +14,7 @@
 namespace mural::wire {
 
 constexpr uint32_t kMagic = 0x4d52534d; // "MSRM"
-constexpr uint32_t kVersion = 3;
+constexpr uint32_t kVersion = 4;
 
 // Which capture stream a packet belongs to: client (app process) and thread of it.
 // streamOf(0, 0) is the head's own stream: its payload is one HeadCommand.
@@ -26,6 +26,9 @@ struct PacketHeader {
     uint32_t stream;
 };
 constexpr uint32_t kMaxPacketBytes = 1u << 20;
+// Packets of this stream hold batches of other packets, in which what the node had before is not repeated (economy/).
+constexpr uint32_t kBatchStream = streamOf(0, 1);
+constexpr uint32_t kMaxBatchPacketBytes = 4u << 20;
 
 // First word of a packet of the head's own stream.
 enum class HeadCommand : uint32_t {

@@ -9,6 +9,7 @@ namespace mural {
 namespace {
 
 constexpr int64_t kPumpSliceNs = 50 * kNsPerMs;      // between two looks whether the program lives
+constexpr int64_t kValuePatienceNs = 20 * kNsPerMs;  // for the rest of a value, without which nodes can do nothing
 constexpr size_t kFlushBytes = size_t{64} * 1024;    // nodes begin with what they have by then
 constexpr size_t kMaxQueuedBytes = size_t{1} << 31;  // answers that the program asked for but does not take
 
@@ -85,7 +86,7 @@ void CaptureClient::pump() {
             arrived_ = true;
             continue;
         }
-        flushNodes();
+        flushNodes(!arrived_ && monotonicNowNs() - arrivedNs_ >= kValuePatienceNs);
         if (stop_ || gone) break; // gone: and nothing has come since that was seen
         gone = programGone();
         if (!gone) waitForMore();
@@ -98,7 +99,10 @@ void CaptureClient::pump() {
 
 void CaptureClient::waitForMore() {
     const int64_t nowNs = monotonicNowNs();
-    if (arrived_) pace_.arrived(nowNs);
+    if (arrived_) {
+        pace_.arrived(nowNs);
+        arrivedNs_ = nowNs;
+    }
     arrived_ = false;
     const bool soon = pace_.moreSoon(nowNs);
     memory_->waitPublished(soon ? capture::Reader::Naps : capture::Reader::Sleeps, soon ? capture::kNapNs : kPumpSliceNs);
@@ -130,14 +134,15 @@ bool CaptureClient::pumpNext(CaptureMemory::Range& range) {
         drop("it gave back more chunks than it took; was its shared memory overwritten?");
         return false;
     }
-    if (unflushedBytes_ >= kFlushBytes) flushNodes();
+    if (unflushedBytes_ >= kFlushBytes) flushNodes(false);
     return true;
 }
 
-void CaptureClient::flushNodes() {
+// Not all: a value whose rest is on its way may stay until more comes, or nothing does.
+void CaptureClient::flushNodes(bool all) {
     if (unflushedBytes_ == 0) return;
-    unflushedBytes_ = 0;
-    nodes_.flush();
+    if (all) nodes_.flush();
+    if (all || nodes_.flushUseful()) unflushedBytes_ = 0;
 }
 
 bool CaptureClient::drained() const {

@@ -66,7 +66,7 @@ private:
     bool pumpNext(CaptureMemory::Range& range); // false: nothing there, or a corrupt ring
     [[nodiscard]] bool drained() const;
     [[nodiscard]] bool programGone() const;
-    void flushNodes();
+    void flushNodes(bool all = true);
     void drop(const std::string& problem);
 
     void writeReplies();
@@ -82,8 +82,9 @@ private:
     FileDescriptor socket_;
     std::thread pumpThread_;
     std::thread replyThread_;
-    size_t unflushedBytes_ = 0; // the pump's, as the next two
+    size_t unflushedBytes_ = 0; // the pump's, as the next three
     bool arrived_ = false;      // something since it last waited
+    int64_t arrivedNs_ = 0;     // when it last waited after something
     ArrivalPace pace_;
     std::atomic<bool> stop_{false};
     std::atomic<bool> draining_{false};

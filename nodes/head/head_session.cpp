@@ -5,6 +5,7 @@
 #include <poll.h>
 #include <thread>
 
+#include "nodes/head/economy_plan.hpp"
 #include "nodes/placement/placement.hpp"
 #include "nodes/session/session_secret.hpp"
 
@@ -124,6 +125,7 @@ Result<void> HeadSession::bringUp() {
     placement_ = placeOwnThreads(); // before its threads start: they inherit it
     nodes_.startReading();
     openMulticast();
+    if (auto opened = openEconomy(); !opened) return opened;
     if (std::ranges::any_of(plan_.nodes, [](const NodePlan& n) { return n.pass.ranges > 1; })) {
         const auto secret = makeSessionSecret();
         if (!secret) return secret.error();
@@ -136,6 +138,8 @@ Result<void> HeadSession::bringUp() {
             setup.stream = nodes_.multicast()->invitation();
             setup.streamSecret = toHex(nodes_.multicast()->secret());
         }
+        setup.economy = nodes_.link(plan.node).inBatches();
+        setup.storeBytes = config_.storeBytes;
         nodes_.sendSetup(plan.node, toJson(setup));
     }
     if (auto ready = awaitReady(); !ready) return ready;
@@ -166,6 +170,19 @@ void HeadSession::openMulticast() {
     streamLine_ = "the stream goes to " + std::to_string(nodes.size()) + " nodes at once, by reliable multicast: " + (*multicast)->describe();
     nodes_.multicastBy(std::move(*multicast));
     for (const int node : nodes) nodes_.link(node).setByMulticast(true);
+}
+
+Result<void> HeadSession::openEconomy() {
+    const EconomyPlan plan = planEconomy(config_, plan_, [this](int node) { return nodes_.link(node).byMulticast(); });
+    economyLine_ = plan.explain;
+    if (plan.nodes.empty()) return {};
+    economy::Limits limits;
+    limits.storeBytes = static_cast<uint64_t>(config_.storeBytes);
+    auto economy = StreamEconomy::open(limits);
+    if (!economy) return economy.error();
+    nodes_.economizeBy(std::move(*economy));
+    for (const int node : plan.nodes) nodes_.link(node).setInBatches(true);
+    return {};
 }
 
 // Nodes that draw ranges of one picture learn where it is put together.
@@ -259,6 +276,7 @@ std::vector<std::string> HeadSession::explainLines() {
     std::vector<std::string> lines = plan_.explain;
     lines.push_back(explainTiling(config_.tiling));
     if (!streamLine_.empty()) lines.push_back(streamLine_);
+    lines.push_back(economyLine_);
     lines.push_back("threads of the head: " + placement_);
     const std::lock_guard lock(mutex_);
     for (const NodePlan& plan : plan_.nodes) {
@@ -578,6 +596,7 @@ SessionStatus HeadSession::status() {
     result.rows = config_.rows;
     result.display = nameOf(config_.display);
     result.wallFrames = frames_.totals().wallFrames;
+    result.economy = nodes_.economyCounts();
     result.programs = programs_->status();
     for (ProgramStatus& program : result.programs) {
         program.progress = frames_.progressOf(program.id);
@@ -598,6 +617,7 @@ SessionNumbers HeadSession::numbers() {
     SessionNumbers result;
     result.frames = frames_.totals();
     result.bytesSent = nodes_.bytesSent();
+    result.economy = nodes_.economyCounts();
     result.programs = programs_->counts();
     if (output_) result.output = output_->totals();
     result.drawnWhole = drawnWhole_;

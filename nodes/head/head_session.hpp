@@ -77,6 +77,7 @@ private:
 
     Result<void> bringUp();
     void openMulticast();
+    Result<void> openEconomy();
     void introduceNodes();
     Result<void> awaitReady();
     void openTables();
@@ -113,6 +114,7 @@ private:
     const int nodeCount_;
     const bool sendsPictures_;
     std::string placement_; // of the head's threads
+    std::string economyLine_; // which nodes are spared what they have had, for --explain
     std::string streamLine_; // how the stream travels, for --explain; empty: in this machine's memory
 
     // In the order of construction; the nodes' readers use all of it and are ended before.

@@ -60,6 +60,9 @@ public:
     // Its packets come another way (NodeMulticast), all but its setup.
     void setByMulticast(bool by) { byMulticast_ = by; }
     [[nodiscard]] bool byMulticast() const { return byMulticast_; }
+    // Its packets come in batches; before the first.
+    void setInBatches(bool in) { inBatches_ = in; }
+    [[nodiscard]] bool inBatches() const { return inBatches_; }
 
     // Ends the connection; the reader thread then reports the first reason given.
     void lose(const std::string& why);
@@ -104,6 +107,7 @@ private:
     std::atomic<bool> alive_{true};
     std::atomic<bool> saidBye_{false};
     std::atomic<bool> byMulticast_{false};
+    bool inBatches_ = false;
     std::atomic<bool> readerEnded_{false};
     int64_t watchedNs_ = 0; // the last watch()
     int64_t excusedNs_ = 0; // silence before does not count

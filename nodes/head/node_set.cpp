@@ -48,18 +48,46 @@ bool NodeSet::broadcast(wire::HeadCommand command, Deadline deadline) {
 }
 
 bool NodeSet::sendLocked(uint32_t stream, std::span<const std::byte> payload) {
+    const bool plain = sendPacketLocked(stream, payload, false);
+    if (!economy_) return plain;
+    const bool batched = std::ranges::any_of(links_, [](const auto& link) { return link->inBatches() && link->alive(); });
+    if (!batched) return plain;
+    economy_->add(stream, payload);
+    if (economy_->full()) {
+        sendBatchLocked();
+        flushLinksLocked();
+    }
+    return true;
+}
+
+// To the links that get batches, or to the others.
+bool NodeSet::sendPacketLocked(uint32_t stream, std::span<const std::byte> payload, bool inBatches) {
     const wire::PacketHeader header{static_cast<uint32_t>(payload.size()), stream};
     bool any = false;
     bool byMulticast = false;
     for (auto& link : links_) {
+        if (link->inBatches() != inBatches) continue;
         if (link->byMulticast()) byMulticast = byMulticast || link->alive();
         else sendTo(*link, bytesOf(header), payload);
         any = any || link->alive();
     }
     if (byMulticast) multicastLocked(bytesOf(header), payload);
     sendingTo_ = kNobody;
-    bytesSent_.fetch_add(sizeof(header) + payload.size(), std::memory_order_relaxed);
+    if (inBatches || !economy_) bytesSent_.fetch_add(sizeof(header) + payload.size(), std::memory_order_relaxed);
     return any;
+}
+
+void NodeSet::sendBatchLocked() {
+    if (!economy_ || economy_->empty()) return;
+    auto batch = economy_->take();
+    if (!batch) {
+        for (auto& link : links_)
+            if (link->inBatches()) link->lose(batch.error().message);
+        return;
+    }
+    const int64_t beganNs = monotonicNowNs();
+    sendPacketLocked(wire::kBatchStream, batch.value(), true);
+    economy_->wrote(batch->size(), monotonicNowNs() - beganNs);
 }
 
 void NodeSet::sendTo(NodeLink& link, std::span<const std::byte> header, std::span<const std::byte> payload) {
@@ -85,6 +113,11 @@ void NodeSet::multicastLocked(std::span<const std::byte> header, std::span<const
 }
 
 void NodeSet::flushLocked() {
+    sendBatchLocked();
+    flushLinksLocked();
+}
+
+void NodeSet::flushLinksLocked() {
     for (auto& link : links_)
         if (!link->byMulticast()) link->flush();
     if (multicast_) multicast_->flush();
@@ -102,6 +135,14 @@ void NodeSet::sendSetup(int node, const std::string& json) {
 void NodeSet::flush() {
     const std::lock_guard lock(sendMutex_);
     flushLocked();
+}
+
+bool NodeSet::flushUseful() {
+    const std::lock_guard lock(sendMutex_);
+    const bool stays = economy_ && !economy_->empty() && economy_->inValue();
+    if (stays) flushLinksLocked();
+    else flushLocked();
+    return !stays;
 }
 
 int NodeSet::livingCount() const {

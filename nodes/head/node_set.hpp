@@ -12,6 +12,7 @@
 
 #include "nodes/head/node_link.hpp"
 #include "nodes/head/node_multicast.hpp"
+#include "nodes/head/stream_economy.hpp"
 #include "recording/stream_recorder.hpp"
 
 namespace mural {
@@ -24,6 +25,9 @@ public:
     [[nodiscard]] NodeMulticast* multicast() { return multicast_.get(); }
     // Gets all packets of programs, in the order in which the nodes do; outlives their senders. Before the first broadcast.
     void recordBy(recording::StreamRecorder* recorder) { recorder_ = recorder; }
+    // Makes the batches for the links that get such; before the first broadcast.
+    void economizeBy(std::unique_ptr<StreamEconomy> economy) { economy_ = std::move(economy); }
+    [[nodiscard]] EconomyCounts economyCounts() const { return economy_ ? economy_->counts() : EconomyCounts(); }
     void startReading();
 
     // False when no node lives. Blocks while a node's connection is full.
@@ -33,6 +37,8 @@ public:
     bool broadcast(wire::HeadCommand command, Deadline deadline);
     void sendSetup(int node, const std::string& json);
     void flush();
+    // The same, but what nodes can do nothing with yet may stay for a moment. True: nothing has stayed.
+    bool flushUseful();
 
     [[nodiscard]] size_t size() const { return links_.size(); }
     [[nodiscard]] int livingCount() const;
@@ -47,7 +53,7 @@ public:
     // The nodes that packets can't go to now: their connections are full. Empty: none is being waited for.
     [[nodiscard]] std::vector<int> full() const;
 
-    // Bytes that each node was sent, packet headers included.
+    // Bytes that each node was sent, packet headers included; where some get batches, each of those.
     [[nodiscard]] uint64_t bytesSent() const { return bytesSent_.load(std::memory_order_relaxed); }
 
 private:
@@ -56,8 +62,12 @@ private:
     void multicastLocked(std::span<const std::byte> header, std::span<const std::byte> payload);
     void sendTo(NodeLink& link, std::span<const std::byte> header, std::span<const std::byte> payload);
     void flushLocked();
+    void flushLinksLocked();
+    void sendBatchLocked();
+    bool sendPacketLocked(uint32_t stream, std::span<const std::byte> payload, bool inBatches);
 
     recording::StreamRecorder* recorder_ = nullptr; // null: nothing is recorded
+    std::unique_ptr<StreamEconomy> economy_;   // null: all packets go as they are
     std::unique_ptr<NodeMulticast> multicast_; // null: every node has a stream of its own
     std::vector<std::unique_ptr<NodeLink>> links_;
     std::timed_mutex sendMutex_;

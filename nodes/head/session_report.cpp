@@ -44,6 +44,13 @@ Json waitSecondsOf(const CaptureCounts& counts) {
     return seconds;
 }
 
+Json economyJson(const EconomyCounts& c) {
+    if (!c.on) return nullptr;
+    return {{"records", c.packer.records},       {"rawBytes", c.packer.rawBytes}, {"stagedBytes", c.packer.stagedBytes},
+            {"wireBytes", c.wireBytes},          {"storeHits", c.packer.storeHits}, {"newPages", c.packer.newPages},
+            {"patches", c.packer.patches},       {"encodeSeconds", secondsOf(static_cast<int64_t>(c.encodeNs))}};
+}
+
 Json reportOf(const SessionNumbers& n) {
     const double seconds = secondsOf(n.frames.latestNs - n.frames.firstNs);
     const int64_t frames = n.frames.wallFrames;
@@ -67,6 +74,7 @@ Json reportOf(const SessionNumbers& n) {
         // Between the first and the last frame lie frames - 1 intervals.
         {"framesPerSecond", seconds > 0 ? static_cast<double>(frames - 1) / seconds : 0.0},
         {"bytesPerFrame", frames > 0 ? n.bytesSent / static_cast<uint64_t>(frames) : 0},
+        {"economy", economyJson(n.economy)},
         {"calls", calls},
         {"roundTrips", n.programs.roundTrips},
         {"roundTripsBy", n.programs.tripsBy},

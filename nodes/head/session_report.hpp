@@ -9,6 +9,7 @@
 #include "nodes/head/capture_memory.hpp"
 #include "nodes/head/frame_tracker.hpp"
 #include "nodes/head/picture_output.hpp"
+#include "nodes/head/stream_economy.hpp"
 #include "recording/file_writer.hpp"
 
 namespace mural {
@@ -30,6 +31,7 @@ void readBye(const std::string& json, NodeTotals& totals);
 struct SessionNumbers {
     FrameTotals frames;
     uint64_t bytesSent = 0; // to each node
+    EconomyCounts economy;
     CaptureCounts programs;
     OutputTotals output;
     std::string lastPicture; // path
@@ -38,6 +40,9 @@ struct SessionNumbers {
     bool drawnWhole = false; // see HeadSession::sayDrawnWhole
     std::vector<NodeTotals> nodes;
 };
+
+// {"records": …, "rawBytes": …}; null: it is off.
+nlohmann::json economyJson(const EconomyCounts& counts);
 
 nlohmann::json reportOf(const SessionNumbers& numbers);
 

@@ -63,16 +63,60 @@ Result<void> HeadLine::follow(const std::string& stream, const std::string& secr
     return {};
 }
 
+Result<void> HeadLine::unpackBatches(uint64_t storeBytes, const std::string& plant) {
+    economy::Limits limits;
+    limits.storeBytes = storeBytes;
+    unpacker_ = std::make_unique<economy::Unpacker>(limits);
+    if (!unpacker_->ready()) return Error{"no memory for a store of " + std::to_string(storeBytes >> 20) + " MiB; give a smaller one by --store"};
+    if (plant == "economy") unpacker_->loseWords();
+    return {};
+}
+
 Result<wire::PacketHeader> HeadLine::next(std::span<const std::byte>& payload) {
+    wire::PacketHeader header{};
+    while (true) {
+        auto more = nextOfBatch(header, payload);
+        if (more && more.value()) return header;
+        if (more) {
+            auto read = this->read();
+            if (!read) return read.error();
+            payload = payload_;
+            if (read->stream != wire::kBatchStream) return read;
+            if (const auto opened = openBatch(); !opened) more = opened.error();
+        }
+        if (more) continue;
+        sendText(wire::NodeMessage::Log, more.error().message);
+        return more.error();
+    }
+}
+
+Result<bool> HeadLine::nextOfBatch(wire::PacketHeader& header, std::span<const std::byte>& payload) {
+    if (!inBatch_) return false;
+    auto more = unpacker_->next(header.stream, payload);
+    inBatch_ = more && more.value();
+    header.sizeBytes = static_cast<uint32_t>(payload.size());
+    return more;
+}
+
+Result<void> HeadLine::openBatch() {
+    if (!unpacker_) return Error{"the head sent a batch, but did not say before that it would; head and nodes must be of one build"};
+    const auto sections = batchDecoder_.decode(payload_);
+    if (!sections) return sections.error();
+    unpacker_->begin(sections.value());
+    inBatch_ = true;
+    return {};
+}
+
+Result<wire::PacketHeader> HeadLine::read() {
     Connection& stream = stream_ ? *stream_ : *connection_;
     wire::PacketHeader header{};
     const auto got = stream.read(std::as_writable_bytes(std::span(&header, 1)), Deadline::never());
     if (!got) return got.error();
-    if (header.sizeBytes > wire::kMaxPacketBytes) return Error{"the head sent a packet of " + std::to_string(header.sizeBytes) + " bytes: it is of another build"};
+    const uint32_t most = header.stream == wire::kBatchStream ? wire::kMaxBatchPacketBytes : wire::kMaxPacketBytes;
+    if (header.sizeBytes > most) return Error{"the head sent a packet of " + std::to_string(header.sizeBytes) + " bytes: it is of another build"};
     payload_.resize(header.sizeBytes);
     const auto rest = stream.read(payload_, Deadline::inMs(kSendMs));
     if (!rest) return rest.error();
-    payload = payload_;
     return header;
 }
 

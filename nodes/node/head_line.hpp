@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "economy/batch_codec.hpp"
+#include "economy/unpacker.hpp"
 #include "nodes/node/node.hpp"
 #include "streamcodec/wire.hpp"
 #include "transport/connection.hpp"
@@ -21,7 +23,11 @@ public:
     // From now on packets come by this multicast group (rsp://…), no longer by the connection.
     Result<void> follow(const std::string& stream, const std::string& secretHex, const std::string& name);
 
-    // The next packet; its payload lives until the next call. Error: the head is gone.
+    // From now on packets may come in batches. Error: no memory. `plant`: a fault for tests to find, or nothing.
+    Result<void> unpackBatches(uint64_t storeBytes, const std::string& plant);
+
+    // The next packet; its payload lives until the next call. Error: the head is gone, or sends what makes no
+    // sense, which it has been told.
     Result<wire::PacketHeader> next(std::span<const std::byte>& payload);
 
     // One message of up to three parts, sent at once, from any thread. Errors end the node: `broken()`.
@@ -41,7 +47,14 @@ private:
     const std::unique_ptr<Connection> connection_;
     std::string headHost_; // empty: shared memory
     std::unique_ptr<Connection> stream_; // null: packets come by connection_
+    Result<wire::PacketHeader> read();
+    Result<bool> nextOfBatch(wire::PacketHeader& header, std::span<const std::byte>& payload);
+    Result<void> openBatch();
+
     std::vector<std::byte> payload_;
+    economy::BatchDecoder batchDecoder_;
+    std::unique_ptr<economy::Unpacker> unpacker_; // null: no batches come
+    bool inBatch_ = false;
     std::mutex sending_;
     std::atomic<bool> broken_{false};
 };

@@ -123,6 +123,11 @@ private:
             const auto followed = line_->follow(setup_.stream, setup_.streamSecret, name_);
             if (!followed) ready["ownStream"] = followed.error().message;
         }
+        const char* const plant = std::getenv("MURAL_PLANT");
+        if (setup_.economy) {
+            const auto unpacks = line_->unpackBatches(static_cast<uint64_t>(setup_.storeBytes), plant ? plant : "");
+            if (!unpacks) return fail(unpacks.error().message);
+        }
         if (setup_.pass.ranges > 1) {
             if (auto opened = openExchange(ready); !opened) return fail(opened.error().message);
         }
@@ -143,7 +148,7 @@ private:
         config.screen = setup_.screen;
         config.eyeBase = setup_.eyeBase;
         config.focusDistance = setup_.focusDistance;
-        if (const char* plant = std::getenv("MURAL_PLANT")) config.plant = plant;
+        if (plant) config.plant = plant;
         ReplayOutputs outputs;
         outputs.answer = [this](const wire::AnswerHeader& h, std::span<const std::byte> bytes) {
             line_->send(wire::NodeMessage::Answer, std::as_bytes(std::span(&h, 1)), bytes);

@@ -29,6 +29,9 @@ template <> struct EnumNames<CapturePolicy> {
 template <> struct EnumNames<Frusta> {
     static constexpr std::pair<Frusta, const char*> kAll[] = {{Frusta::Auto, "auto"}, {Frusta::Program, "program"}, {Frusta::Room, "room"}};
 };
+template <> struct EnumNames<Economy> {
+    static constexpr std::pair<Economy, const char*> kAll[] = {{Economy::Auto, "auto"}, {Economy::On, "on"}, {Economy::Off, "off"}};
+};
 template <> struct EnumNames<Eye> {
     static constexpr std::pair<Eye, const char*> kAll[] = {{Eye::Cyclop, "cyclop"}, {Eye::Left, "left"}, {Eye::Right, "right"}};
 };
@@ -48,6 +51,8 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("hosts", c.hosts);
     visit("launchCommand", c.launchCommand);
     visit("stream", c.stream);
+    visit("economy", c.economy);
+    visit("storeBytes", c.storeBytes, 1 << 20);
     visit("remoteMural", c.remoteMural);
     visit("configFile", c.configFile);
     visit("here", c.here);
@@ -130,6 +135,8 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("displayName", s.displayName);
     visit("stream", s.stream);
     visit("streamSecret", s.streamSecret);
+    visit("economy", s.economy);
+    visit("storeBytes", s.storeBytes, 1 << 20);
     visit("collector", s.collector, 0);
     visit("composition", s.composition);
     visit("exchangeSecret", s.exchangeSecret);

@@ -23,6 +23,7 @@ enum class Frusta {
     Program, // all screens as one flat picture, the program's
     Room     // each screen from the observer's eyes
 };
+enum class Economy { Auto, On, Off };
 
 struct SessionConfig {
     std::string session;          // abstract Unix socket name that programs connect to
@@ -32,6 +33,8 @@ struct SessionConfig {
     std::vector<std::string> hosts; // --nodes
     std::string launchCommand = "ssh -o BatchMode=yes"; // --launch: prefix that runs a command on a host
     std::string stream = "auto";  // --stream: how it travels to other machines: auto, tcp, rsp://…
+    Economy economy = Economy::Auto; // --economy: which nodes are not sent again what they have had
+    int64_t storeBytes = int64_t{1} << 30; // --store: of that, in each of them and in the head
     std::string remoteMural;      // --remote-mural: path of mural on the hosts; empty: this one's path
     std::string configFile;       // --config; empty: what follows says it
     bool here = false;            // --here: all its nodes on this machine
@@ -90,6 +93,8 @@ struct NodeSetup {
     std::string displayName;
     std::string stream;           // rsp://…: the group to join; its packets come there. Empty: on this connection
     std::string streamSecret;     // of that group, in hex
+    bool economy = false;         // packets come in batches (wire::kBatchStream)
+    int64_t storeBytes = int64_t{1} << 30;
     int collector = 0;            // the node that has the picture that this one draws a range of; ranges follow it, one node each
     std::string composition = "serial"; // compositor::Strategy by which they put it together
     std::string exchangeSecret;   // of the nodes that draw ranges of one picture, in hex; empty: they do not

@@ -54,6 +54,8 @@ TEST(RunOptions, readsEveryOption) {
         a.noPlacement = true;
         a.launch = "rsh";
         a.remoteMural = "/opt/mural";
+        a.economy = "off";
+        a.store = "64MiB";
     });
     const SessionConfig& c = o.config;
     EXPECT_EQ(c.columns, 7);
@@ -77,6 +79,8 @@ TEST(RunOptions, readsEveryOption) {
     EXPECT_FALSE(c.placeThreads);
     EXPECT_EQ(c.launchCommand, "rsh");
     EXPECT_EQ(c.remoteMural, "/opt/mural");
+    EXPECT_EQ(c.economy, Economy::Off);
+    EXPECT_EQ(c.storeBytes, 64 << 20);
     EXPECT_EQ(o.front, FrontChoice::Preload);
 }
 
@@ -103,6 +107,10 @@ TEST(RunOptions, wrongValuesNameTheOptionAndWhatIsWanted) {
     EXPECT_NE(refusal([](RunArguments& a) { a.verify = "0"; }).find("--verify"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.gl = "vulkan"; }).find("auto, egl, osmesa, glx"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.front = "both"; }).find("auto, glvnd, preload"), std::string::npos);
+    EXPECT_NE(refusal([](RunArguments& a) { a.economy = "yes"; }).find("auto, on, off"), std::string::npos);
+    for (const char* bad : {"", "GiB", "1GB", "-1MiB", "1023KiB", "1025GiB", "9223372036854775807GiB", "1 GiB"})
+        EXPECT_NE(refusal([&](RunArguments& a) { a.store = bad; }).find("--store"), std::string::npos) << bad;
+    EXPECT_EQ(accepted([](RunArguments& a) { a.store = "1048576"; }).config.storeBytes, 1 << 20);
     EXPECT_NE(refusal([](RunArguments& a) { a.position = "1"; }).find("--position"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.nodes = "h1,-oProxyCommand=x"; }).find("--nodes"), std::string::npos);
 }

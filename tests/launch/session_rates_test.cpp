@@ -38,6 +38,17 @@ TEST(SessionRates, comeFromTheDifferenceOfTwoLooks) {
                                       "  node 1  wall2, by multicast, pid 11, llvmpipe: lost"}));
 }
 
+TEST(SessionRates, showWhatTheNodesWereSpared) {
+    const auto with = [](Json session, int frames) {
+        session["economy"] = {{"records", 100 * frames}, {"rawBytes", 5000 * frames}, {"stagedBytes", 300 * frames}, {"wireBytes", 120 * frames}, {"storeHits", 9 * frames},
+                              {"newPages", frames}, {"patches", 2 * frames}, {"encodeSeconds", 3e-5 * frames}};
+        return session;
+    };
+    const auto both = withRates({with(look(10, 100, 1000, 5000, 4, 1.0), 100)}, {with(look(12, 150, 2000, 105000, 29, 2.5), 150)});
+    EXPECT_DOUBLE_EQ(both[0]["economy"]["recent"]["wireBytesPerFrame"].get<double>(), 120);
+    EXPECT_EQ(statLines(both[0])[5], "  economy  5.0 kB per frame, 300 B of it new to the nodes, 120 B compressed; 9.0 of 10.0 pages per frame they had, packing 30 us");
+}
+
 TEST(SessionRates, ofWhatStoodStillOrIsNewAreLeftOut) {
     const auto still = withRates({look(10, 100, 1000, 5000, 0, 1.0)}, {look(11, 100, 1000, 5000, 0, 1.0)});
     EXPECT_EQ(still[0]["programs"][0]["recent"].count("callsPerFrame"), 0u);

@@ -42,6 +42,12 @@ protected:
         ASSERT_TRUE(head_->write(std::as_bytes(std::span(json)), Deadline::inMs(kPatienceMs)));
         head_->flush();
     }
+    void sendPacket(uint32_t stream, std::span<const std::byte> payload) {
+        const wire::PacketHeader header{static_cast<uint32_t>(payload.size()), stream};
+        ASSERT_TRUE(head_->write(std::as_bytes(std::span(&header, 1)), Deadline::inMs(kPatienceMs)));
+        ASSERT_TRUE(head_->write(payload, Deadline::inMs(kPatienceMs)));
+        head_->flush();
+    }
     // The texts of that kind until the node ends; anything else fails.
     std::vector<std::string> texts(wire::NodeMessage type) {
         std::vector<std::string> all;
@@ -81,6 +87,16 @@ TEST_P(ForeignBuild, isRefusedWithOneLine) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Builds, ForeignBuild, ::testing::Values("", "1.0000000000000000", "4294967295.0000000000000000"));
+
+// Nothing can be read behind it: what it refers to is not there.
+TEST_F(NodeTest, aBatchThatNobodyAskedForEndsItWithOneLine) {
+    sendPacket(wire::kBatchStream, std::vector<std::byte>(3));
+    const auto lines = texts(wire::NodeMessage::Log);
+    ASSERT_EQ(lines.size(), 1u);
+    EXPECT_NE(lines[0].find("a batch"), std::string::npos) << lines[0];
+    EXPECT_NE(lines[0].find("head and nodes must be of one build"), std::string::npos) << lines[0];
+    EXPECT_EQ(status(), 1);
+}
 
 TEST_F(NodeTest, endsWithItsHead) {
     head_->close();

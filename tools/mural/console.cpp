@@ -64,6 +64,13 @@ std::vector<std::string> reportLines(const SessionReport& r) {
     if (r.roundTrips > 0 && r.frames > 0)
         first += fmt::format(" ({:.2f} per frame: {})", static_cast<double>(r.roundTrips) / static_cast<double>(r.frames), roundTripText(r.roundTripsBy));
     lines.push_back(first);
+    if (r.economy.on && r.frames > 0) {
+        const EconomyReport& e = r.economy;
+        const auto frames = static_cast<double>(r.frames);
+        lines.push_back(fmt::format("economy: of {} per frame {} were new to the nodes, {} compressed; {:.0f} of {:.0f} pages they had; packing took {:.0f} us per frame, {:.0f} ns per call",
+                                    sizeText(e.rawBytes / frames), sizeText(e.stagedBytes / frames), sizeText(e.wireBytes / frames), e.storeHits, e.storeHits + e.newPages,
+                                    1e6 * e.encodeSeconds / frames, e.records > 0 ? 1e9 * e.encodeSeconds / e.records : 0.0));
+    }
     if (r.verifiedFrames > 0) {
         std::string line = fmt::format("verified {} frame{}, {} pixels: {} differ", r.verifiedFrames, plural(r.verifiedFrames), r.verifiedPixels, r.differingPixels);
         if (r.differingPixels > 0) line += fmt::format(", by up to {} of 255", r.largestDifference);

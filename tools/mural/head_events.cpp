@@ -38,6 +38,11 @@ HeadEvent::Kind kindOf(const std::string& name) {
     return Kind::Unknown;
 }
 
+EconomyReport economyFrom(const Json& j) {
+    if (!j.is_object()) return {};
+    return {true, real(j, "records"), real(j, "rawBytes"), real(j, "stagedBytes"), real(j, "wireBytes"), real(j, "storeHits"), real(j, "newPages"), real(j, "encodeSeconds")};
+}
+
 SessionReport reportFrom(const Json& j) {
     SessionReport r;
     r.frames = whole(j, "frames");
@@ -60,6 +65,7 @@ SessionReport reportFrom(const Json& j) {
     r.recording = text(j, "recording");
     r.recordedFrames = whole(j, "recordedFrames");
     r.recordedBytes = whole(j, "recordedBytes");
+    if (const auto economy = j.find("economy"); economy != j.end()) r.economy = economyFrom(*economy);
     if (const auto nodes = j.find("nodes"); nodes != j.end() && nodes->is_array()) {
         for (const Json& n : *nodes) {
             if (n.is_object()) r.nodes.push_back({whole(n, "node"), whole(n, "frames"), real(n, "cpuSeconds"), truth(n, "lost")});

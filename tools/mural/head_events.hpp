@@ -17,6 +17,17 @@ struct NodeReport {
     bool lost = false;
 };
 
+// What was spared the nodes that are not sent again what they have had.
+struct EconomyReport {
+    bool on = false;
+    double records = 0;
+    double rawBytes = 0;
+    double stagedBytes = 0; // after references
+    double wireBytes = 0;   // and compression
+    double storeHits = 0, newPages = 0;
+    double encodeSeconds = 0;
+};
+
 struct SessionReport {
     int64_t frames = 0;
     double seconds = 0;
@@ -35,6 +46,7 @@ struct SessionReport {
     std::string recording; // path; empty: none was made
     int64_t recordedFrames = 0;
     int64_t recordedBytes = 0;
+    EconomyReport economy;
     std::vector<NodeReport> nodes;
     std::string json; // the whole, as the head said it
 };

@@ -15,6 +15,7 @@
 #include "compositor/strategies/strategy.hpp"
 #include "nodes/head/config_plan.hpp"
 #include "nodes/launch/private_display.hpp"
+#include "tools/mural/byte_size.hpp"
 #include "transport/connection_description.hpp"
 #include "transport/rsp/group_description.hpp"
 
@@ -110,12 +111,14 @@ Result<void> readChoices(const RunArguments& a, SessionConfig& c) {
     const Choice<Display> displays[] = {{"app", Display::App}, {"windows", Display::Windows}, {"none", Display::None}};
     const Choice<Tiling> tilings[] = {{"exact", Tiling::Exact}, {"culled", Tiling::Culled}, {"lean", Tiling::Lean}};
     const Choice<CapturePolicy> policies[] = {{"state", CapturePolicy::State}, {"full", CapturePolicy::Full}};
+    const Choice<Economy> economies[] = {{"auto", Economy::Auto}, {"on", Economy::On}, {"off", Economy::Off}};
     const Choice<const char*> backends[] = {{"auto", "auto"}, {"egl", "egl"}, {"osmesa", "osmesa"}, {"glx", "glx"}};
     const char* backend = "auto";
     if (auto r = choose("--display", a.display, displays, c.display); !r) return r;
     if (auto r = choose("--tiling", a.tiling, tilings, c.tiling); !r) return r;
     if (auto r = choose("--policy", a.policy, policies, c.policy); !r) return r;
     if (auto r = choose("--gl", a.gl, backends, backend); !r) return r;
+    if (auto r = choose("--economy", a.economy, economies, c.economy); !r) return r;
     c.glBackend = backend;
     return {};
 }
@@ -179,6 +182,11 @@ Result<void> readNodes(const RunArguments& a, SessionConfig& c) {
     if (a.stream) {
         c.stream = *a.stream;
         if (auto r = checkStream(c.stream); !r) return r;
+    }
+    if (a.store) {
+        const auto store = byteSizeOf(*a.store);
+        if (!store || *store < (1 << 20) || *store > int64_t{1} << 40) return badValue("--store", *a.store, "must be a size from 1MiB to 1024GiB, such as 512MiB");
+        c.storeBytes = *store;
     }
     c.remoteMural = a.remoteMural.value_or("");
     return {};
@@ -384,6 +392,8 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
     command.add_flag("--native", a.native, "run without Mural, and only count frames and time");
     command.add_option("--launch", a.launch, "command that runs a command on a host (ssh -o BatchMode=yes)")->type_name("CMD");
     command.add_option("--stream", a.stream, "how the stream travels to other machines: auto (by multicast when there are two or more), tcp (to each), or rsp://GROUP:PORT?interface=…&rate=… (auto)")->type_name("HOW");
+    command.add_option("--economy", a.economy, "send nothing to nodes that they have had: auto (nodes of other machines), on (all), off (auto)")->type_name("WHICH");
+    command.add_option("--store", a.store, "memory for that in the head and in each of those nodes (1GiB)")->type_name("SIZE");
     command.add_option("--remote-mural", a.remoteMural, "path of mural on the hosts (this one's)")->type_name("PATH");
     command.add_option("--report", a.report, "write the final report into this file, as one line of JSON")->type_name("FILE");
     command.add_flag("--quiet", a.quiet, "say nothing but errors");

@@ -33,7 +33,7 @@ struct RunOptions {
 struct RunArguments {
     using Text = std::optional<std::string>;
     Text tiles, size, position, nodes, out, save, display, tiling, policy, gl, launch, stream, remoteMural, front;
-    Text config, canvas, frusta, modelUnit;
+    Text config, canvas, frusta, modelUnit, economy, store;
     std::vector<std::string> layouts;
     bool here = false, printConfig = false;
     Text stereo, eyeBase, focus, pixel, subpixel, dplex, db, composition;

@@ -63,6 +63,14 @@ Json nodeRates(const Json& before, const Json& now, double seconds) {
     return {{"busyShare", (work(now) - work(before)) / seconds}};
 }
 
+// Of all programs together, per frame on the wall.
+Json economyRates(const Json& before, const Json& now, double frames) {
+    Json rates = Json::object();
+    for (const char* name : {"records", "rawBytes", "stagedBytes", "wireBytes", "storeHits", "newPages", "patches", "encodeSeconds"})
+        rates[std::string(name) + "PerFrame"] = (number(now, name) - number(before, name)) / frames;
+    return rates;
+}
+
 void addRates(const Json& before, Json& now, const char* list, const char* key, double seconds, Json (*rates)(const Json&, const Json&, double)) {
     const std::vector<Json> then = entries(before, list);
     std::vector<Json> entriesNow = entries(now, list);
@@ -115,6 +123,15 @@ void addProgram(const Json& program, std::vector<std::string>& lines) {
     lines.push_back("    " + waitText(program));
 }
 
+void addEconomy(const Json& economy, std::vector<std::string>& lines) {
+    const Json& recent = part(economy, "recent");
+    if (!recent.contains("rawBytesPerFrame")) return;
+    const double pages = number(recent, "storeHitsPerFrame") + number(recent, "newPagesPerFrame");
+    lines.push_back(fmt::format("  economy  {} per frame, {} of it new to the nodes, {} compressed; {:.1f} of {:.1f} pages per frame they had, packing {:.0f} us", sizeText(number(recent, "rawBytesPerFrame")),
+                                sizeText(number(recent, "stagedBytesPerFrame")), sizeText(number(recent, "wireBytesPerFrame")), number(recent, "storeHitsPerFrame"), pages,
+                                1e6 * number(recent, "encodeSecondsPerFrame")));
+}
+
 void addNode(const Json& node, std::vector<std::string>& lines) {
     std::string state = text(node, "state");
     if (state == "alive") {
@@ -135,6 +152,8 @@ std::vector<Json> withRates(const std::vector<Json>& before, std::vector<Json> n
         if (then == before.end()) continue;
         const double seconds = number(session, "atSeconds") - number(*then, "atSeconds");
         addRates(*then, session, "programs", "client", seconds, programRates);
+        const double frames = number(session, "frames") - number(*then, "frames");
+        if (session.contains("economy") && session["economy"].is_object() && frames > 0) session["economy"]["recent"] = economyRates(part(*then, "economy"), part(session, "economy"), frames);
         addRates(*then, session, "nodes", "node", seconds, nodeRates);
     }
     return now;
@@ -147,6 +166,7 @@ std::vector<std::string> statLines(const Json& session) {
     const std::vector<Json> programs = entries(session, "programs");
     for (const Json& program : programs) addProgram(program, lines);
     if (programs.empty()) lines.emplace_back("  no program draws yet, or any more");
+    addEconomy(part(session, "economy"), lines);
     for (const Json& node : entries(session, "nodes")) addNode(node, lines);
     return lines;
 }

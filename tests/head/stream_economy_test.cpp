@@ -1,0 +1,64 @@
+// When a batch is sent: soon, but not for what nodes can do nothing with yet.
+#include "nodes/head/stream_economy.hpp"
+
+#include <gtest/gtest.h>
+#include <vector>
+
+#include "streamcodec/wire.hpp"
+
+namespace mural {
+namespace {
+
+constexpr uint32_t kStream = wire::streamOf(1, 0);
+
+std::unique_ptr<StreamEconomy> smallEconomy() {
+    economy::Limits limits;
+    limits.storeBytes = 16 << 20;
+    auto economy = StreamEconomy::open(limits);
+    return economy ? std::move(*economy) : nullptr;
+}
+
+// One record with an unlike word in each place.
+std::vector<std::byte> record(uint16_t opcode, uint32_t words) {
+    std::vector<uint32_t> text(words);
+    text[0] = opcode | words << 16;
+    for (uint32_t i = 1; i < words; ++i) text[i] = i * 2654435761u;
+    const auto bytes = std::as_bytes(std::span(text));
+    return {bytes.begin(), bytes.end()};
+}
+
+TEST(StreamEconomy, isFullByWhatIsNewOrByAllOfIt) {
+    auto economy = smallEconomy();
+    ASSERT_NE(economy, nullptr);
+    EXPECT_TRUE(economy->empty());
+    const auto value = record(wire::kOpBlobData, 12'000);
+    economy->add(kStream, value);
+    EXPECT_FALSE(economy->empty());
+    EXPECT_FALSE(economy->full());
+    auto other = value;
+    for (size_t i = 4; i < other.size(); ++i) other[i] = ~other[i];
+    economy->add(kStream, other);
+    EXPECT_TRUE(economy->full()) << "96 kB of new bytes";
+    ASSERT_TRUE(economy->take().ok());
+    EXPECT_TRUE(economy->empty());
+    int packets = 0;
+    for (; !economy->full() && packets < 1000; ++packets) economy->add(kStream, value);
+    EXPECT_EQ(packets, 88) << "4 MiB that the node has to copy";
+    EXPECT_LE(economy->take()->size(), 400u);
+    EXPECT_EQ(economy->counts().packer.packets, 90u);
+    EXPECT_EQ(economy->counts().packer.rawBytes, 90u * 48'000);
+}
+
+TEST(StreamEconomy, knowsWhenAValueIsNotComplete) {
+    auto economy = smallEconomy();
+    ASSERT_NE(economy, nullptr);
+    economy->add(kStream, record(wire::kOpBlobBegin, 3));
+    EXPECT_TRUE(economy->inValue());
+    economy->add(kStream, record(wire::kOpBlobData, 300));
+    EXPECT_TRUE(economy->inValue());
+    economy->add(kStream, record(wire::kFirstGlOpcode, 3));
+    EXPECT_FALSE(economy->inValue());
+}
+
+} // namespace
+} // namespace mural
