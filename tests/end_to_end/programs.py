@@ -8,7 +8,7 @@ import subprocess
 GROUPS = {
     "vertices": ["immediate", "generic_attributes", "display_lists", "client_arrays", "draw_calls",
                  "core_arrays", "buffers", "persistent_mapping", "persistent_frames", "pinned_memory",
-                 "evaluators"],
+                 "evaluators", "same_scene"],
     "pixels": ["textures_classic", "textures_modern", "framebuffers", "framebuffers_layered", "core_depth",
                "pixels_draw", "copied_samples", "pixels_read", "texture_reads", "sized_reads", "compressed_reads", "reads_later", "reads_owed", "reads_threads",
                "front_buffer", "front_and_back", "single_buffered", "frames_kept",

@@ -1,0 +1,78 @@
+#!/usr/bin/env python3
+"""What goes to the nodes, with economy: little where frames are alike, and the pictures are right.
+
+  economy.py --build build/release [--cases same_scene,same_texture] [--list]
+"""
+
+import json
+import os
+import sys
+import tempfile
+
+import failures
+
+failures.CASES.clear()  # only those of this file
+PATCH_BYTES = 64 * 64 * 4
+
+
+def report_of(context, program, frames, *options):
+    """The report of a run; a text when it went wrong."""
+    with tempfile.TemporaryDirectory(prefix="mural-economy.") as folder:
+        report_file = os.path.join(folder, "report.json")
+        command = [context.program(program), "--frames", str(frames), "--size", "253x191"]
+        with context.run(command, ["--display", "none", "--quiet", "--report", report_file, *options]) as run:
+            wrong = failures.check_end(run, 0)
+            if wrong is not None:
+                return wrong
+        with open(report_file, encoding="utf-8") as file:
+            return json.load(file)
+
+
+def per_frame(case_name, program, at_least, at_most, frames=(4, 10)):
+    """Between a run of few and one of more frames lie frames that nodes know all but the news of."""
+    def check(context):
+        wire = []
+        for count in frames:
+            report = report_of(context, program, count, "--economy", "on")
+            if not isinstance(report, dict):
+                return report
+            if report["frames"] != count:
+                return "%d frames instead of %d" % (report["frames"], count)
+            wire.append(report["economy"]["wireBytes"])
+        each = (wire[1] - wire[0]) / (frames[1] - frames[0])
+        if not at_least <= each <= at_most:
+            return "%.0f bytes per frame on the wire instead of %d to %d; in all %s" % (each, at_least, at_most, wire)
+        print("  %.0f bytes per frame on the wire" % each)
+        return None
+    check.__name__ = case_name
+    failures.case(check)
+
+
+per_frame("same_scene", "same_scene", 10, 1024, (10, 60))
+per_frame("same_texture", "same_texture", 10, 1024)
+per_frame("changed_texture", "changed_texture", PATCH_BYTES, 1.5 * PATCH_BYTES + 1024)
+
+
+@failures.case
+def verified_texture(context):
+    """Patches arrive where they belong; also with a store that is too small for the texture."""
+    for store in ("1GiB", "1MiB"):
+        report = report_of(context, "changed_texture", 3, "--economy", "on", "--store", store, "--verify")
+        if not isinstance(report, dict):
+            return report
+        if report["verifiedFrames"] != 3 or report["differingPixels"] != 0:
+            return "%d frames verified, %d pixels differ, store %s" % (report["verifiedFrames"], report["differingPixels"], store)
+    return None
+
+
+@failures.case
+def off(context):
+    """Nodes of this machine are sent everything, unless asked otherwise."""
+    report = report_of(context, "same_scene", 5)
+    if not isinstance(report, dict):
+        return report
+    return None if report["economy"] is None and report["bytesPerFrame"] > 1000 else "the report says %s" % report
+
+
+if __name__ == "__main__":
+    sys.exit(failures.main())

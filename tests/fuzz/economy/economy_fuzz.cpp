@@ -1,0 +1,60 @@
+// Input: batches, each behind its size (u16). The first byte says whether they are batches as they are sent, or the sections
+// of one as they are: fuzzers do not find their way through compressed bytes.
+#include <algorithm>
+#include <cstring>
+#include <memory>
+
+#include "economy/batch_codec.hpp"
+#include "economy/unpacker.hpp"
+#include "streamcodec/wire.hpp"
+#include "tests/fuzz/economy/fuzz_limits.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
+
+namespace mural::fuzz {
+namespace {
+
+std::span<const std::byte> take(std::span<const std::byte>& input, size_t sizeBytes) {
+    const auto taken = input.first(std::min(sizeBytes, input.size()));
+    input = input.subspan(taken.size());
+    return taken;
+}
+
+std::span<const std::byte> takeSized(std::span<const std::byte>& input) {
+    uint16_t sizeBytes = 0;
+    const auto size = take(input, 2);
+    std::memcpy(&sizeBytes, size.data(), size.size());
+    return take(input, sizeBytes);
+}
+
+} // namespace
+
+uint64_t fuzzOne(std::span<const std::byte> input) {
+    economy::Unpacker unpacker(fuzzLimits());
+    economy::BatchDecoder decoder;
+    uint64_t packets = 0;
+    if (input.empty()) return 0;
+    const bool coded = (static_cast<unsigned>(take(input, 1)[0]) & 1) == 0;
+    while (!input.empty()) {
+        economy::SectionBytes sections;
+        if (coded) {
+            const auto decoded = decoder.decode(takeSized(input));
+            if (!decoded) return packets;
+            sections = decoded.value();
+        } else {
+            for (auto& section : sections) section = takeSized(input);
+        }
+        unpacker.begin(sections);
+        while (true) {
+            uint32_t stream = 0;
+            std::span<const std::byte> packet;
+            const auto more = unpacker.next(stream, packet);
+            if (!more) return packets;
+            if (!more.value()) break;
+            must(packet.size() <= wire::kMaxPacketBytes, "packets are bounded");
+            ++packets;
+        }
+    }
+    return packets;
+}
+
+} // namespace mural::fuzz

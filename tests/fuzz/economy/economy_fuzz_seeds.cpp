@@ -1,0 +1,79 @@
+// Writes the corpus of economy_fuzz: what a packer makes of frames that resemble each other.
+//   economy_fuzz_seeds FOLDER
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "economy/batch_codec.hpp"
+#include "economy/packer.hpp"
+#include "tests/fuzz/economy/fuzz_limits.hpp"
+
+namespace {
+
+using Bytes = std::vector<std::byte>;
+using namespace mural;
+
+void addWord(Bytes& to, uint32_t word) {
+    const auto* p = reinterpret_cast<const std::byte*>(&word);
+    to.insert(to.end(), p, p + 4);
+}
+
+void addSized(Bytes& to, std::span<const std::byte> bytes) {
+    const auto size = static_cast<uint16_t>(bytes.size());
+    const auto* p = reinterpret_cast<const std::byte*>(&size);
+    to.insert(to.end(), p, p + 2);
+    to.insert(to.end(), bytes.begin(), bytes.end());
+}
+
+Bytes frame(uint32_t seed, uint32_t number, bool pages) {
+    std::mt19937 random(seed);
+    Bytes bytes;
+    for (int i = 0; i < 20; ++i) {
+        uint32_t words = 1 + static_cast<uint32_t>(random() % 6);
+        if (pages && random() % 5 == 0) words = 200 + static_cast<uint32_t>(random() % 1500);
+        addWord(bytes, 64 + static_cast<uint32_t>(random() % 5) + (words << 16));
+        for (uint32_t w = 1; w < words; ++w) addWord(bytes, static_cast<uint32_t>(random() % 3) + (w == words / 2 && i % 4 == 0 ? number : 0));
+        if (number % 3 == 2 && i == 10) i += 3; // some are missing
+    }
+    if (number == 4) bytes.resize(bytes.size() - 2);
+    return bytes;
+}
+
+Bytes seedOf(uint32_t seed, bool coded, bool pages) {
+    economy::Packer packer(fuzz::fuzzLimits());
+    economy::BatchEncoder encoder([] { return int64_t{0}; });
+    Bytes input{static_cast<std::byte>(coded ? 0 : 1)};
+    for (uint32_t number = 0; number < 6; ++number) {
+        packer.add(0x10000 + seed % 2 * (number % 3), frame(seed, number, pages));
+        if (coded) {
+            const auto batch = encoder.encode(packer.sections(), 80);
+            if (!batch) std::exit(1);
+            addSized(input, Bytes(batch.value().begin(), batch.value().end()));
+        } else {
+            for (const auto section : packer.sections()) addSized(input, section);
+        }
+        packer.clear();
+    }
+    return input;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    if (argc != 2) {
+        std::fprintf(stderr, "economy_fuzz_seeds FOLDER\n");
+        return 2;
+    }
+    std::filesystem::create_directories(argv[1]);
+    for (uint32_t seed = 1; seed <= 4; ++seed) {
+        for (const bool coded : {false, true}) {
+            const Bytes input = seedOf(seed, coded, seed > 2);
+            const std::string name = std::string(coded ? "coded_" : "sections_") + (seed > 2 ? "pages_" : "records_") + std::to_string(seed);
+            std::ofstream(std::filesystem::path(argv[1]) / name, std::ios::binary).write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));
+        }
+    }
+}
