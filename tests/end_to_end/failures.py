@@ -104,16 +104,18 @@ def two_nodes_killed(context):
 
 def range_lost(context, composition):
     """One of the nodes that share draws is killed: what it draws is missing, which is said, and nobody waits for long."""
-    frames = 200
+    frames = 600
     with context.drawing("fixed_lighting", frames, options=("--display", "none", "--db", "4", "--composition", composition)) as run:
-        if not run.wait_for_line("frame 20"):
+        if not run.wait_for_line("mural: frame "):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
         found = run.wait_for_processes(NODE, 4)
         if len(found) < 4:
             return "%d of 4 nodes run" % len(found)
         started = time.monotonic()
         kill_all(sorted(found)[2:3])
-        wrong = check_end(run, 0, frames)
+        wrong = check_end(run, 0)
+        if wrong is None and not error_lines(run, ["mural: %d frames in" % frames]):
+            wrong = "not all frames came: " + " | ".join(run.standard_error[-3:])
         said = error_lines(run, ["a range of the picture is missing from now on: range 3"])
         if wrong is None and not said:
             wrong = "nobody said that a range is missing: " + " | ".join(run.standard_error[-3:])
