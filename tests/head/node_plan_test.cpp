@@ -147,7 +147,7 @@ TEST(NodePlan, ofNodesThatShareDrawsOneHasTheWindow) {
     SessionConfig config;
     config.passes.ranges = 3;
     config.display = Display::Windows;
-    const SessionPlan plan = planSession(config, "me");
+    SessionPlan plan = planSession(config, "me");
     ASSERT_EQ(plan.nodes.size(), 3u);
     for (const NodePlan& node : plan.nodes) {
         const NodeSetup setup = setupOf(config, plan, node);
@@ -155,7 +155,7 @@ TEST(NodePlan, ofNodesThatShareDrawsOneHasTheWindow) {
         EXPECT_EQ(setup.collector, 0);
         EXPECT_TRUE(setup.exchangeHere);
     }
-    config.configFile = "wall.eqc"; // the head shows those
+    plan.nodesShowWall = false; // then the head does
     EXPECT_FALSE(setupOf(config, plan, plan.nodes[0]).wallWindows);
 }
 
