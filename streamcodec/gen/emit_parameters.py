@@ -68,7 +68,7 @@ constexpr ParameterInfo kParameters[] = {
         first += len(params)
     out += '};\nconstexpr EnumName kEnums[] = { // sorted by group and value\n'
     for name, number in group_number.items():
-        out += ''.join('    {%d, 0x%xu, "%s"},\n' % (number, value, enums[name][value]) for value in sorted(enums[name]))
+        out += ''.join('    {%d, 0x%xu, "%s"},\n' % (number, value, named) for value, named in sorted(enums.get(name, {}).items()))
     out += '};\n} // namespace\n\nCommandParameters parametersOf(uint16_t opcode) {\n    switch (opcode) {\n' + ''.join(ranges)
     out += '''    default: return {};
     }

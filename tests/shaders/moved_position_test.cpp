@@ -17,7 +17,7 @@ size_t count(const std::string& text, const std::string& part) {
 
 TEST(MovedPosition, MainIsWrapped) {
     const std::string out = patched("#version 330\nin vec4 p;\nvoid main() { gl_Position = p; }\n");
-    EXPECT_EQ(out.find("#version 330\nuniform vec4 muralMove[2]; in vec4 p;\nvoid muralMain() {"), 0u) << out;
+    EXPECT_EQ(out.find("#version 330\nuniform vec4 muralMove[5]; in vec4 p;\nvoid muralMain() {"), 0u) << out;
     EXPECT_EQ(count(out, "void main() { muralMain();"), 1u);
     EXPECT_EQ(count(out, "#extension"), 0u);
 }
@@ -26,7 +26,7 @@ TEST(MovedPosition, AllVersions) {
     for (const char* version : {"", "#version 110\n", "#version 120\n", "#version 150\n", "#version 450\n"})
         EXPECT_NE(patched(version + std::string("void main() { gl_Position = vec4(1.0); }")).find("muralMove[0]"), std::string::npos) << version;
     for (const char* version : {"", "#version 100\n", "#version 300 es\n", "#version 320 es\n"})
-        EXPECT_NE(patched(version + std::string("void main() { gl_Position = vec4(1.0); }"), LastStage::Vertex, true).find("uniform highp vec4 muralMove[2];"), std::string::npos) << version;
+        EXPECT_NE(patched(version + std::string("void main() { gl_Position = vec4(1.0); }"), LastStage::Vertex, true).find("uniform highp vec4 muralMove[5];"), std::string::npos) << version;
 }
 
 TEST(MovedPosition, EachStageThatMayBeTheLast) {
@@ -38,7 +38,7 @@ TEST(MovedPosition, EachStageThatMayBeTheLast) {
 }
 
 TEST(MovedPosition, WhatIsNotPerspectiveIsSeenByBothEyesAlike) {
-    EXPECT_NE(patched("void main() { gl_Position = vec4(1); }").find("if (gl_Position.w != 1.0) gl_Position.x += muralMove[1].x * (gl_Position.w * muralMove[1].y - 1.0);"), std::string::npos);
+    EXPECT_NE(patched("void main() { gl_Position = vec4(1); }").find("if (gl_Position.w != 1.0) gl_Position += vec4(dot(muralMove[1], vec4(gl_Position.xyw, 1.0)),"), std::string::npos);
 }
 
 TEST(MovedPosition, WhatCannotBeMovedIsLeftAlone) {

@@ -1,0 +1,89 @@
+#include <cstring>
+#include <deque>
+#include <utility>
+#include <vector>
+
+#include "economy/unpacker.hpp"
+#include "nodes/head/stream_economy.hpp"
+#include "streamcodec/wire.hpp"
+#include "tools/bench/stream/ways.hpp"
+
+namespace mural::bench {
+namespace {
+
+class EconomyWay final : public Way {
+public:
+    EconomyWay(std::unique_ptr<StreamEconomy> economy, const economy::Limits& limits) : economy_(std::move(economy)), unpacker_(limits) {}
+
+    [[nodiscard]] std::string name() const override { return "economy"; }
+
+    void packet(const StreamPacket& p) override {
+        sent_.push_back({p.stream, {p.payload.begin(), p.payload.end()}});
+        economy_->add(p.stream, p.payload);
+        if (economy_->full()) take();
+    }
+
+    [[nodiscard]] int64_t cpuNs() const override { return static_cast<int64_t>(economy_->counts().encodeNs); }
+
+    Result<uint64_t> frameEnds() override {
+        if (!economy_->empty()) take();
+        if (wrong_.empty() && !sent_.empty()) wrong_ = "packets are missing when they have been unpacked";
+        if (!wrong_.empty()) return Error{wrong_};
+        return std::exchange(bytes_, 0);
+    }
+
+private:
+    struct Sent {
+        uint32_t stream;
+        std::vector<std::byte> payload;
+    };
+
+    void take() {
+        auto batch = economy_->take();
+        if (!batch) {
+            wrong_ = batch.error().message;
+            return;
+        }
+        bytes_ += sizeof(wire::PacketHeader) + batch->size();
+        auto sections = decoder_.decode(*batch);
+        if (!sections) {
+            wrong_ = sections.error().message;
+            return;
+        }
+        unpacker_.begin(*sections);
+        while (true) {
+            uint32_t stream = 0;
+            std::span<const std::byte> payload;
+            auto more = unpacker_.next(stream, payload);
+            if (!more) wrong_ = more.error().message;
+            if (!more || !*more) return;
+            compare(stream, payload);
+        }
+    }
+
+    void compare(uint32_t stream, std::span<const std::byte> payload) {
+        if (sent_.empty() || sent_.front().stream != stream || sent_.front().payload.size() != payload.size() ||
+            std::memcmp(sent_.front().payload.data(), payload.data(), payload.size()) != 0)
+            wrong_ = "a packet is another one when it has been unpacked";
+        if (!sent_.empty()) sent_.pop_front();
+    }
+
+    std::unique_ptr<StreamEconomy> economy_;
+    economy::BatchDecoder decoder_;
+    economy::Unpacker unpacker_;
+    std::deque<Sent> sent_;
+    std::string wrong_;
+    uint64_t bytes_ = 0;
+};
+
+} // namespace
+
+Result<std::unique_ptr<Way>> economyWay(uint64_t storeBytes) {
+    economy::Limits limits;
+    limits.storeBytes = storeBytes;
+    auto economy = StreamEconomy::open(limits);
+    if (!economy) return economy.error();
+    return std::unique_ptr<Way>(new EconomyWay(std::move(*economy), limits));
+}
+
+} // namespace mural::bench

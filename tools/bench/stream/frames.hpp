@@ -1,0 +1,26 @@
+// The packets of a recording, frame by frame of the wall.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+
+#include "common/result.hpp"
+
+namespace mural::bench {
+
+struct StreamPacket {
+    uint32_t stream = 0;
+    std::span<const std::byte> payload;
+};
+
+struct FrameReader {
+    std::function<void(const StreamPacket&)> packet;
+    std::function<void(int64_t frame)> ended; // from 1; behind the packet that has ended it
+};
+
+// All of them, in their order. Returns how many frames there are.
+Result<int64_t> readFrames(const std::string& path, const FrameReader& to);
+
+} // namespace mural::bench
