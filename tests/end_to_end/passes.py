@@ -340,25 +340,32 @@ def room_screens(context, notes):
     return room_ways(context, notes, [("pass_scene", ["--draw", way]) for way in ("fixed", "legacy", "matrices", "mvp", "block", "geometry", "framebuffer")] + [("pass_scene_es2", [])])
 
 
+def shown_and_saved(context, command, options, titles, out, frames=400):
+    """What the wall's windows with these titles show, and all pictures that --out gets of the same run; or what is wrong."""
+    if shutil.which("xwd") is None:
+        raise SystemExit("xwd is not installed: apt-get install x11-apps")
+    with context.run(command, options + ["--display", "windows", "--out", out, "--frames", str(frames)]) as run:
+        shown = window_pixels(context, titles, 30)
+        status = run.status()
+    if shown is None:
+        return None, None, "no windows of the wall were seen"
+    if status != 0:
+        return None, None, "status %s" % status
+    return shown, [pictures.read_png(os.path.join(out, name)) for name in sorted(os.listdir(out))], None
+
+
 @case
 def room_walls_have_windows(context, notes):
     """--display windows: the node of each wall shows it in a window of its own; they lie side by side."""
-    if shutil.which("xwd") is None:
-        raise SystemExit("xwd is not installed: apt-get install x11-apps")
     size, names = (160, 120), ("left", "front", "right")
     with tempfile.TemporaryDirectory(prefix="mural-room.") as folder:
         path, out = os.path.join(folder, "room.eqc"), os.path.join(folder, "out")
         with open(path, "w", encoding="ascii") as file:
             file.write(ROOM % {"w": size[0], "h": size[1], "compounds": ""})
         command = [context.program("pass_scene"), "--size", "%dx%d" % (3 * size[0], size[1]), "--frames", "100000", "--draw", "mvp", "--around"]
-        with context.run(command, ["--config", path, "--here", "--display", "windows", "--out", out, "--frames", "400"]) as run:
-            shown = window_pixels(context, ["Mural " + name for name in names], 30)
-            status = run.status()
-        if shown is None:
-            return "no windows of the wall were seen"
-        if status != 0:
-            return "status %s" % status
-        saved = [pictures.read_png(os.path.join(out, name)) for name in sorted(os.listdir(out))]
+        shown, saved, wrong = shown_and_saved(context, command, ["--config", path, "--here"], ["Mural " + name for name in names], out)
+    if wrong:
+        return wrong
     walls = [[[row[3 * i * size[0]:3 * (i + 1) * size[0]] for row in p.rows] for p in saved] for i in range(3)]
     missing = [names[i] for i in range(3) if shown[i] not in walls[i]]
     return "windows %s show no part of any saved picture" % missing if missing else None
@@ -411,20 +418,13 @@ def xwd_rows(dump):
 @case
 def wall_windows_show_all_passes(context, notes):
     """--display windows: each tile's window has its part of the picture that --out gets."""
-    if shutil.which("xwd") is None:
-        raise SystemExit("xwd is not installed: apt-get install x11-apps")
     with tempfile.TemporaryDirectory(prefix="mural-passes.") as out:
-        options = ["--display", "windows", "--tiles", "2x1", "--local-nodes", "4", "--subpixel", "2", "--position", "40,30", "--out", out]
+        options = ["--tiles", "2x1", "--local-nodes", "4", "--subpixel", "2", "--position", "40,30"]
         size, frames = (252, 190), 100000
         command = [context.program("pass_scene"), "--size", "%dx%d" % size, "--frames", str(frames), "--draw", "mvp"]
-        with context.run(command, options + ["--frames", "400"]) as run:
-            shown = window_pixels(context, ["Mural tile 0", "Mural tile 1"], 30)
-            status = run.status()
-        if shown is None:
-            return "no windows of the wall were seen"
-        if status != 0:
-            return "status %s" % status
-        saved = [pictures.read_png(os.path.join(out, name)) for name in sorted(os.listdir(out))]
+        shown, saved, wrong = shown_and_saved(context, command, options, ["Mural tile 0", "Mural tile 1"], out)
+    if wrong:
+        return wrong
     half = 3 * (size[0] // 2)
     tiles = [[[row[:half] for row in p.rows] for p in saved], [[row[half:] for row in p.rows] for p in saved]]
     missing = [i for i in range(2) if shown[i] not in tiles[i]]
