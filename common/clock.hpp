@@ -18,6 +18,13 @@ inline int64_t monotonicNowNs() {
     return static_cast<int64_t>(t.tv_sec) * kNsPerS + t.tv_nsec;
 }
 
+// Returns at once when that time of monotonicNowNs() is over.
+inline void sleepUntilNs(int64_t atNs) {
+    const timespec until{static_cast<time_t>(atNs / kNsPerS), static_cast<long>(atNs % kNsPerS)};
+    while (atNs > monotonicNowNs() && clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) != 0) {
+    }
+}
+
 // CPU time of the calling thread.
 inline int64_t threadCpuNowNs() {
     timespec t{};

@@ -119,6 +119,27 @@ class Norm(OwnProgram):
         return {"p50": told["p50us"], "p99": told["p99us"]}
 
 
+class Program:
+    """One that is there already, where a Harness is built."""
+
+    def __init__(self, path):
+        self.path = os.path.abspath(path)
+        self.missing = "" if os.access(self.path, os.X_OK) else "%s is no program" % self.path
+
+
+class OtherProgram(OwnProgram):
+    """A peer of the user's: its program is told all there is to tell, in the words of netlab's harnesses."""
+
+    def __init__(self, name, path):
+        super().__init__(name, Program(path), "it where --peer says")
+
+    def sender_words(self, rig, receivers, size_bytes, wire_mbit):
+        return ["n=%d" % receivers, "bytes=%d" % size_bytes, "rate=%g" % (wire_mbit or 4000), "ip=" + rig.address(0), "if=eth0"]
+
+    def receiver_words(self, rig, host, size_bytes):
+        return ["id=%d" % host, "bytes=%d" % size_bytes, "ip=" + rig.address(host), "server=" + rig.address(0), "if=eth0"]
+
+
 class Pgm(OwnProgram):
     def sender_words(self, rig, receivers, size_bytes, wire_mbit):
         return ["bytes=%d" % size_bytes, "rate=%g" % (wire_mbit or 4000), "ip=" + rig.address(0)]
@@ -212,8 +233,8 @@ class Udpcast(Files):
         return StreamResult(min(rates), done[0].cpu_seconds / gigabytes, sum(d.cpu_seconds for d in done[1:]) / receivers / gigabytes)
 
 
-def all_peers(netlab_folder, folder):
-    """Those whose `missing` is empty can run."""
+def all_peers(netlab_folder, folder, others=()):
+    """Those whose `missing` is empty can run. others: (name, path) of programs that are there already."""
     sources = os.path.join(netlab_folder, "peers")
 
     def harness(name, *flags):
@@ -221,4 +242,4 @@ def all_peers(netlab_folder, folder):
     return [Norm("NORM", harness("normpeer", "-lnorm"), "libnorm-dev"),
             Pgm("OpenPGM", harness("pgmpeer", "-I/usr/include/pgm-5.3", "-lpgm"), "libpgm-dev"),
             Tcp("TCP", harness("tcpfan"), "g++", lambda receivers: 1.0 / receivers),
-            Uftp(folder), Udpcast(folder)]
+            Uftp(folder), Udpcast(folder)] + [OtherProgram(name, path) for name, path in others]

@@ -73,6 +73,11 @@ std::optional<Head> readHead(std::span<const std::byte> d) {
         loadLittle<uint64_t>(d.data() + 8)};
 }
 
+bool isUrgent(std::span<const std::byte> d) {
+    const auto type = static_cast<Type>(byteAt(d, 0) & 0xf);
+    return type == Type::Feedback || type == Type::Probe || (byteAt(d, 1) & flag::kPoll) != 0;
+}
+
 std::optional<StreamDatagram> readStream(std::span<const std::byte> d) {
     const auto head = readHead(d);
     if (!head || head->type > Type::Poll || d.size() < kStreamHeadBytes) return {};

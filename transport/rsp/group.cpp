@@ -147,7 +147,7 @@ Result<size_t> Group::read(MemberId from, std::span<std::byte> into, Deadline de
             count += n;
         }
         if (count > 0) {
-            state_->pump();
+            if (r->hasNews()) state_->pump();
             return count;
         }
         if (!state_->core->members().contains(from)) {

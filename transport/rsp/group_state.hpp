@@ -15,6 +15,7 @@
 #include "transport/rsp/batch_outbox.hpp"
 #include "transport/rsp/control_link.hpp"
 #include "transport/rsp/group.hpp"
+#include "transport/rsp/receive_moderation.hpp"
 
 namespace mural::rsp {
 
@@ -71,6 +72,11 @@ private:
     void acceptLinks();
     void startLink(MemberId id, const std::shared_ptr<ControlLink>& link);
     void watch();
+    void lead(const Waits& what);
+    void endLead(int64_t nowNs);
+    void letWatch();
+    void takeOverAfter(int64_t ns);
+    [[nodiscard]] int64_t restNs(const Waits* what, int64_t nowNs) const;
     void receive(std::span<const int> sockets, int64_t nowNs);
     void armTimer(int64_t atNs);
     void wakeWaiting();
@@ -88,6 +94,8 @@ private:
     NetworkInterface interface_;
     boost::asio::io_context context_;
     boost::asio::steady_timer goodbyeTimer_{context_};
+    boost::asio::steady_timer restTimer_{context_}; // of the group's thread
+    boost::asio::steady_timer takeOverTimer_{context_};
     std::optional<Tcp::acceptor> acceptor_;
     std::optional<UdpSocket> own_;
     std::optional<UdpSocket> groupSocket_;
@@ -96,6 +104,10 @@ private:
     const Waits* leaderWaitsFor_ = nullptr;                        // nullptr: nobody leads
     bool leaderSleeps_ = false;
     bool leaderCalled_ = false; // there may be what it waits for
+    int64_t ledUntilNs_ = 0;    // the last leader
+    bool isWatched_ = true;     // else somebody leads, or takeOverTimer_ runs
+    bool takesOver_ = false;    // takeOverTimer_ runs
+    ReceiveModeration moderation_;
     std::optional<BatchOutbox> outbox_;
     std::optional<DatagramOpener> opener_;
     std::map<MemberId, std::shared_ptr<ControlLink>> links_;

@@ -1,6 +1,7 @@
 // Who waits for what in a group, who sees to its sockets and timer meanwhile, and who is woken: leader and followers. A
 // datagram's way is through one thread where it can be: the one that waits for it.
 #include <algorithm>
+#include <utility>
 
 #include "transport/rsp/group_state.hpp"
 
@@ -10,60 +11,117 @@ namespace asio = boost::asio;
 
 namespace {
 constexpr int64_t kSliceNs = 100 * kNsPerMs; // how long a wait lasts at most before it looks again
+constexpr int64_t kTakeOverNs = kNsPerMs;      // after which the group's thread does what no leader has come back for
+constexpr int64_t kMostPauseNs = 2 * kNsPerMs; // of a writer between two batches
 } // namespace
 
 // Each look at the clock is a system call: there are few.
 bool Group::State::wait(std::unique_lock<std::mutex>& lock, Waits& what, Deadline deadline) {
-    const int64_t leftNs = deadline.leftNs(kSliceNs);
-    if (leftNs == 0) return false;
     int64_t nowNs = monotonicNowNs();
-    const int64_t untilNs = nowNs + leftNs;
+    if (nowNs >= deadline.atNs()) return false;
+    const int64_t untilNs = std::min(deadline.atNs(), nowNs + kSliceNs);
     if (leaderWaitsFor_) {
         ++what.sleeping;
-        what.wake.wait_for(lock, std::chrono::nanoseconds(leftNs));
+        what.wake.wait_for(lock, std::chrono::nanoseconds(untilNs - nowNs));
         --what.sleeping;
         return true;
     }
-    leaderWaitsFor_ = &what;
-    leaderCalled_ = false;
-    arrivals_->setWatched(false);
+    lead(what);
     while (!leaderCalled_ && nowNs < untilNs) {
+        const int64_t rest = std::min(restNs(&what, nowNs), untilNs - nowNs);
         leaderSleeps_ = true;
         lock.unlock();
+        if (rest > 0) sleepUntilNs(nowNs + rest);
         const auto sockets = arrivals_->wait(static_cast<int>((untilNs - nowNs + kNsPerMs - 1) / kNsPerMs));
         lock.lock();
         leaderSleeps_ = false;
         nowNs = monotonicNowNs();
         receive(sockets, nowNs);
     }
-    leaderWaitsFor_ = nullptr;
-    arrivals_->setWatched(true); // what has come meanwhile wakes the group's thread
+    endLead(nowNs);
     return true;
+}
+
+void Group::State::lead(const Waits& what) {
+    leaderWaitsFor_ = &what;
+    leaderCalled_ = false;
+    if (std::exchange(isWatched_, false)) arrivals_->setWatched(false);
+}
+
+// Who has led comes back soon, most of the time; the group's thread would only be in its way, where no other one waits.
+void Group::State::endLead(int64_t nowNs) {
+    leaderWaitsFor_ = nullptr;
+    ledUntilNs_ = nowNs;
+    if (room.sleeping + arrived.sleeping + data.sleeping > 0) return letWatch();
+    if (!takesOver_) takeOverAfter(kTakeOverNs);
+}
+
+// What has come meanwhile wakes the group's thread.
+void Group::State::letWatch() {
+    if (!std::exchange(isWatched_, true)) arrivals_->setWatched(true);
+}
+
+void Group::State::takeOverAfter(int64_t ns) {
+    takesOver_ = true;
+    takeOverTimer_.expires_after(std::chrono::nanoseconds(ns));
+    takeOverTimer_.async_wait([this](const boost::system::error_code& ended) {
+        if (ended) return;
+        const std::lock_guard lock(mutex);
+        takesOver_ = false;
+        if (leaderWaitsFor_) return;
+        const int64_t leftNs = ledUntilNs_ + kTakeOverNs - monotonicNowNs();
+        if (leftNs > 0) return takeOverAfter(leftNs);
+        letWatch();
+    });
 }
 
 // The group's thread: it does what is to be done while nobody leads.
 void Group::State::watch() {
     watched_->async_wait(asio::posix::stream_descriptor::wait_read, [this](const boost::system::error_code& failed) {
         if (failed) return;
+        int64_t rest = 0;
         {
             const std::lock_guard lock(mutex);
-            if (!leaderWaitsFor_) receive(arrivals_->wait(0), monotonicNowNs());
+            if (!leaderWaitsFor_) {
+                const int64_t nowNs = monotonicNowNs();
+                receive(arrivals_->wait(0), nowNs);
+                rest = restNs(nullptr, nowNs);
+            }
         }
-        watch();
+        if (rest == 0) return watch();
+        restTimer_.expires_after(std::chrono::nanoseconds(rest));
+        restTimer_.async_wait([this](const boost::system::error_code& ended) {
+            if (!ended) watch();
+        });
     });
+}
+
+// Who sees to the sockets, and waits for this, may let datagrams gather so long. A writer that may not send yet, for its rate,
+// need not hear of anything before it may.
+int64_t Group::State::restNs(const Waits* what, int64_t nowNs) const {
+    const Sender* s = core->sender();
+    if (what == &room && s && s->canSend() && data.sleeping == 0 && timerNs_ != INT64_MAX) return std::clamp<int64_t>(timerNs_ - nowNs, 0, kMostPauseNs);
+    if (what == &arrived || what == &room || arrived.sleeping > 0 || room.sleeping > 0) return 0;
+    return moderation_.restNs(nowNs);
 }
 
 // What is at these sockets, and what is due.
 void Group::State::receive(std::span<const int> sockets, int64_t nowNs) {
     if (nowNs >= timerNs_) timerNs_ = INT64_MAX;
+    size_t datagrams = 0;
+    bool urgent = false;
     for (const int descriptor : sockets) {
         UdpSocket& socket = descriptor == own_->descriptor() ? *own_ : *groupSocket_;
         socket.receive([&](std::span<std::byte> bytes, const SocketAddress&) {
             if (!opener_) return;
             const auto opened = opener_->open(bytes);
-            if (!opened.empty()) core->inputDatagram(opened, nowNs);
+            if (opened.empty()) return;
+            ++datagrams;
+            urgent = urgent || isUrgent(opened);
+            core->inputDatagram(opened, nowNs);
         });
     }
+    moderation_.looked(datagrams, urgent, nowNs);
     core->socketDropped(dropped());
     pump(nowNs);
 }

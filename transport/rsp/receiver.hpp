@@ -29,8 +29,10 @@ public:
 
     [[nodiscard]] std::span<const std::byte> readable() const { return window_.readable(); }
     void consume(size_t bytes) { window_.consume(bytes); }
+    // What was consumed may be worth telling.
+    [[nodiscard]] bool hasNews() const { return tellNow_ || roomIsNews(); }
 
-    // Sends what is to be told; returns when to come again at the latest. Call it after input and consume, too.
+    // Sends what is to be told; returns when to come again at the latest. Call it after input, and when there is news, too.
     int64_t tick(int64_t nowNs, Outbox& out);
 
     [[nodiscard]] Sequence cumulative() const { return window_.cumulative(); }

@@ -26,6 +26,8 @@ namespace {
 
 constexpr size_t kReceiveSlots = 16;
 constexpr size_t kSlotBytes = 65'536; // what UDP_GRO may join
+// One begins behind another's first datagram: at a power of two all first datagrams would share a few lines of the cache.
+constexpr size_t kSlotStrideBytes = kSlotBytes + 1536;
 constexpr int kMostRounds = 4;        // of kReceiveSlots, per call
 // What a datagram takes of a socket's buffer: the kernel's memory for it comes in powers of two, with room for heads and
 // fragments, and for what tells of it.
@@ -65,7 +67,7 @@ Result<void> joinGroup(int fd, const SocketAddress& group, const NetworkInterfac
 } // namespace
 
 struct UdpSocket::Slots {
-    std::vector<std::byte> bytes = std::vector<std::byte>(kReceiveSlots * kSlotBytes);
+    std::vector<std::byte> bytes = std::vector<std::byte>(kReceiveSlots * kSlotStrideBytes);
     std::array<mmsghdr, kReceiveSlots> messages{};
     std::array<iovec, kReceiveSlots> pieces{};
     std::array<SocketAddress, kReceiveSlots> from{};
@@ -73,7 +75,7 @@ struct UdpSocket::Slots {
 
     void reset() {
         for (size_t i = 0; i < kReceiveSlots; ++i) {
-            pieces[i] = {bytes.data() + i * kSlotBytes, kSlotBytes};
+            pieces[i] = {bytes.data() + i * kSlotStrideBytes, kSlotBytes};
             msghdr& h = messages[i].msg_hdr;
             h = {};
             h.msg_name = &from[i].storage;

@@ -1,0 +1,60 @@
+// When a reader looks at its sockets: how much is gathered, and that it delays nothing for long.
+#include <gtest/gtest.h>
+
+#include "transport/rsp/receive_moderation.hpp"
+
+namespace mural::rsp {
+namespace {
+
+constexpr int64_t kBeginNs = 1'000'000'000'000;
+constexpr int64_t kUs = 1000;
+
+// Datagrams come every so often; who waits looks, and rests as it is told. Returns the looks.
+int looksAtAFlow(ReceiveModeration& m, int64_t everyNs, int64_t lastingNs, int64_t& longestNs) {
+    int looks = 0;
+    int64_t seenNs = kBeginNs;
+    for (int64_t nowNs = kBeginNs + everyNs; nowNs < kBeginNs + lastingNs;) {
+        m.looked(static_cast<size_t>((nowNs - seenNs) / everyNs), false, nowNs);
+        seenNs = nowNs;
+        ++looks;
+        const int64_t restNs = m.restNs(nowNs);
+        EXPECT_LE(restNs, (nowNs - kBeginNs) / ReceiveModeration::kShareOfFlow);
+        longestNs = std::max(longestNs, restNs);
+        nowNs += std::max(restNs, everyNs);
+    }
+    return looks;
+}
+
+TEST(ReceiveModeration, GathersWhatFlows) {
+    ReceiveModeration m;
+    int64_t longestNs = 0;
+    EXPECT_LT(looksAtAFlow(m, 12 * kUs, 100'000 * kUs, longestNs), 8333 / 20);
+    EXPECT_EQ(longestNs, ReceiveModeration::kMostRestNs);
+}
+
+TEST(ReceiveModeration, LooksAtOnceForTheFirstDatagramsAndAfterAnUrgentOne) {
+    ReceiveModeration m;
+    EXPECT_EQ(m.restNs(kBeginNs), 0);
+    int64_t longestNs = 0;
+    (void)looksAtAFlow(m, 12 * kUs, 50'000 * kUs, longestNs);
+    const int64_t endNs = kBeginNs + 50'000 * kUs;
+    m.looked(1, false, endNs);
+    EXPECT_GT(m.restNs(endNs), 0);
+    m.looked(1, true, endNs);
+    EXPECT_EQ(m.restNs(endNs), 0);
+    m.looked(1, false, endNs + 100 * kUs);
+    EXPECT_EQ(m.restNs(endNs + 100 * kUs), 0);
+}
+
+TEST(ReceiveModeration, AFlowThatHasStoppedIsOver) {
+    ReceiveModeration m;
+    int64_t longestNs = 0;
+    (void)looksAtAFlow(m, 12 * kUs, 50'000 * kUs, longestNs);
+    const int64_t laterNs = kBeginNs + 60'000 * kUs;
+    EXPECT_EQ(m.restNs(laterNs), 0);
+    m.looked(1, false, laterNs);
+    EXPECT_EQ(m.restNs(laterNs), 0);
+}
+
+} // namespace
+} // namespace mural::rsp
