@@ -20,7 +20,11 @@ template <std::unsigned_integral T> T loadLittle(const std::byte* at) {
 }
 
 template <std::unsigned_integral T> void storeLittle(std::byte* at, T value) {
-    for (size_t i = 0; i < sizeof value; ++i) at[i] = static_cast<std::byte>(value >> (8 * i) & 0xff);
+    if constexpr (std::endian::native == std::endian::little) {
+        std::memcpy(at, &value, sizeof value); // compilers make no single store of the loop
+    } else {
+        for (size_t i = 0; i < sizeof value; ++i) at[i] = static_cast<std::byte>(value >> (8 * i) & 0xff);
+    }
 }
 
 } // namespace mural

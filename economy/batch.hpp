@@ -9,8 +9,9 @@
 
 namespace mural::economy {
 
-enum class Section : uint8_t { Control, Words, Texts, Pages };
-constexpr size_t kSections = 4;
+// Spans and Words: of pages that have changed. (Those of short items are among Control.)
+enum class Section : uint8_t { Control, Words, Texts, Pages, Spans };
+constexpr size_t kSections = 5;
 
 using SectionBytes = std::array<std::span<const std::byte>, kSections>;
 

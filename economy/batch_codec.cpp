@@ -1,64 +1,104 @@
 #include "economy/batch_codec.hpp"
 
-#include "economy/control_code.hpp"
 #include "economy/limits.hpp"
 
 namespace mural::economy {
+namespace {
 
-Result<std::span<const std::byte>> BatchEncoder::encode(const SectionBytes& sections, double linkNsPerByte) {
-    ControlWriter head;
+constexpr size_t kFirst = 1; // section behind Control
+
+void putNumber(size_t n, std::vector<std::byte>& into) {
+    for (; n >= 128; n >>= 7) into.push_back(static_cast<std::byte>(n | 128));
+    into.push_back(static_cast<std::byte>(n));
+}
+
+// Of up to 28 bits; false: there is none.
+bool takeNumber(std::span<const std::byte>& bytes, uint32_t& n) {
+    n = 0;
+    for (uint32_t shift = 0; shift < 28; shift += 7) {
+        if (bytes.empty()) return false;
+        const auto b = static_cast<uint32_t>(bytes[0]);
+        bytes = bytes.subspan(1);
+        n |= (b & 127) << shift;
+        if (b < 128) return true;
+    }
+    return false;
+}
+
+} // namespace
+
+Result<std::span<const std::byte>> BatchEncoder::encode(const SectionBytes& sections, double linkNsPerByte, bool plain) {
+    const auto control = sections[static_cast<size_t>(Section::Control)];
+    bool others = false;
+    for (size_t i = kFirst; i < kSections; ++i) others = others || !sections[i].empty();
+    body_.clear();
+    if (others) {
+        const auto encoded = encodeSections(sections, linkNsPerByte, plain);
+        if (!encoded) return encoded.error();
+    }
+    out_.clear();
+    putBatchHead({static_cast<uint32_t>(body_.size() + control.size()), others}, out_);
+    out_.insert(out_.end(), body_.begin(), body_.end());
+    out_.insert(out_.end(), control.begin(), control.end());
+    return std::span<const std::byte>(out_);
+}
+
+Result<void> BatchEncoder::encodeSections(const SectionBytes& sections, double linkNsPerByte, bool plain) {
     uint32_t codings = 0;
-    for (size_t i = 0; i < kSections; ++i) {
+    body_.assign(1, std::byte{0});
+    for (size_t i = kFirst; i < kSections; ++i) {
         const auto bytes = sections[i];
-        const Coding coding = choices_[i].choose(bytes.size(), linkNsPerByte);
+        const bool frames = plain && i == static_cast<size_t>(Section::Texts) && bytes.size() >= CodingChoice::kLeastBytes;
+        const Coding coding = frames ? Coding::Zstd : choices_[i].choose(bytes.size(), linkNsPerByte);
         coded_[i].clear();
         if (coding == Coding::Lz4 || coding == Coding::Zstd) {
             const int64_t beganNs = nowNs_();
             if (!compressors_[i].compress(coding, bytes, coded_[i])) return Error{"the stream can't be compressed: no memory"};
-            choices_[i].measured(coding, bytes.size(), coded_[i].size(), nowNs_() - beganNs);
+            if (!frames) choices_[i].measured(coding, bytes.size(), coded_[i].size(), nowNs_() - beganNs);
         }
-        codings |= static_cast<uint32_t>(coding) << 2 * i;
-        if (coding != Coding::Empty) head.number(static_cast<uint32_t>(bytes.size()));
-        if (!coded_[i].empty()) head.number(static_cast<uint32_t>(coded_[i].size()));
+        codings |= static_cast<uint32_t>(coding) << 2 * (i - kFirst);
+        if (coding != Coding::Empty) putNumber(bytes.size(), body_);
+        if (!coded_[i].empty()) putNumber(coded_[i].size(), body_);
     }
-    out_.assign(1, static_cast<std::byte>(codings));
-    out_.insert(out_.end(), head.bytes().begin(), head.bytes().end());
-    for (size_t i = 0; i < kSections; ++i) {
+    body_[0] = static_cast<std::byte>(codings);
+    for (size_t i = kFirst; i < kSections; ++i) {
         const std::span<const std::byte> bytes = coded_[i].empty() ? sections[i] : coded_[i];
-        out_.insert(out_.end(), bytes.begin(), bytes.end());
+        body_.insert(body_.end(), bytes.begin(), bytes.end());
     }
-    return std::span<const std::byte>(out_);
+    return {};
 }
 
-Result<SectionBytes> BatchDecoder::decode(std::span<const std::byte> batch) {
+Result<SectionBytes> BatchDecoder::decode(BatchHead head, std::span<const std::byte> body) {
     const Error broken{"the head's stream can't be unpacked: a batch of impossible sizes; head and nodes must be of one build"};
-    if (batch.empty()) return broken;
-    const auto codings = static_cast<uint32_t>(batch[0]);
-    ControlReader head(batch.subspan(1));
-    std::array<uint32_t, kSections> sizes{}, coded{};
-    uint64_t sum = 0, allCoded = 0;
-    for (size_t i = 0; i < kSections; ++i) {
-        const auto coding = static_cast<Coding>(codings >> 2 * i & 3);
-        if (coding == Coding::Empty) continue;
-        coded[i] = sizes[i] = head.number();
-        if (coding != Coding::Raw) coded[i] = head.number();
-        sum += sizes[i];
-        allCoded += coded[i];
-    }
-    // Twice: what is unpacked, and the bytes that say how.
-    if (head.bad() || sum > 2 * kMostBatchBytes || allCoded != head.left().size()) return broken;
-    auto left = head.left();
     SectionBytes result;
-    for (size_t i = 0; i < kSections; ++i) {
-        const auto coding = static_cast<Coding>(codings >> 2 * i & 3);
-        const auto bytes = left.first(coded[i]);
-        left = left.subspan(coded[i]);
-        result[i] = bytes;
-        if (coding != Coding::Lz4 && coding != Coding::Zstd) continue;
-        sections_[i].resize(sizes[i]);
-        if (!decompressors_[i].decompress(coding, bytes, sections_[i])) return Error{"the head's stream can't be unpacked: compressed bytes that are none; head and nodes must be of one build"};
-        result[i] = sections_[i];
+    auto left = body;
+    if (head.sections) {
+        if (left.empty()) return broken;
+        const auto codings = static_cast<uint32_t>(left[0]);
+        left = left.subspan(1);
+        const auto codingOf = [&](size_t i) { return static_cast<Coding>(codings >> 2 * (i - kFirst) & 3); };
+        std::array<uint32_t, kSections> sizes{}, coded{};
+        uint64_t sum = 0, allCoded = 0;
+        for (size_t i = kFirst; i < kSections; ++i) {
+            if (codingOf(i) == Coding::Empty) continue;
+            if (!takeNumber(left, sizes[i])) return broken;
+            coded[i] = sizes[i];
+            if (codingOf(i) != Coding::Raw && !takeNumber(left, coded[i])) return broken;
+            sum += sizes[i];
+            allCoded += coded[i];
+        }
+        if (sum > kMostBatchBytes || allCoded > left.size()) return broken;
+        for (size_t i = kFirst; i < kSections; ++i) {
+            const auto bytes = left.first(coded[i]);
+            left = left.subspan(coded[i]);
+            result[i] = bytes;
+            if (codingOf(i) != Coding::Lz4 && codingOf(i) != Coding::Zstd) continue;
+            sections_[i].resize(sizes[i]);
+            if (!decompressors_[i].decompress(codingOf(i), bytes, sections_[i])) return Error{"the head's stream can't be unpacked: compressed bytes that are none; head and nodes must be of one build"};
+            result[i] = sections_[i];
+        }
     }
+    result[static_cast<size_t>(Section::Control)] = left;
     return result;
 }
 

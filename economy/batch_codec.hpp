@@ -1,5 +1,5 @@
-// A batch as it is sent, and back: one byte with two bits per section (its Coding), of each that is not empty its size and,
-// compressed, its compressed size (in sevens), then the sections.
+// A batch as it is sent, and back. With no section but Control it is that. Else one byte with two bits per other section (its Coding),
+// of each that is not empty its size and, compressed, its compressed size (in sevens), then the sections, Control as what is left.
 #pragma once
 
 #include <array>
@@ -10,6 +10,7 @@
 
 #include "common/result.hpp"
 #include "economy/batch.hpp"
+#include "economy/batch_head.hpp"
 #include "economy/coding_choice.hpp"
 #include "economy/section_codec.hpp"
 
@@ -20,21 +21,28 @@ public:
     // `nowNs`: a clock, to choose codings by what they cost.
     explicit BatchEncoder(std::function<int64_t()> nowNs) : nowNs_(std::move(nowNs)) {}
 
-    // Lives until the next call. Error: no memory.
-    Result<std::span<const std::byte>> encode(const SectionBytes& sections, double linkNsPerByte);
+    // With its head. Lives until the next call. `plain`: its texts are mostly records that were not looked at (Packer::beginPlain), so it
+    // takes a window that has the frames before.
+    // Error: no memory.
+    Result<std::span<const std::byte>> encode(const SectionBytes& sections, double linkNsPerByte, bool plain = false);
+    // What compressing makes of a byte of this section, by what was measured.
+    [[nodiscard]] double ratio(Section section) const { return choices_[static_cast<size_t>(section)].ratio(); }
 
 private:
+    Result<void> encodeSections(const SectionBytes& sections, double linkNsPerByte, bool plain);
+
     const std::function<int64_t()> nowNs_;
-    std::array<SectionCompressor, kSections> compressors_;
+    // Control's is not used. Texts: equal frames and records are found as well by the fastest level.
+    std::array<SectionCompressor, kSections> compressors_{SectionCompressor(), SectionCompressor(), SectionCompressor(-1), SectionCompressor(), SectionCompressor()};
     std::array<CodingChoice, kSections> choices_;
     std::array<std::vector<std::byte>, kSections> coded_;
-    std::vector<std::byte> out_;
+    std::vector<std::byte> body_, out_;
 };
 
 class BatchDecoder {
 public:
-    // Lives until the next call, and as long as `batch` does.
-    Result<SectionBytes> decode(std::span<const std::byte> batch);
+    // What follows `head`. Lives until the next call, and as long as `body` does.
+    Result<SectionBytes> decode(BatchHead head, std::span<const std::byte> body);
 
 private:
     std::array<SectionDecompressor, kSections> decompressors_;

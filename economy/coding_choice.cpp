@@ -1,5 +1,7 @@
 #include "economy/coding_choice.hpp"
 
+#include <algorithm>
+
 namespace mural::economy {
 
 namespace {
@@ -23,6 +25,8 @@ Coding CodingChoice::choose(size_t sizeBytes, double linkNsPerByte) {
         if (cost(coding, linkNsPerByte) < cost(best, linkNsPerByte)) best = coding;
     return best;
 }
+
+double CodingChoice::ratio() const { return std::min(measured_[static_cast<size_t>(Coding::Zstd)].ratio, measured_[static_cast<size_t>(Coding::Lz4)].ratio); }
 
 double CodingChoice::cost(Coding coding, double linkNsPerByte) const {
     const Measured& m = measured_[static_cast<size_t>(coding)];

@@ -16,6 +16,8 @@ public:
     static constexpr size_t kLeastBytes = 64;
 
     [[nodiscard]] Coding choose(size_t sizeBytes, double linkNsPerByte);
+    // Of what was compressed to what it was before: by the better coding; 1 as long as nothing was.
+    [[nodiscard]] double ratio() const;
     void measured(Coding coding, size_t sizeBytes, size_t codedBytes, int64_t ns);
 
 private:
@@ -29,14 +31,14 @@ private:
     uint64_t chosen_ = 0;
 };
 
-// How fast the link takes bytes, of writes that had to wait. As long as none has: a gigabit per second.
+// How fast the link takes bytes, of writes that had to wait. As long as none has: a gigabit per second that four nodes share.
 class LinkRate {
 public:
     void wrote(size_t sizeBytes, int64_t ns);
     [[nodiscard]] double nsPerByte() const { return nsPerByte_; }
 
 private:
-    double nsPerByte_ = 8;
+    double nsPerByte_ = 32;
 };
 
 } // namespace mural::economy

@@ -1,9 +1,12 @@
-// The control bytes of a batch: what to do, and how often. docs/economy.md has the grammar.
+// The control bytes of a batch: what to do, and how often. docs/wire-format.md has the grammar.
 #pragma once
 
 #include <cstdint>
 #include <span>
-#include <vector>
+#include <utility>
+
+#include "economy/byte_predictor.hpp"
+#include "economy/range_coder.hpp"
 
 namespace mural::economy {
 
@@ -22,42 +25,54 @@ enum class Other : uint32_t {
     End = 1,    // of the packet
     Stream = 2, // the packet is of the stream that follows; without: of the one before
     Bytes = 3,  // as many as follow, which are no items
+    Done = 4,   // with the batch
 };
+
+// Words left as they are, then words changed (at least one): a byte with four bits of each; 15: the rest follows, in sevens.
+inline void putSpan(uint32_t kept, uint32_t changed, auto&& byte) {
+    const auto number = [&](uint32_t n) {
+        for (; n >= 128; n >>= 7) byte((n & 127) | 128);
+        byte(n);
+    };
+    const uint32_t high = kept < 15 ? kept : 15, low = changed - 1 < 15 ? changed - 1 : 15;
+    byte(high << 4 | low);
+    if (high == 15) number(kept - 15);
+    if (low == 15) number(changed - 1 - 15);
+}
 
 // In front of a number: three bits of Do, five of the number; 31: the rest follows in sevens, lowest first.
 class ControlWriter {
 public:
+    explicit ControlWriter(RangeWriter& coder) : coder_(coder) {}
+
     void put(Do what, uint32_t n) {
         const uint32_t low = n < 31 ? n : 31;
-        bytes_.push_back(static_cast<std::byte>(static_cast<uint32_t>(what) << 5 | low));
+        byte(static_cast<uint32_t>(what) << 5 | low);
         if (low == 31) number(n - 31);
     }
     void put(Other what) { put(Do::Other, static_cast<uint32_t>(what)); }
     void number(uint32_t n) {
-        for (; n >= 128; n >>= 7) bytes_.push_back(static_cast<std::byte>(n | 128));
-        bytes_.push_back(static_cast<std::byte>(n));
+        for (; n >= 128; n >>= 7) byte((n & 127) | 128);
+        byte(n);
     }
-    // Words left as they are, then words changed (at least one): four bits of each; 15: the rest follows.
     void span(uint32_t kept, uint32_t changed) {
-        const uint32_t high = kept < 15 ? kept : 15, low = changed - 1 < 15 ? changed - 1 : 15;
-        bytes_.push_back(static_cast<std::byte>(high << 4 | low));
-        if (high == 15) number(kept - 15);
-        if (low == 15) number(changed - 1 - 15);
+        mural::economy::putSpan(kept, changed, [this](uint32_t value) { byte(value); });
     }
-    static uint32_t spanBytes(uint32_t kept, uint32_t changed) { return 1 + (kept >= 15) + (changed >= 16); } // of most
-    [[nodiscard]] std::vector<std::byte>& bytes() { return bytes_; }
+    static uint32_t spanBytes(uint32_t kept, uint32_t changed) { return 1 + (kept >= 15) + (changed >= 16); } // of most, if none is expected
 
 private:
-    std::vector<std::byte> bytes_;
+    void byte(uint32_t value) { predictor_.code(coder_, value); }
+
+    RangeWriter& coder_;
+    BytePredictor predictor_;
 };
 
 // After the end, or a number that is too large, everything is 0 and bad() is true.
-class ControlReader {
+template <class Source> class NumberReader {
 public:
-    explicit ControlReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
-    [[nodiscard]] bool atEnd() const { return at_ == bytes_.size(); }
-    [[nodiscard]] bool bad() const { return bad_; }
-    [[nodiscard]] std::span<const std::byte> left() const { return bytes_.subspan(at_); }
+    explicit NumberReader(Source source) : source_(std::move(source)) {}
+
+    [[nodiscard]] bool bad() const { return bad_ || source_.bad(); }
     Do what(uint32_t& n) {
         const uint32_t b = byte();
         n = b & 31;
@@ -80,17 +95,48 @@ public:
         if (changed == 15) changed = plus(15, number());
         changed = plus(1, changed);
     }
+    [[nodiscard]] Source& source() { return source_; }
+    void clear() { bad_ = false; }
 
 private:
-    uint32_t byte() { return at_ < bytes_.size() ? static_cast<uint32_t>(bytes_[at_++]) : fail(); }
+    uint32_t byte() { return bad() ? 0 : source_.byte(); }
     uint32_t plus(uint32_t a, uint32_t b) { return b <= UINT32_MAX - a ? a + b : fail(); }
     uint32_t fail() {
         bad_ = true;
         return 0;
     }
-    std::span<const std::byte> bytes_;
-    size_t at_ = 0;
+
+    Source source_;
     bool bad_ = false;
 };
+
+class CodedBytes {
+public:
+    explicit CodedBytes(RangeReader& coder) : coder_(coder) {}
+    [[nodiscard]] bool bad() const { return coder_.bad(); }
+    uint32_t byte() { return predictor_.code(coder_, 0); }
+
+private:
+    RangeReader& coder_;
+    BytePredictor predictor_;
+};
+
+class PlainBytes {
+public:
+    explicit PlainBytes(std::span<const std::byte> bytes = {}) : bytes_(bytes) {}
+    [[nodiscard]] bool bad() const { return missing_; }
+    uint32_t byte() {
+        missing_ = missing_ || at_ == bytes_.size();
+        return missing_ ? 0 : static_cast<uint32_t>(bytes_[at_++]);
+    }
+
+private:
+    std::span<const std::byte> bytes_;
+    size_t at_ = 0;
+    bool missing_ = false;
+};
+
+using ControlReader = NumberReader<CodedBytes>;
+using SpanReader = NumberReader<PlainBytes>;
 
 } // namespace mural::economy

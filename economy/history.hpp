@@ -2,6 +2,7 @@
 // in it and needs no name.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -24,16 +25,37 @@ public:
     [[nodiscard]] std::span<const std::byte> bytesOf(Item item) const {
         return item.page ? pages_.bytes(item.where, item.sizeBytes) : text_.at(item.where, item.sizeBytes);
     }
+    // So many of a log from its cursor on, none of which is old, come once more.
+    void againAll(ItemLog& log, size_t items) {
+        log.appendCopies(log.cursor, items);
+        log.cursor += items;
+    }
+    // Of the log's next items, short ones whose bytes lie one behind the other and are not old, as those of what was new together.
+    struct Stretch {
+        std::span<const std::byte> bytes;
+        size_t items = 0;
+    };
+    [[nodiscard]] Stretch stretch(const ItemLog& log, size_t mostItems) const {
+        size_t items = 0, sizeBytes = 0;
+        const uint32_t where = log.at(log.cursor).where;
+        for (const auto most = static_cast<size_t>(std::min<uint64_t>(mostItems, log.end() - log.cursor)); items < most; ++items) {
+            const Item item = log.at(log.cursor + items);
+            if (item.page || item.where != where + sizeBytes || text_.old(item.where)) break;
+            sizeBytes += item.sizeBytes;
+        }
+        return {items > 0 ? text_.at(where, sizeBytes) : std::span<const std::byte>(), items};
+    }
+    [[nodiscard]] const TextRing& text() const { return text_; }
     // An item that comes once more, as its stream's log shall have it.
     [[nodiscard]] Item again(Item item) {
         if (item.page) pages_.use(item.where);
         else if (text_.old(item.where)) item.where = text_.add(text_.at(item.where, item.sizeBytes));
         return item;
     }
-    [[nodiscard]] Item addText(std::span<const std::byte> bytes) { return {text_.add(bytes), static_cast<uint32_t>(bytes.size()), 0}; }
+    [[nodiscard]] Item addText(std::span<const std::byte> bytes, uint32_t model) { return {text_.add(bytes), static_cast<uint32_t>(bytes.size()), 0, model}; }
     [[nodiscard]] Item addPage(uint32_t slot, std::span<const std::byte> bytes) {
         pages_.fill(slot, bytes);
-        return {slot, static_cast<uint32_t>(bytes.size()), 1};
+        return {slot, static_cast<uint32_t>(bytes.size()), 1, 0};
     }
     [[nodiscard]] PageStore& pages() { return pages_; }
 

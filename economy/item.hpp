@@ -6,9 +6,12 @@
 namespace mural::economy {
 
 struct Item {
-    uint32_t where; // a text: its offset in the ring; a page: its slot in the store
-    uint32_t sizeBytes : 31;
-    uint32_t page : 1;
+    static constexpr uint32_t kMostModels = 1u << 18;
+
+    uint32_t where = 0; // a text: its offset in the ring; a page: its slot in the store
+    uint32_t sizeBytes : 13 = 0;
+    uint32_t page : 1 = 0;
+    uint32_t model : 18 = 0; // of its words (word_models.hpp); 0: none
     [[nodiscard]] bool like(Item other) const { return page == other.page && sizeBytes == other.sizeBytes; }
 };
 static_assert(sizeof(Item) == 8);

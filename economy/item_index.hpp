@@ -3,15 +3,19 @@
 // both are not found. An entry may be wrong or lost: the packer compares.
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <cstdint>
-#include <memory>
+#include <cstring>
+#include <vector>
+
+#include "economy/large_array.hpp"
 
 namespace mural::economy {
 
 class ItemIndex {
 public:
-    explicit ItemIndex(uint32_t logItems)
-        : mask_(logItems - 1), hashes_(std::make_unique_for_overwrite<uint32_t[]>(logItems)), positions_(std::make_unique<uint32_t[]>(logItems)) {}
+    explicit ItemIndex(uint32_t logItems) : mask_(logItems - 1), againBits_(static_cast<uint32_t>(std::bit_width((logItems + 3) / 4)) - 1), mostPositions_(logItems / 8), hashes_(LargeArray<uint32_t>::make(logItems)), positions_(kFirstPositions) {}
 
     // The item that is appended at `position`; `first`: of its packet.
     void append(uint64_t position, uint32_t hash, uint32_t sizeBytes, bool first) {
@@ -19,6 +23,28 @@ public:
         if (!first) put(hashes_[(position - 1) & mask_], hash, position - 1);
         if (sizeBytes >= kTellingBytes) put(hash, kAnything, position);
     }
+    // The same item as at `from`, behind the same: it is found there, until that is a quarter of a log ago.
+    void appendAgain(uint64_t position, uint64_t from, uint32_t sizeBytes) {
+        const uint32_t hash = hashes_[from & mask_];
+        if (quarter(position) == quarter(from)) hashes_[position & mask_] = hash;
+        else append(position, hash, sizeBytes, false);
+    }
+    // The same of many; `sizeAt(i)`: of the item at `from + i`.
+    void appendAllAgain(uint64_t position, uint64_t from, size_t count, const auto& sizeAt) {
+        for (size_t i = 0; i < count;) {
+            if (quarter(position + i) != quarter(from + i)) {
+                appendAgain(position + i, from + i, sizeAt(i));
+                ++i;
+                continue;
+            }
+            const size_t source = (from + i) & mask_, target = (position + i) & mask_, quarterEnds = (size_t{1} << againBits_) - 1;
+            const size_t most = std::min(quarterEnds + 1 - (source & quarterEnds), quarterEnds + 1 - (target & quarterEnds)), part = std::min(count - i, most);
+            std::memmove(hashes_.data() + target, hashes_.data() + source, part * sizeof(uint32_t));
+            i += part;
+        }
+    }
+    // One that is another each time: nobody finds it by what it is.
+    void appendUnfound(uint64_t position, uint32_t hash) { hashes_[position & mask_] = hash; }
     void packetEnds(uint64_t lastPosition) { put(hashes_[lastPosition & mask_], kNothing, lastPosition); }
 
     [[nodiscard]] uint32_t hashAt(uint64_t position) const { return hashes_[position & mask_]; }
@@ -33,15 +59,38 @@ public:
     static constexpr uint32_t kTellingBytes = 32;
 
 private:
-    [[nodiscard]] uint32_t key(uint32_t a, uint32_t b) const {
+    static constexpr size_t kFirstPositions = 8192;
+
+    [[nodiscard]] uint64_t quarter(uint64_t position) const { return position >> againBits_; }
+    [[nodiscard]] size_t key(uint32_t a, uint32_t b) const {
         const uint64_t mixed = (uint64_t{a} << 32 | b) * 0x9e3779b97f4a7c15u;
-        return static_cast<uint32_t>(mixed >> 32) & mask_;
+        return static_cast<size_t>(mixed >> 32) & (positions_.size() - 1);
     }
-    void put(uint32_t hash, uint32_t next, uint64_t position) { positions_[key(hash, next)] = static_cast<uint32_t>(position); }
+    void put(uint32_t hash, uint32_t next, uint64_t position) {
+        uint32_t& place = positions_[key(hash, next)];
+        puts_ += place == 0;
+        place = static_cast<uint32_t>(position);
+        if (puts_ > positions_.size() / 8 && positions_.size() < mostPositions_) grow(position);
+    }
+    // Programs of few calls touch little memory. What was there is put again as the log has it.
+    void grow(uint64_t end) {
+        positions_.assign(positions_.size() * 4, 0);
+        puts_ = 0;
+        const uint64_t known = end < mask_ ? end : mask_;
+        for (uint64_t position = end - known; position + 1 < end; ++position) {
+            const uint32_t hash = hashes_[position & mask_];
+            positions_[key(hash, hashes_[(position + 1) & mask_])] = static_cast<uint32_t>(position);
+            positions_[key(hash, kAnything)] = static_cast<uint32_t>(position);
+            puts_ += 2;
+        }
+    }
 
     const uint32_t mask_;
-    const std::unique_ptr<uint32_t[]> hashes_;
-    const std::unique_ptr<uint32_t[]> positions_;
+    const uint32_t againBits_; // of a quarter of the log
+    const size_t mostPositions_;
+    LargeArray<uint32_t> hashes_;
+    std::vector<uint32_t> positions_; // a power of two
+    size_t puts_ = 0;
 };
 
 } // namespace mural::economy

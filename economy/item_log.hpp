@@ -2,18 +2,28 @@
 // before.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
-#include <memory>
+#include <cstring>
 
 #include "economy/item.hpp"
+#include "economy/large_array.hpp"
 
 namespace mural::economy {
 
 class ItemLog {
 public:
-    explicit ItemLog(uint32_t capacity) : mask_(capacity - 1), items_(std::make_unique_for_overwrite<Item[]>(capacity)) {}
+    explicit ItemLog(uint32_t capacity) : mask_(capacity - 1), items_(LargeArray<Item>::make(capacity)) {}
 
     void append(Item item) { items_[end_++ & mask_] = item; }
+    // Those from `from` on once more, all of which it holds.
+    void appendCopies(uint64_t from, size_t count) {
+        while (count > 0) {
+            const size_t source = from & mask_, target = end_ & mask_, part = std::min({count, size_t{mask_} + 1 - source, size_t{mask_} + 1 - target});
+            std::memmove(static_cast<void*>(items_.data() + target), items_.data() + source, part * sizeof(Item));
+            from += part, end_ += part, count -= part;
+        }
+    }
     // An item that was sent takes the place of the expected one, if it has its size: then that does not come any more.
     void replaces(Item item) {
         if (holds(cursor) && at(cursor).like(item)) ++cursor;
@@ -26,7 +36,7 @@ public:
 
 private:
     const uint32_t mask_;
-    std::unique_ptr<Item[]> items_;
+    LargeArray<Item> items_;
     uint64_t end_ = 0;
 };
 

@@ -1,5 +1,6 @@
 #include "economy/packer.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <xxhash.h>
 
@@ -10,11 +11,48 @@ namespace mural::economy {
 namespace {
 
 // A patch that is cheaper than finding a better place.
-constexpr size_t kCheapPatchBytes = 8;
+constexpr size_t kCheapPatchBytes = 8, kCheapPagePatchBytes = 512;
 // So many expected items may be missing before the index is asked.
 constexpr size_t kMostSkipped = 4;
+constexpr uint32_t kIndexedOfRun = 2;
+// So many short records may be in the log that go plain now.
+constexpr size_t kMostLeftOut = 1024;
+
+// Multiples of 4 bytes. Most are so few that a call of memcmp takes longer.
+inline bool sameWords(const std::byte* a, const std::byte* b, size_t sizeBytes) {
+    if (sizeBytes > 64) return std::memcmp(a, b, sizeBytes) == 0;
+    for (; sizeBytes >= 8; sizeBytes -= 8, a += 8, b += 8) {
+        uint64_t wordsOfA = 0, wordsOfB = 0;
+        std::memcpy(&wordsOfA, a, 8);
+        std::memcpy(&wordsOfB, b, 8);
+        if (wordsOfA != wordsOfB) return false;
+    }
+    return sizeBytes == 0 || std::memcmp(a, b, 4) == 0;
+}
+
+// How many of them, in whole words, from the first on.
+inline size_t equalBytes(const std::byte* a, const std::byte* b, size_t sizeBytes) {
+    constexpr size_t kBlock = 1024; // memcmp is fast, but does not tell where
+    size_t at = 0;
+    while (sizeBytes - at >= kBlock && std::memcmp(a + at, b + at, kBlock) == 0) at += kBlock;
+    for (; sizeBytes - at >= 8; at += 8) {
+        uint64_t wordsOfA = 0, wordsOfB = 0;
+        std::memcpy(&wordsOfA, a + at, 8);
+        std::memcpy(&wordsOfB, b + at, 8);
+        if (wordsOfA != wordsOfB) break;
+    }
+    return at < sizeBytes && std::memcmp(a + at, b + at, 4) == 0 ? at + 4 : at;
+}
 
 } // namespace
+
+bool Packer::next() {
+    if (plain_) {
+        const size_t sizeBytes = cut_.passShort();
+        asBytes(cut_.at() - sizeBytes, cut_.at());
+    }
+    return cut_.next(piece_);
+}
 
 void Packer::add(uint32_t stream, std::span<const std::byte> packet) {
     if (stream != lastStream_) {
@@ -23,44 +61,130 @@ void Packer::add(uint32_t stream, std::span<const std::byte> packet) {
         lastStream_ = stream;
     }
     const History::Opened opened = history_.open(stream);
-    if (opened.place == itemIndexes_.size()) itemIndexes_.emplace_back();
-    if (opened.fresh) itemIndexes_[opened.place] = std::make_unique<ItemIndex>(limits_.logItems);
+    if (opened.place == streams_.size()) streams_.emplace_back();
+    if (opened.fresh) streams_[opened.place] = std::make_unique<StreamIndex>(limits_.logItems);
     log_ = &history_.log(opened.place);
-    index_ = itemIndexes_[opened.place].get();
+    index_ = &streams_[opened.place]->items;
+    runs_ = &streams_[opened.place]->runs;
     packet_ = packet;
     first_ = true;
-    const CutPacket cut = cutPacket(packet, pieces_);
-    endsInValue_ = cut.lastOpcode == wire::kOpBlobBegin || cut.lastOpcode == wire::kOpBlobData;
-    counts_.records += cut.records;
-    for (size_t i = 0; i < pieces_.size(); ++i) {
+    cut_ = PacketCut(packet);
+    while (next()) {
+        if (piece_.page()) batchPageBytes_ += piece_.sizeBytes;
+        if (runOn()) continue;
+        keepRun();
         hashed_ = false;
-        place(i);
+        place();
     }
+    keepRun();
+    endsInValue_ = cut_.lastOpcode() == wire::kOpBlobBegin || cut_.lastOpcode() == wire::kOpBlobData;
+    counts_.records += cut_.records();
     if (!first_) index_->packetEnds(log_->end() - 1);
     settle();
-    if (cut.sizeBytes < packet.size()) restAsBytes(cut.sizeBytes);
+    asBytes(cut_.at(), packet.size());
     control_.put(Other::End);
     ++counts_.packets;
     counts_.rawBytes += packet.size();
     batchRawBytes_ += packet.size();
 }
 
-// Cheapest first: what is expected, a few words of it changed, what was expected a little later, another place where this
+// The piece in hand comes as expected.
+bool Packer::runOn() {
+    if (runKnown()) return true;
+    ItemLog& log = *log_;
+    if (!log.holds(log.cursor)) return false;
+    const Item item = log.at(log.cursor);
+    if (!same(item, piece_)) return false;
+    const bool record = !piece_.page() && cut_.atRecord();
+    if (!record) keepRun();
+    // A few at the beginning of a run are found where they came last: what changes between them is the newest there.
+    if (run_ < kIndexedOfRun) {
+        run();
+    } else {
+        ++run_;
+        counts_.storeHits += item.page;
+        index_->appendAgain(log.end(), log.cursor, item.sizeBytes);
+        ++log.cursor;
+        log.append(history_.again(item));
+    }
+    if (!record) return true;
+    const uint64_t text = history_.text().writtenBefore(log.at(log.end() - 1).where);
+    if (open_.items == 0) {
+        open_ = {log.end() - 1, 0, text, 0, 0};
+        openBytesAt_ = piece_.at;
+    }
+    open_.oldestText = std::min(open_.oldestText, text);
+    ++open_.items;
+    open_.sizeBytes += piece_.sizeBytes;
+    openIsKnown_ = false;
+    return true;
+}
+
+// The piece in hand and what follows it come as in a run that is known, which is compared at once.
+bool Packer::runKnown() {
+    if (!cut_.atRecord() || piece_.page()) return false;
+    ItemLog& log = *log_;
+    KnownRuns::Run run = runs_->fromCursor(log);
+    if (run.items < KnownRuns::kLeastItems || history_.text().oldSince(run.oldestText)) return false;
+    const size_t most = std::min<size_t>(run.sizeBytes, packet_.size() - piece_.at);
+    const size_t equal = equalBytes(runs_->bytesOf(run), packet_.data() + piece_.at, most);
+    if (equal < run.sizeBytes) {
+        const uint64_t from = run.position;
+        uint32_t items = 0, sizeBytes = 0;
+        for (; sizeBytes + log.at(from + items).sizeBytes <= equal; ++items) sizeBytes += log.at(from + items).sizeBytes;
+        run.items = items, run.sizeBytes = sizeBytes;
+    }
+    if (run.items == 0) return false;
+    if (pagesRun_ != 0) settle();
+    const auto indexed = [&] { return run_ < kIndexedOfRun; };
+    const uint64_t from = log.cursor;
+    uint32_t done = 0;
+    const uint64_t position = log.end();
+    for (; done < run.items && indexed(); ++done) this->run();
+    index_->appendAllAgain(log.end(), from + done, run.items - done, [&](size_t i) { return uint32_t{log.at(from + done + i).sizeBytes}; });
+    history_.againAll(log, run.items - done);
+    run_ += run.items - done;
+    cut_.passed(run.items - 1, run.sizeBytes - piece_.sizeBytes, log.at(log.end() - 1).sizeBytes);
+    openIsKnown_ = open_.items == 0;
+    if (openIsKnown_) {
+        open_ = run;
+        open_.position = position;
+        openBytesAt_ = piece_.at;
+    } else {
+        open_.oldestText = std::min(open_.oldestText, run.oldestText);
+        open_.items += run.items;
+        open_.sizeBytes += run.sizeBytes;
+    }
+    return true;
+}
+
+// The run of short records ends here.
+void Packer::keepRun() {
+    if (open_.items >= KnownRuns::kLeastItems && open_.sizeBytes <= KnownRuns::kMostBytes) {
+        if (!openIsKnown_) open_.bytesAt = runs_->keep(packet_.subspan(openBytesAt_, open_.sizeBytes));
+        runs_->add(open_);
+    }
+    open_ = {};
+}
+
+// Cheapest first: a few words of it changed, what was expected a little later, another place where this
 // and the next came, pages that the nodes have, more words changed. Else it is new.
-void Packer::place(size_t i) {
-    const Piece& piece = pieces_[i];
-    if (expects(0, piece)) return run();
+void Packer::place() {
+    const Piece piece = piece_;
+    if (plain_) skipToLike(piece);
     if (skipTo(piece)) return;
-    if (patch(piece, kCheapPatchBytes)) return;
-    if (piece.page() && fromStore(i, true)) return;
-    if (seek(i)) return;
-    if (piece.page() && fromStore(i, false)) return;
-    if (patch(piece, size_t{piece.sizeBytes} * 3 / 4)) return;
+    if (patch(piece, piece.page() ? kCheapPagePatchBytes : kCheapPatchBytes)) return;
+    if (piece.page() && fromStore(true)) return;
+    if (seek()) return;
+    if (piece.page() && fromStore(false)) return;
+    // Words of what is no page are guessed: all of them changed cost less than new ones, if this is the place.
+    const bool place = !piece.page() && piece.sizeBytes >= ItemIndex::kTellingBytes;
+    if (patch(piece, place ? size_t{piece.sizeBytes} * 2 : size_t{piece.sizeBytes} * 3 / 4)) return;
     send(piece);
 }
 
 bool Packer::same(Item item, const Piece& piece) const {
-    return item.sizeBytes == piece.sizeBytes && std::memcmp(history_.bytesOf(item).data(), packet_.data() + piece.at, piece.sizeBytes) == 0;
+    return item.sizeBytes == piece.sizeBytes && sameWords(history_.bytesOf(item).data(), packet_.data() + piece.at, piece.sizeBytes);
 }
 
 bool Packer::expects(size_t ahead, const Piece& piece) const {
@@ -80,6 +204,20 @@ bool Packer::skipTo(const Piece& piece) {
     return false;
 }
 
+// Between long records the log may have short ones from when they did not go plain.
+void Packer::skipToLike(const Piece& piece) {
+    const Item now{0, piece.sizeBytes, static_cast<uint32_t>(piece.page())};
+    for (size_t ahead = 0; ahead <= kMostLeftOut && log_->holds(log_->cursor + ahead); ++ahead) {
+        const Item there = log_->at(log_->cursor + ahead);
+        if (!there.like(now) && !there.page) continue;
+        if (ahead == 0 || !there.like(now)) return;
+        settle();
+        control_.put(Do::Skip, static_cast<uint32_t>(ahead));
+        log_->cursor += ahead;
+        return;
+    }
+}
+
 // Records of another command are not patched: their words mean something else, and the place is most likely the wrong one.
 bool Packer::patch(const Piece& piece, size_t mostBytes) {
     if (!log_->holds(log_->cursor)) return false;
@@ -90,24 +228,49 @@ bool Packer::patch(const Piece& piece, size_t mostBytes) {
     if (!patch_.find(old, now, mostBytes)) return false;
     settle();
     control_.put(Do::Patch, static_cast<uint32_t>(patch_.spans.size()));
+    Item changed = expected;
+    if (!piece.page()) words_.begin(changed, old);
     size_t at = 0;
     for (const WordSpan& span : patch_.spans) {
-        control_.span(span.kept, span.changed);
-        literal(Section::Words, now.subspan(at + size_t{span.kept} * 4, size_t{span.changed} * 4));
-        at += (size_t{span.kept} + span.changed) * 4;
+        if (piece.page()) putSpan(span.kept, span.changed, [&](uint32_t byte) { literals_[static_cast<size_t>(Section::Spans)].push_back(static_cast<std::byte>(byte)); });
+        else control_.span(span.kept, span.changed);
+        at += size_t{span.kept} * 4;
+        const size_t sizeBytes = size_t{span.changed} * 4;
+        if (piece.page()) literal(Section::Words, now.subspan(at, sizeBytes));
+        else codeWords(at, old.subspan(at, sizeBytes), now.subspan(at, sizeBytes));
+        at += sizeBytes;
     }
+    if (!piece.page()) words_.end();
     ++log_->cursor;
     ++counts_.patches;
-    append(keep(piece), static_cast<uint32_t>(hashOf(piece)));
+    const Item after = keep(piece, changed.model);
+    const auto hash = static_cast<uint32_t>(hashOf(piece));
+    if (expected.model == 0) {
+        append(after, hash);
+    } else {
+        index_->appendUnfound(log_->end(), hash);
+        first_ = false;
+        log_->append(after);
+    }
     return true;
 }
 
-bool Packer::seek(size_t i) {
-    const auto hash = static_cast<uint32_t>(hashOf(pieces_[i]));
-    const bool last = i + 1 == pieces_.size();
-    const uint32_t next = last ? ItemIndex::kNothing : static_cast<uint32_t>(XXH3_64bits(packet_.data() + pieces_[i + 1].at, pieces_[i + 1].sizeBytes));
-    return seekAt(pieces_[i], index_->find(hash, next, log_->end())) ||
-           (pieces_[i].sizeBytes >= ItemIndex::kTellingBytes && seekAt(pieces_[i], index_->find(hash, ItemIndex::kAnything, log_->end())));
+void Packer::codeWords(size_t at, std::span<const std::byte> old, std::span<const std::byte> now) {
+    for (size_t i = 0; i < old.size(); i += 4) {
+        uint32_t before = 0, word = 0;
+        std::memcpy(&before, old.data() + i, 4);
+        std::memcpy(&word, now.data() + i, 4);
+        words_.code(coder_, static_cast<uint32_t>((at + i) / 4), before, word);
+    }
+}
+
+bool Packer::seek() {
+    const auto hash = static_cast<uint32_t>(hashOf(piece_));
+    PacketCut ahead = cut_;
+    Piece behind;
+    const uint32_t next = ahead.next(behind) ? static_cast<uint32_t>(XXH3_64bits(packet_.data() + behind.at, behind.sizeBytes)) : ItemIndex::kNothing;
+    return seekAt(piece_, index_->find(hash, next, log_->end())) ||
+           (piece_.sizeBytes >= ItemIndex::kTellingBytes && seekAt(piece_, index_->find(hash, ItemIndex::kAnything, log_->end())));
 }
 
 bool Packer::seekAt(const Piece& piece, uint64_t position) {
@@ -120,9 +283,13 @@ bool Packer::seekAt(const Piece& piece, uint64_t position) {
 }
 
 // In place: the page that comes next is expected behind the one that this takes the place of.
-bool Packer::fromStore(size_t i, bool inPlace) {
-    const Piece& piece = pieces_[i];
-    if (inPlace && !(i + 1 < pieces_.size() && log_->holds(log_->cursor) && log_->at(log_->cursor).sizeBytes == piece.sizeBytes && expects(1, pieces_[i + 1]))) return false;
+bool Packer::fromStore(bool inPlace) {
+    const Piece piece = piece_;
+    if (inPlace) {
+        PacketCut ahead = cut_;
+        Piece behind;
+        if (!(ahead.next(behind) && log_->holds(log_->cursor) && log_->at(log_->cursor).sizeBytes == piece.sizeBytes && expects(1, behind))) return false;
+    }
     PageStore& pages = history_.pages();
     const uint32_t slot = pageIndex_.find(hashOf(piece), [&](uint32_t s) {
         const auto page = pages.at(s);
@@ -157,8 +324,7 @@ void Packer::run() {
     ++run_;
     const Item item = log_->at(log_->cursor);
     if (item.page) ++counts_.storeHits;
-    const uint32_t hash = index_->hashAt(log_->cursor++);
-    append(history_.again(item), hash);
+    append(history_.again(item), index_->hashAt(log_->cursor++));
 }
 
 void Packer::append(Item item, uint32_t hash) {
@@ -167,8 +333,8 @@ void Packer::append(Item item, uint32_t hash) {
     log_->append(item);
 }
 
-Item Packer::keep(const Piece& piece) {
-    if (!piece.page()) return history_.addText(bytesOf(piece));
+Item Packer::keep(const Piece& piece, uint32_t model) {
+    if (!piece.page()) return history_.addText(bytesOf(piece), model);
     const uint32_t slot = history_.pages().take();
     pageIndex_.set(slot, hashOf(piece));
     ++counts_.newPages;
@@ -184,10 +350,12 @@ void Packer::settle() {
     run_ = pagesRun_ = 0;
 }
 
-void Packer::restAsBytes(size_t from) {
+void Packer::asBytes(size_t from, size_t to) {
+    if (from == to) return;
+    settle();
     control_.put(Other::Bytes);
-    control_.number(static_cast<uint32_t>(packet_.size() - from));
-    literal(Section::Texts, packet_.subspan(from));
+    control_.number(static_cast<uint32_t>(to - from));
+    literal(Section::Texts, packet_.subspan(from, to - from));
 }
 
 uint64_t Packer::hashOf(const Piece& piece) {
@@ -196,18 +364,21 @@ uint64_t Packer::hashOf(const Piece& piece) {
     return hash_;
 }
 
-SectionBytes Packer::sections() { return {control_.bytes(), literals_[1], literals_[2], literals_[3]}; }
+SectionBytes Packer::finish() {
+    control_.put(Other::Done);
+    return {coder_.finish(), literals_[1], literals_[2], literals_[3], literals_[4]};
+}
 
-uint64_t Packer::stagedBytes() {
-    uint64_t sum = 0;
-    for (const auto section : sections()) sum += section.size();
+uint64_t Packer::stagedBytes() const {
+    uint64_t sum = coder_.sizeBytes();
+    for (const auto& literal : literals_) sum += literal.size();
     return sum;
 }
 
 void Packer::clear() {
     counts_.stagedBytes += stagedBytes();
-    batchRawBytes_ = 0;
-    control_.bytes().clear();
+    batchRawBytes_ = batchPageBytes_ = 0;
+    coder_.clear();
     for (auto& literal : literals_) literal.clear();
 }
 

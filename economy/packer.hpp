@@ -12,8 +12,10 @@
 #include "economy/control_code.hpp"
 #include "economy/history.hpp"
 #include "economy/item_index.hpp"
+#include "economy/known_runs.hpp"
 #include "economy/packet_cut.hpp"
 #include "economy/page_index.hpp"
+#include "economy/word_coder.hpp"
 #include "economy/word_patch.hpp"
 
 namespace mural::economy {
@@ -31,17 +33,22 @@ struct PackerCounts {
 
 class Packer {
 public:
-    explicit Packer(const Limits& limits) : limits_(limits), history_(limits) {}
+    explicit Packer(const Limits& limits) : limits_(limits), history_(limits), words_(limits.modelWords) {}
 
     // False: there was no memory for the store.
     [[nodiscard]] bool ready() const { return history_.ready(); }
 
     void add(uint32_t stream, std::span<const std::byte> packet);
 
-    // What has been added since clear().
-    [[nodiscard]] SectionBytes sections();
-    [[nodiscard]] uint64_t stagedBytes();
+    // Short records go as they are from now on, not looked at: between batches.
+    void beginPlain(bool plain) { plain_ = plain; }
+    [[nodiscard]] bool plain() const { return plain_; }
+
+    // What has been added since clear(), which is next.
+    [[nodiscard]] SectionBytes finish();
+    [[nodiscard]] uint64_t stagedBytes() const;
     [[nodiscard]] uint64_t rawBytes() const { return batchRawBytes_; }
+    [[nodiscard]] uint64_t pageBytes() const { return batchPageBytes_; } // of them, in pages of long records
     void clear();
     // The last packet ends within a value that goes ahead of its record: nodes can do nothing with that yet.
     [[nodiscard]] bool endsInValue() const { return endsInValue_; }
@@ -49,20 +56,26 @@ public:
     [[nodiscard]] const PackerCounts& counts() const { return counts_; }
 
 private:
-    void place(size_t i);
+    bool next();
+    bool runOn();
+    bool runKnown();
+    void keepRun();
+    void place();
     [[nodiscard]] bool same(Item item, const Piece& piece) const;
     [[nodiscard]] bool expects(size_t ahead, const Piece& piece) const;
     bool skipTo(const Piece& piece);
+    void skipToLike(const Piece& piece);
     bool patch(const Piece& piece, size_t mostBytes);
-    bool seek(size_t i);
+    void codeWords(size_t at, std::span<const std::byte> old, std::span<const std::byte> now);
+    bool seek();
     bool seekAt(const Piece& piece, uint64_t position);
-    bool fromStore(size_t i, bool inPlace);
+    bool fromStore(bool inPlace);
     void send(const Piece& piece);
     void run();
     void append(Item item, uint32_t hash);
-    Item keep(const Piece& piece);
+    Item keep(const Piece& piece, uint32_t model = 0);
     void settle();
-    void restAsBytes(size_t from);
+    void asBytes(size_t from, size_t to);
     [[nodiscard]] uint64_t hashOf(const Piece& piece); // of the one in hand
     [[nodiscard]] std::span<const std::byte> bytesOf(const Piece& piece) const { return packet_.subspan(piece.at, piece.sizeBytes); }
     void literal(Section section, std::span<const std::byte> bytes) {
@@ -73,21 +86,34 @@ private:
     const Limits limits_;
     History history_;
     PageIndex pageIndex_;
-    std::vector<std::unique_ptr<ItemIndex>> itemIndexes_; // by place of the log
+    struct StreamIndex {
+        explicit StreamIndex(uint32_t logItems) : items(logItems) {}
+        ItemIndex items;
+        KnownRuns runs;
+    };
+    std::vector<std::unique_ptr<StreamIndex>> streams_; // by place of the log
 
-    ControlWriter control_;
-    std::array<std::vector<std::byte>, kSections> literals_; // Control's is in control_
-    uint64_t batchRawBytes_ = 0;
+    RangeWriter coder_; // of control_ and words_
+    ControlWriter control_{coder_};
+    WordCoder words_;
+    std::array<std::vector<std::byte>, kSections> literals_; // Control's is in coder_
+    uint64_t batchRawBytes_ = 0, batchPageBytes_ = 0;
     uint32_t lastStream_ = 0;
     bool endsInValue_ = false;
+    bool plain_ = false;
     uint32_t run_ = 0; // items as expected that are not in control_ yet
     uint32_t pagesFrom_ = 0, pagesRun_ = 0; // the same of pages of the store
 
     // The packet in hand.
     std::span<const std::byte> packet_;
-    std::vector<Piece> pieces_;
+    PacketCut cut_;  // behind the piece in hand
+    Piece piece_;
     ItemLog* log_ = nullptr;
     ItemIndex* index_ = nullptr;
+    KnownRuns* runs_ = nullptr;
+    KnownRuns::Run open_;    // the run of short records that goes on, without its bytes
+    uint32_t openBytesAt_ = 0; // where in the packet it begins
+    bool openIsKnown_ = false; // all of it is one of runs_
     bool first_ = true;
     uint64_t hash_ = 0; // of the piece in hand, once it is known
     bool hashed_ = false;

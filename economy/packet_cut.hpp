@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
-#include <vector>
 
 #include "economy/limits.hpp"
 #include "streamcodec/record.hpp"
@@ -19,38 +18,72 @@ struct Piece {
     [[nodiscard]] bool page() const { return sizeBytes > kMostTextBytes; }
 };
 
-struct CutPacket {
-    size_t sizeBytes = 0; // of the pieces: all, or less when a record's length makes no sense; the rest is no items then
-    uint64_t records = 0;
-    uint32_t lastOpcode = 0;
-};
+// A place in a packet. A copy looks ahead.
+class PacketCut {
+public:
+    PacketCut() = default;
+    explicit PacketCut(std::span<const std::byte> packet) : packet_(packet) {}
 
-inline CutPacket cutPacket(std::span<const std::byte> packet, std::vector<Piece>& pieces) {
-    pieces.clear();
-    CutPacket cut;
-    size_t at = 0;
-    while (packet.size() - at >= 4) {
+    // False: there is none. Where a record's length makes no sense, the rest is no items.
+    [[nodiscard]] bool next(Piece& piece) {
+        if (at_ < recordEnd_) {
+            piece = {static_cast<uint32_t>(at_), kPageBytes};
+            at_ += kPageBytes;
+            return true;
+        }
+        if (packet_.size() - at_ < 4) return false;
         uint32_t head[2] = {};
-        std::memcpy(head, packet.data() + at, packet.size() - at >= 8 ? 8 : 4);
+        std::memcpy(head, packet_.data() + at_, packet_.size() - at_ >= 8 ? 8 : 4);
         const uint32_t words = head[0] >> 16 == record::kLongForm ? head[1] : head[0] >> 16;
         const size_t sizeBytes = size_t{words} * 4;
-        if (words == 0 || sizeBytes > packet.size() - at) break;
-        ++cut.records;
-        cut.lastOpcode = head[0] & 0xffff;
-        if (sizeBytes <= kMostTextBytes) {
-            pieces.push_back({static_cast<uint32_t>(at), words * 4});
-            at += sizeBytes;
-            continue;
-        }
-        const size_t end = at + sizeBytes;
-        if (const size_t front = sizeBytes % kPageBytes) {
-            pieces.push_back({static_cast<uint32_t>(at), static_cast<uint32_t>(front)});
-            at += front;
-        }
-        for (; at < end; at += kPageBytes) pieces.push_back({static_cast<uint32_t>(at), kPageBytes});
+        if (words == 0 || sizeBytes > packet_.size() - at_) return false;
+        ++records_;
+        lastRecord_ = at_;
+        recordEnd_ = at_ + sizeBytes;
+        const size_t front = sizeBytes <= kMostTextBytes ? sizeBytes : sizeBytes % kPageBytes;
+        piece = {static_cast<uint32_t>(at_), static_cast<uint32_t>(front == 0 ? kPageBytes : front)};
+        at_ += piece.sizeBytes;
+        return true;
     }
-    cut.sizeBytes = at;
-    return cut;
-}
+    // Behind all short records that follow here; how many bytes they are.
+    size_t passShort() {
+        const size_t from = at_;
+        if (!atRecord()) return 0;
+        while (packet_.size() - at_ >= 4) {
+            uint32_t head = 0;
+            std::memcpy(&head, packet_.data() + at_, 4);
+            const size_t sizeBytes = size_t{head >> 16} * 4;
+            if (sizeBytes - 4 > kMostTextBytes - 4 || sizeBytes > packet_.size() - at_) break; // 0, or a long one, or none
+            lastRecord_ = at_;
+            at_ += sizeBytes;
+            ++records_;
+        }
+        recordEnd_ = at_;
+        return at_ - from;
+    }
+    // So many short records are behind, the last of them of so many bytes.
+    void passed(size_t records, size_t bytes, size_t lastBytes) {
+        records_ += records;
+        at_ += bytes;
+        if (records > 0) lastRecord_ = at_ - lastBytes;
+        recordEnd_ = at_;
+    }
+
+    [[nodiscard]] bool atRecord() const { return at_ >= recordEnd_; }
+    [[nodiscard]] size_t at() const { return at_; }
+    [[nodiscard]] uint64_t records() const { return records_; }
+    [[nodiscard]] uint32_t lastOpcode() const { // 0: there was none
+        uint32_t head = 0;
+        if (records_ > 0) std::memcpy(&head, packet_.data() + lastRecord_, 4);
+        return head & 0xffff;
+    }
+
+private:
+    std::span<const std::byte> packet_;
+    size_t at_ = 0;
+    size_t recordEnd_ = 0; // of the record that has begun
+    size_t lastRecord_ = 0;
+    uint64_t records_ = 0;
+};
 
 } // namespace mural::economy

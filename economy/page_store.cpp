@@ -1,14 +1,10 @@
 #include "economy/page_store.hpp"
 
-#include <cstdlib>
 #include <cstring>
 
 namespace mural::economy {
 
-void PageStore::Free::operator()(std::byte* p) const { std::free(p); }
-
-PageStore::PageStore(uint64_t sizeBytes)
-    : capacity_(static_cast<uint32_t>(sizeBytes / kPageBytes)), bytes_(static_cast<std::byte*>(std::calloc(capacity_, kPageBytes))) {}
+PageStore::PageStore(uint64_t sizeBytes) : capacity_(static_cast<uint32_t>(sizeBytes / kPageBytes)), bytes_(LargeArray<std::byte>::tryMake(size_t{capacity_} * kPageBytes)) {}
 
 uint32_t PageStore::take() {
     if (sizes_.size() < capacity_) {
@@ -24,7 +20,7 @@ uint32_t PageStore::take() {
 }
 
 void PageStore::fill(uint32_t slot, std::span<const std::byte> page) {
-    std::memmove(bytes_.get() + size_t{slot} * kPageBytes, page.data(), page.size());
+    std::memmove(bytes_.data() + size_t{slot} * kPageBytes, page.data(), page.size());
     sizes_[slot] = static_cast<uint16_t>(page.size());
 }
 

@@ -5,10 +5,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
+#include "economy/large_array.hpp"
 #include "economy/limits.hpp"
 
 namespace mural::economy {
@@ -18,7 +18,7 @@ public:
     explicit PageStore(uint64_t sizeBytes);
 
     // False: there was no memory for it.
-    [[nodiscard]] bool ready() const { return bytes_ != nullptr; }
+    [[nodiscard]] bool ready() const { return static_cast<bool>(bytes_); }
 
     // The slot for a new page; what was in it is gone.
     uint32_t take();
@@ -28,18 +28,15 @@ public:
 
     // Empty where there is none.
     [[nodiscard]] std::span<const std::byte> at(uint32_t slot) const {
-        return slot < sizes_.size() ? std::span<const std::byte>(bytes_.get() + size_t{slot} * kPageBytes, sizes_[slot]) : std::span<const std::byte>();
+        return slot < sizes_.size() ? std::span<const std::byte>(bytes_.data() + size_t{slot} * kPageBytes, sizes_[slot]) : std::span<const std::byte>();
     }
     // Of a known slot, whatever it holds.
-    [[nodiscard]] std::span<const std::byte> bytes(uint32_t slot, size_t sizeBytes) const { return {bytes_.get() + size_t{slot} * kPageBytes, sizeBytes}; }
+    [[nodiscard]] std::span<const std::byte> bytes(uint32_t slot, size_t sizeBytes) const { return {bytes_.data() + size_t{slot} * kPageBytes, sizeBytes}; }
     [[nodiscard]] uint32_t slots() const { return static_cast<uint32_t>(sizes_.size()); }
 
 private:
     const uint32_t capacity_;
-    struct Free {
-        void operator()(std::byte* p) const;
-    };
-    std::unique_ptr<std::byte[], Free> bytes_; // zero, and not in memory before it is used
+    LargeArray<std::byte> bytes_;
     std::vector<uint16_t> sizes_;
     std::vector<uint8_t> used_;
     uint32_t hand_ = 0;

@@ -9,7 +9,6 @@ namespace mural::economy {
 
 namespace {
 
-constexpr int kZstdLevel = 1;
 constexpr int kZstdWindowLog = 20;  // 1 MiB, per section and side
 constexpr size_t kLz4Window = 65536;
 constexpr size_t kLz4PieceBytes = size_t{1} << 20; // of a section, as LZ4 takes no more than an int
@@ -25,16 +24,17 @@ void putSize(std::vector<std::byte>& into, uint32_t size) {
 } // namespace
 
 struct SectionCompressor::State {
+    const int zstdLevel;
     std::unique_ptr<ZSTD_CCtx, size_t (*)(ZSTD_CCtx*)> zstd{nullptr, ZSTD_freeCCtx};
     std::unique_ptr<LZ4_stream_t, int (*)(LZ4_stream_t*)> lz4{nullptr, LZ4_freeStream};
-    std::vector<std::byte> window; // of LZ4: the bytes before, and behind them the ones in hand
+    std::vector<std::byte> window{}; // of LZ4: the bytes before, and behind them the ones in hand
     size_t windowBytes = 0;
 
     bool byZstd(std::span<const std::byte> bytes, std::vector<std::byte>& into) {
         if (!zstd) {
             zstd.reset(ZSTD_createCCtx());
             if (!zstd) return false;
-            ZSTD_CCtx_setParameter(zstd.get(), ZSTD_c_compressionLevel, kZstdLevel);
+            ZSTD_CCtx_setParameter(zstd.get(), ZSTD_c_compressionLevel, zstdLevel);
             ZSTD_CCtx_setParameter(zstd.get(), ZSTD_c_windowLog, kZstdWindowLog);
             ZSTD_CCtx_setParameter(zstd.get(), ZSTD_c_contentSizeFlag, 0);
         }
@@ -77,7 +77,7 @@ struct SectionCompressor::State {
     }
 };
 
-SectionCompressor::SectionCompressor() : state_(std::make_unique<State>()) {}
+SectionCompressor::SectionCompressor(int zstdLevel) : state_(new State{zstdLevel}) {}
 SectionCompressor::~SectionCompressor() = default;
 SectionCompressor::SectionCompressor(SectionCompressor&&) noexcept = default;
 
@@ -87,7 +87,7 @@ bool SectionCompressor::compress(Coding coding, std::span<const std::byte> bytes
 
 struct SectionDecompressor::State {
     std::unique_ptr<ZSTD_DCtx, size_t (*)(ZSTD_DCtx*)> zstd{nullptr, ZSTD_freeDCtx};
-    std::vector<std::byte> window; // of LZ4: the last bytes before, at its end
+    std::vector<std::byte> window{}; // of LZ4: the last bytes before, at its end
 
     bool byZstd(std::span<const std::byte> bytes, std::span<std::byte> into) {
         if (!zstd) {

@@ -15,7 +15,7 @@ constexpr size_t kCodings = 4;
 
 class SectionCompressor {
 public:
-    SectionCompressor();
+    explicit SectionCompressor(int zstdLevel = 1);
     ~SectionCompressor();
     SectionCompressor(SectionCompressor&&) noexcept;
 

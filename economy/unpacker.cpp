@@ -1,12 +1,17 @@
 #include "economy/unpacker.hpp"
 
+#include <algorithm>
 #include <cstring>
+#include <vector>
 
 #include "streamcodec/wire.hpp"
 
 namespace mural::economy {
 
 namespace {
+
+// At most one for each item, and a few more for each packet; what is packed well can be any number of steps.
+constexpr uint32_t kMostSteps = 1u << 23;
 
 uint32_t opcodeOf(std::span<const std::byte> record) {
     uint32_t head = 0;
@@ -16,28 +21,32 @@ uint32_t opcodeOf(std::span<const std::byte> record) {
 
 } // namespace
 
-Unpacker::Unpacker(const Limits& limits) : history_(limits), packet_(std::make_unique_for_overwrite<std::byte[]>(wire::kMaxPacketBytes)) {}
+Unpacker::Unpacker(const Limits& limits) : history_(limits), packet_(std::make_unique_for_overwrite<std::byte[]>(wire::kMaxPacketBytes)), words_(limits.modelWords) {}
 
 void Unpacker::begin(const SectionBytes& sections) {
     sections_ = sections;
-    control_ = ControlReader(sections[static_cast<size_t>(Section::Control)]);
+    coder_ = RangeReader(sections[static_cast<size_t>(Section::Control)]);
+    control_.clear();
+    spans_ = SpanReader(PlainBytes(sections[static_cast<size_t>(Section::Spans)]));
     batchBytes_ = 0;
+    steps_ = 0;
+    done_ = false;
 }
 
 Result<bool> Unpacker::next(uint32_t& stream, std::span<const std::byte>& packet) {
-    if (control_.atEnd()) return false;
     packetBytes_ = 0;
     log_ = nullptr;
-    for (ended_ = false; !ended_;) {
+    for (ended_ = false; !ended_ && !done_;) {
         uint32_t n = 0;
         const Do what = control_.what(n);
         Problem problem = control_.bad() ? nullptr : step(what, n);
         if (control_.bad()) problem = "its control bytes end in the middle of a packet";
+        if (!problem && ++steps_ > kMostSteps) problem = "more steps than a batch needs";
         if (problem) return Error{std::string("the head's stream can't be unpacked: ") + problem + "; head and nodes must be of one build"};
     }
     stream = stream_;
     packet = {packet_.get(), packetBytes_};
-    return true;
+    return ended_;
 }
 
 Unpacker::Problem Unpacker::step(Do what, uint32_t n) {
@@ -60,8 +69,16 @@ Unpacker::Problem Unpacker::step(Do what, uint32_t n) {
 }
 
 Unpacker::Problem Unpacker::run(uint32_t n) {
-    for (; n > 0; --n) {
+    while (n > 0) {
         if (!log_->holds(log_->cursor)) return "an item that is not remembered";
+        if (const History::Stretch s = history_.stretch(*log_, n); s.items > 0) {
+            if (!room(s.bytes.size())) return "a packet or batch that is too large";
+            put(s.bytes);
+            history_.againAll(*log_, s.items);
+            n -= static_cast<uint32_t>(s.items);
+            continue;
+        }
+        --n;
         const Item item = log_->at(log_->cursor);
         if (!room(item.sizeBytes)) return "a packet or batch that is too large";
         put(history_.bytesOf(item));
@@ -73,24 +90,41 @@ Unpacker::Problem Unpacker::run(uint32_t n) {
 
 Unpacker::Problem Unpacker::patch(uint32_t spans) {
     if (!log_->holds(log_->cursor)) return "a change of an item that is not remembered";
-    const Item item = log_->at(log_->cursor);
+    Item item = log_->at(log_->cursor);
     if (!room(item.sizeBytes)) return "a packet or batch that is too large";
     const auto bytes = put(history_.bytesOf(item));
-    const bool lost = loseWords_ && opcodeOf(bytes) >= wire::kFirstGlOpcode;
+    std::vector<std::byte> old;
+    if (loseWords_ && opcodeOf(bytes) >= wire::kFirstGlOpcode) old.assign(bytes.begin(), bytes.end());
+    if (item.page == 0) words_.begin(item, bytes);
     uint64_t at = 0;
     for (; spans > 0; --spans) {
         uint32_t kept = 0, changed = 0;
-        control_.span(kept, changed);
+        if (item.page != 0) spans_.span(kept, changed);
+        else control_.span(kept, changed);
+        if (spans_.bad()) return "fewer spans than it names";
         at += uint64_t{kept} * 4;
+        const uint64_t sizeBytes = uint64_t{changed} * 4;
+        if (at + sizeBytes > bytes.size()) return "a change behind the end of an item";
         std::span<const std::byte> words;
-        if (at + uint64_t{changed} * 4 > bytes.size()) return "a change behind the end of an item";
-        if (!take(Section::Words, size_t{changed} * 4, words)) return "fewer words than it names";
-        if (!lost) std::memcpy(bytes.data() + at, words.data(), words.size());
-        at += words.size();
+        if (item.page == 0) changeWords(at, bytes.subspan(at, sizeBytes));
+        else if (take(Section::Words, sizeBytes, words)) std::memcpy(bytes.data() + at, words.data(), words.size());
+        else return "fewer words than it names";
+        at += sizeBytes;
     }
+    if (item.page == 0) words_.end();
     ++log_->cursor;
-    log_->append(keep(bytes, item.page != 0));
+    log_->append(keep(bytes, item.page != 0, item.model));
+    std::ranges::copy(old, bytes.begin());
     return nullptr;
+}
+
+void Unpacker::changeWords(size_t at, std::span<std::byte> words) {
+    for (size_t i = 0; i < words.size(); i += 4) {
+        uint32_t word = 0;
+        std::memcpy(&word, words.data() + i, 4);
+        word = words_.code(coder_, static_cast<uint32_t>((at + i) / 4), word, 0);
+        std::memcpy(words.data() + i, &word, 4);
+    }
 }
 
 Unpacker::Problem Unpacker::fresh(uint32_t sizeBytes, bool page) {
@@ -124,6 +158,10 @@ Unpacker::Problem Unpacker::other(uint32_t n) {
         if (!log_) (void)history_.open(stream_); // as the packer did
         ended_ = true;
         return nullptr;
+    case Other::Done:
+        if (log_ || packetBytes_ > 0) return "an end in the middle of a packet";
+        done_ = true;
+        return nullptr;
     case Other::Stream:
         if (log_) return "another stream in the middle of a packet";
         stream_ = control_.number();
@@ -140,8 +178,8 @@ Unpacker::Problem Unpacker::other(uint32_t n) {
     return "an unknown control byte";
 }
 
-Item Unpacker::keep(std::span<const std::byte> bytes, bool page) {
-    return page ? history_.addPage(history_.pages().take(), bytes) : history_.addText(bytes);
+Item Unpacker::keep(std::span<const std::byte> bytes, bool page, uint32_t model) {
+    return page ? history_.addPage(history_.pages().take(), bytes) : history_.addText(bytes, model);
 }
 
 bool Unpacker::take(Section section, size_t sizeBytes, std::span<const std::byte>& into) {

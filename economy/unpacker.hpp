@@ -11,6 +11,7 @@
 #include "economy/batch.hpp"
 #include "economy/control_code.hpp"
 #include "economy/history.hpp"
+#include "economy/word_coder.hpp"
 
 namespace mural::economy {
 
@@ -37,7 +38,8 @@ private:
     Problem fresh(uint32_t sizeBytes, bool page);
     Problem pages(uint32_t n);
     Problem other(uint32_t n);
-    [[nodiscard]] Item keep(std::span<const std::byte> bytes, bool page);
+    void changeWords(size_t at, std::span<std::byte> words);
+    [[nodiscard]] Item keep(std::span<const std::byte> bytes, bool page, uint32_t model = 0);
     [[nodiscard]] bool take(Section section, size_t sizeBytes, std::span<const std::byte>& into);
     [[nodiscard]] bool room(size_t sizeBytes);
     std::span<std::byte> put(std::span<const std::byte> bytes);
@@ -46,11 +48,16 @@ private:
     const std::unique_ptr<std::byte[]> packet_; // as large as packets may be
     size_t packetBytes_ = 0;
     SectionBytes sections_;
-    ControlReader control_{{}};
+    RangeReader coder_; // of control_ and words_
+    ControlReader control_{CodedBytes(coder_)};
+    SpanReader spans_{PlainBytes()};
+    WordCoder words_;
     uint32_t stream_ = 0;
     ItemLog* log_ = nullptr; // null: the packet has not begun
     bool ended_ = false;
     uint64_t batchBytes_ = 0;
+    uint32_t steps_ = 0;
+    bool done_ = false; // with the batch
     bool loseWords_ = false;
 };
 

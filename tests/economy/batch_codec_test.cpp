@@ -3,6 +3,13 @@
 namespace mural::economy::testing {
 namespace {
 
+std::pair<BatchHead, Bytes> headAndBody(std::span<const std::byte> batch) {
+    BatchHeadReader head;
+    size_t at = 0;
+    while (!head.add(batch[at++])) {}
+    return {head.head(), Bytes(batch.begin() + static_cast<std::ptrdiff_t>(at), batch.end())};
+}
+
 TEST(SectionCodec, bothCodingsUseWhatCameBefore) {
     for (const Coding coding : {Coding::Lz4, Coding::Zstd}) { // of whose windows the smaller has 64 KiB
         SectionCompressor compressor;
@@ -42,26 +49,55 @@ TEST(SectionCodec, wrongSizesAreRefused) {
 TEST(BatchCodec, anyChangeIsAnErrorOrOtherBytes) {
     BatchEncoder encoder([] { return int64_t{0}; });
     const Bytes some(100, std::byte{1}), others(300, std::byte{2});
-    const SectionBytes sections{some, others, {}, some};
+    const SectionBytes sections{some, others, {}, some, others};
     auto batch = encoder.encode(sections, 8);
     ASSERT_TRUE(batch.ok());
-    const Bytes wire(batch->begin(), batch->end());
-    for (size_t size = 0; size < wire.size(); ++size) EXPECT_FALSE(BatchDecoder().decode(std::span(wire).first(size)).ok()) << size;
+    const auto [head, body] = headAndBody(*batch);
+    ASSERT_TRUE(head.sections);
+    ASSERT_EQ(head.sizeBytes, body.size());
+    // Control is what is left: cut there it is shorter, cut before it is an error.
+    for (size_t size = 0; size + some.size() < body.size(); ++size) EXPECT_FALSE(BatchDecoder().decode(head, std::span(body).first(size)).ok()) << size;
     BatchDecoder decoder;
-    auto back = decoder.decode(wire);
+    auto back = decoder.decode(head, body);
     ASSERT_TRUE(back.ok());
     for (size_t i = 0; i < kSections; ++i) EXPECT_TRUE(std::ranges::equal((*back)[i], sections[i]));
 }
 
+TEST(BatchCodec, ControlAloneIsAByteMore) {
+    const Bytes some(60, std::byte{1});
+    BatchEncoder encoder([] { return int64_t{0}; });
+    auto batch = encoder.encode({some, {}, {}, {}, {}}, 8);
+    ASSERT_TRUE(batch.ok());
+    EXPECT_EQ(batch->size(), 61u);
+    const auto [head, body] = headAndBody(*batch);
+    EXPECT_FALSE(head.sections);
+    BatchDecoder decoder;
+    auto back = decoder.decode(head, body);
+    ASSERT_TRUE(back.ok());
+    EXPECT_TRUE(std::ranges::equal((*back)[0], some));
+}
+
+TEST(BatchHead, isReadByteByByte) {
+    for (const uint32_t size : {0u, 1u, 63u, 64u, 8191u, 8192u, 1u << 20, 4u << 20, (1u << 27) - 1}) {
+        Bytes bytes;
+        putBatchHead({size, size % 3 == 0}, bytes);
+        EXPECT_LE(bytes.size(), 4u);
+        BatchHeadReader reader;
+        for (size_t i = 0; i < bytes.size(); ++i) EXPECT_EQ(reader.add(bytes[i]), i + 1 == bytes.size()) << size;
+        EXPECT_EQ(reader.head(), (BatchHead{size, size % 3 == 0}));
+    }
+    BatchHeadReader endless;
+    for (int i = 0; i < 3; ++i) EXPECT_FALSE(endless.add(std::byte{0x80}));
+    EXPECT_TRUE(endless.add(std::byte{0x80}));
+    EXPECT_GT(endless.head().sizeBytes, 1u << 30);
+}
+
 TEST(BatchCodec, sizesAreBounded) {
-    // Control alone, raw, of 4 GiB; and compressed to 32 MiB and more.
+    // Words, raw, of 128 MiB; and compressed to as much.
     for (const uint32_t coding : {1u, 2u, 3u}) {
-        ControlWriter head;
-        head.number(UINT32_MAX);
-        if (coding != 1) head.number(0);
-        Bytes wire(1, static_cast<std::byte>(coding));
-        wire.insert(wire.end(), head.bytes().begin(), head.bytes().end());
-        EXPECT_FALSE(BatchDecoder().decode(wire).ok());
+        Bytes body{static_cast<std::byte>(coding), std::byte{0xff}, std::byte{0xff}, std::byte{0xff}, std::byte{0x3f}};
+        if (coding != 1) body.push_back(std::byte{0});
+        EXPECT_FALSE(BatchDecoder().decode({static_cast<uint32_t>(body.size()), true}, body).ok());
     }
 }
 

@@ -22,7 +22,7 @@ struct Packet {
     bool operator==(const Packet&) const = default;
 };
 
-inline Limits tinyLimits() { return {.storeBytes = 8 * kPageBytes, .textBytes = 4096, .logItems = 64, .streams = 2}; }
+inline Limits tinyLimits() { return {.storeBytes = 8 * kPageBytes, .textBytes = 4096, .logItems = 64, .streams = 2, .modelWords = 1024}; }
 
 class BothSides {
 public:
@@ -32,14 +32,18 @@ public:
     size_t send(const std::vector<Packet>& packets) {
         for (const Packet& p : packets) packer.add(p.stream, p.bytes);
         staged = packer.stagedBytes();
-        auto batch = encoder_.encode(packer.sections(), 8);
+        auto batch = encoder_.encode(packer.finish(), 8, packer.plain());
         if (!batch) {
             ADD_FAILURE() << batch.error().message;
             return 0;
         }
         const Bytes wire(batch->begin(), batch->end());
         packer.clear();
-        auto sections = decoder_.decode(wire);
+        BatchHeadReader head;
+        size_t at = 0;
+        while (at < wire.size() && !head.add(wire[at++])) {}
+        EXPECT_EQ(head.head().sizeBytes, wire.size() - at);
+        auto sections = decoder_.decode(head.head(), std::span(wire).subspan(at));
         if (!sections) {
             ADD_FAILURE() << sections.error().message;
             return 0;

@@ -49,7 +49,7 @@ TEST(CodingChoice, shortOnesAreNotCompressed) {
 TEST(LinkRate, onlyWritesThatWaitedCount) {
     LinkRate rate;
     rate.wrote(1 << 20, 100'000); // into the system's buffer
-    EXPECT_DOUBLE_EQ(rate.nsPerByte(), 8);
+    EXPECT_DOUBLE_EQ(rate.nsPerByte(), 32);
     for (int i = 0; i < 50; ++i) rate.wrote(1 << 20, 80 << 20);
     EXPECT_NEAR(rate.nsPerByte(), 80, 1);
 }

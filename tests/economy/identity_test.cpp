@@ -1,4 +1,7 @@
 // What comes out is what went in: random streams, with histories so small that all of it is overwritten again and again.
+#include <bit>
+#include <cmath>
+
 #include "tests/economy/both_sides.hpp"
 
 namespace mural::economy::testing {
@@ -73,6 +76,7 @@ void compare(const Limits& limits, uint32_t seed, uint32_t streams, int frames) 
             packets.push_back({stream, Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(cut))});
             packets.push_back({stream, Bytes(bytes.begin() + static_cast<std::ptrdiff_t>(cut), bytes.end())});
         }
+        if (frame % 8 == 0) sides.packer.beginPlain(random() % 3 == 0);
         sides.send(packets);
     }
 }
@@ -87,6 +91,33 @@ TEST(Identity, withoutRoom) {
 
 TEST(Identity, logsOfOneItemAndOnePage) {
     for (uint32_t seed = 1; seed <= 6; ++seed) compare({.storeBytes = kPageBytes, .textBytes = 4096, .logItems = 1, .streams = 1}, seed, 2, 60);
+}
+
+// What moves smoothly is guessed by more of what both sides remember than what jumps.
+TEST(Identity, whatMovesSmoothly) {
+    for (const Limits& limits : {Limits{.storeBytes = 1 << 20}, tinyLimits()}) {
+        BothSides sides{limits};
+        std::mt19937 random(5);
+        double time = 0, sum = 0;
+        for (int frame = 0; frame < 300 && !::testing::Test::HasFailure(); ++frame) {
+            time += 0.01 + 0.003 * static_cast<double>(random() % 1000) / 1000;
+            Bytes bytes;
+            for (uint32_t object = 0; object < 12; ++object) {
+                if (random() % 30 == 0) continue;
+                addRecord(bytes, 99, 20, [&, word = 0u]() mutable {
+                    const double angle = time * (1 + object % 3);
+                    const uint32_t i = word++;
+                    const auto value = static_cast<float>(i % 2 == 0 ? (1 + i) * std::cos(angle) : i % 3 == 0 ? 1.0 + object : (2 + i) * std::sin(angle));
+                    return std::bit_cast<uint32_t>(value);
+                });
+            }
+            const size_t size = sides.send(bytes);
+            if (frame >= 100) sum += static_cast<double>(size);
+        }
+        if (limits.modelWords > 2000) {
+            EXPECT_LE(sum / 200, 12 * 16 * 4 * 0.4) << "without a guess 768";
+        }
+    }
 }
 
 TEST(Identity, emptyPackets) {

@@ -79,7 +79,7 @@ TEST(Packer, insertedMissingAndMovedRecordsCostWhatTheyAre) {
     records.erase(records.begin() + 500, records.begin() + 503);
     EXPECT_LE(sides.send(frame()), 30u);
     std::rotate(records.begin() + 200, records.begin() + 300, records.begin() + 800);
-    EXPECT_LE(sides.send(frame()), 40u);
+    EXPECT_LE(sides.send(frame()), 60u);
 }
 
 TEST(Packer, changedWordsGoAlone) {
@@ -90,8 +90,9 @@ TEST(Packer, changedWordsGoAlone) {
         return bytes;
     };
     sides.send(frame(1));
+    const uint64_t before = sides.packer.counts().patches;
     sides.send(frame(2));
-    EXPECT_EQ(sides.packer.counts().patches, 99u); // that of object 0 has not changed
+    EXPECT_EQ(sides.packer.counts().patches - before, 99u); // that of object 0 has not changed
     EXPECT_LE(sides.staged, 99u * 6 + 12);
 }
 
@@ -136,6 +137,37 @@ TEST(Packer, equalPagesAreRunsToo) {
     EXPECT_LE(sides.send(packets), 2000u);
     sides.send(packets);
     EXPECT_LE(sides.send(packets), 100u);
+}
+
+// One record more of those that are alike: what is equal from the beginning of the known run is not so from its second record on.
+TEST(Packer, knownRunsAreComparedFromTheirMiddle) {
+    BothSides sides{Limits{}};
+    const auto frame = [](uint32_t first, int alike) {
+        Bytes bytes;
+        addRecord(bytes, 99, 4, [&] { return first; });
+        for (int i = 1; i < 80; ++i) addRecord(bytes, 99, 4, [&] { return i < alike ? 7u : 8u; });
+        return bytes;
+    };
+    for (int i = 0; i < 4; ++i) sides.send(frame(7, 40));
+    sides.send(frame(9, 41));
+    sides.send(frame(7, 40));
+}
+
+// Changed pages are found behind short records that the log has from before.
+TEST(Packer, pagesAreKnownWhereShortRecordsGoPlain) {
+    BothSides sides{Limits{}};
+    Bytes pixels = noise(1 << 20, 3);
+    const auto send = [&](uint32_t number) {
+        for (size_t at = 512; at < pixels.size(); at += 4096) pixels[at] = static_cast<std::byte>(number);
+        Bytes frame = frameOf(number, 300), texture = textureOf(pixels);
+        frame.insert(frame.end(), texture.begin(), texture.end());
+        return sides.send(packetsOf(frame));
+    };
+    for (uint32_t number = 0; number < 3; ++number) send(number);
+    sides.packer.beginPlain(true);
+    send(3);
+    EXPECT_LE(send(4), 6000u);
+    EXPECT_LE(send(5), 6000u);
 }
 
 TEST(Packer, whatIsUsedStaysWhenTheStoreIsFull) {

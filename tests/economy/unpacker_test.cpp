@@ -5,10 +5,11 @@ namespace mural::economy::testing {
 namespace {
 
 std::string problemOf(Unpacker& unpacker, const std::function<void(ControlWriter&)>& write, size_t literalBytes = 0) {
-    ControlWriter control;
+    RangeWriter coder;
+    ControlWriter control(coder);
     write(control);
     const Bytes literals(literalBytes);
-    unpacker.begin({control.bytes(), literals, literals, literals});
+    unpacker.begin({coder.finish(), literals, literals, literals, literals}); // spans of zeros: one word each
     for (int packets = 0; packets < 1000; ++packets) {
         uint32_t stream = 0;
         std::span<const std::byte> bytes;
@@ -39,10 +40,11 @@ TEST(Unpacker, tellsWhatIsWrong) {
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Other::Stream); }), "in the middle"));
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::NewText, 1), c.put(Other::Stream), c.number(1); }, 4), "another stream"));
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::NewText, 2), c.put(Do::Skip, 1), c.put(Do::Patch, 1), c.span(2, 1); }, 8), "not remembered"));
-    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::NewText, 2), c.put(Do::Patch, 1), c.span(0, 2), c.put(Do::Patch, 1), c.span(0, 2); }, 8), "fewer words"));
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::NewPage, 300), c.put(Do::Seek, 1), c.put(Do::Patch, 300), c.put(Do::Patch, 1); }, 1200), "fewer words"));
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::NewText, 2), c.put(Do::Seek, 1), c.put(Do::Patch, 1), c.span(UINT32_MAX, 1); }, 8), "behind the end"));
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::NewText, 2), c.put(Do::Seek, 1), c.put(Do::Patch, 9), c.span(0, 1), c.span(1, 1); }, 8), "behind the end"));
-    EXPECT_EQ(problemOf([](ControlWriter& c) { c.put(Do::NewText, 2), c.put(Do::Seek, 1), c.put(Do::Patch, 1), c.span(1, 1), c.put(Other::End); }, 8), "");
+    EXPECT_EQ(problemOf([](ControlWriter& c) { c.put(Do::NewPage, 300), c.put(Do::Seek, 1), c.put(Do::Patch, 300), c.put(Other::End), c.put(Other::Done); }, 1200), "");
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::NewText, 2), c.put(Other::Done); }, 8), "in the middle of a packet"));
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::NewText, 2); }, 8), "in the middle of a packet"));
 }
 

@@ -1,4 +1,4 @@
-// Input: batches, each behind its size (u16). The first byte says whether they are batches as they are sent, or the sections
+// Input: batches with their heads, each behind its size (u16). The first byte says whether they are batches as they are sent, or the sections
 // of one as they are: fuzzers do not find their way through compressed bytes.
 #include <algorithm>
 #include <cstring>
@@ -37,7 +37,10 @@ uint64_t fuzzOne(std::span<const std::byte> input) {
     while (!input.empty()) {
         economy::SectionBytes sections;
         if (coded) {
-            const auto decoded = decoder.decode(takeSized(input));
+            auto batch = takeSized(input);
+            economy::BatchHeadReader head;
+            for (bool complete = false; !complete && !batch.empty();) complete = head.add(take(batch, 1)[0]);
+            const auto decoded = decoder.decode(head.head(), batch);
             if (!decoded) return packets;
             sections = decoded.value();
         } else {

@@ -50,11 +50,11 @@ Bytes seedOf(uint32_t seed, bool coded, bool pages) {
     for (uint32_t number = 0; number < 6; ++number) {
         packer.add(0x10000 + seed % 2 * (number % 3), frame(seed, number, pages));
         if (coded) {
-            const auto batch = encoder.encode(packer.sections(), 80);
+            const auto batch = encoder.encode(packer.finish(), 80);
             if (!batch) std::exit(1);
             addSized(input, Bytes(batch.value().begin(), batch.value().end()));
         } else {
-            for (const auto section : packer.sections()) addSized(input, section);
+            for (const auto section : packer.finish()) addSized(input, section);
         }
         packer.clear();
     }

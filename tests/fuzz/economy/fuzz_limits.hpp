@@ -5,6 +5,6 @@
 
 namespace mural::fuzz {
 
-inline economy::Limits fuzzLimits() { return {.storeBytes = 4 * economy::kPageBytes, .textBytes = 4096, .logItems = 64, .streams = 2}; }
+inline economy::Limits fuzzLimits() { return {.storeBytes = 4 * economy::kPageBytes, .textBytes = 4096, .logItems = 64, .streams = 2, .modelWords = 1024}; }
 
 } // namespace mural::fuzz

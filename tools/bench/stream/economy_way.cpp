@@ -13,14 +13,16 @@ namespace {
 
 class EconomyWay final : public Way {
 public:
-    EconomyWay(std::unique_ptr<StreamEconomy> economy, const economy::Limits& limits) : economy_(std::move(economy)), unpacker_(limits) {}
+    EconomyWay(std::unique_ptr<StreamEconomy> economy, const economy::Limits& limits) : economy_(std::move(economy)), unpacker_(limits) {
+        economy_->sendBy([this] { take(); });
+        economy_->holdNothing(); // what is unpacked is compared with what came
+    }
 
     [[nodiscard]] std::string name() const override { return "economy"; }
 
     void packet(const StreamPacket& p) override {
         sent_.push_back({p.stream, {p.payload.begin(), p.payload.end()}});
         economy_->add(p.stream, p.payload);
-        if (economy_->full()) take();
     }
 
     [[nodiscard]] int64_t cpuNs() const override { return static_cast<int64_t>(economy_->counts().encodeNs); }
@@ -44,8 +46,11 @@ private:
             wrong_ = batch.error().message;
             return;
         }
-        bytes_ += sizeof(wire::PacketHeader) + batch->size();
-        auto sections = decoder_.decode(*batch);
+        bytes_ += batch->size();
+        economy::BatchHeadReader head;
+        size_t at = 0;
+        while (at < batch->size() && !head.add((*batch)[at++])) {}
+        auto sections = decoder_.decode(head.head(), batch->subspan(at));
         if (!sections) {
             wrong_ = sections.error().message;
             return;

@@ -1,0 +1,55 @@
+// Memory of megabytes that fills slowly: zero, and there only as far as it was used. In huge pages, where the system has them: touching the
+// log of a busy stream by pages of 4 KiB costs more than what is written there.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <new>
+#include <sys/mman.h>
+#include <type_traits>
+
+namespace mural::economy {
+
+template <class T> class LargeArray {
+public:
+    static_assert(std::is_trivially_copyable_v<T>);
+
+    // Null when there is no memory.
+    static LargeArray tryMake(size_t size) {
+        LargeArray array;
+        const size_t sizeBytes = size * sizeof(T), spare = sizeBytes >= kHugeBytes ? kHugeBytes : 0;
+        void* const mapped = mmap(nullptr, sizeBytes + spare, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+        if (mapped == MAP_FAILED) return array;
+        array.mapped_ = {static_cast<std::byte*>(mapped), Unmap{sizeBytes + spare}};
+        std::byte* from = array.mapped_.get();
+        if (spare != 0) {
+            from += (kHugeBytes - reinterpret_cast<uintptr_t>(from) % kHugeBytes) % kHugeBytes;
+            madvise(from, sizeBytes / kHugeBytes * kHugeBytes, MADV_HUGEPAGE); // no matter if it can't
+        }
+        array.data_ = reinterpret_cast<T*>(from);
+        return array;
+    }
+    static LargeArray make(size_t size) {
+        LargeArray array = tryMake(size);
+        if (!array) throw std::bad_alloc();
+        return array;
+    }
+
+    explicit operator bool() const { return data_ != nullptr; }
+    [[nodiscard]] T* data() { return data_; }
+    [[nodiscard]] const T* data() const { return data_; }
+    T& operator[](size_t i) { return data_[i]; }
+    const T& operator[](size_t i) const { return data_[i]; }
+
+private:
+    static constexpr size_t kHugeBytes = size_t{2} << 20;
+    struct Unmap {
+        size_t sizeBytes = 0;
+        void operator()(std::byte* mapped) const { munmap(mapped, sizeBytes); }
+    };
+    std::unique_ptr<std::byte, Unmap> mapped_;
+    T* data_ = nullptr;
+};
+
+} // namespace mural::economy

@@ -1,0 +1,63 @@
+#include "economy/way_choice.hpp"
+
+#include <algorithm>
+
+namespace mural::economy {
+
+namespace {
+constexpr double kKept = 0.8;              // of all before, when a batch is added
+constexpr uint32_t kTryBatches = 5;
+constexpr uint32_t kUnmeasured = 2;        // of them: what was remembered by this way is from long ago
+constexpr uint32_t kCompared = kTryBatches - kUnmeasured;
+constexpr uint32_t kLeastBetween = 16;     // batches between two tries
+constexpr double kClearly = 0.95;         // as small as that is cheaper
+constexpr double kWorthNs = 20'000;       // a frame that is looked at in less is not worth more bytes
+constexpr double kMuch = 2;                // a change of cost that asks for another try
+// Nodes unpack it before they draw: so long beside packing, looked at and plain (measured: 0.5 to 0.75 and 0.25 to 0.35).
+constexpr std::array<double, 2> kWithUnpacking{1.6, 1.3};
+} // namespace
+
+void WayChoice::measured(uint64_t rawBytes, uint64_t pageBytes, uint64_t wireBytes, int64_t ns, double linkNsPerByte) {
+    ++batches_;
+    if (trying_ && batches_ <= kUnmeasured) return;
+    Cost& cost = costs_[plain_ ? Plain : Looked];
+    if (!trying_ && batches_ + kCompared == until_) cost = {}; // compared is what comes just before with what comes just behind
+    cost.ns = cost.ns * kKept + static_cast<double>(ns) * kWithUnpacking[plain_ ? Plain : Looked] + static_cast<double>(wireBytes) * linkNsPerByte;
+    cost.rawBytes = cost.rawBytes * kKept + static_cast<double>(rawBytes);
+    cost.encodeNs = cost.encodeNs * kKept + static_cast<double>(ns);
+    cost.batches = cost.batches * kKept + 1;
+    if (trying_) {
+        if (batches_ >= kTryBatches) decide();
+        return;
+    }
+    const double now = cost.perByte();
+    const bool another = decidedBy_ > 0 && batches_ >= kLeastBetween && (now > decidedBy_ * kMuch || now * kMuch < decidedBy_);
+    if (another && until_ > batches_ + kCompared) {
+        until_ = batches_ + kCompared;
+        cost = {};
+        return;
+    }
+    if (batches_ < until_) return;
+    const bool isAboutShort = pageBytes < rawBytes / 2; // else there is little to win, and places of pages to lose
+    if (plain_ || (isAboutShort && cost.encodeNs >= kWorthNs * cost.batches)) tryOther();
+    else until_ += kLeastBetween;
+}
+
+void WayChoice::tryOther() {
+    plain_ = !plain_;
+    trying_ = true;
+    batches_ = 0;
+    costs_[plain_ ? Plain : Looked] = {};
+}
+
+void WayChoice::decide() {
+    const double tried = costs_[plain_ ? Plain : Looked].perByte(), before = costs_[plain_ ? Looked : Plain].perByte();
+    const bool better = tried < before * kClearly;
+    if (!better) plain_ = !plain_;
+    until_ = better ? kLeastBetween * 4 : std::min(std::max(until_ * 2, kLeastBetween), kMostBetween);
+    decidedBy_ = std::min(tried, before);
+    trying_ = false;
+    batches_ = 0;
+}
+
+} // namespace mural::economy

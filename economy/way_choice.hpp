@@ -1,0 +1,39 @@
+// Whether the short records of a batch are looked at, or go plain to the compressor, whose window has the frames before: looking makes most
+// streams smallest, but where much changes it takes several times as long. By which batches are with the nodes soonest: measured
+// time, size on the wire, and how fast the link is. No clock of its own.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace mural::economy {
+
+class WayChoice {
+public:
+    // Batches that are counted here are those up to where a program has published no more: about a frame.
+    // Of the next batch.
+    [[nodiscard]] bool plain() const { return plain_; }
+    // The batch has gone so. pageBytes: of rawBytes, in long records, which are looked at either way.
+    void measured(uint64_t rawBytes, uint64_t pageBytes, uint64_t wireBytes, int64_t ns, double linkNsPerByte);
+
+private:
+    enum Way : size_t { Looked, Plain };
+    // Of the last batches, the older the less.
+    struct Cost {
+        double ns = 0, rawBytes = 0, encodeNs = 0, batches = 0;
+        [[nodiscard]] double perByte() const { return rawBytes > 0 ? ns / rawBytes : 0; }
+    };
+    void tryOther();
+    void decide();
+
+    static constexpr uint32_t kFirstTry = 8, kMostBetween = 1024;
+    std::array<Cost, 2> costs_;
+    bool plain_ = false;
+    bool trying_ = false;
+    uint32_t batches_ = 0; // since the way was taken
+    uint32_t until_ = kFirstTry; // so many, the other way is tried
+    double decidedBy_ = 0; // cost per byte when it was
+};
+
+} // namespace mural::economy

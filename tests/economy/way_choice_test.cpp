@@ -1,0 +1,66 @@
+#include <gtest/gtest.h>
+
+#include "economy/way_choice.hpp"
+
+namespace mural::economy {
+namespace {
+
+constexpr uint64_t kRawBytes = 100'000;
+constexpr double kLinkNsPerByte = 32;
+
+struct Made {
+    uint64_t wireBytes;
+    int64_t ns;
+};
+
+// Of the last of so many frames, how many went plain.
+int plainOf(WayChoice& choice, Made looked, Made plain, int frames, int last, double linkNsPerByte = kLinkNsPerByte, uint64_t pageBytes = 0) {
+    int count = 0;
+    for (int i = 0; i < frames; ++i) {
+        count += choice.plain() && i >= frames - last;
+        const Made& made = choice.plain() ? plain : looked;
+        choice.measured(kRawBytes, pageBytes, made.wireBytes, made.ns, linkNsPerByte);
+    }
+    return count;
+}
+
+TEST(WayChoice, looksAtFirst) { EXPECT_FALSE(WayChoice().plain()); }
+
+TEST(WayChoice, goesPlainWhereLookingCostsMoreThanItSaves) {
+    WayChoice choice;
+    EXPECT_GE(plainOf(choice, {3000, 450'000}, {5000, 110'000}, 400, 300), 280);
+}
+
+TEST(WayChoice, looksWhereTheLinkIsSlow) {
+    WayChoice choice;
+    EXPECT_LE(plainOf(choice, {3000, 450'000}, {5000, 110'000}, 400, 300, 640), 20);
+}
+
+TEST(WayChoice, looksWhereItIsCheap) {
+    WayChoice choice;
+    EXPECT_EQ(plainOf(choice, {10, 15'000}, {100, 3'000}, 400, 400), 0) << "not even tried: nothing is to be won";
+    WayChoice other;
+    EXPECT_LE(plainOf(other, {10, 40'000}, {2400, 50'000}, 400, 300), 20);
+}
+
+TEST(WayChoice, looksWhereMostIsPages) {
+    WayChoice choice;
+    EXPECT_EQ(plainOf(choice, {3000, 450'000}, {5000, 110'000}, 400, 400, kLinkNsPerByte, kRawBytes * 3 / 4), 0);
+}
+
+TEST(WayChoice, triesAgainSoonWhenAllIsAnother) {
+    WayChoice choice;
+    plainOf(choice, {3000, 450'000}, {5000, 110'000}, 1000, 1);
+    ASSERT_TRUE(choice.plain());
+    EXPECT_LE(plainOf(choice, {10, 30'000}, {30'000, 300'000}, 60, 20), 0);
+}
+
+TEST(WayChoice, oneOutlierDecidesNothing) {
+    WayChoice choice;
+    plainOf(choice, {3000, 450'000}, {5000, 110'000}, 300, 1);
+    choice.measured(kRawBytes, 0, 50'000, 5'000'000, kLinkNsPerByte);
+    EXPECT_GE(plainOf(choice, {3000, 450'000}, {5000, 110'000}, 100, 60), 50);
+}
+
+} // namespace
+} // namespace mural::economy
