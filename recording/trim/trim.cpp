@@ -1,11 +1,12 @@
 #include "recording/trim/trim.hpp"
 
-#include <algorithm>
 #include <cstring>
+#include <set>
 
 #include "recording/file_writer.hpp"
-#include "recording/trim/record_roles.hpp"
-#include "recording/trim/trim_plan.hpp"
+#include "recording/kept/families.hpp"
+#include "recording/kept/kept_stream.hpp"
+#include "recording/kept/packet_splitter.hpp"
 #include "streamcodec/registry_digest.hpp"
 
 namespace mural::recording {
@@ -24,37 +25,114 @@ template <class Take> Result<void> forEachEntry(FileReader& reader, Take take) {
     return {};
 }
 
+bool draws(uint16_t opcode) {
+    const Family family = ruleOf(opcode).family;
+    return family == Family::Draw || family == Family::Begin || family == Family::CallList || family == Family::CallLists;
+}
+
+// Goes over the whole once: what of the frames before is needed, and where the wanted ones are. Records are counted from 0 over
+// the file.
+class Survey {
+public:
+    Survey(int64_t first, int64_t last) : first_(first), last_(last) { begun(0); }
+
+    // False: no more is needed.
+    bool entry(const Entry& e) {
+        if (e.stream != 0) return packet(e);
+        ClientEvent event;
+        if (!parseEvent(e.payload, event)) return true;
+        if (event.kind == Event::ClientCame && before) came.push_back({event.client, std::vector<std::byte>(e.payload.begin(), e.payload.end())});
+        if (event.kind != Event::ClientGone) return true;
+        frames_.clientGone(event.client);
+        if (!before) return true;
+        log.clientGone(event.client);
+        std::erase_if(came, [&](const auto& c) { return c.first == event.client; });
+        return true;
+    }
+    [[nodiscard]] int64_t frames() const { return frames_.frames(); }
+
+    KeptLog log;
+    std::vector<std::pair<uint32_t, std::vector<std::byte>>> came; // programs that were there when the first frame began
+    bool before = true;         // the first frame has not begun
+    uint64_t beginRecord = 0;   // its first record
+    uint64_t shownFrom = 0;     // the first swap that is seen
+    uint64_t endRecord = 0;     // the one that ends the last frame
+    uint64_t beganNs = 0;
+    uint64_t drawsBefore = 0;
+
+private:
+    void begun(uint64_t timeNs) {
+        if (!before || frames_.frames() + 1 < first_) return;
+        before = false;
+        beginRecord = number_;
+        beganNs = timeNs;
+        log.settlePending();
+    }
+    bool packet(const Entry& e) {
+        RecordWalk walk(e.payload);
+        RecordView r;
+        for (; walk.next(r); ++number_) {
+            drawsBefore += before && draws(r.opcode);
+            log.record(e.stream, r, e.payload.subspan(r.offset, r.sizeBytes), !before);
+            const int64_t ended = frames_.record(e.stream, r);
+            if (ended == 0) continue;
+            if (ended == first_) shownFrom = number_;
+            endRecord = number_;
+            if (ended >= last_) return false;
+            if (before) {
+                log.compactIfGrown();
+                ++number_;
+                begun(e.timeNs);
+                --number_;
+            }
+        }
+        return true;
+    }
+
+    const int64_t first_, last_;
+    WallFrames frames_;
+    uint64_t number_ = 0; // of the record
+};
+
 class Copy {
 public:
-    Copy(const TrimPlan& plan, FileWriter& writer, TrimReport& report) : plan_(plan), writer_(writer), report_(report) {}
+    Copy(const Survey& survey, FileWriter& writer, TrimReport& report) : survey_(survey), writer_(writer), report_(report) {}
 
-    // False: no more is wanted, or failed() says why not.
+    // What the first frame needs of those before.
+    bool kept() {
+        for (const auto& [client, event] : survey_.came)
+            if (!put({0, 0, event})) return false;
+        PacketSplitter packets([&](uint32_t stream, std::span<const std::byte> payload) {
+            if (failed_) failed_ = writer_.append({stream, 0, unseen(payload)});
+        });
+        survey_.log.forEach([&](uint32_t stream, std::span<const std::byte> records) { packets.add(stream, records); });
+        packets.flush();
+        return failed_.ok();
+    }
+    // And the frames themselves. False: no more is wanted, or failed() says why not.
     bool entry(const Entry& e) {
+        if (e.stream != 0) return packet(e);
         ClientEvent event;
-        if (e.stream == 0 && parseEvent(e.payload, event)) return plan_.goneClients.contains(event.client) || put(e, e.payload);
-        return packet(e);
+        return number_ < survey_.beginRecord || !parseEvent(e.payload, event) || put({0, timeOf(e), e.payload});
     }
     [[nodiscard]] const Result<void>& failed() const { return failed_; }
 
 private:
+    [[nodiscard]] uint64_t timeOf(const Entry& e) const { return e.timeNs > survey_.beganNs ? e.timeNs - survey_.beganNs : 0; }
+
     bool packet(const Entry& e) {
-        const bool gone = plan_.goneClients.contains(wire::clientOf(e.stream));
         kept_.clear();
         RecordWalk walk(e.payload);
         RecordView r;
         bool more = true;
         for (; more && walk.next(r); ++number_) {
-            more = number_ < plan_.endRecord;
-            const bool before = number_ < plan_.shownFrom;
-            const bool drop = gone || (dropped_ < plan_.dropped.size() && plan_.dropped[dropped_] == number_);
-            if (!gone) dropped_ += drop;
-            count(r, drop, before);
-            if (drop) continue;
+            more = number_ < survey_.endRecord;
+            if (number_ < survey_.beginRecord) continue;
             const size_t at = kept_.size();
             kept_.insert(kept_.end(), e.payload.begin() + static_cast<std::ptrdiff_t>(r.offset), e.payload.begin() + static_cast<std::ptrdiff_t>(r.offset + r.sizeBytes));
-            if (r.opcode == wire::kOpSwap || r.opcode == wire::kOpFrontPicture) number(e.stream, r, at + r.sizeBytes - r.arguments.size(), before);
+            if (r.opcode == wire::kOpSwap || r.opcode == wire::kOpFrontPicture) number(e.stream, r, at + r.sizeBytes - r.arguments.size(), number_ < survey_.shownFrom);
         }
-        return (kept_.empty() || put(e, kept_)) && more;
+        return (kept_.empty() || put({e.stream, timeOf(e), kept_})) && more;
     }
 
     // Pictures before the first frame are seen by nobody; those that are count from 1 again.
@@ -64,23 +142,27 @@ private:
         std::memcpy(kept_.data() + argumentsAt + 4, &frame, sizeof frame);
     }
 
-    void count(const RecordView& r, bool drop, bool before) {
-        report_.recordsBefore += before;
-        report_.recordsDropped += drop;
-        const Role role = roleOf(r.opcode);
-        report_.drawsDropped += drop && (role == Role::Draw || role == Role::Begin);
+    std::span<const std::byte> unseen(std::span<const std::byte> payload) {
+        kept_.assign(payload.begin(), payload.end());
+        RecordWalk walk(payload);
+        RecordView r;
+        while (walk.next(r)) {
+            ++report_.recordsKept;
+            report_.drawsKept += draws(r.opcode);
+        }
+        hideFrames(kept_);
+        return kept_;
     }
 
-    bool put(const Entry& e, std::span<const std::byte> payload) {
-        failed_ = writer_.append({e.stream, e.timeNs > plan_.beganNs ? e.timeNs - plan_.beganNs : 0, payload});
+    bool put(const Entry& e) {
+        failed_ = writer_.append(e);
         return failed_.ok();
     }
 
-    const TrimPlan& plan_;
+    const Survey& survey_;
     FileWriter& writer_;
     TrimReport& report_;
     uint64_t number_ = 0;
-    size_t dropped_ = 0; // of plan_.dropped
     std::map<uint32_t, uint32_t> frames_;
     std::vector<std::byte> kept_;
     Result<void> failed_;
@@ -89,10 +171,10 @@ private:
 } // namespace
 
 Result<TrimReport> trim(FileReader& reader, int64_t firstFrame, int64_t lastFrame, const std::string& path) {
-    TrimPlanner planner(firstFrame, lastFrame);
-    if (auto r = forEachEntry(reader, [&](const Entry& e) { return planner.entry(e); }); !r) return r.error();
-    const TrimPlan plan = planner.finish();
-    if (plan.frames < lastFrame) return Error{"the recording has " + std::to_string(plan.frames) + " frames; give some of them, such as 1-" + std::to_string(plan.frames)};
+    Survey survey(firstFrame, lastFrame);
+    if (auto r = forEachEntry(reader, [&](const Entry& e) { return survey.entry(e); }); !r) return r.error();
+    if (survey.frames() < lastFrame) return Error{"the recording has " + std::to_string(survey.frames()) + " frames; give some of them, such as 1-" + std::to_string(survey.frames())};
+    survey.log.compact();
     auto writer = FileWriter::create(path);
     if (!writer) return writer.error();
     FileWriter& out = **writer;
@@ -100,9 +182,10 @@ Result<TrimReport> trim(FileReader& reader, int64_t firstFrame, int64_t lastFram
     about.trimmed = "frames " + std::to_string(firstFrame) + " to " + std::to_string(lastFrame) + (about.trimmed.empty() ? "" : " of " + about.trimmed);
     if (auto r = out.begin(about, wire::kVersion, registryDigest()); !r) return r.error();
     TrimReport report;
-    report.drawsBefore = plan.drawsBefore;
-    report.doubts = plan.doubts;
-    Copy copy(plan, out, report);
+    report.recordsBefore = survey.beginRecord;
+    report.drawsBefore = survey.drawsBefore;
+    Copy copy(survey, out, report);
+    if (!copy.kept()) return copy.failed().error();
     if (auto r = forEachEntry(reader, [&](const Entry& e) { return copy.entry(e); }); !r) return r.error();
     if (!copy.failed()) return copy.failed().error();
     if (auto r = out.flush(); !r) return r.error();

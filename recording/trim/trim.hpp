@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <string>
 
 #include "common/result.hpp"
@@ -12,12 +11,11 @@ namespace mural::recording {
 
 struct TrimReport {
     int64_t frames = 0;
-    uint64_t recordsBefore = 0;  // in the frames before
-    uint64_t recordsDropped = 0; // of these
-    uint64_t drawsBefore = 0;    // draw calls there
-    uint64_t drawsDropped = 0;
+    uint64_t recordsBefore = 0; // in the frames before
+    uint64_t recordsKept = 0;   // of these
+    uint64_t drawsBefore = 0;   // draw calls there, primitives, and calls of display lists
+    uint64_t drawsKept = 0;
     uint64_t fileBytes = 0;
-    std::map<uint32_t, std::string> doubts; // programs whose draws are all kept, and why
 };
 
 // Frames of the wall, from 1, both included. The file at `path` is overwritten.

@@ -31,11 +31,18 @@ public:
         words_.insert(words_.end(), arguments.begin(), arguments.end());
         return *this;
     }
-    PacketBuilder& window(uint32_t window, uint32_t width, uint32_t height) {
+    PacketBuilder& context(uint32_t context, uint32_t shareContext = 0) {
+        std::vector<uint32_t> words(7 + sizeof(wire::WindowConfig) / 4, 0);
+        words[0] = context;
+        words[1] = shareContext;
+        return record(wire::kOpCreateContext, words);
+    }
+    PacketBuilder& window(uint32_t window, uint32_t width, uint32_t height, uint8_t depth = 0) {
         wire::WindowConfig config{};
         config.width = width;
         config.height = height;
         config.red = config.green = config.blue = 8;
+        config.depth = depth;
         config.doubleBuffer = 1;
         std::vector<uint32_t> words(1 + sizeof config / 4, window);
         std::memcpy(words.data() + 1, &config, sizeof config);

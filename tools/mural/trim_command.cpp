@@ -18,8 +18,8 @@ constexpr const char* kFooter = R"(Examples:
   mural trim app.mural 47 -o frame.mural         one frame
   mural replay frame.mural --out shots
 
-Kept of the frames before is all that makes objects or changes state. Draws into windows are left out where a later clear covers
-them before anybody looks; where that is not certain, they are kept, and the reason is said.
+Kept of the frames before is what the first frame needs: objects as they are then, the state, and draws into what is neither
+cleared nor drawn anew. Where that is not certain, more is kept.
 Exit status: 0, 2 for a bad argument, a recording that can't be read, or a file that can't be written.)";
 
 } // namespace
@@ -48,8 +48,7 @@ int trimCommand(const TrimArguments& a) {
     if (!trimmed) return complain(trimmed.error().message);
     const recording::TrimReport& r = trimmed.value();
     console.say(fmt::format("{} of {} frames in {}, {}; of the frames before, {} of {} records were left out, {} of {} draws", r.frames, reader.value()->frames(), a.out,
-                            sizeText(static_cast<double>(r.fileBytes)), r.recordsDropped, r.recordsBefore, r.drawsDropped, r.drawsBefore));
-    for (const auto& [client, why] : r.doubts) console.say(fmt::format("all draws of program {} were kept: {}", client, why));
+                            sizeText(static_cast<double>(r.fileBytes)), r.recordsBefore - r.recordsKept, r.recordsBefore, r.drawsBefore - r.drawsKept, r.drawsBefore));
     return 0;
 }
 

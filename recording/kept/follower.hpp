@@ -1,0 +1,119 @@
+// Says of each record what it writes and reads, by following the little of the program's state that decides it. What is not known
+// here reads everything and is never left out: a gap costs bytes, not pictures.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <span>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "recording/kept/effect.hpp"
+#include "recording/kept/names.hpp"
+#include "recording/record_walk.hpp"
+
+namespace mural::recording {
+
+class Follower {
+public:
+    explicit Follower(KeyTree& keys) : keys_(keys) {}
+
+    // Adds what the record does to `effect`. False: it belongs together with the records of the stream that follow.
+    bool record(uint32_t stream, const RecordView& r, Effect& effect);
+    // State that the last command has left behind beside what it draws, as records that set it again: with these behind it, it is
+    // needed for its pictures alone.
+    std::vector<std::byte> takeRest(uint32_t stream) { return std::exchange(streams_[stream].rest, {}); }
+    void clientGone(uint32_t client);
+    // All keys that this knows of.
+    void forEachKey(const std::function<void(Key)>& take) const;
+
+private:
+    struct At; // who executes a record
+
+    void own(At& at, const RecordView& r);
+    void createContext(At& at, const RecordView& r);
+    void destroyContext(At& at, const RecordView& r);
+    void makeCurrent(At& at, const RecordView& r);
+    void window(At& at, const RecordView& r);
+    void bufferBytes(At& at, const RecordView& r);
+
+    void gl(At& at, const RecordView& r);
+    void execute(At& at, const RecordView& r);
+    void unknown(At& at, bool names);
+    void compiled(At& at, const RecordView& r);
+    void callList(At& at, uint32_t name);
+    void callLists(At& at, const RecordView& r);
+    void lists(At& at, const Rule& rule, const RecordView& r);
+    bool leavesRest(At& at, const Rule& rule, const RecordView& r);
+    void readState(At& at);
+    void readAll(At& at);
+    void readPicture(At& at);
+    void readTextures(At& at);
+
+    // State
+    Key cell(const At& at, Key above, uint32_t kind, const Rule& rule, const RecordView& r);
+    void set(At& at, Key key, uint32_t attribBits);
+    void setClient(At& at, Key key);
+    void state(At& at, const Rule& rule, const RecordView& r);
+    void cap(At& at, const Rule& rule, const RecordView& r);
+    void colorMaterial(At& at);
+    void limit(At& at, const RecordView& r);
+    void matrix(At& at, const Rule& rule, const RecordView& r);
+    void pushAttribs(At& at, std::vector<SavedAttribs>& stack, Part part, uint32_t mask);
+    void popAttribs(At& at, std::vector<SavedAttribs>& stack, Part part);
+
+    // Objects
+    Object* find(At& at, ObjectType type, uint32_t name);
+    Object* make(At& at, ObjectType type, uint32_t name);
+    Object* findOrMake(At& at, ObjectType type, uint32_t name);
+    Objects& tableOf(At& at, ObjectType type);
+    void hold(At& at, Object*& slot, Object* next);
+    void release(At& at, Object* object);
+    void erase(At& at, Object* object);
+    void objects(At& at, const Rule& rule, const RecordView& r);
+    void deleteNames(At& at, ObjectType type, const RecordView& r);
+    void deleteOne(At& at, ObjectType type, uint32_t name);
+    void use(At& at, Object* object);
+    Object* bound(At& at, uint64_t binding) const;
+    void bind(At& at, const Rule& rule, const RecordView& r);
+    void bindSlot(At& at, uint64_t slot, Key key, uint32_t attribBits, Object* object);
+    void arrays(At& at, const Rule& rule, const RecordView& r);
+    void shaders(At& at, const Rule& rule, const RecordView& r);
+    void buffers(At& at, const Rule& rule, const RecordView& r);
+    void writeBuffer(At& at, Object* buffer, uint64_t offset, uint64_t sizeBytes);
+    void queries(At& at, const Rule& rule, const RecordView& r);
+    void textures(At& at, const Rule& rule, const RecordView& r);
+    Object* texture(At& at, uint32_t target, bool readsBinding);
+    void framebuffers(At& at, const Rule& rule, const RecordView& r);
+    Object* framebuffer(At& at, uint32_t target);
+
+    // Pictures
+    void draw(At& at);
+    void planes(At& at, uint32_t mask, bool covers);
+    void windowPlanes(At& at, uint32_t mask, bool covers);
+    void framebufferPlanes(At& at, Object& target, uint32_t mask, bool covers);
+    void writeMemory(At& at);
+    void clear(At& at, const Rule& rule, const RecordView& r);
+
+    [[nodiscard]] Key part(Key above, Part kind, uint64_t a = 0, uint64_t b = 0) { return keys_.child(above, static_cast<uint32_t>(kind), a, b); }
+
+    KeyTree& keys_;
+    std::map<uint32_t, ClientNames> clients_;
+    std::unordered_map<uint32_t, StreamNames> streams_;
+};
+
+// The names in a value of an argument list, from that word on; false: they travel as a blob, or are not there.
+bool namesAt(const RecordView& r, size_t word, std::vector<uint32_t>& names);
+inline uint64_t argumentWide(const RecordView& r, size_t word) { return argumentWord(r, word) | uint64_t{argumentWord(r, word + 1)} << 32; }
+
+struct Follower::At {
+    uint32_t stream;
+    ClientNames& client;
+    StreamNames& thread;
+    ContextNames* context; // null: none is current
+    Effect& effect;
+    uint64_t blobBytes = 0; // of the first value that travels ahead
+};
+
+} // namespace mural::recording

@@ -1,0 +1,49 @@
+#include "recording/kept/kept_stream.hpp"
+
+#include <cstring>
+
+#include "recording/kept/packet_splitter.hpp"
+
+namespace mural::recording {
+
+void hideFrames(std::span<std::byte> records) {
+    RecordWalk walk(records);
+    RecordView r;
+    while (walk.next(r)) {
+        if ((r.opcode != wire::kOpSwap && r.opcode != wire::kOpFrontPicture) || r.arguments.size() < 8) continue;
+        const uint32_t unseen = wire::kUnseenFrame;
+        std::memcpy(records.data() + r.offset + r.sizeBytes - r.arguments.size() + 4, &unseen, sizeof unseen);
+    }
+}
+
+void KeptStream::append(uint32_t stream, std::span<const std::byte> payload) {
+    if (overrun_ || wire::clientOf(stream) == 0) return;
+    log_.append(stream, payload);
+    // At the bound one more pass; then a quarter of it has to be free, or there would be a pass for every packet.
+    if (log_.compactIfGrown() || log_.sizeBytes() <= boundBytes_) return;
+    log_.compact();
+    if (log_.sizeBytes() <= boundBytes_ / 2 + boundBytes_ / 4) return;
+    overrun_ = true;
+    const size_t keptBytes = log_.sizeBytes();
+    log_.clear();
+    say_("what a node that comes late would need has grown to " + std::to_string(keptBytes >> 20) + " MiB: from now on none can come; give more by --store");
+}
+
+void KeptStream::event(const ClientEvent& event) {
+    if (event.kind == Event::ClientGone && !overrun_) log_.clientGone(event.client);
+}
+
+std::vector<KeptPacket> KeptStream::snapshot() {
+    std::vector<KeptPacket> packets;
+    if (overrun_) return packets;
+    log_.compact();
+    PacketSplitter splitter([&](uint32_t stream, std::span<const std::byte> payload) {
+        packets.push_back({stream, {payload.begin(), payload.end()}});
+        hideFrames(packets.back().payload);
+    });
+    log_.forEach([&](uint32_t stream, std::span<const std::byte> records) { splitter.add(stream, records); });
+    splitter.flush();
+    return packets;
+}
+
+} // namespace mural::recording

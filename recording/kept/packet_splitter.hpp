@@ -1,0 +1,43 @@
+// Puts records into packets again: as many of one stream as follow each other, and as one packet may hold.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "recording/record_walk.hpp"
+#include "streamcodec/wire.hpp"
+
+namespace mural::recording {
+
+class PacketSplitter {
+public:
+    using Take = std::function<void(uint32_t stream, std::span<const std::byte> payload)>;
+    explicit PacketSplitter(Take take) : take_(std::move(take)) {}
+
+    void add(uint32_t stream, std::span<const std::byte> records) {
+        if (stream != stream_) flush();
+        stream_ = stream;
+        RecordWalk walk(records);
+        RecordView r;
+        while (walk.next(r)) {
+            if (payload_.size() + r.sizeBytes > kWantedBytes) flush();
+            const auto record = records.subspan(r.offset, r.sizeBytes);
+            payload_.insert(payload_.end(), record.begin(), record.end());
+        }
+    }
+    void flush() {
+        if (!payload_.empty()) take_(stream_, payload_);
+        payload_.clear();
+    }
+
+private:
+    static constexpr size_t kWantedBytes = wire::kMaxPacketBytes / 4; // as the program's own packets; a record may be larger
+    Take take_;
+    uint32_t stream_ = 0;
+    std::vector<std::byte> payload_;
+};
+
+} // namespace mural::recording

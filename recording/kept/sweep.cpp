@@ -1,0 +1,89 @@
+#include "recording/kept/sweep.hpp"
+
+#include <algorithm>
+
+namespace mural::recording {
+
+// All that nothing was said of is needed: it is there at the end.
+bool Sweep::needed(Key key) const {
+    uint64_t last = 0;
+    for (Key k = key;; k = keys_.parent(k)) {
+        last = std::max(last, marks_[k].said);
+        if (k == kNoKey) break;
+    }
+    return (last & 1) == 0;
+}
+
+bool Sweep::anyNeeded(Key key) const {
+    uint64_t last = 0;
+    for (Key k = key;; k = keys_.parent(k)) {
+        last = std::max(last, marks_[k].said);
+        if (k == kNoKey) break;
+    }
+    return (last & 1) == 0 || marks_[key].readBelow > last;
+}
+
+void Sweep::need(Key key) {
+    const uint64_t now = ++step_ << 1;
+    marks_[key].said = now;
+    for (Key k = key; k != kNoKey;) {
+        k = keys_.parent(k);
+        marks_[k].readBelow = now;
+    }
+}
+
+// A command that stays has to do with the key: so does what ends it.
+void Sweep::mention(Key key) {
+    for (Key k = key; k != kNoKey; k = keys_.parent(k)) {
+        if (marks_[k].closer == kNobody) continue;
+        keepsAfterAll(marks_[k].closer);
+        marks_[k].closer = kNobody;
+    }
+}
+
+void Sweep::open(Key key) {
+    const auto found = restored_.find(key);
+    const Key state = keys_.parent(keys_.parent(key)); // of all contexts and their objects
+    if (found == restored_.end()) return need(state); // what comes back when it ends is not known yet
+    for (const auto& [restored, wasNeeded] : found->second.keys)
+        if (wasNeeded) need(restored);
+    if (found->second.all) need(state);
+    restored_.erase(found);
+}
+
+bool Sweep::command(uint32_t number, std::span<const EffectEntry> effect, bool always) {
+    bool stays = always, closes = false;
+    for (const EffectEntry& e : effect) {
+        stays = stays || ((e.mode == Mode::Write || e.mode == Mode::Kill) && anyNeeded(e.key));
+        closes = closes || e.mode == Mode::Close;
+    }
+    Key level = kNoKey; // of the attribute stack, that this command closes
+    for (const EffectEntry& e : effect)
+        if (e.mode == Mode::Close) level = e.key;
+    if (stays && level != kNoKey) restored_[level].all = true;
+    // One that closes may yet be needed: what it depends on is asked for now. The parts of a command are in the order in which they
+    // happen, so the last comes first here; what a part reads stands behind what it makes anew.
+    for (size_t i = effect.size(); i-- > 0;) {
+        const EffectEntry& e = effect[i];
+        if (stays) mention(e.key);
+        switch (e.mode) {
+        case Mode::Write:
+        case Mode::Close: break;
+        case Mode::Read:
+            if (stays || closes) need(e.key);
+            break;
+        case Mode::Open: open(e.key); break;
+        case Mode::Restore: restored_[level].keys.emplace_back(e.key, anyNeeded(e.key)); [[fallthrough]];
+        case Mode::Kill:
+        case Mode::Forget:
+            marks_[e.key].said = (++step_ << 1) | 1;
+            if (e.mode == Mode::Kill) marks_[e.key].closer = kNobody; // what it would have closed is not there
+        }
+    }
+    for (const EffectEntry& e : effect)
+        if (e.mode == Mode::Close && !stays) marks_[e.key].closer = number;
+    if (stays && level != kNoKey) need(level);
+    return stays;
+}
+
+} // namespace mural::recording
