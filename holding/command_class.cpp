@@ -1,0 +1,179 @@
+#include "holding/command_class.hpp"
+
+#include <vector>
+
+#include "gl_opcodes.hpp"
+#include "recording/kept/families.hpp"
+#include "streamcodec/command_parameters.hpp"
+#include "streamcodec/wire.hpp"
+
+namespace mural::holding {
+namespace {
+
+using recording::Family;
+using recording::ObjectType;
+
+// Families that say too little of these.
+CommandClass exceptionOf(uint16_t opcode) {
+    switch (opcode) {
+    case op::glPixelTransferf: // images go through it
+    case op::glPixelTransferi:
+    case op::glPixelMapfv:
+    case op::glPixelMapuiv:
+    case op::glPixelMapusv: return CommandClass::Unknown;
+    case op::glHint: return CommandClass::UseAll; // how mipmaps are made
+    case op::glEnable: return CommandClass::Bind; // GL_DEBUG_OUTPUT
+    case op::glInvalidateBufferData:
+    case op::glInvalidateBufferSubData: return CommandClass::Object;
+    case op::glCopyBufferSubData:
+    case op::glClearBufferData:
+    case op::glClearBufferSubData: return CommandClass::UseAll;
+    default: return CommandClass::Pass;
+    }
+}
+
+CommandClass ofFamily(const recording::Rule& rule) {
+    switch (rule.family) {
+    case Family::Nothing:
+    case Family::Cell:
+    case Family::CellOfMatrix:
+    case Family::UnitCell:
+    case Family::UnitCellOfMatrix:
+    case Family::Cap:
+    case Family::ClientCap:
+    case Family::ClientCell:
+    case Family::Attribute:
+    case Family::Color:
+    case Family::Limit:
+    case Family::PatternedCell: // what lies in a buffer lies in one for pixels, of which nothing is held
+    case Family::MatrixMode:
+    case Family::ListBase:
+    case Family::MatrixLoad:
+    case Family::MatrixChange:
+    case Family::MatrixPush:
+    case Family::MatrixPop:
+    case Family::GenLists:
+    case Family::DeleteList: // a list of that name that is made later takes its place
+    case Family::FramebufferSet:
+    case Family::DrawBuffers:
+    case Family::RenderbufferStorage:
+    case Family::ShaderSet:
+    case Family::ShaderCompile:
+    case Family::ArbProgram:
+    case Family::SyncMake:
+    case Family::SyncDelete:
+    case Family::Clear: // pictures: textures that are such are not held
+    case Family::ClearBuffer:
+    case Family::Blit:
+    case Family::Barrier:
+    case Family::Vertex: // of a glBegin, which was the use
+    case Family::QueryBegin:
+    case Family::QueryEnd:
+    case Family::QueryCounter:
+    case Family::ConditionalEnd: return CommandClass::Pass;
+    case Family::CellOfAll: // the raster position goes through shaders
+    case Family::Draw:
+    case Family::Compute: return CommandClass::Use;
+    case Family::Begin: return CommandClass::Begin;
+    case Family::End: return CommandClass::End;
+    case Family::ActiveTexture:
+    case Family::ClientActiveTexture:
+    case Family::AttribPush:
+    case Family::AttribPop:
+    case Family::ClientPush:
+    case Family::ClientPop:
+    case Family::Bind:
+    case Family::BindIndexed:
+    case Family::UseProgram:
+    case Family::ArrayPointer:
+    case Family::ArraySet:
+    case Family::ArrayNamedSet:
+    case Family::Gen:
+    case Family::Create:
+    case Family::Delete:
+    case Family::ProgramDelete:
+    case Family::FramebufferAttach:
+    case Family::FramebufferNamed:
+    case Family::PipelineSet:
+    case Family::TexBuffer: return CommandClass::Bind;
+    case Family::NamedSet: return rule.type == ObjectType::Texture ? CommandClass::Object : CommandClass::Pass;
+    case Family::TexParameter:
+    case Family::TexMipmaps:
+    case Family::TexCopyImage:
+    case Family::TexCopySubImage:
+    case Family::ShaderDelete:
+    case Family::ProgramAttach:
+    case Family::ProgramDetach:
+    case Family::ProgramSet:
+    case Family::ProgramLink:
+    case Family::ProgramUniform: return CommandClass::Object;
+    case Family::TexImage:
+    case Family::TexStorage:
+    case Family::TexSubImage:
+    case Family::BufferData:
+    case Family::BufferSubData:
+    case Family::Uniform: return CommandClass::Upload;
+    case Family::NewList:
+    case Family::EndList:
+    case Family::CallList:
+    case Family::CallLists: return CommandClass::List;
+    default: return CommandClass::Unknown; // transform feedback, images of other objects, what nobody knows
+    }
+}
+
+CommandClass ownClass(uint16_t opcode) {
+    switch (opcode) {
+    case wire::kOpBlobBegin:
+    case wire::kOpBlobData: return CommandClass::Blob;
+    case wire::kOpClientArrays:
+    case wire::kOpFillWindow: return CommandClass::Arrays;
+    case wire::kOpBufferBytes: return CommandClass::Upload;
+    default: return CommandClass::Own;
+    }
+}
+
+struct Table {
+    std::vector<CommandClass> classes;
+    std::vector<uint8_t> valueWords;
+
+    Table() : classes(op::kLimit, CommandClass::Unknown), valueWords(op::kLimit, kNoValue) {
+        constexpr uint8_t kBufferBytesValue = 3; // buffer, u64 offset
+        valueWords[wire::kOpBufferBytes] = kBufferBytesValue;
+        for (uint16_t opcode = 0; opcode < op::kLimit; ++opcode) {
+            if (opcode < wire::kFirstGlOpcode) {
+                classes[opcode] = ownClass(opcode);
+                continue;
+            }
+            classes[opcode] = exceptionOf(opcode);
+            if (classes[opcode] == CommandClass::Pass) classes[opcode] = ofFamily(recording::ruleOf(opcode));
+            findValue(opcode);
+        }
+    }
+    void findValue(uint16_t opcode) {
+        size_t word = 0;
+        for (const ParameterInfo& p : parametersOf(opcode).parameters) {
+            if (p.travel == Travel::Value || p.travel == Travel::Text || p.travel == Travel::Texts) {
+                if (word < kNoValue) valueWords[opcode] = static_cast<uint8_t>(word);
+                return;
+            }
+            if (p.travel == Travel::Fixed) word += (size_t{p.fixedBytes} + 3) / 4;
+            else word += p.travel == Travel::Wide || bytesOf(p.element) == 8 ? 2 : 1;
+        }
+    }
+};
+
+const Table& table() {
+    static const Table kTable;
+    return kTable;
+}
+
+} // namespace
+
+CommandClass classOf(uint16_t opcode) {
+    static const std::vector<CommandClass>& kClasses = table().classes;
+    return opcode < kClasses.size() ? kClasses[opcode] : CommandClass::Unknown;
+}
+
+uint8_t valueWordOf(uint16_t opcode) { return opcode < op::kLimit ? table().valueWords[opcode] : kNoValue; }
+
+} // namespace mural::holding

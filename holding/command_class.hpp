@@ -1,0 +1,30 @@
+// What holding back uploads has to know of each command, in one byte: most need no look at all. Made from the families of
+// recording/kept, so that there is one table of commands; what that does not know ends holding back.
+#pragma once
+
+#include <cstdint>
+
+namespace mural::holding {
+
+enum class CommandClass : uint8_t {
+    Pass,    // neither uses what may be held nor changes what uploads are about
+    Blob,    // a piece of a value that travels ahead of its record
+    Use,     // draws: may use all that is bound
+    Begin,   // glBegin: up to glEnd nothing can be put between
+    End,
+    Arrays,  // belongs to the draw behind it: nothing may come between
+    Bind,    // changes what is bound, or what objects there are
+    Object,  // does something to one object that has to stay behind its uploads
+    Upload,  // may be held
+    List,    // display lists
+    Own,     // one of Mural's
+    UseAll,  // may use anything of the share group
+    Unknown, // may do anything, also to what is bound: from there on nothing of the share group is held
+};
+
+CommandClass classOf(uint16_t opcode);
+// The word of the arguments in which a value of variable size begins, the first; kNoValue: there is none.
+constexpr uint8_t kNoValue = 0xff;
+uint8_t valueWordOf(uint16_t opcode);
+
+} // namespace mural::holding

@@ -1,0 +1,248 @@
+#include "holding/holder.hpp"
+
+#include <GL/gl.h>
+#include <GL/glext.h>
+#include <utility>
+
+#include "gl_opcodes.hpp"
+#include "recording/record_values.hpp"
+#include "streamcodec/wire.hpp"
+
+namespace mural::holding {
+
+using recording::argumentWord;
+
+namespace {
+
+constexpr uint64_t kMostValueBytes = uint64_t{96} << 20; // longer ones are not waited for
+
+} // namespace
+
+Holder::Holder(uint64_t mostBytes, Take take)
+    : mostBytes_(mostBytes), take_([this, take = std::move(take)](uint32_t to, std::span<const std::byte> bytes) {
+          counts_.outBytes += bytes.size();
+          take(to, bytes);
+      }) {}
+
+void Holder::countLeftOut(size_t records, size_t sizeBytes) {
+    counts_.leftOutRecords += records;
+    counts_.leftOutBytes += sizeBytes;
+}
+
+void Holder::add(uint32_t streamId, std::span<const std::byte> payload) {
+    Stream& stream = streams_[streamId];
+    stream.id = streamId;
+    counts_.inBytes += payload.size();
+    releaseElsewhere(stream);
+    Output output(streamId, payload, scratch_, take_);
+    recording::RecordWalk walk(payload);
+    RecordView r;
+    constexpr size_t kNone = SIZE_MAX;
+    size_t valueFrom = stream.values > 0 ? 0 : kNone; // where the pieces of the value begin that are in this packet
+    while (walk.next(r)) {
+        const CommandClass kind = classOf(r.opcode);
+        if (kind == CommandClass::Pass && valueFrom == kNone) continue;
+        if (kind == CommandClass::Blob) {
+            if (valueFrom == kNone) valueFrom = r.offset;
+            ++stream.pendingRecords;
+            if (r.opcode != wire::kOpBlobBegin) continue;
+            const uint64_t sizeBytes = argumentWord(r, 0) | uint64_t{argumentWord(r, 1)} << 32;
+            if (stream.values++ == 0) stream.firstValueBytes = sizeBytes;
+            stream.valueBytes += sizeBytes;
+            continue;
+        }
+        const size_t from = valueFrom == kNone ? r.offset : valueFrom;
+        record(stream, output, r, kind, from, payload);
+        if (stream.values > 0 && kind != CommandClass::Upload) stream.waiting.lost();
+        if (!stream.pending.empty()) sendPending(stream, output, from);
+        stream.values = stream.pendingRecords = 0;
+        stream.valueBytes = 0;
+        stream.passing = false;
+        valueFrom = kNone;
+    }
+    if (valueFrom != kNone && !stream.passing) keepPending(stream, output, valueFrom, payload);
+    output.finish();
+}
+
+// The packet ends before the record that takes the value: whether that can be held is not known yet.
+void Holder::keepPending(Stream& stream, Output& output, size_t from, std::span<const std::byte> packet) {
+    Context* const c = stream.context;
+    const bool holds = c != nullptr && !c->group->held.empty();
+    const bool holdable = c != nullptr && !c->group->untracked && stream.list == 0 && stream.valueBytes <= kMostValueBytes && counts_.heldBytes + pendingBytes_ + stream.valueBytes <= mostBytes_;
+    if (holdable && (holds || !stream.waiting.vain() || stream.waiting.tries())) {
+        const auto rest = packet.subspan(from);
+        stream.pending.reserve(stream.valueBytes + stream.valueBytes / 1024 + rest.size());
+        stream.pending.insert(stream.pending.end(), rest.begin(), rest.end());
+        pendingBytes_ += rest.size();
+        return output.leaveOut(from, packet.size());
+    }
+    // From here on nothing can go before the record: values are taken in the order in which they came.
+    if (holds) releaseGroup(stream, output, from);
+    sendPending(stream, output, from);
+    stream.passing = true;
+}
+
+void Holder::sendPending(Stream& stream, Output& output, size_t from) {
+    if (stream.pending.empty()) return;
+    output.insert(from, stream.pending);
+    pendingBytes_ -= stream.pending.size();
+    std::vector<std::byte>().swap(stream.pending);
+}
+
+void Holder::record(Stream& stream, Output& output, const RecordView& r, CommandClass kind, size_t from, std::span<const std::byte> packet) {
+    if (kind == CommandClass::Own) return own(stream, output, r, from);
+    if (stream.context == nullptr || kind == CommandClass::Pass) return;
+    Group& group = *stream.context->group;
+    if (group.untracked) return;
+    At at{stream, *stream.context, group, output, r, from, packet};
+    gl(at, kind);
+}
+
+void Holder::gl(At& at, CommandClass kind) {
+    Stream& stream = at.stream;
+    if (stream.list != 0 && kind != CommandClass::List) return compiled(at, kind);
+    if (stream.inPrimitive && kind != CommandClass::List) {
+        if (kind == CommandClass::End) stream.inPrimitive = false;
+        return; // all else is an error
+    }
+    switch (kind) {
+    case CommandClass::Begin:
+        // One that is refused for its framebuffer begins nothing.
+        if (at.context.drawFramebuffer != 0 || at.group.listsBind) releaseGroup(stream, at.output, at.from);
+        use(at);
+        stream.inPrimitive = argumentWord(at.r, 0) <= 0xE;
+        return;
+    case CommandClass::Use: return use(at);
+    case CommandClass::Arrays: return arrays(at);
+    case CommandClass::Bind: return bind(at);
+    case CommandClass::Object: return objectCommand(at);
+    case CommandClass::Upload: return upload(at);
+    case CommandClass::List: return list(at);
+    case CommandClass::UseAll:
+        releaseGroup(stream, at.output, at.from);
+        for (auto& table : at.group.objects)
+            for (auto& [name, object] : table) object->known.clear();
+        return;
+    case CommandClass::Unknown: return untrack(at);
+    default: return;
+    }
+}
+
+// Nothing can go between these and the draw that takes them: so what that uses goes before.
+void Holder::arrays(At& at) {
+    if (at.group.held.empty()) return;
+    recording::RecordWalk behind(at.packet.subspan(at.r.offset + at.r.sizeBytes));
+    RecordView next;
+    const bool draws = at.r.opcode == wire::kOpClientArrays && behind.next(next) && classOf(next.opcode) == CommandClass::Use;
+    if (draws) return use(at);
+    releaseGroup(at.stream, at.output, at.from);
+}
+
+void Holder::untrack(At& at) {
+    releaseGroup(at.stream, at.output, at.from);
+    at.group.untracked = true;
+    at.group.lists.clear();
+    for (auto& table : at.group.objects)
+        for (auto& [name, object] : table) object->known.clear();
+}
+
+// ---- Mural's own records
+
+void Holder::own(Stream& stream, Output& output, const RecordView& r, size_t from) {
+    switch (r.opcode) {
+    case wire::kOpCreateContext: return createContext(stream, r);
+    case wire::kOpMakeCurrent: return makeCurrent(stream, output, r, from);
+    case wire::kOpDestroyContext: return destroyContext(stream, output, r, from);
+    case wire::kOpSwap:
+    case wire::kOpFrontPicture:
+        stream.inPrimitive = false;
+        if (stream.context != nullptr) ++stream.context->group->frame;
+        return;
+    case wire::kOpRequestTexImage:
+    case wire::kOpRequestBuffer:
+        if (stream.context != nullptr) releaseGroup(stream, output, from);
+        return;
+    case wire::kOpProgramLayout:
+    case wire::kOpProgramRecipe: {
+        if (stream.context == nullptr || stream.context->group->untracked) return;
+        At at{stream, *stream.context, *stream.context->group, output, r, from, {}};
+        Object* const program = make(at.group, Kind::Program, argumentWord(r, 0));
+        releaseOne(at, *program);
+        program->known.clear();
+        program->target = 1; // it is linked: glUseProgram makes it current
+        return;
+    }
+    case wire::kOpCreateImage:
+    case wire::kOpDestroyImage: // images share what objects hold
+        for (auto& [id, context] : clients_[wire::clientOf(stream.id)]) {
+            releaseOf(*context->group, stream, output, from);
+            context->group->untracked = true;
+        }
+        return;
+    default: return; // windows, questions whose answers are pictures or counts
+    }
+}
+
+void Holder::createContext(Stream& stream, const RecordView& r) {
+    auto& contexts = clients_[wire::clientOf(stream.id)];
+    const uint32_t id = argumentWord(r, 0);
+    if (id == 0 || contexts.contains(id)) return; // an error: the node's stays
+    auto context = std::make_unique<Context>();
+    context->id = id;
+    const auto sharer = contexts.find(argumentWord(r, 1));
+    context->group = sharer == contexts.end() ? std::make_shared<Group>() : sharer->second->group;
+    const uint32_t profile = argumentWord(r, 5), flags = argumentWord(r, 6);
+    context->madeByBinding = !(profile & GL_CONTEXT_CORE_PROFILE_BIT);
+    if (flags & GL_CONTEXT_FLAG_DEBUG_BIT) context->group->untracked = true; // the program hears of each command when its driver speaks
+    contexts.emplace(id, std::move(context));
+}
+
+void Holder::makeCurrent(Stream& stream, Output& output, const RecordView& r, size_t from) {
+    stream.inPrimitive = false;
+    stream.list = 0;
+    auto& contexts = clients_[wire::clientOf(stream.id)];
+    const auto found = contexts.find(argumentWord(r, 0));
+    Context* const next = found == contexts.end() ? nullptr : found->second.get();
+    if (next == stream.context) return;
+    if (stream.context != nullptr) releaseOf(*stream.context->group, stream, output, from);
+    if (next != nullptr) releaseOf(*next->group, stream, output, from); // another thread's, or another context's of the group
+    Context* const before = std::exchange(stream.context, next);
+    if (before != nullptr && before->destroyed) dropDestroyed(wire::clientOf(stream.id), before);
+}
+
+void Holder::destroyContext(Stream& stream, Output& output, const RecordView& r, size_t from) {
+    auto& contexts = clients_[wire::clientOf(stream.id)];
+    const auto found = contexts.find(argumentWord(r, 0));
+    if (found == contexts.end()) return;
+    Context* const context = found->second.get();
+    releaseOf(*context->group, stream, output, from);
+    context->destroyed = true;
+    dropDestroyed(wire::clientOf(stream.id), context);
+}
+
+void Holder::dropDestroyed(uint32_t client, Context* context) {
+    for (const auto& [id, stream] : streams_)
+        if (stream.context == context) return; // it lives until another is current
+    clients_[client].erase(context->id);
+}
+
+void Holder::clientGone(uint32_t client) {
+    const auto ofClient = clients_.find(client);
+    if (ofClient != clients_.end()) {
+        for (auto& [id, context] : ofClient->second) {
+            while (!context->group->held.empty()) {
+                Object& object = *context->group->held.back();
+                for (const Item& item : object.queue) countLeftOut(item.records, item.bytes.size());
+                emptyQueue(*context->group, object);
+            }
+        }
+    }
+    clients_.erase(client);
+    std::erase_if(streams_, [&](const auto& s) {
+        if (wire::clientOf(s.first) != client) return false;
+        pendingBytes_ -= s.second.pending.size();
+        return true;
+    });
+}
+
+} // namespace mural::holding

@@ -1,0 +1,132 @@
+// Holds back what nobody needs yet: uploads of textures, of buffers and to uniforms, until a record comes that may use them. What a
+// later one replaces before that is not sent, nor what changes nothing.
+//
+// An upload waits in the queue of its object, with all that is done to the object behind it; nothing else is put off. It goes out
+// before the first record that may use the object: a draw with it bound, a command of which that is not known, any record of
+// another context that shares it. There it is bound for it, and what was bound is bound again. What the program does is followed as far
+// as bindings go; a command that recording/kept has no rule for ends holding in its share group.
+//
+// Calls are taken to be valid where they bind something; an upload that is refused is refused wherever it stands.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <span>
+#include <unordered_map>
+
+#include "holding/command_class.hpp"
+#include "holding/names.hpp"
+#include "holding/output.hpp"
+
+namespace mural::holding {
+
+struct HolderCounts {
+    uint64_t inBytes = 0, outBytes = 0;
+    uint64_t heldRecords = 0;    // that ever were
+    uint64_t leftOutRecords = 0; // those that were replaced, changed nothing, or went with their object
+    uint64_t leftOutBytes = 0;
+    uint64_t heldBytes = 0;      // now
+};
+
+// One thread at a time.
+class Holder {
+public:
+    // mostBytes: of what is held; beyond that it is sent.
+    Holder(uint64_t mostBytes, Take take);
+    Holder(const Holder&) = delete;
+    Holder& operator=(const Holder&) = delete;
+
+    void add(uint32_t stream, std::span<const std::byte> payload);
+    void releaseAll();               // all that is held is sent now
+    void clientGone(uint32_t client); // nobody needs it any more
+    void losesWhatItHolds() { loses_ = true; } // a fault on purpose, for tests of the tests
+    [[nodiscard]] const HolderCounts& counts() const { return counts_; }
+
+private:
+    using RecordView = recording::RecordView;
+    struct At { // a record
+        Stream& stream;
+        Context& context;
+        Group& group;
+        Output& output;
+        const RecordView& r;
+        size_t from; // in the packet: of the first piece of its value, or of the record
+        std::span<const std::byte> packet;
+    };
+
+    void record(Stream& stream, Output& output, const RecordView& r, CommandClass kind, size_t from, std::span<const std::byte> packet);
+    void keepPending(Stream& stream, Output& output, size_t from, std::span<const std::byte> packet);
+    void sendPending(Stream& stream, Output& output, size_t from);
+    void gl(At& at, CommandClass kind);
+    void arrays(At& at);
+
+    // Mural's records
+    void own(Stream& stream, Output& output, const RecordView& r, size_t from);
+    void createContext(Stream& stream, const RecordView& r);
+    void makeCurrent(Stream& stream, Output& output, const RecordView& r, size_t from);
+    void destroyContext(Stream& stream, Output& output, const RecordView& r, size_t from);
+    void dropDestroyed(uint32_t client, Context* context);
+
+    // What is bound
+    void bind(At& at);
+    void bindTexture(At& at, uint32_t target, uint32_t unit, Object* object);
+    void bindBuffer(At& at, uint32_t target, uint32_t name);
+    void bindIndexed(At& at);
+    void bindFramebuffer(At& at);
+    void useProgram(At& at, uint32_t name);
+    void arrayPointer(At& at);
+    void pushAttribs(At& at);
+    void popAttribs(At& at);
+    void pushClientAttribs(At& at);
+    void popClientAttribs(At& at);
+
+    // Objects
+    Object* find(Group& group, Kind kind, uint32_t name) const;
+    Object* make(Group& group, Kind kind, uint32_t name);
+    Object* named(At& at, Kind kind, uint32_t name); // null: 0, or an unknown one, which ends holding
+    Object* textureAt(At& at, uint32_t target);
+    Object* bufferAt(const Context& c, uint32_t target) const;
+    void generate(At& at);
+    void deleteNames(At& at);
+    void deleteObject(At& at, Object* object);
+    void openUp(At& at, Object* object); // nothing of it is held from now on
+    void openNamed(At& at, Kind kind, size_t word);
+
+    // Uploads
+    void upload(At& at);
+    Object* objectOf(At& at);
+    void hold(At& at, Object& object, const Upload* upload, bool barrier);
+    void countLeftOut(size_t records, size_t sizeBytes);
+    void objectCommand(At& at);
+    Sum sumOfValue(At& at, const Upload& upload);
+
+    void list(At& at);
+    void compiled(At& at, CommandClass kind);
+
+    // Releasing: before the byte `from` of the output's packet
+    void use(At& at);
+    void release(Stream& stream, Output& output, size_t from, std::span<Object* const> objects);
+    void releaseOne(At& at, Object& object);
+    void releaseGroup(Stream& stream, Output& output, size_t from);
+    void releaseOf(Group& group, Stream& stream, Output& output, size_t from);
+    void releaseElsewhere(Stream& stream);
+    void emptyQueue(Group& group, Object& object);
+    void sendQueue(Context& c, Output& output, size_t from, Object& object);
+    void untrack(At& at);
+
+    const uint64_t mostBytes_;
+    const Take take_; // counts what goes
+    std::unordered_map<uint32_t, Stream> streams_;
+    std::map<uint32_t, std::map<uint32_t, std::unique_ptr<Context>>> clients_;
+    std::vector<std::byte> scratch_, otherScratch_;
+    uint64_t pendingBytes_ = 0;
+    bool loses_ = false;
+    HolderCounts counts_;
+};
+
+// Of a record's arguments, at that word: names that lie in the record; false: they travel ahead of it.
+bool namesAt(const recording::RecordView& r, size_t word, std::vector<uint32_t>& names);
+// By which TextureUnit is counted; kTextureTargets: unknown. Faces of a cube are the cube.
+size_t targetIndex(uint32_t target);
+
+} // namespace mural::holding

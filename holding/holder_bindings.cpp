@@ -1,0 +1,246 @@
+// What is bound: as much of the program's state as says which objects its commands are about.
+#include <GL/gl.h>
+#include <GL/glext.h>
+#include <algorithm>
+
+#include "gl_opcodes.hpp"
+#include "holding/holder.hpp"
+#include "recording/kept/families.hpp"
+#include "recording/kept/texture_targets.hpp"
+
+namespace mural::holding {
+
+using recording::argumentWord;
+using recording::Family;
+
+namespace {
+
+constexpr uint32_t kExternal = 0x8D65; // GL_TEXTURE_EXTERNAL_OES
+constexpr size_t kMostUnits = 256, kMostSaved = 16, kMostArrayBuffers = 256;
+
+// Targets at which a draw takes nothing from a buffer, and nothing else writes it.
+bool onlyForUploads(uint32_t target) { return target == GL_ARRAY_BUFFER || target == GL_COPY_READ_BUFFER || target == GL_COPY_WRITE_BUFFER || target == GL_UNIFORM_BUFFER || target == GL_TEXTURE_BUFFER; }
+
+} // namespace
+
+size_t targetIndex(uint32_t target) {
+    switch (target) {
+    case GL_TEXTURE_1D: return 0;
+    case GL_TEXTURE_2D: return 1;
+    case GL_TEXTURE_3D: return 2;
+    case GL_TEXTURE_CUBE_MAP: return 3;
+    case GL_TEXTURE_RECTANGLE: return 4;
+    case GL_TEXTURE_1D_ARRAY: return 5;
+    case GL_TEXTURE_2D_ARRAY: return 6;
+    case GL_TEXTURE_CUBE_MAP_ARRAY: return 7;
+    case GL_TEXTURE_BUFFER: return 8;
+    case GL_TEXTURE_2D_MULTISAMPLE: return 9;
+    case GL_TEXTURE_2D_MULTISAMPLE_ARRAY: return 10;
+    case kExternal: return 11;
+    default: return recording::isFace(target) ? 3 : kTextureTargets;
+    }
+}
+
+void Holder::bind(At& at) {
+    Context& c = at.context;
+    const RecordView& r = at.r;
+    const uint32_t first = argumentWord(r, 0), second = argumentWord(r, 1);
+    switch (recording::ruleOf(r.opcode).family) {
+    case Family::Cap: // nodes tell what their drivers say, as it happens
+        return first == GL_DEBUG_OUTPUT || first == GL_DEBUG_OUTPUT_SYNCHRONOUS ? untrack(at) : void();
+    case Family::ActiveTexture:
+        if (first < GL_TEXTURE0 || first - GL_TEXTURE0 >= kMostUnits) return untrack(at);
+        c.unit = first - GL_TEXTURE0;
+        if (c.unit >= c.units.size()) c.units.resize(c.unit + 1);
+        return;
+    case Family::ClientActiveTexture: c.clientUnit = first - GL_TEXTURE0; return;
+    case Family::AttribPush: return pushAttribs(at);
+    case Family::AttribPop: return popAttribs(at);
+    case Family::ClientPush: return pushClientAttribs(at);
+    case Family::ClientPop: return popClientAttribs(at);
+    case Family::UseProgram: return useProgram(at, first);
+    case Family::BindIndexed: return bindIndexed(at);
+    case Family::ArrayPointer: return arrayPointer(at);
+    case Family::ArraySet:
+    case Family::ArrayNamedSet: // who holds these buffers is not followed
+        if (r.opcode == op::glVertexArrayElementBuffer) return openNamed(at, Kind::Buffer, 1);
+        if (r.opcode == op::glVertexArrayVertexBuffer) return openNamed(at, Kind::Buffer, 2);
+        if (r.opcode == op::glBindVertexBuffers || r.opcode == op::glVertexArrayVertexBuffers) {
+            std::vector<uint32_t> names;
+            if (!namesAt(r, r.opcode == op::glBindVertexBuffers ? 2 : 3, names)) return untrack(at);
+            for (const uint32_t name : names) openUp(at, find(at.group, Kind::Buffer, name));
+        }
+        return;
+    case Family::Gen:
+    case Family::Create: return generate(at);
+    case Family::Delete:
+    case Family::ProgramDelete: return deleteNames(at);
+    case Family::FramebufferAttach: { // a picture from now on
+        const bool texture = r.opcode != op::glFramebufferRenderbuffer;
+        const bool layer = r.opcode == op::glFramebufferTextureLayer || r.opcode == op::glFramebufferTexture;
+        return texture ? openNamed(at, Kind::Texture, layer ? 2 : 3) : void();
+    }
+    case Family::FramebufferNamed:
+        for (size_t word = 1; word < 4; ++word) openNamed(at, Kind::Texture, word); // whichever of them is a name
+        return;
+    case Family::PipelineSet: {
+        const uint32_t program = argumentWord(r, r.opcode == op::glUseProgramStages ? 2 : 1);
+        return program != 0 ? openUp(at, make(at.group, Kind::Program, program)) : void();
+    }
+    case Family::TexBuffer:
+        for (size_t word = 0; word < 4; ++word) openNamed(at, Kind::Buffer, word);
+        if (targetIndex(first) == kTextureTargets) return openNamed(at, Kind::Texture, 0);
+        return openUp(at, textureAt(at, first));
+    default: break;
+    }
+    switch (r.opcode) {
+    case op::glBindTexture: {
+        Object* const object = named(at, Kind::Texture, second);
+        return at.group.untracked ? void() : bindTexture(at, first, c.unit, object);
+    }
+    case op::glBindBuffer: return bindBuffer(at, first, second);
+    case op::glBindVertexArray: {
+        const auto found = c.arrays.find(first);
+        if (found == c.arrays.end() && !c.madeByBinding) return untrack(at);
+        c.array = found == c.arrays.end() ? &c.arrays[first] : &found->second;
+        c.changed = true;
+        return;
+    }
+    case op::glBindFramebuffer:
+    case op::glBindFramebufferEXT:
+    case op::glBindFramebufferOES:
+        if (first != GL_READ_FRAMEBUFFER) c.drawFramebuffer = second;
+        return;
+    default: return; // renderbuffers, pipelines, programs of assembly
+    }
+}
+
+void Holder::bindTexture(At& at, uint32_t target, uint32_t unit, Object* object) {
+    Context& c = at.context;
+    const size_t index = targetIndex(target);
+    if (index == kTextureTargets || unit >= kMostUnits) return untrack(at);
+    if (object != nullptr) {
+        if (object->target == 0) object->target = target;
+        if (object->target != target) return untrack(at); // an error, which binds nothing
+    }
+    if (unit >= c.units.size()) c.units.resize(unit + 1);
+    c.units[unit][index] = object;
+    c.changed = true;
+}
+
+void Holder::bindIndexed(At& at) {
+    const uint32_t first = argumentWord(at.r, 0), second = argumentWord(at.r, 1);
+    switch (at.r.opcode) {
+    case op::glBindTextureUnit: {
+        Object* const object = named(at, Kind::Texture, second);
+        if (at.group.untracked) return;
+        if (object == nullptr || object->target == 0) return untrack(at); // 0: of all targets
+        return bindTexture(at, object->target, first, object);
+    }
+    case op::glBindBufferBase:
+    case op::glBindBufferRange: // shaders take it from there, or write it
+        openNamed(at, Kind::Buffer, 2);
+        return at.group.untracked ? void() : bindBuffer(at, first, argumentWord(at.r, 2));
+    case op::glBindImageTexture: return openNamed(at, Kind::Texture, 1);
+    default: return; // samplers
+    }
+}
+
+void Holder::bindBuffer(At& at, uint32_t target, uint32_t name) {
+    Context& c = at.context;
+    Object* const object = named(at, Kind::Buffer, name);
+    if (at.group.untracked) return;
+    if (target == GL_ELEMENT_ARRAY_BUFFER) {
+        c.array->indices = object;
+        c.changed = true;
+        return;
+    }
+    if (!onlyForUploads(target)) openUp(at, object);
+    for (auto& [bound, there] : c.buffers) {
+        if (bound != target) continue;
+        there = object;
+        return;
+    }
+    c.buffers.emplace_back(target, object);
+}
+
+// A program that was not linked, as far as is known, may be refused: then the one before stays.
+void Holder::useProgram(At& at, uint32_t name) {
+    Context& c = at.context;
+    Object* const object = name == 0 ? nullptr : make(at.group, Kind::Program, name);
+    if (object != nullptr && object->target == 0) {
+        std::vector<Object*> programs;
+        std::ranges::copy_if(at.group.held, std::back_inserter(programs), [](const Object* o) { return o->kind == Kind::Program; });
+        if (!programs.empty()) release(at.stream, at.output, at.from, programs);
+        c.programSure = false;
+    } else {
+        c.programSure = true;
+    }
+    c.program = object;
+    c.changed = true;
+}
+
+void Holder::arrayPointer(At& at) {
+    Context& c = at.context;
+    const RecordView& r = at.r;
+    const bool generic = r.opcode == op::glVertexAttribPointer || r.opcode == op::glVertexAttribIPointer || r.opcode == op::glVertexAttribLPointer || r.opcode == op::glBindVertexBuffer;
+    Object* object = bufferAt(c, GL_ARRAY_BUFFER);
+    if (r.opcode == op::glBindVertexBuffer) {
+        object = named(at, Kind::Buffer, argumentWord(r, 1));
+        if (at.group.untracked) return;
+    }
+    const uint32_t index = generic ? argumentWord(r, 0) : r.opcode == op::glTexCoordPointer ? c.clientUnit : 0;
+    const uint32_t key = uint32_t{r.opcode} << 16 | (index & 0xffff);
+    c.changed = true;
+    for (auto& [known, there] : c.array->buffers) {
+        if (known != key) continue;
+        there = object;
+        return;
+    }
+    if (c.array->buffers.size() == kMostArrayBuffers) return untrack(at);
+    c.array->buffers.emplace_back(key, object);
+}
+
+// ---- stacks
+
+void Holder::pushAttribs(At& at) {
+    Context& c = at.context;
+    if (c.attribs.size() == kMostSaved) return untrack(at);
+    SavedAttribs saved;
+    saved.textures = argumentWord(at.r, 0) & GL_TEXTURE_BIT;
+    saved.unit = c.unit;
+    if (saved.textures) saved.units = c.units;
+    c.attribs.push_back(std::move(saved));
+}
+
+void Holder::popAttribs(At& at) {
+    Context& c = at.context;
+    if (c.attribs.empty()) return; // an error
+    SavedAttribs saved = std::move(c.attribs.back());
+    c.attribs.pop_back();
+    if (!saved.textures) return;
+    // Units that there were not had nothing bound; parameters of textures come back with them, which are not of their images.
+    saved.units.resize(std::max(saved.units.size(), c.units.size()));
+    c.units = std::move(saved.units);
+    c.unit = saved.unit;
+    c.changed = true;
+}
+
+void Holder::pushClientAttribs(At& at) {
+    Context& c = at.context;
+    if (c.clientAttribs.size() == kMostSaved) return untrack(at);
+    c.clientAttribs.push_back({argumentWord(at.r, 0), bufferAt(c, GL_PIXEL_UNPACK_BUFFER)});
+}
+
+void Holder::popClientAttribs(At& at) {
+    Context& c = at.context;
+    if (c.clientAttribs.empty()) return; // an error
+    const SavedClientAttribs saved = c.clientAttribs.back();
+    c.clientAttribs.pop_back();
+    if (saved.mask & GL_CLIENT_VERTEX_ARRAY_BIT) return untrack(at);
+    if (!(saved.mask & GL_CLIENT_PIXEL_STORE_BIT)) return;
+    for (auto& [target, object] : c.buffers)
+        if (target == GL_PIXEL_UNPACK_BUFFER) object = saved.unpackBuffer;
+}
+
+} // namespace mural::holding

@@ -1,0 +1,80 @@
+// Display lists: while one is compiled nothing is held, and one that binds something ends holding when it is called.
+#include <GL/gl.h>
+#include <GL/glext.h>
+
+#include "gl_opcodes.hpp"
+#include "holding/holder.hpp"
+#include "recording/kept/families.hpp"
+
+namespace mural::holding {
+
+using recording::argumentWord;
+using recording::Family;
+
+void Holder::list(At& at) {
+    Stream& stream = at.stream;
+    const uint32_t first = argumentWord(at.r, 0);
+    switch (recording::ruleOf(at.r.opcode).family) {
+    case Family::NewList:
+        if (stream.inPrimitive || stream.list != 0) return; // an error
+        releaseGroup(stream, at.output, at.from);
+        if (argumentWord(at.r, 1) != GL_COMPILE) return untrack(at);
+        stream.list = first;
+        stream.compiled = {};
+        stream.depth = 0;
+        return;
+    case Family::EndList:
+        if (stream.list == 0) return;
+        stream.compiled.binds = stream.compiled.binds || stream.depth != 0;
+        at.group.lists[stream.list] = stream.compiled;
+        at.group.listsBind = at.group.listsBind || stream.compiled.binds;
+        stream.list = 0;
+        return;
+    default: break;
+    }
+    if (stream.list != 0) {
+        stream.compiled.calls = true;
+        return;
+    }
+    bool binds = false, calls = at.r.opcode != op::glCallList;
+    if (!calls) {
+        const auto found = at.group.lists.find(first);
+        if (found != at.group.lists.end()) binds = found->second.binds, calls = found->second.calls;
+    }
+    if (calls) binds = at.group.listsBind; // which ones is not followed
+    if (binds) return untrack(at);
+    if (!stream.inPrimitive) use(at);
+}
+
+// A command while a list is compiled: done later, or now.
+void Holder::compiled(At& at, CommandClass kind) {
+    switch (kind) {
+    case CommandClass::Begin: ++at.stream.depth; return;
+    case CommandClass::End: --at.stream.depth; return;
+    case CommandClass::Use:
+    case CommandClass::Arrays: return;
+    case CommandClass::Bind: break;
+    case CommandClass::Upload:
+    case CommandClass::Object: // those of buffers are no part of lists
+        if (Object* const object = objectOf(at); object != nullptr && object->kind == Kind::Buffer) return object->known.clear();
+        [[fallthrough]];
+    default: at.stream.compiled.binds = true; return;
+    }
+    switch (recording::ruleOf(at.r.opcode).family) {
+    case Family::Gen: // these are no part of lists
+    case Family::Create:
+    case Family::Delete:
+    case Family::ProgramDelete:
+    case Family::ArrayPointer:
+    case Family::ArraySet:
+    case Family::ClientActiveTexture:
+    case Family::ClientPush:
+    case Family::ClientPop: return bind(at);
+    case Family::Bind:
+        if (at.r.opcode == op::glBindBuffer || at.r.opcode == op::glBindVertexArray) return bind(at);
+        [[fallthrough]];
+    default: at.stream.compiled.binds = true;
+    }
+}
+
+} // namespace mural::holding

@@ -1,0 +1,154 @@
+// Objects: which there are, and who has them.
+#include <GL/gl.h>
+#include <GL/glext.h>
+#include <algorithm>
+#include <cstring>
+
+#include "gl_opcodes.hpp"
+#include "holding/holder.hpp"
+#include "recording/kept/families.hpp"
+#include "streamcodec/record.hpp"
+#include "streamcodec/wire.hpp"
+
+namespace mural::holding {
+
+using recording::argumentWord;
+using recording::ObjectType;
+
+bool namesAt(const recording::RecordView& r, size_t word, std::vector<uint32_t>& names) {
+    const uint32_t sizeBytes = argumentWord(r, word);
+    if (sizeBytes > record::kInlineBytes || (word + 1) * 4 + sizeBytes > r.arguments.size()) return false;
+    names.resize(sizeBytes / 4);
+    if (!names.empty()) std::memcpy(names.data(), r.arguments.data() + (word + 1) * 4, names.size() * 4);
+    return true;
+}
+
+Object* Holder::find(Group& group, Kind kind, uint32_t name) const {
+    const auto& table = group.objects[static_cast<size_t>(kind)];
+    const auto found = table.find(name);
+    return found == table.end() ? nullptr : found->second.get();
+}
+
+Object* Holder::make(Group& group, Kind kind, uint32_t name) {
+    auto& place = group.objects[static_cast<size_t>(kind)][name];
+    if (place == nullptr) {
+        place = std::make_unique<Object>();
+        place->kind = kind;
+        place->name = name;
+    }
+    return place.get();
+}
+
+Object* Holder::named(At& at, Kind kind, uint32_t name) {
+    if (name == 0) return nullptr;
+    Object* const object = find(at.group, kind, name);
+    if (object != nullptr) return object;
+    if (at.context.madeByBinding) return make(at.group, kind, name);
+    untrack(at); // an error, or something was missed
+    return nullptr;
+}
+
+// Of those without a name nothing is held.
+Object* Holder::textureAt(At& at, uint32_t target) {
+    const size_t index = targetIndex(target);
+    return index == kTextureTargets ? nullptr : at.context.units[at.context.unit][index];
+}
+
+Object* Holder::bufferAt(const Context& c, uint32_t target) const {
+    if (target == GL_ELEMENT_ARRAY_BUFFER) return c.array->indices;
+    for (const auto& [bound, object] : c.buffers)
+        if (bound == target) return object;
+    return nullptr;
+}
+
+void Holder::generate(At& at) {
+    const RecordView& r = at.r;
+    if (r.opcode == op::glCreateProgram || r.opcode == op::glCreateShader) {
+        Object* const old = find(at.group, Kind::Program, argumentWord(r, r.opcode == op::glCreateShader ? 1 : 0));
+        if (old == nullptr) return;
+        releaseOne(at, *old);
+        old->known.clear();
+        old->target = 0;
+        old->open = false;
+        return;
+    }
+    const ObjectType type = recording::ruleOf(r.opcode).type;
+    if (type != ObjectType::Texture && type != ObjectType::Buffer && type != ObjectType::VertexArray) return;
+    std::vector<uint32_t> names;
+    if (!namesAt(r, r.opcode == op::glCreateTextures ? 2 : 1, names)) return untrack(at);
+    for (const uint32_t name : names) {
+        if (type == ObjectType::VertexArray) {
+            at.context.arrays[name];
+            continue;
+        }
+        const Kind kind = type == ObjectType::Texture ? Kind::Texture : Kind::Buffer;
+        if (find(at.group, kind, name) != nullptr) return untrack(at); // GL gives no name twice
+        Object* const object = make(at.group, kind, name);
+        if (r.opcode == op::glCreateTextures) object->target = argumentWord(r, 0);
+    }
+}
+
+void Holder::deleteNames(At& at) {
+    const RecordView& r = at.r;
+    const recording::Rule& rule = recording::ruleOf(r.opcode);
+    Context& c = at.context;
+    if (rule.family == recording::Family::ProgramDelete) {
+        // It lives as long as it is current somewhere.
+        Object* const program = find(at.group, Kind::Program, argumentWord(r, 0));
+        return program != nullptr ? releaseOne(at, *program) : void();
+    }
+    std::vector<uint32_t> names;
+    if (!namesAt(r, 1, names)) return untrack(at);
+    for (const uint32_t name : names) {
+        if (at.group.untracked) return;
+        if (rule.type == ObjectType::Framebuffer && name == c.drawFramebuffer) c.drawFramebuffer = 0;
+        if (rule.type == ObjectType::VertexArray && name != 0) {
+            const auto found = c.arrays.find(name);
+            if (found == c.arrays.end()) continue;
+            if (c.array == &found->second) c.array = &c.arrays[0];
+            c.arrays.erase(found);
+            c.changed = true;
+        }
+        if (rule.type != ObjectType::Texture && rule.type != ObjectType::Buffer) continue;
+        if (Object* const object = find(at.group, rule.type == ObjectType::Texture ? Kind::Texture : Kind::Buffer, name)) deleteObject(at, object);
+    }
+}
+
+void Holder::deleteObject(At& at, Object* object) {
+    Context& c = at.context;
+    // What is bound elsewhere lives on without its name: then nobody here can bind it again.
+    bool elsewhere = !c.attribs.empty() || !c.clientAttribs.empty();
+    for (const auto& [id, other] : clients_[wire::clientOf(at.stream.id)]) {
+        if (other.get() == &c || other->group.get() != &at.group) continue;
+        for (const TextureUnit& unit : other->units) elsewhere = elsewhere || std::ranges::find(unit, object) != unit.end();
+        for (const auto& [target, there] : other->buffers) elsewhere = elsewhere || there == object;
+        for (const auto& [name, array] : other->arrays)
+            elsewhere = elsewhere || array.indices == object || std::ranges::any_of(array.buffers, [&](const auto& b) { return b.second == object; });
+    }
+    if (elsewhere) return untrack(at);
+    for (TextureUnit& unit : c.units) std::ranges::replace(unit, object, nullptr);
+    for (auto& [target, there] : c.buffers)
+        if (there == object) there = nullptr;
+    bool inArrays = false; // vertex arrays that are not bound keep it
+    for (auto& [name, array] : c.arrays) {
+        const bool current = &array == c.array;
+        if (array.indices == object) array.indices = nullptr, inArrays = inArrays || !current;
+        for (auto& [key, there] : array.buffers)
+            if (there == object) there = nullptr, inArrays = inArrays || !current;
+    }
+    if (inArrays) releaseOne(at, *object);
+    for (const Item& item : object->queue) countLeftOut(item.records, item.bytes.size());
+    emptyQueue(at.group, *object);
+    at.group.objects[static_cast<size_t>(object->kind)].erase(object->name);
+}
+
+void Holder::openUp(At& at, Object* object) {
+    if (object == nullptr || object->open) return;
+    releaseOne(at, *object);
+    object->open = true;
+    object->known.clear();
+}
+
+void Holder::openNamed(At& at, Kind kind, size_t word) { openUp(at, find(at.group, kind, argumentWord(at.r, word))); }
+
+} // namespace mural::holding

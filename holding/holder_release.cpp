@@ -1,0 +1,149 @@
+// Sending what was held: before the record that may use it, bound as it was meant to be, and what is bound now bound again.
+#include <GL/gl.h>
+#include <GL/glext.h>
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "gl_opcodes.hpp"
+#include "holding/holder.hpp"
+#include "streamcodec/record.hpp"
+
+namespace mural::holding {
+namespace {
+
+template <size_t Words>
+void put(Output& output, size_t from, uint16_t opcode, const std::array<uint32_t, Words>& arguments) {
+    std::array<uint32_t, Words + 1> record{};
+    record[0] = opcode | static_cast<uint32_t>(Words + 1) << 16;
+    std::ranges::copy(arguments, record.begin() + 1);
+    output.insert(from, std::as_bytes(std::span(record)));
+}
+
+// What is needed so soon might as well be on its way: programs fill buffers before they show a frame, and draw behind that.
+constexpr uint64_t kSoonFrames = 1;
+
+uint32_t nameOf(const Object* object) { return object == nullptr ? 0 : object->name; }
+
+} // namespace
+
+// A draw: of what is held goes what is bound for it.
+void Holder::use(At& at) {
+    Context& c = at.context;
+    if (at.group.held.empty() || !c.changed) return;
+    std::vector<Object*> used;
+    const auto take = [&](Object* object) {
+        if (object != nullptr && !object->queue.empty() && std::ranges::find(used, object) == used.end()) used.push_back(object);
+    };
+    for (const TextureUnit& unit : c.units)
+        for (Object* const object : unit) take(object);
+    for (const auto& [key, object] : c.array->buffers) take(object);
+    take(c.array->indices);
+    take(c.program);
+    if (!used.empty()) release(at.stream, at.output, at.from, used);
+    c.changed = false;
+}
+
+void Holder::releaseOne(At& at, Object& object) {
+    Object* const one = &object;
+    if (!object.queue.empty()) release(at.stream, at.output, at.from, std::span(&one, 1));
+}
+
+void Holder::releaseGroup(Stream& stream, Output& output, size_t from) {
+    if (stream.context == nullptr || stream.context->group->held.empty()) return;
+    const std::vector<Object*> all = stream.context->group->held;
+    release(stream, output, from, all);
+}
+
+// Where it was held: in the stream of its context, between two packets of that.
+void Holder::releaseOf(Group& group, Stream& stream, Output& output, size_t from) {
+    if (group.held.empty()) return;
+    Stream& holder = streams_[group.holderStream];
+    // Between glBegin and glEnd of that nothing can be put: then here, if this shares it.
+    const bool here = stream.context != nullptr && stream.context->group.get() == &group;
+    if (&holder == &stream || (holder.inPrimitive && here)) return releaseGroup(stream, output, from);
+    if (holder.inPrimitive) return; // still held; nobody who looks at it has come
+    Output other(holder.id, {}, otherScratch_, take_);
+    releaseGroup(holder, other, 0);
+    other.finish();
+}
+
+void Holder::releaseElsewhere(Stream& stream) {
+    if (stream.context == nullptr || stream.context->group->held.empty() || stream.context->group->holder == stream.context) return;
+    Output none(stream.id, {}, scratch_, take_);
+    releaseOf(*stream.context->group, stream, none, 0);
+    none.finish();
+}
+
+void Holder::releaseAll() {
+    for (auto& [client, contexts] : clients_)
+        for (auto& [id, context] : contexts) {
+            if (context->group->held.empty()) continue;
+            Stream nobody;
+            Output none(0, {}, scratch_, take_);
+            releaseOf(*context->group, nobody, none, 0);
+        }
+}
+
+void Holder::emptyQueue(Group& group, Object& object) {
+    counts_.heldBytes -= object.heldBytes;
+    object.heldBytes = 0;
+    object.gained = false;
+    std::vector<Item>().swap(object.queue);
+    std::erase(group.held, &object);
+}
+
+void Holder::release(Stream& stream, Output& output, size_t from, std::span<Object* const> objects) {
+    Context& c = *stream.context;
+    Group& group = *c.group;
+    const bool textures = std::ranges::any_of(objects, [](const Object* o) { return o->kind == Kind::Texture; });
+    const Object* const unpack = textures ? bufferAt(c, GL_PIXEL_UNPACK_BUFFER) : nullptr;
+    if (unpack != nullptr) put<2>(output, from, op::glBindBuffer, {GL_PIXEL_UNPACK_BUFFER, 0});
+    for (Object* const object : objects) {
+        if (!loses_) sendQueue(c, output, from, *object);
+        if (group.frame - object->heldSince <= kSoonFrames && !object->gained) object->holding.lost();
+        else object->holding.won();
+        emptyQueue(group, *object);
+    }
+    if (unpack != nullptr) put<2>(output, from, op::glBindBuffer, {GL_PIXEL_UNPACK_BUFFER, unpack->name});
+}
+
+void Holder::sendQueue(Context& c, Output& output, size_t from, Object& object) {
+    uint32_t target = 0;
+    for (const Item& item : object.queue) target = std::max(target, item.target);
+    const Object* bound = &object;
+    if (target != 0) {
+        switch (object.kind) {
+        case Kind::Texture:
+            target = object.target;
+            bound = c.units[c.unit][targetIndex(target)];
+            if (bound != &object) put<2>(output, from, op::glBindTexture, {target, object.name});
+            break;
+        case Kind::Buffer:
+            target = GL_ARRAY_BUFFER; // whichever it was: that of indices would be the vertex array's
+            bound = bufferAt(c, target);
+            if (bound != &object) put<2>(output, from, op::glBindBuffer, {target, object.name});
+            break;
+        case Kind::Program:
+            bound = c.program;
+            if (bound != &object) put<1>(output, from, op::glUseProgram, {object.name});
+        }
+    }
+    for (Item& item : object.queue) {
+        if (object.kind == Kind::Buffer && item.target != 0) {
+            uint32_t head = 0;
+            std::memcpy(&head, item.bytes.data() + item.recordAt, sizeof head);
+            const size_t headBytes = head >> 16 == record::kLongForm ? 8 : 4;
+            std::memcpy(item.bytes.data() + item.recordAt + headBytes, &target, sizeof target);
+        }
+        output.insert(from, item.bytes);
+    }
+    if (bound == &object) return;
+    switch (object.kind) {
+    case Kind::Texture: return put<2>(output, from, op::glBindTexture, {target, nameOf(bound)});
+    case Kind::Buffer: return put<2>(output, from, op::glBindBuffer, {target, nameOf(bound)});
+    case Kind::Program: return put<1>(output, from, op::glUseProgram, {nameOf(bound)});
+    }
+}
+
+} // namespace mural::holding

@@ -1,0 +1,176 @@
+// Whether an upload stays behind, and what is done to objects that have some.
+#include <GL/gl.h>
+#include <GL/glext.h>
+#include <algorithm>
+#include <vector>
+
+#include "gl_opcodes.hpp"
+#include "holding/holder.hpp"
+#include "recording/kept/families.hpp"
+#include "recording/record_values.hpp"
+#include "streamcodec/record.hpp"
+#include "streamcodec/wire.hpp"
+
+namespace mural::holding {
+
+using recording::argumentWord;
+using recording::Family;
+
+namespace {
+
+// Smaller ones cost more to hold than to send.
+constexpr size_t kLeastBytes = 512;
+constexpr size_t kLeastUniformBytes = 64;
+constexpr size_t kMostItems = 4096; // of one object
+
+} // namespace
+
+// The object that an upload, or a command of class Object, is about.
+Object* Holder::objectOf(At& at) {
+    const uint32_t first = argumentWord(at.r, 0);
+    if (at.r.opcode == wire::kOpBufferBytes || at.r.opcode == op::glInvalidateBufferData || at.r.opcode == op::glInvalidateBufferSubData) return find(at.group, Kind::Buffer, first);
+    const recording::Rule& rule = recording::ruleOf(at.r.opcode);
+    switch (rule.family) {
+    case Family::BufferData:
+    case Family::BufferSubData: return rule.type == recording::ObjectType::Buffer ? find(at.group, Kind::Buffer, first) : bufferAt(at.context, first);
+    case Family::Uniform: return at.context.programSure ? at.context.program : nullptr;
+    case Family::ShaderDelete:
+    case Family::ProgramAttach:
+    case Family::ProgramDetach:
+    case Family::ProgramSet:
+    case Family::ProgramLink:
+    case Family::ProgramUniform: return find(at.group, Kind::Program, first);
+    default: return rule.type == recording::ObjectType::Texture ? find(at.group, Kind::Texture, first) : textureAt(at, first);
+    }
+}
+
+void Holder::upload(At& at) {
+    Object* const object = objectOf(at);
+    const Family family = recording::ruleOf(at.r.opcode).family;
+    if (object == nullptr || object->open) return; // nothing of it is held, and nothing known
+    const bool uniform = family == Family::Uniform;
+    const uint64_t blobBytes = at.stream.values == 1 && recording::blobsTakenBy(at.r) == 1 ? at.stream.firstValueBytes : 0;
+    const size_t sizeBytes = at.r.sizeBytes + at.stream.valueBytes;
+    const bool small = sizeBytes < (uniform ? kLeastUniformBytes : kLeastBytes);
+    if (small && object->queue.empty() && object->known.empty()) return;
+    if (uniform && object->queue.empty() && !object->holding.tries()) return;
+    const auto u = uploadOf(at.r, blobBytes);
+    // Of a texture by its name, which face of a cube is written is one of its numbers.
+    const bool anyFace = recording::ruleOf(at.r.opcode).type == recording::ObjectType::Texture && object->target == GL_TEXTURE_CUBE_MAP;
+    const bool fromBuffer = object->kind == Kind::Texture && bufferAt(at.context, GL_PIXEL_UNPACK_BUFFER) != nullptr;
+    if (!u || at.stream.passing || fromBuffer || anyFace || (at.stream.values > 0 && blobBytes == 0)) {
+        releaseOne(at, *object);
+        object->known.clear();
+        if (at.stream.passing && !(object->holding.vain() && object->comparing.vain())) at.stream.waiting.won();
+        return;
+    }
+    // Does it change anything?
+    const bool compares = u->given && !small && !uniform && object->comparing.tries();
+    if (compares) {
+        const Object::News news = object->compare(*u, sumOfValue(at, *u));
+        if (news == Object::News::Same) {
+            object->comparing.won();
+            at.stream.waiting.won();
+            countLeftOut(1 + at.stream.pendingRecords, at.r.sizeBytes + (at.r.offset - at.from) + at.stream.pending.size());
+            pendingBytes_ -= at.stream.pending.size();
+            std::vector<std::byte>().swap(at.stream.pending);
+            return at.output.leaveOut(at.from, at.r.offset + at.r.sizeBytes);
+        }
+        if (news == Object::News::Changed) object->comparing.lost();
+    } else {
+        object->forgets(*u);
+    }
+    const Object::Replaced gone = object->replaces(*u);
+    countLeftOut(gone.records, gone.sizeBytes);
+    counts_.heldBytes -= gone.sizeBytes;
+    if (object->queue.empty() && gone.records == 0 && (small || !u->given || u->kind == UploadKind::Storage || (!uniform && !object->holding.tries()))) {
+        if (at.stream.values > 0) object->holding.vain() && object->comparing.vain() ? at.stream.waiting.lost() : at.stream.waiting.won();
+        return;
+    }
+    hold(at, *object, &*u, u->kind == UploadKind::Storage);
+}
+
+// It stays behind, with the pieces of its value.
+void Holder::hold(At& at, Object& object, const Upload* upload, bool barrier) {
+    Item item;
+    const auto here = at.packet.subspan(at.from, at.r.offset + at.r.sizeBytes - at.from);
+    pendingBytes_ -= at.stream.pending.size();
+    item.bytes = std::move(at.stream.pending);
+    at.stream.pending.clear();
+    item.recordAt = static_cast<uint32_t>(item.bytes.size() + at.r.offset - at.from);
+    item.bytes.insert(item.bytes.end(), here.begin(), here.end());
+    item.records = 1 + at.stream.pendingRecords;
+    const recording::Rule& rule = recording::ruleOf(at.r.opcode);
+    const bool named = at.r.opcode == wire::kOpBufferBytes || rule.type == recording::ObjectType::Texture || rule.type == recording::ObjectType::Buffer;
+    item.target = named ? 0 : 1;
+    item.barrier = barrier;
+    if (upload != nullptr) {
+        item.isUpload = true;
+        item.kind = upload->kind;
+        item.place = upload->place;
+        item.shape = upload->shape;
+    }
+    at.output.leaveOut(at.from, at.r.offset + at.r.sizeBytes);
+    counts_.heldRecords += item.records;
+    counts_.heldBytes += item.bytes.size();
+    object.heldBytes += item.bytes.size();
+    Group& group = at.group;
+    if (std::ranges::find(group.held, &object) == group.held.end()) {
+        group.held.push_back(&object);
+        object.heldSince = group.frame;
+    }
+    object.queue.push_back(std::move(item));
+    group.holder = &at.context;
+    group.holderStream = at.stream.id;
+    at.context.changed = true;
+    const size_t behind = at.r.offset + at.r.sizeBytes;
+    if (object.queue.size() >= kMostItems) {
+        Object* const one = &object;
+        release(at.stream, at.output, behind, std::span(&one, 1));
+    }
+    if (counts_.heldBytes + pendingBytes_ > mostBytes_) releaseGroup(at.stream, at.output, behind);
+}
+
+// What is done to an object behind its uploads.
+void Holder::objectCommand(At& at) {
+    const recording::Rule& rule = recording::ruleOf(at.r.opcode);
+    if (rule.family == Family::ProgramLink || rule.family == Family::ProgramSet || rule.family == Family::ProgramUniform || rule.family == Family::ProgramAttach ||
+        rule.family == Family::ProgramDetach || rule.family == Family::ShaderDelete) {
+        Object* const program = objectOf(at);
+        if (program == nullptr) return;
+        releaseOne(at, *program);
+        program->known.clear();
+        if (rule.family == Family::ProgramLink) program->target = 0; // until it is known that it was linked
+        return;
+    }
+    Object* const object = objectOf(at);
+    if (object == nullptr) return;
+    const bool parameter = rule.family == Family::TexParameter || rule.family == Family::NamedSet;
+    if (parameter && argumentWord(at.r, 1) == GL_GENERATE_MIPMAP) return openUp(at, object); // uploads do more than they say
+    const bool mipmaps = rule.family == Family::TexMipmaps;
+    if (mipmaps) std::erase_if(object->known, [](const Object::Known& k) { return k.place.level != 0; });
+    if (!parameter && !mipmaps) { // a copy, or the content is given up
+        releaseOne(at, *object);
+        return object->known.clear();
+    }
+    if (object->queue.empty()) return;
+    if (at.stream.values > 0) return releaseOne(at, *object);
+    hold(at, *object, nullptr, mipmaps);
+}
+
+Sum Holder::sumOfValue(At& at, const Upload& upload) {
+    Summing sum;
+    if (at.stream.values == 0) {
+        sum.add(upload.inlineValue);
+        return sum.sum();
+    }
+    for (const auto pieces : {std::span<const std::byte>(at.stream.pending), at.packet.subspan(at.from, at.r.offset - at.from)}) { // however it was cut
+        recording::RecordWalk walk(pieces);
+        RecordView piece;
+        while (walk.next(piece))
+            if (piece.opcode == wire::kOpBlobData && piece.arguments.size() > 4) sum.add(piece.arguments.subspan(4, std::min<size_t>(argumentWord(piece, 0), piece.arguments.size() - 4)));
+    }
+    return sum.sum();
+}
+
+} // namespace mural::holding

@@ -1,0 +1,87 @@
+// What is followed of a program: which objects its commands name, and nothing else.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "holding/object.hpp"
+
+namespace mural::holding {
+
+constexpr size_t kTextureTargets = 12;
+using TextureUnit = std::array<Object*, kTextureTargets>; // by targetIndex()
+
+struct Context;
+
+struct ListNames {
+    bool binds = false; // changes what is bound, or is not understood: a call of it ends holding
+    bool calls = false; // other lists
+};
+
+// Contexts that share objects. What is held has been sent to one of them, as long as no other says anything.
+struct Group {
+    std::array<std::unordered_map<uint32_t, std::unique_ptr<Object>>, 3> objects; // by Kind
+    std::unordered_map<uint32_t, ListNames> lists;
+    bool listsBind = false;    // some of them
+    std::vector<Object*> held; // with a queue, in the order in which they got it
+    Context* holder = nullptr;
+    uint32_t holderStream = 0;
+    uint64_t frame = 0;
+    bool untracked = false; // something has come of which nobody here knows what it does: nothing is held any more
+};
+
+struct VertexArray {
+    std::vector<std::pair<uint32_t, Object*>> buffers; // by command and index
+    Object* indices = nullptr;
+};
+
+struct SavedAttribs {
+    bool textures = false;
+    uint32_t unit = 0;
+    std::vector<TextureUnit> units;
+};
+
+struct SavedClientAttribs {
+    uint32_t mask = 0;
+    Object* unpackBuffer = nullptr;
+};
+
+struct Context {
+    uint32_t id = 0;
+    std::shared_ptr<Group> group;
+    bool madeByBinding = false; // names begin to be with their first use
+    bool destroyed = false;     // but current
+    std::vector<TextureUnit> units = std::vector<TextureUnit>(1);
+    uint32_t unit = 0, clientUnit = 0;
+    std::vector<std::pair<uint32_t, Object*>> buffers; // by target, but those of indices
+    std::unordered_map<uint32_t, VertexArray> arrays{{0, {}}};
+    VertexArray* array = &arrays[0];
+    Object* program = nullptr;
+    bool programSure = true; // false: whether it is the current one is not known
+    uint32_t drawFramebuffer = 0;
+    std::vector<SavedAttribs> attribs;
+    std::vector<SavedClientAttribs> clientAttribs;
+    bool changed = true; // what is bound or held, since the last draw
+};
+
+struct Stream {
+    uint32_t id = 0;
+    Context* context = nullptr; // current
+    bool inPrimitive = false;
+    uint32_t list = 0; // that is compiled; 0: none
+    ListNames compiled;
+    int depth = 0; // glBegin without glEnd in that list
+    // A value that travels ahead of its record: what of it came in packets before this one, or all of it went on already.
+    std::vector<std::byte> pending;
+    uint64_t valueBytes = 0, firstValueBytes = 0;
+    uint32_t values = 0, pendingRecords = 0;
+    bool passing = false;
+    Worth waiting; // whether values were worth being waited for
+};
+
+} // namespace mural::holding

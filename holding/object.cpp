@@ -1,0 +1,61 @@
+#include "holding/object.hpp"
+
+#include <algorithm>
+
+namespace mural::holding {
+namespace {
+
+constexpr size_t kMostKnown = 32;
+constexpr size_t kLookedAt = 64; // of the queue's end
+
+} // namespace
+
+Object::News Object::compare(const Upload& u, const Sum& sum) {
+    News news = News::First;
+    for (const Known& k : known) {
+        if (!(k.shape == u.shape)) continue;
+        if (k.sum == sum) return News::Same;
+        news = News::Changed;
+    }
+    forgets(u);
+    if (known.size() == kMostKnown) known.clear();
+    known.push_back({u.place, u.shape, sum});
+    return news;
+}
+
+void Object::forgets(const Upload& u) {
+    if (u.kind == UploadKind::Storage) return known.clear();
+    std::erase_if(known, [&](const Known& k) { return k.place.overlaps(u.place); });
+}
+
+Object::Replaced Object::replaces(const Upload& u) {
+    Replaced gone;
+    if (u.kind == UploadKind::Storage || !u.given) return gone;
+    size_t at = queue.size();
+    for (size_t looked = 0; at > 0 && looked < kLookedAt; ++looked) {
+        const Item& item = queue[--at];
+        if (item.barrier) return gone;
+        if (!item.isUpload || !(item.shape == u.shape)) continue;
+        // Of one shape, so either both are refused or neither: nothing shows of the first, nor, where all of the place is new, of
+        // what has changed it since.
+        const auto stays = [&](const Item& i) {
+            return &i != &item && !(u.kind == UploadKind::Whole && i.isUpload && i.place.overlaps(u.place));
+        };
+        std::vector<Item> left(std::make_move_iterator(queue.begin()), std::make_move_iterator(queue.begin() + static_cast<std::ptrdiff_t>(at)));
+        for (size_t i = at; i < queue.size(); ++i) {
+            if (stays(queue[i])) {
+                left.push_back(std::move(queue[i]));
+                continue;
+            }
+            gone.records += queue[i].records;
+            gone.sizeBytes += queue[i].bytes.size();
+        }
+        queue = std::move(left);
+        heldBytes -= gone.sizeBytes;
+        gained = true;
+        return gone;
+    }
+    return gone;
+}
+
+} // namespace mural::holding

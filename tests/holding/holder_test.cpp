@@ -1,0 +1,165 @@
+// What stays behind, until when, and what never goes.
+#include "holding/holder.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/holding/seen_model.hpp"
+#include "tests/recording/recorded.hpp"
+
+namespace mural::holding {
+namespace {
+
+using recording::PacketBuilder;
+
+constexpr uint32_t kStream = wire::streamOf(1, 0), kOther = wire::streamOf(1, 1);
+constexpr uint64_t kBound = 1 << 20;
+
+class Holding : public testing::Test {
+protected:
+    void send(const PacketBuilder& p, uint32_t stream = kStream) { holder_.add(stream, p.bytes()); }
+    void begin() {
+        send(PacketBuilder().context(1).window(1, 20, 10).record(wire::kOpMakeCurrent, {1, 1, 1}).record(op::glGenTextures, {2, 8, 1, 2}).record(op::glGenBuffers, {2, 8, 1, 2}));
+    }
+    static std::vector<uint32_t> image(uint32_t value) {
+        std::vector<uint32_t> words{GL_TEXTURE_2D, 0, GL_RGBA, 16, 16, 0, GL_RGBA, GL_UNSIGNED_BYTE, 1024};
+        words.resize(words.size() + 256, value);
+        return words;
+    }
+    static std::vector<uint32_t> buffer(uint32_t value) {
+        std::vector<uint32_t> words{GL_ARRAY_BUFFER, 1024, 0, 1024};
+        words.resize(words.size() + 256, value);
+        words.push_back(GL_STATIC_DRAW);
+        return words;
+    }
+    static PacketBuilder draw() { return PacketBuilder().record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}); }
+
+    SeenModel seen_;
+    std::vector<uint32_t> streams_; // of the packets that went
+    Holder holder_{kBound, [this](uint32_t stream, std::span<const std::byte> payload) {
+                       seen_.packet(stream, payload);
+                       streams_.push_back(stream);
+                   }};
+};
+
+TEST_F(Holding, keepsATextureUntilADrawHasItBound) {
+    begin();
+    send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glTexImage2D, image(5)).record(op::glBindTexture, {GL_TEXTURE_2D, 2}));
+    EXPECT_EQ(seen_.uploads(), 0u);
+    for (uint32_t frame = 1; frame <= 100; ++frame) send(PacketBuilder().record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}).swap(1, frame));
+    EXPECT_EQ(seen_.uploads(), 0u);
+    EXPECT_EQ(holder_.counts().heldRecords, 1u);
+    EXPECT_GT(holder_.counts().heldBytes, 1024u);
+    send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));
+    EXPECT_EQ(seen_.uploads(), 1u);
+    EXPECT_EQ(holder_.counts().heldBytes, 0u);
+}
+
+TEST_F(Holding, leavesOutWhatIsReplacedBeforeItIsUsed) {
+    begin();
+    send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glBindBuffer, {GL_ARRAY_BUFFER, 1}).record(op::glVertexAttribPointer, {0, 4, GL_FLOAT, 0, 0, 0}));
+    for (uint32_t i = 0; i < 10; ++i) send(PacketBuilder().record(op::glTexImage2D, image(i)).record(op::glBufferData, buffer(i)).swap(1, i + 1));
+    EXPECT_EQ(seen_.uploads(), 0u);
+    send(draw());
+    EXPECT_EQ(seen_.uploads(), 2u);
+    EXPECT_EQ(holder_.counts().leftOutRecords, 18u);
+    EXPECT_EQ(holder_.counts().inBytes, holder_.counts().outBytes + holder_.counts().leftOutBytes);
+}
+
+TEST_F(Holding, keepsWhatWasReadBeforeItIsReplaced) {
+    begin();
+    send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glTexImage2D, image(1)).record(op::glGenerateMipmap, {GL_TEXTURE_2D}).record(op::glTexImage2D, image(2)));
+    send(draw());
+    EXPECT_EQ(seen_.uploads(), 2u);
+}
+
+TEST_F(Holding, leavesOutWhatChangesNothing) {
+    begin();
+    send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}));
+    for (uint32_t i = 0; i < 10; ++i) send(PacketBuilder().record(op::glTexImage2D, image(7)).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}).swap(1, i + 1));
+    EXPECT_EQ(seen_.uploads(), 1u);
+    EXPECT_EQ(holder_.counts().leftOutRecords, 9u);
+}
+
+TEST_F(Holding, sendsNothingOfWhatIsDeletedUnused) {
+    begin();
+    send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glTexImage2D, image(5)).record(op::glDeleteTextures, {1, 4, 1}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));
+    EXPECT_EQ(seen_.uploads(), 0u);
+    EXPECT_EQ(holder_.counts().leftOutRecords, 1u);
+}
+
+TEST_F(Holding, passesWhatIsAlwaysUsedAtOnce) {
+    begin();
+    send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}));
+    for (uint32_t i = 0; i < 40; ++i) send(PacketBuilder().record(op::glTexImage2D, image(i)).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}).swap(1, i + 1));
+    EXPECT_EQ(seen_.uploads(), 40u);
+    EXPECT_EQ(holder_.counts().heldRecords, 2u) << "nothing was won twice";
+}
+
+TEST_F(Holding, sendsEverythingForACommandThatItDoesNotKnow) {
+    begin();
+    send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glTexImage2D, image(5)).record(op::glBindTexture, {GL_TEXTURE_2D, 2}));
+    send(PacketBuilder().record(op::glClearTexImage, {1, 0, GL_RGBA, GL_UNSIGNED_BYTE, record::kTagNull}));
+    EXPECT_EQ(seen_.uploads(), 1u);
+    send(PacketBuilder().record(op::glTexImage2D, image(6)));
+    EXPECT_EQ(seen_.uploads(), 2u) << "from then on all goes at once";
+}
+
+TEST_F(Holding, sendsWhatIsHeldBeforeAnotherContextSpeaks) {
+    begin();
+    send(PacketBuilder().context(2, 1).record(wire::kOpMakeCurrent, {2, 2, 2}), kOther);
+    send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glTexImage2D, image(5)));
+    EXPECT_EQ(seen_.uploads(), 0u);
+    streams_.clear();
+    send(PacketBuilder().record(op::glFlush, {}), kOther);
+    EXPECT_EQ(seen_.uploads(), 1u);
+    ASSERT_EQ(streams_.size(), 2u);
+    EXPECT_EQ(streams_[0], kStream) << "by the context that it was given to";
+}
+
+TEST_F(Holding, holdsNoMoreThanItMay) {
+    begin();
+    std::vector<uint32_t> names;
+    for (uint32_t i = 0; i < 2000; ++i) send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 10 + i}).record(op::glTexImage2D, image(i)));
+    EXPECT_GT(seen_.uploads(), 900u);
+    EXPECT_LE(holder_.counts().heldBytes, kBound);
+    holder_.releaseAll();
+    EXPECT_EQ(seen_.uploads(), 2000u);
+}
+
+TEST_F(Holding, waitsForValuesThatTravelAhead) {
+    begin();
+    constexpr uint32_t kPieces = 5, kWords = 10'000;
+    send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}));
+    const auto give = [&](uint32_t value) {
+        send(PacketBuilder().record(wire::kOpBlobBegin, {kPieces * kWords * 4, 0}));
+        for (uint32_t i = 0; i < kPieces; ++i) {
+            std::vector<uint32_t> piece(kWords + 1, value);
+            piece[0] = kWords * 4;
+            send(PacketBuilder().longRecord(wire::kOpBlobData, piece));
+        }
+        send(PacketBuilder().record(op::glTexImage2D, {GL_TEXTURE_2D, 0, GL_RGBA, 100, 500, 0, GL_RGBA, GL_UNSIGNED_BYTE, record::kTagBlob}));
+    };
+    give(1);
+    give(2);
+    EXPECT_EQ(seen_.uploads(), 0u);
+    send(draw());
+    EXPECT_EQ(seen_.uploads(), 1u);
+    EXPECT_EQ(holder_.counts().leftOutRecords, kPieces + 2u);
+    give(2);
+    send(draw());
+    EXPECT_EQ(seen_.uploads(), 1u) << "it is there";
+    give(3);
+    EXPECT_EQ(holder_.counts().inBytes, holder_.counts().outBytes + holder_.counts().leftOutBytes + holder_.counts().heldBytes);
+    holder_.clientGone(1);
+    EXPECT_EQ(seen_.uploads(), 1u) << "nobody needs it";
+    EXPECT_EQ(holder_.counts().heldBytes, 0u);
+}
+
+TEST_F(Holding, holdsNothingOfAProgramThatHearsItsDriver) {
+    begin();
+    send(PacketBuilder().record(op::glEnable, {GL_DEBUG_OUTPUT}).record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glTexImage2D, image(5)));
+    EXPECT_EQ(seen_.uploads(), 1u);
+}
+
+} // namespace
+} // namespace mural::holding

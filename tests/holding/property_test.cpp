@@ -1,0 +1,187 @@
+// Random programs: whatever is held back, each draw sees what it would have seen.
+#include <gtest/gtest.h>
+#include <random>
+
+#include "holding/holder.hpp"
+#include "tests/holding/seen_model.hpp"
+#include "tests/recording/recorded.hpp"
+
+namespace mural::holding {
+namespace {
+
+using recording::PacketBuilder;
+
+constexpr uint32_t kNames = 4; // of each kind
+constexpr uint32_t kBufferBytes = 1024;
+
+class RandomProgram {
+public:
+    RandomProgram(uint32_t seed, bool shares) : random_(seed), shares_(shares), fewDraws_(seed % 2) {}
+
+    PacketBuilder begin() {
+        PacketBuilder p;
+        p.context(1).window(1, 20, 10).record(wire::kOpMakeCurrent, {1, 1, 1});
+        for (uint32_t name = 1; name <= kNames; ++name) {
+            p.record(op::glGenTextures, {1, 4, name}).record(op::glGenBuffers, {1, 4, name}).record(op::glGenVertexArrays, {1, 4, name}).record(op::glCreateProgram, {name});
+            p.record(wire::kOpProgramLayout, {name, 4, 0});
+        }
+        return p;
+    }
+    PacketBuilder other() { return PacketBuilder().context(2, 1).window(2, 20, 10).record(wire::kOpMakeCurrent, {2, 2, 2}); }
+
+    PacketBuilder packet() {
+        PacketBuilder p;
+        for (uint32_t i = below(40); i > 0; --i) command(p);
+        if (below(4) == 0) p.swap(1, ++frame_);
+        return p;
+    }
+    uint32_t below(uint32_t n) { return random_() % n; }
+
+private:
+    // Few different ones, so that some come again.
+    std::vector<uint32_t> value(uint32_t words) { return std::vector<uint32_t>(words, below(5)); }
+    void withValue(PacketBuilder& p, uint16_t opcode, std::vector<uint32_t> arguments, const std::vector<uint32_t>& value, const std::vector<uint32_t>& behind = {}) {
+        if (below(3) == 0) { // ahead of its record, in two pieces
+            const uint32_t half = static_cast<uint32_t>(value.size() / 2), rest = static_cast<uint32_t>(value.size()) - half;
+            p.record(wire::kOpBlobBegin, {static_cast<uint32_t>(value.size() * 4), 0});
+            std::vector<uint32_t> piece{half * 4};
+            piece.insert(piece.end(), value.begin(), value.begin() + half);
+            p.record(wire::kOpBlobData, piece);
+            piece = {rest * 4};
+            piece.insert(piece.end(), value.begin() + half, value.end());
+            p.longRecord(wire::kOpBlobData, piece);
+            arguments.push_back(record::kTagBlob);
+        } else {
+            arguments.push_back(static_cast<uint32_t>(value.size() * 4));
+            arguments.insert(arguments.end(), value.begin(), value.end());
+        }
+        arguments.insert(arguments.end(), behind.begin(), behind.end());
+        if (below(2) == 0) p.record(opcode, arguments);
+        else p.longRecord(opcode, arguments);
+    }
+    uint32_t name() { return 1 + below(kNames); }
+    uint32_t target() { return below(3) == 0 ? GL_ELEMENT_ARRAY_BUFFER : GL_ARRAY_BUFFER; }
+
+    void command(PacketBuilder& p) {
+        switch (below(26)) {
+        case 0: p.record(op::glActiveTexture, {GL_TEXTURE0 + below(2)}); return;
+        case 1:
+        case 2: p.record(op::glBindTexture, {GL_TEXTURE_2D, below(kNames + 1)}); return;
+        case 3:
+        case 4: return withValue(p, op::glTexImage2D, {GL_TEXTURE_2D, below(2), GL_RGBA, 16, 16 + 16 * below(2), 0, GL_RGBA, GL_UNSIGNED_BYTE}, value(256));
+        case 5: return withValue(p, op::glTexSubImage2D, {GL_TEXTURE_2D, below(2), 8 * below(2), 0, 16U >> below(2), 16, GL_RGBA, GL_UNSIGNED_BYTE}, value(200));
+        case 6: p.record(op::glTexParameteri, {GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER + below(3), below(9)}); return;
+        case 7: p.record(op::glGenerateMipmap, {GL_TEXTURE_2D}); return;
+        case 8:
+        case 9: p.record(op::glBindBuffer, {target(), below(kNames + 1)}); return;
+        case 10: return withValue(p, op::glBufferData, {target(), kBufferBytes, 0}, value(kBufferBytes / 4), {GL_STATIC_DRAW});
+        case 11: return withValue(p, op::glBufferSubData, {target(), 128 * below(3), 0, 600, 0}, value(150));
+        case 12: return withValue(p, wire::kOpBufferBytes, {name(), 64 * below(3), 0}, value(150));
+        case 13: p.record(op::glVertexAttribPointer, {below(3), 4, GL_FLOAT, 0, 0, 0}); return;
+        case 14: p.record(op::glBindVertexArray, {below(kNames + 1)}); return;
+        case 15: p.record(op::glUseProgram, {name()}); return;
+        case 16: return withValue(p, op::glUniformMatrix4fv, {below(3), 1, 0}, value(16));
+        case 17: p.record(op::glBegin, {GL_POINTS}).record(op::glVertex2f, {0, 0}).record(op::glEnd, {}); return;
+        case 18: return rare(p);
+        case 19: p.record(op::glBindBuffer, {GL_PIXEL_UNPACK_BUFFER, below(4) == 0 ? name() : 0}); return;
+        case 20: p.record(op::glCopyTexSubImage2D, {GL_TEXTURE_2D, below(2), 0, 0, 0, 0, 4, 4}); return;
+        case 21:
+            p.record(op::glPushAttrib, {GL_TEXTURE_BIT}).record(op::glBindTexture, {GL_TEXTURE_2D, name()}).record(op::glActiveTexture, {GL_TEXTURE0 + below(2)});
+            if (below(2) == 0) withValue(p, op::glTexImage2D, {GL_TEXTURE_2D, 0, GL_RGBA, 16, 16, 0, GL_RGBA, GL_UNSIGNED_BYTE}, value(256));
+            p.record(op::glPopAttrib, {});
+            return;
+        default:
+            if (!fewDraws_ || below(8) == 0) p.record(op::glDrawArrays, {GL_TRIANGLES, 0, 3});
+            return;
+        }
+    }
+    void rare(PacketBuilder& p) {
+        switch (below(8)) {
+        case 0: {
+            const uint32_t n = name();
+            p.record(op::glDeleteTextures, {1, 4, n}).record(op::glGenTextures, {1, 4, n});
+            return;
+        }
+        case 1: {
+            const uint32_t n = name();
+            if (!shares_) p.record(op::glDeleteBuffers, {1, 4, n}).record(op::glGenBuffers, {1, 4, n});
+            return;
+        }
+        case 2: p.record(op::glBindFramebuffer, {GL_FRAMEBUFFER, 1}).record(op::glFramebufferTexture2D, {GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 1, 0}); return;
+        case 3: p.record(op::glBindFramebuffer, {GL_FRAMEBUFFER, 0}); return;
+        case 4: p.record(op::glNewList, {1, GL_COMPILE}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}).record(op::glEndList, {}); return;
+        case 5:
+            if (below(4) == 0) p.record(op::glNewList, {1, GL_COMPILE}).record(op::glBindTexture, {GL_TEXTURE_2D, name()}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}).record(op::glEndList, {});
+            return;
+        case 6: p.record(op::glCallList, {1}); return;
+        default: p.record(wire::kOpRequestTexImage, {1, 1, name(), 0, GL_RGBA, GL_UNSIGNED_BYTE, 0, 0});
+        }
+    }
+
+    std::mt19937 random_;
+    const bool shares_, fewDraws_;
+    uint32_t frame_ = 0;
+};
+
+struct Won {
+    size_t held = 0, leftOut = 0; // records
+};
+
+void same(uint32_t seed, bool shares, uint64_t mostBytes, Won& won) {
+    RandomProgram program(seed, shares);
+    constexpr uint32_t kFirst = wire::streamOf(1, 0), kSecond = wire::streamOf(1, 1);
+    SeenModel whole, held;
+    Holder holder(mostBytes, [&](uint32_t stream, std::span<const std::byte> payload) {
+        ASSERT_LE(payload.size(), wire::kMaxPacketBytes);
+        held.packet(stream, payload);
+    });
+    const auto send = [&](uint32_t stream, std::span<const std::byte> payload) {
+        whole.packet(stream, payload);
+        holder.add(stream, payload);
+    };
+    send(kFirst, program.begin().bytes());
+    if (shares) send(kSecond, program.other().bytes());
+    uint32_t stream = kFirst;
+    for (int i = 0; i < 60; ++i) {
+        const PacketBuilder p = program.packet();
+        // Values may be cut between two packets, but not between streams.
+        const auto bytes = p.bytes();
+        if (shares && program.below(3) == 0) stream = stream == kFirst ? kSecond : kFirst;
+        recording::RecordWalk walk(bytes);
+        recording::RecordView r;
+        size_t from = 0;
+        while (walk.next(r)) {
+            if (program.below(8) != 0) continue;
+            send(stream, bytes.subspan(from, r.offset + r.sizeBytes - from));
+            from = r.offset + r.sizeBytes;
+        }
+        if (from < bytes.size()) send(stream, bytes.subspan(from));
+        ASSERT_EQ(held.seen(), whole.seen()) << "seed " << seed << ", packet " << i;
+        ASSERT_LE(holder.counts().heldBytes, mostBytes);
+    }
+    holder.releaseAll();
+    EXPECT_EQ(held.all(), whole.all()) << "seed " << seed << ": what was held is lost";
+    EXPECT_EQ(holder.counts().heldBytes, 0u);
+    won.held += holder.counts().heldRecords;
+    won.leftOut += holder.counts().leftOutRecords;
+}
+
+TEST(HeldStreams, showTheSameToEachDraw) {
+    Won won;
+    for (uint32_t seed = 0; seed < 400 && !HasFatalFailure(); ++seed) same(seed, false, 1 << 20, won);
+    EXPECT_GT(won.held, 10'000U) << "or this shows nothing";
+    EXPECT_GT(won.leftOut, 1000U);
+}
+
+TEST(HeldStreams, showTheSameWithTwoThreadsThatShare) {
+    Won won;
+    for (uint32_t seed = 0; seed < 200 && !HasFatalFailure(); ++seed) same(seed, true, 1 << 20, won);
+}
+
+TEST(HeldStreams, showTheSameWithLittleMemory) {
+    Won won;
+    for (uint32_t seed = 0; seed < 100 && !HasFatalFailure(); ++seed) same(seed, false, 3000, won);
+}
+
+} // namespace
+} // namespace mural::holding
