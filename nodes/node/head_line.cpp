@@ -66,6 +66,15 @@ Result<void> HeadLine::follow(const std::string& stream, const std::string& secr
 Result<void> HeadLine::unpackBatches(uint64_t storeBytes, const std::string& plant) {
     economy::Limits limits;
     limits.storeBytes = storeBytes;
+    if (inBatch_) {
+        uint32_t stream = 0;
+        std::span<const std::byte> payload;
+        const auto more = unpacker_->next(stream, payload);
+        if (!more || more.value()) return Error{"the head began a new history within a batch; head and nodes must be of one build"};
+        inBatch_ = false;
+    }
+    unpacker_.reset(); // its memory first
+    batchDecoder_ = std::make_unique<economy::BatchDecoder>();
     unpacker_ = std::make_unique<economy::Unpacker>(limits);
     if (!unpacker_->ready()) return Error{"no memory for a store of " + std::to_string(storeBytes >> 20) + " MiB; give a smaller one by --store"};
     if (plant == "economy") unpacker_->loseWords();
@@ -78,11 +87,10 @@ Result<wire::PacketHeader> HeadLine::next(std::span<const std::byte>& payload) {
         auto more = nextOfBatch(header, payload);
         if (more && more.value()) return header;
         if (more) {
-            auto read = this->read();
-            if (!read) return read.error();
-            payload = payload_;
-            if (read->stream != wire::kBatchStream) return read;
-            if (const auto opened = openBatch(); !opened) more = opened.error();
+            if (!unpacker_) return readPacket(payload);
+            auto head = readBatch();
+            if (!head) return head.error();
+            if (const auto opened = openBatch(head.value()); !opened) more = opened.error();
         }
         if (more) continue;
         sendText(wire::NodeMessage::Log, more.error().message);
@@ -98,26 +106,40 @@ Result<bool> HeadLine::nextOfBatch(wire::PacketHeader& header, std::span<const s
     return more;
 }
 
-Result<void> HeadLine::openBatch() {
-    if (!unpacker_) return Error{"the head sent a batch, but did not say before that it would; head and nodes must be of one build"};
-    const auto sections = batchDecoder_.decode(payload_);
+Result<void> HeadLine::openBatch(economy::BatchHead head) {
+    const auto sections = batchDecoder_->decode(head, payload_);
     if (!sections) return sections.error();
     unpacker_->begin(sections.value());
     inBatch_ = true;
     return {};
 }
 
-Result<wire::PacketHeader> HeadLine::read() {
-    Connection& stream = stream_ ? *stream_ : *connection_;
+Result<wire::PacketHeader> HeadLine::readPacket(std::span<const std::byte>& payload) {
     wire::PacketHeader header{};
-    const auto got = stream.read(std::as_writable_bytes(std::span(&header, 1)), Deadline::never());
+    const auto got = line().read(std::as_writable_bytes(std::span(&header, 1)), Deadline::never());
     if (!got) return got.error();
-    const uint32_t most = header.stream == wire::kBatchStream ? wire::kMaxBatchPacketBytes : wire::kMaxPacketBytes;
-    if (header.sizeBytes > most) return Error{"the head sent a packet of " + std::to_string(header.sizeBytes) + " bytes: it is of another build"};
-    payload_.resize(header.sizeBytes);
-    const auto rest = stream.read(payload_, Deadline::inMs(kSendMs));
+    const auto rest = readPayload(header.sizeBytes, wire::kMaxPacketBytes);
     if (!rest) return rest.error();
+    payload = payload_;
     return header;
+}
+
+Result<economy::BatchHead> HeadLine::readBatch() {
+    economy::BatchHeadReader head;
+    std::byte byte{};
+    do {
+        const auto got = line().read(std::span(&byte, 1), Deadline::never());
+        if (!got) return got.error();
+    } while (!head.add(byte));
+    const auto rest = readPayload(head.head().sizeBytes, wire::kMaxBatchBytes);
+    if (!rest) return rest.error();
+    return head.head();
+}
+
+Result<void> HeadLine::readPayload(uint32_t sizeBytes, uint32_t mostBytes) {
+    if (sizeBytes > mostBytes) return Error{"the head sent a packet of " + std::to_string(sizeBytes) + " bytes: it is of another build"};
+    payload_.resize(sizeBytes);
+    return line().read(payload_, Deadline::inMs(kSendMs));
 }
 
 void HeadLine::send(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b) {

@@ -23,7 +23,7 @@ public:
     // From now on packets come by this multicast group (rsp://…), no longer by the connection.
     Result<void> follow(const std::string& stream, const std::string& secretHex, const std::string& name);
 
-    // From now on packets may come in batches. Error: no memory. `plant`: a fault for tests to find, or nothing.
+    // From now on packets come in batches, which refer to nothing that came before. Errors: no memory; called within a batch that has not ended. `plant`: a fault for tests to find, or nothing.
     Result<void> unpackBatches(uint64_t storeBytes, const std::string& plant);
 
     // The next packet; its payload lives until the next call. Error: the head is gone, or sends what makes no
@@ -47,12 +47,15 @@ private:
     const std::unique_ptr<Connection> connection_;
     std::string headHost_; // empty: shared memory
     std::unique_ptr<Connection> stream_; // null: packets come by connection_
-    Result<wire::PacketHeader> read();
+    [[nodiscard]] Connection& line() { return stream_ ? *stream_ : *connection_; } // by which packets come
+    Result<wire::PacketHeader> readPacket(std::span<const std::byte>& payload);
+    Result<economy::BatchHead> readBatch();
+    Result<void> readPayload(uint32_t sizeBytes, uint32_t mostBytes);
     Result<bool> nextOfBatch(wire::PacketHeader& header, std::span<const std::byte>& payload);
-    Result<void> openBatch();
+    Result<void> openBatch(economy::BatchHead head);
 
     std::vector<std::byte> payload_;
-    economy::BatchDecoder batchDecoder_;
+    std::unique_ptr<economy::BatchDecoder> batchDecoder_; // with the unpacker
     std::unique_ptr<economy::Unpacker> unpacker_; // null: no batches come
     bool inBatch_ = false;
     std::mutex sending_;

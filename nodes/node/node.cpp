@@ -1,5 +1,6 @@
 #include "nodes/node/node.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
@@ -15,6 +16,7 @@
 #include "nodes/exchange/picture_composer.hpp"
 #include "nodes/exchange/picture_exchange.hpp"
 #include "nodes/gl/gl_probe.hpp"
+#include "nodes/node/barrier_part.hpp"
 #include "nodes/node/head_line.hpp"
 #include "nodes/node/heartbeat.hpp"
 #include "nodes/node/tile_windows.hpp"
@@ -52,6 +54,7 @@ std::string hostName() {
 }
 
 constexpr int64_t kMeetMs = 10'000;
+constexpr int kLostPacket = 10; // of those given to a node that catches up, by the planted fault
 
 class Node {
 public:
@@ -74,13 +77,14 @@ private:
     bool take(const wire::PacketHeader& header, std::span<const std::byte> payload) {
         if (header.stream == 0) return headCommand(payload);
         if (!replay_) return true;
+        if (losesPackets_ && catchesUp_ && ++packetsGiven_ == kLostPacket) return true;
         callsBefore_ = replay_->counts().commands;
         clientInHand_ = wire::clientOf(header.stream);
         if (!replay_->packet(header.stream, payload))
             line_->sendText(wire::NodeMessage::Log, "a broken packet of a program's stream was dropped");
         calls_[clientInHand_] += replay_->counts().commands - callsBefore_;
         callsBefore_ = replay_->counts().commands;
-        return true;
+        return !unsound_;
     }
 
     bool headCommand(std::span<const std::byte> payload) {
@@ -95,11 +99,18 @@ private:
             if (rest.size() < 4) return false;
             std::memcpy(&client, rest.data(), 4);
             calls_.erase(client);
+            frames_.erase(client);
             if (replay_) replay_->clientGone(client);
             if (windows_) windows_->clientGone(client);
             sayWindowGone(client, wire::kAllWindows);
             return true;
         }
+        case wire::HeadCommand::Member: return newMember(rest);
+        case wire::HeadCommand::NewHistory: return unpackBatches();
+        case wire::HeadCommand::TellTurns: return tellTurns(rest);
+        case wire::HeadCommand::Turns: return takeTurns(rest);
+        case wire::HeadCommand::Synchronize:
+            return synchronize(rest);
         case wire::HeadCommand::Exchange: return meet(std::string(reinterpret_cast<const char*>(rest.data()), rest.size()));
         case wire::HeadCommand::Finish:
             sayBye();
@@ -113,6 +124,7 @@ private:
         const auto setup = nodeSetupFromJson(json);
         if (!setup) return fail(setup.error().message);
         setup_ = setup.value();
+        catchesUp_ = setup_.catchesUp;
         if (setup_.build != streamBuild())
             return fail("the head speaks another stream (" + (setup_.build.empty() ? "unnamed" : setup_.build) + ") than this node (" + streamBuild() + "): install the same version of mural on both machines");
         auto platform = gl::openPlatform(setup_.glBackend);
@@ -125,11 +137,13 @@ private:
         }
         const char* const plant = std::getenv("MURAL_PLANT");
         if (setup_.economy) {
-            const auto unpacks = line_->unpackBatches(static_cast<uint64_t>(setup_.storeBytes), plant ? plant : "");
-            if (!unpacks) return fail(unpacks.error().message);
+            if (!unpackBatches()) return false;
         }
         if (setup_.pass.ranges > 1) {
             if (auto opened = openExchange(ready); !opened) return fail(opened.error().message);
+        }
+        if (setup_.swapMembers > 1) {
+            if (auto opened = openBarrier(ready); !opened) return fail(opened.error().message);
         }
         if (setup_.wallWindows) {
             auto windows = TileWindows::open(setup_);
@@ -138,6 +152,8 @@ private:
         }
         ReplayConfig config;
         config.node = setup_.node;
+        config.skips = setup_.catchesUp && setup_.skipsFrames;
+        config.catchesUp = setup_.catchesUp;
         config.lean = setup_.tiling == Tiling::Lean;
         config.cull = setup_.tiling == Tiling::Culled;
         config.grid = {setup_.columns, setup_.rows, config.lean ? 2 : 1};
@@ -149,14 +165,16 @@ private:
         config.eyeBase = setup_.eyeBase;
         config.focusDistance = setup_.focusDistance;
         if (plant) config.plant = plant;
+        losesPackets_ = config.plant == "rejoin";
         ReplayOutputs outputs;
         outputs.answer = [this](const wire::AnswerHeader& h, std::span<const std::byte> bytes) {
-            line_->send(wire::NodeMessage::Answer, std::as_bytes(std::span(&h, 1)), bytes);
+            if (!catchesUp_ && !unsound_) line_->send(wire::NodeMessage::Answer, std::as_bytes(std::span(&h, 1)), bytes);
         };
         outputs.frameDone = [this](const ReplayOutputs::Frame& f) { frameDone(f); };
+        outputs.unsound = [this] { unsound(); };
         outputs.windowGone = [this](uint32_t client, uint32_t window) { windowGone(client, window); };
         outputs.news = [this](const wire::News& n, const std::string& text) {
-            line_->send(wire::NodeMessage::News, std::as_bytes(std::span(&n, 1)), std::as_bytes(std::span(text)));
+            if (!catchesUp_) line_->send(wire::NodeMessage::News, std::as_bytes(std::span(&n, 1)), std::as_bytes(std::span(text)));
         };
         if (composer_) outputs.composeParts = [this](PicturePart& part, const FoldRule& rule) { return composer_->compose(part, rule); };
         outputs.log = [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); };
@@ -164,6 +182,21 @@ private:
         lastCpuNs_ = threadCpuNs();
         line_->sendText(wire::NodeMessage::Ready, ready.dump());
         return true;
+    }
+
+    Result<void> openBarrier(nlohmann::json& ready) {
+        swaps_ = std::make_unique<BarrierPart>(setup_, [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); });
+        auto port = swaps_->open();
+        if (!port) return port.error();
+        if (*port != 0) ready["swapBarrier"] = endpointText(setup_.swapHere ? "127.0.0.1" : line_->ownAddress(), *port);
+        return {};
+    }
+
+    // What was had before is forgotten.
+    bool unpackBatches() {
+        const char* const plant = std::getenv("MURAL_PLANT");
+        const auto unpacks = line_->unpackBatches(static_cast<uint64_t>(setup_.storeBytes), plant ? plant : "");
+        return unpacks || fail(unpacks.error().message);
     }
 
     // With the nodes that draw the other ranges of this one's picture.
@@ -189,19 +222,31 @@ private:
     // Nodes send to the collector only.
     [[nodiscard]] bool isStar() const { return setup_.composition == compositor::nameOf(compositor::Strategy::Serial); }
 
-    // The nodes with the ranges before this one's; the others come here.
     bool meet(const std::string& text) {
         const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
-        const int before = isStar() ? std::min(1, setup_.pass.range) : setup_.pass.range;
+        // The nodes with the ranges before this one's; the others come here.
+        const int before = !exchange_ ? 0 : isStar() ? std::min(1, setup_.pass.range) : setup_.pass.range;
         for (int rank = 0; rank < before; ++rank) {
-            auto where = splitHostPort(json.is_object() ? json.value(std::to_string(setup_.collector + rank), "") : "");
-            if (!where || !exchange_) return fail("the head named no node to send pictures to: install the same version of mural on all machines");
-            // No address: it runs where the head does.
-            const std::string host = !where->host.empty() ? where->host : line_->headHost().empty() ? "127.0.0.1" : line_->headHost();
-            const auto connected = exchange_->connectTo(rank, host, where->port, Deadline::inMs(kMeetMs));
-            if (!connected) line_->sendText(wire::NodeMessage::Log, "the node with range " + std::to_string(rank + 1) + " is not reached at " + endpointText(host, where->port) + ": " + connected.error().message + "; what nodes would send each other there is missing");
+            const auto where = addressIn(json, "pictures", setup_.collector + rank);
+            if (!where) return fail("the head named no node to send pictures to: install the same version of mural on all machines");
+            const auto connected = exchange_->connectTo(rank, where->host, where->port, Deadline::inMs(kMeetMs));
+            if (!connected) line_->sendText(wire::NodeMessage::Log, "the node with range " + std::to_string(rank + 1) + " is not reached at " + endpointText(where->host, where->port) + ": " + connected.error().message + "; what nodes would send each other there is missing");
         }
+        if (!swaps_ || setup_.swapRank == 0) return true;
+        const auto leader = addressIn(json, "swaps", setup_.swapLeader);
+        if (!leader) return fail("the head named no leader of the swap barrier: install the same version of mural on all machines");
+        swaps_->follow(leader->host, leader->port);
         return true;
+    }
+
+    // Where that node listens. No address: it runs where the head does.
+    [[nodiscard]] std::optional<HostPort> addressIn(const nlohmann::json& all, const char* what, int node) const {
+        const auto found = all.is_object() ? all.find(what) : all.end();
+        if (found == all.end() || !found->is_object()) return std::nullopt;
+        auto where = splitHostPort(found->value(std::to_string(node), ""));
+        if (!where) return std::nullopt;
+        if (where->host.empty()) where->host = line_->headHost().empty() ? "127.0.0.1" : line_->headHost();
+        return *where;
     }
 
     bool fail(const std::string& why) {
@@ -236,7 +281,58 @@ private:
         return ready;
     }
 
+    bool synchronize(std::span<const std::byte> arguments) {
+        uint32_t words[2] = {};
+        if (arguments.size() < sizeof words) return false;
+        std::memcpy(words, arguments.data(), sizeof words);
+        if (words[1] != 0 && replay_) replay_->drawAgain();
+        const wire::SynchronizedMessage done{words[0], static_cast<uint32_t>(replay_ ? replay_->soundness() : wire::Soundness::Sound)};
+        line_->send(wire::NodeMessage::Synchronized, std::as_bytes(std::span(&done, 1)));
+        return true;
+    }
+
+    // It has left out what its pictures need. Nobody shall see that.
+    void unsound() {
+        if (catchesUp_ || std::exchange(unsound_, true)) return;
+        line_->sendText(wire::NodeMessage::Log, "its frames build on earlier ones that it did not draw while it caught up; it ends, to be started again and draw them");
+    }
+
+    // Some node is a member from here on. If it is this one: what was before, others have told.
+    bool newMember(std::span<const std::byte> arguments) {
+        uint32_t words[3] = {};
+        if (arguments.size() < sizeof words) return false;
+        std::memcpy(words, arguments.data(), sizeof words);
+        const uint32_t view = words[0], node = words[1];
+        if (words[2] != 0 && replay_) replay_->beginTurns();
+        if (catchesUp_ && node != static_cast<uint32_t>(setup_.node)) return true;
+        catchesUp_ = false;
+        std::vector<wire::ClientFrame> frames;
+        for (const auto& [client, frame] : frames_) frames.push_back({client, frame});
+        line_->send(wire::NodeMessage::InView, std::as_bytes(std::span(&view, 1)), std::as_bytes(std::span(frames)));
+        return true;
+    }
+
+    bool tellTurns(std::span<const std::byte> number) {
+        if (number.size() < sizeof(uint32_t)) return false;
+        if (catchesUp_ || setup_.pass.period < 2 || !replay_) return true;
+        const std::vector<wire::WindowTurn> turns = replay_->turns();
+        line_->send(wire::NodeMessage::Turns, number.first(sizeof(uint32_t)), std::as_bytes(std::span(turns)));
+        return true;
+    }
+
+    bool takeTurns(std::span<const std::byte> bytes) {
+        if (bytes.size() % sizeof(wire::WindowTurn) != 0) return false;
+        std::vector<wire::WindowTurn> turns(bytes.size() / sizeof(wire::WindowTurn));
+        if (!bytes.empty()) std::memcpy(turns.data(), bytes.data(), bytes.size());
+        if (replay_) replay_->takeTurns(turns);
+        return true;
+    }
+
     void frameDone(const ReplayOutputs::Frame& f) {
+        uint32_t& latest = frames_[f.client];
+        latest = std::max(latest, f.frame);
+        if (!f.sound) unsound();
+        if (catchesUp_ || unsound_) return;
         const uint64_t replayedNs = threadCpuNs();
         if (f.pixels && !f.region.empty()) {
             if (setup_.sendPictures) sendPicture(f, f.pixels(f.region));
@@ -262,6 +358,7 @@ private:
     }
 
     void sayWindowGone(uint32_t client, uint32_t window) {
+        if (catchesUp_) return;
         const wire::WindowGoneMessage gone{client, window};
         line_->send(wire::NodeMessage::WindowGone, std::as_bytes(std::span(&gone, 1)));
     }
@@ -283,7 +380,7 @@ private:
     }
 
     void showTiles(const ReplayOutputs::Frame& f) {
-        const auto shown = windows_->show(f);
+        const auto shown = windows_->show(f, swaps_ ? swaps_->barrier() : nullptr);
         if (!shown) {
             line_->sendText(wire::NodeMessage::Log, "the wall windows are lost: " + shown.error().message);
             windows_.reset();
@@ -299,16 +396,25 @@ private:
         bye["frames"] = counts.frames;
         bye["cpuSeconds"] = processCpuSeconds();
         if (exchange_) bye["exchangeBytes"] = exchange_->bytesSent();
+        if (const auto numbers = swaps_ && swaps_->barrier() ? swaps_->barrier()->numbers() : std::nullopt)
+            bye["swapBarrier"] = {{"members", setup_.swapMembers},          {"swaps", numbers->skew.swaps},       {"medianNs", numbers->skew.medianNs},
+                                  {"p99Ns", numbers->skew.p99Ns}, {"mostNs", numbers->skew.mostNs}, {"clockErrorNs", numbers->clockErrorNs}};
         line_->sendText(wire::NodeMessage::Bye, bye.dump());
     }
 
     const std::unique_ptr<HeadLine> line_;
     const std::string name_; // by which the head knows this node
     NodeSetup setup_;
+    std::unique_ptr<BarrierPart> swaps_; // null: its windows wait for nobody
     std::unique_ptr<TileWindows> windows_;
     std::unique_ptr<Replay> replay_;
     uint64_t lastCpuNs_ = 0;
     std::map<uint32_t, uint64_t> calls_; // by client, of packets that are done with
+    std::map<uint32_t, uint32_t> frames_; // by client: the last one
+    bool unsound_ = false;      // it can't draw what the others draw
+    bool losesPackets_ = false; // a fault for tests to find
+    int packetsGiven_ = 0;      // while it catches up
+    bool catchesUp_ = false; // it replays what others have told of
     uint32_t clientInHand_ = 0;          // whose packet was taken last…
     uint64_t callsBefore_ = 0;           // …and the records of all clients before it
     bool finished_ = false;

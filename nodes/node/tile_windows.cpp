@@ -40,7 +40,7 @@ Result<void> TileWindows::reopen(int width, int height) {
     return {};
 }
 
-Result<void> TileWindows::show(const ReplayOutputs::Frame& f) {
+Result<void> TileWindows::show(const ReplayOutputs::Frame& f, SwapBarrier* barrier) {
     const auto width = static_cast<int>(f.config.width), height = static_cast<int>(f.config.height);
     if (mainWindow_.swapped(f.client, f.window, f.config.width, f.config.height) == 0) return {};
     if (!windows_ || width != width_ || height != height_) {
@@ -55,7 +55,13 @@ Result<void> TileWindows::show(const ReplayOutputs::Frame& f) {
         pictures[i].assign({tile.w, tile.h, f.pixels(tile)});
         shown.push_back({i, pictures[i].view()});
     }
-    return windows_->showAll(shown);
+    if (!barrier) return windows_->showAll(shown);
+    const SwapKey key{f.client, f.window, f.frame};
+    if (const auto drawn = windows_->drawAll(shown); !drawn) return drawn;
+    auto presentedNs = windows_->present(barrier->await(key));
+    if (!presentedNs) return presentedNs.error();
+    barrier->shown(key, *presentedNs);
+    return {};
 }
 
 } // namespace mural

@@ -7,14 +7,16 @@
 #include "nodes/output/wall_windows.hpp"
 #include "nodes/replay/replay.hpp"
 #include "nodes/session/session_config.hpp"
+#include "nodes/swap_barrier/swap_barrier.hpp"
 
 namespace mural {
 
 class TileWindows {
 public:
     static Result<std::unique_ptr<TileWindows>> open(const NodeSetup& setup);
-    // Shows the tiles of the main window (the largest that swaps); others are not on the wall.
-    Result<void> show(const ReplayOutputs::Frame& frame);
+    // Shows the tiles of the main window (the largest that swaps); others are not on the wall. With a barrier when its other
+    // members do.
+    Result<void> show(const ReplayOutputs::Frame& frame, SwapBarrier* barrier);
 
     void windowGone(uint32_t client, uint32_t window) { mainWindow_.windowGone(client, window); }
     void clientGone(uint32_t client) { mainWindow_.clientGone(client); }

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "common/clock.hpp"
+
 namespace mural {
 
 Result<std::unique_ptr<WallScreen>> WallScreen::open(const WallWindowsConfig& config) {
@@ -59,17 +61,27 @@ Result<void> WallScreen::checkDisplay() const {
                              session_->displayName())};
 }
 
-Result<void> WallScreen::show(std::vector<TileBuffer>& buffers) {
+Result<void> WallScreen::draw(std::vector<TileBuffer>& buffers) {
+    drawn_.clear();
     if (Result<void> there = checkDisplay(); !there)
         return there;
-    for (TileBuffer& buffer : buffers)
+    for (TileBuffer& buffer : buffers) {
         if (Result<void> drawn = windows_[buffer.tile]->draw(buffer.picture); !drawn)
             return drawn;
-    for (const TileBuffer& buffer : buffers)
-        if (Result<void> shown = windows_[buffer.tile]->present(); !shown)
+        drawn_.push_back(buffer.tile);
+    }
+    return {};
+}
+
+Result<void> WallScreen::present(int64_t atNs) {
+    sleepUntilNs(atNs);
+    for (const size_t tile : drawn_)
+        if (Result<void> shown = windows_[tile]->present(); !shown)
             return shown;
-    for (const TileBuffer& buffer : buffers)
-        windows_[buffer.tile]->finish();
+    for (const size_t tile : drawn_)
+        windows_[tile]->finish();
+    presentedNs_ = monotonicNowNs();
+    drawn_.clear();
     return checkDisplay();
 }
 

@@ -79,8 +79,12 @@ public:
         size_t tile = 0;
         OwnedPicture picture;
     };
-    // Leaves used memory in the buffers.
-    Result<void> show(std::vector<TileBuffer>& buffers);
+    // Draws pictures; leaves used memory in the buffers.
+    Result<void> draw(std::vector<TileBuffer>& buffers);
+    // Shows what was drawn, one window directly after the other, not before `atNs` (monotonicNowNs()).
+    Result<void> present(int64_t atNs = 0);
+    // When the server had the pictures of the last one (monotonicNowNs()).
+    [[nodiscard]] int64_t presentedNs() const { return presentedNs_; }
     Result<void> arrange(const std::vector<TileWindow>& tiles);
 
     // Handles what the server has sent.
@@ -102,6 +106,8 @@ private:
     WallWindowsConfig config_;
     std::unique_ptr<GlfwSession> session_; // before the windows: outlives them
     std::vector<std::unique_ptr<WallWindow>> windows_;
+    std::vector<size_t> drawn_; // tiles with a picture that is not shown yet
+    int64_t presentedNs_ = 0;
 };
 
 } // namespace mural

@@ -1,5 +1,6 @@
 #include "nodes/output/wall_windows.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
@@ -216,8 +217,31 @@ Result<void> WallWindows::show(size_t tile, const Picture& picture) {
     return showAll(std::span(&one, 1));
 }
 
-// The pictures are copied: when the deadline passes the thread may still be reading them.
 Result<void> WallWindows::showAll(std::span<const TilePicture> pictures) {
+    return take(pictures, true);
+}
+
+Result<void> WallWindows::drawAll(std::span<const TilePicture> pictures) {
+    return take(pictures, false);
+}
+
+Result<int64_t> WallWindows::present(int64_t atNs) {
+    auto presentedNs = std::make_shared<int64_t>(0); // the thread may outlive this call
+    const Deadline deadline = Deadline::at(std::max(atNs, monotonicNowNs()) + showTimeoutMs_ * kNsPerMs);
+    const Result<void> done = shared_->run(
+        [atNs, presentedNs](WallScreen& screen) {
+            Result<void> shown = screen.present(atNs);
+            *presentedNs = screen.presentedNs();
+            return shown;
+        },
+        deadline);
+    if (!done)
+        return done.error();
+    return *presentedNs;
+}
+
+// The pictures are copied: when the deadline passes the thread may still be reading them.
+Result<void> WallWindows::take(std::span<const TilePicture> pictures, bool present) {
     const Deadline deadline = Deadline::inMs(showTimeoutMs_);
     const size_t tiles = shared_->config.tiles.size();
     auto buffers = std::make_shared<std::vector<WallScreen::TileBuffer>>();
@@ -231,10 +255,10 @@ Result<void> WallWindows::showAll(std::span<const TilePicture> pictures) {
     }
     Shared* shared = shared_.get(); // the thread, where it runs, keeps it
     return shared_->run(
-        [buffers, shared](WallScreen& screen) {
-            Result<void> shown = screen.show(*buffers);
+        [buffers, shared, present](WallScreen& screen) {
+            Result<void> done = screen.draw(*buffers);
             shared->giveBuffers(*buffers);
-            return shown;
+            return done && present ? screen.present() : done;
         },
         deadline);
 }

@@ -69,6 +69,11 @@ public:
     // Draws all, then shows one directly after the other.
     Result<void> showAll(std::span<const TilePicture> pictures);
 
+    // The same in two steps, between which other nodes may be waited for. `present` shows what was drawn last, not before
+    // `atNs` (monotonicNowNs()), and returns when the server had it.
+    Result<void> drawAll(std::span<const TilePicture> pictures);
+    Result<int64_t> present(int64_t atNs);
+
     // Other places and sizes for the same number of tiles; pictures follow with the next show.
     Result<void> arrange(const std::vector<TileWindow>& tiles);
 
@@ -80,6 +85,7 @@ public:
 private:
     struct Shared;
     explicit WallWindows(std::shared_ptr<Shared> shared);
+    Result<void> take(std::span<const TilePicture> pictures, bool present);
 
     std::shared_ptr<Shared> shared_; // with the thread
     int64_t showTimeoutMs_;

@@ -1,0 +1,34 @@
+// A member of a swap barrier that asks the leader.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "nodes/swap_barrier/barrier_message.hpp"
+#include "nodes/swap_barrier/clock_offset.hpp"
+#include "nodes/swap_barrier/swap_barrier.hpp"
+#include "transport/connection.hpp"
+#include "transport/secure_channel.hpp"
+
+namespace mural {
+
+class BarrierFollower final : public SwapBarrier {
+public:
+    // rank: from 1 on.
+    static Result<std::unique_ptr<SwapBarrier>> connect(int rank, const ChannelSecret& secret, const std::string& host, uint16_t port, Deadline deadline, Log log);
+    BarrierFollower(std::unique_ptr<Connection> leader, Log log) : leader_(std::move(leader)), log_(std::move(log)) {}
+
+    int64_t await(const SwapKey& key) override;
+    void shown(const SwapKey& key, int64_t atNs) override;
+
+private:
+    Result<BarrierGo> ask(const SwapKey& key);
+
+    std::unique_ptr<Connection> leader_; // null: it is gone
+    const Log log_;
+    ClockOffset clock_;
+    SwapKey shownKey_;
+    int64_t shownNs_ = 0; // by the leader's clock; 0: has been told, or nothing was shown
+};
+
+} // namespace mural

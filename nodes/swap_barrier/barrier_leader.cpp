@@ -1,0 +1,145 @@
+#include "nodes/swap_barrier/barrier_leader.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "nodes/swap_barrier/barrier_names.hpp"
+#include "transport/free_port.hpp"
+#include "transport/secure_connection.hpp"
+
+namespace mural {
+
+namespace {
+
+constexpr int64_t kSliceMs = 100; // between looks at what is late, and whether to stop
+constexpr int64_t kProofPatienceMs = 5000;
+constexpr int64_t kSendMs = 1000;
+constexpr int64_t kRestMs = 1000; // of a message that has begun
+constexpr int64_t kWakeNs = 50'000;
+constexpr int64_t kMostLeadNs = 4 * kNsPerMs; // a way that takes longer is not waited for
+
+std::string memberText(int rank) { return "member " + std::to_string(rank + 1) + " of the swap barrier"; }
+
+} // namespace
+
+BarrierLeader::BarrierLeader(int members, const ChannelSecret& secret, Log log, int64_t patienceMs)
+    : count_(members), secret_(secret), log_(std::move(log)), patienceMs_(patienceMs), rounds_(members, patienceMs * kNsPerMs) {}
+
+BarrierLeader::~BarrierLeader() {
+    stop_ = true;
+    if (thread_.joinable()) thread_.join();
+    for (auto& [rank, member] : members_) {
+        member.connection->close();
+        member.thread.join();
+    }
+}
+
+Result<void> BarrierLeader::listen(bool loopbackOnly) {
+    auto free = listenOnFreePort(loopbackOnly);
+    if (!free) return free.error();
+    port_ = free->port;
+    listener_ = std::move(free->listener);
+    thread_ = std::thread([this] { letIn(); });
+    return {};
+}
+
+void BarrierLeader::letIn() {
+    while (!stop_) {
+        auto connection = listener_->accept(Deadline::inMs(kSliceMs));
+        if (!connection) continue;
+        const auto find = [&](const std::string& name) {
+            const int rank = barrierRankOf(name);
+            return rank > 0 && rank < count_ ? std::optional(secret_) : std::nullopt;
+        };
+        auto shown = SecureConnection::accepting(std::move(*connection), find, Deadline::inMs(kProofPatienceMs), [this] { return stop_.load(); });
+        if (!shown) continue;
+        const int rank = barrierRankOf((*shown)->name());
+        const std::lock_guard lock(mutex_);
+        if (members_.contains(rank)) continue; // the first one counts
+        Member& member = members_[rank];
+        member.connection = std::move(*shown);
+        member.thread = std::thread([this, rank, &c = *member.connection] { follow(rank, c); });
+    }
+}
+
+void BarrierLeader::follow(int rank, Connection& connection) {
+    std::array<std::byte, kReadyBytes> bytes;
+    while (!stop_) {
+        auto first = connection.read(std::span(bytes).first(1), Deadline::inMs(kSliceMs));
+        if (!first && connection.timedOut()) {
+            const std::lock_guard lock(mutex_);
+            apply(rounds_.tick(monotonicNowNs()));
+            continue;
+        }
+        const int64_t nowNs = monotonicNowNs();
+        if (!first || !connection.read(std::span(bytes).subspan(1), Deadline::inMs(kRestMs))) break;
+        take(rank, decodeReady(bytes), nowNs);
+    }
+    if (stop_) return;
+    log_(memberText(rank) + " is gone: the others swap without it");
+    const std::lock_guard lock(mutex_);
+    apply(rounds_.gone(rank, monotonicNowNs()));
+}
+
+void BarrierLeader::take(int rank, const BarrierReady& ready, int64_t arrivedNs) {
+    const std::lock_guard lock(mutex_);
+    Member& member = members_.at(rank);
+    member.readySentNs = ready.sentNs;
+    member.arrivedNs = arrivedNs;
+    member.errorNs = ready.errorNs;
+    if (ready.shownNs != 0) skew_.shown(ready.shownKey, ready.shownNs);
+    apply(rounds_.arrive(rank, ready.key, arrivedNs));
+}
+
+int64_t BarrierLeader::worstClockNs() const {
+    int64_t worst = 0;
+    for (const auto& [rank, member] : members_)
+        if (!rounds_.isGone(rank) && member.errorNs != INT64_MAX) worst = std::max(worst, member.errorNs);
+    return worst;
+}
+
+void BarrierLeader::apply(const BarrierRounds::Step& step) {
+    for (const int rank : step.late) {
+        const std::string who = rank == 0 ? "the leader of the swap barrier" : memberText(rank);
+        log_(who + " has not come for " + std::to_string(patienceMs_) + " ms: the others swap without it until it comes again");
+    }
+    for (const BarrierRounds::Release& release : step.releases) {
+        skew_.released(release.key, release.members.size());
+        // When the word has come to all of them, by what is known of the ways.
+        const int64_t showNs = release.members.size() < 2 ? 0 : monotonicNowNs() + std::min(worstClockNs() + kWakeNs, kMostLeadNs);
+        for (const int rank : release.members) {
+            if (rank == 0) {
+                waiting_ = false;
+                showNs_ = showNs;
+                went_.notify_all();
+                continue;
+            }
+            Member& member = members_.at(rank);
+            const BarrierGo go{release.key, member.readySentNs, member.arrivedNs, monotonicNowNs(), showNs};
+            if (member.connection->write(encode(go), Deadline::inMs(kSendMs))) member.connection->flush();
+            else member.connection->close(); // its thread tells the rest
+        }
+    }
+}
+
+int64_t BarrierLeader::await(const SwapKey& key) {
+    std::unique_lock lock(mutex_);
+    waiting_ = true;
+    apply(rounds_.arrive(0, key, monotonicNowNs()));
+    while (waiting_) {
+        if (went_.wait_for(lock, std::chrono::milliseconds(kSliceMs)) == std::cv_status::timeout) apply(rounds_.tick(monotonicNowNs()));
+    }
+    return showNs_;
+}
+
+void BarrierLeader::shown(const SwapKey& key, int64_t atNs) {
+    const std::lock_guard lock(mutex_);
+    skew_.shown(key, atNs);
+}
+
+std::optional<SwapBarrierNumbers> BarrierLeader::numbers() const {
+    const std::lock_guard lock(mutex_);
+    return SwapBarrierNumbers{skew_.numbers(), worstClockNs()};
+}
+
+} // namespace mural

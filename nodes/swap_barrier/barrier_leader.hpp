@@ -1,0 +1,64 @@
+// The member of a swap barrier that lets all go. A thread lets the others in, and one for each takes what it says when it comes.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "nodes/swap_barrier/barrier_message.hpp"
+#include "nodes/swap_barrier/barrier_rounds.hpp"
+#include "nodes/swap_barrier/swap_barrier.hpp"
+#include "transport/connection.hpp"
+#include "transport/secure_channel.hpp"
+
+namespace mural {
+
+class BarrierLeader final : public SwapBarrier {
+public:
+    BarrierLeader(int members, const ChannelSecret& secret, Log log, int64_t patienceMs = kPatienceMs);
+    ~BarrierLeader() override;
+
+    // On a free port: port(). loopbackOnly: all members run on this machine.
+    Result<void> listen(bool loopbackOnly);
+    [[nodiscard]] uint16_t port() const { return port_; }
+
+    int64_t await(const SwapKey& key) override;
+    void shown(const SwapKey& key, int64_t atNs) override;
+    [[nodiscard]] std::optional<SwapBarrierNumbers> numbers() const override;
+
+private:
+    struct Member {
+        std::unique_ptr<Connection> connection;
+        std::thread thread;
+        int64_t readySentNs = 0, arrivedNs = 0, errorNs = INT64_MAX; // of its last word
+    };
+    void letIn();
+    void follow(int rank, Connection& connection);
+    void take(int rank, const BarrierReady& ready, int64_t arrivedNs);
+    void apply(const BarrierRounds::Step& step); // with the lock
+    [[nodiscard]] int64_t worstClockNs() const;
+
+    const int count_;
+    const ChannelSecret secret_;
+    const Log log_;
+    const int64_t patienceMs_;
+    std::unique_ptr<Listener> listener_;
+    uint16_t port_ = 0;
+    std::thread thread_;
+    std::atomic<bool> stop_{false};
+
+    mutable std::mutex mutex_; // for all below
+    std::condition_variable went_;
+    BarrierRounds rounds_;
+    SkewMeter skew_;
+    std::map<int, Member> members_; // by rank; they stay where they are
+    bool waiting_ = false;
+    int64_t showNs_ = 0;
+};
+
+} // namespace mural

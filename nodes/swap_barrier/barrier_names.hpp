@@ -1,0 +1,19 @@
+// What the members of a swap barrier call themselves when they connect to its leader.
+#pragma once
+
+#include <charconv>
+#include <string>
+
+namespace mural {
+
+inline std::string barrierNameOf(int rank) { return "swap" + std::to_string(rank); }
+
+// 0: it is no such name.
+inline int barrierRankOf(const std::string& name) {
+    int rank = 0;
+    if (!name.starts_with("swap")) return 0;
+    const auto [end, error] = std::from_chars(name.data() + 4, name.data() + name.size(), rank);
+    return error == std::errc() && end == name.data() + name.size() ? rank : 0;
+}
+
+} // namespace mural

@@ -1,0 +1,52 @@
+// Who waits at a swap barrier, and who may go on. No clocks, threads or sockets: times are given.
+//
+// All members take the same stream, so they come to the same swaps in the same order; some may leave swaps out. A round ends
+// when every member waits: those with the oldest swap go. One that does not come in time is not waited for until it comes again.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "nodes/swap_barrier/swap_key.hpp"
+
+namespace mural {
+
+class BarrierRounds {
+public:
+    BarrierRounds(int members, int64_t patienceNs) : members_(static_cast<size_t>(members)), patienceNs_(patienceNs) {}
+
+    struct Release {
+        SwapKey key;
+        std::vector<int> members;
+    };
+    struct Step {
+        std::vector<Release> releases;
+        std::vector<int> late; // not waited for from now on
+    };
+    Step arrive(int member, const SwapKey& key, int64_t nowNs);
+    Step gone(int member, int64_t nowNs); // for good
+    Step tick(int64_t nowNs);
+
+    [[nodiscard]] bool isGone(int member) const { return members_[static_cast<size_t>(member)].state == State::Gone; }
+
+private:
+    enum class State { Away, Waiting, Late, Gone };
+    struct Member {
+        State state = State::Away;
+        SwapKey key;
+        uint64_t order = 0; // of its arrival
+    };
+    void releaseRounds(Step& step, int64_t nowNs);
+    [[nodiscard]] bool passed(const SwapKey& key) const;
+
+    std::vector<Member> members_;
+    const int64_t patienceNs_;
+    int64_t progressNs_ = 0; // when somebody last came or went
+    uint64_t arrivals_ = 0;
+    std::map<std::pair<uint32_t, uint32_t>, uint32_t> passed_; // by client and window: the last frame that was released
+};
+
+} // namespace mural
