@@ -1,7 +1,7 @@
 // The stream from the head to the render nodes, and the messages back. Little-endian, 4-byte aligned.
 // Grammar and versions: docs/wire-format.md.
 //
-//   stream  = Packet*
+//   stream  = Packet*, or behind a Setup that says `economy` batches of packets (economy/batch_head.hpp)
 //   Packet  = PacketHeader payload[sizeBytes]
 //   payload of a packet of a capture stream = Record*
 //   Record  = u32 header (low 16 bits opcode, high 16 bits length in 4-byte words, header included;
@@ -14,7 +14,8 @@
 namespace mural::wire {
 
 constexpr uint32_t kMagic = 0x4d52534d; // "MSRM"
-constexpr uint32_t kVersion = 4;
+constexpr uint32_t kVersion = 4;      // of packets and records; recordings have these, too
+constexpr uint32_t kBatchVersion = 4; // of batches (economy/) and head commands, which only head and nodes exchange
 
 // Which capture stream a packet belongs to: client (app process) and thread of it.
 // streamOf(0, 0) is the head's own stream: its payload is one HeadCommand.
@@ -26,16 +27,21 @@ struct PacketHeader {
     uint32_t stream;
 };
 constexpr uint32_t kMaxPacketBytes = 1u << 20;
-// Packets of this stream hold batches of other packets, in which what the node had before is not repeated (economy/).
-constexpr uint32_t kBatchStream = streamOf(0, 1);
-constexpr uint32_t kMaxBatchPacketBytes = 4u << 20;
+// A batch of packets, in which what the node had before is not repeated (economy/): what may follow its head.
+constexpr uint32_t kMaxBatchBytes = 4u << 20;
 
 // First word of a packet of the head's own stream.
 enum class HeadCommand : uint32_t {
     Setup = 1,      // json: tiles, regions, outputs, backend, rewriting mode (nodes/node/setup.hpp)
     ClientGone = 2, // u32 client: free its contexts
     Finish = 3,     // no more packets: answer Bye and exit
-    Exchange = 4,   // json: by the number of each node that puts pictures together, HOST:PORT where it listens
+    Exchange = 4,   // json: {"pictures", "swaps"}: by the number of each node that puts pictures together, or leads a swap barrier, HOST:PORT
+    Member = 5,     // u32 view, u32 node, u32 first: this node, which was given what came before, draws along from here on; all answer InView.
+                    // first = 1: no other member is left that takes turns with it; whose turn it is begins anew
+    Synchronize = 6, // u32 number, u32 draws: to a node that catches up; it answers Synchronized, and if it draws, draws windows from their next frames on
+    NewHistory = 7, // what was had before is forgotten: batches behind it refer to what comes from here on
+    TellTurns = 8, // u32 number: members that take turns answer Turns, for a node that begins to catch up here
+    Turns = 9,     // WindowTurn*: to a node that catches up, behind what it was given up to that TellTurns
 };
 
 // Node → head.
@@ -49,6 +55,9 @@ enum class NodeMessage : uint32_t {
     WindowGone = 7, // WindowGoneMessage: the program has destroyed it, or has gone; after its last FrameDone
     Alive = 8,     // nothing: every few seconds, also while the replay is at work
     News = 9,      // News + text: what a node's GL tells of a program's context without being asked
+    InView = 10,   // u32 view, ClientFrame*: what follows was sent after this Member
+    Synchronized = 11, // SynchronizedMessage: it has come to that Synchronize
+    Turns = 12,    // u32 number of the TellTurns, WindowTurn*: of all windows, where it came
 };
 
 struct MessageHeader {
@@ -120,6 +129,36 @@ constexpr uint32_t kDrawnWhole = 1;
 constexpr uint32_t kKeepsPicture = 2;
 // Nothing of the frame was shared between the nodes that draw ranges.
 constexpr uint32_t kNotSplit = 4;
+
+// How far a program was when a node became a member.
+struct ClientFrame {
+    uint32_t client;
+    uint32_t frame; // the last one before
+};
+
+// Whose turn a window is, and what of the frame in hand decides that (nodes/replay/replay_turns.cpp).
+struct WindowTurn {
+    uint32_t client;
+    uint32_t window;
+    int64_t frames; // that have begun
+    int64_t turn;
+    int64_t kept;      // frames in a row that have built on the one before
+    uint32_t cleared;  // buffers, in this frame, whole
+    uint32_t state;    // kTurn…
+};
+static_assert(sizeof(WindowTurn) == 40);
+constexpr uint32_t kTurnOver = 1, kTurnUndecided = 2, kTurnFresh = 4, kTurnForGood = 8;
+
+struct SynchronizedMessage {
+    uint32_t number; // of the Synchronize
+    uint32_t sound;  // Soundness
+};
+// Of the frames of a node that has not drawn all that came before.
+enum class Soundness : uint32_t {
+    Open = 0, // no frame of some window has been drawn yet
+    Sound = 1,
+    Unsound = 2, // frames depend on what was not drawn
+};
 
 struct WindowGoneMessage {
     uint32_t client;

@@ -1,5 +1,6 @@
 #include "nodes/exchange/part_message.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include "common/little_endian.hpp"
@@ -18,6 +19,9 @@ using compositor::RowRange;
 constexpr int32_t kTilePixels = 64;
 constexpr size_t kHeadBytes = 44, kPieceBytes = 28;
 
+// Pieces are small enough that what is unpacked stays in a core's cache until it is folded.
+constexpr int32_t kPieceColumns = 512, kPieceRows = 128;
+
 // 32 whole bits of depth travel as any words: what loses nothing does not ask what they mean.
 PlaneFormat depthFormatOf(const FoldRule& rule) { return rule.deep ? PlaneFormat::D32F : PlaneFormat::D24S8; }
 
@@ -35,6 +39,14 @@ PlaneView viewOf(const std::vector<uint32_t>& words, const PicturePart& part, Pl
     return {format, part.id.box.w, part.id.box.h, static_cast<ptrdiff_t>(part.id.box.w) * 4, reinterpret_cast<const std::byte*>(words.data())};
 }
 
+std::vector<PixelViewport> piecesOf(const compositor::Region& drawn) {
+    std::vector<PixelViewport> pieces;
+    for (const PixelViewport& r : drawn.rectangles())
+        for (int32_t y = 0; y < r.h; y += kPieceRows)
+            for (int32_t x = 0; x < r.w; x += kPieceColumns) pieces.push_back({r.x + x, r.y + y, std::min(kPieceColumns, r.w - x), std::min(kPieceRows, r.h - y)});
+    return pieces;
+}
+
 } // namespace
 
 std::vector<std::byte> packPart(const PicturePart& part, const RowRange& rows, const FoldRule& rule, PartState state, PlaneEncoder& encoder) {
@@ -42,13 +54,14 @@ std::vector<std::byte> packPart(const PicturePart& part, const RowRange& rows, c
     const PlaneView colour = viewOf(part.colour, part, PlaneFormat::Rgba8).part(band), depth = viewOf(part.depth, part, depthFormatOf(rule)).part(band);
     const compositor::Region drawn =
         findRegionOfInterest(colour, compositor::Background::ofWord(rule.clearedColour), depth, compositor::Background::ofWord(rule.clearedDepth), kTilePixels);
+    const std::vector<PixelViewport> pieces = piecesOf(drawn);
     std::vector<std::byte> message;
     put32(message, part.id.client);
     put64(message, part.id.serial);
     for (const int32_t v : {part.id.box.x, part.id.box.y, part.id.box.w, part.id.box.h, rows.first, rows.end}) put32(message, v);
     put32(message, static_cast<int64_t>(state));
-    put32(message, static_cast<int64_t>(drawn.rectangles().size()));
-    for (const PixelViewport& r : drawn.rectangles()) {
+    put32(message, static_cast<int64_t>(pieces.size()));
+    for (const PixelViewport& r : pieces) {
         const size_t head = message.size();
         for (const int32_t v : {r.x, rows.first + r.y, r.w, r.h}) put32(message, v);
         message.resize(head + kPieceBytes);
@@ -77,7 +90,7 @@ Result<PartState> unpackPart(std::span<const std::byte> message, const PictureId
     const uint32_t pieces = loadLittle<uint32_t>(message.data() + 40);
     const PixelViewport band{0, rows.first, id.box.w, rows.count()};
     int64_t left = band.area(); // pieces do not overlap: what unpacks to more is made to keep this node busy
-    std::vector<uint32_t> colour, depth;
+    std::vector<uint32_t>&colour = decoder.colour(), &depth = decoder.depth();
     std::span<const std::byte> rest = message.subspan(kHeadBytes);
     for (uint32_t i = 0; i < pieces; ++i) {
         if (rest.size() < kPieceBytes) return damaged("it ends before its last piece");

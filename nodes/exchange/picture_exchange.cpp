@@ -5,7 +5,7 @@
 #include <chrono>
 
 #include "common/little_endian.hpp"
-#include "transport/connection_description.hpp"
+#include "transport/free_port.hpp"
 #include "transport/secure_connection.hpp"
 
 namespace mural {
@@ -30,12 +30,10 @@ int PictureExchange::rankOf(const std::string& name) {
 }
 
 Result<void> PictureExchange::listen(bool loopbackOnly) {
-    auto listener = listenTcp(loopbackOnly ? "127.0.0.1" : "", 0);
-    if (!listener) return listener.error();
-    auto where = parseConnectionDescription((*listener)->describe());
-    if (!where) return where.error();
-    port_ = where->port;
-    listener_ = std::move(*listener);
+    auto free = listenOnFreePort(loopbackOnly);
+    if (!free) return free.error();
+    port_ = free->port;
+    listener_ = std::move(free->listener);
     thread_ = std::thread([this] { letIn(); });
     return {};
 }

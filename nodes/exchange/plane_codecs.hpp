@@ -44,8 +44,13 @@ public:
     // Any bytes may come in; what is no plane of this shape is an error.
     Result<void> decode(CodecNumber codec, std::span<const std::byte> bytes, const compositor::MutablePlaneView& into);
 
+    // For what is unpacked: kept from piece to piece, since memory that comes anew takes longer than unpacking does.
+    std::vector<uint32_t>& colour() { return colour_; }
+    std::vector<uint32_t>& depth() { return depth_; }
+
 private:
     std::vector<std::unique_ptr<compositor::Codec>> codecs_;
+    std::vector<uint32_t> colour_, depth_;
 };
 
 } // namespace mural

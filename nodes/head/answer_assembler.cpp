@@ -22,13 +22,14 @@ Error contradiction(const AnswerHeader& header) {
 
 AnswerAssembler::AnswerAssembler(int nodes, Deliver deliver)
     : deliver_(std::move(deliver))
-    , living_(static_cast<size_t>(nodes), true) {}
+    , nodes_(static_cast<size_t>(nodes))
+    , views_(static_cast<size_t>(nodes)) {}
 
 Result<void> AnswerAssembler::answer(int node, const AnswerHeader& header, ByteBuffer bytes) {
     Request complete;
     {
         const std::lock_guard lock(mutex_);
-        if (!living_[static_cast<size_t>(node)]) return {};
+        if (!views_.lives(node)) return {};
         if (requests_.size() >= kMostOpenRequests) return Error{"it answers what nobody asked"};
         const Key key{header.client, header.requestId};
         Request& request = requests_[key];
@@ -38,6 +39,7 @@ Result<void> AnswerAssembler::answer(int node, const AnswerHeader& header, ByteB
             complete = std::move(request);
             request.parts.clear();
             request.last = complete.last;
+            request.awaited = complete.awaited;
             request.delivered = true;
         }
         if (allAnswered(request)) requests_.erase(key);
@@ -50,11 +52,13 @@ Result<void> AnswerAssembler::answer(int node, const AnswerHeader& header, ByteB
 Result<void> AnswerAssembler::add(int node, const AnswerHeader& header, ByteBuffer bytes, Request& r) {
     if (header.kind < 1 || header.kind > 3) return Error{"it answered in an unknown kind"};
     if (r.last.empty()) {
-        r.last.resize(living_.size(), false);
+        r.awaited = views_.awaited(node);
+        r.last.resize(r.awaited.size(), false);
         r.kind = header.kind;
         r.groupBytes = header.groupBytes;
     }
     const auto index = static_cast<size_t>(node);
+    if (!r.awaited[index]) return {};
     if (r.kind != header.kind || r.last[index]) return contradiction(header);
     r.last[index] = header.last != 0;
     if (r.delivered || (bytes.size() == 0 && header.first == 0)) return {};
@@ -75,15 +79,15 @@ Result<void> AnswerAssembler::add(int node, const AnswerHeader& header, ByteBuff
 }
 
 bool AnswerAssembler::allAnswered(const Request& request) const {
-    for (size_t node = 0; node < living_.size(); ++node)
-        if (living_[node] && !request.last[node]) return false;
+    for (size_t node = 0; node < request.awaited.size(); ++node)
+        if (request.awaited[node] && !request.last[node]) return false;
     return true;
 }
 
 bool AnswerAssembler::canDeliver(const Request& request) const {
     const bool bytes = request.kind == static_cast<uint32_t>(AnswerKind::Bytes);
     // All hold the same, but for what nobody has written: always the first that lives speaks, so that two reads agree.
-    const auto speaker = static_cast<int>(std::ranges::find(living_, true) - living_.begin());
+    const auto speaker = static_cast<int>(std::ranges::find(request.awaited, true) - request.awaited.begin());
     if (bytes && request.firstNode == speaker && request.last[static_cast<size_t>(speaker)]) return true;
     return allAnswered(request);
 }
@@ -92,9 +96,10 @@ void AnswerAssembler::nodeLost(int node) {
     std::vector<std::pair<Key, Request>> complete;
     {
         const std::lock_guard lock(mutex_);
-        living_[static_cast<size_t>(node)] = false;
+        views_.lost(node);
         for (auto it = requests_.begin(); it != requests_.end();) {
             Request& request = it->second;
+            request.awaited[static_cast<size_t>(node)] = false;
             // Its half answer of bytes counts for nothing: another node has the same in whole.
             if (request.firstNode == node && !request.last[static_cast<size_t>(node)])
                 request.firstNode = -1;
@@ -109,6 +114,16 @@ void AnswerAssembler::nodeLost(int node) {
     for (auto& [key, request] : complete) deliver_(key.first, assemble(key.second, request));
 }
 
+void AnswerAssembler::nodeJoins(int node, uint32_t view) {
+    const std::lock_guard lock(mutex_);
+    views_.joins(node, view);
+}
+
+void AnswerAssembler::nodeInView(int node, uint32_t view) {
+    const std::lock_guard lock(mutex_);
+    views_.reached(node, view);
+}
+
 size_t AnswerAssembler::openRequests() const {
     const std::lock_guard lock(mutex_);
     return requests_.size();
@@ -119,8 +134,10 @@ std::vector<int> AnswerAssembler::missing(uint32_t client) const {
     std::vector<int> nodes;
     const auto oldest = requests_.lower_bound({client, 0});
     const bool known = oldest != requests_.end() && oldest->first.first == client;
-    for (size_t node = 0; node < living_.size(); ++node)
-        if (living_[node] && (!known || !oldest->second.last[node])) nodes.push_back(static_cast<int>(node));
+    for (size_t node = 0; node < nodes_; ++node) {
+        const bool asked = known ? oldest->second.awaited[node] && !oldest->second.last[node] : views_.lives(static_cast<int>(node));
+        if (asked) nodes.push_back(static_cast<int>(node));
+    }
     return nodes;
 }
 

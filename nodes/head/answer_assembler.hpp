@@ -13,6 +13,7 @@
 #include "common/result.hpp"
 #include "nodes/head/byte_buffer.hpp"
 #include "nodes/head/capture_client.hpp"
+#include "nodes/head/node_views.hpp"
 #include "streamcodec/wire.hpp"
 
 namespace mural {
@@ -27,6 +28,10 @@ public:
     Result<void> answer(int node, const wire::AnswerHeader& header, ByteBuffer bytes);
     // Requests in progress are completed with what there is.
     void nodeLost(int node);
+
+    // It answers what is asked from this view on.
+    void nodeJoins(int node, uint32_t view);
+    void nodeInView(int node, uint32_t view);
 
     [[nodiscard]] size_t openRequests() const;
     // The nodes whose answer to the client's oldest open request is missing.
@@ -44,6 +49,7 @@ private:
         uint32_t kind = 0;
         uint32_t groupBytes = 0;
         std::vector<Part> parts;
+        std::vector<bool> awaited; // per node: it answers, unless it is lost
         std::vector<bool> last;   // per node
         int firstNode = -1;       // the one that answers for all (Bytes)
         bool delivered = false;   // the rest only has to come in
@@ -55,7 +61,8 @@ private:
 
     mutable std::mutex mutex_;
     const Deliver deliver_;
-    std::vector<bool> living_;
+    const size_t nodes_;
+    NodeViews views_;
     std::map<Key, Request> requests_;
 
     static Reply assemble(uint32_t requestId, const Request& request);

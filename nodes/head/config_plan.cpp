@@ -10,6 +10,8 @@
 #include "balancer/compound/even_split.hpp"
 #include "balancer/compound/frusta.hpp"
 #include "balancer/compound/plan_frame.hpp"
+#include "nodes/head/compound_pass.hpp"
+#include "nodes/head/config_gaps.hpp"
 
 namespace mural {
 
@@ -100,6 +102,8 @@ private:
         for (uint32_t frame = 0; frame < period; ++frame) {
             input_.frameNumber = frame;
             const FramePlan plan = compound::planFrame(config_, input_);
+            for (const compound::PlannedBarrier& barrier : plan.barriers)
+                for (const Index window : barrier.windows) barriers_.try_emplace(window, barrier.name);
             std::map<Index, std::vector<size_t>> workers; // by their queue: their draws
             for (const compound::ChannelPlan& channel : plan.channels) {
                 for (const compound::PlannedTask& task : channel.tasks) {
@@ -174,7 +178,7 @@ private:
                 const PassCounts& n = part.counts;
                 if (c.pixel.w != n.kernelWidth || c.pixel.h != n.kernelHeight || c.subPixel.size != n.samples)
                     return Error{file_ + ":" + std::to_string(config_.compounds[at(c.compound)].at.line) + ": channel \"" + part.name + "\" is put together of parts with different pixel or subpixel kernels; give all of them the same"};
-                const int picture = next + pictureOf(n, passOf(c));
+                const int picture = next + pictureOf(n, passOf(config_, c));
                 pictures_.resize(draws_.size(), 0);
                 pictures_[i] = picture;
                 made.insert(picture);
@@ -183,6 +187,8 @@ private:
                 plan_.warnings.push_back(file_ + ": channel \"" + part.name + "\": some pixels or samples of its kernel are drawn by no compound, they stay black");
             next += picturesOf(part.counts);
             if (first.stereoMode == compound::StereoMode::Anaglyph) anaglyph_ = true;
+            if (first.stereoMode == compound::StereoMode::Quad && first.eye == Eye::Left)
+                plan_.warnings.push_back(placeOf(first.compound) + ": channel \"" + part.name + "\" wants a quad-buffered pair; no window here has one, so both eyes are shown side by side; a display that takes such pairs, or stereo_mode ANAGLYPH, shows them");
             plan_.wall.parts.push_back(part);
         }
         plan_.wall.stereo = anaglyph_ ? StereoMode::Anaglyph : StereoMode::SideBySide;
@@ -202,21 +208,6 @@ private:
         return {x0, y0, x1 - x0, y1 - y0};
     }
 
-    static RenderPass passOf(const RenderContext& c) {
-        RenderPass p;
-        p.eye = c.eye;
-        p.kernelX = c.pixel.x;
-        p.kernelY = c.pixel.y;
-        p.kernelWidth = c.pixel.w;
-        p.kernelHeight = c.pixel.h;
-        p.sample = c.subPixel.index;
-        p.samples = c.subPixel.size;
-        p.phase = static_cast<int>(c.phase);
-        p.period = static_cast<int>(c.period);
-        p.share = c.range;
-        return p;
-    }
-
     // Nodes in the order of their groups: draws of one area of one picture that differ in their range alone.
     Result<void> placeNodes() {
         using Key = std::tuple<int, uint32_t, double, double, double, double>;
@@ -233,7 +224,10 @@ private:
                 const RenderContext& c = draws_[i].context;
                 NodePlan node;
                 node.node = static_cast<int>(plan_.nodes.size());
-                node.pass = passOf(c);
+                node.pass = passOf(config_, c);
+                tellTooLarge(c.compound);
+                if (node.pass.zoom != passOf(config_, draws_[draws.front()].context).zoom)
+                    return Error{file_ + ":" + std::to_string(config_.compounds[at(c.compound)].at.line) + ": ranges of one picture are zoomed differently and can't be put together by depth; give all of them the same zoom"};
                 node.pass.range = rank++;
                 node.pass.ranges = static_cast<int>(draws.size());
                 node.picture = pictures_[i];
@@ -248,6 +242,18 @@ private:
             }
         }
         return {};
+    }
+
+    // Of a compound in the file, for lines about it.
+    [[nodiscard]] std::string placeOf(Index compound) const {
+        const config::SourcePosition& there = config_.compounds[at(compound)].at;
+        return file_ + ":" + std::to_string(there.line) + ":" + std::to_string(there.column);
+    }
+
+    void tellTooLarge(Index compound) {
+        const Zoom zoom = zoomOf(config_, compound);
+        if ((zoom.x <= 1 && zoom.y <= 1) || !tooLarge_.insert(compound).second) return;
+        plan_.warnings.push_back(placeOf(compound) + ": a zoom above 1 has no effect, its picture is drawn as large as it is shown; for smoother edges divide it by subpixel");
     }
 
     // Where a file says nothing, the number of nodes does, later.
@@ -290,7 +296,11 @@ private:
                 const bool sameChannel = channels_[node(*shows[a])] == channels_[node(*shows[b])];
                 if (sameChannel || (wishes_.here && !intersect(*shows[a]->area, *shows[b]->area).empty())) return headShowsIt();
             }
-        for (NodePlan* n : shows) n->window = windowOf(channels_[node(*n)]);
+        for (NodePlan* n : shows) {
+            const Index channel = channels_[node(*n)];
+            n->window = windowOf(channel);
+            if (const auto barrier = barriers_.find(config_.channels[at(channel)].window); barrier != barriers_.end()) n->swapBarrier = barrier->second;
+        }
     }
 
     static bool same(const Viewport& a, const Viewport& b) {
@@ -375,6 +385,8 @@ private:
     std::vector<Draw> draws_;
     std::vector<int> pictures_;   // of each draw
     std::vector<Index> channels_; // of each node
+    std::map<Index, std::string> barriers_; // by window: the swap barrier that it waits at
+    std::set<Index> tooLarge_;    // compounds of which was said that they are
     Index canvas_ = kNone;
     bool anaglyph_ = false;
     bool inRoom_ = false;
@@ -383,7 +395,11 @@ private:
 
 } // namespace
 
-Result<SessionPlan> planOf(const LoadedConfig& loaded, const ConfigWishes& wishes) { return Planner(loaded, wishes).plan(); }
+Result<SessionPlan> planOf(const LoadedConfig& loaded, const ConfigWishes& wishes) {
+    auto plan = Planner(loaded, wishes).plan();
+    if (plan) std::ranges::copy(fieldsWithoutEffect(loaded.diagnostics), std::back_inserter(plan->warnings));
+    return plan;
+}
 
 compound::PixelSize wallSizeOf(const LoadedConfig& loaded, const ConfigWishes& wishes) { return Planner(loaded, wishes).wallSize(); }
 

@@ -29,6 +29,7 @@ Result<void> FrameTracker::frameDone(int node, const wire::FrameDoneMessage& m, 
     const std::lock_guard lock(mutex_);
     Client& c = client(m.client);
     NodeProgress& progress = c.nodes[static_cast<size_t>(node)];
+    if (progress.joined > 0 && m.frame <= progress.joined) return {}; // swapped late, by another thread
     const bool repeated = m.frame <= progress.done || progress.early.contains(m.frame);
     if (repeated) return Error{"it finished frame " + std::to_string(m.frame) + " twice"};
     if (c.windows.size() >= kMostOpenFrames) return Error{"it is a million frames ahead"};
@@ -50,6 +51,26 @@ void FrameTracker::nodeLost(int node, int64_t nowNs) {
     living_[static_cast<size_t>(node)] = false;
     if (std::ranges::find(living_, true) == living_.end()) return;
     for (auto& [id, c] : clients_) advance(id, c, nowNs);
+}
+
+void FrameTracker::nodeJoins(int node) {
+    const std::lock_guard lock(mutex_);
+    for (auto& [id, c] : clients_) {
+        uint32_t known = c.finished;
+        for (const NodeProgress& other : c.nodes) known = std::max({known, other.done, other.early.empty() ? 0 : *other.early.rbegin()});
+        c.nodes[static_cast<size_t>(node)] = {known, known, {}};
+    }
+    living_[static_cast<size_t>(node)] = true;
+}
+
+void FrameTracker::nodeJoined(int node, const std::vector<wire::ClientFrame>& before, int64_t nowNs) {
+    const std::lock_guard lock(mutex_);
+    for (const wire::ClientFrame& frame : before) {
+        Client& c = client(frame.client);
+        NodeProgress& progress = c.nodes[static_cast<size_t>(node)];
+        progress.done = progress.joined = std::max(progress.done, frame.frame);
+        advance(frame.client, c, nowNs);
+    }
 }
 
 void FrameTracker::clientGone(uint32_t id) {

@@ -37,6 +37,10 @@ public:
 
     Result<void> frameDone(int node, const wire::FrameDoneMessage& message, int64_t nowNs);
     void nodeLost(int node, int64_t nowNs);
+    // Nobody is given credit for what comes from now on without it, though it is not known yet how far it is.
+    void nodeJoins(int node);
+    // It finishes the frames behind these.
+    void nodeJoined(int node, const std::vector<wire::ClientFrame>& before, int64_t nowNs);
     void clientGone(uint32_t client);
     // No frame of it comes any more from any node.
     void windowGone(uint32_t client, uint32_t window);
@@ -60,6 +64,7 @@ private:
     // Frames come in order but for programs that swap in several threads.
     struct NodeProgress {
         uint32_t done = 0;          // all up to here
+        uint32_t joined = 0;        // up to here others have done what there was to do
         std::set<uint32_t> early;   // beyond
     };
     struct Client {

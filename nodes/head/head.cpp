@@ -43,13 +43,17 @@ Result<SessionConfig> receiveConfig(ControlChannel& control) {
     return Error{"no session configuration came; `mural head` is started by `mural run`"};
 }
 
-Result<std::vector<LaunchedNode>> launch(const SessionConfig& config, const SessionPlan& plan,
-                                         const ControlChannel& control) {
+LaunchOptions launchOptionsOf(const SessionConfig& config) {
     LaunchOptions options;
     options.executable = launch::ownBinary();
     options.remoteMural = config.remoteMural.empty() ? options.executable : config.remoteMural;
     options.launchCommand = config.launchCommand;
-    return launchNodes(plan, options, Deadline::inMs(kLaunchPatienceMs),
+    return options;
+}
+
+Result<std::vector<LaunchedNode>> launch(const SessionConfig& config, const SessionPlan& plan,
+                                         const ControlChannel& control) {
+    return launchNodes(plan, launchOptionsOf(config), Deadline::inMs(kLaunchPatienceMs),
                        [&] { return asked != 0 || control.broken(); });
 }
 
@@ -113,6 +117,7 @@ Result<int> runSession(ControlChannel& control) {
     }
     auto nodes = launch(*config, plan, control);
     if (!nodes) return nodes.error();
+    options.startNode = [options = launchOptionsOf(*config)](const NodePlan& node) { return startNode(node, options, Deadline::inMs(kLaunchPatienceMs)); };
     HeadSession session(*config, std::move(plan), std::move(*nodes), control, std::move(options));
     return session.run();
 }

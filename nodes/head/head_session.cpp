@@ -5,26 +5,8 @@
 #include <poll.h>
 #include <thread>
 
-#include "nodes/head/economy_plan.hpp"
-#include "nodes/placement/placement.hpp"
-#include "nodes/session/session_secret.hpp"
-
 namespace mural {
 namespace {
-
-const char* explainTiling(Tiling tiling) {
-    switch (tiling) {
-    case Tiling::Culled:
-        return "tiling culled: as exact, and shaders drop what lies outside of a node's tiles; exact where windows and framebuffer objects have depth buffers";
-    case Tiling::Lean: return "tiling lean: frame buffers of the tiles' size; up to 0.25 % of the pixels may differ, mostly by 1";
-    case Tiling::Exact: break;
-    }
-    return "tiling exact: every node has a frame buffer of the whole picture and draws its tiles only; no pixel differs from a single machine's";
-}
-
-const char* whyOwnStreams(const std::string& stream) {
-    return stream == "tcp" ? "--stream tcp" : "there are no two other machines";
-}
 
 using Json = nlohmann::json;
 
@@ -75,6 +57,7 @@ HeadSession::HeadSession(SessionConfig config,
                     frames_.pictureHeld(picture.client, picture.frame);
                     output_->add(std::move(picture));
                 })
+    , views_(nodes.size())
     , facts_(nodes.size())
     , ready_(nodes.size(), false)
     , refusals_(nodes.size())
@@ -87,6 +70,11 @@ HeadSession::HeadSession(SessionConfig config,
                                               std::move(launched.connection),
                                               std::move(launched.process), events));
     }
+    ReturnTerms terms;
+    terms.tries = config_.restartNodes;
+    terms.readyPatienceMs = options_.readyPatienceMs;
+    if (terms.tries > 0 && options_.startNode) nodes_.keepBy(std::make_unique<KeptStream>(static_cast<uint64_t>(config_.storeBytes)));
+    returns_ = std::make_unique<NodeReturns>(std::move(terms), nodes_, returnHooks());
     if (!sendsPictures_) return;
     PictureOutputConfig output;
     output.saveFrames = config_.saveFrames;
@@ -104,6 +92,7 @@ HeadSession::~HeadSession() {
     server_.reset();
     if (output_) output_->drop();
     nodes_.loseAll("the head ends");
+    returns_->stop([] {});
     if (programs_) programs_->endAll();
     nodes_.end();
 }
@@ -117,189 +106,6 @@ int HeadSession::run() {
     finish();
     control_.send(reportOf(numbers()));
     return 0;
-}
-
-// ---- start
-
-Result<void> HeadSession::bringUp() {
-    placement_ = placeOwnThreads(); // before its threads start: they inherit it
-    nodes_.startReading();
-    openMulticast();
-    if (auto opened = openEconomy(); !opened) return opened;
-    if (std::ranges::any_of(plan_.nodes, [](const NodePlan& n) { return n.pass.ranges > 1; })) {
-        const auto secret = makeSessionSecret();
-        if (!secret) return secret.error();
-        exchangeSecret_ = toHex(secret.value());
-    }
-    for (const NodePlan& plan : plan_.nodes) {
-        NodeSetup setup = setupOf(config_, plan_, plan);
-        setup.exchangeSecret = exchangeSecret_;
-        if (nodes_.link(plan.node).byMulticast()) {
-            setup.stream = nodes_.multicast()->invitation();
-            setup.streamSecret = toHex(nodes_.multicast()->secret());
-        }
-        setup.economy = nodes_.link(plan.node).inBatches();
-        setup.storeBytes = config_.storeBytes;
-        nodes_.sendSetup(plan.node, toJson(setup));
-    }
-    if (auto ready = awaitReady(); !ready) return ready;
-    introduceNodes();
-    openTables();
-    auto server = CaptureServer::start(config_.session, options_.registryDigest, *programs_, [this] { return statusOf(status()).dump(); });
-    if (!server) return server.error();
-    server_ = std::move(*server);
-    announceReady();
-    return {};
-}
-
-// One stream for all nodes of other machines. Without it each gets its own, as ever.
-void HeadSession::openMulticast() {
-    const std::vector<int> nodes = nodesForMulticast(config_.stream, plan_);
-    if (nodes.empty()) {
-        streamLine_ = config_.hosts.empty() ? "" : std::string("the stream goes to each node by its own connection: ") + whyOwnStreams(config_.stream);
-        return;
-    }
-    NetworkPath path = nodes_.link(nodes.front()).path();
-    for (const int node : nodes) path.datagramBytes = std::min(path.datagramBytes, nodes_.link(node).path().datagramBytes);
-    auto multicast = NodeMulticast::open(config_.stream, path);
-    if (!multicast) {
-        streamLine_ = "the stream goes to each node by its own connection: no multicast: " + multicast.error().message + "; mural doctor --network says what to mend";
-        if (!config_.explain) control_.say(streamLine_);
-        return;
-    }
-    streamLine_ = "the stream goes to " + std::to_string(nodes.size()) + " nodes at once, by reliable multicast: " + (*multicast)->describe();
-    nodes_.multicastBy(std::move(*multicast));
-    for (const int node : nodes) nodes_.link(node).setByMulticast(true);
-}
-
-Result<void> HeadSession::openEconomy() {
-    const EconomyPlan plan = planEconomy(config_, plan_, [this](int node) { return nodes_.link(node).byMulticast(); });
-    economyLine_ = plan.explain;
-    if (plan.nodes.empty()) return {};
-    economy::Limits limits;
-    limits.storeBytes = static_cast<uint64_t>(config_.storeBytes);
-    auto economy = StreamEconomy::open(limits);
-    if (!economy) return economy.error();
-    nodes_.economizeBy(std::move(*economy));
-    for (const int node : plan.nodes) nodes_.link(node).setInBatches(true);
-    return {};
-}
-
-// Nodes that draw ranges of one picture learn where it is put together.
-void HeadSession::introduceNodes() {
-    Json collectors = Json::object();
-    {
-        const std::lock_guard lock(mutex_);
-        for (size_t i = 0; i < facts_.size(); ++i)
-            if (!facts_[i].exchange.empty()) collectors[std::to_string(i)] = facts_[i].exchange;
-    }
-    if (collectors.empty()) return;
-    const std::string text = collectors.dump();
-    nodes_.broadcast(wire::HeadCommand::Exchange, std::as_bytes(std::span(text.data(), text.size())));
-    nodes_.flush();
-}
-
-Result<void> HeadSession::awaitReady() {
-    const Deadline deadline = Deadline::inMs(options_.readyPatienceMs);
-    while (true) {
-        {
-            const std::lock_guard lock(mutex_);
-            if (!startFailure_.empty()) return Error{startFailure_};
-            const auto missing = std::ranges::find(ready_, false);
-            if (missing == ready_.end()) return {};
-            if (deadline.passed()) {
-                const auto node = static_cast<int>(missing - ready_.begin());
-                return Error{nodes_.link(node).describe() + " was not ready within " +
-                             std::to_string(options_.readyPatienceMs / 1000) +
-                             " s; try --gl osmesa, or fewer nodes"};
-            }
-        }
-        if (askedToFinish(Deadline::inMs(10)))
-            return Error{"the session was ended before its nodes were ready"};
-    }
-}
-
-void HeadSession::openTables() {
-    ProgramTerms terms;
-    capture::Welcome& welcome = terms.welcome;
-    welcome.policy = config_.policy == CapturePolicy::Full ? capture::kPolicyFull : capture::kPolicyState;
-    welcome.latency = static_cast<uint32_t>(config_.latency);
-    welcome.verifyEvery = static_cast<uint32_t>(config_.verifyEvery);
-    // What is recorded shall play on any number of nodes: the program fetches what it copies from a window, as with several.
-    welcome.nodeCount = static_cast<uint32_t>(options_.recorder ? std::max(nodeCount_, 2) : nodeCount_);
-    welcome.displayApp = config_.display == Display::App ? 1 : 0;
-    {
-        const std::lock_guard lock(mutex_);
-        welcome.nodeGlVersion = static_cast<uint32_t>(lowestGlVersion(facts_));
-        terms.extensions = commonExtensions(facts_);
-    }
-    terms.framesDoneWhenShown = config_.display == Display::App && config_.latency == 0;
-    terms.chunkCount = options_.chunkCount;
-    terms.replyPatienceMs = options_.replyPatienceMs;
-    beginRecording();
-    ProgramTable::Events events;
-    events.came = [this](const CaptureClient& client) {
-        if (options_.recorder) options_.recorder->event({recording::Event::ClientCame, client.id(), client.pid(), client.name()});
-    };
-    events.countChanged = [this](size_t count) {
-        control_.send({{"event", "clients"}, {"count", count}});
-    };
-    events.gone = [this](uint32_t client, const std::string& line) {
-        news_.programGone(client);
-        if (options_.recorder) options_.recorder->event({recording::Event::ClientGone, client, 0, ""});
-        if (!line.empty()) control_.say(line);
-    };
-    programs_ = std::make_unique<ProgramTable>(std::move(terms), nodes_, std::move(events));
-    serving_ = true;
-}
-
-void HeadSession::beginRecording() {
-    if (!options_.recorder) return;
-    recording::About about;
-    about.version = MURAL_VERSION;
-    {
-        const std::lock_guard lock(mutex_);
-        for (const NodeFacts& facts : facts_) about.nodes.push_back(facts.renderer + ", GL " + std::to_string(facts.glVersion / 10) + "." + std::to_string(facts.glVersion % 10));
-    }
-    options_.recorder->begin(about);
-    nodes_.recordBy(options_.recorder.get());
-}
-
-// Near the network card, when there is a network in between.
-std::string HeadSession::placeOwnThreads() const {
-    if (!config_.placeThreads) return "not placed: --no-placement";
-    if (config_.hosts.empty()) return "not placed: all nodes are on this machine";
-    return placeThread(DeviceKind::Network).description;
-}
-
-std::vector<std::string> HeadSession::explainLines() {
-    std::vector<std::string> lines = plan_.explain;
-    lines.push_back(explainTiling(config_.tiling));
-    if (!streamLine_.empty()) lines.push_back(streamLine_);
-    lines.push_back(economyLine_);
-    lines.push_back("threads of the head: " + placement_);
-    const std::lock_guard lock(mutex_);
-    for (const NodePlan& plan : plan_.nodes) {
-        const std::string& placement = facts_[static_cast<size_t>(plan.node)].placement;
-        if (!placement.empty()) lines.push_back("thread of node " + std::to_string(plan.node) + ": " + placement);
-    }
-    return lines;
-}
-
-void HeadSession::announceReady() {
-    Json nodes = Json::array();
-    {
-        const std::lock_guard lock(mutex_);
-        for (const NodePlan& plan : plan_.nodes) {
-            const NodeFacts& facts = facts_[static_cast<size_t>(plan.node)];
-            nodes.push_back({{"node", plan.node},
-                             {"where", plan.where},
-                             {"pid", facts.pid},
-                             {"gl", facts.renderer}});
-        }
-    }
-    for (const std::string& warning : plan_.warnings) control_.say(warning);
-    control_.send({{"event", "ready"}, {"explain", explainLines()}, {"nodes", nodes}});
 }
 
 // ---- while it runs
@@ -333,6 +139,7 @@ void HeadSession::tick() {
     const int64_t nowNs = monotonicNowNs();
     watchNodes(nowNs);
     programs_->reap();
+    returns_->tick(nowNs);
     reportProgress(nowNs);
 }
 
@@ -358,6 +165,7 @@ void HeadSession::reportProgress(int64_t nowNs) {
 Result<void> HeadSession::nodeReady(int node, const std::string& json) {
     auto facts = nodeFactsFromJson(json);
     if (!facts) return facts.error();
+    if (returns_->onItsWay(node)) return takeAgain(node, std::move(*facts));
     const auto index = static_cast<size_t>(node);
     const std::lock_guard lock(mutex_);
     if (ready_[index]) return Error{"it said twice that it is ready"};
@@ -428,11 +236,12 @@ Result<void> HeadSession::nodeWindowGone(int node, const wire::WindowGoneMessage
 void HeadSession::windowGone(const std::pair<uint32_t, uint32_t>& window, int node) {
     {
         const std::lock_guard lock(mutex_);
-        std::vector<bool>& said = gone_.try_emplace(window, facts_.size(), false).first->second;
-        said[static_cast<size_t>(node)] = true;
-        for (size_t i = 0; i < said.size(); ++i)
-            if (!said[i] && !totals_[i].lost) return;
-        gone_.erase(window);
+        const auto [entry, fresh] = gone_.try_emplace(window);
+        if (fresh) entry->second = views_.awaited(node);
+        std::vector<bool>& awaited = entry->second;
+        awaited[static_cast<size_t>(node)] = false;
+        if (std::ranges::find(awaited, true) != awaited.end()) return;
+        gone_.erase(entry);
     }
     const auto [client, id] = window;
     if (id != wire::kAllWindows) {
@@ -473,31 +282,14 @@ Result<void> HeadSession::nodeBye(int node, const std::string& json) {
 
 void HeadSession::nodeLost(int node, const std::string& why) {
     if (tearingDown_) return;
-    bool last = false;
     bool starting = false;
     {
         const std::lock_guard lock(mutex_);
-        const std::string name = nodes_.link(node).describe();
-        totals_[static_cast<size_t>(node)].lost = true;
-        last = ++lostNodes_ == nodeCount_;
         starting = !serving_;
-        if (starting && startFailure_.empty()) {
-            const std::string& refusal = refusals_[static_cast<size_t>(node)];
-            startFailure_ = name + " did not start: " + (refusal.empty() ? why : refusal);
-        }
+        const std::string& refusal = refusals_[static_cast<size_t>(node)];
+        if (starting && startFailure_.empty()) startFailure_ = nodes_.link(node).describe() + " did not start: " + (refusal.empty() ? why : refusal);
     }
-    if (starting) return;
-    control_.say(nodes_.link(node).describe() + " was lost: " + why + "; its tiles stay as they were");
-    answers_.nodeLost(node);
-    pictures_.nodeLost(node);
-    frames_.nodeLost(node, monotonicNowNs());
-    std::vector<std::pair<uint32_t, uint32_t>> waiting; // for this node's word
-    {
-        const std::lock_guard lock(mutex_);
-        for (const auto& entry : gone_) waiting.push_back(entry.first);
-    }
-    for (const auto& window : waiting) windowGone(window, node);
-    if (last) noNodeIsLeft();
+    if (!starting) loseMember(node, why);
 }
 
 void HeadSession::noNodeIsLeft() {
@@ -510,6 +302,7 @@ void HeadSession::noNodeIsLeft() {
 
 void HeadSession::finish() {
     finishing_ = true;
+    returns_->stop([this] { watchNodes(monotonicNowNs()); });
     programs_->refuseFrom("the session is ending");
     programs_->drainAll(Deadline::inMs(options_.drainPatienceMs),
                         [this] { watchNodes(monotonicNowNs()); });
@@ -607,6 +400,7 @@ SessionStatus HeadSession::status() {
         NodeLink& link = nodes_.link(static_cast<int>(i));
         NodeStatus node{totals_[i], link.place().where, facts_[i].pid, facts_[i].renderer, 0, streamOf(plan_.nodes[i])};
         node.totals.frames = frames_.framesOf(node.totals.node);
+        node.returning = returns_->onItsWay(node.totals.node);
         node.silentSeconds = static_cast<double>(link.silentNs(result.nowNs)) / static_cast<double>(kNsPerS);
         result.nodes.push_back(std::move(node));
     }

@@ -23,6 +23,7 @@
 #include "nodes/head/news_merger.hpp"
 #include "nodes/head/node_facts.hpp"
 #include "nodes/head/node_launcher.hpp"
+#include "nodes/head/node_returns.hpp"
 #include "nodes/head/node_set.hpp"
 #include "nodes/head/picture_assembler.hpp"
 #include "nodes/head/picture_output.hpp"
@@ -41,6 +42,8 @@ struct HeadOptions {
     std::function<Result<std::unique_ptr<PictureSink>>()> openWall; // where the head shows the wall (headShowsWall)
     std::unique_ptr<recording::StreamRecorder> recorder; // of --record; null: none
     std::function<bool()> interrupted; // a signal asks to finish; may be empty
+    // Starts a lost node again, by the thread that runs the session; empty: none is.
+    std::function<Result<StartingNode>(const NodePlan&)> startNode;
     uint32_t chunkCount = capture::kDefaultChunks;
     int64_t readyPatienceMs = 30'000;
     int64_t drainPatienceMs = 10'000;
@@ -73,12 +76,24 @@ private:
     Result<void> nodeNews(int node, const wire::News& news, const std::string& text) override;
     Result<void> nodeLog(int node, const std::string& text) override;
     Result<void> nodeBye(int node, const std::string& json) override;
+    Result<void> nodeInView(int node, uint32_t view, const std::vector<wire::ClientFrame>& frames) override;
+    Result<void> nodeTurns(int node, uint32_t number, const std::vector<wire::WindowTurn>& turns) override;
+    Result<void> nodeSynchronized(int node, const wire::SynchronizedMessage& message) override;
     void nodeLost(int node, const std::string& why) override;
+
+    // Nodes that come back (head_session_returns.cpp).
+    NodeReturns::Hooks returnHooks();
+    void linkAgain(int node, StartingNode& starting);
+    Result<void> takeAgain(int node, NodeFacts facts);
+    NodeSet::Admission admit(int node, uint32_t view);
+    void loseMember(int node, const std::string& why);
+    bool noneIsLeft();
 
     Result<void> bringUp();
     void openMulticast();
     Result<void> openEconomy();
     void introduceNodes();
+    NodeSetup setupFor(const NodePlan& plan);
     Result<void> awaitReady();
     void openTables();
     void beginRecording();
@@ -124,13 +139,15 @@ private:
     std::unique_ptr<PictureOutput> output_; // null: no pictures come
     PictureAssembler pictures_;
     NodeSet nodes_;
+    std::unique_ptr<NodeReturns> returns_;
     std::unique_ptr<ProgramTable> programs_; // once the nodes are ready
     std::unique_ptr<CaptureServer> server_;
 
     std::atomic<bool> finishing_{false};
     std::atomic<bool> tearingDown_{false};
     std::atomic<bool> serving_{false};
-    std::string exchangeSecret_;   // of nodes that draw ranges, in hex
+    std::set<int> economical_; // nodes that are spared what they have had
+    std::string exchangeSecret_;   // of nodes that send each other parts of pictures or wait for each other, in hex
     std::atomic<int64_t> unsplitFrames_{0}; // by the collectors, since the start
     std::atomic<bool> keepsPicture_{false};
     std::atomic<bool> drawnWhole_{false}; // see SessionReport
@@ -140,15 +157,18 @@ private:
     bool framesReached_ = false;
     recording::WriterTotals recorded_;
 
+    std::mutex membership_; // held while a node becomes a member, or is lost: before mutex_
     std::mutex mutex_; // what follows
+    NodeViews views_;
+    int promisedGlVersion_ = 0;       // to the programs…
+    std::string promisedExtensions_;  // …by the nodes of the start
     std::vector<NodeFacts> facts_;
     std::vector<bool> ready_;
     std::set<int> rerouted_; // nodes that multicast does not reach
     std::vector<std::string> refusals_; // what nodes said before they were ready
     std::vector<NodeTotals> totals_;
-    std::map<std::pair<uint32_t, uint32_t>, std::vector<bool>> gone_; // windows, and which nodes have said so
+    std::map<std::pair<uint32_t, uint32_t>, std::vector<bool>> gone_; // windows, and which nodes have not said so yet
     std::string startFailure_;
-    int lostNodes_ = 0;
 };
 
 } // namespace mural

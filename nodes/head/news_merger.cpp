@@ -16,6 +16,15 @@ bool NewsMerger::isNew(int node, const wire::News& news, const std::string& text
     return true;
 }
 
+void NewsMerger::nodeJoins(int node) {
+    const std::lock_guard lock(mutex_);
+    const auto index = static_cast<size_t>(node);
+    for (auto& [kind, count] : counts_) {
+        if (count.byNode.size() <= index) count.byNode.resize(index + 1);
+        count.byNode[index] = count.told;
+    }
+}
+
 void NewsMerger::programGone(uint32_t client) {
     const std::lock_guard lock(mutex_);
     std::erase_if(counts_, [&](const auto& entry) { return std::get<0>(entry.first) == client; });

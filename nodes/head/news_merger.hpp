@@ -18,6 +18,7 @@ public:
     // True: the program has not heard it. A node's n-th message of one kind is the n-th of all nodes.
     bool isNew(int node, const wire::News& news, const std::string& text);
     void programGone(uint32_t client);
+    void nodeJoins(int node); // what was told before is not this node's to tell
 
 private:
     // Numbers of messages differ from process to process, so they are no part of this.

@@ -56,6 +56,7 @@ Result<NodeFacts> nodeFactsFromJson(const std::string& text) {
     facts.renderer = textOf(json, "renderer");
     facts.placement = textOf(json, "placement");
     facts.exchange = textOf(json, "exchange");
+    facts.swapBarrier = textOf(json, "swapBarrier");
     facts.ownStream = textOf(json, "ownStream");
     facts.glVersion = versionOf(json);
     facts.extensions = extensionsOf(json);

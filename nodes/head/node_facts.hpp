@@ -16,6 +16,7 @@ struct NodeFacts {
     std::string placement; // of the replay thread; for --explain
     std::string ownStream; // why its packets can't come by multicast; empty: they do, or nobody asked it to
     std::string exchange;  // HOST:PORT where it takes other nodes' pictures; no host: this machine; empty: it does not
+    std::string swapBarrier; // likewise where it lets others of its swap barrier in
     int glVersion = 0; // 10 * major + minor, 0: unknown
     std::vector<std::string> extensions;
 };

@@ -94,22 +94,28 @@ Result<std::unique_ptr<NodeGate>> openGate(const SessionPlan& plan) {
     return NodeGate::open(!remote);
 }
 
+// True: it has come.
+Result<bool> lookForConnection(LaunchedNode& node, NodeGate& gate, Deadline deadline) {
+    node.connection = gate.take(node.plan.node);
+    if (node.connection) return true;
+    const std::string name = nameOf(node.plan);
+    // A launch command may hand the node over to something else and end in order.
+    const auto how = node.process->ended();
+    const bool handedOver = node.plan.reach == NodeReach::LaunchCommand && how == "exit status 0";
+    if (how && !handedOver) return Error{name + " did not start: " + *how + "; its own messages say why"};
+    if (deadline.passed()) {
+        return Error{name + " did not connect within 30 s; check that it can reach port " + std::to_string(gate.port()) +
+                     " of this machine"};
+    }
+    return false;
+}
+
 Result<void> awaitConnection(LaunchedNode& node, NodeGate& gate, Deadline deadline,
                              const std::function<bool()>& cancelled) {
     while (true) {
-        node.connection = gate.take(node.plan.node);
-        if (node.connection) return {};
-        const std::string name = nameOf(node.plan);
-        // A launch command may hand the node over to something else and end in order.
-        const auto how = node.process->ended();
-        const bool handedOver =
-            node.plan.reach == NodeReach::LaunchCommand && how == "exit status 0";
-        if (how && !handedOver)
-            return Error{name + " did not start: " + *how + "; its own messages say why"};
-        if (deadline.passed()) {
-            return Error{name + " did not connect within 30 s; check that it can reach port " +
-                         std::to_string(gate.port()) + " of this machine"};
-        }
+        const auto come = lookForConnection(node, gate, deadline);
+        if (!come) return come.error();
+        if (come.value()) return {};
         if (cancelled()) return Error{"the session was ended before it began"};
         poll(nullptr, 0, 20);
     }
@@ -138,6 +144,25 @@ Result<std::vector<LaunchedNode>> launchNodes(const SessionPlan& plan,
         if (!connected) return connected.error();
     }
     return nodes;
+}
+
+Result<StartingNode> startNode(const NodePlan& plan, const LaunchOptions& options, Deadline deadline) {
+    SessionPlan alone;
+    alone.nodes.push_back(plan);
+    auto gate = openGate(alone);
+    if (!gate) return gate.error();
+    StartingNode starting;
+    starting.node.plan = plan;
+    starting.gate = std::move(*gate);
+    starting.deadline = deadline;
+    const auto started = starting.gate ? startTcp(starting.node, options, *starting.gate) : startLocal(starting.node, options);
+    if (!started) return Error{nameOf(plan) + " did not start: " + started.error().message};
+    return starting;
+}
+
+Result<bool> connected(StartingNode& starting) {
+    if (starting.node.connection) return true;
+    return lookForConnection(starting.node, *starting.gate, starting.deadline);
 }
 
 } // namespace mural

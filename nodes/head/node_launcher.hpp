@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/result.hpp"
+#include "nodes/head/node_gate.hpp"
 #include "nodes/head/node_plan.hpp"
 #include "nodes/head/node_process.hpp"
 #include "transport/connection.hpp"
@@ -17,6 +18,13 @@ struct LaunchedNode {
     NodePlan plan;
     std::unique_ptr<NodeProcess> process; // null in tests with nodes in the same process
     std::unique_ptr<Connection> connection;
+};
+
+// One that is started alone, later: for a node that was lost.
+struct StartingNode {
+    LaunchedNode node;
+    std::unique_ptr<NodeGate> gate; // null: it has its connection
+    Deadline deadline = Deadline::never();
 };
 
 struct LaunchOptions {
@@ -30,5 +38,10 @@ Result<std::vector<LaunchedNode>> launchNodes(const SessionPlan& plan,
                                               const LaunchOptions& options,
                                               Deadline deadline,
                                               const std::function<bool()>& cancelled);
+
+// The same for one of them, without the wait.
+Result<StartingNode> startNode(const NodePlan& plan, const LaunchOptions& options, Deadline deadline);
+// True: it has its connection now.
+Result<bool> connected(StartingNode& starting);
 
 } // namespace mural

@@ -14,6 +14,7 @@ constexpr int64_t kWriteLimitMs = 600'000;   // the last resort behind watch()
 constexpr int64_t kReadSliceMs = 100;        // between two looks whether the node was given up
 constexpr int64_t kMessageLimitMs = 60'000;  // from a message's header to its last byte
 constexpr int64_t kStatusPatienceMs = 300;   // a broken connection is seen before the process' end
+constexpr size_t kMostQueuedBytes = size_t{256} << 20; // for a node that catches up
 constexpr uint32_t kMaxTextBytes = 1u << 20;
 constexpr uint32_t kMaxDataBytes = (1u << 30) + 4096; // a picture of 16384 * 16384 pixels
 
@@ -52,6 +53,32 @@ std::string NodeLink::describe() const {
 }
 
 void NodeLink::send(std::span<const std::byte> header, std::span<const std::byte> payload) {
+    if (feed_ == Feed::Direct) return sendNow(header, payload);
+    if (feed_ == Feed::Nothing || !alive()) return;
+    std::vector<std::byte> packet;
+    packet.reserve(header.size() + payload.size());
+    packet.insert(packet.end(), header.begin(), header.end());
+    packet.insert(packet.end(), payload.begin(), payload.end());
+    {
+        const std::lock_guard lock(queueMutex_);
+        queueBytes_ += packet.size();
+        if (queueBytes_ <= kMostQueuedBytes) return queue_.push_back(std::move(packet));
+    }
+    lose("it does not catch up: " + std::to_string(kMostQueuedBytes >> 20) + " MiB of what programs send wait for it");
+}
+
+std::vector<std::vector<std::byte>> NodeLink::takeQueue() {
+    const std::lock_guard lock(queueMutex_);
+    queueBytes_ = 0;
+    return std::exchange(queue_, {});
+}
+
+bool NodeLink::queueEmpty() const {
+    const std::lock_guard lock(queueMutex_);
+    return queue_.empty();
+}
+
+void NodeLink::sendNow(std::span<const std::byte> header, std::span<const std::byte> payload) {
     if (!alive()) return;
     const Deadline deadline = Deadline::inMs(kWriteLimitMs);
     Result<void> written = connection_->write(header, deadline);
@@ -60,6 +87,10 @@ void NodeLink::send(std::span<const std::byte> header, std::span<const std::byte
 }
 
 void NodeLink::flush() {
+    if (feed_ == Feed::Direct) flushNow();
+}
+
+void NodeLink::flushNow() {
     if (alive()) connection_->flush();
 }
 
@@ -143,6 +174,16 @@ Result<void> NodeLink::readMessage(const wire::MessageHeader& header) {
     case NodeMessage::Alive:
         if (header.sizeBytes != 0) break;
         return {};
+    case NodeMessage::InView:
+        return readInView(header.sizeBytes);
+    case NodeMessage::Turns:
+        return readTurns(header.sizeBytes);
+    case NodeMessage::Synchronized: {
+        wire::SynchronizedMessage message{};
+        if (header.sizeBytes != sizeof(message)) break;
+        if (auto got = readStruct(message); !got) return got;
+        return handle([&] { return events_.nodeSynchronized(place_.node, message); });
+    }
     }
     return Error{"it sent a message that makes no sense (type " + std::to_string(header.type) + ", " +
                  std::to_string(header.sizeBytes) + " bytes); is it of another build?"};
@@ -162,6 +203,30 @@ Result<void> NodeLink::readText(const wire::MessageHeader& header) {
         saidBye_ = done.ok();
         return done;
     });
+}
+
+Result<void> NodeLink::readInView(uint32_t sizeBytes) {
+    uint32_t view = 0;
+    std::vector<wire::ClientFrame> frames;
+    if (auto got = readList(sizeBytes, view, frames, "how far programs are"); !got) return got;
+    return handle([&] { return events_.nodeInView(place_.node, view, frames); });
+}
+
+Result<void> NodeLink::readTurns(uint32_t sizeBytes) {
+    uint32_t number = 0;
+    std::vector<wire::WindowTurn> turns;
+    if (auto got = readList(sizeBytes, number, turns, "whose turn it is"); !got) return got;
+    return handle([&] { return events_.nodeTurns(place_.node, number, turns); });
+}
+
+template <class Entry> Result<void> NodeLink::readList(uint32_t sizeBytes, uint32_t& first, std::vector<Entry>& entries, const char* what) {
+    const size_t entriesBytes = sizeBytes - std::min<size_t>(sizeBytes, sizeof(first));
+    if (sizeBytes < sizeof(first) || entriesBytes > kMaxTextBytes || entriesBytes % sizeof(Entry) != 0)
+        return Error{std::string("it said ") + what + " in an impossible size"};
+    if (auto got = readStruct(first); !got) return got;
+    entries.resize(entriesBytes / sizeof(Entry));
+    if (entries.empty()) return {};
+    return connection_->read(std::as_writable_bytes(std::span(entries)), Deadline::inMs(kMessageLimitMs));
 }
 
 Result<void> NodeLink::readNews(uint32_t sizeBytes) {

@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "common/result.hpp"
 #include "nodes/head/byte_buffer.hpp"
@@ -32,6 +33,10 @@ public:
     virtual Result<void> nodeNews(int node, const wire::News& news, const std::string& text) = 0;
     virtual Result<void> nodeLog(int node, const std::string& text) = 0;
     virtual Result<void> nodeBye(int node, const std::string& json) = 0;
+    virtual Result<void> nodeInView(int node, uint32_t view, const std::vector<wire::ClientFrame>& frames) = 0;
+    // Of all windows, where the TellTurns of that number came.
+    virtual Result<void> nodeTurns(int node, uint32_t number, const std::vector<wire::WindowTurn>& turns) = 0;
+    virtual Result<void> nodeSynchronized(int node, const wire::SynchronizedMessage& message) = 0;
     // The last call for a node that did not say Bye; everything it had sent was handed on before.
     virtual void nodeLost(int node, const std::string& why) = 0;
 };
@@ -41,7 +46,7 @@ struct NodePlace {
     std::string where = "local"; // or the host
 };
 
-// send() and flush() from one thread at a time (NodeSet's lock); the rest from any thread.
+// send(), flush() and setFeed() from one thread at a time (NodeSet's lock); the rest from any thread.
 class NodeLink {
 public:
     NodeLink(NodePlace place,
@@ -50,19 +55,36 @@ public:
              NodeEvents& events);
     ~NodeLink();
 
+    // Where its packets go: to it; nowhere; into a queue that another thread sends by sendNow(), while it catches up.
+    enum class Feed { Direct, Nothing, Queued };
+
     void startReading();
 
     // A write that fails loses the node; nothing to tell the caller.
     void send(std::span<const std::byte> header, std::span<const std::byte> payload);
     void flush();
+    void setFeed(Feed feed) { feed_ = feed; }
+    [[nodiscard]] Feed feed() const { return feed_; }
+    // What is queued, packets with their headers, and the queue begins anew.
+    std::vector<std::vector<std::byte>> takeQueue();
+    [[nodiscard]] bool queueEmpty() const;
+    // Whatever its feed is; by the only thread that does.
+    void sendNow(std::span<const std::byte> header, std::span<const std::byte> payload);
+    void flushNow();
 
     [[nodiscard]] NetworkPath path() const { return connection_->path(); }
     // Its packets come another way (NodeMulticast), all but its setup.
     void setByMulticast(bool by) { byMulticast_ = by; }
     [[nodiscard]] bool byMulticast() const { return byMulticast_; }
+    // It is one of all: not one that was replaced, and has not caught up.
+    void setMember(bool member) { member_ = member; }
+    [[nodiscard]] bool member() const { return member_; }
     // Its packets come in batches; before the first.
     void setInBatches(bool in) { inBatches_ = in; }
     [[nodiscard]] bool inBatches() const { return inBatches_; }
+    // They do once it is a member.
+    void setJoinsBatches(bool joins) { joinsBatches_ = joins; }
+    [[nodiscard]] bool joinsBatches() const { return joinsBatches_; }
 
     // Ends the connection; the reader thread then reports the first reason given.
     void lose(const std::string& why);
@@ -96,6 +118,10 @@ private:
     Result<void> readAnswer(uint32_t sizeBytes);
     Result<void> readPicture(uint32_t sizeBytes);
     Result<void> readText(const wire::MessageHeader& header);
+    Result<void> readInView(uint32_t sizeBytes);
+    Result<void> readTurns(uint32_t sizeBytes);
+    // A number and a list, as long as the message.
+    template <class Entry> Result<void> readList(uint32_t sizeBytes, uint32_t& first, std::vector<Entry>& entries, const char* what);
     template <class Handler> Result<void> handle(Handler&& handler);
     std::string reasonOfEnd();
 
@@ -107,7 +133,13 @@ private:
     std::atomic<bool> alive_{true};
     std::atomic<bool> saidBye_{false};
     std::atomic<bool> byMulticast_{false};
+    bool member_ = true;
     bool inBatches_ = false;
+    bool joinsBatches_ = false;
+    std::atomic<Feed> feed_{Feed::Direct};
+    mutable std::mutex queueMutex_; // what follows
+    std::vector<std::vector<std::byte>> queue_;
+    size_t queueBytes_ = 0;
     std::atomic<bool> readerEnded_{false};
     int64_t watchedNs_ = 0; // the last watch()
     int64_t excusedNs_ = 0; // silence before does not count

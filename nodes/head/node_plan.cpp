@@ -62,6 +62,7 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
                 node.answers = node.picture == 0 && range == 0;
                 node.region = region;
                 node.collector = collector;
+                if (plan.nodesShowWall) node.swapBarrier = "barrier";
                 const int place = node.node % asked; // more passes than nodes were given: several on each machine
                 if (place >= localNodes) {
                     node.where = config.hosts[static_cast<size_t>(place - localNodes)];
@@ -83,6 +84,19 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
 }
 
 bool headShowsWall(const SessionConfig& config, const SessionPlan& plan) { return config.display == Display::Windows && !plan.nodesShowWall; }
+
+bool showsWall(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node) {
+    return config.display == Display::Windows && plan.nodesShowWall && node.pass.range == 0; // the collector has the picture
+}
+
+std::vector<const NodePlan*> swapMembersOf(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node) {
+    std::vector<const NodePlan*> members;
+    if (node.swapBarrier.empty() || !showsWall(config, plan, node)) return members;
+    for (const NodePlan& other : plan.nodes)
+        if (other.swapBarrier == node.swapBarrier && showsWall(config, plan, other)) members.push_back(&other);
+    if (members.size() < 2) members.clear();
+    return members;
+}
 
 NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node) {
     NodeSetup setup;
@@ -107,7 +121,13 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
     setup.tiling = config.tiling;
     setup.glBackend = config.glBackend;
     setup.sendPictures = config.display == Display::App || !config.out.empty() || headShowsWall(config, plan);
-    setup.wallWindows = config.display == Display::Windows && plan.nodesShowWall && node.pass.range == 0; // the collector has the picture
+    setup.wallWindows = showsWall(config, plan, node);
+    if (const auto members = swapMembersOf(config, plan, node); !members.empty()) {
+        setup.swapMembers = static_cast<int>(members.size());
+        setup.swapRank = static_cast<int>(std::ranges::find(members, node.node, &NodePlan::node) - members.begin());
+        setup.swapLeader = members.front()->node;
+        setup.swapHere = std::ranges::none_of(members, [](const NodePlan* m) { return m->reach == NodeReach::LaunchCommand; });
+    }
     const NodeWindow window = node.window.value_or(NodeWindow{});
     setup.windowTitle = window.title;
     setup.windowAsOnWall = window.asOnWall;

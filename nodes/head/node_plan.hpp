@@ -38,6 +38,7 @@ struct NodePlan {
     std::optional<Viewport> area; // instead of tiles: of the picture
     std::optional<ScreenView> screen; // of a room
     std::optional<NodeWindow> window; // instead of those of tiles
+    std::string swapBarrier; // windows that this node shows wait for those of other nodes with the same one; empty: for none
     int collector = 0; // the node that has the picture of all ranges: this one, when range is 0; range r is node collector + r
     std::optional<compositor::Strategy> composition; // how they put it together; before chooseComposition: what a file says
 };
@@ -59,6 +60,12 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
 
 // --display windows: whether the head opens one, with the whole wall, as only several pictures together make it.
 [[nodiscard]] bool headShowsWall(const SessionConfig& config, const SessionPlan& plan);
+
+// Whether it opens windows for what it draws.
+[[nodiscard]] bool showsWall(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node);
+
+// The nodes of its swap barrier, itself among them, the leader first; none: its windows wait for nobody.
+[[nodiscard]] std::vector<const NodePlan*> swapMembersOf(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node);
 
 NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node);
 

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <thread>
+
+#include "nodes/head/head_command.hpp"
 
 namespace mural {
 namespace {
@@ -11,25 +14,30 @@ std::span<const std::byte> bytesOf(const auto& value) {
     return std::as_bytes(std::span(&value, 1));
 }
 
-std::vector<std::byte> commandBytes(wire::HeadCommand command, std::span<const std::byte> arguments) {
-    const auto word = static_cast<uint32_t>(command);
-    std::vector<std::byte> payload(sizeof(word) + arguments.size());
-    std::memcpy(payload.data(), &word, sizeof(word));
-    std::ranges::copy(arguments, payload.begin() + sizeof(word));
-    return payload;
-}
-
 } // namespace
 
-void NodeSet::add(std::unique_ptr<NodeLink> link) { links_.push_back(std::move(link)); }
+void NodeSet::add(std::unique_ptr<NodeLink> link) {
+    links_.emplace_back(link.get());
+    owned_.push_back(std::move(link));
+}
+
+void NodeSet::economizeBy(std::unique_ptr<StreamEconomy> economy) {
+    economy_ = std::move(economy);
+    economy_->sendBy([this] {
+        sendBatchLocked();
+        flushLinksLocked();
+    });
+}
 
 void NodeSet::startReading() {
-    for (auto& link : links_) link->startReading();
+    for (NodeLink* link : links_) link->startReading();
 }
 
 bool NodeSet::broadcast(uint32_t stream, std::span<const std::byte> payload) {
+    if (joining_ > 0) std::this_thread::yield(); // the mutex is not fair
     const std::lock_guard lock(sendMutex_);
     if (recorder_) recorder_->packet(stream, payload);
+    keepLocked(stream, payload);
     return sendLocked(stream, payload);
 }
 
@@ -48,32 +56,35 @@ bool NodeSet::broadcast(wire::HeadCommand command, Deadline deadline) {
 }
 
 bool NodeSet::sendLocked(uint32_t stream, std::span<const std::byte> payload) {
-    const bool plain = sendPacketLocked(stream, payload, false);
+    const bool plain = sendPacketLocked(stream, payload);
     if (!economy_) return plain;
-    const bool batched = std::ranges::any_of(links_, [](const auto& link) { return link->inBatches() && link->alive(); });
-    if (!batched) return plain;
-    economy_->add(stream, payload);
-    if (economy_->full()) {
-        sendBatchLocked();
-        flushLinksLocked();
+    const bool batched = std::ranges::any_of(links_, [](const NodeLink* link) { return link->inBatches() && link->alive(); });
+    if (!batched) {
+        economy_->miss(stream, payload); // it goes on knowing what programs do
+        return plain;
     }
+    economy_->add(stream, payload);
     return true;
 }
 
-// To the links that get batches, or to the others.
-bool NodeSet::sendPacketLocked(uint32_t stream, std::span<const std::byte> payload, bool inBatches) {
+bool NodeSet::sendPacketLocked(uint32_t stream, std::span<const std::byte> payload) {
     const wire::PacketHeader header{static_cast<uint32_t>(payload.size()), stream};
+    return sendToLinksLocked(bytesOf(header), payload, false);
+}
+
+// To the links that get batches, or to the others.
+bool NodeSet::sendToLinksLocked(std::span<const std::byte> header, std::span<const std::byte> payload, bool inBatches) {
     bool any = false;
     bool byMulticast = false;
-    for (auto& link : links_) {
+    for (NodeLink* link : links_) {
         if (link->inBatches() != inBatches) continue;
         if (link->byMulticast()) byMulticast = byMulticast || link->alive();
-        else sendTo(*link, bytesOf(header), payload);
+        else sendTo(*link, header, payload);
         any = any || link->alive();
     }
-    if (byMulticast) multicastLocked(bytesOf(header), payload);
+    if (byMulticast) multicastLocked(header, payload);
     sendingTo_ = kNobody;
-    if (inBatches || !economy_) bytesSent_.fetch_add(sizeof(header) + payload.size(), std::memory_order_relaxed);
+    if (inBatches || !economy_) bytesSent_.fetch_add(header.size() + payload.size(), std::memory_order_relaxed);
     return any;
 }
 
@@ -81,12 +92,12 @@ void NodeSet::sendBatchLocked() {
     if (!economy_ || economy_->empty()) return;
     auto batch = economy_->take();
     if (!batch) {
-        for (auto& link : links_)
+        for (NodeLink* link : links_)
             if (link->inBatches()) link->lose(batch.error().message);
         return;
     }
     const int64_t beganNs = monotonicNowNs();
-    sendPacketLocked(wire::kBatchStream, batch.value(), true);
+    sendToLinksLocked(batch.value(), {}, true);
     economy_->wrote(batch->size(), monotonicNowNs() - beganNs);
 }
 
@@ -108,7 +119,7 @@ void NodeSet::multicastLocked(std::span<const std::byte> header, std::span<const
     Result<void> written = multicast_->write(header, deadline);
     if (written && !payload.empty()) written = multicast_->write(payload, deadline);
     if (written) return;
-    for (auto& link : links_)
+    for (NodeLink* link : links_)
         if (link->byMulticast()) link->lose("the multicast group failed: " + written.error().message);
 }
 
@@ -118,7 +129,7 @@ void NodeSet::flushLocked() {
 }
 
 void NodeSet::flushLinksLocked() {
-    for (auto& link : links_)
+    for (NodeLink* link : links_)
         if (!link->byMulticast()) link->flush();
     if (multicast_) multicast_->flush();
 }
@@ -127,9 +138,8 @@ void NodeSet::sendSetup(int node, const std::string& json) {
     const auto payload =
         commandBytes(wire::HeadCommand::Setup, std::as_bytes(std::span(json.data(), json.size())));
     const wire::PacketHeader header{static_cast<uint32_t>(payload.size()), wire::streamOf(0, 0)};
-    const std::lock_guard lock(sendMutex_);
-    link(node).send(bytesOf(header), payload);
-    link(node).flush();
+    link(node).sendNow(bytesOf(header), payload);
+    link(node).flushNow();
 }
 
 void NodeSet::flush() {
@@ -147,30 +157,30 @@ bool NodeSet::flushUseful() {
 
 int NodeSet::livingCount() const {
     return static_cast<int>(
-        std::ranges::count_if(links_, [](const auto& link) { return link->alive(); }));
+        std::ranges::count_if(links_, [](const NodeLink* link) { return link->alive() && link->feed() == NodeLink::Feed::Direct; }));
 }
 
 void NodeSet::watch(int64_t nowNs, int64_t patienceNs, const std::function<void(int, bool)>& rerouted) {
-    for (auto& link : links_) link->watch(nowNs, patienceNs);
+    for (NodeLink* link : links_) link->watch(nowNs, patienceNs);
     if (!multicast_) return;
     for (const NodeMulticast::Change& change : multicast_->takeChanges()) {
-        NodeLink& link = *links_[static_cast<size_t>(change.node)];
-        if (!link.alive() || link.saidBye()) continue;
+        NodeLink& link = this->link(change.node);
+        if (!link.alive() || link.saidBye() || !link.byMulticast()) continue; // or it is there again, another way
         if (change.gone) link.lose(change.why);
         else rerouted(change.node, change.multicast);
     }
     // A writer may wait for room that a dead node will never make.
-    for (auto& link : links_)
+    for (NodeLink* link : links_)
         if (link->byMulticast() && !link->alive()) multicast_->remove(link->place().node, "the head has lost it");
 }
 
 void NodeSet::loseAll(const std::string& why) {
-    for (auto& link : links_)
+    for (NodeLink* link : links_)
         if (!link->saidBye()) link->lose(why);
 }
 
 void NodeSet::end() {
-    for (auto& link : links_) link->end();
+    for (auto& link : owned_) link->end();
 }
 
 } // namespace mural

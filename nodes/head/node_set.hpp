@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -10,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "nodes/head/kept_stream.hpp"
 #include "nodes/head/node_link.hpp"
 #include "nodes/head/node_multicast.hpp"
 #include "nodes/head/stream_economy.hpp"
@@ -26,8 +28,10 @@ public:
     // Gets all packets of programs, in the order in which the nodes do; outlives their senders. Before the first broadcast.
     void recordBy(recording::StreamRecorder* recorder) { recorder_ = recorder; }
     // Makes the batches for the links that get such; before the first broadcast.
-    void economizeBy(std::unique_ptr<StreamEconomy> economy) { economy_ = std::move(economy); }
+    void economizeBy(std::unique_ptr<StreamEconomy> economy);
     [[nodiscard]] EconomyCounts economyCounts() const { return economy_ ? economy_->counts() : EconomyCounts(); }
+    // Keeps what programs send, for nodes that come later; before the first broadcast.
+    void keepBy(std::unique_ptr<KeptStream> kept) { kept_ = std::move(kept); }
     void startReading();
 
     // False when no node lives. Blocks while a node's connection is full.
@@ -35,6 +39,7 @@ public:
     bool broadcast(wire::HeadCommand command, std::span<const std::byte> arguments);
     // The same, but gives up when others keep the nodes busy until the deadline.
     bool broadcast(wire::HeadCommand command, Deadline deadline);
+    // Before it gets anything else; never waits for the other nodes.
     void sendSetup(int node, const std::string& json);
     void flush();
     // The same, but what nodes can do nothing with yet may stay for a moment. True: nothing has stayed.
@@ -43,6 +48,26 @@ public:
     [[nodiscard]] size_t size() const { return links_.size(); }
     [[nodiscard]] int livingCount() const;
     NodeLink& link(int node) { return *links_[static_cast<size_t>(node)]; }
+
+    // ---- nodes that come again (node_set_joins.cpp)
+    // All that a node needs that comes now has been kept.
+    [[nodiscard]] bool canJoin() const { return kept_ && kept_->complete(); }
+    // In the place of a lost node, of which all has been said. It gets nothing yet. By the thread that adds; never waits.
+    void replace(int node, std::unique_ptr<NodeLink> link);
+    // What it is to be given first; from here on what comes waits in its link's queue. `turns`, where it is not null: members are
+    // asked there whose turn it is.
+    struct TurnsAsked {
+        uint32_t number = 0;                // of the TellTurns
+        std::function<bool(int node)> knows; // it takes turns
+        std::vector<NodeLink*> asked;       // set: those that will answer, when they live
+    };
+    Result<KeptStream::Snapshot> beginCatchUp(int node, TurnsAsked* turns, Deadline deadline);
+    // It is a member behind all packets so far: told to all nodes, and to `announce` before, which may refuse.
+    // Where it is spared what it has had, too, a new history begins for all that are: none but its own is as short.
+    enum class Admission { Refused, Member, FirstMember }; // of those that take turns
+    Result<void> admit(int node, const std::function<Admission(uint32_t view)>& announce);
+    // From now on its packets go to it as they come. False: its queue is not empty. `now`: what is there is sent at once.
+    bool goDirect(int node, bool now);
 
     // Also whom the multicast group has lost, and the group loses whom we have. `rerouted` hears of nodes that multicast
     // does not reach (false), or does again.
@@ -64,12 +89,18 @@ private:
     void flushLocked();
     void flushLinksLocked();
     void sendBatchLocked();
-    bool sendPacketLocked(uint32_t stream, std::span<const std::byte> payload, bool inBatches);
+    bool sendPacketLocked(uint32_t stream, std::span<const std::byte> payload);
+    bool sendToLinksLocked(std::span<const std::byte> header, std::span<const std::byte> payload, bool inBatches);
+    void keepLocked(uint32_t stream, std::span<const std::byte> payload);
 
     recording::StreamRecorder* recorder_ = nullptr; // null: nothing is recorded
     std::unique_ptr<StreamEconomy> economy_;   // null: all packets go as they are
     std::unique_ptr<NodeMulticast> multicast_; // null: every node has a stream of its own
-    std::vector<std::unique_ptr<NodeLink>> links_;
+    std::unique_ptr<KeptStream> kept_;         // null: who is lost stays so
+    std::deque<std::atomic<NodeLink*>> links_; // by node
+    std::vector<std::unique_ptr<NodeLink>> owned_; // also those of lost nodes: others may look at them still
+    uint32_t view_ = 0;                        // counts nodes that came
+    std::atomic<int> joining_{0};              // threads of such nodes that want the mutex
     std::timed_mutex sendMutex_;
     std::atomic<uint64_t> bytesSent_{0};
     static constexpr int kNobody = -1, kMulticast = -2;

@@ -35,16 +35,17 @@ PictureAssembler::PictureAssembler(std::vector<int> passOf, Compose compose, Del
     , compose_(std::move(compose))
     , passOf_(std::move(passOf))
     , passes_(passOf_.empty() ? 1 : 1 + *std::ranges::max_element(passOf_))
-    , living_(passOf_.size(), true) {}
+    , views_(passOf_.size()) {}
 
 Result<void> PictureAssembler::part(int node, const PictureHeader& header, ByteBuffer rows) {
     const auto index = static_cast<size_t>(node);
     if (!sensible(header)) return Error{"it sent a part that lies outside of its picture"};
     const std::lock_guard lock(mutex_);
-    if (!living_[index]) return {};
+    if (!views_.lives(node)) return {};
     if (open_.size() >= kMostOpenPictures) return Error{"it is thousands of pictures ahead"};
-    const auto at = opened(header.client, header.window, header.frame);
+    const auto at = opened(node, header.client, header.window, header.frame);
     Open& open = at->second;
+    if (!open.awaited[index]) return {};
     if (open.done[index]) return Error{"it sent two parts of one picture"};
     open.done[index] = true;
     open.parts.push_back({passOf_[index], header, std::move(rows)});
@@ -55,16 +56,28 @@ Result<void> PictureAssembler::part(int node, const PictureHeader& header, ByteB
 void PictureAssembler::frameDone(int node, uint32_t client, uint32_t window, uint32_t frame) {
     const auto index = static_cast<size_t>(node);
     const std::lock_guard lock(mutex_);
-    if (!living_[index]) return;
-    const auto at = opened(client, window, frame);
+    if (!views_.lives(node)) return;
+    const auto at = opened(node, client, window, frame);
+    if (!at->second.awaited[index]) return;
     at->second.done[index] = at->second.finished[index] = true;
     settle(at);
 }
 
 void PictureAssembler::nodeLost(int node) {
     const std::lock_guard lock(mutex_);
-    living_[static_cast<size_t>(node)] = false;
+    views_.lost(node);
+    for (auto& [key, open] : open_) open.awaited[static_cast<size_t>(node)] = false;
     for (auto at = open_.begin(); at != open_.end();) at = settle(at); // frames of a window in their order
+}
+
+void PictureAssembler::nodeJoins(int node, uint32_t view) {
+    const std::lock_guard lock(mutex_);
+    views_.joins(node, view);
+}
+
+void PictureAssembler::nodeInView(int node, uint32_t view) {
+    const std::lock_guard lock(mutex_);
+    views_.reached(node, view);
 }
 
 void PictureAssembler::clientGone(uint32_t client) {
@@ -73,27 +86,29 @@ void PictureAssembler::clientGone(uint32_t client) {
     std::erase_if(latest_, [&](const auto& entry) { return std::get<0>(entry.first) == client; });
 }
 
-PictureAssembler::OpenPictures::iterator PictureAssembler::opened(uint32_t client, uint32_t window, uint32_t frame) {
-    const auto at = open_.try_emplace({client, window, frame}).first;
-    at->second.done.resize(living_.size(), false);
-    at->second.finished.resize(living_.size(), false);
+PictureAssembler::OpenPictures::iterator PictureAssembler::opened(int node, uint32_t client, uint32_t window, uint32_t frame) {
+    const auto [at, fresh] = open_.try_emplace({client, window, frame});
+    if (!fresh) return at;
+    at->second.awaited = views_.awaited(node);
+    at->second.done.resize(at->second.awaited.size(), false);
+    at->second.finished.resize(at->second.awaited.size(), false);
     return at;
 }
 
 // Delivers the picture when no part is awaited, and forgets it when nobody will speak of it again. The next one.
 PictureAssembler::OpenPictures::iterator PictureAssembler::settle(OpenPictures::iterator at) {
     Open& open = at->second;
-    if (!open.delivered && allLiving(open.done)) {
+    if (!open.delivered && allOf(open.awaited, open.done)) {
         open.delivered = true;
         deliver(at->first, open);
         open.parts.clear();
     }
-    return allLiving(open.finished) ? open_.erase(at) : std::next(at);
+    return allOf(open.awaited, open.finished) ? open_.erase(at) : std::next(at);
 }
 
-bool PictureAssembler::allLiving(const std::vector<bool>& nodes) const {
-    for (size_t node = 0; node < living_.size(); ++node)
-        if (living_[node] && !nodes[node]) return false;
+bool PictureAssembler::allOf(const std::vector<bool>& awaited, const std::vector<bool>& nodes) {
+    for (size_t node = 0; node < awaited.size(); ++node)
+        if (awaited[node] && !nodes[node]) return false;
     return true;
 }
 

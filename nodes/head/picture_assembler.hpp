@@ -13,6 +13,7 @@
 
 #include "common/result.hpp"
 #include "nodes/head/byte_buffer.hpp"
+#include "nodes/head/node_views.hpp"
 #include "nodes/output/picture.hpp"
 #include "streamcodec/wire.hpp"
 
@@ -45,6 +46,9 @@ public:
     Result<void> part(int node, const wire::PictureHeader& header, ByteBuffer rows);
     void frameDone(int node, uint32_t client, uint32_t window, uint32_t frame);
     void nodeLost(int node);
+    // It sends parts of the frames from this view on.
+    void nodeJoins(int node, uint32_t view);
+    void nodeInView(int node, uint32_t view);
     void clientGone(uint32_t client); // no node sends anything of it any more
 
 private:
@@ -59,15 +63,16 @@ private:
     // Kept until all nodes have finished the frame: who sent a part says so after it.
     struct Open {
         std::vector<Part> parts;
+        std::vector<bool> awaited;  // per node: it speaks of this frame, unless it is lost
         std::vector<bool> done;     // per node: no part of it is awaited
         std::vector<bool> finished; // per node
         bool delivered = false;
     };
     using OpenPictures = std::map<Key, Open>;
 
-    OpenPictures::iterator opened(uint32_t client, uint32_t window, uint32_t frame);
+    OpenPictures::iterator opened(int node, uint32_t client, uint32_t window, uint32_t frame);
     OpenPictures::iterator settle(OpenPictures::iterator at);
-    [[nodiscard]] bool allLiving(const std::vector<bool>& nodes) const;
+    [[nodiscard]] static bool allOf(const std::vector<bool>& awaited, const std::vector<bool>& nodes);
     void deliver(const Key& key, const Open& open);
     std::shared_ptr<const OwnedPicture> assemble(uint32_t client, uint32_t window, const Open& open);
     std::shared_ptr<const OwnedPicture> assemblePass(const WindowKey& key, const Open& open);
@@ -80,7 +85,7 @@ private:
     const Compose compose_;
     const std::vector<int> passOf_;
     const int passes_;
-    std::vector<bool> living_;
+    NodeViews views_;
     OpenPictures open_;
     std::vector<std::shared_ptr<OwnedPicture>> made_; // memory of pictures, for the next ones
     // Latest picture of the windows that swapped last, the newest first.

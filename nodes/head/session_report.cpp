@@ -11,6 +11,16 @@ namespace {
 
 using Json = nlohmann::json;
 
+int64_t wholeOf(const Json& json, const char* name) {
+    const auto found = json.find(name);
+    return found != json.end() && found->is_number_integer() ? found->get<int64_t>() : 0;
+}
+
+Json swapJson(const SwapTotals& s) {
+    if (s.members == 0) return nullptr;
+    return {{"members", s.members}, {"swaps", s.swaps}, {"medianNs", s.medianNs}, {"p99Ns", s.p99Ns}, {"mostNs", s.mostNs}, {"clockErrorNs", s.clockErrorNs}};
+}
+
 double secondsOf(int64_t ns) { return static_cast<double>(ns) / static_cast<double>(kNsPerS); }
 
 } // namespace
@@ -18,10 +28,11 @@ double secondsOf(int64_t ns) { return static_cast<double>(ns) / static_cast<doub
 void readBye(const std::string& text, NodeTotals& totals) {
     const Json json = Json::parse(text, nullptr, false);
     if (!json.is_object()) return;
-    const auto commands = json.find("commands");
-    if (commands != json.end() && commands->is_number_integer()) totals.commands = commands->get<int64_t>();
-    const auto exchanged = json.find("exchangeBytes");
-    if (exchanged != json.end() && exchanged->is_number_integer()) totals.exchangeBytes = exchanged->get<int64_t>();
+    totals.commands = wholeOf(json, "commands");
+    totals.exchangeBytes = wholeOf(json, "exchangeBytes");
+    if (const auto swaps = json.find("swapBarrier"); swaps != json.end() && swaps->is_object())
+        totals.swaps = {wholeOf(*swaps, "members"), wholeOf(*swaps, "swaps"),  wholeOf(*swaps, "medianNs"),
+                        wholeOf(*swaps, "p99Ns"),   wholeOf(*swaps, "mostNs"), wholeOf(*swaps, "clockErrorNs")};
     const auto seconds = json.find("cpuSeconds");
     if (seconds != json.end() && seconds->is_number()) totals.cpuSeconds = seconds->get<double>();
 }
@@ -48,7 +59,9 @@ Json economyJson(const EconomyCounts& c) {
     if (!c.on) return nullptr;
     return {{"records", c.packer.records},       {"rawBytes", c.packer.rawBytes}, {"stagedBytes", c.packer.stagedBytes},
             {"wireBytes", c.wireBytes},          {"storeHits", c.packer.storeHits}, {"newPages", c.packer.newPages},
-            {"patches", c.packer.patches},       {"encodeSeconds", secondsOf(static_cast<int64_t>(c.encodeNs))}};
+            {"patches", c.packer.patches},       {"encodeSeconds", secondsOf(static_cast<int64_t>(c.encodeNs))},
+            {"programBytes", c.holder.inBytes},  {"heldRecords", c.holder.heldRecords}, {"heldBytes", c.holder.heldBytes},
+            {"leftOutRecords", c.holder.leftOutRecords}, {"leftOutBytes", c.holder.leftOutBytes}};
 }
 
 Json reportOf(const SessionNumbers& n) {
@@ -65,7 +78,11 @@ Json reportOf(const SessionNumbers& n) {
                          {"readbackSeconds", node.readbackSeconds},
                          {"commands", node.commands},
                          {"exchangeBytes", node.exchangeBytes},
-                         {"lost", node.lost}});
+                         {"swapBarrier", swapJson(node.swaps)},
+                         {"lost", node.lost},
+                         {"joins", node.joins},
+                         {"snapshotBytes", node.snapshotBytes},
+                         {"secondsToBack", node.secondsToBack}});
     }
     return {
         {"event", "report"},

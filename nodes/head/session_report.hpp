@@ -14,6 +14,14 @@
 
 namespace mural {
 
+// Of the leader of a swap barrier.
+struct SwapTotals {
+    int64_t members = 0; // 0: it leads none
+    int64_t swaps = 0;   // that were shown by more than one
+    int64_t medianNs = 0, p99Ns = 0, mostNs = 0; // between the first and the last of them
+    int64_t clockErrorNs = 0;
+};
+
 struct NodeTotals {
     int node = 0;
     int64_t frames = 0;
@@ -22,7 +30,11 @@ struct NodeTotals {
     double readbackSeconds = 0; // …and reading the pictures
     int64_t commands = 0;
     int64_t exchangeBytes = 0;  // of pictures, to other nodes
+    SwapTotals swaps;
     bool lost = false;
+    int64_t joins = 0;          // how often it came back
+    int64_t snapshotBytes = 0;  // that it was given then, the last time…
+    double secondsToBack = 0;   // …and from its loss to its first frame
 };
 
 // From a node's Bye; what is missing or odd stays 0.

@@ -35,12 +35,15 @@ Json nodeJson(const NodeStatus& node) {
         {"where", node.where},
         {"pid", node.pid},
         {"gl", node.gl},
-        {"state", node.totals.lost ? "lost" : "alive"},
+        {"state", node.returning ? "coming back" : node.totals.lost ? "lost" : "alive"},
         {"silentSeconds", node.silentSeconds},
         {"stream", node.stream},
         {"frames", node.totals.frames},
         {"replaySeconds", node.totals.replaySeconds},
         {"readbackSeconds", node.totals.readbackSeconds},
+        {"joins", node.totals.joins},
+        {"snapshotBytes", node.totals.snapshotBytes},
+        {"secondsToBack", node.totals.secondsToBack},
     };
 }
 

@@ -31,6 +31,7 @@ struct NodeStatus {
     std::string gl;
     double silentSeconds = 0; // since anything came from it
     std::string stream;       // how its packets travel: memory, TCP, multicast
+    bool returning = false;   // lost, but started again
 };
 
 struct SessionStatus {

@@ -1,5 +1,9 @@
 #include "nodes/head/stream_economy.hpp"
 
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
 #include "common/clock.hpp"
 #include "streamcodec/wire.hpp"
 
@@ -7,50 +11,113 @@ namespace mural {
 namespace {
 
 constexpr uint64_t kFullStagedBytes = uint64_t{64} * 1024; // as much as goes at once without economy
+constexpr uint64_t kMostHeldBytes = uint64_t{256} << 20;
 constexpr uint64_t kFullRawBytes = uint64_t{4} << 20;      // so much a node unpacks in a millisecond or two
 
 } // namespace
 
 Result<std::unique_ptr<StreamEconomy>> StreamEconomy::open(const economy::Limits& limits) {
-    std::unique_ptr<StreamEconomy> economy(new StreamEconomy(limits));
-    if (!economy->packer_.ready()) return Error{"no memory for a store of " + std::to_string(limits.storeBytes >> 20) + " MiB; give a smaller one by --store"};
-    return economy;
+    auto coder = freshCoder(limits);
+    if (!coder) return coder.error();
+    return std::unique_ptr<StreamEconomy>(new StreamEconomy(limits, std::move(*coder)));
 }
 
-StreamEconomy::StreamEconomy(const economy::Limits& limits) : packer_(limits), encoder_(threadCpuNowNs) {}
+StreamEconomy::StreamEconomy(const economy::Limits& limits, std::unique_ptr<Coder> coder) : limits_(limits), holder_(std::min(kMostHeldBytes, limits.storeBytes / 4), [this](uint32_t stream, std::span<const std::byte> payload) { pack(stream, payload); }), coder_(std::move(coder)) {}
+
+StreamEconomy::Coder::Coder(const economy::Limits& limits) : packer(limits), encoder(threadCpuNowNs) {}
+
+Result<std::unique_ptr<StreamEconomy::Coder>> StreamEconomy::freshCoder(const economy::Limits& limits) {
+    auto coder = std::make_unique<Coder>(limits);
+    if (!coder->packer.ready()) return Error{"no memory for a store of " + std::to_string(limits.storeBytes >> 20) + " MiB; give a smaller one by --store"};
+    return coder;
+}
+
+std::unique_ptr<StreamEconomy::Coder> StreamEconomy::beginAnew(std::unique_ptr<Coder> fresh) {
+    const economy::PackerCounts& c = coder_->packer.counts();
+    before_ = {before_.packets + c.packets, before_.records + c.records, before_.rawBytes + c.rawBytes, before_.stagedBytes + c.stagedBytes,
+               before_.storeHits + c.storeHits, before_.newPages + c.newPages, before_.patches + c.patches};
+    return std::exchange(coder_, std::move(fresh));
+}
 
 void StreamEconomy::add(uint32_t stream, std::span<const std::byte> payload) {
     const int64_t beganNs = threadCpuNowNs();
-    packer_.add(stream, payload);
-    ++packets_;
-    encodeNs_ += static_cast<uint64_t>(threadCpuNowNs() - beganNs);
+    sendNs_ = 0;
+    hold(stream, payload);
+    encodeNs_ += static_cast<uint64_t>(threadCpuNowNs() - beganNs - sendNs_);
 }
 
-bool StreamEconomy::full() { return packer_.stagedBytes() >= kFullStagedBytes || packer_.rawBytes() >= kFullRawBytes; }
+void StreamEconomy::miss(uint32_t stream, std::span<const std::byte> payload) {
+    missed_ = true;
+    hold(stream, payload);
+    missed_ = false;
+}
+
+void StreamEconomy::hold(uint32_t stream, std::span<const std::byte> payload) {
+    if (!holds_) return pack(stream, payload);
+    if (wire::clientOf(stream) != 0) return holder_.add(stream, payload);
+    // The head's own commands: of a program that has gone nobody needs anything; else nodes have all, as who comes now.
+    uint32_t words[2] = {};
+    std::memcpy(words, payload.data(), std::min(payload.size(), sizeof words));
+    if (words[0] == static_cast<uint32_t>(wire::HeadCommand::ClientGone)) holder_.clientGone(words[1]);
+    else holder_.releaseAll();
+    pack(stream, payload);
+}
+
+void StreamEconomy::pack(uint32_t stream, std::span<const std::byte> payload) {
+    if (missed_) return;
+    coder_->packer.add(stream, payload);
+    ++packets_;
+    if (!full() || !send_) return;
+    const int64_t beganNs = threadCpuNowNs();
+    send_();
+    sendNs_ += threadCpuNowNs() - beganNs;
+}
+
+bool StreamEconomy::full() const { return coder_->packer.stagedBytes() >= kFullStagedBytes || coder_->packer.rawBytes() >= kFullRawBytes; }
 
 Result<std::span<const std::byte>> StreamEconomy::take() {
     const int64_t beganNs = threadCpuNowNs();
-    auto batch = encoder_.encode(packer_.sections(), link_.nsPerByte());
-    packer_.clear();
+    economy::Packer& packer = coder_->packer;
+    const bool frameGoesOn = full();
+    measured_.rawBytes += packer.rawBytes();
+    measured_.pageBytes += packer.pageBytes();
+    auto batch = coder_->encoder.encode(packer.finish(), link_.nsPerByte(), packer.plain());
+    packer.clear();
     packets_ = 0;
     encodeNs_ += static_cast<uint64_t>(threadCpuNowNs() - beganNs);
-    if (batch) wireBytes_ += sizeof(wire::PacketHeader) + batch->size();
+    if (batch) {
+        wireBytes_ += batch->size();
+        measured_.wireBytes += batch->size();
+    }
+    if (!frameGoesOn || measured_.rawBytes > kFullRawBytes) {
+        coder_->way.measured(measured_.rawBytes, measured_.pageBytes, measured_.wireBytes, static_cast<int64_t>(encodeNs_ - measured_.encodeNs), link_.nsPerByte());
+        packer.beginPlain(coder_->way.plain());
+        measured_ = {0, 0, 0, encodeNs_};
+    }
     publishCounts();
     return batch;
 }
 
 void StreamEconomy::publishCounts() {
-    const economy::PackerCounts& c = packer_.counts();
+    const economy::PackerCounts& c = coder_->packer.counts();
+    const economy::PackerCounts& b = before_;
     const auto set = [](std::atomic<uint64_t>& to, uint64_t value) { to.store(value, std::memory_order_relaxed); };
-    set(published_.packets, c.packets);
-    set(published_.records, c.records);
-    set(published_.rawBytes, c.rawBytes);
-    set(published_.stagedBytes, c.stagedBytes);
-    set(published_.storeHits, c.storeHits);
-    set(published_.newPages, c.newPages);
-    set(published_.patches, c.patches);
+    set(published_.packets, b.packets + c.packets);
+    set(published_.records, b.records + c.records);
+    set(published_.rawBytes, b.rawBytes + c.rawBytes);
+    set(published_.stagedBytes, b.stagedBytes + c.stagedBytes);
+    set(published_.storeHits, b.storeHits + c.storeHits);
+    set(published_.newPages, b.newPages + c.newPages);
+    set(published_.patches, b.patches + c.patches);
     set(published_.wireBytes, wireBytes_);
     set(published_.encodeNs, encodeNs_);
+    const holding::HolderCounts& h = holder_.counts();
+    set(published_.holdInBytes, h.inBytes);
+    set(published_.holdOutBytes, h.outBytes);
+    set(published_.heldRecords, h.heldRecords);
+    set(published_.leftOutRecords, h.leftOutRecords);
+    set(published_.leftOutBytes, h.leftOutBytes);
+    set(published_.heldBytes, h.heldBytes);
 }
 
 EconomyCounts StreamEconomy::counts() const {
@@ -60,6 +127,7 @@ EconomyCounts StreamEconomy::counts() const {
     c.packer = {of(published_.packets), of(published_.records), of(published_.rawBytes), of(published_.stagedBytes), of(published_.storeHits), of(published_.newPages), of(published_.patches)};
     c.wireBytes = of(published_.wireBytes);
     c.encodeNs = of(published_.encodeNs);
+    c.holder = {of(published_.holdInBytes), of(published_.holdOutBytes), of(published_.heldRecords), of(published_.leftOutRecords), of(published_.leftOutBytes), of(published_.heldBytes)};
     return c;
 }
 

@@ -15,10 +15,18 @@ namespace mural {
 // Which pixels of the pass's picture show what is in `r` of the window.
 [[nodiscard]] PixelViewport inKernel(const RenderPass& pass, const PixelViewport& r);
 
-// From the first to the last pixel of the window that pixels `r` of the pass show.
+// The same where the pass is zoomed, too: pixel i is drawn as what lies at (i + 1/2) / zoom, and belongs to what has its middle.
+[[nodiscard]] PixelViewport inPass(const RenderPass& pass, const PixelViewport& r);
+
+// From the first to the last pixel of the window that pixels `r` of the pass show; without zoom.
 [[nodiscard]] PixelViewport shownByKernel(const RenderPass& pass, const PixelViewport& r);
 
-// The pass's pixels that stand for the pixels `r` of the window, each for those of its kernel.
+// The pass's pixel that stands for one of the window: for those of its kernel, or that it is drawn for.
+struct PassPixel {
+    int32_t x, y;
+};
+[[nodiscard]] PassPixel standingFor(const RenderPass& pass, int32_t x, int32_t y);
+// Those that stand for the pixels `r` of the window.
 [[nodiscard]] PixelViewport standingFor(const RenderPass& pass, const PixelViewport& r);
 
 // What moves positions so within a viewport x, y, width, height: scale - 1 in x, y, then offset in x, y, of normalised

@@ -9,7 +9,10 @@
 namespace mural {
 
 Replay::Replay(std::unique_ptr<gl::Platform> platform, ReplayConfig config, ReplayOutputs outputs)
-    : platform_(std::move(platform)), config_(std::move(config)), out_(std::move(outputs)), saidLacking_(op::kLimit, false) {}
+    : platform_(std::move(platform)), config_(std::move(config)), out_(std::move(outputs)), saidLacking_(op::kLimit, false) {
+    hasSkipped_ = skips_ = maySkip();
+    knowsTurns_ = !config_.catchesUp;
+}
 
 Replay::~Replay() {
     // Contexts first, then the surfaces that they may be current with.
@@ -102,11 +105,12 @@ bool Replay::execute(uint16_t opcode, std::span<const std::byte> arguments, Blob
     if (!config_.plant.empty() && planted(opcode)) return true;
     noteBitmaps(opcode);
     if (takesTurns()) noteTurn(opcode, arguments);
+    if (hasSkipped_) noteSkipped(opcode, arguments);
     if (movesView() || config_.pass.samples > 1) noteEye(opcode, arguments);
-    if (hasKernel()) noteKernel(opcode);
-    const bool leftOut = takesTurns() && leavesOut(opcode);
-    if (leftOut) exchangeDraws();
+    if (drawsFewer()) noteKernel(opcode);
     if (takesRanges()) in = Args(noteRange(opcode, arguments), blobs); // a piece of it, or nothing
+    const bool leftOut = (takesTurns() || (hasSkipped_ && c_->draw && c_->draw->skipped)) && leavesOut(opcode); // behind noteRange, which decides whether this draw is the node's
+    if (leftOut) exchangeDraws();
     const bool done = allocates(opcode) ? executeAllocating(function, in) : function(*this, in);
     if (leftOut) exchangeDraws();
     if (movesView()) noteEyeAfter(opcode);

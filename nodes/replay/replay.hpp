@@ -58,6 +58,8 @@ struct ReplayConfig {
     bool answers = true;   // questions about pictures; false: nodes of another pass do
     double eyeBase = 0.05, focusDistance = 1; // in the program's units
     std::optional<ScreenView> screen;         // then the eye is in it
+    bool skips = false;    // frames are not drawn until drawAgain()
+    bool catchesUp = false; // whose turn it is, others know: until takeTurns() or beginTurns() all frames are drawn and none is its own
     bool cull = false;     // whole primitives outside of the region are dropped by rewritten shaders
     bool lean = false;     // framebuffers of the tile's size; false: of the picture's size (exact)
     std::string plant;     // MURAL_PLANT: a fault on purpose, for tests of the tests
@@ -77,10 +79,13 @@ struct ReplayOutputs {
         PixelViewport picture; // all of it: the window's size, or every nth pixel of it
         bool drawnWhole;      // nothing is cut to the part (Shared::allDrawn)
         bool keepsPicture;    // frames build on the one before: one node goes on drawing them
+        bool sound;           // it does not depend on what was not drawn (ReplayConfig::skips)
         bool notSplit;        // nothing was shared between ranges, though there are several
         std::function<const std::byte*(const PixelViewport&)> pixels;
     };
     std::function<void(const Frame&)> frameDone;
+    // What is asked of a window depends on what was not drawn.
+    std::function<void()> unsound;
     std::function<void(uint32_t client, uint32_t window)> windowGone; // the program has destroyed it
     std::function<void(const std::string&)> log;
     // Nodes that draw ranges of one picture (replay_range.cpp): puts together what all have drawn. Afterwards the collector's
@@ -102,6 +107,16 @@ public:
     // The payload of one packet. False: the stream is broken beyond this packet (the reason is logged).
     bool packet(uint32_t stream, std::span<const std::byte> payload);
     void clientGone(uint32_t client);
+    // Windows are drawn from their next frames on.
+    void drawAgain();
+    // Of nodes that take turns: what decides whose it is, of all windows.
+    [[nodiscard]] std::vector<wire::WindowTurn> turns() const;
+    // It is as another node has said of this place of the stream.
+    void takeTurns(std::span<const wire::WindowTurn> turns);
+    // Nobody knows: the frames in hand stay with those whose turn is first, and all nodes count anew.
+    void beginTurns();
+    // Whether what is shown next depends on what was not drawn before that.
+    [[nodiscard]] wire::Soundness soundness() const;
     [[nodiscard]] const ReplayCounts& counts() const { return counts_; }
 
     // ---- what the generated code uses
@@ -187,6 +202,11 @@ private:
         bool keepsPicture = false; // the turn never ends
         bool sceneElsewhere = false;    // in this frame a scene is drawn into a framebuffer object (replay_scenes.cpp)
         bool sceneWasElsewhere = false; // …in the frame before
+        bool begun = false;        // something was drawn since the last swap
+        bool skipped = false;      // its frames are not drawn (replay_catch_up.cpp), and so…
+        GLbitfield stale = 0;      // …these buffers do not hold what they should…
+        bool frontStaled = false;  // …nor does its front…
+        bool unsound = false;      // …and this frame depends on that
         std::vector<int16_t> accumulated; // of `drawn`, rows bottom first; empty: nothing yet
     };
     struct ProgramInfo {
@@ -256,6 +276,7 @@ private:
     struct QueryInfo {
         GLenum target = 0;
         std::vector<QueryPiece> pieces; // the first is the program's own query
+        bool skipped = false;           // a frame was not drawn while it counted
         bool passed = true;             // as the program has told: of the whole picture
     };
     // Pixels of the window that a copy will read, put together from all nodes (lean, and windows with samples).
@@ -465,6 +486,7 @@ private:
     // replay_turns.cpp
     [[nodiscard]] bool takesTurns() const { return config_.pass.period > 1; }
     [[nodiscard]] bool learnsTurns(const Window& w) const;
+    void turnsChanged();
     void placePart(Window& w);
     void noteTurn(uint16_t opcode, std::span<const std::byte> arguments);
     void beginTurn(Window& w);
@@ -476,11 +498,19 @@ private:
     void turnDrawn(Window& w, bool shownInFront);
     [[nodiscard]] GLbitfield clearsWhole(GLbitfield mask) const;
     [[nodiscard]] GLbitfield needsCleared() const;
+    // replay_catch_up.cpp
+    [[nodiscard]] bool maySkip() const;
+    void noteSkipped(uint16_t opcode, std::span<const std::byte> arguments);
+    [[nodiscard]] bool isSound(const Window& w, bool front) const;
+    [[nodiscard]] bool mayRead(const Window& w, bool deep) const;
     // replay_passes.cpp
     void noteKernel(uint16_t opcode);
     [[nodiscard]] bool hasKernel() const { return config_.pass.kernelWidth * config_.pass.kernelHeight > 1; }
-    [[nodiscard]] bool interleaves(const Window* w) const { return hasKernel() && w && !w->plain; }
-    [[nodiscard]] bool movesPicture() const { return config_.pass.samples > 1 || hasKernel(); }
+    [[nodiscard]] bool drawsFewer() const { return hasKernel() || !config_.pass.zoom.none(); } // pixels than its part of the window has
+    [[nodiscard]] bool interleaves(const Window* w) const { return drawsFewer() && w && !w->plain; }
+    [[nodiscard]] PixelViewport partDrawn(const Window& w) const;
+    [[nodiscard]] bool movesPicture() const { return config_.pass.samples > 1 || drawsFewer(); }
+    const std::byte* readEnlarged(Window& w, const PixelViewport& r, bool front);
     const std::byte* readEveryNth(Window& w, const PixelViewport& r, bool front);
     const std::byte* readRepeated(const PixelViewport& part, GLenum format, GLenum type, size_t group);
     [[nodiscard]] bool movesByShaders() const;
@@ -615,6 +645,10 @@ private:
     std::vector<bool> saidLacking_;
     int listDepth_ = 0;         // display lists that are being run
     uint32_t listCommands_ = 0; // run since the outermost one began
+    bool hasSkipped_ = false; // frames, at the beginning…
+    bool skips_ = false;      // …and does so still
+    bool knowsTurns_ = true;
+    bool showedUnsound_ = false; // a frame that was drawn from its beginning, and needed more than that
     std::unique_ptr<GlFunctions> leftOut_; // for draws that are left out; null: none was yet
     std::unique_ptr<ContextState> none_; // stands in where a stream has no context
 };

@@ -4,6 +4,7 @@
 
 #include "nodes/replay/pass_place.hpp"
 #include "nodes/replay/replay.hpp"
+#include "nodes/replay/window_use.hpp"
 #include "streamcodec/sizes/vertex_types.hpp"
 
 namespace mural {
@@ -163,6 +164,8 @@ bool Replay::ownWindow(Args& in) {
     if (!slot) {
         slot = std::make_unique<Window>();
         slot->lean = config_.lean;
+        slot->skipped = skips_;
+        if (skips_) slot->stale = kWindowBuffers | GL_ACCUM_BUFFER_BIT;
     }
     Window& w = *slot;
     w.destroyed = false; // the program has bound it again
@@ -213,6 +216,7 @@ bool Replay::ownSwap(Args& in, bool front) {
     auto& windows = clients_[wire::clientOf(stream_)].windows;
     const auto it = windows.find(window);
     ReplayOutputs::Frame f{};
+    f.sound = true;
     f.client = wire::clientOf(stream_);
     f.window = window;
     f.frame = frame;
@@ -223,13 +227,17 @@ bool Replay::ownSwap(Args& in, bool front) {
         if (takesRanges()) rangeDrawn(w);
         f.notSplit = takesRanges() && !w.range.wasSplit;
         f.config = w.config;
-        f.region = hasKernel() && !w.region.empty() ? inKernel(config_.pass, w.part) : w.region;
-        f.picture = hasKernel() ? inKernel(config_.pass, w.whole) : w.whole;
+        f.region = drawsFewer() && !w.region.empty() ? inKernel(config_.pass, w.part) : w.region;
+        f.picture = drawsFewer() ? inKernel(config_.pass, w.whole) : w.whole;
         f.keepsPicture = keepsTurn(w);
+        f.sound = isSound(w, front);
+        if (!front && f.sound) w.frontStaled = false;
+        showedUnsound_ = showedUnsound_ || (!f.sound && !w.skipped && w.begun);
         // The thread that swaps need not be the one that has drawn: GLX takes any window.
         if (bound_ && &w == boundDraw_ && w.surface) f.pixels = [this, &w, front](const PixelViewport& r) {
             ContextState* const own = std::exchange(c_, bound_);
-            const std::byte* pixels = hasKernel() && w.plain && !r.empty() ? readEveryNth(w, r, front) : readShown(w, r, front);
+            const bool zoomed = !config_.pass.zoom.none() && !w.plain && !r.empty();
+            const std::byte* pixels = zoomed ? readEnlarged(w, r, front) : hasKernel() && w.plain && !r.empty() ? readEveryNth(w, r, front) : readShown(w, r, front);
             c_ = own;
             return pixels;
         };
@@ -240,7 +248,7 @@ bool Replay::ownSwap(Args& in, bool front) {
         };
     }
     // A frame counts when it is drawn, not when it is queued: pacing and frame rates depend on it.
-    waitUntilDrawn();
+    if (!skips_) waitUntilDrawn();
     tellTroubles();
     if (frame != wire::kUnseenFrame) out_.frameDone(f);
     answerAskedAhead();

@@ -1,12 +1,13 @@
-// Drawing a pass of a frame: another place of the samples in their pixels, or every nth pixel only.
+// Drawing a pass of a frame: another place of the samples in their pixels, every nth pixel only, or the whole smaller.
 //
-// Both are a scale and an offset of window coordinates, and viewports take fractions: whatever draws, shaders or not,
+// All are a scale and an offset of window coordinates, and viewports take fractions: whatever draws, shaders or not,
 // is moved by them. OpenGL ES has no such viewports: there shaders move positions (nodes/shaders/moved_position).
-// Source: accuracy 2.5; thesis, "Pixel" and "Subpixel".
+// Source: accuracy 2.5; thesis, "Pixel", "Subpixel" and "zoom".
 #include <algorithm>
 #include <cstring>
 
 #include "gl_opcodes.hpp"
+#include "nodes/replay/enlarge.hpp"
 #include "nodes/replay/pass_place.hpp"
 #include "nodes/replay/replay.hpp"
 
@@ -34,9 +35,24 @@ void Replay::noteKernel(uint16_t opcode) {
 // what only shows a scene that was sampled before is not sampled again (replay_scenes.cpp).
 RenderPass Replay::passOfDraws() const {
     RenderPass p = config_.pass;
-    if (!drawsWindow() || !interleaves(c_->draw)) p.kernelX = p.kernelY = 0, p.kernelWidth = p.kernelHeight = 1;
+    if (!drawsWindow() || !interleaves(c_->draw)) p.kernelX = p.kernelY = 0, p.kernelWidth = p.kernelHeight = 1, p.zoom = {};
     if (!drawsScene()) p.sample = 0, p.samples = 1;
     return p;
+}
+
+// Where this node draws its part of the window.
+PixelViewport Replay::partDrawn(const Window& w) const { return interleaves(&w) ? inPass(config_.pass, w.part) : w.part; }
+
+// Pixels `r` of the pass's picture, without its zoom, of a window that was drawn smaller. What other nodes draw is not here: at the edges
+// of its part the outermost pixels count on.
+const std::byte* Replay::readEnlarged(Window& w, const PixelViewport& r, bool front) {
+    const PixelViewport all = inKernel(config_.pass, w.part);
+    std::vector<std::byte> few(static_cast<size_t>(w.region.area()) * 4);
+    if (!few.empty()) std::memcpy(few.data(), readShown(w, w.region, front), few.size());
+    std::vector<std::byte> enlarged(static_cast<size_t>(r.area()) * 4);
+    if (!few.empty()) enlarge({few.data(), w.region}, config_.pass.zoom, intersect(r, all), enlarged.data(), r);
+    pixels_ = std::move(enlarged);
+    return pixels_.data();
 }
 
 // The pass's pixels `r` of a window that was drawn whole.
@@ -56,13 +72,16 @@ const std::byte* Replay::readEveryNth(Window& w, const PixelViewport& r, bool fr
 // What a program reads of a window that has every nth pixel only: each stands for its neighbours.
 const std::byte* Replay::readRepeated(const PixelViewport& part, GLenum format, GLenum type, size_t group) {
     const RenderPass& p = config_.pass;
-    const PixelViewport from = standingFor(p, part);
-    (void)readRegion(from, format, type, static_cast<size_t>(from.area()) * group);
+    const PixelViewport picture = inPass(p, c_->read->whole);
+    const PixelViewport from = intersect(standingFor(p, part), picture);
+    if (!from.empty()) (void)readRegion(from, format, type, static_cast<size_t>(from.area()) * group);
     const std::vector<std::byte> few = pixels_;
-    pixels_.resize(static_cast<size_t>(part.area()) * group);
+    pixels_.assign(static_cast<size_t>(part.area()) * group, std::byte{0});
+    if (from.empty()) return pixels_.data(); // too small to have a pixel
     for (int32_t y = 0; y < part.h; ++y)
         for (int32_t x = 0; x < part.w; ++x) {
-            const auto fx = static_cast<size_t>((part.x + x) / p.kernelWidth - from.x), fy = static_cast<size_t>((part.y + y) / p.kernelHeight - from.y);
+            const PassPixel at = standingFor(p, part.x + x, part.y + y);
+            const auto fx = static_cast<size_t>(std::clamp(at.x - from.x, 0, from.w - 1)), fy = static_cast<size_t>(std::clamp(at.y - from.y, 0, from.h - 1));
             std::memcpy(&pixels_[(static_cast<size_t>(y) * static_cast<size_t>(part.w) + static_cast<size_t>(x)) * group], &few[(fy * static_cast<size_t>(from.w) + fx) * group], group);
         }
     return pixels_.data();
@@ -73,7 +92,7 @@ void Replay::applyMovedViewports() {
     for (GLuint i = 0; i < kViewports; ++i) {
         const auto& v = c_->viewports[i];
         const auto at = placeInPass(p, v[0], v[1]);
-        gl.glViewportIndexedf(i, static_cast<GLfloat>(at[0]), static_cast<GLfloat>(at[1]), v[2] / static_cast<GLfloat>(p.kernelWidth), v[3] / static_cast<GLfloat>(p.kernelHeight));
+        gl.glViewportIndexedf(i, static_cast<GLfloat>(at[0]), static_cast<GLfloat>(at[1]), v[2] * static_cast<GLfloat>(p.zoom.x / p.kernelWidth), v[3] * static_cast<GLfloat>(p.zoom.y / p.kernelHeight));
     }
 }
 

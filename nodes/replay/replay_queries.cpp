@@ -61,6 +61,7 @@ void Replay::glBeginQuery(GLenum target, GLuint id) {
     std::erase_if(c_->askedAhead, [&](const AskedAhead& asked) { return asked.query == id; }); // nobody wants the old one
     dropPieces(query);
     query.target = target;
+    query.skipped = c_->draw && c_->draw->skipped;
     const bool multisampled = countsSamples(target) && drawsWindow() && c_->draw && c_->draw->config.samples > 0; // nodes' parts overlap then
     if (multisampled || target == GL_FRAGMENT_SHADER_INVOCATIONS) {
         c_->countedWhole = true;
@@ -155,6 +156,7 @@ void Replay::answerQuery(uint32_t request, GLuint query) {
     if (info != c_->queries.end()) {
         const std::vector<QueryPiece>& pieces = info->second.pieces;
         added = countsSamples(info->second.target) && std::any_of(pieces.begin(), pieces.end(), [](const QueryPiece& p) { return !p.whole; });
+        if (added && info->second.skipped) out_.unsound();
         for (const QueryPiece& piece : pieces) {
             if (!added || (piece.whole ? config_.node == 0 : config_.answers)) value += queryResult(piece.ours);
         }

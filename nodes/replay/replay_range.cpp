@@ -177,9 +177,10 @@ void Replay::beginSplit(Window& w) {
     r.function = static_cast<GLenum>(function);
     r.phase = RangeFrame::Phase::Split;
     r.wasSplit = r.wasSplit || r.lastTotal > 0;
-    if (r.lastTotal == 0 || w.part.empty()) return;
+    const PixelViewport drawn = partDrawn(w);
+    if (r.lastTotal == 0 || drawn.empty()) return;
     PicturePart pixel; // as the clears have left it
-    readPart(w, {w.part.x, w.part.y, 1, 1}, pixel);
+    readPart(w, {drawn.x, drawn.y, 1, 1}, pixel);
     r.rule.clearedColour = pixel.colour[0];
     r.rule.clearedDepth = pixel.depth[0];
     r.rule.function = static_cast<compositor::DepthFunction>(r.function - GL_NEVER); // numbered as GL's
@@ -350,10 +351,11 @@ void Replay::composeRanges(Window& w) {
     if (r.phase != RangeFrame::Phase::Split || &w != boundDraw_) return;
     r.phase = RangeFrame::Phase::Whole;
     mute(w, false);
-    if (r.lastTotal == 0 || w.part.empty() || !hasTurn(w.turn)) return; // all of it was the collector's, or others'
+    const PixelViewport drawn = partDrawn(w);
+    if (r.lastTotal == 0 || drawn.empty() || !hasTurn(w.turn)) return; // all of it was the collector's, or others'
     PicturePart part;
     ++r.serial;
-    readPart(w, w.part, part);
+    readPart(w, drawn, part);
     if (!out_.composeParts) return;
     const PixelViewport changed = out_.composeParts(part, r.rule);
     if (collects() && !changed.empty()) writePart(part, changed);

@@ -57,6 +57,7 @@ bool Replay::ownRequestPixels(Args& in) {
     const bool repeats = c_->read && interleaves(c_->read) && !c_->read->region.empty();
     const PixelViewport part = c_->read && config_.answers ? intersect(asked, repeats ? c_->read->part : c_->read->region) : PixelViewport{};
     if (c_->read) c_->read->copied = true;
+    if (hasSkipped_ && c_->read && !mayRead(*c_->read, deep)) out_.unsound();
     const size_t bytes = static_cast<size_t>(part.area()) * group;
     const std::byte* pixels = nullptr;
     // Colours of no buffer are asked for by copies that are errors; Mesa reads through a null pointer there in OpenGL ES.

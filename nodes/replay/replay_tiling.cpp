@@ -34,7 +34,7 @@ PixelViewport Replay::origin() const {
 void Replay::applyScissor(int index, bool all) {
     const Scissor& app = c_->scissors[static_cast<size_t>(index)];
     bool enabled = app.enabled;
-    PixelViewport box = drawsWindow() && interleaves(c_->draw) ? inKernel(config_.pass, app.box) : app.box;
+    PixelViewport box = drawsWindow() && interleaves(c_->draw) ? inPass(config_.pass, app.box) : app.box;
     if (!drawsWhole() && c_->draw) {
         const PixelViewport part = c_->draw->drawn;
         if (drawsLean()) { // the framebuffer's edges are the tile's

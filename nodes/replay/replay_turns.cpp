@@ -11,13 +11,12 @@
 // frames are drawn by all nodes, that such programs are found before it matters.
 // Source: thesis, "Time-Multiplex (DPlex)".
 #include <cstring>
-#include <string_view>
 #include <utility>
 
 #include "gl_opcodes.hpp"
 #include "nodes/replay/pass_place.hpp"
 #include "nodes/replay/replay.hpp"
-#include "streamcodec/opcode_names.hpp"
+#include "nodes/replay/window_use.hpp"
 
 namespace mural {
 
@@ -25,41 +24,6 @@ namespace {
 
 constexpr int64_t kLearnedFrames = 2;
 constexpr int64_t kKeptFrames = 8; // in a row: then it is said that turns do not help
-constexpr GLbitfield kBuffers = GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT;
-
-enum class WindowUse : uint8_t { None, Clears, Draws, FeedbackBegins, FeedbackEnds };
-
-bool clearsBuffer(std::string_view name) {
-    return name == "glClear" || name == "glClearBufferfv" || name == "glClearBufferfi" || name == "glClearBufferiv" || name == "glClearBufferuiv";
-}
-
-bool draws(std::string_view name) {
-    if (name.starts_with("glDrawBuffer")) return false;
-    if (clearsBuffer(name)) return true;
-    for (const std::string_view stem : {"glDraw", "glMultiDraw", "glMultiMode", "glBegin", "glCallList", "glRect", "glEvalMesh", "glBitmap", "glCopyPixels", "glBlit", "glAccum", "glClear"}) {
-        if (!name.starts_with(stem)) continue;
-        // State, not drawing: glClearColor, glBeginQuery, …
-        if (stem == "glBegin") return name == "glBegin";
-        if (stem == "glClear") return name.starts_with("glClearNamedFramebuffer");
-        return true;
-    }
-    return false;
-}
-
-WindowUse useOf(uint16_t opcode) {
-    static const auto kUses = [] {
-        std::vector<WindowUse> uses(op::kLimit, WindowUse::None);
-        for (uint16_t o = wire::kFirstGlOpcode; o < op::kLimit; ++o) {
-            const char* name = glOpcodeName(o);
-            const std::string_view text = name ? name : "";
-            if (text.starts_with("glBeginTransformFeedback") || text.starts_with("glResumeTransformFeedback")) uses[o] = WindowUse::FeedbackBegins;
-            else if (text.starts_with("glEndTransformFeedback")) uses[o] = WindowUse::FeedbackEnds;
-            else if (draws(text)) uses[o] = clearsBuffer(text) ? WindowUse::Clears : WindowUse::Draws;
-        }
-        return uses;
-    }();
-    return kUses[opcode];
-}
 
 } // namespace
 
@@ -77,13 +41,17 @@ GLbitfield Replay::clearsOf(uint16_t opcode, std::span<const std::byte> argument
     }
 }
 
-bool Replay::learnsTurns(const Window& w) const { return takesTurns() && w.frames < kLearnedFrames; }
+bool Replay::learnsTurns(const Window& w) const { return takesTurns() && (w.frames < kLearnedFrames || !knowsTurns_); }
 
-bool Replay::hasTurn(int64_t turn) const { return !takesTurns() || turn % config_.pass.period == config_.pass.phase; }
+bool Replay::hasTurn(int64_t turn) const { return !takesTurns() || (knowsTurns_ && turn % config_.pass.period == config_.pass.phase); }
 
 // After its size or the turn has changed.
 void Replay::placePart(Window& w) {
-    const PixelViewport part = interleaves(&w) ? inKernel(config_.pass, w.part) : w.part;
+    if (w.skipped) {
+        w.region = w.drawn = {};
+        return;
+    }
+    const PixelViewport part = partDrawn(w);
     w.region = hasTurn(w.turn) ? part : PixelViewport{};
     w.drawn = w.region;
     if (w.range.muted) w.drawn = {};
@@ -133,8 +101,8 @@ void Replay::noteTurn(uint16_t opcode, std::span<const std::byte> arguments) {
     if (opcode == op::glAccum || (clears & GL_ACCUM_BUFFER_BIT)) return keepTurn(w);
     const GLbitfield whole = clearsWhole(clears);
     w.cleared |= whole;
-    if (use == WindowUse::Clears && (clears & kBuffers & ~whole) == 0) return;
-    const bool builds = ((use == WindowUse::Clears ? clears & kBuffers : needsCleared()) & ~w.cleared) != 0;
+    if (use == WindowUse::Clears && (clears & kWindowBuffers & ~whole) == 0) return;
+    const bool builds = ((use == WindowUse::Clears ? clears & kWindowBuffers : needsCleared()) & ~w.cleared) != 0;
     if (w.undecided) return decideTurn(w, builds);
     if (builds && w.fresh) keepTurn(w); // too late to find out
 }
@@ -168,7 +136,7 @@ bool Replay::keepsTurn(const Window& w) const { return w.keepsPicture || w.kept 
 
 void Replay::turnDrawn(Window& w, bool shownInFront) {
     w.sceneWasElsewhere = std::exchange(w.sceneElsewhere, false);
-    if (hasKernel()) {
+    if (drawsFewer()) {
         const bool plain = std::exchange(w.plain, std::exchange(w.copied, false));
         if (plain != w.plain) {
             placePart(w);
@@ -179,9 +147,61 @@ void Replay::turnDrawn(Window& w, bool shownInFront) {
             }
         }
     }
+    w.begun = false;
     if (!takesTurns()) return;
     w.turnOver = true;
     w.keepsPicture = w.keepsPicture || shownInFront; // it is drawn into while it is seen
+}
+
+// ---- nodes that come back: what they are given leaves out frames, so they can't count
+
+std::vector<wire::WindowTurn> Replay::turns() const {
+    std::vector<wire::WindowTurn> turns;
+    for (const auto& [client, its] : clients_)
+        for (const auto& [id, w] : its.windows) {
+            const uint32_t state = (w->turnOver ? wire::kTurnOver : 0) | (w->undecided ? wire::kTurnUndecided : 0) | (w->fresh ? wire::kTurnFresh : 0) | (w->keepsPicture ? wire::kTurnForGood : 0);
+            turns.push_back({client, id, w->frames, w->turn, w->kept, w->cleared, state});
+        }
+    return turns;
+}
+
+void Replay::takeTurns(std::span<const wire::WindowTurn> turns) {
+    for (const wire::WindowTurn& t : turns) {
+        const auto client = clients_.find(t.client);
+        if (client == clients_.end()) continue;
+        const auto found = client->second.windows.find(t.window);
+        if (found == client->second.windows.end()) continue;
+        Window& w = *found->second;
+        w.frames = t.frames;
+        w.turn = t.turn;
+        w.kept = t.kept;
+        w.cleared = t.cleared;
+        w.turnOver = (t.state & wire::kTurnOver) != 0;
+        w.undecided = (t.state & wire::kTurnUndecided) != 0;
+        w.fresh = (t.state & wire::kTurnFresh) != 0;
+        w.keepsPicture = (t.state & wire::kTurnForGood) != 0;
+    }
+    turnsChanged();
+}
+
+void Replay::beginTurns() {
+    if (!takesTurns()) return;
+    for (auto& [client, its] : clients_)
+        for (auto& [id, w] : its.windows) {
+            w->turn = w->kept = 0;
+            w->undecided = w->fresh = w->keepsPicture = false;
+        }
+    turnsChanged();
+}
+
+void Replay::turnsChanged() {
+    knowsTurns_ = true;
+    for (auto& [client, its] : clients_)
+        for (auto& [id, w] : its.windows) placePart(*w);
+    if (!bound_) return;
+    ContextState* const own = std::exchange(c_, bound_);
+    restoreWindowState();
+    c_ = own;
 }
 
 } // namespace mural

@@ -10,6 +10,7 @@
 
 #include "common/eye.hpp"
 #include "common/range.hpp"
+#include "common/zoom.hpp"
 
 namespace mural {
 
@@ -30,6 +31,7 @@ struct RenderPass {
     int phase = 0, period = 1;    // draws the frames n with n mod period == phase
     int range = 0, ranges = 1;    // which of the nodes that share a frame's draws in their order (sort-last)…
     Range share;                  // …and which part of them it draws
+    Zoom zoom;                    // drawn smaller by this, and enlarged before anybody sees it; never above 1
 
     bool operator==(const RenderPass&) const = default;
 };

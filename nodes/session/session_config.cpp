@@ -53,6 +53,7 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("stream", c.stream);
     visit("economy", c.economy);
     visit("storeBytes", c.storeBytes, 1 << 20);
+    visit("restartNodes", c.restartNodes);
     visit("remoteMural", c.remoteMural);
     visit("configFile", c.configFile);
     visit("here", c.here);
@@ -108,6 +109,8 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("screen", s.screen);
     visit("shareStart", s.pass.share.start);
     visit("shareEnd", s.pass.share.end);
+    visit("zoomX", s.pass.zoom.x);
+    visit("zoomY", s.pass.zoom.y);
     visit("eye", s.pass.eye);
     visit("kernelX", s.pass.kernelX, 0);
     visit("kernelY", s.pass.kernelY, 0);
@@ -136,11 +139,17 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("stream", s.stream);
     visit("streamSecret", s.streamSecret);
     visit("economy", s.economy);
+    visit("catchesUp", s.catchesUp);
+    visit("skipsFrames", s.skipsFrames);
     visit("storeBytes", s.storeBytes, 1 << 20);
     visit("collector", s.collector, 0);
     visit("composition", s.composition);
     visit("exchangeSecret", s.exchangeSecret);
     visit("exchangeHere", s.exchangeHere);
+    visit("swapMembers", s.swapMembers, 0);
+    visit("swapRank", s.swapRank, 0);
+    visit("swapLeader", s.swapLeader, 0);
+    visit("swapHere", s.swapHere);
     visit("build", s.build);
 }
 
@@ -296,6 +305,7 @@ Result<NodeSetup> nodeSetupFromJson(const std::string& line) {
     const RenderPass& p = setup->pass;
     if (p.kernelX >= p.kernelWidth || p.kernelY >= p.kernelHeight || p.sample >= p.samples || p.phase >= p.period || p.range >= p.ranges)
         return Error{"node setup: its pass is none of the session's"};
+    if (!(p.zoom.x > 0 && p.zoom.x <= 1 && p.zoom.y > 0 && p.zoom.y <= 1)) return Error{"node setup: its zoom is not above 0, or above 1"};
     return setup;
 }
 

@@ -35,6 +35,7 @@ struct SessionConfig {
     std::string stream = "auto";  // --stream: how it travels to other machines: auto, tcp, rsp://…
     Economy economy = Economy::Auto; // --economy: which nodes are not sent again what they have had
     int64_t storeBytes = int64_t{1} << 30; // --store: of that, in each of them and in the head
+    int restartNodes = 3;         // --restart-nodes: how often in a row a lost node is started again
     std::string remoteMural;      // --remote-mural: path of mural on the hosts; empty: this one's path
     std::string configFile;       // --config; empty: what follows says it
     bool here = false;            // --here: all its nodes on this machine
@@ -93,12 +94,18 @@ struct NodeSetup {
     std::string displayName;
     std::string stream;           // rsp://…: the group to join; its packets come there. Empty: on this connection
     std::string streamSecret;     // of that group, in hex
-    bool economy = false;         // packets come in batches (wire::kBatchStream)
+    bool economy = false;         // packets come in batches (economy/batch_head.hpp)
     int64_t storeBytes = int64_t{1} << 30;
+    bool catchesUp = false;       // it is given what came before, and says nothing of it until it is a member (HeadCommand::Member)
+    bool skipsFrames = false;     // with it: frames are not drawn until Synchronize says so
     int collector = 0;            // the node that has the picture that this one draws a range of; ranges follow it, one node each
     std::string composition = "serial"; // compositor::Strategy by which they put it together
-    std::string exchangeSecret;   // of the nodes that draw ranges of one picture, in hex; empty: they do not
-    bool exchangeHere = false;    // all of those run on this machine
+    std::string exchangeSecret;   // of nodes that send each other parts of a picture, or wait for each other, in hex; empty: none do
+    bool exchangeHere = false;    // all that draw ranges of its picture run on this machine
+    int swapMembers = 0;          // of the swap barrier that its windows belong to; 0: none
+    int swapRank = 0;             // its own among them; 0: the leader
+    int swapLeader = 0;           // the leader's number
+    bool swapHere = false;        // all members run on this machine
     std::string build;            // streamBuild() of the head
 };
 

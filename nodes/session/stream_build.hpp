@@ -13,7 +13,7 @@ namespace mural {
 
 inline std::string streamBuild() {
     char text[48];
-    std::snprintf(text, sizeof text, "%u.%016" PRIx64, wire::kVersion, registryDigest());
+    std::snprintf(text, sizeof text, "%u.%u.%016" PRIx64, wire::kVersion, wire::kBatchVersion, registryDigest());
     return text;
 }
 

@@ -142,6 +142,8 @@ def wrapper(c):
             out += '    if (writesThrough(target)) nodesMayWrite(self, buffer);\n'
         else:
             out += '    nodesMayWrite(self, 0);\n'
+    if c.option('before'):
+        out += '    %s;\n' % c.option('before')
     if c.option('reads') == 'buffers':
         out += '    buffersRead(self);\n'
     if c.command_class == 'object':

@@ -1,8 +1,11 @@
 #include "nodes/head/config_plan.hpp"
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <set>
+#include <unistd.h>
 
 #include "balancer/config/short_forms.hpp"
 #include "compositor/strategies/choose_strategy.hpp"
@@ -201,6 +204,68 @@ TEST(ConfigPlan, aLayoutThatThereIsNot) {
     const auto plan = planOf(load("db.eqc"), {"me", true, "", {"nowhere"}});
     ASSERT_FALSE(plan.ok());
     EXPECT_NE(plan.error().message.find("--layout \"nowhere\""), std::string::npos) << plan.error().message;
+}
+
+// In a folder of this process: tests run beside each other.
+std::filesystem::path ownFile(const std::string& name) {
+    const auto folder = std::filesystem::path(::testing::TempDir()) / ("config_plan." + std::to_string(getpid()));
+    std::filesystem::create_directories(folder);
+    return folder / name;
+}
+void forget(const std::filesystem::path& file) { std::filesystem::remove_all(file.parent_path()); }
+
+Result<SessionPlan> planOfText(const std::string& compounds) {
+    const auto path = ownFile("config_plan_test.eqc");
+    std::ofstream(path) << "#Equalizer 1.2 ascii\nserver { config { appNode { pipe { window { viewport [ 0 0 321 200 ] channel { name \"a\" } } window { viewport [ 0 0 321 200 ] channel { name \"b\" } } } }\n"
+                           "layout { view { } } canvas { layout 0 wall { } segment { channel \"a\" } }\ncompound { channel ( ) buffer [ COLOR DEPTH ] " << compounds << " inputframe { name \"frame.b\" } } } }\n";
+    const auto loaded = compound::loadConfig(path.string(), [](const std::string&) { return std::optional<std::string>(); });
+    forget(path);
+    EXPECT_TRUE(loaded.ok()) << loaded.diagnostics.firstError();
+    return planOf(loaded, {"me", true, "", {}});
+}
+
+TEST(ConfigPlan, zoomsMultiplyAndAreDrawn) {
+    auto plan = planOfText("zoom [ .5 1 ] compound { viewport [ 0 0 .5 1 ] } compound { channel \"b\" viewport [ .5 0 .5 1 ] zoom [ .5 .5 ] outputframe { } }");
+    ASSERT_TRUE(plan) << plan.error().message;
+    ASSERT_EQ(plan->nodes.size(), 2u);
+    EXPECT_EQ(plan->nodes[0].pass.zoom, (Zoom{.5, 1}));
+    EXPECT_EQ(plan->nodes[1].pass.zoom, (Zoom{.25, .5})) << "whatever whole pixels their channels have";
+    EXPECT_EQ(plan->nodes[0].picture, plan->nodes[1].picture);
+}
+
+TEST(ConfigPlan, whatIsNotZoomedIsSaid) {
+    auto large = planOfText("compound { viewport [ 0 0 .5 1 ] } compound { channel \"b\" viewport [ .5 0 .5 1 ] zoom [ 2 .5 ] outputframe { } }");
+    ASSERT_TRUE(large) << large.error().message;
+    EXPECT_EQ(large->nodes[1].pass.zoom, (Zoom{1, .5}));
+    ASSERT_EQ(large->warnings.size(), 1u);
+    EXPECT_NE(large->warnings[0].find(".eqc:4:"), std::string::npos) << large->warnings[0];
+    auto ranges = planOfText("compound { range [ 0 .5 ] } compound { channel \"b\" range [ .5 1 ] zoom [ .5 .5 ] outputframe { } }");
+    ASSERT_FALSE(ranges);
+    EXPECT_NE(ranges.error().message.find("the same zoom"), std::string::npos) << ranges.error().message;
+}
+
+// What a file says without effect is said, with its place and what to do.
+TEST(ConfigPlan, fieldsWithoutEffectAreSaid) {
+    auto plan = planOfText("load_equalizer { mode 2D } compound { viewport [ 0 0 .5 1 ] }\ncompound { channel \"b\" viewport [ .5 0 .5 1 ] outputframe { zoom [ .5 .5 ] } }");
+    ASSERT_TRUE(plan) << plan.error().message;
+    ASSERT_EQ(plan->warnings.size(), 2u) << plan->warnings.front();
+    EXPECT_NE(plan->warnings[0].find("config_plan_test.eqc:4:47: load_equalizer has no effect"), std::string::npos) << plan->warnings[0];
+    EXPECT_NE(plan->warnings[1].find("config_plan_test.eqc:5:61: zoom has no effect"), std::string::npos) << plan->warnings[1];
+    EXPECT_NE(plan->warnings[1].find("; "), std::string::npos) << "a remedy";
+    EXPECT_TRUE(planOfText("compound { viewport [ 0 0 .5 1 ] } compound { channel \"b\" viewport [ .5 0 .5 1 ] zoom [ .5 .5 ] outputframe { } }")->warnings.empty()) << "that one has";
+}
+
+TEST(ConfigPlan, quadBufferedPairsHaveAFallback) {
+    const auto path = ownFile("config_plan_quad.eqc");
+    std::ofstream(path) << "#Equalizer 1.2 ascii\nserver { config { appNode { pipe { window { viewport [ 0 0 320 200 ] attributes { hint_stereo ON } channel { name \"a\" } } } }\n"
+                           "layout { view { mode STEREO } } canvas { layout 0 wall { } segment { channel \"a\" } }\ncompound { channel ( ) attributes { stereo_mode QUAD } } } }\n";
+    const auto loaded = compound::loadConfig(path.string(), [](const std::string&) { return std::optional<std::string>(); });
+    forget(path);
+    auto plan = planOf(loaded, {"me", true, "", {}});
+    ASSERT_TRUE(plan) << plan.error().message;
+    EXPECT_EQ(plan->wall.stereo, StereoMode::SideBySide);
+    ASSERT_EQ(plan->warnings.size(), 1u);
+    EXPECT_NE(plan->warnings[0].find("config_plan_quad.eqc:4:1: channel \"a\" wants a quad-buffered pair"), std::string::npos) << plan->warnings[0];
 }
 
 TEST(ConfigPlan, everyExampleFileCanBePlanned) {

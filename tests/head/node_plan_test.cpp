@@ -14,6 +14,32 @@ TEST(NodePlan, withoutWishesOneNodePerTileUpToFour) {
     EXPECT_EQ(planSession(config, "me").nodes.size(), 4u);
 }
 
+TEST(NodePlan, windowsOfSeveralNodesShowFramesTogether) {
+    SessionConfig config;
+    config.columns = 3;
+    config.display = Display::Windows;
+    config.passes.ranges = 2;
+    config.localNodes = 6;
+    SessionPlan plan = planSession(config, "me");
+    ASSERT_EQ(plan.nodes.size(), 6u);
+    for (const NodePlan& node : plan.nodes) {
+        const NodeSetup setup = setupOf(config, plan, node);
+        EXPECT_EQ(setup.swapMembers, node.pass.range == 0 ? 3 : 0) << "only those that have the whole picture show it";
+        if (node.pass.range != 0) continue;
+        EXPECT_EQ(setup.swapRank, node.node / 2);
+        EXPECT_EQ(setup.swapLeader, 0);
+        EXPECT_TRUE(setup.swapHere);
+    }
+    plan.nodes[2].swapBarrier = "another";
+    EXPECT_EQ(setupOf(config, plan, plan.nodes[4]).swapMembers, 2);
+    EXPECT_EQ(setupOf(config, plan, plan.nodes[4]).swapRank, 1);
+    EXPECT_EQ(setupOf(config, plan, plan.nodes[2]).swapMembers, 0) << "alone it waits for nobody";
+    plan.nodes[4].reach = NodeReach::LaunchCommand;
+    EXPECT_FALSE(setupOf(config, plan, plan.nodes[0]).swapHere);
+    config.display = Display::App;
+    EXPECT_EQ(setupOf(config, plan, plan.nodes[0]).swapMembers, 0) << "the head shows the picture";
+}
+
 TEST(NodePlan, hostsAreReachedByTheNearestWay) {
     SessionConfig config;
     config.columns = 5;

@@ -58,7 +58,7 @@ TEST(SessionConfig, passesSurviveARoundTrip) {
 
 TEST(SessionConfig, passesThatAreNoneOfTheSessionsAreRefused) {
     NodeSetup setup;
-    setup.pass = {Eye::Right, 1, 2, 2, 3, 0, 4, 1, 2};
+    setup.pass = {Eye::Right, 1, 2, 2, 3, 0, 4, 1, 2, 0, 1, {}, {}};
     ASSERT_TRUE(nodeSetupFromJson(toJson(setup)).ok());
     const auto refused = [&](auto change) {
         NodeSetup bad = setup;
@@ -78,6 +78,18 @@ TEST(SessionConfig, missingFieldsKeepTheirDefaults) {
     ASSERT_TRUE(c.ok());
     EXPECT_EQ(c.value().latency, 1);
     EXPECT_EQ(c.value().launchCommand, "ssh -o BatchMode=yes");
+}
+
+TEST(NodeSetup, zoomsAreKeptAndLieAboveZeroAndNotAboveOne) {
+    NodeSetup setup;
+    setup.pass.zoom = {0.3, 1};
+    const auto read = nodeSetupFromJson(toJson(setup));
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_EQ(read.value().pass.zoom, setup.pass.zoom);
+    for (const double bad : {0.0, -0.5, 1.01}) {
+        setup.pass.zoom.y = bad;
+        EXPECT_FALSE(nodeSetupFromJson(toJson(setup)).ok()) << bad;
+    }
 }
 
 TEST(SessionConfig, errorsNameTheField) {

@@ -64,6 +64,16 @@ TEST(BadArguments, ofTheCommandItself) {
     expectOneLine(mural({"head", "--control-fd", "x"}), 2, "--control-fd");
 }
 
+TEST(GoodArguments, versionByCommandAndByFlag) {
+    const Said byCommand = mural({"version"});
+    const Said byFlag = mural({"--version"});
+    EXPECT_EQ(byCommand.status, 0);
+    EXPECT_EQ(byFlag.status, 0);
+    EXPECT_EQ(byCommand.output.rfind("mural ", 0), 0U) << byCommand.output;
+    EXPECT_EQ(byFlag.output, byCommand.output);
+    EXPECT_EQ(byFlag.errors, "");
+}
+
 TEST(BadArguments, ofRun) {
     expectOneLine(mural({"run"}), 2, "no program");
     expectOneLine(mural({"run", "--"}), 2, "no program");

@@ -77,6 +77,44 @@ TEST(PassPlace, shownPixelsAndThoseThatStandForThem) {
     EXPECT_EQ(standingFor(p, {3, 2, 3, 2}), (PixelViewport{1, 1, 1, 1}));
 }
 
+RenderPass zoomed(double x, double y, RenderPass p = {}) {
+    p.zoom = {x, y};
+    return p;
+}
+
+// Parts of a window that do not overlap do not in a zoomed pass, and leave nothing out.
+TEST(PassPlace, zoomedPartsMeet) {
+    for (const double zoom : {0.5, 0.3, 0.77, 0.999})
+        for (const int width : {320, 321, 1001}) {
+            const RenderPass p = zoomed(zoom, 1);
+            const PixelViewport all = inPass(p, {0, 0, width, 10});
+            EXPECT_EQ(all.h, 10);
+            EXPECT_NEAR(all.w, width * zoom, 1);
+            int32_t at = 0;
+            for (int32_t x = 0; x < width; x += 7) {
+                const PixelViewport part = inPass(p, {x, 0, std::min(7, width - x), 10});
+                EXPECT_EQ(part.x, at) << zoom << " " << width;
+                at += part.w;
+            }
+            EXPECT_EQ(at, all.w);
+        }
+}
+
+TEST(PassPlace, middlesOfZoomedPixelsMeet) {
+    EXPECT_EQ(placeInPass(zoomed(0.5, 0.25), 8, 8), (std::array<double, 2>{4, 2}));
+    const auto at = placeInPass(zoomed(0.5, 0.5, kernel(1, 0, 2, 1)), 2 * 10 + 1 + 0.5, 0); // pixel 10 of the kernel
+    EXPECT_DOUBLE_EQ(at[0], 10.5 / 2);
+    const auto stands = standingFor(zoomed(0.5, 0.5), 9, 10);
+    EXPECT_EQ(stands.x, 4);
+    EXPECT_EQ(stands.y, 5);
+    const std::array<float, 4> v{30, 40, 640, 360};
+    const auto move = moveInViewport(zoomed(0.5, 0.3), v);
+    for (const double ndc : {-1.0, 0.0, 0.7}) {
+        const double x = ndc + ndc * static_cast<double>(move[0]) + static_cast<double>(move[2]);
+        EXPECT_NEAR(v[0] + (x + 1) * v[2] / 2, (v[0] + (ndc + 1) * v[2] / 2) * 0.5, 1e-3);
+    }
+}
+
 TEST(PassPlace, anyRectangleOfAProgramIsAnswered) {
     constexpr int32_t kMost = std::numeric_limits<int32_t>::max(), kLeast = std::numeric_limits<int32_t>::min();
     for (const PixelViewport& r : {PixelViewport{kMost, kMost, kMost, kMost}, PixelViewport{kLeast, kLeast, kMost, kMost}, PixelViewport{kLeast, 0, kLeast, 1}})

@@ -1,0 +1,21 @@
+// A command of the head's own stream as the payload of a packet.
+#pragma once
+
+#include <algorithm>
+#include <cstring>
+#include <span>
+#include <vector>
+
+#include "streamcodec/wire.hpp"
+
+namespace mural {
+
+inline std::vector<std::byte> commandBytes(wire::HeadCommand command, std::span<const std::byte> arguments) {
+    const auto word = static_cast<uint32_t>(command);
+    std::vector<std::byte> payload(sizeof(word) + arguments.size());
+    std::memcpy(payload.data(), &word, sizeof(word));
+    std::ranges::copy(arguments, payload.begin() + sizeof(word));
+    return payload;
+}
+
+} // namespace mural

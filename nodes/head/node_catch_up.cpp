@@ -1,0 +1,152 @@
+#include "nodes/head/node_catch_up.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <poll.h>
+
+#include "nodes/head/head_command.hpp"
+
+namespace mural {
+namespace {
+
+constexpr int64_t kShortRoundNs = 20 * kNsPerMs; // waiting for so long does not show
+constexpr int kMostRounds = 8;                   // who is no faster than the others does not get nearer
+constexpr int64_t kDrawPatienceMs = 500;         // until each window has had a frame
+constexpr int64_t kDirectPatienceMs = 2'000;     // until what is queued is sent with the others waiting
+constexpr int64_t kSnapshotMs = 20'000;          // until it is known what the node has to be given
+constexpr int64_t kLookMs = 50;                  // whether anybody is left who says whose turn it is
+constexpr int64_t kSyncLimitMs = 600'000;        // the last resort behind watch(), which loses silent nodes
+
+std::span<const std::byte> bytesOf(const auto& value) { return std::as_bytes(std::span(&value, 1)); }
+
+} // namespace
+
+NodeCatchUp::NodeCatchUp(NodeSet& nodes, int node, std::optional<NodeSet::TurnsAsked> turns, Admitted admitted)
+    : nodes_(nodes)
+    , node_(node)
+    , link_(nodes.link(node))
+    , turns_(std::move(turns))
+    , admitted_(std::move(admitted)) {}
+
+NodeCatchUp::~NodeCatchUp() {
+    if (thread_.joinable()) thread_.join();
+}
+
+void NodeCatchUp::start() {
+    thread_ = std::thread([this] { work(); });
+}
+
+void NodeCatchUp::synchronized(const wire::SynchronizedMessage& message) {
+    const std::lock_guard lock(mutex_);
+    reached_ = message.number;
+    sound_ = message.sound;
+    changed_.notify_all();
+}
+
+void NodeCatchUp::linkLost() {
+    const std::lock_guard lock(mutex_);
+    lost_ = true;
+    changed_.notify_all();
+}
+
+void NodeCatchUp::toldTurns(uint32_t number, const std::vector<wire::WindowTurn>& turns) {
+    const std::lock_guard lock(mutex_);
+    if (turns_ && number == turns_->number && !told_) told_ = turns; // all say the same
+    changed_.notify_all();
+}
+
+void NodeCatchUp::work() {
+    auto snapshot = nodes_.beginCatchUp(node_, turns_ ? &*turns_ : nullptr, Deadline::inMs(kSnapshotMs));
+    if (snapshot) sendSnapshot(*snapshot);
+    else link_.lose(snapshot.error().message);
+    bool there = snapshot && synchronize() && sendTurns();
+    for (int round = 0; there && round < kMostRounds; ++round) {
+        const int64_t beganNs = monotonicNowNs();
+        sendQueue();
+        there = synchronize();
+        if (monotonicNowNs() - beganNs <= kShortRoundNs) break;
+    }
+    there = there && drawsAgain();
+    if (there)
+        if (const auto admitted = nodes_.admit(node_, admitted_); !admitted) link_.lose(admitted.error().message);
+    const Deadline deadline = Deadline::inMs(kDirectPatienceMs);
+    while (there && link_.alive() && !nodes_.goDirect(node_, deadline.passed())) sendQueue();
+    done_ = true;
+}
+
+void NodeCatchUp::sendSnapshot(const KeptStream::Snapshot& snapshot) {
+    {
+        const std::lock_guard lock(mutex_);
+        frames_ = snapshot.frames;
+    }
+    for (const recording::KeptPacket& packet : snapshot.packets) {
+        if (!link_.alive()) return;
+        const wire::PacketHeader header{static_cast<uint32_t>(packet.payload.size()), packet.stream};
+        link_.sendNow(bytesOf(header), packet.payload);
+        snapshotBytes_ += sizeof(header) + packet.payload.size();
+    }
+}
+
+void NodeCatchUp::sendQueue() {
+    for (const auto& packet : link_.takeQueue()) {
+        if (!link_.alive()) return;
+        link_.sendNow(packet, {});
+        queuedBytes_ += packet.size();
+    }
+    link_.flushNow();
+}
+
+// What it was given leaves out frames: it can't know whose turn it is. False: the node is lost.
+bool NodeCatchUp::sendTurns() {
+    if (!turns_) return true;
+    const Deadline deadline = Deadline::inMs(kSyncLimitMs);
+    std::optional<std::vector<wire::WindowTurn>> turns;
+    do {
+        std::unique_lock lock(mutex_);
+        changed_.wait_for(lock, std::chrono::milliseconds(kLookMs), [this] { return lost_ || told_; });
+        if (lost_) return false;
+        turns = told_;
+    } while (!turns && std::ranges::any_of(turns_->asked, &NodeLink::alive) && !deadline.passed());
+    if (turns) sendCommand(wire::HeadCommand::Turns, std::as_bytes(std::span(*turns)));
+    return true; // nobody says it: it begins anew when the first one becomes a member
+}
+
+void NodeCatchUp::sendCommand(wire::HeadCommand command, std::span<const std::byte> arguments) {
+    const auto payload = commandBytes(command, arguments);
+    const wire::PacketHeader header{static_cast<uint32_t>(payload.size()), wire::streamOf(0, 0)};
+    link_.sendNow(bytesOf(header), payload);
+    link_.flushNow();
+}
+
+// The frames in hand become whole with their windows' next clears. False: the node is lost.
+bool NodeCatchUp::drawsAgain() {
+    const Deadline deadline = Deadline::inMs(kDrawPatienceMs);
+    while (synchronize(true)) {
+        {
+            const std::lock_guard lock(mutex_);
+            unsound_ = sound_ == static_cast<uint32_t>(wire::Soundness::Unsound);
+            if (sound_ == static_cast<uint32_t>(wire::Soundness::Sound)) return true;
+        }
+        if (deadline.passed() && !unsound_) return true; // a window that nobody draws into; were that to change, the node would see it
+        if (unsound_) {
+            link_.lose("its frames build on earlier ones that it did not draw; next time it draws them");
+            return false;
+        }
+        poll(nullptr, 0, 5);
+        sendQueue();
+    }
+    return false;
+}
+
+// False: the node is lost.
+bool NodeCatchUp::synchronize(bool draws) {
+    const uint32_t number = ++asked_;
+    const uint32_t arguments[] = {number, draws ? 1U : 0U};
+    sendCommand(wire::HeadCommand::Synchronize, bytesOf(arguments));
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, std::chrono::milliseconds(kSyncLimitMs), [&] { return lost_ || reached_ >= number; });
+    if (!lost_ && reached_ < number) link_.lose("it does not come to the end of what it is given");
+    return !lost_ && reached_ >= number;
+}
+
+} // namespace mural

@@ -1,0 +1,95 @@
+// Nodes that come again. Everything that decides what a node is given, and from where on it is one of all, happens under the
+// lock that orders packets; only sending what it has missed does not.
+#include <cstring>
+
+#include "nodes/head/head_command.hpp"
+#include "nodes/head/node_set.hpp"
+
+namespace mural {
+
+void NodeSet::keepLocked(uint32_t stream, std::span<const std::byte> payload) {
+    if (!kept_) return;
+    uint32_t words[2] = {};
+    if (wire::clientOf(stream) != 0) {
+        kept_->append(stream, payload);
+    } else if (payload.size() >= sizeof(words)) {
+        std::memcpy(words, payload.data(), sizeof(words));
+        if (words[0] == static_cast<uint32_t>(wire::HeadCommand::ClientGone)) kept_->programGone(words[1]);
+    }
+}
+
+void NodeSet::replace(int node, std::unique_ptr<NodeLink> link) {
+    NodeLink& before = this->link(node);
+    before.end();
+    if (before.byMulticast()) multicast_->remove(node, "the head has lost it");
+    link->setFeed(NodeLink::Feed::Nothing);
+    link->setMember(false);
+    links_[static_cast<size_t>(node)] = link.get();
+    owned_.push_back(std::move(link));
+}
+
+Result<KeptStream::Snapshot> NodeSet::beginCatchUp(int node, TurnsAsked* turns, Deadline deadline) {
+    uint64_t place = 0;
+    {
+        ++joining_;
+        const std::lock_guard lock(sendMutex_);
+        --joining_;
+        place = kept_->hold();
+        if (turns) {
+            for (NodeLink* link : links_)
+                if (link->member() && link->alive() && turns->knows(link->place().node)) turns->asked.push_back(link);
+            sendLocked(wire::streamOf(0, 0), commandBytes(wire::HeadCommand::TellTurns, std::as_bytes(std::span(&turns->number, 1))));
+            flushLocked();
+        }
+        link(node).setFeed(NodeLink::Feed::Queued);
+    }
+    return kept_->snapshot(place, deadline);
+}
+
+Result<void> NodeSet::admit(int node, const std::function<Admission(uint32_t view)>& announce) {
+    NodeLink& to = link(node);
+    std::unique_ptr<StreamEconomy::Coder> history; // made, and the old one freed, while others send
+    if (to.joinsBatches()) {
+        auto fresh = StreamEconomy::freshCoder(economy_->limits());
+        if (!fresh) return fresh.error();
+        history = std::move(*fresh);
+    }
+    ++joining_;
+    std::unique_lock lock(sendMutex_);
+    --joining_;
+    sendBatchLocked();
+    const Admission admission = announce(++view_);
+    if (admission == Admission::Refused) return {};
+    const uint32_t arguments[] = {view_, static_cast<uint32_t>(node), admission == Admission::FirstMember ? 1U : 0U};
+    sendLocked(wire::streamOf(0, 0), commandBytes(wire::HeadCommand::Member, std::as_bytes(std::span(arguments))));
+    to.setMember(true);
+    if (history) {
+        // The last of the old batches says it to those that get batches; this node gets them from here on.
+        const auto anew = commandBytes(wire::HeadCommand::NewHistory, {});
+        economy_->add(wire::streamOf(0, 0), anew);
+        sendBatchLocked();
+        history = economy_->beginAnew(std::move(history));
+        const wire::PacketHeader header{static_cast<uint32_t>(anew.size()), wire::streamOf(0, 0)};
+        sendTo(to, std::as_bytes(std::span(&header, 1)), anew);
+        to.setInBatches(true);
+    }
+    sendBatchLocked();
+    flushLinksLocked();
+    lock.unlock();
+    return {};
+}
+
+bool NodeSet::goDirect(int node, bool now) {
+    ++joining_;
+    const std::lock_guard lock(sendMutex_);
+    --joining_;
+    NodeLink& to = link(node);
+    if (now)
+        for (const auto& packet : to.takeQueue()) to.sendNow(packet, {});
+    if (!to.queueEmpty()) return false;
+    to.setFeed(NodeLink::Feed::Direct);
+    to.flushNow();
+    return true;
+}
+
+} // namespace mural

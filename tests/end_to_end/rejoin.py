@@ -1,0 +1,473 @@
+#!/usr/bin/env python3
+"""Nodes that are killed during a run come back: picture files are compared with the native ones. What comes behind the
+return is exact, the other nodes' part always is, and nobody waits for long.
+
+  rejoin.py --build build/release [--cases one,several] [--list]
+"""
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+import failures
+import pictures
+import programs
+
+failures.CASES.clear()  # only those of this file
+case = failures.case
+WIDTH, HEIGHT = 252, 190
+BACK = "is back in the picture"
+PROGRAM = "long_scene"
+
+
+def native_pictures(context, folder, frames, environment):
+    """{frame: Picture} as the program draws them alone."""
+    os.makedirs(folder, exist_ok=True)
+    run = programs.run_program(context.build, PROGRAM, os.path.join(folder, "native"), context.display,
+                               "%dx%d" % (WIDTH, HEIGHT), frames, more_environment=environment)
+    if run.status != 0:
+        raise SystemExit("the program fails natively: status %s: %s" % (run.status, run.output[-200:]))
+    return [pictures.read_ppm(path) for _, path in sorted(run.frames().items())]
+
+
+def saved_pictures(folder):
+    return [pictures.read_png(os.path.join(folder, name)) for name in sorted(os.listdir(folder))]
+
+
+class Watch:
+    """One run of the program with pictures into files, and what became of its nodes."""
+
+    def __init__(self, context, frames, options=(), environment=None, tiles="2x1", saved=None):
+        self.context, self.frames, self.tiles = context, frames, tiles
+        self.saved = saved # frames of which there is a picture, from 1; None: all
+        self.environment = {"SCENE_PAUSE_US": "15000"}
+        self.environment.update(environment or {})
+        self.folder = tempfile.TemporaryDirectory(prefix="mural-rejoin.")
+        self.out = os.path.join(self.folder.name, "out")
+        self.report_file = os.path.join(self.folder.name, "report.json")
+        self.options = ["--tiles", tiles, "--display", "none", "--out", self.out, "--report", self.report_file] + list(options)
+        if saved:
+            self.options += ["--save", ",".join(map(str, saved))]
+
+    def start(self):
+        return self.context.run([self.context.program(PROGRAM), "--frames", str(self.frames), "--size", "%dx%d" % (WIDTH, HEIGHT)],
+                                self.options, self.environment)
+
+    def report(self):
+        with open(self.report_file, encoding="utf-8") as file:
+            return json.load(file)
+
+    def differing(self, run):
+        """By frame: the columns that differ from the native picture, or a text that says what is wrong."""
+        wrong = failures.check_end(run, 0)
+        if wrong is not None:
+            return wrong
+        saved = saved_pictures(self.out)
+        native = native_pictures(self.context, self.folder.name, self.frames, self.environment)
+        wanted = self.saved or range(1, self.frames + 1)
+        if len(saved) != len(wanted) or len(native) != self.frames:
+            return "%d pictures instead of %d, natively %d" % (len(saved), len(wanted), len(native))
+        native = [native[frame - 1] for frame in wanted]
+        return [columns_that_differ(a, b) for a, b in zip(native, saved)]
+
+
+def columns_that_differ(first, second):
+    found = set()
+    for a, b in zip(first.rows, second.rows):
+        if a != b:
+            found.update(x for x in range(len(a) // 3) if a[3 * x:3 * x + 3] != b[3 * x:3 * x + 3])
+    return found
+
+
+def nodes_of(run, count=2):
+    """The pids of the nodes by their number: the head starts them one after the other."""
+    return sorted(run.wait_for_processes(failures.NODE, count))
+
+
+def said(run, text):
+    return [line for line in run.standard_error if text in line]
+
+
+def judged(differing, spans, tail):
+    """spans: (first frame, columns that may differ), …: what may differ from there on, as long as it does. Behind the last
+    difference `tail` frames at least must be exact."""
+    allowed = set()
+    for frame, columns in enumerate(differing):
+        for first, more in spans:
+            if frame >= first:
+                allowed = allowed | set(more)
+        strange = columns - allowed
+        if strange:
+            return "frame %d differs in columns %d to %d" % (frame, min(strange), max(strange))
+    late = [frame for frame, columns in enumerate(differing) if columns]
+    if late and late[-1] >= len(differing) - tail:
+        return "frame %d of %d still differs, in %d columns" % (late[-1], len(differing), len(differing[late[-1]]))
+    return None
+
+
+def kill_and_look(context, frames=200, options=(), environment=None, victims=(1,), at=60, tiles="2x1", missing_columns=None, where="local", saved=None):
+    """Kills the nodes one after the other, each when the one before is back."""
+    watch = Watch(context, frames, options, environment, tiles, saved)
+    half = WIDTH // 2
+    columns = {0: range(0, half), 1: range(half, WIDTH)}
+    spans = []
+    with watch.start() as run:
+        if not run.wait_for_line("frame %d " % at):
+            return "the program did not start: " + " | ".join(run.standard_error[-3:])
+        for number in victims:
+            pids = nodes_of(run)
+            victim = node_pid(run, number, where)
+            frame = latest_frame(run)
+            spans.append((frame - 3, missing_columns or columns[number]))
+            os.kill(victim, signal.SIGKILL)
+            if not run.wait_for_line(BACK, 30):
+                return "node %d did not come back (of %s): %s" % (number, pids, " | ".join(run.standard_error[-4:]))
+            time.sleep(0.3) # a frame that was under way when it came is the other node's alone
+        differing = watch.differing(run)
+        if isinstance(differing, str):
+            return differing
+        wrong = judged(differing, spans, 20) if saved is None else "pictures differ" if any(differing) else None
+        if wrong is None and saved is None and not any(differing):
+            wrong = "nothing was ever missing: was nothing killed?"
+        nodes = watch.report()["nodes"]
+        joins = sum(node["joins"] for node in nodes)
+        if wrong is None and joins != len(victims):
+            wrong = "%d returns instead of %d" % (joins, len(victims))
+        for line in said(run, BACK):
+            print("    " + line)
+        return wrong
+
+
+def latest_frame(run):
+    frames = [int(line.split()[1]) for line in run.standard_output if line.startswith("frame ")]
+    return frames[-1] if frames else 0
+
+
+def node_pid(run, number, where="local"):
+    """Of the node with that number, as the head names it, or as they were started."""
+    back = [re.search(r"node %d \(%s, pid (\d+)\) " % (number, where) + BACK, line) for line in run.standard_error]
+    pids = [int(match.group(1)) for match in back if match]
+    return pids[-1] if pids else first_nodes(run)[number]
+
+
+def first_nodes(run):
+    if not hasattr(run, "first_nodes"):
+        run.first_nodes = nodes_of(run)
+    return run.first_nodes
+
+
+@case
+def one_node(context):
+    return kill_and_look(context)
+
+
+@case
+def several_one_after_the_other(context):
+    return kill_and_look(context, frames=400, victims=(1, 0, 1))
+
+
+@case
+def with_economy(context):
+    """What nodes have had begins anew with each that comes back."""
+    return kill_and_look(context, frames=400, options=("--economy", "on"), victims=(1, 0))
+
+
+@case
+def by_tcp(context):
+    """As if the nodes ran elsewhere: started again by the same command, connected again by TCP."""
+    return kill_and_look(context, options=("--nodes", "localhost,localhost", "--stream", "tcp"), where="localhost")
+
+
+@case
+def by_multicast(context):
+    """Who comes back gets the stream by its own connection, the other goes on with the group."""
+    return kill_and_look(context, options=("--nodes", "localhost,localhost", "--stream", "rsp://239.255.77.9:4299?interface=127.0.0.1"), where="localhost")
+
+
+@case
+def waiting_node(context):
+    """The head calls `mural node --wait` again; the secret and the port are as before."""
+    host = "127.0.0.2"  # an address of this machine that no daemon of its user listens at
+    with tempfile.TemporaryDirectory(prefix="mural-rejoin-key.") as folder:
+        secret = os.path.join(folder, "key")
+        with open(secret, "w", encoding="ascii") as file:
+            file.write(os.urandom(32).hex())
+        command = [context.mural, "node", "--wait", "--secret", secret, "--listen", host + ":4279", "--discovery", "beacon"]
+        with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as waiting:
+            try:
+                while "waits for heads" not in waiting.stderr.readline():
+                    if waiting.poll() is not None:
+                        return "the waiting node ended"
+                watch = Watch(context, 250, ("--nodes", "%s,%s" % (host, host), "--launch", "%s call --secret %s" % (context.mural, secret)))
+                with watch.start() as run:
+                    if not run.wait_for_line("frame 60 "):
+                        return "the program did not start: " + " | ".join(run.standard_error[-3:])
+                    frame = latest_frame(run)
+                    os.kill(children_of(waiting.pid)[1], signal.SIGKILL)
+                    if not run.wait_for_line(BACK, 30):
+                        return "it did not come back: " + " | ".join(run.standard_error[-4:])
+                    differing = watch.differing(run)
+                    return differing if isinstance(differing, str) else judged(differing, [(frame - 3, range(WIDTH))], 20)
+            finally:
+                waiting.terminate()
+
+
+def children_of(parent):
+    found = []
+    for entry in os.listdir("/proc"):
+        try:
+            with open("/proc/%d/stat" % int(entry), encoding="ascii", errors="replace") as file:
+                if int(file.read().rsplit(")", 1)[1].split()[1]) == parent:
+                    found.append(int(entry))
+        except (OSError, ValueError):
+            continue
+    return sorted(found)
+
+
+@case
+def wall_windows(context):
+    """Nodes that show their tiles themselves: the newcomer opens its window again, and nothing is left behind."""
+    with context.run([context.program(PROGRAM), "--frames", "200", "--size", "%dx%d" % (WIDTH, HEIGHT)],
+                     ("--tiles", "2x1", "--display", "windows"), {"SCENE_PAUSE_US": "15000"}) as run:
+        if not run.wait_for_line("frame 60 "):
+            return "the program did not start: " + " | ".join(run.standard_error[-3:])
+        os.kill(first_nodes(run)[1], signal.SIGKILL)
+        if not run.wait_for_line(BACK, 30):
+            return "it did not come back: " + " | ".join(run.standard_error[-4:])
+        wrong = failures.check_end(run, 0)
+        return "the wall was lost: " + " | ".join(said(run, "windows")) if wrong is None and said(run, "wall windows are lost") else wrong
+
+
+@case
+def in_turns(context):
+    """Nodes that draw every second frame each: while one is away, its frames have no picture."""
+    return kill_and_compare_ends(context, ("--dplex", "2"), "1x1", (1,))
+
+
+@case
+def all_that_take_turns(context):
+    """Nobody is left that knows whose turn it is: it begins anew."""
+    return kill_and_compare_ends(context, ("--dplex", "3"), "1x1", (0, 1, 2), compared=100)
+
+
+@case
+def turns_over_earlier_frames(context):
+    """One node goes on drawing all frames: it comes back as that one, or as another."""
+    for victim in (0, 1):
+        wrong = kill_and_compare_ends(context, ("--dplex", "2"), "1x1", (victim,), environment={"SCENE_KEEPS": "1"}, fewest=100)
+        if wrong is not None:
+            return "node %d: %s" % (victim, wrong)
+    return None
+
+
+@case
+def two_eyes(context):
+    return kill_and_compare_ends(context, ("--stereo", "side-by-side"), "1x1", (1,), against=("--stereo", "side-by-side", "--restart-nodes", "0"))
+
+
+@case
+def ranges_are_not_started_again(context):
+    """Nodes that share draws: said in the line of the loss."""
+    watch = Watch(context, 100, ("--db", "2"), tiles="1x1")
+    with watch.start() as run:
+        if not run.wait_for_line("frame 30 "):
+            return "the program did not start: " + " | ".join(run.standard_error[-3:])
+        known = set(first_nodes(run))
+        os.kill(first_nodes(run)[1], signal.SIGKILL)
+        if fresh_node(run, known, 1):
+            return "it was started again"
+        wrong = failures.check_end(run, 0)
+        if wrong is None and len(said(run, "(--db) are not started again")) != 1:
+            wrong = "it was not said: " + " | ".join(run.standard_error[-3:])
+        return wrong
+
+
+@case
+def frames_over_earlier_frames(context):
+    """Nothing clears: what it left out would be missing. It finds that out before anybody sees it, and draws all."""
+    return kill_and_look(context, frames=500, environment={"SCENE_KEEPS": "1"})
+
+
+@case
+def nodes_that_are_busy(context):
+    """No pause: the nodes are what everybody waits for, and the newcomer is no faster."""
+    return kill_and_look(context, frames=1600, environment={"SCENE_PAUSE_US": "0"}, at=100, saved=(50, 1500, 1550, 1600))
+
+
+@case
+def killed_while_it_catches_up(context):
+    """Twice on its way: tried again, and back in the end."""
+    watch = Watch(context, 500)
+    half = WIDTH // 2
+    with watch.start() as run:
+        if not run.wait_for_line("frame 60 "):
+            return "the program did not start: " + " | ".join(run.standard_error[-3:])
+        known = set(first_nodes(run))
+        frame = latest_frame(run)
+        os.kill(first_nodes(run)[1], signal.SIGKILL)
+        for delay in (0.0, 0.12):
+            fresh = fresh_node(run, known)
+            if not fresh:
+                return "it was not started again"
+            known.add(fresh)
+            time.sleep(delay)
+            os.kill(fresh, signal.SIGKILL)
+        if not run.wait_for_line(BACK, 30):
+            return "it did not come back: " + " | ".join(run.standard_error[-4:])
+        differing = watch.differing(run)
+        if isinstance(differing, str):
+            return differing
+        tried = len(said(run, "did not come back:")) + len(said(run, "was lost:")) - 1
+        if tried != 2:
+            return "%d failed tries were said instead of 2: %s" % (tried, " | ".join(run.standard_error[-6:]))
+        return judged(differing, [(frame - 3, range(half, WIDTH))], 20)
+
+
+def fresh_node(run, known, seconds=15):
+    deadline = time.monotonic() + seconds
+    while time.monotonic() < deadline:
+        fresh = [pid for pid in run.processes(failures.NODE) if pid not in known]
+        if fresh:
+            return fresh[0]
+        time.sleep(0.002)
+    return None
+
+
+def kill_and_compare_ends(context, options, tiles, victims, against=None, environment=None, compared=150, fewest=300):
+    """Frames that no node lived to show have no picture: the first and the last ones are compared."""
+    watch = Watch(context, 500, options, environment, tiles) # on a busy machine a return takes seconds
+    with watch.start() as run:
+        if not run.wait_for_line("frame 60 "):
+            return "the program did not start: " + " | ".join(run.standard_error[-3:])
+        frame = latest_frame(run)
+        pids = first_nodes(run)
+        for number in victims:
+            os.kill(pids[number], signal.SIGKILL)
+        for _ in victims:
+            if not run.wait_for_line(BACK, 30):
+                return "they did not come back: " + " | ".join(run.standard_error[-6:])
+        wrong = failures.check_end(run, 0)
+        if wrong is not None:
+            return wrong
+        saved = saved_pictures(watch.out)
+        native = native_pictures(context, watch.folder.name, watch.frames, watch.environment) if against is None else undisturbed(context, watch, against)
+        if len(saved) < fewest or len(saved) > watch.frames:
+            return "%d pictures of %d frames" % (len(saved), watch.frames)
+        before = [columns_that_differ(a, b) for a, b in zip(native[:frame - 3], saved)]
+        behind = [columns_that_differ(a, b) for a, b in zip(native[-compared:], saved[-compared:])]
+        if any(before) or any(behind):
+            return "pictures differ: %d before, %d behind" % (sum(map(bool, before)), sum(map(bool, behind)))
+        return None
+
+
+def undisturbed(context, watch, options):
+    """The pictures of a run of the same kind in which nothing is killed."""
+    other = Watch(context, watch.frames, options, tiles=watch.tiles)
+    with other.start() as run:
+        run.status()
+        return saved_pictures(other.out)
+
+
+@case
+def all_nodes_at_once(context):
+    """The program waits for them; the frames behind their return are exact."""
+    return kill_and_compare_ends(context, (), "2x1", (0, 1))
+
+
+@case
+def dies_again_and_again(context):
+    """It is tried as often as was asked for, then it is said, once, that it stays lost."""
+    watch = Watch(context, 300, options=("--restart-nodes", "2"))
+    half = WIDTH // 2
+    with watch.start() as run:
+        if not run.wait_for_line("frame 60 "):
+            return "the program did not start: " + " | ".join(run.standard_error[-3:])
+        known = set(first_nodes(run))
+        frame = latest_frame(run)
+        os.kill(first_nodes(run)[1], signal.SIGKILL)
+        for _ in range(2):
+            fresh = fresh_node(run, known)
+            if not fresh:
+                return "it was not started again"
+            known.add(fresh)
+            os.kill(fresh, signal.SIGKILL)
+        if fresh_node(run, known, 4):
+            return "it was started a third time"
+        differing = watch.differing(run)
+        if isinstance(differing, str):
+            return differing
+        if len(said(run, "tiles stay as they were")) != 2: # until it is back; after 2 tries
+            return "it was not said that it stays lost: " + " | ".join(run.standard_error[-6:])
+        return judged(differing, [(frame - 3, range(half, WIDTH))], -1)
+
+
+def lost_for_good(context, options, words):
+    """As the node was lost, so it stays; the line of the loss has the words once."""
+    watch = Watch(context, 150, options=options)
+    half = WIDTH // 2
+    with watch.start() as run:
+        if not run.wait_for_line("frame 60 "):
+            return "the program did not start: " + " | ".join(run.standard_error[-3:])
+        known = set(first_nodes(run))
+        frame = latest_frame(run)
+        os.kill(first_nodes(run)[1], signal.SIGKILL)
+        if fresh_node(run, known, 1):
+            return "it was started again"
+        differing = watch.differing(run)
+        if isinstance(differing, str):
+            return differing
+        if len(said(run, words)) != 1:
+            return "it was not said: " + " | ".join(run.standard_error[-3:])
+        return judged(differing, [(frame - 3, range(half, WIDTH))], -1)
+
+
+@case
+def never(context):
+    """--restart-nodes 0."""
+    return lost_for_good(context, ("--restart-nodes", "0"), "was lost: ")
+
+
+@case
+def more_than_is_kept(context):
+    """A program that has sent more than --store: said in the line of the loss, and not tried."""
+    return lost_for_good(context, ("--store", "4MiB"), "--store gives more")
+
+
+@case
+def planted_fault_is_seen(context):
+    """One packet of what a node is given is lost: the pictures must show it."""
+    wrong = kill_and_look(context, environment={"MURAL_PLANT": "rejoin"})
+    return None if wrong is not None and "still differs" in wrong else "nobody saw it: %s" % wrong
+
+
+@case
+def large_store(context):
+    """256 MiB of textures: how long it takes, and what the other node's frames took meanwhile."""
+    watch = Watch(context, 700, environment={"SCENE_MIB": "256"})
+    half = WIDTH // 2
+    with watch.start() as run:
+        if not run.wait_for_line("frame 150 ", 120):
+            return "the program did not start: " + " | ".join(run.standard_error[-3:])
+        frame = latest_frame(run)
+        os.kill(first_nodes(run)[1], signal.SIGKILL)
+        if not run.wait_for_line(BACK, 60):
+            return "it did not come back: " + " | ".join(run.standard_error[-4:])
+        back = latest_frame(run)
+        line = said(run, BACK)[0]
+        print("    " + line)
+        run.process.wait(120)
+        times = [float(line.split()[2]) for line in run.standard_output if line.startswith("frame ")]
+        for name, part in (("before", times[50:frame - 3]), ("meanwhile", times[frame - 3:back + 3]), ("behind", times[back + 3:])):
+            part = sorted(part)
+            print("    frames %s: %d, median %.1f ms, 95 %% %.1f ms, longest %.1f ms" % (name, len(part), part[len(part) // 2], part[len(part) * 95 // 100], part[-1]))
+        differing = watch.differing(run)
+        return differing if isinstance(differing, str) else judged(differing, [(frame - 3, range(half, WIDTH))], 20)
+
+
+if __name__ == "__main__":
+    sys.exit(failures.main())

@@ -1,0 +1,175 @@
+// A node becomes a member at one place of the stream: who waits for it, and from where on.
+#include <future>
+#include <gtest/gtest.h>
+
+#include "gl_opcodes.hpp"
+#include "nodes/head/answer_assembler.hpp"
+#include "nodes/head/frame_tracker.hpp"
+#include "nodes/head/kept_stream.hpp"
+#include "nodes/head/news_merger.hpp"
+#include "nodes/head/picture_assembler.hpp"
+#include "recording/record_walk.hpp"
+#include "tests/recording/recorded.hpp"
+
+namespace mural {
+namespace {
+
+constexpr uint32_t kView = 1;
+
+TEST(NodeJoins, picturesWaitForItFromItsPlaceOn) {
+    std::vector<uint32_t> frames;
+    PictureAssembler assembler(2, [&](WindowPicture picture) { frames.push_back(picture.frame); });
+    const auto part = [&](int node, uint32_t frame) {
+        const wire::PictureHeader header{1, 1, frame, node * 2, 0, 2, 1, 4, 1, 0, 0};
+        ByteBuffer rows = ByteBuffer::ofSize(8);
+        std::memset(rows.data(), 7, 8);
+        EXPECT_TRUE(assembler.part(node, header, std::move(rows)).ok());
+        assembler.frameDone(node, 1, 1, frame);
+    };
+    assembler.nodeLost(1);
+    part(0, 1);
+    assembler.nodeJoins(1, kView);
+    part(1, 3); // it is ahead, and frame 3 is behind its place…
+    part(0, 2); // …this one before: the other has not come to that place yet
+    EXPECT_EQ(frames, (std::vector<uint32_t>{1, 2}));
+    assembler.nodeInView(0, kView);
+    part(0, 3);
+    part(0, 4);
+    EXPECT_EQ(frames, (std::vector<uint32_t>{1, 2, 3})) << "frame 4 needs both";
+    part(1, 4);
+    EXPECT_EQ(frames.back(), 4u);
+    part(0, 5);
+    assembler.nodeLost(1);
+    EXPECT_EQ(frames.back(), 5u) << "lost again: not waited for";
+    assembler.nodeJoins(1, kView + 1);
+    part(0, 6);
+    EXPECT_EQ(frames.back(), 6u) << "nor before the other is where it joins";
+}
+
+TEST(NodeJoins, answersWaitForItFromItsPlaceOn) {
+    std::vector<std::pair<uint32_t, uint64_t>> sums;
+    AnswerAssembler assembler(2, [&](uint32_t, Reply reply) {
+        uint64_t value = 0;
+        std::memcpy(&value, reply.bytes.data(), sizeof value);
+        sums.emplace_back(reply.header.requestId, value);
+    });
+    const auto answer = [&](int node, uint32_t request, uint64_t value) {
+        ByteBuffer bytes = ByteBuffer::ofSize(sizeof value);
+        std::memcpy(bytes.data(), &value, sizeof value);
+        const wire::AnswerHeader header{1, request, static_cast<uint32_t>(wire::AnswerKind::Sum), 0, 0, 0, 0, 0, 0, 1};
+        EXPECT_TRUE(assembler.answer(node, header, std::move(bytes)).ok());
+    };
+    assembler.nodeLost(1);
+    assembler.nodeJoins(1, kView);
+    answer(0, 1, 10); // asked before
+    EXPECT_EQ(sums.size(), 1u);
+    assembler.nodeInView(0, kView);
+    answer(0, 2, 20);
+    EXPECT_EQ(sums.size(), 1u);
+    answer(1, 2, 5);
+    ASSERT_EQ(sums.size(), 2u);
+    EXPECT_EQ(sums[1], (std::pair<uint32_t, uint64_t>{2, 25}));
+    EXPECT_EQ(assembler.openRequests(), 0u);
+}
+
+TEST(NodeJoins, creditWaitsForIt) {
+    std::vector<uint32_t> finished;
+    FrameTracker tracker(2, [&](uint32_t, uint32_t f, uint32_t) { finished.push_back(f); });
+    const auto done = [&](int node, uint32_t frame) {
+        wire::FrameDoneMessage m{};
+        m.client = m.window = 1;
+        m.frame = frame;
+        m.width = m.height = 10;
+        return tracker.frameDone(node, m, 1).ok();
+    };
+    done(0, 1);
+    done(1, 1);
+    tracker.nodeLost(1, 2);
+    done(0, 2);
+    EXPECT_EQ(finished.back(), 2u);
+    tracker.nodeJoins(1); // nobody knows yet how far it is
+    done(0, 3);
+    EXPECT_EQ(finished.back(), 2u);
+    tracker.nodeJoined(1, {{1, 4}}, 3); // it has replayed frames 3 and 4 in silence
+    EXPECT_EQ(finished.back(), 3u);
+    done(0, 4);
+    EXPECT_EQ(finished.back(), 4u);
+    done(0, 5);
+    EXPECT_EQ(finished.back(), 4u);
+    EXPECT_TRUE(done(1, 4)) << "swapped late by another thread";
+    EXPECT_TRUE(done(1, 5));
+    EXPECT_EQ(finished.back(), 5u);
+    EXPECT_FALSE(done(1, 5));
+}
+
+TEST(NodeJoins, theOnlyNodeBringsItsFramesAlong) {
+    std::vector<uint32_t> finished;
+    FrameTracker tracker(1, [&](uint32_t, uint32_t f, uint32_t) { finished.push_back(f); });
+    tracker.nodeLost(0, 1);
+    tracker.nodeJoins(0);
+    tracker.nodeJoined(0, {{1, 7}}, 2); // the program waits for frame 7, which nobody lived to show
+    EXPECT_EQ(finished, (std::vector<uint32_t>{7}));
+}
+
+TEST(NodeJoins, itTellsNoNewsTwice) {
+    NewsMerger merger;
+    const wire::News news{1, 2, 1, 0, 0, 0, 0, 0};
+    EXPECT_TRUE(merger.isNew(0, news, "a"));
+    merger.nodeJoins(1);
+    EXPECT_FALSE(merger.isNew(0, news, "a") && merger.isNew(1, news, "a")) << "the second of each is one message";
+}
+
+size_t contextsIn(const KeptStream::Snapshot& snapshot) {
+    size_t contexts = 0;
+    for (const recording::KeptPacket& packet : snapshot.packets) {
+        recording::RecordWalk walk(packet.payload);
+        for (recording::RecordView r; walk.next(r);) contexts += r.opcode == wire::kOpCreateContext ? 1 : 0;
+    }
+    return contexts;
+}
+
+TEST(KeptStream, givesAllThatCameBeforeAndForgetsWhoHasGone) {
+    KeptStream kept(1 << 20);
+    const auto makes = [&](uint32_t stream, uint32_t context) { kept.append(stream, recording::PacketBuilder().context(context).swap(1, context).bytes()); };
+    makes(wire::streamOf(1, 0), 7);
+    makes(wire::streamOf(2, 0), 8);
+    makes(wire::streamOf(1, 1), 9);
+    const uint64_t first = kept.hold();
+    makes(wire::streamOf(2, 0), 10); // behind it
+    const uint64_t second = kept.hold();
+    auto later = std::async(std::launch::async, [&] { return kept.snapshot(second, Deadline::inMs(10'000)); });
+    auto snapshot = kept.snapshot(first, Deadline::inMs(10'000));
+    ASSERT_TRUE(snapshot.ok());
+    EXPECT_EQ(contextsIn(*snapshot), 3u);
+    ASSERT_EQ(snapshot->frames.size(), 2u);
+    EXPECT_EQ(snapshot->frames[0].frame, 9u);
+    EXPECT_EQ(snapshot->frames[1].frame, 8u);
+    auto all = later.get();
+    ASSERT_TRUE(all.ok());
+    EXPECT_EQ(contextsIn(*all), 4u);
+    kept.programGone(1);
+    auto rest = kept.snapshot(kept.hold(), Deadline::inMs(10'000));
+    ASSERT_TRUE(rest.ok());
+    EXPECT_EQ(contextsIn(*rest), 2u);
+}
+
+TEST(KeptStream, saysThatProgramsHaveSentTooMuchUntilTheyAreGone) {
+    KeptStream kept(1 << 20);
+    const auto fits = [&] { return kept.snapshot(kept.hold(), Deadline::inMs(10'000)).ok(); };
+    const std::vector<uint32_t> much(65536, 1); // of a command that no rule names: it stays
+    kept.append(wire::streamOf(1, 0), recording::PacketBuilder().context(1).window(1, 9, 9).record(wire::kOpMakeCurrent, {1, 1, 1}).bytes());
+    EXPECT_TRUE(fits());
+    for (int i = 0; i < 16; ++i) kept.append(wire::streamOf(1, 0), recording::PacketBuilder().longRecord(op::glAlphaFragmentOp1ATI, much).bytes());
+    kept.append(wire::streamOf(2, 0), recording::PacketBuilder().context(1).bytes());
+    EXPECT_FALSE(fits());
+    EXPECT_FALSE(kept.complete());
+    kept.programGone(1);
+    EXPECT_FALSE(fits()) << "what they shared is not known any more";
+    kept.programGone(2);
+    EXPECT_TRUE(fits()) << "nobody is left";
+    kept.append(wire::streamOf(3, 0), recording::PacketBuilder().context(1).bytes());
+    EXPECT_TRUE(fits());
+}
+
+} // namespace
+} // namespace mural
