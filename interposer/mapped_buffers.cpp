@@ -214,6 +214,7 @@ bool readOwnCopy(ThreadState& t, GLuint buffer, uint64_t offset, void* into, uin
 
 void refreshBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t length, const char* by) {
     if (!nodesDraw(t) || !t.context->group->nodesWriteBuffers || buffer == 0 || !gReal.glBindBuffer || nodesLack(t, buffer)) return;
+    if (!gReal.glIsBuffer(buffer)) return; // a name without a buffer: to bind it would make one
     for (uint64_t at = 0; at < length; at += kAskedBytes) {
         const uint64_t count = length - at < kAskedBytes ? length - at : kAskedBytes;
         const void* bytes = askBuffer(t, buffer, offset + at, count, by);

@@ -54,6 +54,7 @@ bool VertexArrayMirror::setPointer(uint32_t slot, GLint size, GLenum type, GLsiz
     a.size = size;
     a.type = type;
     a.stride = stride;
+    a.bindingStride = stride != 0 ? stride : static_cast<GLsizei>(sizes::attributeBytes(size, type));
     a.flags = flags;
     a.relative = 0;
     const bool client = arrayBuffer_ == 0 && pointer != nullptr;
@@ -81,6 +82,11 @@ bool VertexArrayMirror::anyInMemory(GLuint name, uint32_t first, uint32_t end) {
 void VertexArrayMirror::moveToBuffer(GLuint name, uint32_t first, uint32_t end) {
     VertexArray* const va = find(name);
     for (uint32_t slot = first; slot < end; ++slot) va->set(va->client, slot, false);
+}
+
+void VertexArrayMirror::step(GLuint name, uint32_t slot, uint32_t as) {
+    VertexArray* const va = find(name);
+    va->slots[slot].stride = va->slots[as].bindingStride;
 }
 
 uint32_t VertexArrayMirror::slotOf(GLenum array) const {

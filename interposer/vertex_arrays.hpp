@@ -18,6 +18,7 @@ struct ArrayPointer {
     GLint size = 4;
     GLenum type = GL_FLOAT;
     GLsizei stride = 0;     // as given; 0: tightly packed
+    GLsizei bindingStride = 0; // of the binding with the same number, bytes
     uint32_t flags = 0;     // client_arrays::Flags
     GLuint divisor = 0;
     GLuint relative = 0;    // from the pointer on, bytes: glVertexAttribFormat
@@ -67,6 +68,8 @@ public:
     // Whether any of the slots from first on points to client memory, enabled or not; and that none does any more.
     [[nodiscard]] bool anyInMemory(GLuint name, uint32_t first, uint32_t end);
     void moveToBuffer(GLuint name, uint32_t first, uint32_t end);
+    // An array in memory steps as another does.
+    void step(GLuint name, uint32_t slot, uint32_t as);
     void bindArrayBuffer(GLuint buffer) { arrayBuffer_ = buffer; }
     [[nodiscard]] GLuint arrayBuffer() const { return arrayBuffer_; }
     void forgetBuffers(GLsizei n, const GLuint* names);

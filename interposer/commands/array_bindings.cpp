@@ -1,4 +1,5 @@
-// Bindings of ARB_vertex_attrib_binding name buffers, never client memory. Divisors are those of both.
+// Bindings of ARB_vertex_attrib_binding name buffers; one that names none leaves an array in memory where it is. Divisors
+// are those of both.
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
 #include "interposer/array_watch.hpp"
@@ -31,11 +32,21 @@ template <class Encode, class Real> void divideNamed(Encode encode, Real real, G
 template <class Encode, class Real> void divideBound(Encode encode, Real real, GLuint index, GLuint divisor) {
     divide(currentArray(*tThread), index, divisor, [=] { real(index, divisor); }, [=](ThreadState& t) { encode(t, index, divisor); });
 }
-template <class Encode, class Real> void bindNamed(Encode encode, Real real, GLuint array, GLuint index, GLuint binding) {
+template <class Local, class Send> void bindTo(GLuint array, GLuint index, GLuint binding, Local&& local, Send&& send) {
     ThreadState& t = *tThread;
+    const bool named = t.context && index < kGenerics && binding < kGenerics && t.context->arrays.knows(array);
+    const auto inMemory = [&](GLuint of) { return t.context->arrays.anyInMemory(array, genericSlot(of), genericSlot(of) + 1); };
+    if (named && inMemory(index) && inMemory(binding)) { // it stays where it is, in the steps of the other
+        if (!raisesNothing(*t.context, local)) return;
+        t.context->arrays.step(array, genericSlot(index), genericSlot(binding));
+        return send(t);
+    }
     const ArrayWatch watch(t, array, index == binding ? uint32_t{kSlots} : genericSlot(index));
-    encode(t, array, index, binding);
-    real(array, index, binding);
+    send(t);
+    local();
+}
+template <class Encode, class Real> void bindNamed(Encode encode, Real real, GLuint array, GLuint index, GLuint binding) {
+    bindTo(array, index, binding, [=] { real(array, index, binding); }, [=](ThreadState& t) { encode(t, array, index, binding); });
 }
 
 } // namespace
@@ -49,10 +60,8 @@ void mural_glVertexArrayVertexBindingDivisorEXT(GLuint vaobj, GLuint bindinginde
 void mural_glVertexArrayVertexAttribDivisorEXT(GLuint vaobj, GLuint index, GLuint divisor) { divideNamed(encode_glVertexArrayVertexAttribDivisorEXT, gReal.glVertexArrayVertexAttribDivisorEXT, vaobj, index, divisor); }
 
 void mural_glVertexAttribBinding(GLuint attribindex, GLuint bindingindex) {
-    ThreadState& t = *tThread;
-    const ArrayWatch watch(t, currentArray(t), attribindex == bindingindex ? uint32_t{kSlots} : genericSlot(attribindex));
-    encode_glVertexAttribBinding(t, attribindex, bindingindex);
-    gReal.glVertexAttribBinding(attribindex, bindingindex);
+    bindTo(currentArray(*tThread), attribindex, bindingindex, [=] { gReal.glVertexAttribBinding(attribindex, bindingindex); },
+           [=](ThreadState& t) { encode_glVertexAttribBinding(t, attribindex, bindingindex); });
 }
 void mural_glVertexArrayAttribBinding(GLuint vaobj, GLuint attribindex, GLuint bindingindex) { bindNamed(encode_glVertexArrayAttribBinding, gReal.glVertexArrayAttribBinding, vaobj, attribindex, bindingindex); }
 void mural_glVertexArrayVertexAttribBindingEXT(GLuint vaobj, GLuint attribindex, GLuint bindingindex) { bindNamed(encode_glVertexArrayVertexAttribBindingEXT, gReal.glVertexArrayVertexAttribBindingEXT, vaobj, attribindex, bindingindex); }

@@ -1,5 +1,6 @@
 #include "interposer/commands/quiet.hpp"
 
+#include "interposer/asking.hpp"
 #include "interposer/pixel_store.hpp"
 
 namespace mural::quiet {
@@ -42,6 +43,13 @@ void clearDepthStencil(GLuint framebuffer, GLenum buffer, GLint drawBuffer, GLfl
         if (clearsBuffer(buffer, drawBuffer, false, GL_DEPTH_STENCIL)) gReal.glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &depth);
         else gReal.glClearNamedFramebufferfi(framebuffer, buffer, drawBuffer, depth, stencil);
     });
+}
+
+void settleArrays(const ThreadState& t) {
+    if (t.drawLocally || !t.context || t.context->compilingList) return;
+    stashError(*t.context, driverError());
+    gReal.glDrawArrays(GL_POINTS, 0, 0);
+    (void)driverError(); // not the program's
 }
 
 void rectangle(const ThreadState& t) {

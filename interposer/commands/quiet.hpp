@@ -39,6 +39,10 @@ inline bool vertex(const ThreadState& t, GLuint index) {
     return index == 0 && !t.drawLocally && t.context && t.context->openPrimitive != kNoPrimitive;
 }
 
+// Before a command that makes the driver look at vertex arrays without a draw. Mesa settles them in draws, also in those of
+// nothing, but takes up what they say only in others: when arrays change in between, glRasterPos* finds them half changed and
+// never ends (Mesa 22.3, glDisableVertexAttribArray(0) after glDrawArrays of nothing).
+void settleArrays(const ThreadState& t);
 void rectangle(const ThreadState& t);
 void evalMesh2(GLenum mode, GLint i1, GLint i2, GLint j1, GLint j2);
 void drawPixels(const ThreadState& t, GLsizei width, GLsizei height, GLenum format, GLenum type, const void* pixels);

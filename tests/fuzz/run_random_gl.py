@@ -126,7 +126,7 @@ class Hunt:
         """All profiles by turns, until the seeds or the time are over."""
         first, last = self.arguments.first_seed, None
         if self.arguments.seeds:
-            first, last = (int(n) for n in self.arguments.seeds.split(":"))
+            first, last = self.arguments.seeds
         if self.arguments.today:
             first = int(time.strftime("%Y%m%d", time.gmtime())) * 1000
             print("seeds of today: --first-seed %d repeats them" % first, flush=True)
@@ -224,11 +224,22 @@ def parse_arguments():
     parser.add_argument("--seconds", type=float, help="stop after that long")
     parser.add_argument("--first-seed", type=int, default=1)
     parser.add_argument("--today", action="store_true", help="seeds from one on that the date gives")
-    parser.add_argument("--seeds", metavar="FIRST:LAST", help="these, and no more")
+    parser.add_argument("--seeds", metavar="FIRST:LAST", type=span_of, help="these, and no more")
     parser.add_argument("--case", metavar="\"SEED STEPS\"", help="one case, with its calls")
     parser.add_argument("--limit", type=float, default=120, help="the longest that one run may take, in seconds")
     parser.add_argument("--no-shrink", action="store_true", help="show differences as they are found")
     return parser.parse_args()
+
+
+def span_of(text):
+    """"17:20", or "17" alone."""
+    try:
+        numbers = [int(number) for number in text.split(":")]
+    except ValueError:
+        numbers = []
+    if len(numbers) not in (1, 2) or numbers[0] > numbers[-1]:
+        raise argparse.ArgumentTypeError("'%s' is not FIRST:LAST, as in 17:20" % text)
+    return numbers[0], numbers[-1]
 
 
 def main():

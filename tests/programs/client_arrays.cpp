@@ -2,6 +2,7 @@
 // memory that changes between draws, client arrays with element buffers and the reverse.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
+#include "tests/programs/support/shaders.hpp"
 #include "tests/programs/support/show.hpp"
 
 #include <cstring>
@@ -321,6 +322,22 @@ void drawReformatted(int frame) {
     glDisableVertexAttribArray(0);
 }
 
+// A binding that names no buffer leaves the array where it is, and says how far its vertices are apart.
+void drawRebound(int frame) {
+    const auto places = band<GLfloat>(4, 16, frame);
+    glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 16, places.data());
+    glEnableVertexAttribArray(0);
+    glVertexAttribPointer(5, 2, GL_FLOAT, GL_FALSE, 32, places.data() + 1);
+    glColor3f(0.4F, 0.9F, 0.7F);
+    enterCell();
+    glVertexAttribBinding(0, 5);
+    glDrawArrays(GL_LINE_STRIP, 0, 6);
+    enterCell();
+    glVertexArrayAttribBinding(0, 0, 0);
+    glDrawArrays(GL_LINE_STRIP, 0, 12);
+    glDisableVertexAttribArray(0);
+}
+
 void drawAfterPoppedClientState(int frame) {
     const auto places = band<GLfloat>(2, 8, frame);
     const auto others = band<GLshort>(2, 4, frame + 1);
@@ -432,6 +449,32 @@ void drawMovedByName(int frame) {
     glDisableVertexAttribArray(0);
 }
 
+// Attribute 0 is the vertex, and then it is not: a shader makes the raster position behind the draws. While Mesa has seen few
+// changes of arrays, draws of nothing leave it in a state in which that never ends.
+void setRasterPosition() {
+    const GLuint program = buildProgram({{GL_VERTEX_SHADER, "#version 110\nattribute vec4 place, second, third;\nvoid main() { gl_Position = place + second + third; }\n"}},
+                                        [](unsigned its) {
+                                            glBindAttribLocation(its, 0, "place");
+                                            glBindAttribLocation(its, 1, "second");
+                                            glBindAttribLocation(its, 2, "third");
+                                        });
+    static const GLfloat values[24] = {};
+    for (GLuint i = 0; i < 3; ++i) {
+        glVertexAttribPointer(i, 4, GL_FLOAT, GL_FALSE, 0, values + 4 * i);
+        glEnableVertexAttribArray(i);
+    }
+    glVertexPointer(2, GL_FLOAT, 0, values + 6);
+    glEnableClientState(GL_VERTEX_ARRAY);
+    glUseProgram(program);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDisableVertexAttribArray(0);
+    glRasterPos3f(0.25F, 0.25F, 0.5F);
+    glUseProgram(0);
+    glDisableClientState(GL_VERTEX_ARRAY);
+    glDisableVertexAttribArray(1);
+    glDisableVertexAttribArray(2);
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -439,7 +482,10 @@ int main(int argc, char** argv) {
         argc,
         argv,
         {},
-        [](Window&) { makeTextures(); },
+        [](Window&) {
+            setRasterPosition();
+            makeTextures();
+        },
         [](Window&, int frame) {
             glClearColor(0.1F, 0.05F, 0.1F, 1);
             glClear(GL_COLOR_BUFFER_BIT);
@@ -459,6 +505,7 @@ int main(int argc, char** argv) {
             drawMixedWithBuffers(frame);
             drawAfterPoppedClientState(frame);
             drawReformatted(frame);
+            drawRebound(frame);
             drawFromBefore(frame);
             drawSwitchedByName(frame);
             drawMovedByName(frame);

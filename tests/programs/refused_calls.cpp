@@ -162,6 +162,19 @@ void nameBuffers() {
     glDeleteBuffers(2, buffers);
 }
 
+// The other direct calls refuse a name that has no buffer yet, and make none, also while nodes may write into buffers.
+void nameWithoutBuffer() {
+    glBindImageTexture(0, 0, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA8);
+    GLuint buffer = 0;
+    glGenBuffers(1, &buffer);
+    GLuint told = 7;
+    glGetNamedBufferSubData(buffer, 0, 4, &told);
+    showBits(34, glGetError());
+    showBits(35, glIsBuffer(buffer) == GL_TRUE ? 1U : 2U);
+    showBits(36, told);
+    glDeleteBuffers(1, &buffer);
+}
+
 // Meshes are lines and strips; the geometry shader takes triangles. Empty ones have no rows or rows of nothing.
 void mesh(GLuint triangles) {
     const GLfloat places[] = {-0.9F, 0.5F, 0, -0.5F, 0.5F, 0, -0.9F, 0.9F, 0, -0.5F, 0.9F, 0};
@@ -334,6 +347,7 @@ int main(int argc, char** argv) {
         read();
         packed();
         nameBuffers();
+        nameWithoutBuffer();
         mesh(triangles);
         useNoProgram(shifted);
         inPrimitive();

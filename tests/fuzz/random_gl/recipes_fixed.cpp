@@ -215,7 +215,10 @@ void lights(World& w) {
 void stacks(World& w) {
     switch (w.random.below(4)) {
     case 0: GL(glPushAttrib, w.random.chance(60) ? GL_ALL_ATTRIB_BITS : w.random.next() & 0xfffffU); break;
-    case 1: GL(glPopAttrib); break;
+    case 1: // a primitive settles current values: Mesa gives those set before a pop once more at the next flush otherwise
+        GL(glBegin, GL_POINTS), GL(glEnd);
+        GL(glPopAttrib);
+        break;
     case 2: GL(glPushClientAttrib, w.random.chance(60) ? GL_CLIENT_ALL_ATTRIB_BITS : w.random.below(4)); break;
     default: GL(glPopClientAttrib);
     }

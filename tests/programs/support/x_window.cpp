@@ -76,6 +76,9 @@ XWindow::~XWindow() {
 }
 
 void XWindow::resize(int width, int height) {
+    XWindowAttributes now{};
+    XGetWindowAttributes(display_, id_, &now);
+    if (now.width == width && now.height == height) return; // the server would send no event
     XResizeWindow(display_, id_, static_cast<unsigned>(width), static_cast<unsigned>(height));
     waitFor(display_, {id_, ConfigureNotify, width, height});
 }

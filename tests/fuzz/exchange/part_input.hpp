@@ -1,0 +1,35 @@
+// Input of the fuzz target of parts of pictures: how the nodes fold (1 byte), width (2), height, first row and rows (1 each), then
+// the message that came.
+#pragma once
+
+#include "nodes/exchange/part_message.hpp"
+#include "tests/fuzz/network/input_reader.hpp"
+
+namespace mural::fuzz {
+
+constexpr int32_t kMostPartColumns = 300; // of more than four tiles
+constexpr int32_t kMostPartRows = 140;
+constexpr size_t kPartHeadBytes = 6;
+
+struct ExpectedPart {
+    PictureId id;
+    compositor::RowRange rows;
+    FoldRule rule;
+    bool named = false; // the message is given the name of the picture that is waited for, so that what is behind it is looked at
+};
+
+inline ExpectedPart readExpectedPart(InputReader& in) {
+    constexpr compositor::DepthFunction kOrders[] = {compositor::DepthFunction::Less, compositor::DepthFunction::LessOrEqual, compositor::DepthFunction::Greater, compositor::DepthFunction::GreaterOrEqual};
+    const unsigned how = in.byte();
+    const bool less = how % 4 < 2;
+    ExpectedPart e;
+    e.rule = {kOrders[how % 4], 0xff102030u, less ? 0xffffffffu : 0u, (how & 4) != 0};
+    e.named = (how & 8) != 0;
+    const int32_t width = in.half() % kMostPartColumns + 1, height = in.byte() % kMostPartRows + 1;
+    e.id = {3, 7, {5, 9, width, height}};
+    e.rows.first = in.byte() % height;
+    e.rows.end = e.rows.first + 1 + in.byte() % (height - e.rows.first);
+    return e;
+}
+
+} // namespace mural::fuzz

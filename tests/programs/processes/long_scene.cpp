@@ -1,0 +1,151 @@
+// Many frames that show what earlier ones have made: textures of the start, of which a part is changed with every frame, a
+// buffer and a framebuffer object that are written to bit by bit, a display list, a query. A node that was started again in
+// the middle shows any of it that it was not given. SCENE_MIB in the environment: so many MiB of textures (8), SCENE_PAUSE_US
+// a pause in each frame (5000). Says "frame N T" on standard output before each: T are the milliseconds since the one before.
+// SCENE_KEEPS=1: only the first frame clears, the others draw over what was there.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <unistd.h>
+#include <utility>
+#include <vector>
+
+#include "tests/programs/support/gl.hpp"
+#include "tests/programs/support/program.hpp"
+#include "tests/programs/support/show.hpp"
+
+using namespace programs;
+
+namespace {
+
+constexpr int kSide = 1024; // of a texture, 4 MiB
+constexpr int kChanged = 16; // texels of it that a frame changes, each way
+constexpr int kPoints = 4096;
+constexpr int kSceneSide = 128;
+
+std::vector<GLuint> textures;
+GLuint buffer, list, scene, framebuffer;
+
+int fromEnvironment(const char* name, int otherwise) {
+    const char* text = std::getenv(name);
+    return text ? std::atoi(text) : otherwise;
+}
+
+void setUp(Window&) {
+    textures.resize(size_t(std::max(1, fromEnvironment("SCENE_MIB", 8) / 4)));
+    glGenTextures(GLsizei(textures.size()), textures.data());
+    std::vector<GLuint> texels(size_t{kSide} * kSide);
+    for (size_t i = 0; i < textures.size(); ++i) {
+        GLuint value = GLuint(i) * 2654435761U + 1;
+        for (GLuint& texel : texels) texel = value = value * 1664525U + 1013904223U;
+        glBindTexture(GL_TEXTURE_2D, textures[i]);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, kSide, kSide, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+    }
+    glGenTextures(1, &scene);
+    glBindTexture(GL_TEXTURE_2D, scene);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, kSceneSide, kSceneSide, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    glGenFramebuffers(1, &framebuffer);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, scene, 0);
+    glClear(GL_COLOR_BUFFER_BIT);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glGenBuffers(1, &buffer);
+    glBindBuffer(GL_ARRAY_BUFFER, buffer);
+    glBufferData(GL_ARRAY_BUFFER, kPoints * 2 * sizeof(GLfloat), nullptr, GL_DYNAMIC_DRAW);
+    const std::vector<GLfloat> nothing(size_t{kPoints} * 2, 0.0F);
+    glBufferSubData(GL_ARRAY_BUFFER, 0, GLsizeiptr(nothing.size() * sizeof(GLfloat)), nothing.data());
+    glBindBuffer(GL_ARRAY_BUFFER, 0);
+    list = glGenLists(1);
+    glNewList(list, GL_COMPILE);
+    glColor3f(0.2F, 0.9F, 0.4F);
+    glBegin(GL_TRIANGLES);
+    glVertex2f(-0.3F, -0.2F);
+    glVertex2f(0.4F, -0.1F);
+    glVertex2f(0.0F, 0.5F);
+    glEnd();
+    glEndList();
+}
+
+void quad(float left, float bottom, float right, float top) {
+    glBegin(GL_QUADS);
+    glTexCoord2f(0, 0);
+    glVertex2f(left, bottom);
+    glTexCoord2f(1, 0);
+    glVertex2f(right, bottom);
+    glTexCoord2f(1, 1);
+    glVertex2f(right, top);
+    glTexCoord2f(0, 1);
+    glVertex2f(left, top);
+    glEnd();
+}
+
+// A little more of everything that lasts.
+void grow(int frame) {
+    Sequence numbers(unsigned(frame) + 1);
+    std::vector<GLubyte> texels(size_t{kChanged} * kChanged * 4);
+    for (GLubyte& value : texels) value = numbers.byte();
+    glBindTexture(GL_TEXTURE_2D, textures[size_t(frame) % textures.size()]);
+    glTexSubImage2D(GL_TEXTURE_2D, 0, GLint(numbers.next() % (kSide - kChanged)), GLint(numbers.next() % (kSide - kChanged)), kChanged, kChanged, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+    const GLfloat point[] = {2 * numbers.unit() - 1, 2 * numbers.unit() - 1};
+    glBindBuffer(GL_ARRAY_BUFFER, buffer);
+    glBufferSubData(GL_ARRAY_BUFFER, GLintptr(size_t(frame % kPoints) * sizeof point), sizeof point, point);
+    glBindBuffer(GL_ARRAY_BUFFER, 0);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glViewport(0, 0, kSceneSide, kSceneSide);
+    glDisable(GL_TEXTURE_2D);
+    glColor3f(numbers.unit(), numbers.unit(), numbers.unit());
+    const float x = 2 * numbers.unit() - 1, y = 2 * numbers.unit() - 1;
+    quad(x, y, x + 0.1F, y + 0.1F);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+
+// The time from the last one's beginning to this one's.
+void sayFrame(int frame) {
+    static auto before = std::chrono::steady_clock::now();
+    const auto now = std::chrono::steady_clock::now();
+    const std::chrono::duration<double, std::milli> took = now - std::exchange(before, now);
+    std::printf("frame %d %.2f\n", frame, took.count());
+    std::fflush(stdout);
+}
+
+void draw(Window& window, int frame) {
+    sayFrame(frame);
+    grow(frame);
+    glViewport(0, 0, window.width(), window.height());
+    glClearColor(0.1F, 0.1F, 0.05F * float(frame % 12), 1);
+    static const bool keeps = fromEnvironment("SCENE_KEEPS", 0) != 0;
+    if (!keeps || frame == 0) glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    glEnable(GL_TEXTURE_2D);
+    glColor3f(1, 1, 1);
+    const size_t count = std::min<size_t>(textures.size(), 8);
+    for (size_t i = 0; i < count; ++i) {
+        glBindTexture(GL_TEXTURE_2D, textures[(size_t(frame) + i * 7) % textures.size()]);
+        const float left = -0.95F + 1.9F * float(i) / float(count);
+        quad(left, -0.9F, left + 1.8F / float(count), 0.1F);
+    }
+    glBindTexture(GL_TEXTURE_2D, scene);
+    quad(-0.9F, 0.15F, 0.9F, 0.95F);
+    glDisable(GL_TEXTURE_2D);
+    glPushMatrix();
+    glRotatef(float(frame) * 7, 0, 0, 1);
+    glCallList(list);
+    glPopMatrix();
+    glBindBuffer(GL_ARRAY_BUFFER, buffer);
+    glEnableClientState(GL_VERTEX_ARRAY);
+    glVertexPointer(2, GL_FLOAT, 0, nullptr);
+    glColor3f(1, 0.8F, 0.1F);
+    glDrawArrays(GL_POINTS, 0, kPoints);
+    glDisableClientState(GL_VERTEX_ARRAY);
+    glBindBuffer(GL_ARRAY_BUFFER, 0);
+    static const int pauseUs = fromEnvironment("SCENE_PAUSE_US", 5000);
+    usleep(useconds_t(pauseUs));
+}
+
+} // namespace
+
+int main(int argc, char** argv) { return runInGlxWindow(argc, argv, {}, setUp, draw); }
