@@ -10,7 +10,7 @@ namespace {
 constexpr double kNsPerSec = 1e9;
 // Of a new report; so that one piece that was interrupted does not turn the choice.
 constexpr double kWeight = 0.1;
-constexpr double kMeasuredWeight = 0.5; // there are fewer of these
+constexpr double kMeasuredWeight = 0.7; // there are fewer of these
 constexpr double kRecentWeight = 0.3;
 constexpr double kLinkWeight = 0.25;
 // Pieces differ, also of one class; but when the last few are so far from those before, the content is another one.
@@ -19,8 +19,11 @@ constexpr double kSizeChange = 0.02; // of the raw size: what small pieces do do
 constexpr uint64_t kSettled = 16;    // pieces before it may be another one again
 constexpr double kLinkChange = 1.5;
 // One piece in so many may be measured with another codec; mostly the share is what bounds it.
-constexpr uint64_t kMeasureEvery = 4;
+constexpr uint64_t kMeasureEvery = 3;
 constexpr double kStaleShares = 3; // of the share: what is stale may be as good as any
+constexpr double kStaleWorth = 4;
+constexpr double kNewAge = 1e6;    // pieces: more than any other waits
+constexpr double kMostOff = 4;     // times the estimate: a piece that took longer was interrupted, or shows it again
 // What a codec is thought to take before it was measured, against the best one.
 constexpr double kNewEncode = 8, kNewDecode = 4;
 // What was spent long ago pays for nothing now: per piece.
@@ -30,6 +33,7 @@ constexpr double kHiddenShare = 1.0 / 64;
 
 double farther(double a, double b) { return std::max(a, b) / std::max(std::min(a, b), 1e-12); }
 void approach(double& value, double report, double weight) { value += weight * (report - value); }
+double within(double report, double before) { return before > 0 ? std::clamp(report, before / kMostOff, before * kMostOff) : report; }
 double perByte(int64_t ns, uint64_t rawBytes) { return static_cast<double>(std::max<int64_t>(ns, 1)) / static_cast<double>(rawBytes); }
 
 } // namespace
@@ -71,19 +75,30 @@ double CodecSelector::measuringNsPerByte(const ClassState& s, size_t codec, size
     return codec == raw_ ? b.encodeNsPerByte + decode : kNewEncode * b.encodeNsPerByte + kNewDecode * decode;
 }
 
-// Of those that can be paid for, what is stale or new comes first, and then what was measured longest ago.
+// What measuring may tell for what it costs: a codec that was far behind is rarely looked at again, what is stale or new before all.
+double CodecSelector::worthMeasuring(const ClassState& s, size_t codec, size_t best) const {
+    const Estimate& e = s.codecs[codec];
+    const double behind = e.reports > 0 ? nsPerByte(e) / nsPerByte(s.codecs[best]) : 1;
+    const double age = e.reports > 0 ? static_cast<double>(s.pieces - e.measuredAt) * (e.stale ? kStaleWorth : 1) : kNewAge;
+    return age / (measuringNsPerByte(s, codec, best) * behind * behind * behind);
+}
+
+// The one that is most worth it, as soon as it can be paid for: cheaper ones that tell less would use up what it takes.
 std::optional<size_t> CodecSelector::toMeasure(const ClassState& s, size_t best, uint64_t rawBytes) const {
     if (s.codecs[best].reports == 0 || s.pieces % kMeasureEvery != 0) return std::nullopt; // of the first piece, nothing is to be compared with
     std::optional<size_t> found;
+    double most = 0;
     for (size_t i = 0; i < s.codecs.size(); ++i) {
-        const Estimate& e = s.codecs[i];
-        if (i == best) continue;
-        const double most = options_.measureShare * (e.stale ? kStaleShares : 1) * s.spentNs;
-        const bool known = i != raw_ || e.reports > 0; // copying is cheap, and a fast link can't wait for it
-        if (known && s.measuringNs + measuringNsPerByte(s, i, best) * static_cast<double>(rawBytes) > most) continue;
-        const Estimate* other = found ? &s.codecs[*found] : nullptr;
-        if (!other || (e.stale && !other->stale) || (e.stale == other->stale && e.measuredAt < other->measuredAt)) found = i;
+        const double worth = i == best ? 0 : worthMeasuring(s, i, best);
+        if (worth <= most) continue;
+        found = i;
+        most = worth;
     }
+    if (!found) return found;
+    const Estimate& e = s.codecs[*found];
+    const double limitNs = options_.measureShare * (e.stale ? kStaleShares : 1) * s.spentNs;
+    const bool mustBePaid = *found != raw_ || e.reports > 0; // copying is cheap, and a fast link can't wait for it
+    if (mustBePaid && s.measuringNs + measuringNsPerByte(s, *found, best) * static_cast<double>(rawBytes) > limitNs) return std::nullopt;
     return found;
 }
 
@@ -127,7 +142,7 @@ void CodecSelector::encoded(const TileClass& tile, size_t codec, uint64_t rawByt
         e.stale = false;
     } else {
         const double before = e.encodedPerByte;
-        approach(e.encodeNsPerByte, encode, kWeight);
+        approach(e.encodeNsPerByte, within(encode, e.encodeNsPerByte), kWeight);
         approach(e.encodedPerByte, size, kWeight);
         approach(e.recentPerByte, size, kRecentWeight);
         noticeChange(s, e);
@@ -148,7 +163,7 @@ void CodecSelector::decoded(const TileClass& tile, size_t codec, uint64_t rawByt
     if (rawBytes == 0 || codec >= codecs_.size()) return;
     Estimate& e = stateOf(tile).codecs[codec];
     const double decode = perByte(decodeNs, rawBytes);
-    approach(e.decodeNsPerByte, decode, e.decodeKnown ? kWeight : 1);
+    approach(e.decodeNsPerByte, within(decode, e.decodeNsPerByte), e.decodeKnown ? kWeight : 1);
     e.decodeKnown = true;
 }
 
@@ -162,11 +177,11 @@ void CodecSelector::measured(const TileClass& tile, size_t codec, uint64_t rawBy
     const double size = std::min(1.1, static_cast<double>(encodedBytes) / static_cast<double>(rawBytes) * ofSize);
     const double ofTime = std::clamp(used.encodeNsPerByte / std::max(s.usedEncodeNs, 1e-9), 0.5, 2.0);
     const double weight = e.reports == 0 || e.stale ? 1 : kMeasuredWeight;
-    approach(e.encodeNsPerByte, perByte(encodeNs, rawBytes) * ofTime, weight);
+    approach(e.encodeNsPerByte, within(perByte(encodeNs, rawBytes) * ofTime, e.encodeNsPerByte), weight);
     // A piece of which hardly anything is left says little about sizes: the others are what the link carries.
     approach(e.encodedPerByte, size, weight == 1 ? 1 : weight * std::clamp(s.usedPerByte / std::max(used.encodedPerByte, 1e-9), 0.05, 1.0));
     e.recentPerByte = e.encodedPerByte;
-    approach(e.decodeNsPerByte, perByte(decodeNs, rawBytes) * ofTime, e.decodeKnown ? weight : 1);
+    approach(e.decodeNsPerByte, within(perByte(decodeNs, rawBytes) * ofTime, e.decodeNsPerByte), e.decodeKnown ? weight : 1);
     e.decodeKnown = true;
     e.stale = false;
     ++e.reports;

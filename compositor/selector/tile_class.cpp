@@ -1,5 +1,6 @@
 #include "compositor/selector/tile_class.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "compositor/codecs/bitplane/word_arithmetic.hpp"
@@ -28,24 +29,26 @@ bool isNear(bitplane::Arithmetic a, uint32_t word, uint32_t above) {
 } // namespace
 
 TileClass classify(const PlaneView& plane) {
-    if (plane.width < 1 || plane.height < 2) return {plane.format, Activity::Busy};
+    if (plane.width < 2 || plane.height < 2) return {plane.format, Activity::Full, Change::Sharp};
     const bitplane::Arithmetic arithmetic = bitplane::arithmeticOf(plane.format);
     const size_t pixelBytes = bytesPerPixel(plane.format);
-    int equal = 0, near = 0;
+    int differ = 0, near = 0, repeated = 0;
     for (int32_t j = 0; j < kSampledUp; ++j)
         for (int32_t i = 0; i < kSampledAcross; ++i) {
             // Not in columns: what stands upright would be met by all or by none.
             const auto y = static_cast<int32_t>(1 + static_cast<int64_t>(plane.height - 2) * j / (kSampledUp - 1));
             const auto x = static_cast<int32_t>((static_cast<int64_t>(plane.width) * (i * kSampledUp + j * 5 % kSampledUp)) / (kSampledAcross * kSampledUp));
-            const size_t at = static_cast<size_t>(x) * pixelBytes;
+            const size_t at = static_cast<size_t>(std::max(x, 1)) * pixelBytes;
             const uint32_t word = wordAt(plane.row(y) + at), above = wordAt(plane.row(y - 1) + at);
-            equal += word == above;
+            if (word == above) continue;
+            ++differ;
             near += isNear(arithmetic, word, above);
+            repeated += word == wordAt(plane.row(y) + at - pixelBytes);
         }
-    if (equal == kSamples) return {plane.format, Activity::Empty};
-    if (equal >= kSamples * 31 / 32) return {plane.format, Activity::Still};
-    if (equal >= kSamples * 5 / 8) return {plane.format, Activity::Flat};
-    return {plane.format, near >= kSamples * 5 / 8 ? Activity::Smooth : Activity::Busy};
+    if (differ == 0) return {plane.format, Activity::Empty, Change::Smooth};
+    const Activity activity = differ <= kSamples * 3 / 8 ? Activity::Flat : Activity::Full;
+    if (repeated * 2 >= differ) return {plane.format, activity, Change::Repeated};
+    return {plane.format, activity, near * 8 >= differ * 5 ? Change::Smooth : Change::Sharp};
 }
 
 } // namespace mural::compositor

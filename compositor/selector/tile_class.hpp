@@ -8,17 +8,24 @@
 
 namespace mural::compositor {
 
+// How many pixels differ from those above them.
 enum class Activity : uint8_t {
-    Empty,  // all pixels of the sample are those above them
-    Still,  // nearly all are
-    Flat,   // most are
-    Smooth, // most are near
-    Busy,
+    Empty, // none of the sample
+    Flat,  // fewer than three in eight
+    Full,
+};
+
+// How those differ that do: bit planes are good at the first kind, searching for what was there before at the others.
+enum class Change : uint8_t {
+    Smooth,   // most by little
+    Repeated, // half of them are those on their left
+    Sharp,
 };
 
 struct TileClass {
     PlaneFormat format = PlaneFormat::Rgba8;
-    Activity activity = Activity::Busy;
+    Activity activity = Activity::Full;
+    Change change = Change::Sharp; // Smooth where none differs
     friend auto operator<=>(const TileClass&, const TileClass&) = default;
 };
 

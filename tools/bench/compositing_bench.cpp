@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
     app.add_option("FOLDER", folder, "with *.plane files of plane_capture")->required();
     app.add_flag("--quick", options.quick, "few turns: are the results right?");
     app.add_option("--turns", options.turns, "of each measurement")->check(CLI::Range(1, 1000))->capture_default_str();
-    app.add_option("--only", only, "codecs, kernels, selector")->delimiter(',')->check(CLI::IsMember({"codecs", "kernels", "selector"}));
+    app.add_option("--only", only, "codecs, kernels, selector, ranks")->delimiter(',')->check(CLI::IsMember({"codecs", "kernels", "selector", "ranks"}));
     app.add_option("--icet-kernels", options.icetLibrary, "icet_kernels.c built against IceT, to be measured beside ours");
     CLI11_PARSE(app, argc, argv);
     if (options.quick) options.turns = 2;
@@ -34,6 +34,7 @@ int main(int argc, char** argv) {
     run("codecs", benchCodecs);
     run("kernels", benchKernels);
     run("selector", benchSelector);
+    run("ranks", benchRanks);
     for (const std::string& fault : faults) fmt::print(stderr, "compositing_bench: {}\n", fault);
     fmt::print("\n{} planes, {} wrong results\n", planes->size(), faults.size());
     return faults.empty() ? 0 : 1;

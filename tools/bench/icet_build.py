@@ -1,4 +1,4 @@
-"""Builds icet_kernels.c against the sources of IceT, outside of the tree."""
+"""Builds icet_kernels.c and icet_ranks.c against the sources of IceT, outside of the tree."""
 
 import glob
 import os
@@ -44,8 +44,8 @@ def build(folder, bench_folder, into):
     with open(os.path.join(into, "mpi.h"), "w", encoding="utf-8"):
         pass
     sources = sorted(glob.glob(os.path.join(icet, "src", "ice-t", "*.c")) + glob.glob(os.path.join(icet, "src", "strategies", "*.c")))
-    command = ["cc", "-O2", "-w", "-shared", "-fPIC", "-fvisibility=hidden", "-I", into, "-I", os.path.join(icet, "src", "include"), "-o", library,
-               os.path.join(bench_folder, "icet_kernels.c")] + sources + ["-lm"]
+    command = ["cc", "-O2", "-w", "-shared", "-fPIC", "-fvisibility=hidden", "-I", os.path.dirname(os.path.dirname(bench_folder)), "-I", into, "-I", os.path.join(icet, "src", "include"), "-o", library,
+               os.path.join(bench_folder, "icet_kernels.c"), os.path.join(bench_folder, "icet_ranks.c")] + sources + ["-lm"]
     done = subprocess.run(command, capture_output=True, text=True, timeout=600)
     if done.returncode != 0:
         raise BuildFailed("IceT in %s can't be built: %s" % (icet, next((line for line in done.stderr.splitlines() if "error" in line), done.stderr.strip()[:300])))

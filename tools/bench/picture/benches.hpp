@@ -19,5 +19,6 @@ using Faults = std::vector<std::string>;
 [[nodiscard]] Faults benchCodecs(const std::vector<NamedPlane>& planes, const BenchOptions& options);
 [[nodiscard]] Faults benchKernels(const std::vector<NamedPlane>& planes, const BenchOptions& options);
 [[nodiscard]] Faults benchSelector(const std::vector<NamedPlane>& planes, const BenchOptions& options);
+[[nodiscard]] Faults benchRanks(const std::vector<NamedPlane>& planes, const BenchOptions& options);
 
 } // namespace mural::bench

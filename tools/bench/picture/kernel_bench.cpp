@@ -80,17 +80,21 @@ void fillLayer(std::byte* bytes, double covered, uint32_t seed) {
     }
 }
 
-Kernel zKernel(const std::string& name, DepthFormat format, bool isNoise, double covered) {
-    const auto run = [format](std::byte* into, const std::byte* source, auto&& select) {
+// Of which rows: all of them, which come from memory, or one again and again, which stays in the cache and shows the arithmetic alone.
+enum class ZRows { All, First };
+
+Kernel zKernel(const std::string& name, DepthFormat format, bool isNoise, double covered, ZRows rows = ZRows::All) {
+    const auto run = [format, rows](std::byte* into, const std::byte* source, auto&& select) {
         ZRow row;
         for (size_t y = 0; y < kRows; ++y) {
-            const size_t at = 4 * kColumns * y;
+            const size_t at = rows == ZRows::First ? 0 : 4 * kColumns * y;
             row.depth = reinterpret_cast<uint32_t*>(into + at);
             row.colour = into + 4 * kPixels + at;
             row.sourceDepth = reinterpret_cast<const uint32_t*>(source + at);
             row.sourceColour = source + 4 * kPixels + at;
             row.count = kColumns;
-            select(row, DepthRule{DepthFunction::Less, format, true, Coverage::All, 0});
+            // What has won once wins again, so that the same is done with one row.
+            select(row, DepthRule{rows == ZRows::First ? DepthFunction::LessOrEqual : DepthFunction::Less, format, true, Coverage::All, 0});
         }
     };
     return {name, 8 * kPixels, 8 * kPixels, [=](std::byte* into, uint32_t turn) { isNoise ? fillDepthNoise(into, format, 1, turn) : fillSurface(into, format, turn); },
@@ -115,6 +119,7 @@ std::vector<Kernel> kernels() {
         all.push_back(zKernel(name + ", surfaces", format, false, 1));
         all.push_back(zKernel(name + ", noise", format, true, 1));
         all.push_back(zKernel(name + ", 1/4 covered", format, true, 0.25));
+        all.push_back(zKernel(name + ", noise, cached", format, true, 1, ZRows::First));
     }
     all.push_back(overKernel("over RGBA8, dense", 1));
     all.push_back(overKernel("over RGBA8, 1/4 covered", 0.25));
