@@ -33,7 +33,11 @@ def rows_of(path):
 
 def quick(folder):
     files = os.path.join(folder, 'a.json'), os.path.join(folder, 'a.svg')
-    status, out, err = run('accuracy', '--quick', '--json', files[0], '--svg', files[1])
+    recording = os.path.join(folder, 'scenes.mural')
+    scenes = os.path.join(os.path.dirname(os.path.abspath(sys.argv[1])), 'mural-scenes')
+    subprocess.run([sys.argv[1], 'run', '--quiet', '--display', 'none', '--size', '800x600', '--record', recording, '--', scenes, '--size', '253x191', '--frames', '6'],
+                   timeout=120, check=True, env={name: value for name, value in os.environ.items() if name not in ('DISPLAY', 'MURAL_PLANT')})
+    status, out, err = run('accuracy', '--quick', '--recording', recording, '--json', files[0], '--svg', files[1])
     print(out)
     expect(status == 0, 'status %d: %s' % (status, err))
     report = rows_of(files[0])
@@ -48,6 +52,12 @@ def quick(folder):
     for kind in ('pixel, kernel of 2x2: triangles', 'yuv420'):
         expect(any(row['what'].startswith(kind) and row['differingPixels'] > 0 for row in rows), '%s changed nothing' % kind)
     expect('%d measured, 0 broken' % len(rows) in out, 'the table tells something else')
+    # Costs: of what recordings, codecs and blending take; more samples are nearer to many and dearer.
+    costs = {row['what']: row for row in rows if row['group'] == 'Recording: scenes'}
+    expect(all(row['cpuNsPerPixel'] > 0 and row['bytesPerPixel'] > 0 for row in costs.values()) and len(costs) >= 5, 'costs of the recording: %s' % list(costs))
+    one, two = costs.get('one sample'), costs.get('2 samples')
+    expect(one and two and two['rootMeanSquare'] < one['rootMeanSquare'] and two['bytesPerPixel'] > one['bytesPerPixel'], 'samples: %s, %s' % (one, two))
+    expect(any('cpuNsPerPixel' in row for row in rows if row['what'].startswith('bitplane')), 'codecs without times')
     svg = tree.parse(files[1]).getroot()
     texts = [''.join(t.itertext()) for t in svg.iter('{http://www.w3.org/2000/svg}text')]
     tips = list(svg.iter('{http://www.w3.org/2000/svg}title'))

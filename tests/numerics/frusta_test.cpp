@@ -9,17 +9,14 @@
 #include "balancer/compound/plan_frame.hpp"
 #include "balancer/config/resolve.hpp"
 #include "balancer/config/text/parser.hpp"
+#include "tests/numerics/case_table.hpp"
+#include "tests/numerics/planned.hpp"
 
 namespace mural::compound {
 namespace {
 
 using Exact = long double; // 64 bits of mantissa where double has 53
 static_assert(std::numeric_limits<Exact>::digits >= 64);
-
-struct Planned {
-    ResolvedConfig config;
-    FramePlan plan;
-};
 
 // One picture of width × height, divided by the given parts of one compound, each drawn by channel s; both eyes.
 Planned planned(int width, int height, const std::string& parts) {
@@ -34,16 +31,6 @@ Planned planned(int width, int height, const std::string& parts) {
     input.views.assign(p.config.views.size(), ViewState{config::ViewMode::Stereo, 1, {}});
     p.plan = planFrame(p.config, input);
     return p;
-}
-
-std::vector<RenderContext> drawn(const Planned& p, const std::string& channel, Eye eye) {
-    std::vector<RenderContext> found;
-    for (const ChannelPlan& one : p.plan.channels)
-        for (const PlannedTask& t : one.tasks) {
-            const RenderContext& c = p.plan.contexts[static_cast<size_t>(t.context)];
-            if (t.kind == Task::Draw && c.eye == eye && p.config.channels[static_cast<size_t>(one.channel)].name == channel) found.push_back(c);
-        }
-    return found;
 }
 
 // Of a frustum that `pixels` pixels show: the pixel, counted from its first, that a place on the near plane falls into.
@@ -117,10 +104,9 @@ std::string tiles(int columns, int rows) {
 // OpenGL rasterises on a grid of at most 1/256 pixel: what a part's frustum adds must stay below.
 void expectExact(int width, int height, const std::string& parts, const std::string& what) {
     const Off off = worst(width, height, parts);
-    EXPECT_LT(off.byDoubles, 1e-8) << what << " of " << width << "x" << height << ", pixels";
-    EXPECT_LT(off.byFloats, 1.0 / 256) << what << " of " << width << "x" << height << ", pixels";
-    testing::Test::RecordProperty(what + "-pixels-by-doubles", std::to_string(off.byDoubles * 1e12) + "e-12");
-    testing::Test::RecordProperty(what + "-256ths-by-floats", std::to_string(off.byFloats * 256));
+    SCOPED_TRACE(std::to_string(width) + "x" + std::to_string(height));
+    numerics::expectWithin("frusta of " + what + ", both eyes, 253x191 to 8191x4099", "64 bits of mantissa", off.byDoubles, 1e-8, "pixels");
+    numerics::expectWithin("the same through OpenGL's floats: " + what, "64 bits of mantissa", off.byFloats, 1.0 / 256, "pixels");
 }
 
 TEST(Frusta, tilesSeeWhatTheWholeSees) {

@@ -8,6 +8,7 @@
 
 #include "common/jitter.hpp"
 #include "nodes/replay/pass_place.hpp"
+#include "tests/numerics/case_table.hpp"
 
 namespace mural {
 namespace {
@@ -61,8 +62,7 @@ TEST(Passes, movedPositionsLandWhereTheyShould) {
             const Exact wanted = (at - p.kernelX - 0.5L - static_cast<Exact>(jitter.x)) / p.kernelWidth + 0.5L;
             worst = std::max(worst, static_cast<double>(std::abs(shown(ndc, move[0], move[2], origin, viewport[2]) - wanted)));
         }
-        EXPECT_LT(worst, size * 0x1p-23) << size << " pixels wide";
-        RecordProperty("256ths-of-a-pixel-at-" + std::to_string(size), std::to_string(worst * 256));
+        numerics::expectWithin("positions moved for samples and kernels in floats, " + std::to_string(size) + " pixels wide", "64 bits of mantissa", worst, size * 0x1p-23, "pixels");
     }
 }
 

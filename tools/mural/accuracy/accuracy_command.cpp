@@ -11,7 +11,9 @@
 #include "tools/mural/accuracy/accuracy_text.hpp"
 #include "tools/mural/accuracy/composition_rows.hpp"
 #include "tools/mural/accuracy/program_rows.hpp"
+#include "tools/mural/accuracy/recording_rows.hpp"
 #include "tools/mural/accuracy/scene_rows.hpp"
+#include "tools/mural/accuracy/transform_rows.hpp"
 
 namespace mural::cli {
 
@@ -27,8 +29,9 @@ Result<void> measureScenes(const AccuracyRuns& runs, bool quick, AccuracyReport&
     scenes.measure(report.rows);
     say("composition");
     measureComposition(report.rows);
+    measureTransforms(report.rows);
     say("codecs");
-    measureCodecs(scenes.nativePictures(), quick, report.rows);
+    measureCodecs(scenes.nativePictures(), "Codecs, on the scenes", quick, report.rows);
     return {};
 }
 
@@ -38,6 +41,7 @@ Result<AccuracyReport> measure(const BenchArguments& a) {
     AccuracyReport report;
     if (a.program.empty()) {
         if (auto r = measureScenes(*runs, a.quick, report); !r) return r.error();
+        for (const std::string& recording : a.recordings) measureRecording(*runs, recording, a.quick, say, report.rows);
         return report;
     }
     for (const std::string& word : a.program) report.subject += (report.subject.empty() ? "" : " ") + word;
@@ -63,6 +67,7 @@ void describeBench(CLI::App& command, BenchArguments& a) {
     command.add_option("--json", a.json, "write what was measured into this file, too")->type_name("FILE");
     command.add_option("--svg", a.svg, "draw what was measured into this file")->type_name("FILE");
     command.add_flag("--quick", a.quick, "small pictures, and one decomposition of each kind");
+    command.add_option("--recording", a.recordings, "measure on this recording of a program, too (mural run --record); may be given again")->type_name("FILE")->check(CLI::ExistingFile);
     command.add_option("--frames", a.frames, "of a program after --: at least so many frames are compared")->type_name("N")->check(CLI::Range(int64_t{1}, int64_t{1'000'000}))->capture_default_str();
 }
 

@@ -13,6 +13,7 @@ struct BenchArguments {
     std::string json, svg; // files; empty: none
     bool quick = false;
     int64_t frames = 30;
+    std::vector<std::string> recordings; // files of `mural run --record`
     std::vector<std::string> program; // empty: Mural's own scenes
 };
 

@@ -7,6 +7,7 @@
 
 #include "balancer/drawing/svg.hpp"
 #include "tools/mural/accuracy/accuracy_text.hpp"
+#include "tools/mural/accuracy/cost_plot.hpp"
 
 namespace mural::cli {
 
@@ -115,7 +116,8 @@ std::string plotOf(const AccuracyReport& report) {
         drawRow(svg, row, y + kRow / 2 - 2);
         y += kRow;
     }
-    return svg.finish(kWidth, height + 16);
+    const double below = drawCosts(svg, report, {16, height + 40, kWidth - 32, 330});
+    return svg.finish(kWidth, std::max(height + 16, below + 16));
 }
 
 } // namespace mural::cli

@@ -2,12 +2,19 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "tools/mural/accuracy/measured_error.hpp"
 
 namespace mural::cli {
+
+// What a pixel of the result takes.
+struct Cost {
+    double cpuNs = 0;  // of all threads that work at it
+    double bytes = 0;  // that travel or are read for it
+};
 
 struct AccuracyRow {
     std::string group;     // heading under which it stands
@@ -16,6 +23,7 @@ struct AccuracyRow {
     MeasuredError error;
     Bound bound;
     std::string failure; // why it could not be measured; empty: it was
+    std::optional<Cost> cost = {}; // where it was measured, too
 
     [[nodiscard]] bool holds() const { return failure.empty() && bound.holds(error); }
 };

@@ -89,6 +89,15 @@ Result<std::string> AccuracyRuns::mural(const Words& options, const Words& progr
     return perform(command, name, kRunMs + frames * kFrameMs);
 }
 
+Result<std::string> AccuracyRuns::replay(const Words& options, const std::string& recording) const {
+    Words command{launch::ownBinary(), "replay", "--quiet", "--display", "none"};
+    std::string name = "mural replay";
+    for (const std::string& o : options) name += " " + o;
+    command.insert(command.end(), options.begin(), options.end());
+    command.push_back(recording);
+    return perform(command, name, kRunMs);
+}
+
 Result<std::string> AccuracyRuns::perform(const Words& command, const std::string& name, int64_t limitMs) const {
     const std::string said = scratch_.path() + "/said", complained = scratch_.path() + "/complained";
     launch::SpawnRequest request;

@@ -37,6 +37,8 @@ public:
     [[nodiscard]] Result<std::string> native(const Words& program) const;
     // The same by `mural run OPTIONS -- PROGRAM`. frames: how many it is asked for, where that decides how long it may take.
     [[nodiscard]] Result<std::string> mural(const Words& options, const Words& program, int64_t frames = 0) const;
+    // A recording, by `mural replay OPTIONS FILE`.
+    [[nodiscard]] Result<std::string> replay(const Words& options, const std::string& recording) const;
     // Beside the binary; an error when it is not there.
     [[nodiscard]] static Result<std::string> scenesProgram();
 

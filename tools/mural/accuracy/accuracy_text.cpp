@@ -21,7 +21,8 @@ std::string padded(const std::string& text, size_t width, bool right) {
 std::vector<std::string> cellsOf(const AccuracyRow& row) {
     const auto psnr = row.error.psnr();
     return {"  " + row.what, row.reference, spaced(row.error.pixels), spaced(row.error.differing), fmt::format("{:.3g}", row.error.largest),
-            psnr ? fmt::format("{:.1f}", *psnr) : "∞", row.bound.text(), row.holds() ? "ok" : "BROKEN"};
+            psnr ? fmt::format("{:.1f}", *psnr) : "∞", row.cost ? fmt::format("{:.3g}", row.cost->cpuNs) : "", row.cost ? fmt::format("{:.3g}", row.cost->bytes) : "",
+            row.bound.text(), row.holds() ? "ok" : "BROKEN"};
 }
 
 } // namespace
@@ -37,7 +38,7 @@ std::string spaced(int64_t number) {
 }
 
 std::string tableOf(const AccuracyReport& report) {
-    std::vector<std::vector<std::string>> lines{{"  what", "against", "pixels", "differ", "largest of 255", "PSNR dB", "bound", ""}};
+    std::vector<std::vector<std::string>> lines{{"  what", "against", "pixels", "differ", "largest of 255", "PSNR dB", "ns/pixel", "bytes/pixel", "bound", ""}};
     for (const AccuracyRow& row : report.rows)
         if (row.failure.empty()) lines.push_back(cellsOf(row));
     std::vector<size_t> widths(lines[0].size(), 0);
@@ -45,7 +46,7 @@ std::string tableOf(const AccuracyReport& report) {
         for (size_t c = 0; c < line.size(); ++c) widths[c] = std::max(widths[c], lengthOf(line[c]));
     const auto print = [&](const std::vector<std::string>& line) {
         std::string text;
-        for (size_t c = 0; c < line.size(); ++c) text += padded(line[c], widths[c], c >= 2 && c <= 5) + (c + 1 < line.size() ? "  " : "\n");
+        for (size_t c = 0; c < line.size(); ++c) text += padded(line[c], widths[c], c >= 2 && c <= 7) + (c + 1 < line.size() ? "  " : "\n");
         text.erase(text.find_last_not_of(" \n") + 1);
         return text + "\n";
     };
@@ -72,6 +73,10 @@ std::string jsonOf(const AccuracyReport& report) {
         if (row.bound.psnr) bound["psnr"] = *row.bound.psnr;
         j["bound"] = bound;
         j["holds"] = row.holds();
+        if (row.cost) {
+            j["cpuNsPerPixel"] = row.cost->cpuNs;
+            j["bytesPerPixel"] = row.cost->bytes;
+        }
         if (!row.failure.empty()) j["failure"] = row.failure;
         all["rows"].push_back(j);
     }

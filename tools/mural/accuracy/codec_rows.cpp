@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "common/clock.hpp"
 #include "compositor/codecs/registry.hpp"
 #include "tools/mural/accuracy/composition_rows.hpp"
 
@@ -32,9 +33,10 @@ MeasuredError errorOfPlanes(const Plane& wanted, const Plane& got) {
     return error;
 }
 
-AccuracyRow codecRow(CodecRegistry& registry, const std::string& name, const Bound& bound, const std::vector<Plane>& planes) {
-    AccuracyRow row{"Codecs, on the scenes", name, "the picture", {}, bound, {}};
+AccuracyRow codecRow(CodecRegistry& registry, const std::string& group, const std::string& name, const Bound& bound, const std::vector<Plane>& planes) {
+    AccuracyRow row{group, name, "the picture", {}, bound, {}};
     size_t before = 0, packed = 0;
+    int64_t tookNs = 0;
     auto codec = registry.make(name);
     if (!codec) row.failure = codec.error().message;
     for (const Plane& plane : planes) {
@@ -42,31 +44,36 @@ AccuracyRow codecRow(CodecRegistry& registry, const std::string& name, const Bou
         std::vector<std::byte> bytes((*codec)->boundBytes(shapeOf(plane.view())));
         Plane back(PlaneFormat::Rgba8, plane.width(), plane.height());
         const auto measured = [&]() -> Result<void> {
+            const int64_t beganNs = threadCpuNowNs();
             auto size = (*codec)->encode(plane.view(), bytes);
             if (!size) return size.error();
             packed += *size;
             before += plane.bytes().size();
-            return (*codec)->decode(std::span(bytes).first(*size), back.view());
+            auto decoded = (*codec)->decode(std::span(bytes).first(*size), back.view());
+            tookNs += threadCpuNowNs() - beganNs;
+            return decoded;
         }();
         if (!measured) row.failure = measured.error().message;
         row.error.add(errorOfPlanes(plane, back));
     }
+    const double pixels = static_cast<double>(std::max<size_t>(before, 4)) / 4;
+    row.cost = Cost{static_cast<double>(tookNs) / pixels, static_cast<double>(packed) / pixels};
     row.what = fmt::format("{}, {:.3g} times smaller", name, static_cast<double>(before) / static_cast<double>(std::max<size_t>(packed, 1)));
     return row;
 }
 
 } // namespace
 
-void measureCodecs(const std::vector<OwnedPicture>& pictures, bool quick, std::vector<AccuracyRow>& rows) {
+void measureCodecs(const std::vector<OwnedPicture>& pictures, const std::string& group, bool quick, std::vector<AccuracyRow>& rows) {
     if (pictures.empty()) return;
     std::vector<Plane> planes;
     for (const OwnedPicture& p : pictures) planes.push_back(planeOf(p.view()));
     CodecRegistry registry;
     for (const CodecInfo& codec : registry.losslessFor(PlaneFormat::Rgba8))
-        if (!quick || codec.name == "bitplane" || codec.name == "zstd") rows.push_back(codecRow(registry, codec.name, Bound::exact(), planes));
+        if (!quick || codec.name == "bitplane" || codec.name == "zstd") rows.push_back(codecRow(registry, group, codec.name, Bound::exact(), planes));
     // Lossy ones are taken by name only. What they may lose is theirs; a fault would lose more.
     for (const auto& [name, psnr] : {std::pair("yuv420", 28.0), std::pair("jpeg-100", 30.0), std::pair("jpeg-95", 28.0), std::pair("jpeg-80", 25.0), std::pair("jpeg-50", 22.0)})
-        if (!quick || std::string(name) == "yuv420" || std::string(name) == "jpeg-95") rows.push_back(codecRow(registry, name, {{}, {}, psnr}, planes));
+        if (!quick || std::string(name) == "yuv420" || std::string(name) == "jpeg-95") rows.push_back(codecRow(registry, group, name, {{}, {}, psnr}, planes));
 }
 
 } // namespace mural::cli

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <random>
 
+#include "common/clock.hpp"
 #include "compositor/assembly/assembly.hpp"
 #include "compositor/assembly/average.hpp"
 #include "compositor/kernels/half_float.hpp"
@@ -85,6 +86,7 @@ AccuracyRow blendRow(PlaneFormat format, int layers, double bound, const char* w
     Image sum = blank(format, 0);
     std::vector<double> truth(4 * kPixels, 0.0);
     AccuracyRow row{kGroup, what, "the same in doubles", {}, {{}, bound, {}}, {}};
+    int64_t tookNs = 0;
     for (int layer = 0; layer < layers; ++layer) {
         Image front = blank(format, static_cast<uint32_t>(layer));
         for (size_t i = 0; i < kPixels; ++i) {
@@ -103,9 +105,12 @@ AccuracyRow blendRow(PlaneFormat format, int layers, double bound, const char* w
             }
             for (size_t c = 0; c < 4; ++c) truth[4 * i + c] = shown[c] + truth[4 * i + c] * (1 - shown[3]);
         }
+        const int64_t beganNs = threadCpuNowNs();
         if (layer == 0) sum = front;
         else if (auto r = assembleBlended(sum, front); !r) row.failure = r.error().message;
+        tookNs += threadCpuNowNs() - beganNs;
     }
+    row.cost = Cost{static_cast<double>(tookNs) / kPixels, static_cast<double>(bytesPerPixel(format)) * layers};
     for (size_t i = 0; i < 4 * kPixels; ++i) {
         const double got = format == PlaneFormat::Rgba8 ? std::to_integer<int>(sum.colour->bytes()[i]) : 255 * static_cast<double>(floatOfHalf(valueAt<uint16_t>(*sum.colour, i)));
         row.error.addValue(got - 255 * truth[i]);
@@ -121,15 +126,20 @@ AccuracyRow averageRow(unsigned samples, const char* what) {
     std::vector<unsigned> sums(4 * kPixels, 0);
     AccuracyRow row{kGroup, what, "the mean, not rounded", {}, {{}, 0.5, {}}, {}};
     Plane picture(PlaneFormat::Rgba8, kWidth, kHeight);
+    int64_t tookNs = 0;
     for (unsigned s = 0; s < samples; ++s) {
         for (size_t i = 0; i < sums.size(); ++i) {
             const auto value = static_cast<unsigned>(random() % 256);
             picture.bytes()[i] = static_cast<std::byte>(value);
             sums[i] += value;
         }
+        const int64_t beganNs = threadCpuNowNs();
         if (auto r = average.add(std::as_const(picture).view()); !r) row.failure = r.error().message;
+        tookNs += threadCpuNowNs() - beganNs;
     }
+    const int64_t beganNs = threadCpuNowNs();
     if (auto r = average.write(picture.view()); !r) row.failure = r.error().message;
+    row.cost = Cost{static_cast<double>(tookNs + threadCpuNowNs() - beganNs) / kPixels, 4.0 * samples};
     for (size_t i = 0; i < sums.size(); i += 4) {
         bool differs = false;
         for (size_t c = 0; c < 4; ++c) {

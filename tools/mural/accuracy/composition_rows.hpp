@@ -9,6 +9,6 @@ namespace mural::cli {
 void measureComposition(std::vector<AccuracyRow>& rows);
 
 // On pictures of the scenes; none: nothing is measured.
-void measureCodecs(const std::vector<OwnedPicture>& pictures, bool quick, std::vector<AccuracyRow>& rows);
+void measureCodecs(const std::vector<OwnedPicture>& pictures, const std::string& group, bool quick, std::vector<AccuracyRow>& rows);
 
 } // namespace mural::cli

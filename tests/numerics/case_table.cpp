@@ -1,0 +1,74 @@
+#include "tests/numerics/case_table.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <vector>
+
+namespace mural::numerics {
+
+namespace {
+
+struct Row {
+    std::string what, against, unit, result;
+    double off = 0, most = 0;
+    bool holds = true;
+};
+
+std::vector<Row>& rows() {
+    static std::vector<Row> all;
+    return all;
+}
+
+Row& rowOf(const std::string& what, const std::string& against) {
+    const auto found = std::ranges::find_if(rows(), [&](const Row& r) { return r.what == what && r.against == against; });
+    if (found != rows().end()) return *found;
+    rows().push_back({what, against, {}, {}, 0, 0, true});
+    return rows().back();
+}
+
+// A test that has told no number compares for equality, or has its own bounds: its name is its row.
+class Tests : public testing::EmptyTestEventListener {
+    void OnTestStart(const testing::TestInfo&) override { before_ = rows().size(); }
+    void OnTestEnd(const testing::TestInfo& test) override {
+        if (rows().size() != before_ || test.result()->Skipped()) return;
+        rows().push_back({std::string(test.test_suite_name()) + "." + test.name(), "what the test computes it by", {}, test.result()->Passed() ? "passed" : "failed", 0, 0, test.result()->Passed()});
+    }
+    size_t before_ = 0;
+};
+
+// Behind all tests: gtest's own lines stand above it; --gtest_brief=1 leaves them out.
+class Table : public testing::Environment {
+    void SetUp() override { testing::UnitTest::GetInstance()->listeners().Append(new Tests); } // gtest owns it
+    void TearDown() override {
+        if (rows().empty()) return;
+        std::printf("\n| case | against | off by | at most | |\n|---|---|---|---|---|\n");
+        for (const Row& r : rows()) {
+            if (r.result.empty()) std::printf("| %s | %s | %.3g %s | %.3g | %s |\n", r.what.c_str(), r.against.c_str(), r.off, r.unit.c_str(), r.most, r.holds ? "holds" : "BROKEN");
+            else std::printf("| %s | %s | %s | | %s |\n", r.what.c_str(), r.against.c_str(), r.result.c_str(), r.holds ? "holds" : "BROKEN");
+        }
+    }
+};
+[[maybe_unused]] const testing::Environment* const kTable = testing::AddGlobalTestEnvironment(new Table); // gtest owns it
+
+} // namespace
+
+void expectWithin(const std::string& what, const std::string& against, double off, double most, const std::string& unit) {
+    Row& row = rowOf(what, against);
+    const bool within = off <= most; // false of NaN, too
+    if (row.holds) row.off = within ? std::max(row.off, off) : off;
+    row.most = most;
+    row.unit = unit;
+    row.holds = row.holds && within;
+    EXPECT_TRUE(within) << what << ", against " << against << ": off by " << off << " " << unit << ", at most " << most << " is right";
+}
+
+void expectThat(const std::string& what, const std::string& against, bool holds, const std::string& result) {
+    Row& row = rowOf(what, against);
+    row.result = result;
+    row.holds = row.holds && holds;
+    EXPECT_TRUE(holds) << what << ", against " << against << ": " << result << " does not hold";
+}
+
+} // namespace mural::numerics

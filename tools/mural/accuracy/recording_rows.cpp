@@ -1,0 +1,94 @@
+#include "tools/mural/accuracy/recording_rows.hpp"
+
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "tools/mural/accuracy/composition_rows.hpp"
+
+namespace mural::cli {
+
+namespace {
+
+constexpr int kMostSamples = 16; // taken for the truth of antialiasing
+
+struct Way {
+    std::string name;
+    Words options;
+    Bound bound;
+    bool manySamples = false; // against the mean of kMostSamples, not against one node's picture
+    double pictures = 1;      // that go to be put together
+    bool quick = false;
+};
+
+std::vector<Way> ways() {
+    const Bound exact = Bound::exact(), notPromised{};
+    std::vector<Way> all{
+        {"2D, 2x2 tiles", {"--tiles", "2x2"}, exact, false, 1, true},
+        {"DB, 3 ranges", {"--db", "3"}, exact, false, 1, true},
+        {"DPlex, 3 turns", {"--dplex", "3"}, exact, false, 1, false},
+        {"shift by the viewport: tiling lean, 2x2", {"--tiles", "2x2", "--tiling", "lean"}, notPromised, false, 1, true},
+        {"pixel, kernel of 2x1", {"--pixel", "2x1"}, notPromised, false, 1, true},
+        {"pixel, kernel of 2x2", {"--pixel", "2x2"}, notPromised, false, 1, false},
+        {"one sample", {}, notPromised, true, 1, true},
+    };
+    for (const int n : {2, 4, 8}) all.push_back({fmt::format("{} samples", n), {"--subpixel", std::to_string(n)}, notPromised, true, static_cast<double>(n), n == 2});
+    return all;
+}
+
+struct Replayed {
+    std::vector<OwnedPicture> pictures;
+    double cpuSeconds = 0; // of the threads that replay
+    int64_t frames = 0, exchangeBytes = 0;
+};
+
+Result<Replayed> replayed(const AccuracyRuns& runs, const std::string& recording, const Words& options) {
+    auto folder = ScratchFolder::make();
+    if (!folder) return folder.error();
+    const std::string report = folder->path() + "/report.json", out = folder->path() + "/pictures";
+    Words all = options;
+    all.insert(all.end(), {"--out", out, "--report", report});
+    if (auto said = runs.replay(all, recording); !said) return said.error();
+    auto pictures = readPictures(out);
+    if (!pictures) return pictures.error();
+    if (pictures->empty()) return Error{recording + " shows no picture; record a program that draws"};
+    Replayed r{std::move(*pictures), 0, 0, 0};
+    std::ifstream file(report);
+    const auto told = nlohmann::json::parse(file, nullptr, false);
+    if (!told.is_object() || !told.contains("nodes") || !told["nodes"].is_array()) return Error{report + " says nothing of the nodes"};
+    r.frames = told.value("frames", int64_t{0});
+    for (const auto& node : told["nodes"]) {
+        r.cpuSeconds += node.value("replaySeconds", 0.0) + node.value("readbackSeconds", 0.0);
+        r.exchangeBytes += node.value("exchangeBytes", int64_t{0});
+    }
+    return r;
+}
+
+} // namespace
+
+void measureRecording(const AccuracyRuns& runs, const std::string& recording, bool quick, const SayProgress& say, std::vector<AccuracyRow>& rows) {
+    const std::string name = std::filesystem::path(recording).stem().string(), group = "Recording: " + name;
+    const auto one = replayed(runs, recording, {});
+    const auto many = one ? replayed(runs, recording, {"--subpixel", std::to_string(kMostSamples)}) : Result<Replayed>(one.error());
+    for (const Way& way : ways()) {
+        if (quick && !way.quick) continue;
+        say(name + ": " + way.name);
+        const Result<Replayed>& wanted = way.manySamples ? many : one;
+        AccuracyRow row{group, way.name, way.manySamples ? fmt::format("{} samples", kMostSamples) : "one node", {}, way.bound, {}, {}};
+        const auto got = wanted ? replayed(runs, recording, way.options) : Result<Replayed>(wanted.error());
+        if (!got) row.failure = got.error().message;
+        else if (got.value().pictures.size() != wanted.value().pictures.size()) row.failure = fmt::format("{} pictures came instead of {}", got.value().pictures.size(), wanted.value().pictures.size());
+        if (row.failure.empty()) {
+            const Replayed &a = wanted.value(), &b = got.value();
+            for (size_t p = 0; p < a.pictures.size(); ++p) row.error.add(errorOf(a.pictures[p].view(), b.pictures[p].view()));
+            const double pixels = static_cast<double>(std::max<int64_t>(b.frames, 1)) * b.pictures.front().width() * b.pictures.front().height();
+            row.cost = Cost{1e9 * b.cpuSeconds / pixels, b.exchangeBytes > 0 ? static_cast<double>(b.exchangeBytes) / pixels : 4 * way.pictures};
+        }
+        rows.push_back(row);
+    }
+    if (one) measureCodecs(one.value().pictures, "Codecs, on the recording " + name, quick, rows);
+}
+
+} // namespace mural::cli

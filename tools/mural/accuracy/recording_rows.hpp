@@ -1,0 +1,11 @@
+// A recording of a program, replayed in every way: against itself by one node; what samples are short of against many of them.
+#pragma once
+
+#include "tools/mural/accuracy/accuracy_row.hpp"
+#include "tools/mural/accuracy/accuracy_runs.hpp"
+
+namespace mural::cli {
+
+void measureRecording(const AccuracyRuns& runs, const std::string& recording, bool quick, const SayProgress& say, std::vector<AccuracyRow>& rows);
+
+} // namespace mural::cli
