@@ -1,5 +1,7 @@
 #include "balancer/config/diagnostics.hpp"
 
+#include <algorithm>
+
 namespace mural::config {
 
 namespace {
@@ -21,6 +23,12 @@ void Diagnostics::warn(SourcePosition at, std::string what, std::string remedy) 
 
 void Diagnostics::error(SourcePosition at, std::string what, std::string remedy) {
     add({Severity::Error, at, std::move(what), std::move(remedy)});
+}
+
+void Diagnostics::given(SourcePosition at, std::string_view section, std::string_view field) {
+    const auto same = std::ranges::find_if(given_, [&](const GivenField& g) { return g.section == section && g.field == field; });
+    if (same != given_.end()) ++same->times;
+    else given_.push_back({std::string(section), std::string(field), at, 1}); // of words that the format has: there are not many
 }
 
 std::string Diagnostics::text(const Diagnostic& d) const {

@@ -123,14 +123,23 @@ private:
         const PlannedFrame& frame = plan_.frames[ResolvedConfig::at(use.frame)];
         const bool replaces = !frame.buffers.has(config::Buffer::Depth) && frame.range.full() && frame.subPixel.whole();
         for (const auto& [at, pixel] : frames_[ResolvedConfig::at(use.frame)]) {
-            const int32_t x = use.x + use.kernel.x + use.kernel.w * at.first, y = use.y + use.kernel.y + use.kernel.h * at.second;
-            if (x < use.clip.x || y < use.clip.y || x >= use.clip.right() || y >= use.clip.top()) continue;
-            Pixel& to = pixelsOf(c)[{x, y}];
             if (frame.perTile && pixel.empty()) continue; // somebody else has taken that tile
-            if (replaces || removes) to.clear();
-            if (!removes) to.insert(to.end(), pixel.begin(), pixel.end());
+            const int32_t x0 = use.x + use.kernel.x + enlarged(use.kernel.w * at.first, use.zoom.x), y0 = use.y + use.kernel.y + enlarged(use.kernel.h * at.second, use.zoom.y);
+            for (int32_t y = y0; y < y0 + enlarged(1, use.zoom.y); ++y)
+                for (int32_t x = x0; x < x0 + enlarged(1, use.zoom.x); ++x) {
+                    if (x < use.clip.x || y < use.clip.y || x >= use.clip.right() || y >= use.clip.top()) continue;
+                    Pixel& to = pixelsOf(c)[{x, y}];
+                    if (replaces || removes) to.clear();
+                    for (Share s : removes ? Pixel() : pixel) { // one pixel of the picture stands for several
+                        s.x += x - x0, s.y += y - y0;
+                        to.push_back(s);
+                    }
+                }
         }
     }
+
+    // Whole numbers only: files of tests zoom by nothing else.
+    static int32_t enlarged(int32_t pixels, double zoom) { return static_cast<int32_t>(std::lround(pixels * zoom)); }
 
     // A destination that is done must be whole, in each eye that it was drawn for.
     void check(const ChannelPlan& done) {

@@ -5,7 +5,7 @@
 
 Without --files: all of configs/; with --shared also the example files beside the tree (or in MURAL_SHARED), when they are
 there. A file without stereo shows, over every part of the wall that it draws, exactly the native picture: 0 pixels differ.
-Screens at angles are laid flat for that (passes.py looks into rooms). Of one with stereo the picture is put together from the runs of each eye alone, and compared with that.
+Screens at angles are laid flat for that (passes.py looks into rooms). What is zoomed must be near the native picture, and differ from it. Of one with stereo the picture is put together from the runs of each eye alone, and compared with that.
 """
 
 import argparse
@@ -22,6 +22,7 @@ import programs
 
 PROGRAM = "fixed_lighting"
 FRAMES = 3
+ZOOMED_MEAN = 12  # of half the size; a picture that is a few pixels off, or black, differs by more
 SKIPPED = 77
 
 
@@ -104,6 +105,18 @@ def difference(expected, shown, areas):
     return wrong, outside
 
 
+def mean_difference(expected, shown, area):
+    """Of the values of an area: 0 to 255."""
+    width, height, rows = expected
+    x, y, w, h = area
+    x0, x1 = int(x * width + 1e-6), int((x + w) * width + 1e-6)
+    total = count = 0
+    for row in range(max(0, height - int((y + h) * height + 1e-6)), min(height, height - int(y * height + 1e-6))):
+        total += sum(abs(a - b) for a, b in zip(rows[row][3 * x0:3 * x1], shown[2][row][3 * x0:3 * x1]))
+        count += 3 * (x1 - x0)
+    return total / max(count, 1)
+
+
 def side_by_side(left, right):
     width, height = left[0], left[1]
     half = (width + 1) // 2
@@ -121,9 +134,17 @@ def side_by_side(left, right):
 def check(run, path, native):
     """None, or what is wrong; and a line about what was seen."""
     shown, said = run.picture(["--config", path, "--here", "--frusta", "program"])
-    nodes = re.findall(r"node \d+ \(local\) draws for channel .*?part \[ (\S+) (\S+) (\S+) (\S+) \]", said)
+    told = re.findall(r"node \d+ \(local\) draws for channel (.*?)part \[ (\S+) (\S+) (\S+) (\S+) \]", said)
+    nodes = [node[1:] for node in told if " zoom " not in node[0]]
+    small = [tuple(float(v) for v in node[1:]) for node in told if " zoom " in node[0]]
     areas = [tuple(float(v) for v in node) for node in nodes]
-    if not areas:
+    zoomed = ""
+    for area in small:
+        mean = mean_difference(native, shown, area)
+        if not 0 < mean < ZOOMED_MEAN:
+            return "zoomed, the part %s differs by %.2f of 255 in the mean" % (area, mean), ""
+        zoomed += ", the zoomed part by %.2f of 255 in the mean" % mean
+    if not told:
         return "no node is told of", ""
     # Antialiased, or every nth pixel: as the short form draws it.
     samples, kernel = re.search(r"sample \d+ of (\d+)", said), re.search(r"of each (\d+x\d+)", said)
@@ -147,7 +168,7 @@ def check(run, path, native):
             shown = flat
     wrong, outside = difference(expected, shown, areas)
     total = native[0] * native[1]
-    about = "%d nodes, %d of %d pixels differ from %s, %d outside of all parts" % (len(nodes), wrong, total - outside, against, outside)
+    about = "%d nodes, %d of %d pixels differ from %s, %d outside of all parts%s" % (len(told), wrong, total - outside, against, outside, zoomed)
     return (None if wrong == 0 else about), about
 
 

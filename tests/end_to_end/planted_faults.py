@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Shows that run_exact.py can fail: each fault that a render node makes on purpose must be found.
+"""Shows that run_exact.py can fail: each fault that a render node, or the head, makes on purpose must be found.
 
 MURAL_PLANT=opcode changes one argument of one command, shift moves one tile by a pixel, drop leaves
-out one frame's draws; economy loses what has changed in commands that a node has had before; of nodes that share draws, range loses the others' pictures, tie lets the
+out one frame's draws; economy loses what has changed in commands that a node has had before, and the head with held
+all uploads that it has held back; of nodes that share draws, range loses the others' pictures, tie lets the
 earlier draw win where depths are equal, order takes later draws for earlier ones, and band loses a band that a node
 has put together. Without a fault, the same comparison must be exact.
 """
@@ -16,8 +17,9 @@ PROGRAMS = "immediate,draw_calls,es2_scene"
 RANGES = ["--programs", "fixed_lighting,range_ties", "--layouts", "1x1", "--options", "--display none --db 2", "--frames", "4"]
 SWAPS = ["--programs", "range_ties", "--layouts", "1x1", "--options", "--display none --db 3 --composition direct-send", "--frames", "4"]
 ECONOMY = ["--programs", "same_scene,immediate", "--layouts", "2x1", "--options", "--display none --economy on"]
+HELD = ["--programs", "late_uploads", "--layouts", "2x1", "--options", "--display none --economy on", "--frames", "3"]
 # What is run, and the faults that it must find.
-SETTINGS = ((["--layouts", "2x2"], ("opcode", "shift", "drop")), (RANGES, ("range", "tie", "order")), (SWAPS, ("band", "order")), (ECONOMY, ("economy",)))
+SETTINGS = ((["--layouts", "2x2"], ("opcode", "shift", "drop")), (RANGES, ("range", "tie", "order")), (SWAPS, ("band", "order")), (ECONOMY, ("economy",)), (HELD, ("held",)))
 
 
 def compare(arguments, setting, fault):

@@ -23,5 +23,6 @@ int versionCommand();
 int preloadProbeCommand();
 
 const char* muralVersion();
+std::string versionText(); // "mural 0.1.0"
 
 } // namespace mural::cli

@@ -70,6 +70,9 @@ std::vector<std::string> reportLines(const SessionReport& r) {
         lines.push_back(fmt::format("economy: of {} per frame {} were new to the nodes, {} compressed; {:.0f} of {:.0f} pages they had; packing took {:.0f} us per frame, {:.0f} ns per call",
                                     sizeText(e.rawBytes / frames), sizeText(e.stagedBytes / frames), sizeText(e.wireBytes / frames), e.storeHits, e.storeHits + e.newPages,
                                     1e6 * e.encodeSeconds / frames, e.records > 0 ? 1e9 * e.encodeSeconds / e.records : 0.0));
+        if (e.heldRecords + e.leftOutRecords > 0)
+            lines.push_back(fmt::format("held back: {:.0f} record{} waited for {} first use", e.heldRecords, plural(static_cast<int64_t>(e.heldRecords)), e.heldRecords == 1 ? "its" : "their") +
+                            (e.leftOutRecords > 0 ? fmt::format("; {:.0f} of {} never went, as nobody needed them", e.leftOutRecords, sizeText(e.leftOutBytes)) : ""));
     }
     if (r.verifiedFrames > 0) {
         std::string line = fmt::format("verified {} frame{}, {} pixels: {} differ", r.verifiedFrames, plural(r.verifiedFrames), r.verifiedPixels, r.differingPixels);
@@ -87,6 +90,10 @@ std::vector<std::string> reportLines(const SessionReport& r) {
         lines.push_back(fmt::format("{} call{} of commands that Mural does not carry yet; see mural list-commands --unsupported", r.callsUnsupported, plural(r.callsUnsupported)));
     }
     for (const NodeReport& n : r.nodes) {
+        if (n.swaps.swaps > 0)
+            lines.push_back(fmt::format("swap barrier: {} nodes showed {} frame{} within {:.2f} ms of each other (median), {:.2f} ms (99 %), {:.2f} ms at most; clocks known to {:.3f} ms", n.swaps.members,
+                                        n.swaps.swaps, plural(n.swaps.swaps), n.swaps.medianNs / 1e6, n.swaps.p99Ns / 1e6, n.swaps.mostNs / 1e6, n.swaps.clockErrorNs / 1e6));
+        if (n.joins > 0) lines.push_back(fmt::format("node {} came back {} time{}, the last time in {:.1f} s, given {}", n.node, n.joins, plural(n.joins), n.secondsToBack, sizeText(n.snapshotBytes)));
         if (n.lost) lines.push_back(fmt::format("node {} was lost after {} frame{}", n.node, n.frames, plural(n.frames)));
     }
     return lines;

@@ -40,7 +40,12 @@ HeadEvent::Kind kindOf(const std::string& name) {
 
 EconomyReport economyFrom(const Json& j) {
     if (!j.is_object()) return {};
-    return {true, real(j, "records"), real(j, "rawBytes"), real(j, "stagedBytes"), real(j, "wireBytes"), real(j, "storeHits"), real(j, "newPages"), real(j, "encodeSeconds")};
+    return {true, real(j, "records"), real(j, "rawBytes"), real(j, "stagedBytes"), real(j, "wireBytes"), real(j, "storeHits"), real(j, "newPages"), real(j, "encodeSeconds"), real(j, "heldRecords"), real(j, "leftOutRecords"), real(j, "leftOutBytes")};
+}
+
+SwapReport swapsFrom(const Json& j) {
+    if (!j.is_object()) return {};
+    return {whole(j, "members"), whole(j, "swaps"), real(j, "medianNs"), real(j, "p99Ns"), real(j, "mostNs"), real(j, "clockErrorNs")};
 }
 
 SessionReport reportFrom(const Json& j) {
@@ -68,7 +73,9 @@ SessionReport reportFrom(const Json& j) {
     if (const auto economy = j.find("economy"); economy != j.end()) r.economy = economyFrom(*economy);
     if (const auto nodes = j.find("nodes"); nodes != j.end() && nodes->is_array()) {
         for (const Json& n : *nodes) {
-            if (n.is_object()) r.nodes.push_back({whole(n, "node"), whole(n, "frames"), real(n, "cpuSeconds"), truth(n, "lost")});
+            if (!n.is_object()) continue;
+            const auto swaps = n.find("swapBarrier");
+            r.nodes.push_back({whole(n, "node"), whole(n, "frames"), real(n, "cpuSeconds"), truth(n, "lost"), swapsFrom(swaps != n.end() ? *swaps : Json()), whole(n, "joins"), real(n, "secondsToBack"), real(n, "snapshotBytes")});
         }
     }
     return r;

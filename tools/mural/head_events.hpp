@@ -10,11 +10,21 @@
 
 namespace mural::cli {
 
+// Of windows on several nodes that show frames together; by the node that leads them.
+struct SwapReport {
+    int64_t members = 0; // 0: it leads none
+    int64_t swaps = 0;
+    double medianNs = 0, p99Ns = 0, mostNs = 0, clockErrorNs = 0;
+};
+
 struct NodeReport {
     int64_t node = 0;
     int64_t frames = 0;
     double cpuSeconds = 0;
     bool lost = false;
+    SwapReport swaps;
+    int64_t joins = 0; // how often it came back, and of the last time:
+    double secondsToBack = 0, snapshotBytes = 0;
 };
 
 // What was spared the nodes that are not sent again what they have had.
@@ -26,6 +36,8 @@ struct EconomyReport {
     double wireBytes = 0;   // and compression
     double storeHits = 0, newPages = 0;
     double encodeSeconds = 0;
+    double heldRecords = 0;    // that waited for their first use
+    double leftOutRecords = 0, leftOutBytes = 0; // and those that nobody ever needed
 };
 
 struct SessionReport {

@@ -84,6 +84,7 @@ class CommandLine {
 public:
     CommandLine() {
         app_.formatter(std::make_shared<HelpFormatter>());
+        app_.set_version_flag("--version", mural::cli::versionText(), "Print the version and exit");
         app_.footer("mural COMMAND --help says more about each.\n\nExamples:\n  mural run --tiles 2x2 -- glxgears\n  mural stat\n  mural doctor");
         addRun();
         addRecordings();
@@ -102,6 +103,8 @@ public:
         } catch (const CLI::CallForHelp&) {
             fmt::print("{}", current().help());
             return 0;
+        } catch (const CLI::CallForVersion&) {
+            return mural::cli::versionCommand();
         } catch (const CLI::ArgumentMismatch& error) {
             const std::string text = error.what(); // "--tiles: 1 required CxR missing"
             return usageError("mural " + current().get_name(), text.substr(0, text.find(':')) + " needs a value");
@@ -239,6 +242,7 @@ private:
                               "Examples:\n  mural bench accuracy                              every decomposition, composition and codec, on Mural's own scenes\n"
                               "  mural bench accuracy --quick                      one of each kind, on small pictures\n"
                               "  mural bench accuracy --json a.json --svg a.svg    the same for programs, and as a picture\n"
+                              "  mural bench accuracy --recording app.mural        with a recording of a program: errors beside CPU time and bytes\n"
                               "  mural bench accuracy --frames 60 -- glxgears      a program of yours, each frame against what its own context draws\n\n"
                               "Everything runs on this machine and a private display. docs/accuracy.md says what the bounds are, and why.\n"
                               "Exit status: 0, 1 when a bound is broken or a file can't be written, 2 when nothing could be measured.");

@@ -26,6 +26,7 @@ namespace {
 constexpr int kMaxTilesPerSide = 256;
 constexpr int kMaxNodes = 1024;
 constexpr int kMaxLatency = 64;
+constexpr int kMostRestarts = 1'000'000;
 constexpr int kMaxPasses = 256;
 constexpr int kMaxKernel = 16; // columns or rows
 
@@ -189,6 +190,9 @@ Result<void> readNodes(const RunArguments& a, SessionConfig& c) {
         c.storeBytes = *store;
     }
     c.remoteMural = a.remoteMural.value_or("");
+    int64_t restarts = c.restartNodes;
+    if (auto r = readNumber("--restart-nodes", a.restartNodes, 0, kMostRestarts, restarts); !r) return r;
+    c.restartNodes = static_cast<int>(restarts);
     return {};
 }
 
@@ -394,6 +398,7 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
     command.add_option("--stream", a.stream, "how the stream travels to other machines: auto (by multicast when there are two or more), tcp (to each), or rsp://GROUP:PORT?interface=…&rate=… (auto)")->type_name("HOW");
     command.add_option("--economy", a.economy, "send nothing to nodes that they have had: auto (nodes of other machines), on (all), off (auto)")->type_name("WHICH");
     command.add_option("--store", a.store, "memory for that in the head and in each of those nodes (1GiB)")->type_name("SIZE");
+    command.add_option("--restart-nodes", a.restartNodes, "start a node that is lost again, up to N times in a row; 0: its tiles stay as they were (3)")->type_name("N");
     command.add_option("--remote-mural", a.remoteMural, "path of mural on the hosts (this one's)")->type_name("PATH");
     command.add_option("--report", a.report, "write the final report into this file, as one line of JSON")->type_name("FILE");
     command.add_flag("--quiet", a.quiet, "say nothing but errors");

@@ -66,7 +66,7 @@ Json nodeRates(const Json& before, const Json& now, double seconds) {
 // Of all programs together, per frame on the wall.
 Json economyRates(const Json& before, const Json& now, double frames) {
     Json rates = Json::object();
-    for (const char* name : {"records", "rawBytes", "stagedBytes", "wireBytes", "storeHits", "newPages", "patches", "encodeSeconds"})
+    for (const char* name : {"records", "rawBytes", "stagedBytes", "wireBytes", "storeHits", "newPages", "patches", "encodeSeconds", "programBytes", "heldRecords", "leftOutRecords", "leftOutBytes"})
         rates[std::string(name) + "PerFrame"] = (number(now, name) - number(before, name)) / frames;
     return rates;
 }
@@ -130,6 +130,9 @@ void addEconomy(const Json& economy, std::vector<std::string>& lines) {
     lines.push_back(fmt::format("  economy  {} per frame, {} of it new to the nodes, {} compressed; {:.1f} of {:.1f} pages per frame they had, packing {:.0f} us", sizeText(number(recent, "rawBytesPerFrame")),
                                 sizeText(number(recent, "stagedBytesPerFrame")), sizeText(number(recent, "wireBytesPerFrame")), number(recent, "storeHitsPerFrame"), pages,
                                 1e6 * number(recent, "encodeSecondsPerFrame")));
+    if (number(economy, "heldRecords") + number(economy, "leftOutRecords") > 0)
+        lines.push_back(fmt::format("           of {} per frame {} were left out ({:.1f} records); {} held back now", sizeText(number(recent, "programBytesPerFrame")), sizeText(number(recent, "leftOutBytesPerFrame")),
+                                    number(recent, "leftOutRecordsPerFrame"), sizeText(number(economy, "heldBytes"))));
 }
 
 void addNode(const Json& node, std::vector<std::string>& lines) {
@@ -137,6 +140,7 @@ void addNode(const Json& node, std::vector<std::string>& lines) {
     if (state == "alive") {
         state = fmt::format("{:.0f} frames", number(node, "frames"));
         if (node.contains("recent")) state += fmt::format(", busy {:.0f} %", 100 * number(part(node, "recent"), "busyShare"));
+        if (number(node, "joins") > 0) state += fmt::format(", came back {:.0f} times, the last time in {:.1f} s with {}", number(node, "joins"), number(node, "secondsToBack"), sizeText(number(node, "snapshotBytes")));
         if (number(node, "silentSeconds") > 5) state += fmt::format(", silent for {:.0f} s", number(node, "silentSeconds"));
     }
     const std::string stream = text(node, "stream");

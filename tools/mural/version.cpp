@@ -6,8 +6,10 @@ namespace mural::cli {
 
 const char* muralVersion() { return MURAL_VERSION; }
 
+std::string versionText() { return fmt::format("mural {}", muralVersion()); }
+
 int versionCommand() {
-    fmt::print("mural {}\n", muralVersion());
+    fmt::print("{}\n", versionText());
     return 0;
 }
 

@@ -16,11 +16,14 @@ public:
         if (depth_ >= kDeepest) return tokens_.fail(tokens_.peek().at, "more than " + std::to_string(kDeepest) + " sections stand in each other",
                                                     "check the brackets");
         ++depth_;
+        const std::string_view outer = section_;
+        section_ = name;
         if (tokens_.expect('{', name)) {
             while (!tokens_.ended() && !tokens_.peek().is('}')) readField(name, section);
             tokens_.expect('}', "section " + std::string(name));
         }
         finish(section);
+        section_ = outer;
         --depth_;
     }
 
@@ -115,10 +118,12 @@ private:
         if constexpr (std::is_same_v<Section, Observer>) {
             if (word == "eye_base") section.eyeLeft = section.eyeCyclop = section.eyeRight = std::nullopt; // it places all of them
         }
+        const SourcePosition at = wordAt_; // sections inside have words of their own
         fields(*this, section);
         const bool found = matched_;
         word_ = outer;
         matched_ = true;
+        if (found) tokens_.given(at, section_, word);
         return found;
     }
 
@@ -160,6 +165,7 @@ private:
     static std::string_view todaysWord(std::string_view section, std::string_view word);
 
     TokenReader& tokens_;
+    std::string_view section_; // the word of the one that is read
     std::string_view word_;
     SourcePosition wordAt_;
     bool matched_ = true;

@@ -21,6 +21,7 @@ public:
 
     void fail(SourcePosition at, std::string what, std::string remedy);
     void warn(SourcePosition at, std::string what, std::string remedy) { diagnostics_.warn(at, std::move(what), std::move(remedy)); }
+    void given(SourcePosition at, std::string_view section, std::string_view field) { diagnostics_.given(at, section, field); }
 
     // Steps over what may be the value of a word that nobody knows: numbers, texts, brackets with all that is in them.
     void skipValue();

@@ -12,6 +12,7 @@
 #include "balancer/config/text/writer.hpp"
 #include "balancer/drawing/config_drawing.hpp"
 #include "common/result.hpp"
+#include "nodes/head/config_gaps.hpp"
 #include "nodes/launch/program_check.hpp"
 #include "tools/mural/config/config_summary.hpp"
 #include "tools/mural/config/plan_text.hpp"
@@ -33,6 +34,7 @@ int check(const LoadedConfig& loaded) {
     if (loaded.ok()) {
         for (const std::string& line : summaryOf(loaded)) fmt::print("{}\n", line);
     }
+    for (const std::string& line : fieldsWithoutEffect(loaded.diagnostics)) fmt::print("note: {}\n", line);
     const auto warnings = loaded.diagnostics.all().size() - std::min(loaded.diagnostics.all().size(), static_cast<size_t>(loaded.diagnostics.errors()));
     fmt::print("{}: {} error{}, {} warning{}\n", loaded.diagnostics.file(), loaded.diagnostics.errors(), loaded.diagnostics.errors() == 1 ? "" : "s",
                warnings, warnings == 1 ? "" : "s");
