@@ -42,6 +42,12 @@ enum class HeadCommand : uint32_t {
     NewHistory = 7, // what was had before is forgotten: batches behind it refer to what comes from here on
     TellTurns = 8, // u32 number: members that take turns answer Turns, for a node that begins to catch up here
     Turns = 9,     // WindowTurn*: to a node that catches up, behind what it was given up to that TellTurns
+    JoinGroup = 10, // u32 node: it joins the multicast group of its setup, beside the stream by which this comes
+    ByGroup = 11,  // ByGroupCommand: its last packet, or batch, by its own connection. It comes by the group, too, and behind it is what follows
+};
+struct ByGroupCommand {
+    uint32_t node;
+    uint32_t skipLow, skipHigh; // bytes that have come to it by the group before this packet, or batch
 };
 
 // Node → head.

@@ -146,6 +146,7 @@ private:
     std::atomic<bool> finishing_{false};
     std::atomic<bool> tearingDown_{false};
     std::atomic<bool> serving_{false};
+    std::set<int> multicastNodes_; // nodes whose stream comes by multicast where that reaches them
     std::set<int> economical_; // nodes that are spared what they have had
     std::string exchangeSecret_;   // of nodes that send each other parts of pictures or wait for each other, in hex
     std::atomic<int64_t> unsplitFrames_{0}; // by the collectors, since the start

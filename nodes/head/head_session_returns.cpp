@@ -54,6 +54,7 @@ void HeadSession::linkAgain(int node, StartingNode& starting) {
     NodeEvents& events = *this; // a private base: make_unique could not convert
     auto link = std::make_unique<NodeLink>(NodePlace{node, plan.where}, std::move(starting.node.connection), std::move(starting.node.process), events);
     link->setJoinsBatches(economical_.contains(node));
+    link->setJoinsGroup(multicastNodes_.contains(node));
     nodes_.replace(node, std::move(link));
     nodes_.link(node).startReading();
     NodeSetup setup = setupFor(plan);

@@ -56,7 +56,7 @@ Result<void> HeadSession::bringUp() {
 NodeSetup HeadSession::setupFor(const NodePlan& plan) {
     NodeSetup setup = setupOf(config_, plan_, plan);
     setup.exchangeSecret = exchangeSecret_;
-    if (nodes_.link(plan.node).byMulticast()) {
+    if (nodes_.link(plan.node).byMulticast() || nodes_.link(plan.node).joinsGroup()) {
         setup.stream = nodes_.multicast()->invitation();
         setup.streamSecret = toHex(nodes_.multicast()->secret());
     }
@@ -83,6 +83,7 @@ void HeadSession::openMulticast() {
     streamLine_ = "the stream goes to " + std::to_string(nodes.size()) + " nodes at once, by reliable multicast: " + (*multicast)->describe();
     nodes_.multicastBy(std::move(*multicast));
     for (const int node : nodes) nodes_.link(node).setByMulticast(true);
+    multicastNodes_.insert(nodes.begin(), nodes.end());
 }
 
 Result<void> HeadSession::openEconomy() {

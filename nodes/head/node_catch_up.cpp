@@ -71,6 +71,7 @@ void NodeCatchUp::work() {
         if (const auto admitted = nodes_.admit(node_, admitted_); !admitted) link_.lose(admitted.error().message);
     const Deadline deadline = Deadline::inMs(kDirectPatienceMs);
     while (there && link_.alive() && !nodes_.goDirect(node_, deadline.passed())) sendQueue();
+    if (there && link_.alive()) nodes_.inviteToGroup(node_);
     done_ = true;
 }
 

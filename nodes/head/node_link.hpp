@@ -86,6 +86,10 @@ public:
     void setJoinsBatches(bool joins) { joinsBatches_ = joins; }
     [[nodiscard]] bool joinsBatches() const { return joinsBatches_; }
 
+    // It joins the multicast group once it is a member.
+    void setJoinsGroup(bool joins) { joinsGroup_ = joins; }
+    [[nodiscard]] bool joinsGroup() const { return joinsGroup_; }
+
     // Ends the connection; the reader thread then reports the first reason given.
     void lose(const std::string& why);
     // Called often: loses a node that says nothing for so long. Nodes say that they are alive even while
@@ -133,6 +137,7 @@ private:
     std::atomic<bool> alive_{true};
     std::atomic<bool> saidBye_{false};
     std::atomic<bool> byMulticast_{false};
+    std::atomic<bool> joinsGroup_{false};
     bool member_ = true;
     bool inBatches_ = false;
     bool joinsBatches_ = false;

@@ -86,7 +86,10 @@ NodeMulticast::NodeMulticast(std::unique_ptr<rsp::Group> group, const rsp::Group
 
 std::string NodeMulticast::invitation() const { return "rsp://" + groupAddress_ + "?control=" + endpointText("", controlPort_); }
 
-Result<void> NodeMulticast::write(std::span<const std::byte> bytes, Deadline deadline) { return group_->write(bytes, deadline); }
+Result<void> NodeMulticast::write(std::span<const std::byte> bytes, Deadline deadline) {
+    writtenBytes_ += bytes.size();
+    return group_->write(bytes, deadline); // whole, or the group has failed
+}
 void NodeMulticast::flush() { group_->flush(); }
 
 rsp::MemberId NodeMulticast::memberOf(int node) const {
@@ -114,12 +117,12 @@ std::vector<NodeMulticast::Change> NodeMulticast::takeChanges() {
             nodes_.erase(event.id);
             // Who leaves or ends says so on its own connection, too, and there what it said before comes first.
             const bool itself = event.reason == rsp::GoneReason::Left || event.reason == rsp::GoneReason::Cut;
-            if (!itself) changes.push_back({*node, true, false, textOf(event.reason)});
+            if (!itself) changes.push_back({*node, Change::Kind::Gone, false, 0, textOf(event.reason)});
             continue;
         }
         nodes_[event.id] = *node;
-        const bool asHoped = event.kind == rsp::MemberEvent::Kind::Came && event.info.multicast;
-        if (!asHoped) changes.push_back({*node, false, event.info.multicast, {}});
+        const auto kind = event.kind == rsp::MemberEvent::Kind::Came ? Change::Kind::Came : Change::Kind::Rerouted;
+        changes.push_back({*node, kind, event.info.multicast, event.info.fromByte, {}});
     }
     return changes;
 }

@@ -2,6 +2,7 @@
 // however many nodes there are (transport/rsp).
 #pragma once
 
+#include <atomic>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -34,15 +35,18 @@ public:
     [[nodiscard]] const SessionSecret& secret() const { return secret_; }
 
     Result<void> write(std::span<const std::byte> bytes, Deadline deadline);
+    [[nodiscard]] uint64_t writtenBytes() const { return writtenBytes_; }
     void flush();
     // Nobody waits for this node any longer.
     void remove(int node, const std::string& why);
 
     // What became of a member since the last call.
     struct Change {
+        enum class Kind { Came, Rerouted, Gone };
         int node = 0;
-        bool gone = false;      // else: how it is reached has changed, or is not by multicast from the beginning
-        bool multicast = false; // by it; else through its connection
+        Kind kind = Kind::Came;
+        bool multicast = false; // it is reached by it; else through its connection
+        uint64_t fromByte = 0;  // came: the first of all bytes written that it gets
         std::string why;        // gone
     };
     std::vector<Change> takeChanges();
@@ -60,6 +64,7 @@ private:
     const std::string groupAddress_;
     const SessionSecret secret_;
     uint16_t controlPort_ = 0;
+    std::atomic<uint64_t> writtenBytes_{0};
     mutable std::mutex mutex_;
     std::map<rsp::MemberId, int> nodes_; // those that have come and are not gone
 };

@@ -80,6 +80,7 @@ bool NodeSet::sendToLinksLocked(std::span<const std::byte> header, std::span<con
         if (link->inBatches() != inBatches) continue;
         if (link->byMulticast()) byMulticast = byMulticast || link->alive();
         else sendTo(*link, header, payload);
+        byMulticast = byMulticast || link == changingOver_;
         any = any || link->alive();
     }
     if (byMulticast) multicastLocked(header, payload);
@@ -164,14 +165,21 @@ void NodeSet::watch(int64_t nowNs, int64_t patienceNs, const std::function<void(
     for (NodeLink* link : links_) link->watch(nowNs, patienceNs);
     if (!multicast_) return;
     for (const NodeMulticast::Change& change : multicast_->takeChanges()) {
+        using Kind = NodeMulticast::Change::Kind;
         NodeLink& link = this->link(change.node);
+        if (change.kind == Kind::Came && link.joinsGroup()) comers_.push_back(change);
         if (!link.alive() || link.saidBye() || !link.byMulticast()) continue; // or it is there again, another way
-        if (change.gone) link.lose(change.why);
-        else rerouted(change.node, change.multicast);
+        if (change.kind == Kind::Gone) link.lose(change.why);
+        else if (change.kind == Kind::Rerouted || !change.multicast) rerouted(change.node, change.multicast);
     }
+    std::erase_if(comers_, [&](const NodeMulticast::Change& came) {
+        if (!changesOver(came)) return false;
+        rerouted(came.node, came.multicast);
+        return true;
+    });
     // A writer may wait for room that a dead node will never make.
     for (NodeLink* link : links_)
-        if (link->byMulticast() && !link->alive()) multicast_->remove(link->place().node, "the head has lost it");
+        if ((link->byMulticast() || link->joinsGroup()) && !link->alive()) multicast_->remove(link->place().node, "the head has lost it");
 }
 
 void NodeSet::loseAll(const std::string& why) {

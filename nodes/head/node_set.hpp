@@ -68,6 +68,8 @@ public:
     Result<void> admit(int node, const std::function<Admission(uint32_t view)>& announce);
     // From now on its packets go to it as they come. False: its queue is not empty. `now`: what is there is sent at once.
     bool goDirect(int node, bool now);
+    // A member whose packets may come by multicast is told to join the group. When it has, watch() changes it over.
+    void inviteToGroup(int node);
 
     // Also whom the multicast group has lost, and the group loses whom we have. `rerouted` hears of nodes that multicast
     // does not reach (false), or does again.
@@ -84,6 +86,7 @@ public:
 private:
     bool sendLocked(uint32_t stream, std::span<const std::byte> payload);
 
+    bool changesOver(const NodeMulticast::Change& came);
     void multicastLocked(std::span<const std::byte> header, std::span<const std::byte> payload);
     void sendTo(NodeLink& link, std::span<const std::byte> header, std::span<const std::byte> payload);
     void flushLocked();
@@ -96,6 +99,8 @@ private:
     recording::StreamRecorder* recorder_ = nullptr; // null: nothing is recorded
     std::unique_ptr<StreamEconomy> economy_;   // null: all packets go as they are
     std::unique_ptr<NodeMulticast> multicast_; // null: every node has a stream of its own
+    std::vector<NodeMulticast::Change> comers_; // watch()'s: they have joined the group, and get their packets twice until they are told
+    const NodeLink* changingOver_ = nullptr;   // whose packets go to the group and to it; else null
     std::unique_ptr<KeptStream> kept_;         // null: who is lost stays so
     std::deque<std::atomic<NodeLink*>> links_; // by node
     std::vector<std::unique_ptr<NodeLink>> owned_; // also those of lost nodes: others may look at them still

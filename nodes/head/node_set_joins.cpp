@@ -1,11 +1,18 @@
 // Nodes that come again. Everything that decides what a node is given, and from where on it is one of all, happens under the
 // lock that orders packets; only sending what it has missed does not.
+#include <algorithm>
+#include <chrono>
 #include <cstring>
 
 #include "nodes/head/head_command.hpp"
 #include "nodes/head/node_set.hpp"
 
 namespace mural {
+namespace {
+
+constexpr int64_t kChangeOverMs = 5; // what watch() waits for the lock at a time
+
+} // namespace
 
 void NodeSet::keepLocked(uint32_t stream, std::span<const std::byte> payload) {
     if (!kept_) return;
@@ -21,7 +28,8 @@ void NodeSet::keepLocked(uint32_t stream, std::span<const std::byte> payload) {
 void NodeSet::replace(int node, std::unique_ptr<NodeLink> link) {
     NodeLink& before = this->link(node);
     before.end();
-    if (before.byMulticast()) multicast_->remove(node, "the head has lost it");
+    if (before.byMulticast() || before.joinsGroup()) multicast_->remove(node, "the head has lost it");
+    std::erase_if(comers_, [node](const NodeMulticast::Change& came) { return came.node == node; });
     link->setFeed(NodeLink::Feed::Nothing);
     link->setMember(false);
     links_[static_cast<size_t>(node)] = link.get();
@@ -89,6 +97,37 @@ bool NodeSet::goDirect(int node, bool now) {
     if (!to.queueEmpty()) return false;
     to.setFeed(NodeLink::Feed::Direct);
     to.flushNow();
+    return true;
+}
+
+void NodeSet::inviteToGroup(int node) {
+    if (!multicast_ || !link(node).joinsGroup()) return;
+    ++joining_;
+    const std::lock_guard lock(sendMutex_);
+    --joining_;
+    const auto number = static_cast<uint32_t>(node);
+    sendLocked(wire::streamOf(0, 0), commandBytes(wire::HeadCommand::JoinGroup, std::as_bytes(std::span(&number, 1)))); // the others pass it over
+    flushLocked();
+}
+
+// From one packet on, or batch, its stream is the group's, of which it has had all since it came there. False: writers are at
+// work, one of them perhaps for a node that watch() has to lose.
+bool NodeSet::changesOver(const NodeMulticast::Change& came) {
+    NodeLink& to = link(came.node);
+    ++joining_;
+    const std::unique_lock lock(sendMutex_, std::chrono::milliseconds(kChangeOverMs));
+    --joining_;
+    if (!lock.owns_lock()) return false;
+    if (!to.alive() || !to.member() || to.byMulticast()) return true;
+    sendBatchLocked();
+    const uint64_t skipBytes = multicast_->writtenBytes() - came.fromByte;
+    const wire::ByGroupCommand command{static_cast<uint32_t>(came.node), static_cast<uint32_t>(skipBytes), static_cast<uint32_t>(skipBytes >> 32)};
+    changingOver_ = &to;
+    sendLocked(wire::streamOf(0, 0), commandBytes(wire::HeadCommand::ByGroup, std::as_bytes(std::span(&command, 1))));
+    sendBatchLocked();
+    changingOver_ = nullptr;
+    flushLinksLocked();
+    to.setByMulticast(true);
     return true;
 }
 

@@ -43,7 +43,8 @@ Result<std::unique_ptr<HeadLine>> HeadLine::open(const NodeOptions& options) {
     return line;
 }
 
-Result<void> HeadLine::follow(const std::string& stream, const std::string& secretHex, const std::string& name) {
+// The card and the address are those by which the head is reached.
+Result<rsp::GroupOptions> HeadLine::groupOptions(const std::string& stream, const std::string& secretHex, const std::string& name) const {
     auto description = parseConnectionDescription(stream);
     if (!description) return description.error();
     auto options = rsp::groupOptionsOf(*description);
@@ -52,27 +53,62 @@ Result<void> HeadLine::follow(const std::string& stream, const std::string& secr
     if (!secret) return secret.error();
     options->secret = secret.value();
     options->name = name;
-    // The card and the address by which the head is reached.
     auto control = splitHostPort(options->control);
     if (!control) return control.error();
     options->control = endpointText(headHost_, control->port);
     options->interface = connection_->path().ownAddress;
+    return options;
+}
+
+Result<void> HeadLine::follow(const std::string& stream, const std::string& secretHex, const std::string& name) {
+    auto options = groupOptions(stream, secretHex, name);
+    if (!options) return options.error();
     auto joined = rsp::joinGroup(*options, Deadline::inMs(kJoinMs));
     if (!joined) return joined.error();
     stream_ = std::move(*joined);
     return {};
 }
 
+void HeadLine::joinBeside(const std::string& stream, const std::string& secretHex, const std::string& name) {
+    const auto failed = [this](const std::string& why) {
+        sendText(wire::NodeMessage::Log, "its stream goes on through its own connection (TCP), not by multicast: " + why + "; mural doctor --network may say why");
+    };
+    auto options = groupOptions(stream, secretHex, name);
+    if (!options) return failed(options.error().message);
+    late_ = std::make_unique<LateStream>(std::move(*options), failed);
+}
+
+Result<void> HeadLine::changeOver(uint64_t skipBytes) {
+    if (!late_) return Error{"it was not told of a group"};
+    if (auto ended = endBatch(); !ended) return ended;
+    auto stream = late_->goOn(skipBytes, Deadline::inMs(kSendMs));
+    late_.reset();
+    if (!stream) return stream.error();
+    stream_ = std::move(*stream);
+    if (unpacker_) {
+        const auto had = readBatch();
+        return had ? Result<void>() : had.error();
+    }
+    std::span<const std::byte> payload;
+    const auto had = readPacket(payload);
+    return had ? Result<void>() : had.error();
+}
+
+// Nothing but the command in hand may be in its batch: what is behind it is read another way.
+Result<void> HeadLine::endBatch() {
+    if (!inBatch_) return {};
+    uint32_t stream = 0;
+    std::span<const std::byte> payload;
+    const auto more = unpacker_->next(stream, payload);
+    if (!more || more.value()) return Error{"the head sent more in a batch than its last command; head and nodes must be of one build"};
+    inBatch_ = false;
+    return {};
+}
+
 Result<void> HeadLine::unpackBatches(uint64_t storeBytes, const std::string& plant) {
     economy::Limits limits;
     limits.storeBytes = storeBytes;
-    if (inBatch_) {
-        uint32_t stream = 0;
-        std::span<const std::byte> payload;
-        const auto more = unpacker_->next(stream, payload);
-        if (!more || more.value()) return Error{"the head began a new history within a batch; head and nodes must be of one build"};
-        inBatch_ = false;
-    }
+    if (auto ended = endBatch(); !ended) return ended;
     unpacker_.reset(); // its memory first
     batchDecoder_ = std::make_unique<economy::BatchDecoder>();
     unpacker_ = std::make_unique<economy::Unpacker>(limits);

@@ -10,6 +10,7 @@
 
 #include "economy/batch_codec.hpp"
 #include "economy/unpacker.hpp"
+#include "nodes/node/late_stream.hpp"
 #include "nodes/node/node.hpp"
 #include "streamcodec/wire.hpp"
 #include "transport/connection.hpp"
@@ -22,6 +23,12 @@ public:
 
     // From now on packets come by this multicast group (rsp://…), no longer by the connection.
     Result<void> follow(const std::string& stream, const std::string& secretHex, const std::string& name);
+
+    // The same, but packets still come by the connection, until changeOver(). What fails, the head's user is told: it is not needed.
+    void joinBeside(const std::string& stream, const std::string& secretHex, const std::string& name);
+    // The packet in hand has come by the group, too, behind `skipBytes` others. What follows it is read there. Errors: it is no
+    // member, or does not get what it was promised.
+    Result<void> changeOver(uint64_t skipBytes);
 
     // From now on packets come in batches, which refer to nothing that came before. Errors: no memory; called within a batch that has not ended. `plant`: a fault for tests to find, or nothing.
     Result<void> unpackBatches(uint64_t storeBytes, const std::string& plant);
@@ -41,6 +48,8 @@ public:
     [[nodiscard]] std::string ownAddress() const { return connection_->path().ownAddress; }
 
 private:
+    [[nodiscard]] Result<rsp::GroupOptions> groupOptions(const std::string& stream, const std::string& secretHex, const std::string& name) const;
+    Result<void> endBatch();
     void sendLocked(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b);
     explicit HeadLine(std::unique_ptr<Connection> connection) : connection_(std::move(connection)) {}
 
@@ -60,6 +69,7 @@ private:
     bool inBatch_ = false;
     std::mutex sending_;
     std::atomic<bool> broken_{false};
+    std::unique_ptr<LateStream> late_; // between joinBeside() and changeOver(); its thread sends
 };
 
 } // namespace mural

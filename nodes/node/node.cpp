@@ -109,6 +109,8 @@ private:
         case wire::HeadCommand::NewHistory: return unpackBatches();
         case wire::HeadCommand::TellTurns: return tellTurns(rest);
         case wire::HeadCommand::Turns: return takeTurns(rest);
+        case wire::HeadCommand::JoinGroup: return joinGroup(rest);
+        case wire::HeadCommand::ByGroup: return changeOver(rest);
         case wire::HeadCommand::Synchronize:
             return synchronize(rest);
         case wire::HeadCommand::Exchange: return meet(std::string(reinterpret_cast<const char*>(rest.data()), rest.size()));
@@ -131,7 +133,7 @@ private:
         if (!platform) return fail(platform.error().message);
         nlohmann::json ready = probe(**platform);
         ready["placement"] = placeReplay(setup_, ready.value("renderer", ""));
-        if (!setup_.stream.empty()) {
+        if (!setup_.stream.empty() && !setup_.catchesUp) {
             const auto followed = line_->follow(setup_.stream, setup_.streamSecret, name_);
             if (!followed) ready["ownStream"] = followed.error().message;
         }
@@ -326,6 +328,23 @@ private:
         if (!bytes.empty()) std::memcpy(turns.data(), bytes.data(), bytes.size());
         if (replay_) replay_->takeTurns(turns);
         return true;
+    }
+
+    bool joinGroup(std::span<const std::byte> arguments) {
+        uint32_t node = 0;
+        if (arguments.size() < sizeof node) return false;
+        std::memcpy(&node, arguments.data(), sizeof node);
+        if (node == static_cast<uint32_t>(setup_.node)) line_->joinBeside(setup_.stream, setup_.streamSecret, name_);
+        return true;
+    }
+
+    bool changeOver(std::span<const std::byte> arguments) {
+        wire::ByGroupCommand command{};
+        if (arguments.size() < sizeof command) return false;
+        std::memcpy(&command, arguments.data(), sizeof command);
+        if (command.node != static_cast<uint32_t>(setup_.node)) return true;
+        const auto changed = line_->changeOver(uint64_t{command.skipHigh} << 32 | command.skipLow);
+        return changed || fail("its stream can't go on by multicast: " + changed.error().message);
     }
 
     void frameDone(const ReplayOutputs::Frame& f) {

@@ -1,5 +1,6 @@
 #include "transport/rsp/group_connection.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <utility>
 
@@ -17,13 +18,13 @@ Deadline inSlice(Deadline deadline) { return Deadline::inMs(deadline.leftNs(kSli
 // `whole`: this is the member's own end of its group, not one of the host's.
 class GroupConnection final : public Connection {
 public:
-    GroupConnection(std::shared_ptr<Group> group, MemberId from, bool whole, std::string description)
-        : group_(std::move(group)), from_(from), whole_(whole), description_(std::move(description)) {}
+    GroupConnection(std::shared_ptr<Group> group, MemberId from, bool whole, std::string description, std::vector<std::byte> first = {})
+        : group_(std::move(group)), from_(from), whole_(whole), description_(std::move(description)), first_(std::move(first)) {}
     ~GroupConnection() override { GroupConnection::close(); }
 
     Result<void> read(std::span<std::byte> into, Deadline deadline) override {
         readTimedOut_ = false;
-        size_t done = 0;
+        size_t done = takeFirst(into);
         const auto failed = [&](const std::string& why) { return connectionError(description_, "read", done, into.size(), why); };
         while (done < into.size()) {
             if (closed_) return failed(ending::kClosedHere);
@@ -87,6 +88,16 @@ public:
     [[nodiscard]] uint64_t bytesRead() const override { return bytesRead_; }
 
 private:
+    size_t takeFirst(std::span<std::byte> into) {
+        if (first_.empty()) return 0;
+        const size_t count = std::min(into.size(), first_.size() - firstRead_);
+        std::copy_n(first_.begin() + static_cast<std::ptrdiff_t>(firstRead_), count, into.begin());
+        firstRead_ += count;
+        bytesRead_ += count;
+        if (firstRead_ == first_.size()) first_ = {};
+        return count;
+    }
+
     void endStream() {
         if (closed_.exchange(true)) return;
         if (whole_) group_->leave();
@@ -97,6 +108,8 @@ private:
     const MemberId from_;
     const bool whole_;
     const std::string description_;
+    std::vector<std::byte> first_; // the reader's
+    size_t firstRead_ = 0;
     std::atomic<bool> closed_{false};
     std::atomic<bool> gone_{false};
     std::atomic<bool> readTimedOut_{false};
@@ -129,8 +142,11 @@ private:
 Result<std::unique_ptr<Connection>> joinGroup(const GroupOptions& options, Deadline deadline) {
     auto group = Group::join(options, deadline);
     if (!group) return group.error();
-    return std::unique_ptr<Connection>(
-        std::make_unique<GroupConnection>(std::move(*group), kHost, true, textOf(options, options.control)));
+    return streamOfHost(std::move(*group), options, {});
+}
+
+std::unique_ptr<Connection> streamOfHost(std::unique_ptr<Group> group, const GroupOptions& options, std::vector<std::byte> first) {
+    return std::make_unique<GroupConnection>(std::move(group), kHost, true, textOf(options, options.control), std::move(first));
 }
 
 Result<std::unique_ptr<Listener>> hostGroup(const GroupOptions& options) {

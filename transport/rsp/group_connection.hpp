@@ -7,6 +7,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "transport/connection.hpp"
 #include "transport/rsp/group.hpp"
@@ -15,6 +16,8 @@ namespace mural::rsp {
 
 // Reads the host's stream. Errors: no host, a wrong secret, the deadline.
 Result<std::unique_ptr<Connection>> joinGroup(const GroupOptions& options, Deadline deadline);
+// The host's stream, of which `first` has been read already: it comes first.
+std::unique_ptr<Connection> streamOfHost(std::unique_ptr<Group> group, const GroupOptions& options, std::vector<std::byte> first);
 // accept() returns each member once its stream has begun; describe() has the control address that members need.
 Result<std::unique_ptr<Listener>> hostGroup(const GroupOptions& options);
 

@@ -154,7 +154,8 @@ void GroupCore::part(MemberId id, GoneReason reason) {
     out_.memberGone(id, reason);
 }
 
-void GroupCore::meet(MemberId id, const MemberInfo& info, int64_t nowNs) {
+void GroupCore::meet(MemberId id, MemberInfo info, int64_t nowNs) {
+    info.fromByte = sender_->writtenBytes();
     members_[id] = info;
     out_.memberCame(id, info);
     const Sequence first = sender_->addMember(id, nowNs);

@@ -58,6 +58,7 @@ struct MemberInfo {
     std::string address; // as the host sees it
     uint16_t udpPort = 0;
     bool multicast = false;
+    uint64_t fromByte = 0; // of this process's own stream: the first one that it gets
 };
 
 // What the group wants done outside.
@@ -143,7 +144,7 @@ private:
     void take(MemberId from, const Rerouted& m, int64_t nowNs);
 
     void admit(MemberId id, const MemberInfo& info, int64_t nowNs);
-    void meet(MemberId id, const MemberInfo& info, int64_t nowNs);
+    void meet(MemberId id, MemberInfo info, int64_t nowNs);
     void part(MemberId id, GoneReason reason);
     void remove(MemberId id, GoneReason reason);
     void makeSender();

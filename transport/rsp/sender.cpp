@@ -35,6 +35,12 @@ Sequence Sender::addMember(MemberId id, int64_t nowNs) {
     return m.cumulative;
 }
 
+size_t Sender::write(std::span<const std::byte> bytes) {
+    const size_t written = window_.write(bytes);
+    writtenBytes_ += written;
+    return written;
+}
+
 void Sender::removeMember(MemberId id) {
     members_.erase(id);
     roundLost_.erase(id);

@@ -61,7 +61,9 @@ public:
     void ask() { pollNow_ = true; }
 
     // Copies what there is room for; returns how much. Without members all is taken, and nobody gets it.
-    size_t write(std::span<const std::byte> bytes) { return window_.write(bytes); }
+    size_t write(std::span<const std::byte> bytes);
+    // So many bytes since the start: where a member that is added now begins.
+    [[nodiscard]] uint64_t writtenBytes() const { return writtenBytes_; }
     // What was written goes out now, and members say at once that they have it.
     void flush();
     [[nodiscard]] size_t roomBytes() const { return window_.roomBytes(); }
@@ -114,6 +116,7 @@ private:
     RateControl rate_;
     std::map<MemberId, MemberState> members_;
     SenderCounters counters_;
+    uint64_t writtenBytes_ = 0;
 
     Sequence next_;         // the first that was never sent
     Sequence acknowledged_; // all before it are everywhere

@@ -1,0 +1,62 @@
+#include "nodes/node/late_stream.hpp"
+
+#include <utility>
+
+#include "transport/rsp/group_connection.hpp"
+
+namespace mural {
+namespace {
+
+constexpr int64_t kJoinMs = 10'000;
+constexpr int64_t kSliceMs = 50;            // between two looks whether it is known where to go on
+constexpr size_t kMostBytes = size_t{64} << 20; // far above what the head sends before it has said that
+constexpr size_t kReadBytes = size_t{64} << 10;
+
+} // namespace
+
+LateStream::LateStream(rsp::GroupOptions options, std::function<void(const std::string&)> failed)
+    : options_(std::move(options))
+    , failed_(std::move(failed))
+    , thread_([this] { work(); }) {}
+
+LateStream::~LateStream() {
+    stop_ = true;
+    if (thread_.joinable()) thread_.join();
+}
+
+void LateStream::work() {
+    auto group = rsp::Group::join(options_, Deadline::inMs(kJoinMs));
+    if (!group) return failed_(group.error().message);
+    group_ = std::move(*group);
+    while (!stop_ && come_.size() < kMostBytes)
+        if (!readSome()) return;
+    if (stop_) return;
+    group_.reset(); // the others shall not wait
+    failed_("the head did not say where in the stream to go on");
+}
+
+// False: nothing comes any more.
+bool LateStream::readSome() {
+    const size_t had = come_.size();
+    come_.resize(had + kReadBytes);
+    const Deadline slice = Deadline::inMs(kSliceMs);
+    auto got = group_->read(rsp::kHost, std::span(come_).subspan(had), slice);
+    come_.resize(had + (got ? *got : 0));
+    return got ? *got > 0 : slice.passed();
+}
+
+Result<std::unique_ptr<Connection>> LateStream::goOn(uint64_t skipBytes, Deadline deadline) {
+    stop_ = true;
+    if (thread_.joinable()) thread_.join();
+    if (!group_) return Error{"it is not in the group"};
+    while (come_.size() < skipBytes) {
+        skipBytes -= come_.size();
+        come_.clear();
+        if (deadline.passed()) return Error{"the beginning of its stream did not come"};
+        if (!readSome()) return Error{"the group has ended"};
+    }
+    come_.erase(come_.begin(), come_.begin() + static_cast<std::ptrdiff_t>(skipBytes));
+    return rsp::streamOfHost(std::move(group_), options_, std::move(come_));
+}
+
+} // namespace mural
