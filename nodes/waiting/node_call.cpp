@@ -7,38 +7,33 @@
 #include <unistd.h>
 
 #include "nodes/waiting/channel_socket.hpp"
-#include "transport/socket_wait.hpp"
 #include "transport/system_error.hpp"
 #include "transport/tcp_address.hpp"
 #include "transport/tcp_connection.hpp"
+#include "transport/tcp_race.hpp"
 
 namespace mural {
 
 namespace {
 
-constexpr int64_t kConnectMs = 5'000; // per address
+constexpr int64_t kConnectMs = 5'000; // all addresses; as much to find them
 constexpr int64_t kProofMs = 10'000;
 constexpr int64_t kSendMs = 10'000;
 
 Result<FileDescriptor> connectTo(const NodeCall& call) {
-    std::string why;
+    std::string why = "no address to try";
+    std::vector<TcpAddress> addresses;
     for (const std::string& host : call.addresses) {
-        auto addresses = resolveTcp(host, call.port, TcpRole::Connect, Deadline::inMs(kConnectMs));
-        if (!addresses) {
-            why = addresses.error().message;
-            continue;
-        }
-        for (const TcpAddress& address : *addresses) {
-            FileDescriptor fd(::socket(address.family(), SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-            int code = ::connect(fd.get(), address.get(), address.sizeBytes) == 0 ? 0 : errno;
-            socklen_t size = sizeof code;
-            if (code == EINPROGRESS && waitForSocket(fd.get(), POLLOUT, Deadline::inMs(kConnectMs)) == 0) code = ETIMEDOUT;
-            else if (code == EINPROGRESS) (void)getsockopt(fd.get(), SOL_SOCKET, SO_ERROR, &code, &size);
-            if (code == 0 && prepareTcpSocket(fd.get())) return fd;
-            why = numericText(address) + ": " + errnoText(code);
-        }
+        auto resolved = resolveTcp(host, call.port, TcpRole::Connect, Deadline::inMs(kConnectMs));
+        if (resolved) addresses.insert(addresses.end(), resolved->begin(), resolved->end());
+        else why = resolved.error().message;
     }
-    return Error{"no connection to port " + std::to_string(call.port) + ": " + (why.empty() ? "no address to try" : why) + "; does `mural node --wait` run there?"};
+    if (!addresses.empty()) {
+        auto socket = connectRacing(addresses, Deadline::inMs(kConnectMs));
+        if (socket && prepareTcpSocket(socket->get())) return socket;
+        why = socket ? "the connection was lost at once" : socket.error().message;
+    }
+    return Error{"no connection to port " + std::to_string(call.port) + ": " + why + "; does `mural node --wait` run there?"};
 }
 
 Result<void> writeAll(int fd, std::span<const std::byte> bytes) {
