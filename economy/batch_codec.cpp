@@ -52,9 +52,15 @@ Result<void> BatchEncoder::encodeSections(const SectionBytes& sections, double l
         const Coding coding = frames ? Coding::Zstd : choices_[i].choose(bytes.size(), linkNsPerByte);
         coded_[i].clear();
         if (coding == Coding::Lz4 || coding == Coding::Zstd) {
-            const int64_t beganNs = nowNs_();
+            const bool timed = !frames && choices_[i].wantsTime(coding, bytes.size());
+            const int64_t beganNs = timed ? nowNs_() : 0;
             if (!compressors_[i].compress(coding, bytes, coded_[i])) return Error{"the stream can't be compressed: no memory"};
-            if (!frames) choices_[i].measured(coding, bytes.size(), coded_[i].size(), nowNs_() - beganNs);
+            if (!frames) choices_[i].measured(coding, bytes.size(), coded_[i].size(), timed ? std::optional(nowNs_() - beganNs) : std::nullopt);
+        }
+        if (const size_t sample = choices_[i].sampleBytes(bytes.size()); sample != 0) {
+            const int64_t beganNs = nowNs_();
+            const size_t codedBytes = lz4Bytes(bytes.first(sample), scratch_);
+            choices_[i].measured(Coding::Lz4, sample, codedBytes, nowNs_() - beganNs);
         }
         codings |= static_cast<uint32_t>(coding) << 2 * (i - kFirst);
         if (coding != Coding::Empty) putNumber(bytes.size(), body_);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "economy/section_codec.hpp"
 
@@ -14,18 +15,27 @@ class CodingChoice {
 public:
     // Shorter ones go as they are: a compressor's own bytes cost more than it saves.
     static constexpr size_t kLeastBytes = 64;
+    static constexpr size_t kLongBytes = 16384; // beside which a clock costs nothing
 
     [[nodiscard]] Coding choose(size_t sizeBytes, double linkNsPerByte);
+    // LZ4 shall be measured on so many bytes of the section that was chosen for last, which goes otherwise: to try it on the first pictures that a
+    // program loads would make them half again as large. 0: not.
+    [[nodiscard]] size_t sampleBytes(size_t sizeBytes) const { return sizeBytes >= kLongBytes && known(Coding::Zstd) && !known(Coding::Lz4) ? kLongBytes : 0; }
+    // Of the section that was chosen for last: reading a thread's clock takes as long as to compress a short one.
+    [[nodiscard]] bool wantsTime(Coding coding, size_t sizeBytes) const;
     // Of what was compressed to what it was before: by the better coding; 1 as long as nothing was.
     [[nodiscard]] double ratio() const;
-    void measured(Coding coding, size_t sizeBytes, size_t codedBytes, int64_t ns);
+    // `ns`: none where nobody has measured it.
+    void measured(Coding coding, size_t sizeBytes, size_t codedBytes, std::optional<int64_t> ns);
 
 private:
     struct Measured {
         double nsPerByte = 0;
         double ratio = 1; // of what it has made to what it was given
-        uint64_t bytes = 0;
+        uint64_t bytes = 0, sections = 0, times = 0;
     };
+    [[nodiscard]] bool known(Coding coding) const;
+    [[nodiscard]] double ratioOf(Coding coding) const { return measured_[static_cast<size_t>(coding)].ratio; }
     [[nodiscard]] double cost(Coding coding, double linkNsPerByte) const;
     std::array<Measured, kCodings> measured_{};
     uint64_t chosen_ = 0;

@@ -14,7 +14,7 @@ History::Opened History::open(uint32_t stream) {
     size_t place = streams_.size();
     if (place < limits_.streams) streams_.emplace_back();
     else place = static_cast<size_t>(std::ranges::min_element(streams_, {}, &Stream::usedAt) - streams_.begin());
-    streams_[place] = {stream, opened_, std::make_unique<ItemLog>(limits_.logItems)};
+    streams_[place] = {stream, opened_, first_ ? std::move(first_) : std::make_unique<ItemLog>(limits_.logItems)};
     return {place, true};
 }
 

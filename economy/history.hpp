@@ -18,7 +18,7 @@ namespace mural::economy {
 
 class History {
 public:
-    explicit History(const Limits& limits) : limits_(limits), text_(limits.textBytes), pages_(limits.storeBytes) {}
+    explicit History(const Limits& limits) : limits_(limits), text_(limits.textBytes), pages_(limits.storeBytes), first_(std::make_unique<ItemLog>(limits.logItems)) {}
 
     [[nodiscard]] bool ready() const { return pages_.ready(); }
 
@@ -77,6 +77,7 @@ private:
     TextRing text_;
     PageStore pages_;
     std::vector<Stream> streams_;
+    std::unique_ptr<ItemLog> first_; // until there is a stream
     uint64_t opened_ = 0;
 };
 

@@ -1,5 +1,6 @@
 // Memory of megabytes that fills slowly: zero, and there only as far as it was used. In huge pages, where the system has them: touching the
-// log of a busy stream by pages of 4 KiB costs more than what is written there.
+// log of a busy stream by pages of 4 KiB costs more than what is written there. The first piece is there from the start, as all programs
+// use that much, and clearing it takes longer than most frames.
 #pragma once
 
 #include <cstddef>
@@ -25,7 +26,8 @@ public:
         std::byte* from = array.mapped_.get();
         if (spare != 0) {
             from += (kHugeBytes - reinterpret_cast<uintptr_t>(from) % kHugeBytes) % kHugeBytes;
-            madvise(from, sizeBytes / kHugeBytes * kHugeBytes, MADV_HUGEPAGE); // no matter if it can't
+            madvise(from, sizeBytes / kHugeBytes * kHugeBytes, MADV_HUGEPAGE); // no matter if it can't, nor below
+            madvise(from, kHugeBytes, MADV_POPULATE_WRITE);
         }
         array.data_ = reinterpret_cast<T*>(from);
         return array;

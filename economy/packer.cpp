@@ -14,6 +14,7 @@ namespace {
 constexpr size_t kCheapPatchBytes = 8, kCheapPagePatchBytes = 512;
 // So many expected items may be missing before the index is asked.
 constexpr size_t kMostSkipped = 4;
+size_t mostPatchOfPage(const Piece& piece) { return size_t{piece.sizeBytes} * 3 / 4; }
 constexpr uint32_t kIndexedOfRun = 2;
 // So many short records may be in the log that go plain now.
 constexpr size_t kMostLeftOut = 1024;
@@ -62,7 +63,7 @@ void Packer::add(uint32_t stream, std::span<const std::byte> packet) {
     }
     const History::Opened opened = history_.open(stream);
     if (opened.place == streams_.size()) streams_.emplace_back();
-    if (opened.fresh) streams_[opened.place] = std::make_unique<StreamIndex>(limits_.logItems);
+    if (opened.fresh) streams_[opened.place] = firstIndex_ ? std::move(firstIndex_) : std::make_unique<StreamIndex>(limits_.logItems);
     log_ = &history_.log(opened.place);
     index_ = &streams_[opened.place]->items;
     runs_ = &streams_[opened.place]->runs;
@@ -173,14 +174,21 @@ void Packer::place() {
     const Piece piece = piece_;
     if (plain_) skipToLike(piece);
     if (skipTo(piece)) return;
-    if (patch(piece, piece.page() ? kCheapPagePatchBytes : kCheapPatchBytes)) return;
+    if (patch(piece, piece.page() ? cheapPatchOfPage(piece) : kCheapPatchBytes)) return;
     if (piece.page() && fromStore(true)) return;
     if (seek()) return;
     if (piece.page() && fromStore(false)) return;
     // Words of what is no page are guessed: all of them changed cost less than new ones, if this is the place.
     const bool place = !piece.page() && piece.sizeBytes >= ItemIndex::kTellingBytes;
-    if (patch(piece, place ? size_t{piece.sizeBytes} * 2 : size_t{piece.sizeBytes} * 3 / 4)) return;
+    if (patch(piece, place ? size_t{piece.sizeBytes} * 2 : mostPatchOfPage(piece))) return;
     send(piece);
+}
+
+// Of a page that is another each time nobody looks whether it was somewhere before.
+size_t Packer::cheapPatchOfPage(const Piece& piece) {
+    if (!log_->holds(log_->cursor)) return 0;
+    const Item expected = log_->at(log_->cursor);
+    return expected.page && history_.pages().changesInPlace(expected.where) ? mostPatchOfPage(piece) : kCheapPagePatchBytes;
 }
 
 bool Packer::same(Item item, const Piece& piece) const {
@@ -229,30 +237,51 @@ bool Packer::patch(const Piece& piece, size_t mostBytes) {
     settle();
     control_.put(Do::Patch, static_cast<uint32_t>(patch_.spans.size()));
     Item changed = expected;
-    if (!piece.page()) words_.begin(changed, old);
+    ++counts_.patches;
+    if (piece.page()) {
+        putPagePatch(now);
+        ++log_->cursor;
+        appendChangedPage(expected.where, piece);
+        return true;
+    }
+    words_.begin(changed, old);
     size_t at = 0;
     for (const WordSpan& span : patch_.spans) {
-        if (piece.page()) putSpan(span.kept, span.changed, [&](uint32_t byte) { literals_[static_cast<size_t>(Section::Spans)].push_back(static_cast<std::byte>(byte)); });
-        else control_.span(span.kept, span.changed);
+        control_.span(span.kept, span.changed);
         at += size_t{span.kept} * 4;
         const size_t sizeBytes = size_t{span.changed} * 4;
-        if (piece.page()) literal(Section::Words, now.subspan(at, sizeBytes));
-        else codeWords(at, old.subspan(at, sizeBytes), now.subspan(at, sizeBytes));
+        codeWords(at, old.subspan(at, sizeBytes), now.subspan(at, sizeBytes));
         at += sizeBytes;
     }
-    if (!piece.page()) words_.end();
+    words_.end();
     ++log_->cursor;
-    ++counts_.patches;
     const Item after = keep(piece, changed.model);
     const auto hash = static_cast<uint32_t>(hashOf(piece));
-    if (expected.model == 0) {
-        append(after, hash);
-    } else {
-        index_->appendUnfound(log_->end(), hash);
-        first_ = false;
-        log_->append(after);
-    }
+    if (expected.model == 0) append(after, hash);
+    else appendUnfound(after, hash);
     return true;
+}
+
+// patch_ goes. A span may be one word, and a page has hundreds of them: no call for each.
+void Packer::putPagePatch(std::span<const std::byte> now) {
+    auto& spans = literals_[static_cast<size_t>(Section::Spans)];
+    auto& words = literals_[static_cast<size_t>(Section::Words)];
+    size_t to = words.size();
+    words.resize(to + patch_.changedBytes);
+    const std::byte* from = now.data();
+    for (const WordSpan& span : patch_.spans) {
+        putSpan(span.kept, span.changed, [&spans](uint32_t byte) { spans.push_back(static_cast<std::byte>(byte)); });
+        from += size_t{span.kept} * 4;
+        for (uint32_t i = 0; i < span.changed; ++i, to += 4, from += 4) std::memcpy(words.data() + to, from, 4);
+    }
+}
+
+// What has become of the page in this slot. One that stays there is another each time, which nobody looks for: so it needs no hash.
+void Packer::appendChangedPage(uint32_t slotBefore, const Piece& piece) {
+    const uint32_t slot = history_.pages().changed(slotBefore);
+    if (slot != slotBefore) return append(putPage(slot, piece), static_cast<uint32_t>(hashOf(piece)));
+    pageIndex_.forget(slot);
+    appendUnfound(history_.addPage(slot, bytesOf(piece)), ItemIndex::kNothing);
 }
 
 void Packer::codeWords(size_t at, std::span<const std::byte> old, std::span<const std::byte> now) {
@@ -333,9 +362,18 @@ void Packer::append(Item item, uint32_t hash) {
     log_->append(item);
 }
 
+void Packer::appendUnfound(Item item, uint32_t hash) {
+    index_->appendUnfound(log_->end(), hash);
+    first_ = false;
+    log_->append(item);
+}
+
 Item Packer::keep(const Piece& piece, uint32_t model) {
     if (!piece.page()) return history_.addText(bytesOf(piece), model);
-    const uint32_t slot = history_.pages().take();
+    return putPage(history_.pages().take(), piece);
+}
+
+Item Packer::putPage(uint32_t slot, const Piece& piece) {
     pageIndex_.set(slot, hashOf(piece));
     ++counts_.newPages;
     return history_.addPage(slot, bytesOf(piece));

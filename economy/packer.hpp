@@ -33,7 +33,7 @@ struct PackerCounts {
 
 class Packer {
 public:
-    explicit Packer(const Limits& limits) : limits_(limits), history_(limits), words_(limits.modelWords) {}
+    explicit Packer(const Limits& limits) : limits_(limits), history_(limits), firstIndex_(std::make_unique<StreamIndex>(limits.logItems)), words_(limits.modelWords) {}
 
     // False: there was no memory for the store.
     [[nodiscard]] bool ready() const { return history_.ready(); }
@@ -73,6 +73,11 @@ private:
     void send(const Piece& piece);
     void run();
     void append(Item item, uint32_t hash);
+    void appendUnfound(Item item, uint32_t hash);
+    [[nodiscard]] size_t cheapPatchOfPage(const Piece& piece);
+    void putPagePatch(std::span<const std::byte> now);
+    void appendChangedPage(uint32_t slotBefore, const Piece& piece);
+    Item putPage(uint32_t slot, const Piece& piece);
     Item keep(const Piece& piece, uint32_t model = 0);
     void settle();
     void asBytes(size_t from, size_t to);
@@ -92,6 +97,7 @@ private:
         KnownRuns runs;
     };
     std::vector<std::unique_ptr<StreamIndex>> streams_; // by place of the log
+    std::unique_ptr<StreamIndex> firstIndex_;           // until there is a stream
 
     RangeWriter coder_; // of control_ and words_
     ControlWriter control_{coder_};

@@ -16,6 +16,10 @@ public:
             if (pages_[slot].hash == hash && is(slot)) return slot;
         return kNone;
     }
+    // The slot has a page that nobody finds by its hash.
+    void forget(uint32_t slot) {
+        if (slot < pages_.size()) remove(slot);
+    }
     // The slot has another page now.
     void set(uint32_t slot, uint64_t hash) {
         if (slot < pages_.size()) remove(slot);

@@ -23,6 +23,12 @@ void putSize(std::vector<std::byte>& into, uint32_t size) {
 
 } // namespace
 
+size_t lz4Bytes(std::span<const std::byte> bytes, std::vector<std::byte>& scratch) {
+    const int size = static_cast<int>(bytes.size()), room = LZ4_compressBound(size);
+    scratch.resize(static_cast<size_t>(room));
+    return static_cast<size_t>(LZ4_compress_default(chars(bytes.data()), chars(scratch.data()), size, room));
+}
+
 struct SectionCompressor::State {
     const int zstdLevel;
     std::unique_ptr<ZSTD_CCtx, size_t (*)(ZSTD_CCtx*)> zstd{nullptr, ZSTD_freeCCtx};
@@ -30,14 +36,17 @@ struct SectionCompressor::State {
     std::vector<std::byte> window{}; // of LZ4: the bytes before, and behind them the ones in hand
     size_t windowBytes = 0;
 
+    bool openZstd() {
+        if (zstd) return true;
+        zstd.reset(ZSTD_createCCtx());
+        if (!zstd) return false;
+        ZSTD_CCtx_setParameter(zstd.get(), ZSTD_c_compressionLevel, zstdLevel);
+        ZSTD_CCtx_setParameter(zstd.get(), ZSTD_c_windowLog, kZstdWindowLog);
+        ZSTD_CCtx_setParameter(zstd.get(), ZSTD_c_contentSizeFlag, 0);
+        return true;
+    }
     bool byZstd(std::span<const std::byte> bytes, std::vector<std::byte>& into) {
-        if (!zstd) {
-            zstd.reset(ZSTD_createCCtx());
-            if (!zstd) return false;
-            ZSTD_CCtx_setParameter(zstd.get(), ZSTD_c_compressionLevel, zstdLevel);
-            ZSTD_CCtx_setParameter(zstd.get(), ZSTD_c_windowLog, kZstdWindowLog);
-            ZSTD_CCtx_setParameter(zstd.get(), ZSTD_c_contentSizeFlag, 0);
-        }
+        if (!openZstd()) return false;
         ZSTD_inBuffer in{bytes.data(), bytes.size(), 0};
         size_t left = 1;
         for (size_t room = ZSTD_compressBound(bytes.size()) + 64; left != 0; room = 1024) {
@@ -83,6 +92,14 @@ SectionCompressor::SectionCompressor(SectionCompressor&&) noexcept = default;
 
 bool SectionCompressor::compress(Coding coding, std::span<const std::byte> bytes, std::vector<std::byte>& into) {
     return coding == Coding::Zstd ? state_->byZstd(bytes, into) : state_->byLz4(bytes, into);
+}
+
+void SectionCompressor::prepare() {
+    const std::vector<std::byte> nothing(size_t{128} << 10); // a block of Zstandard's
+    std::vector<std::byte> into;
+    for (size_t filled = 0; filled <= size_t{1} << kZstdWindowLog; filled += nothing.size())
+        if (!state_->byZstd(nothing, into)) return;
+    ZSTD_CCtx_reset(state_->zstd.get(), ZSTD_reset_session_only);
 }
 
 struct SectionDecompressor::State {

@@ -13,6 +13,9 @@ namespace mural::economy {
 enum class Coding : uint8_t { Empty = 0, Raw = 1, Lz4 = 2, Zstd = 3 };
 constexpr size_t kCodings = 4;
 
+// What LZ4 makes of these bytes alone; 0: nothing.
+[[nodiscard]] size_t lz4Bytes(std::span<const std::byte> bytes, std::vector<std::byte>& scratch);
+
 class SectionCompressor {
 public:
     explicit SectionCompressor(int zstdLevel = 1);
@@ -21,6 +24,8 @@ public:
 
     // Adds to `into`; `coding`: Lz4 or Zstd. What it has made must be sent: the window holds it. False: no memory.
     bool compress(Coding coding, std::span<const std::byte> bytes, std::vector<std::byte>& into);
+    // Touches Zstandard's window, so that the first frames need not: new memory costs more than to compress what fills it.
+    void prepare();
 
 private:
     struct State;

@@ -113,7 +113,7 @@ Unpacker::Problem Unpacker::patch(uint32_t spans) {
     }
     if (item.page == 0) words_.end();
     ++log_->cursor;
-    log_->append(keep(bytes, item.page != 0, item.model));
+    log_->append(item.page != 0 ? history_.addPage(history_.pages().changed(item.where), bytes) : keep(bytes, false, item.model));
     std::ranges::copy(old, bytes.begin());
     return nullptr;
 }

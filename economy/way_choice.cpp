@@ -10,12 +10,15 @@ constexpr uint32_t kTryBatches = 5;
 constexpr uint32_t kUnmeasured = 2;        // of them: what was remembered by this way is from long ago
 constexpr uint32_t kCompared = kTryBatches - kUnmeasured;
 constexpr uint32_t kLeastBetween = 16;     // batches between two tries
+constexpr uint32_t kMeasuredEvery = 8;     // batches between two tries
 constexpr double kClearly = 0.95;         // as small as that is cheaper
 constexpr double kWorthNs = 20'000;       // a frame that is looked at in less is not worth more bytes
 constexpr double kMuch = 2;                // a change of cost that asks for another try
 // Nodes unpack it before they draw: so long beside packing, looked at and plain (measured: 0.5 to 0.75 and 0.25 to 0.35).
 constexpr std::array<double, 2> kWithUnpacking{1.6, 1.3};
 } // namespace
+
+bool WayChoice::wantsTime() const { return trying_ || batches_ + 1 + kCompared >= until_ || batches_ % kMeasuredEvery == 0; }
 
 void WayChoice::measured(uint64_t rawBytes, uint64_t pageBytes, uint64_t wireBytes, int64_t ns, double linkNsPerByte) {
     ++batches_;

@@ -14,6 +14,10 @@ public:
     // Batches that are counted here are those up to where a program has published no more: about a frame.
     // Of the next batch.
     [[nodiscard]] bool plain() const { return plain_; }
+    // Whether the time of the next batch must be known: reading a thread's clock is a system call, and takes as long as looking at a small frame.
+    [[nodiscard]] bool wantsTime() const;
+    // The batch has gone so, in a time that nobody has measured.
+    void unmeasured() { ++batches_; }
     // The batch has gone so. pageBytes: of rawBytes, in long records, which are looked at either way.
     void measured(uint64_t rawBytes, uint64_t pageBytes, uint64_t wireBytes, int64_t ns, double linkNsPerByte);
 

@@ -1,6 +1,8 @@
 // Which words of an item have changed against the expected one.
 #pragma once
 
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -16,29 +18,75 @@ struct WordSpan {
     uint32_t changed = 0; // words that follow
 };
 
-struct WordPatch {
+class WordPatch {
+public:
     std::vector<WordSpan> spans;
-    size_t costBytes = 0; // spans and words
+    size_t costBytes = 0;    // spans and words
+    size_t changedBytes = 0; // words
 
-    // Both of the same size, a multiple of 4. False as soon as it costs more than `mostBytes`.
+    // Both of the same size, a multiple of 4, of at most a page. False as soon as it costs more than `mostBytes`.
     bool find(std::span<const std::byte> old, std::span<const std::byte> now, size_t mostBytes) {
         spans.clear();
-        costBytes = 0;
+        costBytes = changedBytes = 0;
         const auto words = static_cast<uint32_t>(now.size() / 4);
-        const auto equal = [&](uint32_t w) { return std::memcmp(old.data() + size_t{w} * 4, now.data() + size_t{w} * 4, 4) == 0; };
-        for (uint32_t w = 0, from = 0; w < words;) {
-            // Pages have long equal parts.
-            while (words - w >= 16 && std::memcmp(old.data() + size_t{w} * 4, now.data() + size_t{w} * 4, 64) == 0) w += 16;
-            while (w < words && equal(w)) ++w;
-            if (w == words) break;
-            const uint32_t begin = w;
-            while (w < words && !equal(w)) ++w;
-            spans.push_back({begin - from, w - begin});
-            costBytes += ControlWriter::spanBytes(begin - from, w - begin) + size_t{w - begin} * 4;
-            if (costBytes > mostBytes) return false;
-            from = w;
+        size_t changed = 0; // words
+        uint32_t w = 0, from = 0, block = 0;
+        uint64_t bits = 0; // of the block's words that are left, those that have changed
+        const auto load = [&](uint32_t at) { bits = at + kBlock <= words ? changedOfBlock(old.data() + size_t{at} * 4, now.data() + size_t{at} * 4) : changedOf(old.data() + size_t{at} * 4, now.data() + size_t{at} * 4, words - at); };
+        for (; block < words; block += kBlock) {
+            load(block);
+            while (bits != 0) {
+                w = block + static_cast<uint32_t>(std::countr_zero(bits));
+                const uint32_t begin = w;
+                // To the end of the run, which may lie in a later block.
+                while (true) {
+                    const auto ones = static_cast<uint32_t>(std::countr_one(bits >> (w - block)));
+                    w += ones;
+                    if (w - block < kBlock) {
+                        bits &= ~uint64_t{0} << (w - block);
+                        break;
+                    }
+                    bits = 0;
+                    if (w >= words) break;
+                    block += kBlock;
+                    load(block);
+                }
+                spans.push_back({begin - from, w - begin});
+                costBytes += ControlWriter::spanBytes(begin - from, w - begin) + size_t{w - begin} * 4;
+                if (costBytes > mostBytes) return false;
+                changed += w - begin;
+                from = w;
+            }
         }
+        changedBytes = changed * 4;
         return !spans.empty();
+    }
+
+private:
+    static constexpr uint32_t kBlock = 64; // words
+
+    // A bit for each of so many words.
+    static uint64_t changedOf(const std::byte* old, const std::byte* now, uint32_t words) {
+        uint64_t bits = 0;
+        for (uint32_t i = 0; i < words; ++i) bits |= uint64_t{std::memcmp(old + size_t{i} * 4, now + size_t{i} * 4, 4) != 0} << i;
+        return bits;
+    }
+    static uint64_t changedOfBlock(const std::byte* old, const std::byte* now) {
+        std::array<uint32_t, kBlock> a{}, b{};
+        std::memcpy(a.data(), old, sizeof a);
+        std::memcpy(b.data(), now, sizeof b);
+        uint32_t any = 0;
+        for (uint32_t i = 0; i < kBlock; ++i) any |= a[i] ^ b[i];
+        if (any == 0) return 0;
+        std::array<uint8_t, kBlock> differs{};
+        for (uint32_t i = 0; i < kBlock; ++i) differs[i] = a[i] != b[i];
+        uint64_t bits = 0;
+        for (uint32_t i = 0; i < kBlock; i += 8) {
+            uint64_t eight = 0;
+            std::memcpy(&eight, differs.data() + i, 8);
+            bits |= (eight * 0x0102040810204080u) >> 56 << i; // the lowest bits of eight bytes one beside the other
+        }
+        return bits;
     }
 };
 

@@ -11,6 +11,7 @@ namespace mural {
 namespace {
 
 constexpr uint64_t kFullStagedBytes = uint64_t{64} * 1024; // as much as goes at once without economy
+constexpr size_t kLongBytes = 16384; // beside which reading a thread's clock, a system call, costs nothing
 constexpr uint64_t kMostHeldBytes = uint64_t{256} << 20;
 constexpr uint64_t kFullRawBytes = uint64_t{4} << 20;      // so much a node unpacks in a millisecond or two
 
@@ -40,10 +41,18 @@ std::unique_ptr<StreamEconomy::Coder> StreamEconomy::beginAnew(std::unique_ptr<C
 }
 
 void StreamEconomy::add(uint32_t stream, std::span<const std::byte> payload) {
+    const bool isLong = payload.size() >= kLongBytes;
+    if (!timesFrame_ && !isLong) {
+        hold(stream, payload);
+        encodeNs_ += packetNs_;
+        return;
+    }
     const int64_t beganNs = threadCpuNowNs();
     sendNs_ = 0;
     hold(stream, payload);
-    encodeNs_ += static_cast<uint64_t>(threadCpuNowNs() - beganNs - sendNs_);
+    const auto ns = static_cast<uint64_t>(threadCpuNowNs() - beganNs - sendNs_);
+    encodeNs_ += ns;
+    if (!isLong) packetNs_ = ns;
 }
 
 void StreamEconomy::miss(uint32_t stream, std::span<const std::byte> payload) {
@@ -76,22 +85,27 @@ void StreamEconomy::pack(uint32_t stream, std::span<const std::byte> payload) {
 bool StreamEconomy::full() const { return coder_->packer.stagedBytes() >= kFullStagedBytes || coder_->packer.rawBytes() >= kFullRawBytes; }
 
 Result<std::span<const std::byte>> StreamEconomy::take() {
-    const int64_t beganNs = threadCpuNowNs();
     economy::Packer& packer = coder_->packer;
-    const bool frameGoesOn = full();
+    const bool frameGoesOn = full(), isLong = packer.stagedBytes() >= kLongBytes, timed = timesFrame_ || isLong;
+    const int64_t beganNs = timed ? threadCpuNowNs() : 0;
     measured_.rawBytes += packer.rawBytes();
     measured_.pageBytes += packer.pageBytes();
     auto batch = coder_->encoder.encode(packer.finish(), link_.nsPerByte(), packer.plain());
     packer.clear();
     packets_ = 0;
-    encodeNs_ += static_cast<uint64_t>(threadCpuNowNs() - beganNs);
+    const uint64_t ns = timed ? static_cast<uint64_t>(threadCpuNowNs() - beganNs) : takeNs_;
+    encodeNs_ += ns;
+    if (!isLong) takeNs_ = ns;
     if (batch) {
         wireBytes_ += batch->size();
         measured_.wireBytes += batch->size();
     }
     if (!frameGoesOn || measured_.rawBytes > kFullRawBytes) {
-        coder_->way.measured(measured_.rawBytes, measured_.pageBytes, measured_.wireBytes, static_cast<int64_t>(encodeNs_ - measured_.encodeNs), link_.nsPerByte());
-        packer.beginPlain(coder_->way.plain());
+        economy::WayChoice& way = coder_->way;
+        if (timesFrame_) way.measured(measured_.rawBytes, measured_.pageBytes, measured_.wireBytes, static_cast<int64_t>(encodeNs_ - measured_.encodeNs), link_.nsPerByte());
+        else way.unmeasured();
+        timesFrame_ = way.wantsTime();
+        packer.beginPlain(way.plain());
         measured_ = {0, 0, 0, encodeNs_};
     }
     publishCounts();

@@ -23,7 +23,7 @@ struct EconomyCounts {
     economy::PackerCounts packer;
     holding::HolderCounts holder;
     uint64_t wireBytes = 0; // after compression, packet headers included
-    uint64_t encodeNs = 0;  // CPU time of all of it
+    uint64_t encodeNs = 0;  // CPU time of all of it; of short packets some are measured, and stand for the others
 };
 
 // One thread at a time (NodeSet's lock), but counts().
@@ -81,6 +81,8 @@ private:
     economy::PackerCounts before_; // of the histories before this one
     economy::LinkRate link_;
     size_t packets_ = 0; // in the batch
+    bool timesFrame_ = true; // all that is done for it; else what is long only
+    uint64_t packetNs_ = 0, takeNs_ = 0; // of short packets, and of batches of such, that were measured last
     uint64_t wireBytes_ = 0, encodeNs_ = 0;
     struct Measured {
         uint64_t rawBytes = 0, pageBytes = 0, wireBytes = 0, encodeNs = 0;

@@ -30,14 +30,38 @@ TEST(CodingChoice, whatDoesNotCompressGoesAsItIs) {
 
 TEST(CodingChoice, bothAreTriedAndTriedAgain) {
     CodingChoice choice;
-    EXPECT_EQ(choice.choose(1000, 8), Coding::Zstd);
-    choice.measured(Coding::Zstd, 1 << 16, 1 << 16, 1000);
-    EXPECT_EQ(choice.choose(1000, 8), Coding::Lz4);
-    choice.measured(Coding::Lz4, 1 << 16, 1 << 16, 1000);
+    for (const Coding coding : {Coding::Zstd, Coding::Lz4}) {
+        for (int time = 0; time < 3; ++time) {
+            EXPECT_EQ(choice.choose(1000, 8), coding);
+            EXPECT_TRUE(choice.wantsTime(coding, 1000));
+            choice.measured(coding, 1 << 16, 1 << 16, 1000);
+        }
+    }
     int compressed = 0;
     for (int i = 0; i < 1000; ++i) compressed += choice.choose(1000, 8) != Coding::Raw;
     EXPECT_GE(compressed, 2);
     EXPECT_LE(compressed, 8);
+}
+
+TEST(CodingChoice, theFirstTimeAndOneThatWasDisturbedDecideNothing) {
+    CodingChoice choice;
+    choice.measured(Coding::Zstd, 1 << 16, 1 << 15, int64_t{1} << 30); // memory that is new
+    for (const Coding coding : {Coding::Zstd, Coding::Lz4})
+        for (int i = 0; i < 5; ++i) choice.measured(coding, 1 << 16, coding == Coding::Zstd ? 1 << 15 : 1 << 16, 3 << 16);
+    EXPECT_EQ(choice.choose(1000, 32), Coding::Zstd);
+    choice.measured(Coding::Zstd, 1 << 16, 1 << 15, 60 << 16);
+    choice.measured(Coding::Zstd, 1 << 16, 1 << 15, 3 << 16);
+    EXPECT_EQ(choice.choose(1000, 32), Coding::Zstd);
+}
+
+TEST(CodingChoice, fewOfManyShortSectionsAreTimed) {
+    CodingChoice choice = measuredChoice();
+    int timed = 0;
+    for (int i = 0; i < 1024; ++i) timed += choice.wantsTime(choice.choose(1000, 80), 1000);
+    EXPECT_GE(timed, 32);
+    EXPECT_LE(timed, 128);
+    EXPECT_TRUE(choice.wantsTime(Coding::Zstd, 1 << 20));
+    choice.measured(Coding::Zstd, 1000, 500, std::nullopt);
 }
 
 TEST(CodingChoice, shortOnesAreNotCompressed) {

@@ -1,4 +1,5 @@
 // What goes over the wire for what programs do from frame to frame.
+#include <algorithm>
 #include <utility>
 
 #include "tests/economy/both_sides.hpp"
@@ -168,6 +169,35 @@ TEST(Packer, pagesAreKnownWhereShortRecordsGoPlain) {
     send(3);
     EXPECT_LE(send(4), 6000u);
     EXPECT_LE(send(5), 6000u);
+}
+
+// A part of it is another in each frame: so it stays in its slot, and the store keeps what others have.
+TEST(Packer, aPageThatChangesAgainAndAgainFillsNoMemory) {
+    Limits limits;
+    limits.storeBytes = 64 * kPageBytes;
+    BothSides sides(limits);
+    const Bytes other = textureOf(noise(40 * kPageBytes, 11));
+    sides.send({{0x10000, other}});
+    Bytes changing = noise(4 * kPageBytes, 12);
+    for (uint32_t frame = 0; frame < 100; ++frame) {
+        std::memcpy(changing.data() + 2 * kPageBytes, &frame, sizeof frame);
+        sides.send({{0x20000, textureOf(changing)}});
+    }
+    const uint64_t before = sides.packer.counts().newPages;
+    sides.send({{0x10000, other}});
+    EXPECT_EQ(sides.packer.counts().newPages, before);
+}
+
+// One that comes again as it was is kept as it was, however often it changes.
+TEST(Packer, statesOfAPageThatComeAgainAreReferences) {
+    BothSides sides{Limits{}};
+    const Bytes first = noise(4 * kPageBytes, 12);
+    Bytes second = first;
+    std::ranges::copy(noise(1000, 13), second.begin() + 5000);
+    for (uint32_t frame = 0; frame < 40; ++frame) {
+        const size_t wire = sides.send(packetsOf(textureOf(frame % 2 == 0 ? first : second)));
+        if (frame > 4) EXPECT_LE(wire, 16u) << frame;
+    }
 }
 
 TEST(Packer, whatIsUsedStaysWhenTheStoreIsFull) {

@@ -55,6 +55,20 @@ TEST(WayChoice, triesAgainSoonWhenAllIsAnother) {
     EXPECT_LE(plainOf(choice, {10, 30'000}, {30'000, 300'000}, 60, 20), 0);
 }
 
+TEST(WayChoice, fewFramesAreTimedAndAllThatDecide) {
+    WayChoice choice;
+    int timed = 0, plain = 0;
+    for (int i = 0; i < 1000; ++i) {
+        const bool wants = choice.wantsTime();
+        timed += wants;
+        plain += choice.plain();
+        if (wants) choice.measured(kRawBytes, 0, choice.plain() ? 5000 : 3000, choice.plain() ? 110'000 : 450'000, kLinkNsPerByte);
+        else choice.unmeasured();
+    }
+    EXPECT_LE(timed, 250);
+    EXPECT_GE(plain, 900) << "it decides as if all were timed";
+}
+
 TEST(WayChoice, oneOutlierDecidesNothing) {
     WayChoice choice;
     plainOf(choice, {3000, 450'000}, {5000, 110'000}, 300, 1);

@@ -75,6 +75,7 @@ int main(int argc, char** argv) {
         nlohmann::json& way = report["ways"][c.way->name()];
         way["bytesPerFrame"] = static_cast<double>(c.bytes) / static_cast<double>(counted);
         way["startBytes"] = c.startBytes;
+        way["startCpuUs"] = static_cast<double>(c.startCpuNs) / 1000;
         way["cpuUsPerFrame"] = static_cast<double>(c.way->cpuNs() - c.startCpuNs) / 1000 / static_cast<double>(counted);
     }
     std::cout << report.dump() << '\n';

@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/clock.hpp"
 #include "economy/unpacker.hpp"
 #include "nodes/head/stream_economy.hpp"
 #include "streamcodec/wire.hpp"
@@ -20,15 +21,17 @@ public:
 
     [[nodiscard]] std::string name() const override { return "economy"; }
 
-    void packet(const StreamPacket& p) override {
-        sent_.push_back({p.stream, {p.payload.begin(), p.payload.end()}});
-        economy_->add(p.stream, p.payload);
-    }
+    void packet(const StreamPacket& p) override { sent_.push_back({p.stream, {p.payload.begin(), p.payload.end()}}); }
 
-    [[nodiscard]] int64_t cpuNs() const override { return static_cast<int64_t>(economy_->counts().encodeNs); }
+    [[nodiscard]] int64_t cpuNs() const override { return cpuNs_; }
 
     Result<uint64_t> frameEnds() override {
+        const int64_t beganNs = threadCpuNowNs();
+        for (const Sent& s : sent_) economy_->add(s.stream, s.payload);
         if (!economy_->empty()) take();
+        cpuNs_ += threadCpuNowNs() - beganNs;
+        for (const std::vector<std::byte>& batch : batches_) unpack(batch);
+        batches_.clear();
         if (wrong_.empty() && !sent_.empty()) wrong_ = "packets are missing when they have been unpacked";
         if (!wrong_.empty()) return Error{wrong_};
         return std::exchange(bytes_, 0);
@@ -47,10 +50,14 @@ private:
             return;
         }
         bytes_ += batch->size();
+        batches_.emplace_back(batch->begin(), batch->end());
+    }
+
+    void unpack(std::span<const std::byte> batch) {
         economy::BatchHeadReader head;
         size_t at = 0;
-        while (at < batch->size() && !head.add((*batch)[at++])) {}
-        auto sections = decoder_.decode(head.head(), batch->subspan(at));
+        while (at < batch.size() && !head.add(batch[at++])) {}
+        auto sections = decoder_.decode(head.head(), batch.subspan(at));
         if (!sections) {
             wrong_ = sections.error().message;
             return;
@@ -76,7 +83,9 @@ private:
     std::unique_ptr<StreamEconomy> economy_;
     economy::BatchDecoder decoder_;
     economy::Unpacker unpacker_;
-    std::deque<Sent> sent_;
+    std::deque<Sent> sent_;                      // of the frame
+    std::vector<std::vector<std::byte>> batches_; // that it has become
+    int64_t cpuNs_ = 0;
     std::string wrong_;
     uint64_t bytes_ = 0;
 };
