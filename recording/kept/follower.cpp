@@ -133,10 +133,10 @@ void Follower::own(At& at, const RecordView& r) {
     }
     case wire::kOpRequestPixels:
     case wire::kOpRequestTexImage:
+    case wire::kOpFinish: return drawGathered(at); // who has asked has the answer
     case wire::kOpRequestBuffer:
     case wire::kOpRequestQuery:
-    case wire::kOpRequestProgram:
-    case wire::kOpFinish: return; // who has asked has the answer
+    case wire::kOpRequestProgram: return;
     case wire::kOpProgramLayout:
     case wire::kOpProgramRecipe:
         if (at.context == nullptr) return;

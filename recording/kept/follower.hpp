@@ -90,6 +90,8 @@ private:
 
     // Pictures
     void draw(At& at);
+    void drawBitmap(At& at);
+    void drawGathered(At& at);
     void planes(At& at, uint32_t mask, bool covers);
     void windowPlanes(At& at, uint32_t mask, bool covers);
     void framebufferPlanes(At& at, Object& target, uint32_t mask, bool covers);

@@ -3,6 +3,7 @@
 #include <GL/gl.h>
 #include <GL/glext.h>
 #include <algorithm>
+#include <utility>
 
 #include "gl_opcodes.hpp"
 #include "recording/kept/follower.hpp"
@@ -106,6 +107,17 @@ void Follower::draw(At& at) {
     readTextures(at);
 }
 
+void Follower::drawBitmap(At& at) {
+    at.effect.write(part(at.context->cells, Part::Config)); // moves the raster position
+    draw(at);
+}
+
+// Mesa holds bitmaps back, and nodes have them drawn where a question comes (nodes/replay/replay_bitmaps.cpp). Without it they would be drawn
+// later, with the state that there is by then, for which Mesa may even crash: so it stays as long as they do.
+void Follower::drawGathered(At& at) {
+    if (at.context != nullptr && std::exchange(at.context->gathersBitmaps, false)) drawBitmap(at);
+}
+
 // Of the textures that are bound those that what is drawn now may take.
 void Follower::readTextures(At& at) {
     const Object* const program = bound(at, slotOf(Slot::Program));
@@ -164,7 +176,10 @@ void Follower::clear(At& at, const Rule& rule, const RecordView& r) {
     case Family::Barrier: return writeMemory(at);
     default: break;
     }
-    if (r.opcode == op::glBitmap) at.effect.write(part(c.cells, Part::Config)); // moves the raster position
+    if (r.opcode == op::glBitmap) {
+        c.gathersBitmaps = true;
+        return drawBitmap(at);
+    }
     if (r.opcode == op::glAccum) planes(at, GL_ACCUM_BUFFER_BIT, first == GL_LOAD);
     if (r.opcode == op::glDrawPixels || r.opcode == op::glCopyPixels) { // may be all of depth or stencil
         planes(at, kColor | kDepth | kStencil, false);

@@ -107,6 +107,7 @@ struct ContextNames {
     bool feedback = false;
     uint32_t callDepth = 0;
     bool restUnsafe = false; // a list is called that pushes or pops, or calls others
+    bool gathersBitmaps = false; // the driver may hold some back
     bool usesFront = false; // it has drawn to, or read from, another buffer of a window than the back
 };
 

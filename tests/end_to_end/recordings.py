@@ -288,6 +288,31 @@ def trim_keeps_what_later_frames_need(place):
     return all_trimmed(place, ("frames_kept", "pixels_read", "framebuffers", "accum_buffer", "front_and_back", "queries", "fragment_counters", "display_lists"))
 
 
+TRIMMED_ON_TILES = ("pixels_draw", "framebuffers", "textures_classic", "textures_modern", "display_lists", "client_arrays", "core_arrays", "fixed_lighting", "blend_modes",
+                    "attribute_stacks", "glsl_stages", "glsl_uniforms", "accum_buffer", "queries", "raster_state", "es3_scene")
+
+
+def trim_on_tiles(first):
+    """What is trimmed shows on other tiles what the program shows natively."""
+    def check(place):
+        for program in TRIMMED_ON_TILES[first::2]:
+            windows = place.native(program)
+            wrong = unlike_all(windows, place.record(program))
+            said = place.trim("3-5")
+            for tiles in ("2x2", "3x1"):
+                wrong = wrong or unlike_all({name: frames[2:5] for name, frames in windows.items()}, place.replay(["--tiles", tiles], "b.mural"))
+                if wrong is not None:
+                    return "%s, %s: %s; %s" % (program, tiles, wrong, said)
+            print("  %s: 3 frames on 2x2 and 3x1 tiles as natively" % program)
+        return None
+    check.__name__ = "tiles_trimmed_%d" % (first + 1)
+    case(check)
+
+
+trim_on_tiles(0)
+trim_on_tiles(1)
+
+
 @case
 def trim_to_one_frame(place):
     """The last one, with objects and state of all before; of several windows."""

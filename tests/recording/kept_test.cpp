@@ -97,6 +97,18 @@ TEST_F(Kept, ofShadersThatWereDeletedTheProgramLivesOn) {
     EXPECT_EQ(left(op::glCompileShader), 0u);
 }
 
+// What the driver has gathered is drawn where a question comes, with the state of that moment.
+TEST_F(Kept, questionsBehindBitmapsStayWithThem) {
+    const auto ask = [&] { give(PacketBuilder().record(wire::kOpRequestTexImage, {1, 0, GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, 4})); };
+    ask();
+    EXPECT_EQ(left(wire::kOpRequestTexImage), 0u);
+    give(PacketBuilder().record(op::glBitmap, {8, 8, 0, 0, 0, 0, 0}));
+    ask();
+    ask();
+    EXPECT_EQ(left(op::glBitmap), 1u);
+    EXPECT_EQ(left(wire::kOpRequestTexImage), 1u);
+}
+
 TEST_F(Kept, nothingOfAProgramThatHasGone) {
     frame();
     stream_.event({Event::ClientGone, 1, 0, ""});
