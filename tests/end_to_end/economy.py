@@ -52,6 +52,21 @@ per_frame("same_scene", "same_scene", 0.5, 100, (10, 310)) # how the first frame
 per_frame("same_texture", "same_texture", 1, 1024)
 per_frame("changed_texture", "changed_texture", PATCH_BYTES, 1.5 * PATCH_BYTES + 1024)
 
+# Values of 16 to 36 kB that come again, in no order: a source, vertices, an image cost where they are.
+for value in ("same_sources", "same_arrays", "same_pixels"):
+    per_frame(value, value, 1, 300, (30, 90))
+
+
+@failures.case
+def verified_values(context):
+    for program in ("same_sources", "same_arrays", "same_pixels"):
+        report = report_of(context, program, 10, "--economy", "on", "--tiles", "2x1", "--verify")
+        if not isinstance(report, dict):
+            return "%s: %s" % (program, report)
+        if report["verifiedFrames"] != 10 or report["differingPixels"] != 0:
+            return "%s: %d frames verified, %d pixels differ" % (program, report["verifiedFrames"], report["differingPixels"])
+    return None
+
 
 @failures.case
 def verified_texture(context):
