@@ -8,19 +8,19 @@
 
 namespace mural {
 
-void QueryAnswers::begun(GLenum target, GLuint query) {
+void QueryAnswers::begun(GLenum target, GLuint index, GLuint query) {
     if (ended_ && query < kNames) ended_[query] = {};
     Active* place = nullptr;
     for (Active& a : active_) {
         if (a.query == 0 && !place) place = &a;
-        if (a.query != 0 && a.target == target) return; // an error: one is active
+        if (a.query != 0 && a.target == target && a.index == index) return; // an error: one is active
     }
-    if (place) *place = {target, query};
+    if (place) *place = {target, index, query};
 }
 
-void QueryAnswers::ended(ThreadState& t, GLenum target, uint32_t swaps) {
+void QueryAnswers::ended(ThreadState& t, GLenum target, GLuint index, uint32_t swaps) {
     for (Active& a : active_) {
-        if (a.query == 0 || a.target != target) continue;
+        if (a.query == 0 || a.target != target || a.index != index) continue;
         const GLuint query = a.query;
         a.query = 0;
         Session* const s = Session::current();

@@ -17,8 +17,9 @@ public:
     QueryAnswers& operator=(const QueryAnswers&) = delete;
     ~QueryAnswers() { std::free(ended_); }
 
-    void begun(GLenum target, GLuint query);
-    void ended(ThreadState& t, GLenum target, uint32_t swaps);
+    // index: the vertex stream that it counts, 0 where there is but one.
+    void begun(GLenum target, GLuint index, GLuint query);
+    void ended(ThreadState& t, GLenum target, GLuint index, uint32_t swaps);
     // The result, when it is known, or was asked for when the query ended before the last swap. False: ask now.
     bool find(GLuint query, uint32_t swaps, uint64_t& value);
     // What the nodes have answered: it stays until the query is begun anew.
@@ -33,6 +34,7 @@ private:
     };
     struct Active {
         GLenum target;
+        GLuint index;
         GLuint query; // 0: the place is free
     };
     static constexpr GLuint kNames = 16384; // queries beyond are asked when their results are wanted

@@ -18,20 +18,20 @@ bool capturing(const ThreadState& t) {
     return t.context && s && s->alive();
 }
 
-void begins(ThreadState& t, GLenum target, GLuint id) {
+void begins(ThreadState& t, GLenum target, GLuint index, GLuint id) {
     if (!t.context || t.context->listPrimitive) return; // the list takes none there
     t.context->queryIsAny.set(id, target == GL_ANY_SAMPLES_PASSED || target == GL_ANY_SAMPLES_PASSED_CONSERVATIVE);
     t.context->queryIsTimestamp.set(id, false);
     t.context->queryBegun.set(id, true);
-    if (!t.context->compilingList) return t.context->answers.begun(target, id);
+    if (!t.context->compilingList) return t.context->answers.begun(target, index, id);
     ShareGroup& group = *t.context->group;
     group.listCounts.set(id, true);
     for (int i = 0; i < group.listConditionCount; ++i)
         if (group.listConditions[i] == id) copies::drawAll(t, "glBeginQuery");
 }
 
-void ends(ThreadState& t, GLenum target) {
-    if (t.context && !t.context->compilingList) t.context->answers.ended(t, target, t.context->swaps);
+void ends(ThreadState& t, GLenum target, GLuint index) {
+    if (t.context && !t.context->compilingList) t.context->answers.ended(t, target, index, t.context->swaps);
 }
 
 // A node makes pieces of a query when it begins: it hears of it only if it does.
@@ -39,8 +39,7 @@ template <class Local, class Send> void beginQuery(GLenum target, GLuint index, 
     ThreadState& t = *tThread;
     if (!t.context) return local();
     if (!raisesNothing(*t.context, local)) return;
-    if (index == 0) begins(t, target, id);
-    else t.context->queryBegun.set(id, true);
+    begins(t, target, index, id);
     send(t);
 }
 
@@ -126,13 +125,13 @@ void mural_glEndQuery(GLenum target) {
     ThreadState& t = *tThread;
     encode_glEndQuery(t, target);
     gReal.glEndQuery(target);
-    ends(t, target);
+    ends(t, target, 0);
 }
 void mural_glEndQueryIndexed(GLenum target, GLuint index) {
     ThreadState& t = *tThread;
     encode_glEndQueryIndexed(t, target, index);
     gReal.glEndQueryIndexed(target, index);
-    if (index == 0) ends(t, target);
+    ends(t, target, index);
 }
 void mural_glBeginQueryIndexed(GLenum target, GLuint index, GLuint id) {
     beginQuery(target, index, id, [=] { gReal.glBeginQueryIndexed(target, index, id); },

@@ -1,4 +1,4 @@
-// Queries: occlusion, boolean occlusion, primitives, timers, pipeline statistics, results into a buffer,
+// Queries: occlusion, boolean occlusion, primitives (of streams, too), timers, pipeline statistics, results into a buffer,
 // conditional rendering, none that began. What can be repeated is drawn: counts as bits and bars.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
@@ -9,7 +9,7 @@ using namespace programs;
 
 namespace {
 
-GLuint vertexArray, program, names[13], resultBuffer, feedbackBuffer, indirectBuffer;
+GLuint vertexArray, program, streamsProgram, names[15], resultBuffer, feedbackBuffer, indirectBuffer;
 
 void box(float x, float y, float w, float h, float depth) {
     glUniform4f(0, x, y, w, h);
@@ -51,6 +51,27 @@ void countPrimitives(int frame) {
     glEndQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN);
     glEndQuery(GL_PRIMITIVES_GENERATED);
     showBits(34, waitFor(names[3]) * 256 + waitFor(names[4]));
+}
+
+// What a geometry shader emits to each of two streams: one query after the other by one name, then both at once.
+void countStreams(int frame) {
+    glUseProgram(streamsProgram);
+    glUniform1i(0, 2 + frame);
+    glEnable(GL_RASTERIZER_DISCARD);
+    GLuint told[4] = {};
+    for (GLuint stream = 0; stream < 2; ++stream) {
+        glBeginQueryIndexed(GL_PRIMITIVES_GENERATED, stream, names[13]);
+        glDrawArrays(GL_POINTS, 0, stream == 0 ? 1 : 3); // Mesa 22.3 counts the first stream again: other points tell
+        glEndQueryIndexed(GL_PRIMITIVES_GENERATED, stream);
+        told[stream] = waitFor(names[13]);
+    }
+    for (GLuint stream = 0; stream < 2; ++stream) glBeginQueryIndexed(GL_PRIMITIVES_GENERATED, stream, names[13 + stream]);
+    glDrawArrays(GL_POINTS, 0, 1);
+    for (GLuint stream = 0; stream < 2; ++stream) glEndQueryIndexed(GL_PRIMITIVES_GENERATED, stream);
+    for (GLuint stream = 0; stream < 2; ++stream) told[2 + stream] = waitFor(names[13 + stream]);
+    glDisable(GL_RASTERIZER_DISCARD);
+    glUseProgram(program);
+    showBits(24, told[0] | told[1] << 8 | told[2] << 16 | told[3] << 24);
 }
 
 // Times differ from run to run: only that there are any is shown.
@@ -179,7 +200,19 @@ void setUp() {
             const char* const varying = "tint";
             glTransformFeedbackVaryings(linking, 1, &varying, GL_INTERLEAVED_ATTRIBS);
         });
-    glGenQueries(13, names);
+    streamsProgram = buildProgram(
+        {{GL_VERTEX_SHADER, "#version 430\nvoid main() { gl_Position = vec4(0); }\n"},
+         {GL_GEOMETRY_SHADER,
+          "#version 430\nlayout(points) in; layout(points, max_vertices=40) out; layout(location=0) uniform int emitted;\n"
+          "layout(stream=0) out vec4 first; layout(stream=1) out vec4 second;\n"
+          "void main() { first = vec4(0); EmitStreamVertex(0);\n"
+          "for (int i = 0; i < emitted; ++i) { second = vec4(i); EmitStreamVertex(1); } }\n"},
+         {GL_FRAGMENT_SHADER, "#version 430\nvoid main() {}\n"}},
+        [](unsigned linking) {
+            const char* const varyings[] = {"first", "gl_NextBuffer", "second"};
+            glTransformFeedbackVaryings(linking, 3, varyings, GL_INTERLEAVED_ATTRIBS);
+        });
+    glGenQueries(15, names);
     const GLuint zeros[64] = {};
     glGenBuffers(1, &resultBuffer);
     glBindBuffer(GL_QUERY_BUFFER, resultBuffer);
@@ -206,6 +239,7 @@ int main(int argc, char** argv) {
             glUseProgram(program);
             countSamples(frame);
             countPrimitives(frame);
+            countStreams(frame);
             measureTime();
             renderConditionally(frame);
             resultIntoBuffer(frame);
