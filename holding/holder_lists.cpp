@@ -54,6 +54,10 @@ void Holder::compiled(At& at, CommandClass kind) {
     case CommandClass::Use:
     case CommandClass::Arrays: return;
     case CommandClass::Bind: break;
+    case CommandClass::Unknown:
+        if (recording::ruleOf(at.r.opcode).family == Family::Handle) return untrack(at); // lists hold none: it is dealt now
+        at.stream.compiled.binds = true;
+        return;
     case CommandClass::Upload:
     case CommandClass::Object: // those of buffers are no part of lists
         if (Object* const object = objectOf(at); object != nullptr && object->kind == Kind::Buffer) return object->known.clear();

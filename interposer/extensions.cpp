@@ -46,7 +46,7 @@ bool advertised(const char* name, size_t length) {
     std::memcpy(text + 1, name, length);
     text[length + 1] = ' ';
     text[length + 2] = 0;
-    if (!nodesHave(text) || oneOf(kLocalExtensions, name, length)) return false;
+    if (!nodesHave(text)) return false;
     text[length + 1] = 0;
     return extensionCarried(text + 1);
 }

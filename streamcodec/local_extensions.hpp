@@ -1,4 +1,4 @@
-// Extensions that programs are not told of though none of their commands is missing, with the reason.
+// Extensions of window systems that programs are not told of though none of their commands is missing, with the reason.
 #pragma once
 
 namespace mural {
@@ -8,13 +8,7 @@ struct LocalExtension {
     const char* why;
 };
 
-inline constexpr LocalExtension kLocalExtensions[] = {
-    {"GL_ARB_bindless_texture", "bindless handles differ from node to node"},
-    {"GL_ARB_sparse_buffer", "which pages of a sparse object exist differs from driver to driver"},
-    {"GL_ARB_sparse_texture", "which pages of a sparse object exist differs from driver to driver"},
-};
-
-// The window system's. The driver's own swaps, whose count and events programs would wait for, do not happen.
+// The driver's own swaps, whose count and events programs would wait for, do not happen.
 inline constexpr LocalExtension kLocalWindowExtensions[] = {
     {"GLX_MESA_copy_sub_buffer", "parts of pictures are not shown"},
     {"EGL_NV_post_sub_buffer", "parts of pictures are not shown"},

@@ -26,6 +26,7 @@
 #include "nodes/exchange/part_fold.hpp"
 #include "nodes/exchange/picture_part.hpp"
 #include "nodes/gl/gl_platform.hpp"
+#include "nodes/replay/handle_table.hpp"
 #include "nodes/replay/name_table.hpp"
 #include "nodes/replay/program_recipes.hpp"
 #include "nodes/replay/replay_dispatch.hpp"
@@ -233,6 +234,7 @@ private:
         bool allDrawn = false; // by every node: the program's side has asked for it, or a module reads gl_FragCoord
         TiledPrograms tiled;
         ProgramRecipes recipes;
+        HandleTable handles;
         std::unordered_map<GLuint, SeenProjection> projections; // by the program's name (replay_eyes.cpp)
         std::unordered_map<GLuint, bool> primitiveIds;  // our programs that number primitives: not cut into pieces
         std::unordered_map<GLuint, bool> memoryWriters; // by the program's name, once it was used (replay_left_out.cpp)
@@ -444,6 +446,20 @@ private:
     bool ownCreateImage(Args& in);
     bool ownDestroyImage(Args& in);
     void withImage(uint64_t image, const std::function<void(GLeglImageOES)>& call);
+    // replay_handles.cpp
+    void dealtHandle(HandleTable::Of of, uint64_t theirs, uint64_t ours);
+    [[nodiscard]] HandleTable::Of handlesOfUniform(GLuint program, GLint location) const;
+    [[nodiscard]] std::vector<GLuint64> handleValues(GLuint program, GLint location, const GLuint64* values, GLsizei count) const;
+    // replay_sparse.cpp
+    struct PageBox {
+        GLint level, x, y, z;
+        GLsizei width, height, depth;
+    };
+    void commitPages(GLenum target, GLuint texture, const PageBox& box, bool commits, const std::function<void(const PageBox&)>& call);
+    [[nodiscard]] bool isError();
+    bool enlargeToPages(GLenum target, GLuint texture, PageBox& box);
+    void commitBuffer(uint64_t offset, uint64_t sizeBytes, bool commits, const std::function<uint64_t()>& bufferBytes, const std::function<void(uint64_t, uint64_t)>& call);
+    bool saidPages_ = false;
     // replay_news.cpp
     void listenToDriver();
     static void APIENTRY hearDriver(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length, const GLchar* text, const void* inbox);

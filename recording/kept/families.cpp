@@ -125,6 +125,10 @@ constexpr NamedRule kRules[] = {
     {"glEGLImageTargetTexture2DOES", TexView}, {"glSamplerParameter*", NamedSet, 0, ObjectType::Sampler},
     {"glTextureParameteri", NamedSet, 0, ObjectType::Texture}, {"glTextureParameterf", NamedSet, 0, ObjectType::Texture},
     {"glTextureParameter[fi]v", NamedSet, 0, ObjectType::Texture}, {"glTextureParameterI*v", NamedSet, 0, ObjectType::Texture},
+    // ---- handles of textures, pages of what is sparse
+    {"glGetTextureHandleARB", Handle}, {"glGetTextureSamplerHandleARB", Handle}, {"glGetImageHandleARB", Handle}, {"glMake*Handle*ResidentARB", HandleResident},
+    {"glTexPageCommitmentARB", TexPages}, {"glTexturePageCommitmentEXT", TexPages, 0, ObjectType::Texture},
+    {"glBufferPageCommitmentARB", BufferPages}, {"glNamedBufferPageCommitment*", BufferPages, 0, ObjectType::Buffer},
     // ---- framebuffers
     {"glRenderbufferStorage", RenderbufferStorage}, {"glRenderbufferStorageMultisample", RenderbufferStorage},
     {"glFramebufferTexture", FramebufferAttach}, {"glFramebufferTexture[123]D", FramebufferAttach}, {"glFramebufferTextureLayer", FramebufferAttach},

@@ -25,6 +25,7 @@ enum class Family : uint8_t {
     RenderbufferStorage, NamedSet, FramebufferAttach, FramebufferSet, FramebufferNamed, DrawBuffers,
     ShaderSet, ShaderCompile, ProgramAttach, ProgramDetach, ProgramSet, ProgramLink, ProgramDelete, ShaderDelete, Uniform, ProgramUniform, PipelineSet,
     ArbProgram, SyncMake, SyncDelete,
+    Handle, HandleResident, TexPages, BufferPages,
     // Pictures
     Draw, Compute, ReadsPicture, Clear, ClearBuffer, Blit, Barrier,
     Begin, Vertex, End, NewList, EndList, CallList, CallLists,

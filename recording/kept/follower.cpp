@@ -358,6 +358,10 @@ void Follower::execute(At& at, const RecordView& r) {
     case Family::TexMipmaps:
     case Family::TexBuffer:
     case Family::TexView: return textures(at, rule, r);
+    case Family::Handle:
+    case Family::HandleResident: return handles(at, rule, r);
+    case Family::TexPages:
+    case Family::BufferPages: return pages(at, rule, r);
     case Family::RenderbufferStorage:
     case Family::FramebufferAttach:
     case Family::FramebufferSet:

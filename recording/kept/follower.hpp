@@ -87,6 +87,9 @@ private:
     Object* texture(At& at, uint32_t target, bool readsBinding);
     void framebuffers(At& at, const Rule& rule, const RecordView& r);
     Object* framebuffer(At& at, uint32_t target);
+    void handles(At& at, const Rule& rule, const RecordView& r);
+    Object* textureOf(At& at, const HandleId& handle);
+    void pages(At& at, const Rule& rule, const RecordView& r);
 
     // Pictures
     void draw(At& at);

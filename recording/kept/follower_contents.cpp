@@ -37,6 +37,7 @@ bool namesUnits(const RecordView& r) {
 void Follower::writeBuffer(At& at, Object* buffer, uint64_t offset, uint64_t sizeBytes) {
     const Key data = part(part(buffer->key, Part::Storage), Part::Data);
     if (buffer->opaque && at.context->group->untracked) at.effect.always = true;
+    if (buffer->sparse) at.effect.read(part(part(buffer->key, Part::Storage), Part::Pages));
     if (offset == 0 && sizeBytes == buffer->sizeBytes && sizeBytes > 0) at.effect.kill(data);
     else at.effect.kill(part(data, Part::Box, offset, sizeBytes)); // the same range replaces it
 }

@@ -72,6 +72,7 @@ void Follower::framebufferPlanes(At& at, Object& target, uint32_t mask, bool cov
         if (plane == kStencil) data = part(data, Part::Stencil), whole = !l.stencilMasked;
         at.effect.add(data, covers && whole ? Mode::Kill : Mode::Write);
         at.effect.read(part(image, Part::Name)); // its storage
+        if (a.object->sparse) at.effect.read(part(storage, Part::Pages));
     }
 }
 
@@ -95,6 +96,15 @@ void Follower::writeMemory(At& at) {
         if (object->opaque) at.effect.always = true;
         at.effect.write(part(buffer ? object->key : object->images, Part::Storage));
         if (!buffer) at.effect.read(object->images);
+    }
+    for (const auto& [handle, written] : c.resident) {
+        const Object* const image = handle.ofImage && written ? textureOf(at, handle) : nullptr;
+        if (image == nullptr) continue;
+        at.effect.write(part(image->images, Part::Storage));
+        at.effect.read(image->images);
+        if (!image->opaque && image->target != GL_TEXTURE_BUFFER) continue;
+        at.effect.always = true; // whose memory it is, is not followed
+        readAll(at);
     }
 }
 
@@ -127,6 +137,12 @@ void Follower::readTextures(At& at) {
         if (object->opaque) readAll(at); // may be another's image
         const uint32_t unit = slotIndex(slot);
         if (any || unit == 0 || program->units.contains(unit)) at.effect.read(object->images);
+    }
+    for (const auto& [handle, written] : at.context->resident) {
+        const Object* const object = textureOf(at, handle);
+        if (object == nullptr) continue;
+        if (object->opaque) readAll(at);
+        at.effect.read(object->images);
     }
 }
 

@@ -82,6 +82,7 @@ void Follower::textures(At& at, const Rule& rule, const RecordView& r) {
     const bool fromBuffer = bound(at, slotOf(Slot::Buffer, GL_PIXEL_UNPACK_BUFFER)) != nullptr;
     if (fromBuffer) readState(at);
     if (c.transfersPixels) at.effect.read(c.cells);
+    if (t->sparse) at.effect.read(part(storage, Part::Pages));
     switch (rule.family) {
     case Family::TexParameter: return set(at, cell(at, t->key, r.opcode, rule, r), 0);
     case Family::TexImage: { // target, level, format, sizes; multisample: target, samples, format, sizes

@@ -2,6 +2,7 @@
 // it decides which commands replace what others have done.
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -22,11 +23,19 @@ enum class Part : uint32_t {
     Client = 1, State, Pictures, Results, Images, Group, Context, Window, Stream, Owner, Made, First, Config, Picture, Front, Color, Depth, Stencil,
     Object, Name, Storage, Level, Data, Box, Mipmaps, Compiled, Linked, Uniforms, Layout, Attachments, Binding, TextureUnit, ActiveUnit, ClientUnit, MatrixMode, ListBase,
     Matrices, Matrix, MatrixLevel, MatrixValue, AttribLevel, ClientAttribLevel, Conditional, Feedback, QueryKnown, Cells, Arrays, ColorMaterial, MaterialMode,
+    Resident, Pages,
 };
 
 struct Extent {
     uint32_t width = 0, height = 0, depth = 1;
     bool operator==(const Extent&) const = default;
+};
+
+// Of a texture, or of an image of one: their numbers are not each other's.
+struct HandleId {
+    bool ofImage = false;
+    uint64_t value = 0;
+    auto operator<=>(const HandleId&) const = default;
 };
 
 struct Object;
@@ -55,6 +64,8 @@ struct Object {
     bool stacks = false;                        // a display list that pushes or pops
     std::set<uint32_t> units;                   // texture units that a program may have been told
     bool anyUnit = false;                       // of a program or shader: it may name them itself
+    bool sparse = false;                        // texture, buffer: what is written depends on which pages there are
+    std::set<HandleId> handles;                 // of a texture
 };
 
 using Objects = std::unordered_map<uint64_t, std::unique_ptr<Object>>; // type << 32 | name
@@ -65,6 +76,7 @@ struct Group {
     bool untracked = false; // a command has come of which nobody here knows what it does with objects
     Objects objects;
     std::vector<std::unique_ptr<Object>> gone; // deleted ones that are held
+    std::map<HandleId, uint32_t> handles;      // names of textures
     uint32_t lives = 0;
 };
 
@@ -105,6 +117,7 @@ struct ContextNames {
     Limits limits;
     std::map<uint64_t, Object*> queries;   // that count now, by target and index
     bool feedback = false;
+    std::map<HandleId, bool> resident;     // shaders may take these textures, and write those images
     uint32_t callDepth = 0;
     bool restUnsafe = false; // a list is called that pushes or pops, or calls others
     bool gathersBitmaps = false; // the driver may hold some back

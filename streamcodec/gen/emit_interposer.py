@@ -25,7 +25,7 @@ def pixel_shape(c, dims):
 
 def result_bytes(c):
     """Names that the driver makes travel behind the arguments."""
-    if c.name == 'glFenceSync':
+    if c.name == 'glFenceSync' or (c.command_class == 'object' and c.returns == 'GLuint64'):
         return 8
     return 4 if c.command_class == 'object' and c.returns != 'void' else 0
 
@@ -65,7 +65,8 @@ def encoder(c, opcode):
             puts.append('out_.%s(%s);' % ('put8' if TYPE_BYTES[p.base] == 8 else 'put4', p.name))
     if result_bytes(c):
         args.append('%s result' % c.returns)
-        puts.append('out_.put4(result);' if result_bytes(c) == 4 else 'out_.put8(reinterpret_cast<uint64_t>(result));')
+        puts.append('out_.put4(result);' if result_bytes(c) == 4 else
+                    'out_.put8(result);' if c.returns == 'GLuint64' else 'out_.put8(reinterpret_cast<uint64_t>(result));')
     size = ' + '.join([str(fixed_bytes(c))] + ['wireBytes(%s)' % d for d in datas])
     spills = ''.join('    spillLarge(self, %s);\n' % d for d in datas)
     return ('inline void encode_%s(%s) {\n%s    const uint32_t size_ = %s;\n'

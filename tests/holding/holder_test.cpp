@@ -54,6 +54,24 @@ TEST_F(Holding, keepsATextureUntilADrawHasItBound) {
     EXPECT_EQ(holder_.counts().heldBytes, 0u);
 }
 
+// Shaders may take the texture without its being bound.
+TEST_F(Holding, keepsNothingOnceATextureHasAHandle) {
+    begin();
+    send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glTexImage2D, image(5)).record(op::glBindTexture, {GL_TEXTURE_2D, 2}));
+    EXPECT_EQ(seen_.uploads(), 0u);
+    send(PacketBuilder().record(op::glGetTextureHandleARB, {1, 7, 0}));
+    EXPECT_EQ(seen_.uploads(), 1u);
+    send(PacketBuilder().record(op::glTexImage2D, image(6)));
+    EXPECT_EQ(seen_.uploads(), 2u);
+}
+
+TEST_F(Holding, keepsNothingOnceAHandleIsDealtWithinAList) {
+    begin();
+    send(PacketBuilder().record(op::glNewList, {3, GL_COMPILE}).record(op::glGetTextureHandleARB, {1, 7, 0}).record(op::glEndList, {}));
+    send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 2}).record(op::glTexImage2D, image(6)));
+    EXPECT_EQ(seen_.uploads(), 1u);
+}
+
 TEST_F(Holding, leavesOutWhatIsReplacedBeforeItIsUsed) {
     begin();
     send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glBindBuffer, {GL_ARRAY_BUFFER, 1}).record(op::glVertexAttribPointer, {0, 4, GL_FLOAT, 0, 0, 0}));

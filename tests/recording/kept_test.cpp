@@ -124,5 +124,77 @@ TEST_F(Kept, saysOnceThatItHasGrownTooLarge) {
     EXPECT_LT(stream_.sizeBytes(), size_t{1} << 18);
 }
 
+// ---- handles of textures, sparse pages
+
+PacketBuilder sparseTexture(uint32_t name) {
+    return PacketBuilder().record(op::glGenTextures, {1, 4, name}).record(op::glBindTexture, {GL_TEXTURE_2D, name}).record(op::glTexStorage2D, {GL_TEXTURE_2D, 1, GL_RGBA8, 256, 256});
+}
+PacketBuilder uploadTo(uint32_t x) { return PacketBuilder().record(op::glTexSubImage2D, {GL_TEXTURE_2D, 0, x, 0, 128, 256, GL_RGBA, GL_UNSIGNED_BYTE, 4, x}); }
+
+// Drivers number them in their order: those of deleted textures count as well, but not what was in these.
+TEST_F(Kept, handlesAreDealtInTheSameOrder) {
+    for (uint32_t i = 0; i < 3; ++i) {
+        give(sparseTexture(9));
+        give(uploadTo(0));
+        give(PacketBuilder().record(op::glGetTextureHandleARB, {9, 5, 0}).record(op::glMakeTextureHandleResidentARB, {5, 0}));
+        give(PacketBuilder().record(op::glGetTextureHandleARB, {9, 5, 0})); // once more: nothing new
+        give(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 0}).record(op::glDeleteTextures, {1, 4, 9}));
+    }
+    EXPECT_EQ(left(op::glGetTextureHandleARB), 3u);
+    EXPECT_EQ(left(op::glTexStorage2D), 3u);
+    EXPECT_EQ(left(op::glDeleteTextures), 3u);
+    EXPECT_EQ(left(op::glTexSubImage2D), 0u);
+}
+
+TEST_F(Kept, ofResidencyTheLastWordCounts) {
+    give(sparseTexture(9));
+    give(PacketBuilder().record(op::glGetTextureHandleARB, {9, 5, 0}));
+    for (int i = 0; i < 4; ++i) give(PacketBuilder().record(op::glMakeTextureHandleResidentARB, {5, 0}).record(op::glMakeTextureHandleNonResidentARB, {5, 0}));
+    give(PacketBuilder().record(op::glMakeTextureHandleResidentARB, {5, 0}));
+    EXPECT_EQ(left(op::glMakeTextureHandleResidentARB), 1u);
+    EXPECT_EQ(left(op::glMakeTextureHandleNonResidentARB), 0u);
+}
+
+// What a framebuffer object holds was drawn with the resident texture as it was then, though it was never bound.
+TEST_F(Kept, drawsDependOnResidentTextures) {
+    give(sparseTexture(7)); // the target
+    give(PacketBuilder().record(op::glGenFramebuffers, {1, 4, 3}).record(op::glBindFramebuffer, {GL_FRAMEBUFFER, 3}).record(op::glFramebufferTexture2D, {GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 7, 0}));
+    give(sparseTexture(9));
+    give(PacketBuilder().record(op::glGetTextureHandleARB, {9, 5, 0}).record(op::glMakeTextureHandleResidentARB, {5, 0}));
+    give(uploadTo(0));
+    give(PacketBuilder().record(op::glActiveTexture, {GL_TEXTURE0}).record(op::glBindTexture, {GL_TEXTURE_2D, 0}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));
+    give(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 9}));
+    give(uploadTo(0));
+    EXPECT_EQ(left(op::glTexSubImage2D), 2u);
+}
+
+TEST_F(Kept, whatIsUploadedNeedsThePagesThatThereWere) {
+    const auto commit = [](uint32_t x, uint32_t committed) { return PacketBuilder().record(op::glTexPageCommitmentARB, {GL_TEXTURE_2D, 0, x, 0, 0, 128, 256, 1, committed}); };
+    give(sparseTexture(9));
+    for (int i = 0; i < 5; ++i) {
+        give(commit(0, 1));
+        give(commit(128, 1));
+        give(uploadTo(128));
+        give(commit(0, 0));
+    }
+    give(commit(0, 1));
+    give(commit(128, 1)); // no news, and yet the upload before it stays
+    EXPECT_EQ(left(op::glTexSubImage2D), 1u);
+    const size_t pages = left(op::glTexPageCommitmentARB);
+    EXPECT_GE(pages, 3u);
+    EXPECT_LE(pages, 5u);
+}
+
+TEST_F(Kept, pagesOfBuffersToo) {
+    give(PacketBuilder().record(op::glGenBuffers, {1, 4, 9}).record(op::glBindBuffer, {GL_ARRAY_BUFFER, 9}).record(op::glBufferStorage, {GL_ARRAY_BUFFER, 0x20000, 0, 0, 0x400}));
+    for (uint32_t i = 0; i < 4; ++i) {
+        give(PacketBuilder().record(op::glBufferPageCommitmentARB, {GL_ARRAY_BUFFER, 0, 0, 0x10000, 0, 1}));
+        give(PacketBuilder().record(op::glBufferSubData, {GL_ARRAY_BUFFER, 0, 0, 4, 0, 4, i}));
+        if (i < 3) give(PacketBuilder().record(op::glBufferPageCommitmentARB, {GL_ARRAY_BUFFER, 0, 0, 0x10000, 0, 0}));
+    }
+    EXPECT_EQ(left(op::glBufferSubData), 1u);
+    EXPECT_EQ(left(op::glBufferPageCommitmentARB), 1u);
+}
+
 } // namespace
 } // namespace mural::recording

@@ -1,8 +1,12 @@
 // Streams that no encoder writes: class Replay refuses them, and keeps what it has.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <functional>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "encoders.hpp"
 #include "interposer/own_records.hpp"
@@ -367,6 +371,159 @@ TEST_F(ReplayTest, GlWithoutAContextDoesNothing) {
     records::swap(t_, 1, 1);
     EXPECT_TRUE(send());
     EXPECT_EQ(pictureBytes_, -1);
+}
+
+// ---- handles of textures: of a driver that deals others than the program's
+
+struct OtherHandles {
+    std::vector<GLuint64> resident, notResident, uniforms;
+    GLuint64 attribute = 0, next = 100;
+    GLenum access = 0;
+};
+OtherHandles other;
+
+class HandlesTest : public ReplayTest {
+protected:
+    void SetUp() override {
+        ReplayTest::SetUp();
+        begin();
+        other = {};
+        GlFunctions& gl = replay_->gl;
+        gl.glGetTextureHandleARB = [](GLuint) { return other.next++; };
+        gl.glGetTextureSamplerHandleARB = [](GLuint, GLuint) { return other.next++; };
+        gl.glGetImageHandleARB = [](GLuint, GLint, GLboolean, GLint, GLenum) { return other.next++; };
+        gl.glMakeTextureHandleResidentARB = [](GLuint64 h) { other.resident.push_back(h); };
+        gl.glMakeTextureHandleNonResidentARB = [](GLuint64 h) { other.notResident.push_back(h); };
+        gl.glMakeImageHandleResidentARB = [](GLuint64 h, GLenum access) { other.resident.push_back(h), other.access = access; };
+        gl.glMakeImageHandleNonResidentARB = [](GLuint64 h) { other.notResident.push_back(h); };
+        gl.glUniformHandleui64ARB = [](GLint, GLuint64 h) { other.uniforms.push_back(h); };
+        gl.glUniformHandleui64vARB = [](GLint, GLsizei n, const GLuint64* h) { other.uniforms.insert(other.uniforms.end(), h, h + n); };
+        gl.glProgramUniformHandleui64ARB = [](GLuint, GLint, GLuint64 h) { other.uniforms.push_back(h); };
+        gl.glProgramUniformHandleui64vARB = [](GLuint, GLint, GLsizei n, const GLuint64* h) { other.uniforms.insert(other.uniforms.end(), h, h + n); };
+        gl.glVertexAttribL1ui64ARB = [](GLuint, GLuint64EXT h) { other.attribute = h; };
+    }
+};
+
+TEST_F(HandlesTest, AreMappedWhereverACommandNamesThem) {
+    encode_glGetTextureHandleARB(t_, 1, 7);            // 100
+    encode_glGetTextureSamplerHandleARB(t_, 1, 2, 8);  // 101
+    encode_glGetImageHandleARB(t_, 1, 0, GL_FALSE, 0, GL_RGBA8, 9); // 102
+    encode_glMakeTextureHandleResidentARB(t_, 8);
+    encode_glMakeImageHandleResidentARB(t_, 9, GL_READ_WRITE);
+    encode_glMakeTextureHandleNonResidentARB(t_, 7);
+    encode_glMakeImageHandleNonResidentARB(t_, 9);
+    const GLuint64 several[] = {8, 7, 3};
+    encode_glUniformHandleui64ARB(t_, 0, 7);
+    encode_glUniformHandleui64vARB(t_, 0, 3, DataArg::of(several, sizeof several));
+    encode_glProgramUniformHandleui64ARB(t_, 1, 0, 9);
+    encode_glProgramUniformHandleui64vARB(t_, 1, 0, 2, DataArg::of(several, 16));
+    encode_glVertexAttribL1ui64ARB(t_, 3, 8);
+    EXPECT_TRUE(send());
+    EXPECT_EQ(other.resident, (std::vector<GLuint64>{101, 102}));
+    EXPECT_EQ(other.access, GLenum{GL_READ_WRITE});
+    EXPECT_EQ(other.notResident, (std::vector<GLuint64>{100, 102}));
+    EXPECT_EQ(other.uniforms, (std::vector<GLuint64>{100, 101, 100, 3, 102, 101, 100}));
+    EXPECT_EQ(other.attribute, 101u);
+    const GLuint64 one = 7;
+    encode_glVertexAttribL1ui64vARB(t_, 3, DataArg::of(&one, 8));
+    EXPECT_TRUE(send());
+    EXPECT_EQ(other.attribute, 100u);
+}
+
+TEST_F(HandlesTest, OneLineSaysThatMemoryIsNotMapped) {
+    other.next = 7;
+    encode_glGetTextureHandleARB(t_, 1, 7);
+    EXPECT_TRUE(send());
+    EXPECT_EQ(log_, "");
+    encode_glGetTextureHandleARB(t_, 2, 9);
+    encode_glGetTextureHandleARB(t_, 3, 10);
+    EXPECT_TRUE(send());
+    EXPECT_EQ(std::count(log_.begin(), log_.end(), '\n'), 1) << log_;
+    EXPECT_NE(log_.find("0x8 for 0x9"), std::string::npos) << log_;
+}
+
+TEST_F(HandlesTest, OneThatNobodyHasDealtIsNotMadeResident) {
+    encode_glMakeTextureHandleResidentARB(t_, 100);
+    encode_glMakeImageHandleResidentARB(t_, 100, GL_READ_ONLY);
+    EXPECT_TRUE(send());
+    EXPECT_TRUE(other.resident.empty());
+}
+
+TEST_F(HandlesTest, CountsThatAreTooLargeAreRefused) {
+    EXPECT_FALSE(sendWords({head(op::glUniformHandleui64vARB, 6), 0, 0x20000001, 8, 0, 0}));
+    EXPECT_TRUE(other.uniforms.empty());
+}
+
+// ---- pages: of a driver whose are larger than the program's
+
+struct OtherPages {
+    std::vector<std::array<GLint, 7>> commits; // x, y, z, sizes, commit
+    std::vector<std::array<GLint64, 3>> buffers;
+    GLenum error = 0;
+};
+OtherPages pages;
+
+class PagesTest : public ReplayTest {
+protected:
+    static constexpr GLint kPage = 64, kWidth = 100, kHeight = 256; // the last page of a row is cut off
+    void SetUp() override {
+        ReplayTest::SetUp();
+        begin();
+        pages = {};
+        GlFunctions& gl = replay_->gl;
+        gl.glGetError = [] { return std::exchange(pages.error, GLenum{GL_NO_ERROR}); };
+        gl.glTexPageCommitmentARB = [](GLenum, GLint, GLint x, GLint y, GLint z, GLsizei w, GLsizei h, GLsizei d, GLboolean commit) {
+            const bool fits = x % kPage == 0 && y % kPage == 0 && (w % kPage == 0 || x + w == kWidth) && (h % kPage == 0 || y + h == kHeight);
+            if (fits) pages.commits.push_back({x, y, z, w, h, d, commit});
+            else pages.error = GL_INVALID_VALUE;
+        };
+        gl.glGetInternalformativ = [](GLenum, GLenum, GLenum name, GLsizei, GLint* value) { *value = name == GL_VIRTUAL_PAGE_SIZE_Z_ARB ? 1 : kPage; };
+        gl.glGetTexParameteriv = [](GLenum, GLenum, GLint* value) { *value = 0; };
+        gl.glGetTexLevelParameteriv = [](GLenum, GLint, GLenum name, GLint* value) { *value = name == GL_TEXTURE_WIDTH ? kWidth : name == GL_TEXTURE_HEIGHT ? kHeight : GL_RGBA8; };
+        gl.glGetIntegerv = [](GLenum, GLint* value) { *value = kPage; };
+        gl.glGetBufferParameteri64v = [](GLenum, GLenum, GLint64* value) { *value = 200; };
+        gl.glBufferPageCommitmentARB = [](GLenum, GLintptr offset, GLsizeiptr size, GLboolean commit) { pages.buffers.push_back({offset, size, commit}); };
+    }
+    void commit(GLint x, GLint y, GLsizei w, GLsizei h, GLboolean committed) {
+        encode_glTexPageCommitmentARB(t_, GL_TEXTURE_2D, 0, x, y, 2, w, h, 1, committed);
+        EXPECT_TRUE(send());
+    }
+};
+
+TEST_F(PagesTest, ThoseThatFitAreTheSame) {
+    commit(64, 128, 36, 64, GL_TRUE);
+    commit(64, 128, 36, 64, GL_FALSE);
+    EXPECT_EQ(pages.commits, (std::vector<std::array<GLint, 7>>{{64, 128, 2, 36, 64, 1, 1}, {64, 128, 2, 36, 64, 1, 0}}));
+}
+
+TEST_F(PagesTest, ThoseAroundAreCommittedAndNoneIsGivenBack) {
+    commit(32, 96, 32, 32, GL_TRUE);
+    commit(80, 0, 16, 16, GL_TRUE);
+    commit(32, 96, 32, 32, GL_FALSE);
+    EXPECT_EQ(pages.commits, (std::vector<std::array<GLint, 7>>{{0, 64, 2, 64, 64, 1, 1}, {64, 0, 2, 36, 64, 1, 1}}));
+    EXPECT_EQ(log_, "");
+}
+
+TEST_F(PagesTest, OneLineSaysThatThereAreNone) {
+    replay_->gl.glGetInternalformativ = [](GLenum, GLenum, GLenum, GLsizei, GLint*) {};
+    commit(32, 96, 32, 32, GL_TRUE);
+    commit(32, 96, 32, 32, GL_TRUE);
+    EXPECT_TRUE(pages.commits.empty());
+    EXPECT_EQ(std::count(log_.begin(), log_.end(), '\n'), 1) << log_;
+}
+
+TEST_F(PagesTest, OfBuffersToo) {
+    const auto commitBuffer = [&](GLintptr offset, GLsizeiptr size, GLboolean committed) {
+        encode_glBufferPageCommitmentARB(t_, GL_ARRAY_BUFFER, offset, size, committed);
+        EXPECT_TRUE(send());
+    };
+    commitBuffer(64, 128, GL_TRUE);
+    commitBuffer(16, 64, GL_TRUE);
+    commitBuffer(16, 64, GL_FALSE);
+    commitBuffer(192, 8, GL_FALSE); // up to the end
+    commitBuffer(160, 40, GL_TRUE);
+    commitBuffer(160, 80, GL_TRUE); // beyond it
+    EXPECT_EQ(pages.buffers, (std::vector<std::array<GLint64, 3>>{{64, 128, 1}, {0, 128, 1}, {192, 8, 0}, {128, 72, 1}}));
 }
 
 } // namespace

@@ -14,10 +14,8 @@ int listCommandsCommand(bool onlyUnsupported) {
         if (onlyUnsupported && command.carried) continue;
         fmt::print("{}\t{}{}{}\n", command.name, command.commandClass, *command.reason != '\0' ? "\t" : "", command.reason);
     }
-    if (onlyUnsupported) {
-        for (const LocalExtension& e : kLocalExtensions) fmt::print("{}\textension\t{}\n", e.name, e.why);
+    if (onlyUnsupported)
         for (const LocalExtension& e : kLocalWindowExtensions) fmt::print("{}\textension\t{}\n", e.name, e.why);
-    }
     fmt::print(stderr, "mural: {} commands are carried, {} are not\n", carried, left);
     return 0;
 }

@@ -1,0 +1,44 @@
+// The program's handles of textures and images without a binding (ARB_bindless_texture) → this node's. Mostly equal:
+// drivers number them in the order in which they are asked for, and nodes ask in the program's. Texture and image
+// handles are counted apart: a number may be both.
+#pragma once
+
+#include <cstdint>
+#include <unordered_map>
+
+namespace mural {
+
+class HandleTable {
+public:
+    enum class Of : uint8_t { Texture, Image };
+
+    // The node's driver has dealt `ours` where the program's dealt `theirs`. What the number stood for before is gone: handles
+    // end with their textures, and drivers deal them again. False: they differ, for the first time.
+    bool set(Of of, uint64_t theirs, uint64_t ours) {
+        table(of)[theirs] = ours;
+        const bool news = theirs != ours && !differ_;
+        differ_ = differ_ || theirs != ours;
+        return !news;
+    }
+    // 0: no such handle was dealt here.
+    [[nodiscard]] uint64_t find(Of of, uint64_t theirs) const {
+        const auto& known = of == Of::Texture ? textures_ : images_;
+        const auto it = known.find(theirs);
+        return it == known.end() ? 0 : it->second;
+    }
+    // Where a number is a value like any other: as it is, when no handle has it. `first`: which of both it rather is.
+    [[nodiscard]] uint64_t value(Of first, uint64_t theirs) const {
+        if (!differ_) return theirs;
+        if (const uint64_t ours = find(first, theirs)) return ours;
+        const uint64_t other = find(first == Of::Texture ? Of::Image : Of::Texture, theirs);
+        return other ? other : theirs;
+    }
+    [[nodiscard]] bool differ() const { return differ_; } // some of them, at any time
+
+private:
+    std::unordered_map<uint64_t, uint64_t>& table(Of of) { return of == Of::Texture ? textures_ : images_; }
+    std::unordered_map<uint64_t, uint64_t> textures_, images_;
+    bool differ_ = false;
+};
+
+} // namespace mural

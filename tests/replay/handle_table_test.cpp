@@ -1,0 +1,51 @@
+#include "nodes/replay/handle_table.hpp"
+
+#include <gtest/gtest.h>
+
+namespace mural {
+namespace {
+
+using Of = HandleTable::Of;
+
+TEST(HandleTable, equalHandlesStayAsTheyAre) {
+    HandleTable t;
+    EXPECT_TRUE(t.set(Of::Texture, 1, 1));
+    EXPECT_TRUE(t.set(Of::Texture, 2, 2));
+    EXPECT_FALSE(t.differ());
+    EXPECT_EQ(t.find(Of::Texture, 2), 2u);
+    EXPECT_EQ(t.find(Of::Image, 2), 0u);
+    EXPECT_EQ(t.value(Of::Texture, 77), 77u); // a number that is none of them
+}
+
+TEST(HandleTable, saysOnceThatTheyDiffer) {
+    HandleTable t;
+    EXPECT_TRUE(t.set(Of::Texture, 1, 1));
+    EXPECT_FALSE(t.set(Of::Texture, 2, 9));
+    EXPECT_TRUE(t.set(Of::Texture, 3, 10));
+    EXPECT_TRUE(t.differ());
+    EXPECT_EQ(t.value(Of::Texture, 1), 1u);
+    EXPECT_EQ(t.value(Of::Texture, 2), 9u);
+    EXPECT_EQ(t.value(Of::Texture, 77), 77u);
+}
+
+TEST(HandleTable, aNumberThatIsDealtAgainStandsForTheNewOne) {
+    HandleTable t;
+    t.set(Of::Texture, 4, 8);
+    t.set(Of::Texture, 4, 5);
+    EXPECT_EQ(t.find(Of::Texture, 4), 5u);
+    t.set(Of::Texture, 4, 4);
+    EXPECT_EQ(t.value(Of::Texture, 4), 4u);
+}
+
+TEST(HandleTable, texturesAndImagesMayHaveTheSameNumber) {
+    HandleTable t;
+    t.set(Of::Texture, 1, 100);
+    t.set(Of::Image, 1, 200);
+    t.set(Of::Image, 2, 300);
+    EXPECT_EQ(t.value(Of::Texture, 1), 100u);
+    EXPECT_EQ(t.value(Of::Image, 1), 200u);
+    EXPECT_EQ(t.value(Of::Texture, 2), 300u); // there is no such texture
+}
+
+} // namespace
+} // namespace mural
