@@ -275,6 +275,7 @@ void Replay::forget(Kind kind, const GLuint* app, int64_t count) {
     for (int64_t i = 0; app && i < count; ++i) {
         GLuint value = 0;
         std::memcpy(&value, app + i, sizeof value);
+        if (kind == Kind::Texture || kind == Kind::Sampler) handlesGone(kind, table(kind).find(value));
         table(kind).erase(value);
         if (kind == Kind::Framebuffer && c_->shared) c_->shared->framebuffersOfAll.erase(value);
     }

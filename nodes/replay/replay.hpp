@@ -199,6 +199,7 @@ private:
         GLbitfield cleared = 0;    // whole buffers, since the frame began
         bool plain = true;         // drawn without the kernel of this pass: its pixels are picked at the end…
         bool copied = true;        // …because the frame before read or copied pixels there
+        bool asked = false;        // for pixels, in this frame
         RangeFrame range;
         bool keepsPicture = false; // the turn never ends
         bool sceneElsewhere = false;    // in this frame a scene is drawn into a framebuffer object (replay_scenes.cpp)
@@ -223,6 +224,10 @@ private:
     struct List {
         std::vector<ListItem> items;
     };
+    struct DealtHandle { // our names
+        GLuint texture, sampler; // sampler: the program's, or 0
+        GLuint made;             // one like it, by which the handle was asked for, or 0
+    };
     struct Shared { // what contexts share
         NameTable tables[static_cast<int>(Kind::Count)];
         std::unordered_map<uint64_t, GLsync> syncs;
@@ -235,6 +240,8 @@ private:
         TiledPrograms tiled;
         ProgramRecipes recipes;
         HandleTable handles;
+        std::unordered_map<uint64_t, DealtHandle> dealt; // by the program's handle of a texture
+        bool handlesFreed = false; // some texture with a handle was deleted
         std::unordered_map<GLuint, SeenProjection> projections; // by the program's name (replay_eyes.cpp)
         std::unordered_map<GLuint, bool> primitiveIds;  // our programs that number primitives: not cut into pieces
         std::unordered_map<GLuint, bool> memoryWriters; // by the program's name, once it was used (replay_left_out.cpp)
@@ -448,6 +455,12 @@ private:
     void withImage(uint64_t image, const std::function<void(GLeglImageOES)>& call);
     // replay_handles.cpp
     void dealtHandle(HandleTable::Of of, uint64_t theirs, uint64_t ours);
+    void askTextureHandle(GLuint texture, GLuint sampler, uint64_t theirs);
+    uint64_t equalHandle(GLuint texture, GLuint sampler, uint64_t wanted, GLuint& made);
+    void handlesGone(Kind kind, GLuint ours);
+    GLuint samplerLike(GLuint texture, GLuint sampler);
+    void settleDriver();
+    void flushIfAsked(Window& w);
     [[nodiscard]] HandleTable::Of handlesOfUniform(GLuint program, GLint location) const;
     [[nodiscard]] std::vector<GLuint64> handleValues(GLuint program, GLint location, const GLuint64* values, GLsizei count) const;
     // replay_sparse.cpp

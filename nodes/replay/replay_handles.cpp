@@ -3,6 +3,8 @@
 // handle is right when both drivers deal the same (docs/decisions/0006-handles-of-textures.md).
 #include <cinttypes>
 #include <cstdio>
+#include <cstring>
+#include <utility>
 #include <vector>
 
 #include "gl_opcodes.hpp"
@@ -28,13 +30,110 @@ void Replay::dealtHandle(HandleTable::Of of, uint64_t theirs, uint64_t ours) {
     out_.log(text);
 }
 
+// ---- numbers that a driver frees when it has come to an end with what used them: later here, or earlier, than in the
+// program's process. A texture may have any number of handles, by samplers like its own: one of them has the wanted number where
+// drivers deal the lowest that is free.
+
+// Lets the driver free what was deleted: zink does when it takes up the memory of commands again that have ended.
+void Replay::settleDriver() {
+    constexpr int kRounds = 6;
+    constexpr GLsizeiptr kBytes = 16;
+    if (!gl.glCopyBufferSubData || !gl.glFinish) return;
+    GLuint buffers[2] = {};
+    GLint before[2] = {};
+    gl.glGetIntegerv(GL_COPY_READ_BUFFER_BINDING, &before[0]);
+    gl.glGetIntegerv(GL_COPY_WRITE_BUFFER_BINDING, &before[1]);
+    gl.glGenBuffers(2, buffers);
+    const GLenum targets[2] = {GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER};
+    for (int i = 0; i < 2; ++i) {
+        gl.glBindBuffer(targets[i], buffers[i]);
+        gl.glBufferData(targets[i], kBytes, nullptr, GL_STATIC_COPY);
+    }
+    for (int i = 0; i < kRounds; ++i) {
+        gl.glCopyBufferSubData(targets[0], targets[1], 0, 0, kBytes);
+        gl.glFinish();
+    }
+    for (int i = 0; i < 2; ++i) gl.glBindBuffer(targets[i], static_cast<GLuint>(before[i]));
+    gl.glDeleteBuffers(2, buffers);
+}
+
+// With the parameters of the sampler, or where there is none, of the texture. 0: this GL can't.
+GLuint Replay::samplerLike(GLuint texture, GLuint sampler) {
+    if (!gl.glGenSamplers || !gl.glSamplerParameteri || !gl.glGetSamplerParameterfv || (!sampler && !gl.glGetTextureParameterfv)) return 0;
+    const auto get = [&](GLenum name, GLfloat* value) {
+        if (sampler) gl.glGetSamplerParameterfv(sampler, name, value);
+        else gl.glGetTextureParameterfv(texture, name, value);
+    };
+    GLuint made = 0;
+    gl.glGenSamplers(1, &made);
+    for (const GLenum name : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER, GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R, GL_TEXTURE_COMPARE_MODE, GL_TEXTURE_COMPARE_FUNC,
+                              GL_TEXTURE_MIN_LOD, GL_TEXTURE_MAX_LOD, GL_TEXTURE_LOD_BIAS, GL_TEXTURE_MAX_ANISOTROPY, GL_TEXTURE_SRGB_DECODE_EXT, GL_TEXTURE_CUBE_MAP_SEAMLESS,
+                              GL_TEXTURE_REDUCTION_MODE_ARB}) {
+        constexpr GLfloat kUnknown = -1e30f; // to drivers without it
+        GLfloat value = kUnknown;
+        get(name, &value);
+        if (value != kUnknown) gl.glSamplerParameterf(made, name, value);
+    }
+    GLfloat border[4] = {};
+    get(GL_TEXTURE_BORDER_COLOR, border); // handles demand one of four that are the same as integers
+    gl.glSamplerParameterfv(made, GL_TEXTURE_BORDER_COLOR, border);
+    return made;
+}
+
+// A handle with the wanted number, by a sampler that is made for it. 0: it can't be had.
+uint64_t Replay::equalHandle(GLuint texture, GLuint sampler, uint64_t wanted, GLuint& made) {
+    constexpr size_t kMostTries = 1024;
+    if (!gl.glGetTextureSamplerHandleARB || !gl.glDeleteSamplers) return 0;
+    for (int round = 0; round < 2; ++round) { // the second when nothing is on its way any more
+        std::vector<GLuint> spare;
+        for (uint64_t last = 0; last < wanted && spare.size() < kMostTries;) {
+            made = samplerLike(texture, sampler);
+            if (!made) break;
+            const uint64_t next = gl.glGetTextureSamplerHandleARB(texture, made);
+            if (next == wanted) break;
+            spare.push_back(std::exchange(made, 0));
+            if (next <= last) break; // in no order, or none
+            last = next;
+        }
+        gl.glDeleteSamplers(static_cast<GLsizei>(spare.size()), spare.data()); // and their handles
+        (void)isError();
+        if (made) return wanted;
+        if (round == 0) settleDriver();
+    }
+    return 0;
+}
+
+// As long as none was freed, numbers come in the order of the questions.
+void Replay::askTextureHandle(GLuint texture, GLuint sampler, uint64_t theirs) {
+    if (!c_->shared) return;
+    const auto known = c_->shared->dealt.find(theirs);
+    if (known != c_->shared->dealt.end() && known->second.texture == texture && known->second.sampler == sampler) return; // asked again
+    DealtHandle dealt{texture, sampler, 0};
+    uint64_t ours = c_->shared->handlesFreed ? equalHandle(texture, sampler, theirs, dealt.made) : 0;
+    if (!ours) ours = sampler ? gl.glGetTextureSamplerHandleARB(texture, sampler) : gl.glGetTextureHandleARB(texture);
+    c_->shared->dealt[theirs] = dealt;
+    dealtHandle(HandleTable::Of::Texture, theirs, ours);
+}
+
+// A texture or a sampler is deleted, and its handles are with it.
+void Replay::handlesGone(Kind kind, GLuint ours) {
+    if (!c_->shared || c_->shared->dealt.empty()) return;
+    std::erase_if(c_->shared->dealt, [&](const auto& d) {
+        const DealtHandle& handle = d.second;
+        if ((kind == Kind::Texture ? handle.texture : handle.sampler) != ours) return false;
+        if (handle.made) gl.glDeleteSamplers(1, &handle.made);
+        c_->shared->handlesFreed = true;
+        return true;
+    });
+}
+
 void Replay::glGetTextureHandleARB(GLuint texture, uint64_t result) {
     if (!gl.glGetTextureHandleARB) return (void)lacking(op::glGetTextureHandleARB);
-    dealtHandle(HandleTable::Of::Texture, result, gl.glGetTextureHandleARB(name(Kind::Texture, texture)));
+    askTextureHandle(name(Kind::Texture, texture), 0, result);
 }
 void Replay::glGetTextureSamplerHandleARB(GLuint texture, GLuint sampler, uint64_t result) {
     if (!gl.glGetTextureSamplerHandleARB) return (void)lacking(op::glGetTextureSamplerHandleARB);
-    dealtHandle(HandleTable::Of::Texture, result, gl.glGetTextureSamplerHandleARB(name(Kind::Texture, texture), name(Kind::Sampler, sampler)));
+    askTextureHandle(name(Kind::Texture, texture), name(Kind::Sampler, sampler), result);
 }
 void Replay::glGetImageHandleARB(GLuint texture, GLint level, GLboolean layered, GLint layer, GLenum format, uint64_t result) {
     if (!gl.glGetImageHandleARB) return (void)lacking(op::glGetImageHandleARB);

@@ -34,6 +34,13 @@ gl::SurfaceConfig Replay::surfaceConfig(const wire::WindowConfig& c, int width, 
 bool Replay::own(uint16_t opcode, Args& in) {
     tellMessages(); // before an answer that the program waits for
     if (!leavesBitmaps(opcode)) settleBitmaps();
+    if (opcode == wire::kOpRequestPixels || opcode == wire::kOpRequestTexImage || opcode == wire::kOpRequestBuffer || opcode == wire::kOpFillWindow) {
+        for (Window* const w : {c_->draw, c_->read}) {
+            if (!w) continue;
+            flushIfAsked(*w);
+            w->asked = true;
+        }
+    }
     switch (opcode) {
     case wire::kOpBlobBegin: return ownBlobBegin(in);
     case wire::kOpBlobData: {
@@ -247,6 +254,7 @@ bool Replay::ownSwap(Args& in, bool front) {
             return static_cast<const std::byte*>(black.data());
         };
     }
+    if (it != windows.end() && bound_) flushIfAsked(*it->second);
     // A frame counts when it is drawn, not when it is queued: pacing and frame rates depend on it.
     if (!skips_) waitUntilDrawn();
     tellTroubles();

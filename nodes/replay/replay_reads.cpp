@@ -80,6 +80,12 @@ bool Replay::ownRequestPixels(Args& in) {
     return true;
 }
 
+// What was cleared with a scissor since the driver was asked for pixels or bytes, zink (Mesa 25.0) leaves out of the pixels that are
+// read next, unless it is told to flush in between. A swap would.
+void Replay::flushIfAsked(Window& w) {
+    if (std::exchange(w.asked, false) && gl.glFlush) gl.glFlush();
+}
+
 void Replay::answerBytes(uint32_t request, wire::AnswerKind kind, std::span<const std::byte> bytes) {
     wire::AnswerHeader header{};
     header.client = wire::clientOf(stream_);

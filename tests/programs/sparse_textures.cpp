@@ -87,12 +87,9 @@ void drawFrame(Window& window, int frame) {
     glClearColor(0.1F, 0.12F, 0.16F, 1);
     glClear(GL_COLOR_BUFFER_BIT);
     const int kept = frame % kColumns, gone = (frame + 3) % kColumns;
-    if (frame > 0) {
-        commit(gone, 0, false);
-        commit(gone, 2, false);
-    }
     commit(kept, 0, true);
     commit(kept, 2, true);
+    glFinish();
     fill(GL_TEXTURE_2D, kept * pageWidth, 0, 0, pageWidth, pageHeight, unsigned(frame) + 1);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer); // and one that is drawn
     glEnable(GL_SCISSOR_TEST);
@@ -121,6 +118,11 @@ void drawFrame(Window& window, int frame) {
     showBits(2, GLuint(size));
     glTexPageCommitmentARB(GL_TEXTURE_2D, 0, 1, 0, 0, pageWidth, pageHeight, 1, GL_TRUE); // not where a page begins
     showBits(3, glGetError());
+    if (frame > 0) { // two stay
+        glFinish();
+        commit(gone, 0, false);
+        commit(gone, 2, false);
+    }
 }
 
 } // namespace
