@@ -6,6 +6,8 @@
 namespace mural::gl {
 namespace {
 
+constexpr const char* kSurfaceless = "surfaceless"; // as EglDisplayState::where
+
 bool hasWord(const char* words, const char* word) {
     const size_t length = std::strlen(word);
     for (const char* at = words; at && (at = std::strstr(at, word)); at += length)
@@ -27,7 +29,8 @@ Result<EglFunctions> loadEgl() {
         library->load(egl.destroyContext, "eglDestroyContext") &&
         library->load(egl.destroySurface, "eglDestroySurface") &&
         library->load(egl.getConfigAttrib, "eglGetConfigAttrib") &&
-        library->load(egl.getConfigs, "eglGetConfigs") && library->load(egl.getError, "eglGetError") &&
+        library->load(egl.getConfigs, "eglGetConfigs") &&
+        library->load(egl.getCurrentContext, "eglGetCurrentContext") && library->load(egl.getError, "eglGetError") &&
         library->load(egl.getProcAddress, "eglGetProcAddress") &&
         library->load(egl.initialize, "eglInitialize") && library->load(egl.makeCurrent, "eglMakeCurrent") &&
         library->load(egl.queryString, "eglQueryString") &&
@@ -89,7 +92,7 @@ std::shared_ptr<EglDisplayState> openSurfaceless(const EglFunctions& egl, std::s
     }
     EGLDisplay display =
         egl.getPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, reinterpret_cast<void*>(EGL_DEFAULT_DISPLAY), nullptr);
-    auto state = initialize(egl, display, "surfaceless", why);
+    auto state = initialize(egl, display, kSurfaceless, why);
     EGLAttrib device = 0;
     if (state && egl.queryDisplayAttrib && egl.queryDisplayAttrib(display, EGL_DEVICE_EXT, &device) && device)
         state->software = isSoftware(egl, reinterpret_cast<EGLDeviceEXT>(device));
@@ -130,6 +133,11 @@ Result<std::shared_ptr<EglDisplayState>> openEglDisplay() {
     if (surfaceless) return surfaceless;
     return Error{"no EGL display without a window system opens (" + why.substr(why.empty() ? 0 : 1) +
                  "): install libegl-mesa0 or the GPU's driver"};
+}
+
+std::shared_ptr<EglDisplayState> openOtherEglDisplay(const EglDisplayState& display) {
+    std::string why;
+    return display.where == kSurfaceless ? openDevice(display.egl, true, why) : nullptr;
 }
 
 EglConfigs listEglConfigs(const EglDisplayState& display, bool srgb) {

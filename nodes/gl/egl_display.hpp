@@ -22,6 +22,7 @@ struct EglFunctions {
     decltype(&eglDestroySurface) destroySurface = nullptr;
     decltype(&eglGetConfigAttrib) getConfigAttrib = nullptr;
     decltype(&eglGetConfigs) getConfigs = nullptr;
+    decltype(&eglGetCurrentContext) getCurrentContext = nullptr;
     decltype(&eglGetError) getError = nullptr;
     decltype(&eglGetProcAddress) getProcAddress = nullptr;
     decltype(&eglInitialize) initialize = nullptr;
@@ -62,6 +63,10 @@ struct EglDisplayState {
 // several vendors installed the surfaceless platform may lead to Mesa's software renderer although the
 // machine's windows are drawn by another vendor's GPU.
 Result<std::shared_ptr<EglDisplayState>> openEglDisplay();
+
+// That of a device, where `display` is the surfaceless one; else null. For drivers whose surfaceless display can't do
+// what is needed.
+std::shared_ptr<EglDisplayState> openOtherEglDisplay(const EglDisplayState& display);
 
 struct EglConfigs {
     std::vector<EGLConfig> handles;

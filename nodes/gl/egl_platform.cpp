@@ -120,6 +120,7 @@ public:
 
     // Makes a context and asks it what no EGL query tells.
     Result<void> measure();
+    [[nodiscard]] bool drawsAs(const EglPlatform& other) const { return renderer_ == other.renderer_ && version_ == other.version_; }
 
 private:
     Result<EGLConfig> chooseConfig(const SurfaceConfig& wish) const;
@@ -200,6 +201,7 @@ Result<std::unique_ptr<Context>> EglPlatform::createContext(const ContextConfig&
 Result<void> EglPlatform::makeCurrent(Context* context, Surface* draw, Surface* read) {
     const EglFunctions& egl = display_->egl;
     auto* wanted = static_cast<EglContext*>(context);
+    if (wanted && draw && read && draw != read && egl.getCurrentContext() != EGL_NO_CONTEXT) finishDrawing(*this);
     // Release acts on the API that is bound, so it must still be the current context's.
     if (wanted) {
         currentApi_ = wanted->api();
@@ -255,6 +257,12 @@ Result<std::unique_ptr<Platform>> openEgl() {
     if (!display) return display.error();
     auto platform = std::make_unique<EglPlatform>(display.value());
     if (auto measured = platform->measure(); !measured) return measured.error();
+    if (showsSamples(*platform)) return std::unique_ptr<Platform>(std::move(platform));
+    // The same driver by another platform of EGL has them (Mesa 25.0, software).
+    if (auto other = openOtherEglDisplay(**display)) {
+        auto device = std::make_unique<EglPlatform>(std::move(other));
+        if (device->measure() && device->drawsAs(*platform) && showsSamples(*device)) platform = std::move(device);
+    }
     return std::unique_ptr<Platform>(std::move(platform));
 }
 

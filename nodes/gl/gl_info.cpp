@@ -100,4 +100,33 @@ Result<GlInfo> measureGl(Platform& platform, bool embedded) {
     return info;
 }
 
+void finishDrawing(Platform& platform) {
+    void (*finish)() = nullptr;
+    load(platform, finish, "glFinish");
+    if (finish) finish();
+}
+
+bool showsSamples(Platform& platform) {
+    ContextConfig config;
+    config.surface.samples = 4;
+    auto surface = platform.createSurface(config.surface);
+    if (!surface) return true;
+    auto context = platform.createContext(config, nullptr);
+    if (!context || !platform.makeCurrent(context->get(), surface->get(), surface->get())) return true;
+    void (*clearColor)(GLfloat, GLfloat, GLfloat, GLfloat) = nullptr;
+    void (*clear)(GLbitfield) = nullptr;
+    void (*readPixels)(GLint, GLint, GLsizei, GLsizei, GLenum, GLenum, void*) = nullptr;
+    load(platform, clearColor, "glClearColor");
+    load(platform, clear, "glClear");
+    load(platform, readPixels, "glReadPixels");
+    GLubyte pixel[4] = {};
+    if (clearColor && clear && readPixels) {
+        clearColor(0, 1, 0, 1);
+        clear(GL_COLOR_BUFFER_BIT);
+        readPixels(0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel);
+    }
+    (void)platform.makeCurrent(nullptr, nullptr, nullptr);
+    return pixel[1] == 255;
+}
+
 } // namespace mural::gl

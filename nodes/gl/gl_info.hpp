@@ -24,6 +24,13 @@ Result<GlInfo> readGlInfo(Platform& platform);
 // window system tells. Leaves no context current. embedded: a driver that has only OpenGL ES will do.
 Result<GlInfo> measureGl(Platform& platform, bool embedded);
 
+// Waits until all is drawn that the current context has been told. Mesa's software driver does not always wait by itself
+// when it reads a surface that was drawn to until just now and is then current for reading only (README.md).
+void finishDrawing(Platform& platform);
+
+// Whether glReadPixels gives what was drawn to a surface with samples; true where there are none. Leaves no context current.
+bool showsSamples(Platform& platform);
+
 // "4.5 (Compatibility Profile) Mesa 22.3.6" → 45, "OpenGL ES-CM 1.1 Mesa" → 11; 0 when there is no number.
 int parseGlVersion(const std::string& version);
 

@@ -83,6 +83,7 @@ public:
     virtual Result<std::unique_ptr<Surface>> createSurface(const SurfaceConfig& config) = 0;
     virtual Result<std::unique_ptr<Context>> createContext(const ContextConfig& config, Context* shareWith) = 0;
     // Null context: release. Null surfaces: surfaceless (or a 1×1 dummy where that is unknown).
+    // A surface that is only read from holds all that the contexts of this thread have drawn there.
     virtual Result<void> makeCurrent(Context* context, Surface* draw, Surface* read) = 0;
     // True: a context can draw to one surface and read from another.
     [[nodiscard]] virtual bool readsOtherSurfaces() const { return true; }

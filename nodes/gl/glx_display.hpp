@@ -27,6 +27,7 @@ struct GlxFunctions {
     decltype(&glXDestroyPbuffer) destroyPbuffer = nullptr;
     decltype(&glXGetFBConfigAttrib) getFbConfigAttrib = nullptr;
     decltype(&glXGetFBConfigs) getFbConfigs = nullptr;
+    decltype(&glXGetCurrentContext) getCurrentContext = nullptr;
     decltype(&glXGetProcAddressARB) getProcAddress = nullptr;
     decltype(&glXMakeContextCurrent) makeContextCurrent = nullptr;
     decltype(&glXQueryDrawable) queryDrawable = nullptr;

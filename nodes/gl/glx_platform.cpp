@@ -185,6 +185,7 @@ Result<void> GlxPlatform::makeCurrent(Context* context, Surface* draw, Surface* 
     GLXDrawable none = wanted ? wanted->dummy() : 0;
     GLXDrawable drawHandle = draw && wanted ? static_cast<GlxSurface*>(draw)->handle() : none;
     GLXDrawable readHandle = read && wanted ? static_cast<GlxSurface*>(read)->handle() : drawHandle;
+    if (wanted && draw && read && draw != read && display_->glx.getCurrentContext()) finishDrawing(*this);
     XErrorTrap trap(*display_);
     const Bool made = display_->glx.makeContextCurrent(
         display_->display, drawHandle, readHandle, wanted ? wanted->handle() : nullptr);

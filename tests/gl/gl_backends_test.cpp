@@ -348,6 +348,20 @@ TEST_P(Backends, drawAndReadSurfacesMayDiffer) {
     EXPECT_EQ(redOf(gl), 60);
 }
 
+// Some platforms of EGL grant surfaces with samples that have no buffers (Mesa 25.0: the surfaceless one).
+TEST_P(Backends, surfacesWithSamplesHaveTheirBuffers) {
+    if (isOsmesa()) GTEST_SKIP() << "this backend has no surfaces with samples";
+    gl::ContextConfig config = version(2, 1);
+    config.surface.samples = 4;
+    const Drawable drawable(*platform_, config);
+    if (drawable.error.find("samples 4 (it has 0)") != std::string::npos) GTEST_SKIP() << drawable.error;
+    ASSERT_EQ(drawable.error, "");
+    const GlFunctions gl(find());
+    clearRed(gl, 200);
+    EXPECT_EQ(redOf(gl), 200) << platform_->describe();
+    EXPECT_EQ(gl.getError(), GLenum{GL_NO_ERROR});
+}
+
 // Objects can be made before there is a window.
 TEST_P(Backends, contextWithoutSurface) {
     auto context = platform_->createContext(version(3, 3, true), nullptr);
