@@ -81,8 +81,10 @@ bool Replay::ownRequestPixels(Args& in) {
 }
 
 // What was cleared with a scissor since the driver was asked for pixels or bytes, zink (Mesa 25.0) leaves out of the pixels that are
-// read next, unless it is told to flush in between. A swap would.
+// read next, unless it is told to flush in between. A swap would. A flush draws bitmaps that Mesa gathers: too early for those
+// that this question leaves with it (leavesBitmaps).
 void Replay::flushIfAsked(Window& w) {
+    if (bound_ && bound_->gathersBitmaps) return;
     if (std::exchange(w.asked, false) && gl.glFlush) gl.glFlush();
 }
 
