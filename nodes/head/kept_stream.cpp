@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "recording/kept/kept_stream.hpp"
 #include "recording/record_walk.hpp"
 
 namespace mural {

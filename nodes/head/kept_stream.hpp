@@ -16,8 +16,12 @@
 
 #include "common/clock.hpp"
 #include "common/result.hpp"
-#include "recording/kept/kept_stream.hpp"
+#include "recording/kept/kept_packet.hpp"
 #include "streamcodec/wire.hpp"
+
+namespace mural::recording {
+class KeptStream;
+} // namespace mural::recording
 
 namespace mural {
 

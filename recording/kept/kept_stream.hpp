@@ -10,13 +10,9 @@
 
 #include "recording/entry.hpp"
 #include "recording/kept/kept_log.hpp"
+#include "recording/kept/kept_packet.hpp"
 
 namespace mural::recording {
-
-struct KeptPacket {
-    uint32_t stream = 0;
-    std::vector<std::byte> payload;
-};
 
 class KeptStream {
 public:

@@ -46,11 +46,19 @@ def read_png(path):
     return Picture(width, height, rows)
 
 
+def _sums(first, second):
+    """Of bytes, modulo 256, all of a row by one addition: the highest bits are kept out of it, so that none is carried on."""
+    size = len(first)
+    low = int.from_bytes(b"\x7f" * size, "little")
+    a, b = int.from_bytes(first, "little"), int.from_bytes(second, "little")
+    return ((a & low) + (b & low) ^ ((a ^ b) & ~low)).to_bytes(size, "little")
+
+
 def _unfiltered(kind, row, above):
     if kind == 0:
         return bytes(row)
-    if kind == 2:
-        return bytes((a + b) & 255 for a, b in zip(row, above))
+    if kind == 2: # what --out writes
+        return _sums(row, above)
     out = bytearray(row)
     for i in range(len(out)):
         left, corner = (out[i - 3], above[i - 3]) if i >= 3 else (0, 0)

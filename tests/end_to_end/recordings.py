@@ -7,6 +7,7 @@
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -211,6 +212,9 @@ def killed_head_leaves_what_is_whole(place):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
         time.sleep(2.5) # what is older than about a second is in the file
         failures.kill_all(run.wait_for_processes(failures.HEAD))
+        if not run.wait_for_line("head"):
+            return "nobody said that the head has ended"
+        run.process.send_signal(signal.SIGTERM) # the program would go on alone
         run.status()
     done = place.mural("dump", place.path("a.mural"), "--summary")
     if done.returncode == 2 and "is not a recording" in done.stderr:

@@ -25,14 +25,20 @@ BACK = "is back in the picture"
 PROGRAM = "long_scene"
 
 
+NATIVE = {} # pictures by frames and environment: several cases draw the same
+
+
 def native_pictures(context, folder, frames, environment):
-    """{frame: Picture} as the program draws them alone."""
-    os.makedirs(folder, exist_ok=True)
-    run = programs.run_program(context.build, PROGRAM, os.path.join(folder, "native"), context.display,
-                               "%dx%d" % (WIDTH, HEIGHT), frames, more_environment=environment)
-    if run.status != 0:
-        raise SystemExit("the program fails natively: status %s: %s" % (run.status, run.output[-200:]))
-    return [pictures.read_ppm(path) for _, path in sorted(run.frames().items())]
+    """The pictures as the program draws them alone, and without the pauses."""
+    environment = dict(environment, SCENE_PAUSE_US="0")
+    key = (frames, tuple(sorted(environment.items())))
+    if key not in NATIVE:
+        run = programs.run_program(context.build, PROGRAM, os.path.join(folder, "native"), context.display,
+                                   "%dx%d" % (WIDTH, HEIGHT), frames, more_environment=environment)
+        if run.status != 0:
+            raise SystemExit("the program fails natively: status %s: %s" % (run.status, run.output[-200:]))
+        NATIVE[key] = [pictures.read_ppm(path) for _, path in sorted(run.frames().items())]
+    return NATIVE[key]
 
 
 def saved_pictures(folder):

@@ -108,9 +108,10 @@ class Session:
 
     def status(self, seconds=90):
         """The status of `mural run`; None: not in time."""
-        try:
-            status = self.process.wait(seconds)
-        except subprocess.TimeoutExpired:
+        status = self.process.poll()
+        if status is None:
+            status = programs.ended_within(self.process, seconds)
+        if status is None:
             return None
         for reader in self.readers:
             reader.join(5)

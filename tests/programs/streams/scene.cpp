@@ -11,16 +11,20 @@ using namespace programs;
 namespace {
 
 constexpr int kVertices = 3000;
+constexpr float kTriangle = 0.1F; // small ones: this is about calls and bytes, not about pixels
 GLuint list, buffer;
 
 void setUp(Window&) {
     Sequence numbers(5);
+    float corner[3] = {};
     list = glGenLists(1);
     glNewList(list, GL_COMPILE);
     glBegin(GL_TRIANGLES);
     for (int i = 0; i < kVertices; ++i) {
         glColor3f(numbers.unit(), numbers.unit(), numbers.unit());
-        glVertex3f(2 * numbers.unit() - 1, 2 * numbers.unit() - 1, numbers.unit());
+        if (i % 3 == 0)
+            for (float& value : corner) value = 2 * numbers.unit() - 1;
+        glVertex3f(corner[0] + kTriangle * numbers.unit(), corner[1] + kTriangle * numbers.unit(), corner[2] + kTriangle * numbers.unit());
     }
     glEnd();
     glEndList();

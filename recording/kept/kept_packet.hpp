@@ -1,0 +1,15 @@
+// A packet of those that bring a late node to where the others are.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace mural::recording {
+
+struct KeptPacket {
+    uint32_t stream = 0;
+    std::vector<std::byte> payload;
+};
+
+} // namespace mural::recording
