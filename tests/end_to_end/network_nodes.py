@@ -99,7 +99,7 @@ def ceases_and_returns(lab):
 
 def killed(lab, *options):
     """It comes back, first by its own connection, then into the group, and draws half of all frames there."""
-    frames = 3000
+    frames = 1500
     with lab.run(frames, *options) as run:
         if not run.wait_for_line("frame 30"):
             return "it did not begin: %s" % run.standard_error
