@@ -48,6 +48,7 @@ LaunchOptions launchOptionsOf(const SessionConfig& config) {
     options.executable = launch::ownBinary();
     options.remoteMural = config.remoteMural.empty() ? options.executable : config.remoteMural;
     options.launchCommand = config.launchCommand;
+    options.leastNodes = config.leastNodes;
     return options;
 }
 
@@ -117,6 +118,8 @@ Result<int> runSession(ControlChannel& control) {
     }
     auto nodes = launch(*config, plan, control);
     if (!nodes) return nodes.error();
+    for (const LaunchedNode& node : *nodes) // nobody's windows wait for it
+        if (!node.connection) plan.nodes[static_cast<size_t>(node.plan.node)].swapBarrier.clear();
     options.startNode = [options = launchOptionsOf(*config)](const NodePlan& node) { return startNode(node, options, Deadline::inMs(kLaunchPatienceMs)); };
     HeadSession session(*config, std::move(plan), std::move(*nodes), control, std::move(options));
     return session.run();

@@ -26,6 +26,13 @@ PictureAssembler::Compose composeBy(const WallComposition& wall) {
     return [wall](const std::vector<Picture>& passes, OwnedPicture& into) { composeWall(wall, passes, into); };
 }
 
+std::map<int, std::string> absencesOf(const std::vector<LaunchedNode>& nodes) {
+    std::map<int, std::string> absences;
+    for (size_t i = 0; i < nodes.size(); ++i)
+        if (!nodes[i].connection) absences[static_cast<int>(i)] = nodes[i].absence;
+    return absences;
+}
+
 bool wantsPictures(const SessionConfig& config, const SessionPlan& plan) {
     return config.display == Display::App || !config.out.empty() || headShowsWall(config, plan);
 }
@@ -57,6 +64,7 @@ HeadSession::HeadSession(SessionConfig config,
                     frames_.pictureHeld(picture.client, picture.frame);
                     output_->add(std::move(picture));
                 })
+    , absences_(absencesOf(nodes))
     , views_(nodes.size())
     , facts_(nodes.size())
     , ready_(nodes.size(), false)
@@ -66,6 +74,7 @@ HeadSession::HeadSession(SessionConfig config,
     for (int node = 0; node < nodeCount_; ++node) {
         LaunchedNode& launched = nodes[static_cast<size_t>(node)];
         totals_[static_cast<size_t>(node)].node = node;
+        ready_[static_cast<size_t>(node)] = !launched.connection; // nobody waits for it
         nodes_.add(std::make_unique<NodeLink>(NodePlace{node, launched.plan.where},
                                               std::move(launched.connection),
                                               std::move(launched.process), events));

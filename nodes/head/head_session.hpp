@@ -87,6 +87,8 @@ private:
     Result<void> takeAgain(int node, NodeFacts facts);
     NodeSet::Admission admit(int node, uint32_t view);
     void loseMember(int node, const std::string& why);
+    void goOnWithoutAbsent();
+    void goOnWithout(int node);
     bool noneIsLeft();
 
     Result<void> bringUp();
@@ -146,6 +148,7 @@ private:
     std::atomic<bool> finishing_{false};
     std::atomic<bool> tearingDown_{false};
     std::atomic<bool> serving_{false};
+    const std::map<int, std::string> absences_; // nodes that were not there at the start, and why
     std::set<int> multicastNodes_; // nodes whose stream comes by multicast where that reaches them
     std::set<int> economical_; // nodes that are spared what they have had
     std::string exchangeSecret_;   // of nodes that send each other parts of pictures or wait for each other, in hex

@@ -71,7 +71,7 @@ Result<void> HeadSession::takeAgain(int node, NodeFacts facts) {
         const std::lock_guard lock(mutex_);
         const auto index = static_cast<size_t>(node);
         if (ready_[index]) return Error{"it said twice that it is ready"};
-        if (facts.renderer != facts_[index].renderer)
+        if (!facts_[index].renderer.empty() && facts.renderer != facts_[index].renderer)
             return Error{"it draws by another GL now (" + facts.renderer + ") than before (" + facts_[index].renderer + "); its pictures would not fit the others'"};
         const std::string missing = firstMissing(promisedExtensions_, facts.extensions);
         if (facts.glVersion < promisedGlVersion_ || !missing.empty())
@@ -121,14 +121,16 @@ Result<void> HeadSession::nodeInView(int node, uint32_t view, const std::vector<
     const NodeReturns::Numbers numbers = returns_->numbers(node);
     frames_.nodeJoined(node, numbers.framesGiven, monotonicNowNs()); // and what it has seen itself
     frames_.nodeJoined(node, frames, monotonicNowNs());
+    int64_t joins = 0;
     {
         const std::lock_guard lock(mutex_);
         NodeTotals& totals = totals_[static_cast<size_t>(node)];
-        ++totals.joins;
+        joins = ++totals.joins;
         totals.snapshotBytes = static_cast<int64_t>(numbers.snapshotBytes);
         totals.secondsToBack = numbers.secondsToBack;
     }
-    control_.say(nodes_.link(node).describe() + " is back in the picture " + seconds(numbers.secondsToBack) + " after it was lost; it was given " +
+    const bool first = absences_.contains(node) && joins == 1;
+    control_.say(nodes_.link(node).describe() + (first ? " came into the picture " : " is back in the picture ") + seconds(numbers.secondsToBack) + (first ? " after the session began; it was given " : " after it was lost; it was given ") +
                  std::to_string((numbers.snapshotBytes + numbers.queuedBytes + (1 << 19)) >> 20) + " MiB");
     return {};
 }
@@ -141,12 +143,26 @@ void HeadSession::loseMember(int node, const std::string& why) {
     }
     if (returns_->lostOnItsWay(node, refusal.empty() ? why : refusal)) return;
     const std::lock_guard membership(membership_);
+    control_.say(nodes_.link(node).describe() + " was lost: " + why + "; " + returns_->memberLost(node));
+    goOnWithout(node);
+}
+
+// With the members that came; the others are started again until they come, as lost ones are.
+void HeadSession::goOnWithoutAbsent() {
+    for (const auto& [node, why] : absences_) {
+        const std::lock_guard membership(membership_);
+        control_.say(nodes_.link(node).describe() + " is not there yet: " + why + "; " + returns_->notThere(node));
+        goOnWithout(node);
+    }
+}
+
+// With membership_.
+void HeadSession::goOnWithout(int node) {
     {
         const std::lock_guard lock(mutex_);
         totals_[static_cast<size_t>(node)].lost = true;
         views_.lost(node);
     }
-    control_.say(nodes_.link(node).describe() + " was lost: " + why + "; " + returns_->memberLost(node));
     answers_.nodeLost(node);
     pictures_.nodeLost(node);
     frames_.nodeLost(node, monotonicNowNs());

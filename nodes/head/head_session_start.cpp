@@ -40,12 +40,12 @@ Result<void> HeadSession::bringUp() {
         if (!secret) return secret.error();
         exchangeSecret_ = toHex(secret.value());
     }
-    for (const NodePlan& plan : plan_.nodes) {
-        nodes_.sendSetup(plan.node, toJson(setupFor(plan)));
-    }
+    for (const NodePlan& plan : plan_.nodes)
+        if (nodes_.link(plan.node).alive()) nodes_.sendSetup(plan.node, toJson(setupFor(plan)));
     if (auto ready = awaitReady(); !ready) return ready;
     introduceNodes();
     openTables();
+    goOnWithoutAbsent();
     auto server = CaptureServer::start(config_.session, options_.registryDigest, *programs_, [this] { return statusOf(status()).dump(); });
     if (!server) return server.error();
     server_ = std::move(*server);
@@ -67,8 +67,11 @@ NodeSetup HeadSession::setupFor(const NodePlan& plan) {
 
 // One stream for all nodes of other machines. Without it each gets its own, as ever.
 void HeadSession::openMulticast() {
-    const std::vector<int> nodes = nodesForMulticast(config_.stream, plan_);
+    std::vector<int> nodes = nodesForMulticast(config_.stream, plan_);
+    multicastNodes_.insert(nodes.begin(), nodes.end());
+    std::erase_if(nodes, [this](int node) { return absences_.contains(node); });
     if (nodes.empty()) {
+        multicastNodes_.clear(); // there will be no group
         streamLine_ = config_.hosts.empty() ? "" : std::string("the stream goes to each node by its own connection: ") + whyOwnStreams(config_.stream);
         return;
     }
@@ -76,6 +79,7 @@ void HeadSession::openMulticast() {
     for (const int node : nodes) path.datagramBytes = std::min(path.datagramBytes, nodes_.link(node).path().datagramBytes);
     auto multicast = NodeMulticast::open(config_.stream, path);
     if (!multicast) {
+        multicastNodes_.clear();
         streamLine_ = "the stream goes to each node by its own connection: no multicast: " + multicast.error().message + "; mural doctor --network says what to mend";
         if (!config_.explain) control_.say(streamLine_);
         return;
@@ -83,7 +87,6 @@ void HeadSession::openMulticast() {
     streamLine_ = "the stream goes to " + std::to_string(nodes.size()) + " nodes at once, by reliable multicast: " + (*multicast)->describe();
     nodes_.multicastBy(std::move(*multicast));
     for (const int node : nodes) nodes_.link(node).setByMulticast(true);
-    multicastNodes_.insert(nodes.begin(), nodes.end());
 }
 
 Result<void> HeadSession::openEconomy() {
@@ -96,7 +99,7 @@ Result<void> HeadSession::openEconomy() {
     if (!economy) return economy.error();
     if (const char* const plant = std::getenv("MURAL_PLANT"); plant != nullptr && std::string_view(plant) == "held") (*economy)->losesWhatItHolds();
     nodes_.economizeBy(std::move(*economy));
-    for (const int node : plan.nodes) nodes_.link(node).setInBatches(true);
+    for (const int node : plan.nodes) nodes_.link(node).setInBatches(!absences_.contains(node));
     economical_.insert(plan.nodes.begin(), plan.nodes.end());
     return {};
 }
@@ -148,9 +151,12 @@ void HeadSession::openTables() {
     welcome.displayApp = config_.display == Display::App ? 1 : 0;
     {
         const std::lock_guard lock(mutex_);
-        welcome.nodeGlVersion = static_cast<uint32_t>(lowestGlVersion(facts_));
-        terms.extensions = commonExtensions(facts_);
-        promisedGlVersion_ = lowestGlVersion(facts_);
+        std::vector<NodeFacts> facts;
+        for (size_t i = 0; i < facts_.size(); ++i)
+            if (!absences_.contains(static_cast<int>(i))) facts.push_back(facts_[i]);
+        welcome.nodeGlVersion = static_cast<uint32_t>(lowestGlVersion(facts));
+        terms.extensions = commonExtensions(facts);
+        promisedGlVersion_ = lowestGlVersion(facts);
         promisedExtensions_ = terms.extensions;
     }
     terms.framesDoneWhenShown = config_.display == Display::App && config_.latency == 0;
@@ -214,6 +220,7 @@ void HeadSession::announceReady() {
     {
         const std::lock_guard lock(mutex_);
         for (const NodePlan& plan : plan_.nodes) {
+            if (absences_.contains(plan.node)) continue;
             const NodeFacts& facts = facts_[static_cast<size_t>(plan.node)];
             nodes.push_back({{"node", plan.node},
                              {"where", plan.where},

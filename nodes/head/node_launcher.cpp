@@ -1,6 +1,7 @@
 #include "nodes/head/node_launcher.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <poll.h>
 #include <sstream>
 #include <unistd.h>
@@ -110,15 +111,38 @@ Result<bool> lookForConnection(LaunchedNode& node, NodeGate& gate, Deadline dead
     return false;
 }
 
-Result<void> awaitConnection(LaunchedNode& node, NodeGate& gate, Deadline deadline,
-                             const std::function<bool()>& cancelled) {
+// Leaves alone those that failed, when enough are there without them.
+Result<void> awaitConnections(std::vector<LaunchedNode>& nodes, NodeGate* gate, const LaunchOptions& options, Deadline deadline,
+                              const std::function<bool()>& cancelled) {
+    const auto all = static_cast<int>(nodes.size());
+    const int enough = options.leastNodes > 0 ? std::min(options.leastNodes, all) : all;
+    std::optional<Deadline> late;
     while (true) {
-        const auto come = lookForConnection(node, gate, deadline);
-        if (!come) return come.error();
-        if (come.value()) return {};
+        int come = 0, gone = 0;
+        for (LaunchedNode& node : nodes) {
+            if (!node.connection && node.absence.empty()) {
+                const auto looked = lookForConnection(node, *gate, deadline);
+                if (!looked) node.absence = looked.error().message;
+                if (!looked) node.process.reset();
+            }
+            come += node.connection ? 1 : 0;
+            gone += node.absence.empty() ? 0 : 1;
+            if (all - gone < enough) return Error{node.absence + (enough < all ? "; fewer than --least-nodes " + std::to_string(enough) + " are left" : "")};
+            if (!node.absence.empty() && node.plan.pass.ranges > 1) return Error{node.absence + "; nodes that share draws (--db) begin together"};
+        }
+        if (come + gone == all) return {};
+        if (come >= enough && !late) late = Deadline::inMs(options.lateMs);
+        if (late && late->passed()) break;
         if (cancelled()) return Error{"the session was ended before it began"};
         poll(nullptr, 0, 20);
     }
+    for (LaunchedNode& node : nodes) {
+        if (node.connection || !node.absence.empty()) continue;
+        if (node.plan.pass.ranges > 1) return Error{nameOf(node.plan) + " did not connect within " + std::to_string(options.lateMs / 1000) + " s of the others; nodes that share draws (--db) begin together"};
+        node.absence = "it did not connect within " + std::to_string(options.lateMs / 1000) + " s of the others";
+        node.process.reset();
+    }
+    return {};
 }
 
 } // namespace
@@ -138,11 +162,7 @@ Result<std::vector<LaunchedNode>> launchNodes(const SessionPlan& plan,
         if (!started) return Error{nameOf(planned) + " did not start: " + started.error().message};
         nodes.push_back(std::move(node));
     }
-    for (LaunchedNode& node : nodes) {
-        if (node.connection) continue;
-        const auto connected = awaitConnection(node, **gate, deadline, cancelled);
-        if (!connected) return connected.error();
-    }
+    if (auto connected = awaitConnections(nodes, gate->get(), options, deadline, cancelled); !connected) return connected.error();
     return nodes;
 }
 

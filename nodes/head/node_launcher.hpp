@@ -18,6 +18,7 @@ struct LaunchedNode {
     NodePlan plan;
     std::unique_ptr<NodeProcess> process; // null in tests with nodes in the same process
     std::unique_ptr<Connection> connection;
+    std::string absence = {}; // why it has no connection; empty: it has one
 };
 
 // One that is started alone, later: for a node that was lost.
@@ -31,9 +32,11 @@ struct LaunchOptions {
     std::string executable;    // of `mural` here
     std::string remoteMural;   // on other hosts
     std::string launchCommand; // prefix that runs a command on a host
+    int leastNodes = 0;        // so many are enough to begin: of the others those are waited for that come within lateMs; 0: all
+    int64_t lateMs = 5'000;
 };
 
-// By the thread that lives as long as the nodes shall. `cancelled` is asked now and then.
+// By the thread that lives as long as the nodes shall. `cancelled` is asked now and then. Errors: fewer than enough came.
 Result<std::vector<LaunchedNode>> launchNodes(const SessionPlan& plan,
                                               const LaunchOptions& options,
                                               Deadline deadline,

@@ -37,11 +37,14 @@ NodeLink::NodeLink(NodePlace place,
     : place_(std::move(place))
     , connection_(std::move(connection))
     , process_(std::move(process))
-    , events_(events) {}
+    , events_(events)
+    , alive_(connection_ != nullptr)
+    , readerEnded_(connection_ == nullptr) {}
 
 NodeLink::~NodeLink() { end(); }
 
 void NodeLink::startReading() {
+    if (!connection_) return;
     lastMessageNs_ = heardNs_ = monotonicNowNs();
     reader_ = std::thread([this] { readMessages(); });
 }

@@ -50,7 +50,7 @@ struct NodePlace {
 class NodeLink {
 public:
     NodeLink(NodePlace place,
-             std::unique_ptr<Connection> connection,
+             std::unique_ptr<Connection> connection, // null: it has not come; it is as one that was lost
              std::unique_ptr<NodeProcess> process, // null: nothing of ours (tests)
              NodeEvents& events);
     ~NodeLink();
@@ -134,7 +134,7 @@ private:
     const std::unique_ptr<NodeProcess> process_;
     NodeEvents& events_;
     std::thread reader_;
-    std::atomic<bool> alive_{true};
+    std::atomic<bool> alive_;
     std::atomic<bool> saidBye_{false};
     std::atomic<bool> byMulticast_{false};
     std::atomic<bool> joinsGroup_{false};
@@ -145,7 +145,7 @@ private:
     mutable std::mutex queueMutex_; // what follows
     std::vector<std::vector<std::byte>> queue_;
     size_t queueBytes_ = 0;
-    std::atomic<bool> readerEnded_{false};
+    std::atomic<bool> readerEnded_;
     int64_t watchedNs_ = 0; // the last watch()
     int64_t excusedNs_ = 0; // silence before does not count
     std::atomic<bool> inMessage_{false};      // the reader is between a message's header and its end

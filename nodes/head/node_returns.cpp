@@ -40,6 +40,17 @@ std::string NodeReturns::memberLost(int node) {
     return "its tiles stay as they were until it is back";
 }
 
+// Its first try was that of the start.
+std::string NodeReturns::notThere(int node) {
+    const int64_t nowNs = monotonicNowNs();
+    const std::lock_guard lock(mutex_);
+    Node& n = at(node);
+    n.lostNs = nowNs;
+    n.phase = Phase::Waiting;
+    n.nextNs = nowNs + terms_.pausesMs[std::min<size_t>(1, terms_.pausesMs.size() - 1)] * kNsPerMs;
+    return "its tiles stay empty until it comes";
+}
+
 bool NodeReturns::lostOnItsWay(int node, const std::string& why) {
     const std::lock_guard lock(mutex_);
     Node& n = at(node);

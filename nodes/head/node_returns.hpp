@@ -38,6 +38,8 @@ public:
 
     // A member was lost. What follows of it, for the line that says so: "its tiles stay as they were until it is back".
     std::string memberLost(int node);
+    // Of one that was not there when the session began: "its tiles stay empty until it comes".
+    std::string notThere(int node);
     // Was it one that was on its way? Then it was not lost, but did not come back, and that is seen to.
     bool lostOnItsWay(int node, const std::string& why);
     void ready(int node); // with facts that suit the session

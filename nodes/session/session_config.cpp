@@ -54,6 +54,7 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("economy", c.economy);
     visit("storeBytes", c.storeBytes, 1 << 20);
     visit("restartNodes", c.restartNodes);
+    visit("leastNodes", c.leastNodes);
     visit("remoteMural", c.remoteMural);
     visit("configFile", c.configFile);
     visit("here", c.here);

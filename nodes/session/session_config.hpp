@@ -36,6 +36,7 @@ struct SessionConfig {
     Economy economy = Economy::Auto; // --economy: which nodes are not sent again what they have had
     int64_t storeBytes = int64_t{1} << 30; // --store: of that, in each of them and in the head
     int restartNodes = 3;         // --restart-nodes: how often in a row a lost node is started again
+    int leastNodes = 0;           // --least-nodes: so many are enough to begin, the others may come later; 0: all
     std::string remoteMural;      // --remote-mural: path of mural on the hosts; empty: this one's path
     std::string configFile;       // --config; empty: what follows says it
     bool here = false;            // --here: all its nodes on this machine

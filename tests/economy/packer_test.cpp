@@ -196,7 +196,7 @@ TEST(Packer, statesOfAPageThatComeAgainAreReferences) {
     std::ranges::copy(noise(1000, 13), second.begin() + 5000);
     for (uint32_t frame = 0; frame < 40; ++frame) {
         const size_t wire = sides.send(packetsOf(textureOf(frame % 2 == 0 ? first : second)));
-        if (frame > 4) EXPECT_LE(wire, 16u) << frame;
+        if (frame > 4) { EXPECT_LE(wire, 16u) << frame; }
     }
 }
 

@@ -444,6 +444,51 @@ def more_than_is_kept(context):
     return lost_for_good(context, ("--store", "4MiB"), "--store gives more")
 
 
+LATE_HOST = "#!/bin/sh\n# HOST COMMAND...\nhost=$1; shift\n%s\nexec \"$@\"\n"
+
+
+def late_node(context, how, words):
+    """The second node does not come when the session begins, but later; the first begins without it."""
+    with tempfile.TemporaryDirectory(prefix="mural-rejoin-late.") as folder:
+        script, tried = os.path.join(folder, "launch"), os.path.join(folder, "tried")
+        with open(script, "w", encoding="ascii") as file:
+            file.write(LATE_HOST % ("if [ $host = 127.0.0.3 ] && ! [ -e %s ]; then : >%s; %s; fi" % (tried, tried, how)))
+        os.chmod(script, 0o755)
+        watch = Watch(context, 400, ("--nodes", "127.0.0.2,127.0.0.3", "--launch", script, "--stream", "tcp", "--least-nodes", "1"))
+        with watch.start() as run:
+            if not run.wait_for_line("frame 5 "):
+                return "the program did not start: " + " | ".join(run.standard_error[-3:])
+            if len(said(run, words)) != 1:
+                return "it was not said that a node is not there: " + " | ".join(run.standard_error[-4:])
+            if not run.wait_for_line("came into the picture", 30):
+                return "it did not come: " + " | ".join(run.standard_error[-4:])
+            print("    " + said(run, "came into the picture")[0])
+            differing = watch.differing(run)
+            if isinstance(differing, str):
+                return differing
+            if not differing[0]:
+                return "nothing was missing in the first picture: was the node there?"
+            return judged(differing, [(0, range(WIDTH // 2, WIDTH))], 20)
+
+
+@case
+def late_node_that_failed(context):
+    return late_node(context, "exit 3", "is not there yet: node 1 (127.0.0.3) did not start: exit status 3")
+
+
+@case
+def late_node_that_is_slow(context):
+    return late_node(context, "sleep 600", "is not there yet: it did not connect within 5 s of the others")
+
+
+@case
+def late_nodes_too_many(context):
+    """Fewer came than are enough: one line, and no program."""
+    watch = Watch(context, 10, ("--nodes", "127.0.0.2,127.0.0.3", "--launch", "false", "--least-nodes", "1"))
+    with watch.start() as run:
+        return failures.check_end(run, 2) or (None if len(said(run, "fewer than --least-nodes 1 are left")) == 1 else "it was not said: " + " | ".join(run.standard_error[-3:]))
+
+
 @case
 def planted_fault_is_seen(context):
     """One packet of what a node is given is lost: the pictures must show it."""

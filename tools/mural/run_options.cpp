@@ -193,6 +193,10 @@ Result<void> readNodes(const RunArguments& a, SessionConfig& c) {
     int64_t restarts = c.restartNodes;
     if (auto r = readNumber("--restart-nodes", a.restartNodes, 0, kMostRestarts, restarts); !r) return r;
     c.restartNodes = static_cast<int>(restarts);
+    int64_t least = c.leastNodes;
+    if (auto r = readNumber("--least-nodes", a.leastNodes, 1, kMostRestarts, least); !r) return r;
+    c.leastNodes = static_cast<int>(least);
+    if (c.leastNodes > 0 && c.restartNodes == 0) return Error{"--least-nodes has the others started again until they come, which --restart-nodes 0 forbids; leave one of them out"};
     return {};
 }
 
@@ -399,6 +403,7 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
     command.add_option("--economy", a.economy, "send nothing to nodes that they have had: auto (nodes of other machines), on (all), off (auto)")->type_name("WHICH");
     command.add_option("--store", a.store, "memory for that in the head and in each of those nodes (1GiB)")->type_name("SIZE");
     command.add_option("--restart-nodes", a.restartNodes, "start a node that is lost again, up to N times in a row; 0: its tiles stay as they were (3)")->type_name("N");
+    command.add_option("--least-nodes", a.leastNodes, "begin when N nodes are there; those that are late or fail come later, as lost ones do (all)")->type_name("N");
     command.add_option("--remote-mural", a.remoteMural, "path of mural on the hosts (this one's)")->type_name("PATH");
     command.add_option("--report", a.report, "write the final report into this file, as one line of JSON")->type_name("FILE");
     command.add_flag("--quiet", a.quiet, "say nothing but errors");
