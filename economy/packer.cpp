@@ -298,12 +298,15 @@ bool Packer::seek() {
     PacketCut ahead = cut_;
     Piece behind;
     const uint32_t next = ahead.next(behind) ? static_cast<uint32_t>(XXH3_64bits(packet_.data() + behind.at, behind.sizeBytes)) : ItemIndex::kNothing;
-    return seekAt(piece_, index_->find(hash, next, log_->end())) ||
-           (piece_.sizeBytes >= ItemIndex::kTellingBytes && seekAt(piece_, index_->find(hash, ItemIndex::kAnything, log_->end())));
+    if (seekAt(hash, index_->find(hash, next, log_->end()))) return true;
+    // What is another each time came nowhere before but in this place, unless as one of two that did.
+    const bool changes = log_->holds(log_->cursor) && log_->at(log_->cursor).model != 0 && log_->at(log_->cursor).sizeBytes == piece_.sizeBytes;
+    return !changes && piece_.sizeBytes >= ItemIndex::kTellingBytes && seekAt(hash, index_->find(hash, ItemIndex::kAnything, log_->end()));
 }
 
-bool Packer::seekAt(const Piece& piece, uint64_t position) {
-    if (!log_->holds(position) || !same(log_->at(position), piece)) return false;
+// Most places are of other items: their hashes lie together, their bytes do not.
+bool Packer::seekAt(uint32_t hash, uint64_t position) {
+    if (!log_->holds(position) || index_->hashAt(position) != hash || !same(log_->at(position), piece_)) return false;
     settle();
     control_.put(Do::Seek, static_cast<uint32_t>(log_->end() - position));
     log_->cursor = position;

@@ -68,7 +68,7 @@ private:
     bool patch(const Piece& piece, size_t mostBytes);
     void codeWords(size_t at, std::span<const std::byte> old, std::span<const std::byte> now);
     bool seek();
-    bool seekAt(const Piece& piece, uint64_t position);
+    bool seekAt(uint32_t hash, uint64_t position);
     bool fromStore(bool inPlace);
     void send(const Piece& piece);
     void run();

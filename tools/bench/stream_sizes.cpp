@@ -2,7 +2,7 @@
 // runs it.
 //
 //   stream_sizes FILE.mural [WARM_FRAMES]     the first frames are start-up: what they need is told apart
-#include <array>
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
@@ -19,11 +19,65 @@ namespace {
 constexpr uint64_t kStoreBytes = uint64_t{1} << 30;
 constexpr int kZstdLevel = 3; // its default
 
+constexpr int kRounds = 3; // of all ways by turns; medians are told
+
+// Of one way, in one round.
 struct Counted {
-    std::unique_ptr<Way> way;
-    uint64_t startBytes = 0, bytes = 0; // of the first frames, and of those behind them
-    int64_t startCpuNs = 0;
+    double startBytes = 0, bytes = 0; // of the first frames, and of those behind them
+    double startCpuNs = 0, cpuNs = 0;
 };
+
+// Of the recording.
+struct Frames {
+    int64_t start = 0, counted = 0;
+    uint64_t startRaw = 0, raw = 0;
+};
+
+Result<std::unique_ptr<Way>> makeWay(size_t number) {
+    if (number == 0) return economyWay(kStoreBytes);
+    return number == 1 ? zstdWay(kZstdLevel) : differenceWay();
+}
+constexpr size_t kWays = 3;
+
+Result<Counted> run(Way& way, const char* path, int64_t warm, Frames& frames) {
+    Counted counted;
+    std::string wrong;
+    frames = {};
+    uint64_t frameRaw = 0;
+    FrameReader to;
+    to.packet = [&](const StreamPacket& p) {
+        frameRaw += p.payload.size();
+        way.packet(p);
+    };
+    to.ended = [&](int64_t frame) {
+        const bool start = frame <= warm;
+        (start ? frames.startRaw : frames.raw) += std::exchange(frameRaw, 0);
+        ++(start ? frames.start : frames.counted);
+        auto bytes = way.frameEnds();
+        if (!bytes) wrong = "frame " + std::to_string(frame) + ": " + bytes.error().message;
+        else (start ? counted.startBytes : counted.bytes) += static_cast<double>(*bytes);
+        if (start) counted.startCpuNs = static_cast<double>(way.cpuNs());
+    };
+    if (auto read = readFrames(path, to); !read) return read.error();
+    counted.cpuNs = static_cast<double>(way.cpuNs()) - counted.startCpuNs;
+    int64_t shown = 0;
+    FrameReader again;
+    again.packet = [&](const StreamPacket& p) {
+        if (!wrong.empty() || shown >= frames.start + frames.counted) return; // behind the last frame nothing was sent
+        if (auto same = way.comesOut(p); !same) wrong = "frame " + std::to_string(shown + 1) + ": " + same.error().message;
+    };
+    again.ended = [&](int64_t frame) { shown = frame; };
+    if (auto read = readFrames(path, again); !read) return read.error();
+    if (!wrong.empty()) return Error{way.name() + ", " + wrong};
+    return counted;
+}
+
+double median(const std::vector<Counted>& rounds, double Counted::*of) {
+    std::vector<double> values;
+    for (const Counted& c : rounds) values.push_back(c.*of);
+    std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
+    return values[values.size() / 2];
+}
 
 int fail(const std::string& why) {
     std::cerr << "stream_sizes: " << why << '\n';
@@ -35,48 +89,32 @@ int fail(const std::string& why) {
 int main(int argc, char** argv) {
     if (argc < 2 || argc > 3) return fail("give a recording that mural run --record has made, and how many frames are start-up");
     const int64_t warm = argc > 2 ? std::strtoll(argv[2], nullptr, 10) : 10;
-    auto economy = economyWay(kStoreBytes);
-    if (!economy) return fail(economy.error().message);
-    std::vector<Counted> all;
-    all.push_back({std::move(*economy)});
-    all.push_back({zstdWay(kZstdLevel)});
-    all.push_back({differenceWay()});
-
-    uint64_t startRaw = 0, raw = 0, frameRaw = 0;
-    int64_t counted = 0;
-    std::string wrong;
-    FrameReader to;
-    to.packet = [&](const StreamPacket& p) {
-        frameRaw += p.payload.size();
-        for (Counted& c : all) c.way->packet(p);
-    };
-    to.ended = [&](int64_t frame) {
-        const bool start = frame <= warm;
-        (start ? startRaw : raw) += std::exchange(frameRaw, 0);
-        counted += !start;
-        for (Counted& c : all) {
-            auto bytes = c.way->frameEnds();
-            if (!bytes) wrong = c.way->name() + ", frame " + std::to_string(frame) + ": " + bytes.error().message;
-            else (start ? c.startBytes : c.bytes) += *bytes;
-            if (start) c.startCpuNs = c.way->cpuNs();
+    Frames frames;
+    std::vector<std::string> names(kWays);
+    std::vector<std::vector<Counted>> all(kWays);
+    for (int round = 0; round < kRounds; ++round)
+        for (size_t i = 0; i < kWays; ++i) {
+            auto way = makeWay(i);
+            if (!way) return fail(way.error().message);
+            auto counted = run(**way, argv[1], warm, frames);
+            if (!counted) return fail(counted.error().message);
+            names[i] = (*way)->name();
+            all[i].push_back(*counted);
         }
-    };
-    auto frames = readFrames(argv[1], to);
-    if (!frames) return fail(frames.error().message);
-    if (!wrong.empty()) return fail(wrong);
-    if (counted == 0) return fail(std::string(argv[1]) + " has " + std::to_string(*frames) + " frames, no more than are start-up; record more");
+    if (frames.counted == 0) return fail(std::string(argv[1]) + " has " + std::to_string(frames.start) + " frames, no more than are start-up; record more");
 
+    const auto count = static_cast<double>(frames.counted);
     nlohmann::json report;
-    report["frames"] = counted;
-    report["startFrames"] = *frames - counted;
-    report["rawBytesPerFrame"] = static_cast<double>(raw) / static_cast<double>(counted);
-    report["startRawBytes"] = startRaw;
-    for (const Counted& c : all) {
-        nlohmann::json& way = report["ways"][c.way->name()];
-        way["bytesPerFrame"] = static_cast<double>(c.bytes) / static_cast<double>(counted);
-        way["startBytes"] = c.startBytes;
-        way["startCpuUs"] = static_cast<double>(c.startCpuNs) / 1000;
-        way["cpuUsPerFrame"] = static_cast<double>(c.way->cpuNs() - c.startCpuNs) / 1000 / static_cast<double>(counted);
+    report["frames"] = frames.counted;
+    report["startFrames"] = frames.start;
+    report["rawBytesPerFrame"] = static_cast<double>(frames.raw) / count;
+    report["startRawBytes"] = frames.startRaw;
+    for (size_t i = 0; i < kWays; ++i) {
+        nlohmann::json& way = report["ways"][names[i]];
+        way["bytesPerFrame"] = median(all[i], &Counted::bytes) / count;
+        way["startBytes"] = median(all[i], &Counted::startBytes);
+        way["startCpuUs"] = median(all[i], &Counted::startCpuNs) / 1000;
+        way["cpuUsPerFrame"] = median(all[i], &Counted::cpuNs) / 1000 / count;
     }
     std::cout << report.dump() << '\n';
     return 0;

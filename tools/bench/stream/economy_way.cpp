@@ -30,11 +30,27 @@ public:
         for (const Sent& s : sent_) economy_->add(s.stream, s.payload);
         if (!economy_->empty()) take();
         cpuNs_ += threadCpuNowNs() - beganNs;
-        for (const std::vector<std::byte>& batch : batches_) unpack(batch);
-        batches_.clear();
-        if (wrong_.empty() && !sent_.empty()) wrong_ = "packets are missing when they have been unpacked";
+        sent_.clear();
         if (!wrong_.empty()) return Error{wrong_};
         return std::exchange(bytes_, 0);
+    }
+
+    Result<void> comesOut(const StreamPacket& p) override {
+        uint32_t stream = 0;
+        std::span<const std::byte> payload;
+        while (true) {
+            if (unpacking_) {
+                auto more = unpacker_.next(stream, payload);
+                if (!more) return more.error();
+                unpacking_ = *more;
+                if (unpacking_) break;
+            }
+            if (batches_.empty()) return Error{"packets are missing when they have been unpacked"};
+            if (auto begun = unpack(); !begun) return begun;
+        }
+        if (stream != p.stream || payload.size() != p.payload.size() || std::memcmp(payload.data(), p.payload.data(), payload.size()) != 0)
+            return Error{"a packet is another one when it has been unpacked"};
+        return {};
     }
 
 private:
@@ -53,38 +69,26 @@ private:
         batches_.emplace_back(batch->begin(), batch->end());
     }
 
-    void unpack(std::span<const std::byte> batch) {
+    Result<void> unpack() {
+        batch_ = std::move(batches_.front()); // what is unpacked lies in it
+        batches_.pop_front();
         economy::BatchHeadReader head;
         size_t at = 0;
-        while (at < batch.size() && !head.add(batch[at++])) {}
-        auto sections = decoder_.decode(head.head(), batch.subspan(at));
-        if (!sections) {
-            wrong_ = sections.error().message;
-            return;
-        }
+        while (at < batch_.size() && !head.add(batch_[at++])) {}
+        auto sections = decoder_.decode(head.head(), std::span(batch_).subspan(at));
+        if (!sections) return sections.error();
         unpacker_.begin(*sections);
-        while (true) {
-            uint32_t stream = 0;
-            std::span<const std::byte> payload;
-            auto more = unpacker_.next(stream, payload);
-            if (!more) wrong_ = more.error().message;
-            if (!more || !*more) return;
-            compare(stream, payload);
-        }
-    }
-
-    void compare(uint32_t stream, std::span<const std::byte> payload) {
-        if (sent_.empty() || sent_.front().stream != stream || sent_.front().payload.size() != payload.size() ||
-            std::memcmp(sent_.front().payload.data(), payload.data(), payload.size()) != 0)
-            wrong_ = "a packet is another one when it has been unpacked";
-        if (!sent_.empty()) sent_.pop_front();
+        unpacking_ = true;
+        return {};
     }
 
     std::unique_ptr<StreamEconomy> economy_;
     economy::BatchDecoder decoder_;
     economy::Unpacker unpacker_;
-    std::deque<Sent> sent_;                      // of the frame
-    std::vector<std::vector<std::byte>> batches_; // that it has become
+    std::vector<Sent> sent_;                     // of the frame
+    std::deque<std::vector<std::byte>> batches_; // that have not been unpacked
+    std::vector<std::byte> batch_;               // that is
+    bool unpacking_ = false;
     int64_t cpuNs_ = 0;
     std::string wrong_;
     uint64_t bytes_ = 0;

@@ -1,5 +1,5 @@
 // Ways to make a frame's stream small: Mural's own, and what it is measured against. Each sees the same packets in the same
-// order and gives the bytes of each frame, and the CPU time that they took.
+// order, alone, as nothing else works between two frames in a head either, and gives the bytes of each frame, and the CPU time that they took.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +16,15 @@ public:
     virtual ~Way() = default;
     [[nodiscard]] virtual std::string name() const = 0;
     virtual void packet(const StreamPacket& packet) = 0;
-    // Of the frame that ends: bytes as they would be sent. Error: what came out is not what went in.
+    // Of the frame that ends: bytes as they would be sent.
     virtual Result<uint64_t> frameEnds() = 0;
+    // Behind all frames, for each packet once more: is it what comes out at the other end?
+    virtual Result<void> comesOut(const StreamPacket& /*packet*/) { return {}; }
     // CPU time of all so far, without gathering packets and without what is only compared.
     [[nodiscard]] virtual int64_t cpuNs() const = 0;
 };
 
-// The economy, as the head uses it; every batch is unpacked again and compared.
+// The economy, as the head uses it; every batch is kept, to be unpacked and compared.
 Result<std::unique_ptr<Way>> economyWay(uint64_t storeBytes);
 // Zstandard over the whole frame, by itself.
 std::unique_ptr<Way> zstdWay(int level);
