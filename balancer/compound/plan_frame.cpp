@@ -39,12 +39,14 @@ StereoMode stereoModeOf(const ResolvedConfig& config, const Inherited& i) {
 // Both eyes' pictures in one buffer, or in two: only where they are shown.
 void setStereo(const ResolvedConfig& config, const Inherited& i, RenderContext& c) {
     c.stereoMode = stereoModeOf(config, i);
-    if (c.eye == Eye::Cyclop || c.channel != c.destination) return;
-    if (c.stereoMode == StereoMode::Quad) c.drawBuffer = c.eye == Eye::Left ? DrawBuffer::BackLeft : DrawBuffer::BackRight;
-    if (c.stereoMode != StereoMode::Anaglyph) return;
+    if (c.eye == Eye::Cyclop) return;
     using config::ColorComponent;
-    if (c.eye == Eye::Left) c.colorMask = i.attributes.anaglyphLeftMask.value_or(config::ColorMask{ColorComponent::Red});
-    else c.colorMask = i.attributes.anaglyphRightMask.value_or(config::ColorMask{ColorComponent::Green, ColorComponent::Blue});
+    if (c.stereoMode == StereoMode::Anaglyph)
+        c.eyeColors = c.eye == Eye::Left ? i.attributes.anaglyphLeftMask.value_or(config::ColorMask{ColorComponent::Red})
+                                         : i.attributes.anaglyphRightMask.value_or(config::ColorMask{ColorComponent::Green, ColorComponent::Blue});
+    if (c.channel != c.destination) return;
+    c.colorMask = c.eyeColors;
+    if (c.stereoMode == StereoMode::Quad) c.drawBuffer = c.eye == Eye::Left ? DrawBuffer::BackLeft : DrawBuffer::BackRight;
 }
 
 } // namespace

@@ -50,6 +50,7 @@ struct RenderContext {
     DrawBuffer drawBuffer = DrawBuffer::Back;
     config::ColorMask colorMask{config::ColorComponent::Red, config::ColorComponent::Green, config::ColorComponent::Blue};
     StereoMode stereoMode = StereoMode::Passive;
+    config::ColorMask eyeColors{config::ColorComponent::Red, config::ColorComponent::Green, config::ColorComponent::Blue}; // that the eye has in an anaglyph
 
     Frustum perspective;
     Frustum destinationPerspective; // of all the destination's pixels

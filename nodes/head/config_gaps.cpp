@@ -53,8 +53,6 @@ constexpr std::array kGaps = {
     Gap{"", "robustness", "nodes may always be lost, the others go on; remove it"},
     Gap{"", "NV_group", "barriers wait over the network, without hardware; remove it"},
     Gap{"", "NV_barrier", "barriers wait over the network, without hardware; remove it"},
-    Gap{"", "stereo_anaglyph_left_mask", "the left picture gives red, the right one green and blue; remove it"},
-    Gap{"", "stereo_anaglyph_right_mask", "the left picture gives red, the right one green and blue; remove it"},
     Gap{"compound", "load_equalizer", kNoBalance},
     Gap{"compound", "tree_equalizer", kNoBalance},
     Gap{"compound", "tile_equalizer", "its tiles are dealt out evenly; remove it where they cost the same"},

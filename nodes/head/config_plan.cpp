@@ -167,6 +167,8 @@ private:
             WallPart part;
             part.name = nameOf(channel, first.destination);
             part.eye = first.eye;
+            using config::ColorComponent;
+            part.colours = {first.eyeColors.has(ColorComponent::Red), first.eyeColors.has(ColorComponent::Green), first.eyeColors.has(ColorComponent::Blue)};
             part.area = destinationArea(draws);
             part.counts.kernelWidth = first.pixel.w;
             part.counts.kernelHeight = first.pixel.h;

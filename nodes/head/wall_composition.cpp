@@ -5,6 +5,8 @@
 #include <cstring>
 #include <span>
 
+#include "compositor/kernels/mask_channels.hpp"
+
 namespace mural {
 
 namespace {
@@ -53,11 +55,13 @@ void interleave(const PassCounts& counts, std::vector<OwnedPicture>& parts, Owne
     }
 }
 
-// Red of the left eye, green and blue of the right.
-void anaglyph(const Picture& left, const Picture& right, OwnedPicture& into) {
-    into.assign(right);
-    const size_t bytes = std::min(left.sizeBytes(), right.sizeBytes());
-    for (size_t i = 2; i < bytes; i += kPictureBytesPerPixel) into.data()[i] = left.bgra[i];
+compositor::ChannelMask maskOf(const EyeColours& colours) {
+    compositor::ChannelMask mask{};
+    for (size_t i = 0; i < mask.size(); ++i) {
+        const bool taken[] = {colours.blue, colours.green, colours.red, true};
+        mask[i] = taken[i % kPictureBytesPerPixel] ? std::byte{255} : std::byte{0};
+    }
+    return mask;
 }
 
 // One dimension is halved: the mean of two neighbours, rounded up; an odd last one stands alone.
@@ -100,6 +104,38 @@ void composeEye(const PassCounts& counts, std::span<const Picture> pictures, Own
 
 bool isEmpty(const Picture& p) { return p.empty(); }
 
+// The part's picture, of the wall's size; empty when some of it is missing.
+OwnedPicture pictureOf(const WallPart& part, const std::vector<Picture>& pictures) {
+    OwnedPicture whole;
+    const auto first = static_cast<size_t>(part.firstPicture), count = static_cast<size_t>(picturesOf(part.counts));
+    if (first + count > pictures.size()) return whole;
+    const std::span own = std::span(pictures).subspan(first, count);
+    if (!std::any_of(own.begin(), own.end(), isEmpty)) composeEye(part.counts, own, whole);
+    return whole;
+}
+
+// The left eye's parts first; colours that both give are the right one's, and those that none gives stay black.
+void anaglyph(const WallComposition& wall, const std::vector<Picture>& pictures, OwnedPicture& into) {
+    for (const bool right : {false, true}) {
+        for (const WallPart& part : wall.parts) {
+            if ((part.eye == Eye::Right) != right) continue;
+            OwnedPicture whole = pictureOf(part, pictures);
+            if (whole.view().empty()) continue;
+            if (into.view().empty()) {
+                into.resize(whole.width(), whole.height());
+                std::memset(into.data(), 0, into.view().sizeBytes());
+            }
+            fit(whole, into.width(), into.height());
+            const PixelViewport all{0, 0, whole.width(), whole.height()}, area = intersect(apply(all, part.area), all);
+            const compositor::ChannelMask mask = maskOf(part.colours);
+            for (int y = area.y; y < area.y + area.h; ++y) {
+                const size_t at = static_cast<size_t>(area.x) * kPictureBytesPerPixel;
+                compositor::maskChannelsRow(into.row(y) + at, whole.view().row(y) + at, static_cast<size_t>(area.w) * kPictureBytesPerPixel, mask);
+            }
+        }
+    }
+}
+
 } // namespace
 
 WallComposition compositionOf(const PassCounts& counts) {
@@ -110,6 +146,7 @@ WallComposition compositionOf(const PassCounts& counts) {
     part.counts.stereo = StereoMode::Off;
     for (const Eye eye : eyesOf(counts.stereo)) {
         part.eye = eye;
+        if (wall.stereo == StereoMode::Anaglyph) part.colours = {eye == Eye::Left, eye == Eye::Right, eye == Eye::Right};
         wall.parts.push_back(part);
         part.firstPicture += picturesOf(part.counts);
     }
@@ -127,14 +164,10 @@ void composeWall(const WallComposition& wall, const std::vector<Picture>& pictur
     OwnedPicture eyes[2]; // of the left (or only) and the right one
     const bool two = std::any_of(wall.parts.begin(), wall.parts.end(), [](const WallPart& p) { return p.eye == Eye::Left; }) &&
                      std::any_of(wall.parts.begin(), wall.parts.end(), [](const WallPart& p) { return p.eye == Eye::Right; });
+    if (two && wall.stereo == StereoMode::Anaglyph) return anaglyph(wall, pictures, into);
     for (const WallPart& part : wall.parts) {
-        const auto first = static_cast<size_t>(part.firstPicture);
-        const auto count = static_cast<size_t>(picturesOf(part.counts));
-        if (first + count > pictures.size()) continue;
-        const std::span own = std::span(pictures).subspan(first, count);
-        if (std::any_of(own.begin(), own.end(), isEmpty)) continue;
-        OwnedPicture whole;
-        composeEye(part.counts, own, whole);
+        OwnedPicture whole = pictureOf(part, pictures);
+        if (whole.view().empty()) continue;
         const PixelViewport all{0, 0, whole.width(), whole.height()};
         const PixelViewport area = intersect(apply(all, part.area), all);
         const OwnedPicture cut = area == all ? std::move(whole) : cutOut(whole.view(), area);
@@ -150,9 +183,8 @@ void composeWall(const WallComposition& wall, const std::vector<Picture>& pictur
     }
     if (two && !eyes[0].view().empty() && !eyes[1].view().empty()) fit(eyes[1], eyes[0].width(), eyes[0].height());
     if (!two || eyes[0].width() != eyes[1].width() || eyes[0].height() != eyes[1].height()) into = std::move(eyes[0]);
-    else if (wall.stereo == StereoMode::SideBySide) sideBySide(eyes[0].view(), eyes[1].view(), into);
     else if (wall.stereo == StereoMode::TopBottom) topBottom(eyes[0].view(), eyes[1].view(), into);
-    else anaglyph(eyes[0].view(), eyes[1].view(), into);
+    else sideBySide(eyes[0].view(), eyes[1].view(), into);
 }
 
 } // namespace mural

@@ -10,10 +10,17 @@
 
 namespace mural {
 
+// Of an anaglyph: which of its colours an eye gives. Alpha is the last one's.
+struct EyeColours {
+    bool red = true, green = true, blue = true;
+    friend bool operator==(const EyeColours&, const EyeColours&) = default;
+};
+
 struct WallPart {
     std::string name;
     Viewport area;       // of the wall
     Eye eye = Eye::Cyclop;
+    EyeColours colours; // where eyes come together by colour
     PassCounts counts;   // stereo is off: of one eye
     int firstPicture = 0; // its pictures follow each other, in the order of pictureOf()
 };

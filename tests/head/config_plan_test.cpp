@@ -117,6 +117,30 @@ TEST(ConfigPlan, eyesComeTogether) {
     EXPECT_EQ(planOfFile("stereo-passive.eqc").wall.stereo, StereoMode::SideBySide);
 }
 
+TEST(ConfigPlan, eyesHaveTheColoursOfTheFile) {
+    const auto coloursOf = [](const SessionPlan& plan, Eye eye) {
+        for (const WallPart& part : plan.wall.parts)
+            if (part.eye == eye) return part.colours;
+        return EyeColours{false, false, false};
+    };
+    const SessionPlan cyan = planOfFile("stereo-anaglyph.eqc");
+    EXPECT_EQ(coloursOf(cyan, Eye::Left), (EyeColours{true, false, false}));
+    EXPECT_EQ(coloursOf(cyan, Eye::Right), (EyeColours{false, true, true})) << "which another channel draws";
+
+    std::ifstream from(std::string(MURAL_SOURCE_DIR) + "/configs/stereo-anaglyph.eqc");
+    std::string text((std::istreambuf_iterator<char>(from)), std::istreambuf_iterator<char>());
+    const std::string mode = "stereo_mode ANAGLYPH";
+    text.insert(text.find(mode) + mode.size(), " stereo_anaglyph_left_mask [ GREEN ] stereo_anaglyph_right_mask [ RED BLUE ]");
+    const auto path = std::filesystem::temp_directory_path() / ("mural-magenta-" + std::to_string(getpid()) + ".eqc");
+    std::ofstream(path) << text;
+    const auto loaded = compound::loadConfig(path.string(), [](const std::string&) { return std::optional<std::string>(); });
+    std::filesystem::remove(path);
+    const auto plan = planOf(loaded, {"me", true, "", {}});
+    ASSERT_TRUE(plan.ok());
+    EXPECT_EQ(coloursOf(plan.value(), Eye::Left), (EyeColours{false, true, false}));
+    EXPECT_EQ(coloursOf(plan.value(), Eye::Right), (EyeColours{true, false, true}));
+}
+
 TEST(ConfigPlan, theWallHasThePixelsOfItsSegments) {
     const auto loaded = load("wall-2x2.eqc");
     const auto size = wallSizeOf(loaded, {"me", true, "", {}});

@@ -84,6 +84,29 @@ TEST(PassComposition, anaglyphTakesRedFromTheLeft) {
         }
 }
 
+// Green and magenta; a colour that both give, and one that none does.
+TEST(PassComposition, anaglyphTakesTheColoursOfEachEye) {
+    const std::vector<OwnedPicture> eyes{noise(9, 3, 1), noise(9, 3, 2)};
+    WallComposition wall = compositionOf({.stereo = StereoMode::Anaglyph});
+    const auto with = [&](EyeColours left, EyeColours right) {
+        wall.parts[0].colours = left;
+        wall.parts[1].colours = right;
+        OwnedPicture out;
+        composeWall(wall, {eyes[0].view(), eyes[1].view()}, out);
+        return out;
+    };
+    const OwnedPicture magenta = with({false, true, false}, {true, false, true}), overlapping = with({true, true, false}, {false, true, false});
+    for (int y = 0; y < 3; ++y)
+        for (int x = 0; x < 9; ++x) {
+            EXPECT_EQ(channel(magenta, x, y, 2), channel(eyes[1], x, y, 2));
+            EXPECT_EQ(channel(magenta, x, y, 1), channel(eyes[0], x, y, 1));
+            EXPECT_EQ(channel(magenta, x, y, 0), channel(eyes[1], x, y, 0));
+            EXPECT_EQ(channel(overlapping, x, y, 2), channel(eyes[0], x, y, 2));
+            EXPECT_EQ(channel(overlapping, x, y, 1), channel(eyes[1], x, y, 1)) << "the right one is the later";
+            EXPECT_EQ(channel(overlapping, x, y, 0), 0);
+        }
+}
+
 int mean(int a, int b) { return (a + b + 1) / 2; }
 
 TEST(PassComposition, sideBySideHalvesTheWidth) {
