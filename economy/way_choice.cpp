@@ -11,14 +11,17 @@ constexpr uint32_t kUnmeasured = 2;        // of them: what was remembered by th
 constexpr uint32_t kCompared = kTryBatches - kUnmeasured;
 constexpr uint32_t kLeastBetween = 16;     // batches between two tries
 constexpr uint32_t kMeasuredEvery = 8;     // batches between two tries
+constexpr uint32_t kCheapEvery = 64;       // of batches that cost not much more than the clock
 constexpr double kClearly = 0.95;         // as small as that is cheaper
-constexpr double kWorthNs = 20'000;       // a frame that is looked at in less is not worth more bytes
+constexpr double kWorthNs = 20'000;       // of a frame that is looked at in less, bytes count more than the time…
+constexpr double kTooDear = 1.9;          // …unless plain it takes so many times less
+constexpr double kCheapNs = 5'000;         // a frame that is looked at in less is not worth a try
 constexpr double kMuch = 2;                // a change of cost that asks for another try
 // Nodes unpack it before they draw: so long beside packing, looked at and plain (measured: 0.5 to 0.75 and 0.25 to 0.35).
 constexpr std::array<double, 2> kWithUnpacking{1.6, 1.3};
 } // namespace
 
-bool WayChoice::wantsTime() const { return trying_ || batches_ + 1 + kCompared >= until_ || batches_ % kMeasuredEvery == 0; }
+bool WayChoice::wantsTime() const { return trying_ || batches_ + 1 + kCompared >= until_ || batches_ % (cheap_ ? kCheapEvery : kMeasuredEvery) == 0; }
 
 void WayChoice::measured(uint64_t rawBytes, uint64_t pageBytes, uint64_t wireBytes, int64_t ns, double linkNsPerByte) {
     ++batches_;
@@ -29,6 +32,7 @@ void WayChoice::measured(uint64_t rawBytes, uint64_t pageBytes, uint64_t wireByt
     cost.rawBytes = cost.rawBytes * kKept + static_cast<double>(rawBytes);
     cost.encodeNs = cost.encodeNs * kKept + static_cast<double>(ns);
     cost.batches = cost.batches * kKept + 1;
+    cheap_ = cost.encodeNs < kCheapNs * cost.batches;
     if (trying_) {
         if (batches_ >= kTryBatches) decide();
         return;
@@ -42,7 +46,7 @@ void WayChoice::measured(uint64_t rawBytes, uint64_t pageBytes, uint64_t wireByt
     }
     if (batches_ < until_) return;
     const bool isAboutShort = pageBytes < rawBytes / 2; // else there is little to win, and places of pages to lose
-    if (plain_ || (isAboutShort && cost.encodeNs >= kWorthNs * cost.batches)) tryOther();
+    if (plain_ || (isAboutShort && cost.encodeNs >= kCheapNs * cost.batches)) tryOther();
     else until_ += kLeastBetween;
 }
 
@@ -55,7 +59,10 @@ void WayChoice::tryOther() {
 
 void WayChoice::decide() {
     const double tried = costs_[plain_ ? Plain : Looked].perByte(), before = costs_[plain_ ? Looked : Plain].perByte();
-    const bool better = tried < before * kClearly;
+    const Cost &looked = costs_[Looked], &asItIs = costs_[Plain];
+    const bool isSmall = looked.encodeNs < kWorthNs * looked.batches;
+    const bool tooDear = looked.encodeNs * asItIs.batches > asItIs.encodeNs * looked.batches * kTooDear;
+    const bool better = isSmall ? plain_ == tooDear : tried < before * kClearly;
     if (!better) plain_ = !plain_;
     until_ = better ? kLeastBetween * 4 : std::min(std::max(until_ * 2, kLeastBetween), kMostBetween);
     decidedBy_ = std::min(tried, before);

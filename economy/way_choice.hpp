@@ -35,6 +35,7 @@ private:
     std::array<Cost, 2> costs_;
     bool plain_ = false;
     bool trying_ = false;
+    bool cheap_ = false; // one batch of late
     uint32_t batches_ = 0; // since the way was taken
     uint32_t until_ = kFirstTry; // so many, the other way is tried
     double decidedBy_ = 0; // cost per byte when it was

@@ -38,9 +38,20 @@ TEST(WayChoice, looksWhereTheLinkIsSlow) {
 
 TEST(WayChoice, looksWhereItIsCheap) {
     WayChoice choice;
-    EXPECT_EQ(plainOf(choice, {10, 15'000}, {100, 3'000}, 400, 400), 0) << "not even tried: nothing is to be won";
+    EXPECT_EQ(plainOf(choice, {10, 4'000}, {100, 1'000}, 400, 400), 0) << "not even tried: nothing is to be won";
     WayChoice other;
     EXPECT_LE(plainOf(other, {10, 40'000}, {2400, 50'000}, 400, 300), 20);
+}
+
+// 400 bytes more would take longer than looking, but small frames go plain only where that takes half as long.
+TEST(WayChoice, smallFramesStaySmallUnlessThatIsTooDear) {
+    WayChoice near, far;
+    EXPECT_LE(plainOf(near, {50, 9'000}, {450, 6'000}, 400, 300), 20);
+    EXPECT_GE(plainOf(far, {50, 9'000}, {450, 3'500}, 400, 300), 280);
+    WayChoice back; // and back again when it is no longer
+    plainOf(back, {50, 9'000}, {450, 3'500}, 400, 1);
+    ASSERT_TRUE(back.plain());
+    EXPECT_LE(plainOf(back, {50, 5'500}, {450, 3'500}, 3000, 100), 5);
 }
 
 TEST(WayChoice, looksWhereMostIsPages) {
