@@ -36,7 +36,7 @@ private:
     const std::function<int64_t()> nowNs_;
     // Control's is not used. Texts: equal frames and records are found as well by the fastest level. Pages: pictures become a quarter to a
     // third smaller by level 3 than by 1, which is won again by any link for which compressing pays.
-    std::array<SectionCompressor, kSections> compressors_{SectionCompressor(), SectionCompressor(), SectionCompressor(-1), SectionCompressor(3), SectionCompressor()};
+    std::array<SectionCompressor, kSections> compressors_{SectionCompressor(), SectionCompressor(), SectionCompressor(-1), SectionCompressor(2), SectionCompressor()};
     std::array<CodingChoice, kSections> choices_;
     std::array<std::vector<std::byte>, kSections> coded_;
     std::vector<std::byte> body_, out_, scratch_;

@@ -31,8 +31,9 @@ void WayChoice::measured(uint64_t rawBytes, uint64_t pageBytes, uint64_t wireByt
     cost.ns = cost.ns * kKept + static_cast<double>(ns) * kWithUnpacking[plain_ ? Plain : Looked] + static_cast<double>(wireBytes) * linkNsPerByte;
     cost.rawBytes = cost.rawBytes * kKept + static_cast<double>(rawBytes);
     cost.encodeNs = cost.encodeNs * kKept + static_cast<double>(ns);
+    cost.leastNs = cost.batches == 0 ? static_cast<double>(ns) : std::min(cost.leastNs, static_cast<double>(ns));
     cost.batches = cost.batches * kKept + 1;
-    cheap_ = cost.encodeNs < kCheapNs * cost.batches;
+    cheap_ = cost.leastNs < kCheapNs;
     if (trying_) {
         if (batches_ >= kTryBatches) decide();
         return;
@@ -46,7 +47,7 @@ void WayChoice::measured(uint64_t rawBytes, uint64_t pageBytes, uint64_t wireByt
     }
     if (batches_ < until_) return;
     const bool isAboutShort = pageBytes < rawBytes / 2; // else there is little to win, and places of pages to lose
-    if (plain_ || (isAboutShort && cost.encodeNs >= kCheapNs * cost.batches)) tryOther();
+    if (plain_ || (isAboutShort && cost.leastNs >= kCheapNs)) tryOther();
     else until_ += kLeastBetween;
 }
 
@@ -60,11 +61,11 @@ void WayChoice::tryOther() {
 void WayChoice::decide() {
     const double tried = costs_[plain_ ? Plain : Looked].perByte(), before = costs_[plain_ ? Looked : Plain].perByte();
     const Cost &looked = costs_[Looked], &asItIs = costs_[Plain];
-    const bool isSmall = looked.encodeNs < kWorthNs * looked.batches;
-    const bool tooDear = looked.encodeNs * asItIs.batches > asItIs.encodeNs * looked.batches * kTooDear;
+    const bool isSmall = looked.leastNs < kWorthNs;
+    const bool tooDear = looked.leastNs > asItIs.leastNs * kTooDear; // one that something else has disturbed decides nothing
     const bool better = isSmall ? plain_ == tooDear : tried < before * kClearly;
     if (!better) plain_ = !plain_;
-    until_ = better ? kLeastBetween * 4 : std::min(std::max(until_ * 2, kLeastBetween), kMostBetween);
+    until_ = better ? kLeastBetween * 8 : std::min(std::max(until_ * 2, kLeastBetween), kMostBetween);
     decidedBy_ = std::min(tried, before);
     trying_ = false;
     batches_ = 0;

@@ -26,6 +26,7 @@ private:
     // Of the last batches, the older the less.
     struct Cost {
         double ns = 0, rawBytes = 0, encodeNs = 0, batches = 0;
+        double leastNs = 0; // that one took to encode
         [[nodiscard]] double perByte() const { return rawBytes > 0 ? ns / rawBytes : 0; }
     };
     void tryOther();
