@@ -31,7 +31,7 @@ RangeUse classify(uint16_t opcode, std::string_view name) {
     if (opcode == op::glClear) return RangeUse::Clear;
     if (starts("glClearBuffer") || starts("glClearNamedFramebuffer") || starts("glAccum") || starts("glCopy") || starts("glBlit") || starts("glReadPixels") || starts("glDrawPixels") || starts("glBitmap")) return RangeUse::Read;
     if (starts("glBeginTransformFeedback") || starts("glEndTransformFeedback") || starts("glDrawTransformFeedback")) return RangeUse::Feedback;
-    if (starts("glBeginQuery") || starts("glEndQuery") || starts("glBeginConditional") || starts("glEndConditional")) return RangeUse::Query;
+    if (starts("glBeginQuery") || starts("glEndQuery")) return RangeUse::Query;
     if (starts("glBindImageTexture") || starts("glBindBufferBase") || starts("glBindBufferRange") || starts("glBindBuffersBase") || starts("glBindBuffersRange")) return RangeUse::Memory;
     if (starts("glDrawBuffer")) return RangeUse::State;
     for (const std::string_view stem : {"glDraw", "glMultiDraw", "glMultiMode", "glRect", "glEvalMesh"})
