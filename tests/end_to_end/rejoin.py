@@ -280,7 +280,7 @@ def two_eyes(context):
 
 
 STRATEGIES = ("serial", "direct-send", "binary-swap", "2-3-swap", "radix-k", "streaming")
-BEHIND = 12 # frames: of those that are under way when a node is back some are the others' alone
+UNDER_WAY = 12 # frames: of those that a program has sent when a node is lost, or is back, some are the others' alone
 LONGEST_MS = 8000 # of a frame: timeouts are 20 s and more
 
 
@@ -297,14 +297,14 @@ def ranges_come_back(context, rounds, nodes, options, tiles="1x1", environment=N
         begin = 0
         for victims in rounds:
             pids = [node_pid(run, number, where) for number in victims]
-            whole.append((begin, latest_frame(run) - 3))
+            whole.append((begin, latest_frame(run) - UNDER_WAY))
             for pid in pids:
                 os.kill(pid, signal.SIGKILL)
             for _ in pids:
                 if not run.wait_for_line(BACK, 40):
                     return "%s did not come back: %s" % (victims, " | ".join(run.standard_error[-8:]))
-            begin = latest_frame(run) + BEHIND
-            while latest_frame(run) < begin + 20 and run.process.poll() is None:
+            begin = latest_frame(run) + UNDER_WAY
+            while latest_frame(run) < begin + 2 * UNDER_WAY and run.process.poll() is None:
                 time.sleep(0.01)
         whole.append((begin, frames))
         wrong = failures.check_end(run, 0)
@@ -415,7 +415,7 @@ def ranges_that_are_busy(context):
 @case
 def ranges_over_earlier_frames(context):
     """Nothing clears, so nothing is shared: the collector has all of it, and gets all of it again."""
-    watch = Watch(context, 300, by_ranges("serial", 2), {"SCENE_SHARES": "1", "SCENE_KEEPS": "1"}, tiles="1x1")
+    watch = Watch(context, 600, by_ranges("serial", 2), {"SCENE_SHARES": "1", "SCENE_KEEPS": "1"}, tiles="1x1")
     with watch.start() as run:
         if not run.wait_for_line("frame 40 "):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
