@@ -15,7 +15,7 @@ namespace mural::wire {
 
 constexpr uint32_t kMagic = 0x4d52534d; // "MSRM"
 constexpr uint32_t kVersion = 4;      // of packets and records; recordings have these, too
-constexpr uint32_t kBatchVersion = 5; // of batches (economy/) and head commands, which only head and nodes exchange
+constexpr uint32_t kBatchVersion = 6; // of batches (economy/) and head commands, which only head and nodes exchange
 
 // Which capture stream a packet belongs to: client (app process) and thread of it.
 // streamOf(0, 0) is the head's own stream: its payload is one HeadCommand.
@@ -36,8 +36,9 @@ enum class HeadCommand : uint32_t {
     ClientGone = 2, // u32 client: free its contexts
     Finish = 3,     // no more packets: answer Bye and exit
     Exchange = 4,   // json: {"pictures", "swaps"}: by the number of each node that puts pictures together, or leads a swap barrier, HOST:PORT
-    Member = 5,     // u32 view, u32 node, u32 first: this node, which was given what came before, draws along from here on; all answer InView.
-                    // first = 1: no other member is left that takes turns with it; whose turn it is begins anew
+    Member = 5,     // u32 view, u32 node, u32 first, u32 life, u32 absent*: this node, which was given what came before, draws along from here on;
+                    // all answer InView. first = 1: no other member is left that takes turns with it; whose turn it is begins anew. life: how often
+                    // it was started again. absent: nodes that are no members; its picture is put together without these
     Synchronize = 6, // u32 number, u32 draws: to a node that catches up; it answers Synchronized, and if it draws, draws windows from their next frames on
     NewHistory = 7, // what was had before is forgotten: batches behind it refer to what comes from here on
     TellTurns = 8, // u32 number: members that take turns answer Turns, for a node that begins to catch up here

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "common/clock.hpp"
@@ -23,6 +24,8 @@ public:
     virtual LinkTransfer takeTransfer(int rank) = 0;
     // It has sent what makes no sense.
     virtual void giveUp(int rank) = 0;
+    // The node of that rank is another from here on: the one that was started again for the `life`th time. Is it not connected, it is gone.
+    virtual void renew(int rank, uint32_t life) = 0;
 };
 
 } // namespace mural

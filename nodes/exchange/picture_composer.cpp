@@ -8,11 +8,11 @@ namespace mural {
 using compositor::Step;
 using compositor::Strategy;
 
-PictureComposer::PictureComposer(ComposerConfig config, PartRoutes& routes, Log log) : config_(std::move(config)), routes_(routes), log_(std::move(log)) {}
+PictureComposer::PictureComposer(ComposerConfig config, PartRoutes& routes, Log log) : config_(std::move(config)), strategy_(config_.strategy), routes_(routes), log_(std::move(log)) {}
 
 // The collector's word on this picture: one byte, 1 for serially.
 void PictureComposer::agree() {
-    if (std::exchange(agreed_, false) || config_.strategy == Strategy::Serial || config_.rank == 0 || lost_.contains(0)) return;
+    if (std::exchange(agreed_, false) || strategy_ == Strategy::Serial || config_.rank == 0 || lost_.contains(0)) return;
     auto word = routes_.receive(0, 1, Deadline::inMs(config_.wordMs));
     if (!word || word->size() != 1) return lost(0, word ? "range 1 said how to go on in a way that is none" : word.error().message);
     if (word->front() != std::byte{0}) serially();
@@ -20,14 +20,25 @@ void PictureComposer::agree() {
 
 // Those who are left send to the collector directly, from the next picture on.
 void PictureComposer::tellNext() {
-    if (config_.strategy == Strategy::Serial || config_.rank != 0) return;
+    if (strategy_ == Strategy::Serial || config_.rank != 0) return;
     for (int rank = 1; rank < config_.ranks; ++rank)
         if (!lost_.contains(rank)) (void)routes_.send(rank, {std::byte{incomplete_}}, Deadline::inMs(config_.partMs));
     if (incomplete_) serially();
 }
 
 void PictureComposer::serially() {
-    config_.strategy = Strategy::Serial;
+    strategy_ = Strategy::Serial;
+    rows_ = -1;
+}
+
+void PictureComposer::returned(int rank, uint32_t life, const std::set<int>& absent) {
+    if (rank != 0 && rank != config_.rank) agree(); // the collector's word on the picture before may lie there still; it counts no more
+    if (rank != config_.rank) routes_.renew(rank, life);
+    encoders_.erase(rank); // by how fast the link was
+    lost_ = absent;
+    incomplete_ = false;
+    agreed_ = true;
+    strategy_ = absent.empty() ? config_.strategy : Strategy::Serial;
     rows_ = -1;
 }
 
@@ -36,7 +47,7 @@ PixelViewport PictureComposer::compose(PicturePart& part, const FoldRule& rule) 
     const int64_t beganNs = monotonicNowNs();
     if (rows_ != part.id.box.h) {
         rows_ = part.id.box.h;
-        steps_ = std::move(compositor::makeSchedule(config_.strategy, config_.ranks, rows_)[static_cast<size_t>(config_.rank)]);
+        steps_ = std::move(compositor::makeSchedule(strategy_, config_.ranks, rows_)[static_cast<size_t>(config_.rank)]);
     }
     FoldRule used = rule;
     using compositor::DepthFunction;

@@ -3,6 +3,9 @@
 // A node that is lost takes along what others have sent it to be folded, in that picture. So where the strategy is not serial, the
 // collector tells all after each picture how the next is put together: as before, or, once anything was missing, serially; then
 // only what the lost node draws is missing. Parts say whether anything is missing in them.
+//
+// When a node is back, all begin anew in the same picture: who takes part is what the head has told all of them, and with nobody
+// missing they go by the strategy of the start.
 #pragma once
 
 #include <functional>
@@ -33,6 +36,9 @@ public:
     // Each node calls this with what it has drawn. Afterwards the collector's part is the whole picture; the others' hold anything.
     // Returns the area of the part that may have changed. What nodes have drawn that are lost is missing: said once for each.
     PixelViewport compose(PicturePart& part, const FoldRule& rule);
+    // From the next picture on that rank takes part again, in its `life`th life, and of the others all but those of `absent`. All that take
+    // part, and it itself, call this between the same pictures.
+    void returned(int rank, uint32_t life, const std::set<int>& absent);
 
 private:
     void agree();
@@ -43,7 +49,8 @@ private:
     void put(PicturePart& part, const ArrivedPiece& piece, compositor::Step::Kind kind, const FoldRule& rule);
     void lost(int rank, const std::string& why);
 
-    ComposerConfig config_; // its strategy becomes serial when nodes were lost
+    const ComposerConfig config_;
+    compositor::Strategy strategy_; // serial while nodes are lost
     PartRoutes& routes_;
     const Log log_;
     int32_t rows_ = -1;

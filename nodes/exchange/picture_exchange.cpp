@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 #include <chrono>
+#include <utility>
 
 #include "common/little_endian.hpp"
 #include "transport/free_port.hpp"
@@ -15,18 +16,28 @@ namespace {
 const std::string kName = "range";
 constexpr int64_t kAcceptSliceMs = 100;
 constexpr int64_t kProofPatienceMs = 5000;
+constexpr size_t kWelcomeBytes = 4; // the first message to who has connected: the life of this end
 
 std::string rangeText(int rank) { return "range " + std::to_string(rank + 1); }
 
+std::vector<std::byte> welcomeOf(uint32_t life) {
+    std::vector<std::byte> message(kWelcomeBytes);
+    storeLittle(message.data(), life);
+    return message;
+}
+
 } // namespace
 
-std::string PictureExchange::nameOf(int rank) { return kName + std::to_string(rank); }
+std::string PictureExchange::textOf(const Name& name) { return kName + std::to_string(name.rank) + "." + std::to_string(name.life); }
 
-int PictureExchange::rankOf(const std::string& name) {
-    int rank = 0;
-    if (!name.starts_with(kName)) return 0;
-    const auto [end, error] = std::from_chars(name.data() + kName.size(), name.data() + name.size(), rank);
-    return error == std::errc() && end == name.data() + name.size() ? rank : 0;
+std::optional<PictureExchange::Name> PictureExchange::nameOf(const std::string& text) {
+    Name name;
+    if (!text.starts_with(kName)) return std::nullopt;
+    const char* const end = text.data() + text.size();
+    const auto rank = std::from_chars(text.data() + kName.size(), end, name.rank);
+    if (rank.ec != std::errc() || rank.ptr == end || *rank.ptr != '.' || name.rank < 0) return std::nullopt;
+    const auto life = std::from_chars(rank.ptr + 1, end, name.life);
+    return life.ec == std::errc() && life.ptr == end ? std::optional(name) : std::nullopt;
 }
 
 Result<void> PictureExchange::listen(bool loopbackOnly) {
@@ -41,9 +52,12 @@ Result<void> PictureExchange::listen(bool loopbackOnly) {
 Result<void> PictureExchange::connectTo(int rank, const std::string& host, uint16_t port, Deadline deadline) {
     auto connection = connectTcp(host, port, deadline);
     if (!connection) return connection.error();
-    auto secure = SecureConnection::connecting(std::move(*connection), nameOf(rank_), secret_, deadline);
+    auto secure = SecureConnection::connecting(std::move(*connection), textOf(own_), secret_, deadline);
     if (!secure) return secure.error();
-    add(rank, std::move(*secure));
+    std::array<std::byte, 4 + kWelcomeBytes> welcome; // behind its size
+    if (auto came = (*secure)->read(welcome, deadline); !came) return came.error();
+    if (loadLittle<uint32_t>(welcome.data()) != kWelcomeBytes) return Error{"it does not greet; head and nodes must be of one build"};
+    add({rank, loadLittle<uint32_t>(welcome.data() + 4)}, std::move(*secure), Side::Connected);
     return {};
 }
 
@@ -55,13 +69,38 @@ PictureExchange::~PictureExchange() {
     if (thread_.joinable()) thread_.join();
 }
 
-void PictureExchange::add(int rank, std::unique_ptr<Connection> connection) {
+void PictureExchange::Link::end() {
+    if (connection) connection->close(); // or its sender would wait for room
+    sender.reset();
+    connection.reset();
+}
+
+// Whoever is welcomed knows that it is here: nobody takes it, and nothing is sent by it, before that.
+void PictureExchange::add(const Name& name, std::unique_ptr<Connection> connection, Side side) {
     const std::lock_guard lock(mutex_);
-    Peer& peer = peers_[rank];
-    if (peer.connection || peer.gone) return; // the first one counts
-    peer.connection = std::move(connection);
-    peer.sender = std::make_unique<PartSender>(*peer.connection);
+    Peer& peer = peers_[name.rank];
+    Link& link = !peer.link.connection && !peer.gone ? peer.link : peer.next[name.life];
+    if (link.connection) return; // the first one counts
+    link.connection = std::move(connection);
+    link.sender = std::make_unique<PartSender>(*link.connection);
+    link.life = name.life;
+    if (side == Side::Accepted) (void)link.sender->send(welcomeOf(own_.life), Deadline::inMs(kProofPatienceMs)); // there is room
     arrived_.notify_all();
+}
+
+void PictureExchange::renew(int rank, uint32_t life) {
+    std::vector<Link> before;
+    {
+        const std::lock_guard lock(mutex_);
+        Peer& peer = peers_[rank];
+        if (!peer.link.connection || peer.link.life != life) {
+            before.push_back(std::exchange(peer.link, {}));
+            if (const auto found = peer.next.find(life); found != peer.next.end()) peer.link = std::exchange(found->second, {});
+        }
+        peer.gone = !peer.link.connection;
+        while (!peer.next.empty() && peer.next.begin()->first <= life) before.push_back(std::move(peer.next.extract(peer.next.begin()).mapped()));
+    }
+    for (Link& link : before) link.end();
 }
 
 void PictureExchange::letIn() {
@@ -72,19 +111,19 @@ void PictureExchange::letIn() {
     while (!stopped()) {
         auto connection = listener_->accept(Deadline::inMs(kAcceptSliceMs));
         if (!connection) continue;
-        const auto find = [&](const std::string& name) { return rankOf(name) > rank_ ? std::optional(secret_) : std::nullopt; };
+        const auto find = [&](const std::string& name) { return nameOf(name).value_or(own_).rank != own_.rank ? std::optional(secret_) : std::nullopt; };
         auto shown = SecureConnection::accepting(std::move(*connection), find, Deadline::inMs(kProofPatienceMs), stopped);
         if (!shown) continue;
-        const int rank = rankOf((*shown)->name());
-        add(rank, std::move(*shown));
+        const Name name = *nameOf((*shown)->name());
+        add(name, std::move(*shown), Side::Accepted);
     }
 }
 
 Result<PictureExchange::Peer*> PictureExchange::peerOf(int rank, Deadline deadline) {
     std::unique_lock lock(mutex_);
     Peer& peer = peers_[rank];
-    while (!peer.connection && !peer.gone) {
-        if (rank < rank_) peer.gone = true; // it was to be connected to before
+    while (!peer.link.connection && !peer.gone) {
+        if (rank < own_.rank || own_.life > 0) peer.gone = true; // it was to be connected to before
         else if (deadline.passed()) peer.gone = true;
         else {
             arrived_.wait_for(lock, std::chrono::milliseconds(kAcceptSliceMs));
@@ -100,14 +139,14 @@ void PictureExchange::giveUp(int rank) {
     const std::lock_guard lock(mutex_);
     Peer& peer = peers_[rank];
     peer.gone = true;
-    if (peer.connection) peer.connection->close();
+    if (peer.link.connection) peer.link.connection->close();
 }
 
 Result<void> PictureExchange::send(int rank, std::vector<std::byte> message, Deadline deadline) {
     auto peer = peerOf(rank, deadline);
     if (!peer) return peer.error();
     bytesSent_ += message.size();
-    auto sent = (*peer)->sender->send(std::move(message), deadline);
+    auto sent = (*peer)->link.sender->send(std::move(message), deadline);
     if (sent) return sent;
     giveUp(rank);
     return Error{rangeText(rank) + ": " + sent.error().message};
@@ -125,7 +164,7 @@ Result<std::vector<std::byte>> PictureExchange::receive(int rank, size_t mostByt
         if (auto r = c.read(message, deadline); !r) return r.error();
         return message;
     };
-    auto message = take(*(*peer)->connection);
+    auto message = take(*(*peer)->link.connection);
     if (message) return message;
     giveUp(rank);
     return Error{rangeText(rank) + ": " + message.error().message};
@@ -134,7 +173,7 @@ Result<std::vector<std::byte>> PictureExchange::receive(int rank, size_t mostByt
 LinkTransfer PictureExchange::takeTransfer(int rank) {
     const std::lock_guard lock(mutex_);
     const auto peer = peers_.find(rank);
-    return peer == peers_.end() || !peer->second.sender ? LinkTransfer{} : peer->second.sender->takeTransfer();
+    return peer == peers_.end() || !peer->second.link.sender ? LinkTransfer{} : peer->second.link.sender->takeTransfer();
 }
 
 } // namespace mural

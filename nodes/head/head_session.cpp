@@ -68,6 +68,8 @@ HeadSession::HeadSession(SessionConfig config,
     , views_(nodes.size())
     , facts_(nodes.size())
     , ready_(nodes.size(), false)
+    , introduced_(nodes.size(), true)
+    , lives_(nodes.size(), 0)
     , refusals_(nodes.size())
     , totals_(nodes.size()) {
     NodeEvents& events = *this; // a private base: make_unique could not convert

@@ -84,6 +84,7 @@ private:
     // Nodes that come back (head_session_returns.cpp).
     NodeReturns::Hooks returnHooks();
     void linkAgain(int node, StartingNode& starting);
+    void introduceAgain(int node);
     Result<void> takeAgain(int node, NodeFacts facts);
     NodeSet::Admission admit(int node, uint32_t view);
     void loseMember(int node, const std::string& why);
@@ -168,6 +169,8 @@ private:
     std::string promisedExtensions_;  // …by the nodes of the start
     std::vector<NodeFacts> facts_;
     std::vector<bool> ready_;
+    std::vector<bool> introduced_; // nodes that know where the others of their picture are
+    std::vector<uint32_t> lives_;  // how often each was started again
     std::set<int> rerouted_; // nodes that multicast does not reach
     std::vector<std::string> refusals_; // what nodes said before they were ready
     std::vector<NodeTotals> totals_;

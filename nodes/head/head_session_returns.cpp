@@ -1,5 +1,6 @@
 // What the session does about nodes that are lost, and about those that come back.
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "nodes/head/head_session.hpp"
@@ -27,8 +28,8 @@ NodeReturns::Hooks HeadSession::returnHooks() {
     NodeReturns::Hooks hooks;
     if (options_.startNode) hooks.start = [this](int node) { return options_.startNode(plan_.nodes[static_cast<size_t>(node)]); };
     hooks.connected = [this](int node, StartingNode& starting) { linkAgain(node, starting); };
-    hooks.whyNever = [this](int node) -> std::string {
-        if (plan_.nodes[static_cast<size_t>(node)].pass.ranges > 1) return "nodes that share draws (--db) are not started again";
+    hooks.introduce = [this](int node) { introduceAgain(node); };
+    hooks.whyNever = [this](int) -> std::string {
         if (!nodes_.canJoin()) return "programs have sent more than the " + std::to_string(config_.storeBytes >> 20) + " MiB that are kept to start a node again; --store gives more";
         return "";
     };
@@ -44,11 +45,14 @@ NodeReturns::Hooks HeadSession::returnHooks() {
 }
 
 void HeadSession::linkAgain(int node, StartingNode& starting) {
+    uint32_t life = 0;
     {
         const std::lock_guard lock(mutex_);
         ready_[static_cast<size_t>(node)] = false;
         refusals_[static_cast<size_t>(node)].clear();
         rerouted_.erase(node);
+        introduced_[static_cast<size_t>(node)] = false;
+        life = ++lives_[static_cast<size_t>(node)];
     }
     const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
     NodeEvents& events = *this; // a private base: make_unique could not convert
@@ -59,10 +63,28 @@ void HeadSession::linkAgain(int node, StartingNode& starting) {
     nodes_.link(node).startReading();
     NodeSetup setup = setupFor(plan);
     setup.catchesUp = true;
+    setup.life = life;
     setup.swapMembers = 0; // the others of its swap barrier go on without it
     setup.skipsFrames = returns_->skipsFrames();
     setup.economy = false; // what it is given first comes as it is; NewHistory says from where on in batches
-    nodes_.sendSetup(node, toJson(setup));
+    nodes_.sendAlone(node, wire::HeadCommand::Setup, toJson(setup));
+}
+
+// It connects itself to the others of its picture: to members, and of those that come back, too, to those that were told before it.
+// They learn nothing: they let it in.
+void HeadSession::introduceAgain(int node) {
+    const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
+    if (plan.pass.ranges < 2) return;
+    nlohmann::json pictures = nlohmann::json::object();
+    {
+        const std::lock_guard lock(mutex_);
+        for (int other = plan.collector; other < plan.collector + plan.pass.ranges; ++other) {
+            const auto index = static_cast<size_t>(other);
+            if (other != node && introduced_[index] && ready_[index] && nodes_.link(other).alive()) pictures[std::to_string(other)] = facts_[index].exchange;
+        }
+        introduced_[static_cast<size_t>(node)] = true;
+    }
+    nodes_.sendAlone(node, wire::HeadCommand::Exchange, nlohmann::json{{"pictures", pictures}}.dump());
 }
 
 // What programs were told of the nodes' GL must hold for this one.
@@ -86,17 +108,22 @@ Result<void> HeadSession::takeAgain(int node, NodeFacts facts) {
 // Under the lock that orders packets.
 NodeSet::Admission HeadSession::admit(int node, uint32_t view) {
     const std::lock_guard membership(membership_);
-    if (!returns_->becomesMember(node)) return NodeSet::Admission::Refused;
+    NodeSet::Admission admission;
+    admission.refused = !returns_->becomesMember(node);
+    if (admission.refused) return admission;
     answers_.nodeJoins(node, view);
     pictures_.nodeJoins(node, view);
     frames_.nodeJoins(node);
     news_.nodeJoins(node);
     const std::lock_guard lock(mutex_);
     views_.joins(node, view);
-    bool first = true; // of those that take turns
-    for (size_t other = 0; other < plan_.nodes.size(); ++other) first = first && (totals_[other].lost || plan_.nodes[other].pass.period < 2);
+    admission.life = lives_[static_cast<size_t>(node)];
+    admission.first = true;
+    for (size_t other = 0; other < plan_.nodes.size(); ++other) admission.first = admission.first && (totals_[other].lost || plan_.nodes[other].pass.period < 2);
     totals_[static_cast<size_t>(node)].lost = false;
-    return first ? NodeSet::Admission::FirstMember : NodeSet::Admission::Member;
+    for (size_t other = 0; other < plan_.nodes.size(); ++other)
+        if (totals_[other].lost || !nodes_.link(static_cast<int>(other)).alive()) admission.absent.push_back(static_cast<uint32_t>(other));
+    return admission;
 }
 
 Result<void> HeadSession::nodeTurns(int /*node*/, uint32_t number, const std::vector<wire::WindowTurn>& turns) {

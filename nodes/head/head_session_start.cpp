@@ -41,7 +41,7 @@ Result<void> HeadSession::bringUp() {
         exchangeSecret_ = toHex(secret.value());
     }
     for (const NodePlan& plan : plan_.nodes)
-        if (nodes_.link(plan.node).alive()) nodes_.sendSetup(plan.node, toJson(setupFor(plan)));
+        if (nodes_.link(plan.node).alive()) nodes_.sendAlone(plan.node, wire::HeadCommand::Setup, toJson(setupFor(plan)));
     if (auto ready = awaitReady(); !ready) return ready;
     introduceNodes();
     openTables();
@@ -104,7 +104,7 @@ Result<void> HeadSession::openEconomy() {
     return {};
 }
 
-// Nodes that draw ranges of one picture learn where it is put together; those whose windows wait for each other, who leads them.
+// Nodes that draw ranges of one picture learn where the others take parts of it; those whose windows wait for each other, who leads them.
 void HeadSession::introduceNodes() {
     Json pictures = Json::object(), swaps = Json::object();
     {

@@ -147,6 +147,7 @@ void NodeReturns::tickNode(int node, int64_t nowNs) {
 }
 
 void NodeReturns::catchUp(int node) {
+    hooks_.introduce(node);
     std::optional<NodeSet::TurnsAsked> turns;
     if (hooks_.takesTurns(node)) turns = {++turnsAsked_, hooks_.takesTurns, {}};
     const auto catchUp = std::make_shared<NodeCatchUp>(set_, node, std::move(turns), [this, node](uint32_t view) { return hooks_.admitted(node, view); });

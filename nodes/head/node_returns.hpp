@@ -27,6 +27,7 @@ public:
         std::function<Result<StartingNode>(int node)> start;    // by tick(); empty: none is started again
         std::function<void(int node, StartingNode&)> connected; // makes its link and sends its setup
         std::function<std::string(int node)> whyNever;          // for a reason of the session; empty: it may come back
+        std::function<void(int node)> introduce; // to the others of its picture, before it catches up
         std::function<bool(int node)> takesTurns;
         std::function<NodeSet::Admission(int node, uint32_t view)> admitted; // under the lock that orders packets
         std::function<void(int node, const std::string&)> gaveUp; // with the line for the user; it stays lost

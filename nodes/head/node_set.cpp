@@ -135,9 +135,8 @@ void NodeSet::flushLinksLocked() {
     if (multicast_) multicast_->flush();
 }
 
-void NodeSet::sendSetup(int node, const std::string& json) {
-    const auto payload =
-        commandBytes(wire::HeadCommand::Setup, std::as_bytes(std::span(json.data(), json.size())));
+void NodeSet::sendAlone(int node, wire::HeadCommand command, const std::string& json) {
+    const auto payload = commandBytes(command, std::as_bytes(std::span(json.data(), json.size())));
     const wire::PacketHeader header{static_cast<uint32_t>(payload.size()), wire::streamOf(0, 0)};
     link(node).sendNow(bytesOf(header), payload);
     link(node).flushNow();

@@ -39,8 +39,8 @@ public:
     bool broadcast(wire::HeadCommand command, std::span<const std::byte> arguments);
     // The same, but gives up when others keep the nodes busy until the deadline.
     bool broadcast(wire::HeadCommand command, Deadline deadline);
-    // Before it gets anything else; never waits for the other nodes.
-    void sendSetup(int node, const std::string& json);
+    // To one node, before it gets anything of the stream; never waits for the other nodes.
+    void sendAlone(int node, wire::HeadCommand command, const std::string& json);
     void flush();
     // The same, but what nodes can do nothing with yet may stay for a moment. True: nothing has stayed.
     bool flushUseful();
@@ -64,7 +64,12 @@ public:
     Result<KeptStream::Snapshot> beginCatchUp(int node, TurnsAsked* turns, Deadline deadline);
     // It is a member behind all packets so far: told to all nodes, and to `announce` before, which may refuse.
     // Where it is spared what it has had, too, a new history begins for all that are: none but its own is as short.
-    enum class Admission { Refused, Member, FirstMember }; // of those that take turns
+    struct Admission {
+        bool refused = false;
+        bool first = false;           // of the members that take turns
+        uint32_t life = 0;            // how often it was started again
+        std::vector<uint32_t> absent; // nodes that are no members
+    };
     Result<void> admit(int node, const std::function<Admission(uint32_t view)>& announce);
     // From now on its packets go to it as they come. False: its queue is not empty. `now`: what is there is sent at once.
     bool goDirect(int node, bool now);

@@ -67,8 +67,9 @@ Result<void> NodeSet::admit(int node, const std::function<Admission(uint32_t vie
     --joining_;
     sendBatchLocked();
     const Admission admission = announce(++view_);
-    if (admission == Admission::Refused) return {};
-    const uint32_t arguments[] = {view_, static_cast<uint32_t>(node), admission == Admission::FirstMember ? 1U : 0U};
+    if (admission.refused) return {};
+    std::vector<uint32_t> arguments = {view_, static_cast<uint32_t>(node), admission.first ? 1U : 0U, admission.life};
+    arguments.insert(arguments.end(), admission.absent.begin(), admission.absent.end());
     sendLocked(wire::streamOf(0, 0), commandBytes(wire::HeadCommand::Member, std::as_bytes(std::span(arguments))));
     to.setMember(true);
     if (history) {

@@ -212,10 +212,9 @@ private:
         composer.rank = setup_.pass.range;
         composer.ranks = setup_.pass.ranges;
         if (const char* plant = std::getenv("MURAL_PLANT")) composer.plant = plant;
-        exchange_ = std::make_unique<PictureExchange>(composer.rank, secret.value());
+        exchange_ = std::make_unique<PictureExchange>(PictureExchange::Name{composer.rank, setup_.life}, secret.value());
         composer_ = std::make_unique<PictureComposer>(composer, *exchange_, [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); });
-        const bool comeHere = composer.rank + 1 < composer.ranks && (composer.rank == 0 || !isStar());
-        if (!comeHere) return {};
+        // Also where nobody comes at first: one that was lost comes to those that are there.
         if (auto listening = exchange_->listen(setup_.exchangeHere); !listening) return Error{"no pictures of other nodes can be taken: " + listening.error().message};
         ready["exchange"] = endpointText(setup_.exchangeHere ? "127.0.0.1" : line_->ownAddress(), exchange_->port());
         return {};
@@ -224,12 +223,18 @@ private:
     // Nodes send to the collector only.
     [[nodiscard]] bool isStar() const { return setup_.composition == compositor::nameOf(compositor::Strategy::Serial); }
 
+    // The nodes with the ranges before this one's; the others come here. One that comes back goes to those that are there.
+    [[nodiscard]] bool goesTo(int rank) const {
+        const int own = setup_.pass.range;
+        return rank != own && (setup_.catchesUp || rank < own) && (!isStar() || rank == 0 || own == 0);
+    }
+
     bool meet(const std::string& text) {
         const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
-        // The nodes with the ranges before this one's; the others come here.
-        const int before = !exchange_ ? 0 : isStar() ? std::min(1, setup_.pass.range) : setup_.pass.range;
-        for (int rank = 0; rank < before; ++rank) {
+        for (int rank = 0; exchange_ && rank < setup_.pass.ranges; ++rank) {
+            if (!goesTo(rank)) continue;
             const auto where = addressIn(json, "pictures", setup_.collector + rank);
+            if (!where && setup_.catchesUp) continue; // it is lost, or not so far
             if (!where) return fail("the head named no node to send pictures to: install the same version of mural on all machines");
             const auto connected = exchange_->connectTo(rank, where->host, where->port, Deadline::inMs(kMeetMs));
             if (!connected) line_->sendText(wire::NodeMessage::Log, "the node with range " + std::to_string(rank + 1) + " is not reached at " + endpointText(where->host, where->port) + ": " + connected.error().message + "; what nodes would send each other there is missing");
@@ -301,17 +306,32 @@ private:
 
     // Some node is a member from here on. If it is this one: what was before, others have told.
     bool newMember(std::span<const std::byte> arguments) {
-        uint32_t words[3] = {};
+        uint32_t words[4] = {};
         if (arguments.size() < sizeof words) return false;
         std::memcpy(words, arguments.data(), sizeof words);
-        const uint32_t view = words[0], node = words[1];
+        const uint32_t view = words[0], node = words[1], life = words[3];
+        const bool itself = node == static_cast<uint32_t>(setup_.node);
         if (words[2] != 0 && replay_) replay_->beginTurns();
-        if (catchesUp_ && node != static_cast<uint32_t>(setup_.node)) return true;
+        shareWith(static_cast<int>(node), life, arguments.subspan(sizeof words));
+        if (catchesUp_ && !itself) return true;
         catchesUp_ = false;
         std::vector<wire::ClientFrame> frames;
         for (const auto& [client, frame] : frames_) frames.push_back({client, frame});
         line_->send(wire::NodeMessage::InView, std::as_bytes(std::span(&view, 1)), std::as_bytes(std::span(frames)));
         return true;
+    }
+
+    // If that node draws a range of this one's picture: from here on with it, and without the `absent`.
+    void shareWith(int node, uint32_t life, std::span<const std::byte> absent) {
+        const auto rankOf = [this](int other) { return other >= setup_.collector && other < setup_.collector + setup_.pass.ranges ? other - setup_.collector : -1; };
+        if (!composer_ || !replay_ || rankOf(node) < 0) return;
+        std::set<int> absentRanks;
+        for (; absent.size() >= sizeof(uint32_t); absent = absent.subspan(sizeof(uint32_t))) {
+            uint32_t other = 0;
+            std::memcpy(&other, absent.data(), sizeof other);
+            if (const int rank = rankOf(static_cast<int>(other)); rank >= 0) absentRanks.insert(rank);
+        }
+        replay_->shareAnew(node == setup_.node, [this, rank = rankOf(node), life, absentRanks] { composer_->returned(rank, life, absentRanks); });
     }
 
     bool tellTurns(std::span<const std::byte> number) {

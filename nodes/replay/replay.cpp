@@ -11,7 +11,7 @@ namespace mural {
 Replay::Replay(std::unique_ptr<gl::Platform> platform, ReplayConfig config, ReplayOutputs outputs)
     : platform_(std::move(platform)), config_(std::move(config)), out_(std::move(outputs)), saidLacking_(op::kLimit, false) {
     hasSkipped_ = skips_ = maySkip();
-    knowsTurns_ = !config_.catchesUp;
+    knowsTurns_ = knowsCosts_ = !config_.catchesUp;
 }
 
 Replay::~Replay() {

@@ -60,7 +60,8 @@ struct ReplayConfig {
     double eyeBase = 0.05, focusDistance = 1; // in the program's units
     std::optional<ScreenView> screen;         // then the eye is in it
     bool skips = false;    // frames are not drawn until drawAgain()
-    bool catchesUp = false; // whose turn it is, others know: until takeTurns() or beginTurns() all frames are drawn and none is its own
+    bool catchesUp = false; // whose turn it is, others know: until takeTurns() or beginTurns() all frames are drawn and none is its own;
+                            // draws are not shared before shareAnew()
     bool cull = false;     // whole primitives outside of the region are dropped by rewritten shaders
     bool lean = false;     // framebuffers of the tile's size; false: of the picture's size (exact)
     std::string plant;     // MURAL_PLANT: a fault on purpose, for tests of the tests
@@ -116,6 +117,9 @@ public:
     void takeTurns(std::span<const wire::WindowTurn> turns);
     // Nobody knows: the frames in hand stay with those whose turn is first, and all nodes count anew.
     void beginTurns();
+    // Of nodes that draw ranges of one picture, at one place of the stream for all of them: a node has come back, `itself`: this one. `returned`
+    // is called behind the last picture that is put together without it, when there is a first with it.
+    void shareAnew(bool itself, std::function<void()> returned);
     // Whether what is shown next depends on what was not drawn before that.
     [[nodiscard]] wire::Soundness soundness() const;
     [[nodiscard]] const ReplayCounts& counts() const { return counts_; }
@@ -174,6 +178,7 @@ private:
         GLenum function = 0;    // of all draws that were shared
         bool muted = false;     // another node draws this
         bool wasSplit = false;
+        uint64_t returns = 0;   // of nodes of its picture, before the frame began: it is put together with these
         FoldRule rule;          // how the nodes' pictures are laid over each other
     };
     struct Window {
@@ -677,6 +682,10 @@ private:
     bool hasSkipped_ = false; // frames, at the beginning…
     bool skips_ = false;      // …and does so still
     bool knowsTurns_ = true;
+    bool knowsCosts_ = true; // of the frames before, as the other nodes of its picture do
+    std::deque<std::function<void()>> returns_; // of nodes of its picture, that no frame was put together with yet…
+    uint64_t returnsTaken_ = 0;                 // …and how many came before those
+    [[nodiscard]] uint64_t returnsTold() const { return returnsTaken_ + returns_.size(); }
     bool showedUnsound_ = false; // a frame that was drawn from its beginning, and needed more than that
     std::unique_ptr<GlFunctions> leftOut_; // for draws that are left out; null: none was yet
     std::unique_ptr<ContextState> none_; // stands in where a stream has no context

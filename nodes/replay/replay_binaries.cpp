@@ -40,12 +40,16 @@ void Replay::glDeleteProgram(GLuint program) {
     if (!gl.glDeleteProgram) return;
     const GLuint ours = name(Kind::Program, program);
     gl.glDeleteProgram(ours);
-    if (c_->shared) c_->shared->recipes.deleted(gl, ours);
+    if (!c_->shared) return;
+    c_->shared->recipes.deleted(gl, ours);
+    c_->shared->primitiveIds.erase(ours); // the driver may give that name to another, at one node and not at the next
 }
 void Replay::glDeleteObjectARB(GLuint obj) {
     const GLuint ours = name(Kind::Program, obj);
     if (gl.glDeleteObjectARB) gl.glDeleteObjectARB(ours);
-    if (c_->shared) c_->shared->recipes.deleted(gl, ours);
+    if (!c_->shared) return;
+    c_->shared->recipes.deleted(gl, ours);
+    c_->shared->primitiveIds.erase(ours);
 }
 
 // ---- questions and answers

@@ -11,10 +11,11 @@
 
 namespace mural {
 
-// Whose picture another node depends on, and where a copy of the window is not filled by the stream, all is drawn.
+// Whose picture another node depends on, and where a copy of the window is not filled by the stream, all is drawn. Nobody depends on the
+// range of a node that catches up.
 bool Replay::maySkip() const {
     const RenderPass& p = config_.pass;
-    return config_.skips && !config_.lean && !alone() && !takesTurns() && !takesRanges() && !drawsFewer() && !movesView() && p.samples == 1;
+    return config_.skips && !config_.lean && (takesRanges() || !alone()) && !takesTurns() && !drawsFewer() && !movesView() && p.samples == 1;
 }
 
 void Replay::drawAgain() { skips_ = false; }

@@ -173,6 +173,7 @@ bool Replay::ownWindow(Args& in) {
         slot->lean = config_.lean;
         slot->skipped = skips_;
         if (skips_) slot->stale = kWindowBuffers | GL_ACCUM_BUFFER_BIT;
+        slot->range.returns = returnsTold();
     }
     Window& w = *slot;
     w.destroyed = false; // the program has bound it again

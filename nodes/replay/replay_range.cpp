@@ -7,8 +7,9 @@
 //            the picture is read: the collector has the whole picture and draws the rest of the frame
 //
 // Which draws are shared follows from the stream and the state alone, and ranges from what the frame before has cost, so
-// all nodes agree without a word. Draws are folded in their order by the depth test itself, so the picture is the one of
-// a single machine, bit for bit (accuracy 4). Framebuffer objects are drawn by all. How the pictures become one: nodes/exchange.
+// all nodes agree without a word. A node that has come back has not counted: all begin anew with it, at one place of the stream.
+// Draws are folded in their order by the depth test itself, so the picture is the one of a single machine, bit for bit
+// (accuracy 4). Framebuffer objects are drawn by all. How the pictures become one: nodes/exchange.
 #include <algorithm>
 #include <cstring>
 #include <string_view>
@@ -31,7 +32,7 @@ RangeUse classify(uint16_t opcode, std::string_view name) {
     if (opcode == op::glClear) return RangeUse::Clear;
     if (starts("glClearBuffer") || starts("glClearNamedFramebuffer") || starts("glAccum") || starts("glCopy") || starts("glBlit") || starts("glReadPixels") || starts("glDrawPixels") || starts("glBitmap")) return RangeUse::Read;
     if (starts("glBeginTransformFeedback") || starts("glEndTransformFeedback") || starts("glDrawTransformFeedback")) return RangeUse::Feedback;
-    if (starts("glBeginQuery") || starts("glEndQuery") || starts("glBeginConditional") || starts("glEndConditional")) return RangeUse::Query;
+    if (starts("glBeginQuery") || starts("glEndQuery")) return RangeUse::Query;
     if (starts("glBindImageTexture") || starts("glBindBufferBase") || starts("glBindBufferRange") || starts("glBindBuffersBase") || starts("glBindBuffersRange")) return RangeUse::Memory;
     if (starts("glDrawBuffer")) return RangeUse::State;
     for (const std::string_view stem : {"glDraw", "glMultiDraw", "glMultiMode", "glRect", "glEvalMesh"})
@@ -353,6 +354,11 @@ void Replay::composeRanges(Window& w) {
     mute(w, false);
     const PixelViewport drawn = partDrawn(w);
     if (r.lastTotal == 0 || drawn.empty() || !hasTurn(w.turn)) return; // all of it was the collector's, or others'
+    for (; returnsTaken_ < r.returns; ++returnsTaken_) {
+        returns_.front()();
+        returns_.pop_front();
+    }
+    if (returnsTaken_ > r.returns) return; // the others have gone on to later pictures
     PicturePart part;
     ++r.serial;
     readPart(w, drawn, part);
@@ -381,11 +387,28 @@ void Replay::rangeDrawn(Window& w) {
     }
     c_ = own;
     const uint64_t total = r.cost, serial = r.serial;
-    const bool split = r.wasSplit;
+    const bool split = r.wasSplit, knows = knowsCosts_ && r.returns == returnsTold();
     r = {};
+    r.wasSplit = split;
+    r.returns = returnsTold();
+    if (!knows) return; // as the first frame
     r.lastTotal = total;
     r.serial = serial;
-    r.wasSplit = split;
+}
+
+// What a frame in hand has drawn, and cost, the newcomer may have been given a part of. So nothing of it is put together with the
+// newcomer, nor what comes next of a window: that one is counted by all, as the first frame is. A frame that the others have begun to
+// share, they end as they have begun it.
+void Replay::shareAnew(bool itself, std::function<void()> returned) {
+    if (!takesRanges()) return;
+    knowsCosts_ = knowsCosts_ || itself;
+    for (auto& [client, its] : clients_)
+        for (auto& [id, w] : its.windows) {
+            RangeFrame& r = w->range;
+            const bool shared = r.phase == RangeFrame::Phase::Split && r.lastTotal > 0;
+            if (!shared) r.lastTotal = 0;
+        }
+    returns_.push_back(std::move(returned));
 }
 
 } // namespace mural

@@ -142,6 +142,7 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("economy", s.economy);
     visit("catchesUp", s.catchesUp);
     visit("skipsFrames", s.skipsFrames);
+    visit("life", s.life);
     visit("storeBytes", s.storeBytes, 1 << 20);
     visit("collector", s.collector, 0);
     visit("composition", s.composition);

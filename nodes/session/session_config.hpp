@@ -99,6 +99,7 @@ struct NodeSetup {
     int64_t storeBytes = int64_t{1} << 30;
     bool catchesUp = false;       // it is given what came before, and says nothing of it until it is a member (HeadCommand::Member)
     bool skipsFrames = false;     // with it: frames are not drawn until Synchronize says so
+    uint32_t life = 0;            // how often it was started again
     int collector = 0;            // the node that has the picture that this one draws a range of; ranges follow it, one node each
     std::string composition = "serial"; // compositor::Strategy by which they put it together
     std::string exchangeSecret;   // of nodes that send each other parts of a picture, or wait for each other, in hex; empty: none do

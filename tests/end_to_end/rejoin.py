@@ -48,9 +48,10 @@ def saved_pictures(folder):
 class Watch:
     """One run of the program with pictures into files, and what became of its nodes."""
 
-    def __init__(self, context, frames, options=(), environment=None, tiles="2x1", saved=None):
+    def __init__(self, context, frames, options=(), environment=None, tiles="2x1", saved=None, beside=False):
         self.context, self.frames, self.tiles = context, frames, tiles
         self.saved = saved # frames of which there is a picture, from 1; None: all
+        self.beside = beside # the same program runs a second time, in a smaller window
         self.environment = {"SCENE_PAUSE_US": "15000"}
         self.environment.update(environment or {})
         self.folder = tempfile.TemporaryDirectory(prefix="mural-rejoin.")
@@ -61,8 +62,10 @@ class Watch:
             self.options += ["--save", ",".join(map(str, saved))]
 
     def start(self):
-        return self.context.run([self.context.program(PROGRAM), "--frames", str(self.frames), "--size", "%dx%d" % (WIDTH, HEIGHT)],
-                                self.options, self.environment)
+        command = [self.context.program(PROGRAM), "--frames", str(self.frames), "--size", "%dx%d" % (WIDTH, HEIGHT)]
+        if self.beside:
+            command = ["/bin/sh", "-c", '"$1" "$2" "$3" "$4" 131x77 > /dev/null & exec "$@"', "sh"] + command
+        return self.context.run(command, self.options, self.environment)
 
     def report(self):
         with open(self.report_file, encoding="utf-8") as file:
@@ -276,21 +279,155 @@ def two_eyes(context):
     return kill_and_compare_ends(context, ("--stereo", "side-by-side"), "1x1", (1,), against=("--stereo", "side-by-side", "--restart-nodes", "0"))
 
 
-@case
-def ranges_are_not_started_again(context):
-    """Nodes that share draws: said in the line of the loss."""
-    watch = Watch(context, 100, ("--db", "2"), tiles="1x1")
+STRATEGIES = ("serial", "direct-send", "binary-swap", "2-3-swap", "radix-k", "streaming")
+UNDER_WAY = 12 # frames: of those that a program has sent when a node is lost, or is back, some are the others' alone
+LONGEST_MS = 8000 # of a frame: timeouts are 20 s and more
+
+
+def ranges_come_back(context, rounds, nodes, options, tiles="1x1", environment=None, where="local", frames=None, beside=False):
+    """Nodes that share draws. rounds: the nodes that are killed at once, each round when those of the one before are back. Each frame is exact
+    that all of them share, from a few behind each return on; nobody waits for a timeout. Frames have no picture while the collector is away."""
+    frames = frames or 100 + 150 * len(rounds)
+    watch = Watch(context, frames, options, dict(environment or {}, SCENE_SHARES="1"), tiles, beside=beside)
+    whole = []  # spans of frames that must be exact: first, behind the last
     with watch.start() as run:
-        if not run.wait_for_line("frame 30 "):
+        if not run.wait_for_line("frame 40 "):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
-        known = set(first_nodes(run))
-        os.kill(first_nodes(run)[1], signal.SIGKILL)
-        if fresh_node(run, known, 1):
-            return "it was started again"
+        run.first_nodes = nodes_of(run, nodes)
+        begin = 0
+        for victims in rounds:
+            pids = [node_pid(run, number, where) for number in victims]
+            whole.append((begin, latest_frame(run) - UNDER_WAY))
+            for pid in pids:
+                os.kill(pid, signal.SIGKILL)
+            for _ in pids:
+                if not run.wait_for_line(BACK, 40):
+                    return "%s did not come back: %s" % (victims, " | ".join(run.standard_error[-8:]))
+            begin = latest_frame(run) + UNDER_WAY
+            while latest_frame(run) < begin + 2 * UNDER_WAY and run.process.poll() is None:
+                time.sleep(0.01)
+        whole.append((begin, frames))
         wrong = failures.check_end(run, 0)
-        if wrong is None and len(said(run, "(--db) are not started again")) != 1:
-            wrong = "it was not said: " + " | ".join(run.standard_error[-3:])
-        return wrong
+        if wrong is not None:
+            return wrong
+        longest = max(frame_times(run)[40:])
+        report = watch.report()["nodes"]
+        saved = saved_pictures(watch.out)
+        native = {tuple(picture.rows): frame for frame, picture in enumerate(native_pictures(context, watch.folder.name, frames, watch.environment))}
+        if len(native) != frames:
+            return "%d different native pictures of %d" % (len(native), frames)
+        shown = [native.get(tuple(picture.rows)) for picture in saved]
+        exact = {frame for frame in shown if frame is not None}
+        print("    %s, %s: back after %s s; longest frame %.0f ms; of %d frames %d have pictures, %d differ" % (
+            " ".join(options), rounds, ", ".join("%.2f" % node["secondsToBack"] for node in report if node["joins"]), longest, frames, len(saved), shown.count(None)))
+        missing = [frame for first, end in whole for frame in range(first, end) if frame not in exact]
+        if missing:
+            return "frames %s are not exact; they should be from %s" % (missing[:8], whole)
+        if len(exact) == frames:
+            return "nothing was ever missing: was nothing killed?"
+        if longest > LONGEST_MS:
+            return "a frame took %.1f s" % (longest / 1000)
+        joins, wanted = sum(node["joins"] for node in report), sum(map(len, rounds))
+        if joins != wanted:
+            return "%d returns instead of %d: %s" % (joins, wanted, " | ".join(run.standard_error[-6:]))
+        return not_shared(report, "serial" in options, rounds[-1])
+
+
+def not_shared(report, serial, last):
+    """Behind the last return all of them send parts; but for `serial` the collector does, too, its word on each picture."""
+    for node in report:
+        if node["node"] in last and node["exchangeBytes"] == 0 and not (serial and node["node"] == 0):
+            return "node %d shared nothing when it was back" % node["node"]
+    return None
+
+
+def frame_times(run):
+    """Of each frame of the program, ms."""
+    return [float(line.split()[2]) for line in run.standard_output if line.startswith("frame ")]
+
+
+def by_ranges(strategy, ranks):
+    return ("--db", str(ranks), "--composition", strategy)
+
+
+def ranges_case(strategy):
+    def check(context):
+        return (ranges_come_back(context, ((0,), (1,)), 2, by_ranges(strategy, 2)) or
+                ranges_come_back(context, ((2,), (1,), (0,)), 3, by_ranges(strategy, 3)))
+    check.__name__ = "ranges_" + strategy.replace("-", "_")
+    check.__doc__ = "Nodes that share draws come back, each of them, by " + strategy
+    return case(check)
+
+
+for name in STRATEGIES:
+    ranges_case(name)
+
+
+@case
+def ranges_several_at_once(context):
+    """Two of four, the collector among them, then all but it, then all: who comes back later connects to who came back before."""
+    return (ranges_come_back(context, ((0, 2), (1, 2, 3)), 4, by_ranges("direct-send", 4)) or
+            ranges_come_back(context, ((1, 2), (0, 1, 2)), 3, by_ranges("serial", 3)) or
+            ranges_come_back(context, ((0, 1, 2),), 3, by_ranges("streaming", 3)))
+
+
+@case
+def ranges_of_tiles(context):
+    """Two pictures of two nodes each: what is lost of one leaves the other alone."""
+    return ranges_come_back(context, ((3,), (2,), (1, 2)), 4, by_ranges("binary-swap", 2) + ("--local-nodes", "4"), tiles="2x1")
+
+
+@case
+def ranges_in_turns(context):
+    """Two pictures that take turns, of two nodes each."""
+    return ranges_come_back(context, ((1,), (2,), (0,)), 4, by_ranges("streaming", 2) + ("--dplex", "2"), frames=700)
+
+
+@case
+def ranges_with_economy(context):
+    return ranges_come_back(context, ((1,), (0,)), 2, by_ranges("direct-send", 2) + ("--economy", "on"))
+
+
+@case
+def ranges_by_tcp(context):
+    return ranges_come_back(context, ((1,), (0,)), 3, by_ranges("radix-k", 3) + ("--nodes", "localhost,localhost,localhost", "--stream", "tcp"), where="localhost")
+
+
+@case
+def ranges_by_multicast(context):
+    return ranges_come_back(context, ((2,), (0,)), 3, by_ranges("streaming", 3) + (
+        "--nodes", "localhost,localhost,localhost", "--stream", "rsp://239.255.77.9:4299?interface=127.0.0.1"), where="localhost")
+
+
+@case
+def ranges_of_two_programs(context):
+    """Their windows' pictures are put together one behind the other, in the order in which their packets come."""
+    return (ranges_come_back(context, ((1,), (0,)), 3, by_ranges("2-3-swap", 3), beside=True) or
+            ranges_come_back(context, ((1, 2),), 3, by_ranges("serial", 3), beside=True))
+
+
+@case
+def ranges_that_are_busy(context):
+    """No pause: the nodes are what everybody waits for."""
+    return ranges_come_back(context, ((1,), (0,)), 2, by_ranges("streaming", 2), environment={"SCENE_PAUSE_US": "0"}, frames=1800)
+
+
+@case
+def ranges_over_earlier_frames(context):
+    """Nothing clears, so nothing is shared: the collector has all of it, and gets all of it again."""
+    watch = Watch(context, 600, by_ranges("serial", 2), {"SCENE_SHARES": "1", "SCENE_KEEPS": "1"}, tiles="1x1")
+    with watch.start() as run:
+        if not run.wait_for_line("frame 40 "):
+            return "the program did not start: " + " | ".join(run.standard_error[-3:])
+        os.kill(first_nodes(run)[0], signal.SIGKILL)
+        if not run.wait_for_line(BACK, 30):
+            return "it did not come back: " + " | ".join(run.standard_error[-6:])
+        wrong = failures.check_end(run, 0)
+        if wrong is not None:
+            return wrong
+        native = native_pictures(context, watch.folder.name, watch.frames, watch.environment)
+        behind = [columns_that_differ(a, b) for a, b in zip(native[-100:], saved_pictures(watch.out)[-100:])]
+        return "%d of the last pictures differ" % sum(map(bool, behind)) if any(behind) else None
 
 
 @case

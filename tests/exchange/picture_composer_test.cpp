@@ -1,13 +1,12 @@
 // Nodes as threads, with a network in memory.
 #include <atomic>
-#include <condition_variable>
-#include <deque>
 #include <gtest/gtest.h>
 #include <mutex>
 #include <thread>
 
 #include "nodes/exchange/picture_composer.hpp"
-#include "tests/exchange/test_parts.hpp"
+#include "tests/exchange/fake_network.hpp"
+#include "tests/exchange/test_scenes.hpp"
 
 namespace mural::test {
 namespace {
@@ -15,79 +14,6 @@ namespace {
 using compositor::DepthFunction;
 using compositor::kEveryStrategy;
 using compositor::Strategy;
-
-class FakeNetwork {
-public:
-    void put(int from, int to, std::vector<std::byte> message) {
-        const std::lock_guard lock(mutex_);
-        if (isCut(from, to)) return;
-        under_[{from, to}].push_back(std::move(message));
-        changed_.notify_all();
-    }
-    Result<std::vector<std::byte>> take(int from, int to, Deadline deadline) {
-        std::unique_lock lock(mutex_);
-        auto& coming = under_[{from, to}];
-        if (!changed_.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs()), [&] { return !coming.empty() || gone_.contains(from) || isCut(from, to); }) || coming.empty())
-            return Error{"range " + std::to_string(from + 1) + " is gone"};
-        auto message = std::move(coming.front());
-        coming.pop_front();
-        return message;
-    }
-    void lose(int rank) {
-        const std::lock_guard lock(mutex_);
-        gone_.insert(rank);
-        changed_.notify_all();
-    }
-    // Nothing gets from one to the other, neither way.
-    void cut(int a, int b) { cut_ = {a, b}; }
-
-private:
-    [[nodiscard]] bool isCut(int a, int b) const { return cut_ == std::pair(std::min(a, b), std::max(a, b)); }
-    std::mutex mutex_;
-    std::condition_variable changed_;
-    std::map<std::pair<int, int>, std::deque<std::vector<std::byte>>> under_;
-    std::set<int> gone_;
-    std::pair<int, int> cut_{-1, -1};
-};
-
-class FakeRoutes final : public PartRoutes {
-public:
-    FakeRoutes(FakeNetwork& network, int rank) : network_(network), rank_(rank) {}
-    Result<void> send(int rank, std::vector<std::byte> message, Deadline) override {
-        network_.put(rank_, rank, std::move(message));
-        return {};
-    }
-    Result<std::vector<std::byte>> receive(int rank, size_t mostBytes, Deadline deadline) override {
-        auto message = network_.take(rank, rank_, deadline);
-        if (message && message->size() > mostBytes) return Error{"too large"};
-        return message;
-    }
-    LinkTransfer takeTransfer(int) override { return {}; }
-    void giveUp(int) override {}
-
-private:
-    FakeNetwork& network_;
-    int rank_;
-};
-
-struct Scene {
-    FoldRule rule;
-    PicturePart whole; // of one machine
-    std::vector<PicturePart> parts;
-};
-
-Scene sceneOf(std::mt19937& random, int ranks, const FoldRule& rule, int32_t width, int32_t height) {
-    Scene s{rule, clearedPart(width, height, rule), {}};
-    for (int rank = 0; rank < ranks; ++rank) {
-        s.parts.push_back(clearedPart(width, height, rule));
-        if (rank % 5 == 4) continue; // one that has drawn nothing
-        for (const Fragment& f : fragmentsOf(random, s.whole.colour.size(), rule)) {
-            draw(s.whole, f.at, f.colour, f.depth, rule);
-            draw(s.parts.back(), f.at, f.colour, f.depth, rule);
-        }
-    }
-    return s;
-}
 
 struct Outcome {
     PicturePart picture;
@@ -101,11 +27,11 @@ Outcome compose(const Scene& scene, Strategy strategy, const std::string& plant 
     std::mutex mutex;
     std::vector<std::thread> nodes;
     const int ranks = static_cast<int>(scene.parts.size());
-    if (lost >= 0 && partMs == 20'000) network.lose(lost);
+    if (lost >= 0 && partMs == 20'000) network.lose({lost, 0});
     for (int rank = 0; rank < ranks; ++rank) {
         if (rank == lost) continue;
         nodes.emplace_back([&, rank] {
-            FakeRoutes routes(network, rank);
+            FakeRoutes routes(network, {rank, 0});
             PictureComposer composer({strategy, rank, ranks, partMs, 60'000, 200, plant}, routes, [&](const std::string& line) {
                 const std::lock_guard lock(mutex);
                 outcome.lines.push_back(line);
@@ -146,7 +72,7 @@ TEST(PictureComposer, picturesFollowEachOther) {
         std::atomic<int> wrong{0};
         for (int rank = 0; rank < 5; ++rank)
             nodes.emplace_back([&, rank] {
-                FakeRoutes routes(network, rank);
+                FakeRoutes routes(network, {rank, 0});
                 PictureComposer composer({strategy, rank, 5, 20'000, 60'000, 5'000, ""}, routes, [&](const std::string&) { ++wrong; });
                 for (const Scene& scene : scenes) {
                     PicturePart part = scene.parts[static_cast<size_t>(rank)];
@@ -181,19 +107,10 @@ TEST(PictureComposer, aLostNodeHoldsUpNobody) {
         }
 }
 
-PicturePart foldedWithout(const Scene& scene, int lost) {
-    PicturePart picture = scene.parts[0];
-    for (size_t rank = 1; rank < scene.parts.size(); ++rank) {
-        const PicturePart& part = scene.parts[rank];
-        if (static_cast<int>(rank) != lost) foldRow({picture.colour.data(), picture.depth.data(), part.colour.data(), part.depth.data(), part.colour.size()}, FoldSide::Later, scene.rule);
-    }
-    return picture;
-}
-
 // Three pictures by nodes of which one is gone (lost), or two can't reach each other (cut); the last one.
 PicturePart thirdPicture(const Scene& scene, Strategy strategy, int lost, std::pair<int, int> cut) {
     FakeNetwork network;
-    if (lost >= 0) network.lose(lost);
+    if (lost >= 0) network.lose({lost, 0});
     network.cut(cut.first, cut.second);
     PicturePart last;
     std::vector<std::thread> nodes;
@@ -201,7 +118,7 @@ PicturePart thirdPicture(const Scene& scene, Strategy strategy, int lost, std::p
     for (int rank = 0; rank < ranks; ++rank) {
         if (rank == lost) continue;
         nodes.emplace_back([&, rank] {
-            FakeRoutes routes(network, rank);
+            FakeRoutes routes(network, {rank, 0});
             PictureComposer composer({strategy, rank, ranks, 20'000, 60'000, 5'000, ""}, routes, [](const std::string&) {});
             for (uint64_t serial = 1; serial <= 3; ++serial) {
                 PicturePart part = scene.parts[static_cast<size_t>(rank)];
@@ -221,7 +138,7 @@ TEST(PictureComposer, afterALossOnlyWhatTheLostNodeDrawsIsMissing) {
     const Scene scene = sceneOf(random, 7, ruleOf(DepthFunction::LessOrEqual, false), 60, 150);
     for (const Strategy strategy : kEveryStrategy)
         for (int lost = 1; lost < 7; ++lost) {
-            const PicturePart expected = foldedWithout(scene, lost);
+            const PicturePart expected = foldedWithout(scene, {lost});
             EXPECT_EQ(thirdPicture(scene, strategy, lost, {-1, -1}).colour, expected.colour) << nameOf(strategy) << " without " << lost;
         }
 }

@@ -14,15 +14,15 @@ ChannelSecret secretOf(unsigned char fill) {
 
 std::vector<std::byte> bytesOf(size_t count, int value) { return std::vector<std::byte>(count, static_cast<std::byte>(value)); }
 
-TEST(PictureExchange, namesSayTheRank) {
-    EXPECT_EQ(PictureExchange::rankOf(PictureExchange::nameOf(12)), 12);
-    EXPECT_EQ(PictureExchange::rankOf("range"), 0);
-    EXPECT_EQ(PictureExchange::rankOf("range3x"), 0);
-    EXPECT_EQ(PictureExchange::rankOf("node3"), 0);
+TEST(PictureExchange, namesSayRankAndLife) {
+    const auto there = [](PictureExchange::Name name) { return PictureExchange::nameOf(PictureExchange::textOf(name)) == name; };
+    EXPECT_TRUE(there({12, 0}));
+    EXPECT_TRUE(there({0, 31}));
+    for (const char* other : {"range", "range3", "range3.", "range3.x", "range3.1x", "range-1.0", "range.1", "node3.0"}) EXPECT_FALSE(PictureExchange::nameOf(other)) << other;
 }
 
 TEST(PictureExchange, bothSendAtOnceMoreThanBuffersHold) {
-    PictureExchange low(0, secretOf(1)), high(2, secretOf(1));
+    PictureExchange low({0, 0}, secretOf(1)), high({2, 0}, secretOf(1));
     ASSERT_TRUE(low.listen(true));
     ASSERT_TRUE(high.connectTo(0, "127.0.0.1", low.port(), Deadline::inMs(5000)));
     constexpr size_t kBytes = 32 << 20;
@@ -40,7 +40,7 @@ TEST(PictureExchange, bothSendAtOnceMoreThanBuffersHold) {
 }
 
 TEST(PictureExchange, whoKnowsNotTheSecretIsNotLetIn) {
-    PictureExchange low(0, secretOf(1)), stranger(1, secretOf(2));
+    PictureExchange low({0, 0}, secretOf(1)), stranger({1, 0}, secretOf(2));
     ASSERT_TRUE(low.listen(true));
     EXPECT_FALSE(stranger.connectTo(0, "127.0.0.1", low.port(), Deadline::inMs(5000)));
     EXPECT_EQ(low.receive(1, 100, Deadline::inMs(300)).error().message, "no connection of range 2 came");
@@ -48,10 +48,10 @@ TEST(PictureExchange, whoKnowsNotTheSecretIsNotLetIn) {
 }
 
 TEST(PictureExchange, whoIsGoneIsSaidAtOnce) {
-    PictureExchange low(0, secretOf(1));
+    PictureExchange low({0, 0}, secretOf(1));
     ASSERT_TRUE(low.listen(true));
     {
-        PictureExchange high(1, secretOf(1));
+        PictureExchange high({1, 0}, secretOf(1));
         ASSERT_TRUE(high.connectTo(0, "127.0.0.1", low.port(), Deadline::inMs(5000)));
         ASSERT_TRUE(high.send(0, bytesOf(1 << 20, 7), Deadline::inMs(5000)));
     } // what was sent still comes
@@ -63,12 +63,101 @@ TEST(PictureExchange, whoIsGoneIsSaidAtOnce) {
 }
 
 TEST(PictureExchange, whatIsTooLargeEndsTheConnection) {
-    PictureExchange low(0, secretOf(1)), high(1, secretOf(1));
+    PictureExchange low({0, 0}, secretOf(1)), high({1, 0}, secretOf(1));
     ASSERT_TRUE(low.listen(true));
     ASSERT_TRUE(high.connectTo(0, "127.0.0.1", low.port(), Deadline::inMs(5000)));
     ASSERT_TRUE(high.send(0, bytesOf(101, 7), Deadline::inMs(5000)));
     EXPECT_EQ(low.receive(1, 100, Deadline::inMs(5000)).error().message, "range 2: a picture of 101 bytes came where 100 are the most");
     EXPECT_EQ(low.receive(1, 100, Deadline::inMs(5000)).error().message, "range 2 is gone");
+}
+
+// What is known of the one before stays as it is until it is said that the newcomer takes part.
+TEST(PictureExchange, whoComesBackTakesTheOldPlaceWhenItIsTold) {
+    PictureExchange low({0, 0}, secretOf(1));
+    ASSERT_TRUE(low.listen(true));
+    {
+        PictureExchange before({1, 0}, secretOf(1));
+        ASSERT_TRUE(before.connectTo(0, "127.0.0.1", low.port(), Deadline::inMs(5000)));
+        ASSERT_TRUE(before.send(0, bytesOf(10, 1), Deadline::inMs(5000)));
+        EXPECT_TRUE(low.receive(1, 100, Deadline::inMs(5000)));
+    }
+    {
+        PictureExchange onItsWay({1, 1}, secretOf(1)); // lost before it was a member
+        ASSERT_TRUE(onItsWay.connectTo(0, "127.0.0.1", low.port(), Deadline::inMs(5000)));
+    }
+    PictureExchange again({1, 2}, secretOf(1));
+    ASSERT_TRUE(again.connectTo(0, "127.0.0.1", low.port(), Deadline::inMs(5000)));
+    ASSERT_TRUE(again.send(0, bytesOf(10, 2), Deadline::inMs(5000)));
+    EXPECT_FALSE(low.receive(1, 100, Deadline::inMs(5000))) << "the old one's end";
+    low.renew(1, 2);
+    EXPECT_EQ(*low.receive(1, 100, Deadline::inMs(5000)), bytesOf(10, 2));
+    ASSERT_TRUE(low.send(1, bytesOf(10, 3), Deadline::inMs(5000)));
+    EXPECT_EQ(*again.receive(0, 100, Deadline::inMs(5000)), bytesOf(10, 3));
+}
+
+// It was a member, and is lost again, and the next one is here: what it had sent is read all the same.
+TEST(PictureExchange, whoIsBehindReadsOfEachLifeWhatItSent) {
+    PictureExchange low({0, 0}, secretOf(1));
+    ASSERT_TRUE(low.listen(true));
+    for (int life = 0; life < 4; ++life) {
+        PictureExchange high({1, static_cast<uint32_t>(life)}, secretOf(1));
+        ASSERT_TRUE(high.connectTo(0, "127.0.0.1", low.port(), Deadline::inMs(5000)));
+        ASSERT_TRUE(high.send(0, bytesOf(10, life), Deadline::inMs(5000)));
+    }
+    for (int life = 0; life < 4; ++life) {
+        if (life == 2) continue; // it never became one
+        if (life > 0) low.renew(1, static_cast<uint32_t>(life));
+        auto came = low.receive(1, 100, Deadline::inMs(5000));
+        ASSERT_TRUE(came) << life << ": " << came.error().message;
+        EXPECT_EQ(*came, bytesOf(10, life));
+    }
+    EXPECT_FALSE(low.receive(1, 100, Deadline::inMs(5000)));
+}
+
+// The collector, too, goes to the others; of those it knows from their welcome which life they are in.
+TEST(PictureExchange, theLowestRankConnectsWhenItComesBack) {
+    PictureExchange high({2, 5}, secretOf(1));
+    ASSERT_TRUE(high.listen(true));
+    PictureExchange again({0, 1}, secretOf(1));
+    ASSERT_TRUE(again.connectTo(2, "127.0.0.1", high.port(), Deadline::inMs(5000)));
+    high.renew(0, 1);
+    again.renew(2, 5); // it is the one that is known
+    ASSERT_TRUE(again.send(2, bytesOf(10, 4), Deadline::inMs(5000)));
+    EXPECT_EQ(*high.receive(0, 100, Deadline::inMs(5000)), bytesOf(10, 4));
+    again.renew(2, 6); // and this one has not come
+    EXPECT_FALSE(again.send(2, bytesOf(10, 4), Deadline::inMs(5000)));
+}
+
+// Nobody waits for a connection that was not made in time.
+TEST(PictureExchange, whoDidNotComeIsGoneAtOnce) {
+    PictureExchange low({0, 0}, secretOf(1)), again({0, 1}, secretOf(1));
+    ASSERT_TRUE(low.listen(true));
+    low.renew(1, 1); // never seen
+    {
+        PictureExchange before({2, 0}, secretOf(1));
+        ASSERT_TRUE(before.connectTo(0, "127.0.0.1", low.port(), Deadline::inMs(5000)));
+        low.renew(2, 1); // back, but not here
+    }
+    const int64_t beganNs = monotonicNowNs();
+    for (const int rank : {1, 2}) {
+        EXPECT_FALSE(low.receive(rank, 100, Deadline::inMs(20000)));
+        EXPECT_FALSE(low.send(rank, bytesOf(10, 1), Deadline::inMs(20000)));
+        EXPECT_FALSE(again.receive(rank, 100, Deadline::inMs(20000))) << "it has gone to all that there are";
+    }
+    EXPECT_LT(monotonicNowNs() - beganNs, 5 * kNsPerS);
+}
+
+// Who is through with connecting is there for the other, however soon that asks.
+TEST(PictureExchange, whoIsWelcomedIsThere) {
+    PictureExchange low({0, 0}, secretOf(1));
+    ASSERT_TRUE(low.listen(true));
+    for (uint32_t life = 1; life < 60; ++life) {
+        PictureExchange high({1, life}, secretOf(1));
+        ASSERT_TRUE(high.connectTo(0, "127.0.0.1", low.port(), Deadline::inMs(5000)));
+        low.renew(1, life);
+        ASSERT_TRUE(low.send(1, bytesOf(5, 7), Deadline::inMs(5000))) << life;
+        ASSERT_EQ(*high.receive(0, 100, Deadline::inMs(5000)), bytesOf(5, 7));
+    }
 }
 
 } // namespace

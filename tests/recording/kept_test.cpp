@@ -67,6 +67,15 @@ TEST_F(Kept, whatIsMadeAndDeletedGoesWithItsNames) {
     EXPECT_EQ(left(op::glDeleteBuffers), 0u);
 }
 
+// Nodes that share draws ask whether shaders may ever have written to memory (nodes/replay/replay_range.cpp).
+TEST_F(Kept, thatMemoryWasBoundStaysKnownWhenItIsGone) {
+    give(PacketBuilder().record(op::glGenBuffers, {1, 4, 9}).record(op::glBindBufferBase, {GL_SHADER_STORAGE_BUFFER, 2, 9}).record(op::glDeleteBuffers, {1, 4, 9}));
+    EXPECT_EQ(left(op::glBindBufferBase), 1u);
+    give(PacketBuilder().record(op::glGenTextures, {1, 4, 9}).record(op::glBindImageTexture, {0, 9, 0, 0, 0, GL_READ_WRITE, GL_RGBA8}).record(op::glBindImageTexture, {0, 0, 0, 0, 0, GL_READ_WRITE, GL_RGBA8}));
+    give(PacketBuilder().record(op::glDeleteTextures, {1, 4, 9}));
+    EXPECT_EQ(left(op::glBindImageTexture), 1u);
+}
+
 TEST_F(Kept, proxiesOnlyAsk) {
     const auto image = [](uint32_t target) { return PacketBuilder().record(op::glTexImage2D, {target, 0, GL_RGBA, 1, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, 4, 7}); };
     give(PacketBuilder().record(op::glGenTextures, {1, 4, 9}).record(op::glBindTexture, {GL_TEXTURE_2D, 9}));

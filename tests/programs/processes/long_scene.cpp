@@ -2,9 +2,11 @@
 // buffer and a framebuffer object that are written to bit by bit, a display list, a query. A node that was started again in
 // the middle shows any of it that it was not given. SCENE_MIB in the environment: so many MiB of textures (8), SCENE_PAUSE_US
 // a pause in each frame (5000). Says "frame N T" on standard output before each: T are the milliseconds since the one before.
-// SCENE_KEEPS=1: only the first frame clears, the others draw over what was there.
+// SCENE_KEEPS=1: only the first frame clears, the others draw over what was there. SCENE_SHARES=1: behind a depth test and with many
+// small triangles all over it, so that --db shares it, each of up to 4 nodes something that is seen; and something over it that is not shared.
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <unistd.h>
@@ -25,14 +27,53 @@ constexpr int kPoints = 4096;
 constexpr int kSceneSide = 128;
 
 std::vector<GLuint> textures;
-GLuint buffer, list, scene, framebuffer;
+GLuint buffer, list, scene, framebuffer, chips;
+constexpr int kChips = 900;
 
 int fromEnvironment(const char* name, int otherwise) {
     const char* text = std::getenv(name);
     return text ? std::atoi(text) : otherwise;
 }
 
+bool shares() {
+    static const bool does = fromEnvironment("SCENE_SHARES", 0) != 0;
+    return does;
+}
+
+struct Corner {
+    GLfloat x, y, z;
+    GLubyte colour[4];
+};
+
+// Small triangles at few depths, that of the rest among them: of equal ones the later one is seen.
+void makeChips() {
+    Sequence numbers(77);
+    std::vector<Corner> corners;
+    for (int i = 0; i < kChips; ++i) {
+        const GLfloat x = 2 * numbers.unit() - 1, y = 2 * numbers.unit() - 1, z = 0.3F * GLfloat(int(numbers.next() % 5) - 2);
+        const GLubyte red = numbers.byte(), green = numbers.byte(), blue = numbers.byte();
+        for (const auto& [dx, dy] : {std::pair(0.0F, 0.0F), std::pair(0.12F, 0.02F), std::pair(0.03F, 0.14F)}) corners.push_back({x + dx, y + dy, z, {red, green, blue, 255}});
+    }
+    glGenBuffers(1, &chips);
+    glBindBuffer(GL_ARRAY_BUFFER, chips);
+    glBufferData(GL_ARRAY_BUFFER, GLsizeiptr(corners.size() * sizeof(Corner)), corners.data(), GL_STATIC_DRAW);
+    glBindBuffer(GL_ARRAY_BUFFER, 0);
+}
+
+void drawChips(int frame) {
+    glBindBuffer(GL_ARRAY_BUFFER, chips);
+    glEnableClientState(GL_VERTEX_ARRAY);
+    glEnableClientState(GL_COLOR_ARRAY);
+    glVertexPointer(3, GL_FLOAT, sizeof(Corner), nullptr);
+    glColorPointer(4, GL_UNSIGNED_BYTE, sizeof(Corner), reinterpret_cast<const void*>(offsetof(Corner, colour)));
+    glDrawArrays(GL_TRIANGLES, 0, 3 * (kChips - frame % 50)); // not what the frame before has cost
+    glDisableClientState(GL_COLOR_ARRAY);
+    glDisableClientState(GL_VERTEX_ARRAY);
+    glBindBuffer(GL_ARRAY_BUFFER, 0);
+}
+
 void setUp(Window&) {
+    if (shares()) makeChips();
     textures.resize(size_t(std::max(1, fromEnvironment("SCENE_MIB", 8) / 4)));
     glGenTextures(GLsizei(textures.size()), textures.data());
     std::vector<GLuint> texels(size_t{kSide} * kSide);
@@ -120,6 +161,11 @@ void draw(Window& window, int frame) {
     glClearColor(0.1F, 0.1F, 0.05F * float(frame % 12), 1);
     static const bool keeps = fromEnvironment("SCENE_KEEPS", 0) != 0;
     if (!keeps || frame == 0) glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    if (shares()) {
+        glEnable(GL_DEPTH_TEST);
+        glDepthFunc(GL_LEQUAL);
+        drawChips(frame);
+    }
     glEnable(GL_TEXTURE_2D);
     glColor3f(1, 1, 1);
     const size_t count = std::min<size_t>(textures.size(), 8);
@@ -139,9 +185,17 @@ void draw(Window& window, int frame) {
     glEnableClientState(GL_VERTEX_ARRAY);
     glVertexPointer(2, GL_FLOAT, 0, nullptr);
     glColor3f(1, 0.8F, 0.1F);
-    glDrawArrays(GL_POINTS, 0, kPoints);
+    glDrawArrays(GL_POINTS, 0, shares() ? frame % kPoints : kPoints);
     glDisableClientState(GL_VERTEX_ARRAY);
     glBindBuffer(GL_ARRAY_BUFFER, 0);
+    if (shares()) { // seen through
+        glDisable(GL_DEPTH_TEST);
+        glEnable(GL_BLEND);
+        glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+        glColor4f(0.3F, 0, 0.6F, 0.4F);
+        quad(-0.5F, -0.5F, 0.1F, 0.1F);
+        glDisable(GL_BLEND);
+    }
     static const int pauseUs = fromEnvironment("SCENE_PAUSE_US", 5000);
     usleep(useconds_t(pauseUs));
 }

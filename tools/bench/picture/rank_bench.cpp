@@ -104,6 +104,7 @@ public:
         return {bytes, ns};
     }
     void giveUp(int) override {}
+    void renew(int, uint32_t) override {} // nobody is lost
     // At the end of a picture.
     void waitSent() {
         for (const Kept& k : kept_) links_.waitSent(k.rank, k.number);

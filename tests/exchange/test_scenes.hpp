@@ -1,0 +1,40 @@
+// One picture as a machine draws it, and as several do that share its draws.
+#pragma once
+
+#include "tests/exchange/test_parts.hpp"
+
+#include <set>
+#include <vector>
+
+namespace mural::test {
+
+struct Scene {
+    FoldRule rule;
+    PicturePart whole; // of one machine
+    std::vector<PicturePart> parts;
+};
+
+inline Scene sceneOf(std::mt19937& random, int ranks, const FoldRule& rule, int32_t width, int32_t height) {
+    Scene s{rule, clearedPart(width, height, rule), {}};
+    for (int rank = 0; rank < ranks; ++rank) {
+        s.parts.push_back(clearedPart(width, height, rule));
+        if (rank % 5 == 4) continue; // one that has drawn nothing
+        for (const Fragment& f : fragmentsOf(random, s.whole.colour.size(), rule)) {
+            draw(s.whole, f.at, f.colour, f.depth, rule);
+            draw(s.parts.back(), f.at, f.colour, f.depth, rule);
+        }
+    }
+    return s;
+}
+
+// By the collector, of what is there.
+inline PicturePart foldedWithout(const Scene& scene, const std::set<int>& lost) {
+    PicturePart picture = scene.parts[0];
+    for (size_t rank = 1; rank < scene.parts.size(); ++rank) {
+        const PicturePart& part = scene.parts[rank];
+        if (!lost.contains(static_cast<int>(rank))) foldRow({picture.colour.data(), picture.depth.data(), part.colour.data(), part.depth.data(), part.colour.size()}, FoldSide::Later, scene.rule);
+    }
+    return picture;
+}
+
+} // namespace mural::test
