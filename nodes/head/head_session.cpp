@@ -1,6 +1,7 @@
 #include "nodes/head/head_session.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <poll.h>
 #include <thread>
@@ -24,6 +25,11 @@ std::vector<int> picturesOf(const SessionPlan& plan) {
 PictureAssembler::Compose composeBy(const WallComposition& wall) {
     if (picturesOf(wall) == 1) return {};
     return [wall](const std::vector<Picture>& passes, OwnedPicture& into) { composeWall(wall, passes, into); };
+}
+
+std::string plantOf() {
+    const char* const plant = std::getenv("MURAL_PLANT"); // a fault on purpose, for tests of the tests
+    return plant != nullptr ? plant : "";
 }
 
 bool wantsPictures(const SessionConfig& config, const SessionPlan& plan) {
@@ -57,6 +63,9 @@ HeadSession::HeadSession(SessionConfig config,
                     frames_.pictureHeld(picture.client, picture.frame);
                     output_->add(std::move(picture));
                 })
+    , dealer_(plan_,
+              [this](const Areas& areas) { nodes_.leadWith(wire::HeadCommand::Areas, bytesOf(areas)); },
+              plantOf())
     , views_(nodes.size())
     , facts_(nodes.size())
     , ready_(nodes.size(), false)
@@ -179,6 +188,7 @@ Result<void> HeadSession::nodeReady(int node, const std::string& json) {
 }
 
 Result<void> HeadSession::nodeAnswer(int node, const wire::AnswerHeader& header, ByteBuffer bytes) {
+    dealer_.answered();
     return answers_.answer(node, header, std::move(bytes));
 }
 
@@ -194,7 +204,9 @@ Result<void> HeadSession::nodeFrameDone(int node, const wire::FrameDoneMessage& 
         totals.readbackSeconds += static_cast<double>(message.readbackNs) / static_cast<double>(kNsPerS);
         totals.cpuSeconds = totals.replaySeconds + totals.readbackSeconds; // until its Bye knows better
     }
+    dealer_.frameDone(node, message);
     if (message.flags & wire::kDrawnWhole) sayDrawnWhole();
+    if (message.flags & wire::kKeepsAreas) sayKeepsAreas();
     if (message.flags & wire::kKeepsPicture) sayKeepsPicture();
     if (plan_.nodes[static_cast<size_t>(node)].pass.ranges > 1) countSplit(message.flags);
     return frames_.frameDone(node, message, monotonicNowNs());
@@ -213,6 +225,11 @@ void HeadSession::countSplit(uint32_t flags) {
     if (!(flags & wire::kNotSplit)) unsplitFrames_ = INT64_MIN / 2;
     else if (++unsplitFrames_ == kFrames * nodeCount_)
         control_.say("none of the program's first frames has draws that nodes can share (opaque, with a depth test, into its window, behind a clear of colour and depth): one node draws all; --db does not make that faster");
+}
+
+void HeadSession::sayKeepsAreas() {
+    if (keepsAreas_.exchange(true)) return;
+    control_.say("frames of a window are drawn without a clear of all that its buffers hold (or into its front, or accumulated): its tiles stay with the nodes that have them; a queue does not make that faster");
 }
 
 void HeadSession::sayKeepsPicture() {
@@ -244,6 +261,7 @@ void HeadSession::windowGone(const std::pair<uint32_t, uint32_t>& window, int no
         gone_.erase(entry);
     }
     const auto [client, id] = window;
+    dealer_.windowGone(client, id);
     if (id != wire::kAllWindows) {
         frames_.windowGone(client, id);
         if (output_) output_->windowGone(client, id);
@@ -390,6 +408,7 @@ SessionStatus HeadSession::status() {
     result.display = nameOf(config_.display);
     result.wallFrames = frames_.totals().wallFrames;
     result.economy = nodes_.economyCounts();
+    result.queues = dealer_.totals();
     result.programs = programs_->status();
     for (ProgramStatus& program : result.programs) {
         program.progress = frames_.progressOf(program.id);
@@ -412,6 +431,7 @@ SessionNumbers HeadSession::numbers() {
     result.frames = frames_.totals();
     result.bytesSent = nodes_.bytesSent();
     result.economy = nodes_.economyCounts();
+    result.queues = dealer_.totals();
     result.programs = programs_->counts();
     if (output_) result.output = output_->totals();
     result.drawnWhole = drawnWhole_;

@@ -27,7 +27,8 @@ public:
         std::function<Result<StartingNode>(int node)> start;    // by tick(); empty: none is started again
         std::function<void(int node, StartingNode&)> connected; // makes its link and sends its setup
         std::function<std::string(int node)> whyNever;          // for a reason of the session; empty: it may come back
-        std::function<bool(int node)> takesTurns;
+        std::function<NodeSet::Turns(int node)> turns;
+        std::function<std::string(int node)> tilesOfLost; // what becomes of them while it is
         std::function<NodeSet::Admission(int node, uint32_t view)> admitted; // under the lock that orders packets
         std::function<void(int node, const std::string&)> gaveUp; // with the line for the user; it stays lost
         std::function<void(const std::string&)> say;
@@ -42,7 +43,7 @@ public:
     bool lostOnItsWay(int node, const std::string& why);
     void ready(int node); // with facts that suit the session
     void synchronized(int node, const wire::SynchronizedMessage& message);
-    void turns(uint32_t number, const std::vector<wire::WindowTurn>& turns);
+    void turns(uint32_t number, const std::vector<std::byte>& turns);
     // Nodes that catch up do not draw the frames that nobody waits for; not once that has failed.
     [[nodiscard]] bool skipsFrames() const;
     // Called by Hooks::admitted when it agrees; false: it is gone already.

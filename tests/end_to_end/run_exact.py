@@ -30,6 +30,7 @@ def parse_arguments(description, add_arguments):
     parser.add_argument("--mural", help="the launcher; default BUILD/bin/mural")
     parser.add_argument("--programs", help="programs and groups, separated by commas; default all")
     parser.add_argument("--layouts", default="1x1,2x2,3x1,7x5", help="tiles, columns x rows")
+    parser.add_argument("--tile-queue", metavar="WxH", help="nodes take tiles of this size from a queue; layouts are numbers of nodes then")
     parser.add_argument("--size", default="1000x777", help="of the programs' windows")
     parser.add_argument("--frames", type=int, default=4)
     parser.add_argument("--options", default="--display none",
@@ -60,6 +61,7 @@ class Comparison:
         self.known = 0
         self.skipped = 0
         self.healed = []
+        self.taken = 0
 
     def finish(self):
         """Whatever has to be looked at after all programs."""
@@ -76,7 +78,9 @@ class Comparison:
             return {"native": []}
         mural = arguments.mural or os.path.join(arguments.build, "bin", "mural")
         options = arguments.options.split()
-        return {layout: [mural, "run", "--tiles", layout, "--report", self.report_file()] + options + ["--"]
+        def divided(layout):
+            return ["--tile-queue", arguments.tile_queue, "--local-nodes", layout] if arguments.tile_queue else ["--tiles", layout]
+        return {layout: [mural, "run"] + divided(layout) + ["--report", self.report_file()] + options + ["--"]
                 for layout in arguments.layouts.split(",")}
 
     def report_file(self):
@@ -89,6 +93,19 @@ class Comparison:
                 return json.load(report)["frames"] > 0
         except (OSError, ValueError, KeyError):
             return False
+
+    def moves(self):
+        """How often the areas of the nodes changed from one frame to the next, as the last report has it."""
+        if not self.arguments.tile_queue:
+            return ""
+        try:
+            with open(self.report_file(), encoding="utf-8") as report:
+                queues = json.load(report)["queues"] or []
+        except (OSError, ValueError, KeyError):
+            return ""
+        taken = sum(queue["taken"] for queue in queues)
+        self.taken += taken
+        return ", areas changed %d times" % taken
 
     def check(self, name):
         native = self.run(name, "reference")
@@ -122,7 +139,7 @@ class Comparison:
             self.healed.append(name)
         self.failures += wrong is not None
         print("%-24s %-9s %3d frames  %s  (%.1f s)" % (
-            name, label, frames, ("within the bound" if self.arguments.bound else "0 pixels differ") if wrong is None else "WRONG: " + wrong, seconds),
+            name, label, frames, (("within the bound" if self.arguments.bound else "0 pixels differ") if wrong is None else "WRONG: " + wrong) + self.moves(), seconds),
             flush=True)
 
     def compare(self, native, through):
