@@ -48,7 +48,9 @@ bool TileQueue::look(double longest) {
     auto other = dealTiles(costs_, areas_);
     double promised = 0;
     for (const TileRegion& area : other) promised = std::max(promised, costs_.of(area));
-    return promised <= (1 - rules_.gain) * longest && takeAreas(std::move(other));
+    if (promised <= (1 - rules_.gain) * longest) return takeAreas(std::move(other));
+    kept_ = longest > (1 + rules_.brought) * bestLongest_; // nothing better is in sight from here
+    return kept_ && takeAreas(best_);
 }
 
 bool TileQueue::takeAreas(std::vector<TileRegion> areas) {

@@ -18,10 +18,10 @@ namespace mural::queue {
 
 struct QueueRules {
     int frames = 2;        // measured before tiles move: one alone may be an odd one
-    double gain = 0.08;    // part of the longest time that new areas must promise to save…
-    double brought = 0.03; // …and to have saved, measured
+    double gain = 0.06;    // part of the longest time that new areas must promise to save…
+    double brought = 0.01; // …and to have saved, measured
     int failures = 3;      // moves in a row that have not
-    double changed = 0.25; // part by which the longest time becomes another while nothing moves: the load has changed
+    double changed = 0.15; // part by which the longest time becomes another while nothing moves: the load has changed
 };
 
 class TileQueue {

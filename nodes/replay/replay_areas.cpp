@@ -127,7 +127,7 @@ GLbitfield Replay::noteArea(uint16_t opcode, std::span<const std::byte> argument
     Window& w = *c_->draw;
     MovingPart& m = w.moving;
     if (c_->compiling) {
-        if (c_->compileMode == GL_COMPILE_AND_EXECUTE) m.drawn = buffersOf(w.config);
+        if (c_->compileMode == GL_COMPILE_AND_EXECUTE) noteNativeList(); // it is drawn by the driver, as it is compiled
         return 0;
     }
     if (opcode == op::glCallList || opcode == op::glCallLists) return 0; // what is in them comes by here
