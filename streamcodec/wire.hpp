@@ -128,7 +128,7 @@ struct FrameDoneMessage {
     uint32_t flags;    // kDrawnWhole, kKeepsPicture, kNotSplit, kKeepsAreas
     uint32_t areas;    // number of the Areas by which its picture is divided; 0: those of the start
     uint32_t reserved;
-    uint64_t busyNs;   // time that the node was at work, on anything, since the frame before; waits and sending do not count
+    uint64_t busyNs;   // that the node was at work, on anything, since the frame before: without waits and sending; CPU time where nodes share cores
     uint64_t replayNs; // CPU time of the replay thread since the frame before
     uint64_t readbackNs;
     uint64_t calls;    // records of this client since its start, up to this frame

@@ -169,6 +169,10 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
             const Viewport area = other.area.value_or(Viewport{});
             setup.areas.insert(setup.areas.end(), {area.x, area.y, area.w, area.h});
         }
+    setup.sharesMachine = std::ranges::any_of(plan.nodes, [&](const NodePlan& other) {
+        const bool bothHere = other.reach != NodeReach::LaunchCommand && node.reach != NodeReach::LaunchCommand;
+        return other.node != node.node && (bothHere || (other.reach == node.reach && other.where == node.where));
+    });
     setup.pass = node.pass;
     setup.screen = node.screen;
     setup.collector = node.collector;

@@ -40,11 +40,16 @@ double processCpuSeconds() {
     return static_cast<double>(r.ru_utime.tv_sec + r.ru_stime.tv_sec) + 1e-6 * static_cast<double>(r.ru_utime.tv_usec + r.ru_stime.tv_usec);
 }
 
+bool drawsWithoutGpu(const std::string& renderer) {
+    for (const char* software : {"llvmpipe", "softpipe", "swrast", "SWR"})
+        if (renderer.find(software) != std::string::npos) return true;
+    return false;
+}
+
 // Near the GPU. Not where the CPU draws: the driver's threads need all cores then.
 std::string placeReplay(const NodeSetup& setup, const std::string& renderer) {
     if (!setup.placeThreads) return "not placed: --no-placement";
-    for (const char* software : {"llvmpipe", "softpipe", "swrast", "SWR"})
-        if (renderer.find(software) != std::string::npos) return "not placed: drawn without a GPU";
+    if (drawsWithoutGpu(renderer)) return "not placed: drawn without a GPU";
     return placeThread(DeviceKind::Gpu).description;
 }
 
@@ -58,6 +63,12 @@ std::vector<Viewport> areasOf(const std::vector<double>& numbers) {
     std::vector<Viewport> areas;
     for (size_t i = 0; i + 4 <= numbers.size(); i += 4) areas.push_back({numbers[i], numbers[i + 1], numbers[i + 2], numbers[i + 3]});
     return areas;
+}
+
+int64_t processCpuNowNs() {
+    timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return int64_t{now.tv_sec} * kNsPerS + now.tv_nsec;
 }
 
 constexpr int64_t kMeetMs = 10'000;
@@ -83,7 +94,7 @@ public:
 
 private:
     bool take(const wire::PacketHeader& header, std::span<const std::byte> payload) {
-        beganNs_ = monotonicNowNs();
+        beganNs_ = workNowNs();
         const bool goesOn = takePacket(header, payload);
         countWork();
         return goesOn;
@@ -91,11 +102,14 @@ private:
 
     // Time at work goes up to now. What follows is not waiting for anybody.
     void countWork() {
-        const int64_t nowNs = monotonicNowNs();
+        const int64_t nowNs = workNowNs();
         const int64_t workedNs = nowNs - std::exchange(beganNs_, nowNs);
         if (slow_) std::this_thread::sleep_for(std::chrono::nanoseconds(kSlower * workedNs));
         busyNs_ += workedNs * (slow_ ? 1 + kSlower : 1);
     }
+
+    // Nodes that draw by the same cores keep each other waiting, whatever tiles they have: there their own work alone counts.
+    [[nodiscard]] int64_t workNowNs() const { return countsCpu_ ? processCpuNowNs() : monotonicNowNs(); }
 
     bool takePacket(const wire::PacketHeader& header, std::span<const std::byte> payload) {
         if (header.stream == 0) return headCommand(payload);
@@ -156,6 +170,8 @@ private:
         auto platform = gl::openPlatform(setup_.glBackend);
         if (!platform) return fail(platform.error().message);
         nlohmann::json ready = probe(**platform);
+        countsCpu_ = setup_.sharesMachine && drawsWithoutGpu(ready.value("renderer", ""));
+        beganNs_ = workNowNs();
         ready["placement"] = placeReplay(setup_, ready.value("renderer", ""));
         if (!setup_.stream.empty() && !setup_.catchesUp) {
             const auto followed = line_->follow(setup_.stream, setup_.streamSecret, name_);
@@ -399,7 +415,7 @@ private:
             countWork();
             if (pixels) sendPicture(f, pixels);
             if (windows_) showTiles(f);
-            beganNs_ = monotonicNowNs(); // who takes the picture may have let it wait
+            beganNs_ = workNowNs(); // who takes the picture may have let it wait
         }
         countWork();
         wire::FrameDoneMessage done{};
@@ -475,6 +491,7 @@ private:
     std::unique_ptr<TileWindows> windows_;
     std::unique_ptr<Replay> replay_;
     uint64_t lastCpuNs_ = 0;
+    bool countsCpu_ = false;
     int64_t beganNs_ = 0; // when the work in hand was begun…
     int64_t busyNs_ = 0;  // …and all before it, since the last frame
     bool slow_ = false;   // a fault for tests to find

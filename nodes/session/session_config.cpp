@@ -109,6 +109,7 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("areaWidth", s.area.w);
     visit("areaHeight", s.area.h);
     visit("areas", s.areas);
+    visit("sharesMachine", s.sharesMachine);
     visit("screen", s.screen);
     visit("shareStart", s.pass.share.start);
     visit("shareEnd", s.pass.share.end);

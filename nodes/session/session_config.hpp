@@ -81,6 +81,7 @@ struct NodeSetup {
     Viewport area;                // this one of the picture
     std::vector<double> areas;    // that of every node, x, y, width, height, where they move (HeadCommand::Areas); empty: they don't
     RenderPass pass;
+    bool sharesMachine = false;   // with other nodes of the session
     std::optional<ScreenView> screen; // of a room; else the part is one of a flat wall, seen as the program sees it
     bool answers = true; // what programs read of windows is this pass's
     double eyeBase = 0.05, focusDistance = 1; // see SessionConfig
