@@ -409,6 +409,10 @@ SessionStatus HeadSession::status() {
     result.wallFrames = frames_.totals().wallFrames;
     result.economy = nodes_.economyCounts();
     result.queues = dealer_.totals();
+    if (!result.queues.empty() && result.queues.front().columns > 0) {
+        result.columns = result.queues.front().columns;
+        result.rows = result.queues.front().rows;
+    }
     result.programs = programs_->status();
     for (ProgramStatus& program : result.programs) {
         program.progress = frames_.progressOf(program.id);

@@ -38,6 +38,13 @@ std::vector<Viewport> evenParts(int n) {
     return parts;
 }
 
+std::string queueName(RenderPass pass) {
+    pass.range = 0;
+    pass.ranges = 1; // all of them have the same tiles
+    const std::string of = describe(pass);
+    return of.empty() ? "tiles" : "tiles of " + of;
+}
+
 // Empty: nothing.
 std::string whyTilesStay(const SessionPlan& plan, const SessionConfig& config, int queue) {
     if (config.tiling == Tiling::Lean) return "--tiling lean gives each node a framebuffer of its first tiles' size";
@@ -76,12 +83,12 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
 
     SessionPlan plan;
     plan.wall = compositionOf(config.passes);
-    plan.nodesShowWall = passCount == 1;
+    plan.nodesShowWall = passCount == 1 && !queues; // windows of nodes stay where they are, tiles of a queue do not
     for (int p = 0; p < passCount; ++p) {
         const int parts = std::max(1, nodesOfPass(count / ranges, passCount, p));
         const std::vector<TileRegion> regions = queues ? std::vector<TileRegion>(static_cast<size_t>(parts)) : splitGrid(config.columns, config.rows, parts);
         const std::vector<Viewport> areas = queues ? evenParts(parts) : std::vector<Viewport>();
-        if (queues && parts > 1) plan.queues.push_back({"tiles" + (describe(passes[static_cast<size_t>(p)]).empty() ? "" : " of " + describe(passes[static_cast<size_t>(p)])), {}, config.tileWidth, config.tileHeight});
+        if (queues && parts > 1) plan.queues.push_back({queueName(passes[static_cast<size_t>(p)]), {}, config.tileWidth, config.tileHeight});
         for (size_t part = 0; part < regions.size(); ++part) {
             const TileRegion& region = regions[part];
             const auto collector = static_cast<int>(plan.nodes.size());

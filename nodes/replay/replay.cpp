@@ -112,11 +112,9 @@ bool Replay::execute(uint16_t opcode, std::span<const std::byte> arguments, Blob
     if (drawsFewer()) noteKernel(opcode);
     if (takesRanges()) in = Args(noteRange(opcode, arguments), blobs); // a piece of it, or nothing
     const bool leftOut = (takesTurns() || (hasSkipped_ && c_->draw && c_->draw->skipped)) && leavesOut(opcode); // behind noteRange, which decides whether this draw is the node's
-    const GLbitfield clearsAll = moves() ? noteArea(opcode, arguments) : 0;
+    if (moves()) noteArea(opcode, arguments);
     if (leftOut) exchangeDraws();
-    bool done = true;
-    if (clearsAll) clearAll(clearsAll, [&] { done = function(*this, in); });
-    else done = allocates(opcode) ? executeAllocating(function, in) : function(*this, in);
+    const bool done = allocates(opcode) ? executeAllocating(function, in) : function(*this, in);
     if (leftOut) exchangeDraws();
     if (movesView()) noteEyeAfter(opcode);
     return done;

@@ -530,8 +530,7 @@ private:
     [[nodiscard]] bool moves() const { return areas_ != nullptr; }
     [[nodiscard]] bool learnsAreas(const Window& w) const { return moves() && !knowsAreas_ && !w.skipped; }
     [[nodiscard]] PixelViewport partOf(const Window& w, const Areas* areas) const;
-    [[nodiscard]] GLbitfield noteArea(uint16_t opcode, std::span<const std::byte> arguments);
-    void clearAll(GLbitfield buffers, const std::function<void()>& call);
+    void noteArea(uint16_t opcode, std::span<const std::byte> arguments);
     [[nodiscard]] GLbitfield clearedBy(uint16_t opcode, std::span<const std::byte> arguments) const;
     [[nodiscard]] GLbitfield drawnBy(uint16_t opcode) const;
     void noteNativeList();

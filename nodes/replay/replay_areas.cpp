@@ -2,7 +2,7 @@
 //
 // A framebuffer has the whole window's size, so another part needs another scissor only. But what was drawn into that part
 // before, others have drawn: it is not here. So new areas are taken where nothing of it counts any more: when each buffer of
-// the window has been cleared whole and nothing was drawn there since. Those clears are done by all nodes in all of the
+// the window has been cleared whole and nothing was drawn there since: clears are done by all nodes in all of the
 // window. Buffers that nothing is ever drawn into are alike on all nodes and need no clear. Every node sees the same
 // commands, and so decides the same; a window that is never cleared whole keeps the areas that it has.
 //
@@ -118,45 +118,36 @@ GLbitfield Replay::drawnBy(uint16_t opcode) const {
     return GLbitfield{GL_COLOR_BUFFER_BIT} | tests(GL_DEPTH_BUFFER_BIT, shared.testsDepth, GL_DEPTH_TEST) | tests(GL_STENCIL_BUFFER_BIT, shared.testsStencil, GL_STENCIL_TEST);
 }
 
-// Before any command that may change pixels of the window. The buffers that it clears and that are to be cleared in all of the
-// window, by clearAll(); 0: it is like any other.
-GLbitfield Replay::noteArea(uint16_t opcode, std::span<const std::byte> arguments) {
+// Before any command that may change pixels of the window.
+void Replay::noteArea(uint16_t opcode, std::span<const std::byte> arguments) {
     const WindowUse use = useOf(opcode);
     if ((opcode == op::glBegin || opcode == op::glEnd) && !c_->compiling) c_->inPrimitive = opcode == op::glBegin;
-    if ((use != WindowUse::Clears && use != WindowUse::Draws) || !drawsWindow() || !c_->draw || !c_->shared) return 0;
+    if ((use != WindowUse::Clears && use != WindowUse::Draws) || !c_->shared) return;
+    if (c_->compiling) {
+        if (use == WindowUse::Clears || copiesPixels(opcode)) c_->shared->testsDepth = c_->shared->testsStencil = true; // what lists change
+        if (c_->compileMode == GL_COMPILE_AND_EXECUTE) noteNativeList(); // it is drawn by the driver, as it is compiled
+        return;
+    }
+    if (!drawsWindow() || !c_->draw || opcode == op::glCallList || opcode == op::glCallLists) return; // what is in lists comes by here
     Window& w = *c_->draw;
     MovingPart& m = w.moving;
-    if (c_->compiling) {
-        if (c_->compileMode == GL_COMPILE_AND_EXECUTE) noteNativeList(); // it is drawn by the driver, as it is compiled
-        return 0;
-    }
-    if (opcode == op::glCallList || opcode == op::glCallLists) return 0; // what is in them comes by here
     const GLbitfield cleared = use == WindowUse::Clears ? clearsOf(opcode, arguments) : 0;
     const bool stays = opcode == op::glAccum || (cleared & GL_ACCUM_BUFFER_BIT) || (w.config.doubleBuffer && isFrontBuffer(c_->drawBuffer0)) || w.config.stereo;
     if (stays && !m.fixed) {
         m.fixed = true;
         m.wanted = m.areas;
     }
-    if (m.wanted != m.areas && config_.plant == "uncleared") takeAreas(w);
-    if (use == WindowUse::Clears && m.wanted != m.areas) {
-        const GLbitfield whole = clearedBy(opcode, arguments);
-        if (whole && whole == (cleared & kWindowBuffers)) return whole;
-    }
-    m.drawn |= (use == WindowUse::Clears ? cleared & kWindowBuffers : drawnBy(opcode)) & buffersOf(w.config);
-    return 0;
-}
-
-void Replay::clearAll(GLbitfield buffers, const std::function<void()>& call) {
-    withoutTile(call);
-    MovingPart& m = c_->draw->moving;
-    m.drawn &= ~buffers;
-    if (m.drawn == 0) takeAreas(*c_->draw);
+    // Clears are all done without the tile (withoutTile), those of a part as well: what is alike on all nodes stays so.
+    if (use == WindowUse::Clears && (m.drawn & cleared)) m.drawn &= ~clearedBy(opcode, arguments);
+    if (m.wanted != m.areas && (m.drawn == 0 || config_.plant == "uncleared")) takeAreas(w);
+    if (use == WindowUse::Draws) m.drawn |= drawnBy(opcode) & buffersOf(w.config);
 }
 
 // What it switches on and draws is not known.
 void Replay::noteNativeList() {
     if (!drawsWindow() || !c_->draw || !c_->shared) return;
     Window& w = *c_->draw;
+    if (w.moving.wanted != w.moving.areas && w.moving.drawn == 0 && !c_->compiling) takeAreas(w);
     const GLbitfield tested = (c_->shared->testsDepth ? GL_DEPTH_BUFFER_BIT : 0) | (c_->shared->testsStencil ? GL_STENCIL_BUFFER_BIT : 0);
     w.moving.drawn |= (GL_COLOR_BUFFER_BIT | tested) & buffersOf(w.config);
     if (w.config.doubleBuffer && isFrontBuffer(c_->drawBuffer0) && !std::exchange(w.moving.fixed, true)) w.moving.wanted = w.moving.areas;

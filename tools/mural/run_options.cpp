@@ -318,6 +318,13 @@ Result<std::string> configTextOf(const RunArguments& a, const SessionConfig& c) 
     form.samples = c.passes.samples;
     form.frames = c.passes.period;
     if (c.passes.kernelHeight > 1) return Error{"--print-config: a pixel kernel of several rows has no short form; write it as pixel [ x y width height ] into a file"};
+    if (c.tileWidth > 0) {
+        constexpr int kTakers = 4; // where nothing says how many nodes there are, as planSession() has it
+        const int nodes = c.localNodes + static_cast<int>(c.hosts.size());
+        form.tileWidth = c.tileWidth;
+        form.tileHeight = c.tileHeight;
+        form.takers = nodes == 0 ? kTakers : std::max(1, nodes / static_cast<int>(passesOf(c.passes).size() * static_cast<size_t>(c.passes.ranges)));
+    }
     switch (c.passes.stereo) {
     case StereoMode::Off: break;
     case StereoMode::Anaglyph: form.stereo = config::StereoForm::Anaglyph; break;
