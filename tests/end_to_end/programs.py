@@ -68,7 +68,7 @@ def clean_environment(display):
     """Only what a program needs, so that results don't depend on the caller's settings."""
     keep = ("PATH", "HOME", "TMPDIR", "XDG_RUNTIME_DIR", "LANG", "LC_ALL", "MURAL_PLANT",
             "MURAL_LOG", "ASAN_OPTIONS", "UBSAN_OPTIONS", "LD_LIBRARY_PATH", "LIBGL_ALWAYS_SOFTWARE",
-            "EGL_PLATFORM", "LP_NUM_THREADS",
+            "EGL_PLATFORM", "LP_NUM_THREADS", "CLEARS_FRONT",
             # which driver: another Mesa than the system's
             "GALLIUM_DRIVER", "MESA_LOADER_DRIVER_OVERRIDE", "LIBGL_DRIVERS_PATH", "GBM_BACKENDS_PATH",
             "VK_ICD_FILENAMES", "VK_DRIVER_FILES", "__EGL_VENDOR_LIBRARY_DIRS")

@@ -39,6 +39,7 @@ def parse_arguments(description, add_arguments):
     parser.add_argument("--seconds", type=int, default=120, help="the longest that one run may take")
     parser.add_argument("--bound", type=float, default=0.0, metavar="PERCENT",
                         help="of the pixels that may differ; 0: none (tiling lean is not exact)")
+    parser.add_argument("--one-node", action="store_true", help="compare with a run on one node instead of a native one: of what drivers do not agree about")
     parser.add_argument("--native", action="store_true", help="compare two native runs")
     parser.add_argument("--keep", metavar="FOLDER", help="keep all pictures and logs there")
     parser.add_argument("--list", action="store_true", help="show the programs by group and stop")
@@ -84,6 +85,9 @@ class Comparison:
         return {layout: [mural, "run"] + divided(layout) + ["--report", self.report_file()] + options + ["--"]
                 for layout in arguments.layouts.split(",")}
 
+    def one_node(self):
+        return [os.path.join(self.arguments.build, "bin", "mural"), "run", "--display", "none", "--"]
+
     def report_file(self):
         return os.path.join(self.folder, "report.json")
 
@@ -109,7 +113,7 @@ class Comparison:
         return ", areas changed %d times" % taken
 
     def check(self, name):
-        native = self.run(name, "reference")
+        native = self.run(name, "reference", self.one_node() if self.arguments.one_node else ())
         wanted = programs.STATUS.get(name, 0)
         if native.status == programs.SKIPPED:
             self.skipped += 1
