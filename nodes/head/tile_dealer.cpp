@@ -65,8 +65,8 @@ void TileDealer::frameDone(int node, const wire::FrameDoneMessage& message) {
     work_[index] += static_cast<double>(message.busyNs);
     if (random_) dealAtRandom();
     if (Window{message.client, message.window} != followed_) return;
-    if (node == 0 && message.areas != std::exchange(drawnBy_, message.areas))
-        for (Queue& queue : queues_) ++queue.totals.taken;
+    for (Queue& queue : queues_)
+        if (!queue.takers.empty() && node == queue.takers.front() && message.areas != std::exchange(queue.drawnBy, message.areas)) ++queue.totals.taken;
     if (random_) return;
     Frame& frame = frames_[message.frame];
     frame.times.resize(areas_.size(), -1);

@@ -59,6 +59,7 @@ private:
         std::vector<int> takers; // of them, those that live
         std::optional<queue::TileQueue> tiles;
         QueueTotals totals;
+        uint32_t drawnBy = 0; // number of the areas of the followed window's last frame
     };
     struct Frame {
         std::vector<double> times; // by node; below 0: it has not finished
@@ -79,7 +80,6 @@ private:
     std::vector<Queue> queues_;
     std::vector<Viewport> areas_; // of all nodes, the latest
     uint32_t number_ = 0;         // of them
-    uint32_t drawnBy_ = 0;        // of those of the followed window's last frame
     std::vector<bool> lives_;
     std::vector<double> work_; // by node, since its last frame of the followed window
     Window followed_{};

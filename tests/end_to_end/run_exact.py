@@ -39,7 +39,7 @@ def parse_arguments(description, add_arguments):
     parser.add_argument("--seconds", type=int, default=120, help="the longest that one run may take")
     parser.add_argument("--bound", type=float, default=0.0, metavar="PERCENT",
                         help="of the pixels that may differ; 0: none (tiling lean is not exact)")
-    parser.add_argument("--one-node", action="store_true", help="compare with a run on one node instead of a native one: of what drivers do not agree about")
+    parser.add_argument("--one-node", action="store_true", help="compare with a run whose picture is not divided instead of a native one: of what drivers do not agree about, or passes change")
     parser.add_argument("--native", action="store_true", help="compare two native runs")
     parser.add_argument("--keep", metavar="FOLDER", help="keep all pictures and logs there")
     parser.add_argument("--list", action="store_true", help="show the programs by group and stop")
@@ -86,7 +86,7 @@ class Comparison:
                 for layout in arguments.layouts.split(",")}
 
     def one_node(self):
-        return [os.path.join(self.arguments.build, "bin", "mural"), "run", "--display", "none", "--"]
+        return [os.path.join(self.arguments.build, "bin", "mural"), "run"] + self.arguments.options.split() + ["--"]
 
     def report_file(self):
         return os.path.join(self.folder, "report.json")

@@ -1,5 +1,5 @@
 // Nearly all that a frame costs lies in one corner of the picture: many layers over each other. Every UNEVEN_STAY frames
-// (20) it is another corner; UNEVEN_LAYERS (150) says how much it costs.
+// (20) it is another corner; UNEVEN_LAYERS (150) says how much it costs. With UNEVEN_EVENLY the layers cover the whole picture.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -32,6 +32,7 @@ void layer(float x, float y, float side, Sequence& numbers) {
 
 void draw(Window&, int frame) {
     static const int stay = numberOf("UNEVEN_STAY", 20), layers = numberOf("UNEVEN_LAYERS", 150);
+    static const bool evenly = std::getenv("UNEVEN_EVENLY") != nullptr;
     glClearColor(0.1F, 0.02F * float(frame % 40), 0.2F, 1);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     Sequence numbers(unsigned(frame) + 5);
@@ -45,6 +46,10 @@ void draw(Window&, int frame) {
     glEnable(GL_BLEND);
     glDepthMask(GL_FALSE);
     for (int i = 0; i < layers; ++i) {
+        if (evenly) {
+            layer(-1, -1, 2, numbers);
+            continue;
+        }
         const float x = corner % 2 == 0 ? -1 : 0.2F, y = corner / 2 == 0 ? -1 : 0.2F;
         layer(x + 0.1F * numbers.unit(), y + 0.1F * numbers.unit(), 0.7F, numbers);
     }
