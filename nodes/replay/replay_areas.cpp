@@ -2,7 +2,7 @@
 //
 // A framebuffer has the whole window's size, so another part needs another scissor only. But what was drawn into that part
 // before, others have drawn: it is not here. So new areas are taken where nothing of it counts any more: when each buffer of
-// the window has been cleared whole and nothing was drawn there since: clears are done by all nodes in all of the
+// the window has been cleared whole and nothing was drawn there since. Clears are done by all nodes in all of the
 // window. Buffers that nothing is ever drawn into are alike on all nodes and need no clear. Every node sees the same
 // commands, and so decides the same; a window that is never cleared whole keeps the areas that it has.
 //
