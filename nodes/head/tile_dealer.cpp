@@ -175,6 +175,7 @@ void TileDealer::dealAtRandom() {
         std::vector<size_t> nodes(areas.size());
         for (size_t i = 0; i < nodes.size(); ++i) nodes[i] = i;
         cutAtRandom({0, 0, columns, rows}, nodes, *random_, areas);
+        ++queue.totals.frames;
         ++queue.totals.moves;
         queue.totals.tilesMoved += queue::tilesMoved(queue.tiles->areas(), areas);
         queue.tiles.emplace(columns, rows, std::move(areas));

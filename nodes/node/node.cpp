@@ -352,7 +352,7 @@ private:
             replay_->beginAreas();
         }
         if (catchesUp_ && node != static_cast<uint32_t>(setup_.node)) return true;
-        catchesUp_ = false;
+        if (std::exchange(catchesUp_, false)) busyNs_ = 0; // what it was given is no frame's work
         std::vector<wire::ClientFrame> frames;
         for (const auto& [client, frame] : frames_) frames.push_back({client, frame});
         line_->send(wire::NodeMessage::InView, std::as_bytes(std::span(&view, 1)), std::as_bytes(std::span(frames)));
