@@ -15,7 +15,7 @@ namespace mural::wire {
 
 constexpr uint32_t kMagic = 0x4d52534d; // "MSRM"
 constexpr uint32_t kVersion = 4;      // of packets and records; recordings have these, too
-constexpr uint32_t kBatchVersion = 6; // of batches (economy/) and head commands, which only head and nodes exchange
+constexpr uint32_t kBatchVersion = 6; // of batches (economy/), head commands and messages, which only head and nodes exchange
 
 // Which capture stream a packet belongs to: client (app process) and thread of it.
 // streamOf(0, 0) is the head's own stream: its payload is one HeadCommand.
@@ -41,10 +41,11 @@ enum class HeadCommand : uint32_t {
                     // it was started again. absent: nodes that are no members; its picture is put together without these
     Synchronize = 6, // u32 number, u32 draws: to a node that catches up; it answers Synchronized, and if it draws, draws windows from their next frames on
     NewHistory = 7, // what was had before is forgotten: batches behind it refer to what comes from here on
-    TellTurns = 8, // u32 number: members that take turns answer Turns, for a node that begins to catch up here
-    Turns = 9,     // WindowTurn*: to a node that catches up, behind what it was given up to that TellTurns
+    TellTurns = 8, // u32 number: members that take turns, or whose areas move, answer Turns, for a node that begins to catch up here
+    Turns = 9,     // as the message has it: to a node that catches up, behind what it was given up to that TellTurns
     JoinGroup = 10, // u32 node: it joins the multicast group of its setup, beside the stream by which this comes
     ByGroup = 11,  // ByGroupCommand: its last packet, or batch, by its own connection. It comes by the group, too, and behind it is what follows
+    Areas = 12,    // u32 number, u32 nodes, {f64 x, y, w, h} of each: what they draw of the picture from each window's next full clear on
 };
 struct ByGroupCommand {
     uint32_t node;
@@ -64,7 +65,8 @@ enum class NodeMessage : uint32_t {
     News = 9,      // News + text: what a node's GL tells of a program's context without being asked
     InView = 10,   // u32 view, ClientFrame*: what follows was sent after this Member
     Synchronized = 11, // SynchronizedMessage: it has come to that Synchronize
-    Turns = 12,    // u32 number of the TellTurns, WindowTurn*: of all windows, where it came
+    Turns = 12,    // u32 number of the TellTurns; of all windows, where it came: WindowTurn*, or of nodes whose areas move
+                   // u32 windows, WindowAreas of each, Areas*: the latest first, then all that these name
 };
 
 struct MessageHeader {
@@ -124,7 +126,10 @@ struct FrameDoneMessage {
     uint32_t frame;    // number of the frame of this client, from 1
     uint32_t width;    // of the window, pixels
     uint32_t height;
-    uint32_t flags;    // kDrawnWhole, kKeepsPicture, kNotSplit
+    uint32_t flags;    // kDrawnWhole, kKeepsPicture, kNotSplit, kKeepsAreas
+    uint32_t areas;    // number of the Areas by which its picture is divided; 0: those of the start
+    uint32_t reserved;
+    uint64_t busyNs;   // that the node was at work, on anything, since the frame before: without waits and sending; CPU time where nodes share cores
     uint64_t replayNs; // CPU time of the replay thread since the frame before
     uint64_t readbackNs;
     uint64_t calls;    // records of this client since its start, up to this frame
@@ -136,6 +141,8 @@ constexpr uint32_t kDrawnWhole = 1;
 constexpr uint32_t kKeepsPicture = 2;
 // Nothing of the frame was shared between the nodes that draw ranges.
 constexpr uint32_t kNotSplit = 4;
+// Areas were announced long ago, and the window was never cleared whole since.
+constexpr uint32_t kKeepsAreas = 8;
 
 // How far a program was when a node became a member.
 struct ClientFrame {
@@ -155,6 +162,16 @@ struct WindowTurn {
 };
 static_assert(sizeof(WindowTurn) == 40);
 constexpr uint32_t kTurnOver = 1, kTurnUndecided = 2, kTurnFresh = 4, kTurnForGood = 8;
+
+// By which areas a window is divided (nodes/replay/replay_areas.cpp): their numbers.
+struct WindowAreas {
+    uint32_t client;
+    uint32_t window;
+    uint32_t areas, wanted, front;
+    uint32_t drawn; // buffers of which each node has its part alone
+    uint32_t fixed; // 1: they stay
+};
+static_assert(sizeof(WindowAreas) == 28);
 
 struct SynchronizedMessage {
     uint32_t number; // of the Synchronize

@@ -132,7 +132,7 @@ private:
 
     // Each part on a channel of its own; of ranges the first part is drawn where the parts are put together.
     void divide(Compound& c, const std::string& channel, size_t depth) {
-        if (depth == levels_.size()) return;
+        if (depth == levels_.size()) return queueTiles(c, channel);
         const Level& level = levels_[depth];
         static constexpr const char* kNames[] = {".frame.", ".range.", ".pixel.", ".sample."};
         for (int32_t i = 0; i < level.count; ++i) {
@@ -161,6 +161,26 @@ private:
         }
     }
 
+    void queueTiles(Compound& c, const std::string& channel) {
+        if (form_.tileWidth <= 0 || form_.takers < 2) return;
+        TileQueue queue;
+        queue.name = channel + ".queue";
+        for (int32_t i = 0; i < form_.takers; ++i) {
+            const std::string name = channel + ".taker." + std::to_string(i);
+            addChannel(name, {0, 0, form_.width, form_.height}, false, {channelNamed(name)});
+            Compound part;
+            part.channel = name;
+            part.inputTiles.push_back(queue);
+            Frame frame;
+            frame.name = name;
+            part.outputFrames.push_back(frame);
+            c.inputFrames.push_back(frame);
+            c.children.push_back(std::move(part));
+        }
+        queue.size.pixels = Pixels2{static_cast<uint32_t>(form_.tileWidth), static_cast<uint32_t>(form_.tileHeight)};
+        c.outputTiles.push_back(queue);
+    }
+
     const ShortForm& form_;
     std::vector<Level> levels_;
     ConfigFile file_;
@@ -172,7 +192,7 @@ private:
 Result<ConfigFile> shortForm(const ShortForm& form) {
     int64_t channels = 1;
     for (const Named n : {Named{"tiles", form.columns}, {"tiles", form.rows}, {"db", form.ranges}, {"pixel", form.pixels}, {"subpixel", form.samples},
-                          {"dplex", form.frames}}) {
+                          {"dplex", form.frames}, {"local-nodes", form.takers}}) {
         if (n.value < 1) return Error{std::string("--") + n.option + " can't be " + std::to_string(n.value) + "; give 1 or more"};
         channels = std::min(channels * n.value, kMostChannels + 1);
     }

@@ -55,7 +55,6 @@ constexpr std::array kGaps = {
     Gap{"", "NV_barrier", "barriers wait over the network, without hardware; remove it"},
     Gap{"compound", "load_equalizer", kNoBalance},
     Gap{"compound", "tree_equalizer", kNoBalance},
-    Gap{"compound", "tile_equalizer", "its tiles are dealt out evenly; remove it where they cost the same"},
     Gap{"compound", "view_equalizer", "every view is drawn by all of its channels; remove it"},
     Gap{"compound", "DFR_equalizer", "pictures keep their size; give the compound a fixed zoom"},
     Gap{"compound", "framerate_equalizer", "frames are shown as they come; remove it"},

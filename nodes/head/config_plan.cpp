@@ -33,6 +33,7 @@ size_t at(Index index) { return ResolvedConfig::at(index); }
 struct Draw {
     RenderContext context;
     Viewport area; // of the canvas
+    int queue = -1; // of the plan
 };
 
 std::string nameOf(const config::ResolvedChannel& channel, Index index) { return channel.name.empty() ? "channel " + std::to_string(index) : channel.name; }
@@ -140,7 +141,7 @@ private:
         return {};
     }
 
-    // Queues are dealt out evenly, in strips of the picture or of the range.
+    // Queues begin dealt out evenly, in strips of the picture or of the range; tiles are taken by who is free, then.
     void dealOut(const FramePlan& plan, const compound::PlannedQueue& queue, const std::vector<size_t>& draws) {
         const RenderContext& divided = plan.contexts[at(queue.context)];
         const bool chunks = !queue.tiles.empty() && std::any_of(queue.tiles.begin(), queue.tiles.end(), [&](const compound::PlannedTile& t) { return t.range != divided.range; });
@@ -152,7 +153,17 @@ private:
             d.area = chunks ? whole : compose(whole, Viewport{0, from, 1, to - from});
             d.context.range = chunks ? compose(divided.range, Range{from, to}) : divided.range;
         }
-        plan_.explain.push_back("queue \"" + queue.name + "\": its " + (chunks ? "chunks" : "tiles") + " are dealt out evenly to " + std::to_string(draws.size()) + " nodes");
+        if (chunks || queue.tiles.empty()) {
+            plan_.explain.push_back("queue \"" + queue.name + "\": its chunks are dealt out evenly to " + std::to_string(draws.size()) + " nodes");
+            return;
+        }
+        TileQueuePlan planned{queue.name, compose(config_.views[at(divided.view)].viewport, divided.part), 0, 0};
+        for (const compound::PlannedTile& tile : queue.tiles) {
+            planned.width = std::max(planned.width, tile.area.w);
+            planned.height = std::max(planned.height, tile.area.h);
+        }
+        for (const size_t d : draws) draws_[d].queue = static_cast<int>(plan_.queues.size());
+        plan_.queues.push_back(planned);
     }
 
     // Destinations with their eyes, and which pictures they are made of.
@@ -234,6 +245,7 @@ private:
                 node.pass.ranges = static_cast<int>(draws.size());
                 node.picture = pictures_[i];
                 node.area = draws_[i].area;
+                node.queue = draws_[i].queue;
                 node.screen = screenOf(c);
                 node.collector = collector;
                 if (auto named = takeComposition(node, config_.compounds[at(c.compound)]); !named) return named;

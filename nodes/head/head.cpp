@@ -93,6 +93,7 @@ Result<SessionPlan> makePlan(const SessionConfig& config, const std::string& hos
     if (!loaded.ok()) return Error{loaded.diagnostics.firstError()};
     auto plan = planOf(loaded, {host, config.here, config.canvas, config.layouts, config.frusta, config.modelUnit});
     if (plan) chooseComposition(*plan, config.composition);
+    if (plan) settleQueues(*plan, config);
     return plan;
 }
 

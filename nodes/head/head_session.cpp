@@ -1,6 +1,7 @@
 #include "nodes/head/head_session.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <poll.h>
 #include <thread>
@@ -31,6 +32,11 @@ std::map<int, std::string> absencesOf(const std::vector<LaunchedNode>& nodes) {
     for (size_t i = 0; i < nodes.size(); ++i)
         if (!nodes[i].connection) absences[static_cast<int>(i)] = nodes[i].absence;
     return absences;
+}
+
+std::string plantOf() {
+    const char* const plant = std::getenv("MURAL_PLANT"); // a fault on purpose, for tests of the tests
+    return plant != nullptr ? plant : "";
 }
 
 bool wantsPictures(const SessionConfig& config, const SessionPlan& plan) {
@@ -64,6 +70,9 @@ HeadSession::HeadSession(SessionConfig config,
                     frames_.pictureHeld(picture.client, picture.frame);
                     output_->add(std::move(picture));
                 })
+    , dealer_(plan_,
+              [this](const Areas& areas) { nodes_.leadWith(wire::HeadCommand::Areas, bytesOf(areas)); },
+              plantOf())
     , absences_(absencesOf(nodes))
     , views_(nodes.size())
     , facts_(nodes.size())
@@ -190,6 +199,7 @@ Result<void> HeadSession::nodeReady(int node, const std::string& json) {
 }
 
 Result<void> HeadSession::nodeAnswer(int node, const wire::AnswerHeader& header, ByteBuffer bytes) {
+    dealer_.answered();
     return answers_.answer(node, header, std::move(bytes));
 }
 
@@ -205,7 +215,9 @@ Result<void> HeadSession::nodeFrameDone(int node, const wire::FrameDoneMessage& 
         totals.readbackSeconds += static_cast<double>(message.readbackNs) / static_cast<double>(kNsPerS);
         totals.cpuSeconds = totals.replaySeconds + totals.readbackSeconds; // until its Bye knows better
     }
+    dealer_.frameDone(node, message);
     if (message.flags & wire::kDrawnWhole) sayDrawnWhole();
+    if (message.flags & wire::kKeepsAreas) sayKeepsAreas();
     if (message.flags & wire::kKeepsPicture) sayKeepsPicture();
     if (plan_.nodes[static_cast<size_t>(node)].pass.ranges > 1) countSplit(message.flags);
     return frames_.frameDone(node, message, monotonicNowNs());
@@ -224,6 +236,11 @@ void HeadSession::countSplit(uint32_t flags) {
     if (!(flags & wire::kNotSplit)) unsplitFrames_ = INT64_MIN / 2;
     else if (++unsplitFrames_ == kFrames * nodeCount_)
         control_.say("none of the program's first frames has draws that nodes can share (opaque, with a depth test, into its window, behind a clear of colour and depth): one node draws all; --db does not make that faster");
+}
+
+void HeadSession::sayKeepsAreas() {
+    if (keepsAreas_.exchange(true)) return;
+    control_.say("frames of a window are drawn without a clear of all that its buffers hold (or into its front, or accumulated): its tiles stay with the nodes that have them; a queue does not make that faster");
 }
 
 void HeadSession::sayKeepsPicture() {
@@ -255,6 +272,7 @@ void HeadSession::windowGone(const std::pair<uint32_t, uint32_t>& window, int no
         gone_.erase(entry);
     }
     const auto [client, id] = window;
+    dealer_.windowGone(client, id);
     if (id != wire::kAllWindows) {
         frames_.windowGone(client, id);
         if (output_) output_->windowGone(client, id);
@@ -401,6 +419,11 @@ SessionStatus HeadSession::status() {
     result.display = nameOf(config_.display);
     result.wallFrames = frames_.totals().wallFrames;
     result.economy = nodes_.economyCounts();
+    result.queues = dealer_.totals();
+    if (!result.queues.empty() && result.queues.front().columns > 0) {
+        result.columns = result.queues.front().columns;
+        result.rows = result.queues.front().rows;
+    }
     result.programs = programs_->status();
     for (ProgramStatus& program : result.programs) {
         program.progress = frames_.progressOf(program.id);
@@ -423,6 +446,7 @@ SessionNumbers HeadSession::numbers() {
     result.frames = frames_.totals();
     result.bytesSent = nodes_.bytesSent();
     result.economy = nodes_.economyCounts();
+    result.queues = dealer_.totals();
     result.programs = programs_->counts();
     if (output_) result.output = output_->totals();
     result.drawnWhole = drawnWhole_;

@@ -30,6 +30,7 @@
 #include "nodes/head/program_table.hpp"
 #include "nodes/head/session_report.hpp"
 #include "nodes/head/session_status.hpp"
+#include "nodes/head/tile_dealer.hpp"
 #include "nodes/session/session_config.hpp"
 
 namespace mural {
@@ -77,7 +78,7 @@ private:
     Result<void> nodeLog(int node, const std::string& text) override;
     Result<void> nodeBye(int node, const std::string& json) override;
     Result<void> nodeInView(int node, uint32_t view, const std::vector<wire::ClientFrame>& frames) override;
-    Result<void> nodeTurns(int node, uint32_t number, const std::vector<wire::WindowTurn>& turns) override;
+    Result<void> nodeTurns(int node, uint32_t number, const std::vector<std::byte>& turns) override;
     Result<void> nodeSynchronized(int node, const wire::SynchronizedMessage& message) override;
     void nodeLost(int node, const std::string& why) override;
 
@@ -109,6 +110,7 @@ private:
     void tick();
     void sayDrawnWhole(); // once
     void sayKeepsPicture(); // once
+    void sayKeepsAreas(); // once
     void countSplit(uint32_t flags);
     void watchNodes(int64_t nowNs);
     void windowGone(const std::pair<uint32_t, uint32_t>& window, int node); // client, window
@@ -141,6 +143,7 @@ private:
     NewsMerger news_;
     std::unique_ptr<PictureOutput> output_; // null: no pictures come
     PictureAssembler pictures_;
+    TileDealer dealer_;
     NodeSet nodes_;
     std::unique_ptr<NodeReturns> returns_;
     std::unique_ptr<ProgramTable> programs_; // once the nodes are ready
@@ -155,6 +158,7 @@ private:
     std::string exchangeSecret_;   // of nodes that send each other parts of pictures or wait for each other, in hex
     std::atomic<int64_t> unsplitFrames_{0}; // by the collectors, since the start
     std::atomic<bool> keepsPicture_{false};
+    std::atomic<bool> keepsAreas_{false};
     std::atomic<bool> drawnWhole_{false}; // see SessionReport
     ProgressMeter meter_;
     int64_t lastProgressNs_ = 0;

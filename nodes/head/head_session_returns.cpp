@@ -33,7 +33,12 @@ NodeReturns::Hooks HeadSession::returnHooks() {
         if (!nodes_.canJoin()) return "programs have sent more than the " + std::to_string(config_.storeBytes >> 20) + " MiB that are kept to start a node again; --store gives more";
         return "";
     };
-    hooks.takesTurns = [this](int node) { return plan_.nodes[static_cast<size_t>(node)].pass.period > 1; };
+    // Nodes that only members can tell how the picture is divided: whose turn it is, or by which areas.
+    hooks.turns = [this](int node) {
+        const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
+        return plan.pass.period > 1 ? NodeSet::Turns::OfFrames : plan.queue >= 0 ? NodeSet::Turns::OfAreas : NodeSet::Turns::None;
+    };
+    hooks.tilesOfLost = [this](int node) { return std::string(plan_.nodes[static_cast<size_t>(node)].queue >= 0 ? "the others take its tiles" : "its tiles stay as they were"); };
     hooks.admitted = [this](int node, uint32_t view) { return admit(node, view); };
     hooks.gaveUp = [this](int, const std::string& line) {
         control_.say(line);
@@ -118,15 +123,15 @@ NodeSet::Admission HeadSession::admit(int node, uint32_t view) {
     const std::lock_guard lock(mutex_);
     views_.joins(node, view);
     admission.life = lives_[static_cast<size_t>(node)];
-    admission.first = true;
-    for (size_t other = 0; other < plan_.nodes.size(); ++other) admission.first = admission.first && (totals_[other].lost || plan_.nodes[other].pass.period < 2);
+    admission.first = true; // of those that take turns, or have moving areas
+    for (size_t other = 0; other < plan_.nodes.size(); ++other) admission.first = admission.first && (totals_[other].lost || (plan_.nodes[other].pass.period < 2 && plan_.nodes[other].queue < 0));
     totals_[static_cast<size_t>(node)].lost = false;
     for (size_t other = 0; other < plan_.nodes.size(); ++other)
         if (totals_[other].lost || !nodes_.link(static_cast<int>(other)).alive()) admission.absent.push_back(static_cast<uint32_t>(other));
     return admission;
 }
 
-Result<void> HeadSession::nodeTurns(int /*node*/, uint32_t number, const std::vector<wire::WindowTurn>& turns) {
+Result<void> HeadSession::nodeTurns(int /*node*/, uint32_t number, const std::vector<std::byte>& turns) {
     returns_->turns(number, turns);
     return {};
 }
@@ -148,6 +153,7 @@ Result<void> HeadSession::nodeInView(int node, uint32_t view, const std::vector<
     const NodeReturns::Numbers numbers = returns_->numbers(node);
     frames_.nodeJoined(node, numbers.framesGiven, monotonicNowNs()); // and what it has seen itself
     frames_.nodeJoined(node, frames, monotonicNowNs());
+    dealer_.nodeJoined(node);
     int64_t joins = 0;
     {
         const std::lock_guard lock(mutex_);
@@ -178,7 +184,9 @@ void HeadSession::loseMember(int node, const std::string& why) {
 void HeadSession::goOnWithoutAbsent() {
     for (const auto& [node, why] : absences_) {
         const std::lock_guard membership(membership_);
-        control_.say(nodes_.link(node).describe() + " is not there yet: " + why + "; " + returns_->notThere(node));
+        const bool taken = plan_.nodes[static_cast<size_t>(node)].queue >= 0;
+        control_.say(nodes_.link(node).describe() + " is not there yet: " + why + (taken ? "; the others take its tiles until it comes" : "; its tiles stay empty until it comes"));
+        returns_->notThere(node);
         goOnWithout(node);
     }
 }
@@ -193,6 +201,7 @@ void HeadSession::goOnWithout(int node) {
     answers_.nodeLost(node);
     pictures_.nodeLost(node);
     frames_.nodeLost(node, monotonicNowNs());
+    dealer_.nodeLost(node);
     std::vector<std::pair<uint32_t, uint32_t>> waiting; // for this node's word
     {
         const std::lock_guard lock(mutex_);

@@ -49,7 +49,7 @@ void NodeCatchUp::linkLost() {
     changed_.notify_all();
 }
 
-void NodeCatchUp::toldTurns(uint32_t number, const std::vector<wire::WindowTurn>& turns) {
+void NodeCatchUp::toldTurns(uint32_t number, const std::vector<std::byte>& turns) {
     const std::lock_guard lock(mutex_);
     if (turns_ && number == turns_->number && !told_) told_ = turns; // all say the same
     changed_.notify_all();
@@ -101,14 +101,14 @@ void NodeCatchUp::sendQueue() {
 bool NodeCatchUp::sendTurns() {
     if (!turns_) return true;
     const Deadline deadline = Deadline::inMs(kSyncLimitMs);
-    std::optional<std::vector<wire::WindowTurn>> turns;
+    std::optional<std::vector<std::byte>> turns;
     do {
         std::unique_lock lock(mutex_);
         changed_.wait_for(lock, std::chrono::milliseconds(kLookMs), [this] { return lost_ || told_; });
         if (lost_) return false;
         turns = told_;
     } while (!turns && std::ranges::any_of(turns_->asked, &NodeLink::alive) && !deadline.passed());
-    if (turns) sendCommand(wire::HeadCommand::Turns, std::as_bytes(std::span(*turns)));
+    if (turns) sendCommand(wire::HeadCommand::Turns, *turns);
     return true; // nobody says it: it begins anew when the first one becomes a member
 }
 

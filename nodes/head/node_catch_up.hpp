@@ -28,7 +28,7 @@ public:
     void synchronized(const wire::SynchronizedMessage& message); // the node has come to there; from any thread
     [[nodiscard]] bool unsound() const { return unsound_; } // its frames need those that it has not drawn
     void linkLost();                    // from any thread
-    void toldTurns(uint32_t number, const std::vector<wire::WindowTurn>& turns); // from any thread
+    void toldTurns(uint32_t number, const std::vector<std::byte>& turns); // from any thread
     [[nodiscard]] bool done() const { return done_; }
     [[nodiscard]] uint64_t snapshotBytes() const { return snapshotBytes_; }
     [[nodiscard]] uint64_t queuedBytes() const { return queuedBytes_; }
@@ -61,7 +61,7 @@ private:
     uint32_t reached_ = 0;
     uint32_t sound_ = 0; // there: wire::Soundness
     bool lost_ = false;
-    std::optional<std::vector<wire::WindowTurn>> told_;
+    std::optional<std::vector<std::byte>> told_;
     std::vector<wire::ClientFrame> frames_;
     std::thread thread_; // last: it uses all of it
 };

@@ -217,7 +217,7 @@ Result<void> NodeLink::readInView(uint32_t sizeBytes) {
 
 Result<void> NodeLink::readTurns(uint32_t sizeBytes) {
     uint32_t number = 0;
-    std::vector<wire::WindowTurn> turns;
+    std::vector<std::byte> turns;
     if (auto got = readList(sizeBytes, number, turns, "whose turn it is"); !got) return got;
     return handle([&] { return events_.nodeTurns(place_.node, number, turns); });
 }

@@ -35,7 +35,7 @@ public:
     virtual Result<void> nodeBye(int node, const std::string& json) = 0;
     virtual Result<void> nodeInView(int node, uint32_t view, const std::vector<wire::ClientFrame>& frames) = 0;
     // Of all windows, where the TellTurns of that number came.
-    virtual Result<void> nodeTurns(int node, uint32_t number, const std::vector<wire::WindowTurn>& turns) = 0;
+    virtual Result<void> nodeTurns(int node, uint32_t number, const std::vector<std::byte>& turns) = 0;
     virtual Result<void> nodeSynchronized(int node, const wire::SynchronizedMessage& message) = 0;
     // The last call for a node that did not say Bye; everything it had sent was handed on before.
     virtual void nodeLost(int node, const std::string& why) = 0;

@@ -10,6 +10,7 @@ namespace mural {
 namespace {
 
 constexpr int kMostLocalByDefault = 4;
+constexpr int kMostNodes = 1 << 20;
 
 std::string countOf(int count, const char* one) {
     return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
@@ -18,10 +19,44 @@ std::string countOf(int count, const char* one) {
 std::string describeRegion(const NodePlan& plan) {
     const TileRegion& r = plan.region;
     const std::string pass = describe(plan.pass);
+    if (plan.area) {
+        char area[96];
+        std::snprintf(area, sizeof area, "%.4g %.4g %.4g %.4g", plan.area->x, plan.area->y, plan.area->w, plan.area->h);
+        return "node " + std::to_string(plan.node) + " (" + plan.where + ") begins with " + (pass.empty() ? "" : pass + ": ") + "the part [ " + area + " ] of the picture";
+    }
     return "node " + std::to_string(plan.node) + " (" + plan.where + ") draws " + (pass.empty() ? "" : pass + ": ") +
            countOf(r.columns * r.rows, "tile") + ": columns " + std::to_string(r.column) + " to " +
            std::to_string(r.column + r.columns - 1) + ", rows " + std::to_string(r.row) + " to " +
            std::to_string(r.row + r.rows - 1) + " (row 0 is the lowest)";
+}
+
+// One of n about equal parts of the whole picture.
+std::vector<Viewport> evenParts(int n) {
+    std::vector<Viewport> parts;
+    const auto edge = [n](int i) { return static_cast<double>(i) / n; };
+    for (const TileRegion& r : splitGrid(n, n, n)) parts.push_back({edge(r.column), edge(r.row), edge(r.column + r.columns) - edge(r.column), edge(r.row + r.rows) - edge(r.row)});
+    return parts;
+}
+
+std::string queueName(RenderPass pass) {
+    pass.range = 0;
+    pass.ranges = 1; // all of them have the same tiles
+    const std::string of = describe(pass);
+    return of.empty() ? "tiles" : "tiles of " + of;
+}
+
+// Empty: nothing.
+std::string whyTilesStay(const SessionPlan& plan, const SessionConfig& config, int queue) {
+    if (config.tiling == Tiling::Lean) return "--tiling lean gives each node a framebuffer of its first tiles' size";
+    for (const NodePlan& node : plan.nodes) {
+        if (node.queue != queue) continue;
+        const RenderPass& p = node.pass;
+        if (showsWall(config, plan, node)) return "nodes show them in windows of their own (--display windows)";
+        if (p.ranges > 1) return "their nodes share what they draw by ranges";
+        if (p.period > 1) return "their nodes take turns";
+        if (p.kernelWidth * p.kernelHeight > 1 || !p.zoom.none()) return "their nodes draw fewer pixels than there are";
+    }
+    return {};
 }
 
 // Node processes for each of `passes`; the first passes get one more where it does not come out even.
@@ -35,7 +70,8 @@ NodeReach reachOf(const std::string& host, const std::string& ownHost) {
 }
 
 SessionPlan planSession(const SessionConfig& config, const std::string& ownHost) {
-    const int tiles = config.columns * config.rows;
+    const bool queues = config.tileWidth > 0;
+    const int tiles = queues ? kMostNodes : config.columns * config.rows; // of a queue, as many as it has; that is not known yet
     const int ranges = config.passes.ranges;
     const std::vector<RenderPass> passes = passesOf(config.passes);
     const auto passCount = static_cast<int>(passes.size());
@@ -47,9 +83,14 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
 
     SessionPlan plan;
     plan.wall = compositionOf(config.passes);
-    plan.nodesShowWall = passCount == 1;
+    plan.nodesShowWall = passCount == 1 && !queues; // windows of nodes stay where they are, tiles of a queue do not
     for (int p = 0; p < passCount; ++p) {
-        for (const TileRegion& region : splitGrid(config.columns, config.rows, std::max(1, nodesOfPass(count / ranges, passCount, p)))) {
+        const int parts = std::max(1, nodesOfPass(count / ranges, passCount, p));
+        const std::vector<TileRegion> regions = queues ? std::vector<TileRegion>(static_cast<size_t>(parts)) : splitGrid(config.columns, config.rows, parts);
+        const std::vector<Viewport> areas = queues ? evenParts(parts) : std::vector<Viewport>();
+        if (queues && parts > 1) plan.queues.push_back({queueName(passes[static_cast<size_t>(p)]), {}, config.tileWidth, config.tileHeight});
+        for (size_t part = 0; part < regions.size(); ++part) {
+            const TileRegion& region = regions[part];
             const auto collector = static_cast<int>(plan.nodes.size());
             for (int range = 0; range < ranges; ++range) {
                 NodePlan node;
@@ -61,6 +102,8 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
                 node.picture = pictureOf(config.passes, node.pass);
                 node.answers = node.picture == 0 && range == 0;
                 node.region = region;
+                if (queues) node.area = areas[part];
+                if (queues && parts > 1) node.queue = static_cast<int>(plan.queues.size()) - 1;
                 node.collector = collector;
                 if (plan.nodesShowWall) node.swapBarrier = "barrier";
                 const int place = node.node % asked; // more passes than nodes were given: several on each machine
@@ -74,6 +117,7 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
         }
     }
     chooseComposition(plan, config.composition);
+    settleQueues(plan, config);
     const auto started = static_cast<int>(plan.nodes.size());
     if (wanted > started) {
         plan.warnings.push_back(countOf(wanted, "render node") + " asked for, but there " +
@@ -81,6 +125,23 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
                                 countOf(started, "node") + " started; --tiles makes more tiles");
     }
     return plan;
+}
+
+void settleQueues(SessionPlan& plan, const SessionConfig& config) {
+    for (size_t q = 0; q < plan.queues.size(); ++q) {
+        const auto queue = static_cast<int>(q);
+        const auto nodes = std::ranges::count(plan.nodes, queue, &NodePlan::queue);
+        const TileQueuePlan& planned = plan.queues[q];
+        const std::string tiles = "queue \"" + planned.name + "\": its tiles of " + std::to_string(planned.width) + "x" + std::to_string(planned.height) + " pixels ";
+        const std::string why = nodes < 2 ? "one node draws all of them" : whyTilesStay(plan, config, queue);
+        if (why.empty()) {
+            plan.explain.push_back(tiles + "are taken by whoever of " + std::to_string(nodes) + " nodes is free: by the times that the last frames took each");
+            continue;
+        }
+        (nodes < 2 ? plan.explain : plan.warnings).push_back(tiles + "are dealt out evenly, and stay: " + why);
+        for (NodePlan& node : plan.nodes)
+            if (node.queue == queue) node.queue = -1;
+    }
 }
 
 bool headShowsWall(const SessionConfig& config, const SessionPlan& plan) { return config.display == Display::Windows && !plan.nodesShowWall; }
@@ -110,6 +171,15 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
     setup.regionRows = node.region.rows;
     setup.hasArea = node.area.has_value();
     setup.area = node.area.value_or(Viewport{});
+    if (node.queue >= 0)
+        for (const NodePlan& other : plan.nodes) {
+            const Viewport area = other.area.value_or(Viewport{});
+            setup.areas.insert(setup.areas.end(), {area.x, area.y, area.w, area.h});
+        }
+    setup.sharesMachine = std::ranges::any_of(plan.nodes, [&](const NodePlan& other) {
+        const bool bothHere = other.reach != NodeReach::LaunchCommand && node.reach != NodeReach::LaunchCommand;
+        return other.node != node.node && (bothHere || (other.reach == node.reach && other.where == node.where));
+    });
     setup.pass = node.pass;
     setup.screen = node.screen;
     setup.collector = node.collector;

@@ -27,6 +27,13 @@ struct NodeWindow {
     bool fullScreen = false;
 };
 
+// Tiles of one picture, or of a part of it, that nodes take by when they are free.
+struct TileQueuePlan {
+    std::string name;
+    Viewport area;           // of the picture: what is divided into them
+    int width = 0, height = 0; // of a tile, pixels; the last ones of rows and columns may be smaller
+};
+
 struct NodePlan {
     int node = 0;
     std::string where; // "local" or the host
@@ -36,6 +43,7 @@ struct NodePlan {
     bool answers = true; // what programs read of windows
     TileRegion region;
     std::optional<Viewport> area; // instead of tiles: of the picture
+    int queue = -1; // its area moves by this one of SessionPlan::queues; -1: it stays
     std::optional<ScreenView> screen; // of a room
     std::optional<NodeWindow> window; // instead of those of tiles
     std::string swapBarrier; // windows that this node shows wait for those of other nodes with the same one; empty: for none
@@ -45,6 +53,7 @@ struct NodePlan {
 
 struct SessionPlan {
     std::vector<NodePlan> nodes;
+    std::vector<TileQueuePlan> queues;
     WallComposition wall;
     bool nodesShowWall = true; // what each draws is a part of the wall's picture as it is
     std::optional<double> eyeBase, focusDistance; // that a configuration file says, in metres
@@ -57,6 +66,9 @@ struct SessionPlan {
 NodeReach reachOf(const std::string& host, const std::string& ownHost);
 
 SessionPlan planSession(const SessionConfig& config, const std::string& ownHost);
+
+// Where a session can't move areas, nodes keep those that they begin with; a line of the plan says why. After planSession(), or planOf().
+void settleQueues(SessionPlan& plan, const SessionConfig& config);
 
 // --display windows: whether the head opens one, with the whole wall, as only several pictures together make it.
 [[nodiscard]] bool headShowsWall(const SessionConfig& config, const SessionPlan& plan);

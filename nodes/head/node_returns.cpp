@@ -31,24 +31,24 @@ std::string NodeReturns::memberLost(int node) {
     n.phase = Phase::Over;
     n.lostNs = nowNs;
     if (n.tries > 0 && nowNs - n.memberNs <= terms_.steadyMs * kNsPerMs) skipsFrames_ = false; // it may have ended for what it had not drawn
-    if (terms_.tries == 0 || !hooks_.start || stopped_) return "its tiles stay as they were";
-    if (!never.empty()) return "its tiles stay as they were: " + never;
+    const std::string tiles = hooks_.tilesOfLost(node);
+    if (terms_.tries == 0 || !hooks_.start || stopped_) return tiles;
+    if (!never.empty()) return tiles + ": " + never;
     if (nowNs - n.memberNs > terms_.steadyMs * kNsPerMs) n.tries = 0;
-    if (n.tries >= terms_.tries) return "its tiles stay as they were: it was started again " + std::to_string(n.tries) + " times, and each time was lost soon";
+    if (n.tries >= terms_.tries) return tiles + ": it was started again " + std::to_string(n.tries) + " times, and each time was lost soon";
     n.phase = Phase::Waiting;
     n.nextNs = nowNs + terms_.pausesMs[std::min(static_cast<size_t>(n.tries), terms_.pausesMs.size() - 1)] * kNsPerMs;
-    return "its tiles stay as they were until it is back";
+    return tiles + " until it is back";
 }
 
 // Its first try was that of the start.
-std::string NodeReturns::notThere(int node) {
+void NodeReturns::notThere(int node) {
     const int64_t nowNs = monotonicNowNs();
     const std::lock_guard lock(mutex_);
     Node& n = at(node);
     n.lostNs = nowNs;
     n.phase = Phase::Waiting;
     n.nextNs = nowNs + terms_.pausesMs[std::min<size_t>(1, terms_.pausesMs.size() - 1)] * kNsPerMs;
-    return "its tiles stay empty until it comes";
 }
 
 bool NodeReturns::lostOnItsWay(int node, const std::string& why) {
@@ -70,7 +70,7 @@ void NodeReturns::synchronized(int node, const wire::SynchronizedMessage& messag
     if (at(node).catchUp) at(node).catchUp->synchronized(message);
 }
 
-void NodeReturns::turns(uint32_t number, const std::vector<wire::WindowTurn>& turns) {
+void NodeReturns::turns(uint32_t number, const std::vector<std::byte>& turns) {
     const std::lock_guard lock(mutex_);
     for (Node& n : nodes_)
         if (n.catchUp) n.catchUp->toldTurns(number, turns);
@@ -149,7 +149,7 @@ void NodeReturns::tickNode(int node, int64_t nowNs) {
 void NodeReturns::catchUp(int node) {
     hooks_.introduce(node);
     std::optional<NodeSet::TurnsAsked> turns;
-    if (hooks_.takesTurns(node)) turns = {++turnsAsked_, hooks_.takesTurns, {}};
+    if (const auto kind = hooks_.turns(node); kind != NodeSet::Turns::None) turns = {++turnsAsked_, [this, kind](int other) { return hooks_.turns(other) == kind; }, {}};
     const auto catchUp = std::make_shared<NodeCatchUp>(set_, node, std::move(turns), [this, node](uint32_t view) { return hooks_.admitted(node, view); });
     {
         const std::lock_guard lock(mutex_);
@@ -203,7 +203,7 @@ void NodeReturns::fail(int node, const std::string& why, int64_t nowNs) {
         const int64_t pauseMs = terms_.pausesMs[std::min(static_cast<size_t>(n.tries), terms_.pausesMs.size() - 1)];
         n.nextNs = nowNs + pauseMs * kNsPerMs;
         if (again) line += "it is tried again in " + std::to_string(pauseMs / 1000) + " s (" + std::to_string(n.tries + 1) + " of " + std::to_string(terms_.tries) + ")";
-        else line += "after " + std::to_string(n.tries) + (n.tries == 1 ? " try" : " tries") + " its tiles stay as they were";
+        else line += "after " + std::to_string(n.tries) + (n.tries == 1 ? " try, " : " tries, ") + hooks_.tilesOfLost(node);
     }
     if (again) hooks_.say(line);
     else hooks_.gaveUp(node, line);

@@ -28,7 +28,8 @@ public:
         std::function<void(int node, StartingNode&)> connected; // makes its link and sends its setup
         std::function<std::string(int node)> whyNever;          // for a reason of the session; empty: it may come back
         std::function<void(int node)> introduce; // to the others of its picture, before it catches up
-        std::function<bool(int node)> takesTurns;
+        std::function<NodeSet::Turns(int node)> turns;
+        std::function<std::string(int node)> tilesOfLost; // what becomes of them while it is
         std::function<NodeSet::Admission(int node, uint32_t view)> admitted; // under the lock that orders packets
         std::function<void(int node, const std::string&)> gaveUp; // with the line for the user; it stays lost
         std::function<void(const std::string&)> say;
@@ -39,13 +40,13 @@ public:
 
     // A member was lost. What follows of it, for the line that says so: "its tiles stay as they were until it is back".
     std::string memberLost(int node);
-    // Of one that was not there when the session began: "its tiles stay empty until it comes".
-    std::string notThere(int node);
+    // One was not there when the session began: it is started again, too.
+    void notThere(int node);
     // Was it one that was on its way? Then it was not lost, but did not come back, and that is seen to.
     bool lostOnItsWay(int node, const std::string& why);
     void ready(int node); // with facts that suit the session
     void synchronized(int node, const wire::SynchronizedMessage& message);
-    void turns(uint32_t number, const std::vector<wire::WindowTurn>& turns);
+    void turns(uint32_t number, const std::vector<std::byte>& turns);
     // Nodes that catch up do not draw the frames that nobody waits for; not once that has failed.
     [[nodiscard]] bool skipsFrames() const;
     // Called by Hooks::admitted when it agrees; false: it is gone already.

@@ -36,6 +36,7 @@ void NodeSet::startReading() {
 bool NodeSet::broadcast(uint32_t stream, std::span<const std::byte> payload) {
     if (joining_ > 0) std::this_thread::yield(); // the mutex is not fair
     const std::lock_guard lock(sendMutex_);
+    if (hasLead_.load(std::memory_order_relaxed) && wire::clientOf(stream) != 0) sendLeadLocked();
     if (recorder_) recorder_->packet(stream, payload);
     keepLocked(stream, payload);
     return sendLocked(stream, payload);
@@ -45,6 +46,22 @@ bool NodeSet::broadcast(wire::HeadCommand command, std::span<const std::byte> ar
     const bool sent = broadcast(wire::streamOf(0, 0), commandBytes(command, arguments));
     flush();
     return sent;
+}
+
+void NodeSet::leadWith(wire::HeadCommand command, std::span<const std::byte> arguments) {
+    const std::lock_guard lock(leadMutex_);
+    lead_ = commandBytes(command, arguments);
+    hasLead_ = true;
+}
+
+void NodeSet::sendLeadLocked() {
+    std::vector<std::byte> lead;
+    {
+        const std::lock_guard lock(leadMutex_);
+        lead.swap(lead_);
+        hasLead_ = false;
+    }
+    if (!lead.empty()) sendLocked(wire::streamOf(0, 0), lead);
 }
 
 bool NodeSet::broadcast(wire::HeadCommand command, Deadline deadline) {

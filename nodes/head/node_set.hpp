@@ -37,6 +37,8 @@ public:
     // False when no node lives. Blocks while a node's connection is full.
     bool broadcast(uint32_t stream, std::span<const std::byte> payload);
     bool broadcast(wire::HeadCommand command, std::span<const std::byte> arguments);
+    // To all nodes ahead of the next packet of a program, by whoever sends that; instead of one that still waits so. Never blocks.
+    void leadWith(wire::HeadCommand command, std::span<const std::byte> arguments);
     // The same, but gives up when others keep the nodes busy until the deadline.
     bool broadcast(wire::HeadCommand command, Deadline deadline);
     // To one node, before it gets anything of the stream; never waits for the other nodes.
@@ -54,11 +56,13 @@ public:
     [[nodiscard]] bool canJoin() const { return kept_ && kept_->complete(); }
     // In the place of a lost node, of which all has been said. It gets nothing yet. By the thread that adds; never waits.
     void replace(int node, std::unique_ptr<NodeLink> link);
+    // Of which nodes only members can say how pictures are divided among them.
+    enum class Turns { None, OfFrames, OfAreas };
     // What it is to be given first; from here on what comes waits in its link's queue. `turns`, where it is not null: members are
     // asked there whose turn it is.
     struct TurnsAsked {
         uint32_t number = 0;                // of the TellTurns
-        std::function<bool(int node)> knows; // it takes turns
+        std::function<bool(int node)> knows; // it is of the same kind
         std::vector<NodeLink*> asked;       // set: those that will answer, when they live
     };
     Result<KeptStream::Snapshot> beginCatchUp(int node, TurnsAsked* turns, Deadline deadline);
@@ -90,6 +94,7 @@ public:
 
 private:
     bool sendLocked(uint32_t stream, std::span<const std::byte> payload);
+    void sendLeadLocked();
 
     bool changesOver(const NodeMulticast::Change& came);
     void multicastLocked(std::span<const std::byte> header, std::span<const std::byte> payload);
@@ -113,6 +118,9 @@ private:
     std::atomic<int> joining_{0};              // threads of such nodes that want the mutex
     std::timed_mutex sendMutex_;
     std::atomic<uint64_t> bytesSent_{0};
+    std::mutex leadMutex_;
+    std::vector<std::byte> lead_;       // the payload of a command; empty: none waits
+    std::atomic<bool> hasLead_{false};
     static constexpr int kNobody = -1, kMulticast = -2;
     std::atomic<int> sendingTo_{kNobody}; // the node whose connection is being written to
 };

@@ -55,6 +55,18 @@ Json waitSecondsOf(const CaptureCounts& counts) {
     return seconds;
 }
 
+Json queuesJson(const std::vector<QueueTotals>& queues) {
+    if (queues.empty()) return nullptr;
+    Json list = Json::array();
+    for (const QueueTotals& q : queues) {
+        Json nodes = Json::array();
+        for (const auto& [node, tiles] : q.nodes) nodes.push_back({{"node", node}, {"tiles", tiles}});
+        list.push_back({{"name", q.name},     {"columns", q.columns}, {"rows", q.rows},   {"tileWidth", q.width}, {"tileHeight", q.height},
+                        {"frames", q.frames}, {"moves", q.moves},     {"tilesMoved", q.tilesMoved}, {"taken", q.taken}, {"nodes", nodes}});
+    }
+    return list;
+}
+
 Json economyJson(const EconomyCounts& c) {
     if (!c.on) return nullptr;
     return {{"records", c.packer.records},       {"rawBytes", c.packer.rawBytes}, {"stagedBytes", c.packer.stagedBytes},
@@ -92,6 +104,7 @@ Json reportOf(const SessionNumbers& n) {
         {"framesPerSecond", seconds > 0 ? static_cast<double>(frames - 1) / seconds : 0.0},
         {"bytesPerFrame", frames > 0 ? n.bytesSent / static_cast<uint64_t>(frames) : 0},
         {"economy", economyJson(n.economy)},
+        {"queues", queuesJson(n.queues)},
         {"calls", calls},
         {"roundTrips", n.programs.roundTrips},
         {"roundTripsBy", n.programs.tripsBy},

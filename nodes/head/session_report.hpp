@@ -10,6 +10,7 @@
 #include "nodes/head/frame_tracker.hpp"
 #include "nodes/head/picture_output.hpp"
 #include "nodes/head/stream_economy.hpp"
+#include "nodes/head/tile_dealer.hpp"
 #include "recording/file_writer.hpp"
 
 namespace mural {
@@ -44,6 +45,7 @@ struct SessionNumbers {
     FrameTotals frames;
     uint64_t bytesSent = 0; // to each node
     EconomyCounts economy;
+    std::vector<QueueTotals> queues;
     CaptureCounts programs;
     OutputTotals output;
     std::string lastPicture; // path
@@ -52,6 +54,9 @@ struct SessionNumbers {
     bool drawnWhole = false; // see HeadSession::sayDrawnWhole
     std::vector<NodeTotals> nodes;
 };
+
+// [{"name": …}]; null: no tiles move.
+nlohmann::json queuesJson(const std::vector<QueueTotals>& queues);
 
 // {"records": …, "rawBytes": …}; null: it is off.
 nlohmann::json economyJson(const EconomyCounts& counts);

@@ -63,6 +63,7 @@ Json statusOf(const SessionStatus& status) {
         {"display", status.display},
         {"frames", status.wallFrames},
         {"economy", economyJson(status.economy)},
+        {"queues", queuesJson(status.queues)},
         {"programs", programs},
         {"nodes", nodes},
     };

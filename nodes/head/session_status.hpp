@@ -43,6 +43,7 @@ struct SessionStatus {
     std::string display; // app, windows, none
     int64_t wallFrames = 0;
     EconomyCounts economy;
+    std::vector<QueueTotals> queues;
     std::vector<ProgramStatus> programs;
     std::vector<NodeStatus> nodes;
 };

@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <thread>
 #include <sys/resource.h>
 #include <unistd.h>
 #include <utility>
@@ -39,11 +40,16 @@ double processCpuSeconds() {
     return static_cast<double>(r.ru_utime.tv_sec + r.ru_stime.tv_sec) + 1e-6 * static_cast<double>(r.ru_utime.tv_usec + r.ru_stime.tv_usec);
 }
 
+bool drawsWithoutGpu(const std::string& renderer) {
+    for (const char* software : {"llvmpipe", "softpipe", "swrast", "SWR"})
+        if (renderer.find(software) != std::string::npos) return true;
+    return false;
+}
+
 // Near the GPU. Not where the CPU draws: the driver's threads need all cores then.
 std::string placeReplay(const NodeSetup& setup, const std::string& renderer) {
     if (!setup.placeThreads) return "not placed: --no-placement";
-    for (const char* software : {"llvmpipe", "softpipe", "swrast", "SWR"})
-        if (renderer.find(software) != std::string::npos) return "not placed: drawn without a GPU";
+    if (drawsWithoutGpu(renderer)) return "not placed: drawn without a GPU";
     return placeThread(DeviceKind::Gpu).description;
 }
 
@@ -53,7 +59,20 @@ std::string hostName() {
     return name;
 }
 
+std::vector<Viewport> areasOf(const std::vector<double>& numbers) {
+    std::vector<Viewport> areas;
+    for (size_t i = 0; i + 4 <= numbers.size(); i += 4) areas.push_back({numbers[i], numbers[i + 1], numbers[i + 2], numbers[i + 3]});
+    return areas;
+}
+
+int64_t processCpuNowNs() {
+    timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return int64_t{now.tv_sec} * kNsPerS + now.tv_nsec;
+}
+
 constexpr int64_t kMeetMs = 10'000;
+constexpr int64_t kSlower = 2; // times what the work takes, added by the planted fault
 constexpr int kLostPacket = 10; // of those given to a node that catches up, by the planted fault
 
 class Node {
@@ -75,6 +94,24 @@ public:
 
 private:
     bool take(const wire::PacketHeader& header, std::span<const std::byte> payload) {
+        beganNs_ = workNowNs();
+        const bool goesOn = takePacket(header, payload);
+        countWork();
+        return goesOn;
+    }
+
+    // Time at work goes up to now. What follows is not waiting for anybody.
+    void countWork() {
+        const int64_t nowNs = workNowNs();
+        const int64_t workedNs = nowNs - std::exchange(beganNs_, nowNs);
+        if (slow_) std::this_thread::sleep_for(std::chrono::nanoseconds(kSlower * workedNs));
+        busyNs_ += workedNs * (slow_ ? 1 + kSlower : 1);
+    }
+
+    // Nodes that draw by the same cores keep each other waiting, whatever tiles they have: there their own work alone counts.
+    [[nodiscard]] int64_t workNowNs() const { return countsCpu_ ? processCpuNowNs() : monotonicNowNs(); }
+
+    bool takePacket(const wire::PacketHeader& header, std::span<const std::byte> payload) {
         if (header.stream == 0) return headCommand(payload);
         if (!replay_) return true;
         if (losesPackets_ && catchesUp_ && ++packetsGiven_ == kLostPacket) return true;
@@ -111,6 +148,7 @@ private:
         case wire::HeadCommand::Turns: return takeTurns(rest);
         case wire::HeadCommand::JoinGroup: return joinGroup(rest);
         case wire::HeadCommand::ByGroup: return changeOver(rest);
+        case wire::HeadCommand::Areas: return moveAreas(rest);
         case wire::HeadCommand::Synchronize:
             return synchronize(rest);
         case wire::HeadCommand::Exchange: return meet(std::string(reinterpret_cast<const char*>(rest.data()), rest.size()));
@@ -132,6 +170,8 @@ private:
         auto platform = gl::openPlatform(setup_.glBackend);
         if (!platform) return fail(platform.error().message);
         nlohmann::json ready = probe(**platform);
+        countsCpu_ = setup_.sharesMachine && drawsWithoutGpu(ready.value("renderer", ""));
+        beganNs_ = workNowNs();
         ready["placement"] = placeReplay(setup_, ready.value("renderer", ""));
         if (!setup_.stream.empty() && !setup_.catchesUp) {
             const auto followed = line_->follow(setup_.stream, setup_.streamSecret, name_);
@@ -161,6 +201,7 @@ private:
         config.grid = {setup_.columns, setup_.rows, config.lean ? 2 : 1};
         config.region = {setup_.regionColumn, setup_.regionRow, setup_.regionColumns, setup_.regionRows};
         if (setup_.hasArea) config.area = setup_.area;
+        if (!setup_.areas.empty()) config.areas.emplace(Areas{0, areasOf(setup_.areas)});
         config.pass = setup_.pass;
         config.answers = setup_.answers;
         config.screen = setup_.screen;
@@ -168,6 +209,7 @@ private:
         config.focusDistance = setup_.focusDistance;
         if (plant) config.plant = plant;
         losesPackets_ = config.plant == "rejoin";
+        slow_ = config.plant == "slow" && setup_.node == 1;
         ReplayOutputs outputs;
         outputs.answer = [this](const wire::AnswerHeader& h, std::span<const std::byte> bytes) {
             if (!catchesUp_ && !unsound_) line_->send(wire::NodeMessage::Answer, std::as_bytes(std::span(&h, 1)), bytes);
@@ -311,10 +353,13 @@ private:
         std::memcpy(words, arguments.data(), sizeof words);
         const uint32_t view = words[0], node = words[1], life = words[3];
         const bool itself = node == static_cast<uint32_t>(setup_.node);
-        if (words[2] != 0 && replay_) replay_->beginTurns();
+        if (words[2] != 0 && replay_) {
+            replay_->beginTurns();
+            replay_->beginAreas();
+        }
         shareWith(static_cast<int>(node), life, arguments.subspan(sizeof words));
         if (catchesUp_ && !itself) return true;
-        catchesUp_ = false;
+        if (std::exchange(catchesUp_, false)) busyNs_ = 0; // what it was given is no frame's work
         std::vector<wire::ClientFrame> frames;
         for (const auto& [client, frame] : frames_) frames.push_back({client, frame});
         line_->send(wire::NodeMessage::InView, std::as_bytes(std::span(&view, 1)), std::as_bytes(std::span(frames)));
@@ -336,13 +381,25 @@ private:
 
     bool tellTurns(std::span<const std::byte> number) {
         if (number.size() < sizeof(uint32_t)) return false;
-        if (catchesUp_ || setup_.pass.period < 2 || !replay_) return true;
-        const std::vector<wire::WindowTurn> turns = replay_->turns();
-        line_->send(wire::NodeMessage::Turns, number.first(sizeof(uint32_t)), std::as_bytes(std::span(turns)));
+        if (catchesUp_ || !replay_) return true;
+        if (!setup_.areas.empty()) {
+            line_->send(wire::NodeMessage::Turns, number.first(sizeof(uint32_t)), replay_->tellAreas());
+        } else if (setup_.pass.period > 1) {
+            const std::vector<wire::WindowTurn> turns = replay_->turns();
+            line_->send(wire::NodeMessage::Turns, number.first(sizeof(uint32_t)), std::as_bytes(std::span(turns)));
+        }
+        return true;
+    }
+
+    bool moveAreas(std::span<const std::byte> bytes) {
+        auto areas = takeAreas(bytes);
+        if (!areas || !bytes.empty()) return false;
+        if (replay_) replay_->moveAreas(std::move(*areas));
         return true;
     }
 
     bool takeTurns(std::span<const std::byte> bytes) {
+        if (!setup_.areas.empty()) return !replay_ || replay_->takeToldAreas(bytes);
         if (bytes.size() % sizeof(wire::WindowTurn) != 0) return false;
         std::vector<wire::WindowTurn> turns(bytes.size() / sizeof(wire::WindowTurn));
         if (!bytes.empty()) std::memcpy(turns.data(), bytes.data(), bytes.size());
@@ -374,16 +431,22 @@ private:
         if (catchesUp_ || unsound_) return;
         const uint64_t replayedNs = threadCpuNs();
         if (f.pixels && !f.region.empty()) {
-            if (setup_.sendPictures) sendPicture(f, f.pixels(f.region));
+            const std::byte* const pixels = setup_.sendPictures ? f.pixels(f.region) : nullptr;
+            countWork();
+            if (pixels) sendPicture(f, pixels);
             if (windows_) showTiles(f);
+            beganNs_ = workNowNs(); // who takes the picture may have let it wait
         }
+        countWork();
         wire::FrameDoneMessage done{};
         done.client = f.client;
         done.window = f.window;
         done.frame = f.frame;
         done.width = f.config.width;
         done.height = f.config.height;
-        done.flags = (f.drawnWhole ? wire::kDrawnWhole : 0) | (f.keepsPicture ? wire::kKeepsPicture : 0) | (f.notSplit ? wire::kNotSplit : 0);
+        done.flags = (f.drawnWhole ? wire::kDrawnWhole : 0) | (f.keepsPicture ? wire::kKeepsPicture : 0) | (f.notSplit ? wire::kNotSplit : 0) | (f.keepsAreas ? wire::kKeepsAreas : 0);
+        done.areas = f.areas;
+        done.busyNs = static_cast<uint64_t>(std::exchange(busyNs_, 0));
         done.replayNs = replayedNs - lastCpuNs_;
         lastCpuNs_ = threadCpuNs();
         done.readbackNs = lastCpuNs_ - replayedNs;
@@ -448,6 +511,10 @@ private:
     std::unique_ptr<TileWindows> windows_;
     std::unique_ptr<Replay> replay_;
     uint64_t lastCpuNs_ = 0;
+    bool countsCpu_ = false;
+    int64_t beganNs_ = 0; // when the work in hand was begun…
+    int64_t busyNs_ = 0;  // …and all before it, since the last frame
+    bool slow_ = false;   // a fault for tests to find
     std::map<uint32_t, uint64_t> calls_; // by client, of packets that are done with
     std::map<uint32_t, uint32_t> frames_; // by client: the last one
     bool unsound_ = false;      // it can't draw what the others draw

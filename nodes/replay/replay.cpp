@@ -10,8 +10,9 @@ namespace mural {
 
 Replay::Replay(std::unique_ptr<gl::Platform> platform, ReplayConfig config, ReplayOutputs outputs)
     : platform_(std::move(platform)), config_(std::move(config)), out_(std::move(outputs)), saidLacking_(op::kLimit, false) {
+    knowsTurns_ = knowsCosts_ = knowsAreas_ = !config_.catchesUp;
+    if (config_.areas) areas_ = std::make_shared<const Areas>(*config_.areas);
     hasSkipped_ = skips_ = maySkip();
-    knowsTurns_ = knowsCosts_ = !config_.catchesUp;
 }
 
 Replay::~Replay() {
@@ -110,6 +111,7 @@ bool Replay::execute(uint16_t opcode, std::span<const std::byte> arguments, Blob
     if (drawsFewer()) noteKernel(opcode);
     if (takesRanges()) in = Args(noteRange(opcode, arguments), blobs); // a piece of it, or nothing
     const bool leftOut = (takesTurns() || (hasSkipped_ && c_->draw && c_->draw->skipped)) && leavesOut(opcode); // behind noteRange, which decides whether this draw is the node's
+    if (moves()) noteArea(opcode, arguments);
     if (leftOut) exchangeDraws();
     const bool done = allocates(opcode) ? executeAllocating(function, in) : function(*this, in);
     if (leftOut) exchangeDraws();

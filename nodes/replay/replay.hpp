@@ -34,6 +34,7 @@
 #include "nodes/replay/tiled_programs.hpp"
 #include "nodes/replay/tiling.hpp"
 #include "nodes/replay/view_move.hpp"
+#include "nodes/session/areas.hpp"
 #include "nodes/session/render_pass.hpp"
 #include "streamcodec/args.hpp"
 #include "streamcodec/client_arrays.hpp"
@@ -55,6 +56,7 @@ struct ReplayConfig {
     TileGrid grid;
     TileRegion region;
     std::optional<Viewport> area; // instead of tiles
+    std::optional<Areas> areas;   // instead of that: others follow, by moveAreas()
     RenderPass pass;
     bool answers = true;   // questions about pictures; false: nodes of another pass do
     double eyeBase = 0.05, focusDistance = 1; // in the program's units
@@ -83,6 +85,8 @@ struct ReplayOutputs {
         bool keepsPicture;    // frames build on the one before: one node goes on drawing them
         bool sound;           // it does not depend on what was not drawn (ReplayConfig::skips)
         bool notSplit;        // nothing was shared between ranges, though there are several
+        uint32_t areas;       // number of those by which the picture is divided
+        bool keepsAreas;      // other ones wait for a clear that does not come
         std::function<const std::byte*(const PixelViewport&)> pixels;
     };
     std::function<void(const Frame&)> frameDone;
@@ -120,6 +124,14 @@ public:
     // Of nodes that draw ranges of one picture, at one place of the stream for all of them: a node has come back, `itself`: this one. `returned`
     // is called behind the last picture that is put together without it, when there is a first with it.
     void shareAnew(bool itself, std::function<void()> returned);
+    // From the next full clear of each window on its part is the one of these areas (replay_areas.cpp). Where the config has areas.
+    void moveAreas(Areas areas);
+    // The payload of a Turns message, by which areas windows are divided here…
+    [[nodiscard]] std::vector<std::byte> tellAreas() const;
+    // …and were where another node has told it. False: it is none.
+    bool takeToldAreas(std::span<const std::byte> bytes);
+    // Nobody knows: windows are divided by the latest.
+    void beginAreas();
     // Whether what is shown next depends on what was not drawn before that.
     [[nodiscard]] wire::Soundness soundness() const;
     [[nodiscard]] const ReplayCounts& counts() const { return counts_; }
@@ -181,6 +193,15 @@ private:
         uint64_t returns = 0;   // of nodes of its picture, before the frame began: it is put together with these
         FoldRule rule;          // how the nodes' pictures are laid over each other
     };
+    // Which part of a window this node draws, where that may change.
+    struct MovingPart {
+        std::shared_ptr<const Areas> areas;  // that are drawn
+        std::shared_ptr<const Areas> wanted; // that shall be
+        GLbitfield drawn = 0; // buffers of which this node has its part alone; the others are on all nodes as on a single machine
+        bool fixed = false;   // for good
+        int64_t waits = 0;    // frames since others were wanted
+        std::shared_ptr<const Areas> front; // of the front, where that is a surface of its own
+    };
     struct Window {
         bool destroyed = false; // freed when it is current nowhere
         bool lean = false;      // the framebuffer has the region's size
@@ -206,6 +227,7 @@ private:
         bool copied = true;        // …because the frame before read or copied pixels there
         bool asked = false;        // for pixels, in this frame
         RangeFrame range;
+        MovingPart moving;
         bool keepsPicture = false; // the turn never ends
         bool sceneElsewhere = false;    // in this frame a scene is drawn into a framebuffer object (replay_scenes.cpp)
         bool sceneWasElsewhere = false; // …in the frame before
@@ -241,6 +263,7 @@ private:
         NameTable framebuffersOfAll;
         std::unordered_map<GLuint, bool> placedModules; // by our shader's name: it holds a module that reads gl_FragCoord
         bool listsHoldBitmaps = false; // one of them at least
+        bool testsDepth = false, testsStencil = false; // some command or list has switched that on
         bool allDrawn = false; // by every node: the program's side has asked for it, or a module reads gl_FragCoord
         TiledPrograms tiled;
         ProgramRecipes recipes;
@@ -508,10 +531,25 @@ private:
     void dropPieces(QueryInfo& query);
     uint64_t queryResult(GLuint ours);
     uint64_t readQuery(GLuint ours);
+    // replay_areas.cpp
+    [[nodiscard]] bool moves() const { return areas_ != nullptr; }
+    [[nodiscard]] bool learnsAreas(const Window& w) const { return moves() && !knowsAreas_ && !w.skipped; }
+    [[nodiscard]] PixelViewport partOf(const Window& w, const Areas* areas) const;
+    void noteArea(uint16_t opcode, std::span<const std::byte> arguments);
+    [[nodiscard]] GLbitfield clearedBy(uint16_t opcode, std::span<const std::byte> arguments) const;
+    [[nodiscard]] GLbitfield drawnBy(uint16_t opcode) const;
+    void noteNativeList();
+    void noteTests(GLenum cap);
+    void takeAreas(Window& w);
+    void divideAnew(Window& w);
+    void areasChanged();
+    [[nodiscard]] bool drawsOldFront() const;
+    [[nodiscard]] PixelViewport regionOf(const Window& w, bool front) const;
+    [[nodiscard]] bool readsFront() const;
     // replay_widening.cpp
     void noteModules(GLuint ours);
     [[nodiscard]] bool alone() const { // this node's part is the whole picture
-        if (config_.area) return config_.area->full() && !takesTurns();
+        if (config_.area || moves()) return !moves() && config_.area->full() && !takesTurns();
         return config_.region.columns == config_.grid.columns && config_.region.rows == config_.grid.rows && !takesTurns();
     }
     [[nodiscard]] bool allDrawn() const { return c_->shared && c_->shared->allDrawn; }
@@ -686,6 +724,8 @@ private:
     std::deque<std::function<void()>> returns_; // of nodes of its picture, that no frame was put together with yet…
     uint64_t returnsTaken_ = 0;                 // …and how many came before those
     [[nodiscard]] uint64_t returnsTold() const { return returnsTaken_ + returns_.size(); }
+    std::shared_ptr<const Areas> areas_; // of new windows, and wanted of the others; null: they do not move
+    bool knowsAreas_ = true;
     bool showedUnsound_ = false; // a frame that was drawn from its beginning, and needed more than that
     std::unique_ptr<GlFunctions> leftOut_; // for draws that are left out; null: none was yet
     std::unique_ptr<ContextState> none_; // stands in where a stream has no context

@@ -41,7 +41,10 @@ GLenum Replay::windowBuffer(GLenum buffer, const Window* w) const {
     default: return buffer;
     }
 }
-void Replay::drawBufferOfWindow(GLenum buffer) { buffersChanged(std::exchange(c_->drawBuffer0, buffer)); }
+void Replay::drawBufferOfWindow(GLenum buffer) {
+    buffersChanged(std::exchange(c_->drawBuffer0, buffer));
+    if (moves()) restoreWindowState(); // the front may be divided in another way
+}
 void Replay::readBufferOfWindow(GLenum buffer) {
     c_->readBuffer0 = buffer;
     buffersChanged(c_->drawBuffer0);

@@ -74,6 +74,7 @@ void Replay::buffersChanged(GLenum drawnBefore) {
 
 void Replay::backToFront(Window& w) {
     w.frontStale = false;
+    w.moving.front = w.moving.areas;
     copySurface(*w.surface, *w.front, GL_COLOR_BUFFER_BIT);
 }
 
@@ -111,6 +112,20 @@ void Replay::copySurface(gl::Surface& from, gl::Surface& to, GLbitfield planes) 
     (void)platform_->makeCurrent(bound_->context.get(), drawSurface_, readSurface_);
     c_->scissorsDiffer = true; // all viewports' enables were touched
     applyScissors();
+}
+
+// What is drawn to now is a front that is divided in another way than the back: every node draws all of it.
+bool Replay::drawsOldFront() const {
+    const Window* const w = c_->draw;
+    return moves() && w && w->front && w->moving.front != w->moving.areas && isFront(c_->drawBuffer0);
+}
+
+bool Replay::readsFront() const { return isFront(readFrom(c_->readBuffer0)); }
+
+// What this node has of the window's picture, or of its front.
+PixelViewport Replay::regionOf(const Window& w, bool front) const {
+    if (!moves() || !front || !w.front || w.skipped) return w.region;
+    return partOf(w, w.moving.front.get());
 }
 
 // Of a window that gets another surface.

@@ -323,6 +323,7 @@ void Replay::runList(GLuint list) {
         if (++listCommands_ > config_.limits.listCommands) return;
         if (item.record.empty()) {
             if (takesRanges() && !c_->compiling && !noteRangeList(item)) c_->rangeKnown = false;
+            if (moves()) noteNativeList();
             gl.glCallList(item.native);
             continue;
         }

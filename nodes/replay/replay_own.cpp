@@ -12,6 +12,7 @@ namespace mural {
 namespace {
 // More than any record takes (72 spans of client arrays): empty blobs must not pile up either.
 constexpr size_t kMaxBlobs = 256;
+constexpr int64_t kPatientFrames = 60; // for a full clear
 } // namespace
 
 gl::SurfaceConfig Replay::surfaceConfig(const wire::WindowConfig& c, int width, int height) const {
@@ -180,7 +181,8 @@ bool Replay::ownWindow(Args& in) {
     w.config = *config;
     const auto width = static_cast<int32_t>(config->width), height = static_cast<int32_t>(config->height);
     w.whole = {0, 0, width, height};
-    w.part = config_.area ? intersect(apply(w.whole, *config_.area), w.whole) : regionViewport(config_.grid, config_.region, width, height);
+    if (moves() && (!w.surface || w.surface->width() != std::max(width, 1) || w.surface->height() != std::max(height, 1))) divideAnew(w);
+    w.part = partOf(w, w.moving.areas.get());
     placePart(w);
     const PixelViewport size = w.lean ? w.part : w.whole;
     if (w.surface && w.surface->width() == std::max(size.w, 1) && w.surface->height() == std::max(size.h, 1)) return true;
@@ -235,9 +237,11 @@ bool Replay::ownSwap(Args& in, bool front) {
         if (takesRanges()) rangeDrawn(w);
         f.notSplit = takesRanges() && !w.range.wasSplit;
         f.config = w.config;
-        f.region = drawsFewer() && !w.region.empty() ? inKernel(config_.pass, w.part) : w.region;
+        f.region = drawsFewer() && !w.region.empty() ? inKernel(config_.pass, w.part) : regionOf(w, front);
         f.picture = drawsFewer() ? inKernel(config_.pass, w.whole) : w.whole;
         f.keepsPicture = keepsTurn(w);
+        f.areas = moves() ? w.moving.areas->number : 0;
+        f.keepsAreas = moves() && w.moving.areas != areas_ && ++w.moving.waits >= kPatientFrames;
         f.sound = isSound(w, front);
         if (!front && f.sound) w.frontStaled = false;
         showedUnsound_ = showedUnsound_ || (!f.sound && !w.skipped && w.begun);

@@ -21,7 +21,7 @@ bool countsClipping(GLenum target) { return target == GL_CLIPPING_INPUT_PRIMITIV
 
 // True: every node draws the same pixels now, not only its own.
 bool Replay::drawsWhole() const {
-    return !drawsWindow() || (!drawsLean() && (tileOff_ || allDrawn() || c_->countedWhole || (c_->draw && learnsTurns(*c_->draw))));
+    return !drawsWindow() || (!drawsLean() && (tileOff_ || allDrawn() || c_->countedWhole || drawsOldFront() || (c_->draw && (learnsTurns(*c_->draw) || learnsAreas(*c_->draw)))));
 }
 
 // Whoever changes what drawsWhole() says comes by here before anything is drawn.

@@ -55,7 +55,7 @@ bool Replay::ownRequestPixels(Args& in) {
     const bool deep = format == GL_DEPTH_COMPONENT || format == GL_DEPTH_STENCIL || format == GL_STENCIL_INDEX;
     if (deep) depthForReading();
     const bool repeats = c_->read && interleaves(c_->read) && !c_->read->region.empty();
-    const PixelViewport part = c_->read && config_.answers ? intersect(asked, repeats ? c_->read->part : c_->read->region) : PixelViewport{};
+    const PixelViewport part = c_->read && config_.answers ? intersect(asked, repeats ? c_->read->part : regionOf(*c_->read, readsFront() && !deep)) : PixelViewport{};
     if (c_->read) c_->read->copied = true;
     if (hasSkipped_ && c_->read && !mayRead(*c_->read, deep)) out_.unsound();
     const size_t bytes = static_cast<size_t>(part.area()) * group;
@@ -306,7 +306,7 @@ void Replay::fillColor(const PixelViewport& r, const void* rgba) {
     const GLboolean srgb = c_->api == wire::Api::Desktop && gl.glIsEnabled(GL_FRAMEBUFFER_SRGB);
     if (srgb) gl.glDisable(GL_FRAMEBUFFER_SRGB);
     const PixelViewport o = readsLean() ? c_->read->region : PixelViewport{};
-    for (const PixelViewport& part : around(r, c_->read->config.samples > 0 ? intersect(r, c_->read->drawn) : PixelViewport{})) {
+    for (const PixelViewport& part : around(r, c_->read->config.samples > 0 ? intersect(r, moves() && readsFront() ? regionOf(*c_->read, true) : c_->read->drawn) : PixelViewport{})) {
         const int32_t x = part.x - r.x, y = part.y - r.y, toX = part.x - o.x, toY = part.y - o.y;
         if (!part.empty()) gl.glBlitFramebuffer(x, y, x + part.w, y + part.h, toX, toY, toX + part.w, toY + part.h, GL_COLOR_BUFFER_BIT, GL_NEAREST);
     }

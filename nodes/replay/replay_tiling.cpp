@@ -152,6 +152,7 @@ void Replay::glEnable(GLenum cap) {
         applyTileValues();
     }
     if (cap == GL_DEBUG_OUTPUT) listenToDriver();
+    if (moves()) noteTests(cap);
     if (cap != GL_SCISSOR_TEST) return gl.glEnable(cap);
     for (auto& s : c_->scissors) s.enabled = true;
     applyScissors();

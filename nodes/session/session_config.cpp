@@ -47,6 +47,8 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("session", c.session);
     visit("columns", c.columns, 1);
     visit("rows", c.rows, 1);
+    visit("tileWidth", c.tileWidth, 0);
+    visit("tileHeight", c.tileHeight, 0);
     visit("localNodes", c.localNodes, 0);
     visit("hosts", c.hosts);
     visit("launchCommand", c.launchCommand);
@@ -107,6 +109,8 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("areaY", s.area.y);
     visit("areaWidth", s.area.w);
     visit("areaHeight", s.area.h);
+    visit("areas", s.areas);
+    visit("sharesMachine", s.sharesMachine);
     visit("screen", s.screen);
     visit("shareStart", s.pass.share.start);
     visit("shareEnd", s.pass.share.end);

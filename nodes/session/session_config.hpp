@@ -29,6 +29,7 @@ struct SessionConfig {
     std::string session;          // abstract Unix socket name that programs connect to
     int columns = 1;              // --tiles CxR
     int rows = 1;
+    int tileWidth = 0, tileHeight = 0; // --tile-queue: pixels of tiles that nodes take from a queue, instead of columns and rows; 0: none
     int localNodes = 0;           // --local-nodes; 0: min(columns * rows, 4) when there are no hosts
     std::vector<std::string> hosts; // --nodes
     std::string launchCommand = "ssh -o BatchMode=yes"; // --launch: prefix that runs a command on a host
@@ -79,7 +80,9 @@ struct NodeSetup {
     int regionColumn = 0, regionRow = 0, regionColumns = 1, regionRows = 1;
     bool hasArea = false;         // its part is not one of tiles, but
     Viewport area;                // this one of the picture
+    std::vector<double> areas;    // that of every node, x, y, width, height, where they move (HeadCommand::Areas); empty: they don't
     RenderPass pass;
+    bool sharesMachine = false;   // with other nodes of the session
     std::optional<ScreenView> screen; // of a room; else the part is one of a flat wall, seen as the program sees it
     bool answers = true; // what programs read of windows is this pass's
     double eyeBase = 0.05, focusDistance = 1; // see SessionConfig

@@ -78,6 +78,18 @@ TEST(ShortForms, nodesTakeTurns) {
     EXPECT_EQ(one.resolved.windows.size(), 4u);
 }
 
+TEST(ShortForms, tilesAreTakenFromAQueue) {
+    ShortForm form;
+    form.tileWidth = form.tileHeight = 8;
+    form.takers = 3;
+    expectWhole(form);
+    form.samples = 2;
+    form.stereo = StereoForm::Anaglyph;
+    expectWhole(form);
+    form.takers = 1; // nobody to share with
+    for (const auto& c : loaded(form).resolved.compounds) EXPECT_TRUE(c.outputQueues.empty());
+}
+
 TEST(ShortForms, compositionIsInheritedByTheRanges) {
     ShortForm form;
     form.ranges = 3;

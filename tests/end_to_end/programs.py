@@ -12,7 +12,7 @@ GROUPS = {
                  "evaluators", "same_scene", "late_uploads"],
     "pixels": ["textures_classic", "textures_modern", "framebuffers", "framebuffers_layered", "core_depth",
                "pixels_draw", "copied_samples", "pixels_read", "texture_reads", "sized_reads", "compressed_reads", "reads_later", "reads_owed", "reads_threads",
-               "front_buffer", "front_and_back", "single_buffered", "frames_kept",
+               "front_buffer", "front_and_back", "single_buffered", "frames_kept", "clears_in_turns", "uneven_cost",
                "accum_buffer"],
     "state": ["raster_state", "blend_modes", "clipping", "fixed_lighting", "feedback_select",
               "attribute_stacks", "list_materials", "range_ties", "shared_draws", "arb_programs", "odd_calls", "list_questions", "refused_calls", "refused_core"],
@@ -68,7 +68,7 @@ def clean_environment(display):
     """Only what a program needs, so that results don't depend on the caller's settings."""
     keep = ("PATH", "HOME", "TMPDIR", "XDG_RUNTIME_DIR", "LANG", "LC_ALL", "MURAL_PLANT",
             "MURAL_LOG", "ASAN_OPTIONS", "UBSAN_OPTIONS", "LD_LIBRARY_PATH", "LIBGL_ALWAYS_SOFTWARE",
-            "EGL_PLATFORM", "LP_NUM_THREADS",
+            "EGL_PLATFORM", "LP_NUM_THREADS", "CLEARS_FRONT",
             # which driver: another Mesa than the system's
             "GALLIUM_DRIVER", "MESA_LOADER_DRIVER_OVERRIDE", "LIBGL_DRIVERS_PATH", "GBM_BACKENDS_PATH",
             "VK_ICD_FILENAMES", "VK_DRIVER_FILES", "__EGL_VENDOR_LIBRARY_DIRS")

@@ -30,6 +30,8 @@ def parse_arguments(description, add_arguments):
     parser.add_argument("--mural", help="the launcher; default BUILD/bin/mural")
     parser.add_argument("--programs", help="programs and groups, separated by commas; default all")
     parser.add_argument("--layouts", default="1x1,2x2,3x1,7x5", help="tiles, columns x rows")
+    parser.add_argument("--tile-queue", metavar="WxH", help="nodes take tiles of this size from a queue; layouts are numbers of nodes then")
+    parser.add_argument("--least-changes", type=int, default=0, metavar="N", help="fail when areas changed less often, in all runs together: then nothing was tried")
     parser.add_argument("--size", default="1000x777", help="of the programs' windows")
     parser.add_argument("--frames", type=int, default=4)
     parser.add_argument("--options", default="--display none",
@@ -37,6 +39,7 @@ def parse_arguments(description, add_arguments):
     parser.add_argument("--seconds", type=int, default=120, help="the longest that one run may take")
     parser.add_argument("--bound", type=float, default=0.0, metavar="PERCENT",
                         help="of the pixels that may differ; 0: none (tiling lean is not exact)")
+    parser.add_argument("--one-node", action="store_true", help="compare with a run whose picture is not divided instead of a native one: of what drivers do not agree about, or passes change")
     parser.add_argument("--native", action="store_true", help="compare two native runs")
     parser.add_argument("--keep", metavar="FOLDER", help="keep all pictures and logs there")
     parser.add_argument("--list", action="store_true", help="show the programs by group and stop")
@@ -60,6 +63,7 @@ class Comparison:
         self.known = 0
         self.skipped = 0
         self.healed = []
+        self.taken = 0
 
     def finish(self):
         """Whatever has to be looked at after all programs."""
@@ -76,8 +80,13 @@ class Comparison:
             return {"native": []}
         mural = arguments.mural or os.path.join(arguments.build, "bin", "mural")
         options = arguments.options.split()
-        return {layout: [mural, "run", "--tiles", layout, "--report", self.report_file()] + options + ["--"]
+        def divided(layout):
+            return ["--tile-queue", arguments.tile_queue, "--local-nodes", layout] if arguments.tile_queue else ["--tiles", layout]
+        return {layout: [mural, "run"] + divided(layout) + ["--report", self.report_file()] + options + ["--"]
                 for layout in arguments.layouts.split(",")}
+
+    def one_node(self):
+        return [os.path.join(self.arguments.build, "bin", "mural"), "run"] + self.arguments.options.split() + ["--"]
 
     def report_file(self):
         return os.path.join(self.folder, "report.json")
@@ -90,8 +99,21 @@ class Comparison:
         except (OSError, ValueError, KeyError):
             return False
 
+    def moves(self):
+        """How often the areas of the nodes changed from one frame to the next, as the last report has it."""
+        if not self.arguments.tile_queue:
+            return ""
+        try:
+            with open(self.report_file(), encoding="utf-8") as report:
+                queues = json.load(report)["queues"] or []
+        except (OSError, ValueError, KeyError):
+            return ""
+        taken = sum(queue["taken"] for queue in queues)
+        self.taken += taken
+        return ", areas changed %d times" % taken
+
     def check(self, name):
-        native = self.run(name, "reference")
+        native = self.run(name, "reference", self.one_node() if self.arguments.one_node else ())
         wanted = programs.STATUS.get(name, 0)
         if native.status == programs.SKIPPED:
             self.skipped += 1
@@ -122,7 +144,7 @@ class Comparison:
             self.healed.append(name)
         self.failures += wrong is not None
         print("%-24s %-9s %3d frames  %s  (%.1f s)" % (
-            name, label, frames, ("within the bound" if self.arguments.bound else "0 pixels differ") if wrong is None else "WRONG: " + wrong, seconds),
+            name, label, frames, (("within the bound" if self.arguments.bound else "0 pixels differ") if wrong is None else "WRONG: " + wrong) + self.moves(), seconds),
             flush=True)
 
     def compare(self, native, through):
@@ -194,6 +216,9 @@ def main(description=__doc__, add_arguments=lambda parser: None, comparison_clas
     finally:
         if not arguments.keep:
             shutil.rmtree(folder, ignore_errors=True)
+    if comparison.taken < arguments.least_changes:
+        print("WRONG: areas changed %d times, not %d at least" % (comparison.taken, arguments.least_changes))
+        comparison.failures += 1
     print("%d programs, %d comparisons wrong, %d known to differ, %d skipped" % (len(names), comparison.failures, comparison.known, comparison.skipped))
     for name in comparison.healed:
         print("%s is exact now: take it out of KNOWN_DIFFERENCES in programs.py" % name)

@@ -2,6 +2,7 @@
 
 #include <GL/gl.h>
 #include <GL/glext.h>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -25,6 +26,8 @@ struct State {
     GLenum error = 0;
     GLDEBUGPROC callback = nullptr;
     const void* callbackUser = nullptr;
+    std::unordered_set<GLenum> enabled;
+    std::array<int, 4> scissor{};
     FakeGlOptions options;
 };
 State state;
@@ -49,8 +52,17 @@ GLsync makeFence(GLenum, GLbitfield) { return reinterpret_cast<GLsync>(uintptr_t
 void readNames(GLsizei n, const GLuint* names) { touch(names, count(n, 4)); }
 
 void getIntegerv(GLenum what, GLint* value) {
-    *value = what == GL_ELEMENT_ARRAY_BUFFER_BINDING ? state.elementBuffer : 0;
+    *value = what == GL_ELEMENT_ARRAY_BUFFER_BINDING ? state.elementBuffer : what == GL_RENDER_MODE ? GL_RENDER : what == GL_STENCIL_WRITEMASK ? 255 : 0;
 }
+void enable(GLenum cap) { state.enabled.insert(cap); }
+void disable(GLenum cap) { state.enabled.erase(cap); }
+GLboolean isEnabled(GLenum cap) { return state.enabled.contains(cap) ? GL_TRUE : GL_FALSE; }
+void scissor(GLint x, GLint y, GLsizei width, GLsizei height) { state.scissor = {x, y, width, height}; }
+void drew() {
+    if (state.options.drew) state.options.drew(state.enabled.contains(GL_SCISSOR_TEST), state.scissor);
+}
+void clear(GLbitfield) { drew(); }
+void rectf(GLfloat, GLfloat, GLfloat, GLfloat) { drew(); }
 void getUniform64(GLuint, GLenum, GLuint64* value) { *value = 7; }
 void getUniform32(GLuint, GLenum, GLuint* value) { *value = 7; }
 GLint uniformLocation(GLuint, const GLchar* text) { return static_cast<GLint>(std::strlen(text)); }
@@ -146,6 +158,7 @@ template <auto function> gl::Proc proc() { return reinterpret_cast<gl::Proc>(InC
 const std::unordered_map<std::string, gl::Proc>& special() {
     static const std::unordered_map<std::string, gl::Proc> table = {
         {"glGetIntegerv", proc<getIntegerv>()}, {"glGetQueryObjectui64v", proc<getUniform64>()}, {"glGetQueryObjectuiv", proc<getUniform32>()},
+        {"glEnable", proc<enable>()}, {"glDisable", proc<disable>()}, {"glIsEnabled", proc<isEnabled>()}, {"glScissor", proc<scissor>()}, {"glClear", proc<clear>()}, {"glRectf", proc<rectf>()},
         {"glGetUniformLocation", proc<uniformLocation>()}, {"glBindBuffer", proc<bindBuffer>()}, {"glBufferData", proc<bufferData>()},
         {"glBufferSubData", proc<bufferSubData>()}, {"glTexImage2D", proc<texImage2d>()}, {"glGetError", proc<getError>()}, {"glDebugMessageCallback", proc<setCallback>()},
         {"glDrawArrays", proc<drawArrays>()}, {"glGetGraphicsResetStatus", proc<graphicsResetStatus>()}, {"glTexSubImage2D", proc<texSubImage2d>()},

@@ -3,6 +3,8 @@
 // length that was not checked. Called without a current context they end the process.
 #pragma once
 
+#include <array>
+#include <functional>
 #include <memory>
 
 #include "nodes/gl/gl_platform.hpp"
@@ -15,6 +17,7 @@ struct FakeGlOptions {
     int largestTexture = 0;    // in pixels; beyond, there is no memory. 0: any
     bool talks = false;        // each glDrawArrays sends a message of performance to the debug callback
     unsigned resetStatus = 0;  // what contexts that tell resets say
+    std::function<void(bool scissored, const std::array<int, 4>& box)> drew = {}; // each glClear and glRectf; may be empty
 };
 // One at a time per process.
 std::unique_ptr<gl::Platform> makeFakePlatform(const FakeGlOptions& options);

@@ -216,6 +216,27 @@ TEST(ConfigPlan, nodesShowTheirOwnChannels) {
 }
 
 // Of ranges the node that has the picture shows it; what several pictures make, and eyes on one screen, the head.
+TEST(ConfigPlan, tilesOfQueuesMove) {
+    SessionPlan plan = planOfFile("tile-queue.eqc");
+    ASSERT_EQ(plan.nodes.size(), 3u);
+    ASSERT_EQ(plan.queues.size(), 1u);
+    EXPECT_EQ(plan.queues[0].name, "queue");
+    EXPECT_EQ(plan.queues[0].width, 64);
+    EXPECT_EQ(plan.queues[0].height, 64);
+    EXPECT_EQ(plan.queues[0].area, Viewport{});
+    for (const NodePlan& n : plan.nodes) EXPECT_EQ(n.queue, 0);
+    settleQueues(plan, {});
+    for (const NodePlan& n : plan.nodes) EXPECT_EQ(n.queue, 0);
+    EXPECT_TRUE(plan.warnings.empty());
+    SessionConfig lean;
+    lean.tiling = Tiling::Lean;
+    settleQueues(plan, lean);
+    for (const NodePlan& n : plan.nodes) EXPECT_EQ(n.queue, -1);
+    EXPECT_EQ(plan.warnings.size(), 1u);
+    const SessionPlan projector = planOfFile("tiles-copy.eqc");
+    EXPECT_FALSE(projector.queues.empty()) << "by a tile_equalizer";
+}
+
 TEST(ConfigPlan, whoShowsWhatSeveralDraw) {
     SessionConfig windows;
     windows.display = Display::Windows;

@@ -23,6 +23,8 @@ struct FakeNodeBehaviour {
     bool silentStart = false;      // never ready
     bool refuses = false;          // says why, instead of being ready, and ends
     bool drawsWhole = false;       // says so with every frame
+    bool keepsAreas = false;       // likewise
+    uint64_t busyNs = 0;           // with every frame
     std::string news;              // a driver message with every frame
     uint32_t dieAtFrame = 0;       // closes its connection instead of finishing this frame
     uint32_t dieAtRequest = 0;     // instead of answering
@@ -105,6 +107,7 @@ private:
                                       std::to_string(setup_.node) + R"( fake","extensions":")" + common + "\"}";
             if (!behaviour_.silentStart) sendText(wire::NodeMessage::Ready, ready);
         }
+        if (op(words) == static_cast<uint32_t>(wire::HeadCommand::Areas)) areas_ = words.at(1); // taken at once
         if (op(words) == static_cast<uint32_t>(wire::HeadCommand::ClientGone))
             sendStruct(wire::NodeMessage::WindowGone, wire::WindowGoneMessage{words.at(1), wire::kAllWindows}, {});
         if (op(words) == static_cast<uint32_t>(wire::HeadCommand::Finish) && !behaviour_.noBye) {
@@ -160,7 +163,9 @@ private:
         done.width = a[2];
         done.height = a[3];
         done.calls = 7 * frame;
-        done.flags = behaviour_.drawsWhole ? wire::kDrawnWhole : 0;
+        done.flags = (behaviour_.drawsWhole ? wire::kDrawnWhole : 0) | (behaviour_.keepsAreas ? wire::kKeepsAreas : 0);
+        done.areas = areas_;
+        done.busyNs = behaviour_.busyNs;
         sendStruct(wire::NodeMessage::FrameDone, done, {});
         return true;
     }
@@ -218,6 +223,7 @@ private:
     std::unique_ptr<Connection> connection_;
     FakeNodeBehaviour behaviour_;
     NodeSetup setup_;
+    uint32_t areas_ = 0;
     bool saidBye_ = false;
     std::atomic<bool> stop_{false};
     mutable std::mutex mutex_;

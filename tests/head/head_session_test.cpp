@@ -206,6 +206,57 @@ TEST(HeadSession, whatEveryNodeDrawsWholeIsSaidOnce) {
     EXPECT_EQ(said, 1);
 }
 
+// Who takes longer gets less, and all hear of it at the same place of the stream.
+TEST(HeadSession, tilesOfAQueueMoveForAllNodesAtOnce) {
+    SessionHarness head(3);
+    head.config.tileWidth = head.config.tileHeight = 4;
+    head.behaviours[0].busyNs = 9'000'000;
+    head.behaviours[1].busyNs = 1'000'000;
+    head.behaviours[2].busyNs = 1'000'000;
+    head.start();
+    head.waitFor("ready");
+    FakeProgram program;
+    ASSERT_TRUE(program.connect(head.config.session));
+    for (uint32_t frame = 1; frame <= 30; ++frame) {
+        ASSERT_TRUE(swapFrames(program, frame, frame));
+        ASSERT_TRUE(program.waitFramesDone(frame));
+    }
+    const auto report = head.finish();
+    ASSERT_EQ(report["queues"].size(), 1u);
+    EXPECT_GT(report["queues"][0]["moves"], 0);
+    EXPECT_EQ(report["queues"][0]["columns"], 16);
+    EXPECT_EQ(report["queues"][0]["rows"], 12);
+    EXPECT_LT(report["queues"][0]["nodes"][0]["tiles"], report["queues"][0]["nodes"][1]["tiles"]);
+    int announced = 0;
+    std::vector<std::pair<uint32_t, std::vector<uint32_t>>> first; // all but setups
+    for (int node = 0; node < 3; ++node) {
+        std::vector<std::pair<uint32_t, std::vector<uint32_t>>> packets;
+        for (const auto& packet : head.node(node).packets()) {
+            if (packet.stream == 0 && packet.words[0] == static_cast<uint32_t>(wire::HeadCommand::Setup)) continue;
+            packets.emplace_back(packet.stream, packet.words);
+            announced += node == 0 && packet.stream == 0 && packet.words[0] == static_cast<uint32_t>(wire::HeadCommand::Areas);
+        }
+        if (node == 0) first = packets;
+        EXPECT_EQ(packets, first) << "node " << node;
+    }
+    EXPECT_GT(announced, 1);
+}
+
+TEST(HeadSession, areasThatStayAreSaidOnce) {
+    SessionHarness head(2);
+    head.config.tileWidth = head.config.tileHeight = 4;
+    for (auto& behaviour : head.behaviours) behaviour.keepsAreas = true;
+    head.start();
+    head.waitFor("ready");
+    FakeProgram program;
+    ASSERT_TRUE(program.connect(head.config.session));
+    ASSERT_TRUE(swapFrames(program, 1, 5));
+    ASSERT_TRUE(program.waitFramesDone(5));
+    head.waitForSay("its tiles stay with the nodes that have them");
+    head.finish();
+    EXPECT_EQ(std::ranges::count_if(head.seen, [](const auto& e) { return e["event"] == "say" && e["text"].template get<std::string>().find("its tiles stay") != std::string::npos; }), 1);
+}
+
 TEST(HeadSession, answersAreAssembledFromOneToFiveNodes) {
     for (int nodes = 1; nodes <= 5; ++nodes) {
         SessionHarness head(nodes);

@@ -89,6 +89,54 @@ TEST(NodePlan, setupsSayWhatEachNodeDraws) {
     EXPECT_EQ(tiles, 4);
 }
 
+// ---- queues
+
+TEST(NodePlan, tilesOfAQueueBeginInEvenPartsAndMove) {
+    SessionConfig config;
+    config.tileWidth = config.tileHeight = 32;
+    EXPECT_EQ(planSession(config, "me").nodes.size(), 4u);
+    config.localNodes = 5;
+    config.display = Display::Windows;
+    const SessionPlan plan = planSession(config, "me");
+    ASSERT_EQ(plan.nodes.size(), 5u);
+    ASSERT_EQ(plan.queues.size(), 1u);
+    EXPECT_TRUE(plan.warnings.empty());
+    EXPECT_TRUE(headShowsWall(config, plan)) << "windows of nodes could not move";
+    int64_t pixels = 0;
+    for (const NodePlan& node : plan.nodes) {
+        EXPECT_EQ(node.queue, 0);
+        pixels += apply({0, 0, 1000, 777}, *node.area).area();
+        const NodeSetup setup = setupOf(config, plan, node);
+        ASSERT_EQ(setup.areas.size(), 20u);
+        EXPECT_EQ(setup.areas[static_cast<size_t>(node.node) * 4], node.area->x);
+        EXPECT_TRUE(setup.sharesMachine);
+        EXPECT_EQ(nodeSetupFromJson(toJson(setup))->areas, setup.areas);
+    }
+    EXPECT_EQ(pixels, 777'000);
+}
+
+TEST(NodePlan, queuesThatCanNotMoveStay) {
+    const auto planned = [](const auto& change) {
+        SessionConfig config;
+        config.tileWidth = config.tileHeight = 32;
+        config.localNodes = 4;
+        change(config);
+        const SessionPlan plan = planSession(config, "me");
+        for (const NodePlan& node : plan.nodes) EXPECT_EQ(node.queue >= 0, !setupOf(config, plan, node).areas.empty());
+        return std::pair(plan.nodes.front().queue >= 0, plan.warnings.empty() ? "" : plan.warnings.front());
+    };
+    EXPECT_TRUE(planned([](SessionConfig&) {}).first);
+    EXPECT_TRUE(planned([](SessionConfig& c) { c.passes.stereo = StereoMode::Anaglyph; }).first);
+    EXPECT_TRUE(planned([](SessionConfig& c) { c.passes.samples = 2; }).first);
+    const std::string stays = "queue \"tiles\": its tiles of 32x32 pixels are dealt out evenly, and stay: ";
+    const auto lean = planned([](SessionConfig& c) { c.tiling = Tiling::Lean; });
+    EXPECT_EQ(lean, (std::pair(false, stays + "--tiling lean gives each node a framebuffer of its first tiles' size")));
+    EXPECT_EQ(planned([](SessionConfig& c) { c.passes.ranges = 2; }), (std::pair(false, stays + "their nodes share what they draw by ranges")));
+    EXPECT_FALSE(planned([](SessionConfig& c) { c.passes.period = 2; }).first);
+    EXPECT_FALSE(planned([](SessionConfig& c) { c.passes.kernelWidth = 2; }).first);
+    EXPECT_EQ(planned([](SessionConfig& c) { c.localNodes = 1; }), (std::pair(false, std::string())));
+}
+
 // ---- passes
 
 TEST(NodePlan, everyPassHasANodeByDefault) {

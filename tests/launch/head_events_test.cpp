@@ -54,6 +54,15 @@ TEST(Report, saysWhatTheNodesWereSpared) {
     EXPECT_EQ(reportLines(event(R"({"event":"report","frames":10,"economy":null})").report).size(), 1u);
 }
 
+TEST(Report, saysHowTilesWereTaken) {
+    const HeadEvent e = event(R"({"event":"report","frames":10,"seconds":1,"framesPerSecond":9,"bytesPerFrame":120,"queues":[)"
+                              R"({"name":"tiles","columns":25,"rows":19,"tileWidth":32,"tileHeight":32,"frames":8,"moves":2,"tilesMoved":60,"taken":2,"nodes":[{"node":0,"tiles":95},{"node":1,"tiles":380}]},)"
+                              R"({"name":"of nothing","columns":0},7]})");
+    ASSERT_EQ(reportLines(e.report).size(), 2u);
+    EXPECT_EQ(reportLines(e.report)[1], "queue \"tiles\": 25x19 tiles of 32x32 pixels moved after 2 of 8 frames, 7.50 tiles per frame; in the end node 0 has 95, node 1 has 380");
+    EXPECT_EQ(reportLines(event(R"({"event":"report","frames":10,"queues":null})").report).size(), 1u);
+}
+
 TEST(Report, saysWhichCommandsCauseRoundTrips) {
     const HeadEvent e = event(R"({"event":"report","frames":10,"seconds":1,"framesPerSecond":9,"bytesPerFrame":1,"roundTrips":5,)"
                               R"("roundTripsBy":{"glGetQueryObjectuiv":1,"glReadPixels":4,"odd":"x"}})");

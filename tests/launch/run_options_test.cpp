@@ -33,6 +33,15 @@ TEST(RunOptions, defaultsAreOneExactNode) {
     EXPECT_EQ(o.program, (std::vector<std::string>{"app", "-x"}));
 }
 
+TEST(RunOptions, aQueueNeedsNoTilesForItsNodes) {
+    const RunOptions o = accepted([](RunArguments& a) { a.tileQueue = "64x48"; a.localNodes = "5"; });
+    EXPECT_EQ(o.config.tileWidth, 64);
+    EXPECT_EQ(o.config.tileHeight, 48);
+    EXPECT_EQ(o.config.columns * o.config.rows, 1);
+    const RunOptions printed = accepted([](RunArguments& a) { a.tileQueue = "64x48"; a.localNodes = "2"; a.printConfig = true; });
+    EXPECT_NE(printed.configText.find("outputtiles { name \"wall.queue\" size [ 64 48 ] }"), std::string::npos) << printed.configText;
+}
+
 TEST(RunOptions, readsEveryOption) {
     const RunOptions o = accepted([](RunArguments& a) {
         a.tiles = "7x5";
@@ -187,6 +196,8 @@ TEST(RunOptions, optionsThatMeanNothingTogetherAreRefused) {
     EXPECT_EQ(refusal([](RunArguments& a) { a.native = true; a.record = "x"; }), "--record needs captured frames; leave --native out");
     EXPECT_NE(refusal([](RunArguments& a) { a.record = ""; }).find("--record"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.tiles = "2x2"; a.localNodes = "5"; }).find("5 render nodes for 4 tiles"), std::string::npos);
+    EXPECT_NE(refusal([](RunArguments& a) { a.tiles = "2x2"; a.tileQueue = "32x32"; }).find("leave one of them out"), std::string::npos);
+    for (const char* bad : {"", "32", "0x32", "32x", "axb", "-1x3"}) EXPECT_EQ(refusal([&](RunArguments& a) { a.tileQueue = bad; }).rfind("--tile-queue \"" + std::string(bad) + "\": must be", 0), 0u) << bad;
     EXPECT_NE(refusal([](RunArguments& a) { a.tiles = "4x4"; a.size = "3x100"; }).find("do not fit"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.program.clear(); }).find("no program"), std::string::npos);
 }

@@ -51,6 +51,13 @@ TEST(SessionRates, showWhatTheNodesWereSpared) {
     EXPECT_EQ(statLines(both[0])[6], "           of 9.0 kB per frame 4.0 kB were left out (2.0 records); 2.0 kB held back now");
 }
 
+TEST(SessionRates, showWhoHasWhichTiles) {
+    auto session = look(10, 100, 1000, 5000, 4, 1.0);
+    session["queues"] = {{{"name", "tiles"}, {"columns", 25}, {"rows", 19}, {"tileWidth", 32}, {"tileHeight", 16}, {"frames", 8}, {"moves", 2}, {"tilesMoved", 60}, {"nodes", {{{"node", 0}, {"tiles", 95}}, {{"node", 1}, {"tiles", 380}}}}}};
+    const auto lines = statLines(withRates({}, {session})[0]);
+    EXPECT_NE(std::ranges::find(lines, "  queue \"tiles\"  25x19 tiles of 32x16 pixels: node 0 has 95, node 1 has 380; moved after 2 of 8 frames, 7.50 tiles per frame"), lines.end());
+}
+
 TEST(SessionRates, ofWhatStoodStillOrIsNewAreLeftOut) {
     const auto still = withRates({look(10, 100, 1000, 5000, 0, 1.0)}, {look(11, 100, 1000, 5000, 0, 1.0)});
     EXPECT_EQ(still[0]["programs"][0]["recent"].count("callsPerFrame"), 0u);

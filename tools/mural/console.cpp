@@ -74,6 +74,13 @@ std::vector<std::string> reportLines(const SessionReport& r) {
             lines.push_back(fmt::format("held back: {:.0f} record{} waited for {} first use", e.heldRecords, plural(static_cast<int64_t>(e.heldRecords)), e.heldRecords == 1 ? "its" : "their") +
                             (e.leftOutRecords > 0 ? fmt::format("; {:.0f} of {} never went, as nobody needed them", e.leftOutRecords, sizeText(e.leftOutBytes)) : ""));
     }
+    for (const QueueReport& q : r.queues) {
+        if (q.columns == 0) continue;
+        std::string nodes;
+        for (const auto& [node, tiles] : q.nodes) nodes += fmt::format("{}node {} has {}", nodes.empty() ? "" : ", ", node, tiles);
+        lines.push_back(fmt::format("queue \"{}\": {}x{} tiles of {}x{} pixels moved after {} of {} frame{}, {:.2f} tiles per frame; in the end {}", q.name, q.columns, q.rows, q.tileWidth, q.tileHeight, q.moves, q.frames,
+                                    plural(q.frames), q.frames > 0 ? static_cast<double>(q.tilesMoved) / static_cast<double>(q.frames) : 0.0, nodes));
+    }
     if (r.verifiedFrames > 0) {
         std::string line = fmt::format("verified {} frame{}, {} pixels: {} differ", r.verifiedFrames, plural(r.verifiedFrames), r.verifiedPixels, r.differingPixels);
         if (r.differingPixels > 0) line += fmt::format(", by up to {} of 255", r.largestDifference);

@@ -43,6 +43,20 @@ EconomyReport economyFrom(const Json& j) {
     return {true, real(j, "records"), real(j, "rawBytes"), real(j, "stagedBytes"), real(j, "wireBytes"), real(j, "storeHits"), real(j, "newPages"), real(j, "encodeSeconds"), real(j, "heldRecords"), real(j, "leftOutRecords"), real(j, "leftOutBytes")};
 }
 
+std::vector<QueueReport> queuesFrom(const Json& list) {
+    std::vector<QueueReport> queues;
+    if (!list.is_array()) return queues;
+    for (const Json& q : list) {
+        if (!q.is_object()) continue;
+        queues.push_back({text(q, "name"), whole(q, "columns"), whole(q, "rows"), whole(q, "tileWidth"), whole(q, "tileHeight"), whole(q, "frames"), whole(q, "moves"), whole(q, "tilesMoved"), {}});
+        const auto nodes = q.find("nodes");
+        if (nodes == q.end() || !nodes->is_array()) continue;
+        for (const Json& n : *nodes)
+            if (n.is_object()) queues.back().nodes.emplace_back(whole(n, "node"), whole(n, "tiles"));
+    }
+    return queues;
+}
+
 SwapReport swapsFrom(const Json& j) {
     if (!j.is_object()) return {};
     return {whole(j, "members"), whole(j, "swaps"), real(j, "medianNs"), real(j, "p99Ns"), real(j, "mostNs"), real(j, "clockErrorNs")};
@@ -71,6 +85,7 @@ SessionReport reportFrom(const Json& j) {
     r.recordedFrames = whole(j, "recordedFrames");
     r.recordedBytes = whole(j, "recordedBytes");
     if (const auto economy = j.find("economy"); economy != j.end()) r.economy = economyFrom(*economy);
+    if (const auto queues = j.find("queues"); queues != j.end()) r.queues = queuesFrom(*queues);
     if (const auto nodes = j.find("nodes"); nodes != j.end() && nodes->is_array()) {
         for (const Json& n : *nodes) {
             if (!n.is_object()) continue;

@@ -40,6 +40,15 @@ struct EconomyReport {
     double leftOutRecords = 0, leftOutBytes = 0; // and those that nobody ever needed
 };
 
+// Tiles that nodes took from a queue.
+struct QueueReport {
+    std::string name;
+    int64_t columns = 0, rows = 0;         // of tiles; 0: none was dealt
+    int64_t tileWidth = 0, tileHeight = 0; // pixels
+    int64_t frames = 0, moves = 0, tilesMoved = 0;
+    std::vector<std::pair<int64_t, int64_t>> nodes; // and the tiles that each has
+};
+
 struct SessionReport {
     int64_t frames = 0;
     double seconds = 0;
@@ -59,6 +68,7 @@ struct SessionReport {
     int64_t recordedFrames = 0;
     int64_t recordedBytes = 0;
     EconomyReport economy;
+    std::vector<QueueReport> queues;
     std::vector<NodeReport> nodes;
     std::string json; // the whole, as the head said it
 };

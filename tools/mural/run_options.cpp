@@ -130,6 +130,12 @@ Result<void> readSizes(const RunArguments& a, SessionConfig& c) {
         if (!tiles) return badValue("--tiles", *a.tiles, fmt::format("must be COLUMNSxROWS, each from 1 to {}, such as 2x2", kMaxTilesPerSide));
         std::tie(c.columns, c.rows) = *tiles;
     }
+    if (a.tileQueue) {
+        const auto tile = pairOf(*a.tileQueue, 'x', 1, launch::kMaxScreenSize);
+        if (!tile) return badValue("--tile-queue", *a.tileQueue, fmt::format("must be WIDTHxHEIGHT of a tile in pixels, each from 1 to {}, such as 64x64", launch::kMaxScreenSize));
+        if (a.tiles) return Error{"--tiles and --tile-queue both say which tiles nodes draw; leave one of them out"};
+        std::tie(c.tileWidth, c.tileHeight) = *tile;
+    }
     if (a.size) {
         const auto size = pairOf(*a.size, 'x', 1, launch::kMaxScreenSize);
         if (!size) return badValue("--size", *a.size, fmt::format("must be WIDTHxHEIGHT in pixels, each from 1 to {}, such as 7680x4320", launch::kMaxScreenSize));
@@ -175,8 +181,8 @@ Result<void> readNodes(const RunArguments& a, SessionConfig& c) {
     }
     const int asked = c.localNodes + static_cast<int>(c.hosts.size());
     const int passes = static_cast<int>(passesOf(c.passes).size()) * c.passes.ranges;
-    if (asked > 0 && !a.tiles) std::tie(c.columns, c.rows) = gridFor(std::max(1, asked / passes));
-    if (asked > c.columns * c.rows * passes) {
+    if (asked > 0 && !a.tiles && !a.tileQueue) std::tie(c.columns, c.rows) = gridFor(std::max(1, asked / passes));
+    if (!a.tileQueue && asked > c.columns * c.rows * passes) {
         return Error{fmt::format("{} render nodes for {} tiles{}: each node needs a tile; give more --tiles or fewer nodes", asked, c.columns * c.rows, passes > 1 ? fmt::format(" in {} passes", passes) : "")};
     }
     if (a.launch) c.launchCommand = *a.launch;
@@ -264,7 +270,7 @@ Result<void> readConfigFile(const RunArguments& a, RunOptions& options) {
             if (given) return Error{fmt::format("{} is for a configuration file; add --config FILE", option)};
         return {};
     }
-    const std::pair<const char*, bool> contradicting[] = {{"--tiles", a.tiles.has_value()}, {"--nodes", a.nodes.has_value()}, {"--local-nodes", a.localNodes.has_value()}, {"--stereo", a.stereo.has_value()},
+    const std::pair<const char*, bool> contradicting[] = {{"--tiles", a.tiles.has_value()}, {"--tile-queue", a.tileQueue.has_value()}, {"--nodes", a.nodes.has_value()}, {"--local-nodes", a.localNodes.has_value()}, {"--stereo", a.stereo.has_value()},
                                                           {"--pixel", a.pixel.has_value()}, {"--subpixel", a.subpixel.has_value()}, {"--dplex", a.dplex.has_value()}, {"--db", a.db.has_value()}};
     for (const auto& [option, given] : contradicting)
         if (given) return Error{fmt::format("{} and --config both say who draws what; leave one of them out", option)};
@@ -316,6 +322,13 @@ Result<std::string> configTextOf(const RunArguments& a, const SessionConfig& c) 
     form.samples = c.passes.samples;
     form.frames = c.passes.period;
     if (c.passes.kernelHeight > 1) return Error{"--print-config: a pixel kernel of several rows has no short form; write it as pixel [ x y width height ] into a file"};
+    if (c.tileWidth > 0) {
+        constexpr int kTakers = 4; // where nothing says how many nodes there are, as planSession() has it
+        const int nodes = c.localNodes + static_cast<int>(c.hosts.size());
+        form.tileWidth = c.tileWidth;
+        form.tileHeight = c.tileHeight;
+        form.takers = nodes == 0 ? kTakers : std::max(1, nodes / static_cast<int>(passesOf(c.passes).size() * static_cast<size_t>(c.passes.ranges)));
+    }
     switch (c.passes.stereo) {
     case StereoMode::Off: break;
     case StereoMode::Anaglyph: form.stereo = config::StereoForm::Anaglyph; break;
@@ -364,6 +377,7 @@ Result<void> checkTogether(const RunArguments& a, const SessionConfig& c) {
 void describeRunOptions(CLI::App& command, RunArguments& a) {
     command.option_defaults()->take_last();
     command.add_option("--tiles", a.tiles, "tiles of the wall, columns x rows (1x1, or one for each node)")->type_name("CxR");
+    command.add_option("--tile-queue", a.tileQueue, "tiles of so many pixels, taken from frame to frame by whichever node is free earlier (each node keeps its tiles)")->type_name("WxH");
     command.add_option("--nodes", a.nodes, "render nodes on these hosts, separated by commas")->type_name("H1,H2");
     command.add_option("--local-nodes", a.localNodes, "render nodes on this machine (as many as tiles, at most 4)")->type_name("N");
     command.add_option("--size", a.size, "size of the wall: the program runs on a private display of this size")->type_name("WxH");

@@ -135,6 +135,15 @@ void addEconomy(const Json& economy, std::vector<std::string>& lines) {
                                     number(recent, "leftOutRecordsPerFrame"), sizeText(number(economy, "heldBytes"))));
 }
 
+void addQueue(const Json& queue, std::vector<std::string>& lines) {
+    if (number(queue, "columns") == 0) return;
+    std::string nodes;
+    for (const Json& node : entries(queue, "nodes")) nodes += fmt::format("{}node {:.0f} has {:.0f}", nodes.empty() ? "" : ", ", number(node, "node"), number(node, "tiles"));
+    const double frames = number(queue, "frames");
+    lines.push_back(fmt::format("  queue \"{}\"  {:.0f}x{:.0f} tiles of {:.0f}x{:.0f} pixels: {}; moved after {:.0f} of {:.0f} frames, {:.2f} tiles per frame", text(queue, "name"), number(queue, "columns"), number(queue, "rows"),
+                                number(queue, "tileWidth"), number(queue, "tileHeight"), nodes, number(queue, "moves"), frames, frames > 0 ? number(queue, "tilesMoved") / frames : 0));
+}
+
 void addNode(const Json& node, std::vector<std::string>& lines) {
     std::string state = text(node, "state");
     if (state == "alive") {
@@ -171,6 +180,7 @@ std::vector<std::string> statLines(const Json& session) {
     for (const Json& program : programs) addProgram(program, lines);
     if (programs.empty()) lines.emplace_back("  no program draws yet, or any more");
     addEconomy(part(session, "economy"), lines);
+    for (const Json& queue : entries(session, "queues")) addQueue(queue, lines);
     for (const Json& node : entries(session, "nodes")) addNode(node, lines);
     return lines;
 }

@@ -1,0 +1,309 @@
+// Areas that move: when a window takes them, and what is drawn where until then.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "encoders.hpp"
+#include "gl_opcodes.hpp"
+#include "interposer/own_records.hpp"
+#include "nodes/replay/replay.hpp"
+#include "tests/fuzz/fake_gl.hpp"
+#include "tests/interposer/encoder_harness.hpp"
+
+namespace mural {
+namespace {
+
+constexpr GLbitfield kColour = GL_COLOR_BUFFER_BIT, kDepth = GL_DEPTH_BUFFER_BIT, kStencil = GL_STENCIL_BUFFER_BIT;
+constexpr PixelViewport kLeft{0, 0, 32, 32}, kRight{32, 0, 32, 32};
+
+Areas leftAndRight(uint32_t number, bool swapped) {
+    const Viewport left{0, 0, 0.5, 1}, right{0.5, 0, 0.5, 1};
+    return {number, swapped ? std::vector<Viewport>{right, left} : std::vector<Viewport>{left, right}};
+}
+
+// Node 0 of two: of a window of 64x32 pixels it begins with the left half, and is to have the right one.
+class MovingAreas : public ::testing::Test {
+protected:
+    void SetUp() override { replay_ = make(false); }
+
+    std::unique_ptr<Replay> make(bool catchesUp) {
+        ReplayConfig config;
+        config.areas = leftAndRight(0, false);
+        config.catchesUp = catchesUp;
+        ReplayOutputs out;
+        out.frameDone = [this](const ReplayOutputs::Frame& f) { frame_ = f; };
+        out.log = [](const std::string&) {};
+        out.answer = [this](const wire::AnswerHeader& h, std::span<const std::byte>) { answer_ = h; };
+        fuzz::FakeGlOptions options;
+        options.drew = [this](bool scissored, const std::array<int, 4>& box) {
+            drawn_.push_back(scissored ? PixelViewport{box[0], box[1], box[2], box[3]} : PixelViewport{0, 0, 64, 32});
+        };
+        return std::make_unique<Replay>(fuzz::makeFakePlatform(options), config, out);
+    }
+
+    void open(uint8_t depth = 24, uint8_t stencil = 0, uint8_t accum = 0) {
+        wire::WindowConfig c{};
+        c.width = 64;
+        c.height = 32;
+        c.doubleBuffer = 1;
+        c.depth = depth;
+        c.stencil = stencil;
+        c.accum = accum;
+        records::window(t_, 1, c);
+        records::createContext(t_, {1, 0, 0, 4, 5, 0, 0, c});
+        records::makeCurrent(t_, 1, 1, 1);
+        send();
+    }
+    void send() {
+        for (const auto& packet : encoder_.takePackets()) ASSERT_TRUE(replay_->packet(wire::streamOf(1, 1), packet));
+    }
+    void draw() { encode_glRectf(t_, -1, -1, 1, 1); }
+    // The part of the window that this node has in this frame.
+    PixelViewport shown() {
+        records::swap(t_, 1, ++frames_);
+        send();
+        return frame_.region;
+    }
+    void announce(uint32_t number = 1, bool swapped = true) {
+        send();
+        replay_->moveAreas(leftAndRight(number, swapped));
+    }
+
+    testing::EncoderHarness encoder_;
+    ThreadState& t_ = encoder_.thread();
+    std::unique_ptr<Replay> replay_;
+    ReplayOutputs::Frame frame_{};
+    wire::AnswerHeader answer_{};
+    std::vector<PixelViewport> drawn_; // or cleared
+    uint32_t frames_ = 0;
+};
+
+TEST_F(MovingAreas, AreTakenAtTheNextFullClear) {
+    open();
+    encode_glEnable(t_, GL_DEPTH_TEST);
+    encode_glClear(t_, kColour | kDepth);
+    draw();
+    announce();
+    EXPECT_EQ(shown(), kLeft) << "announced in the middle of a frame";
+    EXPECT_EQ(frame_.areas, 0u);
+    draw();
+    EXPECT_EQ(shown(), kLeft) << "a frame that is drawn over the one before";
+    drawn_.clear();
+    draw();
+    encode_glClear(t_, kColour | kDepth);
+    draw();
+    EXPECT_EQ(shown(), kRight);
+    EXPECT_EQ(frame_.areas, 1u);
+    EXPECT_EQ(drawn_, (std::vector<PixelViewport>{kLeft, {0, 0, 64, 32}, kRight})) << "what was the other node's is cleared here, too";
+}
+
+TEST_F(MovingAreas, WaitForEachBufferThatIsDrawnInto) {
+    open(24, 8);
+    encode_glEnable(t_, GL_DEPTH_TEST);
+    draw();
+    announce();
+    encode_glClear(t_, kColour);
+    EXPECT_EQ(shown(), kLeft) << "depths are left";
+    encode_glClear(t_, kDepth);
+    EXPECT_EQ(shown(), kRight) << "stencils are not: nothing ever drew any";
+    encode_glEnable(t_, GL_STENCIL_TEST);
+    draw();
+    announce(2, false);
+    encode_glClear(t_, kColour | kDepth);
+    EXPECT_EQ(shown(), kRight);
+    encode_glClear(t_, kColour | kDepth | kStencil);
+    EXPECT_EQ(shown(), kLeft);
+}
+
+TEST_F(MovingAreas, WhatIsDrawnBetweenClearsCounts) {
+    open();
+    encode_glEnable(t_, GL_DEPTH_TEST);
+    draw();
+    announce();
+    encode_glClear(t_, kDepth);
+    draw();
+    encode_glClear(t_, kColour);
+    EXPECT_EQ(shown(), kLeft);
+    encode_glClear(t_, kDepth);
+    EXPECT_EQ(shown(), kRight) << "in a later frame, as nothing was drawn since";
+}
+
+TEST_F(MovingAreas, ClearsOfAPartAreNone) {
+    open();
+    draw();
+    announce();
+    encode_glEnable(t_, GL_SCISSOR_TEST);
+    encode_glScissor(t_, 0, 0, 64, 31);
+    encode_glClear(t_, kColour);
+    EXPECT_EQ(shown(), kLeft);
+    encode_glDisable(t_, GL_SCISSOR_TEST);
+    encode_glColorMask(t_, GL_TRUE, GL_TRUE, GL_FALSE, GL_TRUE);
+    encode_glClear(t_, kColour);
+    EXPECT_EQ(shown(), kLeft);
+    encode_glColorMask(t_, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    encode_glClear(t_, kColour | 1); // an error
+    EXPECT_EQ(shown(), kLeft);
+    const GLfloat colour[] = {0, 0, 0, 0};
+    encode_glClearBufferfv(t_, GL_COLOR, 1, DataArg::of(colour, sizeof colour)); // of another draw buffer
+    EXPECT_EQ(shown(), kLeft);
+    encode_glBegin(t_, GL_LINES);
+    encode_glClear(t_, kColour); // an error
+    encode_glEnd(t_);
+    EXPECT_EQ(shown(), kLeft);
+    encode_glClearBufferfv(t_, GL_COLOR, 0, DataArg::of(colour, sizeof colour));
+    EXPECT_EQ(shown(), kRight);
+}
+
+TEST_F(MovingAreas, OnlyTheLatestCount) {
+    open();
+    draw();
+    announce(1, true);
+    announce(2, false);
+    encode_glClear(t_, kColour);
+    EXPECT_EQ(shown(), kLeft);
+    EXPECT_EQ(frame_.areas, 2u);
+}
+
+TEST_F(MovingAreas, AreTakenBehindAClearWhereNothingWasDrawnYet) {
+    open();
+    encode_glEnable(t_, GL_DEPTH_TEST);
+    draw();
+    encode_glClear(t_, kColour | kDepth);
+    announce();
+    draw();
+    EXPECT_EQ(shown(), kRight);
+}
+
+TEST_F(MovingAreas, NewWindowsAndNewSizesHaveTheLatest) {
+    announce();
+    open();
+    EXPECT_EQ(shown(), kRight);
+    draw();
+    announce(2, false);
+    wire::WindowConfig c{};
+    c.width = 128;
+    c.height = 32;
+    c.doubleBuffer = 1;
+    records::window(t_, 1, c);
+    EXPECT_EQ(shown(), (PixelViewport{0, 0, 64, 32}));
+}
+
+TEST_F(MovingAreas, StayWhereTheFrontIsDrawnOrFramesAccumulate) {
+    open(24, 0, 16);
+    encode_glDrawBuffer(t_, GL_FRONT);
+    draw();
+    encode_glDrawBuffer(t_, GL_BACK);
+    announce();
+    for (int frame = 0; frame < 60; ++frame) {
+        encode_glClear(t_, kColour | kDepth);
+        EXPECT_EQ(shown(), kLeft);
+        EXPECT_EQ(frame_.keepsAreas, frame == 59) << "said after a while";
+    }
+}
+
+TEST_F(MovingAreas, AWindowThatIsNeverClearedSaysSo) {
+    open();
+    draw();
+    announce();
+    for (int frame = 0; frame < 60; ++frame) {
+        EXPECT_FALSE(frame_.keepsAreas);
+        draw();
+        EXPECT_EQ(shown(), kLeft);
+    }
+    EXPECT_TRUE(frame_.keepsAreas);
+}
+
+TEST_F(MovingAreas, ListsAreLookedInto) {
+    open();
+    encode_glNewList(t_, 1, GL_COMPILE);
+    encode_glClear(t_, kColour | kDepth);
+    encode_glEndList(t_);
+    encode_glNewList(t_, 2, GL_COMPILE);
+    encode_glEnable(t_, GL_DEPTH_TEST);
+    draw();
+    encode_glDisable(t_, GL_DEPTH_TEST);
+    encode_glEndList(t_);
+    encode_glCallList(t_, 2);
+    announce();
+    encode_glClear(t_, kColour);
+    EXPECT_EQ(shown(), kLeft) << "the list has drawn depths, though the test is off before and behind it";
+    encode_glCallList(t_, 1);
+    EXPECT_EQ(shown(), kRight) << "and one clears all";
+    announce(2, false);
+    encode_glNewList(t_, 3, GL_COMPILE_AND_EXECUTE);
+    draw();
+    encode_glEndList(t_);
+    encode_glClear(t_, kColour);
+    EXPECT_EQ(shown(), kRight);
+    encode_glClear(t_, kColour | kDepth);
+    EXPECT_EQ(shown(), kLeft);
+}
+
+// The driver does that, in the node's part only.
+TEST_F(MovingAreas, ListsMayHoldClearsOfBuffers) {
+    open();
+    const GLfloat depth = 0.5F;
+    encode_glNewList(t_, 1, GL_COMPILE);
+    encode_glClearBufferfv(t_, GL_DEPTH, 0, DataArg::of(&depth, sizeof depth));
+    encode_glEndList(t_);
+    encode_glCallList(t_, 1);
+    announce();
+    encode_glClear(t_, kColour);
+    EXPECT_EQ(shown(), kLeft);
+    encode_glClear(t_, kDepth);
+    EXPECT_EQ(shown(), kRight);
+}
+
+TEST_F(MovingAreas, AnswersAreOfTheAreaOfTheirPlace) {
+    open();
+    draw();
+    announce();
+    const auto asked = [&] {
+        records::requestPixels(t_, 1, 0, 0, 64, 32, GL_RGBA, GL_UNSIGNED_BYTE, 4);
+        send();
+        return PixelViewport{answer_.x, answer_.y, answer_.w, answer_.h};
+    };
+    EXPECT_EQ(asked(), kLeft);
+    encode_glClear(t_, kColour);
+    EXPECT_EQ(asked(), kRight);
+}
+
+// What a member tells is what a node that comes back then has.
+TEST_F(MovingAreas, AreToldToNodesThatComeBack) {
+    open();
+    draw();
+    announce();
+    const auto told = replay_->tellAreas();
+    replay_ = make(true);
+    open();
+    draw();
+    EXPECT_EQ(shown(), kLeft);
+    ASSERT_TRUE(replay_->takeToldAreas(told));
+    encode_glClear(t_, kColour);
+    EXPECT_EQ(shown(), kRight) << "they were announced before it came";
+    EXPECT_EQ(frame_.areas, 1u);
+    EXPECT_NE(replay_->tellAreas(), told);
+}
+
+TEST_F(MovingAreas, WhatNoMemberTellsIsRefused) {
+    open();
+    const auto told = replay_->tellAreas();
+    for (size_t size = 0; size < told.size(); ++size) {
+        replay_ = make(true);
+        open();
+        EXPECT_FALSE(replay_->takeToldAreas(std::span(told).first(size))) << size << " of " << told.size() << " bytes";
+    }
+}
+
+TEST_F(MovingAreas, WithNobodyToTellTheyBeginAnew) {
+    replay_ = make(true);
+    open();
+    announce();
+    replay_->beginAreas();
+    EXPECT_EQ(shown(), kRight);
+}
+
+} // namespace
+} // namespace mural
