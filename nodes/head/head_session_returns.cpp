@@ -185,7 +185,7 @@ void HeadSession::goOnWithoutAbsent() {
     for (const auto& [node, why] : absences_) {
         const std::lock_guard membership(membership_);
         const bool taken = plan_.nodes[static_cast<size_t>(node)].queue >= 0;
-        control_.say(nodes_.link(node).describe() + " is not there yet: " + why + (taken ? "; the others take its tiles until it comes" : "; its tiles stay empty until it comes"));
+        control_.say(nodes_.link(node).describe() + " is not there yet: it " + why + (taken ? "; the others take its tiles until it comes" : "; its tiles stay empty until it comes"));
         returns_->notThere(node);
         goOnWithout(node);
     }

@@ -95,17 +95,16 @@ Result<std::unique_ptr<NodeGate>> openGate(const SessionPlan& plan) {
     return NodeGate::open(!remote);
 }
 
-// True: it has come.
+// True: it has come. Errors: what it did not do, behind its name.
 Result<bool> lookForConnection(LaunchedNode& node, NodeGate& gate, Deadline deadline) {
     node.connection = gate.take(node.plan.node);
     if (node.connection) return true;
-    const std::string name = nameOf(node.plan);
     // A launch command may hand the node over to something else and end in order.
     const auto how = node.process->ended();
     const bool handedOver = node.plan.reach == NodeReach::LaunchCommand && how == "exit status 0";
-    if (how && !handedOver) return Error{name + " did not start: " + *how + "; its own messages say why"};
+    if (how && !handedOver) return Error{"did not start: " + *how + "; its own messages say why"};
     if (deadline.passed()) {
-        return Error{name + " did not connect within 30 s; check that it can reach port " + std::to_string(gate.port()) +
+        return Error{"did not connect within 30 s; check that it can reach port " + std::to_string(gate.port()) +
                      " of this machine"};
     }
     return false;
@@ -127,8 +126,8 @@ Result<void> awaitConnections(std::vector<LaunchedNode>& nodes, NodeGate* gate, 
             }
             come += node.connection ? 1 : 0;
             gone += node.absence.empty() ? 0 : 1;
-            if (all - gone < enough) return Error{node.absence + (enough < all ? "; fewer than --least-nodes " + std::to_string(enough) + " are left" : "")};
-            if (!node.absence.empty() && node.plan.pass.ranges > 1) return Error{node.absence + "; nodes that share draws (--db) begin together"};
+            if (all - gone < enough) return Error{nameOf(node.plan) + " " + node.absence + (enough < all ? "; fewer than --least-nodes " + std::to_string(enough) + " are left" : "")};
+            if (!node.absence.empty() && node.plan.pass.ranges > 1) return Error{nameOf(node.plan) + " " + node.absence + "; nodes that share draws (--db) begin together"};
         }
         if (come + gone == all) return {};
         if (come >= enough && !late) late = Deadline::inMs(options.lateMs);
@@ -138,8 +137,8 @@ Result<void> awaitConnections(std::vector<LaunchedNode>& nodes, NodeGate* gate, 
     }
     for (LaunchedNode& node : nodes) {
         if (node.connection || !node.absence.empty()) continue;
-        if (node.plan.pass.ranges > 1) return Error{nameOf(node.plan) + " did not connect within " + std::to_string(options.lateMs / 1000) + " s of the others; nodes that share draws (--db) begin together"};
-        node.absence = "it did not connect within " + std::to_string(options.lateMs / 1000) + " s of the others";
+        node.absence = "did not connect within " + std::to_string(options.lateMs / 1000) + " s of the others";
+        if (node.plan.pass.ranges > 1) return Error{nameOf(node.plan) + " " + node.absence + "; nodes that share draws (--db) begin together"};
         node.process.reset();
     }
     return {};
@@ -182,7 +181,9 @@ Result<StartingNode> startNode(const NodePlan& plan, const LaunchOptions& option
 
 Result<bool> connected(StartingNode& starting) {
     if (starting.node.connection) return true;
-    return lookForConnection(starting.node, *starting.gate, starting.deadline);
+    auto come = lookForConnection(starting.node, *starting.gate, starting.deadline);
+    if (!come) return Error{"it " + come.error().message};
+    return come;
 }
 
 } // namespace mural

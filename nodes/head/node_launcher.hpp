@@ -18,7 +18,7 @@ struct LaunchedNode {
     NodePlan plan;
     std::unique_ptr<NodeProcess> process; // null in tests with nodes in the same process
     std::unique_ptr<Connection> connection;
-    std::string absence = {}; // why it has no connection; empty: it has one
+    std::string absence = {}; // "did not start: …": why it has no connection; empty: it has one
 };
 
 // One that is started alone, later: for a node that was lost.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "balancer/queue/random_areas.hpp"
 #include "nodes/head/tile_split.hpp"
 
 namespace mural {
@@ -13,28 +14,6 @@ constexpr size_t kMostFrames = 64;    // that some nodes have finished and other
 constexpr int kOthers = 240;          // frames of other windows, of all nodes together, until a window counts as one that has ended
 
 int piecesOf(int size, int step) { return (size + step - 1) / step; }
-
-// Any cuts, and any node on either side of them.
-void cutAtRandom(TileRegion r, std::vector<size_t> nodes, std::mt19937& random, std::vector<TileRegion>& out) {
-    if (nodes.size() == 1) {
-        out[nodes.front()] = r;
-        return;
-    }
-    const auto below = [&](int n) { return static_cast<int>(random() % static_cast<uint32_t>(n)); };
-    const bool columns = r.rows < 2 || (r.columns > 1 && below(2) == 0);
-    std::shuffle(nodes.begin(), nodes.end(), random);
-    const int length = columns ? r.columns : r.rows, across = columns ? r.rows : r.columns;
-    const int at = 1 + below(length - 1);
-    const int total = static_cast<int>(nodes.size());
-    const int fewest = std::max(1, total - (length - at) * across), most = std::min(total - 1, at * across);
-    const int count = fewest + below(most - fewest + 1);
-    TileRegion a = r, b = r;
-    (columns ? a.columns : a.rows) = at;
-    (columns ? b.column : b.row) += at;
-    (columns ? b.columns : b.rows) -= at;
-    cutAtRandom(a, {nodes.begin(), nodes.begin() + count}, random, out);
-    cutAtRandom(b, {nodes.begin() + count, nodes.end()}, random, out);
-}
 
 } // namespace
 
@@ -171,10 +150,7 @@ void TileDealer::dealAtRandom() {
     for (Queue& queue : queues_) {
         if (!queue.tiles) continue;
         const int columns = queue.tiles->columns(), rows = queue.tiles->rows();
-        std::vector<TileRegion> areas(queue.takers.size());
-        std::vector<size_t> nodes(areas.size());
-        for (size_t i = 0; i < nodes.size(); ++i) nodes[i] = i;
-        cutAtRandom({0, 0, columns, rows}, nodes, *random_, areas);
+        auto areas = queue::randomAreas(columns, rows, queue.takers.size(), *random_);
         ++queue.totals.frames;
         ++queue.totals.moves;
         queue.totals.tilesMoved += queue::tilesMoved(queue.tiles->areas(), areas);

@@ -5,6 +5,7 @@
 #include <random>
 #include <string>
 
+#include "balancer/queue/random_areas.hpp"
 #include "balancer/queue/tile_queue.hpp"
 
 namespace mural::queue {
@@ -22,29 +23,6 @@ std::string whatIsWrong(int columns, int rows, const std::vector<TileRegion>& ar
             for (int x = r.column; x < r.column + r.columns; ++x) ++owners[static_cast<size_t>(y) * static_cast<size_t>(columns) + static_cast<size_t>(x)];
     }
     return std::ranges::all_of(owners, [](int n) { return n == 1; }) ? "" : "a tile that nobody, or more than one, draws";
-}
-
-// Any areas that are made by cuts.
-void cut(TileRegion r, int n, std::mt19937& random, std::vector<TileRegion>& out) {
-    if (n == 1) return out.push_back(r);
-    const auto below = [&](int most) { return static_cast<int>(random() % static_cast<uint32_t>(most)); };
-    const bool columns = r.rows < 2 || (r.columns > 1 && below(2) == 0);
-    const int length = columns ? r.columns : r.rows, across = columns ? r.rows : r.columns;
-    const int at = 1 + below(length - 1);
-    const int fewest = std::max(1, n - (length - at) * across), most = std::min(n - 1, at * across);
-    const int count = fewest + below(most - fewest + 1);
-    TileRegion a = r, b = r;
-    (columns ? a.columns : a.rows) = at;
-    (columns ? b.column : b.row) += at;
-    (columns ? b.columns : b.rows) -= at;
-    cut(a, count, random, out);
-    cut(b, n - count, random, out);
-}
-
-std::vector<TileRegion> anyAreas(int columns, int rows, int n, std::mt19937& random) {
-    std::vector<TileRegion> areas;
-    cut({0, 0, columns, rows}, n, random, areas);
-    return areas;
 }
 
 // What is drawn, by which nodes.
@@ -134,10 +112,10 @@ TEST(DealTiles, AreasCoverTheGridOnceForAnyCostsAndCuts) {
     const auto below = [&](int n) { return static_cast<int>(random() % static_cast<uint32_t>(n)); };
     for (int round = 0; round < 2000; ++round) {
         const int columns = 1 + below(20), rows = 1 + below(12), n = 1 + below(std::min(columns * rows, 9));
-        const auto before = anyAreas(columns, rows, n, random);
+        const auto before = randomAreas(columns, rows, static_cast<size_t>(n), random);
         ASSERT_EQ(whatIsWrong(columns, rows, before), "");
         TileCosts costs(columns, rows);
-        for (const TileRegion& r : anyAreas(columns, rows, 1 + below(std::min(columns * rows, 12)), random)) costs.learn(r, below(3) == 0 ? 0 : std::pow(10, below(7) - 3));
+        for (const TileRegion& r : randomAreas(columns, rows, static_cast<size_t>(1 + below(std::min(columns * rows, 12))), random)) costs.learn(r, below(3) == 0 ? 0 : std::pow(10, below(7) - 3));
         const auto after = dealTiles(costs, before);
         ASSERT_EQ(after.size(), before.size());
         ASSERT_EQ(whatIsWrong(columns, rows, after), "") << columns << "x" << rows << " for " << n << ", round " << round;
@@ -179,7 +157,7 @@ TEST(TileQueue, ComesNearTheBestOnUnevenLoads) {
                 EXPECT_LE(strip.last, 1.25 * bestOfStrips(load)) << n << " strips, hill of " << height << " at " << x << ", from " << strip.first;
                 std::mt19937 random(static_cast<uint32_t>(n));
                 const Load wide = withHill(40, 30, static_cast<size_t>(n), x, 0.8, height);
-                const Course rectangles = run(wide, anyAreas(40, 30, n, random), 300);
+                const Course rectangles = run(wide, randomAreas(40, 30, static_cast<size_t>(n), random), 300);
                 double all = 0;
                 for (const double tile : wide.tiles) all += tile;
                 ASSERT_EQ(rectangles.wrong, "");
@@ -218,7 +196,7 @@ TEST(TileQueue, SettlesOnALoadThatStays) {
         Load load{columns, rows, {}, {}, below(3) == 0 ? 5. * columns : 0.};
         for (int i = 0; i < columns * rows; ++i) load.tiles.push_back(below(10) == 0 ? 100 : 1 + below(5));
         for (int i = 0; i < n; ++i) load.speeds.push_back(1 + below(4));
-        const Course got = run(load, anyAreas(columns, rows, n, random), 400);
+        const Course got = run(load, randomAreas(columns, rows, static_cast<size_t>(n), random), 400);
         ASSERT_EQ(got.wrong, "");
         EXPECT_EQ(got.lateMoves, 0) << "round " << round << ": " << got.moves << " moves";
         EXPECT_LE(got.last, got.first * 1.0001) << "round " << round;

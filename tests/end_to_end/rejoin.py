@@ -638,7 +638,7 @@ def late_node(context, how, words):
 
 @case
 def late_node_that_failed(context):
-    return late_node(context, "exit 3", "is not there yet: node 1 (127.0.0.3) did not start: exit status 3")
+    return late_node(context, "exit 3", "is not there yet: it did not start: exit status 3")
 
 
 @case
