@@ -38,7 +38,11 @@ NodeReturns::Hooks HeadSession::returnHooks() {
         const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
         return plan.pass.period > 1 ? NodeSet::Turns::OfFrames : plan.queue >= 0 ? NodeSet::Turns::OfAreas : NodeSet::Turns::None;
     };
-    hooks.tilesOfLost = [this](int node) { return std::string(plan_.nodes[static_cast<size_t>(node)].queue >= 0 ? "the others take its tiles" : "its tiles stay as they were"); };
+    hooks.tilesOfLost = [this](int node) -> std::string {
+        const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
+        if (plan.pass.range > 0) return "what it draws is missing";
+        return plan.queue >= 0 ? "the others take its tiles" : "its tiles stay as they were";
+    };
     hooks.admitted = [this](int node, uint32_t view) { return admit(node, view); };
     hooks.gaveUp = [this](int, const std::string& line) {
         control_.say(line);
