@@ -9,12 +9,14 @@ constexpr double kKept = 0.8;              // of all before, when a batch is add
 constexpr uint32_t kTryBatches = 5;
 constexpr uint32_t kUnmeasured = 2;        // of them: what was remembered by this way is from long ago
 constexpr uint32_t kCompared = kTryBatches - kUnmeasured;
+constexpr double kHopeless = 2;            // a try that costs so many times what it is compared with, ends at once
+constexpr double kTryPart = 50;            // of the time of batches, one is what tries may take of it
 constexpr uint32_t kLeastBetween = 16;     // batches between two tries
 constexpr uint32_t kMeasuredEvery = 8;     // batches between two tries
 constexpr uint32_t kCheapEvery = 64;       // of batches that cost not much more than the clock
-constexpr double kClearly = 0.95;         // as small as that is cheaper
-constexpr double kWorthNs = 20'000;       // of a frame that is looked at in less, bytes count more than the time…
-constexpr double kTooDear = 1.9;          // …unless plain it takes so many times less
+constexpr double kClearly = 0.95;          // as small as that is cheaper
+constexpr double kWorthNs = 20'000;        // of a frame that is looked at in less, bytes count more than the time…
+constexpr double kTooDear = 1.9;           // …unless plain it takes so many times less
 constexpr double kCheapNs = 5'000;         // a frame that is looked at in less is not worth a try
 constexpr double kMuch = 2;                // a change of cost that asks for another try
 // Nodes unpack it before they draw: so long beside packing, looked at and plain (measured: 0.5 to 0.75 and 0.25 to 0.35).
@@ -25,7 +27,7 @@ bool WayChoice::wantsTime() const { return trying_ || batches_ + 1 + kCompared >
 
 void WayChoice::measured(uint64_t rawBytes, uint64_t pageBytes, uint64_t wireBytes, int64_t ns, double linkNsPerByte) {
     ++batches_;
-    if (trying_ && batches_ <= kUnmeasured) return;
+    if (trying_ && batches_ < kUnmeasured) return;
     Cost& cost = costs_[plain_ ? Plain : Looked];
     if (!trying_ && batches_ + kCompared == until_) cost = {}; // compared is what comes just before with what comes just behind
     cost.ns = cost.ns * kKept + static_cast<double>(ns) * kWithUnpacking[plain_ ? Plain : Looked] + static_cast<double>(wireBytes) * linkNsPerByte;
@@ -35,7 +37,9 @@ void WayChoice::measured(uint64_t rawBytes, uint64_t pageBytes, uint64_t wireByt
     cost.batches = cost.batches * kKept + 1;
     cheap_ = cost.leastNs < kCheapNs;
     if (trying_) {
-        if (batches_ >= kTryBatches) decide();
+        const bool hopeless = cost.perByte() > costs_[plain_ ? Looked : Plain].perByte() * kHopeless;
+        if (batches_ >= kTryBatches || hopeless) decide();
+        else if (batches_ == kUnmeasured) cost = {};
         return;
     }
     const double now = cost.perByte();
@@ -48,7 +52,7 @@ void WayChoice::measured(uint64_t rawBytes, uint64_t pageBytes, uint64_t wireByt
     if (batches_ < until_) return;
     const bool isAboutShort = pageBytes < rawBytes / 2; // else there is little to win, and places of pages to lose
     if (plain_ || (isAboutShort && cost.leastNs >= kCheapNs)) tryOther();
-    else until_ += kLeastBetween;
+    else until_ += cheap_ ? kCheapEvery * 2 : kLeastBetween;
 }
 
 void WayChoice::tryOther() {
@@ -65,7 +69,10 @@ void WayChoice::decide() {
     const bool tooDear = looked.leastNs > asItIs.leastNs * kTooDear; // one that something else has disturbed decides nothing
     const bool better = isSmall ? plain_ == tooDear : tried < before * kClearly;
     if (!better) plain_ = !plain_;
-    until_ = better ? kLeastBetween * 8 : std::min(std::max(until_ * 2, kLeastBetween), kMostBetween);
+    // What a try takes more than the way that is kept, is a small part of what comes before the next.
+    const double more = (plain_ ? looked : asItIs).leastNs / (plain_ ? asItIs : looked).leastNs - 1;
+    const uint32_t least = better ? kLeastBetween * 8 : std::max(until_ * 2, kLeastBetween);
+    until_ = static_cast<uint32_t>(std::min(std::max(more * kTryBatches * kTryPart, double{least}), double{kMostBetween}));
     decidedBy_ = std::min(tried, before);
     trying_ = false;
     batches_ = 0;

@@ -80,6 +80,25 @@ TEST(WayChoice, fewFramesAreTimedAndAllThatDecide) {
     EXPECT_GE(plain, 900) << "it decides as if all were timed";
 }
 
+// Looking takes five times as long: what the tries take more is a fiftieth of all.
+TEST(WayChoice, triesAreSeldomWhereTheyAreDear) {
+    WayChoice choice;
+    plainOf(choice, {3000, 2'400'000}, {5000, 480'000}, 100, 1);
+    EXPECT_GE(plainOf(choice, {3000, 2'400'000}, {5000, 480'000}, 2000, 2000), 1992);
+}
+
+// The clock takes as long as looking at such a frame does.
+TEST(WayChoice, cheapFramesAreSeldomTimed) {
+    WayChoice choice;
+    int timed = 0;
+    for (int i = 0; i < 4000; ++i) {
+        if (choice.wantsTime()) ++timed, choice.measured(52, 0, 2, 500, kLinkNsPerByte);
+        else choice.unmeasured();
+    }
+    EXPECT_LE(timed, 4000 / 16);
+    EXPECT_GT(timed, 4000 / 64) << "they may become dear";
+}
+
 TEST(WayChoice, oneOutlierDecidesNothing) {
     WayChoice choice;
     plainOf(choice, {3000, 450'000}, {5000, 110'000}, 300, 1);

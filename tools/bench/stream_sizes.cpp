@@ -2,6 +2,8 @@
 // runs it.
 //
 //   stream_sizes FILE.mural [WARM_FRAMES]     the first frames are start-up: what they need is told apart
+//
+// Exit status 77: the recording has no more frames than that.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -79,9 +81,11 @@ double median(const std::vector<Counted>& rounds, double Counted::*of) {
     return values[values.size() / 2];
 }
 
-int fail(const std::string& why) {
+constexpr int kNothingToMeasure = 77;
+
+int fail(const std::string& why, int status = 2) {
     std::cerr << "stream_sizes: " << why << '\n';
-    return 2;
+    return status;
 }
 
 } // namespace
@@ -101,7 +105,8 @@ int main(int argc, char** argv) {
             names[i] = (*way)->name();
             all[i].push_back(*counted);
         }
-    if (frames.counted == 0) return fail(std::string(argv[1]) + " has " + std::to_string(frames.start) + " frames, no more than are start-up; record more");
+    if (frames.counted == 0)
+        return fail(std::string(argv[1]) + " has " + std::to_string(frames.start) + " frames, no more than are start-up; record more", kNothingToMeasure);
 
     const auto count = static_cast<double>(frames.counted);
     nlohmann::json report;
