@@ -26,6 +26,10 @@ std::array<double, 2> placeInPass(const RenderPass& p, double x, double y) {
     return {((x - p.kernelX - 0.5 - jitter[0]) / p.kernelWidth + 0.5) * p.zoom.x, ((y - p.kernelY - 0.5 - jitter[1]) / p.kernelHeight + 0.5) * p.zoom.y};
 }
 
+PassToWindow passToWindow(const RenderPass& p) {
+    return {{p.kernelWidth / p.zoom.x, p.kernelHeight / p.zoom.y}, {p.kernelX + 0.5 * (1 - p.kernelWidth), p.kernelY + 0.5 * (1 - p.kernelHeight)}};
+}
+
 PixelViewport inKernel(const RenderPass& p, const PixelViewport& r) {
     const int64_t x0 = firstBehind(r.x, p.kernelX, p.kernelWidth), x1 = firstBehind(int64_t{r.x} + r.w, p.kernelX, p.kernelWidth);
     const int64_t y0 = firstBehind(r.y, p.kernelY, p.kernelHeight), y1 = firstBehind(int64_t{r.y} + r.h, p.kernelY, p.kernelHeight);

@@ -12,6 +12,13 @@ namespace mural {
 // n i + its column + 1/2, and a sample what lies off its pixel's centre.
 [[nodiscard]] std::array<double, 2> placeInPass(const RenderPass& pass, double x, double y);
 
+// And back, for the pixels' centres: what a fragment at x, y of the pass's picture is asked to draw lies at scale x + from. A sample is asked
+// for its whole pixel, as when the program draws it with another viewport.
+struct PassToWindow {
+    std::array<double, 2> scale{}, from{};
+};
+[[nodiscard]] PassToWindow passToWindow(const RenderPass& pass);
+
 // Which pixels of the pass's picture show what is in `r` of the window.
 [[nodiscard]] PixelViewport inKernel(const RenderPass& pass, const PixelViewport& r);
 

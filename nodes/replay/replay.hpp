@@ -226,6 +226,8 @@ private:
         bool plain = true;         // drawn without the kernel of this pass: its pixels are picked at the end…
         bool copied = true;        // …because the frame before read or copied pixels there
         bool asked = false;        // for pixels, in this frame
+        bool drawsAll = true;      // tiles or not: a copy shall find this pass's own pixels; those that are brought are another's
+        bool filled = true;        // …because the frame before had copies
         RangeFrame range;
         MovingPart moving;
         bool keepsPicture = false; // the turn never ends
@@ -560,6 +562,7 @@ private:
     [[nodiscard]] bool learnsTurns(const Window& w) const;
     void turnsChanged();
     void placePart(Window& w);
+    void partChanged(Window& w);
     void noteTurn(uint16_t opcode, std::span<const std::byte> arguments);
     void beginTurn(Window& w);
     void decideTurn(Window& w, bool builds);
@@ -579,6 +582,8 @@ private:
     void noteKernel(uint16_t opcode);
     [[nodiscard]] bool hasKernel() const { return config_.pass.kernelWidth * config_.pass.kernelHeight > 1; }
     [[nodiscard]] bool drawsFewer() const { return hasKernel() || !config_.pass.zoom.none(); } // pixels than its part of the window has
+    // Pixels that are brought from other tiles, for copies, are those of the pass that answers.
+    [[nodiscard]] bool copiesOthers() const { return !config_.answers && !drawsFewer() && !takesRanges(); }
     [[nodiscard]] bool interleaves(const Window* w) const { return drawsFewer() && w && !w->plain; }
     [[nodiscard]] PixelViewport partDrawn(const Window& w) const;
     [[nodiscard]] bool movesPicture() const { return config_.pass.samples > 1 || drawsFewer(); }

@@ -15,19 +15,20 @@ namespace mural {
 
 ShaderRewrites Replay::rewrites() const {
     const bool moved = movesView() || (movesPicture() && movesByShaders());
-    return {config_.cull && !alone() && !moved, config_.lean && !alone(), moved};
+    return {config_.cull && !alone() && !moved, (config_.lean && !alone()) || drawsFewer(), drawsFewer(), moved};
 }
 
 void Replay::applyTileValues() {
     if (!bound_ || !c_->shared || c_->compiling || (!c_->program && !c_->pipelineBound && !c_->arbPositions)) return;
     TileValues values;
-    if (c_->draw && rewrites().any() && !drawsWhole()) {
+    if (c_->draw && rewrites().any() && drawsWindow() && (!drawsWhole() || drawsFewer())) {
         TilePlace place;
+        place.pass = passOfDraws();
         place.window = c_->draw->whole;
         place.tile = drawsLean() ? c_->draw->region : c_->draw->drawn;
         place.viewport = c_->viewports[0];
         place.marginPixels = c_->cullMargin;
-        place.mayCull = config_.cull && !c_->lineStippled && !c_->clippingCounted;
+        place.mayCull = config_.cull && !drawsWhole() && !c_->lineStippled && !c_->clippingCounted;
         place.translated = drawsLean();
         values = tileValues(place);
     }
@@ -37,7 +38,8 @@ void Replay::applyTileValues() {
     if (!c_->arbPositions) return;
     GLint count = 0;
     gl.glGetProgramivARB(GL_FRAGMENT_PROGRAM_ARB, GL_MAX_PROGRAM_ENV_PARAMETERS_ARB, &count);
-    gl.glProgramEnvParameter4fvARB(GL_FRAGMENT_PROGRAM_ARB, static_cast<GLuint>(count - 1), values.offset.data());
+    gl.glProgramEnvParameter4fvARB(GL_FRAGMENT_PROGRAM_ARB, static_cast<GLuint>(count - 1), values.place.data());
+    gl.glProgramEnvParameter4fvARB(GL_FRAGMENT_PROGRAM_ARB, static_cast<GLuint>(count - 2), values.place.data() + 4);
 }
 
 // ---- shaders and programs
@@ -151,7 +153,7 @@ void Replay::glProgramStringARB(GLenum target, GLenum format, GLsizei len, const
     if (target == GL_FRAGMENT_PROGRAM_ARB && rewrites().windowCoordinates && gl.glGetProgramivARB && gl.glProgramEnvParameter4fvARB) {
         GLint count = 0;
         gl.glGetProgramivARB(target, GL_MAX_PROGRAM_ENV_PARAMETERS_ARB, &count);
-        const auto text = shaders::withWindowCoordinatesArb({string.as<char>(), static_cast<size_t>(len)}, count - 1);
+        const auto text = shaders::withWindowPlaceArb({string.as<char>(), static_cast<size_t>(len)}, count - 1);
         if (text && load(static_cast<GLsizei>(text->size()), text->data())) {
             c_->arbPositions = true;
             return applyTileValues();

@@ -253,6 +253,11 @@ bool Replay::ownFillWindow(Args& in) {
     const uint64_t bytesPer = plane == GL_STENCIL_BUFFER_BIT ? 1 : 4;
     if (!in.ok() || w <= 0 || h <= 0 || data.absent() || data.isOffset() || data.size() / bytesPer / uint64_t(w) < uint64_t(h) || x > INT32_MAX - w || y > INT32_MAX - h) return false;
     if (plane == GL_COLOR_BUFFER_BIT && c_->readBuffer0 == GL_NONE) return true; // the copy is an error
+    if (c_->read) c_->read->filled = true;
+    if (bound_ && c_->read && !config_.answers && !readsLean() && (c_->read->region == c_->read->whole || c_->read->drawn == c_->read->whole)) { // another pass's pixels; all of this one's are here
+        forgetGathered();
+        return true;
+    }
     if (bound_ && (readsLean() || ((planeAndFlag & wire::kForCopy) && c_->read && resolves(*c_->read)))) {
         gatherForCopy({x, y, w, h}, plane, data.pointer());
         return true;
@@ -260,7 +265,6 @@ bool Replay::ownFillWindow(Args& in) {
     if (!bound_ || !c_->read || !gl.glBlitFramebuffer) return true;
     c_->read->copied = true;
     if (interleaves(c_->read)) return true; // as a kernel has it, there is no room for them
-    if (!config_.answers && c_->read->region == c_->read->whole) return true; // another pass's pixels; all of this one's are here
     forgetGathered(); // of another window
     aside([&] {
         if (plane != GL_COLOR_BUFFER_BIT) fillByOtherContext({x, y, w, h}, plane, data.pointer());

@@ -53,7 +53,7 @@ void Replay::placePart(Window& w) {
     }
     const PixelViewport part = partDrawn(w);
     w.region = hasTurn(w.turn) ? part : PixelViewport{};
-    w.drawn = w.region;
+    w.drawn = copiesOthers() && w.drawsAll && !w.lean && hasTurn(w.turn) ? w.whole : w.region;
     if (w.range.muted) w.drawn = {};
     if (takesRanges() && !collects()) w.region = {}; // the collector's
     if (w.config.samples == 0 || w.drawn.empty()) return;
@@ -134,19 +134,22 @@ void Replay::keepTurn(Window& w) {
 
 bool Replay::keepsTurn(const Window& w) const { return w.keepsPicture || w.kept >= kKeptFrames; }
 
+void Replay::partChanged(Window& w) {
+    placePart(w);
+    if (&w != boundDraw_) return;
+    ContextState* const own = std::exchange(c_, bound_);
+    restoreWindowState();
+    c_ = own;
+}
+
 void Replay::turnDrawn(Window& w, bool shownInFront) {
     w.sceneWasElsewhere = std::exchange(w.sceneElsewhere, false);
     if (drawsFewer()) {
-        const bool plain = std::exchange(w.plain, std::exchange(w.copied, false));
-        if (plain != w.plain) {
-            placePart(w);
-            if (&w == boundDraw_) {
-                ContextState* const own = std::exchange(c_, bound_);
-                restoreWindowState();
-                c_ = own;
-            }
-        }
+        const bool needsAll = bound_ && bound_->shared && bound_->shared->allDrawn; // modules that ask for places, fragments that are counted
+        const bool plain = std::exchange(w.plain, std::exchange(w.copied, false) || needsAll);
+        if (plain != w.plain) partChanged(w);
     }
+    if (copiesOthers() && std::exchange(w.drawsAll, std::exchange(w.filled, false)) != w.drawsAll) partChanged(w);
     w.begun = false;
     if (!takesTurns()) return;
     w.turnOver = true;

@@ -29,6 +29,8 @@ void setSource(const GlFunctions& gl, GLuint shader, const std::string& text) {
     gl.glShaderSource(shader, 1, &pointer, &length);
 }
 
+shaders::FragmentReads fragmentReads(const ShaderRewrites& rewrites) { return {rewrites.windowCoordinates, rewrites.windowDerivatives}; }
+
 bool linked(const GlFunctions& gl, GLuint program) {
     GLint status = 0;
     gl.glGetProgramiv(program, GL_LINK_STATUS, &status);
@@ -74,8 +76,7 @@ std::vector<TiledPrograms::Part> TiledPrograms::rewritten(const GlFunctions& gl,
         if (it == shaders_.end() || it->second.text.empty()) continue;
         parts.push_back({attached[i], {}, false});
         if (place(it->second.type) > place(last)) last = it->second.type;
-        if (rewrites.windowCoordinates && it->second.type == GL_FRAGMENT_SHADER)
-            parts.back().wanted = shaders::withWindowCoordinates(it->second.text, es).value_or("");
+        if (it->second.type == GL_FRAGMENT_SHADER) parts.back().wanted = shaders::withWindowPlace(it->second.text, fragmentReads(rewrites), es).value_or("");
     }
     const auto separable = separable_.find(program);
     // The stage behind a separable one may be another program's, which must see the same block.
@@ -131,17 +132,17 @@ void TiledPrograms::link(const GlFunctions& gl, GLuint program, const ShaderRewr
 void TiledPrograms::remember(const GlFunctions& gl, GLuint program, bool separable) {
     Program p;
     p.cull = gl.glGetUniformLocation(program, shaders::kCullUniform);
-    p.offset = gl.glGetUniformLocation(program, shaders::kOffsetUniform);
+    p.place = gl.glGetUniformLocation(program, shaders::kPlaceUniform);
     p.move = gl.glGetUniformLocation(program, shaders::kMoveUniform);
     p.separable = separable;
-    if (p.cull >= 0 || p.offset >= 0 || p.move >= 0) programs_[program] = p;
+    if (p.cull >= 0 || p.place >= 0 || p.move >= 0) programs_[program] = p;
 }
 
 GLuint TiledPrograms::create(const GlFunctions& gl, GLenum type, GLsizei count, const GLchar* const* texts, const ShaderRewrites& rewrites, bool es) {
-    if (rewrites.windowCoordinates && type == GL_FRAGMENT_SHADER) {
+    if (rewrites.place() && type == GL_FRAGMENT_SHADER) {
         std::string all;
         for (GLsizei i = 0; i < count; ++i) all += texts[i];
-        if (const auto patched = shaders::withWindowCoordinates(all, es)) {
+        if (const auto patched = shaders::withWindowPlace(all, fragmentReads(rewrites), es)) {
             const GLchar* text = patched->c_str();
             const GLuint program = gl.glCreateShaderProgramv(type, 1, &text);
             if (program && linked(gl, program)) {
@@ -161,7 +162,7 @@ void TiledPrograms::apply(const GlFunctions& gl, GLuint program, const TileValue
     if (it == programs_.end()) return;
     Program& p = it->second;
     if (p.cull >= 0 && p.sent.cull != values.cull) gl.glUniform4fv(p.cull, 2, values.cull.data());
-    if (p.offset >= 0 && p.sent.offset != values.offset) gl.glUniform4fv(p.offset, 1, values.offset.data());
+    if (p.place >= 0 && p.sent.place != values.place) gl.glUniform4fv(p.place, 2, values.place.data());
     if (p.move >= 0 && p.sent.move != values.move) gl.glUniform4fv(p.move, static_cast<GLsizei>(values.move.size() / 4), values.move.data());
     p.sent = values;
 }
@@ -170,8 +171,8 @@ void TiledPrograms::applySeparable(const GlFunctions& gl, const TileValues& valu
     if (!gl.glProgramUniform4fv) return;
     for (auto& [program, p] : programs_) {
         if (!p.separable) continue;
-        if (p.offset >= 0 && p.sent.offset != values.offset) gl.glProgramUniform4fv(program, p.offset, 1, values.offset.data());
-        p.sent.offset = values.offset;
+        if (p.place >= 0 && p.sent.place != values.place) gl.glProgramUniform4fv(program, p.place, 2, values.place.data());
+        p.sent.place = values.place;
     }
 }
 

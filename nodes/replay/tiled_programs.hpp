@@ -35,7 +35,7 @@ private:
         std::string compiled; // that the object now holds; empty: not compiled yet
     };
     struct Program {
-        GLint cull = -1, offset = -1, move = -1; // locations
+        GLint cull = -1, place = -1, move = -1; // locations
         bool separable = false;
         TileValues sent;              // zeros, as after a link
     };

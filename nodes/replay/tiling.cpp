@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "nodes/replay/pass_place.hpp"
+
 namespace mural {
 
 namespace {
@@ -20,10 +22,11 @@ bool known(const std::array<GLfloat, 4>& v) {
 
 TileValues tileValues(const TilePlace& p) {
     TileValues values;
-    if (p.translated) {
-        values.offset = {static_cast<GLfloat>(p.tile.x), static_cast<GLfloat>(p.tile.y),
-                         static_cast<GLfloat>(p.window.top() - p.tile.top()), 0};
-    }
+    const PixelViewport framebuffer = p.translated ? p.tile : p.window;
+    const PassToWindow to = passToWindow(p.pass);
+    values.place = {static_cast<GLfloat>(to.scale[0] * framebuffer.x + to.from[0]), static_cast<GLfloat>(to.scale[1] * framebuffer.y + to.from[1]),
+                    static_cast<GLfloat>(p.window.top() - to.scale[1] * framebuffer.top() - to.from[1]), 0,
+                    static_cast<GLfloat>(to.scale[0] - 1), static_cast<GLfloat>(to.scale[1] - 1), static_cast<GLfloat>(1 / to.scale[0] - 1), static_cast<GLfloat>(1 / to.scale[1] - 1)};
     if (!p.mayCull || p.tile == p.window || !known(p.viewport)) return values;
     // A point of window coordinate x is at 2 (x - vx) / vw - 1 of the viewport's -1 to 1.
     const auto edge = [](double position, GLfloat from, GLfloat size) { return static_cast<GLfloat>(2 * (position - from) / size - 1); };

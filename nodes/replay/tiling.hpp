@@ -6,21 +6,24 @@
 #include <array>
 
 #include "common/pixel_viewport.hpp"
+#include "nodes/session/render_pass.hpp"
 
 namespace mural {
 
 // Which rewritings of nodes/shaders are used.
 struct ShaderRewrites {
     bool cull = false;              // whole primitives outside of the tile are dropped
-    bool windowCoordinates = false; // gl_FragCoord is the window's: the framebuffer is the tile's
+    bool windowCoordinates = false; // gl_FragCoord is the window's: the framebuffer is the tile's, or has every nth pixel
+    bool windowDerivatives = false; // derivatives are per pixel of the window
     bool moved = false;             // positions as another eye sees them, or moved in the viewport; instead of cull
-    [[nodiscard]] bool any() const { return cull || windowCoordinates || moved; }
+    [[nodiscard]] bool place() const { return windowCoordinates || windowDerivatives; }
+    [[nodiscard]] bool any() const { return cull || place() || moved; }
 };
 
 // Values of the uniforms that the rewritings bring in.
 struct TileValues {
     std::array<GLfloat, 8> cull{};   // shaders::kCullUniform
-    std::array<GLfloat, 4> offset{}; // shaders::kOffsetUniform
+    std::array<GLfloat, 8> place{};  // shaders::kPlaceUniform
     std::array<GLfloat, 20> move{};   // shaders::kMoveUniform
 };
 
@@ -32,6 +35,7 @@ struct TilePlace {
     GLfloat marginPixels = 0;        // half of the widest line or point, and something for rounding
     bool mayCull = true;
     bool translated = false;         // the framebuffer is the tile's
+    RenderPass pass;                 // the framebuffer's pixels are this one's
 };
 
 TileValues tileValues(const TilePlace& place);

@@ -1,23 +1,79 @@
 #include "nodes/shaders/frag_coord.hpp"
 
+#include <array>
+#include <set>
+
 #include "nodes/shaders/glsl_tokens.hpp"
 
 namespace mural::shaders {
 
-std::optional<std::string> withWindowCoordinates(std::string_view source, bool es) {
+namespace {
+
+// A function, so that what is reckoned with its result keeps the precision that it has natively: 16 bits for mediump, in some drivers.
+// Pixel centres that count as whole numbers lie half a pixel elsewhere in both.
+std::string windowCoordinate(const GlslText& text) {
+    const std::string from = text.uses("origin_upper_left") ? "xz" : "xy";
+    const std::string counted = text.uses("pixel_center_integer") ? "(p.xy + 0.5)" : "p.xy";
+    const std::string made = !text.es ? "vec4" : text.version < 300 ? "mediump vec4" : "highp vec4";
+    return " " + made + " muralWindow(" + (text.es ? "highp " : "") + "vec4 p) { return p + vec4(" + counted + " * muralPlace[1].xy + muralPlace[0]." + from + ", 0.0, 0.0); }";
+}
+
+// Each is a function that GLSL has, for numbers and vectors; how it is made of what this framebuffer's neighbours tell.
+struct Derivative {
+    std::string_view name;
+    std::string_view ours;
+    std::string_view body; // of v
+};
+constexpr std::array kDerivatives = {
+    Derivative{"dFdx", "muralDx", "dFdx(v) + dFdx(v) * muralPlace[1].z"},
+    Derivative{"dFdy", "muralDy", "dFdy(v) + dFdy(v) * muralPlace[1].w"},
+    Derivative{"fwidth", "muralWidth", "fwidth(v) + abs(dFdx(v)) * muralPlace[1].z + abs(dFdy(v)) * muralPlace[1].w"},
+    Derivative{"dFdxFine", "muralDxFine", "dFdxFine(v) + dFdxFine(v) * muralPlace[1].z"},
+    Derivative{"dFdyFine", "muralDyFine", "dFdyFine(v) + dFdyFine(v) * muralPlace[1].w"},
+    Derivative{"fwidthFine", "muralWidthFine", "fwidthFine(v) + abs(dFdxFine(v)) * muralPlace[1].z + abs(dFdyFine(v)) * muralPlace[1].w"},
+    Derivative{"dFdxCoarse", "muralDxCoarse", "dFdxCoarse(v) + dFdxCoarse(v) * muralPlace[1].z"},
+    Derivative{"dFdyCoarse", "muralDyCoarse", "dFdyCoarse(v) + dFdyCoarse(v) * muralPlace[1].w"},
+    Derivative{"fwidthCoarse", "muralWidthCoarse", "fwidthCoarse(v) + abs(dFdxCoarse(v)) * muralPlace[1].z + abs(dFdyCoarse(v)) * muralPlace[1].w"},
+};
+
+std::string functionsFor(const Derivative& d, const GlslText& text) {
+    const std::string precision = !text.es ? "" : text.uses("mediump") ? "mediump " : "highp ";
+    std::string functions;
+    for (const char* type : {"float", "vec2", "vec3", "vec4"}) {
+        const std::string of = precision + type;
+        functions += " " + of + " " + std::string(d.ours) + "(" + of + " v) { return " + std::string(d.body) + "; }";
+    }
+    return functions;
+}
+
+} // namespace
+
+std::optional<std::string> withWindowPlace(std::string_view source, const FragmentReads& reads, bool es) {
     const GlslText text = scanGlsl(source, es);
-    const bool upper = text.uses("origin_upper_left");
-    const std::string window = std::string("(gl_FragCoord + vec4(muralTileOffset.") + (upper ? "xz" : "xy") + ", 0.0, 0.0))";
     TextEdits edits;
+    bool placed = false;
+    std::set<const Derivative*> used;
     for (size_t i = 0; i < text.tokens.size(); ++i) {
         const GlslToken& t = text.tokens[i];
-        if (t.text != "gl_FragCoord") continue;
-        const bool declared = i > 0 && text.tokens[i - 1].text == "vec4"; // layout(…) in vec4 gl_FragCoord;
-        if (!declared) edits.replace(t.at, t.text.size(), window);
+        if (reads.coordinates && t.text == "gl_FragCoord") {
+            const bool declared = i > 0 && text.tokens[i - 1].text == "vec4"; // layout(…) in vec4 gl_FragCoord;
+            if (declared) continue;
+            edits.replace(t.at, t.text.size(), "muralWindow(gl_FragCoord)");
+            placed = true;
+        }
+        if (!reads.derivatives) continue;
+        for (const Derivative& d : kDerivatives) {
+            if (t.text != d.name) continue;
+            edits.replace(t.at, t.text.size(), std::string(d.ours));
+            used.insert(&d);
+        }
     }
     if (edits.empty()) return std::nullopt;
+    std::string declarations = std::string("uniform ") + (text.es ? "highp " : "") + "vec4 muralPlace[2];";
+    if (placed) declarations += windowCoordinate(text);
+    for (const Derivative* d : used) declarations += functionsFor(*d, text);
     const size_t at = text.declarationsAt();
-    edits.insert(at, onItsLine(text, at, std::string("uniform ") + (text.es ? "highp " : "") + "vec4 muralTileOffset;"));
+    edits.insert(at, onItsLine(text, at, declarations));
     return edits.apply(source);
 }
 

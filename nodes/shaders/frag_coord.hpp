@@ -1,5 +1,5 @@
-// A framebuffer of the tile's size gives fragments its own coordinates: shaders that read them get the
-// window's instead. Source: accuracy M1; GL_ARB_fragment_coord_conventions.
+// A framebuffer of the tile's size, or one that has every nth pixel of the window only, gives fragments its own coordinates: shaders
+// that read them get the window's instead, and derivatives per pixel of the window. Source: accuracy M1; GL_ARB_fragment_coord_conventions.
 #pragma once
 
 #include <optional>
@@ -8,14 +8,21 @@
 
 namespace mural::shaders {
 
-// vec4: x, y of the tile in the window from the lower left; y from the upper left; 0.
-inline constexpr const char* kOffsetUniform = "muralTileOffset";
+// vec4[2]. Of the first x, y: what lies at the framebuffer's lower left corner, in the window from its lower left; z: the same height
+// from both upper left corners; w: 0. Of the second x, y: how many pixels of the window one of the framebuffer stands for, less 1; z, w: one through so many,
+// less 1: zeros change nothing, not even a rounding.
+inline constexpr const char* kPlaceUniform = "muralPlace";
 
-// GLSL of any version. Nothing: the shader does not read gl_FragCoord.
-std::optional<std::string> withWindowCoordinates(std::string_view source, bool es);
+struct FragmentReads {
+    bool coordinates = false; // are moved
+    bool derivatives = false;
+};
 
-// ARB_fragment_program: the same vec4 is program.env[envIndex]. Nothing: it reads no position, or uses
-// that parameter itself.
-std::optional<std::string> withWindowCoordinatesArb(std::string_view source, int envIndex);
+// GLSL of any version. Nothing: the shader reads none of these.
+std::optional<std::string> withWindowPlace(std::string_view source, const FragmentReads& reads, bool es);
+
+// ARB_fragment_program: the same vec4s are program.env[envIndex - 1], the second, and program.env[envIndex]. Nothing: it reads no position,
+// or uses these parameters itself.
+std::optional<std::string> withWindowPlaceArb(std::string_view source, int envIndex);
 
 } // namespace mural::shaders

@@ -64,14 +64,15 @@ size_t firstStatement(const Arb& arb) {
 
 } // namespace
 
-std::optional<std::string> withWindowCoordinatesArb(std::string_view source, int envIndex) {
+std::optional<std::string> withWindowPlaceArb(std::string_view source, int envIndex) {
     const Arb arb{scanArb(source)};
     const size_t first = firstStatement(arb);
-    if (first == 0 || namesEnv(arb, envIndex)) return std::nullopt;
-    bool upper = false;
+    if (first == 0 || namesEnv(arb, envIndex - 1)) return std::nullopt;
+    bool upper = false, whole = false; // pixel centres are whole numbers
     TextEdits edits;
     for (size_t i = 0; i < arb.tokens.size(); ++i) {
         upper = upper || arb.at(i) == "ARB_fragment_coord_origin_upper_left";
+        whole = whole || arb.at(i) == "ARB_fragment_coord_pixel_center_integer";
         if (!arb.position(i)) continue;
         const GlslToken& last = arb.tokens[i + 2];
         edits.replace(arb.tokens[i].at, last.at + last.text.size() - arb.tokens[i].at, "muralPosition");
@@ -79,7 +80,11 @@ std::optional<std::string> withWindowCoordinatesArb(std::string_view source, int
         if (i >= 3 && arb.at(i - 3) == "ATTRIB") edits.replace(arb.tokens[i - 3].at, 6, "ALIAS");
     }
     if (edits.empty()) return std::nullopt;
-    edits.insert(first, "TEMP muralPosition; ADD muralPosition, fragment.position, program.env[" + std::to_string(envIndex) + "]." + (upper ? "xzww" : "xyww") + "; ");
+    const std::string from = "program.env[" + std::to_string(envIndex) + "]." + (upper ? "xzzz" : "xyyy");
+    const std::string more = "program.env[" + std::to_string(envIndex - 1) + "]";
+    edits.insert(first, "TEMP muralPosition; MAD muralPosition.xy, fragment.position, " + more + ", " + from + "; " +
+                            (whole ? "MAD muralPosition.xy, " + more + ", 0.5, muralPosition; " : "") +
+                            "ADD muralPosition.xy, muralPosition, fragment.position; MOV muralPosition.zw, fragment.position; ");
     return edits.apply(source);
 }
 

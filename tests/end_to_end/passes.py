@@ -150,6 +150,15 @@ def subpixel_is_the_mean(context, notes):
         ("pass_scene_es2", [], 2, SIZE), ("pass_scene_es2", [], 4, (250, 190))])
 
 
+@case
+def passes_copy_their_own_pixels(context, notes):
+    """Tiles of an eye or a sample that is copied: what others bring is another pass's."""
+    ways = {"samples": (["--subpixel", "2"], ["--subpixel", "2", "--tiles", "2x1", "--local-nodes", "4"]),
+            "eyes": (["--stereo", "anaglyph"], ["--stereo", "anaglyph", "--tiles", "1x2", "--local-nodes", "4"])}
+    return first_wrong({"%s, %s" % (program, name): differing(through(context, whole, program), through(context, tiles, program))
+                        for program in ("copied_scene", "pixels_read", "es2_scene", "copied_samples") for name, (whole, tiles) in ways.items()})
+
+
 # ---- pixels of a kernel
 
 @case
@@ -165,6 +174,19 @@ def pixel_polygons_are_near(context, notes):
             wrong = wrong or "%s: %d pictures, %.1f dB" % (kernel, len(got), worst)
         if all(a.rows == b.rows for a, b in zip(plain[1:], got[1:])):
             wrong = wrong or "%s: the kernel was not used" % kernel
+    return wrong
+
+
+@case
+def pixel_fragments_know_their_place(context, notes):
+    """What is drawn by gl_FragCoord alone is as natively, and derivatives are nearly; by assembly, too."""
+    wrong = None
+    for program, kernel, least in (("frag_coord", "2x1", 50), ("frag_coord", "3x2", 50), ("fragment_places", "2x1", math.inf), ("fragment_places", "3x2", math.inf)):
+        plain, got = native(context, program), through(context, ["--pixel", kernel], program)
+        worst = min(pictures.decibels(a, b) for a, b in zip(plain, got))
+        notes.append("%s %s: %.1f dB" % (program, kernel, worst))
+        if len(got) != len(plain) or worst < least:
+            wrong = wrong or "%s %s: %d pictures, %.1f dB" % (program, kernel, len(got), worst)
     return wrong
 
 

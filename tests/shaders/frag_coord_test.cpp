@@ -5,51 +5,71 @@
 namespace mural::shaders {
 namespace {
 
+constexpr FragmentReads kCoordinates{.coordinates = true}, kBoth{.coordinates = true, .derivatives = true};
+
 TEST(FragCoord, ReadsAreMoved) {
-    EXPECT_EQ(withWindowCoordinates("#version 330\nout vec4 c; void main() { c = gl_FragCoord.xyxy; }", false),
-              "#version 330\nuniform vec4 muralTileOffset; out vec4 c; void main() { c = (gl_FragCoord + vec4(muralTileOffset.xy, 0.0, 0.0)).xyxy; }");
-    EXPECT_FALSE(withWindowCoordinates("void main() { gl_FragColor = vec4(1); } // gl_FragCoord", false));
+    EXPECT_EQ(withWindowPlace("#version 330\nout vec4 c; void main() { c = gl_FragCoord.xyxy; }", kCoordinates, false),
+              "#version 330\nuniform vec4 muralPlace[2]; vec4 muralWindow(vec4 p) { return p + vec4(p.xy * muralPlace[1].xy + muralPlace[0].xy, 0.0, 0.0); } out vec4 c; "
+              "void main() { c = muralWindow(gl_FragCoord).xyxy; }");
+    EXPECT_FALSE(withWindowPlace("void main() { gl_FragColor = vec4(1); } // gl_FragCoord", kBoth, false));
+}
+
+TEST(FragCoord, DerivativesArePerPixelOfTheWindow) {
+    const std::string_view source = "#version 430\nin vec2 v; out vec4 c;\nvoid main() { c = vec4(dFdx(v), 1.0 / dFdy(v.x), fwidthFine(v.y)); }";
+    EXPECT_FALSE(withWindowPlace(source, kCoordinates, false));
+    const auto out = withWindowPlace(source, kBoth, false);
+    ASSERT_TRUE(out);
+    EXPECT_NE(out->find("c = vec4(muralDx(v), 1.0 / muralDy(v.x), muralWidthFine(v.y));"), std::string::npos) << *out;
+    EXPECT_NE(out->find("vec2 muralDx(vec2 v) { return dFdx(v) + dFdx(v) * muralPlace[1].z; }"), std::string::npos);
+    EXPECT_NE(out->find("float muralWidthFine(float v) { return fwidthFine(v) + abs(dFdxFine(v)) * muralPlace[1].z + abs(dFdyFine(v)) * muralPlace[1].w; }"), std::string::npos);
+    EXPECT_EQ(out->find("muralDxFine("), std::string::npos) << "only what is used";
 }
 
 TEST(FragCoord, UpperOriginsCountFromAbove) {
-    const auto out = withWindowCoordinates("#version 150\nlayout(origin_upper_left, pixel_center_integer) in vec4 gl_FragCoord;\nvoid main() { gl_FragColor = gl_FragCoord; }", false);
+    const auto out = withWindowPlace("#version 150\nlayout(origin_upper_left, pixel_center_integer) in vec4 gl_FragCoord;\nvoid main() { gl_FragColor = gl_FragCoord; }", kCoordinates, false);
     ASSERT_TRUE(out);
     EXPECT_NE(out->find("in vec4 gl_FragCoord;"), std::string::npos) << "the declaration stays";
-    EXPECT_NE(out->find("= (gl_FragCoord + vec4(muralTileOffset.xz, 0.0, 0.0));"), std::string::npos) << *out;
+    EXPECT_NE(out->find("return p + vec4((p.xy + 0.5) * muralPlace[1].xy + muralPlace[0].xz, 0.0, 0.0);"), std::string::npos) << *out;
 }
 
 TEST(FragCoord, EsWantsAPrecision) {
-    const auto out = withWindowCoordinates("#extension GL_OES_standard_derivatives : enable\nprecision mediump float;\nvoid main() { gl_FragColor = gl_FragCoord; }", true);
+    const auto out = withWindowPlace("#extension GL_OES_standard_derivatives : enable\nprecision mediump float;\nvoid main() { gl_FragColor = gl_FragCoord; }", kCoordinates, true);
     ASSERT_TRUE(out);
-    EXPECT_NE(out->find("enable\nuniform highp vec4 muralTileOffset; precision"), std::string::npos) << *out;
+    EXPECT_NE(out->find("enable\nuniform highp vec4 muralPlace[2]; mediump vec4 muralWindow(highp vec4 p) {"), std::string::npos) << *out;
 }
 
 TEST(FragCoord, MacrosAreFollowed) {
-    const auto out = withWindowCoordinates("#define HERE gl_FragCoord.xy\nvoid main() { gl_FragColor = HERE.xyxy; }", false);
+    const auto out = withWindowPlace("#define HERE gl_FragCoord.xy\nvoid main() { gl_FragColor = HERE.xyxy; }", kCoordinates, false);
     ASSERT_TRUE(out);
-    EXPECT_NE(out->find("#define HERE (gl_FragCoord + vec4"), std::string::npos);
-    EXPECT_EQ(out->find("uniform vec4 muralTileOffset;\n#define"), 0u) << *out;
+    EXPECT_NE(out->find("#define HERE muralWindow(gl_FragCoord)"), std::string::npos);
+    EXPECT_EQ(out->find("uniform vec4 muralPlace[2]; vec4 muralWindow("), 0u) << *out;
 }
 
 TEST(FragCoordArb, ThePositionIsAVariable) {
-    const auto out = withWindowCoordinatesArb("!!ARBfp1.0\n# fragment.position\nOPTION ARB_precision_hint_fastest;\nATTRIB p = fragment.position;\nMOV result.color, p;\nADD result.color, p, fragment . position;\nEND", 255);
+    const auto out = withWindowPlaceArb("!!ARBfp1.0\n# fragment.position\nOPTION ARB_precision_hint_fastest;\nATTRIB p = fragment.position;\nMOV result.color, p;\nADD result.color, p, fragment . position;\nEND", 255);
     EXPECT_EQ(out, "!!ARBfp1.0\n# fragment.position\nOPTION ARB_precision_hint_fastest;\n"
-                   "TEMP muralPosition; ADD muralPosition, fragment.position, program.env[255].xyww; ALIAS p = muralPosition;\n"
+                   "TEMP muralPosition; MAD muralPosition.xy, fragment.position, program.env[254], program.env[255].xyyy; ADD muralPosition.xy, muralPosition, fragment.position; MOV muralPosition.zw, fragment.position; ALIAS p = muralPosition;\n"
                    "MOV result.color, p;\nADD result.color, p, muralPosition;\nEND");
 }
 
 TEST(FragCoordArb, WhatIsNotReadOrTakenIsLeftAlone) {
-    EXPECT_FALSE(withWindowCoordinatesArb("!!ARBfp1.0\nMOV result.color, fragment.color;\nEND", 255));
-    EXPECT_FALSE(withWindowCoordinatesArb("!!ARBfp1.0\nPARAM a[256] = { program.env[0..255] };\nMOV result.color, fragment.position;\nEND", 255));
-    EXPECT_FALSE(withWindowCoordinatesArb("", 255));
-    EXPECT_FALSE(withWindowCoordinatesArb("!!ARBfp1.0", 255));
-    EXPECT_FALSE(withWindowCoordinatesArb("nothing of the kind: fragment.position", 255));
+    EXPECT_FALSE(withWindowPlaceArb("!!ARBfp1.0\nMOV result.color, fragment.color;\nEND", 255));
+    EXPECT_FALSE(withWindowPlaceArb("!!ARBfp1.0\nPARAM a[256] = { program.env[0..255] };\nMOV result.color, fragment.position;\nEND", 255));
+    EXPECT_FALSE(withWindowPlaceArb("", 255));
+    EXPECT_FALSE(withWindowPlaceArb("!!ARBfp1.0", 255));
+    EXPECT_FALSE(withWindowPlaceArb("nothing of the kind: fragment.position", 255));
 }
 
 TEST(FragCoordArb, UpperOriginsCountFromAbove) {
-    const auto out = withWindowCoordinatesArb("!!ARBfp1.0\nOPTION ARB_fragment_coord_origin_upper_left;\nMOV result.color, fragment.position;\nEND", 31);
+    const auto out = withWindowPlaceArb("!!ARBfp1.0\nOPTION ARB_fragment_coord_origin_upper_left;\nMOV result.color, fragment.position;\nEND", 31);
     ASSERT_TRUE(out);
-    EXPECT_NE(out->find("program.env[31].xzww"), std::string::npos);
+    EXPECT_NE(out->find("program.env[31].xzzz"), std::string::npos);
+}
+
+TEST(FragCoordArb, WholeNumbersAreHalfAPixelElsewhere) {
+    const auto out = withWindowPlaceArb("!!ARBfp1.0\nOPTION ARB_fragment_coord_pixel_center_integer;\nMOV result.color, fragment.position;\nEND", 31);
+    ASSERT_TRUE(out);
+    EXPECT_NE(out->find("MAD muralPosition.xy, program.env[30], 0.5, muralPosition;"), std::string::npos);
 }
 
 } // namespace

@@ -20,7 +20,7 @@ TEST(Tiling, EdgesInNormalisedDeviceCoordinates) {
     const TileValues v = tileValues(place());
     const std::array<GLfloat, 8> wanted{-0.1f, 1.1f, -0.2f, 1.2f, 1, 10, 0.01f, 0.02f};
     for (size_t i = 0; i < 8; ++i) EXPECT_FLOAT_EQ(v.cull[i], wanted[i]) << i;
-    EXPECT_EQ(v.offset, (std::array<GLfloat, 4>{}));
+    EXPECT_EQ(v.place, (std::array<GLfloat, 8>{}));
 }
 
 TEST(Tiling, ViewportsMoveTheEdges) {
@@ -49,7 +49,31 @@ TEST(Tiling, OffsetsOfATranslatedFramebuffer) {
     TilePlace p = place();
     p.translated = true;
     p.tile = {100, 0, 100, 50};
-    EXPECT_EQ(tileValues(p).offset, (std::array<GLfloat, 4>{100, 0, 50, 0}));
+    EXPECT_EQ(tileValues(p).place, (std::array<GLfloat, 8>{100, 0, 50, 0, 0, 0, 0, 0}));
+}
+
+// Pixel i of column 1 of 3 is the window's 3 i + 1, and its centre half a pixel more; rows from above count from the window's top.
+TEST(Tiling, PlacesOfAKernel) {
+    TilePlace p = place();
+    p.window = {0, 0, 200, 100};
+    p.pass.kernelX = 1, p.pass.kernelWidth = 3, p.pass.kernelY = 1, p.pass.kernelHeight = 2;
+    const auto v = tileValues(p).place;
+    const auto x = [&](double i) { return i + 0.5 + (i + 0.5) * v[4] + v[0]; };
+    EXPECT_EQ(x(0), 1.5);
+    EXPECT_EQ(x(20), 61.5);
+    const auto y = [&](double j) { return j + 0.5 + (j + 0.5) * v[5] + v[1]; };
+    EXPECT_EQ(y(0), 1.5);
+    EXPECT_EQ(y(7), 15.5);
+    const auto fromAbove = [&](double j) { return 100 - (j + 0.5) + (100 - (j + 0.5)) * v[5] + v[2]; };
+    EXPECT_EQ(fromAbove(7), 100 - 15.5);
+}
+
+TEST(Tiling, PlacesOfASmallerPicture) {
+    TilePlace p = place();
+    p.pass.zoom = {0.5, 0.25};
+    const auto v = tileValues(p).place;
+    EXPECT_EQ(10.5 + 10.5 * v[4] + v[0], 21);
+    EXPECT_EQ(10.5 + 10.5 * v[5] + v[1], 42);
 }
 
 } // namespace

@@ -1,0 +1,68 @@
+// The whole window by fragments that know nothing but their place: from the lower left and the upper left, with centres at halves and at whole
+// numbers, by GLSL and by assembly. Each bit of a place shows.
+#include "tests/programs/support/gl.hpp"
+#include "tests/programs/support/program.hpp"
+#include "tests/programs/support/shaders.hpp"
+#include "tests/programs/support/show.hpp"
+
+#include <cstring>
+#include <string>
+
+using namespace programs;
+
+namespace {
+
+constexpr int kShaders = 3, kAssembled = 3;
+GLuint shaders[kShaders];
+GLuint assembled[kAssembled];
+
+const char* const kDeclared[kShaders] = {
+    "",
+    "layout(origin_upper_left) in vec4 gl_FragCoord;\n",
+    "layout(origin_upper_left, pixel_center_integer) in vec4 gl_FragCoord;\n",
+};
+const char* const kOptions[kAssembled] = {"", "OPTION ARB_fragment_coord_origin_upper_left;\n", "OPTION ARB_fragment_coord_pixel_center_integer;\n"};
+
+void setUp() {
+    for (int i = 0; i < kShaders; ++i) {
+        const std::string fragment = std::string("#version 150 compatibility\n") + kDeclared[i] +
+                                     "void main() { vec2 p = gl_FragCoord.xy; gl_FragColor = vec4(fract(p / 16.0), fract((floor(p.x / 16.0) + 7.0 * floor(p.y / 16.0)) / 32.0), 1.0); }\n";
+        shaders[i] = buildProgram({{GL_VERTEX_SHADER, "#version 150 compatibility\nvoid main() { gl_Position = gl_Vertex; }\n"}, {GL_FRAGMENT_SHADER, fragment.c_str()}});
+    }
+    glGenProgramsARB(kAssembled, assembled);
+    for (int i = 0; i < kAssembled; ++i) {
+        const std::string text = std::string("!!ARBfp1.0\n") + kOptions[i] +
+                                 "TEMP p, q;\nMUL p, fragment.position, 0.0625;\nFRC q, p;\nFLR p, p;\nDP4 p.z, p, {0.03125, 0.21875, 0, 0};\nFRC q.z, p;\nMOV q.z, q.x;\n"
+                                 "MOV result.color, q;\nEND\n";
+        glBindProgramARB(GL_FRAGMENT_PROGRAM_ARB, assembled[i]);
+        glProgramStringARB(GL_FRAGMENT_PROGRAM_ARB, GL_PROGRAM_FORMAT_ASCII_ARB, GLsizei(text.size()), text.data());
+    }
+}
+
+void everything() { glRectf(-1, -1, 1, 1); }
+
+} // namespace
+
+int main(int argc, char** argv) {
+    return runInGlxWindow(
+        argc,
+        argv,
+        {Profile::Compatibility, 3, 2},
+        [](Window&) { setUp(); },
+        [](Window& window, int frame) {
+            glViewport(0, 0, window.width(), window.height());
+            glClear(GL_COLOR_BUFFER_BIT);
+            glUseProgram(shaders[frame % kShaders]);
+            everything();
+            glUseProgram(0);
+            // The assembly's adds its own to a third of each.
+            glEnable(GL_FRAGMENT_PROGRAM_ARB);
+            glBindProgramARB(GL_FRAGMENT_PROGRAM_ARB, assembled[frame % kAssembled]);
+            glEnable(GL_BLEND);
+            glBlendColor(0.5F, 0.5F, 0.5F, 0.5F);
+            glBlendFunc(GL_CONSTANT_COLOR, GL_CONSTANT_COLOR);
+            everything();
+            glDisable(GL_BLEND);
+            glDisable(GL_FRAGMENT_PROGRAM_ARB);
+        });
+}
