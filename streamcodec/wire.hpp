@@ -67,6 +67,7 @@ enum class NodeMessage : uint32_t {
     Synchronized = 11, // SynchronizedMessage: it has come to that Synchronize
     Turns = 12,    // u32 number of the TellTurns; of all windows, where it came: WindowTurn*, or of nodes whose areas move
                    // u32 windows, WindowAreas of each, Areas*: the latest first, then all that these name
+    PackedPicture = 13, // PictureHeader + what PicturePacker has made of the rows
 };
 
 struct MessageHeader {

@@ -9,7 +9,7 @@
 #include "compositor/strategies/schedule.hpp"
 #include "nodes/exchange/part_fold.hpp"
 #include "nodes/exchange/picture_part.hpp"
-#include "nodes/exchange/plane_codecs.hpp"
+#include "nodes/pictures/plane_codecs.hpp"
 
 namespace mural {
 

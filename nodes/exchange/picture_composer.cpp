@@ -63,7 +63,7 @@ PixelViewport PictureComposer::compose(PicturePart& part, const FoldRule& rule) 
 
 void PictureComposer::send(const PicturePart& part, const Step& step, const FoldRule& rule) {
     if (lost_.contains(step.peer)) return;
-    PlaneEncoder& encoder = encoders_[step.peer];
+    PlaneEncoder& encoder = encoders_.try_emplace(step.peer, config_.codec).first->second;
     if (const LinkTransfer t = routes_.takeTransfer(step.peer); t.bytes > 0) encoder.transferred(t.bytes, t.ns);
     if (auto sent = routes_.send(step.peer, packPart(part, step.rows, rule, incomplete_ ? PartState::Incomplete : PartState::Complete, encoder), Deadline::inMs(config_.partMs)); !sent) lost(step.peer, sent.error().message);
 }

@@ -26,6 +26,7 @@ struct ComposerConfig {
     int64_t wordMs = 60'000; // how long for the collector's word; it may have to wait for lost nodes first
     int64_t stageMs = 5'000; // and for each wait that the other may have before it sends: a lost node must not make others seem lost
     std::string plant;       // MURAL_PLANT: a fault on purpose, for tests of the tests
+    std::string codec = kQuickestCodec; // as of PlaneEncoder
 };
 
 class PictureComposer {

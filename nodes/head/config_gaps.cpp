@@ -63,8 +63,6 @@ constexpr std::array kGaps = {
     Gap{"inputframe", "viewport", "all that its compound draws is shown; give the compound the viewport"},
     Gap{"outputframe", "zoom", kNoZoom},
     Gap{"inputframe", "zoom", kNoZoom},
-    Gap{"", "mural_codec", "the codec that is quickest is taken for each part; remove it"},
-    Gap{"", "mural_exact", "pictures arrive as they were drawn; remove it"},
 };
 
 } // namespace

@@ -12,6 +12,7 @@
 #include "balancer/compound/plan_frame.hpp"
 #include "nodes/head/compound_pass.hpp"
 #include "nodes/head/config_gaps.hpp"
+#include "nodes/pictures/plane_codecs.hpp"
 
 namespace mural {
 
@@ -249,6 +250,7 @@ private:
                 node.screen = screenOf(c);
                 node.collector = collector;
                 if (auto named = takeComposition(node, config_.compounds[at(c.compound)]); !named) return named;
+                if (auto named = takeCodec(node, config_.compounds[at(c.compound)]); !named) return named;
                 node.answers = node.pass.range == 0 && c.eye != Eye::Right && c.pixel.x == 0 && c.pixel.y == 0 && c.subPixel.index == 0;
                 placeOnHost(node, c);
                 plan_.nodes.push_back(node);
@@ -278,6 +280,26 @@ private:
         std::string names = "auto";
         for (const compositor::Strategy s : compositor::kEveryStrategy) names += std::string(", ") + nameOf(s);
         return Error{file_ + ":" + std::to_string(compound.at.line) + ": mural_composition \"" + compound.composition + "\": must be one of " + names};
+    }
+
+    // Of the pictures that it hands out; who takes one may say otherwise for its own.
+    [[nodiscard]] Result<void> takeCodec(NodePlan& node, const config::ResolvedCompound& compound) const {
+        for (const config::ResolvedFrame& given : compound.outputFrames) {
+            const config::ResolvedFrame* said = &given;
+            bool exact = given.exact;
+            for (const config::ResolvedCompound& taker : config_.compounds)
+                for (const config::ResolvedFrame& taken : taker.inputFrames) {
+                    if (taken.name != given.name) continue;
+                    exact = exact && taken.exact;
+                    if (taken.codec != kQuickestCodec) said = &taken;
+                }
+            const std::string place = file_ + ":" + std::to_string(said->at.line) + ": mural_codec \"" + said->codec + "\"";
+            auto wanted = wantedCodec(said->codec);
+            if (!wanted) return Error{place + ": " + wanted.error().message};
+            if (!wanted->lossless && exact) return Error{place + " loses something; say mural_exact OFF in the same frame, or take another codec"};
+            node.codec = said->codec == kQuickestCodec && !exact ? kLossyCodec : said->codec;
+        }
+        return {};
     }
 
     void placeOnHost(NodePlan& node, const RenderContext& c) const {

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include "nodes/head/codec_choice.hpp"
 #include "nodes/head/composition_choice.hpp"
 #include "nodes/head/config_plan.hpp"
 #include "nodes/head/head_session.hpp"
@@ -93,6 +94,7 @@ Result<SessionPlan> makePlan(const SessionConfig& config, const std::string& hos
     if (!loaded.ok()) return Error{loaded.diagnostics.firstError()};
     auto plan = planOf(loaded, {host, config.here, config.canvas, config.layouts, config.frusta, config.modelUnit});
     if (plan) chooseComposition(*plan, config.composition);
+    if (plan) chooseCodecs(*plan, config.codec);
     if (plan) settleQueues(*plan, config);
     return plan;
 }

@@ -160,6 +160,8 @@ Result<void> NodeLink::readMessage(const wire::MessageHeader& header) {
         return readAnswer(header.sizeBytes);
     case NodeMessage::Picture:
         return readPicture(header.sizeBytes);
+    case NodeMessage::PackedPicture:
+        return readPackedPicture(header.sizeBytes);
     case NodeMessage::FrameDone: {
         wire::FrameDoneMessage message{};
         if (header.sizeBytes != sizeof(message)) break;
@@ -170,6 +172,7 @@ Result<void> NodeLink::readMessage(const wire::MessageHeader& header) {
         wire::WindowGoneMessage message{};
         if (header.sizeBytes != sizeof(message)) break;
         if (auto got = readStruct(message); !got) return got;
+        forgetPictures(message);
         return handle([&] { return events_.nodeWindowGone(place_.node, message); });
     }
     case NodeMessage::News:
@@ -270,6 +273,30 @@ Result<void> NodeLink::readPicture(uint32_t sizeBytes) {
     auto rows = readBytes(dataBytes);
     if (!rows) return rows.error();
     return handle([&] { return events_.nodePicture(place_.node, header, std::move(*rows)); });
+}
+
+Result<void> NodeLink::readPackedPicture(uint32_t sizeBytes) {
+    wire::PictureHeader header{};
+    if (!pictures_) return Error{"it sent a packed picture, which nobody has asked for"};
+    if (sizeBytes < sizeof(header) || sizeBytes > kMaxDataBytes) return Error{"it sent a picture of an impossible size"};
+    if (auto got = readStruct(header); !got) return got;
+    auto packed = readBytes(sizeBytes - static_cast<uint32_t>(sizeof(header)));
+    if (!packed) return packed.error();
+    const uint64_t pixels = header.w > 0 && header.h > 0 ? uint64_t(header.w) * uint64_t(header.h) : 0;
+    if (pixels == 0 || pixels > kMaxDataBytes / 4) return Error{"it sent a packed picture of an impossible size"};
+    return handle([&]() -> Result<void> {
+        ByteBuffer rows = ByteBuffer::ofSize(pixels * 4);
+        if (rows.size() != pixels * 4) return Error{"no memory for a picture of " + std::to_string(pixels) + " pixels"};
+        if (auto done = pictures_->unpack(header.client, header.window, header.w, header.h, packed->span(), rows.span()); !done)
+            return Error{"it sent a picture that can't be unpacked: " + done.error().message};
+        return events_.nodePicture(place_.node, header, std::move(rows));
+    });
+}
+
+void NodeLink::forgetPictures(const wire::WindowGoneMessage& gone) {
+    if (!pictures_) return;
+    if (gone.window == wire::kAllWindows) pictures_->clientGone(gone.client);
+    else pictures_->windowGone(gone.client, gone.window);
 }
 
 template <class Header> Result<void> NodeLink::readStruct(Header& header) {

@@ -15,6 +15,7 @@
 #include "common/result.hpp"
 #include "nodes/head/byte_buffer.hpp"
 #include "nodes/head/node_process.hpp"
+#include "nodes/pictures/picture_unpacker.hpp"
 #include "streamcodec/wire.hpp"
 #include "transport/connection.hpp"
 
@@ -58,6 +59,8 @@ public:
     // Where its packets go: to it; nowhere; into a queue that another thread sends by sendNow(), while it catches up.
     enum class Feed { Direct, Nothing, Queued };
 
+    // How it packs its pictures (nodes/pictures), before startReading().
+    void unpackBy(const std::string& codec) { pictures_ = std::make_unique<PictureUnpacker>(codec); }
     void startReading();
 
     // A write that fails loses the node; nothing to tell the caller.
@@ -121,6 +124,8 @@ private:
     Result<void> readNews(uint32_t sizeBytes);
     Result<void> readAnswer(uint32_t sizeBytes);
     Result<void> readPicture(uint32_t sizeBytes);
+    Result<void> readPackedPicture(uint32_t sizeBytes);
+    void forgetPictures(const wire::WindowGoneMessage& gone);
     Result<void> readText(const wire::MessageHeader& header);
     Result<void> readInView(uint32_t sizeBytes);
     Result<void> readTurns(uint32_t sizeBytes);
@@ -133,6 +138,7 @@ private:
     const std::unique_ptr<Connection> connection_;
     const std::unique_ptr<NodeProcess> process_;
     NodeEvents& events_;
+    std::unique_ptr<PictureUnpacker> pictures_; // null: they come as they are
     std::thread reader_;
     std::atomic<bool> alive_;
     std::atomic<bool> saidBye_{false};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "nodes/head/codec_choice.hpp"
 #include "nodes/head/composition_choice.hpp"
 #include "nodes/head/tile_split.hpp"
 #include "nodes/session/stream_build.hpp"
@@ -117,6 +118,7 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
         }
     }
     chooseComposition(plan, config.composition);
+    chooseCodecs(plan, config.codec);
     settleQueues(plan, config);
     const auto started = static_cast<int>(plan.nodes.size());
     if (wanted > started) {
@@ -184,6 +186,8 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
     setup.screen = node.screen;
     setup.collector = node.collector;
     setup.composition = nameOf(node.composition.value_or(compositor::Strategy::Serial));
+    setup.pictureCodec = node.pictureCodec;
+    setup.partCodec = node.codec;
     setup.answers = node.answers;
     setup.exchangeHere = std::none_of(plan.nodes.begin(), plan.nodes.end(), [&](const NodePlan& other) { return other.collector == node.collector && other.reach == NodeReach::LaunchCommand; });
     setup.eyeBase = config.eyeBase;

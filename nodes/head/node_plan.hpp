@@ -48,6 +48,8 @@ struct NodePlan {
     std::optional<NodeWindow> window; // instead of those of tiles
     std::string swapBarrier; // windows that this node shows wait for those of other nodes with the same one; empty: for none
     int collector = 0; // the node that has the picture of all ranges: this one, when range is 0; range r is node collector + r
+    std::string codec = "auto";        // of its pictures, to whomever; before chooseCodecs: what a file says
+    std::string pictureCodec = "raw";  // of those that go to the head
     std::optional<compositor::Strategy> composition; // how they put it together; before chooseComposition: what a file says
 };
 

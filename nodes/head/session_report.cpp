@@ -30,6 +30,8 @@ void readBye(const std::string& text, NodeTotals& totals) {
     if (!json.is_object()) return;
     totals.commands = wholeOf(json, "commands");
     totals.exchangeBytes = wholeOf(json, "exchangeBytes");
+    totals.pictureBytes = wholeOf(json, "pictureBytes");
+    totals.pictureRawBytes = wholeOf(json, "pictureRawBytes");
     if (const auto swaps = json.find("swapBarrier"); swaps != json.end() && swaps->is_object())
         totals.swaps = {wholeOf(*swaps, "members"), wholeOf(*swaps, "swaps"),  wholeOf(*swaps, "medianNs"),
                         wholeOf(*swaps, "p99Ns"),   wholeOf(*swaps, "mostNs"), wholeOf(*swaps, "clockErrorNs")};
@@ -90,6 +92,8 @@ Json reportOf(const SessionNumbers& n) {
                          {"readbackSeconds", node.readbackSeconds},
                          {"commands", node.commands},
                          {"exchangeBytes", node.exchangeBytes},
+                         {"pictureBytes", node.pictureBytes},
+                         {"pictureRawBytes", node.pictureRawBytes},
                          {"swapBarrier", swapJson(node.swaps)},
                          {"lost", node.lost},
                          {"joins", node.joins},

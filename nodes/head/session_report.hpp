@@ -31,6 +31,7 @@ struct NodeTotals {
     double readbackSeconds = 0; // …and reading the pictures
     int64_t commands = 0;
     int64_t exchangeBytes = 0;  // of pictures, to other nodes
+    int64_t pictureBytes = 0, pictureRawBytes = 0; // of those that went to the head packed, and before
     SwapTotals swaps;
     bool lost = false;
     int64_t joins = 0;          // how often it came back

@@ -21,6 +21,7 @@
 #include "nodes/node/head_line.hpp"
 #include "nodes/node/heartbeat.hpp"
 #include "nodes/node/tile_windows.hpp"
+#include "nodes/pictures/picture_packer.hpp"
 #include "nodes/placement/placement.hpp"
 #include "nodes/replay/replay.hpp"
 #include "nodes/session/session_config.hpp"
@@ -72,6 +73,7 @@ int64_t processCpuNowNs() {
 }
 
 constexpr int64_t kMeetMs = 10'000;
+constexpr size_t kTellingBytes = 1 << 16; // fewer vanish in buffers
 constexpr int64_t kSlower = 2; // times what the work takes, added by the planted fault
 constexpr int kLostPacket = 10; // of those given to a node that catches up, by the planted fault
 
@@ -139,6 +141,7 @@ private:
             frames_.erase(client);
             if (replay_) replay_->clientGone(client);
             if (windows_) windows_->clientGone(client);
+            if (packer_) packer_->clientGone(client);
             sayWindowGone(client, wire::kAllWindows);
             return true;
         }
@@ -192,6 +195,7 @@ private:
             if (!windows) return fail(windows.error().message);
             windows_ = std::move(*windows);
         }
+        if (setup_.sendPictures && setup_.pictureCodec != "raw") packer_ = std::make_unique<PicturePacker>(setup_.pictureCodec);
         ReplayConfig config;
         config.node = setup_.node;
         config.skips = setup_.catchesUp && setup_.skipsFrames;
@@ -253,6 +257,7 @@ private:
         composer.strategy = *strategy;
         composer.rank = setup_.pass.range;
         composer.ranks = setup_.pass.ranges;
+        composer.codec = setup_.partCodec;
         if (const char* plant = std::getenv("MURAL_PLANT")) composer.plant = plant;
         exchange_ = std::make_unique<PictureExchange>(PictureExchange::Name{composer.rank, setup_.life}, secret.value());
         composer_ = std::make_unique<PictureComposer>(composer, *exchange_, [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); });
@@ -456,6 +461,7 @@ private:
 
     void windowGone(uint32_t client, uint32_t window) {
         if (windows_) windows_->windowGone(client, window);
+        if (packer_) packer_->windowGone(client, window);
         sayWindowGone(client, window);
     }
 
@@ -478,7 +484,18 @@ private:
         h.windowHeight = static_cast<uint32_t>(f.picture.h);
         h.nativeLow = f.config.nativeLow;
         h.nativeHigh = f.config.nativeHigh;
+        if (packer_ && sendPacked(h, pixels)) return;
         line_->send(wire::NodeMessage::Picture, std::as_bytes(std::span(&h, 1)), {pixels, static_cast<size_t>(f.region.area()) * 4});
+    }
+
+    // False: there is no memory for it.
+    bool sendPacked(const wire::PictureHeader& h, const std::byte* pixels) {
+        auto packed = packer_->pack(h.client, h.window, h.w, h.h, pixels);
+        if (!packed) return false;
+        const int64_t beganNs = monotonicNowNs();
+        line_->send(wire::NodeMessage::PackedPicture, std::as_bytes(std::span(&h, 1)), *packed);
+        if (packed->size() >= kTellingBytes) packer_->transferred(packed->size(), monotonicNowNs() - beganNs);
+        return true;
     }
 
     void showTiles(const ReplayOutputs::Frame& f) {
@@ -498,6 +515,10 @@ private:
         bye["frames"] = counts.frames;
         bye["cpuSeconds"] = processCpuSeconds();
         if (exchange_) bye["exchangeBytes"] = exchange_->bytesSent();
+        if (packer_) {
+            bye["pictureBytes"] = packer_->packedBytes();
+            bye["pictureRawBytes"] = packer_->rawBytes();
+        }
         if (const auto numbers = swaps_ && swaps_->barrier() ? swaps_->barrier()->numbers() : std::nullopt)
             bye["swapBarrier"] = {{"members", setup_.swapMembers},          {"swaps", numbers->skew.swaps},       {"medianNs", numbers->skew.medianNs},
                                   {"p99Ns", numbers->skew.p99Ns}, {"mostNs", numbers->skew.mostNs}, {"clockErrorNs", numbers->clockErrorNs}};
@@ -509,6 +530,7 @@ private:
     NodeSetup setup_;
     std::unique_ptr<BarrierPart> swaps_; // null: its windows wait for nobody
     std::unique_ptr<TileWindows> windows_;
+    std::unique_ptr<PicturePacker> packer_; // null: pictures go as they are
     std::unique_ptr<Replay> replay_;
     uint64_t lastCpuNs_ = 0;
     bool countsCpu_ = false;

@@ -71,6 +71,7 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("period", c.passes.period, 1);
     visit("ranges", c.passes.ranges, 1);
     visit("composition", c.composition);
+    visit("codec", c.codec);
     visit("eyeBase", c.eyeBase);
     visit("focusDistance", c.focusDistance);
     visit("tiling", c.tiling);
@@ -133,6 +134,8 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("tiling", s.tiling);
     visit("glBackend", s.glBackend);
     visit("sendPictures", s.sendPictures);
+    visit("pictureCodec", s.pictureCodec);
+    visit("partCodec", s.partCodec);
     visit("wallWindows", s.wallWindows);
     visit("windowTitle", s.windowTitle);
     visit("windowAsOnWall", s.windowAsOnWall);

@@ -46,6 +46,7 @@ struct SessionConfig {
     Frusta frusta = Frusta::Auto; // --frusta
     double modelUnit = 1;         // --model-unit: of the program, to the metre of the file
     PassCounts passes;            // --stereo, --pixel, --subpixel, --dplex, --db
+    std::string codec = "auto";   // --codec: how pictures of nodes travel: as of PlaneEncoder (nodes/pictures)
     std::string composition = "auto"; // --composition: auto, or a compositor::Strategy by its name
     double eyeBase = 0.05;        // --eye-base: distance of the eyes, in the program's units
     double focusDistance = 1;     // --focus: where both eyes see the same, in the program's units
@@ -88,7 +89,9 @@ struct NodeSetup {
     double eyeBase = 0.05, focusDistance = 1; // see SessionConfig
     Tiling tiling = Tiling::Exact;
     std::string glBackend = "auto";
-    bool sendPictures = false;    // Picture messages to the head at every swap
+    bool sendPictures = false;    // Picture messages to the head at every swap…
+    std::string pictureCodec = "raw"; // …or PackedPictures, as of PlaneEncoder
+    std::string partCodec = "auto"; // of parts of pictures, to other nodes
     bool wallWindows = false;     // open one window per tile
     std::string windowTitle;      // of the one that shows its area
     bool windowAsOnWall = true;   // its place on the screen is that on the wall, moved by windowX and windowY; else just there

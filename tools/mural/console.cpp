@@ -74,6 +74,10 @@ std::vector<std::string> reportLines(const SessionReport& r) {
             lines.push_back(fmt::format("held back: {:.0f} record{} waited for {} first use", e.heldRecords, plural(static_cast<int64_t>(e.heldRecords)), e.heldRecords == 1 ? "its" : "their") +
                             (e.leftOutRecords > 0 ? fmt::format("; {:.0f} of {} never went, as nobody needed them", e.leftOutRecords, sizeText(e.leftOutBytes)) : ""));
     }
+    double packed = 0, raw = 0;
+    for (const NodeReport& n : r.nodes) packed += n.pictureBytes, raw += n.pictureRawBytes;
+    if (raw > 0 && r.frames > 0)
+        lines.push_back(fmt::format("pictures: {} per frame came packed into {}", sizeText(raw / static_cast<double>(r.frames)), sizeText(packed / static_cast<double>(r.frames))));
     for (const QueueReport& q : r.queues) {
         if (q.columns == 0) continue;
         std::string nodes;

@@ -90,7 +90,7 @@ SessionReport reportFrom(const Json& j) {
         for (const Json& n : *nodes) {
             if (!n.is_object()) continue;
             const auto swaps = n.find("swapBarrier");
-            r.nodes.push_back({whole(n, "node"), whole(n, "frames"), real(n, "cpuSeconds"), truth(n, "lost"), swapsFrom(swaps != n.end() ? *swaps : Json()), whole(n, "joins"), real(n, "secondsToBack"), real(n, "snapshotBytes")});
+            r.nodes.push_back({whole(n, "node"), whole(n, "frames"), real(n, "cpuSeconds"), truth(n, "lost"), swapsFrom(swaps != n.end() ? *swaps : Json()), whole(n, "joins"), real(n, "secondsToBack"), real(n, "snapshotBytes"), real(n, "pictureBytes"), real(n, "pictureRawBytes")});
         }
     }
     return r;

@@ -25,6 +25,7 @@ struct NodeReport {
     SwapReport swaps;
     int64_t joins = 0; // how often it came back, and of the last time:
     double secondsToBack = 0, snapshotBytes = 0;
+    double pictureBytes = 0, pictureRawBytes = 0; // that it sent packed, and what they were before
 };
 
 // What was spared the nodes that are not sent again what they have had.

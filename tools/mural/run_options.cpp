@@ -15,6 +15,7 @@
 #include "compositor/strategies/strategy.hpp"
 #include "nodes/head/config_plan.hpp"
 #include "nodes/launch/private_display.hpp"
+#include "nodes/pictures/plane_codecs.hpp"
 #include "tools/mural/byte_size.hpp"
 #include "transport/connection_description.hpp"
 #include "transport/rsp/group_description.hpp"
@@ -241,6 +242,10 @@ Result<void> readPasses(const RunArguments& a, SessionConfig& c) {
     if (auto r = readCount("--subpixel", a.subpixel, kMaxPasses, p.samples); !r) return r;
     if (auto r = readCount("--dplex", a.dplex, kMaxPasses, p.period); !r) return r;
     if (auto r = readCount("--db", a.db, kMaxPasses, p.ranges); !r) return r;
+    if (a.codec) {
+        if (auto wanted = wantedCodec(*a.codec); !wanted) return badValue("--codec", *a.codec, "must be auto, lossy or the name of a codec; " + wanted.error().message);
+        c.codec = *a.codec;
+    }
     if (a.composition) {
         std::string names = "auto";
         for (const compositor::Strategy s : compositor::kEveryStrategy) names += std::string(", ") + nameOf(s);
@@ -400,6 +405,7 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
     command.add_option("--dplex", a.dplex, "time-multiplex: N nodes take turns at whole frames (1)")->type_name("N");
     command.add_option("--db", a.db, "sort-last: N nodes share what is drawn, by ranges of each frame's draws, and compose by depth (1)")->type_name("N");
     command.add_option("--composition", a.composition, "how they put their picture together: serial, direct-send, binary-swap, 2-3-swap, radix-k, streaming, or auto, by their number (auto)")->type_name("HOW");
+    command.add_option("--codec", a.codec, "how pictures travel from nodes: auto (from other machines packed by the quickest that loses nothing), lossy (the quickest of all), or a name: raw, bitplane, bitplane-zstd, lz4, zstd, yuv420, jpeg-1 to jpeg-100 (auto)")->type_name("HOW");
     command.add_option("--display", a.display, "where the wall is shown: app (the program's own window), windows (one per tile), none")->type_name("WHERE");
     command.add_option("--tiling", a.tiling, "exact: every pixel as on one machine; culled: less work for much geometry, exact in windows with a depth buffer; lean: less memory (exact)")->type_name("HOW");
     command.add_option("--policy", a.policy, "state: the program's own GL draws nothing; full: it draws too (state)")->type_name("WHAT");

@@ -1,4 +1,4 @@
-#include "nodes/exchange/plane_codecs.hpp"
+#include "nodes/pictures/plane_codecs.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -15,22 +15,32 @@ using compositor::Codec;
 using compositor::MutablePlaneView;
 using compositor::PlaneView;
 
-// Numbers are places in this list. Run lengths are there to be measured against, and not in it.
-constexpr const char* kCodecs[] = {"raw", "bitplane", "slope", "bitplane-zstd", "slope-zstd", "lz4", "zstd"};
+// Numbers are places in this list; behind it comes the one that the user has named. Run lengths are there to be measured against, and not in it.
+constexpr const char* kCodecs[] = {"raw", "bitplane", "slope", "bitplane-zstd", "slope-zstd", "lz4", "zstd", "yuv420", "jpeg-90"};
 constexpr CodecNumber kRaw = 0;
 
 CodecNumber numberOf(const std::string& name) {
     return static_cast<CodecNumber>(std::ranges::find(kCodecs, name) - std::begin(kCodecs));
 }
 
-std::vector<std::unique_ptr<Codec>> makeCodecs() {
+bool isName(const std::string& codec) { return codec != kQuickestCodec && codec != kLossyCodec; }
+
+std::vector<std::unique_ptr<Codec>> makeCodecs(const std::string& wanted) {
     compositor::CodecRegistry registry;
     std::vector<std::unique_ptr<Codec>> codecs;
-    for (const char* name : kCodecs) {
+    const auto add = [&](const std::string& name) {
         auto codec = registry.make(name);
         codecs.push_back(codec ? std::move(*codec) : nullptr);
-    }
+    };
+    for (const char* name : kCodecs) add(name);
+    if (isName(wanted) && numberOf(wanted) == std::size(kCodecs)) add(wanted);
     return codecs;
+}
+
+std::vector<std::string> coloursBy(const std::string& codec) {
+    std::vector<std::string> names = {"raw", "bitplane", "bitplane-zstd", "lz4", "zstd"};
+    if (codec == kLossyCodec) names.insert(names.end(), {"yuv420", "jpeg-90"});
+    return names;
 }
 
 compositor::SelectorOptions latencyCounts() {
@@ -41,8 +51,27 @@ compositor::SelectorOptions latencyCounts() {
 
 } // namespace
 
-PlaneEncoder::PlaneEncoder()
-    : codecs_(makeCodecs()), colour_({"raw", "bitplane", "bitplane-zstd", "lz4", "zstd"}, latencyCounts()), depth_({"raw", "slope", "slope-zstd", "lz4", "zstd"}, latencyCounts()) {}
+Result<WantedCodec> wantedCodec(const std::string& name) {
+    if (!isName(name)) return WantedCodec{true, name != kLossyCodec};
+    auto info = compositor::CodecRegistry().find(name);
+    if (!info) return info.error();
+    return WantedCodec{false, info->lossless};
+}
+
+bool mayLose(const std::string& codec) {
+    auto wanted = wantedCodec(codec);
+    return wanted && !wanted->lossless;
+}
+
+PlaneEncoder::PlaneEncoder(const std::string& codec)
+    : codecs_(makeCodecs(codec)), colour_(coloursBy(codec), latencyCounts()), depth_({"raw", "slope", "slope-zstd", "lz4", "zstd"}, latencyCounts()) {
+    if (!isName(codec)) return;
+    auto info = compositor::CodecRegistry().find(codec);
+    const CodecNumber number = numberOf(codec);
+    if (!info || !codecs_[number]) return;
+    named_ = number;
+    namedFormats_ = info->formats;
+}
 PlaneEncoder::~PlaneEncoder() = default;
 
 // Into scratch_; how many bytes. As many as raw ones: it is of no use here.
@@ -54,7 +83,20 @@ size_t PlaneEncoder::tryCodec(CodecNumber codec, const PlaneView& plane, int64_t
     return size ? std::min(*size, plane.sizeBytes()) : plane.sizeBytes();
 }
 
+// What it has made larger goes raw.
+CodecNumber PlaneEncoder::encodeBy(CodecNumber codec, const PlaneView& plane, std::vector<std::byte>& into) {
+    int64_t tookNs = 0;
+    size_t size = tryCodec(codec, plane, tookNs);
+    if (size == plane.sizeBytes() && codec != kRaw) {
+        codec = kRaw;
+        size = tryCodec(codec, plane, tookNs);
+    }
+    into.insert(into.end(), scratch_.begin(), scratch_.begin() + static_cast<ptrdiff_t>(size));
+    return codec;
+}
+
 CodecNumber PlaneEncoder::encode(const PlaneView& plane, std::vector<std::byte>& into) {
+    if (named_ && (namedFormats_ & compositor::formatBit(plane.format)) != 0) return encodeBy(*named_, plane, into);
     compositor::CodecSelector& selector = isDepth(plane.format) ? depth_ : colour_;
     const compositor::TileClass tile = compositor::classify(plane);
     const auto choice = selector.choose(tile, plane.sizeBytes());
@@ -86,7 +128,7 @@ void PlaneEncoder::transferred(uint64_t bytes, int64_t ns) {
     depth_.transferred(bytes, ns);
 }
 
-PlaneDecoder::PlaneDecoder() : codecs_(makeCodecs()) {}
+PlaneDecoder::PlaneDecoder(const std::string& codec) : codecs_(makeCodecs(codec)) {}
 PlaneDecoder::~PlaneDecoder() = default;
 
 Result<void> PlaneDecoder::decode(CodecNumber codec, std::span<const std::byte> bytes, const MutablePlaneView& into) {

@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+"""Pictures that nodes pack on their way to the head, and parts of them on their way to each other: what loses nothing shows every pixel as without
+Mural, what loses something is near; files of configurations say how, too.
+
+  packed_pictures.py --build build/release [--cases lossless,lossy] [--list]
+"""
+
+import os
+import sys
+import tempfile
+
+import failures
+import passes
+import pictures
+
+failures.CASES.clear()  # only those of this file
+PROGRAMS = ("immediate", "fixed_lighting", "copied_scene", "es2_scene")
+TILES = ["--tiles", "2x2"]
+LEAST_DB = 20 # colours at half the resolution, at edges of triangles
+
+
+@passes.case
+def lossless_codecs_show_every_pixel(context, notes):
+    wrong = None
+    for program in PROGRAMS:
+        plain = passes.native(context, program)
+        for codec in ("bitplane", "bitplane-zstd", "lz4", "zstd", "rle64"):
+            wrong = wrong or passes.first_wrong({"%s, %s" % (program, codec): passes.differing(plain, passes.through(context, TILES + ["--codec", codec], program))})
+    return wrong
+
+
+@passes.case
+def lossless_codecs_between_nodes_too(context, notes):
+    plain = passes.native(context, "fixed_lighting")
+    return passes.first_wrong({codec: passes.differing(plain, passes.through(context, ["--db", "3", "--composition", "direct-send", "--codec", codec], "fixed_lighting"))
+                               for codec in ("raw", "zstd", "bitplane")})
+
+
+def nearness(plain, got):
+    if len(plain) != len(got):
+        raise AssertionError("%d pictures instead of %d" % (len(got), len(plain)))
+    return min(pictures.decibels(a, b) for a, b in zip(plain, got))
+
+
+@passes.case
+def lossy_codecs_are_near(context, notes):
+    wrong, plain = None, passes.native(context, "fixed_lighting")
+    for options in (["--codec", "jpeg-95"], ["--codec", "jpeg-40"], ["--codec", "yuv420"], ["--codec", "jpeg-90", "--db", "2"]):
+        got = nearness(plain, passes.through(context, (TILES if "--db" not in options else []) + options, "fixed_lighting"))
+        notes.append("%s: %.1f dB" % (" ".join(options[1:]), got))
+        if not LEAST_DB <= got < 90:
+            wrong = wrong or "%s: %.1f dB" % (" ".join(options), got)
+    return wrong
+
+
+FILE = """#Equalizer 1.2 ascii
+server { config {
+    appNode { pipe { window { viewport [ 0 0 %(w)d %(h)d ] channel { name "screen" } } } }
+    node { pipe { window { viewport [ 0 0 %(w)d %(h)d ] channel { name "other" } } } }
+    compound { channel "screen"
+        compound { viewport [ 0 0 .5 1 ] }
+        compound { channel "other" viewport [ .5 0 .5 1 ] outputframe { %(frame)s } }
+        inputframe { name "frame.other" %(taken)s } } } }
+"""
+
+
+def by_file(context, frame, taken="", more=()):
+    with tempfile.TemporaryDirectory(prefix="mural-codec.") as folder:
+        path = os.path.join(folder, "codec.eqc")
+        with open(path, "w", encoding="ascii") as file:
+            file.write(FILE % {"w": passes.SIZE[0], "h": passes.SIZE[1], "frame": frame, "taken": taken})
+        command = [context.program("fixed_lighting"), "--frames", "3", "--size", "%dx%d" % passes.SIZE]
+        with context.run(command, ["--display", "none", "--config", path, "--frusta", "program", "--explain", "--out", folder] + list(more)) as run:
+            status = run.status()
+            said = "\n".join(run.standard_error)
+        names = sorted(name for name in os.listdir(folder) if name.endswith(".png"))
+        return status, said, [pictures.read_png(os.path.join(folder, name)) for name in names]
+
+
+@passes.case
+def files_say_how(context, notes):
+    plain = passes.native(context, "fixed_lighting", frames=3)
+    for frame, taken, more, line in (("mural_codec \"zstd\"", "", (), "packed by zstd,"), ("", "mural_codec \"lz4\"", (), "packed by lz4,"),
+                                     ("mural_codec \"zstd\"", "", ("--codec", "bitplane"), "packed by bitplane,")):
+        status, said, got = by_file(context, frame, taken, more)
+        wrong = passes.differing(plain, got)
+        if status != 0 or wrong or line not in said:
+            return "%s %s %s: status %s, %s: %s" % (frame, taken, more, status, wrong, said)
+    status, said, got = by_file(context, "mural_codec \"jpeg-80\" mural_exact OFF")
+    if status != 0 or "which loses something" not in said or passes.differing(plain, got) is None or nearness(plain, got) < LEAST_DB:
+        return "jpeg-80 by a file: status %s: %s" % (status, said)
+    for frame, line in (("mural_codec \"jpeg-80\"", "loses something; say mural_exact OFF"), ("mural_codec \"none_such\"", "there is no codec \"none_such\"")):
+        status, said, _ = by_file(context, frame)
+        if status != 2 or line not in said:
+            return "%s: status %s: %s" % (frame, status, said)
+    return None
+
+
+if __name__ == "__main__":
+    sys.exit(failures.main())
