@@ -70,9 +70,9 @@ void WayChoice::decide() {
     const bool better = isSmall ? plain_ == tooDear : tried < before * kClearly;
     if (!better) plain_ = !plain_;
     // What a try takes more than the way that is kept, is a small part of what comes before the next.
-    const double more = (plain_ ? looked : asItIs).leastNs / (plain_ ? asItIs : looked).leastNs - 1;
-    const uint32_t least = better ? kLeastBetween * 8 : std::max(until_ * 2, kLeastBetween);
-    until_ = static_cast<uint32_t>(std::min(std::max(more * kTryBatches * kTryPart, double{least}), double{kMostBetween}));
+    const double more = (plain_ ? looked : asItIs).leastNs / std::max((plain_ ? asItIs : looked).leastNs, 1.0) - 1;
+    const double least = better ? kLeastBetween * 8 : std::max(until_ * 2, kLeastBetween);
+    until_ = static_cast<uint32_t>(std::min(std::max(more * kTryBatches * kTryPart, least), double{kMostBetween}));
     decidedBy_ = std::min(tried, before);
     trying_ = false;
     batches_ = 0;

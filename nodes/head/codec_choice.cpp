@@ -9,7 +9,6 @@ namespace mural {
 namespace {
 
 std::string described(const std::string& codec) {
-    if (codec == "raw") return "as they are";
     if (codec == kQuickestCodec) return "packed by what gets them there soonest and loses nothing, without tiles that have not changed";
     if (codec == kLossyCodec) return "packed by what gets them there soonest, and may lose something, without tiles that have not changed";
     return "packed by " + codec + (mayLose(codec) ? ", which loses something" : "") + ", without tiles that have not changed";

@@ -250,7 +250,7 @@ private:
                 node.screen = screenOf(c);
                 node.collector = collector;
                 if (auto named = takeComposition(node, config_.compounds[at(c.compound)]); !named) return named;
-                if (auto named = takeCodec(node, config_.compounds[at(c.compound)]); !named) return named;
+                if (auto named = takeCodec(node, c.compound); !named) return named;
                 node.answers = node.pass.range == 0 && c.eye != Eye::Right && c.pixel.x == 0 && c.pixel.y == 0 && c.subPixel.index == 0;
                 placeOnHost(node, c);
                 plan_.nodes.push_back(node);
@@ -282,14 +282,19 @@ private:
         return Error{file_ + ":" + std::to_string(compound.at.line) + ": mural_composition \"" + compound.composition + "\": must be one of " + names};
     }
 
+    [[nodiscard]] Index rootOf(Index compound) const {
+        while (config_.compounds[at(compound)].parent != kNone) compound = config_.compounds[at(compound)].parent;
+        return compound;
+    }
+
     // Of the pictures that it hands out; who takes one may say otherwise for its own.
-    [[nodiscard]] Result<void> takeCodec(NodePlan& node, const config::ResolvedCompound& compound) const {
-        for (const config::ResolvedFrame& given : compound.outputFrames) {
+    [[nodiscard]] Result<void> takeCodec(NodePlan& node, Index compound) const {
+        for (const config::ResolvedFrame& given : config_.compounds[at(compound)].outputFrames) {
             const config::ResolvedFrame* said = &given;
             bool exact = given.exact;
-            for (const config::ResolvedCompound& taker : config_.compounds)
-                for (const config::ResolvedFrame& taken : taker.inputFrames) {
-                    if (taken.name != given.name) continue;
+            for (size_t taker = 0; taker < config_.compounds.size(); ++taker)
+                for (const config::ResolvedFrame& taken : config_.compounds[taker].inputFrames) {
+                    if (taken.name != given.name || rootOf(static_cast<Index>(taker)) != rootOf(compound)) continue;
                     exact = exact && taken.exact;
                     if (taken.codec != kQuickestCodec) said = &taken;
                 }

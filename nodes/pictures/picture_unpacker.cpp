@@ -12,7 +12,7 @@ Result<void> PictureUnpacker::unpack(uint32_t client, uint32_t window, int32_t w
     const compositor::PlaneShape shape{compositor::PlaneFormat::Rgba8, width, height};
     if (width <= 0 || height <= 0 || into.size() != shape.sizeBytes()) return Error{"a packed picture of an impossible size"};
     Window& w = windows_[{client, window}];
-    if (w.last.width() != width || w.last.height() != height) w.last = {shape.format, width, height};
+    if (w.last.width() != width || w.last.height() != height) w = {{}, {shape.format, width, height}};
     if (auto done = w.tiles.decode(packed, codec_, w.last.view()); !done) return done.error();
     const compositor::MutablePlaneView last = w.last.view();
     if (asColours_) swapRedAndBlue(last.pixels, into.data(), into.size() / 4);

@@ -1,6 +1,7 @@
 #include "nodes/shaders/frag_coord.hpp"
 
 #include <array>
+#include <cstdint>
 #include <set>
 
 #include "nodes/shaders/glsl_tokens.hpp"
@@ -9,13 +10,23 @@ namespace mural::shaders {
 
 namespace {
 
+// A program's stage may be made of several texts, each with functions of its own.
+std::string endingOf(std::string_view source) {
+    uint32_t sum = 2166136261; // FNV-1a
+    for (const char c : source) sum = (sum ^ static_cast<unsigned char>(c)) * 16777619;
+    constexpr const char* kDigits = "0123456789abcdef";
+    std::string ending = "_";
+    for (int shift = 28; shift >= 0; shift -= 4) ending += kDigits[sum >> shift & 15];
+    return ending;
+}
+
 // A function, so that what is reckoned with its result keeps the precision that it has natively: 16 bits for mediump, in some drivers.
 // Pixel centres that count as whole numbers lie half a pixel elsewhere in both.
-std::string windowCoordinate(const GlslText& text) {
+std::string windowCoordinate(const GlslText& text, const std::string& ending) {
     const std::string from = text.uses("origin_upper_left") ? "xz" : "xy";
     const std::string counted = text.uses("pixel_center_integer") ? "(p.xy + 0.5)" : "p.xy";
     const std::string made = !text.es ? "vec4" : text.version < 300 ? "mediump vec4" : "highp vec4";
-    return " " + made + " muralWindow(" + (text.es ? "highp " : "") + "vec4 p) { return p + vec4(" + counted + " * muralPlace[1].xy + muralPlace[0]." + from + ", 0.0, 0.0); }";
+    return " " + made + " muralWindow" + ending + "(" + (text.es ? "highp " : "") + "vec4 p) { return p + vec4(" + counted + " * muralPlace[1].xy + muralPlace[0]." + from + ", 0.0, 0.0); }";
 }
 
 // Each is a function that GLSL has, for numbers and vectors; how it is made of what this framebuffer's neighbours tell.
@@ -36,12 +47,12 @@ constexpr std::array kDerivatives = {
     Derivative{"fwidthCoarse", "muralWidthCoarse", "fwidthCoarse(v) + abs(dFdxCoarse(v)) * muralPlace[1].z + abs(dFdyCoarse(v)) * muralPlace[1].w"},
 };
 
-std::string functionsFor(const Derivative& d, const GlslText& text) {
+std::string functionsFor(const Derivative& d, const GlslText& text, const std::string& ending) {
     const std::string precision = !text.es ? "" : text.uses("mediump") ? "mediump " : "highp ";
     std::string functions;
     for (const char* type : {"float", "vec2", "vec3", "vec4"}) {
         const std::string of = precision + type;
-        functions += " " + of + " " + std::string(d.ours) + "(" + of + " v) { return " + std::string(d.body) + "; }";
+        functions += " " + of + " " + std::string(d.ours) + ending + "(" + of + " v) { return " + std::string(d.body) + "; }";
     }
     return functions;
 }
@@ -50,6 +61,7 @@ std::string functionsFor(const Derivative& d, const GlslText& text) {
 
 std::optional<std::string> withWindowPlace(std::string_view source, const FragmentReads& reads, bool es) {
     const GlslText text = scanGlsl(source, es);
+    const std::string ending = endingOf(source);
     TextEdits edits;
     bool placed = false;
     std::set<const Derivative*> used;
@@ -58,20 +70,20 @@ std::optional<std::string> withWindowPlace(std::string_view source, const Fragme
         if (reads.coordinates && t.text == "gl_FragCoord") {
             const bool declared = i > 0 && text.tokens[i - 1].text == "vec4"; // layout(…) in vec4 gl_FragCoord;
             if (declared) continue;
-            edits.replace(t.at, t.text.size(), "muralWindow(gl_FragCoord)");
+            edits.replace(t.at, t.text.size(), "muralWindow" + ending + "(gl_FragCoord)");
             placed = true;
         }
         if (!reads.derivatives) continue;
         for (const Derivative& d : kDerivatives) {
             if (t.text != d.name) continue;
-            edits.replace(t.at, t.text.size(), std::string(d.ours));
+            edits.replace(t.at, t.text.size(), std::string(d.ours) + ending);
             used.insert(&d);
         }
     }
     if (edits.empty()) return std::nullopt;
     std::string declarations = std::string("uniform ") + (text.es ? "highp " : "") + "vec4 muralPlace[2];";
-    if (placed) declarations += windowCoordinate(text);
-    for (const Derivative* d : used) declarations += functionsFor(*d, text);
+    if (placed) declarations += windowCoordinate(text, ending);
+    for (const Derivative* d : used) declarations += functionsFor(*d, text, ending);
     const size_t at = text.declarationsAt();
     edits.insert(at, onItsLine(text, at, declarations));
     return edits.apply(source);

@@ -1,23 +1,32 @@
 #include <gtest/gtest.h>
 
+#include <regex>
+
 #include "nodes/shaders/frag_coord.hpp"
 
 namespace mural::shaders {
 namespace {
 
+// Without the endings that make functions of several texts differ.
+std::optional<std::string> placed(std::string_view source, const FragmentReads& reads, bool es) {
+    const auto out = shaders::withWindowPlace(source, reads, es);
+    if (!out) return out;
+    return std::regex_replace(*out, std::regex("(mural[A-Za-z]+)_[0-9a-f]{8}\\("), "$1(");
+}
+
 constexpr FragmentReads kCoordinates{.coordinates = true}, kBoth{.coordinates = true, .derivatives = true};
 
 TEST(FragCoord, ReadsAreMoved) {
-    EXPECT_EQ(withWindowPlace("#version 330\nout vec4 c; void main() { c = gl_FragCoord.xyxy; }", kCoordinates, false),
+    EXPECT_EQ(placed("#version 330\nout vec4 c; void main() { c = gl_FragCoord.xyxy; }", kCoordinates, false),
               "#version 330\nuniform vec4 muralPlace[2]; vec4 muralWindow(vec4 p) { return p + vec4(p.xy * muralPlace[1].xy + muralPlace[0].xy, 0.0, 0.0); } out vec4 c; "
               "void main() { c = muralWindow(gl_FragCoord).xyxy; }");
-    EXPECT_FALSE(withWindowPlace("void main() { gl_FragColor = vec4(1); } // gl_FragCoord", kBoth, false));
+    EXPECT_FALSE(placed("void main() { gl_FragColor = vec4(1); } // gl_FragCoord", kBoth, false));
 }
 
 TEST(FragCoord, DerivativesArePerPixelOfTheWindow) {
     const std::string_view source = "#version 430\nin vec2 v; out vec4 c;\nvoid main() { c = vec4(dFdx(v), 1.0 / dFdy(v.x), fwidthFine(v.y)); }";
-    EXPECT_FALSE(withWindowPlace(source, kCoordinates, false));
-    const auto out = withWindowPlace(source, kBoth, false);
+    EXPECT_FALSE(placed(source, kCoordinates, false));
+    const auto out = placed(source, kBoth, false);
     ASSERT_TRUE(out);
     EXPECT_NE(out->find("c = vec4(muralDx(v), 1.0 / muralDy(v.x), muralWidthFine(v.y));"), std::string::npos) << *out;
     EXPECT_NE(out->find("vec2 muralDx(vec2 v) { return dFdx(v) + dFdx(v) * muralPlace[1].z; }"), std::string::npos);
@@ -25,21 +34,29 @@ TEST(FragCoord, DerivativesArePerPixelOfTheWindow) {
     EXPECT_EQ(out->find("muralDxFine("), std::string::npos) << "only what is used";
 }
 
+TEST(FragCoord, TextsOfOneStageHaveFunctionsOfTheirOwn) {
+    const auto first = shaders::withWindowPlace("vec4 a() { return gl_FragCoord; }", kCoordinates, false);
+    const auto second = shaders::withWindowPlace("vec4 b() { return gl_FragCoord; }", kCoordinates, false);
+    ASSERT_TRUE(first && second);
+    const auto nameIn = [](const std::string& text) { return text.substr(text.find("muralWindow"), 20); };
+    EXPECT_NE(nameIn(*first), nameIn(*second));
+}
+
 TEST(FragCoord, UpperOriginsCountFromAbove) {
-    const auto out = withWindowPlace("#version 150\nlayout(origin_upper_left, pixel_center_integer) in vec4 gl_FragCoord;\nvoid main() { gl_FragColor = gl_FragCoord; }", kCoordinates, false);
+    const auto out = placed("#version 150\nlayout(origin_upper_left, pixel_center_integer) in vec4 gl_FragCoord;\nvoid main() { gl_FragColor = gl_FragCoord; }", kCoordinates, false);
     ASSERT_TRUE(out);
     EXPECT_NE(out->find("in vec4 gl_FragCoord;"), std::string::npos) << "the declaration stays";
     EXPECT_NE(out->find("return p + vec4((p.xy + 0.5) * muralPlace[1].xy + muralPlace[0].xz, 0.0, 0.0);"), std::string::npos) << *out;
 }
 
 TEST(FragCoord, EsWantsAPrecision) {
-    const auto out = withWindowPlace("#extension GL_OES_standard_derivatives : enable\nprecision mediump float;\nvoid main() { gl_FragColor = gl_FragCoord; }", kCoordinates, true);
+    const auto out = placed("#extension GL_OES_standard_derivatives : enable\nprecision mediump float;\nvoid main() { gl_FragColor = gl_FragCoord; }", kCoordinates, true);
     ASSERT_TRUE(out);
     EXPECT_NE(out->find("enable\nuniform highp vec4 muralPlace[2]; mediump vec4 muralWindow(highp vec4 p) {"), std::string::npos) << *out;
 }
 
 TEST(FragCoord, MacrosAreFollowed) {
-    const auto out = withWindowPlace("#define HERE gl_FragCoord.xy\nvoid main() { gl_FragColor = HERE.xyxy; }", kCoordinates, false);
+    const auto out = placed("#define HERE gl_FragCoord.xy\nvoid main() { gl_FragColor = HERE.xyxy; }", kCoordinates, false);
     ASSERT_TRUE(out);
     EXPECT_NE(out->find("#define HERE muralWindow(gl_FragCoord)"), std::string::npos);
     EXPECT_EQ(out->find("uniform vec4 muralPlace[2]; vec4 muralWindow("), 0u) << *out;

@@ -1,5 +1,5 @@
 // The whole window by fragments that know nothing but their place: from the lower left and the upper left, with centres at halves and at whole
-// numbers, by GLSL and by assembly. Each bit of a place shows.
+// numbers, by GLSL (in two texts) and by assembly. Each bit of a place shows.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -26,8 +26,9 @@ const char* const kOptions[kAssembled] = {"", "OPTION ARB_fragment_coord_origin_
 void setUp() {
     for (int i = 0; i < kShaders; ++i) {
         const std::string fragment = std::string("#version 150 compatibility\n") + kDeclared[i] +
-                                     "void main() { vec2 p = gl_FragCoord.xy; gl_FragColor = vec4(fract(p / 16.0), fract((floor(p.x / 16.0) + 7.0 * floor(p.y / 16.0)) / 32.0), 1.0); }\n";
-        shaders[i] = buildProgram({{GL_VERTEX_SHADER, "#version 150 compatibility\nvoid main() { gl_Position = gl_Vertex; }\n"}, {GL_FRAGMENT_SHADER, fragment.c_str()}});
+                                     "vec2 across();\nvoid main() { vec2 p = vec2(gl_FragCoord.x, across().y); gl_FragColor = vec4(fract(p / 16.0), fract((floor(p.x / 16.0) + 7.0 * floor(p.y / 16.0)) / 32.0), 1.0); }\n";
+        const std::string other = std::string("#version 150 compatibility\n") + kDeclared[i] + "vec2 across() { return gl_FragCoord.xy; }\n";
+        shaders[i] = buildProgram({{GL_VERTEX_SHADER, "#version 150 compatibility\nvoid main() { gl_Position = gl_Vertex; }\n"}, {GL_FRAGMENT_SHADER, fragment.c_str()}, {GL_FRAGMENT_SHADER, other.c_str()}});
     }
     glGenProgramsARB(kAssembled, assembled);
     for (int i = 0; i < kAssembled; ++i) {

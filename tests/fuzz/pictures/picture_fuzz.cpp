@@ -1,0 +1,38 @@
+// Packed pictures under whatever a node may send, one behind the other. What was taken can be packed and comes out again.
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "nodes/pictures/picture_packer.hpp"
+#include "nodes/pictures/picture_unpacker.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
+#include "tests/fuzz/pictures/picture_input.hpp"
+
+namespace mural::fuzz {
+
+uint64_t fuzzOne(std::span<const std::byte> input) {
+    InputReader in(input);
+    const char* const codec = kWanted[in.byte() % std::size(kWanted)];
+    PictureUnpacker unpacker(codec), again("auto");
+    PicturePacker packer("auto");
+    uint64_t taken = 0;
+    while (!in.empty()) {
+        const auto window = static_cast<uint32_t>(in.byte() % kMostWindows);
+        const int32_t width = in.half() % kMostColumns + 1, height = in.half() % kMostRows + 1;
+        const std::vector<std::byte> message = in.piece();
+        std::vector<std::byte> rows(static_cast<size_t>(width) * static_cast<size_t>(height) * 4);
+        auto done = unpacker.unpack(1, window, width, height, message, rows);
+        if (!done) {
+            must(!done.error().message.empty() && done.error().message.find('\n') == std::string::npos, "an error is one line");
+            continue;
+        }
+        ++taken;
+        auto packed = packer.pack(1, window, width, height, rows.data());
+        must(packed.ok(), "what was taken can be packed");
+        std::vector<std::byte> out(rows.size());
+        must(again.unpack(1, window, width, height, *packed, out).ok() && out == rows, "nothing is lost on the way");
+    }
+    return taken;
+}
+
+} // namespace mural::fuzz
