@@ -15,7 +15,7 @@ namespace mural {
 
 ShaderRewrites Replay::rewrites() const {
     const bool moved = movesView() || (movesPicture() && movesByShaders());
-    return {config_.cull && !alone() && !moved, (config_.lean && !alone()) || drawsFewer(), drawsFewer(), moved};
+    return {config_.cull && !alone() && !moved, (config_.lean && !alone()) || drawsFewer(), drawsFewer(), drawsFewer(), moved};
 }
 
 void Replay::applyTileValues() {

@@ -29,7 +29,7 @@ void setSource(const GlFunctions& gl, GLuint shader, const std::string& text) {
     gl.glShaderSource(shader, 1, &pointer, &length);
 }
 
-shaders::FragmentReads fragmentReads(const ShaderRewrites& rewrites) { return {rewrites.windowCoordinates, rewrites.windowDerivatives}; }
+shaders::FragmentReads fragmentReads(const ShaderRewrites& rewrites) { return {rewrites.windowCoordinates, rewrites.windowDerivatives, rewrites.windowGradients}; }
 
 bool linked(const GlFunctions& gl, GLuint program) {
     GLint status = 0;

@@ -15,6 +15,7 @@ struct ShaderRewrites {
     bool cull = false;              // whole primitives outside of the tile are dropped
     bool windowCoordinates = false; // gl_FragCoord is the window's: the framebuffer is the tile's, or has every nth pixel
     bool windowDerivatives = false; // derivatives are per pixel of the window
+    bool windowGradients = false;   // and textures' levels are chosen by such
     bool moved = false;             // positions as another eye sees them, or moved in the viewport; instead of cull
     [[nodiscard]] bool place() const { return windowCoordinates || windowDerivatives; }
     [[nodiscard]] bool any() const { return cull || place() || moved; }

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "nodes/shaders/glsl_tokens.hpp"
+#include "nodes/shaders/texture_gradients.hpp"
 
 namespace mural::shaders {
 
@@ -80,10 +81,13 @@ std::optional<std::string> withWindowPlace(std::string_view source, const Fragme
             used.insert(&d);
         }
     }
+    const TextureLookups lookups = reads.gradients ? withWindowGradients(text, ending, edits) : TextureLookups{};
     if (edits.empty()) return std::nullopt;
     std::string declarations = std::string("uniform ") + (text.es ? "highp " : "") + "vec4 muralPlace[2];";
     if (placed) declarations += windowCoordinate(text, ending);
     for (const Derivative* d : used) declarations += functionsFor(*d, text, ending);
+    declarations += lookups.declarations;
+    if (!lookups.extension.empty()) edits.insert(text.extensionsAt(), (text.extensionsAt() > 0 && source[text.extensionsAt() - 1] != '\n' ? "\n#extension " : "#extension ") + lookups.extension + " : enable\n");
     const size_t at = text.declarationsAt();
     edits.insert(at, onItsLine(text, at, declarations));
     return edits.apply(source);

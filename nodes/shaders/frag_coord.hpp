@@ -16,6 +16,7 @@ inline constexpr const char* kPlaceUniform = "muralPlace";
 struct FragmentReads {
     bool coordinates = false; // are moved
     bool derivatives = false;
+    bool gradients = false; // of texture lookups (texture_gradients.hpp)
 };
 
 // GLSL of any version. Nothing: the shader reads none of these.

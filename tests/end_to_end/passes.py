@@ -179,9 +179,9 @@ def pixel_polygons_are_near(context, notes):
 
 @case
 def pixel_fragments_know_their_place(context, notes):
-    """What is drawn by gl_FragCoord alone is as natively, and derivatives are nearly; by assembly, too."""
+    """What is drawn by gl_FragCoord alone is as natively, derivatives and levels of textures nearly; by assembly, too."""
     wrong = None
-    for program, kernel, least in (("frag_coord", "2x1", 50), ("frag_coord", "3x2", 50), ("fragment_places", "2x1", math.inf), ("fragment_places", "3x2", math.inf)):
+    for program, kernel, least in (("frag_coord", "2x1", 50), ("frag_coord", "3x2", 50), ("fragment_places", "2x1", math.inf), ("fragment_places", "3x2", math.inf), ("textures_modern", "3x2", 60)):
         plain, got = native(context, program), through(context, ["--pixel", kernel], program)
         worst = min(pictures.decibels(a, b) for a, b in zip(plain, got))
         notes.append("%s %s: %.1f dB" % (program, kernel, worst))

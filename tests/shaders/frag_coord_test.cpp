@@ -11,7 +11,7 @@ namespace {
 std::optional<std::string> placed(std::string_view source, const FragmentReads& reads, bool es) {
     const auto out = shaders::withWindowPlace(source, reads, es);
     if (!out) return out;
-    return std::regex_replace(*out, std::regex("(mural[A-Za-z]+)_[0-9a-f]{8}\\("), "$1(");
+    return std::regex_replace(*out, std::regex("(mural[A-Za-z0-9]+)_[0-9a-f]{8}\\("), "$1(");
 }
 
 constexpr FragmentReads kCoordinates{.coordinates = true}, kBoth{.coordinates = true, .derivatives = true};
@@ -32,6 +32,32 @@ TEST(FragCoord, DerivativesArePerPixelOfTheWindow) {
     EXPECT_NE(out->find("vec2 muralDx(vec2 v) { return dFdx(v) + dFdx(v) * muralPlace[1].z; }"), std::string::npos);
     EXPECT_NE(out->find("float muralWidthFine(float v) { return fwidthFine(v) + abs(dFdxFine(v)) * muralPlace[1].z + abs(dFdyFine(v)) * muralPlace[1].w; }"), std::string::npos);
     EXPECT_EQ(out->find("muralDxFine("), std::string::npos) << "only what is used";
+}
+
+constexpr FragmentReads kGradients{.gradients = true};
+
+TEST(TextureGradients, LookupsAreByTheWindowsPixels) {
+    const auto out = placed("#version 330\nuniform sampler2D a; uniform sampler2DShadow b; in vec3 p; out vec4 c;\nvoid main() { c = texture(a, p.xy, 0.5) * texture(b, p); }", kGradients, false);
+    ASSERT_TRUE(out);
+    EXPECT_NE(out->find("c = muralTexture(a, p.xy, 0.5) * muralTexture(b, p);"), std::string::npos) << *out;
+    EXPECT_NE(out->find("vec4 muralTexture(sampler2D s, vec2 p) { if (muralPlace[1].z == 0.0 && muralPlace[1].w == 0.0) return texture(s, p); "
+                        "return textureGrad(s, p, dFdx(p) * (1.0 + muralPlace[1].z), dFdy(p) * (1.0 + muralPlace[1].w)); }"), std::string::npos) << *out;
+    EXPECT_NE(out->find("float muralTexture(sampler2DShadow s, vec3 p, float b)"), std::string::npos);
+    EXPECT_EQ(out->find("samplerCube"), std::string::npos) << "only what is used";
+}
+
+TEST(TextureGradients, OldLookupsNeedAnExtension) {
+    const auto out = placed("#version 120\nuniform sampler2D a;\nvoid main() { gl_FragColor = texture2D(a, gl_TexCoord[0].xy); }", kGradients, false);
+    ASSERT_TRUE(out);
+    EXPECT_EQ(out->find("#version 120\n#extension GL_ARB_shader_texture_lod : enable\nuniform vec4 muralPlace[2]; vec4 muraltexture2D(sampler2D s, vec2 p)"), 0u) << *out;
+    EXPECT_NE(out->find("return texture2DGradARB(s, p,"), std::string::npos);
+}
+
+TEST(TextureGradients, WhatIsNotKnownStays) {
+    EXPECT_FALSE(placed("#version 330\nuniform samplerBuffer a; uniform sampler2D b; out vec4 c; void main() { c = texelFetch(a, 1) + texture(b, vec2(0)); }", kGradients, false));
+    EXPECT_FALSE(placed("#version 330\nuniform sampler2D a; vec4 texture(vec2 p) { return p.xyxy; } void main() { gl_FragColor = texture(vec2(0)); }", kGradients, false));
+    EXPECT_FALSE(placed("#version 300 es\nuniform sampler2D a; out vec4 c; void main() { c = texture(a, vec2(0)); }", kGradients, true));
+    EXPECT_FALSE(placed("#version 330\nuniform sampler2D a; out vec4 c; void main() { c = textureLod(a, vec2(0), 0.0); }", kGradients, false));
 }
 
 TEST(FragCoord, TextsOfOneStageHaveFunctionsOfTheirOwn) {

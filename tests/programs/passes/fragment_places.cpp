@@ -1,5 +1,5 @@
 // The whole window by fragments that know nothing but their place: from the lower left and the upper left, with centres at halves and at whole
-// numbers, by GLSL (in two texts) and by assembly. Each bit of a place shows.
+// numbers, by GLSL (in two texts) and by assembly. Each bit of a place shows, and which level of a texture their distance chooses.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -7,24 +7,43 @@
 
 #include <cstring>
 #include <string>
+#include <vector>
 
 using namespace programs;
 
 namespace {
 
-constexpr int kShaders = 3, kAssembled = 3;
+constexpr int kPlaced = 3, kShaders = 4, kAssembled = 3;
+constexpr int kTexels = 64;
 GLuint shaders[kShaders];
 GLuint assembled[kAssembled];
 
-const char* const kDeclared[kShaders] = {
+const char* const kDeclared[kPlaced] = {
     "",
     "layout(origin_upper_left) in vec4 gl_FragCoord;\n",
     "layout(origin_upper_left, pixel_center_integer) in vec4 gl_FragCoord;\n",
 };
 const char* const kOptions[kAssembled] = {"", "OPTION ARB_fragment_coord_origin_upper_left;\n", "OPTION ARB_fragment_coord_pixel_center_integer;\n"};
 
+// Each level of another colour, some texels darker.
+void makeLevels() {
+    GLuint texture = 0;
+    glGenTextures(1, &texture);
+    glBindTexture(GL_TEXTURE_2D, texture);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    for (int level = 0, size = kTexels; size > 0; ++level, size /= 2) {
+        std::vector<GLubyte> pixels(std::size_t(size) * std::size_t(size) * 4);
+        for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = GLubyte((level + int(i % 4)) % 3 * 100 + (i / 4 % 3 == 0 ? 55 : 0));
+        glTexImage2D(GL_TEXTURE_2D, level, GL_RGBA8, size, size, 0, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+    }
+}
+
 void setUp() {
-    for (int i = 0; i < kShaders; ++i) {
+    makeLevels();
+    shaders[kPlaced] = buildProgram({{GL_VERTEX_SHADER, "#version 120\nvoid main() { gl_Position = gl_Vertex; }\n"},
+                                     {GL_FRAGMENT_SHADER, "#version 120\nuniform sampler2D levels;\nvoid main() { gl_FragColor = texture2D(levels, gl_FragCoord.xy / 40.0); }\n"}});
+    for (int i = 0; i < kPlaced; ++i) {
         const std::string fragment = std::string("#version 150 compatibility\n") + kDeclared[i] +
                                      "vec2 across();\nvoid main() { vec2 p = vec2(gl_FragCoord.x, across().y); gl_FragColor = vec4(fract(p / 16.0), fract((floor(p.x / 16.0) + 7.0 * floor(p.y / 16.0)) / 32.0), 1.0); }\n";
         const std::string other = std::string("#version 150 compatibility\n") + kDeclared[i] + "vec2 across() { return gl_FragCoord.xy; }\n";
