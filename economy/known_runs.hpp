@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <ranges>
 #include <span>
 
 #include "economy/item_log.hpp"
@@ -42,8 +41,12 @@ public:
         const uint64_t position = log.cursor;
         const auto behind = [&](uint64_t i) { return at(i).position + at(i).items > position; };
         if (position < seen_ || end_ - next_ > runs_.size() || (end_ - next_ > kMostSteps && !behind(next_ + kMostSteps))) {
-            const auto all = std::views::iota(end_ < runs_.size() ? 0 : end_ - runs_.size(), end_);
-            next_ = *all.begin() + static_cast<uint64_t>(std::ranges::partition_point(all, [&](uint64_t i) { return !behind(i); }) - all.begin());
+            uint64_t first = end_ < runs_.size() ? 0 : end_ - runs_.size();
+            for (uint64_t last = end_; first < last;) { // the first that is behind it
+                const uint64_t middle = first + (last - first) / 2;
+                behind(middle) ? last = middle : first = middle + 1;
+            }
+            next_ = first;
             within_ = {};
         }
         seen_ = position;

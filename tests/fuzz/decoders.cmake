@@ -25,6 +25,7 @@ if(MURAL_FUZZ)
   target_link_options(replay_fuzz PRIVATE ${fuzzFlags})
 endif()
 
+include(fuzz_target.cmake)
 add_subdirectory(network)
 add_subdirectory(codecs)
 add_subdirectory(config)
