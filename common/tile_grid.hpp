@@ -22,6 +22,8 @@ struct TileRegion {
     int row = 0;
     int columns = 1;
     int rows = 1;
+
+    friend bool operator==(const TileRegion&, const TileRegion&) = default;
 };
 
 // Edge i of n equal parts of `size` pixels, 0 ≤ i ≤ n.

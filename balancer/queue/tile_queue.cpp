@@ -6,12 +6,6 @@
 
 namespace mural::queue {
 
-namespace {
-
-bool same(const TileRegion& a, const TileRegion& b) { return a.column == b.column && a.row == b.row && a.columns == b.columns && a.rows == b.rows; }
-
-} // namespace
-
 TileQueue::TileQueue(int columns, int rows, std::vector<TileRegion> areas, QueueRules rules)
     : rules_(rules), costs_(columns, rows), areas_(std::move(areas)), best_(areas_) {}
 
@@ -55,7 +49,7 @@ bool TileQueue::look(double longest) {
 
 bool TileQueue::takeAreas(std::vector<TileRegion> areas) {
     frames_ = 0;
-    if (std::ranges::equal(areas, areas_, same)) return false;
+    if (areas == areas_) return false;
     areas_ = std::move(areas);
     moved_ = true;
     return true;

@@ -21,11 +21,11 @@ void chooseCodecs(SessionPlan& plan, const std::string& asked) {
     for (NodePlan& node : plan.nodes) {
         if (asked != kQuickestCodec) node.codec = asked;
         const bool byMemory = node.reach == NodeReach::SharedMemory;
-        node.pictureCodec = byMemory && node.codec == kQuickestCodec ? "raw" : node.codec;
+        node.pictureCodec = byMemory && node.codec == kQuickestCodec ? kRawCodec : node.codec;
         ++nodes[node.pictureCodec];
     }
     for (const auto& [codec, count] : nodes)
-        if (codec != "raw") plan.explain.push_back("pictures of " + std::to_string(count) + (count == 1 ? " node" : " nodes") + " come " + described(codec));
+        if (codec != kRawCodec) plan.explain.push_back("pictures of " + std::to_string(count) + (count == 1 ? " node" : " nodes") + " come " + described(codec));
 }
 
 } // namespace mural

@@ -60,7 +60,9 @@ public:
     enum class Feed { Direct, Nothing, Queued };
 
     // How it packs its pictures (nodes/pictures), before startReading().
-    void unpackBy(const std::string& codec) { pictures_ = std::make_unique<PictureUnpacker>(codec); }
+    void unpackBy(const std::string& codec) {
+        if (codec != kRawCodec) pictures_ = std::make_unique<PictureUnpacker>(codec);
+    }
     void startReading();
 
     // A write that fails loses the node; nothing to tell the caller.

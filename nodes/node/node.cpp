@@ -195,7 +195,7 @@ private:
             if (!windows) return fail(windows.error().message);
             windows_ = std::move(*windows);
         }
-        if (setup_.sendPictures && setup_.pictureCodec != "raw") packer_ = std::make_unique<PicturePacker>(setup_.pictureCodec);
+        if (setup_.sendPictures && setup_.pictureCodec != kRawCodec) packer_ = std::make_unique<PicturePacker>(setup_.pictureCodec);
         ReplayConfig config;
         config.node = setup_.node;
         config.skips = setup_.catchesUp && setup_.skipsFrames;
@@ -492,6 +492,7 @@ private:
     bool sendPacked(const wire::PictureHeader& h, const std::byte* pixels) {
         auto packed = packer_->pack(h.client, h.window, h.w, h.h, pixels);
         if (!packed) return false;
+        countWork(); // what follows may wait for who takes it
         const int64_t beganNs = monotonicNowNs();
         line_->send(wire::NodeMessage::PackedPicture, std::as_bytes(std::span(&h, 1)), *packed);
         if (packed->size() >= kTellingBytes) packer_->transferred(packed->size(), monotonicNowNs() - beganNs);

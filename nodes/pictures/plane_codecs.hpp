@@ -17,6 +17,7 @@ namespace mural {
 // What the user may want instead of the name of a codec (compositor::CodecRegistry): the quickest, of those that lose nothing or of all.
 inline constexpr const char* kQuickestCodec = "auto";
 inline constexpr const char* kLossyCodec = "lossy";
+inline constexpr const char* kRawCodec = "raw"; // of pictures: they are not packed at all
 
 // Errors: there is no such codec.
 struct WantedCodec {

@@ -1,6 +1,6 @@
 #include "nodes/shaders/frag_coord.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cstdint>
 #include <set>
 
@@ -30,30 +30,21 @@ std::string windowCoordinate(const GlslText& text, const std::string& ending) {
     return " " + made + " muralWindow" + ending + "(" + (text.es ? "highp " : "") + "vec4 p) { return p + vec4(" + counted + " * muralPlace[1].xy + muralPlace[0]." + from + ", 0.0, 0.0); }";
 }
 
-// Each is a function that GLSL has, for numbers and vectors; how it is made of what this framebuffer's neighbours tell.
-struct Derivative {
-    std::string_view name;
-    std::string_view ours;
-    std::string_view body; // of v
-};
-constexpr std::array kDerivatives = {
-    Derivative{"dFdx", "muralDx", "dFdx(v) + dFdx(v) * muralPlace[1].z"},
-    Derivative{"dFdy", "muralDy", "dFdy(v) + dFdy(v) * muralPlace[1].w"},
-    Derivative{"fwidth", "muralWidth", "fwidth(v) + abs(dFdx(v)) * muralPlace[1].z + abs(dFdy(v)) * muralPlace[1].w"},
-    Derivative{"dFdxFine", "muralDxFine", "dFdxFine(v) + dFdxFine(v) * muralPlace[1].z"},
-    Derivative{"dFdyFine", "muralDyFine", "dFdyFine(v) + dFdyFine(v) * muralPlace[1].w"},
-    Derivative{"fwidthFine", "muralWidthFine", "fwidthFine(v) + abs(dFdxFine(v)) * muralPlace[1].z + abs(dFdyFine(v)) * muralPlace[1].w"},
-    Derivative{"dFdxCoarse", "muralDxCoarse", "dFdxCoarse(v) + dFdxCoarse(v) * muralPlace[1].z"},
-    Derivative{"dFdyCoarse", "muralDyCoarse", "dFdyCoarse(v) + dFdyCoarse(v) * muralPlace[1].w"},
-    Derivative{"fwidthCoarse", "muralWidthCoarse", "fwidthCoarse(v) + abs(dFdxCoarse(v)) * muralPlace[1].z + abs(dFdyCoarse(v)) * muralPlace[1].w"},
-};
+constexpr std::string_view kDerivatives[] = {"dFdx", "dFdy", "fwidth", "dFdxFine", "dFdyFine", "fwidthFine", "dFdxCoarse", "dFdyCoarse", "fwidthCoarse"};
 
-std::string functionsFor(const Derivative& d, const GlslText& text, const std::string& ending) {
+// What GLSL's function gives is between this framebuffer's neighbours, and made one between the window's.
+std::string perPixelOfWindow(const std::string& name) {
+    if (name.starts_with("dFd")) return name + "(v) + " + name + "(v) * muralPlace[1]." + (name[3] == 'x' ? "z" : "w");
+    const std::string kind = name.substr(std::string_view("fwidth").size());
+    return name + "(v) + abs(dFdx" + kind + "(v)) * muralPlace[1].z + abs(dFdy" + kind + "(v)) * muralPlace[1].w";
+}
+
+std::string functionsFor(const std::string& name, const GlslText& text, const std::string& ending) {
     const std::string precision = !text.es ? "" : text.uses("mediump") ? "mediump " : "highp ";
     std::string functions;
     for (const char* type : {"float", "vec2", "vec3", "vec4"}) {
         const std::string of = precision + type;
-        functions += " " + of + " " + std::string(d.ours) + ending + "(" + of + " v) { return " + std::string(d.body) + "; }";
+        functions += " " + of + " mural" + name + ending + "(" + of + " v) { return " + perPixelOfWindow(name) + "; }";
     }
     return functions;
 }
@@ -65,7 +56,7 @@ std::optional<std::string> withWindowPlace(std::string_view source, const Fragme
     const std::string ending = endingOf(source);
     TextEdits edits;
     bool placed = false;
-    std::set<const Derivative*> used;
+    std::set<std::string> used; // derivatives
     for (size_t i = 0; i < text.tokens.size(); ++i) {
         const GlslToken& t = text.tokens[i];
         if (reads.coordinates && t.text == "gl_FragCoord") {
@@ -74,18 +65,15 @@ std::optional<std::string> withWindowPlace(std::string_view source, const Fragme
             edits.replace(t.at, t.text.size(), "muralWindow" + ending + "(gl_FragCoord)");
             placed = true;
         }
-        if (!reads.derivatives) continue;
-        for (const Derivative& d : kDerivatives) {
-            if (t.text != d.name) continue;
-            edits.replace(t.at, t.text.size(), std::string(d.ours) + ending);
-            used.insert(&d);
-        }
+        if (!reads.derivatives || std::ranges::find(kDerivatives, t.text) == std::end(kDerivatives)) continue;
+        edits.replace(t.at, t.text.size(), "mural" + std::string(t.text) + ending);
+        used.emplace(t.text);
     }
     const TextureLookups lookups = reads.gradients ? withWindowGradients(text, ending, edits) : TextureLookups{};
     if (edits.empty()) return std::nullopt;
     std::string declarations = std::string("uniform ") + (text.es ? "highp " : "") + "vec4 muralPlace[2];";
     if (placed) declarations += windowCoordinate(text, ending);
-    for (const Derivative* d : used) declarations += functionsFor(*d, text, ending);
+    for (const std::string& name : used) declarations += functionsFor(name, text, ending);
     declarations += lookups.declarations;
     if (!lookups.extension.empty()) edits.insert(text.extensionsAt(), (text.extensionsAt() > 0 && source[text.extensionsAt() - 1] != '\n' ? "\n#extension " : "#extension ") + lookups.extension + " : enable\n");
     const size_t at = text.declarationsAt();

@@ -28,10 +28,10 @@ TEST(FragCoord, DerivativesArePerPixelOfTheWindow) {
     EXPECT_FALSE(placed(source, kCoordinates, false));
     const auto out = placed(source, kBoth, false);
     ASSERT_TRUE(out);
-    EXPECT_NE(out->find("c = vec4(muralDx(v), 1.0 / muralDy(v.x), muralWidthFine(v.y));"), std::string::npos) << *out;
-    EXPECT_NE(out->find("vec2 muralDx(vec2 v) { return dFdx(v) + dFdx(v) * muralPlace[1].z; }"), std::string::npos);
-    EXPECT_NE(out->find("float muralWidthFine(float v) { return fwidthFine(v) + abs(dFdxFine(v)) * muralPlace[1].z + abs(dFdyFine(v)) * muralPlace[1].w; }"), std::string::npos);
-    EXPECT_EQ(out->find("muralDxFine("), std::string::npos) << "only what is used";
+    EXPECT_NE(out->find("c = vec4(muraldFdx(v), 1.0 / muraldFdy(v.x), muralfwidthFine(v.y));"), std::string::npos) << *out;
+    EXPECT_NE(out->find("vec2 muraldFdx(vec2 v) { return dFdx(v) + dFdx(v) * muralPlace[1].z; }"), std::string::npos);
+    EXPECT_NE(out->find("float muralfwidthFine(float v) { return fwidthFine(v) + abs(dFdxFine(v)) * muralPlace[1].z + abs(dFdyFine(v)) * muralPlace[1].w; }"), std::string::npos);
+    EXPECT_EQ(out->find("muraldFdxFine("), std::string::npos) << "only what is used";
 }
 
 constexpr FragmentReads kGradients{.gradients = true};
