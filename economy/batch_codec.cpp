@@ -1,29 +1,13 @@
 #include "economy/batch_codec.hpp"
 
 #include "economy/limits.hpp"
+#include "economy/sevens.hpp"
 
 namespace mural::economy {
 namespace {
 
 constexpr size_t kFirst = 1; // section behind Control
-
-void putNumber(size_t n, std::vector<std::byte>& into) {
-    for (; n >= 128; n >>= 7) into.push_back(static_cast<std::byte>(n | 128));
-    into.push_back(static_cast<std::byte>(n));
-}
-
-// Of up to 28 bits; false: there is none.
-bool takeNumber(std::span<const std::byte>& bytes, uint32_t& n) {
-    n = 0;
-    for (uint32_t shift = 0; shift < 28; shift += 7) {
-        if (bytes.empty()) return false;
-        const auto b = static_cast<uint32_t>(bytes[0]);
-        bytes = bytes.subspan(1);
-        n |= (b & 127) << shift;
-        if (b < 128) return true;
-    }
-    return false;
-}
+constexpr auto kPages = static_cast<size_t>(Section::Pages);
 
 } // namespace
 
@@ -54,7 +38,7 @@ Result<void> BatchEncoder::encodeSections(const SectionBytes& sections, double l
         if (coding == Coding::Lz4 || coding == Coding::Zstd) {
             const bool timed = !frames && choices_[i].wantsTime(coding, bytes.size());
             const int64_t beganNs = timed ? nowNs_() : 0;
-            if (!compressors_[i].compress(coding, bytes, coded_[i])) return Error{"the stream can't be compressed: no memory"};
+            if (!compress(i, coding, bytes)) return Error{"the stream can't be compressed: no memory"};
             if (!frames) choices_[i].measured(coding, bytes.size(), coded_[i].size(), timed ? std::optional(nowNs_() - beganNs) : std::nullopt);
         }
         if (const size_t sample = choices_[i].sampleBytes(bytes.size()); sample != 0) {
@@ -63,8 +47,8 @@ Result<void> BatchEncoder::encodeSections(const SectionBytes& sections, double l
             choices_[i].measured(Coding::Lz4, sample, codedBytes, nowNs_() - beganNs);
         }
         codings |= static_cast<uint32_t>(coding) << 2 * (i - kFirst);
-        if (coding != Coding::Empty) putNumber(bytes.size(), body_);
-        if (!coded_[i].empty()) putNumber(coded_[i].size(), body_);
+        if (coding != Coding::Empty) putSevens(bytes.size(), body_);
+        if (!coded_[i].empty()) putSevens(coded_[i].size(), body_);
     }
     body_[0] = static_cast<std::byte>(codings);
     for (size_t i = kFirst; i < kSections; ++i) {
@@ -72,6 +56,16 @@ Result<void> BatchEncoder::encodeSections(const SectionBytes& sections, double l
         body_.insert(body_.end(), bytes.begin(), bytes.end());
     }
     return {};
+}
+
+bool BatchEncoder::compress(size_t section, Coding coding, std::span<const std::byte> bytes) {
+    auto& into = coded_[section];
+    return section == kPages ? pages_.compress(coding, bytes, into) : compressors_[section].compress(coding, bytes, into);
+}
+
+bool BatchDecoder::decompress(size_t section, Coding coding, std::span<const std::byte> bytes) {
+    auto& into = sections_[section];
+    return section == kPages ? pages_.decompress(coding, bytes, into) : decompressors_[section].decompress(coding, bytes, into);
 }
 
 Result<SectionBytes> BatchDecoder::decode(BatchHead head, std::span<const std::byte> body) {
@@ -87,9 +81,9 @@ Result<SectionBytes> BatchDecoder::decode(BatchHead head, std::span<const std::b
         uint64_t sum = 0, allCoded = 0;
         for (size_t i = kFirst; i < kSections; ++i) {
             if (codingOf(i) == Coding::Empty) continue;
-            if (!takeNumber(left, sizes[i])) return broken;
+            if (!takeSevens(left, sizes[i])) return broken;
             coded[i] = sizes[i];
-            if (codingOf(i) != Coding::Raw && !takeNumber(left, coded[i])) return broken;
+            if (codingOf(i) != Coding::Raw && !takeSevens(left, coded[i])) return broken;
             sum += sizes[i];
             allCoded += coded[i];
         }
@@ -100,7 +94,7 @@ Result<SectionBytes> BatchDecoder::decode(BatchHead head, std::span<const std::b
             result[i] = bytes;
             if (codingOf(i) != Coding::Lz4 && codingOf(i) != Coding::Zstd) continue;
             sections_[i].resize(sizes[i]);
-            if (!decompressors_[i].decompress(codingOf(i), bytes, sections_[i])) return Error{"the head's stream can't be unpacked: compressed bytes that are none; head and nodes must be of one build"};
+            if (!decompress(i, codingOf(i), bytes)) return Error{"the head's stream can't be unpacked: compressed bytes that are none; head and nodes must be of one build"};
             result[i] = sections_[i];
         }
     }

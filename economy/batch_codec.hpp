@@ -12,6 +12,7 @@
 #include "economy/batch.hpp"
 #include "economy/batch_head.hpp"
 #include "economy/coding_choice.hpp"
+#include "economy/page_codec.hpp"
 #include "economy/section_codec.hpp"
 
 namespace mural::economy {
@@ -20,7 +21,8 @@ class BatchEncoder {
 public:
     // `nowNs`: a clock, to choose codings by what they cost.
     explicit BatchEncoder(std::function<int64_t()> nowNs) : nowNs_(std::move(nowNs)) {
-        for (const Section section : {Section::Texts, Section::Pages}) compressors_[static_cast<size_t>(section)].prepare();
+        compressors_[static_cast<size_t>(Section::Texts)].prepare();
+        pages_.prepare();
     }
 
     // With its head. Lives until the next call. `plain`: its texts are mostly records that were not looked at (Packer::beginPlain), so it
@@ -34,9 +36,11 @@ private:
     Result<void> encodeSections(const SectionBytes& sections, double linkNsPerByte, bool plain);
 
     const std::function<int64_t()> nowNs_;
-    // Control's is not used. Texts: equal frames and records are found as well by the fastest level. Pages: pictures become a quarter to a
-    // third smaller by level 3 than by 1, which is won again by any link for which compressing pays.
-    std::array<SectionCompressor, kSections> compressors_{SectionCompressor(), SectionCompressor(), SectionCompressor(-1), SectionCompressor(2), SectionCompressor()};
+    bool compress(size_t section, Coding coding, std::span<const std::byte> bytes); // to coded_
+
+    // Those of Control and Pages are not used. Texts: equal frames and records are found as well by the fastest level.
+    std::array<SectionCompressor, kSections> compressors_{SectionCompressor(), SectionCompressor(), SectionCompressor(-1), SectionCompressor(), SectionCompressor()};
+    PageCompressor pages_;
     std::array<CodingChoice, kSections> choices_;
     std::array<std::vector<std::byte>, kSections> coded_;
     std::vector<std::byte> body_, out_, scratch_;
@@ -48,7 +52,10 @@ public:
     Result<SectionBytes> decode(BatchHead head, std::span<const std::byte> body);
 
 private:
-    std::array<SectionDecompressor, kSections> decompressors_;
+    bool decompress(size_t section, Coding coding, std::span<const std::byte> bytes); // to sections_
+
+    std::array<SectionDecompressor, kSections> decompressors_; // that of Pages is not used
+    PageDecompressor pages_;
     std::array<std::vector<std::byte>, kSections> sections_;
 };
 

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <xxhash.h>
 
+#include "economy/pixel_pieces.hpp"
 #include "streamcodec/wire.hpp"
 
 namespace mural::economy {
@@ -14,7 +15,7 @@ namespace {
 constexpr size_t kCheapPatchBytes = 8, kCheapPagePatchBytes = 512;
 // So many expected items may be missing before the index is asked.
 constexpr size_t kMostSkipped = 4;
-size_t mostPatchOfPage(const Piece& piece) { return size_t{piece.sizeBytes} * 3 / 4; }
+size_t mostPatchOf(const Piece& piece) { return size_t{piece.sizeBytes} * 3 / 4; }
 constexpr uint32_t kIndexedOfRun = 2;
 // So many short records may be in the log that go plain now.
 constexpr size_t kMostLeftOut = 1024;
@@ -68,6 +69,7 @@ void Packer::add(uint32_t stream, std::span<const std::byte> packet) {
     index_ = &streams_[opened.place]->items;
     runs_ = &streams_[opened.place]->runs;
     packet_ = packet;
+    nextAt_ = kNowhere;
     first_ = true;
     cut_ = PacketCut(packet);
     while (next()) {
@@ -184,11 +186,17 @@ void Packer::place() {
     send(piece);
 }
 
+// Pixels that are new are fewer bytes than pixels that have changed.
+size_t Packer::mostPatchOfPage(const Piece& piece) const {
+    if (piece.sizeBytes != kPageBytes) return mostPatchOf(piece);
+    return std::clamp(leftOfPixels(packet_.data() + piece.at), kCheapPagePatchBytes, mostPatchOf(piece));
+}
+
 // Of a page that is another each time nobody looks whether it was somewhere before.
 size_t Packer::cheapPatchOfPage(const Piece& piece) {
     if (!log_->holds(log_->cursor)) return 0;
     const Item expected = log_->at(log_->cursor);
-    return expected.page && history_.pages().changesInPlace(expected.where) ? mostPatchOfPage(piece) : kCheapPagePatchBytes;
+    return expected.page && history_.pages().changesInPlace(expected.where) ? mostPatchOf(piece) : kCheapPagePatchBytes;
 }
 
 bool Packer::same(Item item, const Piece& piece) const {
@@ -297,7 +305,12 @@ bool Packer::seek() {
     const auto hash = static_cast<uint32_t>(hashOf(piece_));
     PacketCut ahead = cut_;
     Piece behind;
-    const uint32_t next = ahead.next(behind) ? static_cast<uint32_t>(XXH3_64bits(packet_.data() + behind.at, behind.sizeBytes)) : ItemIndex::kNothing;
+    uint32_t next = ItemIndex::kNothing;
+    if (ahead.next(behind)) {
+        nextAt_ = behind.at;
+        nextHash_ = XXH3_64bits(packet_.data() + behind.at, behind.sizeBytes);
+        next = static_cast<uint32_t>(nextHash_);
+    }
     if (seekAt(hash, index_->find(hash, next, log_->end()))) return true;
     // What is another each time came nowhere before but in this place, unless as one of two that did.
     const bool changes = log_->holds(log_->cursor) && log_->at(log_->cursor).model != 0 && log_->at(log_->cursor).sizeBytes == piece_.sizeBytes;
@@ -400,7 +413,7 @@ void Packer::asBytes(size_t from, size_t to) {
 }
 
 uint64_t Packer::hashOf(const Piece& piece) {
-    if (!hashed_) hash_ = XXH3_64bits(packet_.data() + piece.at, piece.sizeBytes);
+    if (!hashed_) hash_ = piece.at == nextAt_ ? nextHash_ : XXH3_64bits(packet_.data() + piece.at, piece.sizeBytes);
     hashed_ = true;
     return hash_;
 }

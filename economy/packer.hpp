@@ -74,6 +74,7 @@ private:
     void run();
     void append(Item item, uint32_t hash);
     void appendUnfound(Item item, uint32_t hash);
+    [[nodiscard]] size_t mostPatchOfPage(const Piece& piece) const;
     [[nodiscard]] size_t cheapPatchOfPage(const Piece& piece);
     void putPagePatch(std::span<const std::byte> now);
     void appendChangedPage(uint32_t slotBefore, const Piece& piece);
@@ -123,6 +124,9 @@ private:
     bool first_ = true;
     uint64_t hash_ = 0; // of the piece in hand, once it is known
     bool hashed_ = false;
+    static constexpr uint32_t kNowhere = UINT32_MAX;
+    uint32_t nextAt_ = kNowhere; // where a piece begins whose hash is known ahead
+    uint64_t nextHash_ = 0;
     WordPatch patch_;
     PackerCounts counts_;
 };

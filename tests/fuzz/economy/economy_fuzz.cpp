@@ -1,10 +1,12 @@
-// Input: batches with their heads, each behind its size (u16). The first byte says whether they are batches as they are sent, or the sections
-// of one as they are: fuzzers do not find their way through compressed bytes.
+// Input: batches with their heads, each behind its size (u16). The first byte says whether they are batches as they are sent (0), or the sections
+// of one as they are (1): fuzzers do not find their way through compressed bytes. 2: parts of pages that were split, as they are.
 #include <algorithm>
 #include <cstring>
 #include <memory>
+#include <vector>
 
 #include "economy/batch_codec.hpp"
+#include "economy/pixel_pieces.hpp"
 #include "economy/unpacker.hpp"
 #include "streamcodec/wire.hpp"
 #include "tests/fuzz/economy/fuzz_limits.hpp"
@@ -26,6 +28,26 @@ std::span<const std::byte> takeSized(std::span<const std::byte>& input) {
     return take(input, sizeBytes);
 }
 
+uint64_t joinPieces(std::span<const std::byte> input) {
+    const auto word = [&input] {
+        const auto bytes = take(input, 2);
+        uint16_t value = 0;
+        std::memcpy(&value, bytes.data(), bytes.size());
+        return value;
+    };
+    const size_t pagesBytes = word() * size_t{4}, pieces = word();
+    const auto front = takeSized(input);
+    economy::PixelJoiner joiner;
+    if (!joiner.begin(front, pagesBytes, pieces)) return 0;
+    must(joiner.planeBytes() <= pieces * economy::kPageBytes && joiner.restBytes() <= pagesBytes, "parts are no larger than the pages");
+    // What is missing is 0, as if it had come.
+    std::vector<std::byte> planes(joiner.planeBytes()), rest(joiner.restBytes()), pages(pagesBytes);
+    std::ranges::copy(take(input, planes.size()), planes.begin());
+    std::ranges::copy(take(input, rest.size()), rest.begin());
+    joiner.join(planes, rest, pages);
+    return pagesBytes;
+}
+
 } // namespace
 
 uint64_t fuzzOne(std::span<const std::byte> input) {
@@ -33,7 +55,9 @@ uint64_t fuzzOne(std::span<const std::byte> input) {
     economy::BatchDecoder decoder;
     uint64_t packets = 0;
     if (input.empty()) return 0;
-    const bool coded = (static_cast<unsigned>(take(input, 1)[0]) & 1) == 0;
+    const unsigned kind = static_cast<unsigned>(take(input, 1)[0]) & 3;
+    if (kind == 2) return joinPieces(input);
+    const bool coded = kind == 0;
     while (!input.empty()) {
         economy::SectionBytes sections;
         if (coded) {

@@ -10,6 +10,7 @@
 
 #include "economy/batch_codec.hpp"
 #include "economy/packer.hpp"
+#include "economy/pixel_pieces.hpp"
 #include "tests/fuzz/economy/fuzz_limits.hpp"
 
 namespace {
@@ -61,6 +62,27 @@ Bytes seedOf(uint32_t seed, bool coded, bool pages) {
     return input;
 }
 
+// A picture beside what is none.
+Bytes splitSeed(uint32_t seed) {
+    std::mt19937 random(seed);
+    Bytes pages;
+    for (size_t i = 0; i < 2 * economy::kPageBytes; ++i) pages.push_back(static_cast<std::byte>(i / 16 % 3 == 0 ? 90 + i % 4 + random() % 3 : 60));
+    for (size_t i = 0; i < economy::kPageBytes + 40; ++i) pages.push_back(static_cast<std::byte>(random()));
+    economy::PixelSplitter splitter;
+    if (!splitter.split(pages)) std::exit(1);
+    Bytes input{std::byte{2}};
+    for (const size_t number : {pages.size() / 4, splitter.pixelPieces()})
+        for (const size_t byte : {number & 255, number >> 8}) input.push_back(static_cast<std::byte>(byte));
+    addSized(input, splitter.front());
+    input.insert(input.end(), splitter.planes().begin(), splitter.planes().end());
+    input.insert(input.end(), splitter.rest().begin(), splitter.rest().end());
+    return input;
+}
+
+void write(const std::filesystem::path& path, const Bytes& input) {
+    std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -73,7 +95,8 @@ int main(int argc, char** argv) {
         for (const bool coded : {false, true}) {
             const Bytes input = seedOf(seed, coded, seed > 2);
             const std::string name = std::string(coded ? "coded_" : "sections_") + (seed > 2 ? "pages_" : "records_") + std::to_string(seed);
-            std::ofstream(std::filesystem::path(argv[1]) / name, std::ios::binary).write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));
+            write(std::filesystem::path(argv[1]) / name, input);
         }
     }
+    for (uint32_t seed = 1; seed <= 2; ++seed) write(std::filesystem::path(argv[1]) / ("split_" + std::to_string(seed)), splitSeed(seed));
 }

@@ -1,0 +1,52 @@
+// New pages in pieces of 4 KiB, of which some are like pictures: little changes from one pixel to the next, and most is in the low bits. Their
+// words go as differences, those that are 0 as a bit, the others with their bytes in planes: so Zstandard finds a quarter fewer bytes in two
+// thirds of the time, where it had looked for pixels that came before. (Formats of pictures do as much: PNG's filters, QOI's runs.)
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "economy/limits.hpp"
+
+namespace mural::economy {
+
+// What is left of a piece's bytes as differences, about.
+[[nodiscard]] size_t leftOfPixels(const std::byte* piece);
+
+class PixelSplitter {
+public:
+    // False: no piece is like a picture. The parts live until the next call.
+    bool split(std::span<const std::byte> pages);
+
+    // Of each piece how many bytes a pixel has (kPixelBytes; 0: it is none), then of each one with pixels the bits.
+    [[nodiscard]] std::span<const std::byte> front() const { return front_; }
+    [[nodiscard]] size_t pixelPieces() const { return pixelPieces_; }
+    [[nodiscard]] std::span<const std::byte> planes() const { return std::span(planes_).first(planeBytes_); }
+    // Pieces that are none, and what is left behind the last.
+    [[nodiscard]] std::span<const std::byte> rest() const { return rest_; }
+
+private:
+    std::vector<std::byte> front_, planes_, rest_;
+    std::vector<uint32_t> words_;
+    size_t pixelPieces_ = 0, planeBytes_ = 0;
+};
+
+[[nodiscard]] size_t frontBytes(size_t pagesBytes, size_t pixelPieces);
+class PixelJoiner {
+public:
+    // False: this is no front of so many pages. The front must live until join() is done.
+    bool begin(std::span<const std::byte> front, size_t pagesBytes, size_t pixelPieces);
+    [[nodiscard]] size_t planeBytes() const { return planeBytes_; }
+    [[nodiscard]] size_t restBytes() const { return pagesBytes_ - pixelPieces_ * kPageBytes; }
+    // `pages` has the bytes that begin() was told, the parts as many as planeBytes() and restBytes() say.
+    void join(std::span<const std::byte> planes, std::span<const std::byte> rest, std::span<std::byte> pages);
+
+private:
+    std::span<const std::byte> pixelBytes_, masks_;
+    std::vector<uint32_t> words_;
+    size_t pagesBytes_ = 0, pixelPieces_ = 0, planeBytes_ = 0;
+};
+
+} // namespace mural::economy

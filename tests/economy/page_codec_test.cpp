@@ -1,0 +1,117 @@
+#include "economy/page_codec.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <gtest/gtest.h>
+#include <random>
+
+namespace mural::economy {
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+Bytes operator+(Bytes a, const Bytes& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+}
+
+// A photograph, as far as a compressor can tell: colours that go up and down by little, alpha that is the same.
+Bytes picture(size_t sizeBytes, size_t pixelBytes, uint32_t seed) {
+    std::mt19937 random(seed);
+    Bytes bytes(sizeBytes);
+    for (size_t i = 0; i < bytes.size(); ++i) {
+        const auto before = i < pixelBytes ? 128u : static_cast<uint32_t>(bytes[i - pixelBytes]);
+        bytes[i] = static_cast<std::byte>(pixelBytes == 4 && i % 4 == 3 ? 255 : before + random() % 7 - 3);
+    }
+    return bytes;
+}
+
+Bytes vertices(size_t sizeBytes, uint32_t seed) {
+    std::mt19937 random(seed);
+    std::vector<float> some(300), floats;
+    for (auto& f : some) f = static_cast<float>(random()) / 1e9f;
+    while (floats.size() * 4 < sizeBytes) floats.insert(floats.end(), some.begin() + static_cast<std::ptrdiff_t>(random() % 100) * 3, some.end());
+    Bytes bytes(sizeBytes);
+    std::memcpy(bytes.data(), floats.data(), sizeBytes);
+    return bytes;
+}
+
+size_t compressedBytes(const Bytes& bytes) {
+    Bytes coded;
+    EXPECT_TRUE(PageCompressor().compress(Coding::Zstd, bytes, coded));
+    return coded.size();
+}
+
+size_t plainBytes(const Bytes& bytes) {
+    Bytes coded;
+    EXPECT_TRUE(SectionCompressor(2).compress(Coding::Zstd, bytes, coded));
+    return coded.size();
+}
+
+TEST(PageCodec, anyPagesComeBackByBothCodings) {
+    for (const Coding coding : {Coding::Zstd, Coding::Lz4}) {
+        PageCompressor compressor;
+        PageDecompressor decompressor;
+        for (uint32_t round = 0; round < 60; ++round) {
+            Bytes bytes;
+            std::mt19937 random(round);
+            for (uint32_t parts = random() % 5; parts < 6; ++parts) {
+                const size_t sizeBytes = random() % 4 * kPageBytes + (random() % 3 == 0 ? random() % 1000 * 4 : 0);
+                constexpr size_t kPixels[] = {1, 2, 3, 4, 8};
+                bytes = bytes + (random() % 3 == 0 ? vertices(sizeBytes, round) : random() % 5 == 0 ? Bytes(sizeBytes, static_cast<std::byte>(random())) : picture(sizeBytes, kPixels[random() % 5], round));
+            }
+            if (bytes.empty()) continue;
+            Bytes coded, back(bytes.size());
+            ASSERT_TRUE(compressor.compress(coding, bytes, coded));
+            ASSERT_TRUE(decompressor.decompress(coding, coded, back)) << round;
+            ASSERT_TRUE(back == bytes) << round;
+        }
+    }
+}
+
+TEST(PageCodec, picturesAreSmallerThanWithoutAndVerticesAsSmall) {
+    for (const size_t pixelBytes : {1, 3, 4}) {
+        const Bytes bytes = picture(64 * kPageBytes, pixelBytes, 1);
+        EXPECT_LT(compressedBytes(bytes), plainBytes(bytes) * 8 / 10) << pixelBytes;
+    }
+    const Bytes floats = vertices(64 * kPageBytes, 2);
+    EXPECT_LE(compressedBytes(floats), plainBytes(floats) + 1);
+}
+
+TEST(PageCodec, onesOfOneColourCostNoPlanes) {
+    Bytes bytes;
+    for (uint32_t i = 0; i < 16; ++i) bytes = bytes + Bytes(kPageBytes, static_cast<std::byte>(100 + i));
+    Bytes coded, back(bytes.size());
+    ASSERT_TRUE(PageCompressor().compress(Coding::Zstd, bytes, coded));
+    EXPECT_LT(coded.size(), 200u);
+    ASSERT_TRUE(PageDecompressor().decompress(Coding::Zstd, coded, back));
+    EXPECT_TRUE(back == bytes);
+}
+
+// What no compressor has made is refused or becomes other bytes; never more than there is room for.
+TEST(PageCodec, changedAndCutBytesDoNoHarm) {
+    const Bytes bytes = picture(3 * kPageBytes, 4, 3) + vertices(2 * kPageBytes + 400, 3) + picture(kPageBytes, 3, 4);
+    Bytes coded, back(bytes.size());
+    ASSERT_TRUE(PageCompressor().compress(Coding::Zstd, bytes, coded));
+    ASSERT_TRUE(PageDecompressor().decompress(Coding::Zstd, coded, back));
+    ASSERT_TRUE(back == bytes);
+    for (size_t size = 0; size < coded.size(); size += 1 + size / 50) EXPECT_FALSE(PageDecompressor().decompress(Coding::Zstd, std::span(coded).first(size), back)) << size;
+    size_t refused = 0, other = 0;
+    for (size_t at = 0; at < coded.size(); at += 1 + at / 50) {
+        Bytes changed = coded;
+        changed[at] ^= std::byte{0x41};
+        Bytes into(bytes.size());
+        if (!PageDecompressor().decompress(Coding::Zstd, changed, into)) ++refused;
+        else other += into != bytes;
+    }
+    EXPECT_GT(refused, 20u);
+    EXPECT_GT(other, 20u);
+    for (const size_t size : {size_t{0}, size_t{4}, kPageBytes, bytes.size() - kPageBytes, bytes.size() - 4, bytes.size() + 4}) {
+        Bytes into(size);
+        EXPECT_FALSE(PageDecompressor().decompress(Coding::Zstd, coded, into)) << size;
+    }
+}
+
+} // namespace
+} // namespace mural::economy
