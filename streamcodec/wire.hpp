@@ -46,6 +46,7 @@ enum class HeadCommand : uint32_t {
     JoinGroup = 10, // u32 node: it joins the multicast group of its setup, beside the stream by which this comes
     ByGroup = 11,  // ByGroupCommand: its last packet, or batch, by its own connection. It comes by the group, too, and behind it is what follows
     Areas = 12,    // u32 number, u32 nodes, {f64 x, y, w, h} of each: what they draw of the picture from each window's next full clear on
+    Shares = 13,   // u32 number, u32 nodes, {f64 start, end} of each: which part of a frame's draws they draw, from each window's next shared draws on
 };
 struct ByGroupCommand {
     uint32_t node;
@@ -129,7 +130,7 @@ struct FrameDoneMessage {
     uint32_t height;
     uint32_t flags;    // kDrawnWhole, kKeepsPicture, kNotSplit, kKeepsAreas
     uint32_t areas;    // number of the Areas by which its picture is divided; 0: those of the start
-    uint32_t reserved;
+    uint32_t shares;   // number of the Shares by which its draws were; 0: those of the start
     uint64_t busyNs;   // that the node was at work, on anything, since the frame before: without waits and sending; CPU time where nodes share cores
     uint64_t replayNs; // CPU time of the replay thread since the frame before
     uint64_t readbackNs;

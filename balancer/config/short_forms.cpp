@@ -143,7 +143,10 @@ private:
                 part.period = static_cast<uint32_t>(level.count);
                 part.phase = static_cast<uint32_t>(i);
                 break;
-            case Level::Kind::Ranges: part.range = Range{edge(i, level.count), edge(i + 1, level.count)}; break;
+            case Level::Kind::Ranges:
+                if (form_.chunks > 0) part.inputTiles.push_back(chunksOf(channel));
+                else part.range = Range{edge(i, level.count), edge(i + 1, level.count)};
+                break;
             case Level::Kind::Pixels: part.pixel = PixelKernel{i, 0, level.count, 1}; break;
             case Level::Kind::Samples: part.subPixel = SubPixel{i, level.count}; break;
             }
@@ -159,6 +162,16 @@ private:
             divide(part, name, depth + 1);
             c.children.push_back(std::move(part));
         }
+        if (level.kind != Level::Kind::Ranges || form_.chunks <= 0) return;
+        TileQueue queue = chunksOf(channel);
+        queue.size.range = edge(1, form_.chunks);
+        c.outputTiles.push_back(queue);
+    }
+
+    static TileQueue chunksOf(const std::string& channel) {
+        TileQueue queue;
+        queue.name = channel + ".chunks";
+        return queue;
     }
 
     void queueTiles(Compound& c, const std::string& channel) {

@@ -23,6 +23,7 @@ struct ShortForm {
     std::vector<std::string> nodes; // hosts; none: all is drawn on this machine
     int32_t ranges = 1;             // --db
     std::string composition;        // --composition, of the ranges; empty: nothing is said
+    int32_t chunks = 0;             // --chunk-queue, of the ranges; 0: each has its share
     int32_t pixels = 1;             // --pixel
     int32_t samples = 1;            // --subpixel
     int32_t frames = 1;             // --dplex

@@ -34,7 +34,7 @@ size_t at(Index index) { return ResolvedConfig::at(index); }
 struct Draw {
     RenderContext context;
     Viewport area; // of the canvas
-    int queue = -1; // of the plan
+    int queue = -1, chunkQueue = -1; // of the plan
 };
 
 std::string nameOf(const config::ResolvedChannel& channel, Index index) { return channel.name.empty() ? "channel " + std::to_string(index) : channel.name; }
@@ -154,8 +154,10 @@ private:
             d.area = chunks ? whole : compose(whole, Viewport{0, from, 1, to - from});
             d.context.range = chunks ? compose(divided.range, Range{from, to}) : divided.range;
         }
-        if (chunks || queue.tiles.empty()) {
-            plan_.explain.push_back("queue \"" + queue.name + "\": its chunks are dealt out evenly to " + std::to_string(draws.size()) + " nodes");
+        if (queue.tiles.empty()) return;
+        if (chunks) {
+            for (const size_t d : draws) draws_[d].chunkQueue = static_cast<int>(plan_.chunkQueues.size());
+            plan_.chunkQueues.push_back({queue.name, divided.range, queue.tiles.front().range.end - queue.tiles.front().range.start});
             return;
         }
         TileQueuePlan planned{queue.name, compose(config_.views[at(divided.view)].viewport, divided.part), 0, 0};
@@ -247,6 +249,7 @@ private:
                 node.picture = pictures_[i];
                 node.area = draws_[i].area;
                 node.queue = draws_[i].queue;
+                node.chunkQueue = draws_[i].chunkQueue;
                 node.screen = screenOf(c);
                 node.collector = collector;
                 if (auto named = takeComposition(node, config_.compounds[at(c.compound)]); !named) return named;

@@ -73,6 +73,9 @@ HeadSession::HeadSession(SessionConfig config,
     , dealer_(plan_,
               [this](const Areas& areas) { nodes_.leadWith(wire::HeadCommand::Areas, bytesOf(areas)); },
               plantOf())
+    , chunks_(plan_,
+              [this](const Shares& shares) { nodes_.leadWith(wire::HeadCommand::Shares, bytesOf(shares)); },
+              plantOf())
     , absences_(absencesOf(nodes))
     , views_(nodes.size())
     , facts_(nodes.size())
@@ -216,6 +219,7 @@ Result<void> HeadSession::nodeFrameDone(int node, const wire::FrameDoneMessage& 
         totals.cpuSeconds = totals.replaySeconds + totals.readbackSeconds; // until its Bye knows better
     }
     dealer_.frameDone(node, message);
+    chunks_.frameDone(node, message);
     if (message.flags & wire::kDrawnWhole) sayDrawnWhole();
     if (message.flags & wire::kKeepsAreas) sayKeepsAreas();
     if (message.flags & wire::kKeepsPicture) sayKeepsPicture();
@@ -273,6 +277,7 @@ void HeadSession::windowGone(const std::pair<uint32_t, uint32_t>& window, int no
     }
     const auto [client, id] = window;
     dealer_.windowGone(client, id);
+    chunks_.windowGone(client, id);
     if (id != wire::kAllWindows) {
         frames_.windowGone(client, id);
         if (output_) output_->windowGone(client, id);
@@ -419,8 +424,8 @@ SessionStatus HeadSession::status() {
     result.display = nameOf(config_.display);
     result.wallFrames = frames_.totals().wallFrames;
     result.economy = nodes_.economyCounts();
-    result.queues = dealer_.totals();
-    if (!result.queues.empty() && result.queues.front().columns > 0) {
+    result.queues = queues();
+    if (!result.queues.empty() && !result.queues.front().chunks && result.queues.front().columns > 0) {
         result.columns = result.queues.front().columns;
         result.rows = result.queues.front().rows;
     }
@@ -441,12 +446,18 @@ SessionStatus HeadSession::status() {
     return result;
 }
 
+std::vector<QueueTotals> HeadSession::queues() const {
+    std::vector<QueueTotals> all = dealer_.totals();
+    for (QueueTotals& queue : chunks_.totals()) all.push_back(std::move(queue));
+    return all;
+}
+
 SessionNumbers HeadSession::numbers() {
     SessionNumbers result;
     result.frames = frames_.totals();
     result.bytesSent = nodes_.bytesSent();
     result.economy = nodes_.economyCounts();
-    result.queues = dealer_.totals();
+    result.queues = queues();
     result.programs = programs_->counts();
     if (output_) result.output = output_->totals();
     result.drawnWhole = drawnWhole_;

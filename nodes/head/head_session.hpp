@@ -18,6 +18,7 @@
 
 #include "nodes/head/answer_assembler.hpp"
 #include "nodes/head/capture_server.hpp"
+#include "nodes/head/chunk_dealer.hpp"
 #include "nodes/head/control_channel.hpp"
 #include "nodes/head/frame_tracker.hpp"
 #include "nodes/head/news_merger.hpp"
@@ -123,6 +124,7 @@ private:
     bool allReadersEnded();
     SessionNumbers numbers();
     SessionStatus status();
+    [[nodiscard]] std::vector<QueueTotals> queues() const;
     std::vector<int> waitsFor(const ProgramStatus& program);
     std::string streamOf(const NodePlan& plan); // with the mutex
     void noNodeIsLeft();
@@ -144,6 +146,7 @@ private:
     std::unique_ptr<PictureOutput> output_; // null: no pictures come
     PictureAssembler pictures_;
     TileDealer dealer_;
+    ChunkDealer chunks_;
     NodeSet nodes_;
     std::unique_ptr<NodeReturns> returns_;
     std::unique_ptr<ProgramTable> programs_; // once the nodes are ready

@@ -40,7 +40,7 @@ NodeReturns::Hooks HeadSession::returnHooks() {
     };
     hooks.tilesOfLost = [this](int node) -> std::string {
         const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
-        if (plan.pass.range > 0) return "what it draws is missing";
+        if (plan.pass.range > 0) return plan.chunkQueue >= 0 ? "the others take its chunks" : "what it draws is missing";
         return plan.queue >= 0 ? "the others take its tiles" : "its tiles stay as they were";
     };
     hooks.admitted = [this](int node, uint32_t view) { return admit(node, view); };
@@ -159,6 +159,7 @@ Result<void> HeadSession::nodeInView(int node, uint32_t view, const std::vector<
     frames_.nodeJoined(node, numbers.framesGiven, monotonicNowNs()); // and what it has seen itself
     frames_.nodeJoined(node, frames, monotonicNowNs());
     dealer_.nodeJoined(node);
+    chunks_.nodeJoined(node);
     int64_t joins = 0;
     {
         const std::lock_guard lock(mutex_);
@@ -207,6 +208,7 @@ void HeadSession::goOnWithout(int node) {
     pictures_.nodeLost(node);
     frames_.nodeLost(node, monotonicNowNs());
     dealer_.nodeLost(node);
+    chunks_.nodeLost(node);
     std::vector<std::pair<uint32_t, uint32_t>> waiting; // for this node's word
     {
         const std::lock_guard lock(mutex_);

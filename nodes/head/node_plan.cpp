@@ -46,6 +46,8 @@ std::string queueName(RenderPass pass) {
     return of.empty() ? "tiles" : "tiles of " + of;
 }
 
+std::string chunksName(const NodePlan& collector, int ranges) { return "draws of nodes " + std::to_string(collector.node) + " to " + std::to_string(collector.node + ranges - 1); }
+
 // Empty: nothing.
 std::string whyTilesStay(const SessionPlan& plan, const SessionConfig& config, int queue) {
     if (config.tiling == Tiling::Lean) return "--tiling lean gives each node a framebuffer of its first tiles' size";
@@ -106,6 +108,7 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
                 if (queues) node.area = areas[part];
                 if (queues && parts > 1) node.queue = static_cast<int>(plan.queues.size()) - 1;
                 node.collector = collector;
+                if (config.chunks > 0 && ranges > 1) node.chunkQueue = static_cast<int>(plan.chunkQueues.size());
                 if (plan.nodesShowWall) node.swapBarrier = "barrier";
                 const int place = node.node % asked; // more passes than nodes were given: several on each machine
                 if (place >= localNodes) {
@@ -115,6 +118,7 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
                 plan.explain.push_back(describeRegion(node));
                 plan.nodes.push_back(node);
             }
+            if (config.chunks > 0 && ranges > 1) plan.chunkQueues.push_back({chunksName(plan.nodes[static_cast<size_t>(collector)], ranges), {}, 1.0 / config.chunks});
         }
     }
     chooseComposition(plan, config.composition);
@@ -129,7 +133,31 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
     return plan;
 }
 
+namespace {
+
+void settleChunkQueues(SessionPlan& plan) {
+    for (size_t q = 0; q < plan.chunkQueues.size(); ++q) {
+        const auto queue = static_cast<int>(q);
+        const auto takes = [queue](const NodePlan& node) { return node.chunkQueue == queue; };
+        const auto nodes = std::ranges::count_if(plan.nodes, takes);
+        const bool turns = std::ranges::any_of(plan.nodes, [&](const NodePlan& node) { return takes(node) && node.pass.period > 1; });
+        char part[32];
+        std::snprintf(part, sizeof part, "%.3g", plan.chunkQueues[q].part);
+        const std::string chunks = "queue \"" + plan.chunkQueues[q].name + "\": its chunks, of " + part + " of the draws, ";
+        if (nodes > 1 && !turns) {
+            plan.explain.push_back(chunks + "are taken by whoever of " + std::to_string(nodes) + " nodes is free: by the times that the last frames took each");
+            continue;
+        }
+        (nodes < 2 ? plan.explain : plan.warnings).push_back(chunks + "are dealt out evenly, and stay: " + (nodes < 2 ? "one node draws all of them" : "their nodes take turns"));
+        for (NodePlan& node : plan.nodes)
+            if (takes(node)) node.chunkQueue = -1;
+    }
+}
+
+} // namespace
+
 void settleQueues(SessionPlan& plan, const SessionConfig& config) {
+    settleChunkQueues(plan);
     for (size_t q = 0; q < plan.queues.size(); ++q) {
         const auto queue = static_cast<int>(q);
         const auto nodes = std::ranges::count(plan.nodes, queue, &NodePlan::queue);

@@ -34,6 +34,13 @@ struct TileQueuePlan {
     int width = 0, height = 0; // of a tile, pixels; the last ones of rows and columns may be smaller
 };
 
+// Runs of a picture's draws, in their order, that nodes take by when they are free.
+struct ChunkQueuePlan {
+    std::string name;
+    Range range;     // of all draws: what is divided into them
+    double part = 1; // of that, each
+};
+
 struct NodePlan {
     int node = 0;
     std::string where; // "local" or the host
@@ -43,6 +50,7 @@ struct NodePlan {
     bool answers = true; // what programs read of windows
     TileRegion region;
     std::optional<Viewport> area; // instead of tiles: of the picture
+    int chunkQueue = -1; // its share of the draws moves by this one of SessionPlan::chunkQueues; -1: it stays
     int queue = -1; // its area moves by this one of SessionPlan::queues; -1: it stays
     std::optional<ScreenView> screen; // of a room
     std::optional<NodeWindow> window; // instead of those of tiles
@@ -56,6 +64,7 @@ struct NodePlan {
 struct SessionPlan {
     std::vector<NodePlan> nodes;
     std::vector<TileQueuePlan> queues;
+    std::vector<ChunkQueuePlan> chunkQueues;
     WallComposition wall;
     bool nodesShowWall = true; // what each draws is a part of the wall's picture as it is
     std::optional<double> eyeBase, focusDistance; // that a configuration file says, in metres

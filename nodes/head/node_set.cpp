@@ -50,18 +50,18 @@ bool NodeSet::broadcast(wire::HeadCommand command, std::span<const std::byte> ar
 
 void NodeSet::leadWith(wire::HeadCommand command, std::span<const std::byte> arguments) {
     const std::lock_guard lock(leadMutex_);
-    lead_ = commandBytes(command, arguments);
+    leads_[command] = commandBytes(command, arguments);
     hasLead_ = true;
 }
 
 void NodeSet::sendLeadLocked() {
-    std::vector<std::byte> lead;
+    std::map<wire::HeadCommand, std::vector<std::byte>> leads;
     {
         const std::lock_guard lock(leadMutex_);
-        lead.swap(lead_);
+        leads.swap(leads_);
         hasLead_ = false;
     }
-    if (!lead.empty()) sendLocked(wire::streamOf(0, 0), lead);
+    for (const auto& [command, bytes] : leads) sendLocked(wire::streamOf(0, 0), bytes);
 }
 
 bool NodeSet::broadcast(wire::HeadCommand command, Deadline deadline) {

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -119,7 +120,7 @@ private:
     std::timed_mutex sendMutex_;
     std::atomic<uint64_t> bytesSent_{0};
     std::mutex leadMutex_;
-    std::vector<std::byte> lead_;       // the payload of a command; empty: none waits
+    std::map<wire::HeadCommand, std::vector<std::byte>> leads_; // the latest payload of each command that waits
     std::atomic<bool> hasLead_{false};
     static constexpr int kNobody = -1, kMulticast = -2;
     std::atomic<int> sendingTo_{kNobody}; // the node whose connection is being written to

@@ -63,7 +63,7 @@ Json queuesJson(const std::vector<QueueTotals>& queues) {
     for (const QueueTotals& q : queues) {
         Json nodes = Json::array();
         for (const auto& [node, tiles] : q.nodes) nodes.push_back({{"node", node}, {"tiles", tiles}});
-        list.push_back({{"name", q.name},     {"columns", q.columns}, {"rows", q.rows},   {"tileWidth", q.width}, {"tileHeight", q.height},
+        list.push_back({{"name", q.name},     {"of", q.chunks ? "chunks" : "tiles"}, {"columns", q.columns}, {"rows", q.rows},   {"tileWidth", q.width}, {"tileHeight", q.height},
                         {"frames", q.frames}, {"moves", q.moves},     {"tilesMoved", q.tilesMoved}, {"taken", q.taken}, {"nodes", nodes}});
     }
     return list;

@@ -10,7 +10,7 @@
 #include "nodes/head/frame_tracker.hpp"
 #include "nodes/head/picture_output.hpp"
 #include "nodes/head/stream_economy.hpp"
-#include "nodes/head/tile_dealer.hpp"
+#include "nodes/head/queue_totals.hpp"
 #include "recording/file_writer.hpp"
 
 namespace mural {

@@ -10,15 +10,13 @@ namespace mural {
 namespace {
 
 constexpr int kMostTiles = 16384;     // of a queue: what more would bring is less than what they cost here
-constexpr size_t kMostFrames = 64;    // that some nodes have finished and others have not
-constexpr int kOthers = 240;          // frames of other windows, of all nodes together, until a window counts as one that has ended
 
 int piecesOf(int size, int step) { return (size + step - 1) / step; }
 
 } // namespace
 
 TileDealer::TileDealer(const SessionPlan& plan, Announce announce, const std::string& plant)
-    : announce_(std::move(announce)), lives_(plan.nodes.size(), true), work_(plan.nodes.size(), 0) {
+    : announce_(std::move(announce)), times_(plan.nodes.size()) {
     for (const NodePlan& node : plan.nodes) areas_.push_back(node.area.value_or(Viewport{}));
     for (size_t q = 0; q < plan.queues.size(); ++q) {
         Queue queue;
@@ -38,61 +36,36 @@ TileDealer::TileDealer(const SessionPlan& plan, Announce announce, const std::st
 
 void TileDealer::frameDone(int node, const wire::FrameDoneMessage& message) {
     if (!deals()) return;
-    const auto index = static_cast<size_t>(node);
     const std::lock_guard lock(mutex_);
-    follow(message);
-    work_[index] += static_cast<double>(message.busyNs);
+    if (times_.follow(message)) {
+        for (Queue& queue : queues_) layOut(queue);
+        announce();
+    }
+    times_.worked(node, message.busyNs);
     if (random_) dealAtRandom();
-    if (Window{message.client, message.window} != followed_) return;
+    if (!times_.follows(message)) return;
     for (Queue& queue : queues_)
         if (!queue.takers.empty() && node == queue.takers.front() && message.areas != std::exchange(queue.drawnBy, message.areas)) ++queue.totals.taken;
     if (random_) return;
-    Frame& frame = frames_[message.frame];
-    frame.times.resize(areas_.size(), -1);
-    frame.areas.resize(areas_.size(), 0);
-    frame.times[index] = std::exchange(work_[index], 0);
-    frame.areas[index] = message.areas;
-    bool complete = true, moved = false;
-    for (size_t n = 0; n < lives_.size(); ++n) complete = complete && (!lives_[n] || frame.times[n] >= 0);
-    if (complete) {
-        for (Queue& queue : queues_) moved = compare(queue, frame) || moved;
-        frames_.erase(frames_.begin(), frames_.upper_bound(message.frame));
-    }
-    if (frames_.size() > kMostFrames) frames_.erase(frames_.begin());
+    bool moved = false;
+    if (const auto frame = times_.finished(node, message))
+        for (Queue& queue : queues_) moved = compare(queue, *frame) || moved;
     if (moved) announce();
 }
 
 void TileDealer::answered() {
     if (!random_) return;
     const std::lock_guard lock(mutex_);
-    if (width_ > 0) dealAtRandom();
+    if (times_.known()) dealAtRandom();
 }
 
-// The largest window that has frames.
-void TileDealer::follow(const wire::FrameDoneMessage& m) {
-    const Window window{m.client, m.window};
-    const auto width = static_cast<int>(m.width), height = static_cast<int>(m.height);
-    if (width == 0 || height == 0) return;
-    const bool larger = int64_t{width} * height > int64_t{width_} * height_;
-    if (window == followed_) others_ = 0;
-    else if (!larger && ++others_ <= kOthers) return;
-    if (window == followed_ && width == width_ && height == height_) return;
-    followed_ = window;
-    others_ = 0;
-    width_ = width;
-    height_ = height;
-    frames_.clear();
-    for (Queue& queue : queues_) layOut(queue);
-    announce();
-}
-
-PixelViewport TileDealer::pixelsOf(const Queue& queue) const { return apply({0, 0, width_, height_}, queue.plan.area); }
+PixelViewport TileDealer::pixelsOf(const Queue& queue) const { return apply({0, 0, times_.width(), times_.height()}, queue.plan.area); }
 
 // Even parts for those that live; tiles are doubled until there are not too many.
 void TileDealer::layOut(Queue& queue) {
     queue.takers.clear();
     for (const int node : queue.nodes)
-        if (lives_[static_cast<size_t>(node)]) queue.takers.push_back(node);
+        if (times_.lives(node)) queue.takers.push_back(node);
     queue.tiles.reset();
     const PixelViewport pixels = pixelsOf(queue);
     int& w = queue.totals.width = std::max(1, queue.plan.width);
@@ -110,13 +83,13 @@ void TileDealer::layOut(Queue& queue) {
 }
 
 // True: tiles have moved.
-bool TileDealer::compare(Queue& queue, const Frame& frame) {
+bool TileDealer::compare(Queue& queue, const FrameTimes::Frame& frame) {
     if (!queue.tiles) return false;
     std::vector<double> times;
     for (const int node : queue.takers) {
         const auto n = static_cast<size_t>(node);
-        if (frame.areas[n] != number_) return false; // of other areas than those that were announced last
-        times.push_back(frame.times[n]);
+        if (frame.done[n].areas != number_) return false; // of other areas than those that were announced last
+        times.push_back(frame.busyNs[n]);
     }
     ++queue.totals.frames;
     const std::vector<TileRegion> before = queue.tiles->areas();
@@ -140,7 +113,7 @@ void TileDealer::announce() {
         for (size_t i = 0; i < queue.takers.size(); ++i) {
             const TileRegion& r = queue.tiles->areas()[i];
             const int x0 = x(r.column), y0 = y(r.row);
-            areas_[static_cast<size_t>(queue.takers[i])] = relativeTo(PixelViewport{x0, y0, x(r.column + r.columns) - x0, y(r.row + r.rows) - y0}, PixelViewport{0, 0, width_, height_});
+            areas_[static_cast<size_t>(queue.takers[i])] = relativeTo(PixelViewport{x0, y0, x(r.column + r.columns) - x0, y(r.row + r.rows) - y0}, PixelViewport{0, 0, times_.width(), times_.height()});
         }
     }
     if (any) announce_({++number_, areas_});
@@ -161,29 +134,22 @@ void TileDealer::dealAtRandom() {
 
 void TileDealer::windowGone(uint32_t client, uint32_t window) {
     const std::lock_guard lock(mutex_);
-    if (client != followed_.first || (window != wire::kAllWindows && window != followed_.second)) return;
-    frames_.clear();
-    width_ = height_ = 0; // whatever has frames next is followed
-    others_ = kOthers;
+    times_.windowGone(client, window);
 }
 
 void TileDealer::nodeLost(int node) {
     const std::lock_guard lock(mutex_);
-    lives_[static_cast<size_t>(node)] = false;
-    if (!deals() || width_ == 0) return;
-    frames_.clear();
-    for (Queue& queue : queues_)
-        if (std::ranges::find(queue.nodes, node) != queue.nodes.end()) layOut(queue);
-    announce();
+    times_.lost(node);
+    layOutOf(node);
 }
 
 void TileDealer::nodeJoined(int node) {
     const std::lock_guard lock(mutex_);
-    const bool lived = lives_[static_cast<size_t>(node)];
-    lives_[static_cast<size_t>(node)] = true;
-    if (lived || !deals() || width_ == 0) return;
-    frames_.clear();
-    work_[static_cast<size_t>(node)] = 0;
+    if (times_.joined(node)) layOutOf(node);
+}
+
+void TileDealer::layOutOf(int node) {
+    if (!deals() || !times_.known()) return;
     for (Queue& queue : queues_)
         if (std::ranges::find(queue.nodes, node) != queue.nodes.end()) layOut(queue);
     announce();

@@ -1,13 +1,11 @@
 // Deals the tiles of queues from frame to frame, by the times that nodes report (balancer/queue), and says which areas of the
 // picture that makes.
 //
-// It follows one window, the largest: its frames are those that times are compared for; what nodes do for other windows counts
-// to them, too. A lost node's tiles go to the others, until it is back.
+// Times are those of one window (FrameTimes). A lost node's tiles go to the others, until it is back.
 #pragma once
 
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <mutex>
 #include <optional>
 #include <random>
@@ -15,23 +13,13 @@
 #include <vector>
 
 #include "balancer/queue/tile_queue.hpp"
+#include "nodes/head/frame_times.hpp"
 #include "nodes/head/node_plan.hpp"
+#include "nodes/head/queue_totals.hpp"
 #include "nodes/session/areas.hpp"
 #include "streamcodec/wire.hpp"
 
 namespace mural {
-
-// Of one queue.
-struct QueueTotals {
-    std::string name;
-    int columns = 0, rows = 0;  // of tiles; 0: no frame has told yet how large the picture is
-    int width = 0, height = 0;  // of a tile, pixels
-    int64_t frames = 0;         // that were compared
-    int64_t moves = 0;          // after how many of them tiles moved…
-    int64_t tilesMoved = 0;     // …and how many did
-    int64_t taken = 0;          // frames of the window that were divided by other areas than the one before
-    std::vector<std::pair<int, int>> nodes; // and how many tiles each has now
-};
 
 // All calls from any thread.
 class TileDealer {
@@ -61,15 +49,9 @@ private:
         QueueTotals totals;
         uint32_t drawnBy = 0; // number of the areas of the followed window's last frame
     };
-    struct Frame {
-        std::vector<double> times; // by node; below 0: it has not finished
-        std::vector<uint32_t> areas;
-    };
-    using Window = std::pair<uint32_t, uint32_t>; // client, window
-
-    void follow(const wire::FrameDoneMessage& message);
     void layOut(Queue& queue); // its grid, anew
-    bool compare(Queue& queue, const Frame& frame);
+    void layOutOf(int node);   // those of its queue
+    bool compare(Queue& queue, const FrameTimes::Frame& frame);
     [[nodiscard]] PixelViewport pixelsOf(const Queue& queue) const;
     void dealAtRandom();
     void announce();
@@ -77,15 +59,10 @@ private:
 
     mutable std::mutex mutex_;
     const Announce announce_;
+    FrameTimes times_;
     std::vector<Queue> queues_;
     std::vector<Viewport> areas_; // of all nodes, the latest
     uint32_t number_ = 0;         // of them
-    std::vector<bool> lives_;
-    std::vector<double> work_; // by node, since its last frame of the followed window
-    Window followed_{};
-    int width_ = 0, height_ = 0; // of it
-    int others_ = 0;             // frames of other windows since its last one
-    std::map<uint32_t, Frame> frames_; // by number, of the followed window, that not all have finished
     std::optional<std::mt19937> random_;
 };
 

@@ -152,6 +152,7 @@ private:
         case wire::HeadCommand::JoinGroup: return joinGroup(rest);
         case wire::HeadCommand::ByGroup: return changeOver(rest);
         case wire::HeadCommand::Areas: return moveAreas(rest);
+        case wire::HeadCommand::Shares: return moveShares(rest);
         case wire::HeadCommand::Synchronize:
             return synchronize(rest);
         case wire::HeadCommand::Exchange: return meet(std::string(reinterpret_cast<const char*>(rest.data()), rest.size()));
@@ -403,6 +404,12 @@ private:
         return true;
     }
 
+    bool moveShares(std::span<const std::byte> bytes) {
+        const auto shares = sharesOf(bytes);
+        if (shares && replay_) replay_->moveShares(*shares);
+        return shares.has_value();
+    }
+
     bool takeTurns(std::span<const std::byte> bytes) {
         if (!setup_.areas.empty()) return !replay_ || replay_->takeToldAreas(bytes);
         if (bytes.size() % sizeof(wire::WindowTurn) != 0) return false;
@@ -451,6 +458,7 @@ private:
         done.height = f.config.height;
         done.flags = (f.drawnWhole ? wire::kDrawnWhole : 0) | (f.keepsPicture ? wire::kKeepsPicture : 0) | (f.notSplit ? wire::kNotSplit : 0) | (f.keepsAreas ? wire::kKeepsAreas : 0);
         done.areas = f.areas;
+        done.shares = f.shares;
         done.busyNs = static_cast<uint64_t>(std::exchange(busyNs_, 0));
         done.replayNs = replayedNs - lastCpuNs_;
         lastCpuNs_ = threadCpuNs();

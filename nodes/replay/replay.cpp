@@ -10,6 +10,7 @@ namespace mural {
 
 Replay::Replay(std::unique_ptr<gl::Platform> platform, ReplayConfig config, ReplayOutputs outputs)
     : platform_(std::move(platform)), config_(std::move(config)), out_(std::move(outputs)), saidLacking_(op::kLimit, false) {
+    share_ = config_.pass.share;
     knowsTurns_ = knowsCosts_ = knowsAreas_ = !config_.catchesUp;
     if (config_.areas) areas_ = std::make_shared<const Areas>(*config_.areas);
     hasSkipped_ = skips_ = maySkip();

@@ -36,6 +36,7 @@
 #include "nodes/replay/view_move.hpp"
 #include "nodes/session/areas.hpp"
 #include "nodes/session/render_pass.hpp"
+#include "nodes/session/shares.hpp"
 #include "streamcodec/args.hpp"
 #include "streamcodec/client_arrays.hpp"
 #include "streamcodec/sizes/pixel_format.hpp"
@@ -86,6 +87,7 @@ struct ReplayOutputs {
         bool sound;           // it does not depend on what was not drawn (ReplayConfig::skips)
         bool notSplit;        // nothing was shared between ranges, though there are several
         uint32_t areas;       // number of those by which the picture is divided
+        uint32_t shares;      // number of those by which its draws were shared; 0: those of the start, or nothing was
         bool keepsAreas;      // other ones wait for a clear that does not come
         std::function<const std::byte*(const PixelViewport&)> pixels;
     };
@@ -124,6 +126,8 @@ public:
     // Of nodes that draw ranges of one picture, at one place of the stream for all of them: a node has come back, `itself`: this one. `returned`
     // is called behind the last picture that is put together without it, when there is a first with it.
     void shareAnew(bool itself, std::function<void()> returned);
+    // From the next draws of each window on that are the first to be shared in their frame.
+    void moveShares(const Shares& shares);
     // From the next full clear of each window on its part is the one of these areas (replay_areas.cpp). Where the config has areas.
     void moveAreas(Areas areas);
     // The payload of a Turns message, by which areas windows are divided here…
@@ -190,6 +194,9 @@ private:
         GLenum function = 0;    // of all draws that were shared
         bool muted = false;     // another node draws this
         bool wasSplit = false;
+        Range share;            // of lastTotal: this node's…
+        uint32_t shares = 0;    // …by the Shares of this number
+        uint32_t drawnBy = 0;   // and those of the frame before
         uint64_t returns = 0;   // of nodes of its picture, before the frame began: it is put together with these
         FoldRule rule;          // how the nodes' pictures are laid over each other
     };
@@ -725,6 +732,9 @@ private:
     bool hasSkipped_ = false; // frames, at the beginning…
     bool skips_ = false;      // …and does so still
     bool knowsTurns_ = true;
+    Range share_;              // of a frame's draws: this node's…
+    uint32_t sharesNumber_ = 0; // …by the Shares of this number
+    Range plantedShare_;        // of a fault on purpose
     bool knowsCosts_ = true; // of the frames before, as the other nodes of its picture do
     std::deque<std::function<void()>> returns_; // of nodes of its picture, that no frame was put together with yet…
     uint64_t returnsTaken_ = 0;                 // …and how many came before those

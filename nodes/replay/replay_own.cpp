@@ -241,6 +241,7 @@ bool Replay::ownSwap(Args& in, bool front) {
         f.picture = drawsFewer() ? inKernel(config_.pass, w.whole) : w.whole;
         f.keepsPicture = keepsTurn(w);
         f.areas = moves() ? w.moving.areas->number : 0;
+        f.shares = w.range.drawnBy;
         f.keepsAreas = moves() && w.moving.areas != areas_ && ++w.moving.waits >= kPatientFrames;
         f.sound = isSound(w, front);
         if (!front && f.sound) w.frontStaled = false;

@@ -179,7 +179,10 @@ void Replay::beginSplit(Window& w) {
     r.phase = RangeFrame::Phase::Split;
     r.wasSplit = r.wasSplit || r.lastTotal > 0;
     const PixelViewport drawn = partDrawn(w);
-    if (r.lastTotal == 0 || drawn.empty()) return;
+    if (r.lastTotal == 0) return;
+    r.share = share_;
+    r.shares = sharesNumber_;
+    if (drawn.empty()) return;
     PicturePart pixel; // as the clears have left it
     readPart(w, {drawn.x, drawn.y, 1, 1}, pixel);
     r.rule.clearedColour = pixel.colour[0];
@@ -211,8 +214,8 @@ bool Replay::shares(Window& w, uint64_t cost, uint64_t& first, uint64_t& last) {
     if (r.phase == RangeFrame::Phase::Fresh) beginSplit(w);
     // In the first frame nothing is known: the collector draws it. What is more than in the frame before is the last one's.
     const auto costAt = [&](double share) { return share >= 1 ? UINT64_MAX : countBefore(share, r.lastTotal); };
-    const uint64_t from = r.lastTotal ? costAt(config_.pass.share.start) : collects() ? 0 : UINT64_MAX;
-    const uint64_t to = r.lastTotal ? costAt(config_.pass.share.end) : UINT64_MAX;
+    const uint64_t from = r.lastTotal ? costAt(r.share.start) : collects() ? 0 : UINT64_MAX;
+    const uint64_t to = r.lastTotal ? costAt(r.share.end) : UINT64_MAX;
     const uint64_t at = r.cost;
     r.cost += cost;
     first = std::clamp(from, at, at + cost) - at;
@@ -387,13 +390,24 @@ void Replay::rangeDrawn(Window& w) {
     }
     c_ = own;
     const uint64_t total = r.cost, serial = r.serial;
+    const uint32_t drawnBy = r.shares;
     const bool split = r.wasSplit, knows = knowsCosts_ && r.returns == returnsTold();
     r = {};
     r.wasSplit = split;
+    r.drawnBy = drawnBy;
     r.returns = returnsTold();
     if (!knows) return; // as the first frame
     r.lastTotal = total;
     r.serial = serial;
+}
+
+// plant: "lateshare" takes what was announced before.
+void Replay::moveShares(const Shares& shares) {
+    const auto node = static_cast<size_t>(config_.node);
+    if (!takesRanges() || node >= shares.ofNodes.size()) return;
+    const bool late = config_.plant == "lateshare" && config_.node == 1;
+    share_ = late ? std::exchange(plantedShare_, shares.ofNodes[node]) : shares.ofNodes[node];
+    sharesNumber_ = shares.number;
 }
 
 // What a frame in hand has drawn, and cost, the newcomer may have been given a part of. So nothing of it is put together with the
@@ -401,6 +415,8 @@ void Replay::rangeDrawn(Window& w) {
 // share, they end as they have begun it.
 void Replay::shareAnew(bool itself, std::function<void()> returned) {
     if (!takesRanges()) return;
+    share_ = config_.pass.share; // others follow
+    sharesNumber_ = 0;
     knowsCosts_ = knowsCosts_ || itself;
     for (auto& [client, its] : clients_)
         for (auto& [id, w] : its.windows) {

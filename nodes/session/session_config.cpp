@@ -47,6 +47,7 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("session", c.session);
     visit("columns", c.columns, 1);
     visit("rows", c.rows, 1);
+    visit("chunks", c.chunks, 0);
     visit("tileWidth", c.tileWidth, 0);
     visit("tileHeight", c.tileHeight, 0);
     visit("localNodes", c.localNodes, 0);

@@ -30,6 +30,7 @@ struct SessionConfig {
     int columns = 1;              // --tiles CxR
     int rows = 1;
     int tileWidth = 0, tileHeight = 0; // --tile-queue: pixels of tiles that nodes take from a queue, instead of columns and rows; 0: none
+    int chunks = 0;               // --chunk-queue: into so many a picture's draws are cut, which nodes of --db take from a queue; 0: none, each has its share
     int localNodes = 0;           // --local-nodes; 0: min(columns * rows, 4) when there are no hosts
     std::vector<std::string> hosts; // --nodes
     std::string launchCommand = "ssh -o BatchMode=yes"; // --launch: prefix that runs a command on a host

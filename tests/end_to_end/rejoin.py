@@ -441,6 +441,36 @@ def ranges_that_are_busy(context):
 
 
 @case
+def chunks_come_back(context):
+    """Nodes that take draws from a queue, and such that are given any, which change with each frame."""
+    options = by_ranges("direct-send", 3) + ("--chunk-queue", "60")
+    return (ranges_come_back(context, ((1,), (0,)), 3, options) or
+            ranges_come_back(context, ((2,), (1, 2)), 3, options, environment={"MURAL_PLANT": "shares"}))
+
+
+@case
+def chunks_of_a_lost_node(context):
+    """It does not come back: the others take its chunks, and from then on nothing is missing."""
+    frames = 240
+    watch = Watch(context, frames, by_ranges("binary-swap", 3) + ("--chunk-queue", "60", "--restart-nodes", "0"), {"SCENE_SHARES": "1"}, tiles="1x1")
+    with watch.start() as run:
+        if not run.wait_for_line("frame 40 "):
+            return "the program did not start: " + " | ".join(run.standard_error[-3:])
+        os.kill(node_pid(run, 1), signal.SIGKILL)
+        if not run.wait_for_line("the others take its chunks", 20):
+            return "nobody said who draws its chunks: " + " | ".join(run.standard_error[-4:])
+        begin = latest_frame(run) + UNDER_WAY
+        wrong = failures.check_end(run, 0)
+        if wrong is not None:
+            return wrong
+        native = native_pictures(context, watch.folder.name, frames, watch.environment)
+        behind = [columns_that_differ(a, b) for a, b in zip(native, saved_pictures(watch.out))][begin:]
+        if len(behind) < 60:
+            return "only %d frames were left" % len(behind)
+        return "%d of %d pictures behind its loss differ" % (sum(map(bool, behind)), len(behind)) if any(behind) else None
+
+
+@case
 def ranges_over_earlier_frames(context):
     """Nothing clears, so nothing is shared: the collector has all of it, and gets all of it again."""
     watch = Watch(context, 600, by_ranges("serial", 2), {"SCENE_SHARES": "1", "SCENE_KEEPS": "1"}, tiles="1x1")

@@ -31,7 +31,7 @@ def parse_arguments(description, add_arguments):
     parser.add_argument("--programs", help="programs and groups, separated by commas; default all")
     parser.add_argument("--layouts", default="1x1,2x2,3x1,7x5", help="tiles, columns x rows")
     parser.add_argument("--tile-queue", metavar="WxH", help="nodes take tiles of this size from a queue; layouts are numbers of nodes then")
-    parser.add_argument("--least-changes", type=int, default=0, metavar="N", help="fail when areas changed less often, in all runs together: then nothing was tried")
+    parser.add_argument("--least-changes", type=int, default=0, metavar="N", help="fail when areas or shares changed less often, in all runs together: then nothing was tried")
     parser.add_argument("--size", default="1000x777", help="of the programs' windows")
     parser.add_argument("--frames", type=int, default=4)
     parser.add_argument("--options", default="--display none",
@@ -100,8 +100,8 @@ class Comparison:
             return False
 
     def moves(self):
-        """How often the areas of the nodes changed from one frame to the next, as the last report has it."""
-        if not self.arguments.tile_queue:
+        """How often areas or shares of the nodes changed from one frame to the next, as the last report has it."""
+        if not self.arguments.tile_queue and "--chunk-queue" not in self.arguments.options:
             return ""
         try:
             with open(self.report_file(), encoding="utf-8") as report:
@@ -110,7 +110,7 @@ class Comparison:
             return ""
         taken = sum(queue["taken"] for queue in queues)
         self.taken += taken
-        return ", areas changed %d times" % taken
+        return ", %s changed %d times" % ("areas" if self.arguments.tile_queue else "shares", taken)
 
     def check(self, name):
         native = self.run(name, "reference", self.one_node() if self.arguments.one_node else ())
@@ -217,7 +217,7 @@ def main(description=__doc__, add_arguments=lambda parser: None, comparison_clas
         if not arguments.keep:
             shutil.rmtree(folder, ignore_errors=True)
     if comparison.taken < arguments.least_changes:
-        print("WRONG: areas changed %d times, not %d at least" % (comparison.taken, arguments.least_changes))
+        print("WRONG: areas or shares changed %d times, not %d at least" % (comparison.taken, arguments.least_changes))
         comparison.failures += 1
     print("%d programs, %d comparisons wrong, %d known to differ, %d skipped" % (len(names), comparison.failures, comparison.known, comparison.skipped))
     for name in comparison.healed:

@@ -215,7 +215,6 @@ TEST(ConfigPlan, nodesShowTheirOwnChannels) {
     for (const NodePlan& n : here.nodes) EXPECT_TRUE(setupOf(windows, here, n).windowAsOnWall && !setupOf(windows, here, n).fullScreen);
 }
 
-// Of ranges the node that has the picture shows it; what several pictures make, and eyes on one screen, the head.
 TEST(ConfigPlan, tilesOfQueuesMove) {
     SessionPlan plan = planOfFile("tile-queue.eqc");
     ASSERT_EQ(plan.nodes.size(), 3u);
@@ -237,6 +236,27 @@ TEST(ConfigPlan, tilesOfQueuesMove) {
     EXPECT_FALSE(projector.queues.empty()) << "by a tile_equalizer";
 }
 
+TEST(ConfigPlan, chunksOfQueuesMove) {
+    SessionPlan plan = planOfFile("chunk-queue.eqc");
+    ASSERT_EQ(plan.nodes.size(), 3u);
+    ASSERT_EQ(plan.chunkQueues.size(), 1u);
+    EXPECT_TRUE(plan.queues.empty());
+    EXPECT_EQ(plan.chunkQueues[0].name, "queue");
+    EXPECT_NEAR(plan.chunkQueues[0].part, 0.01, 1e-9);
+    EXPECT_EQ(plan.chunkQueues[0].range, Range{});
+    settleQueues(plan, {});
+    int range = 0;
+    for (const NodePlan& n : plan.nodes) {
+        EXPECT_EQ(n.chunkQueue, 0);
+        EXPECT_EQ(n.queue, -1);
+        EXPECT_EQ(n.pass.range, range++);
+        EXPECT_EQ(n.pass.ranges, 3);
+    }
+    EXPECT_TRUE(plan.warnings.empty());
+    EXPECT_NE(plan.explain.back().find("of 0.01 of the draws"), std::string::npos) << plan.explain.back();
+}
+
+// Of ranges the node that has the picture shows it; what several pictures make, and eyes on one screen, the head.
 TEST(ConfigPlan, whoShowsWhatSeveralDraw) {
     SessionConfig windows;
     windows.display = Display::Windows;

@@ -197,6 +197,9 @@ TEST(RunOptions, optionsThatMeanNothingTogetherAreRefused) {
     EXPECT_NE(refusal([](RunArguments& a) { a.record = ""; }).find("--record"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.tiles = "2x2"; a.localNodes = "5"; }).find("5 render nodes for 4 tiles"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.tiles = "2x2"; a.tileQueue = "32x32"; }).find("leave one of them out"), std::string::npos);
+    for (const char* bad : {"", "1", "5000", "x", "-3", "2.5"}) EXPECT_EQ(refusal([&](RunArguments& a) { a.db = "2"; a.chunkQueue = bad; }).rfind("--chunk-queue", 0), 0u) << bad;
+    EXPECT_NE(refusal([](RunArguments& a) { a.chunkQueue = "20"; }).find("add --db"), std::string::npos);
+    EXPECT_EQ(accepted([](RunArguments& a) { a.db = "2"; a.chunkQueue = "20"; }).config.chunks, 20);
     for (const char* bad : {"", "32", "0x32", "32x", "axb", "-1x3"}) EXPECT_EQ(refusal([&](RunArguments& a) { a.tileQueue = bad; }).rfind("--tile-queue \"" + std::string(bad) + "\": must be", 0), 0u) << bad;
     EXPECT_NE(refusal([](RunArguments& a) { a.tiles = "4x4"; a.size = "3x100"; }).find("do not fit"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.program.clear(); }).find("no program"), std::string::npos);

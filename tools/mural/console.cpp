@@ -82,8 +82,9 @@ std::vector<std::string> reportLines(const SessionReport& r) {
         if (q.columns == 0) continue;
         std::string nodes;
         for (const auto& [node, tiles] : q.nodes) nodes += fmt::format("{}node {} has {}", nodes.empty() ? "" : ", ", node, tiles);
-        lines.push_back(fmt::format("queue \"{}\": {}x{} tiles of {}x{} pixels moved after {} of {} frame{}, {:.2f} tiles per frame; in the end {}", q.name, q.columns, q.rows, q.tileWidth, q.tileHeight, q.moves, q.frames,
-                                    plural(q.frames), q.frames > 0 ? static_cast<double>(q.tilesMoved) / static_cast<double>(q.frames) : 0.0, nodes));
+        const std::string pieces = q.of == "chunks" ? fmt::format("{} chunks", q.columns) : fmt::format("{}x{} tiles of {}x{} pixels", q.columns, q.rows, q.tileWidth, q.tileHeight);
+        lines.push_back(fmt::format("queue \"{}\": {} moved after {} of {} frame{}, {:.2f} {} per frame; in the end {}", q.name, pieces, q.moves, q.frames, plural(q.frames),
+                                    q.frames > 0 ? static_cast<double>(q.tilesMoved) / static_cast<double>(q.frames) : 0.0, q.of, nodes));
     }
     if (r.verifiedFrames > 0) {
         std::string line = fmt::format("verified {} frame{}, {} pixels: {} differ", r.verifiedFrames, plural(r.verifiedFrames), r.verifiedPixels, r.differingPixels);

@@ -48,7 +48,7 @@ std::vector<QueueReport> queuesFrom(const Json& list) {
     if (!list.is_array()) return queues;
     for (const Json& q : list) {
         if (!q.is_object()) continue;
-        queues.push_back({text(q, "name"), whole(q, "columns"), whole(q, "rows"), whole(q, "tileWidth"), whole(q, "tileHeight"), whole(q, "frames"), whole(q, "moves"), whole(q, "tilesMoved"), {}});
+        queues.push_back({text(q, "name"), text(q, "of"), whole(q, "columns"), whole(q, "rows"), whole(q, "tileWidth"), whole(q, "tileHeight"), whole(q, "frames"), whole(q, "moves"), whole(q, "tilesMoved"), {}});
         const auto nodes = q.find("nodes");
         if (nodes == q.end() || !nodes->is_array()) continue;
         for (const Json& n : *nodes)

@@ -44,7 +44,8 @@ struct EconomyReport {
 // Tiles that nodes took from a queue.
 struct QueueReport {
     std::string name;
-    int64_t columns = 0, rows = 0;         // of tiles; 0: none was dealt
+    std::string of;                        // "tiles" or "chunks"
+    int64_t columns = 0, rows = 0;         // 0: none was dealt
     int64_t tileWidth = 0, tileHeight = 0; // pixels
     int64_t frames = 0, moves = 0, tilesMoved = 0;
     std::vector<std::pair<int64_t, int64_t>> nodes; // and the tiles that each has

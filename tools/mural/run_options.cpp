@@ -25,6 +25,7 @@ namespace mural::cli {
 namespace {
 
 constexpr int kMaxTilesPerSide = 256;
+constexpr int kMaxChunks = 4096;
 constexpr int kMaxNodes = 1024;
 constexpr int kMaxLatency = 64;
 constexpr int kMostRestarts = 1'000'000;
@@ -242,6 +243,12 @@ Result<void> readPasses(const RunArguments& a, SessionConfig& c) {
     if (auto r = readCount("--subpixel", a.subpixel, kMaxPasses, p.samples); !r) return r;
     if (auto r = readCount("--dplex", a.dplex, kMaxPasses, p.period); !r) return r;
     if (auto r = readCount("--db", a.db, kMaxPasses, p.ranges); !r) return r;
+    if (a.chunkQueue) {
+        const auto chunks = wholeNumber(*a.chunkQueue, 2, kMaxChunks);
+        if (!chunks) return badValue("--chunk-queue", *a.chunkQueue, fmt::format("must be a number of chunks from 2 to {}, such as 64", kMaxChunks));
+        if (p.ranges == 1 && !a.config) return Error{"--chunk-queue is for nodes that share draws; add --db N, such as --db 4"};
+        c.chunks = static_cast<int>(*chunks);
+    }
     if (a.codec) {
         if (auto wanted = wantedCodec(*a.codec); !wanted) return badValue("--codec", *a.codec, "must be auto, lossy or the name of a codec; " + wanted.error().message);
         c.codec = *a.codec;
@@ -275,7 +282,7 @@ Result<void> readConfigFile(const RunArguments& a, RunOptions& options) {
             if (given) return Error{fmt::format("{} is for a configuration file; add --config FILE", option)};
         return {};
     }
-    const std::pair<const char*, bool> contradicting[] = {{"--tiles", a.tiles.has_value()}, {"--tile-queue", a.tileQueue.has_value()}, {"--nodes", a.nodes.has_value()}, {"--local-nodes", a.localNodes.has_value()}, {"--stereo", a.stereo.has_value()},
+    const std::pair<const char*, bool> contradicting[] = {{"--tiles", a.tiles.has_value()}, {"--tile-queue", a.tileQueue.has_value()}, {"--chunk-queue", a.chunkQueue.has_value()}, {"--nodes", a.nodes.has_value()}, {"--local-nodes", a.localNodes.has_value()}, {"--stereo", a.stereo.has_value()},
                                                           {"--pixel", a.pixel.has_value()}, {"--subpixel", a.subpixel.has_value()}, {"--dplex", a.dplex.has_value()}, {"--db", a.db.has_value()}};
     for (const auto& [option, given] : contradicting)
         if (given) return Error{fmt::format("{} and --config both say who draws what; leave one of them out", option)};
@@ -323,6 +330,7 @@ Result<std::string> configTextOf(const RunArguments& a, const SessionConfig& c) 
     form.nodes = c.hosts;
     form.ranges = c.passes.ranges;
     if (c.composition != "auto") form.composition = c.composition;
+    form.chunks = c.chunks;
     form.pixels = c.passes.kernelWidth;
     form.samples = c.passes.samples;
     form.frames = c.passes.period;
@@ -383,6 +391,7 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
     command.option_defaults()->take_last();
     command.add_option("--tiles", a.tiles, "tiles of the wall, columns x rows (1x1, or one for each node)")->type_name("CxR");
     command.add_option("--tile-queue", a.tileQueue, "tiles of so many pixels, taken from frame to frame by whichever node is free earlier (each node keeps its tiles)")->type_name("WxH");
+    command.add_option("--chunk-queue", a.chunkQueue, "with --db: draws in so many chunks, taken from frame to frame by whichever node is free earlier (each node has an equal share)")->type_name("N");
     command.add_option("--nodes", a.nodes, "render nodes on these hosts, separated by commas")->type_name("H1,H2");
     command.add_option("--local-nodes", a.localNodes, "render nodes on this machine (as many as tiles, at most 4)")->type_name("N");
     command.add_option("--size", a.size, "size of the wall: the program runs on a private display of this size")->type_name("WxH");

@@ -32,7 +32,7 @@ struct RunOptions {
 // The texts as they stand on the command line; checked and converted by runOptionsFrom.
 struct RunArguments {
     using Text = std::optional<std::string>;
-    Text tiles, tileQueue, size, position, nodes, out, save, display, tiling, policy, gl, launch, stream, remoteMural, front, restartNodes, leastNodes;
+    Text tiles, tileQueue, chunkQueue, size, position, nodes, out, save, display, tiling, policy, gl, launch, stream, remoteMural, front, restartNodes, leastNodes;
     Text config, canvas, frusta, modelUnit, economy, store;
     std::vector<std::string> layouts;
     bool here = false, printConfig = false;

@@ -140,8 +140,11 @@ void addQueue(const Json& queue, std::vector<std::string>& lines) {
     std::string nodes;
     for (const Json& node : entries(queue, "nodes")) nodes += fmt::format("{}node {:.0f} has {:.0f}", nodes.empty() ? "" : ", ", number(node, "node"), number(node, "tiles"));
     const double frames = number(queue, "frames");
-    lines.push_back(fmt::format("  queue \"{}\"  {:.0f}x{:.0f} tiles of {:.0f}x{:.0f} pixels: {}; moved after {:.0f} of {:.0f} frames, {:.2f} tiles per frame", text(queue, "name"), number(queue, "columns"), number(queue, "rows"),
-                                number(queue, "tileWidth"), number(queue, "tileHeight"), nodes, number(queue, "moves"), frames, frames > 0 ? number(queue, "tilesMoved") / frames : 0));
+    const std::string of = text(queue, "of");
+    const std::string pieces = of == "chunks" ? fmt::format("{:.0f} chunks", number(queue, "columns"))
+                                              : fmt::format("{:.0f}x{:.0f} tiles of {:.0f}x{:.0f} pixels", number(queue, "columns"), number(queue, "rows"), number(queue, "tileWidth"), number(queue, "tileHeight"));
+    lines.push_back(fmt::format("  queue \"{}\"  {}: {}; moved after {:.0f} of {:.0f} frames, {:.2f} {} per frame", text(queue, "name"), pieces, nodes, number(queue, "moves"), frames,
+                                frames > 0 ? number(queue, "tilesMoved") / frames : 0, of));
 }
 
 void addNode(const Json& node, std::vector<std::string>& lines) {
