@@ -571,6 +571,7 @@ private:
     void placePart(Window& w);
     void partChanged(Window& w);
     void noteTurn(uint16_t opcode, std::span<const std::byte> arguments);
+    void noteTurnOfList();
     void beginTurn(Window& w);
     void decideTurn(Window& w, bool builds);
     void keepTurn(Window& w);

@@ -39,7 +39,7 @@ void Replay::noteSkipped(uint16_t opcode, std::span<const std::byte> arguments) 
     }
     if (w.stale == 0) return;
     const GLbitfield clears = use == WindowUse::Clears ? clearsOf(opcode, arguments) : 0;
-    const GLbitfield whole = clearsWhole(clears);
+    const GLbitfield whole = clearedBy(opcode, arguments);
     w.stale &= ~whole;
     if (whole & GL_COLOR_BUFFER_BIT) w.unsound = false;
     const GLbitfield needed = use == WindowUse::Clears ? clears & ~whole : opcode == op::glAccum ? GLbitfield{GL_ACCUM_BUFFER_BIT} : needsCleared();

@@ -260,8 +260,9 @@ bool Replay::compileSplitting(uint16_t opcode, std::span<const std::byte> bytes,
 
 void Replay::glNewList(GLuint list, GLenum mode) {
     if (c_->compiling || list == 0) return;
-    c_->compiling = list;
     c_->compileMode = mode;
+    noteTurnOfList();
+    c_->compiling = list;
     c_->compilesPrimitive = false;
     c_->building = {};
     const GLuint first = gl.glGenLists(1);
@@ -301,6 +302,7 @@ void Replay::nextNativeList(const std::function<void()>& between) {
     gl.glEndList();
     const GLuint compiling = std::exchange(c_->compiling, 0);
     between();
+    noteTurnOfList();
     c_->compiling = compiling;
     const GLuint next = gl.glGenLists(1);
     c_->building.items.push_back({.native = next, .record = {}, .blobs = {}});

@@ -99,12 +99,25 @@ void Replay::noteTurn(uint16_t opcode, std::span<const std::byte> arguments) {
     if (w.keepsPicture) return;
     const GLbitfield clears = use == WindowUse::Clears ? clearsOf(opcode, arguments) : 0;
     if (opcode == op::glAccum || (clears & GL_ACCUM_BUFFER_BIT)) return keepTurn(w);
-    const GLbitfield whole = clearsWhole(clears);
+    const GLbitfield whole = clearedBy(opcode, arguments);
     w.cleared |= whole;
     if (use == WindowUse::Clears && (clears & kWindowBuffers & ~whole) == 0) return;
     const bool builds = ((use == WindowUse::Clears ? clears & kWindowBuffers : needsCleared()) & ~w.cleared) != 0;
     if (w.undecided) return decideTurn(w, builds);
     if (builds && w.fresh) keepTurn(w); // too late to find out
+}
+
+// What a list draws while it is compiled, the driver draws at once, by state that the list may change: whose turn it is must be known before, and
+// what all nodes hold alike are buffers that were cleared.
+void Replay::noteTurnOfList() {
+    if (!takesTurns() || c_->compileMode != GL_COMPILE_AND_EXECUTE || !drawsWindow() || !c_->draw) return;
+    Window& w = *c_->draw;
+    if (w.turnOver) beginTurn(w);
+    if (w.keepsPicture) return;
+    const GLbitfield needed = GLbitfield{GL_COLOR_BUFFER_BIT} | (w.config.depth > 0 ? GL_DEPTH_BUFFER_BIT : 0) | (w.config.stencil > 0 ? GL_STENCIL_BUFFER_BIT : 0);
+    const bool builds = (needed & ~w.cleared) != 0;
+    if (w.undecided) return decideTurn(w, builds);
+    if (builds && w.fresh) keepTurn(w);
 }
 
 // The window's part is last frame's until somebody draws: what is read before that is last frame's, too.
