@@ -102,7 +102,7 @@ void PictureComposer::put(PicturePart& part, const ArrivedPiece& piece, Step::Ki
 
 void PictureComposer::lost(int rank, const std::string& why) {
     incomplete_ = true;
-    if (lost_.insert(rank).second) log_("a range of the picture is missing from now on: " + why);
+    if (lost_.insert(rank).second) log_("a range of the picture is missing for now: " + why);
 }
 
 } // namespace mural

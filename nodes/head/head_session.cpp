@@ -439,6 +439,8 @@ SessionStatus HeadSession::status() {
         NodeLink& link = nodes_.link(static_cast<int>(i));
         NodeStatus node{totals_[i], link.place().where, facts_[i].pid, facts_[i].renderer, 0, streamOf(plan_.nodes[i])};
         node.totals.frames = frames_.framesOf(node.totals.node);
+        node.totals.pictureBytes = link.pictureBytes(); // its Bye has what it says itself
+        node.totals.pictureRawBytes = link.pictureRawBytes();
         node.returning = returns_->onItsWay(node.totals.node);
         node.silentSeconds = static_cast<double>(link.silentNs(result.nowNs)) / static_cast<double>(kNsPerS);
         result.nodes.push_back(std::move(node));

@@ -289,6 +289,8 @@ Result<void> NodeLink::readPackedPicture(uint32_t sizeBytes) {
         if (rows.size() != pixels * 4) return Error{"no memory for a picture of " + std::to_string(pixels) + " pixels"};
         if (auto done = pictures_->unpack(header.client, header.window, header.w, header.h, packed->span(), rows.span()); !done)
             return Error{"it sent a picture that can't be unpacked: " + done.error().message};
+        pictureBytes_ += static_cast<int64_t>(packed->size());
+        pictureRawBytes_ += static_cast<int64_t>(rows.size());
         return events_.nodePicture(place_.node, header, std::move(rows));
     });
 }

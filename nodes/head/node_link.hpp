@@ -108,6 +108,9 @@ public:
     [[nodiscard]] int64_t lastProgressNs(int64_t nowNs) const {
         return handlingSinceNs_ != 0 ? nowNs : lastMessageNs_.load();
     }
+    // Of its pictures that came packed, and of what was in them.
+    [[nodiscard]] int64_t pictureBytes() const { return pictureBytes_.load(std::memory_order_relaxed); }
+    [[nodiscard]] int64_t pictureRawBytes() const { return pictureRawBytes_.load(std::memory_order_relaxed); }
     // Since when nothing has come from it.
     [[nodiscard]] int64_t silentNs(int64_t nowNs) const { return nowNs - std::min(nowNs, heardNs_.load()); }
     [[nodiscard]] const NodePlace& place() const { return place_; }
@@ -141,6 +144,7 @@ private:
     const std::unique_ptr<NodeProcess> process_;
     NodeEvents& events_;
     std::unique_ptr<PictureUnpacker> pictures_; // null: they come as they are
+    std::atomic<int64_t> pictureBytes_{0}, pictureRawBytes_{0};
     std::thread reader_;
     std::atomic<bool> alive_;
     std::atomic<bool> saidBye_{false};

@@ -41,6 +41,8 @@ Json nodeJson(const NodeStatus& node) {
         {"frames", node.totals.frames},
         {"replaySeconds", node.totals.replaySeconds},
         {"readbackSeconds", node.totals.readbackSeconds},
+        {"pictureBytes", node.totals.pictureBytes},
+        {"pictureRawBytes", node.totals.pictureRawBytes},
         {"joins", node.totals.joins},
         {"snapshotBytes", node.totals.snapshotBytes},
         {"secondsToBack", node.totals.secondsToBack},

@@ -112,7 +112,7 @@ def range_lost(context, composition):
             return "%d of 4 nodes run" % len(found)
         started = time.monotonic()
         kill_all(sorted(found)[2:3])
-        if not run.wait_for_line("a range of the picture is missing from now on: range 3"):
+        if not run.wait_for_line("a range of the picture is missing for now: range 3"):
             return "nobody said that a range is missing: " + " | ".join(run.standard_error[-3:])
         if not run.wait_for_line("mural: frame ", 30) or not run.wait_for_line("mural: frame ", 30):
             return "no frames came any more: " + " | ".join(run.standard_error[-3:])

@@ -103,7 +103,7 @@ TEST(PictureComposer, aLostNodeHoldsUpNobody) {
         for (int lost = 1; lost < 5; ++lost) {
             const Outcome made = compose(scene, strategy, "", lost);
             ASSERT_FALSE(made.lines.empty());
-            for (const std::string& line : made.lines) EXPECT_EQ(line, "a range of the picture is missing from now on: range " + std::to_string(lost + 1) + " is gone");
+            for (const std::string& line : made.lines) EXPECT_EQ(line, "a range of the picture is missing for now: range " + std::to_string(lost + 1) + " is gone");
         }
 }
 
@@ -156,7 +156,7 @@ TEST(PictureComposer, aSilentNodeIsTheOnlyOneThatIsLost) {
     const Scene scene = sceneOf(random, 5, ruleOf(DepthFunction::Less, false), 60, 90);
     for (const Strategy strategy : kEveryStrategy) {
         const Outcome made = compose(scene, strategy, "", 3, 300);
-        for (const std::string& line : made.lines) EXPECT_EQ(line, "a range of the picture is missing from now on: range 4 is gone") << nameOf(strategy);
+        for (const std::string& line : made.lines) EXPECT_EQ(line, "a range of the picture is missing for now: range 4 is gone") << nameOf(strategy);
     }
 }
 

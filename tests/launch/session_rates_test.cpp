@@ -51,10 +51,20 @@ TEST(SessionRates, showWhatTheNodesWereSpared) {
     EXPECT_EQ(statLines(both[0])[6], "           of 9.0 kB per frame 4.0 kB were left out (2.0 records); 2.0 kB held back now");
 }
 
+TEST(SessionRates, showHowPicturesCame) {
+    auto session = look(10, 100, 1000, 5000, 4, 1.0);
+    session["nodes"][0]["pictureRawBytes"] = 300000.0;
+    session["nodes"][0]["pictureBytes"] = 2000.0;
+    const auto lines = statLines(withRates({}, {session})[0]);
+    EXPECT_TRUE(std::ranges::any_of(lines, [](const std::string& line) { return line.find("100 frames, pictures of 3.0 kB came in 20 B per frame") != std::string::npos; })) << lines.back();
+}
+
 TEST(SessionRates, showWhoHasWhichTiles) {
     auto session = look(10, 100, 1000, 5000, 4, 1.0);
-    session["queues"] = {{{"name", "tiles"}, {"columns", 25}, {"rows", 19}, {"tileWidth", 32}, {"tileHeight", 16}, {"frames", 8}, {"moves", 2}, {"tilesMoved", 60}, {"nodes", {{{"node", 0}, {"tiles", 95}}, {{"node", 1}, {"tiles", 380}}}}}};
+    session["queues"] = {{{"name", "tiles"}, {"of", "tiles"}, {"columns", 25}, {"rows", 19}, {"tileWidth", 32}, {"tileHeight", 16}, {"frames", 8}, {"moves", 2}, {"tilesMoved", 60}, {"nodes", {{{"node", 0}, {"tiles", 95}}, {{"node", 1}, {"tiles", 380}}}}}};
+    session["queues"].push_back({{"name", "draws"}, {"of", "chunks"}, {"columns", 60}, {"rows", 1}, {"frames", 4}, {"moves", 1}, {"tilesMoved", 6}, {"nodes", {{{"node", 0}, {"tiles", 20}}, {{"node", 1}, {"tiles", 40}}}}});
     const auto lines = statLines(withRates({}, {session})[0]);
+    EXPECT_NE(std::ranges::find(lines, "  queue \"draws\"  60 chunks: node 0 has 20, node 1 has 40; moved after 1 of 4 frames, 1.50 chunks per frame"), lines.end());
     EXPECT_NE(std::ranges::find(lines, "  queue \"tiles\"  25x19 tiles of 32x16 pixels: node 0 has 95, node 1 has 380; moved after 2 of 8 frames, 7.50 tiles per frame"), lines.end());
 }
 
