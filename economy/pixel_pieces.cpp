@@ -87,7 +87,7 @@ bool PixelJoiner::begin(std::span<const std::byte> front, size_t pagesBytes, siz
 
 void PixelJoiner::join(std::span<const std::byte> planes, std::span<const std::byte> rest, std::span<std::byte> pages) {
     const size_t count = planeBytes_ / 4;
-    if (words_.size() < count) words_.resize(count);
+    if (words_.size() < count + 1) words_.resize(count + 1);
     fromPlanes(planes.data(), count, words_.data());
     const uint32_t* words = words_.data();
     auto masks = masks_;

@@ -148,9 +148,17 @@ template <class Word> void sum(const uint8_t* differences, uint8_t* piece) {
     }
 }
 
+// The byte behind each pixel is written again with the next one.
 void sumTriples(const uint8_t* differences, uint8_t* piece) {
-    uint8_t pixel[3] = {};
-    for (size_t i = 0; i < kPageBytes; ++i) piece[i] = pixel[i % 3] = static_cast<uint8_t>(pixel[i % 3] + differences[i]);
+    uint32_t pixel = 0;
+    size_t i = 0;
+    for (; i + sizeof pixel <= kPageBytes; i += 3) {
+        uint32_t difference = 0;
+        std::memcpy(&difference, differences + i, sizeof difference);
+        pixel = added(pixel, difference);
+        std::memcpy(piece + i, &pixel, sizeof pixel);
+    }
+    for (; i < kPageBytes; ++i) piece[i] = static_cast<uint8_t>(piece[i - 3] + differences[i]);
 }
 
 } // namespace
@@ -173,7 +181,11 @@ size_t sumDifferences(const uint32_t* words, const std::byte* mask, size_t pixel
     alignas(8) uint32_t all[kPieceWords];
     for (size_t i = 0; i < kPieceWords; i += 8) {
         auto bits = static_cast<uint32_t>(mask[i / 8]);
-        for (size_t k = 0; k < 8; ++k, bits >>= 1) all[i + k] = (bits & 1) != 0 ? *words++ : 0;
+        for (size_t k = 0; k < 8; ++k, bits >>= 1) { // no branch: nobody could foresee it
+            const uint32_t bit = bits & 1;
+            all[i + k] = *words & (0 - bit);
+            words += bit;
+        }
     }
     const auto* const from = reinterpret_cast<const uint8_t*>(all);
     if (pixelBytes == 1) sum<uint8_t>(from, bytesOf(piece));

@@ -22,7 +22,7 @@ std::array<uint32_t, kPixelBytes.size()> roughness(const std::byte* piece);
 // `pixelBytes`: of kPixelBytes, not 0.
 size_t differences(const std::byte* piece, size_t pixelBytes, uint32_t* words, std::byte* mask);
 
-// The piece again. `words`: as many as the mask has bits, which is what it returns.
+// The piece again. `words`: as many as the mask has bits, which is what it returns, and room for one more.
 size_t sumDifferences(const uint32_t* words, const std::byte* mask, size_t pixelBytes, std::byte* piece);
 
 // First bytes of all words, then all second ones …: `planes` has as many bytes as the words.
