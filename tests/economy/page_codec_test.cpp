@@ -33,7 +33,7 @@ Bytes vertices(size_t sizeBytes, uint32_t seed) {
     for (auto& f : some) f = static_cast<float>(random()) / 1e9f;
     while (floats.size() * 4 < sizeBytes) floats.insert(floats.end(), some.begin() + static_cast<std::ptrdiff_t>(random() % 100) * 3, some.end());
     Bytes bytes(sizeBytes);
-    std::memcpy(bytes.data(), floats.data(), sizeBytes);
+    if (sizeBytes > 0) std::memcpy(bytes.data(), floats.data(), sizeBytes);
     return bytes;
 }
 
