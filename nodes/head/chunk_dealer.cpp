@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "balancer/queue/random_areas.hpp"
-
 namespace mural {
 namespace {
 
@@ -26,15 +24,14 @@ std::vector<TileRegion> evenRuns(int chunks, int nodes) {
 ChunkDealer::ChunkDealer(const SessionPlan& plan, Announce announce, const std::string& plant) : announce_(std::move(announce)), times_(plan.nodes.size()) {
     for (const NodePlan& node : plan.nodes) shares_.push_back(node.pass.share);
     for (size_t q = 0; q < plan.chunkQueues.size(); ++q) {
-        Queue queue;
-        queue.plan = plan.chunkQueues[q];
+        std::vector<int> nodes;
         for (const NodePlan& node : plan.nodes)
-            if (node.chunkQueue == static_cast<int>(q)) queue.nodes.push_back(node.node);
-        if (queue.nodes.size() < 2) continue;
-        std::ranges::sort(queue.nodes, {}, [&](int node) { return plan.nodes[static_cast<size_t>(node)].pass.range; });
-        queue.totals.name = queue.plan.name;
-        queue.totals.chunks = true;
-        queues_.push_back(std::move(queue));
+            if (node.chunkQueue == static_cast<int>(q)) nodes.push_back(node.node);
+        if (nodes.size() < 2) continue;
+        std::ranges::sort(nodes, {}, [&](int node) { return plan.nodes[static_cast<size_t>(node)].pass.range; });
+        Queue& queue = queues_.emplace_back(Queue{plan.chunkQueues[q], DealtQueue(std::move(nodes))});
+        queue.chunks.totals.name = queue.plan.name;
+        queue.chunks.totals.chunks = true;
     }
     for (Queue& queue : queues_) layOut(queue);
     if (plant == "shares" || plant == "lateshare") random_.emplace(20261123);
@@ -47,82 +44,52 @@ void ChunkDealer::frameDone(int node, const wire::FrameDoneMessage& message) {
     times_.worked(node, message.busyNs);
     if (random_) dealAtRandom();
     if (!times_.follows(message)) return;
-    for (Queue& queue : queues_)
-        if (!queue.takers.empty() && node == queue.takers.front() && message.shares != std::exchange(queue.drawnBy, message.shares)) ++queue.totals.taken;
+    for (Queue& queue : queues_) queue.chunks.note(node, message.shares);
     if (random_) return;
     bool moved = false;
     if (const auto frame = times_.finished(node, message))
-        for (Queue& queue : queues_) moved = compare(queue, *frame) || moved;
+        for (Queue& queue : queues_) moved = queue.chunks.compare(*frame, &wire::FrameDoneMessage::shares, number_) || moved;
     if (moved) announce();
 }
 
 // As many chunks as the queue has, and one for each node at least.
 void ChunkDealer::layOut(Queue& queue) {
-    queue.takers.clear();
-    for (const int node : queue.nodes)
-        if (times_.lives(node)) queue.takers.push_back(node);
-    queue.chunks.reset();
-    const auto takers = static_cast<int>(queue.takers.size());
+    queue.chunks.begin(times_);
+    const auto takers = static_cast<int>(queue.chunks.takers().size());
     if (takers > 0) {
         const int chunks = std::clamp(static_cast<int>(std::ceil(1 / std::max(queue.plan.part, 1.0 / kMostChunks) - 1e-9)), takers, kMostChunks);
-        queue.chunks.emplace(chunks, 1, evenRuns(chunks, takers));
+        queue.chunks.deal(chunks, 1, evenRuns(chunks, takers));
     }
-    count(queue);
+    queue.chunks.count();
 }
 
 void ChunkDealer::layOutOf(int node) {
     bool any = false;
     for (Queue& queue : queues_) {
-        if (std::ranges::find(queue.nodes, node) == queue.nodes.end()) continue;
+        if (!queue.chunks.has(node)) continue;
         layOut(queue);
         any = true;
     }
     if (any) announce();
 }
 
-// True: chunks have moved. A frame of which nothing was shared says nothing.
-bool ChunkDealer::compare(Queue& queue, const FrameTimes::Frame& frame) {
-    if (!queue.chunks) return false;
-    std::vector<double> times;
-    for (const int node : queue.takers) {
-        const auto n = static_cast<size_t>(node);
-        if (frame.done[n].shares != number_ || (frame.done[n].flags & wire::kNotSplit)) return false;
-        times.push_back(frame.busyNs[n]);
-    }
-    ++queue.totals.frames;
-    const std::vector<TileRegion> before = queue.chunks->areas();
-    if (!queue.chunks->drawn(times)) return false;
-    ++queue.totals.moves;
-    queue.totals.tilesMoved += queue::tilesMoved(before, queue.chunks->areas());
-    return true;
-}
-
 void ChunkDealer::dealAtRandom() {
-    for (Queue& queue : queues_) {
-        if (!queue.chunks) continue;
-        const int chunks = queue.chunks->columns();
-        auto runs = queue::randomAreas(chunks, 1, queue.takers.size(), *random_);
-        std::ranges::sort(runs, {}, &TileRegion::column);
-        ++queue.totals.frames;
-        ++queue.totals.moves;
-        queue.totals.tilesMoved += queue::tilesMoved(queue.chunks->areas(), runs);
-        queue.chunks.emplace(chunks, 1, std::move(runs));
-    }
+    for (Queue& queue : queues_) queue.chunks.dealAtRandom(*random_, true);
     announce();
 }
 
 // All queues' shares, to all nodes.
 void ChunkDealer::announce() {
     for (Queue& queue : queues_) {
-        count(queue);
-        if (!queue.chunks) continue;
+        queue.chunks.count();
+        if (!queue.chunks.deals()) continue;
         const Range& whole = queue.plan.range;
-        const int chunks = queue.chunks->columns();
+        const int chunks = queue.chunks.columns();
         const auto edge = [&](int chunk) { return chunk == chunks ? whole.end : whole.start + (whole.end - whole.start) * chunk / chunks; };
-        for (const int node : queue.nodes) shares_[static_cast<size_t>(node)] = {whole.start, whole.start};
-        for (size_t i = 0; i < queue.takers.size(); ++i) {
-            const TileRegion& run = queue.chunks->areas()[i];
-            shares_[static_cast<size_t>(queue.takers[i])] = {edge(run.column), edge(run.column + run.columns)};
+        for (const int node : queue.chunks.nodes()) shares_[static_cast<size_t>(node)] = {whole.start, whole.start};
+        for (size_t i = 0; i < queue.chunks.takers().size(); ++i) {
+            const TileRegion& run = queue.chunks.areas()[i];
+            shares_[static_cast<size_t>(queue.chunks.takers()[i])] = {edge(run.column), edge(run.column + run.columns)};
         }
     }
     announce_({++number_, shares_});
@@ -144,21 +111,10 @@ void ChunkDealer::nodeJoined(int node) {
     if (times_.joined(node)) layOutOf(node);
 }
 
-void ChunkDealer::count(Queue& queue) {
-    queue.totals.nodes.clear();
-    queue.totals.columns = queue.chunks ? queue.chunks->columns() : 0;
-    queue.totals.rows = queue.chunks ? 1 : 0;
-    for (const int node : queue.nodes) {
-        const auto taker = std::ranges::find(queue.takers, node);
-        const auto at = static_cast<size_t>(taker - queue.takers.begin());
-        queue.totals.nodes.emplace_back(node, queue.chunks && taker != queue.takers.end() ? queue.chunks->areas()[at].columns : 0);
-    }
-}
-
 std::vector<QueueTotals> ChunkDealer::totals() const {
     const std::lock_guard lock(mutex_);
     std::vector<QueueTotals> totals;
-    for (const Queue& queue : queues_) totals.push_back(queue.totals);
+    for (const Queue& queue : queues_) totals.push_back(queue.chunks.totals);
     return totals;
 }
 

@@ -12,10 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "balancer/queue/tile_queue.hpp"
-#include "nodes/head/frame_times.hpp"
+#include "nodes/head/dealt_queue.hpp"
 #include "nodes/head/node_plan.hpp"
-#include "nodes/head/queue_totals.hpp"
 #include "nodes/session/shares.hpp"
 
 namespace mural {
@@ -41,19 +39,13 @@ public:
 private:
     struct Queue {
         ChunkQueuePlan plan;
-        std::vector<int> nodes;  // in the order of their ranges
-        std::vector<int> takers; // of them, those that live
-        std::optional<queue::TileQueue> chunks; // columns of one row; none: nobody lives
-        QueueTotals totals;
-        uint32_t drawnBy = 0; // number of the shares of the last frame
+        DealtQueue chunks; // columns of one row; its nodes in the order of their ranges
     };
 
     void layOut(Queue& queue); // evenly, among those that live
     void layOutOf(int node);
-    bool compare(Queue& queue, const FrameTimes::Frame& frame);
     void dealAtRandom();
     void announce();
-    static void count(Queue& queue);
 
     mutable std::mutex mutex_;
     const Announce announce_;

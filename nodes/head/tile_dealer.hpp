@@ -12,10 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "balancer/queue/tile_queue.hpp"
-#include "nodes/head/frame_times.hpp"
+#include "nodes/head/dealt_queue.hpp"
 #include "nodes/head/node_plan.hpp"
-#include "nodes/head/queue_totals.hpp"
 #include "nodes/session/areas.hpp"
 #include "streamcodec/wire.hpp"
 
@@ -43,19 +41,13 @@ public:
 private:
     struct Queue {
         TileQueuePlan plan;
-        std::vector<int> nodes;
-        std::vector<int> takers; // of them, those that live
-        std::optional<queue::TileQueue> tiles;
-        QueueTotals totals;
-        uint32_t drawnBy = 0; // number of the areas of the followed window's last frame
+        DealtQueue tiles;
     };
     void layOut(Queue& queue); // its grid, anew
     void layOutOf(int node);   // those of its queue
-    bool compare(Queue& queue, const FrameTimes::Frame& frame);
     [[nodiscard]] PixelViewport pixelsOf(const Queue& queue) const;
     void dealAtRandom();
     void announce();
-    void countTiles(Queue& queue) const;
 
     mutable std::mutex mutex_;
     const Announce announce_;
