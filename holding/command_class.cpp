@@ -1,9 +1,5 @@
 #include "holding/command_class.hpp"
 
-#include <vector>
-
-#include "gl_opcodes.hpp"
-#include "recording/kept/families.hpp"
 #include "streamcodec/command_parameters.hpp"
 #include "streamcodec/wire.hpp"
 
@@ -132,48 +128,39 @@ CommandClass ownClass(uint16_t opcode) {
     }
 }
 
-struct Table {
-    std::vector<CommandClass> classes;
-    std::vector<uint8_t> valueWords;
-
-    Table() : classes(op::kLimit, CommandClass::Unknown), valueWords(op::kLimit, kNoValue) {
-        constexpr uint8_t kBufferBytesValue = 3; // buffer, u64 offset
-        valueWords[wire::kOpBufferBytes] = kBufferBytesValue;
-        for (uint16_t opcode = 0; opcode < op::kLimit; ++opcode) {
-            if (opcode < wire::kFirstGlOpcode) {
-                classes[opcode] = ownClass(opcode);
-                continue;
-            }
-            classes[opcode] = exceptionOf(opcode);
-            if (classes[opcode] == CommandClass::Pass) classes[opcode] = ofFamily(recording::ruleOf(opcode));
-            findValue(opcode);
-        }
+uint8_t findValue(uint16_t opcode) {
+    if (opcode == wire::kOpBufferBytes) return 3; // buffer, u64 offset
+    size_t word = 0;
+    for (const ParameterInfo& p : parametersOf(opcode).parameters) {
+        if (p.travel == Travel::Value || p.travel == Travel::Text || p.travel == Travel::Texts) return word < kNoValue ? static_cast<uint8_t>(word) : kNoValue;
+        if (p.travel == Travel::Fixed) word += (size_t{p.fixedBytes} + 3) / 4;
+        else word += p.travel == Travel::Wide || bytesOf(p.element) == 8 ? 2 : 1;
     }
-    void findValue(uint16_t opcode) {
-        size_t word = 0;
-        for (const ParameterInfo& p : parametersOf(opcode).parameters) {
-            if (p.travel == Travel::Value || p.travel == Travel::Text || p.travel == Travel::Texts) {
-                if (word < kNoValue) valueWords[opcode] = static_cast<uint8_t>(word);
-                return;
-            }
-            if (p.travel == Travel::Fixed) word += (size_t{p.fixedBytes} + 3) / 4;
-            else word += p.travel == Travel::Wide || bytesOf(p.element) == 8 ? 2 : 1;
-        }
-    }
-};
-
-const Table& table() {
-    static const Table kTable;
-    return kTable;
+    return kNoValue;
 }
 
 } // namespace
 
-CommandClass classOf(uint16_t opcode) {
-    static const std::vector<CommandClass>& kClasses = table().classes;
-    return opcode < kClasses.size() ? kClasses[opcode] : CommandClass::Unknown;
+CommandKinds::CommandKinds() {
+    for (uint16_t opcode = 0; opcode < op::kLimit; ++opcode) {
+        CommandKind& kind = kinds_[opcode];
+        kind.state = stateRoleOf(opcode);
+        if (opcode < wire::kFirstGlOpcode) {
+            kind.about = ownClass(opcode);
+            kind.valueWord = opcode == wire::kOpBufferBytes ? findValue(opcode) : kNoValue;
+            continue;
+        }
+        const recording::Rule& rule = recording::ruleOf(opcode);
+        kind.family = rule.family;
+        kind.about = exceptionOf(opcode);
+        if (kind.about == CommandClass::Pass) kind.about = ofFamily(rule);
+        kind.valueWord = findValue(opcode);
+    }
 }
 
-uint8_t valueWordOf(uint16_t opcode) { return opcode < op::kLimit ? table().valueWords[opcode] : kNoValue; }
+const CommandKinds& CommandKinds::all() {
+    static const CommandKinds kAll;
+    return kAll;
+}
 
 } // namespace mural::holding

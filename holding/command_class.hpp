@@ -4,6 +4,10 @@
 
 #include <cstdint>
 
+#include "gl_opcodes.hpp"
+#include "holding/small_state.hpp"
+#include "recording/kept/families.hpp"
+
 namespace mural::holding {
 
 enum class CommandClass : uint8_t {
@@ -22,9 +26,28 @@ enum class CommandClass : uint8_t {
     Unknown, // may do anything, also to what is bound: from there on nothing of the share group is held
 };
 
-CommandClass classOf(uint16_t opcode);
 // The word of the arguments in which a value of variable size begins, the first; kNoValue: there is none.
 constexpr uint8_t kNoValue = 0xff;
-uint8_t valueWordOf(uint16_t opcode);
+
+struct CommandKind {
+    CommandClass about = CommandClass::Unknown;
+    StateRole state = StateRole::Change;
+    recording::Family family = recording::Family::Unknown;
+    uint8_t valueWord = kNoValue;
+};
+
+// All of them. Each record is looked up, so whoever does it for many keeps the reference.
+class CommandKinds {
+public:
+    static const CommandKinds& all();
+    const CommandKind& operator[](uint16_t opcode) const { return kinds_[opcode < op::kLimit ? opcode : op::kLimit]; }
+
+private:
+    CommandKinds();
+    CommandKind kinds_[op::kLimit + 1];
+};
+
+inline CommandClass classOf(uint16_t opcode) { return CommandKinds::all()[opcode].about; }
+inline uint8_t valueWordOf(uint16_t opcode) { return CommandKinds::all()[opcode].valueWord; }
 
 } // namespace mural::holding

@@ -39,10 +39,12 @@ void Holder::add(uint32_t streamId, std::span<const std::byte> payload) {
     RecordView r;
     constexpr size_t kNone = SIZE_MAX;
     size_t valueFrom = stream.values > 0 ? 0 : kNone; // where the pieces of the value begin that are in this packet
-    while (walk.next(r)) {
-        const CommandClass kind = classOf(r.opcode);
-        if (kind == CommandClass::Pass && valueFrom == kNone) continue;
-        if (kind == CommandClass::Blob) {
+    while (true) {
+        const bool looksAtState = leavesOutSmall_ || stream.list != 0;
+        if (valueFrom == kNone) walk.skip([&](uint16_t opcode) { return kinds_[opcode].about == CommandClass::Pass && (!looksAtState || kinds_[opcode].state == StateRole::None); });
+        if (!walk.next(r)) break;
+        const CommandKind& kind = kinds_[r.opcode];
+        if (kind.about == CommandClass::Blob) {
             if (valueFrom == kNone) valueFrom = r.offset;
             ++stream.pendingRecords;
             if (r.opcode != wire::kOpBlobBegin) continue;
@@ -52,8 +54,9 @@ void Holder::add(uint32_t streamId, std::span<const std::byte> payload) {
             continue;
         }
         const size_t from = valueFrom == kNone ? r.offset : valueFrom;
-        record(stream, output, r, kind, from, payload);
-        if (stream.values > 0 && kind != CommandClass::Upload) stream.waiting.lost();
+        const bool done = looksAtState && kind.state != StateRole::None && stream.context != nullptr && smallState(stream, output, r, kind.state, from, payload);
+        if (!done) record(stream, output, r, kind, from, payload);
+        if (stream.values > 0 && kind.about != CommandClass::Upload) stream.waiting.lost();
         if (!stream.pending.empty()) sendPending(stream, output, from);
         stream.values = stream.pendingRecords = 0;
         stream.valueBytes = 0;
@@ -89,18 +92,19 @@ void Holder::sendPending(Stream& stream, Output& output, size_t from) {
     std::vector<std::byte>().swap(stream.pending);
 }
 
-void Holder::record(Stream& stream, Output& output, const RecordView& r, CommandClass kind, size_t from, std::span<const std::byte> packet) {
-    if (kind == CommandClass::Own) return own(stream, output, r, from);
-    if (stream.context == nullptr || kind == CommandClass::Pass) return;
+void Holder::record(Stream& stream, Output& output, const RecordView& r, const CommandKind& kind, size_t from, std::span<const std::byte> packet) {
+    if (kind.about == CommandClass::Own) return own(stream, output, r, from);
+    if (stream.context == nullptr || kind.about == CommandClass::Pass) return;
     Group& group = *stream.context->group;
     if (group.untracked) return;
-    At at{stream, *stream.context, group, output, r, from, packet};
-    gl(at, kind);
+    At at{stream, *stream.context, group, output, r, kind, from, packet};
+    gl(at);
 }
 
-void Holder::gl(At& at, CommandClass kind) {
+void Holder::gl(At& at) {
     Stream& stream = at.stream;
-    if (stream.list != 0 && kind != CommandClass::List) return compiled(at, kind);
+    const CommandClass kind = at.kind.about;
+    if (stream.list != 0 && kind != CommandClass::List) return compiled(at);
     if (stream.inPrimitive && kind != CommandClass::List) {
         if (kind == CommandClass::End) stream.inPrimitive = false;
         return; // all else is an error
@@ -121,7 +125,7 @@ void Holder::gl(At& at, CommandClass kind) {
     case CommandClass::UseAll:
         releaseGroup(stream, at.output, at.from);
         for (auto& table : at.group.objects)
-            for (auto& [name, object] : table) object->known.clear();
+            for (auto& [name, object] : table) object->forget();
         return;
     case CommandClass::Unknown: return untrack(at);
     default: return;
@@ -133,7 +137,7 @@ void Holder::arrays(At& at) {
     if (at.group.held.empty()) return;
     recording::RecordWalk behind(at.packet.subspan(at.r.offset + at.r.sizeBytes));
     RecordView next;
-    const bool draws = at.r.opcode == wire::kOpClientArrays && behind.next(next) && classOf(next.opcode) == CommandClass::Use;
+    const bool draws = at.r.opcode == wire::kOpClientArrays && behind.next(next) && kinds_[next.opcode].about == CommandClass::Use;
     if (draws) return use(at);
     releaseGroup(at.stream, at.output, at.from);
 }
@@ -143,7 +147,7 @@ void Holder::untrack(At& at) {
     at.group.untracked = true;
     at.group.lists.clear();
     for (auto& table : at.group.objects)
-        for (auto& [name, object] : table) object->known.clear();
+        for (auto& [name, object] : table) object->forget();
 }
 
 // ---- Mural's own records
@@ -165,10 +169,10 @@ void Holder::own(Stream& stream, Output& output, const RecordView& r, size_t fro
     case wire::kOpProgramLayout:
     case wire::kOpProgramRecipe: {
         if (stream.context == nullptr || stream.context->group->untracked) return;
-        At at{stream, *stream.context, *stream.context->group, output, r, from, {}};
+        At at{stream, *stream.context, *stream.context->group, output, r, kinds_[r.opcode], from, {}};
         Object* const program = make(at.group, Kind::Program, argumentWord(r, 0));
         releaseOne(at, *program);
-        program->known.clear();
+        program->forget();
         program->target = 1; // it is linked: glUseProgram makes it current
         return;
     }
@@ -230,19 +234,16 @@ void Holder::clientGone(uint32_t client) {
     const auto ofClient = clients_.find(client);
     if (ofClient != clients_.end()) {
         for (auto& [id, context] : ofClient->second) {
-            while (!context->group->held.empty()) {
-                Object& object = *context->group->held.back();
-                for (const Item& item : object.queue) countLeftOut(item.records, item.bytes.size());
-                emptyQueue(*context->group, object);
-            }
+            while (!context->group->held.empty()) dropQueue(*context->group, *context->group->held.back());
         }
     }
-    clients_.erase(client);
     std::erase_if(streams_, [&](const auto& s) {
         if (wire::clientOf(s.first) != client) return false;
         pendingBytes_ -= s.second.pending.size();
+        if (s.second.context != nullptr) dropWaiting(s.second.context->state);
         return true;
     });
+    clients_.erase(client);
 }
 
 } // namespace mural::holding

@@ -17,6 +17,7 @@
 #include "holding/command_class.hpp"
 #include "holding/names.hpp"
 #include "holding/output.hpp"
+#include "holding/small_state.hpp"
 
 namespace mural::holding {
 
@@ -39,6 +40,8 @@ public:
     void add(uint32_t stream, std::span<const std::byte> payload);
     void releaseAll();               // all that is held is sent now
     void clientGone(uint32_t client); // nobody needs it any more
+    // Whether small state, bindings and uniforms go only where they change something; between two packets. At first all of it goes.
+    void leaveOutSmall(bool leavesOut);
     void losesWhatItHolds() { loses_ = true; } // a fault on purpose, for tests of the tests
     [[nodiscard]] const HolderCounts& counts() const { return counts_; }
 
@@ -50,15 +53,28 @@ private:
         Group& group;
         Output& output;
         const RecordView& r;
+        const CommandKind& kind;
         size_t from; // in the packet: of the first piece of its value, or of the record
         std::span<const std::byte> packet;
     };
 
-    void record(Stream& stream, Output& output, const RecordView& r, CommandClass kind, size_t from, std::span<const std::byte> packet);
+    void record(Stream& stream, Output& output, const RecordView& r, const CommandKind& kind, size_t from, std::span<const std::byte> packet);
     void keepPending(Stream& stream, Output& output, size_t from, std::span<const std::byte> packet);
     void sendPending(Stream& stream, Output& output, size_t from);
-    void gl(At& at, CommandClass kind);
+    void gl(At& at);
     void arrays(At& at);
+
+    // Small state
+    bool smallState(Stream& stream, Output& output, const RecordView& r, StateRole role, size_t from, std::span<const std::byte> packet);
+    void countFate(const Outcome& outcome, size_t sizeBytes);
+    [[nodiscard]] bool setsNothing(const Group& group, uint32_t list) const;
+    void sendState(Stream& stream, Output& output, size_t from);
+    void sendStateOf(Stream& stream);
+    template <size_t Words>
+    void dropWaiting(const Cells<Words>& cells) {
+        counts_.heldBytes -= cells.waitingBytes();
+        countLeftOut(cells.waitingRecords(), cells.waitingBytes());
+    }
 
     // Mural's records
     void own(Stream& stream, Output& output, const RecordView& r, size_t from);
@@ -69,6 +85,7 @@ private:
 
     // What is bound
     void bind(At& at);
+    void boundAlready(At& at); // the record changes nothing
     void bindTexture(At& at, uint32_t target, uint32_t unit, Object* object);
     void bindBuffer(At& at, uint32_t target, uint32_t name);
     void bindIndexed(At& at);
@@ -96,12 +113,14 @@ private:
     void upload(At& at);
     Object* objectOf(At& at);
     void hold(At& at, Object& object, const Upload* upload, bool barrier);
+    void waitsFor(At& at, Object& object);
+    void oneUniform(At& at, Object& program, size_t locationWord);
     void countLeftOut(size_t records, size_t sizeBytes);
     void objectCommand(At& at);
     Sum sumOfValue(At& at, const Upload& upload);
 
     void list(At& at);
-    void compiled(At& at, CommandClass kind);
+    void compiled(At& at);
 
     // Releasing: before the byte `from` of the output's packet
     void use(At& at);
@@ -111,15 +130,19 @@ private:
     void releaseOf(Group& group, Stream& stream, Output& output, size_t from);
     void releaseElsewhere(Stream& stream);
     void emptyQueue(Group& group, Object& object);
+    void dropQueue(Group& group, Object& object);
     void sendQueue(Context& c, Output& output, size_t from, Object& object);
     void untrack(At& at);
 
+    const CommandKinds& kinds_ = CommandKinds::all();
     const uint64_t mostBytes_;
     const Take take_; // counts what goes
     std::unordered_map<uint32_t, Stream> streams_;
     std::map<uint32_t, std::map<uint32_t, std::unique_ptr<Context>>> clients_;
     std::vector<std::byte> scratch_, otherScratch_;
+    std::vector<Object*> used_; // by the draw
     uint64_t pendingBytes_ = 0;
+    bool leavesOutSmall_ = false;
     bool loses_ = false;
     HolderCounts counts_;
 };
@@ -128,5 +151,7 @@ private:
 bool namesAt(const recording::RecordView& r, size_t word, std::vector<uint32_t>& names);
 // By which TextureUnit is counted; kTextureTargets: unknown. Faces of a cube are the cube.
 size_t targetIndex(uint32_t target);
+// While it is enabled the program hears of each command when its driver speaks.
+bool hearsDriver(uint32_t cap);
 
 } // namespace mural::holding

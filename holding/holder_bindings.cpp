@@ -16,6 +16,11 @@ using recording::Family;
 namespace {
 
 constexpr uint32_t kExternal = 0x8D65; // GL_TEXTURE_EXTERNAL_OES
+bool waits(const Object* object) { return object != nullptr && object->waits(); }
+bool needs(const VertexArray& array) {
+    return waits(array.indices) || std::ranges::any_of(array.buffers, [](const auto& b) { return waits(b.second); });
+}
+
 constexpr size_t kMostUnits = 256, kMostSaved = 16, kMostArrayBuffers = 256;
 
 // Targets at which a draw takes nothing from a buffer, and nothing else writes it.
@@ -41,15 +46,25 @@ size_t targetIndex(uint32_t target) {
     }
 }
 
+// Not in a group of several: there binding again is what shows what another context has changed.
+void Holder::boundAlready(At& at) {
+    if (!leavesOutSmall_ || at.context.group.use_count() > 1 || at.stream.values > 0) return;
+    countLeftOut(1, at.r.sizeBytes);
+    at.output.leaveOut(at.r.offset, at.r.offset + at.r.sizeBytes);
+}
+
+bool hearsDriver(uint32_t cap) { return cap == GL_DEBUG_OUTPUT || cap == GL_DEBUG_OUTPUT_SYNCHRONOUS; }
+
 void Holder::bind(At& at) {
     Context& c = at.context;
     const RecordView& r = at.r;
     const uint32_t first = argumentWord(r, 0), second = argumentWord(r, 1);
-    switch (recording::ruleOf(r.opcode).family) {
+    switch (at.kind.family) {
     case Family::Cap: // nodes tell what their drivers say, as it happens
-        return first == GL_DEBUG_OUTPUT || first == GL_DEBUG_OUTPUT_SYNCHRONOUS ? untrack(at) : void();
+        return hearsDriver(first) ? untrack(at) : void();
     case Family::ActiveTexture:
         if (first < GL_TEXTURE0 || first - GL_TEXTURE0 >= kMostUnits) return untrack(at);
+        if (c.unit == first - GL_TEXTURE0) return boundAlready(at);
         c.unit = first - GL_TEXTURE0;
         if (c.unit >= c.units.size()) c.units.resize(c.unit + 1);
         return;
@@ -96,14 +111,19 @@ void Holder::bind(At& at) {
     switch (r.opcode) {
     case op::glBindTexture: {
         Object* const object = named(at, Kind::Texture, second);
-        return at.group.untracked ? void() : bindTexture(at, first, c.unit, object);
+        if (at.group.untracked) return;
+        if (object != nullptr && object == textureAt(at, first) && first != kExternal) return boundAlready(at);
+        return bindTexture(at, first, c.unit, object);
     }
-    case op::glBindBuffer: return bindBuffer(at, first, second);
+    case op::glBindBuffer:
+        if (first == GL_ARRAY_BUFFER && second != 0 && bufferAt(c, first) != nullptr && bufferAt(c, first)->name == second) return boundAlready(at);
+        return bindBuffer(at, first, second);
     case op::glBindVertexArray: {
         const auto found = c.arrays.find(first);
+        if (found != c.arrays.end() && c.array == &found->second) return boundAlready(at);
         if (found == c.arrays.end() && !c.madeByBinding) return untrack(at);
         c.array = found == c.arrays.end() ? &c.arrays[first] : &found->second;
-        c.changed = true;
+        c.needs = c.needs || needs(*c.array);
         return;
     }
     case op::glBindFramebuffer:
@@ -125,7 +145,7 @@ void Holder::bindTexture(At& at, uint32_t target, uint32_t unit, Object* object)
     }
     if (unit >= c.units.size()) c.units.resize(unit + 1);
     c.units[unit][index] = object;
-    c.changed = true;
+    c.needs = c.needs || waits(object);
 }
 
 void Holder::bindIndexed(At& at) {
@@ -152,7 +172,7 @@ void Holder::bindBuffer(At& at, uint32_t target, uint32_t name) {
     if (at.group.untracked) return;
     if (target == GL_ELEMENT_ARRAY_BUFFER) {
         c.array->indices = object;
-        c.changed = true;
+        c.needs = c.needs || waits(object);
         return;
     }
     if (!onlyForUploads(target)) openUp(at, object);
@@ -168,6 +188,7 @@ void Holder::bindBuffer(At& at, uint32_t target, uint32_t name) {
 void Holder::useProgram(At& at, uint32_t name) {
     Context& c = at.context;
     Object* const object = name == 0 ? nullptr : make(at.group, Kind::Program, name);
+    if (c.programSure && object == c.program && (object == nullptr || object->target != 0)) return boundAlready(at);
     if (object != nullptr && object->target == 0) {
         std::vector<Object*> programs;
         std::ranges::copy_if(at.group.held, std::back_inserter(programs), [](const Object* o) { return o->kind == Kind::Program; });
@@ -177,7 +198,7 @@ void Holder::useProgram(At& at, uint32_t name) {
         c.programSure = true;
     }
     c.program = object;
-    c.changed = true;
+    c.needs = c.needs || waits(object);
 }
 
 void Holder::arrayPointer(At& at) {
@@ -191,7 +212,7 @@ void Holder::arrayPointer(At& at) {
     }
     const uint32_t index = generic ? argumentWord(r, 0) : r.opcode == op::glTexCoordPointer ? c.clientUnit : 0;
     const uint32_t key = uint32_t{r.opcode} << 16 | (index & 0xffff);
-    c.changed = true;
+    c.needs = c.needs || waits(object);
     for (auto& [known, there] : c.array->buffers) {
         if (known != key) continue;
         there = object;
@@ -223,7 +244,7 @@ void Holder::popAttribs(At& at) {
     saved.units.resize(std::max(saved.units.size(), c.units.size()));
     c.units = std::move(saved.units);
     c.unit = saved.unit;
-    c.changed = true;
+    c.needs = true;
 }
 
 void Holder::pushClientAttribs(At& at) {

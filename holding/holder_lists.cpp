@@ -14,7 +14,7 @@ using recording::Family;
 void Holder::list(At& at) {
     Stream& stream = at.stream;
     const uint32_t first = argumentWord(at.r, 0);
-    switch (recording::ruleOf(at.r.opcode).family) {
+    switch (at.kind.family) {
     case Family::NewList:
         if (stream.inPrimitive || stream.list != 0) return; // an error
         releaseGroup(stream, at.output, at.from);
@@ -47,15 +47,15 @@ void Holder::list(At& at) {
 }
 
 // A command while a list is compiled: done later, or now.
-void Holder::compiled(At& at, CommandClass kind) {
-    switch (kind) {
+void Holder::compiled(At& at) {
+    switch (at.kind.about) {
     case CommandClass::Begin: ++at.stream.depth; return;
     case CommandClass::End: --at.stream.depth; return;
     case CommandClass::Use:
     case CommandClass::Arrays: return;
     case CommandClass::Bind: break;
     case CommandClass::Unknown:
-        if (recording::ruleOf(at.r.opcode).family == Family::Handle) return untrack(at); // lists hold none: it is dealt now
+        if (at.kind.family == Family::Handle) return untrack(at); // lists hold none: it is dealt now
         at.stream.compiled.binds = true;
         return;
     case CommandClass::Upload:
@@ -64,7 +64,7 @@ void Holder::compiled(At& at, CommandClass kind) {
         [[fallthrough]];
     default: at.stream.compiled.binds = true; return;
     }
-    switch (recording::ruleOf(at.r.opcode).family) {
+    switch (at.kind.family) {
     case Family::Gen: // these are no part of lists
     case Family::Create:
     case Family::Delete:
@@ -74,6 +74,9 @@ void Holder::compiled(At& at, CommandClass kind) {
     case Family::ClientActiveTexture:
     case Family::ClientPush:
     case Family::ClientPop: return bind(at);
+    case Family::Cap:
+        at.stream.compiled.binds = at.stream.compiled.binds || hearsDriver(argumentWord(at.r, 0));
+        return;
     case Family::Bind:
         if (at.r.opcode == op::glBindBuffer || at.r.opcode == op::glBindVertexArray) return bind(at);
         [[fallthrough]];

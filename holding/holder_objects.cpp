@@ -67,7 +67,7 @@ void Holder::generate(At& at) {
         Object* const old = find(at.group, Kind::Program, argumentWord(r, r.opcode == op::glCreateShader ? 1 : 0));
         if (old == nullptr) return;
         releaseOne(at, *old);
-        old->known.clear();
+        old->forget();
         old->target = 0;
         old->open = false;
         return;
@@ -107,7 +107,7 @@ void Holder::deleteNames(At& at) {
             if (found == c.arrays.end()) continue;
             if (c.array == &found->second) c.array = &c.arrays[0];
             c.arrays.erase(found);
-            c.changed = true;
+            c.needs = true;
         }
         if (rule.type != ObjectType::Texture && rule.type != ObjectType::Buffer) continue;
         if (Object* const object = find(at.group, rule.type == ObjectType::Texture ? Kind::Texture : Kind::Buffer, name)) deleteObject(at, object);
@@ -137,8 +137,7 @@ void Holder::deleteObject(At& at, Object* object) {
             if (there == object) there = nullptr, inArrays = inArrays || !current;
     }
     if (inArrays) releaseOne(at, *object);
-    for (const Item& item : object->queue) countLeftOut(item.records, item.bytes.size());
-    emptyQueue(at.group, *object);
+    dropQueue(at.group, *object);
     at.group.objects[static_cast<size_t>(object->kind)].erase(object->name);
 }
 
@@ -146,7 +145,7 @@ void Holder::openUp(At& at, Object* object) {
     if (object == nullptr || object->open) return;
     releaseOne(at, *object);
     object->open = true;
-    object->known.clear();
+    object->forget();
 }
 
 void Holder::openNamed(At& at, Kind kind, size_t word) { openUp(at, find(at.group, kind, argumentWord(at.r, word))); }

@@ -30,10 +30,12 @@ uint32_t nameOf(const Object* object) { return object == nullptr ? 0 : object->n
 // A draw: of what is held goes what is bound for it.
 void Holder::use(At& at) {
     Context& c = at.context;
-    if (at.group.held.empty() || !c.changed) return;
-    std::vector<Object*> used;
+    if (at.group.held.empty() || !c.needs) return;
+    c.needs = false;
+    std::vector<Object*>& used = used_;
+    used.clear();
     const auto take = [&](Object* object) {
-        if (object != nullptr && !object->queue.empty() && std::ranges::find(used, object) == used.end()) used.push_back(object);
+        if (object != nullptr && object->waits() && std::ranges::find(used, object) == used.end()) used.push_back(object);
     };
     for (const TextureUnit& unit : c.units)
         for (Object* const object : unit) take(object);
@@ -41,12 +43,11 @@ void Holder::use(At& at) {
     take(c.array->indices);
     take(c.program);
     if (!used.empty()) release(at.stream, at.output, at.from, used);
-    c.changed = false;
 }
 
 void Holder::releaseOne(At& at, Object& object) {
     Object* const one = &object;
-    if (!object.queue.empty()) release(at.stream, at.output, at.from, std::span(&one, 1));
+    if (object.waits()) release(at.stream, at.output, at.from, std::span(&one, 1));
 }
 
 void Holder::releaseGroup(Stream& stream, Output& output, size_t from) {
@@ -76,6 +77,7 @@ void Holder::releaseElsewhere(Stream& stream) {
 }
 
 void Holder::releaseAll() {
+    for (auto& [id, stream] : streams_) sendStateOf(stream);
     for (auto& [client, contexts] : clients_)
         for (auto& [id, context] : contexts) {
             if (context->group->held.empty()) continue;
@@ -85,6 +87,15 @@ void Holder::releaseAll() {
         }
 }
 
+// Nobody needs it.
+void Holder::dropQueue(Group& group, Object& object) {
+    for (const Item& item : object.queue) countLeftOut(item.records, item.bytes.size());
+    dropWaiting(object.uniforms);
+    object.uniforms.send([](std::span<const std::byte>) {});
+    emptyQueue(group, object);
+}
+
+// What waited has been sent, or goes nowhere.
 void Holder::emptyQueue(Group& group, Object& object) {
     counts_.heldBytes -= object.heldBytes;
     object.heldBytes = 0;
@@ -100,7 +111,9 @@ void Holder::release(Stream& stream, Output& output, size_t from, std::span<Obje
     const Object* const unpack = textures ? bufferAt(c, GL_PIXEL_UNPACK_BUFFER) : nullptr;
     if (unpack != nullptr) put<2>(output, from, op::glBindBuffer, {GL_PIXEL_UNPACK_BUFFER, 0});
     for (Object* const object : objects) {
+        counts_.heldBytes -= object->uniforms.waitingBytes();
         if (!loses_) sendQueue(c, output, from, *object);
+        else object->uniforms.send([](std::span<const std::byte>) {});
         if (group.frame - object->heldSince <= kSoonFrames && !object->gained) object->holding.lost();
         else object->holding.won();
         emptyQueue(group, *object);
@@ -111,6 +124,7 @@ void Holder::release(Stream& stream, Output& output, size_t from, std::span<Obje
 void Holder::sendQueue(Context& c, Output& output, size_t from, Object& object) {
     uint32_t target = 0;
     for (const Item& item : object.queue) target = std::max(target, item.target);
+    if (object.uniforms.waiting()) target = 1;
     const Object* bound = &object;
     if (target != 0) {
         switch (object.kind) {
@@ -138,6 +152,7 @@ void Holder::sendQueue(Context& c, Output& output, size_t from, Object& object) 
         }
         output.insert(from, item.bytes);
     }
+    object.uniforms.send([&](std::span<const std::byte> record) { output.insert(from, record); });
     if (bound == &object) return;
     switch (object.kind) {
     case Kind::Texture: return put<2>(output, from, op::glBindTexture, {target, nameOf(bound)});

@@ -20,8 +20,29 @@ namespace {
 
 // Smaller ones cost more to hold than to send.
 constexpr size_t kLeastBytes = 512;
-constexpr size_t kLeastUniformBytes = 64;
-constexpr size_t kMostItems = 4096; // of one object
+constexpr size_t kMostItems = 4096;     // of one object
+constexpr size_t kMostLocations = 1024; // of uniforms
+
+// Samplers take numbers of units only: a larger one may be refused, where the one before it was not.
+bool refusedByNone(const recording::RecordView& r, size_t firstValueWord) {
+    constexpr uint32_t kUnits = 16; // that every GL has
+    switch (r.opcode) {
+    case op::glUniform1i:
+    case op::glUniform1iv:
+    case op::glProgramUniform1i:
+    case op::glProgramUniform1iv: break;
+    default: return true;
+    }
+    for (size_t word = firstValueWord; word < r.arguments.size() / 4; ++word)
+        if (argumentWord(r, word) >= kUnits) return false;
+    return true;
+}
+
+// It sets one whole uniform, at that location, and lies here whole.
+bool isOneUniform(const recording::RecordView& r, const CommandKind& kind, size_t locationWord) {
+    const bool counted = kind.valueWord != kNoValue;
+    return argumentWord(r, locationWord) < kMostLocations && r.sizeBytes <= Cells<kUniformWords>::kMostBytes && (!counted || argumentWord(r, locationWord + 1) == 1);
+}
 
 } // namespace
 
@@ -29,11 +50,11 @@ constexpr size_t kMostItems = 4096; // of one object
 Object* Holder::objectOf(At& at) {
     const uint32_t first = argumentWord(at.r, 0);
     if (at.r.opcode == wire::kOpBufferBytes || at.r.opcode == op::glInvalidateBufferData || at.r.opcode == op::glInvalidateBufferSubData) return find(at.group, Kind::Buffer, first);
+    if (at.kind.family == Family::Uniform) return at.context.programSure ? at.context.program : nullptr;
     const recording::Rule& rule = recording::ruleOf(at.r.opcode);
     switch (rule.family) {
     case Family::BufferData:
     case Family::BufferSubData: return rule.type == recording::ObjectType::Buffer ? find(at.group, Kind::Buffer, first) : bufferAt(at.context, first);
-    case Family::Uniform: return at.context.programSure ? at.context.program : nullptr;
     case Family::ShaderDelete:
     case Family::ProgramAttach:
     case Family::ProgramDetach:
@@ -46,12 +67,20 @@ Object* Holder::objectOf(At& at) {
 
 void Holder::upload(At& at) {
     Object* const object = objectOf(at);
-    const Family family = recording::ruleOf(at.r.opcode).family;
+    const Family family = at.kind.family;
     if (object == nullptr || object->open) return; // nothing of it is held, and nothing known
     const bool uniform = family == Family::Uniform;
+    if (uniform) {
+        if (at.stream.values == 0 && isOneUniform(at.r, at.kind, 0)) return oneUniform(at, *object, 0);
+        // Some of an array, which may be any of those.
+        const bool certain = refusedByNone(at.r, at.kind.valueWord + size_t{1});
+        if (!certain || object->uniforms.waiting()) releaseOne(at, *object);
+        object->uniforms.forgetAll();
+        if (!certain) return;
+    }
     const uint64_t blobBytes = at.stream.values == 1 && recording::blobsTakenBy(at.r) == 1 ? at.stream.firstValueBytes : 0;
     const size_t sizeBytes = at.r.sizeBytes + at.stream.valueBytes;
-    const bool small = sizeBytes < (uniform ? kLeastUniformBytes : kLeastBytes);
+    const bool small = sizeBytes < kLeastBytes && !uniform;
     if (small && object->queue.empty() && object->known.empty()) return;
     if (uniform && object->queue.empty() && !object->holding.tries()) return;
     const auto u = uploadOf(at.r, blobBytes);
@@ -90,6 +119,30 @@ void Holder::upload(At& at) {
     hold(at, *object, &*u, u->kind == UploadKind::Storage);
 }
 
+// A uniform that is no array waits by its location: what the next one replaces has not to be looked for.
+void Holder::oneUniform(At& at, Object& program, size_t locationWord) {
+    const size_t location = argumentWord(at.r, locationWord);
+    const auto record = at.packet.subspan(at.r.offset, at.r.sizeBytes);
+    const bool certain = refusedByNone(at.r, at.kind.valueWord == kNoValue ? locationWord + 1 : at.kind.valueWord + size_t{1});
+    if (at.context.group.use_count() > 1) { // another thread may set it, in an order that is not this one
+        releaseOne(at, program);
+        return program.uniforms.forgetAll();
+    }
+    if (!certain || program.uniforms.otherWaits(location, record)) {
+        releaseOne(at, program);
+        return program.uniforms.forget(location);
+    }
+    const bool mayWait = program.waits() || program.holding.tries();
+    if (!leavesOutSmall_ && !mayWait) return program.uniforms.forget(location);
+    const Outcome outcome = program.uniforms.set(location, record, mayWait);
+    countFate(outcome, at.r.sizeBytes);
+    if (outcome.fate == Fate::Goes) return;
+    program.gained = program.gained || outcome.gone > 0;
+    at.output.leaveOut(at.from, at.r.offset + at.r.sizeBytes);
+    if (outcome.fate == Fate::Waits) return waitsFor(at, program);
+    if (!program.waits()) emptyQueue(at.group, program);
+}
+
 // It stays behind, with the pieces of its value.
 void Holder::hold(At& at, Object& object, const Upload* upload, bool barrier) {
     Item item;
@@ -114,15 +167,20 @@ void Holder::hold(At& at, Object& object, const Upload* upload, bool barrier) {
     counts_.heldRecords += item.records;
     counts_.heldBytes += item.bytes.size();
     object.heldBytes += item.bytes.size();
+    object.queue.push_back(std::move(item));
+    waitsFor(at, object);
+}
+
+// Something of it has been held: it goes when the object is needed, or there is too much.
+void Holder::waitsFor(At& at, Object& object) {
     Group& group = at.group;
     if (std::ranges::find(group.held, &object) == group.held.end()) {
         group.held.push_back(&object);
         object.heldSince = group.frame;
     }
-    object.queue.push_back(std::move(item));
     group.holder = &at.context;
     group.holderStream = at.stream.id;
-    at.context.changed = true;
+    at.context.needs = true;
     const size_t behind = at.r.offset + at.r.sizeBytes;
     if (object.queue.size() >= kMostItems) {
         Object* const one = &object;
@@ -138,8 +196,9 @@ void Holder::objectCommand(At& at) {
         rule.family == Family::ProgramDetach || rule.family == Family::ShaderDelete) {
         Object* const program = objectOf(at);
         if (program == nullptr) return;
+        if (rule.family == Family::ProgramUniform && !program->open && at.stream.values == 0 && isOneUniform(at.r, at.kind, 1)) return oneUniform(at, *program, 1);
         releaseOne(at, *program);
-        program->known.clear();
+        program->forget();
         if (rule.family == Family::ProgramLink) program->target = 0; // until it is known that it was linked
         return;
     }

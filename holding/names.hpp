@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "holding/cells.hpp"
 #include "holding/object.hpp"
+#include "holding/small_state.hpp"
 
 namespace mural::holding {
 
@@ -21,6 +23,7 @@ struct Context;
 struct ListNames {
     bool binds = false; // changes what is bound, or is not understood: a call of it ends holding
     bool calls = false; // other lists
+    bool sets = false;  // small state, or is not understood
 };
 
 // Contexts that share objects. What is held has been sent to one of them, as long as no other says anything.
@@ -66,7 +69,8 @@ struct Context {
     uint32_t drawFramebuffer = 0;
     std::vector<SavedAttribs> attribs;
     std::vector<SavedClientAttribs> clientAttribs;
-    bool changed = true; // what is bound or held, since the last draw
+    bool needs = true; // something that waits may have been bound since the last draw, or held
+    Cells<kStateWords> state; // small state, by StateSet
 };
 
 struct Stream {

@@ -5,11 +5,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "holding/cells.hpp"
 #include "holding/upload.hpp"
 
 namespace mural::holding {
 
 enum class Kind : uint8_t { Texture, Buffer, Program };
+
+constexpr size_t kUniformWords = 22; // of the longest record that sets one: glProgramUniformMatrix4fv
 
 // A record that is held, with the pieces of its value before it.
 struct Item {
@@ -50,6 +53,7 @@ struct Object {
     uint32_t target = 0;   // of a texture: what it was bound to first
     bool open = false;     // others than draws with it bound may use or change it: nothing of it is held
     std::vector<Item> queue; // held, in their order
+    Cells<kUniformWords> uniforms; // of a program, by location, those that are no array; what waits is behind the queue
     size_t heldBytes = 0;
     uint64_t heldSince = 0; // frame in which the first of the queue came
     bool gained = false;    // something of the queue was replaced
@@ -61,6 +65,11 @@ struct Object {
     };
     std::vector<Known> known; // what is in it, when the queue has been sent
 
+    [[nodiscard]] bool waits() const { return !queue.empty() || uniforms.waiting(); }
+    void forget() { // what is in it; nothing may wait
+        known.clear();
+        uniforms.forgetAll();
+    }
     enum class News : uint8_t { Same, Changed, First }; // First: there was none like it
     // Whether the upload changes anything of what is there. Remembers it.
     News compare(const Upload& u, const Sum& sum);

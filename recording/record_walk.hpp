@@ -41,6 +41,16 @@ public:
         at_ += record.sizeBytes;
         return true;
     }
+    // On over short records as long as they are of no interest, by their opcode.
+    template <typename OfNoInterest>
+    void skip(const OfNoInterest& ofNoInterest) {
+        while (packet_.size() - at_ >= 4) {
+            const uint32_t head = word(at_);
+            const size_t sizeBytes = (head >> 16) * size_t{4};
+            if (sizeBytes == 0 || head >> 16 == record::kLongForm || sizeBytes > packet_.size() - at_ || !ofNoInterest(static_cast<uint16_t>(head))) return;
+            at_ += sizeBytes;
+        }
+    }
     [[nodiscard]] bool malformed() const { return malformed_; }
 
 private:

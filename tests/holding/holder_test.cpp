@@ -1,6 +1,7 @@
 // What stays behind, until when, and what never goes.
 #include "holding/holder.hpp"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 #include "tests/holding/seen_model.hpp"
@@ -18,6 +19,7 @@ class Holding : public testing::Test {
 protected:
     void send(const PacketBuilder& p, uint32_t stream = kStream) { holder_.add(stream, p.bytes()); }
     void begin() {
+        holder_.leaveOutSmall(true);
         send(PacketBuilder().context(1).window(1, 20, 10).record(wire::kOpMakeCurrent, {1, 1, 1}).record(op::glGenTextures, {2, 8, 1, 2}).record(op::glGenBuffers, {2, 8, 1, 2}));
     }
     static std::vector<uint32_t> image(uint32_t value) {
@@ -33,11 +35,16 @@ protected:
     }
     static PacketBuilder draw() { return PacketBuilder().record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}); }
 
+    [[nodiscard]] size_t countOf(uint16_t opcode) const;
+
     SeenModel seen_;
-    std::vector<uint32_t> streams_; // of the packets that went
+    std::vector<uint32_t> streams_;  // of the packets that went
+    std::vector<uint16_t> opcodes_; // of the records that went
     Holder holder_{kBound, [this](uint32_t stream, std::span<const std::byte> payload) {
                        seen_.packet(stream, payload);
                        streams_.push_back(stream);
+                       recording::RecordWalk walk(payload);
+                       for (recording::RecordView r; walk.next(r);) opcodes_.push_back(r.opcode);
                    }};
 };
 
@@ -171,6 +178,92 @@ TEST_F(Holding, waitsForValuesThatTravelAhead) {
     holder_.clientGone(1);
     EXPECT_EQ(seen_.uploads(), 1u) << "nobody needs it";
     EXPECT_EQ(holder_.counts().heldBytes, 0u);
+}
+
+// What of the stream came out, by its commands.
+size_t Holding::countOf(uint16_t opcode) const { return static_cast<size_t>(std::ranges::count(opcodes_, opcode)); }
+
+TEST_F(Holding, sendsNoStateThatIsAsItWas) {
+    begin();
+    for (uint32_t frame = 1; frame <= 50; ++frame) {
+        send(PacketBuilder().record(op::glEnable, {GL_BLEND}).record(op::glBlendFunc, {GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA}).record(op::glDepthMask, {1}).record(op::glActiveTexture, {GL_TEXTURE0}));
+        send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}).swap(1, frame));
+    }
+    for (const uint16_t opcode : {op::glEnable, op::glBlendFunc, op::glDepthMask, op::glBindTexture}) EXPECT_EQ(countOf(opcode), 1u);
+    EXPECT_EQ(countOf(op::glActiveTexture), 0u) << "0 is active from the start";
+    EXPECT_EQ(countOf(op::glDrawArrays), 50u);
+    EXPECT_EQ(holder_.counts().leftOutRecords, 4u * 49 + 50);
+    EXPECT_EQ(holder_.counts().inBytes, holder_.counts().outBytes + holder_.counts().leftOutBytes);
+}
+
+TEST_F(Holding, keepsStateUntilADrawNeedsIt) {
+    begin();
+    send(PacketBuilder().record(op::glDisable, {GL_DEPTH_TEST}).record(op::glDepthFunc, {GL_LESS}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));
+    EXPECT_EQ(countOf(op::glDisable), 1u);
+    for (uint32_t frame = 1; frame <= 50; ++frame) // nothing between is drawn
+        send(PacketBuilder().record(op::glEnable, {GL_DEPTH_TEST}).record(op::glDepthFunc, {GL_LESS + frame % 3}).record(op::glMatrixMode, {GL_MODELVIEW}).swap(1, frame));
+    EXPECT_EQ(countOf(op::glEnable) + countOf(op::glDepthFunc), 1u);
+    EXPECT_GT(holder_.counts().heldBytes, 0u);
+    send(PacketBuilder().record(op::glClear, {GL_COLOR_BUFFER_BIT}));
+    EXPECT_EQ(countOf(op::glEnable), 1u);
+    EXPECT_EQ(countOf(op::glDepthFunc), 2u);
+    EXPECT_EQ(holder_.counts().heldBytes, 0u);
+    // Back to what it was before anybody has seen it.
+    send(PacketBuilder().record(op::glDisable, {GL_DEPTH_TEST}).record(op::glEnable, {GL_DEPTH_TEST}));
+    EXPECT_EQ(holder_.counts().heldBytes, 0u);
+    send(draw());
+    EXPECT_EQ(countOf(op::glDisable), 1u);
+}
+
+TEST_F(Holding, sendsStateBeforeWhatAsksForIt) {
+    const PacketBuilder asking[] = {PacketBuilder().record(op::glPushAttrib, {GL_ENABLE_BIT}), PacketBuilder().record(op::glBegin, {GL_POINTS}).record(op::glEnd, {}),
+                                    PacketBuilder().record(op::glBlitFramebuffer, {0, 0, 1, 1, 0, 0, 1, 1, GL_COLOR_BUFFER_BIT, GL_NEAREST}), PacketBuilder().record(op::glCallList, {7}),
+                                    PacketBuilder().record(wire::kOpFinish, {1}), PacketBuilder().record(wire::kOpMakeCurrent, {0, 0, 0}), PacketBuilder().record(op::glClearTexImage, {1, 0, GL_RGBA, GL_UNSIGNED_BYTE, record::kTagNull})};
+    begin();
+    for (size_t i = 0; i < std::size(asking); ++i) {
+        send(PacketBuilder().record(wire::kOpMakeCurrent, {1, 1, 1}));
+        send(PacketBuilder().record(op::glViewport, {0, 0, 10, static_cast<uint32_t>(i)}));
+        EXPECT_EQ(countOf(op::glViewport), i) << "nobody has asked";
+        send(asking[i]);
+        EXPECT_EQ(countOf(op::glViewport), i + 1);
+    }
+}
+
+TEST_F(Holding, sendsUniformsOfTheProgramThatDraws) {
+    begin();
+    for (const uint32_t program : {5U, 6U}) send(PacketBuilder().record(op::glCreateProgram, {program}).record(wire::kOpProgramLayout, {program, 4, 0}));
+    for (uint32_t frame = 1; frame <= 50; ++frame) {
+        send(PacketBuilder().record(op::glUseProgram, {5}).record(op::glUniform1f, {0, frame}).record(op::glUniform4f, {1, frame, 2, 3, 4})); // replaced, but once
+        send(PacketBuilder().record(op::glUseProgram, {6}).record(op::glUniform1f, {0, 7}).record(op::glUniform1i, {2, 3}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}).swap(1, frame));
+    }
+    EXPECT_EQ(countOf(op::glUniform1i), 1u) << "it is 3";
+    EXPECT_EQ(countOf(op::glUniform4f), 0u) << "nothing is drawn by that program";
+    EXPECT_EQ(countOf(op::glUniform1f), 1u);
+    send(PacketBuilder().record(op::glUseProgram, {5}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));
+    EXPECT_EQ(countOf(op::glUniform4f), 1u);
+    EXPECT_EQ(countOf(op::glUniform1f), 2u);
+    EXPECT_EQ(holder_.counts().heldBytes, 0u);
+}
+
+// What another thread has set meanwhile is not known.
+TEST_F(Holding, leavesOutNothingSmallWhereContextsShare) {
+    begin();
+    send(PacketBuilder().context(2, 1), kOther);
+    send(PacketBuilder().record(op::glCreateProgram, {5}).record(wire::kOpProgramLayout, {5, 4, 0}).record(op::glUseProgram, {5}));
+    for (uint32_t frame = 1; frame <= 10; ++frame)
+        send(PacketBuilder().record(op::glUniform1f, {0, 7}).record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}).swap(1, frame));
+    EXPECT_EQ(countOf(op::glUniform1f), 10u);
+    EXPECT_EQ(countOf(op::glBindTexture), 10u);
+}
+
+// A list that has been compiled sets state when it is called, and binds nothing.
+TEST_F(Holding, followsListsThatSetState) {
+    begin();
+    send(PacketBuilder().record(op::glNewList, {3, GL_COMPILE}).record(op::glEnable, {GL_BLEND}).record(op::glEndList, {}).record(op::glDisable, {GL_BLEND}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));
+    send(PacketBuilder().record(op::glCallList, {3}).record(op::glDisable, {GL_BLEND}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));
+    EXPECT_EQ(countOf(op::glDisable), 2u) << "the list has enabled it";
+    send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glTexImage2D, image(5)).record(op::glBindTexture, {GL_TEXTURE_2D, 2}));
+    EXPECT_EQ(seen_.uploads(), 0u) << "holding goes on";
 }
 
 TEST_F(Holding, holdsNothingOfAProgramThatHearsItsDriver) {

@@ -63,6 +63,7 @@ private:
     uint32_t target() { return below(3) == 0 ? GL_ELEMENT_ARRAY_BUFFER : GL_ARRAY_BUFFER; }
 
     void command(PacketBuilder& p) {
+        if (below(3) == 0) return small(p);
         switch (below(26)) {
         case 0: p.record(op::glActiveTexture, {GL_TEXTURE0 + below(2)}); return;
         case 1:
@@ -86,12 +87,38 @@ private:
         case 19: p.record(op::glBindBuffer, {GL_PIXEL_UNPACK_BUFFER, below(4) == 0 ? name() : 0}); return;
         case 20: p.record(op::glCopyTexSubImage2D, {GL_TEXTURE_2D, below(2), 0, 0, 0, 0, 4, 4}); return;
         case 21:
-            p.record(op::glPushAttrib, {GL_TEXTURE_BIT}).record(op::glBindTexture, {GL_TEXTURE_2D, name()}).record(op::glActiveTexture, {GL_TEXTURE0 + below(2)});
+            p.record(op::glPushAttrib, {GL_TEXTURE_BIT | (below(2) == 0 ? GL_ENABLE_BIT : 0U)}).record(op::glBindTexture, {GL_TEXTURE_2D, name()}).record(op::glActiveTexture, {GL_TEXTURE0 + below(2)});
             if (below(2) == 0) withValue(p, op::glTexImage2D, {GL_TEXTURE_2D, 0, GL_RGBA, 16, 16, 0, GL_RGBA, GL_UNSIGNED_BYTE}, value(256));
+            for (uint32_t i = below(3); i > 0; --i) small(p);
             p.record(op::glPopAttrib, {});
             return;
         default:
             if (!fewDraws_ || below(8) == 0) p.record(op::glDrawArrays, {GL_TRIANGLES, 0, 3});
+            return;
+        }
+    }
+    // Few values of few things, so that many are as they were.
+    void small(PacketBuilder& p) {
+        switch (below(17)) {
+        case 0:
+        case 1: p.record(below(2) == 0 ? op::glEnable : op::glDisable, {below(2) == 0 ? 0U + GL_BLEND : 0U + GL_DEPTH_TEST}); return;
+        case 2: p.record(below(2) == 0 ? op::glEnable : op::glDisable, {GL_TEXTURE_2D}); return;
+        case 3: p.record(op::glDepthFunc, {below(4) == 0 ? 77U : GL_LESS + below(2)}); return; // 77: refused
+        case 4: p.record(op::glStencilFunc, {GL_LESS, below(2), 255}); return;
+        case 5: p.record(op::glStencilFuncSeparate, {GL_FRONT + below(2), GL_LESS, below(2), 255}); return;
+        case 6: p.record(op::glViewport, {0, 0, 8 + below(2), 8}); return;
+        case 7: p.record(op::glClearColor, {below(2), 0, 0, 0}); return;
+        case 8: p.record(op::glMatrixMode, {GL_MODELVIEW + below(2)}); return;
+        case 9: p.record(op::glLoadMatrixf, value(16)); return;
+        case 10: p.record(op::glClear, {GL_COLOR_BUFFER_BIT}); return;
+        case 11:
+        case 12: p.record(op::glUniform1f, {3 + below(4), below(2)}); return;
+        case 13: p.record(op::glUniform1i, {6, below(3) == 0 ? 99U : below(2)}); return; // 99: refused, it is a sampler
+        case 14: return withValue(p, op::glUniform1fv, {3 + below(2), 1 + below(2)}, value(2));
+        case 15: p.record(op::glProgramUniform1f, {name(), 3 + below(3), below(2)}); return;
+        default:
+            if (below(8) == 0) p.record(op::glNewList, {2, GL_COMPILE}).record(op::glEnable, {GL_BLEND}).record(op::glEndList, {});
+            p.record(op::glCallList, {2});
             return;
         }
     }
@@ -135,7 +162,9 @@ void same(uint32_t seed, bool shares, uint64_t mostBytes, Won& won) {
         ASSERT_LE(payload.size(), wire::kMaxPacketBytes);
         held.packet(stream, payload);
     });
+    holder.leaveOutSmall(true);
     const auto send = [&](uint32_t stream, std::span<const std::byte> payload) {
+        if (program.below(40) == 0) holder.leaveOutSmall(program.below(3) != 0);
         whole.packet(stream, payload);
         holder.add(stream, payload);
     };

@@ -41,6 +41,7 @@ public:
 private:
     using Bytes = std::vector<std::byte>;
     static constexpr uint32_t kColumns = 24;     // of an image
+    static constexpr uint32_t kSampler = 6, kUnits = 16; // where there is a uniform that takes units, and how many
     using Levels = std::map<uint32_t, uint64_t>; // content, by level and column; parameters above
     struct Array {
         std::map<uint32_t, uint32_t> pointers;
@@ -51,7 +52,14 @@ private:
         std::map<uint32_t, uint32_t> textures; // by unit
         std::map<uint32_t, Array> arrays;
         std::map<uint32_t, uint32_t> attached;
-        std::vector<std::pair<uint32_t, std::map<uint32_t, uint32_t>>> saved;
+        std::map<uint32_t, std::array<uint32_t, 4>> state; // by what there is of it
+        std::map<uint32_t, uint32_t> matrices;             // by mode
+        struct Saved {
+            uint32_t mask, unit;
+            std::map<uint32_t, uint32_t> textures;
+            std::map<uint32_t, std::array<uint32_t, 4>> state;
+        };
+        std::vector<Saved> saved;
         bool inPrimitive = false;
         uint32_t list = 0;
         uint64_t window = 0;
@@ -80,6 +88,9 @@ private:
         for (const uint32_t v : {c.unpackBuffer, c.program, c.array, c.framebuffer}) h = mix(h, v);
         for (const auto& [unit, name] : c.textures)
             if (name != 0) h = mix(mix(h, unit), name);
+        for (const auto& [key, value] : c.state)
+            for (const uint32_t word : value) h = mix(mix(h, key), word);
+        for (const auto& [mode, value] : c.matrices) h = mix(mix(h, mode), value);
         for (const auto& [name, array] : c.arrays) {
             h = mix(mix(h, name), array.indices);
             for (const auto& [index, buffer] : array.pointers) h = mix(mix(h, index), buffer);
@@ -207,15 +218,45 @@ private:
         case op::glVertexAttribPointer: c.arrays[c.array].pointers[arg(0)] = c.arrayBuffer; return;
         case op::glUseProgram: c.program = arg(0); return;
         case op::glUniformMatrix4fv: uniforms_[{c.program, arg(0)}] = hash(valueOf(s, r, 3)); return;
+        case op::glUniform1f:
+            if (arg(0) != kSampler) uniforms_[{c.program, arg(0)}] = mix(1, arg(1));
+            return;
+        case op::glUniform1i:
+            if (arg(0) == kSampler && arg(1) < kUnits) uniforms_[{c.program, arg(0)}] = mix(2, arg(1));
+            return;
+        case op::glUniform1fv: {
+            const Bytes value = valueOf(s, r, 2);
+            for (uint32_t i = 0; i < arg(1) && i * 4 + 4 <= value.size(); ++i) {
+                uint32_t word = 0;
+                std::memcpy(&word, value.data() + i * size_t{4}, 4);
+                uniforms_[{c.program, arg(0) + i}] = mix(1, word);
+            }
+            return;
+        }
+        case op::glProgramUniform1f: uniforms_[{arg(0), arg(1)}] = mix(1, arg(2)); return;
+        case op::glEnable:
+        case op::glDisable: c.state[arg(0) == GL_TEXTURE_2D ? arg(0) + 0x10000 * c.unit : arg(0)] = {r.opcode}; return;
+        case op::glDepthFunc:
+            if (arg(0) >= GL_NEVER && arg(0) <= GL_ALWAYS) c.state[1] = {arg(0)};
+            return;
+        case op::glStencilFunc: c.state[2] = c.state[3] = {arg(0), arg(1), arg(2)}; return;
+        case op::glStencilFuncSeparate: c.state[arg(0) == GL_FRONT ? 2 : 3] = {arg(1), arg(2), arg(3)}; return;
+        case op::glViewport: c.state[4] = {arg(0), arg(1), arg(2), arg(3)}; return;
+        case op::glClearColor: c.state[5] = {arg(0), arg(1), arg(2), arg(3)}; return;
+        case op::glMatrixMode: c.state[6] = {arg(0)}; return;
+        case op::glLoadMatrixf: c.matrices[c.state[6][0]] = arg(0); return;
+        case op::glClear: c.window = mix(c.window, bindings(c)); return;
         case op::glBindFramebuffer: c.framebuffer = arg(1); return;
         case op::glFramebufferTexture2D: c.attached[c.framebuffer] = arg(3); return;
-        case op::glPushAttrib: c.saved.emplace_back(c.unit, c.textures); return;
-        case op::glPopAttrib:
+        case op::glPushAttrib: c.saved.push_back({arg(0), c.unit, c.textures, c.state}); return;
+        case op::glPopAttrib: {
             if (c.saved.empty()) return;
-            c.unit = c.saved.back().first;
-            c.textures = c.saved.back().second;
+            const auto saved = std::move(c.saved.back());
             c.saved.pop_back();
+            if (saved.mask & GL_TEXTURE_BIT) c.unit = saved.unit, c.textures = saved.textures;
+            if (saved.mask & GL_ENABLE_BIT) c.state = saved.state; // as if that were all
             return;
+        }
         case op::glBegin: draw(c); c.inPrimitive = true; return;
         case op::glEnd: c.inPrimitive = false; return;
         case op::glDrawArrays: return draw(c);

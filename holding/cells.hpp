@@ -1,0 +1,107 @@
+// Values of which each command sets one whole: by number, what the nodes have and what waits. Commands are kept as their records, so
+// that what is equal is equal in everything.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+namespace mural::holding {
+
+// What became of a record that sets a cell.
+enum class Fate : uint8_t { Goes, Waits, LeftOut };
+struct Outcome {
+    Fate fate = Fate::Goes;
+    uint32_t gone = 0; // records that never go: this one, or the one that waited, or both
+    size_t goneBytes = 0;
+};
+
+// Words: of the longest record.
+template <size_t Words>
+class Cells {
+public:
+    static constexpr size_t kMostBytes = Words * 4;
+
+    // mayWait: for somebody who needs it; else it goes at once, unless it changes nothing. One that waits is replaced: both of them
+    // have to be valid, or neither.
+    Outcome set(size_t index, std::span<const std::byte> record, bool mayWait) {
+        if (index >= cells_.size()) cells_.resize(index + 1);
+        Cell& cell = cells_[index];
+        Outcome outcome{mayWait ? Fate::Waits : Fate::Goes, 0, 0};
+        if (cell.waits) {
+            outcome = {Fate::Waits, 1, cell.now.sizeBytes};
+            waitingBytes_ -= cell.now.sizeBytes;
+        }
+        if (cell.generation == generation_ && cell.sent == record) {
+            if (cell.waits) std::erase(order_, index);
+            cell.waits = false;
+            return {Fate::LeftOut, outcome.gone + 1, outcome.goneBytes + record.size()};
+        }
+        if (outcome.fate == Fate::Goes) {
+            cell.sent = record;
+            cell.generation = generation_;
+            return outcome;
+        }
+        cell.now = record;
+        waitingBytes_ += record.size();
+        if (!cell.waits) order_.push_back(static_cast<uint32_t>(index));
+        cell.waits = true;
+        return outcome;
+    }
+
+    // What waits for it begins otherwise than the record: another command sets the same.
+    [[nodiscard]] bool otherWaits(size_t index, std::span<const std::byte> record) const {
+        return index < cells_.size() && cells_[index].waits && (cells_[index].now.sizeBytes != record.size() || std::memcmp(cells_[index].now.words.data(), record.data(), 4) != 0);
+    }
+    [[nodiscard]] bool waiting() const { return !order_.empty(); }
+    [[nodiscard]] size_t waitingRecords() const { return order_.size(); }
+    [[nodiscard]] size_t waitingBytes() const { return waitingBytes_; }
+
+    // What waits goes, in its order: each record is given.
+    template <typename Give>
+    void send(const Give& give) {
+        for (const uint32_t index : order_) {
+            Cell& cell = cells_[index];
+            give(cell.now.bytes());
+            cell.sent = cell.now;
+            cell.generation = generation_;
+            cell.waits = false;
+        }
+        order_.clear();
+        waitingBytes_ = 0;
+    }
+    // Nothing may wait: what the nodes have is not known from here on.
+    void forget(size_t index) {
+        if (index < cells_.size()) cells_[index].generation = generation_ - 1;
+    }
+    void forgetAll() { ++generation_; }
+
+private:
+    struct Record {
+        uint32_t sizeBytes = 0;
+        std::array<uint32_t, Words> words;
+        Record& operator=(std::span<const std::byte> record) {
+            sizeBytes = static_cast<uint32_t>(record.size());
+            std::memcpy(words.data(), record.data(), record.size());
+            return *this;
+        }
+        bool operator==(std::span<const std::byte> record) const { return sizeBytes == record.size() && std::memcmp(words.data(), record.data(), sizeBytes) == 0; }
+        [[nodiscard]] std::span<const std::byte> bytes() const { return std::as_bytes(std::span(words)).first(sizeBytes); }
+    };
+    struct Cell {
+        bool waits = false;
+        uint32_t generation = 0; // in which `sent` is known
+        Record now, sent;
+    };
+
+    std::vector<Cell> cells_;
+    std::vector<uint32_t> order_; // of those that wait
+    uint32_t generation_ = 1;
+    size_t waitingBytes_ = 0;
+};
+
+} // namespace mural::holding

@@ -1,0 +1,77 @@
+// Small state: what sets it waits for a command that needs it; what is set again before that, or is so already, is not sent.
+#include "gl_opcodes.hpp"
+#include "holding/holder.hpp"
+
+namespace mural::holding {
+
+void Holder::leaveOutSmall(bool leavesOut) {
+    if (leavesOut == leavesOutSmall_) return;
+    leavesOutSmall_ = leavesOut;
+    for (auto& [id, stream] : streams_) sendStateOf(stream);
+    for (auto& [client, contexts] : clients_) // what is set meanwhile is not looked at
+        for (auto& [id, context] : contexts) context->state.forgetAll();
+}
+
+// Whether the record is dealt with: it waits, or nobody needs it.
+bool Holder::smallState(Stream& stream, Output& output, const RecordView& r, StateRole role, size_t from, std::span<const std::byte> packet) {
+    Context& c = *stream.context;
+    const bool sets = role == StateRole::Set, changes = sets || role == StateRole::Change;
+    if (stream.list != 0) { // nothing waits: glNewList has needed it
+        stream.compiled.sets = stream.compiled.sets || changes;
+        return false;
+    }
+    if (!leavesOutSmall_) return false; // nor does anything wait
+    if (stream.inPrimitive) { // an error, unless glBegin was refused
+        if (changes) c.state.forgetAll();
+        return false;
+    }
+    if (!sets) {
+        sendState(stream, output, from);
+        if (changes && !(r.opcode == op::glCallList && setsNothing(*c.group, recording::argumentWord(r, 0)))) c.state.forgetAll();
+        return false;
+    }
+    const StateSet set = stateSetOf(r, c.unit);
+    if (set.cell == kNoCell) return false;
+    if (!set.certain || stream.values > 0 || c.group->untracked) {
+        sendState(stream, output, from);
+        c.state.forget(set.cell);
+        return false;
+    }
+    const auto outcome = c.state.set(set.cell, packet.subspan(r.offset, r.sizeBytes), !set.atOnce);
+    countFate(outcome, r.sizeBytes);
+    if (outcome.fate == Fate::Goes) return false;
+    output.leaveOut(r.offset, r.offset + r.sizeBytes);
+    if (counts_.heldBytes + pendingBytes_ > mostBytes_) sendState(stream, output, r.offset + r.sizeBytes);
+    return true;
+}
+
+void Holder::countFate(const Outcome& outcome, size_t sizeBytes) {
+    countLeftOut(outcome.gone, outcome.goneBytes);
+    if (outcome.fate == Fate::Goes) return;
+    counts_.heldBytes += sizeBytes;
+    counts_.heldBytes -= outcome.goneBytes;
+    if (outcome.fate == Fate::Waits) ++counts_.heldRecords;
+}
+
+bool Holder::setsNothing(const Group& group, uint32_t list) const {
+    const auto found = group.lists.find(list);
+    return found != group.lists.end() && !found->second.sets && !found->second.calls;
+}
+
+void Holder::sendState(Stream& stream, Output& output, size_t from) {
+    if (stream.context == nullptr || !stream.context->state.waiting()) return;
+    counts_.heldBytes -= stream.context->state.waitingBytes();
+    stream.context->state.send([&](std::span<const std::byte> record) {
+        if (!loses_) output.insert(from, record);
+    });
+}
+
+// Between two packets of the stream.
+void Holder::sendStateOf(Stream& stream) {
+    if (stream.context == nullptr || !stream.context->state.waiting()) return;
+    Output other(stream.id, {}, otherScratch_, take_);
+    sendState(stream, other, 0);
+    other.finish();
+}
+
+} // namespace mural::holding

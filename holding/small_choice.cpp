@@ -1,0 +1,62 @@
+#include "holding/small_choice.hpp"
+
+#include <algorithm>
+
+namespace mural::holding {
+namespace {
+
+constexpr uint64_t kLeastWireBytes = 200; // per frame: of fewer nothing can be won, and a try breaks equal runs
+constexpr double kClearly = 0.97; // as small as that is cheaper; where both cost about the same, what leaves out is kept
+
+template <size_t N>
+double median(std::array<double, N> values) {
+    std::ranges::nth_element(values, values.begin() + N / 2);
+    return values[N / 2];
+}
+
+} // namespace
+
+bool SmallChoice::wantsTime() const { return phase_ == Phase::Before || phase_ == Phase::Trying; }
+
+void SmallChoice::next(Phase phase) {
+    phase_ = phase;
+    frames_ = 0;
+    wireBytes_ = 0;
+}
+
+void SmallChoice::frame(uint64_t programBytes, uint64_t wireBytes, double costNs) {
+    if (programBytes == 0) return;
+    if (wantsTime() && costNs < 0) return; // begun before its time was wanted
+    if (wantsTime()) costs_[phase_ == Phase::Trying][frames_] = costNs / static_cast<double>(programBytes);
+    ++frames_;
+    switch (phase_) {
+    case Phase::Waiting:
+        wireBytes_ += wireBytes;
+        if (frames_ < until_) return;
+        return next(leavesOut_ || wireBytes_ >= kLeastWireBytes * frames_ ? Phase::Before : Phase::Waiting);
+    case Phase::Before:
+        if (frames_ < kCompared) return;
+        leavesOut_ = !leavesOut_;
+        return next(Phase::Settling);
+    case Phase::Settling:
+        if (frames_ >= kSettling) next(Phase::Trying);
+        return;
+    case Phase::Trying:
+        if (frames_ >= kCompared) decide();
+    }
+}
+
+void SmallChoice::disturbed() {
+    if (phase_ == Phase::Settling || phase_ == Phase::Trying) leavesOut_ = !leavesOut_;
+    next(Phase::Waiting);
+}
+
+void SmallChoice::decide() {
+    const double before = median(costs_[0]), tried = median(costs_[1]);
+    const bool better = leavesOut_ ? tried * kClearly <= before : tried <= before * kClearly;
+    if (!better) leavesOut_ = !leavesOut_;
+    until_ = better ? kFirst : std::min(until_ * 2, kMostBetween);
+    next(Phase::Waiting);
+}
+
+} // namespace mural::holding
