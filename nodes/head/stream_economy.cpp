@@ -63,7 +63,10 @@ void StreamEconomy::miss(uint32_t stream, std::span<const std::byte> payload) {
 
 void StreamEconomy::hold(uint32_t stream, std::span<const std::byte> payload) {
     if (!holds_) return pack(stream, payload);
-    if (wire::clientOf(stream) != 0) return holder_.add(stream, payload);
+    if (wire::clientOf(stream) != 0) {
+        holder_.leaveOutSmall(small_.leavesOut());
+        return holder_.add(stream, payload);
+    }
     // The head's own commands: of a program that has gone nobody needs anything; else nodes have all, as who comes now.
     uint32_t words[2] = {};
     std::memcpy(words, payload.data(), std::min(payload.size(), sizeof words));
@@ -102,11 +105,14 @@ Result<std::span<const std::byte>> StreamEconomy::take() {
     }
     if (!frameGoesOn || measured_.rawBytes > kFullRawBytes) {
         economy::WayChoice& way = coder_->way;
-        if (timesFrame_) way.measured(measured_.rawBytes, measured_.pageBytes, measured_.wireBytes, static_cast<int64_t>(encodeNs_ - measured_.encodeNs), link_.nsPerByte());
+        const double frameNs = timesFrame_ ? static_cast<double>(encodeNs_ - measured_.encodeNs) : -1;
+        if (timesFrame_) way.measured(measured_.rawBytes, measured_.pageBytes, measured_.wireBytes, static_cast<int64_t>(frameNs), link_.nsPerByte());
         else way.unmeasured();
-        timesFrame_ = way.wantsTime();
+        if (way.plain() != packer.plain()) small_.disturbed();
+        else small_.frame(holder_.counts().inBytes - measured_.programBytes, measured_.wireBytes, timesFrame_ ? frameNs + static_cast<double>(measured_.wireBytes) * link_.nsPerByte() : -1);
+        timesFrame_ = way.wantsTime() || small_.wantsTime();
         packer.beginPlain(way.plain());
-        measured_ = {0, 0, 0, encodeNs_};
+        measured_ = {0, 0, 0, encodeNs_, holder_.counts().inBytes};
     }
     publishCounts();
     return batch;

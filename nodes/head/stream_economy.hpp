@@ -14,6 +14,7 @@
 #include "economy/packer.hpp"
 #include "economy/way_choice.hpp"
 #include "holding/holder.hpp"
+#include "holding/small_choice.hpp"
 
 namespace mural {
 
@@ -73,6 +74,7 @@ private:
 
     const economy::Limits limits_;
     holding::Holder holder_;
+    holding::SmallChoice small_;
     std::function<void()> send_;
     bool holds_ = true;
     bool missed_ = false; // what comes out now
@@ -85,7 +87,7 @@ private:
     uint64_t packetNs_ = 0, takeNs_ = 0; // of short packets, and of batches of such, that were measured last
     uint64_t wireBytes_ = 0, encodeNs_ = 0;
     struct Measured {
-        uint64_t rawBytes = 0, pageBytes = 0, wireBytes = 0, encodeNs = 0;
+        uint64_t rawBytes = 0, pageBytes = 0, wireBytes = 0, encodeNs = 0, programBytes = 0;
     } measured_; // since the way was chosen: about a frame
     struct Published {
         std::atomic<uint64_t> packets{0}, records{0}, rawBytes{0}, stagedBytes{0}, storeHits{0}, newPages{0}, patches{0}, wireBytes{0}, encodeNs{0};

@@ -9,7 +9,7 @@ import subprocess
 GROUPS = {
     "vertices": ["immediate", "generic_attributes", "display_lists", "client_arrays", "draw_calls",
                  "core_arrays", "buffers", "persistent_mapping", "persistent_frames", "pinned_memory",
-                 "evaluators", "same_scene", "late_uploads"],
+                 "evaluators", "same_scene", "late_uploads", "equal_state"],
     "pixels": ["textures_classic", "textures_modern", "framebuffers", "framebuffers_layered", "core_depth",
                "pixels_draw", "copied_samples", "copied_scene", "pixels_read", "texture_reads", "sized_reads", "compressed_reads", "reads_later", "reads_owed", "reads_threads",
                "front_buffer", "front_and_back", "single_buffered", "frames_kept", "clears_in_turns", "uneven_cost", "uneven_draws",
