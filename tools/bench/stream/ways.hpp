@@ -26,6 +26,8 @@ public:
 
 // The economy, as the head uses it; every batch is kept, to be unpacked and compared.
 Result<std::unique_ptr<Way>> economyWay(uint64_t storeBytes);
+// What stands in front of the economy in a head: uploads that nobody needs yet stay behind. Bytes of the stream, as nothing is packed.
+std::unique_ptr<Way> holdingWay();
 // Zstandard over the whole frame, by itself.
 std::unique_ptr<Way> zstdWay(int level);
 // Commands that are as the one at their place in the frame before are left out; LZ4 over the rest.
