@@ -1,7 +1,8 @@
 // Holds back what nobody needs yet: uploads of textures, of buffers and to uniforms, until a record comes that may use them. What a
 // later one replaces before that is not sent, nor what changes nothing.
 //
-// An upload waits in the queue of its object, with all that is done to the object behind it; nothing else is put off. It goes out
+// An upload waits in the queue of its object, with all that is done to the object behind it; small state, where that is wanted, by what it
+// sets; nothing else is put off. An upload goes out
 // before the first record that may use the object: a draw with it bound, a command of which that is not known, any record of
 // another context that shares it. There it is bound for it, and what was bound is bound again. What the program does is followed as far
 // as bindings go; a command that recording/kept has no rule for ends holding in its share group.

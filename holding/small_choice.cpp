@@ -55,7 +55,7 @@ void SmallChoice::decide() {
     const double before = median(costs_[0]), tried = median(costs_[1]);
     const bool better = leavesOut_ ? tried * kClearly <= before : tried <= before * kClearly;
     if (!better) leavesOut_ = !leavesOut_;
-    until_ = better ? kFirst : std::min(until_ * 2, kMostBetween);
+    until_ = better ? kAfterChange : std::min(until_ * 2, kMostBetween);
     next(Phase::Waiting);
 }
 
