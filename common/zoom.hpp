@@ -8,6 +8,8 @@
 
 namespace mural {
 
+constexpr double kMostZoom = 16; // a framebuffer of a window's part has to hold it
+
 struct Zoom {
     double x = 1;
     double y = 1;

@@ -23,7 +23,7 @@ RenderPass passOf(const config::ResolvedConfig& config, const compound::RenderCo
     p.period = static_cast<int>(c.period);
     p.share = c.range;
     const Zoom zoom = zoomOf(config, c.compound);
-    p.zoom = {std::min(zoom.x, 1.), std::min(zoom.y, 1.)};
+    p.zoom = {std::min(zoom.x, kMostZoom), std::min(zoom.y, kMostZoom)};
     return p;
 }
 

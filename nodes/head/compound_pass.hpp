@@ -9,7 +9,7 @@ namespace mural {
 // As the compounds say it, all above included: in whole pixels of the channel it would differ between neighbours of different sizes.
 [[nodiscard]] Zoom zoomOf(const config::ResolvedConfig& config, compound::Index compound);
 
-// Nodes draw smaller only: a zoom above 1 is 1. Which of how many ranges it is, who has all of them says.
+// A zoom above kMostZoom is that. Which of how many ranges it is, who has all of them says.
 [[nodiscard]] RenderPass passOf(const config::ResolvedConfig& config, const compound::RenderContext& context);
 
 } // namespace mural

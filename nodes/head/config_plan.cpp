@@ -271,8 +271,8 @@ private:
 
     void tellTooLarge(Index compound) {
         const Zoom zoom = zoomOf(config_, compound);
-        if ((zoom.x <= 1 && zoom.y <= 1) || !tooLarge_.insert(compound).second) return;
-        plan_.warnings.push_back(placeOf(compound) + ": a zoom above 1 has no effect, its picture is drawn as large as it is shown; for smoother edges divide it by subpixel");
+        if ((zoom.x <= kMostZoom && zoom.y <= kMostZoom) || !tooLarge_.insert(compound).second) return;
+        plan_.warnings.push_back(placeOf(compound) + ": nodes draw at most 16 times as large as they show; give a smaller zoom");
     }
 
     // Where a file says nothing, the number of nodes does, later.

@@ -57,7 +57,7 @@ std::string whyTilesStay(const SessionPlan& plan, const SessionConfig& config, i
         if (showsWall(config, plan, node)) return "nodes show them in windows of their own (--display windows)";
         if (p.ranges > 1) return "their nodes share what they draw by ranges";
         if (p.period > 1) return "their nodes take turns";
-        if (p.kernelWidth * p.kernelHeight > 1 || !p.zoom.none()) return "their nodes draw fewer pixels than there are";
+        if (p.kernelWidth * p.kernelHeight > 1 || !p.zoom.none()) return "their nodes draw other pixels than there are";
     }
     return {};
 }

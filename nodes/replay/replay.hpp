@@ -589,13 +589,14 @@ private:
     // replay_passes.cpp
     void noteKernel(uint16_t opcode);
     [[nodiscard]] bool hasKernel() const { return config_.pass.kernelWidth * config_.pass.kernelHeight > 1; }
-    [[nodiscard]] bool drawsFewer() const { return hasKernel() || !config_.pass.zoom.none(); } // pixels than its part of the window has
+    [[nodiscard]] bool drawsOtherPixels() const { return hasKernel() || !config_.pass.zoom.none(); } // than its part of the window has
     // Pixels that are brought from other tiles, for copies, are those of the pass that answers.
-    [[nodiscard]] bool copiesOthers() const { return !config_.answers && !drawsFewer() && !takesRanges(); }
-    [[nodiscard]] bool interleaves(const Window* w) const { return drawsFewer() && w && !w->plain; }
+    [[nodiscard]] bool copiesOthers() const { return !config_.answers && !drawsOtherPixels() && !takesRanges(); }
+    [[nodiscard]] bool interleaves(const Window* w) const { return drawsOtherPixels() && w && !w->plain; }
     [[nodiscard]] PixelViewport partDrawn(const Window& w) const;
-    [[nodiscard]] bool movesPicture() const { return config_.pass.samples > 1 || drawsFewer(); }
-    const std::byte* readEnlarged(Window& w, const PixelViewport& r, bool front);
+    [[nodiscard]] bool movesPicture() const { return config_.pass.samples > 1 || drawsOtherPixels(); }
+    const std::byte* readScaled(Window& w, const PixelViewport& r, bool front);
+    [[nodiscard]] PixelViewport surfaceOf(const Window& w, bool lean) const;
     const std::byte* readEveryNth(Window& w, const PixelViewport& r, bool front);
     const std::byte* readRepeated(const PixelViewport& part, GLenum format, GLenum type, size_t group);
     [[nodiscard]] bool movesByShaders() const;

@@ -15,7 +15,7 @@ namespace mural {
 // range of a node that catches up.
 bool Replay::maySkip() const {
     const RenderPass& p = config_.pass;
-    return config_.skips && !config_.lean && (takesRanges() || !alone()) && !takesTurns() && !drawsFewer() && !movesView() && p.samples == 1;
+    return config_.skips && !config_.lean && (takesRanges() || !alone()) && !takesTurns() && !drawsOtherPixels() && !movesView() && p.samples == 1;
 }
 
 void Replay::drawAgain() { skips_ = false; }

@@ -184,9 +184,9 @@ bool Replay::ownWindow(Args& in) {
     if (moves() && (!w.surface || w.surface->width() != std::max(width, 1) || w.surface->height() != std::max(height, 1))) divideAnew(w);
     w.part = partOf(w, w.moving.areas.get());
     placePart(w);
-    const PixelViewport size = w.lean ? w.part : w.whole;
-    if (w.surface && w.surface->width() == std::max(size.w, 1) && w.surface->height() == std::max(size.h, 1)) return true;
-    auto made = platform_->createSurface(surfaceConfig(*config, std::max(size.w, 1), std::max(size.h, 1)));
+    const PixelViewport size = surfaceOf(w, w.lean);
+    if (w.surface && w.surface->width() == size.w && w.surface->height() == size.h) return true;
+    auto made = platform_->createSurface(surfaceConfig(*config, size.w, size.h));
     if (!made) {
         out_.log("no framebuffer like the program's window (" + std::to_string(width) + "x" + std::to_string(height) + ") can be made: " + made.error().message);
         return true;
@@ -237,8 +237,8 @@ bool Replay::ownSwap(Args& in, bool front) {
         if (takesRanges()) rangeDrawn(w);
         f.notSplit = takesRanges() && !w.range.wasSplit;
         f.config = w.config;
-        f.region = drawsFewer() && !w.region.empty() ? inKernel(config_.pass, w.part) : regionOf(w, front);
-        f.picture = drawsFewer() ? inKernel(config_.pass, w.whole) : w.whole;
+        f.region = drawsOtherPixels() && !w.region.empty() ? inKernel(config_.pass, w.part) : regionOf(w, front);
+        f.picture = drawsOtherPixels() ? inKernel(config_.pass, w.whole) : w.whole;
         f.keepsPicture = keepsTurn(w);
         f.areas = moves() ? w.moving.areas->number : 0;
         f.shares = w.range.drawnBy;
@@ -250,7 +250,7 @@ bool Replay::ownSwap(Args& in, bool front) {
         if (bound_ && &w == boundDraw_ && w.surface) f.pixels = [this, &w, front](const PixelViewport& r) {
             ContextState* const own = std::exchange(c_, bound_);
             const bool zoomed = !config_.pass.zoom.none() && !w.plain && !r.empty();
-            const std::byte* pixels = zoomed ? readEnlarged(w, r, front) : hasKernel() && w.plain && !r.empty() ? readEveryNth(w, r, front) : readShown(w, r, front);
+            const std::byte* pixels = zoomed ? readScaled(w, r, front) : hasKernel() && w.plain && !r.empty() ? readEveryNth(w, r, front) : readShown(w, r, front);
             c_ = own;
             return pixels;
         };

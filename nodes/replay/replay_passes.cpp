@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "gl_opcodes.hpp"
-#include "nodes/replay/enlarge.hpp"
+#include "nodes/replay/scale_picture.hpp"
 #include "nodes/replay/pass_place.hpp"
 #include "nodes/replay/replay.hpp"
 
@@ -43,15 +43,21 @@ RenderPass Replay::passOfDraws() const {
 // Where this node draws its part of the window.
 PixelViewport Replay::partDrawn(const Window& w) const { return interleaves(&w) ? inPass(config_.pass, w.part) : w.part; }
 
-// Pixels `r` of the pass's picture, without its zoom, of a window that was drawn smaller. What other nodes draw is not here: at the edges
+// How large a framebuffer has to be: of a node that draws larger than it shows, for either way.
+PixelViewport Replay::surfaceOf(const Window& w, bool lean) const {
+    const PixelViewport shown = lean ? w.part : w.whole, drawn = inPass(config_.pass, shown);
+    return {0, 0, std::max({shown.w, drawn.w, 1}), std::max({shown.h, drawn.h, 1})};
+}
+
+// Pixels `r` of the pass's picture, without its zoom, of a window that was drawn smaller or larger. What other nodes draw is not here: at the edges
 // of its part the outermost pixels count on.
-const std::byte* Replay::readEnlarged(Window& w, const PixelViewport& r, bool front) {
+const std::byte* Replay::readScaled(Window& w, const PixelViewport& r, bool front) {
     const PixelViewport all = inKernel(config_.pass, w.part);
-    std::vector<std::byte> few(static_cast<size_t>(w.region.area()) * 4);
-    if (!few.empty()) std::memcpy(few.data(), readShown(w, w.region, front), few.size());
-    std::vector<std::byte> enlarged(static_cast<size_t>(r.area()) * 4);
-    if (!few.empty()) enlarge({few.data(), w.region}, config_.pass.zoom, intersect(r, all), enlarged.data(), r);
-    pixels_ = std::move(enlarged);
+    std::vector<std::byte> drawn(static_cast<size_t>(w.region.area()) * 4);
+    if (!drawn.empty()) std::memcpy(drawn.data(), readShown(w, w.region, front), drawn.size());
+    std::vector<std::byte> shown(static_cast<size_t>(r.area()) * 4);
+    if (!drawn.empty()) scalePicture({drawn.data(), w.region}, config_.pass.zoom, intersect(r, all), shown.data(), r);
+    pixels_ = std::move(shown);
     return pixels_.data();
 }
 

@@ -15,13 +15,13 @@ namespace mural {
 
 ShaderRewrites Replay::rewrites() const {
     const bool moved = movesView() || (movesPicture() && movesByShaders());
-    return {config_.cull && !alone() && !moved, (config_.lean && !alone()) || drawsFewer(), drawsFewer(), drawsFewer(), moved};
+    return {config_.cull && !alone() && !moved, (config_.lean && !alone()) || drawsOtherPixels(), drawsOtherPixels(), drawsOtherPixels(), moved};
 }
 
 void Replay::applyTileValues() {
     if (!bound_ || !c_->shared || c_->compiling || (!c_->program && !c_->pipelineBound && !c_->arbPositions)) return;
     TileValues values;
-    if (c_->draw && rewrites().any() && drawsWindow() && (!drawsWhole() || drawsFewer())) {
+    if (c_->draw && rewrites().any() && drawsWindow() && (!drawsWhole() || drawsOtherPixels())) {
         TilePlace place;
         place.pass = passOfDraws();
         place.window = c_->draw->whole;

@@ -59,7 +59,7 @@ void Replay::placePart(Window& w) {
     if (w.config.samples == 0 || w.drawn.empty()) return;
     // A driver may treat multisampled lines at scissor edges off its own raster of 64 pixels (accuracy, M4).
     const int32_t x0 = w.drawn.x / 64 * 64, y0 = w.drawn.y / 64 * 64;
-    w.drawn = intersect({x0, y0, (w.drawn.right() + 63) / 64 * 64 - x0, (w.drawn.top() + 63) / 64 * 64 - y0}, w.whole);
+    w.drawn = intersect({x0, y0, (w.drawn.right() + 63) / 64 * 64 - x0, (w.drawn.top() + 63) / 64 * 64 - y0}, interleaves(&w) ? inPass(config_.pass, w.whole) : w.whole);
 }
 
 // Which of the buffers a clear, as the state is now, gives one value everywhere.
@@ -157,7 +157,7 @@ void Replay::partChanged(Window& w) {
 
 void Replay::turnDrawn(Window& w, bool shownInFront) {
     w.sceneWasElsewhere = std::exchange(w.sceneElsewhere, false);
-    if (drawsFewer()) {
+    if (drawsOtherPixels()) {
         const bool needsAll = bound_ && bound_->shared && bound_->shared->allDrawn; // modules that ask for places, fragments that are counted
         const bool plain = std::exchange(w.plain, std::exchange(w.copied, false) || needsAll);
         if (plain != w.plain) partChanged(w);

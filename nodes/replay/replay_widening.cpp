@@ -11,7 +11,8 @@ namespace mural {
 // polygon stipple, where they were set before, stay the tile's.
 void Replay::widenToWindow(Window& w) {
     w.widens = false;
-    auto made = platform_->createSurface(surfaceConfig(w.config, std::max(w.whole.w, 1), std::max(w.whole.h, 1)));
+    const PixelViewport size = surfaceOf(w, false);
+    auto made = platform_->createSurface(surfaceConfig(w.config, size.w, size.h));
     if (!made) {
         out_.log("fragment shaders write to memory, which needs a framebuffer of the whole window (" + std::to_string(w.whole.w) + "x" + std::to_string(w.whole.h) +
                  "), and none can be made: their memory holds this node's part only: " + made.error().message);

@@ -31,7 +31,7 @@ struct RenderPass {
     int phase = 0, period = 1;    // draws the frames n with n mod period == phase
     int range = 0, ranges = 1;    // which of the nodes that share a frame's draws in their order (sort-last)…
     Range share;                  // …and which part of them it draws
-    Zoom zoom;                    // drawn smaller by this, and enlarged before anybody sees it; never above 1
+    Zoom zoom;                    // drawn smaller or larger by this, and as large as it is shown before anybody sees it; at most kMostZoom
 
     bool operator==(const RenderPass&) const = default;
 };

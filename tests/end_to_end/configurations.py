@@ -23,6 +23,7 @@ import programs
 PROGRAM = "fixed_lighting"
 FRAMES = 3
 ZOOMED_MEAN = 12  # of half the size; a picture that is a few pixels off, or black, differs by more
+REDUCED_MEAN = 0.1  # of one that was drawn larger, from the native picture that was drawn so and reduced; a pixel off is 1 and more
 SKIPPED = 77
 
 
@@ -67,14 +68,15 @@ class Run:
     def __init__(self, arguments, display_name):
         self.arguments, self.display = arguments, display_name
 
-    def picture(self, options):
-        """The last frame, and what was said. Raises RuntimeError with the program's words."""
+    def picture(self, options, times=(1, 1)):
+        """The last frame, and what was said; of a program with a window so many times as large. Raises RuntimeError with the program's words."""
         a = self.arguments
+        size = "x".join(str(int(length) * by) for length, by in zip(a.size.split("x"), times))
         with tempfile.TemporaryDirectory(prefix="mural-configurations.") as folder:
             out = os.path.join(folder, "out")
-            command = [os.path.join(a.build, "bin", "mural"), "run", "--size", a.size, "--display", "none", "--explain",
+            command = [os.path.join(a.build, "bin", "mural"), "run", "--size", size, "--display", "none", "--explain",
                        "--out", out, "--save", str(FRAMES), "--frames", str(FRAMES)] + options
-            command += ["--", os.path.join(a.build, "tests", "programs", PROGRAM), "--size", a.size, "--frames", str(FRAMES + 1)]
+            command += ["--", os.path.join(a.build, "tests", "programs", PROGRAM), "--size", size, "--frames", str(FRAMES + 1)]
             done = subprocess.run(command, env=programs.clean_environment(self.display), stdin=subprocess.DEVNULL,
                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=a.seconds, check=False)
             said = done.stdout.decode(errors="replace")
@@ -117,6 +119,20 @@ def mean_difference(expected, shown, area):
     return total / max(count, 1)
 
 
+def reduced(picture, times):
+    """Each pixel the mean of so many columns and rows, as a zoom above 1 shows what was drawn larger."""
+    columns, lines = times
+    width, height = picture[0] // columns, picture[1] // lines
+    rows = []
+    for y in range(height):
+        sums = [sum(values) for values in zip(*picture[2][y * lines:(y + 1) * lines])]
+        row = bytearray()
+        for x in range(width):
+            row += bytes((2 * sum(sums[3 * (x * columns + i) + k] for i in range(columns)) + columns * lines) // (2 * columns * lines) for k in range(3))
+        rows.append(bytes(row))
+    return width, height, rows
+
+
 def side_by_side(left, right):
     width, height = left[0], left[1]
     half = (width + 1) // 2
@@ -136,14 +152,22 @@ def check(run, path, native):
     shown, said = run.picture(["--config", path, "--here", "--frusta", "program"])
     told = re.findall(r"node \d+ \(local\) draws for channel (.*?)part \[ (\S+) (\S+) (\S+) (\S+) \]", said)
     nodes = [node[1:] for node in told if " zoom " not in node[0]]
-    small = [tuple(float(v) for v in node[1:]) for node in told if " zoom " in node[0]]
+    scaled = [(tuple(float(v) for v in node[1:]), tuple(float(v) for v in re.search(r" zoom (\S+) ([\d.]+)", node[0]).groups())) for node in told if " zoom " in node[0]]
     areas = [tuple(float(v) for v in node) for node in nodes]
     zoomed = ""
-    for area in small:
+    for area, zoom in scaled:
         mean = mean_difference(native, shown, area)
         if not 0 < mean < ZOOMED_MEAN:
             return "zoomed, the part %s differs by %.2f of 255 in the mean" % (area, mean), ""
         zoomed += ", the zoomed part by %.2f of 255 in the mean" % mean
+        if not all(z >= 1 and z == int(z) for z in zoom):
+            continue
+        # Drawn larger: what the program draws natively in a window of that size, each pixel the mean of those in it.
+        times = tuple(int(z) for z in zoom)
+        mean = mean_difference(reduced(run.picture([], times)[0], times), shown, area)
+        if mean > REDUCED_MEAN:
+            return "zoomed, the part %s differs by %.3f of 255 in the mean from the native picture drawn larger" % (area, mean), ""
+        zoomed += ", by %.3f from one that is drawn larger" % mean
     if not told:
         return "no node is told of", ""
     # Antialiased, or every nth pixel: as the short form draws it.

@@ -296,12 +296,16 @@ TEST(ConfigPlan, zoomsMultiplyAndAreDrawn) {
     EXPECT_EQ(plan->nodes[0].pass.zoom, (Zoom{.5, 1}));
     EXPECT_EQ(plan->nodes[1].pass.zoom, (Zoom{.25, .5})) << "whatever whole pixels their channels have";
     EXPECT_EQ(plan->nodes[0].picture, plan->nodes[1].picture);
+    auto larger = planOfText("compound { viewport [ 0 0 .5 1 ] } compound { channel \"b\" viewport [ .5 0 .5 1 ] zoom [ 2 .5 ] outputframe { } }");
+    ASSERT_TRUE(larger) << larger.error().message;
+    EXPECT_EQ(larger->nodes[1].pass.zoom, (Zoom{2, .5}));
+    EXPECT_TRUE(larger->warnings.empty());
 }
 
 TEST(ConfigPlan, whatIsNotZoomedIsSaid) {
-    auto large = planOfText("compound { viewport [ 0 0 .5 1 ] } compound { channel \"b\" viewport [ .5 0 .5 1 ] zoom [ 2 .5 ] outputframe { } }");
+    auto large = planOfText("compound { viewport [ 0 0 .5 1 ] } compound { channel \"b\" viewport [ .5 0 .5 1 ] zoom [ 17 .5 ] outputframe { } }");
     ASSERT_TRUE(large) << large.error().message;
-    EXPECT_EQ(large->nodes[1].pass.zoom, (Zoom{1, .5}));
+    EXPECT_EQ(large->nodes[1].pass.zoom, (Zoom{kMostZoom, .5}));
     ASSERT_EQ(large->warnings.size(), 1u);
     EXPECT_NE(large->warnings[0].find(".eqc:4:"), std::string::npos) << large->warnings[0];
     auto ranges = planOfText("compound { range [ 0 .5 ] } compound { channel \"b\" range [ .5 1 ] zoom [ .5 .5 ] outputframe { } }");

@@ -80,13 +80,13 @@ TEST(SessionConfig, missingFieldsKeepTheirDefaults) {
     EXPECT_EQ(c.value().launchCommand, "ssh -o BatchMode=yes");
 }
 
-TEST(NodeSetup, zoomsAreKeptAndLieAboveZeroAndNotAboveOne) {
+TEST(NodeSetup, zoomsAreKeptAndLieAboveZeroAndNotAboveTheMost) {
     NodeSetup setup;
-    setup.pass.zoom = {0.3, 1};
+    setup.pass.zoom = {0.3, 16};
     const auto read = nodeSetupFromJson(toJson(setup));
     ASSERT_TRUE(read.ok()) << read.error().message;
     EXPECT_EQ(read.value().pass.zoom, setup.pass.zoom);
-    for (const double bad : {0.0, -0.5, 1.01}) {
+    for (const double bad : {0.0, -0.5, 16.01}) {
         setup.pass.zoom.y = bad;
         EXPECT_FALSE(nodeSetupFromJson(toJson(setup)).ok()) << bad;
     }

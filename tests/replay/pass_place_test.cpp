@@ -84,7 +84,7 @@ RenderPass zoomed(double x, double y, RenderPass p = {}) {
 
 // Parts of a window that do not overlap do not in a zoomed pass, and leave nothing out.
 TEST(PassPlace, zoomedPartsMeet) {
-    for (const double zoom : {0.5, 0.3, 0.77, 0.999})
+    for (const double zoom : {0.5, 0.3, 0.77, 0.999, 1.5, 2.0, 3.7, 16.0})
         for (const int width : {320, 321, 1001}) {
             const RenderPass p = zoomed(zoom, 1);
             const PixelViewport all = inPass(p, {0, 0, width, 10});
