@@ -128,8 +128,9 @@ CommandClass ownClass(uint16_t opcode) {
     }
 }
 
+constexpr uint8_t kBufferBytesValue = 3; // buffer, u64 offset
+
 uint8_t findValue(uint16_t opcode) {
-    if (opcode == wire::kOpBufferBytes) return 3; // buffer, u64 offset
     size_t word = 0;
     for (const ParameterInfo& p : parametersOf(opcode).parameters) {
         if (p.travel == Travel::Value || p.travel == Travel::Text || p.travel == Travel::Texts) return word < kNoValue ? static_cast<uint8_t>(word) : kNoValue;
@@ -147,7 +148,6 @@ CommandKinds::CommandKinds() {
         kind.state = stateRoleOf(opcode);
         if (opcode < wire::kFirstGlOpcode) {
             kind.about = ownClass(opcode);
-            kind.valueWord = opcode == wire::kOpBufferBytes ? findValue(opcode) : kNoValue;
             continue;
         }
         const recording::Rule& rule = recording::ruleOf(opcode);
@@ -156,6 +156,7 @@ CommandKinds::CommandKinds() {
         if (kind.about == CommandClass::Pass) kind.about = ofFamily(rule);
         kind.valueWord = findValue(opcode);
     }
+    kinds_[wire::kOpBufferBytes].valueWord = kBufferBytesValue;
 }
 
 const CommandKinds& CommandKinds::all() {

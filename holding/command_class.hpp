@@ -47,7 +47,6 @@ private:
     CommandKind kinds_[op::kLimit + 1];
 };
 
-inline CommandClass classOf(uint16_t opcode) { return CommandKinds::all()[opcode].about; }
 inline uint8_t valueWordOf(uint16_t opcode) { return CommandKinds::all()[opcode].valueWord; }
 
 } // namespace mural::holding

@@ -235,16 +235,6 @@ StateRole ofOwn(uint16_t opcode) {
     }
 }
 
-std::vector<StateRole> allRoles() {
-    std::vector<StateRole> roles(op::kLimit);
-    for (uint16_t opcode = 0; opcode < op::kLimit; ++opcode) {
-        if (opcode < wire::kFirstGlOpcode) roles[opcode] = ofOwn(opcode);
-        else if (commandOf(opcode) != nullptr || isCap(opcode) || isIndexedCap(opcode)) roles[opcode] = StateRole::Set;
-        else roles[opcode] = ofFamily(opcode);
-    }
-    return roles;
-}
-
 // By opcode, where in kCommands; kNone: a capability.
 constexpr uint8_t kNone = 0xff;
 std::vector<uint8_t> allPlaces() {
@@ -256,8 +246,8 @@ std::vector<uint8_t> allPlaces() {
 } // namespace
 
 StateRole stateRoleOf(uint16_t opcode) {
-    static const std::vector<StateRole> kRoles = allRoles();
-    return opcode < kRoles.size() ? kRoles[opcode] : StateRole::Change;
+    if (opcode < wire::kFirstGlOpcode) return ofOwn(opcode);
+    return commandOf(opcode) != nullptr || isCap(opcode) || isIndexedCap(opcode) ? StateRole::Set : ofFamily(opcode);
 }
 
 StateSet stateSetOf(const RecordView& r, uint32_t unit) {

@@ -14,7 +14,7 @@ enum class StateRole : uint8_t {
     Change, // may change any of it in ways that are not followed
 };
 
-StateRole stateRoleOf(uint16_t opcode);
+StateRole stateRoleOf(uint16_t opcode); // for CommandKinds, which remembers it
 
 constexpr uint32_t kNoCell = UINT32_MAX;
 constexpr uint32_t kStateWords = 6; // of the longest record of class Set that is certain

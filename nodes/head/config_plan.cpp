@@ -272,7 +272,7 @@ private:
     void tellTooLarge(Index compound) {
         const Zoom zoom = zoomOf(config_, compound);
         if ((zoom.x <= kMostZoom && zoom.y <= kMostZoom) || !tooLarge_.insert(compound).second) return;
-        plan_.warnings.push_back(placeOf(compound) + ": nodes draw at most 16 times as large as they show; give a smaller zoom");
+        plan_.warnings.push_back(placeOf(compound) + ": nodes draw at most " + std::to_string(static_cast<int>(kMostZoom)) + " times as large as they show; give a smaller zoom");
     }
 
     // Where a file says nothing, the number of nodes does, later.

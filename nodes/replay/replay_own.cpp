@@ -188,7 +188,8 @@ bool Replay::ownWindow(Args& in) {
     if (w.surface && w.surface->width() == size.w && w.surface->height() == size.h) return true;
     auto made = platform_->createSurface(surfaceConfig(*config, size.w, size.h));
     if (!made) {
-        out_.log("no framebuffer like the program's window (" + std::to_string(width) + "x" + std::to_string(height) + ") can be made: " + made.error().message);
+        out_.log("no framebuffer like the program's window (" + std::to_string(width) + "x" + std::to_string(height) + ") can be made: " + made.error().message +
+                 (config_.pass.zoom.x > 1 || config_.pass.zoom.y > 1 ? "; or give the compound a smaller zoom" : ""));
         return true;
     }
     alphaHides_ = alphaHides_ || (*made)->hiddenAlpha();

@@ -315,7 +315,7 @@ Result<NodeSetup> nodeSetupFromJson(const std::string& line) {
     const RenderPass& p = setup->pass;
     if (p.kernelX >= p.kernelWidth || p.kernelY >= p.kernelHeight || p.sample >= p.samples || p.phase >= p.period || p.range >= p.ranges)
         return Error{"node setup: its pass is none of the session's"};
-    if (!(p.zoom.x > 0 && p.zoom.x <= kMostZoom && p.zoom.y > 0 && p.zoom.y <= kMostZoom)) return Error{"node setup: its zoom is not above 0, or above 16"};
+    if (!(p.zoom.x > 0 && p.zoom.x <= kMostZoom && p.zoom.y > 0 && p.zoom.y <= kMostZoom)) return Error{"node setup: its zoom is not above 0, or above " + std::to_string(static_cast<int>(kMostZoom))};
     return setup;
 }
 
