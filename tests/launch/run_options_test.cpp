@@ -122,6 +122,7 @@ TEST(RunOptions, wrongValuesNameTheOptionAndWhatIsWanted) {
     EXPECT_EQ(accepted([](RunArguments& a) { a.store = "1048576"; }).config.storeBytes, 1 << 20);
     EXPECT_NE(refusal([](RunArguments& a) { a.position = "1"; }).find("--position"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.nodes = "h1,-oProxyCommand=x"; }).find("--nodes"), std::string::npos);
+    EXPECT_NE(refusal([](RunArguments& a) { a.nodes = "3"; }).find("--local-nodes"), std::string::npos) << "a number is hardly a host";
 }
 
 TEST(RunOptions, passesAreRead) {

@@ -180,6 +180,9 @@ Result<void> readNodes(const RunArguments& a, SessionConfig& c) {
             return h.empty() || h.front() == '-' || h.find_first_of(" \t\"'") != std::string::npos;
         });
         if (bad) return badValue("--nodes", *a.nodes, "must be host names separated by commas, such as wall1,wall2");
+        // A number is hardly a host's name: it would be waited for in vain.
+        const bool counts = std::any_of(c.hosts.begin(), c.hosts.end(), [](const std::string& h) { return h.find_first_not_of("0123456789") == std::string::npos; });
+        if (counts) return badValue("--nodes", *a.nodes, "must be host names, such as wall1,wall2; how many nodes run on this machine says --local-nodes");
     }
     const int asked = c.localNodes + static_cast<int>(c.hosts.size());
     const int passes = static_cast<int>(passesOf(c.passes).size()) * c.passes.ranges;
