@@ -88,7 +88,9 @@ private:
         }
     }
 
-    static int32_t pixelOf(const PixelAxis& axis, int32_t i) { return static_cast<int32_t>(std::lround(axis.origin + axis.scale * (axis.kernel + i * axis.step))); }
+    // Of a picture that is drawn larger, several are drawn for one.
+    static int32_t pixelOf(const PixelAxis& axis, int32_t i) { return whole(axis.origin + axis.scale * (axis.kernel + i * axis.step), axis.scale < 1); }
+    static int32_t whole(double at, bool ofSeveral) { return static_cast<int32_t>(ofSeveral ? std::floor(at + 1e-9) : std::round(at)); }
 
     void drawInto(Pixels& pixels, const RenderContext& c, int32_t toX, int32_t toY) {
         for (int32_t y = 0; y < c.viewport.h; ++y) {
@@ -125,8 +127,8 @@ private:
         for (const auto& [at, pixel] : frames_[ResolvedConfig::at(use.frame)]) {
             if (frame.perTile && pixel.empty()) continue; // somebody else has taken that tile
             const int32_t x0 = use.x + use.kernel.x + enlarged(use.kernel.w * at.first, use.zoom.x), y0 = use.y + use.kernel.y + enlarged(use.kernel.h * at.second, use.zoom.y);
-            for (int32_t y = y0; y < y0 + enlarged(1, use.zoom.y); ++y)
-                for (int32_t x = x0; x < x0 + enlarged(1, use.zoom.x); ++x) {
+            for (int32_t y = y0; y < y0 + std::max(enlarged(1, use.zoom.y), 1); ++y)
+                for (int32_t x = x0; x < x0 + std::max(enlarged(1, use.zoom.x), 1); ++x) {
                     if (x < use.clip.x || y < use.clip.y || x >= use.clip.right() || y >= use.clip.top()) continue;
                     Pixel& to = pixelsOf(c)[{x, y}];
                     if (replaces || removes) to.clear();
@@ -138,8 +140,8 @@ private:
         }
     }
 
-    // Whole numbers only: files of tests zoom by nothing else.
-    static int32_t enlarged(int32_t pixels, double zoom) { return static_cast<int32_t>(std::lround(pixels * zoom)); }
+    // Files of tests zoom by whole numbers and parts only.
+    static int32_t enlarged(int32_t pixels, double zoom) { return whole(pixels * zoom, zoom < 1); }
 
     // A destination that is done must be whole, in each eye that it was drawn for.
     void check(const ChannelPlan& done) {
