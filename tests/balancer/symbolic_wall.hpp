@@ -89,8 +89,10 @@ private:
     }
 
     // Of a picture that is drawn larger, several are drawn for one.
-    static int32_t pixelOf(const PixelAxis& axis, int32_t i) { return whole(axis.origin + axis.scale * (axis.kernel + i * axis.step), axis.scale < 1); }
-    static int32_t whole(double at, bool ofSeveral) { return static_cast<int32_t>(ofSeveral ? std::floor(at + 1e-9) : std::round(at)); }
+    static int32_t pixelOf(const PixelAxis& axis, int32_t i) {
+        const double at = axis.origin + axis.scale * (axis.kernel + i * axis.step);
+        return static_cast<int32_t>(axis.scale < 1 ? std::floor(at + 1e-9) : std::round(at));
+    }
 
     void drawInto(Pixels& pixels, const RenderContext& c, int32_t toX, int32_t toY) {
         for (int32_t y = 0; y < c.viewport.h; ++y) {
@@ -111,12 +113,23 @@ private:
     }
 
     void readBack(const RenderContext& c, Index f) {
-        const PixelViewport& area = plan_.frames[ResolvedConfig::at(f)].area;
+        const PlannedFrame& frame = plan_.frames[ResolvedConfig::at(f)];
+        const PixelViewport& area = frame.area;
         auto& picture = frames_[ResolvedConfig::at(f)];
         for (int32_t y = 0; y < area.h; ++y) {
-            for (int32_t x = 0; x < area.w; ++x) picture[{x, y}] = pixelsOf(c)[{area.x + x, area.y + y}];
+            for (int32_t x = 0; x < area.w; ++x) {
+                const Pixel& drawn = pixelsOf(c)[{area.x + x, area.y + y}];
+                // What was drawn larger goes smaller: the mean of pixels that were drawn for the same one.
+                const auto [at, isFirst] = picture.try_emplace({static_cast<int32_t>(x * frame.zoom.x + 1e-9), static_cast<int32_t>(y * frame.zoom.y + 1e-9)}, drawn);
+                if (!isFirst && !(frame.zoom == Zoom{}) && !drawnForSame(at->second, drawn)) fault_ = "pixels for several are made one";
+                else if (!isFirst) at->second = drawn;
+            }
         }
         ready_[ResolvedConfig::at(f)] = true;
+    }
+
+    static bool drawnForSame(const Pixel& a, const Pixel& b) {
+        return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Share& one, const Share& other) { return one.x == other.x && one.y == other.y; });
     }
 
     // Whole pictures replace what was there; parts of the range and samples are joined with it.
@@ -127,8 +140,8 @@ private:
         for (const auto& [at, pixel] : frames_[ResolvedConfig::at(use.frame)]) {
             if (frame.perTile && pixel.empty()) continue; // somebody else has taken that tile
             const int32_t x0 = use.x + use.kernel.x + enlarged(use.kernel.w * at.first, use.zoom.x), y0 = use.y + use.kernel.y + enlarged(use.kernel.h * at.second, use.zoom.y);
-            for (int32_t y = y0; y < y0 + std::max(enlarged(1, use.zoom.y), 1); ++y)
-                for (int32_t x = x0; x < x0 + std::max(enlarged(1, use.zoom.x), 1); ++x) {
+            for (int32_t y = y0; y < y0 + enlarged(1, use.zoom.y); ++y)
+                for (int32_t x = x0; x < x0 + enlarged(1, use.zoom.x); ++x) {
                     if (x < use.clip.x || y < use.clip.y || x >= use.clip.right() || y >= use.clip.top()) continue;
                     Pixel& to = pixelsOf(c)[{x, y}];
                     if (replaces || removes) to.clear();
@@ -140,8 +153,8 @@ private:
         }
     }
 
-    // Files of tests zoom by whole numbers and parts only.
-    static int32_t enlarged(int32_t pixels, double zoom) { return whole(pixels * zoom, zoom < 1); }
+    // Whole numbers only: files of tests zoom by nothing else.
+    static int32_t enlarged(int32_t pixels, double zoom) { return static_cast<int32_t>(std::lround(pixels * zoom)); }
 
     // A destination that is done must be whole, in each eye that it was drawn for.
     void check(const ChannelPlan& done) {
