@@ -56,7 +56,7 @@ bool Packer::next() {
     return cut_.next(piece_);
 }
 
-void Packer::add(uint32_t stream, std::span<const std::byte> packet) {
+void Packer::add(uint32_t stream, std::span<const std::byte> packet, const recording::Walked* walked) {
     if (stream != lastStream_) {
         control_.put(Other::Stream);
         control_.number(stream);
@@ -72,6 +72,10 @@ void Packer::add(uint32_t stream, std::span<const std::byte> packet) {
     nextAt_ = kNowhere;
     first_ = true;
     cut_ = PacketCut(packet);
+    if (plain_ && walked != nullptr && walked->longestBytes <= kMostTextBytes) {
+        cut_.passed(walked->records, packet.size(), walked->lastBytes);
+        asBytes(0, packet.size());
+    }
     while (next()) {
         if (piece_.page()) batchPageBytes_ += piece_.sizeBytes;
         if (runOn()) continue;

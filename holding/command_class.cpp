@@ -18,7 +18,11 @@ CommandClass exceptionOf(uint16_t opcode) {
     case op::glPixelMapuiv:
     case op::glPixelMapusv: return CommandClass::Unknown;
     case op::glHint: return CommandClass::UseAll; // how mipmaps are made
-    case op::glEnable: return CommandClass::Bind; // GL_DEBUG_OUTPUT
+    case op::glEnable: // GL_DEBUG_OUTPUT
+    case op::glBindVertexBuffers:
+    case op::glVertexArrayVertexBuffer:
+    case op::glVertexArrayVertexBuffers:
+    case op::glVertexArrayElementBuffer: return CommandClass::Bind;
     case op::glInvalidateBufferData:
     case op::glInvalidateBufferSubData: return CommandClass::Object;
     case op::glCopyBufferSubData:
@@ -44,6 +48,8 @@ CommandClass ofFamily(const recording::Rule& rule) {
     case Family::PatternedCell: // what lies in a buffer lies in one for pixels, of which nothing is held
     case Family::MatrixMode:
     case Family::ListBase:
+    case Family::ArraySet: // but those above
+    case Family::ArrayNamedSet:
     case Family::MatrixLoad:
     case Family::MatrixChange:
     case Family::MatrixPush:
@@ -82,8 +88,6 @@ CommandClass ofFamily(const recording::Rule& rule) {
     case Family::BindIndexed:
     case Family::UseProgram:
     case Family::ArrayPointer:
-    case Family::ArraySet:
-    case Family::ArrayNamedSet:
     case Family::Gen:
     case Family::Create:
     case Family::Delete:
@@ -117,6 +121,41 @@ CommandClass ofFamily(const recording::Rule& rule) {
     }
 }
 
+Binding bindingOf(uint16_t opcode, Family family) {
+    switch (family) {
+    case Family::Cap: return Binding::Cap;
+    case Family::ActiveTexture: return Binding::Unit;
+    case Family::ClientActiveTexture: return Binding::ClientUnit;
+    case Family::AttribPush: return Binding::PushAttribs;
+    case Family::AttribPop: return Binding::PopAttribs;
+    case Family::ClientPush: return Binding::PushClientAttribs;
+    case Family::ClientPop: return Binding::PopClientAttribs;
+    case Family::UseProgram: return Binding::Program;
+    case Family::BindIndexed: return Binding::Indexed;
+    case Family::ArrayPointer: return Binding::Pointer;
+    case Family::ArraySet:
+    case Family::ArrayNamedSet: return Binding::ArrayBuffers;
+    case Family::Gen:
+    case Family::Create: return Binding::Generate;
+    case Family::Delete:
+    case Family::ProgramDelete: return Binding::Delete;
+    case Family::FramebufferAttach: return Binding::Attach;
+    case Family::FramebufferNamed: return Binding::AttachNamed;
+    case Family::PipelineSet: return Binding::Pipeline;
+    case Family::TexBuffer: return Binding::TextureBuffer;
+    default: break;
+    }
+    switch (opcode) {
+    case op::glBindTexture: return Binding::Texture;
+    case op::glBindBuffer: return Binding::Buffer;
+    case op::glBindVertexArray: return Binding::VertexArray;
+    case op::glBindFramebuffer:
+    case op::glBindFramebufferEXT:
+    case op::glBindFramebufferOES: return Binding::Framebuffer;
+    default: return Binding::Nothing;
+    }
+}
+
 CommandClass ownClass(uint16_t opcode) {
     switch (opcode) {
     case wire::kOpBlobBegin:
@@ -128,6 +167,9 @@ CommandClass ownClass(uint16_t opcode) {
     }
 }
 
+// Nothing that is bound says what they do.
+bool asksForPictures(uint16_t opcode) { return opcode == wire::kOpSwap || opcode == wire::kOpFrontPicture || opcode == wire::kOpRequestPixels || opcode == wire::kOpRequestQuery || opcode == wire::kOpFinish; }
+
 constexpr uint8_t kBufferBytesValue = 3; // buffer, u64 offset
 
 uint8_t findValue(uint16_t opcode) {
@@ -138,6 +180,29 @@ uint8_t findValue(uint16_t opcode) {
         else word += p.travel == Travel::Wide || bytesOf(p.element) == 8 ? 2 : 1;
     }
     return kNoValue;
+}
+
+FrameRole frameRoleOf(const CommandKind& kind) {
+    switch (kind.about) {
+    case CommandClass::Pass:
+    case CommandClass::Use:
+    case CommandClass::Arrays: return FrameRole::Draws;
+    case CommandClass::Begin:
+    case CommandClass::End: return FrameRole::Binds;
+    case CommandClass::Bind:
+        if (kind.family == Family::UseProgram) return FrameRole::Draws;
+        return kind.family == Family::Gen || kind.family == Family::Create || kind.family == Family::Delete || kind.family == Family::ProgramDelete ? FrameRole::Ends : FrameRole::Binds;
+    case CommandClass::List: return kind.family == Family::CallList || kind.family == Family::CallLists ? FrameRole::Binds : FrameRole::Ends;
+    case CommandClass::Object: // of an object that nothing waits for
+        if (kind.small) return FrameRole::Draws;
+        return kind.family == Family::TexParameter || kind.family == Family::NamedSet ? FrameRole::Binds : FrameRole::SeenBound;
+    case CommandClass::Upload: return kind.small ? FrameRole::Draws : FrameRole::SeenBound;
+    case CommandClass::Blob:
+    case CommandClass::Own:
+    case CommandClass::UseAll: return FrameRole::SeenBound;
+    case CommandClass::Unknown: break;
+    }
+    return FrameRole::Ends;
 }
 
 } // namespace
@@ -157,6 +222,14 @@ CommandKinds::CommandKinds() {
         kind.valueWord = findValue(opcode);
     }
     kinds_[wire::kOpBufferBytes].valueWord = kBufferBytesValue;
+    for (uint16_t opcode = 0; opcode <= op::kLimit; ++opcode) {
+        CommandKind& kind = kinds_[opcode];
+        kind.binding = bindingOf(opcode, kind.family);
+        kind.small = kind.family == Family::Uniform || kind.family == Family::ProgramUniform;
+        kind.passes = kind.about == CommandClass::Pass && kind.state == StateRole::None;
+        kind.frame = asksForPictures(opcode) ? FrameRole::Seen : frameRoleOf(kind);
+        kind.passesUnlessSmall = kind.about == CommandClass::Pass || kind.small || kind.family == Family::UseProgram;
+    }
 }
 
 const CommandKinds& CommandKinds::all() {

@@ -26,6 +26,41 @@ enum class CommandClass : uint8_t {
     Unknown, // may do anything, also to what is bound: from there on nothing of the share group is held
 };
 
+// What those of class Bind do, one jump for each of them.
+enum class Binding : uint8_t {
+    Nothing, // that is followed: renderbuffers, pipelines, samplers, programs of assembly
+    Unit,
+    ClientUnit,
+    Texture,
+    Buffer,
+    VertexArray,
+    Framebuffer,
+    Program,
+    Pointer,
+    Indexed,
+    Cap,
+    ArrayBuffers,
+    PushAttribs,
+    PopAttribs,
+    PushClientAttribs,
+    PopClientAttribs,
+    Generate,
+    Delete,
+    Attach,
+    AttachNamed,
+    Pipeline,
+    TextureBuffer,
+};
+
+// What a record means to a frame that is like the one before.
+enum class FrameRole : uint8_t {
+    Draws, // binds nothing, whatever its arguments are
+    Binds, // or does what depends on what is bound: by its arguments
+    Seen,  // looked at each time
+    SeenBound, // and needs to know what is bound
+    Ends,  // changes which objects there are: no frame is like another
+};
+
 // The word of the arguments in which a value of variable size begins, the first; kNoValue: there is none.
 constexpr uint8_t kNoValue = 0xff;
 
@@ -34,6 +69,11 @@ struct CommandKind {
     StateRole state = StateRole::Change;
     recording::Family family = recording::Family::Unknown;
     uint8_t valueWord = kNoValue;
+    bool small = false; // sets uniforms: looked at where small state is, and which program is current
+    // Nothing to do with it, where small state is looked at and where it is not.
+    bool passes = false, passesUnlessSmall = false;
+    FrameRole frame = FrameRole::Ends;
+    Binding binding = Binding::Nothing;
 };
 
 // All of them. Each record is looked up, so whoever does it for many keeps the reference.

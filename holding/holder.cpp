@@ -19,9 +19,9 @@ constexpr uint64_t kMostValueBytes = uint64_t{96} << 20; // longer ones are not 
 } // namespace
 
 Holder::Holder(uint64_t mostBytes, Take take)
-    : mostBytes_(mostBytes), take_([this, take = std::move(take)](uint32_t to, std::span<const std::byte> bytes) {
+    : mostBytes_(mostBytes), take_([this, take = std::move(take)](uint32_t to, std::span<const std::byte> bytes, const recording::Walked* walked) {
           counts_.outBytes += bytes.size();
-          take(to, bytes);
+          take(to, bytes, walked);
       }) {}
 
 void Holder::countLeftOut(size_t records, size_t sizeBytes) {
@@ -41,9 +41,11 @@ void Holder::add(uint32_t streamId, std::span<const std::byte> payload) {
     size_t valueFrom = stream.values > 0 ? 0 : kNone; // where the pieces of the value begin that are in this packet
     while (true) {
         const bool looksAtState = leavesOutSmall_ || stream.list != 0;
-        if (valueFrom == kNone) walk.skip([&](uint16_t opcode) { return kinds_[opcode].about == CommandClass::Pass && (!looksAtState || kinds_[opcode].state == StateRole::None); });
+        if (valueFrom == kNone && stream.same.now == SameFrames::Now::Following) passSame(stream, walk, payload);
+        if (valueFrom == kNone) walk.skip([&](uint16_t opcode) { return looksAtState ? kinds_[opcode].passes : kinds_[opcode].passesUnlessSmall; });
         if (!walk.next(r)) break;
         const CommandKind& kind = kinds_[r.opcode];
+        if (stream.same.now == SameFrames::Now::Following) seeSame(stream, r, kind);
         if (kind.about == CommandClass::Blob) {
             if (valueFrom == kNone) valueFrom = r.offset;
             ++stream.pendingRecords;
@@ -54,25 +56,35 @@ void Holder::add(uint32_t streamId, std::span<const std::byte> payload) {
             continue;
         }
         const size_t from = valueFrom == kNone ? r.offset : valueFrom;
+        if (kind.about == CommandClass::Bind && !looksAtState && valueFrom == kNone && stream.same.now != SameFrames::Now::Following && bindsHere(stream)) { // most
+            At at{stream, *stream.context, *stream.context->group, output, r, kind, from, payload};
+            bind(at);
+            continue;
+        }
         const bool done = looksAtState && kind.state != StateRole::None && stream.context != nullptr && smallState(stream, output, r, kind.state, from, payload);
         if (!done) record(stream, output, r, kind, from, payload);
         if (stream.values > 0 && kind.about != CommandClass::Upload) stream.waiting.lost();
         if (!stream.pending.empty()) sendPending(stream, output, from);
+        if (kind.about != CommandClass::Use) keepSame(stream, r, payload);
         stream.values = stream.pendingRecords = 0;
         stream.valueBytes = 0;
         stream.passing = false;
         valueFrom = kNone;
     }
     if (valueFrom != kNone && !stream.passing) keepPending(stream, output, valueFrom, payload);
-    output.finish();
+    if (stream.same.now == SameFrames::Now::Recording) {
+        keepRecords(stream, payload);
+        stream.same.keptBytes = 0;
+    }
+    output.finish(walk.whole());
 }
 
 // The packet ends before the record that takes the value: whether that can be held is not known yet.
-void Holder::keepPending(Stream& stream, Output& output, size_t from, std::span<const std::byte> packet) {
+void Holder::keepPending(Stream& stream, Output& output, size_t from, const Packet& packet) {
     Context* const c = stream.context;
     const bool holds = c != nullptr && !c->group->held.empty();
-    const bool holdable = c != nullptr && !c->group->untracked && stream.list == 0 && stream.valueBytes <= kMostValueBytes && counts_.heldBytes + pendingBytes_ + stream.valueBytes <= mostBytes_;
-    if (holdable && (holds || !stream.waiting.vain() || stream.waiting.tries())) {
+    const bool wanted = c != nullptr && !c->group->untracked && stream.list == 0 && !stream.inPrimitive && stream.valueBytes <= std::min(kMostValueBytes, mostBytes_ / 2) && (holds || !stream.waiting.vain() || stream.waiting.tries());
+    if (wanted && makeRoom(stream, output, from, stream.valueBytes - std::min<uint64_t>(stream.valueBytes, stream.pending.size()))) {
         const auto rest = packet.subspan(from);
         stream.pending.reserve(stream.valueBytes + stream.valueBytes / 1024 + rest.size());
         stream.pending.insert(stream.pending.end(), rest.begin(), rest.end());
@@ -80,7 +92,7 @@ void Holder::keepPending(Stream& stream, Output& output, size_t from, std::span<
         return output.leaveOut(from, packet.size());
     }
     // From here on nothing can go before the record: values are taken in the order in which they came.
-    if (holds) releaseGroup(stream, output, from);
+    if (holds && !stream.inPrimitive) releaseGroup(stream, output, from);
     sendPending(stream, output, from);
     stream.passing = true;
 }
@@ -92,7 +104,9 @@ void Holder::sendPending(Stream& stream, Output& output, size_t from) {
     std::vector<std::byte>().swap(stream.pending);
 }
 
-void Holder::record(Stream& stream, Output& output, const RecordView& r, const CommandKind& kind, size_t from, std::span<const std::byte> packet) {
+bool Holder::bindsHere(const Stream& stream) { return stream.context != nullptr && !stream.context->group->untracked && !stream.inPrimitive; }
+
+void Holder::record(Stream& stream, Output& output, const RecordView& r, const CommandKind& kind, size_t from, const Packet& packet) {
     if (kind.about == CommandClass::Own) return own(stream, output, r, from);
     if (stream.context == nullptr || kind.about == CommandClass::Pass) return;
     Group& group = *stream.context->group;
@@ -169,7 +183,8 @@ void Holder::own(Stream& stream, Output& output, const RecordView& r, size_t fro
     case wire::kOpProgramLayout:
     case wire::kOpProgramRecipe: {
         if (stream.context == nullptr || stream.context->group->untracked) return;
-        At at{stream, *stream.context, *stream.context->group, output, r, kinds_[r.opcode], from, {}};
+        static constexpr Packet kNone;
+        At at{stream, *stream.context, *stream.context->group, output, r, kinds_[r.opcode], from, kNone};
         Object* const program = make(at.group, Kind::Program, argumentWord(r, 0));
         releaseOne(at, *program);
         program->forget();
@@ -194,6 +209,7 @@ void Holder::createContext(Stream& stream, const RecordView& r) {
     auto context = std::make_unique<Context>();
     context->id = id;
     const auto sharer = contexts.find(argumentWord(r, 1));
+    if (sharer != contexts.end()) leaveSameOf(*sharer->second->group);
     context->group = sharer == contexts.end() ? std::make_shared<Group>() : sharer->second->group;
     const uint32_t profile = argumentWord(r, 5), flags = argumentWord(r, 6);
     context->madeByBinding = !(profile & GL_CONTEXT_CORE_PROFILE_BIT);
@@ -209,6 +225,7 @@ void Holder::makeCurrent(Stream& stream, Output& output, const RecordView& r, si
     Context* const next = found == contexts.end() ? nullptr : found->second.get();
     if (next == stream.context) return;
     if (stream.context != nullptr) releaseOf(*stream.context->group, stream, output, from);
+    if (next != nullptr) leaveSameOf(*next->group);
     if (next != nullptr) releaseOf(*next->group, stream, output, from); // another thread's, or another context's of the group
     Context* const before = std::exchange(stream.context, next);
     if (before != nullptr && before->destroyed) dropDestroyed(wire::clientOf(stream.id), before);
@@ -227,6 +244,8 @@ void Holder::destroyContext(Stream& stream, Output& output, const RecordView& r,
 void Holder::dropDestroyed(uint32_t client, Context* context) {
     for (const auto& [id, stream] : streams_)
         if (stream.context == context) return; // it lives until another is current
+    for (auto& [id, stream] : streams_)
+        if (stream.same.context == context) stream.same = {};
     clients_[client].erase(context->id);
 }
 

@@ -28,6 +28,7 @@ struct HolderCounts {
     uint64_t leftOutRecords = 0; // those that were replaced, changed nothing, or went with their object
     uint64_t leftOutBytes = 0;
     uint64_t heldBytes = 0;      // now
+    uint64_t alikeRecords = 0;   // that were as in the frame before, and not followed
 };
 
 // One thread at a time.
@@ -48,6 +49,7 @@ public:
 
 private:
     using RecordView = recording::RecordView;
+    using Packet = std::span<const std::byte>; // by reference: one on the stack that is read whole waits for its halves, for each record
     struct At { // a record
         Stream& stream;
         Context& context;
@@ -56,21 +58,36 @@ private:
         const RecordView& r;
         const CommandKind& kind;
         size_t from; // in the packet: of the first piece of its value, or of the record
-        std::span<const std::byte> packet;
+        const Packet& packet;
     };
 
-    void record(Stream& stream, Output& output, const RecordView& r, const CommandKind& kind, size_t from, std::span<const std::byte> packet);
-    void keepPending(Stream& stream, Output& output, size_t from, std::span<const std::byte> packet);
+    void record(Stream& stream, Output& output, const RecordView& r, const CommandKind& kind, size_t from, const Packet& packet);
+    void keepPending(Stream& stream, Output& output, size_t from, const Packet& packet);
     void sendPending(Stream& stream, Output& output, size_t from);
+    static bool bindsHere(const Stream& stream);
     void gl(At& at);
     void arrays(At& at);
 
+    // Frames like the one before
+    [[nodiscard]] bool mayRepeat(const Stream& stream) const;
+    [[nodiscard]] bool repeats(const Stream& stream) const;
+    void passSame(Stream& stream, recording::RecordWalk& walk, const Packet& packet);
+    void seeSame(Stream& stream, const RecordView& r, const CommandKind& kind);
+    void followSame(Stream& stream);
+    void followSameTo(Stream& stream, size_t to);
+    void leaveSame(Stream& stream);
+    void leaveSameOf(const Group& group);
+    void keepSame(Stream& stream, const RecordView& r, const Packet& packet);
+    void keepRecords(Stream& stream, const Packet& packet);
+    void endSame(Stream& stream, const Packet& packet);
+
     // Small state
-    bool smallState(Stream& stream, Output& output, const RecordView& r, StateRole role, size_t from, std::span<const std::byte> packet);
+    bool smallState(Stream& stream, Output& output, const RecordView& r, StateRole role, size_t from, const Packet& packet);
     void countFate(const Outcome& outcome, size_t sizeBytes);
     [[nodiscard]] bool setsNothing(const Group& group, uint32_t list) const;
     void sendState(Stream& stream, Output& output, size_t from);
     void sendStateOf(Stream& stream);
+    void sendUniformsOf(Group& group);
     template <size_t Words>
     void dropWaiting(const Cells<Words>& cells) {
         counts_.heldBytes -= cells.waitingBytes();
@@ -90,6 +107,8 @@ private:
     void bindTexture(At& at, uint32_t target, uint32_t unit, Object* object);
     void bindBuffer(At& at, uint32_t target, uint32_t name);
     void bindIndexed(At& at);
+    void bindVertexArray(At& at, uint32_t name);
+    void arrayBuffers(At& at);
     void bindFramebuffer(At& at);
     void useProgram(At& at, uint32_t name);
     void arrayPointer(At& at);
@@ -105,6 +124,7 @@ private:
     Object* textureAt(At& at, uint32_t target);
     Object* bufferAt(const Context& c, uint32_t target) const;
     void generate(At& at);
+    static VertexArray* makeArray(Context& c, uint32_t name);
     void deleteNames(At& at);
     void deleteObject(At& at, Object* object);
     void openUp(At& at, Object* object); // nothing of it is held from now on
@@ -127,6 +147,8 @@ private:
     void use(At& at);
     void release(Stream& stream, Output& output, size_t from, std::span<Object* const> objects);
     void releaseOne(At& at, Object& object);
+    static bool mayWait(Group& group, Object& object);
+    bool makeRoom(Stream& stream, Output& output, size_t from, uint64_t sizeBytes);
     void releaseGroup(Stream& stream, Output& output, size_t from);
     void releaseOf(Group& group, Stream& stream, Output& output, size_t from);
     void releaseElsewhere(Stream& stream);

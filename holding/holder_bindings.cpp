@@ -11,7 +11,6 @@
 namespace mural::holding {
 
 using recording::argumentWord;
-using recording::Family;
 
 namespace {
 
@@ -59,80 +58,76 @@ void Holder::bind(At& at) {
     Context& c = at.context;
     const RecordView& r = at.r;
     const uint32_t first = argumentWord(r, 0), second = argumentWord(r, 1);
-    switch (at.kind.family) {
-    case Family::Cap: // nodes tell what their drivers say, as it happens
-        return hearsDriver(first) ? untrack(at) : void();
-    case Family::ActiveTexture:
+    switch (at.kind.binding) {
+    case Binding::Nothing: return;
+    case Binding::Unit:
         if (first < GL_TEXTURE0 || first - GL_TEXTURE0 >= kMostUnits) return untrack(at);
         if (c.unit == first - GL_TEXTURE0) return boundAlready(at);
         c.unit = first - GL_TEXTURE0;
         if (c.unit >= c.units.size()) c.units.resize(c.unit + 1);
         return;
-    case Family::ClientActiveTexture: c.clientUnit = first - GL_TEXTURE0; return;
-    case Family::AttribPush: return pushAttribs(at);
-    case Family::AttribPop: return popAttribs(at);
-    case Family::ClientPush: return pushClientAttribs(at);
-    case Family::ClientPop: return popClientAttribs(at);
-    case Family::UseProgram: return useProgram(at, first);
-    case Family::BindIndexed: return bindIndexed(at);
-    case Family::ArrayPointer: return arrayPointer(at);
-    case Family::ArraySet:
-    case Family::ArrayNamedSet: // who holds these buffers is not followed
-        if (r.opcode == op::glVertexArrayElementBuffer) return openNamed(at, Kind::Buffer, 1);
-        if (r.opcode == op::glVertexArrayVertexBuffer) return openNamed(at, Kind::Buffer, 2);
-        if (r.opcode == op::glBindVertexBuffers || r.opcode == op::glVertexArrayVertexBuffers) {
-            std::vector<uint32_t> names;
-            if (!namesAt(r, r.opcode == op::glBindVertexBuffers ? 2 : 3, names)) return untrack(at);
-            for (const uint32_t name : names) openUp(at, find(at.group, Kind::Buffer, name));
-        }
-        return;
-    case Family::Gen:
-    case Family::Create: return generate(at);
-    case Family::Delete:
-    case Family::ProgramDelete: return deleteNames(at);
-    case Family::FramebufferAttach: { // a picture from now on
-        const bool texture = r.opcode != op::glFramebufferRenderbuffer;
-        const bool layer = r.opcode == op::glFramebufferTextureLayer || r.opcode == op::glFramebufferTexture;
-        return texture ? openNamed(at, Kind::Texture, layer ? 2 : 3) : void();
-    }
-    case Family::FramebufferNamed:
-        for (size_t word = 1; word < 4; ++word) openNamed(at, Kind::Texture, word); // whichever of them is a name
-        return;
-    case Family::PipelineSet: {
-        const uint32_t program = argumentWord(r, r.opcode == op::glUseProgramStages ? 2 : 1);
-        return program != 0 ? openUp(at, make(at.group, Kind::Program, program)) : void();
-    }
-    case Family::TexBuffer:
-        for (size_t word = 0; word < 4; ++word) openNamed(at, Kind::Buffer, word);
-        if (targetIndex(first) == kTextureTargets) return openNamed(at, Kind::Texture, 0);
-        return openUp(at, textureAt(at, first));
-    default: break;
-    }
-    switch (r.opcode) {
-    case op::glBindTexture: {
+    case Binding::ClientUnit: c.clientUnit = first - GL_TEXTURE0; return;
+    case Binding::Texture: {
         Object* const object = named(at, Kind::Texture, second);
         if (at.group.untracked) return;
         if (object != nullptr && object == textureAt(at, first) && first != kExternal) return boundAlready(at);
         return bindTexture(at, first, c.unit, object);
     }
-    case op::glBindBuffer:
+    case Binding::Buffer:
         if (first == GL_ARRAY_BUFFER && second != 0 && bufferAt(c, first) != nullptr && bufferAt(c, first)->name == second) return boundAlready(at);
         return bindBuffer(at, first, second);
-    case op::glBindVertexArray: {
-        const auto found = c.arrays.find(first);
-        if (found != c.arrays.end() && c.array == &found->second) return boundAlready(at);
-        if (found == c.arrays.end() && !c.madeByBinding) return untrack(at);
-        c.array = found == c.arrays.end() ? &c.arrays[first] : &found->second;
-        c.needs = c.needs || needs(*c.array);
-        return;
-    }
-    case op::glBindFramebuffer:
-    case op::glBindFramebufferEXT:
-    case op::glBindFramebufferOES:
+    case Binding::VertexArray: return bindVertexArray(at, first);
+    case Binding::Framebuffer:
         if (first != GL_READ_FRAMEBUFFER) c.drawFramebuffer = second;
         return;
-    default: return; // renderbuffers, pipelines, programs of assembly
+    case Binding::Program: return useProgram(at, first);
+    case Binding::Pointer: return arrayPointer(at);
+    case Binding::Indexed: return bindIndexed(at);
+    case Binding::Cap: // nodes tell what their drivers say, as it happens
+        return hearsDriver(first) ? untrack(at) : void();
+    case Binding::ArrayBuffers: return arrayBuffers(at);
+    case Binding::PushAttribs: return pushAttribs(at);
+    case Binding::PopAttribs: return popAttribs(at);
+    case Binding::PushClientAttribs: return pushClientAttribs(at);
+    case Binding::PopClientAttribs: return popClientAttribs(at);
+    case Binding::Generate: return generate(at);
+    case Binding::Delete: return deleteNames(at);
+    case Binding::Attach: { // a picture from now on
+        const bool texture = r.opcode != op::glFramebufferRenderbuffer;
+        const bool layer = r.opcode == op::glFramebufferTextureLayer || r.opcode == op::glFramebufferTexture;
+        return texture ? openNamed(at, Kind::Texture, layer ? 2 : 3) : void();
     }
+    case Binding::AttachNamed:
+        for (size_t word = 1; word < 4; ++word) openNamed(at, Kind::Texture, word); // whichever of them is a name
+        return;
+    case Binding::Pipeline: {
+        const uint32_t program = argumentWord(r, r.opcode == op::glUseProgramStages ? 2 : 1);
+        return program != 0 ? openUp(at, make(at.group, Kind::Program, program)) : void();
+    }
+    case Binding::TextureBuffer:
+        for (size_t word = 0; word < 4; ++word) openNamed(at, Kind::Buffer, word);
+        if (targetIndex(first) == kTextureTargets) return openNamed(at, Kind::Texture, 0);
+        return openUp(at, textureAt(at, first));
+    }
+}
+
+void Holder::bindVertexArray(At& at, uint32_t name) {
+    Context& c = at.context;
+    VertexArray* const array = name == 0 ? &c.arrays[0] : c.arraysNamed.find(name);
+    if (array != nullptr && array == c.array) return boundAlready(at);
+    if (array == nullptr && !c.madeByBinding) return untrack(at);
+    c.array = array == nullptr ? makeArray(c, name) : array;
+    c.needs = c.needs || needs(*c.array);
+}
+
+// Who holds these buffers is not followed.
+void Holder::arrayBuffers(At& at) {
+    const RecordView& r = at.r;
+    if (r.opcode == op::glVertexArrayElementBuffer) return openNamed(at, Kind::Buffer, 1);
+    if (r.opcode == op::glVertexArrayVertexBuffer) return openNamed(at, Kind::Buffer, 2);
+    std::vector<uint32_t> names;
+    if (!namesAt(r, r.opcode == op::glBindVertexBuffers ? 2 : 3, names)) return untrack(at);
+    for (const uint32_t name : names) openUp(at, find(at.group, Kind::Buffer, name));
 }
 
 void Holder::bindTexture(At& at, uint32_t target, uint32_t unit, Object* object) {

@@ -24,19 +24,17 @@ bool namesAt(const recording::RecordView& r, size_t word, std::vector<uint32_t>&
 }
 
 Object* Holder::find(Group& group, Kind kind, uint32_t name) const {
-    const auto& table = group.objects[static_cast<size_t>(kind)];
-    const auto found = table.find(name);
-    return found == table.end() ? nullptr : found->second.get();
+    return group.named[static_cast<size_t>(kind)].find(name);
 }
 
 Object* Holder::make(Group& group, Kind kind, uint32_t name) {
-    auto& place = group.objects[static_cast<size_t>(kind)][name];
-    if (place == nullptr) {
-        place = std::make_unique<Object>();
-        place->kind = kind;
-        place->name = name;
-    }
-    return place.get();
+    if (Object* const there = find(group, kind, name)) return there;
+    ++group.objectChanges;
+    auto object = std::make_unique<Object>();
+    object->kind = kind;
+    object->name = name;
+    group.named[static_cast<size_t>(kind)].set(name, object.get());
+    return (group.objects[static_cast<size_t>(kind)][name] = std::move(object)).get();
 }
 
 Object* Holder::named(At& at, Kind kind, uint32_t name) {
@@ -61,8 +59,16 @@ Object* Holder::bufferAt(const Context& c, uint32_t target) const {
     return nullptr;
 }
 
+VertexArray* Holder::makeArray(Context& c, uint32_t name) {
+    ++c.group->objectChanges;
+    VertexArray* const array = &c.arrays[name];
+    c.arraysNamed.set(name, array);
+    return array;
+}
+
 void Holder::generate(At& at) {
     const RecordView& r = at.r;
+    Context& c = at.context;
     if (r.opcode == op::glCreateProgram || r.opcode == op::glCreateShader) {
         Object* const old = find(at.group, Kind::Program, argumentWord(r, r.opcode == op::glCreateShader ? 1 : 0));
         if (old == nullptr) return;
@@ -78,7 +84,7 @@ void Holder::generate(At& at) {
     if (!namesAt(r, r.opcode == op::glCreateTextures ? 2 : 1, names)) return untrack(at);
     for (const uint32_t name : names) {
         if (type == ObjectType::VertexArray) {
-            at.context.arrays[name];
+            makeArray(c, name);
             continue;
         }
         const Kind kind = type == ObjectType::Texture ? Kind::Texture : Kind::Buffer;
@@ -103,10 +109,12 @@ void Holder::deleteNames(At& at) {
         if (at.group.untracked) return;
         if (rule.type == ObjectType::Framebuffer && name == c.drawFramebuffer) c.drawFramebuffer = 0;
         if (rule.type == ObjectType::VertexArray && name != 0) {
-            const auto found = c.arrays.find(name);
-            if (found == c.arrays.end()) continue;
-            if (c.array == &found->second) c.array = &c.arrays[0];
-            c.arrays.erase(found);
+            const VertexArray* const array = c.arraysNamed.find(name);
+            if (array == nullptr) continue;
+            if (c.array == array) c.array = &c.arrays[0];
+            c.arraysNamed.set(name, nullptr);
+            c.arrays.erase(name);
+            ++at.group.objectChanges;
             c.needs = true;
         }
         if (rule.type != ObjectType::Texture && rule.type != ObjectType::Buffer) continue;
@@ -138,6 +146,8 @@ void Holder::deleteObject(At& at, Object* object) {
     }
     if (inArrays) releaseOne(at, *object);
     dropQueue(at.group, *object);
+    ++at.group.objectChanges;
+    at.group.named[static_cast<size_t>(object->kind)].set(object->name, nullptr);
     at.group.objects[static_cast<size_t>(object->kind)].erase(object->name);
 }
 

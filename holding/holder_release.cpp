@@ -27,6 +27,13 @@ uint32_t nameOf(const Object* object) { return object == nullptr ? 0 : object->n
 
 } // namespace
 
+// Whether to hold what has not been held yet.
+bool Holder::mayWait(Group& group, Object& object) {
+    if (!object.holding.tries()) return false;
+    const bool othersWait = !group.held.empty() && group.frame - group.held.front()->heldSince > kSoonFrames;
+    return othersWait || group.soonUsed.tries();
+}
+
 // A draw: of what is held goes what is bound for it.
 void Holder::use(At& at) {
     Context& c = at.context;
@@ -48,6 +55,22 @@ void Holder::use(At& at) {
 void Holder::releaseOne(At& at, Object& object) {
     Object* const one = &object;
     if (object.waits()) release(at.stream, at.output, at.from, std::span(&one, 1));
+}
+
+// For so many bytes more: what has waited for longest goes, and some more, so that this is not done for each. False: there is none.
+bool Holder::makeRoom(Stream& stream, Output& output, size_t from, uint64_t sizeBytes) {
+    const auto wants = [&] { return counts_.heldBytes + pendingBytes_ + sizeBytes; };
+    if (wants() <= mostBytes_) return true;
+    const uint64_t tooMuch = wants() - mostBytes_ / 8 * 7;
+    std::vector<Object*> oldest;
+    uint64_t sum = 0;
+    for (Object* const object : stream.context->group->held) {
+        if (sum >= tooMuch) break;
+        sum += object->heldBytes + object->uniforms.waitingBytes();
+        oldest.push_back(object);
+    }
+    if (!oldest.empty()) release(stream, output, from, oldest);
+    return wants() <= mostBytes_;
 }
 
 void Holder::releaseGroup(Stream& stream, Output& output, size_t from) {
@@ -97,6 +120,7 @@ void Holder::dropQueue(Group& group, Object& object) {
 
 // What waited has been sent, or goes nowhere.
 void Holder::emptyQueue(Group& group, Object& object) {
+    ++group.heldChanges;
     counts_.heldBytes -= object.heldBytes;
     object.heldBytes = 0;
     object.gained = false;
@@ -114,8 +138,10 @@ void Holder::release(Stream& stream, Output& output, size_t from, std::span<Obje
         counts_.heldBytes -= object->uniforms.waitingBytes();
         if (!loses_) sendQueue(c, output, from, *object);
         else object->uniforms.send([](std::span<const std::byte>) {});
-        if (group.frame - object->heldSince <= kSoonFrames && !object->gained) object->holding.lost();
+        const bool soon = group.frame - object->heldSince <= kSoonFrames && !object->gained;
+        if (soon) object->holding.lost();
         else object->holding.won();
+        if (object->kind != Kind::Program) group.soonUsed.was(soon);
         emptyQueue(group, *object);
     }
     if (unpack != nullptr) put<2>(output, from, op::glBindBuffer, {GL_PIXEL_UNPACK_BUFFER, unpack->name});

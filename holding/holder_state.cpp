@@ -1,4 +1,7 @@
 // Small state: what sets it waits for a command that needs it; what is set again before that, or is so already, is not sent.
+#include <algorithm>
+#include <iterator>
+
 #include "gl_opcodes.hpp"
 #include "holding/holder.hpp"
 
@@ -6,14 +9,35 @@ namespace mural::holding {
 
 void Holder::leaveOutSmall(bool leavesOut) {
     if (leavesOut == leavesOutSmall_) return;
-    leavesOutSmall_ = leavesOut;
+    for (auto& [id, stream] : streams_) leaveSame(stream);
+    // Between glBegin and glEnd nothing can be put: later, then.
+    if (std::ranges::any_of(streams_, [](const auto& s) { return s.second.inPrimitive; })) return;
     for (auto& [id, stream] : streams_) sendStateOf(stream);
-    for (auto& [client, contexts] : clients_) // what is set meanwhile is not looked at
-        for (auto& [id, context] : contexts) context->state.forgetAll();
+    for (auto& [client, contexts] : clients_)
+        for (auto& [id, context] : contexts) {
+            sendUniformsOf(*context->group);
+            // What is set meanwhile is not looked at.
+            context->state.forgetAll();
+            context->program = nullptr;
+            context->programSure = false;
+            for (auto& [name, program] : context->group->objects[static_cast<size_t>(Kind::Program)]) program->forget();
+        }
+    leavesOutSmall_ = leavesOut;
+}
+
+// Between two packets of the stream that has them.
+void Holder::sendUniformsOf(Group& group) {
+    std::vector<Object*> programs;
+    std::ranges::copy_if(group.held, std::back_inserter(programs), [](const Object* o) { return o->kind == Kind::Program; });
+    if (programs.empty()) return;
+    Stream& holder = streams_[group.holderStream];
+    Output other(holder.id, {}, otherScratch_, take_);
+    release(holder, other, 0, programs);
+    other.finish();
 }
 
 // Whether the record is dealt with: it waits, or nobody needs it.
-bool Holder::smallState(Stream& stream, Output& output, const RecordView& r, StateRole role, size_t from, std::span<const std::byte> packet) {
+bool Holder::smallState(Stream& stream, Output& output, const RecordView& r, StateRole role, size_t from, const Packet& packet) {
     Context& c = *stream.context;
     const bool sets = role == StateRole::Set, changes = sets || role == StateRole::Change;
     if (stream.list != 0) { // nothing waits: glNewList has needed it

@@ -2,6 +2,7 @@
 #include <GL/gl.h>
 #include <GL/glext.h>
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "gl_opcodes.hpp"
@@ -69,6 +70,7 @@ void Holder::upload(At& at) {
     Object* const object = objectOf(at);
     const Family family = at.kind.family;
     if (object == nullptr || object->open) return; // nothing of it is held, and nothing known
+    if (at.kind.small && !leavesOutSmall_) return;
     const bool uniform = family == Family::Uniform;
     if (uniform) {
         if (at.stream.values == 0 && isOneUniform(at.r, at.kind, 0)) return oneUniform(at, *object, 0);
@@ -84,19 +86,20 @@ void Holder::upload(At& at) {
     if (small && object->queue.empty() && object->known.empty()) return;
     if (uniform && object->queue.empty() && !object->holding.tries()) return;
     const auto u = uploadOf(at.r, blobBytes);
+    const bool first = !std::exchange(object->filled, true);
     // Of a texture by its name, which face of a cube is written is one of its numbers.
     const bool anyFace = recording::ruleOf(at.r.opcode).type == recording::ObjectType::Texture && object->target == GL_TEXTURE_CUBE_MAP;
     const bool fromBuffer = object->kind == Kind::Texture && bufferAt(at.context, GL_PIXEL_UNPACK_BUFFER) != nullptr;
     if (!u || at.stream.passing || fromBuffer || anyFace || (at.stream.values > 0 && blobBytes == 0)) {
         releaseOne(at, *object);
         object->known.clear();
-        if (at.stream.passing && !(object->holding.vain() && object->comparing.vain())) at.stream.waiting.won();
+        if (at.stream.passing && !first && !(object->holding.vain() && object->comparing.vain())) at.stream.waiting.won();
         return;
     }
     // Does it change anything?
     const bool compares = u->given && !small && !uniform && object->comparing.tries();
     if (compares) {
-        const Object::News news = object->compare(*u, sumOfValue(at, *u));
+        const Object::News news = object->compare(*u, [&] { return sumOfValue(at, *u); });
         if (news == Object::News::Same) {
             object->comparing.won();
             at.stream.waiting.won();
@@ -112,8 +115,9 @@ void Holder::upload(At& at) {
     const Object::Replaced gone = object->replaces(*u);
     countLeftOut(gone.records, gone.sizeBytes);
     counts_.heldBytes -= gone.sizeBytes;
-    if (object->queue.empty() && gone.records == 0 && (small || !u->given || u->kind == UploadKind::Storage || (!uniform && !object->holding.tries()))) {
-        if (at.stream.values > 0) object->holding.vain() && object->comparing.vain() ? at.stream.waiting.lost() : at.stream.waiting.won();
+    if (object->queue.empty() && gone.records == 0 && (small || !u->given || u->kind == UploadKind::Storage || (!uniform && !mayWait(at.group, *object)))) {
+        const bool inVain = (object->holding.vain() || at.group.soonUsed.vain()) && (object->comparing.vain() || first);
+        if (at.stream.values > 0) inVain ? at.stream.waiting.lost() : at.stream.waiting.won();
         return;
     }
     hold(at, *object, &*u, u->kind == UploadKind::Storage);
@@ -124,7 +128,8 @@ void Holder::oneUniform(At& at, Object& program, size_t locationWord) {
     const size_t location = argumentWord(at.r, locationWord);
     const auto record = at.packet.subspan(at.r.offset, at.r.sizeBytes);
     const bool certain = refusedByNone(at.r, at.kind.valueWord == kNoValue ? locationWord + 1 : at.kind.valueWord + size_t{1});
-    if (at.context.group.use_count() > 1) { // another thread may set it, in an order that is not this one
+    // Another thread may set it, in an order that is not this one; or what would be current again behind it is not known.
+    if (at.context.group.use_count() > 1 || !at.context.programSure) {
         releaseOne(at, program);
         return program.uniforms.forgetAll();
     }
@@ -174,6 +179,7 @@ void Holder::hold(At& at, Object& object, const Upload* upload, bool barrier) {
 // Something of it has been held: it goes when the object is needed, or there is too much.
 void Holder::waitsFor(At& at, Object& object) {
     Group& group = at.group;
+    ++group.heldChanges;
     if (std::ranges::find(group.held, &object) == group.held.end()) {
         group.held.push_back(&object);
         object.heldSince = group.frame;
@@ -186,7 +192,7 @@ void Holder::waitsFor(At& at, Object& object) {
         Object* const one = &object;
         release(at.stream, at.output, behind, std::span(&one, 1));
     }
-    if (counts_.heldBytes + pendingBytes_ > mostBytes_) releaseGroup(at.stream, at.output, behind);
+    makeRoom(at.stream, at.output, behind, 0);
 }
 
 // What is done to an object behind its uploads.
@@ -195,7 +201,7 @@ void Holder::objectCommand(At& at) {
     if (rule.family == Family::ProgramLink || rule.family == Family::ProgramSet || rule.family == Family::ProgramUniform || rule.family == Family::ProgramAttach ||
         rule.family == Family::ProgramDetach || rule.family == Family::ShaderDelete) {
         Object* const program = objectOf(at);
-        if (program == nullptr) return;
+        if (program == nullptr || (at.kind.small && !leavesOutSmall_)) return;
         if (rule.family == Family::ProgramUniform && !program->open && at.stream.values == 0 && isOneUniform(at.r, at.kind, 1)) return oneUniform(at, *program, 1);
         releaseOne(at, *program);
         program->forget();

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "holding/cells.hpp"
+#include "holding/frame_layout.hpp"
+#include "holding/name_index.hpp"
 #include "holding/object.hpp"
 #include "holding/small_state.hpp"
 
@@ -29,9 +31,13 @@ struct ListNames {
 // Contexts that share objects. What is held has been sent to one of them, as long as no other says anything.
 struct Group {
     std::array<std::unordered_map<uint32_t, std::unique_ptr<Object>>, 3> objects; // by Kind
+    std::array<NameIndex<Object>, 3> named;                                       // the same
     std::unordered_map<uint32_t, ListNames> lists;
     bool listsBind = false;    // some of them
     std::vector<Object*> held; // with a queue, in the order in which they got it
+    SoonUsed soonUsed;
+    uint64_t heldChanges = 0;   // something began to wait, or no longer does
+    uint64_t objectChanges = 0; // so often there were others
     Context* holder = nullptr;
     uint32_t holderStream = 0;
     uint64_t frame = 0;
@@ -41,6 +47,30 @@ struct Group {
 struct VertexArray {
     std::vector<std::pair<uint32_t, Object*>> buffers; // by command and index
     Object* indices = nullptr;
+    bool operator==(const VertexArray&) const = default;
+};
+
+// What a context has bound.
+struct Bindings {
+    std::vector<TextureUnit> units = std::vector<TextureUnit>(1);
+    uint32_t unit = 0, clientUnit = 0;
+    std::vector<std::pair<uint32_t, Object*>> buffers; // by target, but those of indices
+    std::unordered_map<uint32_t, VertexArray> arrays{{0, {}}};
+    VertexArray* array = &arrays[0]; // of the context's, in a copy too
+    Object* program = nullptr;
+    bool programSure = true; // false: whether it is the current one is not known
+    uint32_t drawFramebuffer = 0;
+    bool operator==(const Bindings&) const = default;
+    // Of a context, what it had bound when it had as many vertex arrays as now.
+    void takeOver(const Bindings& before) {
+        units = before.units;
+        unit = before.unit, clientUnit = before.clientUnit;
+        buffers = before.buffers;
+        for (const auto& [name, there] : before.arrays) arrays[name] = there;
+        array = before.array;
+        program = before.program, programSure = before.programSure;
+        drawFramebuffer = before.drawFramebuffer;
+    }
 };
 
 struct SavedAttribs {
@@ -54,23 +84,42 @@ struct SavedClientAttribs {
     Object* unpackBuffer = nullptr;
 };
 
-struct Context {
+struct Context : Bindings {
     uint32_t id = 0;
     std::shared_ptr<Group> group;
     bool madeByBinding = false; // names begin to be with their first use
     bool destroyed = false;     // but current
-    std::vector<TextureUnit> units = std::vector<TextureUnit>(1);
-    uint32_t unit = 0, clientUnit = 0;
-    std::vector<std::pair<uint32_t, Object*>> buffers; // by target, but those of indices
-    std::unordered_map<uint32_t, VertexArray> arrays{{0, {}}};
-    VertexArray* array = &arrays[0];
-    Object* program = nullptr;
-    bool programSure = true; // false: whether it is the current one is not known
-    uint32_t drawFramebuffer = 0;
+    NameIndex<VertexArray> arraysNamed;
     std::vector<SavedAttribs> attribs;
     std::vector<SavedClientAttribs> clientAttribs;
     bool needs = true; // something that waits may have been bound since the last draw, or held
     Cells<kStateWords> state; // small state, by StateSet
+};
+
+// Frames of a stream that bind what the one before did.
+struct SameFrames {
+    enum class Now : uint8_t {
+        Apart,     // each record is followed
+        Recording, // and kept
+        Following, // those that are as expected are not: what is bound is as at the frame's beginning, or where layout.follow() stopped
+    };
+    Now now = Now::Apart;
+    FrameLayout layout;
+    size_t keptBytes = 0; // of the packet, while a frame is kept
+    bool inValue = false; // the last record kept was a piece of one
+    const Context* context = nullptr; // of that frame
+    uint64_t heldChanges = 0, objectChanges = 0;
+    Bindings ends; // what a frame like the layout begins with, and leaves
+    struct Mark {  // and what it has bound in its midst, a little before the place where another record came
+        size_t followed = 0; // so many records on; 0: there is none
+        uint32_t frame = 0;  // in which it was made
+        Bindings bound;
+        bool inPrimitive = false;
+    } mark;
+    uint32_t frames = 0;    // since the layout was kept
+    uint32_t wait = kFirst; // so many until the next one is
+    double shares = 0;      // of the layout that those frames were like
+    static constexpr uint32_t kFirst = 4, kMost = 1024;
 };
 
 struct Stream {
@@ -86,6 +135,7 @@ struct Stream {
     uint32_t values = 0, pendingRecords = 0;
     bool passing = false;
     Worth waiting; // whether values were worth being waited for
+    SameFrames same;
 };
 
 } // namespace mural::holding

@@ -10,16 +10,18 @@ constexpr size_t kLookedAt = 64; // of the queue's end
 
 } // namespace
 
-Object::News Object::compare(const Upload& u, const Sum& sum) {
+Object::News Object::compare(const Upload& u, const std::function<Sum()>& sum) {
     News news = News::First;
+    std::optional<Sum> now;
     for (const Known& k : known) {
         if (!(k.shape == u.shape)) continue;
-        if (k.sum == sum) return News::Same;
-        news = News::Changed;
+        if (!now) now = sum();
+        if (k.sum == now) return News::Same;
+        if (k.sum) news = News::Changed;
     }
     forgets(u);
     if (known.size() == kMostKnown) known.clear();
-    known.push_back({u.place, u.shape, sum});
+    known.push_back({u.place, u.shape, now});
     return news;
 }
 

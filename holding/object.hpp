@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "holding/cells.hpp"
@@ -47,6 +49,18 @@ private:
     uint32_t skipped_ = 0;
 };
 
+// Whether objects that have just begun to be are worth to be held: where many in a row were drawn at once, most are not tried.
+class SoonUsed {
+public:
+    [[nodiscard]] bool tries() { return inARow_ < kPatience || ++skipped_ % kSkips == 0; }
+    [[nodiscard]] bool vain() const { return inARow_ >= kPatience; }
+    void was(bool soon) { inARow_ = soon ? inARow_ + 1 : 0; }
+
+private:
+    static constexpr uint32_t kPatience = 16, kSkips = 8;
+    uint32_t inARow_ = 0, skipped_ = 0;
+};
+
 struct Object {
     Kind kind = Kind::Texture;
     uint32_t name = 0;
@@ -56,12 +70,13 @@ struct Object {
     Cells<kUniformWords> uniforms; // of a program, by location, those that are no array; what waits is behind the queue
     size_t heldBytes = 0;
     uint64_t heldSince = 0; // frame in which the first of the queue came
+    bool filled = false;    // something was uploaded
     bool gained = false;    // something of the queue was replaced
     Worth holding, comparing;
     struct Known {
         Place place;
         Shape shape;
-        Sum sum;
+        std::optional<Sum> sum; // none of what came first: most never comes again
     };
     std::vector<Known> known; // what is in it, when the queue has been sent
 
@@ -72,7 +87,7 @@ struct Object {
     }
     enum class News : uint8_t { Same, Changed, First }; // First: there was none like it
     // Whether the upload changes anything of what is there. Remembers it.
-    News compare(const Upload& u, const Sum& sum);
+    News compare(const Upload& u, const std::function<Sum()>& sum);
     // It comes, whatever it has.
     void forgets(const Upload& u);
     // Takes out of the queue what the upload replaces before anything has read it; how much that was.

@@ -12,7 +12,8 @@
 
 namespace mural::holding {
 
-using Take = std::function<void(uint32_t stream, std::span<const std::byte> payload)>;
+// walked: of a packet as it came, what it is made of; else null.
+using Take = std::function<void(uint32_t stream, std::span<const std::byte> payload, const recording::Walked* walked)>;
 
 class Output {
 public:
@@ -36,16 +37,16 @@ public:
         recording::RecordView r;
         while (walk.next(r)) {
             if (to - from + r.sizeBytes > kWantedBytes && to > from) {
-                take_(stream_, records.subspan(from, to - from));
+                take_(stream_, records.subspan(from, to - from), nullptr);
                 from = to;
             }
             to += r.sizeBytes;
         }
-        if (to > from) take_(stream_, records.subspan(from, to - from));
+        if (to > from) take_(stream_, records.subspan(from, to - from), nullptr);
     }
-    void finish() {
+    void finish(const recording::Walked* walked = nullptr) {
         if (!touched_) {
-            if (!payload_.empty()) take_(stream_, payload_);
+            if (!payload_.empty()) take_(stream_, payload_, walked);
             return;
         }
         copyTo(payload_.size());
@@ -67,7 +68,7 @@ private:
         scratch_.insert(scratch_.end(), bytes.begin(), bytes.end());
     }
     void flush() {
-        if (!scratch_.empty()) take_(stream_, scratch_);
+        if (!scratch_.empty()) take_(stream_, scratch_, nullptr);
         scratch_.clear();
     }
 

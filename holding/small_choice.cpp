@@ -6,6 +6,7 @@ namespace mural::holding {
 namespace {
 
 constexpr uint64_t kLeastWireBytes = 200; // per frame: of fewer nothing can be won, and a try breaks equal runs
+constexpr double kHopelessCost = 1.1;
 constexpr double kClearly = 0.97; // as small as that is cheaper; where both cost about the same, what leaves out is kept
 
 template <size_t N>
@@ -42,7 +43,7 @@ void SmallChoice::frame(uint64_t programBytes, uint64_t wireBytes, double costNs
         if (frames_ >= kSettling) next(Phase::Trying);
         return;
     case Phase::Trying:
-        if (frames_ >= kCompared) decide();
+        if (frames_ >= kCompared || hopeless()) decide();
     }
 }
 
@@ -51,9 +52,14 @@ void SmallChoice::disturbed() {
     next(Phase::Waiting);
 }
 
+bool SmallChoice::hopeless() const {
+    const double most = median(costs_[0]) * kHopelessCost;
+    return frames_ >= kHopeless && std::all_of(costs_[1].begin(), costs_[1].begin() + frames_, [most](double cost) { return cost > most; });
+}
+
 void SmallChoice::decide() {
     const double before = median(costs_[0]), tried = median(costs_[1]);
-    const bool better = leavesOut_ ? tried * kClearly <= before : tried <= before * kClearly;
+    const bool better = frames_ >= kCompared && (leavesOut_ ? tried * kClearly <= before : tried <= before * kClearly);
     if (!better) leavesOut_ = !leavesOut_;
     until_ = better ? kAfterChange : std::min(until_ * 2, kMostBetween);
     next(Phase::Waiting);

@@ -21,11 +21,13 @@ public:
 
 private:
     static constexpr uint32_t kCompared = 9; // frames by either way
+    static constexpr uint32_t kHopeless = 3; // of a try, when each of them costs clearly more
     static constexpr uint32_t kSettling = 5; // and between them: what was remembered is of the other way
-    static constexpr uint32_t kFirst = 16, kAfterChange = 64, kMostBetween = 2048;
+    static constexpr uint32_t kFirst = 64, kAfterChange = 64, kMostBetween = 4096;
     enum class Phase : uint8_t { Waiting, Before, Settling, Trying };
 
     void next(Phase phase);
+    [[nodiscard]] bool hopeless() const;
     void decide();
 
     bool leavesOut_ = false;

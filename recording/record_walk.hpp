@@ -1,6 +1,7 @@
 // The records of a packet, one after another (docs/wire-format.md), without looking into their arguments.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -15,6 +16,17 @@ struct RecordView {
     size_t offset = 0;                     // in the packet, bytes
     size_t sizeBytes = 0;                  // with its header
     std::span<const std::byte> arguments;
+};
+
+// What a walk has passed. Who walks over the same packet behind it need not.
+struct Walked {
+    size_t records = 0;
+    size_t lastBytes = 0, longestBytes = 0; // of records
+    void pass(size_t sizeBytes) {
+        ++records;
+        lastBytes = sizeBytes;
+        longestBytes = std::max(longestBytes, sizeBytes);
+    }
 };
 
 class RecordWalk {
@@ -39,6 +51,7 @@ public:
         record.sizeBytes = static_cast<size_t>(words) * 4;
         record.arguments = packet_.subspan(at_ + headerBytes, record.sizeBytes - headerBytes);
         at_ += record.sizeBytes;
+        walked_.pass(record.sizeBytes);
         return true;
     }
     // On over short records as long as they are of no interest, by their opcode.
@@ -49,8 +62,18 @@ public:
             const size_t sizeBytes = (head >> 16) * size_t{4};
             if (sizeBytes == 0 || head >> 16 == record::kLongForm || sizeBytes > packet_.size() - at_ || !ofNoInterest(static_cast<uint16_t>(head))) return;
             at_ += sizeBytes;
+            walked_.pass(sizeBytes);
         }
     }
+    [[nodiscard]] size_t at() const { return at_; } // where the next record begins, bytes
+    // Behind records that somebody else has passed.
+    void goTo(size_t at, const Walked& passed) {
+        at_ = at;
+        if (passed.records == 0) return;
+        walked_ = {walked_.records + passed.records, passed.lastBytes, std::max(walked_.longestBytes, passed.longestBytes)};
+    }
+    // All of the packet, once there is no next record; null: that is not all records.
+    [[nodiscard]] const Walked* whole() const { return at_ == packet_.size() && !malformed_ ? &walked_ : nullptr; }
     [[nodiscard]] bool malformed() const { return malformed_; }
 
 private:
@@ -63,6 +86,7 @@ private:
     std::span<const std::byte> packet_;
     size_t at_ = 0;
     bool malformed_ = false;
+    Walked walked_;
 };
 
 // A word of a record's arguments; 0 behind their end.

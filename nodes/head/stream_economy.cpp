@@ -23,7 +23,7 @@ Result<std::unique_ptr<StreamEconomy>> StreamEconomy::open(const economy::Limits
     return std::unique_ptr<StreamEconomy>(new StreamEconomy(limits, std::move(*coder)));
 }
 
-StreamEconomy::StreamEconomy(const economy::Limits& limits, std::unique_ptr<Coder> coder) : limits_(limits), holder_(std::min(kMostHeldBytes, limits.storeBytes / 4), [this](uint32_t stream, std::span<const std::byte> payload) { pack(stream, payload); }), coder_(std::move(coder)) {}
+StreamEconomy::StreamEconomy(const economy::Limits& limits, std::unique_ptr<Coder> coder) : limits_(limits), holder_(std::min(kMostHeldBytes, limits.storeBytes / 4), [this](uint32_t stream, std::span<const std::byte> payload, const recording::Walked* walked) { pack(stream, payload, walked); }), coder_(std::move(coder)) {}
 
 StreamEconomy::Coder::Coder(const economy::Limits& limits) : packer(limits), encoder(threadCpuNowNs) {}
 
@@ -48,10 +48,13 @@ void StreamEconomy::add(uint32_t stream, std::span<const std::byte> payload) {
         return;
     }
     const int64_t beganNs = threadCpuNowNs();
-    sendNs_ = 0;
+    sendNs_ = packNs_ = 0;
+    timesPacking_ = true;
     hold(stream, payload);
+    timesPacking_ = false;
     const auto ns = static_cast<uint64_t>(threadCpuNowNs() - beganNs - sendNs_);
     encodeNs_ += ns;
+    measured_.holdNs += ns - std::min(ns, packNs_);
     if (!isLong) packetNs_ = ns;
 }
 
@@ -75,9 +78,11 @@ void StreamEconomy::hold(uint32_t stream, std::span<const std::byte> payload) {
     pack(stream, payload);
 }
 
-void StreamEconomy::pack(uint32_t stream, std::span<const std::byte> payload) {
+void StreamEconomy::pack(uint32_t stream, std::span<const std::byte> payload, const recording::Walked* walked) {
     if (missed_) return;
-    coder_->packer.add(stream, payload);
+    const int64_t startedNs = timesPacking_ ? threadCpuNowNs() : 0;
+    coder_->packer.add(stream, payload, walked);
+    if (timesPacking_) packNs_ += static_cast<uint64_t>(threadCpuNowNs() - startedNs);
     ++packets_;
     if (!full() || !send_) return;
     const int64_t beganNs = threadCpuNowNs();
@@ -106,13 +111,14 @@ Result<std::span<const std::byte>> StreamEconomy::take() {
     if (!frameGoesOn || measured_.rawBytes > kFullRawBytes) {
         economy::WayChoice& way = coder_->way;
         const double frameNs = timesFrame_ ? static_cast<double>(encodeNs_ - measured_.encodeNs) : -1;
-        if (timesFrame_) way.measured(measured_.rawBytes, measured_.pageBytes, measured_.wireBytes, static_cast<int64_t>(frameNs), link_.nsPerByte());
+        // What stays behind takes as long either way.
+        if (timesFrame_) way.measured(measured_.rawBytes, measured_.pageBytes, measured_.wireBytes, static_cast<int64_t>(frameNs) - static_cast<int64_t>(measured_.holdNs), link_.nsPerByte());
         else way.unmeasured();
         if (way.plain() != packer.plain()) small_.disturbed();
         else small_.frame(holder_.counts().inBytes - measured_.programBytes, measured_.wireBytes, timesFrame_ ? frameNs + static_cast<double>(measured_.wireBytes) * link_.nsPerByte() : -1);
         timesFrame_ = way.wantsTime() || small_.wantsTime();
         packer.beginPlain(way.plain());
-        measured_ = {0, 0, 0, encodeNs_, holder_.counts().inBytes};
+        measured_ = {0, 0, 0, encodeNs_, holder_.counts().inBytes, 0};
     }
     publishCounts();
     return batch;

@@ -70,7 +70,7 @@ private:
     void publishCounts();
 
     void hold(uint32_t stream, std::span<const std::byte> payload);
-    void pack(uint32_t stream, std::span<const std::byte> payload);
+    void pack(uint32_t stream, std::span<const std::byte> payload, const recording::Walked* walked = nullptr);
 
     const economy::Limits limits_;
     holding::Holder holder_;
@@ -84,10 +84,12 @@ private:
     economy::LinkRate link_;
     size_t packets_ = 0; // in the batch
     bool timesFrame_ = true; // all that is done for it; else what is long only
+    bool timesPacking_ = false;
+    uint64_t packNs_ = 0; // of the packet in hand, without what holds back
     uint64_t packetNs_ = 0, takeNs_ = 0; // of short packets, and of batches of such, that were measured last
     uint64_t wireBytes_ = 0, encodeNs_ = 0;
     struct Measured {
-        uint64_t rawBytes = 0, pageBytes = 0, wireBytes = 0, encodeNs = 0, programBytes = 0;
+        uint64_t rawBytes = 0, pageBytes = 0, wireBytes = 0, encodeNs = 0, programBytes = 0, holdNs = 0;
     } measured_; // since the way was chosen: about a frame
     struct Published {
         std::atomic<uint64_t> packets{0}, records{0}, rawBytes{0}, stagedBytes{0}, storeHits{0}, newPages{0}, patches{0}, wireBytes{0}, encodeNs{0};

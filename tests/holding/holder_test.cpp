@@ -40,7 +40,7 @@ protected:
     SeenModel seen_;
     std::vector<uint32_t> streams_;  // of the packets that went
     std::vector<uint16_t> opcodes_; // of the records that went
-    Holder holder_{kBound, [this](uint32_t stream, std::span<const std::byte> payload) {
+    Holder holder_{kBound, [this](uint32_t stream, std::span<const std::byte> payload, const recording::Walked*) {
                        seen_.packet(stream, payload);
                        streams_.push_back(stream);
                        recording::RecordWalk walk(payload);
@@ -101,8 +101,8 @@ TEST_F(Holding, leavesOutWhatChangesNothing) {
     begin();
     send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}));
     for (uint32_t i = 0; i < 10; ++i) send(PacketBuilder().record(op::glTexImage2D, image(7)).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}).swap(1, i + 1));
-    EXPECT_EQ(seen_.uploads(), 1u);
-    EXPECT_EQ(holder_.counts().leftOutRecords, 9u);
+    EXPECT_EQ(seen_.uploads(), 2u) << "the first is not remembered: most never comes again";
+    EXPECT_EQ(holder_.counts().leftOutRecords, 8u);
 }
 
 TEST_F(Holding, sendsNothingOfWhatIsDeletedUnused) {

@@ -37,6 +37,22 @@ public:
     }
     uint32_t below(uint32_t n) { return random_() % n; }
 
+    // Of a frame that comes again and again.
+    std::vector<PacketBuilder> frame() {
+        std::vector<PacketBuilder> commands(1 + below(60));
+        for (PacketBuilder& p : commands) command(p);
+        return commands;
+    }
+    // That frame, mostly: where it is another one, anywhere.
+    PacketBuilder likeFrame(const std::vector<PacketBuilder>& commands, uint32_t changes) {
+        PacketBuilder p;
+        for (const PacketBuilder& c : commands) {
+            if (below(changes) == 0) command(p);
+            if (below(changes) != 0) p.append(c);
+        }
+        return p.swap(1, ++frame_);
+    }
+
 private:
     // Few different ones, so that some come again.
     std::vector<uint32_t> value(uint32_t words) { return std::vector<uint32_t>(words, below(5)); }
@@ -151,48 +167,94 @@ private:
 };
 
 struct Won {
-    size_t held = 0, leftOut = 0; // records
+    size_t held = 0, leftOut = 0, alike = 0; // records
 };
 
-void same(uint32_t seed, bool shares, uint64_t mostBytes, Won& won) {
-    RandomProgram program(seed, shares);
-    constexpr uint32_t kFirst = wire::streamOf(1, 0), kSecond = wire::streamOf(1, 1);
-    SeenModel whole, held;
-    Holder holder(mostBytes, [&](uint32_t stream, std::span<const std::byte> payload) {
-        ASSERT_LE(payload.size(), wire::kMaxPacketBytes);
-        held.packet(stream, payload);
-    });
-    holder.leaveOutSmall(true);
-    const auto send = [&](uint32_t stream, std::span<const std::byte> payload) {
-        if (program.below(40) == 0) holder.leaveOutSmall(program.below(3) != 0);
-        whole.packet(stream, payload);
-        holder.add(stream, payload);
-    };
-    send(kFirst, program.begin().bytes());
-    if (shares) send(kSecond, program.other().bytes());
-    uint32_t stream = kFirst;
-    for (int i = 0; i < 60; ++i) {
-        const PacketBuilder p = program.packet();
-        // Values may be cut between two packets, but not between streams.
+// What a node sees of a program's packets, and what it sees of those that the holder lets go.
+class Both {
+public:
+    Both(RandomProgram& program, uint64_t mostBytes, bool small, uint32_t toggles) : program_(program), mostBytes_(mostBytes), toggles_(toggles) { holder_.leaveOutSmall(small); }
+
+    // Cut in pieces: values may be cut between two packets, but not between streams.
+    void send(uint32_t stream, const PacketBuilder& p) {
         const auto bytes = p.bytes();
-        if (shares && program.below(3) == 0) stream = stream == kFirst ? kSecond : kFirst;
         recording::RecordWalk walk(bytes);
         recording::RecordView r;
         size_t from = 0;
         while (walk.next(r)) {
-            if (program.below(8) != 0) continue;
-            send(stream, bytes.subspan(from, r.offset + r.sizeBytes - from));
+            if (program_.below(8) != 0) continue;
+            give(stream, bytes.subspan(from, r.offset + r.sizeBytes - from));
             from = r.offset + r.sizeBytes;
         }
-        if (from < bytes.size()) send(stream, bytes.subspan(from));
-        ASSERT_EQ(held.seen(), whole.seen()) << "seed " << seed << ", packet " << i;
-        ASSERT_LE(holder.counts().heldBytes, mostBytes);
+        if (from < bytes.size()) give(stream, bytes.subspan(from));
+        ASSERT_EQ(held_.seen(), whole_.seen());
+        ASSERT_LE(holder_.counts().heldBytes, mostBytes_);
     }
-    holder.releaseAll();
-    EXPECT_EQ(held.all(), whole.all()) << "seed " << seed << ": what was held is lost";
-    EXPECT_EQ(holder.counts().heldBytes, 0u);
-    won.held += holder.counts().heldRecords;
-    won.leftOut += holder.counts().leftOutRecords;
+    void ends(Won& won) {
+        holder_.releaseAll();
+        EXPECT_EQ(held_.all(), whole_.all()) << "what was held is lost";
+        EXPECT_EQ(holder_.counts().heldBytes, 0u);
+        won.held += holder_.counts().heldRecords;
+        won.leftOut += holder_.counts().leftOutRecords;
+        won.alike += holder_.counts().alikeRecords;
+    }
+
+private:
+    void give(uint32_t stream, std::span<const std::byte> payload) {
+        if (program_.below(toggles_) == 0) holder_.leaveOutSmall(program_.below(3) != 0);
+        whole_.packet(stream, payload);
+        holder_.add(stream, payload);
+    }
+
+    RandomProgram& program_;
+    const uint64_t mostBytes_;
+    const uint32_t toggles_; // packets between them, about
+    SeenModel whole_, held_;
+    Holder holder_{mostBytes_, [this](uint32_t stream, std::span<const std::byte> payload, const recording::Walked* walked) {
+                       ASSERT_LE(payload.size(), wire::kMaxPacketBytes);
+                       if (walked != nullptr) isMadeOf(payload, *walked);
+                       held_.packet(stream, payload);
+                   }};
+    static void isMadeOf(std::span<const std::byte> payload, const recording::Walked& told) {
+        recording::RecordWalk walk(payload);
+        recording::RecordView r;
+        while (walk.next(r)) {}
+        ASSERT_NE(walk.whole(), nullptr);
+        ASSERT_EQ(told.records, walk.whole()->records);
+        ASSERT_EQ(told.lastBytes, walk.whole()->lastBytes);
+        ASSERT_GE(told.longestBytes, walk.whole()->longestBytes);
+    }
+};
+
+constexpr uint32_t kFirst = wire::streamOf(1, 0), kSecond = wire::streamOf(1, 1);
+
+void same(uint32_t seed, bool shares, uint64_t mostBytes, Won& won) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    RandomProgram program(seed, shares);
+    Both both(program, mostBytes, true, 40);
+    both.send(kFirst, program.begin());
+    if (shares) both.send(kSecond, program.other());
+    uint32_t stream = kFirst;
+    for (int i = 0; i < 60 && !testing::Test::HasFatalFailure(); ++i) {
+        const PacketBuilder p = program.packet();
+        if (shares && program.below(3) == 0) stream = stream == kFirst ? kSecond : kFirst;
+        both.send(stream, p);
+    }
+    both.ends(won);
+}
+
+// Frames that are much alike, as those of most programs.
+void sameFrames(uint32_t seed, Won& won) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    RandomProgram program(seed, false);
+    Both both(program, 1 << 20, false, 2000);
+    both.send(kFirst, program.begin());
+    for (int scene = 0; scene < 3; ++scene) {
+        const std::vector<PacketBuilder> frame = program.frame();
+        const uint32_t changes = program.below(3) == 0 ? 20 : 500;
+        for (int i = 0; i < 40 && !testing::Test::HasFatalFailure(); ++i) both.send(kFirst, program.likeFrame(frame, changes));
+    }
+    both.ends(won);
 }
 
 TEST(HeldStreams, showTheSameToEachDraw) {
@@ -200,6 +262,13 @@ TEST(HeldStreams, showTheSameToEachDraw) {
     for (uint32_t seed = 0; seed < 400 && !HasFatalFailure(); ++seed) same(seed, false, 1 << 20, won);
     EXPECT_GT(won.held, 10'000U) << "or this shows nothing";
     EXPECT_GT(won.leftOut, 1000U);
+}
+
+TEST(HeldStreams, showTheSameInFramesThatAreAlike) {
+    Won won;
+    for (uint32_t seed = 0; seed < 250 && !HasFatalFailure(); ++seed) sameFrames(seed, won);
+    EXPECT_GT(won.alike, 100'000U) << "or this shows nothing";
+    EXPECT_GT(won.held, 1000U);
 }
 
 TEST(HeldStreams, showTheSameWithTwoThreadsThatShare) {

@@ -49,6 +49,10 @@ public:
         return record(wire::kOpWindow, words);
     }
     PacketBuilder& swap(uint32_t window, uint32_t frame) { return record(wire::kOpSwap, {window, frame}); }
+    PacketBuilder& append(const PacketBuilder& other) {
+        words_.insert(words_.end(), other.words_.begin(), other.words_.end());
+        return *this;
+    }
     [[nodiscard]] std::span<const std::byte> bytes() const { return std::as_bytes(std::span(words_)); }
 
 private:

@@ -14,12 +14,12 @@ namespace {
 
 class EconomyWay final : public Way {
 public:
-    EconomyWay(std::unique_ptr<StreamEconomy> economy, const economy::Limits& limits) : economy_(std::move(economy)), unpacker_(limits) {
+    EconomyWay(std::unique_ptr<StreamEconomy> economy, const economy::Limits& limits, bool holds) : economy_(std::move(economy)), unpacker_(limits), holds_(holds) {
         economy_->sendBy([this] { take(); });
-        economy_->holdNothing(); // what is unpacked is compared with what came
+        if (!holds) economy_->holdNothing(); // what is unpacked is compared with what came
     }
 
-    [[nodiscard]] std::string name() const override { return "economy"; }
+    [[nodiscard]] std::string name() const override { return holds_ ? "sent" : "economy"; }
 
     void packet(const StreamPacket& p) override { sent_.push_back({p.stream, {p.payload.begin(), p.payload.end()}}); }
 
@@ -36,6 +36,7 @@ public:
     }
 
     Result<void> comesOut(const StreamPacket& p) override {
+        if (holds_) return {};
         uint32_t stream = 0;
         std::span<const std::byte> payload;
         while (true) {
@@ -66,7 +67,7 @@ private:
             return;
         }
         bytes_ += batch->size();
-        batches_.emplace_back(batch->begin(), batch->end());
+        if (!holds_) batches_.emplace_back(batch->begin(), batch->end());
     }
 
     Result<void> unpack() {
@@ -88,6 +89,7 @@ private:
     std::vector<Sent> sent_;                     // of the frame
     std::deque<std::vector<std::byte>> batches_; // that have not been unpacked
     std::vector<std::byte> batch_;               // that is
+    const bool holds_;
     bool unpacking_ = false;
     int64_t cpuNs_ = 0;
     std::string wrong_;
@@ -96,12 +98,12 @@ private:
 
 } // namespace
 
-Result<std::unique_ptr<Way>> economyWay(uint64_t storeBytes) {
+Result<std::unique_ptr<Way>> economyWay(uint64_t storeBytes, bool holds) {
     economy::Limits limits;
     limits.storeBytes = storeBytes;
     auto economy = StreamEconomy::open(limits);
     if (!economy) return economy.error();
-    return std::unique_ptr<Way>(new EconomyWay(std::move(*economy), limits));
+    return std::unique_ptr<Way>(new EconomyWay(std::move(*economy), limits, holds));
 }
 
 } // namespace mural::bench

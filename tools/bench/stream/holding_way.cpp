@@ -33,7 +33,7 @@ private:
         std::vector<std::byte> payload;
     };
 
-    holding::Holder holder_{kMostHeldBytes, [](uint32_t, std::span<const std::byte>) {}};
+    holding::Holder holder_{kMostHeldBytes, [](uint32_t, std::span<const std::byte>, const recording::Walked*) {}};
     std::vector<Came> came_; // of the frame
     int64_t cpuNs_ = 0;
 };

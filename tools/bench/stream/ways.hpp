@@ -25,7 +25,7 @@ public:
 };
 
 // The economy, as the head uses it; every batch is kept, to be unpacked and compared.
-Result<std::unique_ptr<Way>> economyWay(uint64_t storeBytes);
+Result<std::unique_ptr<Way>> economyWay(uint64_t storeBytes, bool holds);
 // What stands in front of the economy in a head: uploads that nobody needs yet stay behind. Bytes of the stream, as nothing is packed.
 std::unique_ptr<Way> holdingWay();
 // Zstandard over the whole frame, by itself.
