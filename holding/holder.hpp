@@ -145,7 +145,8 @@ private:
 
     // Releasing: before the byte `from` of the output's packet
     void use(At& at);
-    void release(Stream& stream, Output& output, size_t from, std::span<Object* const> objects);
+    enum class Because : uint8_t { Needed, NoRoom };
+    void release(Stream& stream, Output& output, size_t from, std::span<Object* const> objects, Because because = Because::Needed);
     void releaseOne(At& at, Object& object);
     static bool mayWait(Group& group, Object& object);
     bool makeRoom(Stream& stream, Output& output, size_t from, uint64_t sizeBytes);

@@ -69,7 +69,7 @@ bool Holder::makeRoom(Stream& stream, Output& output, size_t from, uint64_t size
         sum += object->heldBytes + object->uniforms.waitingBytes();
         oldest.push_back(object);
     }
-    if (!oldest.empty()) release(stream, output, from, oldest);
+    if (!oldest.empty()) release(stream, output, from, oldest, Because::NoRoom);
     return wants() <= mostBytes_;
 }
 
@@ -128,7 +128,7 @@ void Holder::emptyQueue(Group& group, Object& object) {
     std::erase(group.held, &object);
 }
 
-void Holder::release(Stream& stream, Output& output, size_t from, std::span<Object* const> objects) {
+void Holder::release(Stream& stream, Output& output, size_t from, std::span<Object* const> objects, Because because) {
     Context& c = *stream.context;
     Group& group = *c.group;
     const bool textures = std::ranges::any_of(objects, [](const Object* o) { return o->kind == Kind::Texture; });
@@ -139,9 +139,9 @@ void Holder::release(Stream& stream, Output& output, size_t from, std::span<Obje
         if (!loses_) sendQueue(c, output, from, *object);
         else object->uniforms.send([](std::span<const std::byte>) {});
         const bool soon = group.frame - object->heldSince <= kSoonFrames && !object->gained;
-        if (soon) object->holding.lost();
+        if (soon && because == Because::Needed) object->holding.lost();
         else object->holding.won();
-        if (object->kind != Kind::Program) group.soonUsed.was(soon);
+        if (object->kind != Kind::Program && because == Because::Needed) group.soonUsed.was(soon);
         emptyQueue(group, *object);
     }
     if (unpack != nullptr) put<2>(output, from, op::glBindBuffer, {GL_PIXEL_UNPACK_BUFFER, unpack->name});

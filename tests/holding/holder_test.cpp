@@ -257,6 +257,111 @@ TEST_F(Holding, leavesOutNothingSmallWhereContextsShare) {
 }
 
 // A list that has been compiled sets state when it is called, and binds nothing.
+// Its first frame leaves bound what the second does not begin with.
+TEST_F(Holding, followsFramesThatEndOtherwiseThanTheyBegin) {
+    begin();
+    holder_.leaveOutSmall(false);
+    SeenModel whole;
+    const auto give = [&](const PacketBuilder& p) {
+        whole.packet(kStream, p.bytes());
+        send(p);
+        ASSERT_EQ(seen_.seen(), whole.seen());
+    };
+    whole.packet(kStream, PacketBuilder().context(1).window(1, 20, 10).record(wire::kOpMakeCurrent, {1, 1, 1}).record(op::glGenTextures, {2, 8, 1, 2}).record(op::glGenBuffers, {2, 8, 1, 2}).bytes());
+    uint32_t frame = 0;
+    const auto bindsSecond = [&] { return draw().record(op::glBindTexture, {GL_TEXTURE_2D, 2}).swap(1, ++frame); };
+    const auto bindsFirst = [&] { return draw().append(draw()).record(op::glBindTexture, {GL_TEXTURE_2D, 1}).swap(1, ++frame); };
+    for (uint32_t i = 0; i < 60; ++i) {
+        give(bindsFirst());
+        give(bindsSecond());
+        give(PacketBuilder().record(op::glTexImage2D, image(i)).record(op::glBindTexture, {GL_TEXTURE_2D, 0}).append(draw()).record(op::glBindTexture, {GL_TEXTURE_2D, 2}).append(draw()).swap(1, ++frame));
+    }
+}
+
+TEST_F(Holding, doesNotFollowFramesThatAreAlike) {
+    begin();
+    holder_.leaveOutSmall(false);
+    const auto frame = [&](uint32_t number, uint32_t texture) {
+        PacketBuilder p;
+        for (uint32_t i = 0; i < 50; ++i) p.record(op::glActiveTexture, {GL_TEXTURE0 + i % 2}).record(op::glBindTexture, {GL_TEXTURE_2D, 1 + i % 2}).record(op::glColor4f, {number, i, 0, 0}).append(draw());
+        return p.record(op::glBindTexture, {GL_TEXTURE_2D, texture}).swap(1, number);
+    };
+    for (uint32_t i = 1; i <= 100; ++i) send(frame(i, 1));
+    const uint64_t alike = holder_.counts().alikeRecords;
+    EXPECT_GT(alike, 80u * 200) << "of 201 in each";
+    send(frame(101, 2)); // another one at its end
+    EXPECT_GT(holder_.counts().alikeRecords, alike + 199);
+    send(PacketBuilder().record(op::glTexImage2D, image(5)).record(op::glBindTexture, {GL_TEXTURE_2D, 1}).append(draw()));
+    EXPECT_EQ(seen_.uploads(), 0u) << "it is the second that has waited";
+    send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 2}).append(draw()));
+    EXPECT_EQ(seen_.uploads(), 1u);
+}
+
+// Nodes refuse them; the head goes on.
+TEST_F(Holding, livesWithPacketsThatAreDamaged) {
+    begin();
+    holder_.leaveOutSmall(false);
+    const auto frame = [](uint32_t number) {
+        PacketBuilder p;
+        for (uint32_t i = 0; i < 20; ++i) p.record(op::glBindTexture, {GL_TEXTURE_2D, 1 + i % 2}).longRecord(op::glColor4f, {i, number, 0, 0}).append(draw());
+        return p.swap(1, number);
+    };
+    uint32_t number = 0;
+    const size_t sizeBytes = frame(0).bytes().size();
+    for (size_t cut = 0; cut < sizeBytes; cut += 4) {
+        for (int i = 0; i < 8; ++i) send(frame(++number));
+        const PacketBuilder whole = frame(++number);
+        holder_.add(kStream, whole.bytes().first(cut)); // within a record, mostly
+        holder_.add(kStream, whole.bytes().subspan(cut));
+    }
+    EXPECT_EQ(holder_.counts().inBytes, holder_.counts().outBytes);
+}
+
+TEST_F(Holding, sendsWhatHasWaitedLongestWhenThereIsTooMuch) {
+    begin();
+    constexpr uint32_t kImages = 1100; // a thousand are about what it may hold
+    for (uint32_t i = 0; i < kImages; ++i) send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 10 + i}).record(op::glTexImage2D, image(i)));
+    EXPECT_GT(seen_.uploads(), 50u);
+    EXPECT_LT(seen_.uploads(), 400u) << "the others wait on";
+    const size_t before = seen_.uploads();
+    send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 10}).append(draw()));
+    EXPECT_EQ(seen_.uploads(), before) << "the first has gone";
+    send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 9 + kImages}).append(draw()));
+    EXPECT_EQ(seen_.uploads(), before + 1);
+}
+
+// Loaded and drawn in one frame, again and again: then most of it goes as it comes.
+TEST_F(Holding, holdsLittleOfWhatIsAlwaysDrawnAtOnce) {
+    begin();
+    constexpr uint32_t kTextures = 200;
+    for (uint32_t i = 0; i < kTextures; ++i) send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 10 + i}).record(op::glTexImage2D, image(i)).append(draw()).swap(1, i + 1));
+    EXPECT_EQ(seen_.uploads(), kTextures);
+    EXPECT_LT(holder_.counts().heldRecords, 60u);
+    // One that waits shows that it is worth it.
+    for (uint32_t i = 0; i < 20; ++i) send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1000 + i}).record(op::glTexImage2D, image(i)));
+    for (uint32_t i = 0; i < 5; ++i) send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).append(draw()).swap(1, 300 + i));
+    const uint64_t held = holder_.counts().heldRecords;
+    for (uint32_t i = 0; i < 100; ++i) send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 2000 + i}).record(op::glTexImage2D, image(i)));
+    EXPECT_EQ(holder_.counts().heldRecords, held + 100);
+}
+
+TEST_F(Holding, looksAtUniformsOnlyWhereItLooksAtSmallState) {
+    begin();
+    send(PacketBuilder().record(op::glCreateProgram, {5}).record(wire::kOpProgramLayout, {5, 4, 0}).record(op::glUseProgram, {5}));
+    const auto sets = [&](uint32_t value) { send(PacketBuilder().record(op::glUniform1f, {0, value})); };
+    sets(1);
+    EXPECT_EQ(countOf(op::glUniform1f), 0u) << "it waits";
+    holder_.leaveOutSmall(false);
+    EXPECT_EQ(countOf(op::glUniform1f), 1u) << "the next one will not";
+    sets(2);
+    sets(2);
+    EXPECT_EQ(countOf(op::glUniform1f), 3u);
+    holder_.leaveOutSmall(true);
+    sets(1);
+    send(PacketBuilder().record(op::glUseProgram, {5}).record(op::glUniform1f, {0, 1}).append(draw()));
+    EXPECT_GE(countOf(op::glUniform1f), 4u) << "what was set meanwhile is not taken for what it was before";
+}
+
 TEST_F(Holding, followsListsThatSetState) {
     begin();
     send(PacketBuilder().record(op::glNewList, {3, GL_COMPILE}).record(op::glEnable, {GL_BLEND}).record(op::glEndList, {}).record(op::glDisable, {GL_BLEND}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));

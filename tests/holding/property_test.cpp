@@ -37,18 +37,47 @@ public:
     }
     uint32_t below(uint32_t n) { return random_() % n; }
 
-    // Of a frame that comes again and again.
+    // Of a frame that comes again and again; without commands: something between glBegin and glEnd.
     std::vector<PacketBuilder> frame() {
-        std::vector<PacketBuilder> commands(1 + below(60));
-        for (PacketBuilder& p : commands) command(p);
+        std::vector<PacketBuilder> commands(1 + below(below(3) == 0 ? 400 : 60));
+        for (PacketBuilder& p : commands) {
+            if (below(20) != 0) command(p);
+            if (endsFrames(p)) p = PacketBuilder().record(op::glDrawArrays, {GL_TRIANGLES, 0, 3});
+        }
         return commands;
+    }
+    // One that binds much, and in which little is drawn.
+    std::vector<PacketBuilder> bindingFrame() {
+        std::vector<PacketBuilder> commands(150 + below(300));
+        for (PacketBuilder& p : commands) binds(p);
+        return commands;
+    }
+    // That frame, with an upload somewhere, which is to what is bound there; sometimes with others before it.
+    PacketBuilder withUpload(const std::vector<PacketBuilder>& commands) {
+        PacketBuilder p;
+        const size_t at = commands.size() - 1 - below(below(2) == 0 ? 20 : 120);
+        if (below(5) == 0) otherNames(p);
+        for (size_t i = 0; i < commands.size(); ++i) {
+            if (i == at && below(3) != 0) upload(p);
+            if (i == at && below(4) == 0) p.record(op::glDrawArrays, {GL_TRIANGLES, 0, 3});
+            if (i == at && below(8) == 0) binds(p);
+            p.append(commands[i]);
+        }
+        return p.swap(1, ++frame_);
+    }
+    static bool endsFrames(const PacketBuilder& p) {
+        recording::RecordWalk walk(p.bytes());
+        for (recording::RecordView r; walk.next(r);)
+            if (CommandKinds::all()[r.opcode].frame == FrameRole::Ends) return true;
+        return false;
     }
     // That frame, mostly: where it is another one, anywhere.
     PacketBuilder likeFrame(const std::vector<PacketBuilder>& commands, uint32_t changes) {
         PacketBuilder p;
         for (const PacketBuilder& c : commands) {
             if (below(changes) == 0) command(p);
-            if (below(changes) != 0) p.append(c);
+            if (c.bytes().empty()) primitive(p, changes);
+            else if (below(changes) != 0) p.append(c);
         }
         return p.swap(1, ++frame_);
     }
@@ -113,6 +142,37 @@ private:
             return;
         }
     }
+    void binds(PacketBuilder& p) {
+        switch (below(12)) {
+        case 0:
+        case 1: p.record(op::glActiveTexture, {GL_TEXTURE0 + below(2)}); return;
+        case 2: p.record(op::glBindBuffer, {target(), below(kNames + 1)}); return;
+        case 3: p.record(op::glVertexAttribPointer, {below(3), 4, GL_FLOAT, 0, 0, 0}); return;
+        case 4: p.record(op::glBindVertexArray, {below(kNames + 1)}); return;
+        case 5:
+            if (below(20) == 0) p.record(op::glDrawArrays, {GL_TRIANGLES, 0, 3});
+            return;
+        default: p.record(op::glBindTexture, {GL_TEXTURE_2D, below(kNames + 1)}); return;
+        }
+    }
+    void upload(PacketBuilder& p) {
+        if (below(2) == 0) withValue(p, op::glTexImage2D, {GL_TEXTURE_2D, 0, GL_RGBA, 16, 16, 0, GL_RGBA, GL_UNSIGNED_BYTE}, value(256));
+        else withValue(p, op::glBufferData, {target(), kBufferBytes, 0}, value(kBufferBytes / 4), {GL_STATIC_DRAW});
+        if (below(2) == 0) p.record(op::glDrawArrays, {GL_TRIANGLES, 0, 3});
+    }
+    // Their places in memory change, too.
+    void otherNames(PacketBuilder& p) {
+        const uint32_t n = name(), other = n % kNames + 1;
+        p.record(op::glDeleteTextures, {1, 4, n}).record(op::glDeleteTextures, {1, 4, other}).record(op::glGenTextures, {1, 4, n}).record(op::glGenTextures, {1, 4, other});
+    }
+    // What is bound within it is an error.
+    void primitive(PacketBuilder& p, uint32_t changes) {
+        p.record(op::glBegin, {GL_POINTS});
+        if (below(changes) == 0) p.record(op::glBindTexture, {GL_TEXTURE_2D, name()});
+        p.record(op::glVertex2f, {below(3), 0});
+        if (below(changes) == 0) p.record(op::glActiveTexture, {GL_TEXTURE0 + below(2)});
+        p.record(op::glEnd, {});
+    }
     // Few values of few things, so that many are as they were.
     void small(PacketBuilder& p) {
         switch (below(17)) {
@@ -139,12 +199,10 @@ private:
         }
     }
     void rare(PacketBuilder& p) {
-        switch (below(8)) {
-        case 0: {
-            const uint32_t n = name();
-            p.record(op::glDeleteTextures, {1, 4, n}).record(op::glGenTextures, {1, 4, n});
-            return;
-        }
+        switch (below(10)) {
+        case 8: p.record(op::glPushAttrib, {GL_TEXTURE_BIT}); return;
+        case 9: p.record(op::glPopAttrib, {}); return;
+        case 0: return otherNames(p);
         case 1: {
             const uint32_t n = name();
             if (!shares_) p.record(op::glDeleteBuffers, {1, 4, n}).record(op::glGenBuffers, {1, 4, n});
@@ -247,12 +305,24 @@ void same(uint32_t seed, bool shares, uint64_t mostBytes, Won& won) {
 void sameFrames(uint32_t seed, Won& won) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     RandomProgram program(seed, false);
-    Both both(program, 1 << 20, false, 2000);
+    Both both(program, 1 << 20, false, 600);
     both.send(kFirst, program.begin());
     for (int scene = 0; scene < 3; ++scene) {
         const std::vector<PacketBuilder> frame = program.frame();
-        const uint32_t changes = program.below(3) == 0 ? 20 : 500;
+        const uint32_t changes = program.below(3) == 0 ? 20 : 1000;
         for (int i = 0; i < 40 && !testing::Test::HasFatalFailure(); ++i) both.send(kFirst, program.likeFrame(frame, changes));
+    }
+    both.ends(won);
+}
+
+void bindingFrames(uint32_t seed, Won& won) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    RandomProgram program(seed, false);
+    Both both(program, 1 << 20, false, seed % 4 == 0 ? 500 : 20'000);
+    both.send(kFirst, program.begin());
+    for (int scene = 0; scene < 2; ++scene) {
+        const std::vector<PacketBuilder> frame = program.bindingFrame();
+        for (int i = 0; i < 30 && !testing::Test::HasFatalFailure(); ++i) both.send(kFirst, program.withUpload(frame));
     }
     both.ends(won);
 }
@@ -266,9 +336,16 @@ TEST(HeldStreams, showTheSameToEachDraw) {
 
 TEST(HeldStreams, showTheSameInFramesThatAreAlike) {
     Won won;
-    for (uint32_t seed = 0; seed < 250 && !HasFatalFailure(); ++seed) sameFrames(seed, won);
-    EXPECT_GT(won.alike, 100'000U) << "or this shows nothing";
+    for (uint32_t seed = 0; seed < 50 && !HasFatalFailure(); ++seed) sameFrames(seed, won);
+    EXPECT_GT(won.alike, 10'000U) << "or this shows nothing";
     EXPECT_GT(won.held, 1000U);
+}
+
+TEST(HeldStreams, showTheSameInFramesThatBindMuch) {
+    Won won;
+    for (uint32_t seed = 0; seed < 150 && !HasFatalFailure(); ++seed) bindingFrames(seed, won);
+    EXPECT_GT(won.alike, 50'000U) << "or this shows nothing";
+    EXPECT_GT(won.held, 500U);
 }
 
 TEST(HeldStreams, showTheSameWithTwoThreadsThatShare) {
