@@ -49,14 +49,13 @@ struct Frames {
 
 Result<std::unique_ptr<Way>> makeWay(size_t number) {
     switch (number) {
-    case 0: return economyWay(kStoreBytes, false);
-    case 4: return economyWay(kStoreBytes, true);
+    case 0: return sentWay(kStoreBytes);
     case 1: return zstdWay(kZstdLevel);
     case 2: return differenceWay();
-    default: return holdingWay();
+    default: return allPackedWay(kStoreBytes);
     }
 }
-constexpr size_t kWays = 5;
+constexpr size_t kWays = 4;
 
 Result<Counted> run(Way& way, const char* path, int64_t warm, Frames& frames) {
     Counted counted;

@@ -24,10 +24,10 @@ public:
     [[nodiscard]] virtual int64_t cpuNs() const = 0;
 };
 
-// The economy, as the head uses it; every batch is kept, to be unpacked and compared.
-Result<std::unique_ptr<Way>> economyWay(uint64_t storeBytes, bool holds);
-// What stands in front of the economy in a head: uploads that nobody needs yet stay behind. Bytes of the stream, as nothing is packed.
-std::unique_ptr<Way> holdingWay();
+// The economy, as the head uses it: what nobody needs yet stays behind, the rest is packed.
+Result<std::unique_ptr<Way>> sentWay(uint64_t storeBytes);
+// All of it packed, and nothing held: every batch is kept, to be unpacked and compared.
+Result<std::unique_ptr<Way>> allPackedWay(uint64_t storeBytes);
 // Zstandard over the whole frame, by itself.
 std::unique_ptr<Way> zstdWay(int level);
 // Commands that are as the one at their place in the frame before are left out; LZ4 over the rest.
