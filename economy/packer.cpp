@@ -56,7 +56,7 @@ bool Packer::next() {
     return cut_.next(piece_);
 }
 
-void Packer::add(uint32_t stream, std::span<const std::byte> packet, const recording::Walked* walked) {
+void Packer::add(uint32_t stream, std::span<const std::byte> packet, const Walked* walked) {
     if (stream != lastStream_) {
         control_.put(Other::Stream);
         control_.number(stream);

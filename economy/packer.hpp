@@ -17,7 +17,7 @@
 #include "economy/page_index.hpp"
 #include "economy/word_coder.hpp"
 #include "economy/word_patch.hpp"
-#include "recording/record_walk.hpp"
+#include "streamcodec/walked.hpp"
 
 namespace mural::economy {
 
@@ -40,7 +40,7 @@ public:
     [[nodiscard]] bool ready() const { return history_.ready(); }
 
     // walked: what the packet is made of, where that is known: then its records are not looked for once more, if they go plain.
-    void add(uint32_t stream, std::span<const std::byte> packet, const recording::Walked* walked = nullptr);
+    void add(uint32_t stream, std::span<const std::byte> packet, const Walked* walked = nullptr);
 
     // Short records go as they are from now on, not looked at: between batches.
     void beginPlain(bool plain) { plain_ = plain; }

@@ -73,7 +73,7 @@ bool FrameLayout::add(Same same, std::span<const std::byte> record) {
 }
 
 // On as far as the packet is like the frame, and which records that were.
-FrameLayout::Stop FrameLayout::pass(std::span<const std::byte> packet, size_t& at, recording::Walked& walked) {
+FrameLayout::Stop FrameLayout::pass(std::span<const std::byte> packet, size_t& at, Walked& walked) {
     const Stop stop = passTo(packet, at);
     const auto record = static_cast<size_t>(std::ranges::lower_bound(starts_, at_) - starts_.begin());
     if (record > record_) walked = {record - record_, static_cast<size_t>(at_ - starts_[record - 1]), longestBytes_};

@@ -1,5 +1,5 @@
 // Where the records of a frame lie, and what of their bytes says what they bind. The next frame is compared with it at those places, so
-// that no record has to be looked at to find the one behind it: an eighth of the time that a walk takes.
+// that no record has to be read before the one behind it is found.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "recording/record_walk.hpp"
+#include "streamcodec/walked.hpp"
 
 namespace mural::holding {
 
@@ -29,7 +29,7 @@ public:
     void begin();
     enum class Stop : uint8_t { PacketEnds, Seen, Differs, End };
     // On as far as the packet is like the frame, from a record at `at`; where that is then a record begins again.
-    Stop pass(std::span<const std::byte> packet, size_t& at, recording::Walked& walked);
+    Stop pass(std::span<const std::byte> packet, size_t& at, Walked& walked);
     // The record that stopped it has been looked at; false: it is another one.
     bool passSeen(uint16_t opcode);
     [[nodiscard]] bool atEnd() const { return range_ == ranges_.size(); }

@@ -19,7 +19,7 @@ constexpr uint64_t kMostValueBytes = uint64_t{96} << 20; // longer ones are not 
 } // namespace
 
 Holder::Holder(uint64_t mostBytes, Take take)
-    : mostBytes_(mostBytes), take_([this, take = std::move(take)](uint32_t to, std::span<const std::byte> bytes, const recording::Walked* walked) {
+    : mostBytes_(mostBytes), take_([this, take = std::move(take)](uint32_t to, std::span<const std::byte> bytes, const Walked* walked) {
           counts_.outBytes += bytes.size();
           take(to, bytes, walked);
       }) {}

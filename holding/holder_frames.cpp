@@ -12,10 +12,10 @@ namespace mural::holding {
 
 namespace {
 
-constexpr size_t kMostCompared = 4096; // vertex arrays, and what they have bound: they are compared once for a frame
+constexpr size_t kMostCompared = 1024; // vertex arrays, and what they have bound: they are compared, or copied, once for a frame
 constexpr double kLike = 0.9, kUnlike = 0.5;
-constexpr size_t kWorthAMark = 64; // records, that are followed each time
-constexpr uint32_t kMarkFrames = 16;
+constexpr size_t kWorthAMark = 64;   // records that would be followed each time
+constexpr uint32_t kMarkFrames = 16; // between two of them
 
 bool fewEnough(const Bindings& b) {
     size_t count = b.units.size() * kTextureTargets + b.arrays.size();
@@ -44,7 +44,7 @@ bool Holder::repeats(const Stream& stream) const {
 // On over what is like the frame before.
 void Holder::passSame(Stream& stream, recording::RecordWalk& walk, const Packet& packet) {
     size_t at = walk.at();
-    recording::Walked walked;
+    Walked walked;
     const FrameLayout::Stop stop = stream.same.layout.pass(packet, at, walked);
     walk.goTo(at, walked);
     counts_.alikeRecords += walked.records;
@@ -136,7 +136,7 @@ void Holder::endSame(Stream& stream, const Packet& packet) {
         stream.context->takeOver(same.ends);
         stream.inPrimitive = false;
     }
-    if (!mayRepeat(stream) || stream.inPrimitive || !nothingSaved(*stream.context) || !fewEnough(*stream.context)) {
+    if (!mayRepeat(stream) || stream.inPrimitive || !nothingSaved(*stream.context) || (same.now != Now::Following && !fewEnough(*stream.context))) {
         same.now = Now::Apart;
         return;
     }

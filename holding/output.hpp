@@ -13,7 +13,7 @@
 namespace mural::holding {
 
 // walked: of a packet as it came, what it is made of; else null.
-using Take = std::function<void(uint32_t stream, std::span<const std::byte> payload, const recording::Walked* walked)>;
+using Take = std::function<void(uint32_t stream, std::span<const std::byte> payload, const Walked* walked)>;
 
 class Output {
 public:
@@ -44,7 +44,7 @@ public:
         }
         if (to > from) take_(stream_, records.subspan(from, to - from), nullptr);
     }
-    void finish(const recording::Walked* walked = nullptr) {
+    void finish(const Walked* walked = nullptr) {
         if (!touched_) {
             if (!payload_.empty()) take_(stream_, payload_, walked);
             return;

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "streamcodec/record.hpp"
+#include "streamcodec/walked.hpp"
 
 namespace mural::recording {
 
@@ -16,17 +17,6 @@ struct RecordView {
     size_t offset = 0;                     // in the packet, bytes
     size_t sizeBytes = 0;                  // with its header
     std::span<const std::byte> arguments;
-};
-
-// What a walk has passed. Who walks over the same packet behind it need not.
-struct Walked {
-    size_t records = 0;
-    size_t lastBytes = 0, longestBytes = 0; // of records
-    void pass(size_t sizeBytes) {
-        ++records;
-        lastBytes = sizeBytes;
-        longestBytes = std::max(longestBytes, sizeBytes);
-    }
 };
 
 class RecordWalk {

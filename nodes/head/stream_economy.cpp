@@ -23,7 +23,7 @@ Result<std::unique_ptr<StreamEconomy>> StreamEconomy::open(const economy::Limits
     return std::unique_ptr<StreamEconomy>(new StreamEconomy(limits, std::move(*coder)));
 }
 
-StreamEconomy::StreamEconomy(const economy::Limits& limits, std::unique_ptr<Coder> coder) : limits_(limits), holder_(std::min(kMostHeldBytes, limits.storeBytes / 4), [this](uint32_t stream, std::span<const std::byte> payload, const recording::Walked* walked) { pack(stream, payload, walked); }), coder_(std::move(coder)) {}
+StreamEconomy::StreamEconomy(const economy::Limits& limits, std::unique_ptr<Coder> coder) : limits_(limits), holder_(std::min(kMostHeldBytes, limits.storeBytes / 4), [this](uint32_t stream, std::span<const std::byte> payload, const Walked* walked) { pack(stream, payload, walked); }), coder_(std::move(coder)) {}
 
 StreamEconomy::Coder::Coder(const economy::Limits& limits) : packer(limits), encoder(threadCpuNowNs) {}
 
@@ -78,7 +78,7 @@ void StreamEconomy::hold(uint32_t stream, std::span<const std::byte> payload) {
     pack(stream, payload);
 }
 
-void StreamEconomy::pack(uint32_t stream, std::span<const std::byte> payload, const recording::Walked* walked) {
+void StreamEconomy::pack(uint32_t stream, std::span<const std::byte> payload, const Walked* walked) {
     if (missed_) return;
     const int64_t startedNs = timesPacking_ ? threadCpuNowNs() : 0;
     coder_->packer.add(stream, payload, walked);

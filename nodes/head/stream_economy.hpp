@@ -70,7 +70,7 @@ private:
     void publishCounts();
 
     void hold(uint32_t stream, std::span<const std::byte> payload);
-    void pack(uint32_t stream, std::span<const std::byte> payload, const recording::Walked* walked = nullptr);
+    void pack(uint32_t stream, std::span<const std::byte> payload, const Walked* walked = nullptr);
 
     const economy::Limits limits_;
     holding::Holder holder_;

@@ -40,7 +40,7 @@ protected:
     SeenModel seen_;
     std::vector<uint32_t> streams_;  // of the packets that went
     std::vector<uint16_t> opcodes_; // of the records that went
-    Holder holder_{kBound, [this](uint32_t stream, std::span<const std::byte> payload, const recording::Walked*) {
+    Holder holder_{kBound, [this](uint32_t stream, std::span<const std::byte> payload, const Walked*) {
                        seen_.packet(stream, payload);
                        streams_.push_back(stream);
                        recording::RecordWalk walk(payload);

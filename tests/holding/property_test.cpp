@@ -268,12 +268,12 @@ private:
     const uint64_t mostBytes_;
     const uint32_t toggles_; // packets between them, about
     SeenModel whole_, held_;
-    Holder holder_{mostBytes_, [this](uint32_t stream, std::span<const std::byte> payload, const recording::Walked* walked) {
+    Holder holder_{mostBytes_, [this](uint32_t stream, std::span<const std::byte> payload, const Walked* walked) {
                        ASSERT_LE(payload.size(), wire::kMaxPacketBytes);
                        if (walked != nullptr) isMadeOf(payload, *walked);
                        held_.packet(stream, payload);
                    }};
-    static void isMadeOf(std::span<const std::byte> payload, const recording::Walked& told) {
+    static void isMadeOf(std::span<const std::byte> payload, const Walked& told) {
         recording::RecordWalk walk(payload);
         recording::RecordView r;
         while (walk.next(r)) {}
