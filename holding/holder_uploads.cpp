@@ -87,19 +87,20 @@ void Holder::upload(At& at) {
     if (uniform && object->queue.empty() && !object->holding.tries()) return;
     const auto u = uploadOf(at.r, blobBytes);
     const bool first = !std::exchange(object->filled, true);
+    const bool inVain = (object->holding.vain() || at.group.soonUsed.vain()) && (object->comparing.vain() || first); // to wait for its value
     // Of a texture by its name, which face of a cube is written is one of its numbers.
     const bool anyFace = recording::ruleOf(at.r.opcode).type == recording::ObjectType::Texture && object->target == GL_TEXTURE_CUBE_MAP;
     const bool fromBuffer = object->kind == Kind::Texture && bufferAt(at.context, GL_PIXEL_UNPACK_BUFFER) != nullptr;
     if (!u || at.stream.passing || fromBuffer || anyFace || (at.stream.values > 0 && blobBytes == 0)) {
         releaseOne(at, *object);
         object->known.clear();
-        if (at.stream.passing && !first && !(object->holding.vain() && object->comparing.vain())) at.stream.waiting.won();
+        if (at.stream.passing && !inVain) at.stream.waiting.won();
         return;
     }
     // Does it change anything?
     const bool compares = u->given && !small && !uniform && object->comparing.tries();
     if (compares) {
-        const Object::News news = object->compare(*u, [&] { return sumOfValue(at, *u); });
+        const Object::News news = object->compare(*u, first, [&] { return sumOfValue(at, *u); });
         if (news == Object::News::Same) {
             object->comparing.won();
             at.stream.waiting.won();
@@ -116,7 +117,6 @@ void Holder::upload(At& at) {
     countLeftOut(gone.records, gone.sizeBytes);
     counts_.heldBytes -= gone.sizeBytes;
     if (object->queue.empty() && gone.records == 0 && (small || !u->given || u->kind == UploadKind::Storage || (!uniform && !mayWait(at.group, *object)))) {
-        const bool inVain = (object->holding.vain() || at.group.soonUsed.vain()) && (object->comparing.vain() || first);
         if (at.stream.values > 0) inVain ? at.stream.waiting.lost() : at.stream.waiting.won();
         return;
     }

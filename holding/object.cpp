@@ -10,7 +10,7 @@ constexpr size_t kLookedAt = 64; // of the queue's end
 
 } // namespace
 
-Object::News Object::compare(const Upload& u, const std::function<Sum()>& sum) {
+Object::News Object::compare(const Upload& u, bool first, const std::function<Sum()>& sum) {
     News news = News::First;
     std::optional<Sum> now;
     for (const Known& k : known) {
@@ -21,6 +21,7 @@ Object::News Object::compare(const Upload& u, const std::function<Sum()>& sum) {
     }
     forgets(u);
     if (known.size() == kMostKnown) known.clear();
+    if (!now && !first) now = sum();
     known.push_back({u.place, u.shape, now});
     return news;
 }

@@ -87,7 +87,8 @@ struct Object {
     }
     enum class News : uint8_t { Same, Changed, First }; // First: there was none like it
     // Whether the upload changes anything of what is there. Remembers it.
-    News compare(const Upload& u, const std::function<Sum()>& sum);
+    // first: of all of the object's.
+    News compare(const Upload& u, bool first, const std::function<Sum()>& sum);
     // It comes, whatever it has.
     void forgets(const Upload& u);
     // Takes out of the queue what the upload replaces before anything has read it; how much that was.
