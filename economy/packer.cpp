@@ -72,7 +72,8 @@ void Packer::add(uint32_t stream, std::span<const std::byte> packet, const Walke
     nextAt_ = kNowhere;
     first_ = true;
     cut_ = PacketCut(packet);
-    if (plain_ && walked != nullptr && walked->longestBytes <= kMostTextBytes) {
+    const bool isTold = walked != nullptr && walked->longestBytes <= kMostTextBytes && walked->lastBytes <= packet.size(); // a damaged packet may end a record that it did not begin
+    if (plain_ && isTold) {
         cut_.passed(walked->records, packet.size(), walked->lastBytes);
         asBytes(0, packet.size());
     }

@@ -57,7 +57,7 @@ enum class FrameRole : uint8_t {
     Draws, // binds nothing, whatever its arguments are
     Binds, // or does what depends on what is bound: by its arguments
     Seen,  // looked at each time
-    SeenBound, // and needs to know what is bound
+    SeenBound, // the same, and what is bound has to be known
     Ends,  // changes which objects there are: no frame is like another
 };
 
@@ -69,8 +69,8 @@ struct CommandKind {
     StateRole state = StateRole::Change;
     recording::Family family = recording::Family::Unknown;
     uint8_t valueWord = kNoValue;
-    bool small = false; // sets uniforms: looked at where small state is, and which program is current
-    // Nothing to do with it, where small state is looked at and where it is not.
+    bool small = false; // sets uniforms, which are looked at where small state is
+    // Nothing to do with it: where small state is looked at, or a list compiled; and where neither is.
     bool passes = false, passesUnlessSmall = false;
     FrameRole frame = FrameRole::Ends;
     Binding binding = Binding::Nothing;

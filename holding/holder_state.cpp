@@ -29,8 +29,8 @@ void Holder::leaveOutSmall(bool leavesOut) {
 void Holder::sendUniformsOf(Group& group) {
     std::vector<Object*> programs;
     std::ranges::copy_if(group.held, std::back_inserter(programs), [](const Object* o) { return o->kind == Kind::Program; });
-    if (programs.empty()) return;
     Stream& holder = streams_[group.holderStream];
+    if (programs.empty() || holder.context == nullptr) return;
     Output other(holder.id, {}, otherScratch_, take_);
     release(holder, other, 0, programs);
     other.finish();

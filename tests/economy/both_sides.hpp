@@ -30,7 +30,7 @@ public:
 
     // Sends one batch; returns its size on the wire.
     size_t send(const std::vector<Packet>& packets) {
-        for (const Packet& p : packets) packer.add(p.stream, p.bytes);
+        for (const Packet& p : packets) packer.add(p.stream, p.bytes, walked);
         staged = packer.stagedBytes();
         auto batch = encoder_.encode(packer.finish(), 8, packer.plain());
         if (!batch) {
@@ -66,6 +66,7 @@ public:
         EXPECT_TRUE(more && !*more) << "more than was sent";
         return wire.size();
     }
+    const Walked* walked = nullptr; // is told to the packer
     size_t send(Bytes packet) { return send({Packet{0x10000, std::move(packet)}}); }
 
     Packer packer;

@@ -172,6 +172,20 @@ TEST(Packer, pagesAreKnownWhereShortRecordsGoPlain) {
 }
 
 // A part of it is another in each frame: so it stays in its slot, and the store keeps what others have.
+// What is told of a packet saves a walk; where it can't be so, as of a damaged one, it is of no account.
+TEST(Packer, plainRecordsComeOutAsTheyWentWhateverIsToldOfThem) {
+    Bytes packet;
+    for (uint32_t i = 0; i < 50; ++i) addRecord(packet, 99, 3, [&] { return i; });
+    for (const Walked& told : {Walked{50, 16, 16}, Walked{50, 1 << 20, 16}, Walked{50, 16, 1 << 20}}) {
+        BothSides sides(Limits{.storeBytes = 1 << 20});
+        sides.walked = &told;
+        sides.packer.beginPlain(true);
+        for (int i = 0; i < 3; ++i) sides.send(packet);
+        EXPECT_EQ(sides.packer.counts().records, 150u);
+        EXPECT_FALSE(sides.packer.endsInValue());
+    }
+}
+
 TEST(Packer, aPageThatChangesAgainAndAgainFillsNoMemory) {
     Limits limits;
     limits.storeBytes = 64 * kPageBytes;
