@@ -1,9 +1,9 @@
 // Frames that bind what the one before did: nothing of them is followed.
 //
 // What a record does to what is bound depends on nothing but its bytes, what is bound, and which objects there are. A frame is kept
-// (FrameLayout) that left bound what it had begun with. While the next one has the same records, those that bind with all their bytes, it
-// leaves that, too; where it has another one, those before it are followed at once. What waited all through the frame that was kept goes
-// on waiting: the same draws need it no more than they did.
+// (FrameLayout) that left bound what it had begun with, but for textures. While the next one has the same records, those that bind with all
+// their bytes, it leaves that, too; where it has another one, those before it are followed at once. What waited all through the frame that
+// was kept goes on waiting: the same draws need it no more than they did.
 #include "gl_opcodes.hpp"
 #include "holding/holder.hpp"
 #include "streamcodec/wire.hpp"
@@ -21,6 +21,31 @@ bool fewEnough(const Bindings& b) {
     size_t count = b.units.size() * kTextureTargets + b.arrays.size();
     for (const auto& [name, array] : b.arrays) count += array.buffers.size();
     return count <= kMostCompared;
+}
+
+using Textures = std::vector<TextureUnit>;
+
+// Whether a frame, or a part of one, that took `begins` to `after`, takes `now` to it, too: what it has changed it has bound itself.
+bool leadsTo(const Textures& now, const Textures& begins, const Textures& after) {
+    if (now == begins) return true;
+    if (now.size() != begins.size() || now.size() != after.size()) return false;
+    for (size_t unit = 0; unit < now.size(); ++unit)
+        for (size_t i = 0; i < kTextureTargets; ++i)
+            if (now[unit][i] != begins[unit][i] && begins[unit][i] == after[unit][i]) return false;
+    return true;
+}
+
+// Of textures that are bound otherwise than they were. Draws in front of where the frame binds others may need it.
+bool othersWait(const Textures& now, const Textures& begins) {
+    for (size_t unit = 0; unit < now.size(); ++unit)
+        for (size_t i = 0; i < kTextureTargets; ++i)
+            if (now[unit][i] != begins[unit][i] && now[unit][i] != nullptr && now[unit][i]->waits()) return true;
+    return false;
+}
+
+// Whether a frame may begin with that and be taken for the one that was kept.
+bool mayBegin(const SameFrames& same, const Bindings& now) {
+    return now.equalButTextures(same.begins) && leadsTo(now.units, same.begins.units, same.ends.units) && !othersWait(now.units, same.begins.units);
 }
 
 bool nothingSaved(const Context& c) { return c.attribs.empty() && c.clientAttribs.empty(); }
@@ -72,7 +97,7 @@ void Holder::followSame(Stream& stream) {
     SameFrames& same = stream.same;
     const size_t passed = same.layout.passed();
     SameFrames::Mark& mark = same.mark;
-    if (mark.followed > same.layout.followed() && mark.followed <= passed) {
+    if (mark.followed > same.layout.followed() && mark.followed <= passed && leadsTo(same.began, mark.began, mark.bound.units)) {
         stream.context->takeOver(mark.bound);
         stream.inPrimitive = mark.inPrimitive;
         same.layout.followFrom(mark.followed);
@@ -81,7 +106,7 @@ void Holder::followSame(Stream& stream) {
     const size_t marked = passed - passed / 16;
     if (marked >= same.layout.followed() + kWorthAMark && (mark.followed == 0 || same.frames - mark.frame >= kMarkFrames)) {
         followSameTo(stream, marked);
-        if (nothingSaved(*stream.context)) mark = {marked, same.frames, *stream.context, stream.inPrimitive};
+        if (nothingSaved(*stream.context)) mark = {marked, same.frames, same.began, *stream.context, stream.inPrimitive};
     }
     followSameTo(stream, passed);
 }
@@ -132,8 +157,10 @@ void Holder::endSame(Stream& stream, const Packet& packet) {
     SameFrames& same = stream.same;
     if (same.now == Now::Recording) keepRecords(stream, packet);
     if (same.now == Now::Following && !same.layout.atEnd()) leaveSame(stream);
-    if (same.now == Now::Following && same.layout.followed() > 0) {
+    const bool returns = same.begins.units == same.ends.units;
+    if (same.now == Now::Following && (same.layout.followed() > 0 || !returns)) {
         stream.context->takeOver(same.ends);
+        stream.context->needs = true;
         stream.inPrimitive = false;
     }
     if (!mayRepeat(stream) || stream.inPrimitive || !nothingSaved(*stream.context) || (same.now != Now::Following && !fewEnough(*stream.context))) {
@@ -142,13 +169,18 @@ void Holder::endSame(Stream& stream, const Packet& packet) {
     }
     const Bindings& bound = *stream.context;
     Group& group = *stream.context->group;
-    if (same.now == Now::Recording && !(bound == same.ends)) same.layout.clear();
+    if (same.now == Now::Recording) {
+        same.ends = bound;
+        if (!bound.equalButTextures(same.begins)) same.layout.clear();
+    }
     const double share = same.layout.share();
     ++same.frames;
     same.shares += share;
     if (group.held.empty()) same.heldChanges = group.heldChanges; // nothing waits that a draw could need
-    const bool goesOn = same.now == Now::Following || (!same.layout.empty() && repeats(stream) && (share >= kLike || same.frames < same.wait) && bound == same.ends);
+    const bool isLike = same.now == Now::Following || (!same.layout.empty() && repeats(stream) && (share >= kLike || same.frames < same.wait));
+    const bool goesOn = isLike && mayBegin(same, bound);
     same.now = goesOn ? Now::Following : Now::Apart;
+    if (goesOn) same.began = bound.units;
     same.layout.begin();
     if (goesOn || same.frames < same.wait) return;
     // Kept anew; seldom, where that did not help before.
@@ -161,7 +193,7 @@ void Holder::endSame(Stream& stream, const Packet& packet) {
     same.context = stream.context;
     same.heldChanges = group.heldChanges;
     same.objectChanges = group.objectChanges;
-    same.ends = bound;
+    same.begins = bound;
     same.frames = 0;
     same.shares = 0;
 }

@@ -61,6 +61,10 @@ struct Bindings {
     bool programSure = true; // false: whether it is the current one is not known
     uint32_t drawFramebuffer = 0;
     bool operator==(const Bindings&) const = default;
+    [[nodiscard]] bool equalButTextures(const Bindings& other) const {
+        return units.size() == other.units.size() && unit == other.unit && clientUnit == other.clientUnit && buffers == other.buffers && arrays == other.arrays && array == other.array &&
+               program == other.program && programSure == other.programSure && drawFramebuffer == other.drawFramebuffer;
+    }
     // Of a context, what it had bound when it had as many vertex arrays as now.
     void takeOver(const Bindings& before) {
         units = before.units;
@@ -109,10 +113,14 @@ struct SameFrames {
     bool inValue = false; // the last record kept was a piece of one
     const Context* context = nullptr; // of that frame
     uint64_t heldChanges = 0, objectChanges = 0;
-    Bindings ends; // what a frame like the layout begins with, and leaves
-    struct Mark {  // and what it has bound in its midst, a little before the place where another record came
-        size_t followed = 0; // so many records on; 0: there is none
-        uint32_t frame = 0;  // in which it was made
+    // What the frame of the layout began with, and left. Of textures that may differ: what a frame has left in another state than it began
+    // with, it has bound itself, and so does each that is like it, whatever it begins with there.
+    Bindings begins, ends;
+    std::vector<TextureUnit> began; // what this frame did
+    struct Mark {                   // and what one had bound in its midst, a little before the place where another record came
+        size_t followed = 0;        // so many records on; 0: there is none
+        uint32_t frame = 0;         // in which it was made
+        std::vector<TextureUnit> began;
         Bindings bound;
         bool inPrimitive = false;
     } mark;

@@ -297,6 +297,34 @@ TEST_F(Holding, doesNotFollowFramesThatAreAlike) {
     EXPECT_EQ(seen_.uploads(), 1u);
 }
 
+// Each leaves another texture bound, as programs do that move one thing; the next one binds its own first.
+TEST_F(Holding, doesNotFollowFramesThatLeaveOtherTextures) {
+    begin();
+    holder_.leaveOutSmall(false);
+    constexpr uint32_t kEnds = 3, kFirst = 10;
+    PacketBuilder made = PacketBuilder().record(op::glGenTextures, {kEnds, 4 * kEnds, kFirst, kFirst + 1, kFirst + 2});
+    for (uint32_t i = 0; i < kEnds; ++i) made.record(op::glBindTexture, {GL_TEXTURE_2D, kFirst + i});
+    send(made);
+    const auto frame = [&](uint32_t number) {
+        PacketBuilder p;
+        for (uint32_t i = 0; i < 100; ++i) p.record(op::glBindTexture, {GL_TEXTURE_2D, 1 + i % 2}).record(op::glColor4f, {number, i, 0, 0}).append(draw());
+        return p.record(op::glBindTexture, {GL_TEXTURE_2D, kFirst + number % kEnds}).append(draw()).swap(1, number);
+    };
+    uint32_t number = 0;
+    while (number < 100) send(frame(++number));
+    EXPECT_GT(holder_.counts().alikeRecords, 80u * 300) << "of 302 in each";
+    // What is left bound is followed all the same.
+    const uint32_t last = kFirst + number % kEnds;
+    send(PacketBuilder().record(op::glTexImage2D, image(7)).record(op::glTexParameteri, {GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR}));
+    EXPECT_EQ(seen_.uploads(), 0u);
+    send(frame(++number));
+    EXPECT_EQ(seen_.uploads(), 0u) << "each frame binds others before it draws";
+    EXPECT_EQ(kFirst + (number + 2) % kEnds, last);
+    send(frame(++number));
+    send(frame(++number));
+    EXPECT_EQ(seen_.uploads(), 1u) << "the third one binds that at its end, and draws";
+}
+
 // Nodes refuse them; the head goes on.
 TEST_F(Holding, livesWithPacketsThatAreDamaged) {
     begin();

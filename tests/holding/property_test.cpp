@@ -52,6 +52,35 @@ public:
         for (PacketBuilder& p : commands) binds(p);
         return commands;
     }
+    // One that binds few textures again and again, and draws; of one unit, or of two.
+    std::vector<PacketBuilder> textureFrame() {
+        std::vector<PacketBuilder> commands(80 + below(60));
+        const bool bindsBoth = below(2) == 0;
+        for (PacketBuilder& p : commands) {
+            if (below(4) == 0) p.record(op::glDrawArrays, {GL_TRIANGLES, 0, 3});
+            else if (bindsBoth && below(3) == 0) p.record(op::glActiveTexture, {GL_TEXTURE0 + below(2)});
+            else p.record(op::glBindTexture, {GL_TEXTURE_2D, 1 + below(2)});
+        }
+        if (below(2) == 0) commands.front() = PacketBuilder().record(op::glDrawArrays, {GL_TRIANGLES, 0, 3});
+        commands.push_back(PacketBuilder().record(op::glActiveTexture, {GL_TEXTURE0}));
+        return commands;
+    }
+    // That frame, which leaves this or that bound; seldom it is another one, towards its end.
+    PacketBuilder withOtherEnd(const std::vector<PacketBuilder>& commands) {
+        PacketBuilder p;
+        const size_t other = below(8) == 0 ? commands.size() - 1 - below(12) : commands.size();
+        for (size_t i = 0; i < commands.size(); ++i) {
+            if (i == other) somethingElse(p);
+            p.append(commands[i]);
+        }
+        for (uint32_t unit = 0; unit < 2; ++unit) {
+            if (below(2) == 0) continue;
+            p.record(op::glActiveTexture, {GL_TEXTURE0 + unit}).record(op::glBindTexture, {GL_TEXTURE_2D, below(3) != 0 ? kNames : 1 + below(kNames)});
+            if (below(12) == 0) p.record(op::glDrawArrays, {GL_TRIANGLES, 0, 3});
+        }
+        p.record(op::glActiveTexture, {GL_TEXTURE0});
+        return p.swap(1, ++frame_);
+    }
     // That frame, with an upload somewhere, which is to what is bound there; sometimes with others before it.
     PacketBuilder withUpload(const std::vector<PacketBuilder>& commands) {
         PacketBuilder p;
@@ -154,6 +183,14 @@ private:
             return;
         default: p.record(op::glBindTexture, {GL_TEXTURE_2D, below(kNames + 1)}); return;
         }
+    }
+    void somethingElse(PacketBuilder& p) {
+        const uint32_t unit = below(2);
+        if (below(2) == 0) p.record(op::glActiveTexture, {GL_TEXTURE0 + unit});
+        if (below(8) == 0) p.record(op::glBindTexture, {GL_TEXTURE_2D, name()});
+        if (below(5) == 0) withValue(p, op::glTexImage2D, {GL_TEXTURE_2D, 0, GL_RGBA, 16, 16, 0, GL_RGBA, GL_UNSIGNED_BYTE}, value(256));
+        if (below(4) == 0) p.record(op::glDrawArrays, {GL_TRIANGLES, 0, 3});
+        if (below(2) == 0) p.record(op::glActiveTexture, {GL_TEXTURE0});
     }
     void upload(PacketBuilder& p) {
         if (below(2) == 0) withValue(p, op::glTexImage2D, {GL_TEXTURE_2D, 0, GL_RGBA, 16, 16, 0, GL_RGBA, GL_UNSIGNED_BYTE}, value(256));
@@ -327,6 +364,18 @@ void bindingFrames(uint32_t seed, Won& won) {
     both.ends(won);
 }
 
+void slidingFrames(uint32_t seed, Won& won) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    RandomProgram program(seed, false);
+    Both both(program, 1 << 20, false, 20'000);
+    both.send(kFirst, program.begin());
+    for (int scene = 0; scene < 2; ++scene) {
+        const std::vector<PacketBuilder> frame = program.textureFrame();
+        for (int i = 0; i < 200 && !testing::Test::HasFatalFailure(); ++i) both.send(kFirst, program.withOtherEnd(frame));
+    }
+    both.ends(won);
+}
+
 TEST(HeldStreams, showTheSameToEachDraw) {
     Won won;
     for (uint32_t seed = 0; seed < 400 && !HasFatalFailure(); ++seed) same(seed, false, 1 << 20, won);
@@ -345,6 +394,13 @@ TEST(HeldStreams, showTheSameInFramesThatBindMuch) {
     Won won;
     for (uint32_t seed = 0; seed < 150 && !HasFatalFailure(); ++seed) bindingFrames(seed, won);
     EXPECT_GT(won.alike, 50'000U) << "or this shows nothing";
+    EXPECT_GT(won.held, 500U);
+}
+
+TEST(HeldStreams, showTheSameInFramesThatLeaveOtherTextures) {
+    Won won;
+    for (uint32_t seed = 0; seed < 150 && !HasFatalFailure(); ++seed) slidingFrames(seed, won);
+    EXPECT_GT(won.alike, 1'000'000U) << "or this shows nothing";
     EXPECT_GT(won.held, 500U);
 }
 
