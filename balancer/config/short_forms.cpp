@@ -125,6 +125,7 @@ private:
         if (form_.ranges > 1 && !form_.composition.empty()) root.composition = form_.composition;
         if (form_.stereo == StereoForm::Anaglyph) root.attributes.stereoMode = value::kAnaglyph;
         if (form_.stereo == StereoForm::Quad) root.attributes.stereoMode = value::kQuad;
+        if (!form_.zoom.none()) root.zoom = form_.zoom;
         if (form_.frames > 1) root.equalizers.emplace_back(FramerateEqualizer{});
         divide(root, channel, 0);
         file_.config.compounds.push_back(root);

@@ -1,5 +1,5 @@
-// Configurations for the common cases, from a few numbers: what --tiles, --nodes, --db, --stereo, --pixel, --subpixel
-// and --dplex stand for. All of them may be given together: each tile of the wall is divided by frame numbers, in each of
+// Configurations for the common cases, from a few numbers: what --tiles, --nodes, --db, --stereo, --pixel, --subpixel,
+// --dplex and --zoom stand for. All of them may be given together: each tile of the wall is divided by frame numbers, in each of
 // these by range, in each of these by pixels, in each of these by samples; what is
 // left is taken tile by tile from a queue.
 #pragma once
@@ -27,6 +27,7 @@ struct ShortForm {
     int32_t pixels = 1;             // --pixel
     int32_t samples = 1;            // --subpixel
     int32_t frames = 1;             // --dplex
+    Zoom zoom;                      // --zoom
     int32_t tileWidth = 0;          // --tile-queue: pixels; 0: none
     int32_t tileHeight = 0;
     int32_t takers = 1;             // channels that take such tiles, of each part of the picture

@@ -23,6 +23,7 @@ std::vector<RenderPass> passesOf(const PassCounts& counts) {
     p.samples = counts.samples;
     p.period = counts.period;
     p.ranges = counts.ranges;
+    p.zoom = counts.zoom;
     for (const Eye eye : eyesOf(counts.stereo)) {
         p.eye = eye;
         for (p.kernelY = 0; p.kernelY < counts.kernelHeight; ++p.kernelY)

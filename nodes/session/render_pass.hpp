@@ -43,6 +43,7 @@ struct PassCounts {
     int samples = 1;
     int period = 1;
     int ranges = 1;
+    Zoom zoom; // of all
 };
 
 [[nodiscard]] std::vector<Eye> eyesOf(StereoMode mode);

@@ -71,6 +71,8 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("samples", c.passes.samples, 1);
     visit("period", c.passes.period, 1);
     visit("ranges", c.passes.ranges, 1);
+    visit("zoomX", c.passes.zoom.x);
+    visit("zoomY", c.passes.zoom.y);
     visit("composition", c.composition);
     visit("codec", c.codec);
     visit("eyeBase", c.eyeBase);
@@ -297,10 +299,19 @@ const char* nameOf(Display display) {
     return "none";
 }
 
+namespace {
+
+bool isPossible(const Zoom& zoom) { return zoom.x > 0 && zoom.x <= kMostZoom && zoom.y > 0 && zoom.y <= kMostZoom; }
+Error noSuchZoom(const std::string& of) { return Error{of + ": its zoom is not above 0, or above " + std::to_string(static_cast<int>(kMostZoom))}; }
+
+} // namespace
+
 std::string toJson(const SessionConfig& config) { return write(config); }
 
 Result<SessionConfig> sessionConfigFromJson(const std::string& line) {
-    return read<SessionConfig>(line, "session configuration");
+    auto config = read<SessionConfig>(line, "session configuration");
+    if (config && !isPossible(config->passes.zoom)) return noSuchZoom("session configuration");
+    return config;
 }
 
 std::string toJson(const NodeSetup& setup) { return write(setup); }
@@ -315,7 +326,7 @@ Result<NodeSetup> nodeSetupFromJson(const std::string& line) {
     const RenderPass& p = setup->pass;
     if (p.kernelX >= p.kernelWidth || p.kernelY >= p.kernelHeight || p.sample >= p.samples || p.phase >= p.period || p.range >= p.ranges)
         return Error{"node setup: its pass is none of the session's"};
-    if (!(p.zoom.x > 0 && p.zoom.x <= kMostZoom && p.zoom.y > 0 && p.zoom.y <= kMostZoom)) return Error{"node setup: its zoom is not above 0, or above " + std::to_string(static_cast<int>(kMostZoom))};
+    if (!isPossible(p.zoom)) return noSuchZoom("node setup");
     return setup;
 }
 

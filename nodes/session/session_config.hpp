@@ -46,7 +46,7 @@ struct SessionConfig {
     std::vector<std::string> layouts; // --layout: of its canvases
     Frusta frusta = Frusta::Auto; // --frusta
     double modelUnit = 1;         // --model-unit: of the program, to the metre of the file
-    PassCounts passes;            // --stereo, --pixel, --subpixel, --dplex, --db
+    PassCounts passes;            // --stereo, --pixel, --subpixel, --dplex, --db, --zoom
     std::string codec = "auto";   // --codec: how pictures of nodes travel: as of PlaneEncoder (nodes/pictures)
     std::string composition = "auto"; // --composition: auto, or a compositor::Strategy by its name
     double eyeBase = 0.05;        // --eye-base: distance of the eyes, in the program's units

@@ -45,11 +45,11 @@ def quick(folder):
     expect(report['holds'] and all(row['holds'] for row in rows), 'broken: %s' % [row['what'] for row in rows if not row['holds']])
     expect(all(row['pixels'] > 0 for row in rows), 'rows without pixels')
     exact = [row for row in rows if row['bound'] == {'differingShare': 0}]
-    for kind in ('2D', 'DB', 'DPlex', 'mixed', 'pixel', 'stereo'):
+    for kind in ('2D', 'DB', 'DPlex', 'mixed', 'pixel', 'stereo', 'zoom'):
         expect(any(row['what'].startswith(kind) for row in rows), 'nothing of %s was measured' % kind)
     expect(len(exact) >= 10 and all(row['differingPixels'] == 0 and row['psnr'] is None for row in exact), '%d exact ones' % len(exact))
     # What approximates must be seen to: a kernel or an eye that leaves every pixel as it was did nothing.
-    for kind in ('pixel, kernel of 2x2: triangles', 'yuv420'):
+    for kind in ('pixel, kernel of 2x2: triangles', 'zoom of 0.5: triangles', 'yuv420'):
         expect(any(row['what'].startswith(kind) and row['differingPixels'] > 0 for row in rows), '%s changed nothing' % kind)
     expect('%d measured, 0 broken' % len(rows) in out, 'the table tells something else')
     # Costs: of what recordings, codecs and blending take; more samples are nearer to many and dearer.

@@ -56,6 +56,13 @@ TEST(ShortForms, eachAlone) {
     }
 }
 
+TEST(ShortForms, allAreZoomed) {
+    ShortForm form;
+    form.columns = form.ranges = 2;
+    form.zoom = {0.5, 2};
+    for (const auto& c : loaded(form).resolved.compounds) EXPECT_EQ(c.zoom, c.parent == config::kNone ? form.zoom : Zoom{}) << "what is in it inherits that";
+}
+
 TEST(ShortForms, allTogether) {
     for (const auto stereo : {StereoForm::None, StereoForm::Anaglyph, StereoForm::Passive}) {
         ShortForm form;

@@ -92,6 +92,17 @@ TEST(NodeSetup, zoomsAreKeptAndLieAboveZeroAndNotAboveTheMost) {
     }
 }
 
+TEST(SessionConfig, zoomsAreThoseOfNodes) {
+    SessionConfig config;
+    config.passes.zoom = {0.3, 16};
+    const auto read = sessionConfigFromJson(toJson(config));
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_EQ(read.value().passes.zoom, config.passes.zoom);
+    for (const RenderPass& p : passesOf(read.value().passes)) EXPECT_EQ(p.zoom, config.passes.zoom);
+    config.passes.zoom.x = 0;
+    EXPECT_FALSE(sessionConfigFromJson(toJson(config)).ok());
+}
+
 TEST(SessionConfig, errorsNameTheField) {
     const std::pair<const char*, const char*> cases[] = {
         {R"({"colums":2})", "colums"},

@@ -145,6 +145,9 @@ TEST(RunOptions, passesAreRead) {
     EXPECT_EQ(accepted([](RunArguments& a) { a.dplex = "3"; a.latency = "1"; }).config.latency, 1);
     const PassCounts row = accepted([](RunArguments& a) { a.pixel = "5"; }).config.passes;
     EXPECT_EQ(std::pair(row.kernelWidth, row.kernelHeight), std::pair(5, 1));
+    EXPECT_TRUE(p.zoom.none());
+    EXPECT_EQ(accepted([](RunArguments& a) { a.zoom = "0.5"; }).config.passes.zoom, (Zoom{0.5, 0.5}));
+    EXPECT_EQ(accepted([](RunArguments& a) { a.zoom = "2x0.25"; a.db = "2"; }).config.passes.zoom, (Zoom{2, 0.25}));
     const char* const modes[] = {"off", "anaglyph", "side-by-side", "top-bottom", "left", "right"};
     for (size_t i = 0; i < 6; ++i) EXPECT_EQ(accepted([&](RunArguments& a) { a.stereo = modes[i]; }).config.passes.stereo, static_cast<StereoMode>(i));
 }
@@ -171,6 +174,7 @@ TEST(RunOptions, wrongPassesNameTheOptionAndWhatIsWanted) {
         EXPECT_EQ(said.rfind(option, 0), 0u) << said;
         EXPECT_EQ(said.find('\n'), std::string::npos);
     };
+    for (const char* bad : {"0", "17", "-1", "nan", "inf", "0.5x", "x2", "1x2x3", "half", ""}) names("--zoom \"", [&](RunArguments& a) { a.zoom = bad; });
     for (const char* bad : {"0", "17", "2x17", "0x2", "x", "2x", ""}) names("--pixel \"", [&](RunArguments& a) { a.pixel = bad; });
     for (const char* bad : {"0", "257", "-1", "2.5", ""}) {
         names("--subpixel", [&](RunArguments& a) { a.subpixel = bad; });
@@ -186,6 +190,8 @@ TEST(RunOptions, wrongPassesNameTheOptionAndWhatIsWanted) {
     names("--focus is for stereo", [](RunArguments& a) { a.focus = "1"; });
     EXPECT_NE(refusal([](RunArguments& a) { a.subpixel = "16"; a.pixel = "4x4"; a.stereo = "anaglyph"; }).find("512 passes together; at most 256"), std::string::npos);
     names("--verify compares with", [](RunArguments& a) { a.subpixel = "2"; a.verify = "1"; });
+    names("--verify compares with", [](RunArguments& a) { a.zoom = "2"; a.verify = "1"; });
+    names("--tiling lean does not go with --zoom", [](RunArguments& a) { a.zoom = "2"; a.tiling = "lean"; });
     EXPECT_EQ(accepted([](RunArguments& a) { a.dplex = "2"; a.verify = "1"; }).config.verifyEvery, 1);
     names("--tiling lean does not go with", [](RunArguments& a) { a.subpixel = "2"; a.tiling = "lean"; });
 }

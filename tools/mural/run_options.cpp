@@ -211,13 +211,18 @@ Result<void> readNodes(const RunArguments& a, SessionConfig& c) {
     return {};
 }
 
+std::optional<double> realNumber(std::string_view text, double lowest, double highest) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool read = error == std::errc() && end == text.data() + text.size();
+    return read && value >= lowest && value <= highest ? std::optional(value) : std::nullopt;
+}
+
 Result<void> readReal(std::string_view option, const RunArguments::Text& text, double lowest, double& into) {
     if (!text) return {};
-    double value = 0;
-    const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), value);
-    const bool read = error == std::errc() && end == text->data() + text->size();
-    if (!read || !(value >= lowest) || value > 1e9) return badValue(option, *text, fmt::format("must be a number from {} on, in the program's units, such as 0.5", lowest));
-    into = value;
+    const auto value = realNumber(*text, lowest, 1e9);
+    if (!value) return badValue(option, *text, fmt::format("must be a number from {} on, in the program's units, such as 0.5", lowest));
+    into = *value;
     return {};
 }
 
@@ -225,6 +230,19 @@ Result<void> readCount(std::string_view option, const RunArguments::Text& text, 
     int64_t value = into;
     if (auto r = readNumber(option, text, 1, highest, value); !r) return r;
     into = static_cast<int>(value);
+    return {};
+}
+
+// Z, or ZX and ZY.
+constexpr double kLeastZoom = 0.01; // of a hundred pixels one is left
+Result<void> readZoom(const RunArguments& a, Zoom& zoom) {
+    if (!a.zoom) return {};
+    const size_t x = a.zoom->find('x');
+    for (const auto& [text, into] : {std::pair(a.zoom->substr(0, x), &zoom.x), {a.zoom->substr(x == std::string::npos ? 0 : x + 1), &zoom.y}}) {
+        const auto number = realNumber(text, kLeastZoom, kMostZoom);
+        if (!number) return badValue("--zoom", *a.zoom, fmt::format("must be a number from {} to {}, or two, such as 0.5 or 0.5x1", kLeastZoom, kMostZoom));
+        *into = *number;
+    }
     return {};
 }
 
@@ -246,6 +264,7 @@ Result<void> readPasses(const RunArguments& a, SessionConfig& c) {
     if (auto r = readCount("--subpixel", a.subpixel, kMaxPasses, p.samples); !r) return r;
     if (auto r = readCount("--dplex", a.dplex, kMaxPasses, p.period); !r) return r;
     if (auto r = readCount("--db", a.db, kMaxPasses, p.ranges); !r) return r;
+    if (auto r = readZoom(a, p.zoom); !r) return r;
     if (a.chunkQueue) {
         const auto chunks = wholeNumber(*a.chunkQueue, 2, kMaxChunks);
         if (!chunks) return badValue("--chunk-queue", *a.chunkQueue, fmt::format("must be a number of chunks from 2 to {}, such as 64", kMaxChunks));
@@ -266,6 +285,7 @@ Result<void> readPasses(const RunArguments& a, SessionConfig& c) {
     const size_t passes = passesOf(p).size() * static_cast<size_t>(p.ranges);
     if (passes > kMaxPasses) return Error{fmt::format("--stereo, --pixel, --subpixel, --dplex and --db make {} passes together; at most {} can be drawn", passes, kMaxPasses)};
     if (passes > 1 && c.tiling == Tiling::Lean) return Error{"--tiling lean does not go with --stereo, --pixel, --subpixel, --dplex or --db; leave it out"};
+    if (!p.zoom.none() && c.tiling == Tiling::Lean) return Error{"--tiling lean does not go with --zoom; leave one of them out"};
     if (p.period > 1 && !a.latency) c.latency = p.period; // turns overlap only so
     return {};
 }
@@ -286,7 +306,7 @@ Result<void> readConfigFile(const RunArguments& a, RunOptions& options) {
         return {};
     }
     const std::pair<const char*, bool> contradicting[] = {{"--tiles", a.tiles.has_value()}, {"--tile-queue", a.tileQueue.has_value()}, {"--chunk-queue", a.chunkQueue.has_value()}, {"--nodes", a.nodes.has_value()}, {"--local-nodes", a.localNodes.has_value()}, {"--stereo", a.stereo.has_value()},
-                                                          {"--pixel", a.pixel.has_value()}, {"--subpixel", a.subpixel.has_value()}, {"--dplex", a.dplex.has_value()}, {"--db", a.db.has_value()}};
+                                                          {"--pixel", a.pixel.has_value()}, {"--subpixel", a.subpixel.has_value()}, {"--dplex", a.dplex.has_value()}, {"--db", a.db.has_value()}, {"--zoom", a.zoom.has_value()}};
     for (const auto& [option, given] : contradicting)
         if (given) return Error{fmt::format("{} and --config both say who draws what; leave one of them out", option)};
     if (c.tiling == Tiling::Lean) return Error{"--tiling lean does not go with --config; leave it out"};
@@ -337,6 +357,7 @@ Result<std::string> configTextOf(const RunArguments& a, const SessionConfig& c) 
     form.pixels = c.passes.kernelWidth;
     form.samples = c.passes.samples;
     form.frames = c.passes.period;
+    form.zoom = c.passes.zoom;
     if (c.passes.kernelHeight > 1) return Error{"--print-config: a pixel kernel of several rows has no short form; write it as pixel [ x y width height ] into a file"};
     if (c.tileWidth > 0) {
         constexpr int kTakers = 4; // where nothing says how many nodes there are, as planSession() has it
@@ -413,6 +434,7 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
     command.add_option("--eye-base", a.eyeBase, "distance of the eyes, in the program's units (0.05)")->type_name("D");
     command.add_option("--focus", a.focus, "distance at which both eyes see the same, in the program's units (1)")->type_name("D");
     command.add_option("--subpixel", a.subpixel, "antialiasing: every pixel is the mean of N jittered pictures, each drawn by nodes of its own (1)")->type_name("N");
+    command.add_option("--zoom", a.zoom, "every node draws its part smaller, or larger, by this, and it is shown as large as ever: below 1 quicker and coarser, above 1 with smooth edges (1)")->type_name("Z|XxY");
     command.add_option("--pixel", a.pixel, "interleaved pixels: each node draws every Nth column (or one pixel of each CxR), with little memory; approximate (1)")->type_name("N|CxR");
     command.add_option("--dplex", a.dplex, "time-multiplex: N nodes take turns at whole frames (1)")->type_name("N");
     command.add_option("--db", a.db, "sort-last: N nodes share what is drawn, by ranges of each frame's draws, and compose by depth (1)")->type_name("N");
@@ -457,8 +479,8 @@ Result<RunOptions> runOptionsFrom(const RunArguments& a) {
     int64_t verify = 0;
     if (auto r = readNumber("--verify", a.verify.empty() ? RunArguments::Text() : a.verify, 1, INT32_MAX, verify); !r) return r.error();
     c.verifyEvery = static_cast<int>(verify);
-    if (verify > 0 && (c.passes.stereo != StereoMode::Off || c.passes.samples > 1))
-        return Error{"--verify compares with the program's own picture, which --stereo and --subpixel change; leave one of them out"};
+    if (verify > 0 && (c.passes.stereo != StereoMode::Off || c.passes.samples > 1 || !c.passes.zoom.none()))
+        return Error{"--verify compares with the program's own picture, which --stereo, --subpixel and --zoom change; leave one of them out"};
     if (auto r = readOutput(a, c); !r) return r.error();
     if (auto r = checkTogether(a, c); !r) return r.error();
     c.fullScreen = a.fullScreen;

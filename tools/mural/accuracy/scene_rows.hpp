@@ -21,12 +21,15 @@ public:
 private:
     struct Way;
     static std::vector<Way> ways();
+    [[nodiscard]] int width() const { return quick_ ? 253 : 1021; }
+    [[nodiscard]] int height() const { return quick_ ? 191 : 767; }
     [[nodiscard]] Words program(const Words& more) const;
     Result<std::vector<OwnedPicture>> drawNatively(const Words& more);
     Result<std::vector<OwnedPicture>> drawByMural(const Words& options);
     Result<std::vector<OwnedPicture>> referenceOf(const Way& way);
     Result<std::vector<OwnedPicture>> meanOf(int samples);
     Result<std::vector<OwnedPicture>> anaglyph();
+    Result<std::vector<OwnedPicture>> reduced();
 
     const AccuracyRuns& runs_;
     bool quick_;
