@@ -15,7 +15,7 @@ namespace mural::economy {
 
 class ItemIndex {
 public:
-    explicit ItemIndex(uint32_t logItems) : mask_(logItems - 1), againBits_(static_cast<uint32_t>(std::bit_width((logItems + 3) / 4)) - 1), mostPositions_(logItems / 8), hashes_(LargeArray<uint32_t>::make(logItems)), positions_(kFirstPositions) {}
+    explicit ItemIndex(uint32_t logItems) : mask_(logItems - 1), againBits_(static_cast<uint32_t>(std::bit_width((logItems + 1) / 2)) - 1), mostPositions_(logItems / 8), hashes_(LargeArray<uint32_t>::make(logItems)), positions_(kFirstPositions) {}
 
     // The item that is appended at `position`; `first`: of its packet.
     void append(uint64_t position, uint32_t hash, uint32_t sizeBytes, bool first) {
@@ -23,22 +23,22 @@ public:
         if (!first) put(hashes_[(position - 1) & mask_], hash, position - 1);
         if (sizeBytes >= kTellingBytes) put(hash, kAnything, position);
     }
-    // The same item as at `from`, behind the same: it is found there, until that is a quarter of a log ago.
+    // The same item as at `from`, behind the same: it is found there, until that is half a log ago.
     void appendAgain(uint64_t position, uint64_t from, uint32_t sizeBytes) {
         const uint32_t hash = hashes_[from & mask_];
-        if (quarter(position) == quarter(from)) hashes_[position & mask_] = hash;
+        if (half(position) == half(from)) hashes_[position & mask_] = hash;
         else append(position, hash, sizeBytes, false);
     }
     // The same of many; `sizeAt(i)`: of the item at `from + i`.
     void appendAllAgain(uint64_t position, uint64_t from, size_t count, const auto& sizeAt) {
         for (size_t i = 0; i < count;) {
-            if (quarter(position + i) != quarter(from + i)) {
+            if (half(position + i) != half(from + i)) {
                 appendAgain(position + i, from + i, sizeAt(i));
                 ++i;
                 continue;
             }
-            const size_t source = (from + i) & mask_, target = (position + i) & mask_, quarterEnds = (size_t{1} << againBits_) - 1;
-            const size_t most = std::min(quarterEnds + 1 - (source & quarterEnds), quarterEnds + 1 - (target & quarterEnds)), part = std::min(count - i, most);
+            const size_t source = (from + i) & mask_, target = (position + i) & mask_, halfEnds = (size_t{1} << againBits_) - 1;
+            const size_t most = std::min(halfEnds + 1 - (source & halfEnds), halfEnds + 1 - (target & halfEnds)), part = std::min(count - i, most);
             std::memmove(hashes_.data() + target, hashes_.data() + source, part * sizeof(uint32_t));
             i += part;
         }
@@ -61,7 +61,7 @@ public:
 private:
     static constexpr size_t kFirstPositions = 8192;
 
-    [[nodiscard]] uint64_t quarter(uint64_t position) const { return position >> againBits_; }
+    [[nodiscard]] uint64_t half(uint64_t position) const { return position >> againBits_; }
     [[nodiscard]] size_t key(uint32_t a, uint32_t b) const {
         const uint64_t mixed = (uint64_t{a} << 32 | b) * 0x9e3779b97f4a7c15u;
         return static_cast<size_t>(mixed >> 32) & (positions_.size() - 1);
@@ -86,7 +86,7 @@ private:
     }
 
     const uint32_t mask_;
-    const uint32_t againBits_; // of a quarter of the log
+    const uint32_t againBits_; // of half the log
     const size_t mostPositions_;
     LargeArray<uint32_t> hashes_;
     std::vector<uint32_t> positions_; // a power of two

@@ -13,25 +13,20 @@ uint32_t word(const std::byte* from) {
     return value;
 }
 
-uint64_t twoWords(const std::byte* from) {
-    uint64_t value = 0;
-    std::memcpy(&value, from, sizeof value);
-    return value;
+// Of so many words, whether any bit is another one that matters. By vectors that every processor of the kind has.
+using Vector = uint32_t __attribute__((vector_size(16)));
+constexpr size_t kBlockWords = 16, kVectorWords = sizeof(Vector) / sizeof(uint32_t);
+
+inline Vector vectorAt(const void* from) {
+    Vector v;
+    std::memcpy(&v, from, sizeof v);
+    return v;
 }
 
-// How many of them are equal, in whole words. Multiples of 4 bytes; most are one word or a few.
-inline size_t equalBytes(const std::byte* a, const std::byte* b, size_t sizeBytes) {
-    size_t at = 0;
-    for (; sizeBytes - at >= 8; at += 8)
-        if (twoWords(a + at) != twoWords(b + at)) break;
-    while (at < sizeBytes && word(a + at) == word(b + at)) at += 4;
-    return at;
-}
-
-inline bool equal(const std::byte* a, const std::byte* b, size_t sizeBytes) {
-    for (; sizeBytes >= 8; sizeBytes -= 8, a += 8, b += 8)
-        if (twoWords(a) != twoWords(b)) return false;
-    return sizeBytes == 0 || word(a) == word(b);
+inline bool isOther(const std::byte* now, const uint32_t* same, const uint32_t* matters) {
+    Vector other{};
+    for (size_t i = 0; i < kBlockWords; i += kVectorWords) other |= (vectorAt(now + i * 4) ^ vectorAt(same + i)) & vectorAt(matters + i);
+    return (other[0] | other[1] | other[2] | other[3]) != 0;
 }
 
 } // namespace
@@ -39,6 +34,7 @@ inline bool equal(const std::byte* a, const std::byte* b, size_t sizeBytes) {
 void FrameLayout::clear() {
     ranges_.clear();
     same_.clear();
+    matters_.clear();
     starts_.clear();
     whole_.clear();
     seen_.clear();
@@ -60,16 +56,35 @@ bool FrameLayout::add(Same same, std::span<const std::byte> record) {
         seen_.push_back(static_cast<uint16_t>(head));
         return seen_.size() <= kMostRecords;
     }
-    const size_t sameBytes = same == Same::All ? record.size() : head >> 16 == record::kLongForm ? 8 : 4;
+    const size_t headBytes = head >> 16 == record::kLongForm ? 8 : 4;
+    const size_t matterBytes = same == Same::All ? record.size() : headBytes;
+    const size_t sameBytes = record.size() - matterBytes <= kShortBytes ? record.size() : matterBytes;
     const auto at = static_cast<uint32_t>(totalBytes_);
     starts_.push_back(at);
     if (same == Same::All) whole_.push_back({at, static_cast<uint32_t>(same_.size()), static_cast<uint32_t>(record.size())});
-    for (size_t i = 0; i < sameBytes; i += 4) same_.push_back(word(record.data() + i));
+    keep(record.data(), matterBytes, ~0U);
+    keep(record.data() + matterBytes, sameBytes - matterBytes, 0);
     range.sameBytes += static_cast<uint32_t>(sameBytes);
     range.otherBytes = static_cast<uint32_t>(record.size() - sameBytes);
     totalBytes_ += record.size();
     longestBytes_ = std::max(longestBytes_, record.size());
     return starts_.size() <= kMostRecords && same_.size() * 4 <= kMostSameBytes && totalBytes_ < kSeen;
+}
+
+void FrameLayout::keep(const std::byte* record, size_t sizeBytes, uint32_t matters) {
+    for (size_t i = 0; i < sizeBytes; i += 4) {
+        same_.push_back(word(record + i));
+        matters_.push_back(matters);
+    }
+}
+
+size_t FrameLayout::likeBytes(const std::byte* packet, size_t sameAt, size_t sizeBytes) const {
+    const uint32_t *const same = same_.data() + sameAt / 4, *const matters = matters_.data() + sameAt / 4;
+    const size_t words = sizeBytes / 4;
+    size_t i = 0;
+    while (words - i >= kBlockWords && !isOther(packet + i * 4, same + i, matters + i)) i += kBlockWords;
+    while (i < words && ((word(packet + i * 4) ^ same[i]) & matters[i]) == 0) ++i;
+    return i * 4;
 }
 
 // On as far as the packet is like the frame, and which records that were.
@@ -86,7 +101,7 @@ FrameLayout::Stop FrameLayout::passTo(std::span<const std::byte> packet, size_t&
     if (atEnd()) return Stop::End;
     const Range range = ranges_[range_];
     const size_t left = packet.size() - at, wanted = range.sameBytes - doneBytes_, compared = std::min(wanted, left);
-    const size_t alike = equalBytes(packet.data() + at, sameFrom(sameAt_), compared);
+    const size_t alike = likeBytes(packet.data() + at, sameAt_, compared);
     if (alike == compared && wanted <= left && range.otherBytes == kSeen) {
         go(alike, at);
         return Stop::Seen;
@@ -113,20 +128,19 @@ void FrameLayout::passWhole(std::span<const std::byte> packet, size_t& at) {
     const std::byte* const from = packet.data() + at;
     const std::byte* const end = packet.data() + packet.size();
     const std::byte* now = from;
-    const std::byte* const allSame = sameFrom(0);
-    const std::byte* same = allSame + sameAt_;
+    size_t same = sameAt_;
     size_t done = doneBytes_;
     const Range* range = ranges_.data() + range_;
     const Range* const last = ranges_.data() + ranges_.size();
     for (; range != last; ++range, done = 0) {
         const size_t wanted = range->sameBytes - done, whole = wanted + range->otherBytes;
-        if (range->otherBytes == kSeen || whole > static_cast<size_t>(end - now) || !equal(now, same, wanted)) break;
+        if (range->otherBytes == kSeen || whole > static_cast<size_t>(end - now) || likeBytes(now, same, wanted) < wanted) break;
         now += whole;
         same += wanted;
     }
     range_ = static_cast<size_t>(range - ranges_.data());
     doneBytes_ = done;
-    sameAt_ = static_cast<size_t>(same - allSame);
+    sameAt_ = same;
     at += static_cast<size_t>(now - from);
     at_ += static_cast<size_t>(now - from);
 }

@@ -47,6 +47,7 @@ public:
 private:
     static constexpr uint32_t kSeen = UINT32_MAX;
     static constexpr size_t kMostRecords = size_t{1} << 18, kMostSameBytes = size_t{8} << 20;
+    static constexpr size_t kShortBytes = 256; // so many that do not matter are looked at all the same: to go around them takes longer
     struct Range {
         uint32_t sameBytes = 0;
         uint32_t otherBytes = 0; // behind them; kSeen: a record that is looked at
@@ -54,7 +55,9 @@ private:
     struct Whole {
         uint32_t at = 0, sameAt = 0 /* words */, sizeBytes = 0;
     };
-    [[nodiscard]] const std::byte* sameFrom(size_t at) const { return std::as_bytes(std::span(same_)).data() + at; }
+    void keep(const std::byte* record, size_t sizeBytes, uint32_t matters);
+    // From there on, how many bytes of the packet are as expected where that matters, in whole words.
+    [[nodiscard]] size_t likeBytes(const std::byte* packet, size_t sameAt, size_t sizeBytes) const;
     Stop passTo(std::span<const std::byte> packet, size_t& at);
     void passWhole(std::span<const std::byte> packet, size_t& at);
     void go(size_t sizeBytes, size_t& at);
@@ -62,7 +65,8 @@ private:
 
     // Places count all bytes but those of records that are looked at.
     std::vector<Range> ranges_;
-    std::vector<uint32_t> same_; // what has to be, one behind the other
+    std::vector<uint32_t> same_; // what has to be, one behind the other; of short records what need not be, too
+    std::vector<uint32_t> matters_; // of these the bits that do
     std::vector<uint32_t> starts_;
     std::vector<Whole> whole_;
     std::vector<uint16_t> seen_; // their commands

@@ -5,7 +5,8 @@
 namespace mural::holding {
 namespace {
 
-constexpr uint64_t kLeastWireBytes = 200; // per frame: of fewer nothing can be won, and a try breaks equal runs
+// Of most frames: where less goes, or hardly any of what the program says, nothing can be won, and a try breaks equal runs.
+constexpr uint64_t kLeastWireBytes = 200, kLeastPart = 100;
 constexpr double kHopelessCost = 1.1;
 constexpr double kClearly = 0.97; // as small as that is cheaper; where both cost about the same, what leaves out is kept
 
@@ -22,7 +23,7 @@ bool SmallChoice::wantsTime() const { return phase_ == Phase::Before || phase_ =
 void SmallChoice::next(Phase phase) {
     phase_ = phase;
     frames_ = 0;
-    wireBytes_ = 0;
+    large_ = 0;
 }
 
 void SmallChoice::frame(uint64_t programBytes, uint64_t wireBytes, double costNs) {
@@ -32,9 +33,9 @@ void SmallChoice::frame(uint64_t programBytes, uint64_t wireBytes, double costNs
     ++frames_;
     switch (phase_) {
     case Phase::Waiting:
-        wireBytes_ += wireBytes;
+        large_ += wireBytes >= std::max(kLeastWireBytes, programBytes / kLeastPart); // a few that load something tell nothing of the others
         if (frames_ < until_) return;
-        return next(leavesOut_ || wireBytes_ >= kLeastWireBytes * frames_ ? Phase::Before : Phase::Waiting);
+        return next(leavesOut_ || large_ * 2 >= frames_ ? Phase::Before : Phase::Waiting);
     case Phase::Before:
         if (frames_ < kCompared) return;
         leavesOut_ = !leavesOut_;

@@ -34,7 +34,7 @@ private:
     Phase phase_ = Phase::Waiting;
     uint32_t frames_ = 0; // of the phase
     uint32_t until_ = kFirst;
-    uint64_t wireBytes_ = 0; // while waiting
+    uint32_t large_ = 0; // of those that were waited for, from which something can be won
     std::array<std::array<double, kCompared>, 2> costs_{}; // per byte of the program, before and while it is tried
 };
 

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include "common/kept_memory.hpp"
 #include "nodes/head/codec_choice.hpp"
 #include "nodes/head/composition_choice.hpp"
 #include "nodes/head/config_plan.hpp"
@@ -132,6 +133,7 @@ Result<int> runSession(ControlChannel& control) {
 
 int runHead(int controlFd) {
     fcntl(controlFd, F_SETFD, FD_CLOEXEC); // nodes must not hold it open
+    keepFreedMemory();
     setUpSignals();
     ControlChannel control{FileDescriptor(controlFd)};
     const Result<int> status = runSession(control);

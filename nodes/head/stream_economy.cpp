@@ -11,7 +11,8 @@ namespace mural {
 namespace {
 
 constexpr uint64_t kFullStagedBytes = uint64_t{64} * 1024; // as much as goes at once without economy
-constexpr size_t kLongBytes = 16384; // beside which reading a thread's clock, a system call, costs nothing
+// Beside which reading a thread's clock, a system call, costs nothing: packets, which are mostly as they were, and new bytes.
+constexpr size_t kLongPacketBytes = size_t{256} << 10, kLongBytes = size_t{32} << 10;
 constexpr uint64_t kMostHeldBytes = uint64_t{256} << 20;
 constexpr uint64_t kFullRawBytes = uint64_t{4} << 20;      // so much a node unpacks in a millisecond or two
 
@@ -41,10 +42,10 @@ std::unique_ptr<StreamEconomy::Coder> StreamEconomy::beginAnew(std::unique_ptr<C
 }
 
 void StreamEconomy::add(uint32_t stream, std::span<const std::byte> payload) {
-    const bool isLong = payload.size() >= kLongBytes;
+    const bool isLong = payload.size() >= kLongPacketBytes;
     if (!timesFrame_ && !isLong) {
         hold(stream, payload);
-        encodeNs_ += packetNs_;
+        encodeNs_ += static_cast<uint64_t>(packetNsPerByte_ * static_cast<double>(payload.size()));
         return;
     }
     const int64_t beganNs = threadCpuNowNs();
@@ -55,7 +56,7 @@ void StreamEconomy::add(uint32_t stream, std::span<const std::byte> payload) {
     const auto ns = static_cast<uint64_t>(threadCpuNowNs() - beganNs - sendNs_);
     encodeNs_ += ns;
     measured_.holdNs += ns - std::min(ns, packNs_);
-    if (!isLong) packetNs_ = ns;
+    if (!isLong && !payload.empty()) packetNsPerByte_ = static_cast<double>(ns) / static_cast<double>(payload.size());
 }
 
 void StreamEconomy::miss(uint32_t stream, std::span<const std::byte> payload) {

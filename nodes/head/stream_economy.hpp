@@ -86,7 +86,8 @@ private:
     bool timesFrame_ = true; // all that is done for it; else what is long only
     bool timesPacking_ = false;
     uint64_t packNs_ = 0; // of the packet in hand, without what holds back
-    uint64_t packetNs_ = 0, takeNs_ = 0; // of short packets, and of batches of such, that were measured last
+    double packetNsPerByte_ = 0; // of those that were measured last, but long ones
+    uint64_t takeNs_ = 0;        // of the batch
     uint64_t wireBytes_ = 0, encodeNs_ = 0;
     struct Measured {
         uint64_t rawBytes = 0, pageBytes = 0, wireBytes = 0, encodeNs = 0, programBytes = 0, holdNs = 0;

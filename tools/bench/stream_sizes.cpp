@@ -12,6 +12,7 @@
 #include <sys/mman.h>
 #include <vector>
 
+#include "common/kept_memory.hpp"
 #include "tools/bench/stream/ways.hpp"
 
 using namespace mural;
@@ -107,6 +108,7 @@ int fail(const std::string& why, int status = 2) {
 } // namespace
 
 int main(int argc, char** argv) {
+    keepFreedMemory(); // as the head
     if (argc < 2 || argc > 3) return fail("give a recording that mural run --record has made, and how many frames are start-up");
     const int64_t warm = argc > 2 ? std::strtoll(argv[2], nullptr, 10) : 10;
     Frames frames;
