@@ -109,7 +109,7 @@ bool Replay::execute(uint16_t opcode, std::span<const std::byte> arguments, Blob
     if (takesTurns()) noteTurn(opcode, arguments);
     if (hasSkipped_) noteSkipped(opcode, arguments);
     if (movesView() || config_.pass.samples > 1) noteEye(opcode, arguments);
-    if (drawsOtherPixels()) noteKernel(opcode);
+    if (drawsOtherPixels()) noteWholeWindow(opcode, arguments);
     if (takesRanges()) in = Args(noteRange(opcode, arguments), blobs); // a piece of it, or nothing
     const bool leftOut = (takesTurns() || (hasSkipped_ && c_->draw && c_->draw->skipped)) && leavesOut(opcode); // behind noteRange, which decides whether this draw is the node's
     if (moves()) noteArea(opcode, arguments);

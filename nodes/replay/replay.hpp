@@ -231,7 +231,8 @@ private:
         int64_t kept = 0;          // frames in a row that have built on the one before
         GLbitfield cleared = 0;    // whole buffers, since the frame began
         bool plain = true;         // drawn without the kernel of this pass: its pixels are picked at the end…
-        bool copied = true;        // …because the frame before read or copied pixels there
+        bool copied = true;        // …because the frame before read or copied pixels there, or chose levels of textures by them
+        int askedOfLevels = 0;     // draws of this frame that were (replay_whole_windows.cpp)
         bool asked = false;        // for pixels, in this frame
         bool drawsAll = true;      // tiles or not: a copy shall find this pass's own pixels; those that are brought are another's
         bool filled = true;        // …because the frame before had copies
@@ -272,6 +273,7 @@ private:
         NameTable framebuffersOfAll;
         std::unordered_map<GLuint, bool> placedModules; // by our shader's name: it holds a module that reads gl_FragCoord
         bool listsHoldBitmaps = false; // one of them at least
+        bool texturesHaveLevels = false; // some of them (replay_whole_windows.cpp)
         bool testsDepth = false, testsStencil = false; // some command or list has switched that on
         bool allDrawn = false; // by every node: the program's side has asked for it, or a module reads gl_FragCoord
         TiledPrograms tiled;
@@ -587,7 +589,6 @@ private:
     [[nodiscard]] bool isSound(const Window& w, bool front) const;
     [[nodiscard]] bool mayRead(const Window& w, bool deep) const;
     // replay_passes.cpp
-    void noteKernel(uint16_t opcode);
     [[nodiscard]] bool hasKernel() const { return config_.pass.kernelWidth * config_.pass.kernelHeight > 1; }
     [[nodiscard]] bool drawsOtherPixels() const { return hasKernel() || !config_.pass.zoom.none(); } // than its part of the window has
     // Pixels that are brought from other tiles, for copies, are those of the pass that answers.
@@ -605,6 +606,9 @@ private:
     [[nodiscard]] RenderPass passOfDraws() const;
     void applyMovedViewports();
     std::array<GLfloat, 20> moveOf(GLuint program) const;
+    // replay_whole_windows.cpp
+    void noteWholeWindow(uint16_t opcode, std::span<const std::byte> arguments);
+    [[nodiscard]] bool choosesOwnLevels() const;
     // replay_scenes.cpp
     [[nodiscard]] bool isSeen() const;
     [[nodiscard]] bool drawsScene() const;

@@ -15,22 +15,6 @@ namespace mural {
 
 bool Replay::movesByShaders() const { return c_->api != wire::Api::Desktop || !gl.glViewportIndexedf; }
 
-// What puts pixels into a window one by one, or copies them, needs all of them to be there: such windows are drawn
-// without the kernel from the next frame on.
-void Replay::noteKernel(uint16_t opcode) {
-    switch (opcode) {
-    case op::glBlitFramebuffer:
-    case op::glBlitNamedFramebuffer:
-    case op::glDrawPixels:
-    case op::glCopyPixels:
-    case op::glBitmap:
-    case op::glAccum:
-        if (drawsWindow() && c_->draw) c_->draw->copied = true;
-        return;
-    default: return;
-    }
-}
-
 // What moves now: a window whose pixels are copied or read, in the frame before, is drawn as if there were no kernel; and
 // what only shows a scene that was sampled before is not sampled again (replay_scenes.cpp).
 RenderPass Replay::passOfDraws() const {

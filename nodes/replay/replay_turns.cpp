@@ -160,6 +160,7 @@ void Replay::turnDrawn(Window& w, bool shownInFront) {
     if (drawsOtherPixels()) {
         const bool needsAll = bound_ && bound_->shared && bound_->shared->allDrawn; // modules that ask for places, fragments that are counted
         const bool plain = std::exchange(w.plain, std::exchange(w.copied, false) || needsAll);
+        w.askedOfLevels = 0;
         if (plain != w.plain) partChanged(w);
     }
     if (copiesOthers() && std::exchange(w.drawsAll, std::exchange(w.filled, false)) != w.drawsAll) partChanged(w);

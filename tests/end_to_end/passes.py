@@ -197,6 +197,16 @@ def pixel_is_exact_where_pixels_are_copied(context, notes):
                         for program, arguments in programs_of for kernel in ("2x1", "3x2")})
 
 
+@case
+def pixel_is_exact_where_levels_are_not_ours(context, notes):
+    """Fixed function and OpenGL ES choose levels of textures by the pixels that are drawn: all of them are, then, from the frame behind on."""
+    scenes = (("pass_scene", ["--draw", "textured"]), ("pass_scene_es2", ["--draw", "textured"]))
+    wrong = first_wrong({"%s %s" % (program, kernel): differing(native(context, program, arguments), through(context, ["--pixel", kernel], program, arguments))
+                         for program, arguments in scenes for kernel in ("2x1", "3x2")})
+    levels, plain = (native(context, "pass_scene", ["--draw", way]) for way in ("textured", "fixed"))
+    return wrong or (None if differing(levels, plain) else "no level was looked up")
+
+
 # ---- eyes
 
 def overlay(picture):

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <map>
 #include <string>
+#include <vector>
 
 using namespace programs;
 
@@ -73,10 +74,40 @@ GLuint makeFramebuffer(int width, int height, GLuint& colour) {
     return made;
 }
 
+bool byFixedFunction() { return options.draw == "fixed" || options.draw == "textured"; }
+
+// A texture whose levels have colours of their own.
+void makeLevels() {
+    constexpr int kLevels = 8;
+    GLuint texture = 0;
+    glGenTextures(1, &texture);
+    glBindTexture(GL_TEXTURE_2D, texture);
+    for (int level = 0; level < kLevels; ++level) {
+        const int size = 1 << (kLevels - 1 - level);
+        std::vector<unsigned char> texels(static_cast<size_t>(size) * static_cast<size_t>(size) * 4, 255);
+        for (size_t i = 0; i < texels.size(); i += 4) texels[i] = static_cast<unsigned char>(level * 36), texels[i + 1] = static_cast<unsigned char>(255 - level * 20);
+        glTexImage2D(GL_TEXTURE_2D, level, GL_RGBA8, size, size, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+    }
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+}
+
+void drawGround() {
+    glEnable(GL_TEXTURE_2D);
+    glColor3f(1, 1, 1);
+    glBegin(GL_QUADS);
+    glTexCoord2f(0, 0), glVertex3f(-8, -1, 8);
+    glTexCoord2f(16, 0), glVertex3f(8, -1, 8);
+    glTexCoord2f(16, 16), glVertex3f(8, -1, -8);
+    glTexCoord2f(0, 16), glVertex3f(-8, -1, -8);
+    glEnd();
+    glDisable(GL_TEXTURE_2D);
+}
+
 void setUp(const Window& window) {
     glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 24, sceneVertices());
     glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, 24, sceneVertices() + 3);
-    if (options.draw == "fixed") return;
+    if (options.draw == "textured") makeLevels();
+    if (byFixedFunction()) return;
     const auto way = ways().find(options.draw);
     if (way == ways().end()) fail("unknown way to draw \"%s\"", options.draw.c_str());
     const char* vertex = way->second.vertex.c_str();
@@ -105,13 +136,14 @@ void drawScene(const Window& window, int frame) {
     const Matrix projection = projectionOf(options, window.width(), window.height()), modelView = modelViewOf(options, frame);
     const Matrix whole = multiply(projection, modelView);
     glEnable(GL_DEPTH_TEST);
-    if (options.draw == "fixed" || options.draw == "legacy") {
+    if (byFixedFunction() || options.draw == "legacy") {
         glMatrixMode(GL_PROJECTION);
         glLoadMatrixf(projection.data());
         glMatrixMode(GL_MODELVIEW);
         glLoadMatrixf(modelView.data());
     }
-    if (options.draw == "fixed") {
+    if (options.draw == "textured") drawGround();
+    if (byFixedFunction()) {
         glVertexPointer(3, GL_FLOAT, 24, sceneVertices());
         glColorPointer(3, GL_FLOAT, 24, sceneVertices() + 3);
         glEnableClientState(GL_VERTEX_ARRAY);
@@ -153,7 +185,7 @@ void drawQuad(float x0, float y0, float x1, float y1, GLuint texture) {
 
 // The lower left quarter of the window. Nothing of it is seen in perspective.
 void drawOverlay() {
-    if (options.draw != "fixed") return drawQuad(-1, -1, 0, 0, 0);
+    if (!byFixedFunction()) return drawQuad(-1, -1, 0, 0, 0);
     glDisable(GL_DEPTH_TEST);
     glMatrixMode(GL_PROJECTION);
     glLoadIdentity();

@@ -1,6 +1,8 @@
-// The scene of pass_scene by OpenGL ES 2, which has no viewports in fractions: shaders move the picture.
+// The scene of pass_scene by OpenGL ES 2, which has no viewports in fractions: shaders move the picture. --draw textured: its colours are
+// looked up in a texture whose levels have colours of their own.
 #include <EGL/egl.h>
 #include <GLES2/gl2.h>
+#include <vector>
 
 #include "tests/programs/passes/pass_options.hpp"
 #include "tests/programs/support/program.hpp"
@@ -13,8 +15,25 @@ namespace {
 PassOptions options;
 GLuint scene = 0, overlay = 0;
 
+bool textured() { return options.draw == "textured"; }
+
+void makeLevels() {
+    constexpr int kLevels = 8;
+    GLuint texture = 0;
+    glGenTextures(1, &texture);
+    glBindTexture(GL_TEXTURE_2D, texture);
+    for (int level = 0; level < kLevels; ++level) {
+        const int size = 1 << (kLevels - 1 - level);
+        std::vector<unsigned char> texels(static_cast<size_t>(size) * static_cast<size_t>(size) * 4, static_cast<unsigned char>(255 - level * 30));
+        glTexImage2D(GL_TEXTURE_2D, level, GL_RGBA, size, size, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+    }
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+}
+
 void setUp() {
-    const char* const fragment = "precision mediump float; varying vec3 tint; void main() { gl_FragColor = vec4(tint, 1.0); }\n";
+    if (textured()) makeLevels();
+    const char* const fragment = textured() ? "precision mediump float; varying vec3 tint; uniform sampler2D s; void main() { gl_FragColor = texture2D(s, tint.xy * 4.0) * vec4(tint, 1.0); }\n"
+                                            : "precision mediump float; varying vec3 tint; void main() { gl_FragColor = vec4(tint, 1.0); }\n";
     const auto bind = [](unsigned p) { glBindAttribLocation(p, 0, "place"), glBindAttribLocation(p, 1, "tone"); };
     scene = buildProgram({{GL_VERTEX_SHADER, "attribute vec3 place; attribute vec3 tone; uniform mat4 whole; uniform vec4 by; varying vec3 tint;\n"
                                              "void main() { tint = tone; gl_Position = whole * vec4(place, 1.0); gl_Position.xy += gl_Position.xy * by.xy + by.zw * gl_Position.w; }\n"},
