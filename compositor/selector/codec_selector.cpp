@@ -23,6 +23,8 @@ constexpr uint64_t kMeasureEvery = 3;
 constexpr double kStaleShares = 3; // of the share: what is stale may be as good as any
 constexpr double kStaleWorth = 4;
 constexpr double kNewAge = 1e6;    // pieces: more than any other waits
+constexpr double kCreditPieces = 4; // of whose time it may take to measure a codec for the first time
+constexpr double kHopefully = 0.5; // of the times that a codec took: it may take so much less with other content
 constexpr double kMostOff = 4;     // times the estimate: a piece that took longer was interrupted, or shows it again
 // What a codec is thought to take before it was measured, against the best one.
 constexpr double kNewEncode = 8, kNewDecode = 4;
@@ -52,10 +54,39 @@ CodecSelector::ClassState& CodecSelector::stateOf(const TileClass& tile) {
 
 double CodecSelector::nsPerByte(const Estimate& e) const {
     const double decode = e.decodeKnown ? e.decodeNsPerByte : e.encodeNsPerByte;
-    const double transfer = e.encodedPerByte * kNsPerSec / linkBytesPerSec_;
-    const double sum = e.encodeNsPerByte + transfer + decode;
+    return totalNsPerByte(e.encodeNsPerByte, e.encodedPerByte * kNsPerSec / linkBytesPerSec_, decode);
+}
+
+double CodecSelector::totalNsPerByte(double encode, double transfer, double decode) const {
+    const double sum = encode + transfer + decode;
     if (options_.overlap == Overlap::Serial) return sum;
-    return std::max({e.encodeNsPerByte, transfer, decode}) + sum * kHiddenShare;
+    return std::max({encode, transfer, decode}) + sum * kHiddenShare;
+}
+
+// Of this class or, where it was not measured there, as many times the best one's as in other classes, in the mean; 0 ns: nothing is known.
+CodecSelector::Times CodecSelector::timesOf(PlaneFormat format, const ClassState& s, size_t codec, size_t best) const {
+    const auto times = [](const Estimate& e) { return Times{e.encodeNsPerByte, e.decodeKnown ? e.decodeNsPerByte : e.encodeNsPerByte}; };
+    if (s.codecs[codec].reports > 0) return times(s.codecs[codec]);
+    Times ratios;
+    double classes = 0;
+    for (const auto& [tile, state] : classes_) {
+        if (tile.format != format || state.codecs.empty() || state.codecs[codec].reports == 0 || state.codecs[best].reports == 0) continue;
+        const Times there = times(state.codecs[codec]), bestThere = times(state.codecs[best]);
+        ratios.encode += there.encode / bestThere.encode;
+        ratios.decode += there.decode / bestThere.decode;
+        ++classes;
+    }
+    if (classes == 0) return {};
+    const Times here = times(s.codecs[best]);
+    return {here.encode * ratios.encode / classes, here.decode * ratios.decode / classes};
+}
+
+// Whether it could not be the best one if it made pieces to nothing, in a part of the time that it has taken so far. Pieces without a codec are
+// as large as they are.
+bool CodecSelector::isHopeless(PlaneFormat format, const ClassState& s, size_t codec, size_t best) const {
+    const Times times = timesOf(format, s, codec, best);
+    const double transfer = codec == raw_ ? kNsPerSec / linkBytesPerSec_ : 0;
+    return totalNsPerByte(times.encode * kHopefully, transfer, times.decode * kHopefully) > nsPerByte(s.codecs[best]);
 }
 
 size_t CodecSelector::bestOf(const ClassState& s) const {
@@ -67,29 +98,28 @@ size_t CodecSelector::bestOf(const ClassState& s) const {
 }
 
 // What it takes to measure a codec; of one that never was, a guess.
-double CodecSelector::measuringNsPerByte(const ClassState& s, size_t codec, size_t best) const {
-    const Estimate& e = s.codecs[codec];
-    if (e.reports > 0) return e.encodeNsPerByte + (e.decodeKnown ? e.decodeNsPerByte : e.encodeNsPerByte);
+double CodecSelector::measuringNsPerByte(PlaneFormat format, const ClassState& s, size_t codec, size_t best) const {
+    if (const Times times = timesOf(format, s, codec, best); times.sum() > 0) return times.sum();
     const Estimate& b = s.codecs[best];
     const double decode = b.decodeKnown ? b.decodeNsPerByte : b.encodeNsPerByte;
     return codec == raw_ ? b.encodeNsPerByte + decode : kNewEncode * b.encodeNsPerByte + kNewDecode * decode;
 }
 
 // What measuring may tell for what it costs: a codec that was far behind is rarely looked at again, what is stale or new before all.
-double CodecSelector::worthMeasuring(const ClassState& s, size_t codec, size_t best) const {
+double CodecSelector::worthMeasuring(PlaneFormat format, const ClassState& s, size_t codec, size_t best) const {
     const Estimate& e = s.codecs[codec];
     const double behind = e.reports > 0 ? nsPerByte(e) / nsPerByte(s.codecs[best]) : 1;
     const double age = e.reports > 0 ? static_cast<double>(s.pieces - e.measuredAt) * (e.stale ? kStaleWorth : 1) : kNewAge;
-    return age / (measuringNsPerByte(s, codec, best) * behind * behind * behind);
+    return age / (measuringNsPerByte(format, s, codec, best) * behind * behind * behind);
 }
 
 // The one that is most worth it, as soon as it can be paid for: cheaper ones that tell less would use up what it takes.
-std::optional<size_t> CodecSelector::toMeasure(const ClassState& s, size_t best, uint64_t rawBytes) const {
+std::optional<size_t> CodecSelector::toMeasure(PlaneFormat format, const ClassState& s, size_t best, uint64_t rawBytes) const {
     if (s.codecs[best].reports == 0 || s.pieces % kMeasureEvery != 0) return std::nullopt; // of the first piece, nothing is to be compared with
     std::optional<size_t> found;
     double most = 0;
     for (size_t i = 0; i < s.codecs.size(); ++i) {
-        const double worth = i == best ? 0 : worthMeasuring(s, i, best);
+        const double worth = i == best || isHopeless(format, s, i, best) ? 0 : worthMeasuring(format, s, i, best);
         if (worth <= most) continue;
         found = i;
         most = worth;
@@ -97,8 +127,10 @@ std::optional<size_t> CodecSelector::toMeasure(const ClassState& s, size_t best,
     if (!found) return found;
     const Estimate& e = s.codecs[*found];
     const double limitNs = options_.measureShare * (e.stale ? kStaleShares : 1) * s.spentNs;
-    const bool mustBePaid = *found != raw_ || e.reports > 0; // copying is cheap, and a fast link can't wait for it
-    if (mustBePaid && s.measuringNs + measuringNsPerByte(s, *found, best) * static_cast<double>(rawBytes) > limitNs) return std::nullopt;
+    // The first time is on credit, once for all classes, and once for each where it is cheap: what might be best is not waited for.
+    const double costNsPerByte = measuringNsPerByte(format, s, *found, best);
+    const bool onCredit = e.reports == 0 && (timesOf(format, s, *found, best).sum() == 0 || costNsPerByte < kCreditPieces * nsPerByte(s.codecs[best]));
+    if (!onCredit && s.measuringNs + costNsPerByte * static_cast<double>(rawBytes) > limitNs) return std::nullopt;
     return found;
 }
 
@@ -112,8 +144,8 @@ CodecSelector::Choice CodecSelector::choose(const TileClass& tile, uint64_t rawB
         s.spentNs = std::min(s.spentNs * (1 - kForget) + pieceNs, pieceNs / kForget);
         s.measuringNs = std::min(s.measuringNs * (1 - kForget), options_.measureShare * s.spentNs);
     }
-    const std::optional<size_t> measure = toMeasure(s, best, rawBytes);
-    if (measure) s.measuringNs += measuringNsPerByte(s, *measure, best) * static_cast<double>(rawBytes);
+    const std::optional<size_t> measure = toMeasure(tile.format, s, best, rawBytes);
+    if (measure) s.measuringNs += measuringNsPerByte(tile.format, s, *measure, best) * static_cast<double>(rawBytes);
     return {best, measure};
 }
 

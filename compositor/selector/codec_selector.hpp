@@ -24,7 +24,7 @@ enum class Overlap : uint8_t {
 
 struct SelectorOptions {
     Overlap overlap = Overlap::Pipelined;
-    double measureShare = 0.015;     // of the time of pieces, for measuring others on the side
+    double measureShare = 0.01;      // of the time of pieces, for measuring others on the side
     double startBytesPerSec = 125e6; // of the link, until it is measured
 };
 
@@ -82,9 +82,16 @@ private:
     ClassState& stateOf(const TileClass& tile);
     [[nodiscard]] double nsPerByte(const Estimate& e) const;
     [[nodiscard]] size_t bestOf(const ClassState& s) const;
-    [[nodiscard]] double measuringNsPerByte(const ClassState& s, size_t codec, size_t best) const;
-    [[nodiscard]] double worthMeasuring(const ClassState& s, size_t codec, size_t best) const;
-    [[nodiscard]] std::optional<size_t> toMeasure(const ClassState& s, size_t best, uint64_t rawBytes) const;
+    [[nodiscard]] double totalNsPerByte(double encode, double transfer, double decode) const;
+    [[nodiscard]] bool isHopeless(PlaneFormat format, const ClassState& s, size_t codec, size_t best) const;
+    struct Times {
+        double encode = 0, decode = 0; // ns per byte
+        [[nodiscard]] double sum() const { return encode + decode; }
+    };
+    [[nodiscard]] Times timesOf(PlaneFormat format, const ClassState& s, size_t codec, size_t best) const;
+    [[nodiscard]] double measuringNsPerByte(PlaneFormat format, const ClassState& s, size_t codec, size_t best) const;
+    [[nodiscard]] double worthMeasuring(PlaneFormat format, const ClassState& s, size_t codec, size_t best) const;
+    [[nodiscard]] std::optional<size_t> toMeasure(PlaneFormat format, const ClassState& s, size_t best, uint64_t rawBytes) const;
     void noticeChange(ClassState& s, Estimate& e);
 
     std::vector<std::string> codecs_;
