@@ -25,11 +25,14 @@ private:
     [[nodiscard]] int height() const { return quick_ ? 191 : 767; }
     [[nodiscard]] Words program(const Words& more) const;
     Result<std::vector<OwnedPicture>> drawNatively(const Words& more);
-    Result<std::vector<OwnedPicture>> drawByMural(const Words& options);
+    Result<std::vector<OwnedPicture>> drawByMural(const Words& options, const Words& more);
     Result<std::vector<OwnedPicture>> referenceOf(const Way& way);
     Result<std::vector<OwnedPicture>> meanOf(int samples);
     Result<std::vector<OwnedPicture>> anaglyph();
-    Result<std::vector<OwnedPicture>> reduced();
+    Result<std::vector<OwnedPicture>> reduced(const Words& more);
+    static AccuracyRow rowOf(const Way& way, size_t scene);
+    void measureAllScenes(const Way& way, std::vector<AccuracyRow>& rows);
+    void measureEachScene(const Way& way, std::vector<AccuracyRow>& rows);
 
     const AccuracyRuns& runs_;
     bool quick_;

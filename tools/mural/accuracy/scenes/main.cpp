@@ -1,6 +1,7 @@
 // mural-scenes: draws the scenes of `mural bench accuracy`, frame by frame, without a clock.
 #define GL_GLEXT_PROTOTYPES
 #include <GL/gl.h>
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <stdexcept>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "tools/mural/accuracy/scenes/scene_window.hpp"
+#include "tools/mural/accuracy/scenes/scene_names.hpp"
 #include "tools/mural/accuracy/scenes/scenes.hpp"
 
 namespace {
@@ -17,15 +19,21 @@ using mural::scenes::Look;
 struct Options {
     int width = 509, height = 383, frames = 6;
     std::string save; // folder; empty: nothing is saved
+    int scene = -1;   // alone; -1: all, one after the other
     Look look;
 };
 
-const char* const kUsage = "usage: mural-scenes [--size WxH] [--frames N] [--save FOLDER] [--move X,Y] [--eye E,FOCUS]\n";
+const char* const kUsage = "usage: mural-scenes [--size WxH] [--frames N] [--scene NAME] [--save FOLDER] [--move X,Y] [--eye E,FOCUS]\n";
 
 bool take(const std::string& name, const char* value, Options& o) {
     if (name == "--size") return std::sscanf(value, "%dx%d", &o.width, &o.height) == 2 && o.width > 0 && o.height > 0;
     if (name == "--frames") return std::sscanf(value, "%d", &o.frames) == 1 && o.frames > 0;
     if (name == "--move") return std::sscanf(value, "%f,%f", &o.look.moveX, &o.look.moveY) == 2;
+    if (name == "--scene") {
+        const auto found = std::ranges::find(mural::scenes::kSceneNames, std::string(value));
+        o.scene = static_cast<int>(found - mural::scenes::kSceneNames.begin());
+        return found != mural::scenes::kSceneNames.end();
+    }
     if (name == "--eye") return std::sscanf(value, "%f,%f", &o.look.eye, &o.look.focus) == 2;
     o.save = value;
     return name == "--save" && *value != '\0';
@@ -53,7 +61,7 @@ int drawAll(const Options& o) {
     std::printf("%s, %s\n", reinterpret_cast<const char*>(glGetString(GL_RENDERER)), reinterpret_cast<const char*>(glGetString(GL_VERSION)));
     const mural::scenes::Scenes scenes(o.width, o.height, o.look);
     for (int frame = 0; frame < o.frames; ++frame) {
-        scenes.draw(frame);
+        scenes.draw(o.scene < 0 ? frame : frame * static_cast<int>(mural::scenes::kSceneNames.size()) + o.scene);
         if (const GLenum error = glGetError(); error != GL_NO_ERROR) throw std::runtime_error("GL error " + std::to_string(error) + " in frame " + std::to_string(frame));
         if (!o.save.empty()) save(o, frame);
         window->show();
