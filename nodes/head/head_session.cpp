@@ -6,6 +6,8 @@
 #include <poll.h>
 #include <thread>
 
+#include "nodes/head/picture_place.hpp"
+
 namespace mural {
 namespace {
 
@@ -254,7 +256,8 @@ void HeadSession::sayKeepsPicture() {
 
 Result<void> HeadSession::nodePicture(int node, const wire::PictureHeader& header, ByteBuffer rows) {
     if (!sendsPictures_) return Error{"it sent a picture that nobody asked for"};
-    auto done = pictures_.part(node, header, std::move(rows));
+    auto placed = placeOnWall(plan_.nodes[static_cast<size_t>(node)], header, std::move(rows));
+    auto done = placed ? pictures_.part(node, placed->header, std::move(placed->rows)) : Result<void>(placed.error());
     output_->waitForRoom();
     return done;
 }

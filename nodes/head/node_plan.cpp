@@ -211,6 +211,7 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
         return other.node != node.node && (bothHere || (other.reach == node.reach && other.where == node.where));
     });
     setup.pass = node.pass;
+    setup.way = node.way;
     setup.screen = node.screen;
     setup.collector = node.collector;
     setup.composition = nameOf(node.composition.value_or(compositor::Strategy::Serial));

@@ -50,6 +50,8 @@ struct NodePlan {
     bool answers = true; // what programs read of windows
     TileRegion region;
     std::optional<Viewport> area; // instead of tiles: of the picture
+    std::optional<Viewport> shown; // where the wall shows its area, if not there
+    Zoom way; // its pictures travel smaller by this, at most 1; as large as they are shown they are made by who shows them
     int chunkQueue = -1; // its share of the draws moves by this one of SessionPlan::chunkQueues; -1: it stays
     int queue = -1; // its area moves by this one of SessionPlan::queues; -1: it stays
     std::optional<ScreenView> screen; // of a room

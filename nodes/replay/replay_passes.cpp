@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "gl_opcodes.hpp"
-#include "nodes/replay/scale_picture.hpp"
+#include "nodes/pictures/scale_picture.hpp"
 #include "nodes/replay/pass_place.hpp"
 #include "nodes/replay/replay.hpp"
 

@@ -5,7 +5,8 @@
 
 Without --files: all of configs/; with --shared also the example files beside the tree (or in MURAL_SHARED), when they are
 there. A file without stereo shows, over every part of the wall that it draws, exactly the native picture: 0 pixels differ.
-Screens at angles are laid flat for that (passes.py looks into rooms). What is zoomed must be near the native picture, and differ from it. Of one with stereo the picture is put together from the runs of each eye alone, and compared with that.
+Screens at angles are laid flat for that (passes.py looks into rooms). What is zoomed must be near the native picture, and differ from it; what frames make smaller on their way, or show
+elsewhere, must be the native picture made so. Of one with stereo the picture is put together from the runs of each eye alone, and compared with that.
 """
 
 import argparse
@@ -24,6 +25,7 @@ PROGRAM = "fixed_lighting"
 FRAMES = 3
 ZOOMED_MEAN = 12  # of half the size; a picture that is a few pixels off, or black, differs by more
 REDUCED_MEAN = 0.1  # of one that was drawn larger, from the native picture that was drawn so and reduced; a pixel off is 1 and more
+WAY_MOST = 2  # of values that were rounded four times: pixels, and their weights, in 256ths; a part that is a pixel off differs by more
 SKIPPED = 77
 
 
@@ -133,6 +135,53 @@ def reduced(picture, times):
     return width, height, rows
 
 
+def pixels_of(area, width, height):
+    """x0, x1, and rows from the top, of a part of the picture."""
+    x, y, w, h = area
+    return int(x * width + 1e-6), int((x + w) * width + 1e-6), height - int((y + h) * height + 1e-6), height - int(y * height + 1e-6)
+
+
+def resized(lines, size):
+    """Rows of values (3 per pixel) of another size: the mean of what a pixel covers where it is smaller, else linear between the middles of pixels."""
+    def weights(count, wanted):
+        by = count / wanted
+        for i in range(wanted):
+            if by <= 1:
+                at = (i + 0.5) * by - 0.5
+                low = int(at // 1)
+                yield [(min(max(low, 0), count - 1), 1 - (at - low)), (min(max(low + 1, 0), count - 1), at - low)]
+            else:
+                begin, end = i * by, (i + 1) * by
+                yield [(min(p, count - 1), (min(p + 1, end) - max(p, begin)) / by) for p in range(int(begin), min(int(end) + 1, count))]
+    width, height = size
+    columns = list(weights(len(lines[0]) // 3, width))
+    narrow = [[sum(line[3 * p + c] * w for p, w in column) for column in columns for c in range(3)] for line in lines]
+    return [[sum(narrow[p][i] * w for p, w in row) for i in range(3 * width)] for row in weights(len(lines), height)]
+
+
+def of_frames(said):
+    """Parts of the wall that frames have made smaller on their way, or show elsewhere: area, size on the way, where it is shown."""
+    found = []
+    for pass_text, area, shown in re.findall(r"node \d+ \(local\) draws for channel (.*?)part \[ ([^]]+) \] of the wall(?:, shown in \[ ([^]]+) \])?", said):
+        way = re.search(r"sent (\S+) by (\S+) times as large", pass_text)
+        if way or shown:
+            numbers = lambda text: tuple(float(v) for v in text.split())
+            found.append((numbers(area), tuple(float(v) for v in way.groups()) if way else (1, 1), numbers(shown or area)))
+    return found
+
+
+def way_difference(native, shown, area, way, place):
+    """The largest difference of values from the native picture, made smaller and larger as the frame says."""
+    width, height, rows = native
+    x0, x1, y0, y1 = pixels_of(area, width, height)
+    lines = [rows[y][3 * x0:3 * x1] for y in range(y1 - 1, y0 - 1, -1)]  # upwards, as what is rounded is
+    small = (max(1, int((x1 - x0) * way[0] + 0.5)), max(1, int((y1 - y0) * way[1] + 0.5)))
+    sent = [[int(v + 0.5) for v in line] for line in resized(lines, small)] if small != (x1 - x0, y1 - y0) else lines
+    x0, x1, y0, y1 = pixels_of(place, width, height)
+    expected = resized(sent, (x1 - x0, y1 - y0))
+    return max(abs(e - s) for line, y in zip(expected, range(y1 - 1, y0 - 1, -1)) for e, s in zip(line, shown[2][y][3 * x0:3 * x1]))
+
+
 def side_by_side(left, right):
     width, height = left[0], left[1]
     half = (width + 1) // 2
@@ -151,7 +200,9 @@ def check(run, path, native):
     """None, or what is wrong; and a line about what was seen."""
     shown, said = run.picture(["--config", path, "--here", "--frusta", "program"])
     told = re.findall(r"node \d+ \(local\) draws for channel (.*?)part \[ (\S+) (\S+) (\S+) (\S+) \]", said)
-    nodes = [node[1:] for node in told if " zoom " not in node[0]]
+    sent = of_frames(said)
+    nodes = [node[1:] for node in told if " zoom " not in node[0] and "times as large" not in node[0]]
+    nodes = [node for node in nodes if not any(place != area and tuple(float(v) for v in node) == area for area, _, place in sent)]
     scaled = [(tuple(float(v) for v in node[1:]), tuple(float(v) for v in re.search(r" zoom (\S+) ([\d.]+)", node[0]).groups())) for node in told if " zoom " in node[0]]
     areas = [tuple(float(v) for v in node) for node in nodes]
     zoomed = ""
@@ -168,6 +219,11 @@ def check(run, path, native):
         if mean > REDUCED_MEAN:
             return "zoomed, the part %s differs by %.3f of 255 in the mean from the native picture drawn larger" % (area, mean), ""
         zoomed += ", by %.3f from one that is drawn larger" % mean
+    for area, way, place in sent if " eye" not in said else []:
+        most = way_difference(native, shown, area, way, place)
+        if most > WAY_MOST:
+            return "the part %s, sent %g by %g times as large, differs by %.2f of 255 from that of the native picture" % (place, *way, most), ""
+        zoomed += ", what frames made smaller by at most %.2f of 255 from the native picture made so" % most
     if not told:
         return "no node is told of", ""
     # Antialiased, or every nth pixel: as the short form draws it.
@@ -188,6 +244,10 @@ def check(run, path, native):
         against += " for both eyes"
         if flat[2] != expected[2]:
             expected, areas, shown = side_by_side(expected, expected), [(0, 0, 1, 1)], flat
+            if sent:  # in halves of the picture: near it
+                mean = mean_difference(expected, shown, (0, 0, 1, 1))
+                about = "%d nodes, pictures that frames make smaller among them: by %.2f of 255 in the mean from %s" % (len(told), mean, against)
+                return (None if mean < ZOOMED_MEAN else about), about
         else:
             shown = flat
     wrong, outside = difference(expected, shown, areas)

@@ -315,13 +315,52 @@ TEST(ConfigPlan, whatIsNotZoomedIsSaid) {
 
 // What a file says without effect is said, with its place and what to do.
 TEST(ConfigPlan, fieldsWithoutEffectAreSaid) {
-    auto plan = planOfText("load_equalizer { mode 2D } compound { viewport [ 0 0 .5 1 ] }\ncompound { channel \"b\" viewport [ .5 0 .5 1 ] outputframe { zoom [ .5 .5 ] } }");
+    auto plan = planOfText("load_equalizer { mode 2D } compound { viewport [ 0 0 .5 1 ] }\ncompound { channel \"b\" viewport [ .5 0 .5 1 ] framerate_equalizer { } outputframe { } }");
     ASSERT_TRUE(plan) << plan.error().message;
     ASSERT_EQ(plan->warnings.size(), 2u) << plan->warnings.front();
     EXPECT_NE(plan->warnings[0].find("config_plan_test.eqc:4:47: load_equalizer has no effect"), std::string::npos) << plan->warnings[0];
-    EXPECT_NE(plan->warnings[1].find("config_plan_test.eqc:5:61: zoom has no effect"), std::string::npos) << plan->warnings[1];
+    EXPECT_NE(plan->warnings[1].find("config_plan_test.eqc:5:47: framerate_equalizer has no effect"), std::string::npos) << plan->warnings[1];
     EXPECT_NE(plan->warnings[1].find("; "), std::string::npos) << "a remedy";
     EXPECT_TRUE(planOfText("compound { viewport [ 0 0 .5 1 ] } compound { channel \"b\" viewport [ .5 0 .5 1 ] zoom [ .5 .5 ] outputframe { } }")->warnings.empty()) << "that one has";
+}
+
+// The picture of the second channel is handed on in part: what the screen has drawn is seen around it.
+TEST(ConfigPlan, framesBringPartsToTheWall) {
+    auto plan = planOfText("compound { } compound { channel \"b\" outputframe { viewport [ .5 .5 .5 .5 ] buffer [ COLOR ] } }");
+    ASSERT_TRUE(plan) << plan.error().message;
+    double covered = 0;
+    int others = 0;
+    for (const NodePlan& n : plan->nodes) {
+        covered += n.area->w * n.area->h;
+        EXPECT_FALSE(n.shown);
+        EXPECT_TRUE(n.way.none());
+        for (const NodePlan& o : plan->nodes) EXPECT_TRUE(o.node == n.node || intersect(*n.area, *o.area).empty());
+        others += std::abs(n.area->x - .5) < .01 && std::abs(n.area->y - .5) < .01;
+    }
+    EXPECT_NEAR(covered, 1, 1e-9);
+    EXPECT_EQ(others, 1);
+    EXPECT_EQ(plan->nodes.size(), 3u) << "an L of two rectangles, and the part";
+    EXPECT_FALSE(plan->nodesShowWall);
+    auto same = planOfText("compound { } compound { channel \"b\" outputframe { viewport [ .5 .5 .5 .5 ] } }");
+    ASSERT_TRUE(same) << same.error().message;
+    EXPECT_EQ(same->nodes.size(), 1u) << "with depth, what is there stays, as it is the same";
+}
+
+TEST(ConfigPlan, framesMakePicturesSmallerOnTheirWay) {
+    auto plan = planOfText("compound { viewport [ 0 0 .5 1 ] } compound { channel \"b\" viewport [ .5 0 .5 1 ] outputframe { zoom [ .5 .25 ] } }");
+    ASSERT_TRUE(plan) << plan.error().message;
+    ASSERT_EQ(plan->nodes.size(), 2u);
+    EXPECT_TRUE(plan->nodes[0].way.none());
+    EXPECT_NEAR(plan->nodes[1].way.x, .5, .005) << "in whole pixels of its channel";
+    EXPECT_NEAR(plan->nodes[1].way.y, .25, .005);
+    EXPECT_TRUE(plan->nodes[1].pass.zoom.none()) << "it is drawn as it is";
+    EXPECT_TRUE(plan->warnings.empty());
+    // Ranges that are put together by depth do not fit then.
+    auto ranges = planOfText("buffer [ COLOR DEPTH ] compound { range [ 0 .5 ] } compound { channel \"b\" range [ .5 1 ] outputframe { zoom [ .5 .5 ] } }");
+    ASSERT_TRUE(ranges) << ranges.error().message;
+    for (const NodePlan& n : ranges->nodes) EXPECT_TRUE(n.way.none());
+    ASSERT_EQ(ranges->warnings.size(), 1u);
+    EXPECT_NE(ranges->warnings[0].find(".eqc:4:"), std::string::npos) << ranges->warnings[0];
 }
 
 TEST(ConfigPlan, quadBufferedPairsHaveAFallback) {
