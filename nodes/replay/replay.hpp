@@ -352,6 +352,7 @@ private:
         bool debugs = false;  // the program has asked for a debug context
         bool listens = false; // the driver's messages go there
         bool lost = false;    // the driver has reset it
+        bool heldBack = false; // not flushed when the program gives it up
         uint32_t errorsTold = 0; // to the program, by its own GL
         std::unordered_map<GLuint, QueryInfo> queries; // by the program's name
         std::vector<AskedAhead> askedAhead;
@@ -654,7 +655,7 @@ private:
     // replay_front.cpp
     [[nodiscard]] bool hasTwoSurfaces(const Window* w) const;
     gl::Surface* surfaceOf(Window* w, GLenum buffer);
-    bool bindSurfaces();
+    bool bindSurfaces(gl::HeldBack heldBack = gl::HeldBack::Flushed);
     void drawBufferOfWindow(GLenum buffer);
     void readBufferOfWindow(GLenum buffer);
     void buffersChanged(GLenum drawnBefore);

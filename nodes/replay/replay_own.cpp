@@ -5,6 +5,7 @@
 #include "nodes/replay/pass_place.hpp"
 #include "nodes/replay/replay.hpp"
 #include "nodes/replay/window_use.hpp"
+#include "streamcodec/context_flags.hpp"
 #include "streamcodec/sizes/vertex_types.hpp"
 
 namespace mural {
@@ -116,6 +117,7 @@ bool Replay::ownCreateContext(Args& in) {
     wish.core = profile & GL_CONTEXT_CORE_PROFILE_BIT;
     wish.forwardCompatible = flags & GL_CONTEXT_FLAG_FORWARD_COMPATIBLE_BIT;
     wish.debug = flags & GL_CONTEXT_FLAG_DEBUG_BIT;
+    c->heldBack = flags & wire::kKeepsUnflushed;
     wish.robust = flags & GL_CONTEXT_FLAG_ROBUST_ACCESS_BIT;
     wish.tellsReset = true; // a node wants to know, whatever the program asked for
     wish.surface = surfaceConfig(*config, 1, 1);
@@ -147,6 +149,8 @@ bool Replay::ownMakeCurrent(Args& in) {
         return it == client.windows.end() ? nullptr : it->second.get();
     };
     const auto it = client.contexts.find(context);
+    // What the thread gives up is flushed, unless the program wants it not to be (KHR_context_flush_control).
+    if (s_->context && s_->context == bound_ && !s_->context->heldBack && gl.glFlush) gl.glFlush();
     s_->context = it == client.contexts.end() ? nullptr : it->second.get();
     s_->draw = windowOf(draw);
     s_->read = windowOf(read);
