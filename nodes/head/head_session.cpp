@@ -105,6 +105,7 @@ HeadSession::HeadSession(SessionConfig config,
     output.saveFrames = config_.saveFrames;
     output.lastFrame = config_.frames;
     output.toNativeWindows = config_.display == Display::App;
+    output.pairs = plan_.wall.stereo == StereoMode::Quad;
     output.openWindow = options_.openWindow;
     if (headShowsWall(config_, plan_)) output.openWall = options_.openWall;
     output.done = [this](uint32_t client, uint32_t frame) { frames_.pictureReleased(client, frame); };
