@@ -47,7 +47,8 @@ std::string nameOf(const config::ResolvedChannel& channel, Index index) { return
 
 class Planner {
 public:
-    Planner(const LoadedConfig& loaded, const ConfigWishes& wishes) : config_(loaded.resolved), file_(loaded.diagnostics.file()), wishes_(wishes) {}
+    // only: plans this canvas, after `nodesBefore` nodes of others.
+    Planner(const LoadedConfig& loaded, const ConfigWishes& wishes, Index only = kNone, int nodesBefore = 0) : config_(loaded.resolved), file_(loaded.diagnostics.file()), wishes_(wishes), only_(only), nodesBefore_(nodesBefore) {}
 
     Result<SessionPlan> plan() {
         if (auto chosen = chooseLayouts(); !chosen) return chosen.error();
@@ -66,18 +67,29 @@ public:
 
     compound::PixelSize wallSize() {
         if (!chooseLayouts()) return {0, 0};
-        const compound::DisplaySizes sizes = compound::displaySizes(config_);
-        for (const config::ResolvedCanvas& canvas : config_.canvases) {
-            if (!wishes_.canvas.empty() && canvas.name != wishes_.canvas) continue;
-            for (const Index s : canvas.segments) {
-                const config::ResolvedSegment& segment = config_.segments[at(s)];
-                if (segment.channel == kNone || segment.viewport.empty()) continue;
-                const PixelViewport& pixels = sizes.channels[at(segment.channel)];
-                return {static_cast<int32_t>(std::lround(pixels.w / segment.viewport.w)), static_cast<int32_t>(std::lround(pixels.h / segment.viewport.h))};
-            }
+        for (size_t c = 0; c < config_.canvases.size(); ++c) {
+            if (!wishes_.canvas.empty() && config_.canvases[c].name != wishes_.canvas) continue;
+            if (const compound::PixelSize size = sizeOf(static_cast<Index>(c)); size.w > 0) return size;
         }
         return {0, 0};
     }
+
+    // Of a canvas, by the channel of its first segment that has one.
+    [[nodiscard]] compound::PixelSize sizeOf(Index canvas) const {
+        if (canvas == kNone) return {0, 0};
+        const compound::DisplaySizes sizes = compound::displaySizes(config_);
+        for (const Index s : config_.canvases[at(canvas)].segments) {
+            const config::ResolvedSegment& segment = config_.segments[at(s)];
+            if (segment.channel == kNone || segment.viewport.empty()) continue;
+            const PixelViewport& pixels = sizes.channels[at(segment.channel)];
+            return {static_cast<int32_t>(std::lround(pixels.w / segment.viewport.w)), static_cast<int32_t>(std::lround(pixels.h / segment.viewport.h))};
+        }
+        return {0, 0};
+    }
+
+    // Those that show something, the planned one among them. After plan().
+    [[nodiscard]] const std::set<Index>& canvases() const { return canvases_; }
+    [[nodiscard]] Index canvas() const { return canvas_; }
 
 private:
     Result<void> chooseLayouts() {
@@ -133,17 +145,17 @@ private:
         return segment == kNone ? kNone : config_.segments[at(segment)].canvas;
     }
 
-    // Each canvas is a wall of its own, and the session shows one.
+    // Each canvas is a wall of its own.
     Result<void> chooseCanvas() {
-        std::set<Index> canvases;
+        std::set<Index>& canvases = canvases_;
         for (const Draw& d : draws_) canvases.insert(canvasOf(d));
+        if (only_ != kNone) canvases = {only_};
         Index chosen = canvases.empty() ? kNone : *canvases.begin();
         if (!wishes_.canvas.empty()) {
             const auto named = std::find_if(canvases.begin(), canvases.end(), [&](Index c) { return c != kNone && config_.canvases[at(c)].name == wishes_.canvas; });
             if (named == canvases.end()) return Error{"--canvas \"" + wishes_.canvas + "\": " + file_ + " shows nothing on a canvas of this name; mural config print shows them"};
             chosen = *named;
-        } else if (canvases.size() > 1) {
-            plan_.warnings.push_back(file_ + ": of its " + std::to_string(canvases.size()) + " canvases the first is shown; --canvas NAME shows another");
+            canvases = {chosen};
         }
         std::erase_if(draws_, [&](const Draw& d) { return canvasOf(d) != chosen; });
         canvas_ = chosen;
@@ -502,7 +514,7 @@ private:
             const std::string pass = describe(n.pass);
             char area[96];
             std::snprintf(area, sizeof area, "%.9g %.9g %.9g %.9g", n.area->x, n.area->y, n.area->w, n.area->h);
-            plan_.explain.push_back("node " + std::to_string(n.node) + " (" + n.where + ") draws for channel \"" + nameOf(config_.channels[at(channels_[i])], channels_[i]) + "\" " +
+            plan_.explain.push_back("node " + std::to_string(nodesBefore_ + n.node) + " (" + n.where + ") draws for channel \"" + nameOf(config_.channels[at(channels_[i])], channels_[i]) + "\" " +
                                     (pass.empty() ? "" : pass + ", ") + onItsWay(n) + "the part [ " + area + " ] of the wall" + shownElsewhere(n));
         }
     }
@@ -523,6 +535,9 @@ private:
     const ResolvedConfig& config_;
     const std::string file_;
     const ConfigWishes& wishes_;
+    const Index only_;
+    const int nodesBefore_;
+    std::set<Index> canvases_; // that show something, or the one that is wanted
     FrameInput input_;
     std::vector<Draw> draws_;
     std::vector<int> pictures_;   // of each draw
@@ -538,8 +553,76 @@ private:
 
 } // namespace
 
+namespace {
+
+std::string nameOf(const ResolvedConfig& config, Index canvas) {
+    const std::string& name = config.canvases[at(canvas)].name;
+    return "canvas " + (name.empty() ? std::to_string(canvas) : "\"" + name + "\"");
+}
+
+// What is planned for another canvas, behind what there is: its nodes draw the program's picture in its pixels.
+void add(SessionPlan& plan, SessionPlan other, CanvasPlan canvas) {
+    const auto nodes = static_cast<int>(plan.nodes.size()), queues = static_cast<int>(plan.queues.size()), chunkQueues = static_cast<int>(plan.chunkQueues.size());
+    int pictures = picturesOf(plan.wall);
+    for (const CanvasPlan& c : plan.canvases) pictures = std::max(pictures, picturesOf(c.wall));
+    canvas.wall = std::move(other.wall);
+    canvas.nodesShowWall = other.nodesShowWall;
+    for (WallPart& part : canvas.wall.parts) part.firstPicture += pictures;
+    for (NodePlan& node : other.nodes) {
+        node.node += nodes;
+        node.collector += nodes;
+        node.canvas = static_cast<int>(plan.canvases.size()) + 1;
+        node.picture += pictures;
+        node.answers = false;
+        if (node.queue >= 0) node.queue += queues;
+        if (node.chunkQueue >= 0) node.chunkQueue += chunkQueues;
+        node.pass.zoom = compose(node.pass.zoom, canvas.shown);
+        node.pass.zoom = {std::min(node.pass.zoom.x, kMostZoom), std::min(node.pass.zoom.y, kMostZoom)};
+        node.pass.shown = canvas.shown;
+        if (node.window && node.window->asOnWall) node.window->x += canvas.offsetX;
+        plan.nodes.push_back(std::move(node));
+    }
+    std::ranges::move(other.queues, std::back_inserter(plan.queues));
+    std::ranges::move(other.chunkQueues, std::back_inserter(plan.chunkQueues));
+    std::ranges::move(other.explain, std::back_inserter(plan.explain));
+    std::ranges::move(other.warnings, std::back_inserter(plan.warnings));
+    if (!plan.eyeBase) plan.eyeBase = other.eyeBase, plan.focusDistance = other.focusDistance;
+    plan.canvases.push_back(std::move(canvas));
+}
+
+void addCanvases(const LoadedConfig& loaded, const ConfigWishes& wishes, const Planner& first, SessionPlan& plan) {
+    const compound::PixelSize own = first.sizeOf(first.canvas());
+    int offsetX = wishes.width > 0 ? wishes.width : own.w;
+    for (const Index c : first.canvases()) {
+        if (c == first.canvas() || c == kNone) continue;
+        const std::string name = nameOf(loaded.resolved, c);
+        Planner planner(loaded, wishes, c, static_cast<int>(plan.nodes.size()));
+        const compound::PixelSize size = planner.sizeOf(c);
+        auto planned = planner.plan();
+        if (!planned || size.w <= 0 || own.w <= 0) {
+            plan.warnings.push_back(name + " is not shown: " + (planned ? "its size is not known; give its channels a viewport in pixels" : planned.error().message));
+            continue;
+        }
+        CanvasPlan canvas;
+        canvas.name = loaded.resolved.canvases[at(c)].name.empty() ? std::to_string(c) : loaded.resolved.canvases[at(c)].name;
+        canvas.shown = {static_cast<double>(size.w) / own.w, static_cast<double>(size.h) / own.h};
+        if (canvas.shown.x > kMostZoom || canvas.shown.y > kMostZoom) {
+            plan.warnings.push_back(name + " has more than " + std::to_string(static_cast<int>(kMostZoom)) + " times the pixels of the first one in a direction; it is shown with so many; --canvas shows it alone");
+            canvas.shown = {std::min(canvas.shown.x, kMostZoom), std::min(canvas.shown.y, kMostZoom)};
+        }
+        canvas.offsetX = offsetX;
+        offsetX += static_cast<int>(std::lround(canvas.shown.x * (wishes.width > 0 ? wishes.width : own.w)));
+        plan.explain.push_back(name + " shows the program's picture, too, in " + std::to_string(size.w) + "x" + std::to_string(size.h) + " pixels where the first has " + std::to_string(own.w) + "x" + std::to_string(own.h));
+        add(plan, std::move(*planned), std::move(canvas));
+    }
+}
+
+} // namespace
+
 Result<SessionPlan> planOf(const LoadedConfig& loaded, const ConfigWishes& wishes) {
-    auto plan = Planner(loaded, wishes).plan();
+    Planner planner(loaded, wishes);
+    auto plan = planner.plan();
+    if (plan) addCanvases(loaded, wishes, planner, *plan);
     if (plan) std::ranges::copy(fieldsWithoutEffect(loaded.diagnostics), std::back_inserter(plan->warnings));
     return plan;
 }

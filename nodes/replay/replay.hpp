@@ -612,7 +612,7 @@ private:
     [[nodiscard]] bool mayRead(const Window& w, bool deep) const;
     // replay_passes.cpp
     [[nodiscard]] bool hasKernel() const { return config_.pass.kernelWidth * config_.pass.kernelHeight > 1; }
-    [[nodiscard]] bool drawsOtherPixels() const { return hasKernel() || !config_.pass.zoom.none(); } // than its part of the window has
+    [[nodiscard]] bool drawsOtherPixels() const { return hasKernel() || !config_.pass.zoom.none() || !config_.pass.shown.none(); } // than its part of the window has
     // Pixels that are brought from other tiles, for copies, are those of the pass that answers.
     [[nodiscard]] bool copiesOthers() const { return !config_.answers && !drawsOtherPixels() && !takesRanges(); }
     [[nodiscard]] bool interleaves(const Window* w) const { return drawsOtherPixels() && w && !w->plain; }

@@ -245,8 +245,8 @@ bool Replay::ownSwap(Args& in, bool front) {
         if (takesRanges()) rangeDrawn(w);
         f.notSplit = takesRanges() && !w.range.wasSplit;
         f.config = w.config;
-        f.region = drawsOtherPixels() && !w.region.empty() ? inKernel(config_.pass, w.part) : regionOf(w, front);
-        f.picture = drawsOtherPixels() ? inKernel(config_.pass, w.whole) : w.whole;
+        f.region = drawsOtherPixels() && !w.region.empty() ? inShown(config_.pass, w.part) : regionOf(w, front);
+        f.picture = drawsOtherPixels() ? inShown(config_.pass, w.whole) : w.whole;
         f.keepsPicture = keepsTurn(w);
         f.areas = moves() ? w.moving.areas->number : 0;
         f.shares = w.range.drawnBy;
@@ -257,7 +257,7 @@ bool Replay::ownSwap(Args& in, bool front) {
         // The thread that swaps need not be the one that has drawn: GLX takes any window.
         if (bound_ && &w == boundDraw_ && w.surface) ours = &w, f.pixels = [this, &w, front](const PixelViewport& r) {
             ContextState* const own = std::exchange(c_, bound_);
-            const bool zoomed = !config_.pass.zoom.none() && !w.plain && !r.empty();
+            const bool zoomed = (w.plain ? Zoom{} : config_.pass.zoom) != config_.pass.shown && !r.empty();
             const std::byte* pixels = zoomed ? readScaled(w, r, front) : hasKernel() && w.plain && !r.empty() ? readEveryNth(w, r, front) : readShown(w, r, front);
             c_ = own;
             return pixels;

@@ -12,6 +12,7 @@ elsewhere, must be the native picture made so. Of one with stereo the picture is
 import argparse
 import glob
 import json
+import math
 import os
 import re
 import subprocess
@@ -25,6 +26,8 @@ PROGRAM = "fixed_lighting"
 FRAMES = 3
 ZOOMED_MEAN = 12  # of half the size; a picture that is a few pixels off, or black, differs by more
 REDUCED_MEAN = 0.1  # of one that was drawn larger, from the native picture that was drawn so and reduced; a pixel off is 1 and more
+CANVAS_SIZE = "320x240"  # of the program's picture, so that those of canvases are whole parts or multiples of it
+CANVAS_MEAN = 3  # of a canvas with pixels of its own, from a native window of its size (0.97); a pixel off is 13 and more, the native picture made smaller 4.5
 WAY_MOST = 2  # of values that were rounded four times: pixels, and their weights, in 256ths; a part that is a pixel off differs by more
 SKIPPED = 77
 
@@ -73,7 +76,7 @@ class Run:
     def picture(self, options, times=(1, 1)):
         """The last frame, and what was said; of a program with a window so many times as large. Raises RuntimeError with the program's words."""
         a = self.arguments
-        size = "x".join(str(int(length) * by) for length, by in zip(a.size.split("x"), times))
+        size = "x".join(str(math.ceil(int(length) * by - 0.5)) for length, by in zip(a.size.split("x"), times))
         with tempfile.TemporaryDirectory(prefix="mural-configurations.") as folder:
             out = os.path.join(folder, "out")
             command = [os.path.join(a.build, "bin", "mural"), "run", "--size", size, "--display", "none", "--explain",
@@ -85,6 +88,7 @@ class Run:
             files = sorted(glob.glob(os.path.join(out, "*.png")))
             if done.returncode != 0 or not files:
                 raise RuntimeError("status %d, %d pictures: %s" % (done.returncode, len(files), said.strip().splitlines()[-1:]))
+            self.canvases = {os.path.basename(os.path.dirname(path))[len("canvas."):]: read_png(path) for path in sorted(glob.glob(os.path.join(out, "canvas.*", "*.png")))}
             return read_png(files[-1]), said
 
 
@@ -196,9 +200,57 @@ def side_by_side(left, right):
     return width, height, rows
 
 
+def other_canvases(said):
+    """Of each canvas beside the first: its name, how much larger it is, and the first of its nodes."""
+    found = []
+    for name, w, h, own_w, own_h in re.findall(r'canvas "?([^" ]+)"? shows the program\'s picture, too, in (\d+)x(\d+) pixels where the first has (\d+)x(\d+)', said):
+        after = said[said.index("canvas \"%s\" shows" % name if "canvas \"%s\" shows" % name in said else "canvas %s shows" % name):]
+        first = re.search(r"node (\d+) \(local\) draws", after)
+        found.append((name, (int(w) / int(own_w), int(h) / int(own_h)), int(first.group(1))))
+    return found
+
+
+def of_other_canvas(line, said):
+    node = re.search(r"node (\d+) \(local\) draws", line)
+    others = other_canvases(said)
+    return bool(node and others and int(node.group(1)) >= min(first for _, _, first in others))
+
+
+def check_canvases(run, path, pictures, said):
+    """What the other canvases show is what the program draws natively into a window of their size."""
+    about = ""
+    for name, times, _ in other_canvases(said):
+        if name not in pictures:
+            return "", "canvas %s shows nothing" % name
+    if not other_canvases(said):
+        return "", None
+    run = Run(argparse.Namespace(**{**vars(run.arguments), "size": CANVAS_SIZE}), run.display)
+    run.picture(["--config", path, "--here", "--frusta", "program"])
+    pictures = run.canvases
+    for name, times, _ in other_canvases(said):
+        shown = pictures[name]
+        expected = run.picture([], times)[0]
+        if (shown[0], shown[1]) != (expected[0], expected[1]):
+            return "", "canvas %s has %dx%d pixels instead of %dx%d" % (name, shown[0], shown[1], expected[0], expected[1])
+        if " eye" in said or "of each" in said or "sample" in said:
+            about += ", canvas %s has its picture" % name if any(any(row) for row in shown[2]) else ""
+            continue
+        areas = [tuple(float(v) for v in area) for area in re.findall(r"node \d+ \(local\) draws for channel .*?part \[ (\S+) (\S+) (\S+) (\S+) \]", said[said.index("canvas"):])]
+        wrong, _ = difference(expected, shown, areas)
+        mean = mean_difference(expected, shown, (0, 0, 1, 1))
+        if mean > CANVAS_MEAN:
+            return "", "canvas %s differs by %.2f of 255 in the mean from the native picture of its size" % (name, mean)
+        about += ", canvas %s: %d of %d pixels differ from the native picture of its size, by %.3f of 255 in the mean" % (name, wrong, expected[0] * expected[1], mean)
+    return about, None
+
+
 def check(run, path, native):
     """None, or what is wrong; and a line about what was seen."""
     shown, said = run.picture(["--config", path, "--here", "--frusta", "program"])
+    about_canvases, wrong = check_canvases(run, path, run.canvases, said)
+    if wrong:
+        return wrong, ""
+    said = "\n".join(line for line in said.splitlines() if not of_other_canvas(line, said))
     told = re.findall(r"node \d+ \(local\) draws for channel (.*?)part \[ (\S+) (\S+) (\S+) (\S+) \]", said)
     sent = of_frames(said)
     nodes = [node[1:] for node in told if " zoom " not in node[0] and "times as large" not in node[0]]
@@ -252,7 +304,7 @@ def check(run, path, native):
             shown = flat
     wrong, outside = difference(expected, shown, areas)
     total = native[0] * native[1]
-    about = "%d nodes, %d of %d pixels differ from %s, %d outside of all parts%s" % (len(told), wrong, total - outside, against, outside, zoomed)
+    about = "%d nodes, %d of %d pixels differ from %s, %d outside of all parts%s%s" % (len(told), wrong, total - outside, against, outside, zoomed, about_canvases)
     return (None if wrong == 0 else about), about
 
 

@@ -363,6 +363,42 @@ TEST(ConfigPlan, framesMakePicturesSmallerOnTheirWay) {
     EXPECT_NE(ranges->warnings[0].find(".eqc:4:"), std::string::npos) << ranges->warnings[0];
 }
 
+// Each canvas has nodes of its own, that draw the program's picture in its pixels.
+TEST(ConfigPlan, canvasesAreShownTogether) {
+    const SessionPlan plan = planOfFile("wall-and-monitor.eqc");
+    ASSERT_EQ(plan.nodes.size(), 3u);
+    ASSERT_EQ(plan.canvases.size(), 1u);
+    EXPECT_EQ(plan.canvases[0].name, "monitor");
+    EXPECT_EQ(plan.canvases[0].shown, (Zoom{.5, .5}));
+    EXPECT_EQ(plan.canvases[0].offsetX, 1280) << "beside the wall, where all are on one screen";
+    EXPECT_EQ(picturesOf(plan.wall), 2);
+    EXPECT_EQ(plan.canvases[0].wall.parts.front().firstPicture, 2) << "behind those of the wall";
+    for (const NodePlan& n : plan.nodes) {
+        const bool other = n.node == 2;
+        EXPECT_EQ(n.canvas, other ? 1 : 0);
+        EXPECT_EQ(n.answers, !other) << "programs read the first one's pixels";
+        EXPECT_EQ(n.pass.shown, (other ? Zoom{.5, .5} : Zoom{}));
+        EXPECT_EQ(n.pass.zoom, n.pass.shown);
+        EXPECT_EQ(n.collector, n.node);
+        EXPECT_EQ(n.picture, n.node);
+    }
+    SessionConfig config;
+    config.display = Display::Windows;
+    EXPECT_TRUE(showsWall(config, plan, plan.nodes[2]));
+    EXPECT_FALSE(headShowsCanvas(config, plan.canvases[0]));
+    config.display = Display::App;
+    EXPECT_TRUE(headShowsCanvas(config, plan.canvases[0])) << "the program has one window";
+    config.display = Display::None;
+    EXPECT_FALSE(headTakesPictures(config, plan));
+
+    const auto loaded = load("wall-and-monitor.eqc");
+    auto named = planOf(loaded, {"me", true, "monitor", {}});
+    ASSERT_TRUE(named);
+    EXPECT_TRUE(named->canvases.empty()) << "one that is named is shown alone";
+    EXPECT_EQ(named->nodes.size(), 1u);
+    EXPECT_TRUE(named->nodes[0].pass.shown.none());
+}
+
 TEST(ConfigPlan, quadBufferedPairsAreTheHeadsToShow) {
     const auto path = ownFile("config_plan_quad.eqc");
     std::ofstream(path) << "#Equalizer 1.2 ascii\nserver { config { appNode { pipe { window { viewport [ 0 0 320 200 ] attributes { hint_stereo ON } channel { name \"a\" } } } }\n"
@@ -388,7 +424,7 @@ TEST(ConfigPlan, everyExampleFileCanBePlanned) {
         EXPECT_TRUE(plan.ok()) << (plan.ok() ? "" : plan.error().message);
         if (!plan) continue;
         for (const NodePlan& n : plan->nodes) {
-            EXPECT_LT(n.picture, picturesOf(plan->wall)) << file;
+            EXPECT_LT(n.picture, n.canvas == 0 ? picturesOf(plan->wall) : picturesOf(plan->canvases[static_cast<size_t>(n.canvas) - 1].wall)) << file;
             EXPECT_EQ(n.reach, NodeReach::SharedMemory) << "--here";
         }
     }
