@@ -51,7 +51,6 @@ struct EglDisplayState {
     bool noConfigContext = false;
     bool surfaceless = false;
     bool colorspace = false;
-    bool flushControl = false; // contexts can be asked not to flush when another one becomes current
     // Measured when the platform is opened.
     int maxSurfaceSize = kMaxSurfaceSize;
     bool doubleBuffered = false;

@@ -76,24 +76,6 @@ private:
     EGLImageKHR handle_;
 };
 
-// The API that is bound, and the current context, are the calling thread's own.
-class EglReader final : public SharedReader {
-public:
-    EglReader(SharedDisplay display, std::unique_ptr<Context> context) : display_(std::move(display)), context_(std::move(context)) {}
-
-    Result<void> enter() override {
-        auto& context = static_cast<EglContext&>(*context_);
-        display_->egl.bindApi(context.api());
-        if (display_->egl.makeCurrent(display_->display, context.dummy(), context.dummy(), context.handle())) return {};
-        return Error{"EGL can't make the context of a second thread current: " + takeEglError(display_->egl) + "; use --readback direct"};
-    }
-    void leave() override { display_->egl.makeCurrent(display_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); }
-
-private:
-    SharedDisplay display_;
-    std::unique_ptr<Context> context_;
-};
-
 std::vector<EGLint> contextAttributes(const ContextConfig& config, const EglDisplayState& display) {
     const VersionRequest request = versionRequest(config);
     std::vector<EGLint> list{EGL_CONTEXT_MAJOR_VERSION, request.major, EGL_CONTEXT_MINOR_VERSION, request.minor};
@@ -118,7 +100,6 @@ std::vector<EGLint> contextAttributes(const ContextConfig& config, const EglDisp
         if (config.tellsReset)
             list.insert(list.end(), {desktop ? EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_KHR : EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT, EGL_LOSE_CONTEXT_ON_RESET_KHR});
     }
-    if (display.flushControl) list.insert(list.end(), {EGL_CONTEXT_RELEASE_BEHAVIOR_KHR, EGL_CONTEXT_RELEASE_BEHAVIOR_NONE_KHR});
     list.push_back(EGL_NONE);
     return list;
 }
@@ -129,8 +110,7 @@ public:
 
     Result<std::unique_ptr<Surface>> createSurface(const SurfaceConfig& wish) override;
     Result<std::unique_ptr<Context>> createContext(const ContextConfig& wish, Context* shareWith) override;
-    Result<std::unique_ptr<SharedReader>> createReader(const ContextConfig& wish, Context& shareWith) override;
-    Result<void> makeCurrent(Context* context, Surface* draw, Surface* read, HeldBack heldBack) override;
+    Result<void> makeCurrent(Context* context, Surface* draw, Surface* read) override;
     [[nodiscard]] std::vector<std::string> imageExtensions() const override;
     Result<std::unique_ptr<Image>> createImage(const ImageSource& source) override;
     Proc getProcAddress(const char* name) override { return throughEpoxy(name, display_->egl.getProcAddress(name)); }
@@ -218,19 +198,10 @@ Result<std::unique_ptr<Context>> EglPlatform::createContext(const ContextConfig&
     return std::unique_ptr<Context>(std::make_unique<EglContext>(display_, handle, api, tellsReset, std::move(dummy)));
 }
 
-Result<std::unique_ptr<SharedReader>> EglPlatform::createReader(const ContextConfig& wish, Context& shareWith) {
-    auto context = createContext(wish, &shareWith);
-    if (!context) return context.error();
-    return std::unique_ptr<SharedReader>(std::make_unique<EglReader>(display_, std::move(*context)));
-}
-
-Result<void> EglPlatform::makeCurrent(Context* context, Surface* draw, Surface* read, HeldBack heldBack) {
+Result<void> EglPlatform::makeCurrent(Context* context, Surface* draw, Surface* read) {
     const EglFunctions& egl = display_->egl;
     auto* wanted = static_cast<EglContext*>(context);
-    if (egl.getCurrentContext() != EGL_NO_CONTEXT) {
-        if (wanted && draw && read && draw != read) finishDrawing(*this);
-        else if (display_->flushControl && heldBack == HeldBack::Flushed) flushDrawing(*this);
-    }
+    if (wanted && draw && read && draw != read && egl.getCurrentContext() != EGL_NO_CONTEXT) finishDrawing(*this);
     // Release acts on the API that is bound, so it must still be the current context's.
     if (wanted) {
         currentApi_ = wanted->api();

@@ -1,5 +1,5 @@
 // Contexts and window-like surfaces of a render node, over EGL (surfaceless), OSMesa or GLX.
-// All calls come from the one thread that replays (one per pipe), but for those of a SharedReader.
+// All calls come from the one thread that replays (one per pipe).
 #pragma once
 
 #include <cstdint>
@@ -77,18 +77,6 @@ struct ImageSource {
     int layer = 0;              // of a 3D texture
 };
 
-// What becomes of commands that the context which was current holds back.
-enum class HeldBack { Flushed, Kept };
-
-// Lets one other thread than the replay's use the objects of a share group: it waits for fences and reads buffers.
-class SharedReader {
-public:
-    virtual ~SharedReader() = default; // by any thread, while it is nowhere entered
-    // From here to leave() the calling thread has a context of that group.
-    virtual Result<void> enter() = 0;
-    virtual void leave() = 0;
-};
-
 class Platform {
 public:
     virtual ~Platform() = default;
@@ -96,8 +84,7 @@ public:
     virtual Result<std::unique_ptr<Context>> createContext(const ContextConfig& config, Context* shareWith) = 0;
     // Null context: release. Null surfaces: surfaceless (or a 1×1 dummy where that is unknown).
     // A surface that is only read from holds all that the contexts of this thread have drawn there.
-    // Kept: drivers that flush with each change (those without KHR_context_flush_control, OSMesa) do so all the same.
-    virtual Result<void> makeCurrent(Context* context, Surface* draw, Surface* read, HeldBack heldBack = HeldBack::Flushed) = 0;
+    virtual Result<void> makeCurrent(Context* context, Surface* draw, Surface* read) = 0;
     // True: a context can draw to one surface and read from another.
     [[nodiscard]] virtual bool readsOtherSurfaces() const { return true; }
     // True: surfaces can have an accumulation buffer.
@@ -105,8 +92,6 @@ public:
     // Extensions of EGL for images that this platform carries out; empty: there are no images.
     [[nodiscard]] virtual std::vector<std::string> imageExtensions() const { return {}; }
     virtual Result<std::unique_ptr<Image>> createImage(const ImageSource& source);
-    // wish: as of `shareWith`. Errors: this platform has all its contexts in one thread.
-    virtual Result<std::unique_ptr<SharedReader>> createReader(const ContextConfig& wish, Context& shareWith);
     // Entry point of all contexts, null when unknown. May be called only while a context is current.
     virtual Proc getProcAddress(const char* name) = 0;
     [[nodiscard]] virtual std::string describe() const = 0; // e.g. "EGL surfaceless, Mesa 22.3.6"

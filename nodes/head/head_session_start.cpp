@@ -32,7 +32,7 @@ const char* whyOwnStreams(const std::string& stream) {
 
 Result<void> HeadSession::bringUp() {
     placement_ = placeOwnThreads(); // before its threads start: they inherit it
-    for (const NodePlan& node : plan_.nodes) nodes_.link(node.node).unpackBy(node.pictureCodec, node.way);
+    for (const NodePlan& node : plan_.nodes) nodes_.link(node.node).unpackBy(node.pictureCodec);
     nodes_.startReading();
     openMulticast();
     if (auto opened = openEconomy(); !opened) return opened;
@@ -230,8 +230,6 @@ void HeadSession::announceReady() {
         }
     }
     for (const std::string& warning : plan_.warnings) control_.say(warning);
-    if (plan_.wall.stereo == StereoMode::Quad && sendsPictures_ && !headShowsWall(config_, plan_))
-        control_.say("both eyes are shown side by side: windows of the wall alone have a buffer for each; add --display windows");
     control_.send({{"event", "ready"}, {"explain", explainLines()}, {"nodes", nodes}});
 }
 

@@ -23,11 +23,8 @@ public:
     // Keeps the picture in the texture.
     Result<void> upload(const Picture& picture);
 
-    enum class Target { Back, BackLeft, BackRight };
-    // Copies it to that buffer of the window, upper left corners together, black around it.
-    Result<void> draw(Target target, int framebufferWidth, int framebufferHeight);
-    // The window has a back buffer for each eye.
-    [[nodiscard]] bool stereo() const;
+    // Copies it to the back buffer, upper left corners together, black around it.
+    Result<void> draw(int framebufferWidth, int framebufferHeight);
 
     void finish(); // waits for the GPU
     [[nodiscard]] const std::string& renderer() const { return renderer_; }

@@ -162,8 +162,7 @@ bool Replay::bindStream(Stream& s) {
     boundRead_ = s.read;
     s.context->draw = s.draw;
     s.context->read = s.read;
-    // Another thread's context: it is still current there, as the one before is in its own.
-    if (!bindSurfaces(gl::HeldBack::Kept)) {
+    if (!bindSurfaces()) {
         c_ = none_.get();
         return true;
     }

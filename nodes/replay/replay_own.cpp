@@ -2,11 +2,9 @@
 #include <cstring>
 #include <utility>
 
-#include "common/clock.hpp"
 #include "nodes/replay/pass_place.hpp"
 #include "nodes/replay/replay.hpp"
 #include "nodes/replay/window_use.hpp"
-#include "streamcodec/context_flags.hpp"
 #include "streamcodec/sizes/vertex_types.hpp"
 
 namespace mural {
@@ -118,7 +116,6 @@ bool Replay::ownCreateContext(Args& in) {
     wish.core = profile & GL_CONTEXT_CORE_PROFILE_BIT;
     wish.forwardCompatible = flags & GL_CONTEXT_FLAG_FORWARD_COMPATIBLE_BIT;
     wish.debug = flags & GL_CONTEXT_FLAG_DEBUG_BIT;
-    c->heldBack = flags & wire::kKeepsUnflushed;
     wish.robust = flags & GL_CONTEXT_FLAG_ROBUST_ACCESS_BIT;
     wish.tellsReset = true; // a node wants to know, whatever the program asked for
     wish.surface = surfaceConfig(*config, 1, 1);
@@ -130,7 +127,6 @@ bool Replay::ownCreateContext(Args& in) {
     c->client = wire::clientOf(stream_);
     c->id = id;
     c->context = std::move(*made);
-    c->wish = wish;
     c->shared = with ? with->shared : std::make_shared<Shared>();
     c->api = static_cast<wire::Api>(api);
     c->version = static_cast<int>(major * 10 + minor);
@@ -151,8 +147,6 @@ bool Replay::ownMakeCurrent(Args& in) {
         return it == client.windows.end() ? nullptr : it->second.get();
     };
     const auto it = client.contexts.find(context);
-    // What the thread gives up is flushed, unless the program wants it not to be (KHR_context_flush_control).
-    if (s_->context && s_->context == bound_ && !s_->context->heldBack && gl.glFlush) gl.glFlush();
     s_->context = it == client.contexts.end() ? nullptr : it->second.get();
     s_->draw = windowOf(draw);
     s_->read = windowOf(read);
@@ -204,7 +198,6 @@ bool Replay::ownWindow(Args& in) {
     std::unique_ptr<gl::Surface> oldFront = std::move(w.front);
     dropFront(w);
     w.surface = std::move(*made);
-    w.readback = {};
     if (bound) {
         boundDraw_ = boundRead_ = nullptr;
         bound_ = nullptr;
@@ -220,7 +213,8 @@ bool Replay::ownWindow(Args& in) {
 void Replay::waitUntilDrawn() {
     constexpr GLuint64 kPatienceNs = 60'000'000'000;
     if (!bound_) return;
-    const GLsync drawn = hasFences(*bound_) ? gl.glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0) : nullptr;
+    const bool fences = bound_->version >= (bound_->api == wire::Api::Desktop ? 32 : 30) && gl.glFenceSync && gl.glClientWaitSync && gl.glDeleteSync;
+    const GLsync drawn = fences ? gl.glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0) : nullptr;
     const GLenum state = drawn ? gl.glClientWaitSync(drawn, GL_SYNC_FLUSH_COMMANDS_BIT, kPatienceNs) : GL_WAIT_FAILED;
     if (drawn) gl.glDeleteSync(drawn);
     const bool done = state == GL_ALREADY_SIGNALED || state == GL_CONDITION_SATISFIED;
@@ -239,14 +233,13 @@ bool Replay::ownSwap(Args& in, bool front) {
     f.frame = frame;
     f.drawnWhole = bound_ && bound_->shared && bound_->shared->allDrawn;
     ++counts_.frames;
-    Window* ours = nullptr; // whose pixels can be had
     if (it != windows.end()) {
         Window& w = *it->second;
         if (takesRanges()) rangeDrawn(w);
         f.notSplit = takesRanges() && !w.range.wasSplit;
         f.config = w.config;
-        f.region = drawsOtherPixels() && !w.region.empty() ? inShown(config_.pass, w.part) : regionOf(w, front);
-        f.picture = drawsOtherPixels() ? inShown(config_.pass, w.whole) : w.whole;
+        f.region = drawsOtherPixels() && !w.region.empty() ? inKernel(config_.pass, w.part) : regionOf(w, front);
+        f.picture = drawsOtherPixels() ? inKernel(config_.pass, w.whole) : w.whole;
         f.keepsPicture = keepsTurn(w);
         f.areas = moves() ? w.moving.areas->number : 0;
         f.shares = w.range.drawnBy;
@@ -255,9 +248,9 @@ bool Replay::ownSwap(Args& in, bool front) {
         if (!front && f.sound) w.frontStaled = false;
         showedUnsound_ = showedUnsound_ || (!f.sound && !w.skipped && w.begun);
         // The thread that swaps need not be the one that has drawn: GLX takes any window.
-        if (bound_ && &w == boundDraw_ && w.surface) ours = &w, f.pixels = [this, &w, front](const PixelViewport& r) {
+        if (bound_ && &w == boundDraw_ && w.surface) f.pixels = [this, &w, front](const PixelViewport& r) {
             ContextState* const own = std::exchange(c_, bound_);
-            const bool zoomed = (w.plain ? Zoom{} : config_.pass.zoom) != config_.pass.shown && !r.empty();
+            const bool zoomed = !config_.pass.zoom.none() && !w.plain && !r.empty();
             const std::byte* pixels = zoomed ? readScaled(w, r, front) : hasKernel() && w.plain && !r.empty() ? readEveryNth(w, r, front) : readShown(w, r, front);
             c_ = own;
             return pixels;
@@ -270,22 +263,9 @@ bool Replay::ownSwap(Args& in, bool front) {
     }
     if (it != windows.end() && bound_) flushIfAsked(*it->second);
     // A frame counts when it is drawn, not when it is queued: pacing and frame rates depend on it.
-    // A picture that is read later comes then, and the frame counts with it.
-    const bool shown = frame != wire::kUnseenFrame;
-    const bool later = shown && ours && readsLater(*ours, f.region);
-    const int64_t beganNs = monotonicNowNs();
-    if (!skips_ && !later) waitUntilDrawn();
+    if (!skips_) waitUntilDrawn();
     tellTroubles();
-    bool read = false;
-    if (f.pixels) f.read = [&]() -> std::unique_ptr<PictureRead> {
-        read = true;
-        std::unique_ptr<PictureRead> picture = later ? readLater(*ours, f.region, front) : nullptr;
-        if (!picture) picture = readAtOnce(f, f.region);
-        if (ours && config_.readback == Readback::Auto) ours->readback.took(monotonicNowNs() - beganNs);
-        return picture;
-    };
-    if (shown) out_.frameDone(f);
-    if (later && !read) waitUntilDrawn(); // nobody has
+    if (frame != wire::kUnseenFrame) out_.frameDone(f);
     answerAskedAhead();
     if (it != windows.end()) turnDrawn(*it->second, front);
     if (it != windows.end() && it->second->front && !front) showBack(*it->second);

@@ -20,8 +20,7 @@ enum class StereoMode {
     SideBySide, // left half and right half, each the whole picture at half its width
     TopBottom,  // left above right, each at half its height
     Left,       // one eye alone: for two sessions, or to look at it
-    Right,
-    Quad // each whole: windows with a buffer for each eye
+    Right
 };
 
 struct RenderPass {
@@ -33,8 +32,6 @@ struct RenderPass {
     int range = 0, ranges = 1;    // which of the nodes that share a frame's draws in their order (sort-last)…
     Range share;                  // …and which part of them it draws
     Zoom zoom;                    // drawn smaller or larger by this, and as large as it is shown before anybody sees it; at most kMostZoom
-
-    Zoom shown;                   // its pictures are larger or smaller than the program's by this: those of another canvas
 
     bool operator==(const RenderPass&) const = default;
 };

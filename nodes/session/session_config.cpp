@@ -32,17 +32,13 @@ template <> struct EnumNames<Frusta> {
 template <> struct EnumNames<Economy> {
     static constexpr std::pair<Economy, const char*> kAll[] = {{Economy::Auto, "auto"}, {Economy::On, "on"}, {Economy::Off, "off"}};
 };
-template <> struct EnumNames<Readback> {
-    static constexpr std::pair<Readback, const char*> kAll[] = {{Readback::Auto, "auto"}, {Readback::Direct, "direct"}, {Readback::Buffer, "buffer"}};
-};
 template <> struct EnumNames<Eye> {
     static constexpr std::pair<Eye, const char*> kAll[] = {{Eye::Cyclop, "cyclop"}, {Eye::Left, "left"}, {Eye::Right, "right"}};
 };
 template <> struct EnumNames<StereoMode> {
     static constexpr std::pair<StereoMode, const char*> kAll[] = {
         {StereoMode::Off, "off"},          {StereoMode::Anaglyph, "anaglyph"}, {StereoMode::SideBySide, "side-by-side"},
-        {StereoMode::TopBottom, "top-bottom"}, {StereoMode::Left, "left"},     {StereoMode::Right, "right"},
-        {StereoMode::Quad, "quad"}};
+        {StereoMode::TopBottom, "top-bottom"}, {StereoMode::Left, "left"},     {StereoMode::Right, "right"}};
 };
 
 template <class Config, class Visitor>
@@ -79,7 +75,6 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("zoomY", c.passes.zoom.y);
     visit("composition", c.composition);
     visit("codec", c.codec);
-    visit("readback", c.readback);
     visit("eyeBase", c.eyeBase);
     visit("focusDistance", c.focusDistance);
     visit("tiling", c.tiling);
@@ -125,8 +120,6 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("shareEnd", s.pass.share.end);
     visit("zoomX", s.pass.zoom.x);
     visit("zoomY", s.pass.zoom.y);
-    visit("shownX", s.pass.shown.x);
-    visit("shownY", s.pass.shown.y);
     visit("eye", s.pass.eye);
     visit("kernelX", s.pass.kernelX, 0);
     visit("kernelY", s.pass.kernelY, 0);
@@ -145,9 +138,6 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("glBackend", s.glBackend);
     visit("sendPictures", s.sendPictures);
     visit("pictureCodec", s.pictureCodec);
-    visit("wayX", s.way.x);
-    visit("wayY", s.way.y);
-    visit("readback", s.readback);
     visit("partCodec", s.partCodec);
     visit("wallWindows", s.wallWindows);
     visit("windowTitle", s.windowTitle);
@@ -336,8 +326,7 @@ Result<NodeSetup> nodeSetupFromJson(const std::string& line) {
     const RenderPass& p = setup->pass;
     if (p.kernelX >= p.kernelWidth || p.kernelY >= p.kernelHeight || p.sample >= p.samples || p.phase >= p.period || p.range >= p.ranges)
         return Error{"node setup: its pass is none of the session's"};
-    if (!isPossible(p.zoom) || !isPossible(p.shown)) return noSuchZoom("node setup");
-    if (!isPossible(setup->way) || setup->way.x > 1 || setup->way.y > 1) return Error{"node setup: the size of its pictures on their way is not above 0, or above 1"};
+    if (!isPossible(p.zoom)) return noSuchZoom("node setup");
     return setup;
 }
 
