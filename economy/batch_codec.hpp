@@ -25,7 +25,7 @@ public:
         pages_.prepare();
     }
 
-    // With its head. Lives until the next call. `plain`: its texts are mostly records that were not looked at (Packer::beginPlain), so it
+    // With its head. Lives until the next call. `plain`: its texts are mostly records that were not looked at (Packer::beginFrame), so it
     // takes a window that has the frames before.
     // Error: no memory.
     Result<std::span<const std::byte>> encode(const SectionBytes& sections, double linkNsPerByte, bool plain = false);

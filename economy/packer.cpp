@@ -49,7 +49,12 @@ inline size_t equalBytes(const std::byte* a, const std::byte* b, size_t sizeByte
 } // namespace
 
 bool Packer::next() {
-    if (plain_) {
+    if (!restPlain_ && news_->many() && cut_.atRecord()) {
+        keepRun();
+        news_->leaveOut(log_->end());
+        restPlain_ = true;
+    }
+    if (restPlain_) {
         const size_t sizeBytes = cut_.passShort();
         asBytes(cut_.at() - sizeBytes, cut_.at());
     }
@@ -68,6 +73,9 @@ void Packer::add(uint32_t stream, std::span<const std::byte> packet, const Walke
     log_ = &history_.log(opened.place);
     index_ = &streams_[opened.place]->items;
     runs_ = &streams_[opened.place]->runs;
+    news_ = &streams_[opened.place]->news;
+    news_->packetBegins(frames_, log_->end());
+    restPlain_ = plain_;
     packet_ = packet;
     nextAt_ = kNowhere;
     first_ = true;
@@ -82,7 +90,9 @@ void Packer::add(uint32_t stream, std::span<const std::byte> packet, const Walke
         if (runOn()) continue;
         keepRun();
         hashed_ = false;
-        place();
+        news_->another(log_->cursor);
+        const bool isNew = !place();
+        if (!piece_.page()) count(isNew);
     }
     keepRun();
     endsInValue_ = cut_.lastOpcode() == wire::kOpBlobBegin || cut_.lastOpcode() == wire::kOpBlobData;
@@ -110,6 +120,7 @@ bool Packer::runOn() {
         run();
     } else {
         ++run_;
+        if (!item.page) news_->found(log.cursor, 1);
         counts_.storeHits += item.page;
         index_->appendAgain(log.end(), log.cursor, item.sizeBytes);
         ++log.cursor;
@@ -152,6 +163,7 @@ bool Packer::runKnown() {
     index_->appendAllAgain(log.end(), from + done, run.items - done, [&](size_t i) { return uint32_t{log.at(from + done + i).sizeBytes}; });
     history_.againAll(log, run.items - done);
     run_ += run.items - done;
+    news_->found(from, run.items - done);
     cut_.passed(run.items - 1, run.sizeBytes - piece_.sizeBytes, log.at(log.end() - 1).sizeBytes);
     openIsKnown_ = open_.items == 0;
     if (openIsKnown_) {
@@ -177,18 +189,25 @@ void Packer::keepRun() {
 
 // Cheapest first: a few words of it changed, what was expected a little later, another place where this
 // and the next came, pages that the nodes have, more words changed. Else it is new.
-void Packer::place() {
+bool Packer::place() {
     const Piece piece = piece_;
-    if (plain_) skipToLike(piece);
-    if (skipTo(piece)) return;
-    if (patch(piece, piece.page() ? cheapPatchOfPage(piece) : kCheapPatchBytes)) return;
-    if (piece.page() && fromStore(true)) return;
-    if (seek()) return;
-    if (piece.page() && fromStore(false)) return;
+    if (restPlain_) skipToLike(piece);
+    if (skipTo(piece)) return true;
+    if (patch(piece, piece.page() ? cheapPatchOfPage(piece) : kCheapPatchBytes)) return true;
+    if (piece.page() && fromStore(true)) return true;
+    if (seek()) return true;
+    if (piece.page() && fromStore(false)) return true;
     // Words of what is no page are guessed: all of them changed cost less than new ones, if this is the place.
     const bool place = !piece.page() && piece.sizeBytes >= ItemIndex::kTellingBytes;
-    if (patch(piece, place ? size_t{piece.sizeBytes} * 2 : mostPatchOfPage(piece))) return;
+    if (patch(piece, place ? size_t{piece.sizeBytes} * 2 : mostPatchOfPage(piece))) return true;
     send(piece);
+    return false;
+}
+
+// A short one was placed.
+void Packer::count(bool isNew) {
+    if (isNew) news_->isNew();
+    else news_->found(log_->cursor - 1, 1);
 }
 
 // Pixels that are new are fewer bytes than pixels that have changed.

@@ -13,6 +13,7 @@
 #include "economy/history.hpp"
 #include "economy/item_index.hpp"
 #include "economy/known_runs.hpp"
+#include "economy/new_records.hpp"
 #include "economy/packet_cut.hpp"
 #include "economy/page_index.hpp"
 #include "economy/word_coder.hpp"
@@ -42,8 +43,11 @@ public:
     // walked: what the packet is made of, where that is known: then its records are not looked for once more, if they go plain.
     void add(uint32_t stream, std::span<const std::byte> packet, const Walked* walked = nullptr);
 
-    // Short records go as they are from now on, not looked at: between batches.
-    void beginPlain(bool plain) { plain_ = plain; }
+    // What follows is another frame. plain: its short records go as they are, not looked at. Between batches.
+    void beginFrame(bool plain) {
+        plain_ = plain;
+        ++frames_;
+    }
     [[nodiscard]] bool plain() const { return plain_; }
 
     // What has been added since clear(), which is next.
@@ -62,7 +66,8 @@ private:
     bool runOn();
     bool runKnown();
     void keepRun();
-    void place();
+    bool place();
+    void count(bool isNew);
     [[nodiscard]] bool same(Item item, const Piece& piece) const;
     [[nodiscard]] bool expects(size_t ahead, const Piece& piece) const;
     bool skipTo(const Piece& piece);
@@ -98,6 +103,7 @@ private:
         explicit StreamIndex(uint32_t logItems) : items(logItems) {}
         ItemIndex items;
         KnownRuns runs;
+        NewRecords news;
     };
     std::vector<std::unique_ptr<StreamIndex>> streams_; // by place of the log
     std::unique_ptr<StreamIndex> firstIndex_;           // until there is a stream
@@ -110,6 +116,7 @@ private:
     uint32_t lastStream_ = 0;
     bool endsInValue_ = false;
     bool plain_ = false;
+    uint64_t frames_ = 0;
     uint32_t run_ = 0; // items as expected that are not in control_ yet
     uint32_t pagesFrom_ = 0, pagesRun_ = 0; // the same of pages of the store
 
@@ -120,6 +127,8 @@ private:
     ItemLog* log_ = nullptr;
     ItemIndex* index_ = nullptr;
     KnownRuns* runs_ = nullptr;
+    NewRecords* news_ = nullptr;
+    bool restPlain_ = false; // its short records are not looked at from here on
     KnownRuns::Run open_;    // the run of short records that goes on, without its bytes
     uint32_t openBytesAt_ = 0; // where in the packet it begins
     bool openIsKnown_ = false; // all of it is one of runs_

@@ -32,7 +32,7 @@ private:
     void tryOther();
     void decide();
 
-    static constexpr uint32_t kFirstTry = 8, kMostBetween = 1024;
+    static constexpr uint32_t kFirstTry = 4, kMostBetween = 1024;
     std::array<Cost, 2> costs_;
     bool plain_ = false;
     bool trying_ = false;

@@ -20,6 +20,7 @@
 #include "interposer/texture_from.hpp"
 #include "interposer/verify.hpp"
 #include "interposer/window_size.hpp"
+#include "streamcodec/context_flags.hpp"
 
 namespace mural {
 
@@ -79,7 +80,7 @@ void announce(ThreadState& t, Context& c) {
     const Context* sharer = known::sharerOf(c);
     const records::ContextInfo info{c.id, sharer ? sharer->id : 0, static_cast<uint32_t>(c.api),
                                     static_cast<uint32_t>(c.version / 10), static_cast<uint32_t>(c.version % 10),
-                                    c.profileMask, c.losesOnReset ? c.flags | wire::kLosesOnReset : c.flags, c.config};
+                                    c.profileMask, c.flags | (c.losesOnReset ? wire::kLosesOnReset : 0) | (c.keepsUnflushed ? wire::kKeepsUnflushed : 0), c.config};
     records::createContext(t, info);
     c.announced = true;
 }

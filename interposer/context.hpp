@@ -97,6 +97,7 @@ struct Context {
     DebugListener* debug = nullptr; // what the program hears, and has heard
     uint32_t errorsTold = 0;        // of the program's own GL; the nodes count along (wire::kOpErrorTold)
     bool outOfMemoryDue = false;    // told by a node, not by glGetError yet
+    bool keepsUnflushed = false;    // KHR_context_flush_control: giving it up flushes nothing
     bool losesOnReset = false;      // the program has asked to be told when the context is lost
     GLenum resetStatus = 0;         // what a node's driver told, not by glGetGraphicsResetStatus yet
     bool compilingList = false;

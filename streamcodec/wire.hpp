@@ -83,7 +83,7 @@ struct AnswerHeader {
     uint32_t kind;       // AnswerKind
     uint32_t groupBytes; // bytes per pixel (rectangles)
     int32_t x, y, w, h;  // the part of the asked rectangle that follows (rectangles)
-    uint32_t first;      // 1: this node is the one that answers for what all nodes hold alike
+    uint32_t first;      // 1: what follows is all that was asked: a whole rectangle; of what all nodes hold alike, this node speaks for all
     uint32_t last;       // 1: nothing more comes from this node for this request
 };
 enum class AnswerKind : uint32_t {

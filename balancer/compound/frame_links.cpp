@@ -96,6 +96,7 @@ void Planner::offerFrames(const ActiveCompound& active, Eye eye) {
             frame.zoom = {std::min(1., wanted.x), std::min(1., wanted.y)};
         }
         frame.size = {scaled(frame.area.w, frame.zoom.x), scaled(frame.area.h, frame.zoom.y)};
+        frame.zoom = {frame.size.w / double(frame.area.w), frame.size.h / double(frame.area.h)}; // in whole pixels
         frame.range = i.range;
         frame.pixel = i.pixel;
         frame.subPixel = i.subPixel;

@@ -53,7 +53,7 @@ Level inBlocks(const Level& texels, const sizes::CompressedBlock& block) {
 template <class Local> void readBound(GLenum target, GLint level, void* pixels, Local&& local, const char* by = __builtin_FUNCTION()) {
     ThreadState& t = *tThread;
     if (!capturing(t)) return local();
-    if (!packsHere(t, local, by)) return;
+    if (!packsAhead(t, local)) return;
     const Image image = imageOf(target, [=](GLenum pname, GLint* value) { gReal.glGetTexLevelParameteriv(target, level, pname, value); });
     read(t, false, target, level, image, pixels, by);
 }
@@ -76,7 +76,7 @@ void mural_glGetCompressedTextureImage(GLuint texture, GLint level, GLsizei bufS
     ThreadState& t = *tThread;
     const auto local = [&] { gReal.glGetCompressedTextureImage(texture, level, bufSize, pixels); };
     if (!capturing(t)) return local();
-    if (packsHere(t, local)) read(t, true, texture, level, imageByName(t, texture, level), pixels);
+    if (packsAhead(t, local)) read(t, true, texture, level, imageByName(t, texture, level), pixels);
 }
 
 // A part: the whole level is asked for, the part's blocks are copied out of it.
@@ -84,7 +84,7 @@ void mural_glGetCompressedTextureSubImage(GLuint texture, GLint level, GLint xof
     ThreadState& t = *tThread;
     const auto local = [&] { gReal.glGetCompressedTextureSubImage(texture, level, xoffset, yoffset, zoffset, width, height, depth, bufSize, pixels); };
     if (!capturing(t)) return local();
-    if (!packsHere(t, local) || width <= 0 || height <= 0 || depth <= 0) return;
+    if (!packsAhead(t, local) || width <= 0 || height <= 0 || depth <= 0) return;
     const Image image = imageByName(t, texture, level);
     const sizes::CompressedBlock block = sizes::compressedBlock(image.format);
     const Level size{width, height, depth};
@@ -96,7 +96,7 @@ void mural_glGetCompressedTextureImageEXT(GLuint texture, GLenum target, GLint l
     ThreadState& t = *tThread;
     const auto local = [&] { gReal.glGetCompressedTextureImageEXT(texture, target, lod, img); };
     if (!capturing(t) || t.context->compilingList) return local();
-    if (!packsHere(t, local)) return;
+    if (!packsAhead(t, local)) return;
     const Image image = imageOf(target, [=](GLenum pname, GLint* value) { gReal.glGetTextureLevelParameterivEXT(texture, target, lod, pname, value); });
     whileBound(t, target, texture, [&] { read(t, false, target, lod, image, img, "glGetCompressedTextureImageEXT"); });
 }
@@ -105,7 +105,7 @@ void mural_glGetCompressedMultiTexImageEXT(GLenum texunit, GLenum target, GLint 
     ThreadState& t = *tThread;
     const auto local = [&] { gReal.glGetCompressedMultiTexImageEXT(texunit, target, lod, img); };
     if (!capturing(t) || t.context->compilingList) return local();
-    if (!packsHere(t, local)) return;
+    if (!packsAhead(t, local)) return;
     const Image image = imageOf(target, [=](GLenum pname, GLint* value) { gReal.glGetMultiTexLevelParameterivEXT(texunit, target, lod, pname, value); });
     whileActive(t, texunit, [&] { read(t, false, target, lod, image, img, "glGetCompressedMultiTexImageEXT"); });
 }

@@ -60,6 +60,7 @@ void askAndDeliver(ThreadState& t, const ImageQuestion& q, void* pixels, const s
     const bool owes = layout.known && packBufferBound(*t.context) &&
                       oweTexImage(t, q.byName, q.targetOrTexture, q.level, q.format, q.type, q.sizeBytes, {reinterpret_cast<uint64_t>(pixels), layout, q.part}, by);
     if (owes) return;
+    settleBound(t, GL_PIXEL_PACK_BUFFER, by);
     void* const image = askTexImage(t, q.byName, q.targetOrTexture, q.level, q.format, q.type, q.sizeBytes, by);
     if (!image || !layout.known) return;
     keepPart(static_cast<std::byte*>(image), q.part);

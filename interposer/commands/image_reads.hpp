@@ -35,6 +35,10 @@ template <class Local> bool packsHere(ThreadState& t, Local&& local, const char*
     return raisesNothing(*t.context, local);
 }
 
+// The same before nodes are asked for what goes to the same place: what the buffer is owed from before need not be here, for
+// answers are put there in their order. askAndDeliver waits for it where this one is not owed.
+template <class Local> bool packsAhead(ThreadState& t, Local&& local) { return raisesNothing(*t.context, local); }
+
 // The program's own context has written so many bytes into the bound pack buffer: the nodes get them.
 void tellPackBuffer(ThreadState& t, const void* offset, size_t bytes);
 

@@ -65,7 +65,7 @@ void readTexture(ThreadState& t, bool byName, GLuint which, GLint level, GLenum 
 template <class Local> void readBound(GLenum target, GLint level, GLenum format, GLenum type, void* pixels, Local&& local, const char* by = __builtin_FUNCTION()) {
     ThreadState& t = *tThread;
     if (!capturing(t)) return local();
-    if (!packsHere(t, local, by)) return;
+    if (!packsAhead(t, local)) return;
     const Level size = levelOf([=](GLenum pname, GLint* value) { gReal.glGetTexLevelParameteriv(target, level, pname, value); });
     readTexture(t, false, target, level, format, type, pixels, size, imageDimensions(target), by);
 }
@@ -86,7 +86,7 @@ void mural_glReadnPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum
     ThreadState& t = *tThread;
     if (!capturing(t)) return gReal.glReadnPixels(x, y, width, height, format, type, bufSize, data);
     // The driver's own read tells whether bufSize is enough; its pixels are written over.
-    const bool valid = packsHere(t, [&] { gReal.glReadnPixels(x, y, width, height, format, type, bufSize, data); });
+    const bool valid = packsAhead(t, [&] { gReal.glReadnPixels(x, y, width, height, format, type, bufSize, data); });
     if (valid) readPixels(t, x, y, width, height, format, type, data);
 }
 
@@ -103,7 +103,7 @@ void mural_glGetnTexImageARB(GLenum target, GLint level, GLenum format, GLenum t
 void mural_glGetTextureImage(GLuint texture, GLint level, GLenum format, GLenum type, GLsizei bufSize, void* pixels) {
     ThreadState& t = *tThread;
     if (!capturing(t)) return gReal.glGetTextureImage(texture, level, format, type, bufSize, pixels);
-    if (!packsHere(t, [&] { gReal.glGetTextureImage(texture, level, format, type, bufSize, pixels); })) return;
+    if (!packsAhead(t, [&] { gReal.glGetTextureImage(texture, level, format, type, bufSize, pixels); })) return;
     GLenum target = 0;
     const Level size = levelOf(*t.context, texture, level, target);
     readTexture(t, true, texture, level, format, type, pixels, size, dimensionsByName(target));
@@ -113,7 +113,7 @@ void mural_glGetTextureImageEXT(GLuint texture, GLenum target, GLint level, GLen
     ThreadState& t = *tThread;
     const auto local = [&] { gReal.glGetTextureImageEXT(texture, target, level, format, type, pixels); };
     if (!capturing(t) || t.context->compilingList) return local();
-    if (!packsHere(t, local)) return;
+    if (!packsAhead(t, local)) return;
     const Level size = levelOf([&](GLenum pname, GLint* value) { gReal.glGetTextureLevelParameterivEXT(texture, target, level, pname, value); });
     whileBound(t, target, texture, [&] { readTexture(t, false, target, level, format, type, pixels, size, imageDimensions(target), "glGetTextureImageEXT"); });
 }
@@ -122,7 +122,7 @@ void mural_glGetMultiTexImageEXT(GLenum texunit, GLenum target, GLint level, GLe
     ThreadState& t = *tThread;
     const auto local = [&] { gReal.glGetMultiTexImageEXT(texunit, target, level, format, type, pixels); };
     if (!capturing(t) || t.context->compilingList) return local();
-    if (!packsHere(t, local)) return;
+    if (!packsAhead(t, local)) return;
     const Level size = levelOf([&](GLenum pname, GLint* value) { gReal.glGetMultiTexLevelParameterivEXT(texunit, target, level, pname, value); });
     whileActive(t, texunit, [&] { readTexture(t, false, target, level, format, type, pixels, size, imageDimensions(target), "glGetMultiTexImageEXT"); });
 }
@@ -132,7 +132,7 @@ void mural_glGetTextureSubImage(GLuint texture, GLint level, GLint xoffset, GLin
     ThreadState& t = *tThread;
     const auto local = [&] { gReal.glGetTextureSubImage(texture, level, xoffset, yoffset, zoffset, width, height, depth, format, type, bufSize, pixels); };
     if (!capturing(t)) return local();
-    if (!packsHere(t, local)) return;
+    if (!packsAhead(t, local)) return;
     if (width <= 0 || height <= 0 || depth <= 0) return;
     GLenum target = 0;
     const Level size = levelOf(*t.context, texture, level, target);

@@ -77,6 +77,7 @@ EGLContext createContext(EGLDisplay dpy, EGLConfig config, EGLContext share, con
         for (const EGLint* a = attributes; c && a && *a != EGL_NONE; a += 2) {
             if (a[0] == EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY || a[0] == EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT)
                 c->losesOnReset = a[1] == EGL_LOSE_CONTEXT_ON_RESET;
+            if (a[0] == EGL_CONTEXT_RELEASE_BEHAVIOR_KHR) c->keepsUnflushed = a[1] == EGL_CONTEXT_RELEASE_BEHAVIOR_NONE_KHR;
         }
     }
     return made;

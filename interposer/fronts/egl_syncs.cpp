@@ -1,5 +1,6 @@
 #include "interposer/fronts/egl_syncs.hpp"
 
+#include "encoders.hpp"
 #include "interposer/fronts/front.hpp"
 #include "interposer/session.hpp"
 #include "interposer/thread_state.hpp"
@@ -12,26 +13,32 @@ template <class F> F* real(const char* name) { return reinterpret_cast<F*>(eglFr
 void publishOwn() {
     if (Session* s = Session::current(); s && tThread->context) s->publish(*tThread, false);
 }
+
+// What such a sync stands for is flushed when it is made; nodes do not flush when they turn to another thread's context.
+void flushOwn() {
+    if (tThread->context) encode_glFlush(*tThread);
+    publishOwn();
+}
 } // namespace
 
 EGLSync createSync(EGLDisplay dpy, EGLenum type, const EGLAttrib* attributes) {
     static auto* call = real<EGLSync(EGLDisplay, EGLenum, const EGLAttrib*)>("eglCreateSync");
-    publishOwn();
+    flushOwn();
     return call(dpy, type, attributes);
 }
 EGLSyncKHR createSyncKhr(EGLDisplay dpy, EGLenum type, const EGLint* attributes) {
     static auto* call = real<EGLSyncKHR(EGLDisplay, EGLenum, const EGLint*)>("eglCreateSyncKHR");
-    publishOwn();
+    flushOwn();
     return call(dpy, type, attributes);
 }
 EGLint clientWaitSync(EGLDisplay dpy, EGLSync sync, EGLint flags, EGLTime timeout) {
     static auto* call = real<EGLint(EGLDisplay, EGLSync, EGLint, EGLTime)>("eglClientWaitSync");
-    publishOwn();
+    flags & EGL_SYNC_FLUSH_COMMANDS_BIT ? flushOwn() : publishOwn();
     return call(dpy, sync, flags, timeout);
 }
 EGLint clientWaitSyncKhr(EGLDisplay dpy, EGLSyncKHR sync, EGLint flags, EGLTimeKHR timeout) {
     static auto* call = real<EGLint(EGLDisplay, EGLSyncKHR, EGLint, EGLTimeKHR)>("eglClientWaitSyncKHR");
-    publishOwn();
+    flags & EGL_SYNC_FLUSH_COMMANDS_BIT_KHR ? flushOwn() : publishOwn();
     return call(dpy, sync, flags, timeout);
 }
 EGLBoolean signalSync(EGLDisplay dpy, EGLSyncKHR sync, EGLenum mode) {

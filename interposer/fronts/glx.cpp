@@ -113,6 +113,7 @@ GLXContext createContextAttribs(Display* dpy, GLXFBConfig fb, GLXContext share, 
     Context* c = made && !nativeRun() ? findContext(made) : nullptr;
     for (const int* a = attributes; c && a && *a; a += 2) {
         if (a[0] == glx::kResetStrategy) c->losesOnReset = a[1] == glx::kLoseOnReset;
+        if (a[0] == glx::kReleaseBehavior) c->keepsUnflushed = a[1] == 0;
     }
     return made;
 }

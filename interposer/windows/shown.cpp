@@ -1,5 +1,6 @@
 #include "interposer/windows/shown.hpp"
 
+#include "encoders.hpp"
 #include "interposer/context.hpp"
 #include "interposer/session.hpp"
 
@@ -12,6 +13,7 @@ void waitWindowsShown() {
 void waitGlShown() {
     Session* s = Session::current();
     if (!s || !s->alive()) return;
+    if (tThread->context) encode_glFlush(*tThread); // nodes do not flush when they turn to another thread's context
     flushedWindow(*tThread);
     s->waitShown();
 }

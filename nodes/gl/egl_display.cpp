@@ -73,6 +73,7 @@ std::shared_ptr<EglDisplayState> initialize(const EglFunctions& egl,
     state->extensions = extensions ? extensions : "";
     state->noConfigContext = state->has("EGL_KHR_no_config_context") || state->has("EGL_MESA_configless_context");
     state->surfaceless = state->has("EGL_KHR_surfaceless_context");
+    state->flushControl = state->has("EGL_KHR_context_flush_control");
     state->colorspace = state->version >= 15 || state->has("EGL_KHR_gl_colorspace");
     if (state->has("EGL_KHR_image_base")) {
         loadExtension(egl, state->egl.createImage, "eglCreateImageKHR");

@@ -51,6 +51,7 @@ struct EglDisplayState {
     bool noConfigContext = false;
     bool surfaceless = false;
     bool colorspace = false;
+    bool flushControl = false; // contexts can be asked not to flush when another one becomes current
     // Measured when the platform is opened.
     int maxSurfaceSize = kMaxSurfaceSize;
     bool doubleBuffered = false;

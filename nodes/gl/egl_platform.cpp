@@ -100,6 +100,7 @@ std::vector<EGLint> contextAttributes(const ContextConfig& config, const EglDisp
         if (config.tellsReset)
             list.insert(list.end(), {desktop ? EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_KHR : EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT, EGL_LOSE_CONTEXT_ON_RESET_KHR});
     }
+    if (display.flushControl) list.insert(list.end(), {EGL_CONTEXT_RELEASE_BEHAVIOR_KHR, EGL_CONTEXT_RELEASE_BEHAVIOR_NONE_KHR});
     list.push_back(EGL_NONE);
     return list;
 }
@@ -110,7 +111,7 @@ public:
 
     Result<std::unique_ptr<Surface>> createSurface(const SurfaceConfig& wish) override;
     Result<std::unique_ptr<Context>> createContext(const ContextConfig& wish, Context* shareWith) override;
-    Result<void> makeCurrent(Context* context, Surface* draw, Surface* read) override;
+    Result<void> makeCurrent(Context* context, Surface* draw, Surface* read, HeldBack heldBack) override;
     [[nodiscard]] std::vector<std::string> imageExtensions() const override;
     Result<std::unique_ptr<Image>> createImage(const ImageSource& source) override;
     Proc getProcAddress(const char* name) override { return throughEpoxy(name, display_->egl.getProcAddress(name)); }
@@ -198,10 +199,13 @@ Result<std::unique_ptr<Context>> EglPlatform::createContext(const ContextConfig&
     return std::unique_ptr<Context>(std::make_unique<EglContext>(display_, handle, api, tellsReset, std::move(dummy)));
 }
 
-Result<void> EglPlatform::makeCurrent(Context* context, Surface* draw, Surface* read) {
+Result<void> EglPlatform::makeCurrent(Context* context, Surface* draw, Surface* read, HeldBack heldBack) {
     const EglFunctions& egl = display_->egl;
     auto* wanted = static_cast<EglContext*>(context);
-    if (wanted && draw && read && draw != read && egl.getCurrentContext() != EGL_NO_CONTEXT) finishDrawing(*this);
+    if (egl.getCurrentContext() != EGL_NO_CONTEXT) {
+        if (wanted && draw && read && draw != read) finishDrawing(*this);
+        else if (display_->flushControl && heldBack == HeldBack::Flushed) flushDrawing(*this);
+    }
     // Release acts on the API that is bound, so it must still be the current context's.
     if (wanted) {
         currentApi_ = wanted->api();

@@ -106,6 +106,12 @@ void finishDrawing(Platform& platform) {
     if (finish) finish();
 }
 
+void flushDrawing(Platform& platform) {
+    void (*flush)() = nullptr;
+    load(platform, flush, "glFlush");
+    if (flush) flush();
+}
+
 bool showsSamples(Platform& platform) {
     ContextConfig config;
     config.surface.samples = 4;

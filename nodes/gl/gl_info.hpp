@@ -28,6 +28,9 @@ Result<GlInfo> measureGl(Platform& platform, bool embedded);
 // when it reads a surface that was drawn to until just now and is then current for reading only (README.md).
 void finishDrawing(Platform& platform);
 
+// Hands what the current context holds back to the driver.
+void flushDrawing(Platform& platform);
+
 // Whether glReadPixels gives what was drawn to a surface with samples; true where there are none. Leaves no context current.
 bool showsSamples(Platform& platform);
 

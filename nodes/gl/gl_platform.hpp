@@ -77,6 +77,9 @@ struct ImageSource {
     int layer = 0;              // of a 3D texture
 };
 
+// What becomes of commands that the context which was current holds back.
+enum class HeldBack { Flushed, Kept };
+
 class Platform {
 public:
     virtual ~Platform() = default;
@@ -84,7 +87,8 @@ public:
     virtual Result<std::unique_ptr<Context>> createContext(const ContextConfig& config, Context* shareWith) = 0;
     // Null context: release. Null surfaces: surfaceless (or a 1×1 dummy where that is unknown).
     // A surface that is only read from holds all that the contexts of this thread have drawn there.
-    virtual Result<void> makeCurrent(Context* context, Surface* draw, Surface* read) = 0;
+    // Kept: drivers that flush with each change (those without KHR_context_flush_control, OSMesa) do so all the same.
+    virtual Result<void> makeCurrent(Context* context, Surface* draw, Surface* read, HeldBack heldBack = HeldBack::Flushed) = 0;
     // True: a context can draw to one surface and read from another.
     [[nodiscard]] virtual bool readsOtherSurfaces() const { return true; }
     // True: surfaces can have an accumulation buffer.

@@ -103,6 +103,7 @@ Result<void> openGlxDisplay(GlxDisplayState& state) {
     state.noConfigContext = state.has("GLX_EXT_no_config_context");
     state.esProfile = state.has("GLX_EXT_create_context_es_profile");
     state.robust = state.has("GLX_ARB_create_context_robustness");
+    state.flushControl = state.has("GLX_ARB_context_flush_control");
     listConfigs(state);
     return {};
 }

@@ -51,6 +51,7 @@ struct GlxDisplayState {
     bool noConfigContext = false;
     bool esProfile = false;
     bool robust = false;
+    bool flushControl = false; // contexts can be asked not to flush when another one becomes current
     bool tellsResets = true; // until a driver has refused
     std::vector<GLXFBConfig> configs; // those that double-buffered pbuffers can be made of
     std::vector<ConfigCandidate> candidates; // same order

@@ -61,7 +61,7 @@ public:
 
     Result<std::unique_ptr<Surface>> createSurface(const SurfaceConfig& wish) override;
     Result<std::unique_ptr<Context>> createContext(const ContextConfig& wish, Context* shareWith) override;
-    Result<void> makeCurrent(Context* context, Surface* draw, Surface* read) override;
+    Result<void> makeCurrent(Context* context, Surface* draw, Surface* read, HeldBack heldBack) override;
     Proc getProcAddress(const char* name) override {
         return throughEpoxy(name, display_->glx.getProcAddress(reinterpret_cast<const GLubyte*>(name)));
     }
@@ -141,6 +141,7 @@ std::vector<int> GlxPlatform::contextAttributes(const ContextConfig& wish) const
     if (wish.robust) flags |= GLX_CONTEXT_ROBUST_ACCESS_BIT_ARB;
     if (flags) list.insert(list.end(), {GLX_CONTEXT_FLAGS_ARB, flags});
     if (wish.tellsReset) list.insert(list.end(), {GLX_CONTEXT_RESET_NOTIFICATION_STRATEGY_ARB, GLX_LOSE_CONTEXT_ON_RESET_ARB});
+    if (display_->flushControl) list.insert(list.end(), {GLX_CONTEXT_RELEASE_BEHAVIOR_ARB, GLX_CONTEXT_RELEASE_BEHAVIOR_NONE_ARB});
     if (display_->noConfigContext) list.insert(list.end(), {GLX_SCREEN, display_->screen});
     list.push_back(0);
     return list;
@@ -180,12 +181,15 @@ Result<std::unique_ptr<Context>> GlxPlatform::createContext(const ContextConfig&
     return std::unique_ptr<Context>(std::make_unique<GlxContext>(display_, handle, tellsReset, std::move(dummy.value())));
 }
 
-Result<void> GlxPlatform::makeCurrent(Context* context, Surface* draw, Surface* read) {
+Result<void> GlxPlatform::makeCurrent(Context* context, Surface* draw, Surface* read, HeldBack heldBack) {
     auto* wanted = static_cast<GlxContext*>(context);
     GLXDrawable none = wanted ? wanted->dummy() : 0;
     GLXDrawable drawHandle = draw && wanted ? static_cast<GlxSurface*>(draw)->handle() : none;
     GLXDrawable readHandle = read && wanted ? static_cast<GlxSurface*>(read)->handle() : drawHandle;
-    if (wanted && draw && read && draw != read && display_->glx.getCurrentContext()) finishDrawing(*this);
+    if (display_->glx.getCurrentContext()) {
+        if (wanted && draw && read && draw != read) finishDrawing(*this);
+        else if (display_->flushControl && heldBack == HeldBack::Flushed) flushDrawing(*this);
+    }
     XErrorTrap trap(*display_);
     const Bool made = display_->glx.makeContextCurrent(
         display_->display, drawHandle, readHandle, wanted ? wanted->handle() : nullptr);

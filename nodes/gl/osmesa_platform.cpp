@@ -203,7 +203,7 @@ public:
 
     Result<std::unique_ptr<Surface>> createSurface(const SurfaceConfig& wish) override;
     Result<std::unique_ptr<Context>> createContext(const ContextConfig& wish, Context* shareWith) override;
-    Result<void> makeCurrent(Context* context, Surface* draw, Surface* read) override;
+    Result<void> makeCurrent(Context* context, Surface* draw, Surface* read, HeldBack heldBack) override;
     [[nodiscard]] bool readsOtherSurfaces() const override { return false; }
     Proc getProcAddress(const char* name) override {
         return reinterpret_cast<Proc>(state_->osmesa.getProcAddress(name));
@@ -246,7 +246,7 @@ Result<std::unique_ptr<Context>> OsmesaPlatform::createContext(const ContextConf
     return std::unique_ptr<Context>(std::make_unique<OsmesaContext>(state_, handle, wish, format.value()));
 }
 
-Result<void> OsmesaPlatform::makeCurrent(Context* context, Surface* draw, Surface* read) {
+Result<void> OsmesaPlatform::makeCurrent(Context* context, Surface* draw, Surface* read, HeldBack) {
     if (!context) {
         state_->current = nullptr;
         if (state_->osmesa.makeCurrent(nullptr, nullptr, 0, 0, 0)) return {};

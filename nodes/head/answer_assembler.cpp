@@ -86,6 +86,9 @@ bool AnswerAssembler::allAnswered(const Request& request) const {
 
 bool AnswerAssembler::canDeliver(const Request& request) const {
     const bool bytes = request.kind == static_cast<uint32_t>(AnswerKind::Bytes);
+    // A rectangle that lies in one node's part need not wait until the others have come so far.
+    const bool rectangle = request.kind == static_cast<uint32_t>(AnswerKind::Rectangle);
+    if (rectangle && request.firstNode >= 0 && request.last[static_cast<size_t>(request.firstNode)]) return true;
     // All hold the same, but for what nobody has written: always the first that lives speaks, so that two reads agree.
     const auto speaker = static_cast<int>(std::ranges::find(request.awaited, true) - request.awaited.begin());
     if (bytes && request.firstNode == speaker && request.last[static_cast<size_t>(speaker)]) return true;

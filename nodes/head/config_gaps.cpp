@@ -18,7 +18,6 @@ constexpr std::string_view kNoTransport = "nodes are reached by their host; mura
 constexpr std::string_view kNoCounts = "mural stat shows what nodes take";
 constexpr std::string_view kNoBalance = "its areas or ranges are divided evenly; give its compounds a viewport or a range where some are dearer";
 constexpr std::string_view kAsProgram = "nodes draw as the program's own windows are; change the program's settings";
-constexpr std::string_view kNoZoom = "pictures travel as large as they are shown; give the compound that draws a zoom";
 
 constexpr std::array kGaps = {
     Gap{"node", "connection", kNoTransport},
@@ -59,10 +58,6 @@ constexpr std::array kGaps = {
     Gap{"compound", "DFR_equalizer", "pictures keep their size; give the compound a fixed zoom"},
     Gap{"compound", "framerate_equalizer", "frames are shown as they come; remove it"},
     Gap{"compound", "monitor_equalizer", "mural_copy_to in a segment shows its picture elsewhere, too"},
-    Gap{"outputframe", "viewport", "all that its compound draws is shown; give the compound the viewport"},
-    Gap{"inputframe", "viewport", "all that its compound draws is shown; give the compound the viewport"},
-    Gap{"outputframe", "zoom", kNoZoom},
-    Gap{"inputframe", "zoom", kNoZoom},
 };
 
 } // namespace

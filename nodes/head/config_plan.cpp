@@ -7,7 +7,9 @@
 #include <set>
 #include <tuple>
 
+#include "balancer/compound/cells.hpp"
 #include "balancer/compound/even_split.hpp"
+#include "balancer/compound/frame_flow.hpp"
 #include "balancer/compound/frusta.hpp"
 #include "balancer/compound/plan_frame.hpp"
 #include "nodes/head/compound_pass.hpp"
@@ -35,18 +37,24 @@ struct Draw {
     RenderContext context;
     Viewport area; // of the canvas
     int queue = -1, chunkQueue = -1; // of the plan
+    compound::Flow flow; // where frames take it
+    std::optional<Viewport> shown; // of the canvas, where that is not its area
+    Zoom way; // it travels smaller by this
+    [[nodiscard]] const Viewport& onWall() const { return shown ? *shown : area; }
 };
 
 std::string nameOf(const config::ResolvedChannel& channel, Index index) { return channel.name.empty() ? "channel " + std::to_string(index) : channel.name; }
 
 class Planner {
 public:
-    Planner(const LoadedConfig& loaded, const ConfigWishes& wishes) : config_(loaded.resolved), file_(loaded.diagnostics.file()), wishes_(wishes) {}
+    // only: plans this canvas, after `nodesBefore` nodes of others.
+    Planner(const LoadedConfig& loaded, const ConfigWishes& wishes, Index only = kNone, int nodesBefore = 0) : config_(loaded.resolved), file_(loaded.diagnostics.file()), wishes_(wishes), only_(only), nodesBefore_(nodesBefore) {}
 
     Result<SessionPlan> plan() {
         if (auto chosen = chooseLayouts(); !chosen) return chosen.error();
         gather();
         if (auto chosen = chooseCanvas(); !chosen) return chosen.error();
+        followFrames();
         if (draws_.empty()) return Error{file_ + ": nothing of it draws: it has no canvas with segments, or no compound with channels; mural config print --resolved shows what it has"};
         if (auto done = placeParts(); !done) return done.error();
         lookIntoRoom();
@@ -59,18 +67,29 @@ public:
 
     compound::PixelSize wallSize() {
         if (!chooseLayouts()) return {0, 0};
-        const compound::DisplaySizes sizes = compound::displaySizes(config_);
-        for (const config::ResolvedCanvas& canvas : config_.canvases) {
-            if (!wishes_.canvas.empty() && canvas.name != wishes_.canvas) continue;
-            for (const Index s : canvas.segments) {
-                const config::ResolvedSegment& segment = config_.segments[at(s)];
-                if (segment.channel == kNone || segment.viewport.empty()) continue;
-                const PixelViewport& pixels = sizes.channels[at(segment.channel)];
-                return {static_cast<int32_t>(std::lround(pixels.w / segment.viewport.w)), static_cast<int32_t>(std::lround(pixels.h / segment.viewport.h))};
-            }
+        for (size_t c = 0; c < config_.canvases.size(); ++c) {
+            if (!wishes_.canvas.empty() && config_.canvases[c].name != wishes_.canvas) continue;
+            if (const compound::PixelSize size = sizeOf(static_cast<Index>(c)); size.w > 0) return size;
         }
         return {0, 0};
     }
+
+    // Of a canvas, by the channel of its first segment that has one.
+    [[nodiscard]] compound::PixelSize sizeOf(Index canvas) const {
+        if (canvas == kNone) return {0, 0};
+        const compound::DisplaySizes sizes = compound::displaySizes(config_);
+        for (const Index s : config_.canvases[at(canvas)].segments) {
+            const config::ResolvedSegment& segment = config_.segments[at(s)];
+            if (segment.channel == kNone || segment.viewport.empty()) continue;
+            const PixelViewport& pixels = sizes.channels[at(segment.channel)];
+            return {static_cast<int32_t>(std::lround(pixels.w / segment.viewport.w)), static_cast<int32_t>(std::lround(pixels.h / segment.viewport.h))};
+        }
+        return {0, 0};
+    }
+
+    // Those that show something, the planned one among them. After plan().
+    [[nodiscard]] const std::set<Index>& canvases() const { return canvases_; }
+    [[nodiscard]] Index canvas() const { return canvas_; }
 
 private:
     Result<void> chooseLayouts() {
@@ -104,6 +123,7 @@ private:
         for (uint32_t frame = 0; frame < period; ++frame) {
             input_.frameNumber = frame;
             const FramePlan plan = compound::planFrame(config_, input_);
+            const std::vector<compound::Flow> flows = compound::flowOf(config_, input_, plan);
             for (const compound::PlannedBarrier& barrier : plan.barriers)
                 for (const Index window : barrier.windows) barriers_.try_emplace(window, barrier.name);
             std::map<Index, std::vector<size_t>> workers; // by their queue: their draws
@@ -112,7 +132,7 @@ private:
                     if (task.kind != config::Task::Draw || task.context == kNone) continue;
                     const RenderContext& c = plan.contexts[at(task.context)];
                     if (c.view == kNone || !seen.emplace(c.compound, c.destination, c.view, c.eye).second) continue;
-                    draws_.push_back({c, compose(config_.views[at(c.view)].viewport, c.part)});
+                    draws_.push_back({c, compose(config_.views[at(c.view)].viewport, c.part), -1, -1, flows[at(task.context)], {}, {}});
                     if (task.queue != kNone) workers[task.queue].push_back(draws_.size() - 1);
                 }
             }
@@ -125,21 +145,97 @@ private:
         return segment == kNone ? kNone : config_.segments[at(segment)].canvas;
     }
 
-    // Each canvas is a wall of its own, and the session shows one.
+    // Each canvas is a wall of its own.
     Result<void> chooseCanvas() {
-        std::set<Index> canvases;
+        std::set<Index>& canvases = canvases_;
         for (const Draw& d : draws_) canvases.insert(canvasOf(d));
+        if (only_ != kNone) canvases = {only_};
         Index chosen = canvases.empty() ? kNone : *canvases.begin();
         if (!wishes_.canvas.empty()) {
             const auto named = std::find_if(canvases.begin(), canvases.end(), [&](Index c) { return c != kNone && config_.canvases[at(c)].name == wishes_.canvas; });
             if (named == canvases.end()) return Error{"--canvas \"" + wishes_.canvas + "\": " + file_ + " shows nothing on a canvas of this name; mural config print shows them"};
             chosen = *named;
-        } else if (canvases.size() > 1) {
-            plan_.warnings.push_back(file_ + ": of its " + std::to_string(canvases.size()) + " canvases the first is shown; --canvas NAME shows another");
+            canvases = {chosen};
         }
         std::erase_if(draws_, [&](const Draw& d) { return canvasOf(d) != chosen; });
         canvas_ = chosen;
         return {};
+    }
+
+    // Where frames hand on parts of what is drawn, or change its size, each part of the wall is drawn by those whose draws come there.
+    void followFrames() {
+        using Destination = std::tuple<Index, Eye>;
+        using One = std::tuple<Index, Eye, int, int, int, int, int, int, uint32_t>; // picture of a destination
+        std::set<Destination> steered;
+        for (const Draw& d : draws_)
+            if (d.flow.steered) steered.insert({d.context.destination, d.context.eye});
+        if (steered.empty()) return;
+        std::vector<Draw> followed;
+        std::map<One, std::vector<const Draw*>> pictures;
+        for (const Draw& d : draws_) {
+            const RenderContext& c = d.context;
+            if (!steered.contains({c.destination, c.eye})) followed.push_back(d);
+            else pictures[{c.destination, c.eye, c.pixel.x, c.pixel.y, c.pixel.w, c.pixel.h, c.subPixel.index, c.subPixel.size, c.phase}].push_back(&d);
+        }
+        for (const auto& [key, draws] : pictures) takeApart(draws, followed);
+        draws_ = std::move(followed);
+    }
+
+    // A draw as it comes to one part of the wall, or to several in the same way.
+    struct Arrival {
+        const Draw* draw;
+        Zoom scale;      // of the wall's part, to the drawn one
+        double x, y;     // where the drawn picture's corner would be, in parts of its own size
+        Zoom way;
+        [[nodiscard]] bool moved() const { return std::abs(scale.x - 1) > 1e-6 || std::abs(scale.y - 1) > 1e-6 || std::abs(x) > 1e-6 || std::abs(y) > 1e-6; }
+    };
+    static bool alike(const Arrival& a, const Arrival& b) {
+        const auto near = [](double v, double w) { return std::abs(v - w) < 1e-6; };
+        return near(a.scale.x, b.scale.x) && near(a.scale.y, b.scale.y) && near(a.x, b.x) && near(a.y, b.y) && near(a.way.x, b.way.x) && near(a.way.y, b.way.y);
+    }
+
+    void takeApart(std::vector<const Draw*> draws, std::vector<Draw>& into) {
+        std::stable_partition(draws.begin(), draws.end(), [](const Draw* d) { return d->context.channel == d->context.destination; }); // what is there before others' comes
+        std::vector<Arrival> arrivals;
+        std::vector<compound::Piece> pieces;
+        for (const Draw* d : draws) {
+            if (d->flow.parts.empty()) plan_.explain.push_back(placeOf(d->context.compound) + ": no frame takes what is drawn here to the wall");
+            for (const compound::ShownPart& p : d->flow.parts) {
+                const Zoom scale{p.to.w / p.from.w, p.to.h / p.from.h};
+                const Arrival a{d, scale, p.to.x - p.from.x * scale.x, p.to.y - p.from.y * scale.y, p.way};
+                auto known = std::find_if(arrivals.begin(), arrivals.end(), [&](const Arrival& other) { return other.draw == d && alike(other, a); });
+                if (known == arrivals.end()) known = arrivals.insert(arrivals.end(), a);
+                pieces.push_back({static_cast<int>(known - arrivals.begin()), compose(d->area, p.to)});
+            }
+        }
+        std::vector<compound::Piece> needed;
+        for (const compound::Cell& cell : compound::cellsOf(pieces)) {
+            std::vector<Range> drawn;
+            for (const int i : cell.of) { // of two that draw the same, the first: a depth test leaves what is there
+                const Range& range = arrivals[static_cast<size_t>(i)].draw->context.range;
+                if (std::find(drawn.begin(), drawn.end(), range) != drawn.end()) continue;
+                drawn.push_back(range);
+                needed.push_back({i, cell.area});
+            }
+        }
+        for (const compound::Cell& cell : compound::cellsOf(needed)) {
+            std::vector<const Arrival*> there;
+            for (const int i : cell.of) there.push_back(&arrivals[static_cast<size_t>(i)]);
+            const bool together = std::all_of(there.begin(), there.end(), [&](const Arrival* a) { return alike(*a, *there.front()) && a->draw->area == there.front()->draw->area; }) || std::none_of(there.begin(), there.end(), [&](const Arrival* a) { return a->moved() || !a->way.none(); });
+            if (!together && unlike_.insert(there.front()->draw->context.destination).second)
+                plan_.warnings.push_back(placeOf(there.front()->draw->context.compound) + ": ranges of one picture are put together by depth as large as they are drawn; zoom of their frames has no effect where it is not the same for all of them");
+            for (const Arrival* a : there) {
+                Draw d = *a->draw;
+                d.area = cell.area;
+                if (together) d.way = a->way;
+                if (together && a->moved()) {
+                    const Viewport own = relativeTo(cell.area, a->draw->area);
+                    d.area = compose(a->draw->area, Viewport{(own.x - a->x) / a->scale.x, (own.y - a->y) / a->scale.y, own.w / a->scale.x, own.h / a->scale.y});
+                    d.shown = cell.area;
+                }
+                into.push_back(d);
+            }
+        }
     }
 
     // Queues begin dealt out evenly, in strips of the picture or of the range; tiles are taken by who is free, then.
@@ -215,7 +311,7 @@ private:
     [[nodiscard]] Viewport destinationArea(const std::vector<size_t>& draws) const {
         double x0 = 1e9, y0 = 1e9, x1 = -1e9, y1 = -1e9;
         for (const size_t i : draws) {
-            const Viewport& a = draws_[i].area;
+            const Viewport& a = draws_[i].onWall();
             x0 = std::min(x0, a.x);
             y0 = std::min(y0, a.y);
             x1 = std::max(x1, a.x + a.w);
@@ -229,7 +325,7 @@ private:
         using Key = std::tuple<int, uint32_t, double, double, double, double>;
         std::map<Key, std::vector<size_t>> groups;
         for (size_t i = 0; i < draws_.size(); ++i) {
-            const Viewport& a = draws_[i].area;
+            const Viewport& a = draws_[i].onWall();
             groups[{pictures_[i], draws_[i].context.phase, a.x, a.y, a.w, a.h}].push_back(i);
         }
         for (auto& [key, draws] : groups) {
@@ -248,6 +344,8 @@ private:
                 node.pass.ranges = static_cast<int>(draws.size());
                 node.picture = pictures_[i];
                 node.area = draws_[i].area;
+                node.shown = draws_[i].shown;
+                node.way = draws_[i].way;
                 node.queue = draws_[i].queue;
                 node.chunkQueue = draws_[i].chunkQueue;
                 node.screen = screenOf(c);
@@ -332,7 +430,7 @@ private:
                 ++pictures;
                 drawer = &n;
             }
-            if (!plain || pictures != 1 || drawer->pass.period > 1 || !same(*drawer->area, part.area) || !isDestination(*drawer)) return headShowsIt();
+            if (!plain || pictures != 1 || drawer->pass.period > 1 || drawer->shown || !drawer->way.none() || !same(*drawer->area, part.area) || !isDestination(*drawer)) return headShowsIt();
             shows.push_back(drawer);
         }
         for (size_t a = 0; a < shows.size(); ++a)
@@ -417,20 +515,37 @@ private:
             const std::string pass = describe(n.pass);
             char area[96];
             std::snprintf(area, sizeof area, "%.9g %.9g %.9g %.9g", n.area->x, n.area->y, n.area->w, n.area->h);
-            plan_.explain.push_back("node " + std::to_string(n.node) + " (" + n.where + ") draws for channel \"" + nameOf(config_.channels[at(channels_[i])], channels_[i]) + "\" " +
-                                    (pass.empty() ? "" : pass + ", ") + "the part [ " + area + " ] of the wall");
+            plan_.explain.push_back("node " + std::to_string(nodesBefore_ + n.node) + " (" + n.where + ") draws for channel \"" + nameOf(config_.channels[at(channels_[i])], channels_[i]) + "\" " +
+                                    (pass.empty() ? "" : pass + ", ") + onItsWay(n) + "the part [ " + area + " ] of the wall" + shownElsewhere(n));
         }
+    }
+
+    static std::string onItsWay(const NodePlan& n) {
+        if (n.way.none()) return {};
+        char text[64];
+        std::snprintf(text, sizeof text, "sent %.4g by %.4g times as large, ", n.way.x, n.way.y);
+        return text;
+    }
+    static std::string shownElsewhere(const NodePlan& n) {
+        if (!n.shown) return {};
+        char text[112];
+        std::snprintf(text, sizeof text, ", shown in [ %.9g %.9g %.9g %.9g ]", n.shown->x, n.shown->y, n.shown->w, n.shown->h);
+        return text;
     }
 
     const ResolvedConfig& config_;
     const std::string file_;
     const ConfigWishes& wishes_;
+    const Index only_;
+    const int nodesBefore_;
+    std::set<Index> canvases_; // that show something, or the one that is wanted
     FrameInput input_;
     std::vector<Draw> draws_;
     std::vector<int> pictures_;   // of each draw
     std::vector<Index> channels_; // of each node
     std::map<Index, std::string> barriers_; // by window: the swap barrier that it waits at
     std::set<Index> tooLarge_;    // compounds of which was said that they are
+    std::set<Index> unlike_;      // destinations of which was said that their pictures are not alike
     Index canvas_ = kNone;
     bool anaglyph_ = false;
     bool inRoom_ = false;
@@ -439,8 +554,76 @@ private:
 
 } // namespace
 
+namespace {
+
+std::string nameOf(const ResolvedConfig& config, Index canvas) {
+    const std::string& name = config.canvases[at(canvas)].name;
+    return "canvas " + (name.empty() ? std::to_string(canvas) : "\"" + name + "\"");
+}
+
+// What is planned for another canvas, behind what there is: its nodes draw the program's picture in its pixels.
+void add(SessionPlan& plan, SessionPlan other, CanvasPlan canvas) {
+    const auto nodes = static_cast<int>(plan.nodes.size()), queues = static_cast<int>(plan.queues.size()), chunkQueues = static_cast<int>(plan.chunkQueues.size());
+    int pictures = picturesOf(plan.wall);
+    for (const CanvasPlan& c : plan.canvases) pictures = std::max(pictures, picturesOf(c.wall));
+    canvas.wall = std::move(other.wall);
+    canvas.nodesShowWall = other.nodesShowWall;
+    for (WallPart& part : canvas.wall.parts) part.firstPicture += pictures;
+    for (NodePlan& node : other.nodes) {
+        node.node += nodes;
+        node.collector += nodes;
+        node.canvas = static_cast<int>(plan.canvases.size()) + 1;
+        node.picture += pictures;
+        node.answers = false;
+        if (node.queue >= 0) node.queue += queues;
+        if (node.chunkQueue >= 0) node.chunkQueue += chunkQueues;
+        node.pass.zoom = compose(node.pass.zoom, canvas.shown);
+        node.pass.zoom = {std::min(node.pass.zoom.x, kMostZoom), std::min(node.pass.zoom.y, kMostZoom)};
+        node.pass.shown = canvas.shown;
+        if (node.window && node.window->asOnWall) node.window->x += canvas.offsetX;
+        plan.nodes.push_back(std::move(node));
+    }
+    std::ranges::move(other.queues, std::back_inserter(plan.queues));
+    std::ranges::move(other.chunkQueues, std::back_inserter(plan.chunkQueues));
+    std::ranges::move(other.explain, std::back_inserter(plan.explain));
+    std::ranges::move(other.warnings, std::back_inserter(plan.warnings));
+    if (!plan.eyeBase) plan.eyeBase = other.eyeBase, plan.focusDistance = other.focusDistance;
+    plan.canvases.push_back(std::move(canvas));
+}
+
+void addCanvases(const LoadedConfig& loaded, const ConfigWishes& wishes, const Planner& first, SessionPlan& plan) {
+    const compound::PixelSize own = first.sizeOf(first.canvas());
+    int offsetX = wishes.width > 0 ? wishes.width : own.w;
+    for (const Index c : first.canvases()) {
+        if (c == first.canvas() || c == kNone) continue;
+        const std::string name = nameOf(loaded.resolved, c);
+        Planner planner(loaded, wishes, c, static_cast<int>(plan.nodes.size()));
+        const compound::PixelSize size = planner.sizeOf(c);
+        auto planned = planner.plan();
+        if (!planned || size.w <= 0 || own.w <= 0) {
+            plan.warnings.push_back(name + " is not shown: " + (planned ? "its size is not known; give its channels a viewport in pixels" : planned.error().message));
+            continue;
+        }
+        CanvasPlan canvas;
+        canvas.name = loaded.resolved.canvases[at(c)].name.empty() ? std::to_string(c) : loaded.resolved.canvases[at(c)].name;
+        canvas.shown = {static_cast<double>(size.w) / own.w, static_cast<double>(size.h) / own.h};
+        if (canvas.shown.x > kMostZoom || canvas.shown.y > kMostZoom) {
+            plan.warnings.push_back(name + " has more than " + std::to_string(static_cast<int>(kMostZoom)) + " times the pixels of the first one in a direction; it is shown with so many; --canvas shows it alone");
+            canvas.shown = {std::min(canvas.shown.x, kMostZoom), std::min(canvas.shown.y, kMostZoom)};
+        }
+        canvas.offsetX = offsetX;
+        offsetX += static_cast<int>(std::lround(canvas.shown.x * (wishes.width > 0 ? wishes.width : own.w)));
+        plan.explain.push_back(name + " shows the program's picture, too, in " + std::to_string(size.w) + "x" + std::to_string(size.h) + " pixels where the first has " + std::to_string(own.w) + "x" + std::to_string(own.h));
+        add(plan, std::move(*planned), std::move(canvas));
+    }
+}
+
+} // namespace
+
 Result<SessionPlan> planOf(const LoadedConfig& loaded, const ConfigWishes& wishes) {
-    auto plan = Planner(loaded, wishes).plan();
+    Planner planner(loaded, wishes);
+    auto plan = planner.plan();
+    if (plan) addCanvases(loaded, wishes, planner, *plan);
     if (plan) std::ranges::copy(fieldsWithoutEffect(loaded.diagnostics), std::back_inserter(plan->warnings));
     return plan;
 }

@@ -18,8 +18,10 @@ struct ConfigWishes {
     std::vector<std::string> layouts; // names of those to show; canvases without any show their first
     Frusta frusta = Frusta::Auto;
     double modelUnit = 1;             // of the program, to the metre of the file
+    int width = 0;                    // of the program's picture, pixels; 0: as the file has it
 };
 
+// Canvases that show something are all planned, unless one is named: each has nodes of its own, which draw the program's picture in its own pixels.
 // Errors: there is nothing to draw, or a mix of decompositions that can't be put together yet; one line.
 Result<SessionPlan> planOf(const compound::LoadedConfig& loaded, const ConfigWishes& wishes);
 

@@ -1,5 +1,6 @@
 #include "nodes/head/head.hpp"
 
+#include <cctype>
 #include <csignal>
 #include <fcntl.h>
 #include <unistd.h>
@@ -60,7 +61,17 @@ Result<std::vector<LaunchedNode>> launch(const SessionConfig& config, const Sess
                        [&] { return asked != 0 || control.broken(); });
 }
 
-Result<void> addOutputs(const SessionConfig& config, ControlChannel& control, HeadOptions& options) {
+// Where --out puts the pictures of a canvas beside the first: a folder in that of the first, or a video beside its.
+std::string outOfCanvas(const std::string& out, const std::string& name) {
+    std::string plain;
+    for (const char c : name) plain += std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' || c == '.' ? c : '_';
+    const auto kind = outputKindOf(out);
+    const size_t dot = out.rfind('.');
+    if (kind && kind.value() == OutputKind::Video) return out.substr(0, dot) + "." + plain + out.substr(dot);
+    return out + (out.back() == '/' ? "" : "/") + "canvas." + plain;
+}
+
+Result<void> addOutputs(const SessionConfig& config, const SessionPlan& plan, ControlChannel& control, HeadOptions& options) {
     options.openWindow = [display = config.displayName](uint64_t window) {
         AppWindowConfig target;
         target.displayName = display;
@@ -69,10 +80,10 @@ Result<void> addOutputs(const SessionConfig& config, ControlChannel& control, He
         if (!opened) return Result<std::unique_ptr<PictureSink>>(opened.error());
         return Result<std::unique_ptr<PictureSink>>(std::move(*opened));
     };
-    options.openWall = [config] {
+    options.openWall = [config](int offsetX) {
         WallWindowsConfig wall;
         wall.displayName = config.displayName;
-        wall.positionX = config.windowX;
+        wall.positionX = config.windowX + offsetX;
         wall.positionY = config.windowY;
         wall.fullScreen = config.fullScreen;
         return Result<std::unique_ptr<PictureSink>>(std::make_unique<WallSink>(std::move(wall), TileGrid{config.columns, config.rows, 1}));
@@ -86,6 +97,11 @@ Result<void> addOutputs(const SessionConfig& config, ControlChannel& control, He
     const auto* pngs = dynamic_cast<const PngFiles*>(file->get());
     options.lastPicture = [pngs, out = config.out] { return pngs ? pngs->lastPath() : out; };
     options.file = std::move(*file);
+    for (const CanvasPlan& canvas : plan.canvases) {
+        auto opened = openOutput(outOfCanvas(config.out, canvas.name), output);
+        if (!opened) return opened.error();
+        options.canvasFiles.push_back(std::move(*opened));
+    }
     return {};
 }
 
@@ -93,7 +109,7 @@ Result<SessionPlan> makePlan(const SessionConfig& config, const std::string& hos
     if (config.configFile.empty()) return planSession(config, host);
     const auto loaded = compound::loadConfig(config.configFile, compound::processEnvironment);
     if (!loaded.ok()) return Error{loaded.diagnostics.firstError()};
-    auto plan = planOf(loaded, {host, config.here, config.canvas, config.layouts, config.frusta, config.modelUnit});
+    auto plan = planOf(loaded, {host, config.here, config.canvas, config.layouts, config.frusta, config.modelUnit, config.width});
     if (plan) chooseComposition(*plan, config.composition);
     if (plan) chooseCodecs(*plan, config.codec);
     if (plan) settleQueues(*plan, config);
@@ -111,7 +127,7 @@ Result<int> runSession(ControlChannel& control) {
     HeadOptions options;
     options.registryDigest = registryDigest();
     options.interrupted = [] { return asked != 0; };
-    if (const auto outputs = addOutputs(*config, control, options); !outputs) return outputs.error();
+    if (const auto outputs = addOutputs(*config, plan, control, options); !outputs) return outputs.error();
     if (!config->record.empty()) {
         recording::RecorderConfig recorder;
         recorder.lastFrame = config->frames;

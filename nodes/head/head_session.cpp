@@ -6,6 +6,8 @@
 #include <poll.h>
 #include <thread>
 
+#include "nodes/head/picture_place.hpp"
+
 namespace mural {
 namespace {
 
@@ -27,6 +29,22 @@ PictureAssembler::Compose composeBy(const WallComposition& wall) {
     return [wall](const std::vector<Picture>& passes, OwnedPicture& into) { composeWall(wall, passes, into); };
 }
 
+std::vector<PictureAssembler::Compose> composeOthersBy(const SessionPlan& plan) {
+    std::vector<PictureAssembler::Compose> others;
+    for (const CanvasPlan& canvas : plan.canvases) others.push_back([wall = canvas.wall](const std::vector<Picture>& passes, OwnedPicture& into) { composeWall(wall, passes, into); });
+    return others;
+}
+
+// Of each picture, to the program's.
+std::vector<Zoom> sizesOf(const SessionPlan& plan) {
+    std::vector<Zoom> sizes;
+    for (const NodePlan& node : plan.nodes) {
+        sizes.resize(std::max(sizes.size(), static_cast<size_t>(node.picture) + 1));
+        sizes[static_cast<size_t>(node.picture)] = node.pass.shown;
+    }
+    return sizes;
+}
+
 std::map<int, std::string> absencesOf(const std::vector<LaunchedNode>& nodes) {
     std::map<int, std::string> absences;
     for (size_t i = 0; i < nodes.size(); ++i)
@@ -37,10 +55,6 @@ std::map<int, std::string> absencesOf(const std::vector<LaunchedNode>& nodes) {
 std::string plantOf() {
     const char* const plant = std::getenv("MURAL_PLANT"); // a fault on purpose, for tests of the tests
     return plant != nullptr ? plant : "";
-}
-
-bool wantsPictures(const SessionConfig& config, const SessionPlan& plan) {
-    return config.display == Display::App || !config.out.empty() || headShowsWall(config, plan);
 }
 
 } // namespace
@@ -55,7 +69,7 @@ HeadSession::HeadSession(SessionConfig config,
     , control_(control)
     , options_(std::move(options))
     , nodeCount_(static_cast<int>(nodes.size()))
-    , sendsPictures_(wantsPictures(config_, plan_))
+    , sendsPictures_(headTakesPictures(config_, plan_))
     , frames_(nodeCount_,
               [this](uint32_t client, uint32_t finished, uint32_t shown) {
                   if (serving_) programs_->credit(client, finished, shown);
@@ -69,7 +83,9 @@ HeadSession::HeadSession(SessionConfig config,
                 [this](WindowPicture picture) {
                     frames_.pictureHeld(picture.client, picture.frame);
                     output_->add(std::move(picture));
-                })
+                },
+                composeOthersBy(plan_),
+                sizesOf(plan_))
     , dealer_(plan_,
               [this](const Areas& areas) { nodes_.leadWith(wire::HeadCommand::Areas, bytesOf(areas)); },
               plantOf())
@@ -104,7 +120,13 @@ HeadSession::HeadSession(SessionConfig config,
     output.lastFrame = config_.frames;
     output.toNativeWindows = config_.display == Display::App;
     output.openWindow = options_.openWindow;
-    if (headShowsWall(config_, plan_)) output.openWall = options_.openWall;
+    if (headShowsWall(config_, plan_)) output.openWall = [this] { return options_.openWall(0); };
+    for (size_t i = 0; i < plan_.canvases.size(); ++i) {
+        OtherCanvas& canvas = output.canvases.emplace_back();
+        canvas.name = plan_.canvases[i].name;
+        if (i < options_.canvasFiles.size()) canvas.file = options_.canvasFiles[i];
+        if (headShowsCanvas(config_, plan_.canvases[i])) canvas.openWall = [this, offset = plan_.canvases[i].offsetX] { return options_.openWall(offset); };
+    }
     output.done = [this](uint32_t client, uint32_t frame) { frames_.pictureReleased(client, frame); };
     output.say = [this](const std::string& text) { control_.say(text); };
     output_ = std::make_unique<PictureOutput>(std::move(output), std::move(options_.file));
@@ -254,7 +276,8 @@ void HeadSession::sayKeepsPicture() {
 
 Result<void> HeadSession::nodePicture(int node, const wire::PictureHeader& header, ByteBuffer rows) {
     if (!sendsPictures_) return Error{"it sent a picture that nobody asked for"};
-    auto done = pictures_.part(node, header, std::move(rows));
+    auto placed = placeOnWall(plan_.nodes[static_cast<size_t>(node)], header, std::move(rows));
+    auto done = placed ? pictures_.part(node, placed->header, std::move(placed->rows)) : Result<void>(placed.error());
     output_->waitForRoom();
     return done;
 }

@@ -41,7 +41,8 @@ struct HeadOptions {
     std::unique_ptr<PictureSink> file; // of --out; null: none
     std::function<std::string()> lastPicture; // path of the last file; may be empty
     std::function<Result<std::unique_ptr<PictureSink>>(uint64_t nativeWindow)> openWindow;
-    std::function<Result<std::unique_ptr<PictureSink>>()> openWall; // where the head shows the wall (headShowsWall)
+    std::vector<std::shared_ptr<PictureSink>> canvasFiles; // of --out, for each canvas beside the first
+    std::function<Result<std::unique_ptr<PictureSink>>(int offsetX)> openWall; // where the head shows the wall (headShowsWall), or a canvas beside it
     std::unique_ptr<recording::StreamRecorder> recorder; // of --record; null: none
     std::function<bool()> interrupted; // a signal asks to finish; may be empty
     // Starts a lost node again, by the thread that runs the session; empty: none is.

@@ -69,7 +69,7 @@ void HeadSession::linkAgain(int node, StartingNode& starting) {
     link->setJoinsBatches(economical_.contains(node));
     link->setJoinsGroup(multicastNodes_.contains(node));
     nodes_.replace(node, std::move(link));
-    nodes_.link(node).unpackBy(plan.pictureCodec);
+    nodes_.link(node).unpackBy(plan.pictureCodec, plan.way);
     nodes_.link(node).startReading();
     NodeSetup setup = setupFor(plan);
     setup.catchesUp = true;

@@ -32,7 +32,7 @@ const char* whyOwnStreams(const std::string& stream) {
 
 Result<void> HeadSession::bringUp() {
     placement_ = placeOwnThreads(); // before its threads start: they inherit it
-    for (const NodePlan& node : plan_.nodes) nodes_.link(node.node).unpackBy(node.pictureCodec);
+    for (const NodePlan& node : plan_.nodes) nodes_.link(node.node).unpackBy(node.pictureCodec, node.way);
     nodes_.startReading();
     openMulticast();
     if (auto opened = openEconomy(); !opened) return opened;

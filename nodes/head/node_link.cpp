@@ -268,7 +268,8 @@ Result<void> NodeLink::readPicture(uint32_t sizeBytes) {
         return Error{"it sent a picture of an impossible size"};
     if (auto got = readStruct(header); !got) return got;
     const uint32_t dataBytes = sizeBytes - static_cast<uint32_t>(sizeof(header));
-    if (!rectangleFits(header.x, header.y, header.w, header.h, 4, dataBytes))
+    const SizeOnWay size = sizeOnWay(header.w, header.h, way_);
+    if (!rectangleFits(header.x, header.y, size.w, size.h, 4, dataBytes))
         return Error{"it sent a picture whose rectangle and bytes do not fit"};
     auto rows = readBytes(dataBytes);
     if (!rows) return rows.error();
@@ -282,12 +283,13 @@ Result<void> NodeLink::readPackedPicture(uint32_t sizeBytes) {
     if (auto got = readStruct(header); !got) return got;
     auto packed = readBytes(sizeBytes - static_cast<uint32_t>(sizeof(header)));
     if (!packed) return packed.error();
-    const uint64_t pixels = header.w > 0 && header.h > 0 ? uint64_t(header.w) * uint64_t(header.h) : 0;
+    const SizeOnWay size = sizeOnWay(header.w, header.h, way_);
+    const uint64_t pixels = size.w > 0 && size.h > 0 ? uint64_t(size.w) * uint64_t(size.h) : 0;
     if (pixels == 0 || pixels > kMaxDataBytes / 4) return Error{"it sent a packed picture of an impossible size"};
     return handle([&]() -> Result<void> {
         ByteBuffer rows = ByteBuffer::ofSize(pixels * 4);
         if (rows.size() != pixels * 4) return Error{"no memory for a picture of " + std::to_string(pixels) + " pixels"};
-        if (auto done = pictures_->unpack(header.client, header.window, header.w, header.h, packed->span(), rows.span()); !done)
+        if (auto done = pictures_->unpack(header.client, header.window, size.w, size.h, packed->span(), rows.span()); !done)
             return Error{"it sent a picture that can't be unpacked: " + done.error().message};
         pictureBytes_ += static_cast<int64_t>(packed->size());
         pictureRawBytes_ += static_cast<int64_t>(rows.size());

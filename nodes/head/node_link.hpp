@@ -16,6 +16,7 @@
 #include "nodes/head/byte_buffer.hpp"
 #include "nodes/head/node_process.hpp"
 #include "nodes/pictures/picture_unpacker.hpp"
+#include "nodes/pictures/picture_way.hpp"
 #include "streamcodec/wire.hpp"
 #include "transport/connection.hpp"
 
@@ -60,7 +61,9 @@ public:
     enum class Feed { Direct, Nothing, Queued };
 
     // How it packs its pictures (nodes/pictures), before startReading().
-    void unpackBy(const std::string& codec) {
+    // way: they come smaller by this (nodes/pictures/picture_way.hpp).
+    void unpackBy(const std::string& codec, const Zoom& way) {
+        way_ = way;
         if (codec != kRawCodec) pictures_ = std::make_unique<PictureUnpacker>(codec);
     }
     void startReading();
@@ -143,6 +146,7 @@ private:
     const std::unique_ptr<Connection> connection_;
     const std::unique_ptr<NodeProcess> process_;
     NodeEvents& events_;
+    Zoom way_; // of its pictures
     std::unique_ptr<PictureUnpacker> pictures_; // null: they come as they are
     std::atomic<int64_t> pictureBytes_{0}, pictureRawBytes_{0};
     std::thread reader_;

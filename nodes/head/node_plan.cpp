@@ -176,8 +176,15 @@ void settleQueues(SessionPlan& plan, const SessionConfig& config) {
 
 bool headShowsWall(const SessionConfig& config, const SessionPlan& plan) { return config.display == Display::Windows && !plan.nodesShowWall; }
 
+bool headShowsCanvas(const SessionConfig& config, const CanvasPlan& canvas) { return config.display == Display::App || (config.display == Display::Windows && !canvas.nodesShowWall); }
+
+bool headTakesPictures(const SessionConfig& config, const SessionPlan& plan) {
+    return config.display == Display::App || !config.out.empty() || headShowsWall(config, plan) || std::ranges::any_of(plan.canvases, [&](const CanvasPlan& c) { return headShowsCanvas(config, c); });
+}
+
 bool showsWall(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node) {
-    return config.display == Display::Windows && plan.nodesShowWall && node.pass.range == 0; // the collector has the picture
+    const bool nodesShow = node.canvas == 0 ? plan.nodesShowWall : plan.canvases[static_cast<size_t>(node.canvas) - 1].nodesShowWall;
+    return config.display == Display::Windows && nodesShow && node.pass.range == 0; // the collector has the picture
 }
 
 std::vector<const NodePlan*> swapMembersOf(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node) {
@@ -211,6 +218,7 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
         return other.node != node.node && (bothHere || (other.reach == node.reach && other.where == node.where));
     });
     setup.pass = node.pass;
+    setup.way = node.way;
     setup.screen = node.screen;
     setup.collector = node.collector;
     setup.composition = nameOf(node.composition.value_or(compositor::Strategy::Serial));
@@ -222,7 +230,7 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
     setup.focusDistance = config.focusDistance;
     setup.tiling = config.tiling;
     setup.glBackend = config.glBackend;
-    setup.sendPictures = config.display == Display::App || !config.out.empty() || headShowsWall(config, plan);
+    setup.sendPictures = headTakesPictures(config, plan);
     setup.wallWindows = showsWall(config, plan, node);
     if (const auto members = swapMembersOf(config, plan, node); !members.empty()) {
         setup.swapMembers = static_cast<int>(members.size());

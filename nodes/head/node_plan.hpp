@@ -41,8 +41,18 @@ struct ChunkQueuePlan {
     double part = 1; // of that, each
 };
 
+// A canvas that is shown beside the first one: the same picture, in pixels of its own.
+struct CanvasPlan {
+    std::string name;
+    WallComposition wall;
+    bool nodesShowWall = true; // as of SessionPlan
+    Zoom shown;                // its size, to the program's picture
+    int offsetX = 0;           // of its windows where those of all canvases lie on one screen
+};
+
 struct NodePlan {
     int node = 0;
+    int canvas = 0; // 0: the first; others are SessionPlan::canvases[canvas - 1]
     std::string where; // "local" or the host
     NodeReach reach = NodeReach::SharedMemory;
     RenderPass pass;
@@ -50,6 +60,8 @@ struct NodePlan {
     bool answers = true; // what programs read of windows
     TileRegion region;
     std::optional<Viewport> area; // instead of tiles: of the picture
+    std::optional<Viewport> shown; // where the wall shows its area, if not there
+    Zoom way; // its pictures travel smaller by this, at most 1; as large as they are shown they are made by who shows them
     int chunkQueue = -1; // its share of the draws moves by this one of SessionPlan::chunkQueues; -1: it stays
     int queue = -1; // its area moves by this one of SessionPlan::queues; -1: it stays
     std::optional<ScreenView> screen; // of a room
@@ -67,6 +79,7 @@ struct SessionPlan {
     std::vector<ChunkQueuePlan> chunkQueues;
     WallComposition wall;
     bool nodesShowWall = true; // what each draws is a part of the wall's picture as it is
+    std::vector<CanvasPlan> canvases; // that are shown, too
     std::optional<double> eyeBase, focusDistance; // that a configuration file says, in metres
     std::vector<std::string> explain; // lines for --explain
     std::vector<std::string> warnings; // lines that every user should see
@@ -83,6 +96,10 @@ void settleQueues(SessionPlan& plan, const SessionConfig& config);
 
 // --display windows: whether the head opens one, with the whole wall, as only several pictures together make it.
 [[nodiscard]] bool headShowsWall(const SessionConfig& config, const SessionPlan& plan);
+// The same for a canvas beside the first; those have no window of the program's.
+[[nodiscard]] bool headShowsCanvas(const SessionConfig& config, const CanvasPlan& canvas);
+// Whether nodes send it what they draw.
+[[nodiscard]] bool headTakesPictures(const SessionConfig& config, const SessionPlan& plan);
 
 // Whether it opens windows for what it draws.
 [[nodiscard]] bool showsWall(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node);

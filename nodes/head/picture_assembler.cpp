@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <new>
@@ -30,9 +31,11 @@ bool sensible(const PictureHeader& h) {
 PictureAssembler::PictureAssembler(int nodes, Deliver deliver)
     : PictureAssembler(std::vector<int>(static_cast<size_t>(nodes), 0), {}, std::move(deliver)) {}
 
-PictureAssembler::PictureAssembler(std::vector<int> passOf, Compose compose, Deliver deliver)
+PictureAssembler::PictureAssembler(std::vector<int> passOf, Compose compose, Deliver deliver, std::vector<Compose> others, std::vector<Zoom> sizes)
     : deliver_(std::move(deliver))
     , compose_(std::move(compose))
+    , others_(std::move(others))
+    , sizes_(std::move(sizes))
     , passOf_(std::move(passOf))
     , passes_(passOf_.empty() ? 1 : 1 + *std::ranges::max_element(passOf_))
     , views_(passOf_.size()) {}
@@ -119,23 +122,27 @@ void PictureAssembler::deliver(const Key& key, const Open& open) {
     std::tie(result.client, result.window, result.frame) = key;
     const PictureHeader& header = open.parts.back().header;
     result.nativeWindow = uint64_t{header.nativeHigh} << 32 | header.nativeLow;
-    result.picture = assemble(result.client, result.window, open);
+    assemble(result, open);
     if (result.picture) deliver_(std::move(result));
 }
 
-// Null when there is no memory for it.
-std::shared_ptr<const OwnedPicture> PictureAssembler::assemble(uint32_t client, uint32_t window, const Open& open) {
-    if (!compose_) return assemblePass({client, window, 0}, open);
+// Null where there is no memory for it.
+void PictureAssembler::assemble(WindowPicture& result, const Open& open) {
     std::vector<std::shared_ptr<const OwnedPicture>> pictures;
     std::vector<Picture> views;
     for (int pass = 0; pass < passes_; ++pass) {
-        pictures.push_back(assemblePass({client, window, pass}, open));
-        if (!pictures.back()) return nullptr;
+        pictures.push_back(assemblePass({result.client, result.window, pass}, open));
+        if (!pictures.back()) return;
         views.push_back(pictures.back()->view());
     }
+    result.picture = compose_ ? composed(compose_, views) : pictures.front();
+    for (const Compose& other : others_) result.others.push_back(composed(other, views));
+}
+
+std::shared_ptr<const OwnedPicture> PictureAssembler::composed(const Compose& compose, const std::vector<Picture>& passes) {
     auto whole = spare();
     try {
-        compose_(views, *whole);
+        compose(passes, *whole);
     } catch (const std::bad_alloc&) {
         return nullptr;
     }
@@ -149,7 +156,13 @@ std::shared_ptr<const OwnedPicture> PictureAssembler::assemblePass(const WindowK
     const auto any = std::ranges::find_if(open.parts, mine);
     const auto before = latestOf(key);
     const auto seen = std::ranges::find_if(open.parts, [](const Part& part) { return part.header.windowWidth > 0; });
-    const PictureHeader& size = any != open.parts.end() ? any->header : seen->header;
+    PictureHeader size = any != open.parts.end() ? any->header : seen->header;
+    if (any == open.parts.end() && !sizes_.empty()) { // of another canvas
+        const Zoom& from = sizes_[static_cast<size_t>(seen->pass)];
+        const Zoom& to = sizes_[static_cast<size_t>(std::get<2>(key))];
+        size.windowWidth = static_cast<uint32_t>(std::clamp<double>(std::round(size.windowWidth / from.x * to.x), 1, kMaxSide));
+        size.windowHeight = static_cast<uint32_t>(std::clamp<double>(std::round(size.windowHeight / from.y * to.y), 1, kMaxSide));
+    }
     const auto near = [](int now, uint32_t wanted) { return std::abs(now - static_cast<int>(wanted)) <= 1; }; // kernels' sizes differ by 1
     if (any == open.parts.end() && before && near(before->width(), size.windowWidth) && near(before->height(), size.windowHeight)) return before;
     const auto width = static_cast<int>(size.windowWidth);
@@ -184,7 +197,7 @@ std::shared_ptr<OwnedPicture> PictureAssembler::spare() {
         return picture;
     }
     auto picture = std::make_shared<OwnedPicture>();
-    if (made_.size() < kKeptPictures * static_cast<size_t>(compose_ ? passes_ + 1 : 1)) made_.push_back(picture);
+    if (made_.size() < kKeptPictures * (static_cast<size_t>(compose_ ? passes_ + 1 : passes_) + others_.size())) made_.push_back(picture);
     return picture;
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/result.hpp"
+#include "common/zoom.hpp"
 #include "nodes/head/byte_buffer.hpp"
 #include "nodes/head/node_views.hpp"
 #include "nodes/output/picture.hpp"
@@ -25,6 +26,7 @@ struct WindowPicture {
     uint32_t frame = 0;
     uint64_t nativeWindow = 0; // X window id, 0: none
     std::shared_ptr<const OwnedPicture> picture;
+    std::vector<std::shared_ptr<const OwnedPicture>> others; // of the canvases beside the first, in their order; null: no memory
 };
 
 // Sessions with several passes (render_pass.hpp) get a picture of each, put together by `compose`.
@@ -41,7 +43,8 @@ public:
 
     PictureAssembler(int nodes, Deliver deliver);
     // passOf: the picture that each node draws a part of.
-    PictureAssembler(std::vector<int> passOf, Compose compose, Deliver deliver);
+    // others: the pictures of further canvases, of the same passes. sizes: of each pass's picture, to that of the program; empty: they are alike.
+    PictureAssembler(std::vector<int> passOf, Compose compose, Deliver deliver, std::vector<Compose> others = {}, std::vector<Zoom> sizes = {});
 
     Result<void> part(int node, const wire::PictureHeader& header, ByteBuffer rows);
     void frameDone(int node, uint32_t client, uint32_t window, uint32_t frame);
@@ -74,7 +77,8 @@ private:
     OpenPictures::iterator settle(OpenPictures::iterator at);
     [[nodiscard]] static bool allOf(const std::vector<bool>& awaited, const std::vector<bool>& nodes);
     void deliver(const Key& key, const Open& open);
-    std::shared_ptr<const OwnedPicture> assemble(uint32_t client, uint32_t window, const Open& open);
+    void assemble(WindowPicture& result, const Open& open);
+    std::shared_ptr<const OwnedPicture> composed(const Compose& compose, const std::vector<Picture>& passes);
     std::shared_ptr<const OwnedPicture> assemblePass(const WindowKey& key, const Open& open);
     std::shared_ptr<OwnedPicture> spare();
     std::shared_ptr<const OwnedPicture> latestOf(const WindowKey& key) const;
@@ -83,6 +87,8 @@ private:
     std::mutex mutex_;
     const Deliver deliver_;
     const Compose compose_;
+    const std::vector<Compose> others_;
+    const std::vector<Zoom> sizes_;
     const std::vector<int> passOf_;
     const int passes_;
     NodeViews views_;

@@ -16,6 +16,7 @@ PictureOutput::PictureOutput(PictureOutputConfig config, std::unique_ptr<Picture
     : config_(std::move(config))
     , saveFrames_(config_.saveFrames.begin(), config_.saveFrames.end())
     , file_(std::move(file))
+    , canvases_(config_.canvases.size())
     , thread_([this] { work(); }) {}
 
 PictureOutput::~PictureOutput() {
@@ -89,6 +90,11 @@ void PictureOutput::work() {
     if (file_) {
         if (const auto finished = file_->finish(); !finished) config_.say(finished.error().message);
     }
+    canvases_.clear();
+    for (const OtherCanvas& canvas : config_.canvases) {
+        if (!canvas.file) continue;
+        if (const auto finished = canvas.file->finish(); !finished) config_.say(finished.error().message);
+    }
     lock.lock();
     ended_ = true;
     changed_.notify_all();
@@ -103,6 +109,8 @@ void PictureOutput::show(const WindowPicture& picture) {
     const bool wanted = wallFrame > 0 && inTime && (saveFrames_.empty() || saveFrames_.contains(wallFrame));
     if (wanted && file_ && !fileFailed_) save(wallFrame, view);
     if (wallFrame > 0 && config_.openWall) showOnWall(wallFrame, view);
+    for (size_t i = 0; wallFrame > 0 && i < std::min(canvases_.size(), picture.others.size()); ++i)
+        if (picture.others[i]) showOnCanvas(i, wallFrame, picture.others[i]->view(), wanted);
     if (config_.toNativeWindows && picture.nativeWindow != 0) showInWindow(picture);
     if (wallFrame > 0) {
         const std::lock_guard lock(mutex_);
@@ -133,6 +141,26 @@ void PictureOutput::showOnWall(int64_t frame, const Picture& picture) {
     const auto shown = wall_ ? wall_->show(frame, picture) : Result<void>();
     if (!shown) config_.say(shown.error().message + "; the wall's windows show no further pictures");
     wallFailed_ = !wall_ || !shown;
+}
+
+void PictureOutput::showOnCanvas(size_t index, int64_t frame, const Picture& picture, bool saves) {
+    const OtherCanvas& canvas = config_.canvases[index];
+    Shown& shown = canvases_[index];
+    if (canvas.file && saves && !shown.fileFailed) {
+        if (const auto saved = canvas.file->show(frame, picture); !saved) {
+            config_.say("canvas " + canvas.name + ": " + saved.error().message + "; no further pictures of it are saved");
+            shown.fileFailed = true;
+        }
+    }
+    if (!canvas.openWall || shown.wallFailed) return;
+    if (!shown.wall) {
+        auto opened = canvas.openWall();
+        if (opened) shown.wall = std::move(*opened);
+        else config_.say("canvas " + canvas.name + ": " + opened.error().message);
+    }
+    const auto done = shown.wall ? shown.wall->show(frame, picture) : Result<void>();
+    if (!done) config_.say("canvas " + canvas.name + ": " + done.error().message + "; its windows show no further pictures");
+    shown.wallFailed = !shown.wall || !done;
 }
 
 void PictureOutput::showInWindow(const WindowPicture& picture) {

@@ -24,6 +24,13 @@
 
 namespace mural {
 
+// A canvas beside the first: it shows the wall's frames, too.
+struct OtherCanvas {
+    std::string name;
+    std::shared_ptr<PictureSink> file; // null: nothing is saved
+    std::function<Result<std::unique_ptr<PictureSink>>()> openWall; // empty: nodes have windows of it, or nobody
+};
+
 struct PictureOutputConfig {
     std::vector<int64_t> saveFrames; // of the wall, from 1; empty: all
     int64_t lastFrame = 0;           // none behind it is saved: some come before the program has ended; 0: no limit
@@ -32,6 +39,7 @@ struct PictureOutputConfig {
     std::function<Result<std::unique_ptr<PictureSink>>(uint64_t nativeWindow)> openWindow;
     // Opens the windows of the wall, where the head has them; empty: nodes have, or nobody.
     std::function<Result<std::unique_ptr<PictureSink>>()> openWall;
+    std::vector<OtherCanvas> canvases; // as of WindowPicture::others
     // From the output's thread, when a picture has gone wherever it had to.
     std::function<void(uint32_t client, uint32_t frame)> done;
     std::function<void(const std::string&)> say;
@@ -68,6 +76,7 @@ private:
     void save(int64_t frame, const Picture& picture);
     void showInWindow(const WindowPicture& picture);
     void showOnWall(int64_t frame, const Picture& picture);
+    void showOnCanvas(size_t canvas, int64_t frame, const Picture& picture, bool saves);
     void forget(const WindowPicture& gone);
 
     const PictureOutputConfig config_;
@@ -76,6 +85,11 @@ private:
     bool fileFailed_ = false;
     std::unique_ptr<PictureSink> wall_;
     bool wallFailed_ = false;
+    struct Shown {
+        std::unique_ptr<PictureSink> wall;
+        bool fileFailed = false, wallFailed = false;
+    };
+    std::vector<Shown> canvases_; // as in the config
     MainWindow mainWindow_;
     std::map<WindowKey, std::unique_ptr<PictureSink>> windows_; // null: it could not be opened
     std::map<std::pair<uint32_t, uint32_t>, uint64_t> nativeOf_; // client, window: of those shown

@@ -118,7 +118,7 @@ Result<std::span<const std::byte>> StreamEconomy::take() {
         if (way.plain() != packer.plain()) small_.disturbed();
         else small_.frame(holder_.counts().inBytes - measured_.programBytes, measured_.wireBytes, timesFrame_ ? frameNs + static_cast<double>(measured_.wireBytes) * link_.nsPerByte() : -1);
         timesFrame_ = way.wantsTime() || small_.wantsTime();
-        packer.beginPlain(way.plain());
+        packer.beginFrame(way.plain());
         measured_ = {0, 0, 0, encodeNs_, holder_.counts().inBytes, 0};
     }
     publishCounts();

@@ -22,6 +22,7 @@
 #include "nodes/node/heartbeat.hpp"
 #include "nodes/node/tile_windows.hpp"
 #include "nodes/pictures/picture_packer.hpp"
+#include "nodes/pictures/picture_way.hpp"
 #include "nodes/placement/placement.hpp"
 #include "nodes/replay/replay.hpp"
 #include "nodes/session/session_config.hpp"
@@ -492,13 +493,19 @@ private:
         h.windowHeight = static_cast<uint32_t>(f.picture.h);
         h.nativeLow = f.config.nativeLow;
         h.nativeHigh = f.config.nativeHigh;
-        if (packer_ && sendPacked(h, pixels)) return;
-        line_->send(wire::NodeMessage::Picture, std::as_bytes(std::span(&h, 1)), {pixels, static_cast<size_t>(f.region.area()) * 4});
+        const SizeOnWay size = sizeOnWay(h.w, h.h, setup_.way);
+        if (!setup_.way.none()) {
+            onWay_.resize(size.bytes());
+            resizePicture(pixels, h.w, h.h, onWay_.data(), size.w, size.h);
+            pixels = onWay_.data();
+        }
+        if (packer_ && sendPacked(h, size, pixels)) return;
+        line_->send(wire::NodeMessage::Picture, std::as_bytes(std::span(&h, 1)), {pixels, size.bytes()});
     }
 
     // False: there is no memory for it.
-    bool sendPacked(const wire::PictureHeader& h, const std::byte* pixels) {
-        auto packed = packer_->pack(h.client, h.window, h.w, h.h, pixels);
+    bool sendPacked(const wire::PictureHeader& h, const SizeOnWay& size, const std::byte* pixels) {
+        auto packed = packer_->pack(h.client, h.window, size.w, size.h, pixels);
         if (!packed) return false;
         countWork(); // what follows may wait for who takes it
         const int64_t beganNs = monotonicNowNs();
@@ -539,6 +546,7 @@ private:
     NodeSetup setup_;
     std::unique_ptr<BarrierPart> swaps_; // null: its windows wait for nobody
     std::unique_ptr<TileWindows> windows_;
+    std::vector<std::byte> onWay_;          // the last picture that went smaller
     std::unique_ptr<PicturePacker> packer_; // null: pictures go as they are
     std::unique_ptr<Replay> replay_;
     uint64_t lastCpuNs_ = 0;

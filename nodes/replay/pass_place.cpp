@@ -46,6 +46,12 @@ PixelViewport inPass(const RenderPass& p, const PixelViewport& r) {
     return {narrow(x0), narrow(y0), narrow(zoomed(int64_t{k.x} + k.w, p.zoom.x) - x0), narrow(zoomed(int64_t{k.y} + k.h, p.zoom.y) - y0)};
 }
 
+PixelViewport inShown(const RenderPass& pass, const PixelViewport& r) {
+    RenderPass shown = pass;
+    shown.zoom = pass.shown;
+    return inPass(shown, r);
+}
+
 PassPixel standingFor(const RenderPass& p, int32_t x, int32_t y) {
     return {static_cast<int32_t>((x / p.kernelWidth + 0.5) * p.zoom.x), static_cast<int32_t>((y / p.kernelHeight + 0.5) * p.zoom.y)};
 }

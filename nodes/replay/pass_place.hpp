@@ -25,6 +25,9 @@ struct PassToWindow {
 // The same where the pass is zoomed, too: pixel i is drawn as what lies at (i + 1/2) / zoom, and belongs to what has its middle.
 [[nodiscard]] PixelViewport inPass(const RenderPass& pass, const PixelViewport& r);
 
+// The same in the picture that it hands out.
+[[nodiscard]] PixelViewport inShown(const RenderPass& pass, const PixelViewport& r);
+
 // From the first to the last pixel of the window that pixels `r` of the pass show; without zoom.
 [[nodiscard]] PixelViewport shownByKernel(const RenderPass& pass, const PixelViewport& r);
 

@@ -352,6 +352,7 @@ private:
         bool debugs = false;  // the program has asked for a debug context
         bool listens = false; // the driver's messages go there
         bool lost = false;    // the driver has reset it
+        bool heldBack = false; // not flushed when the program gives it up
         uint32_t errorsTold = 0; // to the program, by its own GL
         std::unordered_map<GLuint, QueryInfo> queries; // by the program's name
         std::vector<AskedAhead> askedAhead;
@@ -590,7 +591,7 @@ private:
     [[nodiscard]] bool mayRead(const Window& w, bool deep) const;
     // replay_passes.cpp
     [[nodiscard]] bool hasKernel() const { return config_.pass.kernelWidth * config_.pass.kernelHeight > 1; }
-    [[nodiscard]] bool drawsOtherPixels() const { return hasKernel() || !config_.pass.zoom.none(); } // than its part of the window has
+    [[nodiscard]] bool drawsOtherPixels() const { return hasKernel() || !config_.pass.zoom.none() || !config_.pass.shown.none(); } // than its part of the window has
     // Pixels that are brought from other tiles, for copies, are those of the pass that answers.
     [[nodiscard]] bool copiesOthers() const { return !config_.answers && !drawsOtherPixels() && !takesRanges(); }
     [[nodiscard]] bool interleaves(const Window* w) const { return drawsOtherPixels() && w && !w->plain; }
@@ -654,7 +655,7 @@ private:
     // replay_front.cpp
     [[nodiscard]] bool hasTwoSurfaces(const Window* w) const;
     gl::Surface* surfaceOf(Window* w, GLenum buffer);
-    bool bindSurfaces();
+    bool bindSurfaces(gl::HeldBack heldBack = gl::HeldBack::Flushed);
     void drawBufferOfWindow(GLenum buffer);
     void readBufferOfWindow(GLenum buffer);
     void buffersChanged(GLenum drawnBefore);

@@ -39,11 +39,11 @@ gl::Surface* Replay::surfaceOf(Window* w, GLenum buffer) {
 }
 
 // Makes current what bound_, boundDraw_ and boundRead_ say.
-bool Replay::bindSurfaces() {
+bool Replay::bindSurfaces(gl::HeldBack heldBack) {
     const auto bind = [&] {
         drawSurface_ = surfaceOf(boundDraw_, c_->drawBuffer0);
         readSurface_ = surfaceOf(boundRead_, readFrom(c_->readBuffer0));
-        return platform_->makeCurrent(bound_->context.get(), drawSurface_, readSurface_);
+        return platform_->makeCurrent(bound_->context.get(), drawSurface_, readSurface_, heldBack);
     };
     auto made = bind();
     if (made && !loaded_) { // before that, nothing tells whether the front can have its own

@@ -5,6 +5,7 @@
 #include "nodes/replay/pass_place.hpp"
 #include "nodes/replay/replay.hpp"
 #include "nodes/replay/window_use.hpp"
+#include "streamcodec/context_flags.hpp"
 #include "streamcodec/sizes/vertex_types.hpp"
 
 namespace mural {
@@ -116,6 +117,7 @@ bool Replay::ownCreateContext(Args& in) {
     wish.core = profile & GL_CONTEXT_CORE_PROFILE_BIT;
     wish.forwardCompatible = flags & GL_CONTEXT_FLAG_FORWARD_COMPATIBLE_BIT;
     wish.debug = flags & GL_CONTEXT_FLAG_DEBUG_BIT;
+    c->heldBack = flags & wire::kKeepsUnflushed;
     wish.robust = flags & GL_CONTEXT_FLAG_ROBUST_ACCESS_BIT;
     wish.tellsReset = true; // a node wants to know, whatever the program asked for
     wish.surface = surfaceConfig(*config, 1, 1);
@@ -147,6 +149,8 @@ bool Replay::ownMakeCurrent(Args& in) {
         return it == client.windows.end() ? nullptr : it->second.get();
     };
     const auto it = client.contexts.find(context);
+    // What the thread gives up is flushed, unless the program wants it not to be (KHR_context_flush_control).
+    if (s_->context && s_->context == bound_ && !s_->context->heldBack && gl.glFlush) gl.glFlush();
     s_->context = it == client.contexts.end() ? nullptr : it->second.get();
     s_->draw = windowOf(draw);
     s_->read = windowOf(read);
@@ -238,8 +242,8 @@ bool Replay::ownSwap(Args& in, bool front) {
         if (takesRanges()) rangeDrawn(w);
         f.notSplit = takesRanges() && !w.range.wasSplit;
         f.config = w.config;
-        f.region = drawsOtherPixels() && !w.region.empty() ? inKernel(config_.pass, w.part) : regionOf(w, front);
-        f.picture = drawsOtherPixels() ? inKernel(config_.pass, w.whole) : w.whole;
+        f.region = drawsOtherPixels() && !w.region.empty() ? inShown(config_.pass, w.part) : regionOf(w, front);
+        f.picture = drawsOtherPixels() ? inShown(config_.pass, w.whole) : w.whole;
         f.keepsPicture = keepsTurn(w);
         f.areas = moves() ? w.moving.areas->number : 0;
         f.shares = w.range.drawnBy;
@@ -250,7 +254,7 @@ bool Replay::ownSwap(Args& in, bool front) {
         // The thread that swaps need not be the one that has drawn: GLX takes any window.
         if (bound_ && &w == boundDraw_ && w.surface) f.pixels = [this, &w, front](const PixelViewport& r) {
             ContextState* const own = std::exchange(c_, bound_);
-            const bool zoomed = !config_.pass.zoom.none() && !w.plain && !r.empty();
+            const bool zoomed = (w.plain ? Zoom{} : config_.pass.zoom) != config_.pass.shown && !r.empty();
             const std::byte* pixels = zoomed ? readScaled(w, r, front) : hasKernel() && w.plain && !r.empty() ? readEveryNth(w, r, front) : readShown(w, r, front);
             c_ = own;
             return pixels;

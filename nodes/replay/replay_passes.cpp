@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "gl_opcodes.hpp"
-#include "nodes/replay/scale_picture.hpp"
+#include "nodes/pictures/scale_picture.hpp"
 #include "nodes/replay/pass_place.hpp"
 #include "nodes/replay/replay.hpp"
 
@@ -33,14 +33,16 @@ PixelViewport Replay::surfaceOf(const Window& w, bool lean) const {
     return {0, 0, std::max({shown.w, drawn.w, 1}), std::max({shown.h, drawn.h, 1})};
 }
 
-// Pixels `r` of the pass's picture, without its zoom, of a window that was drawn smaller or larger. What other nodes draw is not here: at the edges
-// of its part the outermost pixels count on.
+// Pixels `r` of the picture that the pass hands out, of a window that was drawn smaller or larger than that. What other nodes draw is not here: at the
+// edges of its part the outermost pixels count on.
 const std::byte* Replay::readScaled(Window& w, const PixelViewport& r, bool front) {
-    const PixelViewport all = inKernel(config_.pass, w.part);
-    std::vector<std::byte> drawn(static_cast<size_t>(w.region.area()) * 4);
-    if (!drawn.empty()) std::memcpy(drawn.data(), readShown(w, w.region, front), drawn.size());
+    const RenderPass& p = config_.pass;
+    const PixelViewport all = inShown(p, w.part), area = w.plain ? inKernel(p, w.part) : w.region;
+    const Zoom drawnBy = w.plain ? Zoom{} : p.zoom;
+    std::vector<std::byte> drawn(static_cast<size_t>(area.area()) * 4);
+    if (!drawn.empty()) std::memcpy(drawn.data(), w.plain && hasKernel() ? readEveryNth(w, area, front) : readShown(w, area, front), drawn.size());
     std::vector<std::byte> shown(static_cast<size_t>(r.area()) * 4);
-    if (!drawn.empty()) scalePicture({drawn.data(), w.region}, config_.pass.zoom, intersect(r, all), shown.data(), r);
+    if (!drawn.empty()) scalePicture({drawn.data(), area}, {drawnBy.x / p.shown.x, drawnBy.y / p.shown.y}, intersect(r, all), shown.data(), r);
     pixels_ = std::move(shown);
     return pixels_.data();
 }

@@ -75,6 +75,7 @@ bool Replay::ownRequestPixels(Args& in) {
     header.y = part.y;
     header.w = part.w;
     header.h = part.h;
+    header.first = !repeats && !part.empty() && part == asked; // the others have nothing of it
     header.last = 1;
     out_.answer(header, {pixels, bytes});
     return true;

@@ -33,6 +33,8 @@ struct RenderPass {
     Range share;                  // …and which part of them it draws
     Zoom zoom;                    // drawn smaller or larger by this, and as large as it is shown before anybody sees it; at most kMostZoom
 
+    Zoom shown;                   // its pictures are larger or smaller than the program's by this: those of another canvas
+
     bool operator==(const RenderPass&) const = default;
 };
 

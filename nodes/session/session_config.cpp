@@ -120,6 +120,8 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("shareEnd", s.pass.share.end);
     visit("zoomX", s.pass.zoom.x);
     visit("zoomY", s.pass.zoom.y);
+    visit("shownX", s.pass.shown.x);
+    visit("shownY", s.pass.shown.y);
     visit("eye", s.pass.eye);
     visit("kernelX", s.pass.kernelX, 0);
     visit("kernelY", s.pass.kernelY, 0);
@@ -138,6 +140,8 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("glBackend", s.glBackend);
     visit("sendPictures", s.sendPictures);
     visit("pictureCodec", s.pictureCodec);
+    visit("wayX", s.way.x);
+    visit("wayY", s.way.y);
     visit("partCodec", s.partCodec);
     visit("wallWindows", s.wallWindows);
     visit("windowTitle", s.windowTitle);
@@ -326,7 +330,8 @@ Result<NodeSetup> nodeSetupFromJson(const std::string& line) {
     const RenderPass& p = setup->pass;
     if (p.kernelX >= p.kernelWidth || p.kernelY >= p.kernelHeight || p.sample >= p.samples || p.phase >= p.period || p.range >= p.ranges)
         return Error{"node setup: its pass is none of the session's"};
-    if (!isPossible(p.zoom)) return noSuchZoom("node setup");
+    if (!isPossible(p.zoom) || !isPossible(p.shown)) return noSuchZoom("node setup");
+    if (!isPossible(setup->way) || setup->way.x > 1 || setup->way.y > 1) return Error{"node setup: the size of its pictures on their way is not above 0, or above 1"};
     return setup;
 }
 

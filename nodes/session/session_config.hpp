@@ -92,6 +92,7 @@ struct NodeSetup {
     std::string glBackend = "auto";
     bool sendPictures = false;    // Picture messages to the head at every swap…
     std::string pictureCodec = "raw"; // …or PackedPictures, as of PlaneEncoder
+    Zoom way;                     // they are sent smaller by this, at most 1 (nodes/pictures/picture_way.hpp)
     std::string partCodec = "auto"; // of parts of pictures, to other nodes
     bool wallWindows = false;     // open one window per tile
     std::string windowTitle;      // of the one that shows its area

@@ -17,6 +17,7 @@ struct Share {
     Range range;
     SubPixel sample;
     Index destination;
+    Index context = kNone; // that drew it; none: as tiles
 };
 using Pixel = std::vector<Share>;
 
@@ -27,6 +28,9 @@ struct Picture {
 class SymbolicWall {
 public:
     SymbolicWall(const ResolvedConfig& config, const FrameInput& input, const FramePlan& plan) : config_(config), input_(input), plan_(plan) {}
+
+    // What every destination has when it is done, by its eyes: pixels of its window.
+    std::map<std::pair<Index, Eye>, std::map<std::pair<int32_t, int32_t>, Pixel>> shown;
 
     // What is wrong, empty when everything was drawn once.
     std::string run() {
@@ -96,8 +100,13 @@ private:
 
     void drawInto(Pixels& pixels, const RenderContext& c, int32_t toX, int32_t toY) {
         for (int32_t y = 0; y < c.viewport.h; ++y) {
-            for (int32_t x = 0; x < c.viewport.w; ++x) pixels[{toX + x, toY + y}].push_back({pixelOf(c.x, x), pixelOf(c.y, y), c.range, c.subPixel, c.destination});
+            for (int32_t x = 0; x < c.viewport.w; ++x) pixels[{toX + x, toY + y}].push_back({pixelOf(c.x, x), pixelOf(c.y, y), c.range, c.subPixel, c.destination, contextOf(c)});
         }
+    }
+
+    [[nodiscard]] Index contextOf(const RenderContext& c) const {
+        const bool planned = &c >= plan_.contexts.data() && &c < plan_.contexts.data() + plan_.contexts.size();
+        return planned ? static_cast<Index>(&c - plan_.contexts.data()) : kNone;
     }
 
     // Tiles are drawn, handed over and put together one by one: here all by the first who asks, each at its place.
@@ -162,6 +171,7 @@ private:
         for (const Eye eye : kEyes) {
             const auto drawn = std::find_if(plan_.contexts.begin(), plan_.contexts.end(), [&](const RenderContext& c) { return c.channel == done.channel && c.destination == done.channel && c.view != kNone && c.eye == eye; });
             if (drawn == plan_.contexts.end()) continue;
+            shown[{done.channel, eye}] = pixelsOf(*drawn);
             for (int32_t i = 0; i < channel.w * channel.h && fault_.empty(); ++i) {
                 const int32_t x = i % channel.w, y = i / channel.w;
                 const std::string wrong = faultOf(pixelsOf(*drawn)[{channel.x + x, channel.y + y}], x, y, done.channel);

@@ -28,7 +28,7 @@ class BothSides {
 public:
     explicit BothSides(const Limits& limits) : packer(limits), unpacker(limits), encoder_([] { return int64_t{0}; }) {}
 
-    // Sends one batch; returns its size on the wire.
+    // Sends one batch, a frame; returns its size on the wire.
     size_t send(const std::vector<Packet>& packets) {
         for (const Packet& p : packets) packer.add(p.stream, p.bytes, walked);
         staged = packer.stagedBytes();
@@ -39,6 +39,7 @@ public:
         }
         const Bytes wire(batch->begin(), batch->end());
         packer.clear();
+        packer.beginFrame(packer.plain());
         BatchHeadReader head;
         size_t at = 0;
         while (at < wire.size() && !head.add(wire[at++])) {}

@@ -5,12 +5,14 @@
 
 Without --files: all of configs/; with --shared also the example files beside the tree (or in MURAL_SHARED), when they are
 there. A file without stereo shows, over every part of the wall that it draws, exactly the native picture: 0 pixels differ.
-Screens at angles are laid flat for that (passes.py looks into rooms). What is zoomed must be near the native picture, and differ from it. Of one with stereo the picture is put together from the runs of each eye alone, and compared with that.
+Screens at angles are laid flat for that (passes.py looks into rooms). What is zoomed must be near the native picture, and differ from it; what frames make smaller on their way, or show
+elsewhere, must be the native picture made so. Of one with stereo the picture is put together from the runs of each eye alone, and compared with that.
 """
 
 import argparse
 import glob
 import json
+import math
 import os
 import re
 import subprocess
@@ -24,6 +26,9 @@ PROGRAM = "fixed_lighting"
 FRAMES = 3
 ZOOMED_MEAN = 12  # of half the size; a picture that is a few pixels off, or black, differs by more
 REDUCED_MEAN = 0.1  # of one that was drawn larger, from the native picture that was drawn so and reduced; a pixel off is 1 and more
+CANVAS_SIZE = "320x240"  # of the program's picture, so that those of canvases are whole parts or multiples of it
+CANVAS_MEAN = 3  # of a canvas with pixels of its own, from a native window of its size (0.97); a pixel off is 13 and more, the native picture made smaller 4.5
+WAY_MOST = 2  # of values that were rounded four times: pixels, and their weights, in 256ths; a part that is a pixel off differs by more
 SKIPPED = 77
 
 
@@ -71,7 +76,7 @@ class Run:
     def picture(self, options, times=(1, 1)):
         """The last frame, and what was said; of a program with a window so many times as large. Raises RuntimeError with the program's words."""
         a = self.arguments
-        size = "x".join(str(int(length) * by) for length, by in zip(a.size.split("x"), times))
+        size = "x".join(str(math.ceil(int(length) * by - 0.5)) for length, by in zip(a.size.split("x"), times))
         with tempfile.TemporaryDirectory(prefix="mural-configurations.") as folder:
             out = os.path.join(folder, "out")
             command = [os.path.join(a.build, "bin", "mural"), "run", "--size", size, "--display", "none", "--explain",
@@ -83,6 +88,7 @@ class Run:
             files = sorted(glob.glob(os.path.join(out, "*.png")))
             if done.returncode != 0 or not files:
                 raise RuntimeError("status %d, %d pictures: %s" % (done.returncode, len(files), said.strip().splitlines()[-1:]))
+            self.canvases = {os.path.basename(os.path.dirname(path))[len("canvas."):]: read_png(path) for path in sorted(glob.glob(os.path.join(out, "canvas.*", "*.png")))}
             return read_png(files[-1]), said
 
 
@@ -133,6 +139,53 @@ def reduced(picture, times):
     return width, height, rows
 
 
+def pixels_of(area, width, height):
+    """x0, x1, and rows from the top, of a part of the picture."""
+    x, y, w, h = area
+    return int(x * width + 1e-6), int((x + w) * width + 1e-6), height - int((y + h) * height + 1e-6), height - int(y * height + 1e-6)
+
+
+def resized(lines, size):
+    """Rows of values (3 per pixel) of another size: the mean of what a pixel covers where it is smaller, else linear between the middles of pixels."""
+    def weights(count, wanted):
+        by = count / wanted
+        for i in range(wanted):
+            if by <= 1:
+                at = (i + 0.5) * by - 0.5
+                low = int(at // 1)
+                yield [(min(max(low, 0), count - 1), 1 - (at - low)), (min(max(low + 1, 0), count - 1), at - low)]
+            else:
+                begin, end = i * by, (i + 1) * by
+                yield [(min(p, count - 1), (min(p + 1, end) - max(p, begin)) / by) for p in range(int(begin), min(int(end) + 1, count))]
+    width, height = size
+    columns = list(weights(len(lines[0]) // 3, width))
+    narrow = [[sum(line[3 * p + c] * w for p, w in column) for column in columns for c in range(3)] for line in lines]
+    return [[sum(narrow[p][i] * w for p, w in row) for i in range(3 * width)] for row in weights(len(lines), height)]
+
+
+def of_frames(said):
+    """Parts of the wall that frames have made smaller on their way, or show elsewhere: area, size on the way, where it is shown."""
+    found = []
+    for pass_text, area, shown in re.findall(r"node \d+ \(local\) draws for channel (.*?)part \[ ([^]]+) \] of the wall(?:, shown in \[ ([^]]+) \])?", said):
+        way = re.search(r"sent (\S+) by (\S+) times as large", pass_text)
+        if way or shown:
+            numbers = lambda text: tuple(float(v) for v in text.split())
+            found.append((numbers(area), tuple(float(v) for v in way.groups()) if way else (1, 1), numbers(shown or area)))
+    return found
+
+
+def way_difference(native, shown, area, way, place):
+    """The largest difference of values from the native picture, made smaller and larger as the frame says."""
+    width, height, rows = native
+    x0, x1, y0, y1 = pixels_of(area, width, height)
+    lines = [rows[y][3 * x0:3 * x1] for y in range(y1 - 1, y0 - 1, -1)]  # upwards, as what is rounded is
+    small = (max(1, int((x1 - x0) * way[0] + 0.5)), max(1, int((y1 - y0) * way[1] + 0.5)))
+    sent = [[int(v + 0.5) for v in line] for line in resized(lines, small)] if small != (x1 - x0, y1 - y0) else lines
+    x0, x1, y0, y1 = pixels_of(place, width, height)
+    expected = resized(sent, (x1 - x0, y1 - y0))
+    return max(abs(e - s) for line, y in zip(expected, range(y1 - 1, y0 - 1, -1)) for e, s in zip(line, shown[2][y][3 * x0:3 * x1]))
+
+
 def side_by_side(left, right):
     width, height = left[0], left[1]
     half = (width + 1) // 2
@@ -147,11 +200,61 @@ def side_by_side(left, right):
     return width, height, rows
 
 
+def other_canvases(said):
+    """Of each canvas beside the first: its name, how much larger it is, and the first of its nodes."""
+    found = []
+    for name, w, h, own_w, own_h in re.findall(r'canvas "?([^" ]+)"? shows the program\'s picture, too, in (\d+)x(\d+) pixels where the first has (\d+)x(\d+)', said):
+        after = said[said.index("canvas \"%s\" shows" % name if "canvas \"%s\" shows" % name in said else "canvas %s shows" % name):]
+        first = re.search(r"node (\d+) \(local\) draws", after)
+        found.append((name, (int(w) / int(own_w), int(h) / int(own_h)), int(first.group(1))))
+    return found
+
+
+def of_other_canvas(line, said):
+    node = re.search(r"node (\d+) \(local\) draws", line)
+    others = other_canvases(said)
+    return bool(node and others and int(node.group(1)) >= min(first for _, _, first in others))
+
+
+def check_canvases(run, path, pictures, said):
+    """What the other canvases show is what the program draws natively into a window of their size."""
+    about = ""
+    for name, times, _ in other_canvases(said):
+        if name not in pictures:
+            return "", "canvas %s shows nothing" % name
+    if not other_canvases(said):
+        return "", None
+    run = Run(argparse.Namespace(**{**vars(run.arguments), "size": CANVAS_SIZE}), run.display)
+    run.picture(["--config", path, "--here", "--frusta", "program"])
+    pictures = run.canvases
+    for name, times, _ in other_canvases(said):
+        shown = pictures[name]
+        expected = run.picture([], times)[0]
+        if (shown[0], shown[1]) != (expected[0], expected[1]):
+            return "", "canvas %s has %dx%d pixels instead of %dx%d" % (name, shown[0], shown[1], expected[0], expected[1])
+        if " eye" in said or "of each" in said or "sample" in said:
+            about += ", canvas %s has its picture" % name if any(any(row) for row in shown[2]) else ""
+            continue
+        areas = [tuple(float(v) for v in area) for area in re.findall(r"node \d+ \(local\) draws for channel .*?part \[ (\S+) (\S+) (\S+) (\S+) \]", said[said.index("canvas"):])]
+        wrong, _ = difference(expected, shown, areas)
+        mean = mean_difference(expected, shown, (0, 0, 1, 1))
+        if mean > CANVAS_MEAN:
+            return "", "canvas %s differs by %.2f of 255 in the mean from the native picture of its size" % (name, mean)
+        about += ", canvas %s: %d of %d pixels differ from the native picture of its size, by %.3f of 255 in the mean" % (name, wrong, expected[0] * expected[1], mean)
+    return about, None
+
+
 def check(run, path, native):
     """None, or what is wrong; and a line about what was seen."""
     shown, said = run.picture(["--config", path, "--here", "--frusta", "program"])
+    about_canvases, wrong = check_canvases(run, path, run.canvases, said)
+    if wrong:
+        return wrong, ""
+    said = "\n".join(line for line in said.splitlines() if not of_other_canvas(line, said))
     told = re.findall(r"node \d+ \(local\) draws for channel (.*?)part \[ (\S+) (\S+) (\S+) (\S+) \]", said)
-    nodes = [node[1:] for node in told if " zoom " not in node[0]]
+    sent = of_frames(said)
+    nodes = [node[1:] for node in told if " zoom " not in node[0] and "times as large" not in node[0]]
+    nodes = [node for node in nodes if not any(place != area and tuple(float(v) for v in node) == area for area, _, place in sent)]
     scaled = [(tuple(float(v) for v in node[1:]), tuple(float(v) for v in re.search(r" zoom (\S+) ([\d.]+)", node[0]).groups())) for node in told if " zoom " in node[0]]
     areas = [tuple(float(v) for v in node) for node in nodes]
     zoomed = ""
@@ -168,6 +271,16 @@ def check(run, path, native):
         if mean > REDUCED_MEAN:
             return "zoomed, the part %s differs by %.3f of 255 in the mean from the native picture drawn larger" % (area, mean), ""
         zoomed += ", by %.3f from one that is drawn larger" % mean
+    # Both eyes of an anaglyph see one picture when nothing is between them; pairs side by side have parts of half the width, which are not compared.
+    one = shown
+    if sent and " eye" in said:
+        one = run.picture(["--config", path, "--here", "--frusta", "program", "--eye-base", "0"])[0]
+    eyes_as_one = one is shown or difference(native, one, areas)[0] == 0
+    for area, way, place in sent if eyes_as_one else []:
+        most = way_difference(native, one, area, way, place)
+        if most > WAY_MOST:
+            return "the part %s, sent %g by %g times as large, differs by %.2f of 255 from that of the native picture" % (place, *way, most), ""
+        zoomed += ", what frames made smaller by at most %.2f of 255 from the native picture made so" % most
     if not told:
         return "no node is told of", ""
     # Antialiased, or every nth pixel: as the short form draws it.
@@ -186,13 +299,17 @@ def check(run, path, native):
             return "the eyes see the same, however far apart", ""
         # Without a distance between them both eyes see what one sees.
         against += " for both eyes"
-        if flat[2] != expected[2]:
+        if not (sent and eyes_as_one) and flat[2] != expected[2]:
             expected, areas, shown = side_by_side(expected, expected), [(0, 0, 1, 1)], flat
+            if sent:  # in halves of the picture: near it
+                mean = mean_difference(expected, shown, (0, 0, 1, 1))
+                about = "%d nodes, pictures that frames make smaller among them: by %.2f of 255 in the mean from %s" % (len(told), mean, against)
+                return (None if mean < ZOOMED_MEAN else about), about
         else:
             shown = flat
     wrong, outside = difference(expected, shown, areas)
     total = native[0] * native[1]
-    about = "%d nodes, %d of %d pixels differ from %s, %d outside of all parts%s" % (len(told), wrong, total - outside, against, outside, zoomed)
+    about = "%d nodes, %d of %d pixels differ from %s, %d outside of all parts%s%s" % (len(told), wrong, total - outside, against, outside, zoomed, about_canvases)
     return (None if wrong == 0 else about), about
 
 

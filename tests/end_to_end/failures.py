@@ -182,6 +182,27 @@ def node_without_memory(context):
 
 
 @case
+def node_driver_reset(context):
+    """One node's driver says that it was reset (a fault on purpose): a program that asked to be told is told, once, by the
+    status and by the error that GL has for it; another one by a line."""
+    for arguments, told in (([], ["lost by status 0x8254, error 0x0507 behind it"]), (["--unasked"], [])):
+        command = [context.program("context_lost"), "--frames", "60", "--size", "250x190"] + arguments
+        with context.run(command, environment={"MURAL_PLANT": "reset"}) as run:
+            wrong = check_end(run, 0, 60)
+            said = [line for line in run.standard_output if line.startswith("lost")]
+            lines = error_lines(run, ["did not ask to be told"])
+            if wrong is None and said != told:
+                wrong = "it was told \"%s\" instead of \"%s\"" % (" | ".join(said), " | ".join(told))
+            if wrong is None and len(lines) != (0 if told else 1):
+                wrong = "%d lines for a program that %s: %s" % (len(lines), "asked" if told else "did not ask", " | ".join(lines))
+            if wrong is None and not error_lines(run, ["has lost a context"]):
+                wrong = "nobody said that the node's driver had lost a context"
+            if wrong:
+                return wrong
+    return None
+
+
+@case
 def node_stopped_and_continued(context):
     """A node that only sleeps for a while is not lost."""
     with context.drawing("long_run", 60) as run:

@@ -26,7 +26,7 @@ GROUPS = {
     "bindless_images": ["bindless_images"],
     "windows": ["es1_scene", "es2_scene", "es3_scene", "es_pipelines", "es_feedback_limit", "egl_desktop",
                 "egl_offscreen", "egl_images", "egl_pixmaps",
-                "egl_pbuffer_textures", "egl_bound_pbuffers", "egl_sync_order", "draw_read_mix", "fence_order", "surfaceless_sharing",
+                "egl_pbuffer_textures", "egl_bound_pbuffers", "egl_sync_order", "draw_read_mix", "fence_order", "flush_control", "surfaceless_sharing",
                 "texture_from_pixmap", "debug_messages",
                 "several_windows", "shared_contexts", "sharing_order", "threads_windows",
                 "loader_thread", "context_migration", "glx_pbuffers", "x_fonts", "x_pixmaps", "resize",

@@ -213,7 +213,7 @@ public:
         if (share && !dynamic_cast<gl::Context*>(share)) return Error{"a share context that is gone"};
         return std::unique_ptr<gl::Context>(new FakeContext(c.tellsReset));
     }
-    Result<void> makeCurrent(gl::Context* context, gl::Surface* draw, gl::Surface* read) override {
+    Result<void> makeCurrent(gl::Context* context, gl::Surface* draw, gl::Surface* read, gl::HeldBack) override {
         // What was current is flushed, what becomes current is looked at: both must be alive.
         for (const gl::Surface* s : {draw_, read_, static_cast<const gl::Surface*>(draw), static_cast<const gl::Surface*>(read)}) {
             if (s) sink = static_cast<uint8_t>(s->width());

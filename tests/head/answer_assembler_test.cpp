@@ -24,8 +24,8 @@ protected:
                               }};
     std::vector<std::pair<uint32_t, Reply>> replies;
 
-    bool rectangle(int node, int32_t x, int32_t w, uint8_t value, bool last = true) {
-        AnswerHeader h{1, 5, static_cast<uint32_t>(AnswerKind::Rectangle), 2, x, 10, w, 1, 0, last};
+    bool rectangle(int node, int32_t x, int32_t w, uint8_t value, bool last = true, bool all = false) {
+        AnswerHeader h{1, 5, static_cast<uint32_t>(AnswerKind::Rectangle), 2, x, 10, w, 1, all, last};
         return assembler.answer(node, h, bytesOf(std::vector<uint8_t>(static_cast<size_t>(w) * 2, value))).ok();
     }
     bool bytes(int node, const std::vector<uint8_t>& values, bool first, bool last = true) {
@@ -56,6 +56,29 @@ TEST_F(AnswerAssemblerTest, rectanglesWaitForEveryLast) {
     EXPECT_EQ(h.groupBytes, 2u);
     EXPECT_EQ(h.sizeBytes, 10u);
     EXPECT_EQ(replyBytes(), (std::vector<uint8_t>{1, 1, 1, 1, 2, 2, 3, 3, 4, 4}));
+    EXPECT_EQ(assembler.openRequests(), 0u);
+}
+
+TEST_F(AnswerAssemblerTest, aRectangleThatOneNodeHasWholeWaitsForNobody) {
+    rectangle(0, 0, 0, 0);
+    EXPECT_TRUE(replies.empty());
+    rectangle(2, 3, 2, 7, true, true);
+    ASSERT_EQ(replies.size(), 1u);
+    EXPECT_EQ(replies[0].second.header.x, 3);
+    EXPECT_EQ(replies[0].second.header.w, 2);
+    EXPECT_EQ(replies[0].second.header.failed, 0u);
+    EXPECT_EQ(replyBytes(), (std::vector<uint8_t>{7, 7, 7, 7}));
+    EXPECT_EQ(assembler.openRequests(), 1u); // the rest only has to come in
+    rectangle(1, 0, 0, 0);
+    EXPECT_EQ(replies.size(), 1u);
+    EXPECT_EQ(assembler.openRequests(), 0u);
+}
+
+TEST_F(AnswerAssemblerTest, aRectangleThatOneNodeHasWholeIsThereWhenAnotherIsLost) {
+    rectangle(2, 3, 2, 7, true, true);
+    assembler.nodeLost(0);
+    assembler.nodeLost(1);
+    EXPECT_EQ(replies.size(), 1u);
     EXPECT_EQ(assembler.openRequests(), 0u);
 }
 

@@ -315,13 +315,88 @@ TEST(ConfigPlan, whatIsNotZoomedIsSaid) {
 
 // What a file says without effect is said, with its place and what to do.
 TEST(ConfigPlan, fieldsWithoutEffectAreSaid) {
-    auto plan = planOfText("load_equalizer { mode 2D } compound { viewport [ 0 0 .5 1 ] }\ncompound { channel \"b\" viewport [ .5 0 .5 1 ] outputframe { zoom [ .5 .5 ] } }");
+    auto plan = planOfText("load_equalizer { mode 2D } compound { viewport [ 0 0 .5 1 ] }\ncompound { channel \"b\" viewport [ .5 0 .5 1 ] framerate_equalizer { } outputframe { } }");
     ASSERT_TRUE(plan) << plan.error().message;
     ASSERT_EQ(plan->warnings.size(), 2u) << plan->warnings.front();
     EXPECT_NE(plan->warnings[0].find("config_plan_test.eqc:4:47: load_equalizer has no effect"), std::string::npos) << plan->warnings[0];
-    EXPECT_NE(plan->warnings[1].find("config_plan_test.eqc:5:61: zoom has no effect"), std::string::npos) << plan->warnings[1];
+    EXPECT_NE(plan->warnings[1].find("config_plan_test.eqc:5:47: framerate_equalizer has no effect"), std::string::npos) << plan->warnings[1];
     EXPECT_NE(plan->warnings[1].find("; "), std::string::npos) << "a remedy";
     EXPECT_TRUE(planOfText("compound { viewport [ 0 0 .5 1 ] } compound { channel \"b\" viewport [ .5 0 .5 1 ] zoom [ .5 .5 ] outputframe { } }")->warnings.empty()) << "that one has";
+}
+
+// The picture of the second channel is handed on in part: what the screen has drawn is seen around it.
+TEST(ConfigPlan, framesBringPartsToTheWall) {
+    auto plan = planOfText("compound { } compound { channel \"b\" outputframe { viewport [ .5 .5 .5 .5 ] buffer [ COLOR ] } }");
+    ASSERT_TRUE(plan) << plan.error().message;
+    double covered = 0;
+    int others = 0;
+    for (const NodePlan& n : plan->nodes) {
+        covered += n.area->w * n.area->h;
+        EXPECT_FALSE(n.shown);
+        EXPECT_TRUE(n.way.none());
+        for (const NodePlan& o : plan->nodes) EXPECT_TRUE(o.node == n.node || intersect(*n.area, *o.area).empty());
+        others += std::abs(n.area->x - .5) < .01 && std::abs(n.area->y - .5) < .01;
+    }
+    EXPECT_NEAR(covered, 1, 1e-9);
+    EXPECT_EQ(others, 1);
+    EXPECT_EQ(plan->nodes.size(), 3u) << "an L of two rectangles, and the part";
+    EXPECT_FALSE(plan->nodesShowWall);
+    auto same = planOfText("compound { } compound { channel \"b\" outputframe { viewport [ .5 .5 .5 .5 ] } }");
+    ASSERT_TRUE(same) << same.error().message;
+    EXPECT_EQ(same->nodes.size(), 1u) << "with depth, what is there stays, as it is the same";
+}
+
+TEST(ConfigPlan, framesMakePicturesSmallerOnTheirWay) {
+    auto plan = planOfText("compound { viewport [ 0 0 .5 1 ] } compound { channel \"b\" viewport [ .5 0 .5 1 ] outputframe { zoom [ .5 .25 ] } }");
+    ASSERT_TRUE(plan) << plan.error().message;
+    ASSERT_EQ(plan->nodes.size(), 2u);
+    EXPECT_TRUE(plan->nodes[0].way.none());
+    EXPECT_NEAR(plan->nodes[1].way.x, .5, .005) << "in whole pixels of its channel";
+    EXPECT_NEAR(plan->nodes[1].way.y, .25, .005);
+    EXPECT_TRUE(plan->nodes[1].pass.zoom.none()) << "it is drawn as it is";
+    EXPECT_TRUE(plan->warnings.empty());
+    // Ranges that are put together by depth do not fit then.
+    auto ranges = planOfText("buffer [ COLOR DEPTH ] compound { range [ 0 .5 ] } compound { channel \"b\" range [ .5 1 ] outputframe { zoom [ .5 .5 ] } }");
+    ASSERT_TRUE(ranges) << ranges.error().message;
+    for (const NodePlan& n : ranges->nodes) EXPECT_TRUE(n.way.none());
+    ASSERT_EQ(ranges->warnings.size(), 1u);
+    EXPECT_NE(ranges->warnings[0].find(".eqc:4:"), std::string::npos) << ranges->warnings[0];
+}
+
+// Each canvas has nodes of its own, that draw the program's picture in its pixels.
+TEST(ConfigPlan, canvasesAreShownTogether) {
+    const SessionPlan plan = planOfFile("wall-and-monitor.eqc");
+    ASSERT_EQ(plan.nodes.size(), 3u);
+    ASSERT_EQ(plan.canvases.size(), 1u);
+    EXPECT_EQ(plan.canvases[0].name, "monitor");
+    EXPECT_EQ(plan.canvases[0].shown, (Zoom{.5, .5}));
+    EXPECT_EQ(plan.canvases[0].offsetX, 1280) << "beside the wall, where all are on one screen";
+    EXPECT_EQ(picturesOf(plan.wall), 2);
+    EXPECT_EQ(plan.canvases[0].wall.parts.front().firstPicture, 2) << "behind those of the wall";
+    for (const NodePlan& n : plan.nodes) {
+        const bool other = n.node == 2;
+        EXPECT_EQ(n.canvas, other ? 1 : 0);
+        EXPECT_EQ(n.answers, !other) << "programs read the first one's pixels";
+        EXPECT_EQ(n.pass.shown, (other ? Zoom{.5, .5} : Zoom{}));
+        EXPECT_EQ(n.pass.zoom, n.pass.shown);
+        EXPECT_EQ(n.collector, n.node);
+        EXPECT_EQ(n.picture, n.node);
+    }
+    SessionConfig config;
+    config.display = Display::Windows;
+    EXPECT_TRUE(showsWall(config, plan, plan.nodes[2]));
+    EXPECT_FALSE(headShowsCanvas(config, plan.canvases[0]));
+    config.display = Display::App;
+    EXPECT_TRUE(headShowsCanvas(config, plan.canvases[0])) << "the program has one window";
+    config.display = Display::None;
+    EXPECT_FALSE(headTakesPictures(config, plan));
+
+    const auto loaded = load("wall-and-monitor.eqc");
+    auto named = planOf(loaded, {"me", true, "monitor", {}});
+    ASSERT_TRUE(named);
+    EXPECT_TRUE(named->canvases.empty()) << "one that is named is shown alone";
+    EXPECT_EQ(named->nodes.size(), 1u);
+    EXPECT_TRUE(named->nodes[0].pass.shown.none());
 }
 
 TEST(ConfigPlan, quadBufferedPairsHaveAFallback) {
@@ -347,7 +422,7 @@ TEST(ConfigPlan, everyExampleFileCanBePlanned) {
         EXPECT_TRUE(plan.ok()) << (plan.ok() ? "" : plan.error().message);
         if (!plan) continue;
         for (const NodePlan& n : plan->nodes) {
-            EXPECT_LT(n.picture, picturesOf(plan->wall)) << file;
+            EXPECT_LT(n.picture, n.canvas == 0 ? picturesOf(plan->wall) : picturesOf(plan->canvases[static_cast<size_t>(n.canvas) - 1].wall)) << file;
             EXPECT_EQ(n.reach, NodeReach::SharedMemory) << "--here";
         }
     }

@@ -176,7 +176,7 @@ private:
         header.client = client;
         header.requestId = a[0];
         header.kind = verb - 1; // in the order of AnswerKind
-        header.first = setup_.node == 0;
+        header.first = verb == kFakeBytes && setup_.node == 0;
         header.last = 1;
         std::vector<uint32_t> data;
         if (verb == kFakePixels) {
@@ -184,6 +184,7 @@ private:
                                       static_cast<int32_t>(a[3]), static_cast<int32_t>(a[4])};
             // Windows of requests are 64 × 48 in these tests.
             PixelViewport mine = intersect(asked, region(64, 48));
+            header.first = !mine.empty() && mine == asked;
             header.groupBytes = 4;
             if (a[0] == behaviour_.dieAtRequest) mine.h = 1; // half of it, then gone
             header.x = mine.x;

@@ -57,6 +57,35 @@ TEST_F(PicturePassesTest, partsOfAllPassesMakeOnePicture) {
     EXPECT_EQ(pixels(0), (Pixels{10, 11, 12, 13}));
 }
 
+// A canvas beside the first, half as wide: its picture comes with the frame's, and keeps its size when its node is lost.
+TEST(OtherCanvases, haveAPictureOfEachFrame) {
+    std::vector<WindowPicture> pictures;
+    const auto only = [](size_t pass) { return [pass](const std::vector<Picture>& passes, OwnedPicture& into) { into.assign(passes[pass]); }; };
+    PictureAssembler assembler({0, 1}, {}, [&](WindowPicture picture) { pictures.push_back(std::move(picture)); }, {only(1)}, {Zoom{}, Zoom{.5, 1}});
+    const auto part = [&](int node, uint32_t frame, uint32_t width, int value) {
+        const wire::PictureHeader header{1, 1, frame, 0, 0, static_cast<int32_t>(width), 1, width, 1, 0, 0};
+        ByteBuffer rows = ByteBuffer::ofSize(size_t{4} * width);
+        std::memset(rows.data(), value, rows.size());
+        EXPECT_TRUE(assembler.part(node, header, std::move(rows)).ok());
+    };
+    part(1, 1, 4, 7);
+    EXPECT_TRUE(pictures.empty()) << "both are shown together";
+    part(0, 1, 8, 3);
+    ASSERT_EQ(pictures.size(), 1u);
+    EXPECT_EQ(pictures[0].picture->width(), 8);
+    ASSERT_EQ(pictures[0].others.size(), 1u);
+    EXPECT_EQ(pictures[0].others[0]->width(), 4);
+    EXPECT_EQ(pictures[0].others[0]->view().bgra[0], std::byte{7});
+    assembler.nodeLost(1);
+    part(0, 2, 8, 4);
+    ASSERT_EQ(pictures.size(), 2u);
+    EXPECT_EQ(pictures[1].others[0]->view().bgra[0], std::byte{7}) << "as it was";
+    part(0, 3, 12, 5); // the window has grown
+    ASSERT_EQ(pictures.size(), 3u);
+    EXPECT_EQ(pictures[2].others[0]->width(), 6);
+    EXPECT_EQ(pictures[2].others[0]->view().bgra[0], std::byte{0});
+}
+
 TEST_F(PicturePassesTest, latePartsKeepTheOrderOfTheirFrames) {
     part(0, 1, 10), part(1, 1, 11), part(2, 1, 12);
     frame(2, 20);

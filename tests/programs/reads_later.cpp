@@ -64,6 +64,7 @@ void drawTextures(int frame) {
 void readTextures(int turn) {
     glBindBuffer(GL_PIXEL_PACK_BUFFER, images[turn]);
     glGetTextureSubImage(drawn, 0, 5, 9, 0, 20, 12, 1, GL_RGBA, GL_UNSIGNED_BYTE, kImageBytes, nullptr);
+    glGetTextureSubImage(drawn, 0, 9, 2, 0, 20, 12, 1, GL_BGRA, GL_UNSIGNED_BYTE, kImageBytes, reinterpret_cast<void*>(intptr_t{kImageBytes})); // NOLINT(performance-no-int-to-ptr): an offset
     glBindBuffer(GL_PIXEL_PACK_BUFFER, blocks[turn]);
     glGetCompressedTextureSubImage(compressed, 0, 8, 4, 0, 20, 16, 1, kPartBytes, nullptr);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, allBlocks[turn]);
@@ -93,7 +94,7 @@ void showTextures(int turn) {
     const struct {
         GLuint buffer;
         GLsizei sizeBytes;
-    } reads[] = {{images[turn], kImageBytes}, {blocks[turn], kPartBytes}, {allBlocks[turn], kAllBytes}};
+    } reads[] = {{images[turn], 2 * kImageBytes}, {blocks[turn], kPartBytes}, {allBlocks[turn], kAllBytes}};
     int row = 2;
     for (const auto& read : reads) {
         glBindBuffer(GL_PIXEL_PACK_BUFFER, read.buffer);
@@ -129,7 +130,7 @@ int main(int argc, char** argv) {
         [](Window& window) {
             for (int i = 0; i < kMost; ++i) {
                 buffers[i] = roomFor(window.width() * window.height() * 4);
-                images[i] = roomFor(kImageBytes);
+                images[i] = roomFor(2 * kImageBytes);
                 blocks[i] = roomFor(kPartBytes);
                 allBlocks[i] = roomFor(kAllBytes);
             }

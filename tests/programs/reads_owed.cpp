@@ -264,6 +264,23 @@ void readOthers() {
     done(buffer);
 }
 
+// Into one buffer, partly over one another: what was read last is there.
+void readOverOthers() {
+    const GLuint buffer = readAt(0, 28);
+    glBindTexture(GL_TEXTURE_2D, image);
+    glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, kX + 2, kY + 1, 32, 16);
+    glGetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, at(64));
+    glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, kX + 40, kY - 9, 32, 16);
+    glGetTextureSubImage(image, 0, 3, 2, 0, 11, 7, 1, GL_RGBA, GL_UNSIGNED_BYTE, 11 * 7 * 4, at(128));
+    glGetnTexImageARB(GL_TEXTURE_2D, 0, GL_RGB, GL_UNSIGNED_BYTE, 32 * 16 * 3, at(300));
+    glPixelStorei(GL_PACK_ROW_LENGTH, 70);
+    glReadnPixelsARB(kX, kY, 30, 5, GL_RGBA, GL_UNSIGNED_BYTE, kRoom, at(1000));
+    glGetTextureSubImage(image, 0, 0, 0, 0, 20, 9, 1, GL_BGRA, GL_UNSIGNED_BYTE, kRoom, at(1100)); // between those rows, too
+    glPixelStorei(GL_PACK_ROW_LENGTH, 0);
+    glBindTexture(GL_TEXTURE_2D, 0);
+    done(buffer);
+}
+
 void mistakes() {
     const GLuint buffer = readAt(0, 23);
     const auto expect = [](GLenum wanted, const char* what) {
@@ -372,7 +389,7 @@ int main(int argc, char** argv) {
     window->makeCurrent();
     setUp();
     constexpr void (*kParts[])() = {severalReads, lookByName, copyOut, upload, drawFrom, writeOver, deleteEarly,
-                                    askBetween, readOthers, mistakes, mapForGood, many, share};
+                                    askBetween, readOthers, readOverOthers, mistakes, mapForGood, many, share};
     for (int frame = 0; frame < options.frames; ++frame) {
         scene(frame);
         row = column = 0;

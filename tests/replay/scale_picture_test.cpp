@@ -1,4 +1,4 @@
-#include "nodes/replay/scale_picture.hpp"
+#include "nodes/pictures/scale_picture.hpp"
 
 #include <gtest/gtest.h>
 #include <numeric>

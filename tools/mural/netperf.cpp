@@ -9,7 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "common/clock.hpp"
+#include "common/quick_clock.hpp"
 #include "nodes/launch/program_check.hpp"
 #include "tools/mural/netperf_measured.hpp"
 #include "tools/mural/stream_pattern.hpp"
@@ -34,7 +34,7 @@ double cpuS() {
     return seconds(used.ru_utime) + seconds(used.ru_stime);
 }
 
-double nowS() { return static_cast<double>(monotonicNowNs()) * 1e-9; }
+double nowS() { return static_cast<double>(quickNowNs()) * 1e-9; }
 
 struct Plan {
     rsp::GroupOptions options;
@@ -155,10 +155,10 @@ Result<Measured> receive(Group& group, const NetperfArguments& a) {
     double firstS = 0;
     double cpuBegan = cpuS();
     while (!leave.passed()) {
-        auto count = group.read(rsp::kHost, piece, Deadline::inMs(leave.leftNs(withinNs) / kNsPerMs + 1));
+        auto count = group.read(rsp::kHost, piece, Deadline::at(quickNowNs() + leave.leftNs(withinNs) + kNsPerMs));
         if (!count && !leave.passed()) m.cut = count.error().message;
         if (!count || *count == 0) break; // the sender has what it wanted
-        const int64_t nowNs = monotonicNowNs();
+        const int64_t nowNs = quickNowNs();
         const double now = static_cast<double>(nowNs) * 1e-9;
         m.timeline.add(*count, nowNs);
         check.take(std::span(piece).first(*count));

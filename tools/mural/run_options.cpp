@@ -424,7 +424,7 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
     command.add_option("--save", a.save, "write only these frames, counted from 1")->type_name("1,30,90");
     command.add_option("--record", a.record, "record the program's GL stream into this file, for mural replay")->type_name("FILE");
     command.add_option("--config", a.config, "wall, nodes and compounds by a configuration file (.eqc)")->type_name("FILE");
-    command.add_option("--canvas", a.canvas, "show this canvas of the file (its first)")->type_name("NAME");
+    command.add_option("--canvas", a.canvas, "show this canvas of the file alone (all)")->type_name("NAME");
     command.add_option("--frusta", a.frusta, "screens of the file show one flat picture, the program's, or each the scene as it is seen from the room: auto, program, room (auto: the room's where screens stand at angles)")->type_name("WHOSE");
     command.add_option("--model-unit", a.modelUnit, "length of a metre of the room in the program's units (1)")->type_name("N");
     command.add_option("--layout", a.layouts, "show this layout of the file's canvases; may be given for each")->type_name("NAME")->take_all();

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <sys/epoll.h>
+#include <poll.h>
 #include <sys/timerfd.h>
 
 #include "common/clock.hpp"
@@ -31,7 +31,8 @@ Result<Arrivals> Arrivals::open() {
     a.watched_ = FileDescriptor(epoll_create1(EPOLL_CLOEXEC));
     a.timer_ = FileDescriptor(timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC));
     if (!a.all_.valid() || !a.watched_.valid() || !a.timer_.valid()) return failed("make a multicast group's timer");
-    if (auto r = a.add(a.timer_.get()); !r) return r.error();
+    // By edge: nobody has to fetch that it was time.
+    if (!control(a.all_.get(), EPOLL_CTL_ADD, a.timer_.get(), uint32_t{EPOLLIN} | EPOLLET)) return failed("watch a multicast group's timer");
     if (!control(a.watched_.get(), EPOLL_CTL_ADD, a.all_.get(), EPOLLIN)) return failed("watch a multicast group's sockets");
     return a;
 }
@@ -49,9 +50,24 @@ void Arrivals::wakeAt(int64_t ns) {
     timerfd_settime(timer_.get(), TFD_TIMER_ABSTIME, &time, nullptr);
 }
 
-std::span<const int> Arrivals::wait(int timeoutMs) {
+// A timeout of its own costs less than to set a timer.
+int Arrivals::waitFor(std::span<epoll_event> events, int64_t timeoutNs) {
+    const auto most = static_cast<int>(events.size());
+    if (timeoutNs <= 0) return epoll_wait(all_.get(), events.data(), most, 0);
+    const timespec timeout{static_cast<time_t>(timeoutNs / kNsPerS), static_cast<long>(timeoutNs % kNsPerS)};
+    if (fineTimeouts_) {
+        const int count = epoll_pwait2(all_.get(), events.data(), most, &timeout, nullptr);
+        if (count >= 0 || errno == EINTR) return count;
+        fineTimeouts_ = false;
+    }
+    pollfd all{all_.get(), POLLIN, 0};
+    ppoll(&all, 1, &timeout, nullptr);
+    return epoll_wait(all_.get(), events.data(), most, 0);
+}
+
+std::span<const int> Arrivals::wait(int64_t timeoutNs) {
     std::array<epoll_event, 4> events{};
-    const int count = epoll_wait(all_.get(), events.data(), static_cast<int>(events.size()), timeoutMs);
+    const int count = waitFor(events, timeoutNs);
     size_t sockets = 0;
     for (int i = 0; i < count; ++i) {
         const int fd = events[static_cast<size_t>(i)].data.fd;

@@ -18,10 +18,7 @@ public:
             const auto found = core_.members_.find(id);
             return found != core_.members_.end() && !found->second.multicast;
         };
-        const auto anyTunnel = [&] {
-            return std::ranges::any_of(core_.members_, [](const auto& m) { return !m.second.multicast; });
-        };
-        copied_ = core_.tunnelled_ || (to == kEverybody ? anyTunnel() : tunnelledPeer(to));
+        copied_ = core_.tunnelled_ || (core_.anyTunnel_ && (to == kEverybody || tunnelledPeer(to)));
         if (!copied_) return core_.out_.datagram(to, bytes);
         copy_.assign(bytes, std::byte{0});
         return copy_;
@@ -70,7 +67,13 @@ void GroupCore::makeSender() {
 
 Receiver* GroupCore::receiver(MemberId from) {
     const auto found = receivers_.find(from);
-    return found == receivers_.end() ? nullptr : found->second.get();
+    if (found == receivers_.end()) return nullptr;
+    touch(from);
+    return found->second.get();
+}
+
+void GroupCore::touch(MemberId from) {
+    if (std::ranges::find(touched_, from) == touched_.end()) touched_.push_back(from);
 }
 
 void GroupCore::socketDropped(uint32_t count) {
@@ -135,12 +138,35 @@ int64_t GroupCore::tick(int64_t nowNs) {
         if (!candidates_.empty()) next = std::min(next, nowNs + kBetweenProbesNs);
     }
     if (sender_ && live_) next = std::min(next, sender_->tick(nowNs, *datagrams_));
-    if (settings_.host) watchMembers(nowNs); // after the tick, which knows of jumps of the clock
-    for (auto& [id, r] : receivers_) {
-        if (members_.contains(id)) next = std::min(next, r->tick(nowNs, *datagrams_));
+    // After the tick, which knows of jumps of the clock.
+    if (settings_.host && (watchedNs_ == INT64_MIN || nowNs - watchedNs_ >= kBetweenWatchesNs)) {
+        watchMembers(nowNs);
+        watchedNs_ = nowNs;
     }
+    next = std::min(next, tickReceivers(nowNs));
     datagrams_->finish();
     return next;
+}
+
+// Of many members most have nothing to say, and to look at each costs more than the one that has.
+int64_t GroupCore::tickReceivers(int64_t nowNs) {
+    const auto look = [&](MemberId id, Receiver& r) {
+        if (members_.contains(id)) receiversDueNs_ = std::min(receiversDueNs_, r.tick(nowNs, *datagrams_));
+    };
+    if (nowNs >= receiversDueNs_) {
+        receiversDueNs_ = INT64_MAX;
+        for (auto& [id, r] : receivers_) look(id, *r);
+    } else {
+        for (const MemberId id : touched_) {
+            if (const auto found = receivers_.find(id); found != receivers_.end()) look(id, *found->second);
+        }
+    }
+    touched_.clear();
+    return receiversDueNs_;
+}
+
+void GroupCore::membersChanged() {
+    anyTunnel_ = std::ranges::any_of(members_, [](const auto& m) { return !m.second.multicast; });
 }
 
 void GroupCore::tunnel(MemberId to, std::span<const std::byte> datagram) {
@@ -150,6 +176,7 @@ void GroupCore::tunnel(MemberId to, std::span<const std::byte> datagram) {
 
 void GroupCore::part(MemberId id, GoneReason reason) {
     if (members_.erase(id) == 0) return;
+    membersChanged();
     if (sender_) sender_->removeMember(id);
     out_.memberGone(id, reason);
 }
@@ -157,6 +184,7 @@ void GroupCore::part(MemberId id, GoneReason reason) {
 void GroupCore::meet(MemberId id, MemberInfo info, int64_t nowNs) {
     info.fromByte = sender_->writtenBytes();
     members_[id] = info;
+    membersChanged();
     out_.memberCame(id, info);
     const Sequence first = sender_->addMember(id, nowNs);
     const StreamStart start{self_, id, first};

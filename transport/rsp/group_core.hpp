@@ -20,6 +20,7 @@ namespace mural::rsp {
 
 constexpr MemberId kHost = 0;
 constexpr int64_t kBetweenProbesNs = 50'000'000;
+constexpr int64_t kBetweenWatchesNs = 5'000'000; // whether members are silent, or stalled
 constexpr size_t kProbeHeadBytes = kHeadBytes + 4; // and the nonce; the rest fills the datagram up
 
 // What is done about a member that the stream waits for.
@@ -106,6 +107,7 @@ public:
     [[nodiscard]] Sender* sender() { return sender_.get(); }
     // Another member's stream; nullptr: none (yet). It stays when the member has gone, until it is forgotten: what came
     // can still be read.
+    // What is read there may be worth telling: the next tick looks.
     [[nodiscard]] Receiver* receiver(MemberId from);
     void forget(MemberId from) { receivers_.erase(from); }
     [[nodiscard]] const std::map<MemberId, MemberInfo>& members() const { return members_; }
@@ -154,6 +156,9 @@ private:
     void sendProbe(uint32_t nonce);
     void probeUnreached(int64_t nowNs);
     void tunnel(MemberId to, std::span<const std::byte> datagram);
+    void touch(MemberId from);
+    int64_t tickReceivers(int64_t nowNs);
+    void membersChanged();
 
     GroupSettings settings_;
     GroupOutput& out_;
@@ -164,7 +169,11 @@ private:
     StreamShape shape_;
     std::unique_ptr<Sender> sender_;
     std::map<MemberId, std::unique_ptr<Receiver>> receivers_;
+    int64_t receiversDueNs_ = INT64_MIN; // the first of them that something is due at
+    std::vector<MemberId> touched_;      // receivers that something has come for since the last tick
     std::map<MemberId, MemberInfo> members_; // without this one
+    bool anyTunnel_ = false;                 // multicast does not reach all of them
+    int64_t watchedNs_ = INT64_MIN;
     std::map<MemberId, Candidate> candidates_;
     std::map<MemberId, Unreached> unreached_;
     bool tunnelled_ = false; // this member is reached by the control connection alone

@@ -153,6 +153,7 @@ void GroupCore::take(MemberId from, const StreamStart& m, int64_t) {
     s.socketDatagrams = settings_.socketDatagrams;
     s.heartbeatNs = settings_.heartbeatNs;
     receivers_[m.writer] = std::make_unique<Receiver>(s, m.first);
+    touch(m.writer);
 }
 
 // Member.
@@ -201,12 +202,14 @@ void GroupCore::take(MemberId, const Rerouted& m, int64_t) {
     const auto found = members_.find(m.id);
     if (found == members_.end()) return;
     found->second.multicast = m.multicast;
+    membersChanged();
     out_.memberRerouted(m.id, m.multicast);
 }
 
 // Host: what it lacks is repaired as ever, but each datagram goes into its connection, too; or does no longer.
 void GroupCore::reroute(MemberId id, bool multicast, int64_t nowNs) {
     members_.at(id).multicast = multicast;
+    membersChanged();
     Unreached& u = unreached_[id];
     if (!multicast) {
         u.waitNs = u.waitNs == 0 ? kTryAgainNs : std::min(2 * u.waitNs, kMostTryAgainNs);

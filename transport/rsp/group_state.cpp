@@ -22,7 +22,7 @@ constexpr int64_t kGoodbyeMs = 1000; // how long a leaving member waits until th
 constexpr size_t kUdpOverIpv4Bytes = 28;
 constexpr size_t kUdpOverIpv6Bytes = 48;
 
-int64_t steadyNs() { return monotonicNowNs(); }
+int64_t steadyNs() { return quickNowNs(); }
 
 // "::ffff:10.0.0.1" is how an IPv4 peer of an IPv6 socket looks.
 std::string withoutMapping(const std::string& address) {
@@ -50,6 +50,7 @@ Result<void> Group::State::openSockets() {
     auto own = UdpSocket::openOwn(interface_, group_.family(), options_.socketBytes);
     if (!own) return own.error();
     own_.emplace(std::move(*own));
+    own_->leaveOutSenders(); // datagrams tell by themselves
     auto arrivals = Arrivals::open();
     if (!arrivals) return arrivals.error();
     arrivals_.emplace(std::move(*arrivals));
@@ -64,6 +65,7 @@ Result<void> Group::State::joinMulticast() {
     auto socket = UdpSocket::openGroup(group_, interface_, options_.socketBytes);
     if (!socket) return socket.error();
     groupSocket_.emplace(std::move(*socket));
+    groupSocket_->leaveOutSenders();
     return arrivals_->add(groupSocket_->descriptor());
 }
 

@@ -11,6 +11,7 @@
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/steady_timer.hpp>
 
+#include "common/quick_clock.hpp"
 #include "transport/rsp/arrivals.hpp"
 #include "transport/rsp/batch_outbox.hpp"
 #include "transport/rsp/control_link.hpp"
@@ -28,7 +29,7 @@ struct Group::State : GroupOutput {
     void stop();
 
     // The following with the mutex held.
-    void pump(int64_t nowNs = monotonicNowNs()); // what is due now: sends, and wakes who waits
+    void pump(int64_t nowNs = quickNowNs()); // what is due now: sends, and wakes who waits
     [[nodiscard]] GroupReport report() const;
 
     // GroupOutput
@@ -79,6 +80,7 @@ private:
     [[nodiscard]] int64_t restNs(const Waits* what, int64_t nowNs) const;
     void receive(std::span<const int> sockets, int64_t nowNs);
     void armTimer(int64_t atNs);
+    void tellTime(int64_t atNs);
     void wakeWaiting();
     void wake(Waits& what);
     void wakeAll();
@@ -103,10 +105,12 @@ private:
     std::optional<boost::asio::posix::stream_descriptor> watched_; // wakes the group's thread while nobody leads
     const Waits* leaderWaitsFor_ = nullptr;                        // nullptr: nobody leads
     bool leaderSleeps_ = false;
+    int64_t leaderUntilNs_ = 0; // it sleeps so long at most
     bool leaderCalled_ = false; // there may be what it waits for
     int64_t ledUntilNs_ = 0;    // the last leader
     bool isWatched_ = true;     // else somebody leads, or takeOverTimer_ runs
     bool takesOver_ = false;    // takeOverTimer_ runs
+    int64_t takeOverNs_ = kNsPerMs;
     ReceiveModeration moderation_;
     std::optional<BatchOutbox> outbox_;
     std::optional<DatagramOpener> opener_;
@@ -116,7 +120,8 @@ private:
     std::string hostAddress_;
     std::set<std::string> ownAddresses_; // of this machine
     bool loop_ = true;                   // members on this machine are reached
-    int64_t timerNs_ = INT64_MAX;
+    int64_t timerNs_ = INT64_MAX; // when something is due
+    int64_t toldNs_ = INT64_MAX;  // the time that arrivals_ knows of
     std::thread thread_;
 };
 

@@ -1,6 +1,7 @@
 // Who waits for what in a group, who sees to its sockets and timer meanwhile, and who is woken: leader and followers. A
 // datagram's way is through one thread where it can be: the one that waits for it.
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 #include "transport/rsp/group_state.hpp"
@@ -12,12 +13,12 @@ namespace asio = boost::asio;
 namespace {
 constexpr int64_t kSliceNs = 100 * kNsPerMs; // how long a wait lasts at most before it looks again
 constexpr int64_t kTakeOverNs = kNsPerMs;      // after which the group's thread does what no leader has come back for
+constexpr int64_t kMostTakeOverNs = 2 * kNsPerMs; // so long at most, once, where leaders have always come back
 constexpr int64_t kMostPauseNs = 2 * kNsPerMs; // of a writer between two batches
 } // namespace
 
-// Each look at the clock is a system call: there are few.
 bool Group::State::wait(std::unique_lock<std::mutex>& lock, Waits& what, Deadline deadline) {
-    int64_t nowNs = monotonicNowNs();
+    int64_t nowNs = quickNowNs();
     if (nowNs >= deadline.atNs()) return false;
     const int64_t untilNs = std::min(deadline.atNs(), nowNs + kSliceNs);
     if (leaderWaitsFor_) {
@@ -29,13 +30,15 @@ bool Group::State::wait(std::unique_lock<std::mutex>& lock, Waits& what, Deadlin
     lead(what);
     while (!leaderCalled_ && nowNs < untilNs) {
         const int64_t rest = std::min(restNs(&what, nowNs), untilNs - nowNs);
+        leaderUntilNs_ = std::min(untilNs, timerNs_);
+        const int64_t timeoutNs = leaderUntilNs_ - nowNs - rest;
         leaderSleeps_ = true;
         lock.unlock();
         if (rest > 0) sleepUntilNs(nowNs + rest);
-        const auto sockets = arrivals_->wait(static_cast<int>((untilNs - nowNs + kNsPerMs - 1) / kNsPerMs));
+        const auto sockets = arrivals_->wait(timeoutNs);
         lock.lock();
         leaderSleeps_ = false;
-        nowNs = monotonicNowNs();
+        nowNs = quickNowNs();
         receive(sockets, nowNs);
     }
     endLead(nowNs);
@@ -53,14 +56,17 @@ void Group::State::endLead(int64_t nowNs) {
     leaderWaitsFor_ = nullptr;
     ledUntilNs_ = nowNs;
     if (room.sleeping + arrived.sleeping + data.sleeping > 0) return letWatch();
-    if (!takesOver_) takeOverAfter(kTakeOverNs);
+    if (!takesOver_) takeOverAfter(takeOverNs_);
 }
 
 // What has come meanwhile wakes the group's thread.
 void Group::State::letWatch() {
-    if (!std::exchange(isWatched_, true)) arrivals_->setWatched(true);
+    if (std::exchange(isWatched_, true)) return;
+    arrivals_->setWatched(true);
+    tellTime(timerNs_);
 }
 
+// A leader that kept coming back will do so: the group's thread looks after it the seldomer, the longer that goes.
 void Group::State::takeOverAfter(int64_t ns) {
     takesOver_ = true;
     takeOverTimer_.expires_after(std::chrono::nanoseconds(ns));
@@ -68,9 +74,10 @@ void Group::State::takeOverAfter(int64_t ns) {
         if (ended) return;
         const std::lock_guard lock(mutex);
         takesOver_ = false;
+        const bool cameBack = leaderWaitsFor_ || quickNowNs() < ledUntilNs_ + kTakeOverNs;
+        takeOverNs_ = cameBack ? std::min(2 * takeOverNs_, kMostTakeOverNs) : kTakeOverNs;
         if (leaderWaitsFor_) return;
-        const int64_t leftNs = ledUntilNs_ + kTakeOverNs - monotonicNowNs();
-        if (leftNs > 0) return takeOverAfter(leftNs);
+        if (cameBack) return takeOverAfter(takeOverNs_);
         letWatch();
     });
 }
@@ -83,7 +90,7 @@ void Group::State::watch() {
         {
             const std::lock_guard lock(mutex);
             if (!leaderWaitsFor_) {
-                const int64_t nowNs = monotonicNowNs();
+                const int64_t nowNs = quickNowNs();
                 receive(arrivals_->wait(0), nowNs);
                 rest = restNs(nullptr, nowNs);
             }
@@ -108,18 +115,20 @@ int64_t Group::State::restNs(const Waits* what, int64_t nowNs) const {
 // What is at these sockets, and what is due.
 void Group::State::receive(std::span<const int> sockets, int64_t nowNs) {
     if (nowNs >= timerNs_) timerNs_ = INT64_MAX;
+    if (nowNs >= toldNs_) toldNs_ = INT64_MAX;
     size_t datagrams = 0;
     bool urgent = false;
+    const auto take = [&](std::span<std::byte> bytes, const SocketAddress&) {
+        if (!opener_) return;
+        const auto opened = opener_->open(bytes);
+        if (opened.empty()) return;
+        ++datagrams;
+        urgent = urgent || isUrgent(opened);
+        core->inputDatagram(opened, nowNs);
+    };
     for (const int descriptor : sockets) {
         UdpSocket& socket = descriptor == own_->descriptor() ? *own_ : *groupSocket_;
-        socket.receive([&](std::span<std::byte> bytes, const SocketAddress&) {
-            if (!opener_) return;
-            const auto opened = opener_->open(bytes);
-            if (opened.empty()) return;
-            ++datagrams;
-            urgent = urgent || isUrgent(opened);
-            core->inputDatagram(opened, nowNs);
-        });
+        socket.receive(std::ref(take));
     }
     moderation_.looked(datagrams, urgent, nowNs);
     core->socketDropped(dropped());
@@ -133,10 +142,16 @@ void Group::State::pump(int64_t nowNs) {
     wakeWaiting();
 }
 
-// An earlier time stays: it costs a look, and to set one costs a system call.
+// Who leads looks at the time by itself; only who sleeps already is told.
 void Group::State::armTimer(int64_t atNs) {
-    if (atNs >= timerNs_) return;
-    timerNs_ = atNs;
+    timerNs_ = std::min(timerNs_, atNs);
+    if (leaderSleeps_ ? timerNs_ < leaderUntilNs_ : isWatched_) tellTime(timerNs_);
+}
+
+// An earlier time stays: it costs a look, and to set one costs a system call.
+void Group::State::tellTime(int64_t atNs) {
+    if (atNs >= toldNs_) return;
+    toldNs_ = atNs;
     arrivals_->wakeAt(atNs);
 }
 
@@ -158,7 +173,7 @@ void Group::State::wake(Waits& what) {
     if (what.sleeping > 0) what.wake.notify_all();
     if (leaderWaitsFor_ != &what || leaderCalled_) return;
     leaderCalled_ = true;
-    if (leaderSleeps_) armTimer(0);
+    if (leaderSleeps_) tellTime(0);
 }
 
 void Group::State::wakeAll() {

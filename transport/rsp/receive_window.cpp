@@ -11,8 +11,8 @@ namespace mural::rsp {
 
 ReceiveWindow::ReceiveWindow(const StreamShape& shape, Sequence first)
     : payloadBytes_(shape.payloadBytes), mask_(shape.windowDatagrams - 1),
-      payloads_(std::make_unique_for_overwrite<std::byte[]>(shape.payloadBytes * shape.windowDatagrams)), lengths_(shape.windowDatagrams),
-      groupBases_(shape.windowDatagrams), groups_(shape.windowDatagrams), cumulative_(first), reading_(first),
+      payloads_(shape.payloadBytes, shape.windowDatagrams), places_(shape.windowDatagrams), lengths_(shape.windowDatagrams),
+      groupBases_(shape.windowDatagrams), groups_(shape.windowDatagrams), known_(shape.windowDatagrams), cumulative_(first), reading_(first),
       forgotten_(first) {}
 
 bool ReceiveWindow::inWindow(Sequence s) const { return s >= forgotten_ && s - forgotten_ <= mask_; }
@@ -20,7 +20,7 @@ bool ReceiveWindow::inWindow(Sequence s) const { return s >= forgotten_ && s - f
 bool ReceiveWindow::has(Sequence s) const { return s < cumulative_ || (inWindow(s) && lengths_[slot(s)] != 0); }
 
 std::span<const std::byte> ReceiveWindow::payload(Sequence s) const {
-    return {payloads_.get() + slot(s) * payloadBytes_, lengths_[slot(s)]};
+    return {payloads_.at(places_[slot(s)]), lengths_[slot(s)]};
 }
 
 // The group that `cumulative` stands in is kept whole while it may need its parity.
@@ -28,17 +28,21 @@ Sequence ReceiveWindow::oldest() const {
     if (cumulative_ == forgotten_) return forgotten_;
     const Sequence base = groupBases_[slot(cumulative_ - 1)];
     const Group& g = groups_[slot(base)];
-    const bool needed = g.known && g.base == base && !g.complete(); // else it is forgotten, or needs nothing
+    const bool needed = known_[slot(base)] && g.base == base && !g.complete(); // else it is forgotten, or needs nothing
     return earlier(reading_, needed ? base : cumulative_);
 }
 
 void ReceiveWindow::forget() {
-    for (const Sequence until = oldest(); forgotten_ < until; ++forgotten_) {
-        lengths_[slot(forgotten_)] = 0;
-        Group& g = groups_[slot(forgotten_)];
-        dropRows(g);
-        g = Group{};
-    }
+    for (const Sequence until = oldest(); forgotten_ < until; ++forgotten_) forgetDatagram(slot(forgotten_));
+}
+
+void ReceiveWindow::forgetDatagram(size_t at) {
+    payloads_.giveBack(places_[at]); // all before the oldest are here
+    lengths_[at] = 0;
+    if (!known_[at]) return;
+    known_[at] = false;
+    dropRows(groups_[at]);
+    groups_[at] = Group{};
 }
 
 void ReceiveWindow::dropRows(Group& g) {
@@ -50,8 +54,8 @@ void ReceiveWindow::dropRows(Group& g) {
 ReceiveWindow::Group* ReceiveWindow::groupAt(Sequence base) {
     if (!inWindow(base)) return nullptr;
     Group& g = groups_[slot(base)];
-    if (!g.known) {
-        g.known = true;
+    if (!known_[slot(base)]) {
+        known_[slot(base)] = true;
         g.base = base;
     }
     return &g;
@@ -65,7 +69,8 @@ bool ReceiveWindow::learnSize(Group& g, uint8_t size) {
 }
 
 void ReceiveWindow::store(Group& g, Sequence s, std::span<const std::byte> payload) {
-    std::memcpy(payloads_.get() + slot(s) * payloadBytes_, payload.data(), payload.size());
+    places_[slot(s)] = payloads_.take();
+    std::memcpy(payloads_.at(places_[slot(s)]), payload.data(), payload.size());
     lengths_[slot(s)] = static_cast<uint16_t>(payload.size());
     groupBases_[slot(s)] = g.base;
     g.have |= 1u << (s - g.base);
@@ -193,13 +198,11 @@ void ReceiveWindow::advance() {
 std::span<const std::byte> ReceiveWindow::readable() const {
     if (reading_ == cumulative_) return {};
     const size_t from = slot(reading_);
-    const size_t begin = from * payloadBytes_ + readBytes_;
     const auto inOrder = std::min<size_t>(static_cast<size_t>(cumulative_ - reading_), mask_ + 1 - from);
-    size_t count = 0;
-    while (count < inOrder && lengths_[from + count] == payloadBytes_) ++count;
-    size_t end = (from + count) * payloadBytes_;
-    if (count < inOrder) end += lengths_[from + count];
-    return {payloads_.get() + begin, end - begin};
+    size_t bytes = lengths_[from];
+    for (size_t i = 1; i < inOrder && lengths_[from + i - 1] == payloadBytes_ && places_[from + i] == places_[from + i - 1] + 1; ++i)
+        bytes += lengths_[from + i];
+    return {payloads_.at(places_[from]) + readBytes_, bytes - readBytes_};
 }
 
 void ReceiveWindow::consume(size_t bytes) {
@@ -217,7 +220,7 @@ void ReceiveWindow::consume(size_t bytes) {
 const ReceiveWindow::Group* ReceiveWindow::findGroup(Sequence s) const {
     for (int i = 0; i < kMostInGroup && inWindow(s - i); ++i) {
         const Group& g = groups_[slot(s - i)];
-        if (!g.known) continue;
+        if (!known_[slot(s - i)]) continue;
         return g.size == 0 || i < g.size ? &g : nullptr;
     }
     return nullptr;
@@ -235,7 +238,7 @@ Missing ReceiveWindow::missingFrom(Sequence from, Sequence until) const {
     for (int64_t i = s - m.base; i < span; ++i) {
         const Sequence at = m.base + i;
         // Another group begins here, so the one that nothing is known of has ended.
-        if (at != m.base && inWindow(at) && groups_[slot(at)].known) span = i;
+        if (at != m.base && inWindow(at) && known_[slot(at)]) span = i;
         else if (!has(at)) m.missing |= 1u << i;
     }
     m.span = static_cast<uint8_t>(span);

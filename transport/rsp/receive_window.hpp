@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "transport/rsp/datagram.hpp"
+#include "transport/rsp/payload_places.hpp"
 #include "transport/rsp/send_window.hpp"
 
 namespace mural::rsp {
@@ -53,7 +54,6 @@ private:
     };
     struct Group {
         Sequence base;
-        bool known = false;
         uint8_t size = 0;  // 0: not known
         uint32_t have = 0; // bit i: base + i is here
         std::vector<Row> rows;
@@ -73,14 +73,17 @@ private:
     void dropRows(Group& g);
     void advance();
     void forget();
+    void forgetDatagram(size_t at);
     [[nodiscard]] std::span<const std::byte> payload(Sequence s) const;
 
     size_t payloadBytes_;
     uint32_t mask_;
-    std::unique_ptr<std::byte[]> payloads_; // as SendWindow's
+    PayloadPlaces payloads_;
+    std::vector<uint32_t> places_;     // of payloads, of datagrams that are here
     std::vector<uint16_t> lengths_;    // 0: not here
     std::vector<Sequence> groupBases_; // by datagram, of those that are here
     std::vector<Group> groups_;        // by the group's first datagram
+    std::vector<bool> known_;          // of groups_, side by side: most begin no group
     std::vector<std::byte> scratch_;
     Sequence cumulative_;
     Sequence reading_;     // the datagram that is being read

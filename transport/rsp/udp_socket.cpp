@@ -73,18 +73,21 @@ struct UdpSocket::Slots {
     std::array<SocketAddress, kReceiveSlots> from{};
     std::array<std::array<char, 128>, kReceiveSlots> control{};
 
-    void reset() {
-        for (size_t i = 0; i < kReceiveSlots; ++i) {
+    size_t used = kReceiveSlots; // by the last call: what the kernel wrote there is to be set again
+
+    void reset(bool tellsSenders) {
+        for (size_t i = 0; i < used; ++i) {
             pieces[i] = {bytes.data() + i * kSlotStrideBytes, kSlotBytes};
             msghdr& h = messages[i].msg_hdr;
             h = {};
-            h.msg_name = &from[i].storage;
-            h.msg_namelen = sizeof from[i].storage;
+            if (tellsSenders) h.msg_name = &from[i].storage;
+            h.msg_namelen = tellsSenders ? sizeof from[i].storage : 0;
             h.msg_iov = &pieces[i];
             h.msg_iovlen = 1;
             h.msg_control = control[i].data();
             h.msg_controllen = control[i].size();
         }
+        used = 0;
     }
 };
 
@@ -252,10 +255,11 @@ bool UdpSocket::receive(const Handler& handler) {
     if (!slots_) slots_.reset(new Slots); // not for those that only send
     Slots& s = *slots_;
     for (int round = 0; round < kMostRounds; ++round) {
-        s.reset();
+        s.reset(tellsSenders_);
         const int count = recvmmsg(socket_.get(), s.messages.data(), kReceiveSlots, MSG_DONTWAIT, nullptr);
         if (count <= 0) return false;
-        for (size_t i = 0; i < static_cast<size_t>(count); ++i) {
+        s.used = static_cast<size_t>(count);
+        for (size_t i = 0; i < s.used; ++i) {
             msghdr& h = s.messages[i].msg_hdr;
             const size_t bytes = s.messages[i].msg_len;
             size_t segment = bytes;
@@ -273,7 +277,7 @@ bool UdpSocket::receive(const Handler& handler) {
             for (size_t at = 0; at < bytes; at += segment)
                 handler({data + at, std::min(segment, bytes - at)}, s.from[i]);
         }
-        if (static_cast<size_t>(count) < kReceiveSlots) return false;
+        if (s.used < kReceiveSlots) return false;
     }
     return true;
 }

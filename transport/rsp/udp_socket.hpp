@@ -34,6 +34,9 @@ public:
     // What this member sent comes back to its own machine: dropped by the kernel, before it takes room here.
     void ignoreMember(MemberId self);
 
+    // Handlers are told of no sender: to ask the kernel for its address costs something for each datagram.
+    void leaveOutSenders() { tellsSenders_ = false; }
+
     [[nodiscard]] int descriptor() const { return socket_.get(); }
     [[nodiscard]] SocketAddress localAddress() const;
 
@@ -69,6 +72,7 @@ private:
     Sending sending_ = Sending::Segments;
     size_t bufferBytes_ = 0;
     uint32_t dropped_ = 0;
+    bool tellsSenders_ = true;
     std::unique_ptr<Slots, FreeSlots> slots_;
 };
 

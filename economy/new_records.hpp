@@ -1,0 +1,56 @@
+// Records that no frame before had follow each other where a program loads, compiles lists, or draws what it never drew. To look at
+// each takes two to three times as long as to compress them, so behind a few hundred of them the rest of the packet goes as bytes.
+// Where the same come again, those few are found in the log, and what was left out behind them is looked at in that frame: one that
+// repeats is known one frame later.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace mural::economy {
+
+// Of one stream. Positions are those of its log.
+class NewRecords {
+public:
+    // In this frame; `end`: of the log. Behind many of the packet before fewer are enough.
+    void packetBegins(uint64_t frame, uint64_t end) {
+        late_ = std::min(late_, kMany - kAtLeast);
+        if (frame == frame_) return;
+        frame_ = frame;
+        frameBegan_ = end;
+        again_ = false;
+    }
+    // So many came as they did from `position` on: in a frame before, or only in this one.
+    void found(uint64_t position, size_t records) {
+        if (position >= frameBegan_) late_ += static_cast<uint32_t>(std::min<size_t>(records, kMany));
+        else late_ -= static_cast<uint32_t>(std::min<size_t>(late_, records * kFoundCounts));
+    }
+    void isNew() { ++late_; }
+    // Another comes than the log has at `cursor`.
+    void another(uint64_t cursor) { again_ = again_ || (next_ != 0 && std::ranges::find(leftOutAt_, cursor) != leftOutAt_.end()); }
+
+    [[nodiscard]] bool many() const { return late_ >= kMany && !again_; }
+    // What follows goes as bytes; `position`: where it would have stood.
+    void leaveOut(uint64_t position) { leftOutAt_[next_++ % leftOutAt_.size()] = position; }
+
+private:
+    static constexpr uint32_t kMany = 256, kAtLeast = 32;
+    static constexpr uint32_t kFoundCounts = 3; // one that is found weighs as many new ones
+    static constexpr size_t kPlaces = 16;       // packets of a frame, about
+
+    uint32_t late_ = 0;  // new ones, less those found
+    bool again_ = false; // in this frame something came that was left out before
+    uint64_t frame_ = UINT64_MAX, frameBegan_ = 0;
+    std::array<uint64_t, kPlaces> leftOutAt_ = nowhere();
+    size_t next_ = 0;
+
+    static constexpr std::array<uint64_t, kPlaces> nowhere() {
+        std::array<uint64_t, kPlaces> places{};
+        places.fill(UINT64_MAX);
+        return places;
+    }
+};
+
+} // namespace mural::economy
