@@ -76,6 +76,24 @@ private:
     EGLImageKHR handle_;
 };
 
+// The API that is bound, and the current context, are the calling thread's own.
+class EglReader final : public SharedReader {
+public:
+    EglReader(SharedDisplay display, std::unique_ptr<Context> context) : display_(std::move(display)), context_(std::move(context)) {}
+
+    Result<void> enter() override {
+        auto& context = static_cast<EglContext&>(*context_);
+        display_->egl.bindApi(context.api());
+        if (display_->egl.makeCurrent(display_->display, context.dummy(), context.dummy(), context.handle())) return {};
+        return Error{"EGL can't make the context of a second thread current: " + takeEglError(display_->egl) + "; use --readback direct"};
+    }
+    void leave() override { display_->egl.makeCurrent(display_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); }
+
+private:
+    SharedDisplay display_;
+    std::unique_ptr<Context> context_;
+};
+
 std::vector<EGLint> contextAttributes(const ContextConfig& config, const EglDisplayState& display) {
     const VersionRequest request = versionRequest(config);
     std::vector<EGLint> list{EGL_CONTEXT_MAJOR_VERSION, request.major, EGL_CONTEXT_MINOR_VERSION, request.minor};
@@ -111,6 +129,7 @@ public:
 
     Result<std::unique_ptr<Surface>> createSurface(const SurfaceConfig& wish) override;
     Result<std::unique_ptr<Context>> createContext(const ContextConfig& wish, Context* shareWith) override;
+    Result<std::unique_ptr<SharedReader>> createReader(const ContextConfig& wish, Context& shareWith) override;
     Result<void> makeCurrent(Context* context, Surface* draw, Surface* read, HeldBack heldBack) override;
     [[nodiscard]] std::vector<std::string> imageExtensions() const override;
     Result<std::unique_ptr<Image>> createImage(const ImageSource& source) override;
@@ -197,6 +216,12 @@ Result<std::unique_ptr<Context>> EglPlatform::createContext(const ContextConfig&
         return Error{"EGL can't make an " + describeContext(wish) + " context" +
                      (shareWith ? " that shares objects" : "") + ": " + why + "; see mural doctor"};
     return std::unique_ptr<Context>(std::make_unique<EglContext>(display_, handle, api, tellsReset, std::move(dummy)));
+}
+
+Result<std::unique_ptr<SharedReader>> EglPlatform::createReader(const ContextConfig& wish, Context& shareWith) {
+    auto context = createContext(wish, &shareWith);
+    if (!context) return context.error();
+    return std::unique_ptr<SharedReader>(std::make_unique<EglReader>(display_, std::move(*context)));
 }
 
 Result<void> EglPlatform::makeCurrent(Context* context, Surface* draw, Surface* read, HeldBack heldBack) {

@@ -8,6 +8,10 @@ Result<std::unique_ptr<Image>> Platform::createImage(const ImageSource&) {
     return Error{describe() + " has no images: use --gl egl"};
 }
 
+Result<std::unique_ptr<SharedReader>> Platform::createReader(const ContextConfig&, Context&) {
+    return Error{describe() + " has all its contexts in one thread: use --gl egl"};
+}
+
 Result<std::unique_ptr<Platform>> openPlatform(const std::string& name) {
     if (name == "egl") return openEgl();
     if (name == "osmesa") return openOsmesa();

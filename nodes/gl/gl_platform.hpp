@@ -1,5 +1,5 @@
 // Contexts and window-like surfaces of a render node, over EGL (surfaceless), OSMesa or GLX.
-// All calls come from the one thread that replays (one per pipe).
+// All calls come from the one thread that replays (one per pipe), but for those of a SharedReader.
 #pragma once
 
 #include <cstdint>
@@ -80,6 +80,15 @@ struct ImageSource {
 // What becomes of commands that the context which was current holds back.
 enum class HeldBack { Flushed, Kept };
 
+// Lets one other thread than the replay's use the objects of a share group: it waits for fences and reads buffers.
+class SharedReader {
+public:
+    virtual ~SharedReader() = default; // by any thread, while it is nowhere entered
+    // From here to leave() the calling thread has a context of that group.
+    virtual Result<void> enter() = 0;
+    virtual void leave() = 0;
+};
+
 class Platform {
 public:
     virtual ~Platform() = default;
@@ -96,6 +105,8 @@ public:
     // Extensions of EGL for images that this platform carries out; empty: there are no images.
     [[nodiscard]] virtual std::vector<std::string> imageExtensions() const { return {}; }
     virtual Result<std::unique_ptr<Image>> createImage(const ImageSource& source);
+    // wish: as of `shareWith`. Errors: this platform has all its contexts in one thread.
+    virtual Result<std::unique_ptr<SharedReader>> createReader(const ContextConfig& wish, Context& shareWith);
     // Entry point of all contexts, null when unknown. May be called only while a context is current.
     virtual Proc getProcAddress(const char* name) = 0;
     [[nodiscard]] virtual std::string describe() const = 0; // e.g. "EGL surfaceless, Mesa 22.3.6"

@@ -224,6 +224,7 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
     setup.composition = nameOf(node.composition.value_or(compositor::Strategy::Serial));
     setup.pictureCodec = node.pictureCodec;
     setup.partCodec = node.codec;
+    setup.readback = config.readback;
     setup.answers = node.answers;
     setup.exchangeHere = std::none_of(plan.nodes.begin(), plan.nodes.end(), [&](const NodePlan& other) { return other.collector == node.collector && other.reach == NodeReach::LaunchCommand; });
     setup.eyeBase = config.eyeBase;

@@ -21,8 +21,7 @@
 #include "nodes/node/head_line.hpp"
 #include "nodes/node/heartbeat.hpp"
 #include "nodes/node/tile_windows.hpp"
-#include "nodes/pictures/picture_packer.hpp"
-#include "nodes/pictures/picture_way.hpp"
+#include "nodes/pictures/picture_sender.hpp"
 #include "nodes/placement/placement.hpp"
 #include "nodes/replay/replay.hpp"
 #include "nodes/session/session_config.hpp"
@@ -74,7 +73,6 @@ int64_t processCpuNowNs() {
 }
 
 constexpr int64_t kMeetMs = 10'000;
-constexpr size_t kTellingBytes = 1 << 16; // fewer vanish in buffers
 constexpr int64_t kSlower = 2; // times what the work takes, added by the planted fault
 constexpr int kLostPacket = 10; // of those given to a node that catches up, by the planted fault
 
@@ -106,13 +104,20 @@ private:
     // Time at work goes up to now. What follows is not waiting for anybody.
     void countWork() {
         const int64_t nowNs = workNowNs();
-        const int64_t workedNs = nowNs - std::exchange(beganNs_, nowNs);
+        const int64_t workedNs = std::max<int64_t>(nowNs - std::exchange(beganNs_, nowNs), 0); // two clocks are read one after the other
         if (slow_) std::this_thread::sleep_for(std::chrono::nanoseconds(kSlower * workedNs));
         busyNs_ += workedNs * (slow_ ? 1 + kSlower : 1);
     }
 
     // Nodes that draw by the same cores keep each other waiting, whatever tiles they have: there their own work alone counts.
-    [[nodiscard]] int64_t workNowNs() const { return countsCpu_ ? processCpuNowNs() : monotonicNowNs(); }
+    // What the thread of pictures does is added to their frames' work.
+    [[nodiscard]] int64_t workNowNs() const { return countsCpu_ ? processCpuNowNs() - (sender_ ? sender_->cpuNs() : 0) : monotonicNowNs(); }
+
+    // What the head is told, in order.
+    void tell(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b = {}) {
+        if (!sender_) return line_->send(type, a, b);
+        stuck_ = !sender_->tell(type, a, b) || stuck_;
+    }
 
     bool takePacket(const wire::PacketHeader& header, std::span<const std::byte> payload) {
         if (header.stream == 0) return headCommand(payload);
@@ -124,7 +129,7 @@ private:
             line_->sendText(wire::NodeMessage::Log, "a broken packet of a program's stream was dropped");
         calls_[clientInHand_] += replay_->counts().commands - callsBefore_;
         callsBefore_ = replay_->counts().commands;
-        return !unsound_;
+        return !unsound_ && !stuck_;
     }
 
     bool headCommand(std::span<const std::byte> payload) {
@@ -142,7 +147,7 @@ private:
             frames_.erase(client);
             if (replay_) replay_->clientGone(client);
             if (windows_) windows_->clientGone(client);
-            if (packer_) packer_->clientGone(client);
+            if (sender_) sender_->clientGone(client);
             sayWindowGone(client, wire::kAllWindows);
             return true;
         }
@@ -197,7 +202,7 @@ private:
             if (!windows) return fail(windows.error().message);
             windows_ = std::move(*windows);
         }
-        if (setup_.sendPictures && setup_.pictureCodec != kRawCodec) packer_ = std::make_unique<PicturePacker>(setup_.pictureCodec);
+        if (setup_.sendPictures) openSender();
         ReplayConfig config;
         config.node = setup_.node;
         config.skips = setup_.catchesUp && setup_.skipsFrames;
@@ -209,6 +214,7 @@ private:
         if (setup_.hasArea) config.area = setup_.area;
         if (!setup_.areas.empty()) config.areas.emplace(Areas{0, areasOf(setup_.areas)});
         config.pass = setup_.pass;
+        config.readback = setup_.sendPictures ? setup_.readback : Readback::Direct;
         config.answers = setup_.answers;
         config.screen = setup_.screen;
         config.eyeBase = setup_.eyeBase;
@@ -218,13 +224,13 @@ private:
         slow_ = config.plant == "slow" && setup_.node == 1;
         ReplayOutputs outputs;
         outputs.answer = [this](const wire::AnswerHeader& h, std::span<const std::byte> bytes) {
-            if (!catchesUp_ && !unsound_) line_->send(wire::NodeMessage::Answer, std::as_bytes(std::span(&h, 1)), bytes);
+            if (!catchesUp_ && !unsound_) tell(wire::NodeMessage::Answer, std::as_bytes(std::span(&h, 1)), bytes);
         };
         outputs.frameDone = [this](const ReplayOutputs::Frame& f) { frameDone(f); };
         outputs.unsound = [this] { unsound(); };
         outputs.windowGone = [this](uint32_t client, uint32_t window) { windowGone(client, window); };
         outputs.news = [this](const wire::News& n, const std::string& text) {
-            if (!catchesUp_) line_->send(wire::NodeMessage::News, std::as_bytes(std::span(&n, 1)), std::as_bytes(std::span(text)));
+            if (!catchesUp_) tell(wire::NodeMessage::News, std::as_bytes(std::span(&n, 1)), std::as_bytes(std::span(text)));
         };
         if (composer_) outputs.composeParts = [this](PicturePart& part, const FoldRule& rule) { return composer_->compose(part, rule); };
         outputs.log = [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); };
@@ -343,7 +349,7 @@ private:
         std::memcpy(words, arguments.data(), sizeof words);
         if (words[1] != 0 && replay_) replay_->drawAgain();
         const wire::SynchronizedMessage done{words[0], static_cast<uint32_t>(replay_ ? replay_->soundness() : wire::Soundness::Sound)};
-        line_->send(wire::NodeMessage::Synchronized, std::as_bytes(std::span(&done, 1)));
+        tell(wire::NodeMessage::Synchronized, std::as_bytes(std::span(&done, 1)));
         return true;
     }
 
@@ -369,7 +375,7 @@ private:
         if (std::exchange(catchesUp_, false)) busyNs_ = 0; // what it was given is no frame's work
         std::vector<wire::ClientFrame> frames;
         for (const auto& [client, frame] : frames_) frames.push_back({client, frame});
-        line_->send(wire::NodeMessage::InView, std::as_bytes(std::span(&view, 1)), std::as_bytes(std::span(frames)));
+        tell(wire::NodeMessage::InView, std::as_bytes(std::span(&view, 1)), std::as_bytes(std::span(frames)));
         return true;
     }
 
@@ -390,10 +396,10 @@ private:
         if (number.size() < sizeof(uint32_t)) return false;
         if (catchesUp_ || !replay_) return true;
         if (!setup_.areas.empty()) {
-            line_->send(wire::NodeMessage::Turns, number.first(sizeof(uint32_t)), replay_->tellAreas());
+            tell(wire::NodeMessage::Turns, number.first(sizeof(uint32_t)), replay_->tellAreas());
         } else if (setup_.pass.period > 1) {
             const std::vector<wire::WindowTurn> turns = replay_->turns();
-            line_->send(wire::NodeMessage::Turns, number.first(sizeof(uint32_t)), std::as_bytes(std::span(turns)));
+            tell(wire::NodeMessage::Turns, number.first(sizeof(uint32_t)), std::as_bytes(std::span(turns)));
         }
         return true;
     }
@@ -443,10 +449,10 @@ private:
         if (!f.sound) unsound();
         if (catchesUp_ || unsound_) return;
         const uint64_t replayedNs = threadCpuNs();
+        std::unique_ptr<PictureRead> picture;
         if (f.pixels && !f.region.empty()) {
-            const std::byte* const pixels = setup_.sendPictures ? f.pixels(f.region) : nullptr;
+            if (sender_) picture = f.read();
             countWork();
-            if (pixels) sendPicture(f, pixels);
             if (windows_) showTiles(f);
             beganNs_ = workNowNs(); // who takes the picture may have let it wait
         }
@@ -465,22 +471,24 @@ private:
         lastCpuNs_ = threadCpuNs();
         done.readbackNs = lastCpuNs_ - replayedNs;
         done.calls = calls_[f.client] + (f.client == clientInHand_ ? replay_->counts().commands - callsBefore_ : 0);
-        line_->send(wire::NodeMessage::FrameDone, std::as_bytes(std::span(&done, 1)));
+        if (!picture) return tell(wire::NodeMessage::FrameDone, std::as_bytes(std::span(&done, 1)));
+        stuck_ = !sender_->send({headerOf(f), std::move(picture), done}) || stuck_;
+        beganNs_ = workNowNs(); // it may have waited for room
     }
 
     void windowGone(uint32_t client, uint32_t window) {
         if (windows_) windows_->windowGone(client, window);
-        if (packer_) packer_->windowGone(client, window);
+        if (sender_) sender_->windowGone(client, window);
         sayWindowGone(client, window);
     }
 
     void sayWindowGone(uint32_t client, uint32_t window) {
         if (catchesUp_) return;
         const wire::WindowGoneMessage gone{client, window};
-        line_->send(wire::NodeMessage::WindowGone, std::as_bytes(std::span(&gone, 1)));
+        tell(wire::NodeMessage::WindowGone, std::as_bytes(std::span(&gone, 1)));
     }
 
-    void sendPicture(const ReplayOutputs::Frame& f, const std::byte* pixels) {
+    static wire::PictureHeader headerOf(const ReplayOutputs::Frame& f) {
         wire::PictureHeader h{};
         h.client = f.client;
         h.window = f.window;
@@ -493,25 +501,17 @@ private:
         h.windowHeight = static_cast<uint32_t>(f.picture.h);
         h.nativeLow = f.config.nativeLow;
         h.nativeHigh = f.config.nativeHigh;
-        const SizeOnWay size = sizeOnWay(h.w, h.h, setup_.way);
-        if (!setup_.way.none()) {
-            onWay_.resize(size.bytes());
-            resizePicture(pixels, h.w, h.h, onWay_.data(), size.w, size.h);
-            pixels = onWay_.data();
-        }
-        if (packer_ && sendPacked(h, size, pixels)) return;
-        line_->send(wire::NodeMessage::Picture, std::as_bytes(std::span(&h, 1)), {pixels, size.bytes()});
+        return h;
     }
 
-    // False: there is no memory for it.
-    bool sendPacked(const wire::PictureHeader& h, const SizeOnWay& size, const std::byte* pixels) {
-        auto packed = packer_->pack(h.client, h.window, size.w, size.h, pixels);
-        if (!packed) return false;
-        countWork(); // what follows may wait for who takes it
-        const int64_t beganNs = monotonicNowNs();
-        line_->send(wire::NodeMessage::PackedPicture, std::as_bytes(std::span(&h, 1)), *packed);
-        if (packed->size() >= kTellingBytes) packer_->transferred(packed->size(), monotonicNowNs() - beganNs);
-        return true;
+    void openSender() {
+        PictureSenderConfig config;
+        config.codec = setup_.pictureCodec;
+        config.addsCpu = countsCpu_;
+        config.way = setup_.way;
+        const auto send = [this](wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b) { line_->send(type, a, b); };
+        sender_ = std::make_unique<PictureSender>(config, send, [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); });
+        beganNs_ = workNowNs(); // its clock counts from now
     }
 
     void showTiles(const ReplayOutputs::Frame& f) {
@@ -524,6 +524,7 @@ private:
 
     void sayBye() {
         nlohmann::json bye;
+        if (sender_ && !sender_->finish()) return; // it has said so
         const ReplayCounts counts = replay_ ? replay_->counts() : ReplayCounts{};
         bye["commands"] = counts.commands;
         bye["malformed"] = counts.malformed;
@@ -531,9 +532,9 @@ private:
         bye["frames"] = counts.frames;
         bye["cpuSeconds"] = processCpuSeconds();
         if (exchange_) bye["exchangeBytes"] = exchange_->bytesSent();
-        if (packer_) {
-            bye["pictureBytes"] = packer_->packedBytes();
-            bye["pictureRawBytes"] = packer_->rawBytes();
+        if (sender_ && sender_->packs()) {
+            bye["pictureBytes"] = sender_->packedBytes();
+            bye["pictureRawBytes"] = sender_->rawBytes();
         }
         if (const auto numbers = swaps_ && swaps_->barrier() ? swaps_->barrier()->numbers() : std::nullopt)
             bye["swapBarrier"] = {{"members", setup_.swapMembers},          {"swaps", numbers->skew.swaps},       {"medianNs", numbers->skew.medianNs},
@@ -546,9 +547,9 @@ private:
     NodeSetup setup_;
     std::unique_ptr<BarrierPart> swaps_; // null: its windows wait for nobody
     std::unique_ptr<TileWindows> windows_;
-    std::vector<std::byte> onWay_;          // the last picture that went smaller
-    std::unique_ptr<PicturePacker> packer_; // null: pictures go as they are
     std::unique_ptr<Replay> replay_;
+    std::unique_ptr<PictureSender> sender_; // null: the head wants no pictures
+    bool stuck_ = false; // nothing goes out any more
     uint64_t lastCpuNs_ = 0;
     bool countsCpu_ = false;
     int64_t beganNs_ = 0; // when the work in hand was begun…

@@ -26,15 +26,18 @@
 #include "nodes/exchange/part_fold.hpp"
 #include "nodes/exchange/picture_part.hpp"
 #include "nodes/gl/gl_platform.hpp"
+#include "nodes/pictures/picture_read.hpp"
 #include "nodes/replay/handle_table.hpp"
 #include "nodes/replay/name_table.hpp"
 #include "nodes/replay/program_recipes.hpp"
+#include "nodes/replay/readback_choice.hpp"
 #include "nodes/replay/replay_dispatch.hpp"
 #include "nodes/replay/seen_projection.hpp"
 #include "nodes/replay/tiled_programs.hpp"
 #include "nodes/replay/tiling.hpp"
 #include "nodes/replay/view_move.hpp"
 #include "nodes/session/areas.hpp"
+#include "nodes/session/readback.hpp"
 #include "nodes/session/render_pass.hpp"
 #include "nodes/session/shares.hpp"
 #include "streamcodec/args.hpp"
@@ -43,6 +46,8 @@
 #include "streamcodec/wire.hpp"
 
 namespace mural {
+
+class LaterReads;
 
 // What a stream may make the node hold or do at once; far above what programs need.
 struct ReplayLimits {
@@ -67,6 +72,7 @@ struct ReplayConfig {
                             // draws are not shared before shareAnew()
     bool cull = false;     // whole primitives outside of the region are dropped by rewritten shaders
     bool lean = false;     // framebuffers of the tile's size; false: of the picture's size (exact)
+    Readback readback = Readback::Direct; // of Frame::read
     std::string plant;     // MURAL_PLANT: a fault on purpose, for tests of the tests
     ReplayLimits limits;
 };
@@ -90,6 +96,8 @@ struct ReplayOutputs {
         uint32_t shares;      // number of those by which its draws were shared; 0: those of the start, or nothing was
         bool keepsAreas;      // other ones wait for a clear that does not come
         std::function<const std::byte*(const PixelViewport&)> pixels;
+        // The same of `region`, once, to be taken by another thread, which may have to wait until it is drawn. Set where `pixels` is. Null: nothing to be had.
+        std::function<std::unique_ptr<PictureRead>()> read;
     };
     std::function<void(const Frame&)> frameDone;
     // What is asked of a window depends on what was not drawn.
@@ -242,6 +250,7 @@ private:
         bool sceneElsewhere = false;    // in this frame a scene is drawn into a framebuffer object (replay_scenes.cpp)
         bool sceneWasElsewhere = false; // …in the frame before
         bool begun = false;        // something was drawn since the last swap
+        ReadbackChoice readback;
         bool skipped = false;      // its frames are not drawn (replay_catch_up.cpp), and so…
         GLbitfield stale = 0;      // …these buffers do not hold what they should…
         bool frontStaled = false;  // …nor does its front…
@@ -285,6 +294,8 @@ private:
         std::unordered_map<GLuint, bool> primitiveIds;  // our programs that number primitives: not cut into pieces
         std::unordered_map<GLuint, bool> memoryWriters; // by the program's name, once it was used (replay_left_out.cpp)
         SeenProjection projection;                      // the last one in any buffer
+        std::shared_ptr<LaterReads> later; // null: there are none, or…
+        bool laterAsked = false;           // …it was not asked for them
     };
     struct Scissor {
         bool enabled = false;
@@ -367,6 +378,7 @@ private:
         uint32_t client = 0, id = 0;
         bool destroyed = false; // freed when it is current nowhere
         std::unique_ptr<gl::Context> context;
+        gl::ContextConfig wish; // by which it was made
         std::shared_ptr<Shared> shared;
         NameTable own[static_cast<int>(Kind::Count)];
         wire::Api api = wire::Api::Desktop;
@@ -477,13 +489,22 @@ private:
     bool ownRequestBuffer(Args& in);
     void readBuffer(GLuint ours, uint64_t offset);
     void answerBytes(uint32_t request, wire::AnswerKind kind, std::span<const std::byte> bytes);
-    const std::byte* readRegion(const PixelViewport& r, GLenum format, GLenum type, size_t bytes);
+    enum class Beyond : uint8_t { Black, Nothing }; // what may lie there that is read
+    const std::byte* readRegion(const PixelViewport& r, GLenum format, GLenum type, size_t bytes, Beyond beyond = Beyond::Black);
     const std::byte* readShown(Window& w, const PixelViewport& r, bool front);
     [[nodiscard]] bool resolves(const Window& w) const;
     const std::byte* readResolved(const PixelViewport& r, GLenum format, size_t bytes);
     void packTightly(bool tight);
     void withPlainTransfer(const std::function<void()>& call);
     void fillColor(const PixelViewport& r, const void* rgba);
+    // replay_pictures.cpp
+    [[nodiscard]] bool hasFences(const ContextState& c) const;
+    std::shared_ptr<LaterReads> laterReads();
+    [[nodiscard]] bool readsLater(const Window& w, const PixelViewport& region);
+    std::unique_ptr<PictureRead> readAtOnce(const ReplayOutputs::Frame& f, const PixelViewport& r);
+    std::unique_ptr<PictureRead> readLater(Window& w, const PixelViewport& r, bool front);
+    LaterReads* into_ = nullptr; // readRegion goes there
+    std::shared_ptr<PictureMemory> memory_ = std::make_shared<PictureMemory>();
     // replay_fill.cpp
     const GLfloat* depthAsFloats(const Window& w, const PixelViewport& r, const void* pixels);
     std::vector<GLfloat> depths_;

@@ -2,6 +2,7 @@
 #include <cstring>
 #include <utility>
 
+#include "common/clock.hpp"
 #include "nodes/replay/pass_place.hpp"
 #include "nodes/replay/replay.hpp"
 #include "nodes/replay/window_use.hpp"
@@ -129,6 +130,7 @@ bool Replay::ownCreateContext(Args& in) {
     c->client = wire::clientOf(stream_);
     c->id = id;
     c->context = std::move(*made);
+    c->wish = wish;
     c->shared = with ? with->shared : std::make_shared<Shared>();
     c->api = static_cast<wire::Api>(api);
     c->version = static_cast<int>(major * 10 + minor);
@@ -202,6 +204,7 @@ bool Replay::ownWindow(Args& in) {
     std::unique_ptr<gl::Surface> oldFront = std::move(w.front);
     dropFront(w);
     w.surface = std::move(*made);
+    w.readback = {};
     if (bound) {
         boundDraw_ = boundRead_ = nullptr;
         bound_ = nullptr;
@@ -217,8 +220,7 @@ bool Replay::ownWindow(Args& in) {
 void Replay::waitUntilDrawn() {
     constexpr GLuint64 kPatienceNs = 60'000'000'000;
     if (!bound_) return;
-    const bool fences = bound_->version >= (bound_->api == wire::Api::Desktop ? 32 : 30) && gl.glFenceSync && gl.glClientWaitSync && gl.glDeleteSync;
-    const GLsync drawn = fences ? gl.glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0) : nullptr;
+    const GLsync drawn = hasFences(*bound_) ? gl.glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0) : nullptr;
     const GLenum state = drawn ? gl.glClientWaitSync(drawn, GL_SYNC_FLUSH_COMMANDS_BIT, kPatienceNs) : GL_WAIT_FAILED;
     if (drawn) gl.glDeleteSync(drawn);
     const bool done = state == GL_ALREADY_SIGNALED || state == GL_CONDITION_SATISFIED;
@@ -237,6 +239,7 @@ bool Replay::ownSwap(Args& in, bool front) {
     f.frame = frame;
     f.drawnWhole = bound_ && bound_->shared && bound_->shared->allDrawn;
     ++counts_.frames;
+    Window* ours = nullptr; // whose pixels can be had
     if (it != windows.end()) {
         Window& w = *it->second;
         if (takesRanges()) rangeDrawn(w);
@@ -252,7 +255,7 @@ bool Replay::ownSwap(Args& in, bool front) {
         if (!front && f.sound) w.frontStaled = false;
         showedUnsound_ = showedUnsound_ || (!f.sound && !w.skipped && w.begun);
         // The thread that swaps need not be the one that has drawn: GLX takes any window.
-        if (bound_ && &w == boundDraw_ && w.surface) f.pixels = [this, &w, front](const PixelViewport& r) {
+        if (bound_ && &w == boundDraw_ && w.surface) ours = &w, f.pixels = [this, &w, front](const PixelViewport& r) {
             ContextState* const own = std::exchange(c_, bound_);
             const bool zoomed = (w.plain ? Zoom{} : config_.pass.zoom) != config_.pass.shown && !r.empty();
             const std::byte* pixels = zoomed ? readScaled(w, r, front) : hasKernel() && w.plain && !r.empty() ? readEveryNth(w, r, front) : readShown(w, r, front);
@@ -267,9 +270,22 @@ bool Replay::ownSwap(Args& in, bool front) {
     }
     if (it != windows.end() && bound_) flushIfAsked(*it->second);
     // A frame counts when it is drawn, not when it is queued: pacing and frame rates depend on it.
-    if (!skips_) waitUntilDrawn();
+    // A picture that is read later comes then, and the frame counts with it.
+    const bool shown = frame != wire::kUnseenFrame;
+    const bool later = shown && ours && readsLater(*ours, f.region);
+    const int64_t beganNs = monotonicNowNs();
+    if (!skips_ && !later) waitUntilDrawn();
     tellTroubles();
-    if (frame != wire::kUnseenFrame) out_.frameDone(f);
+    bool read = false;
+    if (f.pixels) f.read = [&]() -> std::unique_ptr<PictureRead> {
+        read = true;
+        std::unique_ptr<PictureRead> picture = later ? readLater(*ours, f.region, front) : nullptr;
+        if (!picture) picture = readAtOnce(f, f.region);
+        if (ours && config_.readback == Readback::Auto) ours->readback.took(monotonicNowNs() - beganNs);
+        return picture;
+    };
+    if (shown) out_.frameDone(f);
+    if (later && !read) waitUntilDrawn(); // nobody has
     answerAskedAhead();
     if (it != windows.end()) turnDrawn(*it->second, front);
     if (it != windows.end() && it->second->front && !front) showBack(*it->second);

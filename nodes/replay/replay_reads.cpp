@@ -4,22 +4,26 @@
 #include <cstring>
 #include <utility>
 
+#include "nodes/replay/later_reads.hpp"
 #include "nodes/replay/replay.hpp"
 
 namespace mural {
 
 // The read framebuffer is the program's; pack state and pack buffer are set aside.
-const std::byte* Replay::readRegion(const PixelViewport& r, GLenum format, GLenum type, size_t bytes) {
-    pixels_.assign(std::max<size_t>(bytes, 1), std::byte{0});
+const std::byte* Replay::readRegion(const PixelViewport& r, GLenum format, GLenum type, size_t bytes, Beyond beyond) {
+    const size_t room = into_ ? 1 : std::max<size_t>(bytes, 1);
+    if (beyond == Beyond::Black) pixels_.assign(room, std::byte{0});
+    else pixels_.resize(room);
     if (r.empty() || !gl.glReadPixels) return pixels_.data();
-    if (c_->packBuffer) gl.glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+    if (into_) into_->bindBuffer(bytes);
+    else if (c_->packBuffer) gl.glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
     packTightly(true);
     const bool window = readsLean() && c_->readFramebuffer == 0;
     const PixelViewport o = window ? c_->read->region : PixelViewport{};
     const int32_t planted = config_.plant == "shift" && c_->readFramebuffer == 0 && r.x > 0 ? 1 : 0;
-    gl.glReadPixels(r.x - o.x - planted, r.y - o.y, r.w, r.h, format, type, pixels_.data());
+    gl.glReadPixels(r.x - o.x - planted, r.y - o.y, r.w, r.h, format, type, into_ ? nullptr : pixels_.data());
     packTightly(false);
-    if (c_->packBuffer) gl.glBindBuffer(GL_PIXEL_PACK_BUFFER, c_->packBuffer);
+    if (into_ || c_->packBuffer) gl.glBindBuffer(GL_PIXEL_PACK_BUFFER, c_->packBuffer);
     return pixels_.data();
 }
 
@@ -201,8 +205,8 @@ const std::byte* Replay::readShown(Window& w, const PixelViewport& r, bool front
     const std::byte* pixels = nullptr;
     const GLenum format = bgra ? GL_BGRA : GL_RGBA;
     if (resolves(w) && !r.empty()) aside([&] { pixels = readResolved(r, format, bytes); });
-    else withPlainTransfer([&] { pixels = readRegion(r, format, GL_UNSIGNED_BYTE, bytes); });
-    for (size_t i = 0; !bgra && i < bytes; i += 4) std::swap(pixels_[i], pixels_[i + 2]);
+    else withPlainTransfer([&] { pixels = readRegion(r, format, GL_UNSIGNED_BYTE, bytes, Beyond::Nothing); });
+    for (size_t i = 0; !bgra && !into_ && i < bytes; i += 4) std::swap(pixels_[i], pixels_[i + 2]);
     c_->read = read;
     c_->readFramebuffer = bound;
     if (chooses) gl.glReadBuffer(windowBuffer(c_->readBuffer0, &w));
@@ -235,7 +239,7 @@ const std::byte* Replay::readResolved(const PixelViewport& r, GLenum format, siz
     gl.glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
     const std::byte* pixels = nullptr;
     Window* const window = std::exchange(c_->read, nullptr); // what is read now lies at 0, 0
-    withPlainTransfer([&] { pixels = readRegion({0, 0, r.w, r.h}, format, GL_UNSIGNED_BYTE, bytes); });
+    withPlainTransfer([&] { pixels = readRegion({0, 0, r.w, r.h}, format, GL_UNSIGNED_BYTE, bytes, Beyond::Nothing); });
     c_->read = window;
     gl.glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
     gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER, name(Kind::Framebuffer, c_->drawFramebuffer));

@@ -20,7 +20,8 @@ enum class StereoMode {
     SideBySide, // left half and right half, each the whole picture at half its width
     TopBottom,  // left above right, each at half its height
     Left,       // one eye alone: for two sessions, or to look at it
-    Right
+    Right,
+    Quad // each whole: windows with a buffer for each eye
 };
 
 struct RenderPass {

@@ -32,13 +32,17 @@ template <> struct EnumNames<Frusta> {
 template <> struct EnumNames<Economy> {
     static constexpr std::pair<Economy, const char*> kAll[] = {{Economy::Auto, "auto"}, {Economy::On, "on"}, {Economy::Off, "off"}};
 };
+template <> struct EnumNames<Readback> {
+    static constexpr std::pair<Readback, const char*> kAll[] = {{Readback::Auto, "auto"}, {Readback::Direct, "direct"}, {Readback::Buffer, "buffer"}};
+};
 template <> struct EnumNames<Eye> {
     static constexpr std::pair<Eye, const char*> kAll[] = {{Eye::Cyclop, "cyclop"}, {Eye::Left, "left"}, {Eye::Right, "right"}};
 };
 template <> struct EnumNames<StereoMode> {
     static constexpr std::pair<StereoMode, const char*> kAll[] = {
         {StereoMode::Off, "off"},          {StereoMode::Anaglyph, "anaglyph"}, {StereoMode::SideBySide, "side-by-side"},
-        {StereoMode::TopBottom, "top-bottom"}, {StereoMode::Left, "left"},     {StereoMode::Right, "right"}};
+        {StereoMode::TopBottom, "top-bottom"}, {StereoMode::Left, "left"},     {StereoMode::Right, "right"},
+        {StereoMode::Quad, "quad"}};
 };
 
 template <class Config, class Visitor>
@@ -75,6 +79,7 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("zoomY", c.passes.zoom.y);
     visit("composition", c.composition);
     visit("codec", c.codec);
+    visit("readback", c.readback);
     visit("eyeBase", c.eyeBase);
     visit("focusDistance", c.focusDistance);
     visit("tiling", c.tiling);
@@ -142,6 +147,7 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("pictureCodec", s.pictureCodec);
     visit("wayX", s.way.x);
     visit("wayY", s.way.y);
+    visit("readback", s.readback);
     visit("partCodec", s.partCodec);
     visit("wallWindows", s.wallWindows);
     visit("windowTitle", s.windowTitle);

@@ -9,6 +9,7 @@
 
 #include "common/result.hpp"
 #include "common/viewport.hpp"
+#include "nodes/session/readback.hpp"
 #include "nodes/session/render_pass.hpp"
 #include "nodes/session/screen_view.hpp"
 
@@ -48,6 +49,7 @@ struct SessionConfig {
     double modelUnit = 1;         // --model-unit: of the program, to the metre of the file
     PassCounts passes;            // --stereo, --pixel, --subpixel, --dplex, --db, --zoom
     std::string codec = "auto";   // --codec: how pictures of nodes travel: as of PlaneEncoder (nodes/pictures)
+    Readback readback = Readback::Auto; // --readback: how they leave the nodes' GL
     std::string composition = "auto"; // --composition: auto, or a compositor::Strategy by its name
     double eyeBase = 0.05;        // --eye-base: distance of the eyes, in the program's units
     double focusDistance = 1;     // --focus: where both eyes see the same, in the program's units
@@ -93,6 +95,7 @@ struct NodeSetup {
     bool sendPictures = false;    // Picture messages to the head at every swap…
     std::string pictureCodec = "raw"; // …or PackedPictures, as of PlaneEncoder
     Zoom way;                     // they are sent smaller by this, at most 1 (nodes/pictures/picture_way.hpp)
+    Readback readback = Readback::Auto; // how they leave GL
     std::string partCodec = "auto"; // of parts of pictures, to other nodes
     bool wallWindows = false;     // open one window per tile
     std::string windowTitle;      // of the one that shows its area

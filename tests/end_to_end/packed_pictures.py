@@ -43,6 +43,19 @@ def nearness(plain, got):
 
 
 @passes.case
+def however_they_leave_gl(context, notes):
+    """Read at once, or by buffers that another thread waits for, by all decompositions. (end_to_end.exact_readback has other kinds of windows.)"""
+    ways = (TILES + ["--codec", "bitplane"], ["--dplex", "2"], ["--db", "2"], ["--tile-queue", "32x32", "--local-nodes", "2"])
+    wrong = None
+    for program in ("immediate", "core_arrays", "es3_scene"):
+        plain = passes.native(context, program)
+        for readback in ("buffer", "direct"):
+            for options in ways if program == "core_arrays" else ways[:1]:
+                wrong = wrong or passes.first_wrong({"%s, %s %s" % (program, readback, " ".join(options)): passes.differing(plain, passes.through(context, options + ["--readback", readback], program))})
+    return wrong
+
+
+@passes.case
 def lossy_codecs_are_near(context, notes):
     wrong, plain = None, passes.native(context, "fixed_lighting")
     for options in (["--codec", "jpeg-95"], ["--codec", "jpeg-40"], ["--codec", "yuv420"], ["--codec", "jpeg-90", "--db", "2"]):

@@ -1,5 +1,6 @@
 // What every backend promises, on each of them: versions, buffers, errors that name the wish, probing.
 #include <algorithm>
+#include <thread>
 
 #include "nodes/gl/gl_probe.hpp"
 #include "tests/gl/backend_test.hpp"
@@ -396,6 +397,58 @@ TEST_P(Backends, oneContextServesSurfacesOfSeveralBits) {
     GLint alpha = 0;
     gl.getIntegerv(GL_ALPHA_BITS, &alpha);
     EXPECT_EQ(alpha, 8);
+}
+
+// A picture that one thread has drawn, seen by another in a buffer of the same share group.
+TEST_P(Backends, readersSeeWhatTheirShareGroupHasWritten) {
+    gl::ContextConfig config = version(3, 2);
+    if (GetParam() != "egl") {
+        Drawable drawn(*platform_, version(2, 1));
+        ASSERT_EQ(drawn.error, "");
+        auto refused = platform_->createReader(version(2, 1), *drawn.context);
+        ASSERT_FALSE(refused);
+        EXPECT_NE(refused.error().message.find("use --gl egl"), std::string::npos) << refused.error().message;
+        return;
+    }
+    Drawable drawn(*platform_, config);
+    ASSERT_EQ(drawn.error, "");
+    auto reader = platform_->createReader(config, *drawn.context);
+    ASSERT_TRUE(reader) << reader.error().message;
+    const GlFunctions gl(find());
+    const auto genBuffers = reinterpret_cast<decltype(&glGenBuffers)>(platform_->getProcAddress("glGenBuffers"));
+    const auto mapBufferRange = reinterpret_cast<decltype(&glMapBufferRange)>(platform_->getProcAddress("glMapBufferRange"));
+    const auto unmapBuffer = reinterpret_cast<decltype(&glUnmapBuffer)>(platform_->getProcAddress("glUnmapBuffer"));
+    const auto fenceSync = reinterpret_cast<decltype(&glFenceSync)>(platform_->getProcAddress("glFenceSync"));
+    const auto clientWaitSync = reinterpret_cast<decltype(&glClientWaitSync)>(platform_->getProcAddress("glClientWaitSync"));
+    const auto deleteSync = reinterpret_cast<decltype(&glDeleteSync)>(platform_->getProcAddress("glDeleteSync"));
+    const auto flush = reinterpret_cast<decltype(&glFlush)>(platform_->getProcAddress("glFlush"));
+    GLuint buffer = 0;
+    genBuffers(1, &buffer);
+    for (int red = 10; red < 250; red += 60) {
+        clearRed(gl, red);
+        gl.bindBuffer(GL_PIXEL_PACK_BUFFER, buffer);
+        gl.bufferData(GL_PIXEL_PACK_BUFFER, 16 * 16 * 4, nullptr, GL_STREAM_READ);
+        gl.readPixels(0, 0, 16, 16, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+        gl.bindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+        const GLsync done = fenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+        flush();
+        std::thread other([&] {
+            auto entered = (*reader)->enter();
+            ASSERT_TRUE(entered) << entered.error().message;
+            const GLenum state = clientWaitSync(done, 0, 20'000'000'000);
+            EXPECT_TRUE(state == GL_ALREADY_SIGNALED || state == GL_CONDITION_SATISFIED) << state;
+            deleteSync(done);
+            gl.bindBuffer(GL_PIXEL_PACK_BUFFER, buffer);
+            const auto* pixels = static_cast<const uint8_t*>(mapBufferRange(GL_PIXEL_PACK_BUFFER, 0, 16 * 16 * 4, GL_MAP_READ_BIT));
+            ASSERT_NE(pixels, nullptr);
+            for (size_t i = 0; i < 16 * 16 * 4; i += 4) EXPECT_EQ(pixels[i], red);
+            unmapBuffer(GL_PIXEL_PACK_BUFFER);
+            (*reader)->leave();
+        });
+        gl.clear(GL_COLOR_BUFFER_BIT); // this thread draws on meanwhile
+        other.join();
+    }
+    EXPECT_EQ(gl.getError(), static_cast<GLenum>(GL_NO_ERROR));
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, Backends, testing::Values("egl", "osmesa", "glx"),

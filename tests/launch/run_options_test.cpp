@@ -148,8 +148,8 @@ TEST(RunOptions, passesAreRead) {
     EXPECT_TRUE(p.zoom.none());
     EXPECT_EQ(accepted([](RunArguments& a) { a.zoom = "0.5"; }).config.passes.zoom, (Zoom{0.5, 0.5}));
     EXPECT_EQ(accepted([](RunArguments& a) { a.zoom = "2x0.25"; a.db = "2"; }).config.passes.zoom, (Zoom{2, 0.25}));
-    const char* const modes[] = {"off", "anaglyph", "side-by-side", "top-bottom", "left", "right"};
-    for (size_t i = 0; i < 6; ++i) EXPECT_EQ(accepted([&](RunArguments& a) { a.stereo = modes[i]; }).config.passes.stereo, static_cast<StereoMode>(i));
+    const char* const modes[] = {"off", "anaglyph", "side-by-side", "top-bottom", "left", "right", "quad"};
+    for (size_t i = 0; i < 7; ++i) EXPECT_EQ(accepted([&](RunArguments& a) { a.stereo = modes[i]; }).config.passes.stereo, static_cast<StereoMode>(i));
 }
 
 TEST(RunOptions, compositionIsForNodesThatShareDraws) {

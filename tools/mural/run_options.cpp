@@ -115,6 +115,7 @@ Result<void> readChoices(const RunArguments& a, SessionConfig& c) {
     const Choice<Tiling> tilings[] = {{"exact", Tiling::Exact}, {"culled", Tiling::Culled}, {"lean", Tiling::Lean}};
     const Choice<CapturePolicy> policies[] = {{"state", CapturePolicy::State}, {"full", CapturePolicy::Full}};
     const Choice<Economy> economies[] = {{"auto", Economy::Auto}, {"on", Economy::On}, {"off", Economy::Off}};
+    const Choice<Readback> readbacks[] = {{"auto", Readback::Auto}, {"direct", Readback::Direct}, {"buffer", Readback::Buffer}};
     const Choice<const char*> backends[] = {{"auto", "auto"}, {"egl", "egl"}, {"osmesa", "osmesa"}, {"glx", "glx"}};
     const char* backend = "auto";
     if (auto r = choose("--display", a.display, displays, c.display); !r) return r;
@@ -122,6 +123,7 @@ Result<void> readChoices(const RunArguments& a, SessionConfig& c) {
     if (auto r = choose("--policy", a.policy, policies, c.policy); !r) return r;
     if (auto r = choose("--gl", a.gl, backends, backend); !r) return r;
     if (auto r = choose("--economy", a.economy, economies, c.economy); !r) return r;
+    if (auto r = choose("--readback", a.readback, readbacks, c.readback); !r) return r;
     c.glBackend = backend;
     return {};
 }
@@ -249,7 +251,8 @@ Result<void> readZoom(const RunArguments& a, Zoom& zoom) {
 // By what frames are drawn in several passes.
 Result<void> readPasses(const RunArguments& a, SessionConfig& c) {
     const Choice<StereoMode> modes[] = {{"off", StereoMode::Off},          {"anaglyph", StereoMode::Anaglyph}, {"side-by-side", StereoMode::SideBySide},
-                                        {"top-bottom", StereoMode::TopBottom}, {"left", StereoMode::Left},     {"right", StereoMode::Right}};
+                                        {"top-bottom", StereoMode::TopBottom}, {"left", StereoMode::Left},     {"right", StereoMode::Right},
+                                        {"quad", StereoMode::Quad}};
     PassCounts& p = c.passes;
     if (auto r = choose("--stereo", a.stereo, modes, p.stereo); !r) return r;
     if (auto r = readReal("--eye-base", a.eyeBase, 0, c.eyeBase); !r) return r;
@@ -370,7 +373,8 @@ Result<std::string> configTextOf(const RunArguments& a, const SessionConfig& c) 
     case StereoMode::Off: break;
     case StereoMode::Anaglyph: form.stereo = config::StereoForm::Anaglyph; break;
     case StereoMode::SideBySide: form.stereo = config::StereoForm::SideBySide; break;
-    default: return Error{"--print-config: a configuration has no such stereo mode; anaglyph and side-by-side it has"};
+    case StereoMode::Quad: form.stereo = config::StereoForm::Quad; break;
+    default: return Error{"--print-config: a configuration has no such stereo mode; anaglyph, side-by-side and quad it has"};
     }
     if (c.width > 0) form.width = c.width;
     if (c.height > 0) form.height = c.height;
@@ -430,7 +434,7 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
     command.add_option("--layout", a.layouts, "show this layout of the file's canvases; may be given for each")->type_name("NAME")->take_all();
     command.add_flag("--here", a.here, "run all nodes of the file on this machine");
     command.add_flag("--print-config", a.printConfig, "print the configuration file that the other options stand for, and run nothing");
-    command.add_option("--stereo", a.stereo, "two eyes from a program that knows one: anaglyph, side-by-side, top-bottom, or left, right alone (off)")->type_name("MODE");
+    command.add_option("--stereo", a.stereo, "two eyes from a program that knows one: anaglyph, side-by-side, top-bottom, quad (windows of the wall with a buffer for each eye), or left, right alone (off)")->type_name("MODE");
     command.add_option("--eye-base", a.eyeBase, "distance of the eyes, in the program's units (0.05)")->type_name("D");
     command.add_option("--focus", a.focus, "distance at which both eyes see the same, in the program's units (1)")->type_name("D");
     command.add_option("--subpixel", a.subpixel, "antialiasing: every pixel is the mean of N jittered pictures, each drawn by nodes of its own (1)")->type_name("N");
@@ -454,6 +458,7 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
     command.add_flag("--native", a.native, "run without Mural, and only count frames and time");
     command.add_option("--launch", a.launch, "command that runs a command on a host (ssh -o BatchMode=yes)")->type_name("CMD");
     command.add_option("--stream", a.stream, "how the stream travels to other machines: auto (by multicast when there are two or more), tcp (to each), or rsp://GROUP:PORT?interface=…&rate=… (auto)")->type_name("HOW");
+    command.add_option("--readback", a.readback, "how pictures leave the nodes' GL: direct (read before the next frame is drawn), buffer (waited for by another thread), auto (by which of both the drawing thread loses less) (auto)")->type_name("HOW");
     command.add_option("--economy", a.economy, "send nothing to nodes that they have had: auto (nodes of other machines), on (all), off (auto)")->type_name("WHICH");
     command.add_option("--store", a.store, "memory for that in the head and in each of those nodes (1GiB)")->type_name("SIZE");
     command.add_option("--restart-nodes", a.restartNodes, "start a node that is lost again, up to N times in a row; 0: its tiles stay as they were (3)")->type_name("N");

@@ -36,7 +36,7 @@ struct RunArguments {
     Text config, canvas, frusta, modelUnit, economy, store;
     std::vector<std::string> layouts;
     bool here = false, printConfig = false;
-    Text stereo, eyeBase, focus, pixel, subpixel, dplex, db, zoom, composition, codec;
+    Text stereo, eyeBase, focus, pixel, subpixel, dplex, db, zoom, composition, codec, readback;
     Text localNodes, frames, latency, report, record;
     std::string verify; // empty: not given
     bool fullScreen = false, noPlacement = false, explain = false, native = false, quiet = false;

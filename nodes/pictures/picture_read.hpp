@@ -1,0 +1,60 @@
+// A picture that was drawn, on its way to the thread that packs it.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "common/clock.hpp"
+#include "common/result.hpp"
+
+namespace mural {
+
+class PictureRead {
+public:
+    virtual ~PictureRead() = default;
+    // Rows bottom first, B G R A, tightly packed; they live as long as this does. Called once, by any thread. Errors: they did not come in time, or GL has lost them.
+    [[nodiscard]] virtual Result<std::span<const std::byte>> bytes(Deadline deadline) = 0;
+};
+
+// Memory of pictures, used again: what comes anew from the system takes longer than reading into it.
+class PictureMemory {
+public:
+    [[nodiscard]] std::vector<std::byte> take() {
+        const std::lock_guard lock(mutex_);
+        if (free_.empty()) return {};
+        std::vector<std::byte> memory = std::move(free_.back());
+        free_.pop_back();
+        return memory;
+    }
+    void give(std::vector<std::byte> memory) {
+        const std::lock_guard lock(mutex_);
+        if (free_.size() < kMostFree) free_.push_back(std::move(memory));
+    }
+
+private:
+    static constexpr size_t kMostFree = 3;
+    std::mutex mutex_;
+    std::vector<std::vector<std::byte>> free_;
+};
+
+// One that is in memory already.
+class ReadPicture final : public PictureRead {
+public:
+    ReadPicture(std::vector<std::byte> bytes, std::shared_ptr<PictureMemory> memory) : bytes_(std::move(bytes)), memory_(std::move(memory)) {}
+    ~ReadPicture() override {
+        if (memory_) memory_->give(std::move(bytes_));
+    }
+    ReadPicture(const ReadPicture&) = delete;
+    ReadPicture& operator=(const ReadPicture&) = delete;
+    [[nodiscard]] Result<std::span<const std::byte>> bytes(Deadline) override { return std::span<const std::byte>(bytes_); }
+
+private:
+    std::vector<std::byte> bytes_;
+    const std::shared_ptr<PictureMemory> memory_;
+};
+
+} // namespace mural

@@ -1,0 +1,106 @@
+#include "nodes/replay/later_reads.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace mural {
+
+namespace {
+
+constexpr int64_t kSliceNs = kNsPerS; // of waits for a fence
+
+void swapFirstAndThird(const std::byte* from, std::vector<std::byte>& to) {
+    for (size_t i = 0; i < to.size(); i += 4) {
+        to[i] = from[i + 2];
+        to[i + 1] = from[i + 1];
+        to[i + 2] = from[i];
+        to[i + 3] = from[i + 3];
+    }
+}
+
+} // namespace
+
+// One picture. bytes() and the end of it are one thread's.
+class LaterPicture final : public PictureRead {
+public:
+    LaterPicture(std::shared_ptr<LaterReads> of, LaterReads::Buffer buffer, GLsync drawn, bool redFirst) : of_(std::move(of)), buffer_(buffer), drawn_(drawn), redFirst_(redFirst) {}
+    LaterPicture(const LaterPicture&) = delete;
+    LaterPicture& operator=(const LaterPicture&) = delete;
+    ~LaterPicture() override {
+        if (!entered_) entered_ = of_->reader_->enter().ok();
+        if (entered_) {
+            if (mapped_) unmap();
+            of_->gl_.deleteSync(drawn_);
+            of_->reader_->leave();
+        }
+        of_->giveBack(buffer_);
+    }
+
+    [[nodiscard]] Result<std::span<const std::byte>> bytes(Deadline deadline) override {
+        if (auto entered = of_->reader_->enter(); !entered) return entered.error();
+        entered_ = true;
+        GLenum state = GL_TIMEOUT_EXPIRED;
+        do state = of_->gl_.clientWaitSync(drawn_, 0, static_cast<GLuint64>(deadline.leftNs(kSliceNs)));
+        while (state == GL_TIMEOUT_EXPIRED && !deadline.passed());
+        if (state == GL_TIMEOUT_EXPIRED) return Error{"GL has not drawn it in time; the driver may hang: look at the system's log"};
+        if (state == GL_WAIT_FAILED) return Error{"GL can't tell when it is drawn; use --readback direct"};
+        of_->gl_.bindBuffer(GL_PIXEL_PACK_BUFFER, buffer_.name);
+        mapped_ = of_->gl_.mapBufferRange(GL_PIXEL_PACK_BUFFER, 0, static_cast<GLsizeiptr>(buffer_.bytes), GL_MAP_READ_BIT);
+        if (!mapped_) return Error{"GL does not show the buffer that it was read into; use --readback direct"};
+        const auto* pixels = static_cast<const std::byte*>(mapped_);
+        if (!redFirst_) return std::span(pixels, buffer_.bytes);
+        swapped_.resize(buffer_.bytes);
+        swapFirstAndThird(pixels, swapped_);
+        return std::span<const std::byte>(swapped_);
+    }
+
+private:
+    void unmap() {
+        of_->gl_.unmapBuffer(GL_PIXEL_PACK_BUFFER);
+        of_->gl_.bindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+    }
+
+    const std::shared_ptr<LaterReads> of_;
+    const LaterReads::Buffer buffer_;
+    const GLsync drawn_;
+    const bool redFirst_;
+    bool entered_ = false;
+    const void* mapped_ = nullptr;
+    std::vector<std::byte> swapped_;
+};
+
+LaterReads::LaterReads(std::unique_ptr<gl::SharedReader> reader, const GlFunctions& gl)
+    : reader_(std::move(reader)), gl_{gl.glGenBuffers, gl.glBindBuffer, gl.glBufferData, gl.glMapBufferRange, gl.glUnmapBuffer, gl.glFenceSync, gl.glClientWaitSync, gl.glDeleteSync, gl.glFlush} {}
+
+void LaterReads::bindBuffer(size_t bytes) {
+    bound_ = {};
+    {
+        const std::lock_guard lock(mutex_);
+        if (!free_.empty()) {
+            bound_ = free_.back();
+            free_.pop_back();
+        }
+    }
+    if (bound_.name == 0) gl_.genBuffers(1, &bound_.name);
+    gl_.bindBuffer(GL_PIXEL_PACK_BUFFER, bound_.name);
+    if (bound_.bytes != bytes) gl_.bufferData(GL_PIXEL_PACK_BUFFER, static_cast<GLsizeiptr>(bytes), nullptr, GL_STREAM_READ);
+    bound_.bytes = bytes;
+}
+
+// The flush lets the other thread's wait end, whatever comes next.
+std::unique_ptr<PictureRead> LaterReads::take(bool redFirst) {
+    const Buffer buffer = std::exchange(bound_, {});
+    const GLsync drawn = gl_.fenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl_.flush();
+    if (drawn) return std::make_unique<LaterPicture>(shared_from_this(), buffer, drawn, redFirst);
+    giveBack(buffer);
+    return nullptr;
+}
+
+// No more than are on their way at once; they go with the share group.
+void LaterReads::giveBack(Buffer buffer) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(buffer);
+}
+
+} // namespace mural

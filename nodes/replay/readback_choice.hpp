@@ -1,0 +1,35 @@
+// How a window's pictures leave GL: read at once, or written into a buffer that another thread waits for. By what the drawing thread loses: where drivers draw and copy
+// by themselves the second is almost nothing, where they do it in the calling thread it is as much and a buffer besides. Pure: times are told.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+namespace mural {
+
+class ReadbackChoice {
+public:
+    // Of the next frame.
+    [[nodiscard]] bool later() const { return frames_ < kMeasured ? frames_ % 2 == 1 : later_; }
+    // The drawing thread took so long from a frame's last command until it could go on.
+    void took(int64_t ns) {
+        if (frames_ >= kWarmUp && frames_ < kMeasured) (later() ? laterNs_ : atOnceNs_)[static_cast<size_t>(frames_ - kWarmUp) / 2] = ns;
+        if (++frames_ == kMeasured) later_ = 4 * median(laterNs_) < 3 * median(atOnceNs_); // what is about as good stays simple
+        if (frames_ == kMeasured + kKept) frames_ = kWarmUp;
+    }
+
+private:
+    static constexpr int kWarmUp = 4, kSamples = 5, kMeasured = kWarmUp + 2 * kSamples;
+    static constexpr int kKept = 2000; // frames, until it is measured again: what a program draws becomes another
+    static int64_t median(std::array<int64_t, kSamples> times) {
+        std::ranges::sort(times);
+        return times[kSamples / 2];
+    }
+
+    int frames_ = 0;
+    bool later_ = false;
+    std::array<int64_t, kSamples> atOnceNs_{}, laterNs_{};
+};
+
+} // namespace mural

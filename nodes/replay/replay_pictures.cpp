@@ -1,0 +1,61 @@
+// A frame's picture on its way out: read at once, or written by GL into a buffer that the thread that packs it waits for.
+//
+// The second does not wait for GL here: the next frame's commands are given to it meanwhile. It needs fences, buffers for pixels, and a
+// second context for the other thread. Which one the drawing thread loses less by is measured (readback_choice.hpp): llvmpipe draws and
+// copies when it is asked to read, in this thread, and so gains nothing by it.
+#include <cstring>
+#include <utility>
+
+#include "nodes/replay/later_reads.hpp"
+#include "nodes/replay/replay.hpp"
+
+namespace mural {
+
+bool Replay::hasFences(const ContextState& c) const {
+    return c.version >= (c.api == wire::Api::Desktop ? 32 : 30) && gl.glFenceSync && gl.glClientWaitSync && gl.glDeleteSync;
+}
+
+// Made with the first frame that wants it; a share group that has none is not asked again.
+std::shared_ptr<LaterReads> Replay::laterReads() {
+    Shared& shared = *bound_->shared;
+    if (!std::exchange(shared.laterAsked, true)) {
+        auto reader = platform_->createReader(bound_->wish, *bound_->context);
+        if (reader) shared.later = std::make_shared<LaterReads>(std::move(*reader), gl);
+        else if (config_.readback == Readback::Buffer) out_.log("pictures are read at once: " + reader.error().message);
+    }
+    return shared.later;
+}
+
+// What is put together from other pixels than those that are shown is read at once.
+bool Replay::readsLater(const Window& w, const PixelViewport& region) {
+    if (config_.readback == Readback::Direct || skips_ || region.empty() || !bound_ || !bound_->shared) return false;
+    if (config_.readback == Readback::Auto && !w.readback.later()) return false;
+    if ((!config_.pass.zoom.none() && !w.plain) || (hasKernel() && w.plain)) return false;
+    const bool buffers = gl.glGenBuffers && gl.glBindBuffer && gl.glBufferData && gl.glMapBufferRange && gl.glUnmapBuffer && gl.glFlush;
+    return buffers && hasFences(*bound_) && laterReads();
+}
+
+std::unique_ptr<PictureRead> Replay::readAtOnce(const ReplayOutputs::Frame& f, const PixelViewport& r) {
+    const std::byte* const pixels = f.pixels(r);
+    if (!pixels) return nullptr;
+    const size_t bytes = static_cast<size_t>(r.area()) * 4;
+    std::vector<std::byte> own;
+    if (pixels == pixels_.data()) own = std::exchange(pixels_, memory_->take());
+    else own.assign(pixels, pixels + bytes);
+    own.resize(bytes);
+    return std::make_unique<ReadPicture>(std::move(own), memory_);
+}
+
+// Null: GL made no fence.
+std::unique_ptr<PictureRead> Replay::readLater(Window& w, const PixelViewport& r, bool front) {
+    ContextState* const own = std::exchange(c_, bound_);
+    const std::shared_ptr<LaterReads> reads = c_->shared->later;
+    into_ = reads.get();
+    (void)readShown(w, r, front);
+    into_ = nullptr;
+    auto picture = reads->take(c_->api != wire::Api::Desktop);
+    c_ = own;
+    return picture;
+}
+
+} // namespace mural

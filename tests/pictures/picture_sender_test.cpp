@@ -1,0 +1,305 @@
+// Pictures by a thread of their own: what goes out, in which order, and what is waited for.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <cstring>
+#include <map>
+
+#include "nodes/pictures/picture_sender.hpp"
+#include "nodes/pictures/picture_unpacker.hpp"
+#include "nodes/pictures/picture_way.hpp"
+
+namespace mural {
+namespace {
+
+using wire::NodeMessage;
+
+constexpr int32_t kWidth = 70, kHeight = 40;
+constexpr std::chrono::seconds kPatience{20};
+
+// Something that a test opens.
+class Gate {
+public:
+    void open() {
+        const std::lock_guard lock(mutex_);
+        open_ = true;
+        changed_.notify_all();
+    }
+    bool pass() {
+        std::unique_lock lock(mutex_);
+        return changed_.wait_for(lock, kPatience, [this] { return open_; });
+    }
+
+private:
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    bool open_ = false;
+};
+
+std::vector<std::byte> rows(uint32_t frame) {
+    std::vector<std::byte> all(size_t{kWidth} * kHeight * 4);
+    for (size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::byte>(i % 4 == 3 ? 255 : (i / 4 + frame * 31) & 255);
+    return all;
+}
+
+class TestPicture final : public PictureRead {
+public:
+    TestPicture(std::vector<std::byte> bytes, Gate* gate) : bytes_(std::move(bytes)), gate_(gate) {}
+    Result<std::span<const std::byte>> bytes(Deadline) override {
+        if (gate_) {
+            EXPECT_TRUE(gate_->pass());
+        }
+        if (bytes_.empty()) return Error{"the card has gone"};
+        return std::span<const std::byte>(bytes_);
+    }
+
+private:
+    std::vector<std::byte> bytes_;
+    Gate* gate_;
+};
+
+struct Sent {
+    NodeMessage type;
+    std::vector<std::byte> bytes;
+    std::thread::id by;
+    template <class T> T as() const {
+        T value{};
+        if (bytes.size() >= sizeof value) std::memcpy(&value, bytes.data(), sizeof value);
+        return value;
+    }
+};
+
+class PictureSenderTest : public ::testing::Test {
+protected:
+    void start(PictureSenderConfig config = {}) {
+        sender_ = std::make_unique<PictureSender>(
+            std::move(config),
+            [this](NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b) {
+                Sent one{type, {a.begin(), a.end()}, std::this_thread::get_id()};
+                one.bytes.insert(one.bytes.end(), b.begin(), b.end());
+                const std::lock_guard lock(mutex_);
+                sent_.push_back(std::move(one));
+            },
+            [this](const std::string& text) {
+                const std::lock_guard lock(mutex_);
+                log_ += text + "\n";
+            });
+    }
+    bool frame(uint32_t number, Gate* gate = nullptr, uint32_t window = 1, bool lost = false) {
+        PictureSender::Frame f;
+        f.header = {1, window, number, 0, 0, kWidth, kHeight, kWidth, kHeight, 0, 0};
+        f.picture = std::make_unique<TestPicture>(lost ? std::vector<std::byte>() : rows(number), gate);
+        f.done.client = 1;
+        f.done.window = window;
+        f.done.frame = number;
+        f.done.busyNs = 5;
+        return sender_->send(std::move(f));
+    }
+    bool tell(uint32_t number) { return sender_->tell(NodeMessage::Answer, std::as_bytes(std::span(&number, 1))); }
+    std::vector<NodeMessage> types() {
+        const std::lock_guard lock(mutex_);
+        std::vector<NodeMessage> all;
+        for (const Sent& s : sent_) all.push_back(s.type);
+        return all;
+    }
+
+    std::mutex mutex_;
+    std::vector<Sent> sent_;
+    std::string log_;
+    std::unique_ptr<PictureSender> sender_;
+};
+
+TEST_F(PictureSenderTest, PicturesGoAsTheyAreWithTheirFramesBehindThem) {
+    start();
+    for (uint32_t i = 1; i <= 5; ++i) ASSERT_TRUE(frame(i));
+    ASSERT_TRUE(sender_->finish());
+    ASSERT_EQ(sent_.size(), 10u);
+    for (uint32_t i = 1; i <= 5; ++i) {
+        const Sent& picture = sent_[2 * i - 2];
+        const Sent& done = sent_[2 * i - 1];
+        ASSERT_EQ(picture.type, NodeMessage::Picture);
+        EXPECT_EQ(picture.as<wire::PictureHeader>().frame, i);
+        const auto wanted = rows(i);
+        ASSERT_EQ(picture.bytes.size(), sizeof(wire::PictureHeader) + wanted.size());
+        EXPECT_EQ(std::memcmp(picture.bytes.data() + sizeof(wire::PictureHeader), wanted.data(), wanted.size()), 0);
+        ASSERT_EQ(done.type, NodeMessage::FrameDone);
+        EXPECT_EQ(done.as<wire::FrameDoneMessage>().frame, i);
+        EXPECT_NE(done.by, std::this_thread::get_id());
+        EXPECT_GT(done.as<wire::FrameDoneMessage>().readbackNs, 0u);
+    }
+}
+
+TEST_F(PictureSenderTest, WhatIsToldKeepsItsPlace) {
+    start();
+    Gate gate;
+    ASSERT_TRUE(tell(1));
+    EXPECT_EQ(sent_.back().by, std::this_thread::get_id()); // nothing was under way: nobody was woken
+    ASSERT_TRUE(frame(1, &gate));
+    ASSERT_TRUE(tell(2));
+    ASSERT_TRUE(frame(2));
+    ASSERT_TRUE(tell(3));
+    EXPECT_EQ(types(), (std::vector{NodeMessage::Answer})); // all else waits for the first picture
+    gate.open();
+    ASSERT_TRUE(sender_->finish());
+    EXPECT_EQ(types(), (std::vector{NodeMessage::Answer, NodeMessage::Picture, NodeMessage::FrameDone, NodeMessage::Answer, NodeMessage::Picture, NodeMessage::FrameDone, NodeMessage::Answer}));
+    EXPECT_EQ(sent_[3].as<uint32_t>(), 2u);
+    EXPECT_EQ(sent_[6].as<uint32_t>(), 3u);
+    ASSERT_TRUE(tell(4));
+    EXPECT_EQ(sent_.back().as<uint32_t>(), 4u); // at once again
+}
+
+TEST_F(PictureSenderTest, AThirdPictureWaitsForRoom) {
+    start();
+    Gate gate;
+    ASSERT_TRUE(frame(1, &gate));
+    ASSERT_TRUE(frame(2));
+    std::atomic<bool> taken{false};
+    std::thread third([&] {
+        EXPECT_TRUE(frame(3));
+        taken = true;
+    });
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    EXPECT_FALSE(taken);
+    gate.open();
+    third.join();
+    EXPECT_TRUE(taken);
+    ASSERT_TRUE(sender_->finish());
+    EXPECT_EQ(types().size(), 6u);
+}
+
+TEST_F(PictureSenderTest, MessagesBehindAPictureAreBounded) {
+    PictureSenderConfig config;
+    config.mostBytes = 6000;
+    start(config);
+    Gate gate;
+    ASSERT_TRUE(frame(1, &gate));
+    const std::vector<std::byte> large(4000);
+    ASSERT_TRUE(sender_->tell(NodeMessage::Answer, large));
+    std::atomic<bool> taken{false};
+    std::thread second([&] {
+        EXPECT_TRUE(sender_->tell(NodeMessage::Answer, large));
+        taken = true;
+    });
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    EXPECT_FALSE(taken); // 8000 would wait
+    gate.open();
+    second.join();
+    ASSERT_TRUE(sender_->tell(NodeMessage::Answer, std::vector<std::byte>(9000))); // more than ever waits: alone
+    ASSERT_TRUE(sender_->finish());
+    EXPECT_EQ(types().size(), 5u);
+}
+
+TEST_F(PictureSenderTest, NothingGoesOutWhenNoneGetsAway) {
+    PictureSenderConfig config;
+    config.roomMs = 50;
+    start(config);
+    Gate gate;
+    ASSERT_TRUE(frame(1, &gate));
+    ASSERT_TRUE(frame(2));
+    EXPECT_FALSE(frame(3));
+    EXPECT_FALSE(frame(4)); // at once: nobody waits again
+    EXPECT_FALSE(tell(1));
+    EXPECT_FALSE(sender_->finish());
+    EXPECT_EQ(std::ranges::count(log_, '\n'), 1) << log_;
+    EXPECT_NE(log_.find("do not get away"), std::string::npos) << log_;
+    gate.open();
+}
+
+TEST_F(PictureSenderTest, WhatWasGivenGoesOutAtTheEnd) {
+    start();
+    Gate gate;
+    ASSERT_TRUE(frame(1, &gate));
+    ASSERT_TRUE(frame(2));
+    ASSERT_TRUE(tell(9));
+    std::thread opener([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        gate.open();
+    });
+    sender_.reset();
+    opener.join();
+    EXPECT_EQ(types().size(), 5u);
+    EXPECT_EQ(sent_.back().as<uint32_t>(), 9u);
+}
+
+TEST_F(PictureSenderTest, ALostPictureIsBlackAndSaidOnce) {
+    start();
+    ASSERT_TRUE(frame(1, nullptr, 1, true));
+    ASSERT_TRUE(frame(2, nullptr, 1, true));
+    ASSERT_TRUE(frame(3));
+    ASSERT_TRUE(sender_->finish());
+    ASSERT_EQ(sent_.size(), 6u);
+    const std::vector<std::byte> black(size_t{kWidth} * kHeight * 4);
+    ASSERT_EQ(sent_[0].bytes.size(), sizeof(wire::PictureHeader) + black.size());
+    EXPECT_EQ(std::memcmp(sent_[0].bytes.data() + sizeof(wire::PictureHeader), black.data(), black.size()), 0);
+    EXPECT_EQ(std::ranges::count(log_, '\n'), 1) << log_;
+    EXPECT_NE(log_.find("the card has gone"), std::string::npos) << log_;
+}
+
+// Windows that go are forgotten in their place: the other end does so by the message behind that.
+TEST_F(PictureSenderTest, PackedPicturesComeAsTheyWereOverWindowsThatGo) {
+    PictureSenderConfig config;
+    config.codec = "bitplane";
+    start(config);
+    std::vector<uint32_t> windows;
+    for (uint32_t i = 1; i <= 40; ++i) {
+        windows.push_back(1 + i % 3);
+        ASSERT_TRUE(frame(i, nullptr, windows.back()));
+        if (i % 5 != 0) continue;
+        const wire::WindowGoneMessage gone{1, i % 15 == 0 ? wire::kAllWindows : windows.back()};
+        if (i % 15 == 0) sender_->clientGone(1);
+        else sender_->windowGone(1, windows.back());
+        ASSERT_TRUE(sender_->tell(NodeMessage::WindowGone, std::as_bytes(std::span(&gone, 1))));
+    }
+    ASSERT_TRUE(sender_->finish());
+    PictureUnpacker unpacker("bitplane");
+    uint32_t pictures = 0;
+    for (const Sent& s : sent_) {
+        if (s.type == NodeMessage::WindowGone) {
+            const auto gone = s.as<wire::WindowGoneMessage>();
+            if (gone.window == wire::kAllWindows) unpacker.clientGone(1);
+            else unpacker.windowGone(1, gone.window);
+        }
+        if (s.type != NodeMessage::PackedPicture) continue;
+        const auto header = s.as<wire::PictureHeader>();
+        std::vector<std::byte> got(rows(0).size());
+        const auto done = unpacker.unpack(1, header.window, header.w, header.h, std::span(s.bytes).subspan(sizeof header), got);
+        ASSERT_TRUE(done) << header.frame << ": " << done.error().message;
+        EXPECT_EQ(got, rows(header.frame)) << header.frame;
+        ++pictures;
+    }
+    EXPECT_EQ(pictures, 40u);
+    EXPECT_EQ(sender_->rawBytes(), 40 * rows(0).size());
+    EXPECT_LT(sender_->packedBytes(), sender_->rawBytes());
+}
+
+TEST_F(PictureSenderTest, PicturesGoSmallerWhereTheWayIsNarrow) {
+    PictureSenderConfig config;
+    config.way = {0.5, 0.25};
+    start(config);
+    ASSERT_TRUE(frame(1));
+    ASSERT_TRUE(sender_->finish());
+    const SizeOnWay size = sizeOnWay(kWidth, kHeight, config.way);
+    std::vector<std::byte> wanted(size.bytes());
+    resizePicture(rows(1).data(), kWidth, kHeight, wanted.data(), size.w, size.h);
+    ASSERT_EQ(sent_[0].bytes.size(), sizeof(wire::PictureHeader) + wanted.size());
+    EXPECT_EQ(std::memcmp(sent_[0].bytes.data() + sizeof(wire::PictureHeader), wanted.data(), wanted.size()), 0);
+    EXPECT_EQ(sent_[0].as<wire::PictureHeader>().w, kWidth); // as it is shown
+}
+
+TEST_F(PictureSenderTest, WorkIsAddedOrTheLongerOneCounts) {
+    for (const bool adds : {true, false}) {
+        PictureSenderConfig config;
+        config.codec = "zstd";
+        config.addsCpu = adds;
+        sent_.clear();
+        start(config);
+        ASSERT_TRUE(frame(1));
+        ASSERT_TRUE(sender_->finish());
+        EXPECT_GT(sender_->cpuNs(), 0);
+        EXPECT_GT(sent_.back().as<wire::FrameDoneMessage>().busyNs, 5u);
+    }
+}
+
+} // namespace
+} // namespace mural
