@@ -299,11 +299,10 @@ private:
                 plan_.warnings.push_back(file_ + ": channel \"" + part.name + "\": some pixels or samples of its kernel are drawn by no compound, they stay black");
             next += picturesOf(part.counts);
             if (first.stereoMode == compound::StereoMode::Anaglyph) anaglyph_ = true;
-            if (first.stereoMode == compound::StereoMode::Quad && first.eye == Eye::Left)
-                plan_.warnings.push_back(placeOf(first.compound) + ": channel \"" + part.name + "\" wants a quad-buffered pair; no window here has one, so both eyes are shown side by side; a display that takes such pairs, or stereo_mode ANAGLYPH, shows them");
+            if (first.stereoMode == compound::StereoMode::Quad && first.eye == Eye::Left) quad_ = true;
             plan_.wall.parts.push_back(part);
         }
-        plan_.wall.stereo = anaglyph_ ? StereoMode::Anaglyph : StereoMode::SideBySide;
+        plan_.wall.stereo = anaglyph_ ? StereoMode::Anaglyph : quad_ ? StereoMode::Quad : StereoMode::SideBySide;
         return {};
     }
 
@@ -547,7 +546,7 @@ private:
     std::set<Index> tooLarge_;    // compounds of which was said that they are
     std::set<Index> unlike_;      // destinations of which was said that their pictures are not alike
     Index canvas_ = kNone;
-    bool anaglyph_ = false;
+    bool anaglyph_ = false, quad_ = false;
     bool inRoom_ = false;
     SessionPlan plan_;
 };

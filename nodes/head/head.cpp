@@ -80,13 +80,13 @@ Result<void> addOutputs(const SessionConfig& config, const SessionPlan& plan, Co
         if (!opened) return Result<std::unique_ptr<PictureSink>>(opened.error());
         return Result<std::unique_ptr<PictureSink>>(std::move(*opened));
     };
-    options.openWall = [config](int offsetX) {
+    options.openWall = [config, &control](int offsetX) {
         WallWindowsConfig wall;
         wall.displayName = config.displayName;
         wall.positionX = config.windowX + offsetX;
         wall.positionY = config.windowY;
         wall.fullScreen = config.fullScreen;
-        return Result<std::unique_ptr<PictureSink>>(std::make_unique<WallSink>(std::move(wall), TileGrid{config.columns, config.rows, 1}));
+        return Result<std::unique_ptr<PictureSink>>(std::make_unique<WallSink>(std::move(wall), TileGrid{config.columns, config.rows, 1}, [&control](const std::string& text) { control.say(text); }));
     };
     if (config.out.empty()) return {};
     OutputOptions output;

@@ -119,6 +119,7 @@ HeadSession::HeadSession(SessionConfig config,
     output.saveFrames = config_.saveFrames;
     output.lastFrame = config_.frames;
     output.toNativeWindows = config_.display == Display::App;
+    output.pairs = plan_.wall.stereo == StereoMode::Quad;
     output.openWindow = options_.openWindow;
     if (headShowsWall(config_, plan_)) output.openWall = [this] { return options_.openWall(0); };
     for (size_t i = 0; i < plan_.canvases.size(); ++i) {

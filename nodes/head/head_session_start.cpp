@@ -230,6 +230,8 @@ void HeadSession::announceReady() {
         }
     }
     for (const std::string& warning : plan_.warnings) control_.say(warning);
+    if (plan_.wall.stereo == StereoMode::Quad && sendsPictures_ && !headShowsWall(config_, plan_))
+        control_.say("both eyes are shown side by side: windows of the wall alone have a buffer for each; add --display windows");
     control_.send({{"event", "ready"}, {"explain", explainLines()}, {"nodes", nodes}});
 }
 

@@ -119,8 +119,12 @@ void PictureOutput::show(const WindowPicture& picture) {
     config_.done(picture.client, picture.frame);
 }
 
+Result<void> PictureOutput::give(PictureSink& sink, int64_t frame, const Picture& picture) const {
+    return config_.pairs ? sink.showPair(frame, eyesOfStack(picture)) : sink.show(frame, picture);
+}
+
 void PictureOutput::save(int64_t frame, const Picture& picture) {
-    const auto saved = file_->show(frame, picture);
+    const auto saved = give(*file_, frame, picture);
     if (!saved) {
         config_.say(saved.error().message + "; no further pictures are saved");
         fileFailed_ = true;
@@ -138,7 +142,7 @@ void PictureOutput::showOnWall(int64_t frame, const Picture& picture) {
         if (opened) wall_ = std::move(*opened);
         else config_.say(opened.error().message);
     }
-    const auto shown = wall_ ? wall_->show(frame, picture) : Result<void>();
+    const auto shown = wall_ ? give(*wall_, frame, picture) : Result<void>();
     if (!shown) config_.say(shown.error().message + "; the wall's windows show no further pictures");
     wallFailed_ = !wall_ || !shown;
 }
@@ -175,7 +179,7 @@ void PictureOutput::showInWindow(const WindowPicture& picture) {
         found = windows_.emplace(key, opened ? std::move(*opened) : nullptr).first;
     }
     if (!found->second) return;
-    const auto shown = found->second->show(picture.frame, picture.picture->view());
+    const auto shown = give(*found->second, picture.frame, picture.picture->view());
     if (!shown && complained_.insert(key).second) config_.say(shown.error().message);
 }
 

@@ -35,6 +35,7 @@ struct PictureOutputConfig {
     std::vector<int64_t> saveFrames; // of the wall, from 1; empty: all
     int64_t lastFrame = 0;           // none behind it is saved: some come before the program has ended; 0: no limit
     bool toNativeWindows = false;    // --display app
+    bool pairs = false;              // pictures are both eyes' (stackEyes)
     // Opens the sink of one native window.
     std::function<Result<std::unique_ptr<PictureSink>>(uint64_t nativeWindow)> openWindow;
     // Opens the windows of the wall, where the head has them; empty: nodes have, or nobody.
@@ -73,6 +74,7 @@ private:
 
     void work();
     void show(const WindowPicture& picture);
+    Result<void> give(PictureSink& sink, int64_t frame, const Picture& picture) const;
     void save(int64_t frame, const Picture& picture);
     void showInWindow(const WindowPicture& picture);
     void showOnWall(int64_t frame, const Picture& picture);

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "compositor/kernels/mask_channels.hpp"
+#include "nodes/output/eye_pair.hpp"
 
 namespace mural {
 
@@ -62,35 +63,6 @@ compositor::ChannelMask maskOf(const EyeColours& colours) {
         mask[i] = taken[i % kPictureBytesPerPixel] ? std::byte{255} : std::byte{0};
     }
     return mask;
-}
-
-// One dimension is halved: the mean of two neighbours, rounded up; an odd last one stands alone.
-void halveInto(OwnedPicture& into, const Picture& eye, int x0, int y0, int width, int height, bool columns) {
-    for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-            const int ax = columns ? 2 * x : x, ay = columns ? y : 2 * y;
-            const int bx = std::min(columns ? ax + 1 : ax, eye.width - 1), by = std::min(columns ? ay : ay + 1, eye.height - 1);
-            const std::byte* a = eye.row(ay) + static_cast<size_t>(ax) * kPictureBytesPerPixel;
-            const std::byte* b = eye.row(by) + static_cast<size_t>(bx) * kPictureBytesPerPixel;
-            std::byte* to = into.row(y0 + y) + static_cast<size_t>(x0 + x) * kPictureBytesPerPixel;
-            for (size_t i = 0; i < kPictureBytesPerPixel; ++i)
-                to[i] = static_cast<std::byte>((std::to_integer<int>(a[i]) + std::to_integer<int>(b[i]) + 1) / 2);
-        }
-    }
-}
-
-void sideBySide(const Picture& left, const Picture& right, OwnedPicture& into) {
-    into.resize(left.width, left.height);
-    const int half = (left.width + 1) / 2;
-    halveInto(into, left, 0, 0, half, left.height, true);
-    halveInto(into, right, half, 0, left.width - half, left.height, true);
-}
-
-void topBottom(const Picture& left, const Picture& right, OwnedPicture& into) {
-    into.resize(left.width, left.height);
-    const int half = (left.height + 1) / 2; // the upper part, of the left eye
-    halveInto(into, right, 0, 0, left.width, left.height - half, false);
-    halveInto(into, left, 0, left.height - half, left.width, half, false);
 }
 
 // One eye's picture of a part: samples averaged, kernels interleaved.
@@ -182,9 +154,12 @@ void composeWall(const WallComposition& wall, const std::vector<Picture>& pictur
         }
     }
     if (two && !eyes[0].view().empty() && !eyes[1].view().empty()) fit(eyes[1], eyes[0].width(), eyes[0].height());
-    if (!two || eyes[0].width() != eyes[1].width() || eyes[0].height() != eyes[1].height()) into = std::move(eyes[0]);
-    else if (wall.stereo == StereoMode::TopBottom) topBottom(eyes[0].view(), eyes[1].view(), into);
-    else sideBySide(eyes[0].view(), eyes[1].view(), into);
+    const bool pair = two && eyes[0].width() == eyes[1].width() && eyes[0].height() == eyes[1].height();
+    const EyePair both{eyes[0].view(), pair ? eyes[1].view() : eyes[0].view()};
+    if (wall.stereo == StereoMode::Quad) stackEyes(both, into);
+    else if (!pair) into = std::move(eyes[0]);
+    else if (wall.stereo == StereoMode::TopBottom) topBottom(both, into);
+    else sideBySide(both, into);
 }
 
 } // namespace mural

@@ -35,7 +35,8 @@ WallComposition compositionOf(const PassCounts& counts);
 
 [[nodiscard]] int picturesOf(const WallComposition& wall);
 
-// Pictures of the wall's size (or of every nth pixel of it), of which the parts count. An empty picture leaves its part black.
+// Pictures of the wall's size (or of every nth pixel of it), of which the parts count. An empty picture leaves its part black. StereoMode::Quad: both eyes, one
+// above the other (stackEyes), the same one twice where there are no two.
 void composeWall(const WallComposition& wall, const std::vector<Picture>& pictures, OwnedPicture& into);
 
 // The same for a session that compositionOf() describes.

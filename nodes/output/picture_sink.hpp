@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/result.hpp"
+#include "nodes/output/eye_pair.hpp"
 #include "nodes/output/picture.hpp"
 
 namespace mural {
@@ -20,10 +21,19 @@ public:
     // Takes the picture; its memory is the caller's again on return.
     virtual Result<void> show(int64_t frame, const Picture& picture) = 0;
 
+    // The same with one for each eye; who has no room for two shows them side by side.
+    virtual Result<void> showPair(int64_t frame, const EyePair& eyes) {
+        sideBySide(eyes, bothEyes_);
+        return show(frame, bothEyes_.view());
+    }
+
     // Nothing more comes: completes what is open. Further calls do nothing.
     virtual Result<void> finish() = 0;
 
     [[nodiscard]] virtual std::string describe() const = 0;
+
+private:
+    OwnedPicture bothEyes_;
 };
 
 } // namespace mural

@@ -14,7 +14,9 @@ struct TextureBlit::Functions {
     PFNGLCLEARCOLORPROC clearColor = nullptr;
     PFNGLDELETEFRAMEBUFFERSPROC deleteFramebuffers = nullptr;
     PFNGLDELETETEXTURESPROC deleteTextures = nullptr;
+    PFNGLDRAWBUFFERPROC drawBuffer = nullptr;
     PFNGLFINISHPROC finish = nullptr;
+    PFNGLGETBOOLEANVPROC getBooleanv = nullptr;
     PFNGLFRAMEBUFFERTEXTURE2DPROC framebufferTexture2D = nullptr;
     PFNGLGENFRAMEBUFFERSPROC genFramebuffers = nullptr;
     PFNGLGENTEXTURESPROC genTextures = nullptr;
@@ -42,7 +44,9 @@ struct TextureBlit::Functions {
         get(clearColor, "glClearColor");
         get(deleteFramebuffers, "glDeleteFramebuffers");
         get(deleteTextures, "glDeleteTextures");
+        get(drawBuffer, "glDrawBuffer");
         get(finish, "glFinish");
+        get(getBooleanv, "glGetBooleanv");
         get(framebufferTexture2D, "glFramebufferTexture2D");
         get(genFramebuffers, "glGenFramebuffers");
         get(genTextures, "glGenTextures");
@@ -116,9 +120,16 @@ Result<void> TextureBlit::upload(const Picture& picture) {
     return {};
 }
 
-Result<void> TextureBlit::draw(int framebufferWidth, int framebufferHeight) {
+bool TextureBlit::stereo() const {
+    GLboolean has = GL_FALSE;
+    gl_->getBooleanv(GL_STEREO, &has);
+    return has == GL_TRUE;
+}
+
+Result<void> TextureBlit::draw(Target target, int framebufferWidth, int framebufferHeight) {
     gl_->viewport(0, 0, framebufferWidth, framebufferHeight);
     gl_->bindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    gl_->drawBuffer(target == Target::Back ? GL_BACK : target == Target::BackLeft ? GL_BACK_LEFT : GL_BACK_RIGHT);
     if (width_ < framebufferWidth || height_ < framebufferHeight)
         gl_->clear(GL_COLOR_BUFFER_BIT);
     const int bottom = framebufferHeight - height_; // below 0 where the picture is higher

@@ -23,8 +23,11 @@ public:
     // Keeps the picture in the texture.
     Result<void> upload(const Picture& picture);
 
-    // Copies it to the back buffer, upper left corners together, black around it.
-    Result<void> draw(int framebufferWidth, int framebufferHeight);
+    enum class Target { Back, BackLeft, BackRight };
+    // Copies it to that buffer of the window, upper left corners together, black around it.
+    Result<void> draw(Target target, int framebufferWidth, int framebufferHeight);
+    // The window has a back buffer for each eye.
+    [[nodiscard]] bool stereo() const;
 
     void finish(); // waits for the GPU
     [[nodiscard]] const std::string& renderer() const { return renderer_; }

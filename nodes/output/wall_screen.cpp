@@ -15,18 +15,25 @@ Result<std::unique_ptr<WallScreen>> WallScreen::open(const WallWindowsConfig& co
     if (!session)
         return session.error();
     screen->session_ = std::move(session.value());
+    if (config.stereo) {
+        const Result<void> opened = screen->openWindows(true, true);
+        screen->stereo_ = opened.ok();
+        if (opened)
+            return screen;
+        screen->whyNotStereo_ = opened.error().message;
+    }
     const bool automatic = config.drawing == WallDrawing::Auto;
     const bool openGl = automatic ? WallWindow::openGlIsFast(*screen->session_)
                                   : config.drawing == WallDrawing::OpenGl;
-    Result<void> opened = screen->openWindows(openGl);
+    Result<void> opened = screen->openWindows(openGl, false);
     if (!opened && automatic && openGl)
-        opened = screen->openWindows(false);
+        opened = screen->openWindows(false, false);
     if (!opened)
         return opened.error();
     return screen;
 }
 
-Result<void> WallScreen::openWindows(bool openGl) {
+Result<void> WallScreen::openWindows(bool openGl, bool stereo) {
     windows_.clear();
     for (size_t i = 0; i < config_.tiles.size(); ++i) {
         const TileWindow& tile = config_.tiles[i];
@@ -36,6 +43,7 @@ Result<void> WallScreen::openWindows(bool openGl) {
         options.fullScreen = config_.fullScreen;
         options.monitor = tile.monitor >= 0 ? tile.monitor : static_cast<int>(i);
         options.openGl = openGl;
+        options.stereo = stereo;
         // One swap that waits brings the others to the refresh too; each waiting would add up.
         options.waitForRefresh = config_.waitForRefresh && i == 0;
         options.timeoutMs = config_.showTimeoutMs;
@@ -66,7 +74,7 @@ Result<void> WallScreen::draw(std::vector<TileBuffer>& buffers) {
     if (Result<void> there = checkDisplay(); !there)
         return there;
     for (TileBuffer& buffer : buffers) {
-        if (Result<void> drawn = windows_[buffer.tile]->draw(buffer.picture); !drawn)
+        if (Result<void> drawn = windows_[buffer.tile]->draw(buffer.picture, buffer.right); !drawn)
             return drawn;
         drawn_.push_back(buffer.tile);
     }

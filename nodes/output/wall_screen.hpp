@@ -23,6 +23,7 @@ public:
         bool fullScreen = false;
         int monitor = 0;
         bool openGl = true;
+        bool stereo = false; // with openGl
         bool waitForRefresh = false;
         int64_t timeoutMs = 0;
     };
@@ -39,8 +40,9 @@ public:
 
     Result<void> move(const PixelViewport& place);
 
-    // Takes the picture and leaves the one before in its place (memory to use again).
-    Result<void> draw(OwnedPicture& picture);
+    // Takes the picture and leaves the one before in its place (memory to use again). right: of a window with a buffer for each
+    // eye; empty: the same for both.
+    Result<void> draw(OwnedPicture& picture, OwnedPicture& right);
     Result<void> present(); // makes visible what was drawn
     void finish();          // returns when it is on its way to the screen
 
@@ -57,6 +59,7 @@ private:
     Result<void> prepareDrawing(const Options& options);
     void resize(int width, int height);
     Result<void> drawKept();
+    Result<void> drawEye(const Picture& picture, TextureBlit::Target target, int width, int height);
     [[nodiscard]] std::string where() const;
 
     GlfwSession& session_;
@@ -66,6 +69,8 @@ private:
     int wantedHeight_ = 0;
     std::string title_;
     OwnedPicture kept_;                 // what the window shows
+    OwnedPicture keptRight_;            // empty: to both eyes
+    bool stereo_ = false;
     std::unique_ptr<TextureBlit> blit_; // one of the two
     std::unique_ptr<AppWindow> painter_;
     bool uncovered_ = false;
@@ -78,6 +83,7 @@ public:
     struct TileBuffer {
         size_t tile = 0;
         OwnedPicture picture;
+        OwnedPicture right; // empty: none
     };
     // Draws pictures; leaves used memory in the buffers.
     Result<void> draw(std::vector<TileBuffer>& buffers);
@@ -94,12 +100,14 @@ public:
     }
     [[nodiscard]] bool closeRequested() const;
     [[nodiscard]] std::string describe() const;
+    [[nodiscard]] bool stereo() const { return stereo_; }
+    [[nodiscard]] const std::string& whyNotStereo() const { return whyNotStereo_; }
 
 private:
     explicit WallScreen(WallWindowsConfig config)
         : config_(std::move(config)) {}
 
-    Result<void> openWindows(bool openGl);
+    Result<void> openWindows(bool openGl, bool stereo);
     [[nodiscard]] PixelViewport placeOf(const TileWindow& tile) const;
     Result<void> checkDisplay() const;
 
@@ -108,6 +116,8 @@ private:
     std::vector<std::unique_ptr<WallWindow>> windows_;
     std::vector<size_t> drawn_; // tiles with a picture that is not shown yet
     int64_t presentedNs_ = 0;
+    bool stereo_ = false;
+    std::string whyNotStereo_;
 };
 
 } // namespace mural

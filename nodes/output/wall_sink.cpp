@@ -15,19 +15,37 @@ Result<void> WallSink::reopen(int width, int height) {
     return {};
 }
 
-Result<void> WallSink::show(int64_t, const Picture& picture) {
-    if (!windows_ || picture.width != width_ || picture.height != height_) {
-        if (auto opened = reopen(picture.width, picture.height); !opened) return opened;
-    }
+Result<void> WallSink::openFor(const Picture& picture) {
+    return windows_ && picture.width == width_ && picture.height == height_ ? Result<void>() : reopen(picture.width, picture.height);
+}
+
+Result<void> WallSink::showTiles(const Picture& picture, const Picture& right) {
     std::vector<OwnedPicture> pictures;
     std::vector<WallWindows::TilePicture> shown;
-    pictures.reserve(config_.tiles.size());
+    pictures.reserve(2 * config_.tiles.size());
+    const auto part = [&](const Picture& whole, const PixelViewport& tile) { return whole.empty() ? Picture{} : pictures.emplace_back(cutOut(whole, tile)).view(); };
     for (size_t i = 0; i < config_.tiles.size(); ++i) {
-        if (config_.tiles[i].tile.empty()) continue;
-        pictures.push_back(cutOut(picture, config_.tiles[i].tile));
-        shown.push_back({i, pictures.back().view()});
+        const PixelViewport& tile = config_.tiles[i].tile;
+        if (!tile.empty()) shown.push_back({i, part(picture, tile), part(right, tile)});
     }
     return windows_->showAll(shown);
+}
+
+Result<void> WallSink::show(int64_t, const Picture& picture) {
+    if (auto opened = openFor(picture); !opened) return opened;
+    return showTiles(picture, {});
+}
+
+// Whether windows have a buffer for each eye is asked once: other sizes find the same display.
+Result<void> WallSink::showPair(int64_t frame, const EyePair& eyes) {
+    config_.stereo = whyNot_.empty();
+    if (auto opened = openFor(eyes.left); !opened) return opened;
+    if (windows_->stereo()) return showTiles(eyes.left, eyes.right);
+    if (whyNot_.empty()) {
+        whyNot_ = windows_->whyNotStereo();
+        say_("both eyes are shown side by side: no window with a buffer for each eye opens (" + whyNot_ + "); a graphics card and a display that take quad-buffered stereo do, and --stereo anaglyph needs none");
+    }
+    return PictureSink::showPair(frame, eyes);
 }
 
 std::string WallSink::describe() const { return windows_ ? windows_->describe() : "windows of the wall"; }

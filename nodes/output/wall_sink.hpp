@@ -1,7 +1,9 @@
 // Whole pictures in the windows of a wall, where no node has a whole tile to show: frames of several passes.
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <string>
 
 #include "common/tile_grid.hpp"
 #include "nodes/output/picture_sink.hpp"
@@ -12,19 +14,26 @@ namespace mural {
 class WallSink : public PictureSink {
 public:
     // config: without tiles; they come with the first picture's size.
-    WallSink(WallWindowsConfig config, const TileGrid& grid)
+    // say: a line for the user.
+    WallSink(WallWindowsConfig config, const TileGrid& grid, std::function<void(const std::string&)> say)
         : config_(std::move(config))
-        , grid_(grid) {}
+        , grid_(grid)
+        , say_(std::move(say)) {}
 
     Result<void> show(int64_t frame, const Picture& picture) override;
+    Result<void> showPair(int64_t frame, const EyePair& eyes) override;
     Result<void> finish() override { return {}; }
     [[nodiscard]] std::string describe() const override;
 
 private:
     Result<void> reopen(int width, int height);
+    Result<void> openFor(const Picture& picture);
+    Result<void> showTiles(const Picture& picture, const Picture& right);
 
     WallWindowsConfig config_;
     const TileGrid grid_;
+    const std::function<void(const std::string&)> say_;
+    std::string whyNot_; // no window has a buffer for each eye; "": it is not known yet, or they have
     std::unique_ptr<WallWindows> windows_;
     int width_ = 0, height_ = 0;
 };

@@ -57,6 +57,7 @@ void setHints(const WallWindow::Options& options) {
     glfwWindowHint(GLFW_ALPHA_BITS, 0); // an alpha would let the desktop shine through
     glfwWindowHint(GLFW_DEPTH_BITS, 0);
     glfwWindowHint(GLFW_STENCIL_BITS, 0);
+    glfwWindowHint(GLFW_STEREO, options.stereo ? GLFW_TRUE : GLFW_FALSE);
 }
 
 bool runsOnCpu(const std::string& renderer) {
@@ -88,6 +89,7 @@ Result<std::unique_ptr<WallWindow>> WallWindow::open(GlfwSession& session, const
     std::unique_ptr<WallWindow> window(new WallWindow(session));
     window->fullScreen_ = options.fullScreen;
     window->title_ = options.title;
+    window->stereo_ = options.stereo;
     setHints(options);
     Result<void> created =
         options.fullScreen ? window->createFullScreen(options) : window->create(options);
@@ -161,6 +163,8 @@ Result<void> WallWindow::prepareDrawing(const Options& options) {
         if (!blit)
             return blit.error();
         blit_ = std::move(blit.value());
+        if (stereo_ && !blit_->stereo())
+            return Error{fmt::format("{}: {} gives it no buffer for each eye", where(), blit_->renderer())};
     } else {
         AppWindowConfig config;
         config.displayName = session_.displayName();
@@ -204,14 +208,13 @@ void WallWindow::resize(int width, int height) {
     }
 }
 
-Result<void> WallWindow::draw(OwnedPicture& picture) {
+Result<void> WallWindow::draw(OwnedPicture& picture, OwnedPicture& right) {
     const bool otherSize = picture.width() != kept_.width() || picture.height() != kept_.height();
     resize(picture.width(), picture.height());
     std::swap(kept_, picture);
+    std::swap(keptRight_, right);
     if (blit_) {
         glfwMakeContextCurrent(window_);
-        if (Result<void> uploaded = blit_->upload(kept_.view()); !uploaded)
-            return uploaded;
     } else if (otherSize) {
         // What the picture before left beside the new one; in order with the painter's connection.
         XClearWindow(glfwGetX11Display(), glfwGetX11Window(window_));
@@ -227,7 +230,21 @@ Result<void> WallWindow::drawKept() {
     int width = 0;
     int height = 0;
     glfwGetFramebufferSize(window_, &width, &height);
-    return blit_->draw(width, height);
+    if (!stereo_)
+        return drawEye(kept_.view(), TextureBlit::Target::Back, width, height);
+    Result<void> left = drawEye(kept_.view(), TextureBlit::Target::BackLeft, width, height);
+    if (!left)
+        return left;
+    const Picture right = keptRight_.view().empty() ? kept_.view() : keptRight_.view();
+    return drawEye(right, TextureBlit::Target::BackRight, width, height);
+}
+
+// No picture yet: black.
+Result<void> WallWindow::drawEye(const Picture& picture, TextureBlit::Target target, int width, int height) {
+    if (!picture.empty())
+        if (Result<void> uploaded = blit_->upload(picture); !uploaded)
+            return uploaded;
+    return blit_->draw(target, width, height);
 }
 
 Result<void> WallWindow::present() {

@@ -56,6 +56,8 @@ struct WallWindows::Shared {
     std::deque<std::shared_ptr<Job>> jobs;
     std::vector<OwnedPicture> buffers; // for pictures on their way
     std::string description;
+    bool stereo = false;
+    std::string whyNotStereo;
     Result<void> opened;
     bool openKnown = false;
     bool stop = false;
@@ -100,9 +102,11 @@ void WallWindows::Shared::serve() {
         {
             const std::lock_guard lock(mutex);
             openKnown = true;
-            if (screen)
+            if (screen) {
                 description = screen.value()->describe();
-            else
+                stereo = screen.value()->stereo();
+                whyNotStereo = screen.value()->whyNotStereo();
+            } else
                 opened = screen.error();
             changed.notify_all();
         }
@@ -180,8 +184,9 @@ OwnedPicture WallWindows::Shared::takeBuffer() {
 void WallWindows::Shared::giveBuffers(std::vector<WallScreen::TileBuffer>& used) {
     const std::lock_guard lock(mutex);
     for (WallScreen::TileBuffer& buffer : used)
-        if (buffers.size() < kBuffersKept)
-            buffers.push_back(std::move(buffer.picture));
+        for (OwnedPicture* const memory : {&buffer.picture, &buffer.right})
+            if (buffers.size() < kBuffersKept)
+                buffers.push_back(std::move(*memory));
 }
 
 Result<std::unique_ptr<WallWindows>> WallWindows::open(const WallWindowsConfig& config) {
@@ -250,8 +255,12 @@ Result<void> WallWindows::take(std::span<const TilePicture> pictures, bool prese
             return Error{fmt::format("no wall window {}: there are {}", shown.tile, tiles)};
         if (shown.picture.empty())
             return Error{fmt::format("the picture for wall window {} is empty", shown.tile)};
-        buffers->push_back({shown.tile, shared_->takeBuffer()});
+        buffers->push_back({shown.tile, shared_->takeBuffer(), {}});
         buffers->back().picture.assign(shown.picture);
+        if (shown.right.empty())
+            continue;
+        buffers->back().right = shared_->takeBuffer();
+        buffers->back().right.assign(shown.right);
     }
     Shared* shared = shared_.get(); // the thread, where it runs, keeps it
     return shared_->run(
@@ -275,6 +284,16 @@ Result<void> WallWindows::arrange(const std::vector<TileWindow>& tiles) {
 
 bool WallWindows::closeRequested() const {
     return shared_->closeRequested;
+}
+
+bool WallWindows::stereo() const {
+    const std::lock_guard lock(shared_->mutex);
+    return shared_->stereo;
+}
+
+std::string WallWindows::whyNotStereo() const {
+    const std::lock_guard lock(shared_->mutex);
+    return shared_->whyNotStereo;
 }
 
 std::string WallWindows::describe() const {

@@ -45,6 +45,7 @@ struct WallWindowsConfig {
     int positionY = 0;
     bool fullScreen = false;
     WallDrawing drawing = WallDrawing::Auto;
+    bool stereo = false; // windows with a buffer for each eye, where the display has them: by OpenGl then
     bool waitForRefresh = true; // OpenGl: swap at the monitor's refresh (once per showAll)
     int64_t openTimeoutMs = 20'000;
     int64_t showTimeoutMs = 5'000; // of show, showAll, arrange, and of closing
@@ -54,7 +55,8 @@ class WallWindows {
 public:
     struct TilePicture {
         size_t tile = 0;
-        Picture picture;
+        Picture picture;    // of the left eye, where there are two
+        Picture right = {}; // empty: the same for both
     };
 
     static Result<std::unique_ptr<WallWindows>> open(const WallWindowsConfig& config);
@@ -73,6 +75,11 @@ public:
     // `atNs` (monotonicNowNs()), and returns when the server had it.
     Result<void> drawAll(std::span<const TilePicture> pictures);
     Result<int64_t> present(int64_t atNs);
+
+    // The windows have a buffer for each eye.
+    [[nodiscard]] bool stereo() const;
+    // Why they don't, though that was wanted; else "".
+    [[nodiscard]] std::string whyNotStereo() const;
 
     // Other places and sizes for the same number of tiles; pictures follow with the next show.
     Result<void> arrange(const std::vector<TileWindow>& tiles);

@@ -399,7 +399,7 @@ TEST(ConfigPlan, canvasesAreShownTogether) {
     EXPECT_TRUE(named->nodes[0].pass.shown.none());
 }
 
-TEST(ConfigPlan, quadBufferedPairsHaveAFallback) {
+TEST(ConfigPlan, quadBufferedPairsAreTheHeadsToShow) {
     const auto path = ownFile("config_plan_quad.eqc");
     std::ofstream(path) << "#Equalizer 1.2 ascii\nserver { config { appNode { pipe { window { viewport [ 0 0 320 200 ] attributes { hint_stereo ON } channel { name \"a\" } } } }\n"
                            "layout { view { mode STEREO } } canvas { layout 0 wall { } segment { channel \"a\" } }\ncompound { channel ( ) attributes { stereo_mode QUAD } } } }\n";
@@ -407,9 +407,11 @@ TEST(ConfigPlan, quadBufferedPairsHaveAFallback) {
     forget(path);
     auto plan = planOf(loaded, {"me", true, "", {}});
     ASSERT_TRUE(plan) << plan.error().message;
-    EXPECT_EQ(plan->wall.stereo, StereoMode::SideBySide);
-    ASSERT_EQ(plan->warnings.size(), 1u);
-    EXPECT_NE(plan->warnings[0].find("config_plan_quad.eqc:4:1: channel \"a\" wants a quad-buffered pair"), std::string::npos) << plan->warnings[0];
+    EXPECT_EQ(plan->wall.stereo, StereoMode::Quad);
+    EXPECT_TRUE(plan->warnings.empty()) << plan->warnings.front();
+    SessionConfig windows;
+    windows.display = Display::Windows;
+    EXPECT_TRUE(headShowsWall(windows, *plan));
 }
 
 TEST(ConfigPlan, everyExampleFileCanBePlanned) {

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+#include "nodes/output/eye_pair.hpp"
+
 namespace mural {
 namespace {
 
@@ -130,6 +132,21 @@ TEST(PassComposition, topBottomHasTheLeftEyeAbove) {
         for (int y = 0; y < below; ++y) EXPECT_EQ(channel(out, 2, y, 0), mean(channel(eyes[1], 2, 2 * y, 0), channel(eyes[1], 2, 2 * y + 1, 0)));
         for (int y = below; y < height; ++y) EXPECT_EQ(channel(out, 1, y, 2), mean(channel(eyes[0], 1, 2 * (y - below), 2), channel(eyes[0], 1, std::min(2 * (y - below) + 1, height - 1), 2)));
     }
+}
+
+TEST(PassComposition, quadHasBothEyesWhole) {
+    const std::vector<OwnedPicture> eyes{noise(7, 5, 1), noise(7, 5, 2)};
+    const OwnedPicture out = composed({.stereo = StereoMode::Quad}, eyes);
+    ASSERT_EQ(out.width(), 7);
+    ASSERT_EQ(out.height(), 10);
+    const EyePair both = eyesOfStack(out.view());
+    EXPECT_TRUE(comparePictures(eyes[0].view(), both.left).same());
+    EXPECT_TRUE(comparePictures(eyes[1].view(), both.right).same());
+    EXPECT_FALSE(comparePictures(eyes[0].view(), both.right).same());
+    // One eye's node is lost, or its window was another: still a pair.
+    const OwnedPicture smaller = composed({.stereo = StereoMode::Quad}, {noise(7, 5, 1), noise(3, 2, 2)});
+    EXPECT_EQ(smaller.height(), 10);
+    EXPECT_TRUE(comparePictures(eyes[0].view(), eyesOfStack(smaller.view()).left).same());
 }
 
 TEST(PassComposition, samplesThenKernelsThenEyes) {

@@ -1,0 +1,132 @@
+#!/usr/bin/env python3
+"""Windows of the wall with a buffer for each eye. No driver here has such windows: a library stands in for one (stereo_double.c), and writes down what both
+buffers hold at each swap.
+
+  quad_windows.py --build build/release [--cases both,tiles] [--list]
+"""
+
+import os
+import sys
+import tempfile
+
+import failures
+import passes
+import pictures
+
+failures.CASES.clear()  # only those of this file
+EYES = ["--eye-base", str(2 * passes.EYE), "--focus", str(passes.FOCUS)]
+DRAW = ["--draw", "fixed"]
+# Both eyes by one window; the sizes are those of the pictures.
+FILE = """#Equalizer 1.2 ascii
+server { config {
+    appNode { pipe { window { viewport [ 0 0 %d %d ] attributes { hint_stereo ON } channel { name "screen" } } } }
+    layout { view { mode STEREO } }
+    canvas { layout 0 wall { bottom_left [ -.5 -.5 -1 ] bottom_right [ .5 -.5 -1 ] top_left [ -.5 .5 -1 ] } segment { channel "screen" } }
+    compound { channel ( segment 0 view 0 ) } } }
+""" % passes.SIZE
+
+
+def shown_in_quad(context, options, size=passes.SIZE, double=True, frames=passes.FRAMES):
+    """What the windows' buffers held, [(left, right), …] of each window, the pictures of --out, and what was said."""
+    with tempfile.TemporaryDirectory(prefix="mural-quad.") as folder:
+        out, buffers = os.path.join(folder, "out"), os.path.join(folder, "buffers")
+        os.mkdir(buffers)
+        library = os.path.join(os.path.abspath(context.build), "tests", "end_to_end", "stereo_double.so")
+        environment = {"LD_AUDIT": library, "STEREO_OUT": buffers} if double else None
+        command = [context.program("pass_scene"), "--frames", str(frames), "--size", "%dx%d" % size] + DRAW
+        with context.run(command, ["--display", "windows", "--out", out] + options, environment) as run:
+            wrong = failures.check_end(run, 0)
+            said = list(run.standard_error)
+        if wrong:
+            raise AssertionError(wrong)
+        windows = []
+        for name in sorted(os.listdir(buffers)):
+            there = sorted(os.listdir(os.path.join(buffers, name)))
+            read = lambda path, folder=os.path.join(buffers, name): pictures.read_ppm(os.path.join(folder, path))
+            windows.append([(read(left), read(left.replace(".left.", ".right."))) for left in there if ".left." in left])
+        return windows, [pictures.read_png(os.path.join(out, name)) for name in sorted(os.listdir(out))], said
+
+
+def frames_of(buffers):
+    """Without the black ones before the first, and without those that were shown again: a window that was covered is drawn once more."""
+    shown = []
+    for pair in buffers:
+        if any(any(row) for picture in pair for row in picture.rows) and (not shown or not all(a.rows == b.rows for a, b in zip(shown[-1], pair))):
+            shown.append(pair)
+    return shown
+
+
+def wrong_eyes(wanted, buffers):
+    """None, or which of the windows' buffers differ from the eyes' pictures."""
+    shown = frames_of(buffers)
+    return passes.first_wrong({name: passes.differing(eye, [pair[i] for pair in shown]) for i, (name, eye) in enumerate(zip(("left", "right"), wanted))})
+
+
+def native_eyes(context):
+    return [passes.native(context, "pass_scene", DRAW + ["--eye", "%g,%g" % (eye, passes.FOCUS)]) for eye in (-passes.EYE, passes.EYE)]
+
+
+def cut(picture, x, width):
+    return pictures.Picture(width, picture.height, [row[3 * x:3 * (x + width)] for row in picture.rows])
+
+
+@passes.case
+def both_eyes_are_whole(context, notes):
+    """As natively drawn with each eye's frustum; what is saved has them side by side."""
+    eyes = native_eyes(context)
+    windows, saved, said = shown_in_quad(context, ["--stereo", "quad"] + EYES)
+    if len(windows) != 1:
+        return "%d windows instead of 1" % len(windows)
+    if any("side by side" in line for line in said):
+        return "it said that there are no such windows: %s" % said
+    if wrong_eyes(eyes[::-1], windows[0]) is None:
+        return "eyes that are swapped are not found"
+    return wrong_eyes(eyes, windows[0]) or passes.differing([passes.side_by_side(a, b) for a, b in zip(*eyes)], saved)
+
+
+@passes.case
+def each_tile_has_both(context, notes):
+    eyes = native_eyes(context)
+    windows, _, _ = shown_in_quad(context, ["--stereo", "quad", "--tiles", "2x1", "--local-nodes", "4"] + EYES)
+    if len(windows) != 2:
+        return "%d windows instead of 2" % len(windows)
+    half = passes.SIZE[0] // 2
+    parts = [[[cut(p, x, w) for p in eye] for eye in eyes] for x, w in ((0, half), (half, passes.SIZE[0] - half))]
+    return passes.first_wrong({"window %d" % i: min((wrong_eyes(part, windows[i]) for part in parts), key=lambda wrong: wrong is not None) for i in range(2)})
+
+
+@passes.case
+def files_open_them(context, notes):
+    with tempfile.TemporaryDirectory(prefix="mural-quad.") as folder:
+        path = os.path.join(folder, "quad.eqc")
+        with open(path, "w", encoding="ascii") as file:
+            file.write(FILE)
+        windows, _, said = shown_in_quad(context, ["--config", path, "--frusta", "program"] + EYES)
+    if len(windows) != 1:
+        return "%d windows instead of 1: %s" % (len(windows), said)
+    return wrong_eyes(native_eyes(context), windows[0])
+
+
+@passes.case
+def without_such_windows_they_lie_side_by_side(context, notes):
+    """One line says so, and why."""
+    eyes = native_eyes(context)
+    windows, saved, said = shown_in_quad(context, ["--stereo", "quad"] + EYES, double=False)
+    lines = [line for line in said if "side by side" in line]
+    if windows or len(lines) != 1 or "no window with a buffer for each eye opens" not in lines[0]:
+        return "%d windows, it said: %s" % (len(windows), said)
+    return passes.differing([passes.side_by_side(a, b) for a, b in zip(*eyes)], saved)
+
+
+@passes.case
+def elsewhere_than_in_windows_of_the_wall_too(context, notes):
+    with context.run([context.program("pass_scene"), "--frames", "3", "--size", "%dx%d" % passes.SIZE] + DRAW, ["--display", "app", "--stereo", "quad"] + EYES) as run:
+        wrong = failures.check_end(run, 0)
+        lines = [line for line in run.standard_error if "side by side" in line]
+    if wrong:
+        return wrong
+    return None if len(lines) == 1 and "--display windows" in lines[0] else "it said: %s" % lines
+
+
+if __name__ == "__main__":
+    sys.exit(failures.main())
