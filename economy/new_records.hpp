@@ -28,8 +28,8 @@ public:
         else late_ -= static_cast<uint32_t>(std::min<size_t>(late_, records * kFoundCounts));
     }
     void isNew() { ++late_; }
-    // Another comes than the log has at `cursor`.
-    void another(uint64_t cursor) { again_ = again_ || (next_ != 0 && std::ranges::find(leftOutAt_, cursor) != leftOutAt_.end()); }
+    // Another comes than the log has at `cursor`: what was left out there in a frame before?
+    void another(uint64_t cursor) { again_ = again_ || (next_ != 0 && cursor <= frameBegan_ && std::ranges::find(leftOutAt_, cursor) != leftOutAt_.end()); }
 
     [[nodiscard]] bool many() const { return late_ >= kMany && !again_; }
     // What follows goes as bytes; `position`: where it would have stood.

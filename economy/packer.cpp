@@ -55,8 +55,10 @@ bool Packer::next() {
         restPlain_ = true;
     }
     if (restPlain_) {
-        const size_t sizeBytes = cut_.passShort();
-        asBytes(cut_.at() - sizeBytes, cut_.at());
+        const size_t from = cut_.at();
+        if (walked_ != nullptr && cut_.atRecord()) cut_.passed(walked_->records - cut_.records(), packet_.size() - from, walked_->lastBytes);
+        else cut_.passShort();
+        asBytes(from, cut_.at());
     }
     return cut_.next(piece_);
 }
@@ -81,10 +83,7 @@ void Packer::add(uint32_t stream, std::span<const std::byte> packet, const Walke
     first_ = true;
     cut_ = PacketCut(packet);
     const bool isTold = walked != nullptr && walked->longestBytes <= kMostTextBytes && walked->lastBytes <= packet.size(); // a damaged packet may end a record that it did not begin
-    if (plain_ && isTold) {
-        cut_.passed(walked->records, packet.size(), walked->lastBytes);
-        asBytes(0, packet.size());
-    }
+    walked_ = isTold ? walked : nullptr;
     while (next()) {
         if (piece_.page()) batchPageBytes_ += piece_.sizeBytes;
         if (runOn()) continue;

@@ -129,6 +129,7 @@ private:
     KnownRuns* runs_ = nullptr;
     NewRecords* news_ = nullptr;
     bool restPlain_ = false; // its short records are not looked at from here on
+    const Walked* walked_ = nullptr; // of the packet in hand, if all its records are short
     KnownRuns::Run open_;    // the run of short records that goes on, without its bytes
     uint32_t openBytesAt_ = 0; // where in the packet it begins
     bool openIsKnown_ = false; // all of it is one of runs_

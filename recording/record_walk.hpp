@@ -44,16 +44,24 @@ public:
         walked_.pass(record.sizeBytes);
         return true;
     }
-    // On over short records as long as they are of no interest, by their opcode.
+    // On over short records as long as they are of no interest, by their opcode. A program that loads says hundreds of thousands in one
+    // frame: what changes with each is kept in locals, as what it calls might look at this.
     template <typename OfNoInterest>
     void skip(const OfNoInterest& ofNoInterest) {
-        while (packet_.size() - at_ >= 4) {
-            const uint32_t head = word(at_);
+        const std::byte* const packet = packet_.data();
+        const size_t end = packet_.size();
+        size_t at = at_, records = 0, last = 0, longest = 0;
+        while (end - at >= 4) {
+            uint32_t head = 0;
+            std::memcpy(&head, packet + at, sizeof head);
             const size_t sizeBytes = (head >> 16) * size_t{4};
-            if (sizeBytes == 0 || head >> 16 == record::kLongForm || sizeBytes > packet_.size() - at_ || !ofNoInterest(static_cast<uint16_t>(head))) return;
-            at_ += sizeBytes;
-            walked_.pass(sizeBytes);
+            if (sizeBytes == 0 || head >> 16 == record::kLongForm || sizeBytes > end - at || !ofNoInterest(static_cast<uint16_t>(head))) break;
+            at += sizeBytes;
+            ++records;
+            last = sizeBytes;
+            longest = std::max(longest, sizeBytes);
         }
+        goTo(at, {records, last, longest});
     }
     [[nodiscard]] size_t at() const { return at_; } // where the next record begins, bytes
     // Behind records that somebody else has passed.

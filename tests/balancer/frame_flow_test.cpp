@@ -15,6 +15,7 @@
 #include "balancer/config/text/writer.hpp"
 #include "tests/balancer/symbolic_wall.hpp"
 #include "tests/balancer/tree_maker.hpp"
+#include "tests/sanitized.hpp"
 
 namespace mural::compound {
 namespace {
@@ -113,7 +114,7 @@ TEST(FrameFlow, stripesThatAreSentDirectlyAreWholeAgain) {
 
 TEST(FrameFlow, randomTreesShowWhatTheirPixelsHave) {
     size_t compared = 0, steered = 0;
-    for (uint64_t seed = 1; seed <= 300; ++seed) {
+    for (uint64_t seed = 1; seed <= mural::testing::rounds(300); ++seed) {
         const config::ConfigFile file = testing::TreeMaker(seed, true).make();
         const LoadedConfig loaded = loadConfig(file, "seed " + std::to_string(seed), [](const std::string&) { return std::nullopt; });
         ASSERT_TRUE(loaded.ok()) << loaded.diagnostics.firstError();
@@ -147,8 +148,8 @@ TEST(FrameFlow, randomTreesShowWhatTheirPixelsHave) {
             steered += std::ranges::any_of(flows, &Flow::steered);
         }
     }
-    EXPECT_GT(compared, 50'000u);
-    EXPECT_GT(steered, 200u);
+    EXPECT_GT(compared, mural::testing::rounds(50'000));
+    EXPECT_GT(steered, mural::testing::rounds(200));
 }
 
 TEST(Cells, areApartAndCoverAll) {

@@ -8,6 +8,7 @@
 #include "balancer/config/text/writer.hpp"
 #include "tests/balancer/symbolic_wall.hpp"
 #include "tests/balancer/tree_maker.hpp"
+#include "tests/sanitized.hpp"
 
 namespace mural::compound {
 
@@ -16,7 +17,7 @@ using testing::TreeMaker;
 
 TEST(RandomTrees, showEveryPixelOnce) {
     size_t tasks = 0;
-    for (uint64_t seed = 1; seed <= 150; ++seed) {
+    for (uint64_t seed = 1; seed <= mural::testing::rounds(150); ++seed) {
         const ConfigFile file = TreeMaker(seed).make();
         const LoadedConfig loaded = loadConfig(file, "seed " + std::to_string(seed), [](const std::string&) { return std::nullopt; });
         ASSERT_TRUE(loaded.ok()) << loaded.diagnostics.firstError() << config::writeConfig(file);
@@ -27,7 +28,7 @@ TEST(RandomTrees, showEveryPixelOnce) {
             ASSERT_EQ(testing::SymbolicWall(loaded.resolved, input, plan).run(), "") << "seed " << seed << " frame " << input.frameNumber << "\n" << config::writeConfig(file);
         }
     }
-    EXPECT_GT(tasks, 4'000u);
+    EXPECT_GT(tasks, mural::testing::rounds(4'000));
 }
 
 } // namespace mural::compound

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "tests/sanitized.hpp"
 #include "tests/transport/rsp/simulated_group.hpp"
 
 namespace mural::rsp::test {
@@ -103,7 +104,7 @@ private:
 
 TEST(GroupSimulation, RandomSchedules) {
     uint64_t first = 1;
-    uint64_t count = 15;
+    uint64_t count = mural::testing::rounds(15);
     if (const char* seeds = std::getenv("MURAL_SEEDS")) std::sscanf(seeds, "%lu:%lu", &first, &count);
     for (uint64_t seed = first; seed < first + count; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));

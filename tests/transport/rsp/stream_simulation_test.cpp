@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "common/clock.hpp"
+#include "tests/sanitized.hpp"
 #include "tests/transport/rsp/simulated_stream.hpp"
 
 namespace mural::rsp::test {
@@ -234,7 +235,7 @@ TEST(StreamSimulation, AHundredMembersAtOnePercent) {
 // Everything at once, differently in each round. MURAL_SEEDS=first:count hunts for more.
 TEST(StreamSimulation, RandomSchedules) {
     uint64_t first = 1;
-    uint64_t count = 100;
+    uint64_t count = mural::testing::rounds(100);
     if (const char* seeds = std::getenv("MURAL_SEEDS")) std::sscanf(seeds, "%lu:%lu", &first, &count);
     for (uint64_t seed = first; seed < first + count; ++seed) {
         std::mt19937_64 random(seed);

@@ -1,0 +1,16 @@
+// Sanitizers make tests ten to fifty times slower: there the random ones take fewer rounds, of the same seeds.
+#pragma once
+
+#include <cstdint>
+
+namespace mural::testing {
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool kSanitized = true;
+#else
+inline constexpr bool kSanitized = false;
+#endif
+
+constexpr uint64_t rounds(uint64_t count) { return kSanitized ? (count + 3) / 4 : count; }
+
+} // namespace mural::testing
