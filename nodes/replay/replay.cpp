@@ -130,6 +130,18 @@ void readPastEnd(size_t sizeBytes) {
 } // namespace
 #endif
 
+// No fault, but what makes one seen (MURAL_PLANT=names): this node's names are others than the program's, which they else are by
+// chance wherever the driver counts them alike. Once for each context.
+void Replay::spendNames() {
+    constexpr GLsizei kNames = 40;
+    GLuint names[kNames];
+    for (const auto generate : {gl.glGenTextures, gl.glGenBuffers, gl.glGenRenderbuffers, gl.glGenSamplers, gl.glGenFramebuffers, gl.glGenVertexArrays, gl.glGenQueries,
+                                gl.glGenProgramPipelines, gl.glGenTransformFeedbacks, gl.glGenProgramsARB})
+        if (generate) generate(kNames, names);
+    for (GLsizei i = 0; i < kNames && gl.glCreateProgram; ++i) gl.glCreateProgram();
+    while (gl.glGetError() != GL_NO_ERROR) {} // not all of them are in all kinds of contexts
+}
+
 // A fault on purpose (MURAL_PLANT): tests of the tests. True: the command is left out.
 bool Replay::planted(uint16_t opcode) {
     const bool draws = opcode == op::glBegin || opcode == op::glDrawArrays || opcode == op::glDrawElements || opcode == op::glCallList;

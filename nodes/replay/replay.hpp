@@ -454,6 +454,7 @@ private:
     bool execute(uint16_t opcode, std::span<const std::byte> arguments, BlobQueue& blobs);
     void compileSplit(std::span<const std::byte> bytes);
     void nextNativeList(const std::function<void()>& between);
+    void spendNames();
     bool planted(uint16_t opcode);
     bool makeStreamCurrent(uint32_t stream);
     bool bindStream(Stream& s);

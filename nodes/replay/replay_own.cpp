@@ -162,6 +162,7 @@ bool Replay::ownMakeCurrent(Args& in) {
     if (!bound || !first || c_ != s_->context) return c_ != nullptr;
     // The first binding sets viewport and scissor to the window's size (GL 4.6 §13.6.1).
     c_->everCurrent = true;
+    if (config_.plant == "names") spendNames();
     if (c_->debugs) listenToDriver();
     const PixelViewport whole = s_->draw ? s_->draw->whole : PixelViewport{};
     for (auto& s : c_->scissors) s = {false, whole};

@@ -137,6 +137,11 @@ class Command:
             return None
         if 'size.' + p.name in self.options:
             p.how, p.expr = 'array', self.options['size.' + p.name]
+            if p.kind and not p.length:  # names are translated one by one
+                counted = re.match(r'n4\((\w+),', p.expr)
+                if not counted:
+                    return 'how many names stand in %s is not described' % p.name
+                p.length = counted.group(1)
             return None
         if not p.const:
             if self.command_class == 'object' and p.kind:
