@@ -68,7 +68,11 @@ public:
     Walk(const ResolvedConfig& config, const FrameInput& input, const FramePlan& plan) : config_(config), input_(input), plan_(plan), flows_(plan.contexts.size()), frames_(plan.frames.size()), ready_(plan.frames.size(), false) {}
 
     std::vector<Flow> run() {
-        for (size_t c = 0; c < flows_.size(); ++c) flows_[c].steered = isSteeredTree(rootOf(plan_.contexts[c].compound));
+        for (size_t c = 0; c < flows_.size(); ++c) {
+            const Tree& tree = treeOf(rootOf(plan_.contexts[c].compound));
+            flows_[c].steered = tree.steers && !tree.queues;
+            flows_[c].ignored = tree.steers && tree.queues;
+        }
         if (std::ranges::none_of(flows_, &Flow::steered)) return flows_;
         std::vector<size_t> next(plan_.pipes.size(), 0);
         for (bool moved = true; moved;) {
@@ -90,20 +94,22 @@ private:
         return compound;
     }
 
-    // Tiles of a queue are frames of their own, wherever they lie.
-    bool isSteeredTree(Index root) {
-        const auto known = trees_.find(root);
-        if (known != trees_.end()) return known->second;
-        bool steered = false, queues = false;
+    struct Tree {
+        bool steers = false; // some frame of it has a viewport or a zoom
+        bool queues = false; // tiles of a queue are frames of their own, wherever they lie
+    };
+    const Tree& treeOf(Index root) {
+        const auto [known, fresh] = trees_.try_emplace(root);
+        Tree& tree = known->second;
         std::vector<Index> open{root};
-        while (!open.empty()) {
+        while (fresh && !open.empty()) {
             const config::ResolvedCompound& c = config_.compounds[at(open.back())];
             open.pop_back();
-            steered = steered || std::ranges::any_of(c.outputFrames, isSteered) || std::ranges::any_of(c.inputFrames, isSteered);
-            queues = queues || !c.outputQueues.empty() || !c.inputQueues.empty();
+            tree.steers = tree.steers || std::ranges::any_of(c.outputFrames, isSteered) || std::ranges::any_of(c.inputFrames, isSteered);
+            tree.queues = tree.queues || !c.outputQueues.empty() || !c.inputQueues.empty();
             open.insert(open.end(), c.children.begin(), c.children.end());
         }
-        return trees_[root] = steered && !queues;
+        return tree;
     }
 
     // A buffer for each window and eye; channels that need one of their own have it.
@@ -251,7 +257,7 @@ private:
     std::vector<Flow> flows_;
     std::vector<Layers> frames_;
     std::vector<bool> ready_;
-    std::map<Index, bool> trees_;
+    std::map<Index, Tree> trees_; // by their root
     std::map<std::tuple<bool, Index, Eye>, Layers> buffers_;
 };
 

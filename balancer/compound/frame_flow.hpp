@@ -18,6 +18,7 @@ struct ShownPart {
 
 struct Flow {
     bool steered = false; // frames on the way have a viewport or a zoom of their own; otherwise all is shown where it was drawn
+    bool ignored = false; // they have, but a queue of the same tree says what is drawn where
     std::vector<ShownPart> parts; // of one that is steered; they do not lie over each other, but for those of other draws
 };
 

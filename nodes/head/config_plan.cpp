@@ -251,6 +251,9 @@ private:
             d.context.range = chunks ? compose(divided.range, Range{from, to}) : divided.range;
         }
         if (queue.tiles.empty()) return;
+        if (draws_[draws.front()].flow.ignored)
+            plan_.warnings.push_back(placeOf(draws_[draws.front()].context.compound) + ": what is taken from queue \"" + queue.name +
+                                     "\" is shown where it is drawn, as large as it is drawn; viewport and zoom of frames have no effect there; remove them, or divide the picture without a queue");
         if (chunks) {
             for (const size_t d : draws) draws_[d].chunkQueue = static_cast<int>(plan_.chunkQueues.size());
             plan_.chunkQueues.push_back({queue.name, divided.range, queue.tiles.front().range.end - queue.tiles.front().range.start});

@@ -363,6 +363,22 @@ TEST(ConfigPlan, framesMakePicturesSmallerOnTheirWay) {
     EXPECT_NE(ranges->warnings[0].find(".eqc:4:"), std::string::npos) << ranges->warnings[0];
 }
 
+TEST(ConfigPlan, framesOfQueuesShowWhatIsDrawnWhereItIsDrawn) {
+    const std::string queue = "outputtiles { name \"q\" size [ 16 16 ] } ";
+    auto plan = planOfText(queue + "compound { inputtiles { name \"q\" } } compound { channel \"b\" inputtiles { name \"q\" } outputframe { zoom [ .5 .5 ] } }");
+    ASSERT_TRUE(plan) << plan.error().message;
+    ASSERT_EQ(plan->warnings.size(), 1u);
+    EXPECT_NE(plan->warnings[0].find("queue \"q\""), std::string::npos) << plan->warnings[0];
+    ASSERT_EQ(plan->nodes.size(), 2u);
+    for (const NodePlan& n : plan->nodes) {
+        EXPECT_EQ(n.queue, 0);
+        EXPECT_TRUE(n.way.none());
+    }
+    auto plain = planOfText(queue + "compound { inputtiles { name \"q\" } } compound { channel \"b\" inputtiles { name \"q\" } outputframe { } }");
+    ASSERT_TRUE(plain);
+    EXPECT_TRUE(plain->warnings.empty());
+}
+
 // Each canvas has nodes of its own, that draw the program's picture in its pixels.
 TEST(ConfigPlan, canvasesAreShownTogether) {
     const SessionPlan plan = planOfFile("wall-and-monitor.eqc");
