@@ -729,6 +729,10 @@ private:
     void restoreWindowState();
     [[nodiscard]] bool drawsWindow() const { return c_->drawFramebuffer == 0; }
     // replay_framebuffers.cpp
+    [[nodiscard]] GLenum bufferOfEye(GLenum buffer, const Window* w) const;
+    [[nodiscard]] GLenum readBufferOfEye(GLenum buffer, const Window* w) const;
+    [[nodiscard]] GLenum firstOfEye(const std::vector<GLenum>& buffers) const;
+    void buffersOfWindow(std::vector<GLenum>& buffers) const;
     [[nodiscard]] GLenum windowBuffer(GLenum buffer, const Window* w) const;
     void bindFramebuffer(GLenum target, GLuint framebuffer, bool ext);
     // replay_pixel_store.cpp

@@ -72,6 +72,7 @@ SeenProjection Replay::projectionOf(GLuint program) const {
 
 // Screens of a room show what goes to the whole picture; a part of it that has a viewport of its own stays where it is.
 ViewMove Replay::viewMove(const SeenProjection& seen) const {
+    if (!config_.screen && c_->draw->config.stereo) return {}; // the program looks with both eyes itself
     if (!config_.screen) return eyeMove(seen, eyeOffset(), config_.focusDistance);
     const auto& v = c_->viewports[0];
     const PixelViewport& whole = c_->draw->whole;

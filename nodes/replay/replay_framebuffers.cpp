@@ -28,6 +28,28 @@ void Replay::glDeleteFramebuffers(GLsizei n, const Data& framebuffers) {
     restoreWindowState();
 }
 
+// Of a program's window with a buffer for each eye a node has one eye's: that of its pass, or the left one. What goes to the other eye alone goes nowhere
+// here (GL 4.6 17.4.1; design 4: stereo programs are kept as they are).
+GLenum Replay::bufferOfEye(GLenum buffer, const Window* w) const {
+    if (!w || !w->config.stereo || c_->api != wire::Api::Desktop) return buffer;
+    const bool right = config_.pass.eye == Eye::Right;
+    switch (buffer) {
+    case GL_LEFT:
+    case GL_BACK_LEFT:
+    case GL_FRONT_LEFT: return right ? GLenum{GL_NONE} : buffer;
+    case GL_RIGHT: return right ? GL_LEFT : GL_NONE;
+    case GL_BACK_RIGHT: return right ? GL_BACK_LEFT : GL_NONE;
+    case GL_FRONT_RIGHT: return right ? GL_FRONT_LEFT : GL_NONE;
+    default: return buffer;
+    }
+}
+// Who reads the other eye's gets this one's: it is all that there is, and no error.
+GLenum Replay::readBufferOfEye(GLenum buffer, const Window* w) const {
+    const GLenum here = bufferOfEye(buffer, w);
+    if (here != GL_NONE || buffer == GL_NONE) return here;
+    return buffer == GL_FRONT_LEFT || buffer == GL_FRONT_RIGHT ? GL_FRONT_LEFT : GL_BACK_LEFT;
+}
+
 // The one colour buffer of a surface, whichever of the window's it stands for (replay_front.cpp).
 GLenum Replay::windowBuffer(GLenum buffer, const Window* w) const {
     if (!w || !w->surface || !w->surface->singleBuffered() || c_->api != wire::Api::Desktop) return buffer;
@@ -50,52 +72,70 @@ void Replay::readBufferOfWindow(GLenum buffer) {
     buffersChanged(c_->drawBuffer0);
 }
 void Replay::glDrawBuffer(GLenum buf) {
+    if (drawsWindow()) buf = bufferOfEye(buf, c_->draw);
     gl.glDrawBuffer(drawsWindow() ? windowBuffer(buf, c_->draw) : buf);
     if (drawsWindow()) drawBufferOfWindow(buf);
+}
+// Which one a window's surfaces are chosen by.
+GLenum Replay::firstOfEye(const std::vector<GLenum>& buffers) const {
+    const bool stereo = c_->draw && c_->draw->config.stereo;
+    if (!stereo) return buffers.empty() ? GL_NONE : buffers.front();
+    for (const GLenum b : buffers)
+        if (const GLenum here = bufferOfEye(b, c_->draw); here != GL_NONE) return here;
+    return GL_NONE;
+}
+void Replay::buffersOfWindow(std::vector<GLenum>& buffers) const {
+    for (GLenum& b : buffers) b = windowBuffer(bufferOfEye(b, c_->draw), c_->draw);
 }
 void Replay::glDrawBuffers(GLsizei n, const Data& bufs) {
     if (n < 0 || (n > 0 && !bufs.pointer()) || !gl.glDrawBuffers) return;
     std::vector<GLenum> list(bufs.as<GLenum>(), bufs.as<GLenum>() + n); // none at all: nothing is drawn to
-    if (drawsWindow()) {
-        for (GLenum& b : list) b = windowBuffer(b, c_->draw);
-    }
+    const GLenum first = firstOfEye(list);
+    if (drawsWindow()) buffersOfWindow(list);
     gl.glDrawBuffers(n, list.data());
-    if (drawsWindow()) drawBufferOfWindow(n > 0 ? *bufs.as<GLenum>() : GLenum{GL_NONE});
+    if (drawsWindow()) drawBufferOfWindow(first);
 }
 void Replay::glReadBuffer(GLenum src) {
+    if (c_->readFramebuffer == 0) src = readBufferOfEye(src, c_->read);
     gl.glReadBuffer(c_->readFramebuffer == 0 ? windowBuffer(src, c_->read) : src);
     if (c_->readFramebuffer == 0) readBufferOfWindow(src);
 }
 void Replay::glNamedFramebufferDrawBuffer(GLuint framebuffer, GLenum buf) {
+    if (framebuffer == 0) buf = bufferOfEye(buf, c_->draw);
     gl.glNamedFramebufferDrawBuffer(name(Kind::Framebuffer, framebuffer), framebuffer == 0 ? windowBuffer(buf, c_->draw) : buf);
     if (framebuffer == 0) drawBufferOfWindow(buf);
 }
 void Replay::glNamedFramebufferDrawBuffers(GLuint framebuffer, GLsizei n, const Data& bufs) {
     if (n < 0 || (n > 0 && !bufs.pointer())) return;
     std::vector<GLenum> list(bufs.as<GLenum>(), bufs.as<GLenum>() + n);
-    for (GLenum& b : list) b = framebuffer == 0 ? windowBuffer(b, c_->draw) : b;
+    const GLenum first = firstOfEye(list);
+    if (framebuffer == 0) buffersOfWindow(list);
     gl.glNamedFramebufferDrawBuffers(name(Kind::Framebuffer, framebuffer), n, list.data());
-    if (framebuffer == 0) drawBufferOfWindow(n > 0 ? *bufs.as<GLenum>() : GLenum{GL_NONE});
+    if (framebuffer == 0) drawBufferOfWindow(first);
 }
 void Replay::glNamedFramebufferReadBuffer(GLuint framebuffer, GLenum src) {
+    if (framebuffer == 0) src = readBufferOfEye(src, c_->read);
     gl.glNamedFramebufferReadBuffer(name(Kind::Framebuffer, framebuffer), framebuffer == 0 ? windowBuffer(src, c_->read) : src);
     if (framebuffer == 0) readBufferOfWindow(src);
 }
 // EXT_direct_state_access: the same.
 void Replay::glFramebufferDrawBufferEXT(GLuint framebuffer, GLenum mode) {
     if (!gl.glFramebufferDrawBufferEXT) return;
+    if (framebuffer == 0) mode = bufferOfEye(mode, c_->draw);
     gl.glFramebufferDrawBufferEXT(name(Kind::Framebuffer, framebuffer), framebuffer == 0 ? windowBuffer(mode, c_->draw) : mode);
     if (framebuffer == 0) drawBufferOfWindow(mode);
 }
 void Replay::glFramebufferDrawBuffersEXT(GLuint framebuffer, GLsizei n, const Data& bufs) {
     if (n < 0 || (n > 0 && !bufs.pointer()) || !gl.glFramebufferDrawBuffersEXT) return;
     std::vector<GLenum> list(bufs.as<GLenum>(), bufs.as<GLenum>() + n);
-    for (GLenum& b : list) b = framebuffer == 0 ? windowBuffer(b, c_->draw) : b;
+    const GLenum first = firstOfEye(list);
+    if (framebuffer == 0) buffersOfWindow(list);
     gl.glFramebufferDrawBuffersEXT(name(Kind::Framebuffer, framebuffer), n, list.data());
-    if (framebuffer == 0) drawBufferOfWindow(n > 0 ? *bufs.as<GLenum>() : GLenum{GL_NONE});
+    if (framebuffer == 0) drawBufferOfWindow(first);
 }
 void Replay::glFramebufferReadBufferEXT(GLuint framebuffer, GLenum mode) {
     if (!gl.glFramebufferReadBufferEXT) return;
+    if (framebuffer == 0) mode = readBufferOfEye(mode, c_->read);
     gl.glFramebufferReadBufferEXT(name(Kind::Framebuffer, framebuffer), framebuffer == 0 ? windowBuffer(mode, c_->read) : mode);
     if (framebuffer == 0) readBufferOfWindow(mode);
 }

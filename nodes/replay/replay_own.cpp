@@ -30,7 +30,7 @@ gl::SurfaceConfig Replay::surfaceConfig(const wire::WindowConfig& c, int width, 
     s.samples = c.samples;
     s.accum = platform_->accumulates() ? c.accum : 0; // the replay keeps one itself
     s.srgb = c.srgb != 0;
-    s.stereo = c.stereo != 0;
+    s.stereo = false; // a node has one eye's (bufferOfEye)
     return s;
 }
 
@@ -185,6 +185,8 @@ bool Replay::ownWindow(Args& in) {
     }
     Window& w = *slot;
     w.destroyed = false; // the program has bound it again
+    if (config->stereo && !w.config.stereo && config_.pass.eye == Eye::Cyclop && config_.answers && config_.node == 0)
+        out_.log("the program draws into a buffer for each eye: the left one's is shown; --stereo quad, side-by-side or anaglyph shows both");
     w.config = *config;
     const auto width = static_cast<int32_t>(config->width), height = static_cast<int32_t>(config->height);
     w.whole = {0, 0, width, height};
