@@ -311,6 +311,20 @@ def ends_frames_reached(context):
         return check_end(run, 0)
 
 
+@case
+def ends_picture_that_nobody_sees(context):
+    # The wall's size needs a private display: the program's window is there.
+    for options, told in ((("--size", "250x190", "--display", "app"), 1), (("--tiles", "1x1", "--display", "app"), 0)):
+        with context.drawing("immediate", 3, options=options) as run:
+            wrong = check_end(run, 0)
+            if wrong:
+                return wrong
+            lines = error_lines(run, ["private display"])
+            if len(lines) != told:
+                return "%s: %d lines say where the window is, not %d" % (" ".join(options), len(lines), told)
+    return None
+
+
 def complains(name, arguments, wanted_status, words, environment=None):
     """One line on standard error that holds one of the words; nothing started."""
     def check(context):

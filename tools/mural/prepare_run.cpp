@@ -61,4 +61,10 @@ Result<void> chooseDisplay(const RunOptions& options, bool programNeedsOne, Prep
     return {};
 }
 
+std::string unseenPictures(const RunOptions& options, const PreparedRun& run) {
+    if (!options.displayChosen || run.config.display != Display::App || !run.display) return {};
+    return "--display app: the program's window is on a private display of the wall's size (" + run.display->name() +
+           "), where nobody sees the picture in it; --display windows shows the wall, --out keeps its pictures";
+}
+
 } // namespace mural::cli

@@ -17,5 +17,7 @@ Result<void> checkOutput(const std::string& out);
 
 // Which display the program and the wall get; starts a private one where the wall needs it, or the program does.
 Result<void> chooseDisplay(const RunOptions& options, bool programNeedsOne, PreparedRun& run);
+// What --display app does not show, once the displays are chosen; empty: nothing.
+std::string unseenPictures(const RunOptions& options, const PreparedRun& run);
 
 } // namespace mural::cli

@@ -70,6 +70,7 @@ int replayCommand(const RunOptions& options, const std::string& file) {
     if (auto r = chooseDisplay(options, false, run); !r) return complain(r.error());
     run.headCommand = {launch::ownBinary(), "head"};
     for (const std::string& notice : options.notices) console.say(notice);
+    if (const std::string unseen = unseenPictures(options, run); !unseen.empty()) console.say(unseen);
     return runSession(run, console);
 }
 

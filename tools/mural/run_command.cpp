@@ -55,6 +55,7 @@ int runCommand(const RunOptions& options) {
     run.headCommand = {launch::ownBinary(), "head"};
     Console console(options.quiet);
     for (const std::string& notice : options.notices) console.say(notice);
+    if (const std::string unseen = unseenPictures(options, run); !unseen.empty()) console.say(unseen);
     return options.native ? runNative(run, console) : runSession(run, console);
 }
 
