@@ -125,6 +125,7 @@ HeadSession::HeadSession(SessionConfig config,
     for (size_t i = 0; i < plan_.canvases.size(); ++i) {
         OtherCanvas& canvas = output.canvases.emplace_back();
         canvas.name = plan_.canvases[i].name;
+        canvas.pairs = plan_.canvases[i].wall.stereo == StereoMode::Quad;
         if (i < options_.canvasFiles.size()) canvas.file = options_.canvasFiles[i];
         if (headShowsCanvas(config_, plan_.canvases[i])) canvas.openWall = [this, offset = plan_.canvases[i].offsetX] { return options_.openWall(offset); };
     }

@@ -10,6 +10,8 @@ constexpr size_t kQueuedPictures = 3;
 constexpr size_t kMostWindows = 64;
 constexpr std::chrono::milliseconds kSlice{500};
 
+Result<void> give(PictureSink& sink, int64_t frame, const Picture& picture, bool pair) { return pair ? sink.showPair(frame, eyesOfStack(picture)) : sink.show(frame, picture); }
+
 } // namespace
 
 PictureOutput::PictureOutput(PictureOutputConfig config, std::unique_ptr<PictureSink> file)
@@ -119,12 +121,8 @@ void PictureOutput::show(const WindowPicture& picture) {
     config_.done(picture.client, picture.frame);
 }
 
-Result<void> PictureOutput::give(PictureSink& sink, int64_t frame, const Picture& picture) const {
-    return config_.pairs ? sink.showPair(frame, eyesOfStack(picture)) : sink.show(frame, picture);
-}
-
 void PictureOutput::save(int64_t frame, const Picture& picture) {
-    const auto saved = give(*file_, frame, picture);
+    const auto saved = give(*file_, frame, picture, config_.pairs);
     if (!saved) {
         config_.say(saved.error().message + "; no further pictures are saved");
         fileFailed_ = true;
@@ -142,7 +140,7 @@ void PictureOutput::showOnWall(int64_t frame, const Picture& picture) {
         if (opened) wall_ = std::move(*opened);
         else config_.say(opened.error().message);
     }
-    const auto shown = wall_ ? give(*wall_, frame, picture) : Result<void>();
+    const auto shown = wall_ ? give(*wall_, frame, picture, config_.pairs) : Result<void>();
     if (!shown) config_.say(shown.error().message + "; the wall's windows show no further pictures");
     wallFailed_ = !wall_ || !shown;
 }
@@ -151,7 +149,7 @@ void PictureOutput::showOnCanvas(size_t index, int64_t frame, const Picture& pic
     const OtherCanvas& canvas = config_.canvases[index];
     Shown& shown = canvases_[index];
     if (canvas.file && saves && !shown.fileFailed) {
-        if (const auto saved = canvas.file->show(frame, picture); !saved) {
+        if (const auto saved = give(*canvas.file, frame, picture, canvas.pairs); !saved) {
             config_.say("canvas " + canvas.name + ": " + saved.error().message + "; no further pictures of it are saved");
             shown.fileFailed = true;
         }
@@ -162,7 +160,7 @@ void PictureOutput::showOnCanvas(size_t index, int64_t frame, const Picture& pic
         if (opened) shown.wall = std::move(*opened);
         else config_.say("canvas " + canvas.name + ": " + opened.error().message);
     }
-    const auto done = shown.wall ? shown.wall->show(frame, picture) : Result<void>();
+    const auto done = shown.wall ? give(*shown.wall, frame, picture, canvas.pairs) : Result<void>();
     if (!done) config_.say("canvas " + canvas.name + ": " + done.error().message + "; its windows show no further pictures");
     shown.wallFailed = !shown.wall || !done;
 }
@@ -179,7 +177,7 @@ void PictureOutput::showInWindow(const WindowPicture& picture) {
         found = windows_.emplace(key, opened ? std::move(*opened) : nullptr).first;
     }
     if (!found->second) return;
-    const auto shown = give(*found->second, picture.frame, picture.picture->view());
+    const auto shown = give(*found->second, picture.frame, picture.picture->view(), config_.pairs);
     if (!shown && complained_.insert(key).second) config_.say(shown.error().message);
 }
 

@@ -27,6 +27,7 @@ namespace mural {
 // A canvas beside the first: it shows the wall's frames, too.
 struct OtherCanvas {
     std::string name;
+    bool pairs = false;                // its pictures are both eyes' (stackEyes)
     std::shared_ptr<PictureSink> file; // null: nothing is saved
     std::function<Result<std::unique_ptr<PictureSink>>()> openWall; // empty: nodes have windows of it, or nobody
 };
@@ -74,7 +75,6 @@ private:
 
     void work();
     void show(const WindowPicture& picture);
-    Result<void> give(PictureSink& sink, int64_t frame, const Picture& picture) const;
     void save(int64_t frame, const Picture& picture);
     void showInWindow(const WindowPicture& picture);
     void showOnWall(int64_t frame, const Picture& picture);

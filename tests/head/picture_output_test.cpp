@@ -1,0 +1,86 @@
+// Which sinks get a frame's pictures, and of how many eyes.
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "nodes/head/picture_output.hpp"
+
+namespace mural {
+namespace {
+
+constexpr int kWidth = 6, kHeight = 4;
+constexpr std::byte kLeft{200}, kRight{100};
+
+struct Shown {
+    int width = 0, height = 0;
+    std::byte left{}, right{}; // of the first pixel; right 0: one picture came
+};
+
+class TellingSink final : public PictureSink {
+public:
+    explicit TellingSink(std::vector<Shown>& shown) : shown_(shown) {}
+    Result<void> show(int64_t, const Picture& p) override {
+        shown_.push_back({p.width, p.height, p.row(0)[0], std::byte{0}});
+        return {};
+    }
+    Result<void> showPair(int64_t, const EyePair& eyes) override {
+        shown_.push_back({eyes.left.width, eyes.left.height, eyes.left.row(0)[0], eyes.right.row(0)[0]});
+        return {};
+    }
+    Result<void> finish() override { return {}; }
+    [[nodiscard]] std::string describe() const override { return "a test"; }
+
+private:
+    std::vector<Shown>& shown_;
+};
+
+std::shared_ptr<OwnedPicture> filled(std::byte value) {
+    auto picture = std::make_shared<OwnedPicture>();
+    picture->resize(kWidth, kHeight);
+    std::fill_n(picture->row(0), picture->view().sizeBytes(), value);
+    return picture;
+}
+std::shared_ptr<OwnedPicture> pairOfEyes() {
+    const auto left = filled(kLeft), right = filled(kRight);
+    auto both = std::make_shared<OwnedPicture>();
+    stackEyes({left->view(), right->view()}, *both);
+    return both;
+}
+
+// The first canvas and one beside it, either of which may be for two eyes.
+TEST(PictureOutput, EachCanvasHasItsOwnEyes) {
+    for (const bool firstIsPair : {false, true})
+        for (const bool otherIsPair : {false, true}) {
+            std::vector<Shown> file, wall, otherFile, otherWall;
+            const auto wallInto = [](std::vector<Shown>& into) { return [&into] { return Result<std::unique_ptr<PictureSink>>(std::make_unique<TellingSink>(into)); }; };
+            PictureOutputConfig config;
+            config.pairs = firstIsPair;
+            config.openWall = wallInto(wall);
+            OtherCanvas& canvas = config.canvases.emplace_back();
+            canvas.name = "monitor";
+            canvas.pairs = otherIsPair;
+            canvas.file = std::make_shared<TellingSink>(otherFile);
+            canvas.openWall = wallInto(otherWall);
+            config.done = [](uint32_t, uint32_t) {};
+            config.say = [](const std::string& text) { ADD_FAILURE() << text; };
+            PictureOutput output(std::move(config), std::make_unique<TellingSink>(file));
+            output.add({1, 1, 1, 0, firstIsPair ? pairOfEyes() : filled(kLeft), {otherIsPair ? pairOfEyes() : filled(kLeft)}});
+            ASSERT_TRUE(output.finish(Deadline::inMs(10'000)));
+            const auto expectOne = [](const std::vector<Shown>& shown, bool pair, const char* where) {
+                ASSERT_EQ(shown.size(), 1u) << where;
+                EXPECT_EQ(shown[0].width, kWidth) << where;
+                EXPECT_EQ(shown[0].height, kHeight) << where;
+                EXPECT_EQ(shown[0].left, kLeft) << where;
+                EXPECT_EQ(shown[0].right, pair ? kRight : std::byte{0}) << where;
+            };
+            expectOne(file, firstIsPair, "file");
+            expectOne(wall, firstIsPair, "wall");
+            expectOne(otherFile, otherIsPair, "file of the other canvas");
+            expectOne(otherWall, otherIsPair, "wall of the other canvas");
+        }
+}
+
+} // namespace
+} // namespace mural
