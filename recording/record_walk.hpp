@@ -45,23 +45,21 @@ public:
         return true;
     }
     // On over short records as long as they are of no interest, by their opcode. A program that loads says hundreds of thousands in one
-    // frame: what changes with each is kept in locals, as what it calls might look at this.
+    // frame: what changes with each is kept in locals, as what is called might look at this.
     template <typename OfNoInterest>
     void skip(const OfNoInterest& ofNoInterest) {
-        const std::byte* const packet = packet_.data();
-        const size_t end = packet_.size();
-        size_t at = at_, records = 0, last = 0, longest = 0;
-        while (end - at >= 4) {
+        const std::span<const std::byte> packet = packet_;
+        size_t at = at_;
+        Walked passed;
+        while (packet.size() - at >= 4) {
             uint32_t head = 0;
-            std::memcpy(&head, packet + at, sizeof head);
+            std::memcpy(&head, packet.data() + at, sizeof head);
             const size_t sizeBytes = (head >> 16) * size_t{4};
-            if (sizeBytes == 0 || head >> 16 == record::kLongForm || sizeBytes > end - at || !ofNoInterest(static_cast<uint16_t>(head))) break;
+            if (sizeBytes == 0 || head >> 16 == record::kLongForm || sizeBytes > packet.size() - at || !ofNoInterest(static_cast<uint16_t>(head))) break;
             at += sizeBytes;
-            ++records;
-            last = sizeBytes;
-            longest = std::max(longest, sizeBytes);
+            passed.pass(sizeBytes);
         }
-        goTo(at, {records, last, longest});
+        goTo(at, passed);
     }
     [[nodiscard]] size_t at() const { return at_; } // where the next record begins, bytes
     // Behind records that somebody else has passed.

@@ -731,8 +731,7 @@ private:
     // replay_framebuffers.cpp
     [[nodiscard]] GLenum bufferOfEye(GLenum buffer, const Window* w) const;
     [[nodiscard]] GLenum readBufferOfEye(GLenum buffer, const Window* w) const;
-    [[nodiscard]] GLenum firstOfEye(const std::vector<GLenum>& buffers) const;
-    void buffersOfWindow(std::vector<GLenum>& buffers) const;
+    void drawBuffers(bool ofWindow, GLsizei n, const Data& bufs, const std::function<void(const GLenum*)>& call);
     [[nodiscard]] GLenum windowBuffer(GLenum buffer, const Window* w) const;
     void bindFramebuffer(GLenum target, GLuint framebuffer, bool ext);
     // replay_pixel_store.cpp

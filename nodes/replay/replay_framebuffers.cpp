@@ -1,4 +1,5 @@
 // Framebuffers and the buffers that are drawn to and read from: the window's are those that its surface has.
+#include <algorithm>
 #include <utility>
 
 #include "nodes/replay/replay.hpp"
@@ -76,24 +77,21 @@ void Replay::glDrawBuffer(GLenum buf) {
     gl.glDrawBuffer(drawsWindow() ? windowBuffer(buf, c_->draw) : buf);
     if (drawsWindow()) drawBufferOfWindow(buf);
 }
-// Which one a window's surfaces are chosen by.
-GLenum Replay::firstOfEye(const std::vector<GLenum>& buffers) const {
-    const bool stereo = c_->draw && c_->draw->config.stereo;
-    if (!stereo) return buffers.empty() ? GL_NONE : buffers.front();
-    for (const GLenum b : buffers)
-        if (const GLenum here = bufferOfEye(b, c_->draw); here != GL_NONE) return here;
-    return GL_NONE;
-}
-void Replay::buffersOfWindow(std::vector<GLenum>& buffers) const {
-    for (GLenum& b : buffers) b = windowBuffer(bufferOfEye(b, c_->draw), c_->draw);
+// `call` gives them to the driver.
+void Replay::drawBuffers(bool ofWindow, GLsizei n, const Data& bufs, const std::function<void(const GLenum*)>& call) {
+    if (n < 0 || (n > 0 && !bufs.pointer())) return;
+    std::vector<GLenum> list(bufs.as<GLenum>(), bufs.as<GLenum>() + n); // none at all: nothing is drawn to
+    if (!ofWindow) return call(list.data());
+    for (GLenum& b : list) b = bufferOfEye(b, c_->draw);
+    // Surfaces are chosen by the first; of two eyes' by the one that is here.
+    const auto chosen = c_->draw && c_->draw->config.stereo ? std::ranges::find_if(list, [](GLenum b) { return b != GL_NONE; }) : list.begin();
+    const GLenum first = chosen == list.end() ? GLenum{GL_NONE} : *chosen;
+    for (GLenum& b : list) b = windowBuffer(b, c_->draw);
+    call(list.data());
+    drawBufferOfWindow(first);
 }
 void Replay::glDrawBuffers(GLsizei n, const Data& bufs) {
-    if (n < 0 || (n > 0 && !bufs.pointer()) || !gl.glDrawBuffers) return;
-    std::vector<GLenum> list(bufs.as<GLenum>(), bufs.as<GLenum>() + n); // none at all: nothing is drawn to
-    const GLenum first = firstOfEye(list);
-    if (drawsWindow()) buffersOfWindow(list);
-    gl.glDrawBuffers(n, list.data());
-    if (drawsWindow()) drawBufferOfWindow(first);
+    if (gl.glDrawBuffers) drawBuffers(drawsWindow(), n, bufs, [&](const GLenum* ours) { gl.glDrawBuffers(n, ours); });
 }
 void Replay::glReadBuffer(GLenum src) {
     if (c_->readFramebuffer == 0) src = readBufferOfEye(src, c_->read);
@@ -106,12 +104,7 @@ void Replay::glNamedFramebufferDrawBuffer(GLuint framebuffer, GLenum buf) {
     if (framebuffer == 0) drawBufferOfWindow(buf);
 }
 void Replay::glNamedFramebufferDrawBuffers(GLuint framebuffer, GLsizei n, const Data& bufs) {
-    if (n < 0 || (n > 0 && !bufs.pointer())) return;
-    std::vector<GLenum> list(bufs.as<GLenum>(), bufs.as<GLenum>() + n);
-    const GLenum first = firstOfEye(list);
-    if (framebuffer == 0) buffersOfWindow(list);
-    gl.glNamedFramebufferDrawBuffers(name(Kind::Framebuffer, framebuffer), n, list.data());
-    if (framebuffer == 0) drawBufferOfWindow(first);
+    drawBuffers(framebuffer == 0, n, bufs, [&](const GLenum* ours) { gl.glNamedFramebufferDrawBuffers(name(Kind::Framebuffer, framebuffer), n, ours); });
 }
 void Replay::glNamedFramebufferReadBuffer(GLuint framebuffer, GLenum src) {
     if (framebuffer == 0) src = readBufferOfEye(src, c_->read);
@@ -126,12 +119,7 @@ void Replay::glFramebufferDrawBufferEXT(GLuint framebuffer, GLenum mode) {
     if (framebuffer == 0) drawBufferOfWindow(mode);
 }
 void Replay::glFramebufferDrawBuffersEXT(GLuint framebuffer, GLsizei n, const Data& bufs) {
-    if (n < 0 || (n > 0 && !bufs.pointer()) || !gl.glFramebufferDrawBuffersEXT) return;
-    std::vector<GLenum> list(bufs.as<GLenum>(), bufs.as<GLenum>() + n);
-    const GLenum first = firstOfEye(list);
-    if (framebuffer == 0) buffersOfWindow(list);
-    gl.glFramebufferDrawBuffersEXT(name(Kind::Framebuffer, framebuffer), n, list.data());
-    if (framebuffer == 0) drawBufferOfWindow(first);
+    if (gl.glFramebufferDrawBuffersEXT) drawBuffers(framebuffer == 0, n, bufs, [&](const GLenum* ours) { gl.glFramebufferDrawBuffersEXT(name(Kind::Framebuffer, framebuffer), n, ours); });
 }
 void Replay::glFramebufferReadBufferEXT(GLuint framebuffer, GLenum mode) {
     if (!gl.glFramebufferReadBufferEXT) return;

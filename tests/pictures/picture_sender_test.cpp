@@ -37,6 +37,19 @@ private:
     bool open_ = false;
 };
 
+// What is given is taken when the gate is open, and not before.
+template <class Give> void waitsFor(Gate& gate, Give&& give) {
+    std::atomic<bool> taken{false};
+    std::thread giver([&] {
+        EXPECT_TRUE(give());
+        taken = true;
+    });
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    EXPECT_FALSE(taken);
+    gate.open();
+    giver.join();
+}
+
 std::vector<std::byte> rows(uint32_t frame) {
     std::vector<std::byte> all(size_t{kWidth} * kHeight * 4);
     for (size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::byte>(i % 4 == 3 ? 255 : (i / 4 + frame * 31) & 255);
@@ -154,16 +167,7 @@ TEST_F(PictureSenderTest, AThirdPictureWaitsForRoom) {
     Gate gate;
     ASSERT_TRUE(frame(1, &gate));
     ASSERT_TRUE(frame(2));
-    std::atomic<bool> taken{false};
-    std::thread third([&] {
-        EXPECT_TRUE(frame(3));
-        taken = true;
-    });
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    EXPECT_FALSE(taken);
-    gate.open();
-    third.join();
-    EXPECT_TRUE(taken);
+    waitsFor(gate, [&] { return frame(3); });
     ASSERT_TRUE(sender_->finish());
     EXPECT_EQ(types().size(), 6u);
 }
@@ -176,15 +180,7 @@ TEST_F(PictureSenderTest, MessagesBehindAPictureAreBounded) {
     ASSERT_TRUE(frame(1, &gate));
     const std::vector<std::byte> large(4000);
     ASSERT_TRUE(sender_->tell(NodeMessage::Answer, large));
-    std::atomic<bool> taken{false};
-    std::thread second([&] {
-        EXPECT_TRUE(sender_->tell(NodeMessage::Answer, large));
-        taken = true;
-    });
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    EXPECT_FALSE(taken); // 8000 would wait
-    gate.open();
-    second.join();
+    waitsFor(gate, [&] { return sender_->tell(NodeMessage::Answer, large); }); // 8000 would wait
     ASSERT_TRUE(sender_->tell(NodeMessage::Answer, std::vector<std::byte>(9000))); // more than ever waits: alone
     ASSERT_TRUE(sender_->finish());
     EXPECT_EQ(types().size(), 5u);
