@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <sstream>
+#include <string_view>
 
 #include <GL/gl.h>
 #include <GL/glext.h>
@@ -51,6 +53,15 @@ int parseGlVersion(const std::string& version) {
             std::isdigit(static_cast<unsigned char>(version[i + 2])))
             return 10 * (version[i] - '0') + (version[i + 2] - '0');
     return 0;
+}
+
+int parseMesaVersion(const std::string& version) {
+    constexpr std::string_view name = " Mesa ";
+    const size_t at = version.find(name);
+    if (at == std::string::npos) return 0;
+    int major = 0;
+    std::from_chars(version.data() + at + name.size(), version.data() + version.size(), major);
+    return major;
 }
 
 Result<GlInfo> readGlInfo(Platform& platform) {

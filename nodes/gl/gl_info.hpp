@@ -37,4 +37,7 @@ bool showsSamples(Platform& platform);
 // "4.5 (Compatibility Profile) Mesa 22.3.6" → 45, "OpenGL ES-CM 1.1 Mesa" → 11; 0 when there is no number.
 int parseGlVersion(const std::string& version);
 
+// "4.5 (Compatibility Profile) Mesa 22.3.6" → 22; 0 when it is not Mesa's.
+int parseMesaVersion(const std::string& version);
+
 } // namespace mural::gl

@@ -105,14 +105,17 @@ def late_uploads(context):
 
 @failures.case
 def equal_state(context):
-    """State that is as it was, or set again before a draw, stays behind once it is known that this is the smaller stream."""
+    """State that is as it was, or set again before a draw, stays behind, and the pictures are right.
+
+    Whether frames go on without it is chosen by what they cost, CPU time with it, which another load of the machine makes longer: that it is chosen where
+    it is cheaper is asserted without a clock (tests/holding/small_choice_test.cpp). Here at least it is tried.
+    """
     report = verified(context, "equal_state", 300, every=10)
     if not isinstance(report, dict):
         return report
     e = left_out_of(report)
-    # Of each object's 2 x 19 sets at least 30 change nothing that its draw sees, and 4 of 8 uniforms belong to a program that waits: seven tenths of all
-    # records; some frames are tried without.
-    if e["leftOutRecords"] < 0.4 * (e["records"] + e["leftOutRecords"]) or e["rawBytes"] > 0.7 * e["programBytes"]:
+    # Of each of 48 objects' 2 x 19 sets at least 30 change nothing that its draw sees: over 1 400 of a frame, and a try has at least eight.
+    if e["leftOutRecords"] < 8 * 1400 or e["programBytes"] - e["rawBytes"] < 0.4 * 8 / 300 * e["programBytes"]:
         return "too little was left out: %s" % e
     return None
 

@@ -108,6 +108,10 @@ TEST(GlVersion, isReadFromEveryForm) {
     EXPECT_EQ(parseGlVersion("OpenGL ES 3.2 NVIDIA 535.1"), 32);
     EXPECT_EQ(parseGlVersion(""), 0);
     EXPECT_EQ(parseGlVersion("none"), 0);
+    EXPECT_EQ(parseMesaVersion("4.5 (Compatibility Profile) Mesa 22.3.6"), 22);
+    EXPECT_EQ(parseMesaVersion("4.6 Mesa 25.0.7-2 (git)"), 25);
+    EXPECT_EQ(parseMesaVersion("OpenGL ES 3.2 NVIDIA 535.1"), 0);
+    EXPECT_EQ(parseMesaVersion("4.5 Mesa "), 0);
 }
 
 } // namespace
