@@ -102,7 +102,7 @@ Result<Plan> planOf(const NetperfArguments& a) {
 Result<void> sendMessages(Group& group, const NetperfArguments& a, uint64_t messageBytes, Deadline deadline, Measured& m) {
     std::vector<std::byte> message(messageBytes);
     for (size_t i = 0; i < a.count + kWarmUp; ++i) {
-        fillPattern(message, i * messageBytes);
+        if (!a.unchecked) fillPattern(message, i * messageBytes);
         const double began = nowS();
         if (auto r = group.write(message, deadline); !r) return r;
         group.flush();
@@ -114,11 +114,11 @@ Result<void> sendMessages(Group& group, const NetperfArguments& a, uint64_t mess
     return {};
 }
 
-Result<void> sendBytes(Group& group, uint64_t bytes, Deadline deadline, Measured& m) {
+Result<void> sendBytes(Group& group, const NetperfArguments& a, uint64_t bytes, Deadline deadline, Measured& m) {
     std::vector<std::byte> piece(kPieceBytes);
     while (m.bytes < bytes) {
         const size_t count = std::min<uint64_t>(piece.size(), bytes - m.bytes);
-        fillPattern(std::span(piece).first(count), m.bytes);
+        if (!a.unchecked) fillPattern(std::span(piece).first(count), m.bytes);
         if (auto r = group.write(std::span(piece).first(count), deadline); !r) return r;
         m.bytes += count;
     }
@@ -134,7 +134,7 @@ Result<Measured> send(Group& group, const Plan& plan, const NetperfArguments& a)
     const size_t membersAtFirst = group.members().size();
     const double began = nowS();
     const double cpuBegan = cpuS();
-    auto r = plan.messageBytes > 0 ? sendMessages(group, a, plan.messageBytes, deadline, m) : sendBytes(group, plan.bytes, deadline, m);
+    auto r = plan.messageBytes > 0 ? sendMessages(group, a, plan.messageBytes, deadline, m) : sendBytes(group, a, plan.bytes, deadline, m);
     if (!r) return r.error();
     m.elapsedS = nowS() - began;
     m.cpuS = cpuS() - cpuBegan;
@@ -161,7 +161,7 @@ Result<Measured> receive(Group& group, const NetperfArguments& a) {
         const int64_t nowNs = quickNowNs();
         const double now = static_cast<double>(nowNs) * 1e-9;
         m.timeline.add(*count, nowNs);
-        check.take(std::span(piece).first(*count));
+        if (!a.unchecked) check.take(std::span(piece).first(*count));
         if (m.bytes == 0) {
             firstS = now;
             cpuBegan = cpuS();
@@ -263,6 +263,7 @@ void describeNetperf(CLI::App& command, NetperfArguments& a) {
     command.add_option("--within", a.withinSeconds, "give up after so many seconds")->type_name("SECONDS")->check(CLI::Range(0.1, 86'400.0));
     command.add_option("--leave-after", a.leaveAfterSeconds, "receive: leave the group so many seconds after joining")->type_name("SECONDS")->check(CLI::Range(0.0, 86'400.0));
     command.add_option("--timeline", a.timelineMs, "with --json: tell the bytes of every so many milliseconds, too")->type_name("MS")->check(CLI::Range(0, 10'000));
+    command.add_flag("--unchecked", a.unchecked, "neither fill nor compare the bytes, at both ends: what the transport alone costs");
     command.add_flag("--no-parity", a.noParity, "mend losses by sending again, to compare");
     command.add_flag("--no-multicast", a.noMulticast, "receive: through the host's connection");
     command.add_flag("--json", a.asJson, "one line of JSON for each end");

@@ -26,6 +26,7 @@ struct NetperfArguments {
     double withinSeconds = 120;
     double leaveAfterSeconds = 0; // 0: stays to the end
     bool noParity = false;
+    bool unchecked = false; // neither filled nor compared: what the transport itself costs
     bool noMulticast = false;
     bool asJson = false;
 };

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How `mural netperf receive` ends: a sender that is done is its success, one that is killed or that it can't reach is not.
+"""How `mural netperf receive` ends: a sender that is done is its success, one that is killed or sends other bytes is not.
 
   netperf_ends.py MURAL
 """
@@ -18,16 +18,16 @@ def start(words):
     return subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
-def start_pair(mural, secret, size):
+def start_pair(mural, secret, size, sender_options=(), receiver_options=()):
     """(sender, receiver), over the loopback."""
     common = ["--interface", "lo", "--group", "239.255.77.87:%d" % (20000 + os.getpid() % 20000), "--secret-file", secret,
               "--within", str(WAIT_SECONDS)]
-    sender = start([mural, "netperf", "send", "--members", "1", "--bytes", size, "--rate", "80mbit", "--control", "127.0.0.1:0"] + common)
+    sender = start([mural, "netperf", "send", "--members", "1", "--bytes", size, "--rate", "80mbit", "--control", "127.0.0.1:0"] + common + list(sender_options))
     said = sender.stderr.readline()
     found = re.search(r"listens at (\S+)", said)
     if not found:
         sys.exit("netperf_ends: the sender does not say where it listens: %r" % said)
-    return sender, start([mural, "netperf", "receive", "--json", "--control", found.group(1)] + common)
+    return sender, start([mural, "netperf", "receive", "--json", "--control", found.group(1)] + common + list(receiver_options))
 
 
 def expect(what, good, told):
@@ -44,6 +44,18 @@ def main():
         sender, receiver = start_pair(mural, secret.name, "2M")
         told = receiver.communicate(timeout=WAIT_SECONDS)
         expect("a sender that is done is no success", receiver.returncode == 0 and '"bytes":2097152' in told[0], told)
+        sender.communicate(timeout=WAIT_SECONDS)
+
+        unchecked = ["--unchecked"]
+        sender, receiver = start_pair(mural, secret.name, "2M", unchecked, unchecked)
+        told = receiver.communicate(timeout=WAIT_SECONDS)
+        expect("what nobody checks is no success", receiver.returncode == 0 and '"bytes":2097152' in told[0], told)
+        sender.communicate(timeout=WAIT_SECONDS)
+
+        # A receiver that checks sees that these bytes are not the pattern.
+        sender, receiver = start_pair(mural, secret.name, "2M", unchecked)
+        told = receiver.communicate(timeout=WAIT_SECONDS)
+        expect("other bytes are no failure", receiver.returncode == 1 and "what came is not what was sent" in told[1], told)
         sender.communicate(timeout=WAIT_SECONDS)
 
         sender, receiver = start_pair(mural, secret.name, "1G")
