@@ -157,6 +157,11 @@ HWY_INLINE uint16_t widthsOf(const Four& channels) {
     return static_cast<uint16_t>(w[0] | w[1] << 4 | w[2] << 8 | w[3] << 12);
 }
 
+// This block of the next strip. A tile's rows are short, and hardware looks ahead along them only; all blocks at once would wait for each other.
+HWY_INLINE void askForBelow(const std::byte* rows, ptrdiff_t strideBytes, size_t byte) {
+    for (unsigned y = kStripRows; y < 2 * kStripRows; ++y) __builtin_prefetch(rows + y * strideBytes + byte);
+}
+
 template <Arithmetic A, Predictor P, bool kFirst> size_t encodeAs(const StripSource& source, std::byte* into) {
     alignas(64) uint8_t channels[kMostBlocks * kBlockBytes]; // of the blocks that are not zero
     uint16_t widths[kMostBlocks];
@@ -164,6 +169,7 @@ template <Arithmetic A, Predictor P, bool kFirst> size_t encodeAs(const StripSou
     unsigned count = 0;
     for (unsigned block = 0; block < source.blocks; ++block) {
         const size_t from = block * kBlockColumns * 4;
+        if (source.moreBelow) askForBelow(source.rows, source.strideBytes, from);
         W any = hn::Zero(Words());
         for (size_t s = 0; s < kSteps; ++s) any = hn::Or(any, ored(differences<A, P, kFirst>(source, from + s * kLanes * 4)));
         if (isZero(any)) continue; // most of many pictures
@@ -235,6 +241,7 @@ template <Arithmetic A, Predictor P, bool kFirst> void decodeAs(const ParsedStri
     const uint8_t* next = channels;
     for (unsigned block = 0; block < target.blocks; ++block) {
         const size_t to = block * kBlockColumns * 4;
+        if (target.moreBelow) askForBelow(target.rows, target.strideBytes, to);
         if ((strip.present >> block & 1) == 0) {
             for (size_t s = 0; s < kSteps; ++s) rebuild<A, P, kFirst>(target, to + s * kLanes * 4, {zero, zero, zero, zero});
             continue;

@@ -16,21 +16,23 @@ unsigned wholeBlocks(const TileShape& s) { return (s.columns + kBlockColumns - 1
 unsigned wholeStrips(const TileShape& s) { return (s.rows + kStripRows - 1) / kStripRows; }
 bool hasWholeBlocks(const TileShape& s) { return s.columns % kBlockColumns == 0 && s.rows % kStripRows == 0; }
 
+// A tile's rows are short, and hardware looks ahead along them only.
+constexpr unsigned kRowsAhead = 4;
+void askFor(const std::byte* row, size_t rowBytes) {
+    for (size_t at = 0; at < rowBytes; at += 64) __builtin_prefetch(row + at);
+}
+
 bool isUniform(const TileShape& s, const std::byte* rows, ptrdiff_t strideBytes) {
     std::byte repeated[16];
     for (size_t at = 0; at < sizeof repeated; at += 4 * s.wordsPerPixel) std::memcpy(repeated + at, rows, 4 * s.wordsPerPixel);
     uint32_t pattern[4];
     std::memcpy(pattern, repeated, sizeof pattern);
     constexpr uint32_t kWhole[4] = {~0u, ~0u, ~0u, ~0u};
-    for (unsigned y = 0; y < s.rows; ++y, rows += strideBytes)
+    for (unsigned y = 0; y < s.rows; ++y, rows += strideBytes) {
+        if (y + kRowsAhead < s.rows) askFor(rows + kRowsAhead * strideBytes, 4 * s.columns);
         if (findUnlike(reinterpret_cast<const uint32_t*>(rows), s.columns, pattern, kWhole) != s.columns) return false;
+    }
     return true;
-}
-
-// The rows of the next strip, while this one is worked on: a tile's rows are short, and hardware looks ahead along them only.
-void askForNextStrip(const std::byte* nextRow, ptrdiff_t strideBytes, size_t rowBytes) {
-    for (unsigned y = 0; y < kStripRows; ++y)
-        for (size_t at = 0; at < rowBytes; at += 64) __builtin_prefetch(nextRow + y * strideBytes + at);
 }
 
 // The last column and row once more, up to whole blocks: their residuals are those of their neighbours, or zero.
@@ -71,9 +73,9 @@ size_t TileCoder::encode(const TileShape& shape, const std::byte* rows, ptrdiff_
     size_t size = 1;
     for (unsigned y = 0; y < shape.rows; y += kStripRows) {
         const std::byte* row = pixels + y * stride;
-        if (y + 2 * kStripRows <= shape.rows) askForNextStrip(row + kStripRows * stride, stride, rowBytes);
+        const bool moreBelow = y + 2 * kStripRows <= shape.rows;
         const StripKind kind{shape.arithmetic, predictor, y == 0};
-        const StripSource source{row, stride, y == 0 ? scratch_->above : row - stride, y == 0 ? nullptr : row - 2 * stride, wholeBlocks(shape)};
+        const StripSource source{row, stride, y == 0 ? scratch_->above : row - stride, y == 0 ? nullptr : row - 2 * stride, wholeBlocks(shape), moreBelow};
         size += encodeStrip(source, kind, into + size);
         // Noise shows early: no time is spent on a tile that won't be smaller.
         const bool hopeless = y == 2 * kStripRows && size > rowBytes * 3 * kStripRows * 15 / 16;
@@ -122,9 +124,9 @@ const char* TileCoder::decodeStrips(const TileShape& shape, std::span<const std:
         if (size == 0) return "a strip is cut short or holds an impossible width";
         left = left.subspan(size);
         std::byte* row = rows + y * strideBytes;
-        if (y + 2 * kStripRows <= shape.rows) askForNextStrip(row + kStripRows * strideBytes, strideBytes, size_t{4} * shape.columns);
+        const bool moreBelow = y + 2 * kStripRows <= shape.rows;
         const StripKind kind{shape.arithmetic, predictor, y == 0};
-        const StripTarget target{row, strideBytes, y == 0 ? scratch_->above : row - strideBytes, y == 0 ? nullptr : row - 2 * strideBytes, wholeBlocks(shape)};
+        const StripTarget target{row, strideBytes, y == 0 ? scratch_->above : row - strideBytes, y == 0 ? nullptr : row - 2 * strideBytes, wholeBlocks(shape), moreBelow};
         decodeStrip(strip, kind, target);
         if (y == 0) finishFirstStrip(target, shape.arithmetic, shape.wordsPerPixel);
     }
