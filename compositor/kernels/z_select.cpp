@@ -55,19 +55,18 @@ template <SourceWins W, class D> auto winsFloat(D du, hn::Vec<D> source, hn::Vec
     }
 }
 
-// Hardware looks ahead within a page only. Colours are asked for where some are taken: there more will be.
-constexpr size_t kAhead = 512;
+// Hardware looks ahead within a page only.
+constexpr size_t kAhead = 256, kLineWords = 16;
+template <class T> void askAhead(const T* words, size_t count) {
+    for (size_t i = 0; i < count; i += kLineWords) hwy::Prefetch(words + i + kAhead);
+}
 
-template <class D> void selectColours(D du, const ZRow& row, size_t i, hn::Mask<D> win) {
-    if (row.colourBytes == 4) {
-        auto* to = reinterpret_cast<uint32_t*>(row.colour) + i;
-        hwy::Prefetch(to + kAhead);
-        hwy::Prefetch(reinterpret_cast<const uint32_t*>(row.sourceColour) + i + kAhead);
-        const auto source = hn::LoadU(du, reinterpret_cast<const uint32_t*>(row.sourceColour) + i);
-        hn::StoreU(hn::IfThenElse(win, source, hn::LoadU(du, to)), du, to);
-        return;
-    }
-    // Wide pixels: what is copied is much more than the mask, so one at a time.
+template <class D> void selectWords(D du, uint32_t* to, const uint32_t* source, hn::Mask<D> win) {
+    hn::StoreU(hn::IfThenElse(win, hn::LoadU(du, source), hn::LoadU(du, to)), du, to);
+}
+
+// Wide pixels: what is copied is much more than the mask, so one at a time.
+template <class D> void selectWide(D du, const ZRow& row, size_t i, hn::Mask<D> win) {
     uint8_t bits[8] = {};
     hn::StoreMaskBits(du, win, bits);
     uint64_t left = 0;
@@ -79,22 +78,17 @@ template <class D> void selectColours(D du, const ZRow& row, size_t i, hn::Mask<
     }
 }
 
-// Returns how many pixels it did: whole vectors.
+// Returns how many pixels it did: whole pairs of vectors, for a line of the cache is one vector with the widest of them only.
 template <SourceWins W, bool kFloat, bool kCovered> size_t selectRow(const ZRow& row, const Constants& c) {
     const hn::ScalableTag<uint32_t> du;
-    const size_t step = hn::Lanes(du);
+    const size_t lanes = hn::Lanes(du), step = 2 * lanes;
     const auto flip = hn::Set(du, c.flip);
     const auto clear = hn::Set(du, c.clear);
     const auto drawnMask = hn::Set(du, c.drawnMask);
     const auto zero = hn::Zero(du);
     const auto all = hn::Eq(zero, zero);
     const auto earlierSource = c.earlierSource ? all : hn::Not(all);
-    size_t i = 0;
-    for (; i + step <= row.count; i += step) {
-        hwy::Prefetch(row.depth + i + kAhead);
-        hwy::Prefetch(row.sourceDepth + i + kAhead);
-        const auto there = hn::LoadU(du, row.depth + i);
-        const auto source = hn::LoadU(du, row.sourceDepth + i);
+    const auto wins = [&](hn::Vec<decltype(du)> source, hn::Vec<decltype(du)> there) {
         auto win = all;
         if constexpr (W == SourceWins::Never) win = hn::Not(all);
         else if constexpr (W != SourceWins::Always) {
@@ -106,9 +100,31 @@ template <SourceWins W, bool kFloat, bool kCovered> size_t selectRow(const ZRow&
             const auto thereUndrawn = hn::Eq(hn::And(hn::Xor(there, clear), drawnMask), zero);
             win = hn::And(sourceDrawn, hn::Or(win, thereUndrawn));
         }
-        if (hn::AllFalse(du, win)) continue;
-        hn::StoreU(hn::IfThenElse(win, source, there), du, row.depth + i);
-        if (row.colour) selectColours(du, row, i, win);
+        return win;
+    };
+    size_t i = 0;
+    for (; i + step <= row.count; i += step) {
+        uint32_t* const depth = row.depth + i;
+        askAhead(depth, step);
+        askAhead(row.sourceDepth + i, step);
+        const auto there = hn::LoadU(du, depth), there2 = hn::LoadU(du, depth + lanes);
+        const auto source = hn::LoadU(du, row.sourceDepth + i), source2 = hn::LoadU(du, row.sourceDepth + i + lanes);
+        const auto win = wins(source, there), win2 = wins(source2, there2);
+        if (hn::AllFalse(du, hn::Or(win, win2))) continue;
+        hn::StoreU(hn::IfThenElse(win, source, there), du, depth);
+        hn::StoreU(hn::IfThenElse(win2, source2, there2), du, depth + lanes);
+        if (!row.colour) continue;
+        if (row.colourBytes != 4) {
+            selectWide(du, row, i, win);
+            selectWide(du, row, i + lanes, win2);
+            continue;
+        }
+        auto* const colour = reinterpret_cast<uint32_t*>(row.colour) + i;
+        const auto* const sourceColour = reinterpret_cast<const uint32_t*>(row.sourceColour) + i;
+        askAhead(colour, step); // where some are taken, there more will be
+        askAhead(sourceColour, step);
+        selectWords(du, colour, sourceColour, win);
+        selectWords(du, colour + lanes, sourceColour + lanes, win2);
     }
     return i;
 }
