@@ -2,10 +2,11 @@
 
 #include <cstdint>
 
+#include "compositor/kernels/ask_ahead.hpp"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "compositor/kernels/blend_over.cpp"
 #include <hwy/foreach_target.h>
-#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -54,8 +55,6 @@ template <class D> hn::Vec<D> over10(D d, hn::Vec<D> front, hn::Vec<D> back) {
     return hn::Or(hn::Or(red, hn::ShiftLeft<10>(green)), hn::Or(hn::ShiftLeft<20>(blue), hn::ShiftLeft<30>(cover)));
 }
 
-constexpr size_t kAhead = 256; // hardware looks ahead within a page only
-
 // Vectors of which the source changes nothing are neither blended nor written: most of a picture is empty.
 template <bool kTen> size_t blendWords(uint32_t* pixels, const uint32_t* source, size_t count, bool inFront) {
     const hn::ScalableTag<uint32_t> d;
@@ -63,8 +62,8 @@ template <bool kTen> size_t blendWords(uint32_t* pixels, const uint32_t* source,
     const auto zero = hn::Zero(d);
     size_t i = 0;
     for (; i + step <= count; i += step) {
-        hwy::Prefetch(source + i + kAhead);
-        hwy::Prefetch(pixels + i + kAhead);
+        askFor(source + i + kAheadWords, 4 * step);
+        askFor(pixels + i + kAheadWords, 4 * step);
         const auto s = hn::LoadU(d, source + i);
         if (hn::AllTrue(d, hn::Eq(s, zero))) continue;
         const auto p = hn::LoadU(d, pixels + i);

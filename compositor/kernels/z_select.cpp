@@ -2,10 +2,11 @@
 
 #include <cstring>
 
+#include "compositor/kernels/ask_ahead.hpp"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "compositor/kernels/z_select.cpp"
 #include <hwy/foreach_target.h>
-#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -55,12 +56,6 @@ template <SourceWins W, class D> auto winsFloat(D du, hn::Vec<D> source, hn::Vec
     }
 }
 
-// Hardware looks ahead within a page only.
-constexpr size_t kAhead = 256, kLineWords = 16;
-template <class T> void askAhead(const T* words, size_t count) {
-    for (size_t i = 0; i < count; i += kLineWords) hwy::Prefetch(words + i + kAhead);
-}
-
 template <class D> void selectWords(D du, uint32_t* to, const uint32_t* source, hn::Mask<D> win) {
     hn::StoreU(hn::IfThenElse(win, hn::LoadU(du, source), hn::LoadU(du, to)), du, to);
 }
@@ -78,7 +73,7 @@ template <class D> void selectWide(D du, const ZRow& row, size_t i, hn::Mask<D> 
     }
 }
 
-// Returns how many pixels it did: whole pairs of vectors, for a line of the cache is one vector with the widest of them only.
+// Returns how many pixels it did: whole vectors, two at once, for a line of the cache is one vector with the widest of them only.
 template <SourceWins W, bool kFloat, bool kCovered> size_t selectRow(const ZRow& row, const Constants& c) {
     const hn::ScalableTag<uint32_t> du;
     const size_t lanes = hn::Lanes(du), step = 2 * lanes;
@@ -102,29 +97,30 @@ template <SourceWins W, bool kFloat, bool kCovered> size_t selectRow(const ZRow&
         }
         return win;
     };
+    const auto sourceAt = [&](size_t i) { return hn::LoadU(du, row.sourceDepth + i); };
+    const auto thereAt = [&](size_t i) { return hn::LoadU(du, row.depth + i); };
+    const auto select = [&](size_t i, hn::Mask<decltype(du)> win) {
+        selectWords(du, row.depth + i, row.sourceDepth + i, win);
+        if (!row.colour) return;
+        if (row.colourBytes == 4) selectWords(du, reinterpret_cast<uint32_t*>(row.colour) + i, reinterpret_cast<const uint32_t*>(row.sourceColour) + i, win);
+        else selectWide(du, row, i, win);
+    };
     size_t i = 0;
     for (; i + step <= row.count; i += step) {
-        uint32_t* const depth = row.depth + i;
-        askAhead(depth, step);
-        askAhead(row.sourceDepth + i, step);
-        const auto there = hn::LoadU(du, depth), there2 = hn::LoadU(du, depth + lanes);
-        const auto source = hn::LoadU(du, row.sourceDepth + i), source2 = hn::LoadU(du, row.sourceDepth + i + lanes);
-        const auto win = wins(source, there), win2 = wins(source2, there2);
-        if (hn::AllFalse(du, hn::Or(win, win2))) continue;
-        hn::StoreU(hn::IfThenElse(win, source, there), du, depth);
-        hn::StoreU(hn::IfThenElse(win2, source2, there2), du, depth + lanes);
-        if (!row.colour) continue;
-        if (row.colourBytes != 4) {
-            selectWide(du, row, i, win);
-            selectWide(du, row, i + lanes, win2);
-            continue;
+        askFor(row.depth + i + kAheadWords, 4 * step);
+        askFor(row.sourceDepth + i + kAheadWords, 4 * step);
+        const auto first = wins(sourceAt(i), thereAt(i)), second = wins(sourceAt(i + lanes), thereAt(i + lanes));
+        if (hn::AllFalse(du, hn::Or(first, second))) continue;
+        if (row.colour) { // where some are taken, there more will be
+            askFor(row.colour + (i + kAheadWords) * row.colourBytes, step * row.colourBytes);
+            askFor(row.sourceColour + (i + kAheadWords) * row.colourBytes, step * row.colourBytes);
         }
-        auto* const colour = reinterpret_cast<uint32_t*>(row.colour) + i;
-        const auto* const sourceColour = reinterpret_cast<const uint32_t*>(row.sourceColour) + i;
-        askAhead(colour, step); // where some are taken, there more will be
-        askAhead(sourceColour, step);
-        selectWords(du, colour, sourceColour, win);
-        selectWords(du, colour + lanes, sourceColour + lanes, win2);
+        select(i, first);
+        select(i + lanes, second);
+    }
+    for (; i + lanes <= row.count; i += lanes) {
+        const auto win = wins(sourceAt(i), thereAt(i));
+        if (!hn::AllFalse(du, win)) select(i, win);
     }
     return i;
 }

@@ -5,6 +5,7 @@
 
 #include "common/little_endian.hpp"
 #include "compositor/codecs/bitplane/word_arithmetic.hpp"
+#include "compositor/kernels/ask_ahead.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "compositor/codecs/bitplane/strip_code.cpp"
@@ -157,9 +158,9 @@ HWY_INLINE uint16_t widthsOf(const Four& channels) {
     return static_cast<uint16_t>(w[0] | w[1] << 4 | w[2] << 8 | w[3] << 12);
 }
 
-// This block of the next strip. A tile's rows are short, and hardware looks ahead along them only; all blocks at once would wait for each other.
+// This block of the next strip: all blocks at once would wait for each other.
 HWY_INLINE void askForBelow(const std::byte* rows, ptrdiff_t strideBytes, size_t byte) {
-    for (unsigned y = kStripRows; y < 2 * kStripRows; ++y) __builtin_prefetch(rows + y * strideBytes + byte);
+    for (unsigned y = kStripRows; y < 2 * kStripRows; ++y) askFor(rows + y * strideBytes + byte, 4 * kBlockColumns);
 }
 
 template <Arithmetic A, Predictor P, bool kFirst> size_t encodeAs(const StripSource& source, std::byte* into) {

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "compositor/codecs/bitplane/strip_code.hpp"
+#include "compositor/kernels/ask_ahead.hpp"
 #include "compositor/kernels/find_unlike.hpp"
 
 namespace mural::compositor::bitplane {
@@ -16,12 +17,6 @@ unsigned wholeBlocks(const TileShape& s) { return (s.columns + kBlockColumns - 1
 unsigned wholeStrips(const TileShape& s) { return (s.rows + kStripRows - 1) / kStripRows; }
 bool hasWholeBlocks(const TileShape& s) { return s.columns % kBlockColumns == 0 && s.rows % kStripRows == 0; }
 
-// A tile's rows are short, and hardware looks ahead along them only.
-constexpr unsigned kRowsAhead = 4;
-void askFor(const std::byte* row, size_t rowBytes) {
-    for (size_t at = 0; at < rowBytes; at += 64) __builtin_prefetch(row + at);
-}
-
 bool isUniform(const TileShape& s, const std::byte* rows, ptrdiff_t strideBytes) {
     std::byte repeated[16];
     for (size_t at = 0; at < sizeof repeated; at += 4 * s.wordsPerPixel) std::memcpy(repeated + at, rows, 4 * s.wordsPerPixel);
@@ -29,7 +24,7 @@ bool isUniform(const TileShape& s, const std::byte* rows, ptrdiff_t strideBytes)
     std::memcpy(pattern, repeated, sizeof pattern);
     constexpr uint32_t kWhole[4] = {~0u, ~0u, ~0u, ~0u};
     for (unsigned y = 0; y < s.rows; ++y, rows += strideBytes) {
-        if (y + kRowsAhead < s.rows) askFor(rows + kRowsAhead * strideBytes, 4 * s.columns);
+        if (y + kStripRows < s.rows) askFor(rows + kStripRows * strideBytes, size_t{4} * s.columns); // rows are short
         if (findUnlike(reinterpret_cast<const uint32_t*>(rows), s.columns, pattern, kWhole) != s.columns) return false;
     }
     return true;
