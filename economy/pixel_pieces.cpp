@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstring>
 
+#include "common/copy_bytes.hpp"
 #include "economy/pixel_words.hpp"
 
 namespace mural::economy {
@@ -101,7 +102,7 @@ void PixelJoiner::join(std::span<const std::byte> planes, std::span<const std::b
         }
         pages = pages.subspan(kPageBytes);
     }
-    std::ranges::copy(rest, pages.begin());
+    copyBytes(rest, pages);
 }
 
 } // namespace mural::economy

@@ -1,9 +1,9 @@
 #include "economy/unpacker.hpp"
 
-#include <algorithm>
 #include <cstring>
 #include <vector>
 
+#include "common/copy_bytes.hpp"
 #include "streamcodec/wire.hpp"
 
 namespace mural::economy {
@@ -114,7 +114,7 @@ Unpacker::Problem Unpacker::patch(uint32_t spans) {
     if (item.page == 0) words_.end();
     ++log_->cursor;
     log_->append(item.page != 0 ? history_.addPage(history_.pages().changed(item.where), bytes) : keep(bytes, false, item.model));
-    std::ranges::copy(old, bytes.begin());
+    copyBytes(old, bytes);
     return nullptr;
 }
 

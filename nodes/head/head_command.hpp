@@ -1,11 +1,11 @@
 // A command of the head's own stream as the payload of a packet.
 #pragma once
 
-#include <algorithm>
 #include <cstring>
 #include <span>
 #include <vector>
 
+#include "common/copy_bytes.hpp"
 #include "streamcodec/wire.hpp"
 
 namespace mural {
@@ -14,7 +14,7 @@ inline std::vector<std::byte> commandBytes(wire::HeadCommand command, std::span<
     const auto word = static_cast<uint32_t>(command);
     std::vector<std::byte> payload(sizeof(word) + arguments.size());
     std::memcpy(payload.data(), &word, sizeof(word));
-    std::ranges::copy(arguments, payload.begin() + sizeof(word));
+    copyBytes(arguments, std::span(payload).subspan(sizeof(word)));
     return payload;
 }
 

@@ -1,6 +1,7 @@
 // All codecs of one link as a single one: the first byte says which was taken.
 #pragma once
 
+#include "common/copy_bytes.hpp"
 #include "nodes/pictures/plane_codecs.hpp"
 
 namespace mural {
@@ -13,7 +14,7 @@ public:
     [[nodiscard]] Result<size_t> encode(const compositor::PlaneView& plane, std::span<std::byte> into) override {
         packed_.clear();
         into[0] = std::byte{encoder_.encode(plane, packed_)};
-        std::ranges::copy(packed_, into.begin() + 1);
+        copyBytes(packed_, into.subspan(1));
         return packed_.size() + 1;
     }
     [[nodiscard]] Result<void> decode(std::span<const std::byte>, const compositor::MutablePlaneView&) override { return Error{"this end packs"}; }

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 
+#include "common/copy_bytes.hpp"
+
 namespace mural {
 
 std::vector<std::byte> encode(const NodeMessage& m) {
     std::vector<std::byte> bytes(1 + m.body.size());
     bytes.front() = static_cast<std::byte>(m.kind);
-    std::ranges::copy(m.body, bytes.begin() + 1);
+    copyBytes(m.body, std::span(bytes).subspan(1));
     return bytes;
 }
 

@@ -148,26 +148,26 @@ Result<Measured> receive(Group& group, const NetperfArguments& a) {
     Measured m;
     m.role = "receiver " + std::to_string(group.self());
     m.timeline = Timeline(static_cast<int64_t>(a.timelineMs) * kNsPerMs);
-    std::vector<std::byte> piece(kPieceBytes);
     PatternCheck check;
     const Deadline leave = a.leaveAfterSeconds > 0 ? Deadline::inMs(static_cast<int64_t>(a.leaveAfterSeconds * 1000)) : Deadline::never();
     const auto withinNs = static_cast<int64_t>(a.withinSeconds * kNsPerS);
     double firstS = 0;
     double cpuBegan = cpuS();
     while (!leave.passed()) {
-        auto count = group.read(rsp::kHost, piece, Deadline::at(quickNowNs() + leave.leftNs(withinNs) + kNsPerMs));
-        if (!count && !leave.passed()) m.cut = count.error().message;
-        if (!count || *count == 0) break; // the sender has what it wanted
+        auto bytes = group.view(rsp::kHost, Deadline::at(quickNowNs() + leave.leftNs(withinNs) + kNsPerMs));
+        if (!bytes && !leave.passed()) m.cut = bytes.error().message;
+        if (!bytes || bytes->empty()) break; // the sender has what it wanted
         const int64_t nowNs = quickNowNs();
         const double now = static_cast<double>(nowNs) * 1e-9;
-        m.timeline.add(*count, nowNs);
-        if (!a.unchecked) check.take(std::span(piece).first(*count));
+        m.timeline.add(bytes->size(), nowNs);
+        if (!a.unchecked) check.take(*bytes);
         if (m.bytes == 0) {
             firstS = now;
             cpuBegan = cpuS();
         }
-        m.bytes += *count;
+        m.bytes += bytes->size();
         m.elapsedS = now - firstS;
+        group.consume(rsp::kHost, bytes->size());
     }
     m.cpuS = cpuS() - cpuBegan;
     m.beganAt = check.beganAt();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "common/copy_bytes.hpp"
 #include "common/little_endian.hpp"
 #include "transport/rsp/gf256.hpp"
 
@@ -74,7 +75,7 @@ void solveMissing(std::span<const int> missing, std::span<HeldRow> rows, std::ve
         const auto symbol = std::span(scratch).subspan(c * bytes, bytes);
         for (size_t r = 0; r < n; ++r) gf256::multiplyAdd(symbol, rows[r].symbol, inverse[c][r]);
     }
-    for (size_t c = 0; c < n; ++c) std::ranges::copy(std::span(scratch).subspan(c * bytes, bytes), rows[c].symbol.begin());
+    for (size_t c = 0; c < n; ++c) copyBytes(std::span(scratch).subspan(c * bytes, bytes), rows[c].symbol);
 }
 
 } // namespace mural::rsp

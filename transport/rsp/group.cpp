@@ -130,37 +130,54 @@ Result<void> Group::waitArrived(Deadline deadline) {
     return {};
 }
 
-Result<size_t> Group::read(MemberId from, std::span<std::byte> into, Deadline deadline) {
-    std::unique_lock lock(state_->mutex);
+// The first bytes of a member's stream that are there, where they lie; waits for them.
+Result<std::span<const std::byte>> Group::State::readable(std::unique_lock<std::mutex>& lock, MemberId from, Deadline deadline) {
     while (true) {
-        Receiver* r = state_->core->receiver(from);
-        size_t count = 0;
-        while (r && count < into.size()) {
-            const auto bytes = r->readable();
-            if (bytes.empty()) break;
-            const size_t n = std::min(bytes.size(), into.size() - count);
-            // Without the lock: until they are consumed these bytes stay where they are, and more come meanwhile.
-            lock.unlock();
-            std::memcpy(into.data() + count, bytes.data(), n);
-            lock.lock();
-            r->consume(n);
-            count += n;
+        const Receiver* r = core->receiver(from);
+        if (r && !r->readable().empty()) return r->readable();
+        if (!core->members().contains(from)) {
+            core->forget(from);
+            return std::span<const std::byte>{};
         }
-        if (count > 0) {
-            if (r->hasNews()) state_->pump();
-            return count;
-        }
-        if (!state_->core->members().contains(from)) {
-            state_->core->forget(from);
-            return size_t{0};
-        }
-        if (from == kHost && state_->hostLeft) return size_t{0};
-        if (!state_->failure.empty()) return Error{state_->failure};
-        const auto waiting = state_->waitingForData.insert(from);
-        const bool inTime = state_->wait(lock, state_->data, deadline);
-        state_->waitingForData.erase(waiting);
+        if (from == kHost && hostLeft) return std::span<const std::byte>{};
+        if (!failure.empty()) return Error{failure};
+        const auto waiting = waitingForData.insert(from);
+        const bool inTime = wait(lock, data, deadline);
+        waitingForData.erase(waiting);
         if (!inTime) return tooLate("bytes of member " + std::to_string(from));
     }
+}
+
+Result<size_t> Group::read(MemberId from, std::span<std::byte> into, Deadline deadline) {
+    std::unique_lock lock(state_->mutex);
+    auto bytes = state_->readable(lock, from, deadline);
+    if (!bytes) return bytes.error();
+    Receiver* r = bytes->empty() ? nullptr : state_->core->receiver(from);
+    size_t count = 0;
+    while (!bytes->empty() && count < into.size()) {
+        const size_t n = std::min(bytes->size(), into.size() - count);
+        // Without the lock: until they are consumed these bytes stay where they are, and more come meanwhile.
+        lock.unlock();
+        std::memcpy(into.data() + count, bytes->data(), n);
+        lock.lock();
+        r->consume(n);
+        count += n;
+        *bytes = r->readable();
+    }
+    if (r && r->hasNews()) state_->pump();
+    return count;
+}
+
+Result<std::span<const std::byte>> Group::view(MemberId from, Deadline deadline) {
+    std::unique_lock lock(state_->mutex);
+    return state_->readable(lock, from, deadline);
+}
+
+void Group::consume(MemberId from, size_t bytes) {
+    const std::lock_guard lock(state_->mutex);
+    Receiver* r = state_->core->receiver(from);
+    r->consume(bytes);
+    if (r->hasNews()) state_->pump();
 }
 
 GroupReport Group::report() const {

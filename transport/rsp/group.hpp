@@ -109,6 +109,10 @@ public:
     // What is there of a member's stream, at least one byte; waits for it. 0: the member is gone, and all was read. A host
     // that is cut off is an error, for with it the group ends.
     Result<size_t> read(MemberId from, std::span<std::byte> into, Deadline deadline);
+    // The same where they lie, for who need not have them elsewhere: a copy less. They stay there until so many are consumed,
+    // and hold up the writer when its window is full. Empty: as 0.
+    Result<std::span<const std::byte>> view(MemberId from, Deadline deadline);
+    void consume(MemberId from, size_t bytes);
 
     [[nodiscard]] GroupReport report() const;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/copy_bytes.hpp"
 #include "common/little_endian.hpp"
 
 namespace mural::rsp {
@@ -34,7 +35,7 @@ public:
             if (m.multicast) anyDirect = true;
             else core_.tunnel(id, copy_);
         }
-        if (anyDirect) std::ranges::copy(copy_, core_.out_.datagram(to_, copy_.size()).begin());
+        if (anyDirect) copyBytes(copy_, core_.out_.datagram(to_, copy_.size()));
     }
 
 private:

@@ -55,6 +55,7 @@ struct Group::State : GroupOutput {
     // Sleeps until there may be news, or a slice of time is over; false: the deadline has passed before. The first one that
     // waits leads: it sees to the sockets and the timer, and the group's thread sleeps on.
     bool wait(std::unique_lock<std::mutex>& lock, Waits& what, Deadline deadline);
+    Result<std::span<const std::byte>> readable(std::unique_lock<std::mutex>& lock, MemberId from, Deadline deadline);
 
     std::unique_ptr<GroupCore> core;
     std::string failure; // why the group is over; empty: it is not

@@ -25,7 +25,7 @@ public:
         return restNs < kLeastRestNs || nowNs - foundNs_ > kMostSilenceNs ? 0 : restNs;
     }
 
-    static constexpr int64_t kMostRestNs = 400'000;    // a socket of 8 MiB holds what comes meanwhile at 100 Gbit/s
+    static constexpr int64_t kMostRestNs = 1'000'000;  // a socket of 8 MiB holds what comes meanwhile at 50 Gbit/s
     static constexpr int64_t kLeastRestNs = 60'000;    // a timer is as late as that
     static constexpr int64_t kShareOfFlow = 8;
     static constexpr int64_t kMostSilenceNs = 3'000'000; // the flow is over

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/copy_bytes.hpp"
 #include "transport/rsp/erasure_code.hpp"
 
 namespace mural::rsp {
@@ -92,7 +93,7 @@ void Sender::sendDatagram(Sequence s, uint8_t flags, int64_t nowNs, Outbox& out)
     d.next = later(next_, s + 1);
     const auto to = out.datagram(kEverybody, kStreamHeadBytes + payload.size());
     writeStreamHead(d, to);
-    std::ranges::copy(payload, to.subspan(kStreamHeadBytes).begin());
+    copyBytes(payload, to.subspan(kStreamHeadBytes));
     sentNs_ = nowNs;
 }
 
