@@ -10,6 +10,7 @@ namespace mural::economy {
 namespace {
 
 constexpr int kZstdWindowLog = 20;  // 1 MiB, per section and side
+constexpr size_t kMostRoomBytes = size_t{32} << 10; // for what comes out, at once: room is filled with zeros first
 constexpr size_t kLz4Window = 65536;
 constexpr size_t kLz4PieceBytes = size_t{1} << 20; // of a section, as LZ4 takes no more than an int
 
@@ -49,7 +50,8 @@ struct SectionCompressor::State {
         if (!openZstd()) return false;
         ZSTD_inBuffer in{bytes.data(), bytes.size(), 0};
         size_t left = 1;
-        for (size_t room = ZSTD_compressBound(bytes.size()) + 64; left != 0; room = 1024) {
+        const size_t room = std::min(ZSTD_compressBound(bytes.size()) + 64, kMostRoomBytes);
+        while (left != 0) {
             const size_t before = into.size();
             into.resize(before + room);
             ZSTD_outBuffer out{into.data() + before, room, 0};

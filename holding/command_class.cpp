@@ -182,6 +182,19 @@ uint8_t findValue(uint16_t opcode) {
     return kNoValue;
 }
 
+// What a list does later, and does not set, matters by how it nests alone.
+int8_t deeperOf(const CommandKind& kind) {
+    if (kind.state != StateRole::None && kind.state != StateRole::Use) return kLooked;
+    switch (kind.about) {
+    case CommandClass::Pass:
+    case CommandClass::Use:
+    case CommandClass::Arrays: return 0;
+    case CommandClass::Begin: return 1;
+    case CommandClass::End: return -1;
+    default: return kLooked;
+    }
+}
+
 FrameRole frameRoleOf(const CommandKind& kind) {
     switch (kind.about) {
     case CommandClass::Pass:
@@ -226,6 +239,7 @@ CommandKinds::CommandKinds() {
         CommandKind& kind = kinds_[opcode];
         kind.binding = bindingOf(opcode, kind.family);
         kind.small = kind.family == Family::Uniform || kind.family == Family::ProgramUniform;
+        kind.deeper = deeperOf(kind);
         kind.passes = kind.about == CommandClass::Pass && kind.state == StateRole::None;
         kind.frame = asksForPictures(opcode) ? FrameRole::Seen : frameRoleOf(kind);
         kind.passesUnlessSmall = kind.about == CommandClass::Pass || kind.small || kind.family == Family::UseProgram;

@@ -64,6 +64,8 @@ enum class FrameRole : uint8_t {
 // The word of the arguments in which a value of variable size begins, the first; kNoValue: there is none.
 constexpr uint8_t kNoValue = 0xff;
 
+constexpr int8_t kLooked = INT8_MAX;
+
 struct CommandKind {
     CommandClass about = CommandClass::Unknown;
     StateRole state = StateRole::Change;
@@ -72,6 +74,8 @@ struct CommandKind {
     bool small = false; // sets uniforms, which are looked at where small state is
     // Nothing to do with it: where small state is looked at, or a list compiled; and where neither is.
     bool passes = false, passesUnlessSmall = false;
+    // While a list is compiled: by how much primitives are nested deeper behind it, if it matters no otherwise; else kLooked.
+    int8_t deeper = kLooked;
     FrameRole frame = FrameRole::Ends;
     Binding binding = Binding::Nothing;
 };

@@ -42,6 +42,15 @@ void Holder::add(uint32_t streamId, std::span<const std::byte> payload) {
     while (true) {
         const bool looksAtState = leavesOutSmall_ || stream.list != 0;
         if (valueFrom == kNone && stream.same.now == SameFrames::Now::Following) passSame(stream, walk, payload);
+        if (valueFrom == kNone && compilesList(stream)) {
+            int depth = 0;
+            walk.skip([&](uint16_t opcode) {
+                const int8_t deeper = kinds_[opcode].deeper;
+                if (deeper != kLooked) depth += deeper;
+                return deeper != kLooked;
+            });
+            stream.depth += depth;
+        }
         if (valueFrom == kNone) walk.skip([&](uint16_t opcode) { return looksAtState ? kinds_[opcode].passes : kinds_[opcode].passesUnlessSmall; });
         if (!walk.next(r)) break;
         const CommandKind& kind = kinds_[r.opcode];
@@ -103,6 +112,8 @@ void Holder::sendPending(Stream& stream, Output& output, size_t from) {
     pendingBytes_ -= stream.pending.size();
     std::vector<std::byte>().swap(stream.pending);
 }
+
+bool Holder::compilesList(const Stream& stream) { return stream.list != 0 && stream.context != nullptr && !stream.context->group->untracked && stream.same.now != SameFrames::Now::Following; }
 
 bool Holder::bindsHere(const Stream& stream) { return stream.context != nullptr && !stream.context->group->untracked && !stream.inPrimitive; }
 

@@ -65,6 +65,7 @@ private:
     void keepPending(Stream& stream, Output& output, size_t from, const Packet& packet);
     void sendPending(Stream& stream, Output& output, size_t from);
     static bool bindsHere(const Stream& stream);
+    static bool compilesList(const Stream& stream);
     void gl(At& at);
     void arrays(At& at);
 

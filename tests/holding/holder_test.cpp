@@ -399,6 +399,30 @@ TEST_F(Holding, followsListsThatSetState) {
     EXPECT_EQ(seen_.uploads(), 0u) << "holding goes on";
 }
 
+// Records of a list that only draw are passed many at a time: glBegin and glEnd are paired all the same, also over packets.
+TEST_F(Holding, pairsPrimitivesOfLists) {
+    for (const bool leavesOut : {true, false}) {
+        for (const bool ends : {true, false}) {
+            SCOPED_TRACE(testing::Message() << "small state left out: " << leavesOut << ", the last primitive ends: " << ends);
+            SeenModel seen;
+            Holder holder(kBound, [&](uint32_t stream, std::span<const std::byte> payload, const Walked*) { seen.packet(stream, payload); });
+            const auto say = [&](const PacketBuilder& p) { holder.add(kStream, p.bytes()); };
+            holder.leaveOutSmall(leavesOut);
+            say(PacketBuilder().context(1).window(1, 20, 10).record(wire::kOpMakeCurrent, {1, 1, 1}).record(op::glGenTextures, {2, 8, 1, 2}));
+            PacketBuilder list;
+            list.record(op::glNewList, {3, GL_COMPILE});
+            for (int i = 0; i < 50; ++i) list.record(op::glNormal3f, {0, 0, 0}).record(op::glBegin, {GL_POINTS}).record(op::glVertex3f, {1, 2, 3}).record(op::glEnd, {});
+            say(list.record(op::glBegin, {GL_POINTS}).record(op::glVertex3f, {1, 2, 3}));
+            PacketBuilder rest;
+            rest.record(op::glVertex3f, {1, 2, 3});
+            if (ends) rest.record(op::glEnd, {});
+            say(rest.record(op::glEndList, {}).record(op::glCallList, {3}));
+            say(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glTexImage2D, image(5)).record(op::glBindTexture, {GL_TEXTURE_2D, 2}));
+            EXPECT_EQ(holder.counts().heldRecords, ends ? 1u : 0u) << "a list that leaves one open is not followed";
+        }
+    }
+}
+
 TEST_F(Holding, holdsNothingOfAProgramThatHearsItsDriver) {
     begin();
     send(PacketBuilder().record(op::glEnable, {GL_DEBUG_OUTPUT}).record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glTexImage2D, image(5)));

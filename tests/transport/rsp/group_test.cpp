@@ -120,6 +120,40 @@ TEST(Group, MembersWriteToo) {
     }
 }
 
+// What comes is looked at in the window, a few bytes at a time, while more comes than fits in.
+TEST(Group, AReaderMayWorkWhereBytesLie) {
+    HOSTED(hosted, Seal::Tag);
+    auto& [host, join] = hosted;
+    auto member = Group::join(join, Deadline::inMs(10'000));
+    ASSERT_TRUE(member) << member.error().message;
+    ASSERT_TRUE(host->waitForMembers(1, Deadline::inMs(10'000)));
+    constexpr uint64_t kBytes = uint64_t{12} << 20;
+    uint64_t seen = 0, wrong = 0;
+    std::string failure;
+    std::thread reader([&] {
+        for (size_t most = 1;; most = most % 99'991 * 3 + 1) {
+            auto bytes = (*member)->view(kHost, Deadline::inMs(20'000));
+            if (!bytes) failure = bytes.error().message;
+            if (!bytes || bytes->empty()) return;
+            const size_t count = std::min(bytes->size(), most);
+            for (size_t i = 0; i < count; ++i) wrong += (*bytes)[i] != byteAt(seen + i);
+            seen += count;
+            (*member)->consume(kHost, count);
+        }
+    });
+    std::vector<std::byte> bytes(kBytes);
+    for (uint64_t i = 0; i < kBytes; ++i) bytes[i] = byteAt(i);
+    const auto written = host->write(bytes, Deadline::inMs(20'000));
+    host->flush();
+    const auto arrived = host->waitArrived(Deadline::inMs(20'000));
+    host->leave();
+    reader.join();
+    EXPECT_TRUE(written && arrived);
+    EXPECT_EQ(failure, "");
+    EXPECT_EQ(seen, kBytes);
+    EXPECT_EQ(wrong, 0u);
+}
+
 // Reads a word of a member's stream.
 Result<void> readWord(Group& group, MemberId from, Deadline deadline) {
     std::array<std::byte, 64> word{};
