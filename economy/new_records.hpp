@@ -14,9 +14,11 @@ namespace mural::economy {
 // Of one stream. Positions are those of its log.
 class NewRecords {
 public:
-    // In this frame; `end`: of the log. Behind many of the packet before fewer are enough.
+    // In this frame; `end`: of the log. Behind many of the packet before fewer are enough, and ever fewer behind several such packets.
     void packetBegins(uint64_t frame, uint64_t end) {
-        late_ = std::min(late_, kMany - kAtLeast);
+        packets_ = isLeftOut_ ? std::min(packets_ + 1, kMostHalved) : 0;
+        isLeftOut_ = false;
+        late_ = std::min(late_, kMany - (kAtLeast >> (packets_ == 0 ? 0 : packets_ - 1)));
         if (frame == frame_) return;
         frame_ = frame;
         frameBegan_ = end;
@@ -33,14 +35,20 @@ public:
 
     [[nodiscard]] bool many() const { return late_ >= kMany && !again_; }
     // What follows goes as bytes; `position`: where it would have stood.
-    void leaveOut(uint64_t position) { leftOutAt_[next_++ % leftOutAt_.size()] = position; }
+    void leaveOut(uint64_t position) {
+        leftOutAt_[next_++ % leftOutAt_.size()] = position;
+        isLeftOut_ = true;
+    }
 
 private:
     static constexpr uint32_t kMany = 256, kAtLeast = 32;
     static constexpr uint32_t kFoundCounts = 3; // one that is found weighs as many new ones
+    static constexpr uint32_t kMostHalved = 4;  // to four records
     static constexpr size_t kPlaces = 16;       // packets of a frame, about
 
     uint32_t late_ = 0;  // new ones, less those found
+    bool isLeftOut_ = false; // the rest of the packet
+    uint32_t packets_ = 0;   // that had a rest left out, up to the last one
     bool again_ = false; // in this frame something came that was left out before
     uint64_t frame_ = UINT64_MAX, frameBegan_ = 0;
     std::array<uint64_t, kPlaces> leftOutAt_ = nowhere();

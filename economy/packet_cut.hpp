@@ -9,6 +9,7 @@
 
 #include "economy/limits.hpp"
 #include "streamcodec/record.hpp"
+#include "streamcodec/record_round.hpp"
 
 namespace mural::economy {
 
@@ -49,11 +50,20 @@ public:
     size_t passShort() {
         const size_t from = at_;
         if (!atRecord()) return 0;
+        RecordRound round;
         while (packet_.size() - at_ >= 4) {
             uint32_t head = 0;
             std::memcpy(&head, packet_.data() + at_, 4);
+            if (round.closes(head)) {
+                const size_t lastBytes = at_ - lastRecord_, rounds = round.pass(packet_, at_);
+                records_ += rounds * round.size();
+                lastRecord_ = at_ - lastBytes;
+                round.begin();
+                if (rounds > 0) continue;
+            }
             const size_t sizeBytes = size_t{head >> 16} * 4;
             if (sizeBytes - 4 > kMostTextBytes - 4 || sizeBytes > packet_.size() - at_) break; // 0, or a long one, or none
+            round.add(head, at_);
             lastRecord_ = at_;
             at_ += sizeBytes;
             ++records_;

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "streamcodec/record.hpp"
+#include "streamcodec/record_round.hpp"
 #include "streamcodec/walked.hpp"
 
 namespace mural::recording {
@@ -51,11 +52,21 @@ public:
         const std::span<const std::byte> packet = packet_;
         size_t at = at_;
         Walked passed;
+        RecordRound round;
         while (packet.size() - at >= 4) {
             uint32_t head = 0;
             std::memcpy(&head, packet.data() + at, sizeof head);
+            if (round.closes(head)) {
+                const size_t rounds = round.pass(packet, at);
+                for (size_t i = 0; i < rounds; ++i)
+                    for (size_t k = 0; k < round.size(); ++k) ofNoInterest(static_cast<uint16_t>(round.head(k)));
+                passed.records += rounds * round.size();
+                round.begin();
+                if (rounds > 0) continue;
+            }
             const size_t sizeBytes = (head >> 16) * size_t{4};
             if (sizeBytes == 0 || head >> 16 == record::kLongForm || sizeBytes > packet.size() - at || !ofNoInterest(static_cast<uint16_t>(head))) break;
+            round.add(head, at);
             at += sizeBytes;
             passed.pass(sizeBytes);
         }

@@ -1,0 +1,89 @@
+// What is passed many records at a time is passed as one by one: opcodes in order, places, counts.
+#include "recording/record_walk.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+namespace mural::recording {
+namespace {
+
+struct Passed {
+    std::vector<uint16_t> opcodes;
+    size_t at = 0;
+    Walked walked;
+};
+
+constexpr uint16_t kLooked = 99;
+
+void put(std::vector<std::byte>& packet, uint16_t opcode, uint32_t words) {
+    const uint32_t head = words << 16 | opcode;
+    const size_t at = packet.size();
+    packet.resize(at + std::max<size_t>(4, size_t{words} * 4), std::byte{0x5a});
+    std::memcpy(packet.data() + at, &head, sizeof head);
+}
+
+// Rounds that repeat, that change, that are cut short, and records in no order.
+std::vector<std::byte> someRecords(std::mt19937& random) {
+    std::vector<std::byte> packet;
+    const auto below = [&](uint32_t n) { return random() % n; };
+    const auto one = [&] { put(packet, static_cast<uint16_t>(1 + below(5)), 1 + below(6)); };
+    for (uint32_t part = below(12); part > 0; --part) {
+        const size_t from = packet.size();
+        for (uint32_t n = 1 + below(20); n > 0; --n) one();
+        const std::vector<std::byte> round(packet.begin() + static_cast<std::ptrdiff_t>(from), packet.end());
+        for (uint32_t n = below(9); n > 0; --n) packet.insert(packet.end(), round.begin(), round.end());
+        if (below(3) == 0) one();
+        if (below(6) == 0) put(packet, kLooked, 2);
+    }
+    if (below(4) == 0) put(packet, 1, 0);                                             // no record
+    if (below(4) == 0 && packet.size() > 4) packet.resize(packet.size() - 4 * (1 + below(2)) + 2); // the last one is cut
+    return packet;
+}
+
+Passed byOne(std::span<const std::byte> packet) {
+    Passed p;
+    size_t at = 0;
+    while (packet.size() - at >= 4) {
+        uint32_t head = 0;
+        std::memcpy(&head, packet.data() + at, sizeof head);
+        const size_t sizeBytes = (head >> 16) * size_t{4};
+        if (sizeBytes == 0 || sizeBytes > packet.size() - at || static_cast<uint16_t>(head) == kLooked) break;
+        p.opcodes.push_back(static_cast<uint16_t>(head));
+        p.walked.pass(sizeBytes);
+        at += sizeBytes;
+    }
+    p.at = at;
+    return p;
+}
+
+TEST(RecordWalk, skipsRoundsAsIfOneByOne) {
+    size_t passed = 0;
+    for (uint32_t seed = 0; seed < 3000; ++seed) {
+        SCOPED_TRACE(seed);
+        std::mt19937 random(seed);
+        const std::vector<std::byte> packet = someRecords(random);
+        const Passed right = byOne(packet);
+        std::vector<uint16_t> opcodes;
+        RecordWalk walk(packet);
+        walk.skip([&](uint16_t opcode) {
+            if (opcode == kLooked) return false;
+            opcodes.push_back(opcode);
+            return true;
+        });
+        ASSERT_EQ(walk.at(), right.at);
+        ASSERT_EQ(opcodes, right.opcodes);
+        if (const Walked* whole = walk.whole()) {
+            EXPECT_EQ(whole->records, right.walked.records);
+            EXPECT_EQ(whole->lastBytes, right.walked.lastBytes);
+            EXPECT_EQ(whole->longestBytes, right.walked.longestBytes);
+        }
+        passed += opcodes.size();
+    }
+    EXPECT_GT(passed, 100'000u);
+}
+
+} // namespace
+} // namespace mural::recording
