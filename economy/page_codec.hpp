@@ -20,7 +20,7 @@ public:
 private:
     // Of what is no picture the better level pays: vertices and pictures in formats of the card become a fifth smaller by 2 than by 1.
     // Bits of masks become a sixth smaller by 1 than by -1, in twice the time.
-    SectionCompressor rest_{2}, fronts_{-1}, planes_{1};
+    SectionCompressor rest_{2}, fronts_{1}, planes_{1};
     PixelSplitter splitter_;
     std::vector<std::byte> codedFront_, codedPlanes_;
 };
