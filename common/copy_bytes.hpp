@@ -1,5 +1,5 @@
-// Bytes to another place. std::ranges::copy goes over const bytes one at a time (GCC 12 to 14, -O2): 0.6 GB/s instead of memcpy's
-// 10, a sixth of what a sender of multicast needed of its core.
+// Bytes to another place. std::ranges::copy goes over const bytes one at a time with GCC 12 at -O2, also where both are spans: in the
+// sender of multicast that was a sixth of its core's samples (perf).
 #pragma once
 
 #include <cstddef>

@@ -45,8 +45,9 @@ public:
         walked_.pass(record.sizeBytes);
         return true;
     }
-    // On over short records as long as they are of no interest, by their opcode. A program that loads says hundreds of thousands in one
-    // frame: what changes with each is kept in locals, as what is called might look at this.
+    // On over short records as long as they are of no interest, by their opcode: asked once for each, always the same of the same.
+    // A program that loads says hundreds of thousands in one frame: what changes with each is kept in locals, as what is called
+    // might look at this.
     template <typename OfNoInterest>
     void skip(const OfNoInterest& ofNoInterest) {
         const std::span<const std::byte> packet = packet_;

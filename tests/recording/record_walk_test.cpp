@@ -3,9 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <random>
 #include <vector>
+
+#include "tests/record_rounds.hpp"
 
 namespace mural::recording {
 namespace {
@@ -18,27 +19,10 @@ struct Passed {
 
 constexpr uint16_t kLooked = 99;
 
-void put(std::vector<std::byte>& packet, uint16_t opcode, uint32_t words) {
-    const uint32_t head = words << 16 | opcode;
-    const size_t at = packet.size();
-    packet.resize(at + std::max<size_t>(4, size_t{words} * 4), std::byte{0x5a});
-    std::memcpy(packet.data() + at, &head, sizeof head);
-}
-
-// Rounds that repeat, that change, that are cut short, and records in no order.
 std::vector<std::byte> someRecords(std::mt19937& random) {
-    std::vector<std::byte> packet;
+    std::vector<std::byte> packet = mural::testing::recordRounds(random, [](auto& p) { mural::testing::putRecord(p, kLooked, 2); });
     const auto below = [&](uint32_t n) { return random() % n; };
-    const auto one = [&] { put(packet, static_cast<uint16_t>(1 + below(5)), 1 + below(6)); };
-    for (uint32_t part = below(12); part > 0; --part) {
-        const size_t from = packet.size();
-        for (uint32_t n = 1 + below(20); n > 0; --n) one();
-        const std::vector<std::byte> round(packet.begin() + static_cast<std::ptrdiff_t>(from), packet.end());
-        for (uint32_t n = below(9); n > 0; --n) packet.insert(packet.end(), round.begin(), round.end());
-        if (below(3) == 0) one();
-        if (below(6) == 0) put(packet, kLooked, 2);
-    }
-    if (below(4) == 0) put(packet, 1, 0);                                             // no record
+    if (below(4) == 0) mural::testing::putRecord(packet, 1, 0); // no record
     if (below(4) == 0 && packet.size() > 4) packet.resize(packet.size() - 4 * (1 + below(2)) + 2); // the last one is cut
     return packet;
 }
