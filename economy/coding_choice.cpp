@@ -12,7 +12,7 @@ constexpr uint64_t kTrySections = 32;    // so many, show what a coding makes of
 constexpr uint64_t kTryTimes = 3;        // the first pays for memory that is new to the compressor and does not count
 constexpr uint64_t kTimedEvery = 16;     // short sections
 constexpr uint64_t kTryAgainEvery = 256; // sections: what they hold may have changed
-constexpr double kClearly = 0.97;        // as small as that is smaller
+constexpr double kClearlySmaller = 0.97;        // as small as that is smaller
 constexpr double kForSmaller = 1.3;      // so much longer Zstandard may take: the link is everyone's, and what was measured is not exact
 constexpr int64_t kWaitedNs = 1'000'000; // a write that took longer has waited for the link
 constexpr size_t kLeastLinkBytes = 16384;
@@ -28,7 +28,7 @@ Coding CodingChoice::choose(size_t sizeBytes, double linkNsPerByte) {
     if (chosen_ % kTryAgainEvery == 0) return compressed[chosen_ / kTryAgainEvery % compressed.size()];
     Coding best = Coding::Raw;
     if (cost(Coding::Lz4, linkNsPerByte) < cost(best, linkNsPerByte)) best = Coding::Lz4;
-    const bool smaller = ratioOf(Coding::Zstd) < kClearly * ratioOf(best);
+    const bool smaller = ratioOf(Coding::Zstd) < kClearlySmaller * ratioOf(best);
     return cost(Coding::Zstd, linkNsPerByte) < cost(best, linkNsPerByte) * (smaller ? kForSmaller : 1) ? Coding::Zstd : best;
 }
 

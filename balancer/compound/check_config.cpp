@@ -12,8 +12,6 @@ namespace mural::compound {
 
 namespace {
 
-size_t at(Index index) { return ResolvedConfig::at(index); }
-
 std::string nameOr(const std::string& name, size_t number) { return name.empty() ? "number " + std::to_string(number) : "\"" + name + "\""; }
 
 // Frame numbers after which everything repeats; no more than can be tried.

@@ -11,8 +11,6 @@ namespace mural::compound {
 
 namespace {
 
-size_t at(Index index) { return ResolvedConfig::at(index); }
-
 // A compound with what it inherits when nothing has changed it.
 struct Known {
     Index compound = kNone;

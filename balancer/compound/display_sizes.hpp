@@ -5,6 +5,7 @@
 
 namespace mural::compound {
 
+using config::at;
 using config::Index;
 using config::kNone;
 using config::ResolvedConfig;

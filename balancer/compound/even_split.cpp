@@ -10,8 +10,6 @@ namespace {
 
 using config::SplitMode;
 
-size_t at(Index index) { return ResolvedConfig::at(index); }
-
 // Halves the children, and the area with them, until each has its own; the longer side is cut first.
 void divide(std::span<const Index> children, SplitMode mode, const Viewport& part, const Range& range, PixelSize whole, FrameInput& input) {
     if (children.size() == 1) {

@@ -11,8 +11,6 @@ namespace mural::compound {
 
 namespace {
 
-size_t at(Index index) { return ResolvedConfig::at(index); }
-
 // Something that was drawn, as it lies in a buffer or in a picture on its way: rectangles in pixels, which need not be whole.
 struct Layer {
     Index context = kNone;

@@ -8,8 +8,6 @@ namespace mural::compound {
 
 namespace {
 
-size_t at(Index index) { return ResolvedConfig::at(index); }
-
 Index pipeOf(const ResolvedConfig& config, Index channel) { return config.windows[at(config.channels[at(channel)].window)].pipe; }
 
 int32_t scaled(int32_t size, double by) { return std::max(1, static_cast<int32_t>(std::lround(size * by))); }

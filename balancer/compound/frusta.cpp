@@ -8,9 +8,7 @@ namespace {
 
 using config::Screen;
 
-size_t at(Index index) { return ResolvedConfig::at(index); }
-
-ViewState stateOf(const FrameInput& input, Index view) { return view != kNone && at(view) < input.views.size() ? input.views[at(view)] : ViewState{}; }
+ViewState unitsOf(const FrameInput& input, Index view) { return view != kNone && at(view) < input.views.size() ? input.views[at(view)] : ViewState{}; }
 
 // An eye in the plane of its screen sees nothing of it; from a tenth of a millimetre on there is a picture.
 constexpr double kClosest = 1e-4;
@@ -74,7 +72,7 @@ Eyes eyesOf(const ResolvedConfig& config, const FrameInput& input, Index view, E
         right = observer.eyeRight;
         if (at(o) < input.observers.size()) e.head = input.observers[at(o)].head;
     }
-    e.modelUnit = stateOf(input, view).modelUnit;
+    e.modelUnit = unitsOf(input, view).modelUnit;
     const Vector3& own = eye == Eye::Left ? left : eye == Eye::Right ? right : cyclop;
     e.cyclop = transformPoint(e.head, cyclop) * e.modelUnit;
     e.eye = transformPoint(e.head, own) * e.modelUnit;

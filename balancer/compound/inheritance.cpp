@@ -4,8 +4,6 @@ namespace mural::compound {
 
 namespace {
 
-size_t at(Index index) { return ResolvedConfig::at(index); }
-
 CompoundState stateOf(const FrameInput& input, Index compound) {
     return at(compound) < input.compounds.size() ? input.compounds[at(compound)] : CompoundState{};
 }

@@ -9,8 +9,6 @@ namespace mural::compound {
 
 namespace {
 
-size_t at(Index index) { return ResolvedConfig::at(index); }
-
 // The tasks of all channels as one list; who must come before whom.
 struct TaskGraph {
     std::vector<PipeStep> steps;

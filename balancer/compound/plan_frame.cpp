@@ -9,8 +9,6 @@ namespace mural::compound {
 
 namespace {
 
-size_t at(Index index) { return ResolvedConfig::at(index); }
-
 // Does one of the compounds above draw into the channel that executes this one?
 bool channelAbove(const ResolvedConfig& config, Index compound) {
     const Index own = config.compounds[at(compound)].executing;

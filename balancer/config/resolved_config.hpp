@@ -172,4 +172,6 @@ struct ResolvedConfig {
     [[nodiscard]] static size_t at(Index index) { return static_cast<size_t>(index); }
 };
 
+[[nodiscard]] inline size_t at(Index index) { return ResolvedConfig::at(index); }
+
 } // namespace mural::config

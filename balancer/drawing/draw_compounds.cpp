@@ -14,8 +14,6 @@ namespace {
 using config::ResolvedCompound;
 using config::Task;
 
-size_t at(Index index) { return ResolvedConfig::at(index); }
-
 constexpr double kBoxWidth = 150, kBoxGap = 18, kLine = 13, kLevel = 62, kTop = 24;
 
 std::string fraction(double value) { return fmt::format("{:.3g}", value); }

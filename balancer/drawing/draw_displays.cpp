@@ -9,8 +9,6 @@ namespace mural::drawing {
 
 namespace {
 
-size_t at(Index index) { return ResolvedConfig::at(index); }
-
 // A part of a canvas (whose y goes up) within its box (whose y goes down).
 Box partOf(const Box& whole, const Viewport& part) {
     return {whole.x + part.x * whole.w, whole.y + (1 - part.y - part.h) * whole.h, part.w * whole.w, part.h * whole.h};

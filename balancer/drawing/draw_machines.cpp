@@ -8,8 +8,6 @@ namespace mural::drawing {
 
 namespace {
 
-size_t at(Index index) { return ResolvedConfig::at(index); }
-
 constexpr double kChannelHeight = 22, kWindowHead = 17, kPipeHead = 18, kNodeHead = 24, kPad = 7;
 
 // The channels that the file names; destination channels lie on them.

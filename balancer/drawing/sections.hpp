@@ -6,6 +6,7 @@
 
 namespace mural::drawing {
 
+using config::at;
 using config::Index;
 using config::kNone;
 using config::ResolvedConfig;

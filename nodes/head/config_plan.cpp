@@ -24,13 +24,12 @@ using compound::FrameInput;
 using compound::FramePlan;
 using compound::LoadedConfig;
 using compound::RenderContext;
+using config::at;
 using config::Index;
 using config::kNone;
 using config::ResolvedConfig;
 
 constexpr uint32_t kMostTurns = 64; // of periods that have no common end
-
-size_t at(Index index) { return ResolvedConfig::at(index); }
 
 // One draw of the compound tree.
 struct Draw {

@@ -10,6 +10,7 @@
 #include <unistd.h>
 #include <utility>
 
+#include "nodes/launch/base_name.hpp"
 #include "nodes/launch/environment.hpp"
 #include "nodes/launch/gl_libraries.hpp"
 
@@ -18,11 +19,6 @@ namespace mural::launch {
 namespace {
 
 constexpr size_t kMaxEnded = 256; // programs that ended unseen; build tools and shells leave no note
-
-std::string_view baseName(std::string_view path) {
-    const auto slash = path.rfind('/');
-    return slash == std::string_view::npos ? path : path.substr(slash + 1);
-}
 
 // What is worth opening: the rest of a program's hundred libraries is not.
 bool mayDraw(std::string_view path) {

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <unistd.h>
 
+#include "nodes/launch/base_name.hpp"
+
 namespace mural::launch {
 
 namespace {
@@ -17,11 +19,6 @@ constexpr std::string_view kRealEglVendors = "MURAL_REAL_EGL_VENDORS";
 constexpr std::string_view kSession = "MURAL_SESSION";
 constexpr std::string_view kNotes = "MURAL_NOTES";
 constexpr std::string_view kOurVendor = "mural";
-
-std::string_view baseName(std::string_view path) {
-    const auto slash = path.rfind('/');
-    return slash == std::string_view::npos ? path : path.substr(slash + 1);
-}
 
 std::vector<std::string_view> split(std::string_view text, std::string_view separators) {
     std::vector<std::string_view> parts;

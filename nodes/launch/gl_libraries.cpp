@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "common/gl_library_names.hpp"
+#include "nodes/launch/base_name.hpp"
 #include "nodes/launch/child_process.hpp"
 #include "nodes/launch/elf_check.hpp"
 
@@ -16,11 +17,6 @@ namespace {
 
 constexpr int64_t kLoaderMs = 10'000; // large programs have hundreds of libraries, and discs may sleep
 constexpr const char* kOpenedByName = "libGL.so.1 libEGL.so.1 libGLESv2.so.2 libGLESv1_CM.so.1";
-
-std::string_view baseName(std::string_view path) {
-    const auto slash = path.rfind('/');
-    return slash == std::string_view::npos ? path : path.substr(slash + 1);
-}
 
 std::string readAll(int fd, Deadline deadline) {
     std::string text;

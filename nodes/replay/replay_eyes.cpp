@@ -36,7 +36,7 @@ EyeUse classify(std::string_view name) {
     return name == "glBegin" ? EyeUse::Draw : EyeUse::None;
 }
 
-EyeUse useOf(uint16_t opcode) {
+EyeUse eyeUseOf(uint16_t opcode) {
     static const auto kUses = [] {
         std::vector<EyeUse> uses(op::kLimit, EyeUse::None);
         for (uint16_t o = wire::kFirstGlOpcode; o < op::kLimit; ++o)
@@ -146,7 +146,7 @@ void Replay::noteProjections(std::span<const std::byte> bytes) {
 }
 
 void Replay::noteEye(uint16_t opcode, std::span<const std::byte> arguments) {
-    const EyeUse use = useOf(opcode);
+    const EyeUse use = eyeUseOf(opcode);
     if (use == EyeUse::None || !bound_ || c_->compiling) return;
     if (use == EyeUse::Framebuffer) c_->attachmentsKnown = false;
     if (use == EyeUse::Draw || use == EyeUse::List) noteScene();
@@ -177,7 +177,7 @@ void Replay::noteEye(uint16_t opcode, std::span<const std::byte> arguments) {
 
 // A list may have brought a projection of its own.
 void Replay::noteEyeAfter(uint16_t opcode) {
-    if (useOf(opcode) != EyeUse::List || !bound_) return;
+    if (eyeUseOf(opcode) != EyeUse::List || !bound_) return;
     c_->projectionKnown = false;
     if (!c_->projectionShifted) return;
     std::array<GLfloat, 16> now{};

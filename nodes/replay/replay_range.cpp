@@ -43,7 +43,7 @@ RangeUse classify(uint16_t opcode, std::string_view name) {
     return RangeUse::None;
 }
 
-RangeUse useOf(uint16_t opcode) {
+RangeUse rangeUseOf(uint16_t opcode) {
     static const auto kUses = [] {
         std::vector<RangeUse> uses(op::kLimit, RangeUse::None);
         for (uint16_t o = wire::kFirstGlOpcode; o < op::kLimit; ++o)
@@ -119,7 +119,7 @@ bool Replay::mayShare() {
 void Replay::noteRangeState(uint16_t opcode, std::span<const std::byte> arguments) {
     c_->rangeKnown = false;
     const std::string_view name = glOpcodeName(opcode);
-    switch (useOf(opcode)) {
+    switch (rangeUseOf(opcode)) {
     case RangeUse::Memory: {
         const uint32_t target = wordAt(arguments, 0);
         if (name.starts_with("glBindImage") || target == GL_SHADER_STORAGE_BUFFER || target == GL_ATOMIC_COUNTER_BUFFER) c_->writesMemory = true;
@@ -152,7 +152,7 @@ void Replay::notePrimitiveIds(GLuint ours) {
 void Replay::noteCompiled(uint16_t opcode, std::span<const std::byte> arguments) {
     if (c_->building.items.empty()) return;
     ListItem& item = c_->building.items.back();
-    switch (useOf(opcode)) {
+    switch (rangeUseOf(opcode)) {
     case RangeUse::Vertex: ++item.vertices; break;
     case RangeUse::Draw: item.vertices += std::max<uint32_t>(1, cuttable(opcode).count >= 0 ? wordAt(arguments, cuttable(opcode).count) : static_cast<uint32_t>(kUnknownCost)); break;
     case RangeUse::None:
@@ -263,7 +263,7 @@ std::span<const std::byte> Replay::noteRangeDraw(Window& w, uint16_t opcode, std
 
 // Before any command; the arguments with which it is to be called.
 std::span<const std::byte> Replay::noteRange(uint16_t opcode, std::span<const std::byte> arguments) {
-    const RangeUse use = useOf(opcode);
+    const RangeUse use = rangeUseOf(opcode);
     if (use == RangeUse::None || !bound_ || c_->compiling) return arguments;
     if (use == RangeUse::State || use == RangeUse::Memory || use == RangeUse::Query || use == RangeUse::Feedback) {
         noteRangeState(opcode, arguments);

@@ -45,7 +45,7 @@ Use classify(std::string_view name) {
     return isAnyOf({"glDraw", "glMultiDraw", "glMultiMode", "glRect", "glEvalMesh", "glCallList"}) || name == "glBegin" ? Use::Draw : Use::None;
 }
 
-Use useOf(uint16_t opcode) {
+Use copyUseOf(uint16_t opcode) {
     static const auto kUses = [] {
         std::vector<Use> uses(op::kLimit, Use::None);
         for (uint16_t o = wire::kFirstGlOpcode; o < op::kLimit; ++o)
@@ -76,7 +76,7 @@ bool Replay::choosesOwnLevels() const {
 }
 
 void Replay::noteWholeWindow(uint16_t opcode, std::span<const std::byte> arguments) {
-    const Use use = useOf(opcode);
+    const Use use = copyUseOf(opcode);
     if (use == Use::None) return;
     if (use == Use::Copies || use == Use::Draw) {
         if (!drawsWindow() || !c_->draw || c_->draw->copied) return;

@@ -4,10 +4,10 @@ namespace mural {
 
 namespace {
 
-using Row = std::array<double, 4>; // of x, y, w and 1
+using MatrixRow = std::array<double, 4>; // of x, y, w and 1
 
-Row operator*(double by, const Row& a) { return {by * a[0], by * a[1], by * a[2], by * a[3]}; }
-Row operator+(const Row& a, const Row& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]}; }
+MatrixRow operator*(double by, const MatrixRow& a) { return {by * a[0], by * a[1], by * a[2], by * a[3]}; }
+MatrixRow operator+(const MatrixRow& a, const MatrixRow& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]}; }
 
 } // namespace
 
@@ -20,20 +20,20 @@ ViewMove eyeMove(const SeenProjection& seen, double offset, double focusDistance
 
 ViewMove screenMove(const SeenProjection& seen, const ScreenView& s) {
     // The program's eye coordinates, from its clip coordinates.
-    const Row own[4] = {{1 / seen.scaleX, 0, -seen.shearX / seen.scaleX, 0}, {0, 1 / seen.scaleY, -seen.shearY / seen.scaleY, 0}, {0, 0, -1, 0}, {0, 0, 0, 1}};
-    Row eye[3];
+    const MatrixRow own[4] = {{1 / seen.scaleX, 0, -seen.shearX / seen.scaleX, 0}, {0, 1 / seen.scaleY, -seen.shearY / seen.scaleY, 0}, {0, 0, -1, 0}, {0, 0, 0, 1}};
+    MatrixRow eye[3];
     for (size_t i = 0; i < 3; ++i) {
         const auto& m = s.fromProgram.m[i];
         eye[i] = m[0] * own[0] + m[1] * own[1] + m[2] * own[2] + m[3] * own[3];
     }
-    const Row w = -1 * eye[2];
+    const MatrixRow w = -1 * eye[2];
     // Of the screen's own picture, and that put into its place on the wall's.
-    const Row x = 2 / (s.right - s.left) * eye[0] + (s.right + s.left) / (s.right - s.left) * eye[2];
-    const Row y = 2 / (s.top - s.bottom) * eye[1] + (s.top + s.bottom) / (s.top - s.bottom) * eye[2];
+    const MatrixRow x = 2 / (s.right - s.left) * eye[0] + (s.right + s.left) / (s.right - s.left) * eye[2];
+    const MatrixRow y = 2 / (s.top - s.bottom) * eye[1] + (s.top + s.bottom) / (s.top - s.bottom) * eye[2];
     ViewMove move;
-    move.x = s.area.w * x + (2 * s.area.x + s.area.w - 1) * w + Row{-1, 0, 0, 0};
-    move.y = s.area.h * y + (2 * s.area.y + s.area.h - 1) * w + Row{0, -1, 0, 0};
-    move.w = w + Row{0, 0, -1, 0};
+    move.x = s.area.w * x + (2 * s.area.x + s.area.w - 1) * w + MatrixRow{-1, 0, 0, 0};
+    move.y = s.area.h * y + (2 * s.area.y + s.area.h - 1) * w + MatrixRow{0, -1, 0, 0};
+    move.w = w + MatrixRow{0, 0, -1, 0};
     move.z = seen.depth;
     return move;
 }
@@ -42,7 +42,7 @@ void ViewMove::apply(double (&m)[16], double unit) const {
     for (size_t column = 0; column < 4; ++column) {
         double* at = m + 4 * column;
         const double one = column == 3 ? unit : 0;
-        const auto added = [&](const Row& by) { return by[0] * at[0] + by[1] * at[1] + by[2] * at[3] + by[3] * one; };
+        const auto added = [&](const MatrixRow& by) { return by[0] * at[0] + by[1] * at[1] + by[2] * at[3] + by[3] * one; };
         const double dx = added(x), dy = added(y), dw = added(w);
         at[0] += dx;
         at[1] += dy;

@@ -20,7 +20,6 @@ struct NamedRule {
 };
 
 using enum Family;
-constexpr uint32_t kNever = 0x80000000; // no bit of glPushAttrib saves it, not even GL_ALL_ATTRIB_BITS: bit 31 is none of its own
 
 // The first that fits. A command that is in none of them costs bytes, one that is in a wrong one costs pictures: so patterns name
 // what was looked at.
@@ -40,7 +39,7 @@ constexpr NamedRule kRules[] = {
     {"glFlush", Nothing}, {"glFinish", Nothing}, {"glWaitSync", Nothing}, {"glHint", Cell, GL_HINT_BIT}, {"glValidateProgram*", Nothing},
     {"glObjectLabel", Nothing}, {"glObjectPtrLabel", Nothing}, {"glPushDebugGroup", Nothing}, {"glPopDebugGroup", Nothing},
     {"glInvalidateFramebuffer", Nothing}, {"glInvalidateSubFramebuffer", Nothing}, {"glDiscardFramebufferEXT", Nothing},
-    {"glInitNames", Nothing}, {"glLoadName", Nothing}, {"glPushName", Nothing}, {"glPopName", Nothing}, {"glDebugMessageControl", Cell, kNever}, {"glReleaseShaderCompiler", Nothing}, {"glPrioritizeTextures*", Nothing},
+    {"glInitNames", Nothing}, {"glLoadName", Nothing}, {"glPushName", Nothing}, {"glPopName", Nothing}, {"glDebugMessageControl", Cell, kNoAttribBit}, {"glReleaseShaderCompiler", Nothing}, {"glPrioritizeTextures*", Nothing},
     // ---- current values
     {"glColorMask", Limit, GL_COLOR_BUFFER_BIT}, {"glColorMaterial", Cell, GL_LIGHTING_BIT}, {"glColorMaski", Limit, GL_COLOR_BUFFER_BIT},
     {"glColor3*", Color, GL_CURRENT_BIT}, {"glColor4*", Color, GL_CURRENT_BIT}, {"glColorP*ui*", Color, GL_CURRENT_BIT},
@@ -74,8 +73,8 @@ constexpr NamedRule kRules[] = {
     {"glPointSize", Cell, GL_POINT_BIT}, {"glPointSizex*", Cell, GL_POINT_BIT}, {"glPointParameter*", Cell, GL_POINT_BIT},
     {"glMap1[df]", PatternedCell, GL_EVAL_BIT}, {"glMap2[df]", PatternedCell, GL_EVAL_BIT}, {"glMapGrid*", Cell, GL_EVAL_BIT},
     {"glMinSampleShading", Cell}, {"glSampleCoverage*", Cell, GL_MULTISAMPLE_BIT}, {"glSampleMaski", Cell}, {"glPatchParameter*", Cell},
-    {"glPrimitiveRestartIndex", Cell, kNever}, {"glProvokingVertex", Cell}, {"glPrimitiveBoundingBox", Cell, kNever},
-    {"glPixelZoom*", Cell, GL_PIXEL_MODE_BIT}, {"glPixelTransfer*", Cell, GL_PIXEL_MODE_BIT}, {"glPixelMap*v", PatternedCell, kNever},
+    {"glPrimitiveRestartIndex", Cell, kNoAttribBit}, {"glProvokingVertex", Cell}, {"glPrimitiveBoundingBox", Cell, kNoAttribBit},
+    {"glPixelZoom*", Cell, GL_PIXEL_MODE_BIT}, {"glPixelTransfer*", Cell, GL_PIXEL_MODE_BIT}, {"glPixelMap*v", PatternedCell, kNoAttribBit},
     {"glPixelStore*", ClientCell}, {"glScissor", Cell, GL_SCISSOR_BIT}, {"glScissorIndexed*", Limit, GL_SCISSOR_BIT}, {"glScissorArrayv", Limit, GL_SCISSOR_BIT},
     {"glStencilFunc", Cell, GL_STENCIL_BUFFER_BIT}, {"glStencilFuncSeparate", Cell, GL_STENCIL_BUFFER_BIT}, {"glStencilOp", Cell, GL_STENCIL_BUFFER_BIT},
     {"glStencilOpSeparate", Cell, GL_STENCIL_BUFFER_BIT}, {"glStencilMask", Limit, GL_STENCIL_BUFFER_BIT}, {"glStencilMaskSeparate", Limit, GL_STENCIL_BUFFER_BIT},
@@ -106,11 +105,11 @@ constexpr NamedRule kRules[] = {
     {"glDeleteProgram", ProgramDelete}, {"glDeleteShader", ShaderDelete}, {"glDeleteObjectARB", ProgramDelete},
     {"glFenceSync", SyncMake}, {"glDeleteSync", SyncDelete},
     {"glBindTexture", Bind, GL_TEXTURE_BIT, ObjectType::Texture}, {"glBindTextureUnit", BindIndexed, GL_TEXTURE_BIT, ObjectType::Texture},
-    {"glBindBuffer", Bind, kNever, ObjectType::Buffer}, {"glBindBufferBase", BindIndexed, kNever, ObjectType::Buffer}, {"glBindBufferRange", BindIndexed, kNever, ObjectType::Buffer},
-    {"glBindFramebuffer*", Bind, kNever, ObjectType::Framebuffer}, {"glBindRenderbuffer*", Bind, kNever, ObjectType::Renderbuffer},
-    {"glBindVertexArray", Bind, kNever, ObjectType::VertexArray}, {"glBindSampler", BindIndexed, 0, ObjectType::Sampler}, {"glBindImageTexture", BindIndexed, kNever, ObjectType::Texture},
-    {"glBindProgramPipeline", Bind, kNever, ObjectType::Pipeline}, {"glBindTransformFeedback", Bind, kNever, ObjectType::Feedback},
-    {"glBindProgramARB", Bind, 0, ObjectType::ArbProgram}, {"glUseProgram", UseProgram, kNever, ObjectType::Program},
+    {"glBindBuffer", Bind, kNoAttribBit, ObjectType::Buffer}, {"glBindBufferBase", BindIndexed, kNoAttribBit, ObjectType::Buffer}, {"glBindBufferRange", BindIndexed, kNoAttribBit, ObjectType::Buffer},
+    {"glBindFramebuffer*", Bind, kNoAttribBit, ObjectType::Framebuffer}, {"glBindRenderbuffer*", Bind, kNoAttribBit, ObjectType::Renderbuffer},
+    {"glBindVertexArray", Bind, kNoAttribBit, ObjectType::VertexArray}, {"glBindSampler", BindIndexed, 0, ObjectType::Sampler}, {"glBindImageTexture", BindIndexed, kNoAttribBit, ObjectType::Texture},
+    {"glBindProgramPipeline", Bind, kNoAttribBit, ObjectType::Pipeline}, {"glBindTransformFeedback", Bind, kNoAttribBit, ObjectType::Feedback},
+    {"glBindProgramARB", Bind, 0, ObjectType::ArbProgram}, {"glUseProgram", UseProgram, kNoAttribBit, ObjectType::Program},
     {"glBindVertexBuffer", ArrayPointer}, {"glBindVertexBuffers", ArraySet}, {"glVertexArrayVertexBuffer", ArrayNamedSet}, {"glVertexArrayVertexBuffers", ArrayNamedSet}, {"glVertexArrayElementBuffer", ArrayNamedSet},
     {"glVertexArrayAttrib*", ArrayNamedSet}, {"glVertexArrayBindingDivisor", ArrayNamedSet}, {"glEnableVertexArrayAttrib", ArrayNamedSet}, {"glDisableVertexArrayAttrib", ArrayNamedSet},
     // ---- buffers
@@ -140,7 +139,7 @@ constexpr NamedRule kRules[] = {
     {"glBindAttribLocation", ProgramSet}, {"glBindFragDataLocation*", ProgramSet}, {"glProgramParameteri", ProgramSet}, {"glTransformFeedbackVaryings", ProgramSet},
     {"glUniformBlockBinding", ProgramSet}, {"glShaderStorageBlockBinding", ProgramSet}, {"glLinkProgram", ProgramLink},
     {"glUniformSubroutinesuiv", Unknown}, {"glUniformBufferEXT", Unknown}, {"glUniform*NV", Unknown}, {"glUniform*", Uniform}, {"glProgramUniform*EXT", Unknown}, {"glProgramUniform*NV", Unknown},
-    {"glProgramUniform*", ProgramUniform}, {"glProgramStringARB", ArbProgram}, {"glProgramLocalParameter*ARB", ArbProgram}, {"glProgramEnvParameter*ARB", Cell, kNever},
+    {"glProgramUniform*", ProgramUniform}, {"glProgramStringARB", ArbProgram}, {"glProgramLocalParameter*ARB", ArbProgram}, {"glProgramEnvParameter*ARB", Cell, kNoAttribBit},
     // ---- what has an end
     {"glBeginQuery", QueryBegin}, {"glEndQuery", QueryEnd}, {"glBeginQueryIndexed", QueryBegin}, {"glEndQueryIndexed", QueryEnd}, {"glQueryCounter", QueryCounter},
     {"glBeginTransformFeedback", FeedbackBegin}, {"glEndTransformFeedback", FeedbackEnd}, {"glEndConditionalRender", ConditionalEnd},

@@ -45,6 +45,8 @@ struct Rule {
     std::array<uint8_t, 8> selectorWords{};
 };
 
+constexpr uint32_t kNoAttribBit = 0x80000000; // no bit of glPushAttrib saves it, not even GL_ALL_ATTRIB_BITS: bit 31 is none of its own
+
 const Rule& ruleOf(uint16_t opcode);
 
 } // namespace mural::recording

@@ -11,7 +11,6 @@
 namespace mural::recording {
 namespace {
 
-constexpr uint32_t kNever = 0x80000000; // as in families.cpp
 constexpr uint32_t kMaybe = 0x40000000; // other bits may save it, too
 
 // Which bindings come back with attributes.
@@ -43,7 +42,7 @@ Key Follower::cell(const At&, Key above, uint32_t kind, const Rule& rule, const 
 
 void Follower::set(At& at, Key key, uint32_t attribBits) {
     at.effect.kill(key);
-    if (at.context->attribs.empty() || attribBits == kNever) return;
+    if (at.context->attribs.empty() || attribBits == kNoAttribBit) return;
     // Any of the stack may bring back what it was: with this command stays what undoes it.
     if (attribBits == 0 || (attribBits & GL_TEXTURE_BIT)) at.context->attribs.back().texturesTouched = true;
     for (const SavedAttribs& level : at.context->attribs)

@@ -5,8 +5,6 @@
 namespace mural::sizes {
 namespace {
 
-constexpr size_t kMaxBytes = PTRDIFF_MAX;
-
 // ASTC blocks have 16 bytes; the registry numbers their shapes without a gap (KHR 2D, OES 3D).
 struct BlockShape {
     uint8_t width, height, depth;

@@ -5,9 +5,6 @@
 namespace mural::sizes {
 namespace {
 
-// Largest size that still is an address difference.
-constexpr size_t kMaxBytes = PTRDIFF_MAX;
-
 // A size that remembers when it grew beyond what can be addressed.
 struct Checked {
     size_t bytes;

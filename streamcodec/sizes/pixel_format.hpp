@@ -11,6 +11,8 @@
 
 namespace mural::sizes {
 
+constexpr size_t kMaxBytes = PTRDIFF_MAX; // the largest size that still is an address difference
+
 // Values per pixel of a client format; 0: not a format.
 uint32_t componentsOf(GLenum format);
 

@@ -7,6 +7,7 @@
 
 #include "balancer/queue/random_areas.hpp"
 #include "balancer/queue/tile_queue.hpp"
+#include "tests/sanitized.hpp"
 
 namespace mural::queue {
 namespace {
@@ -191,7 +192,7 @@ TEST(TileQueue, OneCostlyTileIsLeftAlone) {
 TEST(TileQueue, SettlesOnALoadThatStays) {
     std::mt19937 random(3);
     const auto below = [&](int n) { return static_cast<int>(random() % static_cast<uint32_t>(n)); };
-    for (int round = 0; round < 300; ++round) {
+    for (int round = 0; round < static_cast<int>(mural::testing::rounds(300)); ++round) {
         const int columns = 2 + below(30), rows = 1 + below(20), n = std::min(columns * rows, 2 + below(6));
         Load load{columns, rows, {}, {}, below(3) == 0 ? 5. * columns : 0.};
         for (int i = 0; i < columns * rows; ++i) load.tiles.push_back(below(10) == 0 ? 100 : 1 + below(5));

@@ -29,7 +29,7 @@ std::string readNumber(int fd) {
 
 void becomeServer(int numberFd) {
     prctl(PR_SET_PDEATHSIG, SIGKILL); // a test that crashes leaves no server behind
-    const int null = open("/dev/null", O_RDWR);
+    const int null = ::open("/dev/null", O_RDWR);
     dup2(null, 1);
     dup2(null, 2);
     const std::string fd = std::to_string(numberFd);

@@ -14,7 +14,7 @@
 namespace mural {
 namespace {
 
-constexpr int64_t kPatienceMs = 20'000;
+constexpr int64_t kAnswerMs = 20'000;
 
 class NodeTest : public ::testing::Test {
 protected:
@@ -37,18 +37,18 @@ protected:
         const std::string json = toJson(setup);
         const auto command = static_cast<uint32_t>(wire::HeadCommand::Setup);
         const wire::PacketHeader header{static_cast<uint32_t>(json.size() + 4), wire::streamOf(0, 0)};
-        ASSERT_TRUE(head_->write(std::as_bytes(std::span(&header, 1)), Deadline::inMs(kPatienceMs)));
-        ASSERT_TRUE(head_->write(std::as_bytes(std::span(&command, 1)), Deadline::inMs(kPatienceMs)));
-        ASSERT_TRUE(head_->write(std::as_bytes(std::span(json)), Deadline::inMs(kPatienceMs)));
+        ASSERT_TRUE(head_->write(std::as_bytes(std::span(&header, 1)), Deadline::inMs(kAnswerMs)));
+        ASSERT_TRUE(head_->write(std::as_bytes(std::span(&command, 1)), Deadline::inMs(kAnswerMs)));
+        ASSERT_TRUE(head_->write(std::as_bytes(std::span(json)), Deadline::inMs(kAnswerMs)));
         head_->flush();
     }
     // The texts of that kind until the node ends; anything else fails.
     std::vector<std::string> texts(wire::NodeMessage type) {
         std::vector<std::string> all;
         wire::MessageHeader header{};
-        while (head_->read(std::as_writable_bytes(std::span(&header, 1)), Deadline::inMs(kPatienceMs))) {
+        while (head_->read(std::as_writable_bytes(std::span(&header, 1)), Deadline::inMs(kAnswerMs))) {
             std::string text(header.sizeBytes, ' ');
-            if (!text.empty() && !head_->read(std::as_writable_bytes(std::span(text)), Deadline::inMs(kPatienceMs))) break;
+            if (!text.empty() && !head_->read(std::as_writable_bytes(std::span(text)), Deadline::inMs(kAnswerMs))) break;
             if (header.type == static_cast<uint32_t>(wire::NodeMessage::Alive) || header.type == static_cast<uint32_t>(wire::NodeMessage::Ready)) continue;
             EXPECT_EQ(header.type, static_cast<uint32_t>(type)) << text;
             all.push_back(text);
@@ -90,7 +90,7 @@ TEST_F(NodeTest, aBatchThatCantBeUnpackedEndsItWithOneLine) {
     setup.storeBytes = 1 << 20;
     sendSetup(setup);
     const std::vector<std::byte> batch{std::byte{2 << 1 | 1}, std::byte{0xff}, std::byte{0xff}};
-    (void)head_->write(batch, Deadline::inMs(kPatienceMs));
+    (void)head_->write(batch, Deadline::inMs(kAnswerMs));
     head_->flush();
     const auto lines = texts(wire::NodeMessage::Log);
     ASSERT_EQ(lines.size(), 1u);

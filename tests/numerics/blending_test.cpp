@@ -18,7 +18,7 @@ namespace {
 using numerics::expectThat;
 using numerics::expectWithin;
 
-constexpr size_t kPixels = 1021; // no multiple of any vector
+constexpr size_t kBlendedPixels = 1021; // no multiple of any vector
 
 struct Layers {
     std::vector<std::vector<double>> colours; // premultiplied, 0 to 255
@@ -28,7 +28,7 @@ Layers layersOf(int count, double leastAlpha, double mostAlpha) {
     std::mt19937 random(static_cast<unsigned>(count));
     Layers layers;
     for (int i = 0; i < count; ++i) {
-        std::vector<double> layer(4 * kPixels);
+        std::vector<double> layer(4 * kBlendedPixels);
         for (size_t p = 0; p < layer.size(); p += 4) {
             const double alpha = std::round(255 * std::uniform_real_distribution<>(leastAlpha, mostAlpha)(random));
             for (size_t c = 0; c < 3; ++c) layer[p + c] = std::round(std::uniform_real_distribution<>(0, alpha)(random));
@@ -40,7 +40,7 @@ Layers layersOf(int count, double leastAlpha, double mostAlpha) {
 }
 
 std::vector<double> truthOf(const Layers& layers) {
-    std::vector<double> sum(4 * kPixels, 0);
+    std::vector<double> sum(4 * kBlendedPixels, 0);
     for (const auto& front : layers.colours)
         for (size_t i = 0; i < sum.size(); ++i) sum[i] = front[i] + sum[i] * (255 - front[i / 4 * 4 + 3]) / 255;
     return sum;
@@ -50,7 +50,7 @@ std::vector<double> truthOf(const Layers& layers) {
 double offBy(const Layers& layers, PlaneFormat format) {
     const bool halves = format == PlaneFormat::Rgba16F;
     const auto pack = [&](const std::vector<double>& layer) {
-        Plane plane(format, kPixels, 1);
+        Plane plane(format, kBlendedPixels, 1);
         for (size_t i = 0; i < layer.size(); ++i) {
             if (!halves) plane.bytes()[i] = static_cast<std::byte>(std::lround(layer[i]));
             else {
@@ -62,13 +62,13 @@ double offBy(const Layers& layers, PlaneFormat format) {
         return plane;
     };
     const auto fold = [&](size_t first, size_t end) {
-        Plane sum = pack(std::vector<double>(4 * kPixels, 0));
-        for (size_t i = first; i < end; ++i) blendOverRow(format, sum.bytes().data(), pack(layers.colours[i]).bytes().data(), kPixels, SourceSide::InFront);
+        Plane sum = pack(std::vector<double>(4 * kBlendedPixels, 0));
+        for (size_t i = first; i < end; ++i) blendOverRow(format, sum.bytes().data(), pack(layers.colours[i]).bytes().data(), kBlendedPixels, SourceSide::InFront);
         return sum;
     };
     Plane back = fold(0, layers.colours.size() / 2);
     const Plane front = fold(layers.colours.size() / 2, layers.colours.size());
-    blendOverRow(format, back.bytes().data(), front.bytes().data(), kPixels, SourceSide::InFront);
+    blendOverRow(format, back.bytes().data(), front.bytes().data(), kBlendedPixels, SourceSide::InFront);
     const std::vector<double> truth = truthOf(layers);
     double worst = 0;
     for (size_t i = 0; i < truth.size(); ++i) {
@@ -88,11 +88,11 @@ TEST(Blending, manyLayersStayNearTheTruth) {
 }
 
 TEST(Blending, repeatedBlendingWearsNothingAway) {
-    Plane whole(PlaneFormat::Rgba8, kPixels, 1), clear(PlaneFormat::Rgba8, kPixels, 1);
+    Plane whole(PlaneFormat::Rgba8, kBlendedPixels, 1), clear(PlaneFormat::Rgba8, kBlendedPixels, 1);
     std::ranges::fill(whole.bytes(), std::byte{255});
     for (int i = 0; i < 1000; ++i) {
-        blendOverRow(PlaneFormat::Rgba8, whole.bytes().data(), clear.bytes().data(), kPixels, SourceSide::InFront);
-        blendOverRow(PlaneFormat::Rgba8, whole.bytes().data(), clear.bytes().data(), kPixels, SourceSide::Behind);
+        blendOverRow(PlaneFormat::Rgba8, whole.bytes().data(), clear.bytes().data(), kBlendedPixels, SourceSide::InFront);
+        blendOverRow(PlaneFormat::Rgba8, whole.bytes().data(), clear.bytes().data(), kBlendedPixels, SourceSide::Behind);
     }
     expectWithin("white under 1000 transparent layers (by >> 8: 239 after 16)", "white", 255 - std::to_integer<int>(*std::ranges::min_element(whole.bytes())), 0, "of 255");
 }
@@ -119,8 +119,8 @@ TEST(Blending, lightSaturates) {
 
 Image layerImage(const Layers& layers, uint32_t i) {
     Image image;
-    image.colour.emplace(PlaneFormat::Rgba8, static_cast<int32_t>(kPixels), 1);
-    for (size_t b = 0; b < 4 * kPixels; ++b) image.colour->bytes()[b] = static_cast<std::byte>(std::lround(layers.colours[i][b]));
+    image.colour.emplace(PlaneFormat::Rgba8, static_cast<int32_t>(kBlendedPixels), 1);
+    for (size_t b = 0; b < 4 * kBlendedPixels; ++b) image.colour->bytes()[b] = static_cast<std::byte>(std::lround(layers.colours[i][b]));
     image.drawn = Region(image.area());
     image.order = {i, i + 1};
     return image;

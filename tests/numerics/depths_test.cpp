@@ -17,7 +17,7 @@ namespace {
 using numerics::expectThat;
 using numerics::expectWithin;
 
-constexpr size_t kPixels = 4099;
+constexpr size_t kComparedPixels = 4099;
 constexpr DepthFunction kOrders[] = {DepthFunction::Less, DepthFunction::LessOrEqual, DepthFunction::Greater, DepthFunction::GreaterOrEqual};
 constexpr const char* kNames[] = {"GL_LESS", "GL_LEQUAL", "GL_GREATER", "GL_GEQUAL"};
 
@@ -31,7 +31,7 @@ std::vector<Part> partsOf(Maker make, int count) {
     std::vector<Part> parts(static_cast<size_t>(count));
     uint32_t number = 1;
     for (Part& p : parts)
-        for (size_t i = 0; i < kPixels; ++i) {
+        for (size_t i = 0; i < kComparedPixels; ++i) {
             p.depth.push_back(make(random));
             p.colour.push_back(number++); // every fragment has its own
         }
@@ -54,7 +54,7 @@ bool laterWins(DepthFunction f, double later, double earlier) {
 size_t wrongPixels(const std::vector<Part>& drawn, DepthFunction function, DepthFormat format) {
     Part wanted = drawn[0];
     for (size_t p = 1; p < drawn.size(); ++p)
-        for (size_t i = 0; i < kPixels; ++i)
+        for (size_t i = 0; i < kComparedPixels; ++i)
             if (laterWins(function, valueOf(drawn[p].depth[i], format), valueOf(wanted.depth[i], format))) {
                 wanted.depth[i] = drawn[p].depth[i];
                 wanted.colour[i] = drawn[p].colour[i];
@@ -66,7 +66,7 @@ size_t wrongPixels(const std::vector<Part>& drawn, DepthFunction function, Depth
         for (size_t p = 0; p + 1 < parts.size(); p += 2, intoEarlier = !intoEarlier) {
             Part into = parts[intoEarlier ? p : p + 1];
             const Part& source = parts[intoEarlier ? p + 1 : p];
-            zSelectRow({into.depth.data(), reinterpret_cast<std::byte*>(into.colour.data()), source.depth.data(), reinterpret_cast<const std::byte*>(source.colour.data()), 4, kPixels},
+            zSelectRow({into.depth.data(), reinterpret_cast<std::byte*>(into.colour.data()), source.depth.data(), reinterpret_cast<const std::byte*>(source.colour.data()), 4, kComparedPixels},
                        {function, format, intoEarlier, Coverage::All, 0});
             next.push_back(into);
         }
@@ -74,7 +74,7 @@ size_t wrongPixels(const std::vector<Part>& drawn, DepthFunction function, Depth
         parts = next;
     }
     size_t wrong = 0;
-    for (size_t i = 0; i < kPixels; ++i) wrong += parts[0].colour[i] != wanted.colour[i] || parts[0].depth[i] != wanted.depth[i];
+    for (size_t i = 0; i < kComparedPixels; ++i) wrong += parts[0].colour[i] != wanted.colour[i] || parts[0].depth[i] != wanted.depth[i];
     return wrong;
 }
 

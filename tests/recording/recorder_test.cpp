@@ -8,7 +8,7 @@
 namespace mural::recording {
 namespace {
 
-class Recorder : public testing::Test {
+class Recorder : public ::testing::Test {
 protected:
     Recorder() : path_((std::filesystem::temp_directory_path() / ("mural-recorder-test." + std::to_string(getpid()))).string()) {}
     ~Recorder() override { std::filesystem::remove(path_); }

@@ -16,7 +16,7 @@ namespace {
 
 constexpr uint32_t kAll = GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT;
 
-class Trim : public testing::Test {
+class Trim : public ::testing::Test {
 protected:
     Trim() : folder_(std::filesystem::temp_directory_path() / ("mural-trim-test." + std::to_string(getpid()))) {
         std::filesystem::create_directories(folder_);

@@ -20,6 +20,7 @@ if(EGL_LIBRARY AND EXISTS ${CMAKE_CURRENT_LIST_DIR}/sizes_gl_context.cpp AND GL_
     sizes_image_read_gl_test.cpp
     sizes_image_upload_gl_test.cpp
     sizes_parameter_counts_gl_test.cpp)
+mural_compile_alone(sizes_gl_test)
   target_link_libraries(sizes_gl_test PRIVATE mural_sizes GTest::gtest_main ${EGL_LIBRARY} ${GL_LIBRARY})
   gtest_discover_tests(sizes_gl_test PROPERTIES LABELS gl TIMEOUT 120)
 else()

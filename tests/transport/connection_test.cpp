@@ -4,6 +4,7 @@
 #include <thread>
 #include <vector>
 
+#include "tests/sanitized.hpp"
 #include "tests/transport/linked_pair.hpp"
 
 namespace mural::test {
@@ -21,7 +22,7 @@ Deadline late() {
     return Deadline::inMs(20000);
 }
 
-class ConnectionTest : public testing::TestWithParam<LinkKind> {
+class ConnectionTest : public ::testing::TestWithParam<LinkKind> {
 protected:
     void SetUp() override {
         if (const std::string why = whyNoLinks(GetParam()); !why.empty()) GTEST_SKIP() << why;
@@ -114,7 +115,7 @@ TEST_P(ConnectionTest, streamsMuchInSmallPieces) {
 
 TEST_P(ConnectionTest, streamsMuchInBigPieces) {
     link(size_t{1} << 20);
-    streamThrough(a(), b(), testSeed(), size_t{512} << 20, size_t{4} << 20);
+    streamThrough(a(), b(), testSeed(), size_t{mural::testing::rounds(512)} << 20, size_t{4} << 20);
 }
 
 TEST_P(ConnectionTest, streamsBothWaysAtOnce) {
@@ -341,7 +342,7 @@ TEST_P(ConnectionTest, closeWakesABlockedWriterOfEitherEnd) {
 
 INSTANTIATE_TEST_SUITE_P(AllKinds,
                          ConnectionTest,
-                         testing::ValuesIn(kAllLinkKinds),
+                         ::testing::ValuesIn(kAllLinkKinds),
                          [](const auto& param) { return linkName(param.param); });
 
 } // namespace mural::test

@@ -11,7 +11,7 @@ namespace mural::test {
 
 namespace {
 
-class FabricTest : public testing::Test {
+class FabricTest : public ::testing::Test {
 protected:
     void SetUp() override {
         if (const std::string why = whyNoLinks(LinkKind::Fabric); !why.empty()) GTEST_SKIP() << why;

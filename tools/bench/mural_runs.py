@@ -61,13 +61,15 @@ class MuralRuns:
     def _wait(process, command):
         try:
             return process.wait(LIMIT_SECONDS)
-        except subprocess.TimeoutExpired:
+        except (subprocess.TimeoutExpired, KeyboardInterrupt) as why:
             process.send_signal(signal.SIGTERM)  # mural run ends its processes
             try:
                 process.wait(30)
             except subprocess.TimeoutExpired:
                 process.kill()
                 process.wait()
+            if isinstance(why, KeyboardInterrupt):
+                raise
             raise RunFailed("not done within %d s: %s" % (LIMIT_SECONDS, " ".join(command)))
 
     @staticmethod

@@ -12,7 +12,7 @@ namespace mural::cli {
 
 namespace {
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kDumpFooter = R"(Examples:
   mural dump app.mural                                     all calls, one per line: frame, program.thread, call
   mural dump app.mural --frames 30-32                      those of three frames
   mural dump app.mural --calls 'glTexImage*,Mural.Swap'    some of them
@@ -21,7 +21,7 @@ constexpr const char* kFooter = R"(Examples:
 Frames are counted as --out counts them. Records of Mural itself are called Mural.…; docs/wire-format.md describes them.
 Exit status: 0, 2 for a bad argument or a recording that can't be read.)";
 
-std::vector<std::string> listOf(const std::string& text) {
+std::vector<std::string> patternsIn(const std::string& text) {
     std::vector<std::string> parts;
     for (size_t at = 0; at <= text.size();) {
         const size_t end = std::min(text.find(',', at), text.size());
@@ -38,14 +38,14 @@ void describeDump(CLI::App& command, DumpArguments& a) {
     command.add_option("--frames", a.frames, "these frames, counted from 1 (all)")->type_name("N-M");
     command.add_option("--calls", a.calls, "these calls, separated by commas; * stands for anything (all)")->type_name("glA,glB*");
     command.add_flag("--summary", a.summary, "counts and bytes by call, for each frame and for all");
-    command.footer(kFooter);
+    command.footer(kDumpFooter);
 }
 
 int dumpCommand(const DumpArguments& a) {
     Console errors(false);
     recording::DumpOptions options;
     options.summary = a.summary;
-    if (a.calls) options.calls = listOf(*a.calls);
+    if (a.calls) options.calls = patternsIn(*a.calls);
     if (a.frames) {
         const auto range = frameRangeOf(*a.frames);
         if (!range) {

@@ -14,7 +14,6 @@ namespace mural::cli {
 
 namespace {
 
-constexpr int64_t kEndGraceMs = 3'000;
 // After the program's end its descendants may go on; as long as they show pictures they are waited for.
 constexpr int64_t kNoPictureMs = 5'000;
 

@@ -11,7 +11,7 @@ namespace mural::cli {
 
 namespace {
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kReplayFooter = R"(Examples:
   mural run --record gears.mural --frames 300 -- glxgears      makes a recording
   mural replay gears.mural                                     shows it in a window
   mural replay gears.mural --tiles 2x2 --out shots             on 4 local nodes, as PNG files
@@ -30,7 +30,7 @@ void describeReplay(CLI::App& command, ReplayArguments& a) {
     for (const char* name : {"--size", "--native", "--verify", "--policy", "--front", "--print-config"}) command.remove_option(command.get_option(name));
     command.add_flag("--pace", a.pace, "at the times at which it was recorded");
     command.add_flag("--loop", a.loop, "again and again, until --frames or Ctrl-C");
-    command.footer(kFooter);
+    command.footer(kReplayFooter);
 }
 
 Result<RunOptions> replayOptionsFrom(const ReplayArguments& a) {

@@ -32,7 +32,7 @@ constexpr int kMostRestarts = 1'000'000;
 constexpr int kMaxPasses = 256;
 constexpr int kMaxKernel = 16; // columns or rows
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kRunFooter = R"(Examples:
   mural run -- glxgears                                  one node, into the program's own window
   mural run --tiles 2x2 --frames 90 --out shots -- glxgears
                                                          90 frames on 4 local nodes, as PNG files
@@ -466,7 +466,7 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
     command.add_option("--remote-mural", a.remoteMural, "path of mural on the hosts (this one's)")->type_name("PATH");
     command.add_option("--report", a.report, "write the final report into this file, as one line of JSON")->type_name("FILE");
     command.add_flag("--quiet", a.quiet, "say nothing but errors");
-    command.footer(kFooter);
+    command.footer(kRunFooter);
 }
 
 Result<RunOptions> runOptionsFrom(const RunArguments& a) {

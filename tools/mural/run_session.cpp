@@ -16,7 +16,6 @@ namespace {
 
 constexpr int64_t kReadyLocalMs = 60'000;
 constexpr int64_t kReadyRemoteMs = 120'000;
-constexpr int64_t kEndGraceMs = 3'000;
 // A launcher may leave the program behind and be gone: how long its children get until they draw…
 constexpr int64_t kFirstContextMs = 30'000;
 // …and how long what is left may live on once nobody draws any more.

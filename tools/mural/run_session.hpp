@@ -13,6 +13,8 @@
 
 namespace mural::cli {
 
+constexpr int64_t kEndGraceMs = 3'000; // of a program that is asked to end
+
 // All that has been found out before anything is captured.
 struct PreparedRun {
     SessionConfig config; // complete

@@ -13,7 +13,7 @@ namespace mural::cli {
 
 namespace {
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kTrimFooter = R"(Examples:
   mural trim app.mural 30-90 -o part.mural       frames 30 to 90
   mural trim app.mural 47 -o frame.mural         one frame
   mural replay frame.mural --out shots
@@ -28,7 +28,7 @@ void describeTrim(CLI::App& command, TrimArguments& a) {
     command.add_option("FILE", a.file, "recording, made by mural run --record")->required();
     command.add_option("FRAMES", a.frames, "N-M, or N alone, counted from 1")->required();
     command.add_option("-o,--out", a.out, "the file that is made")->type_name("FILE")->required();
-    command.footer(kFooter);
+    command.footer(kTrimFooter);
 }
 
 int trimCommand(const TrimArguments& a) {

@@ -8,8 +8,6 @@
 namespace mural::rsp {
 
 namespace {
-constexpr int64_t kSliceNs = 100'000'000; // how long a wait lasts at most before it looks again
-
 Error tooLate(const std::string& what) { return Error{"the deadline passed while waiting for " + what}; }
 } // namespace
 

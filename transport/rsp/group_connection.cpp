@@ -11,9 +11,9 @@ namespace mural::rsp {
 namespace {
 
 constexpr int64_t kDrainMs = 1000;
-constexpr int64_t kSliceNs = 100 * kNsPerMs; // between two looks whether this end was closed
+constexpr int64_t kLookAgainNs = 100 * kNsPerMs; // between two looks whether this end was closed
 
-Deadline inSlice(Deadline deadline) { return Deadline::inMs(deadline.leftNs(kSliceNs) / kNsPerMs + 1); }
+Deadline inSlice(Deadline deadline) { return Deadline::inMs(deadline.leftNs(kLookAgainNs) / kNsPerMs + 1); }
 
 // `whole`: this is the member's own end of its group, not one of the host's.
 class GroupConnection final : public Connection {

@@ -36,12 +36,12 @@ template <class From, class Into> Result<void> put(Result<From> value, Into& int
 }
 
 constexpr int64_t kMostMs = 3'600'000;
-constexpr int64_t kMostDatagramBytes = 65'000;
+constexpr int64_t kMostDatagramBytesAsked = 65'000;
 constexpr int64_t kMostWindowDatagrams = 65'536;
 
 const std::array<std::pair<const char*, Set>, 15> kParameters{{
     {"control", [](GroupOptions& o, const std::string& v) -> Result<void> { return o.control = v, Result<void>(); }},
-    {"datagram", [](GroupOptions& o, const std::string& v) { return put(numberOf(v, kMostDatagramBytes), o.datagramBytes); }},
+    {"datagram", [](GroupOptions& o, const std::string& v) { return put(numberOf(v, kMostDatagramBytesAsked), o.datagramBytes); }},
     {"interface", [](GroupOptions& o, const std::string& v) -> Result<void> { return o.interface = v, Result<void>(); }},
     {"multicast", [](GroupOptions& o, const std::string& v) { return choose(v, "on", "off", o.multicast); }},
     {"name", [](GroupOptions& o, const std::string& v) -> Result<void> { return o.name = v, Result<void>(); }},

@@ -20,6 +20,8 @@
 
 namespace mural::rsp {
 
+constexpr int64_t kSliceNs = 100 * kNsPerMs; // how long a wait lasts at most before it looks again
+
 struct Group::State : GroupOutput {
     explicit State(const GroupOptions& options);
     ~State() override;

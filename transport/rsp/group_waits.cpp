@@ -11,7 +11,6 @@ namespace mural::rsp {
 namespace asio = boost::asio;
 
 namespace {
-constexpr int64_t kSliceNs = 100 * kNsPerMs; // how long a wait lasts at most before it looks again
 constexpr int64_t kTakeOverNs = kNsPerMs;      // after which the group's thread does what no leader has come back for
 constexpr int64_t kMostTakeOverNs = 2 * kNsPerMs; // so long at most, once, where leaders have always come back
 constexpr int64_t kMostPauseNs = 2 * kNsPerMs; // of a writer between two batches

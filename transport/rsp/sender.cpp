@@ -14,7 +14,7 @@ constexpr int64_t kMostPollNs = 50'000'000;
 constexpr int64_t kLeastPollNs = 300'000;
 constexpr int64_t kUnknownRoundTripNs = 10'000'000;
 constexpr int kLeastBatch = 8;           // datagrams that are worth waking up for
-constexpr double kMostBatchBytes = 65'000; // that a single sending takes
+constexpr double kMostSendingBytes = 65'000; // that a single sending takes
 
 uint32_t toUs(int64_t ns) { return static_cast<uint32_t>(ns / 1000); }
 
@@ -201,7 +201,7 @@ int64_t Sender::pollWhenNeeded(int64_t nowNs, Outbox& out) {
 
 // The end of a flush does not wait for tokens of datagrams that do not exist.
 double Sender::batchBytes(double datagramBytes) const {
-    const double worthIt = std::min(kMostBatchBytes, std::max(rate_.batchBytes(), kLeastBatch * datagramBytes));
+    const double worthIt = std::min(kMostSendingBytes, std::max(rate_.batchBytes(), kLeastBatch * datagramBytes));
     const auto waiting = static_cast<double>(std::max<int64_t>(1, limit() - next_)) * datagramBytes;
     return repairs_.empty() ? std::min(worthIt, waiting) : worthIt;
 }

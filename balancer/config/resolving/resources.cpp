@@ -9,7 +9,7 @@ namespace mural::config {
 namespace {
 
 // Areas below 0 or without a size are as if they were not given, as for Equalizer.
-Viewport areaOf(Resolver& r, const std::optional<Viewport>& given, SourcePosition at, const char* of) {
+Viewport screenAreaOf(Resolver& r, const std::optional<Viewport>& given, SourcePosition at, const char* of) {
     if (!given) return {};
     if (given->w > 0 && given->h > 0 && given->w <= 1e6 && given->h <= 1e6 && std::abs(given->x) <= 1e6 && std::abs(given->y) <= 1e6) return *given;
     r.diagnostics.warn(at, std::string("the viewport of this ") + of + " has no size, or one that no screen has, it is the whole",
@@ -31,7 +31,7 @@ void addChannels(Resolver& r, Index window, const std::vector<Channel>& channels
         ResolvedChannel channel;
         channel.window = window;
         channel.name = c.name.value_or("");
-        channel.viewport = areaOf(r, c.viewport, c.at, "channel");
+        channel.viewport = screenAreaOf(r, c.viewport, c.at, "channel");
         channel.attributes = c.attributes;
         channel.at = c.at;
         fillAttributes(channel.attributes, "CHANNEL", r.defaults);
@@ -44,7 +44,7 @@ void addWindows(Resolver& r, Index pipe, const std::vector<Window>& windows) {
         ResolvedWindow window;
         window.pipe = pipe;
         window.name = w.name.value_or("");
-        window.viewport = areaOf(r, w.viewport, w.at, "window");
+        window.viewport = screenAreaOf(r, w.viewport, w.at, "window");
         window.attributes = w.attributes;
         window.at = w.at;
         fillAttributes(window.attributes, "WINDOW", r.defaults);
@@ -64,7 +64,7 @@ void addPipes(Resolver& r, Index node, const std::vector<Pipe>& pipes) {
         pipe.attributes = p.attributes;
         pipe.at = p.at;
         if (p.viewport) {
-            const Viewport v = areaOf(r, p.viewport, p.at, "pipe");
+            const Viewport v = screenAreaOf(r, p.viewport, p.at, "pipe");
             if (inPixels(v)) pipe.viewport = PixelViewport{static_cast<int32_t>(v.x), static_cast<int32_t>(v.y), static_cast<int32_t>(v.w),
                                                            static_cast<int32_t>(v.h)};
         }

@@ -10,7 +10,7 @@ namespace mural::compositor {
 namespace {
 
 constexpr uint32_t kRun = 0x80000000u;
-constexpr size_t kShortestRun = 3; // words; a shorter one costs more than it saves
+constexpr size_t kShortestWords = 3; // words; a shorter one costs more than it saves
 
 size_t wordsOfRow(size_t rowBytes) { return (rowBytes + 7) / 8; }
 
@@ -24,9 +24,9 @@ uint64_t wordAt(const std::byte* row, size_t rowBytes, size_t index) {
 
 size_t Rle64Codec::boundBytes(const PlaneShape& shape) const {
     if (shape.width <= 0 || shape.height <= 0) return 0;
-    // A head before every literal at worst comes once in kShortestRun words, and once per row.
+    // A head before every literal at worst comes once in kShortestWords words, and once per row.
     const size_t words = wordsOfRow(shape.rowBytes());
-    return static_cast<size_t>(shape.height) * (words * 8 + 4 * (2 * words / kShortestRun + 2));
+    return static_cast<size_t>(shape.height) * (words * 8 + 4 * (2 * words / kShortestWords + 2));
 }
 
 Result<size_t> Rle64Codec::encode(const PlaneView& plane, std::span<std::byte> into) {
@@ -46,7 +46,7 @@ Result<size_t> Rle64Codec::encode(const PlaneView& plane, std::span<std::byte> i
             const uint64_t word = wordAt(row, rowBytes, at);
             size_t end = at + 1;
             while (end < words && wordAt(row, rowBytes, end) == word) ++end;
-            if (end - at < kShortestRun) {
+            if (end - at < kShortestWords) {
                 literals += end - at;
                 at = end;
                 continue;

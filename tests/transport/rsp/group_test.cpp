@@ -41,7 +41,7 @@ void startHost(Hosted& h, Seal seal) {
     Hosted name; \
     ASSERT_NO_FATAL_FAILURE(startHost(name, seal))
 
-class GroupTest : public testing::TestWithParam<Seal> {};
+class GroupTest : public ::testing::TestWithParam<Seal> {};
 
 TEST_P(GroupTest, AHostAndThreeMembersShareABigStream) {
     HOSTED(hosted, GetParam());
@@ -85,10 +85,10 @@ TEST_P(GroupTest, AHostAndThreeMembersShareABigStream) {
     for (const auto& m : host->report().members) EXPECT_TRUE(m.info.multicast) << m.id;
 }
 
-std::string testName(const testing::TestParamInfo<Seal>& tested) {
+std::string sealName(const ::testing::TestParamInfo<Seal>& tested) {
     return tested.param == Seal::None ? "None" : tested.param == Seal::Tag ? "Tag" : "ChaCha";
 }
-INSTANTIATE_TEST_SUITE_P(Seals, GroupTest, testing::Values(Seal::None, Seal::Tag, Seal::ChaCha), testName);
+INSTANTIATE_TEST_SUITE_P(Seals, GroupTest, ::testing::Values(Seal::None, Seal::Tag, Seal::ChaCha), sealName);
 
 TEST(Group, MembersWriteToo) {
     HOSTED(hosted, Seal::Tag);

@@ -8,8 +8,6 @@ namespace {
 
 using namespace compound;
 
-size_t at(Index index) { return ResolvedConfig::at(index); }
-
 const char* wordOf(Task task) {
     switch (task) {
     case Task::Clear: return "clear";

@@ -26,9 +26,9 @@ using nlohmann::json;
 
 constexpr int64_t kSilenceMs = 600'000; // others are looked at meanwhile
 constexpr int64_t kConnectMs = 2'000; // per address
-constexpr int64_t kJoinMs = 10'000;
+constexpr int64_t kJoinGroupMs = 10'000;
 constexpr int64_t kSpeakMs = 10'000;
-constexpr int kBetweenProbesMs = 1;
+constexpr int kBetweenDatagramsMs = 1;
 
 // How this machine gets to the doctor's.
 struct Route {
@@ -167,7 +167,7 @@ private:
             for (const ProbeWay way : kProbeWays) {
                 for (const json& size : order.at("sizes")) {
                     sockets_->send(way, std::clamp<size_t>(size.get<size_t>(), kLeastProbeBytes, 65'000), *to);
-                    poll(nullptr, 0, kBetweenProbesMs);
+                    poll(nullptr, 0, kBetweenDatagramsMs);
                 }
             }
         }
@@ -178,7 +178,7 @@ private:
         rsp::GroupOptions options = options_;
         options.control = order.at("control").get<std::string>();
         reading_.reset();
-        auto group = rsp::Group::join(options, Deadline::inMs(kJoinMs));
+        auto group = rsp::Group::join(options, Deadline::inMs(kJoinGroupMs));
         if (!group) return {{"joined", false}, {"why", group.error().message}};
         reading_.emplace(std::move(*group));
         return {{"joined", true}, {"why", ""}};

@@ -10,7 +10,7 @@
 namespace mural::cli {
 
 namespace {
-constexpr int64_t kSpeakMs = 5'000;
+constexpr int64_t kSayMs = 5'000;
 constexpr int64_t kEndMs = 2'000;
 } // namespace
 
@@ -45,7 +45,7 @@ ProbeProcess::~ProbeProcess() {
     process_.end(Deadline::inMs(0));
 }
 
-Result<void> ProbeProcess::say(const nlohmann::json& words) { return lines_.write(words.dump(), Deadline::inMs(kSpeakMs)); }
+Result<void> ProbeProcess::say(const nlohmann::json& words) { return lines_.write(words.dump(), Deadline::inMs(kSayMs)); }
 
 Result<nlohmann::json> ProbeProcess::hear(Deadline deadline) {
     auto line = lines_.read(deadline);
