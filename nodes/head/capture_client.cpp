@@ -5,6 +5,8 @@
 #include <fstream>
 #include <poll.h>
 
+#include "nodes/head/bytes_of.hpp"
+
 namespace mural {
 namespace {
 
@@ -18,10 +20,6 @@ std::string nameOf(pid_t pid) {
     std::string name;
     std::getline(file, name);
     return name.empty() ? "unknown" : name;
-}
-
-std::span<const std::byte> bytesOf(const auto& value) {
-    return std::as_bytes(std::span(&value, 1));
 }
 
 } // namespace

@@ -15,7 +15,7 @@ namespace {
 using capture::Hello;
 using capture::Welcome;
 
-constexpr int64_t kSliceMs = 100;
+constexpr int64_t kAcceptSliceMs = 100;
 constexpr int64_t kHelloPatienceMs = 5000;
 constexpr int64_t kWelcomePatienceMs = 5000;
 constexpr size_t kMaxNewcomers = 64;
@@ -121,7 +121,7 @@ void CaptureServer::serve() {
     while (!stop_) {
         std::vector<pollfd> looks{{listener_.get(), POLLIN, 0}};
         for (const Newcomer& n : newcomers_) looks.push_back({n.socket.get(), POLLIN, 0});
-        if (poll(looks.data(), looks.size(), kSliceMs) < 0) continue;
+        if (poll(looks.data(), looks.size(), kAcceptSliceMs) < 0) continue;
         // Those that came first leave first: the vector shrinks from the end.
         for (size_t i = newcomers_.size(); i-- > 0;) {
             if (settle(newcomers_[i], looks[i + 1].revents != 0))

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <poll.h>
 
+#include "nodes/head/bytes_of.hpp"
 #include "nodes/head/head_command.hpp"
 
 namespace mural {
@@ -16,8 +17,6 @@ constexpr int64_t kDirectPatienceMs = 2'000;     // until what is queued is sent
 constexpr int64_t kSnapshotMs = 20'000;          // until it is known what the node has to be given
 constexpr int64_t kLookMs = 50;                  // whether anybody is left who says whose turn it is
 constexpr int64_t kSyncLimitMs = 600'000;        // the last resort behind watch(), which loses silent nodes
-
-std::span<const std::byte> bytesOf(const auto& value) { return std::as_bytes(std::span(&value, 1)); }
 
 } // namespace
 

@@ -5,16 +5,10 @@
 #include <cstring>
 #include <thread>
 
+#include "nodes/head/bytes_of.hpp"
 #include "nodes/head/head_command.hpp"
 
 namespace mural {
-namespace {
-
-std::span<const std::byte> bytesOf(const auto& value) {
-    return std::as_bytes(std::span(&value, 1));
-}
-
-} // namespace
 
 void NodeSet::add(std::unique_ptr<NodeLink> link) {
     links_.emplace_back(link.get());

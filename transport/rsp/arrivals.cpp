@@ -12,7 +12,7 @@ namespace mural::rsp {
 
 namespace {
 
-Error failed(const std::string& what) {
+Error noDescriptor(const std::string& what) {
     return Error{"can't " + what + ": " + errnoText(errno) + "; raise the limit of open files (ulimit -n)"};
 }
 
@@ -30,15 +30,15 @@ Result<Arrivals> Arrivals::open() {
     a.all_ = FileDescriptor(epoll_create1(EPOLL_CLOEXEC));
     a.watched_ = FileDescriptor(epoll_create1(EPOLL_CLOEXEC));
     a.timer_ = FileDescriptor(timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC));
-    if (!a.all_.valid() || !a.watched_.valid() || !a.timer_.valid()) return failed("make a multicast group's timer");
+    if (!a.all_.valid() || !a.watched_.valid() || !a.timer_.valid()) return noDescriptor("make a multicast group's timer");
     // By edge: nobody has to fetch that it was time.
-    if (!control(a.all_.get(), EPOLL_CTL_ADD, a.timer_.get(), uint32_t{EPOLLIN} | EPOLLET)) return failed("watch a multicast group's timer");
-    if (!control(a.watched_.get(), EPOLL_CTL_ADD, a.all_.get(), EPOLLIN)) return failed("watch a multicast group's sockets");
+    if (!control(a.all_.get(), EPOLL_CTL_ADD, a.timer_.get(), uint32_t{EPOLLIN} | EPOLLET)) return noDescriptor("watch a multicast group's timer");
+    if (!control(a.watched_.get(), EPOLL_CTL_ADD, a.all_.get(), EPOLLIN)) return noDescriptor("watch a multicast group's sockets");
     return a;
 }
 
 Result<void> Arrivals::add(int socket) {
-    if (!control(all_.get(), EPOLL_CTL_ADD, socket, EPOLLIN)) return failed("watch a multicast group's sockets");
+    if (!control(all_.get(), EPOLL_CTL_ADD, socket, EPOLLIN)) return noDescriptor("watch a multicast group's sockets");
     return {};
 }
 

@@ -6,13 +6,13 @@ namespace mural::config {
 
 namespace {
 
-template <class... T> std::string list(const T&... values) {
+template <class... T> std::string bracketed(const T&... values) {
     std::string text = "[";
     ((text += " " + valueText(values)), ...);
     return text + " ]";
 }
 
-uint32_t number(int32_t value) { return static_cast<uint32_t>(value); }
+uint32_t unsignedOf(int32_t value) { return static_cast<uint32_t>(value); }
 
 } // namespace
 
@@ -24,14 +24,14 @@ std::string numberText(double value) {
 
 std::string valueText(const std::string& value) { return "\"" + value + "\""; }
 std::string valueText(char value) { return std::string("'") + value + "'"; }
-std::string valueText(const Viewport& v) { return list(v.x, v.y, v.w, v.h); }
-std::string valueText(const Vector3& v) { return list(v.x, v.y, v.z); }
-std::string valueText(const Degrees2& v) { return list(v.x, v.y); }
-std::string valueText(const Range& r) { return list(r.start, r.end); }
-std::string valueText(const Zoom& z) { return list(z.x, z.y); }
-std::string valueText(const PixelKernel& k) { return list(number(k.x), number(k.y), number(k.w), number(k.h)); }
-std::string valueText(const SubPixel& s) { return list(number(s.index), number(s.size)); }
-std::string valueText(const Bezel& b) { return list(b.left, b.right, b.bottom, b.top); }
+std::string valueText(const Viewport& v) { return bracketed(v.x, v.y, v.w, v.h); }
+std::string valueText(const Vector3& v) { return bracketed(v.x, v.y, v.z); }
+std::string valueText(const Degrees2& v) { return bracketed(v.x, v.y); }
+std::string valueText(const Range& r) { return bracketed(r.start, r.end); }
+std::string valueText(const Zoom& z) { return bracketed(z.x, z.y); }
+std::string valueText(const PixelKernel& k) { return bracketed(unsignedOf(k.x), unsignedOf(k.y), unsignedOf(k.w), unsignedOf(k.h)); }
+std::string valueText(const SubPixel& s) { return bracketed(unsignedOf(s.index), unsignedOf(s.size)); }
+std::string valueText(const Bezel& b) { return bracketed(b.left, b.right, b.bottom, b.top); }
 
 std::string valueText(const Reference& value) {
     return std::visit([](const auto& v) { return valueText(v); }, value);

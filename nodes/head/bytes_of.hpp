@@ -1,0 +1,11 @@
+// A value as the bytes that go over the wire.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+namespace mural {
+
+std::span<const std::byte> bytesOf(const auto& value) { return std::as_bytes(std::span(&value, 1)); }
+
+} // namespace mural
