@@ -28,7 +28,7 @@ enum class Use : uint8_t {
     Draw,
 };
 
-Use classify(std::string_view name) {
+Use copyUseByName(std::string_view name) {
     const auto isAnyOf = [&](std::initializer_list<std::string_view> stems) {
         for (const std::string_view stem : stems)
             if (name.starts_with(stem)) return true;
@@ -49,7 +49,7 @@ Use copyUseOf(uint16_t opcode) {
     static const auto kUses = [] {
         std::vector<Use> uses(op::kLimit, Use::None);
         for (uint16_t o = wire::kFirstGlOpcode; o < op::kLimit; ++o)
-            if (const char* name = glOpcodeName(o)) uses[o] = classify(name);
+            if (const char* name = glOpcodeName(o)) uses[o] = copyUseByName(name);
         return uses;
     }();
     return kUses[opcode];

@@ -10,7 +10,7 @@ namespace mural {
 
 namespace {
 
-constexpr GLsizei kMostShaders = 64; // attached to one program
+constexpr GLsizei kMostAttached = 64; // attached to one program
 
 std::string sourceOf(const GlFunctions& gl, GLuint shader) {
     GLint length = 0;
@@ -65,13 +65,13 @@ bool TiledPrograms::holds(const GlFunctions& gl, GLuint shader, const std::strin
 }
 
 std::vector<TiledPrograms::Part> TiledPrograms::rewritten(const GlFunctions& gl, GLuint program, const ShaderRewrites& rewrites, bool es) {
-    GLuint attached[kMostShaders] = {};
+    GLuint attached[kMostAttached] = {};
     GLsizei count = 0;
-    gl.glGetAttachedShaders(program, kMostShaders, &count, attached);
+    gl.glGetAttachedShaders(program, kMostAttached, &count, attached);
     std::vector<Part> parts;
     GLenum last = 0; // stages in the order in which they run
     const auto place = [](GLenum type) { return type == GL_GEOMETRY_SHADER ? 3 : type == GL_TESS_EVALUATION_SHADER ? 2 : type == GL_VERTEX_SHADER ? 1 : 0; };
-    for (GLsizei i = 0; i < std::clamp(count, 0, kMostShaders); ++i) {
+    for (GLsizei i = 0; i < std::clamp(count, 0, kMostAttached); ++i) {
         const auto it = shaders_.find(attached[i]);
         if (it == shaders_.end() || it->second.text.empty()) continue;
         parts.push_back({attached[i], {}, false});

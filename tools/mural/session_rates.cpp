@@ -17,7 +17,7 @@ double number(const Json& object, const char* name) {
     const auto found = object.find(name);
     return found != object.end() && found->is_number() ? found->get<double>() : 0.0;
 }
-std::string text(const Json& object, const char* name) {
+std::string memberText(const Json& object, const char* name) {
     const auto found = object.find(name);
     return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
@@ -114,7 +114,7 @@ std::string tripsText(const Json& program) {
 
 void addProgram(const Json& program, std::vector<std::string>& lines) {
     const Json& recent = part(program, "recent");
-    lines.push_back(fmt::format("  program {:.0f}  {}", number(program, "pid"), text(program, "command")));
+    lines.push_back(fmt::format("  program {:.0f}  {}", number(program, "pid"), memberText(program, "command")));
     std::string line = fmt::format("    {:.0f} frames", number(program, "frames"));
     if (recent.contains("framesPerSecond")) line += fmt::format(", {:.1f} frames/s", number(recent, "framesPerSecond"));
     if (recent.contains("callsPerFrame")) line += fmt::format(", {:.0f} calls and {} per frame", number(recent, "callsPerFrame"), sizeText(number(recent, "bytesPerFrame")));
@@ -140,15 +140,15 @@ void addQueue(const Json& queue, std::vector<std::string>& lines) {
     std::string nodes;
     for (const Json& node : entries(queue, "nodes")) nodes += fmt::format("{}node {:.0f} has {:.0f}", nodes.empty() ? "" : ", ", number(node, "node"), number(node, "tiles"));
     const double frames = number(queue, "frames");
-    const std::string of = text(queue, "of");
+    const std::string of = memberText(queue, "of");
     const std::string pieces = of == "chunks" ? fmt::format("{:.0f} chunks", number(queue, "columns"))
                                               : fmt::format("{:.0f}x{:.0f} tiles of {:.0f}x{:.0f} pixels", number(queue, "columns"), number(queue, "rows"), number(queue, "tileWidth"), number(queue, "tileHeight"));
-    lines.push_back(fmt::format("  queue \"{}\"  {}: {}; moved after {:.0f} of {:.0f} frames, {:.2f} {} per frame", text(queue, "name"), pieces, nodes, number(queue, "moves"), frames,
+    lines.push_back(fmt::format("  queue \"{}\"  {}: {}; moved after {:.0f} of {:.0f} frames, {:.2f} {} per frame", memberText(queue, "name"), pieces, nodes, number(queue, "moves"), frames,
                                 frames > 0 ? number(queue, "tilesMoved") / frames : 0, of));
 }
 
 void addNode(const Json& node, std::vector<std::string>& lines) {
-    std::string state = text(node, "state");
+    std::string state = memberText(node, "state");
     if (state == "alive") {
         state = fmt::format("{:.0f} frames", number(node, "frames"));
         if (node.contains("recent")) state += fmt::format(", busy {:.0f} %", 100 * number(part(node, "recent"), "busyShare"));
@@ -156,9 +156,9 @@ void addNode(const Json& node, std::vector<std::string>& lines) {
         if (number(node, "joins") > 0) state += fmt::format(", came back {:.0f} times, the last time in {:.1f} s with {}", number(node, "joins"), number(node, "secondsToBack"), sizeText(number(node, "snapshotBytes")));
         if (number(node, "silentSeconds") > 5) state += fmt::format(", silent for {:.0f} s", number(node, "silentSeconds"));
     }
-    const std::string stream = text(node, "stream");
+    const std::string stream = memberText(node, "stream");
     const std::string by = stream.empty() || stream == "memory" ? "" : ", by " + stream;
-    lines.push_back(fmt::format("  node {:.0f}  {}{}, pid {:.0f}, {}: {}", number(node, "node"), text(node, "where"), by, number(node, "pid"), text(node, "gl"), state));
+    lines.push_back(fmt::format("  node {:.0f}  {}{}, pid {:.0f}, {}: {}", number(node, "node"), memberText(node, "where"), by, number(node, "pid"), memberText(node, "gl"), state));
 }
 
 } // namespace
@@ -178,8 +178,8 @@ std::vector<Json> withRates(const std::vector<Json>& before, std::vector<Json> n
 
 std::vector<std::string> statLines(const Json& session) {
     std::vector<std::string> lines;
-    lines.push_back(fmt::format("session {:.0f}  {} tiles, display {}, {:.0f} frames on the wall; head {:.0f}", number(session, "runPid"), text(session, "tiles"),
-                                text(session, "display"), number(session, "frames"), number(session, "headPid")));
+    lines.push_back(fmt::format("session {:.0f}  {} tiles, display {}, {:.0f} frames on the wall; head {:.0f}", number(session, "runPid"), memberText(session, "tiles"),
+                                memberText(session, "display"), number(session, "frames"), number(session, "headPid")));
     const std::vector<Json> programs = entries(session, "programs");
     for (const Json& program : programs) addProgram(program, lines);
     if (programs.empty()) lines.emplace_back("  no program draws yet, or any more");
