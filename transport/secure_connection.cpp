@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "transport/connection_error.hpp"
+#include "transport/flush_grace.hpp"
 
 namespace mural {
 
@@ -11,7 +12,6 @@ namespace {
 constexpr size_t kRecordBytes = size_t{32} * 1024; // the connection below takes it whole or not at all
 constexpr int64_t kSliceMs = 100;
 constexpr int64_t kRecordMs = 20'000; // for the rest of a record that has begun
-constexpr int64_t kLastWriteGraceMs = 1000; // the last write may be long ago when flush comes
 
 Deadline sooner(Deadline a, Deadline b) { return a.leftNs() < b.leftNs() ? a : b; }
 Deadline later(Deadline a, Deadline b) { return a.leftNs() < b.leftNs() ? b : a; }
@@ -142,7 +142,7 @@ Result<void> SecureConnection::sendGathered(Deadline deadline) {
 void SecureConnection::flush() {
     const std::lock_guard lock(writeMutex_);
     if (closed_) return;
-    static_cast<void>(sendGathered(later(lastWriteDeadline_, Deadline::inMs(kLastWriteGraceMs))).ok()); // the next write tells
+    static_cast<void>(sendGathered(later(lastWriteDeadline_, Deadline::inMs(kFlushGraceMs))).ok()); // the next write tells
     over_->flush();
 }
 

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "transport/connection_error.hpp"
+#include "transport/flush_grace.hpp"
 #include "transport/socket_wait.hpp"
 #include "transport/system_error.hpp"
 #include "transport/tcp_address.hpp"
@@ -19,7 +20,6 @@ namespace mural {
 namespace {
 
 constexpr size_t kBufferBytes = size_t{64} * 1024;
-constexpr int64_t kFlushGraceMs = 1000; // the last write may be long ago when flush comes
 
 bool wouldBlock(int code) {
     return code == EAGAIN || code == EWOULDBLOCK;

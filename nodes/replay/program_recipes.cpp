@@ -2,11 +2,12 @@
 
 #include <cstring>
 
+#include "nodes/replay/attached_shaders.hpp"
+
 namespace mural {
 
 namespace {
 
-constexpr GLsizei kMostShaders = 64;   // attached to one program
 constexpr uint32_t kMostEntries = 4096; // of one kind in a recipe
 
 void put(std::vector<std::byte>& out, uint32_t value) {
@@ -117,12 +118,9 @@ void ProgramRecipes::linked(const GlFunctions& gl, GLuint program) {
     GLint status = 0;
     gl.glGetProgramiv(program, GL_LINK_STATUS, &status);
     if (!status) return;
-    GLuint attached[kMostShaders] = {};
-    GLsizei count = 0;
-    gl.glGetAttachedShaders(program, kMostShaders, &count, attached);
     ProgramRecipe recipe = p.next;
-    for (GLsizei i = 0; i < count && i < kMostShaders; ++i) {
-        const auto it = shaders_.find(attached[i]);
+    for (const GLuint shader : attachedShaders(gl, program)) {
+        const auto it = shaders_.find(shader);
         if (it == shaders_.end() || it->second.withIncludes) return;
         recipe.shaders.push_back({it->second.type, it->second.compiled});
     }

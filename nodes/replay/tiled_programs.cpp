@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "nodes/replay/attached_shaders.hpp"
 #include "nodes/shaders/cull_distances.hpp"
 #include "nodes/shaders/frag_coord.hpp"
 #include "nodes/shaders/moved_position.hpp"
@@ -9,8 +10,6 @@
 namespace mural {
 
 namespace {
-
-constexpr GLsizei kMostAttached = 64; // attached to one program
 
 std::string sourceOf(const GlFunctions& gl, GLuint shader) {
     GLint length = 0;
@@ -65,16 +64,13 @@ bool TiledPrograms::holds(const GlFunctions& gl, GLuint shader, const std::strin
 }
 
 std::vector<TiledPrograms::Part> TiledPrograms::rewritten(const GlFunctions& gl, GLuint program, const ShaderRewrites& rewrites, bool es) {
-    GLuint attached[kMostAttached] = {};
-    GLsizei count = 0;
-    gl.glGetAttachedShaders(program, kMostAttached, &count, attached);
     std::vector<Part> parts;
     GLenum last = 0; // stages in the order in which they run
     const auto place = [](GLenum type) { return type == GL_GEOMETRY_SHADER ? 3 : type == GL_TESS_EVALUATION_SHADER ? 2 : type == GL_VERTEX_SHADER ? 1 : 0; };
-    for (GLsizei i = 0; i < std::clamp(count, 0, kMostAttached); ++i) {
-        const auto it = shaders_.find(attached[i]);
+    for (const GLuint shader : attachedShaders(gl, program)) {
+        const auto it = shaders_.find(shader);
         if (it == shaders_.end() || it->second.text.empty()) continue;
-        parts.push_back({attached[i], {}, false});
+        parts.push_back({shader, {}, false});
         if (place(it->second.type) > place(last)) last = it->second.type;
         if (it->second.type == GL_FRAGMENT_SHADER) parts.back().wanted = shaders::withWindowPlace(it->second.text, fragmentReads(rewrites), es).value_or("");
     }

@@ -1,0 +1,21 @@
+// The shaders that a program is made of.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "gl_functions.hpp"
+
+namespace mural {
+
+// At most 64, in the driver's order.
+inline std::vector<GLuint> attachedShaders(const GlFunctions& gl, GLuint program) {
+    constexpr GLsizei kMost = 64;
+    std::vector<GLuint> attached(kMost);
+    GLsizei count = 0;
+    gl.glGetAttachedShaders(program, kMost, &count, attached.data());
+    attached.resize(static_cast<size_t>(std::clamp(count, 0, kMost)));
+    return attached;
+}
+
+} // namespace mural
