@@ -91,10 +91,10 @@ void BarrierLeader::take(int rank, const BarrierReady& ready, int64_t arrivedNs)
     apply(rounds_.arrive(rank, ready.key, arrivedNs));
 }
 
-int64_t BarrierLeader::worstClockNs() const {
+int64_t BarrierLeader::worstClockNs(Whose whose) const {
     int64_t worst = 0;
     for (const auto& [rank, member] : members_)
-        if (!rounds_.isGone(rank) && member.errorNs != INT64_MAX) worst = std::max(worst, member.errorNs);
+        if ((whose == Whose::All || !rounds_.isGone(rank)) && member.errorNs != INT64_MAX) worst = std::max(worst, member.errorNs);
     return worst;
 }
 
@@ -106,7 +106,7 @@ void BarrierLeader::apply(const BarrierRounds::Step& step) {
     for (const BarrierRounds::Release& release : step.releases) {
         skew_.released(release.key, release.members.size());
         // When the word has come to all of them, by what is known of the ways.
-        const int64_t showNs = release.members.size() < 2 ? 0 : monotonicNowNs() + std::min(worstClockNs() + kWakeNs, kMostLeadNs);
+        const int64_t showNs = release.members.size() < 2 ? 0 : monotonicNowNs() + std::min(worstClockNs(Whose::Waiting) + kWakeNs, kMostLeadNs);
         for (const int rank : release.members) {
             if (rank == 0) {
                 waiting_ = false;
@@ -139,7 +139,7 @@ void BarrierLeader::shown(const SwapKey& key, int64_t atNs) {
 
 std::optional<SwapBarrierNumbers> BarrierLeader::numbers() const {
     const std::lock_guard lock(mutex_);
-    return SwapBarrierNumbers{skew_.numbers(), worstClockNs()};
+    return SwapBarrierNumbers{skew_.numbers(), worstClockNs(Whose::All)};
 }
 
 } // namespace mural

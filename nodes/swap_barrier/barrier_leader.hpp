@@ -41,7 +41,9 @@ private:
     void follow(int rank, Connection& connection);
     void take(int rank, const BarrierReady& ready, int64_t arrivedNs);
     void apply(const BarrierRounds::Step& step); // with the lock
-    [[nodiscard]] int64_t worstClockNs() const;
+    // A round waits for those that are there; the times measured are also of those that have gone, as all have when a run ends.
+    enum class Whose : uint8_t { Waiting, All };
+    [[nodiscard]] int64_t worstClockNs(Whose whose) const;
 
     const int count_;
     const ChannelSecret secret_;

@@ -76,6 +76,21 @@ TEST(SwapBarrier, allShowAFrameTogether) {
     EXPECT_LE(n.skew.p99Ns, n.skew.mostNs);
 }
 
+// When a run ends its members go one by one, and the leader is asked when it goes itself.
+TEST(SwapBarrier, numbersHoldTheClocksOfThoseThatWent) {
+    Lines lines;
+    BarrierLeader leader(2, secretOf(1), lines.log());
+    ASSERT_TRUE(leader.listen(true).ok());
+    auto follower = followerOf(leader, 1, lines);
+    std::thread other([&] {
+        for (uint32_t f = 1; f <= 3; ++f) (void)follower->await({1, 1, f});
+        follower.reset();
+    });
+    for (uint32_t f = 1; f <= 4; ++f) leader.await({1, 1, f}); // the fourth goes on when the other is known to be gone
+    other.join();
+    EXPECT_GT(leader.numbers()->clockErrorNs, 0);
+}
+
 TEST(SwapBarrier, aLostMemberIsToldAndNotWaitedFor) {
     Lines lines;
     BarrierLeader leader(3, secretOf(1), lines.log());
