@@ -75,18 +75,20 @@ struct StripTarget {
     bool moreBelow = false; // as above
 };
 
-// A channel of `width` bits takes 8 * width bytes.
-[[nodiscard]] constexpr size_t payloadBytes(uint16_t widths) {
-    const unsigned pairs = (widths & 0x0f0fu) + (widths >> 4 & 0x0f0fu);
-    return 8 * static_cast<size_t>((pairs & 0xff) + (pairs >> 8));
+// Of four blocks' widths. A channel of `width` bits takes 8 * width bytes.
+[[nodiscard]] constexpr size_t payloadBytes(uint64_t widths) {
+    const uint64_t pairs = (widths & 0x0f0f0f0f0f0f0f0f) + (widths >> 4 & 0x0f0f0f0f0f0f0f0f);
+    const uint64_t blocks = (pairs & 0x00ff00ff00ff00ff) + (pairs >> 8 & 0x00ff00ff00ff00ff);
+    return 8 * static_cast<size_t>(blocks * 0x0001000100010001 >> 48);
 }
 // A width is 0 to 8.
-[[nodiscard]] constexpr bool validWidths(uint16_t widths) {
-    const unsigned eights = widths & 0x8888u;
+[[nodiscard]] constexpr bool validWidths(uint64_t widths) {
+    const uint64_t eights = widths & 0x8888888888888888;
     return (widths & (eights >> 1 | eights >> 2 | eights >> 3)) == 0;
 }
 
-// Takes head and widths apart. Returns the bytes that the strip takes, or 0 if it is cut short or no strip.
+// Takes head and widths apart; kSlackBytes behind the bytes may be read. Returns the bytes that the strip takes, or 0 if it is
+// cut short or no strip.
 [[nodiscard]] size_t parseStrip(std::span<const std::byte> bytes, unsigned blocks, ParsedStrip& into);
 
 } // namespace mural::compositor::bitplane

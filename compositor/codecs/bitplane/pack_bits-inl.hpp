@@ -7,8 +7,10 @@
 #define MURAL_PACK_BITS_INL
 #endif
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 #include <hwy/highway.h>
 
@@ -59,31 +61,50 @@ HWY_INLINE uint8_t* packChannel(const uint8_t* bytes, unsigned width, uint8_t* i
     return into + 8 * width;
 }
 
-HWY_INLINE const uint8_t* unpackChannel(const uint8_t* from, unsigned width, uint8_t* bytes) {
+using Pairs64 = hn::Simd<uint64_t, 4, 0>;
+
+// Which bits of a byte come from the groups of 4, 2 and 1 bits, and how far those of the last two go up. Whole vectors, so
+// that they are operands of what uses them.
+struct alignas(32) UnpackMasks {
+    std::array<uint64_t, 4> four, two, one, up2, down2, up1;
+};
+
+constexpr std::array<uint64_t, 4> fourTimes(uint64_t value) { return {value, value, value, value}; }
+
+constexpr UnpackMasks unpackMasksOf(unsigned width) {
+    constexpr uint64_t kEachByte = 0x0101010101010101;
+    const unsigned up2 = width & 4, up1 = width & 6;
+    return {fourTimes(width & 4 ? 0x0f * kEachByte : 0), fourTimes(width & 2 ? (3u << up2) * kEachByte : 0), fourTimes(width & 1 ? (1u << up1) * kEachByte : 0),
+            fourTimes(up2), fourTimes(4 - up2), fourTimes(up1)};
+}
+
+constexpr std::array<UnpackMasks, 8> kUnpackMasks{unpackMasksOf(0), unpackMasksOf(1), unpackMasksOf(2), unpackMasksOf(3),
+                                                  unpackMasksOf(4), unpackMasksOf(5), unpackMasksOf(6), unpackMasksOf(7)};
+
+struct Channel {
+    V32 low, high; // its 64 bytes
+};
+
+// Shifts are of 64 bits: what comes over from the neighbours is masked off.
+HWY_INLINE Channel unpackChannel(const uint8_t*& from, unsigned width) {
     const Bytes32 d;
-    const Bytes16 dh;
-    if (width == 8) {
-        hn::Store(hn::LoadU(d, from), d, bytes);
-        hn::Store(hn::LoadU(d, from + 32), d, bytes + 32);
-        return from + 64;
-    }
-    const V32 four = hn::Set(d, width & 4 ? 0x0f : 0);
-    const V32 p4 = hn::LoadU(d, from);
-    const V16 p2 = hn::LoadU(dh, from + 8 * (width & 4));
-    const V16 p1 = hn::LoadU(dh, from + 8 * (width & 6));
-    const V32 two = hn::Set(d, width & 2 ? 3 : 0);
-    const V32 x = hn::Combine(d, right(p2, 2), p2);
-    const V32 one = hn::Set(d, width & 1 ? 1 : 0);
-    const hn::Full128<uint64_t> d64;
-    const V16 halves = hn::BitCast(dh, hn::InterleaveLower(d64, hn::BitCast(d64, p1), hn::BitCast(d64, right(p1, 1))));
-    const V32 y = hn::Combine(d, right(halves, 2), halves);
-    const int shift2 = static_cast<int>(width & 4), shift1 = static_cast<int>(width & 6);
-    const auto join = [&](V32 v4, V32 v2, V32 v1) {
-        return hn::Or(hn::And(v4, four), hn::Or(left(hn::And(v2, two), shift2), left(hn::And(v1, one), shift1)));
-    };
-    hn::Store(join(p4, x, y), d, bytes);
-    hn::Store(join(right(p4, 4), right(x, 4), right(y, 4)), d, bytes + 32);
-    return from + 8 * width;
+    const Pairs64 q;
+    const uint8_t* at = from;
+    from += 8 * width;
+    if (width == 8) return {hn::LoadU(d, at), hn::LoadU(d, at + 32)};
+    const UnpackMasks& m = kUnpackMasks[width];
+    const auto loaded = [&](const std::array<uint64_t, 4>& part) { return hn::Load(q, part.data()); };
+    alignas(32) static constexpr uint64_t kTwos[4] = {0, 0, 2, 2}, kOnes[4] = {0, 1, 2, 3}, kOnesHigh[4] = {4, 5, 6, 7};
+    uint64_t ones;
+    std::memcpy(&ones, at + 8 * (width & 6), sizeof ones);
+    const auto p4 = hn::BitCast(q, hn::LoadU(d, at));
+    const auto p2 = hn::Shr(hn::BitCast(q, hn::LoadDup128(d, at + 8 * (width & 4))), hn::Load(q, kTwos));
+    const auto p1 = hn::Set(q, ones);
+    const auto low4 = hn::And(p4, loaded(m.four)), high4 = hn::And(hn::ShiftRight<4>(p4), loaded(m.four));
+    const auto low2 = hn::And(hn::Shl(p2, loaded(m.up2)), loaded(m.two)), high2 = hn::And(hn::Shr(p2, loaded(m.down2)), loaded(m.two));
+    const auto low1 = hn::And(hn::Shl(hn::Shr(p1, hn::Load(q, kOnes)), loaded(m.up1)), loaded(m.one));
+    const auto high1 = hn::And(hn::Shl(hn::Shr(p1, hn::Load(q, kOnesHigh)), loaded(m.up1)), loaded(m.one));
+    return {hn::BitCast(d, hn::Or(low4, hn::Or(low2, low1))), hn::BitCast(d, hn::Or(high4, hn::Or(high2, high1)))};
 }
 
 #else

@@ -1,5 +1,6 @@
 #include "compositor/codecs/bitplane/strip_code.hpp"
 
+#include <array>
 #include <bit>
 #include <cstring>
 
@@ -21,15 +22,20 @@ namespace mural::compositor::bitplane::HWY_NAMESPACE {
 
 size_t encode(const StripSource& source, const StripKind& kind, std::byte* into) { return encodeStripScalar(source, kind, into); }
 void decode(const ParsedStrip& strip, const StripKind& kind, const StripTarget& target) { decodeStripScalar(strip, kind, target); }
-void addToRows(const StripTarget& target, Arithmetic a, const uint32_t* what) {
-    for (unsigned y = 0; y < kStripRows; ++y)
-        for (unsigned x = 0; x < target.blocks * kBlockColumns; ++x) {
+void finishFirst(const StripTarget& target, Arithmetic a, unsigned leftWords) {
+    std::array<uint32_t, kTileColumns> sums{};
+    for (unsigned x = 0; x < target.blocks * kBlockColumns; ++x) {
+        const uint32_t left = x >= leftWords ? sums[x - leftWords] : 0;
+        for (unsigned y = 0; y < kStripRows; ++y) {
             std::byte* at = target.rows + y * target.strideBytes + 4 * x;
             uint32_t word;
             std::memcpy(&word, at, sizeof word);
-            word = turnedBack(a, add(a, turned(a, word), what[x]));
+            const uint32_t sum = add(a, turned(a, word), left);
+            if (y == 0) sums[x] = sum;
+            word = turnedBack(a, sum);
             std::memcpy(at, &word, sizeof word);
         }
+    }
 }
 
 #else
@@ -43,13 +49,15 @@ constexpr size_t kSteps = kBlockColumns / kLanes;
 
 template <Arithmetic A> using Lane = std::conditional_t<A == Arithmetic::Bytes, uint8_t, std::conditional_t<A == Arithmetic::Halves, uint16_t, uint32_t>>;
 
-template <Arithmetic A> HWY_INLINE W subtracted(W a, W b) {
-    const hn::Repartition<Lane<A>, Words> d;
-    return hn::BitCast(Words(), hn::Sub(hn::BitCast(d, a), hn::BitCast(d, b)));
+template <Arithmetic A, class V> HWY_INLINE V subtracted(V a, V b) {
+    const hn::DFromV<V> words;
+    const hn::Repartition<Lane<A>, hn::DFromV<V>> d;
+    return hn::BitCast(words, hn::Sub(hn::BitCast(d, a), hn::BitCast(d, b)));
 }
-template <Arithmetic A> HWY_INLINE W added(W a, W b) {
-    const hn::Repartition<Lane<A>, Words> d;
-    return hn::BitCast(Words(), hn::Add(hn::BitCast(d, a), hn::BitCast(d, b)));
+template <Arithmetic A, class V> HWY_INLINE V added(V a, V b) {
+    const hn::DFromV<V> words;
+    const hn::Repartition<Lane<A>, hn::DFromV<V>> d;
+    return hn::BitCast(words, hn::Add(hn::BitCast(d, a), hn::BitCast(d, b)));
 }
 template <Arithmetic A> HWY_INLINE W foldedLanes(W v) {
     const hn::Repartition<std::make_signed_t<Lane<A>>, Words> d;
@@ -171,13 +179,19 @@ template <Arithmetic A, Predictor P, bool kFirst> size_t encodeAs(const StripSou
     for (unsigned block = 0; block < source.blocks; ++block) {
         const size_t from = block * kBlockColumns * 4;
         if (source.moreBelow) askForBelow(source.rows, source.strideBytes, from);
+        Four d[kSteps];
         W any = hn::Zero(Words());
-        for (size_t s = 0; s < kSteps; ++s) any = hn::Or(any, ored(differences<A, P, kFirst>(source, from + s * kLanes * 4)));
+#pragma GCC unroll 4 // GCC does not at -O2, and keeps what is in the loop in memory
+        for (size_t s = 0; s < kSteps; ++s) {
+            d[s] = differences<A, P, kFirst>(source, from + s * kLanes * 4);
+            any = hn::Or(any, ored(d[s]));
+        }
         if (isZero(any)) continue; // most of many pictures
         Four sum{hn::Zero(Words()), hn::Zero(Words()), hn::Zero(Words()), hn::Zero(Words())};
         uint8_t* to = channels + count * kBlockBytes;
+#pragma GCC unroll 4
         for (size_t s = 0; s < kSteps; ++s) {
-            const Four r = residuals<A>(differences<A, P, kFirst>(source, from + s * kLanes * 4));
+            const Four r = residuals<A>(d[s]);
             const auto keep = [&](W v, unsigned channel) { hn::Store(v, Words(), reinterpret_cast<uint32_t*>(to + channel * kChannelBytes + s * kLanes * 4)); };
             keep(r.a, 0);
             keep(r.b, 1);
@@ -192,6 +206,7 @@ template <Arithmetic A, Predictor P, bool kFirst> size_t encodeAs(const StripSou
     auto* out = reinterpret_cast<uint8_t*>(into) + kStripHeadBytes;
     for (unsigned i = 0; i < count; ++i, out += 2) storeLittle(reinterpret_cast<std::byte*>(out), widths[i]);
     for (unsigned i = 0; i < count; ++i)
+#pragma GCC unroll 4
         for (unsigned c = 0; c < 4; ++c)
             if (const unsigned width = widths[i] >> (4 * c) & 15) out = packChannel(channels + i * kBlockBytes + c * kChannelBytes, width, out);
     return static_cast<size_t>(out - reinterpret_cast<uint8_t*>(into));
@@ -227,24 +242,62 @@ template <Arithmetic A> HWY_INLINE Four differencesOf(const Four& r) {
     }
 }
 
-template <Arithmetic A, Predictor P, bool kFirst> void decodeAs(const ParsedStrip& strip, const StripTarget& target) {
+template <Arithmetic A, Predictor P, bool kFirst> HWY_INLINE void rebuildUnchanged(const StripTarget& target, size_t to) {
+    const W zero = hn::Zero(Words());
+    for (size_t s = 0; s < kSteps; ++s) rebuild<A, P, kFirst>(target, to + s * kLanes * 4, {zero, zero, zero, zero});
+}
+
+#if HWY_MAX_BYTES >= 32
+
+template <class D> HWY_INLINE hn::Vec<D> wordsOf(D words, const Channel& channel, size_t step) {
+    if constexpr (hn::MaxLanes(D()) == 16) return hn::BitCast(words, hn::Combine(hn::Repartition<uint8_t, D>(), channel.high, channel.low));
+    else return hn::BitCast(words, step == 0 ? channel.low : channel.high);
+}
+
+template <Arithmetic A, Predictor P, bool kFirst, size_t kStep> HWY_INLINE void rebuildStep(const StripTarget& t, size_t to, const Channel& a, const Channel& b, const Channel& c, const Channel& e) {
+    const Words w;
+    rebuild<A, P, kFirst>(t, to + kStep * kLanes * 4, differencesOf<A>({wordsOf(w, a, kStep), wordsOf(w, b, kStep), wordsOf(w, c, kStep), wordsOf(w, e, kStep)}));
+}
+
+// A block's channels never leave the registers.
+template <Arithmetic A, Predictor P, bool kFirst> void decodeAs(const ParsedStrip& strip, const StripTarget& given) {
+    const StripTarget target = given; // pixels that are written might be the one given
+    const auto* from = reinterpret_cast<const uint8_t*>(strip.payload);
+    const uint16_t* widths = strip.widths.data();
+    for (unsigned block = 0, present = strip.present; block < target.blocks; ++block, present >>= 1) {
+        const size_t to = block * kBlockColumns * 4;
+        if (target.moreBelow) askForBelow(target.rows, target.strideBytes, to);
+        if ((present & 1) == 0) {
+            rebuildUnchanged<A, P, kFirst>(target, to);
+            continue;
+        }
+        const unsigned w = *widths++;
+        const Channel a = unpackChannel(from, w & 15), b = unpackChannel(from, w >> 4 & 15), c = unpackChannel(from, w >> 8 & 15);
+        const Channel e = w >> 12 ? unpackChannel(from, w >> 12) : Channel{hn::Zero(Bytes32()), hn::Zero(Bytes32())}; // of opaque pictures
+        rebuildStep<A, P, kFirst, 0>(target, to, a, b, c, e);
+        if constexpr (kSteps == 2) rebuildStep<A, P, kFirst, 1>(target, to, a, b, c, e);
+    }
+}
+
+#else
+
+template <Arithmetic A, Predictor P, bool kFirst> void decodeAs(const ParsedStrip& strip, const StripTarget& given) {
+    const StripTarget target = given;
     alignas(64) uint8_t channels[kMostBlocks * kBlockBytes];
     const auto* from = reinterpret_cast<const uint8_t*>(strip.payload);
     const auto count = static_cast<unsigned>(std::popcount(strip.present));
-    // All are unpacked before the first is read: a vector is read whole that was written in parts.
     for (unsigned i = 0; i < count; ++i)
         for (unsigned c = 0; c < 4; ++c) {
             uint8_t* to = channels + i * kBlockBytes + c * kChannelBytes;
             if (const unsigned width = strip.widths[i] >> (4 * c) & 15) from = unpackChannel(from, width, to);
             else std::memset(to, 0, kChannelBytes);
         }
-    const W zero = hn::Zero(Words());
     const uint8_t* next = channels;
     for (unsigned block = 0; block < target.blocks; ++block) {
         const size_t to = block * kBlockColumns * 4;
         if (target.moreBelow) askForBelow(target.rows, target.strideBytes, to);
         if ((strip.present >> block & 1) == 0) {
-            for (size_t s = 0; s < kSteps; ++s) rebuild<A, P, kFirst>(target, to + s * kLanes * 4, {zero, zero, zero, zero});
+            rebuildUnchanged<A, P, kFirst>(target, to);
             continue;
         }
         for (size_t s = 0; s < kSteps; ++s) {
@@ -254,6 +307,8 @@ template <Arithmetic A, Predictor P, bool kFirst> void decodeAs(const ParsedStri
         next += kBlockBytes;
     }
 }
+
+#endif
 
 template <class Do> auto withKind(const StripKind& kind, Do&& each) {
     const auto withPredictor = [&]<Arithmetic A>() {
@@ -277,19 +332,36 @@ void decode(const ParsedStrip& strip, const StripKind& kind, const StripTarget& 
     withKind(kind, [&]<Arithmetic A, Predictor P, bool kFirst>() { decodeAs<A, P, kFirst>(strip, target); });
 }
 
-template <Arithmetic A> void addAs(const StripTarget& target, const uint32_t* what) {
+// Four words at a time: sums within them, and the last pixel's of those before.
+template <Arithmetic A> void finishAs(const StripTarget& target, unsigned leftWords) {
+    const Quad d;
+    const hn::Full128<uint64_t> d64;
+    alignas(64) uint32_t changes[kTileColumns];
+    const unsigned columns = target.blocks * kBlockColumns;
+    auto before = hn::Zero(d);
+    for (unsigned x = 0; x < columns; x += 4) {
+        auto v = hn::LoadU(d, reinterpret_cast<const uint32_t*>(target.rows + 4 * x));
+        if constexpr (A == Arithmetic::RotatedWords) v = hn::RotateRight<8>(v);
+        auto sum = v;
+        if (leftWords == 1) sum = added<A>(sum, hn::ShiftLeftBytes<4>(d, sum));
+        if (leftWords <= 2) sum = added<A>(sum, hn::ShiftLeftBytes<8>(d, sum));
+        sum = added<A>(sum, before);
+        hn::Store(subtracted<A>(sum, v), d, changes + x);
+        before = leftWords == 4 ? sum : hn::BitCast(d, hn::InterleaveUpper(d64, hn::BitCast(d64, sum), hn::BitCast(d64, sum)));
+        if (leftWords == 1) before = hn::Broadcast<3>(sum);
+    }
     for (unsigned y = 0; y < kStripRows; ++y)
-        for (unsigned x = 0; x < target.blocks * kBlockColumns; x += kLanes) {
+        for (unsigned x = 0; x < columns; x += kLanes) {
             std::byte* at = target.rows + y * target.strideBytes + 4 * x;
-            storeTurnedBack<A>(added<A>(loadTurned<A>(at), hn::LoadU(Words(), what + x)), at);
+            storeTurnedBack<A>(added<A>(loadTurned<A>(at), hn::Load(Words(), changes + x)), at);
         }
 }
 
-void addToRows(const StripTarget& target, Arithmetic a, const uint32_t* what) {
-    if (a == Arithmetic::Bytes) addAs<Arithmetic::Bytes>(target, what);
-    else if (a == Arithmetic::Halves) addAs<Arithmetic::Halves>(target, what);
-    else if (a == Arithmetic::Words) addAs<Arithmetic::Words>(target, what);
-    else addAs<Arithmetic::RotatedWords>(target, what);
+void finishFirst(const StripTarget& target, Arithmetic a, unsigned leftWords) {
+    if (a == Arithmetic::Bytes) finishAs<Arithmetic::Bytes>(target, leftWords);
+    else if (a == Arithmetic::Halves) finishAs<Arithmetic::Halves>(target, leftWords);
+    else if (a == Arithmetic::Words) finishAs<Arithmetic::Words>(target, leftWords);
+    else finishAs<Arithmetic::RotatedWords>(target, leftWords);
 }
 
 #endif
@@ -302,22 +374,12 @@ namespace mural::compositor::bitplane {
 
 HWY_EXPORT(encode);
 HWY_EXPORT(decode);
-HWY_EXPORT(addToRows);
+HWY_EXPORT(finishFirst);
 
 size_t encodeStrip(const StripSource& source, const StripKind& kind, std::byte* into) { return HWY_DYNAMIC_DISPATCH(encode)(source, kind, into); }
 void decodeStrip(const ParsedStrip& strip, const StripKind& kind, const StripTarget& target) { HWY_DYNAMIC_DISPATCH(decode)(strip, kind, target); }
 
-void finishFirstStrip(const StripTarget& target, Arithmetic arithmetic, unsigned leftWords) {
-    std::array<uint32_t, kTileColumns> sums{}, changes{};
-    for (unsigned x = 0; x < target.blocks * kBlockColumns; ++x) {
-        uint32_t word;
-        std::memcpy(&word, target.rows + 4 * x, sizeof word);
-        const uint32_t left = x >= leftWords ? sums[x - leftWords] : 0;
-        changes[x] = left;
-        sums[x] = add(arithmetic, turned(arithmetic, word), left);
-    }
-    HWY_DYNAMIC_DISPATCH(addToRows)(target, arithmetic, changes.data());
-}
+void finishFirstStrip(const StripTarget& target, Arithmetic arithmetic, unsigned leftWords) { HWY_DYNAMIC_DISPATCH(finishFirst)(target, arithmetic, leftWords); }
 
 } // namespace mural::compositor::bitplane
 #endif

@@ -9,7 +9,7 @@ namespace mural::compositor::bitplane {
 size_t encodeStrip(const StripSource& source, const StripKind& kind, std::byte* into);
 size_t encodeStripScalar(const StripSource& source, const StripKind& kind, std::byte* into);
 
-// target.above is row -1 of the picture; in the first strip it holds zeros, and addToRows does the rest.
+// target.above is row -1 of the picture; in the first strip it holds zeros, and finishFirstStrip does the rest.
 void decodeStrip(const ParsedStrip& strip, const StripKind& kind, const StripTarget& target);
 void decodeStripScalar(const ParsedStrip& strip, const StripKind& kind, const StripTarget& target);
 

@@ -109,12 +109,17 @@ const char* TileCoder::decode(const TileShape& shape, std::span<const std::byte>
 }
 
 const char* TileCoder::decodeStrips(const TileShape& shape, std::span<const std::byte> bytes, Predictor predictor, std::byte* rows, ptrdiff_t strideBytes) {
-    // Unpacking reads behind a channel; so what is read gets bytes behind it.
-    std::memcpy(scratch_->bytes, bytes.data(), bytes.size());
-    std::span<const std::byte> left(scratch_->bytes, bytes.size());
+    std::span<const std::byte> left = bytes;
+    bool moved = false;
     std::memset(scratch_->above, 0, sizeof scratch_->above);
     ParsedStrip strip;
     for (unsigned y = 0; y < shape.rows; y += kStripRows) {
+        // Unpacking reads behind a channel; so the last ones get bytes behind them.
+        if (!moved && left.size() < kStripBoundBytes + kSlackBytes) {
+            std::memcpy(scratch_->ending, left.data(), left.size());
+            left = {scratch_->ending, left.size()};
+            moved = true;
+        }
         const size_t size = parseStrip(left, wholeBlocks(shape), strip);
         if (size == 0) return "a strip is cut short or holds an impossible width";
         left = left.subspan(size);

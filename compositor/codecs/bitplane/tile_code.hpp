@@ -35,7 +35,7 @@ private:
     struct Scratch {
         alignas(64) std::byte pixels[kTileBytes];          // a tile at the edge, made whole blocks
         alignas(64) std::byte above[4 * kTileColumns];     // row -1 of the first strip
-        std::byte bytes[kTileBoundBytes + kSlackBytes];    // encoded bytes with room behind them
+std::byte ending[kStripBoundBytes + 2 * kSlackBytes]; // the last encoded bytes of a tile, with room behind them
     };
     std::unique_ptr<Scratch> scratch_;
 };
