@@ -55,22 +55,27 @@ template <class D> hn::Vec<D> over10(D d, hn::Vec<D> front, hn::Vec<D> back) {
     return hn::Or(hn::Or(red, hn::ShiftLeft<10>(green)), hn::Or(hn::ShiftLeft<20>(blue), hn::ShiftLeft<30>(cover)));
 }
 
-// Vectors of which the source changes nothing are neither blended nor written: most of a picture is empty.
+// Vectors of which the source changes nothing are neither blended nor written: most of a picture is empty. Two at once, for a
+// line of the cache is one vector with the widest of them only.
 template <bool kTen> size_t blendWords(uint32_t* pixels, const uint32_t* source, size_t count, bool inFront) {
     const hn::ScalableTag<uint32_t> d;
-    const size_t step = hn::Lanes(d);
+    const size_t lanes = hn::Lanes(d), step = 2 * lanes;
     const auto zero = hn::Zero(d);
+    const auto blended = [&](hn::Vec<decltype(d)> s, hn::Vec<decltype(d)> p) {
+        const auto front = inFront ? s : p;
+        const auto back = inFront ? p : s;
+        return kTen ? over10(d, front, back) : over8(d, front, back);
+    };
     size_t i = 0;
     for (; i + step <= count; i += step) {
         askFor(source + i + kAheadWords, 4 * step);
         askFor(pixels + i + kAheadWords, 4 * step);
-        const auto s = hn::LoadU(d, source + i);
-        if (hn::AllTrue(d, hn::Eq(s, zero))) continue;
-        const auto p = hn::LoadU(d, pixels + i);
-        const auto front = inFront ? s : p;
-        const auto back = inFront ? p : s;
-        hn::StoreU(kTen ? over10(d, front, back) : over8(d, front, back), d, pixels + i);
+        const auto first = hn::LoadU(d, source + i), second = hn::LoadU(d, source + i + lanes);
+        if (hn::AllTrue(d, hn::Eq(hn::Or(first, second), zero))) continue;
+        hn::StoreU(blended(first, hn::LoadU(d, pixels + i)), d, pixels + i);
+        hn::StoreU(blended(second, hn::LoadU(d, pixels + i + lanes)), d, pixels + i + lanes);
     }
+    for (; i + lanes <= count; i += lanes) hn::StoreU(blended(hn::LoadU(d, source + i), hn::LoadU(d, pixels + i)), d, pixels + i);
     return i;
 }
 
