@@ -23,22 +23,29 @@ case = failures.case
 WIDTH, HEIGHT = 252, 190
 BACK = "is back in the picture"
 PROGRAM = "long_scene"
+MOST = 6000 # frames of a run: on a busy machine a return takes seconds, and a run that does not end as it is told takes too long
+TAIL = 60 # frames that are drawn when a case has seen what it waits for
+EXACT = 20 # of them, the last ones: nothing may differ
 
 
-NATIVE = {} # pictures by frames and environment: several cases draw the same
+NATIVE = {} # pictures by environment: several cases draw the same
 
 
 def native_pictures(context, folder, frames, environment):
-    """The pictures as the program draws them alone, and without the pauses."""
-    environment = dict(environment, SCENE_PAUSE_US="0")
-    key = (frames, tuple(sorted(environment.items())))
-    if key not in NATIVE:
+    """The first pictures as the program draws them alone, and without the pauses: they are the same however many follow."""
+    environment = {name: value for name, value in environment.items() if name.startswith("SCENE_")}
+    environment["SCENE_PAUSE_US"] = "0"
+    key = tuple(sorted(environment.items()))
+    if len(NATIVE.get(key, ())) < frames:
+        drawn = frames + frames // 4 # the next case may need a few more
         run = programs.run_program(context.build, PROGRAM, os.path.join(folder, "native"), context.display,
-                                   "%dx%d" % (WIDTH, HEIGHT), frames, more_environment=environment)
+                                   "%dx%d" % (WIDTH, HEIGHT), drawn, more_environment=environment)
         if run.status != 0:
             raise SystemExit("the program fails natively: status %s: %s" % (run.status, run.output[-200:]))
         NATIVE[key] = [pictures.read_ppm(path) for _, path in sorted(run.frames().items())]
-    return NATIVE[key]
+        if len(NATIVE[key]) != drawn:
+            raise SystemExit("%d native pictures of %d" % (len(NATIVE[key]), drawn))
+    return NATIVE[key][:frames]
 
 
 def saved_pictures(folder):
@@ -46,42 +53,63 @@ def saved_pictures(folder):
 
 
 class Watch:
-    """One run of the program with pictures into files, and what became of its nodes."""
+    """One run of the program with pictures into files, and what became of its nodes. It ends when enough was seen, or with the last of its frames."""
 
-    def __init__(self, context, frames, options=(), environment=None, tiles="2x1", saved=None, beside=False):
+    def __init__(self, context, frames=MOST, options=(), environment=None, tiles="2x1", every=1, beside=False, display="none"):
         self.context, self.frames, self.tiles = context, frames, tiles
-        self.saved = saved # frames of which there is a picture, from 1; None: all
+        self.every = every # frames from one that there is a picture of to the next
         self.beside = beside # the same program runs a second time, in a smaller window
         self.environment = {"SCENE_PAUSE_US": "15000"}
         self.environment.update(environment or {})
         self.folder = tempfile.TemporaryDirectory(prefix="mural-rejoin.")
         self.out = os.path.join(self.folder.name, "out")
         self.report_file = os.path.join(self.folder.name, "report.json")
-        self.options = divided(tiles) + ["--display", "none", "--out", self.out, "--report", self.report_file] + list(options)
-        if saved:
-            self.options += ["--save", ",".join(map(str, saved))]
+        self.end_file = os.path.join(self.folder.name, "end")
+        self.least, self.drawn = frames, None # frames that there have to be, and that there were
+        self.options = divided(tiles) + ["--display", display, "--report", self.report_file] + list(options)
+        if display == "none":
+            self.options += ["--out", self.out]
+        if every > 1:
+            self.options += ["--save", ",".join(map(str, range(every, frames + 1, every)))]
 
     def start(self):
         command = [self.context.program(PROGRAM), "--frames", str(self.frames), "--size", "%dx%d" % (WIDTH, HEIGHT)]
         if self.beside:
             command = ["/bin/sh", "-c", '"$1" "$2" "$3" "$4" 131x77 > /dev/null & exec "$@"', "sh"] + command
-        return self.context.run(command, self.options, self.environment)
+        return self.context.run(command, self.options, dict(self.environment, SCENE_END_FILE=self.end_file))
+
+    def enough(self, run, tail=TAIL):
+        """What the case waits for was seen: the program draws so many frames more."""
+        self.least = min(self.frames, latest_frame(run) + 1 + tail)
+        with open(self.end_file + ".new", "w", encoding="ascii") as file:
+            file.write(str(tail))
+        os.rename(self.end_file + ".new", self.end_file) # the program looks before each frame, and finds all of it
+
+    def end(self, run):
+        """What is wrong with the run's end; how many frames there were is known then."""
+        wrong = failures.check_end(run, 0)
+        self.drawn = len(frame_times(run))
+        if wrong is None and self.drawn < self.least:
+            wrong = "the program drew %d frames, not %d at least" % (self.drawn, self.least)
+        return wrong
 
     def report(self):
         with open(self.report_file, encoding="utf-8") as file:
             return json.load(file)
 
+    def native(self):
+        """Of each frame that was drawn."""
+        return native_pictures(self.context, self.folder.name, self.drawn, self.environment)
+
     def differing(self, run):
-        """By frame: the columns that differ from the native picture, or a text that says what is wrong."""
-        wrong = failures.check_end(run, 0)
+        """By picture: the columns that differ from the native one, or a text that says what is wrong."""
+        wrong = self.end(run)
         if wrong is not None:
             return wrong
         saved = saved_pictures(self.out)
-        native = native_pictures(self.context, self.folder.name, self.frames, self.environment)
-        wanted = self.saved or range(1, self.frames + 1)
-        if len(saved) != len(wanted) or len(native) != self.frames:
-            return "%d pictures instead of %d, natively %d" % (len(saved), len(wanted), len(native))
-        native = [native[frame - 1] for frame in wanted]
+        native = self.native()[self.every - 1::self.every]
+        if len(saved) != len(native):
+            return "%d pictures instead of %d" % (len(saved), len(native))
         return [columns_that_differ(a, b) for a, b in zip(native, saved)]
 
 
@@ -91,11 +119,12 @@ def divided(tiles):
 
 
 def columns_that_differ(first, second):
-    found = set()
+    different = 0 # bits, of all rows: cheaper by far than pixel by pixel
     for a, b in zip(first.rows, second.rows):
         if a != b:
-            found.update(x for x in range(len(a) // 3) if a[3 * x:3 * x + 3] != b[3 * x:3 * x + 3])
-    return found
+            different |= int.from_bytes(a, "little") ^ int.from_bytes(b, "little")
+    found = different.to_bytes((different.bit_length() + 7) // 8, "little")
+    return {at // 3 for at, value in enumerate(found) if value}
 
 
 def nodes_of(run, count=2):
@@ -107,26 +136,27 @@ def said(run, text):
     return [line for line in run.standard_error if text in line]
 
 
-def judged(differing, spans, tail):
+def judged(differing, spans, tail, every=1):
     """spans: (first frame, columns that may differ), …: what may differ from there on, as long as it does. Behind the last
-    difference `tail` frames at least must be exact."""
-    allowed = set()
-    for frame, columns in enumerate(differing):
+    difference `tail` frames at least must be exact. `every`: as that of the run."""
+    allowed, behind = set(), every * len(differing)
+    frames = range(every - 1, behind, every)
+    for frame, columns in zip(frames, differing):
         for first, more in spans:
             if frame >= first:
                 allowed = allowed | set(more)
         strange = columns - allowed
         if strange:
             return "frame %d differs in columns %d to %d" % (frame, min(strange), max(strange))
-    late = [frame for frame, columns in enumerate(differing) if columns]
-    if late and late[-1] >= len(differing) - tail:
-        return "frame %d of %d still differs, in %d columns" % (late[-1], len(differing), len(differing[late[-1]]))
+    late = [(frame, len(columns)) for frame, columns in zip(frames, differing) if columns]
+    if late and late[-1][0] >= behind - tail:
+        return "frame %d of %d still differs, in %d columns" % (late[-1][0], behind, late[-1][1])
     return None
 
 
-def kill_and_look(context, frames=200, options=(), environment=None, victims=(1,), at=60, tiles="2x1", missing_columns=None, where="local", saved=None, most=None):
+def kill_and_look(context, frames=MOST, options=(), environment=None, victims=(1,), at=60, tiles="2x1", missing_columns=None, where="local", every=1, most=None):
     """Kills the nodes one after the other, each when the one before is back."""
-    watch = Watch(context, frames, options, environment, tiles, saved)
+    watch = Watch(context, frames, options, environment, tiles, every)
     half = WIDTH // 2
     columns = {0: range(0, half), 1: range(half, WIDTH)}
     spans = []
@@ -142,11 +172,12 @@ def kill_and_look(context, frames=200, options=(), environment=None, victims=(1,
             if not run.wait_for_line(BACK, 30):
                 return "node %d did not come back (of %s): %s" % (number, pids, " | ".join(run.standard_error[-4:]))
             time.sleep(0.3) # a frame that was under way when it came is the other node's alone
+        watch.enough(run, max(TAIL, 4 * every))
         differing = watch.differing(run)
         if isinstance(differing, str):
             return differing
-        wrong = judged(differing, spans, 20) if saved is None else "pictures differ" if any(differing) else None
-        if wrong is None and saved is None and not any(differing) and not tiles.startswith("queue"):
+        wrong = judged(differing, spans, max(EXACT, 3 * every), every)
+        if wrong is None and every == 1 and not any(differing) and not tiles.startswith("queue"):
             wrong = "nothing was ever missing: was nothing killed?"
         if wrong is None and most is not None and sum(map(bool, differing)) > most:
             wrong = "%d frames lack something, not %d at most" % (sum(map(bool, differing)), most)
@@ -184,13 +215,13 @@ def one_node(context):
 
 @case
 def several_one_after_the_other(context):
-    return kill_and_look(context, frames=400, victims=(1, 0, 1))
+    return kill_and_look(context, victims=(1, 0, 1))
 
 
 @case
 def with_economy(context):
     """What nodes have had begins anew with each that comes back."""
-    return kill_and_look(context, frames=400, options=("--economy", "on"), victims=(1, 0))
+    return kill_and_look(context, options=("--economy", "on"), victims=(1, 0))
 
 
 @case
@@ -219,7 +250,7 @@ def waiting_node(context):
                 while "waits for heads" not in waiting.stderr.readline():
                     if waiting.poll() is not None:
                         return "the waiting node ended"
-                watch = Watch(context, 250, ("--nodes", "%s,%s" % (host, host), "--launch", "%s call --secret %s" % (context.mural, secret)))
+                watch = Watch(context, options=("--nodes", "%s,%s" % (host, host), "--launch", "%s call --secret %s" % (context.mural, secret)))
                 with watch.start() as run:
                     if not run.wait_for_line("frame 60 "):
                         return "the program did not start: " + " | ".join(run.standard_error[-3:])
@@ -227,8 +258,9 @@ def waiting_node(context):
                     os.kill(children_of(waiting.pid)[1], signal.SIGKILL)
                     if not run.wait_for_line(BACK, 30):
                         return "it did not come back: " + " | ".join(run.standard_error[-4:])
+                    watch.enough(run)
                     differing = watch.differing(run)
-                    return differing if isinstance(differing, str) else judged(differing, [(frame - 3, range(WIDTH))], 20)
+                    return differing if isinstance(differing, str) else judged(differing, [(frame - 3, range(WIDTH))], EXACT)
             finally:
                 waiting.terminate()
 
@@ -248,14 +280,15 @@ def children_of(parent):
 @case
 def wall_windows(context):
     """Nodes that show their tiles themselves: the newcomer opens its window again, and nothing is left behind."""
-    with context.run([context.program(PROGRAM), "--frames", "200", "--size", "%dx%d" % (WIDTH, HEIGHT)],
-                     ("--tiles", "2x1", "--display", "windows"), {"SCENE_PAUSE_US": "15000"}) as run:
+    watch = Watch(context, display="windows")
+    with watch.start() as run:
         if not run.wait_for_line("frame 60 "):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
         os.kill(first_nodes(run)[1], signal.SIGKILL)
         if not run.wait_for_line(BACK, 30):
             return "it did not come back: " + " | ".join(run.standard_error[-4:])
-        wrong = failures.check_end(run, 0)
+        watch.enough(run)
+        wrong = watch.end(run)
         return "the wall was lost: " + " | ".join(said(run, "windows")) if wrong is None and said(run, "wall windows are lost") else wrong
 
 
@@ -268,14 +301,14 @@ def in_turns(context):
 @case
 def all_that_take_turns(context):
     """Nobody is left that knows whose turn it is: it begins anew."""
-    return kill_and_compare_ends(context, ("--dplex", "3"), "1x1", (0, 1, 2), compared=100)
+    return kill_and_compare_ends(context, ("--dplex", "3"), "1x1", (0, 1, 2))
 
 
 @case
 def turns_over_earlier_frames(context):
     """One node goes on drawing all frames: it comes back as that one, or as another."""
     for victim in (0, 1):
-        wrong = kill_and_compare_ends(context, ("--dplex", "2"), "1x1", (victim,), environment={"SCENE_KEEPS": "1"}, fewest=100)
+        wrong = kill_and_compare_ends(context, ("--dplex", "2"), "1x1", (victim,), environment={"SCENE_KEEPS": "1"})
         if wrong is not None:
             return "node %d: %s" % (victim, wrong)
     return None
@@ -284,19 +317,19 @@ def turns_over_earlier_frames(context):
 @case
 def tiles_of_a_queue(context):
     """The other node takes them at its next full clear, long before the lost one is back."""
-    return kill_and_look(context, frames=300, tiles="queue 32x32", missing_columns=range(WIDTH), victims=(1, 0), most=24)
+    return kill_and_look(context, tiles="queue 32x32", missing_columns=range(WIDTH), victims=(1, 0), most=24)
 
 
 @case
 def areas_at_random(context):
     """They change with every frame: who comes back has to have those of the very frame."""
-    return kill_and_look(context, frames=400, tiles="queue 16x16", missing_columns=range(WIDTH), victims=(1, 0, 1), environment={"MURAL_PLANT": "areas"})
+    return kill_and_look(context, tiles="queue 16x16", missing_columns=range(WIDTH), victims=(1, 0, 1), environment={"MURAL_PLANT": "areas"})
 
 
 @case
 def areas_of_frames_over_earlier_frames(context):
     """Windows that are never cleared keep their areas: the newcomer draws all from the start, and then has the same."""
-    return kill_and_look(context, frames=300, tiles="queue 16x16", missing_columns=range(WIDTH), environment={"MURAL_PLANT": "areas", "SCENE_KEEPS": "1"})
+    return kill_and_look(context, tiles="queue 16x16", missing_columns=range(WIDTH), environment={"MURAL_PLANT": "areas", "SCENE_KEEPS": "1"})
 
 
 @case
@@ -315,10 +348,9 @@ UNDER_WAY = 12 # frames: of those that a program has sent when a node is lost, o
 LONGEST_MS = 8000 # of a frame: timeouts are 20 s and more
 
 
-def ranges_come_back(context, rounds, nodes, options, tiles="1x1", environment=None, where="local", frames=None, beside=False):
+def ranges_come_back(context, rounds, nodes, options, tiles="1x1", environment=None, where="local", frames=MOST, beside=False):
     """Nodes that share draws. rounds: the nodes that are killed at once, each round when those of the one before are back. Each frame is exact
     that all of them share, from a few behind each return on; nobody waits for a timeout. Frames have no picture while the collector is away."""
-    frames = frames or 100 + 150 * len(rounds)
     watch = Watch(context, frames, options, dict(environment or {}, SCENE_SHARES="1"), tiles, beside=beside)
     whole = []  # spans of frames that must be exact: first, behind the last
     with watch.start() as run:
@@ -337,14 +369,16 @@ def ranges_come_back(context, rounds, nodes, options, tiles="1x1", environment=N
             begin = latest_frame(run) + UNDER_WAY
             while latest_frame(run) < begin + 2 * UNDER_WAY and run.process.poll() is None:
                 time.sleep(0.01)
-        whole.append((begin, frames))
-        wrong = failures.check_end(run, 0)
+        watch.enough(run)
+        wrong = watch.end(run)
         if wrong is not None:
             return wrong
+        frames = watch.drawn
+        whole.append((begin, frames))
         longest = max(frame_times(run)[40:])
         report = watch.report()["nodes"]
         saved = saved_pictures(watch.out)
-        native = {tuple(picture.rows): frame for frame, picture in enumerate(native_pictures(context, watch.folder.name, frames, watch.environment))}
+        native = {tuple(picture.rows): frame for frame, picture in enumerate(watch.native())}
         if len(native) != frames:
             return "%d different native pictures of %d" % (len(native), frames)
         shown = [native.get(tuple(picture.rows)) for picture in saved]
@@ -409,7 +443,7 @@ def ranges_of_tiles(context):
 @case
 def ranges_in_turns(context):
     """Two pictures that take turns, of two nodes each."""
-    return ranges_come_back(context, ((1,), (2,), (0,)), 4, by_ranges("streaming", 2) + ("--dplex", "2"), frames=700)
+    return ranges_come_back(context, ((1,), (2,), (0,)), 4, by_ranges("streaming", 2) + ("--dplex", "2"))
 
 
 @case
@@ -437,7 +471,7 @@ def ranges_of_two_programs(context):
 @case
 def ranges_that_are_busy(context):
     """No pause: the nodes are what everybody waits for."""
-    return ranges_come_back(context, ((1,), (0,)), 2, by_ranges("streaming", 2), environment={"SCENE_PAUSE_US": "0"}, frames=1800)
+    return ranges_come_back(context, ((1,), (0,)), 2, by_ranges("streaming", 2), environment={"SCENE_PAUSE_US": "0"}, frames=5 * MOST)
 
 
 @case
@@ -451,8 +485,7 @@ def chunks_come_back(context):
 @case
 def chunks_of_a_lost_node(context):
     """It does not come back: the others take its chunks, and from then on nothing is missing."""
-    frames = 240
-    watch = Watch(context, frames, by_ranges("binary-swap", 3) + ("--chunk-queue", "60", "--restart-nodes", "0"), {"SCENE_SHARES": "1"}, tiles="1x1")
+    watch = Watch(context, MOST, by_ranges("binary-swap", 3) + ("--chunk-queue", "60", "--restart-nodes", "0"), {"SCENE_SHARES": "1"}, tiles="1x1")
     with watch.start() as run:
         if not run.wait_for_line("frame 40 "):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
@@ -460,11 +493,11 @@ def chunks_of_a_lost_node(context):
         if not run.wait_for_line("the others take its chunks", 20):
             return "nobody said who draws its chunks: " + " | ".join(run.standard_error[-4:])
         begin = latest_frame(run) + UNDER_WAY
-        wrong = failures.check_end(run, 0)
+        watch.enough(run, UNDER_WAY + 60)
+        wrong = watch.end(run)
         if wrong is not None:
             return wrong
-        native = native_pictures(context, watch.folder.name, frames, watch.environment)
-        behind = [columns_that_differ(a, b) for a, b in zip(native, saved_pictures(watch.out))][begin:]
+        behind = [columns_that_differ(a, b) for a, b in zip(watch.native(), saved_pictures(watch.out))][begin:]
         if len(behind) < 60:
             return "only %d frames were left" % len(behind)
         return "%d of %d pictures behind its loss differ" % (sum(map(bool, behind)), len(behind)) if any(behind) else None
@@ -473,37 +506,37 @@ def chunks_of_a_lost_node(context):
 @case
 def ranges_over_earlier_frames(context):
     """Nothing clears, so nothing is shared: the collector has all of it, and gets all of it again."""
-    watch = Watch(context, 600, by_ranges("serial", 2), {"SCENE_SHARES": "1", "SCENE_KEEPS": "1"}, tiles="1x1")
+    watch = Watch(context, MOST, by_ranges("serial", 2), {"SCENE_SHARES": "1", "SCENE_KEEPS": "1"}, tiles="1x1")
     with watch.start() as run:
         if not run.wait_for_line("frame 40 "):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
         os.kill(first_nodes(run)[0], signal.SIGKILL)
         if not run.wait_for_line(BACK, 30):
             return "it did not come back: " + " | ".join(run.standard_error[-6:])
-        wrong = failures.check_end(run, 0)
+        watch.enough(run, UNDER_WAY + 100)
+        wrong = watch.end(run)
         if wrong is not None:
             return wrong
-        native = native_pictures(context, watch.folder.name, watch.frames, watch.environment)
-        behind = [columns_that_differ(a, b) for a, b in zip(native[-100:], saved_pictures(watch.out)[-100:])]
+        behind = [columns_that_differ(a, b) for a, b in zip(watch.native()[-100:], saved_pictures(watch.out)[-100:])]
         return "%d of the last pictures differ" % sum(map(bool, behind)) if any(behind) else None
 
 
 @case
 def frames_over_earlier_frames(context):
     """Nothing clears: what it left out would be missing. It finds that out before anybody sees it, and draws all."""
-    return kill_and_look(context, frames=500, environment={"SCENE_KEEPS": "1"})
+    return kill_and_look(context, environment={"SCENE_KEEPS": "1"})
 
 
 @case
 def nodes_that_are_busy(context):
     """No pause: the nodes are what everybody waits for, and the newcomer is no faster."""
-    return kill_and_look(context, frames=1600, environment={"SCENE_PAUSE_US": "0"}, at=100, saved=(50, 1500, 1550, 1600))
+    return kill_and_look(context, frames=5 * MOST, environment={"SCENE_PAUSE_US": "0"}, at=100, every=50)
 
 
 @case
 def killed_while_it_catches_up(context):
     """Twice on its way: tried again, and back in the end."""
-    watch = Watch(context, 500)
+    watch = Watch(context)
     half = WIDTH // 2
     with watch.start() as run:
         if not run.wait_for_line("frame 60 "):
@@ -520,13 +553,14 @@ def killed_while_it_catches_up(context):
             os.kill(fresh, signal.SIGKILL)
         if not run.wait_for_line(BACK, 30):
             return "it did not come back: " + " | ".join(run.standard_error[-4:])
+        watch.enough(run)
         differing = watch.differing(run)
         if isinstance(differing, str):
             return differing
         tried = len(said(run, "did not come back:")) + len(said(run, "was lost:")) - 1
         if tried != 2:
             return "%d failed tries were said instead of 2: %s" % (tried, " | ".join(run.standard_error[-6:]))
-        return judged(differing, [(frame - 3, range(half, WIDTH))], 20)
+        return judged(differing, [(frame - 3, range(half, WIDTH))], EXACT)
 
 
 def fresh_node(run, known, seconds=15):
@@ -539,9 +573,10 @@ def fresh_node(run, known, seconds=15):
     return None
 
 
-def kill_and_compare_ends(context, options, tiles, victims, against=None, environment=None, compared=150, fewest=300):
-    """Frames that no node lived to show have no picture: the first and the last ones are compared."""
-    watch = Watch(context, 500, options, environment, tiles) # on a busy machine a return takes seconds
+def kill_and_compare_ends(context, options, tiles, victims, against=None, environment=None):
+    """Frames that no node lived to show have no picture: the first and the last ones are compared. No other
+    ones than those of the time that nodes were away are missing."""
+    watch = Watch(context, MOST, options, environment, tiles)
     with watch.start() as run:
         if not run.wait_for_line("frame 60 "):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
@@ -552,15 +587,20 @@ def kill_and_compare_ends(context, options, tiles, victims, against=None, enviro
         for _ in victims:
             if not run.wait_for_line(BACK, 30):
                 return "they did not come back: " + " | ".join(run.standard_error[-6:])
-        wrong = failures.check_end(run, 0)
+        back = latest_frame(run)
+        watch.enough(run, 2 * UNDER_WAY + TAIL)
+        wrong = watch.end(run)
         if wrong is not None:
             return wrong
         saved = saved_pictures(watch.out)
-        native = native_pictures(context, watch.folder.name, watch.frames, watch.environment) if against is None else undisturbed(context, watch, against)
-        if len(saved) < fewest or len(saved) > watch.frames:
-            return "%d pictures of %d frames" % (len(saved), watch.frames)
+        native = watch.native() if against is None else undisturbed(context, watch, against)
+        if len(native) != watch.drawn:
+            return "%d pictures of %d frames of an undisturbed run" % (len(native), watch.drawn)
+        away = back - frame + 2 * UNDER_WAY
+        if len(saved) < watch.drawn - away or len(saved) > watch.drawn:
+            return "%d pictures of %d frames, of which %d can lack one" % (len(saved), watch.drawn, away)
         before = [columns_that_differ(a, b) for a, b in zip(native[:frame - 3], saved)]
-        behind = [columns_that_differ(a, b) for a, b in zip(native[-compared:], saved[-compared:])]
+        behind = [columns_that_differ(a, b) for a, b in zip(native[-TAIL:], saved[-TAIL:])]
         if any(before) or any(behind):
             return "pictures differ: %d before, %d behind" % (sum(map(bool, before)), sum(map(bool, behind)))
         return None
@@ -568,7 +608,7 @@ def kill_and_compare_ends(context, options, tiles, victims, against=None, enviro
 
 def undisturbed(context, watch, options):
     """The pictures of a run of the same kind in which nothing is killed."""
-    other = Watch(context, watch.frames, options, tiles=watch.tiles)
+    other = Watch(context, watch.drawn, options, {"SCENE_PAUSE_US": "0"}, watch.tiles)
     with other.start() as run:
         run.status()
         return saved_pictures(other.out)
@@ -583,7 +623,7 @@ def all_nodes_at_once(context):
 @case
 def dies_again_and_again(context):
     """It is tried as often as was asked for, then it is said, once, that it stays lost."""
-    watch = Watch(context, 300, options=("--restart-nodes", "2"))
+    watch = Watch(context, options=("--restart-nodes", "2"))
     half = WIDTH // 2
     with watch.start() as run:
         if not run.wait_for_line("frame 60 "):
@@ -599,6 +639,7 @@ def dies_again_and_again(context):
             os.kill(fresh, signal.SIGKILL)
         if fresh_node(run, known, 4):
             return "it was started a third time"
+        watch.enough(run)
         differing = watch.differing(run)
         if isinstance(differing, str):
             return differing
@@ -609,7 +650,7 @@ def dies_again_and_again(context):
 
 def lost_for_good(context, options, words):
     """As the node was lost, so it stays; the line of the loss has the words once."""
-    watch = Watch(context, 150, options=options)
+    watch = Watch(context, options=options)
     half = WIDTH // 2
     with watch.start() as run:
         if not run.wait_for_line("frame 60 "):
@@ -619,6 +660,7 @@ def lost_for_good(context, options, words):
         os.kill(first_nodes(run)[1], signal.SIGKILL)
         if fresh_node(run, known, 1):
             return "it was started again"
+        watch.enough(run)
         differing = watch.differing(run)
         if isinstance(differing, str):
             return differing
@@ -649,7 +691,7 @@ def late_node(context, how, words):
         with open(script, "w", encoding="ascii") as file:
             file.write(LATE_HOST % ("if [ $host = 127.0.0.3 ] && ! [ -e %s ]; then : >%s; %s; fi" % (tried, tried, how)))
         os.chmod(script, 0o755)
-        watch = Watch(context, 400, ("--nodes", "127.0.0.2,127.0.0.3", "--launch", script, "--stream", "tcp", "--least-nodes", "1"))
+        watch = Watch(context, options=("--nodes", "127.0.0.2,127.0.0.3", "--launch", script, "--stream", "tcp", "--least-nodes", "1"))
         with watch.start() as run:
             if not run.wait_for_line("frame 5 "):
                 return "the program did not start: " + " | ".join(run.standard_error[-3:])
@@ -658,12 +700,13 @@ def late_node(context, how, words):
             if not run.wait_for_line("came into the picture", 30):
                 return "it did not come: " + " | ".join(run.standard_error[-4:])
             print("    " + said(run, "came into the picture")[0])
+            watch.enough(run)
             differing = watch.differing(run)
             if isinstance(differing, str):
                 return differing
             if not differing[0]:
                 return "nothing was missing in the first picture: was the node there?"
-            return judged(differing, [(0, range(WIDTH // 2, WIDTH))], 20)
+            return judged(differing, [(0, range(WIDTH // 2, WIDTH))], EXACT)
 
 
 @case
@@ -694,7 +737,7 @@ def planted_fault_is_seen(context):
 @case
 def large_store(context):
     """256 MiB of textures: how long it takes, and what the other node's frames took meanwhile."""
-    watch = Watch(context, 700, environment={"SCENE_MIB": "256"})
+    watch = Watch(context, environment={"SCENE_MIB": "256"})
     half = WIDTH // 2
     with watch.start() as run:
         if not run.wait_for_line("frame 150 ", 120):
@@ -706,13 +749,15 @@ def large_store(context):
         back = latest_frame(run)
         line = said(run, BACK)[0]
         print("    " + line)
-        run.process.wait(120)
-        times = [float(line.split()[2]) for line in run.standard_output if line.startswith("frame ")]
+        watch.enough(run, 150)
+        differing = watch.differing(run)
+        if isinstance(differing, str):
+            return differing
+        times = frame_times(run)
         for name, part in (("before", times[50:frame - 3]), ("meanwhile", times[frame - 3:back + 3]), ("behind", times[back + 3:])):
             part = sorted(part)
             print("    frames %s: %d, median %.1f ms, 95 %% %.1f ms, longest %.1f ms" % (name, len(part), part[len(part) // 2], part[len(part) * 95 // 100], part[-1]))
-        differing = watch.differing(run)
-        return differing if isinstance(differing, str) else judged(differing, [(frame - 3, range(half, WIDTH))], 20)
+        return judged(differing, [(frame - 3, range(half, WIDTH))], EXACT)
 
 
 if __name__ == "__main__":

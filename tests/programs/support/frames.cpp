@@ -13,14 +13,16 @@ void checkNoError(const char* where) {
     }
 }
 
+void runFrame(Window& window, int frame, const Draw& draw) {
+    draw(window, frame);
+    char where[40];
+    std::snprintf(where, sizeof where, "in frame %d", frame);
+    checkNoError(where);
+    window.swap();
+}
+
 void runFrames(Window& window, const Options& options, const Draw& draw) {
-    for (int frame = 0; frame < options.frames; ++frame) {
-        draw(window, frame);
-        char where[40];
-        std::snprintf(where, sizeof where, "in frame %d", frame);
-        checkNoError(where);
-        window.swap();
-    }
+    for (int frame = 0; frame < options.frames; ++frame) runFrame(window, frame, draw);
 }
 
 } // namespace programs

@@ -26,7 +26,8 @@ void checkNoError(const char* where);
 using Setup = std::function<void(Window&)>;
 using Draw = std::function<void(Window&, int frame)>;
 
-// Calls `draw` once per frame, looks for GL errors, swaps.
+// Calls `draw`, looks for GL errors, swaps.
+void runFrame(Window& window, int frame, const Draw& draw);
 void runFrames(Window& window, const Options& options, const Draw& draw);
 
 // The whole main() of a program with one window.
