@@ -34,7 +34,8 @@ struct SectionCompressor::State {
     const int zstdLevel;
     std::unique_ptr<ZSTD_CCtx, size_t (*)(ZSTD_CCtx*)> zstd{nullptr, ZSTD_freeCCtx};
     std::unique_ptr<LZ4_stream_t, int (*)(LZ4_stream_t*)> lz4{nullptr, LZ4_freeStream};
-    std::vector<std::byte> window{}; // of LZ4: the bytes before, and behind them the ones in hand
+    // Of LZ4: the bytes before, and behind them the ones in hand; and what comes out. There as far as they were used.
+    std::unique_ptr<std::byte[]> window{}, packed{};
     size_t windowBytes = 0;
 
     bool openZstd() {
@@ -63,26 +64,24 @@ struct SectionCompressor::State {
     }
 
     bool byLz4(std::span<const std::byte> bytes, std::vector<std::byte>& into) {
+        constexpr int kRoom = LZ4_COMPRESSBOUND(kLz4PieceBytes);
         if (!lz4) {
             lz4.reset(LZ4_createStream());
-            window.resize(kLz4Window + kLz4PieceBytes);
             if (!lz4) return false;
+            window = std::make_unique_for_overwrite<std::byte[]>(kLz4Window + kLz4PieceBytes);
+            packed = std::make_unique_for_overwrite<std::byte[]>(kRoom);
         }
         while (!bytes.empty()) {
             const auto piece = bytes.first(std::min(bytes.size(), kLz4PieceBytes));
             bytes = bytes.subspan(piece.size());
-            const int room = LZ4_compressBound(static_cast<int>(piece.size()));
-            putSize(into, 0);
-            const size_t before = into.size();
-            into.resize(before + static_cast<size_t>(room));
             // Only what follows the window in memory is compressed with all of it.
-            std::byte* const copy = window.data() + windowBytes;
+            std::byte* const copy = window.get() + windowBytes;
             std::memcpy(copy, piece.data(), piece.size());
-            const int size = LZ4_compress_fast_continue(lz4.get(), chars(copy), chars(into.data() + before), static_cast<int>(piece.size()), room, 1);
+            const int size = LZ4_compress_fast_continue(lz4.get(), chars(copy), chars(packed.get()), static_cast<int>(piece.size()), kRoom, 1);
             if (size <= 0) return false;
-            into.resize(before + static_cast<size_t>(size));
-            std::memcpy(into.data() + before - 4, &size, 4);
-            windowBytes = static_cast<size_t>(LZ4_saveDict(lz4.get(), chars(window.data()), static_cast<int>(kLz4Window)));
+            putSize(into, static_cast<uint32_t>(size));
+            into.insert(into.end(), packed.get(), packed.get() + size);
+            windowBytes = static_cast<size_t>(LZ4_saveDict(lz4.get(), chars(window.get()), static_cast<int>(kLz4Window)));
         }
         return true;
     }
