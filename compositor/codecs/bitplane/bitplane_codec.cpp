@@ -20,13 +20,9 @@ struct TileGridOf {
     [[nodiscard]] TileShape shape(unsigned across, unsigned up) const {
         return {std::min(kTileColumns, columns - across * kTileColumns), std::min(kTileRows, rows - up * kTileRows), wordsPerPixel, arithmetic};
     }
-    // Calls each(tile's number, shape, offset of its first byte in a row, its first row) until it returns false.
-    template <class Each> void forEach(Each&& each) const {
-        size_t number = 0;
-        for (unsigned up = 0; up < tilesUp; ++up)
-            for (unsigned across = 0; across < tilesAcross; ++across, ++number)
-                if (!each(number, shape(across, up), size_t{4} * kTileColumns * across, static_cast<int32_t>(kTileRows * up))) return;
-    }
+    // Of a row of tiles: its first row of words, and how many of those there are.
+    [[nodiscard]] static int32_t firstRow(unsigned up) { return static_cast<int32_t>(kTileRows * up); }
+    [[nodiscard]] unsigned rowsOf(unsigned up) const { return std::min(kTileRows, rows - up * kTileRows); }
     unsigned wordsPerPixel, columns, rows, tilesAcross, tilesUp;
     Arithmetic arithmetic;
 };
@@ -41,58 +37,101 @@ size_t BitplaneCodec::boundBytes(const PlaneShape& shape) const {
 Result<size_t> BitplaneCodec::encode(const PlaneView& plane, std::span<std::byte> into) {
     if (plane.empty()) return size_t{0};
     const TileGridOf grid(shapeOf(plane));
+    if (encoders_.size() < grid.tilesAcross) encoders_.resize(grid.tilesAcross);
+    const auto encoders = std::span(encoders_).first(grid.tilesAcross);
     size_t size = 4 * grid.count();
-    grid.forEach([&](size_t number, const TileShape& shape, size_t column, int32_t row) {
-        const size_t written = coder_.encode(shape, plane.row(row) + column, plane.strideBytes, predictor_, into.data() + size);
-        storeLittle(into.data() + 4 * number, static_cast<uint32_t>(written));
-        size += written;
-        return true;
-    });
+    std::byte* table = into.data();
+    for (unsigned up = 0; up < grid.tilesUp; ++up) {
+        for (unsigned across = 0; across < grid.tilesAcross; ++across)
+            encoders[across].begin(grid.shape(across, up), plane.row(grid.firstRow(up)) + kTileRowBytes * across, plane.strideBytes, predictor_);
+        for (unsigned y = 0; y < grid.rowsOf(up); y += kStripRows)
+            for (TileEncoder& encoder : encoders) encoder.strip(y);
+        for (TileEncoder& encoder : encoders) {
+            const size_t written = encoder.finish(into.data() + size);
+            storeLittle(table, static_cast<uint32_t>(written));
+            table += 4;
+            size += written;
+        }
+    }
     return size;
 }
 
 namespace {
 
-// Takes the table of sizes apart: calls each(shape of the tile, its bytes, offset of its first byte in a row, its first row),
-// which returns what is wrong with it, or null. Returns the same for the plane.
-template <class Each> const char* forEachEncodedTile(std::span<const std::byte> bytes, const TileGridOf& grid, Each&& each) {
-    if (bytes.size() < 4 * grid.count()) return "its table of tiles is cut short";
-    std::span<const std::byte> left = bytes.subspan(4 * grid.count());
-    const char* wrong = nullptr;
-    grid.forEach([&](size_t number, const TileShape& shape, size_t column, int32_t row) {
-        const size_t size = loadLittle<uint32_t>(bytes.data() + 4 * number);
-        if (size > left.size()) wrong = "a tile is cut short";
-        else wrong = each(shape, left.first(size), column, row);
-        if (!wrong) left = left.subspan(size);
-        return !wrong;
-    });
-    if (wrong) return wrong;
-    return left.empty() ? nullptr : "there are bytes behind the last tile";
+// The table of sizes, and behind it the tiles.
+class EncodedTiles {
+public:
+    EncodedTiles(std::span<const std::byte> bytes, const TileGridOf& grid) : whole_(bytes.size() >= 4 * grid.count()) {
+        if (whole_) table_ = bytes.data(), left_ = bytes.subspan(4 * grid.count());
+    }
+    // Null, or what is wrong.
+    [[nodiscard]] const char* wrong() const { return whole_ ? nullptr : "its table of tiles is cut short"; }
+    const char* next(std::span<const std::byte>& tile) {
+        const size_t size = loadLittle<uint32_t>(table_);
+        if (size > left_.size()) return "a tile is cut short";
+        tile = left_.first(size);
+        left_ = left_.subspan(size);
+        table_ += 4;
+        return nullptr;
+    }
+    [[nodiscard]] const char* ends() const { return left_.empty() ? nullptr : "there are bytes behind the last tile"; }
+
+private:
+    bool whole_;
+    const std::byte* table_ = nullptr;
+    std::span<const std::byte> left_;
+};
+
+const char* decodeRowOfTiles(EncodedTiles& tiles, const TileGridOf& grid, unsigned up, std::span<TileDecoder> decoders, const MutablePlaneView& into) {
+    std::span<const std::byte> tile;
+    for (unsigned across = 0; across < grid.tilesAcross; ++across) {
+        if (const char* wrong = tiles.next(tile)) return wrong;
+        if (const char* wrong = decoders[across].begin(grid.shape(across, up), tile, into.row(grid.firstRow(up)) + kTileRowBytes * across, into.strideBytes)) return wrong;
+    }
+    for (unsigned y = 0; y < grid.rowsOf(up); y += kStripRows)
+        for (TileDecoder& decoder : decoders)
+            if (const char* wrong = decoder.strip(y)) return wrong;
+    for (const TileDecoder& decoder : decoders)
+        if (const char* wrong = decoder.finish()) return wrong;
+    return nullptr;
 }
 
 } // namespace
 
 Result<void> BitplaneCodec::decode(std::span<const std::byte> bytes, const MutablePlaneView& into) {
     if (into.empty()) return bytes.empty() ? Result<void>() : damagedPlane(name(), into, bytes.size(), "an empty plane has no bytes");
-    const char* wrong = forEachEncodedTile(bytes, TileGridOf(shapeOf(into)), [&](const TileShape& shape, std::span<const std::byte> tile, size_t column, int32_t row) {
-        return coder_.decode(shape, tile, into.row(row) + column, into.strideBytes);
-    });
+    const TileGridOf grid(shapeOf(into));
+    if (decoders_.size() < grid.tilesAcross) decoders_.resize(grid.tilesAcross);
+    EncodedTiles tiles(bytes, grid);
+    const char* wrong = tiles.wrong();
+    for (unsigned up = 0; up < grid.tilesUp && !wrong; ++up) wrong = decodeRowOfTiles(tiles, grid, up, std::span(decoders_).first(grid.tilesAcross), into);
+    if (!wrong) wrong = tiles.ends();
     return wrong ? damagedPlane(name(), into, bytes.size(), wrong) : Result<void>();
 }
 
 Result<void> BitplaneCodec::decodeTiles(std::span<const std::byte> bytes, const PlaneShape& shape, const EachTile& each) {
     const PlaneView whole{shape.format, shape.width, shape.height, 0, nullptr}; // for what is said of it
     if (whole.empty()) return bytes.empty() ? Result<void>() : damagedPlane(name(), whole, bytes.size(), "an empty plane has no bytes");
-    constexpr ptrdiff_t kStrideBytes = ptrdiff_t{4} * kTileColumns;
     tile_.resize(kTileBytes);
+    if (decoders_.empty()) decoders_.resize(1);
+    TileDecoder& decoder = decoders_.front();
     const auto pixelBytes = static_cast<int32_t>(bytesPerPixel(shape.format));
-    const char* wrong = forEachEncodedTile(bytes, TileGridOf(shape), [&](const TileShape& tile, std::span<const std::byte> encoded, size_t column, int32_t row) {
-        const char* fault = coder_.decode(tile, encoded, tile_.data(), kStrideBytes);
-        if (fault) return fault;
-        const PixelViewport area{static_cast<int32_t>(column) / pixelBytes, row, static_cast<int32_t>(tile.columns / tile.wordsPerPixel), static_cast<int32_t>(tile.rows)};
-        each(area, {shape.format, area.w, area.h, kStrideBytes, tile_.data()});
-        return fault;
-    });
+    const TileGridOf grid(shape);
+    EncodedTiles tiles(bytes, grid);
+    const char* wrong = tiles.wrong();
+    std::span<const std::byte> encoded;
+    for (unsigned number = 0; number < grid.count() && !wrong; ++number) {
+        const unsigned across = number % grid.tilesAcross, up = number / grid.tilesAcross;
+        const TileShape tile = grid.shape(across, up);
+        wrong = tiles.next(encoded);
+        if (!wrong) wrong = decoder.begin(tile, encoded, tile_.data(), kTileRowBytes);
+        for (unsigned y = 0; y < tile.rows && !wrong; y += kStripRows) wrong = decoder.strip(y);
+        if (!wrong) wrong = decoder.finish();
+        if (wrong) break;
+        const PixelViewport area{static_cast<int32_t>(kTileRowBytes * across) / pixelBytes, grid.firstRow(up), static_cast<int32_t>(tile.columns / tile.wordsPerPixel), static_cast<int32_t>(tile.rows)};
+        each(area, {shape.format, area.w, area.h, kTileRowBytes, tile_.data()});
+    }
+    if (!wrong) wrong = tiles.ends();
     return wrong ? damagedPlane(name(), whole, bytes.size(), wrong) : Result<void>();
 }
 

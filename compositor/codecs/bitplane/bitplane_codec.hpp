@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "common/pixel_viewport.hpp"
-#include "compositor/codecs/bitplane/tile_code.hpp"
+#include "compositor/codecs/bitplane/tile_decoder.hpp"
+#include "compositor/codecs/bitplane/tile_encoder.hpp"
 #include "compositor/codecs/codec.hpp"
 
 namespace mural::compositor {
@@ -27,7 +28,8 @@ public:
 private:
     [[nodiscard]] const char* name() const { return predictor_ == bitplane::Predictor::Slope ? "slope" : "bitplane"; }
     bitplane::Predictor predictor_;
-    bitplane::TileCoder coder_;
+    std::vector<bitplane::TileEncoder> encoders_; // of the tiles that stand side by side
+    std::vector<bitplane::TileDecoder> decoders_;
     std::vector<std::byte> tile_; // of decodeTiles
 };
 

@@ -56,7 +56,6 @@ struct StripSource {
     const std::byte* above = nullptr;
     const std::byte* above2 = nullptr; // for Slope; not read in the first strip
     unsigned blocks = 0;
-    bool moreBelow = false; // the next strip's rows are there: they are asked for, while this one is worked on
 };
 
 // A strip that was read: sizes are checked, kSlackBytes behind the payload may be read.
@@ -72,7 +71,6 @@ struct StripTarget {
     const std::byte* above = nullptr;
     const std::byte* above2 = nullptr;
     unsigned blocks = 0;
-    bool moreBelow = false; // as above
 };
 
 // Of four blocks' widths. A channel of `width` bits takes 8 * width bytes.

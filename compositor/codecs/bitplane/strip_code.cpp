@@ -6,7 +6,6 @@
 
 #include "common/little_endian.hpp"
 #include "compositor/codecs/bitplane/word_arithmetic.hpp"
-#include "compositor/kernels/ask_ahead.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "compositor/codecs/bitplane/strip_code.cpp"
@@ -166,11 +165,6 @@ HWY_INLINE uint16_t widthsOf(const Four& channels) {
     return static_cast<uint16_t>(w[0] | w[1] << 4 | w[2] << 8 | w[3] << 12);
 }
 
-// This block of the next strip: all blocks at once would wait for each other.
-HWY_INLINE void askForBelow(const std::byte* rows, ptrdiff_t strideBytes, size_t byte) {
-    for (unsigned y = kStripRows; y < 2 * kStripRows; ++y) askFor(rows + y * strideBytes + byte, 4 * kBlockColumns);
-}
-
 template <Arithmetic A, Predictor P, bool kFirst> size_t encodeAs(const StripSource& source, std::byte* into) {
     alignas(64) uint8_t channels[kMostBlocks * kBlockBytes]; // of the blocks that are not zero
     uint16_t widths[kMostBlocks];
@@ -178,7 +172,6 @@ template <Arithmetic A, Predictor P, bool kFirst> size_t encodeAs(const StripSou
     unsigned count = 0;
     for (unsigned block = 0; block < source.blocks; ++block) {
         const size_t from = block * kBlockColumns * 4;
-        if (source.moreBelow) askForBelow(source.rows, source.strideBytes, from);
         Four d[kSteps];
         W any = hn::Zero(Words());
 #pragma GCC unroll 4 // GCC does not at -O2, and keeps what is in the loop in memory
@@ -266,7 +259,6 @@ template <Arithmetic A, Predictor P, bool kFirst> void decodeAs(const ParsedStri
     const uint16_t* widths = strip.widths.data();
     for (unsigned block = 0, present = strip.present; block < target.blocks; ++block, present >>= 1) {
         const size_t to = block * kBlockColumns * 4;
-        if (target.moreBelow) askForBelow(target.rows, target.strideBytes, to);
         if ((present & 1) == 0) {
             rebuildUnchanged<A, P, kFirst>(target, to);
             continue;
@@ -295,7 +287,6 @@ template <Arithmetic A, Predictor P, bool kFirst> void decodeAs(const ParsedStri
     const uint8_t* next = channels;
     for (unsigned block = 0; block < target.blocks; ++block) {
         const size_t to = block * kBlockColumns * 4;
-        if (target.moreBelow) askForBelow(target.rows, target.strideBytes, to);
         if ((strip.present >> block & 1) == 0) {
             rebuildUnchanged<A, P, kFirst>(target, to);
             continue;
