@@ -20,6 +20,7 @@ import sys
 import tempfile
 
 import display
+import pictures
 import programs
 
 PROGRAM = "fixed_lighting"
@@ -33,45 +34,15 @@ SKIPPED = 77
 
 
 def read_png(path):
-    """(width, height, RGB rows) of a PNG by ImageMagick-free means: mural writes 8-bit RGB without interlace."""
-    import struct
-    import zlib
-    with open(path, "rb") as file:
-        data = file.read()
-    at, packed, width, height, kind = 8, b"", 0, 0, 0
-    while at < len(data):
-        size, name = struct.unpack(">I4s", data[at:at + 8])
-        body = data[at + 8:at + 8 + size]
-        if name == b"IHDR":
-            width, height, _, kind = struct.unpack(">IIBB", body[:10])
-        if name == b"IDAT":
-            packed += body
-        at += 12 + size
-    step = {2: 3, 6: 4}[kind]
-    raw, rows, before = zlib.decompress(packed), [], bytes(width * step)
-    for y in range(height):
-        mode, line = raw[y * (width * step + 1)], bytearray(raw[y * (width * step + 1) + 1:(y + 1) * (width * step + 1)])
-        for x in range(len(line)):
-            a = line[x - step] if x >= step else 0
-            b, c = before[x], before[x - step] if x >= step else 0
-            if mode == 1:
-                line[x] = (line[x] + a) & 255
-            elif mode == 2:
-                line[x] = (line[x] + b) & 255
-            elif mode == 3:
-                line[x] = (line[x] + (a + b) // 2) & 255
-            elif mode == 4:
-                p = a + b - c
-                pa, pb, pc = abs(p - a), abs(p - b), abs(p - c)
-                line[x] = (line[x] + (a if pa <= pb and pa <= pc else b if pb <= pc else c)) & 255
-        before = bytes(line)
-        rows.append(b"".join(before[i:i + 3] for i in range(0, len(before), step)))
-    return width, height, rows
+    """(width, height, RGB rows)."""
+    picture = pictures.read_png(path)
+    return picture.width, picture.height, picture.rows
 
 
 class Run:
     def __init__(self, arguments, display_name):
         self.arguments, self.display = arguments, display_name
+        self.references = {}
 
     def picture(self, options, times=(1, 1)):
         """The last frame, and what was said; of a program with a window so many times as large. Raises RuntimeError with the program's words."""
@@ -91,6 +62,13 @@ class Run:
             self.canvases = {os.path.basename(os.path.dirname(path))[len("canvas."):]: read_png(path) for path in sorted(glob.glob(os.path.join(out, "canvas.*", "*.png")))}
             return read_png(files[-1]), said
 
+    def reference(self, options, times=(1, 1)):
+        """The picture of a run that several files are compared with: drawn once."""
+        key = tuple(options), times
+        if key not in self.references:
+            self.references[key] = self.picture(options, times)[0]
+        return self.references[key]
+
 
 def difference(expected, shown, areas):
     """Pixels that differ inside of the areas, and how many lie outside of all of them."""
@@ -98,15 +76,15 @@ def difference(expected, shown, areas):
     if (shown[0], shown[1]) != (width, height):
         return width * height, 0
     covered = [bytearray(width) for _ in range(height)]
-    for x, y, w, h in areas:
-        x0, x1 = int(x * width + 1e-6), int((x + w) * width + 1e-6)
-        y0, y1 = int(y * height + 1e-6), int((y + h) * height + 1e-6)
-        for row in range(max(0, height - y1), min(height, height - y0)):
-            for column in range(max(0, x0), min(width, x1)):
-                covered[row][column] = 1
+    for area in areas:
+        x0, x1, y0, y1 = pixels_of(area, width, height)
+        x0 = min(max(0, x0), width)
+        x1 = max(x0, min(width, x1))
+        for row in range(max(0, y0), min(height, y1)):
+            covered[row][x0:x1] = bytes([1]) * (x1 - x0)
     wrong = outside = 0
     for y in range(height):
-        outside += width - sum(covered[y])
+        outside += covered[y].count(0)
         if rows[y] == shown[2][y]:
             continue
         wrong += sum(1 for x in range(width) if covered[y][x] and rows[y][3 * x:3 * x + 3] != shown[2][y][3 * x:3 * x + 3])
@@ -189,15 +167,7 @@ def way_difference(native, shown, area, way, place):
 def side_by_side(left, right):
     width, height = left[0], left[1]
     half = (width + 1) // 2
-    rows = []
-    for l, r in zip(left[2], right[2]):
-        row = bytearray()
-        for source, count in ((l, half), (r, width - half)):
-            for x in range(count):
-                a, b = 2 * x, min(2 * x + 1, width - 1)
-                row += bytes((source[3 * a + k] + source[3 * b + k] + 1) // 2 for k in range(3))
-        rows.append(bytes(row))
-    return width, height, rows
+    return width, height, [pictures.halved(l, half) + pictures.halved(r, width - half) for l, r in zip(left[2], right[2])]
 
 
 def other_canvases(said):
@@ -216,19 +186,19 @@ def of_other_canvas(line, said):
     return bool(node and others and int(node.group(1)) >= min(first for _, _, first in others))
 
 
-def check_canvases(run, path, pictures, said):
+def check_canvases(run, path, canvases, said):
     """What the other canvases show is what the program draws natively into a window of their size."""
     about = ""
     for name, times, _ in other_canvases(said):
-        if name not in pictures:
+        if name not in canvases:
             return "", "canvas %s shows nothing" % name
     if not other_canvases(said):
         return "", None
     run = Run(argparse.Namespace(**{**vars(run.arguments), "size": CANVAS_SIZE}), run.display)
     run.picture(["--config", path, "--here", "--frusta", "program"])
-    pictures = run.canvases
+    canvases = run.canvases
     for name, times, _ in other_canvases(said):
-        shown = pictures[name]
+        shown = canvases[name]
         expected = run.picture([], times)[0]
         if (shown[0], shown[1]) != (expected[0], expected[1]):
             return "", "canvas %s has %dx%d pixels instead of %dx%d" % (name, shown[0], shown[1], expected[0], expected[1])
@@ -267,7 +237,7 @@ def check(run, path, native):
             continue
         # Drawn larger: what the program draws natively in a window of that size, each pixel the mean of those in it.
         times = tuple(int(z) for z in zoom)
-        mean = mean_difference(reduced(run.picture([], times)[0], times), shown, area)
+        mean = mean_difference(reduced(run.reference([], times), times), shown, area)
         if mean > REDUCED_MEAN:
             return "zoomed, the part %s differs by %.3f of 255 in the mean from the native picture drawn larger" % (area, mean), ""
         zoomed += ", by %.3f from one that is drawn larger" % mean
@@ -288,13 +258,14 @@ def check(run, path, native):
     options = (["--subpixel", samples.group(1)] if samples else []) + (["--pixel", kernel.group(1)] if kernel else [])
     expected, against = native, "the native picture"
     if options:
-        expected, against = run.picture(options)[0], " ".join(options)
+        expected, against = run.reference(options), " ".join(options)
         if samples and expected[2] == native[2]:
             return "samples change nothing", ""
     eyes = [word for word in ("left eye", "right eye") if word in said]
     if eyes:
-        flat = run.picture(["--config", path, "--here", "--frusta", "program", "--eye-base", "0"])[0]
-        apart = run.picture(["--config", path, "--here", "--frusta", "program", "--eye-base", "0.5"])[0]
+        flat = one if one is not shown else run.picture(["--config", path, "--here", "--frusta", "program", "--eye-base", "0"])[0]
+        # The file's own distance shows it already where it moves a pixel.
+        apart = shown if shown[2] != flat[2] else run.picture(["--config", path, "--here", "--frusta", "program", "--eye-base", "0.5"])[0]
         if apart[2] == flat[2]:
             return "the eyes see the same, however far apart", ""
         # Without a distance between them both eyes see what one sees.
@@ -332,7 +303,7 @@ def main():
     failures = 0
     with display.PrivateDisplay() as name:
         run = Run(a, name)
-        native = run.picture([])[0]
+        native = run.reference([])
         for path in files:
             try:
                 wrong, about = check(run, path, native)

@@ -110,11 +110,11 @@ def jitter(sample, samples):
 
 def largest_error(samples, got):
     """Of a picture against the mean of others, not rounded."""
-    largest, n = 0.0, len(samples)
+    largest, n = 0, len(samples)
     for y, row in enumerate(got.rows):
-        for values in zip(row, *(picture.rows[y] for picture in samples)):
-            largest = max(largest, abs(values[0] - sum(values[1:]) / n))
-    return largest
+        sums = map(sum, zip(*(picture.rows[y] for picture in samples)))
+        largest = max(largest, max(abs(n * value - total) for value, total in zip(row, sums)))
+    return largest / n
 
 
 def sampled(context, program, arguments, samples, size=SIZE):
@@ -271,19 +271,9 @@ def anaglyph(left, right):
     return pictures.Picture(left.width, left.height, rows)
 
 
-def halved(row, width):
-    """Means of two neighbours, halves rounded up."""
-    out = bytearray()
-    for x in range(0, 2 * width, 2):
-        a = row[3 * x:3 * x + 3]
-        b = row[3 * x + 3:3 * x + 6] or a
-        out += bytes((p + q + 1) // 2 for p, q in zip(a, b))
-    return bytes(out)
-
-
 def side_by_side(left, right):
     half = (left.width + 1) // 2
-    return pictures.Picture(left.width, left.height, [halved(a, half) + halved(b, left.width - half) for a, b in zip(left.rows, right.rows)])
+    return pictures.Picture(left.width, left.height, [pictures.halved(a, half) + pictures.halved(b, left.width - half) for a, b in zip(left.rows, right.rows)])
 
 
 @case
