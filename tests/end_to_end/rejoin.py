@@ -17,6 +17,7 @@ import time
 import failures
 import pictures
 import programs
+import session
 
 failures.CASES.clear()  # only those of this file
 case = failures.case
@@ -76,14 +77,12 @@ class Watch:
         command = [self.context.program(PROGRAM), "--frames", str(self.frames), "--size", "%dx%d" % (WIDTH, HEIGHT)]
         if self.beside:
             command = ["/bin/sh", "-c", '"$1" "$2" "$3" "$4" 131x77 > /dev/null & exec "$@"', "sh"] + command
-        return self.context.run(command, self.options, dict(self.environment, SCENE_END_FILE=self.end_file))
+        return self.context.run(command, self.options, dict(self.environment, END_FILE=self.end_file))
 
     def enough(self, run, tail=TAIL):
         """What the case waits for was seen: the program draws so many frames more."""
         self.least = min(self.frames, latest_frame(run) + 1 + tail)
-        with open(self.end_file + ".new", "w", encoding="ascii") as file:
-            file.write(str(tail))
-        os.rename(self.end_file + ".new", self.end_file) # the program looks before each frame, and finds all of it
+        session.end_after(self.end_file, tail)
 
     def end(self, run):
         """What is wrong with the run's end; how many frames there were is known then."""

@@ -4,7 +4,6 @@
 // a pause in each frame (5000). Says "frame N T" on standard output before each: T are the milliseconds since the one before.
 // SCENE_KEEPS=1: only the first frame clears, the others draw over what was there. SCENE_SHARES=1: behind a depth test and with many
 // small triangles all over it, so that --db shares it, each of up to 4 nodes something that is seen; and something over it that is not shared.
-// SCENE_END_FILE=PATH: once that file is there, as many frames more as its text says, --frames at most.
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
@@ -201,28 +200,8 @@ void draw(Window& window, int frame) {
     usleep(useconds_t(pauseUs));
 }
 
-// How many frames there will be, as it stands before this one.
-int framesInAll(int frame, int most) {
-    static const char* path = std::getenv("SCENE_END_FILE");
-    static int inAll = most;
-    std::FILE* file = path ? std::fopen(path, "r") : nullptr;
-    if (!file) return inAll;
-    int more = 0;
-    if (std::fscanf(file, "%d", &more) != 1) fail("no number of frames in %s", path);
-    std::fclose(file);
-    path = nullptr; // once
-    return inAll = std::min(most, frame + more);
-}
-
 } // namespace
 
 int main(int argc, char** argv) {
-    const Options options = parseOptions(argc, argv);
-    const auto window = openGlxWindow({}, options.width, options.height);
-    window->makeCurrent();
-    setUp(*window);
-    checkNoError("while setting up");
-    for (int frame = 0; frame < framesInAll(frame, options.frames); ++frame) runFrame(*window, frame, draw);
-    window->release();
-    return 0;
+    return runInGlxWindow(argc, argv, {}, setUp, draw);
 }

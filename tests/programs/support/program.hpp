@@ -26,8 +26,8 @@ void checkNoError(const char* where);
 using Setup = std::function<void(Window&)>;
 using Draw = std::function<void(Window&, int frame)>;
 
-// Calls `draw`, looks for GL errors, swaps.
-void runFrame(Window& window, int frame, const Draw& draw);
+// Calls `draw` once per frame, looks for GL errors, swaps. END_FILE=PATH in the environment: once that file is there, as many
+// frames more as its text says, --frames at most.
 void runFrames(Window& window, const Options& options, const Draw& draw);
 
 // The whole main() of a program with one window.
