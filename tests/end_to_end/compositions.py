@@ -18,9 +18,10 @@ class Compositions(run_exact.Comparison):
     def launchers(self):
         arguments = self.arguments
         mural = arguments.mural or os.path.join(arguments.build, "bin", "mural")
-        start = [mural, "run", "--report", self.report_file()] + arguments.options.split()
-        return {"%s.%s" % (strategy, count): start + ["--db", count, "--composition", strategy, "--"]
-                for count in arguments.counts.split(",") for strategy in arguments.strategies.split(",")}
+        def by(label, *options):
+            return label, [mural, "run", "--report", self.report_file(label)] + arguments.options.split() + list(options) + ["--"]
+        return dict(by("%s.%s" % (strategy, count), "--db", count, "--composition", strategy)
+                    for count in arguments.counts.split(",") for strategy in arguments.strategies.split(","))
 
 
 def add_arguments(parser):

@@ -28,11 +28,12 @@ SETTINGS = ((["--layouts", "2x2"], ("opcode", "shift", "drop")), (RANGES, ("rang
 def compare(arguments, setting, fault):
     environment = dict(os.environ)
     environment.pop("MURAL_PLANT", None)
-    if fault:
-        environment["MURAL_PLANT"] = fault
     command = [sys.executable, os.path.join(os.path.dirname(os.path.abspath(__file__)), "run_exact.py"),
                "--build", arguments.build, "--programs", arguments.programs,
                "--size", "250x190", "--seconds", "60"] + setting
+    if fault:
+        environment["MURAL_PLANT"] = fault
+        command.append("--until-differs")  # one program that shows it is enough
     if arguments.mural:
         command += ["--mural", arguments.mural]
     done = subprocess.run(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
@@ -41,7 +42,7 @@ def compare(arguments, setting, fault):
 
 
 def found_in(output):
-    """The programs in whose pictures the fault was seen: not by a crash, but by wrong pixels."""
+    """The program in whose pictures the fault was seen: not by a crash, but by wrong pixels."""
     return [line.split()[0] for line in output.splitlines() if "pixels differ in" in line]
 
 

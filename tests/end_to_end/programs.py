@@ -2,6 +2,7 @@
 
 import os
 import select
+import shlex
 import signal
 import subprocess
 
@@ -84,6 +85,7 @@ class Run:
         self.status = status  # None: it did not end in time
         self.output = output
         self.folder = folder
+        self.captured = None  # frames through the nodes, where that is known
 
     def frames(self):
         """{"w0/f0003.ppm": path} of all pictures."""
@@ -115,21 +117,22 @@ def ended_within(process, seconds):
         os.close(pidfd)
 
 
+def command_of(build, name, folder, size, frames, library="grab.so", arguments=()):
+    """What a shell sets for the program so that its frames are kept, and the words of its command."""
+    settings = "GRAB_OUT=%s " % shlex.quote(folder) + ("GRAB_FLUSH=1 " if name in FLUSHING else "")
+    # Our library is in front of whatever the launcher preloads.
+    settings += 'LD_PRELOAD="%s${LD_PRELOAD:+ $LD_PRELOAD}"' % os.path.join(build, "tests", "end_to_end", library)
+    return settings, [os.path.join(build, "tests", "programs", name), "--size", size, "--frames", str(frames)] + list(arguments)
+
+
 def run_program(build, name, folder, display, size, frames, launcher=(), seconds=120,
                 more_environment=None, library="grab.so", arguments=()):
     """Runs a program, natively or behind `launcher`, with the grabbing library in front."""
     os.makedirs(folder)
     environment = clean_environment(display)
-    environment["GRAB_OUT"] = folder
     environment.update(more_environment or {})
-    if name in FLUSHING:
-        environment["GRAB_FLUSH"] = "1"
-    grab = os.path.join(build, "tests", "end_to_end", library)
-    # The shell puts our library in front of whatever the launcher preloads.
-    shell = 'LD_PRELOAD="%s${LD_PRELOAD:+ $LD_PRELOAD}" exec "$@"' % grab
-    program = os.path.join(build, "tests", "programs", name)
-    command = list(launcher) + ["sh", "-c", shell, "sh", program]
-    command += ["--size", size, "--frames", str(frames)] + list(arguments)
+    settings, words = command_of(build, name, folder, size, frames, library, arguments)
+    command = list(launcher) + ["sh", "-c", settings + ' exec "$@"', "sh"] + words
     log_path = folder + ".log"
     with open(log_path, "wb") as log:
         process = subprocess.Popen(command, env=environment, stdin=subprocess.DEVNULL, stdout=log,

@@ -21,6 +21,7 @@ import time
 import display
 import pictures
 import programs
+import shared_nodes
 
 
 def parse_arguments(description, add_arguments):
@@ -40,6 +41,8 @@ def parse_arguments(description, add_arguments):
     parser.add_argument("--bound", type=float, default=0.0, metavar="PERCENT",
                         help="of the pixels that may differ; 0: none (tiling lean is not exact)")
     parser.add_argument("--one-node", action="store_true", help="compare with a run whose picture is not divided instead of a native one: of what drivers do not agree about, or passes change")
+    parser.add_argument("--share-nodes", action="store_true", help="nodes of all layouts but the first are started once for all programs")
+    parser.add_argument("--until-differs", action="store_true", help="end with the first program and layout in which pixels differ")
     parser.add_argument("--native", action="store_true", help="compare two native runs")
     parser.add_argument("--keep", metavar="FOLDER", help="keep all pictures and logs there")
     parser.add_argument("--list", action="store_true", help="show the programs by group and stop")
@@ -64,9 +67,13 @@ class Comparison:
         self.skipped = 0
         self.healed = []
         self.taken = 0
+        self.ended = False  # --until-differs
+        self.shared = {}  # nodes that are started once for all programs, by layout
 
     def finish(self):
         """Whatever has to be looked at after all programs."""
+        for label in list(self.shared):
+            self.end_shared(label)
 
     def run(self, name, label, launcher=(), environment=None):
         arguments = self.arguments
@@ -82,35 +89,71 @@ class Comparison:
         options = arguments.options.split()
         def divided(layout):
             return ["--tile-queue", arguments.tile_queue, "--local-nodes", layout] if arguments.tile_queue else ["--tiles", layout]
-        return {layout: [mural, "run"] + divided(layout) + ["--report", self.report_file()] + options + ["--"]
+        return {layout: [mural, "run"] + divided(layout) + ["--report", self.report_file(layout)] + options + ["--"]
                 for layout in arguments.layouts.split(",")}
 
     def one_node(self):
         return [os.path.join(self.arguments.build, "bin", "mural"), "run"] + self.arguments.options.split() + ["--"]
 
-    def report_file(self):
-        return os.path.join(self.folder, "report.json")
+    def report_file(self, label):
+        return os.path.join(self.folder, "report.%s.json" % label)
 
-    def captured(self):
-        """Whether the last run went through the nodes: a program that ran alone is exact, too."""
+    def report_of(self, label):
+        """What the last run by this layout has reported; nothing when it did not."""
         try:
-            with open(self.report_file(), encoding="utf-8") as report:
-                return json.load(report)["frames"] > 0
-        except (OSError, ValueError, KeyError):
-            return False
+            with open(self.report_file(label), encoding="utf-8") as report:
+                return json.load(report)
+        except (OSError, ValueError):
+            return {}
 
-    def moves(self):
+    def forget_report(self, label):
+        if os.path.exists(self.report_file(label)):
+            os.remove(self.report_file(label))
+
+    def captured(self, label):
+        """How many frames of the last run went through the nodes: a program that ran alone is exact, too."""
+        return self.report_of(label).get("frames", 0)
+
+    def moves(self, label):
         """How often areas or shares of the nodes changed from one frame to the next, as the last report has it."""
         if not self.arguments.tile_queue and "--chunk-queue" not in self.arguments.options:
             return ""
-        try:
-            with open(self.report_file(), encoding="utf-8") as report:
-                queues = json.load(report)["queues"] or []
-        except (OSError, ValueError, KeyError):
-            return ""
-        taken = sum(queue["taken"] for queue in queues)
+        taken = sum(queue["taken"] for queue in self.report_of(label).get("queues") or [])
         self.taken += taken
         return ", %s changed %d times" % ("areas" if self.arguments.tile_queue else "shares", taken)
+
+    def run_alone(self, name, label, launcher):
+        # Natively for the second time, new memory isn't zero: it shows who reads what nobody wrote.
+        environment = {"MALLOC_PERTURB_": "165"} if self.arguments.native else None
+        self.forget_report(label)
+        through = self.run(name, label, launcher, environment)
+        through.captured = None if self.arguments.native else self.captured(label)
+        return through
+
+    def run_shared(self, name, label, launcher, frames):
+        """By nodes that have drawn the programs before this one. Whether its frames, so many, went through them is known in the end."""
+        arguments = self.arguments
+        if label not in self.shared:
+            self.forget_report(label)
+            self.shared[label] = shared_nodes.SharedNodes(launcher, self.display_name, os.path.join(self.folder, "shared." + label))
+        nodes = self.shared[label]
+        through = nodes.run_program(arguments.build, name, os.path.join(self.folder, name, label), arguments.size, arguments.frames, arguments.seconds)
+        nodes.wanted_frames += frames
+        if through.status is None:  # the next program gets others
+            self.end_shared(label)
+        return through
+
+    def end_shared(self, label):
+        nodes = self.shared.pop(label)
+        status = nodes.end(self.arguments.seconds)
+        frames, wrong = self.captured(label), None
+        if status != 0:
+            wrong = "status %s of the run for all programs" % status
+        elif frames != nodes.wanted_frames:
+            wrong = "%d frames went through the nodes, not as many as by the first layout, %d" % (frames, nodes.wanted_frames)
+        self.failures += wrong is not None
+        print("%-24s %-9s %3d frames  %s%s" % ("by the same nodes", label, frames, "WRONG: " + wrong if wrong else "right", self.moves(label)), flush=True)
+        shutil.rmtree(os.path.join(self.folder, "shared." + label), ignore_errors=True)
 
     def check(self, name):
         native = self.run(name, "reference", self.one_node() if self.arguments.one_node else ())
@@ -123,15 +166,19 @@ class Comparison:
             self.report(name, "reference", 0, "fails natively: status %s, %d pictures%s" % (
                 native.status, len(native.frames()), said(native)))
             return
-        for label, launcher in self.launchers().items():
+        frames = 0  # through the nodes of the first layout
+        for number, (label, launcher) in enumerate(self.launchers().items()):
             start = time.monotonic()
-            # Natively for the second time, new memory isn't zero: it shows who reads what nobody wrote.
-            environment = {"MALLOC_PERTURB_": "165"} if self.arguments.native else None
-            if os.path.exists(self.report_file()):
-                os.remove(self.report_file())
-            through = self.run(name, label, launcher, environment)
+            if number > 0 and self.arguments.share_nodes:
+                through = self.run_shared(name, label, launcher, frames)
+            else:
+                through = self.run_alone(name, label, launcher)
+                frames = frames or through.captured
             wrong = self.compare(native, through)
             self.report(name, label, len(native.frames()), wrong, time.monotonic() - start)
+            self.ended = self.arguments.until_differs and wrong is not None and "pixels differ in" in wrong
+            if self.ended:
+                return
 
     def report(self, name, label, frames, wrong, seconds=0.0):
         known = programs.KNOWN_DIFFERENCES.get(name) if label in self.launchers() and label != "native" else None
@@ -144,7 +191,7 @@ class Comparison:
             self.healed.append(name)
         self.failures += wrong is not None
         print("%-24s %-9s %3d frames  %s  (%.1f s)" % (
-            name, label, frames, (("within the bound" if self.arguments.bound else "0 pixels differ") if wrong is None else "WRONG: " + wrong) + self.moves(), seconds),
+            name, label, frames, (("within the bound" if self.arguments.bound else "0 pixels differ") if wrong is None else "WRONG: " + wrong) + ("" if label in self.shared else self.moves(label)), seconds),
             flush=True)
 
     def compare(self, native, through):
@@ -152,7 +199,7 @@ class Comparison:
         if not programs.same_status(native.status, through.status):
             return "status %s instead of %s%s" % (
                 "none in time" if through.status is None else through.status, native.status, said(through))
-        if not self.arguments.native and not self.captured():
+        if through.captured == 0:
             return "nothing went through the nodes" + said(through)
         expected, got = native.frames(), through.frames()
         if set(expected) != set(got):
@@ -212,6 +259,8 @@ def main(description=__doc__, add_arguments=lambda parser: None, comparison_clas
                 comparison.check(name)
                 if not arguments.keep:
                     shutil.rmtree(os.path.join(folder, name), ignore_errors=True)
+                if comparison.ended:
+                    break
             comparison.finish()
     finally:
         if not arguments.keep:
