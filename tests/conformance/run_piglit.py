@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs tests of piglit (Debian package `piglit`), each natively and through Mural; the results must be
+"""Runs tests of piglit (Debian package `piglit`), each natively and through Mural, there by the same nodes; the results must be
 the same. The tests look at their own pictures with glReadPixels, so this needs no stored results.
 
   run_piglit.py --build build/release [--list piglit.txt] [--filter glsl] [--part 1/3] [--tiles 2x2]
@@ -14,12 +14,14 @@ import re
 import signal
 import subprocess
 import sys
+import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, "..", "end_to_end"))
 
 import display  # noqa: E402  (found by the path above)
 import programs  # noqa: E402
+import shared_nodes  # noqa: E402
 
 ROOT = "/usr/lib/x86_64-linux-gnu/piglit"
 NOT_INSTALLED = 77
@@ -54,19 +56,47 @@ def results(output):
     return found
 
 
-def run(command, display_name, seconds, launcher=()):
+def words_of(command):
     words = command.split()
-    full = list(launcher) + [os.path.join(ROOT, "bin", words[0])] + words[1:] + ["-auto"]
+    return [os.path.join(ROOT, "bin", words[0])] + words[1:] + ["-auto"]
+
+
+def run_natively(command, display_name, seconds):
     environment = programs.clean_environment(display_name)
     environment["PIGLIT_SOURCE_DIR"] = ROOT
-    process = subprocess.Popen(full, cwd=ROOT, env=environment, stdin=subprocess.DEVNULL,
+    process = subprocess.Popen(words_of(command), cwd=ROOT, env=environment, stdin=subprocess.DEVNULL,
                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True)
     try:
         output = process.communicate(timeout=seconds)[0].decode(errors="replace")
-        return process.returncode, results(output), output
+        return process.returncode, results(output)
     except subprocess.TimeoutExpired:
         os.killpg(process.pid, signal.SIGKILL)
-        return None, [], process.communicate()[0].decode(errors="replace")
+        process.communicate()
+        return None, []
+
+
+class Wall:
+    """Nodes that draw one test after another; others when one has not ended, or ended them."""
+
+    def __init__(self, arguments, display_name, folder):
+        self.arguments, self.display_name, self.folder = arguments, display_name, folder
+        self.nodes, self.started = None, 0
+
+    def run(self, command):
+        if self.nodes is None:
+            self.started += 1
+            mural = self.arguments.mural or os.path.join(os.path.abspath(self.arguments.build), "bin", "mural")
+            launcher = [mural, "run", "--tiles", self.arguments.tiles, "--display", "none", "--quiet", "--"]
+            self.nodes = shared_nodes.SharedNodes(launcher, self.display_name, os.path.join(self.folder, "nodes%d" % self.started))
+        status, output = self.nodes.run("cd %s && PIGLIT_SOURCE_DIR=%s" % (ROOT, ROOT), words_of(command), os.path.join(self.folder, "log"), self.arguments.seconds)
+        if status is None:
+            self.end()
+        return status, results(output), output
+
+    def end(self):
+        """The status of `mural run`."""
+        nodes, self.nodes = self.nodes, None
+        return nodes.end(self.arguments.seconds) if nodes else 0
 
 
 def known_differences():
@@ -86,15 +116,14 @@ def main():
     if not os.path.isdir(ROOT):
         print("piglit is not installed: apt-get install piglit")
         return NOT_INSTALLED
-    mural = arguments.mural or os.path.join(os.path.abspath(arguments.build), "bin", "mural")
-    launcher = [mural, "run", "--tiles", arguments.tiles, "--display", "none", "--quiet", "--"]
     wrong = expected = 0
     known = known_differences()
     chosen = commands(arguments)
-    with display.PrivateDisplay() as display_name:
+    with tempfile.TemporaryDirectory(prefix="mural-piglit.") as folder, display.PrivateDisplay() as display_name:
+        wall = Wall(arguments, display_name, folder)
         for command in chosen:
-            native_status, native, _ = run(command, display_name, arguments.seconds)
-            status, through, output = run(command, display_name, arguments.seconds, launcher)
+            native_status, native = run_natively(command, display_name, arguments.seconds)
+            status, through, output = wall.run(command)
             if not native:
                 wrong += 1
                 print("%s: no result natively; take it out of the list" % command, flush=True)
@@ -108,6 +137,10 @@ def main():
                 print("%s: status %s, %s instead of status %s, %s; it said: %s" % (
                     command, status, " ".join(through) or "no result", native_status, " ".join(native),
                     " | ".join(said[-3:])), flush=True)
+        end = wall.end()
+        if end != 0:
+            wrong += 1
+            print("status %s of the run for all tests" % end)
     print("%d piglit tests, %d differ from the native run, %d known to differ" % (len(chosen), wrong, expected))
     return 1 if wrong else 0
 
