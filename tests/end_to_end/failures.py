@@ -104,8 +104,8 @@ def two_nodes_killed(context):
 
 def range_lost(context, composition):
     """One of the nodes that share draws is killed: what it draws is missing, which is said, and nobody waits for long."""
-    with context.drawing("fixed_lighting", 10 ** 6, options=("--display", "none", "--db", "4", "--composition", composition)) as run:
-        if not run.wait_for_line("mural: frame "): # every few seconds
+    with context.drawing("long_scene", 10 ** 6, options=("--display", "none", "--db", "4", "--composition", composition), environment={"SCENE_SHARES": "1"}) as run:
+        if not run.wait_for_line("frame 30 "):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
         found = run.wait_for_processes(NODE, 4)
         if len(found) < 4:
@@ -114,7 +114,8 @@ def range_lost(context, composition):
         kill_all(sorted(found)[2:3])
         if not run.wait_for_line("a range of the picture is missing for now: range 3"):
             return "nobody said that a range is missing: " + " | ".join(run.standard_error[-3:])
-        if not run.wait_for_line("mural: frame ", 30) or not run.wait_for_line("mural: frame ", 30):
+        drawn = sum(line.startswith("frame ") for line in run.standard_output)
+        if not run.wait_for_line("frame %d " % (drawn + 200)):
             return "no frames came any more: " + " | ".join(run.standard_error[-3:])
         if time.monotonic() - started > 60:
             return "it took %d s" % (time.monotonic() - started)
