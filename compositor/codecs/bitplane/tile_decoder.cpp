@@ -34,19 +34,25 @@ const char* TileDecoder::begin(const TileShape& shape, std::span<const std::byte
 }
 
 const char* TileDecoder::strip(unsigned y) {
-    if (kind_ == TileKind::Strips)
-        if (const char* wrong = packedStrip(y)) return wrong;
-    if (pixels_ == rows_ && kind_ == TileKind::Strips) return nullptr;
-    if (kind_ == TileKind::Uniform && shape_.hasWholeBlocks()) { // as a strip without differences, which is written four rows at once
-        strip_.present = 0;
+    switch (kind_) {
+    case TileKind::Raw: copyRows(y, left_.data() + y * shape_.rowBytes(), static_cast<ptrdiff_t>(shape_.rowBytes())); return nullptr;
+    case TileKind::Uniform:
+        if (!shape_.hasWholeBlocks()) {
+            copyRows(y, row_.data(), 0);
+            return nullptr;
+        }
+        strip_.present = 0; // as a strip without differences, which is written four rows at once
         decodeStrip(strip_, {shape_.arithmetic, Predictor::Above, false}, {rows_ + y * strideBytes_, strideBytes_, row_.data(), nullptr, shape_.wholeBlocks()});
         return nullptr;
+    case TileKind::Strips: break;
     }
-    for (unsigned i = 0; i < shape_.rowsFrom(y); ++i) {
-        const std::byte* from = kind_ == TileKind::Uniform ? row_.data() : kind_ == TileKind::Raw ? left_.data() + (y + i) * shape_.rowBytes() : pixels_ + (y + i) * pixelStrideBytes_;
-        std::memcpy(rows_ + (y + i) * strideBytes_, from, shape_.rowBytes());
-    }
-    return nullptr;
+    const char* wrong = packedStrip(y);
+    if (!wrong && pixels_ != rows_) copyRows(y, pixels_ + y * pixelStrideBytes_, pixelStrideBytes_);
+    return wrong;
+}
+
+void TileDecoder::copyRows(unsigned y, const std::byte* from, ptrdiff_t fromStrideBytes) {
+    for (unsigned i = 0; i < shape_.rowsFrom(y); ++i) std::memcpy(rows_ + (y + i) * strideBytes_, from + i * fromStrideBytes, shape_.rowBytes());
 }
 
 const char* TileDecoder::packedStrip(unsigned y) {

@@ -20,6 +20,7 @@ public:
 
 private:
     const char* packedStrip(unsigned y);
+    void copyRows(unsigned y, const std::byte* from, ptrdiff_t fromStrideBytes);
 
     TileShape shape_;
     TileKind kind_ = TileKind::Raw;
