@@ -84,24 +84,23 @@ Result<void> assembleDepth(Image& into, const Image& part, const DepthAssembly& 
     for (const PixelViewport& r : part.drawn.rectangles()) {
         const MutablePlaneView depth = into.depth->view().part(placed->inTarget(r));
         const PlaneView sourceDepth = part.depth->view().part(r);
-        MutablePlaneView colour;
-        PlaneView sourceColour;
-        ZRow row;
+        ZArea area;
+        area.columns = static_cast<size_t>(r.w);
+        area.rows = static_cast<size_t>(r.h);
+        area.depth = reinterpret_cast<uint32_t*>(depth.row(0));
+        area.sourceDepth = reinterpret_cast<const uint32_t*>(sourceDepth.row(0));
+        area.depthStride = depth.strideBytes;
+        area.sourceDepthStride = sourceDepth.strideBytes;
         if (into.colour) {
-            colour = into.colour->view().part(placed->inTarget(r));
-            sourceColour = part.colour->view().part(r);
-            row.colourBytes = bytesPerPixel(colour.format);
+            const MutablePlaneView colour = into.colour->view().part(placed->inTarget(r));
+            const PlaneView sourceColour = part.colour->view().part(r);
+            area.colourBytes = bytesPerPixel(colour.format);
+            area.colour = colour.row(0);
+            area.sourceColour = sourceColour.row(0);
+            area.colourStride = colour.strideBytes;
+            area.sourceColourStride = sourceColour.strideBytes;
         }
-        row.count = static_cast<size_t>(r.w);
-        for (int32_t y = 0; y < r.h; ++y) {
-            row.depth = reinterpret_cast<uint32_t*>(depth.row(y));
-            row.sourceDepth = reinterpret_cast<const uint32_t*>(sourceDepth.row(y));
-            if (into.colour) {
-                row.colour = colour.row(y);
-                row.sourceColour = sourceColour.row(y);
-            }
-            zSelectRow(row, rule);
-        }
+        zSelect(area, rule);
     }
     take(into, part, *placed);
     into.order = joined(into.order, part.order);

@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <vector>
 
 #include "common/pixel_viewport.hpp"
+#include "compositor/image/pixel_bytes.hpp"
 #include "compositor/image/plane_format.hpp"
 
 namespace mural::compositor {
@@ -49,8 +49,8 @@ public:
     [[nodiscard]] PlaneFormat format() const { return format_; }
     [[nodiscard]] int32_t width() const { return width_; }
     [[nodiscard]] int32_t height() const { return height_; }
-    [[nodiscard]] std::vector<std::byte>& bytes() { return pixels_; }
-    [[nodiscard]] const std::vector<std::byte>& bytes() const { return pixels_; }
+    [[nodiscard]] PixelBytes& bytes() { return pixels_; }
+    [[nodiscard]] const PixelBytes& bytes() const { return pixels_; }
     friend bool operator==(const Plane&, const Plane&) = default;
 
 private:
@@ -58,7 +58,7 @@ private:
     PlaneFormat format_ = PlaneFormat::Rgba8;
     int32_t width_ = 0;
     int32_t height_ = 0;
-    std::vector<std::byte> pixels_;
+    PixelBytes pixels_;
 };
 
 // Both have the same shape.

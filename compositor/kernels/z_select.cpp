@@ -1,6 +1,7 @@
 #include "compositor/kernels/z_select.hpp"
 
 #include <cstring>
+#include <hwy/cache_control.h>
 
 #include "compositor/kernels/ask_ahead.hpp"
 
@@ -12,9 +13,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace mural::compositor::HWY_NAMESPACE {
 
-#if HWY_TARGET == HWY_SCALAR // no vectors: the loop behind them does all
+#if HWY_TARGET == HWY_SCALAR
 
-size_t zSelectVectors(const ZRow&, const DepthRule&) { return 0; }
+void zSelectVectors(const ZArea& area, const DepthRule& rule) { zSelectScalar(area, rule); }
 
 #else
 
@@ -60,23 +61,39 @@ template <class D> void selectWords(D du, uint32_t* to, const uint32_t* source, 
     hn::StoreU(hn::IfThenElse(win, hn::LoadU(du, source), hn::LoadU(du, to)), du, to);
 }
 
+// Depths are read one after the other, which the hardware's own looking ahead serves well; which colours are needed is known
+// from them only, in pieces shorter than memory's latency. So colours are asked for where the source wins some of two vectors
+// of pixels, and taken when as many other pairs as this have been found.
+constexpr size_t kWaiting = 16;
+
+// Colours of areas from this size on are more than what a core has of the caches: where the source wins all of a pair, they are
+// written past these, without reading first what was there.
+constexpr size_t kPastCachesBytes = size_t{2} << 20;
+
 // Wide pixels: what is copied is much more than the mask, so one at a time.
-template <class D> void selectWide(D du, const ZRow& row, size_t i, hn::Mask<D> win) {
+template <size_t kBytes, class D> void takeWide(D du, std::byte* colour, const std::byte* source, hn::Mask<D> win) {
     uint8_t bits[8] = {};
     hn::StoreMaskBits(du, win, bits);
     uint64_t left = 0;
     std::memcpy(&left, bits, sizeof left);
     for (; left != 0; left &= left - 1) {
-        const size_t at = (i + static_cast<size_t>(__builtin_ctzll(left))) * row.colourBytes;
-        if (row.colourBytes == 8) std::memcpy(row.colour + at, row.sourceColour + at, 8);
-        else std::memcpy(row.colour + at, row.sourceColour + at, 16);
+        const size_t at = static_cast<size_t>(__builtin_ctzll(left)) * kBytes;
+        std::memcpy(colour + at, source + at, kBytes);
     }
 }
 
-// Returns how many pixels it did: whole vectors, two at once, for a line of the cache is one vector with the widest of them only.
-template <SourceWins W, bool kFloat, bool kCovered> size_t selectRow(const ZRow& row, const Constants& c) {
+template <class D> void takeColours(D du, std::byte* colour, const std::byte* source, size_t colourBytes, hn::Mask<D> win) {
+    if (colourBytes == 4) selectWords(du, reinterpret_cast<uint32_t*>(colour), reinterpret_cast<const uint32_t*>(source), win);
+    else if (colourBytes == 8) takeWide<8>(du, colour, source, win);
+    else takeWide<16>(du, colour, source, win);
+}
+
+// Whole vectors of each row, two at once, for a line of the cache is one vector with the widest of them only; the rest of the
+// row pixel by pixel.
+template <SourceWins W, bool kFloat, bool kCovered, bool kWords> void selectRows(const ZArea& area, const DepthRule& rule, const Constants& c) {
+    const size_t colourBytes = kWords ? 4 : area.colourBytes;
     const hn::ScalableTag<uint32_t> du;
-    const size_t lanes = hn::Lanes(du), step = 2 * lanes;
+    const size_t lanes = hn::Lanes(du), pair = 2 * lanes;
     const auto flip = hn::Set(du, c.flip);
     const auto clear = hn::Set(du, c.clear);
     const auto drawnMask = hn::Set(du, c.drawnMask);
@@ -97,40 +114,67 @@ template <SourceWins W, bool kFloat, bool kCovered> size_t selectRow(const ZRow&
         }
         return win;
     };
-    const auto sourceAt = [&](size_t i) { return hn::LoadU(du, row.sourceDepth + i); };
-    const auto thereAt = [&](size_t i) { return hn::LoadU(du, row.depth + i); };
-    const auto select = [&](size_t i, hn::Mask<decltype(du)> win) {
-        selectWords(du, row.depth + i, row.sourceDepth + i, win);
-        if (!row.colour) return;
-        if (row.colourBytes == 4) selectWords(du, reinterpret_cast<uint32_t*>(row.colour) + i, reinterpret_cast<const uint32_t*>(row.sourceColour) + i, win);
-        else selectWide(du, row, i, win);
-    };
-    size_t i = 0;
-    for (; i + step <= row.count; i += step) {
-        askFor(row.depth + i + kAheadWords, 4 * step);
-        askFor(row.sourceDepth + i + kAheadWords, 4 * step);
-        const auto first = wins(sourceAt(i), thereAt(i)), second = wins(sourceAt(i + lanes), thereAt(i + lanes));
-        if (hn::AllFalse(du, hn::Or(first, second))) continue;
-        if (row.colour) { // where some are taken, there more will be
-            askFor(row.colour + (i + kAheadWords) * row.colourBytes, step * row.colourBytes);
-            askFor(row.sourceColour + (i + kAheadWords) * row.colourBytes, step * row.colourBytes);
+    const bool pastCaches = kWords && area.rows * area.columns * colourBytes >= kPastCachesBytes;
+    HWY_ALIGN uint32_t waitingWins[kWaiting * 2 * hn::MaxLanes(du)];
+    std::byte* waitingColours[kWaiting];
+    const std::byte* waitingSources[kWaiting];
+    size_t found = 0;
+    const auto take = [&](size_t slot) {
+        const auto win0 = hn::MaskFromVec(hn::Load(du, waitingWins + slot * pair)), win1 = hn::MaskFromVec(hn::Load(du, waitingWins + slot * pair + lanes));
+        std::byte* colour = waitingColours[slot];
+        const std::byte* source = waitingSources[slot];
+        if (pastCaches && reinterpret_cast<uintptr_t>(colour) % (4 * lanes) == 0 && hn::AllTrue(du, hn::And(win0, win1))) {
+            hn::Stream(hn::LoadU(du, reinterpret_cast<const uint32_t*>(source)), du, reinterpret_cast<uint32_t*>(colour));
+            hn::Stream(hn::LoadU(du, reinterpret_cast<const uint32_t*>(source) + lanes), du, reinterpret_cast<uint32_t*>(colour) + lanes);
+            return;
         }
-        select(i, first);
-        select(i + lanes, second);
+        takeColours(du, colour, source, colourBytes, win0);
+        takeColours(du, colour + lanes * colourBytes, source + lanes * colourBytes, colourBytes, win1);
+    };
+    for (size_t y = 0; y < area.rows; ++y) {
+        ZArea row = area.row(y);
+        size_t i = 0;
+        for (; i + pair <= row.columns; i += pair) {
+            const auto source0 = hn::LoadU(du, row.sourceDepth + i), source1 = hn::LoadU(du, row.sourceDepth + i + lanes);
+            const auto there0 = hn::LoadU(du, row.depth + i), there1 = hn::LoadU(du, row.depth + i + lanes);
+            const auto win0 = wins(source0, there0), win1 = wins(source1, there1);
+            if (hn::AllFalse(du, hn::Or(win0, win1))) continue;
+            hn::StoreU(hn::IfThenElse(win0, source0, there0), du, row.depth + i);
+            hn::StoreU(hn::IfThenElse(win1, source1, there1), du, row.depth + i + lanes);
+            if (!row.colour) continue;
+            const size_t slot = found % kWaiting;
+            if (found >= kWaiting) take(slot);
+            ++found;
+            hn::Store(hn::VecFromMask(du, win0), du, waitingWins + slot * pair);
+            hn::Store(hn::VecFromMask(du, win1), du, waitingWins + slot * pair + lanes);
+            waitingColours[slot] = row.colour + i * colourBytes;
+            waitingSources[slot] = row.sourceColour + i * colourBytes;
+            if (!pastCaches || !hn::AllTrue(du, hn::And(win0, win1))) askFor(waitingColours[slot], pair * colourBytes);
+            askFor(waitingSources[slot], pair * colourBytes);
+        }
+        row.depth += i;
+        row.sourceDepth += i;
+        row.columns -= i;
+        if (row.colour) {
+            row.colour += i * colourBytes;
+            row.sourceColour += i * colourBytes;
+        }
+        zSelectScalar(row, rule);
     }
-    for (; i + lanes <= row.count; i += lanes) {
-        const auto win = wins(sourceAt(i), thereAt(i));
-        if (!hn::AllFalse(du, win)) select(i, win);
-    }
-    return i;
+    for (size_t k = found > kWaiting ? found - kWaiting : 0; k < found; ++k) take(k % kWaiting);
+    if (pastCaches) hwy::FlushStream();
 }
 
-template <SourceWins W> size_t chooseRow(const ZRow& row, const Constants& c, bool isFloat, bool covered) {
-    if (isFloat) return covered ? selectRow<W, true, true>(row, c) : selectRow<W, true, false>(row, c);
-    return covered ? selectRow<W, false, true>(row, c) : selectRow<W, false, false>(row, c);
+template <SourceWins W, bool kFloat, bool kCovered> void chooseColours(const ZArea& area, const DepthRule& rule, const Constants& c) {
+    area.colourBytes == 4 ? selectRows<W, kFloat, kCovered, true>(area, rule, c) : selectRows<W, kFloat, kCovered, false>(area, rule, c);
 }
 
-size_t zSelectVectors(const ZRow& row, const DepthRule& rule) {
+template <SourceWins W> void choose(const ZArea& area, const DepthRule& rule, const Constants& c, bool covered) {
+    if (rule.format == DepthFormat::D32F) return covered ? chooseColours<W, true, true>(area, rule, c) : chooseColours<W, true, false>(area, rule, c);
+    return covered ? chooseColours<W, false, true>(area, rule, c) : chooseColours<W, false, false>(area, rule, c);
+}
+
+void zSelectVectors(const ZArea& area, const DepthRule& rule) {
     const bool isFloat = rule.format == DepthFormat::D32F;
     const bool greater = rule.function == DepthFunction::Greater || rule.function == DepthFunction::GreaterOrEqual;
     Constants c{};
@@ -142,15 +186,14 @@ size_t zSelectVectors(const ZRow& row, const DepthRule& rule) {
     const bool later = rule.sourceIsLater;
     switch (rule.function) {
     case DepthFunction::Less:
-    case DepthFunction::Greater: return later ? chooseRow<SourceWins::IfLess>(row, c, isFloat, covered) : chooseRow<SourceWins::IfLessOrEqual>(row, c, isFloat, covered);
+    case DepthFunction::Greater: return later ? choose<SourceWins::IfLess>(area, rule, c, covered) : choose<SourceWins::IfLessOrEqual>(area, rule, c, covered);
     case DepthFunction::LessOrEqual:
-    case DepthFunction::GreaterOrEqual: return later ? chooseRow<SourceWins::IfLessOrEqual>(row, c, isFloat, covered) : chooseRow<SourceWins::IfLess>(row, c, isFloat, covered);
-    case DepthFunction::Equal: return later ? chooseRow<SourceWins::IfEqual>(row, c, isFloat, covered) : chooseRow<SourceWins::IfNotEqual>(row, c, isFloat, covered);
-    case DepthFunction::NotEqual: return later ? chooseRow<SourceWins::IfNotEqual>(row, c, isFloat, covered) : chooseRow<SourceWins::IfEqual>(row, c, isFloat, covered);
-    case DepthFunction::Always: return later ? chooseRow<SourceWins::Always>(row, c, isFloat, covered) : chooseRow<SourceWins::Never>(row, c, isFloat, covered);
-    case DepthFunction::Never: return later ? chooseRow<SourceWins::Never>(row, c, isFloat, covered) : chooseRow<SourceWins::Always>(row, c, isFloat, covered);
+    case DepthFunction::GreaterOrEqual: return later ? choose<SourceWins::IfLessOrEqual>(area, rule, c, covered) : choose<SourceWins::IfLess>(area, rule, c, covered);
+    case DepthFunction::Equal: return later ? choose<SourceWins::IfEqual>(area, rule, c, covered) : choose<SourceWins::IfNotEqual>(area, rule, c, covered);
+    case DepthFunction::NotEqual: return later ? choose<SourceWins::IfNotEqual>(area, rule, c, covered) : choose<SourceWins::IfEqual>(area, rule, c, covered);
+    case DepthFunction::Always: return later ? choose<SourceWins::Always>(area, rule, c, covered) : choose<SourceWins::Never>(area, rule, c, covered);
+    case DepthFunction::Never: return later ? choose<SourceWins::Never>(area, rule, c, covered) : choose<SourceWins::Always>(area, rule, c, covered);
     }
-    return 0;
 }
 
 #endif
@@ -163,18 +206,7 @@ namespace mural::compositor {
 
 HWY_EXPORT(zSelectVectors);
 
-void zSelectRow(const ZRow& row, const DepthRule& rule) {
-    const size_t done = HWY_DYNAMIC_DISPATCH(zSelectVectors)(row, rule);
-    ZRow rest = row;
-    rest.depth += done;
-    rest.sourceDepth += done;
-    rest.count -= done;
-    if (rest.colour) {
-        rest.colour += done * row.colourBytes;
-        rest.sourceColour += done * row.colourBytes;
-    }
-    zSelectRowScalar(rest, rule);
-}
+void zSelect(const ZArea& area, const DepthRule& rule) { HWY_DYNAMIC_DISPATCH(zSelectVectors)(area, rule); }
 
 } // namespace mural::compositor
 #endif

@@ -59,11 +59,14 @@ bool sourceWins(const DepthRule& rule, uint32_t source, uint32_t there) {
 
 } // namespace
 
-void zSelectRowScalar(const ZRow& row, const DepthRule& rule) {
-    for (size_t i = 0; i < row.count; ++i) {
-        if (!sourceWins(rule, row.sourceDepth[i], row.depth[i])) continue;
-        row.depth[i] = row.sourceDepth[i];
-        if (row.colour) std::memcpy(row.colour + i * row.colourBytes, row.sourceColour + i * row.colourBytes, row.colourBytes);
+void zSelectScalar(const ZArea& area, const DepthRule& rule) {
+    for (size_t y = 0; y < area.rows; ++y) {
+        const ZArea row = area.row(y);
+        for (size_t i = 0; i < row.columns; ++i) {
+            if (!sourceWins(rule, row.sourceDepth[i], row.depth[i])) continue;
+            row.depth[i] = row.sourceDepth[i];
+            if (row.colour) std::memcpy(row.colour + i * row.colourBytes, row.sourceColour + i * row.colourBytes, row.colourBytes);
+        }
     }
 }
 

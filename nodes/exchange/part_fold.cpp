@@ -47,19 +47,19 @@ void foldAtClearDepth(const FoldRow& r, FoldSide side, const FoldRule& rule) {
 
 void foldRow(const FoldRow& row, FoldSide side, const FoldRule& rule) {
     if (rule.deep) return foldDeep(row, side, rule);
-    compositor::ZRow z;
+    compositor::ZArea z;
     z.depth = row.depth;
     z.colour = reinterpret_cast<std::byte*>(row.colour);
     z.sourceDepth = row.otherDepth;
     z.sourceColour = reinterpret_cast<const std::byte*>(row.otherColour);
-    z.count = row.count;
+    z.columns = row.count;
     compositor::DepthRule how;
     how.function = rule.function;
     how.format = compositor::DepthFormat::D24S8;
     how.sourceIsLater = side == FoldSide::Later;
     how.coverage = compositor::Coverage::NotClear;
     how.clearBits = rule.clearedDepth;
-    compositor::zSelectRow(z, how);
+    compositor::zSelect(z, how);
     const bool equalPasses = rule.function == DepthFunction::LessOrEqual || rule.function == DepthFunction::GreaterOrEqual;
     if (equalPasses) foldAtClearDepth(row, side, rule);
 }

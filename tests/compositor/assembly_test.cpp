@@ -24,7 +24,7 @@ Image emptyImage(PlaneFormat colour, DrawOrder order) {
 
 Image randomImage(std::mt19937& random, DrawOrder order) {
     Image image = emptyImage(PlaneFormat::Rgba8, order);
-    image.colour->bytes() = randomBytes(random, image.colour->bytes().size());
+    fillRandomly(random, image.colour->bytes());
     for (auto& b : image.depth->bytes()) b = static_cast<std::byte>(random() % 2 ? 0x80 : 0x81); // many ties
     return image;
 }
@@ -111,7 +111,7 @@ TEST(InterleavePixels, SizesThatDoNotDivide) {
         for (const auto& [columns, rows] : {std::pair{1, 1}, {2, 1}, {1, 2}, {3, 2}, {4, 4}, {7, 5}})
             for (const auto& [width, height] : {std::pair{61, 23}, {1, 1}, {6, 4}, {5, 9}}) {
                 Plane whole(format, width, height), put(format, width, height);
-                whole.bytes() = randomBytes(random, whole.bytes().size());
+                fillRandomly(random, whole.bytes());
                 for (int32_t row = rows - 1; row >= 0; --row)
                     for (int32_t column = 0; column < columns; ++column) {
                         const PixelKernel k{column, row, columns, rows};
@@ -140,8 +140,8 @@ TEST(AssembleMasked, ComponentsOfEveryFormat) {
     std::mt19937 random(5);
     for (const auto& [format, bits] : {std::pair{PlaneFormat::Rgba8, 8}, {PlaneFormat::Rgba16F, 16}, {PlaneFormat::Rgba32F, 32}}) {
         Plane left(format, 37, 3), right(format, 37, 3);
-        left.bytes() = randomBytes(random, left.bytes().size());
-        right.bytes() = randomBytes(random, right.bytes().size());
+        fillRandomly(random, left.bytes());
+        fillRandomly(random, right.bytes());
         Plane both = left;
         ASSERT_TRUE(assembleMasked(both.view(), right.view(), {false, true, true, false}));
         for (size_t i = 0; i < both.bytes().size(); ++i) {

@@ -12,12 +12,16 @@ namespace mural::compositor::test {
 
 using mural::test::forEachTarget;
 
-inline std::vector<std::byte> randomBytes(std::mt19937& random, size_t count) {
-    std::vector<std::byte> bytes(count);
+template <class Bytes> void fillRandomly(std::mt19937& random, Bytes& bytes) {
     for (auto& b : bytes) {
         const uint32_t kind = random() % 8;
         b = static_cast<std::byte>(kind == 0 ? 0 : kind == 1 ? 255 : random());
     }
+}
+
+inline std::vector<std::byte> randomBytes(std::mt19937& random, size_t count) {
+    std::vector<std::byte> bytes(count);
+    fillRandomly(random, bytes);
     return bytes;
 }
 

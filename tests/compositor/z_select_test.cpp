@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "compositor/image/pixel_bytes.hpp"
 #include "compositor/kernels/z_select.hpp"
 #include "tests/compositor/random_bytes.hpp"
 
@@ -36,14 +37,14 @@ Pixels randomPixels(std::mt19937& random, DepthFormat format, size_t count, size
     return p;
 }
 
-ZRow rowOf(Pixels& into, const Pixels& source, size_t colourBytes) {
-    ZRow row;
+ZArea rowOf(Pixels& into, const Pixels& source, size_t colourBytes) {
+    ZArea row;
     row.depth = into.depth.data();
     row.colour = into.colour.data();
     row.sourceDepth = source.depth.data();
     row.sourceColour = source.colour.data();
     row.colourBytes = colourBytes;
-    row.count = source.depth.size();
+    row.columns = source.depth.size();
     return row;
 }
 
@@ -68,27 +69,74 @@ TEST(ZSelect, VectorsAndPixelsAgree) {
                     const Pixels source = randomPixels(random, rule.format, count, colourBytes);
                     Pixels into = randomPixels(random, rule.format, count, colourBytes);
                     Pixels expected = into;
-                    zSelectRow(rowOf(into, source, colourBytes), rule);
-                    zSelectRowScalar(rowOf(expected, source, colourBytes), rule);
+                    zSelect(rowOf(into, source, colourBytes), rule);
+                    zSelectScalar(rowOf(expected, source, colourBytes), rule);
                     ASSERT_EQ(into, expected) << target << " function " << static_cast<int>(rule.function) << " later " << rule.sourceIsLater << " count " << count;
                 }
     });
 }
 
+// Rows with something in between that is not the area's; large ones, whose colours go past the caches where they are all taken,
+// begin with a vector and beside one.
+TEST(ZSelect, AreasLeaveWhatIsBetweenTheirRows) {
+    struct Shape {
+        size_t columns, rows, gap, begin;
+    };
+    constexpr Shape kShapes[] = {{1, 9, 3, 0}, {37, 20, 5, 1}, {64, 3, 0, 0}, {200, 11, 40, 2}, {1024, 520, 0, 0}, {1021, 530, 3, 1}, {1024, 520, 16, 0}};
+    forEachTarget([&](const char* target) {
+        std::mt19937 random(3);
+        for (const Shape& shape : kShapes)
+            for (const size_t colourBytes : {size_t{4}, size_t{8}, size_t{0}}) {
+                if (colourBytes != 4 && shape.rows > 100) continue; // only words go past the caches
+                const size_t stride = shape.columns + shape.gap, count = shape.begin + stride * shape.rows;
+                using Words = std::vector<uint32_t, LineAligned<uint32_t>>;
+                Words depth(count), sourceDepth(count);
+                for (size_t i = 0; i < count; ++i) { // runs of pixels that one or the other wins, and some that stand alone
+                    depth[i] = bits(0.5f);
+                    sourceDepth[i] = bits(i / 150 % 3 == 0 ? 0.25f : i / 150 % 3 == 1 ? 0.75f : random() % 2 ? 0.25f : 0.75f);
+                }
+                PixelBytes colour(count * colourBytes), sourceColour(count * colourBytes);
+                fillRandomly(random, colour);
+                fillRandomly(random, sourceColour);
+                const auto areaOf = [&](Words& d, PixelBytes& c) {
+                    ZArea area;
+                    area.columns = shape.columns;
+                    area.rows = shape.rows;
+                    area.depth = d.data() + shape.begin;
+                    area.sourceDepth = sourceDepth.data() + shape.begin;
+                    area.depthStride = area.sourceDepthStride = static_cast<std::ptrdiff_t>(4 * stride);
+                    if (colourBytes == 0) return area;
+                    area.colourBytes = colourBytes;
+                    area.colour = c.data() + shape.begin * colourBytes;
+                    area.sourceColour = sourceColour.data() + shape.begin * colourBytes;
+                    area.colourStride = area.sourceColourStride = static_cast<std::ptrdiff_t>(colourBytes * stride);
+                    return area;
+                };
+                Words expectedDepth = depth;
+                PixelBytes expectedColour = colour;
+                const DepthRule rule{DepthFunction::Less, DepthFormat::D32F, true, Coverage::All, 0};
+                for (size_t y = 0; y < shape.rows; ++y) zSelectScalar(areaOf(expectedDepth, expectedColour).row(y), rule);
+                zSelect(areaOf(depth, colour), rule);
+                ASSERT_EQ(depth, expectedDepth) << target << " " << shape.columns << "x" << shape.rows;
+                ASSERT_EQ(colour, expectedColour) << target << " " << shape.columns << "x" << shape.rows << " of " << colourBytes << " bytes";
+            }
+    });
+}
+
 TEST(ZSelect, DepthAloneNeedsNoColour) {
     std::vector<uint32_t> depth(40, bits(0.5f)), source(40, bits(0.25f));
-    ZRow row;
+    ZArea row;
     row.depth = depth.data();
     row.sourceDepth = source.data();
-    row.count = 40;
-    zSelectRow(row, {DepthFunction::Less, DepthFormat::D32F, true, Coverage::All, 0});
+    row.columns = 40;
+    zSelect(row, {DepthFunction::Less, DepthFormat::D32F, true, Coverage::All, 0});
     EXPECT_EQ(depth, source);
 }
 
 // One pixel against another, whatever the vectors: `wins` says whether the source did.
 bool sourceWins(const DepthRule& rule, uint32_t source, uint32_t there) {
     Pixels a{{there}, std::vector<std::byte>(4, std::byte{1})}, b{{source}, std::vector<std::byte>(4, std::byte{2})};
-    zSelectRow(rowOf(a, b, 4), rule);
+    zSelect(rowOf(a, b, 4), rule);
     return a.colour[0] == std::byte{2};
 }
 
@@ -162,7 +210,7 @@ TEST(ZSelect, PairingDoesNotMatter) {
             DepthRule rule = base;
             rule.sourceIsLater = intoEarlier;
             Pixels into = intoEarlier ? earlier : later;
-            zSelectRow(rowOf(into, intoEarlier ? later : earlier, 4), rule);
+            zSelect(rowOf(into, intoEarlier ? later : earlier, 4), rule);
             return into;
         };
         const Pixels inOrder = merge(merge(merge(parts[0], parts[1], true), parts[2], true), parts[3], true);

@@ -66,7 +66,7 @@ size_t wrongPixels(const std::vector<Part>& drawn, DepthFunction function, Depth
         for (size_t p = 0; p + 1 < parts.size(); p += 2, intoEarlier = !intoEarlier) {
             Part into = parts[intoEarlier ? p : p + 1];
             const Part& source = parts[intoEarlier ? p + 1 : p];
-            zSelectRow({into.depth.data(), reinterpret_cast<std::byte*>(into.colour.data()), source.depth.data(), reinterpret_cast<const std::byte*>(source.colour.data()), 4, kComparedPixels},
+            zSelect({into.depth.data(), reinterpret_cast<std::byte*>(into.colour.data()), source.depth.data(), reinterpret_cast<const std::byte*>(source.colour.data()), 4, kComparedPixels},
                        {function, format, intoEarlier, Coverage::All, 0});
             next.push_back(into);
         }

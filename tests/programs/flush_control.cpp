@@ -30,7 +30,7 @@ GLXContext makeContext(GLXContext share, Release release) {
         glXGetProcAddress(reinterpret_cast<const GLubyte*>("glXCreateContextAttribsARB")));
     const int attributes[] = {GLX_CONTEXT_MAJOR_VERSION_ARB, 3, GLX_CONTEXT_MINOR_VERSION_ARB, 3,
                               GLX_CONTEXT_PROFILE_MASK_ARB, GLX_CONTEXT_CORE_PROFILE_BIT_ARB,
-                              release == Unsaid ? None : GLX_CONTEXT_RELEASE_BEHAVIOR_ARB,
+                              release == Unsaid ? 0 : GLX_CONTEXT_RELEASE_BEHAVIOR_ARB,
                               release == Keep ? GLX_CONTEXT_RELEASE_BEHAVIOR_NONE_ARB : GLX_CONTEXT_RELEASE_BEHAVIOR_FLUSH_ARB, None};
     const GLXContext made = create(display, config, share, True, attributes);
     if (made == nullptr) {

@@ -3,6 +3,7 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 #include <functional>
+#include <numbers>
 #include <random>
 
 #include "compositor/codecs/bitplane/bitplane_codec.hpp"
@@ -43,13 +44,16 @@ void fillNoise(std::byte* bytes, size_t sizeBytes, uint32_t seed) {
 
 uint32_t depthWord(DepthFormat format, float z) { return format == DepthFormat::D32F ? std::bit_cast<uint32_t>(z) : static_cast<uint32_t>(z * 16777215.0f) << 8; }
 
-// The first half is depth, the second colour. A surface in waves that fills the picture; two of them cross here and there.
-void fillSurface(std::byte* bytes, DepthFormat format, uint32_t seed) {
+// The first half is depth, the second colour. A surface in waves that fills the picture and leans to one side or the other: two
+// that lean differently cross in each row, and each is in front in half of the picture, whatever their waves' phases.
+enum class Leans { Left, Right };
+
+void fillSurface(std::byte* bytes, DepthFormat format, Leans leans, uint32_t seed) {
     auto* depth = reinterpret_cast<uint32_t*>(bytes);
-    const float phase = static_cast<float>(seed % 13);
+    const float slope = leans == Leans::Left ? -0.0002f : 0.0002f;
     for (size_t y = 0; y < kRows; ++y) {
-        const float along = std::sin(static_cast<float>(y) / 120.0f + phase);
-        for (size_t x = 0; x < kColumns; ++x) depth[y * kColumns + x] = depthWord(format, 0.5f + 0.2f * along + 0.0002f * static_cast<float>(x) * (seed % 2 ? 1.0f : -1.0f));
+        const float along = std::sin(4 * std::numbers::pi_v<float> * static_cast<float>(y) / kRows + static_cast<float>(seed));
+        for (size_t x = 0; x < kColumns; ++x) depth[y * kColumns + x] = depthWord(format, 0.5f + 0.2f * along + slope * (static_cast<float>(x) - kColumns / 2.0f));
     }
     fillNoise(bytes + 4 * kPixels, 4 * kPixels, seed + 1);
 }
@@ -85,21 +89,20 @@ enum class ZRows { All, First };
 
 Kernel zKernel(const std::string& name, DepthFormat format, bool isNoise, double covered, ZRows rows = ZRows::All) {
     const auto run = [format, rows](std::byte* into, const std::byte* source, auto&& select) {
-        ZRow row;
-        for (size_t y = 0; y < kRows; ++y) {
-            const size_t at = rows == ZRows::First ? 0 : 4 * kColumns * y;
-            row.depth = reinterpret_cast<uint32_t*>(into + at);
-            row.colour = into + 4 * kPixels + at;
-            row.sourceDepth = reinterpret_cast<const uint32_t*>(source + at);
-            row.sourceColour = source + 4 * kPixels + at;
-            row.count = kColumns;
-            // What has won once wins again, so that the same is done with one row.
-            select(row, DepthRule{rows == ZRows::First ? DepthFunction::LessOrEqual : DepthFunction::Less, format, true, Coverage::All, 0});
-        }
+        ZArea area;
+        area.columns = kColumns;
+        area.rows = kRows;
+        area.depth = reinterpret_cast<uint32_t*>(into);
+        area.colour = into + 4 * kPixels;
+        area.sourceDepth = reinterpret_cast<const uint32_t*>(source);
+        area.sourceColour = source + 4 * kPixels;
+        area.depthStride = area.colourStride = area.sourceDepthStride = area.sourceColourStride = rows == ZRows::First ? 0 : 4 * kColumns;
+        // What has won once wins again, so that the same is done with one row.
+        select(area, DepthRule{rows == ZRows::First ? DepthFunction::LessOrEqual : DepthFunction::Less, format, true, Coverage::All, 0});
     };
-    return {name, 8 * kPixels, 8 * kPixels, [=](std::byte* into, uint32_t turn) { isNoise ? fillDepthNoise(into, format, 1, turn) : fillSurface(into, format, turn); },
-            [=](std::byte* source, uint32_t turn) { isNoise ? fillDepthNoise(source, format, covered, turn + 7) : fillSurface(source, format, turn + 7); }, [run](std::byte* into, const std::byte* source) { run(into, source, zSelectRow); },
-            [run](std::byte* into, const std::byte* source) { run(into, source, zSelectRowScalar); }};
+    return {name, 8 * kPixels, 8 * kPixels, [=](std::byte* into, uint32_t turn) { isNoise ? fillDepthNoise(into, format, 1, turn) : fillSurface(into, format, Leans::Left, turn); },
+            [=](std::byte* source, uint32_t turn) { isNoise ? fillDepthNoise(source, format, covered, turn + 7) : fillSurface(source, format, Leans::Right, turn + 7); }, [run](std::byte* into, const std::byte* source) { run(into, source, zSelect); },
+            [run](std::byte* into, const std::byte* source) { run(into, source, zSelectScalar); }};
 }
 
 Kernel overKernel(const char* name, double covered) {
@@ -252,14 +255,14 @@ Faults benchKernels(const std::vector<NamedPlane>& planes, const BenchOptions& o
         std::vector<double> fast, plain;
         for (size_t turn = 0; turn < static_cast<size_t>(options.turns) + 1; ++turn) {
             k.fill(into.at(turn).data(), static_cast<uint32_t>(turn));
+            const PixelBytes before = into.at(turn);
+            emptyCaches();
             const double copied = cpuNsOf([&] { std::memcpy(copies.at(turn).data(), copies.at(turn + 1).data(), k.sourceBytes); });
-            const std::vector<std::byte> before = into.at(turn);
-            // The copy has filled the caches with what is worked on next: push it out again, as in use.
-            std::memset(copies.at(turn + 2).data(), 1, k.sizeBytes);
+            emptyCaches();
             const double taken = cpuNsOf([&] { k.fast(into.at(turn).data(), source.at(turn).data()); });
             if (turn > 0) fast.push_back(copied / taken);
             if (turn < 3) {
-                std::vector<std::byte> expected = before;
+                PixelBytes expected = before;
                 plain.push_back(copied / cpuNsOf([&] { k.plain(expected.data(), source.at(turn).data()); }));
                 if (expected != into.at(turn)) faults.push_back(k.name + ": vectors and single pixels give different pictures");
             }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/clock.hpp"
+#include "compositor/image/pixel_bytes.hpp"
 
 namespace mural::bench {
 
@@ -17,13 +18,22 @@ constexpr size_t kRotatedBytes = size_t{256} << 20; // per set of buffers, more 
 // Zeroed pages are not there yet: written once.
 class RotatedBuffers {
 public:
-    RotatedBuffers(size_t count, size_t sizeBytes) : buffers_(count, std::vector<std::byte>(sizeBytes, std::byte{1})) {}
-    std::vector<std::byte>& at(size_t turn) { return buffers_[turn % buffers_.size()]; }
+    RotatedBuffers(size_t count, size_t sizeBytes) : buffers_(count, compositor::PixelBytes(sizeBytes, std::byte{1})) {}
+    compositor::PixelBytes& at(size_t turn) { return buffers_[turn % buffers_.size()]; }
     [[nodiscard]] size_t count() const { return buffers_.size(); }
 
 private:
-    std::vector<std::vector<std::byte>> buffers_;
+    std::vector<compositor::PixelBytes> buffers_;
 };
+
+// Reads more than the caches hold, so that what is measured next finds neither its data there nor others' that must be written
+// back first: a copy and a kernel that are compared both begin like that.
+inline void emptyCaches() {
+    static const std::vector<std::byte> others(size_t{96} << 20, std::byte{1});
+    unsigned sum = 0;
+    for (size_t at = 0; at < others.size(); at += 64) sum += std::to_integer<unsigned>(others[at]);
+    asm volatile("" : : "r"(sum));
+}
 
 template <class Do> double cpuNsOf(Do&& work) {
     const int64_t from = threadCpuNowNs();
