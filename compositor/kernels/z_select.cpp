@@ -21,39 +21,55 @@ void zSelectVectors(const ZArea& area, const DepthRule& rule) { zSelectScalar(ar
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// What is left of the eight functions and two orders: greater is less of what `flip` has turned round, and a source that is
-// earlier wins where the other one fails.
-enum class SourceWins { Never, IfLess, IfLessOrEqual, IfEqual, IfNotEqual, Always };
+// What is left of the eight functions and two orders: `later FUNCTION earlier` for a source that is later, and its contrary for
+// one that is earlier, where a NaN gives way to any other.
+enum class SourceWins { Never, IfLess, IfLessOrEqual, IfGreater, IfGreaterOrEqual, IfEqual, IfNotEqual, Always };
 
 struct Constants {
-    uint32_t flip;      // turns the order round, or 0
-    uint32_t clear;     // drawn: (depth ^ clear) & drawnMask is not 0
+    uint32_t clear; // drawn: (depth ^ clear) & drawnMask is not 0
     uint32_t drawnMask;
-    bool earlierSource;
 };
 
-template <SourceWins W, class D> auto wins24(D du, hn::Vec<D> source, hn::Vec<D> there, hn::Vec<D> flip) {
+constexpr SourceWins contraryOf(SourceWins w) {
+    switch (w) {
+    case SourceWins::IfLess: return SourceWins::IfGreaterOrEqual;
+    case SourceWins::IfLessOrEqual: return SourceWins::IfGreater;
+    case SourceWins::IfGreater: return SourceWins::IfLessOrEqual;
+    default: return SourceWins::IfLess;
+    }
+}
+
+template <SourceWins W, class D> auto wins24(D du, hn::Vec<D> source, hn::Vec<D> there) {
     const hn::RebindToSigned<D> di; // 24 bits: signed comparisons do
-    const auto s = hn::BitCast(di, hn::ShiftRight<8>(hn::Xor(source, flip)));
-    const auto t = hn::BitCast(di, hn::ShiftRight<8>(hn::Xor(there, flip)));
+    const auto s = hn::BitCast(di, hn::ShiftRight<8>(source));
+    const auto t = hn::BitCast(di, hn::ShiftRight<8>(there));
     if constexpr (W == SourceWins::IfLess) return hn::RebindMask(du, hn::Lt(s, t));
-    else if constexpr (W == SourceWins::IfLessOrEqual) return hn::RebindMask(du, hn::Not(hn::Lt(t, s)));
+    else if constexpr (W == SourceWins::IfLessOrEqual) return hn::RebindMask(du, hn::Not(hn::Gt(s, t)));
+    else if constexpr (W == SourceWins::IfGreater) return hn::RebindMask(du, hn::Gt(s, t));
+    else if constexpr (W == SourceWins::IfGreaterOrEqual) return hn::RebindMask(du, hn::Not(hn::Lt(s, t)));
     else if constexpr (W == SourceWins::IfEqual) return hn::RebindMask(du, hn::Eq(s, t));
     else return hn::RebindMask(du, hn::Not(hn::Eq(s, t)));
 }
 
-template <SourceWins W, class D> auto winsFloat(D du, hn::Vec<D> source, hn::Vec<D> there, hn::Vec<D> flip, hn::Mask<D> earlierSource) {
+template <SourceWins W, class V> auto ordered(V s, V t) {
+    if constexpr (W == SourceWins::IfLess) return hn::Lt(s, t);
+    else if constexpr (W == SourceWins::IfLessOrEqual) return hn::Le(s, t);
+    else if constexpr (W == SourceWins::IfGreater) return hn::Gt(s, t);
+    else return hn::Ge(s, t);
+}
+
+// A later source replaces a NaN if it is a number itself: it wins unless the contrary holds, which is false of NaN. An earlier
+// one replaces every NaN.
+template <SourceWins W, bool kLater, class D> auto winsFloat(D du, hn::Vec<D> source, hn::Vec<D> there) {
     const hn::RebindToFloat<D> df;
-    const auto s = hn::BitCast(df, hn::Xor(source, flip));
-    const auto t = hn::BitCast(df, hn::Xor(there, flip));
+    const auto s = hn::BitCast(df, source);
+    const auto t = hn::BitCast(df, there);
     if constexpr (W == SourceWins::IfEqual) return hn::RebindMask(du, hn::Eq(s, t));
     else if constexpr (W == SourceWins::IfNotEqual) return hn::RebindMask(du, hn::Not(hn::Eq(s, t)));
-    else {
-        const auto sourceIsNumber = hn::RebindMask(du, hn::Eq(s, s));
-        const auto thereIsNan = hn::RebindMask(du, hn::Not(hn::Eq(t, t)));
-        const auto replacesNan = hn::And(thereIsNan, hn::Or(earlierSource, sourceIsNumber));
-        if constexpr (W == SourceWins::IfLess) return hn::Or(hn::RebindMask(du, hn::Lt(s, t)), replacesNan);
-        else return hn::Or(hn::RebindMask(du, hn::Le(s, t)), replacesNan);
+    else if constexpr (kLater) {
+        return hn::RebindMask(du, hn::AndNot(ordered<contraryOf(W)>(s, t), hn::Eq(s, s)));
+    } else {
+        return hn::RebindMask(du, hn::Or(ordered<W>(s, t), hn::Not(hn::Eq(t, t))));
     }
 }
 
@@ -90,109 +106,109 @@ template <class D> void takeColours(D du, std::byte* colour, const std::byte* so
 
 // Whole vectors of each row, two at once, for a line of the cache is one vector with the widest of them only; the rest of the
 // row pixel by pixel.
-template <SourceWins W, bool kFloat, bool kCovered, bool kWords> void selectRows(const ZArea& area, const DepthRule& rule, const Constants& c) {
+template <SourceWins W, bool kLater, bool kFloat, bool kCovered, bool kWords> void selectRows(const ZArea& area, const DepthRule& rule, const Constants& c) {
     const size_t colourBytes = kWords ? 4 : area.colourBytes;
     const hn::ScalableTag<uint32_t> du;
     const size_t lanes = hn::Lanes(du), pair = 2 * lanes;
-    const auto flip = hn::Set(du, c.flip);
     const auto clear = hn::Set(du, c.clear);
     const auto drawnMask = hn::Set(du, c.drawnMask);
     const auto zero = hn::Zero(du);
-    const auto all = hn::Eq(zero, zero);
-    const auto earlierSource = c.earlierSource ? all : hn::Not(all);
     const auto wins = [&](hn::Vec<decltype(du)> source, hn::Vec<decltype(du)> there) {
-        auto win = all;
-        if constexpr (W == SourceWins::Never) win = hn::Not(all);
+        auto win = hn::Eq(zero, zero);
+        if constexpr (W == SourceWins::Never) win = hn::Not(win);
         else if constexpr (W != SourceWins::Always) {
-            if constexpr (kFloat) win = winsFloat<W>(du, source, there, flip, earlierSource);
-            else win = wins24<W>(du, source, there, flip);
+            if constexpr (kFloat) win = winsFloat<W, kLater>(du, source, there);
+            else win = wins24<W>(du, source, there);
         }
         if constexpr (kCovered) {
-            const auto sourceDrawn = hn::Not(hn::Eq(hn::And(hn::Xor(source, clear), drawnMask), zero));
+            const auto sourceUndrawn = hn::Eq(hn::And(hn::Xor(source, clear), drawnMask), zero);
             const auto thereUndrawn = hn::Eq(hn::And(hn::Xor(there, clear), drawnMask), zero);
-            win = hn::And(sourceDrawn, hn::Or(win, thereUndrawn));
+            win = hn::AndNot(sourceUndrawn, hn::Or(win, thereUndrawn));
         }
         return win;
     };
-    const bool pastCaches = kWords && area.rows * area.columns * colourBytes >= kPastCachesBytes;
+    const bool pastCaches = kWords && area.colour && area.rows * area.columns * colourBytes >= kPastCachesBytes &&
+                            (reinterpret_cast<uintptr_t>(area.colour) | static_cast<uintptr_t>(area.colourStride)) % (4 * lanes) == 0;
     HWY_ALIGN uint32_t waitingWins[kWaiting * 2 * hn::MaxLanes(du)];
     std::byte* waitingColours[kWaiting];
     const std::byte* waitingSources[kWaiting];
+    bool waitingWhole[kWaiting]; // the source has won all of the pair, and its colours go past the caches
     size_t found = 0;
     const auto take = [&](size_t slot) {
-        const auto win0 = hn::MaskFromVec(hn::Load(du, waitingWins + slot * pair)), win1 = hn::MaskFromVec(hn::Load(du, waitingWins + slot * pair + lanes));
         std::byte* colour = waitingColours[slot];
         const std::byte* source = waitingSources[slot];
-        if (pastCaches && reinterpret_cast<uintptr_t>(colour) % (4 * lanes) == 0 && hn::AllTrue(du, hn::And(win0, win1))) {
+        if (kWords && waitingWhole[slot]) {
             hn::Stream(hn::LoadU(du, reinterpret_cast<const uint32_t*>(source)), du, reinterpret_cast<uint32_t*>(colour));
             hn::Stream(hn::LoadU(du, reinterpret_cast<const uint32_t*>(source) + lanes), du, reinterpret_cast<uint32_t*>(colour) + lanes);
             return;
         }
-        takeColours(du, colour, source, colourBytes, win0);
-        takeColours(du, colour + lanes * colourBytes, source + lanes * colourBytes, colourBytes, win1);
+        const uint32_t* win = waitingWins + slot * pair;
+        takeColours(du, colour, source, colourBytes, hn::MaskFromVec(hn::Load(du, win)));
+        takeColours(du, colour + lanes * colourBytes, source + lanes * colourBytes, colourBytes, hn::MaskFromVec(hn::Load(du, win + lanes)));
     };
     for (size_t y = 0; y < area.rows; ++y) {
-        ZArea row = area.row(y);
+        const ZArea row = area.row(y);
+        uint32_t* const depth = row.depth;
+        const uint32_t* const sourceDepth = row.sourceDepth;
+        std::byte* const colour = row.colour;
+        const std::byte* const sourceColour = row.sourceColour;
+        const size_t columns = row.columns;
         size_t i = 0;
-        for (; i + pair <= row.columns; i += pair) {
-            const auto source0 = hn::LoadU(du, row.sourceDepth + i), source1 = hn::LoadU(du, row.sourceDepth + i + lanes);
-            const auto there0 = hn::LoadU(du, row.depth + i), there1 = hn::LoadU(du, row.depth + i + lanes);
+        for (; i + pair <= columns; i += pair) {
+            const auto source0 = hn::LoadU(du, sourceDepth + i), source1 = hn::LoadU(du, sourceDepth + i + lanes);
+            const auto there0 = hn::LoadU(du, depth + i), there1 = hn::LoadU(du, depth + i + lanes);
             const auto win0 = wins(source0, there0), win1 = wins(source1, there1);
             if (hn::AllFalse(du, hn::Or(win0, win1))) continue;
-            hn::StoreU(hn::IfThenElse(win0, source0, there0), du, row.depth + i);
-            hn::StoreU(hn::IfThenElse(win1, source1, there1), du, row.depth + i + lanes);
-            if (!row.colour) continue;
+            hn::StoreU(hn::IfThenElse(win0, source0, there0), du, depth + i);
+            hn::StoreU(hn::IfThenElse(win1, source1, there1), du, depth + i + lanes);
+            if (!colour) continue;
             const size_t slot = found % kWaiting;
             if (found >= kWaiting) take(slot);
             ++found;
+            const bool whole = pastCaches && hn::AllTrue(du, hn::And(win0, win1));
+            waitingWhole[slot] = whole;
             hn::Store(hn::VecFromMask(du, win0), du, waitingWins + slot * pair);
             hn::Store(hn::VecFromMask(du, win1), du, waitingWins + slot * pair + lanes);
-            waitingColours[slot] = row.colour + i * colourBytes;
-            waitingSources[slot] = row.sourceColour + i * colourBytes;
-            if (!pastCaches || !hn::AllTrue(du, hn::And(win0, win1))) askFor(waitingColours[slot], pair * colourBytes);
-            askFor(waitingSources[slot], pair * colourBytes);
+            waitingColours[slot] = colour + i * colourBytes;
+            waitingSources[slot] = sourceColour + i * colourBytes;
+            if (!whole) askFor(colour + i * colourBytes, pair * colourBytes);
+            askFor(sourceColour + i * colourBytes, pair * colourBytes);
         }
-        row.depth += i;
-        row.sourceDepth += i;
-        row.columns -= i;
-        if (row.colour) {
-            row.colour += i * colourBytes;
-            row.sourceColour += i * colourBytes;
-        }
-        zSelectScalar(row, rule);
+        if (i < columns) zSelectScalar(row.from(i), rule);
     }
     for (size_t k = found > kWaiting ? found - kWaiting : 0; k < found; ++k) take(k % kWaiting);
     if (pastCaches) hwy::FlushStream();
 }
 
-template <SourceWins W, bool kFloat, bool kCovered> void chooseColours(const ZArea& area, const DepthRule& rule, const Constants& c) {
-    area.colourBytes == 4 ? selectRows<W, kFloat, kCovered, true>(area, rule, c) : selectRows<W, kFloat, kCovered, false>(area, rule, c);
+template <SourceWins W, bool kLater, bool kFloat> void chooseRows(const ZArea& area, const DepthRule& rule, const Constants& c) {
+    if (area.colourBytes == 4) return rule.coverage != Coverage::All ? selectRows<W, kLater, kFloat, true, true>(area, rule, c) : selectRows<W, kLater, kFloat, false, true>(area, rule, c);
+    return rule.coverage != Coverage::All ? selectRows<W, kLater, kFloat, true, false>(area, rule, c) : selectRows<W, kLater, kFloat, false, false>(area, rule, c);
 }
 
-template <SourceWins W> void choose(const ZArea& area, const DepthRule& rule, const Constants& c, bool covered) {
-    if (rule.format == DepthFormat::D32F) return covered ? chooseColours<W, true, true>(area, rule, c) : chooseColours<W, true, false>(area, rule, c);
-    return covered ? chooseColours<W, false, true>(area, rule, c) : chooseColours<W, false, false>(area, rule, c);
+// Where the function tells order, floats need to know which of the two is later.
+template <SourceWins W> void choose(const ZArea& area, const DepthRule& rule, const Constants& c) {
+    constexpr bool kOrders = W == SourceWins::IfLess || W == SourceWins::IfLessOrEqual || W == SourceWins::IfGreater || W == SourceWins::IfGreaterOrEqual;
+    if (rule.format == DepthFormat::D24S8) return chooseRows<W, true, false>(area, rule, c);
+    if constexpr (kOrders) {
+        if (!rule.sourceIsLater) return chooseRows<W, false, true>(area, rule, c);
+    }
+    chooseRows<W, true, true>(area, rule, c);
 }
 
 void zSelectVectors(const ZArea& area, const DepthRule& rule) {
-    const bool isFloat = rule.format == DepthFormat::D32F;
-    const bool greater = rule.function == DepthFunction::Greater || rule.function == DepthFunction::GreaterOrEqual;
     Constants c{};
-    c.flip = !greater ? 0 : isFloat ? 0x80000000u : 0xffffffffu;
     c.clear = rule.coverage == Coverage::NotClear ? rule.clearBits : 0;
-    c.drawnMask = rule.coverage == Coverage::Stencil ? 0xffu : isFloat ? 0xffffffffu : 0xffffff00u;
-    c.earlierSource = !rule.sourceIsLater;
-    const bool covered = rule.coverage != Coverage::All;
+    c.drawnMask = rule.coverage == Coverage::Stencil ? 0xffu : rule.format == DepthFormat::D32F ? 0xffffffffu : 0xffffff00u;
     const bool later = rule.sourceIsLater;
     switch (rule.function) {
-    case DepthFunction::Less:
-    case DepthFunction::Greater: return later ? choose<SourceWins::IfLess>(area, rule, c, covered) : choose<SourceWins::IfLessOrEqual>(area, rule, c, covered);
-    case DepthFunction::LessOrEqual:
-    case DepthFunction::GreaterOrEqual: return later ? choose<SourceWins::IfLessOrEqual>(area, rule, c, covered) : choose<SourceWins::IfLess>(area, rule, c, covered);
-    case DepthFunction::Equal: return later ? choose<SourceWins::IfEqual>(area, rule, c, covered) : choose<SourceWins::IfNotEqual>(area, rule, c, covered);
-    case DepthFunction::NotEqual: return later ? choose<SourceWins::IfNotEqual>(area, rule, c, covered) : choose<SourceWins::IfEqual>(area, rule, c, covered);
-    case DepthFunction::Always: return later ? choose<SourceWins::Always>(area, rule, c, covered) : choose<SourceWins::Never>(area, rule, c, covered);
-    case DepthFunction::Never: return later ? choose<SourceWins::Never>(area, rule, c, covered) : choose<SourceWins::Always>(area, rule, c, covered);
+    case DepthFunction::Less: return later ? choose<SourceWins::IfLess>(area, rule, c) : choose<SourceWins::IfLessOrEqual>(area, rule, c);
+    case DepthFunction::LessOrEqual: return later ? choose<SourceWins::IfLessOrEqual>(area, rule, c) : choose<SourceWins::IfLess>(area, rule, c);
+    case DepthFunction::Greater: return later ? choose<SourceWins::IfGreater>(area, rule, c) : choose<SourceWins::IfGreaterOrEqual>(area, rule, c);
+    case DepthFunction::GreaterOrEqual: return later ? choose<SourceWins::IfGreaterOrEqual>(area, rule, c) : choose<SourceWins::IfGreater>(area, rule, c);
+    case DepthFunction::Equal: return later ? choose<SourceWins::IfEqual>(area, rule, c) : choose<SourceWins::IfNotEqual>(area, rule, c);
+    case DepthFunction::NotEqual: return later ? choose<SourceWins::IfNotEqual>(area, rule, c) : choose<SourceWins::IfEqual>(area, rule, c);
+    case DepthFunction::Always: return later ? choose<SourceWins::Always>(area, rule, c) : choose<SourceWins::Never>(area, rule, c);
+    case DepthFunction::Never: return later ? choose<SourceWins::Never>(area, rule, c) : choose<SourceWins::Always>(area, rule, c);
     }
 }
 

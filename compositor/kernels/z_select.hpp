@@ -35,6 +35,17 @@ struct ZArea {
         one.sourceColour = sourceColour + at * sourceColourStride;
         return one;
     }
+    // Without its first columns.
+    [[nodiscard]] ZArea from(size_t column) const {
+        ZArea rest = *this;
+        rest.depth += column;
+        rest.sourceDepth += column;
+        rest.columns -= column;
+        if (!colour) return rest;
+        rest.colour += column * colourBytes;
+        rest.sourceColour += column * colourBytes;
+        return rest;
+    }
 };
 
 // With the widest vectors of this machine. Addresses need the alignment of their types only.
