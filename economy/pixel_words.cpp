@@ -77,10 +77,12 @@ size_t differencesVectors(const uint8_t* piece, size_t pixelBytes, uint32_t* wor
         const uint8_t* const at = piece + 4 * i;
         const auto changed = hn::BitCast(d, hn::Sub(hn::LoadU(bytes, at), hn::LoadU(bytes, at - pixelBytes)));
         const auto there = hn::Ne(changed, hn::Zero(d));
-        hn::StoreU(hn::Compress(changed, there), d, words + count);
-        count += hn::CountTrue(d, there);
         uint8_t bits[8] = {};
-        hn::StoreMaskBits(d, there, bits);
+        if (!hn::AllFalse(d, there)) { // where pictures are even, nothing changes for long
+            hn::StoreU(hn::Compress(changed, there), d, words + count);
+            count += hn::CountTrue(d, there);
+            hn::StoreMaskBits(d, there, bits);
+        }
         if (lanes >= 8) std::memcpy(mask + i / 8, bits, lanes / 8);
         else mask[i / 8] = static_cast<uint8_t>((i % 8 == 0 ? 0 : mask[i / 8]) | bits[0] << i % 8);
     }
