@@ -17,6 +17,7 @@
 #include "nodes/exchange/picture_composer.hpp"
 #include "nodes/exchange/picture_exchange.hpp"
 #include "nodes/gl/gl_probe.hpp"
+#include "nodes/gl/software_renderer.hpp"
 #include "nodes/node/barrier_part.hpp"
 #include "nodes/node/head_line.hpp"
 #include "nodes/node/heartbeat.hpp"
@@ -41,16 +42,10 @@ double processCpuSeconds() {
     return static_cast<double>(r.ru_utime.tv_sec + r.ru_stime.tv_sec) + 1e-6 * static_cast<double>(r.ru_utime.tv_usec + r.ru_stime.tv_usec);
 }
 
-bool drawsWithoutGpu(const std::string& renderer) {
-    for (const char* software : {"llvmpipe", "softpipe", "swrast", "SWR"})
-        if (renderer.find(software) != std::string::npos) return true;
-    return false;
-}
-
 // Near the GPU. Not where the CPU draws: the driver's threads need all cores then.
 std::string placeReplay(const NodeSetup& setup, const std::string& renderer) {
     if (!setup.placeThreads) return "not placed: --no-placement";
-    if (drawsWithoutGpu(renderer)) return "not placed: drawn without a GPU";
+    if (gl::drawsWithoutGpu(renderer)) return "not placed: drawn without a GPU";
     return placeThread(DeviceKind::Gpu).description;
 }
 
@@ -180,7 +175,7 @@ private:
         auto platform = gl::openPlatform(setup_.glBackend);
         if (!platform) return fail(platform.error().message);
         nlohmann::json ready = probe(**platform);
-        countsCpu_ = setup_.sharesMachine && drawsWithoutGpu(ready.value("renderer", ""));
+        countsCpu_ = setup_.sharesMachine && gl::drawsWithoutGpu(ready.value("renderer", ""));
         beganNs_ = workNowNs();
         ready["placement"] = placeReplay(setup_, ready.value("renderer", ""));
         if (!setup_.stream.empty() && !setup_.catchesUp) {
@@ -214,7 +209,7 @@ private:
         if (setup_.hasArea) config.area = setup_.area;
         if (!setup_.areas.empty()) config.areas.emplace(Areas{0, areasOf(setup_.areas)});
         config.pass = setup_.pass;
-        config.readback = setup_.sendPictures ? setup_.readback : Readback::Direct;
+        config.readback = setup_.sendPictures ? readbackBy(ready.value("renderer", ""), setup_.readback) : Readback::Direct;
         config.answers = setup_.answers;
         config.screen = setup_.screen;
         config.eyeBase = setup_.eyeBase;

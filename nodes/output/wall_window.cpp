@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "common/clock.hpp"
+#include "nodes/gl/software_renderer.hpp"
 #include "nodes/output/wall_screen.hpp"
 
 #include "nodes/output/glfw_x11.hpp" // last: Xlib's macros
@@ -60,13 +61,6 @@ void setHints(const WallWindow::Options& options) {
     glfwWindowHint(GLFW_STEREO, options.stereo ? GLFW_TRUE : GLFW_FALSE);
 }
 
-bool runsOnCpu(const std::string& renderer) {
-    for (const char* name : {"llvmpipe", "softpipe", "swrast", "Software Rasterizer"})
-        if (renderer.find(name) != std::string::npos)
-            return true;
-    return false;
-}
-
 } // namespace
 
 bool WallWindow::openGlIsFast(const GlfwSession& session) {
@@ -80,7 +74,7 @@ bool WallWindow::openGlIsFast(const GlfwSession& session) {
     glfwMakeContextCurrent(hidden);
     bool fast = false;
     if (auto blit = TextureBlit::create(glfwGetProcAddress); blit)
-        fast = !runsOnCpu(blit.value()->renderer());
+        fast = !gl::drawsWithoutGpu(blit.value()->renderer());
     glfwDestroyWindow(hidden);
     return fast;
 }

@@ -5,8 +5,17 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <string_view>
+
+#include "nodes/gl/software_renderer.hpp"
+#include "nodes/session/readback.hpp"
 
 namespace mural {
+
+// Where the processor draws there is nothing to choose: drivers draw and copy in the thread that asks, so that another thread saves
+// nothing. Nor is one harmless: to map a buffer, llvmpipe up to Mesa 22 at least looks through what all contexts draw, those that
+// other threads use as well, without a lock, and at times ends the process.
+[[nodiscard]] inline Readback readbackBy(std::string_view renderer, Readback wished) { return wished == Readback::Auto && gl::drawsWithoutGpu(renderer) ? Readback::Direct : wished; }
 
 class ReadbackChoice {
 public:

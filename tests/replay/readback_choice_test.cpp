@@ -19,6 +19,14 @@ int laterOf(ReadbackChoice& choice, int skipped, int frames, Times times) {
     return later;
 }
 
+TEST(ReadbackChoice, NoOtherThreadWhereTheProcessorDraws) {
+    EXPECT_EQ(readbackBy("llvmpipe (LLVM 15.0.6, 256 bits), egl", Readback::Auto), Readback::Direct);
+    EXPECT_EQ(readbackBy("softpipe, egl", Readback::Auto), Readback::Direct);
+    EXPECT_EQ(readbackBy("llvmpipe (LLVM 15.0.6, 256 bits), egl", Readback::Buffer), Readback::Buffer); // who says so has it
+    EXPECT_EQ(readbackBy("Mesa Intel(R) UHD Graphics 620, egl", Readback::Auto), Readback::Auto);
+    EXPECT_EQ(readbackBy("", Readback::Auto), Readback::Auto);
+}
+
 TEST(ReadbackChoice, TakesWhatKeepsTheDrawingThreadLess) {
     ReadbackChoice card, processor, close;
     EXPECT_EQ(laterOf(card, 14, 1000, {4'000'000, 100'000}), 1000);
