@@ -5,8 +5,6 @@
 
 namespace mural::compositor {
 
-constexpr size_t kAheadWords = 256; // that kernels of whole rows look ahead
-
 inline void askFor(const void* from, size_t sizeBytes) {
     constexpr size_t kLineBytes = 64;
     for (size_t at = 0; at < sizeBytes; at += kLineBytes) __builtin_prefetch(static_cast<const char*>(from) + at);

@@ -55,6 +55,8 @@ template <class D> hn::Vec<D> over10(D d, hn::Vec<D> front, hn::Vec<D> back) {
     return hn::Or(hn::Or(red, hn::ShiftLeft<10>(green)), hn::Or(hn::ShiftLeft<20>(blue), hn::ShiftLeft<30>(cover)));
 }
 
+constexpr size_t kAheadWords = 256; // that are asked for before they are needed
+
 // Vectors of which the source changes nothing are neither blended nor written: most of a picture is empty. Two at once, for a
 // line of the cache is one vector with the widest of them only.
 template <bool kTen> size_t blendWords(uint32_t* pixels, const uint32_t* source, size_t count, bool inFront) {

@@ -104,8 +104,8 @@ template <class D> void takeColours(D du, std::byte* colour, const std::byte* so
     else takeWide<16>(du, colour, source, win);
 }
 
-// Whole vectors of each row, two at once, for a line of the cache is one vector with the widest of them only; the rest of the
-// row pixel by pixel.
+// Whole vectors of each row, two at once, for a line of the cache is one vector with the widest of them only; then a single one,
+// and the rest of the row pixel by pixel.
 template <SourceWins W, bool kLater, bool kFloat, bool kCovered, bool kWords> void selectRows(const ZArea& area, const DepthRule& rule, const Constants& c) {
     const size_t colourBytes = kWords ? 4 : area.colourBytes;
     const hn::ScalableTag<uint32_t> du;
@@ -173,6 +173,13 @@ template <SourceWins W, bool kLater, bool kFloat, bool kCovered, bool kWords> vo
             waitingSources[slot] = sourceColour + i * colourBytes;
             if (!whole) askFor(colour + i * colourBytes, pair * colourBytes);
             askFor(sourceColour + i * colourBytes, pair * colourBytes);
+        }
+        if (i + lanes <= columns) {
+            const auto source0 = hn::LoadU(du, sourceDepth + i), there0 = hn::LoadU(du, depth + i);
+            const auto win = wins(source0, there0);
+            hn::StoreU(hn::IfThenElse(win, source0, there0), du, depth + i);
+            if (colour) takeColours(du, colour + i * colourBytes, sourceColour + i * colourBytes, colourBytes, win);
+            i += lanes;
         }
         if (i < columns) zSelectScalar(row.from(i), rule);
     }
