@@ -5,23 +5,33 @@
 #include <cstring>
 
 #include "common/copy_bytes.hpp"
+#include "economy/pixel_colours.hpp"
 #include "economy/pixel_words.hpp"
 
 namespace mural::economy {
 namespace {
 
-// Of ten parts, so many at most are left of a piece that is like a picture. Others may have what came before, which Zstandard finds as long as
+// Of twenty parts, so many at most are left of a piece that is like a picture. Others may have what came before, which Zstandard finds as long as
 // bytes are where they were: vertices would become twice as large.
-constexpr uint32_t kLeftOfTen = 7;
+constexpr uint32_t kLeftOfTwenty = 13;
 
-size_t bestOf(const std::array<uint32_t, kPixelBytes.size()>& rough) {
-    return static_cast<size_t>(std::ranges::min_element(rough) - rough.begin());
+// Taken apart, colours are as smooth as they look; grey pixels of three bytes look as smooth byte by byte, too. So these may be rougher, by one part of so many.
+constexpr uint32_t kForColours = 32;
+
+// Where a picture is even, edges change all colours, which are more words apart than together. So many bits of its samples are few.
+constexpr uint32_t kEvenBits = 2 * kSampledBytes;
+
+size_t bestOf(const Roughness& rough) {
+    const auto plain = std::ranges::min_element(rough.begin(), rough.begin() + kPlainWays);
+    const auto colours = std::ranges::min_element(rough.begin() + kPlainWays, rough.end());
+    const bool apart = *plain >= kEvenBits && *colours * kForColours < *plain * (kForColours + 1);
+    return static_cast<size_t>((apart ? colours : plain) - rough.begin());
 }
 
-uint8_t pixelBytesOf(const std::byte* piece) {
+uint8_t wayOf(const std::byte* piece) {
     const auto rough = roughness(piece);
     const size_t best = bestOf(rough);
-    return rough[best] * 10 < rough[0] * kLeftOfTen ? kPixelBytes[best] : uint8_t{0};
+    return rough[best] * 20 < rough[0] * kLeftOfTwenty ? kPixelWays[best] : uint8_t{0};
 }
 
 } // namespace
@@ -36,7 +46,7 @@ bool PixelSplitter::split(std::span<const std::byte> pages) {
     front_.resize(pieces);
     pixelPieces_ = 0;
     for (size_t i = 0; i < pieces; ++i) {
-        front_[i] = static_cast<std::byte>(pixelBytesOf(pages.data() + i * kPageBytes));
+        front_[i] = static_cast<std::byte>(wayOf(pages.data() + i * kPageBytes));
         pixelPieces_ += front_[i] != std::byte{0};
     }
     if (pixelPieces_ == 0) return false;
@@ -51,7 +61,10 @@ bool PixelSplitter::split(std::span<const std::byte> pages) {
             rest_.insert(rest_.end(), piece.begin(), piece.end());
             continue;
         }
-        count += differences(piece.data(), static_cast<size_t>(front_[i]), words_.data() + count, mask);
+        const auto way = static_cast<uint8_t>(front_[i]);
+        std::byte apart[kPageBytes];
+        if (way >= kColoursOfFour) takeColoursApart(piece.data(), way, apart);
+        count += differences(way >= kColoursOfFour ? apart : piece.data(), pixelBytesOf(way), words_.data() + count, mask);
         mask += kPieceMaskBytes;
     }
     const auto last = pages.subspan(pieces * kPageBytes);
@@ -67,12 +80,12 @@ size_t frontBytes(size_t pagesBytes, size_t pixelPieces) { return pagesBytes / k
 bool PixelJoiner::begin(std::span<const std::byte> front, size_t pagesBytes, size_t pixelPieces) {
     const size_t pieces = pagesBytes / kPageBytes;
     if (pixelPieces > pieces || front.size() != frontBytes(pagesBytes, pixelPieces)) return false;
-    pixelBytes_ = front.first(pieces);
+    ways_ = front.first(pieces);
     masks_ = front.subspan(pieces);
     pagesBytes_ = pagesBytes;
     pixelPieces_ = 0;
-    for (const std::byte b : pixelBytes_) {
-        if (std::ranges::find(kPixelBytes, static_cast<uint8_t>(b)) == kPixelBytes.end()) return false;
+    for (const std::byte b : ways_) {
+        if (!isPixelWay(static_cast<uint8_t>(b))) return false;
         pixelPieces_ += b != std::byte{0};
     }
     if (pixelPieces_ != pixelPieces) return false;
@@ -92,12 +105,15 @@ void PixelJoiner::join(std::span<const std::byte> planes, std::span<const std::b
     fromPlanes(planes.data(), count, words_.data());
     const uint32_t* words = words_.data();
     auto masks = masks_;
-    for (const std::byte pixelBytes : pixelBytes_) {
-        if (pixelBytes == std::byte{0}) {
+    for (const std::byte b : ways_) {
+        const auto way = static_cast<uint8_t>(b);
+        if (way == 0) {
             std::memcpy(pages.data(), rest.data(), kPageBytes);
             rest = rest.subspan(kPageBytes);
         } else {
-            words += sumDifferences(words, masks.data(), static_cast<size_t>(pixelBytes), pages.data());
+            std::byte apart[kPageBytes];
+            words += sumDifferences(words, masks.data(), pixelBytesOf(way), way >= kColoursOfFour ? apart : pages.data());
+            if (way >= kColoursOfFour) putColoursTogether(apart, way, pages.data());
             masks = masks.subspan(kPieceMaskBytes);
         }
         pages = pages.subspan(kPageBytes);

@@ -1,6 +1,7 @@
 // New pages in pieces of 4 KiB, of which some are like pictures: little changes from one pixel to the next, and most is in the low bits. Their
-// words go as differences, those that are 0 as a bit, the others with their bytes in planes: so Zstandard finds a quarter fewer bytes in two
-// thirds of the time, where it had looked for pixels that came before. (Formats of pictures do as much: PNG's filters, QOI's runs.)
+// words go as differences, of colours besides what they do not have in common, those that are 0 as a bit, the others with their bytes in planes:
+// so Zstandard finds a quarter fewer bytes in two thirds of the time, where it had looked for pixels that came before. (Formats of pictures do
+// as much: PNG's filters, QOI's runs.)
 #pragma once
 
 #include <cstddef>
@@ -20,7 +21,7 @@ public:
     // False: no piece is like a picture. The parts live until the next call.
     bool split(std::span<const std::byte> pages);
 
-    // Of each piece how many bytes a pixel has (kPixelBytes; 0: it is none), then of each one with pixels the bits.
+    // Of each piece its way (kPixelWays; 0: it is no picture), then of each one with pixels the bits.
     [[nodiscard]] std::span<const std::byte> front() const { return front_; }
     [[nodiscard]] size_t pixelPieces() const { return pixelPieces_; }
     [[nodiscard]] std::span<const std::byte> planes() const { return std::span(planes_).first(planeBytes_); }
@@ -44,7 +45,7 @@ public:
     void join(std::span<const std::byte> planes, std::span<const std::byte> rest, std::span<std::byte> pages);
 
 private:
-    std::span<const std::byte> pixelBytes_, masks_;
+    std::span<const std::byte> ways_, masks_;
     std::vector<uint32_t> words_;
     size_t pagesBytes_ = 0, pixelPieces_ = 0, planeBytes_ = 0;
 };

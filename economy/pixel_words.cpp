@@ -13,19 +13,30 @@ namespace mural::economy::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr size_t kMostLanes = kPieceWordRoom - kPieceWords;
-constexpr size_t kSamples = 8, kSampleBytes = 32, kSampleStep = (kPageBytes - 2 * kSampleBytes) / kSamples;
+// They begin with a pixel of four, and with each colour of pixels of three as often.
+constexpr size_t kSamples = 8, kSampleBytes = kSampledBytes / kSamples, kSampleStep = 500;
+static_assert(kSampleStep % 4 == 0 && kSampleStep % 3 != 0 && kSampleBytes + kSamples * kSampleStep + 1 <= kPageBytes);
 
 #if HWY_TARGET == HWY_SCALAR // no vectors
 
 // Of each byte as a signed number its magnitude, at most 31, and 8 for not being 0.
+uint32_t roughnessOf(uint8_t difference) {
+    const uint32_t magnitude = difference < 128 ? difference : 256u - difference;
+    return magnitude == 0 ? 0 : (magnitude < 31 ? magnitude : 31) + 8;
+}
+
 void roughnessVectors(const uint8_t* piece, uint32_t* roughnesses) {
-    for (size_t k = 0; k < kPixelBytes.size(); ++k) {
-        roughnesses[k] = 0;
-        for (size_t i = 0; i < kSamples * kSampleBytes; ++i) {
-            const uint8_t* const at = piece + kSampleBytes + i / kSampleBytes * kSampleStep + i % kSampleBytes;
-            const auto difference = static_cast<uint8_t>(*at - (kPixelBytes[k] == 0 ? 0 : *(at - kPixelBytes[k])));
-            const uint32_t magnitude = difference < 128 ? difference : 256u - difference;
-            roughnesses[k] += magnitude == 0 ? 0 : (magnitude < 31 ? magnitude : 31) + 8;
+    for (size_t k = 0; k < kPixelWays.size(); ++k) roughnesses[k] = 0;
+    for (size_t s = 0; s < kSamples * kSampleBytes; ++s) {
+        const size_t at = kSampleBytes + s / kSampleBytes * kSampleStep + s % kSampleBytes;
+        const auto behind = [piece](size_t byte, size_t pixelBytes) { return static_cast<uint8_t>(piece[byte] - piece[byte - pixelBytes]); };
+        for (size_t k = 0; k < kPlainWays; ++k) roughnesses[k] += roughnessOf(kPixelWays[k] == 0 ? piece[at] : behind(at, kPixelWays[k]));
+        const auto fours = static_cast<uint8_t>(at % 2 == 1 ? behind(at, 4) : behind(at, 4) - behind(at / 4 * 4 + 1, 4));
+        roughnesses[kPlainWays] += roughnessOf(fours);
+        const uint8_t now = behind(at, 3), beside = static_cast<uint8_t>(behind(at + 1, 3) - now);
+        for (size_t before = 0; before < 3; ++before) {
+            const size_t colour = (at + 3 - before) % 3; // red counts what it is beside green, green itself and blue beside it
+            roughnesses[kPlainWays + 1 + before] += (colour == 1 ? roughnessOf(now) : 0) + (colour == 2 ? 0 : roughnessOf(beside));
         }
     }
 }
@@ -49,22 +60,42 @@ size_t fromPlanesVectors(const uint8_t*, size_t, uint8_t*) { return 0; }
 
 #else
 
+// Every third byte, for vectors that begin anywhere.
+constexpr auto kThirds = [] {
+    std::array<uint8_t, kSampleBytes + 2> thirds{};
+    for (size_t i = 0; i < thirds.size(); i += 3) thirds[i] = 0xff;
+    return thirds;
+}();
+
 void roughnessVectors(const uint8_t* piece, uint32_t* roughnesses) {
     const hn::CappedTag<uint8_t, kSampleBytes> d;
     const hn::RepartitionToWide<hn::RepartitionToWide<hn::RepartitionToWide<decltype(d)>>> sumOf;
+    const hn::Repartition<uint32_t, decltype(d)> pixels;
     const auto none = hn::Zero(d), most = hn::Set(d, 31), there = hn::Set(d, 8);
-    for (size_t k = 0; k < kPixelBytes.size(); ++k) {
+    const auto roughnessOf = [&](hn::Vec<decltype(d)> difference) {
+        const auto magnitude = hn::Min(hn::Min(difference, hn::Sub(none, difference)), most);
+        return hn::Add(magnitude, hn::IfThenZeroElse(hn::Eq(difference, none), there));
+    };
+    const auto behind = [&](const uint8_t* at, size_t pixelBytes) { return hn::Sub(hn::LoadU(d, at), hn::LoadU(d, at - pixelBytes)); };
+    const auto forSamples = [&](size_t k, auto&& vectorOf) {
         auto sum = hn::Zero(sumOf);
-        for (size_t s = 0; s < kSamples; ++s) {
-            for (size_t i = 0; i < kSampleBytes; i += hn::Lanes(d)) {
-                const uint8_t* const at = piece + kSampleBytes + s * kSampleStep + i;
-                const auto now = hn::LoadU(d, at);
-                const auto difference = kPixelBytes[k] == 0 ? now : hn::Sub(now, hn::LoadU(d, at - kPixelBytes[k]));
-                const auto magnitude = hn::Min(hn::Min(difference, hn::Sub(none, difference)), most);
-                sum = hn::Add(sum, hn::SumsOf8(hn::Add(magnitude, hn::IfThenZeroElse(hn::Eq(difference, none), there))));
-            }
-        }
+        for (size_t s = 0; s < kSamples; ++s)
+            for (size_t i = 0; i < kSampleBytes; i += hn::Lanes(d)) sum = hn::Add(sum, vectorOf(kSampleBytes + s * kSampleStep + i));
         roughnesses[k] = static_cast<uint32_t>(hn::GetLane(hn::SumOfLanes(sumOf, sum)));
+    };
+    forSamples(0, [&](size_t at) { return hn::SumsOf8(roughnessOf(hn::LoadU(d, piece + at))); });
+    for (size_t k = 1; k < kPlainWays; ++k) forSamples(k, [&](size_t at) { return hn::SumsOf8(roughnessOf(behind(piece + at, kPixelWays[k]))); });
+    forSamples(kPlainWays, [&](size_t at) {
+        const auto changed = behind(piece + at, 4);
+        const auto green = hn::ShiftRight<8>(hn::And(hn::BitCast(pixels, changed), hn::Set(pixels, 0xff00)));
+        return hn::SumsOf8(roughnessOf(hn::Sub(changed, hn::BitCast(d, hn::Or(green, hn::ShiftLeft<16>(green))))));
+    });
+    for (size_t before = 0; before < 3; ++before) {
+        forSamples(kPlainWays + 1 + before, [&](size_t at) { // red counts what it is beside green, green itself and blue beside it
+            const auto now = behind(piece + at, 3), beside = hn::Sub(behind(piece + at + 1, 3), now);
+            const auto greens = hn::LoadU(d, kThirds.data() + (at + 2 - before) % 3), blues = hn::LoadU(d, kThirds.data() + (at + 1 - before) % 3);
+            return hn::Add(hn::SumsOf8(hn::And(greens, roughnessOf(now))), hn::SumsOf8(hn::AndNot(blues, roughnessOf(beside))));
+        });
     }
 }
 
@@ -128,7 +159,6 @@ HWY_EXPORT(fromPlanesVectors);
 namespace {
 
 constexpr size_t kInFront = 16; // zeros before the first pixel
-static_assert(kInFront >= kPixelBytes.back());
 
 uint8_t* bytesOf(std::byte* bytes) { return reinterpret_cast<uint8_t*>(bytes); }
 const uint8_t* bytesOf(const std::byte* bytes) { return reinterpret_cast<const uint8_t*>(bytes); }
@@ -165,8 +195,8 @@ void sumTriples(const uint8_t* differences, uint8_t* piece) {
 
 } // namespace
 
-std::array<uint32_t, kPixelBytes.size()> roughness(const std::byte* piece) {
-    std::array<uint32_t, kPixelBytes.size()> result{};
+Roughness roughness(const std::byte* piece) {
+    Roughness result{};
     HWY_DYNAMIC_DISPATCH(roughnessVectors)(bytesOf(piece), result.data());
     return result;
 }

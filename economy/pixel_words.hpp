@@ -6,20 +6,20 @@
 #include <cstdint>
 
 #include "economy/limits.hpp"
+#include "economy/pixel_ways.hpp"
 
 namespace mural::economy {
 
 constexpr size_t kPieceWords = kPageBytes / 4, kPieceMaskBytes = kPieceWords / 8;
 constexpr size_t kPieceWordRoom = kPieceWords + 16; // that differences() may write
 
-// How far back the byte is that each one is compared with; 0: none. So many bytes pixels have, or samples of 16 bits, or pairs of pixels that take turns.
-constexpr std::array<uint8_t, 6> kPixelBytes{0, 1, 2, 3, 4, 8};
-
-// About how many bits a piece's bytes have behind that, from 256 of them: of each of kPixelBytes.
-std::array<uint32_t, kPixelBytes.size()> roughness(const std::byte* piece);
+// About how many bits so many of a piece's bytes have, by each of kPixelWays.
+constexpr size_t kSampledBytes = 256;
+using Roughness = std::array<uint32_t, kPixelWays.size()>;
+Roughness roughness(const std::byte* piece);
 
 // Its words that are not 0 as differences, and of each word a bit whether it is one of them. How many they are. `words`: kPieceWordRoom;
-// `pixelBytes`: of kPixelBytes, not 0.
+// `pixelBytes`: how far back the byte is that each one is compared with: 1, 2, 3, 4 or 8.
 size_t differences(const std::byte* piece, size_t pixelBytes, uint32_t* words, std::byte* mask);
 
 // The piece again. `words`: as many as the mask has bits, which is what it returns, and room for one more.

@@ -79,6 +79,17 @@ TEST(PageCodec, picturesAreSmallerThanWithoutAndVerticesAsSmall) {
     EXPECT_LE(compressedBytes(floats), plainBytes(floats) + 1);
 }
 
+// Grey ones of three bytes, wherever in a pixel their pages begin, are about as many bytes as one colour of them alone.
+TEST(PageCodec, greyPicturesOfThreeBytesCostOneColour) {
+    const Bytes one = picture(64 * kPageBytes, 1, 6);
+    Bytes three;
+    for (const std::byte b : one) three.insert(three.end(), 3, b);
+    for (size_t before = 0; before < 3; ++before) {
+        const Bytes bytes(three.begin() + static_cast<std::ptrdiff_t>(before), three.end() - static_cast<std::ptrdiff_t>(3 - before));
+        EXPECT_LT(compressedBytes(bytes), compressedBytes(one) * 12 / 10) << before;
+    }
+}
+
 TEST(PageCodec, onesOfOneColourCostNoPlanes) {
     Bytes bytes;
     for (uint32_t i = 0; i < 16; ++i) bytes = bytes + Bytes(kPageBytes, static_cast<std::byte>(100 + i));

@@ -31,8 +31,8 @@ TEST(PixelWords, differencesAreThoseOfEachByteAndAddUpAgain) {
     test::forEachTarget([](const char* target) {
         for (uint32_t seed = 0; seed < 40; ++seed) {
             const Bytes piece = pieceOf(seed);
-            for (const uint8_t pixelBytes : kPixelBytes) {
-                if (pixelBytes == 0) continue;
+            for (const uint8_t pixelBytes : kPixelWays) {
+                if (pixelBytes == 0 || pixelBytes >= kColoursOfFour) continue;
                 std::vector<uint32_t> words(kPieceWordRoom), expected;
                 Bytes mask(kPieceMaskBytes), expectedMask(kPieceMaskBytes), back(kPageBytes);
                 for (size_t w = 0; w < kPieceWords; ++w) {
@@ -62,12 +62,32 @@ TEST(PixelWords, allInstructionSetsFindAPieceAsRough) {
 }
 
 TEST(PixelWords, aSlopeOfPixelsIsSmoothestByTheirSize) {
-    for (size_t k = 1; k < kPixelBytes.size(); ++k) {
-        const size_t pixelBytes = kPixelBytes[k];
+    for (size_t k = 1; k < kPlainWays; ++k) {
+        const size_t pixelBytes = kPixelWays[k];
         Bytes piece(kPageBytes);
         for (size_t i = 0; i < piece.size(); ++i) piece[i] = static_cast<std::byte>(i % pixelBytes * 67 + 90 + (i / pixelBytes) % 2 * (k % 2));
         const auto rough = roughness(piece.data());
-        for (size_t other = 0; other < k; ++other) EXPECT_LT(rough[k], rough[other]) << pixelBytes << " beside " << +kPixelBytes[other];
+        for (size_t other = 0; other < k; ++other) EXPECT_LT(rough[k], rough[other]) << pixelBytes << " beside " << +kPixelWays[other];
+    }
+}
+
+// Brighter and darker by chance, of one hue: only what colours have in common changes.
+TEST(PixelWords, pixelsOfOneHueAreSmoothestWithoutWhatTheirColoursHaveInCommon) {
+    for (size_t k = kPlainWays; k < kPixelWays.size(); ++k) {
+        const size_t pixelBytes = kPixelWays[k] == kColoursOfFour ? 4 : 3, before = pixelBytes == 4 ? 0 : k - kPlainWays - 1;
+        std::mt19937 random(5);
+        Bytes piece(kPageBytes);
+        uint32_t bright = 0;
+        for (size_t i = 0; i < piece.size(); ++i) {
+            const size_t colour = (i + 3 * pixelBytes - before) % pixelBytes;
+            if (colour == 0) bright = static_cast<uint32_t>(random() % 20);
+            piece[i] = colour == 3 ? std::byte{255} : static_cast<std::byte>(90 + 40 * colour + bright);
+        }
+        const auto rough = roughness(piece.data());
+        for (size_t other = 0; other < kPixelWays.size(); ++other) {
+            if (other == k) continue;
+            EXPECT_LT(rough[k] * 3, rough[other] * 2) << +kPixelWays[k] << " beside " << +kPixelWays[other];
+        }
     }
 }
 
