@@ -105,6 +105,19 @@ Kernel zKernel(const std::string& name, DepthFormat format, bool isNoise, double
             [run](std::byte* into, const std::byte* source) { run(into, source, zSelectScalar); }};
 }
 
+// What z must move where no line of the picture can be left alone, and next to nothing besides: both depths and colours are read, one of each
+// is written. No kernel moves less for noise: this row is memory's limit of z's.
+__attribute__((optimize("O3"))) void exclusiveOr(std::byte* into, const std::byte* source) {
+    auto* const to = reinterpret_cast<uint64_t*>(into);
+    const auto* const from = reinterpret_cast<const uint64_t*>(source);
+    for (size_t i = 0; i < kPixels; ++i) to[i] ^= from[i];
+}
+
+Kernel limitKernel() {
+    const auto noise = [](std::byte* bytes, uint32_t turn) { fillNoise(bytes, 8 * kPixels, turn); };
+    return {"both read, one written", 8 * kPixels, 8 * kPixels, noise, noise, exclusiveOr, exclusiveOr};
+}
+
 Kernel overKernel(const char* name, double covered) {
     return {name, 4 * kPixels, 4 * kPixels, [](std::byte* into, uint32_t turn) { fillLayer(into, 1, turn); }, [=](std::byte* source, uint32_t turn) { fillLayer(source, covered, turn + 7); },
             [](std::byte* into, const std::byte* source) { blendOverRow(PlaneFormat::Rgba8, into, source, kPixels, SourceSide::InFront); },
@@ -124,6 +137,7 @@ std::vector<Kernel> kernels() {
         all.push_back(zKernel(name + ", 1/4 covered", format, true, 0.25));
         all.push_back(zKernel(name + ", noise, cached", format, true, 1, ZRows::First));
     }
+    all.push_back(limitKernel());
     all.push_back(overKernel("over RGBA8, dense", 1));
     all.push_back(overKernel("over RGBA8, 1/4 covered", 0.25));
     all.push_back({"average, add RGBA8", 2 * plane, plane, zeros(2 * plane), noise(plane),
