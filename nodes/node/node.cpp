@@ -1,6 +1,7 @@
 #include "nodes/node/node.hpp"
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
@@ -566,6 +567,7 @@ private:
 } // namespace
 
 int runNode(const NodeOptions& options) {
+    signal(SIGPIPE, SIG_IGN); // a display that ends is an error of its windows, and not the node's end
     auto line = HeadLine::open(options);
     if (!line) {
         std::cerr << "mural node: " << line.error().message << '\n';

@@ -1,6 +1,7 @@
 // The real node's main loop at a connection of the test's own.
 #include "nodes/node/node.hpp"
 
+#include <csignal>
 #include <cstring>
 #include <gtest/gtest.h>
 #include <thread>
@@ -19,6 +20,7 @@ constexpr int64_t kAnswerMs = 20'000;
 class NodeTest : public ::testing::Test {
 protected:
     void SetUp() override {
+        signal(SIGPIPE, SIG_DFL); // as a process begins
         auto offer = offerSharedMemory(size_t{1} << 20);
         ASSERT_TRUE(offer.ok());
         head_ = std::move(offer->connection);
@@ -64,6 +66,15 @@ protected:
     std::thread node_;
     int status_ = -1;
 };
+
+// What has been written to a display that is no more would end it.
+TEST_F(NodeTest, livesOnWhenNobodyReadsWhatItWrites) {
+    head_->close();
+    (void)status();
+    struct sigaction now {};
+    ASSERT_EQ(sigaction(SIGPIPE, nullptr, &now), 0);
+    EXPECT_EQ(now.sa_handler, SIG_IGN);
+}
 
 class ForeignBuild : public NodeTest, public ::testing::WithParamInterface<const char*> {};
 

@@ -15,6 +15,8 @@ constexpr uint32_t kBlue = 0x0000ff;
 // A server, a client with eyes, and the window that pictures are shown in.
 class AppWindows : public testing::Test {
 protected:
+    void SetUp() override { std::signal(SIGPIPE, SIG_IGN); } // as head and nodes do: servers end here
+
     void startServer(int depth = 24, const std::vector<std::string>& options = {}) {
         auto server = XvfbServer::start(700, 500, depth, options);
         ASSERT_TRUE(server) << server.error().message;

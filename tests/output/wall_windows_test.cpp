@@ -19,6 +19,8 @@ constexpr int kScreenHeight = 480;
 
 class Walls : public testing::Test {
 protected:
+    void SetUp() override { std::signal(SIGPIPE, SIG_IGN); } // as head and nodes do: servers end here
+
     void startServer(const std::vector<std::string>& options = {}) {
         auto server = XvfbServer::start(kScreenWidth, kScreenHeight, 24, options);
         ASSERT_TRUE(server) << server.error().message;
