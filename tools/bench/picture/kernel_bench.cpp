@@ -106,7 +106,7 @@ Kernel zKernel(const std::string& name, DepthFormat format, bool isNoise, double
 }
 
 // What z must move where no line of the picture can be left alone, and next to nothing besides: both depths and colours are read, one of each
-// is written. No kernel moves less for noise: this row is memory's limit of z's.
+// is written. No kernel moves less for noise; this row says what a plain loop gets of memory then.
 __attribute__((optimize("O3"))) void exclusiveOr(std::byte* into, const std::byte* source) {
     auto* const to = reinterpret_cast<uint64_t*>(into);
     const auto* const from = reinterpret_cast<const uint64_t*>(source);
