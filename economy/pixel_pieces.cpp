@@ -63,8 +63,8 @@ bool PixelSplitter::split(std::span<const std::byte> pages) {
         }
         const auto way = static_cast<uint8_t>(front_[i]);
         std::byte apart[kPageBytes];
-        if (way >= kColoursOfFour) takeColoursApart(piece.data(), way, apart);
-        count += differences(way >= kColoursOfFour ? apart : piece.data(), pixelBytesOf(way), words_.data() + count, mask);
+        if (takesColoursApart(way)) takeColoursApart(piece.data(), way, apart);
+        count += differences(takesColoursApart(way) ? apart : piece.data(), pixelBytesOf(way), words_.data() + count, mask);
         mask += kPieceMaskBytes;
     }
     const auto last = pages.subspan(pieces * kPageBytes);
@@ -112,8 +112,8 @@ void PixelJoiner::join(std::span<const std::byte> planes, std::span<const std::b
             rest = rest.subspan(kPageBytes);
         } else {
             std::byte apart[kPageBytes];
-            words += sumDifferences(words, masks.data(), pixelBytesOf(way), way >= kColoursOfFour ? apart : pages.data());
-            if (way >= kColoursOfFour) putColoursTogether(apart, way, pages.data());
+            words += sumDifferences(words, masks.data(), pixelBytesOf(way), takesColoursApart(way) ? apart : pages.data());
+            if (takesColoursApart(way)) putColoursTogether(apart, way, pages.data());
             masks = masks.subspan(kPieceMaskBytes);
         }
         pages = pages.subspan(kPageBytes);

@@ -16,7 +16,9 @@ constexpr size_t kPlainWays = 6; // that leave colours as they are
 
 [[nodiscard]] constexpr bool isPixelWay(uint8_t way) { return std::ranges::find(kPixelWays, way) != kPixelWays.end(); }
 
+[[nodiscard]] constexpr bool takesColoursApart(uint8_t way) { return way >= kColoursOfFour; }
+
 // Once colours were taken apart: pixels of four stay where they are, of those of three each colour stands together.
-[[nodiscard]] constexpr size_t pixelBytesOf(uint8_t way) { return way < kColoursOfFour ? way : way == kColoursOfFour ? 4 : 1; }
+[[nodiscard]] constexpr size_t pixelBytesOf(uint8_t way) { return !takesColoursApart(way) ? way : way == kColoursOfFour ? 4 : 1; }
 
 } // namespace mural::economy

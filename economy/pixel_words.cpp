@@ -159,6 +159,7 @@ HWY_EXPORT(fromPlanesVectors);
 namespace {
 
 constexpr size_t kInFront = 16; // zeros before the first pixel
+static_assert(kInFront >= kPixelWays[kPlainWays - 1]);
 
 uint8_t* bytesOf(std::byte* bytes) { return reinterpret_cast<uint8_t*>(bytes); }
 const uint8_t* bytesOf(const std::byte* bytes) { return reinterpret_cast<const uint8_t*>(bytes); }
