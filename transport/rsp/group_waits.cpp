@@ -115,21 +115,20 @@ int64_t Group::State::restNs(const Waits* what, int64_t nowNs) const {
 void Group::State::receive(std::span<const int> sockets, int64_t nowNs) {
     if (nowNs >= timerNs_) timerNs_ = INT64_MAX;
     if (nowNs >= toldNs_) toldNs_ = INT64_MAX;
-    size_t datagrams = 0;
-    bool urgent = false;
+    ReceiveModeration::Look look;
     const auto take = [&](std::span<std::byte> bytes, const SocketAddress&) {
         if (!opener_) return;
         const auto opened = opener_->open(bytes);
         if (opened.empty()) return;
-        ++datagrams;
-        urgent = urgent || isUrgent(opened);
+        ++look.datagrams;
+        look.urgent = look.urgent || isUrgent(opened);
         core->inputDatagram(opened, nowNs);
     };
     for (const int descriptor : sockets) {
         UdpSocket& socket = descriptor == own_->descriptor() ? *own_ : *groupSocket_;
-        socket.receive(std::ref(take));
+        if (socket.receive(std::ref(take))) look.mayBeMore = true;
     }
-    moderation_.looked(datagrams, urgent, nowNs);
+    moderation_.looked(look, nowNs);
     core->socketDropped(dropped());
     pump(nowNs);
 }

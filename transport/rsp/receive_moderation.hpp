@@ -1,6 +1,7 @@
 // How long who waits for a stream may leave its datagrams to gather, before it looks at the sockets again: to be woken for
 // each few is most of what receiving costs. What wards off wakes delays as well, so the end of a flush, which asks for an
 // answer at once, ends it; and what is in full flow is not held up by more than an eighth of the time that it has flowed.
+// A look that left something behind is followed by the next one at once: a look has a bound, and a flow none.
 //
 // The same is done by network cards, as interrupt moderation. Without clock or threads.
 #pragma once
@@ -13,14 +14,22 @@ namespace mural::rsp {
 
 class ReceiveModeration {
 public:
-    // A look at the sockets found so many datagrams; `urgent`: somebody waits for what comes of one of them.
-    void looked(size_t datagrams, bool urgent, int64_t nowNs) {
+    struct Look {
+        size_t datagrams = 0;
+        bool urgent = false;    // somebody waits for what comes of one of them
+        bool mayBeMore = false; // it took as many as a look may
+    };
+
+    void looked(const Look& look, int64_t nowNs) {
+        const auto& [datagrams, urgent, mayBeMore] = look;
+        mayBeMore_ = mayBeMore;
         if (urgent || (datagrams > 0 && nowNs - foundNs_ > kMostSilenceNs)) beganNs_ = nowNs;
         if (datagrams > 0) foundNs_ = nowNs;
     }
 
     // How long from now on nobody need look; 0: at once.
     [[nodiscard]] int64_t restNs(int64_t nowNs) const {
+        if (mayBeMore_) return 0;
         const int64_t restNs = std::min((nowNs - beganNs_) / kShareOfFlow, kMostRestNs);
         return restNs < kLeastRestNs || nowNs - foundNs_ > kMostSilenceNs ? 0 : restNs;
     }
@@ -33,6 +42,7 @@ public:
 private:
     int64_t beganNs_ = INT64_MIN / 2; // the flow
     int64_t foundNs_ = INT64_MIN / 2; // the last datagrams
+    bool mayBeMore_ = false;
 };
 
 } // namespace mural::rsp

@@ -14,7 +14,7 @@ int looksAtAFlow(ReceiveModeration& m, int64_t everyNs, int64_t lastingNs, int64
     int looks = 0;
     int64_t seenNs = kBeginNs;
     for (int64_t nowNs = kBeginNs + everyNs; nowNs < kBeginNs + lastingNs;) {
-        m.looked(static_cast<size_t>((nowNs - seenNs) / everyNs), false, nowNs);
+        m.looked({.datagrams = static_cast<size_t>((nowNs - seenNs) / everyNs)}, nowNs);
         seenNs = nowNs;
         ++looks;
         const int64_t restNs = m.restNs(nowNs);
@@ -38,12 +38,24 @@ TEST(ReceiveModeration, LooksAtOnceForTheFirstDatagramsAndAfterAnUrgentOne) {
     int64_t longestNs = 0;
     (void)looksAtAFlow(m, 12 * kUs, 50'000 * kUs, longestNs);
     const int64_t endNs = kBeginNs + 50'000 * kUs;
-    m.looked(1, false, endNs);
+    m.looked({.datagrams = 1}, endNs);
     EXPECT_GT(m.restNs(endNs), 0);
-    m.looked(1, true, endNs);
+    m.looked({.datagrams = 1, .urgent = true}, endNs);
     EXPECT_EQ(m.restNs(endNs), 0);
-    m.looked(1, false, endNs + 100 * kUs);
+    m.looked({.datagrams = 1}, endNs + 100 * kUs);
     EXPECT_EQ(m.restNs(endNs + 100 * kUs), 0);
+}
+
+// More comes than a look takes: who rested after each would fall behind for good.
+TEST(ReceiveModeration, LooksAgainAtOnceWhereSomethingWasLeft) {
+    ReceiveModeration m;
+    int64_t longestNs = 0;
+    (void)looksAtAFlow(m, 12 * kUs, 50'000 * kUs, longestNs);
+    const int64_t endNs = kBeginNs + 50'000 * kUs;
+    m.looked({.datagrams = 64, .mayBeMore = true}, endNs);
+    EXPECT_EQ(m.restNs(endNs), 0);
+    m.looked({.datagrams = 3}, endNs + 50 * kUs);
+    EXPECT_GT(m.restNs(endNs + 50 * kUs), 0);
 }
 
 TEST(ReceiveModeration, AFlowThatHasStoppedIsOver) {
@@ -52,7 +64,7 @@ TEST(ReceiveModeration, AFlowThatHasStoppedIsOver) {
     (void)looksAtAFlow(m, 12 * kUs, 50'000 * kUs, longestNs);
     const int64_t laterNs = kBeginNs + 60'000 * kUs;
     EXPECT_EQ(m.restNs(laterNs), 0);
-    m.looked(1, false, laterNs);
+    m.looked({.datagrams = 1}, laterNs);
     EXPECT_EQ(m.restNs(laterNs), 0);
 }
 
