@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <poll.h>
+#include <sys/epoll.h>
 #include <sys/timerfd.h>
+#include <unistd.h>
+#include <utility>
 
 #include "common/clock.hpp"
 #include "transport/system_error.hpp"
@@ -16,9 +18,9 @@ Error noDescriptor(const std::string& what) {
     return Error{"can't " + what + ": " + errnoText(errno) + "; raise the limit of open files (ulimit -n)"};
 }
 
-bool control(int epoll, int operation, int fd, uint32_t events) {
+bool control(int epoll, int operation, int fd) {
     epoll_event event{};
-    event.events = events;
+    event.events = EPOLLIN;
     event.data.fd = fd;
     return epoll_ctl(epoll, operation, fd, &event) == 0;
 }
@@ -27,18 +29,17 @@ bool control(int epoll, int operation, int fd, uint32_t events) {
 
 Result<Arrivals> Arrivals::open() {
     Arrivals a;
-    a.all_ = FileDescriptor(epoll_create1(EPOLL_CLOEXEC));
     a.watched_ = FileDescriptor(epoll_create1(EPOLL_CLOEXEC));
     a.timer_ = FileDescriptor(timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC));
-    if (!a.all_.valid() || !a.watched_.valid() || !a.timer_.valid()) return noDescriptor("make a multicast group's timer");
-    // By edge: nobody has to fetch that it was time.
-    if (!control(a.all_.get(), EPOLL_CTL_ADD, a.timer_.get(), uint32_t{EPOLLIN} | EPOLLET)) return noDescriptor("watch a multicast group's timer");
-    if (!control(a.watched_.get(), EPOLL_CTL_ADD, a.all_.get(), EPOLLIN)) return noDescriptor("watch a multicast group's sockets");
+    if (!a.watched_.valid() || !a.timer_.valid()) return noDescriptor("make a multicast group's timer");
+    if (!control(a.watched_.get(), EPOLL_CTL_ADD, a.timer_.get())) return noDescriptor("watch a multicast group's timer");
+    a.all_[a.count_++] = {a.timer_.get(), POLLIN, 0};
     return a;
 }
 
 Result<void> Arrivals::add(int socket) {
-    if (!control(all_.get(), EPOLL_CTL_ADD, socket, EPOLLIN)) return noDescriptor("watch a multicast group's sockets");
+    if (isWatched_ && !control(watched_.get(), EPOLL_CTL_ADD, socket)) return noDescriptor("watch a multicast group's sockets");
+    all_.at(count_++) = {socket, POLLIN, 0};
     return {};
 }
 
@@ -50,32 +51,23 @@ void Arrivals::wakeAt(int64_t ns) {
     timerfd_settime(timer_.get(), TFD_TIMER_ABSTIME, &time, nullptr);
 }
 
-// A timeout of its own costs less than to set a timer.
-int Arrivals::waitFor(std::span<epoll_event> events, int64_t timeoutNs) {
-    const auto most = static_cast<int>(events.size());
-    if (timeoutNs <= 0) return epoll_wait(all_.get(), events.data(), most, 0);
-    const timespec timeout{static_cast<time_t>(timeoutNs / kNsPerS), static_cast<long>(timeoutNs % kNsPerS)};
-    if (fineTimeouts_) {
-        const int count = epoll_pwait2(all_.get(), events.data(), most, &timeout, nullptr);
-        if (count >= 0 || errno == EINTR) return count;
-        fineTimeouts_ = false;
-    }
-    pollfd all{all_.get(), POLLIN, 0};
-    ppoll(&all, 1, &timeout, nullptr);
-    return epoll_wait(all_.get(), events.data(), most, 0);
-}
-
 std::span<const int> Arrivals::wait(int64_t timeoutNs) {
-    std::array<epoll_event, 4> events{};
-    const int count = waitFor(events, timeoutNs);
-    size_t sockets = 0;
-    for (int i = 0; i < count; ++i) {
-        const int fd = events[static_cast<size_t>(i)].data.fd;
-        if (fd != timer_.get()) ready_[sockets++] = fd;
+    const int64_t ns = std::max<int64_t>(0, timeoutNs);
+    const timespec timeout{static_cast<time_t>(ns / kNsPerS), static_cast<long>(ns % kNsPerS)};
+    if (ppoll(all_.data(), count_, &timeout, nullptr) <= 0) return {};
+    if (all_[0].revents != 0) { // it was time, once
+        uint64_t times = 0;
+        [[maybe_unused]] const auto fetched = read(timer_.get(), &times, sizeof times);
     }
+    size_t sockets = 0;
+    for (const pollfd& one : std::span(all_).subspan(1, count_ - 1))
+        if (one.revents != 0) ready_[sockets++] = one.fd;
     return std::span(ready_).first(sockets);
 }
 
-void Arrivals::setWatched(bool on) { control(watched_.get(), EPOLL_CTL_MOD, all_.get(), on ? uint32_t{EPOLLIN} : 0u); }
+void Arrivals::setWatched(bool on) {
+    if (on == std::exchange(isWatched_, on)) return;
+    for (const pollfd& one : std::span(all_).first(count_)) control(watched_.get(), on ? EPOLL_CTL_ADD : EPOLL_CTL_DEL, one.fd);
+}
 
 } // namespace mural::rsp

@@ -107,8 +107,8 @@ Result<void> Group::State::openHost() {
     if (auto r = openSockets(); !r) return r.error();
     // The host hears the other members' streams, too.
     if (auto r = joinMulticast(); !r) return r.error();
-    groupSocket_->ignoreMember(kHost);
     if (auto r = openCore(true); !r) return r.error();
+    ignoreOwn();
     auto where = splitHostPort(options_.control);
     if (!where) return where.error();
     error_code failed;
@@ -261,6 +261,13 @@ void Group::State::updateLoop() {
     for (const auto& [id, info] : core->members()) any = any || isHere(info.address);
     if (any == std::exchange(loop_, any)) return;
     own_->setLoop(any);
+    ignoreOwn();
+}
+
+void Group::State::ignoreOwn() {
+    if (!groupSocket_) return;
+    if (loop_) groupSocket_->ignoreMember(core->self());
+    else groupSocket_->ignoreNobody();
 }
 
 // What the kernel drops of our own coming back is no loss.
@@ -288,7 +295,7 @@ void Group::State::welcomed(const Welcome& w) {
     opener_->addMember(kHost);
     // Where that fails no probe comes, and the host sends through its connection.
     if (!options_.multicast || !joinMulticast()) return;
-    groupSocket_->ignoreMember(w.self);
+    ignoreOwn();
 }
 
 void Group::State::memberCame(MemberId id, const MemberInfo& info) {

@@ -90,6 +90,7 @@ private:
     void endWhenSaid(Deadline deadline);
     void fail(const std::string& why);
     void updateLoop();
+    void ignoreOwn();
     void note(const MemberEvent& event);
     [[nodiscard]] uint32_t dropped() const;
     void sendControl(MemberId to, const ControlMessage& message);

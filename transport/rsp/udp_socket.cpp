@@ -155,6 +155,8 @@ void UdpSocket::ignoreMember(MemberId self) {
     set(socket_.get(), SOL_SOCKET, SO_ATTACH_FILTER, filter);
 }
 
+void UdpSocket::ignoreNobody() { set(socket_.get(), SOL_SOCKET, SO_DETACH_FILTER, 0); }
+
 SocketAddress UdpSocket::localAddress() const { return localTcpAddress(socket_.get()); }
 
 uint32_t UdpSocket::capacity(size_t datagramBytes) const {

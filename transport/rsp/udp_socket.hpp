@@ -31,8 +31,10 @@ public:
 
     // Whether what is sent to the group comes to members on this machine, too.
     void setLoop(bool loop);
-    // What this member sent comes back to its own machine: dropped by the kernel, before it takes room here.
+    // What this member sent and what comes back to its own machine: dropped by the kernel, before it takes room here. Every
+    // datagram is looked at for that, by whoever brings it: on one machine, its sender.
     void ignoreMember(MemberId self);
+    void ignoreNobody();
 
     // Handlers are told of no sender: to ask the kernel for its address costs something for each datagram.
     void leaveOutSenders() { tellsSenders_ = false; }
