@@ -10,21 +10,28 @@ namespace {
 struct Attribute {
     const char* name;
     int (*value)(const SurfaceConfig&);
+    bool nearest = false; // another value gives a picture, too
 };
 
 // A count of one sample means no multisampling, as with none: drivers report either.
 const std::array<Attribute, 10> kAttributes{{
-    {"red", [](const SurfaceConfig& c) { return c.red; }},
-    {"green", [](const SurfaceConfig& c) { return c.green; }},
-    {"blue", [](const SurfaceConfig& c) { return c.blue; }},
+    {"red", [](const SurfaceConfig& c) { return c.red; }, true},
+    {"green", [](const SurfaceConfig& c) { return c.green; }, true},
+    {"blue", [](const SurfaceConfig& c) { return c.blue; }, true},
     {"alpha", [](const SurfaceConfig& c) { return c.alpha; }},
-    {"depth", [](const SurfaceConfig& c) { return c.depth; }},
-    {"stencil", [](const SurfaceConfig& c) { return c.stencil; }},
-    {"samples", [](const SurfaceConfig& c) { return c.samples <= 1 ? 0 : c.samples; }},
+    {"depth", [](const SurfaceConfig& c) { return c.depth; }, true},
+    {"stencil", [](const SurfaceConfig& c) { return c.stencil; }, true},
+    {"samples", [](const SurfaceConfig& c) { return c.samples <= 1 ? 0 : c.samples; }, true},
     {"accum", [](const SurfaceConfig& c) { return c.accum; }},
     {"srgb", [](const SurfaceConfig& c) { return c.srgb ? 1 : 0; }},
     {"stereo", [](const SurfaceConfig& c) { return c.stereo ? 1 : 0; }},
 }};
+
+// Of values that there are, for one that there is not.
+int nearestTo(int wish, const std::set<int>& offered) {
+    const auto above = offered.lower_bound(wish);
+    return above != offered.end() ? *above : *offered.rbegin();
+}
 
 std::string join(const std::set<int>& values) {
     std::string text;
@@ -52,19 +59,32 @@ Result<size_t> matchConfig(const std::string& backend,
     for (size_t i = 0; i < left.size(); i++) left[i] = i;
     for (size_t a = 0; a < kAttributes.size(); a++) {
         std::set<int> offered;
-        std::vector<size_t> equal;
-        for (size_t i : left) {
-            const int value = kAttributes[a].value(candidates[i].bits);
-            offered.insert(value);
-            if (value == kAttributes[a].value(wish)) equal.push_back(i);
-        }
-        if (equal.empty()) return noMatch(backend, a, wish, offered);
-        left = std::move(equal);
+        for (size_t i : left) offered.insert(kAttributes[a].value(candidates[i].bits));
+        const int wished = kAttributes[a].value(wish);
+        if (!offered.contains(wished) && !kAttributes[a].nearest) return noMatch(backend, a, wish, offered);
+        const int taken = nearestTo(wished, offered);
+        std::erase_if(left, [&](size_t i) { return kAttributes[a].value(candidates[i].bits) != taken; });
     }
     return *std::min_element(left.begin(), left.end(), [&](size_t one, size_t other) {
         return candidates[one].rank != candidates[other].rank ? candidates[one].rank < candidates[other].rank
                                                               : one < other;
     });
+}
+
+SurfaceConfig bitsOf(const ConfigCandidate& taken, const SurfaceConfig& wish) {
+    SurfaceConfig bits = taken.bits;
+    bits.width = wish.width;
+    bits.height = wish.height;
+    return bits;
+}
+
+std::string whatDiffers(const SurfaceConfig& there, const SurfaceConfig& wish) {
+    std::string text;
+    for (const Attribute& a : kAttributes) {
+        if (a.value(there) == a.value(wish)) continue;
+        text += (text.empty() ? "" : ", ") + std::string(a.name) + " " + std::to_string(a.value(there)) + " instead of " + std::to_string(a.value(wish));
+    }
+    return text;
 }
 
 bool sameBits(const SurfaceConfig& one, const SurfaceConfig& other) {

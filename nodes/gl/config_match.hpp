@@ -1,5 +1,7 @@
 // Choice of a framebuffer configuration whose bits are exactly those asked for: one bit more or less
-// rounds, clears or blends differently, and the picture is no longer the native one.
+// rounds, clears or blends differently, and the picture is no longer the native one. Where a driver has no such
+// one (depths of 32 bits are Mesa's alone), the nearest in depth, stencil, samples and bits of a colour is taken, and
+// told: a picture that may differ is better than none.
 #pragma once
 
 #include <cstddef>
@@ -19,10 +21,17 @@ struct ConfigCandidate {
     int rank = 0; // of several with equal bits the one with the lowest rank is taken, then the first
 };
 
-// Index into candidates. The error names the first wish that no candidate meets, and what there is.
+// Index into candidates; the error names the first wish that none comes near, and what there is. Of what has not the bits
+// asked for, the least that has more is taken, else the most that there is.
 Result<size_t> matchConfig(const std::string& backend,
                            const std::vector<ConfigCandidate>& candidates,
                            const SurfaceConfig& wish);
+
+// What a surface of this candidate is, of the size that was wished.
+SurfaceConfig bitsOf(const ConfigCandidate& taken, const SurfaceConfig& wish);
+
+// "depth 24 instead of 32, samples 0 instead of 4"; empty: all is as wished.
+std::string whatDiffers(const SurfaceConfig& there, const SurfaceConfig& wish);
 
 // True when both can be drawn to by the same context on backends that bind contexts to configurations.
 bool sameBits(const SurfaceConfig& one, const SurfaceConfig& other);

@@ -22,20 +22,19 @@ using SharedDisplay = std::shared_ptr<EglDisplayState>;
 class EglSurface final : public Surface {
 public:
     EglSurface(SharedDisplay display, EGLSurface handle, const SurfaceConfig& config)
-        : display_(std::move(display)), handle_(handle), width_(config.width), height_(config.height) {}
+        : display_(std::move(display)), handle_(handle), config_(config) {}
     EglSurface(const EglSurface&) = delete;
     EglSurface& operator=(const EglSurface&) = delete;
     ~EglSurface() override { display_->egl.destroySurface(display_->display, handle_); }
 
-    [[nodiscard]] int width() const override { return width_; }
-    [[nodiscard]] int height() const override { return height_; }
+    [[nodiscard]] const SurfaceConfig& config() const override { return config_; }
     [[nodiscard]] bool singleBuffered() const override { return !display_->doubleBuffered; }
     [[nodiscard]] EGLSurface handle() const { return handle_; }
 
 private:
     SharedDisplay display_;
     EGLSurface handle_;
-    int width_, height_;
+    SurfaceConfig config_;
 };
 
 class EglContext final : public Context {
@@ -149,18 +148,22 @@ public:
     [[nodiscard]] bool drawsAs(const EglPlatform& other) const { return renderer_ == other.renderer_ && version_ == other.version_; }
 
 private:
-    Result<EGLConfig> chooseConfig(const SurfaceConfig& wish) const;
+    struct Chosen {
+        EGLConfig handle;
+        SurfaceConfig bits;
+    };
+    Result<Chosen> chooseConfig(const SurfaceConfig& wish) const;
 
     SharedDisplay display_;
     EGLenum currentApi_ = EGL_OPENGL_API;
     std::string renderer_, version_;
 };
 
-Result<EGLConfig> EglPlatform::chooseConfig(const SurfaceConfig& wish) const {
+Result<EglPlatform::Chosen> EglPlatform::chooseConfig(const SurfaceConfig& wish) const {
     const EglConfigs all = listEglConfigs(*display_, wish.srgb);
-    const auto index = matchConfig("EGL", all.candidates, wish);
+    auto index = matchConfig("EGL", all.candidates, wish);
     if (!index) return index.error();
-    return all.handles[index.value()];
+    return Chosen{all.handles[*index], bitsOf(all.candidates[*index], wish)};
 }
 
 Result<std::unique_ptr<Surface>> EglPlatform::createSurface(const SurfaceConfig& wish) {
@@ -173,11 +176,11 @@ Result<std::unique_ptr<Surface>> EglPlatform::createSurface(const SurfaceConfig&
     const EglFunctions& egl = display_->egl;
     const std::string what = std::to_string(wish.width) + "x" + std::to_string(wish.height) + " pixels" +
                              (wish.srgb ? " in sRGB" : "");
-    EGLSurface handle = egl.createPbufferSurface(display_->display, config.value(), list.data());
+    EGLSurface handle = egl.createPbufferSurface(display_->display, config->handle, list.data());
     if (handle == EGL_NO_SURFACE)
         return Error{"EGL can't make a pbuffer of " + what + ": " + takeEglError(egl) +
                      "; try a smaller picture or another --gl backend"};
-    auto surface = std::make_unique<EglSurface>(display_, handle, wish);
+    auto surface = std::make_unique<EglSurface>(display_, handle, config->bits);
     EGLint width = 0, height = 0;
     egl.querySurface(display_->display, handle, EGL_WIDTH, &width);
     egl.querySurface(display_->display, handle, EGL_HEIGHT, &height);
@@ -206,7 +209,7 @@ Result<std::unique_ptr<Context>> EglPlatform::createContext(const ContextConfig&
     const auto create = [&](bool tellsReset) {
         ContextConfig with = wish;
         with.tellsReset = tellsReset;
-        return egl.createContext(display_->display, display_->noConfigContext ? EGL_NO_CONFIG_KHR : config.value(), share, contextAttributes(with, *display_).data());
+        return egl.createContext(display_->display, display_->noConfigContext ? EGL_NO_CONFIG_KHR : config->handle, share, contextAttributes(with, *display_).data());
     };
     bool tellsReset = wish.tellsReset && display_->tellsResets;
     EGLContext handle = create(tellsReset);

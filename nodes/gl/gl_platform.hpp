@@ -43,8 +43,10 @@ struct ContextConfig {
 class Surface {
 public:
     virtual ~Surface() = default;
-    [[nodiscard]] virtual int width() const = 0;
-    [[nodiscard]] virtual int height() const = 0;
+    // Its size and its bits, which are those asked for or, where the driver has none such, the nearest.
+    [[nodiscard]] virtual const SurfaceConfig& config() const = 0;
+    [[nodiscard]] int width() const { return config().width; }
+    [[nodiscard]] int height() const { return config().height; }
     // True: only one colour buffer, named GL_FRONT (EGL pbuffers of Mesa, OSMesa). The replay then
     // maps GL_BACK* and GL_FRONT* to it, and takes a second surface for the front where it is used.
     [[nodiscard]] virtual bool singleBuffered() const = 0;

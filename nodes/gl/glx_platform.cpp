@@ -19,20 +19,19 @@ using SharedDisplay = std::shared_ptr<GlxDisplayState>;
 class GlxSurface final : public Surface {
 public:
     GlxSurface(SharedDisplay display, GLXPbuffer handle, const SurfaceConfig& config)
-        : display_(std::move(display)), handle_(handle), width_(config.width), height_(config.height) {}
+        : display_(std::move(display)), handle_(handle), config_(config) {}
     GlxSurface(const GlxSurface&) = delete;
     GlxSurface& operator=(const GlxSurface&) = delete;
     ~GlxSurface() override { display_->glx.destroyPbuffer(display_->display, handle_); }
 
-    [[nodiscard]] int width() const override { return width_; }
-    [[nodiscard]] int height() const override { return height_; }
+    [[nodiscard]] const SurfaceConfig& config() const override { return config_; }
     [[nodiscard]] bool singleBuffered() const override { return false; }
     [[nodiscard]] GLXPbuffer handle() const { return handle_; }
 
 private:
     SharedDisplay display_;
     GLXPbuffer handle_;
-    int width_, height_;
+    SurfaceConfig config_;
 };
 
 class GlxContext final : public Context {
@@ -73,7 +72,11 @@ public:
     Result<void> measure();
 
 private:
-    Result<GLXFBConfig> chooseConfig(const SurfaceConfig& wish) const;
+    struct Chosen {
+        GLXFBConfig handle;
+        SurfaceConfig bits;
+    };
+    Result<Chosen> chooseConfig(const SurfaceConfig& wish) const;
     Result<std::unique_ptr<GlxSurface>> createPbuffer(const SurfaceConfig& wish);
     Result<void> checkSupport(const ContextConfig& wish) const;
     std::vector<int> contextAttributes(const ContextConfig& wish) const;
@@ -82,10 +85,10 @@ private:
     std::string renderer_, version_;
 };
 
-Result<GLXFBConfig> GlxPlatform::chooseConfig(const SurfaceConfig& wish) const {
-    const auto index = matchConfig("GLX", display_->candidates, wish);
+Result<GlxPlatform::Chosen> GlxPlatform::chooseConfig(const SurfaceConfig& wish) const {
+    auto index = matchConfig("GLX", display_->candidates, wish);
     if (!index) return index.error();
-    return display_->configs[index.value()];
+    return Chosen{display_->configs[*index], bitsOf(display_->candidates[*index], wish)};
 }
 
 Result<std::unique_ptr<GlxSurface>> GlxPlatform::createPbuffer(const SurfaceConfig& wish) {
@@ -97,11 +100,11 @@ Result<std::unique_ptr<GlxSurface>> GlxPlatform::createPbuffer(const SurfaceConf
     const GlxFunctions& glx = display_->glx;
     const std::string what = std::to_string(wish.width) + "x" + std::to_string(wish.height) + " pixels";
     XErrorTrap trap(*display_);
-    GLXPbuffer handle = glx.createPbuffer(display_->display, config.value(), list);
+    GLXPbuffer handle = glx.createPbuffer(display_->display, config->handle, list);
     if (const std::string why = trap.take(); !why.empty() || !handle)
         return Error{"GLX can't make a pbuffer of " + what + ": " + (why.empty() ? "no reason given" : why) +
                      "; try a smaller picture or --gl egl"};
-    auto surface = std::make_unique<GlxSurface>(display_, handle, wish);
+    auto surface = std::make_unique<GlxSurface>(display_, handle, config->bits);
     unsigned width = 0, height = 0;
     glx.queryDrawable(display_->display, handle, GLX_WIDTH, &width);
     glx.queryDrawable(display_->display, handle, GLX_HEIGHT, &height);
@@ -161,7 +164,7 @@ Result<std::unique_ptr<Context>> GlxPlatform::createContext(const ContextConfig&
         ContextConfig with = wish;
         with.tellsReset = tellsReset;
         XErrorTrap trap(*display_);
-        GLXContext made = display_->glx.createContextAttribs(display_->display, display_->noConfigContext ? nullptr : config.value(), share, 1, contextAttributes(with).data());
+        GLXContext made = display_->glx.createContextAttribs(display_->display, display_->noConfigContext ? nullptr : config->handle, share, 1, contextAttributes(with).data());
         why = trap.take();
         if (!made || why.empty()) return made;
         display_->glx.destroyContext(display_->display, made);

@@ -61,11 +61,16 @@ Candidates listCandidates() {
     return all;
 }
 
-Result<ColorFormat> chooseFormat(const SurfaceConfig& wish) {
+struct Chosen {
+    ColorFormat format;
+    SurfaceConfig bits;
+};
+
+Result<Chosen> chooseFormat(const SurfaceConfig& wish) {
     const Candidates all = listCandidates();
-    const auto index = matchConfig("OSMesa", all.list, wish);
+    auto index = matchConfig("OSMesa", all.list, wish);
     if (!index) return index.error();
-    return all.formats[index.value()];
+    return Chosen{all.formats[*index], bitsOf(all.list[*index], wish)};
 }
 
 class OsmesaContext;
@@ -92,11 +97,9 @@ public:
     OsmesaSurface& operator=(const OsmesaSurface&) = delete;
     ~OsmesaSurface() override;
 
-    [[nodiscard]] int width() const override { return config_.width; }
-    [[nodiscard]] int height() const override { return config_.height; }
     [[nodiscard]] bool singleBuffered() const override { return true; }
     [[nodiscard]] bool hiddenAlpha() const override { return config_.red == 8 && config_.alpha == 0; }
-    [[nodiscard]] const SurfaceConfig& config() const { return config_; }
+    [[nodiscard]] const SurfaceConfig& config() const override { return config_; }
 
     std::shared_ptr<std::byte[]> memory_;
     OsmesaContext* home_ = nullptr; // the context whose buffers hold the contents; null: saved_ has them
@@ -219,21 +222,23 @@ private:
 
 Result<std::unique_ptr<Surface>> OsmesaPlatform::createSurface(const SurfaceConfig& wish) {
     if (auto size = checkSize("OSMesa", wish, state_->maxSurfaceSize); !size) return size.error();
-    auto format = chooseFormat(wish);
-    if (!format) return format.error();
-    return std::unique_ptr<Surface>(std::make_unique<OsmesaSurface>(wish, format.value()));
+    auto chosen = chooseFormat(wish);
+    if (!chosen) return chosen.error();
+    return std::unique_ptr<Surface>(std::make_unique<OsmesaSurface>(chosen->bits, chosen->format));
 }
 
 Result<std::unique_ptr<Context>> OsmesaPlatform::createContext(const ContextConfig& wish, Context* shareWith) {
     if (wish.api != Api::Desktop || wish.forwardCompatible)
         return Error{"OSMesa can't make an " + describeContext(wish) + " context: use --gl egl"};
-    auto format = chooseFormat(wish.surface);
-    if (!format) return format.error();
+    auto chosen = chooseFormat(wish.surface);
+    if (!chosen) return chosen.error();
+    ContextConfig config = wish;
+    config.surface = chosen->bits;
     const VersionRequest request = versionRequest(wish);
     const bool core = request.profile && wish.core;
-    const int list[] = {OSMESA_FORMAT, static_cast<int>(format->format),
-                        OSMESA_DEPTH_BITS, wish.surface.depth,
-                        OSMESA_STENCIL_BITS, wish.surface.stencil,
+    const int list[] = {OSMESA_FORMAT, static_cast<int>(chosen->format.format),
+                        OSMESA_DEPTH_BITS, config.surface.depth,
+                        OSMESA_STENCIL_BITS, config.surface.stencil,
                         OSMESA_PROFILE, core ? OSMESA_CORE_PROFILE : OSMESA_COMPAT_PROFILE,
                         OSMESA_CONTEXT_MAJOR_VERSION, request.major,
                         OSMESA_CONTEXT_MINOR_VERSION, request.minor,
@@ -243,7 +248,7 @@ Result<std::unique_ptr<Context>> OsmesaPlatform::createContext(const ContextConf
     if (!handle)
         return Error{"OSMesa can't make an " + describeContext(wish) + " context" +
                      (shareWith ? " that shares objects" : "") + ": the driver does not have it; see mural doctor"};
-    return std::unique_ptr<Context>(std::make_unique<OsmesaContext>(state_, handle, wish, format.value()));
+    return std::unique_ptr<Context>(std::make_unique<OsmesaContext>(state_, handle, config, chosen->format));
 }
 
 Result<void> OsmesaPlatform::makeCurrent(Context* context, Surface* draw, Surface* read, HeldBack) {

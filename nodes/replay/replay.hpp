@@ -473,6 +473,7 @@ private:
     bool ownCreateContext(Args& in);
     bool ownMakeCurrent(Args& in);
     bool ownWindow(Args& in);
+    void takeBitsOfSurface(Window& w);
     bool ownSwap(Args& in, bool front);
     void waitUntilDrawn();
     bool ownClientArrays(Args& in);
@@ -695,6 +696,7 @@ private:
     void applyColorMasks();
     void makeOpaque();
     bool alphaHides_ = false; // in any window
+    std::string toldBits_;    // what windows here have instead of what was asked for
     // replay_accum.cpp
     bool accumulatesHere();
     void forAccumulatedRows(const std::function<void(int16_t*, const PixelViewport&)>& call);

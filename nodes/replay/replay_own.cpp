@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "common/clock.hpp"
+#include "nodes/gl/config_match.hpp"
 #include "nodes/replay/pass_place.hpp"
 #include "nodes/replay/replay.hpp"
 #include "nodes/replay/window_use.hpp"
@@ -194,7 +195,10 @@ bool Replay::ownWindow(Args& in) {
     w.part = partOf(w, w.moving.areas.get());
     placePart(w);
     const PixelViewport size = surfaceOf(w, w.lean);
-    if (w.surface && w.surface->width() == size.w && w.surface->height() == size.h) return true;
+    if (w.surface && w.surface->width() == size.w && w.surface->height() == size.h) {
+        takeBitsOfSurface(w);
+        return true;
+    }
     auto made = platform_->createSurface(surfaceConfig(*config, size.w, size.h));
     if (!made) {
         out_.log("no framebuffer like the program's window (" + std::to_string(width) + "x" + std::to_string(height) + ") can be made: " + made.error().message +
@@ -207,6 +211,7 @@ bool Replay::ownWindow(Args& in) {
     std::unique_ptr<gl::Surface> oldFront = std::move(w.front);
     dropFront(w);
     w.surface = std::move(*made);
+    takeBitsOfSurface(w);
     w.readback = {};
     if (bound) {
         boundDraw_ = boundRead_ = nullptr;
@@ -216,6 +221,21 @@ bool Replay::ownWindow(Args& in) {
         if (!bound_) (void)platform_->makeCurrent(nullptr, nullptr, nullptr);
     }
     return true;
+}
+
+// The window is from now on what it could be made: other surfaces of it, and what is copied between them, have the same bits.
+void Replay::takeBitsOfSurface(Window& w) {
+    const gl::SurfaceConfig& there = w.surface->config();
+    const std::string differs = gl::whatDiffers(there, surfaceConfig(w.config, there.width, there.height));
+    if (differs.empty()) return;
+    w.config.red = static_cast<uint8_t>(there.red);
+    w.config.green = static_cast<uint8_t>(there.green);
+    w.config.blue = static_cast<uint8_t>(there.blue);
+    w.config.depth = static_cast<uint8_t>(there.depth);
+    w.config.stencil = static_cast<uint8_t>(there.stencil);
+    w.config.samples = static_cast<uint8_t>(there.samples);
+    if (differs == std::exchange(toldBits_, differs)) return;
+    out_.log("its GL has no framebuffer like the program's window, which is drawn with " + differs + ": pixels may differ from the native picture's");
 }
 
 // By a fence where there are any: at glFinish Mesa copies the whole picture of a framebuffer with one colour

@@ -178,13 +178,12 @@ const std::unordered_map<std::string, gl::Proc>& special() {
 
 class FakeSurface : public gl::Surface {
 public:
-    FakeSurface(int w, int h, bool single) : w_(w), h_(h), single_(single) {}
-    [[nodiscard]] int width() const override { return w_; }
-    [[nodiscard]] int height() const override { return h_; }
+    FakeSurface(const gl::SurfaceConfig& config, bool single) : config_(config), single_(single) {}
+    [[nodiscard]] const gl::SurfaceConfig& config() const override { return config_; }
     [[nodiscard]] bool singleBuffered() const override { return single_; }
 
 private:
-    int w_, h_;
+    gl::SurfaceConfig config_;
     bool single_;
 };
 
@@ -206,7 +205,7 @@ public:
     }
     Result<std::unique_ptr<gl::Surface>> createSurface(const gl::SurfaceConfig& c) override {
         if (options_.surfacesFail || c.width > state.maxSurface || c.height > state.maxSurface) return Error{"too large"};
-        return std::unique_ptr<gl::Surface>(new FakeSurface(c.width, c.height, options_.singleBuffered));
+        return std::unique_ptr<gl::Surface>(new FakeSurface(c, options_.singleBuffered));
     }
     Result<std::unique_ptr<gl::Context>> createContext(const gl::ContextConfig& c, gl::Context* share) override {
         if (c.major > 9) return Error{"no such version"};

@@ -35,12 +35,40 @@ TEST(ConfigMatch, oneSampleIsNoMultisampling) {
 
 TEST(ConfigMatch, errorNamesTheWishAndWhatThereIs) {
     SurfaceConfig wish;
-    wish.samples = 8;
+    wish.alpha = 2;
     auto index = matchConfig("EGL", {candidate(0, 24, 0), candidate(0, 24, 4), candidate(8, 24, 8)}, wish);
     ASSERT_FALSE(index);
     EXPECT_NE(index.error().message.find("EGL"), std::string::npos);
-    EXPECT_NE(index.error().message.find("samples 8 (it has 0, 4)"), std::string::npos) << index.error().message;
+    EXPECT_NE(index.error().message.find("alpha 2 (it has 0, 8)"), std::string::npos) << index.error().message;
     EXPECT_FALSE(matchConfig("EGL", {}, wish));
+}
+
+TEST(ConfigMatch, takesTheNearestOfWhatIsNotThere) {
+    const std::vector<ConfigCandidate> all{candidate(0, 0, 0), candidate(0, 16, 8), candidate(0, 24, 4), candidate(0, 24, 2)};
+    const auto taken = [&](int depth, int samples) {
+        SurfaceConfig wish;
+        wish.depth = depth;
+        wish.samples = samples;
+        return matchConfig("X", all, wish).value();
+    };
+    EXPECT_EQ(taken(32, 4), 2u);  // the most that there is
+    EXPECT_EQ(taken(20, 3), 2u);  // the least that has more, of each
+    EXPECT_EQ(taken(12, 0), 1u);  // depth goes before samples
+    EXPECT_EQ(taken(24, 0), 3u);
+    EXPECT_EQ(taken(24, 16), 2u);
+}
+
+TEST(ConfigMatch, tellsWhatDiffers) {
+    SurfaceConfig wish, there;
+    EXPECT_EQ(whatDiffers(there, wish), "");
+    wish.depth = 32;
+    wish.samples = 4;
+    there.width = 99; // of no account
+    EXPECT_EQ(whatDiffers(there, wish), "depth 24 instead of 32, samples 0 instead of 4");
+    const ConfigCandidate taken = candidate(0, 24, 0);
+    wish.width = 77;
+    EXPECT_EQ(bitsOf(taken, wish).width, 77);
+    EXPECT_EQ(bitsOf(taken, wish).depth, 24);
 }
 
 TEST(ConfigMatch, everyAttributeCounts) {
@@ -50,7 +78,8 @@ TEST(ConfigMatch, everyAttributeCounts) {
     for (auto number : numbers) {
         SurfaceConfig wish;
         wish.*number += 2;
-        EXPECT_FALSE(matchConfig("X", {ConfigCandidate()}, wish));
+        EXPECT_EQ(static_cast<bool>(matchConfig("X", {ConfigCandidate()}, wish)), number != &SurfaceConfig::alpha && number != &SurfaceConfig::accum);
+        EXPECT_NE(whatDiffers(SurfaceConfig(), wish), "");
         EXPECT_FALSE(sameBits(wish, SurfaceConfig()));
     }
     SurfaceConfig srgb, stereo, wide;
