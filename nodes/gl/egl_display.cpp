@@ -73,7 +73,9 @@ std::shared_ptr<EglDisplayState> initialize(const EglFunctions& egl,
     state->extensions = extensions ? extensions : "";
     state->noConfigContext = state->has("EGL_KHR_no_config_context") || state->has("EGL_MESA_configless_context");
     state->surfaceless = state->has("EGL_KHR_surfaceless_context");
-    state->flushControl = state->has("EGL_KHR_context_flush_control");
+    const char* vendor = egl.queryString(display, EGL_VENDOR);
+    state->mesa = vendor && std::strstr(vendor, "Mesa");
+    state->flushControl = state->mesa && state->has("EGL_KHR_context_flush_control");
     state->colorspace = state->version >= 15 || state->has("EGL_KHR_gl_colorspace");
     if (state->has("EGL_KHR_image_base")) {
         loadExtension(egl, state->egl.createImage, "eglCreateImageKHR");
@@ -120,6 +122,22 @@ std::shared_ptr<EglDisplayState> openDevice(const EglFunctions& egl, bool softwa
 
 } // namespace
 
+void EglLeftOvers::addSurface(EGLSurface surface) {
+    const std::lock_guard lock(mutex_);
+    surfaces_.push_back(surface);
+}
+
+void EglLeftOvers::addContext(EGLContext context) {
+    const std::lock_guard lock(mutex_);
+    contexts_.push_back(context);
+}
+
+void EglLeftOvers::destroy(const EglFunctions& egl, EGLDisplay display) {
+    const std::lock_guard lock(mutex_);
+    for (const EGLContext context : std::exchange(contexts_, {})) egl.destroyContext(display, context);
+    for (const EGLSurface surface : std::exchange(surfaces_, {})) egl.destroySurface(display, surface);
+}
+
 bool EglDisplayState::has(const char* extension) const {
     return hasWord(extensions.c_str(), extension);
 }
@@ -129,7 +147,7 @@ Result<std::shared_ptr<EglDisplayState>> openEglDisplay() {
     if (!egl) return egl.error();
     std::string why;
     auto surfaceless = openSurfaceless(*egl, why);
-    if (surfaceless && !surfaceless->software) return surfaceless;
+    if (surfaceless && !surfaceless->software && surfaceless->mesa) return surfaceless;
     if (auto device = openDevice(*egl, !surfaceless, why)) return device;
     if (surfaceless) return surfaceless;
     return Error{"no EGL display without a window system opens (" + why.substr(why.empty() ? 0 : 1) +

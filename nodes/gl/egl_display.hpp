@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,22 @@ struct EglFunctions {
     PFNEGLQUERYDISPLAYATTRIBEXTPROC queryDisplayAttrib = nullptr;
 };
 
+// Surfaces and contexts that nobody needs any more, until the next ones are current: NVIDIA's driver (580.159) looks
+// at what it knew of those before them then, and where they were destroyed meanwhile it ended the process (half of all
+// nodes that started; seen in its memory: what it looked at was another one's by then).
+class EglLeftOvers {
+public:
+    void addSurface(EGLSurface surface);
+    void addContext(EGLContext context);
+    // Others are current now, or nothing ever will be.
+    void destroy(const EglFunctions& egl, EGLDisplay display);
+
+private:
+    std::mutex mutex_; // contexts of second threads go by those
+    std::vector<EGLSurface> surfaces_;
+    std::vector<EGLContext> contexts_;
+};
+
 // Never terminated: EGL hands out the same display to everyone who asks in this process, and another
 // platform (the next pipe's) may still draw with it.
 struct EglDisplayState {
@@ -46,23 +63,31 @@ struct EglDisplayState {
     EGLDisplay display = EGL_NO_DISPLAY;
     std::string where; // "surfaceless" or "device 0"
     bool software = false;
+    bool mesa = false; // by its vendor
     std::string extensions;
     int version = 0; // 10 * major + minor
     bool noConfigContext = false;
     bool surfaceless = false;
     bool colorspace = false;
-    bool flushControl = false; // contexts can be asked not to flush when another one becomes current
+    bool flushControl = false; // contexts can be asked not to flush when another one becomes current; Mesa's alone are
     // Measured when the platform is opened.
     int maxSurfaceSize = kMaxSurfaceSize;
     bool doubleBuffered = false;
     bool tellsResets = true; // until a driver has refused
+    EglLeftOvers left;
+
+    EglDisplayState() = default;
+    EglDisplayState(const EglDisplayState&) = delete;
+    EglDisplayState& operator=(const EglDisplayState&) = delete;
+    ~EglDisplayState() { left.destroy(egl, display); }
 
     [[nodiscard]] bool has(const char* extension) const;
 };
 
 // The surfaceless display, or one of a device. A GPU is preferred to a software renderer: with
 // several vendors installed the surfaceless platform may lead to Mesa's software renderer although the
-// machine's windows are drawn by another vendor's GPU.
+// machine's windows are drawn by another vendor's GPU. Of other drivers than Mesa a device's display is preferred, which
+// all of them have had for long.
 Result<std::shared_ptr<EglDisplayState>> openEglDisplay();
 
 // That of a device, where `display` is the surfaceless one; else null. For drivers whose surfaceless display can't do

@@ -25,7 +25,7 @@ public:
         : display_(std::move(display)), handle_(handle), config_(config) {}
     EglSurface(const EglSurface&) = delete;
     EglSurface& operator=(const EglSurface&) = delete;
-    ~EglSurface() override { display_->egl.destroySurface(display_->display, handle_); }
+    ~EglSurface() override { display_->left.addSurface(handle_); }
 
     [[nodiscard]] const SurfaceConfig& config() const override { return config_; }
     [[nodiscard]] bool singleBuffered() const override { return !display_->doubleBuffered; }
@@ -43,7 +43,7 @@ public:
         : display_(std::move(display)), handle_(handle), api_(api), tellsReset_(tellsReset), dummy_(std::move(dummy)) {}
     EglContext(const EglContext&) = delete;
     EglContext& operator=(const EglContext&) = delete;
-    ~EglContext() override { display_->egl.destroyContext(display_->display, handle_); }
+    ~EglContext() override { display_->left.addContext(handle_); }
 
     [[nodiscard]] EGLContext handle() const { return handle_; }
     [[nodiscard]] bool tellsReset() const override { return tellsReset_; }
@@ -209,7 +209,12 @@ Result<std::unique_ptr<Context>> EglPlatform::createContext(const ContextConfig&
     const auto create = [&](bool tellsReset) {
         ContextConfig with = wish;
         with.tellsReset = tellsReset;
-        return egl.createContext(display_->display, display_->noConfigContext ? EGL_NO_CONFIG_KHR : config->handle, share, contextAttributes(with, *display_).data());
+        const std::vector<EGLint> attributes = contextAttributes(with, *display_);
+        EGLContext made = EGL_NO_CONTEXT;
+        if (display_->noConfigContext) made = egl.createContext(display_->display, EGL_NO_CONFIG_KHR, share, attributes.data());
+        if (made != EGL_NO_CONTEXT || (display_->noConfigContext && display_->mesa)) return made;
+        if (display_->noConfigContext) (void)egl.getError(); // NVIDIA: contexts of ES 1 are of a configuration alone
+        return egl.createContext(display_->display, config->handle, share, attributes.data());
     };
     bool tellsReset = wish.tellsReset && display_->tellsResets;
     EGLContext handle = create(tellsReset);
@@ -248,8 +253,10 @@ Result<void> EglPlatform::makeCurrent(Context* context, Surface* draw, Surface* 
     EGLSurface none = wanted ? wanted->dummy() : EGL_NO_SURFACE;
     EGLSurface drawHandle = draw && wanted ? static_cast<EglSurface*>(draw)->handle() : none;
     EGLSurface readHandle = read && wanted ? static_cast<EglSurface*>(read)->handle() : drawHandle;
-    if (egl.makeCurrent(display_->display, drawHandle, readHandle, wanted ? wanted->handle() : EGL_NO_CONTEXT))
+    if (egl.makeCurrent(display_->display, drawHandle, readHandle, wanted ? wanted->handle() : EGL_NO_CONTEXT)) {
+        if (wanted) display_->left.destroy(egl, display_->display);
         return {};
+    }
     return Error{"EGL can't make the context current: " + takeEglError(egl) +
                  "; check that context and surfaces were made for the same kind of surface"};
 }

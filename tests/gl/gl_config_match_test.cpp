@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "nodes/gl/dynamic_library.hpp"
+#include "nodes/gl/egl_display.hpp"
 #include "nodes/gl/gl_info.hpp"
 
 namespace mural::gl {
@@ -129,6 +130,40 @@ TEST(DynamicLibrary, takesTheFirstThatIsThere) {
     int (*found)(const char*) = nullptr;
     EXPECT_TRUE(library->load(found, "puts"));
     EXPECT_FALSE(library->load(found, "mural_not_there"));
+}
+
+std::vector<std::pair<char, void*>>& destroyed() {
+    static std::vector<std::pair<char, void*>> all;
+    return all;
+}
+
+EGLBoolean destroySurface(EGLDisplay, EGLSurface surface) {
+    destroyed().emplace_back('s', surface);
+    return EGL_TRUE;
+}
+
+EGLBoolean destroyContext(EGLDisplay, EGLContext context) {
+    destroyed().emplace_back('c', context);
+    return EGL_TRUE;
+}
+
+// A driver looks at them when the next ones become current.
+TEST(EglLeftOvers, areThereUntilToldAndGoOnce) {
+    int one = 0, other = 0;
+    {
+        EglDisplayState state;
+        state.egl.destroySurface = destroySurface;
+        state.egl.destroyContext = destroyContext;
+        state.left.addSurface(&one);
+        state.left.addContext(&other);
+        EXPECT_TRUE(destroyed().empty());
+        state.left.destroy(state.egl, state.display);
+        EXPECT_EQ(destroyed(), (std::vector<std::pair<char, void*>>{{'c', &other}, {'s', &one}}));
+        state.left.destroy(state.egl, state.display);
+        EXPECT_EQ(destroyed().size(), 2u);
+        state.left.addSurface(&other);
+    }
+    EXPECT_EQ(destroyed().size(), 3u) << "none is left when the display goes";
 }
 
 TEST(GlVersion, isReadFromEveryForm) {
