@@ -41,8 +41,9 @@ struct EglFunctions {
 };
 
 // Surfaces and contexts that nobody needs any more, until the next ones are current: NVIDIA's driver (580.159) looks
-// at what it knew of those before them then, and where they were destroyed meanwhile it ended the process (half of all
-// nodes that started; seen in its memory: what it looked at was another one's by then).
+// at what it knew of those before them then, and where they were released and destroyed meanwhile it ended the process (half
+// of all nodes that started; seen in its memory: what it looked at was another one's by then). For the same reason nothing is
+// released there before others become current.
 class EglLeftOvers {
 public:
     void addSurface(EGLSurface surface);

@@ -125,6 +125,12 @@ std::vector<EGLint> contextAttributes(const ContextConfig& config, const EglDisp
 class EglPlatform final : public Platform {
 public:
     explicit EglPlatform(SharedDisplay display) : display_(std::move(display)) {}
+    EglPlatform(const EglPlatform&) = delete;
+    EglPlatform& operator=(const EglPlatform&) = delete;
+    ~EglPlatform() override {
+        if (display_->mesa) return; // released already
+        display_->egl.makeCurrent(display_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    }
 
     Result<std::unique_ptr<Surface>> createSurface(const SurfaceConfig& wish) override;
     Result<std::unique_ptr<Context>> createContext(const ContextConfig& wish, Context* shareWith) override;
@@ -244,6 +250,10 @@ Result<void> EglPlatform::makeCurrent(Context* context, Surface* draw, Surface* 
     if (egl.getCurrentContext() != EGL_NO_CONTEXT) {
         if (wanted && draw && read && draw != read) finishDrawing(*this);
         else if (display_->flushControl && heldBack == HeldBack::Flushed) flushDrawing(*this);
+    }
+    if (!wanted && !display_->mesa) { // stays current until others are (EglLeftOvers), and none of the caller's draws wait
+        if (egl.getCurrentContext() != EGL_NO_CONTEXT) flushDrawing(*this);
+        return {};
     }
     // Release acts on the API that is bound, so it must still be the current context's.
     if (wanted) {
