@@ -1,7 +1,11 @@
 // Memory that is given back stays with the process, for those that hold uploads and pictures for a frame or a scene.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
 #include <malloc.h>
+#include <sys/mman.h>
 
 namespace mural {
 
@@ -13,6 +17,19 @@ constexpr int kLargestKeptBlockBytes = 32 << 20; // the most that glibc takes
 inline void keepFreedMemory() {
     mallopt(M_MMAP_THRESHOLD, kLargestKeptBlockBytes);
     mallopt(M_TRIM_THRESHOLD, kKeptBytes);
+}
+
+// So much is with the calling thread's malloc from now on, as if it had been used and given back: the first who need it need not wait for
+// its pages. In huge ones where the system has them; below kLargestKeptBlockBytes, and behind keepFreedMemory(), else without effect.
+inline void haveKeptMemory(size_t sizeBytes) {
+    constexpr uintptr_t kPageBytes = 4096, kHugeBytes = uintptr_t{2} << 20;
+    void* const block = std::malloc(sizeBytes);
+    if (!block) return;
+    const auto from = reinterpret_cast<uintptr_t>(block);
+    const uintptr_t firstHuge = (from + kHugeBytes - 1) / kHugeBytes * kHugeBytes, behindHuge = (from + sizeBytes) / kHugeBytes * kHugeBytes;
+    if (firstHuge < behindHuge) madvise(reinterpret_cast<void*>(firstHuge), behindHuge - firstHuge, MADV_HUGEPAGE); // no matter if it can't
+    for (size_t at = 0; at < sizeBytes; at += kPageBytes) static_cast<volatile std::byte*>(block)[at] = std::byte{0};
+    std::free(block);
 }
 
 } // namespace mural

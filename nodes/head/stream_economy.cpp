@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/clock.hpp"
+#include "common/kept_memory.hpp"
 #include "streamcodec/wire.hpp"
 
 namespace mural {
@@ -14,6 +15,8 @@ constexpr uint64_t kFullStagedBytes = uint64_t{64} * 1024; // as much as goes at
 // Beside which reading a thread's clock, a system call, costs nothing: packets, which are mostly as they were, and new bytes.
 constexpr size_t kLongPacketBytes = size_t{256} << 10, kLongBytes = size_t{32} << 10;
 constexpr uint64_t kMostHeldBytes = uint64_t{256} << 20;
+// What programs load first is copied a few times on its way: a fault for each new page (3 us) took half as long as all else.
+constexpr size_t kFirstBytes = size_t{16} << 20;
 constexpr uint64_t kFullRawBytes = uint64_t{4} << 20;      // so much a node unpacks in a millisecond or two
 
 } // namespace
@@ -21,7 +24,9 @@ constexpr uint64_t kFullRawBytes = uint64_t{4} << 20;      // so much a node unp
 Result<std::unique_ptr<StreamEconomy>> StreamEconomy::open(const economy::Limits& limits) {
     auto coder = freshCoder(limits);
     if (!coder) return coder.error();
-    return std::unique_ptr<StreamEconomy>(new StreamEconomy(limits, std::move(*coder)));
+    std::unique_ptr<StreamEconomy> economy(new StreamEconomy(limits, std::move(*coder)));
+    haveKeptMemory(kFirstBytes);
+    return economy;
 }
 
 StreamEconomy::StreamEconomy(const economy::Limits& limits, std::unique_ptr<Coder> coder) : limits_(limits), holder_(std::min(kMostHeldBytes, limits.storeBytes / 4), [this](uint32_t stream, std::span<const std::byte> payload, const Walked* walked) { pack(stream, payload, walked); }), coder_(std::move(coder)) {}
