@@ -87,10 +87,7 @@ std::string whatDiffers(const SurfaceConfig& there, const SurfaceConfig& wish) {
     return text;
 }
 
-bool sameBits(const SurfaceConfig& one, const SurfaceConfig& other) {
-    return std::all_of(kAttributes.begin(), kAttributes.end(),
-                       [&](const Attribute& a) { return a.value(one) == a.value(other); });
-}
+bool sameBits(const SurfaceConfig& one, const SurfaceConfig& other) { return whatDiffers(one, other).empty(); }
 
 Result<void> checkSize(const std::string& backend, const SurfaceConfig& wish, int maxSize) {
     if (wish.width >= 1 && wish.height >= 1 && wish.width <= maxSize && wish.height <= maxSize) return {};

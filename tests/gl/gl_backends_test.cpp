@@ -196,7 +196,9 @@ TEST_P(Backends, bitsThatAreNotThereAreTheNearest) {
     gl.getIntegerv(GL_DEPTH_BITS, &bits);
     EXPECT_EQ(bits, 24);
     clearRed(gl, 200);
-    EXPECT_EQ(there.samples == 0 ? redOf(gl) : 200, 200);
+    if (there.samples == 0) { // else reading would need a resolve
+        EXPECT_EQ(redOf(gl), 200);
+    }
 }
 
 // See README.md of nodes/gl: the table that it prints is kept by this test.
