@@ -73,7 +73,7 @@ struct EglDisplayState {
     bool flushControl = false; // contexts can be asked not to flush when another one becomes current; Mesa's alone are
     // Measured when the platform is opened.
     int maxSurfaceSize = kMaxSurfaceSize;
-    bool doubleBuffered = false;
+    ColorBuffers colorBuffers = ColorBuffers::OneNamedFront;
     bool tellsResets = true; // until a driver has refused
     EglLeftOvers left;
 

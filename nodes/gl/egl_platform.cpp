@@ -28,7 +28,7 @@ public:
     ~EglSurface() override { display_->left.addSurface(handle_); }
 
     [[nodiscard]] const SurfaceConfig& config() const override { return config_; }
-    [[nodiscard]] bool singleBuffered() const override { return !display_->doubleBuffered; }
+    [[nodiscard]] ColorBuffers colorBuffers() const override { return display_->colorBuffers; }
     [[nodiscard]] EGLSurface handle() const { return handle_; }
 
 private:
@@ -299,7 +299,7 @@ Result<void> EglPlatform::measure() {
     auto info = measureGl(*this, true);
     if (!info) return info.error();
     display_->maxSurfaceSize = std::min(kMaxSurfaceSize, info->maxSurfaceSize);
-    display_->doubleBuffered = info->doubleBuffered;
+    display_->colorBuffers = info->colorBuffers;
     renderer_ = info->renderer;
     version_ = info->version;
     return {};

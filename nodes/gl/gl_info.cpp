@@ -84,9 +84,11 @@ Result<GlInfo> readGlInfo(Platform& platform) {
     gl.getIntegerv(GL_MAX_VIEWPORT_DIMS, dimensions);
     info.maxSurfaceSize = std::min(dimensions[0], dimensions[1]);
     if (!info.es) {
-        GLint doubled = 0;
+        GLint doubled = 0, drawn = GL_FRONT;
         gl.getIntegerv(GL_DOUBLEBUFFER, &doubled);
-        info.doubleBuffered = doubled != 0;
+        gl.getIntegerv(GL_DRAW_BUFFER, &drawn);
+        const bool back = drawn == GL_BACK || drawn == GL_BACK_LEFT;
+        info.colorBuffers = doubled ? ColorBuffers::FrontAndBack : back ? ColorBuffers::OneNamedBack : ColorBuffers::OneNamedFront;
     }
     // A question that this version does not know must not stay behind; a lost context reports for ever.
     for (int i = 0; i < 16 && gl.getError() != GL_NO_ERROR; i++) {}

@@ -14,7 +14,7 @@ struct GlInfo {
     bool es = false;
     std::vector<std::string> extensions; // sorted
     int maxSurfaceSize = 0;              // the smaller side of GL_MAX_VIEWPORT_DIMS
-    bool doubleBuffered = false;         // desktop only; of the framebuffer that is current
+    ColorBuffers colorBuffers = ColorBuffers::OneNamedFront; // desktop only; of the surface that is current, in a context that has just been made
 };
 
 // A context of the platform must be current. Fails when the driver hands out no functions.

@@ -39,6 +39,10 @@ struct ContextConfig {
     SurfaceConfig surface; // contexts are made for a kind of surface
 };
 
+// Those of a framebuffer, and by which name GL knows it where it is one: pbuffers of EGL have one, which Mesa calls front and NVIDIA
+// back, each refusing or ignoring the other's (README.md).
+enum class ColorBuffers { FrontAndBack, OneNamedFront, OneNamedBack };
+
 // Off-screen memory with the colour, depth and stencil buffers of a window.
 class Surface {
 public:
@@ -47,9 +51,9 @@ public:
     [[nodiscard]] virtual const SurfaceConfig& config() const = 0;
     [[nodiscard]] int width() const { return config().width; }
     [[nodiscard]] int height() const { return config().height; }
-    // True: only one colour buffer, named GL_FRONT (EGL pbuffers of Mesa, OSMesa). The replay then
-    // maps GL_BACK* and GL_FRONT* to it, and takes a second surface for the front where it is used.
-    [[nodiscard]] virtual bool singleBuffered() const = 0;
+    [[nodiscard]] virtual ColorBuffers colorBuffers() const = 0;
+    // True: the replay maps GL_BACK* and GL_FRONT* to the one there is, and takes a second surface for the front where it is used.
+    [[nodiscard]] bool singleBuffered() const { return colorBuffers() != ColorBuffers::FrontAndBack; }
     // True: the buffer has an alpha channel that was not asked for (OSMesa has no other 8-bit format). It
     // is 1 everywhere when the surface is made; the picture is exact as long as it stays so: the replay
     // takes alpha out of glColorMask while this framebuffer is drawn to.

@@ -61,7 +61,6 @@ Result<GlProbe> probe(Platform& platform, Api api, bool core) {
     result.es = info->es;
     result.extensions = std::move(info->extensions);
     result.maxSurfaceSize = std::min(info->maxSurfaceSize, kMaxSurfaceSize);
-    result.singleBuffered = (*surface)->singleBuffered();
     return result;
 }
 

@@ -16,7 +16,6 @@ struct GlProbe {
     bool es = false;
     std::vector<std::string> extensions; // sorted
     int maxSurfaceSize = 0;
-    bool singleBuffered = false;
 
     [[nodiscard]] bool has(const std::string& extension) const;
 };

@@ -25,7 +25,7 @@ public:
     ~GlxSurface() override { display_->glx.destroyPbuffer(display_->display, handle_); }
 
     [[nodiscard]] const SurfaceConfig& config() const override { return config_; }
-    [[nodiscard]] bool singleBuffered() const override { return false; }
+    [[nodiscard]] ColorBuffers colorBuffers() const override { return ColorBuffers::FrontAndBack; }
     [[nodiscard]] GLXPbuffer handle() const { return handle_; }
 
 private:

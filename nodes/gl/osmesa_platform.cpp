@@ -97,7 +97,7 @@ public:
     OsmesaSurface& operator=(const OsmesaSurface&) = delete;
     ~OsmesaSurface() override;
 
-    [[nodiscard]] bool singleBuffered() const override { return true; }
+    [[nodiscard]] ColorBuffers colorBuffers() const override { return ColorBuffers::OneNamedFront; }
     [[nodiscard]] bool hiddenAlpha() const override { return config_.red == 8 && config_.alpha == 0; }
     [[nodiscard]] const SurfaceConfig& config() const override { return config_; }
 

@@ -734,6 +734,7 @@ private:
     [[nodiscard]] GLenum bufferOfEye(GLenum buffer, const Window* w) const;
     [[nodiscard]] GLenum readBufferOfEye(GLenum buffer, const Window* w) const;
     void drawBuffers(bool ofWindow, GLsizei n, const Data& bufs, const std::function<void(const GLenum*)>& call);
+    [[nodiscard]] static GLenum onlyBuffer(const gl::Surface& surface);
     [[nodiscard]] GLenum windowBuffer(GLenum buffer, const Window* w) const;
     void bindFramebuffer(GLenum target, GLuint framebuffer, bool ext);
     // replay_pixel_store.cpp

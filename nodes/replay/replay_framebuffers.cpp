@@ -51,6 +51,8 @@ GLenum Replay::readBufferOfEye(GLenum buffer, const Window* w) const {
     return buffer == GL_FRONT_LEFT || buffer == GL_FRONT_RIGHT ? GL_FRONT_LEFT : GL_BACK_LEFT;
 }
 
+// As glDrawBuffers takes it, too, which knows GL_BACK alone of the names that may be several.
+GLenum Replay::onlyBuffer(const gl::Surface& surface) { return surface.colorBuffers() == gl::ColorBuffers::OneNamedBack ? GL_BACK : GL_FRONT_LEFT; }
 // The one colour buffer of a surface, whichever of the window's it stands for (replay_front.cpp).
 GLenum Replay::windowBuffer(GLenum buffer, const Window* w) const {
     if (!w || !w->surface || !w->surface->singleBuffered() || c_->api != wire::Api::Desktop) return buffer;
@@ -60,7 +62,7 @@ GLenum Replay::windowBuffer(GLenum buffer, const Window* w) const {
     case GL_FRONT:
     case GL_FRONT_LEFT:
     case GL_LEFT:
-    case GL_FRONT_AND_BACK: return GL_FRONT_LEFT;
+    case GL_FRONT_AND_BACK: return onlyBuffer(*w->surface);
     default: return buffer;
     }
 }

@@ -97,8 +97,8 @@ void Replay::depthForReading() {
 void Replay::copySurface(gl::Surface& from, gl::Surface& to, GLbitfield planes) {
     if (platform_->makeCurrent(bound_->context.get(), &to, &from)) {
         gl.glBindFramebuffer(GL_FRAMEBUFFER, 0);
-        gl.glReadBuffer(GL_FRONT_LEFT);
-        gl.glDrawBuffer(GL_FRONT_LEFT);
+        gl.glReadBuffer(onlyBuffer(from));
+        gl.glDrawBuffer(onlyBuffer(to));
         gl.glDisable(GL_SCISSOR_TEST);
         const bool srgb = gl.glIsEnabled(GL_FRAMEBUFFER_SRGB);
         if (srgb) gl.glDisable(GL_FRAMEBUFFER_SRGB);

@@ -137,8 +137,11 @@ void programParameters(GLuint, GLenum, GLuint, GLsizei n, const GLfloat* values)
 void uniformMatrix4fv(GLint, GLsizei n, GLboolean, const GLfloat* values) { touch(values, count(n, 64)); }
 void uniformMatrix4dv(GLint, GLsizei n, GLboolean, const GLdouble* values) { touch(values, count(n, 128)); }
 template <size_t bytes> void readFixed(const void* values) { touch(values, bytes); }
+void chooseBuffer(GLenum name) {
+    if (state.options.namedBuffer) state.options.namedBuffer(name);
+}
 void drawBuffers(GLsizei n, const GLenum* buffers) {
-    if (n > 0) touch(buffers, count(n, 4));
+    for (GLsizei i = 0; i < n; ++i) chooseBuffer(buffers[i]);
 }
 void invalidate(GLenum, GLsizei n, const GLenum* attachments) { touch(attachments, count(n, 4)); }
 void texParameterfv(GLenum, GLenum name, const GLfloat* values) { touch(values, name == GL_TEXTURE_BORDER_COLOR ? 16 : 4); }
@@ -169,7 +172,7 @@ const std::unordered_map<std::string, gl::Proc>& special() {
         {"glCreateShaderProgramv", proc<createShaderProgram>()}, {"glUniform4fv", proc<uniform4fv>()}, {"glUniformMatrix4fv", proc<uniformMatrix4fv>()},
         {"glUniformMatrix4dv", proc<uniformMatrix4dv>()}, {"glLoadMatrixd", proc<readFixed<128>>()}, {"glMultMatrixf", proc<readFixed<64>>()},
         {"glWindowPos2fv", proc<readFixed<8>>()}, {"glWindowPos3dv", proc<readFixed<24>>()}, {"glWindowPos4dvMESA", proc<readFixed<32>>()},
-        {"glVertex3fv", proc<readFixed<12>>()}, {"glDrawBuffers", proc<drawBuffers>()}, {"glInvalidateFramebuffer", proc<invalidate>()},
+        {"glVertex3fv", proc<readFixed<12>>()}, {"glDrawBuffers", proc<drawBuffers>()}, {"glDrawBuffer", proc<chooseBuffer>()}, {"glReadBuffer", proc<chooseBuffer>()}, {"glInvalidateFramebuffer", proc<invalidate>()},
         {"glTexParameterfv", proc<texParameterfv>()}, {"glLightfv", proc<lightfv>()}, {"glFenceSync", proc<makeFence>()},
         {"glGenLists", proc<makeLists>()}, {"glCreateShader", proc<makeOne>()}, {"glCreateProgram", proc<makeOne>()},
         {"glNamedProgramLocalParameters4fvEXT", proc<programParameters>()}, {"glCreateTextures", proc<makeNamesOf>()}, {"glCreateQueries", proc<makeNamesOf>()}};
@@ -178,13 +181,13 @@ const std::unordered_map<std::string, gl::Proc>& special() {
 
 class FakeSurface : public gl::Surface {
 public:
-    FakeSurface(const gl::SurfaceConfig& config, bool single) : config_(config), single_(single) {}
+    FakeSurface(const gl::SurfaceConfig& config, gl::ColorBuffers buffers) : config_(config), buffers_(buffers) {}
     [[nodiscard]] const gl::SurfaceConfig& config() const override { return config_; }
-    [[nodiscard]] bool singleBuffered() const override { return single_; }
+    [[nodiscard]] gl::ColorBuffers colorBuffers() const override { return buffers_; }
 
 private:
     gl::SurfaceConfig config_;
-    bool single_;
+    gl::ColorBuffers buffers_;
 };
 
 class FakeContext : public gl::Context {
@@ -205,7 +208,7 @@ public:
     }
     Result<std::unique_ptr<gl::Surface>> createSurface(const gl::SurfaceConfig& c) override {
         if (options_.surfacesFail || c.width > state.maxSurface || c.height > state.maxSurface) return Error{"too large"};
-        return std::unique_ptr<gl::Surface>(new FakeSurface(c, options_.singleBuffered));
+        return std::unique_ptr<gl::Surface>(new FakeSurface(c, options_.colorBuffers));
     }
     Result<std::unique_ptr<gl::Context>> createContext(const gl::ContextConfig& c, gl::Context* share) override {
         if (c.major > 9) return Error{"no such version"};

@@ -12,12 +12,13 @@
 namespace mural::fuzz {
 
 struct FakeGlOptions {
-    bool singleBuffered = false;
+    gl::ColorBuffers colorBuffers = gl::ColorBuffers::FrontAndBack;
     bool surfacesFail = false;
     int largestTexture = 0;    // in pixels; beyond, there is no memory. 0: any
     bool talks = false;        // each glDrawArrays sends a message of performance to the debug callback
     unsigned resetStatus = 0;  // what contexts that tell resets say
     std::function<void(bool scissored, const std::array<int, 4>& box)> drew = {}; // each glClear and glRectf; may be empty
+    std::function<void(unsigned name)> namedBuffer = {}; // each name that glDrawBuffer, glDrawBuffers and glReadBuffer are given; may be empty
 };
 // One at a time per process.
 std::unique_ptr<gl::Platform> makeFakePlatform(const FakeGlOptions& options);

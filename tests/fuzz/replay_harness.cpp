@@ -42,7 +42,7 @@ ReplayOutputs outputs() {
 ReplayCounts replayBytes(std::span<const std::byte> input) {
     if (input.empty()) return {};
     const auto options = static_cast<uint8_t>(input[0]);
-    Replay replay(makeFakePlatform({.singleBuffered = (options & kSingleBuffered) != 0, .surfacesFail = (options & kSurfacesFail) != 0}),
+    Replay replay(makeFakePlatform({.colorBuffers = (options & kSingleBuffered) != 0 ? gl::ColorBuffers::OneNamedFront : gl::ColorBuffers::FrontAndBack, .surfacesFail = (options & kSurfacesFail) != 0}),
                   configOf(options), outputs());
     input = input.subspan(1);
     while (input.size() > sizeof(wire::PacketHeader)) {

@@ -99,6 +99,28 @@ TEST_F(ReplayTest, AFrameWithoutAContextIsBlack) {
     EXPECT_EQ(pictureBytes_, 64 * 32 * 4);
 }
 
+// What GL would refuse is never asked of it: an error would reach the program, and GL_NONE would stay.
+TEST_F(ReplayTest, OnlyTheNameThatASurfaceHasIsGivenToGl) {
+    for (const auto& [buffers, only] : {std::pair{gl::ColorBuffers::OneNamedFront, GL_FRONT_LEFT}, {gl::ColorBuffers::OneNamedBack, GL_BACK}}) {
+        std::vector<GLenum> named;
+        fuzz::FakeGlOptions options;
+        options.colorBuffers = buffers;
+        options.namedBuffer = [&](unsigned name) { named.push_back(name); };
+        start({}, options);
+        begin();
+        for (const GLenum name : {GL_NONE, GL_BACK, GL_FRONT, GL_FRONT_AND_BACK, GL_LEFT, GL_BACK_LEFT, GL_FRONT_LEFT}) {
+            encode_glDrawBuffer(t_, name);
+            encode_glReadBuffer(t_, name);
+            encode_glDrawBuffers(t_, 1, DataArg::of(&name, sizeof name));
+        }
+        records::swap(t_, 1, 7);
+        EXPECT_TRUE(send());
+        EXPECT_GE(std::ranges::count(named, only), 18);
+        EXPECT_GE(std::ranges::count(named, GL_NONE), 3);
+        EXPECT_EQ(std::ranges::count(named, only) + std::ranges::count(named, GL_NONE), std::ssize(named));
+    }
+}
+
 TEST_F(ReplayTest, BrokenHeadersEndThePacket) {
     begin();
     EXPECT_FALSE(sendWords({head(op::glEnd, 0)}));
