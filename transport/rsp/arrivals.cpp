@@ -54,15 +54,15 @@ void Arrivals::wakeAt(int64_t ns) {
 std::span<const int> Arrivals::wait(int64_t timeoutNs) {
     const int64_t ns = std::max<int64_t>(0, timeoutNs);
     const timespec timeout{static_cast<time_t>(ns / kNsPerS), static_cast<long>(ns % kNsPerS)};
+    found_ = 0;
     if (ppoll(all_.data(), count_, &timeout, nullptr) <= 0) return {};
     if (all_[0].revents != 0) { // it was time, once
         uint64_t times = 0;
         [[maybe_unused]] const auto fetched = read(timer_.get(), &times, sizeof times);
     }
-    size_t sockets = 0;
     for (const pollfd& one : std::span(all_).subspan(1, count_ - 1))
-        if (one.revents != 0) ready_[sockets++] = one.fd;
-    return std::span(ready_).first(sockets);
+        if (one.revents != 0) ready_[found_++] = one.fd;
+    return found();
 }
 
 void Arrivals::setWatched(bool on) {

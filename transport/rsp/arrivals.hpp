@@ -28,6 +28,8 @@ public:
     // The sockets at which something is, once there is something or it is time; none after the timeout. What is at a
     // socket stays there for others until it is fetched.
     std::span<const int> wait(int64_t timeoutNs);
+    // What the last wait found, without looking.
+    [[nodiscard]] std::span<const int> found() const { return std::span(ready_).first(found_); }
 
     // Readable when wait() would return at once, and this has not been turned off: for the group's thread, which need
     // not wake while another one waits.
@@ -45,6 +47,7 @@ private:
     std::array<pollfd, 1 + kMostSockets> all_{}; // the timer, then the sockets
     size_t count_ = 0;
     std::array<int, kMostSockets> ready_{};
+    size_t found_ = 0; // of ready_
 };
 
 } // namespace mural::rsp

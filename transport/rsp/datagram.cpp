@@ -73,9 +73,9 @@ std::optional<Head> readHead(std::span<const std::byte> d) {
         loadLittle<uint64_t>(d.data() + 8)};
 }
 
-bool isUrgent(std::span<const std::byte> d) {
+bool isUrgent(std::span<const std::byte> d, bool waitsForAnswers) {
     const auto type = static_cast<Type>(byteAt(d, 0) & 0xf);
-    return type == Type::Feedback || type == Type::Probe || (byteAt(d, 1) & flag::kPoll) != 0;
+    return (type == Type::Feedback && waitsForAnswers) || type == Type::Probe || (byteAt(d, 1) & flag::kPoll) != 0;
 }
 
 std::optional<StreamDatagram> readStream(std::span<const std::byte> d) {

@@ -99,8 +99,8 @@ void writeFeedback(const Feedback& f, std::span<std::byte> into);
 
 // Nothing for what is too short, of another version, or out of bounds.
 [[nodiscard]] std::optional<Head> readHead(std::span<const std::byte> datagram);
-// Of one that has a head: somebody waits for what comes of it.
-[[nodiscard]] bool isUrgent(std::span<const std::byte> datagram);
+// Of one that has a head: somebody waits for what comes of it; for what members answer, only who has sent something.
+[[nodiscard]] bool isUrgent(std::span<const std::byte> datagram, bool waitsForAnswers);
 [[nodiscard]] std::optional<StreamDatagram> readStream(std::span<const std::byte> datagram);
 [[nodiscard]] std::optional<Feedback> readFeedback(std::span<const std::byte> datagram);
 

@@ -117,7 +117,18 @@ void DatagramOpener::addMember(MemberId id) {
     members_.emplace(id, std::move(member));
 }
 
-void DatagramOpener::removeMember(MemberId id) { members_.erase(id); }
+void DatagramOpener::removeMember(MemberId id) {
+    latest_ = nullptr;
+    members_.erase(id);
+}
+
+DatagramOpener::Member* DatagramOpener::member(MemberId id) {
+    if (latest_ && latestId_ == id) return latest_;
+    const auto found = members_.find(id);
+    latestId_ = id;
+    latest_ = found == members_.end() ? nullptr : found->second.get();
+    return latest_;
+}
 
 std::span<const std::byte> DatagramOpener::open(std::span<std::byte> datagram) {
     const size_t tag = tagBytes(keys_.seal);
@@ -125,12 +136,11 @@ std::span<const std::byte> DatagramOpener::open(std::span<std::byte> datagram) {
     const auto head = readHead(datagram);
     if (!head) return ++refused_.version, std::span<const std::byte>{};
     if (head->session != static_cast<uint32_t>(keys_.session)) return ++refused_.session, std::span<const std::byte>{};
-    const auto found = members_.find(head->from);
-    if (found == members_.end()) return ++refused_.stranger, std::span<const std::byte>{};
-    Member& m = *found->second;
-    if (!m.window.fresh(head->counter)) return ++refused_.replayed, std::span<const std::byte>{};
-    if (!m.cipher.open(datagram)) return ++refused_.forged, std::span<const std::byte>{};
-    m.window.came(head->counter);
+    Member* const m = member(head->from);
+    if (!m) return ++refused_.stranger, std::span<const std::byte>{};
+    if (!m->window.fresh(head->counter)) return ++refused_.replayed, std::span<const std::byte>{};
+    if (!m->cipher.open(datagram)) return ++refused_.forged, std::span<const std::byte>{};
+    m->window.came(head->counter);
     return datagram.first(datagram.size() - tag);
 }
 

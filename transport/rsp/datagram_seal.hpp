@@ -51,6 +51,7 @@ private:
 class ReplayWindow {
 public:
     [[nodiscard]] bool fresh(uint64_t counter) const;
+    // One that is fresh.
     void came(uint64_t counter);
 
 private:
@@ -84,8 +85,12 @@ private:
         DatagramCipher cipher;
         ReplayWindow window;
     };
+    Member* member(MemberId id);
+
     SessionKeys keys_;
     std::map<MemberId, std::unique_ptr<Member>> members_;
+    MemberId latestId_ = 0; // most datagrams are followed by another one of the same member
+    Member* latest_ = nullptr;
     RefusedDatagrams refused_;
 };
 

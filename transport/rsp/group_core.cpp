@@ -77,6 +77,16 @@ void GroupCore::touch(MemberId from) {
     if (std::ranges::find(touched_, from) == touched_.end()) touched_.push_back(from);
 }
 
+Receiver* GroupCore::ofMember(MemberId from) {
+    if (heard_.receiver && heard_.from == from) {
+        touch(from);
+        return heard_.receiver;
+    }
+    Receiver* const r = members_.contains(from) ? receiver(from) : nullptr;
+    heard_ = {from, r};
+    return r;
+}
+
 void GroupCore::socketDropped(uint32_t count) {
     if (count == dropped_) return;
     dropped_ = count;
@@ -126,7 +136,7 @@ void GroupCore::inputDatagram(std::span<const std::byte> datagram, int64_t nowNs
     } else if (head->type == Type::Feedback) {
         if (!sender_) return;
         if (const auto f = readFeedback(datagram)) sender_->input(*f, nowNs);
-    } else if (Receiver* r = receiver(head->from); r && members_.contains(head->from)) {
+    } else if (Receiver* r = ofMember(head->from)) {
         if (const auto d = readStream(datagram)) r->input(*d, nowNs);
     }
 }
@@ -167,6 +177,7 @@ int64_t GroupCore::tickReceivers(int64_t nowNs) {
 }
 
 void GroupCore::membersChanged() {
+    heard_ = {};
     anyTunnel_ = std::ranges::any_of(members_, [](const auto& m) { return !m.second.multicast; });
 }
 

@@ -109,7 +109,10 @@ public:
     // can still be read.
     // What is read there may be worth telling: the next tick looks.
     [[nodiscard]] Receiver* receiver(MemberId from);
-    void forget(MemberId from) { receivers_.erase(from); }
+    void forget(MemberId from) {
+        heard_ = {};
+        receivers_.erase(from);
+    }
     [[nodiscard]] const std::map<MemberId, MemberInfo>& members() const { return members_; }
     [[nodiscard]] bool live() const { return live_; }
     [[nodiscard]] bool over() const { return over_; } // the host is gone, or has refused us
@@ -157,6 +160,7 @@ private:
     void probeUnreached(int64_t nowNs);
     void tunnel(MemberId to, std::span<const std::byte> datagram);
     void touch(MemberId from);
+    Receiver* ofMember(MemberId from);
     int64_t tickReceivers(int64_t nowNs);
     void membersChanged();
 
@@ -169,6 +173,11 @@ private:
     StreamShape shape_;
     std::unique_ptr<Sender> sender_;
     std::map<MemberId, std::unique_ptr<Receiver>> receivers_;
+    // Whom the last datagram of a stream was of, a member: most are followed by another one of it.
+    struct {
+        MemberId from = 0;
+        Receiver* receiver = nullptr; // nullptr: to be looked up
+    } heard_;
     int64_t receiversDueNs_ = INT64_MIN; // the first of them that something is due at
     std::vector<MemberId> touched_;      // receivers that something has come for since the last tick
     std::map<MemberId, MemberInfo> members_; // without this one

@@ -116,6 +116,7 @@ private:
     bool takesOver_ = false;    // takeOverTimer_ runs
     int64_t takeOverNs_ = kNsPerMs;
     ReceiveModeration moderation_;
+    unsigned looksInARow_ = 0; // without asking which sockets have something
     std::optional<BatchOutbox> outbox_;
     std::optional<DatagramOpener> opener_;
     std::map<MemberId, std::shared_ptr<ControlLink>> links_;

@@ -12,7 +12,10 @@ namespace asio = boost::asio;
 
 namespace {
 constexpr int64_t kTakeOverNs = kNsPerMs;      // after which the group's thread does what no leader has come back for
-constexpr int64_t kMostTakeOverNs = 2 * kNsPerMs; // so long at most, once, where leaders have always come back
+// So long at most where leaders have always come back: of a stream that is on its way, whose losses are to be mended, and else.
+constexpr int64_t kMostTakeOverNs = 2 * kNsPerMs;
+constexpr int64_t kMostTakeOverOfReadersNs = 8 * kNsPerMs;
+constexpr unsigned kMostLooksInARow = 4;
 constexpr int64_t kMostPauseNs = 2 * kNsPerMs; // of a writer between two batches
 } // namespace
 
@@ -32,9 +35,11 @@ bool Group::State::wait(std::unique_lock<std::mutex>& lock, Waits& what, Deadlin
         leaderUntilNs_ = std::min(untilNs, timerNs_);
         const int64_t timeoutNs = leaderUntilNs_ - nowNs - rest;
         leaderSleeps_ = true;
+        // Where something was left behind nobody need ask for it; now and then all the same, for the other socket.
+        const bool knows = moderation_.mayBeMore() && ++looksInARow_ % kMostLooksInARow != 0;
         lock.unlock();
         if (rest > 0) sleepUntilNs(nowNs + rest);
-        const auto sockets = arrivals_->wait(timeoutNs);
+        const auto sockets = knows ? arrivals_->found() : arrivals_->wait(timeoutNs);
         lock.lock();
         leaderSleeps_ = false;
         nowNs = quickNowNs();
@@ -74,7 +79,9 @@ void Group::State::takeOverAfter(int64_t ns) {
         const std::lock_guard lock(mutex);
         takesOver_ = false;
         const bool cameBack = leaderWaitsFor_ || quickNowNs() < ledUntilNs_ + kTakeOverNs;
-        takeOverNs_ = cameBack ? std::min(2 * takeOverNs_, kMostTakeOverNs) : kTakeOverNs;
+        const Sender* own = core->sender();
+        const int64_t mostNs = own && !own->allArrived() ? kMostTakeOverNs : kMostTakeOverOfReadersNs;
+        takeOverNs_ = cameBack ? std::min(2 * takeOverNs_, mostNs) : kTakeOverNs;
         if (leaderWaitsFor_) return;
         if (cameBack) return takeOverAfter(takeOverNs_);
         letWatch();
@@ -116,12 +123,14 @@ void Group::State::receive(std::span<const int> sockets, int64_t nowNs) {
     if (nowNs >= timerNs_) timerNs_ = INT64_MAX;
     if (nowNs >= toldNs_) toldNs_ = INT64_MAX;
     ReceiveModeration::Look look;
+    const Sender* own = core->sender();
+    const bool waitsForAnswers = own && !own->allArrived();
     const auto take = [&](std::span<std::byte> bytes, const SocketAddress&) {
         if (!opener_) return;
         const auto opened = opener_->open(bytes);
         if (opened.empty()) return;
         ++look.datagrams;
-        look.urgent = look.urgent || isUrgent(opened);
+        look.urgent = look.urgent || isUrgent(opened, waitsForAnswers);
         core->inputDatagram(opened, nowNs);
     };
     for (const int descriptor : sockets) {

@@ -27,6 +27,7 @@ public:
         if (datagrams > 0) foundNs_ = nowNs;
     }
 
+    [[nodiscard]] bool mayBeMore() const { return mayBeMore_; }
     // How long from now on nobody need look; 0: at once.
     [[nodiscard]] int64_t restNs(int64_t nowNs) const {
         if (mayBeMore_) return 0;

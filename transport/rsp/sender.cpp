@@ -22,7 +22,7 @@ uint32_t toUs(int64_t ns) { return static_cast<uint32_t>(ns / 1000); }
 
 Sender::Sender(const SenderSettings& settings, Sequence first)
     : settings_(settings), window_(settings.shape, first), repairs_(settings.shape.windowDatagrams),
-      rate_(settings.rate), next_(first), acknowledged_(first), roundNext_(first) {}
+      rate_(settings.rate), next_(first), acknowledged_(first), flushed_(first), roundNext_(first) {}
 
 Sequence Sender::addMember(MemberId id, int64_t nowNs) {
     window_.flush(); // so that it begins with a group
@@ -51,6 +51,7 @@ void Sender::removeMember(MemberId id) {
 
 void Sender::flush() {
     window_.flush();
+    flushed_ = window_.filled();
     pollNow_ = next_ == window_.filled() && acknowledged_ != next_;
 }
 
@@ -101,7 +102,8 @@ void Sender::sendData(int64_t nowNs, Outbox& out) {
     const SendWindow::Group group = window_.groupOf(next_);
     if (group.base == next_) repairs_.begin(next_);
     const bool groupEnd = group.size != 0 && next_ == group.base + group.size - 1;
-    const bool last = group.size != 0 && next_ + 1 == window_.filled();
+    // Of what was not flushed more is likely to come; if not, the delay of a poll tells.
+    const bool last = next_ + 1 == flushed_ && next_ + 1 == window_.filled();
     sendDatagram(next_, last || next_ + 1 == edge_ ? flag::kPoll : uint8_t{0}, nowNs, out);
     counters_.bytes += window_.payload(next_).size();
     ++counters_.datagrams;

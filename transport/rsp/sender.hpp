@@ -120,6 +120,7 @@ private:
 
     Sequence next_;         // the first that was never sent
     Sequence acknowledged_; // all before it are everywhere
+    Sequence flushed_;      // behind the last flush
     Sequence edge_;         // the least of the members' edges; without members without meaning
     int repairCredit_ = 0;  // repairs that may go before the next datagram
     double needShare_ = 0;  // rows per datagram that groups need lately

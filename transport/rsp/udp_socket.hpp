@@ -47,7 +47,7 @@ public:
     Result<void> send(const SocketAddress& to, std::span<std::byte> datagrams, size_t segmentBytes);
 
     using Handler = std::function<void(std::span<std::byte> datagram, const SocketAddress& from)>;
-    // All that is there now, at most a few hundred; returns whether there may be more.
+    // What is there now, by one system call, at most a few dozen; returns whether there may be more.
     bool receive(const Handler& handler);
 
     // So many datagrams were dropped because nobody fetched them. With ignoreMember, those that it drops count, too.

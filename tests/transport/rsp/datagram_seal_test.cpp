@@ -80,6 +80,20 @@ TEST_P(DatagramSeal, RefusesOtherSessionsMembersAndKeys) {
     EXPECT_EQ(opener.refused().forged, 2u);
 }
 
+TEST_P(DatagramSeal, WhoHasLeftIsAStrangerAtOnce) {
+    DatagramSealer sealer(keys_, 3);
+    DatagramOpener opener(keys_);
+    opener.addMember(3);
+    Bytes d = datagram(1);
+    sealer.seal(d);
+    EXPECT_FALSE(opener.open(d).empty());
+    opener.removeMember(3);
+    d = datagram(2);
+    sealer.seal(d);
+    EXPECT_TRUE(opener.open(d).empty());
+    EXPECT_EQ(opener.refused().stranger, 1u);
+}
+
 class DatagramForgery : public DatagramSeal {};
 
 TEST_P(DatagramForgery, IsRefusedEachTime) {

@@ -116,6 +116,19 @@ TEST(Datagram, FeedbackComesBack) {
     EXPECT_FALSE(readFeedback(bytes)) << "misses what it does not span";
 }
 
+// Members say now and then what they have, asked or not: only who has sent something waits for that.
+TEST(Datagram, AnswersAreUrgentForWhoWaitsForThem) {
+    const Feedback f;
+    Bytes bytes(feedbackBytes(f));
+    writeFeedback(f, bytes);
+    EXPECT_TRUE(isUrgent(bytes, true));
+    EXPECT_FALSE(isUrgent(bytes, false));
+    StreamDatagram d;
+    EXPECT_FALSE(isUrgent(streamBytes(d, 1), true));
+    d.flags = flag::kPoll;
+    EXPECT_TRUE(isUrgent(streamBytes(d, 1), false));
+}
+
 TEST(Datagram, NoBytesHurtTheParsers) {
     std::mt19937 random(3);
     Feedback f;
