@@ -9,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "common/clock.hpp"
 #include "common/result.hpp"
 #include "economy/batch_codec.hpp"
 #include "economy/packer.hpp"
@@ -78,7 +79,8 @@ private:
     std::function<void()> send_;
     bool holds_ = true;
     bool missed_ = false; // what comes out now
-    int64_t sendNs_ = 0;  // CPU time of send_ since add() began
+    int64_t (*nowNs_)() = threadCpuNowNs; // by which the packet in hand is timed
+    int64_t sendNs_ = 0;  // of send_ since add() began
     std::unique_ptr<Coder> coder_;
     economy::PackerCounts before_; // of the histories before this one
     economy::LinkRate link_;

@@ -63,7 +63,7 @@ protected:
         clearRed(gl, 20);
         EXPECT_EQ(backRead(), 10);
         int red = 50;
-        for (const GLenum name : {GL_BACK, GL_BACK_LEFT}) {
+        for (const GLenum name : {GL_BACK, GL_BACK_LEFT, GL_FRONT_AND_BACK}) {
             gl.drawBuffer(GL_NONE);
             gl.drawBuffer(name);
             clearRed(gl, ++red);
@@ -74,7 +74,7 @@ protected:
         clearRed(gl, 30);
         EXPECT_EQ(backRead(), 30);
         EXPECT_EQ(gl.getError(), static_cast<GLenum>(GL_NO_ERROR));
-        for (const GLenum name : {GL_FRONT, GL_FRONT_LEFT, GL_FRONT_AND_BACK, GL_RIGHT, GL_BACK_RIGHT}) {
+        for (const GLenum name : {GL_FRONT, GL_FRONT_LEFT, GL_RIGHT, GL_BACK_RIGHT}) {
             gl.drawBuffer(name);
             EXPECT_EQ(gl.getError(), static_cast<GLenum>(GL_INVALID_OPERATION)) << name;
         }
