@@ -43,7 +43,8 @@ void Receiver::input(const StreamDatagram& d, int64_t nowNs) {
         if (took == ReceiveWindow::Took::Refused) return;
         if (took == ReceiveWindow::Took::New) ++sinceAck_;
         if (!repair && d.sequence < gaps_.lostBefore() && lateUs > 0) gaps_.cameLate(int64_t{lateUs} * 1000);
-        gaps_.arrived(d.sequence, nowNs);
+        // All before that is here already; and what lies half of all numbers behind it lies before the newest that came, by the other way around.
+        if (d.sequence >= before) gaps_.arrived(d.sequence, nowNs);
         if (d.flags & flag::kPoll) polled(d.next);
     }
     if (d.flags & flag::kPoll) tellNow_ = true;

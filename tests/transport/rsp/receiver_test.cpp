@@ -35,5 +35,25 @@ TEST(Receiver, APollFarAheadTellsOfNoMoreThanTheWindow) {
     EXPECT_EQ(out.told().highest, Sequence(7) + 256);
 }
 
+// Found by stream_fuzz: it was before what had come, and behind the newest; all between, half of the numbers there are, was lost then, one by one.
+TEST(Receiver, ADatagramOfHalfTheNumbersBeforeTellsOfNoLoss) {
+    ReceiverSettings settings;
+    settings.shape = {1400, 256};
+    Receiver receiver(settings, Sequence(7));
+    Nowhere out;
+    const std::vector<std::byte> payload(10);
+    StreamDatagram data;
+    data.payload = payload;
+    data.sequence = Sequence(7) + 100;
+    data.index = 4;
+    receiver.input(data, 1'000'000);
+    data.sequence = Sequence(7) - 0x7fff'ffff + 50;
+    data.index = 0;
+    receiver.input(data, 2'000'000);
+    (void)receiver.tick(50'000'000, out);
+    EXPECT_EQ(receiver.lost(), 0u);
+    EXPECT_EQ(out.told().highest, Sequence(7) + 101);
+}
+
 } // namespace
 } // namespace mural::rsp
