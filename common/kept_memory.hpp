@@ -2,10 +2,10 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <cstdlib>
 #include <malloc.h>
-#include <sys/mman.h>
+
+#include "common/huge_pages.hpp"
 
 namespace mural {
 
@@ -22,12 +22,10 @@ inline void keepFreedMemory() {
 // So much is with the calling thread's malloc from now on, as if it had been used and given back: the first who need it need not wait for
 // its pages. In huge ones where the system has them; below kLargestKeptBlockBytes, and behind keepFreedMemory(), else without effect.
 inline void haveKeptMemory(size_t sizeBytes) {
-    constexpr uintptr_t kPageBytes = 4096, kHugeBytes = uintptr_t{2} << 20;
+    constexpr size_t kPageBytes = 4096;
     void* const block = std::malloc(sizeBytes);
     if (!block) return;
-    const auto from = reinterpret_cast<uintptr_t>(block);
-    const uintptr_t firstHuge = (from + kHugeBytes - 1) / kHugeBytes * kHugeBytes, behindHuge = (from + sizeBytes) / kHugeBytes * kHugeBytes;
-    if (firstHuge < behindHuge) madvise(reinterpret_cast<void*>(firstHuge), behindHuge - firstHuge, MADV_HUGEPAGE); // no matter if it can't
+    askForHugePages({static_cast<std::byte*>(block), sizeBytes});
     for (size_t at = 0; at < sizeBytes; at += kPageBytes) static_cast<volatile std::byte*>(block)[at] = std::byte{0};
     std::free(block);
 }

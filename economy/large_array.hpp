@@ -4,11 +4,12 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <new>
 #include <sys/mman.h>
 #include <type_traits>
+
+#include "common/huge_pages.hpp"
 
 namespace mural::economy {
 
@@ -19,15 +20,14 @@ public:
     // Null when there is no memory.
     static LargeArray tryMake(size_t size) {
         LargeArray array;
-        const size_t sizeBytes = size * sizeof(T), spare = sizeBytes >= kHugeBytes ? kHugeBytes : 0;
+        const size_t sizeBytes = size * sizeof(T), spare = sizeBytes >= kHugePageBytes ? kHugePageBytes : 0;
         void* const mapped = mmap(nullptr, sizeBytes + spare, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
         if (mapped == MAP_FAILED) return array;
         array.mapped_ = {static_cast<std::byte*>(mapped), Unmap{sizeBytes + spare}};
         std::byte* from = array.mapped_.get();
         if (spare != 0) {
-            from += (kHugeBytes - reinterpret_cast<uintptr_t>(from) % kHugeBytes) % kHugeBytes;
-            madvise(from, sizeBytes / kHugeBytes * kHugeBytes, MADV_HUGEPAGE); // no matter if it can't, nor below
-            madvise(from, kHugeBytes, MADV_POPULATE_WRITE);
+            from = askForHugePages({from, sizeBytes + spare}).data();
+            madvise(from, kHugePageBytes, MADV_POPULATE_WRITE); // no matter if it can't
         }
         array.data_ = reinterpret_cast<T*>(from);
         return array;
@@ -45,7 +45,6 @@ public:
     const T& operator[](size_t i) const { return data_[i]; }
 
 private:
-    static constexpr size_t kHugeBytes = size_t{2} << 20;
     struct Unmap {
         size_t sizeBytes = 0;
         void operator()(std::byte* mapped) const { munmap(mapped, sizeBytes); }

@@ -1,21 +1,22 @@
 #include "compositor/image/pixel_bytes.hpp"
 
 #include <new>
-#include <sys/mman.h>
+
+#include "common/huge_pages.hpp"
 
 namespace mural::compositor {
 namespace {
 
-constexpr size_t kLineBytes = 64, kLargePageBytes = size_t{2} << 20;
-constexpr size_t kMostOfSmallPages = 2 * kLargePageBytes; // of less, too much might lie idle at both ends
+constexpr size_t kLineBytes = 64;
+constexpr size_t kMostOfSmallPages = 2 * kHugePageBytes; // of less, too much might lie idle at both ends
 
-std::align_val_t alignmentOf(size_t sizeBytes) { return std::align_val_t{sizeBytes < kMostOfSmallPages ? kLineBytes : kLargePageBytes}; }
+std::align_val_t alignmentOf(size_t sizeBytes) { return std::align_val_t{sizeBytes < kMostOfSmallPages ? kLineBytes : kHugePageBytes}; }
 
 } // namespace
 
 void* allocatePixels(size_t sizeBytes) {
     void* const at = ::operator new(sizeBytes, alignmentOf(sizeBytes));
-    if (sizeBytes >= kMostOfSmallPages) madvise(at, sizeBytes / kLargePageBytes * kLargePageBytes, MADV_HUGEPAGE); // no matter if it can't
+    if (sizeBytes >= kMostOfSmallPages) askForHugePages({static_cast<std::byte*>(at), sizeBytes});
     return at;
 }
 
