@@ -20,6 +20,7 @@ if(MURAL_FUZZ)
   add_executable(replay_fuzz fuzz_entry.cpp replay_fuzz.cpp replay_harness.cpp fake_gl.cpp ${replaySources} ${MURAL_GENERATED}/replay_dispatch.cpp
                  ${MURAL_GENERATED}/gl_functions.cpp ${MURAL_GENERATED}/opcode_names.cpp)
   add_dependencies(replay_fuzz mural_generated)
+  target_link_libraries(replay_fuzz PRIVATE mural_replay)
   set(fuzzFlags -fsanitize=fuzzer,address,undefined -fno-sanitize=function -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
   target_compile_options(replay_fuzz PRIVATE ${fuzzFlags})
   target_link_options(replay_fuzz PRIVATE ${fuzzFlags})
