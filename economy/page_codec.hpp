@@ -20,9 +20,7 @@ public:
 private:
     // Of what is no picture the better level pays: vertices and pictures in formats of the card become a fifth smaller by 2 than by 1.
     // Bits of masks become a sixth smaller by 1 than by -1, in twice the time.
-    // Differences of neighbouring pixels seldom repeat: what they gain they gain by their bits, and to look for repetitions is most of the time (of
-    // textures of two programs 0.69 and 0.7 of level 1's time and 1.06 and 1.00 of its bytes).
-    SectionCompressor rest_{2}, fronts_{1}, planes_{-5, Literals::Packed};
+    SectionCompressor rest_{2}, fronts_{1}, planes_{1};
     PixelSplitter splitter_;
     std::vector<std::byte> codedFront_, codedPlanes_;
 };

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstring>
 #include <lz4.h>
-#define ZSTD_STATIC_LINKING_ONLY // ZSTD_c_literalCompressionMode
 #include <zstd.h>
 
 namespace mural::economy {
@@ -33,7 +32,6 @@ size_t lz4Bytes(std::span<const std::byte> bytes, std::vector<std::byte>& scratc
 
 struct SectionCompressor::State {
     const int zstdLevel;
-    const Literals literals;
     std::unique_ptr<ZSTD_CCtx, size_t (*)(ZSTD_CCtx*)> zstd{nullptr, ZSTD_freeCCtx};
     std::unique_ptr<LZ4_stream_t, int (*)(LZ4_stream_t*)> lz4{nullptr, LZ4_freeStream};
     // Of LZ4: the bytes before, and behind them the ones in hand; and what comes out. There as far as they were used.
@@ -47,7 +45,6 @@ struct SectionCompressor::State {
         ZSTD_CCtx_setParameter(zstd.get(), ZSTD_c_compressionLevel, zstdLevel);
         ZSTD_CCtx_setParameter(zstd.get(), ZSTD_c_windowLog, kZstdWindowLog);
         ZSTD_CCtx_setParameter(zstd.get(), ZSTD_c_contentSizeFlag, 0);
-        if (literals == Literals::Packed) ZSTD_CCtx_setParameter(zstd.get(), ZSTD_c_literalCompressionMode, ZSTD_lcm_huffman);
         return true;
     }
     bool byZstd(std::span<const std::byte> bytes, std::vector<std::byte>& into) {
@@ -90,7 +87,7 @@ struct SectionCompressor::State {
     }
 };
 
-SectionCompressor::SectionCompressor(int zstdLevel, Literals literals) : state_(new State{zstdLevel, literals}) {}
+SectionCompressor::SectionCompressor(int zstdLevel) : state_(new State{zstdLevel}) {}
 SectionCompressor::~SectionCompressor() = default;
 SectionCompressor::SectionCompressor(SectionCompressor&&) noexcept = default;
 

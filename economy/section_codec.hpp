@@ -16,12 +16,9 @@ constexpr size_t kCodings = 4;
 // What LZ4 makes of these bytes alone; 0: nothing.
 [[nodiscard]] size_t lz4Bytes(std::span<const std::byte> bytes, std::vector<std::byte>& scratch);
 
-// What Zstandard does with bytes that it has not met before: below level 1 it leaves them as they are, unless told.
-enum class Literals { ByLevel, Packed };
-
 class SectionCompressor {
 public:
-    explicit SectionCompressor(int zstdLevel = 1, Literals literals = Literals::ByLevel);
+    explicit SectionCompressor(int zstdLevel = 1);
     ~SectionCompressor();
     SectionCompressor(SectionCompressor&&) noexcept;
 
