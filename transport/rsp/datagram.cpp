@@ -78,7 +78,7 @@ bool isUrgent(std::span<const std::byte> d, bool waitsForAnswers) {
     return (type == Type::Feedback && waitsForAnswers) || type == Type::Probe || (byteAt(d, 1) & flag::kPoll) != 0;
 }
 
-std::optional<StreamDatagram> readStream(std::span<const std::byte> d) {
+std::optional<StreamDatagram> readStream(std::span<const std::byte> d, std::span<const std::byte> apart) {
     const auto head = readHead(d);
     if (!head || head->type > Type::Poll || d.size() < kStreamHeadBytes) return {};
     StreamDatagram s;
@@ -92,7 +92,7 @@ std::optional<StreamDatagram> readStream(std::span<const std::byte> d) {
     s.rowsSent = byteAt(d, 23);
     s.sentUs = loadLittle<uint32_t>(d.data() + 24);
     s.next = Sequence(loadLittle<uint32_t>(d.data() + 28));
-    s.payload = d.subspan(kStreamHeadBytes);
+    s.payload = apart.empty() ? d.subspan(kStreamHeadBytes) : apart;
     if (!inBounds(s)) return {};
     return s;
 }

@@ -101,7 +101,8 @@ void writeFeedback(const Feedback& f, std::span<std::byte> into);
 [[nodiscard]] std::optional<Head> readHead(std::span<const std::byte> datagram);
 // Of one that has a head: somebody waits for what comes of it; for what members answer, only who has sent something.
 [[nodiscard]] bool isUrgent(std::span<const std::byte> datagram, bool waitsForAnswers);
-[[nodiscard]] std::optional<StreamDatagram> readStream(std::span<const std::byte> datagram);
+// Its payload may lie apart; else it is what follows the head.
+[[nodiscard]] std::optional<StreamDatagram> readStream(std::span<const std::byte> datagram, std::span<const std::byte> apart = {});
 [[nodiscard]] std::optional<Feedback> readFeedback(std::span<const std::byte> datagram);
 
 } // namespace mural::rsp

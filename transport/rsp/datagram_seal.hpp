@@ -74,6 +74,7 @@ class DatagramOpener {
 public:
     explicit DatagramOpener(const SessionKeys& keys);
 
+    [[nodiscard]] Seal seals() const { return keys_.seal; }
     void addMember(MemberId id);
     void removeMember(MemberId id);
     // The datagram without its tag, decrypted in place; empty when it is refused.

@@ -125,7 +125,9 @@ void GroupCore::inputControl(MemberId from, const ControlMessage& message, int64
     datagrams_->finish();
 }
 
-void GroupCore::inputDatagram(std::span<const std::byte> datagram, int64_t nowNs) {
+Landing GroupCore::landing() { return heard_.receiver ? heard_.receiver->landing() : Landing{}; }
+
+void GroupCore::inputDatagram(std::span<const std::byte> datagram, int64_t nowNs, std::span<const std::byte> apart) {
     const auto head = readHead(datagram);
     if (!head) return;
     if (head->type == Type::Probe) {
@@ -137,7 +139,7 @@ void GroupCore::inputDatagram(std::span<const std::byte> datagram, int64_t nowNs
         if (!sender_) return;
         if (const auto f = readFeedback(datagram)) sender_->input(*f, nowNs);
     } else if (Receiver* r = ofMember(head->from)) {
-        if (const auto d = readStream(datagram)) r->input(*d, nowNs);
+        if (const auto d = readStream(datagram, apart)) r->input(*d, nowNs);
     }
 }
 

@@ -56,6 +56,10 @@ Result<void> Group::State::openSockets() {
     arrivals_.emplace(std::move(*arrivals));
     if (auto r = arrivals_->add(own_->descriptor()); !r) return r.error();
     watched_.emplace(context_, arrivals_->watched());
+    auto takeOver = TakeOverTimer::open();
+    if (!takeOver) return takeOver.error();
+    takeOver_.emplace(std::move(*takeOver));
+    takeOverRings_.emplace(context_, takeOver_->descriptor());
     outbox_.emplace(*own_);
     outbox_->setGroup(group_);
     return {};
@@ -83,6 +87,7 @@ Result<void> Group::State::openCore(bool isHost) {
     s.mostDatagramBytes = static_cast<uint16_t>(most);
     s.datagramBytes = static_cast<uint16_t>(options_.datagramBytes != 0 ? options_.datagramBytes : most);
     s.socketDatagrams = own_->capacity(s.datagramBytes);
+    moderation_ = ReceiveModeration(s.socketDatagrams);
     s.seals = 0;
     for (const Seal seal : {Seal::None, Seal::Tag, Seal::AesGcm, Seal::ChaCha})
         if (available(seal)) s.seals |= static_cast<uint8_t>(1 << static_cast<int>(seal));
@@ -146,6 +151,7 @@ Result<void> Group::State::openMember(Deadline deadline) {
 void Group::State::startThread() {
     asio::post(context_, [this] {
         watch();
+        watchLeaders();
         const std::lock_guard lock(mutex);
         pump();
     });
@@ -170,9 +176,11 @@ void Group::State::stop() {
         });
         thread_.join();
     }
-    // The descriptor has an owner.
-    if (watched_) watched_->release();
-    watched_.reset();
+    // The descriptors have an owner.
+    for (auto* borrowed : {&watched_, &takeOverRings_}) {
+        if (*borrowed) (*borrowed)->release();
+        borrowed->reset();
+    }
 }
 
 // The goodbyes arrive, or nobody takes them in time.

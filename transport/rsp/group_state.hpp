@@ -17,6 +17,7 @@
 #include "transport/rsp/control_link.hpp"
 #include "transport/rsp/group.hpp"
 #include "transport/rsp/receive_moderation.hpp"
+#include "transport/rsp/take_over_timer.hpp"
 
 namespace mural::rsp {
 
@@ -79,7 +80,8 @@ private:
     void lead(const Waits& what);
     void endLead(int64_t nowNs);
     void letWatch();
-    void takeOverAfter(int64_t ns);
+    void watchLeaders();
+    [[nodiscard]] bool ownIsOnItsWay() const; // not all members are known to have all of it
     [[nodiscard]] int64_t restNs(const Waits* what, int64_t nowNs) const;
     void receive(std::span<const int> sockets, int64_t nowNs);
     void armTimer(int64_t atNs);
@@ -101,7 +103,6 @@ private:
     boost::asio::io_context context_;
     boost::asio::steady_timer goodbyeTimer_{context_};
     boost::asio::steady_timer restTimer_{context_}; // of the group's thread
-    boost::asio::steady_timer takeOverTimer_{context_};
     std::optional<Tcp::acceptor> acceptor_;
     std::optional<UdpSocket> own_;
     std::optional<UdpSocket> groupSocket_;
@@ -111,11 +112,10 @@ private:
     bool leaderSleeps_ = false;
     int64_t leaderUntilNs_ = 0; // it sleeps so long at most
     bool leaderCalled_ = false; // there may be what it waits for
-    int64_t ledUntilNs_ = 0;    // the last leader
-    bool isWatched_ = true;     // else somebody leads, or takeOverTimer_ runs
-    bool takesOver_ = false;    // takeOverTimer_ runs
-    int64_t takeOverNs_ = kNsPerMs;
-    ReceiveModeration moderation_;
+    bool isWatched_ = true;     // else somebody leads, or takeOver_ is set
+    std::optional<TakeOverTimer> takeOver_;
+    std::optional<boost::asio::posix::stream_descriptor> takeOverRings_;
+    ReceiveModeration moderation_{GroupSettings{}.socketDatagrams};
     unsigned looksInARow_ = 0; // without asking which sockets have something
     std::optional<BatchOutbox> outbox_;
     std::optional<DatagramOpener> opener_;

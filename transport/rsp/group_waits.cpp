@@ -11,10 +11,10 @@ namespace mural::rsp {
 namespace asio = boost::asio;
 
 namespace {
-constexpr int64_t kTakeOverNs = kNsPerMs;      // after which the group's thread does what no leader has come back for
-// So long at most where leaders have always come back: of a stream that is on its way, whose losses are to be mended, and else.
-constexpr int64_t kMostTakeOverNs = 2 * kNsPerMs;
-constexpr int64_t kMostTakeOverOfReadersNs = 8 * kNsPerMs;
+// After which the group's thread does what no leader has come back for: where a stream of ours is on its way, whose losses
+// are to be mended, and else.
+constexpr int64_t kTakeOverNs = 3 * kNsPerMs;
+constexpr int64_t kTakeOverOfReadersNs = 8 * kNsPerMs;
 constexpr unsigned kMostLooksInARow = 4;
 constexpr int64_t kMostPauseNs = 2 * kNsPerMs; // of a writer between two batches
 } // namespace
@@ -35,8 +35,9 @@ bool Group::State::wait(std::unique_lock<std::mutex>& lock, Waits& what, Deadlin
         leaderUntilNs_ = std::min(untilNs, timerNs_);
         const int64_t timeoutNs = leaderUntilNs_ - nowNs - rest;
         leaderSleeps_ = true;
-        // Where something was left behind nobody need ask for it; now and then all the same, for the other socket.
-        const bool knows = moderation_.mayBeMore() && ++looksInARow_ % kMostLooksInARow != 0;
+        // Where something was left behind, or flows, nobody need ask for it; now and then all the same, for the other socket.
+        const bool flows = rest > 0 && &what == &data && !arrivals_->found().empty() && !ownIsOnItsWay();
+        const bool knows = (moderation_.mayBeMore() || flows) && ++looksInARow_ % kMostLooksInARow != 0;
         lock.unlock();
         if (rest > 0) sleepUntilNs(nowNs + rest);
         const auto sockets = knows ? arrivals_->found() : arrivals_->wait(timeoutNs);
@@ -58,9 +59,8 @@ void Group::State::lead(const Waits& what) {
 // Who has led comes back soon, most of the time; the group's thread would only be in its way, where no other one waits.
 void Group::State::endLead(int64_t nowNs) {
     leaderWaitsFor_ = nullptr;
-    ledUntilNs_ = nowNs;
     if (room.sleeping + arrived.sleeping + data.sleeping > 0) return letWatch();
-    if (!takesOver_) takeOverAfter(takeOverNs_);
+    takeOver_->push(nowNs, ownIsOnItsWay() ? kTakeOverNs : kTakeOverOfReadersNs);
 }
 
 // What has come meanwhile wakes the group's thread.
@@ -70,21 +70,15 @@ void Group::State::letWatch() {
     tellTime(timerNs_);
 }
 
-// A leader that kept coming back will do so: the group's thread looks after it the seldomer, the longer that goes.
-void Group::State::takeOverAfter(int64_t ns) {
-    takesOver_ = true;
-    takeOverTimer_.expires_after(std::chrono::nanoseconds(ns));
-    takeOverTimer_.async_wait([this](const boost::system::error_code& ended) {
-        if (ended) return;
-        const std::lock_guard lock(mutex);
-        takesOver_ = false;
-        const bool cameBack = leaderWaitsFor_ || quickNowNs() < ledUntilNs_ + kTakeOverNs;
-        const Sender* own = core->sender();
-        const int64_t mostNs = own && !own->allArrived() ? kMostTakeOverNs : kMostTakeOverOfReadersNs;
-        takeOverNs_ = cameBack ? std::min(2 * takeOverNs_, mostNs) : kTakeOverNs;
-        if (leaderWaitsFor_) return;
-        if (cameBack) return takeOverAfter(takeOverNs_);
-        letWatch();
+// The group's thread: it takes over from leaders that did not come back.
+void Group::State::watchLeaders() {
+    takeOverRings_->async_wait(asio::posix::stream_descriptor::wait_read, [this](const boost::system::error_code& failed) {
+        if (failed) return;
+        {
+            const std::lock_guard lock(mutex);
+            if (takeOver_->rang(quickNowNs()) && !leaderWaitsFor_) letWatch();
+        }
+        watchLeaders();
     });
 }
 
@@ -109,6 +103,11 @@ void Group::State::watch() {
     });
 }
 
+bool Group::State::ownIsOnItsWay() const {
+    const Sender* own = core->sender();
+    return own && !own->allArrived();
+}
+
 // Who sees to the sockets, and waits for this, may let datagrams gather so long. A writer that may not send yet, for its rate,
 // need not hear of anything before it may.
 int64_t Group::State::restNs(const Waits* what, int64_t nowNs) const {
@@ -123,19 +122,21 @@ void Group::State::receive(std::span<const int> sockets, int64_t nowNs) {
     if (nowNs >= timerNs_) timerNs_ = INT64_MAX;
     if (nowNs >= toldNs_) toldNs_ = INT64_MAX;
     ReceiveModeration::Look look;
-    const Sender* own = core->sender();
-    const bool waitsForAnswers = own && !own->allArrived();
-    const auto take = [&](std::span<std::byte> bytes, const SocketAddress&) {
+    const bool waitsForAnswers = ownIsOnItsWay();
+    const auto take = [&](std::span<std::byte> bytes, std::span<std::byte> apart, const SocketAddress&) {
         if (!opener_) return;
         const auto opened = opener_->open(bytes);
         if (opened.empty()) return;
         ++look.datagrams;
         look.urgent = look.urgent || isUrgent(opened, waitsForAnswers);
-        core->inputDatagram(opened, nowNs);
+        core->inputDatagram(opened, nowNs, apart);
     };
+    // A seal covers all of a datagram, in one piece.
+    const bool lands = opener_ && opener_->seals() == Seal::None;
     for (const int descriptor : sockets) {
-        UdpSocket& socket = descriptor == own_->descriptor() ? *own_ : *groupSocket_;
-        if (socket.receive(std::ref(take))) look.mayBeMore = true;
+        const bool isOwn = descriptor == own_->descriptor();
+        UdpSocket& socket = isOwn ? *own_ : *groupSocket_;
+        if (socket.receive(lands && !isOwn ? core->landing() : Landing{}, std::ref(take))) look.mayBeMore = true;
     }
     moderation_.looked(look, nowNs);
     core->socketDropped(dropped());

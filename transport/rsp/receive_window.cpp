@@ -11,7 +11,7 @@ namespace mural::rsp {
 
 ReceiveWindow::ReceiveWindow(const StreamShape& shape, Sequence first)
     : payloadBytes_(shape.payloadBytes), mask_(shape.windowDatagrams - 1),
-      payloads_(shape.payloadBytes, shape.windowDatagrams), places_(shape.windowDatagrams), lengths_(shape.windowDatagrams),
+      payloads_(shape.payloadBytes, shape.windowDatagrams + kLandingPlaces), places_(shape.windowDatagrams), lengths_(shape.windowDatagrams),
       groupBases_(shape.windowDatagrams), groups_(shape.windowDatagrams), known_(shape.windowDatagrams), cumulative_(first), reading_(first),
       forgotten_(first) {}
 
@@ -68,9 +68,34 @@ bool ReceiveWindow::learnSize(Group& g, uint8_t size) {
     return true;
 }
 
+Landing ReceiveWindow::landing() {
+    // The lowest ones anew: what was read meanwhile has left its places, and what comes in order is to lie side by side.
+    for (const uint32_t place : landing_) payloads_.giveBack(place);
+    landing_.clear();
+    landingBytes_.clear();
+    for (uint32_t i = 0; i < kLandingPlaces; ++i) {
+        landing_.push_back(payloads_.take());
+        landingBytes_.push_back(payloads_.at(landing_.back()));
+    }
+    return {kStreamHeadBytes, payloadBytes_, landingBytes_};
+}
+
+// The place where it lies already, else one that it is copied to.
+uint32_t ReceiveWindow::placeFor(std::span<const std::byte> payload) {
+    for (size_t i = 0; i < landing_.size(); ++i) {
+        if (payloads_.at(landing_[i]) == payload.data()) {
+            const uint32_t place = landing_[i];
+            landing_.erase(landing_.begin() + i);
+            return place;
+        }
+    }
+    const uint32_t place = payloads_.take();
+    std::memcpy(payloads_.at(place), payload.data(), payload.size());
+    return place;
+}
+
 void ReceiveWindow::store(Group& g, Sequence s, std::span<const std::byte> payload) {
-    places_[slot(s)] = payloads_.take();
-    std::memcpy(payloads_.at(places_[slot(s)]), payload.data(), payload.size());
+    places_[slot(s)] = placeFor(payload);
     lengths_[slot(s)] = static_cast<uint16_t>(payload.size());
     groupBases_[slot(s)] = g.base;
     g.have |= 1u << (s - g.base);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "transport/rsp/datagram.hpp"
+#include "transport/rsp/landing.hpp"
 #include "transport/rsp/payload_places.hpp"
 #include "transport/rsp/send_window.hpp"
 
@@ -25,6 +26,9 @@ struct ReceiveCounters {
 class ReceiveWindow {
 public:
     ReceiveWindow(const StreamShape& shape, Sequence first);
+
+    // Places for the payloads of the next datagrams, until the next call: one that lies there is taken as it lies.
+    Landing landing();
 
     enum class Took { New, Known, Refused };
     Took takeData(const StreamDatagram& d);
@@ -66,6 +70,7 @@ private:
     [[nodiscard]] const Group* findGroup(Sequence s) const;
     bool learnSize(Group& g, uint8_t size);
     void store(Group& g, Sequence s, std::span<const std::byte> payload);
+    uint32_t placeFor(std::span<const std::byte> payload);
     void tryToComplete(Group& g);
     void recover(Group& g, std::span<const int> missing);
     bool addPresent(const Group& g, Row& row) const;
@@ -76,9 +81,13 @@ private:
     void forgetDatagram(size_t at);
     [[nodiscard]] std::span<const std::byte> payload(Sequence s) const;
 
+    static constexpr uint32_t kLandingPlaces = 32; // as many as a socket brings at once
+
     size_t payloadBytes_;
     uint32_t mask_;
     PayloadPlaces payloads_;
+    std::vector<uint32_t> landing_;       // places where payloads may come, of none that is here
+    std::vector<std::byte*> landingBytes_; // of each
     std::vector<uint32_t> places_;     // of payloads, of datagrams that are here
     std::vector<uint16_t> lengths_;    // 0: not here
     std::vector<Sequence> groupBases_; // by datagram, of those that are here

@@ -23,6 +23,8 @@ class Receiver {
 public:
     Receiver(const ReceiverSettings& settings, Sequence first);
 
+    // Where the payloads of what comes next are wanted; others are taken as well.
+    Landing landing() { return window_.landing(); }
     void input(const StreamDatagram& d, int64_t nowNs);
     // The socket has dropped so many datagrams since it was opened.
     void socketDropped(uint32_t count) { dropped_ = count; }

@@ -69,25 +69,31 @@ Result<void> joinGroup(int fd, const SocketAddress& group, const NetworkInterfac
 struct UdpSocket::Slots {
     std::vector<std::byte> bytes = std::vector<std::byte>(kReceiveSlots * kSlotStrideBytes);
     std::array<mmsghdr, kReceiveSlots> messages{};
-    std::array<iovec, kReceiveSlots> pieces{};
+    // A datagram's head, its landing place, and what goes beyond that; each part at its own place of the slot where nothing lands.
+    std::array<std::array<iovec, 3>, kReceiveSlots> pieces{};
     std::array<SocketAddress, kReceiveSlots> from{};
     std::array<std::array<char, 128>, kReceiveSlots> control{};
 
-    size_t used = kReceiveSlots; // by the last call: what the kernel wrote there is to be set again
+    [[nodiscard]] std::byte* at(size_t i) { return bytes.data() + i * kSlotStrideBytes; }
 
-    void reset(bool tellsSenders) {
-        for (size_t i = 0; i < used; ++i) {
-            pieces[i] = {bytes.data() + i * kSlotStrideBytes, kSlotBytes};
+    void prepare(bool tellsSenders, const Landing& landing) {
+        const size_t apart = landing.headBytes + landing.placeBytes;
+        for (size_t i = 0; i < kReceiveSlots; ++i) {
             msghdr& h = messages[i].msg_hdr;
             h = {};
+            if (i < landing.places.size()) {
+                pieces[i] = {{{at(i), landing.headBytes}, {landing.places[i], landing.placeBytes}, {at(i) + apart, kSlotBytes - apart}}};
+                h.msg_iovlen = 3;
+            } else {
+                pieces[i][0] = {at(i), kSlotBytes};
+                h.msg_iovlen = 1;
+            }
+            h.msg_iov = pieces[i].data();
             if (tellsSenders) h.msg_name = &from[i].storage;
             h.msg_namelen = tellsSenders ? sizeof from[i].storage : 0;
-            h.msg_iov = &pieces[i];
-            h.msg_iovlen = 1;
             h.msg_control = control[i].data();
             h.msg_controllen = control[i].size();
         }
-        used = 0;
     }
 };
 
@@ -254,13 +260,17 @@ Result<void> UdpSocket::send(const SocketAddress& to, std::span<std::byte> datag
 }
 
 bool UdpSocket::receive(const Handler& handler) {
+    return receive(Landing{}, [&](std::span<std::byte> datagram, std::span<std::byte>, const SocketAddress& from) { handler(datagram, from); });
+}
+
+bool UdpSocket::receive(const Landing& landing, const ApartHandler& handler) {
     if (!slots_) slots_.reset(new Slots); // not for those that only send
     Slots& s = *slots_;
-    s.reset(tellsSenders_);
+    s.prepare(tellsSenders_, landing);
     const int count = recvmmsg(socket_.get(), s.messages.data(), kReceiveSlots, MSG_DONTWAIT, nullptr);
     if (count <= 0) return false;
-    s.used = static_cast<size_t>(count);
-    for (size_t i = 0; i < s.used; ++i) {
+    const auto used = static_cast<size_t>(count);
+    for (size_t i = 0; i < used; ++i) {
         msghdr& h = s.messages[i].msg_hdr;
         const size_t bytes = s.messages[i].msg_len;
         size_t segment = bytes;
@@ -274,11 +284,18 @@ bool UdpSocket::receive(const Handler& handler) {
             }
         }
         s.from[i].sizeBytes = h.msg_namelen;
-        auto* data = static_cast<std::byte*>(s.pieces[i].iov_base);
-        for (size_t at = 0; at < bytes; at += segment)
-            handler({data + at, std::min(segment, bytes - at)}, s.from[i]);
+        std::byte* const data = s.at(i);
+        if (i < landing.places.size() && bytes > landing.headBytes) {
+            const size_t landed = std::min(bytes - landing.headBytes, landing.placeBytes);
+            if (segment >= bytes && bytes <= landing.headBytes + landing.placeBytes) {
+                handler({data, landing.headBytes}, {landing.places[i], landed}, s.from[i]);
+                continue;
+            }
+            std::memcpy(data + landing.headBytes, landing.places[i], landed); // in one piece again
+        }
+        for (size_t at = 0; at < bytes; at += segment) handler({data + at, std::min(segment, bytes - at)}, {}, s.from[i]);
     }
-    return s.used == kReceiveSlots;
+    return used == kReceiveSlots;
 }
 
 } // namespace mural::rsp

@@ -14,6 +14,7 @@
 #include "common/result.hpp"
 #include "transport/file_descriptor.hpp"
 #include "transport/rsp/datagram.hpp"
+#include "transport/rsp/landing.hpp"
 #include "transport/rsp/network_interface.hpp"
 #include "transport/socket_address.hpp"
 
@@ -49,6 +50,10 @@ public:
     using Handler = std::function<void(std::span<std::byte> datagram, const SocketAddress& from)>;
     // What is there now, by one system call, at most a few dozen; returns whether there may be more.
     bool receive(const Handler& handler);
+    // The same; what fits is put to its landing place behind its head, without being copied. `apart` is empty for what
+    // lies in one piece.
+    using ApartHandler = std::function<void(std::span<std::byte> datagram, std::span<std::byte> apart, const SocketAddress& from)>;
+    bool receive(const Landing& landing, const ApartHandler& handler);
 
     // So many datagrams were dropped because nobody fetched them. With ignoreMember, those that it drops count, too.
     [[nodiscard]] uint32_t dropped() const { return dropped_; }

@@ -1,12 +1,14 @@
 // What a group waits for: sockets, a time that another thread sets, and a timeout; each wakes, and none for longer than once.
 #include <gtest/gtest.h>
 
+#include <poll.h>
 #include <sys/socket.h>
 #include <thread>
 #include <unistd.h>
 
 #include "common/quick_clock.hpp"
 #include "transport/rsp/arrivals.hpp"
+#include "transport/rsp/take_over_timer.hpp"
 
 namespace mural::rsp {
 namespace {
@@ -66,6 +68,57 @@ TEST(Arrivals, ATimeWakesWhoSleepsOnce) {
     EXPECT_GE(waitedNs(*arrivals, 30 * kNsPerMs, 0), 30 * kNsPerMs) << "it was told twice that it is time";
     arrivals->wakeAt(0); // long past
     EXPECT_LT(waitedNs(*arrivals, kLongNs, 0), kLongNs / 2);
+}
+
+bool readableWithin(int descriptor, int64_t ms) {
+    pollfd one{descriptor, POLLIN, 0};
+    return poll(&one, 1, static_cast<int>(ms)) == 1;
+}
+
+TEST(TakeOverTimer, RingsOnceWhenNobodyPushesIt) {
+    auto timer = TakeOverTimer::open();
+    ASSERT_TRUE(timer) << timer.error().message;
+    EXPECT_FALSE(timer->rang(quickNowNs())) << "nobody has set it";
+    const int64_t beganNs = quickNowNs();
+    timer->push(beganNs, 20 * kNsPerMs);
+    ASSERT_TRUE(readableWithin(timer->descriptor(), 10'000));
+    const int64_t endedNs = quickNowNs();
+    EXPECT_GE(endedNs - beganNs, 20 * kNsPerMs);
+    EXPECT_TRUE(timer->rang(endedNs));
+    EXPECT_FALSE(timer->rang(endedNs)) << "twice";
+    EXPECT_FALSE(readableWithin(timer->descriptor(), 50));
+}
+
+TEST(TakeOverTimer, WhoPushesItInTimeIsNotTakenOverFrom) {
+    auto timer = TakeOverTimer::open();
+    ASSERT_TRUE(timer);
+    constexpr int64_t kAfterNs = 400 * kNsPerMs; // a busy machine may hold this test up for some of it
+    const int64_t beganNs = quickNowNs();
+    int64_t pushedNs = beganNs;
+    for (; quickNowNs() - beganNs < 2 * kAfterNs;) {
+        pushedNs = quickNowNs();
+        timer->push(pushedNs, kAfterNs);
+        ASSERT_FALSE(readableWithin(timer->descriptor(), 5));
+    }
+    EXPECT_TRUE(readableWithin(timer->descriptor(), 10'000));
+    EXPECT_GE(quickNowNs() - pushedNs, kAfterNs / 2) << "half of it at least";
+    // Sooner is set, too: else a stream of ours would wait as long as another one.
+    const int64_t sooner = quickNowNs();
+    timer->push(sooner, 1'000 * kNsPerS);
+    timer->push(sooner, kNsPerMs);
+    EXPECT_TRUE(readableWithin(timer->descriptor(), 10'000));
+}
+
+// Readable when its thread has been told; pushed before that thread has the lock.
+TEST(TakeOverTimer, WasPushedAfterItRang) {
+    auto timer = TakeOverTimer::open();
+    ASSERT_TRUE(timer);
+    timer->push(quickNowNs(), kNsPerMs);
+    ASSERT_TRUE(readableWithin(timer->descriptor(), 10'000));
+    timer->push(quickNowNs(), 50 * kNsPerMs);
+    EXPECT_FALSE(timer->rang(quickNowNs()));
+    ASSERT_TRUE(readableWithin(timer->descriptor(), 10'000));
+    EXPECT_TRUE(timer->rang(quickNowNs()));
 }
 
 TEST(QuickClock, IsTheSameClock) {

@@ -8,6 +8,7 @@ namespace {
 
 constexpr int64_t kBeginNs = 1'000'000'000'000;
 constexpr int64_t kUs = 1000;
+constexpr uint32_t kSocketDatagrams = 4096;
 
 // Datagrams come every so often; who waits looks, and rests as it is told. Returns the looks.
 int looksAtAFlow(ReceiveModeration& m, int64_t everyNs, int64_t lastingNs, int64_t& longestNs) {
@@ -26,14 +27,31 @@ int looksAtAFlow(ReceiveModeration& m, int64_t everyNs, int64_t lastingNs, int64
 }
 
 TEST(ReceiveModeration, GathersWhatFlows) {
-    ReceiveModeration m;
+    ReceiveModeration m(kSocketDatagrams);
     int64_t longestNs = 0;
     EXPECT_LT(looksAtAFlow(m, 12 * kUs, 100'000 * kUs, longestNs), 8333 / 20);
     EXPECT_EQ(longestNs, ReceiveModeration::kMostRestNs);
 }
 
+// A socket of few datagrams is not left until it may be full, and the same flow into a large one is left for longest.
+TEST(ReceiveModeration, ASmallSocketIsLookedAtBeforeItIsFull) {
+    constexpr uint32_t kFew = 100;
+    ReceiveModeration m(kFew);
+    int64_t longestNs = 0;
+    (void)looksAtAFlow(m, 12 * kUs, 100'000 * kUs, longestNs);
+    EXPECT_LE(longestNs, 12 * kUs * kFew / 3);
+    EXPECT_GE(longestNs, 12 * kUs * kFew / 5);
+    // What is left behind by one look counts with what the next one finds.
+    const int64_t endNs = kBeginNs + 100'000 * kUs;
+    m.looked({.datagrams = 1}, endNs);
+    m.looked({.datagrams = 32, .mayBeMore = true}, endNs);
+    m.looked({.datagrams = 32, .mayBeMore = true}, endNs);
+    m.looked({.datagrams = 16}, endNs + 160 * kUs); // 2 us between two
+    EXPECT_EQ(m.restNs(endNs + 160 * kUs), 0) << "50 us: a timer is later than that";
+}
+
 TEST(ReceiveModeration, LooksAtOnceForTheFirstDatagramsAndAfterAnUrgentOne) {
-    ReceiveModeration m;
+    ReceiveModeration m(kSocketDatagrams);
     EXPECT_EQ(m.restNs(kBeginNs), 0);
     int64_t longestNs = 0;
     (void)looksAtAFlow(m, 12 * kUs, 50'000 * kUs, longestNs);
@@ -48,7 +66,7 @@ TEST(ReceiveModeration, LooksAtOnceForTheFirstDatagramsAndAfterAnUrgentOne) {
 
 // More comes than a look takes: who rested after each would fall behind for good.
 TEST(ReceiveModeration, LooksAgainAtOnceWhereSomethingWasLeft) {
-    ReceiveModeration m;
+    ReceiveModeration m(kSocketDatagrams);
     int64_t longestNs = 0;
     (void)looksAtAFlow(m, 12 * kUs, 50'000 * kUs, longestNs);
     const int64_t endNs = kBeginNs + 50'000 * kUs;
@@ -59,7 +77,7 @@ TEST(ReceiveModeration, LooksAgainAtOnceWhereSomethingWasLeft) {
 }
 
 TEST(ReceiveModeration, AFlowThatHasStoppedIsOver) {
-    ReceiveModeration m;
+    ReceiveModeration m(kSocketDatagrams);
     int64_t longestNs = 0;
     (void)looksAtAFlow(m, 12 * kUs, 50'000 * kUs, longestNs);
     const int64_t laterNs = kBeginNs + 60'000 * kUs;

@@ -1,6 +1,8 @@
 // A reading end alone, with a writer that says what can't be.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "transport/rsp/receiver.hpp"
 
 namespace mural::rsp {
@@ -53,6 +55,59 @@ TEST(Receiver, ADatagramOfHalfTheNumbersBeforeTellsOfNoLoss) {
     (void)receiver.tick(50'000'000, out);
     EXPECT_EQ(receiver.lost(), 0u);
     EXPECT_EQ(out.told().highest, Sequence(7) + 101);
+}
+
+// A socket puts payloads where the window wants them: those are taken as they lie, others copied, none twice, and places
+// do not run out.
+TEST(Receiver, TakesPayloadsAsTheyHaveLanded) {
+    ReceiverSettings settings;
+    settings.shape = {100, 64};
+    Receiver receiver(settings, Sequence(7));
+    Landing landing = receiver.landing();
+    ASSERT_EQ(landing.placeBytes, 100u);
+    ASSERT_EQ(landing.headBytes, kStreamHeadBytes);
+    ASSERT_GE(landing.places.size(), 4u);
+    const auto come = [&](int number, std::span<const std::byte> payload) {
+        StreamDatagram data;
+        data.sequence = Sequence(7) + number;
+        data.index = static_cast<uint8_t>(number % kMostInGroup);
+        data.payload = payload;
+        receiver.input(data, 1'000'000);
+    };
+    const auto landed = [&](size_t place, int value) {
+        std::fill_n(landing.places[place], 100, static_cast<std::byte>(value));
+        return std::span<const std::byte>(landing.places[place], 100);
+    };
+    come(0, landed(0, 10));
+    come(1, landed(1, 11));
+    ASSERT_EQ(receiver.readable().size(), 200u) << "places one behind the other";
+    EXPECT_EQ(receiver.readable().data(), landing.places[0]);
+    come(1, landed(2, 99)); // once more: not taken, and its place is used again
+    const std::vector<std::byte> elsewhere(100, std::byte{12});
+    come(2, elsewhere);
+    const Landing next = receiver.landing();
+    for (std::byte* const place : next.places) {
+        EXPECT_NE(place, receiver.readable().data());
+        EXPECT_NE(place, receiver.readable().data() + 100);
+    }
+    EXPECT_NE(std::ranges::find(next.places, landing.places[2]), next.places.end());
+    std::vector<int> read;
+    while (!receiver.readable().empty()) {
+        read.push_back(std::to_integer<int>(receiver.readable()[0]));
+        receiver.consume(100);
+    }
+    EXPECT_EQ(read, (std::vector{10, 11, 12}));
+    // A whole window that nobody reads, and as many places as ever to land at.
+    for (int i = 3; i < 3 + 64; ++i) {
+        landing = receiver.landing();
+        come(i, i % 3 == 0 ? std::span<const std::byte>(elsewhere) : landed(static_cast<size_t>(i) % landing.places.size(), i));
+    }
+    EXPECT_EQ(receiver.landing().places.size(), next.places.size());
+    for (int i = 3; i < 3 + 64; ++i) {
+        ASSERT_FALSE(receiver.readable().empty());
+        EXPECT_EQ(std::to_integer<int>(receiver.readable()[99]), i % 3 == 0 ? 12 : i);
+        receiver.consume(100);
+    }
 }
 
 } // namespace

@@ -73,12 +73,24 @@ size_t SimulatedStream::join() {
     network_.faults(host(i)) = plan_.toMembers;
     network_.setSocketDatagrams(host(i), plan_.socketDatagrams * 2); // repairs come above what the edge allows
     network_.onDatagram(host(i), [this, &m](std::span<std::byte> d) {
-        const auto datagram = readStream(m.opener->open(d));
+        const auto opened = m.opener->open(d);
+        const auto datagram = landed(opened, *m.receiver);
         if (datagram && !m.gone) m.receiver->input(*datagram, network_.nowNs());
     });
     network_.onTimer(host(i), [this, i] { runMember(i); });
     network_.setTimer(host(i), network_.nowNs());
     return i;
+}
+
+// As a socket brings it: in one piece, or the payload where the window wants it; by chance.
+std::optional<StreamDatagram> SimulatedStream::landed(std::span<const std::byte> datagram, Receiver& receiver) {
+    if (datagram.size() <= kStreamHeadBytes || network_.random() % 2 == 0) return readStream(datagram);
+    const Landing landing = receiver.landing();
+    const auto payload = datagram.subspan(kStreamHeadBytes);
+    if (payload.size() > landing.placeBytes) return readStream(datagram);
+    std::byte* const place = landing.places[network_.random() % landing.places.size()];
+    std::ranges::copy(payload, place);
+    return readStream(datagram.first(kStreamHeadBytes), {place, payload.size()});
 }
 
 void SimulatedStream::write() {

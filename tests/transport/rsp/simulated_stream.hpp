@@ -66,6 +66,7 @@ public:
 
 private:
     class Wire;
+    std::optional<StreamDatagram> landed(std::span<const std::byte> datagram, Receiver& receiver);
     void connect(size_t member);
     void runSender();
     void runMember(size_t member);

@@ -1,0 +1,165 @@
+// Datagrams over this machine's own network, as they are brought: in one piece, apart, and joined by the kernel.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <thread>
+#include <vector>
+
+#include "transport/rsp/udp_socket.hpp"
+
+namespace mural::rsp {
+namespace {
+
+constexpr size_t kHead = 32;
+constexpr size_t kPlace = 100;
+
+UdpSocket open() {
+    auto lo = findInterface("lo", AF_INET);
+    EXPECT_TRUE(lo) << lo.error().message;
+    auto socket = UdpSocket::openOwn(*lo, AF_INET, 1 << 20);
+    EXPECT_TRUE(socket) << socket.error().message;
+    return std::move(*socket);
+}
+
+std::vector<std::byte> numbered(size_t bytes, size_t from) {
+    std::vector<std::byte> d(bytes);
+    for (size_t i = 0; i < bytes; ++i) d[i] = static_cast<std::byte>((from + i) * 7 + i / 251);
+    return d;
+}
+
+struct Ends {
+    UdpSocket from = open();
+    UdpSocket to = open();
+
+    void send(std::vector<std::byte> datagrams, size_t segmentBytes) {
+        const auto sent = from.send(to.localAddress(), datagrams, segmentBytes);
+        EXPECT_TRUE(sent) << sent.error().message;
+    }
+};
+
+// What came: datagrams in one piece, and how many of them had been apart, each at the next place.
+struct Came {
+    std::vector<std::vector<std::byte>> datagrams;
+    size_t apart = 0;
+
+    Came(UdpSocket& socket, const Landing& landing, size_t count) {
+        const auto take = [&](std::span<std::byte> datagram, std::span<std::byte> payload, const SocketAddress&) {
+            std::vector<std::byte> whole(datagram.begin(), datagram.end());
+            if (!payload.empty()) {
+                ++apart;
+                EXPECT_EQ(datagram.size(), landing.headBytes);
+                EXPECT_NE(std::ranges::find(landing.places, payload.data()), landing.places.end());
+                whole.insert(whole.end(), payload.begin(), payload.end());
+            }
+            datagrams.push_back(std::move(whole));
+        };
+        pollfd one{socket.descriptor(), POLLIN, 0};
+        while (datagrams.size() < count && poll(&one, 1, 10'000) == 1) (void)socket.receive(landing, take);
+    }
+};
+
+struct Places {
+    std::vector<std::byte> bytes;
+    std::vector<std::byte*> each;
+    explicit Places(size_t count) : bytes(count * kPlace) {
+        for (size_t i = 0; i < count; ++i) each.push_back(bytes.data() + i * kPlace);
+    }
+    [[nodiscard]] Landing landing() const { return {kHead, kPlace, each}; }
+};
+
+TEST(UdpSocket, PayloadsThatFitLand) {
+    Ends ends;
+    Places places(4);
+    const std::vector<size_t> sizes{kHead + kPlace, kHead + 1, kHead, 5, kHead + kPlace + 1, 1000, kHead + kPlace}; // more than there are places
+    for (const size_t size : sizes) ends.send(numbered(size, size), size);
+    const Came came(ends.to, places.landing(), sizes.size());
+    ASSERT_EQ(came.datagrams.size(), sizes.size());
+    for (size_t i = 0; i < sizes.size(); ++i) EXPECT_EQ(came.datagrams[i], numbered(sizes[i], sizes[i])) << i;
+    EXPECT_EQ(came.apart, 2u);
+}
+
+TEST(UdpSocket, NoneLandWhereNothingIsWanted) {
+    Ends ends;
+    ends.send(numbered(500, 3), 500);
+    const Came came(ends.to, {}, 1);
+    ASSERT_EQ(came.datagrams.size(), 1u);
+    EXPECT_EQ(came.datagrams[0], numbered(500, 3));
+    EXPECT_EQ(came.apart, 0u);
+}
+
+// What is sent at once goes through this machine's own network in one piece.
+TEST(UdpSocket, JoinedOnesComeOneByOne) {
+    for (const size_t segment : {kHead + kPlace, kHead + kPlace / 2, kHead, size_t{700}}) {
+        Ends ends;
+        Places places(32);
+        const auto all = numbered(10 * segment - 3, 1);
+        ends.send(all, segment);
+        const Came came(ends.to, places.landing(), 10);
+        ASSERT_EQ(came.datagrams.size(), 10u) << segment;
+        for (size_t i = 0; i < 10; ++i) {
+            const auto expected = std::span(all).subspan(i * segment, std::min(segment, all.size() - i * segment));
+            EXPECT_TRUE(std::ranges::equal(came.datagrams[i], expected)) << segment << ", " << i;
+        }
+    }
+}
+
+// Datagrams of one size and a shorter one go out by each way of sending; what is refused once is not tried again.
+class Sent : public ::testing::Test {
+protected:
+    static constexpr size_t kSegment = 232;
+    Ends ends;
+
+    void sendAll(size_t lastBytes) {
+        const auto all = numbered(9 * kSegment + lastBytes, 1);
+        ends.send(all, kSegment);
+        const Came came(ends.to, {}, 10);
+        ASSERT_EQ(came.datagrams.size(), 10u);
+        for (size_t i = 0; i < 10; ++i)
+            EXPECT_TRUE(std::ranges::equal(came.datagrams[i], std::span(all).subspan(i * kSegment, i == 9 ? lastBytes : kSegment))) << i;
+    }
+    void joinedOnesAreRefused() { // the kernel's rule: none without a checksum
+        const int on = 1;
+        ASSERT_EQ(setsockopt(ends.from.descriptor(), SOL_SOCKET, SO_NO_CHECK, &on, sizeof on), 0);
+    }
+};
+
+TEST_F(Sent, AtOnce) {
+    sendAll(kSegment);
+    sendAll(3);
+    EXPECT_STREQ(ends.from.sendingBy(), "UDP_SEGMENT");
+}
+
+TEST_F(Sent, BySeveralMessages) {
+    joinedOnesAreRefused();
+    sendAll(kSegment);
+    EXPECT_STREQ(ends.from.sendingBy(), "sendmmsg");
+    sendAll(3);
+}
+
+// A kernel without that call, as this thread sees it.
+TEST_F(Sent, OneByOne) {
+    joinedOnesAreRefused();
+    std::thread([&] {
+        std::array<sock_filter, 4> program{{
+            {BPF_LD | BPF_W | BPF_ABS, 0, 0, offsetof(seccomp_data, nr)},
+            {BPF_JMP | BPF_JEQ | BPF_K, 0, 1, SYS_sendmmsg},
+            {BPF_RET | BPF_K, 0, 0, SECCOMP_RET_ERRNO | ENOSYS},
+            {BPF_RET | BPF_K, 0, 0, SECCOMP_RET_ALLOW},
+        }};
+        const sock_fprog filter{static_cast<unsigned short>(program.size()), program.data()};
+        ASSERT_EQ(prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0), 0);
+        ASSERT_EQ(prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &filter), 0);
+        sendAll(kSegment);
+    }).join();
+    EXPECT_STREQ(ends.from.sendingBy(), "sendto");
+    sendAll(3);
+}
+
+} // namespace
+} // namespace mural::rsp

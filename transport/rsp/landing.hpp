@@ -1,0 +1,15 @@
+// Where a reader wants the payloads of the next datagrams to be put as they are received, so that nobody copies them again.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+namespace mural::rsp {
+
+struct Landing {
+    size_t headBytes = 0;               // of a datagram, before its payload; they lie elsewhere
+    size_t placeBytes = 0;              // that each place has
+    std::span<std::byte* const> places; // for one datagram each, in the order in which they come; none: nothing is wanted
+};
+
+} // namespace mural::rsp
