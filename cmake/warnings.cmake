@@ -1,6 +1,6 @@
 # Warnings for our own code; generated code and tests use them too.
 option(MURAL_WERROR "treat warnings as errors" OFF)
-add_compile_options(-Wall -Wextra -Wshadow -Wnon-virtual-dtor -Wcast-align -Wformat=2)
+add_compile_options(-Wall -Wextra -Wshadow $<$<COMPILE_LANGUAGE:CXX>:-Wnon-virtual-dtor> -Wcast-align -Wformat=2)
 if(MURAL_WERROR)
   add_compile_options(-Werror)
 endif()
