@@ -127,7 +127,22 @@ void GroupCore::inputControl(MemberId from, const ControlMessage& message, int64
 
 Landing GroupCore::landing() { return heard_.receiver ? heard_.receiver->landing() : Landing{}; }
 
+// As a probe: of full size. Who had been reached and ceased to be is asked by probes alone, ever seldomer.
+bool GroupCore::showsMulticast(std::span<const std::byte> datagram, std::span<const std::byte> apart) const {
+    if (datagram.size() + apart.size() != kStreamHeadBytes + shape_.payloadBytes) return false;
+    const auto head = readHead(datagram);
+    return head && head->from == kHost && head->type == Type::Data;
+}
+
 void GroupCore::inputDatagram(std::span<const std::byte> datagram, int64_t nowNs, std::span<const std::byte> apart) {
+    if (unshown_ && showsMulticast(datagram, apart)) {
+        unshown_ = false;
+        out_.control(kHost, Probed{probeNonce_});
+    }
+    deliver(datagram, nowNs, apart);
+}
+
+void GroupCore::deliver(std::span<const std::byte> datagram, int64_t nowNs, std::span<const std::byte> apart) {
     const auto head = readHead(datagram);
     if (!head) return;
     if (head->type == Type::Probe) {

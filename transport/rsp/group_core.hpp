@@ -3,7 +3,8 @@
 //
 // One member is the host. All others have a control connection to it, over which they join, learn of each other, and send
 // what datagrams can't reach. A member that comes is shown a probe by multicast; if it does not see one in time, its
-// datagrams go through the control connection (a tunnel) instead: same sequences, same windows, nobody else is slower.
+// datagrams go through the control connection (a tunnel) instead: same sequences, same windows, nobody else is slower. Where
+// that was the control connection's lateness, the first full datagram of the stream shows it, and the tunnel ends.
 //
 // host:     Join → Welcome → probes … Probed, or late → MemberCame to all, and all others to the new one
 // members:  MemberCame → their stream begins for that member → StreamStart, through the host
@@ -163,6 +164,8 @@ private:
     void tunnel(MemberId to, std::span<const std::byte> datagram);
     void touch(MemberId from);
     Receiver* ofMember(MemberId from);
+    void deliver(std::span<const std::byte> datagram, int64_t nowNs, std::span<const std::byte> apart = {});
+    [[nodiscard]] bool showsMulticast(std::span<const std::byte> datagram, std::span<const std::byte> apart) const;
     int64_t tickReceivers(int64_t nowNs);
     void membersChanged();
 
@@ -188,6 +191,7 @@ private:
     std::map<MemberId, Candidate> candidates_;
     std::map<MemberId, Unreached> unreached_;
     bool tunnelled_ = false; // this member is reached by the control connection alone
+    bool unshown_ = false;   // it was so from the beginning, and nothing has come by multicast yet
     uint32_t probeNonce_ = 0;
     uint32_t nextId_ = 1; // no id comes twice: its key would be used with the same counters again
     int64_t probedNs_ = INT64_MIN;

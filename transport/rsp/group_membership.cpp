@@ -133,7 +133,7 @@ void GroupCore::take(MemberId, const MemberCame& m, int64_t nowNs) {
     if (settings_.host || !sender_) return;
     if (m.id == self_) {
         live_ = true;
-        tunnelled_ = !m.multicast;
+        tunnelled_ = unshown_ = !m.multicast;
         return;
     }
     if (live_) meet(m.id, {m.uuid, "", m.address, m.udpPort, m.multicast}, nowNs);
@@ -166,12 +166,12 @@ void GroupCore::take(MemberId, const MemberGone& m, int64_t) {
 void GroupCore::take(MemberId from, const Tunnel& m, int64_t nowNs) {
     const auto head = readHead(m.datagram);
     if (!head) return;
-    if (!settings_.host) return inputDatagram(m.datagram, nowNs);
+    if (!settings_.host) return deliver(m.datagram, nowNs);
     if (head->from != from || !members_.contains(from)) return; // speaks for another
     for (const auto& [id, other] : members_) {
         if (id != from && (m.to == id || m.to == kEverybody)) out_.control(id, Tunnel{id, m.datagram});
     }
-    if (m.to == self_ || m.to == kEverybody) inputDatagram(m.datagram, nowNs);
+    if (m.to == self_ || m.to == kEverybody) deliver(m.datagram, nowNs);
 }
 
 void GroupCore::take(MemberId, const Refused& m, int64_t) {
@@ -197,6 +197,7 @@ void GroupCore::take(MemberId, const Rerouted& m, int64_t) {
     if (settings_.host) return;
     if (m.id == self_) {
         tunnelled_ = !m.multicast;
+        unshown_ = false;
         probeNonce_ = m.probeNonce;
     }
     const auto found = members_.find(m.id);

@@ -101,6 +101,25 @@ TEST(GroupSimulation, WhomMulticastReachesAgainIsSentToByItAgain) {
     for (const auto& p : group.processes) EXPECT_TRUE(p.gone.empty());
 }
 
+// A lost word of the control connection comes 200 ms late: the member can't have seen a probe in time. What flows by multicast
+// reaches it all the same, and is not to fill its connection for seconds.
+TEST(GroupSimulation, WhoLearnsLateThatItIsOneIsReachedByMulticastAllTheSame) {
+    SimulatedGroup group(15, [](GroupSettings& s) { s.rate.mostBytesPerS = 5e6; });
+    group.join();
+    group.lateControlNs[2] = GroupSettings{}.probeNs - 10 * kNsPerMs;
+    group.join();
+    ASSERT_TRUE(group.run(2 * kNsPerS, [&] { return group.allLive(); }));
+    const MemberId late = *group.idOf(2);
+    ASSERT_FALSE(group.processes[0].core.members().at(late).multicast);
+    group.processes[0].write(10 << 20);
+    ASSERT_TRUE(group.run(kNsPerS, [&] { return group.processes[0].core.members().at(late).multicast; }));
+    ASSERT_TRUE(group.run(30 * kNsPerS, [&] { return group.processes[0].written == 10 << 20 && group.allRead(); }));
+    EXPECT_EQ(group.wrongBytes(), 0u);
+    EXPECT_TRUE(group.processes[0].core.members().at(late).multicast);
+    EXPECT_LT(group.tunnelledBytes[2], 2u << 20);
+    for (const auto& p : group.processes) EXPECT_TRUE(p.gone.empty());
+}
+
 // The host's probes are numbered from probeSeed on: those of the joining came before multicast ceased.
 TEST(GroupSimulation, AnAnswerToAnEarlierProbeDoesNotCount) {
     SimulatedGroup group(14, [](GroupSettings& s) { s.rate.mostBytesPerS = 5e6; });

@@ -36,7 +36,8 @@ void Process::control(MemberId to, const ControlMessage& message) {
     const auto bytes = encode(message);
     const auto place = place_ == 0 ? group_.placeOf(to) : size_t{0};
     if (!place || dead || group_.network.faults(place_).cut || group_.network.faults(*place).cut) return;
-    group_.network.sendReliably(*place, kControlNs, [this, bytes, place] {
+    if (std::holds_alternative<Tunnel>(message)) group_.tunnelledBytes[*place] += bytes.size();
+    group_.network.sendReliably(*place, kControlNs + group_.lateControlNs[*place], [this, bytes, place] {
         Process& other = group_.processes[*place];
         const auto decoded = decode(bytes);
         ASSERT_TRUE(decoded);

@@ -138,6 +138,8 @@ public:
     SimulatedNetwork network;
     std::deque<Process> processes;
     std::set<size_t> deaf; // places that no multicast reaches
+    std::map<size_t, int64_t> lateControlNs; // places that each control message reaches so much later
+    std::map<size_t, uint64_t> tunnelledBytes; // by the place that they went to
 
 private:
     friend class Process;
