@@ -6,6 +6,8 @@
 
 namespace mural::rsp {
 
+constexpr size_t kMostAtOnce = 32; // datagrams that a socket brings by one call: few enough to be in the processor's cache when they are read
+
 struct Landing {
     size_t headBytes = 0;               // of a datagram, before its payload; they lie elsewhere
     size_t placeBytes = 0;              // that each place has

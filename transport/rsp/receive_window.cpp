@@ -11,7 +11,7 @@ namespace mural::rsp {
 
 ReceiveWindow::ReceiveWindow(const StreamShape& shape, Sequence first)
     : payloadBytes_(shape.payloadBytes), mask_(shape.windowDatagrams - 1),
-      payloads_(shape.payloadBytes, shape.windowDatagrams + kLandingPlaces), places_(shape.windowDatagrams), lengths_(shape.windowDatagrams),
+      payloads_(shape.payloadBytes, shape.windowDatagrams + kMostAtOnce), places_(shape.windowDatagrams), lengths_(shape.windowDatagrams),
       groupBases_(shape.windowDatagrams), groups_(shape.windowDatagrams), known_(shape.windowDatagrams), cumulative_(first), reading_(first),
       forgotten_(first) {}
 
@@ -73,7 +73,7 @@ Landing ReceiveWindow::landing() {
     for (const uint32_t place : landing_) payloads_.giveBack(place);
     landing_.clear();
     landingBytes_.clear();
-    for (uint32_t i = 0; i < kLandingPlaces; ++i) {
+    for (size_t i = 0; i < kMostAtOnce; ++i) {
         landing_.push_back(payloads_.take());
         landingBytes_.push_back(payloads_.at(landing_.back()));
     }

@@ -81,8 +81,6 @@ private:
     void forgetDatagram(size_t at);
     [[nodiscard]] std::span<const std::byte> payload(Sequence s) const;
 
-    static constexpr uint32_t kLandingPlaces = 32; // as many as a socket brings at once
-
     size_t payloadBytes_;
     uint32_t mask_;
     PayloadPlaces payloads_;

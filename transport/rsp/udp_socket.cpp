@@ -24,8 +24,6 @@ namespace mural::rsp {
 
 namespace {
 
-// Per call: few enough that their bytes are still in the processor's cache when they are read.
-constexpr size_t kReceiveSlots = 32;
 constexpr size_t kSlotBytes = 65'536; // what UDP_GRO may join
 // One begins behind another's first datagram: at a power of two all first datagrams would share a few lines of the cache.
 constexpr size_t kSlotStrideBytes = kSlotBytes + 1536;
@@ -67,18 +65,18 @@ Result<void> joinGroup(int fd, const SocketAddress& group, const NetworkInterfac
 } // namespace
 
 struct UdpSocket::Slots {
-    std::vector<std::byte> bytes = std::vector<std::byte>(kReceiveSlots * kSlotStrideBytes);
-    std::array<mmsghdr, kReceiveSlots> messages{};
+    std::vector<std::byte> bytes = std::vector<std::byte>(kMostAtOnce * kSlotStrideBytes);
+    std::array<mmsghdr, kMostAtOnce> messages{};
     // A datagram's head, its landing place, and what goes beyond that; each part at its own place of the slot where nothing lands.
-    std::array<std::array<iovec, 3>, kReceiveSlots> pieces{};
-    std::array<SocketAddress, kReceiveSlots> from{};
-    std::array<std::array<char, 128>, kReceiveSlots> control{};
+    std::array<std::array<iovec, 3>, kMostAtOnce> pieces{};
+    std::array<SocketAddress, kMostAtOnce> from{};
+    std::array<std::array<char, 128>, kMostAtOnce> control{};
 
     [[nodiscard]] std::byte* at(size_t i) { return bytes.data() + i * kSlotStrideBytes; }
 
     void prepare(bool tellsSenders, const Landing& landing) {
         const size_t apart = landing.headBytes + landing.placeBytes;
-        for (size_t i = 0; i < kReceiveSlots; ++i) {
+        for (size_t i = 0; i < kMostAtOnce; ++i) {
             msghdr& h = messages[i].msg_hdr;
             h = {};
             if (i < landing.places.size()) {
@@ -267,7 +265,7 @@ bool UdpSocket::receive(const Landing& landing, const ApartHandler& handler) {
     if (!slots_) slots_.reset(new Slots); // not for those that only send
     Slots& s = *slots_;
     s.prepare(tellsSenders_, landing);
-    const int count = recvmmsg(socket_.get(), s.messages.data(), kReceiveSlots, MSG_DONTWAIT, nullptr);
+    const int count = recvmmsg(socket_.get(), s.messages.data(), kMostAtOnce, MSG_DONTWAIT, nullptr);
     if (count <= 0) return false;
     const auto used = static_cast<size_t>(count);
     for (size_t i = 0; i < used; ++i) {
@@ -295,7 +293,7 @@ bool UdpSocket::receive(const Landing& landing, const ApartHandler& handler) {
         }
         for (size_t at = 0; at < bytes; at += segment) handler({data + at, std::min(segment, bytes - at)}, {}, s.from[i]);
     }
-    return used == kReceiveSlots;
+    return used == kMostAtOnce;
 }
 
 } // namespace mural::rsp
