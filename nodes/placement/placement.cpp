@@ -1,5 +1,6 @@
 #include "nodes/placement/placement.hpp"
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <memory>
@@ -12,10 +13,15 @@ namespace {
 using Topology = std::unique_ptr<hwloc_topology, decltype(&hwloc_topology_destroy)>;
 using Bitmap = std::unique_ptr<hwloc_bitmap_s, decltype(&hwloc_bitmap_free)>;
 
+// hwloc's plugins that ask drivers. PCI tells where devices are; and "gl" connects to the X displays :0 to :9, whoever's they
+// are, and Xlib ends this process where one of them ends meanwhile.
+constexpr std::array kDriverComponents{"gl", "opencl", "cuda", "nvml", "rsmi", "levelzero"};
+
 Topology loadTopology() {
     hwloc_topology_t topology = nullptr;
     if (hwloc_topology_init(&topology) != 0) return {nullptr, hwloc_topology_destroy};
     Topology owned(topology, hwloc_topology_destroy);
+    for (const char* name : kDriverComponents) hwloc_topology_set_components(topology, HWLOC_TOPOLOGY_COMPONENTS_FLAG_BLACKLIST, name);
     hwloc_topology_set_io_types_filter(topology, HWLOC_TYPE_FILTER_KEEP_IMPORTANT);
     if (hwloc_topology_load(topology) != 0) owned.reset();
     return owned;

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <thread>
 
+#include "display_listener.hpp"
 #include "nodes/placement/placement.hpp"
 #include "two_packages.hpp"
 
@@ -37,6 +38,14 @@ TEST(PlaceThread, saysWhatItDoes) {
     }
     const cpu_set_t afterwards = coresOfThisThread();
     EXPECT_TRUE(CPU_EQUAL(&before, &afterwards));
+}
+
+// Displays are other people's; and Xlib ends the process whose display ends.
+TEST(PlaceThread, asksNoDisplay) {
+    const DisplayListener display;
+    if (!display.listens()) GTEST_SKIP() << "the displays :0 to :9 are all in use here";
+    for (const DeviceKind kind : {DeviceKind::Gpu, DeviceKind::Network}) std::thread([&] { placeThread(kind); }).join();
+    EXPECT_EQ(display.callers(), 0);
 }
 
 // hwloc is told that core 0 and core 1 are two NUMA nodes; the better GPU cannot be told from the other
