@@ -31,6 +31,12 @@ void ControlLink::send(const ControlMessage& message) {
     flush();
 }
 
+bool ControlLink::offer(const ControlMessage& message, size_t mostWaitingBytes) {
+    if (waitingBytes() > mostWaitingBytes) return false;
+    send(message);
+    return true;
+}
+
 void ControlLink::flush() {
     const auto more = channel_.takeOutput();
     waiting_.insert(waiting_.end(), more.begin(), more.end());

@@ -28,6 +28,8 @@ public:
 
     void start(Events events);
     void send(const ControlMessage& message);
+    // The same, unless more than `mostWaitingBytes` wait for the peer already; false: the message is dropped.
+    bool offer(const ControlMessage& message, size_t mostWaitingBytes);
     // Sends what is to be sent, and ends when the peer has it, or does not take it within two seconds; closed() is told
     // nothing. A socket closed at once would lose the goodbye with the first lost segment, or with what was not yet read.
     void hangUp();

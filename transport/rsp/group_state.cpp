@@ -18,6 +18,7 @@ using boost::system::error_code;
 namespace {
 
 constexpr double kShareOfLink = 0.9;
+constexpr size_t kMostWindowsWaiting = 2; // in a member's connection, of each stream
 constexpr int64_t kGoodbyeMs = 1000; // how long a leaving member waits until the others know
 constexpr size_t kUdpOverIpv4Bytes = 28;
 constexpr size_t kUdpOverIpv6Bytes = 48;
@@ -94,6 +95,7 @@ Result<void> Group::State::openCore(bool isHost) {
     s.group = options_.group;
     if (isHost) s.keys = makeSessionKeys(options_.seal);
     s.windowDatagrams = options_.windowDatagrams;
+    windowBytes_ = size_t{s.windowDatagrams} * s.datagramBytes;
     s.rate.mostBytesPerS = options_.bytesPerS > 0 ? options_.bytesPerS : kShareOfLink * interface_.bytesPerS;
     s.parity = options_.parity;
     s.stalled = options_.stalled;
@@ -283,9 +285,14 @@ uint32_t Group::State::dropped() const {
     return own_->dropped() + (groupSocket_ && !loop_ ? groupSocket_->dropped() : 0);
 }
 
+// What can be missed is a window of each stream, and its repairs. But a member that multicast reaches in part has acknowledged
+// much of what waits for it here, and where its connection is the slower way that would never end: more is lost, as on
+// any way that is too narrow, and repaired where it is missed.
 void Group::State::sendControl(MemberId to, const ControlMessage& message) {
     const auto found = links_.find(to);
-    if (found != links_.end()) found->second->send(message);
+    if (found == links_.end()) return;
+    if (std::holds_alternative<Tunnel>(message)) found->second->offer(message, kMostWindowsWaiting * windowBytes_ * links_.size());
+    else found->second->send(message);
 }
 
 // From any thread; the links belong to the group's own, and change with the lock held.
@@ -297,6 +304,7 @@ std::span<std::byte> Group::State::datagram(MemberId to, size_t bytes) { return 
 
 void Group::State::welcomed(const Welcome& w) {
     if (auto group = numericEndpoint(w.group)) group_ = *group;
+    windowBytes_ = size_t{w.windowDatagrams} * w.datagramBytes;
     outbox_->setGroup(group_);
     outbox_->useKeys(w.keys, w.self);
     opener_.emplace(w.keys);

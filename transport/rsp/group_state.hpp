@@ -122,6 +122,7 @@ private:
     std::map<MemberId, std::shared_ptr<ControlLink>> links_;
     std::map<MemberId, MemberInfo> known_; // those of whom memberGone has not yet told
     std::set<std::shared_ptr<ControlLink>> strangers_; // have not shown that they know the secret
+    size_t windowBytes_ = 0; // of a stream of this group
     std::string hostAddress_;
     std::set<std::string> ownAddresses_; // of this machine
     bool loop_ = true;                   // members on this machine are reached
