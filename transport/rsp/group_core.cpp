@@ -1,6 +1,7 @@
 #include "transport/rsp/group_core.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "common/copy_bytes.hpp"
 #include "common/little_endian.hpp"
@@ -111,7 +112,8 @@ std::optional<MemberId> GroupCore::connected(const std::string& address, const s
     return id;
 }
 
-void GroupCore::disconnected(MemberId id, int64_t) {
+void GroupCore::disconnected(MemberId id, int64_t nowNs) {
+    takeLate(nowNs);
     if (!settings_.host) {
         over_ = true;
         return;
@@ -121,8 +123,18 @@ void GroupCore::disconnected(MemberId id, int64_t) {
 }
 
 void GroupCore::inputControl(MemberId from, const ControlMessage& message, int64_t nowNs) {
+    if (!late_.empty() || (std::holds_alternative<Tunnel>(message) && out_.behind())) {
+        if (late_.empty()) lateSinceNs_ = nowNs;
+        late_.emplace_back(from, message);
+        return;
+    }
     std::visit([&](const auto& m) { take(from, m, nowNs); }, message);
     datagrams_->finish();
+}
+
+void GroupCore::takeLate(int64_t nowNs) {
+    for (const auto& [from, message] : std::exchange(late_, {}))
+        std::visit([&, id = from](const auto& m) { take(id, m, nowNs); }, message);
 }
 
 Landing GroupCore::landing() { return heard_.receiver ? heard_.receiver->landing() : Landing{}; }
@@ -160,6 +172,10 @@ void GroupCore::deliver(std::span<const std::byte> datagram, int64_t nowNs, std:
 
 int64_t GroupCore::tick(int64_t nowNs) {
     int64_t next = nowNs + settings_.heartbeatNs;
+    if (!late_.empty()) {
+        if (nowNs - lateSinceNs_ > kMostLateNs || !out_.behind()) takeLate(nowNs);
+        else next = std::min(next, lateSinceNs_ + kMostLateNs + 1);
+    }
     if (settings_.host) {
         probe(nowNs);
         probeUnreached(nowNs);

@@ -21,6 +21,7 @@ namespace mural::rsp {
 
 constexpr MemberId kHost = 0;
 constexpr int64_t kBetweenProbesNs = 50'000'000;
+constexpr int64_t kMostLateNs = 100'000'000;     // how long a connection may wait for the sockets
 constexpr int64_t kBetweenWatchesNs = 5'000'000; // whether members are silent, or stalled
 constexpr size_t kProbeHeadBytes = kHeadBytes + 4; // and the nonce; the rest fills the datagram up
 
@@ -75,6 +76,8 @@ public:
     virtual void control(MemberId to, const ControlMessage& message) = 0;
     // A datagram of so many bytes to the group or one member, as Outbox. Filled before the next call.
     virtual std::span<std::byte> datagram(MemberId to, size_t bytes) = 0;
+    // Sockets have datagrams that were not yet input, and that may have been sent before what a connection brings now.
+    virtual bool behind() = 0;
     // This member knows the session: sockets and keys can be made.
     virtual void welcomed(const Welcome& w) = 0;
     virtual void memberCame(MemberId id, const MemberInfo& info) = 0;
@@ -158,6 +161,7 @@ private:
     void makeSender();
     void probe(int64_t nowNs);
     void watchMembers(int64_t nowNs);
+    void takeLate(int64_t nowNs);
     void reroute(MemberId id, bool multicast, int64_t nowNs);
     void sendProbe(uint32_t nonce);
     void probeUnreached(int64_t nowNs);
@@ -186,6 +190,10 @@ private:
     int64_t receiversDueNs_ = INT64_MIN; // the first of them that something is due at
     std::vector<MemberId> touched_;      // receivers that something has come for since the last tick
     std::map<MemberId, MemberInfo> members_; // without this one
+    // A tunnelled datagram that overtook those in the sockets would make all of them lost: who was stopped for a while finds
+    // both. It waits, and what comes behind it by a connection too.
+    std::vector<std::pair<MemberId, ControlMessage>> late_;
+    int64_t lateSinceNs_ = 0;
     bool anyTunnel_ = false;                 // multicast does not reach all of them
     int64_t watchedNs_ = INT64_MIN;
     std::map<MemberId, Candidate> candidates_;

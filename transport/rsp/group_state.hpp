@@ -38,6 +38,7 @@ struct Group::State : GroupOutput {
     // GroupOutput
     void control(MemberId to, const ControlMessage& message) override;
     std::span<std::byte> datagram(MemberId to, size_t bytes) override;
+    bool behind() override;
     void welcomed(const Welcome& w) override;
     void memberCame(MemberId id, const MemberInfo& info) override;
     void memberGone(MemberId id, GoneReason reason) override;
@@ -84,6 +85,7 @@ private:
     [[nodiscard]] bool ownIsOnItsWay() const; // not all members are known to have all of it
     [[nodiscard]] int64_t restNs(const Waits* what, int64_t nowNs) const;
     void receive(std::span<const int> sockets, int64_t nowNs);
+    void takeDatagrams(std::span<const int> sockets, int64_t nowNs);
     void armTimer(int64_t atNs);
     void tellTime(int64_t atNs);
     void wakeWaiting();
@@ -116,6 +118,7 @@ private:
     std::optional<TakeOverTimer> takeOver_;
     std::optional<boost::asio::posix::stream_descriptor> takeOverRings_;
     ReceiveModeration moderation_{GroupSettings{}.socketDatagrams};
+    int64_t lookedNs_ = INT64_MIN / 2; // at the sockets
     unsigned looksInARow_ = 0; // without asking which sockets have something
     std::optional<BatchOutbox> outbox_;
     std::optional<DatagramOpener> opener_;

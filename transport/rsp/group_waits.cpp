@@ -1,6 +1,7 @@
 // Who waits for what in a group, who sees to its sockets and timer meanwhile, and who is woken: leader and followers. A
 // datagram's way is through one thread where it can be: the one that waits for it.
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <utility>
 
@@ -16,6 +17,7 @@ namespace {
 constexpr int64_t kTakeOverNs = 3 * kNsPerMs;
 constexpr int64_t kTakeOverOfReadersNs = 8 * kNsPerMs;
 constexpr unsigned kMostLooksInARow = 4;
+constexpr int64_t kCaughtUpNs = 2 * kNsPerMs; // longer than a reader rests
 constexpr int64_t kMostPauseNs = 2 * kNsPerMs; // of a writer between two batches
 } // namespace
 
@@ -121,6 +123,11 @@ int64_t Group::State::restNs(const Waits* what, int64_t nowNs) const {
 void Group::State::receive(std::span<const int> sockets, int64_t nowNs) {
     if (nowNs >= timerNs_) timerNs_ = INT64_MAX;
     if (nowNs >= toldNs_) toldNs_ = INT64_MAX;
+    takeDatagrams(sockets, nowNs);
+    pump(nowNs);
+}
+
+void Group::State::takeDatagrams(std::span<const int> sockets, int64_t nowNs) {
     ReceiveModeration::Look look;
     const bool waitsForAnswers = ownIsOnItsWay();
     const auto take = [&](std::span<std::byte> bytes, std::span<std::byte> apart, const SocketAddress&) {
@@ -139,8 +146,18 @@ void Group::State::receive(std::span<const int> sockets, int64_t nowNs) {
         if (socket.receive(lands && !isOwn ? core->landing() : Landing{}, std::ref(take))) look.mayBeMore = true;
     }
     moderation_.looked(look, nowNs);
+    lookedNs_ = nowNs;
     core->socketDropped(dropped());
-    pump(nowNs);
+}
+
+// Who runs looks often: what it has not yet seen came just now.
+bool Group::State::behind() {
+    const int64_t nowNs = quickNowNs();
+    if (moderation_.mayBeMore() || nowNs - lookedNs_ < kCaughtUpNs) return moderation_.mayBeMore();
+    std::array<int, 2> sockets{own_->descriptor()};
+    if (groupSocket_) sockets[1] = groupSocket_->descriptor();
+    takeDatagrams(std::span(sockets).first(groupSocket_ ? 2 : 1), nowNs);
+    return moderation_.mayBeMore();
 }
 
 void Group::State::pump(int64_t nowNs) {

@@ -35,6 +35,7 @@ public:
         if (messages.size() < 256) messages.push_back({to, encode(message)});
     }
     std::span<std::byte> datagram(MemberId to, size_t bytes) override { return pipe.datagram(to, bytes); }
+    bool behind() override { return false; }
     void welcomed(const Welcome&) override {}
     void memberCame(MemberId, const MemberInfo&) override {}
     void memberGone(MemberId, GoneReason) override {}

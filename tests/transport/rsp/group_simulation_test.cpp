@@ -83,6 +83,25 @@ TEST(GroupSimulation, WhomMulticastCeasesToReachGoesOnThroughTheHost) {
     EXPECT_TRUE(group.processes[0].core.members().at(*group.idOf(1)).multicast);
 }
 
+// Stopped for long enough to be tried by its connection, which it may look at first when it goes on: its socket has all the rest.
+TEST(GroupSimulation, WhoFindsItsConnectionBeforeItsSocketHasLostNothing) {
+    SimulatedGroup group(12, [](GroupSettings& s) { s.rate.mostBytesPerS = 20e6; });
+    for (int i = 0; i < 3; ++i) group.join();
+    ASSERT_TRUE(group.run(kNsPerS, [&] { return group.allLive(); }));
+    group.processes[0].write(20 << 20);
+    group.run(200 * kNsPerMs, [] { return false; });
+    const MemberId stopped = *group.idOf(2);
+    group.network.freeze(2);
+    ASSERT_TRUE(group.run(900 * kNsPerMs, [&] { return group.processes[1].rerouted.contains(stopped); }));
+    group.run(100 * kNsPerMs, [] { return false; }); // polls go into its connection
+    group.network.thaw(2);
+    ASSERT_TRUE(group.run(60 * kNsPerS, [&] { return group.processes[0].wroteAll() && group.allRead(); }));
+    EXPECT_GT(group.tunnelledBytes[2], 0u);
+    EXPECT_EQ(group.wrongBytes(), 0u);
+    for (const auto& [id, m] : group.processes[0].core.sender()->members()) EXPECT_EQ(m.lost, 0u) << id;
+    EXPECT_EQ(group.processes[0].core.sender()->counters().resent, 0u);
+}
+
 TEST(GroupSimulation, WhomMulticastReachesAgainIsSentToByItAgain) {
     SimulatedGroup group(13, [](GroupSettings& s) { s.rate.mostBytesPerS = 5e6; });
     for (int i = 0; i < 3; ++i) group.join();

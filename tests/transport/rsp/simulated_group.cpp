@@ -53,6 +53,8 @@ std::span<std::byte> Process::datagram(MemberId to, size_t bytes) {
     return std::span(datagram_).first(bytes);
 }
 
+bool Process::behind() { return group_.network.socketHolds(place_); }
+
 void Process::flushDatagram() {
     if (datagram_.empty()) return;
     sealer_->seal(datagram_);

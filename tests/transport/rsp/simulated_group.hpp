@@ -27,6 +27,7 @@ public:
 
     void control(MemberId to, const ControlMessage& message) override;
     std::span<std::byte> datagram(MemberId to, size_t bytes) override;
+    bool behind() override;
     void welcomed(const Welcome& w) override { useKeys(w.keys, w.self); }
     void memberCame(MemberId id, const MemberInfo&) override;
     void memberGone(MemberId id, GoneReason reason) override { gone[id] = reason; }

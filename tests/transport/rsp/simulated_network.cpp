@@ -77,9 +77,12 @@ void SimulatedNetwork::thaw(size_t host) {
     Host& h = hosts_[host];
     h.frozen = false;
     h.timerNs = INT64_MAX;
+    for (auto& what : std::exchange(h.waiting, {})) { // as a thread of its own might, before the socket is looked at
+        what();
+        h.timer();
+    }
     for (auto& datagram : h.socket) h.handler(datagram);
     h.socket.clear();
-    for (auto& what : std::exchange(h.waiting, {})) what();
     h.timer();
 }
 

@@ -46,6 +46,7 @@ public:
     // A frozen host does nothing; its socket keeps so many datagrams.
     void freeze(size_t host) { hosts_[host].frozen = true; }
     void thaw(size_t host);
+    [[nodiscard]] bool socketHolds(size_t host) const { return !hosts_[host].socket.empty(); } // of what came while it was frozen
     void setSocketDatagrams(size_t host, size_t count) { hosts_[host].socketDatagrams = count; }
     [[nodiscard]] uint64_t overflowed(size_t host) const { return hosts_[host].overflowed; }
     [[nodiscard]] uint64_t lost() const { return lost_; }
