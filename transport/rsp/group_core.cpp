@@ -123,7 +123,9 @@ void GroupCore::disconnected(MemberId id, int64_t nowNs) {
 }
 
 void GroupCore::inputControl(MemberId from, const ControlMessage& message, int64_t nowNs) {
-    if (!late_.empty() || (std::holds_alternative<Tunnel>(message) && out_.behind())) {
+    const auto* gone = std::get_if<MemberGone>(&message);
+    const bool removesUs = gone && !settings_.host && gone->id == self_; // waits for nothing: it is the reason when the connection ends
+    if (!removesUs && (!late_.empty() || (std::holds_alternative<Tunnel>(message) && out_.behind()))) {
         if (late_.empty()) lateSinceNs_ = nowNs;
         late_.emplace_back(from, message);
         return;

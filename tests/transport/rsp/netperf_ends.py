@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How `mural netperf receive` ends: a sender that is done is its success, one that is killed or sends other bytes is not.
+"""How `mural netperf receive` ends: a sender that is done is its success; one that is killed, sends other bytes, or goes on without it is not.
 
   netperf_ends.py MURAL
 """
@@ -10,24 +10,34 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 WAIT_SECONDS = 30
+REMOVED_SECONDS = 1.8  # of silence are too long
 
 
 def start(words):
     return subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
-def start_pair(mural, secret, size, sender_options=(), receiver_options=()):
+def start_pair(mural, secret, size, sender_options=(), receiver_options=(), rate="80mbit"):
     """(sender, receiver), over the loopback."""
     common = ["--interface", "lo", "--group", "239.255.77.87:%d" % (20000 + os.getpid() % 20000), "--secret-file", secret,
               "--within", str(WAIT_SECONDS)]
-    sender = start([mural, "netperf", "send", "--members", "1", "--bytes", size, "--rate", "80mbit", "--control", "127.0.0.1:0"] + common + list(sender_options))
+    sender = start([mural, "netperf", "send", "--members", "1", "--bytes", size, "--rate", rate, "--control", "127.0.0.1:0"] + common + list(sender_options))
     said = sender.stderr.readline()
     found = re.search(r"listens at (\S+)", said)
     if not found:
         sys.exit("netperf_ends: the sender does not say where it listens: %r" % said)
     return sender, start([mural, "netperf", "receive", "--json", "--control", found.group(1)] + common + list(receiver_options))
+
+
+def go_on(receiver):
+    """Until it is in the middle of the stream."""
+    try:
+        receiver.wait(timeout=1.5)
+    except subprocess.TimeoutExpired:
+        pass
 
 
 def expect(what, good, told):
@@ -58,11 +68,19 @@ def main():
         expect("other bytes are no failure", receiver.returncode == 1 and "what came is not what was sent" in told[1], told)
         sender.communicate(timeout=WAIT_SECONDS)
 
+        # Stopped for so long that it is removed: the end of what it has is not the stream's. Its socket holds enough to read.
+        sender, receiver = start_pair(mural, secret.name, "1G", rate="300mbit")
+        go_on(receiver)
+        receiver.send_signal(signal.SIGSTOP)
+        time.sleep(REMOVED_SECONDS)
+        receiver.send_signal(signal.SIGCONT)
+        told = receiver.communicate(timeout=WAIT_SECONDS)
+        sender.kill()
+        sender.communicate()
+        expect("to be removed is no failure", receiver.returncode == 1 and "has removed this member" in told[1], told)
+
         sender, receiver = start_pair(mural, secret.name, "1G")
-        try:
-            receiver.wait(timeout=1.5)  # it is in the middle of the stream
-        except subprocess.TimeoutExpired:
-            pass
+        go_on(receiver)
         sender.send_signal(signal.SIGKILL)
         told = receiver.communicate(timeout=WAIT_SECONDS)
         sender.communicate()
