@@ -1,6 +1,9 @@
-# Sources that are compiled some at once: half of the time, where headers are most of it. All of the sanitizers' build is built so,
-# and tests are in each build. Files that are compiled together must have different names in their anonymous namespaces, and a file
-# that lacks an include may be helped by its neighbours: so the product's own sources are compiled one by one in all other builds.
+# Sources that are compiled some at once: half of the time, where headers are most of it. Files that are compiled together must have
+# different names in their anonymous namespaces, and a file that lacks an include may be helped by its neighbours: what each file needs
+# is shown by `cmake --preset alone`, which compiles the product's own sources one by one, and is quicker for who changes one again and
+# again. Tests are joined in each build.
+
+option(MURAL_JOINED "compile the product's sources some at once" ON)
 
 # Targets, or sources of the folder that calls it, whose names are for themselves.
 function(mural_compile_alone)
@@ -16,4 +19,9 @@ endfunction()
 if(MURAL_SANITIZE)
   set(CMAKE_UNITY_BUILD ON)
   set(CMAKE_UNITY_BUILD_BATCH_SIZE 12)
+elseif(MURAL_JOINED)
+  set(CMAKE_UNITY_BUILD ON)
+  set(CMAKE_UNITY_BUILD_BATCH_SIZE 8)
 endif()
+# GCC takes files that are compiled at once for headers, in which nothing anonymous should be built on.
+add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)

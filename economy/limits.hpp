@@ -4,10 +4,12 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "streamcodec/walked.hpp"
+
 namespace mural::economy {
 
 // Items above are pages. Below, a page of 4 KiB would be three quarters empty.
-constexpr size_t kMostTextBytes = 1024;
+constexpr size_t kMostTextBytes = kMostShortRecordBytes;
 constexpr size_t kPageBytes = 4096;
 // What one batch may hold when it is unpacked: bounds what a node does for one read.
 constexpr size_t kMostBatchBytes = size_t{16} << 20;

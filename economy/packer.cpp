@@ -56,11 +56,20 @@ bool Packer::next() {
     }
     if (restPlain_) {
         const size_t from = cut_.at();
-        if (walked_ != nullptr && cut_.atRecord()) cut_.passed(walked_->records - cut_.records(), packet_.size() - from, walked_->lastBytes);
+        if (walked_ != nullptr && cut_.atRecord()) passTold();
         else cut_.passShort();
         asBytes(from, cut_.at());
     }
     return cut_.next(piece_);
+}
+
+// Behind the short records that follow, by what is told of the packet.
+void Packer::passTold() {
+    const auto& longAt = walked_->longAt;
+    while (nextLong_ < longAt.size() && longAt[nextLong_] < cut_.at()) ++nextLong_;
+    const bool toEnd = nextLong_ == longAt.size();
+    const size_t sizeBytes = (toEnd ? packet_.size() : longAt[nextLong_]) - cut_.at();
+    cut_.passed(toEnd && sizeBytes > 0 ? 1 : 0, sizeBytes, walked_->lastBytes); // how many is told as well
 }
 
 void Packer::add(uint32_t stream, std::span<const std::byte> packet, const Walked* walked) {
@@ -82,8 +91,10 @@ void Packer::add(uint32_t stream, std::span<const std::byte> packet, const Walke
     nextAt_ = kNowhere;
     first_ = true;
     cut_ = PacketCut(packet);
-    const bool isTold = walked != nullptr && walked->longestBytes <= kMostTextBytes && walked->lastBytes <= packet.size(); // a damaged packet may end a record that it did not begin
+    // A damaged packet may end a record that it did not begin.
+    const bool isTold = walked != nullptr && walked->lastBytes <= packet.size() && (walked->longAt.empty() || walked->longAt.back() < packet.size());
     walked_ = isTold ? walked : nullptr;
+    nextLong_ = 0;
     while (next()) {
         if (piece_.page()) batchPageBytes_ += piece_.sizeBytes;
         if (runOn()) continue;
@@ -95,7 +106,7 @@ void Packer::add(uint32_t stream, std::span<const std::byte> packet, const Walke
     }
     keepRun();
     endsInValue_ = cut_.lastOpcode() == wire::kOpBlobBegin || cut_.lastOpcode() == wire::kOpBlobData;
-    counts_.records += cut_.records();
+    counts_.records += walked_ != nullptr ? walked_->records : cut_.records();
     if (!first_) index_->packetEnds(log_->end() - 1);
     settle();
     asBytes(cut_.at(), packet.size());

@@ -43,10 +43,10 @@ public:
     // walked: what the packet is made of, where that is known: then its records are not looked for once more, if they go plain.
     void add(uint32_t stream, std::span<const std::byte> packet, const Walked* walked = nullptr);
 
-    // What follows is another frame. plain: its short records go as they are, not looked at. Between batches.
-    void beginFrame(bool plain) {
+    // What follows is another frame, or more of a long one. plain: its short records go as they are, not looked at. Between batches.
+    void beginFrame(bool plain, bool goesOn = false) {
         plain_ = plain;
-        ++frames_;
+        frames_ += !goesOn;
     }
     [[nodiscard]] bool plain() const { return plain_; }
 
@@ -63,6 +63,7 @@ public:
 
 private:
     bool next();
+    void passTold();
     bool runOn();
     bool runKnown();
     void keepRun();
@@ -129,7 +130,8 @@ private:
     KnownRuns* runs_ = nullptr;
     NewRecords* news_ = nullptr;
     bool restPlain_ = false; // its short records are not looked at from here on
-    const Walked* walked_ = nullptr; // of the packet in hand, if all its records are short
+    const Walked* walked_ = nullptr; // of the packet in hand, where it is told
+    size_t nextLong_ = 0; // in walked_'s longAt
     KnownRuns::Run open_;    // the run of short records that goes on, without its bytes
     uint32_t openBytesAt_ = 0; // where in the packet it begins
     bool openIsKnown_ = false; // all of it is one of runs_

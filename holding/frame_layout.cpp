@@ -38,7 +38,8 @@ void FrameLayout::clear() {
     starts_.clear();
     whole_.clear();
     seen_.clear();
-    totalBytes_ = longestBytes_ = 0;
+    long_.clear();
+    totalBytes_ = 0;
     begin();
 }
 
@@ -67,7 +68,7 @@ bool FrameLayout::add(Same same, std::span<const std::byte> record) {
     range.sameBytes += static_cast<uint32_t>(sameBytes);
     range.otherBytes = static_cast<uint32_t>(record.size() - sameBytes);
     totalBytes_ += record.size();
-    longestBytes_ = std::max(longestBytes_, record.size());
+    if (record.size() > kMostShortRecordBytes) long_.push_back(at);
     return starts_.size() <= kMostRecords && same_.size() * 4 <= kMostSameBytes && totalBytes_ < kSeen;
 }
 
@@ -89,9 +90,14 @@ size_t FrameLayout::likeBytes(const std::byte* packet, size_t sameAt, size_t siz
 
 // On as far as the packet is like the frame, and which records that were.
 FrameLayout::Stop FrameLayout::pass(std::span<const std::byte> packet, size_t& at, Walked& walked) {
+    const size_t packetFrom = at;
+    const uint64_t from = at_;
     const Stop stop = passTo(packet, at);
     const auto record = static_cast<size_t>(std::ranges::lower_bound(starts_, at_) - starts_.begin());
-    if (record > record_) walked = {record - record_, static_cast<size_t>(at_ - starts_[record - 1]), longestBytes_};
+    if (record > record_) {
+        walked = {record - record_, static_cast<size_t>(at_ - starts_[record - 1]), {}};
+        for (auto next = std::ranges::lower_bound(long_, from); next != long_.end() && *next < at_; ++next) walked.longAt.push_back(static_cast<uint32_t>(packetFrom + (*next - from)));
+    }
     record_ = record;
     return stop;
 }

@@ -71,7 +71,7 @@ private:
     std::vector<Whole> whole_;
     std::vector<uint16_t> seen_; // their commands
     uint64_t totalBytes_ = 0;
-    size_t longestBytes_ = 0;
+    std::vector<uint32_t> long_; // where records longer than kMostShortRecordBytes begin
     // The frame that comes.
     size_t record_ = 0; // in starts_, the next one
     size_t range_ = 0, doneBytes_ = 0, sameAt_ = 0, seenAt_ = 0, followed_ = 0;

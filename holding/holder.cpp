@@ -44,14 +44,14 @@ void Holder::add(uint32_t streamId, std::span<const std::byte> payload) {
         if (valueFrom == kNone && stream.same.now == SameFrames::Now::Following) passSame(stream, walk, payload);
         if (valueFrom == kNone && compilesList(stream)) {
             int depth = 0;
-            walk.skip([&](uint16_t opcode) {
+            walk.skip([&](uint16_t opcode, size_t times) {
                 const int8_t deeper = kinds_[opcode].deeper;
-                if (deeper != kLooked) depth += deeper;
+                if (deeper != kLooked) depth += deeper * static_cast<int>(times);
                 return deeper != kLooked;
             });
             stream.depth += depth;
         }
-        if (valueFrom == kNone) walk.skip([&](uint16_t opcode) { return looksAtState ? kinds_[opcode].passes : kinds_[opcode].passesUnlessSmall; });
+        if (valueFrom == kNone) walk.skip([&](uint16_t opcode, size_t) { return looksAtState ? kinds_[opcode].passes : kinds_[opcode].passesUnlessSmall; });
         if (!walk.next(r)) break;
         const CommandKind& kind = kinds_[r.opcode];
         if (stream.same.now == SameFrames::Now::Following) seeSame(stream, r, kind);

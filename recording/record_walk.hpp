@@ -1,7 +1,6 @@
 // The records of a packet, one after another (docs/wire-format.md), without looking into their arguments.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -42,10 +41,11 @@ public:
         record.sizeBytes = static_cast<size_t>(words) * 4;
         record.arguments = packet_.subspan(at_ + headerBytes, record.sizeBytes - headerBytes);
         at_ += record.sizeBytes;
-        walked_.pass(record.sizeBytes);
+        walked_.pass(record.offset, record.sizeBytes);
         return true;
     }
-    // On over short records as long as they are of no interest, by their opcode: asked once for each, always the same of the same.
+    // On over short records as long as they are of no interest, by their opcode: asked once for so many of them, always the same of
+    // the same; of a round's, which come by turns, for all turns.
     // A program that loads says hundreds of thousands in one frame: what changes with each is kept in locals, as what is called
     // might look at this.
     template <typename OfNoInterest>
@@ -59,17 +59,17 @@ public:
             std::memcpy(&head, packet.data() + at, sizeof head);
             if (round.closes(head)) {
                 const size_t rounds = round.pass(packet, at);
-                for (size_t i = 0; i < rounds; ++i)
-                    for (size_t k = 0; k < round.size(); ++k) ofNoInterest(static_cast<uint16_t>(round.head(k)));
+                for (size_t k = 0; rounds > 0 && k < round.size(); ++k) ofNoInterest(static_cast<uint16_t>(round.head(k)), rounds);
                 passed.records += rounds * round.size();
                 round.begin();
                 if (rounds > 0) continue;
             }
             const size_t sizeBytes = (head >> 16) * size_t{4};
-            if (sizeBytes == 0 || head >> 16 == record::kLongForm || sizeBytes > packet.size() - at || !ofNoInterest(static_cast<uint16_t>(head))) break;
-            round.add(head, at);
+            if (sizeBytes == 0 || head >> 16 == record::kLongForm || sizeBytes > packet.size() - at || !ofNoInterest(static_cast<uint16_t>(head), size_t{1})) break;
+            if (sizeBytes > kMostShortRecordBytes) round.begin(); // each of those is told of
+            else round.add(head, at);
+            passed.pass(at, sizeBytes);
             at += sizeBytes;
-            passed.pass(sizeBytes);
         }
         goTo(at, passed);
     }
@@ -77,8 +77,7 @@ public:
     // Behind records that somebody else has passed.
     void goTo(size_t at, const Walked& passed) {
         at_ = at;
-        if (passed.records == 0) return;
-        walked_ = {walked_.records + passed.records, passed.lastBytes, std::max(walked_.longestBytes, passed.longestBytes)};
+        walked_.add(passed);
     }
     // All of the packet, once there is no next record; null: that is not all records.
     [[nodiscard]] const Walked* whole() const { return at_ == packet_.size() && !malformed_ ? &walked_ : nullptr; }

@@ -25,9 +25,8 @@ public:
     }
     // On over whole rounds like the last one, from the record at `at`, which closes it. How many there were; see head().
     [[nodiscard]] size_t pass(std::span<const std::byte> packet, size_t& at) {
-        const size_t sizeBytes = at - start_;
-        size_t rounds = 0;
-        for (; packet.size() - at >= sizeBytes && isAt(packet.data() + at); at += sizeBytes) ++rounds;
+        const size_t sizeBytes = at - start_, rounds = roundsAt(packet.subspan(at), sizeBytes);
+        at += rounds * sizeBytes;
         // Where rounds seldom repeat, that is tried the seldomer.
         patience_ = rounds > 0 ? 0 : std::min(2 * patience_ + 1, kMostPatience);
         wait_ = patience_;
@@ -48,13 +47,31 @@ private:
     static constexpr size_t kMost = 16;
     static constexpr uint32_t kMostPatience = 127;
 
-    [[nodiscard]] bool isAt(const std::byte* place) const {
-        for (size_t i = 0; i < size_; ++i) {
-            uint32_t head = 0;
-            std::memcpy(&head, place + places_[i], sizeof head);
-            if (head != heads_[i]) return false;
+    // Most rounds are of few records: of so many as are known when this is compiled heads and places stay in registers.
+    [[nodiscard]] size_t roundsAt(std::span<const std::byte> from, size_t sizeBytes) const {
+        switch (size_) {
+        case 1: return roundsOf<1>(from, sizeBytes);
+        case 2: return roundsOf<2>(from, sizeBytes);
+        case 3: return roundsOf<3>(from, sizeBytes);
+        case 4: return roundsOf<4>(from, sizeBytes);
+        default: return roundsOf<0>(from, sizeBytes);
         }
-        return true;
+    }
+    template <size_t Size> // 0: any
+    [[nodiscard]] size_t roundsOf(std::span<const std::byte> from, size_t sizeBytes) const {
+        std::array<uint32_t, Size == 0 ? kMost : Size> heads;
+        std::array<size_t, Size == 0 ? kMost : Size> places;
+        const size_t size = Size == 0 ? size_ : Size;
+        std::copy_n(heads_.begin(), size, heads.begin());
+        std::copy_n(places_.begin(), size, places.begin());
+        size_t rounds = 0;
+        for (const std::byte *at = from.data(), *end = at + from.size(); static_cast<size_t>(end - at) >= sizeBytes; at += sizeBytes, ++rounds)
+            for (size_t i = 0; i < size; ++i) {
+                uint32_t head = 0;
+                std::memcpy(&head, at + places[i], sizeof head);
+                if (head != heads[i]) return rounds;
+            }
+        return rounds;
     }
 
     std::array<uint32_t, kMost> heads_;

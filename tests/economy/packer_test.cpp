@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "recording/record_walk.hpp"
 #include "tests/economy/both_sides.hpp"
 
 namespace mural::economy::testing {
@@ -209,7 +210,8 @@ TEST(Packer, pagesAreKnownWhereShortRecordsGoPlain) {
 TEST(Packer, plainRecordsComeOutAsTheyWentWhateverIsToldOfThem) {
     Bytes packet;
     for (uint32_t i = 0; i < 50; ++i) addRecord(packet, 99, 3, [&] { return i; });
-    for (const Walked& told : {Walked{50, 16, 16}, Walked{50, 1 << 20, 16}, Walked{50, 16, 1 << 20}}) {
+    const auto size = static_cast<uint32_t>(packet.size());
+    for (const Walked& told : {Walked{50, 12, {}}, Walked{50, 1 << 20, {}}, Walked{50, 12, {size + 4096}}, Walked{50, 12, {size - 12}}, Walked{50, 12, {0, 24, 60}}}) {
         BothSides sides(Limits{.storeBytes = 1 << 20});
         sides.walked = &told;
         sides.packer.beginFrame(true);
@@ -217,6 +219,29 @@ TEST(Packer, plainRecordsComeOutAsTheyWentWhateverIsToldOfThem) {
         EXPECT_EQ(sides.packer.counts().records, 150u);
         EXPECT_FALSE(sides.packer.endsInValue());
     }
+}
+
+// Long records among them are found as if nothing were told.
+TEST(Packer, longRecordsAmongPlainOnesAreFoundWhereTheyAreTold) {
+    const Bytes pixels = noise(3 * kPageBytes, 21);
+    const auto frame = [&](uint32_t number) {
+        Bytes bytes = frameOf(number, 50), texture = textureOf(pixels), rest = frameOf(number, 30);
+        bytes.insert(bytes.end(), texture.begin(), texture.end());
+        bytes.insert(bytes.end(), rest.begin(), rest.end());
+        return bytes;
+    };
+    Walked told{};
+    recording::RecordView r;
+    const Bytes first = frame(1);
+    for (recording::RecordWalk walk(first); walk.next(r) || (told = *walk.whole(), false);) {}
+    ASSERT_EQ(told.longAt.size(), 1u);
+    BothSides untold{Limits{}}, sides{Limits{}};
+    sides.walked = &told;
+    for (BothSides* each : {&untold, &sides}) each->packer.beginFrame(true);
+    for (uint32_t number = 1; number < 6; ++number) EXPECT_EQ(sides.send(frame(number)), untold.send(frame(number))) << number;
+    EXPECT_EQ(sides.packer.counts().storeHits, 4 * 3u);
+    EXPECT_EQ(sides.packer.counts().storeHits, untold.packer.counts().storeHits);
+    EXPECT_EQ(sides.packer.counts().records, untold.packer.counts().records);
 }
 
 // A part of it is another in each frame: so it stays in its slot, and the store keeps what others have.
