@@ -58,7 +58,6 @@ public:
                 const size_t lastBytes = at_ - lastRecord_, rounds = round.pass(packet_, at_);
                 records_ += rounds * round.size();
                 lastRecord_ = at_ - lastBytes;
-                round.begin();
                 if (rounds > 0) continue;
             }
             const size_t sizeBytes = size_t{head >> 16} * 4;

@@ -59,10 +59,11 @@ public:
             std::memcpy(&head, packet.data() + at, sizeof head);
             if (round.closes(head)) {
                 const size_t rounds = round.pass(packet, at);
-                for (size_t k = 0; rounds > 0 && k < round.size(); ++k) ofNoInterest(static_cast<uint16_t>(round.head(k)), rounds);
-                passed.records += rounds * round.size();
-                round.begin();
-                if (rounds > 0) continue;
+                if (rounds > 0) {
+                    for (size_t k = 0; k < round.size(); ++k) ofNoInterest(static_cast<uint16_t>(round.head(k)), rounds);
+                    passed.records += rounds * round.size();
+                    continue;
+                }
             }
             const size_t sizeBytes = (head >> 16) * size_t{4};
             if (sizeBytes == 0 || head >> 16 == record::kLongForm || sizeBytes > packet.size() - at || !ofNoInterest(static_cast<uint16_t>(head), size_t{1})) break;

@@ -12,14 +12,22 @@ public:
     explicit ZstdWay(int level) : level_(level), compressor_(ZSTD_createCCtx(), ZSTD_freeCCtx) {}
 
     [[nodiscard]] std::string name() const override { return "zstd -" + std::to_string(level_); }
-    void packet(const StreamPacket& p) override { frame_.insert(frame_.end(), p.payload.begin(), p.payload.end()); }
+    void packet(const StreamPacket& p) override {
+        packets_.emplace_back(p.payload.begin(), p.payload.end());
+        frameBytes_ += p.payload.size();
+    }
 
+    // A frame comes in packets, from which each way begins: what is compressed whole is put together first.
     Result<uint64_t> frameEnds() override {
-        out_.resize(ZSTD_compressBound(frame_.size()));
+        out_.resize(ZSTD_compressBound(frameBytes_)); // only zeros of it cost anything, and others need none
         const int64_t beganNs = threadCpuNowNs();
+        frame_.clear();
+        frame_.reserve(frameBytes_);
+        for (const auto& packet : packets_) frame_.insert(frame_.end(), packet.begin(), packet.end());
         const size_t bytes = ZSTD_compressCCtx(compressor_.get(), out_.data(), out_.size(), frame_.data(), frame_.size(), level_);
         cpuNs_ += threadCpuNowNs() - beganNs;
-        frame_.clear();
+        packets_.clear();
+        frameBytes_ = 0;
         if (ZSTD_isError(bytes)) return Error{std::string("Zstandard: ") + ZSTD_getErrorName(bytes)};
         return bytes;
     }
@@ -28,6 +36,8 @@ public:
 private:
     const int level_;
     std::unique_ptr<ZSTD_CCtx, size_t (*)(ZSTD_CCtx*)> compressor_;
+    std::vector<std::vector<std::byte>> packets_;
+    size_t frameBytes_ = 0;
     std::vector<std::byte> frame_, out_;
     int64_t cpuNs_ = 0;
 };
