@@ -37,14 +37,14 @@ Result<void> BatchEncoder::encodeSections(const SectionBytes& sections, double l
         coded_[i].clear();
         if (coding == Coding::Lz4 || coding == Coding::Zstd) {
             const bool timed = !frames && choices_[i].wantsTime(coding, bytes.size());
-            const int64_t beganNs = timed ? nowNs_() : 0;
+            const int64_t beganNs = timed ? nowNs_(bytes.size()) : 0;
             if (!compress(i, coding, bytes)) return Error{"the stream can't be compressed: no memory"};
-            if (!frames) choices_[i].measured(coding, bytes.size(), coded_[i].size(), timed ? std::optional(nowNs_() - beganNs) : std::nullopt);
+            if (!frames) choices_[i].measured(coding, bytes.size(), coded_[i].size(), timed ? std::optional(nowNs_(bytes.size()) - beganNs) : std::nullopt);
         }
         if (const size_t sample = choices_[i].sampleBytes(bytes.size()); sample != 0) {
-            const int64_t beganNs = nowNs_();
+            const int64_t beganNs = nowNs_(sample);
             const size_t codedBytes = lz4Bytes(bytes.first(sample), scratch_);
-            choices_[i].measured(Coding::Lz4, sample, codedBytes, nowNs_() - beganNs);
+            choices_[i].measured(Coding::Lz4, sample, codedBytes, nowNs_(sample) - beganNs);
         }
         codings |= static_cast<uint32_t>(coding) << 2 * (i - kFirst);
         if (coding != Coding::Empty) putSevens(bytes.size(), body_);

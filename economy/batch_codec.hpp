@@ -19,8 +19,8 @@ namespace mural::economy {
 
 class BatchEncoder {
 public:
-    // `nowNs`: a clock, to choose codings by what they cost.
-    explicit BatchEncoder(std::function<int64_t()> nowNs) : nowNs_(std::move(nowNs)) {
+    // `nowNs`: the clock by which to compress so many bytes is timed, to choose codings by what they cost.
+    explicit BatchEncoder(std::function<int64_t(size_t sizeBytes)> nowNs) : nowNs_(std::move(nowNs)) {
         compressors_[static_cast<size_t>(Section::Texts)].prepare();
         pages_.prepare();
     }
@@ -35,7 +35,7 @@ public:
 private:
     Result<void> encodeSections(const SectionBytes& sections, double linkNsPerByte, bool plain);
 
-    const std::function<int64_t()> nowNs_;
+    const std::function<int64_t(size_t)> nowNs_;
     bool compress(size_t section, Coding coding, std::span<const std::byte> bytes); // to coded_
 
     // Those of Control and Pages are not used. Texts: equal frames and records are found as well by the fastest level.

@@ -51,28 +51,44 @@ public:
     template <typename OfNoInterest>
     void skip(const OfNoInterest& ofNoInterest) {
         const std::span<const std::byte> packet = packet_;
-        size_t at = at_;
-        Walked passed;
-        RecordRound round;
-        while (packet.size() - at >= 4) {
-            uint32_t head = 0;
-            std::memcpy(&head, packet.data() + at, sizeof head);
-            if (round.closes(head)) {
-                const size_t rounds = round.pass(packet, at);
-                if (rounds > 0) {
-                    for (size_t k = 0; k < round.size(); ++k) ofNoInterest(static_cast<uint16_t>(round.head(k)), rounds);
-                    passed.records += rounds * round.size();
-                    continue;
-                }
-            }
+        size_t at = at_, records = 0, lastBytes = 0;
+        const auto passOne = [&](uint32_t head) {
             const size_t sizeBytes = (head >> 16) * size_t{4};
-            if (sizeBytes == 0 || head >> 16 == record::kLongForm || sizeBytes > packet.size() - at || !ofNoInterest(static_cast<uint16_t>(head), size_t{1})) break;
-            if (sizeBytes > kMostShortRecordBytes) round.begin(); // each of those is told of
-            else round.add(head, at);
-            passed.pass(at, sizeBytes);
+            if (sizeBytes == 0 || head >> 16 == record::kLongForm || sizeBytes > packet.size() - at || !ofNoInterest(static_cast<uint16_t>(head), size_t{1})) return false;
+            if (sizeBytes > kMostShortRecordBytes) walked_.longAt.push_back(static_cast<uint32_t>(at));
             at += sizeBytes;
+            lastBytes = sizeBytes;
+            ++records;
+            return true;
+        };
+        const auto headHere = [&](uint32_t& head) {
+            if (packet.size() - at < sizeof head) return false;
+            std::memcpy(&head, packet.data() + at, sizeof head);
+            return true;
+        };
+        // Where much is of interest, stretches are too short for rounds.
+        uint32_t head = 0;
+        bool more = true;
+        while (records < kBeforeRounds && more) more = headHere(head) && passOne(head);
+        if (more) {
+            RecordRound round;
+            while (headHere(head)) {
+                if (round.closes(head)) {
+                    const size_t rounds = round.pass(packet, at);
+                    for (size_t k = 0; rounds > 0 && k < round.size(); ++k) ofNoInterest(static_cast<uint16_t>(round.head(k)), rounds);
+                    records += rounds * round.size();
+                    if (rounds > 0) continue;
+                }
+                const size_t from = at;
+                if (!passOne(head)) break;
+                if (lastBytes > kMostShortRecordBytes) round.begin(); // each of those is told of
+                else round.add(head, from);
+            }
         }
-        goTo(at, passed);
+        at_ = at;
+        if (records == 0) return;
+        walked_.records += records;
+        walked_.lastBytes = lastBytes;
     }
     [[nodiscard]] size_t at() const { return at_; } // where the next record begins, bytes
     // Behind records that somebody else has passed.
@@ -90,6 +106,8 @@ private:
         std::memcpy(&value, packet_.data() + at, sizeof value);
         return value;
     }
+
+    static constexpr size_t kBeforeRounds = 8;
 
     std::span<const std::byte> packet_;
     size_t at_ = 0;

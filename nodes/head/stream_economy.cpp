@@ -21,6 +21,8 @@ constexpr uint64_t kMostHeldBytes = uint64_t{256} << 20;
 constexpr size_t kFirstBytes = size_t{16} << 20;
 constexpr uint64_t kFullRawBytes = uint64_t{4} << 20;      // so much a node unpacks in a millisecond or two
 
+int64_t (*clockFor(size_t sizeBytes))() { return sizeBytes >= kLongBytes ? threadCpuNowNs : quickNowNs; }
+
 } // namespace
 
 Result<std::unique_ptr<StreamEconomy>> StreamEconomy::open(const economy::Limits& limits) {
@@ -33,7 +35,7 @@ Result<std::unique_ptr<StreamEconomy>> StreamEconomy::open(const economy::Limits
 
 StreamEconomy::StreamEconomy(const economy::Limits& limits, std::unique_ptr<Coder> coder) : limits_(limits), holder_(std::min(kMostHeldBytes, limits.storeBytes / 4), [this](uint32_t stream, std::span<const std::byte> payload, const Walked* walked) { pack(stream, payload, walked); }), coder_(std::move(coder)) {}
 
-StreamEconomy::Coder::Coder(const economy::Limits& limits) : packer(limits), encoder(threadCpuNowNs) {}
+StreamEconomy::Coder::Coder(const economy::Limits& limits) : packer(limits), encoder([](size_t sizeBytes) { return clockFor(sizeBytes)(); }) {}
 
 Result<std::unique_ptr<StreamEconomy::Coder>> StreamEconomy::freshCoder(const economy::Limits& limits) {
     auto coder = std::make_unique<Coder>(limits);
@@ -55,7 +57,7 @@ void StreamEconomy::add(uint32_t stream, std::span<const std::byte> payload) {
         encodeNs_ += static_cast<uint64_t>(packetNsPerByte_ * static_cast<double>(payload.size()));
         return;
     }
-    nowNs_ = isLong ? threadCpuNowNs : quickNowNs;
+    nowNs_ = clockFor(payload.size());
     const int64_t beganNs = nowNs_();
     sendNs_ = packNs_ = 0;
     timesPacking_ = true;
@@ -104,7 +106,7 @@ bool StreamEconomy::full() const { return coder_->packer.stagedBytes() >= kFullS
 Result<std::span<const std::byte>> StreamEconomy::take() {
     economy::Packer& packer = coder_->packer;
     const bool frameGoesOn = full(), isLong = packer.stagedBytes() >= kLongBytes, timed = timesFrame_ || isLong;
-    const auto now = isLong ? threadCpuNowNs : quickNowNs;
+    const auto now = clockFor(packer.stagedBytes());
     const int64_t beganNs = timed ? now() : 0;
     measured_.rawBytes += packer.rawBytes();
     measured_.pageBytes += packer.pageBytes();

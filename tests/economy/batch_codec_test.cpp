@@ -47,7 +47,7 @@ TEST(SectionCodec, wrongSizesAreRefused) {
 }
 
 TEST(BatchCodec, anyChangeIsAnErrorOrOtherBytes) {
-    BatchEncoder encoder([] { return int64_t{0}; });
+    BatchEncoder encoder([](size_t) { return int64_t{0}; });
     const Bytes some(100, std::byte{1}), others(300, std::byte{2});
     const SectionBytes sections{some, others, {}, some, others};
     auto batch = encoder.encode(sections, 8);
@@ -65,7 +65,7 @@ TEST(BatchCodec, anyChangeIsAnErrorOrOtherBytes) {
 
 TEST(BatchCodec, ControlAloneIsAByteMore) {
     const Bytes some(60, std::byte{1});
-    BatchEncoder encoder([] { return int64_t{0}; });
+    BatchEncoder encoder([](size_t) { return int64_t{0}; });
     auto batch = encoder.encode({some, {}, {}, {}, {}}, 8);
     ASSERT_TRUE(batch.ok());
     EXPECT_EQ(batch->size(), 61u);

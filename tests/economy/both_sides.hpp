@@ -26,7 +26,7 @@ inline Limits tinyLimits() { return {.storeBytes = 8 * kPageBytes, .textBytes = 
 
 class BothSides {
 public:
-    explicit BothSides(const Limits& limits) : packer(limits), unpacker(limits), encoder_([] { return int64_t{0}; }) {}
+    explicit BothSides(const Limits& limits) : packer(limits), unpacker(limits), encoder_([](size_t) { return int64_t{0}; }) {}
 
     // Sends one batch, a frame; returns its size on the wire.
     size_t send(const std::vector<Packet>& packets) {

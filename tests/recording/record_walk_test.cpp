@@ -5,6 +5,7 @@
 
 #include <map>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "tests/record_rounds.hpp"
@@ -68,6 +69,28 @@ TEST(RecordWalk, skipsRoundsAsIfOneByOne) {
         }
     }
     EXPECT_GT(passed, 100'000u);
+}
+
+// Wherever in a round it begins: triangles with a normal, quads with a colour for each corner, polygons.
+TEST(RecordWalk, passesRoundsInWhichACommandComesTwice) {
+    for (const std::string round : {"eff", "nmomomomop", "nbvvvve", "aabab", "abcdefghijklmnop"})
+        for (size_t from = 0; from < round.size(); ++from) {
+            SCOPED_TRACE(round + " from " + std::to_string(from));
+            std::vector<std::byte> packet;
+            for (size_t i = 0; i < 1000 * round.size(); ++i) {
+                const char command = round[(from + i) % round.size()];
+                mural::testing::putRecord(packet, static_cast<uint32_t>(command), 1 + static_cast<uint32_t>(command % 3));
+            }
+            size_t asked = 0, passed = 0;
+            RecordWalk walk(packet);
+            walk.skip([&](uint16_t, size_t times) {
+                ++asked;
+                passed += times;
+                return true;
+            });
+            EXPECT_EQ(passed, 1000 * round.size());
+            EXPECT_LE(asked, 10 + 6 * round.size());
+        }
 }
 
 } // namespace

@@ -46,7 +46,7 @@ Bytes frame(uint32_t seed, uint32_t number, bool pages) {
 
 Bytes seedOf(uint32_t seed, bool coded, bool pages) {
     economy::Packer packer(fuzz::fuzzLimits());
-    economy::BatchEncoder encoder([] { return int64_t{0}; });
+    economy::BatchEncoder encoder([](size_t) { return int64_t{0}; });
     Bytes input{static_cast<std::byte>(coded ? 0 : 1)};
     for (uint32_t number = 0; number < 6; ++number) {
         packer.add(0x10000 + seed % 2 * (number % 3), frame(seed, number, pages));
