@@ -89,7 +89,7 @@ TEST(RecordWalk, passesRoundsInWhichACommandComesTwice) {
                 return true;
             });
             EXPECT_EQ(passed, 1000 * round.size());
-            EXPECT_LE(asked, 10 + 6 * round.size());
+            EXPECT_LE(asked, 20 + 8 * round.size());
         }
 }
 
