@@ -39,7 +39,7 @@ public:
         }
         const Bytes wire(batch->begin(), batch->end());
         packer.clear();
-        packer.beginFrame(packer.plain());
+        packer.beginFrame(packer.plain(), goesOn);
         BatchHeadReader head;
         size_t at = 0;
         while (at < wire.size() && !head.add(wire[at++])) {}
@@ -68,6 +68,7 @@ public:
         return wire.size();
     }
     const Walked* walked = nullptr; // is told to the packer
+    bool goesOn = false; // what is sent is more of the frame before
     size_t send(Bytes packet) { return send({Packet{0x10000, std::move(packet)}}); }
 
     Packer packer;

@@ -206,6 +206,17 @@ TEST(Packer, pagesAreKnownWhereShortRecordsGoPlain) {
     EXPECT_LE(send(5), 6000u);
 }
 
+// One of several batches: what was left out of it comes again in it, and is no frame that repeats.
+TEST(Packer, aLongFrameIsOneFrameForWhatIsNewInIt) {
+    const Bytes records = frameOf(1, 5000);
+    BothSides whole{Limits{}}, frames{Limits{}};
+    whole.goesOn = true;
+    for (BothSides* each : {&whole, &frames})
+        for (int i = 0; i < 3; ++i) each->send(records);
+    EXPECT_GE(whole.staged, records.size() * 9 / 10); // as bytes
+    EXPECT_LE(frames.staged, 1000u);
+}
+
 // What is told of a packet saves a walk; where it can't be so, as of a damaged one, it is of no account.
 TEST(Packer, plainRecordsComeOutAsTheyWentWhateverIsToldOfThem) {
     Bytes packet;
