@@ -120,6 +120,7 @@ protected:
     std::mutex mutex_;
     std::vector<Sent> sent_;
     std::string log_;
+    Gate gate_; // pictures wait at it, and their sender is there until all have passed
     std::unique_ptr<PictureSender> sender_;
 };
 
@@ -145,15 +146,14 @@ TEST_F(PictureSenderTest, PicturesGoAsTheyAreWithTheirFramesBehindThem) {
 
 TEST_F(PictureSenderTest, WhatIsToldKeepsItsPlace) {
     start();
-    Gate gate;
     ASSERT_TRUE(tell(1));
     EXPECT_EQ(sent_.back().by, std::this_thread::get_id()); // nothing was under way: nobody was woken
-    ASSERT_TRUE(frame(1, &gate));
+    ASSERT_TRUE(frame(1, &gate_));
     ASSERT_TRUE(tell(2));
     ASSERT_TRUE(frame(2));
     ASSERT_TRUE(tell(3));
     EXPECT_EQ(types(), (std::vector{NodeMessage::Answer})); // all else waits for the first picture
-    gate.open();
+    gate_.open();
     ASSERT_TRUE(sender_->finish());
     EXPECT_EQ(types(), (std::vector{NodeMessage::Answer, NodeMessage::Picture, NodeMessage::FrameDone, NodeMessage::Answer, NodeMessage::Picture, NodeMessage::FrameDone, NodeMessage::Answer}));
     EXPECT_EQ(sent_[3].as<uint32_t>(), 2u);
@@ -164,10 +164,9 @@ TEST_F(PictureSenderTest, WhatIsToldKeepsItsPlace) {
 
 TEST_F(PictureSenderTest, AThirdPictureWaitsForRoom) {
     start();
-    Gate gate;
-    ASSERT_TRUE(frame(1, &gate));
+    ASSERT_TRUE(frame(1, &gate_));
     ASSERT_TRUE(frame(2));
-    waitsFor(gate, [&] { return frame(3); });
+    waitsFor(gate_, [&] { return frame(3); });
     ASSERT_TRUE(sender_->finish());
     EXPECT_EQ(types().size(), 6u);
 }
@@ -176,11 +175,10 @@ TEST_F(PictureSenderTest, MessagesBehindAPictureAreBounded) {
     PictureSenderConfig config;
     config.mostBytes = 6000;
     start(config);
-    Gate gate;
-    ASSERT_TRUE(frame(1, &gate));
+    ASSERT_TRUE(frame(1, &gate_));
     const std::vector<std::byte> large(4000);
     ASSERT_TRUE(sender_->tell(NodeMessage::Answer, large));
-    waitsFor(gate, [&] { return sender_->tell(NodeMessage::Answer, large); }); // 8000 would wait
+    waitsFor(gate_, [&] { return sender_->tell(NodeMessage::Answer, large); }); // 8000 would wait
     ASSERT_TRUE(sender_->tell(NodeMessage::Answer, std::vector<std::byte>(9000))); // more than ever waits: alone
     ASSERT_TRUE(sender_->finish());
     EXPECT_EQ(types().size(), 5u);
@@ -190,8 +188,7 @@ TEST_F(PictureSenderTest, NothingGoesOutWhenNoneGetsAway) {
     PictureSenderConfig config;
     config.roomMs = 50;
     start(config);
-    Gate gate;
-    ASSERT_TRUE(frame(1, &gate));
+    ASSERT_TRUE(frame(1, &gate_));
     ASSERT_TRUE(frame(2));
     EXPECT_FALSE(frame(3));
     EXPECT_FALSE(frame(4)); // at once: nobody waits again
@@ -199,18 +196,17 @@ TEST_F(PictureSenderTest, NothingGoesOutWhenNoneGetsAway) {
     EXPECT_FALSE(sender_->finish());
     EXPECT_EQ(std::ranges::count(log_, '\n'), 1) << log_;
     EXPECT_NE(log_.find("do not get away"), std::string::npos) << log_;
-    gate.open();
+    gate_.open();
 }
 
 TEST_F(PictureSenderTest, WhatWasGivenGoesOutAtTheEnd) {
     start();
-    Gate gate;
-    ASSERT_TRUE(frame(1, &gate));
+    ASSERT_TRUE(frame(1, &gate_));
     ASSERT_TRUE(frame(2));
     ASSERT_TRUE(tell(9));
     std::thread opener([&] {
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
-        gate.open();
+        gate_.open();
     });
     sender_.reset();
     opener.join();
