@@ -91,11 +91,12 @@ std::string describe(const Finding& f) {
 
 } // namespace
 
-std::string describeBypass(const std::vector<UnseenProgram>& programs) {
+std::string describeBypass(const std::vector<UnseenProgram>& programs, bool failed) {
     Finding best;
     std::string line;
     for (const UnseenProgram& program : programs) {
         const Finding found = findingOf(program);
+        if (failed && found.drawing == Drawing::X11) continue;
         const std::string text = describe(found);
         // Of several programs, one that draws by X11 only may be the launcher's dialog.
         if (text.empty() || (!line.empty() && (found.drawing == Drawing::X11 || best.drawing == Drawing::OwnGl))) continue;

@@ -19,8 +19,8 @@ struct UnseenProgram {
 };
 
 // One line about the programs: which one draws past Mural, by what, and what to do; empty when their
-// libraries do not tell.
-std::string describeBypass(const std::vector<UnseenProgram>& programs);
+// libraries do not tell. Of one that failed, to have loaded no GL yet tells nothing.
+std::string describeBypass(const std::vector<UnseenProgram>& programs, bool failed = false);
 
 class BypassWatch {
 public:
@@ -35,8 +35,8 @@ public:
     std::vector<std::string> news();
     // Looks at processes that run now.
     [[nodiscard]] std::string lookAt(const std::vector<pid_t>& processes) const;
-    // About the programs that have ended.
-    [[nodiscard]] std::string aboutEnded() const { return describeBypass(ended_); }
+    // About the programs that have ended; failed: the one that was started, with an error.
+    [[nodiscard]] std::string aboutEnded(bool failed) const { return describeBypass(ended_, failed); }
 
 private:
     explicit BypassWatch(int fd) : fd_(fd) {}

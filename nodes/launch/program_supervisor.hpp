@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <string>
 #include <sys/types.h>
 #include <vector>
 
@@ -38,6 +39,7 @@ public:
     [[nodiscard]] bool started() const { return program_.started(); }
     [[nodiscard]] bool programRunning() { return program_.running(); }
     [[nodiscard]] int exitStatus() const { return program_.exitStatus(); }
+    [[nodiscard]] std::string describeEnd() const { return program_.describeEnd(); }
     // The running ones of those: the program and its descendants.
     [[nodiscard]] std::vector<pid_t> processes() const;
     // Processes below us other than ours and those that only wait to be collected.

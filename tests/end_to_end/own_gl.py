@@ -64,17 +64,17 @@ caught("mixed_linked_when_glvnd_is_first", "mixed_linked", "none", more={"LD_PRE
 caught("in_script_when_asked", "immediate", "glx", ("--front", "preload"), in_script=True)
 
 
-def told(case_name, program, words, in_script=None, options=(), output=None):
-    """The program runs as without Mural, and one line says why nothing of it is on the wall."""
+def told(case_name, program, words, in_script=None, options=(), output=None, shell=None, status=0):
+    """The program, or a line of shell, runs as without Mural, and one line says why nothing of it is on the wall."""
     def check(context):
-        command = [context.program(program), "--frames", str(FRAMES), "--size", "253x191"]
+        command = ["sh", "-c", shell] if shell else [context.program(program), "--frames", str(FRAMES), "--size", "253x191"]
         if in_script is not None:
             command = ["sh", "-c", 'LD_LIBRARY_PATH="$0" exec "$@"', libraries(context, in_script)] + command
         with tempfile.TemporaryDirectory(prefix="mural-own-gl.") as folder:
             report_file = os.path.join(folder, "report.json")
             fixed = ["--tiles", "2x2", "--display", "none", "--quiet", "--report", report_file]
             with context.run(command, fixed + list(options)) as run:
-                wrong = failures.check_end(run, 0)
+                wrong = failures.check_end(run, status)
                 if wrong is not None:
                     return wrong
             with open(report_file, encoding="utf-8") as file:
@@ -99,6 +99,10 @@ for name, library in (("mixed_glx_driver", "libGLX_mesa.so.0"), ("mixed_glx_osme
                       ("mixed_egl_osmesa", "libOSMesa.so.8"), ("mixed_linked", "libOSMesa.so.8")):
     told(name, name, ["part of the program's GL calls", library, "LD_PRELOAD=libGL.so.1"], output="the window shows the whole picture")
 told("x11_only", "x11_window", ["loads no GL library"])
+# What fails early tells nothing by what it has not loaded yet.
+told("failed_early", None, ["sh ended before it made a GL context (exit status 3)", "mural doctor"], shell="exit 3", status=3)
+told("killed_early", None, ["sh ended before it made a GL context (signal 9 (Killed))"], shell="kill -9 $$", status=137)
+told("never_tried", None, ["sh never reached GL"], shell="exit 0")
 
 
 def silent(program):

@@ -41,6 +41,12 @@ TEST_F(Bypass, offScreenAndVulkanAndX11AreToldApart) {
     EXPECT_EQ(describeBypass({{"sh", {}}}), "");
 }
 
+TEST_F(Bypass, whatFailsBeforeItLoadsGlIsNotSaidToDrawByX11) {
+    const std::string x11 = library("libX11.so.6", {});
+    EXPECT_EQ(describeBypass({{"app", {x11}}}, true), "");
+    EXPECT_NE(describeBypass({{"app", {x11, library("libOSMesa.so.8", {})}}}, true).find("OSMesa"), std::string::npos);
+}
+
 TEST_F(Bypass, aLaunchersDialogDoesNotHideTheProgram) {
     const std::string x11 = library("libX11.so.6", {});
     const std::string own = library("libGL.so.1", {"libglapi.so.0"});
@@ -66,7 +72,7 @@ TEST_F(Bypass, endedProgramsLeaveTheirLibraries) {
     ASSERT_TRUE(watch.ok());
     std::ofstream(watch.value()->notesPath(), std::ios::app) << "ended\t/bin/app\t" << library("libOSMesa.so.8", {}) << "\n";
     watch.value()->news();
-    EXPECT_NE(watch.value()->aboutEnded().find("app draws by OSMesa"), std::string::npos);
+    EXPECT_NE(watch.value()->aboutEnded(false).find("app draws by OSMesa"), std::string::npos);
 }
 
 TEST(BypassNotes, runningProcessesAreLookedAt) {

@@ -124,16 +124,16 @@ private:
         writeReport(run_, report_->json, console_);
         for (const std::string& line : reportLines(*report_)) console_.say(line);
         if (report_->frames > 0 || bypassSaid_) return;
-        if (const std::string bypass = everClients_ ? std::string() : bypass_.aboutEnded(); !bypass.empty()) {
-            console_.error("no frame was captured: " + bypass);
-            return;
-        }
+        console_.error("no frame was captured: " + whyNoFrame());
+    }
+
+    std::string whyNoFrame() {
         const std::string& name = run_.program.front();
-        if (everClients_) {
-            console_.error("no frame was captured: " + name + " made a GL context but never showed a picture (no buffer swap)");
-        } else {
-            console_.error("no frame was captured: " + name + " never reached GL through Mural; is it an OpenGL program, and does it keep LD_PRELOAD for its children?");
-        }
+        if (everClients_) return name + " made a GL context but never showed a picture (no buffer swap)";
+        const bool failed = program_.exitStatus() != 0 && !program_.askedToStop();
+        if (std::string bypass = bypass_.aboutEnded(failed); !bypass.empty()) return bypass;
+        if (failed) return name + " ended before it made a GL context (" + program_.describeEnd() + "); what it said is above. Try it without Mural, or by mural run --native; mural doctor looks at display and GL";
+        return name + " never reached GL through Mural; is it an OpenGL program, and does it keep LD_PRELOAD for its children?";
     }
 
     // What is said of programs that draw past us; at most one line of ours, beside what they say.
