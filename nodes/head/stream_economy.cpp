@@ -54,7 +54,7 @@ void StreamEconomy::add(uint32_t stream, std::span<const std::byte> payload) {
     const bool isLong = payload.size() >= kLongPacketBytes;
     if (!timesFrame_ && !isLong) {
         hold(stream, payload);
-        encodeNs_ += static_cast<uint64_t>(packetNsPerByte_ * static_cast<double>(payload.size()));
+        encodeNs_ += static_cast<uint64_t>(packetNsPerByte_.value() * static_cast<double>(payload.size()));
         return;
     }
     nowNs_ = isLong ? threadCpuNowNs : quickNowNs;
@@ -66,7 +66,9 @@ void StreamEconomy::add(uint32_t stream, std::span<const std::byte> payload) {
     const auto ns = static_cast<uint64_t>(nowNs_() - beganNs - sendNs_);
     encodeNs_ += ns;
     measured_.holdNs += ns - std::min(ns, packNs_);
-    if (!isLong && !payload.empty()) packetNsPerByte_ = static_cast<double>(ns) / static_cast<double>(payload.size());
+    if (isLong) return;
+    measured_.shortBytes += payload.size();
+    measured_.shortNs += ns;
 }
 
 void StreamEconomy::miss(uint32_t stream, std::span<const std::byte> payload) {
@@ -113,9 +115,9 @@ Result<std::span<const std::byte>> StreamEconomy::take() {
     auto batch = coder_->encoder.encode(packer.finish(), link_.nsPerByte(), packer.plain());
     packer.clear();
     packets_ = 0;
-    const uint64_t ns = timed ? static_cast<uint64_t>(now() - beganNs) : takeNs_;
+    const auto ns = timed ? static_cast<uint64_t>(now() - beganNs) : static_cast<uint64_t>(takeNs_.value());
     encodeNs_ += ns;
-    if (!isLong) takeNs_ = ns;
+    if (timed && !isLong) takeNs_.add(static_cast<double>(ns));
     if (batch) {
         wireBytes_ += batch->size();
         measured_.wireBytes += batch->size();
@@ -128,9 +130,10 @@ Result<std::span<const std::byte>> StreamEconomy::take() {
         else way.unmeasured();
         if (way.plain() != packer.plain()) small_.disturbed();
         else small_.frame(holder_.counts().inBytes - measured_.programBytes, measured_.wireBytes, timesFrame_ ? frameNs + static_cast<double>(measured_.wireBytes) * link_.nsPerByte() : -1);
+        if (timesFrame_ && measured_.shortBytes > 0) packetNsPerByte_.add(static_cast<double>(measured_.shortNs) / static_cast<double>(measured_.shortBytes));
         timesFrame_ = way.wantsTime() || small_.wantsTime();
         packer.beginFrame(way.plain(), frameGoesOn);
-        measured_ = {0, 0, 0, encodeNs_, holder_.counts().inBytes, 0};
+        measured_ = {0, 0, 0, encodeNs_, holder_.counts().inBytes, 0, 0, 0};
     }
     publishCounts();
     return batch;

@@ -16,6 +16,7 @@
 #include "economy/way_choice.hpp"
 #include "holding/holder.hpp"
 #include "holding/small_choice.hpp"
+#include "nodes/head/usual_time.hpp"
 
 namespace mural {
 
@@ -88,11 +89,11 @@ private:
     bool timesFrame_ = true; // all that is done for it; else what is long only
     bool timesPacking_ = false;
     uint64_t packNs_ = 0; // of the packet in hand, without what holds back
-    double packetNsPerByte_ = 0; // of those that were measured last, but long ones
-    uint64_t takeNs_ = 0;        // of the batch
+    UsualTime packetNsPerByte_; // of all packets of a frame that is measured, but long ones
+    UsualTime takeNs_;          // of the batch, the same
     uint64_t wireBytes_ = 0, encodeNs_ = 0;
     struct Measured {
-        uint64_t rawBytes = 0, pageBytes = 0, wireBytes = 0, encodeNs = 0, programBytes = 0, holdNs = 0;
+        uint64_t rawBytes = 0, pageBytes = 0, wireBytes = 0, encodeNs = 0, programBytes = 0, holdNs = 0, shortBytes = 0, shortNs = 0;
     } measured_; // since the way was chosen: about a frame
     struct Published {
         std::atomic<uint64_t> packets{0}, records{0}, rawBytes{0}, stagedBytes{0}, storeHits{0}, newPages{0}, patches{0}, wireBytes{0}, encodeNs{0};
