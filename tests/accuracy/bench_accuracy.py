@@ -5,18 +5,25 @@
 """
 import json
 import os
+import re
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import xml.etree.ElementTree as tree
+
+START_SECONDS, END_SECONDS = 60, 60
 
 failures = []
 
 
+def environment_with(**more):
+    return {**{name: value for name, value in os.environ.items() if name not in ('DISPLAY', 'MURAL_PLANT')}, **more}
+
+
 def run(*arguments, plant=None):
-    environment = {name: value for name, value in os.environ.items() if name not in ('DISPLAY', 'MURAL_PLANT')}
-    if plant:
-        environment['MURAL_PLANT'] = plant
+    environment = environment_with(MURAL_PLANT=plant) if plant else environment_with()
     done = subprocess.run([sys.argv[1], 'bench', *arguments], capture_output=True, text=True, timeout=400, env=environment)
     return done.returncode, done.stdout, done.stderr
 
@@ -36,7 +43,7 @@ def quick(folder):
     recording = os.path.join(folder, 'scenes.mural')
     scenes = os.path.join(os.path.dirname(os.path.abspath(sys.argv[1])), 'mural-scenes')
     subprocess.run([sys.argv[1], 'run', '--quiet', '--display', 'none', '--size', '800x600', '--record', recording, '--', scenes, '--size', '253x191', '--frames', '6'],
-                   timeout=120, check=True, env={name: value for name, value in os.environ.items() if name not in ('DISPLAY', 'MURAL_PLANT')})
+                   timeout=120, check=True, env=environment_with())
     status, out, err = run('accuracy', '--quick', '--recording', recording, '--json', files[0], '--svg', files[1])
     print(out)
     expect(status == 0, 'status %d: %s' % (status, err))
@@ -51,7 +58,7 @@ def quick(folder):
     # What approximates must be seen to: a kernel or an eye that leaves every pixel as it was did nothing.
     for kind in ('pixel, kernel of 2x2: triangles', 'zoom of 0.5: triangles', 'yuv420'):
         expect(any(row['what'].startswith(kind) and row['differingPixels'] > 0 for row in rows), '%s changed nothing' % kind)
-    expect('%d measured, 0 broken' % len(rows) in out, 'the table tells something else')
+    expect('%d measured, 0 broken, 0 failed' % len(rows) in out, 'the table tells something else')
     # Costs: of what recordings, codecs and blending take; more samples are nearer to many and dearer.
     costs = {row['what']: row for row in rows if row['group'] == 'Recording: scenes'}
     expect(all(row['cpuNsPerPixel'] > 0 and row['bytesPerPixel'] > 0 for row in costs.values()) and len(costs) >= 5, 'costs of the recording: %s' % list(costs))
@@ -83,14 +90,114 @@ def refused(folder):
     for words, wanted in ((('accuracy', '--'), 'no program stands after --'), (('speed',), 'speed'), (('accuracy', '--frames', '0'), '--frames')):
         status, out, err = run(*words)
         expect(status == 2 and wanted in err and err.count('\n') == 1 and not out, '%s: %d %s %s' % (words, status, out, err))
-    status, out, err = run('accuracy', '--quick', '--', os.path.join(folder, 'none'))
-    expect(status == 1 and 'FAILED' in out, 'a program that is not there: %d %s %s' % (status, out, err))
+    refused_before(folder)
+    # It can be run, and draws nothing.
+    status, out, err = run('accuracy', '--quick', '--', 'true')
+    expect(status == 2 and '\n0 measured, 0 broken, 3 failed\n' in out, 'a program that draws nothing: %d %s %s' % (status, out, err))
+
+
+def refused_before(folder):
+    """What can't come to anything is refused before anything is measured, in one line."""
+    left, kept, lost = (os.path.join(folder, name) for name in ('left.json', 'kept.json', os.path.join('none', 'a')))
+    damaged = os.path.join(folder, 'damaged.mural')
+    with open(kept, 'w', encoding='utf-8') as f:
+        f.write('of last week')
+    with open(os.path.join(folder, 'scenes.mural'), 'rb') as whole, open(damaged, 'wb') as f:
+        content = whole.read()
+        middle = len(content) // 2
+        f.write(content[:middle] + bytes([content[middle] ^ 1]) + content[middle + 1:])
+    for words, wanted in ((('--', 'mural-no-such-program'), 'was not found in PATH'), (('--', lost), 'No such file or directory'), (('--', kept), 'may not be executed'),
+                          (('--recording', damaged, '--', 'true'), 'not beside a program'), (('--recording', '/etc/passwd'), 'is not a recording of Mural'),
+                          (('--recording', damaged), 'is damaged'), (('--recording', lost), "can't be read"),
+                          (('--json', lost), "--json %s can't be written: No such file" % lost), (('--svg', folder), 'Is a directory'),
+                          (('--json', left, '--svg', lost), "--svg %s can't be written" % lost), (('--json', kept, '--svg', lost), "--svg %s can't be written" % lost),
+                          (('--json', left, '--', lost), 'No such file or directory')):
+        status, out, err = run('accuracy', '--quick', *words)
+        expect(status == 2 and wanted in err and err.count('\n') == 1 and not out, '%s: %d %s %s' % (words, status, out, err))
+    expect(not os.path.exists(left), 'an empty file is left behind')
+    with open(kept, encoding='utf-8') as f:
+        expect(f.read() == 'of last week', 'a file is emptied before there is anything to write')
+
+
+def processes_with(word):
+    """Command lines of processes in whose environment the word stands."""
+    found = []
+    for pid in filter(str.isdigit, os.listdir('/proc')):
+        try:
+            with open('/proc/%s/environ' % pid, 'rb') as environment, open('/proc/%s/cmdline' % pid, 'rb') as command:
+                if word.encode() in environment.read():
+                    found.append(command.read().replace(b'\0', b' ').decode())
+        except OSError:
+            pass  # ended meanwhile, or another user's
+    return found
+
+
+def until(condition, seconds):
+    deadline = time.monotonic() + seconds
+    while not condition():
+        if time.monotonic() > deadline:
+            return False
+        time.sleep(0.02)
+    return True
+
+
+def start(folder, *words):
+    """A bench that can be told by its folder for what is temporary."""
+    inside = tempfile.mkdtemp(dir=folder)
+    process = subprocess.Popen([sys.argv[1], 'bench', 'accuracy', *words], env=environment_with(TMPDIR=inside), text=True, start_new_session=True,
+                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                               preexec_fn=lambda: [signal.signal(number, signal.SIG_DFL) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)])
+    return process, inside
+
+
+def check_end(process, inside, name, status, result):
+    """What it said; nothing of it may be left."""
+    try:
+        out, err = process.communicate(timeout=END_SECONDS)
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        failures.append('%s: it goes on for %d s' % (name, END_SECONDS))
+        return ''
+    expect(process.returncode == status and not out, '%s: status %d instead of %d; %s %s' % (name, process.returncode, status, out, err))
+    expect(not os.listdir(inside), '%s: these are left: %s' % (name, os.listdir(inside)))
+    expect(not os.path.exists(result), '%s: an empty file is left' % name)
+    expect(until(lambda: not processes_with(inside), 2), '%s: these go on: %s' % (name, processes_with(inside))) # what has been killed is gone a moment later
+    return err
+
+
+def stopped(folder):
+    """A signal, while a process runs whose command line is awaited. Ctrl-C goes to all processes of a terminal."""
+    result = os.path.join(folder, 'stopped.json')
+    stubborn = '--', 'sh', '-c', 'trap "" INT TERM; while :; do sleep 0.1; done'
+    for name, number, send, words, awaited in (('Ctrl-C, and a scene', signal.SIGINT, os.killpg, (), r'mural-scenes '),
+                                               ('SIGINT, and mural run', signal.SIGINT, os.kill, ('--quick',), r' run --quiet '),
+                                               ('SIGTERM, and mural run', signal.SIGTERM, os.kill, ('--quick',), r' run --quiet '),
+                                               ('SIGHUP, and mural run', signal.SIGHUP, os.kill, ('--quick',), r' run --quiet '),
+                                               ('SIGTERM, and a program that ignores it', signal.SIGTERM, os.kill, stubborn, r'^sh -c trap')):
+        process, inside = start(folder, '--json', result, *words)
+        if not until(lambda: any(re.search(awaited, line) for line in processes_with(inside)), START_SECONDS):
+            failures.append('%s: there was no such process within %d s' % (name, START_SECONDS))
+        send(process.pid, number)
+        err = check_end(process, inside, name, 128 + number, result)
+        expect(err.endswith('mural bench accuracy: stopped before all was measured; nothing is written\n'), '%s: it says %s' % (name, err))
+
+
+def unread(folder):
+    """Who reads what it says goes away: that ends it as it ends other programs, and leaves nothing, either."""
+    result = os.path.join(folder, 'unread.json')
+    process, inside = start(folder, '--quick', '--json', result)
+    process.stderr.readline()
+    process.stderr.close()
+    process.stderr = None
+    check_end(process, inside, 'nobody reads', 128 + signal.SIGPIPE, result)
 
 
 with tempfile.TemporaryDirectory() as scratch:
     quick(scratch)
     program(scratch)
     refused(scratch)
+    stopped(scratch)
+    unread(scratch)
 for failure in failures:
     print('FAILED:', failure)
 sys.exit(1 if failures else 0)

@@ -82,9 +82,25 @@ TEST(AccuracyReport, saysWhatIsBrokenAndWhatFailed) {
     const std::string table = tableOf(report);
     EXPECT_NE(table.find("BROKEN"), std::string::npos) << table;
     EXPECT_NE(table.find("lost: FAILED: why it was"), std::string::npos) << table;
-    EXPECT_NE(table.find("3 measured, 2 broken"), std::string::npos) << table;
+    EXPECT_NE(table.find("\n2 measured, 1 broken, 1 failed\n"), std::string::npos) << table;
     EXPECT_NE(plotOf(report).find("scenes &amp; &lt;more&gt;"), std::string::npos);
     EXPECT_NE(jsonOf(report).find("\"failure\": \"why it was\""), std::string::npos);
+}
+
+TEST(AccuracyReport, endsByWhatCouldBeMeasured) {
+    const AccuracyRow good{"group", "good", "native", errorOf(grey(5, 4, 0).view(), grey(5, 4, 0).view()), Bound::exact(), {}};
+    AccuracyRow bad = good, lost = good;
+    bad.error = errorOf(grey(5, 4, 0).view(), grey(5, 4, 1).view());
+    lost.error = {};
+    lost.failure = "why it was";
+    const auto statusOf = [](const std::vector<AccuracyRow>& rows) { return AccuracyReport{"scenes", "", rows}.exitStatus(); };
+    EXPECT_EQ(statusOf({good, good}), 0);
+    EXPECT_EQ(statusOf({good, bad}), 1);
+    EXPECT_EQ(statusOf({good, lost}), 1);
+    EXPECT_EQ(statusOf({bad, lost}), 1);
+    EXPECT_EQ(statusOf({lost, lost}), 2);
+    EXPECT_EQ(statusOf({}), 2);
+    EXPECT_NE(tableOf({"scenes", "", {lost, lost}}).find("\n0 measured, 0 broken, 2 failed\n"), std::string::npos);
 }
 
 TEST(AccuracyReport, numbersAreReadable) {

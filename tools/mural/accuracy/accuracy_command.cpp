@@ -1,17 +1,18 @@
 #include "tools/mural/accuracy/accuracy_command.hpp"
 
-#include <cerrno>
-#include <cstring>
+#include <cstdio>
 #include <fmt/format.h>
-#include <fstream>
+#include <optional>
 
 #include "nodes/launch/program_check.hpp"
 #include "tools/mural/accuracy/accuracy_plot.hpp"
 #include "tools/mural/accuracy/accuracy_runs.hpp"
 #include "tools/mural/accuracy/accuracy_text.hpp"
 #include "tools/mural/accuracy/composition_rows.hpp"
+#include "tools/mural/accuracy/interruption.hpp"
 #include "tools/mural/accuracy/program_rows.hpp"
 #include "tools/mural/accuracy/recording_rows.hpp"
+#include "tools/mural/accuracy/result_file.hpp"
 #include "tools/mural/accuracy/scene_rows.hpp"
 #include "tools/mural/accuracy/transform_rows.hpp"
 
@@ -19,7 +20,30 @@ namespace mural::cli {
 
 namespace {
 
-void say(const std::string& what) { fmt::print(stderr, "mural bench accuracy: {}\n", what); }
+// Not by fmt, which throws where nobody reads any more.
+void tell(const std::string& what) { std::fputs(("mural bench accuracy: " + what + "\n").c_str(), stderr); }
+
+// Of what is skipped as all is being ended, nothing is said.
+void say(const std::string& what) {
+    if (Interruption::signal() == 0) tell(what);
+}
+
+int complain(const Error& error) {
+    tell(error.message);
+    const int number = Interruption::signal();
+    return number != 0 ? 128 + number : launch::kExitUsage;
+}
+
+// What would fail in each run is said once, before the first.
+Result<void> checkSubject(const BenchArguments& a) {
+    if (!a.program.empty() && !a.recordings.empty()) return Error{"--recording is measured beside Mural's own scenes, not beside a program; leave out one of the two"};
+    for (const std::string& recording : a.recordings)
+        if (auto r = checkRecording(recording, say); !r) return r;
+    if (a.program.empty()) return {};
+    const launch::ProgramCheck program = launch::checkProgram(a.program.front(), launch::Environment::current().get("PATH").value_or("/usr/bin:/bin"));
+    if (!program.ok()) return Error{program.message};
+    return {};
+}
 
 Result<void> measureScenes(const AccuracyRuns& runs, bool quick, AccuracyReport& report) {
     SceneRows scenes(runs, quick, say);
@@ -27,6 +51,7 @@ Result<void> measureScenes(const AccuracyRuns& runs, bool quick, AccuracyReport&
     report.subject = scenes.subject();
     report.gl = scenes.gl();
     scenes.measure(report.rows);
+    if (Interruption::signal() != 0) return {};
     say("composition");
     measureComposition(report.rows);
     measureTransforms(report.rows);
@@ -35,7 +60,7 @@ Result<void> measureScenes(const AccuracyRuns& runs, bool quick, AccuracyReport&
     return {};
 }
 
-Result<AccuracyReport> measure(const BenchArguments& a) {
+Result<AccuracyReport> measureSubject(const BenchArguments& a) {
     auto runs = AccuracyRuns::open();
     if (!runs) return runs.error();
     AccuracyReport report;
@@ -50,14 +75,17 @@ Result<AccuracyReport> measure(const BenchArguments& a) {
     return report;
 }
 
-bool write(const std::string& path, const std::string& text) {
-    if (path.empty()) return true;
-    std::ofstream out(path, std::ios::binary | std::ios::trunc);
-    out << text;
-    out.close();
-    if (out) return true;
-    say(fmt::format("{} can't be written: {}; name another file", path, std::strerror(errno)));
-    return false;
+// All folders and processes have gone when it returns.
+Result<AccuracyReport> measure(const BenchArguments& a) {
+    auto report = measureSubject(a);
+    if (Interruption::signal() != 0) return Error{"stopped before all was measured; nothing is written"};
+    return report;
+}
+
+bool write(ResultFile& file, const std::string& text) {
+    const auto written = file.write(text);
+    if (!written) tell(written.error().message);
+    return written.ok();
 }
 
 } // namespace
@@ -67,19 +95,24 @@ void describeBench(CLI::App& command, BenchArguments& a) {
     command.add_option("--json", a.json, "write what was measured into this file, too")->type_name("FILE");
     command.add_option("--svg", a.svg, "draw what was measured into this file")->type_name("FILE");
     command.add_flag("--quick", a.quick, "small pictures, and one decomposition of each kind");
-    command.add_option("--recording", a.recordings, "measure on this recording of a program, too (mural run --record); may be given again")->type_name("FILE")->check(CLI::ExistingFile);
+    command.add_option("--recording", a.recordings, "measure on this recording of a program, too (mural run --record); may be given again")->type_name("FILE");
     command.add_option("--frames", a.frames, "of a program after --: at least so many frames are compared")->type_name("N")->check(CLI::Range(int64_t{1}, int64_t{1'000'000}))->capture_default_str();
 }
 
 int benchCommand(const BenchArguments& a) {
+    if (auto sound = checkSubject(a); !sound) return complain(sound.error());
+    std::optional<Interruption> interruption(std::in_place); // before anything is made that must not stay
+    auto json = ResultFile::open("--json", a.json);
+    if (!json) return complain(json.error());
+    auto svg = ResultFile::open("--svg", a.svg);
+    if (!svg) return complain(svg.error());
     const auto report = measure(a);
-    if (!report) {
-        say(report.error().message);
-        return launch::kExitUsage;
-    }
+    if (!report) return complain(report.error());
+    interruption.reset(); // what is left to do is done soon, or waits for a reader
+    const bool written = write(*json, jsonOf(report.value())) && write(*svg, plotOf(report.value()));
     fmt::print("{}", tableOf(report.value()));
-    const bool written = write(a.json, jsonOf(report.value())) && write(a.svg, plotOf(report.value()));
-    return written && report.value().holds() ? 0 : 1;
+    const int status = report.value().exitStatus();
+    return status == 0 && !written ? 1 : status;
 }
 
 } // namespace mural::cli

@@ -28,6 +28,12 @@ struct AccuracyRow {
     [[nodiscard]] bool holds() const { return failure.empty() && bound.holds(error); }
 };
 
+struct AccuracyCounts {
+    size_t measured = 0;
+    size_t broken = 0; // of those
+    size_t failed = 0; // not measured
+};
+
 // All that is told of one run.
 struct AccuracyReport {
     std::string subject; // what was drawn, at which size
@@ -35,6 +41,9 @@ struct AccuracyReport {
     std::vector<AccuracyRow> rows;
 
     [[nodiscard]] bool holds() const;
+    [[nodiscard]] AccuracyCounts counts() const;
+    // 0: all holds, 1: something is broken or failed, 2: nothing could be measured.
+    [[nodiscard]] int exitStatus() const;
 };
 
 using SayProgress = std::function<void(const std::string&)>;

@@ -8,12 +8,15 @@
 #include <fcntl.h>
 #include <filesystem>
 #include <fstream>
+#include <poll.h>
 #include <sstream>
 #include <unistd.h>
 
 #include "nodes/launch/child_process.hpp"
+#include "nodes/launch/process_tree.hpp"
 #include "nodes/launch/program_check.hpp"
 #include "nodes/output/png_files.hpp"
+#include "tools/mural/accuracy/interruption.hpp"
 
 namespace mural::cli {
 
@@ -22,6 +25,7 @@ namespace {
 constexpr int64_t kRunMs = 300'000; // of one run; slow machines need a tenth of it
 constexpr int64_t kFrameMs = 1'000; // and of each frame that a user asks for
 constexpr int64_t kEndMs = 10'000;
+constexpr int64_t kTurnMs = 50;
 
 std::string textOf(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
@@ -33,6 +37,33 @@ std::string textOf(const std::string& path) {
 std::string lastLine(std::string text) {
     while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) text.pop_back();
     return text.substr(text.find_last_of('\n') + 1);
+}
+
+// True: it has ended by itself; false: it is to be ended.
+bool awaitEnd(launch::ChildProcess& child, Deadline limit) {
+    while (!child.waitUntil(Deadline::inMs(kTurnMs)))
+        if (limit.passed() || Interruption::signal() != 0) return false;
+    return true;
+}
+
+// What a killed `mural run` has left: it would go on writing into folders that are being removed.
+void killOrphans(pid_t display) {
+    for (const Deadline deadline = Deadline::inMs(kEndMs); !deadline.passed(); poll(nullptr, 0, kTurnMs)) {
+        launch::reapAdopted({display});
+        const auto left = launch::descendantsOf(getpid(), {display});
+        if (left.empty()) return;
+        for (const launch::ProcessFacts& p : left) kill(p.pid, SIGKILL);
+    }
+}
+
+// `mural run` ends all that it has started when it is asked to, and at the second time does not wait for pictures any more.
+void endWithAll(launch::ChildProcess& child, pid_t display) {
+    for (int time = 0; time < 2; ++time) {
+        child.signal(SIGTERM);
+        if (child.waitUntil(Deadline::inMs(kEndMs))) return;
+    }
+    child.end(Deadline::inMs(0));
+    killOrphans(display);
 }
 
 Result<OwnedPicture> readPpm(const std::string& path) {
@@ -72,6 +103,7 @@ ScratchFolder::~ScratchFolder() {
 Result<AccuracyRuns> AccuracyRuns::open() {
     auto scratch = ScratchFolder::make();
     if (!scratch) return scratch.error();
+    launch::adoptOrphans(); // see killOrphans()
     auto display = launch::PrivateDisplay::start(launch::kDefaultScreenWidth, launch::kDefaultScreenHeight);
     if (!display) return display.error();
     return AccuracyRuns(std::move(*display), std::move(*scratch));
@@ -99,6 +131,7 @@ Result<std::string> AccuracyRuns::replay(const Words& options, const std::string
 }
 
 Result<std::string> AccuracyRuns::perform(const Words& command, const std::string& name, int64_t limitMs) const {
+    if (Interruption::signal() != 0) return Error{name + " was not started: all is being ended"};
     const std::string said = scratch_.path() + "/said", complained = scratch_.path() + "/complained";
     launch::SpawnRequest request;
     request.file = command.front();
@@ -114,8 +147,8 @@ Result<std::string> AccuracyRuns::perform(const Words& command, const std::strin
     if (request.outputFd >= 0) close(request.outputFd);
     if (request.errorFd >= 0) close(request.errorFd);
     if (!child) return child.error();
-    if (!child->waitUntil(Deadline::inMs(limitMs))) {
-        child->end(Deadline::inMs(kEndMs));
+    if (!awaitEnd(*child, Deadline::inMs(limitMs))) {
+        endWithAll(*child, display_->pid());
         return Error{name + " did not end within " + std::to_string(limitMs / 1000) + " s and was ended"};
     }
     if (child->exitStatus() == 0) return textOf(said);

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "nodes/launch/program_check.hpp"
+
 namespace mural::cli {
 
 namespace {
@@ -29,6 +31,20 @@ std::vector<std::string> cellsOf(const AccuracyRow& row) {
 
 bool AccuracyReport::holds() const {
     return !rows.empty() && std::ranges::all_of(rows, [](const AccuracyRow& r) { return r.holds(); });
+}
+
+AccuracyCounts AccuracyReport::counts() const {
+    AccuracyCounts counts;
+    for (const AccuracyRow& row : rows) {
+        ++(row.failure.empty() ? counts.measured : counts.failed);
+        if (row.failure.empty() && !row.holds()) ++counts.broken;
+    }
+    return counts;
+}
+
+int AccuracyReport::exitStatus() const {
+    if (counts().measured == 0) return launch::kExitUsage;
+    return holds() ? 0 : 1;
 }
 
 std::string spaced(int64_t number) {
@@ -57,8 +73,8 @@ std::string tableOf(const AccuracyReport& report) {
         if (row.group != group) text += (group = row.group) + "\n";
         text += row.failure.empty() ? print(lines[line++]) : "  " + row.what + ": FAILED: " + row.failure + "\n";
     }
-    const auto broken = std::ranges::count_if(report.rows, [](const AccuracyRow& r) { return !r.holds(); });
-    return text + fmt::format("\n{} measured, {} broken\n", report.rows.size(), broken);
+    const AccuracyCounts counts = report.counts();
+    return text + fmt::format("\n{} measured, {} broken, {} failed\n", counts.measured, counts.broken, counts.failed);
 }
 
 std::string jsonOf(const AccuracyReport& report) {

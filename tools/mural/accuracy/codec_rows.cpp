@@ -3,6 +3,7 @@
 #include "common/clock.hpp"
 #include "compositor/codecs/registry.hpp"
 #include "tools/mural/accuracy/composition_rows.hpp"
+#include "tools/mural/accuracy/interruption.hpp"
 
 namespace mural::cli {
 
@@ -40,6 +41,7 @@ AccuracyRow codecRow(CodecRegistry& registry, const std::string& group, const st
     auto codec = registry.make(name);
     if (!codec) row.failure = codec.error().message;
     for (const Plane& plane : planes) {
+        if (Interruption::signal() != 0) row.failure = "all is being ended";
         if (!row.failure.empty()) return row;
         std::vector<std::byte> bytes((*codec)->boundBytes(shapeOf(plane.view())));
         Plane back(PlaneFormat::Rgba8, plane.width(), plane.height());

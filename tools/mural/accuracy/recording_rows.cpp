@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "recording/file_reader.hpp"
 #include "tools/mural/accuracy/composition_rows.hpp"
 
 namespace mural::cli {
@@ -73,10 +74,23 @@ Result<Replayed> replayed(const AccuracyRuns& runs, const std::string& recording
 
 } // namespace
 
+Result<void> checkRecording(const std::string& recording, const SayProgress& say) {
+    auto reader = recording::FileReader::open(recording);
+    if (!reader) return reader.error();
+    if (auto whole = reader.value()->verify(); !whole) return whole.error();
+    if (reader.value()->frames() == 0) return Error{"recording " + recording + " has no frame: its program showed no picture; mural dump prints its calls"};
+    if (!reader.value()->notice().empty()) say(reader.value()->notice());
+    return {};
+}
+
 void measureRecording(const AccuracyRuns& runs, const std::string& recording, bool quick, const SayProgress& say, std::vector<AccuracyRow>& rows) {
     const std::string name = std::filesystem::path(recording).stem().string(), group = "Recording: " + name;
     const auto one = replayed(runs, recording, {});
-    const auto many = one ? replayed(runs, recording, {"--subpixel", std::to_string(kMostSamples)}) : Result<Replayed>(one.error());
+    if (!one) { // there is nothing to compare with, and one line says so
+        rows.push_back({group, "one node", "", {}, {}, one.error().message, {}});
+        return;
+    }
+    const auto many = replayed(runs, recording, {"--subpixel", std::to_string(kMostSamples)});
     for (const Way& way : ways()) {
         if (quick && !way.quick) continue;
         say(name + ": " + way.name);
@@ -85,6 +99,7 @@ void measureRecording(const AccuracyRuns& runs, const std::string& recording, bo
         const auto got = wanted ? replayed(runs, recording, way.options) : Result<Replayed>(wanted.error());
         if (!got) row.failure = got.error().message;
         else if (got.value().pictures.size() != wanted.value().pictures.size()) row.failure = fmt::format("{} pictures came instead of {}", got.value().pictures.size(), wanted.value().pictures.size());
+        else if (way.otherPixels && got.value().pictures.size() <= kWholeFrames) row.failure = fmt::format("the first {} frames do not count, and there are no others; record more", kWholeFrames);
         if (row.failure.empty()) {
             const Replayed &a = wanted.value(), &b = got.value();
             for (size_t p = way.otherPixels ? kWholeFrames : 0; p < a.pictures.size(); ++p) row.error.add(errorOf(a.pictures[p].view(), b.pictures[p].view()));
@@ -93,7 +108,7 @@ void measureRecording(const AccuracyRuns& runs, const std::string& recording, bo
         }
         rows.push_back(row);
     }
-    if (one) measureCodecs(one.value().pictures, "Codecs, on the recording " + name, quick, rows);
+    measureCodecs(one.value().pictures, "Codecs, on the recording " + name, quick, rows);
 }
 
 } // namespace mural::cli

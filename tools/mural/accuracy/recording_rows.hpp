@@ -6,6 +6,9 @@
 
 namespace mural::cli {
 
+// What can be said against it before it is replayed; all of it is read.
+Result<void> checkRecording(const std::string& recording, const SayProgress& say);
+
 void measureRecording(const AccuracyRuns& runs, const std::string& recording, bool quick, const SayProgress& say, std::vector<AccuracyRow>& rows);
 
 } // namespace mural::cli

@@ -1,0 +1,31 @@
+#include "tools/mural/accuracy/interruption.hpp"
+
+namespace mural::cli {
+
+namespace {
+
+volatile std::sig_atomic_t received = 0;
+
+void note(int number) {
+    if (received == 0) received = number;
+}
+
+} // namespace
+
+Interruption::Interruption() {
+    received = 0;
+    struct sigaction noted {};
+    noted.sa_handler = note; // no SA_RESTART: waits end
+    for (size_t i = 0; i < kSignals.size(); ++i) {
+        sigaction(kSignals[i], nullptr, &before_[i]);
+        if (before_[i].sa_handler != SIG_IGN) sigaction(kSignals[i], &noted, nullptr); // nohup has its reasons
+    }
+}
+
+Interruption::~Interruption() {
+    for (size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &before_[i], nullptr);
+}
+
+int Interruption::signal() { return received; }
+
+} // namespace mural::cli
