@@ -355,6 +355,7 @@ void HeadSession::noNodeIsLeft() {
     control_.say("no render node is left: programs go on alone, without the wall; start the session again");
     programs_->refuseFrom("this session has lost all its render nodes; start it again");
     programs_->tellHeadGone();
+    control_.send({{"event", "wall-lost"}});
 }
 
 // ---- end

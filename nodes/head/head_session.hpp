@@ -101,6 +101,7 @@ private:
     void introduceNodes();
     NodeSetup setupFor(const NodePlan& plan);
     Result<void> awaitReady();
+    Result<void> checkSize();
     void openTables();
     void beginRecording();
     void announceReady();

@@ -128,7 +128,7 @@ Result<void> HeadSession::awaitReady() {
             const std::lock_guard lock(mutex_);
             if (!startFailure_.empty()) return Error{startFailure_};
             const auto missing = std::ranges::find(ready_, false);
-            if (missing == ready_.end()) return {};
+            if (missing == ready_.end()) return checkSize();
             if (deadline.passed()) {
                 const auto node = static_cast<int>(missing - ready_.begin());
                 return Error{nodes_.link(node).describe() + " was not ready within " +
@@ -139,6 +139,18 @@ Result<void> HeadSession::awaitReady() {
         if (askedToFinish(Deadline::inMs(10)))
             return Error{"the session was ended before its nodes were ready"};
     }
+}
+
+// Windows of programs may be larger still, which is seen when they come; mutex_ is held.
+Result<void> HeadSession::checkSize() {
+    const int64_t side = std::max(config_.width, config_.height);
+    for (size_t i = 0; config_.tiling != Tiling::Lean && i < facts_.size(); ++i) {
+        const int64_t most = facts_[i].mostPixels;
+        if (most == 0 || side <= most) continue;
+        return Error{nodes_.link(static_cast<int>(i)).describe() + " draws pictures of at most " + std::to_string(most) + " pixels a side, and the wall has " + std::to_string(config_.width) + "x" +
+                     std::to_string(config_.height) + "; give a smaller --size"};
+    }
+    return {};
 }
 
 void HeadSession::openTables() {

@@ -18,6 +18,7 @@ struct NodeFacts {
     std::string exchange;  // HOST:PORT where it takes other nodes' pictures; no host: this machine; empty: it does not
     std::string swapBarrier; // likewise where it lets others of its swap barrier in
     int glVersion = 0; // 10 * major + minor, 0: unknown
+    int64_t mostPixels = 0; // of a side of the pictures that it can draw; 0: unknown
     std::vector<std::string> extensions;
 };
 

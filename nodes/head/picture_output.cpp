@@ -89,9 +89,7 @@ void PictureOutput::work() {
     lock.unlock();
     windows_.clear();
     wall_.reset();
-    if (file_) {
-        if (const auto finished = file_->finish(); !finished) config_.say(finished.error().message);
-    }
+    if (file_) finishFile();
     canvases_.clear();
     for (const OtherCanvas& canvas : config_.canvases) {
         if (!canvas.file) continue;
@@ -100,6 +98,15 @@ void PictureOutput::work() {
     lock.lock();
     ended_ = true;
     changed_.notify_all();
+}
+
+// A video that is not complete shows nothing of what is in it.
+void PictureOutput::finishFile() {
+    const auto finished = file_->finish();
+    if (finished) return;
+    config_.say(finished.error().message);
+    const std::lock_guard lock(mutex_);
+    totals_.savedPictures = 0;
 }
 
 void PictureOutput::show(const WindowPicture& picture) {

@@ -75,6 +75,7 @@ private:
 
     void work();
     void show(const WindowPicture& picture);
+    void finishFile();
     void save(int64_t frame, const Picture& picture);
     void showInWindow(const WindowPicture& picture);
     void showOnWall(int64_t frame, const Picture& picture);

@@ -319,13 +319,15 @@ private:
         ready["host"] = hostName();
         ready["pid"] = getpid();
         std::set<std::string> extensions;
-        int best = 0;
+        int best = 0, mostPixels = 0;
         const auto add = [&](gl::Api api, bool core) {
             const auto p = gl::probe(platform, api, core);
             if (!p) return;
             extensions.insert(p.value().extensions.begin(), p.value().extensions.end());
             if (api == gl::Api::Desktop && p.value().glVersion > best) best = p.value().glVersion;
-            if (!ready.contains("renderer")) ready["renderer"] = p.value().renderer + ", " + p.value().backend;
+            if (mostPixels == 0 || p.value().maxSurfaceSize < mostPixels) mostPixels = p.value().maxSurfaceSize;
+            const std::string &renderer = p.value().renderer, &backend = p.value().backend;
+            if (!ready.contains("renderer")) ready["renderer"] = backend.find(renderer) != std::string::npos ? backend : renderer + ", " + backend;
         };
         add(gl::Api::Desktop, false);
         add(gl::Api::Desktop, true);
@@ -335,6 +337,7 @@ private:
         extensions.insert(images.begin(), images.end());
         if (images.empty()) std::erase_if(extensions, [](const std::string& name) { return name.find("_EGL_image") != std::string::npos; });
         ready["glVersion"] = best;
+        ready["mostPixels"] = mostPixels;
         ready["extensions"] = std::vector<std::string>(extensions.begin(), extensions.end());
         return ready;
     }

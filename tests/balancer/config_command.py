@@ -62,6 +62,14 @@ def bad():
     status, out, _ = run('check', '/nonexistent.eqc')
     expect(status == 2 and out.startswith("error: /nonexistent.eqc: can't be read"), 'a file that is not there: %s' % out)
     expect(run('chek', '/nonexistent.eqc')[0] == 2, 'a verb that does not exist')
+    for words, said in ((('print', files[0], '--resolved', '--frame', '-3'), '--frame'), (('print', files[0], '--frame', '2'), 'are for print --resolved'),
+                        (('draw', files[0], '--resolved'), '--resolved is for print'), (('check', files[0], '--out', 'x'), '--out is for print and draw')):
+        status, out, err = run(*words)
+        expect(status == 2 and not out and said in err and err.count('\n') == 1, '%s: %d %s' % (' '.join(words), status, err))
+    # Of what is no configuration each word is warned of: the error is to be seen.
+    status, out, _ = run('check', os.path.abspath(__file__))
+    warnings = out.count('\nwarning: ') + out.startswith('warning: ')
+    expect(status == 2 and warnings == 10 and 'more warnings are left out' in out and 'error: ' in out, 'a foreign file: %d warnings, %s' % (warnings, out[-300:]))
 
 
 files = sorted(os.path.join(sys.argv[2], f) for f in os.listdir(sys.argv[2]) if f.endswith('.eqc'))

@@ -162,6 +162,29 @@ def all_nodes_killed(context):
         return wrong
 
 
+def killed_while_frames_are_counted(context, pattern, how_many):
+    """Nobody counts to --frames any more: the program ends all the same, and the run has failed."""
+    options = ("--tiles", "2x1", "--display", "none", "--restart-nodes", "0", "--frames", "1000000")
+    with context.drawing("long_run", 10 ** 6, options=options) as run:
+        if not run.wait_for_line("frame 20"):
+            return "the program did not start: " + " | ".join(run.standard_error[-3:])
+        kill_all(run.wait_for_processes(pattern, how_many))
+        wrong = check_end(run, 1)
+        if wrong is None and len(error_lines(run, ["--frames asked for"])) != 1:
+            wrong = "it said: " + " | ".join(run.standard_error[-4:])
+        return wrong
+
+
+@case
+def head_killed_while_frames_are_counted(context):
+    return killed_while_frames_are_counted(context, HEAD, 1)
+
+
+@case
+def all_nodes_killed_while_frames_are_counted(context):
+    return killed_while_frames_are_counted(context, NODE, 2)
+
+
 @case
 def node_without_memory(context):
     """One node finds no memory for a texture: the program is told as by its own driver, once."""

@@ -20,7 +20,7 @@ struct Shown {
 
 class TellingSink final : public PictureSink {
 public:
-    explicit TellingSink(std::vector<Shown>& shown) : shown_(shown) {}
+    explicit TellingSink(std::vector<Shown>& shown, Result<void> finishes = {}) : shown_(shown), finishes_(std::move(finishes)) {}
     Result<void> show(int64_t, const Picture& p) override {
         shown_.push_back({p.width, p.height, p.row(0)[0], std::byte{0}});
         return {};
@@ -29,11 +29,12 @@ public:
         shown_.push_back({eyes.left.width, eyes.left.height, eyes.left.row(0)[0], eyes.right.row(0)[0]});
         return {};
     }
-    Result<void> finish() override { return {}; }
+    Result<void> finish() override { return finishes_; }
     [[nodiscard]] std::string describe() const override { return "a test"; }
 
 private:
     std::vector<Shown>& shown_;
+    Result<void> finishes_;
 };
 
 std::shared_ptr<OwnedPicture> filled(std::byte value) {
@@ -80,6 +81,22 @@ TEST(PictureOutput, EachCanvasHasItsOwnEyes) {
             expectOne(otherFile, otherIsPair, "file of the other canvas");
             expectOne(otherWall, otherIsPair, "wall of the other canvas");
         }
+}
+
+TEST(PictureOutput, AVideoThatIsNotCompleteIsNotSaved) {
+    for (const bool complete : {true, false}) {
+        std::vector<Shown> file;
+        std::string said;
+        PictureOutputConfig config;
+        config.done = [](uint32_t, uint32_t) {};
+        config.say = [&](const std::string& text) { said += text; };
+        PictureOutput output(std::move(config), std::make_unique<TellingSink>(file, complete ? Result<void>() : Error{"the disk is full"}));
+        for (uint32_t frame = 1; frame <= 3; ++frame) output.add({1, 1, frame, 0, filled(kLeft), {}});
+        ASSERT_TRUE(output.finish(Deadline::inMs(10'000)));
+        EXPECT_EQ(file.size(), 3u);
+        EXPECT_EQ(output.totals().savedPictures, complete ? 3 : 0);
+        EXPECT_EQ(said, complete ? "" : "the disk is full");
+    }
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 // The built command with everything that a user can get wrong: one line on standard error, nothing on
 // standard output, the documented status, and no process left.
 #include <cstdio>
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <string>
 #include <sys/mman.h>
@@ -27,14 +28,14 @@ std::string contentOf(int fd) {
     return text;
 }
 
-Said mural(std::vector<std::string> words, std::vector<std::string> environment = {}) {
+Said mural(std::vector<std::string> words, std::vector<std::string> environment = {}, const char* outputFile = nullptr) {
     launch::SpawnRequest request;
     request.file = MURAL_BINARY;
     request.arguments = {"mural"};
     request.arguments.insert(request.arguments.end(), words.begin(), words.end());
     request.environment = {"PATH=/usr/bin:/bin"};
     request.environment.insert(request.environment.end(), environment.begin(), environment.end());
-    request.outputFd = memfd_create("output", MFD_CLOEXEC);
+    request.outputFd = outputFile != nullptr ? open(outputFile, O_WRONLY | O_CLOEXEC) : memfd_create("output", MFD_CLOEXEC);
     request.errorFd = memfd_create("errors", MFD_CLOEXEC);
     Said said;
     auto child = launch::ChildProcess::start(request);
@@ -62,6 +63,38 @@ TEST(BadArguments, ofTheCommandItself) {
     expectOneLine(mural({"node"}), 2, "--connect");
     expectOneLine(mural({"head"}), 2, "--control-fd");
     expectOneLine(mural({"head", "--control-fd", "x"}), 2, "--control-fd");
+}
+
+// Whoever reads it later would take what is missing for all there is.
+TEST(BadArguments, outputThatIsLostIsAnError) {
+    for (const std::vector<std::string>& words : {std::vector<std::string>{"version"}, {"list-commands"}, {"list-commands", "--unsupported"}, {"run", "--help"}, {"run", "--print-config", "--tiles", "3x2"}}) {
+        SCOPED_TRACE(words.front());
+        expectOneLine(mural(words, {}, "/dev/full"), 1, "the output can't be written: No space left");
+    }
+}
+
+TEST(BadArguments, whatIsWrittenAtTheEndIsLookedAtBefore) {
+    test::TemporaryFolder folder;
+    expectOneLine(mural({"run", "--report", "/nodir/r.json", "--", "true"}), 2, "--report /nodir/r.json: cannot be written");
+    expectOneLine(mural({"run", "--report", "/tmp", "--", "true"}), 2, "is a folder");
+    expectOneLine(mural({"run", "--out", folder.at("shots"), "--frames", "10", "--save", "4,45", "--", "true"}), 2, "behind the last one, 10");
+}
+
+TEST(BadArguments, aWallThatNoNodeDrawsIsRefused) {
+    expectOneLine(mural({"run", "--size", "20000x100", "--", "true"}), 2, "give a smaller --size");
+}
+
+TEST(GoodArguments, picturesOfAnEarlierRunAreToldOf) {
+    test::TemporaryFolder folder;
+    const auto toldOf = [&](const std::string& out) {
+        return mural({"run", "--tiles", "1x1", "--display", "none", "--out", out, "--", "true"}).errors.find("2 pictures of an earlier run are there") != std::string::npos;
+    };
+    folder.file("frame-000001.png", {}, 0644);
+    folder.file("frame-000002.png", {}, 0644);
+    folder.file("other.png", {}, 0644);
+    EXPECT_TRUE(toldOf(folder.at("")));
+    EXPECT_FALSE(toldOf(folder.at("empty")));
+    EXPECT_FALSE(toldOf(folder.at("film.mp4")));
 }
 
 TEST(GoodArguments, versionByCommandAndByFlag) {

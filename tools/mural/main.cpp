@@ -1,10 +1,14 @@
 // mural: one binary, many sub-commands. Parses the command line, and nothing else.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <fmt/format.h>
 #include <functional>
+#include <iostream>
+#include <system_error>
 
 #include "nodes/head/head.hpp"
 #include "nodes/launch/program_check.hpp"
@@ -25,6 +29,8 @@
 namespace {
 
 using mural::launch::kExitUsage;
+
+constexpr int kExitOutput = 1; // what was to be printed could not be
 
 int usageError(const std::string& command, std::string text) {
     for (char& c : text) {
@@ -245,7 +251,7 @@ private:
                               "  mural bench accuracy --recording app.mural        with a recording of a program: errors beside CPU time and bytes\n"
                               "  mural bench accuracy --frames 60 -- glxgears      a program of yours, each frame against what its own context draws\n\n"
                               "Everything runs on this machine and a private display. docs/accuracy.md says what the bounds are, and why.\n"
-                              "Exit status: 0, 1 when a bound is broken or a file can't be written, 2 when nothing could be measured.");
+                              "Exit status: 0, 1 when a bound is broken, something failed or a result can't be written, 2 when nothing could be measured.");
         mural::cli::describeBench(bench, bench_);
     }
 
@@ -302,6 +308,24 @@ private:
     std::function<int()> action_;
 };
 
+// What a command prints is its result: lost, it has failed, whatever else it did.
+int afterOutput(int status) {
+    errno = 0;
+    std::cout.flush();
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout) return status;
+    const std::string why = errno != 0 ? std::string(": ") + std::strerror(errno) : std::string();
+    fmt::print(stderr, "mural: the output can't be written{}; give it more room, or another place\n", why);
+    return status != 0 ? status : kExitOutput;
+}
+
 } // namespace
 
-int main(int count, char** arguments) { return CommandLine().perform(count, arguments); }
+int main(int count, char** arguments) {
+    int status = kExitOutput;
+    try {
+        status = CommandLine().perform(count, arguments);
+    } catch (const std::system_error&) { // of fmt::print(), where standard output takes no more
+        if (std::ferror(stdout) == 0) throw;
+    }
+    return afterOutput(status);
+}

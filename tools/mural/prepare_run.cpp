@@ -32,6 +32,31 @@ Result<void> checkOutput(const std::string& out) {
     return {};
 }
 
+std::string earlierPictures(const std::string& out) {
+    namespace fs = std::filesystem;
+    const auto kind = outputKindOf(out);
+    if (out.empty() || !kind.ok() || kind.value() == OutputKind::Video) return {};
+    size_t count = 0;
+    std::error_code failed;
+    for (fs::directory_iterator at(out, failed), end; !failed && at != end; at.increment(failed)) {
+        const std::string name = at->path().filename();
+        count += name.starts_with("frame-") && name.ends_with(".png");
+    }
+    if (count == 0) return {};
+    return fmt::format("--out {}: {} picture{} of an earlier run {} there; only those of the same frames are replaced", out, count, count == 1 ? "" : "s", count == 1 ? "is" : "are");
+}
+
+Result<void> checkReport(const std::string& file) {
+    namespace fs = std::filesystem;
+    if (file.empty()) return {};
+    std::error_code failed;
+    const fs::path folder = fs::path(file).has_parent_path() ? fs::path(file).parent_path() : fs::path(".");
+    if (fs::is_directory(file, failed)) return Error{"--report " + file + ": is a folder; give the name of a file"};
+    const bool there = fs::exists(file, failed);
+    if (access(there ? file.c_str() : folder.c_str(), W_OK) == 0) return {};
+    return Error{fmt::format("--report {}: cannot be written: {}; give another place", file, std::strerror(errno))};
+}
+
 Result<void> chooseDisplay(const RunOptions& options, bool programNeedsOne, PreparedRun& run) {
     SessionConfig& c = run.config;
     const std::string own = run.programEnvironment.get("DISPLAY").value_or("");

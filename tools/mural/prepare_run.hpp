@@ -14,6 +14,11 @@ std::string newSessionName();
 
 // What can be said about --out before the first picture; the head opens it.
 Result<void> checkOutput(const std::string& out);
+// Of pictures that stay in its folder from before, beside those that come; empty: there are none.
+std::string earlierPictures(const std::string& out);
+
+// Whether a file can be written there, which may be long after: --report is, when all is over. No file is made.
+Result<void> checkReport(const std::string& file);
 
 // Which display the program and the wall get; starts a private one where the wall needs it, or the program does.
 Result<void> chooseDisplay(const RunOptions& options, bool programNeedsOne, PreparedRun& run);

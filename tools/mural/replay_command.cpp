@@ -54,7 +54,7 @@ int replayCommand(const RunOptions& options, const std::string& file) {
     auto reader = recording::FileReader::open(file);
     if (!reader) return complain(reader.error());
     if (const auto whole = reader.value()->verify(); !whole) return complain(whole.error());
-    if (reader.value()->frames() == 0) return complain(Error{"recording " + file + " has no frame: its program showed no picture; mural dump prints its calls"});
+    if (reader.value()->frames() == 0) return complain(reader.value()->noSuchFrames(0));
     if (!reader.value()->notice().empty()) console.error(reader.value()->notice());
     PreparedRun run;
     run.config = options.config;
@@ -67,10 +67,12 @@ int replayCommand(const RunOptions& options, const std::string& file) {
     run.headEnvironment = run.programEnvironment;
     run.programEnvironment.set("MURAL_SESSION", run.config.session);
     if (auto r = checkOutput(run.config.out); !r) return complain(r.error());
+    if (auto r = checkReport(run.reportFile); !r) return complain(r.error());
     if (auto r = chooseDisplay(options, false, run); !r) return complain(r.error());
     run.headCommand = {launch::ownBinary(), "head"};
     for (const std::string& notice : options.notices) console.say(notice);
-    if (const std::string unseen = unseenPictures(options, run); !unseen.empty()) console.say(unseen);
+    for (const std::string& notice : {unseenPictures(options, run), earlierPictures(run.config.out)})
+        if (!notice.empty()) console.say(notice);
     return runSession(run, console);
 }
 

@@ -50,12 +50,14 @@ int runCommand(const RunOptions& options) {
     const launch::Fronts fronts = chooseFronts(options, program, run.programEnvironment);
     if (auto r = launch::addCapture(run.programEnvironment, library.value(), run.config.session, fronts); !r) return complain(r.error().message, launch::kExitUsage);
     if (auto r = checkOutput(run.config.out); !r) return complain(r.error().message, launch::kExitUsage);
+    if (auto r = checkReport(run.reportFile); !r) return complain(r.error().message, launch::kExitUsage);
     if (auto r = chooseDisplay(options, true, run); !r) return complain(r.error().message, launch::kExitUsage);
 
     run.headCommand = {launch::ownBinary(), "head"};
     Console console(options.quiet);
     for (const std::string& notice : options.notices) console.say(notice);
-    if (const std::string unseen = unseenPictures(options, run); !unseen.empty()) console.say(unseen);
+    for (const std::string& notice : {unseenPictures(options, run), earlierPictures(run.config.out)})
+        if (!notice.empty()) console.say(notice);
     return options.native ? runNative(run, console) : runSession(run, console);
 }
 

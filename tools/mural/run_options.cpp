@@ -397,6 +397,7 @@ Result<void> readOutput(const RunArguments& a, SessionConfig& c) {
     }
     std::sort(c.saveFrames.begin(), c.saveFrames.end());
     c.saveFrames.erase(std::unique(c.saveFrames.begin(), c.saveFrames.end()), c.saveFrames.end());
+    if (c.frames > 0 && c.saveFrames.back() > c.frames) return badValue("--save", *a.save, fmt::format("must have no frame behind the last one, {} by --frames", c.frames));
     return {};
 }
 

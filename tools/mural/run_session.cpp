@@ -25,6 +25,7 @@ constexpr int64_t kWaitNoticeMs = 3'000;
 constexpr int64_t kUnseenMs = 10'000;
 // The head drains and writes pictures after the program's end; as long as it says something it may.
 constexpr int64_t kFinishSilenceMs = 120'000;
+constexpr int kWallLost = 1; // exit status, whatever that of the program, which was ended
 
 class Session {
 public:
@@ -43,7 +44,7 @@ public:
         lookAt_ = Deadline::inMs(kUnseenMs);
         whileRunning();
         finish();
-        return framesReached_ ? 0 : program_.exitStatus();
+        return framesReached_ ? 0 : wallLost_ ? kWallLost : program_.exitStatus();
     }
 
 private:
@@ -71,7 +72,7 @@ private:
     void whileRunning() {
         if (framesReached_) program_.end(kEndGraceMs); // said before there was a program to end
         while (program_.programRunning()) turn();
-        if (framesReached_ || program_.askedToStop()) {
+        if (framesReached_ || wallLost_ || program_.askedToStop()) {
             endDescendants();
             return;
         }
@@ -123,8 +124,16 @@ private:
     void tellReport() {
         writeReport(run_, report_->json, console_);
         for (const std::string& line : reportLines(*report_)) console_.say(line);
+        tellUnsaved();
         if (report_->frames > 0 || bypassSaid_) return;
         console_.error("no frame was captured: " + whyNoFrame());
+    }
+
+    void tellUnsaved() {
+        const auto& wanted = run_.config.saveFrames; // in their order
+        if (wanted.empty() || report_->frames == 0 || wanted.back() <= report_->frames) return;
+        const auto first = std::upper_bound(wanted.begin(), wanted.end(), report_->frames);
+        console_.error(fmt::format("--save: frame {} was not saved{}, as the program showed {}", *first, std::next(first) == wanted.end() ? "" : ", nor those behind it", report_->frames));
     }
 
     std::string whyNoFrame() {
@@ -164,6 +173,15 @@ private:
         head_->process().waitUntil(Deadline::inMs(500));
         console_.error("the head process was lost (" + head_->process().describeEnd() + "); " +
                        (!finishing_ ? "the program goes on alone, without the wall" : "there is no report"));
+        endUncounted();
+    }
+
+    // Who gave --frames waits for the end, which nobody counts to any more.
+    void endUncounted() {
+        if (finishing_ || wallLost_ || run_.config.frames == 0) return;
+        wallLost_ = true;
+        console_.error("nobody counts its frames any more, which --frames asked for: the program is ended");
+        program_.end(kEndGraceMs);
     }
 
     void take(const std::string& line) {
@@ -191,6 +209,7 @@ private:
             framesReached_ = true;
             program_.end(kEndGraceMs);
             break;
+        case HeadEvent::Kind::WallLost: endUncounted(); break;
         case HeadEvent::Kind::Say: console_.error(event.text); break;
         case HeadEvent::Kind::Report: report_ = event.report; break;
         case HeadEvent::Kind::Unknown: break;
@@ -207,6 +226,7 @@ private:
     bool ready_ = false;
     bool finishing_ = false;
     bool framesReached_ = false;
+    bool wallLost_ = false; // before the frames that were asked for
     bool everClients_ = false;
     int64_t clients_ = 0;
     std::optional<std::string> failure_;

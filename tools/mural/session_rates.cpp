@@ -153,7 +153,7 @@ void addNode(const Json& node, std::vector<std::string>& lines) {
         state = fmt::format("{:.0f} frames", number(node, "frames"));
         if (node.contains("recent")) state += fmt::format(", busy {:.0f} %", 100 * number(part(node, "recent"), "busyShare"));
         if (const double frames = number(node, "frames"); frames > 0 && number(node, "pictureRawBytes") > 0) state += fmt::format(", pictures of {} came in {} per frame", sizeText(number(node, "pictureRawBytes") / frames), sizeText(number(node, "pictureBytes") / frames));
-        if (number(node, "joins") > 0) state += fmt::format(", came back {:.0f} times, the last time in {:.1f} s with {}", number(node, "joins"), number(node, "secondsToBack"), sizeText(number(node, "snapshotBytes")));
+        if (number(node, "joins") > 0) state += fmt::format(", came back {:.0f} time{}, the last time in {:.1f} s with {}", number(node, "joins"), number(node, "joins") == 1 ? "" : "s", number(node, "secondsToBack"), sizeText(number(node, "snapshotBytes")));
         if (number(node, "silentSeconds") > 5) state += fmt::format(", silent for {:.0f} s", number(node, "silentSeconds"));
     }
     const std::string stream = memberText(node, "stream");

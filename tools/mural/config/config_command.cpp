@@ -23,10 +23,25 @@ namespace {
 
 using compound::LoadedConfig;
 
+constexpr size_t kMostWarnings = 10; // beside errors, which are to be seen: of what is no configuration each word is warned of
+
 void printDiagnostics(const LoadedConfig& loaded, std::FILE* where) {
+    const auto isError = [](const config::Diagnostic& d) { return d.severity == config::Severity::Error; };
+    const bool wrong = std::ranges::any_of(loaded.diagnostics.all(), isError);
+    size_t warnings = 0;
     for (const config::Diagnostic& d : loaded.diagnostics.all()) {
+        if (!isError(d) && ++warnings > kMostWarnings && wrong) continue;
         fmt::print(where, "{}{}\n", d.severity == config::Severity::Error ? "error: " : "warning: ", loaded.diagnostics.text(d));
     }
+    if (wrong && warnings > kMostWarnings) fmt::print(where, "note: {} more warnings are left out; mend what is wrong first\n", warnings - kMostWarnings);
+}
+
+// Options that what is asked for does not take; empty: none.
+std::string unusedOption(const ConfigArguments& a) {
+    if (a.resolved && a.verb != "print") return "--resolved is for print";
+    if (!a.resolved && (a.frame >= 0 || !a.layout.empty() || !a.stereo.empty())) return "--frame, --layout and --stereo are for print --resolved";
+    if (a.verb == "check" && !a.out.empty()) return "--out is for print and draw";
+    return {};
 }
 
 int check(const LoadedConfig& loaded) {
@@ -58,7 +73,7 @@ bool showLayout(const config::ResolvedConfig& c, const std::string& name, compou
 
 Result<std::string> resolvedText(const LoadedConfig& loaded, const ConfigArguments& a) {
     compound::FrameInput input = compound::firstFrame(loaded.resolved);
-    input.frameNumber = a.frame;
+    input.frameNumber = static_cast<uint64_t>(std::max<int64_t>(a.frame, 0));
     if (!a.layout.empty() && !showLayout(loaded.resolved, a.layout, input)) {
         return Error{"no canvas has a layout " + a.layout + "; name one that mural config draw shows, or its number"};
     }
@@ -95,12 +110,16 @@ void describeConfig(CLI::App& command, ConfigArguments& a) {
     command.add_flag("--strict", a.strict, "warnings are errors");
     command.add_option("--out", a.out, "print, draw: into this file, not to standard output")->type_name("FILE");
     command.add_flag("--resolved", a.resolved, "print: what every channel does in a frame, with its contexts, instead of the configuration");
-    command.add_option("--frame", a.frame, "with --resolved: the frame's number (0)")->type_name("NUMBER");
+    command.add_option("--frame", a.frame, "with --resolved: the frame's number (0)")->type_name("NUMBER")->check(CLI::Range(int64_t{0}, INT64_MAX, "NUMBER from 0 on"));
     command.add_option("--layout", a.layout, "with --resolved: the layout that is shown, by name or number")->type_name("NAME");
     command.add_option("--stereo", a.stereo, "with --resolved: on or off (as each view says)")->check(CLI::IsMember({"on", "off"}));
 }
 
 int configCommand(const ConfigArguments& a) {
+    if (const std::string unused = unusedOption(a); !unused.empty()) {
+        fmt::print(stderr, "mural config: {} (see mural config --help)\n", unused);
+        return launch::kExitUsage;
+    }
     const LoadedConfig loaded = compound::loadConfig(a.file, compound::processEnvironment, a.strict);
     if (a.verb == "check") return check(loaded);
     printDiagnostics(loaded, stderr);

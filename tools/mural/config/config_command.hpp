@@ -13,7 +13,7 @@ struct ConfigArguments {
     std::string out; // empty: standard output
     bool strict = false;
     bool resolved = false;
-    uint64_t frame = 0;
+    int64_t frame = -1; // 0 where none is given
     std::string layout;
     std::string stereo; // "on", "off", or as the file says
 };
