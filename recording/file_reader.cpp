@@ -20,7 +20,7 @@ bool soundShape(const BlockHeader& h) {
     return h.magic == kBlockMagic && h.rawBytes <= kMaxBlockBytes && h.packedBytes <= ZSTD_COMPRESSBOUND(kMaxBlockBytes);
 }
 
-std::string atByte(uint64_t offset) { return " at byte " + std::to_string(offset); }
+constexpr const char* kEndMissing = "its end is missing (was the head killed, or the file cut?)";
 
 } // namespace
 
@@ -47,8 +47,25 @@ FileReader::FileReader(FileDescriptor file, std::string name) : file_(std::move(
 
 FileReader::~FileReader() { ZSTD_freeDCtx(unpacker_); }
 
-Error FileReader::damaged(uint64_t offset, const std::string& what) const {
-    return Error{"recording " + name_ + " is damaged" + atByte(offset) + ": " + what + "; take another copy of it, or record again"};
+Error FileReader::damaged(uint64_t offset, const std::string& what, const std::string& next) const {
+    return Error{"recording " + name_ + " is damaged at byte " + std::to_string(offset) + ": " + what + "; " + next};
+}
+
+Error FileReader::damagedBlock(size_t number, const std::string& what) const {
+    int64_t before = 0;
+    for (size_t i = 0; i < number; ++i) before += blocks_[i].framesEnded;
+    const uint64_t offset = blocks_[number].offset;
+    if (before == 0) return damaged(offset, what + ", and no frame ends before it", kElsewhere);
+    const std::string good = before == 1 ? "1" : "1-" + std::to_string(before);
+    return damaged(offset, what, "the frames before it are good (" + good + "): keep them by mural trim " + name_ + " " + good + " -o good.mural, " + kElsewhere);
+}
+
+Error FileReader::noSuchFrames(int64_t frames) const {
+    if (frames > 0) {
+        return Error{"the recording has " + std::to_string(frames) + " frames" + (notice_.empty() ? "" : std::string(", as ") + kEndMissing) + "; give some of them, such as 1-" + std::to_string(frames)};
+    }
+    if (notice_.empty()) return Error{"recording " + name_ + " has no frame: its program showed no picture; mural dump prints its calls"};
+    return Error{"recording " + name_ + " has no whole frame: " + kEndMissing + ", what is whole ends at byte " + std::to_string(blocksEnd_) + " of " + std::to_string(sizeBytes_) + "; " + kElsewhere};
 }
 
 bool FileReader::readAt(uint64_t offset, std::span<std::byte> into) const {
@@ -98,15 +115,17 @@ Result<bool> FileReader::readIndex() {
     if (!readAt(at + sizeof header, rows) || checksumOf({beforeChecksum(header), rows}) != header.checksum) return damaged(at, "its index is not as it was written");
     frames_ = static_cast<int64_t>(header.frames);
     blocksEnd_ = at;
-    uint64_t last = blocksAt_;
-    for (const IndexRow& row : blocks_) { // without gaps: nothing lies in between unread
-        BlockHeader block{};
-        if (row.offset != last || last + sizeof block > blocksEnd_ || !readAt(last, bytesOf(block)) || !soundShape(block)) return damaged(row.offset, "there is no block");
-        last += sizeof block + block.packedBytes;
+    // Rows lie one behind another, without gaps. What is there is looked at as it is read: a bad block spoils none before it.
+    uint64_t least = blocksAt_;
+    for (const IndexRow& row : blocks_) {
+        if (row.offset < least || row.offset > blocksEnd_ - sizeof(BlockHeader)) return damaged(at, "its index is of no blocks");
+        least = row.offset + sizeof(BlockHeader);
     }
-    if (last != blocksEnd_) return damaged(last, "its blocks end elsewhere");
+    if ((blocks_.empty() ? blocksEnd_ : blocks_.front().offset) != blocksAt_) return damaged(at, "its index begins elsewhere");
     return true;
 }
+
+uint64_t FileReader::endOf(size_t number) const { return number + 1 < blocks_.size() ? blocks_[number + 1].offset : blocksEnd_; }
 
 Result<void> FileReader::findBlocks() {
     uint64_t at = blocksAt_;
@@ -131,31 +150,31 @@ Result<void> FileReader::verify() {
 Result<BlockHeader> FileReader::readPacked(size_t number) {
     const IndexRow& row = blocks_[number];
     BlockHeader header{};
-    if (!readAt(row.offset, bytesOf(header)) || !soundShape(header) || row.offset + sizeof header + header.packedBytes > blocksEnd_) return damaged(row.offset, "there is no block");
+    if (!readAt(row.offset, bytesOf(header)) || !soundShape(header)) return damagedBlock(number, "there is no block");
+    if (row.offset + sizeof header + header.packedBytes != endOf(number)) return damagedBlock(number, "a block does not end where the next one begins");
     packed_.resize(header.packedBytes);
-    if (!readAt(row.offset + sizeof header, packed_)) return damaged(row.offset, "a block can't be read");
+    if (!readAt(row.offset + sizeof header, packed_)) return damagedBlock(number, "a block can't be read");
     const bool same = header.firstFrame == row.firstFrame && header.framesEnded == row.framesEnded && header.entries == row.entries;
-    if (!same || checksumOf({beforeChecksum(header), packed_}) != header.checksum) return damaged(row.offset, "a block is not as it was written");
+    if (!same || checksumOf({beforeChecksum(header), packed_}) != header.checksum) return damagedBlock(number, "a block is not as it was written");
     return header;
 }
 
 Result<std::span<const std::byte>> FileReader::read(size_t number) {
-    const IndexRow& row = blocks_[number];
     const auto packed = readPacked(number);
     if (!packed) return packed.error();
     const BlockHeader& header = packed.value();
     raw_.resize(header.rawBytes);
     const size_t rawBytes = ZSTD_decompressDCtx(unpacker_, raw_.data(), raw_.size(), packed_.data(), packed_.size());
-    if (ZSTD_isError(rawBytes) || rawBytes != header.rawBytes) return damaged(row.offset, "a block can't be unpacked");
+    if (ZSTD_isError(rawBytes) || rawBytes != header.rawBytes) return damagedBlock(number, "a block can't be unpacked");
     EntryWalk walk(raw_);
     Entry entry;
     ClientEvent event;
     uint32_t entries = 0;
     while (walk.next(entry)) {
         ++entries;
-        if (entry.stream == 0 && !parseEvent(entry.payload, event)) return damaged(row.offset, "an event in a block is unknown");
+        if (entry.stream == 0 && !parseEvent(entry.payload, event)) return damagedBlock(number, "an event in a block is unknown");
     }
-    if (walk.malformed() || entries != header.entries) return damaged(row.offset, "the entries of a block are not entries");
+    if (walk.malformed() || entries != header.entries) return damagedBlock(number, "the entries of a block are not entries");
     return std::span<const std::byte>(raw_);
 }
 

@@ -7,9 +7,12 @@
 
 #include "recording/dump/record_text.hpp"
 #include "recording/wall_frames.hpp"
+#include "streamcodec/command_table.hpp"
 
 namespace mural::recording {
 namespace {
+
+bool fitsPattern(const std::string& pattern, const std::string& name) { return fnmatch(pattern.c_str(), name.c_str(), 0) == 0; }
 
 struct Count {
     uint64_t calls = 0;
@@ -18,7 +21,7 @@ struct Count {
 
 class Dump {
 public:
-    Dump(const DumpOptions& options, const std::function<bool(const std::string&)>& line) : options_(options), line_(line) {}
+    Dump(const DumpOptions& options, const std::function<bool(const std::string&)>& line) : options_(options), line_(line), absent_(options.calls) {}
 
     // False: no more is wanted.
     bool entry(const Entry& e) {
@@ -27,13 +30,25 @@ public:
         return e.stream == 0 ? event(e) : packet(e);
     }
     bool finish() { return !options_.summary || (endFrame() && totals()); }
+    [[nodiscard]] const std::vector<std::string>& absent() const { return absent_; }
 
 private:
     [[nodiscard]] bool inRange() const { return frame_ >= options_.firstFrame && frame_ <= options_.lastFrame; }
 
-    bool wanted(const std::string& name) const {
-        const auto fits = [&](const std::string& pattern) { return fnmatch(pattern.c_str(), name.c_str(), 0) == 0; };
-        return options_.calls.empty() || std::ranges::any_of(options_.calls, fits);
+    struct Kind {
+        std::string name;
+        bool wanted = false;
+    };
+    // Of a call in the frames.
+    const Kind& kindOf(uint16_t opcode) {
+        const auto [at, isNew] = kinds_.try_emplace(opcode);
+        Kind& kind = at->second;
+        if (!isNew) return kind;
+        kind.name = recordName(opcode);
+        const auto fitsIt = [&](const std::string& pattern) { return fitsPattern(pattern, kind.name); };
+        kind.wanted = options_.calls.empty() || std::ranges::any_of(options_.calls, fitsIt);
+        std::erase_if(absent_, fitsIt);
+        return kind;
     }
 
     bool event(const Entry& e) {
@@ -61,24 +76,18 @@ private:
 
     bool call(uint32_t stream, const RecordView& r, bool shows) {
         const std::string text = recordText(r, blobs_[stream]); // also where nothing is shown: it takes its blobs
-        if (!shows || !wanted(nameOf(r.opcode))) return true;
+        if (!shows || !kindOf(r.opcode).wanted) return true;
         return line_(fmt::format("{:6} {}.{:<2} {}", frame_, wire::clientOf(stream), stream & 0xffff, text));
     }
 
     bool count(const RecordView& r) {
-        const std::string& name = nameOf(r.opcode);
-        if (!wanted(name)) return true;
-        for (Count* c : {&ofFrame_[name], &total_[name]}) {
+        const Kind& kind = kindOf(r.opcode);
+        if (!kind.wanted) return true;
+        for (Count* c : {&ofFrame_[kind.name], &total_[kind.name]}) {
             ++c->calls;
             c->bytes += r.sizeBytes;
         }
         return true;
-    }
-
-    const std::string& nameOf(uint16_t opcode) {
-        std::string& name = names_[opcode];
-        if (name.empty()) name = recordName(opcode);
-        return name;
     }
 
     bool endFrame() {
@@ -110,27 +119,48 @@ private:
     WallFrames frames_;
     int64_t frame_ = 1; // that is under way
     std::map<uint32_t, StreamBlobs> blobs_;
-    std::map<uint16_t, std::string> names_;
+    std::map<uint16_t, Kind> kinds_;
+    std::vector<std::string> absent_; // patterns that have fitted nothing
     std::map<std::string, Count> ofFrame_, total_;
 };
 
+Result<bool> hasUnendedFrame(FileReader& reader) {
+    WallFrames frames;
+    bool unended = false;
+    const auto read = forEachEntry(reader, [&](const Entry& e) {
+        unended = true;
+        ClientEvent event;
+        if (e.stream == 0 && parseEvent(e.payload, event) && event.kind == Event::ClientGone) frames.clientGone(event.client);
+        if (e.stream == 0) return true;
+        RecordWalk walk(e.payload);
+        RecordView r;
+        while (walk.next(r)) unended = frames.record(e.stream, r) == 0;
+        return true;
+    });
+    return read ? Result<bool>(unended) : read.error();
+}
+
 } // namespace
 
-Result<void> dump(FileReader& reader, const DumpOptions& options, const std::function<bool(const std::string&)>& line) {
+bool fitsSomeCall(const std::string& pattern) {
+    for (uint16_t opcode = 1; opcode < wire::kFirstGlOpcode; ++opcode)
+        if (fitsPattern(pattern, recordName(opcode))) return true;
+    return std::ranges::any_of(commandTable(), [&](const CommandInfo& command) { return fitsPattern(pattern, command.name); });
+}
+
+Result<void> checkFrames(FileReader& reader, int64_t lastFrame) {
+    if (lastFrame <= reader.frames()) return {};
+    if (lastFrame - 1 > reader.frames()) return reader.noSuchFrames(reader.frames());
+    const auto unended = hasUnendedFrame(reader);
+    if (!unended) return unended.error();
+    return unended.value() ? Result<void>() : reader.noSuchFrames(reader.frames());
+}
+
+Result<DumpReport> dump(FileReader& reader, const DumpOptions& options, const std::function<bool(const std::string&)>& line) {
     Dump dump(options, line);
-    for (size_t i = 0; i < reader.blocks().size(); ++i) {
-        auto block = reader.read(i);
-        if (!block) return block.error();
-        EntryWalk walk(*block);
-        Entry entry;
-        while (walk.next(entry)) {
-            if (dump.entry(entry)) continue;
-            dump.finish();
-            return {};
-        }
-    }
+    if (auto read = forEachEntry(reader, [&](const Entry& e) { return dump.entry(e); }); !read) return read.error();
     dump.finish();
-    return {};
+    return DumpReport{dump.absent()};
 }
 
 } // namespace mural::recording

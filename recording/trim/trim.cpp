@@ -12,19 +12,6 @@
 namespace mural::recording {
 namespace {
 
-// False from `take` ends it.
-template <class Take> Result<void> forEachEntry(FileReader& reader, Take take) {
-    for (size_t i = 0; i < reader.blocks().size(); ++i) {
-        auto block = reader.read(i);
-        if (!block) return block.error();
-        EntryWalk walk(*block);
-        Entry entry;
-        while (walk.next(entry))
-            if (!take(entry)) return {};
-    }
-    return {};
-}
-
 bool draws(uint16_t opcode) {
     const Family family = ruleOf(opcode).family;
     return family == Family::Draw || family == Family::Begin || family == Family::CallList || family == Family::CallLists;
@@ -173,7 +160,7 @@ private:
 Result<TrimReport> trim(FileReader& reader, int64_t firstFrame, int64_t lastFrame, const std::string& path) {
     Survey survey(firstFrame, lastFrame);
     if (auto r = forEachEntry(reader, [&](const Entry& e) { return survey.entry(e); }); !r) return r.error();
-    if (survey.frames() < lastFrame) return Error{"the recording has " + std::to_string(survey.frames()) + " frames; give some of them, such as 1-" + std::to_string(survey.frames())};
+    if (survey.frames() < lastFrame) return reader.noSuchFrames(survey.frames());
     survey.log.compact();
     auto writer = FileWriter::create(path);
     if (!writer) return writer.error();

@@ -64,6 +64,20 @@ class Workplace:
         return subprocess.run([self.context.mural] + list(arguments), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=60,
                               env=programs.clean_environment(self.context.display), check=False)
 
+    def refused(self, words, *arguments, status=2):
+        """None when all that is said is one line with these words, and nothing is printed."""
+        done = self.mural(*arguments)
+        if done.returncode == status and done.stderr.count("\n") == 1 and words in done.stderr and not done.stdout:
+            return None
+        return "mural %s: status %d, %d lines, %s" % (" ".join(arguments), done.returncode, done.stdout.count("\n"), done.stderr.strip())
+
+    def change(self, into, change):
+        """Another file, of the bytes of a.mural."""
+        with open(self.path("a.mural"), "rb") as file:
+            whole = bytearray(file.read())
+        with open(self.path(into), "wb") as file:
+            file.write(change(whole))
+
     def native(self, program, arguments=(), frames=FRAMES):
         """The pictures of all frames, by window."""
         shutil.rmtree(self.path("native"), ignore_errors=True)
@@ -80,6 +94,11 @@ class Workplace:
         wrong = failures.check_end(run, status)
         if wrong is not None:
             raise AssertionError(wrong)
+
+
+def flipped(whole, at):
+    whole[at] ^= 0x40
+    return whole
 
 
 def shown(folder):
@@ -245,11 +264,7 @@ def arguments_that_are_wrong(place):
     with open(place.path("text"), "w", encoding="utf-8") as file:
         file.write("no recording\n" * 10)
     place.record("immediate", frames=2)
-    with open(place.path("a.mural"), "rb") as file:
-        whole = bytearray(file.read())
-    whole[len(whole) // 2] ^= 0x40
-    with open(place.path("damaged"), "wb") as file:
-        file.write(whole)
+    place.change("damaged", lambda whole: flipped(whole, len(whole) // 2))
     wrong = []
     commands = {"is not a recording": ["replay", place.path("text")], "can't be read": ["replay", place.path("nowhere")], "is damaged": ["replay", place.path("damaged")],
                 "can't be written": ["run", "--record", "/nowhere/a.mural", "--display", "none", "--", place.context.program("immediate")],
@@ -260,6 +275,34 @@ def arguments_that_are_wrong(place):
         if done.returncode != 2 or done.stderr.count("\n") != 1 or words.strip() not in done.stderr:
             wrong.append("mural %s: status %d, %s" % (" ".join(command), done.returncode, done.stderr.strip()))
     return "; ".join(wrong) or None
+
+
+@case
+def arguments_of_a_damaged_file(place):
+    """What is before the damage is named, with what saves it; and it does."""
+    live = place.record("fixed_lighting", frames=20) # some blocks
+    place.change("damaged.mural", lambda whole: flipped(whole, len(whole) * 2 // 3))
+    file = place.path("damaged.mural")
+    done = place.mural("replay", file)
+    hint = re.search(r"the frames before it are good \(1-(\d+)\): keep them by mural (trim \S+ 1-\1) -o good\.mural, ", done.stderr)
+    if done.returncode != 2 or done.stderr.count("\n") != 1 or hint is None:
+        return "status %d, %s" % (done.returncode, done.stderr)
+    frames = int(hint.group(1))
+    if hint.group(2).split() != ["trim", file, "1-%d" % frames]:
+        return "it says: mural " + hint.group(2)
+    place.trim("1-%d" % frames, "damaged.mural")
+    return place.refused(hint.group(0), "trim", file, "1-20", "-o", place.path("c.mural")) or differing(live[:frames], place.replay(["--tiles", "2x1"], "b.mural"))
+
+
+@case
+def arguments_of_a_file_without_a_frame(place):
+    """One that is cut before its first frame is not one whose program showed no picture."""
+    place.record("immediate", frames=2)
+    place.change("cut.mural", lambda whole: whole[:len(whole) // 2])
+    cut = place.path("cut.mural")
+    why = "has no whole frame: its end is missing (was the head killed, or the file cut?)"
+    return place.refused(why, "replay", cut) or place.refused(why, "trim", cut, "2-5", "-o", place.path("b.mural")) or place.refused(why, "dump", cut, "--frames", "1") or \
+        place.refused("0 whole frames are there", "dump", cut, status=0)
 
 
 # ---- trim
@@ -367,6 +410,28 @@ def dump_tells_the_calls(place):
     summary = place.mural("dump", place.path("a.mural"), "--summary").stdout
     counted = int(re.search(r"all frames:(?:\n.*)*?\n +(\d+) +\d+ bytes  glBegin\n", summary).group(1))
     return None if counted == sum(" glBegin(" in line for line in lines) else "the summary counts %d glBegin" % counted
+
+
+@case
+def dump_refuses_what_is_not_there(place):
+    """Frames and names of none; a call that there may be, and is not, is said."""
+    place.record("immediate", frames=2)
+    file = place.path("a.mural")
+    for words, arguments in (("the recording has 2 frames; give some of them, such as 1-2", ("--frames", "99")), ("the recording has 2 frames; give some of them, such as 1-2", ("--frames", "2-9")),
+                             ("--calls \"nosuch\": no command has such a name; mural list-commands has all", ("--calls", "nosuch")), ("--calls \"glbegin\": no", ("--calls", "glBegin,glbegin"))):
+        wrong = place.refused(words, "dump", file, *arguments)
+        if wrong is not None:
+            return wrong
+    absent = "--calls \"glDispatchCompute\": there is no such call in "
+    wrong = place.refused(absent + file, "dump", file, "--calls", "glDispatchCompute", status=0) or \
+        place.refused(absent + "frames 1-2 of " + file, "dump", file, "--calls", "glDispatchCompute", "--frames", "1-2", status=0)
+    done = place.mural("dump", file, "--calls", "glDispatchCompute,glBegin")
+    if wrong is None and (done.returncode != 0 or done.stderr.count("\n") != 1 or absent not in done.stderr or "glBegin(" not in done.stdout):
+        wrong = "of two calls: status %d, %s" % (done.returncode, done.stderr)
+    behind = place.mural("dump", file, "--frames", "3") # what the program said behind its last picture
+    if wrong is None and (behind.returncode != 0 or not behind.stdout.startswith("     3 ")):
+        wrong = "behind the last frame: status %d, %s" % (behind.returncode, behind.stderr)
+    return wrong
 
 
 @case

@@ -1,9 +1,10 @@
-// Records as text.
+// Records as text, and which of them are there.
 #include <GL/gl.h>
 #include <GL/glext.h>
 #include <gtest/gtest.h>
 
 #include "gl_opcodes.hpp"
+#include "recording/dump/dump.hpp"
 #include "recording/dump/record_text.hpp"
 #include "recording/dump/value_text.hpp"
 #include "tests/recording/recorded.hpp"
@@ -53,6 +54,67 @@ TEST(ValueText, isShortForLongValues) {
     EXPECT_EQ(arrayText(Element::Bytes, 0, std::as_bytes(std::span(many))), "<2000 bytes>");
     const std::string text(200, 'x');
     EXPECT_EQ(quoted(std::as_bytes(std::span(text))), "\"" + std::string(120, 'x') + "…\" (200 bytes)");
+}
+
+// Two frames of a program, and what follows them.
+class Dumped : public ::testing::Test {
+protected:
+    void write(const PacketBuilder& behind) {
+        auto writer = FileWriter::create("/proc/self/fd/" + std::to_string(file_.get()));
+        ASSERT_TRUE(writer);
+        ASSERT_TRUE((*writer)->begin({}, wire::kVersion, registryDigest()));
+        const auto append = [&](const PacketBuilder& packet) { ASSERT_TRUE((*writer)->append({wire::streamOf(1, 0), 0, packet.bytes()})); };
+        append(PacketBuilder().window(1, 20, 10).record(op::glClear, {GL_COLOR_BUFFER_BIT}).swap(1, 1));
+        append(PacketBuilder().record(op::glDepthMask, {1}).swap(1, 2).append(behind));
+        ASSERT_TRUE((*writer)->flush());
+        ASSERT_TRUE((*writer)->finish());
+        auto opened = FileReader::open(FileDescriptor(dup(file_.get())), "in memory");
+        ASSERT_TRUE(opened);
+        reader_ = std::move(*opened);
+    }
+    std::string saidOf(int64_t lastFrame) {
+        const auto there = checkFrames(*reader_, lastFrame);
+        return there ? "" : there.error().message;
+    }
+    std::vector<std::string> absent(const DumpOptions& options) {
+        auto dumped = dump(*reader_, options, [](const std::string&) { return true; });
+        EXPECT_TRUE(dumped);
+        return dumped ? dumped->absent : std::vector<std::string>();
+    }
+
+    const FileDescriptor file_{memfd_create("dumped", MFD_CLOEXEC)};
+    std::unique_ptr<FileReader> reader_;
+};
+
+TEST_F(Dumped, framesThatAreNotThereAreSaid) {
+    write({});
+    EXPECT_EQ(saidOf(2), "");
+    for (const int64_t last : {int64_t{3}, int64_t{99}, INT64_MAX}) EXPECT_EQ(saidOf(last), "the recording has 2 frames; give some of them, such as 1-2") << last;
+}
+
+TEST_F(Dumped, whatFollowsTheLastFrameIsOneMore) {
+    write(PacketBuilder().record(op::glFlush, {}));
+    EXPECT_EQ(saidOf(3), "");
+    EXPECT_EQ(saidOf(4), "the recording has 2 frames; give some of them, such as 1-2");
+}
+
+TEST_F(Dumped, callsThatAreNotThereAreTold) {
+    write({});
+    DumpOptions options;
+    options.calls = {"glClear", "glTexImage*", "glDepth*", "Mural.FillWindow"};
+    const std::vector<std::string> never{"glTexImage*", "Mural.FillWindow"};
+    EXPECT_EQ(absent(options), never);
+    options.summary = true;
+    EXPECT_EQ(absent(options), never);
+    options.firstFrame = options.lastFrame = 2;
+    EXPECT_EQ(absent(options), (std::vector<std::string>{"glClear", "glTexImage*", "Mural.FillWindow"}));
+    options.calls.clear();
+    EXPECT_EQ(absent(options), std::vector<std::string>());
+}
+
+TEST(DumpedCalls, haveNamesThatAreKnown) {
+    for (const char* pattern : {"glClear", "glTexImage*", "*Vertex*", "Mural.Swap", "Mural.*", "*", "glGetError"}) EXPECT_TRUE(fitsSomeCall(pattern)) << pattern;
+    for (const char* pattern : {"nosuch", "glclear", "Swap", "glClear*Nothing", "glXSwapBuffers", " glClear", ""}) EXPECT_FALSE(fitsSomeCall(pattern)) << pattern;
 }
 
 } // namespace

@@ -117,6 +117,42 @@ TEST_F(RecordingFile, saysWhatIsWrongAndWhatToDo) {
     EXPECT_EQ(FileWriter::create("/nowhere/a.mural").error().message, "recording /nowhere/a.mural: can't be written: No such file or directory; give another place");
 }
 
+TEST_F(RecordingFile, aDamagedBlockSpoilsNoFrameBeforeIt) {
+    const auto put = writeSmall();
+    const Bytes whole = readWhole(path());
+    const auto blocks = (*FileReader::open(path()))->blocks();
+    for (uint64_t at = blocks[1].offset; at < blocks[1].offset + sizeof(BlockHeader) + 4; ++at) {
+        Bytes changed = whole;
+        changed[at] ^= std::byte{0xff};
+        auto reader = readerOf(changed);
+        ASSERT_TRUE(reader) << at << ": " << reader.error().message;
+        EXPECT_EQ(entriesOf(**reader).size(), blocks[0].entries) << at;
+        const auto verified = (*reader)->verify();
+        ASSERT_FALSE(verified) << at;
+        EXPECT_TRUE(verified.error().message.starts_with("recording in memory is damaged at byte " + std::to_string(blocks[1].offset) + ": ")) << verified.error().message;
+        EXPECT_TRUE(verified.error().message.ends_with("; the frames before it are good (1): keep them by mural trim in memory 1 -o good.mural, take another copy of it, or record again"))
+            << verified.error().message;
+    }
+    Bytes changed = whole;
+    changed[blocks[0].offset + sizeof(BlockHeader)] ^= std::byte{0xff};
+    EXPECT_EQ((*readerOf(changed))->verify().error().message, "recording in memory is damaged at byte " + std::to_string(blocks[0].offset) +
+                                                                  ": a block is not as it was written, and no frame ends before it; take another copy of it, or record again");
+}
+
+TEST_F(RecordingFile, saysWhyThereIsNoFrame) {
+    writeSmall();
+    const Bytes whole = readWhole(path());
+    const uint64_t first = (*FileReader::open(path()))->blocks()[0].offset;
+    const size_t bytes = first + sizeof(BlockHeader) + 1;
+    EXPECT_EQ((*readerOf(std::span(whole).first(bytes)))->noSuchFrames(0).message,
+              "recording in memory has no whole frame: its end is missing (was the head killed, or the file cut?), what is whole ends at byte " + std::to_string(first) + " of " +
+                  std::to_string(bytes) + "; take another copy of it, or record again");
+    EXPECT_EQ((*readerOf(whole))->noSuchFrames(0).message, "recording in memory has no frame: its program showed no picture; mural dump prints its calls");
+    EXPECT_EQ((*readerOf(whole))->noSuchFrames(3).message, "the recording has 3 frames; give some of them, such as 1-3");
+    EXPECT_EQ((*readerOf(std::span(whole).first(whole.size() - 1)))->noSuchFrames(3).message,
+              "the recording has 3 frames, as its end is missing (was the head killed, or the file cut?); give some of them, such as 1-3");
+}
+
 TEST_F(RecordingFile, ofOtherCommandsIsRefused) {
     auto writer = FileWriter::create(path());
     ASSERT_TRUE((*writer)->begin({"9.9", {}, ""}, wire::kVersion, registryDigest() ^ 1));

@@ -201,5 +201,35 @@ TEST_F(Trim, framesThatAreNotThereAreSaid) {
     EXPECT_EQ(error_, "the recording has 1 frames; give some of them, such as 1-1");
 }
 
+TEST_F(Trim, framesOfWhatHasNoneAreSaidWithWhy) {
+    draw();
+    trimmed(2, 5);
+    EXPECT_EQ(error_, "recording " + (folder_ / "a").string() + " has no frame: its program showed no picture; mural dump prints its calls");
+}
+
+TEST_F(Trim, theFramesBeforeADamagedBlockAreThere) {
+    const std::string whole = (folder_ / "a").string(), part = (folder_ / "b").string();
+    frame();
+    frame();
+    auto writer = FileWriter::create(whole);
+    ASSERT_TRUE((*writer)->begin({}, wire::kVersion, registryDigest()));
+    for (const PacketBuilder& p : packets_) ASSERT_TRUE((*writer)->append({wire::streamOf(1, 0), 0, p.bytes()}));
+    ASSERT_TRUE((*writer)->flush());
+    ASSERT_TRUE((*writer)->append({wire::streamOf(1, 0), 0, PacketBuilder().swap(1, 3).bytes()}));
+    ASSERT_TRUE((*writer)->flush());
+    ASSERT_TRUE((*writer)->finish());
+    Bytes changed = readWhole(whole);
+    changed[(*FileReader::open(whole))->blocks()[1].offset] ^= std::byte{0xff}; // not even a block any more
+    auto reader = readerOf(changed);
+    ASSERT_TRUE(reader) << reader.error().message;
+    const auto tooMany = trim(**reader, 1, 3, part);
+    ASSERT_FALSE(tooMany);
+    EXPECT_NE(tooMany.error().message.find("mural trim in memory 1-2 -o good.mural"), std::string::npos) << tooMany.error().message;
+    const auto good = trim(**reader, 1, 2, part); // as it says
+    ASSERT_TRUE(good) << good.error().message;
+    EXPECT_TRUE((*FileReader::open(part))->verify());
+    EXPECT_EQ((*FileReader::open(part))->frames(), 2);
+}
+
 } // namespace
 } // namespace mural::recording

@@ -1,7 +1,9 @@
 #include "tools/mural/dump_command.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
+#include <tuple>
 
 #include "nodes/launch/program_check.hpp"
 #include "recording/dump/dump.hpp"
@@ -18,7 +20,8 @@ constexpr const char* kDumpFooter = R"(Examples:
   mural dump app.mural --calls 'glTexImage*,Mural.Swap'    some of them
   mural dump app.mural --summary                           how many of each in each frame, and their bytes
 
-Frames are counted as --out counts them. Records of Mural itself are called Mural.…; docs/wire-format.md describes them.
+Frames are counted as --out counts them; what stands behind the last one is of one more, which did not end. Records of Mural
+itself are called Mural.…; docs/wire-format.md describes them.
 Exit status: 0, 2 for a bad argument or a recording that can't be read.)";
 
 std::vector<std::string> patternsIn(const std::string& text) {
@@ -29,6 +32,29 @@ std::vector<std::string> patternsIn(const std::string& text) {
         at = end + 1;
     }
     return parts;
+}
+
+Result<recording::DumpOptions> dumpOptionsFrom(const DumpArguments& a) {
+    recording::DumpOptions options;
+    options.summary = a.summary;
+    if (a.calls) {
+        options.calls = patternsIn(*a.calls);
+        if (options.calls.empty()) return Error{"--calls \"" + *a.calls + "\": must name calls, such as glTexImage*,Mural.Swap (see mural dump --help)"};
+        const auto unknown = std::ranges::find_if_not(options.calls, recording::fitsSomeCall);
+        if (unknown != options.calls.end()) return Error{"--calls \"" + *unknown + "\": no command has such a name; mural list-commands has all names of GL, docs/wire-format.md those of Mural.…"};
+    }
+    if (!a.frames) return options;
+    const auto range = frameRangeOf(*a.frames);
+    if (!range) return Error{"--frames \"" + *a.frames + "\": must be N or N-M, counted from 1, such as 30-32 (see mural dump --help)"};
+    std::tie(options.firstFrame, options.lastFrame) = *range;
+    return options;
+}
+
+// What was asked for and is not there is said, or nobody knows whether the name is meant.
+std::string absentCalls(const DumpArguments& a, const std::vector<std::string>& absent) {
+    std::string names;
+    for (const std::string& name : absent) names += (names.empty() ? "" : ",") + name;
+    return "--calls \"" + names + "\": there is no such call in " + (a.frames ? "frames " + *a.frames + " of " : "") + a.file;
 }
 
 } // namespace
@@ -43,28 +69,25 @@ void describeDump(CLI::App& command, DumpArguments& a) {
 
 int dumpCommand(const DumpArguments& a) {
     Console errors(false);
-    recording::DumpOptions options;
-    options.summary = a.summary;
-    if (a.calls) options.calls = patternsIn(*a.calls);
-    if (a.frames) {
-        const auto range = frameRangeOf(*a.frames);
-        if (!range) {
-            errors.error("--frames \"" + *a.frames + "\": must be N or N-M, counted from 1, such as 30-32 (see mural dump --help)");
-            return launch::kExitUsage;
-        }
-        std::tie(options.firstFrame, options.lastFrame) = *range;
-    }
-    auto reader = recording::FileReader::open(a.file);
-    if (!reader) {
-        errors.error(reader.error().message);
+    const auto complain = [&](const Error& error) {
+        errors.error(error.message);
         return launch::kExitUsage;
-    }
-    if (!reader.value()->notice().empty()) errors.error(reader.value()->notice());
-    const auto dumped = recording::dump(**reader, options, [](const std::string& line) { return std::puts(line.c_str()) >= 0; });
-    std::fflush(stdout);
-    if (dumped) return 0;
-    errors.error(dumped.error().message);
-    return launch::kExitUsage;
+    };
+    const auto options = dumpOptionsFrom(a);
+    if (!options) return complain(options.error());
+    auto opened = recording::FileReader::open(a.file);
+    if (!opened) return complain(opened.error());
+    recording::FileReader& reader = **opened;
+    if (a.frames)
+        if (const auto there = recording::checkFrames(reader, options.value().lastFrame); !there) return complain(there.error());
+    if (!reader.notice().empty()) errors.error(reader.notice());
+    const auto dumped = recording::dump(reader, options.value(), [](const std::string& line) { return std::puts(line.c_str()) >= 0; });
+    // main looks whether all has been written, and says why not.
+    if (dumped && (dumped.value().absent.empty() || std::ferror(stdout) != 0)) return 0;
+    std::fflush(stdout); // the line about it comes behind the calls
+    if (!dumped) return complain(dumped.error());
+    errors.error(absentCalls(a, dumped.value().absent));
+    return 0;
 }
 
 } // namespace mural::cli
