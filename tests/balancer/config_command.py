@@ -67,7 +67,11 @@ def bad():
         status, out, err = run(*words)
         expect(status == 2 and not out and said in err and err.count('\n') == 1, '%s: %d %s' % (' '.join(words), status, err))
     # Of what is no configuration each word is warned of: the error is to be seen.
-    status, out, _ = run('check', os.path.abspath(__file__))
+    with tempfile.TemporaryDirectory() as folder:
+        foreign = os.path.join(folder, 'foreign')
+        with open(foreign, 'w', encoding='utf-8') as file:
+            file.writelines('user%d:x:home\n' % i for i in range(40))
+        status, out, _ = run('check', foreign)
     warnings = out.count('\nwarning: ') + out.startswith('warning: ')
     expect(status == 2 and warnings == 10 and 'more warnings are left out' in out and 'error: ' in out, 'a foreign file: %d warnings, %s' % (warnings, out[-300:]))
 

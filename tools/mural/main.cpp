@@ -309,12 +309,12 @@ private:
 };
 
 // What a command prints is its result: lost, it has failed, whatever else it did.
-int afterOutput(int status) {
+int afterOutput(int status, std::string why) {
     errno = 0;
     std::cout.flush();
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout) return status;
-    const std::string why = errno != 0 ? std::string(": ") + std::strerror(errno) : std::string();
-    fmt::print(stderr, "mural: the output can't be written{}; give it more room, or another place\n", why);
+    if (why.empty() && errno != 0) why = std::strerror(errno); // else it was lost with what came first
+    fmt::print(stderr, "mural: the output can't be written{}{}; give it more room, or another place\n", why.empty() ? "" : ": ", why);
     return status != 0 ? status : kExitOutput;
 }
 
@@ -322,10 +322,12 @@ int afterOutput(int status) {
 
 int main(int count, char** arguments) {
     int status = kExitOutput;
+    std::string why;
     try {
         status = CommandLine().perform(count, arguments);
-    } catch (const std::system_error&) { // of fmt::print(), where standard output takes no more
+    } catch (const std::system_error& error) { // of fmt::print(), where standard output takes no more
         if (std::ferror(stdout) == 0) throw;
+        why = error.code().message();
     }
-    return afterOutput(status);
+    return afterOutput(status, std::move(why));
 }
