@@ -118,7 +118,7 @@ Result<bool> FileReader::readIndex() {
     // Rows lie one behind another, without gaps. What is there is looked at as it is read: a bad block spoils none before it.
     uint64_t least = blocksAt_;
     for (const IndexRow& row : blocks_) {
-        if (row.offset < least || row.offset > blocksEnd_ - sizeof(BlockHeader)) return damaged(at, "its index is of no blocks");
+        if (row.offset < least || row.offset > blocksEnd_ || blocksEnd_ - row.offset < sizeof(BlockHeader)) return damaged(at, "its index is of no blocks");
         least = row.offset + sizeof(BlockHeader);
     }
     if ((blocks_.empty() ? blocksEnd_ : blocks_.front().offset) != blocksAt_) return damaged(at, "its index begins elsewhere");
