@@ -10,8 +10,11 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 import xml.etree.ElementTree as tree
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), 'end_to_end'))
+
+from processes import processes_with, until
 
 START_SECONDS, END_SECONDS = 60, 60
 
@@ -119,28 +122,6 @@ def refused_before(folder):
         expect(f.read() == 'of last week', 'a file is emptied before there is anything to write')
 
 
-def processes_with(word):
-    """Command lines of processes in whose environment the word stands."""
-    found = []
-    for pid in filter(str.isdigit, os.listdir('/proc')):
-        try:
-            with open('/proc/%s/environ' % pid, 'rb') as environment, open('/proc/%s/cmdline' % pid, 'rb') as command:
-                if word.encode() in environment.read():
-                    found.append(command.read().replace(b'\0', b' ').decode())
-        except OSError:
-            pass  # ended meanwhile, or another user's
-    return found
-
-
-def until(condition, seconds):
-    deadline = time.monotonic() + seconds
-    while not condition():
-        if time.monotonic() > deadline:
-            return False
-        time.sleep(0.02)
-    return True
-
-
 def start(folder, *words):
     """A bench that can be told by its folder for what is temporary."""
     inside = tempfile.mkdtemp(dir=folder)
@@ -175,7 +156,7 @@ def stopped(folder):
                                                ('SIGHUP, and mural run', signal.SIGHUP, os.kill, ('--quick',), r' run --quiet '),
                                                ('SIGTERM, and a program that ignores it', signal.SIGTERM, os.kill, stubborn, r'^sh -c trap')):
         process, inside = start(folder, '--json', result, *words)
-        if not until(lambda: any(re.search(awaited, line) for line in processes_with(inside)), START_SECONDS):
+        if not until(lambda: any(re.search(awaited, line) for line in processes_with(inside).values()), START_SECONDS):
             failures.append('%s: there was no such process within %d s' % (name, START_SECONDS))
         send(process.pid, number)
         err = check_end(process, inside, name, 128 + number, result)

@@ -7,34 +7,14 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 
 sys.dont_write_bytecode = True
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.realpath(__file__))))
 STOPPED = 130
 START_SECONDS, END_SECONDS = 60, 60
+sys.path.insert(0, os.path.join(TOP, "tests", "end_to_end"))
 
-
-def processes_with(word):
-    """Names of processes in whose environment the word stands."""
-    found = []
-    for pid in filter(str.isdigit, os.listdir("/proc")):
-        try:
-            with open("/proc/%s/environ" % pid, "rb") as environment, open("/proc/%s/comm" % pid, encoding="utf-8") as name:
-                if word.encode() in environment.read():
-                    found.append(name.read().strip())
-        except OSError:
-            pass  # ended meanwhile, or another user's
-    return found
-
-
-def until(condition, seconds):
-    deadline = time.monotonic() + seconds
-    while not condition():
-        if time.monotonic() > deadline:
-            return False
-        time.sleep(0.05)
-    return True
+from processes import processes_with, until
 
 
 def fault_of(a, number):
@@ -45,7 +25,7 @@ def fault_of(a, number):
         process = subprocess.Popen([sys.executable, os.path.join(TOP, "tools", "bench", "economy"), "--program", "glxgears", "--frames", "1000000",
                                     "--mural", a.mural, "--stream-sizes", a.stream_sizes],
                                    env=dict(os.environ, TMPDIR=inside), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-        if not until(lambda: "glxgears" in processes_with(inside), START_SECONDS):
+        if not until(lambda: any(line.split()[0].endswith("glxgears") for line in processes_with(inside).values()), START_SECONDS):
             process.kill()
             return "the program that it measures did not start within %d s" % START_SECONDS
         process.send_signal(number)
@@ -60,7 +40,7 @@ def fault_of(a, number):
             return "it does not say that it was stopped: " + said
         # What Mural has started ends by itself, soon.
         if not until(lambda: not processes_with(inside), END_SECONDS):
-            return "these go on: " + ", ".join(processes_with(inside))
+            return "these go on: " + ", ".join(processes_with(inside).values())
         left = os.listdir(inside)
         return "these are left: " + ", ".join(left) if left else ""
 

@@ -10,29 +10,14 @@ import threading
 import time
 import uuid
 
+import processes
 import programs
 
 MARK = "MURAL_TEST_RUN"  # in the environment of every process that a run starts
 
 
 def processes_of(mark):
-    """{pid: command line} of the live processes whose environment holds the mark."""
-    found = {}
-    wanted = ("%s=%s" % (MARK, mark)).encode()
-    for entry in os.listdir("/proc"):
-        if not entry.isdigit():
-            continue
-        try:
-            with open("/proc/%s/environ" % entry, "rb") as file:
-                if wanted not in file.read().split(b"\0"):
-                    continue
-            with open("/proc/%s/cmdline" % entry, "rb") as file:
-                words = file.read().split(b"\0")
-        except OSError:
-            continue
-        if words != [b""]:  # a process that has ended has no command line
-            found[int(entry)] = b" ".join(words).decode(errors="replace").strip()
-    return found
+    return processes.processes_with("%s=%s" % (MARK, mark))
 
 
 def shared_memory():

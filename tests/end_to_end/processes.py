@@ -1,0 +1,30 @@
+"""Processes of a run under test, known by a word that all of them have in their environment."""
+
+import os
+import time
+
+
+def processes_with(word):
+    """{pid: command line} of the live processes in whose environment the word stands."""
+    found = {}
+    for pid in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            with open("/proc/%s/environ" % pid, "rb") as environment, open("/proc/%s/cmdline" % pid, "rb") as command:
+                if word.encode() not in environment.read():
+                    continue
+                words = command.read().split(b"\0")
+        except OSError:
+            continue  # ended meanwhile, or another user's
+        if words != [b""]:  # a process that has ended has no command line
+            found[int(pid)] = b" ".join(words).decode(errors="replace").strip()
+    return found
+
+
+def until(condition, seconds):
+    """False: it did not come true in time."""
+    deadline = time.monotonic() + seconds
+    while not condition():
+        if time.monotonic() > deadline:
+            return False
+        time.sleep(0.02)
+    return True
