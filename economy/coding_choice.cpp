@@ -11,6 +11,7 @@ constexpr uint64_t kTryBytes = 1 << 16;  // so much of a section's kind, or
 constexpr uint64_t kTrySections = 32;    // so many, show what a coding makes of it
 constexpr uint64_t kTryTimes = 3;        // the first pays for memory that is new to the compressor and does not count
 constexpr uint64_t kTimedEvery = 16;     // short sections
+constexpr uint64_t kLongTimedEvery = 4;
 constexpr uint64_t kTryAgainEvery = 256; // sections: what they hold may have changed
 constexpr double kClearlySmaller = 0.97; // as small as that is smaller
 constexpr double kForSmaller = 1.3;      // so much longer Zstandard may take: the link is everyone's, and what was measured is not exact
@@ -37,7 +38,7 @@ bool CodingChoice::known(Coding coding) const {
     return m.times >= kTryTimes && (m.bytes >= kTryBytes || m.sections >= kTrySections);
 }
 
-bool CodingChoice::wantsTime(Coding coding, size_t sizeBytes) const { return sizeBytes >= kLongBytes || !known(coding) || chosen_ % kTimedEvery == 0; }
+bool CodingChoice::wantsTime(Coding coding, size_t sizeBytes) const { return !known(coding) || chosen_ % (sizeBytes >= kLongBytes ? kLongTimedEvery : kTimedEvery) == 0; }
 
 double CodingChoice::ratio() const { return std::min(measured_[static_cast<size_t>(Coding::Zstd)].ratio, measured_[static_cast<size_t>(Coding::Lz4)].ratio); }
 

@@ -1,5 +1,5 @@
 // Records that no frame before had follow each other where a program loads, compiles lists, or draws what it never drew. To look at
-// each takes two to three times as long as to compress them, so behind a few hundred of them the rest of the packet goes as bytes.
+// each takes two to three times as long as to compress them, so behind some of them the rest of the packet goes as bytes.
 // Where the same come again, those few are found in the log, and what was left out behind them is looked at in that frame: one that
 // repeats is known one frame later.
 #pragma once
@@ -14,11 +14,13 @@ namespace mural::economy {
 // Of one stream. Positions are those of its log.
 class NewRecords {
 public:
-    // In this frame; `end`: of the log. Behind many of the packet before fewer are enough, and ever fewer behind several such packets.
-    void packetBegins(uint64_t frame, uint64_t end) {
-        packets_ = isLeftOut_ ? std::min(packets_ + 1, kMostHalved) : 0;
+    // In this frame, a packet of so many bytes; `end`: of the log. Of a long packet few are enough behind many of the ones before, and ever fewer
+    // behind those of this frame whose rest was left out. A short one would win little.
+    void packetBegins(uint64_t frame, uint64_t end, size_t sizeBytes) {
+        packets_ = frame == frame_ && isLeftOut_ ? std::min(packets_ + 1, kMostHalved) : 0;
         isLeftOut_ = false;
-        late_ = std::min(late_, kMany - (kAtLeast >> (packets_ == 0 ? 0 : packets_ - 1)));
+        const uint32_t enough = packets_ == 0 && sizeBytes < kShortBytes ? kOfShort : kOfLong >> packets_;
+        late_ = std::min(late_, kMany - enough);
         if (frame == frame_) return;
         frame_ = frame;
         frameBegan_ = end;
@@ -41,15 +43,17 @@ public:
     }
 
 private:
-    static constexpr uint32_t kMany = 256, kAtLeast = 32;
+    static constexpr uint32_t kMany = 64;
+    static constexpr uint32_t kOfShort = 32, kOfLong = 4; // of a packet, behind many
+    static constexpr size_t kShortBytes = 4096;
+    static constexpr uint32_t kMostHalved = 3;  // to none
     static constexpr uint32_t kFoundCounts = 3; // one that is found weighs as many new ones
-    static constexpr uint32_t kMostHalved = 4;  // to four records
     static constexpr size_t kPlaces = 16;       // packets of a frame, about
 
-    uint32_t late_ = 0;  // new ones, less those found
+    uint32_t late_ = 0;      // new ones, less those found
     bool isLeftOut_ = false; // the rest of the packet
-    uint32_t packets_ = 0;   // that had a rest left out, up to the last one
-    bool again_ = false; // in this frame something came that was left out before
+    uint32_t packets_ = 0;   // of this frame that had a rest left out, up to the last one
+    bool again_ = false;     // in this frame something came that was left out before
     uint64_t frame_ = UINT64_MAX, frameBegan_ = 0;
     std::array<uint64_t, kPlaces> leftOutAt_ = nowhere();
     size_t next_ = 0;

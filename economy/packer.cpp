@@ -58,6 +58,7 @@ bool Packer::next() {
         const size_t from = cut_.at();
         if (walked_ != nullptr && cut_.atRecord()) passTold();
         else cut_.passShort();
+        if (!plain_) batchLeftOutBytes_ += cut_.at() - from;
         asBytes(from, cut_.at());
     }
     return cut_.next(piece_);
@@ -85,7 +86,7 @@ void Packer::add(uint32_t stream, std::span<const std::byte> packet, const Walke
     index_ = &streams_[opened.place]->items;
     runs_ = &streams_[opened.place]->runs;
     news_ = &streams_[opened.place]->news;
-    news_->packetBegins(frames_, log_->end());
+    news_->packetBegins(frames_, log_->end(), packet.size());
     restPlain_ = plain_;
     packet_ = packet;
     nextAt_ = kNowhere;
@@ -306,8 +307,8 @@ bool Packer::patch(const Piece& piece, size_t mostBytes) {
 
 // patch_ goes. A span may be one word, and a page has hundreds of them: no call for each.
 void Packer::putPagePatch(std::span<const std::byte> now) {
-    auto& spans = literals_[static_cast<size_t>(Section::Spans)];
-    auto& words = literals_[static_cast<size_t>(Section::Words)];
+    auto& spans = literals_[static_cast<size_t>(Section::Spans)].owned();
+    auto& words = literals_[static_cast<size_t>(Section::Words)].owned();
     size_t to = words.size();
     words.resize(to + patch_.changedBytes);
     const std::byte* from = now.data();
@@ -443,7 +444,7 @@ void Packer::asBytes(size_t from, size_t to) {
     settle();
     control_.put(Other::Bytes);
     control_.number(static_cast<uint32_t>(to - from));
-    literal(Section::Texts, packet_.subspan(from, to - from));
+    literals_[static_cast<size_t>(Section::Texts)].lend(packet_.subspan(from, to - from));
 }
 
 uint64_t Packer::hashOf(const Piece& piece) {
@@ -454,7 +455,7 @@ uint64_t Packer::hashOf(const Piece& piece) {
 
 SectionBytes Packer::finish() {
     control_.put(Other::Done);
-    return {coder_.finish(), literals_[1], literals_[2], literals_[3], literals_[4]};
+    return {coder_.finish(), literals_[1].bytes(), literals_[2].bytes(), literals_[3].bytes(), literals_[4].bytes()};
 }
 
 uint64_t Packer::stagedBytes() const {
@@ -465,7 +466,7 @@ uint64_t Packer::stagedBytes() const {
 
 void Packer::clear() {
     counts_.stagedBytes += stagedBytes();
-    batchRawBytes_ = batchPageBytes_ = 0;
+    batchRawBytes_ = batchPageBytes_ = batchLeftOutBytes_ = 0;
     coder_.clear();
     for (auto& literal : literals_) literal.clear();
 }

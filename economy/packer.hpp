@@ -10,6 +10,7 @@
 
 #include "economy/batch.hpp"
 #include "economy/control_code.hpp"
+#include "economy/gathered_bytes.hpp"
 #include "economy/history.hpp"
 #include "economy/item_index.hpp"
 #include "economy/known_runs.hpp"
@@ -41,7 +42,10 @@ public:
     [[nodiscard]] bool ready() const { return history_.ready(); }
 
     // walked: what the packet is made of, where that is known: then its records are not looked for once more, if they go plain.
+    // The packet stays where it is until clear(), or ownBytes().
     void add(uint32_t stream, std::span<const std::byte> packet, const Walked* walked = nullptr);
+    // Packets that were added may go from here on.
+    void ownBytes() { literals_[static_cast<size_t>(Section::Texts)].own(); }
 
     // What follows is another frame, or more of a long one. plain: its short records go as they are, not looked at. Between batches.
     void beginFrame(bool plain, bool goesOn = false) {
@@ -55,6 +59,8 @@ public:
     [[nodiscard]] uint64_t stagedBytes() const;
     [[nodiscard]] uint64_t rawBytes() const { return batchRawBytes_; }
     [[nodiscard]] uint64_t pageBytes() const { return batchPageBytes_; } // of them, in pages of long records
+    // Of them, in short records that would have been looked at, and were not, as they came behind many new ones.
+    [[nodiscard]] uint64_t leftOutBytes() const { return batchLeftOutBytes_; }
     void clear();
     // The last packet ends within a value that goes ahead of its record: nodes can do nothing with that yet.
     [[nodiscard]] bool endsInValue() const { return endsInValue_; }
@@ -92,10 +98,7 @@ private:
     void asBytes(size_t from, size_t to);
     [[nodiscard]] uint64_t hashOf(const Piece& piece); // of the one in hand
     [[nodiscard]] std::span<const std::byte> bytesOf(const Piece& piece) const { return packet_.subspan(piece.at, piece.sizeBytes); }
-    void literal(Section section, std::span<const std::byte> bytes) {
-        auto& into = literals_[static_cast<size_t>(section)];
-        into.insert(into.end(), bytes.begin(), bytes.end());
-    }
+    void literal(Section section, std::span<const std::byte> bytes) { literals_[static_cast<size_t>(section)].add(bytes); }
 
     const Limits limits_;
     History history_;
@@ -112,8 +115,8 @@ private:
     RangeWriter coder_; // of control_ and words_
     ControlWriter control_{coder_};
     WordCoder words_;
-    std::array<std::vector<std::byte>, kSections> literals_; // Control's is in coder_
-    uint64_t batchRawBytes_ = 0, batchPageBytes_ = 0;
+    std::array<GatheredBytes, kSections> literals_; // Control's is in coder_
+    uint64_t batchRawBytes_ = 0, batchPageBytes_ = 0, batchLeftOutBytes_ = 0;
     uint32_t lastStream_ = 0;
     bool endsInValue_ = false;
     bool plain_ = false;

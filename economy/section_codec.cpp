@@ -5,6 +5,8 @@
 #include <lz4.h>
 #include <zstd.h>
 
+#include "common/copy_bytes.hpp"
+
 namespace mural::economy {
 
 namespace {
@@ -12,7 +14,32 @@ namespace {
 constexpr int kZstdWindowLog = 20;  // 1 MiB, per section and side
 constexpr size_t kMostRoomBytes = size_t{32} << 10; // for what comes out, at once: room is filled with zeros first
 constexpr size_t kLz4Window = 65536;
-constexpr size_t kLz4PieceBytes = size_t{1} << 20; // of a section, as LZ4 takes no more than an int
+constexpr size_t kLz4PieceBytes = size_t{128} << 10; // of a section
+
+// The last bytes of LZ4's, one behind the other as it wants them. They move to the front when there is no room behind them, not for each section:
+// to move them takes as long as to compress a short frame.
+class Lz4Window {
+public:
+    static constexpr size_t kRoomBytes = kLz4Window + 2 * kLz4PieceBytes;
+
+    [[nodiscard]] std::span<const std::byte> last() const { return {room_.get() + end_ - std::min(end_, kLz4Window), std::min(end_, kLz4Window)}; }
+    // Room for a piece behind what is there. move(to, last()): brings those bytes there; they may overlap.
+    template <typename Move>
+    std::span<std::byte> add(size_t sizeBytes, Move&& move) {
+        if (!room_) room_ = std::make_unique_for_overwrite<std::byte[]>(kRoomBytes);
+        if (sizeBytes > kRoomBytes - end_) {
+            const auto kept = last();
+            move(room_.get(), kept);
+            end_ = kept.size();
+        }
+        end_ += sizeBytes;
+        return {room_.get() + end_ - sizeBytes, sizeBytes};
+    }
+
+private:
+    std::unique_ptr<std::byte[]> room_{}; // there as far as it was used
+    size_t end_ = 0;
+};
 
 char* chars(std::byte* bytes) { return reinterpret_cast<char*>(bytes); }
 const char* chars(const std::byte* bytes) { return reinterpret_cast<const char*>(bytes); }
@@ -34,9 +61,8 @@ struct SectionCompressor::State {
     const int zstdLevel;
     std::unique_ptr<ZSTD_CCtx, size_t (*)(ZSTD_CCtx*)> zstd{nullptr, ZSTD_freeCCtx};
     std::unique_ptr<LZ4_stream_t, int (*)(LZ4_stream_t*)> lz4{nullptr, LZ4_freeStream};
-    // Of LZ4: the bytes before, and behind them the ones in hand; and what comes out. There as far as they were used.
-    std::unique_ptr<std::byte[]> window{}, packed{};
-    size_t windowBytes = 0;
+    Lz4Window window{};
+    std::unique_ptr<std::byte[]> packed{}; // what comes out of LZ4
 
     bool openZstd() {
         if (zstd) return true;
@@ -68,20 +94,18 @@ struct SectionCompressor::State {
         if (!lz4) {
             lz4.reset(LZ4_createStream());
             if (!lz4) return false;
-            window = std::make_unique_for_overwrite<std::byte[]>(kLz4Window + kLz4PieceBytes);
             packed = std::make_unique_for_overwrite<std::byte[]>(kRoom);
         }
         while (!bytes.empty()) {
             const auto piece = bytes.first(std::min(bytes.size(), kLz4PieceBytes));
             bytes = bytes.subspan(piece.size());
             // Only what follows the window in memory is compressed with all of it.
-            std::byte* const copy = window.get() + windowBytes;
-            std::memcpy(copy, piece.data(), piece.size());
-            const int size = LZ4_compress_fast_continue(lz4.get(), chars(copy), chars(packed.get()), static_cast<int>(piece.size()), kRoom, 1);
+            const auto copy = window.add(piece.size(), [&](std::byte* to, std::span<const std::byte> last) { LZ4_saveDict(lz4.get(), chars(to), static_cast<int>(last.size())); });
+            copyBytes(piece, copy);
+            const int size = LZ4_compress_fast_continue(lz4.get(), chars(copy.data()), chars(packed.get()), static_cast<int>(copy.size()), kRoom, 1);
             if (size <= 0) return false;
             putSize(into, static_cast<uint32_t>(size));
             into.insert(into.end(), packed.get(), packed.get() + size);
-            windowBytes = static_cast<size_t>(LZ4_saveDict(lz4.get(), chars(window.get()), static_cast<int>(kLz4Window)));
         }
         return true;
     }
@@ -101,11 +125,12 @@ void SectionCompressor::prepare() {
     for (size_t filled = 0; filled <= size_t{1} << kZstdWindowLog; filled += nothing.size())
         if (!state_->byZstd(nothing, into)) return;
     ZSTD_CCtx_reset(state_->zstd.get(), ZSTD_reset_session_only);
+    (void)state_->byZstd({}, into); // its tables are cleared here, not in the first frame; nothing comes out
 }
 
 struct SectionDecompressor::State {
     std::unique_ptr<ZSTD_DCtx, size_t (*)(ZSTD_DCtx*)> zstd{nullptr, ZSTD_freeDCtx};
-    std::vector<std::byte> window{}; // of LZ4: the last bytes before, at its end
+    Lz4Window window;
 
     bool byZstd(std::span<const std::byte> bytes, std::span<std::byte> into) {
         if (!zstd) {
@@ -133,20 +158,15 @@ struct SectionDecompressor::State {
             bytes = bytes.subspan(4);
             const auto piece = into.first(std::min(into.size(), kLz4PieceBytes));
             if (size > bytes.size()) return false;
+            const auto last = window.last();
             const int got = LZ4_decompress_safe_usingDict(chars(bytes.data()), chars(piece.data()), static_cast<int>(size), static_cast<int>(piece.size()),
-                                                          chars(window.data()), static_cast<int>(window.size()));
+                                                          chars(last.data()), static_cast<int>(last.size()));
             if (got < 0 || static_cast<size_t>(got) != piece.size()) return false;
-            remember(piece);
+            copyBytes(piece, window.add(piece.size(), [](std::byte* to, std::span<const std::byte> kept) { std::memmove(to, kept.data(), kept.size()); }));
             bytes = bytes.subspan(size);
             into = into.subspan(piece.size());
         }
         return bytes.empty();
-    }
-    void remember(std::span<const std::byte> piece) {
-        const auto last = piece.last(std::min(piece.size(), kLz4Window));
-        const size_t kept = std::min(window.size(), kLz4Window - last.size());
-        window.erase(window.begin(), window.end() - static_cast<std::ptrdiff_t>(kept));
-        window.insert(window.end(), last.begin(), last.end());
     }
 };
 

@@ -1,6 +1,7 @@
 #include "economy/way_choice.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace mural::economy {
 
@@ -18,6 +19,7 @@ constexpr double kClearly = 0.95;          // as small as that is cheaper
 constexpr double kWorthNs = 20'000;        // of a frame that is looked at in less, bytes count more than the time…
 constexpr double kTooDear = 1.9;           // …unless plain it takes so many times less
 constexpr double kCheapNs = 5'000;         // a frame that is looked at in less is not worth a try
+constexpr double kRepeats = 1.0 / 32;      // what plain comes to so few bytes is the same each time
 constexpr double kMuch = 2;                // a change of cost that asks for another try
 // Nodes unpack it before they draw: so long beside packing, looked at and plain (measured: 0.5 to 0.75 and 0.25 to 0.35).
 constexpr std::array<double, 2> kWithUnpacking{1.6, 1.3};
@@ -27,11 +29,13 @@ bool WayChoice::wantsTime() const { return trying_ || batches_ + 1 + kCompared >
 
 void WayChoice::measured(uint64_t rawBytes, uint64_t pageBytes, uint64_t wireBytes, int64_t ns, double linkNsPerByte) {
     ++batches_;
+    isFirst_ = false;
     if (trying_ && batches_ < kUnmeasured) return;
     Cost& cost = costs_[plain_ ? Plain : Looked];
     if (!trying_ && batches_ + kCompared == until_) cost = {}; // compared is what comes just before with what comes just behind
     cost.ns = cost.ns * kKept + static_cast<double>(ns) * kWithUnpacking[plain_ ? Plain : Looked] + static_cast<double>(wireBytes) * linkNsPerByte;
     cost.rawBytes = cost.rawBytes * kKept + static_cast<double>(rawBytes);
+    cost.wireBytes = cost.wireBytes * kKept + static_cast<double>(wireBytes);
     cost.encodeNs = cost.encodeNs * kKept + static_cast<double>(ns);
     cost.leastNs = cost.batches == 0 ? static_cast<double>(ns) : std::min(cost.leastNs, static_cast<double>(ns));
     cost.batches = cost.batches * kKept + 1;
@@ -50,9 +54,24 @@ void WayChoice::measured(uint64_t rawBytes, uint64_t pageBytes, uint64_t wireByt
         return;
     }
     if (batches_ < until_) return;
+    if (std::exchange(isByLeftOut_, false) && cost.wireBytes > cost.rawBytes * kRepeats) {
+        until_ = kLeastBetween * 8;
+        return;
+    }
     const bool isAboutShort = pageBytes < rawBytes / 2; // else there is little to win, and places of pages to lose
     if (plain_ || (isAboutShort && cost.leastNs >= kCheapNs)) tryOther();
     else until_ += cheap_ ? kCheapEvery * 2 : kLeastBetween;
+}
+
+void WayChoice::leftOut() {
+    if (std::exchange(isFirst_, false)) return; // all is new
+    until_ = trying_ ? std::min(std::max(until_ * 2, kLeastBetween), kMostBetween) : kLeastBetween;
+    isByLeftOut_ = !trying_;
+    plain_ = true;
+    trying_ = false;
+    batches_ = 0;
+    costs_[Plain] = {};
+    decidedBy_ = 0;
 }
 
 void WayChoice::tryOther() {

@@ -17,7 +17,12 @@ public:
     // Whether the time of the next batch must be known: reading a thread's clock is a system call, and takes as long as looking at a small frame.
     [[nodiscard]] bool wantsTime() const;
     // The batch has gone so, in a time that nobody has measured.
-    void unmeasured() { ++batches_; }
+    void unmeasured() {
+        ++batches_;
+        isFirst_ = false;
+    }
+    // The batch was to be looked at, but most of its short records went plain behind many new ones (NewRecords): it says nothing of what looking costs.
+    void leftOut();
     // The batch has gone so. pageBytes: of rawBytes, in long records, which are looked at either way.
     void measured(uint64_t rawBytes, uint64_t pageBytes, uint64_t wireBytes, int64_t ns, double linkNsPerByte);
 
@@ -25,7 +30,7 @@ private:
     enum Way : size_t { Looked, Plain };
     // Of the last batches, the older the less.
     struct Cost {
-        double ns = 0, rawBytes = 0, encodeNs = 0, batches = 0;
+        double ns = 0, rawBytes = 0, wireBytes = 0, encodeNs = 0, batches = 0;
         double leastNs = 0; // that one took to encode
         [[nodiscard]] double perByte() const { return rawBytes > 0 ? ns / rawBytes : 0; }
     };
@@ -40,6 +45,8 @@ private:
     uint32_t batches_ = 0; // since the way was taken
     uint32_t until_ = kFirstTry; // so many, the other way is tried
     double decidedBy_ = 0; // cost per byte when it was
+    bool isFirst_ = true;      // no batch has been yet
+    bool isByLeftOut_ = false; // plain: nobody knows what looking costs
 };
 
 } // namespace mural::economy

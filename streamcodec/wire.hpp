@@ -15,7 +15,7 @@ namespace mural::wire {
 
 constexpr uint32_t kMagic = 0x4d52534d; // "MSRM"
 constexpr uint32_t kVersion = 4;      // of packets and records; recordings have these, too
-constexpr uint32_t kBatchVersion = 8; // of batches (economy/), head commands and messages, which only head and nodes exchange
+constexpr uint32_t kBatchVersion = 9; // of batches (economy/), head commands and messages, which only head and nodes exchange
 
 // Which capture stream a packet belongs to: client (app process) and thread of it.
 // streamOf(0, 0) is the head's own stream: its payload is one HeadCommand.

@@ -16,6 +16,7 @@ constexpr uint64_t kFullStagedBytes = uint64_t{64} * 1024; // as much as goes at
 // Beside which reading a thread's clock, a system call of 0.8 us, costs nothing: packets, which are mostly as they were, and new bytes.
 // What is shorter takes no time in which others are likely to have the processor: the clock on the wall tells as much.
 constexpr size_t kLongPacketBytes = size_t{256} << 10, kLongBytes = size_t{64} << 10;
+constexpr uint64_t kWorthAWayBytes = 2048;
 constexpr uint64_t kMostHeldBytes = uint64_t{256} << 20;
 // What programs load first is copied a few times on its way: a fault for each new page (3 us) took half as long as all else.
 constexpr size_t kFirstBytes = size_t{16} << 20;
@@ -97,11 +98,15 @@ void StreamEconomy::pack(uint32_t stream, std::span<const std::byte> payload, co
     coder_->packer.add(stream, payload, walked);
     if (timesPacking_) packNs_ += static_cast<uint64_t>(nowNs_() - startedNs);
     ++packets_;
-    if (!full() || !send_) return;
+    if (!full() || !send_) return coder_->packer.ownBytes();
     const int64_t beganNs = nowNs_();
     send_();
     sendNs_ += nowNs_() - beganNs;
+    coder_->packer.ownBytes();
 }
+
+// Where most is pages there is little to win, and places of them to lose.
+bool StreamEconomy::isMostLeftOut() const { return measured_.rawBytes >= kWorthAWayBytes && measured_.leftOutBytes > measured_.rawBytes / 2; }
 
 bool StreamEconomy::full() const { return coder_->packer.stagedBytes() >= kFullStagedBytes || coder_->packer.rawBytes() >= kFullRawBytes; }
 
@@ -112,6 +117,7 @@ Result<std::span<const std::byte>> StreamEconomy::take() {
     const int64_t beganNs = timed ? now() : 0;
     measured_.rawBytes += packer.rawBytes();
     measured_.pageBytes += packer.pageBytes();
+    measured_.leftOutBytes += packer.leftOutBytes();
     auto batch = coder_->encoder.encode(packer.finish(), link_.nsPerByte(), packer.plain());
     packer.clear();
     packets_ = 0;
@@ -126,14 +132,15 @@ Result<std::span<const std::byte>> StreamEconomy::take() {
         economy::WayChoice& way = coder_->way;
         const double frameNs = timesFrame_ ? static_cast<double>(encodeNs_ - measured_.encodeNs) : -1;
         // What stays behind takes as long either way.
-        if (timesFrame_) way.measured(measured_.rawBytes, measured_.pageBytes, measured_.wireBytes, static_cast<int64_t>(frameNs) - static_cast<int64_t>(measured_.holdNs), link_.nsPerByte());
+        if (isMostLeftOut()) way.leftOut();
+        else if (timesFrame_) way.measured(measured_.rawBytes, measured_.pageBytes, measured_.wireBytes, static_cast<int64_t>(frameNs) - static_cast<int64_t>(measured_.holdNs), link_.nsPerByte());
         else way.unmeasured();
         if (way.plain() != packer.plain()) small_.disturbed();
         else small_.frame(holder_.counts().inBytes - measured_.programBytes, measured_.wireBytes, timesFrame_ ? frameNs + static_cast<double>(measured_.wireBytes) * link_.nsPerByte() : -1);
         if (timesFrame_ && measured_.shortBytes > 0) packetNsPerByte_.add(static_cast<double>(measured_.shortNs) / static_cast<double>(measured_.shortBytes));
         timesFrame_ = way.wantsTime() || small_.wantsTime();
         packer.beginFrame(way.plain(), frameGoesOn);
-        measured_ = {0, 0, 0, encodeNs_, holder_.counts().inBytes, 0, 0, 0};
+        measured_ = {0, 0, 0, 0, encodeNs_, holder_.counts().inBytes, 0, 0, 0};
     }
     publishCounts();
     return batch;

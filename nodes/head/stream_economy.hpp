@@ -70,6 +70,7 @@ public:
 private:
     StreamEconomy(const economy::Limits& limits, std::unique_ptr<Coder> coder);
     void publishCounts();
+    [[nodiscard]] bool isMostLeftOut() const;
 
     void hold(uint32_t stream, std::span<const std::byte> payload);
     void pack(uint32_t stream, std::span<const std::byte> payload, const Walked* walked = nullptr);
@@ -93,7 +94,7 @@ private:
     UsualTime takeNs_;          // of the batch, the same
     uint64_t wireBytes_ = 0, encodeNs_ = 0;
     struct Measured {
-        uint64_t rawBytes = 0, pageBytes = 0, wireBytes = 0, encodeNs = 0, programBytes = 0, holdNs = 0, shortBytes = 0, shortNs = 0;
+        uint64_t rawBytes = 0, pageBytes = 0, leftOutBytes = 0, wireBytes = 0, encodeNs = 0, programBytes = 0, holdNs = 0, shortBytes = 0, shortNs = 0;
     } measured_; // since the way was chosen: about a frame
     struct Published {
         std::atomic<uint64_t> packets{0}, records{0}, rawBytes{0}, stagedBytes{0}, storeHits{0}, newPages{0}, patches{0}, wireBytes{0}, encodeNs{0};

@@ -34,6 +34,30 @@ TEST(SectionCodec, bothCodingsUseWhatCameBefore) {
     }
 }
 
+// The window moves in its memory now and then; what it holds is found behind that as before.
+TEST(SectionCodec, windowsGoOnOverSectionsOfAnySize) {
+    for (const Coding coding : {Coding::Lz4, Coding::Zstd}) {
+        SectionCompressor compressor;
+        SectionDecompressor decompressor;
+        std::mt19937 random(2);
+        Bytes bytes(150'000);
+        for (auto& b : bytes) b = static_cast<std::byte>(random());
+        for (int section = 0; section < 400; ++section) {
+            const size_t size = 1 + random() % (section % 20 == 0 ? bytes.size() : 30'000);
+            const auto some = std::span(bytes).first(size);
+            for (int time = 0; time < 2; ++time) {
+                Bytes coded, back(size);
+                ASSERT_TRUE(compressor.compress(coding, some, coded));
+                ASSERT_TRUE(decompressor.decompress(coding, coded, back));
+                ASSERT_TRUE(std::ranges::equal(back, some)) << section;
+                const bool isInWindow = time > 0 && size < 60'000;
+                ASSERT_LT(coded.size(), isInWindow ? size / 100 + 100 : size + size / 100 + 100) << section << ", " << time;
+            }
+            bytes[random() % size] ^= std::byte{1};
+        }
+    }
+}
+
 TEST(SectionCodec, wrongSizesAreRefused) {
     for (const Coding coding : {Coding::Lz4, Coding::Zstd}) {
         const Bytes bytes(1000, std::byte{5});

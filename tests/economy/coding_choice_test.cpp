@@ -54,13 +54,16 @@ TEST(CodingChoice, theFirstTimeAndOneThatWasDisturbedDecideNothing) {
     EXPECT_EQ(choice.choose(1000, 32), Coding::Zstd);
 }
 
-TEST(CodingChoice, fewOfManyShortSectionsAreTimed) {
+TEST(CodingChoice, fewOfManyShortSectionsAreTimedAndMoreLongOnes) {
     CodingChoice choice = measuredChoice();
-    int timed = 0;
-    for (int i = 0; i < 1024; ++i) timed += choice.wantsTime(choice.choose(1000, 80), 1000);
-    EXPECT_GE(timed, 32);
-    EXPECT_LE(timed, 128);
-    EXPECT_TRUE(choice.wantsTime(Coding::Zstd, 1 << 20));
+    const auto timedOf = [&](size_t sizeBytes) {
+        int timed = 0;
+        for (int i = 0; i < 1024; ++i) timed += choice.wantsTime(choice.choose(sizeBytes, 80), sizeBytes);
+        return timed;
+    };
+    EXPECT_EQ(timedOf(1000), 64);
+    EXPECT_EQ(timedOf(1 << 20), 256);
+    EXPECT_TRUE(CodingChoice().wantsTime(Coding::Zstd, 1 << 20));
     choice.measured(Coding::Zstd, 1000, 500, std::nullopt);
 }
 

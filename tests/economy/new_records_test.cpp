@@ -6,6 +6,8 @@
 namespace mural::economy {
 namespace {
 
+constexpr size_t kLong = 20'000, kShort = 1'000; // bytes
+
 // So many new records in a row are looked at before there are many.
 int lookedAt(NewRecords& news) {
     int count = 0;
@@ -15,15 +17,43 @@ int lookedAt(NewRecords& news) {
 
 TEST(NewRecords, fewerAreLookedAtBehindEachPacketWhoseRestWasLeftOut) {
     NewRecords news;
-    news.packetBegins(1, 0);
-    EXPECT_EQ(lookedAt(news), 256);
-    for (const int expected : {32, 16, 8, 4, 4}) {
+    news.packetBegins(1, 0, kLong);
+    EXPECT_EQ(lookedAt(news), 64);
+    for (const int expected : {2, 1, 0, 0}) {
         news.leaveOut(100);
-        news.packetBegins(1, 100);
+        news.packetBegins(1, 100, kLong);
         EXPECT_EQ(lookedAt(news), expected);
     }
-    news.packetBegins(1, 100); // of the one before nothing was left out
+    news.packetBegins(1, 100, kLong); // of the one before nothing was left out
+    EXPECT_EQ(lookedAt(news), 4);
+    news.packetBegins(1, 100, kShort);
     EXPECT_EQ(lookedAt(news), 32);
+}
+
+// Else what repeats would not be seen to.
+TEST(NewRecords, someAreLookedAtInEachFrame) {
+    NewRecords news;
+    news.packetBegins(1, 0, kLong);
+    for (int packet = 0; packet < 10; ++packet) {
+        (void)lookedAt(news);
+        news.leaveOut(70);
+        news.packetBegins(1, 70, kLong);
+    }
+    ASSERT_EQ(lookedAt(news), 0);
+    news.leaveOut(70);
+    news.packetBegins(2, 70, kLong);
+    EXPECT_EQ(lookedAt(news), 4);
+}
+
+TEST(NewRecords, whereWhatWasLeftOutIsReachedAgainAllIsLookedAt) {
+    NewRecords news;
+    news.packetBegins(1, 0, kLong);
+    (void)lookedAt(news);
+    news.leaveOut(64);
+    news.packetBegins(2, 64, kLong);
+    news.found(0, 64); // as the log has them
+    news.another(64);
+    EXPECT_EQ(lookedAt(news), 1000);
 }
 
 } // namespace

@@ -106,5 +106,43 @@ TEST(WayChoice, oneOutlierDecidesNothing) {
     EXPECT_GE(plainOf(choice, {3000, 450'000}, {5000, 110'000}, 100, 60), 50);
 }
 
+// Most of what was to be looked at went plain behind many new records, in so many batches.
+void leftOutOf(WayChoice& choice, int batches) {
+    for (int i = 0; i < batches; ++i) choice.leftOut();
+}
+
+TEST(WayChoice, goesPlainWhereAllIsNewBehindTheFirst) {
+    WayChoice choice;
+    choice.leftOut();
+    EXPECT_FALSE(choice.plain()) << "all of the first is new";
+    choice.leftOut();
+    EXPECT_TRUE(choice.plain());
+    WayChoice other;
+    plainOf(other, {3000, 40'000}, {5000, 50'000}, 1, 1);
+    other.leftOut();
+    EXPECT_TRUE(other.plain());
+}
+
+TEST(WayChoice, looksSoonWhereWhatWasNewRepeats) {
+    WayChoice choice;
+    leftOutOf(choice, 2);
+    EXPECT_LE(plainOf(choice, {10, 40'000}, {300, 100'000}, 60, 20), 0);
+    WayChoice other; // and where it does not, it is not tried soon
+    leftOutOf(other, 2);
+    EXPECT_EQ(plainOf(other, {3000, 450'000}, {8000, 110'000}, 120, 120), 120);
+}
+
+TEST(WayChoice, aTryThatIsLeftOutEnds) {
+    WayChoice choice;
+    plainOf(choice, {3000, 450'000}, {5000, 110'000}, 400, 1);
+    int tries = 0;
+    for (int i = 0; i < 4000; ++i) {
+        if (choice.plain()) choice.measured(kRawBytes, 0, 5000, 110'000, kLinkNsPerByte);
+        else ++tries, choice.leftOut();
+    }
+    EXPECT_GE(tries, 1);
+    EXPECT_LE(tries, 16);
+}
+
 } // namespace
 } // namespace mural::economy

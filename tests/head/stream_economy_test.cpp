@@ -1,9 +1,12 @@
 // When a batch is sent: soon, but not for what nodes can do nothing with yet.
 #include "nodes/head/stream_economy.hpp"
 
+#include <algorithm>
+#include <cstring>
 #include <gtest/gtest.h>
 #include <vector>
 
+#include "economy/unpacker.hpp"
 #include "streamcodec/wire.hpp"
 
 namespace mural {
@@ -58,6 +61,57 @@ TEST(StreamEconomy, knowsWhenAValueIsNotComplete) {
     EXPECT_TRUE(economy->inValue());
     economy->add(kStream, record(wire::kFirstGlOpcode, 3));
     EXPECT_FALSE(economy->inValue());
+}
+
+// What goes as bytes is not copied while its packet is there; which is another one, or none, when the batch is taken later.
+TEST(StreamEconomy, packetsMayGoBehindAdd) {
+    auto economy = smallEconomy();
+    ASSERT_NE(economy, nullptr);
+    economy->holdNothing();
+    std::vector<std::vector<std::byte>> sent, batches;
+    const auto take = [&] {
+        auto batch = economy->take();
+        ASSERT_TRUE(batch.ok());
+        batches.emplace_back(batch->begin(), batch->end());
+    };
+    economy->sendBy(take);
+    uint32_t number = 0;
+    for (const size_t records : {2000, 10, 500, 30'000, 500}) { // short ones, all new; below and above what fills a batch
+        std::vector<std::byte> packet;
+        for (size_t i = 0; i < records; ++i) {
+            auto one = record(wire::kFirstGlOpcode, 4);
+            const uint32_t word = ++number * 2654435761u;
+            std::memcpy(one.data() + 4, &word, sizeof word);
+            packet.insert(packet.end(), one.begin(), one.end());
+        }
+        sent.push_back(packet);
+        economy->add(kStream, packet);
+        std::ranges::fill(packet, std::byte{0x55});
+    }
+    if (!economy->empty()) take();
+    EXPECT_GE(batches.size(), 2u);
+    economy::BatchDecoder decoder;
+    economy::Unpacker unpacker(economy->limits());
+    size_t got = 0;
+    for (const auto& batch : batches) {
+        economy::BatchHeadReader head;
+        size_t at = 0;
+        while (at < batch.size() && !head.add(batch[at++])) {}
+        auto sections = decoder.decode(head.head(), std::span(batch).subspan(at));
+        ASSERT_TRUE(sections.ok());
+        unpacker.begin(*sections);
+        uint32_t stream = 0;
+        std::span<const std::byte> bytes;
+        while (true) {
+            auto more = unpacker.next(stream, bytes);
+            ASSERT_TRUE(more.ok());
+            if (!*more) break;
+            ASSERT_LT(got, sent.size());
+            EXPECT_TRUE(std::ranges::equal(bytes, sent[got])) << got;
+            ++got;
+        }
+    }
+    EXPECT_EQ(got, sent.size());
 }
 
 } // namespace

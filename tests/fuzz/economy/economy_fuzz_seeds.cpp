@@ -49,7 +49,8 @@ Bytes seedOf(uint32_t seed, bool coded, bool pages) {
     economy::BatchEncoder encoder([](size_t) { return int64_t{0}; });
     Bytes input{static_cast<std::byte>(coded ? 0 : 1)};
     for (uint32_t number = 0; number < 6; ++number) {
-        packer.add(0x10000 + seed % 2 * (number % 3), frame(seed, number, pages));
+        const Bytes bytes = frame(seed, number, pages);
+        packer.add(0x10000 + seed % 2 * (number % 3), bytes);
         if (coded) {
             const auto batch = encoder.encode(packer.finish(), 80);
             if (!batch) std::exit(1);

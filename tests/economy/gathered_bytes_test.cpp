@@ -1,0 +1,51 @@
+// When bytes are copied, and when whoever lent them must keep them.
+#include "economy/gathered_bytes.hpp"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+
+namespace mural::economy {
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+TEST(GatheredBytes, aLongPieceThatIsAloneIsNotCopied) {
+    const Bytes piece(20'000, std::byte{1});
+    GatheredBytes gathered;
+    gathered.lend(piece);
+    EXPECT_EQ(gathered.bytes().data(), piece.data());
+    EXPECT_EQ(gathered.size(), piece.size());
+    gathered.clear();
+    EXPECT_EQ(gathered.size(), 0u);
+    const Bytes little(100, std::byte{2});
+    gathered.lend(little);
+    EXPECT_NE(gathered.bytes().data(), little.data());
+    EXPECT_TRUE(std::ranges::equal(gathered.bytes(), little));
+}
+
+TEST(GatheredBytes, whatWasLentIsThereWhenItHasGone) {
+    Bytes piece(20'000, std::byte{1});
+    const Bytes before = piece;
+    GatheredBytes gathered;
+    gathered.lend(piece);
+    gathered.own();
+    std::ranges::fill(piece, std::byte{9});
+    EXPECT_TRUE(std::ranges::equal(gathered.bytes(), before));
+}
+
+TEST(GatheredBytes, allStayInTheirOrder) {
+    const Bytes first(20'000, std::byte{1}), second(30'000, std::byte{2}), third(10, std::byte{3});
+    GatheredBytes gathered;
+    gathered.lend(first);
+    gathered.lend(second);
+    gathered.add(third);
+    gathered.owned().push_back(std::byte{4});
+    Bytes all = first;
+    all.insert(all.end(), second.begin(), second.end());
+    all.insert(all.end(), third.begin(), third.end());
+    all.push_back(std::byte{4});
+    EXPECT_TRUE(std::ranges::equal(gathered.bytes(), all));
+}
+
+} // namespace
+} // namespace mural::economy
