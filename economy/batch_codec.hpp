@@ -21,7 +21,7 @@ class BatchEncoder {
 public:
     // `nowNs`: the clock by which to compress so many bytes is timed, to choose codings by what they cost.
     explicit BatchEncoder(std::function<int64_t(size_t sizeBytes)> nowNs) : nowNs_(std::move(nowNs)) {
-        compressors_[static_cast<size_t>(Section::Texts)].prepare();
+        for (const Section section : {Section::Texts, Section::Words, Section::Spans}) compressors_[static_cast<size_t>(section)].prepare();
         pages_.prepare();
     }
 

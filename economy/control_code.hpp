@@ -26,6 +26,8 @@ enum class Other : uint32_t {
     Stream = 2, // the packet is of the stream that follows; without: of the one before
     Bytes = 3,  // as many as follow, which are no items
     Done = 4,   // with the batch
+    KeptBytes = 5,    // as Bytes, and remembered in the slot that follows
+    ChangedBytes = 6, // those of the slot that follows, with spans of changed words, as many as follow that
 };
 
 // Words left as they are, then words changed (at least one): a byte with four bits of each; 15: the rest follows, in sevens.

@@ -10,6 +10,7 @@
 
 #include "economy/item.hpp"
 #include "economy/item_log.hpp"
+#include "economy/kept_runs.hpp"
 #include "economy/limits.hpp"
 #include "economy/page_store.hpp"
 #include "economy/text_ring.hpp"
@@ -58,6 +59,7 @@ public:
         return {slot, static_cast<uint32_t>(bytes.size()), 1, 0};
     }
     [[nodiscard]] PageStore& pages() { return pages_; }
+    [[nodiscard]] KeptRuns& runs() { return runs_; }
 
     // The log of a stream. A new one takes the place of the one that was unused for longest.
     struct Opened {
@@ -76,6 +78,7 @@ private:
     const Limits limits_;
     TextRing text_;
     PageStore pages_;
+    KeptRuns runs_;
     std::vector<Stream> streams_;
     std::unique_ptr<ItemLog> first_; // until there is a stream
     uint64_t opened_ = 0;

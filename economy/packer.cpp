@@ -17,6 +17,8 @@ constexpr size_t kCheapPatchBytes = 8, kCheapPagePatchBytes = 512;
 constexpr size_t kMostSkipped = 4;
 size_t mostPatchOf(const Piece& piece) { return size_t{piece.sizeBytes} * 3 / 4; }
 constexpr uint32_t kIndexedOfRun = 2;
+// Of a run's bytes one part of so many may be spans and words of what has changed.
+constexpr size_t kFewOf = 4;
 // So many short records may be in the log that go plain now.
 constexpr size_t kMostLeftOut = 1024;
 
@@ -282,7 +284,7 @@ bool Packer::patch(const Piece& piece, size_t mostBytes) {
     Item changed = expected;
     ++counts_.patches;
     if (piece.page()) {
-        putPagePatch(now);
+        putPatch(now);
         ++log_->cursor;
         appendChangedPage(expected.where, piece);
         return true;
@@ -305,8 +307,8 @@ bool Packer::patch(const Piece& piece, size_t mostBytes) {
     return true;
 }
 
-// patch_ goes. A span may be one word, and a page has hundreds of them: no call for each.
-void Packer::putPagePatch(std::span<const std::byte> now) {
+// patch_ goes. A span may be one word, and there are hundreds of them: no call for each.
+void Packer::putPatch(std::span<const std::byte> now) {
     auto& spans = literals_[static_cast<size_t>(Section::Spans)].owned();
     auto& words = literals_[static_cast<size_t>(Section::Words)].owned();
     size_t to = words.size();
@@ -442,9 +444,32 @@ void Packer::settle() {
 void Packer::asBytes(size_t from, size_t to) {
     if (from == to) return;
     settle();
-    control_.put(Other::Bytes);
-    control_.number(static_cast<uint32_t>(to - from));
-    literals_[static_cast<size_t>(Section::Texts)].lend(packet_.subspan(from, to - from));
+    const auto bytes = packet_.subspan(from, to - from);
+    const RunPlaces::Place place = runPlaces_.expect(lastStream_, bytes.size(), frames_);
+    if (place.advice == RunPlaces::Advice::Compare && asChanged(place.slot, bytes)) return;
+    const bool keeps = place.advice == RunPlaces::Advice::Keep;
+    control_.put(keeps ? Other::KeptBytes : Other::Bytes);
+    if (keeps) {
+        control_.number(place.slot);
+        history_.runs().keep(place.slot, bytes);
+    }
+    control_.number(static_cast<uint32_t>(bytes.size()));
+    literals_[static_cast<size_t>(Section::Texts)].lend(bytes);
+}
+
+// Few words of what the slot has are others now.
+bool Packer::asChanged(uint32_t slot, std::span<const std::byte> bytes) {
+    const auto kept = history_.runs().at(slot);
+    const bool few = patch_.find(kept, bytes, bytes.size() / kFewOf) || patch_.spans.empty();
+    runPlaces_.changed(slot, few);
+    if (!few) return false;
+    ++counts_.patches;
+    control_.put(Other::ChangedBytes);
+    control_.number(slot);
+    control_.number(static_cast<uint32_t>(patch_.spans.size()));
+    putPatch(bytes);
+    patch_.apply(bytes, kept);
+    return true;
 }
 
 uint64_t Packer::hashOf(const Piece& piece) {

@@ -17,6 +17,7 @@
 #include "economy/new_records.hpp"
 #include "economy/packet_cut.hpp"
 #include "economy/page_index.hpp"
+#include "economy/run_places.hpp"
 #include "economy/word_coder.hpp"
 #include "economy/word_patch.hpp"
 #include "streamcodec/walked.hpp"
@@ -90,12 +91,13 @@ private:
     void appendUnfound(Item item, uint32_t hash);
     [[nodiscard]] size_t mostPatchOfPage(const Piece& piece) const;
     [[nodiscard]] size_t cheapPatchOfPage(const Piece& piece);
-    void putPagePatch(std::span<const std::byte> now);
+    void putPatch(std::span<const std::byte> now);
     void appendChangedPage(uint32_t slotBefore, const Piece& piece);
     Item putPage(uint32_t slot, const Piece& piece);
     Item keep(const Piece& piece, uint32_t model = 0);
     void settle();
     void asBytes(size_t from, size_t to);
+    bool asChanged(uint32_t slot, std::span<const std::byte> bytes);
     [[nodiscard]] uint64_t hashOf(const Piece& piece); // of the one in hand
     [[nodiscard]] std::span<const std::byte> bytesOf(const Piece& piece) const { return packet_.subspan(piece.at, piece.sizeBytes); }
     void literal(Section section, std::span<const std::byte> bytes) { literals_[static_cast<size_t>(section)].add(bytes); }
@@ -121,6 +123,7 @@ private:
     bool endsInValue_ = false;
     bool plain_ = false;
     uint64_t frames_ = 0;
+    RunPlaces runPlaces_;
     uint32_t run_ = 0; // items as expected that are not in control_ yet
     uint32_t pagesFrom_ = 0, pagesRun_ = 0; // the same of pages of the store
 

@@ -95,26 +95,27 @@ Unpacker::Problem Unpacker::patch(uint32_t spans) {
     const auto bytes = put(history_.bytesOf(item));
     std::vector<std::byte> old;
     if (loseWords_ && opcodeOf(bytes) >= wire::kFirstGlOpcode) old.assign(bytes.begin(), bytes.end());
-    if (item.page == 0) words_.begin(item, bytes);
-    uint64_t at = 0;
-    for (; spans > 0; --spans) {
-        uint32_t kept = 0, changed = 0;
-        if (item.page != 0) spans_.span(kept, changed);
-        else control_.span(kept, changed);
-        if (spans_.bad()) return "fewer spans than it names";
-        at += uint64_t{kept} * 4;
-        const uint64_t sizeBytes = uint64_t{changed} * 4;
-        if (at + sizeBytes > bytes.size()) return "a change behind the end of an item";
-        std::span<const std::byte> words;
-        if (item.page == 0) changeWords(at, bytes.subspan(at, sizeBytes));
-        else if (take(Section::Words, sizeBytes, words)) std::memcpy(bytes.data() + at, words.data(), words.size());
-        else return "fewer words than it names";
-        at += sizeBytes;
-    }
-    if (item.page == 0) words_.end();
+    if (const Problem problem = item.page != 0 ? changeSpans(bytes, spans) : changeItem(item, bytes, spans)) return problem;
     ++log_->cursor;
     log_->append(item.page != 0 ? history_.addPage(history_.pages().changed(item.where), bytes) : keep(bytes, false, item.model));
     copyBytes(old, bytes);
+    return nullptr;
+}
+
+Unpacker::Problem Unpacker::changeItem(Item& item, std::span<std::byte> bytes, uint32_t spans) {
+    words_.begin(item, bytes);
+    uint64_t at = 0;
+    for (; spans > 0; --spans) {
+        uint32_t kept = 0, changed = 0;
+        control_.span(kept, changed);
+        if (control_.bad()) return "fewer spans than it names";
+        at += uint64_t{kept} * 4;
+        const uint64_t sizeBytes = uint64_t{changed} * 4;
+        if (at + sizeBytes > bytes.size()) return "a change behind the end of what it changes";
+        changeWords(at, bytes.subspan(at, sizeBytes));
+        at += sizeBytes;
+    }
+    words_.end();
     return nullptr;
 }
 
@@ -166,16 +167,51 @@ Unpacker::Problem Unpacker::other(uint32_t n) {
         if (log_) return "another stream in the middle of a packet";
         stream_ = control_.number();
         return nullptr;
-    case Other::Bytes: {
-        const uint32_t sizeBytes = control_.number();
-        std::span<const std::byte> bytes;
-        if (!room(sizeBytes)) return "a packet or batch that is too large";
-        if (!take(Section::Texts, sizeBytes, bytes)) return "fewer bytes than it names";
-        put(bytes);
-        return nullptr;
-    }
+    case Other::Bytes: return plain({});
+    case Other::KeptBytes: return plain(control_.number());
+    case Other::ChangedBytes: return changedRun(control_.number());
     }
     return "an unknown control byte";
+}
+
+Unpacker::Problem Unpacker::plain(std::optional<uint32_t> slot) {
+    const uint32_t sizeBytes = control_.number();
+    std::span<const std::byte> bytes;
+    if (!room(sizeBytes)) return "a packet or batch that is too large";
+    if (!take(Section::Texts, sizeBytes, bytes)) return "fewer bytes than it names";
+    put(bytes);
+    if (!slot) return nullptr;
+    if (*slot >= KeptRuns::kSlots || sizeBytes > KeptRuns::kMostBytes) return "a run of records that nobody keeps";
+    history_.runs().keep(*slot, bytes);
+    return nullptr;
+}
+
+Unpacker::Problem Unpacker::changedRun(uint32_t slot) {
+    const uint32_t spans = control_.number();
+    const auto kept = slot < KeptRuns::kSlots ? history_.runs().at(slot) : std::span<std::byte>();
+    if (kept.empty()) return "a change of a run of records that is not remembered";
+    if (!room(kept.size())) return "a packet or batch that is too large";
+    if (const Problem problem = changeSpans(kept, spans)) return problem;
+    put(kept);
+    return nullptr;
+}
+
+// Words of these bytes, by spans that are beside Control.
+Unpacker::Problem Unpacker::changeSpans(std::span<std::byte> bytes, uint32_t spans) {
+    uint64_t at = 0;
+    for (; spans > 0; --spans) {
+        uint32_t kept = 0, changed = 0;
+        spans_.span(kept, changed);
+        if (spans_.bad()) return "fewer spans than it names";
+        at += uint64_t{kept} * 4;
+        const uint64_t sizeBytes = uint64_t{changed} * 4;
+        if (at + sizeBytes > bytes.size()) return "a change behind the end of what it changes";
+        std::span<const std::byte> words;
+        if (!take(Section::Words, sizeBytes, words)) return "fewer words than it names";
+        std::memcpy(bytes.data() + at, words.data(), words.size());
+        at += sizeBytes;
+    }
+    return nullptr;
 }
 
 Item Unpacker::keep(std::span<const std::byte> bytes, bool page, uint32_t model) {

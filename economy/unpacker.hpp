@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -38,6 +39,10 @@ private:
     Problem fresh(uint32_t sizeBytes, bool page);
     Problem pages(uint32_t n);
     Problem other(uint32_t n);
+    Problem plain(std::optional<uint32_t> slot);
+    Problem changedRun(uint32_t slot);
+    Problem changeItem(Item& item, std::span<std::byte> bytes, uint32_t spans);
+    Problem changeSpans(std::span<std::byte> bytes, uint32_t spans);
     void changeWords(size_t at, std::span<std::byte> words);
     [[nodiscard]] Item keep(std::span<const std::byte> bytes, bool page, uint32_t model = 0);
     [[nodiscard]] bool take(Section section, size_t sizeBytes, std::span<const std::byte>& into);

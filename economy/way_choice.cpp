@@ -19,7 +19,7 @@ constexpr double kClearly = 0.95;          // as small as that is cheaper
 constexpr double kWorthNs = 20'000;        // of a frame that is looked at in less, bytes count more than the time…
 constexpr double kTooDear = 1.9;           // …unless plain it takes so many times less
 constexpr double kCheapNs = 5'000;         // a frame that is looked at in less is not worth a try
-constexpr double kRepeats = 1.0 / 32;      // what plain comes to so few bytes is the same each time
+constexpr double kRepeats = 1.0 / 100;     // what plain comes to so few bytes is the same each time
 constexpr double kMuch = 2;                // a change of cost that asks for another try
 // Nodes unpack it before they draw: so long beside packing, looked at and plain (measured: 0.5 to 0.75 and 0.25 to 0.35).
 constexpr std::array<double, 2> kWithUnpacking{1.6, 1.3};

@@ -1,7 +1,6 @@
 // Which words of an item have changed against the expected one.
 #pragma once
 
-#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -9,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "economy/changed_words.hpp"
 #include "economy/control_code.hpp"
 
 namespace mural::economy {
@@ -24,7 +24,7 @@ public:
     size_t costBytes = 0;    // spans and words
     size_t changedBytes = 0; // words
 
-    // Both of the same size, a multiple of 4, of at most a page. False as soon as it costs more than `mostBytes`.
+    // Both of the same size, a multiple of 4. False as soon as it costs more than `mostBytes`.
     bool find(std::span<const std::byte> old, std::span<const std::byte> now, size_t mostBytes) {
         spans.clear();
         costBytes = changedBytes = 0;
@@ -32,7 +32,7 @@ public:
         size_t changed = 0; // words
         uint32_t w = 0, from = 0, block = 0;
         uint64_t bits = 0; // of the block's words that are left, those that have changed
-        const auto load = [&](uint32_t at) { bits = at + kBlock <= words ? changedOfBlock(old.data() + size_t{at} * 4, now.data() + size_t{at} * 4) : changedOf(old.data() + size_t{at} * 4, now.data() + size_t{at} * 4, words - at); };
+        const auto load = [&](uint32_t at) { bits = at + kBlock <= words ? changedWords(old.data() + size_t{at} * 4, now.data() + size_t{at} * 4) : changedOf(old.data() + size_t{at} * 4, now.data() + size_t{at} * 4, words - at); };
         for (; block < words; block += kBlock) {
             load(block);
             while (bits != 0) {
@@ -62,30 +62,24 @@ public:
         return !spans.empty();
     }
 
+    // `old`, which find() has compared, becomes `now`.
+    void apply(std::span<const std::byte> now, std::span<std::byte> old) const {
+        size_t at = 0;
+        for (const WordSpan& span : spans) {
+            at += size_t{span.kept} * 4;
+            const size_t sizeBytes = size_t{span.changed} * 4;
+            std::memcpy(old.data() + at, now.data() + at, sizeBytes);
+            at += sizeBytes;
+        }
+    }
+
 private:
-    static constexpr uint32_t kBlock = 64; // words
+    static constexpr uint32_t kBlock = kComparedWords;
 
     // A bit for each of so many words.
     static uint64_t changedOf(const std::byte* old, const std::byte* now, uint32_t words) {
         uint64_t bits = 0;
         for (uint32_t i = 0; i < words; ++i) bits |= uint64_t{std::memcmp(old + size_t{i} * 4, now + size_t{i} * 4, 4) != 0} << i;
-        return bits;
-    }
-    static uint64_t changedOfBlock(const std::byte* old, const std::byte* now) {
-        std::array<uint32_t, kBlock> a{}, b{};
-        std::memcpy(a.data(), old, sizeof a);
-        std::memcpy(b.data(), now, sizeof b);
-        uint32_t any = 0;
-        for (uint32_t i = 0; i < kBlock; ++i) any |= a[i] ^ b[i];
-        if (any == 0) return 0;
-        std::array<uint8_t, kBlock> differs{};
-        for (uint32_t i = 0; i < kBlock; ++i) differs[i] = a[i] != b[i];
-        uint64_t bits = 0;
-        for (uint32_t i = 0; i < kBlock; i += 8) {
-            uint64_t eight = 0;
-            std::memcpy(&eight, differs.data() + i, 8);
-            bits |= (eight * 0x0102040810204080u) >> 56 << i; // the lowest bits of eight bytes one beside the other
-        }
         return bits;
     }
 };

@@ -206,6 +206,64 @@ TEST(Packer, pagesAreKnownWhereShortRecordsGoPlain) {
     EXPECT_LE(send(5), 6000u);
 }
 
+// Of runs of one size only what changes goes, also of the second one of its size in a frame; where all changes they go whole.
+TEST(Packer, plainRunsOfOneSizeCostWhatChanges) {
+    BothSides sides{Limits{}};
+    std::mt19937 random(7);
+    const auto runOf = [&](size_t records) {
+        Bytes run;
+        for (size_t i = 0; i < records; ++i) addRecord(run, 99, 5, [&] { return static_cast<uint32_t>(random()); });
+        return run;
+    };
+    std::vector<Packet> frame{{0x10000, runOf(300)}, {0x10000, runOf(300)}, {0x10001, runOf(300)}, {0x10000, runOf(500)}};
+    const auto change = [&](size_t words) {
+        for (Packet& packet : frame)
+            for (size_t i = 0; i < words; ++i) packet.bytes[random() % (packet.bytes.size() / 20) * 20 + 8] ^= std::byte{1};
+    };
+    const auto send = [&] {
+        sides.packer.beginFrame(true);
+        return sides.send(frame);
+    };
+    EXPECT_GE(send(), 20'000u);
+    send();
+    for (int i = 0; i < 20; ++i) {
+        change(10);
+        EXPECT_LE(send(), 900u) << i;
+    }
+    EXPECT_LE(send(), 60u) << "nothing has changed";
+    for (int i = 0; i < 3; ++i) {
+        for (Packet& packet : frame) packet.bytes = runOf(packet.bytes.size() / 20);
+        EXPECT_GE(send(), 20'000u) << i;
+    }
+    for (int i = 0; i < 10; ++i) change(10), send();
+    change(10);
+    EXPECT_LE(send(), 900u) << "and is kept again";
+    std::swap(frame[0], frame[3]);
+    frame.pop_back();
+    send(); // others in between, and fewer
+    change(1);
+    EXPECT_LE(send(), 200u);
+}
+
+// More of them than are kept.
+TEST(Packer, plainRunsOfManySizesComeOutAsTheyWent) {
+    BothSides sides{Limits{}};
+    std::mt19937 random(8);
+    Bytes all;
+    for (int i = 0; i < 3000; ++i) addRecord(all, 99, 6, [&] { return static_cast<uint32_t>(random()); });
+    for (int frame = 0; frame < 60; ++frame) {
+        sides.packer.beginFrame(true);
+        std::vector<Packet> packets;
+        for (int i = 0; i < 50; ++i) {
+            const size_t records = 20 + random() % (frame % 2 == 0 ? 40 : 3000);
+            packets.push_back({0x10000 + static_cast<uint32_t>(random() % 3), {all.begin(), all.begin() + static_cast<std::ptrdiff_t>(records * 24)}});
+            all[random() % (all.size() / 24) * 24 + 4 + random() % 20] ^= std::byte{1};
+        }
+        sides.send(packets);
+        if (::testing::Test::HasFailure()) break;
+    }
+}
+
 // One of several batches: what was left out of it comes again in it, and is no frame that repeats.
 TEST(Packer, aLongFrameIsOneFrameForWhatIsNewInIt) {
     const Bytes records = frameOf(1, 5000);

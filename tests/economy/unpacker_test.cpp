@@ -43,6 +43,15 @@ TEST(Unpacker, tellsWhatIsWrong) {
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::NewPage, 300), c.put(Do::Seek, 1), c.put(Do::Patch, 300), c.put(Do::Patch, 1); }, 1200), "fewer words"));
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::NewText, 2), c.put(Do::Seek, 1), c.put(Do::Patch, 1), c.span(UINT32_MAX, 1); }, 8), "behind the end"));
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::NewText, 2), c.put(Do::Seek, 1), c.put(Do::Patch, 9), c.span(0, 1), c.span(1, 1); }, 8), "behind the end"));
+    const auto kept = [](ControlWriter& c, uint32_t slot) { c.put(Other::KeptBytes), c.number(slot), c.number(2000); };
+    EXPECT_TRUE(has(problemOf([&](ControlWriter& c) { kept(c, 32); }, 2000), "nobody keeps"));
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Other::KeptBytes), c.number(3), c.number(65540); }, 65540), "nobody keeps"));
+    EXPECT_TRUE(has(problemOf([&](ControlWriter& c) { kept(c, 3); }, 1999), "fewer bytes than it names"));
+    EXPECT_TRUE(has(problemOf([&](ControlWriter& c) { kept(c, 3), c.put(Other::ChangedBytes), c.number(4), c.number(1); }, 2000), "not remembered"));
+    EXPECT_TRUE(has(problemOf([&](ControlWriter& c) { kept(c, 3), c.put(Other::ChangedBytes), c.number(32), c.number(1); }, 2000), "not remembered"));
+    EXPECT_TRUE(has(problemOf([&](ControlWriter& c) { kept(c, 3), c.put(Other::ChangedBytes), c.number(3), c.number(501); }, 2004), "behind the end"));
+    EXPECT_TRUE(has(problemOf([&](ControlWriter& c) { kept(c, 3), c.put(Other::ChangedBytes), c.number(3), c.number(500), c.put(Other::ChangedBytes), c.number(3), c.number(2); }, 2000), "fewer words"));
+    EXPECT_EQ(problemOf([&](ControlWriter& c) { kept(c, 3), c.put(Other::ChangedBytes), c.number(3), c.number(500), c.put(Other::End), c.put(Other::Done); }, 2000), "");
     EXPECT_EQ(problemOf([](ControlWriter& c) { c.put(Do::NewPage, 300), c.put(Do::Seek, 1), c.put(Do::Patch, 300), c.put(Other::End), c.put(Other::Done); }, 1200), "");
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::NewText, 2), c.put(Other::Done); }, 8), "in the middle of a packet"));
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::NewText, 2); }, 8), "in the middle of a packet"));

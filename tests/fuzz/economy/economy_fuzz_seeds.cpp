@@ -44,12 +44,24 @@ Bytes frame(uint32_t seed, uint32_t number, bool pages) {
     return bytes;
 }
 
-Bytes seedOf(uint32_t seed, bool coded, bool pages) {
+// As many bytes in each frame, of which a few change: kept, and sent as what has changed.
+Bytes plainFrame(uint32_t seed, uint32_t number) {
+    std::mt19937 random(seed);
+    Bytes bytes;
+    for (uint32_t i = 0; i < 100; ++i) {
+        addWord(bytes, 64 | 4 << 16);
+        for (uint32_t w = 1; w < 4; ++w) addWord(bytes, static_cast<uint32_t>(random() % 5) + (i == 10 * number ? number : 0));
+    }
+    return bytes;
+}
+
+Bytes seedOf(uint32_t seed, bool coded, bool pages, bool plain = false) {
     economy::Packer packer(fuzz::fuzzLimits());
     economy::BatchEncoder encoder([](size_t) { return int64_t{0}; });
     Bytes input{static_cast<std::byte>(coded ? 0 : 1)};
     for (uint32_t number = 0; number < 6; ++number) {
-        const Bytes bytes = frame(seed, number, pages);
+        packer.beginFrame(plain);
+        const Bytes bytes = plain ? plainFrame(seed, number) : frame(seed, number, pages);
         packer.add(0x10000 + seed % 2 * (number % 3), bytes);
         if (coded) {
             const auto batch = encoder.encode(packer.finish(), 80);
@@ -99,5 +111,6 @@ int main(int argc, char** argv) {
             write(std::filesystem::path(argv[1]) / name, input);
         }
     }
+    for (const bool coded : {false, true}) write(std::filesystem::path(argv[1]) / (coded ? "coded_plain" : "sections_plain"), seedOf(1, coded, false, true));
     for (uint32_t seed = 1; seed <= 2; ++seed) write(std::filesystem::path(argv[1]) / ("split_" + std::to_string(seed)), splitSeed(seed));
 }

@@ -1,0 +1,62 @@
+// Which run of plain records the packer expects in which slot (KeptRuns): the one of the frame before that has its stream and its size, the
+// second of such a size where it is the second. To keep a run is a copy of it on both sides: only those are that came twice.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "economy/kept_runs.hpp"
+
+namespace mural::economy {
+
+class RunPlaces {
+public:
+    enum class Advice : uint8_t { Nothing, Keep, Compare };
+    struct Place {
+        uint32_t slot = 0;
+        Advice advice = Advice::Nothing;
+    };
+
+    // Of a run of this frame.
+    [[nodiscard]] Place expect(uint32_t stream, size_t sizeBytes, uint64_t frame) {
+        if (sizeBytes < KeptRuns::kLeastBytes || sizeBytes > KeptRuns::kMostBytes || sizeBytes % 4 != 0) return {};
+        const auto found = std::ranges::find_if(runs_, [&](const Run& r) { return r.sizeBytes == sizeBytes && r.stream == stream && r.frame != frame; });
+        if (found == runs_.end()) {
+            runs_[next_] = {stream, static_cast<uint32_t>(sizeBytes), frame};
+            next_ = (next_ + 1) % KeptRuns::kSlots;
+            return {};
+        }
+        Run& run = *found;
+        run.frame = frame;
+        const auto slot = static_cast<uint32_t>(found - runs_.begin());
+        if (run.isKept) return {slot, Advice::Compare};
+        if (run.wait > 0) {
+            --run.wait;
+            return {};
+        }
+        run.isKept = true;
+        return {slot, Advice::Keep};
+    }
+    // What is there was compared: few of its words have changed, or many.
+    void changed(uint32_t slot, bool few) {
+        Run& run = runs_[slot];
+        run.isKept = few;
+        run.patience = few ? 0 : std::min(run.patience * 2 + 1, kMostPatience);
+        run.wait = run.patience;
+    }
+
+private:
+    static constexpr uint32_t kMostPatience = 63;
+    struct Run {
+        uint32_t stream = 0, sizeBytes = 0;
+        uint64_t frame = 0; // that it came in last
+        bool isKept = false;
+        uint32_t patience = 0, wait = 0; // times that it is not kept, where that was in vain
+    };
+    std::array<Run, KeptRuns::kSlots> runs_{};
+    uint32_t next_ = 0; // slot of the next new one
+};
+
+} // namespace mural::economy
