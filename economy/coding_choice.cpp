@@ -1,6 +1,7 @@
 #include "economy/coding_choice.hpp"
 
 #include <algorithm>
+#include <bit>
 
 namespace mural::economy {
 
@@ -26,12 +27,19 @@ Coding CodingChoice::choose(size_t sizeBytes, double linkNsPerByte) {
     constexpr std::array compressed{Coding::Zstd, Coding::Lz4};
     if (!known(Coding::Zstd) || sampleBytes(sizeBytes) != 0) return Coding::Zstd;
     if (!known(Coding::Lz4)) return Coding::Lz4;
-    if (chosen_ % kTryAgainEvery == 0) return compressed[chosen_ / kTryAgainEvery % compressed.size()];
-    Coding best = Coding::Raw;
-    if (cost(Coding::Lz4, linkNsPerByte) < cost(best, linkNsPerByte)) best = Coding::Lz4;
-    const bool smaller = ratioOf(Coding::Zstd) < kClearlySmaller * ratioOf(best);
-    return cost(Coding::Zstd, linkNsPerByte) < cost(best, linkNsPerByte) * (smaller ? kForSmaller : 1) ? Coding::Zstd : best;
+    const Coding now = best(linkNsPerByte);
+    if (!triesAgain()) return now;
+    return now == Coding::Raw ? compressed[tries_++ % compressed.size()] : now == Coding::Zstd ? Coding::Lz4 : Coding::Zstd;
 }
+
+Coding CodingChoice::best(double linkNsPerByte) const {
+    const Coding fast = cost(Coding::Lz4, linkNsPerByte) < cost(Coding::Raw, linkNsPerByte) ? Coding::Lz4 : Coding::Raw;
+    const bool smaller = ratioOf(Coding::Zstd) < kClearlySmaller * ratioOf(fast);
+    return cost(Coding::Zstd, linkNsPerByte) < cost(fast, linkNsPerByte) * (smaller ? kForSmaller : 1) ? Coding::Zstd : fast;
+}
+
+// Sooner at first: what was measured of few sections may have been disturbed.
+bool CodingChoice::triesAgain() const { return chosen_ % kTryAgainEvery == 0 || (chosen_ >= kTimedEvery && chosen_ < kTryAgainEvery && std::has_single_bit(chosen_)); }
 
 bool CodingChoice::known(Coding coding) const {
     const Measured& m = measured_[static_cast<size_t>(coding)];

@@ -35,10 +35,13 @@ private:
         uint64_t bytes = 0, sections = 0, times = 0;
     };
     [[nodiscard]] bool known(Coding coding) const;
+    [[nodiscard]] Coding best(double linkNsPerByte) const;
+    [[nodiscard]] bool triesAgain() const; // the one that was not chosen
     [[nodiscard]] double ratioOf(Coding coding) const { return measured_[static_cast<size_t>(coding)].ratio; }
     [[nodiscard]] double cost(Coding coding, double linkNsPerByte) const;
     std::array<Measured, kCodings> measured_{};
     uint64_t chosen_ = 0;
+    size_t tries_ = 0; // where none was chosen
 };
 
 // How fast the link takes bytes, of writes that had to wait. As long as none has: a gigabit per second that four nodes share.
