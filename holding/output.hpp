@@ -56,7 +56,7 @@ public:
 
 private:
     static constexpr size_t kWantedBytes = 256 * 1024; // as the program's own packets
-    static constexpr size_t kCopiedBytes = 32 * 1024;  // more go from where they lie
+    static constexpr size_t kCopiedBytes = 16 * 1024;  // more go from where they lie
 
     void copyTo(size_t to) {
         touched_ = true;
