@@ -18,9 +18,9 @@ public:
     static constexpr size_t kLongBytes = 16384; // beside which a clock costs nothing
 
     [[nodiscard]] Coding choose(size_t sizeBytes, double linkNsPerByte);
-    // LZ4 shall be measured on so many bytes of the section that was chosen for last, which goes otherwise: to try it on the first pictures that a
-    // program loads would make them half again as large. 0: not.
-    [[nodiscard]] size_t sampleBytes(size_t sizeBytes) const { return sizeBytes >= kLongBytes && known(Coding::Zstd) && !known(Coding::Lz4) ? kLongBytes : 0; }
+    // LZ4 shall be measured on so many bytes of the section that was chosen for last, which goes otherwise: to try it on all of a long one, such as
+    // the first pictures that a program loads, would make that half again as large. 0: not.
+    [[nodiscard]] size_t sampleBytes(size_t sizeBytes) const { return sizeBytes >= kLongBytes && known(Coding::Zstd) && (!known(Coding::Lz4) || triesAgain()) ? kLongBytes : 0; }
     // Of the section that was chosen for last: reading a thread's clock takes as long as to compress a short one.
     [[nodiscard]] bool wantsTime(Coding coding, size_t sizeBytes) const;
     // Of what was compressed to what it was before: by the better coding; 1 as long as nothing was.

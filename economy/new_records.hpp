@@ -14,18 +14,22 @@ namespace mural::economy {
 // Of one stream. Positions are those of its log.
 class NewRecords {
 public:
-    // In this frame, a packet of so many bytes; `end`: of the log. Of a long packet few are enough behind many of the ones before, and ever fewer
-    // behind those of this frame whose rest was left out. A short one would win little.
-    void packetBegins(uint64_t frame, uint64_t end, size_t sizeBytes) {
+    // In this frame; `end`: of the log. Of a long packet few are enough behind many of the packets before, and of any ever fewer, to none, behind those
+    // of this frame whose rest was left out. A short one would win little; and between pages, which are looked at always, short records tell
+    // where the log goes on.
+    void packetBegins(uint64_t frame, uint64_t end, bool isLong) {
         packets_ = frame == frame_ && isLeftOut_ ? std::min(packets_ + 1, kMostHalved) : 0;
         isLeftOut_ = false;
-        const uint32_t enough = packets_ == 0 && sizeBytes < kShortBytes ? kOfShort : kOfLong >> packets_;
+        const bool few = (isLong || packets_ > 0) && !hadPages_;
+        const uint32_t enough = (few ? kFew : kAtLeast) >> packets_;
         late_ = std::min(late_, kMany - enough);
         if (frame == frame_) return;
         frame_ = frame;
         frameBegan_ = end;
         again_ = false;
     }
+    // Most of its bytes were in pages: most likely those of the next one are, too.
+    void packetEnds(bool mostIsPages) { hadPages_ = mostIsPages; }
     // So many came as they did from `position` on: in a frame before, or only in this one.
     void found(uint64_t position, size_t records) {
         if (position >= frameBegan_) late_ += static_cast<uint32_t>(std::min<size_t>(records, kMany));
@@ -44,14 +48,14 @@ public:
 
 private:
     static constexpr uint32_t kMany = 64;
-    static constexpr uint32_t kOfShort = 32, kOfLong = 4; // of a packet, behind many
-    static constexpr size_t kShortBytes = 4096;
-    static constexpr uint32_t kMostHalved = 3;  // to none
+    static constexpr uint32_t kAtLeast = 32, kFew = 4; // of a packet, behind many
+    static constexpr uint32_t kMostHalved = 3;         // to four; to none
     static constexpr uint32_t kFoundCounts = 3; // one that is found weighs as many new ones
     static constexpr size_t kPlaces = 16;       // packets of a frame, about
 
     uint32_t late_ = 0;      // new ones, less those found
     bool isLeftOut_ = false; // the rest of the packet
+    bool hadPages_ = false;  // the packet before
     uint32_t packets_ = 0;   // of this frame that had a rest left out, up to the last one
     bool again_ = false;     // in this frame something came that was left out before
     uint64_t frame_ = UINT64_MAX, frameBegan_ = 0;

@@ -19,6 +19,7 @@ size_t mostPatchOf(const Piece& piece) { return size_t{piece.sizeBytes} * 3 / 4;
 constexpr uint32_t kIndexedOfRun = 2;
 // Of a run's bytes one part of so many may be spans and words of what has changed.
 constexpr size_t kFewOf = 4;
+constexpr size_t kLongPacketBytes = 4096;
 // So many short records may be in the log that go plain now.
 constexpr size_t kMostLeftOut = 1024;
 
@@ -88,7 +89,6 @@ void Packer::add(uint32_t stream, std::span<const std::byte> packet, const Walke
     index_ = &streams_[opened.place]->items;
     runs_ = &streams_[opened.place]->runs;
     news_ = &streams_[opened.place]->news;
-    news_->packetBegins(frames_, log_->end(), packet.size());
     restPlain_ = plain_;
     packet_ = packet;
     nextAt_ = kNowhere;
@@ -97,6 +97,8 @@ void Packer::add(uint32_t stream, std::span<const std::byte> packet, const Walke
     // A damaged packet may end a record that it did not begin.
     const bool isTold = walked != nullptr && walked->lastBytes <= packet.size() && (walked->longAt.empty() || walked->longAt.back() < packet.size());
     walked_ = isTold ? walked : nullptr;
+    news_->packetBegins(frames_, log_->end(), packet.size() >= kLongPacketBytes);
+    const uint64_t pagesBefore = batchPageBytes_;
     nextLong_ = 0;
     while (next()) {
         if (piece_.page()) batchPageBytes_ += piece_.sizeBytes;
@@ -108,6 +110,7 @@ void Packer::add(uint32_t stream, std::span<const std::byte> packet, const Walke
         if (!piece_.page()) count(isNew);
     }
     keepRun();
+    news_->packetEnds((batchPageBytes_ - pagesBefore) * 2 > packet.size());
     endsInValue_ = cut_.lastOpcode() == wire::kOpBlobBegin || cut_.lastOpcode() == wire::kOpBlobData;
     counts_.records += walked_ != nullptr ? walked_->records : cut_.records();
     if (!first_) index_->packetEnds(log_->end() - 1);

@@ -43,6 +43,19 @@ TEST(CodingChoice, bothAreTriedAndTriedAgain) {
     EXPECT_LE(compressed, 8);
 }
 
+TEST(CodingChoice, aLongSectionTriesLz4OnAPartOfIt) {
+    CodingChoice choice = measuredChoice();
+    int sampled = 0;
+    for (int i = 0; i < 256; ++i) {
+        EXPECT_EQ(choice.choose(1 << 20, 80), Coding::Zstd) << i;
+        const size_t sample = choice.sampleBytes(1 << 20);
+        EXPECT_TRUE(sample == 0 || sample == CodingChoice::kLongBytes) << i;
+        sampled += sample != 0;
+    }
+    EXPECT_EQ(sampled, 5) << "at 16, 32, 64, 128 and 256";
+    EXPECT_EQ(choice.sampleBytes(1000), 0u);
+}
+
 TEST(CodingChoice, theFirstTimeAndOneThatWasDisturbedDecideNothing) {
     CodingChoice choice;
     choice.measured(Coding::Zstd, 1 << 16, 1 << 15, int64_t{1} << 30); // memory that is new

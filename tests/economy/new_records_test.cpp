@@ -6,7 +6,7 @@
 namespace mural::economy {
 namespace {
 
-constexpr size_t kLong = 20'000, kShort = 1'000; // bytes
+constexpr bool kLong = true, kOther = false;
 
 // So many new records in a row are looked at before there are many.
 int lookedAt(NewRecords& news) {
@@ -26,8 +26,16 @@ TEST(NewRecords, fewerAreLookedAtBehindEachPacketWhoseRestWasLeftOut) {
     }
     news.packetBegins(1, 100, kLong); // of the one before nothing was left out
     EXPECT_EQ(lookedAt(news), 4);
-    news.packetBegins(1, 100, kShort);
+    news.packetBegins(1, 100, kOther);
     EXPECT_EQ(lookedAt(news), 32);
+    news.packetEnds(true); // there will be pages
+    news.packetBegins(1, 100, kLong);
+    EXPECT_EQ(lookedAt(news), 32);
+    for (const int expected : {16, 8, 4, 4}) {
+        news.leaveOut(100);
+        news.packetBegins(1, 100, kLong);
+        EXPECT_EQ(lookedAt(news), expected);
+    }
 }
 
 // Else what repeats would not be seen to.
