@@ -191,9 +191,23 @@ Unpacker::Problem Unpacker::changedRun(uint32_t slot) {
     const auto kept = slot < KeptRuns::kSlots ? history_.runs().at(slot) : std::span<std::byte>();
     if (kept.empty()) return "a change of a run of records that is not remembered";
     if (!room(kept.size())) return "a packet or batch that is too large";
+    std::vector<std::byte> old;
+    if (loseWords_) old.assign(kept.begin(), kept.end());
     if (const Problem problem = changeSpans(kept, spans)) return problem;
-    put(kept);
+    loseChanges(old, put(kept));
     return nullptr;
+}
+
+// For tests of the tests: GL commands of the run are as they were in `old`, if that is not empty.
+void Unpacker::loseChanges(std::span<const std::byte> old, std::span<std::byte> run) {
+    for (size_t at = 0; at + 4 <= old.size();) {
+        uint32_t head = 0;
+        std::memcpy(&head, run.data() + at, sizeof head);
+        const size_t sizeBytes = size_t{head >> 16} * 4;
+        if (sizeBytes == 0 || sizeBytes > run.size() - at) return;
+        if ((head & 0xffff) >= wire::kFirstGlOpcode && std::memcmp(old.data() + at, &head, sizeof head) == 0) copyBytes(old.subspan(at, sizeBytes), run.subspan(at, sizeBytes));
+        at += sizeBytes;
+    }
 }
 
 // Words of these bytes, by spans that are beside Control.

@@ -41,6 +41,7 @@ private:
     Problem other(uint32_t n);
     Problem plain(std::optional<uint32_t> slot);
     Problem changedRun(uint32_t slot);
+    static void loseChanges(std::span<const std::byte> old, std::span<std::byte> run);
     Problem changeItem(Item& item, std::span<std::byte> bytes, uint32_t spans);
     Problem changeSpans(std::span<std::byte> bytes, uint32_t spans);
     void changeWords(size_t at, std::span<std::byte> words);
