@@ -1,5 +1,6 @@
 // Runs of short records that went plain, as they were last: many programs say as many bytes in each frame, in the same order, and change a
 // few words of them. Both sides have the same; which run is where says the packer.
+// (KnownRuns are the packer's own, of records that are looked at.)
 #pragma once
 
 #include <array>

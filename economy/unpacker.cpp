@@ -102,21 +102,30 @@ Unpacker::Problem Unpacker::patch(uint32_t spans) {
     return nullptr;
 }
 
-Unpacker::Problem Unpacker::changeItem(Item& item, std::span<std::byte> bytes, uint32_t spans) {
-    words_.begin(item, bytes);
+// Calls `change(where, words)` for each of so many spans of these bytes; false: there are not as many words for it.
+template <class Reader, class Change> Unpacker::Problem Unpacker::eachSpan(Reader& reader, std::span<std::byte> bytes, uint32_t spans, Change&& change) {
     uint64_t at = 0;
     for (; spans > 0; --spans) {
         uint32_t kept = 0, changed = 0;
-        control_.span(kept, changed);
-        if (control_.bad()) return "fewer spans than it names";
+        reader.span(kept, changed);
+        if (reader.bad()) return "fewer spans than it names";
         at += uint64_t{kept} * 4;
         const uint64_t sizeBytes = uint64_t{changed} * 4;
         if (at + sizeBytes > bytes.size()) return "a change behind the end of what it changes";
-        changeWords(at, bytes.subspan(at, sizeBytes));
+        if (!change(at, bytes.subspan(at, sizeBytes))) return "fewer words than it names";
         at += sizeBytes;
     }
-    words_.end();
     return nullptr;
+}
+
+Unpacker::Problem Unpacker::changeItem(Item& item, std::span<std::byte> bytes, uint32_t spans) {
+    words_.begin(item, bytes);
+    const Problem problem = eachSpan(control_, bytes, spans, [this](size_t at, std::span<std::byte> words) {
+        changeWords(at, words);
+        return true;
+    });
+    if (!problem) words_.end();
+    return problem;
 }
 
 void Unpacker::changeWords(size_t at, std::span<std::byte> words) {
@@ -212,20 +221,12 @@ void Unpacker::loseChanges(std::span<const std::byte> old, std::span<std::byte> 
 
 // Words of these bytes, by spans that are beside Control.
 Unpacker::Problem Unpacker::changeSpans(std::span<std::byte> bytes, uint32_t spans) {
-    uint64_t at = 0;
-    for (; spans > 0; --spans) {
-        uint32_t kept = 0, changed = 0;
-        spans_.span(kept, changed);
-        if (spans_.bad()) return "fewer spans than it names";
-        at += uint64_t{kept} * 4;
-        const uint64_t sizeBytes = uint64_t{changed} * 4;
-        if (at + sizeBytes > bytes.size()) return "a change behind the end of what it changes";
-        std::span<const std::byte> words;
-        if (!take(Section::Words, sizeBytes, words)) return "fewer words than it names";
-        std::memcpy(bytes.data() + at, words.data(), words.size());
-        at += sizeBytes;
-    }
-    return nullptr;
+    return eachSpan(spans_, bytes, spans, [this](size_t, std::span<std::byte> words) {
+        std::span<const std::byte> now;
+        if (!take(Section::Words, words.size(), now)) return false;
+        copyBytes(now, words);
+        return true;
+    });
 }
 
 Item Unpacker::keep(std::span<const std::byte> bytes, bool page, uint32_t model) {

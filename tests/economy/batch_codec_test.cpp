@@ -10,13 +10,18 @@ std::pair<BatchHead, Bytes> headAndBody(std::span<const std::byte> batch) {
     return {head.head(), Bytes(batch.begin() + static_cast<std::ptrdiff_t>(at), batch.end())};
 }
 
+Bytes randomBytes(size_t size, std::mt19937& random) {
+    Bytes bytes(size);
+    for (auto& b : bytes) b = static_cast<std::byte>(random());
+    return bytes;
+}
+
 TEST(SectionCodec, bothCodingsUseWhatCameBefore) {
     for (const Coding coding : {Coding::Lz4, Coding::Zstd}) { // of whose windows the smaller has 64 KiB
         SectionCompressor compressor;
         SectionDecompressor decompressor;
         std::mt19937 random(1);
-        Bytes bytes(10'000);
-        for (auto& b : bytes) b = static_cast<std::byte>(random());
+        Bytes bytes = randomBytes(10'000, random);
         for (int round = 0; round < 6; ++round) {
             Bytes coded, back(bytes.size());
             ASSERT_TRUE(compressor.compress(coding, bytes, coded));
@@ -40,8 +45,7 @@ TEST(SectionCodec, windowsGoOnOverSectionsOfAnySize) {
         SectionCompressor compressor;
         SectionDecompressor decompressor;
         std::mt19937 random(2);
-        Bytes bytes(150'000);
-        for (auto& b : bytes) b = static_cast<std::byte>(random());
+        Bytes bytes = randomBytes(150'000, random);
         for (int section = 0; section < 400; ++section) {
             const size_t size = 1 + random() % (section % 20 == 0 ? bytes.size() : 30'000);
             const auto some = std::span(bytes).first(size);
