@@ -76,7 +76,8 @@ TEST(StreamEconomy, packetsMayGoBehindAdd) {
     };
     economy->sendBy(take);
     uint32_t number = 0;
-    for (const size_t records : {2000, 10, 500, 30'000, 500}) { // short ones, all new; below and above what fills a batch
+    // Short ones, all new; below and above what fills a batch, and a long one that begins the next.
+    for (const size_t records : {2000, 10, 500, 30'000, 3000, 500}) {
         std::vector<std::byte> packet;
         for (size_t i = 0; i < records; ++i) {
             auto one = record(wire::kFirstGlOpcode, 4);
