@@ -20,6 +20,7 @@ constexpr double kWorthNs = 20'000;        // of a frame that is looked at in le
 constexpr double kTooDear = 1.9;           // …unless plain it takes so many times less
 constexpr double kCheapNs = 5'000;         // a frame that is looked at in less is not worth a try
 constexpr double kRepeats = 1.0 / 100;     // what plain comes to so few bytes is the same each time
+constexpr double kDear = 3;                // a byte that is looked at takes so many times what a new one does
 constexpr double kMuch = 2;                // a change of cost that asks for another try
 // Nodes unpack it before they draw: so long beside packing, looked at and plain (measured: 0.5 to 0.75 and 0.25 to 0.35).
 constexpr std::array<double, 2> kWithUnpacking{1.6, 1.3};
@@ -29,9 +30,16 @@ bool WayChoice::wantsTime() const { return trying_ || batches_ + 1 + kCompared >
 
 void WayChoice::measured(uint64_t rawBytes, uint64_t pageBytes, uint64_t wireBytes, int64_t ns, double linkNsPerByte) {
     ++batches_;
-    isFirst_ = false;
+    if (std::exchange(isFirst_, false) && rawBytes > 0) firstNsPerByte_ = static_cast<double>(ns) / static_cast<double>(rawBytes);
     if (trying_ && batches_ < kUnmeasured) return;
     Cost& cost = costs_[plain_ ? Plain : Looked];
+    const bool isAboutShort = pageBytes < rawBytes / 2; // else there is little to win, and places of pages to lose
+    const bool isDear = isAboutShort && isDearAtOnce(rawBytes, ns);
+    if (isDear) {
+        cost = {}; // new bytes say nothing of what looking costs
+        until_ = batches_;
+        isByOne_ = true;
+    }
     if (!trying_ && batches_ + kCompared == until_) cost = {}; // compared is what comes just before with what comes just behind
     cost.ns = cost.ns * kKept + static_cast<double>(ns) * kWithUnpacking[plain_ ? Plain : Looked] + static_cast<double>(wireBytes) * linkNsPerByte;
     cost.rawBytes = cost.rawBytes * kKept + static_cast<double>(rawBytes);
@@ -58,9 +66,14 @@ void WayChoice::measured(uint64_t rawBytes, uint64_t pageBytes, uint64_t wireByt
         until_ = kLeastBetween * 8;
         return;
     }
-    const bool isAboutShort = pageBytes < rawBytes / 2; // else there is little to win, and places of pages to lose
     if (plain_ || (isAboutShort && cost.leastNs >= kCheapNs)) tryOther();
     else until_ += cheap_ ? kCheapEvery * 2 : kLeastBetween;
+}
+
+// Of the second batch, and the next, before there was a try: to wait for that would cost more than it tells.
+bool WayChoice::isDearAtOnce(uint64_t rawBytes, int64_t ns) const {
+    const bool isEarly = !plain_ && !trying_ && costs_[Plain].batches == 0 && batches_ > 1 && batches_ < until_ && firstNsPerByte_ > 0;
+    return isEarly && static_cast<double>(ns) >= kWorthNs && static_cast<double>(ns) > static_cast<double>(rawBytes) * firstNsPerByte_ * kDear;
 }
 
 void WayChoice::leftOut() {
@@ -92,6 +105,7 @@ void WayChoice::decide() {
     const double more = (plain_ ? looked : asItIs).leastNs / std::max((plain_ ? asItIs : looked).leastNs, 1.0) - 1;
     const double least = better ? kLeastBetween * 8 : std::max(until_ * 2, kLeastBetween);
     until_ = static_cast<uint32_t>(std::min(std::max(more * kTryBatches * kTryPart, least), double{kMostBetween}));
+    if (std::exchange(isByOne_, false) && plain_) until_ = kLeastBetween * 8;
     decidedBy_ = std::min(tried, before);
     trying_ = false;
     batches_ = 0;

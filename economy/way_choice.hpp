@@ -35,6 +35,7 @@ private:
         [[nodiscard]] double perByte() const { return rawBytes > 0 ? ns / rawBytes : 0; }
     };
     void tryOther();
+    [[nodiscard]] bool isDearAtOnce(uint64_t rawBytes, int64_t ns) const;
     void decide();
 
     static constexpr uint32_t kFirstTry = 4, kMostBetween = 1024;
@@ -46,6 +47,8 @@ private:
     uint32_t until_ = kFirstTry; // so many, the other way is tried
     double decidedBy_ = 0; // cost per byte when it was
     bool isFirst_ = true;      // no batch has been yet
+    double firstNsPerByte_ = 0; // of the first, in which most is new
+    bool isByOne_ = false;      // what looking costs is known of one of the first only
     bool isByLeftOut_ = false; // plain: nobody knows what looking costs
 };
 

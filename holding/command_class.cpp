@@ -240,9 +240,10 @@ CommandKinds::CommandKinds() {
         kind.binding = bindingOf(opcode, kind.family);
         kind.small = kind.family == Family::Uniform || kind.family == Family::ProgramUniform;
         kind.deeper = deeperOf(kind);
-        kind.passes = kind.about == CommandClass::Pass && kind.state == StateRole::None;
         kind.frame = asksForPictures(opcode) ? FrameRole::Seen : frameRoleOf(kind);
-        kind.passesUnlessSmall = kind.about == CommandClass::Pass || kind.small || kind.family == Family::UseProgram;
+        const bool passes = kind.about == CommandClass::Pass, passesUnlessSmall = passes || kind.small || kind.family == Family::UseProgram;
+        withState_[opcode] = passes && kind.state == StateRole::None ? Interest::None : Interest::Stop;
+        interests_[opcode] = passesUnlessSmall ? Interest::None : kind.about == CommandClass::Bind || kind.about == CommandClass::Use ? Interest::Look : Interest::Stop;
     }
 }
 

@@ -2,11 +2,13 @@
 // recording/kept, so that there is one table of commands; what that does not know ends holding back.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "gl_opcodes.hpp"
 #include "holding/small_state.hpp"
 #include "recording/kept/families.hpp"
+#include "recording/record_walk.hpp"
 
 namespace mural::holding {
 
@@ -72,8 +74,6 @@ struct CommandKind {
     recording::Family family = recording::Family::Unknown;
     uint8_t valueWord = kNoValue;
     bool small = false; // sets uniforms, which are looked at where small state is
-    // Nothing to do with it: where small state is looked at, or a list compiled; and where neither is.
-    bool passes = false, passesUnlessSmall = false;
     // While a list is compiled: by how much primitives are nested deeper behind it, if it matters no otherwise; else kLooked.
     int8_t deeper = kLooked;
     FrameRole frame = FrameRole::Ends;
@@ -84,11 +84,18 @@ struct CommandKind {
 class CommandKinds {
 public:
     static const CommandKinds& all();
-    const CommandKind& operator[](uint16_t opcode) const { return kinds_[opcode < op::kLimit ? opcode : op::kLimit]; }
+    const CommandKind& operator[](uint16_t opcode) const { return kinds_[placeOf(opcode)]; }
+    // Whether a walk may pass them: where small state is looked at, or a list compiled; and where neither is, those that bind or draw are
+    // looked at on the way. Tables of their own, as most records are asked for nothing else.
+    using Interest = recording::RecordWalk::Interest;
+    using Interests = std::array<Interest, op::kLimit + 1>;
+    [[nodiscard]] const Interests& interests(bool looksAtState) const { return looksAtState ? withState_ : interests_; }
+    static size_t placeOf(uint16_t opcode) { return opcode < op::kLimit ? opcode : op::kLimit; }
 
 private:
     CommandKinds();
     CommandKind kinds_[op::kLimit + 1];
+    Interests withState_{}, interests_{};
 };
 
 inline uint8_t valueWordOf(uint16_t opcode) { return CommandKinds::all()[opcode].valueWord; }

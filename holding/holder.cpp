@@ -51,7 +51,7 @@ void Holder::add(uint32_t streamId, std::span<const std::byte> payload) {
             });
             stream.depth += depth;
         }
-        if (valueFrom == kNone) walk.skip([&](uint16_t opcode, size_t) { return looksAtState ? kinds_[opcode].passes : kinds_[opcode].passesUnlessSmall; });
+        if (valueFrom == kNone) passOthers(stream, output, walk, payload, looksAtState);
         if (!walk.next(r)) break;
         const CommandKind& kind = kinds_[r.opcode];
         if (stream.same.now == SameFrames::Now::Following) seeSame(stream, r, kind);
@@ -65,11 +65,6 @@ void Holder::add(uint32_t streamId, std::span<const std::byte> payload) {
             continue;
         }
         const size_t from = valueFrom == kNone ? r.offset : valueFrom;
-        if (kind.about == CommandClass::Bind && !looksAtState && valueFrom == kNone && stream.same.now != SameFrames::Now::Following && bindsHere(stream)) { // most
-            At at{stream, *stream.context, *stream.context->group, output, r, kind, from, payload};
-            bind(at);
-            continue;
-        }
         const bool done = looksAtState && kind.state != StateRole::None && stream.context != nullptr && smallState(stream, output, r, kind.state, from, payload);
         if (!done) record(stream, output, r, kind, from, payload);
         if (stream.values > 0 && kind.about != CommandClass::Upload) stream.waiting.lost();
@@ -86,6 +81,23 @@ void Holder::add(uint32_t streamId, std::span<const std::byte> payload) {
         stream.same.keptBytes = 0;
     }
     output.finish(walk.whole());
+}
+
+// On over what need not be looked at. Of most programs that is nearly all but what they bind, which is followed on the way, and draws, of which most need
+// nothing that waits.
+void Holder::passOthers(Stream& stream, Output& output, recording::RecordWalk& walk, const Packet& packet, bool looksAtState) {
+    const CommandKinds::Interests& interests = kinds_.interests(looksAtState);
+    const auto interestOf = [&](uint16_t opcode) { return interests[CommandKinds::placeOf(opcode)]; };
+    const bool looks = !looksAtState && stream.same.now != SameFrames::Now::Following && bindsHere(stream);
+    if (!looks) return walk.skip([&](uint16_t opcode, size_t) { return interestOf(opcode) == CommandKinds::Interest::None; });
+    walk.pass(interestOf, [&](const RecordView& r) {
+        if (stream.context->group->untracked) return false;
+        const CommandKind& kind = kinds_[r.opcode];
+        if (kind.about == CommandClass::Use) return stream.context->group->held.empty() || !stream.context->needs;
+        At at{stream, *stream.context, *stream.context->group, output, r, kind, r.offset, packet};
+        bind(at);
+        return true;
+    });
 }
 
 // The packet ends before the record that takes the value: whether that can be held is not known yet.
@@ -112,10 +124,6 @@ void Holder::sendPending(Stream& stream, Output& output, size_t from) {
     pendingBytes_ -= stream.pending.size();
     std::vector<std::byte>().swap(stream.pending);
 }
-
-bool Holder::compilesList(const Stream& stream) { return stream.list != 0 && stream.context != nullptr && !stream.context->group->untracked && stream.same.now != SameFrames::Now::Following; }
-
-bool Holder::bindsHere(const Stream& stream) { return stream.context != nullptr && !stream.context->group->untracked && !stream.inPrimitive; }
 
 void Holder::record(Stream& stream, Output& output, const RecordView& r, const CommandKind& kind, size_t from, const Packet& packet) {
     if (kind.about == CommandClass::Own) return own(stream, output, r, from);
@@ -219,6 +227,7 @@ void Holder::createContext(Stream& stream, const RecordView& r) {
     if (id == 0 || contexts.contains(id)) return; // an error: the node's stays
     auto context = std::make_unique<Context>();
     context->id = id;
+    context->arraysNamed.set(0, context->array);
     const auto sharer = contexts.find(argumentWord(r, 1));
     if (sharer != contexts.end()) leaveSameOf(*sharer->second->group);
     context->group = sharer == contexts.end() ? std::make_shared<Group>() : sharer->second->group;

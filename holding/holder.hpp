@@ -62,10 +62,11 @@ private:
     };
 
     void record(Stream& stream, Output& output, const RecordView& r, const CommandKind& kind, size_t from, const Packet& packet);
+    void passOthers(Stream& stream, Output& output, recording::RecordWalk& walk, const Packet& packet, bool looksAtState);
     void keepPending(Stream& stream, Output& output, size_t from, const Packet& packet);
     void sendPending(Stream& stream, Output& output, size_t from);
-    static bool bindsHere(const Stream& stream);
-    static bool compilesList(const Stream& stream);
+    static bool bindsHere(const Stream& stream) { return stream.context != nullptr && !stream.context->group->untracked && !stream.inPrimitive; }
+    static bool compilesList(const Stream& stream) { return stream.list != 0 && stream.context != nullptr && !stream.context->group->untracked && stream.same.now != SameFrames::Now::Following; }
     void gl(At& at);
     void arrays(At& at);
 
@@ -166,6 +167,7 @@ private:
     std::map<uint32_t, std::map<uint32_t, std::unique_ptr<Context>>> clients_;
     std::vector<std::byte> scratch_, otherScratch_;
     std::vector<Object*> used_; // by the draw
+    std::vector<uint32_t> names_; // of the record in hand
     uint64_t pendingBytes_ = 0;
     bool leavesOutSmall_ = false;
     bool loses_ = false;

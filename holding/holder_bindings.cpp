@@ -113,7 +113,7 @@ void Holder::bind(At& at) {
 
 void Holder::bindVertexArray(At& at, uint32_t name) {
     Context& c = at.context;
-    VertexArray* const array = name == 0 ? &c.arrays[0] : c.arraysNamed.find(name);
+    VertexArray* const array = c.arraysNamed.find(name);
     if (array != nullptr && array == c.array) return boundAlready(at);
     if (array == nullptr && !c.madeByBinding) return untrack(at);
     c.array = array == nullptr ? makeArray(c, name) : array;

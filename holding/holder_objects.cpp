@@ -15,6 +15,10 @@ namespace mural::holding {
 using recording::argumentWord;
 using recording::ObjectType;
 
+namespace {
+constexpr size_t kMostSpared = 16;
+} // namespace
+
 bool namesAt(const recording::RecordView& r, size_t word, std::vector<uint32_t>& names) {
     const uint32_t sizeBytes = argumentWord(r, word);
     if (sizeBytes > record::kInlineBytes || (word + 1) * 4 + sizeBytes > r.arguments.size()) return false;
@@ -61,6 +65,14 @@ Object* Holder::bufferAt(const Context& c, uint32_t target) const {
 
 VertexArray* Holder::makeArray(Context& c, uint32_t name) {
     ++c.group->objectChanges;
+    if (!c.sparedArrays.empty()) {
+        auto node = std::move(c.sparedArrays.back());
+        c.sparedArrays.pop_back();
+        node.key() = name;
+        node.mapped().buffers.clear();
+        node.mapped().indices = nullptr;
+        c.arrays.insert(std::move(node)); // or one of that name is there
+    }
     VertexArray* const array = &c.arrays[name];
     c.arraysNamed.set(name, array);
     return array;
@@ -80,7 +92,7 @@ void Holder::generate(At& at) {
     }
     const ObjectType type = recording::ruleOf(r.opcode).type;
     if (type != ObjectType::Texture && type != ObjectType::Buffer && type != ObjectType::VertexArray) return;
-    std::vector<uint32_t> names;
+    std::vector<uint32_t>& names = names_;
     if (!namesAt(r, r.opcode == op::glCreateTextures ? 2 : 1, names)) return untrack(at);
     for (const uint32_t name : names) {
         if (type == ObjectType::VertexArray) {
@@ -103,7 +115,7 @@ void Holder::deleteNames(At& at) {
         Object* const program = find(at.group, Kind::Program, argumentWord(r, 0));
         return program != nullptr ? releaseOne(at, *program) : void();
     }
-    std::vector<uint32_t> names;
+    std::vector<uint32_t>& names = names_;
     if (!namesAt(r, 1, names)) return untrack(at);
     for (const uint32_t name : names) {
         if (at.group.untracked) return;
@@ -111,9 +123,10 @@ void Holder::deleteNames(At& at) {
         if (rule.type == ObjectType::VertexArray && name != 0) {
             const VertexArray* const array = c.arraysNamed.find(name);
             if (array == nullptr) continue;
-            if (c.array == array) c.array = &c.arrays[0];
+            if (c.array == array) c.array = c.arraysNamed.find(0);
             c.arraysNamed.set(name, nullptr);
-            c.arrays.erase(name);
+            auto node = c.arrays.extract(name);
+            if (c.sparedArrays.size() < kMostSpared) c.sparedArrays.push_back(std::move(node));
             ++at.group.objectChanges;
             c.needs = true;
         }

@@ -94,6 +94,7 @@ struct Context : Bindings {
     bool madeByBinding = false; // names begin to be with their first use
     bool destroyed = false;     // but current
     NameIndex<VertexArray> arraysNamed;
+    std::vector<decltype(arrays)::node_type> sparedArrays; // some make their vertex arrays anew for each draw
     std::vector<SavedAttribs> attribs;
     std::vector<SavedClientAttribs> clientAttribs;
     bool needs = true; // something that waits may have been bound since the last draw, or held

@@ -90,6 +90,52 @@ public:
         walked_.records += records;
         walked_.lastBytes = lastBytes;
     }
+    // What pass() does with a record.
+    enum class Interest : uint8_t { None, Look, Stop };
+    // As skip(), but those of Interest::Look are given to look() on the way, one by one; false: the walk stops before that one.
+    template <typename InterestOf, typename Looks>
+    void pass(const InterestOf& interestOf, const Looks& look) {
+        const std::span<const std::byte> packet = packet_;
+        size_t at = at_, records = 0, lastBytes = 0;
+        uint32_t head = 0;
+        if (packet.size() - at < sizeof head) return;
+        std::memcpy(&head, packet.data() + at, sizeof head);
+        if (interestOf(static_cast<uint16_t>(head)) == Interest::Stop) return; // as where primitives are short
+        RecordRound round;
+        size_t unlooked = 0; // in a row
+        while (packet.size() - at >= sizeof head) {
+            std::memcpy(&head, packet.data() + at, sizeof head);
+            if (unlooked >= kBeforeRounds && round.closes(head)) {
+                const size_t rounds = round.pass(packet, at);
+                records += rounds * round.size();
+                if (rounds > 0) continue;
+            }
+            const size_t sizeBytes = (head >> 16) * size_t{4};
+            if (sizeBytes == 0 || head >> 16 == record::kLongForm || sizeBytes > packet.size() - at) break;
+            const Interest interest = interestOf(static_cast<uint16_t>(head));
+            if (interest == Interest::Stop) break;
+            if (interest == Interest::Look) {
+                if (!look(RecordView{static_cast<uint16_t>(head), at, sizeBytes, packet.subspan(at + 4, sizeBytes - 4)})) break;
+                if (unlooked >= kBeforeRounds) round.begin();
+                unlooked = 0;
+            } else if (unlooked >= kBeforeRounds) {
+                round.add(head, at);
+            } else {
+                ++unlooked;
+            }
+            if (sizeBytes > kMostShortRecordBytes) { // each of those is told of
+                walked_.longAt.push_back(static_cast<uint32_t>(at));
+                round.begin();
+            }
+            at += sizeBytes;
+            lastBytes = sizeBytes; // of rounds, too: what they end with came before them
+            ++records;
+        }
+        at_ = at;
+        if (records == 0) return;
+        walked_.records += records;
+        walked_.lastBytes = lastBytes;
+    }
     [[nodiscard]] size_t at() const { return at_; } // where the next record begins, bytes
     // Behind records that somebody else has passed.
     void goTo(size_t at, const Walked& passed) {

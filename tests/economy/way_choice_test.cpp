@@ -106,6 +106,24 @@ TEST(WayChoice, oneOutlierDecidesNothing) {
     EXPECT_GE(plainOf(choice, {3000, 450'000}, {5000, 110'000}, 100, 60), 50);
 }
 
+// The first is all new; where to look at the second takes several times as long for each byte, it is not looked at three times more.
+TEST(WayChoice, goesPlainAtOnceWhereTheSecondIsDear) {
+    const auto second = [](uint64_t rawBytes, uint64_t pageBytes, int64_t ns) {
+        WayChoice choice;
+        choice.measured(400'000, 200'000, 40'000, 800'000, kLinkNsPerByte);
+        choice.measured(rawBytes, pageBytes, 1600, ns, kLinkNsPerByte);
+        return choice.plain();
+    };
+    EXPECT_TRUE(second(18'000, 0, 170'000));
+    EXPECT_FALSE(second(18'000, 0, 60'000)) << "hardly dearer than new bytes";
+    EXPECT_FALSE(second(1000, 0, 15'000)) << "nothing to be won";
+    EXPECT_FALSE(second(18'000, 10'000, 170'000)) << "pages";
+    WayChoice choice; // where it was not worth it, that is known soon
+    choice.measured(400'000, 200'000, 40'000, 800'000, kLinkNsPerByte);
+    choice.measured(18'000, 0, 1600, 170'000, kLinkNsPerByte);
+    EXPECT_EQ(plainOf(choice, {10, 20'000}, {9000, 90'000}, 200, 40), 0);
+}
+
 // Most of what was to be looked at went plain behind many new records, in so many batches.
 void leftOutOf(WayChoice& choice, int batches) {
     for (int i = 0; i < batches; ++i) choice.leftOut();

@@ -15,6 +15,7 @@ namespace {
 
 struct Passed {
     std::map<uint16_t, size_t> opcodes; // how many of each
+    std::vector<size_t> looked;         // where those of kLooked begin
     size_t at = 0;
     Walked walked;
 };
@@ -29,14 +30,19 @@ std::vector<std::byte> someRecords(std::mt19937& random) {
     return packet;
 }
 
-Passed byOne(std::span<const std::byte> packet) {
+// Up to one of kLooked behind so many.
+Passed byOne(std::span<const std::byte> packet, size_t mostLooked = 0) {
     Passed p;
     size_t at = 0;
     while (packet.size() - at >= 4) {
         uint32_t head = 0;
         std::memcpy(&head, packet.data() + at, sizeof head);
         const size_t sizeBytes = (head >> 16) * size_t{4};
-        if (sizeBytes == 0 || sizeBytes > packet.size() - at || static_cast<uint16_t>(head) == kLooked) break;
+        if (sizeBytes == 0 || sizeBytes > packet.size() - at) break;
+        if (static_cast<uint16_t>(head) == kLooked) {
+            if (p.looked.size() == mostLooked) break;
+            p.looked.push_back(at);
+        }
         ++p.opcodes[static_cast<uint16_t>(head)];
         p.walked.pass(at, sizeBytes);
         at += sizeBytes;
@@ -69,6 +75,36 @@ TEST(RecordWalk, skipsRoundsAsIfOneByOne) {
         }
     }
     EXPECT_GT(passed, 100'000u);
+}
+
+TEST(RecordWalk, givesWhatIsLookedAtOnTheWay) {
+    size_t looks = 0;
+    for (uint32_t seed = 0; seed < 3000; ++seed) {
+        SCOPED_TRACE(seed);
+        std::mt19937 random(seed);
+        const std::vector<std::byte> packet = someRecords(random);
+        const size_t most = random() % 8;
+        const Passed right = byOne(packet, most);
+        std::vector<size_t> looked;
+        RecordWalk walk(packet);
+        walk.pass([](uint16_t opcode) { return opcode == kLooked ? RecordWalk::Interest::Look : RecordWalk::Interest::None; },
+                  [&](const RecordView& r) {
+                      if (looked.size() == most) return false;
+                      EXPECT_EQ(r.opcode, kLooked);
+                      EXPECT_EQ(r.arguments.size(), r.sizeBytes - 4);
+                      looked.push_back(r.offset);
+                      return true;
+                  });
+        looks += looked.size();
+        ASSERT_EQ(walk.at(), right.at);
+        ASSERT_EQ(looked, right.looked);
+        if (const Walked* whole = walk.whole()) {
+            EXPECT_EQ(whole->records, right.walked.records);
+            EXPECT_EQ(whole->lastBytes, right.walked.lastBytes);
+            EXPECT_EQ(whole->longAt, right.walked.longAt);
+        }
+    }
+    EXPECT_GT(looks, 1000u);
 }
 
 // Wherever in a round it begins: triangles with a normal, quads with a colour for each corner, polygons.
