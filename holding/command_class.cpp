@@ -241,9 +241,12 @@ CommandKinds::CommandKinds() {
         kind.small = kind.family == Family::Uniform || kind.family == Family::ProgramUniform;
         kind.deeper = deeperOf(kind);
         kind.frame = asksForPictures(opcode) ? FrameRole::Seen : frameRoleOf(kind);
-        const bool passes = kind.about == CommandClass::Pass, passesUnlessSmall = passes || kind.small || kind.family == Family::UseProgram;
-        withState_[opcode] = passes && kind.state == StateRole::None ? Interest::None : Interest::Stop;
-        interests_[opcode] = passesUnlessSmall ? Interest::None : kind.about == CommandClass::Bind || kind.about == CommandClass::Use ? Interest::Look : Interest::Stop;
+        const bool passes = kind.about == CommandClass::Pass;
+        const bool looked = kind.about == CommandClass::Bind || kind.about == CommandClass::Use || kind.family == Family::CallList || kind.family == Family::CallLists;
+        const auto of = [&](Walk walk) -> Interest& { return interests_[static_cast<size_t>(walk)][opcode]; };
+        of(Walk::State) = passes && kind.state == StateRole::None ? Interest::None : Interest::Stop;
+        of(Walk::Bindings) = passes || kind.small || kind.family == Family::UseProgram ? Interest::None : looked ? Interest::Look : Interest::Stop;
+        of(Walk::Untracked) = kind.about == CommandClass::Own || kind.about == CommandClass::Blob ? Interest::Stop : Interest::None;
     }
 }
 

@@ -85,17 +85,19 @@ class CommandKinds {
 public:
     static const CommandKinds& all();
     const CommandKind& operator[](uint16_t opcode) const { return kinds_[placeOf(opcode)]; }
-    // Whether a walk may pass them: where small state is looked at, or a list compiled; and where neither is, those that bind or draw are
-    // looked at on the way. Tables of their own, as most records are asked for nothing else.
+    // What a walk over records is about: small state is looked at, or a list compiled; what is bound is followed, where those that bind or draw
+    // are looked at on the way; or nothing is held any more.
+    enum class Walk : uint8_t { State, Bindings, Untracked };
+    // Which it may pass. Tables of their own, as most records are asked for nothing else.
     using Interest = recording::RecordWalk::Interest;
     using Interests = std::array<Interest, op::kLimit + 1>;
-    [[nodiscard]] const Interests& interests(bool looksAtState) const { return looksAtState ? withState_ : interests_; }
+    [[nodiscard]] const Interests& interests(Walk walk) const { return interests_[static_cast<size_t>(walk)]; }
     static size_t placeOf(uint16_t opcode) { return opcode < op::kLimit ? opcode : op::kLimit; }
 
 private:
     CommandKinds();
     CommandKind kinds_[op::kLimit + 1];
-    Interests withState_{}, interests_{};
+    std::array<Interests, 3> interests_{};
 };
 
 inline uint8_t valueWordOf(uint16_t opcode) { return CommandKinds::all()[opcode].valueWord; }

@@ -86,15 +86,19 @@ void Holder::add(uint32_t streamId, std::span<const std::byte> payload) {
 // On over what need not be looked at. Of most programs that is nearly all but what they bind, which is followed on the way, and draws, of which most need
 // nothing that waits.
 void Holder::passOthers(Stream& stream, Output& output, recording::RecordWalk& walk, const Packet& packet, bool looksAtState) {
-    const CommandKinds::Interests& interests = kinds_.interests(looksAtState);
+    using Walk = CommandKinds::Walk;
+    const bool isUntracked = stream.context != nullptr && stream.context->group->untracked;
+    const CommandKinds::Interests& interests = kinds_.interests(looksAtState ? Walk::State : isUntracked ? Walk::Untracked : Walk::Bindings);
     const auto interestOf = [&](uint16_t opcode) { return interests[CommandKinds::placeOf(opcode)]; };
     const bool looks = !looksAtState && stream.same.now != SameFrames::Now::Following && bindsHere(stream);
     if (!looks) return walk.skip([&](uint16_t opcode, size_t) { return interestOf(opcode) == CommandKinds::Interest::None; });
     walk.pass(interestOf, [&](const RecordView& r) {
         if (stream.context->group->untracked) return false;
         const CommandKind& kind = kinds_[r.opcode];
-        if (kind.about == CommandClass::Use) return stream.context->group->held.empty() || !stream.context->needs;
-        At at{stream, *stream.context, *stream.context->group, output, r, kind, r.offset, packet};
+        Group& group = *stream.context->group;
+        if (kind.about != CommandClass::Bind) // it draws, or a list does
+            return (group.held.empty() || !stream.context->needs) && (kind.about == CommandClass::Use || !group.listsBind);
+        At at{stream, *stream.context, group, output, r, kind, r.offset, packet};
         bind(at);
         return true;
     });
