@@ -129,6 +129,31 @@ TEST_F(Holding, sendsEverythingForACommandThatItDoesNotKnow) {
     EXPECT_EQ(seen_.uploads(), 2u) << "from then on all goes at once";
 }
 
+// Of a group that is not followed any more records are passed at once; but not those that leave it.
+TEST_F(Holding, holdsAgainInAContextThatSharesNothing) {
+    begin();
+    holder_.leaveOutSmall(false);
+    send(PacketBuilder().record(op::glClearTexImage, {1, 0, GL_RGBA, GL_UNSIGNED_BYTE, record::kTagNull}));
+    send(draw().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).context(2).window(2, 20, 10).record(wire::kOpMakeCurrent, {2, 2, 2}).record(op::glGenTextures, {1, 4, 1}));
+    send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glTexImage2D, image(6)));
+    EXPECT_EQ(seen_.uploads(), 0u);
+    send(draw());
+    EXPECT_EQ(seen_.uploads(), 1u);
+}
+
+// What one had bound, the next of another name has not, though it has its memory.
+TEST_F(Holding, knowsVertexArraysThatAreMadeAnew) {
+    begin();
+    send(PacketBuilder().record(op::glBindBuffer, {GL_ARRAY_BUFFER, 1}).record(op::glBufferData, buffer(5)).record(op::glBindBuffer, {GL_ARRAY_BUFFER, 0}));
+    send(PacketBuilder().record(op::glGenVertexArrays, {1, 4, 1}).record(op::glBindVertexArray, {1}).record(op::glBindBuffer, {GL_ELEMENT_ARRAY_BUFFER, 1}));
+    send(PacketBuilder().record(op::glDeleteVertexArrays, {1, 4, 1}).record(op::glGenVertexArrays, {1, 4, 2}).record(op::glBindVertexArray, {2}));
+    send(draw());
+    EXPECT_EQ(seen_.uploads(), 0u);
+    send(PacketBuilder().record(op::glBindBuffer, {GL_ELEMENT_ARRAY_BUFFER, 1}));
+    send(draw());
+    EXPECT_EQ(seen_.uploads(), 1u);
+}
+
 TEST_F(Holding, sendsWhatIsHeldBeforeAnotherContextSpeaks) {
     begin();
     send(PacketBuilder().context(2, 1).record(wire::kOpMakeCurrent, {2, 2, 2}), kOther);

@@ -5,10 +5,12 @@
 #include "holding/holder.hpp"
 #include "tests/holding/seen_model.hpp"
 #include "tests/recording/recorded.hpp"
+#include "tests/sanitized.hpp"
 
 namespace mural::holding {
 namespace {
 
+using mural::testing::rounds;
 using recording::PacketBuilder;
 
 constexpr uint32_t kNames = 4; // of each kind
@@ -330,7 +332,7 @@ void same(uint32_t seed, bool shares, uint64_t mostBytes, Won& won) {
     both.send(kFirst, program.begin());
     if (shares) both.send(kSecond, program.other());
     uint32_t stream = kFirst;
-    for (int i = 0; i < 60 && !testing::Test::HasFatalFailure(); ++i) {
+    for (int i = 0; i < 60 && !::testing::Test::HasFatalFailure(); ++i) {
         const PacketBuilder p = program.packet();
         if (shares && program.below(3) == 0) stream = stream == kFirst ? kSecond : kFirst;
         both.send(stream, p);
@@ -347,7 +349,7 @@ void sameFrames(uint32_t seed, Won& won) {
     for (int scene = 0; scene < 3; ++scene) {
         const std::vector<PacketBuilder> frame = program.frame();
         const uint32_t changes = program.below(3) == 0 ? 20 : 1000;
-        for (int i = 0; i < 40 && !testing::Test::HasFatalFailure(); ++i) both.send(kFirst, program.likeFrame(frame, changes));
+        for (int i = 0; i < 40 && !::testing::Test::HasFatalFailure(); ++i) both.send(kFirst, program.likeFrame(frame, changes));
     }
     both.ends(won);
 }
@@ -359,7 +361,7 @@ void bindingFrames(uint32_t seed, Won& won) {
     both.send(kFirst, program.begin());
     for (int scene = 0; scene < 2; ++scene) {
         const std::vector<PacketBuilder> frame = program.bindingFrame();
-        for (int i = 0; i < 30 && !testing::Test::HasFatalFailure(); ++i) both.send(kFirst, program.withUpload(frame));
+        for (int i = 0; i < 30 && !::testing::Test::HasFatalFailure(); ++i) both.send(kFirst, program.withUpload(frame));
     }
     both.ends(won);
 }
@@ -371,47 +373,47 @@ void slidingFrames(uint32_t seed, Won& won) {
     both.send(kFirst, program.begin());
     for (int scene = 0; scene < 2; ++scene) {
         const std::vector<PacketBuilder> frame = program.textureFrame();
-        for (int i = 0; i < 200 && !testing::Test::HasFatalFailure(); ++i) both.send(kFirst, program.withOtherEnd(frame));
+        for (int i = 0; i < 200 && !::testing::Test::HasFatalFailure(); ++i) both.send(kFirst, program.withOtherEnd(frame));
     }
     both.ends(won);
 }
 
 TEST(HeldStreams, showTheSameToEachDraw) {
     Won won;
-    for (uint32_t seed = 0; seed < 400 && !HasFatalFailure(); ++seed) same(seed, false, 1 << 20, won);
-    EXPECT_GT(won.held, 10'000U) << "or this shows nothing";
-    EXPECT_GT(won.leftOut, 1000U);
+    for (uint32_t seed = 0; seed < rounds(400) && !HasFatalFailure(); ++seed) same(seed, false, 1 << 20, won);
+    EXPECT_GT(won.held, rounds(10'000)) << "or this shows nothing";
+    EXPECT_GT(won.leftOut, rounds(1000));
 }
 
 TEST(HeldStreams, showTheSameInFramesThatAreAlike) {
     Won won;
-    for (uint32_t seed = 0; seed < 50 && !HasFatalFailure(); ++seed) sameFrames(seed, won);
-    EXPECT_GT(won.alike, 10'000U) << "or this shows nothing";
-    EXPECT_GT(won.held, 1000U);
+    for (uint32_t seed = 0; seed < rounds(50) && !HasFatalFailure(); ++seed) sameFrames(seed, won);
+    EXPECT_GT(won.alike, rounds(10'000)) << "or this shows nothing";
+    EXPECT_GT(won.held, rounds(1000));
 }
 
 TEST(HeldStreams, showTheSameInFramesThatBindMuch) {
     Won won;
-    for (uint32_t seed = 0; seed < 150 && !HasFatalFailure(); ++seed) bindingFrames(seed, won);
-    EXPECT_GT(won.alike, 50'000U) << "or this shows nothing";
-    EXPECT_GT(won.held, 500U);
+    for (uint32_t seed = 0; seed < rounds(150) && !HasFatalFailure(); ++seed) bindingFrames(seed, won);
+    EXPECT_GT(won.alike, rounds(50'000)) << "or this shows nothing";
+    EXPECT_GT(won.held, rounds(500));
 }
 
 TEST(HeldStreams, showTheSameInFramesThatLeaveOtherTextures) {
     Won won;
-    for (uint32_t seed = 0; seed < 150 && !HasFatalFailure(); ++seed) slidingFrames(seed, won);
-    EXPECT_GT(won.alike, 1'000'000U) << "or this shows nothing";
-    EXPECT_GT(won.held, 500U);
+    for (uint32_t seed = 0; seed < rounds(75) && !HasFatalFailure(); ++seed) slidingFrames(seed, won);
+    EXPECT_GT(won.alike, rounds(500'000)) << "or this shows nothing";
+    EXPECT_GT(won.held, rounds(250));
 }
 
 TEST(HeldStreams, showTheSameWithTwoThreadsThatShare) {
     Won won;
-    for (uint32_t seed = 0; seed < 200 && !HasFatalFailure(); ++seed) same(seed, true, 1 << 20, won);
+    for (uint32_t seed = 0; seed < rounds(200) && !HasFatalFailure(); ++seed) same(seed, true, 1 << 20, won);
 }
 
 TEST(HeldStreams, showTheSameWithLittleMemory) {
     Won won;
-    for (uint32_t seed = 0; seed < 100 && !HasFatalFailure(); ++seed) same(seed, false, 3000, won);
+    for (uint32_t seed = 0; seed < rounds(100) && !HasFatalFailure(); ++seed) same(seed, false, 3000, won);
 }
 
 } // namespace
