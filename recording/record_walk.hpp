@@ -92,7 +92,8 @@ public:
     }
     // What pass() does with a record.
     enum class Interest : uint8_t { None, Look, Stop };
-    // As skip(), but those of Interest::Look are given to look() on the way, one by one; false: the walk stops before that one.
+    // As skip(), but those of Interest::Look are given to look() on the way, one by one; false: the walk stops before that one. A loop of its own:
+    // one for both took 0.5 to 5 us more for a frame of some hundred records, as less of it was kept in registers.
     template <typename InterestOf, typename Looks>
     void pass(const InterestOf& interestOf, const Looks& look) {
         const std::span<const std::byte> packet = packet_;
