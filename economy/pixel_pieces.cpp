@@ -7,6 +7,7 @@
 #include "common/copy_bytes.hpp"
 #include "economy/pixel_colours.hpp"
 #include "economy/pixel_words.hpp"
+#include "economy/section_codec.hpp"
 
 namespace mural::economy {
 namespace {
@@ -21,6 +22,10 @@ constexpr uint32_t kForColours = 32;
 // Where a picture is even, edges change all colours, which are more words apart than together. So many bits of its samples are few.
 constexpr uint32_t kEvenBits = 2 * kSampledBytes;
 
+// What is not even there may come again as it was: letters, dotted lines, tiles. As it is Zstandard finds that, of differences it finds less: then pieces
+// stay as they are. Two samples of so many pieces tell, if one part of so many at most is left of them: of more, Zstandard makes less than LZ4 says.
+constexpr size_t kEvenPieces = 4, kLeftOfEven = 8;
+
 size_t bestOf(const Roughness& rough) {
     const auto plain = std::ranges::min_element(rough.begin(), rough.begin() + kPlainWays);
     const auto colours = std::ranges::min_element(rough.begin() + kPlainWays, rough.end());
@@ -28,10 +33,21 @@ size_t bestOf(const Roughness& rough) {
     return static_cast<size_t>((apart ? colours : plain) - rough.begin());
 }
 
-uint8_t wayOf(const std::byte* piece) {
+struct Way {
+    uint8_t way = 0;
+    uint32_t roughness = 0; // what is left by it
+};
+
+Way wayOf(const std::byte* piece) {
     const auto rough = roughness(piece);
     const size_t best = bestOf(rough);
-    return rough[best] * 20 < rough[0] * kLeftOfTwenty ? kPixelWays[best] : uint8_t{0};
+    return rough[best] * 20 < rough[0] * kLeftOfTwenty ? Way{kPixelWays[best], rough[best]} : Way{};
+}
+
+// LZ4 has a byte for 255 of a run; Zstandard has none.
+size_t beyondRuns(std::span<const std::byte> bytes, std::vector<std::byte>& scratch) {
+    const size_t coded = bytes.empty() ? 0 : lz4Bytes(bytes, scratch), ofRuns = bytes.size() / 255;
+    return coded - std::min(coded, ofRuns);
 }
 
 } // namespace
@@ -43,13 +59,36 @@ size_t leftOfPixels(const std::byte* piece) {
 
 bool PixelSplitter::split(std::span<const std::byte> pages) {
     const size_t pieces = pages.size() / kPageBytes;
-    front_.resize(pieces);
-    pixelPieces_ = 0;
+    ways_.resize(pieces);
+    size_t pixelPieces = 0;
+    uint64_t left = 0;
     for (size_t i = 0; i < pieces; ++i) {
-        front_[i] = static_cast<std::byte>(wayOf(pages.data() + i * kPageBytes));
-        pixelPieces_ += front_[i] != std::byte{0};
+        const Way way = wayOf(pages.data() + i * kPageBytes);
+        ways_[i] = way.way;
+        pixelPieces += way.way != 0;
+        left += way.roughness;
     }
-    if (pixelPieces_ == 0) return false;
+    if (pixelPieces == 0 || (left < pixelPieces * kEvenBits && repeats(pages))) return false;
+    takeApart(pages, ways_);
+    return true;
+}
+
+// By LZ4, which tells fast, what has little left is less as it is.
+bool PixelSplitter::repeats(std::span<const std::byte> pages) {
+    const size_t all = ways_.size(), pieces = std::min(kEvenPieces, (all + 1) / 2), before = (all - pieces) / 3;
+    size_t asIs = 0, apart = 0;
+    for (const size_t first : {before, all - pieces - before}) {
+        const auto sample = pages.subspan(first * kPageBytes, pieces * kPageBytes);
+        takeApart(sample, std::span(ways_).subspan(first, pieces));
+        for (const auto part : {front(), planes(), rest()}) apart += beyondRuns(part, scratch_);
+        asIs += beyondRuns(sample, scratch_);
+    }
+    return asIs < apart && asIs * kLeftOfEven < 2 * pieces * kPageBytes;
+}
+
+void PixelSplitter::takeApart(std::span<const std::byte> pages, std::span<const uint8_t> ways) {
+    const size_t pieces = ways.size();
+    pixelPieces_ = pieces - static_cast<size_t>(std::ranges::count(ways, uint8_t{0}));
     rest_.clear();
     front_.resize(frontBytes(pages.size(), pixelPieces_));
     if (words_.size() < pixelPieces_ * kPieceWords + kPieceWordRoom) words_.resize(pixelPieces_ * kPieceWords + kPieceWordRoom);
@@ -57,11 +96,12 @@ bool PixelSplitter::split(std::span<const std::byte> pages) {
     size_t count = 0;
     for (size_t i = 0; i < pieces; ++i) {
         const auto piece = pages.subspan(i * kPageBytes, kPageBytes);
-        if (front_[i] == std::byte{0}) {
+        const uint8_t way = ways[i];
+        front_[i] = static_cast<std::byte>(way);
+        if (way == 0) {
             rest_.insert(rest_.end(), piece.begin(), piece.end());
             continue;
         }
-        const auto way = static_cast<uint8_t>(front_[i]);
         std::byte apart[kPageBytes];
         if (takesColoursApart(way)) takeColoursApart(piece.data(), way, apart);
         count += differences(takesColoursApart(way) ? apart : piece.data(), pixelBytesOf(way), words_.data() + count, mask);
@@ -72,7 +112,6 @@ bool PixelSplitter::split(std::span<const std::byte> pages) {
     planeBytes_ = count * 4;
     if (planes_.size() < planeBytes_) planes_.resize(planeBytes_);
     toPlanes(words_.data(), count, planes_.data());
-    return true;
 }
 
 size_t frontBytes(size_t pagesBytes, size_t pixelPieces) { return pagesBytes / kPageBytes + pixelPieces * kPieceMaskBytes; }

@@ -18,7 +18,7 @@ namespace mural::economy {
 
 class PixelSplitter {
 public:
-    // False: no piece is like a picture. The parts live until the next call.
+    // False: nothing is to be won, so there are no parts. They live until the next call.
     bool split(std::span<const std::byte> pages);
 
     // Of each piece its way (kPixelWays; 0: it is no picture), then of each one with pixels the bits.
@@ -29,7 +29,11 @@ public:
     [[nodiscard]] std::span<const std::byte> rest() const { return rest_; }
 
 private:
-    std::vector<std::byte> front_, planes_, rest_;
+    [[nodiscard]] bool repeats(std::span<const std::byte> pages);
+    void takeApart(std::span<const std::byte> pages, std::span<const uint8_t> ways);
+
+    std::vector<uint8_t> ways_;
+    std::vector<std::byte> front_, planes_, rest_, scratch_;
     std::vector<uint32_t> words_;
     size_t pixelPieces_ = 0, planeBytes_ = 0;
 };
