@@ -21,6 +21,7 @@ public:
         std::filesystem::remove_all(path_, ignored);
     }
 
+    [[nodiscard]] const std::string& path() const { return path_; }
     [[nodiscard]] std::string at(const std::string& name) const { return path_ + "/" + name; }
 
     // mode: as for chmod, e.g. 0755.
@@ -29,6 +30,9 @@ public:
         std::filesystem::permissions(at(name), static_cast<std::filesystem::perms>(mode));
         return at(name);
     }
+
+    // Of the shell; its path.
+    [[nodiscard]] std::string script(const std::string& name, const std::string& text) const { return file(name, "#!/bin/sh\n" + text, 0755); }
 
 private:
     std::string path_;

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "tests/launch/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 #include "tools/mural/accuracy/interruption.hpp"
 #include "tools/mural/accuracy/result_file.hpp"
 

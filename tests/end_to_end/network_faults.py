@@ -80,6 +80,7 @@ class Lab:
         self.secret = os.path.join(folder, "secret")
         with open(self.secret, "w", encoding="utf-8") as file:
             file.write("a secret of these tests only\n")
+        os.chmod(self.secret, 0o600)
         self.ends = []
 
     def _start(self, name, command):

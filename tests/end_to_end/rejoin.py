@@ -243,6 +243,7 @@ def waiting_node(context):
         secret = os.path.join(folder, "key")
         with open(secret, "w", encoding="ascii") as file:
             file.write(os.urandom(32).hex())
+        os.chmod(secret, 0o600)
         command = [context.mural, "node", "--wait", "--secret", secret, "--listen", host + ":4279", "--discovery", "beacon"]
         with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as waiting:
             try:

@@ -44,6 +44,7 @@ class Case:
         path = os.path.join(self.folder, name)
         with open(path, 'w', encoding='ascii') as f:
             f.write(os.urandom(32).hex())
+        os.chmod(path, 0o600)
         return path
 
     def pictures(self, name, *options):

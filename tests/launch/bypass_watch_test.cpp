@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "tests/launch/elf_bytes.hpp"
-#include "tests/launch/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace mural::launch {
 namespace {

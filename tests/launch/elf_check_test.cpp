@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/launch/elf_bytes.hpp"
-#include "tests/launch/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace mural::launch {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "nodes/launch/elf_check.hpp"
 #include "tests/launch/elf_bytes.hpp"
-#include "tests/launch/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace mural::launch {
 namespace {

@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "nodes/launch/process_tree.hpp"
-#include "tests/launch/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace mural::cli {
 namespace {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tests/output/scratch_folder.hpp"
+#include "tests/temporary_folder.hpp"
 #include "tests/output/test_pictures.hpp"
 
 namespace mural::test {
@@ -13,8 +13,8 @@ namespace {
 
 // All frames of a video, as pictures, decoded by ffmpeg without any change of their number.
 std::vector<OwnedPicture>
-decode(const ScratchFolder& scratch, const std::string& path, int width, int height) {
-    const std::string raw = scratch.path("decoded");
+decode(const TemporaryFolder& folder, const std::string& path, int width, int height) {
+    const std::string raw = folder.at("decoded");
     const std::string command = "ffmpeg -nostdin -y -v error -i " + path +
                                 " -vf vflip -fps_mode passthrough -f rawvideo -pix_fmt bgra " + raw;
     if (std::system(command.c_str()) != 0)
@@ -37,8 +37,8 @@ VideoConfig configFor(const std::string& path) {
 }
 
 // An ffmpeg that knows all encoders and then does what `text` says.
-std::string fakeEncoder(const ScratchFolder& scratch, const std::string& text) {
-    return scratch.script("fake-ffmpeg", "if [ \"$2\" = -encoders ]; then\n"
+std::string fakeEncoder(const TemporaryFolder& folder, const std::string& text) {
+    return folder.script("fake-ffmpeg", "if [ \"$2\" = -encoders ]; then\n"
                                          "echo ' V....D libx264rgb x'; exit 0\nfi\n" +
                                              text);
 }
@@ -48,8 +48,8 @@ std::string fakeEncoder(const ScratchFolder& scratch, const std::string& text) {
 class VideoFormats : public testing::TestWithParam<std::string> {};
 
 TEST_P(VideoFormats, decodeBitExactly) {
-    const ScratchFolder scratch;
-    const std::string path = scratch.path("run." + GetParam());
+    const TemporaryFolder folder;
+    const std::string path = folder.at("run." + GetParam());
     constexpr int kWidth = 161; // odd: no format may demand even sizes
     constexpr int kHeight = 97;
     constexpr int kFrames = 7;
@@ -67,7 +67,7 @@ TEST_P(VideoFormats, decodeBitExactly) {
     Result<void> finished = video.value()->finish();
     ASSERT_TRUE(finished) << finished.error().message;
     EXPECT_TRUE(video.value()->finish());
-    const std::vector<OwnedPicture> decoded = decode(scratch, path, kWidth, kHeight);
+    const std::vector<OwnedPicture> decoded = decode(folder, path, kWidth, kHeight);
     ASSERT_EQ(decoded.size(), written.size());
     for (size_t i = 0; i < written.size(); ++i)
         EXPECT_TRUE(samePictures(written[i].view(), decoded[i].view())) << "frame " << i;
@@ -79,8 +79,8 @@ INSTANTIATE_TEST_SUITE_P(All,
                          [](const auto& format) { return format.param; });
 
 TEST(VideoFile, newSizeBeginsANumberedFile) {
-    const ScratchFolder scratch;
-    VideoConfig config = configFor(scratch.path("run.mkv"));
+    const TemporaryFolder folder;
+    VideoConfig config = configFor(folder.at("run.mkv"));
     std::vector<std::string> said;
     config.say = [&](const std::string& line) { said.push_back(line); };
     auto video = VideoFile::open(std::move(config));
@@ -91,8 +91,8 @@ TEST(VideoFile, newSizeBeginsANumberedFile) {
     ASSERT_TRUE(video.value()->show(2, large.view()));
     ASSERT_TRUE(video.value()->show(3, large.view()));
     ASSERT_TRUE(video.value()->finish());
-    const auto first = decode(scratch, scratch.path("run.mkv"), 32, 16);
-    const auto second = decode(scratch, scratch.path("run-2.mkv"), 40, 20);
+    const auto first = decode(folder, folder.at("run.mkv"), 32, 16);
+    const auto second = decode(folder, folder.at("run-2.mkv"), 40, 20);
     ASSERT_EQ(first.size(), 1U);
     ASSERT_EQ(second.size(), 2U);
     EXPECT_TRUE(samePictures(small.view(), first[0].view()));
@@ -103,19 +103,19 @@ TEST(VideoFile, newSizeBeginsANumberedFile) {
 }
 
 TEST(VideoFile, completesWhenDestroyed) {
-    const ScratchFolder scratch;
+    const TemporaryFolder folder;
     const OwnedPicture picture = noisePicture(32, 16, 1);
     {
-        auto video = VideoFile::open(configFor(scratch.path("run.mp4")));
+        auto video = VideoFile::open(configFor(folder.at("run.mp4")));
         ASSERT_TRUE(video) << video.error().message;
         ASSERT_TRUE(video.value()->show(1, picture.view()));
     }
-    EXPECT_EQ(decode(scratch, scratch.path("run.mp4"), 32, 16).size(), 1U);
+    EXPECT_EQ(decode(folder, folder.at("run.mp4"), 32, 16).size(), 1U);
 }
 
 TEST(VideoFile, killedEncoderIsNoticed) {
-    const ScratchFolder scratch;
-    auto video = VideoFile::open(configFor(scratch.path("run.mkv")));
+    const TemporaryFolder folder;
+    auto video = VideoFile::open(configFor(folder.at("run.mkv")));
     ASSERT_TRUE(video) << video.error().message;
     const OwnedPicture picture = noisePicture(64, 64, 1);
     ASSERT_TRUE(video.value()->show(1, picture.view()));
@@ -133,10 +133,10 @@ TEST(VideoFile, killedEncoderIsNoticed) {
 }
 
 TEST(VideoFile, encoderThatFailsIsQuoted) {
-    const ScratchFolder scratch;
-    VideoConfig config = configFor(scratch.path("run.mkv"));
+    const TemporaryFolder folder;
+    VideoConfig config = configFor(folder.at("run.mkv"));
     config.program =
-        fakeEncoder(scratch, "echo first >&2\necho 'disk quota is gone' >&2\nexit 3\n");
+        fakeEncoder(folder, "echo first >&2\necho 'disk quota is gone' >&2\nexit 3\n");
     auto video = VideoFile::open(std::move(config));
     ASSERT_TRUE(video) << video.error().message;
     const OwnedPicture picture = noisePicture(512, 512, 1); // more than the socket takes
@@ -151,10 +151,10 @@ TEST(VideoFile, encoderThatFailsIsQuoted) {
 
 // The file can't be made: found by finish() when the few bytes went into the socket before.
 TEST(VideoFile, realEncoderCannotWrite) {
-    const ScratchFolder scratch;
-    auto video = VideoFile::open(configFor(scratch.path("folder/run.mkv")));
+    const TemporaryFolder folder;
+    auto video = VideoFile::open(configFor(folder.at("folder/run.mkv")));
     ASSERT_TRUE(video) << video.error().message;
-    std::filesystem::remove(scratch.path("folder"));
+    std::filesystem::remove(folder.at("folder"));
     const OwnedPicture picture = noisePicture(16, 16, 1);
     Result<void> result = video.value()->show(1, picture.view());
     if (result)
@@ -166,9 +166,9 @@ TEST(VideoFile, realEncoderCannotWrite) {
 
 TEST(VideoFile, fullDiskIsSaid) {
     for (const char* name : {"run.mp4", "run.mkv", "run.avi", "run.webm", "run.mov"}) {
-        const ScratchFolder scratch;
-        std::filesystem::create_symlink("/dev/full", scratch.path(name));
-        auto video = VideoFile::open(configFor(scratch.path(name)));
+        const TemporaryFolder folder;
+        std::filesystem::create_symlink("/dev/full", folder.at(name));
+        auto video = VideoFile::open(configFor(folder.at(name)));
         ASSERT_TRUE(video) << video.error().message;
         const OwnedPicture picture = noisePicture(256, 256, 1);
         Result<void> result;
@@ -183,9 +183,9 @@ TEST(VideoFile, fullDiskIsSaid) {
 }
 
 TEST(VideoFile, encoderThatDoesNotReadRunsIntoTheDeadline) {
-    const ScratchFolder scratch;
-    VideoConfig config = configFor(scratch.path("run.mkv"));
-    config.program = fakeEncoder(scratch, "exec tail -f /dev/null\n");
+    const TemporaryFolder folder;
+    VideoConfig config = configFor(folder.at("run.mkv"));
+    config.program = fakeEncoder(folder, "exec tail -f /dev/null\n");
     config.frameTimeoutMs = 50;
     config.finishTimeoutMs = 50;
     auto video = VideoFile::open(config);
@@ -210,8 +210,8 @@ TEST(VideoFile, encoderThatDoesNotReadRunsIntoTheDeadline) {
 }
 
 TEST(VideoFile, missingProgramNamesThePackage) {
-    const ScratchFolder scratch;
-    VideoConfig config = configFor(scratch.path("run.mkv"));
+    const TemporaryFolder folder;
+    VideoConfig config = configFor(folder.at("run.mkv"));
     config.program = "no-such-ffmpeg";
     auto video = VideoFile::open(std::move(config));
     ASSERT_FALSE(video);
@@ -220,11 +220,11 @@ TEST(VideoFile, missingProgramNamesThePackage) {
 }
 
 TEST(VideoFile, unusableNamesAreRefusedAtOnce) {
-    const ScratchFolder scratch;
-    std::ofstream(scratch.path("file")) << "x";
-    std::filesystem::create_directory(scratch.path("folder.mp4"));
+    const TemporaryFolder folder;
+    std::ofstream(folder.at("file")) << "x";
+    std::filesystem::create_directory(folder.at("folder.mp4"));
     for (const char* name : {"a.gif", "a", "file/a.mp4", "folder.mp4"}) {
-        auto video = VideoFile::open(configFor(scratch.path(name)));
+        auto video = VideoFile::open(configFor(folder.at(name)));
         EXPECT_FALSE(video) << name;
     }
 }

@@ -62,6 +62,7 @@ class Rsp:
         self.secret = os.path.join(folder, "secret")
         with open(self.secret, "w", encoding="utf-8") as file:
             file.write("a secret of the bench's own\n")
+        os.chmod(self.secret, 0o600)
 
     def group(self, rig, receivers, options, **more):
         return RspGroup(rig, self.mural, self.secret, receivers, options, **more)

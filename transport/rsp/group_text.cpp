@@ -5,6 +5,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -45,6 +46,7 @@ Result<uint64_t> parseSize(const std::string& text) {
     static constexpr std::array<Unit, 4> units{Unit{"k", 1024}, Unit{"m", 1048576}, Unit{"g", 1073741824}, Unit{"", 1}};
     auto value = numberWithUnit(text, units, "1000000, 64k or 256M");
     if (!value) return value.error();
+    if (*value >= 0x1p63) return Error{"\"" + text + "\" is more than there can be"};
     return static_cast<uint64_t>(*value);
 }
 
@@ -64,7 +66,11 @@ Result<ChannelSecret> readSecret(const std::string& path) {
         bytes.assign(std::istreambuf_iterator<char>(std::cin), {});
     } else {
         std::ifstream file(path, std::ios::binary);
-        if (!file) return Error{path + ": can't read the secret; make one with: head -c 32 /dev/urandom | base64 > " + path};
+        if (!file) return Error{path + ": can't read the secret; make one with: (umask 077; head -c 32 /dev/urandom | base64 > " + path + ")"};
+        using std::filesystem::perms;
+        std::error_code unknown;
+        if ((std::filesystem::status(path, unknown).permissions() & (perms::others_read | perms::others_write)) != perms::none && !unknown)
+            return Error{path + ": every user of this machine can read or change this secret; make a new one, or if nobody has: chmod 600 " + path};
         bytes.assign(std::istreambuf_iterator<char>(file), {});
     }
     while (!bytes.empty() && (bytes.back() == '\n' || bytes.back() == '\r')) bytes.pop_back();

@@ -15,7 +15,7 @@ Result<double> parseRate(const std::string& text);
 Result<uint64_t> parseSize(const std::string& text);
 // As nameOf tells them; "auto": the fastest encryption of this machine.
 Result<Seal> parseSeal(const std::string& text);
-// Of a file with at least 16 bytes, "-": standard input. All of it counts but a line end at its end.
+// Of a file with at least 16 bytes that not every user of the machine can read or write, "-": standard input. All of it counts but a line end at its end.
 Result<ChannelSecret> readSecret(const std::string& path);
 
 } // namespace mural::rsp
