@@ -123,6 +123,7 @@ TEST(RunOptions, wrongValuesNameTheOptionAndWhatIsWanted) {
     EXPECT_NE(refusal([](RunArguments& a) { a.position = "1"; }).find("--position"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.nodes = "h1,-oProxyCommand=x"; }).find("--nodes"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.nodes = "3"; }).find("--local-nodes"), std::string::npos) << "a number is hardly a host";
+    EXPECT_NE(refusal([](RunArguments& a) { a.nodes = "h1,h2", a.leastNodes = "3"; }).find("--least-nodes \"3\": must be at most 2"), std::string::npos);
 }
 
 TEST(RunOptions, passesAreRead) {

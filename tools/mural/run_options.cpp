@@ -209,6 +209,7 @@ Result<void> readNodes(const RunArguments& a, SessionConfig& c) {
     int64_t least = c.leastNodes;
     if (auto r = readNumber("--least-nodes", a.leastNodes, 1, kMostRestarts, least); !r) return r;
     c.leastNodes = static_cast<int>(least);
+    if (asked > 0 && c.leastNodes > asked) return badValue("--least-nodes", *a.leastNodes, fmt::format("must be at most {}: there are no more nodes", asked));
     if (c.leastNodes > 0 && c.restartNodes == 0) return Error{"--least-nodes has the others started again until they come, which --restart-nodes 0 forbids; leave one of them out"};
     return {};
 }
