@@ -53,9 +53,10 @@ std::unique_ptr<StreamEconomy::Coder> StreamEconomy::beginAnew(std::unique_ptr<C
 
 void StreamEconomy::add(uint32_t stream, std::span<const std::byte> payload) {
     const bool isLong = payload.size() >= kLongPacketBytes;
-    if (!timesFrame_ && !isLong) {
+    UsualTime& usualNs = packetNs_.of(payload.size());
+    if (!timesFrame_ && !isLong && usualNs.isKnown()) {
         hold(stream, payload);
-        encodeNs_ += static_cast<uint64_t>(packetNsPerByte_.value() * static_cast<double>(payload.size()));
+        encodeNs_ += static_cast<uint64_t>(usualNs.value());
         return;
     }
     nowNs_ = isLong ? threadCpuNowNs : quickNowNs;
@@ -67,9 +68,7 @@ void StreamEconomy::add(uint32_t stream, std::span<const std::byte> payload) {
     const auto ns = static_cast<uint64_t>(nowNs_() - beganNs - sendNs_);
     encodeNs_ += ns;
     measured_.holdNs += ns - std::min(ns, packNs_);
-    if (isLong) return;
-    measured_.shortBytes += payload.size();
-    measured_.shortNs += ns;
+    if (!isLong) usualNs.add(static_cast<double>(ns));
 }
 
 void StreamEconomy::miss(uint32_t stream, std::span<const std::byte> payload) {
@@ -137,10 +136,9 @@ Result<std::span<const std::byte>> StreamEconomy::take() {
         else way.unmeasured();
         if (way.plain() != packer.plain()) small_.disturbed();
         else small_.frame(holder_.counts().inBytes - measured_.programBytes, measured_.wireBytes, timesFrame_ ? frameNs + static_cast<double>(measured_.wireBytes) * link_.nsPerByte() : -1);
-        if (timesFrame_ && measured_.shortBytes > 0) packetNsPerByte_.add(static_cast<double>(measured_.shortNs) / static_cast<double>(measured_.shortBytes));
         timesFrame_ = way.wantsTime() || small_.wantsTime();
         packer.beginFrame(way.plain(), frameGoesOn);
-        measured_ = {0, 0, 0, 0, encodeNs_, holder_.counts().inBytes, 0, 0, 0};
+        measured_ = {0, 0, 0, 0, encodeNs_, holder_.counts().inBytes, 0};
     }
     publishCounts();
     return batch;

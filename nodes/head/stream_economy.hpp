@@ -90,11 +90,11 @@ private:
     bool timesFrame_ = true; // all that is done for it; else what is long only
     bool timesPacking_ = false;
     uint64_t packNs_ = 0; // of the packet in hand, without what holds back
-    UsualTime packetNsPerByte_; // of all packets of a frame that is measured, but long ones
+    UsualTimesBySize packetNs_; // of packets of frames that are measured, and the first of each size, but long ones
     UsualTime takeNs_;          // of the batch, the same
     uint64_t wireBytes_ = 0, encodeNs_ = 0;
     struct Measured {
-        uint64_t rawBytes = 0, pageBytes = 0, leftOutBytes = 0, wireBytes = 0, encodeNs = 0, programBytes = 0, holdNs = 0, shortBytes = 0, shortNs = 0;
+        uint64_t rawBytes = 0, pageBytes = 0, leftOutBytes = 0, wireBytes = 0, encodeNs = 0, programBytes = 0, holdNs = 0;
     } measured_; // since the way was chosen: about a frame
     struct Published {
         std::atomic<uint64_t> packets{0}, records{0}, rawBytes{0}, stagedBytes{0}, storeHits{0}, newPages{0}, patches{0}, wireBytes{0}, encodeNs{0};

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 
 namespace mural {
@@ -20,12 +21,24 @@ public:
     }
     // The median of the last few; 0 before the first.
     [[nodiscard]] double value() const { return usual_; }
+    // Whatever has disturbed one of them.
+    [[nodiscard]] bool isKnown() const { return count_ >= 3; }
 
 private:
     static constexpr size_t kKept = 5;
     std::array<double, kKept> last_{};
     size_t count_ = 0;
     double usual_ = 0;
+};
+
+// The same by how many bytes it is done for, each size up to twice the one before: short ones take many times as long for each byte as long ones.
+class UsualTimesBySize {
+public:
+    [[nodiscard]] UsualTime& of(size_t sizeBytes) { return bySize_[std::min<size_t>(std::bit_width(sizeBytes), kSizes - 1)]; }
+
+private:
+    static constexpr size_t kSizes = 32;
+    std::array<UsualTime, kSizes> bySize_{};
 };
 
 } // namespace mural

@@ -1,3 +1,4 @@
+#include <cstdint>
 #include <gtest/gtest.h>
 
 #include "nodes/head/usual_time.hpp"
@@ -16,6 +17,26 @@ TEST(UsualTime, isNotThatOfOneThatSomethingElseHasDisturbed) {
         time.add(ns);
         EXPECT_LT(time.value(), 30) << ns;
     }
+}
+
+TEST(UsualTime, isKnownWhenOneThatWasDisturbedIsNotTheMedian) {
+    UsualTime time;
+    for (const double ns : {4e6, 21.0, 22.0}) {
+        EXPECT_FALSE(time.isKnown());
+        time.add(ns);
+    }
+    EXPECT_TRUE(time.isKnown());
+    EXPECT_EQ(time.value(), 22);
+}
+
+TEST(UsualTime, saysNothingOfOtherSizes) {
+    UsualTimesBySize times;
+    for (int i = 0; i < 3; ++i) times.of(100).add(5'000);
+    EXPECT_TRUE(times.of(127).isKnown());
+    EXPECT_EQ(times.of(64).value(), 5'000);
+    for (const size_t other : {size_t{0}, size_t{63}, size_t{128}, size_t{77'000}, size_t{1} << 40}) EXPECT_FALSE(times.of(other).isKnown()) << other;
+    times.of(size_t{1} << 40).add(1);
+    EXPECT_EQ(times.of(SIZE_MAX).value(), 1);
 }
 
 TEST(UsualTime, followsWhatStaysOtherwise) {
