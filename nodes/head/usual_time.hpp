@@ -21,7 +21,7 @@ public:
     }
     // The median of the last few; 0 before the first.
     [[nodiscard]] double value() const { return usual_; }
-    // Whatever has disturbed one of them.
+    // There are so many that one which was disturbed is not the median.
     [[nodiscard]] bool isKnown() const { return count_ >= 3; }
 
 private:
