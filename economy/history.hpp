@@ -53,6 +53,11 @@ public:
         else if (text_.old(item.where)) item.where = text_.add(text_.at(item.where, item.sizeBytes));
         return item;
     }
+    // A page of the store that comes in another's place.
+    [[nodiscard]] Item fromStore(uint32_t slot, uint32_t sizeBytes) {
+        pages_.find(slot);
+        return {slot, sizeBytes, 1};
+    }
     [[nodiscard]] Item addText(std::span<const std::byte> bytes, uint32_t model) { return {text_.add(bytes), static_cast<uint32_t>(bytes.size()), 0, model}; }
     [[nodiscard]] Item addPage(uint32_t slot, std::span<const std::byte> bytes) {
         pages_.fill(slot, bytes);

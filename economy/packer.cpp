@@ -387,7 +387,7 @@ bool Packer::fromStore(bool inPlace) {
     }
     ++pagesRun_;
     ++counts_.storeHits;
-    const Item item = history_.again({slot, piece.sizeBytes, 1});
+    const Item item = history_.fromStore(slot, piece.sizeBytes);
     log_->replaces(item);
     append(item, static_cast<uint32_t>(hashOf(piece)));
     return true;

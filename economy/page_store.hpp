@@ -3,8 +3,8 @@
 // it with one bit per page, where a list by age would cost them a list of a quarter of a million links.
 //
 // A page of which a part changes goes into a new slot, so that the one before it can come again. One that has changed so several
-// times, and never came again as it was, stays in its slot: a buffer that is another in each frame would fill memory else, which
-// costs more than to compare it.
+// times, and never came again as it had been before a change, stays in its slot: a buffer that is another in most frames would fill
+// memory else, which costs more than to compare it. That it comes as it is now, in the frames between, tells nothing.
 #pragma once
 
 #include <cstddef>
@@ -28,28 +28,43 @@ public:
     uint32_t take();
     // `page` may lie in the store.
     void fill(uint32_t slot, std::span<const std::byte> page);
-    void use(uint32_t slot) { used_[slot] = 1, changes_[slot] = 0; }
+    // What is in it comes where it was expected.
+    void use(uint32_t slot) {
+        slots_[slot].used = true;
+        if (slots_[slot].left) begin(slot);
+    }
+    // It comes in another page's place.
+    void find(uint32_t slot) {
+        slots_[slot].used = true;
+        begin(slot);
+    }
     // The slot for what the page in this slot has become.
     uint32_t changed(uint32_t slot);
     // That is this slot.
-    [[nodiscard]] bool changesInPlace(uint32_t slot) const { return changes_[slot] >= kMostChanges; }
+    [[nodiscard]] bool changesInPlace(uint32_t slot) const { return slots_[slot].changes >= kMostChanges; }
 
     // Empty where there is none.
     [[nodiscard]] std::span<const std::byte> at(uint32_t slot) const {
-        return slot < sizes_.size() ? std::span<const std::byte>(bytes_.data() + size_t{slot} * kPageBytes, sizes_[slot]) : std::span<const std::byte>();
+        return slot < slots_.size() ? bytes(slot, slots_[slot].sizeBytes) : std::span<const std::byte>();
     }
     // Of a known slot, whatever it holds.
     [[nodiscard]] std::span<const std::byte> bytes(uint32_t slot, size_t sizeBytes) const { return {bytes_.data() + size_t{slot} * kPageBytes, sizeBytes}; }
-    [[nodiscard]] uint32_t slots() const { return static_cast<uint32_t>(sizes_.size()); }
+    [[nodiscard]] uint32_t slots() const { return static_cast<uint32_t>(slots_.size()); }
 
 private:
     static constexpr uint8_t kMostChanges = 8; // so many states of a page are remembered
 
+    struct Slot {
+        uint16_t sizeBytes = 0;
+        bool used = false;   // since the hand came by
+        bool left = false;   // what is in it has changed, and went on in another slot
+        uint8_t changes = 0; // up to what is in it, one behind the other, without a page that came again
+    };
+    void begin(uint32_t slot) { slots_[slot].changes = 0, slots_[slot].left = false; }
+
     const uint32_t capacity_;
     LargeArray<std::byte> bytes_;
-    std::vector<uint16_t> sizes_;
-    std::vector<uint8_t> used_;
-    std::vector<uint8_t> changes_; // up to what is in the slot, one behind the other, without a page that came again
+    std::vector<Slot> slots_;
     uint32_t hand_ = 0;
 };
 

@@ -155,7 +155,7 @@ Unpacker::Problem Unpacker::pages(uint32_t n) {
         if (page.empty()) return "a page that is not in the store";
         if (!room(page.size())) return "a packet or batch that is too large";
         put(page);
-        const Item item = history_.again({static_cast<uint32_t>(slot), static_cast<uint32_t>(page.size()), 1});
+        const Item item = history_.fromStore(static_cast<uint32_t>(slot), static_cast<uint32_t>(page.size()));
         log_->replaces(item);
         log_->append(item);
     }

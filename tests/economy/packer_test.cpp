@@ -313,21 +313,24 @@ TEST(Packer, longRecordsAmongPlainOnesAreFoundWhereTheyAreTold) {
     EXPECT_EQ(sides.packer.counts().records, untold.packer.counts().records);
 }
 
-// A part of it is another in each frame: so it stays in its slot, and the store keeps what others have.
+// A part of it is another in each frame, or in some of them: so it stays in its slot, and the store keeps what others have.
 TEST(Packer, aPageThatChangesAgainAndAgainFillsNoMemory) {
-    Limits limits;
-    limits.storeBytes = 64 * kPageBytes;
-    BothSides sides(limits);
-    const Bytes other = textureOf(noise(40 * kPageBytes, 11));
-    sides.send({{0x10000, other}});
-    Bytes changing = noise(4 * kPageBytes, 12);
-    for (uint32_t frame = 0; frame < 100; ++frame) {
-        std::memcpy(changing.data() + 2 * kPageBytes, &frame, sizeof frame);
-        sides.send({{0x20000, textureOf(changing)}});
+    for (const uint32_t framesAsItIs : {1u, 3u}) {
+        Limits limits;
+        limits.storeBytes = 64 * kPageBytes;
+        BothSides sides(limits);
+        const Bytes other = textureOf(noise(40 * kPageBytes, 11));
+        sides.send({{0x10000, other}});
+        Bytes changing = noise(4 * kPageBytes, 12);
+        for (uint32_t frame = 0; frame < 300; ++frame) {
+            const uint32_t state = frame / framesAsItIs;
+            std::memcpy(changing.data() + 2 * kPageBytes, &state, sizeof state);
+            sides.send({{0x20000, textureOf(changing)}});
+        }
+        const uint64_t before = sides.packer.counts().newPages;
+        sides.send({{0x10000, other}});
+        EXPECT_EQ(sides.packer.counts().newPages, before) << framesAsItIs;
     }
-    const uint64_t before = sides.packer.counts().newPages;
-    sides.send({{0x10000, other}});
-    EXPECT_EQ(sides.packer.counts().newPages, before);
 }
 
 // One that comes again as it was is kept as it was, however often it changes.
@@ -336,9 +339,34 @@ TEST(Packer, statesOfAPageThatComeAgainAreReferences) {
     const Bytes first = noise(4 * kPageBytes, 12);
     Bytes second = first;
     std::ranges::copy(noise(1000, 13), second.begin() + 5000);
-    for (uint32_t frame = 0; frame < 40; ++frame) {
-        const size_t wire = sides.send(packetsOf(textureOf(frame % 2 == 0 ? first : second)));
-        if (frame > 4) { EXPECT_LE(wire, 16u) << frame; }
+    for (const uint32_t framesAsItIs : {1u, 3u})
+        for (uint32_t frame = 0; frame < 60; ++frame) {
+            const size_t wire = sides.send(packetsOf(textureOf(frame / framesAsItIs % 2 == 0 ? first : second)));
+            if (frame > 4) { EXPECT_LE(wire, 16u) << framesAsItIs << ' ' << frame; }
+        }
+}
+
+// As long as states before come again, so many as there are stay what they are; also where the record before a page leads to it.
+TEST(Packer, aPageOfWhichStatesComeAgainMayHaveAnyNumber) {
+    for (const bool named : {false, true}) {
+        BothSides sides{Limits{}};
+        Bytes pixels = noise(4 * kPageBytes, 12), before;
+        const auto send = [&](uint32_t number, const Bytes& state) {
+            std::mt19937 name(number);
+            Bytes bytes;
+            const Bytes texture = textureOf(state);
+            if (named) addRecord(bytes, 70, 40, [&] { return static_cast<uint32_t>(name()); });
+            bytes.insert(bytes.end(), texture.begin(), texture.end());
+            return sides.send(packetsOf(bytes));
+        };
+        send(0, pixels);
+        for (uint32_t number = 1; number < 30; ++number) {
+            before = pixels;
+            std::ranges::copy(noise(1000, 100 + number), pixels.begin() + 5000);
+            send(number, pixels);
+            EXPECT_LE(send(number - 1, before), 20u) << named << ' ' << number;
+            EXPECT_LE(send(number, pixels), 20u) << named << ' ' << number;
+        }
     }
 }
 
