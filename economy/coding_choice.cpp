@@ -9,7 +9,7 @@ namespace {
 constexpr double kWeight = 0.2;          // of a new value against all before
 constexpr double kFasterWeight = 0.5;    // of a time that is less: what else a machine does makes times longer only
 constexpr uint64_t kTryBytes = 1 << 16;  // so much of a section's kind, or
-constexpr uint64_t kTrySections = 8;     // so many, show what a coding makes of it
+constexpr uint64_t kTrySections = 4;     // so many, show what a coding makes of it
 constexpr uint64_t kTryTimes = 3;        // the first pays for memory that is new to the compressor and does not count
 constexpr uint64_t kTimedEvery = 16;     // short sections
 constexpr uint64_t kLongTimedEvery = 4;

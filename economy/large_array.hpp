@@ -3,6 +3,7 @@
 // use that much, and clearing it takes longer than most frames.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <new>
@@ -17,8 +18,8 @@ template <class T> class LargeArray {
 public:
     static_assert(std::is_trivially_copyable_v<T>);
 
-    // Null when there is no memory.
-    static LargeArray tryMake(size_t size) {
+    // Null when there is no memory. `readyBytes` of it are there from the start.
+    static LargeArray tryMake(size_t size, size_t readyBytes = kHugePageBytes) {
         LargeArray array;
         const size_t sizeBytes = size * sizeof(T), spare = sizeBytes >= kHugePageBytes ? kHugePageBytes : 0;
         void* const mapped = mmap(nullptr, sizeBytes + spare, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
@@ -27,7 +28,7 @@ public:
         std::byte* from = array.mapped_.get();
         if (spare != 0) {
             from = askForHugePages({from, sizeBytes + spare}).data();
-            madvise(from, kHugePageBytes, MADV_POPULATE_WRITE); // no matter if it can't
+            madvise(from, std::min(readyBytes, sizeBytes / kHugePageBytes * kHugePageBytes), MADV_POPULATE_WRITE); // no matter if it can't
         }
         array.data_ = reinterpret_cast<T*>(from);
         return array;

@@ -1,7 +1,8 @@
 // Records that no frame before had follow each other where a program loads, compiles lists, or draws what it never drew. To look at
 // each takes two to three times as long as to compress them, so behind some of them the rest of the packet goes as bytes.
 // Where the same come again, those few are found in the log, and what was left out behind them is looked at in that frame: one that
-// repeats is known one frame later.
+// repeats is known one frame later. What a stream's first frame has left out is not waited for: it loads what others draw, and to look at all of the
+// second for that took most of its time.
 #pragma once
 
 #include <algorithm>
@@ -25,6 +26,7 @@ public:
         late_ = std::min(late_, kMany - enough);
         if (frame == frame_) return;
         frame_ = frame;
+        isFirstFrame_ = frameBegan_ == kNever;
         frameBegan_ = end;
         again_ = false;
     }
@@ -42,7 +44,7 @@ public:
     [[nodiscard]] bool many() const { return late_ >= kMany && !again_; }
     // What follows goes as bytes; `position`: where it would have stood.
     void leaveOut(uint64_t position) {
-        leftOutAt_[next_++ % leftOutAt_.size()] = position;
+        if (!isFirstFrame_) leftOutAt_[next_++ % leftOutAt_.size()] = position;
         isLeftOut_ = true;
     }
 
@@ -51,6 +53,7 @@ private:
     static constexpr uint32_t kAtLeast = 32, kFew = 4; // of a packet, behind many
     static constexpr uint32_t kMostHalved = 3;         // to four; to none
     static constexpr uint32_t kFoundCounts = 3; // one that is found weighs as many new ones
+    static constexpr uint64_t kNever = UINT64_MAX;
     static constexpr size_t kPlaces = 16;       // packets of a frame, about
 
     uint32_t late_ = 0;      // new ones, less those found
@@ -58,13 +61,14 @@ private:
     bool hadPages_ = false;  // the packet before
     uint32_t packets_ = 0;   // of this frame that had a rest left out, up to the last one
     bool again_ = false;     // in this frame something came that was left out before
-    uint64_t frame_ = UINT64_MAX, frameBegan_ = 0;
+    uint64_t frame_ = kNever, frameBegan_ = kNever;
+    bool isFirstFrame_ = true;
     std::array<uint64_t, kPlaces> leftOutAt_ = nowhere();
     size_t next_ = 0;
 
     static constexpr std::array<uint64_t, kPlaces> nowhere() {
         std::array<uint64_t, kPlaces> places{};
-        places.fill(UINT64_MAX);
+        places.fill(kNever);
         return places;
     }
 };

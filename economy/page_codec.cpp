@@ -12,10 +12,12 @@ bool PageCompressor::compress(Coding coding, std::span<const std::byte> pages, s
     }
     codedFront_.clear(), codedPlanes_.clear();
     if (!fronts_.compress(coding, splitter_.front(), codedFront_)) return false;
-    if (!splitter_.planes().empty() && !planes_.compress(coding, splitter_.planes(), codedPlanes_)) return false;
+    const auto planes = splitter_.planes();
+    const bool counted = countedPlanes_.suits(planes);
+    if (counted ? !countedPlanes_.compress(planes, codedPlanes_) : !planes.empty() && !planes_.compress(coding, planes, codedPlanes_)) return false;
     putSevens(splitter_.pixelPieces(), into);
     putSevens(codedFront_.size(), into);
-    putSevens(codedPlanes_.size(), into);
+    putSevens(codedPlanes_.size() * 2 + (counted ? 1 : 0), into);
     into.insert(into.end(), codedFront_.begin(), codedFront_.end());
     into.insert(into.end(), codedPlanes_.begin(), codedPlanes_.end());
     return splitter_.rest().empty() || rest_.compress(coding, splitter_.rest(), into);
@@ -23,6 +25,7 @@ bool PageCompressor::compress(Coding coding, std::span<const std::byte> pages, s
 
 void PageCompressor::prepare() {
     for (SectionCompressor* compressor : {&rest_, &fronts_, &planes_}) compressor->prepare();
+    countedPlanes_.prepare();
 }
 
 bool PageDecompressor::decompress(Coding coding, std::span<const std::byte> bytes, std::span<std::byte> into) {
@@ -35,12 +38,14 @@ bool PageDecompressor::decompress(Coding coding, std::span<const std::byte> byte
 bool PageDecompressor::decompressPixels(uint32_t pieces, std::span<const std::byte> bytes, std::span<std::byte> into) {
     uint32_t frontCoded = 0, planesCoded = 0;
     if (!takeSevens(bytes, frontCoded) || !takeSevens(bytes, planesCoded)) return false;
+    const bool counted = (planesCoded & 1) != 0;
+    planesCoded /= 2;
     if (pieces > into.size() / kPageBytes || uint64_t{frontCoded} + planesCoded > bytes.size()) return false;
     const auto front = bytes.first(frontCoded), planes = bytes.subspan(frontCoded, planesCoded), rest = bytes.subspan(size_t{frontCoded} + planesCoded);
     frontBytes_.resize(frontBytes(into.size(), pieces));
     if (!fronts_.decompress(Coding::Zstd, front, frontBytes_) || !joiner_.begin(frontBytes_, into.size(), pieces)) return false;
     planeBytes_.resize(joiner_.planeBytes());
-    if (planeBytes_.empty() ? !planes.empty() : !planes_.decompress(Coding::Zstd, planes, planeBytes_)) return false;
+    if (counted ? !countedPlanes_.decompress(planes, planeBytes_) : planeBytes_.empty() ? !planes.empty() : !planes_.decompress(Coding::Zstd, planes, planeBytes_)) return false;
     restBytes_.resize(joiner_.restBytes());
     if (restBytes_.empty() ? !rest.empty() : !rest_.decompress(Coding::Zstd, rest, restBytes_)) return false;
     joiner_.join(planeBytes_, restBytes_, into);

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "economy/counted_codec.hpp"
 #include "economy/pixel_pieces.hpp"
 #include "economy/section_codec.hpp"
 
@@ -21,6 +22,7 @@ private:
     // Of what is no picture the better level pays: vertices and pictures in formats of the card become a fifth smaller by 2 than by 1.
     // Bits of masks become a sixth smaller by 1 than by -1, in twice the time.
     SectionCompressor rest_{2}, fronts_{1}, planes_{1};
+    CountedCompressor countedPlanes_; // of photographs
     PixelSplitter splitter_;
     std::vector<std::byte> codedFront_, codedPlanes_;
 };
@@ -33,6 +35,7 @@ private:
     bool decompressPixels(uint32_t pieces, std::span<const std::byte> bytes, std::span<std::byte> into);
 
     SectionDecompressor rest_, fronts_, planes_;
+    CountedDecompressor countedPlanes_;
     PixelJoiner joiner_;
     std::vector<std::byte> frontBytes_, planeBytes_, restBytes_;
 };

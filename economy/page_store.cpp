@@ -4,7 +4,11 @@
 
 namespace mural::economy {
 
-PageStore::PageStore(uint64_t sizeBytes) : capacity_(static_cast<uint32_t>(sizeBytes / kPageBytes)), bytes_(LargeArray<std::byte>::tryMake(size_t{capacity_} * kPageBytes)) {}
+namespace {
+constexpr size_t kReadyBytes = size_t{8} << 20; // what most programs load before their first frame
+}
+
+PageStore::PageStore(uint64_t sizeBytes) : capacity_(static_cast<uint32_t>(sizeBytes / kPageBytes)), bytes_(LargeArray<std::byte>::tryMake(size_t{capacity_} * kPageBytes, kReadyBytes)) {}
 
 uint32_t PageStore::take() {
     if (slots_.size() < capacity_) {

@@ -61,6 +61,11 @@ TEST(NewRecords, whereWhatWasLeftOutIsReachedAgainAllIsLookedAt) {
     news.packetBegins(2, 64, kLong);
     news.found(0, 64); // as the log has them
     news.another(64);
+    EXPECT_EQ(lookedAt(news), 64); // what the first frame had loads what others draw
+    news.leaveOut(128);
+    news.packetBegins(3, 128, kLong);
+    news.found(64, 64);
+    news.another(128);
     EXPECT_EQ(lookedAt(news), 1000);
 }
 

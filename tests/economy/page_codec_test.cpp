@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+#include "economy/sevens.hpp"
+
 namespace mural::economy {
 namespace {
 
@@ -108,6 +110,29 @@ TEST(PageCodec, whatRepeatsItselfStaysAsItIs) {
 }
 
 // Grey ones of three bytes, wherever in a pixel their pages begin, are about as many bytes as one colour of them alone.
+// Whether planes go by their counts.
+bool isCounted(const Bytes& coded) {
+    std::span<const std::byte> at = coded;
+    uint32_t pieces = 0, front = 0, planes = 0;
+    return takeSevens(at, pieces) && takeSevens(at, front) && takeSevens(at, planes) && (planes & 1) != 0;
+}
+
+TEST(PageCodec, repeatsAreLookedForWhereThereAreSome) {
+    const Bytes photograph = picture(16 * kPageBytes, 4, 1);
+    Bytes lines;
+    while (lines.size() < 16 * kPageBytes) lines = lines + picture(600, 4, 2);
+    lines.resize(16 * kPageBytes);
+    for (const Bytes& bytes : {photograph, lines}) {
+        Bytes coded, out(bytes.size());
+        PageCompressor compressor;
+        ASSERT_TRUE(compressor.compress(Coding::Zstd, bytes, coded));
+        EXPECT_EQ(isCounted(coded), bytes == photograph);
+        EXPECT_LE(coded.size(), bytes.size() / (bytes == photograph ? 3 : 20));
+        ASSERT_TRUE(PageDecompressor().decompress(Coding::Zstd, coded, out));
+        EXPECT_EQ(out, bytes);
+    }
+}
+
 TEST(PageCodec, greyPicturesOfThreeBytesCostOneColour) {
     const Bytes one = picture(64 * kPageBytes, 1, 6);
     Bytes three;

@@ -103,8 +103,9 @@ std::string waitText(const Json& program) {
 
 std::string tripsText(const Json& program) {
     const Json& recent = part(program, "recent");
-    std::string line = recent.contains("roundTripsPerFrame") ? fmt::format("{:.2f} round trips per frame, ", number(recent, "roundTripsPerFrame")) : "";
-    line += fmt::format("{:.0f} in all", number(program, "roundTrips"));
+    const double all = number(program, "roundTrips");
+    const std::string line = recent.contains("roundTripsPerFrame") ? fmt::format("{:.2f} round trips per frame, {:.0f} in all", number(recent, "roundTripsPerFrame"), all)
+                                                                   : fmt::format("{:.0f} round trip{} in all", all, all == 1 ? "" : "s");
     std::map<std::string, int64_t> counts;
     for (const auto& [command, count] : part(program, "roundTripsBy").items())
         if (count.is_number()) counts[command] = count.get<int64_t>();

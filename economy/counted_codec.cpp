@@ -1,0 +1,105 @@
+#include "economy/counted_codec.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <zstd.h>
+
+#include "economy/section_codec.hpp"
+
+namespace mural::economy {
+
+namespace {
+
+constexpr size_t kLeastBytes = 4096;
+constexpr size_t kSampledOf = 16, kLeastSampleBytes = 1024, kMostSampleBytes = 4096; // each of two samples
+constexpr double kOfCounts = 1.4;  // LZ4 makes so much more of what has few repeats than its counts would
+constexpr double kLeastLeft = 0.125; // a code has a bit at least
+constexpr int kFastest = -100;       // so it goes past nearly all repeats
+// By its number, which the library keeps: ZSTD_c_literalCompressionMode, and always. Levels below 0 leave literals as they are else.
+constexpr ZSTD_cParameter kLiterals = ZSTD_c_experimentalParam5;
+constexpr int kAlways = 1;
+constexpr int kWindowLog = 17; // a block
+
+using Counts = std::array<uint32_t, 256>;
+
+// Of the bytes, by codes as short as their counts allow.
+double leftByCounts(const Counts& counts, size_t bytes) {
+    double bits = 0;
+    for (const uint32_t count : counts)
+        if (count != 0) bits -= count * std::log2(static_cast<double>(count) / static_cast<double>(bytes));
+    return bits / 8 / static_cast<double>(bytes);
+}
+
+} // namespace
+
+struct CountedCompressor::State {
+    std::unique_ptr<ZSTD_CCtx, size_t (*)(ZSTD_CCtx*)> zstd{nullptr, ZSTD_freeCCtx};
+    bool asked = false;
+    std::vector<std::byte> scratch{};
+
+    // Null: it has no memory, or can't do it.
+    ZSTD_CCtx* open() {
+        if (std::exchange(asked, true)) return zstd.get();
+        zstd.reset(ZSTD_createCCtx());
+        if (!zstd) return nullptr;
+        for (const auto& [parameter, value] : {std::pair{ZSTD_c_compressionLevel, kFastest}, {kLiterals, kAlways}, {ZSTD_c_windowLog, kWindowLog}, {ZSTD_c_contentSizeFlag, 0}})
+            if (ZSTD_isError(ZSTD_CCtx_setParameter(zstd.get(), parameter, value))) {
+                zstd.reset();
+                break;
+            }
+        return zstd.get();
+    }
+};
+
+CountedCompressor::CountedCompressor() : state_(std::make_unique<State>()) {}
+CountedCompressor::~CountedCompressor() = default;
+CountedCompressor::CountedCompressor(CountedCompressor&&) noexcept = default;
+
+bool CountedCompressor::suits(std::span<const std::byte> bytes) {
+    if (bytes.size() < kLeastBytes || state_->open() == nullptr) return false;
+    const size_t sizeBytes = std::clamp(bytes.size() / kSampledOf, kLeastSampleBytes, kMostSampleBytes), before = (bytes.size() - sizeBytes) / 3;
+    Counts counts{};
+    size_t byRepeats = 0;
+    for (const size_t at : {before, 2 * before}) {
+        const auto sample = bytes.subspan(at, sizeBytes);
+        byRepeats += lz4Bytes(sample, state_->scratch);
+        for (const std::byte byte : sample) ++counts[static_cast<size_t>(byte)];
+    }
+    const size_t sampled = 2 * sizeBytes;
+    return static_cast<double>(byRepeats) > kOfCounts * std::max(leftByCounts(counts, sampled), kLeastLeft) * static_cast<double>(sampled);
+}
+
+bool CountedCompressor::compress(std::span<const std::byte> bytes, std::vector<std::byte>& into) {
+    ZSTD_CCtx* const zstd = state_->open();
+    if (zstd == nullptr) return false;
+    auto& scratch = state_->scratch;
+    if (const size_t room = ZSTD_compressBound(bytes.size()); scratch.size() < room) scratch.resize(room);
+    const size_t size = ZSTD_compress2(zstd, scratch.data(), scratch.size(), bytes.data(), bytes.size());
+    if (ZSTD_isError(size)) return false;
+    into.insert(into.end(), scratch.begin(), scratch.begin() + static_cast<std::ptrdiff_t>(size));
+    return true;
+}
+
+void CountedCompressor::prepare() {
+    const std::vector<std::byte> nothing(size_t{2} << kWindowLog);
+    std::vector<std::byte> into;
+    (void)compress(nothing, into);
+}
+
+struct CountedDecompressor::State {
+    std::unique_ptr<ZSTD_DCtx, size_t (*)(ZSTD_DCtx*)> zstd{nullptr, ZSTD_freeDCtx};
+};
+
+CountedDecompressor::CountedDecompressor() : state_(std::make_unique<State>()) {}
+CountedDecompressor::~CountedDecompressor() = default;
+CountedDecompressor::CountedDecompressor(CountedDecompressor&&) noexcept = default;
+
+bool CountedDecompressor::decompress(std::span<const std::byte> bytes, std::span<std::byte> into) {
+    if (!state_->zstd) state_->zstd.reset(ZSTD_createDCtx());
+    return state_->zstd && ZSTD_decompressDCtx(state_->zstd.get(), into.data(), into.size(), bytes.data(), bytes.size()) == into.size();
+}
+
+} // namespace mural::economy
