@@ -55,7 +55,7 @@ public:
     }
     // A page of the store that comes in another's place.
     [[nodiscard]] Item fromStore(uint32_t slot, uint32_t sizeBytes) {
-        pages_.find(slot);
+        pages_.useElsewhere(slot);
         return {slot, sizeBytes, 1};
     }
     [[nodiscard]] Item addText(std::span<const std::byte> bytes, uint32_t model) { return {text_.add(bytes), static_cast<uint32_t>(bytes.size()), 0, model}; }

@@ -34,7 +34,7 @@ public:
         if (slots_[slot].left) begin(slot);
     }
     // It comes in another page's place.
-    void find(uint32_t slot) {
+    void useElsewhere(uint32_t slot) {
         slots_[slot].used = true;
         begin(slot);
     }

@@ -92,6 +92,24 @@ Bytes splitSeed(uint32_t seed) {
     return input;
 }
 
+// A picture in which little repeats, in a batch as it is sent.
+Bytes photographSeed(uint32_t seed) {
+    std::mt19937 random(seed);
+    Bytes record;
+    addWord(record, 64 + static_cast<uint32_t>((2 + economy::kPageBytes) << 16)); // its words: head, one more, and four pages
+    addWord(record, seed);
+    for (size_t i = 0; i < 4 * economy::kPageBytes; ++i) record.push_back(static_cast<std::byte>(i < 4 ? 128 : static_cast<uint32_t>(record[record.size() - 4]) + random() % 7 - 3));
+    economy::Packer packer(fuzz::fuzzLimits());
+    economy::BatchEncoder encoder([](size_t) { return int64_t{0}; });
+    packer.beginFrame(false);
+    packer.add(0x10000, record);
+    const auto batch = encoder.encode(packer.finish(), 80);
+    if (!batch) std::exit(1);
+    Bytes input{std::byte{0}};
+    addSized(input, Bytes(batch.value().begin(), batch.value().end()));
+    return input;
+}
+
 void write(const std::filesystem::path& path, const Bytes& input) {
     std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));
 }
@@ -113,4 +131,5 @@ int main(int argc, char** argv) {
     }
     for (const bool coded : {false, true}) write(std::filesystem::path(argv[1]) / (coded ? "coded_plain" : "sections_plain"), seedOf(1, coded, false, true));
     for (uint32_t seed = 1; seed <= 2; ++seed) write(std::filesystem::path(argv[1]) / ("split_" + std::to_string(seed)), splitSeed(seed));
+    write(std::filesystem::path(argv[1]) / "coded_photograph", photographSeed(1));
 }
