@@ -74,7 +74,7 @@ TEST(SessionRates, ofWhatStoodStillOrIsNewAreLeftOut) {
     EXPECT_DOUBLE_EQ(still[0]["programs"][0]["recent"]["framesPerSecond"].get<double>(), 0);
     const auto fresh = withRates({}, {look(11, 100, 1000, 5000, 0, 1.0)});
     EXPECT_EQ(fresh[0]["programs"][0].count("recent"), 0u);
-    EXPECT_EQ(statLines(fresh[0])[3], "    0 in all: glReadPixels 0");
+    EXPECT_EQ(statLines(fresh[0])[3], "    0 round trips in all: glReadPixels 0");
 }
 
 TEST(SessionRates, statesThatMakeNoSenseDoNoHarm) {
