@@ -14,7 +14,8 @@ bool PageCompressor::compress(Coding coding, std::span<const std::byte> pages, s
     if (!fronts_.compress(coding, splitter_.front(), codedFront_)) return false;
     const auto planes = splitter_.planes();
     const bool counted = countedPlanes_.suits(planes);
-    if (counted ? !countedPlanes_.compress(planes, codedPlanes_) : !planes.empty() && !planes_.compress(coding, planes, codedPlanes_)) return false;
+    if (counted && !countedPlanes_.compress(planes, codedPlanes_)) return false;
+    if (!counted && !planes.empty() && !planes_.compress(coding, planes, codedPlanes_)) return false;
     putSevens(splitter_.pixelPieces(), into);
     putSevens(codedFront_.size(), into);
     putSevens(codedPlanes_.size() * 2 + (counted ? 1 : 0), into);
@@ -45,11 +46,16 @@ bool PageDecompressor::decompressPixels(uint32_t pieces, std::span<const std::by
     frontBytes_.resize(frontBytes(into.size(), pieces));
     if (!fronts_.decompress(Coding::Zstd, front, frontBytes_) || !joiner_.begin(frontBytes_, into.size(), pieces)) return false;
     planeBytes_.resize(joiner_.planeBytes());
-    if (counted ? !countedPlanes_.decompress(planes, planeBytes_) : planeBytes_.empty() ? !planes.empty() : !planes_.decompress(Coding::Zstd, planes, planeBytes_)) return false;
+    if (!decompressPlanes(counted, planes)) return false;
     restBytes_.resize(joiner_.restBytes());
     if (restBytes_.empty() ? !rest.empty() : !rest_.decompress(Coding::Zstd, rest, restBytes_)) return false;
     joiner_.join(planeBytes_, restBytes_, into);
     return true;
+}
+
+bool PageDecompressor::decompressPlanes(bool counted, std::span<const std::byte> planes) {
+    if (counted) return countedPlanes_.decompress(planes, planeBytes_);
+    return planeBytes_.empty() ? planes.empty() : planes_.decompress(Coding::Zstd, planes, planeBytes_);
 }
 
 } // namespace mural::economy

@@ -33,6 +33,7 @@ public:
 
 private:
     bool decompressPixels(uint32_t pieces, std::span<const std::byte> bytes, std::span<std::byte> into);
+    bool decompressPlanes(bool counted, std::span<const std::byte> planes);
 
     SectionDecompressor rest_, fronts_, planes_;
     CountedDecompressor countedPlanes_;
