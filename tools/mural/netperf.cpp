@@ -1,6 +1,7 @@
 #include "tools/mural/netperf.hpp"
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <sys/resource.h>
 #include <thread>
@@ -24,6 +25,7 @@ namespace {
 using rsp::Group;
 
 constexpr size_t kPieceBytes = 256 * 1024;
+constexpr size_t kPieces = 64; // of a stream, that are looked at together
 constexpr size_t kWarmUp = 20; // messages that are not counted
 
 double seconds(const timeval& t) { return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6; }
@@ -153,21 +155,26 @@ Result<Measured> receive(Group& group, const NetperfArguments& a) {
     const auto withinNs = static_cast<int64_t>(a.withinSeconds * kNsPerS);
     double firstS = 0;
     double cpuBegan = cpuS();
+    std::array<std::span<const std::byte>, kPieces> pieces;
     while (!leave.passed()) {
-        auto bytes = group.view(rsp::kHost, Deadline::at(quickNowNs() + leave.leftNs(withinNs) + kNsPerMs));
-        if (!bytes && !leave.passed()) m.cut = bytes.error().message;
-        if (!bytes || bytes->empty()) break; // the sender has what it wanted
+        auto count = group.view(rsp::kHost, pieces, Deadline::at(quickNowNs() + leave.leftNs(withinNs) + kNsPerMs));
+        if (!count && !leave.passed()) m.cut = count.error().message;
+        if (!count || *count == 0) break; // the sender has what it wanted
         const int64_t nowNs = quickNowNs();
         const double now = static_cast<double>(nowNs) * 1e-9;
-        m.timeline.add(bytes->size(), nowNs);
-        if (!a.unchecked) check.take(*bytes);
         if (m.bytes == 0) {
             firstS = now;
             cpuBegan = cpuS();
         }
-        m.bytes += bytes->size();
+        size_t bytes = 0;
+        for (const auto piece : std::span(pieces).first(*count)) {
+            if (!a.unchecked) check.take(piece);
+            bytes += piece.size();
+        }
+        m.timeline.add(bytes, nowNs);
+        m.bytes += bytes;
         m.elapsedS = now - firstS;
-        group.consume(rsp::kHost, bytes->size());
+        group.consume(rsp::kHost, bytes);
     }
     m.cpuS = cpuS() - cpuBegan;
     m.beganAt = check.beganAt();

@@ -55,12 +55,12 @@ void BeaconSockets::say(std::span<const std::byte> bytes) {
 bool BeaconSockets::listen(Deadline deadline, int alsoFd, const Handler& handler) {
     std::vector<pollfd> look{{alsoFd, POLLIN, 0}};
     for (const Link& link : links_) look.push_back({link.group.descriptor(), POLLIN, 0});
-    const auto take = [&](std::span<std::byte> bytes, const SocketAddress& from) {
-        if (const auto a = decodeAnnouncement(bytes)) handler(*a, numericText(from));
-    };
     const int64_t leftNs = deadline.leftNs(kNsPerS);
     (void)poll(look.data(), look.size(), static_cast<int>((leftNs + kNsPerMs - 1) / kNsPerMs));
-    for (Link& link : links_) (void)link.group.receive(take); // what is left comes in the next round
+    for (Link& link : links_) {
+        for (const rsp::UdpSocket::Datagram& d : link.group.fetch()) // what is left comes in the next round
+            if (const auto a = decodeAnnouncement(d.bytes)) handler(*a, numericText(*d.from));
+    }
     return look.front().revents != 0;
 }
 

@@ -27,7 +27,7 @@ std::span<std::byte> BatchOutbox::datagram(MemberId to, size_t bytes) {
     const size_t whole = bytes + tagBytes_;
     // All of a batch have one size but the last, which may be shorter.
     const bool joins = count_ > 0 && to == to_ && whole <= segmentBytes_ && used_ == count_ * segmentBytes_ &&
-                       count_ < kMostBatch && used_ + whole <= kMostBatchBytes;
+                       count_ < mostInSending(segmentBytes_);
     if (!joins) {
         flush();
         to_ = to;

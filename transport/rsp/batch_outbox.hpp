@@ -11,7 +11,7 @@ namespace mural::rsp {
 
 class BatchOutbox {
 public:
-    explicit BatchOutbox(UdpSocket& socket) : socket_(socket), bytes_(kMostBatchBytes) {}
+    explicit BatchOutbox(UdpSocket& socket) : socket_(socket), bytes_(kRoomBytes) {}
 
     void useKeys(const SessionKeys& keys, MemberId self);
     void setGroup(const SocketAddress& group) { group_ = group; }
@@ -29,6 +29,8 @@ public:
     [[nodiscard]] const std::string& error() const { return error_; }
 
 private:
+    static constexpr size_t kRoomBytes = 65'536; // of a sending, or of one datagram, which may be longer
+
     void seal();
     [[nodiscard]] const SocketAddress* addressOf(MemberId id) const;
 

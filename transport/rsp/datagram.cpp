@@ -15,8 +15,6 @@ void writeHead(std::byte* at, Type type, uint8_t flags, MemberId from) {
     std::fill(at + 4, at + kHeadBytes, std::byte{0});
 }
 
-uint8_t byteAt(std::span<const std::byte> d, size_t at) { return std::to_integer<uint8_t>(d[at]); }
-
 bool inBounds(const StreamDatagram& d) {
     if (d.groupSize > kMostInGroup || d.index >= kMostInGroup || d.row >= kMostRows) return false;
     switch (d.type) {
@@ -65,26 +63,17 @@ void writeFeedback(const Feedback& f, std::span<std::byte> into) {
     }
 }
 
-std::optional<Head> readHead(std::span<const std::byte> d) {
-    if (d.size() < kHeadBytes || byteAt(d, 0) >> 4 != kVersion) return {};
-    const auto type = static_cast<Type>(byteAt(d, 0) & 0xf);
-    if (type < Type::Data || type > Type::Probe) return {};
-    return Head{type, byteAt(d, 1), loadLittle<uint16_t>(d.data() + 2), loadLittle<uint32_t>(d.data() + 4),
-        loadLittle<uint64_t>(d.data() + 8)};
-}
-
-bool isUrgent(std::span<const std::byte> d, bool waitsForAnswers) {
-    const auto type = static_cast<Type>(byteAt(d, 0) & 0xf);
-    return (type == Type::Feedback && waitsForAnswers) || type == Type::Probe || (byteAt(d, 1) & flag::kPoll) != 0;
-}
-
-std::optional<StreamDatagram> readStream(std::span<const std::byte> d, std::span<const std::byte> apart) {
+std::optional<StreamDatagram> readStream(std::span<const std::byte> d) {
     const auto head = readHead(d);
-    if (!head || head->type > Type::Poll || d.size() < kStreamHeadBytes) return {};
+    return head ? readStream(*head, d) : std::nullopt;
+}
+
+std::optional<StreamDatagram> readStream(const Head& head, std::span<const std::byte> d) {
+    if (head.type > Type::Poll || d.size() < kStreamHeadBytes) return {};
     StreamDatagram s;
-    s.type = head->type;
-    s.flags = head->flags;
-    s.from = head->from;
+    s.type = head.type;
+    s.flags = head.flags;
+    s.from = head.from;
     s.sequence = Sequence(loadLittle<uint32_t>(d.data() + 16));
     s.index = byteAt(d, 20);
     s.groupSize = byteAt(d, 21);
@@ -92,7 +81,7 @@ std::optional<StreamDatagram> readStream(std::span<const std::byte> d, std::span
     s.rowsSent = byteAt(d, 23);
     s.sentUs = loadLittle<uint32_t>(d.data() + 24);
     s.next = Sequence(loadLittle<uint32_t>(d.data() + 28));
-    s.payload = apart.empty() ? d.subspan(kStreamHeadBytes) : apart;
+    s.payload = d.subspan(kStreamHeadBytes);
     if (!inBounds(s)) return {};
     return s;
 }

@@ -19,6 +19,7 @@
 #include <optional>
 #include <span>
 
+#include "common/little_endian.hpp"
 #include "transport/rsp/sequence.hpp"
 
 namespace mural::rsp {
@@ -97,12 +98,23 @@ void writeStreamHead(const StreamDatagram& d, std::span<std::byte> into);
 [[nodiscard]] size_t feedbackBytes(const Feedback& f);
 void writeFeedback(const Feedback& f, std::span<std::byte> into);
 
-// Nothing for what is too short, of another version, or out of bounds.
-[[nodiscard]] std::optional<Head> readHead(std::span<const std::byte> datagram);
+inline uint8_t byteAt(std::span<const std::byte> d, size_t at) { return std::to_integer<uint8_t>(d[at]); }
+
+// Nothing for what is too short, of another version, or out of bounds. Here, for it is done for each datagram that comes.
+[[nodiscard]] inline std::optional<Head> readHead(std::span<const std::byte> d) {
+    if (d.size() < kHeadBytes || byteAt(d, 0) >> 4 != kVersion) return {};
+    const auto type = static_cast<Type>(byteAt(d, 0) & 0xf);
+    if (type < Type::Data || type > Type::Probe) return {};
+    return Head{type, byteAt(d, 1), loadLittle<uint16_t>(d.data() + 2), loadLittle<uint32_t>(d.data() + 4), loadLittle<uint64_t>(d.data() + 8)};
+}
 // Of one that has a head: somebody waits for what comes of it; for what members answer, only who has sent something.
-[[nodiscard]] bool isUrgent(std::span<const std::byte> datagram, bool waitsForAnswers);
-// Its payload may lie apart; else it is what follows the head.
-[[nodiscard]] std::optional<StreamDatagram> readStream(std::span<const std::byte> datagram, std::span<const std::byte> apart = {});
+[[nodiscard]] inline bool isUrgent(std::span<const std::byte> d, bool waitsForAnswers) {
+    const auto type = static_cast<Type>(byteAt(d, 0) & 0xf);
+    return (type == Type::Feedback && waitsForAnswers) || type == Type::Probe || (byteAt(d, 1) & flag::kPoll) != 0;
+}
+[[nodiscard]] std::optional<StreamDatagram> readStream(std::span<const std::byte> datagram);
+// The same of one whose head was read.
+[[nodiscard]] std::optional<StreamDatagram> readStream(const Head& head, std::span<const std::byte> datagram);
 [[nodiscard]] std::optional<Feedback> readFeedback(std::span<const std::byte> datagram);
 
 } // namespace mural::rsp

@@ -1,6 +1,7 @@
 #include "transport/rsp/group.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 #include "transport/rsp/group_state.hpp"
@@ -8,6 +9,7 @@
 namespace mural::rsp {
 
 namespace {
+constexpr size_t kMostPieces = 32; // copied at once
 Error tooLate(const std::string& what) { return Error{"the deadline passed while waiting for " + what}; }
 } // namespace
 
@@ -128,16 +130,16 @@ Result<void> Group::waitArrived(Deadline deadline) {
     return {};
 }
 
-// The first bytes of a member's stream that are there, where they lie; waits for them.
-Result<std::span<const std::byte>> Group::State::readable(std::unique_lock<std::mutex>& lock, MemberId from, Deadline deadline) {
+// What is there of a member's stream, where it lies; waits for it. 0: there will be no more.
+Result<size_t> Group::State::readable(std::unique_lock<std::mutex>& lock, MemberId from, std::span<std::span<const std::byte>> pieces, Deadline deadline) {
     while (true) {
         const Receiver* r = core->receiver(from);
-        if (r && !r->readable().empty()) return r->readable();
+        if (const size_t count = r ? r->readable(pieces) : 0; count > 0) return count;
         if (!core->members().contains(from)) {
             core->forget(from);
-            return std::span<const std::byte>{};
+            return size_t{0};
         }
-        if (from == kHost && hostLeft) return std::span<const std::byte>{};
+        if (from == kHost && hostLeft) return size_t{0};
         if (!failure.empty()) return Error{failure};
         const auto waiting = waitingForData.insert(from);
         const bool inTime = wait(lock, data, deadline);
@@ -147,28 +149,31 @@ Result<std::span<const std::byte>> Group::State::readable(std::unique_lock<std::
 }
 
 Result<size_t> Group::read(MemberId from, std::span<std::byte> into, Deadline deadline) {
+    std::array<std::span<const std::byte>, kMostPieces> pieces;
     std::unique_lock lock(state_->mutex);
-    auto bytes = state_->readable(lock, from, deadline);
-    if (!bytes) return bytes.error();
-    Receiver* r = bytes->empty() ? nullptr : state_->core->receiver(from);
-    size_t count = 0;
-    while (!bytes->empty() && count < into.size()) {
-        const size_t n = std::min(bytes->size(), into.size() - count);
+    auto found = state_->readable(lock, from, pieces, deadline);
+    if (!found) return found.error();
+    Receiver* r = *found == 0 ? nullptr : state_->core->receiver(from);
+    size_t done = 0;
+    for (size_t count = *found; count > 0 && done < into.size(); count = r->readable(pieces)) {
         // Without the lock: until they are consumed these bytes stay where they are, and more come meanwhile.
         lock.unlock();
-        std::memcpy(into.data() + count, bytes->data(), n);
+        const size_t before = done;
+        for (const auto piece : std::span(pieces).first(count)) {
+            const size_t n = std::min(piece.size(), into.size() - done);
+            if (n > 0) std::memcpy(into.data() + done, piece.data(), n);
+            done += n;
+        }
         lock.lock();
-        r->consume(n);
-        count += n;
-        *bytes = r->readable();
+        r->consume(done - before);
     }
     if (r && r->hasNews()) state_->pump();
-    return count;
+    return done;
 }
 
-Result<std::span<const std::byte>> Group::view(MemberId from, Deadline deadline) {
+Result<size_t> Group::view(MemberId from, std::span<std::span<const std::byte>> pieces, Deadline deadline) {
     std::unique_lock lock(state_->mutex);
-    return state_->readable(lock, from, deadline);
+    return state_->readable(lock, from, pieces, deadline);
 }
 
 void Group::consume(MemberId from, size_t bytes) {

@@ -109,9 +109,9 @@ public:
     // What is there of a member's stream, at least one byte; waits for it. 0: the member is gone, and all was read. A host
     // that is cut off is an error, for with it the group ends.
     Result<size_t> read(MemberId from, std::span<std::byte> into, Deadline deadline);
-    // The same where they lie, for who need not have them elsewhere: a copy less. They stay there until so many are consumed,
-    // and hold up the writer when its window is full. Empty: as 0.
-    Result<std::span<const std::byte>> view(MemberId from, Deadline deadline);
+    // The same where they lie, for who need not have them elsewhere: a copy less. Returns how many of `pieces` it has set, each
+    // of one datagram. They stay there until so many bytes are consumed, and hold up the writer when its window is full.
+    Result<size_t> view(MemberId from, std::span<std::span<const std::byte>> pieces, Deadline deadline);
     void consume(MemberId from, size_t bytes);
 
     [[nodiscard]] GroupReport report() const;

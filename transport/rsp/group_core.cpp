@@ -142,21 +142,21 @@ void GroupCore::takeLate(int64_t nowNs) {
 Landing GroupCore::landing() { return heard_.receiver ? heard_.receiver->landing() : Landing{}; }
 
 // As a probe: of full size. Who had been reached and ceased to be is asked by probes alone, ever seldomer.
-bool GroupCore::showsMulticast(std::span<const std::byte> datagram, std::span<const std::byte> apart) const {
-    if (datagram.size() + apart.size() != kStreamHeadBytes + shape_.payloadBytes) return false;
+bool GroupCore::showsMulticast(std::span<const std::byte> datagram) const {
+    if (datagram.size() != kStreamHeadBytes + shape_.payloadBytes) return false;
     const auto head = readHead(datagram);
     return head && head->from == kHost && head->type == Type::Data;
 }
 
-void GroupCore::inputDatagram(std::span<const std::byte> datagram, int64_t nowNs, std::span<const std::byte> apart) {
-    if (unshown_ && showsMulticast(datagram, apart)) {
+void GroupCore::inputDatagram(std::span<const std::byte> datagram, int64_t nowNs) {
+    if (unshown_ && showsMulticast(datagram)) {
         unshown_ = false;
         out_.control(kHost, Probed{probeNonce_});
     }
-    deliver(datagram, nowNs, apart);
+    deliver(datagram, nowNs);
 }
 
-void GroupCore::deliver(std::span<const std::byte> datagram, int64_t nowNs, std::span<const std::byte> apart) {
+void GroupCore::deliver(std::span<const std::byte> datagram, int64_t nowNs) {
     const auto head = readHead(datagram);
     if (!head) return;
     if (head->type == Type::Probe) {
@@ -168,7 +168,7 @@ void GroupCore::deliver(std::span<const std::byte> datagram, int64_t nowNs, std:
         if (!sender_) return;
         if (const auto f = readFeedback(datagram)) sender_->input(*f, nowNs);
     } else if (Receiver* r = ofMember(head->from)) {
-        if (const auto d = readStream(datagram, apart)) r->input(*d, nowNs);
+        if (const auto d = readStream(*head, datagram)) r->input(*d, nowNs);
     }
 }
 

@@ -100,10 +100,10 @@ public:
     // The control connection has ended (host: of that member).
     void disconnected(MemberId id, int64_t nowNs);
     void inputControl(MemberId from, const ControlMessage& message, int64_t nowNs);
-    // Where payloads of the stream that was heard last are wanted, of what comes to the group.
+    // Where datagrams of the stream that was heard last are wanted, of what comes to the group.
     Landing landing();
-    // Opened already. `apart`: what lies behind the head of a stream's datagram, where that is not all in one piece.
-    void inputDatagram(std::span<const std::byte> datagram, int64_t nowNs, std::span<const std::byte> apart = {});
+    // Opened already.
+    void inputDatagram(std::span<const std::byte> datagram, int64_t nowNs);
     void socketDropped(uint32_t count);
     int64_t tick(int64_t nowNs);
     // Host: nobody waits for it any longer, and it learns so.
@@ -168,8 +168,8 @@ private:
     void tunnel(MemberId to, std::span<const std::byte> datagram);
     void touch(MemberId from);
     Receiver* ofMember(MemberId from);
-    void deliver(std::span<const std::byte> datagram, int64_t nowNs, std::span<const std::byte> apart = {});
-    [[nodiscard]] bool showsMulticast(std::span<const std::byte> datagram, std::span<const std::byte> apart) const;
+    void deliver(std::span<const std::byte> datagram, int64_t nowNs);
+    [[nodiscard]] bool showsMulticast(std::span<const std::byte> datagram) const;
     int64_t tickReceivers(int64_t nowNs);
     void membersChanged();
 

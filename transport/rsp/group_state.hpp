@@ -59,7 +59,7 @@ struct Group::State : GroupOutput {
     // Sleeps until there may be news, or a slice of time is over; false: the deadline has passed before. The first one that
     // waits leads: it sees to the sockets and the timer, and the group's thread sleeps on.
     bool wait(std::unique_lock<std::mutex>& lock, Waits& what, Deadline deadline);
-    Result<std::span<const std::byte>> readable(std::unique_lock<std::mutex>& lock, MemberId from, Deadline deadline);
+    Result<size_t> readable(std::unique_lock<std::mutex>& lock, MemberId from, std::span<std::span<const std::byte>> pieces, Deadline deadline);
 
     std::unique_ptr<GroupCore> core;
     std::string failure; // why the group is over; empty: it is not
@@ -119,6 +119,7 @@ private:
     std::optional<boost::asio::posix::stream_descriptor> takeOverRings_;
     ReceiveModeration moderation_{GroupSettings{}.socketDatagrams};
     int64_t lookedNs_ = INT64_MIN / 2; // at the sockets
+    int64_t askedDroppedNs_ = INT64_MIN / 2; // how many the sockets have dropped
     unsigned looksInARow_ = 0; // without asking which sockets have something
     std::optional<BatchOutbox> outbox_;
     std::optional<DatagramOpener> opener_;

@@ -2,7 +2,6 @@
 // datagram's way is through one thread where it can be: the one that waits for it.
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <utility>
 
 #include "transport/rsp/group_state.hpp"
@@ -17,7 +16,9 @@ namespace {
 constexpr int64_t kTakeOverNs = 3 * kNsPerMs;
 constexpr int64_t kTakeOverOfReadersNs = 8 * kNsPerMs;
 constexpr unsigned kMostLooksInARow = 4;
+constexpr unsigned kAsksSockets = 8;
 constexpr int64_t kCaughtUpNs = 2 * kNsPerMs; // longer than a reader rests
+constexpr int64_t kBetweenDroppedNs = 20 * kNsPerMs; // the writer is told, and does nothing by it
 constexpr int64_t kMostPauseNs = 2 * kNsPerMs; // of a writer between two batches
 } // namespace
 
@@ -39,7 +40,7 @@ bool Group::State::wait(std::unique_lock<std::mutex>& lock, Waits& what, Deadlin
         leaderSleeps_ = true;
         // Where something was left behind, or flows, nobody need ask for it; now and then all the same, for the other socket.
         const bool flows = rest > 0 && &what == &data && !arrivals_->found().empty() && !ownIsOnItsWay();
-        const bool knows = (moderation_.mayBeMore() || flows) && ++looksInARow_ % kMostLooksInARow != 0;
+        const bool knows = (moderation_.mayBeMore() || flows) && ++looksInARow_ % kAsksSockets != 0;
         lock.unlock();
         if (rest > 0) sleepUntilNs(nowNs + rest);
         const auto sockets = knows ? arrivals_->found() : arrivals_->wait(timeoutNs);
@@ -130,24 +131,29 @@ void Group::State::receive(std::span<const int> sockets, int64_t nowNs) {
 void Group::State::takeDatagrams(std::span<const int> sockets, int64_t nowNs) {
     ReceiveModeration::Look look;
     const bool waitsForAnswers = ownIsOnItsWay();
-    const auto take = [&](std::span<std::byte> bytes, std::span<std::byte> apart, const SocketAddress&) {
-        if (!opener_) return;
-        const auto opened = opener_->open(bytes);
-        if (opened.empty()) return;
-        ++look.datagrams;
-        look.urgent = look.urgent || isUrgent(opened, waitsForAnswers);
-        core->inputDatagram(opened, nowNs, apart);
-    };
-    // A seal covers all of a datagram, in one piece.
-    const bool lands = opener_ && opener_->seals() == Seal::None;
     for (const int descriptor : sockets) {
         const bool isOwn = descriptor == own_->descriptor();
         UdpSocket& socket = isOwn ? *own_ : *groupSocket_;
-        if (socket.receive(lands && !isOwn ? core->landing() : Landing{}, std::ref(take))) look.mayBeMore = true;
+        // Looks in a row cost less than looks with all that is done behind each; others may want the lock.
+        for (unsigned looks = 0; looks < kMostLooksInARow; ++looks) {
+            for (const UdpSocket::Datagram& d : socket.fetch(isOwn ? Landing{} : core->landing())) {
+                if (!opener_) continue;
+                const auto opened = opener_->open(d.bytes);
+                if (opened.empty()) continue;
+                ++look.datagrams;
+                look.urgent = look.urgent || isUrgent(opened, waitsForAnswers);
+                core->inputDatagram(opened, nowNs);
+            }
+            if (!socket.mayBeMore()) break;
+        }
+        look.mayBeMore = look.mayBeMore || socket.mayBeMore();
     }
     moderation_.looked(look, nowNs);
     lookedNs_ = nowNs;
-    core->socketDropped(dropped());
+    if (nowNs - askedDroppedNs_ >= kBetweenDroppedNs) {
+        core->socketDropped(dropped());
+        askedDroppedNs_ = nowNs;
+    }
 }
 
 // Who runs looks often: what it has not yet seen came just now.

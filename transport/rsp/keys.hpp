@@ -20,6 +20,7 @@ enum class Seal : uint8_t {
     AesGcm = 2, // AES-256-GCM, where the processor has instructions for it
     ChaCha = 3, // ChaCha20-Poly1305
 };
+constexpr size_t kMostTagBytes = 16;
 [[nodiscard]] constexpr size_t tagBytes(Seal seal) { return seal == Seal::None ? 0 : seal == Seal::Tag ? 8 : 16; }
 [[nodiscard]] const char* nameOf(Seal seal);
 // The fastest that hides what is sent, on this machine.

@@ -2,9 +2,22 @@
 // a simulated network.
 #pragma once
 
+#include <algorithm>
+
 #include "transport/rsp/datagram.hpp"
 
 namespace mural::rsp {
+
+// One sending takes datagrams of one size: so many at most, and so many bytes with their own heads. A shaper on its way (tc's
+// tbf) cuts what is longer than its bucket, 64 KiB most of the time, into datagrams that it passes one by one; what fits goes
+// through it in one piece, which costs a sender less. And a tenth less than the bucket is there again in time when it is called a little early.
+constexpr size_t kMostInSending = 64;
+constexpr size_t kMostSendingBytes = 58'000;
+constexpr size_t kDatagramHeadsBytes = 42; // Ethernet, IPv4, UDP
+
+constexpr size_t mostInSending(size_t datagramBytes) {
+    return std::clamp<size_t>(kMostSendingBytes / (datagramBytes + kDatagramHeadsBytes), 1, kMostInSending);
+}
 
 class Outbox {
 public:

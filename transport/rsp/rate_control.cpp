@@ -76,6 +76,12 @@ bool RateControl::take(double bytes, int64_t nowNs) {
     return true;
 }
 
+bool RateControl::has(double bytes, int64_t nowNs) {
+    if (most_ <= 0) return true;
+    refill(nowNs);
+    return tokens_ >= std::min(bytes, depth_);
+}
+
 double RateControl::batchBytes() const { return bytesPerS() * kBatchS; }
 
 int64_t RateControl::whenNs(double bytes, int64_t nowNs) const {

@@ -27,6 +27,8 @@ public:
 
     // Whether a datagram of so many bytes may go now; then its tokens are taken.
     bool take(double bytes, int64_t nowNs);
+    // Whether so many may go now, or as many as may ever go at once.
+    bool has(double bytes, int64_t nowNs);
     void giveBack(double bytes) { tokens_ += bytes; }
     // When so many bytes may go. INT64_MAX never occurs.
     [[nodiscard]] int64_t whenNs(double bytes, int64_t nowNs) const;

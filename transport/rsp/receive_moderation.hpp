@@ -46,7 +46,7 @@ public:
         return restNs < kLeastRestNs || nowNs - foundNs_ > kMostSilenceNs ? 0 : restNs;
     }
 
-    static constexpr int64_t kMostRestNs = 1'500'000;
+    static constexpr int64_t kMostRestNs = 2'000'000;
     static constexpr int64_t kLeastRestNs = 60'000;    // a timer is as late as that
     static constexpr int64_t kShareOfFlow = 8;
     static constexpr uint32_t kShareOfSocket = 4;

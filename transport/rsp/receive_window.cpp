@@ -3,25 +3,31 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <utility>
 
 #include "common/little_endian.hpp"
 #include "transport/rsp/erasure_code.hpp"
 
 namespace mural::rsp {
 
+namespace {
+
+constexpr uint32_t kNoPlace = UINT32_MAX;
+
+// For a whole datagram, whichever its seal; a multiple of a line of the cache.
+constexpr size_t placeBytes(size_t payloadBytes) {
+    constexpr size_t kLineBytes = 64;
+    const size_t most = kStreamHeadBytes + kLengthBytes + payloadBytes + kMostTagBytes;
+    return (most + kLineBytes - 1) / kLineBytes * kLineBytes;
+}
+
+} // namespace
+
 ReceiveWindow::ReceiveWindow(const StreamShape& shape, Sequence first)
     : payloadBytes_(shape.payloadBytes), mask_(shape.windowDatagrams - 1),
-      payloads_(shape.payloadBytes, shape.windowDatagrams + kMostAtOnce), places_(shape.windowDatagrams), lengths_(shape.windowDatagrams),
+      payloads_(placeBytes(shape.payloadBytes), shape.windowDatagrams + kMostAtOnce), places_(shape.windowDatagrams), lengths_(shape.windowDatagrams),
       groupBases_(shape.windowDatagrams), groups_(shape.windowDatagrams), known_(shape.windowDatagrams), cumulative_(first), reading_(first),
       forgotten_(first) {}
-
-bool ReceiveWindow::inWindow(Sequence s) const { return s >= forgotten_ && s - forgotten_ <= mask_; }
-
-bool ReceiveWindow::has(Sequence s) const { return s < cumulative_ || (inWindow(s) && lengths_[slot(s)] != 0); }
-
-std::span<const std::byte> ReceiveWindow::payload(Sequence s) const {
-    return {payloads_.at(places_[slot(s)]), lengths_[slot(s)]};
-}
 
 // The group that `cumulative` stands in is kept whole while it may need its parity.
 Sequence ReceiveWindow::oldest() const {
@@ -69,28 +75,30 @@ bool ReceiveWindow::learnSize(Group& g, uint8_t size) {
 }
 
 Landing ReceiveWindow::landing() {
-    // The lowest ones anew: what was read meanwhile has left its places, and what comes in order is to lie side by side.
-    for (const uint32_t place : landing_) payloads_.giveBack(place);
+    // The lowest ones anew: what was read meanwhile has left its places, which the processor's cache still has.
+    for (const uint32_t place : landing_)
+        if (place != kNoPlace) payloads_.giveBack(place);
     landing_.clear();
     landingBytes_.clear();
     for (size_t i = 0; i < kMostAtOnce; ++i) {
         landing_.push_back(payloads_.take());
         landingBytes_.push_back(payloads_.at(landing_.back()));
     }
-    return {kStreamHeadBytes, payloadBytes_, landingBytes_};
+    landed_ = 0;
+    return {placeBytes(payloadBytes_), landingBytes_};
 }
 
 // The place where it lies already, else one that it is copied to.
 uint32_t ReceiveWindow::placeFor(std::span<const std::byte> payload) {
-    for (size_t i = 0; i < landing_.size(); ++i) {
-        if (payloads_.at(landing_[i]) == payload.data()) {
-            const uint32_t place = landing_[i];
-            landing_.erase(landing_.begin() + i);
-            return place;
-        }
+    const auto isAt = [&](size_t i) { return landing_[i] != kNoPlace && landingBytes_[i] + kStreamHeadBytes == payload.data(); };
+    for (size_t k = 0; k < landing_.size(); ++k) { // the next one, most of the time
+        const size_t i = (landed_ + k) % landing_.size();
+        if (!isAt(i)) continue;
+        landed_ = i + 1;
+        return std::exchange(landing_[i], kNoPlace);
     }
     const uint32_t place = payloads_.take();
-    std::memcpy(payloads_.at(place), payload.data(), payload.size());
+    std::memcpy(payloads_.at(place) + kStreamHeadBytes, payload.data(), payload.size());
     return place;
 }
 
@@ -166,7 +174,7 @@ void ReceiveWindow::learnGroupSize(Sequence base, uint8_t size) {
 }
 
 void ReceiveWindow::tryToComplete(Group& g) {
-    if (g.size == 0) return;
+    if (g.size == 0 || g.rows.empty()) return;
     const uint32_t missing = g.missing();
     if (missing == 0) return dropRows(g);
     const auto count = static_cast<size_t>(std::popcount(missing));
@@ -217,17 +225,19 @@ void ReceiveWindow::recover(Group& g, std::span<const int> missing) {
 
 void ReceiveWindow::advance() {
     while (inWindow(cumulative_) && lengths_[slot(cumulative_)] != 0) ++cumulative_;
-    forget();
+    if (forgotten_ < reading_) forget(); // else nothing before it is read
 }
 
 std::span<const std::byte> ReceiveWindow::readable() const {
     if (reading_ == cumulative_) return {};
-    const size_t from = slot(reading_);
-    const auto inOrder = std::min<size_t>(static_cast<size_t>(cumulative_ - reading_), mask_ + 1 - from);
-    size_t bytes = lengths_[from];
-    for (size_t i = 1; i < inOrder && lengths_[from + i - 1] == payloadBytes_ && places_[from + i] == places_[from + i - 1] + 1; ++i)
-        bytes += lengths_[from + i];
-    return {payloads_.at(places_[from]) + readBytes_, bytes - readBytes_};
+    return payload(reading_).subspan(readBytes_);
+}
+
+size_t ReceiveWindow::readable(std::span<std::span<const std::byte>> into) const {
+    const auto count = std::min(into.size(), static_cast<size_t>(cumulative_ - reading_));
+    for (size_t i = 0; i < count; ++i) into[i] = payload(reading_ + static_cast<int64_t>(i));
+    if (count > 0) into[0] = into[0].subspan(readBytes_);
+    return count;
 }
 
 void ReceiveWindow::consume(size_t bytes) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "transport/rsp/datagram.hpp"
+#include "transport/rsp/keys.hpp"
 #include "transport/rsp/landing.hpp"
 #include "transport/rsp/payload_places.hpp"
 #include "transport/rsp/send_window.hpp"
@@ -27,7 +28,7 @@ class ReceiveWindow {
 public:
     ReceiveWindow(const StreamShape& shape, Sequence first);
 
-    // Places for the payloads of the next datagrams, until the next call: one that lies there is taken as it lies.
+    // Places for the next datagrams, until the next call: a payload that lies there behind its head is taken as it lies.
     Landing landing();
 
     enum class Took { New, Known, Refused };
@@ -38,9 +39,11 @@ public:
 
     // All before it are here.
     [[nodiscard]] Sequence cumulative() const { return cumulative_; }
-    [[nodiscard]] bool has(Sequence s) const;
-    // The longest piece of bytes in order that lies in one place; empty when the next is not here.
+    [[nodiscard]] bool has(Sequence s) const { return s < cumulative_ || (inWindow(s) && lengths_[slot(s)] != 0); }
+    // The next bytes, of one datagram; empty when they are not here.
     [[nodiscard]] std::span<const std::byte> readable() const;
+    // All that are in order, a piece for each datagram, as many as `into` takes; returns how many.
+    size_t readable(std::span<std::span<const std::byte>> into) const;
     // So many of them are done with.
     void consume(size_t bytes);
     // The first datagram of which bytes are still to be read or kept: windowDatagrams from here on have a place.
@@ -65,7 +68,7 @@ private:
         [[nodiscard]] bool complete() const { return size != 0 && missing() == 0; }
     };
     [[nodiscard]] size_t slot(Sequence s) const { return s.value() & mask_; }
-    [[nodiscard]] bool inWindow(Sequence s) const;
+    [[nodiscard]] bool inWindow(Sequence s) const { return s >= forgotten_ && s - forgotten_ <= mask_; }
     Group* groupAt(Sequence base);
     [[nodiscard]] const Group* findGroup(Sequence s) const;
     bool learnSize(Group& g, uint8_t size);
@@ -79,13 +82,14 @@ private:
     void advance();
     void forget();
     void forgetDatagram(size_t at);
-    [[nodiscard]] std::span<const std::byte> payload(Sequence s) const;
+    [[nodiscard]] std::span<const std::byte> payload(Sequence s) const { return {payloads_.at(places_[slot(s)]) + kStreamHeadBytes, lengths_[slot(s)]}; }
 
     size_t payloadBytes_;
     uint32_t mask_;
     PayloadPlaces payloads_;
-    std::vector<uint32_t> landing_;       // places where payloads may come, of none that is here
+    std::vector<uint32_t> landing_;        // places where datagrams may come; kNoPlace: one is here
     std::vector<std::byte*> landingBytes_; // of each
+    size_t landed_ = 0;                    // behind the last of them that is here
     std::vector<uint32_t> places_;     // of payloads, of datagrams that are here
     std::vector<uint16_t> lengths_;    // 0: not here
     std::vector<Sequence> groupBases_; // by datagram, of those that are here

@@ -13,7 +13,7 @@ constexpr int64_t kLeastSpacingNs = 500'000; // between what is told without a p
 
 Receiver::Receiver(const ReceiverSettings& settings, Sequence first)
     : settings_(settings), window_(settings.shape, first), gaps_(first),
-      ackEvery_(std::max(1u, std::min(settings.shape.windowDatagrams, settings.socketDatagrams) / 8)),
+      ackEvery_(std::max(1u, std::min(settings.shape.windowDatagrams, settings.socketDatagrams) / 4)),
       sinceAck_(settings.self * 37u % ackEvery_), toldEdge_(first), countedLost_(first),
       repairNs_(kFirstRepairNs) {}
 

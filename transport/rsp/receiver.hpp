@@ -23,13 +23,14 @@ class Receiver {
 public:
     Receiver(const ReceiverSettings& settings, Sequence first);
 
-    // Where the payloads of what comes next are wanted; others are taken as well.
+    // Where what comes next is wanted; what comes elsewhere is taken as well.
     Landing landing() { return window_.landing(); }
     void input(const StreamDatagram& d, int64_t nowNs);
     // The socket has dropped so many datagrams since it was opened.
     void socketDropped(uint32_t count) { dropped_ = count; }
 
     [[nodiscard]] std::span<const std::byte> readable() const { return window_.readable(); }
+    size_t readable(std::span<std::span<const std::byte>> into) const { return window_.readable(into); }
     void consume(size_t bytes) { window_.consume(bytes); }
     // What was consumed may be worth telling.
     [[nodiscard]] bool hasNews() const { return tellNow_ || roomIsNews(); }

@@ -13,8 +13,7 @@ constexpr int kMostRepairCredit = 64;
 constexpr int64_t kMostPollNs = 50'000'000;
 constexpr int64_t kLeastPollNs = 300'000;
 constexpr int64_t kUnknownRoundTripNs = 10'000'000;
-constexpr int kLeastBatch = 8;           // datagrams that are worth waking up for
-constexpr double kMostSendingBytes = 65'000; // that a single sending takes
+constexpr int64_t kLeastBatch = 8; // datagrams that are worth waking up for
 
 uint32_t toUs(int64_t ns) { return static_cast<uint32_t>(ns / 1000); }
 
@@ -201,11 +200,17 @@ int64_t Sender::pollWhenNeeded(int64_t nowNs, Outbox& out) {
     return std::min(pollAtNs_, sentNs_ + settings_.heartbeatNs);
 }
 
+// Datagrams that are worth waking up for, here and at all who hear of them.
+int64_t Sender::worthSending(double wireBytes) const {
+    const auto most = static_cast<int64_t>(mostInSending(static_cast<size_t>(wireBytes) - kWireOverheadBytes));
+    return std::clamp(static_cast<int64_t>(rate_.batchBytes() / wireBytes), std::min(kLeastBatch, most), most);
+}
+
 // The end of a flush does not wait for tokens of datagrams that do not exist.
-double Sender::batchBytes(double datagramBytes) const {
-    const double worthIt = std::min(kMostSendingBytes, std::max(rate_.batchBytes(), kLeastBatch * datagramBytes));
-    const auto waiting = static_cast<double>(std::max<int64_t>(1, limit() - next_)) * datagramBytes;
-    return repairs_.empty() ? std::min(worthIt, waiting) : worthIt;
+double Sender::batchBytes(double wireBytes) const {
+    const int64_t waiting = std::max<int64_t>(1, limit() - next_);
+    const int64_t datagrams = worthSending(wireBytes);
+    return static_cast<double>(repairs_.empty() ? std::min(datagrams, waiting) : datagrams) * wireBytes;
 }
 
 int64_t Sender::tick(int64_t nowNs, Outbox& out) {
@@ -221,7 +226,13 @@ int64_t Sender::tick(int64_t nowNs, Outbox& out) {
     endRound(nowNs);
     const auto bytes = static_cast<double>(
         kWireOverheadBytes + kStreamHeadBytes + kLengthBytes + settings_.shape.payloadBytes + settings_.tagBytes);
-    while (true) {
+    // While more waits than is worth sending, no less goes: the kernel's work for a sending is the same for a few.
+    const int64_t worth = worthSending(bytes);
+    for (int64_t sent = 0;; ++sent) {
+        if (sent % worth == 0 && limit() - next_ >= worth) {
+            const double whole = static_cast<double>(worth) * bytes;
+            if (!rate_.has(whole, nowNs)) return std::min(rate_.whenNs(whole, nowNs), nowNs + settings_.heartbeatNs);
+        }
         if (!rate_.take(bytes, nowNs)) return std::min(rate_.whenNs(batchBytes(bytes), nowNs), nowNs + settings_.heartbeatNs);
         const bool more = next_ < limit();
         if ((repairCredit_ > 0 || !more) && sendRepair(nowNs, out)) continue;

@@ -92,7 +92,8 @@ private:
     [[nodiscard]] Sequence limit() const;
     [[nodiscard]] int64_t pollDelayNs() const;
     [[nodiscard]] int64_t largestRoundTripNs() const;
-    [[nodiscard]] double batchBytes(double datagramBytes) const;
+    [[nodiscard]] int64_t worthSending(double wireBytes) const;
+    [[nodiscard]] double batchBytes(double wireBytes) const;
     bool sendRepair(int64_t nowNs, Outbox& out);
     void sendData(int64_t nowNs, Outbox& out);
     void skipAll();

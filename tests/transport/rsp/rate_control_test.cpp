@@ -80,5 +80,16 @@ TEST(RateControl, TheBucketMakesGoodWhatASleepMissed) {
     EXPECT_LT(sent, kMost * 0.006);
 }
 
+TEST(RateControl, SaysWhetherManyMayGo) {
+    RateControl rate({kMost});
+    while (rate.take(kDatagramBytes, 0)) {}
+    EXPECT_FALSE(rate.has(10 * kDatagramBytes, 500'000));
+    EXPECT_TRUE(rate.has(10 * kDatagramBytes, 700'000));
+    EXPECT_TRUE(rate.take(10 * kDatagramBytes, 700'000)) << "to ask takes nothing";
+    EXPECT_FALSE(rate.has(kMost, 4'000'000));
+    EXPECT_TRUE(rate.has(kMost, 1'000'000'000)) << "more never goes at once";
+    EXPECT_TRUE(RateControl({}).has(1e12, 0)) << "no limit";
+}
+
 } // namespace
 } // namespace mural::rsp

@@ -54,5 +54,53 @@ TEST(SenderAsks, AtTheEndOfAFlushAlone) {
     EXPECT_EQ(out.takeAsking(), 1u);
 }
 
+// A sending's work is the same for a few datagrams: while more waits than it takes, it is full.
+TEST(Sender, GoesByWholeSendings) {
+    SenderSettings settings;
+    settings.shape = {1438, 1024};
+    settings.rate.mostBytesPerS = 125e6;
+    Sender sender(settings, Sequence(5));
+    int64_t nowNs = 1'000'000'000;
+    sender.addMember(1, nowNs);
+    Feedback word;
+    word.from = 1;
+    word.cumulative = word.highest = Sequence(5);
+    word.edge = Sequence(5 + 1024);
+    sender.input(word, nowNs);
+    Kept out;
+    const std::vector<std::byte> all(size_t{1438} * 900);
+    ASSERT_EQ(sender.write(all), all.size());
+    (void)sender.tick(nowNs, out); // what the bucket holds
+    const auto most = static_cast<size_t>(mostInSending(1472));
+    EXPECT_EQ(out.count() % most, 0u);
+    size_t before = out.count();
+    ASSERT_LT(before, 500u);
+    for (int i = 0; i < 500 && out.count() < 800; ++i) { // asked at any time
+        (void)sender.tick(nowNs += 29'000, out);
+        EXPECT_TRUE(out.count() == before || out.count() == before + most) << out.count() - before;
+        before = out.count();
+    }
+    EXPECT_GE(out.count(), 800u);
+    const int64_t whenNs = sender.tick(nowNs, out); // and says when to come again
+    before = out.count();
+    ASSERT_LT(before + most, 900u);
+    (void)sender.tick(whenNs - 1000, out);
+    EXPECT_EQ(out.count(), before);
+    (void)sender.tick(whenNs, out);
+    EXPECT_EQ(out.count(), before + most);
+    for (int i = 0; i < 200; ++i) (void)sender.tick(nowNs += 29'000, out); // the rest is less than that
+    EXPECT_GE(out.count(), 900u);
+}
+
+// A shaper's bucket of 64 KiB takes them whole, with their heads.
+TEST(Sender, SendingsFitIntoABucket) {
+    for (const size_t bytes : {100u, 576u, 1472u, 8972u, 65'000u}) {
+        const size_t most = mostInSending(bytes);
+        EXPECT_GE(most, 1u) << bytes;
+        EXPECT_LE(most, 64u) << bytes;
+        if (most > 1) EXPECT_LE(most * (bytes + 62), 64u * 1024) << bytes; // Ethernet, IPv6, UDP
+    }
+}
+
 } // namespace
 } // namespace mural::rsp

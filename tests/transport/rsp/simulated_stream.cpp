@@ -82,15 +82,14 @@ size_t SimulatedStream::join() {
     return i;
 }
 
-// As a socket brings it: in one piece, or the payload where the window wants it; by chance.
+// As a socket brings it: anywhere, or where the window wants it; by chance.
 std::optional<StreamDatagram> SimulatedStream::landed(std::span<const std::byte> datagram, Receiver& receiver) {
     if (datagram.size() <= kStreamHeadBytes || network_.random() % 2 == 0) return readStream(datagram);
     const Landing landing = receiver.landing();
-    const auto payload = datagram.subspan(kStreamHeadBytes);
-    if (payload.size() > landing.placeBytes) return readStream(datagram);
+    if (datagram.size() > landing.placeBytes) return readStream(datagram);
     std::byte* const place = landing.places[network_.random() % landing.places.size()];
-    std::ranges::copy(payload, place);
-    return readStream(datagram.first(kStreamHeadBytes), {place, payload.size()});
+    std::ranges::copy(datagram, place);
+    return readStream({place, datagram.size()});
 }
 
 void SimulatedStream::write() {

@@ -41,12 +41,13 @@ void ProbeSockets::send(ProbeWay way, size_t sizeBytes, const SocketAddress& sin
 }
 
 void ProbeSockets::hear(rsp::UdpSocket& socket, bool multicast) {
-    const auto take = [&](std::span<std::byte> bytes, const SocketAddress&) {
-        const auto probe = readProbe(bytes);
-        if (!probe || probe->survey != survey_ || probe->fromDoctor == doctor_ || (probe->way != ProbeWay::Single) != multicast) return;
-        ++seen_[{probe->way, probe->sizeBytes}];
-    };
-    while (socket.receive(take)) {}
+    do {
+        for (const rsp::UdpSocket::Datagram& d : socket.fetch()) {
+            const auto probe = readProbe(d.bytes);
+            if (!probe || probe->survey != survey_ || probe->fromDoctor == doctor_ || (probe->way != ProbeWay::Single) != multicast) continue;
+            ++seen_[{probe->way, probe->sizeBytes}];
+        }
+    } while (socket.mayBeMore());
 }
 
 bool ProbeSockets::listen(Deadline deadline, int alsoFd) {
