@@ -15,18 +15,19 @@ KEPT_SECONDS = 40  # longest that a run may take
 class RspGroup:
     """A sender on host 0 and receivers on others."""
 
-    def __init__(self, rig, mural, secret, receivers, options, seal="none", place=0, checked=True):
-        """place: groups of another number run beside this one. checked: every byte is compared, which is CPU time that is not the transport's."""
+    def __init__(self, rig, mural, secret, receivers, options, seal="none", place=0, checked=True, receiver_programs=()):
+        """place: groups of another number run beside this one. checked: every byte is compared, which is CPU time that is not the transport's.
+        receiver_programs: another mural for each receiver."""
         self.rig = rig
-        common = [mural, "netperf"]
         ends = [] if checked else ["--unchecked"]
         network = ["--json", "--interface", "eth0", "--secret-file", secret, "--within", str(KEPT_SECONDS),
                    "--group", "239.255.77.%d:4277" % (85 + place)]
         self.control = "%s:%d" % (rig.address(0), 4278 + place)
-        self._receive = common + ["receive", "--control", self.control, "--timeline", "5"] + ends + network
-        self.sender = rig.start(0, common + ["send", "--members", str(receivers), "--control", self.control, "--seal", seal] + options + ends + network)
+        receive = ["netperf", "receive", "--control", self.control, "--timeline", "5"] + ends + network
+        self.sender = rig.start(0, [mural, "netperf", "send", "--members", str(receivers), "--control", self.control, "--seal", seal] + options + ends + network)
         self._wait_until_it_listens()
-        self.receivers = [rig.start(host, self._receive) for host in range(1, receivers + 1)]
+        programs = receiver_programs or [mural] * receivers
+        self.receivers = [rig.start(host + 1, [program] + receive) for host, program in enumerate(programs)]
 
     def _wait_until_it_listens(self):
         until = time.monotonic() + START_SECONDS
