@@ -120,7 +120,7 @@ private:
     ReceiveModeration moderation_{GroupSettings{}.socketDatagrams};
     int64_t lookedNs_ = INT64_MIN / 2; // at the sockets
     int64_t askedDroppedNs_ = INT64_MIN / 2; // how many the sockets have dropped
-    unsigned looksInARow_ = 0; // without asking which sockets have something
+    unsigned looksUnasked_ = 0; // which sockets have something
     std::optional<BatchOutbox> outbox_;
     std::optional<DatagramOpener> opener_;
     std::map<MemberId, std::shared_ptr<ControlLink>> links_;

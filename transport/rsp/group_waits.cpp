@@ -15,8 +15,8 @@ namespace {
 // are to be mended, and else.
 constexpr int64_t kTakeOverNs = 3 * kNsPerMs;
 constexpr int64_t kTakeOverOfReadersNs = 8 * kNsPerMs;
-constexpr unsigned kMostLooksInARow = 4;
-constexpr unsigned kAsksSockets = 8;
+constexpr unsigned kMostLooksInARow = 4; // at a socket, before anything else is done
+constexpr unsigned kAsksSocketsEvery = 8; // times that a leader looks at what it knows to flow
 constexpr int64_t kCaughtUpNs = 3 * kNsPerMs; // longer than a reader rests
 constexpr int64_t kBetweenDroppedNs = 20 * kNsPerMs; // the writer is told, and does nothing by it
 constexpr int64_t kMostPauseNs = 2 * kNsPerMs; // of a writer between two batches
@@ -40,7 +40,7 @@ bool Group::State::wait(std::unique_lock<std::mutex>& lock, Waits& what, Deadlin
         leaderSleeps_ = true;
         // Where something was left behind, or flows, nobody need ask for it; now and then all the same, for the other socket.
         const bool flows = rest > 0 && &what == &data && !arrivals_->found().empty() && !ownIsOnItsWay();
-        const bool knows = (moderation_.mayBeMore() || flows) && ++looksInARow_ % kAsksSockets != 0;
+        const bool knows = (moderation_.mayBeMore() || flows) && ++looksUnasked_ % kAsksSocketsEvery != 0;
         lock.unlock();
         if (rest > 0) sleepUntilNs(nowNs + rest);
         const auto sockets = knows ? arrivals_->found() : arrivals_->wait(timeoutNs);
