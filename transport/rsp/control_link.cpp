@@ -1,5 +1,8 @@
 #include "transport/rsp/control_link.hpp"
 
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+
 #include <boost/asio/write.hpp>
 
 namespace mural::rsp {
@@ -9,12 +12,17 @@ using boost::system::error_code;
 
 namespace {
 constexpr std::chrono::seconds kGoodbye{2};
+constexpr size_t kSealedBytes = 65'536; // of what was offered, at once
+// What the kernel holds besides what is under way. By default it takes megabytes, and what is behind them waits as long as
+// a slow peer needs for them.
+constexpr int kUnsentBytes = 131'072;
 } // namespace
 
 void ControlLink::start(Events events) {
     events_ = std::make_shared<const Events>(std::move(events));
     error_code ignored;
     socket_.set_option(asio::ip::tcp::no_delay(true), ignored);
+    static_cast<void>(setsockopt(socket_.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kUnsentBytes, sizeof kUnsentBytes));
     flush();
     read();
 }
@@ -32,12 +40,29 @@ void ControlLink::send(const ControlMessage& message) {
 }
 
 bool ControlLink::offer(const ControlMessage& message, size_t mostWaitingBytes) {
-    if (waitingBytes() > mostWaitingBytes) return false;
-    send(message);
+    if (ended_ || leaving_ || waitingBytes() > mostWaitingBytes) return false;
+    offered_.push_back(encode(message));
+    offeredBytes_ += offered_.back().size();
+    flush();
     return true;
 }
 
+void ControlLink::dropOffered() {
+    offered_.clear();
+    offeredBytes_ = 0;
+}
+
+void ControlLink::sealOffered() {
+    for (size_t bytes = 0; !offered_.empty() && bytes < kSealedBytes; offered_.pop_front()) {
+        const auto& message = offered_.front();
+        static_cast<void>(channel_.send(message).ok()); // as in send()
+        bytes += message.size();
+        offeredBytes_ -= message.size();
+    }
+}
+
 void ControlLink::flush() {
+    if (writing_.empty() && waiting_.empty()) sealOffered();
     const auto more = channel_.takeOutput();
     waiting_.insert(waiting_.end(), more.begin(), more.end());
     if (ended_ || !writing_.empty()) return;
@@ -58,6 +83,7 @@ void ControlLink::hangUp() {
     if (ended_ || leaving_) return;
     leaving_ = true;
     events_.reset();
+    dropOffered();
     channel_.finish();
     goodbye_.emplace(socket_.get_executor());
     goodbye_->expires_after(kGoodbye);

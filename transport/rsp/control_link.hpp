@@ -1,6 +1,7 @@
 // A control connection: TCP, Asio's, with a secure channel in it. All of it on the thread that runs the io_context.
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -28,18 +29,22 @@ public:
 
     void start(Events events);
     void send(const ControlMessage& message);
-    // The same, unless more than `mostWaitingBytes` wait for the peer already; false: the message is dropped.
+    // For what may be lost: goes when nothing else does. Dropped, and false, if more than `mostWaitingBytes` wait for the
+    // peer already.
     bool offer(const ControlMessage& message, size_t mostWaitingBytes);
-    // Sends what is to be sent, and ends when the peer has it, or does not take it within two seconds; closed() is told
-    // nothing. A socket closed at once would lose the goodbye with the first lost segment, or with what was not yet read.
+    void dropOffered(); // what has not gone yet
+    // Sends what is to be sent, nothing that is only offered, and ends when the peer has it, or does not take it within two
+    // seconds; closed() is told nothing. A socket closed at once would lose the goodbye with the first lost segment, or with
+    // what was not yet read.
     void hangUp();
     [[nodiscard]] bool ended() const { return ended_; }
     [[nodiscard]] std::string peerAddress() const;
     [[nodiscard]] const std::string& name() const { return channel_.name(); }
-    [[nodiscard]] size_t waitingBytes() const { return writing_.size() + waiting_.size(); }
+    [[nodiscard]] size_t waitingBytes() const { return writing_.size() + waiting_.size() + offeredBytes_; }
 
 private:
     void flush();
+    void sealOffered();
     void read();
     void took(size_t bytes);
     void close(const std::string& why);
@@ -54,6 +59,8 @@ private:
     std::vector<std::byte> in_ = std::vector<std::byte>(65'536);
     std::vector<std::byte> writing_; // with the kernel
     std::vector<std::byte> waiting_;
+    std::deque<std::vector<std::byte>> offered_; // not yet sealed: once sealed, none can be left out
+    size_t offeredBytes_ = 0;
 };
 
 } // namespace mural::rsp

@@ -139,6 +139,8 @@ private:
         uint32_t nonce = 0;
         int64_t againNs = 0; // the next probe
         int64_t waitNs = 0;  // until the one after it; grows each time that it ceases to be reached
+        int64_t soonNs = 0;  // instead, while it is shorter
+        std::optional<int64_t> silentSinceNs; // why it is taken for unreached, until something is heard of it
     };
     class Datagrams; // the Outbox that knows the tunnels
 
@@ -162,7 +164,9 @@ private:
     void probe(int64_t nowNs);
     void watchMembers(int64_t nowNs);
     void takeLate(int64_t nowNs);
-    void reroute(MemberId id, bool multicast, int64_t nowNs);
+    void toConnection(MemberId id, bool silent, int64_t nowNs);
+    void toMulticast(MemberId id);
+    void reroute(MemberId id, bool multicast, uint32_t probeNonce);
     void sendProbe(uint32_t nonce);
     void probeUnreached(int64_t nowNs);
     void tunnel(MemberId to, std::span<const std::byte> datagram);

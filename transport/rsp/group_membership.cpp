@@ -10,6 +10,9 @@ namespace {
 constexpr int64_t kJoinNs = 10'000'000'000; // for the first word on a connection
 constexpr int64_t kTryAgainNs = 3'000'000'000; // whether multicast reaches a member after all
 constexpr int64_t kMostTryAgainNs = 60'000'000'000;
+constexpr int64_t kTrySoonNs = 20'000'000; // who was silent and is heard again: it may only have been stopped
+constexpr int64_t kSoonGrows = 4;
+constexpr int64_t kSilentBeats = 4;
 constexpr size_t kMostMembers = 1000;
 constexpr size_t kLeastDatagramBytes = 512;
 constexpr uint32_t kMostWindow = 1u << 16;
@@ -80,7 +83,7 @@ void GroupCore::probe(int64_t nowNs) {
     for (const MemberId id : late) {
         const Candidate c = candidates_.at(id);
         candidates_.erase(id);
-        if (c.join.multicast) unreached_[id] = {c.nonce, nowNs + kTryAgainNs, kTryAgainNs};
+        if (c.join.multicast) unreached_[id] = {c.nonce, nowNs + kTryAgainNs, kTryAgainNs, kTryAgainNs, {}};
         admit(id, {c.join.uuid, c.name, c.address, c.join.udpPort, false}, nowNs);
     }
 }
@@ -97,8 +100,15 @@ void GroupCore::sendProbe(uint32_t nonce) {
 
 void GroupCore::probeUnreached(int64_t nowNs) {
     for (auto& [id, u] : unreached_) {
-        if (nowNs < u.againNs || members_.at(id).multicast) continue;
-        u.againNs = nowNs + u.waitNs;
+        if (members_.at(id).multicast) continue;
+        if (u.silentSinceNs && sender_->members().at(id).heardNs > *u.silentSinceNs) {
+            u.silentSinceNs.reset();
+            u.soonNs = kTrySoonNs;
+            u.againNs = nowNs;
+        }
+        if (nowNs < u.againNs) continue;
+        u.againNs = nowNs + std::min(u.soonNs, u.waitNs);
+        u.soonNs = std::min(kSoonGrows * u.soonNs, kMostTryAgainNs);
         sendProbe(u.nonce);
     }
 }
@@ -107,7 +117,7 @@ void GroupCore::probeUnreached(int64_t nowNs) {
 void GroupCore::take(MemberId from, const Probed& m, int64_t nowNs) {
     if (!settings_.host) return;
     if (const auto u = unreached_.find(from); u != unreached_.end() && u->second.nonce == m.nonce && !members_.at(from).multicast)
-        return reroute(from, true, nowNs);
+        return toMulticast(from);
     const auto found = candidates_.find(from);
     if (found == candidates_.end() || !found->second.joined || found->second.nonce != m.nonce) return;
     const Candidate c = found->second;
@@ -208,16 +218,23 @@ void GroupCore::take(MemberId, const Rerouted& m, int64_t) {
 }
 
 // Host: what it lacks is repaired as ever, but each datagram goes into its connection, too; or does no longer.
-void GroupCore::reroute(MemberId id, bool multicast, int64_t nowNs) {
+void GroupCore::toConnection(MemberId id, bool silent, int64_t nowNs) {
+    Unreached& u = unreached_[id];
+    u.waitNs = u.waitNs == 0 ? kTryAgainNs : std::min(2 * u.waitNs, kMostTryAgainNs);
+    u.againNs = nowNs + u.waitNs;
+    u.soonNs = u.waitNs;
+    if (silent) u.silentSinceNs = nowNs;
+    else u.silentSinceNs.reset();
+    u.nonce = ++probeNonce_;
+    reroute(id, false, u.nonce);
+}
+
+void GroupCore::toMulticast(MemberId id) { reroute(id, true, unreached_.at(id).nonce); }
+
+void GroupCore::reroute(MemberId id, bool multicast, uint32_t probeNonce) {
     members_.at(id).multicast = multicast;
     membersChanged();
-    Unreached& u = unreached_[id];
-    if (!multicast) {
-        u.waitNs = u.waitNs == 0 ? kTryAgainNs : std::min(2 * u.waitNs, kMostTryAgainNs);
-        u.againNs = nowNs + u.waitNs;
-        u.nonce = ++probeNonce_;
-    }
-    out_.control(id, Rerouted{id, multicast, u.nonce});
+    out_.control(id, Rerouted{id, multicast, probeNonce});
     for (const auto& [other, m] : members_)
         if (other != id) out_.control(other, Rerouted{id, multicast, 0});
     sender_->ask();
@@ -243,7 +260,7 @@ void GroupCore::remove(MemberId id, GoneReason reason) {
 // its connection for half of that time.
 void GroupCore::watchMembers(int64_t nowNs) {
     std::vector<std::pair<MemberId, GoneReason>> hopeless;
-    std::vector<MemberId> unreached;
+    std::vector<std::pair<MemberId, bool>> unreached; // silent?
     for (const auto& [id, m] : sender_->members()) {
         const int64_t quietNs = nowNs - m.heardNs;
         const int64_t stillNs = sender_->waitsFor(m) ? nowNs - m.movedNs : 0;
@@ -253,11 +270,11 @@ void GroupCore::watchMembers(int64_t nowNs) {
         else if (settings_.stalled == StallPolicy::Eject && stillNs > settings_.stalledNs)
             hopeless.emplace_back(id, GoneReason::Stalled);
         else if (members_.at(id).multicast && (quietNs > settings_.silentNs / 2 || (lacks && stillNs > settings_.stalledNs / 2)))
-            unreached.push_back(id);
+            unreached.emplace_back(id, quietNs > kSilentBeats * settings_.heartbeatNs);
     }
     for (const auto& [id, reason] : hopeless)
         expel(id, reason, reason == GoneReason::Silent ? "it has said nothing for too long" : "everyone waited for it for too long");
-    for (const MemberId id : unreached) reroute(id, false, nowNs);
+    for (const auto& [id, silent] : unreached) toConnection(id, silent, nowNs);
 }
 
 } // namespace mural::rsp

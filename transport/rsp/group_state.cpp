@@ -336,6 +336,11 @@ void Group::State::note(const MemberEvent& event) {
 void Group::State::memberRerouted(MemberId id, bool multicast) {
     known_[id].multicast = multicast;
     note({MemberEvent::Kind::Rerouted, id, known_[id], {}});
+    if (!multicast) return;
+    // What waits in its connection is old. Of a member that was stopped its socket has it all; else it is repaired.
+    asio::post(context_, [this, id] {
+        if (const auto found = links_.find(id); found != links_.end()) found->second->dropOffered();
+    });
 }
 
 void Group::State::memberGone(MemberId id, GoneReason reason) {

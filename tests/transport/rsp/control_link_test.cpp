@@ -75,5 +75,51 @@ TEST_F(LinkTest, WhatIsOfferedToAPeerThatDoesNotReadWaitsUpToABound) {
     EXPECT_TRUE(link_->offer(datagram, kBound));
 }
 
+// A host that leaves, or pings, is heard by who has megabytes of a stream before itself, and reads slowly.
+TEST_F(LinkTest, WordsGoBeforeWhatIsOffered) {
+    constexpr size_t kBound = 24'000'000;
+    const Tunnel datagram{1, std::vector<std::byte>(1'400)};
+    while (link_->offer(datagram, kBound)) {}
+    exchange();
+    const size_t offered = link_->waitingBytes();
+    ASSERT_GT(offered, kBound / 2);
+    link_->send(Ping{});
+    link_->hangUp();
+    exchange();
+    EXPECT_LT(link_->waitingBytes(), offered / 10);
+    size_t came = 0;
+    while (!channel_.finished() && came < kBound) {
+        exchange();
+        const size_t bytes = std::min<size_t>(peer_.available(), 10'000);
+        if (bytes != 0) take(bytes);
+        came += bytes;
+    }
+    EXPECT_TRUE(channel_.finished());
+    EXPECT_LT(came, kBound / 4);
+    ASSERT_FALSE(messages_.empty());
+    EXPECT_TRUE(std::holds_alternative<Ping>(*decode(messages_.back())));
+    peer_.close();
+    exchange();
+    EXPECT_TRUE(link_->ended());
+}
+
+TEST_F(LinkTest, WhatIsOfferedCanBeDropped) {
+    const Tunnel datagram{1, std::vector<std::byte>(60'000)};
+    while (link_->offer(datagram, 8'000'000)) {}
+    exchange();
+    const size_t offered = link_->waitingBytes();
+    link_->dropOffered();
+    EXPECT_LT(link_->waitingBytes(), offered / 10);
+    EXPECT_TRUE(link_->offer(Tunnel{2, std::vector<std::byte>(100)}, 8'000'000));
+    while (link_->waitingBytes() != 0 || peer_.available() != 0) {
+        exchange();
+        if (const size_t bytes = peer_.available(); bytes != 0) take(bytes);
+    }
+    ASSERT_FALSE(messages_.empty());
+    const auto last = decode(messages_.back());
+    ASSERT_TRUE(std::holds_alternative<Tunnel>(*last));
+    EXPECT_EQ(std::get<Tunnel>(*last).to, 2);
+}
+
 } // namespace
 } // namespace mural::rsp

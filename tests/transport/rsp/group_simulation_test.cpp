@@ -102,6 +102,30 @@ TEST(GroupSimulation, WhoFindsItsConnectionBeforeItsSocketHasLostNothing) {
     EXPECT_EQ(group.processes[0].core.sender()->counters().resent, 0u);
 }
 
+TEST(GroupSimulation, WhoWasOnlyStoppedIsSentToByMulticastAgainAtOnce) {
+    SimulatedGroup group(16, [](GroupSettings& s) {
+        s.rate.mostBytesPerS = 20e6;
+        s.silentNs = 4 * kNsPerS;
+        s.stalled = StallPolicy::Wait;
+    });
+    for (int i = 0; i < 3; ++i) group.join();
+    ASSERT_TRUE(group.run(kNsPerS, [&] { return group.allLive(); }));
+    group.processes[0].write(40 << 20);
+    const MemberId stopped = *group.idOf(2);
+    for (int time = 0; time < 3; ++time) {
+        group.run(200 * kNsPerMs, [] { return false; });
+        group.network.freeze(2);
+        ASSERT_TRUE(group.run(4 * kNsPerS, [&] { return group.processes[1].rerouted.contains(stopped); }));
+        group.run(500 * kNsPerMs, [] { return false; });
+        group.network.thaw(2);
+        ASSERT_TRUE(group.run(100 * kNsPerMs, [&] { return !group.processes[1].rerouted.contains(stopped); })) << time;
+    }
+    ASSERT_TRUE(group.run(60 * kNsPerS, [&] { return group.processes[0].wroteAll() && group.allRead(); }));
+    EXPECT_EQ(group.wrongBytes(), 0u);
+    EXPECT_LT(group.tunnelledBytes[2], 2u << 20);
+    for (const auto& p : group.processes) EXPECT_TRUE(p.gone.empty());
+}
+
 TEST(GroupSimulation, WhomMulticastReachesAgainIsSentToByItAgain) {
     SimulatedGroup group(13, [](GroupSettings& s) { s.rate.mostBytesPerS = 5e6; });
     for (int i = 0; i < 3; ++i) group.join();

@@ -98,7 +98,9 @@ TEST(Sender, SendingsFitIntoABucket) {
         const size_t most = mostInSending(bytes);
         EXPECT_GE(most, 1u) << bytes;
         EXPECT_LE(most, 64u) << bytes;
-        if (most > 1) EXPECT_LE(most * (bytes + 62), 64u * 1024) << bytes; // Ethernet, IPv6, UDP
+        if (most > 1) {
+            EXPECT_LE(most * (bytes + 62), 64u * 1024) << bytes; // Ethernet, IPv6, UDP
+        }
     }
 }
 
