@@ -1,6 +1,7 @@
 // Monotonic time in nanoseconds and deadlines: every wait in Mural has one.
 #pragma once
 
+#include <cerrno>
 #include <cstdint>
 #include <ctime>
 #include <sys/syscall.h>
@@ -21,7 +22,7 @@ inline int64_t monotonicNowNs() {
 // Returns at once when that time of monotonicNowNs() is over.
 inline void sleepUntilNs(int64_t atNs) {
     const timespec until{static_cast<time_t>(atNs / kNsPerS), static_cast<long>(atNs % kNsPerS)};
-    while (atNs > monotonicNowNs() && clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) != 0) {
+    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
     }
 }
 

@@ -141,9 +141,9 @@ Result<size_t> Group::State::readable(std::unique_lock<std::mutex>& lock, Member
         }
         if (from == kHost && hostLeft) return size_t{0};
         if (!failure.empty()) return Error{failure};
-        const auto waiting = waitingForData.insert(from);
+        waitingForData.push_back(from);
         const bool inTime = wait(lock, data, deadline);
-        waitingForData.erase(waiting);
+        waitingForData.erase(std::ranges::find(waitingForData, from)); // any of them: all are this member
         if (!inTime) return tooLate("bytes of member " + std::to_string(from));
     }
 }

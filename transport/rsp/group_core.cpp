@@ -75,6 +75,7 @@ Receiver* GroupCore::receiver(MemberId from) {
 }
 
 void GroupCore::touch(MemberId from) {
+    if (!touched_.empty() && touched_.back() == from) return; // most of the time
     if (std::ranges::find(touched_, from) == touched_.end()) touched_.push_back(from);
 }
 

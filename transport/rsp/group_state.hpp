@@ -55,7 +55,7 @@ struct Group::State : GroupOutput {
     Waits arrived; // for who waits until all have everything
     Waits data;    // for readers
     std::condition_variable changed; // members
-    std::multiset<MemberId> waitingForData; // of these members
+    std::vector<MemberId> waitingForData; // of these members, one for each who waits: few
     // Sleeps until there may be news, or a slice of time is over; false: the deadline has passed before. The first one that
     // waits leads: it sees to the sockets and the timer, and the group's thread sleeps on.
     bool wait(std::unique_lock<std::mutex>& lock, Waits& what, Deadline deadline);

@@ -27,7 +27,9 @@ ReceiveWindow::ReceiveWindow(const StreamShape& shape, Sequence first)
     : payloadBytes_(shape.payloadBytes), mask_(shape.windowDatagrams - 1),
       payloads_(placeBytes(shape.payloadBytes), shape.windowDatagrams + kMostAtOnce), places_(shape.windowDatagrams), lengths_(shape.windowDatagrams),
       groupBases_(shape.windowDatagrams), groups_(shape.windowDatagrams), known_(shape.windowDatagrams), cumulative_(first), reading_(first),
-      forgotten_(first) {}
+      forgotten_(first) {
+    landing_.fill(kNoPlace);
+}
 
 // The group that `cumulative` stands in is kept whole while it may need its parity.
 Sequence ReceiveWindow::oldest() const {
@@ -78,11 +80,9 @@ Landing ReceiveWindow::landing() {
     // The lowest ones anew: what was read meanwhile has left its places, which the processor's cache still has.
     for (const uint32_t place : landing_)
         if (place != kNoPlace) payloads_.giveBack(place);
-    landing_.clear();
-    landingBytes_.clear();
     for (size_t i = 0; i < kMostAtOnce; ++i) {
-        landing_.push_back(payloads_.take());
-        landingBytes_.push_back(payloads_.at(landing_.back()));
+        landing_[i] = payloads_.take();
+        landingBytes_[i] = payloads_.at(landing_[i]);
     }
     landed_ = 0;
     return {placeBytes(payloadBytes_), landingBytes_};
@@ -91,8 +91,8 @@ Landing ReceiveWindow::landing() {
 // The place where it lies already, else one that it is copied to.
 uint32_t ReceiveWindow::placeFor(std::span<const std::byte> payload) {
     const auto isAt = [&](size_t i) { return landing_[i] != kNoPlace && landingBytes_[i] + kStreamHeadBytes == payload.data(); };
-    for (size_t k = 0; k < landing_.size(); ++k) { // the next one, most of the time
-        const size_t i = (landed_ + k) % landing_.size();
+    for (size_t k = 0; k < kMostAtOnce; ++k) { // the next one, most of the time
+        const size_t i = (landed_ + k) % kMostAtOnce;
         if (!isAt(i)) continue;
         landed_ = i + 1;
         return std::exchange(landing_[i], kNoPlace);

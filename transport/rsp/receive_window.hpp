@@ -2,6 +2,7 @@
 // can be completed from their parity are.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -87,8 +88,8 @@ private:
     size_t payloadBytes_;
     uint32_t mask_;
     PayloadPlaces payloads_;
-    std::vector<uint32_t> landing_;        // places where datagrams may come; kNoPlace: one is here
-    std::vector<std::byte*> landingBytes_; // of each
+    std::array<uint32_t, kMostAtOnce> landing_{};        // places where datagrams may come; kNoPlace: one is here
+    std::array<std::byte*, kMostAtOnce> landingBytes_{}; // of each
     size_t landed_ = 0;                    // behind the last of them that is here
     std::vector<uint32_t> places_;     // of payloads, of datagrams that are here
     std::vector<uint16_t> lengths_;    // 0: not here

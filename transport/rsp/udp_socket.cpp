@@ -75,7 +75,15 @@ struct UdpSocket::Slots {
     std::array<SocketAddress, kMostAtOnce> from{};
     std::array<std::array<char, 128>, kMostAtOnce> control{};
 
+    bool plain = false; // each message has a place, and nothing is told of it but its bytes
+
     void prepare(bool tellsSenders, const Landing& landing) {
+        const bool wantsPlain = !tellsSenders && landing.places.size() == kMostAtOnce;
+        if (plain && wantsPlain && pieces[0].iov_len == landing.placeBytes) { // of what is there the kernel changes nothing
+            for (size_t i = 0; i < kMostAtOnce; ++i) pieces[i].iov_base = landing.places[i];
+            return;
+        }
+        plain = wantsPlain;
         for (size_t i = 0; i < kMostAtOnce; ++i) {
             if (i < landing.places.size()) pieces[i] = {landing.places[i], landing.placeBytes};
             else pieces[i] = {bytes.data() + i * kSlotStrideBytes, kSlotBytes};
@@ -85,6 +93,7 @@ struct UdpSocket::Slots {
             h.msg_iovlen = 1;
             if (tellsSenders) h.msg_name = &from[i].storage;
             h.msg_namelen = tellsSenders ? sizeof from[i].storage : 0;
+            if (plain) continue;
             h.msg_control = control[i].data();
             h.msg_controllen = control[i].size();
         }
@@ -281,7 +290,7 @@ std::span<const UdpSocket::Datagram> UdpSocket::fetch(const Landing& landing) {
             }
         }
         if ((h.msg_flags & MSG_TRUNC) != 0) continue;
-        s.from[i].sizeBytes = h.msg_namelen;
+        if (tellsSenders_) s.from[i].sizeBytes = h.msg_namelen;
         auto* const data = static_cast<std::byte*>(s.pieces[i].iov_base);
         for (size_t at = 0; at < bytes; at += segment) fetched_.push_back({{data + at, std::min(segment, bytes - at)}, &s.from[i]});
     }
