@@ -46,11 +46,13 @@ class Raw(Harness):
     def __init__(self, netlab_folder, folder):
         super().__init__(folder, "mcraw", os.path.join(netlab_folder, "mcraw.cpp"))
 
-    def stream(self, rig, receivers, seconds, wire_mbit, sending="gso", batch=1):
+    def stream(self, rig, receivers, seconds, wire_mbit, sending="gso", batch=1, bare_receiver=None):
+        """bare_receiver: the program that receives instead, and only empties its socket now and then."""
         payload = rig.mtu - UDP_HEAD_BYTES
         rate = wire_mbit * payload / (payload + WIRE_BYTES)
         common = ["239.1.1.1", "6000"]
-        hosts = [rig.start(host, [self.path, "recv"] + common + [rig.address(host), "mode=mmsg", "secs=%g" % seconds])
+        hosts = [rig.start(host, [bare_receiver] + common + [rig.address(host)] if bare_receiver else
+                           [self.path, "recv"] + common + [rig.address(host), "mode=mmsg", "secs=%g" % seconds])
                  for host in range(1, receivers + 1)]
         wait_all(hosts, JOIN_SECONDS)
         sender = rig.start(0, [self.path, "send"] + common + [rig.address(0), "mode=" + sending, "size=%d" % payload, "batch=%d" % batch,

@@ -131,7 +131,11 @@ def cpu(bench):
     size = size_for(bench.seconds, pace)
     cells = {"raw, sendto": Cell(), "raw, UDP_SEGMENT": Cell()}
     runs = {}
+    if bench.bare_receiver:
+        cells["recvmmsg alone, each 3 ms"] = Cell()
     with Rig(bench.netlab, receivers + 1, 1500, link) as rig:
+        if bench.bare_receiver:
+            runs["recvmmsg alone, each 3 ms"] = lambda: bench.raw.stream(rig, receivers, bench.seconds, pace, bare_receiver=bench.bare_receiver)
         runs["raw, sendto"] = lambda: bench.raw.stream(rig, receivers, bench.seconds, pace, "plain", 8)
         runs["raw, UDP_SEGMENT"] = lambda: bench.raw.stream(rig, receivers, bench.seconds, pace)
         for seal in ("none", "siphash", "aes-256-gcm", "chacha20-poly1305"):

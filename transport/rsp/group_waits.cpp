@@ -17,7 +17,7 @@ constexpr int64_t kTakeOverNs = 3 * kNsPerMs;
 constexpr int64_t kTakeOverOfReadersNs = 8 * kNsPerMs;
 constexpr unsigned kMostLooksInARow = 3; // at a socket, before anything else is done; what they bring is in the processor's cache when it is read
 constexpr unsigned kAsksSocketsEvery = 8; // times that a leader looks at what it knows to flow
-constexpr int64_t kCaughtUpNs = 3 * kNsPerMs; // longer than a reader rests
+constexpr int64_t kCaughtUpNs = 6 * kNsPerMs; // longer than a reader rests
 constexpr int64_t kBetweenDroppedNs = 20 * kNsPerMs; // the writer is told, and does nothing by it
 constexpr int64_t kMostPauseNs = 2 * kNsPerMs; // of a writer between two batches
 } // namespace

@@ -46,11 +46,11 @@ public:
         return restNs < kLeastRestNs || nowNs - foundNs_ > kMostSilenceNs ? 0 : restNs;
     }
 
-    static constexpr int64_t kMostRestNs = 2'000'000;
+    static constexpr int64_t kMostRestNs = 3'000'000;
     static constexpr int64_t kLeastRestNs = 60'000;    // a timer is as late as that
     static constexpr int64_t kShareOfFlow = 8;
     static constexpr uint32_t kShareOfSocket = 4;
-    static constexpr int64_t kMostSilenceNs = 3'000'000; // the flow is over
+    static constexpr int64_t kMostSilenceNs = 10'000'000; // the flow is over; of a busy machine a writer, or who reads, may be late by less
 
 private:
     int64_t beganNs_ = INT64_MIN / 2; // the flow
