@@ -1,7 +1,7 @@
 # Sources that are compiled some at once: half of the time, where headers are most of it. Files that are compiled together must have
 # different names in their anonymous namespaces, and a file that lacks an include may be helped by its neighbours: what each file needs
 # is shown by `cmake --preset alone`, which compiles the product's own sources one by one, and is quicker for who changes one again and
-# again. Tests are joined in each build.
+# again. Tests are joined in each build. The fuzz targets, which compile some of these files anew beside the libraries, need them one by one, too.
 
 option(MURAL_JOINED "compile the product's sources some at once" ON)
 
