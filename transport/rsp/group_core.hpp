@@ -165,7 +165,6 @@ private:
     void watchMembers(int64_t nowNs);
     void takeLate(int64_t nowNs);
     void toConnection(MemberId id, bool silent, int64_t nowNs);
-    void toMulticast(MemberId id);
     void reroute(MemberId id, bool multicast, uint32_t probeNonce);
     void sendProbe(uint32_t nonce);
     void probeUnreached(int64_t nowNs);

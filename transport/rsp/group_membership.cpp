@@ -12,7 +12,7 @@ constexpr int64_t kTryAgainNs = 3'000'000'000; // whether multicast reaches a me
 constexpr int64_t kMostTryAgainNs = 60'000'000'000;
 constexpr int64_t kTrySoonNs = 20'000'000; // who was silent and is heard again: it may only have been stopped
 constexpr int64_t kSoonGrows = 4;
-constexpr int64_t kSilentBeats = 4;
+constexpr int64_t kSilentBeats = 4; // heartbeats: who lets so many pass is silent
 constexpr size_t kMostMembers = 1000;
 constexpr size_t kLeastDatagramBytes = 512;
 constexpr uint32_t kMostWindow = 1u << 16;
@@ -117,7 +117,7 @@ void GroupCore::probeUnreached(int64_t nowNs) {
 void GroupCore::take(MemberId from, const Probed& m, int64_t nowNs) {
     if (!settings_.host) return;
     if (const auto u = unreached_.find(from); u != unreached_.end() && u->second.nonce == m.nonce && !members_.at(from).multicast)
-        return toMulticast(from);
+        return reroute(from, true, m.nonce);
     const auto found = candidates_.find(from);
     if (found == candidates_.end() || !found->second.joined || found->second.nonce != m.nonce) return;
     const Candidate c = found->second;
@@ -217,7 +217,8 @@ void GroupCore::take(MemberId, const Rerouted& m, int64_t) {
     out_.memberRerouted(m.id, m.multicast);
 }
 
-// Host: what it lacks is repaired as ever, but each datagram goes into its connection, too; or does no longer.
+// Host: what it lacks is repaired as ever, but each datagram goes into its connection, too. `silent`: it may only have been
+// stopped, and is tried anew as soon as it is heard.
 void GroupCore::toConnection(MemberId id, bool silent, int64_t nowNs) {
     Unreached& u = unreached_[id];
     u.waitNs = u.waitNs == 0 ? kTryAgainNs : std::min(2 * u.waitNs, kMostTryAgainNs);
@@ -229,8 +230,7 @@ void GroupCore::toConnection(MemberId id, bool silent, int64_t nowNs) {
     reroute(id, false, u.nonce);
 }
 
-void GroupCore::toMulticast(MemberId id) { reroute(id, true, unreached_.at(id).nonce); }
-
+// All learn of it.
 void GroupCore::reroute(MemberId id, bool multicast, uint32_t probeNonce) {
     members_.at(id).multicast = multicast;
     membersChanged();

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <linux/filter.h>
 #include <linux/seccomp.h>
 #include <poll.h>
@@ -61,10 +62,13 @@ struct Came {
 struct Places {
     std::vector<std::byte> bytes;
     std::vector<std::byte*> each;
-    explicit Places(size_t count) : bytes(count * kPlace) {
-        for (size_t i = 0; i < count; ++i) each.push_back(bytes.data() + i * kPlace);
+    size_t placeBytes;
+    explicit Places(size_t count, size_t sizeBytes = kPlace) : bytes(count * sizeBytes), placeBytes(sizeBytes) {
+        for (size_t i = 0; i < count; ++i) each.push_back(bytes.data() + i * placeBytes);
     }
-    [[nodiscard]] Landing landing() const { return {kPlace, each}; }
+    Places(const Places&) = delete; // `each` points into `bytes`
+    Places& operator=(const Places&) = delete;
+    [[nodiscard]] Landing landing() const { return {placeBytes, each}; }
 };
 
 // Sends many one by one, and takes them: so many that it is clear that nothing joins them.
@@ -89,6 +93,29 @@ TEST(UdpSocket, WhereNoneAreJoinedTheyLand) {
     ASSERT_EQ(came.datagrams.size(), sizes.size());
     for (size_t i = 0; i < sizes.size(); ++i) EXPECT_EQ(came.datagrams[i], numbered(sizes[i], sizes[i])) << i;
     EXPECT_EQ(came.landed, 4u);
+}
+
+// As a group's sockets: nobody asks who has sent, all places are given with each look, and no two looks are given the same.
+TEST(UdpSocket, EachLookHasPlacesOfItsOwn) {
+    Ends ends;
+    ends.to.leaveOutSenders();
+    const Places few(4);
+    const std::array<Places, 4> looks{Places(kMostAtOnce), Places(kMostAtOnce), Places(kMostAtOnce, 2 * kPlace), Places(kMostAtOnce)};
+    showThatNoneAreJoined(ends, few.landing());
+    for (size_t look = 0; look < looks.size(); ++look) {
+        const size_t size = looks[look].placeBytes;
+        for (size_t i = 0; i < kMostAtOnce; ++i) ends.send(numbered(size, look + i), size);
+        const Came came(ends.to, looks[look].landing(), kMostAtOnce);
+        ASSERT_EQ(came.datagrams.size(), kMostAtOnce) << look;
+        for (size_t i = 0; i < kMostAtOnce; ++i) EXPECT_EQ(came.datagrams[i], numbered(size, look + i)) << look << ", " << i;
+        EXPECT_EQ(came.landed, kMostAtOnce) << look;
+    }
+    // Fewer places, and none: as before.
+    ends.send(numbered(kPlace, 9), kPlace);
+    const Came last(ends.to, few.landing(), 1);
+    ASSERT_EQ(last.datagrams.size(), 1u);
+    EXPECT_EQ(last.datagrams[0], numbered(kPlace, 9));
+    EXPECT_EQ(last.landed, 1u);
 }
 
 TEST(UdpSocket, WhatIsLongerThanItsPlaceIsLost) {
