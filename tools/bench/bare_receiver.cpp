@@ -1,4 +1,4 @@
-// The least that datagrams cost who receives them by recvmmsg: a socket that is emptied each 3 ms, as RSP's readers rest, 32
+// The least that datagrams cost who receives them by recvmmsg: a socket that is emptied each 4 ms, as RSP's readers rest, 32
 // datagrams by a call, always into the same places, and nothing is done with them. Knows nothing of Mural.
 //
 //   bare_receiver GROUP PORT INTERFACE-ADDRESS    until nothing came for 0.4 s; then one line
@@ -21,7 +21,7 @@ constexpr size_t kAtOnce = 32;
 constexpr size_t kPlaceBytes = 9216; // of a jumbo datagram
 constexpr int kSocketBytes = 8 << 20;
 constexpr int64_t kNsPerS = 1'000'000'000;
-constexpr int64_t kRestNs = 3'000'000;
+constexpr int64_t kRestNs = 4'000'000;
 constexpr int64_t kOverNs = 400'000'000;
 constexpr int64_t kComesWithinNs = 30 * kNsPerS;
 
