@@ -117,7 +117,7 @@ int64_t Group::State::restNs(const Waits* what, int64_t nowNs) const {
     const Sender* s = core->sender();
     if (what == &room && s && s->canSend() && data.sleeping == 0 && timerNs_ != INT64_MAX) return std::clamp<int64_t>(timerNs_ - nowNs, 0, kMostPauseNs);
     if (what == &arrived || what == &room || arrived.sleeping > 0 || room.sleeping > 0) return 0;
-    return moderation_.restNs(nowNs, core->self());
+    return moderation_.restNs(nowNs);
 }
 
 // What is at these sockets, and what is due.

@@ -4,9 +4,6 @@
 // A look that left something behind is followed by the next one at once: a look has a bound, and a flow none. And no more
 // gathers, as far as the flow so far tells, than a part of what the socket holds.
 //
-// In full flow each member looks when it is its turn, at times of its own: where several run on one machine they would else
-// happen to look at once, now and then for seconds, and keep all its cores from whoever sends there.
-//
 // The same is done by network cards, as interrupt moderation. Without clock or threads.
 #pragma once
 
@@ -41,26 +38,15 @@ public:
     }
 
     [[nodiscard]] bool mayBeMore() const { return mayBeMore_; }
-    // How long from now on nobody need look, in this member; 0: at once.
-    [[nodiscard]] int64_t restNs(int64_t nowNs, uint32_t member) const {
+    // How long from now on nobody need look; 0: at once.
+    [[nodiscard]] int64_t restNs(int64_t nowNs) const {
         if (mayBeMore_) return 0;
         const int64_t fillsNs = std::min(betweenNs_, kMostRestNs) * (roomDatagrams_ / kShareOfSocket); // that part of the socket
         const int64_t restNs = std::min({(nowNs - beganNs_) / kShareOfFlow, fillsNs, kMostRestNs});
-        if (restNs < kLeastRestNs || nowNs - foundNs_ > kMostSilenceNs) return 0;
-        return std::min(restNs, untilTurnNs(nowNs, member));
+        return restNs < kLeastRestNs || nowNs - foundNs_ > kMostSilenceNs ? 0 : restNs;
     }
 
-    // Till its next turn that is not just now. Turns are spread by the golden section: any few members that follow each other are far apart.
-    [[nodiscard]] static int64_t untilTurnNs(int64_t nowNs, uint32_t member) {
-        constexpr uint32_t kGoldenSection = 0x9e3779b9; // of 2^32
-        const int64_t ownNs = static_cast<int64_t>(uint64_t{member * kGoldenSection} * kBetweenTurnsNs >> 32);
-        const int64_t leftNs = kBetweenTurnsNs - (nowNs - ownNs) % kBetweenTurnsNs;
-        return leftNs < kLeastToTurnNs ? leftNs + kBetweenTurnsNs : leftNs;
-    }
-
-    static constexpr int64_t kBetweenTurnsNs = 4'000'000;
-    static constexpr int64_t kLeastToTurnNs = kBetweenTurnsNs / 4;
-    static constexpr int64_t kMostRestNs = kBetweenTurnsNs + kLeastToTurnNs;
+    static constexpr int64_t kMostRestNs = 4'000'000;
     static constexpr int64_t kLeastRestNs = 60'000;    // a timer is as late as that
     static constexpr int64_t kShareOfFlow = 8;
     static constexpr uint32_t kShareOfSocket = 4;
