@@ -63,7 +63,7 @@ void GroupCore::makeSender() {
     s.rate = settings_.rate;
     s.parity = settings_.parity;
     s.tagBytes = tagBytes(settings_.keys.seal);
-    s.heartbeatNs = settings_.heartbeatNs;
+    s.heartbeatNs = heartbeatNs(self_);
     sender_ = std::make_unique<Sender>(s, Sequence(settings_.firstSequence));
 }
 

@@ -41,7 +41,8 @@ struct GroupSettings {
     uint8_t seals = 0xff;       // that it can do
     RateSettings rate;
     bool parity = true;
-    int64_t heartbeatNs = 100'000'000;
+    int64_t heartbeatNs = 100'000'000; // of the host's stream: by its words, and by those about it, everybody is watched
+    int64_t memberHeartbeatNs = 1'000'000'000; // of all others' streams, each of which has as many readers
     // The host's:
     std::string group;
     SessionKeys keys;
@@ -161,6 +162,7 @@ private:
     void part(MemberId id, GoneReason reason);
     void remove(MemberId id, GoneReason reason);
     void makeSender();
+    [[nodiscard]] int64_t heartbeatNs(MemberId writer) const { return writer == kHost ? settings_.heartbeatNs : settings_.memberHeartbeatNs; }
     void probe(int64_t nowNs);
     void watchMembers(int64_t nowNs);
     void takeLate(int64_t nowNs);

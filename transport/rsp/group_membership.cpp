@@ -161,7 +161,7 @@ void GroupCore::take(MemberId from, const StreamStart& m, int64_t) {
     s.self = self_;
     s.writer = m.writer;
     s.socketDatagrams = settings_.socketDatagrams;
-    s.heartbeatNs = settings_.heartbeatNs;
+    s.heartbeatNs = heartbeatNs(m.writer);
     receivers_[m.writer] = std::make_unique<Receiver>(s, m.first);
     touch(m.writer);
 }

@@ -83,6 +83,7 @@ private:
     void letWatch();
     void watchLeaders();
     [[nodiscard]] bool ownIsOnItsWay() const; // not all members are known to have all of it
+    [[nodiscard]] int64_t takeOverNs() const; // for which no leader may be there, until the group's thread takes over
     [[nodiscard]] int64_t restNs(const Waits* what, int64_t nowNs) const;
     void receive(std::span<const int> sockets, int64_t nowNs);
     void takeDatagrams(std::span<const int> sockets, int64_t nowNs);

@@ -38,6 +38,7 @@ bool Group::State::wait(std::unique_lock<std::mutex>& lock, Waits& what, Deadlin
         leaderUntilNs_ = std::min(untilNs, timerNs_);
         const int64_t timeoutNs = leaderUntilNs_ - nowNs - rest;
         leaderSleeps_ = true;
+        if (rest > 0) takeOver_->keepBehind(nowNs + rest, takeOverNs());
         // Where something was left behind, or flows, nobody need ask for it; now and then all the same, for the other socket.
         const bool flows = rest > 0 && &what == &data && !arrivals_->found().empty() && !ownIsOnItsWay();
         const bool knows = (moderation_.mayBeMore() || flows) && ++looksUnasked_ % kAsksSocketsEvery != 0;
@@ -63,7 +64,7 @@ void Group::State::lead(const Waits& what) {
 void Group::State::endLead(int64_t nowNs) {
     leaderWaitsFor_ = nullptr;
     if (room.sleeping + arrived.sleeping + data.sleeping > 0) return letWatch();
-    takeOver_->push(nowNs, ownIsOnItsWay() ? kTakeOverNs : kTakeOverOfReadersNs);
+    takeOver_->push(nowNs, takeOverNs());
 }
 
 // What has come meanwhile wakes the group's thread.
@@ -105,6 +106,8 @@ void Group::State::watch() {
         });
     });
 }
+
+int64_t Group::State::takeOverNs() const { return ownIsOnItsWay() ? kTakeOverNs : kTakeOverOfReadersNs; }
 
 bool Group::State::ownIsOnItsWay() const {
     const Sender* own = core->sender();

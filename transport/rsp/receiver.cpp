@@ -13,7 +13,7 @@ constexpr int64_t kLeastSpacingNs = 500'000; // between what is told without a p
 
 Receiver::Receiver(const ReceiverSettings& settings, Sequence first)
     : settings_(settings), window_(settings.shape, first), gaps_(first),
-      ackEvery_(std::max(1u, std::min(settings.shape.windowDatagrams, settings.socketDatagrams) / 4)),
+      ackEvery_(std::max(1u, std::min(settings.shape.windowDatagrams, settings.socketDatagrams) / 2)),
       sinceAck_(settings.self * 37u % ackEvery_), toldEdge_(first), countedLost_(first),
       repairNs_(kFirstRepairNs) {}
 
@@ -26,7 +26,6 @@ Sequence Receiver::edgeNow() const {
 
 void Receiver::input(const StreamDatagram& d, int64_t nowNs) {
     const Sequence before = window_.cumulative();
-    heardNs_ = nowNs;
     const auto lateUs = static_cast<int32_t>(newestUs_ - d.sentUs);
     if (newestUs_ == 0 || lateUs <= 0) {
         newestUs_ = d.sentUs;

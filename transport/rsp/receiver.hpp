@@ -43,7 +43,6 @@ public:
     [[nodiscard]] uint64_t feedbackSent() const { return feedbackSent_; }
     [[nodiscard]] uint32_t lost() const { return lost_; }
     [[nodiscard]] int64_t latenessNs() const { return gaps_.latenessNs(); }
-    [[nodiscard]] int64_t heardNs() const { return heardNs_; } // last from the writer
 
 private:
     [[nodiscard]] Sequence edgeNow() const;
@@ -65,7 +64,6 @@ private:
     uint32_t dropped_ = 0;
     uint32_t newestUs_ = 0;   // time of sending of the newest datagram
     int64_t newestNs_ = 0;    // when it came
-    int64_t heardNs_ = 0;
     int64_t toldNs_ = INT64_MIN;
     int64_t repairNs_;        // how long a repair takes to come
     int64_t askedNs_ = INT64_MIN;

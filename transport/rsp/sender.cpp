@@ -31,6 +31,7 @@ Sequence Sender::addMember(MemberId id, int64_t nowNs) {
     m.cumulative = m.edge = window_.filled();
     m.heardNs = m.movedNs = nowNs;
     members_[id] = m;
+    changed_ = true;
     updateEdge();
     return m.cumulative;
 }
@@ -38,12 +39,14 @@ Sequence Sender::addMember(MemberId id, int64_t nowNs) {
 size_t Sender::write(std::span<const std::byte> bytes) {
     const size_t written = window_.write(bytes);
     writtenBytes_ += written;
+    changed_ = true;
     return written;
 }
 
 void Sender::removeMember(MemberId id) {
     members_.erase(id);
     roundLost_.erase(id);
+    changed_ = true;
     updateEdge();
     advance();
 }
@@ -52,6 +55,7 @@ void Sender::flush() {
     window_.flush();
     flushed_ = window_.filled();
     pollNow_ = next_ == window_.filled() && acknowledged_ != next_;
+    changed_ = true;
 }
 
 void Sender::updateEdge() {
@@ -214,8 +218,14 @@ double Sender::batchBytes(double wireBytes) const {
 }
 
 int64_t Sender::tick(int64_t nowNs, Outbox& out) {
-    if (sentNs_ == INT64_MIN) sentNs_ = nowNs;
     surviveJump(nowNs);
+    if (!changed_ && nowNs < dueNs_) return dueNs_;
+    changed_ = false;
+    return dueNs_ = sendWhatMay(nowNs, out);
+}
+
+int64_t Sender::sendWhatMay(int64_t nowNs, Outbox& out) {
+    if (sentNs_ == INT64_MIN) sentNs_ = nowNs;
     if (members_.empty()) {
         skipAll();
         return nowNs + settings_.heartbeatNs;

@@ -58,7 +58,7 @@ public:
     [[nodiscard]] const std::map<MemberId, MemberState>& members() const { return members_; }
 
     // Members say at once what they lack.
-    void ask() { pollNow_ = true; }
+    void ask() { pollNow_ = changed_ = true; }
 
     // Copies what there is room for; returns how much. Without members all is taken, and nobody gets it.
     size_t write(std::span<const std::byte> bytes);
@@ -75,7 +75,8 @@ public:
     [[nodiscard]] bool allArrived() const { return acknowledged_ == window_.filled(); }
 
     void input(const Feedback& f, int64_t nowNs);
-    // Sends what may be sent now; returns when to come again at the latest. Call it after write, flush and input, too.
+    // Sends what may be sent now; returns when to come again at the latest. Call it after write, flush and input, too. Before
+    // that time, and when nothing has changed, it does nothing.
     int64_t tick(int64_t nowNs, Outbox& out);
 
     [[nodiscard]] const SenderCounters& counters() const { return counters_; }
@@ -100,6 +101,7 @@ private:
     void sendPoll(int64_t nowNs, uint8_t flags, Outbox& out);
     void sendRow(const RepairPlan::Repair& r, const SendWindow::Group& group, int64_t nowNs, Outbox& out);
     void sendDatagram(Sequence s, uint8_t flags, int64_t nowNs, Outbox& out);
+    int64_t sendWhatMay(int64_t nowNs, Outbox& out);
     int64_t pollWhenNeeded(int64_t nowNs, Outbox& out);
     void takeEntries(const Feedback& f);
     void takeEntry(const Missing& m, uint32_t echoUs);
@@ -130,6 +132,8 @@ private:
     int pollsWithoutAnswer_ = 0;
     bool pollNow_ = false;
     int64_t tickedNs_ = INT64_MIN;
+    int64_t dueNs_ = INT64_MIN; // when something is to be done at the latest
+    bool changed_ = false;      // since that was found
     int64_t roundBeganNs_ = INT64_MIN;
     Sequence roundNext_;
     std::map<MemberId, uint32_t> roundLost_;

@@ -33,6 +33,7 @@ void Sender::input(const Feedback& f, int64_t nowNs) {
     const auto found = members_.find(f.from);
     if (found == members_.end() || f.to != settings_.self) return;
     MemberState& m = found->second;
+    changed_ = true;
     ++counters_.feedback;
     if (f.cumulative > next_ || f.highest > next_ || f.cumulative > f.highest) {
         ++counters_.refused;

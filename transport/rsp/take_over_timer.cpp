@@ -19,7 +19,15 @@ Result<TakeOverTimer> TakeOverTimer::open() {
 void TakeOverTimer::push(int64_t nowNs, int64_t afterNs) {
     const int64_t leftNs = atNs_ == INT64_MIN ? 0 : atNs_ - nowNs;
     if (leftNs >= afterNs / 2 && leftNs <= afterNs) return;
-    atNs_ = nowNs + afterNs;
+    set(nowNs + afterNs);
+}
+
+void TakeOverTimer::keepBehind(int64_t untilNs, int64_t afterNs) {
+    if (atNs_ != INT64_MIN && atNs_ <= untilNs) set(untilNs + afterNs);
+}
+
+void TakeOverTimer::set(int64_t atNs) {
+    atNs_ = atNs;
     itimerspec time{};
     time.it_value.tv_sec = atNs_ / kNsPerS;
     time.it_value.tv_nsec = atNs_ % kNsPerS;

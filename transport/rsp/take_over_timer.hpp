@@ -20,11 +20,15 @@ public:
     [[nodiscard]] int descriptor() const { return timer_.get(); }
     // It is time between half of this from now on and all of it; what was set before is over.
     void push(int64_t nowNs, int64_t afterNs);
+    // A leader sleeps until then, and looks again: it is not time before that.
+    void keepBehind(int64_t untilNs, int64_t afterNs);
     // Whether it is time: it may have been pushed ahead since the descriptor was readable.
     bool rang(int64_t nowNs);
 
 private:
     TakeOverTimer() = default;
+    void set(int64_t atNs);
+
     FileDescriptor timer_;
     int64_t atNs_ = INT64_MIN; // not set
 };

@@ -121,6 +121,22 @@ TEST(TakeOverTimer, WasPushedAfterItRang) {
     EXPECT_TRUE(timer->rang(quickNowNs()));
 }
 
+// Its thread would be woken for nothing: the leader looks again before it is needed.
+TEST(TakeOverTimer, ALeaderThatSleepsBeyondItPutsItOff) {
+    auto timer = TakeOverTimer::open();
+    ASSERT_TRUE(timer);
+    timer->keepBehind(quickNowNs(), kNsPerMs);
+    EXPECT_FALSE(readableWithin(timer->descriptor(), 20)) << "nobody has set it";
+    const int64_t beganNs = quickNowNs();
+    timer->push(beganNs, 400 * kNsPerMs);
+    timer->keepBehind(beganNs + 100 * kNsPerMs, kNsPerS); // it is behind that already
+    timer->keepBehind(beganNs + 500 * kNsPerMs, 300 * kNsPerMs);
+    ASSERT_TRUE(readableWithin(timer->descriptor(), 10'000));
+    const int64_t tookNs = quickNowNs() - beganNs;
+    EXPECT_GE(tookNs, 800 * kNsPerMs);
+    EXPECT_TRUE(timer->rang(quickNowNs()));
+}
+
 TEST(QuickClock, IsTheSameClock) {
     for (int i = 0; i < 1000; ++i) {
         const int64_t before = monotonicNowNs();

@@ -58,6 +58,31 @@ TEST(Receiver, ADatagramOfHalfTheNumbersBeforeTellsOfNoLoss) {
     EXPECT_EQ(out.told().highest, Sequence(7) + 101);
 }
 
+// What a writer waits for is told in time, and no more often than that: each word costs both ends.
+TEST(Receiver, SaysWhatItHasTwiceInAWindow) {
+    ReceiverSettings settings;
+    settings.shape = {100, 256};
+    settings.socketDatagrams = 10'000;
+    Receiver receiver(settings, Sequence(7));
+    Nowhere out;
+    const std::vector<std::byte> payload(100);
+    int64_t nowNs = 1'000'000'000;
+    (void)receiver.tick(nowNs, out);
+    const uint64_t before = receiver.feedbackSent();
+    constexpr int kWindows = 8;
+    for (int i = 0; i < kWindows * 256; ++i) {
+        StreamDatagram data;
+        data.sequence = Sequence(7) + i;
+        data.index = static_cast<uint8_t>(i % kMostInGroup);
+        data.payload = payload;
+        receiver.input(data, nowNs += 20'000);
+        receiver.consume(100);
+        (void)receiver.tick(nowNs, out);
+        ASSERT_LE(receiver.cumulative() - out.told().cumulative, 128) << i;
+    }
+    EXPECT_EQ(receiver.feedbackSent() - before, 2u * kWindows);
+}
+
 // A socket puts payloads where the window wants them: those are taken as they lie, others copied, none twice, and places
 // do not run out.
 TEST(Receiver, TakesPayloadsAsTheyHaveLanded) {

@@ -92,6 +92,57 @@ TEST(Sender, GoesByWholeSendings) {
     EXPECT_GE(out.count(), 900u);
 }
 
+// Who leads a group comes often; what a writer has to do is looked for when it is time, and when something has happened.
+TEST(Sender, HasNothingToDoBeforeItIsTimeAndNothingHasHappened) {
+    SenderSettings settings;
+    settings.shape = {1000, 256};
+    Sender sender(settings, Sequence(5));
+    int64_t nowNs = 1'000'000'000;
+    Kept out;
+    const auto sentBy = [&](int64_t atNs) {
+        const size_t before = out.count();
+        const int64_t dueNs = sender.tick(atNs, out);
+        EXPECT_GT(dueNs, atNs);
+        return out.count() - before;
+    };
+    EXPECT_EQ(sentBy(nowNs), 0u);
+    const auto word = [&](MemberId from, Sequence cumulative) {
+        Feedback f;
+        f.from = from;
+        f.cumulative = f.highest = cumulative;
+        f.edge = Sequence(5 + 256);
+        return f;
+    };
+    sender.addMember(1, nowNs);
+    sender.addMember(2, nowNs);
+    sender.input(word(1, Sequence(5)), nowNs);
+    sender.input(word(2, Sequence(5)), nowNs);
+    EXPECT_EQ(sentBy(nowNs), 0u) << "nothing is written";
+    EXPECT_EQ(sender.tick(nowNs + 10, out), sender.tick(nowNs + 20, out)) << "one time, at which something is due";
+    const std::vector<std::byte> two(2000);
+    ASSERT_EQ(sender.write(two), two.size());
+    EXPECT_EQ(sentBy(nowNs += 1000), 2u) << "written";
+    EXPECT_EQ(sentBy(nowNs += 1000), 0u);
+    sender.flush();
+    EXPECT_EQ(sentBy(nowNs += 1000), 1u) << "flushed: asks whether all is there";
+    sender.ask();
+    EXPECT_EQ(sentBy(nowNs += 1000), 1u) << "asks";
+    Feedback lacks = word(1, Sequence(5));
+    lacks.highest = Sequence(7);
+    lacks.entryCount = 1;
+    lacks.entries[0] = {Sequence(5), 1, 0, 2};
+    sender.input(lacks, nowNs += 1000);
+    EXPECT_EQ(sentBy(nowNs += 1000), 1u) << "mends what is lacked";
+    sender.input(word(1, Sequence(7)), nowNs += 1000);
+    EXPECT_EQ(sentBy(nowNs += 1000), 0u);
+    EXPECT_FALSE(sender.allArrived());
+    sender.removeMember(2);
+    EXPECT_TRUE(sender.allArrived()) << "nobody waits for it";
+    const int64_t dueNs = sender.tick(nowNs += 1000, out);
+    EXPECT_GE(dueNs, nowNs + settings.heartbeatNs / 2) << "no more polls";
+    EXPECT_EQ(sentBy(dueNs), 1u) << "says that it lives";
+}
+
 // A shaper's bucket of 64 KiB takes them whole, with their heads.
 TEST(Sender, SendingsFitIntoABucket) {
     for (const size_t bytes : {100u, 576u, 1472u, 8972u, 65'000u}) {
