@@ -129,16 +129,16 @@ def cpu(bench):
     """CPU per GB at 1 Gbit/s; the sender's holds the switch and the receivers' network input: only ratios tell."""
     link, receivers = "1gbit", bench.cpu_receivers
     pace = PACE * mbit_of(link)
-    size = size_for(bench.seconds, pace)
+    size = size_for(bench.cpu_seconds, pace)
     cells = {"raw, sendto": Cell(), "raw, UDP_SEGMENT": Cell()}
     runs = {}
     if bench.bare_receiver:
         cells["recvmmsg alone, each 4 ms"] = Cell()
     with Rig(bench.netlab, receivers + 1, 1500, link) as rig:
         if bench.bare_receiver:
-            runs["recvmmsg alone, each 4 ms"] = lambda: bench.raw.stream(rig, receivers, bench.seconds, pace, bare_receiver=bench.bare_receiver)
-        runs["raw, sendto"] = lambda: bench.raw.stream(rig, receivers, bench.seconds, pace, "plain", 8)
-        runs["raw, UDP_SEGMENT"] = lambda: bench.raw.stream(rig, receivers, bench.seconds, pace)
+            runs["recvmmsg alone, each 4 ms"] = lambda: bench.raw.stream(rig, receivers, bench.cpu_seconds, pace, bare_receiver=bench.bare_receiver)
+        runs["raw, sendto"] = lambda: bench.raw.stream(rig, receivers, bench.cpu_seconds, pace, "plain", 8)
+        runs["raw, UDP_SEGMENT"] = lambda: bench.raw.stream(rig, receivers, bench.cpu_seconds, pace)
         for seal in ("none", "siphash", "aes-256-gcm", "chacha20-poly1305"):
             cells["rsp, " + seal] = Cell()
             runs["rsp, " + seal] = lambda seal=seal: bench.rsp.stream(rig, receivers, size, pace, seal=seal, checked=False)

@@ -25,7 +25,7 @@ namespace {
 using rsp::Group;
 
 constexpr size_t kPieceBytes = 256 * 1024;
-constexpr size_t kPieces = 64; // of a stream, that are looked at together
+constexpr size_t kPieces = 128; // of a stream, that are looked at together: as many as come at once
 constexpr size_t kWarmUp = 20; // messages that are not counted
 
 double seconds(const timeval& t) { return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6; }
