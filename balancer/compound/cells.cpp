@@ -38,9 +38,9 @@ std::vector<Cell> cellsOf(const std::vector<Piece>& pieces, double near) {
                 if (std::find(there.begin(), there.end(), p.of) == there.end()) there.push_back(p.of);
             }
     }
-    for (auto& there : grid) std::sort(there.begin(), there.end()); // the same ones, whoever's pieces came first
+    for (auto& there : grid) std::sort(there.begin(), there.end()); // order independent of the order of the pieces
 
-    // Runs of a row, each as far up as the same run goes.
+    // Merge cells of a row first, then extend each run upwards while the next row has the same run.
     std::vector<bool> taken(grid.size(), false);
     std::vector<Cell> cells;
     for (size_t y = 0; y < rows; ++y)

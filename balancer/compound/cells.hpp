@@ -1,4 +1,4 @@
-// Rectangles that lie over each other, taken apart: where the same ones lie.
+// Partition of overlapping rectangles into disjoint cells, each covered by one set of rectangles.
 #pragma once
 
 #include <vector>
@@ -8,17 +8,17 @@
 namespace mural::compound {
 
 struct Piece {
-    int of = 0; // whose it is; several may be of one
+    int of = 0; // owner; several pieces may have the same owner
     Viewport area;
 };
 
 struct Cell {
     Viewport area;
-    std::vector<int> of; // who lies there, each once, in the order of the pieces
+    std::vector<int> of; // owners of the pieces that cover the cell, unique, in the order of the pieces
 };
 
-// No two of them have anything in common, and together they are all that the pieces cover; neighbours of which the same ones are there are one
-// where that makes a rectangle, from left to right before from bottom to top. Edges that differ by less than `near` are one.
+// Returns a disjoint partition of the union of all pieces. Adjacent cells with equal owners are merged where the result
+// is a rectangle, columns first, then rows. Edges closer than `near` are equal.
 std::vector<Cell> cellsOf(const std::vector<Piece>& pieces, double near = 1e-7);
 
 } // namespace mural::compound

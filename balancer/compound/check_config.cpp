@@ -14,7 +14,7 @@ namespace {
 
 std::string nameOr(const std::string& name, size_t number) { return name.empty() ? "number " + std::to_string(number) : "\"" + name + "\""; }
 
-// Frame numbers after which everything repeats; no more than can be tried.
+// Returns the number of frames after which the plan repeats, limited to the number that can be checked.
 uint64_t repeatsAfter(const ResolvedConfig& config) {
     constexpr uint64_t kMost = 64;
     uint64_t all = 1;
@@ -25,11 +25,11 @@ uint64_t repeatsAfter(const ResolvedConfig& config) {
     return all;
 }
 
-// Tries every layout, mono and stereo, and all frame numbers until they repeat.
+// Plans every layout, mono and stereo, for all frame numbers until the plan repeats.
 void checkDeadlocks(const ResolvedConfig& config, config::Diagnostics& diagnostics) {
     size_t layouts = 1;
     for (const config::ResolvedCanvas& c : config.canvases) layouts = std::max(layouts, c.layouts.size());
-    constexpr size_t kMostCompounds = 20'000'000; // a few seconds
+    constexpr size_t kMostCompounds = 20'000'000; // bounds the check to a few seconds
     FrameInput input = firstFrame(config);
     std::set<std::string> said;
     size_t tried = 0;
@@ -47,7 +47,7 @@ void checkDeadlocks(const ResolvedConfig& config, config::Diagnostics& diagnosti
                 const FramePlan plan = planFrame(config, input);
                 if (plan.deadlock.empty()) continue;
                 std::string circle;
-                std::set<std::string> names; // in the same order wherever the circle was entered
+                std::set<std::string> names; // order independent of the entry into the cycle
                 for (const Index f : plan.deadlock) names.insert(plan.frames[at(f)].name);
                 for (const std::string& name : names) circle += (circle.empty() ? "\"" : ", \"") + name + "\"";
                 if (!said.insert(circle).second) continue;
@@ -93,7 +93,7 @@ void checkDisplays(const ResolvedConfig& config, config::Diagnostics& diagnostic
     }
 }
 
-// Of two channels with one name only the first can be meant.
+// A reference by name finds only the first of two channels with the same name.
 void checkNames(const ResolvedConfig& config, config::Diagnostics& diagnostics) {
     std::set<std::string> names;
     for (const config::ResolvedChannel& c : config.channels) {

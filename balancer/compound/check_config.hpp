@@ -1,5 +1,5 @@
-// What is wrong with a configuration that reads well: frames that nobody makes or that wait for each other, queues that
-// nobody fills, parts that are never shown. Found when it is loaded, not when it stands still.
+// Semantic checks of a configuration: frames without a producer, deadlocks between frames, queues without work, and
+// parts that are never shown. The checks run at load time, so a faulty session never starts.
 #pragma once
 
 #include "balancer/compound/display_sizes.hpp"

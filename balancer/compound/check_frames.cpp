@@ -11,7 +11,7 @@ namespace mural::compound {
 
 namespace {
 
-// A compound with what it inherits when nothing has changed it.
+// A compound with its inherited attributes before equalizers change them.
 struct Known {
     Index compound = kNone;
     Inherited inherited;
@@ -30,7 +30,7 @@ void gather(const ResolvedConfig& config, const FrameInput& input, Index compoun
     for (const Index child : c.children) gather(config, input, child, &own, all);
 }
 
-// Is there a frame and an eye for which both do something?
+// Returns true if both compounds are active in the same frame for the same eye at least once.
 bool everTogether(const Inherited& a, const Inherited& b) {
     const EyeSet eyes = a.eyes.value_or(kAllEyes) & b.eyes.value_or(kAllEyes);
     const uint32_t common = std::gcd(a.period, b.period);

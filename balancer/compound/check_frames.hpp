@@ -1,4 +1,4 @@
-// The checks of frames and queues within each tree of compounds.
+// Checks of frames and queues within each compound tree.
 #pragma once
 
 #include "balancer/compound/check_config.hpp"

@@ -1,4 +1,4 @@
-// Pixels of everything that a picture is drawn into. Pipes that the file gives no size have the machine's.
+// Pixel sizes of pipes, windows and channels. A pipe without a size in the file has the size of its machine's screen.
 #pragma once
 
 #include "balancer/config/resolved_config.hpp"
@@ -12,8 +12,8 @@ using config::ResolvedConfig;
 
 struct DisplaySizes {
     std::vector<PixelViewport> pipes;
-    std::vector<PixelViewport> windows;  // on their pipe's screen
-    std::vector<PixelViewport> channels; // in their window
+    std::vector<PixelViewport> windows; // relative to the pipe's screen
+    std::vector<PixelViewport> channels; // relative to the window
 };
 
 struct PixelSize {
@@ -21,10 +21,11 @@ struct PixelSize {
     int32_t h = 1080;
 };
 
-// machineSizes: of each pipe, as far as known; others have `otherwise`.
+// Returns all sizes. `machineSizes` holds the screen size of each pipe as far as known; pipes without one have the size
+// `otherwise`.
 DisplaySizes displaySizes(const ResolvedConfig& config, const std::vector<PixelSize>& machineSizes = {}, PixelSize otherwise = {});
 
-// The user has given a window another size: its channels follow.
+// Applies a new window size, chosen by the user, to the window and its channels.
 void resizeWindow(const ResolvedConfig& config, Index window, PixelSize size, DisplaySizes& sizes);
 
 } // namespace mural::compound

@@ -10,7 +10,7 @@ namespace {
 
 using config::SplitMode;
 
-// Halves the children, and the area with them, until each has its own; the longer side is cut first.
+// Bisects the children and the area until each child has its own part. Cuts the longer side first.
 void divide(std::span<const Index> children, SplitMode mode, const Viewport& part, const Range& range, PixelSize whole, FrameInput& input) {
     if (children.size() == 1) {
         CompoundState& state = input.compounds[at(children.front())];

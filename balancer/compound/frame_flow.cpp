@@ -11,18 +11,18 @@ namespace mural::compound {
 
 namespace {
 
-// Something that was drawn, as it lies in a buffer or in a picture on its way: rectangles in pixels, which need not be whole.
+// A drawn image in a buffer or in a transferred frame, as rectangles in pixels that may be fractional.
 struct Layer {
     Index context = kNone;
-    Viewport from; // in the pixels of the draw, from its corner
+    Viewport from; // in pixels of the draw, relative to its corner
     Viewport to;
-    Zoom size;     // of its pixels here, to those that were drawn
-    Zoom least;    // the smallest that they have been
+    Zoom size; // scale of its pixels here, relative to the drawn pixels
+    Zoom least; // smallest scale so far
 };
 
 Viewport rectangle(const PixelViewport& v) { return {double(v.x), double(v.y), double(v.w), double(v.h)}; }
 
-// What of the layer lies in a part of where it is.
+// Returns the part of the layer within a part of its area.
 Layer cut(const Layer& layer, const Viewport& part) {
     Layer c = layer;
     const Viewport rest = relativeTo(part, layer.to);
@@ -40,7 +40,8 @@ Layers within(const Layers& layers, const Viewport& area) {
     return inside;
 }
 
-// All but what `goes` says, in an area: what is left of a layer are up to four rectangles around it.
+// Removes the layers that `goes` selects within an area. The remainder of a layer is up to four rectangles around the
+// area.
 template <class Goes> void remove(Layers& layers, const Viewport& area, Goes&& goes) {
     Layers left;
     for (const Layer& l : layers) {
@@ -52,7 +53,7 @@ template <class Goes> void remove(Layers& layers, const Viewport& area, Goes&& g
         const double x0 = l.to.x, x1 = l.to.x + l.to.w, y0 = l.to.y, y1 = l.to.y + l.to.h;
         const double bx1 = both.x + both.w, by1 = both.y + both.h;
         for (const Viewport& rest : {Viewport{x0, y0, l.to.w, both.y - y0}, Viewport{x0, by1, l.to.w, y1 - by1}, Viewport{x0, both.y, both.x - x0, both.h}, Viewport{bx1, both.y, x1 - bx1, both.h}}) {
-            constexpr double kNothing = 1e-6; // pixels
+            constexpr double kNothing = 1e-6; // in pixels
             if (rest.w > kNothing && rest.h > kNothing) left.push_back(cut(l, rest));
         }
     }
@@ -82,7 +83,8 @@ public:
                 }
         }
         for (size_t p = 0; p < next.size(); ++p)
-            if (next[p] < plan_.pipes[p].size()) return std::vector<Flow>(plan_.contexts.size()); // it stands still, which was said when the file was checked
+            // deadlock, reported when the file was checked
+            if (next[p] < plan_.pipes[p].size()) return std::vector<Flow>(plan_.contexts.size());
         return flows_;
     }
 
@@ -93,8 +95,8 @@ private:
     }
 
     struct Tree {
-        bool steers = false; // some frame of it has a viewport or a zoom
-        bool queues = false; // tiles of a queue are frames of their own, wherever they lie
+        bool steers = false; // true if one of its frames has a viewport or a zoom
+        bool queues = false; // tiles of a queue are separate frames without a fixed place
     };
     const Tree& treeOf(Index root) {
         const auto [known, fresh] = trees_.try_emplace(root);
@@ -110,13 +112,13 @@ private:
         return tree;
     }
 
-    // A buffer for each window and eye; channels that need one of their own have it.
+    // One buffer per window and eye. Interleaved channels have a buffer of their own.
     Layers& bufferOf(const RenderContext& c) {
         const Index window = config_.channels[at(c.channel)].window;
         return plan_.interleaved ? buffers_[{true, c.channel, c.eye}] : buffers_[{false, window, c.eye}];
     }
 
-    // False: it waits for a picture.
+    // Returns false if the step waits for a frame.
     bool perform(const PipeStep& step) {
         const std::vector<PlannedTask>& tasks = plan_.channels[step.channel].tasks;
         const PlannedTask& task = tasks[step.task];
@@ -143,7 +145,7 @@ private:
     void readBack(const Layers& buffer, Index f) {
         const PlannedFrame& frame = plan_.frames[at(f)];
         const Viewport area = rectangle(frame.area);
-        const Zoom smaller{frame.size.w / area.w, frame.size.h / area.h}; // in whole pixels
+        const Zoom smaller{frame.size.w / area.w, frame.size.h / area.h}; // rounded to whole pixels
         Layers& picture = frames_[at(f)];
         picture = within(buffer, area);
         for (Layer& l : picture) scale(l, {smaller.x * (l.to.x - area.x), smaller.y * (l.to.y - area.y), l.to.w * smaller.x, l.to.h * smaller.y}, smaller);
@@ -156,7 +158,8 @@ private:
         l.least = {std::min(l.least.x, l.size.x), std::min(l.least.y, l.size.y)};
     }
 
-    // Where a picture of so many pixels comes to lie. Of pixels that lie apart: all from the first to behind the last.
+    // Returns the area that a frame of this size occupies. With a pixel stride: from the first pixel to one past the
+    // last.
     static Viewport placed(const FrameUse& use, const Viewport& in) {
         const double x = use.zoom.x * use.kernel.w, y = use.zoom.y * use.kernel.h;
         return {use.x + in.x * x, use.y + in.y * y, in.w * x, in.h * y};
@@ -166,13 +169,13 @@ private:
         return intersect(placed(use, {0, 0, double(frame.size.w), double(frame.size.h)}), rectangle(use.clip));
     }
 
-    // It was read back here, and stands for what is there.
+    // The frame was read back from this buffer and replaces its contents there.
     void takeAway(Layers& buffer, const FrameUse& use) const {
         const Layers& picture = frames_[at(use.frame)];
         remove(buffer, touched(use), [&](const Layer& l) { return std::ranges::any_of(picture, [&](const Layer& p) { return p.context == l.context; }); });
     }
 
-    // Whole pictures come in place of what was there; ranges, samples and every nth pixel are joined with it.
+    // Whole pictures replace the contents of the buffer. Ranges, samples and pixel kernels are combined with it.
     void assemble(Layers& buffer, const FrameUse& use) const {
         const PlannedFrame& frame = plan_.frames[at(use.frame)];
         const bool replaces = !frame.buffers.has(config::Buffer::Depth) && frame.range.full() && frame.subPixel.whole() && frame.pixel.whole();
@@ -182,7 +185,7 @@ private:
         for (Layer& l : within(moved, rectangle(use.clip))) buffer.push_back(l);
     }
 
-    // A destination that is done is shown.
+    // Records the contents of a finished destination channel as shown.
     void take(Index channel) {
         const PixelViewport& shown = input_.sizes.channels[at(channel)];
         std::set<const Layers*> taken;
@@ -196,7 +199,8 @@ private:
         }
     }
 
-    // In one direction: where pixels stand among the destination's, which ends at `end`, and how wide all that they stand for is.
+    // One axis: the position of pixels among those of the destination, which ends at `end`, and the width that they
+    // represent.
     struct Place {
         const PixelAxis& axis;
         double origin;
@@ -205,7 +209,7 @@ private:
         [[nodiscard]] double width() const { return pixels * axis.scale * axis.step; }
     };
 
-    // Edges may miss each other by what is rounded: zoomed areas have whole pixels of their own.
+    // Tolerates rounding at edges, because zoomed areas are rounded to whole pixels.
     static void settle(double& from, double& fromSize, double& to, double& toSize, const Place& place) {
         constexpr double kArithmetic = .01;
         const double rounded = ((place.axis.scale == 1 ? 0 : (1 + place.axis.scale) / 2) + kArithmetic) / place.width();
@@ -222,7 +226,8 @@ private:
         fromSize = from1 - from, toSize = to1 - to;
     }
 
-    // Of every nth pixel it is those that count, not all that they stand for: the last one may stand for some behind the destination.
+    // With a pixel stride only the pixels themselves count, not the blocks that they represent: the last block may
+    // extend past the destination.
     static void settleNth(double& from, double& from1, const Place& place) {
         const auto middle = [&](int32_t pixel) { return place.origin + place.axis.kernel + place.axis.step * pixel + .5; };
         const double begin = place.origin + from * place.width(), end = place.origin + from1 * place.width();
@@ -246,7 +251,7 @@ private:
         return part;
     }
 
-    // What is drawn larger than it is shown, or smaller, loses nothing by that alone.
+    // A picture drawn larger or smaller than shown loses no resolution by that alone.
     static double wayOf(double size, double least) { return least < std::min(1., size) - 1e-9 ? least / size : 1; }
 
     const ResolvedConfig& config_;
@@ -255,7 +260,7 @@ private:
     std::vector<Flow> flows_;
     std::vector<Layers> frames_;
     std::vector<bool> ready_;
-    std::map<Index, Tree> trees_; // by their root
+    std::map<Index, Tree> trees_; // by root compound
     std::map<std::tuple<bool, Index, Eye>, Layers> buffers_;
 };
 

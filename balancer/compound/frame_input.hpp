@@ -1,5 +1,5 @@
-// What a frame's tasks depend on besides the configuration: which layouts are shown, the state of views, where
-// observers are, and what equalizers have changed. What is not given has its default.
+// Inputs of a frame's plan besides the configuration: active layouts, view state, observer positions, and changes by
+// equalizers. Missing values have their defaults.
 #pragma once
 
 #include "balancer/compound/display_sizes.hpp"
@@ -7,33 +7,33 @@
 
 namespace mural::compound {
 
-// Pixels that are drawn around a view, for effects that look at neighbours.
+// Pixels drawn around a view for effects that read neighbouring pixels.
 struct Overdraw {
     int32_t left = 0, bottom = 0, right = 0, top = 0;
 };
 
 struct ViewState {
-    std::optional<config::ViewMode> mode; // otherwise the file's
-    double modelUnit = 1;                 // units of the program in a metre
+    std::optional<config::ViewMode> mode; // empty: the mode of the file
+    double modelUnit = 1; // program units per metre
     Overdraw overdraw;
 };
 
 struct ObserverState {
-    Matrix4 head; // from the head into the room
+    Matrix4 head; // transform from head to room
 };
 
-// What equalizers change in a compound, from frame to frame.
+// Attributes of a compound that equalizers change from frame to frame.
 struct CompoundState {
     std::optional<Viewport> viewport;
     std::optional<Range> range;
     std::optional<Zoom> zoom;
-    bool active = true; // no: with all that is below
+    bool active = true; // false: inactive together with its whole subtree
 };
 
 struct FrameInput {
     uint64_t frameNumber = 0;
     DisplaySizes sizes;
-    std::vector<Index> activeLayouts; // of each canvas: which of its layouts, 0 is the first; kNone: nothing
+    std::vector<Index> activeLayouts; // active layout of each canvas, from 0; kNone: canvas off
     std::vector<ViewState> views;
     std::vector<ObserverState> observers;
     std::vector<CompoundState> compounds;

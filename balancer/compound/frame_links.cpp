@@ -1,4 +1,4 @@
-// Which picture goes from whom to whom, and where it is put. Frames are linked by their names, within one tree and eye.
+// Links output frames to input frames by name, within one tree and eye, and computes the place of each picture.
 #include <algorithm>
 
 #include "balancer/compound/planner.hpp"
@@ -12,7 +12,7 @@ Index pipeOf(const ResolvedConfig& config, Index channel) { return config.window
 
 int32_t scaled(int32_t size, double by) { return std::max(1, static_cast<int32_t>(std::lround(size * by))); }
 
-// A kernel among the pixels of another one; one pixel of each block when they do not fit.
+// A pixel kernel relative to another kernel. Incompatible kernels reduce to one pixel per block.
 struct RelativeAxis {
     int32_t kernel, step;
 };
@@ -21,9 +21,10 @@ RelativeAxis relative(const PixelAxis& of, const PixelAxis& to) {
     return {(of.kernel - to.kernel) / to.step, of.step / to.step};
 }
 
-// Where pixel 0 of a picture that begins `offset` pixels into a context goes among the taker's pixels.
+// Returns the consumer's pixel position of the first pixel of a picture that begins `offset` pixels into the producer's
+// context.
 double placeOf(const PixelAxis& giver, int32_t offset, const PixelAxis& taker) {
-    const double destination = giver.origin + giver.scale * giver.step * offset; // of the block that it is in
+    const double destination = giver.origin + giver.scale * giver.step * offset; // of the containing block
     return (destination - taker.origin) / (taker.scale * taker.step);
 }
 
@@ -40,11 +41,11 @@ void Planner::linkFrames(Eye eye) {
     for (const ActiveCompound& a : active_) {
         if (a.tasks.has(Task::Assemble)) takeFrames(a);
     }
-    // What nobody takes is not read back.
+    // Frames without a consumer are not read back.
     for (auto& outputs : outputs_) {
         std::erase_if(outputs, [&](Index f) { return plan_.frames[at(f)].consumers.empty(); });
     }
-    // Screens that only show others' pictures are not cleared for eyes that those have no picture for.
+    // Channels that only assemble are not cleared for eyes without an input frame.
     for (size_t i = 0; i < active_.size(); ++i) {
         const bool shows = active_[i].tasks.has(Task::Assemble) && config_.compounds[at(active_[i].compound)].isGenerated;
         if (shows && inputs_[i].empty()) active_[i].tasks = {};
@@ -52,7 +53,7 @@ void Planner::linkFrames(Eye eye) {
     dropUnused(first);
 }
 
-// Frames without a taker leave the list; what refers to those behind them follows.
+// Removes frames without a consumer and renumbers the references to later frames.
 void Planner::dropUnused(size_t first) {
     std::vector<Index> now(plan_.frames.size() - first, kNone);
     size_t kept = first;
@@ -76,7 +77,7 @@ void Planner::offerFrames(const ActiveCompound& active, Eye eye) {
     const Inherited& i = active.inherited;
     const RenderContext& context = plan_.contexts[at(active.context)];
     for (const config::ResolvedFrame& f : c.outputFrames) {
-        if (offers_.contains(f.name)) continue; // the first one counts; said when the file is checked
+        if (offers_.contains(f.name)) continue; // the first definition counts; the check of the file reports duplicates
         PlannedFrame frame;
         frame.name = f.name;
         frame.compound = active.compound;
@@ -88,13 +89,14 @@ void Planner::offerFrames(const ActiveCompound& active, Eye eye) {
         frame.exact = f.exact;
         frame.area = intersect(context.viewport, apply(context.viewport, f.viewport));
         if (frame.area.empty() || frame.buffers.empty()) continue;
-        // What is drawn too large is made smaller before it is sent; textures stay where they are, and as they are.
+        // A picture drawn larger than shown is scaled down before transfer. Textures stay in place and keep their size.
         if (f.type == config::FrameType::Memory) {
             const Zoom wanted = f.zoom.value_or(Zoom{1 / i.zoom.x, 1 / i.zoom.y});
             frame.zoom = {std::min(1., wanted.x), std::min(1., wanted.y)};
         }
         frame.size = {scaled(frame.area.w, frame.zoom.x), scaled(frame.area.h, frame.zoom.y)};
-        frame.zoom = {frame.size.w / double(frame.area.w), frame.size.h / double(frame.area.h)}; // in whole pixels
+        // rounded to whole pixels
+        frame.zoom = {frame.size.w / double(frame.area.w), frame.size.h / double(frame.area.h)};
         frame.range = i.range;
         frame.pixel = i.pixel;
         frame.subPixel = i.subPixel;
@@ -108,7 +110,7 @@ void Planner::offerFrames(const ActiveCompound& active, Eye eye) {
 void Planner::takeFrames(const ActiveCompound& active) {
     for (const config::ResolvedFrame& wanted : config_.compounds[at(active.compound)].inputFrames) {
         const auto offer = offers_.find(wanted.name);
-        if (offer == offers_.end()) continue; // nobody makes it in this frame: it is not waited for
+        if (offer == offers_.end()) continue; // no producer in this frame: the consumer does not wait
         PlannedFrame& frame = plan_.frames[at(offer->second.frame)];
         FrameUse use;
         use.frame = offer->second.frame;
@@ -127,7 +129,7 @@ void Planner::placeFrame(const ActiveCompound& taker, const config::ResolvedFram
     const RenderContext& from = plan_.contexts[at(giver.context)];
     use.clip = intersect(to.viewport, apply(to.viewport, wanted.viewport));
     if (giver.inherited.destination != taker.inherited.destination) {
-        // Another screen with the same picture: as large as it is there.
+        // A mirror of another channel: scaled to this channel's size.
         use.x = to.viewport.x;
         use.y = to.viewport.y;
         use.zoom = wanted.zoom.value_or(Zoom{to.viewport.w / double(frame.size.w), to.viewport.h / double(frame.size.h)});

@@ -1,4 +1,4 @@
-// What every channel does in one frame, and the pictures that they hand to each other for it.
+// The plan of one frame: the tasks of every channel, and the frames that channels exchange.
 #pragma once
 
 #include "balancer/compound/render_context.hpp"
@@ -7,64 +7,63 @@ namespace mural::compound {
 
 using config::Task;
 
-// A picture on its way from the channel that reads it back to those that put it into theirs.
+// A picture on its way from the channel that reads it back to the channels that assemble it.
 struct PlannedFrame {
     std::string name;
-    Index compound = kNone; // which hands it out
+    Index compound = kNone; // producer
     Index channel = kNone;
     Eye eye = Eye::Cyclop;
     config::FrameType type = config::FrameType::Memory;
     config::BufferSet buffers;
     std::string codec;
     bool exact = true;
-    PixelViewport area; // that is read back, in the window of the channel
-    PixelSize size;     // of the picture: the area, made smaller by `zoom`
+    PixelViewport area; // readback area in the channel's window
+    PixelSize size; // size of the picture: the area scaled by `zoom`
     Zoom zoom;
     Range range;
     PixelKernel pixel;
     SubPixel subPixel;
-    bool perTile = false; // one picture for each tile that was taken from a queue
-    std::vector<Index> consumers; // channels
+    bool perTile = false; // one picture per tile taken from a queue
+    std::vector<Index> consumers; // channel indices
 };
 
 struct FrameUse {
     Index frame = kNone;
-    // Where the picture's first pixel goes in the consumer's window, and which pixels follow it: pixel i stands at
-    // x + kernel.x + kernel.w · i, enlarged by zoom.
+    // Place of the picture in the consumer's window: pixel i is at x + kernel.x + kernel.w * i, scaled by zoom.
     int32_t x = 0;
     int32_t y = 0;
     PixelKernel kernel;
     Zoom zoom;
-    PixelViewport clip; // nothing outside of it is touched
-    std::string codec;  // otherwise the frame's
+    PixelViewport clip; // assembly changes no pixel outside
+    std::string codec; // empty: the codec of the frame
     bool exact = true;
 };
 
 struct PlannedTask {
     Task kind = Task::Clear;
-    Index context = kNone;          // in FramePlan::contexts
-    std::vector<Index> outputs;     // of Readback: in FramePlan::frames
-    // Of Assemble. When one of them was read back from this channel, it stands for what is there: that is replaced.
+    Index context = kNone; // index into FramePlan::contexts
+    std::vector<Index> outputs; // Readback only: indices into FramePlan::frames
+    // Assemble only. A frame that was read back from this channel replaces the contents of its readback area.
     std::vector<FrameUse> inputs;
-    Index queue = kNone;            // of Draw: takes its work from it; in FramePlan::queues
+    Index queue = kNone; // Draw only: source of its work; index into FramePlan::queues
 };
 
-// Pieces of one picture, taken by whoever is free.
+// One work item of a tile or chunk queue.
 struct PlannedTile {
     PixelViewport area; // in the destination's window
-    Viewport part;      // of the context that the queue belongs to
-    Range range;        // likewise
+    Viewport part; // relative to the context of the queue
+    Range range; // relative to the context of the queue
 };
 
 struct PlannedQueue {
     std::string name;
-    Index context = kNone; // that is divided
+    Index context = kNone; // context that the queue divides
     std::vector<PlannedTile> tiles;
 };
 
 struct ChannelPlan {
     Index channel = kNone;
-    std::vector<PlannedTask> tasks; // in their order
+    std::vector<PlannedTask> tasks; // in execution order
 };
 
 struct PlannedBarrier {
@@ -73,9 +72,9 @@ struct PlannedBarrier {
     std::vector<Index> windows;
 };
 
-// One task of a pipe: which channel's, and which of its tasks.
+// One task of a pipe: a channel and the index of its task.
 struct PipeStep {
-    size_t channel = 0; // in FramePlan::channels
+    size_t channel = 0; // index into FramePlan::channels
     size_t task = 0;
 };
 
@@ -84,14 +83,14 @@ struct FramePlan {
     std::vector<RenderContext> contexts;
     std::vector<PlannedFrame> frames;
     std::vector<PlannedQueue> queues;
-    std::vector<ChannelPlan> channels; // those that have something to do
+    std::vector<ChannelPlan> channels; // channels with at least one task
     std::vector<PlannedBarrier> barriers;
-    // Of each pipe: its channels' tasks in an order in which none waits for a later one of the same pipe. Channels that
-    // share pixels of a window come one after the other; where frames forbid that, `interleaved` says that each of them
-    // needs a buffer of its own.
+    // Per pipe: the tasks of its channels in an order without waits for a later task of the same pipe. Channels that
+    // share pixels of a window run one after the other. Where frames forbid that, `interleaved` marks channels that
+    // need a buffer of their own.
     std::vector<std::vector<PipeStep>> pipes;
     bool interleaved = false;
-    // Where there is no such order: the frames that wait for each other. Then `pipes` is empty.
+    // The frames of a cycle, if no such order exists. `pipes` is empty then.
     std::vector<Index> deadlock;
 };
 

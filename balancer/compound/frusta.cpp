@@ -10,7 +10,7 @@ using config::Screen;
 
 ViewState unitsOf(const FrameInput& input, Index view) { return view != kNone && at(view) < input.views.size() ? input.views[at(view)] : ViewState{}; }
 
-// An eye in the plane of its screen sees nothing of it; from a tenth of a millimetre on there is a picture.
+// Least distance between eye and screen, in metres. An eye in the screen's plane has no valid frustum.
 constexpr double kClosest = 1e-4;
 
 struct OffAxis {
@@ -18,7 +18,7 @@ struct OffAxis {
     bool mirrored;
 };
 
-// The screen's edges as seen from `eye` (in the screen's coordinates), on a plane at distance `scale` · eye.z.
+// Returns the screen's edges as seen from `eye` (in screen coordinates), on a plane at distance `scale` * eye.z.
 OffAxis edgesFrom(const Screen& screen, const Vector3& eye, double scale) {
     const bool mirrored = eye.z < 0;
     const double half = screen.width / 2 * (mirrored ? -1 : 1);
@@ -30,7 +30,8 @@ double distanceAlong(const Screen& screen, const Vector3& from, const Vector3& d
     return towards == 0 ? -1 : dot(screen.center - from, screen.normal) / towards;
 }
 
-// The nearest screen in front of the observer: the view's own, or one of the segments that show it.
+// Returns the distance to the nearest screen in front of the observer: the view's own, or a segment that shows the
+// view.
 double focusDistanceOf(const ResolvedConfig& config, Index view, const Vector3& from, const Vector3& direction) {
     const config::ResolvedView& v = config.views[at(view)];
     if (v.surface) return distanceAlong(config::screenOf(*v.surface), from, direction);
@@ -44,7 +45,8 @@ double focusDistanceOf(const ResolvedConfig& config, Index view, const Vector3& 
     return nearest;
 }
 
-// By what the screen is moved away from the eye (and grows), so that what is in focus is seen without parallax.
+// Returns the factor by which the screen is moved away from the eye and enlarged. Objects at the focus distance then
+// have no parallax.
 double focusRatio(const ResolvedConfig& config, const FrameInput& input, Index view) {
     const Index o = config.views[at(view)].observer;
     if (o == kNone || config.observers[at(o)].focusMode == config::FocusMode::Fixed) return 1;
@@ -118,7 +120,7 @@ Frustum partOf(const Frustum& f, const Viewport& part) {
 
 void setFrusta(const Screen& given, const Eyes& eyes, const Inherited& i, const Viewport& shown, const FrameInput& input, RenderContext& context) {
     Screen screen = given;
-    // Around a view that is drawn with more than its own pixels, the screen is as much larger.
+    // Overdraw enlarges the screen by the additional pixels around the view.
     const Overdraw& o = i.overdraw;
     const double w = std::max(1, i.whole.w - o.left - o.right), h = std::max(1, i.whole.h - o.bottom - o.top);
     screen = screen.part({-o.left / w, -o.bottom / h, i.whole.w / w, i.whole.h / h});
@@ -127,7 +129,7 @@ void setFrusta(const Screen& given, const Eyes& eyes, const Inherited& i, const 
     screen.height *= eyes.modelUnit;
 
     const Matrix4 fromRoom = screen.fromRoom();
-    const bool isHmd = screen.type == config::WallType::Hmd; // the screen moves with the head: so the eye stays before it
+    const bool isHmd = screen.type == config::WallType::Hmd; // the screen of an HMD moves with the head
     Vector3 eye = transformPoint(fromRoom, isHmd ? eyes.eyeWithoutHead : eyes.eye);
     const Vector3 cyclop = transformPoint(fromRoom, isHmd ? eyes.cyclopWithoutHead : eyes.cyclop);
     if (std::abs(eye.z) < kClosest) eye.z = eye.z < 0 ? -kClosest : kClosest;
@@ -141,7 +143,7 @@ void setFrusta(const Screen& given, const Eyes& eyes, const Inherited& i, const 
 
     const Matrix4 behindHead = isHmd ? rigidInverse(eyes.head) : Matrix4{};
     context.perspectiveHead = Matrix4::translation(eye * -1) * fromRoom * behindHead;
-    Matrix4 shear; // so that the eyes see depth differently without a vanishing point
+    Matrix4 shear; // parallel projections have no vanishing point; the shear creates the parallax
     shear.m[0][2] = (cyclop.x - eye.x) / eye.z;
     shear.m[1][2] = (cyclop.y - eye.y) / eye.z;
     context.orthographicHead = shear * Matrix4::translation(cyclop * -1) * fromRoom * behindHead;

@@ -1,11 +1,11 @@
-// The frusta of a context: from its view's and segment's place in the room, the observer's eyes and the head.
+// Frusta of a context, from the place of view and segment in the room, the observer's eyes, and the head transform.
 #pragma once
 
 #include "balancer/compound/inheritance.hpp"
 
 namespace mural::compound {
 
-// Eyes in the room, in the program's units.
+// Eye positions in the room, in program units.
 struct Eyes {
     Vector3 cyclop;
     Vector3 eye;
@@ -16,17 +16,17 @@ struct Eyes {
 
 Eyes eyesOf(const ResolvedConfig& config, const FrameInput& input, Index view, Eye eye);
 
-// What the destination's pixels show, in metres; moved to where the observer looks sharp.
+// Returns the screen of the destination's pixels, in metres, moved to the observer's focus distance.
 config::Screen destinationScreen(const ResolvedConfig& config, const FrameInput& input, const Inherited& inherited);
 
-// What of its view a destination channel shows.
+// Returns the part of its view that a destination channel shows.
 Viewport coverage(const ResolvedConfig& config, const config::ResolvedChannel& channel);
 
 // Sets frusta and head transforms of a context that shows the part `shown` of the destination.
 void setFrusta(const config::Screen& screen, const Eyes& eyes, const Inherited& inherited, const Viewport& shown, const FrameInput& input,
                RenderContext& context);
 
-// Cuts what a destination's frustum shows to a part of it.
+// Returns the frustum of a part of the area that `whole` covers.
 Frustum partOf(const Frustum& whole, const Viewport& part);
 
 } // namespace mural::compound

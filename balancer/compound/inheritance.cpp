@@ -10,7 +10,7 @@ CompoundState stateOf(const FrameInput& input, Index compound) {
 
 ViewState stateOfView(const FrameInput& input, Index view) { return at(view) < input.views.size() ? input.views[at(view)] : ViewState{}; }
 
-// The first channel on the way from the root: what is drawn below is drawn for it.
+// The first channel on the path from the root becomes the destination of the whole subtree.
 void beginDestination(const ResolvedConfig& config, const FrameInput& input, Index channel, const Viewport& own, Inherited& i) {
     i.destination = channel;
     i.area = input.sizes.channels[at(channel)];
@@ -45,7 +45,7 @@ void applyZoom(const Zoom& zoom, Inherited& i) {
     const PixelViewport before = i.area;
     i.area = apply(i.area, zoom);
     if (i.area.empty() || before.empty()) return;
-    const Zoom exact{i.area.w / double(before.w), i.area.h / double(before.h)}; // in whole pixels
+    const Zoom exact{i.area.w / double(before.w), i.area.h / double(before.h)}; // rounded to whole pixels
     i.zoom = compose(i.zoom, exact);
     i.x.scale /= exact.x;
     i.y.scale /= exact.y;
@@ -94,7 +94,7 @@ bool isShown(const ResolvedConfig& config, const FrameInput& input, Index segmen
 bool isActive(const ResolvedConfig& config, const FrameInput& input, Index compound, const Inherited& i, Eye eye) {
     if (!stateOf(input, compound).active || input.frameNumber % i.period != i.phase) return false;
     if (i.eyes && !i.eyes->has(eye)) return false;
-    if (i.destination == kNone) return true; // what is below knows more
+    if (i.destination == kNone) return true; // no channel yet: descendants decide
     const config::ResolvedChannel& channel = config.channels[at(i.destination)];
     if (!channel.isDestination()) return i.eyes ? true : eye == Eye::Cyclop;
     return isShown(config, input, channel.segment, channel.view) && hasEye(config, input, channel, eye);

@@ -1,4 +1,4 @@
-// What a compound has from those above it and from itself, in one frame.
+// Effective attributes of a compound in one frame: inherited from its ancestors and set by itself.
 #pragma once
 
 #include "balancer/compound/render_context.hpp"
@@ -7,12 +7,12 @@
 namespace mural::compound {
 
 struct Inherited {
-    Index destination = kNone; // the first channel from the root
-    Index executing = kNone;   // the nearest one
-    PixelViewport area;        // in the destination's window; after pixel kernel and zoom
-    Viewport part;             // of the destination
-    Viewport own;              // of the destination: what all of its pixels show
-    PixelSize whole;           // pixels of the destination, overdraw included
+    Index destination = kNone; // first channel on the path from the root
+    Index executing = kNone; // nearest channel
+    PixelViewport area; // in the destination's window, after pixel kernel and zoom
+    Viewport part; // relative to the destination
+    Viewport own; // relative to the destination: the part represented by all of its pixels
+    PixelSize whole; // pixels of the destination including overdraw
     PixelAxis x, y;
     Range range;
     PixelKernel pixel;
@@ -23,20 +23,20 @@ struct Inherited {
     uint32_t phase = 0;
     config::BufferSet buffers{config::Buffer::Color};
     config::CompoundAttributes attributes;
-    std::optional<config::Screen> screen; // explicit, instead of the destination's
+    std::optional<config::Screen> screen; // set by the compound; overrides the destination's screen
     Overdraw overdraw;
 };
 
-// above: null for roots.
+// Returns the effective attributes. `above`: those of the parent; null for a root.
 Inherited inherit(const ResolvedConfig& config, const FrameInput& input, Index compound, const Inherited* above);
 
-// Does the compound do something for this eye?
+// Returns true if the compound has tasks for this eye.
 bool isActive(const ResolvedConfig& config, const FrameInput& input, Index compound, const Inherited& inherited, Eye eye);
 
-// `channelAbove`: of those above, does one use the channel that executes this compound?
+// Returns the tasks of a compound. `channelAbove`: an ancestor uses the channel that executes this compound.
 config::TaskSet tasksOf(const config::ResolvedCompound& compound, const Inherited& inherited, bool channelAbove);
 
-// Is the view's layout shown on the canvas of this segment?
+// Returns true if the canvas of this segment shows the layout of the view.
 bool isShown(const ResolvedConfig& config, const FrameInput& input, Index segment, Index view);
 
 } // namespace mural::compound

@@ -1,4 +1,4 @@
-// Reads, resolves and checks a configuration: all that is done before it is used.
+// Reads, resolves and checks a configuration before its use.
 #pragma once
 
 #include "balancer/compound/display_sizes.hpp"
@@ -14,12 +14,12 @@ struct LoadedConfig {
     [[nodiscard]] bool ok() const { return diagnostics.errors() == 0; }
 };
 
-// strict: what could be understood all the same is an error.
+// Loads a file. `strict` turns recoverable problems into errors.
 LoadedConfig loadConfig(const std::string& path, const config::EnvironmentLookup& environment, bool strict = false);
-// The same for a configuration that a program made; `name` is what messages call it.
+// Resolves and checks a configuration that a program made. Messages refer to it as `name`.
 LoadedConfig loadConfig(config::ConfigFile file, const std::string& name, const config::EnvironmentLookup& environment);
 
-// What the process was started with.
+// Returns a variable of the process environment.
 std::optional<std::string> processEnvironment(const std::string& name);
 
 } // namespace mural::compound

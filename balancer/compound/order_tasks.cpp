@@ -1,5 +1,6 @@
-// A pipe draws for all of its channels, one task after the other. Each channel's tasks have their order, and assembling
-// waits for the frames that it takes: between that, any order will do in which nothing waits for what comes later.
+// Orders the tasks of each pipe. A pipe executes the tasks of all its channels one after the other. Tasks of one
+// channel keep their order, and an assembly task follows the producers of its frames. Any topological order satisfies
+// both.
 #include <algorithm>
 #include <queue>
 
@@ -9,14 +10,14 @@ namespace mural::compound {
 
 namespace {
 
-// The tasks of all channels as one list; who must come before whom.
+// Dependency graph of the tasks of all channels.
 struct TaskGraph {
     std::vector<PipeStep> steps;
     std::vector<std::vector<size_t>> next;
-    std::vector<size_t> missing; // how many come before it and are not done
-    std::vector<size_t> makerOf; // of each frame
+    std::vector<size_t> missing; // number of unfinished predecessors
+    std::vector<size_t> makerOf; // producing task of each frame
 
-    // overlaps: pairs of channels that draw into the same pixels; the first is done before the second begins.
+    // overlaps: pairs of channels that draw into the same pixels; the first finishes before the second begins.
     TaskGraph(const FramePlan& plan, const std::vector<std::pair<size_t, size_t>>& overlaps) : makerOf(plan.frames.size(), SIZE_MAX) {
         std::vector<size_t> first(plan.channels.size());
         for (size_t c = 0; c < plan.channels.size(); ++c) {
@@ -46,9 +47,9 @@ private:
     }
 };
 
-// Of what is left when nothing can go on: the frames of one circle.
+// Returns the frames of one cycle among the unfinished tasks.
 std::vector<Index> circleOf(const FramePlan& plan, const TaskGraph& graph, const std::vector<bool>& done) {
-    // From any task that is left, go to one before it that is left, until one comes again.
+    // Walk from any unfinished task to an unfinished predecessor until a task repeats.
     std::vector<size_t> before(graph.steps.size(), SIZE_MAX);
     for (size_t i = 0; i < graph.steps.size(); ++i) {
         for (const size_t n : graph.next[i]) {
@@ -84,10 +85,10 @@ std::vector<std::pair<size_t, size_t>> overlapsOf(const ResolvedConfig& config, 
     return pairs;
 }
 
-// False when there is no order; then `circle` holds the frames that wait for each other.
+// Returns false if no order exists; `circle` then holds the frames of a cycle.
 bool order(const ResolvedConfig& config, FramePlan& plan, const std::vector<std::pair<size_t, size_t>>& overlaps, std::vector<Index>& circle) {
     TaskGraph graph(plan, overlaps);
-    // The earliest of those that can go.
+    // Ready tasks; the one with the lowest index runs first.
     std::priority_queue<size_t, std::vector<size_t>, std::greater<>> ready;
     std::vector<bool> done(graph.steps.size(), false);
     for (size_t i = 0; i < graph.steps.size(); ++i) {
@@ -115,7 +116,7 @@ bool order(const ResolvedConfig& config, FramePlan& plan, const std::vector<std:
 } // namespace
 
 void orderTasks(const ResolvedConfig& config, const DisplaySizes& sizes, FramePlan& plan) {
-    // Channels that the file names stand before the destination channels that show their window.
+    // Channels of the file precede the destination channels of their window.
     std::sort(plan.channels.begin(), plan.channels.end(), [](const ChannelPlan& a, const ChannelPlan& b) { return a.channel < b.channel; });
     std::vector<Index> circle;
     if (order(config, plan, overlapsOf(config, plan, sizes), circle)) return;

@@ -9,7 +9,7 @@ namespace mural::compound {
 
 namespace {
 
-// Does one of the compounds above draw into the channel that executes this one?
+// Returns true if an ancestor draws into the channel that executes this compound.
 bool channelAbove(const ResolvedConfig& config, Index compound) {
     const Index own = config.compounds[at(compound)].executing;
     for (Index up = config.compounds[at(compound)].parent; up != kNone; up = config.compounds[at(up)].parent) {
@@ -34,7 +34,7 @@ StereoMode stereoModeOf(const ResolvedConfig& config, const Inherited& i) {
     return quad ? StereoMode::Quad : StereoMode::Anaglyph;
 }
 
-// Both eyes' pictures in one buffer, or in two: only where they are shown.
+// Selects the stereo buffer or the anaglyph colours. Only destinations show both eyes.
 void setStereo(const ResolvedConfig& config, const Inherited& i, RenderContext& c) {
     c.stereoMode = stereoModeOf(config, i);
     if (c.eye == Eye::Cyclop) return;
@@ -131,7 +131,7 @@ Index Planner::contextOf(const ActiveCompound& active, Eye eye) {
     return static_cast<Index>(plan_.contexts.size()) - 1;
 }
 
-// Entering a compound clears, leaves draw; leaving it assembles and reads back.
+// Pre-order: clear, and draw for leaves. Post-order: assemble and read back.
 void Planner::emit(Index compound) {
     const size_t index = activeOf_[at(compound)];
     if (index == SIZE_MAX) return;
@@ -150,11 +150,11 @@ void Planner::add(const ActiveCompound& active, Task kind) {
     task.context = active.context;
     if (kind == Task::Readback) task.outputs = outputs_[index];
     if (kind == Task::Assemble) task.inputs = inputs_[index];
-    if (kind == Task::Readback && task.outputs.empty()) return; // nobody takes it
-    if (kind == Task::Assemble && task.inputs.empty()) return;  // nobody gives it in this frame
+    if (kind == Task::Readback && task.outputs.empty()) return; // no consumer
+    if (kind == Task::Assemble && task.inputs.empty()) return; // no producer in this frame
     if (kind == Task::Draw && !config_.compounds[at(active.compound)].inputQueues.empty()) {
         const auto queue = queues_.find(config_.compounds[at(active.compound)].inputQueues.front().name);
-        if (queue == queues_.end()) return; // without a queue there is no work
+        if (queue == queues_.end()) return; // no queue: no work
         task.queue = queue->second;
     }
     const Index channel = active.inherited.executing;

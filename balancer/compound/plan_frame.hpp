@@ -1,5 +1,5 @@
-// From a configuration and the state of a frame to what every channel does in it. Pure: the same input gives the same
-// plan, on every machine.
+// Computes the plan of one frame from a configuration and the frame's state. Pure: equal inputs give equal plans on
+// every machine.
 #pragma once
 
 #include "balancer/compound/frame_plan.hpp"

@@ -1,4 +1,4 @@
-// The steps of planFrame(): one walk over the trees for each eye, then the pictures between channels.
+// The steps of planFrame(): one traversal of the trees per eye, then the links between channels.
 #pragma once
 
 #include <map>
@@ -8,7 +8,7 @@
 
 namespace mural::compound {
 
-// An active compound in one eye's pass.
+// A compound that is active in one eye's pass.
 struct ActiveCompound {
     Index compound = kNone;
     Inherited inherited;
@@ -25,7 +25,7 @@ public:
     FramePlan run();
 
 private:
-    // One eye's pass over one tree: what is active, then frames, then tasks in their order.
+    // One eye's pass over one tree: active compounds, then frames, then ordered tasks.
     void pass(Index root, Eye eye);
     void activate(Index compound, const Inherited* above, Eye eye);
     void joinBarrier(const ActiveCompound& active);
@@ -33,7 +33,7 @@ private:
     void emit(Index compound);
     void add(const ActiveCompound& active, Task kind);
 
-    // frame_links.cpp
+    // Defined in frame_links.cpp.
     void linkFrames(Eye eye);
     void offerFrames(const ActiveCompound& active, Eye eye);
     void takeFrames(const ActiveCompound& active);
@@ -43,24 +43,24 @@ private:
     void addQueues();
 
     struct Offer {
-        size_t active; // in active_
-        Index frame;   // in plan_.frames
+        size_t active; // index into active_
+        Index frame; // index into plan_.frames
     };
 
     const ResolvedConfig& config_;
     const FrameInput& input_;
     FramePlan plan_;
-    std::vector<size_t> channelPlans_; // of each channel: in plan_.channels
-    // Of the pass.
+    std::vector<size_t> channelPlans_; // per channel: index into plan_.channels
+    // State of the current pass.
     std::vector<ActiveCompound> active_;
-    std::vector<size_t> activeOf_;             // of each compound: in active_, or SIZE_MAX
-    std::map<std::string, Offer> offers_;      // frames by their names
-    std::map<std::string, Index> queues_;      // in plan_.queues
-    std::vector<std::vector<Index>> outputs_;  // of each of active_: in plan_.frames
+    std::vector<size_t> activeOf_; // per compound: index into active_, or SIZE_MAX
+    std::map<std::string, Offer> offers_; // output frames by name
+    std::map<std::string, Index> queues_; // indices into plan_.queues by name
+    std::vector<std::vector<Index>> outputs_; // per entry of active_: indices into plan_.frames
     std::vector<std::vector<FrameUse>> inputs_;
 };
 
-// In what order do the tasks of each pipe's channels run, so that none waits for a later one? Sets pipes or deadlock.
+// Orders the tasks of each pipe's channels so that no task waits for a later one. Sets `pipes` or `deadlock`.
 void orderTasks(const ResolvedConfig& config, const DisplaySizes& sizes, FramePlan& plan);
 
 } // namespace mural::compound

@@ -1,4 +1,4 @@
-// All that a channel must know to draw its part of one eye's picture.
+// The render context: everything that a channel needs to draw its part of one eye's picture.
 #pragma once
 
 #include "balancer/compound/frame_input.hpp"
@@ -10,54 +10,55 @@ namespace mural::compound {
 enum class DrawBuffer : uint8_t { Back, BackLeft, BackRight };
 enum class StereoMode : uint8_t { Passive, Quad, Anaglyph };
 
-// Where a context's pixels lie among those of its destination, along one axis: pixel i of the context stands for pixel
-// origin + scale · (kernel + i · step) there, counted from the destination's edge.
+// Mapping of a context's pixels to those of its destination, along one axis. Pixel i of the context represents pixel
+// origin + scale * (kernel + i * step) of the destination, counted from the destination's edge.
 struct PixelAxis {
     double origin = 0;
-    double scale = 1; // destination pixels per pixel, where the context is zoomed
+    double scale = 1; // destination pixels per context pixel; not 1 with a zoom
     int32_t kernel = 0;
     int32_t step = 1;
 
-    // The edges of the context's n pixels when each of them is as wide as `step` pixels of the destination and lies
-    // around the middle of the one that it stands for.
+    // Edges of the context's n pixels, each `step` destination pixels wide and centred on the pixel that it represents.
     [[nodiscard]] double first() const { return origin + scale * (kernel + .5 - step / 2.); }
     [[nodiscard]] double last(int32_t n) const { return first() + scale * step * n; }
 };
 
 struct RenderContext {
     Index compound = kNone;
-    Index channel = kNone;     // which draws
-    Index destination = kNone; // for which it is drawn
+    Index channel = kNone; // drawing channel
+    Index destination = kNone; // destination channel
     Index view = kNone;
     Eye eye = Eye::Cyclop;
-    uint32_t taskId = 0; // counts within a frame
+    uint32_t taskId = 0; // unique within a frame
 
     PixelViewport viewport; // in the channel's window
-    PixelViewport area;     // the same in the destination's window; its corner is the context's offset
-    Viewport part;          // of the view: without pixel kernels
-    Viewport sampledPart;   // of the view, moved and widened so that each pixel is the middle of the one that it stands for
+    PixelViewport area; // in the destination's window; its corner is the context's offset
+    Viewport part; // part of the view, without pixel kernels
+    // part of the view, moved and widened so that each pixel centre is the centre of the represented pixel
+    Viewport sampledPart;
     PixelAxis x, y;
     Range range;
     PixelKernel pixel;
     SubPixel subPixel;
-    Jitter jitter; // of the subpixel; not in the frusta
+    Jitter jitter; // subpixel jitter; not contained in the frusta
     Zoom zoom;
     uint32_t period = 1;
     uint32_t phase = 0;
     Overdraw overdraw; // of the destination
 
-    config::BufferSet buffers; // that are read back
+    config::BufferSet buffers; // buffers to read back
     DrawBuffer drawBuffer = DrawBuffer::Back;
     config::ColorMask colorMask{config::ColorComponent::Red, config::ColorComponent::Green, config::ColorComponent::Blue};
     StereoMode stereoMode = StereoMode::Passive;
-    config::ColorMask eyeColors{config::ColorComponent::Red, config::ColorComponent::Green, config::ColorComponent::Blue}; // that the eye has in an anaglyph
+    // colours of the eye in an anaglyph
+    config::ColorMask eyeColors{config::ColorComponent::Red, config::ColorComponent::Green, config::ColorComponent::Blue};
 
     Frustum perspective;
-    Frustum destinationPerspective; // of all the destination's pixels
-    Matrix4 perspectiveHead; // from the room to the eye, looking at the screen
+    Frustum destinationPerspective; // for all pixels of the destination
+    Matrix4 perspectiveHead; // from room to eye, looking at the screen
     Frustum orthographic;
     Matrix4 orthographicHead;
-    bool behindScreen = false; // the eye looks from the screen's back: the picture is mirrored
+    bool behindScreen = false; // the eye is behind the screen: the picture is mirrored
 };
 
 } // namespace mural::compound

@@ -1,15 +1,15 @@
-// Pictures cut into pieces that whoever is free takes from a queue.
+// Division of pictures and ranges into the work items of a queue.
 #pragma once
 
 #include "balancer/compound/frame_plan.hpp"
 
 namespace mural::compound {
 
-// Rows from below, each in the other direction than the one before, so that a piece lies beside the one before it.
-// Ranges are cut in their order. Sizes that would give more than 65536 pieces are doubled until they do not.
+// Returns the tiles in boustrophedon order, lowest row first, so that consecutive tiles are adjacent. Ranges are
+// divided in ascending order. A size that gives more than 65536 items is doubled until it does not.
 std::vector<PlannedTile> tilesOf(const PixelViewport& area, const config::PixelsOrRange& size);
 
-// What a worker draws for one piece of the context that its queue divides.
+// Returns the context in which a worker draws one item of the divided context.
 RenderContext contextOfTile(const RenderContext& worker, const RenderContext& divided, const PlannedTile& tile);
 
 } // namespace mural::compound

@@ -18,7 +18,7 @@ struct Colors {
     const char* pale;
 };
 
-// Told apart also by those who do not tell red from green (after Okabe and Ito).
+// Palette for colour-blind readers (Okabe and Ito, "Color Universal Design").
 constexpr auto kColors = std::to_array<Colors>({
     {"#0072b2", "#d6e8f4"}, {"#d55e00", "#fae0cd"}, {"#009e73", "#d3efe6"}, {"#a5539a", "#f1dfee"}, {"#b8860b", "#f8eccb"},
     {"#2f9fd8", "#dbf0fb"}, {"#6b6b6b", "#e6e6e6"}, {"#8c564b", "#ecdfdc"}, {"#5b5bd6", "#e1e1fa"}, {"#4f7f1f", "#e2edd5"},
@@ -32,7 +32,7 @@ constexpr Index kGrey = 6;
 
 std::string nodeColor(Index node) { return colors(node).strong; }
 std::string paleNodeColor(Index node) { return colors(node).pale; }
-// With one machine alone, its GPUs are told apart.
+// Colours distinguish machines, or the GPUs of a single machine.
 Index colorIndex(const ResolvedConfig& config, Index pipe) {
     const auto drawing = std::count_if(config.nodes.begin(), config.nodes.end(), [](const config::ResolvedNode& n) { return !n.pipes.empty(); });
     return drawing == 1 ? pipe : config.pipes[ResolvedConfig::at(pipe)].node;

@@ -1,6 +1,5 @@
-// A configuration as a picture: what is shown where, the machines, and the trees of compounds with the frames that they
-// hand to each other. Each machine has one colour throughout; with
-// one machine, each of its GPUs.
+// Draws a configuration as SVG: displays, machines, and compound trees with the frames between compounds. Each machine
+// has one colour throughout; with a single machine, each GPU.
 #pragma once
 
 #include <string>

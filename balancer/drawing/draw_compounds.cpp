@@ -1,4 +1,4 @@
-// The trees of compounds: each a box with what it changes and does, and arrows for the frames.
+// Draws compound trees: a box per compound with its attributes and tasks, and arrows for frames.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ constexpr double kBoxWidth = 150, kBoxGap = 18, kLine = 13, kLevel = 62, kTop = 
 
 std::string fraction(double value) { return fmt::format("{:.3g}", value); }
 
-// What a compound says itself, a line each.
+// Returns the attributes that a compound sets itself, one line each.
 std::vector<std::string> wordsOf(const ResolvedCompound& c) {
     std::vector<std::string> words;
     if (!c.viewport.full()) words.push_back(fmt::format("viewport {} {} {} {}", fraction(c.viewport.x), fraction(c.viewport.y),
@@ -40,7 +40,7 @@ std::vector<std::string> wordsOf(const ResolvedCompound& c) {
     return words;
 }
 
-// As the planner decides it, whatever is active.
+// Returns the tasks as the planner decides them, regardless of active layouts.
 config::TaskSet tasksOf(const ResolvedConfig& config, const ResolvedCompound& c) {
     if (c.executing == kNone) return {};
     config::TaskSet tasks = c.tasks.value_or(config::TaskSet{Task::Clear, Task::Draw, Task::Assemble, Task::Readback});
@@ -76,7 +76,7 @@ std::string titleOf(const ResolvedConfig& config, const ResolvedCompound& c) {
     return !c.name.empty() ? c.name : c.executing == kNone ? "group" : "here";
 }
 
-// One tree, laid out from the top: leaves side by side, others above the middle of theirs.
+// Layout of one tree, top down: leaves side by side, inner nodes centred above their children.
 class Tree {
 public:
     Tree(const ResolvedConfig& config, Index root) : config_(config), root_(root) { place(root, 0, 0); }
@@ -95,7 +95,7 @@ public:
     }
 
 private:
-    // Returns the middle of the box.
+    // Places the subtree and returns the centre of its root's box.
     double place(Index index, double x, double y) {
         const ResolvedCompound& c = config_.compounds[at(index)];
         const double h = heightOf(config_, c);
@@ -119,11 +119,11 @@ private:
             ++frames_;
         }
         for (const auto& f : c.inputFrames) takers_[f.name].push_back(index);
-        below_ = isExchanging() ? 72 : 10; // what the arrows below need
+        below_ = isExchanging() ? 72 : 10; // room for the arrows below
         return middle;
     }
 
-    // Are there frames that do not go straight up?
+    // Returns true if a frame does not lead straight up.
     [[nodiscard]] bool isExchanging() const {
         for (const auto& [name, makers] : makers_) {
             const auto takers = takers_.find(name);
@@ -156,12 +156,13 @@ private:
         }
     }
 
-    // How many arrows have come to each compound, and gone from it upwards and downwards.
+    // Number of arrows that enter each compound, and that leave it upwards and downwards.
     struct Ports {
         std::map<Index, double> in, up, down;
     };
 
-    // Upwards from the top of who makes it to the bottom of who takes it; between others, below both.
+    // An arrow to an ancestor leads from the producer's top to the consumer's bottom. Other arrows lead below both
+    // boxes.
     void drawFrames(Svg& svg) const {
         Ports ports;
         const bool few = frames_ <= 24;
@@ -177,7 +178,7 @@ private:
     void drawFrame(Svg& svg, const std::string& name, Index maker, Index taker, Ports& ports, bool named) const {
         const Box& from = boxes_.at(maker);
         const Box& to = boxes_.at(taker);
-        double incoming = 0; // arrows
+        double incoming = 0; // number of arrows
         for (const auto& f : config_.compounds[at(taker)].inputFrames) {
             if (const auto all = makers_.find(f.name); all != makers_.end()) incoming += static_cast<double>(all->second.size());
         }

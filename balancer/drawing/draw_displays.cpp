@@ -1,4 +1,4 @@
-// Canvases with their segments, to scale, and beside them their layouts with the views.
+// Draws canvases with their segments, to scale, and their layouts with the views beside them.
 #include <algorithm>
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@ namespace mural::drawing {
 
 namespace {
 
-// A part of a canvas (whose y goes up) within its box (whose y goes down).
+// Returns a part of a canvas (y upwards) within its box (y downwards).
 Box partOf(const Box& whole, const Viewport& part) {
     return {whole.x + part.x * whole.w, whole.y + (1 - part.y - part.h) * whole.h, part.w * whole.w, part.h * whole.h};
 }
@@ -34,7 +34,7 @@ void drawSegment(Svg& svg, const ResolvedConfig& config, const config::ResolvedS
     svg.rect(partOf(canvas, s.viewport), {.fill = paleColorOf(config, s.channel), .stroke = colorOf(config, s.channel), .strokeWidth = 1.5, .dash = {}}, tip);
 }
 
-// Segments of both eyes lie over each other: their names stand below each other.
+// Segments of the two eyes coincide, so their names are stacked.
 void nameSegment(Svg& svg, const ResolvedConfig& config, const config::ResolvedSegment& s, const Box& canvas, size_t stacked) {
     const Box seen = partOf(canvas, s.viewport);
     const double middle = seen.y + seen.h / 2 + static_cast<double>(stacked) * 30;

@@ -1,4 +1,4 @@
-// Nodes with their pipes, windows and channels, as boxes in boxes.
+// Draws nodes with their pipes, windows and channels as nested boxes.
 #include <algorithm>
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kChannelHeight = 22, kWindowHead = 17, kPipeHead = 18, kNodeHead = 24, kPad = 7;
 
-// The channels that the file names; destination channels lie on them.
+// Returns the channels of the file. Destination channels would cover them.
 std::vector<Index> namedChannels(const ResolvedConfig& config, const config::ResolvedWindow& w) {
     std::vector<Index> all;
     for (const Index c : w.channels) {
@@ -74,7 +74,8 @@ Box drawMachines(Svg& svg, const ResolvedConfig& config, Point corner, double wi
     double x = corner.x, y = corner.y, lowest = corner.y, right = corner.x;
     for (size_t n = 0; n < config.nodes.size(); ++n) {
         const config::ResolvedNode& node = config.nodes[n];
-        if (node.pipes.empty() && node.isApplication && config.nodes.size() > 1) continue; // it only runs the program
+        // the node only runs the program
+        if (node.pipes.empty() && node.isApplication && config.nodes.size() > 1) continue;
         const auto most = static_cast<size_t>(std::max(1., (width - kGap) / (kPipeWidth + kPad)));
         const size_t columns = std::clamp<size_t>(node.pipes.size(), 1, most);
         double h = kNodeHead;

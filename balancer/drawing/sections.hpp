@@ -1,4 +1,4 @@
-// The parts of a configuration's picture. Each draws itself from a corner on and says how much room it took.
+// Sections of a configuration's drawing. Each draws itself from a given corner and returns its size.
 #pragma once
 
 #include "balancer/config/resolved_config.hpp"
@@ -17,14 +17,14 @@ Box drawDisplays(Svg& svg, const ResolvedConfig& config, Point corner, double wi
 Box drawMachines(Svg& svg, const ResolvedConfig& config, Point corner, double width);
 Box drawCompounds(Svg& svg, const ResolvedConfig& config, Point corner, double width);
 
-// Of the machine that a channel belongs to, or of its GPU: a strong colour for lines, a pale one for areas.
+// Colour of the machine of a channel, or of its GPU: strong for lines, pale for areas.
 std::string colorOf(const ResolvedConfig& config, Index channel);
 std::string paleColorOf(const ResolvedConfig& config, Index channel);
 Index colorIndex(const ResolvedConfig& config, Index pipe);
 std::string nodeColor(Index node);
 std::string paleNodeColor(Index node);
 
-// What to call something without a name.
+// Returns the name, or a numbered substitute for an empty one.
 std::string nameOr(const std::string& name, std::string_view otherwise, size_t number);
 std::string nodeName(const ResolvedConfig& config, Index node);
 

@@ -7,9 +7,9 @@ namespace mural::drawing {
 
 namespace {
 
-// Of the letters of sans-serif fonts, on average, in parts of the font's size.
+// Average letter width of sans-serif fonts, relative to the font size.
 constexpr double kLetterWidth = .54;
-constexpr double kBolder = 1.14; // bold ones are so much wider
+constexpr double kBolder = 1.14; // width of bold letters, relative to regular ones
 
 std::string escaped(std::string_view text) {
     std::string out;
@@ -35,7 +35,7 @@ std::string attributes(const Style& s) {
 
 std::string tipOf(std::string_view tip) { return tip.empty() ? std::string() : "<title>" + escaped(tip) + "</title>"; }
 
-// Cuts at a letter, not within one of UTF-8's sequences.
+// Truncates at a character boundary, never within a UTF-8 sequence.
 std::string cut(std::string_view text, double width, double fontSize) {
     const auto letters = static_cast<size_t>(std::max(1., width / (fontSize * kLetterWidth)));
     size_t count = 0, at = 0, end = text.size();
@@ -69,7 +69,7 @@ void Svg::line(Point from, Point to, const Style& style) {
 }
 
 void Svg::arrow(Point from, Point fromHandle, Point toHandle, Point to, const Style& style, std::string_view tip) {
-    // The head is a triangle of its own: markers do not take a line's colour everywhere.
+    // The arrowhead is a separate triangle, because not every viewer colours SVG markers like their line.
     const double length = std::max(1e-6, std::hypot(to.x - toHandle.x, to.y - toHandle.y));
     const double dx = (to.x - toHandle.x) / length, dy = (to.y - toHandle.y) / length, size = 4 + style.strokeWidth;
     const Point neck{to.x - dx * size, to.y - dy * size};

@@ -1,4 +1,4 @@
-// An SVG picture, made shape by shape. Later shapes lie over earlier ones; what belongs behind others goes to `below`.
+// Builds an SVG picture shape by shape. Later shapes cover earlier ones; background shapes go to `below`.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ struct Point {
 
 struct Box {
     double x = 0;
-    double y = 0; // from the top, as SVG counts
+    double y = 0; // from the top, as in SVG
     double w = 0;
     double h = 0;
     [[nodiscard]] double right() const { return x + w; }
@@ -40,15 +40,15 @@ struct Font {
 
 class Svg {
 public:
-    // tip: shown while the pointer rests on it.
+    // tip: tooltip text.
     void rect(const Box& box, const Style& style, std::string_view tip = {});
-    // at: the left (middle, right) end of the line on which the letters stand. What is wider than `width` is cut.
+    // at: left, middle or right end of the baseline, depending on the alignment. Text wider than `width` is truncated.
     void text(Point at, std::string_view text, const Font& font, double width = 1e9);
     void line(Point from, Point to, const Style& style);
-    // A curve that leaves `from` towards `fromHandle`, and comes to `to` from `toHandle`; with an arrow's head.
+    // Draws a Bézier curve from `from` (towards `fromHandle`) to `to` (from `toHandle`) with an arrowhead.
     void arrow(Point from, Point fromHandle, Point toHandle, Point to, const Style& style, std::string_view tip = {});
 
-    // The whole picture.
+    // Returns the complete document.
     [[nodiscard]] std::string finish(double width, double height) const;
 
     static double widthOf(std::string_view text, double fontSize);

@@ -1,4 +1,4 @@
-// Any areas that are made by cuts, any node on either side of them: for faults on purpose and tests. Pure.
+// Random partitions of a tile grid by cuts, for fault injection and tests. Pure.
 #pragma once
 
 #include <random>
@@ -8,7 +8,7 @@
 
 namespace mural::queue {
 
-// As dealTiles() takes them. Needs 1 <= n <= columns * rows.
+// Returns areas that are valid for dealTiles(). Requires 1 <= n <= columns * rows.
 std::vector<TileRegion> randomAreas(int columns, int rows, size_t n, std::mt19937& random);
 
 } // namespace mural::queue

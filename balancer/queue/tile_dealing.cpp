@@ -31,7 +31,7 @@ void TileCosts::sum() {
 }
 
 void TileCosts::learn(const TileRegion& region, double time) {
-    constexpr double kLeast = 1e-9; // of a tile: nothing has no shares
+    constexpr double kLeast = 1e-9; // least cost of a tile: zero costs have no proportions
     const double before = of(region);
     const double each = time / (static_cast<double>(region.columns) * region.rows);
     for (int row = region.row; row < region.row + region.rows; ++row)
@@ -46,10 +46,10 @@ namespace {
 
 using Nodes = std::vector<size_t>;
 
-// A cut that no area crosses, and who lies where.
+// A cut through the grid that crosses no area, and the nodes on either side.
 struct Cut {
-    bool columns = true; // it divides columns
-    int at = 0;          // the first column, or row, behind it
+    bool columns = true; // true: divides columns; false: rows
+    int at = 0; // first column, or row, after the cut
     Nodes before, behind;
 };
 
@@ -72,7 +72,7 @@ private:
     [[nodiscard]] int from(size_t node, bool columns) const { return columns ? areas_[node].column : areas_[node].row; }
     [[nodiscard]] int to(size_t node, bool columns) const { return columns ? areas_[node].column + areas_[node].columns : areas_[node].row + areas_[node].rows; }
 
-    // Of all such cuts the one with as many nodes on either side as can be; columns before rows.
+    // Returns the cut with the most balanced number of nodes; columns are preferred to rows.
     [[nodiscard]] Cut cutOf(const Nodes& nodes) const {
         Cut best;
         size_t bestUneven = std::numeric_limits<size_t>::max();
@@ -91,7 +91,7 @@ private:
         return best;
     }
 
-    // The least that these nodes need.
+    // Returns the least number of columns and rows that these nodes need.
     [[nodiscard]] Size leastOf(const Nodes& nodes) const {
         if (nodes.size() < 2) return {};
         const Cut cut = cutOf(nodes);

@@ -29,7 +29,7 @@ bool TileQueue::look(double longest) {
         best_ = areas_;
         bestLongest_ = longest;
         failures_ = 0;
-    } else if (!moved_ && longest > (1 + rules_.changed) * bestLongest_) { // another load
+    } else if (!moved_ && longest > (1 + rules_.changed) * bestLongest_) { // the load has changed
         best_ = areas_;
         bestLongest_ = longest;
         failures_ = 0;
@@ -43,7 +43,7 @@ bool TileQueue::look(double longest) {
     double promised = 0;
     for (const TileRegion& area : other) promised = std::max(promised, costs_.of(area));
     if (promised <= (1 - rules_.gain) * longest) return takeAreas(std::move(other));
-    kept_ = longest > (1 + rules_.brought) * bestLongest_; // nothing better is in sight from here
+    kept_ = longest > (1 + rules_.brought) * bestLongest_; // no better areas are reachable from here
     return kept_ && takeAreas(best_);
 }
 

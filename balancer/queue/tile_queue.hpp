@@ -1,12 +1,12 @@
-// The tiles of one picture from frame to frame: who is free earlier takes more of the next ones. Pure.
+// Tile assignment of one picture from frame to frame: faster nodes receive more tiles of the next frames. Pure.
 //
-// Measured are the nodes' times, each of all its tiles. What a single tile costs is learned from that: the tiles of a node
-// share its time as they did before, and those that change hands take along what they were thought to cost. So an area of
-// few costly tiles among many is found by the cuts that come nearer to it.
+// Input is each node's total time for its tiles. Costs of single tiles are estimated: the tiles of a node share its
+// time in the previous proportions, and a tile keeps its estimate when it changes nodes. Successive cuts therefore
+// converge on small expensive areas.
 //
-// Tiles stay where they are unless other areas promise enough. What a move has brought is measured: where several in a row
-// bring nothing, the best areas so far are taken and kept until the load is another one. So a load that stays the same is
-// settled after finitely many moves.
+// Tiles move only if other areas promise a sufficient gain. The gain of each move is measured. After several moves
+// without gain the best areas so far are restored and kept until the load changes. A constant load therefore settles
+// after finitely many moves.
 #pragma once
 
 #include <optional>
@@ -17,23 +17,23 @@
 namespace mural::queue {
 
 struct QueueRules {
-    int frames = 2;        // measured before tiles move: one alone may be an odd one
-    double gain = 0.06;    // part of the longest time that new areas must promise to save…
-    double brought = 0.01; // …and to have saved, measured
-    int failures = 3;      // moves in a row that have not
-    double changed = 0.15; // part by which the longest time becomes another while nothing moves: the load has changed
+    int frames = 2; // frames measured before tiles move; a single one may be an outlier
+    double gain = 0.06; // promised reduction of the longest time, as a fraction
+    double brought = 0.01; // measured reduction that counts as a gain, as a fraction
+    int failures = 3; // consecutive moves without a gain before the best areas are restored
+    double changed = 0.15; // relative change of the longest time, without a move, that counts as a load change
 };
 
 class TileQueue {
 public:
-    // areas: as dealTiles() takes them.
+    // areas: as required by dealTiles().
     TileQueue(int columns, int rows, std::vector<TileRegion> areas, QueueRules rules = {});
 
     [[nodiscard]] const std::vector<TileRegion>& areas() const { return areas_; }
     [[nodiscard]] int columns() const { return costs_.columns(); }
     [[nodiscard]] int rows() const { return costs_.rows(); }
 
-    // What a frame that was drawn with areas() took each node; any unit. True: areas() are others now.
+    // Reports the time of each node for a frame drawn with areas(), in any unit. Returns true if areas() has changed.
     bool drawn(const std::vector<double>& times);
 
 private:
@@ -43,16 +43,16 @@ private:
     const QueueRules rules_;
     TileCosts costs_;
     std::vector<TileRegion> areas_;
-    std::vector<double> times_; // since the last move, the latest count most
-    int frames_ = 0;            // of them
-    bool moved_ = false;        // what the last move brought is not known yet
+    std::vector<double> times_; // weighted mean since the last move; recent frames count most
+    int frames_ = 0; // number of frames in the mean
+    bool moved_ = false; // the gain of the last move is not measured yet
     int failures_ = 0;
-    std::vector<TileRegion> best_; // of this load…
-    double bestLongest_ = 0;       // …and the time that they took; 0: none yet
-    bool kept_ = false;            // they are, until the load changes
+    std::vector<TileRegion> best_; // best areas for the current load
+    double bestLongest_ = 0; // their longest time; 0: none yet
+    bool kept_ = false; // areas are kept until the load changes
 };
 
-// Tiles that are another node's in `b` than in `a`.
+// Returns the number of tiles that belong to different nodes in `a` and `b`.
 int tilesMoved(const std::vector<TileRegion>& a, const std::vector<TileRegion>& b);
 
 } // namespace mural::queue
