@@ -1,4 +1,4 @@
-// Monotonic time in nanoseconds and deadlines: every wait in Mural has one.
+// Monotonic time in nanoseconds, and deadlines. Every wait in Mural has a deadline.
 #pragma once
 
 #include <cerrno>
@@ -12,21 +12,21 @@ namespace mural {
 constexpr int64_t kNsPerMs = 1'000'000;
 constexpr int64_t kNsPerS = 1'000'000'000;
 
-// By the raw system call: in a captured program clock_gettime may be replaced (virtual clocks).
+// Uses the raw system call, because captured programs may replace clock_gettime (virtual clocks).
 inline int64_t monotonicNowNs() {
     timespec t{};
     syscall(SYS_clock_gettime, CLOCK_MONOTONIC, &t);
     return static_cast<int64_t>(t.tv_sec) * kNsPerS + t.tv_nsec;
 }
 
-// Returns at once when that time of monotonicNowNs() is over.
+// Sleeps until a time of monotonicNowNs(). Returns immediately if it has passed.
 inline void sleepUntilNs(int64_t atNs) {
     const timespec until{static_cast<time_t>(atNs / kNsPerS), static_cast<long>(atNs % kNsPerS)};
     while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
     }
 }
 
-// CPU time of the calling thread.
+// Returns the CPU time of the calling thread.
 inline int64_t threadCpuNowNs() {
     timespec t{};
     syscall(SYS_clock_gettime, CLOCK_THREAD_CPUTIME_ID, &t);
@@ -37,12 +37,12 @@ class Deadline {
 public:
     static Deadline inMs(int64_t ms) { return Deadline(monotonicNowNs() + ms * kNsPerMs); }
     static Deadline never() { return Deadline(INT64_MAX); }
-    // A time of monotonicNowNs(), and back; INT64_MAX: never.
+    // Converts from a time of monotonicNowNs(), and back. INT64_MAX: never.
     static Deadline at(int64_t ns) { return Deadline(ns); }
     [[nodiscard]] int64_t atNs() const { return atNs_; }
 
     [[nodiscard]] bool passed() const { return atNs_ != INT64_MAX && monotonicNowNs() >= atNs_; }
-    // Time left in ns, 0 when passed; capped so that callers can wait in slices.
+    // Returns the remaining time in ns, 0 after the deadline, capped for callers that wait in slices.
     [[nodiscard]] int64_t leftNs(int64_t capNs = INT64_MAX) const {
         if (atNs_ == INT64_MAX) return capNs;
         const int64_t left = atNs_ - monotonicNowNs();

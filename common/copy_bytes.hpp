@@ -1,5 +1,5 @@
-// Bytes to another place. std::ranges::copy goes over const bytes one at a time with GCC 12 at -O2, also where both are spans: in the
-// sender of multicast that was a sixth of its core's samples (perf).
+// Copies bytes with memcpy. GCC 12 at -O2 compiles std::ranges::copy of const bytes to a byte loop, even between spans;
+// in the multicast sender the loop took a sixth of the samples of its core (perf).
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace mural {
 
-// To where `to` begins, which has room for all of them; they do not overlap.
+// Copies to the beginning of `to`. Requires sufficient room and no overlap.
 inline void copyBytes(std::span<const std::byte> from, std::span<std::byte> to) {
     if (!from.empty()) std::memcpy(to.data(), from.data(), from.size());
 }

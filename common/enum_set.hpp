@@ -1,4 +1,4 @@
-// A set of the values of a small enumeration, as bits: which eyes, which buffers, which tasks.
+// A set of values of a small enumeration, as bits: eyes, buffers, tasks.
 #pragma once
 
 #include <cstdint>

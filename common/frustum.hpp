@@ -1,4 +1,4 @@
-// What glFrustum and glOrtho take: edges on the near plane, near, far.
+// Arguments of glFrustum and glOrtho: edges on the near plane, near and far distance.
 #pragma once
 
 namespace mural {

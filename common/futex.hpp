@@ -1,4 +1,4 @@
-// Waiting on a 32-bit word in memory that processes share. Linux futexes, nothing else.
+// Waits on a 32-bit word in memory that processes share, by Linux futexes.
 #pragma once
 
 #include <atomic>
@@ -10,7 +10,7 @@
 
 namespace mural {
 
-// Sleeps while word == expected, at most timeoutNs; may return early without a reason.
+// Sleeps while word == expected, for at most timeoutNs. Spurious returns are possible.
 inline void futexWait(const std::atomic<uint32_t>& word, uint32_t expected, int64_t timeoutNs) {
     timespec t{};
     t.tv_sec = timeoutNs / 1'000'000'000;

@@ -1,5 +1,5 @@
-// Names of GL libraries, as they stand in the dynamic section of ELF files. The preloaded front looks at
-// loaded ones, `mural run` at files; both must come to the same result.
+// Names of GL libraries in the dynamic section of ELF files. The preloaded entry examines loaded libraries, `mural run`
+// examines files; both must agree.
 #pragma once
 
 #include <cstring>
@@ -7,9 +7,8 @@
 
 namespace mural {
 
-// Those that programs link or open: libGL.so.1, libEGL.so.1, libGLESv1_CM.so.1, libGLESv2.so.2 and the
-// split libraries of GLVND. Without a version it is another thing: browsers bring a libEGL.so
-// (ANGLE) that itself goes through the system's.
+// Libraries that programs link or open, including the split libraries of GLVND. Names without a version do not count:
+// browsers ship a libEGL.so (ANGLE) that itself uses the system's.
 constexpr std::string_view kGlLibraries[] = {"libGL.so.1", "libGLX.so.0", "libOpenGL.so.0", "libEGL.so.1", "libGLESv1_CM.so.1", "libGLESv2.so.2"};
 
 inline bool isGlLibraryName(std::string_view soname) {
@@ -19,7 +18,7 @@ inline bool isGlLibraryName(std::string_view soname) {
     return false;
 }
 
-// What all libraries of GLVND need, and no other.
+// Every library of GLVND needs libGLdispatch, and no other library does.
 inline bool isGlvndDispatch(std::string_view needed) { return needed == "libGLdispatch.so.0"; }
 
 } // namespace mural

@@ -1,4 +1,4 @@
-// Pages of 2 MiB for memory of megabytes: touching it by pages of 4 KiB costs a fault for each, and more of the processor's address cache.
+// Huge pages of 2 MiB for large memory: pages of 4 KiB cost a fault each and more TLB entries.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,8 @@ namespace mural {
 
 constexpr size_t kHugePageBytes = size_t{2} << 20;
 
-// The whole ones that lie within, for which the system is asked; empty where there are none. That it has no huge pages does not matter.
+// Requests huge pages for the aligned part of `memory` and returns that part; empty if too small. Systems without huge
+// pages ignore the request.
 inline std::span<std::byte> askForHugePages(std::span<std::byte> memory) {
     const size_t before = (kHugePageBytes - reinterpret_cast<uintptr_t>(memory.data()) % kHugePageBytes) % kHugePageBytes;
     if (memory.size() < before + kHugePageBytes) return {};

@@ -1,4 +1,4 @@
-// Where in a pixel its samples lie. Source: thesis, "Subpixel Compounds".
+// Sample positions within a pixel. Source: thesis, "Subpixel Compounds".
 #pragma once
 
 #include "common/sub_pixel.hpp"
@@ -6,13 +6,13 @@
 namespace mural {
 
 struct Jitter {
-    double x = 0; // pixels to the right of the middle, between -0.5 and 0.5
+    double x = 0; // in pixels to the right of the centre, between -0.5 and 0.5
     double y = 0;
 };
 
-// Both coordinates take each of n evenly spaced values once, so that the samples' mean is the pixel's middle for any n, and
-// n samples see n different distances from every edge: columns in order, rows in that of their radical inverses
-// (0, 1/2, 1/4, 3/4, …), a Hammersley set.
+// Returns the position of one sample. Each coordinate takes each of n evenly spaced values once, so the mean of the
+// samples is the pixel's centre, and n samples have n different distances from every edge. Columns are in order, rows
+// in the order of their radical inverses (0, 1/2, 1/4, 3/4, ...): a Hammersley set.
 [[nodiscard]] inline Jitter jitterOf(const SubPixel& s) {
     if (s.size <= 1) return {};
     const auto radicalInverse = [](int32_t i) {

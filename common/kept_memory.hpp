@@ -1,4 +1,5 @@
-// Memory that is given back stays with the process, for those that hold uploads and pictures for a frame or a scene.
+// Malloc settings for processes that hold uploads and pictures for a frame or a scene: freed memory stays in the
+// process.
 #pragma once
 
 #include <cstddef>
@@ -10,17 +11,18 @@
 namespace mural {
 
 constexpr int kKeptBytes = 64 << 20;
-constexpr int kLargestKeptBlockBytes = 32 << 20; // the most that glibc takes
+constexpr int kLargestKeptBlockBytes = 32 << 20; // largest value that glibc accepts
 
-// Otherwise each block from 128 KiB on is new memory: to get its pages, one fault for each, takes as long as to compress what is
-// then written there. Before there are other threads. At most kKeptBytes stay in each of malloc's arenas.
+// Keeps freed blocks in the heap. By default every block from 128 KiB on is newly mapped, and its page faults take as
+// long as compressing its contents. At most kKeptBytes stay in each malloc arena. Call before other threads start.
 inline void keepFreedMemory() {
     mallopt(M_MMAP_THRESHOLD, kLargestKeptBlockBytes);
     mallopt(M_TRIM_THRESHOLD, kKeptBytes);
 }
 
-// So much is with the calling thread's malloc from now on, as if it had been used and given back: the first who need it need not wait for
-// its pages. In huge ones where the system has them; below kLargestKeptBlockBytes, and behind keepFreedMemory(), else without effect.
+// Touches memory in advance, in the calling thread's arena, as if it had been used and freed. The first user then has
+// no page faults. Uses huge pages where available. Requires keepFreedMemory() and a size below kLargestKeptBlockBytes;
+// otherwise it has no effect.
 inline void haveKeptMemory(size_t sizeBytes) {
     constexpr size_t kPageBytes = 4096;
     void* const block = std::malloc(sizeBytes);

@@ -1,4 +1,4 @@
-// Numbers in bytes that other machines read: least significant byte first, at any address.
+// Integers in bytes for other machines: little-endian, at any alignment.
 #pragma once
 
 #include <bit>
@@ -21,7 +21,7 @@ template <std::unsigned_integral T> T loadLittle(const std::byte* at) {
 
 template <std::unsigned_integral T> void storeLittle(std::byte* at, T value) {
     if constexpr (std::endian::native == std::endian::little) {
-        std::memcpy(at, &value, sizeof value); // compilers make no single store of the loop
+        std::memcpy(at, &value, sizeof value); // compilers do not merge the loop into a single store
     } else {
         for (size_t i = 0; i < sizeof value; ++i) at[i] = static_cast<std::byte>(value >> (8 * i) & 0xff);
     }

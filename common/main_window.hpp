@@ -1,5 +1,5 @@
-// Which window the wall shows: the largest that has swapped; the first of equal ones stays. When it is
-// destroyed, the largest of the others is the next.
+// Selects the window that the wall shows: the largest that has swapped, the first of equal ones. After its destruction
+// the largest remaining window follows.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,11 @@ namespace mural {
 
 class MainWindow {
 public:
-    // A window has swapped. Returns the number of this frame of the wall, from 1, which goes on over changes
-    // of the window; 0 when it is not the main window's.
+    // Reports a swap. Returns the wall's frame number, from 1, which continues across changes of the window; 0 for
+    // other windows.
     int64_t swapped(uint32_t client, uint32_t window, uint32_t width, uint32_t height) {
         const Key key = keyOf(client, window);
-        const uint64_t area = uint64_t{width} * height; // it may have been resized
+        const uint64_t area = uint64_t{width} * height; // the window may have been resized
         areas_[key] = area;
         const auto now = areas_.find(main_);
         if (key != main_ && now != areas_.end() && area <= now->second) return 0;
@@ -45,7 +45,7 @@ private:
         }
     }
 
-    std::map<Key, uint64_t> areas_; // of the windows that have swapped, pixels
+    std::map<Key, uint64_t> areas_; // areas of swapped windows, in pixels
     Key main_ = 0;
     int64_t frames_ = 0;
 };

@@ -8,11 +8,11 @@ namespace mural {
 namespace {
 
 constexpr size_t kPage = WriteWatch::kPageBytes;
-constexpr size_t kComparedBytes = 64 * 1024; // up to here a comparison costs less than asking the kernel
-constexpr uint8_t kQuietCalls = 16;          // comparisons that cost as much as a fault
+constexpr size_t kComparedBytes = 64 * 1024; // up to this size a comparison costs less than a query of the kernel
+constexpr uint8_t kQuietCalls = 16; // number of comparisons that cost as much as a fault
 constexpr size_t kWord = 4, kBlock = 64, kMergedGap = 256;
 
-// Whole blocks without a call: this is where the time of dense changes goes.
+// Compares whole blocks inline: dense changes spend most of their time here.
 bool sameBytes(const std::byte* a, const std::byte* b, size_t sizeBytes) {
     if (sizeBytes != kBlock) return std::memcmp(a, b, sizeBytes) == 0;
     uint64_t left[kBlock / 8], right[kBlock / 8], differ = 0;
@@ -31,12 +31,12 @@ struct MapChanges::Pass {
     size_t unit, gap;
     Changed changed;
     void* self;
-    size_t quietFrom = 0, quietEnd = 0; // a run of pages to be locked
+    size_t quietFrom = 0, quietEnd = 0; // a run of pages to lock
 };
 
 bool MapChanges::begin(void* memory, size_t sizeBytes, bool mayWatch) {
     end();
-    const size_t pages = sizeBytes / kPage + 2; // it may begin and end within pages
+    const size_t pages = sizeBytes / kPage + 2; // the memory may begin and end within pages
     reservedBytes_ = sizeBytes + pages;
     void* own = mmap(nullptr, reservedBytes_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (own == MAP_FAILED) return false;
@@ -64,7 +64,7 @@ void MapChanges::collect(bool exact, Changed changed, void* self) {
         its.map->comparePages(its, from, end);
     };
     if (watch_.unlocked(visit, &pass)) return lockQuiet(pass);
-    watch_.end(); // lost: compared from now on
+    watch_.end(); // the watch is lost: compare from now on
     compare(pass, memory_, 0, sizeBytes_);
 }
 
@@ -72,7 +72,7 @@ void MapChanges::accept(size_t fromByte, const std::byte* bytes, size_t sizeByte
     compare(Pass{this, kWord, 0, changed, self}, bytes - fromByte, fromByte, fromByte + sizeBytes);
 }
 
-// Unlocked pages. Those that have been quiet for long are gathered into runs, and those locked.
+// Compares unlocked pages. Collects pages without recent changes into runs, and locks the runs.
 void MapChanges::comparePages(Pass& pass, size_t fromByte, size_t endByte) {
     const size_t inPage = reinterpret_cast<uintptr_t>(memory_) % kPage;
     for (size_t at = fromByte, next = 0; at < endByte; at = next) {
@@ -92,20 +92,20 @@ void MapChanges::comparePages(Pass& pass, size_t fromByte, size_t endByte) {
     }
 }
 
-// Locks the run, and only then looks at it for the last time: writes from here on unlock pages.
+// Locks the run before its last comparison: later writes unlock pages again.
 void MapChanges::lockQuiet(Pass& pass) {
     if (pass.quietEnd == pass.quietFrom) return;
     const auto visit = [](void* p, size_t from, size_t end) {
         auto& its = *static_cast<Pass*>(p);
         its.map->compare(its, its.map->memory_, from, end);
     };
-    // A watch that is lost here is seen at the next call.
+    // The next call notices a watch that is lost here.
     if (!watch_.lock(pass.quietFrom, pass.quietEnd, visit, &pass)) compare(pass, memory_, pass.quietFrom, pass.quietEnd);
     pass.quietFrom = pass.quietEnd = 0;
 }
 
-// Whether anything has changed. Changed units with small gaps between them are told as one run, from
-// the copy: the program may write on meanwhile.
+// Returns true if anything has changed. Reports changed units with small gaps as one run, from the copy, because the
+// program may continue to write.
 bool MapChanges::compare(const Pass& pass, const std::byte* with, size_t fromByte, size_t endByte) {
     bool any = false;
     const auto same = [this, with](size_t from, size_t end) { return sameBytes(known_ + from, with + from, end - from); };

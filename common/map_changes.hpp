@@ -1,7 +1,7 @@
-// What changes in a piece of memory that a program writes at any time. Small memory, and memory that
-// the kernel can't watch, is compared with a copy as a whole. In other memory only pages that were
-// written lately are: a page that stays as it is for a while is locked (WriteWatch), which costs its
-// next write a fault, some 20 comparisons' worth. Measured in docs/decisions/0005.
+// Detects changes in memory that a program writes at any time, such as a persistent mapping. Small memory, and memory
+// that the kernel cannot watch, is compared with a copy. In other memory only recently written pages are compared. A
+// page without changes for some time is locked (WriteWatch); its next write costs a fault, as much as about 20
+// comparisons (docs/decisions/0005).
 #pragma once
 
 #include <cstddef>
@@ -14,19 +14,19 @@ namespace mural {
 class MapChanges {
 public:
     ~MapChanges() { end(); }
-    // From now on. False: no memory for the copy. mayWatch: no one else can write the memory by another address.
+    // Starts. Returns false if there is no memory for the copy. mayWatch: the memory has no other mapping with write
+    // access.
     bool begin(void* memory, size_t sizeBytes, bool mayWatch = true);
     void end();
     [[nodiscard]] bool active() const { return memory_ != nullptr; }
     [[nodiscard]] bool watched() const { return watch_.active(); }
 
-    // Calls changed(self, fromByte, bytes, sizeBytes) for what differs from the last call. `bytes` stays as
-    // it is while the program writes on. exact: words of 4 bytes that did not change are never in it,
-    // since others write to them.
+    // Calls changed(self, fromByte, bytes, sizeBytes) for differences since the last call. `bytes` stays stable while
+    // the program writes. `exact` excludes unchanged words of 4 bytes, because others write to them.
     using Changed = void (*)(void* self, size_t fromByte, const std::byte* bytes, size_t sizeBytes);
     void collect(bool exact, Changed changed, void* self);
-    // Others have made the memory there hold these bytes: calls changed for words where that is news, of
-    // `bytes`. They are no changes then.
+    // Others have written these bytes into the memory. Calls `changed` for words of `bytes` that differ from the copy;
+    // they do not count as changes afterwards.
     void accept(size_t fromByte, const std::byte* bytes, size_t sizeBytes, Changed changed, void* self);
 
 private:
@@ -37,7 +37,7 @@ private:
 
     std::byte* memory_ = nullptr;
     std::byte* known_ = nullptr; // the copy
-    uint8_t* quiet_ = nullptr;   // of each page: for how many calls it has not changed
+    uint8_t* quiet_ = nullptr; // per page: number of calls without a change
     size_t sizeBytes_ = 0, reservedBytes_ = 0;
     WriteWatch watch_;
 };

@@ -1,4 +1,4 @@
-// 4×4 matrices of affine maps, row by row: the value in row r and column c is m[r][c].
+// 4x4 matrices of affine maps, row-major: row r, column c is m[r][c].
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ struct Matrix4 {
         t.m[2][3] = by.z;
         return t;
     }
-    // Rows u, v, w: turns the room so that these become the axes.
+    // Returns the rotation that maps u, v, w to the axes.
     [[nodiscard]] static constexpr Matrix4 rows(const Vector3& u, const Vector3& v, const Vector3& w) {
         return {{{{u.x, u.y, u.z, 0}, {v.x, v.y, v.z, 0}, {w.x, w.y, w.z, 0}, {0, 0, 0, 1}}}};
     }
@@ -44,7 +44,7 @@ struct Matrix4 {
     return {row(0), row(1), row(2)};
 }
 
-// Of a rotation and a translation.
+// Returns the inverse of a rotation with translation.
 [[nodiscard]] constexpr Matrix4 rigidInverse(const Matrix4& t) {
     Matrix4 inverse;
     for (size_t r = 0; r < 3; ++r) {

@@ -1,4 +1,4 @@
-// Interleaved pixels: of every block of w × h pixels the one at x, y. Source: thesis, "Compounds": pixel.
+// Interleaved pixels: pixel x, y of every block of w x h pixels. Source: thesis, "Compounds": pixel.
 #pragma once
 
 #include <cstdint>
@@ -18,15 +18,15 @@ struct PixelKernel {
     friend constexpr bool operator==(const PixelKernel&, const PixelKernel&) = default;
 };
 
-// `inner`'s pixels among those that `outer` left: pixel i of the result is pixel inner.x + inner.w·i of `outer`, so that
-// a picture may be put together at each level. (Equalizer multiplies the other way round, and its pictures are right
-// only when all is put together at the top.)
+// Returns the kernel of `inner` applied to the pixels of `outer`: pixel i of the result is pixel inner.x + inner.w * i
+// of `outer`, so pictures can be assembled at each level. (Equalizer multiplies in the other order; its pictures are
+// right only when assembled at the root.)
 [[nodiscard]] constexpr PixelKernel compose(const PixelKernel& outer, const PixelKernel& inner) {
     return {outer.x + outer.w * inner.x, outer.y + outer.h * inner.y, outer.w * inner.w, outer.h * inner.h};
 }
 
-// The area that holds a kernel's pixels side by side. Where the kernel does not divide the area, the last column or
-// row may stand for pixels outside of it.
+// Returns the area that holds the kernel's pixels side by side. If the kernel does not divide the area, the last column
+// or row may represent pixels outside.
 [[nodiscard]] constexpr PixelViewport apply(const PixelViewport& area, const PixelKernel& k) {
     return {area.x, area.y, (area.w + k.w - 1) / k.w, (area.h + k.h - 1) / k.h};
 }

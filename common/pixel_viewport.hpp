@@ -1,5 +1,5 @@
-// Integer rectangles in window coordinates: x, y of the lower left corner, width, height, in pixels.
-// Source: thesis, "Compounds": pixel viewport.
+// Integer rectangles in window coordinates: lower left corner x, y, width, height, in pixels. Source: thesis,
+// "Compounds": pixel viewport.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ struct PixelViewport {
     [[nodiscard]] constexpr int64_t area() const {
         return empty() ? 0 : static_cast<int64_t>(w) * h;
     }
-    // Ends beyond what an int32_t holds (programs may ask for anything) count as the largest one.
+    // Saturates at the range of int32_t, because programs may request any size.
     [[nodiscard]] constexpr int32_t right() const { return end(x, w); }
     [[nodiscard]] constexpr int32_t top() const { return end(y, h); }
     [[nodiscard]] static constexpr int32_t end(int32_t from, int32_t size) {
@@ -29,7 +29,7 @@ struct PixelViewport {
     friend constexpr bool operator==(const PixelViewport&, const PixelViewport&) = default;
 };
 
-// The common part; an empty rectangle (w = h = 0) when there is none.
+// Returns the intersection; w = h = 0 if it is empty.
 [[nodiscard]] constexpr PixelViewport intersect(const PixelViewport& a, const PixelViewport& b) {
     const int32_t x0 = std::max(a.x, b.x);
     const int32_t y0 = std::max(a.y, b.y);
@@ -39,7 +39,7 @@ struct PixelViewport {
     return {x0, y0, x1 - x0, y1 - y0};
 }
 
-// The smallest rectangle that holds both; empty operands do not count.
+// Returns the bounding box; empty operands do not count.
 [[nodiscard]] constexpr PixelViewport unite(const PixelViewport& a, const PixelViewport& b) {
     if (a.empty()) return b;
     if (b.empty()) return a;

@@ -1,7 +1,7 @@
-// The time of monotonicNowNs() without a system call, which takes ten times as long: for who looks at each datagram.
+// The time of monotonicNowNs() without a system call, which takes ten times as long; for code that runs per datagram.
 //
-// The function is looked for in what the kernel maps into each process (vDSO): in a captured program clock_gettime may be
-// replaced (virtual clocks). Where there is none, the system call is made.
+// The function comes from the kernel's vDSO, because a captured program may replace clock_gettime (virtual clocks).
+// Without a vDSO the system call is made.
 #pragma once
 
 #include <dlfcn.h>

@@ -1,4 +1,4 @@
-// The part of the scene that a channel draws when work is divided by data: from start to end, the whole is 0 to 1.
+// The part of the scene that a channel draws in sort-last decompositions: from start to end, the whole is 0 to 1.
 // Source: thesis, "Compounds": range.
 #pragma once
 
@@ -16,16 +16,16 @@ struct Range {
     friend constexpr bool operator==(const Range&, const Range&) = default;
 };
 
-// `inner`, given as part of `outer`, as part of what `outer` is a part of. What ends with `outer` ends at the same number:
-// 0.3 + (0.9 - 0.3) is not 0.9, and what begins at 0.9 would not meet it.
+// Returns `inner`, which is relative to `outer`, relative to the whole. An end equal to `outer`'s end keeps the same
+// number: 0.3 + (0.9 - 0.3) is not 0.9, and a range that begins at 0.9 would leave a gap.
 [[nodiscard]] constexpr Range compose(const Range& outer, const Range& inner) {
     const double size = outer.end - outer.start;
     const auto at = [&](double place) { return place == 1 ? outer.end : outer.start + place * size; };
     return {at(inner.start), at(inner.end)};
 }
 
-// How many of `count` things lie before a place of the range. A place that misses the edge of one only by what decimal
-// fractions lose in arithmetic is on it, as with pixelEdge, so that neighbours share all of them, each once.
+// Returns the number of elements, out of `count`, before a position. A position within rounding error of an element's
+// edge counts as on it, as in pixelEdge, so adjacent ranges cover each element exactly once.
 [[nodiscard]] inline uint64_t countBefore(double place, uint64_t count) {
     if (!(place > 0)) return 0;
     if (place >= 1) return count;

@@ -1,5 +1,5 @@
-// Which of how many samples of each pixel is drawn; the average of all is an antialiased picture.
-// Source: thesis, "Compounds": subpixel.
+// Index and number of the drawn sample of each pixel. The average of all samples is an antialiased picture. Source:
+// thesis, "Compounds": subpixel.
 #pragma once
 
 #include <cstdint>

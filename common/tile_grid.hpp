@@ -1,5 +1,5 @@
-// How a picture is cut into columns × rows tiles. Pure arithmetic, the same on every machine.
-// Row 0 is the lowest row (window coordinates).
+// Division of a picture into columns x rows of tiles. Pure arithmetic, identical on every machine. Row 0 is the lowest
+// row (window coordinates).
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,12 @@ namespace mural {
 struct TileGrid {
     int columns = 1;
     int rows = 1;
-    // Tile origins are multiples of this (mode lean: 2, so that 2×2 pixel quads stay whole;
-    // accuracy: odd origins raise texture-level mismatches 4× to 40×).
+    // Tile origins are multiples of this value. Tiling lean uses 2, so that 2x2 pixel quads stay whole: odd origins
+    // raise texture-level mismatches 4 to 40 times (docs/exactness.md).
     int alignment = 1;
 };
 
-// A rectangle of tiles: what one render node draws.
+// A rectangle of tiles, drawn by one render node.
 struct TileRegion {
     int column = 0;
     int row = 0;
@@ -26,7 +26,7 @@ struct TileRegion {
     friend bool operator==(const TileRegion&, const TileRegion&) = default;
 };
 
-// Edge i of n equal parts of `size` pixels, 0 ≤ i ≤ n.
+// Returns edge i of n equal parts of `size` pixels. Requires 0 <= i <= n.
 [[nodiscard]] constexpr int32_t tileEdge(int32_t size, int n, int i, int alignment) {
     if (i <= 0) return 0;
     if (i >= n) return size;

@@ -1,4 +1,4 @@
-// Points and directions of the room, in metres; x to the right, y up, z towards the viewer.
+// Points and directions in the room, in metres: x to the right, y up, z towards the viewer.
 #pragma once
 
 #include <cmath>
@@ -21,7 +21,7 @@ struct Vector3 {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 [[nodiscard]] inline double length(const Vector3& a) { return std::sqrt(dot(a, a)); }
-// The direction of `a`; nothing (0 0 0) has none.
+// Returns the unit vector in the direction of `a`; 0 0 0 stays 0 0 0.
 [[nodiscard]] inline Vector3 normalized(const Vector3& a) {
     const double size = length(a);
     return size > 0 ? a * (1 / size) : Vector3{};

@@ -1,6 +1,6 @@
-// A part of something, as fractions of its size: x, y of the lower left corner, width, height. The whole is 0 0 1 1.
-// Source: thesis, "Compounds": viewport. How fractions become pixels decides whether neighbours meet: positions are
-// rounded, sizes follow from them.
+// A part of something as fractions of its size: lower left corner x, y, width, height. The whole is 0 0 1 1. Source:
+// thesis, "Compounds": viewport. Conversion to pixels rounds positions and derives sizes from them, so adjacent parts
+// meet.
 #pragma once
 
 #include <algorithm>
@@ -21,22 +21,22 @@ struct Viewport {
     friend constexpr bool operator==(const Viewport&, const Viewport&) = default;
 };
 
-// `inner`, given as part of `outer`, as part of what `outer` is a part of.
+// Returns `inner`, which is relative to `outer`, relative to the whole.
 [[nodiscard]] constexpr Viewport compose(const Viewport& outer, const Viewport& inner) {
     return {outer.x + inner.x * outer.w, outer.y + inner.y * outer.h, inner.w * outer.w, inner.h * outer.h};
 }
 
-// The other way: `part` and `whole` of the same thing; `part` as part of `whole`. `whole` must not be empty.
+// Returns `part` relative to `whole`; both are parts of the same thing. Requires a non-empty `whole`.
 [[nodiscard]] constexpr Viewport relativeTo(const Viewport& part, const Viewport& whole) {
     return {(part.x - whole.x) / whole.w, (part.y - whole.y) / whole.h, part.w / whole.w, part.h / whole.h};
 }
 
-// The common part; an empty viewport when there is none. Edges that differ by less than what decimal fractions lose
-// in arithmetic (.1 + .7 is not .8) have nothing in common.
+// Returns the intersection; empty if there is none. Overlaps below the rounding error of decimal fractions (.1 + .7 is
+// not .8) count as none.
 [[nodiscard]] constexpr Viewport intersect(const Viewport& a, const Viewport& b) {
     constexpr double kNothing = 1e-9;
     const auto size = [](double from, double a0, double aSize, double b0, double bSize) {
-        if (from == a0 && a0 + aSize <= b0 + bSize) return aSize; // as it is, without a loss
+        if (from == a0 && a0 + aSize <= b0 + bSize) return aSize; // exact
         if (from == b0 && b0 + bSize <= a0 + aSize) return bSize;
         return std::min(a0 + aSize, b0 + bSize) - from;
     };
@@ -48,22 +48,22 @@ struct Viewport {
     return {x0, y0, w, h};
 }
 
-// The pixel that a position in fractions of a size falls into. A position that misses a pixel's edge only by what
-// decimal fractions lose in arithmetic is on it, so that .1 + .7 and .8 are the same edge.
+// Returns the pixel that contains a fractional position. A position within rounding error of a pixel's edge is on the
+// edge, so .1 + .7 and .8 are the same edge.
 [[nodiscard]] inline int32_t pixelEdge(double fraction, int32_t size) {
     constexpr double kRoundingPixels = 1e-6;
     const double edge = std::trunc(fraction * size + kRoundingPixels);
     return static_cast<int32_t>(std::clamp(edge, double{INT32_MIN / 2}, double{INT32_MAX / 2}));
 }
 
-// The pixels of a part of `whole`. Neighbours whose decimal values agree neither overlap nor leave a gap.
+// Returns the pixels of a part of `whole`. Parts with equal decimal edges neither overlap nor leave a gap.
 [[nodiscard]] inline PixelViewport apply(const PixelViewport& whole, const Viewport& part) {
     const int32_t x0 = pixelEdge(part.x, whole.w);
     const int32_t y0 = pixelEdge(part.y, whole.h);
     return {whole.x + x0, whole.y + y0, pixelEdge(part.x + part.w, whole.w) - x0, pixelEdge(part.y + part.h, whole.h) - y0};
 }
 
-// Which part of `whole` the pixels of `part` are. `whole` must not be empty.
+// Returns the pixels of `part` relative to `whole`. Requires a non-empty `whole`.
 [[nodiscard]] constexpr Viewport relativeTo(const PixelViewport& part, const PixelViewport& whole) {
     if (part == whole) return {};
     const double w = whole.w, h = whole.h;

@@ -11,7 +11,7 @@ namespace mural {
 
 namespace {
 
-// The kernel's interfaces (linux/userfaultfd.h, linux/fs.h), newer than the headers that we build with.
+// Kernel interfaces (linux/userfaultfd.h, linux/fs.h) that are newer than the headers at build time.
 struct UffdApi {
     uint64_t api, features, ioctls;
 };
@@ -30,7 +30,7 @@ struct PageScan {
 };
 
 constexpr uint64_t kUffdApi = 0xAA;
-constexpr int kUserModeOnly = 1; // all that a program without rights may have; asynchronous faults need no more
+constexpr int kUserModeOnly = 1; // unprivileged processes may request only this; asynchronous faults need no more
 constexpr uint64_t kFeatureUnpopulated = 1 << 13, kFeatureAsync = 1 << 15;
 constexpr uint64_t kRegisterWriteProtect = 2;
 constexpr unsigned long kIoctlApi = _IOC(_IOC_READ | _IOC_WRITE, 0xAA, 0x3F, sizeof(UffdApi));
@@ -44,7 +44,7 @@ constexpr int kRegions = 64;
 uint64_t pageFloor(uint64_t at) { return at & ~(kPageBytes - 1); }
 uint64_t pageCeil(uint64_t at) { return pageFloor(at + kPageBytes - 1); }
 
-// A sandbox (seccomp) may end a program for calls that it does not know.
+// A sandbox (seccomp) may kill a program for unknown system calls.
 bool sandboxed() {
     const int file = open("/proc/self/status", O_RDONLY | O_CLOEXEC);
     if (file < 0) return true;
@@ -57,7 +57,7 @@ bool sandboxed() {
     return !mode || mode[10] != '0';
 }
 
-// This process' own view of its memory. A forked child has none: what it would ask and protect is its parent's.
+// Descriptors of this process's own memory. A forked child has none: the inherited ones refer to the parent's memory.
 struct Kernel {
     pid_t process = 0;
     int uffd = -1, pagemap = -1;

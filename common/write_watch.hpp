@@ -1,6 +1,6 @@
-// Which pages of a piece of memory were written, seen without the writer doing anything: the kernel
-// unlocks a page at its first write (userfaultfd's asynchronous write protection, Linux 6.7) and lists
-// unlocked pages when asked (PAGEMAP_SCAN). Writes of any thread and of system calls count; no signal.
+// Tracks written pages without cooperation of the writer. The kernel unlocks a page at its first write (userfaultfd's
+// asynchronous write protection, Linux 6.7) and lists unlocked pages on request (PAGEMAP_SCAN). Writes of any thread
+// and of system calls count. No signals are involved.
 #pragma once
 
 #include <cstddef>
@@ -15,18 +15,17 @@ public:
     WriteWatch(const WriteWatch&) = delete;
     WriteWatch& operator=(const WriteWatch&) = delete;
 
-    // Watches the memory, all pages locked. False where the kernel or the kind of memory can't: device
-    // memory, an old kernel, a sandbox.
+    // Watches the memory with all pages locked. Returns false where the kernel, a sandbox or the kind of memory (device
+    // memory) prevents it.
     bool begin(void* memory, size_t sizeBytes);
     void end();
     [[nodiscard]] bool active() const { return sizeBytes_ > 0; }
 
-    // Calls visit(self, fromByte, endByte), in ascending order, for ranges of unlocked pages, cut to the
-    // memory that is watched. False: the watch is lost, anything may have been written.
+    // Calls visit(self, fromByte, endByte), in ascending order, for ranges of unlocked pages, clipped to the watched
+    // memory. Returns false if the watch is lost; then anything may have been written.
     using Visit = void (*)(void* self, size_t fromByte, size_t endByte);
     bool unlocked(Visit visit, void* self) const { return scan(0, sizeBytes_, 0, visit, self); }
-    // Locks the pages of a range again, and visits those that were not: what is written into them from
-    // then on unlocks them.
+    // Locks the pages of a range again and visits the unlocked ones. Later writes unlock their pages.
     bool lock(size_t fromByte, size_t endByte, Visit visit, void* self) const;
 
     static constexpr size_t kPageBytes = 4096;

@@ -1,4 +1,4 @@
-// By what a picture is drawn larger or smaller than it is shown. Source: thesis, "Compounds": zoom.
+// Ratio of the drawn to the shown size of a picture. Source: thesis, "Compounds": zoom.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace mural {
 
-constexpr double kMostZoom = 16; // a framebuffer of a window's part has to hold it
+constexpr double kMostZoom = 16; // bounded by the framebuffer of a part of a window
 
 struct Zoom {
     double x = 1;

@@ -1,4 +1,5 @@
-// Packets as control bytes and what these refer to, each kind by itself: equals compress better with their own kind.
+// The sections of a batch: control bytes, and the data they refer to, separated by kind, because data of one kind
+// compresses better.
 #pragma once
 
 #include <array>
@@ -9,7 +10,7 @@
 
 namespace mural::economy {
 
-// Spans and Words: of pages that have changed. (Those of short items are among Control.)
+// Spans and Words describe changed pages. Those of short entries are part of Control.
 enum class Section : uint8_t { Control, Words, Texts, Pages, Spans };
 constexpr size_t kSections = 5;
 

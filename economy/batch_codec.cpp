@@ -6,7 +6,7 @@
 namespace mural::economy {
 namespace {
 
-constexpr size_t kFirst = 1; // section behind Control
+constexpr size_t kFirst = 1; // first section after Control
 constexpr auto kPages = static_cast<size_t>(Section::Pages);
 
 } // namespace

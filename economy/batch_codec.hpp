@@ -1,5 +1,6 @@
-// A batch as it is sent, and back. With no section but Control it is that. Else one byte with two bits per other section (its Coding),
-// of each that is not empty its size and, compressed, its compressed size (in sevens), then the sections, Control as what is left.
+// Serializes a batch. A batch with only a Control section consists of its bytes. Otherwise it starts with one byte that
+// holds two bits (Coding) per other section, followed by the sizes of non-empty sections as varints (uncompressed, and
+// compressed if it is), then the sections; Control takes the rest.
 #pragma once
 
 #include <array>
@@ -19,26 +20,26 @@ namespace mural::economy {
 
 class BatchEncoder {
 public:
-    // `nowNs`: the clock by which to compress so many bytes is timed, to choose codings by what they cost.
+    // `nowNs`: clock that times the compression of the given number of bytes; the selection of codings uses it.
     explicit BatchEncoder(std::function<int64_t(size_t sizeBytes)> nowNs) : nowNs_(std::move(nowNs)) {
         for (const Section section : {Section::Texts, Section::Words, Section::Spans}) compressors_[static_cast<size_t>(section)].prepare();
         pages_.prepare();
     }
 
-    // With its head. Lives until the next call. `plain`: its texts are mostly records that were not looked at (Packer::beginFrame), so it
-    // takes a window that has the frames before.
-    // Error: no memory.
+    // Returns the batch with its head, valid until the next call. `plain`: the Texts section holds mostly plain records
+    // (Packer::beginFrame), so its compressor uses a window that contains previous frames. Error: out of memory.
     Result<std::span<const std::byte>> encode(const SectionBytes& sections, double linkNsPerByte, bool plain = false);
-    // What compressing makes of a byte of this section, by what was measured.
+    // Returns the measured compression ratio of this section.
     [[nodiscard]] double ratio(Section section) const { return choices_[static_cast<size_t>(section)].ratio(); }
 
 private:
     Result<void> encodeSections(const SectionBytes& sections, double linkNsPerByte, bool plain);
 
     const std::function<int64_t(size_t)> nowNs_;
-    bool compress(size_t section, Coding coding, std::span<const std::byte> bytes); // to coded_
+    bool compress(size_t section, Coding coding, std::span<const std::byte> bytes); // appends to coded_
 
-    // Those of Control and Pages are not used. Texts: equal frames and records are found as well by the fastest level.
+    // The entries for Control and Pages are unused. Texts use the fastest level, which finds equal frames and records
+    // as well.
     std::array<SectionCompressor, kSections> compressors_{SectionCompressor(), SectionCompressor(), SectionCompressor(-1), SectionCompressor(), SectionCompressor()};
     PageCompressor pages_;
     std::array<CodingChoice, kSections> choices_;
@@ -48,13 +49,13 @@ private:
 
 class BatchDecoder {
 public:
-    // What follows `head`. Lives until the next call, and as long as `body` does.
+    // Decodes the bytes after `head`. The result is valid until the next call, and as long as `body`.
     Result<SectionBytes> decode(BatchHead head, std::span<const std::byte> body);
 
 private:
-    bool decompress(size_t section, Coding coding, std::span<const std::byte> bytes); // to sections_
+    bool decompress(size_t section, Coding coding, std::span<const std::byte> bytes); // appends to sections_
 
-    std::array<SectionDecompressor, kSections> decompressors_; // that of Pages is not used
+    std::array<SectionDecompressor, kSections> decompressors_; // the entry for Pages is unused
     PageDecompressor pages_;
     std::array<std::vector<std::byte>, kSections> sections_;
 };

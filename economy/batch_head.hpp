@@ -1,5 +1,5 @@
-// In front of each batch: how many bytes follow, and whether there is more among them than control bytes. A number in sevens of
-// bits, lowest first: most frames need one byte of it.
+// Head of a batch: the number of following bytes, and whether sections besides Control follow. A varint; most frames
+// need one byte.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@ namespace mural::economy {
 
 struct BatchHead {
     uint32_t sizeBytes = 0;
-    bool sections = false; // besides Control
+    bool sections = false; // sections besides Control follow
     bool operator==(const BatchHead&) const = default;
 };
 
@@ -20,12 +20,12 @@ inline void putBatchHead(BatchHead head, std::vector<std::byte>& into) {
     into.push_back(static_cast<std::byte>(n));
 }
 
-// Takes it byte by byte, as nobody knows before how many it has.
+// Reads a head byte by byte, because its length is unknown in advance.
 class BatchHeadReader {
 public:
     static constexpr unsigned kMostBytes = 4;
 
-    // False: more bytes are needed. Of one that would have more than any has the size is the largest there is.
+    // Returns false while bytes are missing. A size beyond the valid range saturates.
     bool add(std::byte byte) {
         const auto b = static_cast<uint32_t>(byte);
         number_ |= (b & 127) << 7 * bytes_++;

@@ -1,5 +1,5 @@
-// Bytes of a kind that repeats: the byte that came last behind the same bytes before is expected, so equal sequences of any length
-// cost hundredths of a bit per byte.
+// Predicts the bytes of a repetitive section: the byte that last followed the same context. Equal sequences of any
+// length cost hundredths of a bit per byte.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ private:
     static constexpr uint8_t kMostTrust = 15;
     struct Expected {
         uint8_t byte = 0;
-        uint8_t trust = 0; // 0: nothing is expected
+        uint8_t trust = 0; // confidence; 0: no prediction
         void learn(uint32_t value) {
             if (trust != 0 && byte == value) trust = trust < kMostTrust ? static_cast<uint8_t>(trust + 1) : kMostTrust;
             else if (trust > 1) trust = static_cast<uint8_t>(trust / 4 + 1);
@@ -38,8 +38,8 @@ private:
         }
     };
 
-    std::array<Expected, 1u << kFarBits> far_{};   // by the eight bytes before
-    std::array<Expected, 1u << kNearBits> near_{}; // by two
+    std::array<Expected, 1u << kFarBits> far_{}; // by a context of eight bytes
+    std::array<Expected, 1u << kNearBits> near_{}; // by a context of two bytes
     std::array<BitModel, kMostTrust + 1> farHit_{};
     std::array<std::array<BitModel, kMostTrust + 1>, 2> nearHit_{};
     ByteModel bytes_;

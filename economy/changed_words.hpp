@@ -1,4 +1,4 @@
-// Which words of 64 are not as they were, by vectors of what processor there is.
+// Finds changed words among 64, with the vector instructions of the processor.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@ namespace mural::economy {
 
 constexpr uint32_t kComparedWords = 64;
 
-// A bit for each of kComparedWords words, the lowest for the first. Anywhere in memory.
+// Returns one bit per word, kComparedWords in total, the lowest for the first. No alignment is required.
 [[nodiscard]] uint64_t changedWords(const std::byte* old, const std::byte* now);
 
 } // namespace mural::economy

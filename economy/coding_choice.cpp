@@ -6,17 +6,18 @@
 namespace mural::economy {
 
 namespace {
-constexpr double kWeight = 0.2;          // of a new value against all before
-constexpr double kFasterWeight = 0.5;    // of a time that is less: what else a machine does makes times longer only
-constexpr uint64_t kTryBytes = 1 << 16;  // so much of a section's kind, or
-constexpr uint64_t kTrySections = 4;     // so many, show what a coding makes of it
-constexpr uint64_t kTryTimes = 3;        // the first pays for memory that is new to the compressor and does not count
-constexpr uint64_t kTimedEvery = 16;     // short sections
+constexpr double kWeight = 0.2; // weight of a new value in the moving average
+constexpr double kFasterWeight = 0.5; // weight of a shorter time: other load on the machine only lengthens times
+constexpr uint64_t kTryBytes = 1 << 16; // bytes of a section kind after which a coding is known, or
+constexpr uint64_t kTrySections = 4; // number of sections
+constexpr uint64_t kTryTimes = 3; // the first includes page faults of the compressor's memory and does not count
+constexpr uint64_t kTimedEvery = 16; // short sections between two timings
 constexpr uint64_t kLongTimedEvery = 4;
-constexpr uint64_t kTryAgainEvery = 256; // sections: what they hold may have changed
-constexpr double kClearlySmaller = 0.97; // as small as that is smaller
-constexpr double kForSmaller = 1.3;      // so much longer Zstandard may take: the link is everyone's, and what was measured is not exact
-constexpr int64_t kWaitedNs = 1'000'000; // a write that took longer has waited for the link
+constexpr uint64_t kTryAgainEvery = 256; // sections after which the contents may have changed
+constexpr double kClearlySmaller = 0.97; // relative size that counts as smaller
+// Zstandard may take longer by this factor: the link is shared, and measurements are inexact
+constexpr double kForSmaller = 1.3;
+constexpr int64_t kWaitedNs = 1'000'000; // a longer write has waited for the link
 constexpr size_t kLeastLinkBytes = 16384;
 } // namespace
 
@@ -38,7 +39,7 @@ Coding CodingChoice::best(double linkNsPerByte) const {
     return cost(Coding::Zstd, linkNsPerByte) < cost(fast, linkNsPerByte) * (smaller ? kForSmaller : 1) ? Coding::Zstd : fast;
 }
 
-// Sooner at first: what was measured of few sections may have been disturbed.
+// Retries sooner at first, because few measurements may be disturbed.
 bool CodingChoice::triesAgain() const { return chosen_ % kTryAgainEvery == 0 || (chosen_ >= kTimedEvery && chosen_ < kTryAgainEvery && std::has_single_bit(chosen_)); }
 
 bool CodingChoice::known(Coding coding) const {

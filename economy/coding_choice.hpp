@@ -1,5 +1,5 @@
-// Which coding a section gets: the one by which its bytes are with the nodes soonest, by what was measured of this kind of
-// section: time to compress, size afterwards, and how fast the link is. No clock of its own.
+// Selects the coding of each section by minimal delivery time, from measurements of this section kind: compression
+// time, compressed size, and link rate. Has no clock of its own.
 #pragma once
 
 #include <array>
@@ -13,38 +13,40 @@ namespace mural::economy {
 
 class CodingChoice {
 public:
-    // Shorter ones go as they are: a compressor's own bytes cost more than it saves.
+    // Shorter sections stay uncompressed: a compressor's overhead exceeds its gain.
     static constexpr size_t kLeastBytes = 64;
-    static constexpr size_t kLongBytes = 16384; // beside which a clock costs nothing
+    static constexpr size_t kLongBytes = 16384; // the cost of reading a clock is negligible from this size on
 
     [[nodiscard]] Coding choose(size_t sizeBytes, double linkNsPerByte);
-    // LZ4 shall be measured on so many bytes of the section that was chosen for last, which goes otherwise: to try it on all of a long one, such as
-    // the first pictures that a program loads, would make that half again as large. 0: not.
+    // Returns the number of bytes of the last section on which to measure LZ4 in addition to the chosen coding; 0:
+    // none. A trial on all of a long section, such as the first pictures of a program, would increase its cost by half.
     [[nodiscard]] size_t sampleBytes(size_t sizeBytes) const { return sizeBytes >= kLongBytes && known(Coding::Zstd) && (!known(Coding::Lz4) || triesAgain()) ? kLongBytes : 0; }
-    // Of the section that was chosen for last: reading a thread's clock takes as long as to compress a short one.
+    // Returns true if the last section should be timed. Reading a thread's CPU clock takes as long as compressing a
+    // short section.
     [[nodiscard]] bool wantsTime(Coding coding, size_t sizeBytes) const;
-    // Of what was compressed to what it was before: by the better coding; 1 as long as nothing was.
+    // Returns the compression ratio of the better coding; 1 before the first measurement.
     [[nodiscard]] double ratio() const;
-    // `ns`: none where nobody has measured it.
+    // Reports a result. `ns`: empty if it was not timed.
     void measured(Coding coding, size_t sizeBytes, size_t codedBytes, std::optional<int64_t> ns);
 
 private:
     struct Measured {
         double nsPerByte = 0;
-        double ratio = 1; // of what it has made to what it was given
+        double ratio = 1; // compressed size by original size
         uint64_t bytes = 0, sections = 0, times = 0;
     };
     [[nodiscard]] bool known(Coding coding) const;
     [[nodiscard]] Coding best(double linkNsPerByte) const;
-    [[nodiscard]] bool triesAgain() const; // the one that was not chosen
+    [[nodiscard]] bool triesAgain() const; // a trial of the coding that is not chosen is due
     [[nodiscard]] double ratioOf(Coding coding) const { return measured_[static_cast<size_t>(coding)].ratio; }
     [[nodiscard]] double cost(Coding coding, double linkNsPerByte) const;
     std::array<Measured, kCodings> measured_{};
     uint64_t chosen_ = 0;
-    size_t tries_ = 0; // where none was chosen
+    size_t tries_ = 0; // trials before a choice exists
 };
 
-// How fast the link takes bytes, of writes that had to wait. As long as none has: a gigabit per second that four nodes share.
+// Rate at which the link accepts bytes, from writes that had to wait. Initially one gigabit per second shared by four
+// nodes.
 class LinkRate {
 public:
     void wrote(size_t sizeBytes, int64_t ns);

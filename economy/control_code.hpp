@@ -1,4 +1,4 @@
-// The control bytes of a batch: what to do, and how often. docs/wire-format.md has the grammar.
+// The control bytes of a batch: operations with counts. docs/wire-format.md has the grammar.
 #pragma once
 
 #include <cstdint>
@@ -11,26 +11,27 @@
 namespace mural::economy {
 
 enum class Do : uint8_t {
-    Run = 0,     // n items come as they came before
-    Patch = 1,   // the next item with n spans of changed words
-    NewText = 2, // n words
-    NewPage = 3, // n words; 0: a whole page
-    Skip = 4,    // n items do not come
-    Seek = 5,    // what comes next came n items ago
-    Pages = 6,   // n pages of the store, one after the other, from the slot that follows
-    Other = 7,   // n: which
+    Run = 0, // n entries follow in the previous order
+    Patch = 1, // the expected entry with n spans of changed words
+    NewText = 2, // new short entry of n words
+    NewPage = 3, // new page of n words; 0: a whole page
+    Skip = 4, // n expected entries are omitted
+    Seek = 5, // the next entry occurred n entries ago
+    Pages = 6, // n consecutive pages of the store, from the slot that follows
+    Other = 7, // n selects the operation below
 };
 
 enum class Other : uint32_t {
-    End = 1,    // of the packet
-    Stream = 2, // the packet is of the stream that follows; without: of the one before
-    Bytes = 3,  // as many as follow, which are no items
-    Done = 4,   // with the batch
-    KeptBytes = 5,    // as Bytes, and remembered in the slot that follows
-    ChangedBytes = 6, // those of the slot that follows, with spans of changed words, as many as follow that
+    End = 1, // end of the packet
+    Stream = 2, // the stream of the packet follows; otherwise it is the previous packet's
+    Bytes = 3, // plain bytes; their number follows
+    Done = 4, // end of the batch
+    KeptBytes = 5, // as Bytes, and cached in the slot that follows
+    ChangedBytes = 6, // the bytes of the slot that follows, with spans of changed words; their number follows
 };
 
-// Words left as they are, then words changed (at least one): a byte with four bits of each; 15: the rest follows, in sevens.
+// Writes a span: unchanged words, then changed words (at least one). One byte holds four bits of each; 15: the rest
+// follows as a varint.
 inline void putSpan(uint32_t kept, uint32_t changed, auto&& byte) {
     const auto number = [&](uint32_t n) {
         for (; n >= 128; n >>= 7) byte((n & 127) | 128);
@@ -42,7 +43,7 @@ inline void putSpan(uint32_t kept, uint32_t changed, auto&& byte) {
     if (low == 15) number(changed - 1 - 15);
 }
 
-// In front of a number: three bits of Do, five of the number; 31: the rest follows in sevens, lowest first.
+// Writes an operation with its count: three bits of Do, five bits of the count; 31: the rest follows as a varint.
 class ControlWriter {
 public:
     explicit ControlWriter(RangeWriter& coder) : coder_(coder) {}
@@ -60,7 +61,8 @@ public:
     void span(uint32_t kept, uint32_t changed) {
         mural::economy::putSpan(kept, changed, [this](uint32_t value) { byte(value); });
     }
-    static uint32_t spanBytes(uint32_t kept, uint32_t changed) { return 1 + (kept >= 15) + (changed >= 16); } // of most, if none is expected
+    // upper estimate, without prediction
+    static uint32_t spanBytes(uint32_t kept, uint32_t changed) { return 1 + (kept >= 15) + (changed >= 16); }
 
 private:
     void byte(uint32_t value) { predictor_.code(coder_, value); }
@@ -69,7 +71,7 @@ private:
     BytePredictor predictor_;
 };
 
-// After the end, or a number that is too large, everything is 0 and bad() is true.
+// After the end, or after a number out of range, every value is 0 and bad() is true.
 template <class Source> class NumberReader {
 public:
     explicit NumberReader(Source source) : source_(std::move(source)) {}

@@ -14,18 +14,19 @@ namespace mural::economy {
 namespace {
 
 constexpr size_t kLeastBytes = 4096;
-constexpr size_t kSampledOf = 16, kLeastSampleBytes = 1024, kMostSampleBytes = 4096; // each of two samples
-constexpr double kOfCounts = 1.4;  // LZ4 makes so much more of what has few repeats than its counts would
-constexpr double kLeastLeft = 0.125; // a code has a bit at least
-constexpr int kFastest = -100;       // so it goes past nearly all repeats
-// By its number, which the library keeps: ZSTD_c_literalCompressionMode, and always. Levels below 0 leave literals as they are else.
+constexpr size_t kSampledOf = 16, kLeastSampleBytes = 1024, kMostSampleBytes = 4096; // size of each of two samples
+constexpr double kOfCounts = 1.4; // LZ4 exceeds the entropy of data with few repeats by this factor
+constexpr double kLeastLeft = 0.125; // a Huffman code has at least one bit
+constexpr int kFastest = -100; // a level that skips nearly all match searches
+// ZSTD_c_literalCompressionMode by its stable number, set to "always". Negative levels otherwise leave literals
+// uncompressed.
 constexpr ZSTD_cParameter kLiterals = ZSTD_c_experimentalParam5;
 constexpr int kAlways = 1;
-constexpr int kWindowLog = 17; // a block
+constexpr int kWindowLog = 17; // one block
 
 using Counts = std::array<uint32_t, 256>;
 
-// Of the bytes, by codes as short as their counts allow.
+// Returns the size by the entropy of the byte counts.
 double leftByCounts(const Counts& counts, size_t bytes) {
     double bits = 0;
     for (const uint32_t count : counts)
@@ -40,7 +41,7 @@ struct CountedCompressor::State {
     bool asked = false;
     std::vector<std::byte> scratch{};
 
-    // Null: it has no memory, or can't do it.
+    // Returns null without memory, or without support in the library.
     ZSTD_CCtx* open() {
         if (std::exchange(asked, true)) return zstd.get();
         zstd.reset(ZSTD_createCCtx());

@@ -1,5 +1,5 @@
-// Bytes by how often each comes, and nothing else: Huffman codes of Zstandard's, each section a frame of its own. Of what is left of a
-// photograph next to nothing repeats, and to look for it takes longer than all else that is done for its bytes.
+// Entropy coding without match search: Zstandard's Huffman codes, one frame per section. Filtered photographs contain
+// next to no repeats, and a search for them takes longer than all other stages.
 #pragma once
 
 #include <cstddef>
@@ -15,11 +15,11 @@ public:
     ~CountedCompressor();
     CountedCompressor(CountedCompressor&&) noexcept;
 
-    // Whether repeats in them, as far as two samples show, are worth no more than their counts.
+    // Returns true if repeats in two samples save no more than their byte counts.
     [[nodiscard]] bool suits(std::span<const std::byte> bytes);
-    // Adds to `into`. False: no memory for it.
+    // Appends to `into`. Returns false without memory.
     bool compress(std::span<const std::byte> bytes, std::vector<std::byte>& into);
-    // Touches its memory, so that the first frames need not.
+    // Touches the memory in advance, so that the first frames have no page faults.
     void prepare();
 
 private:
@@ -33,7 +33,7 @@ public:
     ~CountedDecompressor();
     CountedDecompressor(CountedDecompressor&&) noexcept;
 
-    // Fills `into`; false: they are not so many bytes, or nothing that the compressor makes.
+    // Fills `into`. Returns false if the data is malformed or has another size.
     bool decompress(std::span<const std::byte> bytes, std::span<std::byte> into);
 
 private:

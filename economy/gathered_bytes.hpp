@@ -1,5 +1,5 @@
-// Bytes of one kind for a batch, one behind the other. What a program loads comes in packets that are one such piece: while it is alone,
-// it is not copied, as whoever compresses it copies it anyway.
+// Collects the bytes of one section. A large upload often arrives as a packet with a single piece; alone in the section
+// it is borrowed, not copied, because the compressor copies it anyway.
 #pragma once
 
 #include <cstddef>
@@ -14,12 +14,12 @@ public:
         own();
         own_.insert(own_.end(), bytes.begin(), bytes.end());
     }
-    // As add(), but the bytes stay where they are until own() or clear().
+    // Like add(), but borrows the bytes: they must stay valid until own() or clear().
     void lend(std::span<const std::byte> bytes) {
         if (!own_.empty() || !lent_.empty() || bytes.size() < kWorthBytes) return add(bytes);
         lent_ = bytes;
     }
-    // What was lent goes away.
+    // Copies borrowed bytes before they become invalid.
     void own() {
         own_.insert(own_.end(), lent_.begin(), lent_.end());
         lent_ = {};
@@ -28,7 +28,7 @@ public:
         own_.clear();
         lent_ = {};
     }
-    // To write in it.
+    // Returns the buffer for appending.
     [[nodiscard]] std::vector<std::byte>& owned() {
         own();
         return own_;
@@ -40,7 +40,7 @@ private:
     static constexpr size_t kWorthBytes = 16384;
 
     std::vector<std::byte> own_;
-    std::span<const std::byte> lent_; // then own_ is empty
+    std::span<const std::byte> lent_; // own_ is empty while this is set
 };
 
 } // namespace mural::economy

@@ -1,5 +1,5 @@
-// All that both sides remember. Packer and unpacker change it by the same calls in the same order, so a reference is a place
-// in it and needs no name.
+// The dictionary: everything that both sides remember. Encoder and decoder apply the same operations in the same order,
+// so a reference is a position in it.
 #pragma once
 
 #include <algorithm>
@@ -26,12 +26,12 @@ public:
     [[nodiscard]] std::span<const std::byte> bytesOf(Item item) const {
         return item.page ? pages_.bytes(item.where, item.sizeBytes) : text_.at(item.where, item.sizeBytes);
     }
-    // So many of a log from its cursor on, none of which is old, come once more.
+    // Repeats the given number of entries of a log from its cursor on. Requires that none of them is old.
     void againAll(ItemLog& log, size_t items) {
         log.appendCopies(log.cursor, items);
         log.cursor += items;
     }
-    // Of the log's next items, short ones whose bytes lie one behind the other and are not old, as those of what was new together.
+    // The longest run of short entries after the cursor whose bytes are contiguous and not old, as after they were new.
     struct Stretch {
         std::span<const std::byte> bytes;
         size_t items = 0;
@@ -47,13 +47,13 @@ public:
         return {items > 0 ? text_.at(where, sizeBytes) : std::span<const std::byte>(), items};
     }
     [[nodiscard]] const TextRing& text() const { return text_; }
-    // An item that comes once more, as its stream's log shall have it.
+    // Returns the repeated entry as its log stores it.
     [[nodiscard]] Item again(Item item) {
         if (item.page) pages_.use(item.where);
         else if (text_.old(item.where)) item.where = text_.add(text_.at(item.where, item.sizeBytes));
         return item;
     }
-    // A page of the store that comes in another's place.
+    // Returns an entry for a stored page that takes another page's place.
     [[nodiscard]] Item fromStore(uint32_t slot, uint32_t sizeBytes) {
         pages_.useElsewhere(slot);
         return {slot, sizeBytes, 1};
@@ -66,10 +66,10 @@ public:
     [[nodiscard]] PageStore& pages() { return pages_; }
     [[nodiscard]] KeptRuns& runs() { return runs_; }
 
-    // The log of a stream. A new one takes the place of the one that was unused for longest.
+    // Opens the log of a stream. A new stream takes over the least recently used log.
     struct Opened {
         size_t place = 0;
-        bool fresh = false; // nothing is in it
+        bool fresh = false; // the log is empty
     };
     [[nodiscard]] Opened open(uint32_t stream);
     [[nodiscard]] ItemLog& log(size_t place) { return *streams_[place].log; }
@@ -85,7 +85,7 @@ private:
     PageStore pages_;
     KeptRuns runs_;
     std::vector<Stream> streams_;
-    std::unique_ptr<ItemLog> first_; // until there is a stream
+    std::unique_ptr<ItemLog> first_; // allocated in advance for the first stream
     uint64_t opened_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// What packets are made of here: a short record, or a page of a long one.
+// A dictionary entry: a short record, or a page of a long one.
 #pragma once
 
 #include <cstdint>
@@ -8,10 +8,10 @@ namespace mural::economy {
 struct Item {
     static constexpr uint32_t kMostModels = 1u << 18;
 
-    uint32_t where = 0; // a text: its offset in the ring; a page: its slot in the store
+    uint32_t where = 0; // short record: offset in the ring; page: slot in the store
     uint32_t sizeBytes : 13 = 0;
     uint32_t page : 1 = 0;
-    uint32_t model : 18 = 0; // of its words (word_models.hpp); 0: none
+    uint32_t model : 18 = 0; // predictor state of its words (word_models.hpp); 0: none
     [[nodiscard]] bool like(Item other) const { return page == other.page && sizeBytes == other.sizeBytes; }
 };
 static_assert(sizeof(Item) == 8);

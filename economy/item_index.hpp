@@ -1,6 +1,6 @@
-// Where in a stream's log two items came one after the other, by their hashes: how the packer finds its way back when items
-// were moved, or others put between them. A short one alone (glEnd) says nothing of what follows; a longer one does, where
-// both are not found. An entry may be wrong or lost: the packer compares.
+// Finds positions in a stream's log by the hashes of two consecutive entries, so the encoder resynchronizes after moved
+// or inserted entries. A short entry alone, such as glEnd, says nothing about its successor; a longer one does if the
+// pair is not found. Results are hints: the encoder compares.
 #pragma once
 
 #include <algorithm>
@@ -17,19 +17,20 @@ class ItemIndex {
 public:
     explicit ItemIndex(uint32_t logItems) : mask_(logItems - 1), againBits_(static_cast<uint32_t>(std::bit_width((logItems + 1) / 2)) - 1), mostPositions_(logItems / 8), hashes_(LargeArray<uint32_t>::make(logItems)), positions_(kFirstPositions) {}
 
-    // The item that is appended at `position`; `first`: of its packet.
+    // Adds the entry appended at `position`. `first`: it is the first of its packet.
     void append(uint64_t position, uint32_t hash, uint32_t sizeBytes, bool first) {
         hashes_[position & mask_] = hash;
         if (!first) put(hashes_[(position - 1) & mask_], hash, position - 1);
         if (sizeBytes >= kTellingBytes) put(hash, kAnything, position);
     }
-    // The same item as at `from`, behind the same: it is found there, until that is half a log ago.
+    // Adds a repetition of the entry at `from` after the same predecessor. The old position stays in the index until it
+    // is half a log behind.
     void appendAgain(uint64_t position, uint64_t from, uint32_t sizeBytes) {
         const uint32_t hash = hashes_[from & mask_];
         if (half(position) == half(from)) hashes_[position & mask_] = hash;
         else append(position, hash, sizeBytes, false);
     }
-    // The same of many; `sizeAt(i)`: of the item at `from + i`.
+    // The same for a run. `sizeAt(i)` returns the size of the entry at `from + i`.
     void appendAllAgain(uint64_t position, uint64_t from, size_t count, const auto& sizeAt) {
         for (size_t i = 0; i < count;) {
             if (half(position + i) != half(from + i)) {
@@ -43,19 +44,19 @@ public:
             i += part;
         }
     }
-    // One that is another each time: nobody finds it by what it is.
+    // Adds an entry that changes every time and is not searched for.
     void appendUnfound(uint64_t position, uint32_t hash) { hashes_[position & mask_] = hash; }
     void packetEnds(uint64_t lastPosition) { put(hashes_[lastPosition & mask_], kNothing, lastPosition); }
 
     [[nodiscard]] uint32_t hashAt(uint64_t position) const { return hashes_[position & mask_]; }
-    // Before `end`; maybe such a pair is there.
+    // Returns a position before `end` where such a pair may be.
     [[nodiscard]] uint64_t find(uint32_t hash, uint32_t nextHash, uint64_t end) const {
         const uint32_t position = positions_[key(hash, nextHash)];
         return end - static_cast<uint32_t>(static_cast<uint32_t>(end) - position);
     }
 
-    static constexpr uint32_t kNothing = 0;  // follows the last item of a packet
-    static constexpr uint32_t kAnything = 1; // whatever follows
+    static constexpr uint32_t kNothing = 0; // predecessor of a packet's first entry
+    static constexpr uint32_t kAnything = 1; // any successor
     static constexpr uint32_t kTellingBytes = 32;
 
 private:
@@ -72,7 +73,7 @@ private:
         place = static_cast<uint32_t>(position);
         if (puts_ > positions_.size() / 8 && positions_.size() < mostPositions_) grow(position);
     }
-    // Programs of few calls touch little memory. What was there is put again as the log has it.
+    // Grows the table, so programs with few calls touch little memory. Reinserts the existing entries from the log.
     void grow(uint64_t end) {
         positions_.assign(positions_.size() * 4, 0);
         puts_ = 0;
@@ -86,10 +87,10 @@ private:
     }
 
     const uint32_t mask_;
-    const uint32_t againBits_; // of half the log
+    const uint32_t againBits_; // position bits that span half the log
     const size_t mostPositions_;
     LargeArray<uint32_t> hashes_;
-    std::vector<uint32_t> positions_; // a power of two
+    std::vector<uint32_t> positions_; // size is a power of two
     size_t puts_ = 0;
 };
 

@@ -1,5 +1,5 @@
-// The last items of one stream, in order, and the cursor: the item that should come next, as it came after the last one
-// before.
+// The most recent entries of one stream, in order, and the cursor: the entry expected next, because it followed the
+// last one before.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ public:
     explicit ItemLog(uint32_t capacity) : mask_(capacity - 1), items_(LargeArray<Item>::make(capacity)) {}
 
     void append(Item item) { items_[end_++ & mask_] = item; }
-    // Those from `from` on once more, all of which it holds.
+    // Appends copies of entries from `from` on. Requires that the log holds all of them.
     void appendCopies(uint64_t from, size_t count) {
         while (count > 0) {
             const size_t source = from & mask_, target = end_ & mask_, part = std::min({count, size_t{mask_} + 1 - source, size_t{mask_} + 1 - target});
@@ -24,7 +24,7 @@ public:
             from += part, end_ += part, count -= part;
         }
     }
-    // An item that was sent takes the place of the expected one, if it has its size: then that does not come any more.
+    // A sent entry replaces the expected one if their sizes are equal; the expected one is then no longer expected.
     void replaces(Item item) {
         if (holds(cursor) && at(cursor).like(item)) ++cursor;
     }

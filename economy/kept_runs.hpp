@@ -1,6 +1,6 @@
-// Runs of short records that went plain, as they were last: many programs say as many bytes in each frame, in the same order, and change a
-// few words of them. Both sides have the same; which run is where says the packer.
-// (KnownRuns are the packer's own, of records that are looked at.)
+// Caches recent runs of plain short records. Many programs send runs of equal size in each frame, in the same order,
+// with few changed words. Both sides hold the same runs; the encoder chooses the slots. (KnownRuns is for delta-coded
+// records, and exists in the encoder only.)
 #pragma once
 
 #include <array>
@@ -14,10 +14,10 @@ namespace mural::economy {
 class KeptRuns {
 public:
     static constexpr uint32_t kSlots = 32;
-    static constexpr size_t kLeastBytes = 1024, kMostBytes = 65536; // of a run, whole words
+    static constexpr size_t kLeastBytes = 1024, kMostBytes = 65536; // size of a run in bytes, a multiple of 4
 
     void keep(uint32_t slot, std::span<const std::byte> run) { slots_[slot].assign(run.begin(), run.end()); }
-    // Empty where nothing was kept.
+    // Returns an empty span for an unused slot.
     [[nodiscard]] std::span<std::byte> at(uint32_t slot) { return slots_[slot]; }
 
 private:

@@ -1,5 +1,5 @@
-// Runs of short records of late, with their bytes one behind the other: an equal frame is compared as such, and not record by record.
-// Only the packer needs it. The bytes of items themselves lie about the ring, where each was new.
+// Caches recent runs of short records with contiguous bytes, so an equal frame is one comparison instead of one per
+// record. Encoder only. The bytes of single entries are scattered over the ring, each where it was new.
 #pragma once
 
 #include <algorithm>
@@ -16,18 +16,18 @@ namespace mural::economy {
 
 class KnownRuns {
 public:
-    static constexpr size_t kLeastItems = 16; // fewer are compared as quickly one by one
+    static constexpr size_t kLeastItems = 16; // shorter runs are compared as fast entry by entry
 
     struct Run {
-        uint64_t position = 0; // of the first item in the log
-        uint64_t bytesAt = 0;  // where its bytes are, counted from the first of all
-        uint64_t oldestText = 0; // TextRing::written() when the oldest of its items was
+        uint64_t position = 0; // position of the first entry in the log
+        uint64_t bytesAt = 0; // offset of its bytes, counted from the start of the stream
+        uint64_t oldestText = 0; // TextRing::written() at the time of its oldest entry
         uint32_t items = 0, sizeBytes = 0;
     };
 
-    // In the order of positions.
+    // Adds a run. Requires ascending positions.
     void add(const Run& run) { runs_[end_++ % runs_.size()] = run; }
-    // Its bytes, too; where they are. `bytes`: at most kMostBytes.
+    // Stores the bytes of a run and returns their offset. Requires at most kMostBytes.
     uint64_t keep(std::span<const std::byte> bytes) {
         if (const uint64_t at = bytesEnd_ % kMostBytes; at + bytes.size() > kMostBytes) bytesEnd_ += kMostBytes - at;
         std::memcpy(bytes_.data() + bytesEnd_ % kMostBytes, bytes.data(), bytes.size());
@@ -35,14 +35,14 @@ public:
         return bytesEnd_ - bytes.size();
     }
 
-    // What is known from the log's cursor on; `items` 0: nothing. Quick where the cursor moves forward.
+    // Returns the known run at the log's cursor; `items` 0: none. Fast while the cursor moves forward.
     [[nodiscard]] Run fromCursor(const ItemLog& log) {
         const auto at = [this](uint64_t i) -> const Run& { return runs_[i % runs_.size()]; };
         const uint64_t position = log.cursor;
         const auto behind = [&](uint64_t i) { return at(i).position + at(i).items > position; };
         if (position < seen_ || end_ - next_ > runs_.size() || (end_ - next_ > kMostSteps && !behind(next_ + kMostSteps))) {
             uint64_t first = end_ < runs_.size() ? 0 : end_ - runs_.size();
-            for (uint64_t last = end_; first < last;) { // the first that is behind it
+            for (uint64_t last = end_; first < last;) { // first run after the cursor
                 const uint64_t middle = first + (last - first) / 2;
                 behind(middle) ? last = middle : first = middle + 1;
             }
@@ -62,13 +62,13 @@ public:
     static constexpr size_t kMostBytes = size_t{4} << 20;
 
 private:
-    static constexpr uint64_t kMostSteps = 4; // farther ones are searched for
+    static constexpr uint64_t kMostSteps = 4; // more distant runs are found by binary search
     struct Within {
         uint32_t items = 0, sizeBytes = 0;
     };
     std::array<Run, 1024> runs_; // a ring
     uint64_t end_ = 0, next_ = 0, seen_ = 0;
-    Within within_; // of runs_[next_]: so much is before the cursor
+    Within within_; // part of runs_[next_] before the cursor
     LargeArray<std::byte> bytes_ = LargeArray<std::byte>::make(kMostBytes); // a ring
     uint64_t bytesEnd_ = 0;
 };

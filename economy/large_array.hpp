@@ -1,6 +1,6 @@
-// Memory of megabytes that fills slowly: zero, and there only as far as it was used. In huge pages, where the system has them: touching the
-// log of a busy stream by pages of 4 KiB costs more than what is written there. The first piece is there from the start, as all programs
-// use that much, and clearing it takes longer than most frames.
+// Zero-initialised memory of megabytes that fills slowly and is committed on first use. Uses huge pages where
+// available: with pages of 4 KiB, the page faults of a busy stream's log cost more than its contents. The first part is
+// committed in advance, because every program uses it and its faults take longer than most frames.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ template <class T> class LargeArray {
 public:
     static_assert(std::is_trivially_copyable_v<T>);
 
-    // Null when there is no memory. `readyBytes` of it are there from the start.
+    // Returns an empty array without memory. `readyBytes` are committed in advance.
     static LargeArray tryMake(size_t size, size_t readyBytes = kHugePageBytes) {
         LargeArray array;
         const size_t sizeBytes = size * sizeof(T), spare = sizeBytes >= kHugePageBytes ? kHugePageBytes : 0;
@@ -28,7 +28,8 @@ public:
         std::byte* from = array.mapped_.get();
         if (spare != 0) {
             from = askForHugePages({from, sizeBytes + spare}).data();
-            madvise(from, std::min(readyBytes, sizeBytes / kHugePageBytes * kHugePageBytes), MADV_POPULATE_WRITE); // no matter if it can't
+            // failure is harmless
+            madvise(from, std::min(readyBytes, sizeBytes / kHugePageBytes * kHugePageBytes), MADV_POPULATE_WRITE);
         }
         array.data_ = reinterpret_cast<T*>(from);
         return array;

@@ -1,4 +1,4 @@
-// How much packer and unpacker remember. Both must have the same: the head tells its nodes.
+// Sizes of the dictionary. Both sides need equal limits: the head sends its own to the nodes.
 #pragma once
 
 #include <cstddef>
@@ -8,18 +8,18 @@
 
 namespace mural::economy {
 
-// Items above are pages. Below, a page of 4 KiB would be three quarters empty.
+// Longer records consist of pages. Below this size three quarters of a 4 KiB page would be empty.
 constexpr size_t kMostTextBytes = kMostShortRecordBytes;
 constexpr size_t kPageBytes = 4096;
-// What one batch may hold when it is unpacked: bounds what a node does for one read.
+// Largest decoded size of one batch. Bounds the work of a node per read.
 constexpr size_t kMostBatchBytes = size_t{16} << 20;
 
 struct Limits {
-    uint64_t storeBytes = uint64_t{1} << 30; // pages, of all streams
-    uint32_t textBytes = 16u << 20;          // items that are no pages, of all streams; a power of two
-    uint32_t logItems = 1u << 20;            // per stream: 8 MiB when full (packer: 12 MiB); a power of two
-    uint32_t streams = 32;                   // with a log; the one unused for longest gives its up
-    uint32_t modelWords = 1u << 17;          // of items that change, of all streams: 2 MiB
+    uint64_t storeBytes = uint64_t{1} << 30; // page store, shared by all streams
+    uint32_t textBytes = 16u << 20; // ring of short records, shared by all streams; a power of two
+    uint32_t logItems = 1u << 20; // per stream: 8 MiB when full (encoder: 12 MiB); a power of two
+    uint32_t streams = 32; // streams with a log; the least recently used one loses its log
+    uint32_t modelWords = 1u << 17; // predictor state of changing entries, shared by all streams: 2 MiB
 
     [[nodiscard]] bool valid() const {
         const auto powerOfTwo = [](uint32_t n) { return n != 0 && (n & (n - 1)) == 0; };

@@ -1,8 +1,10 @@
-// Records that no frame before had follow each other where a program loads, compiles lists, or draws what it never drew. To look at
-// each takes two to three times as long as to compress them, so behind some of them the rest of the packet goes as bytes.
-// Where the same come again, those few are found in the log, and what was left out behind them is looked at in that frame: one that
-// repeats is known one frame later. What a stream's first frame has left out is not waited for: it loads what others draw, and to look at all of the
-// second for that took most of its time.
+// Detects runs of new records, as when a program loads, compiles lists, or draws something for the first time. Delta
+// coding of new records takes two to three times as long as compressing them, so after some of them the rest of the
+// packet is sent plain.
+//
+// When the same records repeat, the few coded ones are found in the log, and the plain rest after them is coded in that
+// frame; a repeating frame is thus known one frame later. The rest of a stream's first frame is not waited for: it
+// loads what later frames draw, and coding all of the second frame would take most of its time.
 #pragma once
 
 #include <algorithm>
@@ -12,12 +14,12 @@
 
 namespace mural::economy {
 
-// Of one stream. Positions are those of its log.
+// State of one stream. Positions refer to its log.
 class NewRecords {
 public:
-    // In this frame; `end`: of the log. Of a long packet few are enough behind many of the packets before, and of any ever fewer, to none, behind those
-    // of this frame whose rest was left out. A short one would win little; and between pages, which are looked at always, short records tell
-    // where the log goes on.
+    // A packet begins in this frame; `end` is the end of the log. The threshold is lower for a long packet after many
+    // packets, and falls to zero after packets of this frame whose rest was plain. A short packet would gain little.
+    // Between pages, which are always coded, short records resynchronize the log.
     void packetBegins(uint64_t frame, uint64_t end, bool isLong) {
         packets_ = frame == frame_ && isLeftOut_ ? std::min(packets_ + 1, kMostHalved) : 0;
         isLeftOut_ = false;
@@ -30,19 +32,20 @@ public:
         frameBegan_ = end;
         again_ = false;
     }
-    // Most of its bytes were in pages: most likely those of the next one are, too.
+    // Pages dominated this packet, and probably dominate the next one.
     void packetEnds(bool mostIsPages) { hadPages_ = mostIsPages; }
-    // So many came as they did from `position` on: in a frame before, or only in this one.
+    // Reports records that repeat from `position` on, in this frame or an earlier one.
     void found(uint64_t position, size_t records) {
         if (position >= frameBegan_) late_ += static_cast<uint32_t>(std::min<size_t>(records, kMany));
         else late_ -= static_cast<uint32_t>(std::min<size_t>(late_, records * kFoundCounts));
     }
     void isNew() { ++late_; }
-    // Another comes than the log has at `cursor`: what was left out there in a frame before?
+    // Reports a record that differs from the log at `cursor`. Detects whether records were sent plain there in an
+    // earlier frame.
     void another(uint64_t cursor) { again_ = again_ || (next_ != 0 && cursor <= frameBegan_ && std::ranges::find(leftOutAt_, cursor) != leftOutAt_.end()); }
 
     [[nodiscard]] bool many() const { return late_ >= kMany && !again_; }
-    // What follows goes as bytes; `position`: where it would have stood.
+    // The rest is sent plain; `position`: where it would have been in the log.
     void leaveOut(uint64_t position) {
         if (!isFirstFrame_) leftOutAt_[next_++ % leftOutAt_.size()] = position;
         isLeftOut_ = true;
@@ -50,17 +53,17 @@ public:
 
 private:
     static constexpr uint32_t kMany = 64;
-    static constexpr uint32_t kAtLeast = 32, kFew = 4; // of a packet, behind many
-    static constexpr uint32_t kMostHalved = 3;         // to four; to none
-    static constexpr uint32_t kFoundCounts = 3; // one that is found weighs as many new ones
+    static constexpr uint32_t kAtLeast = 32, kFew = 4; // threshold within a packet; threshold after many packets
+    static constexpr uint32_t kMostHalved = 3; // halvings of the threshold, to four; then zero
+    static constexpr uint32_t kFoundCounts = 3; // one repeated record outweighs this number of new ones
     static constexpr uint64_t kNever = UINT64_MAX;
-    static constexpr size_t kPlaces = 16;       // packets of a frame, about
+    static constexpr size_t kPlaces = 16; // approximate number of packets of a frame
 
-    uint32_t late_ = 0;      // new ones, less those found
-    bool isLeftOut_ = false; // the rest of the packet
-    bool hadPages_ = false;  // the packet before
-    uint32_t packets_ = 0;   // of this frame that had a rest left out, up to the last one
-    bool again_ = false;     // in this frame something came that was left out before
+    uint32_t late_ = 0; // new records, less repeated ones
+    bool isLeftOut_ = false; // the rest of the packet is sent plain
+    bool hadPages_ = false; // pages dominated the previous packet
+    uint32_t packets_ = 0; // packets of this frame with a plain rest
+    bool again_ = false; // a record that was sent plain before has repeated in this frame
     uint64_t frame_ = kNever, frameBegan_ = kNever;
     bool isFirstFrame_ = true;
     std::array<uint64_t, kPlaces> leftOutAt_ = nowhere();

@@ -11,19 +11,19 @@ namespace mural::economy {
 
 namespace {
 
-// A patch that is cheaper than finding a better place.
+// Size of a patch that is cheaper than a search for a better position.
 constexpr size_t kCheapPatchBytes = 8, kCheapPagePatchBytes = 512;
-// So many expected items may be missing before the index is asked.
+// Number of omitted entries that are tried before the index is searched.
 constexpr size_t kMostSkipped = 4;
 size_t mostPatchOf(const Piece& piece) { return size_t{piece.sizeBytes} * 3 / 4; }
 constexpr uint32_t kIndexedOfRun = 2;
-// Of a run's bytes one part of so many may be spans and words of what has changed.
+// A run is patched if spans and changed words take at most 1/kFewOf of its bytes.
 constexpr size_t kFewOf = 4;
 constexpr size_t kLongPacketBytes = 4096;
-// So many short records may be in the log that go plain now.
+// Number of short records in the log that may be skipped when records are sent plain.
 constexpr size_t kMostLeftOut = 1024;
 
-// Multiples of 4 bytes. Most are so few that a call of memcmp takes longer.
+// Compares words inline. Most entries are too short for a call of memcmp to pay off. Requires a multiple of 4 bytes.
 inline bool sameWords(const std::byte* a, const std::byte* b, size_t sizeBytes) {
     if (sizeBytes > 64) return std::memcmp(a, b, sizeBytes) == 0;
     for (; sizeBytes >= 8; sizeBytes -= 8, a += 8, b += 8) {
@@ -35,9 +35,9 @@ inline bool sameWords(const std::byte* a, const std::byte* b, size_t sizeBytes) 
     return sizeBytes == 0 || std::memcmp(a, b, 4) == 0;
 }
 
-// How many of them, in whole words, from the first on.
+// Returns the length of the common prefix in whole words.
 inline size_t equalBytes(const std::byte* a, const std::byte* b, size_t sizeBytes) {
-    constexpr size_t kBlock = 1024; // memcmp is fast, but does not tell where
+    constexpr size_t kBlock = 1024; // memcmp is fast but does not return the position
     size_t at = 0;
     while (sizeBytes - at >= kBlock && std::memcmp(a + at, b + at, kBlock) == 0) at += kBlock;
     for (; sizeBytes - at >= 8; at += 8) {
@@ -67,13 +67,14 @@ bool Packer::next() {
     return cut_.next(piece_);
 }
 
-// Behind the short records that follow, by what is told of the packet.
+// Skips the following short records, using the known record offsets of the packet.
 void Packer::passTold() {
     const auto& longAt = walked_->longAt;
     while (nextLong_ < longAt.size() && longAt[nextLong_] < cut_.at()) ++nextLong_;
     const bool toEnd = nextLong_ == longAt.size();
     const size_t sizeBytes = (toEnd ? packet_.size() : longAt[nextLong_]) - cut_.at();
-    cut_.passed(toEnd && sizeBytes > 0 ? 1 : 0, sizeBytes, walked_->lastBytes); // how many is told as well
+    // the offsets include the number of records
+    cut_.passed(toEnd && sizeBytes > 0 ? 1 : 0, sizeBytes, walked_->lastBytes);
 }
 
 void Packer::add(uint32_t stream, std::span<const std::byte> packet, const Walked* walked) {
@@ -122,7 +123,7 @@ void Packer::add(uint32_t stream, std::span<const std::byte> packet, const Walke
     batchRawBytes_ += packet.size();
 }
 
-// The piece in hand comes as expected.
+// Codes the current piece if it is the expected one.
 bool Packer::runOn() {
     if (runKnown()) return true;
     ItemLog& log = *log_;
@@ -131,7 +132,7 @@ bool Packer::runOn() {
     if (!same(item, piece_)) return false;
     const bool record = !piece_.page() && cut_.atRecord();
     if (!record) keepRun();
-    // A few at the beginning of a run are found where they came last: what changes between them is the newest there.
+    // The first entries of a run are indexed at their latest position, because changes between them are newest there.
     if (run_ < kIndexedOfRun) {
         run();
     } else {
@@ -155,7 +156,7 @@ bool Packer::runOn() {
     return true;
 }
 
-// The piece in hand and what follows it come as in a run that is known, which is compared at once.
+// Codes the current piece and its successors if they match a known run, with a single comparison.
 bool Packer::runKnown() {
     if (!cut_.atRecord() || piece_.page()) return false;
     ItemLog& log = *log_;
@@ -194,7 +195,7 @@ bool Packer::runKnown() {
     return true;
 }
 
-// The run of short records ends here.
+// Ends the current run of short records.
 void Packer::keepRun() {
     if (open_.items >= KnownRuns::kLeastItems && open_.sizeBytes <= KnownRuns::kMostBytes) {
         if (!openIsKnown_) open_.bytesAt = runs_->keep(packet_.subspan(openBytesAt_, open_.sizeBytes));
@@ -203,8 +204,8 @@ void Packer::keepRun() {
     open_ = {};
 }
 
-// Cheapest first: a few words of it changed, what was expected a little later, another place where this
-// and the next came, pages that the nodes have, more words changed. Else it is new.
+// Tries alternatives from cheap to expensive: a small patch, an expected entry slightly later, another position with
+// this pair of entries, stored pages, a large patch. Otherwise the piece is new.
 bool Packer::place() {
     const Piece piece = piece_;
     if (restPlain_) skipToLike(piece);
@@ -213,26 +214,27 @@ bool Packer::place() {
     if (piece.page() && fromStore(true)) return true;
     if (seek()) return true;
     if (piece.page() && fromStore(false)) return true;
-    // Words of what is no page are guessed: all of them changed cost less than new ones, if this is the place.
+    // Words of short entries are predicted: even if all of them changed, a patch costs less than a new entry at the
+    // right position.
     const bool place = !piece.page() && piece.sizeBytes >= ItemIndex::kTellingBytes;
     if (patch(piece, place ? size_t{piece.sizeBytes} * 2 : mostPatchOfPage(piece))) return true;
     send(piece);
     return false;
 }
 
-// A short one was placed.
+// Counts a coded short record.
 void Packer::count(bool isNew) {
     if (isNew) news_->isNew();
     else news_->found(log_->cursor - 1, 1);
 }
 
-// Pixels that are new are fewer bytes than pixels that have changed.
+// New pixels take fewer bytes than changed pixels.
 size_t Packer::mostPatchOfPage(const Piece& piece) const {
     if (piece.sizeBytes != kPageBytes) return mostPatchOf(piece);
     return std::clamp(leftOfPixels(packet_.data() + piece.at), kCheapPagePatchBytes, mostPatchOf(piece));
 }
 
-// Of a page that is another each time nobody looks whether it was somewhere before.
+// A page that changes every time is not searched for.
 size_t Packer::cheapPatchOfPage(const Piece& piece) {
     if (!log_->holds(log_->cursor)) return 0;
     const Item expected = log_->at(log_->cursor);
@@ -260,7 +262,7 @@ bool Packer::skipTo(const Piece& piece) {
     return false;
 }
 
-// Between long records the log may have short ones from when they did not go plain.
+// Between long records the log may contain short ones from frames that were not plain.
 void Packer::skipToLike(const Piece& piece) {
     const Item now{0, piece.sizeBytes, static_cast<uint32_t>(piece.page())};
     for (size_t ahead = 0; ahead <= kMostLeftOut && log_->holds(log_->cursor + ahead); ++ahead) {
@@ -274,7 +276,7 @@ void Packer::skipToLike(const Piece& piece) {
     }
 }
 
-// Records of another command are not patched: their words mean something else, and the place is most likely the wrong one.
+// Records of other commands are not patched: their words have other meanings, and the position is probably wrong.
 bool Packer::patch(const Piece& piece, size_t mostBytes) {
     if (!log_->holds(log_->cursor)) return false;
     const Item expected = log_->at(log_->cursor);
@@ -310,7 +312,7 @@ bool Packer::patch(const Piece& piece, size_t mostBytes) {
     return true;
 }
 
-// patch_ goes. A span may be one word, and there are hundreds of them: no call for each.
+// Writes patch_. Inline, because a span may be a single word and there are hundreds.
 void Packer::putPatch(std::span<const std::byte> now) {
     auto& spans = literals_[static_cast<size_t>(Section::Spans)].owned();
     auto& words = literals_[static_cast<size_t>(Section::Words)].owned();
@@ -324,7 +326,8 @@ void Packer::putPatch(std::span<const std::byte> now) {
     }
 }
 
-// What has become of the page in this slot. One that stays there is another each time, which nobody looks for: so it needs no hash.
+// Appends the new contents of the page in this slot. A page that stays in its slot changes every time and needs no
+// hash.
 void Packer::appendChangedPage(uint32_t slotBefore, const Piece& piece) {
     const uint32_t slot = history_.pages().changed(slotBefore);
     if (slot != slotBefore) return append(putPage(slot, piece), static_cast<uint32_t>(hashOf(piece)));
@@ -352,12 +355,12 @@ bool Packer::seek() {
         next = static_cast<uint32_t>(nextHash_);
     }
     if (seekAt(hash, index_->find(hash, next, log_->end()))) return true;
-    // What is another each time came nowhere before but in this place, unless as one of two that did.
+    // An entry that changes every time occurred before at this position only, unless a pair matches.
     const bool changes = log_->holds(log_->cursor) && log_->at(log_->cursor).model != 0 && log_->at(log_->cursor).sizeBytes == piece_.sizeBytes;
     return !changes && piece_.sizeBytes >= ItemIndex::kTellingBytes && seekAt(hash, index_->find(hash, ItemIndex::kAnything, log_->end()));
 }
 
-// Most places are of other items: their hashes lie together, their bytes do not.
+// Most candidates are other entries: comparing the contiguous hashes first avoids cache misses on their bytes.
 bool Packer::seekAt(uint32_t hash, uint64_t position) {
     if (!log_->holds(position) || index_->hashAt(position) != hash || !same(log_->at(position), piece_)) return false;
     settle();
@@ -367,7 +370,7 @@ bool Packer::seekAt(uint32_t hash, uint64_t position) {
     return true;
 }
 
-// In place: the page that comes next is expected behind the one that this takes the place of.
+// In place: the next expected page follows the replaced one.
 bool Packer::fromStore(bool inPlace) {
     const Piece piece = piece_;
     if (inPlace) {
@@ -460,7 +463,7 @@ void Packer::asBytes(size_t from, size_t to) {
     literals_[static_cast<size_t>(Section::Texts)].lend(bytes);
 }
 
-// Few words of what the slot has are others now.
+// Codes the bytes as changed words of the slot, if few have changed.
 bool Packer::asChanged(uint32_t slot, std::span<const std::byte> bytes) {
     const auto kept = history_.runs().at(slot);
     const bool few = patch_.find(kept, bytes, bytes.size() / kFewOf) || patch_.spans.empty();

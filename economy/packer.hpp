@@ -1,5 +1,5 @@
-// The head's side: packets become references to what came before, and the rest. One for all nodes, as all get one stream.
-// Linear in the packet. One thread at a time.
+// Encoder of the head: replaces packets by references to the dictionary and new data. One encoder serves all nodes,
+// which receive the same stream. Linear in the packet size. Not thread-safe.
 #pragma once
 
 #include <array>
@@ -24,46 +24,46 @@
 
 namespace mural::economy {
 
-// Since the start.
+// Totals since the start.
 struct PackerCounts {
     uint64_t packets = 0;
     uint64_t records = 0;
     uint64_t rawBytes = 0;
-    uint64_t stagedBytes = 0; // after references and patches, before compression
-    uint64_t storeHits = 0;   // pages that the nodes had
-    uint64_t newPages = 0;    // and that they had not
-    uint64_t patches = 0;     // items of which only the changed words went
+    uint64_t stagedBytes = 0; // after delta coding, before compression
+    uint64_t storeHits = 0; // pages that the nodes had
+    uint64_t newPages = 0; // pages that the nodes did not have
+    uint64_t patches = 0; // entries sent as changed words
 };
 
 class Packer {
 public:
     explicit Packer(const Limits& limits) : limits_(limits), history_(limits), firstIndex_(std::make_unique<StreamIndex>(limits.logItems)), words_(limits.modelWords) {}
 
-    // False: there was no memory for the store.
+    // Returns false if there was no memory for the store.
     [[nodiscard]] bool ready() const { return history_.ready(); }
 
-    // walked: what the packet is made of, where that is known: then its records are not looked for once more, if they go plain.
-    // The packet stays where it is until clear(), or ownBytes().
+    // Adds a packet, which must stay valid until clear() or ownBytes(). walked: record offsets of the packet, if known;
+    // they save a second walk over plain records.
     void add(uint32_t stream, std::span<const std::byte> packet, const Walked* walked = nullptr);
-    // Packets that were added may go from here on.
+    // Copies borrowed bytes: added packets may become invalid afterwards.
     void ownBytes() { literals_[static_cast<size_t>(Section::Texts)].own(); }
 
-    // What follows is another frame, or more of a long one. plain: its short records go as they are, not looked at. Between batches.
+    // Begins another frame, or continues a long one. plain: short records are sent plain. Call between batches only.
     void beginFrame(bool plain, bool goesOn = false) {
         plain_ = plain;
         frames_ += !goesOn;
     }
     [[nodiscard]] bool plain() const { return plain_; }
 
-    // What has been added since clear(), which is next.
+    // Returns the batch since clear(). Call clear() next.
     [[nodiscard]] SectionBytes finish();
     [[nodiscard]] uint64_t stagedBytes() const;
     [[nodiscard]] uint64_t rawBytes() const { return batchRawBytes_; }
-    [[nodiscard]] uint64_t pageBytes() const { return batchPageBytes_; } // of them, in pages of long records
-    // Of them, in short records that would have been looked at, and were not, as they came behind many new ones.
+    [[nodiscard]] uint64_t pageBytes() const { return batchPageBytes_; } // in pages of long records
+    // Bytes in short records that were sent plain because they followed many new ones.
     [[nodiscard]] uint64_t leftOutBytes() const { return batchLeftOutBytes_; }
     void clear();
-    // The last packet ends within a value that goes ahead of its record: nodes can do nothing with that yet.
+    // Returns true if the last packet ends within a blob. Nodes cannot act on an incomplete blob.
     [[nodiscard]] bool endsInValue() const { return endsInValue_; }
 
     [[nodiscard]] const PackerCounts& counts() const { return counts_; }
@@ -98,7 +98,7 @@ private:
     void settle();
     void asBytes(size_t from, size_t to);
     bool asChanged(uint32_t slot, std::span<const std::byte> bytes);
-    [[nodiscard]] uint64_t hashOf(const Piece& piece); // of the one in hand
+    [[nodiscard]] uint64_t hashOf(const Piece& piece); // of the current piece
     [[nodiscard]] std::span<const std::byte> bytesOf(const Piece& piece) const { return packet_.subspan(piece.at, piece.sizeBytes); }
     void literal(Section section, std::span<const std::byte> bytes) { literals_[static_cast<size_t>(section)].add(bytes); }
 
@@ -111,41 +111,41 @@ private:
         KnownRuns runs;
         NewRecords news;
     };
-    std::vector<std::unique_ptr<StreamIndex>> streams_; // by place of the log
-    std::unique_ptr<StreamIndex> firstIndex_;           // until there is a stream
+    std::vector<std::unique_ptr<StreamIndex>> streams_; // by index of the log
+    std::unique_ptr<StreamIndex> firstIndex_; // allocated in advance for the first stream
 
     RangeWriter coder_; // of control_ and words_
     ControlWriter control_{coder_};
     WordCoder words_;
-    std::array<GatheredBytes, kSections> literals_; // Control's is in coder_
+    std::array<GatheredBytes, kSections> literals_; // Control is in coder_
     uint64_t batchRawBytes_ = 0, batchPageBytes_ = 0, batchLeftOutBytes_ = 0;
     uint32_t lastStream_ = 0;
     bool endsInValue_ = false;
     bool plain_ = false;
     uint64_t frames_ = 0;
     RunPlaces runPlaces_;
-    uint32_t run_ = 0; // items as expected that are not in control_ yet
-    uint32_t pagesFrom_ = 0, pagesRun_ = 0; // the same of pages of the store
+    uint32_t run_ = 0; // expected entries that are not in control_ yet
+    uint32_t pagesFrom_ = 0, pagesRun_ = 0; // stored pages that are not in control_ yet
 
-    // The packet in hand.
+    // The current packet.
     std::span<const std::byte> packet_;
-    PacketCut cut_;  // behind the piece in hand
+    PacketCut cut_; // position after the current piece
     Piece piece_;
     ItemLog* log_ = nullptr;
     ItemIndex* index_ = nullptr;
     KnownRuns* runs_ = nullptr;
     NewRecords* news_ = nullptr;
-    bool restPlain_ = false; // its short records are not looked at from here on
-    const Walked* walked_ = nullptr; // of the packet in hand, where it is told
-    size_t nextLong_ = 0; // in walked_'s longAt
-    KnownRuns::Run open_;    // the run of short records that goes on, without its bytes
-    uint32_t openBytesAt_ = 0; // where in the packet it begins
-    bool openIsKnown_ = false; // all of it is one of runs_
+    bool restPlain_ = false; // short records are sent plain from here on
+    const Walked* walked_ = nullptr; // record offsets of the current packet, if known
+    size_t nextLong_ = 0; // index into walked_->longAt
+    KnownRuns::Run open_; // the open run of short records, without its bytes
+    uint32_t openBytesAt_ = 0; // its offset in the packet
+    bool openIsKnown_ = false; // all of it matches one of runs_
     bool first_ = true;
-    uint64_t hash_ = 0; // of the piece in hand, once it is known
+    uint64_t hash_ = 0; // hash of the current piece, if computed
     bool hashed_ = false;
     static constexpr uint32_t kNowhere = UINT32_MAX;
-    uint32_t nextAt_ = kNowhere; // where a piece begins whose hash is known ahead
+    uint32_t nextAt_ = kNowhere; // offset of a piece with a precomputed hash
     uint64_t nextHash_ = 0;
     WordPatch patch_;
     PackerCounts counts_;

@@ -1,5 +1,5 @@
-// Cuts a packet of records into items: short records whole, of long ones first what is left over beside whole pages (so the
-// opcode and the arguments in front), then the pages. So the bytes of a texture are the same pages whatever command has them.
+// Splits a packet of records into pieces: short records whole, long ones into a front (opcode, arguments and the bytes
+// beyond whole pages) and pages. Equal texture data thus gives equal pages for any command.
 #pragma once
 
 #include <cstddef>
@@ -19,13 +19,13 @@ struct Piece {
     [[nodiscard]] bool page() const { return sizeBytes > kMostTextBytes; }
 };
 
-// A place in a packet. A copy looks ahead.
+// A position in a packet. A copy can look ahead.
 class PacketCut {
 public:
     PacketCut() = default;
     explicit PacketCut(std::span<const std::byte> packet) : packet_(packet) {}
 
-    // False: there is none. Where a record's length makes no sense, the rest is no items.
+    // Returns false at the end. After an invalid record length the rest belongs to no piece.
     [[nodiscard]] bool next(Piece& piece) {
         if (at_ < recordEnd_) {
             piece = {static_cast<uint32_t>(at_), kPageBytes};
@@ -46,7 +46,7 @@ public:
         at_ += piece.sizeBytes;
         return true;
     }
-    // Behind all short records that follow here; how many bytes they are.
+    // Skips all following short records and returns their size in bytes.
     size_t passShort() {
         const size_t from = at_;
         if (!atRecord()) return 0;
@@ -61,7 +61,8 @@ public:
                 if (rounds > 0) continue;
             }
             const size_t sizeBytes = size_t{head >> 16} * 4;
-            if (sizeBytes - 4 > kMostTextBytes - 4 || sizeBytes > packet_.size() - at_) break; // 0, or a long one, or none
+            // zero, long, or truncated
+            if (sizeBytes - 4 > kMostTextBytes - 4 || sizeBytes > packet_.size() - at_) break;
             round.add(head, at_);
             lastRecord_ = at_;
             at_ += sizeBytes;
@@ -70,7 +71,7 @@ public:
         recordEnd_ = at_;
         return at_ - from;
     }
-    // So many short records are behind, the last of them of so many bytes.
+    // Skips short records of a known total size; `lastBytes`: size of the last one.
     void passed(size_t records, size_t bytes, size_t lastBytes) {
         records_ += records;
         at_ += bytes;
@@ -81,7 +82,7 @@ public:
     [[nodiscard]] bool atRecord() const { return at_ >= recordEnd_; }
     [[nodiscard]] size_t at() const { return at_; }
     [[nodiscard]] uint64_t records() const { return records_; }
-    [[nodiscard]] uint32_t lastOpcode() const { // 0: there was none
+    [[nodiscard]] uint32_t lastOpcode() const { // 0: none
         uint32_t head = 0;
         if (records_ > 0) std::memcpy(&head, packet_.data() + lastRecord_, 4);
         return head & 0xffff;
@@ -90,7 +91,7 @@ public:
 private:
     std::span<const std::byte> packet_;
     size_t at_ = 0;
-    size_t recordEnd_ = 0; // of the record that has begun
+    size_t recordEnd_ = 0; // end of the current record
     size_t lastRecord_ = 0;
     uint64_t records_ = 0;
 };

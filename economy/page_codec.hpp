@@ -1,5 +1,6 @@
-// The section of new pages. By LZ4 as other sections; by Zstandard what is like pictures apart from the rest: a number, how many pieces are
-// (pixel_pieces.hpp). If any, compressed sizes of front and planes, then these. Then the rest, if any.
+// Codec of the section of new pages. LZ4 compresses it like other sections. Zstandard compresses pictures separately:
+// the number of filtered pieces (pixel_pieces.hpp), and if any, the compressed sizes of front and planes, then both;
+// then the rest, if any.
 #pragma once
 
 #include <cstddef>
@@ -14,13 +15,13 @@ namespace mural::economy {
 
 class PageCompressor {
 public:
-    // As SectionCompressor has them.
+    // Same contract as SectionCompressor.
     bool compress(Coding coding, std::span<const std::byte> pages, std::vector<std::byte>& into);
     void prepare();
 
 private:
-    // Of what is no picture the better level pays: vertices and pictures in formats of the card become a fifth smaller by 2 than by 1.
-    // Bits of masks become a sixth smaller by 1 than by -1, in twice the time.
+    // Level 2 pays off for the rest: vertices and compressed texture formats become a fifth smaller than with level 1.
+    // Bit masks become a sixth smaller with level 1 than with -1, in twice the time.
     SectionCompressor rest_{2}, fronts_{1}, planes_{1};
     CountedCompressor countedPlanes_; // of photographs
     PixelSplitter splitter_;

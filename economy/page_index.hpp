@@ -1,4 +1,4 @@
-// Where in the store a page is, by its hash. Only the packer needs it.
+// Finds pages of the store by hash. Encoder only.
 #pragma once
 
 #include <cstdint>
@@ -10,17 +10,17 @@ class PageIndex {
 public:
     PageIndex() : heads_(kFirstHeads, kNone) {}
 
-    // Calls `is(slot)` for each page of this hash until that is true; kNone: for none.
+    // Calls `is(slot)` for each page with this hash until it returns true. Returns kNone if none does.
     template <class Is> [[nodiscard]] uint32_t find(uint64_t hash, Is&& is) const {
         for (uint32_t slot = heads_[hash & (heads_.size() - 1)]; slot != kNone; slot = pages_[slot].next)
             if (pages_[slot].hash == hash && is(slot)) return slot;
         return kNone;
     }
-    // The slot has a page that nobody finds by its hash.
+    // Removes the slot: its page is not found by hash.
     void forget(uint32_t slot) {
         if (slot < pages_.size()) remove(slot);
     }
-    // The slot has another page now.
+    // Sets the hash of the slot's new page.
     void set(uint32_t slot, uint64_t hash) {
         if (slot < pages_.size()) remove(slot);
         else {
@@ -60,8 +60,8 @@ private:
             if (pages_[slot].known) insert(slot);
     }
 
-    std::vector<uint32_t> heads_; // a power of two
-    std::vector<Page> pages_;     // by slot
+    std::vector<uint32_t> heads_; // size is a power of two
+    std::vector<Page> pages_; // by slot
 };
 
 } // namespace mural::economy

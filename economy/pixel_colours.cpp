@@ -15,7 +15,7 @@ namespace mural::economy::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-#if HWY_TARGET == HWY_SCALAR // no vectors
+#if HWY_TARGET == HWY_SCALAR // no vector instructions
 
 void takeFours(const uint8_t* piece, uint8_t* apart) {
     for (size_t i = 0; i < kPageBytes; ++i) apart[i] = static_cast<uint8_t>(piece[i] - (i % 2 == 0 ? piece[i / 4 * 4 + 1] : 0));
@@ -28,11 +28,11 @@ size_t putVectors(const uint8_t*, size_t, uint8_t*) { return 0; }
 
 #else
 
-constexpr size_t kMostBytes = 64; // of a vector: a piece has whole ones
+constexpr size_t kMostBytes = 64; // largest vector; a piece is a multiple of it
 using Fours = hn::CappedTag<uint32_t, kMostBytes / 4>;
 using FourBytes = hn::Repartition<uint8_t, Fours>;
 
-// Green at the places of red and blue.
+// Returns green in the positions of red and blue.
 hn::Vec<FourBytes> greenBeside(hn::Vec<FourBytes> pixels) {
     const Fours d;
     const auto green = hn::ShiftRight<8>(hn::And(hn::BitCast(d, pixels), hn::Set(d, 0xff00)));
@@ -55,7 +55,7 @@ void putFours(const uint8_t* apart, uint8_t* piece) {
     }
 }
 
-// How many pixels are done.
+// Returns the number of pixels processed.
 size_t takeVectors(const uint8_t* pixels, size_t count, uint8_t* apart) {
     const hn::ScalableTag<uint8_t> d;
     size_t i = 0;

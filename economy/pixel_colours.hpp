@@ -1,7 +1,8 @@
-// What colours of a pixel have in common, told once: pictures are brighter here and darker there more than they are of other colours, and in
-// grey ones all three are the same. Green stays; of red and blue stays what they differ from it by. (Lossless formats of pictures do as much: QOI, WebP.)
-// Of pixels of four bytes the second is green, and the fourth stays; they stay where they are. Of pixels of three all greens go first, then
-// all reds, then all blues, then what belongs to no whole pixel.
+// Green subtraction: removes the correlation between the colours of a pixel, as QOI and WebP do. Brightness varies more
+// than hue, and in grey pictures all colours are equal. Green stays; red and blue become differences to green.
+//
+// With four bytes per pixel the second byte is green, the fourth stays, and the order is kept. With three bytes per
+// pixel all greens come first, then all reds, all blues, and the bytes outside whole pixels.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +10,7 @@
 
 namespace mural::economy {
 
-// `way`: kColoursOfFour or more. Both pieces have kPageBytes and are not the same.
+// `way`: kColoursOfFour or above. Both buffers have kPageBytes and do not overlap.
 void takeColoursApart(const std::byte* piece, uint8_t way, std::byte* apart);
 void putColoursTogether(const std::byte* apart, uint8_t way, std::byte* piece);
 

@@ -12,18 +12,21 @@
 namespace mural::economy {
 namespace {
 
-// Of twenty parts, so many at most are left of a piece that is like a picture. Others may have what came before, which Zstandard finds as long as
-// bytes are where they were: vertices would become twice as large.
+// A piece is a picture if filtering leaves at most this many twentieths. Other pieces may repeat earlier data, which
+// Zstandard finds only unfiltered: vertices would double in size.
 constexpr uint32_t kLeftOfTwenty = 13;
 
-// Taken apart, colours are as smooth as they look; grey pixels of three bytes look as smooth byte by byte, too. So these may be rougher, by one part of so many.
+// Additional tolerance, as a fraction of 1/kForColours, for green subtraction: grey pixels of three bytes look equally
+// smooth byte by byte.
 constexpr uint32_t kForColours = 32;
 
-// Where a picture is even, edges change all colours, which are more words apart than together. So many bits of its samples are few.
+// In uniform pictures an edge changes all colours, which are more words after the split. A piece with at most this many
+// sample bits is uniform.
 constexpr uint32_t kEvenBits = 2 * kSampledBytes;
 
-// What is not even there may come again as it was: letters, dotted lines, tiles. As it is Zstandard finds that, of differences it finds less: then pieces
-// stay as they are. Two samples of so many pieces tell, if one part of so many at most is left of them: of more, Zstandard makes less than LZ4 says.
+// Non-uniform parts of uniform pictures may repeat: letters, dotted lines, tiles. Zstandard finds repeats in the pixels
+// but fewer in differences; such pieces stay unfiltered. Two samples of kEvenPieces pieces decide, if at most
+// 1/kLeftOfEven of them remains; above that, Zstandard beats LZ4's estimate.
 constexpr size_t kEvenPieces = 4, kLeftOfEven = 8;
 
 size_t bestOf(const Roughness& rough) {
@@ -35,7 +38,7 @@ size_t bestOf(const Roughness& rough) {
 
 struct Way {
     uint8_t way = 0;
-    uint32_t roughness = 0; // what is left by it
+    uint32_t roughness = 0; // estimated bits after the filter
 };
 
 Way wayOf(const std::byte* piece) {
@@ -44,7 +47,7 @@ Way wayOf(const std::byte* piece) {
     return rough[best] * 20 < rough[0] * kLeftOfTwenty ? Way{kPixelWays[best], rough[best]} : Way{};
 }
 
-// LZ4 has a byte for 255 of a run; Zstandard has none.
+// Size without run lengths: LZ4 spends a byte per 255 bytes of a run, Zstandard none.
 size_t beyondRuns(std::span<const std::byte> bytes, std::vector<std::byte>& scratch) {
     const size_t coded = bytes.empty() ? 0 : lz4Bytes(bytes, scratch), ofRuns = bytes.size() / 255;
     return coded - std::min(coded, ofRuns);
@@ -73,7 +76,7 @@ bool PixelSplitter::split(std::span<const std::byte> pages) {
     return true;
 }
 
-// By LZ4, which tells fast, what has little left is less as it is.
+// Estimates with LZ4, which is fast, whether unfiltered data is smaller.
 bool PixelSplitter::repeats(std::span<const std::byte> pages) {
     const size_t all = ways_.size(), pieces = std::min(kEvenPieces, (all + 1) / 2), before = (all - pieces) / 3;
     size_t asIs = 0, apart = 0;

@@ -1,7 +1,6 @@
-// New pages in pieces of 4 KiB, of which some are like pictures: little changes from one pixel to the next, and most is in the low bits. Their
-// words go as differences, of colours besides what they do not have in common, those that are 0 as a bit, the others with their bytes in planes:
-// so Zstandard finds a quarter fewer bytes in two thirds of the time, where it had looked for pixels that came before. (Formats of pictures do
-// as much: PNG's filters, QOI's runs.)
+// Filters new pages that contain pictures, in pieces of 4 KiB. Neighbouring pixels differ little, so words become
+// differences, optionally after green subtraction; zero words become one bit, the others are split into byte planes.
+// Zstandard then needs a quarter fewer bytes in two thirds of the time. (PNG filters and QOI runs are similar.)
 #pragma once
 
 #include <cstddef>
@@ -13,19 +12,20 @@
 
 namespace mural::economy {
 
-// What is left of a piece's bytes as differences, about.
+// Returns an estimate of the piece's size after filtering.
 [[nodiscard]] size_t leftOfPixels(const std::byte* piece);
 
 class PixelSplitter {
 public:
-    // False: nothing is to be won, so there are no parts. They live until the next call.
+    // Splits the pages. Returns false if filtering gains nothing; then there are no parts. Parts are valid until the
+    // next call.
     bool split(std::span<const std::byte> pages);
 
-    // Of each piece its way (kPixelWays; 0: it is no picture), then of each one with pixels the bits.
+    // Per piece its filter (kPixelWays; 0: none), then the zero bits of each filtered piece.
     [[nodiscard]] std::span<const std::byte> front() const { return front_; }
     [[nodiscard]] size_t pixelPieces() const { return pixelPieces_; }
     [[nodiscard]] std::span<const std::byte> planes() const { return std::span(planes_).first(planeBytes_); }
-    // Pieces that are none, and what is left behind the last.
+    // Unfiltered pieces, and the bytes after the last piece.
     [[nodiscard]] std::span<const std::byte> rest() const { return rest_; }
 
 private:
@@ -41,11 +41,11 @@ private:
 [[nodiscard]] size_t frontBytes(size_t pagesBytes, size_t pixelPieces);
 class PixelJoiner {
 public:
-    // False: this is no front of so many pages. The front must live until join() is done.
+    // Returns false if the front is malformed for this size. The front must stay valid until join() returns.
     bool begin(std::span<const std::byte> front, size_t pagesBytes, size_t pixelPieces);
     [[nodiscard]] size_t planeBytes() const { return planeBytes_; }
     [[nodiscard]] size_t restBytes() const { return pagesBytes_ - pixelPieces_ * kPageBytes; }
-    // `pages` has the bytes that begin() was told, the parts as many as planeBytes() and restBytes() say.
+    // Restores the pages. Requires the sizes given to begin(), planeBytes() and restBytes().
     void join(std::span<const std::byte> planes, std::span<const std::byte> rest, std::span<std::byte> pages);
 
 private:

@@ -13,13 +13,13 @@ namespace mural::economy::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr size_t kMostLanes = kPieceWordRoom - kPieceWords;
-// They begin with a pixel of four, and with each colour of pixels of three as often.
+// Samples start at a pixel of four bytes, and equally often at each colour of pixels of three.
 constexpr size_t kSamples = 8, kSampleBytes = kSampledBytes / kSamples, kSampleStep = 500;
 static_assert(kSampleStep % 4 == 0 && kSampleStep % 3 != 0 && kSampleBytes + kSamples * kSampleStep + 1 <= kPageBytes);
 
-#if HWY_TARGET == HWY_SCALAR // no vectors
+#if HWY_TARGET == HWY_SCALAR // no vector instructions
 
-// Of each byte as a signed number its magnitude, at most 31, and 8 for not being 0.
+// Returns an estimate of a signed byte's bits: its magnitude, at most 31, plus 8 unless it is 0.
 uint32_t roughnessOf(uint8_t difference) {
     const uint32_t magnitude = difference < 128 ? difference : 256u - difference;
     return magnitude == 0 ? 0 : (magnitude < 31 ? magnitude : 31) + 8;
@@ -35,13 +35,13 @@ void roughnessVectors(const uint8_t* piece, uint32_t* roughnesses) {
         roughnesses[kPlainWays] += roughnessOf(fours);
         const uint8_t now = behind(at, 3), beside = static_cast<uint8_t>(behind(at + 1, 3) - now);
         for (size_t before = 0; before < 3; ++before) {
-            const size_t colour = (at + 3 - before) % 3; // red counts what it is beside green, green itself and blue beside it
+            const size_t colour = (at + 3 - before) % 3; // red relative to green; green itself; blue relative to green
             roughnesses[kPlainWays + 1 + before] += (colour == 1 ? roughnessOf(now) : 0) + (colour == 2 ? 0 : roughnessOf(beside));
         }
     }
 }
 
-// In front of the piece stand zeros for one pixel.
+// Zeros for one pixel precede the piece.
 size_t differencesVectors(const uint8_t* piece, size_t pixelBytes, uint32_t* words, uint8_t* mask) {
     size_t count = 0;
     for (size_t i = 0; i < kPieceWords; ++i) {
@@ -60,7 +60,7 @@ size_t fromPlanesVectors(const uint8_t*, size_t, uint8_t*) { return 0; }
 
 #else
 
-// Every third byte, for vectors that begin anywhere.
+// Masks of every third byte, for each vector phase.
 constexpr auto kThirds = [] {
     std::array<uint8_t, kSampleBytes + 2> thirds{};
     for (size_t i = 0; i < thirds.size(); i += 3) thirds[i] = 0xff;
@@ -91,7 +91,8 @@ void roughnessVectors(const uint8_t* piece, uint32_t* roughnesses) {
         return hn::SumsOf8(roughnessOf(hn::Sub(changed, hn::BitCast(d, hn::Or(green, hn::ShiftLeft<16>(green))))));
     });
     for (size_t before = 0; before < 3; ++before) {
-        forSamples(kPlainWays + 1 + before, [&](size_t at) { // red counts what it is beside green, green itself and blue beside it
+        // red relative to green; green itself; blue relative to green
+        forSamples(kPlainWays + 1 + before, [&](size_t at) {
             const auto now = behind(piece + at, 3), beside = hn::Sub(behind(piece + at + 1, 3), now);
             const auto greens = hn::LoadU(d, kThirds.data() + (at + 2 - before) % 3), blues = hn::LoadU(d, kThirds.data() + (at + 1 - before) % 3);
             return hn::Add(hn::SumsOf8(hn::And(greens, roughnessOf(now))), hn::SumsOf8(hn::AndNot(blues, roughnessOf(beside))));
@@ -101,7 +102,7 @@ void roughnessVectors(const uint8_t* piece, uint32_t* roughnesses) {
 
 size_t differencesVectors(const uint8_t* piece, size_t pixelBytes, uint32_t* words, uint8_t* mask) {
     size_t count = 0;
-    const hn::CappedTag<uint32_t, kMostLanes> d; // stored whole
+    const hn::CappedTag<uint32_t, kMostLanes> d; // stores whole vectors
     const hn::Repartition<uint8_t, decltype(d)> bytes;
     const size_t lanes = hn::Lanes(d);
     for (size_t i = 0; i < kPieceWords; i += lanes) {
@@ -109,7 +110,7 @@ size_t differencesVectors(const uint8_t* piece, size_t pixelBytes, uint32_t* wor
         const auto changed = hn::BitCast(d, hn::Sub(hn::LoadU(bytes, at), hn::LoadU(bytes, at - pixelBytes)));
         const auto there = hn::Ne(changed, hn::Zero(d));
         uint8_t bits[8] = {};
-        if (!hn::AllFalse(d, there)) { // where pictures are even, nothing changes for long
+        if (!hn::AllFalse(d, there)) { // uniform areas have long runs without changes
             hn::StoreU(hn::Compress(changed, there), d, words + count);
             count += hn::CountTrue(d, there);
             hn::StoreMaskBits(d, there, bits);
@@ -120,7 +121,7 @@ size_t differencesVectors(const uint8_t* piece, size_t pixelBytes, uint32_t* wor
     return count;
 }
 
-// How many words are done.
+// Returns the number of words processed.
 size_t toPlanesVectors(const uint8_t* words, size_t count, uint8_t* planes) {
     size_t i = 0;
     const hn::ScalableTag<uint8_t> d;
@@ -158,19 +159,19 @@ HWY_EXPORT(fromPlanesVectors);
 
 namespace {
 
-constexpr size_t kInFront = 16; // zeros before the first pixel
+constexpr size_t kInFront = 16; // zero bytes before the first pixel
 static_assert(kInFront >= kPixelWays[kPlainWays - 1]);
 
 uint8_t* bytesOf(std::byte* bytes) { return reinterpret_cast<uint8_t*>(bytes); }
 const uint8_t* bytesOf(const std::byte* bytes) { return reinterpret_cast<const uint8_t*>(bytes); }
 
-// All bytes of both by themselves.
+// Adds bytes without carry between them.
 template <class Word> Word added(Word a, Word b) {
     constexpr auto kTop = static_cast<Word>(0x8080808080808080);
     return static_cast<Word>(((a & ~kTop) + (b & ~kTop)) ^ ((a ^ b) & kTop));
 }
 
-// A pixel has as many bytes as a Word.
+// Requires pixels of the size of Word.
 template <class Word> void sum(const uint8_t* differences, uint8_t* piece) {
     Word pixel = 0;
     for (size_t i = 0; i < kPageBytes; i += sizeof pixel) {
@@ -181,7 +182,7 @@ template <class Word> void sum(const uint8_t* differences, uint8_t* piece) {
     }
 }
 
-// The byte behind each pixel is written again with the next one.
+// Writes four bytes per pixel; the next pixel overwrites the fourth.
 void sumTriples(const uint8_t* differences, uint8_t* piece) {
     uint32_t pixel = 0;
     size_t i = 0;
@@ -214,7 +215,7 @@ size_t sumDifferences(const uint32_t* words, const std::byte* mask, size_t pixel
     alignas(8) uint32_t all[kPieceWords];
     for (size_t i = 0; i < kPieceWords; i += 8) {
         auto bits = static_cast<uint32_t>(mask[i / 8]);
-        for (size_t k = 0; k < 8; ++k, bits >>= 1) { // no branch: nobody could foresee it
+        for (size_t k = 0; k < 8; ++k, bits >>= 1) { // branch-free: the branch would be unpredictable
             const uint32_t bit = bits & 1;
             all[i + k] = *words & (0 - bit);
             words += bit;

@@ -1,6 +1,6 @@
-// An adaptive binary range coder: what is expected costs next to nothing, and a batch of a few bytes pays for no tables.
-// Writer and reader have the same calls: what codes a thing once does it for both sides, so they can't differ. The reader's
-// arguments for values mean nothing, its results are what was written.
+// Adaptive binary range coder (LZMA-style): predicted bits cost next to nothing, and a small batch needs no tables.
+// Writer and reader have the same interface, so one template codes both directions and they cannot diverge. The reader
+// ignores value arguments and returns the decoded values.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace mural::economy {
 
-// How likely the bit is 0. Learns fast at first, then by a 32nd of what it was wrong.
+// Probability of a 0 bit. Adapts fast at first, later by 1/32 of the error.
 class BitModel {
 public:
     [[nodiscard]] uint32_t zero() const { return zero_; } // of 65536
@@ -28,7 +28,7 @@ private:
     uint16_t seen_ = 0;
 };
 
-// One of 16, by how often each came: one step where bits would be four, and no branches.
+// One of 16 symbols by frequency: one branch-free step instead of four binary ones.
 class SymbolModel {
 public:
     static constexpr uint32_t kBits = 14, kSymbols = 16;
@@ -36,8 +36,9 @@ public:
     [[nodiscard]] uint32_t from(uint32_t symbol) const { return static_cast<uint32_t>(from_[symbol]); }
     [[nodiscard]] uint32_t to(uint32_t symbol) const { return symbol + 1 == kSymbols ? 1u << kBits : from(symbol + 1); }
     [[nodiscard]] uint32_t at(uint32_t place) const {
-        const auto there = static_cast<int16_t>(place < 1u << kBits ? place : (1u << kBits) - 1); // more: no writer does that
-        uint32_t symbols = 0; // in 16 bits GCC 12 gives the negative count at -O3
+        // larger values are malformed
+        const auto there = static_cast<int16_t>(place < 1u << kBits ? place : (1u << kBits) - 1);
+        uint32_t symbols = 0; // with 16 bits GCC 12 returns the negative count at -O3
         for (const int16_t from : from_) symbols += from <= there ? 1 : 0;
         return symbols - 1;
     }
@@ -49,7 +50,7 @@ public:
     }
 
 private:
-    // All that comes is this symbol, but each other may.
+    // Target distribution per symbol: the symbol dominates, and every other symbol stays possible.
     static constexpr auto kGoals = [] {
         constexpr int kLeast = 4;
         std::array<std::array<int16_t, kSymbols>, kSymbols> goals{};
@@ -85,14 +86,14 @@ public:
         settle();
         return symbol;
     }
-    // As they are: 1 to 16 bits.
+    // Codes 1 to 16 bits with equal probabilities.
     uint32_t code(uint32_t value, unsigned bits) {
         range_ >>= bits;
         low_ += uint64_t{range_} * value;
         settle();
         return value;
     }
-    // Nothing more comes; clear() begins anew. The reader takes zeros for what is missing at the end.
+    // Ends the data; clear() starts again. The reader assumes zeros after the end.
     std::span<const std::byte> finish() {
         for (unsigned kept = 0; kept <= 4; ++kept) {
             const uint64_t rest = (uint64_t{1} << (32 - 8 * kept)) - 1, value = (low_ + rest) & ~rest;
@@ -132,11 +133,11 @@ private:
     }
 
     std::vector<std::byte> bytes_;
-    uint64_t low_ = 0; // the top bit: of 33
+    uint64_t low_ = 0; // 33 bits; the top bit is the carry
     uint32_t range_ = UINT32_MAX;
 };
 
-// Trusts nothing: any bytes are something, and behind their end bad() is true.
+// Accepts any input. bad() is true after the end.
 class RangeReader {
 public:
     static constexpr bool kReads = true;
@@ -164,12 +165,12 @@ public:
     uint32_t code(uint32_t, unsigned bits) {
         range_ >>= bits;
         uint32_t value = code_ / range_;
-        if (value >> bits != 0) value = (1u << bits) - 1; // no writer does that
+        if (value >> bits != 0) value = (1u << bits) - 1; // malformed input
         code_ -= value * range_;
         settle();
         return value;
     }
-    // More was read than the writer's end leaves out.
+    // Returns true if more was read than the writer may omit.
     [[nodiscard]] bool bad() const { return at_ > bytes_.size() + 4; }
 
 private:
@@ -188,7 +189,7 @@ private:
     uint32_t range_ = UINT32_MAX;
 };
 
-// A byte, its low half by its high one.
+// A byte: the low half is coded in the context of the high half.
 class ByteModel {
 public:
     template <class Coder> uint32_t code(Coder& coder, uint32_t value) {

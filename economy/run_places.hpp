@@ -1,5 +1,6 @@
-// Which run of plain records the packer expects in which slot (KeptRuns): the one of the frame before that has its stream and its size, the
-// second of such a size where it is the second. To keep a run is a copy of it on both sides: only those are that came twice.
+// Selects the slot (KeptRuns) in which to expect each run of plain records: the run of the previous frame with the same
+// stream, size, and index among runs of this size. Caching a run copies it on both sides, so only runs that occur twice
+// are cached. Encoder only.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +20,7 @@ public:
         Advice advice = Advice::Nothing;
     };
 
-    // Of a run of this frame.
+    // Returns the slot for a run of this frame.
     [[nodiscard]] Place expect(uint32_t stream, size_t sizeBytes, uint64_t frame) {
         if (sizeBytes < KeptRuns::kLeastBytes || sizeBytes > KeptRuns::kMostBytes || sizeBytes % 4 != 0) return {};
         const auto found = std::ranges::find_if(runs_, [&](const Run& r) { return r.sizeBytes == sizeBytes && r.stream == stream && r.frame != frame; });
@@ -39,7 +40,7 @@ public:
         run.isKept = true;
         return {slot, Advice::Keep};
     }
-    // What is there was compared: few of its words have changed, or many.
+    // Reports a comparison with the slot: few of its words have changed, or many.
     void changed(uint32_t slot, bool few) {
         Run& run = runs_[slot];
         run.isKept = few;
@@ -51,12 +52,12 @@ private:
     static constexpr uint32_t kMostPatience = 63;
     struct Run {
         uint32_t stream = 0, sizeBytes = 0;
-        uint64_t frame = 0; // that it came in last
+        uint64_t frame = 0; // last frame with this run
         bool isKept = false;
-        uint32_t patience = 0, wait = 0; // times that it is not kept, where that was in vain
+        uint32_t patience = 0, wait = 0; // repetitions to skip before it is cached again, after useless caching
     };
     std::array<Run, KeptRuns::kSlots> runs_{};
-    uint32_t next_ = 0; // slot of the next new one
+    uint32_t next_ = 0; // slot of the next new run
 };
 
 } // namespace mural::economy

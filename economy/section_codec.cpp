@@ -11,19 +11,19 @@ namespace mural::economy {
 
 namespace {
 
-constexpr int kZstdWindowLog = 20;  // 1 MiB, per section and side
-constexpr size_t kMostRoomBytes = size_t{32} << 10; // for what comes out, at once: room is filled with zeros first
+constexpr int kZstdWindowLog = 20; // 1 MiB, per section and side
+constexpr size_t kMostRoomBytes = size_t{32} << 10; // output growth step; new room is zero-filled first
 constexpr size_t kLz4Window = 65536;
 constexpr size_t kLz4PieceBytes = size_t{128} << 10; // of a section
 
-// The last bytes of LZ4's, one behind the other as it wants them. They move to the front when there is no room behind them, not for each section:
-// to move them takes as long as to compress a short frame.
+// The last bytes for LZ4, contiguous as it requires. They move to the front only when the room is full: moving takes as
+// long as compressing a short frame.
 class Lz4Window {
 public:
     static constexpr size_t kRoomBytes = kLz4Window + 2 * kLz4PieceBytes;
 
     [[nodiscard]] std::span<const std::byte> last() const { return {room_.get() + end_ - std::min(end_, kLz4Window), std::min(end_, kLz4Window)}; }
-    // Room for a piece behind what is there. move(to, last()): brings those bytes there; they may overlap.
+    // Returns room for a piece after the existing bytes. move(to, last()) must copy those bytes, which may overlap.
     template <typename Move>
     std::span<std::byte> add(size_t sizeBytes, Move&& move) {
         if (!room_) room_ = std::make_unique_for_overwrite<std::byte[]>(kRoomBytes);
@@ -37,7 +37,7 @@ public:
     }
 
 private:
-    std::unique_ptr<std::byte[]> room_{}; // there as far as it was used
+    std::unique_ptr<std::byte[]> room_{}; // committed on first use
     size_t end_ = 0;
 };
 
@@ -62,7 +62,7 @@ struct SectionCompressor::State {
     std::unique_ptr<ZSTD_CCtx, size_t (*)(ZSTD_CCtx*)> zstd{nullptr, ZSTD_freeCCtx};
     std::unique_ptr<LZ4_stream_t, int (*)(LZ4_stream_t*)> lz4{nullptr, LZ4_freeStream};
     Lz4Window window{};
-    std::unique_ptr<std::byte[]> packed{}; // what comes out of LZ4
+    std::unique_ptr<std::byte[]> packed{}; // output of LZ4
 
     bool openZstd() {
         if (zstd) return true;
@@ -99,7 +99,7 @@ struct SectionCompressor::State {
         while (!bytes.empty()) {
             const auto piece = bytes.first(std::min(bytes.size(), kLz4PieceBytes));
             bytes = bytes.subspan(piece.size());
-            // Only what follows the window in memory is compressed with all of it.
+            // LZ4 uses its whole window only for input that follows it in memory.
             const auto copy = window.add(piece.size(), [&](std::byte* to, std::span<const std::byte> last) { LZ4_saveDict(lz4.get(), chars(to), static_cast<int>(last.size())); });
             copyBytes(piece, copy);
             const int size = LZ4_compress_fast_continue(lz4.get(), chars(copy.data()), chars(packed.get()), static_cast<int>(copy.size()), kRoom, 1);
@@ -120,12 +120,12 @@ bool SectionCompressor::compress(Coding coding, std::span<const std::byte> bytes
 }
 
 void SectionCompressor::prepare() {
-    const std::vector<std::byte> nothing(size_t{128} << 10); // a block of Zstandard's
+    const std::vector<std::byte> nothing(size_t{128} << 10); // one Zstandard block
     std::vector<std::byte> into;
     for (size_t filled = 0; filled <= size_t{1} << kZstdWindowLog; filled += nothing.size())
         if (!state_->byZstd(nothing, into)) return;
     ZSTD_CCtx_reset(state_->zstd.get(), ZSTD_reset_session_only);
-    (void)state_->byZstd({}, into); // its tables are cleared here, not in the first frame; nothing comes out
+    (void)state_->byZstd({}, into); // clears its tables before the first frame, without output
 }
 
 struct SectionDecompressor::State {
@@ -136,14 +136,15 @@ struct SectionDecompressor::State {
         if (!zstd) {
             zstd.reset(ZSTD_createDCtx());
             if (!zstd) return false;
-            ZSTD_DCtx_setParameter(zstd.get(), ZSTD_d_windowLogMax, kZstdWindowLog); // no more memory, whatever comes
+            // bounds the memory for malformed input
+            ZSTD_DCtx_setParameter(zstd.get(), ZSTD_d_windowLogMax, kZstdWindowLog);
         }
         ZSTD_inBuffer in{bytes.data(), bytes.size(), 0};
         ZSTD_outBuffer out{into.data(), into.size(), 0};
         while (in.pos < in.size || out.pos < out.size) {
             const size_t inBefore = in.pos, outBefore = out.pos;
             if (ZSTD_isError(ZSTD_decompressStream(zstd.get(), &out, &in))) return false;
-            if (in.pos == inBefore && out.pos == outBefore) return false; // fewer bytes than it says
+            if (in.pos == inBefore && out.pos == outBefore) return false; // truncated input
         }
         std::byte more{};
         ZSTD_outBuffer behind{&more, 1, 0};

@@ -1,5 +1,5 @@
-// Sections of batches as compressed bytes. Each kind of section has its own compressor, whose window earlier batches fill;
-// what goes uncompressed does not get there. Both sides do the same.
+// Compression of batch sections. Each section kind has its own compressor, whose window contains earlier batches;
+// uncompressed sections do not enter it. Both sides keep equal windows.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ namespace mural::economy {
 enum class Coding : uint8_t { Empty = 0, Raw = 1, Lz4 = 2, Zstd = 3 };
 constexpr size_t kCodings = 4;
 
-// What LZ4 makes of these bytes alone; 0: nothing.
+// Returns the size of these bytes compressed independently with LZ4; 0 on failure.
 [[nodiscard]] size_t lz4Bytes(std::span<const std::byte> bytes, std::vector<std::byte>& scratch);
 
 class SectionCompressor {
@@ -22,9 +22,10 @@ public:
     ~SectionCompressor();
     SectionCompressor(SectionCompressor&&) noexcept;
 
-    // Adds to `into`; `coding`: Lz4 or Zstd. What it has made must be sent: the window holds it. False: no memory.
+    // Appends to `into`. `coding`: Lz4 or Zstd. The output must be sent, because the window contains it. Returns false
+    // without memory.
     bool compress(Coding coding, std::span<const std::byte> bytes, std::vector<std::byte>& into);
-    // Touches Zstandard's window, so that the first frames need not: new memory costs more than to compress what fills it.
+    // Touches Zstandard's window in advance: page faults cost more than the compression that fills it.
     void prepare();
 
 private:
@@ -38,7 +39,7 @@ public:
     ~SectionDecompressor();
     SectionDecompressor(SectionDecompressor&&) noexcept;
 
-    // Fills `into`; false: they are not so many bytes, or nothing that the compressor makes.
+    // Fills `into`. Returns false if the data is malformed or has another size.
     bool decompress(Coding coding, std::span<const std::byte> bytes, std::span<std::byte> into);
 
 private:

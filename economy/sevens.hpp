@@ -1,4 +1,4 @@
-// Numbers in sevens of bits, lowest first; the top bit of a byte: more follow.
+// Varints (LEB128): seven bits per byte, lowest first; the top bit says that more follow.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ inline void putSevens(size_t n, std::vector<std::byte>& into) {
     into.push_back(static_cast<std::byte>(n));
 }
 
-// Of up to 28 bits; false: there is none.
+// Reads a varint of up to 28 bits. Returns false if there is none.
 [[nodiscard]] inline bool takeSevens(std::span<const std::byte>& bytes, uint32_t& n) {
     n = 0;
     for (uint32_t shift = 0; shift < 28; shift += 7) {

@@ -1,5 +1,5 @@
-// The bytes of short items: a ring that forgets the oldest. What it has overwritten is not looked for: an item whose text is
-// gone reads as something else, the same on both sides, and the packer compares before it refers to anything.
+// Ring of the bytes of short records. Overwritten bytes are not tracked: a stale entry reads as other bytes, identical
+// on both sides, and the encoder compares before it refers to an entry.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ class TextRing {
 public:
     explicit TextRing(uint32_t sizeBytes) : sizeBytes_(sizeBytes), bytes_(LargeArray<std::byte>::make(sizeBytes)) {}
 
-    // Never beyond the end of the ring. `text` may lie in the ring.
+    // Appends contiguous bytes. `text` may be in the ring.
     uint32_t add(std::span<const std::byte> text) {
         if (sizeBytes_ - head_ < text.size()) {
             written_ += sizeBytes_ - head_;
@@ -32,10 +32,11 @@ public:
 
     [[nodiscard]] std::span<const std::byte> at(uint32_t where, size_t sizeBytes) const { return {bytes_.data() + where, sizeBytes}; }
 
-    // Bytes since the start, those left out at the end of the ring among them; and how many they were before this text was.
+    // Returns the number of bytes written since the start, including skipped ones at the end of the ring, now and
+    // before a given entry.
     [[nodiscard]] uint64_t written() const { return written_; }
     [[nodiscard]] uint64_t writtenBefore(uint32_t where) const { return written_ - ((head_ - where) & (sizeBytes_ - 1)); }
-    // So old that it should be written anew, or what is in use would be overwritten.
+    // Returns true if the entry is in the older half of the ring and must be appended again before it is overwritten.
     [[nodiscard]] bool old(uint32_t where) const { return ((head_ - where) & (sizeBytes_ - 1)) > sizeBytes_ / 2; }
     [[nodiscard]] bool oldSince(uint64_t writtenBefore) const { return written_ - writtenBefore > sizeBytes_ / 2; }
 

@@ -10,7 +10,8 @@ namespace mural::economy {
 
 namespace {
 
-// At most one for each item, and a few more for each packet; what is packed well can be any number of steps.
+// Bounds the number of operations. A valid batch has at most one per entry and a few per packet; well-compressed
+// garbage could have any number.
 constexpr uint32_t kMostSteps = 1u << 23;
 
 uint32_t opcodeOf(std::span<const std::byte> record) {
@@ -102,7 +103,7 @@ Unpacker::Problem Unpacker::patch(uint32_t spans) {
     return nullptr;
 }
 
-// Calls `change(where, words)` for each of so many spans of these bytes; false: there are not as many words for it.
+// Calls `change(where, words)` for each span. Returns an error if the bytes have fewer words.
 template <class Reader, class Change> Unpacker::Problem Unpacker::eachSpan(Reader& reader, std::span<std::byte> bytes, uint32_t spans, Change&& change) {
     uint64_t at = 0;
     for (; spans > 0; --spans) {
@@ -165,7 +166,7 @@ Unpacker::Problem Unpacker::pages(uint32_t n) {
 Unpacker::Problem Unpacker::other(uint32_t n) {
     switch (static_cast<Other>(n)) {
     case Other::End:
-        if (!log_) (void)history_.open(stream_); // as the packer did
+        if (!log_) (void)history_.open(stream_); // same order as in the encoder
         ended_ = true;
         return nullptr;
     case Other::Done:
@@ -207,7 +208,7 @@ Unpacker::Problem Unpacker::changedRun(uint32_t slot) {
     return nullptr;
 }
 
-// For tests of the tests: GL commands of the run are as they were in `old`, if that is not empty.
+// Fault injection: GL commands of the run keep their contents in `old`, unless that is empty.
 void Unpacker::loseChanges(std::span<const std::byte> old, std::span<std::byte> run) {
     for (size_t at = 0; at + 4 <= old.size();) {
         uint32_t head = 0;
@@ -219,7 +220,7 @@ void Unpacker::loseChanges(std::span<const std::byte> old, std::span<std::byte> 
     }
 }
 
-// Words of these bytes, by spans that are beside Control.
+// Changes words of these bytes by spans outside of Control.
 Unpacker::Problem Unpacker::changeSpans(std::span<std::byte> bytes, uint32_t spans) {
     return eachSpan(spans_, bytes, spans, [this](size_t, std::span<std::byte> words) {
         std::span<const std::byte> now;

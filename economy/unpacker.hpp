@@ -1,5 +1,5 @@
-// The node's side: batches become the packets again that went in, byte for byte. It trusts nothing that it reads: what no packer
-// writes is an error, and nothing after it can be read. One thread.
+// Decoder of a node: restores the packets byte for byte. Treats input as untrusted: malformed data is an error, after
+// which nothing can be decoded. Not thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -20,19 +20,19 @@ class Unpacker {
 public:
     explicit Unpacker(const Limits& limits);
 
-    // False: there was no memory for the store.
+    // Returns false if there was no memory for the store.
     [[nodiscard]] bool ready() const { return history_.ready(); }
 
-    // A batch, which lives until its last packet is taken.
+    // Begins a batch, which must stay valid until its last packet is taken.
     void begin(const SectionBytes& sections);
-    // The next packet of it, which lives until the next call; false: there is none.
+    // Returns the next packet, valid until the next call; false at the end of the batch.
     Result<bool> next(uint32_t& stream, std::span<const std::byte>& packet);
 
-    // For tests of the tests: GL commands of which words have changed come as they were.
+    // Fault injection: patched GL commands keep their old contents.
     void loseWords() { loseWords_ = true; }
 
 private:
-    using Problem = const char*; // null: none
+    using Problem = const char*; // null: no error
     Problem step(Do what, uint32_t n);
     Problem run(uint32_t n);
     Problem patch(uint32_t spans);
@@ -52,7 +52,7 @@ private:
     std::span<std::byte> put(std::span<const std::byte> bytes);
 
     History history_;
-    const std::unique_ptr<std::byte[]> packet_; // as large as packets may be
+    const std::unique_ptr<std::byte[]> packet_; // of the largest packet size
     size_t packetBytes_ = 0;
     SectionBytes sections_;
     RangeReader coder_; // of control_ and words_
@@ -60,11 +60,11 @@ private:
     SpanReader spans_{PlainBytes()};
     WordCoder words_;
     uint32_t stream_ = 0;
-    ItemLog* log_ = nullptr; // null: the packet has not begun
+    ItemLog* log_ = nullptr; // null: between packets
     bool ended_ = false;
     uint64_t batchBytes_ = 0;
     uint32_t steps_ = 0;
-    bool done_ = false; // with the batch
+    bool done_ = false; // end of the batch
     bool loseWords_ = false;
 };
 

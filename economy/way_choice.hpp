@@ -1,6 +1,6 @@
-// Whether the short records of a batch are looked at, or go plain to the compressor, whose window has the frames before: looking makes most
-// streams smallest, but where much changes it takes several times as long. By which batches are with the nodes soonest: measured
-// time, size on the wire, and how fast the link is. No clock of its own.
+// Selects the mode of each batch: delta coding, or plain records for a compressor whose window contains previous
+// frames. Delta coding gives the smallest stream for most programs, but takes several times as long where much changes.
+// Criterion: minimal delivery time, from measured CPU time, size, and link rate. Has no clock of its own.
 #pragma once
 
 #include <array>
@@ -11,27 +11,29 @@ namespace mural::economy {
 
 class WayChoice {
 public:
-    // Batches that are counted here are those up to where a program has published no more: about a frame.
-    // Of the next batch.
+    // A batch here covers everything up to the point where a program has published nothing more: about a frame. Returns
+    // the mode of the next batch.
     [[nodiscard]] bool plain() const { return plain_; }
-    // Whether the time of the next batch must be known: reading a thread's clock is a system call, and takes as long as looking at a small frame.
+    // Returns true if the next batch must be timed. Reading a thread's CPU clock is a system call and takes as long as
+    // coding a small frame.
     [[nodiscard]] bool wantsTime() const;
-    // The batch has gone so, in a time that nobody has measured.
+    // Reports a batch without a measured time.
     void unmeasured() {
         ++batches_;
         isFirst_ = false;
     }
-    // The batch was to be looked at, but most of its short records went plain behind many new ones (NewRecords): it says nothing of what looking costs.
+    // Reports a delta-coded batch whose short records were mostly sent plain after many new ones (NewRecords). It does
+    // not reveal the cost of delta mode.
     void leftOut();
-    // The batch has gone so. pageBytes: of rawBytes, in long records, which are looked at either way.
+    // Reports a batch. pageBytes: the part of rawBytes in long records, which are coded in either mode.
     void measured(uint64_t rawBytes, uint64_t pageBytes, uint64_t wireBytes, int64_t ns, double linkNsPerByte);
 
 private:
     enum Way : size_t { Looked, Plain };
-    // Of the last batches, the older the less.
+    // Moving average over recent batches.
     struct Cost {
         double ns = 0, rawBytes = 0, wireBytes = 0, encodeNs = 0, batches = 0;
-        double leastNs = 0; // that one took to encode
+        double leastNs = 0; // shortest encoding time
         [[nodiscard]] double perByte() const { return rawBytes > 0 ? ns / rawBytes : 0; }
     };
     void tryOther();
@@ -42,14 +44,14 @@ private:
     std::array<Cost, 2> costs_;
     bool plain_ = false;
     bool trying_ = false;
-    bool cheap_ = false; // one batch of late
-    uint32_t batches_ = 0; // since the way was taken
-    uint32_t until_ = kFirstTry; // so many, the other way is tried
-    double decidedBy_ = 0; // cost per byte when it was
-    bool isFirst_ = true;      // no batch has been yet
-    double firstNsPerByte_ = 0; // of the first, in which most is new
-    bool isByOne_ = false;      // what looking costs is known of one of the first only
-    bool isByLeftOut_ = false; // plain: nobody knows what looking costs
+    bool cheap_ = false; // a recent batch was cheap
+    uint32_t batches_ = 0; // since the mode was selected
+    uint32_t until_ = kFirstTry; // number of batches after which the other mode is tried
+    double decidedBy_ = 0; // cost per byte at the last decision
+    bool isFirst_ = true; // no batch so far
+    double firstNsPerByte_ = 0; // of the first batch, which is mostly new
+    bool isByOne_ = false; // the cost of delta mode is known from a single early batch
+    bool isByLeftOut_ = false; // plain mode without knowledge of the cost of delta mode
 };
 
 } // namespace mural::economy

@@ -8,12 +8,12 @@ namespace mural::economy {
 
 namespace {
 
-// Neighbours in value are neighbours as numbers, floats and integers alike; a bijection.
+// Maps values to integers in the order of their values, floats and integers alike. Bijective.
 uint32_t ordered(uint32_t word) { return word >> 31 != 0 ? ~word : word | 0x80000000; }
 uint32_t wordOf(uint32_t number) { return number >> 31 != 0 ? number & 0x7fffffff : ~number; }
 
 uint32_t exponentOf(uint32_t word) { return word >> 23 & 255; }
-// Floats that are computed with: normal and far from the ends, or 0.
+// Floats used in arithmetic: normal and far from the limits, or 0.
 bool isPlain(uint32_t word) { return (word << 1) == 0 || (exponentOf(word) > 40 && exponentOf(word) < 200); }
 double floatOf(uint32_t word) { return static_cast<double>(std::bit_cast<float>(word)); }
 uint32_t wordOf(double value) {
@@ -21,18 +21,18 @@ uint32_t wordOf(double value) {
     if (!(std::abs(value) < kMost)) return 0x7f000000;
     return std::abs(value) < kLeast ? 0 : std::bit_cast<uint32_t>(static_cast<float>(value));
 }
-// Between neighbours in value.
+// Returns the distance between adjacent floats.
 double stepAt(uint32_t word) { return std::bit_cast<double>(uint64_t{exponentOf(word) + 1023 - 127 - 23} << 52); }
 
-// Small for what is near on either side; a bijection, and back.
+// Zigzag mapping: small results for small distances of either sign. Bijective.
 uint32_t folded(uint32_t distance) { return distance << 1 ^ (0 - (distance >> 31)); }
 uint32_t unfolded(uint32_t number) { return number >> 1 ^ (0 - (number & 1)); }
 uint32_t widthOf(uint32_t number) { return static_cast<uint32_t>(std::bit_width(number)); }
 
-// Symbols of widths: those of what was expected badly stand for several.
+// Symbols for bit widths. Rare large widths share symbols.
 struct Widths {
     uint8_t least = 0;
-    uint8_t bits = 0; // of which of them it is
+    uint8_t bits = 0; // additional bits that select the width
 };
 constexpr std::array<Widths, SymbolModel::kSymbols> kWidths{{{0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0}, {5, 0}, {6, 0}, {7, 0}, {8, 0}, {9, 0}, {10, 0}, {11, 1}, {13, 2}, {17, 2}, {21, 2}, {25, 3}}};
 constexpr auto kSymbolOfWidth = [] {
@@ -46,7 +46,7 @@ constexpr auto kSymbolOfWidth = [] {
 
 void WordCoder::begin(Item& item, std::span<const std::byte> bytes) {
     item_ = &models_.open(item, bytes);
-    if (item_->round == round_) { // it comes again: another frame
+    if (item_->round == round_) { // the entry repeats: another frame
         ++round_;
         speed_ = 1;
         weight_ = 0;
@@ -58,7 +58,7 @@ void WordCoder::begin(Item& item, std::span<const std::byte> bytes) {
 
 void WordCoder::end() { item_->speed = weight_ > 0 ? speed_ : 1; }
 
-// Steps in time: the last was 1 long, the one before 1 / item_->speed, the next is speed_.
+// Extrapolates. Time steps: the last is 1, the one before 1 / item_->speed, the next speed_.
 WordCoder::Curve WordCoder::guess(const WordModel& word, uint32_t old, Guesses& guesses) const {
     Curve curve;
     guesses[static_cast<size_t>(Guess::Same)] = old;
@@ -96,7 +96,7 @@ template <class Coder> uint32_t WordCoder::code(Coder& coder, uint32_t i, uint32
     return value;
 }
 
-// How many bits the folded distance has, and what is behind the highest.
+// Codes the bit width of the folded distance, then the bits below the highest.
 template <class Coder> uint32_t WordCoder::codeDistance(Coder& coder, uint32_t context, uint32_t distance) {
     uint32_t number = folded(distance), width = widthOf(number);
     const uint32_t symbol = coder.code(widths_[context], uint32_t{kSymbolOfWidth[width]});
@@ -120,7 +120,7 @@ void WordCoder::learn(WordModel& word, uint32_t value, const Guesses& guesses, c
         word.cost[g] = static_cast<uint8_t>((word.cost[g] * 3u + bits * 4 + 2) / 4);
         if (g != static_cast<size_t>(Guess::Other)) least = std::min(least, bits);
     }
-    // A word that goes its way smoothly tells the step in time, the better the faster it goes.
+    // A smoothly moving word reveals the time step; faster words are more precise.
     constexpr uint32_t kGain = 8;
     const uint32_t curved = word.cost[static_cast<size_t>(Guess::FloatCurve)];
     if (curve.known && curved + kGain <= word.cost[static_cast<size_t>(Guess::Same)] && isPlain(value) && curve.slope != 0) {

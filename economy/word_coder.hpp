@@ -1,6 +1,6 @@
-// Changed words, by what they are expected to be: floats that programs move come nearly as a line or a curve through the last values
-// goes on, and what one word tells of how long this frame's step in time is, is used for those behind it. Both sides do the same
-// arithmetic: IEEE doubles, no operations joined (CMakeLists.txt), nothing that is not finite, nothing that is denormal.
+// Codes changed words relative to a prediction. Animated floats follow a line or a curve through their last values. The
+// first word that does reveals the time step of this frame, which the following words use. Both sides use identical
+// arithmetic: IEEE doubles without fused operations (CMakeLists.txt), only finite and normal values.
 #pragma once
 
 #include <array>
@@ -15,19 +15,19 @@ class WordCoder {
 public:
     explicit WordCoder(uint32_t modelWords) : models_(modelWords) {}
 
-    // The words that follow are of this item, as it was; it gets a model if it has none.
+    // Begins an entry with its old bytes. Creates its predictor state if needed.
     void begin(Item& item, std::span<const std::byte> bytes);
-    // Word `i`, which was `old`, is `now`. Returns it.
+    // Codes word `i`, which changes from `old` to `now`. Returns the new value.
     template <class Coder> uint32_t code(Coder& coder, uint32_t i, uint32_t old, uint32_t now);
     void end();
 
 private:
     using Guesses = std::array<uint32_t, kGuesses>;
 
-    // What of the float's curve is needed again once its value is known.
+    // Parts of a float's extrapolation that are needed after its value is known.
     struct Curve {
         bool known = false;
-        double value = 0, slope = 0; // expected, and by the speed
+        double value = 0, slope = 0; // predicted value; derivative by the speed
     };
     [[nodiscard]] Curve guess(const WordModel& word, uint32_t old, Guesses& guesses) const;
     template <class Coder> uint32_t codeDistance(Coder& coder, uint32_t context, uint32_t distance);
@@ -35,16 +35,16 @@ private:
 
     WordModels models_;
     ItemModel* item_ = nullptr;
-    WordModel* word_ = nullptr; // its first
-    double bendShare_ = 0;      // how much of a change of its steps one more step in time bends
+    WordModel* word_ = nullptr; // state of the entry's first word
+    double bendShare_ = 0; // fraction of the change of steps per time step
 
-    // Of this round: all items that change once.
+    // A round: every changing entry changes once.
     uint32_t round_ = 1;
     double speed_ = 1, weight_ = 0;
 
     static constexpr uint32_t kRecent = 256;
-    std::array<uint32_t, kRecent> recent_{}; // values of changed words: a ring
-    std::array<uint32_t, kRecent> places_{}; // where in it a value may be, by its hash
+    std::array<uint32_t, kRecent> recent_{}; // recent values of changed words, a ring
+    std::array<uint32_t, kRecent> places_{}; // position in recent_ by hash
     uint32_t recentEnd_ = 0;
 
     static constexpr uint32_t kContexts = 18;

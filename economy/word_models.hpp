@@ -1,5 +1,5 @@
-// What is known of the words of items that change: their values before the last. An item has the number of its model, which goes on
-// to what takes its place; the oldest model gives its room up.
+// Predictor state of changing entries: earlier values of their words. An entry holds the number of its state and passes
+// it to its successor. The oldest state is overwritten.
 #pragma once
 
 #include <algorithm>
@@ -13,30 +13,30 @@
 
 namespace mural::economy {
 
-// How a changed word may be expected, and at what cost each has been wrong of late.
+// Prediction methods of a changed word. Each has a moving cost of its recent errors.
 enum class Guess : uint8_t { Same, IntegerLine, FloatLine, FloatCurve, Other };
 constexpr size_t kGuesses = 5;
 
 struct WordModel {
-    uint32_t before = 0, twoBefore = 0;      // the last value is in the item
-    std::array<uint8_t, kGuesses> cost{};    // quarters of a bit
-    uint8_t other = 0;                       // so many changed words before this one was one like it: Guess::Other; 0: none
-    bool negated = false;                    // as a float
+    uint32_t before = 0, twoBefore = 0; // previous values; the last one is in the entry
+    std::array<uint8_t, kGuesses> cost{}; // in quarters of a bit
+    uint8_t other = 0; // distance in changed words to the word this one is predicted from (Guess::Other); 0: none
+    bool negated = false; // predicted with the opposite sign, as a float
 };
 
-// Of an item.
+// State of one entry.
 struct ItemModel {
-    uint64_t begin = 0;    // of its words, counted from the first of all
-    uint32_t words = 0;    // 0: there is none
-    uint32_t round = 0;    // in which it has changed last
-    double speed = 1;      // its last step in time by the one before
+    uint64_t begin = 0; // index of its first word, counted from the start
+    uint32_t words = 0; // 0: none
+    uint32_t round = 0; // round of its last change
+    double speed = 1; // last time step relative to the one before
 };
 
 class WordModels {
 public:
     explicit WordModels(uint32_t words) : words_(words), items_(std::min<size_t>(words / kLeastWords + 2, Item::kMostModels)) {}
 
-    // The model of an item of these bytes; the item gets its number.
+    // Returns the state of an entry, creating it if needed.
     ItemModel& open(Item& item, std::span<const std::byte> bytes) {
         const auto words = static_cast<uint32_t>(bytes.size() / 4);
         if (ItemModel& known = items_[item.model < items_.size() ? item.model : 0]; known.words == words && end_ - known.begin <= words_.size()) return known;
@@ -55,10 +55,10 @@ public:
     WordModel& word(const ItemModel& item, uint32_t i) { return words_[item.begin % words_.size() + i]; }
 
 private:
-    static constexpr uint32_t kLeastWords = 8; // of a model, on average
+    static constexpr uint32_t kLeastWords = 8; // average words per state
 
     std::vector<WordModel> words_; // a ring
-    std::vector<ItemModel> items_; // the first is none
+    std::vector<ItemModel> items_; // index 0 is unused
     uint64_t end_ = 0;
     uint32_t next_ = 0;
 };

@@ -1,6 +1,6 @@
-// Attribute values: small words that are integers underneath, or plain integers. Several words may stand for the same
-// integer (ON, FASTEST and CORE 0 are 1), and every attribute accepts every word; which of them a value means is known
-// to who reads the attribute.
+// Attribute values: words with an integer value, or plain integers. Several words have the same integer (ON, FASTEST
+// and CORE 0 are 1), and every attribute accepts every word. The reader of the attribute decides which word a value
+// stands for.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace mural::config {
 
-// Without a value: not set here, so the global attribute's, so the default.
+// Empty: not set here. The global attribute applies, then the default.
 using Attribute = std::optional<int32_t>;
 
 namespace value {
@@ -33,8 +33,8 @@ inline constexpr int32_t kRelativeToOrigin = -16;
 inline constexpr int32_t kRelativeToObserver = -17;
 inline constexpr int32_t kFastest = 1;
 inline constexpr int32_t kHorizontal = 1;
-inline constexpr int32_t kCore = 1;         // CORE n is kCore + n
-inline constexpr int32_t kSocket = -65536;  // SOCKET n is kSocket + n
+inline constexpr int32_t kCore = 1; // CORE n is kCore + n
+inline constexpr int32_t kSocket = -65536; // SOCKET n is kSocket + n
 
 } // namespace value
 

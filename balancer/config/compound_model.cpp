@@ -6,8 +6,8 @@ namespace mural::config {
 
 namespace {
 
-// Member by member: a defaulted comparison of a type that holds a list of its own kind stops clang 14. A member that is
-// added and not named here is an error of the compiler's.
+// Compares member by member, because clang 14 rejects a defaulted comparison of a type that contains a list of itself.
+// A member missing here is a compile error.
 auto membersOf(const Compound& c) {
     const auto& [name, channel, tasks, eyes, buffers, viewport, range, period, phase, zoom, pixel, subPixel, composition, surface, attributes, equalizers,
                  swapBarrier, outputTiles, inputTiles, children, outputFrames, inputFrames, at] = c;

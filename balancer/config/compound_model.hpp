@@ -1,4 +1,4 @@
-// How pictures are made: trees of compounds, the frames that they hand to each other, queues, barriers, equalizers.
+// The model of compounds: trees, the frames that compounds exchange, queues, barriers, equalizers.
 #pragma once
 
 #include <array>
@@ -22,18 +22,18 @@ using ColorMask = EnumSet<ColorComponent>;
 
 enum class FrameType : uint8_t {
     Memory,
-    Texture, // stays on the GPU: for channels of one pipe
+    Texture, // stays on the GPU; only between channels of one pipe
 };
 
-// A picture that is read back, or one that is put together from those read back under the same name.
+// An output frame, read back under a name, or an input frame, assembled from the output frames of the same name.
 struct Frame {
     std::optional<std::string> name;
     std::optional<FrameType> type;
     std::optional<Viewport> viewport;
     std::optional<BufferSet> buffers;
     std::optional<Zoom> zoom;
-    std::optional<std::string> codec; // by name, or "auto"
-    Attribute exact;                  // OFF allows codecs that lose something
+    std::optional<std::string> codec; // codec name, or "auto"
+    Attribute exact; // OFF allows lossy codecs
     SourcePosition at;
     friend bool operator==(const Frame&, const Frame&) = default;
 };
@@ -44,14 +44,14 @@ struct Pixels2 {
     friend constexpr bool operator==(const Pixels2&, const Pixels2&) = default;
 };
 
-// What has one meaning for pixels and one for ranges; a file may give both.
+// A size in pixels for 2D and as a fraction for ranges. A file may give both.
 struct PixelsOrRange {
     std::optional<Pixels2> pixels;
     std::optional<double> range;
     friend bool operator==(const PixelsOrRange&, const PixelsOrRange&) = default;
 };
 
-// Work in pieces, taken by whoever is free: tiles of pixels, or chunks of the range.
+// A queue of work items that idle channels take: tiles of pixels, or chunks of the range.
 struct TileQueue {
     std::optional<std::string> name;
     PixelsOrRange size;
@@ -109,15 +109,15 @@ struct TileEqualizer {
 
 using Equalizer = std::variant<LoadEqualizer, TreeEqualizer, DfrEqualizer, FramerateEqualizer, MonitorEqualizer, ViewEqualizer, TileEqualizer>;
 
-// One step on the way to a destination channel: canvas, segment, layout or view.
+// One step of the path to a destination channel: canvas, segment, layout or view.
 enum class PathStep : uint8_t { Canvas, Segment, Layout, View };
 
 struct ChannelPath {
-    std::vector<std::pair<PathStep, Reference>> steps; // their order matters
+    std::vector<std::pair<PathStep, Reference>> steps; // ordered
     friend bool operator==(const ChannelPath&, const ChannelPath&) = default;
 };
 
-// A channel of a window by its name, or the destination channel of a view on a segment.
+// A channel of a window by name, or the destination channel of a view on a segment.
 using ChannelReference = std::variant<std::string, ChannelPath>;
 
 struct CompoundAttributes {
@@ -129,7 +129,7 @@ struct CompoundAttributes {
 struct Compound {
     std::optional<std::string> name;
     std::optional<ChannelReference> channel;
-    std::optional<TaskSet> tasks; // an empty set: nothing is done
+    std::optional<TaskSet> tasks; // an empty set: no tasks
     std::optional<EyeSet> eyes;
     std::optional<BufferSet> buffers;
     std::optional<Viewport> viewport;
@@ -138,7 +138,8 @@ struct Compound {
     std::optional<Zoom> zoom;
     std::optional<PixelKernel> pixel;
     std::optional<SubPixel> subPixel;
-    std::optional<std::string> composition; // by name, or "auto": how the channels that draw its ranges put them together
+    // composition strategy of the channels that draw its ranges, by name, or "auto"
+    std::optional<std::string> composition;
     std::optional<ProjectionSurface> surface;
     CompoundAttributes attributes;
     std::vector<Equalizer> equalizers;

@@ -1,4 +1,4 @@
-// A configuration as a file says it: nothing is resolved, what is not said has no value.
+// A configuration as the file states it: names are not resolved, and omitted values are empty.
 #pragma once
 
 #include <map>
@@ -8,21 +8,21 @@
 
 namespace mural::config {
 
-// The value of a global attribute; which of them is meant follows from its name.
+// Value of a global attribute. The attribute's name determines the alternative.
 using GlobalValue = std::variant<int32_t, double, std::string, char, ColorMask, ConnectionType>;
 using Globals = std::map<std::string, GlobalValue>;
 
 struct ConfigAttributes {
-    std::optional<double> eyeBase; // metres
+    std::optional<double> eyeBase; // in metres
     Attribute robustness;
     friend bool operator==(const ConfigAttributes&, const ConfigAttributes&) = default;
 };
 
 struct Config {
     std::optional<std::string> name;
-    std::optional<uint32_t> latency; // frames
+    std::optional<uint32_t> latency; // in frames
     ConfigAttributes attributes;
-    std::optional<Node> appNode; // the machine of the application
+    std::optional<Node> appNode; // the application's machine
     std::vector<Node> nodes;
     std::vector<Observer> observers;
     std::vector<Layout> layouts;
@@ -33,8 +33,8 @@ struct Config {
 };
 
 struct ConfigFile {
-    double version = 0;               // of the format: 1, 1.1, 1.2; 0 when the file does not say it
-    std::vector<std::string> heading; // comments before everything else, without their marks
+    double version = 0; // version of the format: 1, 1.1, 1.2; 0: not stated
+    std::vector<std::string> heading; // leading comments without comment marks
     Globals globals;
     std::vector<Connection> serverConnections;
     Config config;

@@ -6,7 +6,7 @@ namespace mural::config {
 
 namespace {
 
-// A file that is no configuration at all has something wrong in every word.
+// Most diagnostics kept. A file of another format has an error in every word.
 constexpr size_t kMostLines = 200;
 
 } // namespace
@@ -14,7 +14,8 @@ constexpr size_t kMostLines = 200;
 void Diagnostics::add(Diagnostic d) {
     if (d.severity == Severity::Error) ++errors_;
     if (all_.size() < kMostLines) all_.push_back(std::move(d));
-    else if (d.severity == Severity::Error && errors_ == 1) all_.back() = std::move(d); // the only one must not be lost
+    // the first error is always kept
+    else if (d.severity == Severity::Error && errors_ == 1) all_.back() = std::move(d);
 }
 
 void Diagnostics::warn(SourcePosition at, std::string what, std::string remedy) {
@@ -28,7 +29,7 @@ void Diagnostics::error(SourcePosition at, std::string what, std::string remedy)
 void Diagnostics::given(SourcePosition at, std::string_view section, std::string_view field) {
     const auto same = std::ranges::find_if(given_, [&](const GivenField& g) { return g.section == section && g.field == field; });
     if (same != given_.end()) ++same->times;
-    else given_.push_back({std::string(section), std::string(field), at, 1}); // of words that the format has: there are not many
+    else given_.push_back({std::string(section), std::string(field), at, 1}); // bounded by the vocabulary of the format
 }
 
 std::string Diagnostics::text(const Diagnostic& d) const {

@@ -1,4 +1,4 @@
-// What is wrong in a configuration, one line each: "FILE:LINE:COLUMN: what; remedy".
+// Diagnostics of a configuration, one line each: "FILE:LINE:COLUMN: problem; remedy".
 #pragma once
 
 #include <string>
@@ -18,17 +18,17 @@ struct Diagnostic {
     std::string remedy;
 };
 
-// A field that the file gives, however often: for who uses the file, and knows what has no effect there.
+// A field that the file contains. Users of the file report fields without effect.
 struct GivenField {
-    std::string section; // the word of the section around it: "attributes" for all of those
+    std::string section; // keyword of the enclosing section; "attributes" for all attribute sections
     std::string field;
-    SourcePosition at;   // the first time
+    SourcePosition at; // first occurrence
     int times = 0;
 };
 
 class Diagnostics {
 public:
-    // Strict: what could be understood all the same is an error, too.
+    // `strict` turns warnings about recoverable problems into errors.
     explicit Diagnostics(std::string file, bool strict = false) : file_(std::move(file)), strict_(strict) {}
 
     void warn(SourcePosition at, std::string what, std::string remedy);
@@ -40,7 +40,7 @@ public:
     [[nodiscard]] const std::vector<GivenField>& fieldsGiven() const { return given_; }
     [[nodiscard]] int errors() const { return errors_; }
     [[nodiscard]] std::string text(const Diagnostic& d) const;
-    // Of the first error; what is asked for where only one line fits.
+    // Returns the first error, for callers with room for one line.
     [[nodiscard]] std::string firstError() const;
 
 private:
@@ -50,7 +50,7 @@ private:
     bool strict_;
     int errors_ = 0;
     std::vector<Diagnostic> all_;
-    std::vector<GivenField> given_; // by their first places
+    std::vector<GivenField> given_; // in order of first occurrence
 };
 
 } // namespace mural::config

@@ -1,4 +1,4 @@
-// What is shown where: canvases made of segments, layouts made of views, observers who look at them.
+// The model of displays: canvases with segments, layouts with views, observers.
 #pragma once
 
 #include <optional>
@@ -13,16 +13,16 @@
 
 namespace mural::config {
 
-// Another part of the file, by name or by its number in the order of definition, from 0.
+// A reference to another object of the file, by name or by its definition index, from 0.
 using Reference = std::variant<std::string, uint32_t>;
-// monostate: OFF, nothing is shown.
+// monostate: OFF, the canvas is dark.
 using LayoutReference = std::variant<std::monostate, std::string, uint32_t>;
 
 enum class FocusMode : uint8_t { Fixed, RelativeToOrigin, RelativeToObserver };
 
 struct Observer {
     std::optional<std::string> name;
-    std::optional<double> eyeBase; // metres
+    std::optional<double> eyeBase; // in metres
     std::optional<Vector3> eyeLeft, eyeCyclop, eyeRight;
     std::optional<double> focusDistance;
     std::optional<FocusMode> focusMode;
@@ -59,7 +59,7 @@ struct SwapBarrier {
     friend bool operator==(const SwapBarrier&, const SwapBarrier&) = default;
 };
 
-// The frame of a monitor around what it shows, in millimetres.
+// Width of a monitor's frame, in millimetres.
 struct Bezel {
     double left = 0;
     double right = 0;
@@ -71,7 +71,7 @@ struct Bezel {
 struct Segment {
     std::optional<std::string> name;
     std::optional<std::string> channel;
-    std::vector<std::string> copies; // other channels that show the same picture
+    std::vector<std::string> copies; // other channels with the same picture
     std::optional<EyeSet> eyes;
     std::optional<Viewport> viewport;
     std::optional<Bezel> bezel;
@@ -85,7 +85,7 @@ struct Canvas {
     std::optional<std::string> name;
     std::vector<LayoutReference> layouts;
     std::optional<ProjectionSurface> surface;
-    std::optional<Bezel> bezel; // of every segment
+    std::optional<Bezel> bezel; // default of all segments
     std::optional<SwapBarrier> swapBarrier;
     std::vector<Segment> segments;
     SourcePosition at;

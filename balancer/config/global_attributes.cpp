@@ -81,7 +81,7 @@ constexpr auto kAliases = std::to_array<Alias>({
     {"EQ_CHANNEL_SATTR_DUMP_IMAGE_FILE_PREFIX", "EQ_CHANNEL_SATTR_DUMP_IMAGE"},
 });
 
-// EQ_WINDOW_IATTR_HINT_STEREO → EQ_WINDOW_HINT_STEREO, as it was called before 2006.
+// Maps EQ_WINDOW_IATTR_HINT_STEREO to EQ_WINDOW_HINT_STEREO, the name before 2006.
 std::string withoutType(std::string_view name) {
     std::string text(name);
     for (const std::string_view type : {"_IATTR_", "_SATTR_", "_FATTR_", "_CATTR_"}) {
@@ -113,7 +113,7 @@ Globals globalsOfEnvironment(const EnvironmentLookup& lookup, Diagnostics& diagn
         const std::string name(g.name);
         const auto value = lookup(name);
         if (!value) continue;
-        // Texts stand there as they are, everything else as it would in the file.
+        // Texts are taken verbatim. Other values have the syntax of the file.
         if (g.kind == GlobalKind::Text) {
             globals[name] = *value;
             continue;

@@ -1,6 +1,6 @@
-// Global attributes: defaults for the attributes of all nodes, pipes, windows, channels, compounds and views. What
-// counts: the section's own attribute, else the file's global one, else the environment variable of the same name, else
-// what is built in.
+// Global attributes: defaults for the attributes of all nodes, pipes, windows, channels, compounds and views.
+// Precedence: the section's own attribute, the file's global attribute, the environment variable of the same name, the
+// built-in default.
 #pragma once
 
 #include <functional>
@@ -19,19 +19,19 @@ enum class GlobalKind : uint8_t { Word, Number, Statistics, Affinity, Length, Te
 struct GlobalAttribute {
     std::string_view name;
     GlobalKind kind;
-    std::optional<GlobalValue> builtIn; // none: not set
+    std::optional<GlobalValue> builtIn; // empty: no default
 };
 
 std::span<const GlobalAttribute> globalAttributes();
 
-// By today's name, by an earlier one (EQ_CONNECTION_IATTR_TCPIP_PORT), or by one from before 2006
-// (EQ_CONNECTION_HOSTNAME). Null when nothing is called so.
+// Finds an attribute by its current name, an earlier name (EQ_CONNECTION_IATTR_TCPIP_PORT), or a name from before 2006
+// (EQ_CONNECTION_HOSTNAME). Returns null for an unknown name.
 const GlobalAttribute* findGlobalAttribute(std::string_view name);
 
-// The attribute's value as a file says it; none when that fails.
+// Reads the attribute's value in the syntax of the file. Returns an empty value on errors.
 std::optional<GlobalValue> readGlobalValue(TokenReader& tokens, const GlobalAttribute& attribute);
 
-// The value of an environment variable, none when it is not set.
+// Returns the value of an environment variable; empty if it is not set.
 using EnvironmentLookup = std::function<std::optional<std::string>(const std::string& name)>;
 Globals globalsOfEnvironment(const EnvironmentLookup& lookup, Diagnostics& diagnostics);
 
@@ -39,7 +39,7 @@ class GlobalDefaults {
 public:
     GlobalDefaults(const Globals& written, const Globals& environment) : written_(written), environment_(environment) {}
 
-    // The value of what is called so; none when it is set nowhere.
+    // Returns the value of the named attribute; empty if it is set nowhere.
     template <class T> [[nodiscard]] std::optional<T> get(std::string_view name) const {
         const GlobalValue* found = find(name);
         const T* value = found != nullptr ? std::get_if<T>(found) : nullptr;

@@ -1,5 +1,5 @@
-// Where a picture is seen in the room: a wall given by three corners, or a projector. Lengths in metres, angles in
-// degrees. What is not said has the values of the default wall.
+// The place of a picture in the room: a wall given by three corners, or a projector. Lengths are in metres, angles in
+// degrees. Omitted values are those of the default wall.
 #pragma once
 
 #include <optional>
@@ -34,7 +34,7 @@ struct Projection {
     Vector3 origin;
     double distance = 1;
     Degrees2 fov{77.3196, 53.1301};
-    Vector3 hpr; // head (left is positive), pitch (up), roll (the picture turns counter-clockwise)
+    Vector3 hpr; // heading (left is positive), pitch (up), roll (counter-clockwise)
     SourcePosition at;
     friend bool operator==(const Projection&, const Projection&) = default;
 };

@@ -1,6 +1,6 @@
-// Looks up the names of a configuration and completes it, in the order of Equalizer's loader: resources, displays and
-// their destination channels, compounds; then compounds for what nothing draws, canvases for what nothing shows, an
-// observer where there is none, and what files of the versions before 1.1 and 1.2 mean.
+// Resolves the names of a configuration and completes it, in the order of Equalizer's loader: resources, displays and
+// their destination channels, compounds. It then adds compounds for channels without one, canvases for channels without
+// one, a default observer, and the meaning of files before versions 1.1 and 1.2.
 #pragma once
 
 #include "balancer/config/diagnostics.hpp"
@@ -9,7 +9,7 @@
 
 namespace mural::config {
 
-// With errors (diagnostics.errors() > 0) the result is not for use.
+// After errors (diagnostics.errors() > 0) the result is unusable.
 ResolvedConfig resolve(const ConfigFile& file, const Globals& environment, Diagnostics& diagnostics);
 
 } // namespace mural::config

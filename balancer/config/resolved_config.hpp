@@ -1,5 +1,5 @@
-// A configuration whose names are looked up: everything stands in flat lists and refers to others by index. What the
-// file left out has its default; destination channels and the compounds that follow from canvases are there.
+// A configuration with resolved names: flat lists whose entries refer to each other by index. Omitted values have their
+// defaults. Destination channels, and the compounds that follow from canvases, exist.
 #pragma once
 
 #include "balancer/config/config.hpp"
@@ -13,8 +13,8 @@ struct ResolvedNode {
     bool isApplication = false;
     std::string name;
     std::string host; // empty: this machine
-    std::vector<Connection> connections; // complete
-    NodeAttributes attributes;           // complete
+    std::vector<Connection> connections; // all fields set
+    NodeAttributes attributes; // all fields set
     std::vector<Index> pipes;
     SourcePosition at;
 };
@@ -23,7 +23,7 @@ struct ResolvedPipe {
     Index node = kNone;
     std::string name;
     std::optional<uint32_t> port, device;
-    std::optional<PixelViewport> viewport; // otherwise the machine's
+    std::optional<PixelViewport> viewport; // empty: the machine's screen
     PipeAttributes attributes;
     std::vector<Index> windows;
     SourcePosition at;
@@ -32,18 +32,18 @@ struct ResolvedPipe {
 struct ResolvedWindow {
     Index pipe = kNone;
     std::string name;
-    Viewport viewport; // pixels or part of the pipe: inPixels()
+    Viewport viewport; // in pixels, or relative to the pipe: inPixels()
     WindowAttributes attributes;
-    std::vector<Index> channels; // those that the file names, then destination channels
+    std::vector<Index> channels; // channels of the file, then destination channels
     SourcePosition at;
 };
 
 struct ResolvedChannel {
     Index window = kNone;
     std::string name;
-    Viewport viewport; // pixels or part of the window: inPixels()
+    Viewport viewport; // in pixels, or relative to the window: inPixels()
     ChannelAttributes attributes;
-    // Of a destination channel: what it shows. Channels that the file names have none.
+    // Destination channels only: the segment and view that they show.
     Index segment = kNone;
     Index view = kNone;
     SourcePosition at;
@@ -65,7 +65,7 @@ struct ResolvedView {
     std::string name;
     ViewMode mode = ViewMode::Mono;
     Viewport viewport;
-    std::optional<ProjectionSurface> surface; // instead of the segments'
+    std::optional<ProjectionSurface> surface; // overrides the segments' surfaces
     Index observer = kNone;
     std::string deflectHost;
     SourcePosition at;
@@ -85,20 +85,20 @@ struct ResolvedBarrier {
 struct ResolvedSegment {
     Index canvas = kNone;
     std::string name;
-    Index channel = kNone;     // as the file names it
-    std::vector<Index> copies; // other channels that show the same picture
+    Index channel = kNone; // the channel that the file names
+    std::vector<Index> copies; // other channels with the same picture
     EyeSet eyes = kAllEyes;
-    Viewport viewport; // of the canvas: what is seen, without bezels
-    Viewport outer;    // with them
+    Viewport viewport; // visible part of the canvas, without bezels
+    Viewport outer; // part of the canvas including bezels
     ProjectionSurface surface; // its own, or the canvas'
-    Viewport surfacePart;      // what of the surface it shows
+    Viewport surfacePart; // the part of the surface that it shows
     std::optional<ResolvedBarrier> barrier;
     SourcePosition at;
 };
 
 struct ResolvedCanvas {
     std::string name;
-    std::vector<Index> layouts; // kNone: nothing is shown. The first one is shown first.
+    std::vector<Index> layouts; // kNone: dark; the first layout is active initially
     ProjectionSurface surface;
     std::vector<Index> segments;
     SourcePosition at;
@@ -108,8 +108,8 @@ struct ResolvedFrame {
     std::string name;
     FrameType type = FrameType::Memory;
     Viewport viewport;
-    std::optional<BufferSet> buffers; // otherwise the compound's
-    std::optional<Zoom> zoom;         // otherwise what follows from the compounds
+    std::optional<BufferSet> buffers; // empty: the compound's
+    std::optional<Zoom> zoom; // empty: derived from the compounds
     std::string codec = "auto";
     bool exact = true;
     SourcePosition at;
@@ -117,7 +117,7 @@ struct ResolvedFrame {
 
 struct ResolvedQueue {
     std::string name;
-    PixelsOrRange size; // of output queues: one of them is set
+    PixelsOrRange size; // output queues only; one of its members is set
     SourcePosition at;
 };
 
@@ -125,9 +125,9 @@ struct ResolvedCompound {
     Index parent = kNone;
     std::vector<Index> children;
     std::string name;
-    Index channel = kNone;     // its own
-    Index executing = kNone;   // its own, or the nearest above
-    Index destination = kNone; // the first one from the root
+    Index channel = kNone; // its own
+    Index executing = kNone; // its own, or the nearest ancestor's
+    Index destination = kNone; // the first channel on the path from the root
     std::optional<TaskSet> tasks;
     std::optional<EyeSet> eyes;
     std::optional<BufferSet> buffers;
@@ -137,9 +137,9 @@ struct ResolvedCompound {
     Zoom zoom;
     PixelKernel pixel;
     SubPixel subPixel;
-    std::string composition; // its own, or the nearest above; empty: nothing is said
+    std::string composition; // its own, or the nearest ancestor's; empty: not stated
     std::optional<ProjectionSurface> surface;
-    CompoundAttributes attributes; // its own; of roots: complete
+    CompoundAttributes attributes; // its own; all fields set for roots
     std::vector<Equalizer> equalizers;
     std::optional<ResolvedBarrier> barrier;
     std::vector<ResolvedQueue> outputQueues, inputQueues;
@@ -151,11 +151,11 @@ struct ResolvedCompound {
 
 struct ResolvedConfig {
     std::string name;
-    uint32_t latency = 1; // frames
-    double eyeBase = .05; // metres
+    uint32_t latency = 1; // in frames
+    double eyeBase = .05; // in metres
     int32_t robustness = value::kAuto;
-    std::vector<Connection> serverConnections; // complete
-    std::vector<ResolvedNode> nodes;           // the application's first
+    std::vector<Connection> serverConnections; // all fields set
+    std::vector<ResolvedNode> nodes; // the application's node first
     std::vector<ResolvedPipe> pipes;
     std::vector<ResolvedWindow> windows;
     std::vector<ResolvedChannel> channels;
@@ -165,9 +165,9 @@ struct ResolvedConfig {
     std::vector<ResolvedCanvas> canvases;
     std::vector<ResolvedSegment> segments;
     std::vector<ResolvedCompound> compounds;
-    std::vector<Index> roots; // of the compounds' trees, in the order in which they are drawn
+    std::vector<Index> roots; // roots of the compound trees, in drawing order
 
-    // An index always stands in its list: resolve() is the only one who makes them.
+    // Indices are always valid: only resolve() creates them.
     [[nodiscard]] const ResolvedPipe& pipeOf(const ResolvedChannel& c) const { return pipes[at(windows[at(c.window)].pipe)]; }
     [[nodiscard]] static size_t at(Index index) { return static_cast<size_t>(index); }
 };

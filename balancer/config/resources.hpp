@@ -1,4 +1,4 @@
-// The machines and what they draw with: node → pipe → window → channel, as the file says it.
+// The model of resources as in the file: node, pipe, window, channel.
 #pragma once
 
 #include <string>
@@ -12,13 +12,13 @@ namespace mural::config {
 
 enum class ConnectionType : uint8_t { Tcp, Pipe, Rsp, Rdma, Udt };
 
-// An address on which a node listens.
+// An address that a node listens on.
 struct Connection {
     std::optional<ConnectionType> type;
-    std::optional<std::string> hostname;   // of RSP: the multicast group
-    std::optional<std::string> interface_; // of RSP: the network interface's address
+    std::optional<std::string> hostname; // RSP: the multicast group
+    std::optional<std::string> interface_; // RSP: address of the network interface
     std::optional<uint32_t> port;
-    std::optional<uint32_t> bandwidth; // kB/s of 1024 bytes
+    std::optional<uint32_t> bandwidth; // in kB/s of 1024 bytes
     std::optional<std::string> filename;
     SourcePosition at;
     friend bool operator==(const Connection&, const Connection&) = default;
@@ -32,7 +32,7 @@ struct ChannelAttributes {
 
 struct Channel {
     std::optional<std::string> name;
-    std::optional<Viewport> viewport; // in pixels when its size is above 1, else part of the window
+    std::optional<Viewport> viewport; // in pixels if its size exceeds 1, otherwise relative to the window
     ChannelAttributes attributes;
     SourcePosition at;
     friend bool operator==(const Channel&, const Channel&) = default;
@@ -47,7 +47,7 @@ struct WindowAttributes {
 
 struct Window {
     std::optional<std::string> name;
-    std::optional<Viewport> viewport; // in pixels when its size is above 1, else part of the pipe
+    std::optional<Viewport> viewport; // in pixels if its size exceeds 1, otherwise relative to the pipe
     WindowAttributes attributes;
     std::vector<Channel> channels;
     SourcePosition at;
@@ -59,12 +59,12 @@ struct PipeAttributes {
     friend bool operator==(const PipeAttributes&, const PipeAttributes&) = default;
 };
 
-// One GPU, and the thread that feeds it.
+// One GPU and the thread that feeds it.
 struct Pipe {
     std::optional<std::string> name;
-    std::optional<uint32_t> port;   // X server
-    std::optional<uint32_t> device; // its screen, or the GPU
-    std::optional<Viewport> viewport; // in pixels; otherwise what the machine says
+    std::optional<uint32_t> port; // number of the X server
+    std::optional<uint32_t> device; // X screen, or GPU index
+    std::optional<Viewport> viewport; // in pixels; empty: the machine's screen
     PipeAttributes attributes;
     std::vector<Window> windows;
     SourcePosition at;
@@ -89,7 +89,7 @@ struct Node {
     friend bool operator==(const Node&, const Node&) = default;
 };
 
-// A viewport that counts in pixels: [0 0 1 1] is the whole, never one pixel.
+// Returns true if a viewport is in pixels. [0 0 1 1] is the whole, never one pixel.
 [[nodiscard]] constexpr bool inPixels(const Viewport& v) { return v.w > 1 || v.h > 1; }
 
 } // namespace mural::config

@@ -8,7 +8,7 @@ namespace {
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
-// How the room is turned for a projector that looks by head, pitch and roll.
+// Returns the rotation of the room for a projector with this heading, pitch and roll.
 Matrix4 turnOf(const Vector3& hpr) {
     const double h = radians(hpr.x), p = radians(hpr.y), r = radians(hpr.z);
     const Matrix4 head = Matrix4::rows({std::cos(h), 0, -std::sin(h)}, {0, 1, 0}, {std::sin(h), 0, std::cos(h)});
@@ -22,8 +22,8 @@ Vector3 rowOf(const Matrix4& t, size_t row) { return {t.m[row][0], t.m[row][1], 
 } // namespace
 
 bool Screen::usable() const {
-    constexpr double kSquare = 1e-3; // a millimetre per metre
-    constexpr double kLargest = 1e6; // metres; an angle of 180 degrees sees more
+    constexpr double kSquare = 1e-3; // tolerance: a millimetre per metre
+    constexpr double kLargest = 1e6; // in metres; a field of view of 180 degrees exceeds it
     return width > 0 && height > 0 && width < kLargest && height < kLargest && std::abs(dot(right, up)) < kSquare;
 }
 

@@ -1,5 +1,5 @@
-// A flat rectangle of the room that a picture is shown on: what walls and projectors come down to.
-// Source: Equalizer's FrustumData; a projector's screen stands at its distance in the direction in which it looks.
+// A flat rectangle in the room that shows a picture: the common form of walls and projectors. Source: Equalizer's
+// FrustumData; a projector's screen lies at its distance in its viewing direction.
 #pragma once
 
 #include "balancer/config/projection_surface.hpp"
@@ -10,16 +10,16 @@ namespace mural::config {
 
 struct Screen {
     Vector3 center;
-    Vector3 right{1, 0, 0}; // directions of length 1
+    Vector3 right{1, 0, 0}; // unit vectors
     Vector3 up{0, 1, 0};
     Vector3 normal{0, 0, 1}; // towards the viewer
-    double width = 0;        // metres
+    double width = 0; // in metres
     double height = 0;
     WallType type = WallType::Fixed;
 
-    // A wall without area, or whose edges are not at right angles, is no screen.
+    // Returns false for a wall without area or with edges that are not perpendicular.
     [[nodiscard]] bool usable() const;
-    // From the room into the screen's coordinates: its centre is 0 0 0.
+    // Returns the transform from the room to screen coordinates, whose origin is the screen's centre.
     [[nodiscard]] Matrix4 fromRoom() const;
     [[nodiscard]] Screen part(const Viewport& area) const;
 };

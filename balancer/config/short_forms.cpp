@@ -16,13 +16,13 @@ struct Named {
     int32_t value;
 };
 
-// One way of dividing, and into how many.
+// One decomposition and its number of parts.
 struct Level {
     enum class Kind { Frames, Ranges, Pixels, Samples } kind;
     int32_t count;
 };
 
-// Edge i of n, in six decimals: so it reads well, and neighbours have the same one.
+// Returns edge i of n, rounded to six decimals: readable, and equal for neighbours.
 double edge(int32_t i, int32_t n) { return std::round(1e6 * i / n) / 1e6; }
 double between(double from, double to) { return std::round(1e6 * (to - from)) / 1e6; }
 
@@ -56,7 +56,8 @@ public:
         Canvas canvas;
         canvas.name = "wall";
         canvas.layouts.emplace_back(std::string("whole"));
-        const double half = std::round(5e5 * form_.width / form_.height) / 1e6; // a wall of the picture's shape, 1 m high
+        // a wall with the picture's aspect ratio, 1 m high
+        const double half = std::round(5e5 * form_.width / form_.height) / 1e6;
         canvas.surface = Wall{{-half, -.5, -1}, {half, -.5, -1}, {-half, .5, -1}, WallType::Fixed, {}};
         if (form_.columns * form_.rows > 1) canvas.swapBarrier.emplace();
         for (int32_t row = 0; row < form_.rows; ++row) {
@@ -68,7 +69,7 @@ public:
     }
 
 private:
-    // A window of its own for each channel, on the machines in turn; each window on a pipe of its own.
+    // Adds a window and a pipe per channel, alternating between the machines.
     void addChannel(const std::string& name, PixelViewport size, bool shown, std::vector<Channel> channels) {
         Window window;
         window.name = name;
@@ -131,7 +132,7 @@ private:
         file_.config.compounds.push_back(root);
     }
 
-    // Each part on a channel of its own; of ranges the first part is drawn where the parts are put together.
+    // Draws each part on a channel of its own. The first range is drawn on the channel that composites the ranges.
     void divide(Compound& c, const std::string& channel, size_t depth) {
         if (depth == levels_.size()) return queueTiles(c, channel);
         const Level& level = levels_[depth];

@@ -1,5 +1,5 @@
-// The walker over section_fields.hpp that gives attributes without a value that of their global attribute, whose name
-// follows from the section and the word: hint_stereo of windows is EQ_WINDOW_IATTR_HINT_STEREO.
+// A walker over section_fields.hpp that fills empty attributes from global attributes. The global name follows from
+// section and field: hint_stereo of windows is EQ_WINDOW_IATTR_HINT_STEREO.
 #pragma once
 
 #include "balancer/config/global_attributes.hpp"

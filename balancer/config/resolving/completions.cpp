@@ -1,5 +1,5 @@
-// What follows from a file without being said in it: compounds for pictures that nothing makes, canvases for channels
-// that nothing shows, queues of tile equalizers, copies of segments.
+// Adds implied objects: compounds for channels without one, canvases for channels without one, queues of tile
+// equalizers, copies of segments.
 #include <algorithm>
 #include <functional>
 
@@ -31,29 +31,29 @@ std::vector<Index> compoundsInOrder(const ResolvedConfig& config, Index root) {
     return all;
 }
 
-// Holds a place (for a swap barrier, say) and does nothing.
+// Returns true for a compound without tasks, such as one that only holds a swap barrier.
 bool isIdle(const ResolvedConfig& config, Index compound) {
     const ResolvedCompound& c = config.compounds[Resolver::at(compound)];
     const bool below = std::all_of(c.children.begin(), c.children.end(), [&](Index child) { return isIdle(config, child); });
     return c.tasks && c.tasks->empty() && below;
 }
 
-// By one of the first `segments` segments.
+// Returns true if one of the first `segments` segments shows the channel.
 bool isShown(const ResolvedConfig& config, Index channel, size_t segments) {
     return config.channels[Resolver::at(channel)].isDestination() ||
            std::any_of(config.segments.begin(), config.segments.begin() + static_cast<std::ptrdiff_t>(segments),
                        [&](const ResolvedSegment& s) { return s.channel == channel; });
 }
 
-// The first compound with a channel on its way from the root: it says what is shown.
+// Returns true for the first compound with a channel on the path from the root.
 bool isDestination(const ResolvedConfig& config, const ResolvedCompound& c) {
     return c.channel != kNone && (c.parent == kNone || config.compounds[Resolver::at(c.parent)].destination == kNone);
 }
 
 } // namespace
 
-// A compound for a channel of a window by its name means what is shown there, when that is one picture or, with several
-// layouts, the first of them.
+// A compound for a named channel of a window refers to the destination channel there, if it is unique, or to that of
+// the first layout.
 void useShownChannels(Resolver& r) {
     ResolvedConfig& config = r.out;
     for (size_t i = 0; i < config.compounds.size(); ++i) {
@@ -70,7 +70,8 @@ void useShownChannels(Resolver& r) {
         }
     }
     linkChannels(config);
-    // Below, the same name means the picture that is being made, when it fills the channel: what is drawn there is part of it.
+    // In descendants the same name refers to the picture in progress, if it fills the channel: their drawing is part of
+    // it.
     for (ResolvedCompound& c : config.compounds) {
         if (c.channel == kNone || c.channel == c.destination || config.channels[Resolver::at(c.channel)].isDestination()) continue;
         const ResolvedChannel& shown = config.channels[Resolver::at(c.destination)];
@@ -100,7 +101,7 @@ void addOutputCompounds(Resolver& r) {
     }
 }
 
-// Files from before canvases existed: their compounds say what is shown.
+// Files from before canvases existed: their destination compounds define the display.
 void addDestinationViews(Resolver& r) {
     ResolvedConfig& config = r.out;
     const size_t written = config.segments.size();
@@ -148,7 +149,7 @@ void addDestinationViews(Resolver& r) {
     }
 }
 
-// A tile equalizer puts a queue between the compound that it stands in and everything that draws for it.
+// A tile equalizer inserts a queue between its compound and every descendant that draws for it.
 void addTileQueues(Resolver& r) {
     ResolvedConfig& config = r.out;
     for (size_t i = 0; i < config.compounds.size(); ++i) {
@@ -167,7 +168,7 @@ void addTileQueues(Resolver& r) {
     }
 }
 
-// Other channels that show a segment's picture: the destination hands its picture out, each copy takes it in.
+// Copies of a segment: the destination outputs its picture, and each copy inputs it.
 void addCopies(Resolver& r) {
     ResolvedConfig& config = r.out;
     for (Index& root : config.roots) {
@@ -193,7 +194,7 @@ void addCopies(Resolver& r) {
             for (const Index copy : copies) {
                 const Index shown = addGenerated(config, group, "", copy, at);
                 config.compounds[Resolver::at(shown)].tasks = TaskSet{Task::Clear, Task::Assemble};
-                config.compounds[Resolver::at(shown)].eyes = kAllEyes; // those that the picture is made for
+                config.compounds[Resolver::at(shown)].eyes = kAllEyes; // the eyes of the shown picture
                 config.compounds[Resolver::at(shown)].inputFrames.push_back(frame);
             }
         }

@@ -1,4 +1,4 @@
-// The trees of compounds: flattened, and their channels, frames, queues and barriers looked up.
+// Flattens the compound trees and resolves their channels, frames, queues and barriers.
 #include <algorithm>
 #include <functional>
 
@@ -15,13 +15,13 @@ std::string shown(const Reference& reference) {
     return "number " + std::to_string(std::get<uint32_t>(reference));
 }
 
-// Follows the steps of "( canvas X segment Y layout Z view W )". Without a step it is the first one of each.
+// Follows the steps of "( canvas X segment Y layout Z view W )". An omitted step selects the first element.
 class PathFollower {
 public:
     explicit PathFollower(const Resolver& r)
         : c_(r.out), segment_(firstOf(c_.canvases, &ResolvedCanvas::segments)), view_(firstOf(c_.layouts, &ResolvedLayout::views)) {}
 
-    // What is missing, empty when the way can be gone.
+    // Returns the missing step, or an empty text on success.
     std::string follow(const ChannelPath& path) {
         for (const auto& [step, reference] : path.steps) {
             if (take(step, reference)) continue;
@@ -41,7 +41,8 @@ private:
         return all.empty() || (all.front().*members).empty() ? kNone : (all.front().*members).front();
     }
 
-    // Among `members` of a chosen whole, or among all when none was chosen; numbers then count in the first whole.
+    // Searches the members of the chosen container, or all elements if none is chosen. Numbers then refer to the first
+    // container.
     template <class T, class Whole> Index find(const Reference& reference, const std::vector<T>& all, const std::vector<Index>* members,
                                                const std::vector<Whole>& wholes, std::vector<Index> Whole::*of) const {
         if (const auto* name = std::get_if<std::string>(&reference)) {
@@ -130,7 +131,7 @@ ResolvedFrame frameOf(Resolver& r, const Frame& f) {
     return frame;
 }
 
-// Values that no compound can have are as if they were not given.
+// Invalid values count as omitted.
 template <class T, class Good> void take(Resolver& r, const std::optional<T>& given, T& target, SourcePosition at, const char* what,
                                          const char* remedy, Good good) {
     if (!given) return;
@@ -182,7 +183,7 @@ Index addCompound(Resolver& r, const Compound& c, Index parent) {
     return index;
 }
 
-// "frame.left": called after the compound, else after the channel that draws it, else the same one level up.
+// Returns "frame.left": named after the compound, otherwise after its channel, otherwise after the parent.
 std::string defaultName(const ResolvedConfig& c, Index compound, const std::string& kind) {
     for (Index i = compound; i != kNone; i = c.compounds[Resolver::at(i)].parent) {
         const ResolvedCompound& one = c.compounds[Resolver::at(i)];
@@ -224,7 +225,7 @@ void nameFrames(Resolver& r) {
             }
         }
         if (c.barrier && c.barrier->name.empty()) c.barrier->name = rootName.empty() ? "barrier" : "barrier." + rootName;
-        // What shows a segment waits for whom the segment waits.
+        // The compound that shows a segment joins the segment's swap barrier.
         const bool shows = c.channel != kNone && c.channel == c.destination && config.channels[Resolver::at(c.channel)].isDestination();
         if (!c.barrier && shows && (c.parent == kNone || config.compounds[Resolver::at(c.parent)].destination == kNone)) {
             c.barrier = config.segments[Resolver::at(config.channels[Resolver::at(c.channel)].segment)].barrier;

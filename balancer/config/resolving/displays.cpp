@@ -1,4 +1,5 @@
-// Observers, layouts, views, canvases, segments, and the destination channels where they meet.
+// Resolves observers, layouts, views, canvases and segments, and creates destination channels where views meet
+// segments.
 #include <algorithm>
 
 #include "balancer/config/resolving/attribute_filler.hpp"
@@ -78,7 +79,7 @@ ResolvedBarrier barrierOf(const SwapBarrier& barrier, const std::string& default
     return {barrier.name.value_or(defaultName), barrier.nvGroup, barrier.nvBarrier};
 }
 
-// What is seen of a segment whose monitor has a frame. Millimetres become parts by the size of its surface.
+// Reduces a segment to the part within its monitor's frame. The size of its surface converts millimetres to fractions.
 void cutBezel(Resolver& r, ResolvedSegment& s, const Bezel& bezel, bool ownSurface) {
     const Screen screen = screenOf(s.surface);
     const double widthMm = screen.width * (ownSurface ? 1 : s.outer.w) * 1000, heightMm = screen.height * (ownSurface ? 1 : s.outer.h) * 1000;
@@ -141,7 +142,7 @@ void addCanvas(Resolver& r, const Canvas& c) {
     addDestinationChannels(r, index);
 }
 
-// The part of a channel that shows `area` of its segment.
+// Returns the part of a channel that shows `area` of its segment.
 Viewport partOfChannel(const Viewport& channel, const Viewport& area) {
     if (!inPixels(channel)) return compose(channel, area);
     const PixelViewport whole{static_cast<int32_t>(channel.x), static_cast<int32_t>(channel.y), static_cast<int32_t>(channel.w),

@@ -1,4 +1,4 @@
-// What files mean that were written for versions of the format before 1.1 and 1.2.
+// Semantics of files before versions 1.1 and 1.2 of the format.
 #include <functional>
 
 #include "balancer/config/resolving/attribute_filler.hpp"
@@ -8,7 +8,7 @@ namespace mural::config {
 
 namespace {
 
-// Views that compounds below (and including) this one show.
+// Visits the views that this compound and its descendants show.
 void eachShownView(ResolvedConfig& config, Index compound, const std::function<void(ResolvedChannel&)>& use) {
     const ResolvedCompound& c = config.compounds[Resolver::at(compound)];
     if (c.destination != kNone) {
@@ -21,7 +21,7 @@ void eachShownView(ResolvedConfig& config, Index compound, const std::function<v
 
 } // namespace
 
-// Before 1.1, stereo was what compounds have eyes for; mono needed no word.
+// Before 1.1 the eyes of compounds implied stereo; mono was implicit.
 void mendVersion10(Resolver& r) {
     if (r.file.version >= 1.1) return;
     ResolvedConfig& config = r.out;
@@ -60,7 +60,7 @@ void mendVersion10(Resolver& r) {
     }
 }
 
-// Before 1.2, a node was started on the host that its connection listens on.
+// Before 1.2 the launch host of a node was the host name of its connection.
 void mendVersion11(Resolver& r) {
     const bool old = r.file.version < 1.2;
     for (ResolvedNode& node : r.out.nodes) {

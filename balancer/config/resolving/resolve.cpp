@@ -9,7 +9,7 @@ ResolvedConfig resolve(const ConfigFile& file, const Globals& environment, Diagn
     resolveResources(r);
     resolveDisplays(r);
     resolveCompounds(r);
-    if (diagnostics.errors() > 0) return std::move(r.out); // references are missing; no use to go on
+    if (diagnostics.errors() > 0) return std::move(r.out); // references are missing: stop here
     linkChannels(r.out);
     useShownChannels(r);
     addOutputCompounds(r);

@@ -1,4 +1,4 @@
-// What the steps of resolve() share.
+// State shared by the steps of resolve().
 #pragma once
 
 #include "balancer/config/resolve.hpp"
@@ -11,7 +11,7 @@ struct Resolver {
     Diagnostics& diagnostics;
     ResolvedConfig out;
 
-    // The first element that is called so; kNone when there is none. "" is called what has no name.
+    // Returns the first element with this name, or kNone. The empty name finds unnamed elements.
     template <class T> static Index named(const std::vector<T>& all, std::string_view name) {
         for (size_t i = 0; i < all.size(); ++i) {
             if (all[i].name == name) return static_cast<Index>(i);
@@ -27,15 +27,15 @@ struct Resolver {
 
 void resolveResources(Resolver& r);
 void resolveDisplays(Resolver& r);
-// The picture of a view on a segment; kNone when it does not fall onto it.
+// Returns the destination channel of a view on a segment; kNone if they do not overlap.
 Index destinationChannel(const ResolvedConfig& config, Index segment, Index view);
-// Makes the destination channels of a canvas that are not there yet.
+// Creates missing destination channels of a canvas.
 void addDestinationChannels(Resolver& r, Index canvas);
 void resolveCompounds(Resolver& r);
-// Looks up which channels compounds draw with and for.
+// Determines the executing channel and the destination of each compound.
 void linkChannels(ResolvedConfig& config);
 
-// The steps after reading.
+// Steps after reading.
 void useShownChannels(Resolver& r);
 void addOutputCompounds(Resolver& r);
 void addDestinationViews(Resolver& r);

@@ -1,4 +1,4 @@
-// Nodes, pipes, windows and the channels that the file names.
+// Resolves nodes, pipes, windows and the channels of the file.
 #include <cmath>
 
 #include "balancer/config/resolving/attribute_filler.hpp"
@@ -8,7 +8,7 @@ namespace mural::config {
 
 namespace {
 
-// Areas below 0 or without a size are as if they were not given, as for Equalizer.
+// Areas with negative or zero size count as omitted, as in Equalizer.
 Viewport screenAreaOf(Resolver& r, const std::optional<Viewport>& given, SourcePosition at, const char* of) {
     if (!given) return {};
     if (given->w > 0 && given->h > 0 && given->w <= 1e6 && given->h <= 1e6 && std::abs(given->x) <= 1e6 && std::abs(given->y) <= 1e6) return *given;
@@ -98,7 +98,7 @@ void resolveResources(Resolver& r) {
     fillAttributes(attributes, "CONFIG", r.defaults);
     r.out.eyeBase = attributes.eyeBase.value_or(.05);
     r.out.robustness = attributes.robustness.value_or(value::kAuto);
-    r.out.serverConnections = r.file.serverConnections; // what they do not say is not the nodes' default
+    r.out.serverConnections = r.file.serverConnections; // defaults of nodes do not apply to the server
     for (Connection& c : r.out.serverConnections) {
         if (!c.type) c.type = r.defaults.get<ConnectionType>("EQ_CONNECTION_IATTR_TYPE");
     }

@@ -1,4 +1,4 @@
-// The words of attribute values. Where several stand for one integer, how an attribute's kind writes it.
+// The words of attribute values, and the preferred word per attribute kind where several have the same integer.
 #pragma once
 
 #include <string>
@@ -11,14 +11,14 @@ namespace mural::config {
 struct AttributeWord {
     std::string_view word;
     int32_t value;
-    bool takesNumber = false; // CORE 2
-    bool old = false;         // understood, and written in another way
+    bool takesNumber = false; // a number follows: CORE 2
+    bool old = false; // accepted, but written in another way
 };
 
-// The numbers of SOCKET and CORE; above, they would be other attribute values.
+// Largest number after SOCKET and CORE. Larger numbers would collide with other attribute values.
 inline constexpr int32_t kMostCores = 60'000;
 
-// Null when nothing is called so.
+// Returns null for an unknown word.
 const AttributeWord* findAttributeWord(std::string_view word);
 
 std::string attributeText(int32_t value, AttributeKind kind);

@@ -9,7 +9,7 @@ namespace {
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
 bool isLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool isSpace(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\v' || c == '\f'; }
-// Between values people write commas.
+// Commas and semicolons between values are ignored.
 bool isSilent(char c) { return isSpace(c) || c == ',' || c == ';'; }
 
 class Lexer {
@@ -63,7 +63,7 @@ private:
         at_ = end;
     }
 
-    // "#Equalizer 1.2 ascii", before everything that is not a comment.
+    // Reads "#Equalizer 1.2 ascii", which precedes everything but comments.
     bool header() {
         const SourcePosition at = here();
         size_t i = at_ + std::string_view("#Equalizer").size();
@@ -125,7 +125,7 @@ private:
     void number() {
         const size_t from = at_;
         const SourcePosition at = here();
-        if (peek() == '2' && peek(1) == 'D' && !isLetter(peek(2)) && !isDigit(peek(2))) { // a mode of equalizers
+        if (peek() == '2' && peek(1) == 'D' && !isLetter(peek(2)) && !isDigit(peek(2))) { // an equalizer mode
             at_ += 2;
             return add(TokenKind::Word, from, 2, at);
         }

@@ -1,4 +1,4 @@
-// What releases from 2005 on wrote and today's format says in another way. Each is read with a warning.
+// Fields of releases since 2005 that today's format expresses in another way. Each is accepted with a warning.
 #include "balancer/config/text/section_reader.hpp"
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace mural::config {
 namespace {
 
 struct Renamed {
-    std::string_view section; // empty: in all of them
+    std::string_view section; // empty: all sections
     std::string_view old;
     std::string_view today;
 };
@@ -27,7 +27,7 @@ constexpr auto kRenamed = std::to_array<Renamed>({
     {"inputframe", "buffers", "buffer"},
 });
 
-// Understood once, and without an effect today.
+// Fields without effect today.
 constexpr auto kGone = std::to_array<std::string_view>({"hint_cuda_GL_interop", "hint_offset", "update_FOV", "format", "displaycluster", "drawable"});
 
 } // namespace
@@ -128,7 +128,7 @@ bool SectionReader::readOldField(const Token& token, Compound& compound) {
 
 namespace {
 
-// loadBalancer of the releases until 2015: its mode says which of today's equalizers it is.
+// loadBalancer of releases until 2015: its mode selects one of today's equalizers.
 struct LoadBalancer {
     std::string mode = "2D";
     std::optional<double> damping, frameRate, assembleOnlyLimit;

@@ -44,7 +44,7 @@ private:
         else skip(token, "the file");
     }
 
-    // "global { ... }", also inside of another, or one attribute alone.
+    // Reads "global { ... }", which may be nested, or a single attribute.
     void readGlobals() {
         if (!tokens_.accept('{')) return;
         for (int depth = 1; depth > 0 && !tokens_.failed();) {
@@ -96,7 +96,7 @@ private:
     void skip(const Token& token, const std::string& where) {
         tokens_.warn(token.at, "nothing in " + where + " is called " + std::string(token.text) + ", it is left out", "check its spelling, or remove it");
         tokens_.skipValue();
-        // A value that is a word, as ON; every word that begins something has a bracket or a value behind it.
+        // Skips a value that is a word, such as ON. Every word that begins a field is followed by a bracket or a value.
         if (tokens_.peek().kind == TokenKind::Word && isAttributeWord(tokens_.peek().text)) tokens_.take();
     }
 

@@ -1,13 +1,13 @@
-// The sections of a configuration file and their fields, said once: reader and writer both walk over this. A walker has
-//   value(word, optional)      a field with a value; when it is repeated, the last one counts
+// The sections of a configuration file and their fields, defined once for reader and writer. A walker has
+//   value(word, optional)      a field with a value; the last repetition counts
 //   attribute(word, a, kind)   a field with an attribute value
-//   repeated(word, values)     a field that may be given several times
-//   section(word, optional)    a section; when it is repeated, the last one counts
-//   sections(word, values)     sections that may be given several times
-//   merged(word, section)      a section whose repetitions add to the first one
+//   repeated(word, values)     a field that may occur several times
+//   section(word, optional)    a section; the last repetition counts
+//   sections(word, values)     sections that may occur several times
+//   merged(word, section)      a section whose repetitions add to the first
 //   surface(optional)          wall or projection
 //   equalizers(values)         any of the equalizers
-// What begins with mural_ is no part of Equalizer's format.
+// Words that begin with mural_ are extensions of Equalizer's format.
 #pragma once
 
 #include <concepts>
@@ -115,7 +115,7 @@ void fields(auto& walk, Is<Projection> auto& p) {
 
 void fields(auto& walk, Is<Observer> auto& o) {
     walk.value("name", o.name);
-    walk.value("eye_base", o.eyeBase); // before the eyes: it places all of them
+    walk.value("eye_base", o.eyeBase); // precedes the eyes: it places all of them
     walk.value("eye_left", o.eyeLeft);
     walk.value("eye_cyclop", o.eyeCyclop);
     walk.value("eye_right", o.eyeRight);
@@ -125,7 +125,7 @@ void fields(auto& walk, Is<Observer> auto& o) {
     walk.value("vrpn_tracker", o.vrpnTracker);
 }
 
-// The attributes of a view are this one alone.
+// Views have this single attribute.
 template <class V> struct ViewAttributes {
     V& view;
 };
@@ -216,7 +216,7 @@ void fields(auto& walk, Is<TileEqualizer> auto& e) {
     walk.value("size", e.size);
 }
 
-// The name of an equalizer's section.
+// Returns the keyword of an equalizer's section.
 inline std::string_view sectionName(const LoadEqualizer&) { return "load_equalizer"; }
 inline std::string_view sectionName(const TreeEqualizer&) { return "tree_equalizer"; }
 inline std::string_view sectionName(const DfrEqualizer&) { return "DFR_equalizer"; }

@@ -1,4 +1,4 @@
-// Reads one field of a section: the walker over section_fields.hpp that looks for a word, and reads its value.
+// Reads one field of a section: the walker over section_fields.hpp that finds a word and reads its value.
 #pragma once
 
 #include "balancer/config/text/section_fields.hpp"
@@ -10,7 +10,7 @@ class SectionReader {
 public:
     explicit SectionReader(TokenReader& tokens) : tokens_(tokens) {}
 
-    // "{ ... }"; name and place of its word: for messages.
+    // Reads "{ ... }". `name` and `at` identify the section in messages.
     template <class Section> void readSection(std::string_view name, SourcePosition at, Section& section) {
         if constexpr (requires { section.at; }) section.at = at;
         if (depth_ >= kDeepest) return tokens_.fail(tokens_.peek().at, "more than " + std::to_string(kDeepest) + " sections stand in each other",
@@ -27,7 +27,7 @@ public:
         --depth_;
     }
 
-    // As a walker over the fields of a section.
+    // Interface of a walker over the fields of a section.
     template <class T> void value(std::string_view word, std::optional<T>& target) {
         if (!isNext(word)) return;
         T read{};
@@ -38,12 +38,12 @@ public:
     void value(std::string_view word, PixelsOrRange& target) {
         if (isNext(word)) ValueReader(tokens_, word).read(target);
     }
-    // Fields that have a value in any case.
+    // Fields that always have a value.
     template <class T> requires(std::is_same_v<T, Vector3> || std::is_same_v<T, Degrees2> || std::is_same_v<T, double> || std::is_enum_v<T>)
     void value(std::string_view word, T& target) {
         if (isNext(word)) ValueReader(tokens_, word).read(target);
     }
-    // "eye [ ]" is no eye, which is to say: as if it was not written.
+    // "eye [ ]" counts as omitted.
     void value(std::string_view word, std::optional<EyeSet>& target) {
         if (!isNext(word)) return;
         EyeSet eyes;
@@ -95,7 +95,7 @@ public:
 private:
     static constexpr int kDeepest = 200;
 
-    // Is this the word that was found? Takes it, once.
+    // Returns true, once, if this is the current word.
     bool isNext(std::string_view word) {
         if (matched_ || word != word_) return false;
         matched_ = true;
@@ -110,15 +110,16 @@ private:
         targets.emplace_back(std::move(equalizer));
     }
 
-    // Reads the field that is called so; false when the section has none.
+    // Reads the field with this name. Returns false if the section has no such field.
     template <class Section> bool readNamed(std::string_view word, Section& section) {
         const std::string_view outer = word_;
         word_ = word;
         matched_ = false;
         if constexpr (std::is_same_v<Section, Observer>) {
-            if (word == "eye_base") section.eyeLeft = section.eyeCyclop = section.eyeRight = std::nullopt; // it places all of them
+            // places all eyes
+            if (word == "eye_base") section.eyeLeft = section.eyeCyclop = section.eyeRight = std::nullopt;
         }
-        const SourcePosition at = wordAt_; // sections inside have words of their own
+        const SourcePosition at = wordAt_; // nested sections have their own words
         fields(*this, section);
         const bool found = matched_;
         word_ = outer;
@@ -147,7 +148,7 @@ private:
 
     void skipUnknown(std::string_view name, const Token& token);
 
-    // Words of early releases whose value has another form or another place (old_fields.cpp).
+    // Words of early releases whose value has another form or place (old_fields.cpp).
     template <class Section> bool readOldField(const Token&, Section&) { return false; }
     bool readOldField(const Token& token, Window& window);
     bool readOldField(const Token& token, WindowAttributes& attributes);
@@ -157,21 +158,21 @@ private:
     bool readOldField(const Token& token, ConfigAttributes& attributes);
     void readPrefixed(std::string_view name, std::string_view prefix, WindowAttributes& attributes);
     void readLoadBalancer(SourcePosition at, std::vector<Equalizer>& targets);
-    // Gives a section what early releases wrote in sections inside of it.
+    // Moves values that early releases wrote in nested sections into their section.
     template <class Section> void finish(Section&) {}
     void finish(Node& node);
     void finish(Config& config);
-    // Words that were only renamed. Empty when it is none of them.
+    // Returns the current name of a renamed word; empty for other words.
     static std::string_view todaysWord(std::string_view section, std::string_view word);
 
     TokenReader& tokens_;
-    std::string_view section_; // the word of the one that is read
+    std::string_view section_; // keyword of the current section
     std::string_view word_;
     SourcePosition wordAt_;
     bool matched_ = true;
     int depth_ = 0;
-    NodeAttributes oldLaunch_; // launch command in a connection: the node around it takes it
-    Observer oldFocus_;        // focus of the configuration: its observers take it
+    NodeAttributes oldLaunch_; // launch command in a connection; belongs to the enclosing node
+    Observer oldFocus_; // focus of the configuration; belongs to its observers
 };
 
 } // namespace mural::config

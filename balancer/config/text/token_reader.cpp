@@ -41,7 +41,7 @@ void TokenReader::skipValue() {
     }
 }
 
-// Brackets are counted, not matched by kind: what is in them is not read.
+// Counts brackets without matching their kinds, because the contents are not read.
 void TokenReader::skipBrackets() {
     int depth = 0;
     do {

@@ -1,5 +1,5 @@
-// Walks over the tokens of a file. The first error ends the reading: from then on there is only the end of the file, so
-// that every loop over tokens ends by itself.
+// Iterates over the tokens of a file. After the first error only the end of the file follows, so every loop over tokens
+// terminates.
 #pragma once
 
 #include "balancer/config/text/lexer.hpp"
@@ -14,16 +14,16 @@ public:
     [[nodiscard]] bool ended() const { return peek().kind == TokenKind::End; }
     [[nodiscard]] bool failed() const { return failed_; }
     const Token& take();
-    // Takes the bracket when it is next.
+    // Consumes the bracket if it is next.
     bool accept(char bracket);
-    // An error when it is not next. `after`: what it belongs to.
+    // Consumes the bracket, or reports an error. `after`: the word that it belongs to.
     bool expect(char bracket, std::string_view after);
 
     void fail(SourcePosition at, std::string what, std::string remedy);
     void warn(SourcePosition at, std::string what, std::string remedy) { diagnostics_.warn(at, std::move(what), std::move(remedy)); }
     void given(SourcePosition at, std::string_view section, std::string_view field) { diagnostics_.given(at, section, field); }
 
-    // Steps over what may be the value of a word that nobody knows: numbers, texts, brackets with all that is in them.
+    // Skips the possible value of an unknown word: numbers, texts, brackets with their contents.
     void skipValue();
 
 private:
@@ -35,7 +35,7 @@ private:
     bool failed_ = false;
 };
 
-// The token in words, for messages: "}" or the word "foo" or the end of the file.
+// Describes the token for messages: "}", the word "foo", or the end of the file.
 std::string shown(const Token& token);
 
 } // namespace mural::config

@@ -34,7 +34,7 @@ void ValueReader::replaced(const Token& token, std::string_view by) {
     tokens_.warn(token.at, std::string(token.text) + " is read as " + std::string(by), "write " + std::string(by));
 }
 
-// Stencil values can't be handed from channel to channel since 2007.
+// Frames carry no stencil values since 2007.
 bool ValueReader::ignoredMember(Buffer) {
     if (tokens_.peek().kind != TokenKind::Word || !sameButCase(tokens_.peek().text, "STENCIL")) return false;
     tokens_.warn(tokens_.peek().at, "stencil buffers are not read back", "remove STENCIL");
@@ -62,7 +62,7 @@ void ValueReader::read(double& value) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error == std::errc::invalid_argument) return tokens_.fail(token.at, std::string(field_) + " can't be " + shown(token), "it is a number");
     if (error == std::errc::result_out_of_range) {
-        // So are numbers too small to be told from 0.
+        // Numbers too small for a double are 0.
         const size_t point = text.find('.');
         const bool tiny = text.find("e-") != std::string_view::npos || (point != std::string_view::npos && text.find_first_of("123456789") > point);
         if (!tiny) return tokens_.fail(token.at, std::string(field_) + " is too large a number", "give one that can be meant");
@@ -120,7 +120,7 @@ void ValueReader::read(SubPixel& s) {
     s = {static_cast<int32_t>(index), static_cast<int32_t>(size)};
 }
 
-// In brackets it is meant for pixels, without for ranges.
+// A bracketed pair is in pixels, a single number is a range fraction.
 void ValueReader::read(PixelsOrRange& value) {
     if (tokens_.peek().is('[')) {
         Pixels2 pixels;

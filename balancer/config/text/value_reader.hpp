@@ -1,4 +1,4 @@
-// Reads the value of a field. What can't be understood fails the reader with one line that says what should stand there.
+// Reads the value of a field. An error stops the reader with one line that names the expected value.
 #pragma once
 
 #include "balancer/config/config.hpp"
@@ -9,7 +9,7 @@ namespace mural::config {
 
 class ValueReader {
 public:
-    // field: for messages.
+    // field: name for messages.
     ValueReader(TokenReader& tokens, std::string_view field) : tokens_(tokens), field_(field) {}
 
     void read(std::string& value);
@@ -30,7 +30,7 @@ public:
     void read(LayoutReference& value);
     void read(ChannelReference& value);
 
-    // One of an enumeration's words. Early releases wrote some in small letters.
+    // Reads a word of an enumeration. Early releases wrote some words in lower case.
     template <class E> requires std::is_enum_v<E> void read(E& value) {
         const Token& token = tokens_.take();
         for (const auto& s : spellings(E{})) {
@@ -60,7 +60,7 @@ public:
         tokens_.expect(']', field_);
     }
 
-    // ON, AUTO, CORE 1, 16, ...
+    // Reads an attribute value: ON, AUTO, CORE 1, 16, ...
     void readAttribute(int32_t& value);
 
 private:
@@ -74,7 +74,7 @@ private:
     std::string_view field_;
 };
 
-// Is this a word that attributes may have as their value?
+// Returns true if the word is a valid attribute value.
 bool isAttributeWord(std::string_view word);
 
 } // namespace mural::config

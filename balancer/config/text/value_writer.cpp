@@ -17,7 +17,7 @@ uint32_t unsignedOf(int32_t value) { return static_cast<uint32_t>(value); }
 } // namespace
 
 std::string numberText(double value) {
-    char text[400]; // the longest has 323 zeros behind the point and 17 digits behind them
+    char text[400]; // longest output: 323 zeros after the point, then 17 digits
     const auto [end, error] = std::to_chars(text, text + sizeof text, value, std::chars_format::fixed);
     return {text, error == std::errc{} ? end : text};
 }

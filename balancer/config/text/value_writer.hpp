@@ -1,4 +1,4 @@
-// The values of fields as text that reads back as the same value.
+// Writes field values as text that reads back as the same value.
 #pragma once
 
 #include "balancer/config/config.hpp"
@@ -6,7 +6,7 @@
 
 namespace mural::config {
 
-// The shortest digits that read back as the same number; never an exponent, which the format does not have.
+// Returns the shortest digits that read back as the same number, without an exponent, which the format lacks.
 std::string numberText(double value);
 
 std::string valueText(const std::string& value);

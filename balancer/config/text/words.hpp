@@ -1,4 +1,4 @@
-// How the values of enumerations are spelled in a file.
+// Spellings of enumeration values.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ template <class E> struct Spelling {
     E value;
 };
 
-// What is spelled in several ways is written in the first one.
+// The writer uses the first of several spellings.
 inline constexpr auto spellings(Eye) { return std::to_array<Spelling<Eye>>({{"CYCLOP", Eye::Cyclop}, {"LEFT", Eye::Left}, {"RIGHT", Eye::Right}}); }
 inline constexpr auto spellings(Task) {
     return std::to_array<Spelling<Task>>({{"CLEAR", Task::Clear}, {"DRAW", Task::Draw}, {"ASSEMBLE", Task::Assemble}, {"READBACK", Task::Readback}});
@@ -35,7 +35,7 @@ inline constexpr auto spellings(SplitMode) {
     return std::to_array<Spelling<SplitMode>>({{"2D", SplitMode::TwoD}, {"DB", SplitMode::Db}, {"HORIZONTAL", SplitMode::Horizontal},
                                                {"VERTICAL", SplitMode::Vertical}});
 }
-// In the last two lines: types of early releases, and what comes nearest to them today.
+// The last two lines map types of early releases to the closest type of today.
 inline constexpr auto spellings(ConnectionType) {
     return std::to_array<Spelling<ConnectionType>>({{"TCPIP", ConnectionType::Tcp}, {"PIPE", ConnectionType::Pipe}, {"RSP", ConnectionType::Rsp},
                                                     {"RDMA", ConnectionType::Rdma}, {"UDT", ConnectionType::Udt},
@@ -54,7 +54,7 @@ template <class E> constexpr std::string_view wordOf(E value) {
     return {};
 }
 
-// By which words an attribute's integer is written, since one integer has several.
+// Selects among words with the same integer when an attribute is written.
 enum class AttributeKind : uint8_t { Switch, Number, Statistics, Affinity };
 
 } // namespace mural::config

@@ -12,7 +12,7 @@ namespace {
 constexpr size_t kIndent = 4;
 constexpr size_t kLineColumns = 110;
 
-// The walker that makes a section's lines. A section whose fields fit into one line gets one.
+// The walker that writes a section. A section whose fields fit on one line takes one line.
 class SectionWriter {
 public:
     explicit SectionWriter(size_t depth) : depth_(depth) {}
@@ -40,7 +40,7 @@ public:
     template <class T> void sections(std::string_view word, const std::vector<T>& all) {
         for (const T& s : all) addSection(word, s);
     }
-    // Attributes: nothing is said when nothing is set.
+    // An attribute section is omitted if no attribute is set.
     template <class T> void merged(std::string_view word, T& s) {
         SectionWriter inner(depth_ + 1);
         fields(inner, s);
@@ -84,7 +84,7 @@ public:
 
 private:
     size_t depth_;
-    bool nested_ = false; // holds a section that is too large for a line, so that this one is, too
+    bool nested_ = false; // contains a multi-line section, so it takes several lines too
     std::vector<std::string> lines_;
 };
 

@@ -1,5 +1,5 @@
-// Writes a configuration as canonical text: what was said, in the order of section_fields.hpp, in today's words.
-// Reading it again gives the same configuration. Comments other than those at the beginning are lost.
+// Writes a configuration in canonical form: the stated values in the order of section_fields.hpp, in today's words.
+// Reading the result gives the same configuration. Only leading comments are kept.
 #pragma once
 
 #include <string>
