@@ -45,7 +45,7 @@ Result<void> Arrivals::add(int socket) {
 
 void Arrivals::wakeAt(int64_t ns) {
     itimerspec time{};
-    const int64_t at = std::max<int64_t>(1, ns); // 0 would turn it off
+    const int64_t at = std::max<int64_t>(1, ns); // 0 would disarm the timer
     time.it_value.tv_sec = at / kNsPerS;
     time.it_value.tv_nsec = at % kNsPerS;
     timerfd_settime(timer_.get(), TFD_TIMER_ABSTIME, &time, nullptr);
@@ -56,7 +56,7 @@ std::span<const int> Arrivals::wait(int64_t timeoutNs) {
     const timespec timeout{static_cast<time_t>(ns / kNsPerS), static_cast<long>(ns % kNsPerS)};
     found_ = 0;
     if (ppoll(all_.data(), count_, &timeout, nullptr) <= 0) return {};
-    if (all_[0].revents != 0) { // it was time, once
+    if (all_[0].revents != 0) { // the timer expired
         uint64_t times = 0;
         [[maybe_unused]] const auto fetched = read(timer_.get(), &times, sizeof times);
     }

@@ -1,9 +1,9 @@
-// All that a group waits for outside, as one descriptor: datagrams at its sockets, and a time. Who waits for something of
-// the group sees to that, too, where nobody else does: a thread less is woken for each datagram. Who waits here knows how
-// long it may; the time is for who sleeps already, and for the group's thread. Any thread may set it.
+// Polls the sockets and the timer of a group through one descriptor. A thread that waits for data of the group polls
+// for all, which saves waking another thread per datagram. The waiting thread knows its own timeout; the timer serves
+// threads that already sleep, and the group's thread. Any thread may set the timer.
 //
-// Who waits is at the sockets only as long as it waits: an epoll would be told of every datagram that comes meanwhile, with
-// locks and by the processor that brings it (2 to 4 % of a sender whose receivers are on its machine).
+// Waiting uses poll. An epoll would be notified of every datagram in between, with locks and on the receiving processor
+// (2 to 4 % of a sender whose receivers run on the same machine).
 #pragma once
 
 #include <array>
@@ -20,19 +20,19 @@ class Arrivals {
 public:
     static Result<Arrivals> open();
 
-    // Datagrams at this socket are waited for from now on; of at most kMostSockets, and while nobody waits.
+    // Adds a socket, at most kMostSockets. Call before the first wait.
     Result<void> add(int socket);
-    // Who waits, wakes at this time (of the monotonic clock) at the latest. Past ones: at once. One wakes, once.
+    // Wakes one waiting thread at this time (monotonic clock) at the latest, once. A past time wakes immediately.
     void wakeAt(int64_t ns);
 
-    // The sockets at which something is, once there is something or it is time; none after the timeout. What is at a
-    // socket stays there for others until it is fetched.
+    // Returns the readable sockets, as soon as one is readable or the timer expires; none after the timeout. Does not
+    // read from the sockets.
     std::span<const int> wait(int64_t timeoutNs);
-    // What the last wait found, without looking.
+    // Returns the result of the last wait without polling.
     [[nodiscard]] std::span<const int> found() const { return std::span(ready_).first(found_); }
 
-    // Readable when wait() would return at once, and this has not been turned off: for the group's thread, which need
-    // not wake while another one waits.
+    // Descriptor that is readable when wait() would return immediately, unless disabled. For the group's thread, which
+    // sleeps while another thread waits.
     [[nodiscard]] int watched() const { return watched_.get(); }
     void setWatched(bool on);
 
@@ -42,12 +42,12 @@ private:
     Arrivals() = default;
 
     FileDescriptor timer_;
-    FileDescriptor watched_; // epoll of all, or of nothing
+    FileDescriptor watched_; // epoll of all descriptors, or of none
     bool isWatched_ = true;
     std::array<pollfd, 1 + kMostSockets> all_{}; // the timer, then the sockets
     size_t count_ = 0;
     std::array<int, kMostSockets> ready_{};
-    size_t found_ = 0; // of ready_
+    size_t found_ = 0; // number of valid entries of ready_
 };
 
 } // namespace mural::rsp

@@ -25,7 +25,7 @@ void BatchOutbox::seal() {
 std::span<std::byte> BatchOutbox::datagram(MemberId to, size_t bytes) {
     seal();
     const size_t whole = bytes + tagBytes_;
-    // All of a batch have one size but the last, which may be shorter.
+    // All datagrams of a batch have one size; the last may be shorter.
     const bool joins = count_ > 0 && to == to_ && whole <= segmentBytes_ && used_ == count_ * segmentBytes_ &&
                        count_ < mostInSending(segmentBytes_);
     if (!joins) {

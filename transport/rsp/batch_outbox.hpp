@@ -1,4 +1,4 @@
-// Datagrams on their way to a socket: those of one size to one place are gathered, sealed, and go out together.
+// Batches datagrams of one size to one destination, seals them, and sends them with one system call.
 #pragma once
 
 #include <map>
@@ -18,18 +18,19 @@ public:
     void setMember(MemberId id, const SocketAddress& address) { members_[id] = address; }
     void removeMember(MemberId id) { members_.erase(id); }
 
-    // Room for one, as Outbox::datagram. Before there are keys, and for who has no address, it goes nowhere.
+    // Returns room for one datagram, as Outbox::datagram. Discards datagrams before keys exist, and to members without
+    // an address.
     std::span<std::byte> datagram(MemberId to, size_t bytes);
-    // Sends what has been gathered.
+    // Sends the current batch.
     void flush();
 
     [[nodiscard]] uint64_t datagrams() const { return datagrams_; }
     [[nodiscard]] uint64_t sendings() const { return sendings_; }
-    // The last error of the network, which is then as if all was lost; empty: none.
+    // Last network error; empty: none. The datagrams of a failed system call count as lost.
     [[nodiscard]] const std::string& error() const { return error_; }
 
 private:
-    static constexpr size_t kRoomBytes = 65'536; // of a sending, or of one datagram, which may be longer
+    static constexpr size_t kRoomBytes = 65'536; // for one batch, or for one datagram, which may be longer
 
     void seal();
     [[nodiscard]] const SocketAddress* addressOf(MemberId id) const;
@@ -41,8 +42,8 @@ private:
     std::map<MemberId, SocketAddress> members_;
     std::vector<std::byte> bytes_;
     MemberId to_ = 0;
-    size_t used_ = 0;    // bytes of sealed datagrams
-    size_t openBytes_ = 0; // of the one that is being filled, behind them
+    size_t used_ = 0; // bytes of sealed datagrams
+    size_t openBytes_ = 0; // bytes of the datagram in progress, after them
     size_t segmentBytes_ = 0;
     size_t count_ = 0;
     uint64_t datagrams_ = 0;

@@ -12,9 +12,8 @@ using boost::system::error_code;
 
 namespace {
 constexpr std::chrono::seconds kGoodbye{2};
-constexpr size_t kSealedBytes = 65'536; // of what was offered, at once
-// What the kernel holds besides what is under way. By default it takes megabytes, and what is behind them waits as long as
-// a slow peer needs for them.
+constexpr size_t kSealedBytes = 65'536; // offered messages sealed at once
+// Unsent bytes that the kernel may hold. Its default of megabytes would delay later messages to a slow peer.
 constexpr int kUnsentBytes = 131'072;
 } // namespace
 
@@ -35,7 +34,8 @@ std::string ControlLink::peerAddress() const {
 
 void ControlLink::send(const ControlMessage& message) {
     if (ended_ || leaving_) return;
-    static_cast<void>(channel_.send(encode(message)).ok()); // too long or not open: our own fault, and never
+    // fails only for messages that are too long, or before the channel is open; both are bugs
+    static_cast<void>(channel_.send(encode(message)).ok());
     flush();
 }
 

@@ -1,4 +1,4 @@
-// A control connection: TCP, Asio's, with a secure channel in it. All of it on the thread that runs the io_context.
+// A control connection: an Asio TCP socket with a secure channel. All methods run on the thread of the io_context.
 #pragma once
 
 #include <deque>
@@ -21,21 +21,20 @@ class ControlLink : public std::enable_shared_from_this<ControlLink> {
 public:
     using Socket = boost::asio::ip::tcp::socket;
     struct Events {
-        std::function<void()> opened; // the peer knows the secret
+        std::function<void()> opened; // the peer has proven that it knows the secret
         std::function<void(const ControlMessage&)> message;
-        std::function<void(const std::string& why)> closed; // once, at the end; empty: the peer said goodbye
+        std::function<void(const std::string& why)> closed; // once, at the end; empty: the peer left in order
     };
     ControlLink(Socket socket, SecureChannel channel) : socket_(std::move(socket)), channel_(std::move(channel)) {}
 
     void start(Events events);
     void send(const ControlMessage& message);
-    // For what may be lost: goes when nothing else does. Dropped, and false, if more than `mostWaitingBytes` wait for the
-    // peer already.
+    // Queues a message that may be lost, with lower priority than send(). Returns false and drops it if more than
+    // `mostWaitingBytes` are queued.
     bool offer(const ControlMessage& message, size_t mostWaitingBytes);
-    void dropOffered(); // what has not gone yet
-    // Sends what is to be sent, nothing that is only offered, and ends when the peer has it, or does not take it within two
-    // seconds; closed() is told nothing. A socket closed at once would lose the goodbye with the first lost segment, or with
-    // what was not yet read.
+    void dropOffered(); // drops queued messages that are not sealed yet
+    // Sends queued messages, except offered ones, and closes when the peer has received them, or after two seconds.
+    // Does not call closed(). An immediate close could lose the goodbye with a lost segment or with unread data.
     void hangUp();
     [[nodiscard]] bool ended() const { return ended_; }
     [[nodiscard]] std::string peerAddress() const;
@@ -51,15 +50,15 @@ private:
 
     Socket socket_;
     SecureChannel channel_;
-    std::shared_ptr<const Events> events_; // shared: they may end this link while they run
+    std::shared_ptr<const Events> events_; // shared, because a callback may destroy this link
     bool wasOpen_ = false;
     bool ended_ = false;
     bool leaving_ = false;
     std::optional<boost::asio::steady_timer> goodbye_;
     std::vector<std::byte> in_ = std::vector<std::byte>(65'536);
-    std::vector<std::byte> writing_; // with the kernel
+    std::vector<std::byte> writing_; // passed to the kernel
     std::vector<std::byte> waiting_;
-    std::deque<std::vector<std::byte>> offered_; // not yet sealed: once sealed, none can be left out
+    std::deque<std::vector<std::byte>> offered_; // not sealed yet: sealed messages cannot be dropped
     size_t offeredBytes_ = 0;
 };
 

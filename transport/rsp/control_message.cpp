@@ -36,7 +36,7 @@ private:
     std::vector<std::byte> bytes_;
 };
 
-// After the first thing that is missing or out of bounds, everything is.
+// After the first missing or invalid field every read fails.
 class Reader {
 public:
     explicit Reader(std::span<const std::byte> bytes) : left_(bytes) {}
@@ -190,7 +190,7 @@ void get(Reader& r, Rerouted& m) {
     r.number(m.probeNonce);
 }
 
-// The alternative's place in the variant is its number on the wire.
+// The index of an alternative in the variant is its type on the wire.
 template <size_t I = 0> std::optional<ControlMessage> decodeKind(size_t kind, Reader& r) {
     if constexpr (I < std::variant_size_v<ControlMessage>) {
         if (kind != I) return decodeKind<I + 1>(kind, r);

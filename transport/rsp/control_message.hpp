@@ -1,5 +1,5 @@
-// What members and host of a group tell each other over their secure channels. Little endian; texts and lists are
-// bounded; what does not parse whole is refused.
+// Control messages between members and the host of a group, over secure channels. Little-endian; texts and lists are
+// bounded; a message that does not parse completely is rejected.
 #pragma once
 
 #include <array>
@@ -16,37 +16,37 @@
 
 namespace mural::rsp {
 
-// Member to host, first.
+// Member to host: first message.
 struct Join {
     Uuid uuid{};
-    uint16_t udpPort = 0;            // of its own socket
-    uint32_t socketDatagrams = 0;    // that its socket holds
-    uint16_t mostDatagramBytes = 0;  // UDP payload that its card takes whole
-    uint8_t seals = 0;               // bit s: it can do Seal(s)
-    bool multicast = true;           // it wants datagrams, if they reach it
+    uint16_t udpPort = 0; // port of its unicast socket
+    uint32_t socketDatagrams = 0; // capacity of its socket buffer
+    uint16_t mostDatagramBytes = 0; // largest UDP payload without fragmentation
+    uint8_t seals = 0; // bit s: supports Seal(s)
+    bool multicast = true; // wants multicast if it is reachable
 };
-// Host to member: you are one.
+// Host to member: accepted.
 struct Welcome {
     MemberId self = 0;
     SessionKeys keys;
-    std::string group; // address and port, as text
+    std::string group; // multicast address and port as text
     uint16_t datagramBytes = 0;
     uint32_t windowDatagrams = 0;
-    uint32_t probeNonce = 0; // comes in the probes that this member shall see
+    uint32_t probeNonce = 0; // nonce of the multicast probes for this member
 };
-// Member to host: the probe came.
+// Member to host: a probe arrived.
 struct Probed {
     uint32_t nonce = 0;
 };
-// Host to all: another member, at that address. Each now begins its stream to it.
+// Host to all: a new member. Each member now begins its stream to it.
 struct MemberCame {
     MemberId id = 0;
     Uuid uuid{};
     std::string address;
     uint16_t udpPort = 0;
-    bool multicast = false; // else its datagrams go by Tunnel
+    bool multicast = false; // false: its datagrams travel as Tunnel messages
 };
-// Of a writer, through the host: your stream begins here.
+// Writer to member, through the host: start of the writer's stream.
 struct StreamStart {
     MemberId writer = 0;
     MemberId reader = 0;
@@ -57,21 +57,21 @@ struct MemberGone {
     MemberId id = 0;
     GoneReason reason = GoneReason::Left;
 };
-// A datagram, unsealed, for who is not reached by UDP.
+// A datagram, unsealed, for a member that UDP does not reach.
 struct Tunnel {
     MemberId to = 0;
     std::vector<std::byte> datagram;
 };
-// Host to member: no; then the channel ends.
+// Host to member: rejected. The channel ends.
 struct Refused {
     std::string why;
 };
 struct Leave {};
-// Host to all: multicast does not reach this member any longer, its datagrams go by Tunnel from now on; or it does again.
+// Host to all: multicast no longer reaches this member, so its datagrams travel as Tunnel messages; or it does again.
 struct Rerouted {
     MemberId id = 0;
     bool multicast = false;
-    uint32_t probeNonce = 0; // comes in the probes that the member answers when one reaches it
+    uint32_t probeNonce = 0; // nonce of the probes that the member answers
 };
 struct Ping {
     uint64_t number = 0;

@@ -68,7 +68,7 @@ std::optional<StreamDatagram> readStream(std::span<const std::byte> d) {
     return head ? readStream(*head, d) : std::nullopt;
 }
 
-// Filled where it is returned: to copy what has just been written byte by byte costs the processor more than all else here.
+// Constructed in place: copying the freshly written struct would stall on store forwarding and dominate this function.
 std::optional<StreamDatagram> readStream(const Head& head, std::span<const std::byte> d) {
     std::optional<StreamDatagram> read;
     if (head.type > Type::Poll || d.size() < kStreamHeadBytes) return read;

@@ -14,7 +14,7 @@ static_assert(crypto_aead_aes256gcm_NPUBBYTES == kNonceBytes && crypto_aead_chac
 static_assert(crypto_aead_aes256gcm_ABYTES == 16 && crypto_aead_chacha20poly1305_ietf_ABYTES == 16);
 static_assert(crypto_shorthash_BYTES == 8 && crypto_shorthash_KEYBYTES <= kKeyBytes);
 
-// The counter stands in the head's last eight bytes.
+// The counter is the last eight bytes of the head.
 std::array<unsigned char, kNonceBytes> nonceOf(std::span<const std::byte> datagram) {
     std::array<unsigned char, kNonceBytes> nonce{};
     std::memcpy(nonce.data(), datagram.data() + 8, 8);
@@ -113,7 +113,7 @@ void ReplayWindow::came(uint64_t counter) {
 DatagramOpener::DatagramOpener(const SessionKeys& keys) : keys_(keys) {}
 
 void DatagramOpener::addMember(MemberId id) {
-    if (members_.contains(id)) return; // what came stays known
+    if (members_.contains(id)) return; // keeps the replay window
     auto member = std::unique_ptr<Member>(new Member{{keys_.seal, memberKey(keys_, id)}, {}});
     members_.emplace(id, std::move(member));
 }

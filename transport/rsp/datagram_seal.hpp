@@ -1,9 +1,9 @@
-// The seal of datagrams: who has no key of the session can neither add, change nor (when encrypted) read one, and no one
-// can send an old one again.
+// Authenticated encryption of datagrams, with replay protection. Without a session key nobody can inject, change or
+// (with encryption) read a datagram.
 //
-// The head (16 bytes) stays readable and is part of what the seal proves; what follows is encrypted. The counter is the
-// nonce: each member counts its datagrams with a key of its own. Order of checks: length, version, session, member,
-// counter, seal; what fails is counted and not looked at further.
+// The head (16 bytes) is readable and authenticated; the body is encrypted. The counter is the nonce: each member
+// counts its datagrams with its own key. Checks run in this order: length, version, session, member, counter, tag. A
+// failed check is counted and ends the processing.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace mural::rsp {
 
-// What seals need of the cipher: one key, used in place.
+// The cipher with one key; operates in place.
 class DatagramCipher {
 public:
     DatagramCipher(Seal seal, const Key& key);
@@ -24,7 +24,7 @@ public:
     DatagramCipher(const DatagramCipher&) = delete;
     DatagramCipher& operator=(const DatagramCipher&) = delete;
 
-    // The datagram's last tagBytes() are filled.
+    // Fills the datagram's last tagBytes().
     void seal(std::span<std::byte> datagram) const;
     [[nodiscard]] bool open(std::span<std::byte> datagram) const;
 
@@ -32,13 +32,13 @@ private:
     struct Prepared;
     Seal seal_;
     Key key_;
-    std::unique_ptr<Prepared> prepared_; // AES: the key's schedule
+    std::unique_ptr<Prepared> prepared_; // AES: key schedule
 };
 
 class DatagramSealer {
 public:
     DatagramSealer(const SessionKeys& keys, MemberId self);
-    // Fills in session and counter and seals. `datagram` has room for the tag at its end.
+    // Sets session and counter, and seals. Requires room for the tag at the end of `datagram`.
     void seal(std::span<std::byte> datagram);
 
 private:
@@ -47,24 +47,24 @@ private:
     uint64_t counter_ = 0;
 };
 
-// Which counters of one member have come: all within a window behind the newest are told apart.
+// Replay window of one member: tracks single counters within a window below the newest.
 class ReplayWindow {
 public:
     [[nodiscard]] bool fresh(uint64_t counter) const;
-    // One that is fresh.
+    // Records a counter that is not a replay.
     void came(uint64_t counter);
 
 private:
     static constexpr uint64_t kSize = 8192;
     std::bitset<kSize> seen_;
-    uint64_t newest_ = 0; // counters begin with 1
+    uint64_t newest_ = 0; // counters start at 1
 };
 
 struct RefusedDatagrams {
     uint64_t tooShort = 0;
     uint64_t version = 0;
     uint64_t session = 0;
-    uint64_t stranger = 0; // of no member
+    uint64_t stranger = 0; // unknown member
     uint64_t replayed = 0;
     uint64_t forged = 0;
     [[nodiscard]] uint64_t all() const { return tooShort + version + session + stranger + replayed + forged; }
@@ -77,7 +77,7 @@ public:
     [[nodiscard]] Seal seals() const { return keys_.seal; }
     void addMember(MemberId id);
     void removeMember(MemberId id);
-    // The datagram without its tag, decrypted in place; empty when it is refused.
+    // Returns the datagram without its tag, decrypted in place; empty if it is rejected.
     std::span<const std::byte> open(std::span<std::byte> datagram);
     [[nodiscard]] const RefusedDatagrams& refused() const { return refused_; }
 
@@ -90,7 +90,7 @@ private:
 
     SessionKeys keys_;
     std::map<MemberId, std::unique_ptr<Member>> members_;
-    MemberId latestId_ = 0; // most datagrams are followed by another one of the same member
+    MemberId latestId_ = 0; // cache: the next datagram is usually from the same member
     Member* latest_ = nullptr;
     RefusedDatagrams refused_;
 };

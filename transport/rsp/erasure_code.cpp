@@ -11,7 +11,7 @@ namespace mural::rsp {
 
 namespace {
 
-// Columns stand at the field's elements 0..31, rows at 32..255.
+// Columns use the field's elements 0 to 31, rows 32 to 255.
 constexpr uint8_t cauchy(int row, int column) {
     return gf256::inverse(static_cast<uint8_t>((row + kMostInGroup) ^ column));
 }
@@ -26,7 +26,7 @@ void addRow(std::array<uint8_t, kMostInGroup>& into, const std::array<uint8_t, k
     for (size_t i = 0; i < into.size(); ++i) into[i] ^= gf256::multiply(from[i], factor);
 }
 
-// Gauss and Jordan. No pivot is 0 for long: the matrix is regular.
+// Gauss-Jordan elimination. The matrix is regular, so a pivot exists.
 Matrix invert(Matrix m, size_t n) {
     Matrix result{};
     for (size_t i = 0; i < n; ++i) result[i][i] = 1;

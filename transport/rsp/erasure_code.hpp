@@ -1,10 +1,10 @@
-// Reed-Solomon: from k symbols, rows are made such that any k of symbols and rows together give all of them. The matrix
-// is Cauchy's with its columns scaled so that row 0 is a plain sum (XOR); every square part of it can be inverted.
+// Reed-Solomon erasure code: from k symbols it makes parity symbols such that any k of all symbols restore the rest.
+// The matrix is a Cauchy matrix with columns scaled so that row 0 is a plain XOR. Every square submatrix is regular.
 //
-// A symbol is a datagram's payload behind its length (2 bytes), as if padded with zeros to the longest: a row covers
-// lengths as well, and short datagrams cost only their bytes.
+// A symbol is the length of a datagram's payload (2 bytes) and the payload, as if zero-padded to the longest. Parity
+// symbols thus cover lengths too, and short datagrams cost only their own bytes.
 //
-// Source: RFC 5510 for the principle (that code's matrix is another).
+// Source: RFC 5510 for the principle, with another matrix.
 #pragma once
 
 #include <cstddef>
@@ -16,20 +16,21 @@
 
 namespace mural::rsp {
 
-// What symbol `column` is multiplied by in `row`. column < kMostInGroup, row < kMostRows.
+// Returns the coefficient of symbol `column` in parity symbol `row`. Requires column < kMostInGroup and row <
+// kMostRows.
 [[nodiscard]] uint8_t codeFactor(int row, int column);
 
-// Adds one symbol to a row, which has kLengthBytes + payload.size() bytes at least and starts as zeros.
+// Adds one symbol to a parity symbol, which starts as zeros and has at least kLengthBytes + payload.size() bytes.
 void addSymbol(std::span<std::byte> rowSymbol, int row, int column, std::span<const std::byte> payload);
 
-// One row that came. While symbols are put back its bytes are changed.
+// A received parity symbol. Decoding overwrites its bytes.
 struct HeldRow {
     int row;
-    std::span<std::byte> symbol; // all of the same length within one call
+    std::span<std::byte> symbol; // all of equal length within one call
 };
 
-// Solves for the missing columns. `rows`, as many as columns are missing, have had all present symbols added
-// (addSymbol is its own inverse). Afterwards rows[i].symbol holds the symbol of missing[i].
+// Solves for the missing columns. Requires as many `rows` as missing columns, to which all present symbols have been
+// added (addSymbol is its own inverse). Afterwards rows[i].symbol is the symbol of missing[i].
 void solveMissing(std::span<const int> missing, std::span<HeldRow> rows, std::vector<std::byte>& scratch);
 
 } // namespace mural::rsp

@@ -15,7 +15,7 @@ void GapWatch::cameLate(int64_t lateNs) {
 }
 
 void GapWatch::polled(Sequence next) {
-    if (next < lostBefore_) return; // an old one
+    if (next < lostBefore_) return; // outdated
     highest_ = later(highest_, next);
     lostBefore_ = next;
     while (!gaps_.empty() && gaps_.front().end <= next) gaps_.pop_front();
@@ -26,7 +26,7 @@ bool GapWatch::look(int64_t nowNs) {
     while (!gaps_.empty() && highest_ - gaps_.front().end >= kLater && nowNs - gaps_.front().noticedNs >= latenessNs_) {
         lostBefore_ = later(lostBefore_, gaps_.front().end);
         gaps_.pop_front();
-        // What was once late need not be for ever.
+        // The observed lateness decays.
         latenessNs_ -= latenessNs_ / 256;
         any = true;
     }

@@ -1,6 +1,6 @@
-// When a missing datagram counts as lost. One that is merely late overtakes few others and comes soon: so a gap is lost
-// when three later datagrams have come and it is older than the network is seen to be late; or when the writer polls,
-// who has nothing more to send.
+// Loss detection. A late datagram overtakes few others and arrives soon. A gap therefore counts as lost after three
+// later datagrams, if it is also older than the observed reordering delay, or when the writer polls because it has
+// nothing more to send.
 #pragma once
 
 #include <cstdint>
@@ -14,18 +14,18 @@ class GapWatch {
 public:
     explicit GapWatch(Sequence first) : highest_(first), lostBefore_(first) {}
 
-    // A datagram came that was sent for the first time.
+    // Reports the arrival of a datagram that is not a retransmission.
     void arrived(Sequence s, int64_t nowNs);
-    // It had been given up, and came `lateNs` after others that were sent with it.
+    // Reports a datagram that arrived after it had been declared lost, `lateNs` after its contemporaries.
     void cameLate(int64_t lateNs);
-    // All before `next` were sent.
+    // Everything before `next` has been sent.
     void polled(Sequence next);
-    // Gives up what is old enough; returns whether anything was.
+    // Declares expired gaps lost. Returns true if there are any.
     bool look(int64_t nowNs);
 
-    [[nodiscard]] Sequence highest() const { return highest_; }       // behind the newest that is known of
-    [[nodiscard]] Sequence lostBefore() const { return lostBefore_; } // what is missing before it is lost
-    // When the oldest gap may be given up; INT64_MAX: there is none.
+    [[nodiscard]] Sequence highest() const { return highest_; } // one past the newest known sequence number
+    [[nodiscard]] Sequence lostBefore() const { return lostBefore_; } // missing datagrams before it are lost
+    // Expiry of the oldest gap; INT64_MAX: none.
     [[nodiscard]] int64_t whenNs() const;
     [[nodiscard]] int64_t latenessNs() const { return latenessNs_; }
 

@@ -1,6 +1,6 @@
 #include "transport/rsp/gf256.hpp"
 
-// Highway compiles what is between BEFORE and AFTER once per instruction set and takes the best one at run time.
+// Highway compiles the code between BEFORE and AFTER once per instruction set and selects at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "transport/rsp/gf256.cpp"
 #include <hwy/foreach_target.h>
@@ -11,7 +11,8 @@ namespace mural::rsp::gf256::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// A product by a constant is linear in the bits: two tables of 16 give those of the low and of the high half of a byte.
+// Multiplication by a constant is linear in the bits: two tables of 16 give the products of the low and the high
+// nibble.
 void multiplyAdd(uint8_t* HWY_RESTRICT into, const uint8_t* HWY_RESTRICT from, size_t count, uint8_t factor) {
     alignas(16) uint8_t low[16];
     alignas(16) uint8_t high[16];
@@ -20,7 +21,7 @@ void multiplyAdd(uint8_t* HWY_RESTRICT into, const uint8_t* HWY_RESTRICT from, s
         high[i] = gf256::multiply(static_cast<uint8_t>(i << 4), factor);
     }
     size_t i = 0;
-#if HWY_TARGET != HWY_SCALAR // which has no table look-up
+#if HWY_TARGET != HWY_SCALAR // the scalar target has no table lookup
     const hn::ScalableTag<uint8_t> d;
     const auto lows = hn::LoadDup128(d, low);
     const auto highs = hn::LoadDup128(d, high);

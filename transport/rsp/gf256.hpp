@@ -1,4 +1,4 @@
-// The field of 256 elements over x^8 + x^4 + x^3 + x^2 + 1, and the one operation on bytes that the erasure code needs.
+// The field GF(2^8) over x^8 + x^4 + x^3 + x^2 + 1, and the byte operation of the erasure code.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@ namespace mural::rsp::gf256 {
 
 namespace detail {
 struct Tables {
-    std::array<uint8_t, 512> power{}; // of the generator 2; twice, so that sums of logarithms need no modulus
+    std::array<uint8_t, 512> power{}; // powers of the generator 2, doubled so that sums of logarithms need no modulus
     std::array<uint8_t, 256> logarithm{};
 };
 constexpr Tables makeTables() {
@@ -31,12 +31,12 @@ constexpr uint8_t multiply(uint8_t a, uint8_t b) {
     if (a == 0 || b == 0) return 0;
     return detail::kTables.power[detail::kTables.logarithm[a] + detail::kTables.logarithm[b]];
 }
-// a is not 0.
+// Requires a != 0.
 constexpr uint8_t inverse(uint8_t a) { return detail::kTables.power[255 - detail::kTables.logarithm[a]]; }
 
-// into[i] ^= factor * from[i] for all of from; into is at least as long. With the widest vectors of this machine.
+// Computes into[i] ^= factor * from[i] for all of `from`, vectorized. Requires `into` to be at least as long.
 void multiplyAdd(std::span<std::byte> into, std::span<const std::byte> from, uint8_t factor);
-// The same, byte by byte: what multiplyAdd is tested against.
+// Scalar reference implementation for tests.
 void multiplyAddScalar(std::span<std::byte> into, std::span<const std::byte> from, uint8_t factor);
 
 } // namespace mural::rsp::gf256

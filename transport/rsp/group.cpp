@@ -9,7 +9,7 @@
 namespace mural::rsp {
 
 namespace {
-constexpr size_t kMostPieces = 32; // copied at once
+constexpr size_t kMostPieces = 32; // datagrams copied per lock
 Error tooLate(const std::string& what) { return Error{"the deadline passed while waiting for " + what}; }
 } // namespace
 
@@ -130,7 +130,7 @@ Result<void> Group::waitArrived(Deadline deadline) {
     return {};
 }
 
-// What is there of a member's stream, where it lies; waits for it. 0: there will be no more.
+// Returns the readable pieces of a member's stream in place; waits for the first. 0: end of the stream.
 Result<size_t> Group::State::readable(std::unique_lock<std::mutex>& lock, MemberId from, std::span<std::span<const std::byte>> pieces, Deadline deadline) {
     while (true) {
         const Receiver* r = core->receiver(from);
@@ -143,7 +143,7 @@ Result<size_t> Group::State::readable(std::unique_lock<std::mutex>& lock, Member
         if (!failure.empty()) return Error{failure};
         waitingForData.push_back(from);
         const bool inTime = wait(lock, data, deadline);
-        waitingForData.erase(std::ranges::find(waitingForData, from)); // any of them: all are this member
+        waitingForData.erase(std::ranges::find(waitingForData, from)); // equal entries are interchangeable
         if (!inTime) return tooLate("bytes of member " + std::to_string(from));
     }
 }
@@ -156,7 +156,7 @@ Result<size_t> Group::read(MemberId from, std::span<std::byte> into, Deadline de
     Receiver* r = *found == 0 ? nullptr : state_->core->receiver(from);
     size_t done = 0;
     for (size_t count = *found; count > 0 && done < into.size(); count = r->readable(pieces)) {
-        // Without the lock: until they are consumed these bytes stay where they are, and more come meanwhile.
+        // Copying needs no lock: the bytes stay in place until consumed, while more arrive.
         lock.unlock();
         const size_t before = done;
         for (const auto piece : std::span(pieces).first(count)) {

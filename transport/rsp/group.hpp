@@ -1,8 +1,8 @@
-// A multicast group of this process: sockets, a thread and a lock around GroupCore. The host's clock, network and members
-// are real here; all that is decided is decided there.
+// A multicast group of this process: sockets, a thread and a lock around GroupCore, which makes all decisions.
 //
-// Threads: any thread may write, read, wait and ask. One at a time writes; one at a time reads a member's stream. Who
-// waits for bytes, room or arrival receives and keeps time meanwhile; when nobody does, a thread of the group's own.
+// Thread safety: any thread may write, read, wait and query. At most one thread writes, and at most one reads each
+// member's stream. A thread that waits for data, room or acknowledgement also polls sockets and timer. Otherwise the
+// group's own thread does.
 #pragma once
 
 #include <array>
@@ -19,37 +19,37 @@
 
 namespace mural::rsp {
 
-constexpr size_t kMostDatagramBytes = 8972; // longer ones lose more at once than they save
+constexpr size_t kMostDatagramBytes = 8972; // a longer datagram would lose more at once than it saves
 
 struct GroupOptions {
     std::string group = "239.255.77.85:4277"; // multicast address and port; IPv6 in brackets
-    std::string interface;                    // name or address; empty: the first that does multicast
-    std::string control = ":0";               // host: where it listens; member: where the host listens
-    std::string name = "member";              // by which the host knows the member's secret
+    std::string interface; // name or address; empty: the first interface with multicast
+    std::string control = ":0"; // host: listening address; member: the host's address
+    std::string name = "member"; // identifies the member's secret to the host
     ChannelSecret secret{};
     bool multicast = true;
-    // The host's:
+    // Settings of the host:
     Seal seal = Seal::None;
-    double bytesPerS = 0;       // at most; 0: 0.9 of what the card says, else no limit but the window
-    size_t datagramBytes = 0;   // UDP payload; 0: what the card's packets hold
+    double bytesPerS = 0; // maximum rate; 0: 0.9 of the interface's rate, unlimited if that is unknown
+    size_t datagramBytes = 0; // UDP payload; 0: from the interface's MTU
     uint32_t windowDatagrams = 4096;
     size_t socketBytes = size_t{8} << 20;
     StallPolicy stalled = StallPolicy::Eject;
     int64_t stalledMs = 2000;
-    // A process that is stopped for a second is still one of us. After half of it, and of stalledMs, who lacks datagrams
-    // gets them by its connection.
+    // Eviction timeout; tolerates a process that is stopped for one second. After half of it, or of stalledMs, a member
+    // with missing datagrams receives them over its control connection.
     int64_t silentMs = 1120;
-    int64_t probeMs = 300; // how long a member may take to see multicast
+    int64_t probeMs = 300; // timeout of the multicast probe
     bool parity = true;
 };
 
 struct GroupReport {
     SenderCounters sender;
     RefusedDatagrams refused;
-    uint64_t sendings = 0; // system calls
+    uint64_t sendings = 0; // send system calls
     uint32_t socketDropped = 0;
     std::string sendingBy;
-    double bytesPerS = 0; // that the rate allows now
+    double bytesPerS = 0; // current rate limit
     struct Stream {
         MemberId from = 0;
         ReceiveCounters received;
@@ -66,51 +66,51 @@ struct GroupReport {
     std::vector<Member> members;
 };
 
-// What has become of a member, in the order in which it happened.
+// Membership event, in order of occurrence.
 struct MemberEvent {
     enum class Kind { Came, Rerouted, Gone };
     Kind kind = Kind::Came;
     MemberId id = 0;
-    MemberInfo info;                      // multicast: it is reached by it
-    GoneReason reason = GoneReason::Left; // Gone
+    MemberInfo info; // multicast: reachable by multicast
+    GoneReason reason = GoneReason::Left; // for Gone
 };
 
 class Group {
 public:
     static Result<std::unique_ptr<Group>> host(const GroupOptions& options);
-    // Returns when this process is a member, or the deadline has passed.
+    // Joins, and returns when this process is a member. Error: the deadline.
     static Result<std::unique_ptr<Group>> join(const GroupOptions& options, Deadline deadline);
-    ~Group(); // leaves
+    ~Group(); // leaves the group
 
-    // host:port at which members find the host.
+    // Returns host:port at which members find the host.
     [[nodiscard]] std::string controlAddress() const;
     [[nodiscard]] MemberId self() const;
-    // The ids of all others now.
+    // Returns the ids of all other members.
     [[nodiscard]] std::vector<MemberId> members() const;
     [[nodiscard]] bool isMember(MemberId id) const;
     Result<void> waitForMembers(size_t count, Deadline deadline);
-    // Those since the last call.
+    // Returns the events since the last call.
     std::vector<MemberEvent> takeEvents();
-    // Host: nobody waits for this member any longer; its group is over.
+    // Host: evicts a member. Its group ends.
     void remove(MemberId id, const std::string& why);
-    // A member whose stream has begun and that was not yet returned.
+    // Returns a member whose stream has begun, each once.
     Result<MemberId> accept(Deadline deadline);
 
-    // Leaves the group: all waits in it end, and so does what others hear. What came can still be read.
+    // Leaves the group. All waits end with an error. Received data stays readable.
     void leave();
-    // Copies as much of `bytes` as there is room for, at least one; waits for that. Errors: the deadline, the group's end.
+    // Copies as many of `bytes` as there is room for, at least one; waits for room. Errors: deadline, end of the group.
     Result<size_t> writeSome(std::span<const std::byte> bytes, Deadline deadline);
-    // Copies all of `bytes` into the stream, waiting for room. Errors: the deadline, the group's end.
+    // Copies all of `bytes` into the stream; waits for room. Errors: deadline, end of the group.
     Result<void> write(std::span<const std::byte> bytes, Deadline deadline);
     void flush();
-    // All that was flushed is at all members.
+    // Blocks until all members have acknowledged all flushed data.
     Result<void> waitArrived(Deadline deadline);
 
-    // What is there of a member's stream, at least one byte; waits for it. 0: the member is gone, and all was read. A host
-    // that is cut off is an error, for with it the group ends.
+    // Reads from a member's stream, at least one byte; waits for data. 0: the member has left and everything is read.
+    // The loss of the host is an error, because the group ends.
     Result<size_t> read(MemberId from, std::span<std::byte> into, Deadline deadline);
-    // The same where they lie, for who need not have them elsewhere: a copy less. Returns how many of `pieces` it has set, each
-    // of one datagram. They stay there until so many bytes are consumed, and hold up the writer when its window is full.
+    // Zero-copy variant of read(): sets up to pieces.size() spans, one per datagram, and returns their number. They
+    // stay valid until consumed. Unconsumed data stalls the writer when its window is full.
     Result<size_t> view(MemberId from, std::span<std::span<const std::byte>> pieces, Deadline deadline);
     void consume(MemberId from, size_t bytes);
 

@@ -11,11 +11,11 @@ namespace mural::rsp {
 namespace {
 
 constexpr int64_t kDrainMs = 1000;
-constexpr int64_t kLookAgainNs = 100 * kNsPerMs; // between two looks whether this end was closed
+constexpr int64_t kLookAgainNs = 100 * kNsPerMs; // interval of checks whether this end was closed
 
 Deadline inSlice(Deadline deadline) { return Deadline::inMs(deadline.leftNs(kLookAgainNs) / kNsPerMs + 1); }
 
-// `whole`: this is the member's own end of its group, not one of the host's.
+// `whole`: this is the member's own end, and owns its group; otherwise one connection of the host.
 class GroupConnection final : public Connection {
 public:
     GroupConnection(std::shared_ptr<Group> group, MemberId from, bool whole, std::string description, std::vector<std::byte> first = {})
@@ -77,7 +77,7 @@ public:
     void close() override {
         if (closed_) return;
         group_->flush();
-        static_cast<void>(group_->waitArrived(Deadline::inMs(kDrainMs)).ok()); // as far as the others take it
+        static_cast<void>(group_->waitArrived(Deadline::inMs(kDrainMs)).ok()); // best effort
         endStream();
     }
 
@@ -108,7 +108,7 @@ private:
     const MemberId from_;
     const bool whole_;
     const std::string description_;
-    std::vector<std::byte> first_; // the reader's
+    std::vector<std::byte> first_; // owned by the reader
     size_t firstRead_ = 0;
     std::atomic<bool> closed_{false};
     std::atomic<bool> gone_{false};

@@ -1,9 +1,8 @@
-// A group as Connection and Listener. Each connection reads one member's stream; what is written goes to all members, as
-// all hear the same. Several connections of a host share its group; the group ends with the last of them and the listener.
-// A member that closes its connection leaves, a host that closes one removes that member; what was written is given a
-// second to arrive before.
+// A group as Connection and Listener. Each connection reads one member's stream; writes reach all members. All
+// connections of a host share its group, which ends with the last connection and the listener. A member that closes its
+// connection leaves; a host that closes a connection evicts the member. Written data has one second to arrive before.
 //
-// Source: thesis, section "Reliable Stream Protocol": a member is a connection that is accepted.
+// Source: thesis, section "Reliable Stream Protocol": a member is an accepted connection.
 #pragma once
 
 #include <memory>
@@ -14,11 +13,12 @@
 
 namespace mural::rsp {
 
-// Reads the host's stream. Errors: no host, a wrong secret, the deadline.
+// Joins a group and reads the host's stream. Errors: no host, wrong secret, deadline.
 Result<std::unique_ptr<Connection>> joinGroup(const GroupOptions& options, Deadline deadline);
-// The host's stream, of which `first` has been read already: it comes first.
+// Returns a connection to the host's stream. `first`: bytes already read, returned first.
 std::unique_ptr<Connection> streamOfHost(std::unique_ptr<Group> group, const GroupOptions& options, std::vector<std::byte> first);
-// accept() returns each member once its stream has begun; describe() has the control address that members need.
+// Hosts a group. accept() returns each member after its stream has begun; describe() contains the control address for
+// members.
 Result<std::unique_ptr<Listener>> hostGroup(const GroupOptions& options);
 
 } // namespace mural::rsp

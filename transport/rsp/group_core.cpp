@@ -8,7 +8,8 @@
 
 namespace mural::rsp {
 
-// The group's datagrams go out once, and once more into each tunnel; a tunnelled member's all go through the host.
+// Sends the group's datagrams once by multicast and once into each tunnel. Datagrams of a tunnelled member all go
+// through the host.
 class GroupCore::Datagrams : public Outbox {
 public:
     explicit Datagrams(GroupCore& core) : core_(core) {}
@@ -25,7 +26,7 @@ public:
         copy_.assign(bytes, std::byte{0});
         return copy_;
     }
-    // The last one is whole.
+    // Completes the last datagram.
     void finish() {
         if (!copied_) return;
         copied_ = false;
@@ -75,7 +76,7 @@ Receiver* GroupCore::receiver(MemberId from) {
 }
 
 void GroupCore::touch(MemberId from) {
-    if (!touched_.empty() && touched_.back() == from) return; // most of the time
+    if (!touched_.empty() && touched_.back() == from) return; // the common case
     if (std::ranges::find(touched_, from) == touched_.end()) touched_.push_back(from);
 }
 
@@ -125,7 +126,8 @@ void GroupCore::disconnected(MemberId id, int64_t nowNs) {
 
 void GroupCore::inputControl(MemberId from, const ControlMessage& message, int64_t nowNs) {
     const auto* gone = std::get_if<MemberGone>(&message);
-    const bool removesUs = gone && !settings_.host && gone->id == self_; // waits for nothing: it is the reason when the connection ends
+    // processed immediately: it is the reason for the end of the connection
+    const bool removesUs = gone && !settings_.host && gone->id == self_;
     if (!removesUs && (!late_.empty() || (std::holds_alternative<Tunnel>(message) && out_.behind()))) {
         if (late_.empty()) lateSinceNs_ = nowNs;
         late_.emplace_back(from, message);
@@ -142,7 +144,7 @@ void GroupCore::takeLate(int64_t nowNs) {
 
 Landing GroupCore::landing() { return heard_.receiver ? heard_.receiver->landing() : Landing{}; }
 
-// As a probe: of full size. Who had been reached and ceased to be is asked by probes alone, ever seldomer.
+// Returns true for a probe of full size. Members that lost multicast are tested by probes only, at growing intervals.
 bool GroupCore::showsMulticast(std::span<const std::byte> datagram) const {
     if (datagram.size() != kStreamHeadBytes + shape_.payloadBytes) return false;
     const auto head = readHead(datagram);
@@ -185,7 +187,7 @@ int64_t GroupCore::tick(int64_t nowNs) {
         if (!candidates_.empty()) next = std::min(next, nowNs + kBetweenProbesNs);
     }
     if (sender_ && live_) next = std::min(next, sender_->tick(nowNs, *datagrams_));
-    // After the tick, which knows of jumps of the clock.
+    // After the tick, which compensates clock jumps.
     if (settings_.host && (watchedNs_ == INT64_MIN || nowNs - watchedNs_ >= kBetweenWatchesNs)) {
         watchMembers(nowNs);
         watchedNs_ = nowNs;
@@ -195,7 +197,7 @@ int64_t GroupCore::tick(int64_t nowNs) {
     return next;
 }
 
-// Of many members most have nothing to say, and to look at each costs more than the one that has.
+// Ticks only receivers with work: of many members most are idle, and visiting each costs more than the active one.
 int64_t GroupCore::tickReceivers(int64_t nowNs) {
     const auto look = [&](MemberId id, Receiver& r) {
         if (members_.contains(id)) receiversDueNs_ = std::min(receiversDueNs_, r.tick(nowNs, *datagrams_));

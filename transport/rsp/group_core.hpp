@@ -1,13 +1,13 @@
-// One process's place in a group: who is in it, its own stream to all, and everyone's stream to it. Pure as Sender and
-// Receiver are: messages, datagrams and times come in; messages, datagrams and events go out.
+// State machine of one group member: membership, its own stream to all, and everyone's stream to it. Pure, like Sender
+// and Receiver: messages, datagrams and times in; messages, datagrams and events out.
 //
-// One member is the host. All others have a control connection to it, over which they join, learn of each other, and send
-// what datagrams can't reach. A member that comes is shown a probe by multicast; if it does not see one in time, its
-// datagrams go through the control connection (a tunnel) instead: same sequences, same windows, nobody else is slower. Where
-// that was the control connection's lateness, the first full datagram of the stream shows it, and the tunnel ends.
+// One member is the host. All others have a control connection to it, over which they join, learn of other members, and
+// exchange datagrams that UDP does not deliver. A new member is probed by multicast. Without a timely answer its
+// datagrams travel through the control connection (a tunnel), with the same sequences and windows and no effect on
+// other members. If only the control connection was late, the first full datagram of the stream ends the tunnel.
 //
-// host:     Join → Welcome → probes … Probed, or late → MemberCame to all, and all others to the new one
-// members:  MemberCame → their stream begins for that member → StreamStart, through the host
+// host:     Join, Welcome, probes ... Probed or timeout, MemberCame to all, and all others to the new member members:
+// MemberCame, start of their stream for that member, StreamStart through the host
 #pragma once
 
 #include <deque>
@@ -21,29 +21,30 @@ namespace mural::rsp {
 
 constexpr MemberId kHost = 0;
 constexpr int64_t kBetweenProbesNs = 50'000'000;
-constexpr int64_t kMostLateNs = 100'000'000;     // how long a connection may wait for the sockets
-constexpr int64_t kBetweenWatchesNs = 5'000'000; // whether members are silent, or stalled
-constexpr size_t kProbeHeadBytes = kHeadBytes + 4; // and the nonce; the rest fills the datagram up
+constexpr int64_t kMostLateNs = 100'000'000; // longest time that tunnelled input waits for the sockets
+constexpr int64_t kBetweenWatchesNs = 5'000'000; // interval of checks for silent or stalled members
+constexpr size_t kProbeHeadBytes = kHeadBytes + 4; // plus the nonce; padding fills the datagram
 
-// What is done about a member that the stream waits for.
+// Action for a member that stalls the stream.
 enum class StallPolicy : uint8_t {
-    Wait,  // for ever: as the thesis' protocol
-    Eject, // it is removed, and may come again
+    Wait, // wait without limit, as in the thesis
+    Eject, // evict; the member may join again
 };
 
 struct GroupSettings {
     bool host = false;
     Uuid uuid{};
-    bool multicast = true;      // this member wants it
-    uint16_t udpPort = 0;       // of its own socket
+    bool multicast = true; // this member wants multicast
+    uint16_t udpPort = 0; // port of its unicast socket
     uint32_t socketDatagrams = 4096;
     uint16_t mostDatagramBytes = 1472;
-    uint8_t seals = 0xff;       // that it can do
+    uint8_t seals = 0xff; // supported by this member
     RateSettings rate;
     bool parity = true;
-    int64_t heartbeatNs = 100'000'000; // of the host's stream: by its words, and by those about it, everybody is watched
-    int64_t memberHeartbeatNs = 1'000'000'000; // of all others' streams, each of which has as many readers
-    // The host's:
+    int64_t heartbeatNs = 100'000'000; // heartbeat of the host's stream and its feedback, which monitor all members
+    // heartbeat of other members' streams, whose number of readers grows with the group
+    int64_t memberHeartbeatNs = 1'000'000'000;
+    // Settings of the host:
     std::string group;
     SessionKeys keys;
     uint16_t datagramBytes = 1472;
@@ -51,21 +52,21 @@ struct GroupSettings {
     StallPolicy stalled = StallPolicy::Eject;
     int64_t stalledNs = 2'000'000'000;
     int64_t silentNs = 1'000'000'000;
-    int64_t probeNs = 300'000'000; // how long a member may take to see a probe
+    int64_t probeNs = 300'000'000; // timeout of the multicast probe
     uint32_t firstSequence = 0;
     uint32_t probeSeed = 1;
 };
 
 struct MemberInfo {
     Uuid uuid{};
-    std::string name;    // by which it showed that it knows the secret; only the host knows it
-    std::string address; // as the host sees it
+    std::string name; // name whose secret it has proven to know; set at the host only
+    std::string address; // as seen by the host
     uint16_t udpPort = 0;
     bool multicast = false;
-    uint64_t fromByte = 0; // of this process's own stream: the first one that it gets
+    uint64_t fromByte = 0; // first byte of this process's own stream that the member receives
 };
 
-// What the group wants done outside.
+// Actions that the group requests.
 class GroupOutput {
 public:
     GroupOutput() = default;
@@ -73,19 +74,19 @@ public:
     GroupOutput& operator=(const GroupOutput&) = delete;
     virtual ~GroupOutput() = default;
 
-    // Over the control connection of a member (host), or to the host (member: kHost).
+    // Sends a message over the control connection of a member (host), or to the host (member: kHost).
     virtual void control(MemberId to, const ControlMessage& message) = 0;
-    // A datagram of so many bytes to the group or one member, as Outbox. Filled before the next call.
+    // Returns room for a datagram to the group or one member, as Outbox. Filled before the next call.
     virtual std::span<std::byte> datagram(MemberId to, size_t bytes) = 0;
-    // Sockets have datagrams that were not yet input, and that may have been sent before what a connection brings now.
+    // Returns true if sockets hold datagrams that may have been sent before the data of a connection.
     virtual bool behind() = 0;
-    // This member knows the session: sockets and keys can be made.
+    // The session is known: sockets and keys can be created.
     virtual void welcomed(const Welcome& w) = 0;
     virtual void memberCame(MemberId id, const MemberInfo& info) = 0;
     virtual void memberGone(MemberId id, GoneReason reason) = 0;
-    // Multicast does not reach it any longer, and it goes on through its control connection; or it does again.
+    // Multicast no longer reaches the member, and its control connection takes over; or it does again.
     virtual void memberRerouted(MemberId id, bool multicast) = 0;
-    // The control connection is to be ended.
+    // Requests the end of the control connection.
     virtual void hangUp(MemberId id, const std::string& why) = 0;
 };
 
@@ -96,25 +97,24 @@ public:
 
     // Member: the control connection is open.
     void begin();
-    // Host: a control connection is open; returns the id it is known by from now on; nothing when there are no more ids.
+    // Host: a control connection is open. Returns its id; empty if ids are exhausted.
     std::optional<MemberId> connected(const std::string& address, const std::string& name, int64_t nowNs);
-    // The control connection has ended (host: of that member).
+    // The control connection has ended (host: that of the member).
     void disconnected(MemberId id, int64_t nowNs);
     void inputControl(MemberId from, const ControlMessage& message, int64_t nowNs);
-    // Where datagrams of the stream that was heard last are wanted, of what comes to the group.
+    // Buffers for the next datagrams of the most recent stream.
     Landing landing();
-    // Opened already.
+    // Processes an authenticated, decrypted datagram.
     void inputDatagram(std::span<const std::byte> datagram, int64_t nowNs);
     void socketDropped(uint32_t count);
     int64_t tick(int64_t nowNs);
-    // Host: nobody waits for it any longer, and it learns so.
+    // Host: evicts the member and informs it.
     void expel(MemberId id, GoneReason reason, const std::string& why);
 
-    // This one's own stream. There is none before the group has taken us in.
+    // This member's own stream; null before the member is accepted.
     [[nodiscard]] Sender* sender() { return sender_.get(); }
-    // Another member's stream; nullptr: none (yet). It stays when the member has gone, until it is forgotten: what came
-    // can still be read.
-    // What is read there may be worth telling: the next tick looks.
+    // Another member's stream; null if there is none (yet). It outlives its member until forgotten, so received data
+    // stays readable. Reading may create feedback, which the next tick sends.
     [[nodiscard]] Receiver* receiver(MemberId from);
     void forget(MemberId from) {
         heard_ = {};
@@ -122,11 +122,11 @@ public:
     }
     [[nodiscard]] const std::map<MemberId, MemberInfo>& members() const { return members_; }
     [[nodiscard]] bool live() const { return live_; }
-    [[nodiscard]] bool over() const { return over_; } // the host is gone, or has refused us
+    [[nodiscard]] bool over() const { return over_; } // the host has left, or has rejected this member
     [[nodiscard]] MemberId self() const { return self_; }
 
 private:
-    // Host: who has connected and is not yet one of the group.
+    // Host: a connected process that is not a member yet.
     struct Candidate {
         std::string address;
         std::string name;
@@ -135,15 +135,15 @@ private:
         uint32_t nonce = 0;
         int64_t untilNs = 0;
     };
-    // Host: whom multicast does not reach. It is tried again now and then.
+    // Host: a member without multicast, which is probed at intervals.
     struct Unreached {
         uint32_t nonce = 0;
-        int64_t againNs = 0; // the next probe
-        int64_t waitNs = 0;  // until the one after it; grows each time that it ceases to be reached
-        int64_t soonNs = 0;  // instead, while it is shorter
-        std::optional<int64_t> silentSinceNs; // why it is taken for unreached, until something is heard of it
+        int64_t againNs = 0; // time of the next probe
+        int64_t waitNs = 0; // interval to the following one; grows with each loss of multicast
+        int64_t soonNs = 0; // shorter interval that applies first
+        std::optional<int64_t> silentSinceNs; // start of the silence that caused this state; empty once it is heard
     };
-    class Datagrams; // the Outbox that knows the tunnels
+    class Datagrams; // the Outbox with tunnels
 
     void take(MemberId from, const Join& m, int64_t nowNs);
     void take(MemberId from, const Welcome& m, int64_t nowNs);
@@ -187,26 +187,26 @@ private:
     StreamShape shape_;
     std::unique_ptr<Sender> sender_;
     std::map<MemberId, std::unique_ptr<Receiver>> receivers_;
-    // Whom the last datagram of a stream was of, a member: most are followed by another one of it.
+    // Cache of the sender of the last datagram: the next one is usually from the same member.
     struct {
         MemberId from = 0;
-        Receiver* receiver = nullptr; // nullptr: to be looked up
+        Receiver* receiver = nullptr; // null: look it up
     } heard_;
-    int64_t receiversDueNs_ = INT64_MIN; // the first of them that something is due at
-    std::vector<MemberId> touched_;      // receivers that something has come for since the last tick
-    std::map<MemberId, MemberInfo> members_; // without this one
-    // A tunnelled datagram that overtook those in the sockets would make all of them lost: who was stopped for a while finds
-    // both. It waits, and what comes behind it by a connection too.
+    int64_t receiversDueNs_ = INT64_MIN; // earliest due time of all receivers
+    std::vector<MemberId> touched_; // receivers with input since the last tick
+    std::map<MemberId, MemberInfo> members_; // without this member
+    // Reordering guard: a tunnelled datagram that overtakes datagrams still queued in the sockets would mark them as
+    // lost. Tunnelled input waits until the sockets are drained, as does later input of connections.
     std::vector<std::pair<MemberId, ControlMessage>> late_;
     int64_t lateSinceNs_ = 0;
-    bool anyTunnel_ = false;                 // multicast does not reach all of them
+    bool anyTunnel_ = false; // at least one member is tunnelled
     int64_t watchedNs_ = INT64_MIN;
     std::map<MemberId, Candidate> candidates_;
     std::map<MemberId, Unreached> unreached_;
-    bool tunnelled_ = false; // this member is reached by the control connection alone
-    bool unshown_ = false;   // it was so from the beginning, and nothing has come by multicast yet
+    bool tunnelled_ = false; // this member is tunnelled
+    bool unshown_ = false; // tunnelled since joining, without any multicast so far
     uint32_t probeNonce_ = 0;
-    uint32_t nextId_ = 1; // no id comes twice: its key would be used with the same counters again
+    uint32_t nextId_ = 1; // ids are never reused: a key must not repeat counters
     int64_t probedNs_ = INT64_MIN;
     uint32_t dropped_ = 0;
 };

@@ -22,7 +22,7 @@ Result<int64_t> numberOf(const std::string& text, int64_t most) {
     return value;
 }
 
-// One of two words.
+// Parses one of two words.
 Result<void> choose(const std::string& text, const char* yes, const char* no, bool& into) {
     if (text != yes && text != no) return Error{"\"" + text + "\" must be " + yes + " or " + no};
     into = text == yes;
@@ -73,7 +73,7 @@ std::string allNames() {
 Result<GroupOptions> groupOptionsOf(const ConnectionDescription& description) {
     GroupOptions options;
     options.group = endpointText(description.host, description.port);
-    options.seal = bestEncryption(); // unless it is chosen otherwise
+    options.seal = bestEncryption(); // default
     const auto wrong = [&](const std::string& what) { return Error{"connection \"" + toText(description) + "\": " + what}; };
     auto group = numericEndpoint(options.group);
     if (!group) return wrong(group.error().message);

@@ -1,4 +1,4 @@
-// How members come and go: the control messages of a group.
+// Membership of GroupCore: its control messages.
 #include <algorithm>
 
 #include "common/little_endian.hpp"
@@ -7,18 +7,18 @@
 namespace mural::rsp {
 
 namespace {
-constexpr int64_t kJoinNs = 10'000'000'000; // for the first word on a connection
-constexpr int64_t kTryAgainNs = 3'000'000'000; // whether multicast reaches a member after all
+constexpr int64_t kJoinNs = 10'000'000'000; // timeout of the first message on a connection
+constexpr int64_t kTryAgainNs = 3'000'000'000; // interval of probes for multicast
 constexpr int64_t kMostTryAgainNs = 60'000'000'000;
-constexpr int64_t kTrySoonNs = 20'000'000; // who was silent and is heard again: it may only have been stopped
+constexpr int64_t kTrySoonNs = 20'000'000; // the same after silence: the member may only have been stopped
 constexpr int64_t kSoonGrows = 4;
-constexpr int64_t kSilentBeats = 4; // heartbeats: who lets so many pass is silent
+constexpr int64_t kSilentBeats = 4; // missed heartbeats that count as silence
 constexpr size_t kMostMembers = 1000;
 constexpr size_t kLeastDatagramBytes = 512;
 constexpr uint32_t kMostWindow = 1u << 16;
 } // namespace
 
-// Host.
+// Runs at the host.
 void GroupCore::take(MemberId from, const Join& m, int64_t nowNs) {
     const auto found = candidates_.find(from);
     if (!settings_.host || found == candidates_.end() || found->second.joined) return;
@@ -36,7 +36,7 @@ void GroupCore::take(MemberId from, const Join& m, int64_t nowNs) {
     c.joined = true;
     c.nonce = ++probeNonce_;
     c.untilNs = nowNs + settings_.probeNs;
-    probedNs_ = INT64_MIN; // at once
+    probedNs_ = INT64_MIN; // probe immediately
     Welcome w;
     w.self = from;
     w.keys = settings_.keys;
@@ -47,7 +47,7 @@ void GroupCore::take(MemberId from, const Join& m, int64_t nowNs) {
     out_.control(from, w);
 }
 
-// Member.
+// Runs at members.
 void GroupCore::take(MemberId, const Welcome& m, int64_t) {
     if (settings_.host || sender_) return;
     const size_t overhead = kStreamHeadBytes + kLengthBytes + tagBytes(m.keys.seal);
@@ -113,7 +113,7 @@ void GroupCore::probeUnreached(int64_t nowNs) {
     }
 }
 
-// Host.
+// Runs at the host.
 void GroupCore::take(MemberId from, const Probed& m, int64_t nowNs) {
     if (!settings_.host) return;
     if (const auto u = unreached_.find(from); u != unreached_.end() && u->second.nonce == m.nonce && !members_.at(from).multicast)
@@ -125,20 +125,20 @@ void GroupCore::take(MemberId from, const Probed& m, int64_t nowNs) {
     admit(from, {c.join.uuid, c.name, c.address, c.join.udpPort, true}, nowNs);
 }
 
-// Everyone learns of the new one, and the new one of everyone, itself first.
+// Announces the new member to all, and all members to the new one, itself first.
 void GroupCore::admit(MemberId id, const MemberInfo& info, int64_t nowNs) {
     const MemberCame came{id, info.uuid, info.address, info.udpPort, info.multicast};
     out_.control(id, came);
     out_.control(id, MemberCame{kHost, settings_.uuid, "", settings_.udpPort, info.multicast});
     for (const auto& [other, m] : members_) {
-        // To a tunnelled member everything goes by the host.
+        // A tunnelled member receives everything through the host.
         out_.control(id, MemberCame{other, m.uuid, m.address, m.udpPort, m.multicast});
         out_.control(other, came);
     }
     meet(id, info, nowNs);
 }
 
-// Member.
+// Runs at members.
 void GroupCore::take(MemberId, const MemberCame& m, int64_t nowNs) {
     if (settings_.host || !sender_) return;
     if (m.id == self_) {
@@ -150,7 +150,7 @@ void GroupCore::take(MemberId, const MemberCame& m, int64_t nowNs) {
 }
 
 void GroupCore::take(MemberId from, const StreamStart& m, int64_t) {
-    if (settings_.host && m.writer != from) return; // speaks for another
+    if (settings_.host && m.writer != from) return; // forged sender
     if (settings_.host && m.reader != self_) {
         if (members_.contains(m.reader)) out_.control(m.reader, m);
         return;
@@ -166,7 +166,7 @@ void GroupCore::take(MemberId from, const StreamStart& m, int64_t) {
     touch(m.writer);
 }
 
-// Member.
+// Runs at members.
 void GroupCore::take(MemberId, const MemberGone& m, int64_t) {
     if (settings_.host) return;
     if (m.id == self_) over_ = true;
@@ -177,7 +177,7 @@ void GroupCore::take(MemberId from, const Tunnel& m, int64_t nowNs) {
     const auto head = readHead(m.datagram);
     if (!head) return;
     if (!settings_.host) return deliver(m.datagram, nowNs);
-    if (head->from != from || !members_.contains(from)) return; // speaks for another
+    if (head->from != from || !members_.contains(from)) return; // forged sender
     for (const auto& [id, other] : members_) {
         if (id != from && (m.to == id || m.to == kEverybody)) out_.control(id, Tunnel{id, m.datagram});
     }
@@ -190,7 +190,7 @@ void GroupCore::take(MemberId, const Refused& m, int64_t) {
     out_.hangUp(kHost, m.why);
 }
 
-// Host.
+// Runs at the host.
 void GroupCore::take(MemberId from, const Leave&, int64_t) {
     if (!settings_.host) return;
     candidates_.erase(from);
@@ -202,7 +202,7 @@ void GroupCore::take(MemberId from, const Ping& m, int64_t) {
     if (!m.answer) out_.control(settings_.host ? from : kHost, Ping{m.number, true});
 }
 
-// Member.
+// Runs at members.
 void GroupCore::take(MemberId, const Rerouted& m, int64_t) {
     if (settings_.host) return;
     if (m.id == self_) {
@@ -217,8 +217,8 @@ void GroupCore::take(MemberId, const Rerouted& m, int64_t) {
     out_.memberRerouted(m.id, m.multicast);
 }
 
-// Host: what it lacks is repaired as ever, but each datagram goes into its connection, too. `silent`: it may only have been
-// stopped, and is tried anew as soon as it is heard.
+// Host: sends each datagram over the member's connection as well; repairs continue. `silent`: the member may only have
+// been stopped, and is probed again as soon as it is heard.
 void GroupCore::toConnection(MemberId id, bool silent, int64_t nowNs) {
     Unreached& u = unreached_[id];
     u.waitNs = u.waitNs == 0 ? kTryAgainNs : std::min(2 * u.waitNs, kMostTryAgainNs);
@@ -230,7 +230,7 @@ void GroupCore::toConnection(MemberId id, bool silent, int64_t nowNs) {
     reroute(id, false, u.nonce);
 }
 
-// All learn of it.
+// Informs all members.
 void GroupCore::reroute(MemberId id, bool multicast, uint32_t probeNonce) {
     members_.at(id).multicast = multicast;
     membersChanged();
@@ -248,7 +248,7 @@ void GroupCore::expel(MemberId id, GoneReason reason, const std::string& why) {
     remove(id, reason);
 }
 
-// Host: nobody waits for it any longer, and everyone knows.
+// Host: evicts a member and informs all.
 void GroupCore::remove(MemberId id, GoneReason reason) {
     if (!members_.contains(id)) return;
     unreached_.erase(id);
@@ -256,11 +256,11 @@ void GroupCore::remove(MemberId id, GoneReason reason) {
     for (const auto& [other, m] : members_) out_.control(other, MemberGone{id, reason});
 }
 
-// Host: a member that says nothing for long, or that everyone waits for. Whom multicast may have ceased to reach is tried by
-// its connection for half of that time.
+// Host: evicts members that are silent or stall the stream. A member that may have lost multicast is served over its
+// connection for half of that time first.
 void GroupCore::watchMembers(int64_t nowNs) {
     std::vector<std::pair<MemberId, GoneReason>> hopeless;
-    std::vector<std::pair<MemberId, bool>> unreached; // silent?
+    std::vector<std::pair<MemberId, bool>> unreached; // second: silent
     for (const auto& [id, m] : sender_->members()) {
         const int64_t quietNs = nowNs - m.heardNs;
         const int64_t stillNs = sender_->waitsFor(m) ? nowNs - m.movedNs : 0;

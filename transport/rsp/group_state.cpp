@@ -18,14 +18,14 @@ using boost::system::error_code;
 namespace {
 
 constexpr double kShareOfLink = 0.9;
-constexpr size_t kMostWindowsWaiting = 2; // in a member's connection, of each stream
-constexpr int64_t kGoodbyeMs = 1000; // how long a leaving member waits until the others know
+constexpr size_t kMostWindowsWaiting = 2; // queued in a member's connection, per stream
+constexpr int64_t kGoodbyeMs = 1000; // longest wait of a leaving member for acknowledgement
 constexpr size_t kUdpOverIpv4Bytes = 28;
 constexpr size_t kUdpOverIpv6Bytes = 48;
 
 int64_t steadyNs() { return quickNowNs(); }
 
-// "::ffff:10.0.0.1" is how an IPv4 peer of an IPv6 socket looks.
+// Removes the mapping prefix: an IPv4 peer of an IPv6 socket appears as "::ffff:10.0.0.1".
 std::string withoutMapping(const std::string& address) {
     constexpr std::string_view kMapping = "::ffff:";
     return address.starts_with(kMapping) ? address.substr(kMapping.size()) : address;
@@ -51,7 +51,7 @@ Result<void> Group::State::openSockets() {
     auto own = UdpSocket::openOwn(interface_, group_.family(), options_.socketBytes);
     if (!own) return own.error();
     own_.emplace(std::move(*own));
-    own_->leaveOutSenders(); // datagrams tell by themselves
+    own_->leaveOutSenders(); // datagrams identify their sender
     auto arrivals = Arrivals::open();
     if (!arrivals) return arrivals.error();
     arrivals_.emplace(std::move(*arrivals));
@@ -112,7 +112,7 @@ Result<void> Group::State::openCore(bool isHost) {
 
 Result<void> Group::State::openHost() {
     if (auto r = openSockets(); !r) return r.error();
-    // The host hears the other members' streams, too.
+    // The host receives the other members' streams too.
     if (auto r = joinMulticast(); !r) return r.error();
     if (auto r = openCore(true); !r) return r.error();
     ignoreOwn();
@@ -178,14 +178,14 @@ void Group::State::stop() {
         });
         thread_.join();
     }
-    // The descriptors have an owner.
+    // Release the descriptors: they have another owner.
     for (auto* borrowed : {&watched_, &takeOverRings_}) {
         if (*borrowed) (*borrowed)->release();
         borrowed->reset();
     }
 }
 
-// The goodbyes arrive, or nobody takes them in time.
+// Waits until the goodbyes are delivered or time out.
 void Group::State::endWhenSaid(Deadline deadline) {
     const bool all = std::ranges::all_of(links_, [](const auto& l) { return l.second->ended(); });
     if (all || deadline.passed()) return context_.stop();
@@ -235,7 +235,7 @@ void Group::State::acceptLinks() {
     });
 }
 
-// A member's link to the host.
+// Member: starts the link to the host.
 void Group::State::startLink(MemberId id, const std::shared_ptr<ControlLink>& link) {
     {
         const std::lock_guard lock(mutex);
@@ -263,7 +263,7 @@ void Group::State::startLink(MemberId id, const std::shared_ptr<ControlLink>& li
     link->start(std::move(events));
 }
 
-// Where no member is on this machine, the kernel need not bring back what we send.
+// Disables multicast loopback while no member runs on this machine.
 void Group::State::updateLoop() {
     const auto isHere = [&](const std::string& address) { return ownAddresses_.contains(withoutMapping(address)); };
     bool any = !hostAddress_.empty() && isHere(hostAddress_);
@@ -280,14 +280,14 @@ void Group::State::ignoreOwn() {
     else groupSocket_->ignoreNobody();
 }
 
-// What the kernel drops of our own coming back is no loss.
+// Drops of looped-back own datagrams are not losses.
 uint32_t Group::State::dropped() const {
     return own_->dropped() + (groupSocket_ && !loop_ ? groupSocket_->dropped() : 0);
 }
 
-// What can be missed is a window of each stream, and its repairs. But a member that multicast reaches in part has acknowledged
-// much of what waits for it here, and where its connection is the slower way that would never end: more is lost, as on
-// any way that is too narrow, and repaired where it is missed.
+// Bounds the queue of a connection to a window of each stream and its repairs. A partially reachable member may already
+// have acknowledged queued data; over a slower connection the queue would never drain. Excess datagrams are dropped and
+// repaired, as on any congested path.
 void Group::State::sendControl(MemberId to, const ControlMessage& message) {
     const auto found = links_.find(to);
     if (found == links_.end()) return;
@@ -295,7 +295,7 @@ void Group::State::sendControl(MemberId to, const ControlMessage& message) {
     else found->second->send(message);
 }
 
-// From any thread; the links belong to the group's own, and change with the lock held.
+// May be called from any thread. The links belong to the group's thread and change under the lock.
 void Group::State::control(MemberId to, const ControlMessage& message) {
     asio::post(context_, [this, to, message] { sendControl(to, message); });
 }
@@ -309,7 +309,7 @@ void Group::State::welcomed(const Welcome& w) {
     outbox_->useKeys(w.keys, w.self);
     opener_.emplace(w.keys);
     opener_->addMember(kHost);
-    // Where that fails no probe comes, and the host sends through its connection.
+    // If joining fails, no probe arrives, and the host uses the connection.
     if (!options_.multicast || !joinMulticast()) return;
     ignoreOwn();
 }
@@ -326,7 +326,7 @@ void Group::State::memberCame(MemberId id, const MemberInfo& info) {
     changed.notify_all();
 }
 
-// Nobody may ever ask: the oldest go.
+// Bounded, because the events may never be queried: drops the oldest.
 void Group::State::note(const MemberEvent& event) {
     constexpr size_t kMostEvents = 4096;
     if (news.size() >= kMostEvents) news.erase(news.begin());
@@ -337,7 +337,7 @@ void Group::State::memberRerouted(MemberId id, bool multicast) {
     known_[id].multicast = multicast;
     note({MemberEvent::Kind::Rerouted, id, known_[id], {}});
     if (!multicast) return;
-    // What waits in its connection is old. Of a member that was stopped its socket has it all; else it is repaired.
+    // Queued datagrams are outdated: a member that was stopped has them in its socket buffer, and others are repaired.
     asio::post(context_, [this, id] {
         if (const auto found = links_.find(id); found != links_.end()) found->second->dropOffered();
     });

@@ -1,4 +1,4 @@
-// What is behind a Group: its core, sockets, control connections and thread.
+// Implementation of Group: core, sockets, control connections and thread.
 #pragma once
 
 #include <condition_variable>
@@ -21,7 +21,7 @@
 
 namespace mural::rsp {
 
-constexpr int64_t kSliceNs = 100 * kNsPerMs; // how long a wait lasts at most before it looks again
+constexpr int64_t kSliceNs = 100 * kNsPerMs; // longest uninterrupted sleep of a wait
 
 struct Group::State : GroupOutput {
     explicit State(const GroupOptions& options);
@@ -31,11 +31,11 @@ struct Group::State : GroupOutput {
     Result<void> openMember(Deadline deadline);
     void stop();
 
-    // The following with the mutex held.
-    void pump(int64_t nowNs = quickNowNs()); // what is due now: sends, and wakes who waits
+    // The following methods require the mutex.
+    void pump(int64_t nowNs = quickNowNs()); // executes due work: sends, and wakes waiting threads
     [[nodiscard]] GroupReport report() const;
 
-    // GroupOutput
+    // Implementation of GroupOutput.
     void control(MemberId to, const ControlMessage& message) override;
     std::span<std::byte> datagram(MemberId to, size_t bytes) override;
     bool behind() override;
@@ -46,26 +46,27 @@ struct Group::State : GroupOutput {
     void hangUp(MemberId id, const std::string& why) override;
 
     mutable std::mutex mutex;
-    // Nobody is woken for what it does not wait for: a wake costs more than a datagram.
+    // Threads waiting for one condition. Separate conditions avoid needless wake-ups, each of which costs more than a
+    // datagram.
     struct Waits {
         std::condition_variable wake;
-        size_t sleeping = 0; // threads; the leader is none of them
+        size_t sleeping = 0; // number of threads, without the leader
     };
-    Waits room;    // for the writer
-    Waits arrived; // for who waits until all have everything
-    Waits data;    // for readers
-    std::condition_variable changed; // members
-    std::vector<MemberId> waitingForData; // of these members, one for each who waits: few
-    // Sleeps until there may be news, or a slice of time is over; false: the deadline has passed before. The first one that
-    // waits leads: it sees to the sockets and the timer, and the group's thread sleeps on.
+    Waits room; // the writer
+    Waits arrived; // threads in waitArrived()
+    Waits data; // readers
+    std::condition_variable changed; // membership
+    std::vector<MemberId> waitingForData; // awaited members, one entry per waiting thread
+    // Sleeps until the condition may hold or a slice of time is over. Returns false after the deadline. The first
+    // waiting thread becomes the leader: it polls sockets and timer while the group's thread sleeps.
     bool wait(std::unique_lock<std::mutex>& lock, Waits& what, Deadline deadline);
     Result<size_t> readable(std::unique_lock<std::mutex>& lock, MemberId from, std::span<std::span<const std::byte>> pieces, Deadline deadline);
 
     std::unique_ptr<GroupCore> core;
-    std::string failure; // why the group is over; empty: it is not
-    bool hostLeft = false; // the host ended the group in order: that is its stream's end, no failure of it
+    std::string failure; // reason for the end of the group; empty: alive
+    bool hostLeft = false; // the host ended the group in order: end of its stream, not a failure
     std::set<MemberId> accepted;
-    std::vector<MemberEvent> news; // of members, not yet asked for
+    std::vector<MemberEvent> news; // unread membership events
     std::string controlAddress;
 
 private:
@@ -82,8 +83,8 @@ private:
     void endLead(int64_t nowNs);
     void letWatch();
     void watchLeaders();
-    [[nodiscard]] bool ownIsOnItsWay() const; // not all members are known to have all of it
-    [[nodiscard]] int64_t takeOverNs() const; // for which no leader may be there, until the group's thread takes over
+    [[nodiscard]] bool ownIsOnItsWay() const; // this member's stream has unacknowledged data
+    [[nodiscard]] int64_t takeOverNs() const; // time without a leader before the group's thread takes over
     [[nodiscard]] int64_t restNs(const Waits* what, int64_t nowNs) const;
     void receive(std::span<const int> sockets, int64_t nowNs);
     void takeDatagrams(std::span<const int> sockets, int64_t nowNs);
@@ -105,34 +106,34 @@ private:
     NetworkInterface interface_;
     boost::asio::io_context context_;
     boost::asio::steady_timer goodbyeTimer_{context_};
-    boost::asio::steady_timer restTimer_{context_}; // of the group's thread
+    boost::asio::steady_timer restTimer_{context_}; // timer of the group's thread
     std::optional<Tcp::acceptor> acceptor_;
     std::optional<UdpSocket> own_;
     std::optional<UdpSocket> groupSocket_;
     std::optional<Arrivals> arrivals_;
-    std::optional<boost::asio::posix::stream_descriptor> watched_; // wakes the group's thread while nobody leads
-    const Waits* leaderWaitsFor_ = nullptr;                        // nullptr: nobody leads
+    std::optional<boost::asio::posix::stream_descriptor> watched_; // wakes the group's thread while there is no leader
+    const Waits* leaderWaitsFor_ = nullptr; // null: no leader
     bool leaderSleeps_ = false;
-    int64_t leaderUntilNs_ = 0; // it sleeps so long at most
-    bool leaderCalled_ = false; // there may be what it waits for
-    bool isWatched_ = true;     // else somebody leads, or takeOver_ is set
+    int64_t leaderUntilNs_ = 0; // end of the leader's sleep
+    bool leaderCalled_ = false; // the leader's condition may hold
+    bool isWatched_ = true; // otherwise there is a leader, or takeOver_ is armed
     std::optional<TakeOverTimer> takeOver_;
     std::optional<boost::asio::posix::stream_descriptor> takeOverRings_;
     ReceiveModeration moderation_{GroupSettings{}.socketDatagrams};
-    int64_t lookedNs_ = INT64_MIN / 2; // at the sockets
-    int64_t askedDroppedNs_ = INT64_MIN / 2; // how many the sockets have dropped
-    unsigned looksUnasked_ = 0; // which sockets have something
+    int64_t lookedNs_ = INT64_MIN / 2; // last poll of the sockets
+    int64_t askedDroppedNs_ = INT64_MIN / 2; // last query of the sockets' drop counters
+    unsigned looksUnasked_ = 0; // reads since the last poll
     std::optional<BatchOutbox> outbox_;
     std::optional<DatagramOpener> opener_;
     std::map<MemberId, std::shared_ptr<ControlLink>> links_;
-    std::map<MemberId, MemberInfo> known_; // those of whom memberGone has not yet told
-    std::set<std::shared_ptr<ControlLink>> strangers_; // have not shown that they know the secret
-    size_t windowBytes_ = 0; // of a stream of this group
+    std::map<MemberId, MemberInfo> known_; // including members whose departure is not reported yet
+    std::set<std::shared_ptr<ControlLink>> strangers_; // not authenticated yet
+    size_t windowBytes_ = 0; // of one stream of this group
     std::string hostAddress_;
-    std::set<std::string> ownAddresses_; // of this machine
-    bool loop_ = true;                   // members on this machine are reached
-    int64_t timerNs_ = INT64_MAX; // when something is due
-    int64_t toldNs_ = INT64_MAX;  // the time that arrivals_ knows of
+    std::set<std::string> ownAddresses_; // addresses of this machine
+    bool loop_ = true; // multicast loopback is on
+    int64_t timerNs_ = INT64_MAX; // time of the next due work
+    int64_t toldNs_ = INT64_MAX; // time set in arrivals_
     std::thread thread_;
 };
 

@@ -22,7 +22,7 @@ constexpr size_t kLeastSecretBytes = 16;
 
 using Unit = std::pair<std::string_view, double>;
 
-// A number of 0 or more and one of the units, whatever its case.
+// Parses a non-negative number with a unit, case-insensitively.
 template <size_t N> Result<double> numberWithUnit(const std::string& text, const std::array<Unit, N>& units, const char* example) {
     double value = 0;
     const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);

@@ -1,4 +1,4 @@
-// Texts of a group's options: rates, sizes, seals, secrets.
+// Parses options of a group: rates, sizes, seals, secrets.
 #pragma once
 
 #include <string>
@@ -9,13 +9,14 @@
 
 namespace mural::rsp {
 
-// "200mbit", "1gbit", "950kbit" (bits per second), "25MB" (bytes per second), "0": bytes per second.
+// "200mbit", "1gbit", "950kbit" (bits per second), "25MB" (bytes per second), "0". Result in bytes per second.
 Result<double> parseRate(const std::string& text);
-// "1000000", "64k", "256M", "2G": bytes, in steps of 1024.
+// "1000000", "64k", "256M", "2G": bytes, with binary prefixes.
 Result<uint64_t> parseSize(const std::string& text);
-// As nameOf tells them; "auto": the fastest encryption of this machine.
+// Names of nameOf(), or "auto": the fastest encryption of this machine.
 Result<Seal> parseSeal(const std::string& text);
-// Of a file with at least 16 bytes that not every user of the machine can read or write, "-": standard input. All of it counts but a line end at its end.
+// Reads a file of at least 16 bytes that not every user may access, or standard input ("-"). A final line end does not
+// count.
 Result<ChannelSecret> readSecret(const std::string& path);
 
 } // namespace mural::rsp

@@ -1,5 +1,5 @@
-// Who waits for what in a group, who sees to its sockets and timer meanwhile, and who is woken: leader and followers. A
-// datagram's way is through one thread where it can be: the one that waits for it.
+// Leader-follower polling: the first waiting thread (leader) polls sockets and timer for all; others sleep on condition
+// variables. Where possible a datagram passes through a single thread, the one that waits for it.
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -11,15 +11,15 @@ namespace mural::rsp {
 namespace asio = boost::asio;
 
 namespace {
-// After which the group's thread does what no leader has come back for: where a stream of ours is on its way, whose losses
-// are to be mended, and else.
+// Time without a leader before the group's thread takes over: while this member's stream has unacknowledged data, whose
+// losses need repair, and otherwise.
 constexpr int64_t kTakeOverNs = 3 * kNsPerMs;
 constexpr int64_t kTakeOverOfReadersNs = 8 * kNsPerMs;
-constexpr unsigned kMostLooksInARow = 3; // at a socket, before anything else is done; what they bring is in the processor's cache when it is read
-constexpr unsigned kAsksSocketsEvery = 8; // times that a leader looks at what it knows to flow
-constexpr int64_t kCaughtUpNs = 6 * kNsPerMs; // longer than a reader rests
-constexpr int64_t kBetweenDroppedNs = 20 * kNsPerMs; // the writer is told, and does nothing by it
-constexpr int64_t kMostPauseNs = 2 * kNsPerMs; // of a writer between two batches
+constexpr unsigned kMostLooksInARow = 3; // consecutive reads of a socket; more would exceed the processor's cache
+constexpr unsigned kAsksSocketsEvery = 8; // reads of a flowing socket between two polls
+constexpr int64_t kCaughtUpNs = 6 * kNsPerMs; // longer than a reader's rest
+constexpr int64_t kBetweenDroppedNs = 20 * kNsPerMs; // the writer is informed, but does not react
+constexpr int64_t kMostPauseNs = 2 * kNsPerMs; // pause of a writer between two batches
 } // namespace
 
 bool Group::State::wait(std::unique_lock<std::mutex>& lock, Waits& what, Deadline deadline) {
@@ -39,7 +39,7 @@ bool Group::State::wait(std::unique_lock<std::mutex>& lock, Waits& what, Deadlin
         const int64_t timeoutNs = leaderUntilNs_ - nowNs - rest;
         leaderSleeps_ = true;
         if (rest > 0) takeOver_->keepBehind(nowNs + rest, takeOverNs());
-        // Where something was left behind, or flows, nobody need ask for it; now and then all the same, for the other socket.
+        // A socket with remaining data, or in full flow, needs no poll; poll sometimes for the other socket.
         const bool flows = rest > 0 && &what == &data && !arrivals_->found().empty() && !ownIsOnItsWay();
         const bool knows = (moderation_.mayBeMore() || flows) && ++looksUnasked_ % kAsksSocketsEvery != 0;
         lock.unlock();
@@ -60,21 +60,21 @@ void Group::State::lead(const Waits& what) {
     if (std::exchange(isWatched_, false)) arrivals_->setWatched(false);
 }
 
-// Who has led comes back soon, most of the time; the group's thread would only be in its way, where no other one waits.
+// A leader usually returns soon; waking the group's thread would only add contention if no other thread waits.
 void Group::State::endLead(int64_t nowNs) {
     leaderWaitsFor_ = nullptr;
     if (room.sleeping + arrived.sleeping + data.sleeping > 0) return letWatch();
     takeOver_->push(nowNs, takeOverNs());
 }
 
-// What has come meanwhile wakes the group's thread.
+// Lets the group's thread wake for pending input.
 void Group::State::letWatch() {
     if (std::exchange(isWatched_, true)) return;
     arrivals_->setWatched(true);
     tellTime(timerNs_);
 }
 
-// The group's thread: it takes over from leaders that did not come back.
+// Group's thread: takes over from a leader that does not return.
 void Group::State::watchLeaders() {
     takeOverRings_->async_wait(asio::posix::stream_descriptor::wait_read, [this](const boost::system::error_code& failed) {
         if (failed) return;
@@ -86,7 +86,7 @@ void Group::State::watchLeaders() {
     });
 }
 
-// The group's thread: it does what is to be done while nobody leads.
+// Group's thread: does the work while there is no leader.
 void Group::State::watch() {
     watched_->async_wait(asio::posix::stream_descriptor::wait_read, [this](const boost::system::error_code& failed) {
         if (failed) return;
@@ -114,8 +114,8 @@ bool Group::State::ownIsOnItsWay() const {
     return own && !own->allArrived();
 }
 
-// Who sees to the sockets, and waits for this, may let datagrams gather so long. A writer that may not send yet, for its rate,
-// need not hear of anything before it may.
+// Returns the time for which the polling thread may let datagrams accumulate. A writer limited by its rate needs no
+// input before it may send.
 int64_t Group::State::restNs(const Waits* what, int64_t nowNs) const {
     const Sender* s = core->sender();
     if (what == &room && s && s->canSend() && data.sleeping == 0 && timerNs_ != INT64_MAX) return std::clamp<int64_t>(timerNs_ - nowNs, 0, kMostPauseNs);
@@ -123,7 +123,7 @@ int64_t Group::State::restNs(const Waits* what, int64_t nowNs) const {
     return moderation_.restNs(nowNs);
 }
 
-// What is at these sockets, and what is due.
+// Reads these sockets and executes due work.
 void Group::State::receive(std::span<const int> sockets, int64_t nowNs) {
     if (nowNs >= timerNs_) timerNs_ = INT64_MAX;
     if (nowNs >= toldNs_) toldNs_ = INT64_MAX;
@@ -137,7 +137,7 @@ void Group::State::takeDatagrams(std::span<const int> sockets, int64_t nowNs) {
     for (const int descriptor : sockets) {
         const bool isOwn = descriptor == own_->descriptor();
         UdpSocket& socket = isOwn ? *own_ : *groupSocket_;
-        // Looks in a row cost less than looks with all that is done behind each; others may want the lock.
+        // Consecutive reads cost less than reads with processing in between; the limit bounds the time under the lock.
         for (unsigned looks = 0; looks < kMostLooksInARow; ++looks) {
             for (const UdpSocket::Datagram& d : socket.fetch(isOwn ? Landing{} : core->landing())) {
                 if (!opener_) continue;
@@ -159,7 +159,7 @@ void Group::State::takeDatagrams(std::span<const int> sockets, int64_t nowNs) {
     }
 }
 
-// Who runs looks often: what it has not yet seen came just now.
+// A running process polls often, so unread datagrams arrived just now.
 bool Group::State::behind() {
     const int64_t nowNs = quickNowNs();
     if (moderation_.mayBeMore() || nowNs - lookedNs_ < kCaughtUpNs) return moderation_.mayBeMore();
@@ -176,20 +176,20 @@ void Group::State::pump(int64_t nowNs) {
     wakeWaiting();
 }
 
-// Who leads looks at the time by itself; only who sleeps already is told.
+// The leader checks the time itself; only sleeping threads need the timer.
 void Group::State::armTimer(int64_t atNs) {
     timerNs_ = std::min(timerNs_, atNs);
     if (leaderSleeps_ ? timerNs_ < leaderUntilNs_ : isWatched_) tellTime(timerNs_);
 }
 
-// An earlier time stays: it costs a look, and to set one costs a system call.
+// An earlier timer stays set: it costs one poll, while setting it costs a system call.
 void Group::State::tellTime(int64_t atNs) {
     if (atNs >= toldNs_) return;
     toldNs_ = atNs;
     arrivals_->wakeAt(atNs);
 }
 
-// The last thing before the lock is given back: who is woken wants it.
+// Runs last before the lock is released, because the woken thread needs it.
 void Group::State::wakeWaiting() {
     const auto waitedFor = [&](const Waits& w) { return w.sleeping > 0 || leaderWaitsFor_ == &w; };
     if (const Sender* s = core->sender()) {
@@ -202,7 +202,7 @@ void Group::State::wakeWaiting() {
     }
 }
 
-// The leader sleeps at the sockets, not at a condition: the timer wakes it.
+// The leader sleeps in poll, not on a condition variable: the timer wakes it.
 void Group::State::wake(Waits& what) {
     if (what.sleeping > 0) what.wake.notify_all();
     if (leaderWaitsFor_ != &what || leaderCalled_) return;

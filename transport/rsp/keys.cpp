@@ -5,7 +5,7 @@
 namespace mural::rsp {
 
 namespace {
-// crypto_kdf's context: eight letters that keep these keys apart from all others.
+// crypto_kdf's context: eight letters that separate these keys from all others.
 constexpr char kContext[crypto_kdf_CONTEXTBYTES + 1] = "muralrsp";
 static_assert(kKeyBytes == crypto_kdf_KEYBYTES);
 } // namespace

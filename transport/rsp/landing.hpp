@@ -1,4 +1,4 @@
-// Where a reader wants the next datagrams to be put as they are received, so that nobody copies their payloads again.
+// Buffers into which the socket receives the next datagrams, so payloads are not copied again.
 #pragma once
 
 #include <cstddef>
@@ -6,11 +6,11 @@
 
 namespace mural::rsp {
 
-constexpr size_t kMostAtOnce = 32; // datagrams that a socket brings by one call: few enough to be in the processor's cache when they are read
+constexpr size_t kMostAtOnce = 32; // datagrams per receive call: few enough to stay in the processor's cache
 
 struct Landing {
-    size_t placeBytes = 0;              // that each place has: for a whole datagram, from its head on
-    std::span<std::byte* const> places; // for one datagram each, in the order in which they come; none: nothing is wanted
+    size_t placeBytes = 0; // size of each buffer: a whole datagram including its head
+    std::span<std::byte* const> places; // one datagram each, in order of arrival; empty: none provided
 };
 
 } // namespace mural::rsp

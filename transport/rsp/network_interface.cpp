@@ -18,13 +18,14 @@ namespace mural::rsp {
 
 namespace {
 
-// Asks the kernel about an interface of this process's own network: /sys may be another's (unshare, containers).
+// Queries the kernel about an interface of this process's network namespace; /sys may show another one's (unshare,
+// containers).
 class InterfaceQuestion {
 public:
     explicit InterfaceQuestion(const std::string& name) : socket_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
         name.copy(request_.ifr_name, sizeof request_.ifr_name - 1);
     }
-    // 0: it does not tell.
+    // 0: unknown.
     size_t mtuBytes() { return ask(SIOCGIFMTU) && request_.ifr_mtu > 0 ? static_cast<size_t>(request_.ifr_mtu) : 0; }
     double bytesPerS() {
         ethtool_cmd link{};

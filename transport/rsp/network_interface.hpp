@@ -1,4 +1,4 @@
-// The network card that multicast goes through.
+// The network interface for multicast.
 #pragma once
 
 #include <string>
@@ -14,20 +14,20 @@ struct NetworkInterface {
     std::string name;
     unsigned index = 0;
     size_t mtuBytes = 1500;
-    double bytesPerS = 0; // of the link; 0: it does not tell
+    double bytesPerS = 0; // of the link; 0: unknown
     bool multicast = false;
     bool loopback = false;
     std::vector<SocketAddress> addresses;
 
-    // Its first address of a family; nothing when it has none.
+    // Returns its first address of a family; null if it has none.
     [[nodiscard]] const SocketAddress* address(int family) const;
 };
 
-// All that are up.
+// Returns all interfaces that are up.
 Result<std::vector<NetworkInterface>> networkInterfaces();
 
-// By name or by one of its addresses. Empty: the first that is up, does multicast and has an address of the family, not
-// the loopback; that only when there is no other.
+// Finds an interface by name or address. Empty: the first that is up, supports multicast and has an address of the
+// family; the loopback only if there is no other.
 Result<NetworkInterface> findInterface(std::string_view nameOrAddress, int family);
 
 } // namespace mural::rsp

@@ -1,5 +1,4 @@
-// Where the protocol puts the datagrams that it wants sent. The other side seals them and gives them to a socket, or to
-// a simulated network.
+// Destination of the protocol's datagrams: seals them and passes them to a socket or a simulated network.
 #pragma once
 
 #include <algorithm>
@@ -8,9 +7,9 @@
 
 namespace mural::rsp {
 
-// One sending takes datagrams of one size: so many at most, and so many bytes with their own heads. A shaper on its way (tc's
-// tbf) cuts what is longer than its bucket, 64 KiB most of the time, into datagrams that it passes one by one; what fits goes
-// through it in one piece, which costs a sender less. Seven datagrams of 8972 bytes do, and 42 of 1472.
+// Limits of one batch, whose datagrams have equal size: number, and bytes including headers. A shaper (tc tbf) splits a
+// batch larger than its bucket, usually 64 KiB, into single datagrams; a batch that fits passes whole and costs the
+// sender less. Seven datagrams of 8972 bytes fit, and 42 of 1472.
 constexpr size_t kMostInSending = 64;
 constexpr size_t kMostSendingBytes = 63'700;
 constexpr size_t kDatagramHeadsBytes = 42; // Ethernet, IPv4, UDP
@@ -26,8 +25,8 @@ public:
     Outbox& operator=(const Outbox&) = delete;
     virtual ~Outbox() = default;
 
-    // Room for one datagram of so many bytes, without the seal's tag, to the group (kEverybody) or to one member. It is
-    // filled before the next call.
+    // Returns room for one datagram, without tag, to the group (kEverybody) or one member. The caller fills it before
+    // the next call.
     virtual std::span<std::byte> datagram(MemberId to, size_t bytes) = 0;
 };
 

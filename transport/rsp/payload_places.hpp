@@ -1,5 +1,5 @@
-// Where payloads lie: places of one size, the lowest free one is taken first. Who reads as fast as datagrams come uses the
-// same few again and again, which stay in the processor's cache; and what is in order mostly lies side by side.
+// Pool of payload slots of one size; the lowest free slot is used first. A reader that keeps up reuses few slots, which
+// stay in the processor's cache, and consecutive payloads are mostly adjacent.
 #pragma once
 
 #include <bit>
@@ -12,11 +12,11 @@ namespace mural::rsp {
 
 class PayloadPlaces {
 public:
-    // Memory comes as it is first used.
+    // Memory is committed on first use.
     PayloadPlaces(size_t placeBytes, uint32_t places)
         : placeBytes_(placeBytes), bytes_(std::make_unique_for_overwrite<std::byte[]>(placeBytes * places)), free_((places + 63) / 64, ~uint64_t{0}) {}
 
-    // One that is free; the user never has more than there are.
+    // Returns a free slot. The user never exceeds the capacity.
     uint32_t take() {
         while (free_[lowest_] == 0) ++lowest_;
         const auto bit = static_cast<uint32_t>(std::countr_zero(free_[lowest_]));
@@ -34,8 +34,8 @@ public:
 private:
     size_t placeBytes_;
     std::unique_ptr<std::byte[]> bytes_;
-    std::vector<uint64_t> free_; // bit by place
-    size_t lowest_ = 0;          // no word before it has a free one
+    std::vector<uint64_t> free_; // one bit per slot
+    size_t lowest_ = 0; // no word before it has a free slot
 };
 
 } // namespace mural::rsp

@@ -6,14 +6,14 @@
 namespace mural::rsp {
 
 namespace {
-constexpr double kCrowded = 0.02;       // above the floor; fewer losses are mended, and nothing is asked
-constexpr double kLeastFloor = 0.005;   // of which chance is reckoned
-constexpr double kMostDecrease = 0.2;   // at once
-constexpr double kIncreasePerS = 0.1;   // of the highest rate
-constexpr int64_t kMostRiseNs = 1'000'000'000; // for which a single round may rise
-constexpr double kFloorFalls = 1.0 / 8; // of the difference, per round that loses less
-constexpr double kChance = 3.0;         // standard deviations
-// The bucket is what a process that was not scheduled for a while makes good. Queues on the way hold more than that.
+constexpr double kCrowded = 0.02; // loss above the floor that counts as congestion; less is repaired without a reaction
+constexpr double kLeastFloor = 0.005; // floor below which losses count as random
+constexpr double kMostDecrease = 0.2; // largest single decrease
+constexpr double kIncreasePerS = 0.1; // of the maximum rate
+constexpr int64_t kMostRiseNs = 1'000'000'000; // longest time that one round's increase covers
+constexpr double kFloorFalls = 1.0 / 8; // of the difference, per round with fewer losses
+constexpr double kChance = 3.0; // in standard deviations
+// Bucket size: what a process catches up after a scheduling gap. Queues on the path hold more.
 constexpr double kBucketS = 0.005;
 constexpr double kLeastBucketBytes = 48 * 1024.0;
 constexpr double kMostBucketBytes = 384 * 1024.0;

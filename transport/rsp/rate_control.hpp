@@ -1,9 +1,9 @@
-// How fast a writer may send: a bucket of tokens that the members' losses fill slower or faster.
+// Rate of a writer: a token bucket whose fill rate depends on the members' losses.
 //
-// Losses are of two kinds. A crowded link loses more the faster we send; a bad one loses its share at any rate, and
-// sending slower would only be slower. Which it is shows an experiment: now and then, while there are losses, the rate
-// is lowered for a moment. The share lost then is the floor; only what is lost above it counts as crowding.
-// Increase and decrease: thesis, section "Reliable Stream Protocol" (additive; at most a fifth at once).
+// A congested link loses more at higher rates. A bad link loses a constant share, and a lower rate would gain nothing.
+// An experiment distinguishes them: while there are losses, the rate is lowered for a moment at intervals. The
+// remaining loss is the floor; only loss above it counts as congestion. Increase and decrease: thesis, section
+// "Reliable Stream Protocol" (additive; at most a fifth at once).
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 namespace mural::rsp {
 
 struct RateSettings {
-    double mostBytesPerS = 0; // with all headers down to the wire; 0: no limit but the window
+    double mostBytesPerS = 0; // including all headers; 0: limited by the window only
     double leastShare = 1.0 / 64;
 };
 
@@ -19,20 +19,20 @@ class RateControl {
 public:
     explicit RateControl(const RateSettings& settings);
 
-    // Of so many datagrams of one round, the member that lost most lost this share of 1. Few datagrams prove little: what
-    // may be chance is not taken for crowding.
+    // Reports a round: the largest loss of a member as a fraction, and the number of datagrams. Losses within random
+    // variation are not congestion.
     void roundEnded(double lostShare, int64_t datagrams, int64_t nowNs);
-    // Rounds are as long as it takes for losses to be told, and to be more than chance.
+    // Returns the length of a round: long enough for feedback and for statistical significance.
     [[nodiscard]] static int64_t roundNs(int64_t roundTripNs);
 
-    // Whether a datagram of so many bytes may go now; then its tokens are taken.
+    // Returns true and consumes tokens if a datagram of this size may be sent now.
     bool take(double bytes, int64_t nowNs);
-    // Whether so many may go now, or as many as may ever go at once.
+    // Returns true if this number of bytes, or a full bucket, may be sent now.
     bool has(double bytes, int64_t nowNs);
     void giveBack(double bytes) { tokens_ += bytes; }
-    // When so many bytes may go. INT64_MAX never occurs.
+    // Returns the time at which this number of bytes may be sent; never INT64_MAX.
     [[nodiscard]] int64_t whenNs(double bytes, int64_t nowNs) const;
-    // How much is worth waking up for: every wake costs at all ends, and so do datagrams that come one by one.
+    // Returns the number of bytes that justifies a wake-up: each costs CPU at all ends, as do single datagrams.
     [[nodiscard]] double batchBytes() const;
 
     [[nodiscard]] bool limited() const { return most_ > 0; }
@@ -44,9 +44,9 @@ private:
     void decideAfterTrial(double lostShare, int64_t nowNs);
     void rise(int64_t elapsedNs);
 
-    static constexpr double kTrialRate = 0.85; // of the rate, during an experiment
+    static constexpr double kTrialRate = 0.85; // fraction of the rate during an experiment
     static constexpr int64_t kBetweenTrialsNs = 2'000'000'000;
-    static constexpr int kTrialRounds = 3; // the first one still tells of the rate before
+    static constexpr int kTrialRounds = 3; // the first round still reflects the previous rate
 
     double most_;
     double least_;
@@ -54,7 +54,7 @@ private:
     double tokens_ = 0;
     double depth_;
     int64_t refilledNs_ = INT64_MIN;
-    int64_t roundNs_ = INT64_MIN; // when the last one ended
+    int64_t roundNs_ = INT64_MIN; // end of the last round
     double floor_ = 0;
     int trialRoundsLeft_ = 0;
     int64_t nextTrialNs_ = INT64_MIN;

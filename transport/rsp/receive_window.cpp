@@ -14,7 +14,7 @@ namespace {
 
 constexpr uint32_t kNoPlace = UINT32_MAX;
 
-// For a whole datagram, whichever its seal; a multiple of a line of the cache.
+// Size of a slot: a whole datagram with any tag, rounded up to cache lines.
 constexpr size_t placeBytes(size_t payloadBytes) {
     constexpr size_t kLineBytes = 64;
     const size_t most = kStreamHeadBytes + kLengthBytes + payloadBytes + kMostTagBytes;
@@ -31,12 +31,12 @@ ReceiveWindow::ReceiveWindow(const StreamShape& shape, Sequence first)
     landing_.fill(kNoPlace);
 }
 
-// The group that `cumulative` stands in is kept whole while it may need its parity.
+// The group of `cumulative` is kept whole while its parity may be needed.
 Sequence ReceiveWindow::oldest() const {
     if (cumulative_ == forgotten_) return forgotten_;
     const Sequence base = groupBases_[slot(cumulative_ - 1)];
     const Group& g = groups_[slot(base)];
-    const bool needed = known_[slot(base)] && g.base == base && !g.complete(); // else it is forgotten, or needs nothing
+    const bool needed = known_[slot(base)] && g.base == base && !g.complete(); // otherwise it is forgotten or complete
     return earlier(reading_, needed ? base : cumulative_);
 }
 
@@ -45,7 +45,7 @@ void ReceiveWindow::forget() {
 }
 
 void ReceiveWindow::forgetDatagram(size_t at) {
-    payloads_.giveBack(places_[at]); // all before the oldest are here
+    payloads_.giveBack(places_[at]); // everything before the oldest has been received
     lengths_[at] = 0;
     if (!known_[at]) return;
     known_[at] = false;
@@ -58,7 +58,7 @@ void ReceiveWindow::dropRows(Group& g) {
     g.rows.clear();
 }
 
-// Nothing when the group can't begin there.
+// Returns null if no group can begin there.
 ReceiveWindow::Group* ReceiveWindow::groupAt(Sequence base) {
     if (!inWindow(base)) return nullptr;
     Group& g = groups_[slot(base)];
@@ -77,7 +77,7 @@ bool ReceiveWindow::learnSize(Group& g, uint8_t size) {
 }
 
 Landing ReceiveWindow::landing() {
-    // The lowest ones anew: what was read meanwhile has left its places, which the processor's cache still has.
+    // Recycle the lowest slots: data read in the meantime has freed slots that are still in the processor's cache.
     for (const uint32_t place : landing_)
         if (place != kNoPlace) payloads_.giveBack(place);
     for (size_t i = 0; i < kMostAtOnce; ++i) {
@@ -88,10 +88,10 @@ Landing ReceiveWindow::landing() {
     return {placeBytes(payloadBytes_), landingBytes_};
 }
 
-// The place where it lies already, else one that it is copied to.
+// Returns the slot that already contains the payload, otherwise a slot with a copy.
 uint32_t ReceiveWindow::placeFor(std::span<const std::byte> payload) {
     const auto isAt = [&](size_t i) { return landing_[i] != kNoPlace && landingBytes_[i] + kStreamHeadBytes == payload.data(); };
-    for (size_t k = 0; k < kMostAtOnce; ++k) { // the next one, most of the time
+    for (size_t k = 0; k < kMostAtOnce; ++k) { // usually the next one
         const size_t i = (landed_ + k) % kMostAtOnce;
         if (!isAt(i)) continue;
         landed_ = i + 1;
@@ -112,7 +112,7 @@ void ReceiveWindow::store(Group& g, Sequence s, std::span<const std::byte> paylo
 ReceiveWindow::Took ReceiveWindow::takeData(const StreamDatagram& d) {
     if (has(d.sequence)) {
         ++counters_.duplicates;
-        // It may tell the size of a group that was open so far.
+        // May reveal the size of an open group.
         if (d.groupSize != 0) learnGroupSize(d.groupBase(), d.groupSize);
         return Took::Known;
     }
@@ -186,7 +186,7 @@ void ReceiveWindow::tryToComplete(Group& g) {
     dropRows(g);
 }
 
-// Turns a row of all symbols into one of the missing ones.
+// Turns a parity symbol of all symbols into one of the missing ones.
 bool ReceiveWindow::addPresent(const Group& g, Row& row) const {
     for (uint32_t left = g.have; left != 0; left &= left - 1) {
         const int index = std::countr_zero(left);
@@ -225,7 +225,7 @@ void ReceiveWindow::recover(Group& g, std::span<const int> missing) {
 
 void ReceiveWindow::advance() {
     while (inWindow(cumulative_) && lengths_[slot(cumulative_)] != 0) ++cumulative_;
-    if (forgotten_ < reading_) forget(); // else nothing before it is read
+    if (forgotten_ < reading_) forget(); // nothing before it is unread
 }
 
 std::span<const std::byte> ReceiveWindow::readable() const {
@@ -272,7 +272,7 @@ Missing ReceiveWindow::missingFrom(Sequence from, Sequence until) const {
     int64_t span = g && g->size != 0 ? std::min<int64_t>(g->size, most) : most;
     for (int64_t i = s - m.base; i < span; ++i) {
         const Sequence at = m.base + i;
-        // Another group begins here, so the one that nothing is known of has ended.
+        // Another group begins here, so the unknown one ends.
         if (at != m.base && inWindow(at) && known_[slot(at)]) span = i;
         else if (!has(at)) m.missing |= 1u << i;
     }

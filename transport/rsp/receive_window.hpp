@@ -1,5 +1,5 @@
-// What a reader has of a stream: payloads in a ring, what is missing between them, and the parity that came. Groups that
-// can be completed from their parity are.
+// A reader's window of a stream: payloads in a ring, gaps between them, and received parity. Restores groups from
+// parity where possible.
 #pragma once
 
 #include <array>
@@ -18,39 +18,40 @@
 namespace mural::rsp {
 
 struct ReceiveCounters {
-    uint64_t datagrams = 0; // new ones, of any kind
+    uint64_t datagrams = 0; // new datagrams of any type
     uint64_t duplicates = 0;
-    uint64_t outside = 0;   // of the window
-    uint64_t recovered = 0; // datagrams made from parity
-    uint64_t refused = 0;   // what contradicts what came before, or itself
+    uint64_t outside = 0; // outside of the window
+    uint64_t recovered = 0; // restored from parity
+    uint64_t refused = 0; // inconsistent with earlier data, or in itself
 };
 
 class ReceiveWindow {
 public:
     ReceiveWindow(const StreamShape& shape, Sequence first);
 
-    // Places for the next datagrams, until the next call: a payload that lies there behind its head is taken as it lies.
+    // Returns buffers for the next datagrams, valid until the next call. A payload received into them, after its head,
+    // is not copied.
     Landing landing();
 
     enum class Took { New, Known, Refused };
     Took takeData(const StreamDatagram& d);
     Took takeParity(const StreamDatagram& d);
-    // The group that begins there has so many datagrams: told by a poll.
+    // Sets the size of the group that begins there, from a POLL.
     void learnGroupSize(Sequence base, uint8_t size);
 
-    // All before it are here.
+    // Cumulative acknowledgement: everything before has been received.
     [[nodiscard]] Sequence cumulative() const { return cumulative_; }
     [[nodiscard]] bool has(Sequence s) const { return s < cumulative_ || (inWindow(s) && lengths_[slot(s)] != 0); }
-    // The next bytes, of one datagram; empty when they are not here.
+    // Returns the next bytes, of one datagram; empty if they are missing.
     [[nodiscard]] std::span<const std::byte> readable() const;
-    // All that are in order, a piece for each datagram, as many as `into` takes; returns how many.
+    // Returns all contiguous data, one piece per datagram, up to the size of `into`; returns the number of pieces.
     size_t readable(std::span<std::span<const std::byte>> into) const;
-    // So many of them are done with.
+    // Releases bytes that have been read.
     void consume(size_t bytes);
-    // The first datagram of which bytes are still to be read or kept: windowDatagrams from here on have a place.
+    // Returns the first datagram with unread or retained bytes. The window covers windowDatagrams from here on.
     [[nodiscard]] Sequence oldest() const;
 
-    // What is missing from `from` on and before `until`, at most one group's worth; span 0: nothing.
+    // Returns the missing datagrams from `from` on and before `until`, at most one group; span 0: none.
     [[nodiscard]] Missing missingFrom(Sequence from, Sequence until) const;
 
     [[nodiscard]] const ReceiveCounters& counters() const { return counters_; }
@@ -62,8 +63,8 @@ private:
     };
     struct Group {
         Sequence base;
-        uint8_t size = 0;  // 0: not known
-        uint32_t have = 0; // bit i: base + i is here
+        uint8_t size = 0; // 0: unknown
+        uint32_t have = 0; // bit i: base + i has been received
         std::vector<Row> rows;
         [[nodiscard]] uint32_t missing() const { return (size == kMostInGroup ? ~0u : (1u << size) - 1) & ~have; }
         [[nodiscard]] bool complete() const { return size != 0 && missing() == 0; }
@@ -88,19 +89,19 @@ private:
     size_t payloadBytes_;
     uint32_t mask_;
     PayloadPlaces payloads_;
-    std::array<uint32_t, kMostAtOnce> landing_{};        // places where datagrams may come; kNoPlace: one is here
-    std::array<std::byte*, kMostAtOnce> landingBytes_{}; // of each
-    size_t landed_ = 0;                    // behind the last of them that is here
-    std::vector<uint32_t> places_;     // of payloads, of datagrams that are here
-    std::vector<uint16_t> lengths_;    // 0: not here
-    std::vector<Sequence> groupBases_; // by datagram, of those that are here
-    std::vector<Group> groups_;        // by the group's first datagram
-    std::vector<bool> known_;          // of groups_, side by side: most begin no group
+    std::array<uint32_t, kMostAtOnce> landing_{}; // slots for the next datagrams; kNoPlace: occupied
+    std::array<std::byte*, kMostAtOnce> landingBytes_{}; // address of each
+    size_t landed_ = 0; // one past the last occupied one
+    std::vector<uint32_t> places_; // slot per received datagram
+    std::vector<uint16_t> lengths_; // 0: missing
+    std::vector<Sequence> groupBases_; // per received datagram
+    std::vector<Group> groups_; // indexed by the group's first datagram
+    std::vector<bool> known_; // validity of groups_, separate because most datagrams begin no group
     std::vector<std::byte> scratch_;
     Sequence cumulative_;
-    Sequence reading_;     // the datagram that is being read
+    Sequence reading_; // datagram that is being read
     size_t readBytes_ = 0; // of it
-    Sequence forgotten_;   // slots before it are free
+    Sequence forgotten_; // slots before it are free
     size_t rowsHeld_ = 0;
     ReceiveCounters counters_;
 };

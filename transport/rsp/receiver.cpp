@@ -8,7 +8,7 @@ namespace {
 constexpr int64_t kFirstRepairNs = 5'000'000;
 constexpr int64_t kLeastRepairNs = 2'000'000;
 constexpr int64_t kMostRepairNs = 100'000'000;
-constexpr int64_t kLeastSpacingNs = 500'000; // between what is told without a poll: 2 000 per second
+constexpr int64_t kLeastSpacingNs = 500'000; // interval of unsolicited feedback: at most 2 000 per second
 } // namespace
 
 Receiver::Receiver(const ReceiverSettings& settings, Sequence first)
@@ -17,7 +17,7 @@ Receiver::Receiver(const ReceiverSettings& settings, Sequence first)
       sinceAck_(settings.self * 37u % ackEvery_), toldEdge_(first), countedLost_(first),
       repairNs_(kFirstRepairNs) {}
 
-// Neither the ring nor, while this process sleeps, the socket may overflow. What was said once is not taken back.
+// The window protects the ring and, while this process sleeps, the socket. An advertised edge is never reduced.
 Sequence Receiver::edgeNow() const {
     const Sequence ring = window_.oldest() + settings_.shape.windowDatagrams;
     const Sequence socket = later(gaps_.highest(), window_.cumulative()) + settings_.socketDatagrams;
@@ -42,7 +42,7 @@ void Receiver::input(const StreamDatagram& d, int64_t nowNs) {
         if (took == ReceiveWindow::Took::Refused) return;
         if (took == ReceiveWindow::Took::New) ++sinceAck_;
         if (!repair && d.sequence < gaps_.lostBefore() && lateUs > 0) gaps_.cameLate(int64_t{lateUs} * 1000);
-        // All before that is here already; and what lies half of all numbers behind it lies before the newest that came, by the other way around.
+        // Datagrams before it are duplicates. Half of the number space further, the comparison wraps.
         if (d.sequence >= before) gaps_.arrived(d.sequence, nowNs);
         if (d.flags & flag::kPoll) polled(d.next);
     }
@@ -53,7 +53,7 @@ void Receiver::input(const StreamDatagram& d, int64_t nowNs) {
     }
 }
 
-// No writer sends behind the window; one that says so would have us count what never was.
+// Clamps to the receive window: a bogus POLL must not report datagrams as lost that were never sent.
 void Receiver::polled(Sequence next) {
     const Sequence edge = window_.oldest() + settings_.shape.windowDatagrams;
     gaps_.polled(later(earlier(next, edge), gaps_.lostBefore()));
@@ -65,7 +65,7 @@ void Receiver::countLost(Sequence before) {
     }
 }
 
-// A writer that has used up most of what it was told waits, or soon will.
+// Returns true if the writer has used most of its window and waits, or soon will.
 bool Receiver::roomIsNews() const {
     const int64_t opened = edgeNow() - toldEdge_;
     const int64_t left = toldEdge_ - gaps_.highest();
@@ -82,7 +82,7 @@ int64_t Receiver::dueNs() const {
 }
 
 int64_t Receiver::tick(int64_t nowNs, Outbox& out) {
-    if (newestNs_ == 0) newestNs_ = nowNs; // nothing heard since then
+    if (newestNs_ == 0) newestNs_ = nowNs; // nothing received since then
     if (gaps_.look(nowNs)) newlyLost_ = true;
     countLost(gaps_.lostBefore());
     if (nowNs >= dueNs()) tell(nowNs, out);

@@ -1,8 +1,8 @@
-// One member's reading end of one writer's stream: puts the bytes in order, and tells the writer what it has, what it
-// lacks and how much it may be sent. Without sockets, clock or threads, as Sender.
+// A member's receiving end of one writer's stream: restores the order, and sends feedback about received and missing
+// data and its window. Has no sockets, clock or threads, as Sender.
 //
-// Told is: every so many datagrams (at another one in each member), at a poll, when something is lost, while that is not
-// mended, when there is room again for a writer that may wait for it, and as a heartbeat.
+// Feedback is sent every N datagrams (with a different phase per member), after a POLL, after a loss and while it is
+// not repaired, when a waiting writer gains room, and as heartbeat.
 #pragma once
 
 #include "transport/rsp/gap_watch.hpp"
@@ -12,10 +12,10 @@
 namespace mural::rsp {
 
 struct ReceiverSettings {
-    StreamShape shape; // as the writer's
+    StreamShape shape; // equal to the writer's
     MemberId self = 0;
     MemberId writer = 0;
-    uint32_t socketDatagrams = 4096; // that the socket's buffer holds while this process does not run
+    uint32_t socketDatagrams = 4096; // capacity of the socket buffer while this process does not run
     int64_t heartbeatNs = 100'000'000;
 };
 
@@ -23,19 +23,19 @@ class Receiver {
 public:
     Receiver(const ReceiverSettings& settings, Sequence first);
 
-    // Where what comes next is wanted; what comes elsewhere is taken as well.
+    // Buffers for the next datagrams. Datagrams received elsewhere are accepted as well.
     Landing landing() { return window_.landing(); }
     void input(const StreamDatagram& d, int64_t nowNs);
-    // The socket has dropped so many datagrams since it was opened.
+    // Sets the total number of datagrams that the socket has dropped.
     void socketDropped(uint32_t count) { dropped_ = count; }
 
     [[nodiscard]] std::span<const std::byte> readable() const { return window_.readable(); }
     size_t readable(std::span<std::span<const std::byte>> into) const { return window_.readable(into); }
     void consume(size_t bytes) { window_.consume(bytes); }
-    // What was consumed may be worth telling.
+    // Returns true if feedback is due after consumption.
     [[nodiscard]] bool hasNews() const { return tellNow_ || roomIsNews(); }
 
-    // Sends what is to be told; returns when to come again at the latest. Call it after input, and when there is news, too.
+    // Sends due feedback and returns the time of the next call. Call it also after input, and when hasNews() is true.
     int64_t tick(int64_t nowNs, Outbox& out);
 
     [[nodiscard]] Sequence cumulative() const { return window_.cumulative(); }
@@ -57,17 +57,17 @@ private:
     ReceiveWindow window_;
     GapWatch gaps_;
     uint32_t ackEvery_;
-    uint32_t sinceAck_;       // datagrams
+    uint32_t sinceAck_; // in datagrams
     Sequence toldEdge_;
     Sequence countedLost_;
     uint32_t lost_ = 0;
     uint32_t dropped_ = 0;
-    uint32_t newestUs_ = 0;   // time of sending of the newest datagram
-    int64_t newestNs_ = 0;    // when it came
+    uint32_t newestUs_ = 0; // send time of the newest datagram
+    int64_t newestNs_ = 0; // its arrival time
     int64_t toldNs_ = INT64_MIN;
-    int64_t repairNs_;        // how long a repair takes to come
+    int64_t repairNs_; // expected delay of a repair
     int64_t askedNs_ = INT64_MIN;
-    bool tellNow_ = true;     // the first feedback: the writer learns our edge
+    bool tellNow_ = true; // the first feedback advertises the window
     bool newlyLost_ = false;
     uint64_t feedbackSent_ = 0;
 };

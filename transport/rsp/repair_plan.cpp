@@ -8,7 +8,7 @@ namespace mural::rsp {
 
 namespace {
 bool isAfter(uint32_t aUs, uint32_t bUs) { return static_cast<int32_t>(aUs - bUs) > 0; }
-constexpr auto kOldestFirst = [](Sequence a, Sequence b) { return a > b; }; // of a heap
+constexpr auto kOldestFirst = [](Sequence a, Sequence b) { return a > b; }; // heap order
 } // namespace
 
 RepairPlan::RepairPlan(uint32_t windowDatagrams) : mask_(windowDatagrams - 1), states_(windowDatagrams) {}
@@ -67,7 +67,7 @@ void RepairPlan::want(const SendWindow::Group& group, uint32_t missing, int rows
 
 void RepairPlan::wantAgain(const SendWindow::Group& group, uint32_t missing, uint32_t echoUs) {
     State& s = states_[group.base.value() & mask_];
-    if (s.hasResent && isAfter(s.resentUs, echoUs)) return; // may still be under way
+    if (s.hasResent && isAfter(s.resentUs, echoUs)) return; // may still be in flight
     s.resend |= missing;
     enqueue(s);
 }
@@ -100,7 +100,7 @@ std::optional<RepairPlan::Repair> RepairPlan::take(
         State& s = states_[base.value() & mask_];
         const bool live = s.base == base && base >= oldest;
         if (live && partial == base) {
-            if (!blocked) return {}; // it is the newest: none waits behind it
+            if (!blocked) return {}; // newest group: nothing waits behind it
             s.rowsWanted = s.rowsSent;
             s.resend |= std::exchange(s.missing, 0);
         }

@@ -1,9 +1,9 @@
-// Which repairs a writer owes. Members tell what they miss; the group gets as many new rows of parity as its neediest
-// member lacks, once: a row mends different losses of different members.
+// Plans retransmissions. A group of datagrams receives as many new parity symbols as its neediest member lacks, once:
+// one parity symbol repairs different losses of different members.
 //
-// What a member tells is as old as the newest datagram it had seen (its echo). Rows sent after that may still be under
-// way; they are taken into account, so that neither a second member's nor a repeated request makes needless rows.
-// Where a group's rows are used up, the datagrams themselves are sent again.
+// Feedback is as old as the newest datagram the member had received (its echo). Parity sent later may be in flight and
+// is taken into account, so repeated requests cause no superfluous parity. When the parity symbols of a group are used
+// up, the datagrams themselves are retransmitted.
 #pragma once
 
 #include <array>
@@ -18,30 +18,30 @@ class RepairPlan {
 public:
     explicit RepairPlan(uint32_t windowDatagrams);
 
-    // A group's first datagram goes out; the window has no other group with its place.
+    // The group's first datagram is sent. No other group of the window has its index.
     void begin(Sequence base);
-    // One member's losses in one group, which is closed and has begun. `missing`: bits from the group's base on.
+    // Reports one member's losses in a closed group. `missing`: bits from the group's base on.
     void want(const SendWindow::Group& group, uint32_t missing, int rowsHeld, uint32_t echoUs);
-    // As want, by sending the datagrams again.
+    // The same, with retransmission of the datagrams.
     void wantAgain(const SendWindow::Group& group, uint32_t missing, uint32_t echoUs);
-    // Rows that nobody has asked for yet.
+    // Schedules parity in advance, without a request.
     void wantAhead(const SendWindow::Group& group, int rows);
 
     struct Repair {
         Sequence base; // of the group
         bool resend = false;
-        uint8_t place = 0; // resend: index in the group; else the row
+        uint8_t place = 0; // retransmission: index in the group; otherwise index of the parity symbol
         uint8_t rowsSent = 0;
     };
     [[nodiscard]] bool empty() const { return queue_.empty(); }
-    // The next one, which counts as sent at sentUs. Groups before `oldest` are no longer of interest. The group
-    // `partial` has not been sent whole: it waits, unless the rest may not be sent (`blocked`); then its datagrams
-    // are sent again.
+    // Returns the next repair, which counts as sent at sentUs. Drops groups before `oldest`. The group `partial` is not
+    // sent completely: its repairs wait, unless the rest may not be sent (`blocked`); then its datagrams are
+    // retransmitted.
     std::optional<Repair> take(Sequence oldest, std::optional<Sequence> partial, bool blocked, uint32_t sentUs);
 
     [[nodiscard]] int rowsSent(Sequence base) const;
     [[nodiscard]] int rowsAhead(Sequence base) const;
-    // Rows above those sent ahead that the group has needed.
+    // Returns the number of parity symbols the group needed beyond those sent in advance.
     [[nodiscard]] int rowsNeeded(Sequence base) const;
 
 private:
@@ -52,11 +52,11 @@ private:
         uint8_t rowsSent = 0;
         uint8_t rowsWanted = 0;
         uint8_t rowsAhead = 0;
-        uint32_t missing = 0;  // at any member, as was told
-        uint32_t resend = 0;   // datagrams to send again
-        uint32_t resentUs = 0; // when that was done last
+        uint32_t missing = 0; // at any member, as reported
+        uint32_t resend = 0; // datagrams to retransmit
+        uint32_t resentUs = 0; // time of the last retransmission
         bool hasResent = false;
-        std::array<uint32_t, kTimes> sentUs{}; // of row r at r % kTimes
+        std::array<uint32_t, kTimes> sentUs{}; // parity symbol r at r % kTimes
     };
     [[nodiscard]] const State* find(Sequence base) const;
     [[nodiscard]] static int rowsSentBy(const State& s, uint32_t us);
@@ -64,9 +64,9 @@ private:
     std::optional<Repair> takeFrom(State& s, uint32_t sentUs);
 
     uint32_t mask_;
-    std::vector<State> states_;  // by the group's first datagram
-    // Groups with something to send, a heap: what is oldest holds readers, and the window, most. By who asked first, one who
-    // lost bursts waited for all that others had asked for meanwhile: 2 s for bursts of 0.2 s.
+    std::vector<State> states_; // indexed by the group's first datagram
+    // Groups with pending repairs, oldest first: they block readers and the window longest. With a FIFO queue, a member
+    // with burst losses waited for all other requests: 2 s for bursts of 0.2 s.
     std::vector<Sequence> queue_;
 };
 

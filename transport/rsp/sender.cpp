@@ -13,7 +13,7 @@ constexpr int kMostRepairCredit = 64;
 constexpr int64_t kMostPollNs = 50'000'000;
 constexpr int64_t kLeastPollNs = 300'000;
 constexpr int64_t kUnknownRoundTripNs = 10'000'000;
-constexpr int64_t kLeastBatch = 8; // datagrams that are worth waking up for
+constexpr int64_t kLeastBatch = 8; // datagrams that justify a wake-up
 
 uint32_t toUs(int64_t ns) { return static_cast<uint32_t>(ns / 1000); }
 
@@ -24,10 +24,10 @@ Sender::Sender(const SenderSettings& settings, Sequence first)
       rate_(settings.rate), next_(first), acknowledged_(first), flushed_(first), roundNext_(first) {}
 
 Sequence Sender::addMember(MemberId id, int64_t nowNs) {
-    window_.flush(); // so that it begins with a group
+    window_.flush(); // the new member's stream begins with a group
     MemberState m;
-    // Nothing is for it before its first word: where its stream begins is told through the control connection, which
-    // datagrams overtake; what came before that would be lost, and taken for a crowded link's losses.
+    // Nothing counts for the member before its first feedback: the control connection announces the start of the
+    // stream, and datagrams may overtake it. Earlier datagrams would count as losses and as congestion.
     m.cumulative = m.edge = window_.filled();
     m.heardNs = m.movedNs = nowNs;
     members_[id] = m;
@@ -105,7 +105,7 @@ void Sender::sendData(int64_t nowNs, Outbox& out) {
     const SendWindow::Group group = window_.groupOf(next_);
     if (group.base == next_) repairs_.begin(next_);
     const bool groupEnd = group.size != 0 && next_ == group.base + group.size - 1;
-    // Of what was not flushed more is likely to come; if not, the delay of a poll tells.
+    // Data that is not flushed is probably followed by more; otherwise a POLL follows after a delay.
     const bool last = next_ + 1 == flushed_ && next_ + 1 == window_.filled();
     sendDatagram(next_, last || next_ + 1 == edge_ ? flag::kPoll : uint8_t{0}, nowNs, out);
     counters_.bytes += window_.payload(next_).size();
@@ -119,7 +119,7 @@ void Sender::sendData(int64_t nowNs, Outbox& out) {
     }
 }
 
-// Nobody listens.
+// No members.
 void Sender::skipAll() {
     next_ = window_.filled();
     advance();
@@ -149,7 +149,7 @@ void Sender::sendRow(const RepairPlan::Repair& r, const SendWindow::Group& group
 }
 
 bool Sender::sendRepair(int64_t nowNs, Outbox& out) {
-    // Of the group that is being sent no row is made: it would tell of datagrams that were never sent.
+    // A group in transmission gets no parity yet: it would cover datagrams that are not sent.
     std::optional<Sequence> partial;
     if (next_ < window_.filled()) {
         const Sequence base = window_.groupOf(next_).base;
@@ -184,8 +184,8 @@ void Sender::sendPoll(int64_t nowNs, uint8_t flags, Outbox& out) {
     ++counters_.polls;
 }
 
-// The end of what may be sent is polled for until all have answered: the last datagrams, or the word that a window is
-// open again, may be lost.
+// Polls at the end of the sendable data until all members have answered: the last datagrams, or the feedback that
+// reopens a window, may be lost.
 int64_t Sender::pollWhenNeeded(int64_t nowNs, Outbox& out) {
     const bool waiting = acknowledged_ != next_ || next_ != window_.filled();
     if (pollNow_ && waiting) sendPoll(nowNs, flag::kPoll, out);
@@ -204,13 +204,13 @@ int64_t Sender::pollWhenNeeded(int64_t nowNs, Outbox& out) {
     return std::min(pollAtNs_, sentNs_ + settings_.heartbeatNs);
 }
 
-// Datagrams that are worth waking up for, here and at all who hear of them.
+// Returns the number of datagrams that justifies a wake-up, here and at all receivers.
 int64_t Sender::worthSending(double wireBytes) const {
     const auto most = static_cast<int64_t>(mostInSending(static_cast<size_t>(wireBytes) - kWireOverheadBytes));
     return std::clamp(static_cast<int64_t>(rate_.batchBytes() / wireBytes), std::min(kLeastBatch, most), most);
 }
 
-// The end of a flush does not wait for tokens of datagrams that do not exist.
+// The end of a flush does not wait for tokens beyond its own datagrams.
 double Sender::batchBytes(double wireBytes) const {
     const int64_t waiting = std::max<int64_t>(1, limit() - next_);
     const int64_t datagrams = worthSending(wireBytes);
@@ -236,7 +236,8 @@ int64_t Sender::sendWhatMay(int64_t nowNs, Outbox& out) {
     endRound(nowNs);
     const auto bytes = static_cast<double>(
         kWireOverheadBytes + kStreamHeadBytes + kLengthBytes + settings_.shape.payloadBytes + settings_.tagBytes);
-    // While more waits than is worth sending, no less goes: the kernel's work for a sending is the same for a few.
+    // While more than a batch waits, send whole batches only: the kernel's cost per system call is independent of their
+    // size.
     const int64_t worth = worthSending(bytes);
     for (int64_t sent = 0;; ++sent) {
         if (sent % worth == 0 && limit() - next_ >= worth) {

@@ -1,7 +1,7 @@
-// The writing end of one stream to a group: what goes out when, and what is done about losses. No sockets, no clock, no
-// threads: times come in, datagrams go to an Outbox, and tick() says when it wants to be called again.
+// Sending end of one stream to a group: schedules datagrams and repairs losses. Has no sockets, clock or threads: times
+// come in, datagrams go to an Outbox, and tick() returns the time of its next call.
 //
-// Source: thesis, section "Reliable Stream Protocol"; the differences are told in docs/transport.md.
+// Source: thesis, section "Reliable Stream Protocol"; docs/transport.md lists the differences.
 #pragma once
 
 #include <map>
@@ -18,73 +18,74 @@ struct SenderSettings {
     StreamShape shape;
     MemberId self = 0;
     RateSettings rate;
-    size_t tagBytes = 0;    // what the seal adds to each datagram, for the rate
-    bool parity = true;     // false: losses are mended by sending the datagrams again, to measure against
+    size_t tagBytes = 0; // size of the tag per datagram, for the rate
+    bool parity = true; // false: repairs by retransmission only, for comparisons
     int64_t heartbeatNs = 100'000'000;
 };
 
-// What the writer knows of a member.
+// The writer's view of a member.
 struct MemberState {
     Sequence cumulative;
     Sequence edge;
-    int64_t heardNs = 0;     // last time that it is known to have heard us
-    int64_t movedNs = 0;     // last time that cumulative or edge moved, or nothing was owed
-    int64_t roundTripNs = 0; // smoothed; 0: not known
+    int64_t heardNs = 0; // last time that it is known to have received a datagram
+    int64_t movedNs = 0; // last progress of cumulative or edge, or last time without unacknowledged data
+    int64_t roundTripNs = 0; // smoothed; 0: unknown
     int64_t roundTripVarNs = 0;
-    uint32_t lost = 0;    // as told
-    uint32_t dropped = 0; // by its own socket, as told
-    double lostShare = 0; // of the last round
+    uint32_t lost = 0; // as reported
+    uint32_t dropped = 0; // by its socket, as reported
+    double lostShare = 0; // in the last round
 };
 
 struct SenderCounters {
-    uint64_t bytes = 0; // of payload, first sendings
+    uint64_t bytes = 0; // payload, without retransmissions
     uint64_t datagrams = 0;
     uint64_t rows = 0;
-    uint64_t rowsAhead = 0; // among rows
+    uint64_t rowsAhead = 0; // included in rows
     uint64_t resent = 0;
     uint64_t polls = 0;
     uint64_t feedback = 0;
-    uint64_t refused = 0; // feedback that can't be true
+    uint64_t refused = 0; // invalid feedback
 };
 
 class Sender {
 public:
     Sender(const SenderSettings& settings, Sequence first);
 
-    // The new member gets the stream from the returned number on.
+    // Adds a member, which receives the stream from the returned sequence number on.
     Sequence addMember(MemberId id, int64_t nowNs);
-    // Nobody waits for this one any longer.
+    // Removes a member. The stream no longer waits for it.
     void removeMember(MemberId id);
     [[nodiscard]] const std::map<MemberId, MemberState>& members() const { return members_; }
 
-    // Members say at once what they lack.
+    // Requests immediate feedback from all members.
     void ask() { pollNow_ = changed_ = true; }
 
-    // Copies what there is room for; returns how much. Without members all is taken, and nobody gets it.
+    // Copies as much as there is room for; returns the number of bytes. Without members all data is accepted and
+    // discarded.
     size_t write(std::span<const std::byte> bytes);
-    // So many bytes since the start: where a member that is added now begins.
+    // Bytes written since the start: the start position of a member added now.
     [[nodiscard]] uint64_t writtenBytes() const { return writtenBytes_; }
-    // What was written goes out now, and members say at once that they have it.
+    // Sends buffered data now and requests an immediate acknowledgement.
     void flush();
     [[nodiscard]] size_t roomBytes() const { return window_.roomBytes(); }
-    // Something that was not sent yet may be: a whole datagram, or what was flushed.
+    // Returns true if an unsent datagram may be sent: a full one, or a flushed one.
     [[nodiscard]] bool canSend() const { return next_ < limit(); }
-    // Enough that a writer who waits for room need not soon wait again.
+    // Returns true if there is enough room that a waiting writer does not soon wait again.
     [[nodiscard]] bool muchRoom() const { return window_.roomBytes() >= settings_.shape.payloadBytes * settings_.shape.windowDatagrams / 8; }
-    // All that was flushed has arrived everywhere.
+    // Returns true if all members have acknowledged all flushed data.
     [[nodiscard]] bool allArrived() const { return acknowledged_ == window_.filled(); }
 
     void input(const Feedback& f, int64_t nowNs);
-    // Sends what may be sent now; returns when to come again at the latest. Call it after write, flush and input, too. Before
-    // that time, and when nothing has changed, it does nothing.
+    // Sends due datagrams and returns the time of the next call. Call it also after write, flush and input. Before that
+    // time, and without changes, it does nothing.
     int64_t tick(int64_t nowNs, Outbox& out);
 
     [[nodiscard]] const SenderCounters& counters() const { return counters_; }
-    // Whether the stream waits for this member: for its word that it has all, or for room.
+    // Returns true if the stream waits for this member's acknowledgement or window.
     [[nodiscard]] bool waitsFor(const MemberState& m) const {
         return m.cumulative != next_ || (m.edge <= next_ && next_ != window_.filled());
     }
-    // Whether something that it has room for was sent and did not arrive, or not yet.
+    // Returns true if a datagram within the member's window was sent and is not acknowledged.
     [[nodiscard]] bool lacks(const MemberState& m) const { return m.cumulative < earlier(m.edge, next_); }
     [[nodiscard]] const RateControl& rate() const { return rate_; }
     [[nodiscard]] Sequence next() const { return next_; }
@@ -121,19 +122,19 @@ private:
     SenderCounters counters_;
     uint64_t writtenBytes_ = 0;
 
-    Sequence next_;         // the first that was never sent
-    Sequence acknowledged_; // all before it are everywhere
-    Sequence flushed_;      // behind the last flush
-    Sequence edge_;         // the least of the members' edges; without members without meaning
-    int repairCredit_ = 0;  // repairs that may go before the next datagram
-    double needShare_ = 0;  // rows per datagram that groups need lately
-    int64_t sentNs_ = INT64_MIN; // last datagram of any kind
+    Sequence next_; // first datagram that was never sent
+    Sequence acknowledged_; // everything before is acknowledged by all
+    Sequence flushed_; // end of the last flush
+    Sequence edge_; // smallest window edge of all members; meaningless without members
+    int repairCredit_ = 0; // repairs that may precede the next datagram
+    double needShare_ = 0; // recently needed parity symbols per datagram
+    int64_t sentNs_ = INT64_MIN; // time of the last datagram of any type
     int64_t pollAtNs_ = INT64_MAX;
     int pollsWithoutAnswer_ = 0;
     bool pollNow_ = false;
     int64_t tickedNs_ = INT64_MIN;
-    int64_t dueNs_ = INT64_MIN; // when something is to be done at the latest
-    bool changed_ = false;      // since that was found
+    int64_t dueNs_ = INT64_MIN; // time of the next due work
+    bool changed_ = false; // state has changed since dueNs_ was computed
     int64_t roundBeganNs_ = INT64_MIN;
     Sequence roundNext_;
     std::map<MemberId, uint32_t> roundLost_;

@@ -1,4 +1,4 @@
-// What members' feedback does to a writer.
+// Processing of members' feedback.
 #include "transport/rsp/sender.hpp"
 
 #include <algorithm>
@@ -9,10 +9,10 @@
 namespace mural::rsp {
 
 namespace {
-constexpr int64_t kJumpNs = 250'000'000; // between two ticks: this process did not run
+constexpr int64_t kJumpNs = 250'000'000; // a longer gap between two ticks means that this process did not run
 constexpr int kMostRowsAhead = 4;
 constexpr double kNeedSmoothing = 1.0 / 64; // per group
-constexpr int64_t kLeastRoundDatagrams = 256; // fewer tell little of losses
+constexpr int64_t kLeastRoundDatagrams = 256; // fewer datagrams say little about losses
 constexpr int64_t kSaneRoundTripNs = 10'000'000'000;
 } // namespace
 
@@ -39,12 +39,12 @@ void Sender::input(const Feedback& f, int64_t nowNs) {
         ++counters_.refused;
         return;
     }
-    // Who speaks but hears nothing is as good as silent.
+    // A member that sends but does not receive counts as silent.
     m.heardNs = std::max(m.heardNs, nowNs - int64_t{f.heldUs} * 1000);
     m.lost = f.lost;
     m.dropped = f.dropped;
     measureRoundTrip(m, f, nowNs);
-    // Feedback may overtake feedback: nothing goes back.
+    // Feedback may be reordered: values never decrease.
     const bool moved = f.cumulative > m.cumulative || f.edge > m.edge;
     m.cumulative = later(m.cumulative, f.cumulative);
     m.edge = later(m.edge, earlier(f.edge, m.cumulative + settings_.shape.windowDatagrams));
@@ -67,7 +67,7 @@ void Sender::takeEntries(const Feedback& f) {
     }
 }
 
-// A member that has seen nothing of a group does not know where it begins: an entry may cross groups.
+// An entry may span groups: a member that has received nothing of a group does not know its start.
 void Sender::takeEntry(const Missing& m, uint32_t echoUs) {
     uint32_t left = m.missing;
     while (left != 0) {
@@ -77,7 +77,7 @@ void Sender::takeEntry(const Missing& m, uint32_t echoUs) {
             continue;
         }
         SendWindow::Group group = window_.groupOf(s);
-        const auto offset = m.base - group.base; // of the entry within the group, or the other way round
+        const auto offset = m.base - group.base; // offset of the entry within the group, or negative
         if (group.size == 0 && group.base + group.filled == window_.filled()) {
             window_.closeGroup();
             group = window_.groupOf(s);
@@ -85,7 +85,7 @@ void Sender::takeEntry(const Missing& m, uint32_t echoUs) {
         const uint32_t whole = group.size == kMostInGroup ? ~0u : (1u << group.size) - 1;
         const uint32_t missing = (offset >= 0 ? m.missing << offset : m.missing >> -offset) & whole;
         const uint32_t covered = offset >= 0 ? whole >> offset : whole << -offset;
-        // Rows are told of only where the entry is the group's own.
+        // Only an entry that begins at the group reports its parity symbols.
         const int rows = m.base == group.base ? m.rows : 0;
         if (settings_.parity)
             repairs_.want(group, missing, rows, echoUs);
@@ -104,7 +104,8 @@ void Sender::advance() {
     window_.release(all);
 }
 
-// How many rows per datagram the groups that are done have needed: what the next short group gets ahead.
+// Learns how many parity symbols per datagram completed groups needed. The next short group receives as many in
+// advance.
 void Sender::learnNeed(Sequence from, Sequence to) {
     for (Sequence s = from; s < to;) {
         const SendWindow::Group group = window_.groupOf(s);
@@ -112,7 +113,8 @@ void Sender::learnNeed(Sequence from, Sequence to) {
         if (end > to || group.size == 0) return;
         const int asked = repairs_.rowsNeeded(group.base);
         const int ahead = repairs_.rowsAhead(group.base);
-        // Of rows sent ahead nobody tells whether they were needed: each quiet group takes one off the guess.
+        // Feedback does not reveal whether advance parity was needed: each group without requests lowers the estimate
+        // by one.
         const int rows = asked > 0 ? ahead + asked : std::max(0, ahead - 1);
         const double share = static_cast<double>(rows) / group.size;
         const double weight = kNeedSmoothing * group.size / kMostInGroup;
@@ -142,7 +144,7 @@ void Sender::endRound(int64_t nowNs) {
     rate_.roundEnded(worst, sent, nowNs);
 }
 
-// When this process has not run for a while, that is nobody's silence but ours.
+// A gap in this process's own execution is not silence of the members.
 void Sender::surviveJump(int64_t nowNs) {
     const int64_t goneNs = tickedNs_ == INT64_MIN ? 0 : nowNs - tickedNs_;
     tickedNs_ = nowNs;

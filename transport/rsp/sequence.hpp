@@ -1,5 +1,5 @@
-// The number of a datagram in its stream: 32 bits that wrap. Two numbers are ordered by the shorter way from one to the
-// other (RFC 1982), so a window may hold at most 2^31 of them; ours hold 2^13.
+// Sequence number of a datagram: 32 bits with wrap-around. The shorter distance orders two numbers (RFC 1982), so a
+// window is limited to 2^31; windows here hold 2^13.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ public:
     }
     friend constexpr Sequence operator+(Sequence s, int64_t n) { return s += n; }
     friend constexpr Sequence operator-(Sequence s, int64_t n) { return s += -n; }
-    // How many steps lead from b to a; negative when a comes before b.
+    // Returns the distance from b to a; negative if a precedes b.
     friend constexpr int64_t operator-(Sequence a, Sequence b) { return static_cast<int32_t>(a.value_ - b.value_); }
 
     friend constexpr bool operator==(Sequence a, Sequence b) = default;

@@ -1,8 +1,8 @@
-// When a group's thread sees to its sockets, because nobody who waits has done so for a while. Whoever has led pushes that
-// ahead, from its own thread: a system call now and then, while the group's thread sleeps on. A timer of that thread's own
-// would wake it each time, for nothing, where leaders always come back.
+// Timer after which the group's thread takes over polling, because no waiting thread has returned. A former leader
+// postpones it from its own thread: an occasional system call while the group's thread sleeps. A timer of the group's
+// own thread would wake it each time without need.
 //
-// Called with the group's lock held.
+// All methods require the group's lock.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +16,13 @@ class TakeOverTimer {
 public:
     static Result<TakeOverTimer> open();
 
-    // Readable when it is time.
+    // Readable after expiry.
     [[nodiscard]] int descriptor() const { return timer_.get(); }
-    // It is time between half of this from now on and all of it; what was set before is over.
+    // Sets the expiry between half of `afterNs` from now and all of it. Replaces the previous setting.
     void push(int64_t nowNs, int64_t afterNs);
-    // A leader sleeps until then, and looks again: it is not time before that.
+    // A leader sleeps until `untilNs`: the timer does not expire earlier.
     void keepBehind(int64_t untilNs, int64_t afterNs);
-    // Whether it is time: it may have been pushed ahead since the descriptor was readable.
+    // Returns true after expiry. The timer may have been postponed since the descriptor became readable.
     bool rang(int64_t nowNs);
 
 private:

@@ -25,14 +25,14 @@ namespace mural::rsp {
 
 namespace {
 
-constexpr size_t kSlotBytes = 65'536; // what UDP_GRO may join
-// One begins behind another's first datagram: at a power of two all first datagrams would share a few lines of the cache.
+constexpr size_t kSlotBytes = 65'536; // largest result of UDP_GRO
+// Offset between slots: with a power of two all first datagrams would share a few cache sets.
 constexpr size_t kSlotStrideBytes = kSlotBytes + 1536;
-// What a datagram takes of a socket's buffer: the kernel's memory for it comes in powers of two, with room for heads and
-// fragments, and for what tells of it.
+// Overhead of a datagram in the socket buffer: the kernel rounds allocations up to powers of two, plus headers,
+// fragments and metadata.
 constexpr size_t kPacketRoomBytes = 448;
 constexpr size_t kPacketDescriptorBytes = 256;
-// So many that came several at once, and one by one, show that nothing joins them here.
+// Number of reads with several single datagrams after which GRO counts as absent.
 constexpr size_t kSeveral = 8;
 constexpr size_t kProofDatagrams = 256;
 
@@ -69,18 +69,19 @@ Result<void> joinGroup(int fd, const SocketAddress& group, const NetworkInterfac
 } // namespace
 
 struct UdpSocket::Slots {
-    // Memory comes as it is first used: most of it never is.
+    // Memory is committed on first use; most of it never is.
     std::unique_ptr<std::byte[]> bytes = std::make_unique_for_overwrite<std::byte[]>(kMostAtOnce * kSlotStrideBytes);
     std::array<mmsghdr, kMostAtOnce> messages{};
-    std::array<iovec, kMostAtOnce> pieces{}; // one for each: with more a datagram costs the kernel 55 ns more
+    std::array<iovec, kMostAtOnce> pieces{}; // one per message: more would cost the kernel 55 ns per datagram
     std::array<SocketAddress, kMostAtOnce> from{};
     std::array<std::array<char, 128>, kMostAtOnce> control{};
 
-    bool plain = false; // each message has a place, and nothing is told of it but its bytes
+    bool plain = false; // each message has a buffer and no metadata
 
     void prepare(bool tellsSenders, const Landing& landing) {
         const bool wantsPlain = !tellsSenders && landing.places.size() == kMostAtOnce;
-        if (plain && wantsPlain && pieces[0].iov_len == landing.placeBytes) { // of what is there the kernel changes nothing
+        // the kernel leaves these fields unchanged
+        if (plain && wantsPlain && pieces[0].iov_len == landing.placeBytes) {
             for (size_t i = 0; i < kMostAtOnce; ++i) pieces[i].iov_base = landing.places[i];
             return;
         }
@@ -106,7 +107,7 @@ void UdpSocket::FreeSlots::operator()(Slots* slots) const { delete slots; }
 void UdpSocket::prepare(size_t bufferBytes) {
     const int fd = socket_.get();
     const int wanted = static_cast<int>(std::min<size_t>(bufferBytes, size_t{1} << 30));
-    // The forced one is for root and goes beyond the system's limit.
+    // SO_RCVBUFFORCE exceeds the system's limit and requires root.
     if (!set(fd, SOL_SOCKET, SO_RCVBUFFORCE, wanted)) set(fd, SOL_SOCKET, SO_RCVBUF, wanted);
     if (!set(fd, SOL_SOCKET, SO_SNDBUFFORCE, wanted)) set(fd, SOL_SOCKET, SO_SNDBUF, wanted);
     int got = 0;
@@ -122,12 +123,12 @@ Result<UdpSocket> UdpSocket::openGroup(const SocketAddress& group, const Network
     socket.prepare(bufferBytes);
     set(socket.descriptor(), SOL_SOCKET, SO_REUSEADDR, 1);
     SocketAddress place = group;
-    // A group of IPv6 within a link is one of each card.
+    // A link-local IPv6 group exists once per interface.
     if (auto* six = reinterpret_cast<sockaddr_in6*>(&place.storage); place.family() == AF_INET6 && IN6_IS_ADDR_MC_LINKLOCAL(&six->sin6_addr)) six->sin6_scope_id = interface.index;
     if (bind(socket.descriptor(), place.get(), place.sizeBytes) != 0)
         return failed("listen to the multicast group's port " + std::to_string(tcpPort(group)));
     if (auto r = joinGroup(socket.descriptor(), group, interface); !r) return r.error();
-    // Only what came through this card.
+    // Receive from this interface only.
     set(socket.descriptor(), IPPROTO_IP, IP_MULTICAST_ALL, 0);
     return socket;
 }
@@ -150,7 +151,8 @@ void UdpSocket::setLoop(bool loop) {
 }
 
 void UdpSocket::ignoreMember(MemberId self) {
-    // Behind the UDP header (8 bytes) stands ours, the member in its third and fourth byte; the filter loads big endian.
+    // The datagram's head follows the UDP header (8 bytes), with the member id in its third and fourth byte. BPF loads
+    // big-endian.
     constexpr uint32_t place = 8 + 2;
     const auto turned = static_cast<uint32_t>((self & 0xff) << 8 | self >> 8);
     std::array<sock_filter, 4> program{{
@@ -160,7 +162,7 @@ void UdpSocket::ignoreMember(MemberId self) {
         {BPF_RET | BPF_K, 0, 0, UINT32_MAX},
     }};
     const sock_fprog filter{static_cast<unsigned short>(program.size()), program.data()};
-    // Without it they are refused later.
+    // Without the filter the datagrams are rejected later.
     set(socket_.get(), SOL_SOCKET, SO_ATTACH_FILTER, filter);
 }
 
@@ -173,7 +175,7 @@ uint32_t UdpSocket::capacity(size_t datagramBytes) const {
     return static_cast<uint32_t>(std::max<size_t>(1, bufferBytes_ / each));
 }
 
-// Asked for, not told with each datagram (SO_RXQ_OVFL), which costs a fiftieth of receiving.
+// Queries the counter. Receiving it with each datagram (SO_RXQ_OVFL) costs a fiftieth of the receive path.
 uint32_t UdpSocket::dropped() const {
     std::array<uint32_t, SK_MEMINFO_VARS> told{};
     socklen_t size = sizeof told;
@@ -247,7 +249,7 @@ Result<void> UdpSocket::send(const SocketAddress& to, std::span<std::byte> datag
         case EAGAIN:
         case ENOBUFS:
         case ENOMEM:
-        case ECONNREFUSED: return {}; // lost, as on the way; the refusal is of an earlier datagram to a port now closed
+        case ECONNREFUSED: return {}; // counts as lost; the error belongs to an earlier datagram to a closed port
         case EINTR: continue;
         case EIO:
         case EINVAL:
@@ -271,9 +273,9 @@ Result<void> UdpSocket::send(const SocketAddress& to, std::span<std::byte> datag
 }
 
 std::span<const UdpSocket::Datagram> UdpSocket::fetch(const Landing& landing) {
-    if (!slots_) slots_.reset(new Slots); // not for those that only send
+    if (!slots_) slots_.reset(new Slots); // not needed by sending-only sockets
     Slots& s = *slots_;
-    // What may come joined needs more room than a place has.
+    // Coalesced datagrams need more room than a slot has.
     s.prepare(tellsSenders_, joined_ == Joined::Never ? landing : Landing{});
     const int count = recvmmsg(socket_.get(), s.messages.data(), kMostAtOnce, MSG_DONTWAIT, nullptr);
     const auto messages = static_cast<size_t>(std::max(0, count));
@@ -299,7 +301,8 @@ std::span<const UdpSocket::Datagram> UdpSocket::fetch(const Landing& landing) {
     return fetched_;
 }
 
-// A card that joins datagrams saves more than the copy from here costs; one that does not does so from the first burst on.
+// Detects GRO from the first burst: with it, coalescing saves more than the copy costs; without it, datagrams are
+// received in place.
 void UdpSocket::lookForJoined(size_t messages, size_t datagrams, bool wantsLanding) {
     if (datagrams > messages) joined_ = Joined::Some;
     else if (messages >= kSeveral) single_ += messages;

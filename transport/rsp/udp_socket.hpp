@@ -1,8 +1,8 @@
-// UDP as RSP needs it: many datagrams per system call, and what the kernel dropped.
+// UDP socket for RSP: many datagrams per system call, and the kernel's drop counter.
 //
-// Sending: up to 64 datagrams of one size go out as one (UDP_SEGMENT); where a kernel or card refuses that, by sendmmsg;
-// where that is missing, one by one. What was refused once is not tried again. Receiving: recvmmsg, and UDP_GRO where
-// cards join datagrams; where they join none, each lands where its reader wants it.
+// Sending: up to 64 datagrams of equal size as one message (UDP_SEGMENT); with sendmmsg where kernel or card refuses
+// that; otherwise one by one. A refused method is not tried again. Receiving: recvmmsg, with UDP_GRO where cards
+// coalesce datagrams; otherwise each is received directly into the reader's buffers.
 #pragma once
 
 #include <memory>
@@ -22,43 +22,43 @@ namespace mural::rsp {
 
 class UdpSocket {
 public:
-    // For what is sent to the group.
+    // Opens a socket for datagrams to the group.
     static Result<UdpSocket> openGroup(const SocketAddress& group, const NetworkInterface& interface, size_t bufferBytes);
-    // For sending to the group and to members, and for what is sent to this member alone; any free port.
+    // Opens a socket on any free port, for sending, and for datagrams to this member.
     static Result<UdpSocket> openOwn(const NetworkInterface& interface, int family, size_t bufferBytes);
 
-    // Whether what is sent to the group comes to members on this machine, too.
+    // Sets whether datagrams to the group reach members on this machine.
     void setLoop(bool loop);
-    // What this member sent and what comes back to its own machine: dropped by the kernel, before it takes room here. Every
-    // datagram is looked at for that, by whoever brings it: on one machine, its sender.
+    // Drops this member's own looped-back datagrams in the kernel, before they take room in the buffer. The filter runs
+    // per datagram, on one machine at the cost of the sender.
     void ignoreMember(MemberId self);
     void ignoreNobody();
 
-    // No senders are told: to ask the kernel for their addresses costs something for each datagram.
+    // Omits sender addresses, which cost the kernel time per datagram.
     void leaveOutSenders() { tellsSenders_ = false; }
 
     [[nodiscard]] int descriptor() const { return socket_.get(); }
     [[nodiscard]] SocketAddress localAddress() const;
 
-    // Datagrams of segmentBytes each, the last may be shorter; at most mostInSending(). What the network
-    // has no room for is lost, as on the way. Errors: the network is gone; the datagrams are too long for it.
+    // Sends datagrams of segmentBytes each (the last may be shorter), at most mostInSending(). Datagrams without room
+    // in the network count as lost. Errors: the network is down; the datagrams are too long.
     Result<void> send(const SocketAddress& to, std::span<std::byte> datagrams, size_t segmentBytes);
 
     struct Datagram {
-        std::span<std::byte> bytes; // at a place of the landing, or of the socket's own
+        std::span<std::byte> bytes; // in the reader's buffers, or in the socket's own
         const SocketAddress* from;
     };
-    // What is there now, by one system call, in its order; it stays until the next call. Once it is clear that nothing comes
-    // joined, all lie at the landing's places; what is longer than those is then lost, as on the way.
+    // Receives pending datagrams, in order, with one system call. They are valid until the next call. Once GRO is known
+    // to be absent, all of them are in the reader's buffers, and longer datagrams are lost.
     std::span<const Datagram> fetch(const Landing& landing = {});
-    // The last call took as many as it may.
+    // Returns true if the last call reached its limit.
     [[nodiscard]] bool mayBeMore() const { return mayBeMore_; }
 
-    // So many datagrams were dropped because nobody fetched them. With ignoreMember, those that it drops count, too.
+    // Returns the number of datagrams dropped by the kernel, including those of ignoreMember().
     [[nodiscard]] uint32_t dropped() const;
-    // What the kernel gave for receiving; it counts its own bookkeeping in.
+    // Returns the granted receive buffer, including the kernel's overhead.
     [[nodiscard]] size_t bufferBytes() const { return bufferBytes_; }
-    // What the socket's buffer holds of datagrams of a size.
+    // Returns the number of datagrams of a size that fit into the receive buffer.
     [[nodiscard]] uint32_t capacity(size_t datagramBytes) const;
     [[nodiscard]] const char* sendingBy() const;
 
@@ -83,7 +83,7 @@ private:
     bool tellsSenders_ = true;
     bool mayBeMore_ = false;
     Joined joined_ = Joined::Unknown;
-    size_t single_ = 0; // datagrams that came among several, and not joined
+    size_t single_ = 0; // received among several and not coalesced
     std::vector<Datagram> fetched_;
     std::unique_ptr<Slots, FreeSlots> slots_;
 };
