@@ -10,13 +10,13 @@ namespace mural {
 
 namespace {
 
-// Both sides copy at the same time: one a piece while the other is at the next.
+// Size of a published piece: small enough that one side writes a piece while the other reads the previous one.
 uint32_t pieceFor(size_t capacityBytes) {
     return static_cast<uint32_t>(std::clamp<size_t>(capacityBytes / 8, 16, size_t{64} * 1024));
 }
 
-// The reader is woken early (it may draw what is there already), the writer late (a full ring means
-// that it is ahead anyway; small steps would only cost wake-ups).
+// The reader is woken early, because it can draw the data that is already there. The writer is woken late: a full ring
+// means that it is ahead, and small steps would only cost wake-ups.
 uint32_t announceDataFor(size_t capacityBytes) {
     return static_cast<uint32_t>(std::clamp<size_t>(capacityBytes / 8, 1, size_t{64} * 1024));
 }
@@ -25,9 +25,8 @@ uint32_t announceRoomFor(size_t capacityBytes) {
     return static_cast<uint32_t>(std::max<size_t>(capacityBytes / 4, 1));
 }
 
-// Both sides do: write own word, then look at the other's, all sequentially consistent; so at least
-// one of "the sleeper sees the new position" and "the waker sees the flag" holds. One wake-up per
-// sleep.
+// Both sides store their own word and then load the other's, sequentially consistent. So the sleeper sees the new
+// position, or the waker sees the flag. One wake-up per sleep.
 bool wakeIfWaiting(std::atomic<uint32_t>& waiting,
                    std::atomic<uint32_t>& position,
                    uint32_t positionNow) {
@@ -65,8 +64,7 @@ RingWriter::RingWriter(RingControl& control, std::byte* data, size_t capacityByt
     , pieceBytes_(pieceFor(capacityBytes))
     , announceBytes_(announceDataFor(capacityBytes)) {}
 
-// The reader's position is looked at only when what is known of it is not enough: its cache line
-// then stays with the reader.
+// Loads the reader's position only if the cached value is insufficient, so its cache line stays with the reader.
 size_t RingWriter::room(size_t wantedBytes) {
     uint32_t freeBytes = capacityBytes_ - (tail_ - seenHead_);
     if (freeBytes >= wantedBytes)

@@ -1,15 +1,13 @@
-// A ring of bytes with one writer and one reader, in memory that two threads or two processes
-// share.
+// A single-producer single-consumer byte ring in memory shared by two threads or two processes.
 //
-// Positions are free-running 32-bit byte counts (capacity ≤ 1 GiB, so differences are unambiguous);
-// they are futex words too: the reader sleeps on `tail`, the writer on `head`. A side that sleeps
-// says so in its waiting flag; so a stream that flows costs no system call. Wake-ups are batched:
-// after announceBytes, at announce(), and before a side goes to sleep itself. Whoever sleeps must
-// do it in slices: the last bytes of a batch are visible at once, but only announce() wakes for
-// them.
+// Positions are free-running 32-bit byte counts (capacity at most 1 GiB, so differences are unambiguous). They are
+// futex words too: the reader sleeps on `tail`, the writer on `head`. A sleeping side sets its waiting flag, so a
+// flowing stream costs no system call. Wake-ups are batched: after announceBytes, at announce(), and before a side goes
+// to sleep. A side must sleep in slices: the last bytes of a batch are visible immediately, but only announce() wakes
+// for them.
 //
-// Each side keeps its own position privately: a damaged or hostile peer can't make it run outside
-// of the ring (damaged() becomes true instead).
+// Each side keeps a private copy of its position, so a damaged or hostile peer cannot make it leave the ring; damaged()
+// becomes true instead.
 #pragma once
 
 #include <atomic>
@@ -22,37 +20,37 @@ namespace mural {
 constexpr size_t kMinRingBytes = 64;
 constexpr size_t kMaxRingBytes = size_t{1} << 30;
 
-// Lives in the shared memory; zero bytes are its valid first state.
+// Control block in shared memory. All zeros is a valid initial state.
 struct RingControl {
-    alignas(64) std::atomic<uint32_t> tail; // bytes written so far
-    alignas(64) std::atomic<uint32_t> head; // bytes read so far
+    alignas(64) std::atomic<uint32_t> tail; // total bytes written
+    alignas(64) std::atomic<uint32_t> head; // total bytes read
     alignas(64) std::atomic<uint32_t> readerWaiting;
     alignas(64) std::atomic<uint32_t> writerWaiting;
-    alignas(64) std::atomic<uint32_t> writerClosed; // no more bytes will come
-    std::atomic<uint32_t> readerClosed;             // no more bytes will be read
+    alignas(64) std::atomic<uint32_t> writerClosed; // the writer has ended
+    std::atomic<uint32_t> readerClosed; // the reader has ended
 };
 static_assert(std::atomic<uint32_t>::is_always_lock_free, "needed between processes");
 
-// Wakes both sides of a ring whatever they wait for: for the end of a connection.
+// Wakes both sides of a ring unconditionally, at the end of a connection.
 void wakeRing(RingControl& control);
 
-// Owned by the one thread that writes.
+// Producer side. Owned by one thread.
 class RingWriter {
 public:
     RingWriter(RingControl& control, std::byte* data, size_t capacityBytes);
 
-    // Copies and publishes what fits now; returns how much that was.
+    // Copies and publishes as much as fits; returns the number of bytes.
     size_t write(std::span<const std::byte> bytes);
     [[nodiscard]] bool hasRoom() { return room(1) != 0; }
     // Wakes the reader if it sleeps.
     void announce();
-    // Announces, then sleeps until the reader makes room, at most timeoutNs; may return early.
+    // Announces, then sleeps until there is room, for at most timeoutNs. Spurious returns are possible.
     void sleepUntilRoom(int64_t timeoutNs);
 
     [[nodiscard]] bool damaged() const { return damaged_; }
     [[nodiscard]] uint64_t wakeUps() const {
         return wakeUps_;
-    } // system calls made to wake the reader
+    } // system calls that woke the reader
 
 private:
     size_t room(size_t wantedBytes);
@@ -61,8 +59,8 @@ private:
     RingControl& control_;
     std::byte* data_;
     uint32_t capacityBytes_;
-    uint32_t pieceBytes_;    // published at once, so that both sides copy at the same time
-    uint32_t announceBytes_; // published without a wake-up at most
+    uint32_t pieceBytes_; // unit of publication, so both sides copy concurrently
+    uint32_t announceBytes_; // bytes published between two wake-ups
     uint32_t tail_ = 0;
     uint32_t seenHead_ = 0;
     uint32_t unannouncedBytes_ = 0;
@@ -70,17 +68,17 @@ private:
     bool damaged_ = false;
 };
 
-// Owned by the one thread that reads.
+// Consumer side. Owned by one thread.
 class RingReader {
 public:
     RingReader(RingControl& control, const std::byte* data, size_t capacityBytes);
 
-    // Takes what is there now, at most into.size(); returns how much that was.
+    // Reads available bytes, at most into.size(); returns their number.
     size_t read(std::span<std::byte> into);
     [[nodiscard]] bool hasData() { return available(1) != 0; }
     // Wakes the writer if it sleeps.
     void announce();
-    // Announces, then sleeps until the writer has written, at most timeoutNs; may return early.
+    // Announces, then sleeps until there is data, for at most timeoutNs. Spurious returns are possible.
     void sleepUntilData(int64_t timeoutNs);
 
     [[nodiscard]] bool damaged() const { return damaged_; }

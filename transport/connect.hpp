@@ -1,4 +1,4 @@
-// Connections and listeners from their descriptions (connection_description.hpp).
+// Creates connections and listeners from their descriptions (connection_description.hpp).
 #pragma once
 
 #include <memory>
@@ -8,11 +8,10 @@
 
 namespace mural {
 
-// Connects to where the text leads: tcp://…, shm:N, or a group's host: rsp://…?control=HOST:PORT, or
-// by a plug-in: fabric://….
+// Connects to tcp://..., shm:N, a group's host (rsp://...?control=HOST:PORT), or through a plug-in (fabric://...).
 Result<std::unique_ptr<Connection>> connectTo(std::string_view text, Deadline deadline);
-// Listens where the text says: tcp://host:port, as a group's host: rsp://…, or by a plug-in. A group's connections are its members: each
-// reads that member's stream; what is written to any of them goes to all.
+// Listens at tcp://host:port, hosts a group (rsp://...), or listens through a plug-in. The connections of a group are
+// its members: each reads that member's stream, and a write to any of them reaches all.
 Result<std::unique_ptr<Listener>> listenAt(std::string_view text);
 
 } // namespace mural

@@ -1,13 +1,13 @@
-// One byte stream between two processes, whatever carries it. Reliable, ordered, both directions.
+// A reliable, ordered, bidirectional byte stream between two processes, independent of its transport.
 //
 // Descriptions as text:
 //   pipe:                 two ends in one process
 //   shm:                  shared memory between processes of one machine (ends passed by descriptor)
 //   tcp://host:port       TCP
-//   rsp://group:port?…    reliable multicast (transport/rsp/group_description.hpp)
+//   rsp://group:port?...  reliable multicast (transport/rsp/group_description.hpp)
 //
-// Threads: one thread may read while another writes; neither end is for two readers or two writers.
-// Source: thesis, chapter "Collage", Connection.
+// Thread safety: one thread may read while another writes; neither end supports two readers or two writers. Source:
+// thesis, chapter "Collage", Connection.
 #pragma once
 
 #include <cstddef>
@@ -22,8 +22,8 @@
 namespace mural {
 
 struct NetworkPath {
-    std::string ownAddress;   // numeric, of this end
-    size_t datagramBytes = 0; // what a UDP datagram may hold to arrive in one packet, as far as both ends' cards know
+    std::string ownAddress; // numeric address of this end
+    size_t datagramBytes = 0; // largest UDP payload without fragmentation, as far as both ends know
 };
 
 class Connection {
@@ -33,27 +33,27 @@ public:
     Connection& operator=(const Connection&) = delete;
     virtual ~Connection() = default;
 
-    // Fills all of `into` or fails. Errors: the peer is gone, the deadline has passed.
-    // A deadline that passes before the first byte leaves the stream usable (timedOut() is true then).
+    // Fills all of `into`. Errors: the peer has ended, the deadline. If the deadline passes before the first byte, the
+    // stream stays usable (timedOut() is true).
     virtual Result<void> read(std::span<std::byte> into, Deadline deadline) = 0;
 
-    // Writes all of `bytes` or fails. After an error other than "nothing written" the stream is dead.
+    // Writes all of `bytes`. After an error the stream is unusable, unless the error says that nothing was written.
     virtual Result<void> write(std::span<const std::byte> bytes, Deadline deadline) = 0;
 
-    // Makes what was written visible to the peer now (a wake-up, a push); write may delay it.
+    // Makes written data visible to the peer now (a wake-up, a push); write() may delay it.
     virtual void flush() = 0;
 
-    // Ends both directions; a reader or writer blocked on either side returns with an error soon.
+    // Ends both directions. Blocked readers and writers on either side return with an error soon.
     virtual void close() = 0;
 
     [[nodiscard]] virtual bool timedOut() const = 0;
     [[nodiscard]] virtual bool alive() const = 0;
     [[nodiscard]] virtual std::string describe() const = 0;
 
-    // What it knows of the network in between; nothing: there is none.
+    // Returns properties of the network path; empty for local connections.
     [[nodiscard]] virtual NetworkPath path() const { return {}; }
 
-    // Bytes since the start, for the report.
+    // Total bytes, for the report.
     [[nodiscard]] virtual uint64_t bytesWritten() const = 0;
     [[nodiscard]] virtual uint64_t bytesRead() const = 0;
 };
@@ -65,22 +65,22 @@ public:
     Listener& operator=(const Listener&) = delete;
     virtual ~Listener() = default;
     virtual Result<std::unique_ptr<Connection>> accept(Deadline deadline) = 0;
-    // The description under which others connect, with the port that was really taken.
+    // Returns the description for connecting, with the actual port.
     [[nodiscard]] virtual std::string describe() const = 0;
 };
 
-// Both ends in this process.
+// Two ends in this process.
 struct PipePair {
     std::unique_ptr<Connection> a;
     std::unique_ptr<Connection> b;
 };
 Result<PipePair> makePipe(size_t capacityBytes = size_t{1} << 20);
 
-// A shared-memory connection: this end, and the descriptor to give to the other process (inherit it
-// by fork/exec and call openSharedMemory there). Capacity is per direction, a power of two.
+// A shared-memory connection: this end, and the descriptor for the other process (inherit it by fork/exec and call
+// openSharedMemory there). Capacity is per direction, a power of two.
 struct SharedMemoryOffer {
     std::unique_ptr<Connection> connection;
-    int peerFd = -1; // owned by the caller; close it after the child has been started
+    int peerFd = -1; // owned by the caller; close it after the child has started
 };
 Result<SharedMemoryOffer> offerSharedMemory(size_t capacityBytes);
 Result<std::unique_ptr<Connection>> openSharedMemory(int fd);

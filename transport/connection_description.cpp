@@ -13,7 +13,7 @@ namespace {
 constexpr std::string_view kTcp = "tcp://";
 constexpr std::string_view kShm = "shm:";
 constexpr std::string_view kRsp = "rsp://";
-constexpr std::string_view kAuthority = "://"; // a plug-in's scheme stands before it
+constexpr std::string_view kAuthority = "://"; // follows the scheme of a plug-in
 
 Error invalid(std::string_view text, const std::string& why) {
     return Error{"connection \"" + std::string(text) + "\": " + why +
@@ -26,7 +26,7 @@ template <class Number> bool parseNumber(std::string_view text, Number& into) {
     return code == std::errc() && stop == end;
 }
 
-// host:port, from `rest` on.
+// Parses host:port from `rest`.
 Result<ConnectionDescription> parseEndpoint(std::string_view text, std::string_view rest) {
     const size_t colon = rest.rfind(':');
     if (colon == std::string_view::npos)
@@ -50,7 +50,7 @@ Result<ConnectionDescription> parseEndpoint(std::string_view text, std::string_v
     return result;
 }
 
-// host:port?parameter=value&…, from `rest` on.
+// Parses host:port?parameter=value&... from `rest`.
 Result<ConnectionDescription> parseWithParameters(std::string_view text, std::string_view rest) {
     const size_t question = rest.find('?');
     auto result = parseEndpoint(text, rest.substr(0, question));
@@ -75,7 +75,7 @@ Result<ConnectionDescription> parseRsp(std::string_view text) {
     return result;
 }
 
-// The scheme becomes part of a file's name: only letters and digits.
+// The scheme becomes part of a file name, so only letters and digits are allowed.
 bool isScheme(std::string_view text) {
     return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); });
 }

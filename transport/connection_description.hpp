@@ -1,10 +1,10 @@
-// Where a connection leads, as text: on command lines, in configurations, between processes.
+// Description of a connection as text: on command lines, in configurations, between processes.
 //   pipe:              both ends in this process
-//   shm:               shared memory, not yet offered;  shm:7  the offer inherited as descriptor 7
-//   tcp://host:port    TCP; IPv6 numbers in brackets
-//   rsp://group:port?parameter=value&…   a multicast group; parameters: transport/rsp/group_description.hpp
-//   scheme://host:port?parameter=value&… any other scheme: the plug-in of that name (transport/plugin/transport_plugin.h)
-// transport/connect.hpp connects and listens by such a text.
+//   shm:               shared memory, not offered yet;  shm:7  the offer inherited as descriptor 7
+//   tcp://host:port    TCP; IPv6 addresses in brackets
+//   rsp://group:port?parameter=value&...   a multicast group; parameters: transport/rsp/group_description.hpp
+//   scheme://host:port?parameter=value&... any other scheme: the plug-in of that name (transport/plugin/transport_plugin.h)
+// transport/connect.hpp connects and listens with such a text.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,8 @@ struct ConnectionDescription {
     enum class Kind { Pipe, SharedMemory, Tcp, Rsp, Plugin };
 
     Kind kind = Kind::Pipe;
-    std::string host;    // without brackets; empty only for listening: every address. rsp: the group's address
-    uint16_t port = 0;   // all but pipe and shm; 0: any free one, for listening
+    std::string host; // without brackets; empty: all addresses, for listening only. rsp: the group's address
+    uint16_t port = 0; // all but pipe and shm; 0: any free port, for listening
     int descriptor = -1; // shm
     std::map<std::string, std::string> parameters{}; // rsp, plug-ins
     std::string scheme{}; // plug-ins: a to z, 0 to 9

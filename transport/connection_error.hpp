@@ -1,4 +1,4 @@
-// What connections of all kinds say when a read or write fails.
+// Error texts of failed reads and writes, common to all connections.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ inline constexpr const char* kIdle = "deadline passed, the other end is idle or 
 inline constexpr const char* kCutInHalf = "deadline passed in the middle of a message, the connection is closed; connect again";
 } // namespace ending
 
-// "tcp://wall1:4711 read, 3 of 8 bytes done: the other end is gone; …"
+// Returns "tcp://wall1:4711 read, 3 of 8 bytes done: the other end is gone; ...".
 inline Error connectionError(
     const std::string& description, const char* verb, size_t doneBytes, size_t wantedBytes, const std::string& reason) {
     return Error{description + " " + verb + ", " + std::to_string(doneBytes) + " of " + std::to_string(wantedBytes) + " bytes done: " + reason};

@@ -1,4 +1,4 @@
-// A file descriptor with an owner: closed exactly once.
+// Owning file descriptor, closed exactly once.
 #pragma once
 
 #include <unistd.h>

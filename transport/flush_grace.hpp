@@ -1,4 +1,4 @@
-// A flush goes by the deadline of the last write, which may be long ago: so long it has in any case.
+// Minimum time for a flush, whose deadline is that of the last write and may have passed long ago.
 #pragma once
 
 #include <cstdint>

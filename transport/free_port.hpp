@@ -1,4 +1,4 @@
-// A listener on whatever port is free, for peers that are told it another way.
+// A listener on any free port, for peers that learn the port in another way.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// Both ends of a connection in one process.
+// A connection with both ends in one process.
 #include <algorithm>
 #include <bit>
 

@@ -14,13 +14,11 @@ namespace mural {
 
 namespace {
 
-// A blocked side looks this often whether the other process lives: half of the 50 ms within which a
-// death is to be noticed.
+// Interval of liveness checks by a blocked side: less than half of the 50 ms within which a death must be noticed.
 constexpr int64_t kSliceNs = 20 * kNsPerMs;
 
-// Looking again for a few microseconds costs less than a sleep and its wake-up. But in vain it
-// takes the CPU from others, perhaps from the very peer: so each failure halves the next try, a hit
-// restores it.
+// Spinning for a few microseconds costs less than a sleep and its wake-up. Unsuccessful spinning takes CPU time from
+// others, perhaps from the peer, so each failure halves the next attempt and a success restores it.
 constexpr int kMostSpins = 100;
 constexpr int kLeastSpins = 2;
 
@@ -57,8 +55,7 @@ RingConnection::~RingConnection() {
     RingConnection::close();
 }
 
-// A forked child has a copy of this object; destroying it there must not end the parent's
-// connection.
+// A forked child has a copy of this object, whose destruction must not end the parent's connection.
 void RingConnection::close() {
     if (closed_.exchange(true) || getpid() != ownerPid_)
         return;
@@ -109,8 +106,7 @@ Result<void> RingConnection::write(std::span<const std::byte> bytes, Deadline de
     return failed("write", WaitEnd::PeerGone, done, bytes.size());
 }
 
-// The deadline is honoured only after a look at the peer: a caller that polls with short deadlines
-// must learn of its death too.
+// Checks the peer before the deadline, so a caller that polls with short deadlines notices the peer's death too.
 RingConnection::WaitEnd RingConnection::waitForData(Deadline deadline) {
     if (spinUntil([this] { return reader_.hasData(); }, readSpins_))
         return WaitEnd::Ready;
@@ -124,7 +120,7 @@ RingConnection::WaitEnd RingConnection::waitForData(Deadline deadline) {
         const int64_t leftNs = deadline.leftNs(kSliceNs);
         if (inControl_.writerClosed.load(std::memory_order_acquire) != 0 ||
             ((slept || leftNs == 0) && peerProcessGone())) {
-            // What it wrote before it went is still to be read.
+            // Data written before the peer's end can still be read.
             return reader_.hasData() ? WaitEnd::Ready : WaitEnd::PeerGone;
         }
         if (leftNs == 0)
@@ -171,8 +167,8 @@ bool RingConnection::alive() const {
            !peerProcessGone();
 }
 
-// A message cut in half can't be mended: the connection ends, so that the other end learns of it.
-// The peer's end alone does not close it: the other direction may still hold bytes to read.
+// A partially transferred message cannot be repaired: the connection ends, which informs the peer. The peer's end alone
+// does not close it, because the other direction may still hold data.
 Error RingConnection::failed(const char* verb, WaitEnd why, size_t doneBytes, size_t wantedBytes) {
     const bool usable =
         why == WaitEnd::PeerGone || (why == WaitEnd::DeadlinePassed && doneBytes == 0);

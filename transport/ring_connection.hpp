@@ -1,8 +1,8 @@
-// A Connection over two byte rings: the in-process pipe and shared memory between processes.
+// A Connection over two byte rings: the in-process pipe, and shared memory between processes.
 //
-// Between processes a Unix socket says whether the other one lives: its end breaks when the process
-// dies, however it dies. It is looked at only by a side that waits, between slices of sleep.
-// Threads: as Connection says; flush() belongs to the writing thread, close() may come from any.
+// Between processes a Unix socket reports the peer's liveness: it breaks when the process dies for any reason. Only a
+// waiting side checks it, between slices of sleep. Thread safety: as Connection; flush() belongs to the writing thread,
+// close() may be called from any thread.
 #pragma once
 
 #include <atomic>
@@ -18,7 +18,7 @@ namespace mural {
 
 class RingConnection final : public Connection {
 public:
-    // side: 0 or 1, see RingMemory. peerSocket: invalid when both ends are in one process.
+    // side: 0 or 1, see RingMemory. peerSocket: invalid if both ends are in one process.
     RingConnection(std::shared_ptr<RingMemory> memory,
                    int side,
                    FileDescriptor peerSocket,
@@ -31,7 +31,7 @@ public:
     void close() override;
 
     [[nodiscard]] bool timedOut() const override;
-    // False as soon as the other end is closed or dead; what it has written can still be read.
+    // Returns false after the peer has closed or died; its data can still be read.
     [[nodiscard]] bool alive() const override;
     [[nodiscard]] std::string describe() const override { return description_; }
     [[nodiscard]] uint64_t bytesWritten() const override { return bytesWritten_; }
@@ -53,8 +53,8 @@ private:
     FileDescriptor peerSocket_;
     std::string description_;
     pid_t ownerPid_;
-    int readSpins_ = 2;  // the reader's: how often it looks again before it sleeps
-    int writeSpins_ = 2; // the writer's
+    int readSpins_ = 2; // reader's spins before it sleeps
+    int writeSpins_ = 2; // writer's spins
     std::atomic<bool> closed_{false};
     std::atomic<bool> readTimedOut_{false};
     std::atomic<bool> writeTimedOut_{false};

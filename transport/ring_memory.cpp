@@ -15,7 +15,7 @@ namespace {
 
 constexpr uint32_t kMagic = 0x4d55525a; // "MURZ"
 constexpr uint32_t kVersion = 1;
-constexpr size_t kControlBytes = 4096; // header and controls; keeps the bytes page-aligned
+constexpr size_t kControlBytes = 4096; // header and controls; keeps the data page-aligned
 constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL;
 
 struct alignas(64) Header {

@@ -1,6 +1,6 @@
-// The memory of one connection: two byte rings, one per direction, and what describes them.
-// Layout of the mapping: header | control of ring 0 | control of ring 1 | bytes of 0 | bytes of 1.
-// Side 0 (the one that made it) writes ring 0 and reads ring 1; side 1 the other way round.
+// Memory of one connection: two byte rings, one per direction, and their header. Layout of the mapping: header |
+// control of ring 0 | control of ring 1 | data of 0 | data of 1. Side 0 (the creator) writes ring 0 and reads ring 1;
+// side 1 does the opposite.
 #pragma once
 
 #include <memory>
@@ -13,10 +13,9 @@ namespace mural {
 
 class RingMemory {
 public:
-    // For both ends in one process. Capacity per direction, a power of two.
+    // For two ends in one process. Capacity per direction, a power of two.
     static Result<std::shared_ptr<RingMemory>> makePrivate(size_t capacityBytes);
-    // For two processes; memfd is then what the other process opens. Its size is sealed, so that no
-    // peer can make an access fault.
+    // For two processes; the other one opens `memfd`. Its size is sealed, so no peer can cause an access fault.
     static Result<std::shared_ptr<RingMemory>> makeShared(size_t capacityBytes,
                                                           FileDescriptor& memfd);
     static Result<std::shared_ptr<RingMemory>> openShared(int memfd);

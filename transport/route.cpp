@@ -12,7 +12,7 @@ std::optional<SocketAddress> ownAddressTowards(const std::string& host, Deadline
     auto addresses = resolveTcp(host, kDiscardPort, TcpRole::Connect, deadline);
     if (!addresses) return {};
     for (const SocketAddress& to : *addresses) {
-        // Connecting a datagram socket sends nothing but chooses the route.
+        // Connecting a datagram socket sends nothing but selects the route.
         const FileDescriptor fd(socket(to.family(), SOCK_DGRAM | SOCK_CLOEXEC, 0));
         if (connect(fd.get(), to.get(), to.sizeBytes) == 0) return localTcpAddress(fd.get());
     }

@@ -1,4 +1,4 @@
-// By which of its addresses this machine is reached from another.
+// Finds the address by which another machine reaches this one.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace mural {
 
-// The own address on the way to `host` (a name, or numbers); nothing when there is no way or the name is not known.
+// Returns the own address on the route to `host` (name or number); empty without a route, or for an unknown name.
 std::optional<SocketAddress> ownAddressTowards(const std::string& host, Deadline deadline);
 
 } // namespace mural

@@ -47,13 +47,13 @@ struct SecureChannel::State {
     bool host = false;
     bool canSend = false;
     bool ended = false;    // by us
-    bool finished = false; // by the peer
+    bool finished = false; // the peer has finished
     std::string name;
     FindSecret find;
     ChannelSecret secret{};
     std::array<std::byte, kPublicBytes> publicKey{};
     std::array<std::byte, crypto_kx_SECRETKEYBYTES> secretKey{};
-    Bytes transcript; // hello and both public keys: what is proven
+    Bytes transcript; // hello and both public keys: the authenticated data
     Bytes in;
     Bytes out;
     std::array<std::byte, crypto_kx_SESSIONKEYBYTES> receiveKey{};
@@ -80,7 +80,7 @@ struct SecureChannel::State {
     Result<size_t> takeNext(std::vector<Bytes>& messages);
 };
 
-// The keys of both directions; false when the peer's key is none (a point of low order).
+// Derives the keys of both directions. Returns false for an invalid peer key (a point of low order).
 bool SecureChannel::State::agree(std::span<const std::byte> peerKey) {
     std::array<std::byte, crypto_kx_SESSIONKEYBYTES> receive;
     std::array<std::byte, crypto_kx_SESSIONKEYBYTES> send;
@@ -98,7 +98,7 @@ void SecureChannel::State::startSending(const std::array<std::byte, crypto_kx_SE
     static_assert(kProofBytes == crypto_secretstream_xchacha20poly1305_KEYBYTES);
     std::array<std::byte, kHeaderBytes> header;
     crypto_secretstream_xchacha20poly1305_init_push(&sending, raw(header.data()), raw(key.data()));
-    // A member's proof goes out first; the host has sent its own before.
+    // The member sends its proof first here; the host has already sent its own.
     if (!host) append(out, keyedHash(secret, "member", transcript));
     append(out, header);
     canSend = true;
@@ -187,7 +187,7 @@ Result<size_t> SecureChannel::State::takeNext(std::vector<Bytes>& messages) {
     return Error{"the channel has failed before"};
 }
 
-// Of the step that is next, as far as what is there tells.
+// Returns the size of the next protocol step, as far as the received data determines it.
 size_t SecureChannel::State::stepBytes() const {
     constexpr size_t kHelloHeadBytes = kMagic.size() + 1;
     switch (step) {

@@ -9,9 +9,9 @@
 namespace mural {
 
 namespace {
-constexpr size_t kRecordBytes = size_t{32} * 1024; // the connection below takes it whole or not at all
+constexpr size_t kRecordBytes = size_t{32} * 1024; // the underlying connection writes it completely or not at all
 constexpr int64_t kSliceMs = 100;
-constexpr int64_t kRecordMs = 20'000; // for the rest of a record that has begun
+constexpr int64_t kRecordMs = 20'000; // timeout of the rest of a record
 
 Deadline sooner(Deadline a, Deadline b) { return a.leftNs() < b.leftNs() ? a : b; }
 Deadline later(Deadline a, Deadline b) { return a.leftNs() < b.leftNs() ? b : a; }
@@ -78,7 +78,7 @@ Result<void> SecureConnection::read(std::span<std::byte> into, Deadline deadline
     return {};
 }
 
-// One that begins before the deadline is waited for.
+// Waits for the rest of a record that began before the deadline.
 Result<void> SecureConnection::takeRecord(Deadline deadline) {
     messages_.clear();
     Deadline until = deadline;
@@ -125,7 +125,7 @@ Result<void> SecureConnection::write(std::span<const std::byte> bytes, Deadline 
     return {};
 }
 
-// A sealed record can't be taken back: what does not go out now goes first the next time.
+// A sealed record cannot be withdrawn: the remainder is sent first next time.
 Result<void> SecureConnection::sendGathered(Deadline deadline) {
     while (!sealed_.empty() || !gathered_.empty()) {
         if (sealed_.empty()) {
@@ -142,7 +142,8 @@ Result<void> SecureConnection::sendGathered(Deadline deadline) {
 void SecureConnection::flush() {
     const std::lock_guard lock(writeMutex_);
     if (closed_) return;
-    static_cast<void>(sendGathered(later(lastWriteDeadline_, Deadline::inMs(kFlushGraceMs))).ok()); // the next write tells
+    // the next write reports the error
+    static_cast<void>(sendGathered(later(lastWriteDeadline_, Deadline::inMs(kFlushGraceMs))).ok());
     over_->flush();
 }
 

@@ -1,6 +1,6 @@
-// A Connection whose bytes only the two who share a secret can read or change: a SecureChannel over another Connection.
+// A Connection encrypted with a shared secret: a SecureChannel over another Connection.
 //
-// Threads: as Connection says; flush() and close() may come from any thread.
+// Thread safety: as Connection; flush() and close() may be called from any thread.
 #pragma once
 
 #include <atomic>
@@ -17,9 +17,9 @@ namespace mural {
 
 class SecureConnection final : public Connection {
 public:
-    using Cancelled = std::function<bool()>; // asked every 100 ms; may be empty
+    using Cancelled = std::function<bool()>; // polled every 100 ms; may be empty
 
-    // Both return when each end has shown that it knows the secret. Errors: it does not, the deadline, the peer's end.
+    // Both return after mutual authentication. Errors: a wrong secret, the deadline, the peer's end.
     static Result<std::unique_ptr<SecureConnection>> connecting(
         std::unique_ptr<Connection> over, const std::string& name, const ChannelSecret& secret, Deadline deadline);
     static Result<std::unique_ptr<SecureConnection>> accepting(
@@ -27,17 +27,17 @@ public:
     ~SecureConnection() override;
 
     Result<void> read(std::span<std::byte> into, Deadline deadline) override;
-    // Small writes are gathered until flush() or until a record is full.
+    // Small writes are buffered until flush() or until a record is full.
     Result<void> write(std::span<const std::byte> bytes, Deadline deadline) override;
     void flush() override;
-    // The peer can tell this from a connection that was cut.
+    // The peer can distinguish this from a broken connection.
     void close() override;
 
     [[nodiscard]] bool timedOut() const override { return !closed_ && (readTimedOut_ || writeTimedOut_); }
     [[nodiscard]] bool alive() const override { return !closed_ && over_->alive(); }
     [[nodiscard]] std::string describe() const override { return over_->describe() + ", encrypted"; }
     [[nodiscard]] NetworkPath path() const override { return over_->path(); }
-    // Of the stream, without what the encryption adds.
+    // Payload, without the overhead of encryption.
     [[nodiscard]] uint64_t bytesWritten() const override { return bytesWritten_; }
     [[nodiscard]] uint64_t bytesRead() const override { return bytesRead_; }
     [[nodiscard]] const std::string& name() const { return channel_.name(); } // of the connecting end
@@ -59,16 +59,16 @@ private:
     std::atomic<uint64_t> bytesWritten_{0};
     std::atomic<uint64_t> bytesRead_{0};
 
-    // The reader's.
+    // State of the reader.
     std::vector<std::byte> arrived_;
     std::vector<std::vector<std::byte>> messages_;
     std::vector<std::byte> opened_; // the last record
     size_t openedAt_ = 0;
 
-    // The writer's, also flush's and close's.
+    // State of the writer, flush() and close().
     std::mutex writeMutex_;
     std::vector<std::byte> gathered_;
-    std::vector<std::byte> sealed_; // a record that has not gone out
+    std::vector<std::byte> sealed_; // a record that is not sent completely
     Deadline lastWriteDeadline_ = Deadline::inMs(0);
 };
 

@@ -1,5 +1,5 @@
-// Shared memory between two processes. One inherited descriptor is enough: a Unix socket that
-// carries the memory's own descriptor and afterwards says who is alive.
+// Shared memory between two processes. One inherited descriptor suffices: a Unix socket that transfers the memory's
+// descriptor and then reports liveness.
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
@@ -12,7 +12,7 @@ namespace mural {
 
 namespace {
 
-constexpr char kGreeting = 'M'; // SCM_RIGHTS needs at least one byte to travel with
+constexpr char kGreeting = 'M'; // SCM_RIGHTS requires at least one byte of data
 
 // Room for exactly one descriptor.
 union DescriptorMessage {
@@ -43,7 +43,7 @@ Result<void> sendDescriptor(int socket, int fd) {
     return {};
 }
 
-// The offer lies in the socket before the other process starts: so this never waits.
+// Never blocks: the offer is in the socket before the other process starts.
 Result<FileDescriptor> receiveDescriptor(int socket) {
     char greeting = 0;
     iovec part{&greeting, 1};
@@ -93,7 +93,7 @@ Result<SharedMemoryOffer> offerSharedMemory(size_t capacityBytes) {
     const auto sent = sendDescriptor(mine.get(), memfd.get());
     if (!sent)
         return sent.error();
-    if (fcntl(theirs.get(), F_SETFD, 0) != 0) { // it is there to be inherited
+    if (fcntl(theirs.get(), F_SETFD, 0) != 0) { // inherited on purpose
         return Error{"shm: can't make descriptor inheritable: " + errnoText(errno)};
     }
     SharedMemoryOffer offer;
@@ -102,8 +102,8 @@ Result<SharedMemoryOffer> offerSharedMemory(size_t capacityBytes) {
     return offer;
 }
 
-// Takes over fd, also when it fails. The child's own children must not inherit it: they would make
-// a dead process look alive.
+// Takes ownership of fd, even on failure. The child's own children must not inherit it: they would make a dead process
+// look alive.
 Result<std::unique_ptr<Connection>> openSharedMemory(int fd) {
     FileDescriptor socket(fd);
     if (fcntl(fd, F_SETFD, FD_CLOEXEC) != 0) {

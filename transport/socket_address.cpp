@@ -31,7 +31,7 @@ bool SocketAddress::isMulticast() const {
 std::string numericText(const SocketAddress& address) {
     std::array<char, NI_MAXHOST> text{};
     if (getnameinfo(address.get(), address.sizeBytes, text.data(), text.size(), nullptr, 0, NI_NUMERICHOST) != 0) return {};
-    constexpr std::string_view kMapped = "::ffff:"; // an IPv4 peer of an IPv6 socket
+    constexpr std::string_view kMapped = "::ffff:"; // prefix of an IPv4 peer of an IPv6 socket
     const std::string_view numbers = text.data();
     const bool mapped = numbers.starts_with(kMapped) && numbers.find('.') != std::string_view::npos;
     return std::string(numbers.substr(mapped ? kMapped.size() : 0));

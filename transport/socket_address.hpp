@@ -1,4 +1,4 @@
-// An address of a socket, IPv4 or IPv6.
+// A socket address, IPv4 or IPv6.
 #pragma once
 
 #include <cstdint>
@@ -22,9 +22,9 @@ struct SocketAddress {
     [[nodiscard]] bool isMulticast() const;
 };
 
-// Of numbers, not names: "10.0.0.1", "ff12::4".
+// Parses a numeric address, not a name: "10.0.0.1", "ff12::4".
 Result<SocketAddress> numericAddress(const std::string& host, uint16_t port);
-// The other way round, without the port; IPv4 mapped into IPv6 as IPv4.
+// Formats an address without its port; IPv4-mapped IPv6 as IPv4.
 std::string numericText(const SocketAddress& address);
 // "10.0.0.1:80", "[ff12::4]:80".
 Result<SocketAddress> numericEndpoint(std::string_view text);
@@ -33,9 +33,9 @@ struct HostPort {
     std::string host;
     uint16_t port = 0;
 };
-// "host:port"; brackets around IPv6 numbers; the host may be empty.
+// Parses "host:port"; IPv6 addresses in brackets; the host may be empty.
 Result<HostPort> splitHostPort(std::string_view text);
-// The other way round.
+// Formats host and port.
 std::string endpointText(const std::string& host, uint16_t port);
 
 } // namespace mural

@@ -1,4 +1,4 @@
-// Waiting for a socket, with a deadline.
+// Waits for a socket with a deadline.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace mural {
 
-// Returns the events that came (POLLHUP and POLLERR unasked), 0 when the deadline passed.
+// Returns the events (POLLHUP and POLLERR unrequested), 0 after the deadline.
 inline short waitForSocket(int fd, short events, Deadline deadline) {
     while (true) {
         pollfd look{fd, events, 0};

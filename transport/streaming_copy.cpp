@@ -15,7 +15,7 @@ namespace {
 
 constexpr size_t kLineBytes = 64;
 
-// `to` begins a cache line; whole lines only, so that each leaves in one piece.
+// Copies whole cache lines, each as one transfer. Requires `to` to be aligned to a cache line.
 void streamLines(std::byte* to, const std::byte* from, size_t lines) {
     auto* target = reinterpret_cast<__m128i*>(to);
     const auto* source = reinterpret_cast<const __m128i*>(from);
@@ -29,7 +29,7 @@ void streamLines(std::byte* to, const std::byte* from, size_t lines) {
         _mm_stream_si128(target + 2, c);
         _mm_stream_si128(target + 3, d);
     }
-    _mm_sfence(); // streaming stores are not ordered by a release store
+    _mm_sfence(); // a release store does not order streaming stores
 }
 
 } // namespace

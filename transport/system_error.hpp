@@ -1,4 +1,4 @@
-// The text of an errno value. strerror is not safe with threads; this is.
+// Thread-safe text of an errno value; strerror is not thread-safe.
 #pragma once
 
 #include <string>

@@ -18,7 +18,7 @@ namespace mural {
 namespace {
 
 struct Lookup {
-    int code = 0; // of getaddrinfo
+    int code = 0; // result of getaddrinfo
     int systemCode = 0;
     std::vector<TcpAddress> addresses;
 };
@@ -51,7 +51,7 @@ Error lookupError(const std::string& text, const Lookup& lookup) {
                  "; check its name or give its address"};
 }
 
-// What the waiting caller and the looking thread share; whoever is last frees it.
+// Shared by the waiting caller and the lookup thread; the last one frees it.
 struct PendingLookup {
     std::mutex mutex;
     std::condition_variable finished;
@@ -59,7 +59,7 @@ struct PendingLookup {
     Lookup lookup;
 };
 
-// False when the deadline passed; the thread then ends by itself, unheard.
+// Returns false after the deadline; the thread then ends on its own.
 bool lookUpOnThread(
     const std::string& host, uint16_t port, int flags, Deadline deadline, Lookup& into) {
     auto pending = std::make_shared<PendingLookup>();
@@ -72,7 +72,7 @@ bool lookUpOnThread(
             pending->finished.notify_one();
         }).detach();
     } catch (const std::system_error&) {
-        into = lookUp(host, port, flags); // no thread to be had: better late than never
+        into = lookUp(host, port, flags); // no thread available: look up without a deadline
         return true;
     }
     std::unique_lock lock(pending->mutex);

@@ -1,4 +1,4 @@
-// Names and numbers of TCP endpoints, IPv4 and IPv6.
+// Names and addresses of TCP endpoints, IPv4 and IPv6.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,12 @@ using TcpAddress = SocketAddress;
 
 enum class TcpRole { Connect, Listen };
 
-// All addresses of a host in the order to try them. Names are looked up on a thread of their own,
-// because the resolver knows no deadline.
+// Returns all addresses of a host in connection order. Lookups run on a separate thread, because the resolver has no
+// deadline.
 Result<std::vector<TcpAddress>>
 resolveTcp(const std::string& host, uint16_t port, TcpRole role, Deadline deadline);
 
-// "tcp://host:port"; brackets around IPv6 numbers.
+// Returns "tcp://host:port", with IPv6 addresses in brackets.
 std::string tcpText(const std::string& host, uint16_t port);
 std::string tcpText(const TcpAddress& address);
 

@@ -27,7 +27,7 @@ bool wouldBlock(int code) {
 
 } // namespace
 
-// Keep-alive finds a host that vanished without a word while nothing is being sent: 5 + 3 · 3 s.
+// Keep-alive detects a vanished host on an idle connection after 5 + 3 * 3 s.
 bool prepareTcpSocket(int socket) {
     const int on = 1;
     const int idleSeconds = 5;
@@ -52,8 +52,7 @@ TcpConnection::~TcpConnection() {
     TcpConnection::close();
 }
 
-// A forked child has a copy of this object; destroying it there must not end the parent's
-// connection.
+// A forked child has a copy of this object, whose destruction must not end the parent's connection.
 void TcpConnection::close() {
     if (closed_.load() || getpid() != ownerPid_)
         return;
@@ -98,8 +97,7 @@ size_t TcpConnection::takeBuffered(std::span<std::byte> into) {
     return n;
 }
 
-// Called with an empty buffer. Receives into the caller's memory and, what comes beyond that, into
-// the buffer, by one system call.
+// Receives into the caller's memory, and beyond that into the buffer, with one system call. Requires an empty buffer.
 TcpConnection::End
 TcpConnection::receiveSome(std::span<std::byte> into, Deadline deadline, size_t& gotBytes) {
     while (true) {
@@ -127,7 +125,7 @@ TcpConnection::End TcpConnection::waitReadable(Deadline deadline) {
     return waitForSocket(socket_.get(), POLLIN, deadline) == 0 ? End::DeadlinePassed : End::Done;
 }
 
-// An end of the peer counts even while the socket is full: it will never take another byte of ours.
+// The peer's end counts even while the socket is full: it will accept no more data.
 TcpConnection::End TcpConnection::waitWritable(Deadline deadline) {
     const short events = waitForSocket(socket_.get(), POLLOUT | POLLRDHUP, deadline);
     if (closed_.load(std::memory_order_relaxed))
@@ -154,7 +152,7 @@ Result<void> TcpConnection::write(std::span<const std::byte> bytes, Deadline dea
         const End end = sendAll(bytes, deadline, sentBytes);
         const bool restFits = end == End::DeadlinePassed && sentBytes > 0 && bytes.size() - sentBytes <= kBufferBytes;
         if (restFits) {
-            gather(bytes.subspan(sentBytes)); // all before it has gone out
+            gather(bytes.subspan(sentBytes)); // everything before has been sent
         } else if (end != End::Done) {
             if (end == End::DeadlinePassed && sentBytes == 0)
                 writeTimedOut_.store(true);
@@ -221,7 +219,7 @@ void TcpConnection::flush() {
 
 NetworkPath TcpConnection::path() const {
     constexpr size_t kTcpHeadBytes = 20;
-    constexpr size_t kTimestampBytes = 12; // on each segment, where both ends do so
+    constexpr size_t kTimestampBytes = 12; // per segment, if both ends use timestamps
     constexpr size_t kUdpHeadBytes = 8;
     tcp_info info{};
     socklen_t sizeBytes = sizeof info;
@@ -241,7 +239,7 @@ bool TcpConnection::alive() const {
     return poll(&look, 1, 0) <= 0 || (look.revents & (POLLRDHUP | POLLHUP | POLLERR)) == 0;
 }
 
-// A message cut in half can't be mended: the connection ends, so that the other end learns of it.
+// A partially transferred message cannot be repaired: the connection ends, which informs the peer.
 Error TcpConnection::failed(
     const char* verb, End end, int code, size_t doneBytes, size_t wantedBytes) {
     const bool usable = end == End::PeerGone || (end == End::DeadlinePassed && doneBytes == 0);

@@ -1,7 +1,7 @@
-// A Connection over TCP. Small writes are gathered until flush() or until a buffer is full; small
-// reads are served from a buffer; both so that a stream of small records costs few system calls.
+// A Connection over TCP. Small writes are buffered until flush() or until the buffer is full; small reads are served
+// from a buffer. A stream of small records thus needs few system calls.
 //
-// Threads: as Connection says; flush() and close() may come from any thread.
+// Thread safety: as Connection; flush() and close() may be called from any thread.
 #pragma once
 
 #include <atomic>
@@ -18,36 +18,36 @@ namespace mural {
 
 class TcpConnection final : public Connection {
 public:
-    // The socket is connected and non-blocking.
+    // Requires a connected, non-blocking socket.
     explicit TcpConnection(FileDescriptor socket);
     ~TcpConnection() override;
 
     Result<void> read(std::span<std::byte> into, Deadline deadline) override;
-    // Up to 64 KiB are never cut in half by a deadline: none of them or all have been taken then.
+    // A deadline never splits a write of up to 64 KiB: all or nothing is accepted.
     Result<void> write(std::span<const std::byte> bytes, Deadline deadline) override;
-    // Waits for a full socket until the deadline of the last write, and a second at least; what
-    // does not go out then goes first with the next write or flush.
+    // Waits for a full socket until the deadline of the last write, and for at least a second. The remainder is sent
+    // first by the next write or flush.
     void flush() override;
-    // What was written goes out first as far as the socket takes it at once.
+    // Sends buffered data first, as far as the socket accepts it immediately.
     void close() override;
 
     [[nodiscard]] bool timedOut() const override;
-    // False as soon as the other end is closed or dead; what it has written can still be read.
+    // Returns false after the peer has closed or died; its data can still be read.
     [[nodiscard]] bool alive() const override;
     [[nodiscard]] std::string describe() const override { return description_; }
-    [[nodiscard]] NetworkPath path() const override; // from the segments that both ends agreed on
+    [[nodiscard]] NetworkPath path() const override; // from the negotiated segment size
     [[nodiscard]] uint64_t bytesWritten() const override { return bytesWritten_; }
     [[nodiscard]] uint64_t bytesRead() const override { return bytesRead_; }
 
 private:
-    // An outcome of one direction. PeerGone keeps the errno that told it, 0 for an orderly end.
+    // Result of one direction. PeerGone keeps the errno, 0 for an orderly end.
     enum class End { Done, DeadlinePassed, PeerGone, ClosedHere };
 
     size_t takeBuffered(std::span<std::byte> into);
     End receiveSome(std::span<std::byte> into, Deadline deadline, size_t& gotBytes);
     End waitReadable(Deadline deadline);
     End waitWritable(Deadline deadline);
-    // Sends the gathered bytes, then `bytes`; sentBytes counts of `bytes` only.
+    // Sends buffered bytes, then `bytes`; sentBytes counts the latter only.
     End sendAll(std::span<const std::byte> bytes, Deadline deadline, size_t& sentBytes);
     ssize_t sendOnce(std::span<const std::byte> bytes);
     [[nodiscard]] size_t gatheredBytes() const { return gathered_.size() - gatheredAt_; }
@@ -64,21 +64,21 @@ private:
     std::atomic<uint64_t> bytesWritten_{0};
     std::atomic<uint64_t> bytesRead_{0};
 
-    // The reader's.
+    // State of the reader.
     std::unique_ptr<std::byte[]> received_;
     size_t receivedAt_ = 0;
     size_t receivedEnd_ = 0;
     int readCode_ = 0;
 
-    // The writer's, also flush's and close's.
+    // State of the writer, flush() and close().
     std::mutex writeMutex_;
     std::vector<std::byte> gathered_;
-    size_t gatheredAt_ = 0; // before it: already sent
+    size_t gatheredAt_ = 0; // end of the part that is already sent
     Deadline lastWriteDeadline_ = Deadline::inMs(0);
     int writeCode_ = 0;
 };
 
-// Options that every TCP connection has; false with errno set when the socket is not usable.
+// Sets the options of every TCP connection. Returns false, with errno set, for an unusable socket.
 bool prepareTcpSocket(int socket);
 
 } // namespace mural

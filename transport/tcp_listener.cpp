@@ -1,4 +1,4 @@
-// Making TCP connections: listening and connecting.
+// Creates TCP connections: listens and connects.
 #include <cerrno>
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -31,7 +31,7 @@ private:
     std::string description_;
 };
 
-// A caller that gave up between arriving and being accepted is not an error of the listener's.
+// A peer that gives up before it is accepted is not an error of the listener.
 bool passingTrouble(int code) {
     return code == EINTR || code == EAGAIN || code == EWOULDBLOCK || code == ECONNABORTED ||
            code == EPROTO || code == ENETDOWN || code == EHOSTUNREACH || code == ENETUNREACH;
@@ -43,7 +43,7 @@ Result<std::unique_ptr<Connection>> TcpListener::accept(Deadline deadline) {
             accept4(socket_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
         if (socket.valid()) {
             if (!prepareTcpSocket(socket.get()))
-                continue; // it is gone already
+                continue; // the peer has already gone
             return std::unique_ptr<Connection>(std::make_unique<TcpConnection>(std::move(socket)));
         }
         if (!passingTrouble(errno)) {
@@ -77,7 +77,7 @@ Result<FileDescriptor> listenOn(const TcpAddress& address) {
     return socket;
 }
 
-// Others can't connect to "any address": they are told this host's name.
+// Peers cannot connect to the wildcard address, so the description contains this host's name.
 std::string listenerText(bool anyAddress, const TcpAddress& bound) {
     char name[256] = "";
     if (!anyAddress || gethostname(name, sizeof name - 1) != 0 || name[0] == 0)
@@ -85,7 +85,7 @@ std::string listenerText(bool anyAddress, const TcpAddress& bound) {
     return tcpText(name, tcpPort(bound));
 }
 
-// A connect to a free port of the ephemeral range of the own host can meet itself.
+// A connect to a free ephemeral port of the own host can connect to itself.
 bool connectedToItself(int socket) {
     return sameTcpAddress(localTcpAddress(socket), peerTcpAddress(socket));
 }
@@ -123,7 +123,7 @@ Result<FileDescriptor> connectTo(const TcpAddress& address, Deadline deadline) {
 Result<std::unique_ptr<Listener>> listenTcp(const std::string& address, uint16_t port) {
     const bool anyAddress = address.empty() || address == "*";
     std::vector<TcpAddress> candidates;
-    // "::" takes IPv4 too; without IPv6 in the kernel, 0.0.0.0 remains.
+    // "::" includes IPv4; without IPv6 in the kernel 0.0.0.0 remains.
     const std::vector<std::string> names =
         anyAddress ? std::vector<std::string>{"::", "0.0.0.0"} : std::vector<std::string>{address};
     for (const std::string& name : names) {
@@ -146,8 +146,8 @@ Result<std::unique_ptr<Listener>> listenTcp(const std::string& address, uint16_t
     return first;
 }
 
-// Each address of the host gets its share of the time that is left, so that one that swallows
-// packets (a dead IPv6 route) does not use up all of it.
+// Divides the remaining time among the host's addresses, so that one without answers (a dead IPv6 route) does not
+// consume all of it.
 Result<std::unique_ptr<Connection>>
 connectTcp(const std::string& host, uint16_t port, Deadline deadline) {
     auto addresses = resolveTcp(host, port, TcpRole::Connect, deadline);

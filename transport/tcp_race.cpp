@@ -13,7 +13,7 @@ namespace mural {
 namespace {
 
 constexpr int64_t kBetweenAttemptsNs = 200 * kNsPerMs;
-constexpr size_t kMostAttempts = 16; // at once
+constexpr size_t kMostAttempts = 16; // concurrent attempts
 
 class Race {
 public:
@@ -22,7 +22,7 @@ public:
     [[nodiscard]] bool lost() const { return attempts_.empty() && started_ >= addresses_.size(); }
     [[nodiscard]] int lastCode() const { return lastCode_; }
 
-    // Where none is under way, or the last one is old enough.
+    // Starts an attempt if none is in progress, or the last one is old enough.
     void startNext(int64_t nowNs) {
         const bool due = nowNs >= nextNs_ && attempts_.size() < kMostAttempts;
         if (!due && !attempts_.empty()) return;
@@ -35,7 +35,7 @@ public:
             failed(errno);
     }
 
-    // Waits for an answer; an invalid descriptor: there is none yet.
+    // Waits for an answer; returns an invalid descriptor without one.
     FileDescriptor answered(int64_t waitNs) {
         std::vector<pollfd> looks;
         for (const FileDescriptor& a : attempts_) looks.push_back({a.get(), POLLOUT, 0});
@@ -48,7 +48,7 @@ public:
             int code = 0;
             socklen_t sizeBytes = sizeof code;
             getsockopt(socket.get(), SOL_SOCKET, SO_ERROR, &code, &sizeBytes);
-            // A connect to a free port of the own host can meet itself.
+            // A connect to a free port of the own host can connect to itself.
             if (code == 0 && sameTcpAddress(localTcpAddress(socket.get()), peerTcpAddress(socket.get()))) code = ECONNREFUSED;
             if (code == 0) return socket;
             failed(code);
@@ -61,7 +61,7 @@ public:
 private:
     void failed(int code) {
         lastCode_ = code;
-        if (started_ < addresses_.size()) nextNs_ = 0; // the next address need not wait
+        if (started_ < addresses_.size()) nextNs_ = 0; // the next address starts immediately
     }
 
     std::span<const TcpAddress> addresses_;

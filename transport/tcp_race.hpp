@@ -1,4 +1,4 @@
-// Connecting where datagrams get lost: the kernel repeats a lost connection request only after a second.
+// Connects over lossy networks: the kernel repeats a lost connection request only after a second.
 #pragma once
 
 #include <span>
@@ -10,8 +10,8 @@
 
 namespace mural {
 
-// A new attempt begins every 200 ms, at the addresses by turns; the first that is answered is taken, the others are given
-// up. Errors at once when every address refuses.
+// Starts an attempt every 200 ms, alternating between the addresses; the first answer wins and the others are
+// abandoned. Fails immediately if every address refuses.
 Result<FileDescriptor> connectRacing(std::span<const TcpAddress> addresses, Deadline deadline);
 
 } // namespace mural

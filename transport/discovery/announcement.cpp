@@ -27,7 +27,7 @@ bool take(std::span<const std::byte>& left, std::string& into) {
     if (count > kMostAnnouncedText || left.size() < 1 + count) return false;
     into.assign(reinterpret_cast<const char*>(left.data()) + 1, count);
     left = left.subspan(1 + count);
-    // They come to terminals.
+    // Printable only, because the texts are shown on terminals.
     return std::ranges::all_of(into, [](char c) { return c >= ' ' && c <= '~'; });
 }
 

@@ -1,5 +1,5 @@
-// When a node announces itself: every second, and soon when it is asked, yet never more than five times a second, however
-// often it is asked. Without sockets and clock.
+// Schedule of a node's announcements: every second, and soon after a search, but at most five per second. Has no
+// sockets or clock.
 #pragma once
 
 #include <functional>
@@ -13,14 +13,15 @@ class Announcer {
 public:
     static constexpr int64_t kEveryNs = 1'000'000'000;
     static constexpr int64_t kLeastBetweenNs = 200'000'000;
-    static constexpr int64_t kMostAnswerNs = 50'000'000; // so that not all nodes answer at once
+    // random delay of an answer, so nodes do not answer simultaneously
+    static constexpr int64_t kMostAnswerNs = 50'000'000;
 
     Announcer(Announcement self, uint64_t seed) : self_(std::move(self)), random_(seed) {}
 
     void heard(const Announcement& a, int64_t nowNs);
-    // Says what is due; returns when to come again.
+    // Sends due announcements; returns the time of the next call.
     int64_t tick(int64_t nowNs, const std::function<void(std::span<const std::byte>)>& say);
-    // The last word.
+    // Returns the final announcement.
     [[nodiscard]] std::vector<std::byte> farewell() const;
 
 private:

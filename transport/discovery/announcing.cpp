@@ -39,7 +39,7 @@ std::string Announcing::beaconTrouble() const {
     return trouble_;
 }
 
-// Cards come and go: a machine may be started before its network is.
+// Reopens sockets when interfaces change: a machine may start before its network.
 void Announcing::run() {
     Announcer announcer(self_, std::random_device{}());
     while (true) {

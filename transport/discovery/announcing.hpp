@@ -1,4 +1,4 @@
-// A node that waits, announced for as long as this lives: by the beacon, and by Avahi where it runs.
+// Announces a waiting node during its lifetime: by beacon, and by Avahi where it runs.
 #pragma once
 
 #include <memory>
@@ -15,9 +15,9 @@ namespace mural {
 
 class Announcing {
 public:
-    // `self` is told as it is; its kind is Here.
+    // `self` is announced as it is, with kind Here.
     static Result<std::unique_ptr<Announcing>> start(const Announcement& self, const DiscoveryOptions& options);
-    ~Announcing(); // says farewell
+    ~Announcing(); // sends the final announcement
 
     // Why nobody finds us by a means now; empty: somebody may.
     [[nodiscard]] std::string beaconTrouble() const;

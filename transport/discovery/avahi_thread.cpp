@@ -11,7 +11,7 @@ namespace mural {
 namespace {
 
 constexpr int kSliceMs = 100;
-constexpr int64_t kAgainMs = 5'000; // the daemon may be started later
+constexpr int64_t kAgainMs = 5'000; // the daemon may start later
 constexpr auto kMostEnd = std::chrono::seconds(1);
 
 using Shared = AvahiThread::Shared;
@@ -34,7 +34,7 @@ void clientChanged(AvahiClient* client, AvahiClientState state, void* data) {
     }
 }
 
-// Until the daemon goes, or the end.
+// Runs until the daemon ends, or the thread is stopped.
 void talk(const AvahiLibrary& avahi, const std::shared_ptr<Shared>& shared, const AvahiThread::Ready& ready, const AvahiThread::Lost& lost) {
     AvahiSimplePoll* poll = avahi.simplePollNew();
     if (!poll) return shared->setTrouble("Avahi: no memory");

@@ -1,5 +1,5 @@
-// A thread that talks to the Avahi daemon. It is asked to end and waited for a moment; one that hangs in a dead message bus
-// is left behind, so what it uses is its own.
+// Thread that communicates with the Avahi daemon. Destruction stops it and waits for a moment. A thread that hangs in a
+// broken message bus is detached, so its data is its own.
 #pragma once
 
 #include <atomic>
@@ -17,22 +17,22 @@ struct AvahiLibrary;
 
 class AvahiThread {
 public:
-    // What the thread and its owner share.
+    // State shared by the thread and its owner.
     struct Shared {
         std::atomic<bool> stop = false;
         std::mutex mutex;
         std::condition_variable changed;
         bool ended = false;
-        std::string trouble; // why nothing happens now; empty: it does
+        std::string trouble; // reason for inactivity; empty: active
         void setTrouble(const std::string& why) {
             const std::lock_guard lock(mutex);
             trouble = why;
         }
     };
-    // In the thread, when there is a client, and again when the daemon has come back. `library` lives for ever; what is made
-    // for `client` ends with it.
+    // Called in the thread for each new client, also after the daemon has returned. `library` lives forever; objects
+    // made for `client` end with it.
     using Ready = std::function<void(const AvahiLibrary& library, AvahiClient* client, const std::shared_ptr<Shared>& shared)>;
-    // Before a client is given back.
+    // Called before a client is destroyed.
     using Lost = std::function<void()>;
 
     AvahiThread(Ready ready, Lost lost);

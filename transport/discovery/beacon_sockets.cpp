@@ -7,7 +7,7 @@ namespace mural {
 
 namespace {
 
-constexpr const char* kGroups[] = {"239.255.77.86", "ff12::4d55:5241"}; // of organizations, and of a link
+constexpr const char* kGroups[] = {"239.255.77.86", "ff12::4d55:5241"}; // organisation-local and link-local scope
 constexpr uint16_t kPort = 4276;
 constexpr size_t kBufferBytes = 256 * 1024;
 
@@ -36,7 +36,7 @@ Result<BeaconSockets> BeaconSockets::open(const std::string& wanted) {
         known += (known.empty() ? "" : ", ") + i.name;
         if (wanted.empty() ? i.multicast && !i.loopback : isWanted(i)) sockets.openOn(i);
     }
-    // A machine without a network still has itself.
+    // Without a network the loopback remains.
     if (sockets.links_.empty() && wanted.empty()) {
         for (const rsp::NetworkInterface& i : *all)
             if (i.loopback) sockets.openOn(i);
@@ -58,7 +58,7 @@ bool BeaconSockets::listen(Deadline deadline, int alsoFd, const Handler& handler
     const int64_t leftNs = deadline.leftNs(kNsPerS);
     (void)poll(look.data(), look.size(), static_cast<int>((leftNs + kNsPerMs - 1) / kNsPerMs));
     for (Link& link : links_) {
-        for (const rsp::UdpSocket::Datagram& d : link.group.fetch()) // what is left comes in the next round
+        for (const rsp::UdpSocket::Datagram& d : link.group.fetch()) // the next round reads the rest
             if (const auto a = decodeAnnouncement(d.bytes)) handler(*a, numericText(*d.from));
     }
     return look.front().revents != 0;

@@ -1,4 +1,4 @@
-// The sockets of the beacon: on each card that does multicast, for IPv4 and IPv6.
+// Sockets of the beacon: one per multicast interface, for IPv4 and IPv6.
 #pragma once
 
 #include <functional>
@@ -11,16 +11,16 @@ namespace mural {
 
 class BeaconSockets {
 public:
-    // `interface`: name or address of the only one; empty: all. Errors: there is none.
+    // `interface`: name or address of a single interface; empty: all. Error: none exists.
     static Result<BeaconSockets> open(const std::string& interface);
 
-    // On all of them. What a card does not take is lost.
+    // Sends on all interfaces, best effort.
     void say(std::span<const std::byte> bytes);
     using Handler = std::function<void(const Announcement&, const std::string& from)>;
-    // Until something comes, the deadline, or `alsoFd` is readable (-1: none); true: it is.
+    // Waits for datagrams, the deadline, or readability of `alsoFd` (-1: none); returns true for the latter.
     bool listen(Deadline deadline, int alsoFd, const Handler& handler);
 
-    // Changes as cards and addresses come and go: then they are to be opened anew.
+    // Value that changes with interfaces and addresses; the sockets must then be reopened.
     static std::string fingerprint();
 
 private:
@@ -31,7 +31,7 @@ private:
     };
     void openOn(const rsp::NetworkInterface& interface);
     std::vector<Link> links_;
-    std::string trouble_; // the last card that could not be used
+    std::string trouble_; // error of the last unusable interface
 };
 
 } // namespace mural

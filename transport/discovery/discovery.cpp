@@ -12,7 +12,7 @@ namespace mural {
 
 namespace {
 
-// A question may get lost: it is asked again, less and less often.
+// Searches are repeated at growing intervals, because datagrams may be lost.
 constexpr int64_t kFirstPauseMs = 100;
 constexpr int64_t kMostPauseMs = 1'000;
 constexpr int64_t kSliceMs = 50;

@@ -1,5 +1,4 @@
-// Finding nodes that wait for heads, on this network: by a beacon of our own (UDP multicast, IPv4 and IPv6), and by Avahi
-// where it runs.
+// Finds waiting nodes on this network: by Mural's beacon (UDP multicast, IPv4 and IPv6), and by Avahi where it runs.
 #pragma once
 
 #include <functional>
@@ -13,17 +12,17 @@ namespace mural {
 struct DiscoveryOptions {
     bool beacon = true;
     bool avahi = true;
-    std::string interface; // name or address; empty: all that do multicast
+    std::string interface; // name or address; empty: all with multicast
 };
 
 struct Discovered {
     std::vector<FoundNode> nodes;
-    // Why a means found nothing; empty: it worked, or was not wanted.
+    // Error per method; empty: it worked, or was disabled.
     std::string beaconTrouble;
     std::string avahiTrouble;
 };
 
-// Until the deadline, or `enough` (may be empty) says so.
+// Searches until the deadline, or until `enough` (may be empty) returns true.
 Discovered discoverNodes(const DiscoveryOptions& options, Deadline deadline, const std::function<bool(const std::vector<FoundNode>&)>& enough = {});
 
 } // namespace mural

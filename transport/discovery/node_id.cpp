@@ -19,7 +19,7 @@ namespace mural {
 namespace {
 
 constexpr size_t kMachineIdDigits = 32;
-// Tells Mural's hash of the id from other programs' hashes; no secret.
+// Distinguishes Mural's hash of the machine id from other programs' hashes. Not secret.
 constexpr std::string_view kPurpose = "mural: id of this machine's node";
 
 std::string firstLine(const std::string& path) {
@@ -31,7 +31,7 @@ std::string firstLine(const std::string& path) {
 
 std::optional<Uuid> fromMachineId(const std::string& path) {
     const std::string id = firstLine(path);
-    // "uninitialized" stands there until the first start of a machine has ended.
+    // The file contains "uninitialized" until the first boot has finished.
     const auto isDigit = [](unsigned char c) { return std::isxdigit(c) != 0; };
     if (id.size() != kMachineIdDigits || !std::ranges::all_of(id, isDigit)) return {};
     static_assert(kPurpose.size() <= crypto_generichash_KEYBYTES_MAX && kPurpose.size() >= crypto_generichash_KEYBYTES_MIN);
@@ -52,7 +52,7 @@ std::string stateFolder() {
     return home.empty() ? "" : home + "/.local/state/mural";
 }
 
-// Two processes may do it at once: the file is made beside its place and linked there, which only one can.
+// Two processes may run this at once: the file is written under a temporary name and linked, which only one can do.
 Result<Uuid> kept(const std::string& folder) {
     const std::string path = folder + "/node-id";
     if (const auto uuid = uuidFromText(firstLine(path))) return *uuid;
@@ -71,7 +71,7 @@ Result<Uuid> kept(const std::string& folder) {
             return Error{"can't write " + beside + ": " + errnoText(errno) + advice};
     }
     if (link(beside.c_str(), path.c_str()) != 0 && errno == EEXIST && !uuidFromText(firstLine(path))) {
-        // What stands there is no id.
+        // The existing file is invalid.
         (void)rename(beside.c_str(), path.c_str());
     }
     (void)unlink(beside.c_str());

@@ -1,4 +1,4 @@
-// The UUID of this machine's node: the same after each start, and telling nothing about the machine.
+// Persistent UUID of this machine's node. Reveals nothing about the machine.
 #pragma once
 
 #include <string>
@@ -8,13 +8,14 @@
 
 namespace mural {
 
-// Where it is looked for, for tests.
+// Search paths, replaceable for tests.
 struct NodeIdPlaces {
     std::string machineId = "/etc/machine-id";
     std::string state; // folder; empty: $XDG_STATE_HOME/mural, or ~/.local/state/mural
 };
 
-// From the machine's id by a keyed hash, as machine-id(5) asks for; where there is none, made once and kept.
+// Derived from the machine id with a keyed hash, as machine-id(5) requires. Without a machine id, created once and
+// stored.
 Result<Uuid> nodeId(const NodeIdPlaces& places = {});
 
 } // namespace mural

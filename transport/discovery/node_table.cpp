@@ -15,7 +15,7 @@ NodeTable::Entry* NodeTable::entry(const Announcement& a) {
     const auto found = entries_.find(a.uuid);
     if (found == entries_.end() && entries_.size() >= kMostNodes) return nullptr;
     Entry& e = found == entries_.end() ? entries_[a.uuid] : found->second;
-    // It may have been started again, elsewhere: what it says now counts.
+    // The node may have restarted elsewhere: its latest announcement counts.
     if (e.node.port != a.port) e.node.addresses.clear();
     e.node.uuid = a.uuid;
     e.node.name = a.name;
@@ -54,7 +54,7 @@ void NodeTable::lostByAvahi(const Uuid& uuid) {
     remove(found);
 }
 
-// Unless it is known by the other means.
+// Unless the other method still knows it.
 void NodeTable::remove(std::map<Uuid, Entry>::iterator at) {
     if (!at->second.node.byBeacon && !at->second.node.byAvahi) entries_.erase(at);
 }

@@ -1,4 +1,4 @@
-// The nodes that have been found, each once, whatever it was found by. Without sockets and clock.
+// Discovered nodes, merged from all methods. Has no sockets or clock.
 #pragma once
 
 #include <map>
@@ -14,16 +14,16 @@ struct FoundNode {
     std::string name;
     std::string version;
     uint16_t port = 0;
-    std::vector<std::string> addresses; // as they came in; IPv6's own links with "%eth0"
+    std::vector<std::string> addresses; // in order of arrival; link-local IPv6 addresses with "%eth0"
     bool byBeacon = false;
     bool byAvahi = false;
 };
 
 class NodeTable {
 public:
-    // A beacon is heard no more after this long.
+    // Timeout of a beacon.
     static constexpr int64_t kSilentNs = 3'500'000'000;
-    // Whoever fills the network with made-up nodes finds an end here.
+    // Limit against floods of forged announcements.
     static constexpr size_t kMostNodes = 1024;
     static constexpr size_t kMostAddresses = 16;
 
@@ -32,7 +32,7 @@ public:
     void lostByAvahi(const Uuid& uuid);
     void expire(int64_t nowNs);
 
-    // By name, then UUID.
+    // Sorted by name, then UUID.
     [[nodiscard]] std::vector<FoundNode> nodes() const;
 
 private:

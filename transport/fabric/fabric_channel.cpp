@@ -8,9 +8,9 @@ namespace {
 
 constexpr unsigned kReading = static_cast<unsigned>(Channel::Side::Reading);
 constexpr unsigned kWriting = static_cast<unsigned>(Channel::Side::Writing);
-constexpr int64_t kSliceNs = kNsPerS; // of a wait at the condition
+constexpr int64_t kSliceNs = kNsPerS; // of a wait on the condition variable
 
-// An end that the other side made, however it is told.
+// Returns true for every error code that reports the peer's end.
 bool isEnd(long code) {
     const long positive = code < 0 ? -code : code;
     return positive == FI_ECANCELED || positive == FI_ENOTCONN || positive == FI_ESHUTDOWN;
@@ -26,11 +26,12 @@ Channel::Channel(std::unique_ptr<Endpoint> endpoint, Greeting peer)
     for (size_t i = 0; i < kSends; ++i) freeSends_.push_back(kReceives + i);
 }
 
-// What others wait for is told to them: to the one at the descriptors, for nothing will come there any more.
+// Advances the channel and notifies other waiting threads, including the one at the descriptors, for which no further
+// event may arrive.
 void Channel::progress(Side by) {
     unsigned news = takeCompletions();
     if (std::exchange(lookAtEvents_, false) && !gone_ && endpoint_->shutDownMeanwhile()) {
-        news |= takeCompletions(); // what came before the end
+        news |= takeCompletions(); // data before the end counts
         end(0);
         news = kReading | kWriting;
     }
@@ -67,7 +68,7 @@ unsigned Channel::onReceived(const Endpoint::Completion& completion) {
     const auto kind = bytes.size() < kHeadBytes ? MessageKind{} : static_cast<MessageKind>(bytes[0]);
     switch (kind) {
     case MessageKind::Data:
-        if (closedHere_) receiveInto(slot); // nobody reads it
+        if (closedHere_) receiveInto(slot); // no reader
         else received_.push_back({slot, bytes.subspan(kHeadBytes)});
         return kReading;
     case MessageKind::Credit:
@@ -92,11 +93,11 @@ void Channel::receiveInto(Endpoint::Slot slot) {
     if (const long code = endpoint_->receive(slot); code != 0) end(code);
 }
 
-// Those that found no room before, too.
+// Includes messages that found no room before.
 void Channel::sendControls() {
     if (byeSent_) return;
     if (gone_) {
-        if (fault_.empty()) byeSent_ = injected(makeHead(MessageKind::Bye)); // the answer to its own
+        if (fault_.empty()) byeSent_ = injected(makeHead(MessageKind::Bye)); // the reply to the peer's Bye
         return;
     }
     if (closedHere_) {
@@ -172,7 +173,7 @@ bool Channel::sendGathered() {
     return true;
 }
 
-// A provider may have to wait for room to send: who sleeps at the descriptors must learn that it does, and look for that too.
+// A provider may have to wait for room to send, so the thread at the descriptors must poll for that too.
 void Channel::sleep(Lock& lock, Side side, Deadline deadline) {
     if (sleeper_ != 0) {
         if (sendsUnderWay_ > 0) endpoint_->wake();
@@ -193,7 +194,7 @@ void Channel::sleep(Lock& lock, Side side, Deadline deadline) {
     lookAtEvents_ |= eventsCame;
 }
 
-// Another that waits takes the place at the descriptors.
+// Another waiting thread takes over the descriptors.
 Channel::End Channel::leave(End end) {
     if (waiting_ > 0 && sleeper_ == 0) changed_.notify_all();
     return end;
@@ -201,7 +202,7 @@ Channel::End Channel::leave(End end) {
 
 void Channel::close() {
     closedHere_ = true;
-    received_.clear(); // their slots are the window that nobody will use again
+    received_.clear(); // their slots are credits that are no longer used
     wakeAll();
     progress(Side::Writing);
 }

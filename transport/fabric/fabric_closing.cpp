@@ -29,16 +29,16 @@ public:
         try {
             std::thread([this, channel] { drain(channel); }).detach();
             draining_.push_back(std::move(channel));
-        } catch (const std::system_error&) { // no thread to be had: a short wait is better than a lost end
+        } catch (const std::system_error&) { // no thread available: a short wait is better than lost data
             auto channelLock = channel->lock();
             channel->drain(channelLock, Deadline::inMs(kExitMs), stop_);
         }
     }
 
-    // At the process's end, before libfabric takes down its own. A forked child has the list, but not the threads.
+    // Runs at process exit before libfabric's own cleanup. A forked child has the list but not the threads.
     ~Closing() {
         if (getpid() != ownerPid_) {
-            new auto(std::move(draining_)); // the parent's, left alone
+            new auto(std::move(draining_)); // leaks the parent's objects on purpose
             return;
         }
         std::unique_lock lock(mutex_);
@@ -63,7 +63,7 @@ private:
         }
         Channel* raw = channel.get();
         channel.reset();
-        const std::lock_guard lock(mutex_); // its endpoint goes here, unless its connection has it still
+        const std::lock_guard lock(mutex_); // destroys the endpoint, unless its connection still owns it
         draining_.erase(std::find_if(draining_.begin(), draining_.end(), [raw](const auto& each) { return each.get() == raw; }));
         changed_.notify_all();
     }

@@ -1,5 +1,5 @@
-// The last of a closed connection: libfabric sends only while somebody asks it to, and an end that disappears with messages
-// unread may take the tail of its own stream along. So each closed channel has a thread until the other end has answered its Bye.
+// Drains closed connections: libfabric sends only while polled, and an end that disappears with unread messages can
+// lose the tail of its own stream. Each closed channel therefore has a thread until the peer has answered its Bye.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace mural::fabric {
 
-// For ten seconds at most; when the process ends, for one at most.
+// Drains for at most ten seconds; at process exit, for at most one.
 void drainInBackground(std::shared_ptr<Channel> channel);
 
 } // namespace mural::fabric

@@ -20,7 +20,8 @@ Result<std::unique_ptr<Connection>> connectBy(fi_info& info, const ConnectionDes
 
 } // namespace
 
-// Providers and addresses get their share of the time that is left. The first reason is told: it is the best provider's.
+// Divides the remaining time among providers and addresses. Reports the first error, which belongs to the best
+// provider.
 Result<std::unique_ptr<Connection>> connectFabric(const ConnectionDescription& to, Deadline deadline) {
     if (to.host.empty() || to.port == 0) return Error{toText(to) + ": connecting needs a host and a port"};
     auto providers = findProviders(to, Role::Connect, deadline);

@@ -1,4 +1,4 @@
-// Connections fabric://host:port?provider=NAME: connecting and listening.
+// Connects and listens for fabric://host:port?provider=NAME.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace mural::fabric {
 
-// Waits until the other end has accepted.
+// Blocks until the peer has accepted.
 Result<std::unique_ptr<Connection>> connectFabric(const ConnectionDescription& to, Deadline deadline);
 Result<std::unique_ptr<Listener>> listenFabric(const ConnectionDescription& at);
 

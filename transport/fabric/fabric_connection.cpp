@@ -10,7 +10,7 @@ namespace mural::fabric {
 
 namespace {
 
-constexpr int64_t kFlushGraceMs = 1000; // the last write may be long ago when flush comes
+constexpr int64_t kFlushGraceMs = 1000; // minimum time for a flush long after the last write
 
 using Side = Channel::Side;
 using End = Channel::End;
@@ -22,7 +22,7 @@ FabricConnection::FabricConnection(std::unique_ptr<Endpoint> endpoint, Greeting 
     , description_(std::move(description))
     , ownerPid_(getpid()) {}
 
-// A forked child has a copy of this object; what it holds of the card is the parent's, and is left alone.
+// A forked child has a copy of this object. The card's resources belong to the parent and are left alone.
 FabricConnection::~FabricConnection() {
     FabricConnection::close();
     if (getpid() != ownerPid_) new std::shared_ptr<Channel>(std::move(channel_));
@@ -68,7 +68,7 @@ Result<void> FabricConnection::read(std::span<std::byte> into, Deadline deadline
         }
         message_ = channel_->takeMessage();
         reading_ = true;
-        lock.unlock(); // the message is ours: a writer goes on meanwhile
+        lock.unlock(); // the message is owned here, so a writer can proceed
         done += takeBuffered(into.subspan(done));
         if (done == into.size()) break;
         lock.lock();
@@ -110,7 +110,7 @@ bool FabricConnection::alive() const {
     return !channel_->lookForEnd();
 }
 
-// A message cut in half can't be mended: the connection ends, so that the other end learns of it.
+// A partially transferred message cannot be repaired: the connection ends, which informs the peer.
 Error FabricConnection::failed(Channel::Lock& lock, const char* verb, End end, size_t doneBytes, size_t wantedBytes) {
     const bool here = closed_;
     const bool cutInHalf = end == End::DeadlinePassed && doneBytes > 0;

@@ -1,5 +1,5 @@
-// A Connection over a channel of libfabric. Small writes are gathered until flush() or until a message is full.
-// Threads: as Connection says; flush() and close() may come from any thread.
+// A Connection over a libfabric channel. Small writes are buffered until flush() or until a message is full. Thread
+// safety: as Connection; flush() and close() may be called from any thread.
 #pragma once
 
 #include <atomic>
@@ -17,13 +17,13 @@ public:
 
     Result<void> read(std::span<std::byte> into, Deadline deadline) override;
     Result<void> write(std::span<const std::byte> bytes, Deadline deadline) override;
-    // Waits for credits, and until the provider has sent all, to the deadline of the last write, and a second at least.
+    // Waits for credits and for the provider until the deadline of the last write, and for at least a second.
     void flush() override;
-    // What was written goes out in the background, as the other end reads it (fabric_closing.hpp).
+    // Written data is sent in the background while the peer reads it (fabric_closing.hpp).
     void close() override;
 
     [[nodiscard]] bool timedOut() const override;
-    // False as soon as the other end is closed or dead; what it has written can still be read.
+    // Returns false after the peer has closed or died; its data can still be read.
     [[nodiscard]] bool alive() const override;
     [[nodiscard]] std::string describe() const override { return description_; }
     [[nodiscard]] uint64_t bytesWritten() const override { return bytesWritten_; }
@@ -34,7 +34,7 @@ private:
     Error failed(Channel::Lock& lock, const char* verb, Channel::End end, size_t doneBytes, size_t wantedBytes);
     void endStream(Channel::Lock& lock);
 
-    std::shared_ptr<Channel> channel_; // outlives this while it is drained
+    std::shared_ptr<Channel> channel_; // outlives this object while it is drained
     std::string description_;
     pid_t ownerPid_;
     std::atomic<bool> closed_{false};
@@ -43,11 +43,11 @@ private:
     std::atomic<uint64_t> bytesWritten_{0};
     std::atomic<uint64_t> bytesRead_{0};
 
-    // The reader's.
-    bool reading_ = false; // has the message
+    // State of the reader.
+    bool reading_ = false; // owns the message
     Channel::Message message_{};
 
-    // The writer's, under the channel's lock.
+    // State of the writer, protected by the channel's lock.
     Deadline lastWriteDeadline_ = Deadline::inMs(0);
 };
 

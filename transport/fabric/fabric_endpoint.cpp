@@ -12,7 +12,7 @@ namespace mural::fabric {
 namespace {
 
 constexpr size_t kPageBytes = 4096;
-constexpr int64_t kSliceMs = 1000; // a provider that forgets to wake costs no more
+constexpr int64_t kSliceMs = 1000; // bounds the damage of a provider that misses a wake-up
 
 Error cannot(const std::string& provider, const char* what, long code) {
     return Error{"fabric (" + provider + "): can't " + what + ": " + codeText(code) + "; try another provider by provider=NAME"};
@@ -40,7 +40,7 @@ Result<std::unique_ptr<Endpoint>> Endpoint::open(const SharedFabric& fabric, fi_
     return made;
 }
 
-// Operations end with the endpoint: their memory and contexts go after it.
+// Operations end with the endpoint, so it is destroyed before their memory and contexts.
 Endpoint::~Endpoint() { endpoint_.reset(); }
 
 Result<void> Endpoint::openQueue(fid_domain* domain) {
@@ -152,7 +152,8 @@ bool Endpoint::mayExpectWakeUp() {
 bool Endpoint::sleep(Deadline deadline) {
     pollfd looks[] = {{queueDescriptor_, POLLIN, 0}, {events_.descriptor(), POLLIN, 0}, {wake_.get(), POLLIN, 0}};
     const int64_t leftNs = deadline.leftNs(kSliceMs * kNsPerMs);
-    const int came = poll(looks, 3, static_cast<int>((leftNs + kNsPerMs - 1) / kNsPerMs)); // interrupted: the caller looks again
+    // interrupted: the caller polls again
+    const int came = poll(looks, 3, static_cast<int>((leftNs + kNsPerMs - 1) / kNsPerMs));
     if (looks[2].revents != 0) {
         eventfd_t times = 0;
         eventfd_read(wake_.get(), &times);

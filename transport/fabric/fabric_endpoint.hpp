@@ -1,6 +1,6 @@
-// One connected endpoint of libfabric with its registered buffers and completion queue: sends and receives messages in
-// slots of one piece of memory. Knows nothing of what they say.
-// Threads: one at a time, but for sleep(): another may use the endpoint meanwhile, and wake() it.
+// One connected libfabric endpoint with registered buffers and a completion queue. Sends and receives messages in slots
+// of one memory block, without interpreting them. Thread safety: one thread at a time, except during sleep(): another
+// may use the endpoint then, and wake() it.
 #pragma once
 
 #include <array>
@@ -19,35 +19,36 @@ namespace mural::fabric {
 
 class Endpoint {
 public:
-    // Slots from 0 on receive, from kReceives on they send.
+    // Slots from 0 on receive; slots from kReceives on send.
     using Slot = size_t;
     struct Completion {
         Slot slot = 0;
-        size_t sizeBytes = 0; // of what was received
+        size_t sizeBytes = 0; // of the received message
     };
 
-    // Opens it and has all its receiving slots ready; not yet connected.
+    // Opens an endpoint with all receive slots posted, not connected yet.
     static Result<std::unique_ptr<Endpoint>> open(const SharedFabric& fabric, fi_info& info);
     ~Endpoint();
 
-    // Each waits until it is connected. Who connects learns what the other end may be sent; who accepts knows from the request.
+    // Both block until connected. The connecting end learns the peer's limits; the accepting end knows them from the
+    // request.
     Result<Greeting> connect(Deadline deadline);
     Result<void> accept(Deadline deadline);
 
     [[nodiscard]] std::span<std::byte> memory(Slot slot) { return {memory_.get() + slot * kMessageBytes, kMessageBytes}; }
-    // 0, or an error; -FI_EAGAIN: later.
+    // Returns 0 or an error; -FI_EAGAIN: retry later.
     long receive(Slot slot);
     long send(Slot slot, size_t sizeBytes);
-    long inject(const Head& head); // its bytes are taken at once, and complete unheard
+    long inject(const Head& head); // copies the bytes, and completes without a completion event
 
-    // How many of `into` were filled; negative: the connection is broken, code says why.
+    // Returns the number of entries filled; negative: the connection is broken, `code` has the reason.
     int completions(std::span<Completion> into, long& code);
-    // Whether the connection was ended by the other end or broke.
+    // Returns true if the peer has ended the connection, or it broke.
     bool shutDownMeanwhile();
     void shutDown() { fi_shutdown(endpoint_.get(), 0); }
 
-    // True when there may be sleep: nothing came since the last look. Then sleep() waits for something to come;
-    // true: look for events, such as the end, too.
+    // Returns true if sleeping is safe: nothing has arrived since the last poll. sleep() then waits for an event; its
+    // result true requests a check for connection events, such as the end.
     bool mayExpectWakeUp();
     bool sleep(Deadline deadline);
     void wake();
@@ -59,7 +60,7 @@ private:
         void operator()(std::byte* bytes) const { ::free(bytes); }
     };
     struct Context {
-        fi_context2 context{}; // the provider's while an operation is under way
+        fi_context2 context{}; // owned by the provider during an operation
     };
 
     Endpoint() = default;
@@ -68,10 +69,10 @@ private:
     Result<void> openEndpoint(fid_domain* domain, fi_info& info);
     Result<std::vector<std::byte>> awaitConnected(Deadline deadline);
 
-    // In the order in which they are opened: closed the other way round.
+    // In order of creation; destroyed in reverse.
     SharedFabric fabric_;
     std::string provider_;
-    std::vector<std::byte> address_; // to connect to
+    std::vector<std::byte> address_; // address to connect to
     EventQueue events_;
     Handle<fid_domain> domain_;
     Handle<fid_cq> queue_;

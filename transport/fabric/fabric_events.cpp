@@ -10,8 +10,8 @@ namespace mural::fabric {
 
 namespace {
 
-constexpr size_t kMostDataBytes = 256; // of what goes along with a request
-constexpr int64_t kSliceMs = 100;      // some providers move on only when they are asked
+constexpr size_t kMostDataBytes = 256; // largest data of a connection request
+constexpr int64_t kSliceMs = 100; // some providers progress only when polled
 
 struct alignas(fi_eq_cm_entry) EventBytes {
     std::byte bytes[sizeof(fi_eq_cm_entry) + kMostDataBytes];

@@ -1,4 +1,4 @@
-// libfabric's event queue: who asks to connect, what became of a connection.
+// libfabric's event queue: connection requests and state changes.
 #pragma once
 
 #include <cstddef>
@@ -13,18 +13,18 @@ namespace mural::fabric {
 
 struct Event {
     enum class Kind { None, Request, Connected, Shutdown, Failed };
-    Kind kind = Kind::None;          // None: the deadline passed
-    Info info;                       // of a Request
-    std::vector<std::byte> greeting; // what came with a Request or Connected
-    long code = 0;                   // of Failed
-    [[nodiscard]] bool passing() const { return code > 0; } // Failed: one request; negative: the queue itself
+    Kind kind = Kind::None; // None: the deadline passed
+    Info info; // for Request
+    std::vector<std::byte> greeting; // data of a Request or Connected
+    long code = 0; // for Failed
+    [[nodiscard]] bool passing() const { return code > 0; } // Failed: a single request; negative: the queue itself
 };
 
 class EventQueue {
 public:
     static Result<EventQueue> open(const SharedFabric& fabric);
 
-    // Waits for the next; a passed deadline only looks.
+    // Returns the next event; with a passed deadline it only polls.
     Event next(Deadline deadline);
     [[nodiscard]] fid_eq* get() const { return queue_.get(); }
     [[nodiscard]] int descriptor() const { return descriptor_; }

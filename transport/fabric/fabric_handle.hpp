@@ -1,4 +1,4 @@
-// Objects of libfabric with an owner, and the text of its error codes.
+// Owning handles for libfabric objects, and texts of its error codes.
 #pragma once
 
 #include <memory>
@@ -18,10 +18,10 @@ struct FreeInfo {
 };
 using Info = std::unique_ptr<fi_info, FreeInfo>;
 
-// Connections of one listener share its fabric.
+// Shared by all connections of a listener.
 using SharedFabric = std::shared_ptr<fid_fabric>;
 
-// code: positive, or negative as functions return it.
+// code: positive, or negative as returned by functions.
 inline std::string codeText(long code) { return fi_strerror(static_cast<int>(code < 0 ? -code : code)); }
 
 } // namespace mural::fabric

@@ -1,4 +1,4 @@
-// Listening by libfabric: a passive endpoint, whose requests become connections.
+// Listens with a passive libfabric endpoint; its requests become connections.
 #include <algorithm>
 #include <rdma/fi_cm.h>
 #include <rdma/fi_endpoint.h>
@@ -14,12 +14,12 @@ namespace mural::fabric {
 namespace {
 
 constexpr int64_t kLookupMs = 5000;
-constexpr int64_t kHandshakeMs = 5000; // who asked to connect is there; its answer takes no longer
+constexpr int64_t kHandshakeMs = 5000; // timeout of a present peer's handshake
 
 class FabricListener final : public Listener {
 public:
     static Result<std::unique_ptr<Listener>> open(fi_info& info, const ConnectionDescription& at);
-    // What a forked child has of it is the parent's, and is left alone.
+    // A forked child leaves the parent's resources alone.
     ~FabricListener() override {
         if (getpid() != ownerPid_) (void)passive_.release();
     }
@@ -39,7 +39,7 @@ private:
     pid_t ownerPid_ = getpid();
 };
 
-// Others can't connect to "any address": they are told this host's name.
+// Peers cannot connect to the wildcard address, so the description contains this host's name.
 std::string listenerText(const ConnectionDescription& at, fid_pep& passive, const std::string& provider) {
     sockaddr_storage address{};
     size_t sizeBytes = sizeof address;
@@ -75,7 +75,7 @@ Result<std::unique_ptr<Listener>> FabricListener::open(fi_info& info, const Conn
     return std::unique_ptr<Listener>(std::move(made));
 }
 
-// Who gave up between asking and being accepted, or is no Mural, is not an error of the listener's.
+// A peer that gives up before it is accepted, or that is not Mural, is not an error of the listener.
 Result<std::unique_ptr<Connection>> FabricListener::accept(Deadline deadline) {
     while (true) {
         Event event = events_.next(deadline);

@@ -1,4 +1,4 @@
-// What Mural finds in libmural_transport_fabric.so.
+// Entry point of libmural_transport_fabric.so.
 #include "transport/fabric/fabric_connect.hpp"
 #include "transport/plugin/exported_transport.hpp"
 

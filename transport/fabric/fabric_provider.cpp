@@ -23,7 +23,7 @@ Result<std::string> providerWanted(const ConnectionDescription& description) {
     return wanted;
 }
 
-// Both ends post a fixed number of buffers, whose memory may have to be registered.
+// Both ends post a fixed number of buffers, whose memory may require registration.
 Info makeHints(const std::string& provider) {
     Info hints(fi_allocinfo());
     if (!hints) return hints;
@@ -39,11 +39,11 @@ Info makeHints(const std::string& provider) {
     return hints;
 }
 
-// libfabric would look names up without a deadline: it gets numbers.
+// Resolves names first, because libfabric would do so without a deadline.
 Result<std::vector<std::string>> numbersOf(const ConnectionDescription& description, Role role, Deadline deadline) {
     if (description.host.empty() || description.host == "*") return std::vector<std::string>{""};
     auto found = resolveTcp(description.host, description.port, role == Role::Listen ? TcpRole::Listen : TcpRole::Connect, deadline);
-    if (!found) { // its text begins with tcp://…
+    if (!found) { // its text begins with tcp://...
         const size_t reason = tcpText(description.host, description.port).size();
         return Error{toText(description) + found.error().message.substr(reason)};
     }
@@ -69,7 +69,7 @@ Result<std::vector<Info>> findProviders(const ConnectionDescription& description
         const uint64_t flags = (role == Role::Listen ? FI_SOURCE : 0) | (number.empty() ? 0 : FI_NUMERICHOST);
         const int answer = fi_getinfo(kApiVersion, number.empty() ? nullptr : number.c_str(), port.c_str(), flags, hints.get(), &list);
         if (answer != 0) code = answer;
-        while (list) { // each for itself
+        while (list) { // splits the list into single entries
             fi_info* next = std::exchange(list->next, nullptr);
             all.emplace_back(list);
             list = next;

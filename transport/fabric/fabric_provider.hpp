@@ -1,4 +1,4 @@
-// Which provider of libfabric, at which address: from a description fabric://host:port?provider=NAME.
+// Selects libfabric providers and addresses for fabric://host:port?provider=NAME.
 #pragma once
 
 #include <vector>
@@ -12,14 +12,14 @@ namespace mural::fabric {
 
 enum class Role { Connect, Listen };
 
-// What fits, best first as libfabric says; never empty. Connection-oriented endpoints only.
+// Returns the matches, best first according to libfabric; never empty. Connection-oriented endpoints only.
 Result<std::vector<Info>> findProviders(const ConnectionDescription& description, Role role, Deadline deadline);
 
 Result<SharedFabric> openFabric(const fi_info& info);
 
-// "fabric://host:port?provider=tcp"
+// Returns "fabric://host:port?provider=tcp".
 std::string fabricText(const std::string& host, uint16_t port, const std::string& provider);
-// The same of an address that libfabric gives; `otherwise` where that is none of IP.
+// The same for a libfabric address; `otherwise` if it is not an IP address.
 std::string fabricText(const void* address, size_t sizeBytes, const std::string& provider, const std::string& otherwise);
 std::string providerOf(const fi_info& info);
 

@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-// With their descriptions, which C callers get as pointers.
+// Wrappers that keep the descriptions alive, because C callers receive pointers to them.
 struct mural_transport_connection {
     std::unique_ptr<mural::Connection> connection;
     std::string description;

@@ -1,4 +1,4 @@
-// The other side of transport_plugin.h, for plug-ins written in C++: a table made of two functions that connect and listen.
+// Implements transport_plugin.h for plug-ins in C++: builds the table from two functions that connect and listen.
 //
 //   extern "C" __attribute__((visibility("default"))) const mural_transport_plugin* mural_get_transport_plugin() {
 //       static const auto table = mural::exportedTransport<connectHere, listenHere>("scheme");
@@ -18,7 +18,7 @@ using ListenFunction = Result<std::unique_ptr<Listener>> (*)(const ConnectionDes
 namespace exported {
 int connect(ConnectFunction function, const char* text, int64_t deadlineNs, mural_transport_connection** into, mural_transport_error* error);
 int listen(ListenFunction function, const char* text, mural_transport_listener** into, mural_transport_error* error);
-// All but connect and listen.
+// Returns the table without connect and listen.
 mural_transport_plugin table(const char* scheme);
 } // namespace exported
 

@@ -1,4 +1,4 @@
-// Connections and listeners of a plug-in (transport_plugin.h) as Mural's own.
+// Wraps connections and listeners of a plug-in (transport_plugin.h) as Mural's own.
 #pragma once
 
 #include <memory>

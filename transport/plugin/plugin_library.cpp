@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Newer tables only grow; but what a function means may have changed, so versions must be the same.
+// Requires equal versions: newer tables only grow, but the meaning of a function may have changed.
 std::string whyUnfit(const mural_transport_plugin* plugin, const std::string& scheme) {
     if (!plugin) return "its " MURAL_TRANSPORT_PLUGIN_ENTRY "() gives nothing";
     if (plugin->version != MURAL_TRANSPORT_PLUGIN_VERSION)
@@ -39,7 +39,7 @@ Result<const mural_transport_plugin*> openPlugin(const std::string& scheme, cons
     if (!fs::exists(file, failed)) return Error{what + "there is no plug-in " + file + "; check the scheme, or build or install the plug-in"};
     void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
     if (!library) {
-        const char* said = dlerror(); // names the file
+        const char* said = dlerror(); // contains the file name
         return Error{what + "can't load the plug-in: " + (said ? said : file) + "; install what it needs"};
     }
     const auto entry = reinterpret_cast<mural_transport_plugin_entry>(dlsym(library, MURAL_TRANSPORT_PLUGIN_ENTRY));

@@ -1,4 +1,4 @@
-// Finding and opening the plug-in of a scheme (transport_plugin.h).
+// Finds and opens the plug-in of a scheme (transport_plugin.h).
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace mural {
 
-// Where Mural's own libraries lie: from the program's file, as in build folders and where it is installed.
+// Returns the folder of Mural's libraries, relative to the program's file: in build folders and after installation.
 std::string pluginFolder();
 
-// Opens FOLDER/libmural_transport_SCHEME.so; it stays open, for its threads may outlive its connections. Errors: it is not
-// there or can't be loaded, is no plug-in, is one of another version or scheme.
+// Opens FOLDER/libmural_transport_SCHEME.so. It is never closed, because its threads may outlive its connections.
+// Errors: missing or not loadable, not a plug-in, another version or scheme.
 Result<const mural_transport_plugin*> openPlugin(const std::string& scheme, const std::string& folder = pluginFolder());
 
 } // namespace mural
