@@ -23,7 +23,7 @@ Error misplaced(const char* what, const PixelViewport& into, const PixelViewport
     return Error{std::string(what) + ": the drawn part " + text(part) + " is not inside the picture " + text(into) + "; give both the same frame of reference"};
 }
 
-// The drawn rectangles of `part` in the pixels of `into`, and how to go back.
+// The drawn rectangles of `part` in the pixels of `into`, and the inverse mapping.
 struct Placement {
     int32_t dx, dy;
     [[nodiscard]] PixelViewport inTarget(const PixelViewport& r) const { return {r.x + dx, r.y + dy, r.w, r.h}; }
@@ -40,7 +40,7 @@ Result<Placement> place(const char* what, const Image& into, const Image& part) 
     return p;
 }
 
-// Afterwards the picture holds both.
+// Records that the picture now contains both.
 void take(Image& into, const Image& part, const Placement& p) {
     for (const PixelViewport& r : part.drawn.rectangles()) into.drawn.add(p.inTarget(r));
     into.drawn.simplify();
@@ -128,10 +128,10 @@ Result<void> assembleBlended(Image& into, const Image& part) {
 
 namespace {
 
-// How many of a kernel's pixels a row of `size` has, from `first` on each `step`.
+// Returns the number of a kernel's pixels in a row of `size`: from `first` on, every `step`.
 int32_t countOf(int32_t size, int32_t first, int32_t step) { return first < size ? (size - first + step - 1) / step : 0; }
 
-// The part of the part that lies within the picture.
+// Returns the part of `part` that lies within the picture.
 Result<PixelViewport> withinPicture(const PlaneView& picture, const PlaneView& part, const PixelKernel& k) {
     const char* what = "interleaving pixels";
     if (!k.valid()) return Error{std::string(what) + ": there is no pixel " + std::to_string(k.x) + "," + std::to_string(k.y) + " in a kernel of " + std::to_string(k.w) + "x" + std::to_string(k.h) + "; check the compound"};

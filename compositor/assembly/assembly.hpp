@@ -1,5 +1,5 @@
-// Puts pictures together: each function takes one more picture into what is there. Sizes, formats and draw orders are checked;
-// what comes out depends on the pictures and their orders only, never on which of them came first.
+// Assembly of pictures: each function merges one picture into another. Sizes, formats and draw orders are checked. The
+// result depends on the pictures and their draw orders only, never on the order of arrival.
 #pragma once
 
 #include "common/pixel_kernel.hpp"
@@ -10,7 +10,7 @@
 
 namespace mural::compositor {
 
-// Sort-first and stereo side by side: the drawn pixels of `part`, planes that both have.
+// Sort-first and side-by-side stereo: copies the drawn pixels of `part`, in planes that both have.
 [[nodiscard]] Result<void> assembleCopy(Image& into, const Image& part);
 
 struct DepthAssembly {
@@ -18,17 +18,19 @@ struct DepthAssembly {
     Coverage coverage = Coverage::All;
     uint32_t clearBits = 0; // for Coverage::NotClear
 };
-// Sort-last: both have depth planes of one format. Their orders must be apart: neither may lie in between the other's parts,
-// for where depths tie, the draw order decides.
+// Sort-last: composites by depth. Both need depth planes of one format and disjoint, not interleaved draw orders,
+// because the draw order decides equal depths.
 [[nodiscard]] Result<void> assembleDepth(Image& into, const Image& part, const DepthAssembly& how);
 
-// Premultiplied colours; the later picture is in front. Orders must be adjacent: nothing may be missing in between.
+// Ordered blending of premultiplied colours; the later picture is in front. Draw orders must be adjacent, without a
+// gap.
 [[nodiscard]] Result<void> assembleBlended(Image& into, const Image& part);
 
-// Pixel decomposition: the part's pixels are those of the kernel. It may have a column and a row more, which stand outside of
-// the picture where the kernel does not divide it (common/pixel_kernel.hpp); they are left out. Planes of one format.
+// Pixel decomposition: writes the part's pixels to the kernel's positions. If the kernel does not divide the picture,
+// the part may have one more column and row outside of it, which are ignored (common/pixel_kernel.hpp). Planes of one
+// format.
 [[nodiscard]] Result<void> interleavePixels(const MutablePlaneView& into, const PlaneView& part, const PixelKernel& kernel);
-// The other way: takes the part out of a picture. What of it stands outside stays as it is.
+// The inverse: extracts the part. Pixels outside of the picture stay unchanged.
 [[nodiscard]] Result<void> deinterleavePixels(const MutablePlaneView& part, const PlaneView& from, const PixelKernel& kernel);
 
 struct ColourMask {
@@ -38,7 +40,7 @@ struct ColourMask {
     bool alpha = true;
 };
 [[nodiscard]] ChannelMask channelMaskOf(PlaneFormat format, const ColourMask& mask);
-// Anaglyph: the masked components are taken from `part`, the others stay. Planes of one colour format and size.
+// Anaglyph: takes the masked components from `part`; the others stay. Planes of one colour format and size.
 [[nodiscard]] Result<void> assembleMasked(const MutablePlaneView& into, const PlaneView& part, const ColourMask& mask);
 
 } // namespace mural::compositor

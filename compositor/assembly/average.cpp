@@ -39,7 +39,7 @@ void Average::clear() {
     std::ranges::fill(doubles_, 0.0);
 }
 
-// RGBA8: what 16 bits held goes to sums of 32 bits.
+// RGBA8: moves the 16-bit sums to 32 bits.
 void Average::widen() {
     wide_.resize(sums16_.size());
     for (size_t i = 0; i < sums16_.size(); ++i) wide_[i] += sums16_[i];

@@ -1,5 +1,5 @@
-// A way to write a plane as bytes and to read it back. Instances hold scratch memory: each is used by one thread at a time.
-// Shape and codec of encoded bytes travel with them; the bytes themselves tell neither.
+// A codec encodes planes as bytes and decodes them. Instances own scratch memory: one thread at a time. Shape and codec
+// travel separately; the encoded bytes contain neither.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +23,8 @@ struct PlaneShape {
 
 struct CodecInfo {
     std::string name;
-    bool lossless = true; // a lossy one is only ever taken by name
-    uint32_t formats = 0; // a bit 1 << PlaneFormat for each that it takes
+    bool lossless = true; // lossy codecs are only selected by name
+    uint32_t formats = 0; // bit 1 << PlaneFormat per supported format
 
     [[nodiscard]] bool takes(PlaneFormat f) const { return (formats >> static_cast<unsigned>(f) & 1) != 0; }
 };
@@ -35,16 +35,16 @@ class Codec {
 public:
     virtual ~Codec() = default;
 
-    // As many bytes as encode may ever need room for.
+    // Returns the largest encoded size.
     [[nodiscard]] virtual size_t boundBytes(const PlaneShape& shape) const = 0;
-    // `into` has boundBytes. Returns how many were written. The plane's format is one that the codec takes.
+    // Encodes; returns the number of bytes. Requires boundBytes() in `into` and a supported format.
     [[nodiscard]] virtual Result<size_t> encode(const PlaneView& plane, std::span<std::byte> into) = 0;
-    // The plane has the shape of the one that was encoded. Any bytes may come in: what is no encoded plane of this shape is an
-    // error, and then the plane holds anything. No byte outside of both is touched.
+    // Decodes into a plane of the encoded shape. Input is untrusted: malformed bytes are an error, after which the
+    // plane's contents are unspecified. Never accesses memory outside of both arguments.
     [[nodiscard]] virtual Result<void> decode(std::span<const std::byte> bytes, const MutablePlaneView& into) = 0;
 };
 
-// One line for bytes that are no such plane.
+// Returns the error for malformed bytes, one line.
 [[nodiscard]] Error damagedPlane(const std::string& codec, const PlaneView& shape, size_t sizeBytes, const char* what);
 
 } // namespace mural::compositor

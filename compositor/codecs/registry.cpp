@@ -22,12 +22,12 @@ using Made = Result<std::unique_ptr<Codec>>;
 
 template <class T, class... A> Made made(A&&... arguments) { return std::unique_ptr<Codec>(std::make_unique<T>(std::forward<A>(arguments)...)); }
 
-// What bit planes leave is small: the fastest level finds what there is to be found (rows that repeat).
+// Bit-plane output is small: the fastest level finds the remaining redundancy (repeated rows).
 constexpr int kLevelOfBitplanes = -1;
 constexpr int kLevelOfRows = 1;
 constexpr std::string_view kJpeg = "jpeg-";
 
-// The quality in a name jpeg-N.
+// Returns the quality of a name jpeg-N.
 std::optional<int> jpegQuality(const std::string& name) {
     if (!name.starts_with(kJpeg)) return std::nullopt;
     int quality = 0;
@@ -63,11 +63,11 @@ const CodecRegistry::Maker* CodecRegistry::makerOf(const std::string& name) cons
     return at == known_.end() ? nullptr : &makers_[static_cast<size_t>(at - known_.begin())];
 }
 
-// Makes the name known, if there is such a codec.
+// Opens a codec by name and adds it to the known ones.
 Result<void> CodecRegistry::open(const std::string& name) {
     if (makerOf(name)) return {};
     if (const auto quality = jpegQuality(name)) {
-        // Below this nobody looks for the last bit of colour.
+        // Quality from which chroma is not subsampled.
         constexpr int kFullColour = 96;
         add({name, false, formatBit(PlaneFormat::Rgba8)}, [quality] { return made<JpegCodec>(*quality, *quality < kFullColour); });
         return {};

@@ -1,4 +1,4 @@
-// The codecs that there are, by name: Mural's own, and plug-ins from a folder.
+// Registry of codecs by name: built-in ones, and plug-ins from a folder.
 #pragma once
 
 #include <functional>
@@ -12,22 +12,22 @@ namespace mural::compositor {
 
 class CodecRegistry {
 public:
-    // Mural's own:
-    //   raw                              the rows as they are
-    //   rle64, rle-components, rle-swizzled   run lengths, to be measured against
-    //   bitplane, slope                  bit planes; predicted from above, or with the slope of a surface of depth
+    // Built-in codecs:
+    //   raw                              uncompressed rows
+    //   rle64, rle-components, rle-swizzled   run lengths, for comparisons
+    //   bitplane, slope                  bit planes; predicted from above, or by linear extrapolation (depth)
     //   bitplane-zstd, slope-zstd        the same, then Zstandard
-    //   lz4, zstd                        the rows as bytes
+    //   lz4, zstd                        compressed rows
     //   yuv420, jpeg-N (N: 1 to 100)     lossy; RGBA8 only
-    // pluginFolder: where make looks for a name that is none of them; empty: nowhere.
+    // pluginFolder: search path for other names; empty: none.
     explicit CodecRegistry(std::string pluginFolder = {});
 
-    // Those without a number in their name, and plug-ins that were asked for.
+    // Returns the codecs without a number in their name, and opened plug-ins.
     [[nodiscard]] const std::vector<CodecInfo>& known() const { return known_; }
-    // Errors: there is none of this name, or it can't be made.
+    // Errors: unknown name, or the codec cannot be created.
     [[nodiscard]] Result<CodecInfo> find(const std::string& name);
     [[nodiscard]] Result<std::unique_ptr<Codec>> make(const std::string& name);
-    // What a selector may choose from by itself: lossless, and for this format.
+    // Returns the candidates of automatic selection: lossless codecs for this format.
     [[nodiscard]] std::vector<CodecInfo> losslessFor(PlaneFormat format) const;
 
 private:
@@ -38,7 +38,7 @@ private:
 
     std::string pluginFolder_;
     std::vector<CodecInfo> known_;
-    std::vector<Maker> makers_; // as known_
+    std::vector<Maker> makers_; // parallel to known_
 };
 
 } // namespace mural::compositor

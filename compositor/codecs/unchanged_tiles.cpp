@@ -13,12 +13,12 @@ struct Tiles {
     Tiles(int32_t w, int32_t h) : width(w), height(h), across((w + kSkippedTileColumns - 1) / kSkippedTileColumns), up((h + kSkippedTileRows - 1) / kSkippedTileRows) {}
     [[nodiscard]] size_t count() const { return static_cast<size_t>(across) * static_cast<size_t>(up); }
     [[nodiscard]] size_t headBytes() const { return 8 + (count() + 7) / 8; }
-    // Tiles first … end-1 of row y.
+    // Area of tiles first ... end-1 of row y.
     [[nodiscard]] PixelViewport area(int32_t y, int32_t first, int32_t end) const {
         const int32_t x0 = first * kSkippedTileColumns, y0 = y * kSkippedTileRows;
         return {x0, y0, std::min(width, end * kSkippedTileColumns) - x0, std::min(height, y0 + kSkippedTileRows) - y0};
     }
-    // Calls each(row, first, end) for the runs of tiles that are marked, until it returns false.
+    // Calls each(row, first, end) for runs of marked tiles until it returns false.
     template <class IsMarked, class Each> void forRuns(IsMarked&& marked, Each&& each) const {
         for (int32_t y = 0; y < up; ++y)
             for (int32_t x = 0; x < across;) {
@@ -36,7 +36,7 @@ struct Tiles {
 size_t UnchangedTilesEncoder::boundBytes(const PlaneShape& shape, const Codec& codec) const {
     if (shape.width <= 0 || shape.height <= 0) return 0;
     const Tiles tiles(shape.width, shape.height);
-    // No cutting into runs costs more than a run for every tile.
+    // Upper bound: one run per tile.
     return tiles.headBytes() + tiles.count() * (4 + codec.boundBytes({shape.format, std::min(shape.width, kSkippedTileColumns), std::min(shape.height, kSkippedTileRows)})) + codec.boundBytes(shape);
 }
 
@@ -73,7 +73,7 @@ Result<size_t> UnchangedTilesEncoder::encode(const PlaneView& plane, Codec& code
                       return true;
                   });
     if (last) return size;
-    restart(); // nobody gets this plane
+    restart(); // this plane is not sent
     return last;
 }
 

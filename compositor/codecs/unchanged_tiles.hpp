@@ -1,8 +1,8 @@
-// Sends of a plane only the tiles that changed since the one before, by their 128-bit names; each run of changed tiles is
-// encoded by any codec. Both ends keep state: the encoder the names, the receiver the plane itself.
+// Tile delta: sends the tiles of a plane that changed since the previous one, detected by 128-bit hashes. Each run of
+// changed tiles is encoded with any codec. Both ends keep state: the encoder the hashes, the receiver the plane.
 //
-// Bytes: number of this plane and of the one it changes (4 bytes each; 0: none, all tiles are here), a bit for each tile that
-// is here, row by row from the lowest, then for each run of them in a row its size (4 bytes) and its bytes.
+// Format: number of this plane and of its reference (4 bytes each; 0: none, all tiles follow), one bit per tile,
+// row-major from the lowest row, then for each run its size (4 bytes) and its data.
 #pragma once
 
 #include <vector>
@@ -12,15 +12,15 @@
 
 namespace mural::compositor {
 
-constexpr int32_t kSkippedTileColumns = 256; // pixels
+constexpr int32_t kSkippedTileColumns = 256; // in pixels
 constexpr int32_t kSkippedTileRows = 64;
 
 class UnchangedTilesEncoder {
 public:
     [[nodiscard]] size_t boundBytes(const PlaneShape& shape, const Codec& codec) const;
-    // The receiver gets all planes in this order. A plane of another shape begins anew by itself.
+    // Requires that the receiver gets all planes in this order. A plane of another shape is sent whole.
     [[nodiscard]] Result<size_t> encode(const PlaneView& plane, Codec& codec, std::span<std::byte> into);
-    // The next plane is sent whole: the receiver is another one, or has lost its plane.
+    // Sends the next plane whole: the receiver is new, or has lost its plane.
     void restart() { names_.clear(); }
     [[nodiscard]] size_t changedTiles() const { return changed_; } // of the last plane
 
@@ -33,12 +33,12 @@ private:
 
 class UnchangedTilesDecoder {
 public:
-    // `into` holds what the last call left there. Errors: bytes that build on another plane than the last, or are damaged;
-    // then the encoder must restart.
+    // Updates `into`, which must hold the result of the last call. Errors: another reference plane, or malformed data;
+    // the encoder must then restart.
     [[nodiscard]] Result<void> decode(std::span<const std::byte> bytes, Codec& codec, const MutablePlaneView& into);
 
 private:
-    uint32_t number_ = 0; // of the plane that the receiver holds; 0: none
+    uint32_t number_ = 0; // number of the receiver's plane; 0: none
 };
 
 } // namespace mural::compositor

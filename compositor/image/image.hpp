@@ -1,5 +1,5 @@
-// What one channel hands to another: colour, depth, or both, where they stand in the picture that they are a part of, which of
-// their pixels were drawn, and in what order.
+// A picture passed between channels: colour, depth, or both; its place in the whole picture, its drawn pixels, and its
+// draw order.
 #pragma once
 
 #include <optional>
@@ -12,11 +12,11 @@
 namespace mural::compositor {
 
 struct Image {
-    int32_t x = 0; // of its lower left pixel, in the picture
+    int32_t x = 0; // lower left pixel within the whole picture
     int32_t y = 0;
     std::optional<Plane> colour;
-    std::optional<Plane> depth; // of the same size, when there are both
-    Region drawn;               // in its own pixels; nothing outside needs to be carried or put anywhere
+    std::optional<Plane> depth; // size equal to colour's
+    Region drawn; // in its own pixels; pixels outside carry no data
     DrawOrder order;
 
     [[nodiscard]] int32_t width() const { return colour ? colour->width() : depth ? depth->width() : 0; }

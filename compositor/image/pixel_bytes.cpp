@@ -8,7 +8,7 @@ namespace mural::compositor {
 namespace {
 
 constexpr size_t kLineBytes = 64;
-constexpr size_t kMostOfSmallPages = 2 * kHugePageBytes; // of less, too much might lie idle at both ends
+constexpr size_t kMostOfSmallPages = 2 * kHugePageBytes; // below, alignment would waste too much at both ends
 
 std::align_val_t alignmentOf(size_t sizeBytes) { return std::align_val_t{sizeBytes < kMostOfSmallPages ? kLineBytes : kHugePageBytes}; }
 

@@ -1,5 +1,5 @@
-// Bytes of pixels that begin with a line of the cache, so that vectors do not lie across two: std::vector's own begin 16 bytes
-// behind one where they are large. Whole pictures ask for large pages: kernels that wait for memory are a sixth to a third faster.
+// Cache-line aligned memory for pixels, so vectors do not straddle lines: large std::vectors begin 16 bytes after one.
+// Whole pictures use huge pages, which make memory-bound kernels a sixth to a third faster.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace mural::compositor {
 
-// Throws std::bad_alloc. What one returns the other takes back, with the same size.
+// Throws std::bad_alloc. Free with the same size.
 [[nodiscard]] void* allocatePixels(size_t sizeBytes);
 void freePixels(void* at, size_t sizeBytes);
 

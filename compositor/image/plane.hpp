@@ -1,4 +1,4 @@
-// Pixels in memory: views, which own nothing, and Plane, which does. Row 0 is the lowest one, as OpenGL reads pictures.
+// Pixels in memory: non-owning views, and the owning Plane. Row 0 is the lowest one, as in OpenGL.
 #pragma once
 
 #include <cstddef>
@@ -11,19 +11,19 @@
 
 namespace mural::compositor {
 
-// Byte is std::byte or const std::byte. Rows need no alignment beyond that of bytes.
+// Byte is std::byte or const std::byte. Rows have byte alignment.
 template <class Byte> struct BasicPlaneView {
     PlaneFormat format = PlaneFormat::Rgba8;
     int32_t width = 0;
     int32_t height = 0;
-    ptrdiff_t strideBytes = 0; // from a row to the one above
+    ptrdiff_t strideBytes = 0; // distance to the row above
     Byte* pixels = nullptr;
 
     [[nodiscard]] Byte* row(int32_t y) const { return pixels + y * strideBytes; }
     [[nodiscard]] size_t rowBytes() const { return static_cast<size_t>(width) * bytesPerPixel(format); }
     [[nodiscard]] size_t sizeBytes() const { return rowBytes() * static_cast<size_t>(height); }
     [[nodiscard]] bool empty() const { return width <= 0 || height <= 0; }
-    // A part of it; `area` lies inside.
+    // Returns a part. Requires `area` to lie inside.
     [[nodiscard]] BasicPlaneView part(const PixelViewport& area) const {
         return {format, area.w, area.h, strideBytes, row(area.y) + static_cast<ptrdiff_t>(static_cast<size_t>(area.x) * bytesPerPixel(format))};
     }
@@ -36,7 +36,7 @@ using MutablePlaneView = BasicPlaneView<std::byte>;
     return a.format == b.format && a.width == b.width && a.height == b.height;
 }
 
-// Rows stand one behind the other without gaps.
+// Rows are contiguous without padding.
 class Plane {
 public:
     Plane() = default;
@@ -61,7 +61,7 @@ private:
     PixelBytes pixels_;
 };
 
-// Both have the same shape.
+// Requires equal shapes.
 inline void copyPlane(const MutablePlaneView& to, const PlaneView& from) {
     for (int32_t y = 0; y < from.height; ++y) std::memcpy(to.row(y), from.row(y), from.rowBytes());
 }

@@ -6,7 +6,7 @@ namespace mural::compositor {
 
 namespace {
 
-// What of `whole` lies outside `hole`: below, above, left and right of it.
+// Visits the parts of `whole` outside of `hole`: below, above, left and right.
 template <class Each> void cutOut(const PixelViewport& whole, const PixelViewport& hole, Each&& each) {
     const PixelViewport common = intersect(whole, hole);
     if (common.empty()) {
@@ -54,7 +54,7 @@ void Region::move(int32_t dx, int32_t dy) {
 }
 
 void Region::simplify() {
-    // First within rows, then rows that are alike: what a tile grid gives becomes a few rectangles.
+    // Merges within rows first, then equal rows: a tile grid becomes a few rectangles.
     const auto join = [&](auto before, auto follows, auto grow) {
         std::ranges::sort(rectangles_, before);
         std::vector<PixelViewport> joined;

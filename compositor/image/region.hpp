@@ -1,4 +1,4 @@
-// A set of pixels as rectangles that don't overlap: what of a picture is drawn, or is carried.
+// A set of pixels as disjoint rectangles: the drawn or transferred part of a picture.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +14,12 @@ public:
     Region() = default;
     explicit Region(const PixelViewport& area) { add(area); }
 
-    // Pixels that are in it already are not added again. Cost: the rectangles there are.
+    // Adds an area; pixels already in the set are not duplicated. Linear in the number of rectangles.
     void add(const PixelViewport& area);
     void add(const Region& other);
     void subtract(const PixelViewport& area);
     void move(int32_t dx, int32_t dy);
-    // Joins rectangles that together are one.
+    // Merges rectangles whose union is a rectangle.
     void simplify();
 
     [[nodiscard]] bool empty() const { return rectangles_.empty(); }
@@ -29,7 +29,7 @@ public:
     [[nodiscard]] bool covers(const PixelViewport& area) const;
     [[nodiscard]] Region intersected(const PixelViewport& area) const;
     [[nodiscard]] Region intersected(const Region& other) const;
-    // In no order that means something.
+    // In unspecified order.
     [[nodiscard]] std::span<const PixelViewport> rectangles() const { return rectangles_; }
 
 private:

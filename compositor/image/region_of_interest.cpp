@@ -39,7 +39,7 @@ public:
         for (int32_t y = 0; y < plane.height; ++y) {
             const auto* words = reinterpret_cast<const uint32_t*>(plane.row(y));
             char* marks = marks_.data() + static_cast<size_t>(y / tile_) * static_cast<size_t>(columns_);
-            // A tile that is marked is not looked at again; background is passed in one go.
+            // Skips marked tiles, and whole runs of background.
             for (size_t at = 0; at < rowWords;) {
                 if (marks[at / tileWords]) {
                     at = (at / tileWords + 1) * tileWords;
@@ -52,10 +52,10 @@ public:
         }
     }
 
-    // Runs of tiles become rectangles, and runs that are alike in rows above each other, larger ones.
+    // Runs of tiles become rectangles; equal runs in consecutive rows are merged.
     [[nodiscard]] Region region() const {
         Region found;
-        std::vector<PixelViewport> open, next; // rectangles that the row below ends in
+        std::vector<PixelViewport> open, next; // rectangles that end in the row below
         for (int32_t row = 0; row < rows_; ++row) {
             next.clear();
             const int32_t y0 = row * tile_, y1 = std::min(height_, y0 + tile_);

@@ -1,4 +1,4 @@
-// Finds what of a plane is not background, tile by tile, with its holes.
+// Finds the tiles of a plane that contain more than background, including holes.
 #pragma once
 
 #include <array>
@@ -8,18 +8,18 @@
 
 namespace mural::compositor {
 
-// The pixel that a plane was cleared to, as it stands in memory. D24S8: only the depth counts.
+// The clear value of a plane as it is in memory. D24S8: only the depth counts.
 struct Background {
-    std::array<std::byte, 16> pixel{}; // the first bytesPerPixel of it
+    std::array<std::byte, 16> pixel{}; // the first bytesPerPixel bytes count
 
-    [[nodiscard]] static Background ofWord(uint32_t word); // of planes with 4 bytes per pixel
+    [[nodiscard]] static Background ofWord(uint32_t word); // for planes with 4 bytes per pixel
 };
 
 constexpr int32_t kInterestTilePixels = 16;
 
-// The tiles of tilePixels x tilePixels that hold a pixel which is not background, as few rectangles, in pixels of the plane.
+// Returns the tiles of tilePixels x tilePixels with a non-background pixel, as few rectangles, in pixels of the plane.
 [[nodiscard]] Region findRegionOfInterest(const PlaneView& plane, const Background& background, int32_t tilePixels = kInterestTilePixels);
-// Of both planes, which have one size: a pixel counts when it is no background in one of them.
+// The same for two planes of equal size: a pixel counts if it is not background in one of them.
 [[nodiscard]] Region findRegionOfInterest(const PlaneView& colour, const Background& colourBackground, const PlaneView& depth, const Background& depthBackground,
                                           int32_t tilePixels = kInterestTilePixels);
 

@@ -1,6 +1,6 @@
 #include "compositor/image/tile_hash.hpp"
 
-#define XXH_STATIC_LINKING_ONLY // for a state that needs no allocation
+#define XXH_STATIC_LINKING_ONLY // for a state on the stack
 #include <xxhash.h>
 
 namespace mural::compositor {
@@ -11,7 +11,7 @@ TileHash hashOf(const PlaneView& tile) {
     if (static_cast<size_t>(tile.strideBytes) == rowBytes || tile.height == 1) {
         hash = XXH3_128bits(tile.pixels, rowBytes * static_cast<size_t>(tile.height));
     } else {
-        XXH3_state_t state; // on the stack: no tile costs an allocation
+        XXH3_state_t state; // on the stack: no allocation per tile
         XXH3_128bits_reset(&state);
         for (int32_t y = 0; y < tile.height; ++y) XXH3_128bits_update(&state, tile.row(y), rowBytes);
         hash = XXH3_128bits_digest(&state);

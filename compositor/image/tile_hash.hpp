@@ -1,5 +1,5 @@
-// A name for what a part of a plane holds: equal pixels have equal names, and two different ones share theirs by chance in one
-// of 2^128 cases, so a tile whose name is the old one needs not be sent again.
+// 128-bit hash of a part of a plane. Different contents collide with probability 2^-128, so a tile with an unchanged
+// hash need not be sent.
 #pragma once
 
 #include <cstdint>

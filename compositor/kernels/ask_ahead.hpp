@@ -1,4 +1,4 @@
-// Memory is asked for before it is needed: hardware looks ahead along a row and within a page only.
+// Software prefetch: the hardware prefetches along a row and within a page only.
 #pragma once
 
 #include <cstddef>

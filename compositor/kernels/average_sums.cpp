@@ -8,7 +8,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace mural::compositor::HWY_NAMESPACE {
 
-#if HWY_TARGET == HWY_SCALAR // no vectors: the loop behind them does all
+#if HWY_TARGET == HWY_SCALAR // no vectors: the scalar loop does everything
 
 size_t addVectors(uint16_t*, const uint8_t*, size_t) { return 0; }
 size_t average16(uint8_t*, const uint16_t*, size_t, uint32_t) { return 0; }
@@ -28,7 +28,7 @@ size_t addVectors(uint16_t* sums, const uint8_t* components, size_t count) {
     return i;
 }
 
-// A quotient that is no whole number is at least 1/n away from one, much more than a float division is wrong by.
+// Exact: a fractional quotient is at least 1/n away from an integer, far more than the error of a float division.
 template <class D> auto divided(D di, hn::Vec<D> sum, float halfN, float n) {
     const hn::RebindToFloat<D> df;
     return hn::ConvertTo(di, hn::Div(hn::Add(hn::ConvertTo(df, sum), hn::Set(df, halfN)), hn::Set(df, n)));

@@ -12,7 +12,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace mural::compositor::HWY_NAMESPACE {
 
-#if HWY_TARGET == HWY_SCALAR // no vectors: the loop behind them does all
+#if HWY_TARGET == HWY_SCALAR // no vectors: the scalar loop does everything
 
 size_t blendRgba8(uint32_t*, const uint32_t*, size_t, bool) { return 0; }
 size_t blendRgb10A2(uint32_t*, const uint32_t*, size_t, bool) { return 0; }
@@ -23,8 +23,8 @@ size_t blendFloats(float*, const float*, size_t, bool) { return 0; }
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Even and odd bytes of a pixel as pairs of 16 bits; a product of two bytes fits, and x / 255, rounded, is
-// (x + 128 + (x + 128) / 256) / 256 for all of them.
+// Even and odd bytes as 16-bit lanes, which hold a product of two bytes. Rounded x / 255 equals (x + 128 + (x + 128) /
+// 256) / 256 for all products.
 template <class D> hn::Vec<D> over8(D d32, hn::Vec<D> front, hn::Vec<D> back) {
     const hn::Repartition<uint16_t, D> d16;
     const hn::Repartition<uint8_t, D> d8;
@@ -41,7 +41,7 @@ template <class D> hn::Vec<D> over8(D d32, hn::Vec<D> front, hn::Vec<D> back) {
     return hn::BitCast(d32, hn::SaturatedAdd(hn::BitCast(d8, front), covered));
 }
 
-// x / 3, rounded, is (x + 1) * 43691 / 2^17 for all x below 98304.
+// Rounded x / 3 equals (x + 1) * 43691 / 2^17 for all x below 98304.
 template <class D> hn::Vec<D> thirds(D d, hn::Vec<D> x) { return hn::ShiftRight<17>(hn::Mul(hn::Add(x, hn::Set(d, 1)), hn::Set(d, 43691))); }
 
 template <class D> hn::Vec<D> over10(D d, hn::Vec<D> front, hn::Vec<D> back) {
@@ -55,10 +55,10 @@ template <class D> hn::Vec<D> over10(D d, hn::Vec<D> front, hn::Vec<D> back) {
     return hn::Or(hn::Or(red, hn::ShiftLeft<10>(green)), hn::Or(hn::ShiftLeft<20>(blue), hn::ShiftLeft<30>(cover)));
 }
 
-constexpr size_t kAheadWords = 256; // that are asked for before they are needed
+constexpr size_t kAheadWords = 256; // prefetch distance
 
-// Vectors of which the source changes nothing are neither blended nor written: most of a picture is empty. Two at once, for a
-// line of the cache is one vector with the widest of them only.
+// Skips vectors without effect, because most of a picture is empty. Two vectors per step, since a cache line is one
+// vector only with the widest of them.
 template <bool kTen> size_t blendWords(uint32_t* pixels, const uint32_t* source, size_t count, bool inFront) {
     const hn::ScalableTag<uint32_t> d;
     const size_t lanes = hn::Lanes(d), step = 2 * lanes;
@@ -84,7 +84,7 @@ template <bool kTen> size_t blendWords(uint32_t* pixels, const uint32_t* source,
 size_t blendRgba8(uint32_t* pixels, const uint32_t* source, size_t count, bool inFront) { return blendWords<false>(pixels, source, count, inFront); }
 size_t blendRgb10A2(uint32_t* pixels, const uint32_t* source, size_t count, bool inFront) { return blendWords<true>(pixels, source, count, inFront); }
 
-// Whole pixels only: vectors of 4 floats and more.
+// Whole pixels only: vectors of 4 or more floats.
 size_t blendFloats(float* pixels, const float* source, size_t count, bool inFront) {
     const hn::ScalableTag<float> d;
     const size_t step = hn::Lanes(d) / 4;
@@ -94,7 +94,7 @@ size_t blendFloats(float* pixels, const float* source, size_t count, bool inFron
         const auto s = hn::LoadU(d, source + 4 * i);
         const auto p = hn::LoadU(d, pixels + 4 * i);
         const auto front = inFront ? s : p;
-        const auto left = hn::Sub(one, hn::Broadcast<3>(front)); // of its own 128 bits
+        const auto left = hn::Sub(one, hn::Broadcast<3>(front)); // per 128-bit block
         const auto covered = hn::Mul(inFront ? p : s, left);
         hn::StoreU(hn::Add(front, covered), d, pixels + 4 * i);
     }
@@ -117,7 +117,7 @@ template <class D> hn::Vec<hn::RebindToFloat<D>> floatsOfHalves(D d, hn::Vec<D> 
 
 template <class D> hn::Vec<D> halvesOfFloats(D d, hn::Vec<hn::RebindToFloat<D>> value) {
     const hn::RebindToFloat<D> df;
-    const hn::RebindToSigned<D> di; // without their sign all are positive
+    const hn::RebindToSigned<D> di; // without the sign all values are positive
     const auto bits = hn::BitCast(d, value);
     const auto sign = hn::And(hn::ShiftRight<16>(bits), hn::Set(d, 0x8000));
     const auto rest = hn::And(bits, hn::Set(d, 0x7fffffff));
@@ -177,7 +177,7 @@ void blendOverRow(PlaneFormat format, std::byte* pixels, const std::byte* source
         done = HWY_DYNAMIC_DISPATCH(blendFloats)(reinterpret_cast<float*>(pixels), reinterpret_cast<const float*>(source), count, inFront);
         break;
     case PlaneFormat::D24S8:
-    case PlaneFormat::D32F: return; // nothing to blend in a depth plane
+    case PlaneFormat::D32F: return; // depth planes are not blended
     }
     const size_t skip = done * bytesPerPixel(format);
     blendOverRowScalar(format, pixels + skip, source + skip, count - done, side);

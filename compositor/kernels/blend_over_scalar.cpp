@@ -15,7 +15,7 @@ template <class T> T load(const std::byte* at) {
 }
 template <class T> void store(std::byte* at, T value) { std::memcpy(at, &value, sizeof value); }
 
-// `whole`: what stands for 1 in alpha, and `most` for the component.
+// `whole`: alpha value for 1; `most`: maximum of the component.
 uint32_t over(uint32_t front, uint32_t back, uint32_t alpha, uint32_t whole, uint32_t most) {
     return std::min(front + (2 * back * (whole - alpha) + whole) / (2 * whole), most);
 }

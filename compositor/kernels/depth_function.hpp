@@ -1,4 +1,5 @@
-// OpenGL's depth functions, in the order of their GL numbers from GL_NEVER on, and what decides between two pixels.
+// OpenGL's depth functions, in the order of their GL values from GL_NEVER on, and the rule that selects between two
+// pixels.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +11,10 @@ constexpr int kDepthFunctions = 8;
 
 enum class DepthFormat : uint8_t { D24S8, D32F };
 
-// Which pixels were drawn at all. With All, a pixel nobody drew competes with the depth that it was cleared to: right for
-// functions that the clear depth always fails. NotClear: those of another depth than clearBits. Stencil (D24S8): those whose
-// stencil is not 0, for programs that draw at the clear depth (a sky at depth 1 under GL_LEQUAL). What was not drawn must be the
-// same in all parts: cleared alike.
+// The drawn pixels of a part. All: undrawn pixels compete with the clear depth, which is right for functions that the
+// clear depth always fails. NotClear: pixels whose depth differs from clearBits. Stencil (D24S8): pixels with a
+// non-zero stencil, for programs that draw at the clear depth (a sky at depth 1 under GL_LEQUAL). Undrawn pixels must
+// be equal in all parts.
 enum class Coverage : uint8_t { All, NotClear, Stencil };
 
 struct DepthRule {
@@ -21,11 +22,11 @@ struct DepthRule {
     DepthFormat format = DepthFormat::D32F;
     bool sourceIsLater = true; // in draw order
     Coverage coverage = Coverage::All;
-    uint32_t clearBits = 0; // the word that the depth plane was cleared to
+    uint32_t clearBits = 0; // clear value of the depth plane
 };
 
-// Parts drawn apart and put together with this function give the picture drawn in one piece. Equal and NotEqual look at what
-// other parts have left in the depth buffer.
+// Returns true if compositing separately drawn parts gives the picture drawn as a whole. Equal and NotEqual depend on
+// depths left by other parts.
 [[nodiscard]] constexpr bool decomposable(DepthFunction f) { return f != DepthFunction::Equal && f != DepthFunction::NotEqual; }
 
 } // namespace mural::compositor

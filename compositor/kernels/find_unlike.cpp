@@ -10,7 +10,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace mural::compositor::HWY_NAMESPACE {
 
-#if HWY_TARGET == HWY_SCALAR // no vectors: the loop behind them does all
+#if HWY_TARGET == HWY_SCALAR // no vectors: the scalar loop does everything
 
 size_t findVector(const uint32_t*, size_t, const uint32_t*, const uint32_t*) { return 0; }
 
@@ -18,7 +18,7 @@ size_t findVector(const uint32_t*, size_t, const uint32_t*, const uint32_t*) { r
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// The first word of the first vector that is unlike, or of what no vector covers.
+// Returns the first word of the first differing vector, or of the remainder.
 size_t findVector(const uint32_t* words, size_t count, const uint32_t* pattern, const uint32_t* mask) {
     size_t i = 0;
     const hn::ScalableTag<uint32_t> d;

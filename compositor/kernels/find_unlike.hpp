@@ -1,4 +1,4 @@
-// Where a row stops being background: what finding regions of interest does all day.
+// Finds the end of background in a row, the inner loop of region-of-interest detection.
 #pragma once
 
 #include <cstddef>
@@ -6,8 +6,8 @@
 
 namespace mural::compositor {
 
-// The first i for which (words[i] ^ pattern[i % 4]) & mask[i % 4] is not 0; count when there is none. A pixel of 4, 8 or 16
-// bytes is one, two or four words, so a pattern of four is a whole number of pixels.
+// Returns the first i with (words[i] ^ pattern[i % 4]) & mask[i % 4] != 0, or count. Pixels have one, two or four
+// words, so four words are a whole number of pixels.
 size_t findUnlike(const uint32_t* words, size_t count, const uint32_t pattern[4], const uint32_t mask[4]);
 size_t findUnlikeScalar(const uint32_t* words, size_t count, const uint32_t pattern[4], const uint32_t mask[4]);
 

@@ -11,7 +11,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace mural::compositor::HWY_NAMESPACE {
 
-#if HWY_TARGET == HWY_SCALAR // no vectors: the loop behind them does all
+#if HWY_TARGET == HWY_SCALAR // no vectors: the scalar loop does everything
 
 size_t interleaveVectors(uint32_t*, const uint32_t* const*, size_t, size_t) { return 0; }
 
@@ -19,7 +19,7 @@ size_t interleaveVectors(uint32_t*, const uint32_t* const*, size_t, size_t) { re
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// 2, 3 and 4 parts; returns how many pixels of each are done.
+// Handles 2, 3 and 4 parts; returns the number of pixels done per part.
 size_t interleaveVectors(uint32_t* row, const uint32_t* const* parts, size_t count, size_t step) {
     size_t i = 0;
     const hn::ScalableTag<uint32_t> d;
@@ -58,9 +58,9 @@ void interleaveRowScalar(std::byte* row, const std::byte* part, size_t count, si
     for (size_t i = 0; i < count; ++i) std::memcpy(row + i * step * pixelBytes, part + i * pixelBytes, pixelBytes);
 }
 
-// A store per pixel: what bounds it is the memory of the row, of which it touches every line.
+// One store per pixel: memory-bound, because every line of the row is touched.
 void interleaveRow(std::byte* row, const std::byte* part, size_t count, size_t step, size_t pixelBytes) {
-    if (count == 0) return; // and no addresses
+    if (count == 0) return; // the pointers may be null
     if (step == 1) std::memcpy(row, part, count * pixelBytes);
     else if (pixelBytes == 4) scatter<4>(row, part, count, step);
     else if (pixelBytes == 8) scatter<8>(row, part, count, step);

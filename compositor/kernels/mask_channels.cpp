@@ -10,7 +10,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace mural::compositor::HWY_NAMESPACE {
 
-#if HWY_TARGET == HWY_SCALAR // no vectors: the loop behind them does all
+#if HWY_TARGET == HWY_SCALAR // no vectors: the scalar loop does everything
 
 size_t maskVectors(uint8_t*, const uint8_t*, size_t, const uint8_t*) { return 0; }
 

@@ -21,12 +21,12 @@ void zSelectVectors(const ZArea& area, const DepthRule& rule) { zSelectScalar(ar
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// What is left of the eight functions and two orders: `later FUNCTION earlier` for a source that is later, and its contrary for
-// one that is earlier, where a NaN gives way to any other.
+// Reduction of eight functions and two orders: `later FUNCTION earlier` for a later source, and the negation for an
+// earlier one, where NaN loses to any number.
 enum class SourceWins { Never, IfLess, IfLessOrEqual, IfGreater, IfGreaterOrEqual, IfEqual, IfNotEqual, Always };
 
 struct Constants {
-    uint32_t clear; // drawn: (depth ^ clear) & drawnMask is not 0
+    uint32_t clear; // drawn: (depth ^ clear) & drawnMask != 0
     uint32_t drawnMask;
 };
 
@@ -40,7 +40,7 @@ constexpr SourceWins contraryOf(SourceWins w) {
 }
 
 template <SourceWins W, class D> auto wins24(D du, hn::Vec<D> source, hn::Vec<D> there) {
-    const hn::RebindToSigned<D> di; // 24 bits: signed comparisons do
+    const hn::RebindToSigned<D> di; // 24 bits: signed comparisons suffice
     const auto s = hn::BitCast(di, hn::ShiftRight<8>(source));
     const auto t = hn::BitCast(di, hn::ShiftRight<8>(there));
     if constexpr (W == SourceWins::IfLess) return hn::RebindMask(du, hn::Lt(s, t));
@@ -58,8 +58,8 @@ template <SourceWins W, class V> auto ordered(V s, V t) {
     else return hn::Ge(s, t);
 }
 
-// A later source replaces a NaN if it is a number itself: it wins unless the contrary holds, which is false of NaN. An earlier
-// one replaces every NaN.
+// A later number replaces NaN: it wins unless the negation holds, which is false for NaN. An earlier source replaces
+// every NaN.
 template <SourceWins W, bool kLater, class D> auto winsFloat(D du, hn::Vec<D> source, hn::Vec<D> there) {
     const hn::RebindToFloat<D> df;
     const auto s = hn::BitCast(df, source);
@@ -77,16 +77,16 @@ template <class D> void selectWords(D du, uint32_t* to, const uint32_t* source, 
     hn::StoreU(hn::IfThenElse(win, hn::LoadU(du, source), hn::LoadU(du, to)), du, to);
 }
 
-// Depths are read one after the other, which the hardware's own looking ahead serves well; which colours are needed is known
-// from them only, in pieces shorter than memory's latency. So colours are asked for where the source wins some of two vectors
-// of pixels, and taken when as many other pairs as this have been found.
+// Depths are read sequentially, with hardware prefetch. The needed colours follow from them, in pieces shorter than the
+// memory latency, so colours are prefetched for pairs of vectors with winners, and copied when kWaiting pairs have
+// accumulated.
 constexpr size_t kWaiting = 16;
 
-// Colours of areas from this size on are more than what a core has of the caches: where the source wins all of a pair, they are
-// written past these, without reading first what was there.
+// Size from which colours exceed a core's caches: fully won pairs are then written with streaming stores, without
+// reading the destination.
 constexpr size_t kPastCachesBytes = size_t{2} << 20;
 
-// Wide pixels: what is copied is much more than the mask, so one at a time.
+// Wide pixels are copied one at a time: the copy dominates the mask.
 template <size_t kBytes, class D> void takeWide(D du, std::byte* colour, const std::byte* source, hn::Mask<D> win) {
     uint8_t bits[8] = {};
     hn::StoreMaskBits(du, win, bits);
@@ -104,8 +104,8 @@ template <class D> void takeColours(D du, std::byte* colour, const std::byte* so
     else takeWide<16>(du, colour, source, win);
 }
 
-// Whole vectors of each row, two at once, for a line of the cache is one vector with the widest of them only; then a single one,
-// and the rest of the row pixel by pixel.
+// Two vectors per step, since a cache line is one vector only with the widest of them; then single vectors, and the
+// rest pixel by pixel.
 template <SourceWins W, bool kLater, bool kFloat, bool kCovered, bool kWords> void selectRows(const ZArea& area, const DepthRule& rule, const Constants& c) {
     const size_t colourBytes = kWords ? 4 : area.colourBytes;
     const hn::ScalableTag<uint32_t> du;
@@ -132,7 +132,7 @@ template <SourceWins W, bool kLater, bool kFloat, bool kCovered, bool kWords> vo
     HWY_ALIGN uint32_t waitingWins[kWaiting * 2 * hn::MaxLanes(du)];
     std::byte* waitingColours[kWaiting];
     const std::byte* waitingSources[kWaiting];
-    bool waitingWhole[kWaiting]; // the source has won all of the pair, and its colours go past the caches
+    bool waitingWhole[kWaiting]; // fully won pairs, written with streaming stores
     size_t found = 0;
     const auto take = [&](size_t slot) {
         std::byte* colour = waitingColours[slot];
@@ -192,7 +192,7 @@ template <SourceWins W, bool kLater, bool kFloat> void chooseRows(const ZArea& a
     return rule.coverage != Coverage::All ? selectRows<W, kLater, kFloat, true, false>(area, rule, c) : selectRows<W, kLater, kFloat, false, false>(area, rule, c);
 }
 
-// Where the function tells order, floats need to know which of the two is later.
+// For order functions on floats the draw order matters.
 template <SourceWins W> void choose(const ZArea& area, const DepthRule& rule, const Constants& c) {
     constexpr bool kOrders = W == SourceWins::IfLess || W == SourceWins::IfLessOrEqual || W == SourceWins::IfGreater || W == SourceWins::IfGreaterOrEqual;
     if (rule.format == DepthFormat::D24S8) return chooseRows<W, true, false>(area, rule, c);

@@ -1,9 +1,10 @@
-// Depth composition of an area: for each pixel the one that OpenGL's depth test would have left, colour and depth word whole.
+// Depth compositing of an area: selects for each pixel the one that OpenGL's depth test would have left, with its
+// colour and whole depth word.
 //
-// A later pixel replaces an earlier one if `later FUNCTION earlier` holds; so the draw order decides ties. D24S8: only the 24
-// bits of depth are compared, the stencil comes along with its pixel. D32F, so that no result depends on how pictures are
-// paired: -0 equals +0; under the four order functions NaN loses against every number, and of two NaNs the earlier one
-// stays. Equal and NotEqual compare as IEEE 754 says. Reversed Z is Greater or GreaterOrEqual.
+// A later pixel replaces an earlier one if `later FUNCTION earlier`, so the draw order decides equal depths. D24S8:
+// only the 24 bits of depth are compared; the stencil follows its pixel. D32F: results are independent of the pairing
+// of pictures: -0 equals +0; under the four order functions NaN loses to every number, and of two NaNs the earlier
+// stays. Equal and NotEqual follow IEEE 754. Reversed Z is Greater or GreaterOrEqual.
 #pragma once
 
 #include <cstddef>
@@ -13,10 +14,10 @@
 
 namespace mural::compositor {
 
-// One row, or several. All strides count bytes from row to row.
+// One or more rows. Strides are in bytes.
 struct ZArea {
     uint32_t* depth = nullptr;
-    std::byte* colour = nullptr; // of colourBytes each; null: depth only
+    std::byte* colour = nullptr; // colourBytes each; null: depth only
     const uint32_t* sourceDepth = nullptr;
     const std::byte* sourceColour = nullptr;
     size_t colourBytes = 4; // 4, 8 or 16
@@ -35,7 +36,7 @@ struct ZArea {
         one.sourceColour = sourceColour + at * sourceColourStride;
         return one;
     }
-    // Without its first columns.
+    // Returns the area without its first columns.
     [[nodiscard]] ZArea from(size_t column) const {
         ZArea rest = *this;
         rest.depth += column;
@@ -48,9 +49,9 @@ struct ZArea {
     }
 };
 
-// With the widest vectors of this machine. Addresses need the alignment of their types only.
+// Vectorized. Requires natural alignment only.
 void zSelect(const ZArea& area, const DepthRule& rule);
-// The same, pixel by pixel, as the rules above read: what zSelect is tested against, and the last pixels of its rows.
+// Scalar reference, also used for the last pixels of rows.
 void zSelectScalar(const ZArea& area, const DepthRule& rule);
 
 } // namespace mural::compositor

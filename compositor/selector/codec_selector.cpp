@@ -8,29 +8,29 @@ namespace mural::compositor {
 namespace {
 
 constexpr double kNsPerSec = 1e9;
-// Of a new report; so that one piece that was interrupted does not turn the choice.
+// Weight of a new report; low, so one interrupted piece does not change the choice.
 constexpr double kWeight = 0.1;
-constexpr double kMeasuredWeight = 0.7; // there are fewer of these
+constexpr double kMeasuredWeight = 0.7; // higher, because these reports are rare
 constexpr double kRecentWeight = 0.3;
 constexpr double kLinkWeight = 0.25;
-// Pieces differ, also of one class; but when the last few are so far from those before, the content is another one.
+// Ratio between recent and earlier pieces of a class that indicates changed content.
 constexpr double kContentChange = 2;
-constexpr double kSizeChange = 0.02; // of the raw size: what small pieces do does not matter
-constexpr uint64_t kSettled = 16;    // pieces before it may be another one again
+constexpr double kSizeChange = 0.02; // least relevant size change, relative to the raw size
+constexpr uint64_t kSettled = 16; // pieces before the next change is detected
 constexpr double kLinkChange = 1.5;
-// One piece in so many may be measured with another codec; mostly the share is what bounds it.
+// At most one piece in kMeasureEvery is measured with another codec; usually the time share is the tighter bound.
 constexpr uint64_t kMeasureEvery = 3;
-constexpr double kStaleShares = 3; // of the share: what is stale may be as good as any
+constexpr double kStaleShares = 3; // multiple of the time share for stale codecs, which may be best
 constexpr double kStaleWorth = 4;
-constexpr double kNewAge = 1e6;    // pieces: more than any other waits
-constexpr double kCreditPieces = 4; // of whose time it may take to measure a codec for the first time
-constexpr double kHopefully = 0.5; // of the times that a codec took: it may take so much less with other content
-constexpr double kMostOff = 4;     // times the estimate: a piece that took longer was interrupted, or shows it again
-// What a codec is thought to take before it was measured, against the best one.
+constexpr double kNewAge = 1e6; // age of an unmeasured codec, in pieces; exceeds all others
+constexpr double kCreditPieces = 4; // pieces whose time the first measurement may take
+constexpr double kHopefully = 0.5; // optimistic factor: other content may be this much faster
+constexpr double kMostOff = 4; // factor above the estimate that marks an outlier, unless it repeats
+// Assumed times of an unmeasured codec relative to the best one.
 constexpr double kNewEncode = 8, kNewDecode = 4;
-// What was spent long ago pays for nothing now: per piece.
+// Decay of past expenses per piece.
 constexpr double kForget = 1.0 / 1024;
-// Under Pipelined all three times count a little: of two codecs that the link hides, the cheaper one is taken.
+// Pipelined: weight of the hidden times, so the cheaper of two equal codecs wins.
 constexpr double kHiddenShare = 1.0 / 64;
 
 double farther(double a, double b) { return std::max(a, b) / std::max(std::min(a, b), 1e-12); }
@@ -63,7 +63,7 @@ double CodecSelector::totalNsPerByte(double encode, double transfer, double deco
     return std::max({encode, transfer, decode}) + sum * kHiddenShare;
 }
 
-// Of this class or, where it was not measured there, as many times the best one's as in other classes, in the mean; 0 ns: nothing is known.
+// Estimates of this class, or the mean ratio to the best codec in other classes; 0 ns: unknown.
 CodecSelector::Times CodecSelector::timesOf(PlaneFormat format, const ClassState& s, size_t codec, size_t best) const {
     const auto times = [](const Estimate& e) { return Times{e.encodeNsPerByte, e.decodeKnown ? e.decodeNsPerByte : e.encodeNsPerByte}; };
     if (s.codecs[codec].reports > 0) return times(s.codecs[codec]);
@@ -81,8 +81,8 @@ CodecSelector::Times CodecSelector::timesOf(PlaneFormat format, const ClassState
     return {here.encode * ratios.encode / classes, here.decode * ratios.decode / classes};
 }
 
-// Whether it could not be the best one if it made pieces to nothing, in a part of the time that it has taken so far. Pieces without a codec are
-// as large as they are.
+// Returns true if the codec could not win even with zero output in an optimistic time. Without a codec, pieces keep
+// their size.
 bool CodecSelector::isHopeless(PlaneFormat format, const ClassState& s, size_t codec, size_t best) const {
     const Times times = timesOf(format, s, codec, best);
     const double transfer = codec == raw_ ? kNsPerSec / linkBytesPerSec_ : 0;
@@ -94,10 +94,10 @@ size_t CodecSelector::bestOf(const ClassState& s) const {
     for (size_t i = 0; i < s.codecs.size(); ++i)
         if (s.codecs[i].reports > 0 && (best == s.codecs.size() || nsPerByte(s.codecs[i]) < nsPerByte(s.codecs[best]))) best = i;
     if (best != s.codecs.size()) return best;
-    return raw_ == 0 && s.codecs.size() > 1 ? 1 : 0; // nothing is known: the first one that compresses
+    return raw_ == 0 && s.codecs.size() > 1 ? 1 : 0; // no knowledge: the first codec that compresses
 }
 
-// What it takes to measure a codec; of one that never was, a guess.
+// Returns the cost of measuring a codec; a guess for an unmeasured one.
 double CodecSelector::measuringNsPerByte(PlaneFormat format, const ClassState& s, size_t codec, size_t best) const {
     if (const Times times = timesOf(format, s, codec, best); times.sum() > 0) return times.sum();
     const Estimate& b = s.codecs[best];
@@ -105,7 +105,7 @@ double CodecSelector::measuringNsPerByte(PlaneFormat format, const ClassState& s
     return codec == raw_ ? b.encodeNsPerByte + decode : kNewEncode * b.encodeNsPerByte + kNewDecode * decode;
 }
 
-// What measuring may tell for what it costs: a codec that was far behind is rarely looked at again, what is stale or new before all.
+// Returns the value of a measurement: low for codecs far behind, high for stale or new ones.
 double CodecSelector::worthMeasuring(PlaneFormat format, const ClassState& s, size_t codec, size_t best) const {
     const Estimate& e = s.codecs[codec];
     const double behind = e.reports > 0 ? nsPerByte(e) / nsPerByte(s.codecs[best]) : 1;
@@ -113,9 +113,11 @@ double CodecSelector::worthMeasuring(PlaneFormat format, const ClassState& s, si
     return age / (measuringNsPerByte(format, s, codec, best) * behind * behind * behind);
 }
 
-// The one that is most worth it, as soon as it can be paid for: cheaper ones that tell less would use up what it takes.
+// Returns the most valuable codec once its cost fits the budget. Cheaper, less valuable measurements would otherwise
+// starve it.
 std::optional<size_t> CodecSelector::toMeasure(PlaneFormat format, const ClassState& s, size_t best, uint64_t rawBytes) const {
-    if (s.codecs[best].reports == 0 || s.pieces % kMeasureEvery != 0) return std::nullopt; // of the first piece, nothing is to be compared with
+    // no reference for the first piece
+    if (s.codecs[best].reports == 0 || s.pieces % kMeasureEvery != 0) return std::nullopt;
     std::optional<size_t> found;
     double most = 0;
     for (size_t i = 0; i < s.codecs.size(); ++i) {
@@ -127,7 +129,7 @@ std::optional<size_t> CodecSelector::toMeasure(PlaneFormat format, const ClassSt
     if (!found) return found;
     const Estimate& e = s.codecs[*found];
     const double limitNs = options_.measureShare * (e.stale ? kStaleShares : 1) * s.spentNs;
-    // The first time is on credit, once for all classes, and once for each where it is cheap: what might be best is not waited for.
+    // The first measurement may exceed the budget, once for all classes, and once per class where it is cheap.
     const double costNsPerByte = measuringNsPerByte(format, s, *found, best);
     const bool onCredit = e.reports == 0 && (timesOf(format, s, *found, best).sum() == 0 || costNsPerByte < kCreditPieces * nsPerByte(s.codecs[best]));
     if (!onCredit && s.measuringNs + costNsPerByte * static_cast<double>(rawBytes) > limitNs) return std::nullopt;
@@ -140,7 +142,7 @@ CodecSelector::Choice CodecSelector::choose(const TileClass& tile, uint64_t rawB
     ++s.pieces;
     if (s.codecs[best].reports > 0) {
         const double pieceNs = nsPerByte(s.codecs[best]) * static_cast<double>(rawBytes);
-        // Never more than if all had been like this one: what a slow link or hard content took pays for nothing now.
+        // Bounded by the current cost: a slow link or hard content in the past does not raise the budget now.
         s.spentNs = std::min(s.spentNs * (1 - kForget) + pieceNs, pieceNs / kForget);
         s.measuringNs = std::min(s.measuringNs * (1 - kForget), options_.measureShare * s.spentNs);
     }
@@ -149,7 +151,7 @@ CodecSelector::Choice CodecSelector::choose(const TileClass& tile, uint64_t rawB
     return {best, measure};
 }
 
-// When sizes have moved far, all others may be better or worse than they were.
+// A large change of sizes makes the estimates of all other codecs stale.
 void CodecSelector::noticeChange(ClassState& s, Estimate& e) {
     if (s.pieces < s.changedAt + kSettled || farther(e.recentPerByte, e.encodedPerByte) < kContentChange || std::abs(e.recentPerByte - e.encodedPerByte) < kSizeChange) return;
     for (Estimate& other : s.codecs) other.stale = true;
@@ -157,7 +159,7 @@ void CodecSelector::noticeChange(ClassState& s, Estimate& e) {
     const double before = nsPerByte(e);
     e.encodedPerByte = e.recentPerByte;
     s.changedAt = s.pieces;
-    // As if it had always been so: that pays for measuring the others.
+    // Scales the budget as if the content had always been like this, which pays for new measurements.
     s.spentNs *= std::max(1.0, nsPerByte(e) / before);
     s.measuringNs = 0;
 }
@@ -178,7 +180,7 @@ void CodecSelector::encoded(const TileClass& tile, size_t codec, uint64_t rawByt
         approach(e.encodedPerByte, size, kWeight);
         approach(e.recentPerByte, size, kRecentWeight);
         noticeChange(s, e);
-        // What became larger with this codec did with the others, until they are measured: all but raw.
+        // Other codecs, except raw, are assumed to change by the same factor until they are measured.
         for (size_t i = 0; i < s.codecs.size() && codec != raw_ && before > 0; ++i) {
             Estimate& other = s.codecs[i];
             if (i == codec || i == raw_ || other.reports == 0) continue;
@@ -204,13 +206,13 @@ void CodecSelector::measured(const TileClass& tile, size_t codec, uint64_t rawBy
     ClassState& s = stateOf(tile);
     Estimate& e = s.codecs[codec];
     const Estimate& used = s.codecs[s.used];
-    // As it would have been on a piece like the others: this one may be easy or hard for all codecs.
+    // Normalises by the difficulty of this piece, which affects all codecs.
     const double ofSize = codec == raw_ || s.used == raw_ || s.usedPerByte <= 0 ? 1 : used.encodedPerByte / s.usedPerByte;
     const double size = std::min(1.1, static_cast<double>(encodedBytes) / static_cast<double>(rawBytes) * ofSize);
     const double ofTime = std::clamp(used.encodeNsPerByte / std::max(s.usedEncodeNs, 1e-9), 0.5, 2.0);
     const double weight = e.reports == 0 || e.stale ? 1 : kMeasuredWeight;
     approach(e.encodeNsPerByte, within(perByte(encodeNs, rawBytes) * ofTime, e.encodeNsPerByte), weight);
-    // A piece of which hardly anything is left says little about sizes: the others are what the link carries.
+    // Nearly empty pieces say little about sizes; other pieces load the link.
     approach(e.encodedPerByte, size, weight == 1 ? 1 : weight * std::clamp(s.usedPerByte / std::max(used.encodedPerByte, 1e-9), 0.05, 1.0));
     e.recentPerByte = e.encodedPerByte;
     approach(e.decodeNsPerByte, within(perByte(decodeNs, rawBytes) * ofTime, e.decodeNsPerByte), e.decodeKnown ? weight : 1);
@@ -224,7 +226,7 @@ void CodecSelector::transferred(uint64_t bytes, int64_t ns) {
     if (bytes == 0 || ns <= 0) return;
     const double rate = static_cast<double>(bytes) * kNsPerSec / static_cast<double>(ns);
     const bool isFar = farther(rate, linkBytesPerSec_) > kLinkChange;
-    // Twice in a row as far off: the link is another one now.
+    // Two consecutive outliers of equal size: the link has changed.
     const bool again = isFar && lastLinkRate_ > 0 && farther(rate, lastLinkRate_) < kLinkChange;
     lastLinkRate_ = isFar ? rate : 0;
     if (linkReports_++ == 0 || again) linkBytesPerSec_ = rate;

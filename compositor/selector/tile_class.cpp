@@ -18,7 +18,7 @@ uint32_t wordAt(const std::byte* at) {
     return word;
 }
 
-// Whether little is left when the word above is taken away, as the bit-plane codecs do.
+// Returns true if the residual against the word above is small, as in the bit-plane codecs.
 bool isNear(bitplane::Arithmetic a, uint32_t word, uint32_t above) {
     const uint32_t residual = bitplane::residualOf(a, bitplane::subtract(a, bitplane::turned(a, word), bitplane::turned(a, above)));
     if (a == bitplane::Arithmetic::Bytes) return (residual & 0xf0f0f0f0u) == 0;
@@ -35,7 +35,7 @@ TileClass classify(const PlaneView& plane) {
     int differ = 0, near = 0, repeated = 0;
     for (int32_t j = 0; j < kSampledUp; ++j)
         for (int32_t i = 0; i < kSampledAcross; ++i) {
-            // Not in columns: what stands upright would be met by all or by none.
+            // Staggered samples: in columns a vertical edge would hit all or none.
             const auto y = static_cast<int32_t>(1 + static_cast<int64_t>(plane.height - 2) * j / (kSampledUp - 1));
             const auto x = static_cast<int32_t>((static_cast<int64_t>(plane.width) * (i * kSampledUp + j * 5 % kSampledUp)) / (kSampledAcross * kSampledUp));
             const size_t at = static_cast<size_t>(std::max(x, 1)) * pixelBytes;

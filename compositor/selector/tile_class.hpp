@@ -1,4 +1,4 @@
-// Sorts planes, or parts of them, by what codecs make of them: a sample of pixels is looked at, so it costs next to nothing.
+// Classifies planes, or parts of them, by the behaviour of codecs. Samples few pixels, so the cost is negligible.
 #pragma once
 
 #include <compare>
@@ -8,24 +8,24 @@
 
 namespace mural::compositor {
 
-// How many pixels differ from those above them.
+// Fraction of sampled pixels that differ from the pixel above.
 enum class Activity : uint8_t {
-    Empty, // none of the sample
-    Flat,  // fewer than three in eight
+    Empty, // none
+    Flat, // fewer than three in eight
     Full,
 };
 
-// How those differ that do: bit planes are good at the first kind, searching for what was there before at the others.
+// Kind of the differences: bit planes suit the first kind, match search the others.
 enum class Change : uint8_t {
-    Smooth,   // most by little
-    Repeated, // half of them are those on their left
+    Smooth, // mostly small
+    Repeated, // half of them equal the pixel to the left
     Sharp,
 };
 
 struct TileClass {
     PlaneFormat format = PlaneFormat::Rgba8;
     Activity activity = Activity::Full;
-    Change change = Change::Sharp; // Smooth where none differs
+    Change change = Change::Sharp; // Smooth if no pixel differs
     friend auto operator<=>(const TileClass&, const TileClass&) = default;
 };
 

@@ -1,6 +1,7 @@
-// Binary swap: pairs of neighbours swap halves of what they hold, then pairs of pairs quarters, and so on. Each carries less than
-// one picture, in log2(n) steps. Of n nodes the largest power of two swaps; the rest is folded into neighbours first.
-// Source: Ma, Painter, Hansen, Krogh, "Parallel volume rendering using binary-swap compositing" (1994).
+// Binary swap: neighbouring pairs swap halves of their pictures, then pairs of pairs quarters, and so on. Each rank
+// transfers less than one picture, in log2(n) steps. The largest power of two of n ranks swaps; the rest is composited
+// into neighbours first. Source: Ma, Painter, Hansen, Krogh, "Parallel volume rendering using binary-swap compositing"
+// (1994).
 #include <bit>
 
 #include "compositor/strategies/swap_groups.hpp"

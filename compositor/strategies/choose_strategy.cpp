@@ -4,7 +4,7 @@ namespace mural::compositor {
 
 namespace {
 
-// Up to here a chain was measured, or its waits are few enough; more than that follow each other in every picture.
+// Longest measured chain; longer ones add a wait per rank to every picture.
 constexpr int kLongestChain = 16;
 
 } // namespace

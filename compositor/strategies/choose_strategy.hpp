@@ -1,4 +1,4 @@
-// The strategy for so many ranks where nobody asks for one. Rules and measurements: docs/compositing.md, "Strategies measured".
+// Default strategy for a number of ranks. Rules and measurements: docs/compositing.md, "Strategies measured".
 #pragma once
 
 #include "compositor/strategies/strategy.hpp"
@@ -6,7 +6,7 @@
 namespace mural::compositor {
 
 [[nodiscard]] Strategy chooseStrategy(int ranks);
-// For a line to the user.
+// Returns the reason, for a message to the user.
 [[nodiscard]] const char* whyStrategy(int ranks);
 
 } // namespace mural::compositor

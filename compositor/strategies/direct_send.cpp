@@ -1,6 +1,6 @@
-// Direct send: rank b folds band b of n, for which all others send theirs to it at once; then the bands go to the collector. Two
-// steps for any n, and n (n-1) small pieces.
-// Source: Hsu, "Segmented ray casting for data parallel volume rendering" (1993); thesis, "DB with direct send".
+// Direct send: rank b composites band b of n, which all others send to it at once; then the bands go to the collector.
+// Two steps for any n, and n (n-1) small pieces. Source: Hsu, "Segmented ray casting for data parallel volume
+// rendering" (1993); thesis, "DB with direct send".
 #include <cstdlib>
 
 #include "compositor/strategies/schedule_maker.hpp"
@@ -10,7 +10,7 @@ namespace mural::compositor {
 void makeDirectSend(ScheduleMaker& maker) {
     const int n = maker.ranks();
     std::vector<RowTransfer> swap, gather;
-    // Each begins with its neighbour, so that not all send to the same one first.
+    // Each rank begins with its neighbour, so the first receiver differs per rank.
     for (int offset = 1; offset < n; ++offset)
         for (int from = 0; from < n; ++from) {
             const int to = (from + offset) % n;

@@ -1,7 +1,7 @@
-// Radix-k: n is a product of factors up to eight; in each round groups of so many swap, each with all others at once. Fewer rounds
-// than binary swap, fewer pieces at a time than direct send. Of numbers with larger prime factors, the largest one below that has
-// none swaps, and the rest is folded into neighbours first.
-// Source: Peterka, Goodell, Ross, Shen, Thakur, "A configurable algorithm for parallel image-compositing applications" (2009).
+// Radix-k: n is a product of factors up to eight; in each round groups of that size swap, each member with all others
+// at once. Fewer rounds than binary swap, fewer simultaneous pieces than direct send. If n has larger prime factors,
+// the largest smaller number without them swaps, and the rest is composited into neighbours first. Source: Peterka,
+// Goodell, Ross, Shen, Thakur, "A configurable algorithm for parallel image-compositing applications" (2009).
 #include "compositor/strategies/swap_groups.hpp"
 
 namespace mural::compositor {
@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kLargestFactor = 8;
 
-// The largest factor in a round; 1: there is none but 1.
+// Returns the largest factor of a round; 1: none.
 int factorOf(int n) {
     for (int k = kLargestFactor; k > 1; --k)
         if (n % k == 0) return k;
@@ -26,7 +26,7 @@ bool factors(int n) {
 
 void makeRadixK(ScheduleMaker& maker) {
     int swapping = maker.ranks();
-    while (!factors(swapping)) --swapping; // a power of two at the latest: more than half of the ranks
+    while (!factors(swapping)) --swapping; // ends at a power of two: more than half of the ranks
     swapGroups(maker, foldRemainder(maker, swapping), [](int size) {
         const int k = factorOf(size);
         return std::vector<int>(static_cast<size_t>(k), size / k);

@@ -11,11 +11,11 @@ namespace mural::compositor {
 
 namespace {
 
-// Goes through the schedule as the ranks will, and notes of every piece how many waits its sender may have had by then.
+// Simulates the schedule and records, for every piece, the number of waits before its sender can send it.
 void countStages(Schedule& schedule) {
     std::vector<size_t> next(schedule.size(), 0);
     std::vector<int> waits(schedule.size(), 0);
-    std::map<std::pair<size_t, size_t>, std::deque<int>> under; // by sender and receiver: waits of what is on its way
+    std::map<std::pair<size_t, size_t>, std::deque<int>> under; // by sender and receiver: stages of pieces in flight
     for (bool moved = true; moved;) {
         moved = false;
         for (size_t rank = 0; rank < schedule.size(); ++rank) {

@@ -1,9 +1,9 @@
-// Who sends which rows of the picture to whom, and what is folded in which order: a pure function of strategy, number of ranks
-// and rows, so that all nodes make the same one without a word.
+// Composition schedule: transfers of rows between ranks, and the order of compositing. A pure function of strategy,
+// ranks and rows, so all nodes compute the same schedule without communication.
 //
-// Ranks stand in draw order. Before, rank r holds what r drew, of all rows; afterwards rank 0, the collector, holds what all have
-// drawn. In between each holds, row by row, what a run of neighbouring ranks has drawn: only neighbouring runs are folded, for
-// where depths tie the draw order decides.
+// Ranks are in draw order. Initially rank r holds its own drawing of all rows; finally rank 0, the collector, holds the
+// complete picture. In between each rank holds, per row, the result of a run of neighbouring ranks. Only neighbouring
+// runs are composited, because the draw order decides equal depths.
 #pragma once
 
 #include <cstdint>
@@ -24,24 +24,24 @@ struct RowRange {
 
 struct Step {
     enum class Kind : uint8_t {
-        Send,        // these rows, as they are, to the peer; they are its from then on
-        FoldEarlier, // the peer's rows were drawn before what is held here
-        FoldLater,   // …after
-        Place,       // the peer's rows take the place of what is here, which is in them
+        Send, // sends these rows to the peer, which owns them afterwards
+        FoldEarlier, // composites the peer's rows, drawn before those held here
+        FoldLater, // the same, drawn after
+        Place, // replaces the rows held here by the peer's, which contain them
     };
     Kind kind = Kind::Send;
     int peer = 0;
     RowRange rows;
-    int stage = 0; // of what is received: how many waits, one after the other, the peer may have had before it sent this
+    int stage = 0; // received steps: number of sequential waits of the peer before it sends
 
     [[nodiscard]] bool receives() const { return kind != Kind::Send; }
     friend bool operator==(const Step&, const Step&) = default;
 };
 
-// By rank: its steps, one after the other. Sends wait for nobody; pieces from one rank to another arrive in their order.
+// Steps per rank, in order. Sends do not wait; pieces between two ranks arrive in order.
 using Schedule = std::vector<std::vector<Step>>;
 
-// ranks: from 1 on.
+// Requires ranks >= 1.
 [[nodiscard]] Schedule makeSchedule(Strategy strategy, int ranks, int32_t rows);
 
 } // namespace mural::compositor

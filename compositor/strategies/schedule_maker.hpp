@@ -1,4 +1,4 @@
-// Writes the steps of all ranks from transfers between them. A strategy is a function that gives it transfers.
+// Builds the steps of all ranks from transfers between them. A strategy is a function that provides the transfers.
 #pragma once
 
 #include <span>
@@ -11,8 +11,8 @@ struct RowTransfer {
     int from = 0;
     int to = 0;
     RowRange rows;
-    Step::Kind kind = Step::Kind::Place; // for the receiver
-    int distance = 0;                    // the receiver takes the nearest first
+    Step::Kind kind = Step::Kind::Place; // at the receiver
+    int distance = 0; // the receiver processes near ranks first
 };
 
 class ScheduleMaker {
@@ -21,9 +21,9 @@ public:
 
     [[nodiscard]] int ranks() const { return static_cast<int>(steps_.size()); }
     [[nodiscard]] int32_t rows() const { return rows_; }
-    // Band `index` of `count` that divide the picture evenly.
+    // Returns band `index` of `count` equal bands of the picture.
     [[nodiscard]] RowRange band(int index, int count) const;
-    // All that is sent is what was held before the round; then what came is taken. Transfers of no rows are left out.
+    // Adds a round: all sends use the state before the round; then receives are processed. Empty transfers are omitted.
     void round(std::span<const RowTransfer> transfers);
     void transfer(const RowTransfer& one) { round({&one, 1}); }
     [[nodiscard]] Schedule finish();

@@ -1,5 +1,5 @@
-// Serial: the collector takes the others' pictures whole, one after the other. One step, and nothing is carried twice; but the
-// collector's link and its fold carry n-1 pictures.
+// Serial: the collector receives all pictures whole, one after the other. One step, and nothing is transferred twice,
+// but the collector's link and compositing handle n-1 pictures.
 #include "compositor/strategies/schedule_maker.hpp"
 
 namespace mural::compositor {

@@ -1,5 +1,5 @@
-// The ways in which the pictures of several nodes, each with a range of the draws, become one. All give the same picture; they
-// differ in how much each node carries and folds, and in how many steps follow each other.
+// Strategies of sort-last compositing over several ranks. All give the same picture; they differ in transfers and work
+// per rank, and in the number of sequential steps.
 #pragma once
 
 #include <cstdint>
@@ -9,16 +9,16 @@
 namespace mural::compositor {
 
 enum class Strategy : uint8_t {
-    Serial,       // all send to the collector, which folds alone
-    DirectSend,   // each node folds one band of the picture, and sends it to the collector
-    BinarySwap,   // pairs swap halves, then quarters, …; what is beyond a power of two is folded first
-    TwoThreeSwap, // the same by groups of two and three, for any number of nodes
-    RadixK,       // the same by groups of up to eight
-    Streaming,    // a chain: each node folds into what comes from its neighbour, band by band
+    Serial, // the collector composites everything
+    DirectSend, // each rank composites one band and sends it to the collector
+    BinarySwap, // pairs swap halves, then quarters, ...; the remainder beyond a power of two is composited first
+    TwoThreeSwap, // groups of two and three, for any number of ranks
+    RadixK, // groups of up to eight
+    Streaming, // a chain: each rank composites its neighbour's bands and passes them on
 };
 constexpr Strategy kEveryStrategy[] = {Strategy::Serial, Strategy::DirectSend, Strategy::BinarySwap, Strategy::TwoThreeSwap, Strategy::RadixK, Strategy::Streaming};
 
-// As users write them: serial, direct-send, binary-swap, 2-3-swap, radix-k, streaming.
+// Names on the command line: serial, direct-send, binary-swap, 2-3-swap, radix-k, streaming.
 [[nodiscard]] const char* nameOf(Strategy strategy);
 [[nodiscard]] std::optional<Strategy> strategyNamed(std::string_view name);
 

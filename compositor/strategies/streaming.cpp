@@ -1,6 +1,7 @@
-// Streaming: the last rank sends to the one before it, which folds and sends on, down to the collector. Each carries one picture, to
-// one neighbour, and each link only goes one way. Bands follow each other, so that all ranks fold at once after the first few.
-// Source: Roth, Reiners, "Sorted pipeline image composition" (2006); thesis, "DB with streaming".
+// Streaming: the last rank sends to its predecessor, which composites and passes on, down to the collector. Each rank
+// transfers one picture to one neighbour, and each link is used in one direction. Bands are pipelined, so all ranks
+// work at once after the first few. Source: Roth, Reiners, "Sorted pipeline image composition" (2006); thesis, "DB with
+// streaming".
 #include <algorithm>
 
 #include "compositor/strategies/schedule_maker.hpp"
@@ -9,7 +10,7 @@ namespace mural::compositor {
 
 namespace {
 
-constexpr int32_t kLeastRows = 64; // of a band: smaller ones cost more than their latency wins
+constexpr int32_t kLeastRows = 64; // rows of a band: smaller ones cost more than they save in latency
 constexpr int kMostBands = 16;
 
 } // namespace

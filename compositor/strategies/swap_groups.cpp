@@ -8,7 +8,7 @@ namespace mural::compositor {
 
 namespace {
 
-// One that holds a band of its group's picture.
+// A rank that holds a band of its group's picture.
 struct Holder {
     int rank = 0;
     RowRange band;
@@ -22,8 +22,8 @@ struct Seat {
     size_t at = 0; // in it
 };
 
-// Members of all groups in the order of the middles of their bands: so the new, smaller band of each lies in its old one where
-// groups have one size, and not far from it where they don't.
+// Orders the members of all groups by the centres of their bands. The new, smaller band of each member lies in its old
+// one for groups of equal size, and near it otherwise.
 std::vector<Seat> seatsOf(const std::vector<Group>& groups) {
     std::vector<Seat> seats;
     for (size_t g = 0; g < groups.size(); ++g)

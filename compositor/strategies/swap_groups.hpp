@@ -1,5 +1,5 @@
-// What all swaps have in common: groups of ranks that each hold a whole picture, divided into bands among their members, are
-// merged to larger ones, until there is one; then the bands go to the collector.
+// Common part of swap strategies: groups of ranks, each holding a picture in bands, are merged into larger groups until
+// one remains; then the bands go to the collector.
 #pragma once
 
 #include <functional>
@@ -9,14 +9,14 @@
 
 namespace mural::compositor {
 
-// Into how many groups, and how large, a group of `size` ranks (two or more) is divided.
+// Returns the sizes of the groups into which a group of `size` ranks (two or more) is divided.
 using GroupSplit = std::function<std::vector<int>(int size)>;
 
-// ranks: in draw order, the first is the collector.
+// ranks: in draw order; the first is the collector.
 void swapGroups(ScheduleMaker& maker, const std::vector<int>& ranks, const GroupSplit& split);
 
-// Folds the pictures of all ranks into those of `count` ranks, pairs of neighbours as far as is needed; returns who is left.
-// count: at least half of the ranks.
+// Composites the pictures of all ranks into `count` ranks, by merging pairs of neighbours; returns the remaining ranks.
+// Requires `count` to be at least half of the ranks.
 [[nodiscard]] std::vector<int> foldRemainder(ScheduleMaker& maker, int count);
 
 } // namespace mural::compositor

@@ -1,7 +1,6 @@
-// 2-3 swap: as binary swap, by groups of two and three, so that every number of nodes takes part from the first step on.
-// Differs from the paper in that merged groups may have different sizes at any level: the bands of a group that is smaller are
-// cut where those of the others lie.
-// Source: Yu, Wang, Ma, "Massively parallel volume rendering using 2-3 swap image compositing" (2008).
+// 2-3 swap: binary swap with groups of two and three, so any number of ranks takes part from the first step on. Unlike
+// in the paper, merged groups may differ in size at any level: bands of a smaller group are cut at the boundaries of
+// the others. Source: Yu, Wang, Ma, "Massively parallel volume rendering using 2-3 swap image compositing" (2008).
 #include "compositor/strategies/swap_groups.hpp"
 
 namespace mural::compositor {

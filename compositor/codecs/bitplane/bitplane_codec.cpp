@@ -10,7 +10,7 @@ namespace {
 
 using namespace bitplane;
 
-// A plane of large pixels is one of words.
+// A plane of larger pixels is treated as a plane of words.
 struct TileGridOf {
     explicit TileGridOf(const PlaneShape& s)
         : wordsPerPixel(static_cast<unsigned>(bytesPerPixel(s.format) / 4)), columns(static_cast<unsigned>(s.width) * wordsPerPixel), rows(static_cast<unsigned>(s.height)),
@@ -20,7 +20,7 @@ struct TileGridOf {
     [[nodiscard]] TileShape shape(unsigned across, unsigned up) const {
         return {std::min(kTileColumns, columns - across * kTileColumns), std::min(kTileRows, rows - up * kTileRows), wordsPerPixel, arithmetic};
     }
-    // Of a row of tiles: its first row of words, and how many of those there are.
+    // First row of words of a row of tiles, and their number.
     [[nodiscard]] static int32_t firstRow(unsigned up) { return static_cast<int32_t>(kTileRows * up); }
     [[nodiscard]] unsigned rowsOf(unsigned up) const { return std::min(kTileRows, rows - up * kTileRows); }
     unsigned wordsPerPixel, columns, rows, tilesAcross, tilesUp;
@@ -58,13 +58,13 @@ Result<size_t> BitplaneCodec::encode(const PlaneView& plane, std::span<std::byte
 
 namespace {
 
-// The table of sizes, and behind it the tiles.
+// The table of sizes, followed by the tiles.
 class EncodedTiles {
 public:
     EncodedTiles(std::span<const std::byte> bytes, const TileGridOf& grid) : whole_(bytes.size() >= 4 * grid.count()) {
         if (whole_) table_ = bytes.data(), left_ = bytes.subspan(4 * grid.count());
     }
-    // Null, or what is wrong.
+    // Returns null, or the error.
     [[nodiscard]] const char* wrong() const { return whole_ ? nullptr : "its table of tiles is cut short"; }
     const char* next(std::span<const std::byte>& tile) {
         const size_t size = loadLittle<uint32_t>(table_);
@@ -110,7 +110,7 @@ Result<void> BitplaneCodec::decode(std::span<const std::byte> bytes, const Mutab
 }
 
 Result<void> BitplaneCodec::decodeTiles(std::span<const std::byte> bytes, const PlaneShape& shape, const EachTile& each) {
-    const PlaneView whole{shape.format, shape.width, shape.height, 0, nullptr}; // for what is said of it
+    const PlaneView whole{shape.format, shape.width, shape.height, 0, nullptr}; // for error messages
     if (whole.empty()) return bytes.empty() ? Result<void>() : damagedPlane(name(), whole, bytes.size(), "an empty plane has no bytes");
     tile_.resize(kTileBytes);
     if (decoders_.empty()) decoders_.resize(1);

@@ -1,5 +1,5 @@
-// Packing of 64 bytes by widths, for strip_code.cpp: included once per instruction set. No branch depends on the width, for
-// widths change from block to block: what a width does not need is written too, and then overwritten.
+// Packs 64 bytes to a bit width, for strip_code.cpp; included once per instruction set. Branch-free in the width,
+// because widths change from block to block: superfluous output is written and then overwritten.
 #if defined(MURAL_PACK_BITS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MURAL_PACK_BITS_INL
 #undef MURAL_PACK_BITS_INL
@@ -25,7 +25,7 @@ using Bytes16 = hn::Full128<uint8_t>;
 using Halves16 = hn::Full128<uint16_t>;
 using V16 = hn::Vec<Bytes16>;
 
-// Shifts of bytes as shifts of pairs: what comes over from the neighbour is masked off, or is 0.
+// Byte shifts as 16-bit shifts; bits from the neighbour are masked or zero.
 HWY_INLINE V16 left(V16 v, int bits) { return hn::BitCast(Bytes16(), hn::ShiftLeftSame(hn::BitCast(Halves16(), v), bits)); }
 HWY_INLINE V16 right(V16 v, int bits) { return hn::BitCast(Bytes16(), hn::ShiftRightSame(hn::BitCast(Halves16(), v), bits)); }
 
@@ -37,7 +37,7 @@ using V32 = hn::Vec<Bytes32>;
 HWY_INLINE V32 left(V32 v, int bits) { return hn::BitCast(Bytes32(), hn::ShiftLeftSame(hn::BitCast(Halves32(), v), bits)); }
 HWY_INLINE V32 right(V32 v, int bits) { return hn::BitCast(Bytes32(), hn::ShiftRightSame(hn::BitCast(Halves32(), v), bits)); }
 
-// 64 bytes as two vectors. width 1 to 8.
+// 64 bytes as two vectors. Requires a width of 1 to 8.
 HWY_INLINE uint8_t* packChannel(const uint8_t* bytes, unsigned width, uint8_t* into) {
     const Bytes32 d;
     const Bytes16 dh;
@@ -57,14 +57,15 @@ HWY_INLINE uint8_t* packChannel(const uint8_t* bytes, unsigned width, uint8_t* i
     const int shift1 = static_cast<int>(width & 6);
     const V32 y = hn::Or(hn::And(right(a, shift1), one), left(hn::And(right(b, shift1), one), 4));
     const V16 z = hn::Or(hn::LowerHalf(dh, y), left(hn::UpperHalf(dh, y), 2));
-    hn::StoreU(hn::Or(z, left(hn::ShiftRightBytes<8>(dh, z), 1)), dh, into + 8 * (width & 6)); // the lower half counts
+    // only the lower half is used
+    hn::StoreU(hn::Or(z, left(hn::ShiftRightBytes<8>(dh, z), 1)), dh, into + 8 * (width & 6));
     return into + 8 * width;
 }
 
 using Pairs64 = hn::Simd<uint64_t, 4, 0>;
 
-// Which bits of a byte come from the groups of 4, 2 and 1 bits, and how far those of the last two go up. Whole vectors, so
-// that they are operands of what uses them.
+// Bits of a byte that come from the groups of 4, 2 and 1 bits, and the shifts of the last two. Whole vectors, usable as
+// operands.
 struct alignas(32) UnpackMasks {
     std::array<uint64_t, 4> four, two, one, up2, down2, up1;
 };
@@ -85,7 +86,7 @@ struct Channel {
     V32 low, high; // its 64 bytes
 };
 
-// Shifts are of 64 bits: what comes over from the neighbours is masked off.
+// 64-bit shifts; bits from neighbours are masked.
 HWY_INLINE Channel unpackChannel(const uint8_t*& from, unsigned width) {
     const Bytes32 d;
     const Pairs64 q;

@@ -17,7 +17,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace mural::compositor::bitplane::HWY_NAMESPACE {
 
-#if HWY_TARGET == HWY_SCALAR || HWY_HAVE_SCALABLE // no vectors of a known size
+#if HWY_TARGET == HWY_SCALAR || HWY_HAVE_SCALABLE // no vectors of known size
 
 size_t encode(const StripSource& source, const StripKind& kind, std::byte* into) { return encodeStripScalar(source, kind, into); }
 void decode(const ParsedStrip& strip, const StripKind& kind, const StripTarget& target) { decodeStripScalar(strip, kind, target); }
@@ -89,7 +89,8 @@ struct Four {
     W a, b, c, d;
 };
 
-// Byte i of word j becomes byte j of word i, in every lane: rows of words to channels of rows, and back.
+// Transposes bytes within each lane: byte i of word j becomes byte j of word i. Self-inverse; converts rows of words to
+// channels.
 HWY_INLINE Four transposed(const Four& v) {
     const Words w;
     const hn::Repartition<uint16_t, Words> d16;
@@ -101,7 +102,7 @@ HWY_INLINE Four transposed(const Four& v) {
     return {mix8(hn::ShiftLeft<8>(t1), t0), mix8(t1, hn::ShiftRight<8>(t0)), mix8(hn::ShiftLeft<8>(t3), t2), mix8(t3, hn::ShiftRight<8>(t2))};
 }
 
-// The four rows' differences to what was predicted.
+// Returns the residuals of the four rows.
 template <Arithmetic A, Predictor P, bool kFirst> HWY_INLINE Four differences(const StripSource& s, size_t byte) {
     const W above = loadTurned<A>(s.above + byte);
     const W r0 = loadTurned<A>(s.rows + byte), r1 = loadTurned<A>(s.rows + s.strideBytes + byte);
@@ -145,7 +146,7 @@ template <class V> HWY_INLINE hn::Vec<Quad> foldedToQuad(V v) {
     }
 }
 
-// The widths of the four channels, from their bytes or-ed together.
+// Returns the widths of the four channels from the bitwise OR of their bytes.
 HWY_INLINE uint16_t widthsOf(const Four& channels) {
     const Quad d;
     const hn::Full128<uint64_t> d64;
@@ -155,7 +156,7 @@ HWY_INLINE uint16_t widthsOf(const Four& channels) {
     auto v = hn::BitCast(d, hn::Or(hn::InterleaveLower(d64, ab, ce), hn::InterleaveUpper(d64, ab, ce)));
     v = hn::Or(v, hn::ShiftRight<16>(v));
     v = hn::And(hn::Or(v, hn::ShiftRight<8>(v)), hn::Set(d, 0xff));
-    // The exponent of a float is the number of bits; of zero it is so small that it becomes 0.
+    // The exponent of a float gives the number of bits; that of zero saturates to 0.
     const hn::Full128<int32_t> di;
     const hn::Full128<float> df;
     const auto exponent = hn::ShiftRight<23>(hn::BitCast(di, hn::ConvertTo(df, hn::BitCast(di, v))));
@@ -166,7 +167,7 @@ HWY_INLINE uint16_t widthsOf(const Four& channels) {
 }
 
 template <Arithmetic A, Predictor P, bool kFirst> size_t encodeAs(const StripSource& source, std::byte* into) {
-    alignas(64) uint8_t channels[kMostBlocks * kBlockBytes]; // of the blocks that are not zero
+    alignas(64) uint8_t channels[kMostBlocks * kBlockBytes]; // of the non-zero blocks
     uint16_t widths[kMostBlocks];
     uint32_t present = 0;
     unsigned count = 0;
@@ -174,12 +175,12 @@ template <Arithmetic A, Predictor P, bool kFirst> size_t encodeAs(const StripSou
         const size_t from = block * kBlockColumns * 4;
         Four d[kSteps];
         W any = hn::Zero(Words());
-#pragma GCC unroll 4 // GCC does not at -O2, and keeps what is in the loop in memory
+#pragma GCC unroll 4 // without it GCC at -O2 keeps the loop's values in memory
         for (size_t s = 0; s < kSteps; ++s) {
             d[s] = differences<A, P, kFirst>(source, from + s * kLanes * 4);
             any = hn::Or(any, ored(d[s]));
         }
-        if (isZero(any)) continue; // most of many pictures
+        if (isZero(any)) continue; // the majority in many pictures
         Four sum{hn::Zero(Words()), hn::Zero(Words()), hn::Zero(Words()), hn::Zero(Words())};
         uint8_t* to = channels + count * kBlockBytes;
 #pragma GCC unroll 4
@@ -252,9 +253,9 @@ template <Arithmetic A, Predictor P, bool kFirst, size_t kStep> HWY_INLINE void 
     rebuild<A, P, kFirst>(t, to + kStep * kLanes * 4, differencesOf<A>({wordsOf(w, a, kStep), wordsOf(w, b, kStep), wordsOf(w, c, kStep), wordsOf(w, e, kStep)}));
 }
 
-// A block's channels never leave the registers.
+// Keeps the channels of a block in registers.
 template <Arithmetic A, Predictor P, bool kFirst> void decodeAs(const ParsedStrip& strip, const StripTarget& given) {
-    const StripTarget target = given; // pixels that are written might be the one given
+    const StripTarget target = given; // a copy, because stores to pixels might alias it
     const auto* from = reinterpret_cast<const uint8_t*>(strip.payload);
     const uint16_t* widths = strip.widths.data();
     for (unsigned block = 0, present = strip.present; block < target.blocks; ++block, present >>= 1) {
@@ -265,7 +266,8 @@ template <Arithmetic A, Predictor P, bool kFirst> void decodeAs(const ParsedStri
         }
         const unsigned w = *widths++;
         const Channel a = unpackChannel(from, w & 15), b = unpackChannel(from, w >> 4 & 15), c = unpackChannel(from, w >> 8 & 15);
-        const Channel e = w >> 12 ? unpackChannel(from, w >> 12) : Channel{hn::Zero(Bytes32()), hn::Zero(Bytes32())}; // of opaque pictures
+        // zero in opaque pictures
+        const Channel e = w >> 12 ? unpackChannel(from, w >> 12) : Channel{hn::Zero(Bytes32()), hn::Zero(Bytes32())};
         rebuildStep<A, P, kFirst, 0>(target, to, a, b, c, e);
         if constexpr (kSteps == 2) rebuildStep<A, P, kFirst, 1>(target, to, a, b, c, e);
     }
@@ -323,7 +325,7 @@ void decode(const ParsedStrip& strip, const StripKind& kind, const StripTarget& 
     withKind(kind, [&]<Arithmetic A, Predictor P, bool kFirst>() { decodeAs<A, P, kFirst>(strip, target); });
 }
 
-// Four words at a time: sums within them, and the last pixel's of those before.
+// Prefix sum, four words at a time.
 template <Arithmetic A> void finishAs(const StripTarget& target, unsigned leftWords) {
     const Quad d;
     const hn::Full128<uint64_t> d64;

@@ -15,8 +15,8 @@ uint32_t wordAt(const std::byte* row, unsigned column) {
     return word;
 }
 
-// How a channel of 64 bytes, none of more than `width` bits, is packed: bits 0 to 3 if the width has a 4 in it, the next two
-// if it has a 2, the next one if it has a 1. A group of n bits holds byte i of each of 8 / n equal parts in one byte.
+// Packing of a channel of 64 bytes with at most `width` bits: bits 0 to 3 if the width contains 4, the next two if it
+// contains 2, the next one if it contains 1. A group of n bits stores byte i of 8 / n equal parts in one byte.
 void packChannel(const uint8_t* bytes, unsigned width, std::byte* into) {
     if (width == 8) {
         std::memcpy(into, bytes, kChannelBytes);

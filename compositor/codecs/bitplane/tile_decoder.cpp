@@ -41,7 +41,7 @@ const char* TileDecoder::strip(unsigned y) {
             copyRows(y, row_.data(), 0);
             return nullptr;
         }
-        strip_.present = 0; // as a strip without differences, which is written four rows at once
+        strip_.present = 0; // decoded as a strip without differences, which writes four rows at once
         decodeStrip(strip_, {shape_.arithmetic, Predictor::Above, false}, {rows_ + y * strideBytes_, strideBytes_, row_.data(), nullptr, shape_.wholeBlocks()});
         return nullptr;
     case TileKind::Strips: break;
@@ -56,7 +56,7 @@ void TileDecoder::copyRows(unsigned y, const std::byte* from, ptrdiff_t fromStri
 }
 
 const char* TileDecoder::packedStrip(unsigned y) {
-    // Unpacking reads behind a channel; so the last ones get bytes behind them.
+    // Unpacking reads past the end of a channel, so the last strips are copied to memory with slack.
     if (!moved_ && left_.size() < kStripBoundBytes + kSlackBytes) {
         std::memcpy(ending_.data(), left_.data(), left_.size());
         left_ = {ending_.data(), left_.size()};

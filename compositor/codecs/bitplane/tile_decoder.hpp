@@ -1,5 +1,5 @@
-// Reads a tile, strip by strip: so the tiles that stand side by side can be decoded together, and memory is written along whole rows.
-// Each function returns what is wrong with the bytes, or null.
+// Decodes a tile strip by strip, so adjacent tiles can be decoded together and memory is written along whole rows.
+// Functions return an error text, or null.
 #pragma once
 
 #include <array>
@@ -12,9 +12,9 @@ namespace mural::compositor::bitplane {
 
 class TileDecoder {
 public:
-    // All of the bytes are the tile; they are read, and the rows written, until finish().
+    // Begins a tile of exactly these bytes. Bytes and rows must stay valid until finish().
     const char* begin(const TileShape& shape, std::span<const std::byte> bytes, std::byte* rows, ptrdiff_t strideBytes);
-    // The rows from y on; in order, from 0 in steps of kStripRows.
+    // Decodes the rows from y on. Call with y = 0, kStripRows, 2 * kStripRows, and so on.
     const char* strip(unsigned y);
     const char* finish() const;
 
@@ -32,9 +32,10 @@ private:
     ptrdiff_t pixelStrideBytes_ = 0;
     bool moved_ = false;
     ParsedStrip strip_;
-    alignas(64) std::array<std::byte, kTileRowBytes> row_{}; // of strips row -1, which is 0; a uniform tile's
-    std::array<std::byte, kStripBoundBytes + 2 * kSlackBytes> ending_{}; // the last of the bytes, with room behind them
-    std::unique_ptr<std::byte[]> padded_; // of a tile at the edge
+    // row -1 of strips, which is zero; or the row of a uniform tile
+    alignas(64) std::array<std::byte, kTileRowBytes> row_{};
+    std::array<std::byte, kStripBoundBytes + 2 * kSlackBytes> ending_{}; // copy of the last bytes, with slack
+    std::unique_ptr<std::byte[]> padded_; // for a tile at the edge
 };
 
 } // namespace mural::compositor::bitplane

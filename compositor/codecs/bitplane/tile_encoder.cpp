@@ -21,7 +21,7 @@ bool areUniform(const TileShape& s, unsigned count, const std::byte* rows, ptrdi
     return true;
 }
 
-// The last column and row once more, up to whole blocks: their residuals are those of their neighbours, or zero.
+// Repeats the last column and row up to whole blocks: their residuals equal those of their neighbours, or zero.
 void padTile(const TileShape& s, const std::byte* rows, ptrdiff_t strideBytes, std::byte* into) {
     const size_t paddedBytes = size_t{4} * kBlockColumns * s.wholeBlocks();
     for (unsigned y = 0; y < s.wholeStrips() * kStripRows; ++y, into += kTileRowBytes) {
@@ -61,8 +61,8 @@ void TileEncoder::strip(unsigned y) {
     const StripSource source{row, pixelStrideBytes_, y == 0 ? above_.data() : row - pixelStrideBytes_, y == 0 ? nullptr : row - 2 * pixelStrideBytes_, shape_.wholeBlocks()};
     const size_t written = encodeStrip(source, kind, strips_.get() + size_);
     size_ += written;
-    if (y > 0 && written != kStripHeadBytes) uniform_ = false; // else all is as in the row above
-    // Noise shows early: no time is spent on a tile that won't be smaller.
+    if (y > 0 && written != kStripHeadBytes) uniform_ = false; // otherwise every row equals the row above
+    // Noise shows early: encoding stops for a tile that will not shrink.
     const bool hopeless = y == 2 * kStripRows && size_ > shape_.rowBytes() * 3 * kStripRows * 15 / 16;
     raw_ = raw_ || hopeless || size_ >= rawBytes();
 }

@@ -1,5 +1,5 @@
-// Writes a tile, strip by strip: so the tiles that stand side by side can be encoded together, and memory is read along whole rows.
-// Raw where packing gains nothing, one pixel where all are equal.
+// Encodes a tile strip by strip, so adjacent tiles can be encoded together and memory is read along whole rows. Falls
+// back to raw rows without a gain, and to one pixel for uniform tiles.
 #pragma once
 
 #include <array>
@@ -11,11 +11,11 @@ namespace mural::compositor::bitplane {
 
 class TileEncoder {
 public:
-    // The rows are read until finish().
+    // The rows must stay valid until finish().
     void begin(const TileShape& shape, const std::byte* rows, ptrdiff_t strideBytes, Predictor predictor);
-    // The rows from y on; in order, from 0 in steps of kStripRows.
+    // Encodes the rows from y on. Call with y = 0, kStripRows, 2 * kStripRows, and so on.
     void strip(unsigned y);
-    // Returns the bytes written; `into` has kTileBoundBytes.
+    // Returns the number of bytes written. Requires kTileBoundBytes in `into`.
     size_t finish(std::byte* into);
 
 private:
@@ -27,12 +27,12 @@ private:
     ptrdiff_t strideBytes_ = 0;
     const std::byte* pixels_ = nullptr; // the same, in whole blocks
     ptrdiff_t pixelStrideBytes_ = 0;
-    size_t size_ = 0;       // of the strips so far, with the kind
-    bool uniform_ = false;  // so far
-    bool raw_ = false;      // that is less
-    alignas(64) std::array<std::byte, kTileRowBytes> above_{}; // row -1: row 0 is predicted from the pixel on its left
+    size_t size_ = 0; // of the strips so far, including the kind
+    bool uniform_ = false; // so far
+    bool raw_ = false; // raw rows are smaller
+    alignas(64) std::array<std::byte, kTileRowBytes> above_{}; // row -1: row 0 is predicted from the pixel to its left
     std::unique_ptr<std::byte[]> strips_;
-    std::unique_ptr<std::byte[]> padded_; // of a tile at the edge
+    std::unique_ptr<std::byte[]> padded_; // for a tile at the edge
 };
 
 } // namespace mural::compositor::bitplane

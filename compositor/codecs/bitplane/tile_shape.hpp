@@ -1,4 +1,4 @@
-// A tile: up to 256 x 64 words that are encoded on their own, so that tiles can be decoded one by one and by many threads.
+// A tile: up to 256 x 64 words, encoded independently, so tiles can be decoded one by one and by several threads.
 #pragma once
 
 #include "compositor/codecs/bitplane/bitplane_format.hpp"
@@ -7,12 +7,12 @@ namespace mural::compositor::bitplane {
 
 constexpr size_t kTileRowBytes = size_t{4} * kTileColumns;
 constexpr size_t kTileBytes = kTileRowBytes * kTileRows;
-// Of what a tile may become: a kind, and the strips or the raw rows, whichever is more.
+// Largest encoded tile: a kind, and strips or raw rows, whichever is larger.
 constexpr size_t kTileBoundBytes = 1 + (kTileRows / kStripRows) * kStripBoundBytes + kSlackBytes;
 
-enum class TileKind : uint8_t { Raw = 0, Uniform = 1, Strips = 2 }; // Strips: plus the predictor's number
+enum class TileKind : uint8_t { Raw = 0, Uniform = 1, Strips = 2 }; // Strips: plus the number of the predictor
 
-// Words of any number up to a tile's, in rows.
+// Size of a tile in words.
 struct TileShape {
     unsigned columns = 0;
     unsigned rows = 0;
@@ -24,7 +24,7 @@ struct TileShape {
     [[nodiscard]] unsigned wholeBlocks() const { return (columns + kBlockColumns - 1) / kBlockColumns; }
     [[nodiscard]] unsigned wholeStrips() const { return (rows + kStripRows - 1) / kStripRows; }
     [[nodiscard]] bool hasWholeBlocks() const { return columns % kBlockColumns == 0 && rows % kStripRows == 0; }
-    // Of the strip from row y on, no more than there are.
+    // Rows of the strip that begins at y, fewer at the edge.
     [[nodiscard]] unsigned rowsFrom(unsigned y) const { return rows - y < kStripRows ? rows - y : kStripRows; }
 };
 

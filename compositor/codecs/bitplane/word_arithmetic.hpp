@@ -1,4 +1,4 @@
-// What the bit-plane code does to single words: the definition that the vectors are tested against.
+// Scalar operations of the bit-plane code: the reference for the vector code.
 #pragma once
 
 #include <bit>
@@ -8,7 +8,7 @@
 
 namespace mural::compositor::bitplane {
 
-// Lane by lane, lanes of `bits` bits, without carries between them.
+// Adds lanes of `bits` bits without carries between them.
 template <unsigned kBits> constexpr uint32_t addLanes(uint32_t a, uint32_t b) {
     constexpr uint32_t high = kBits == 8 ? 0x80808080u : kBits == 16 ? 0x80008000u : 0x80000000u;
     return ((a & ~high) + (b & ~high)) ^ ((a ^ b) & high);
@@ -24,17 +24,17 @@ constexpr uint32_t subtract(Arithmetic a, uint32_t x, uint32_t y) {
     return a == Arithmetic::Bytes ? subtractLanes<8>(x, y) : a == Arithmetic::Halves ? subtractLanes<16>(x, y) : x - y;
 }
 
-// Small numbers of either sign become small numbers: 0, -1, 1, -2, … are 0, 1, 2, 3, …
+// Zigzag mapping: 0, -1, 1, -2, ... become 0, 1, 2, 3, ...
 template <class T> constexpr T folded(T value) {
     return static_cast<T>(static_cast<T>(value << 1) ^ static_cast<T>(0 - static_cast<T>(value >> (8 * sizeof(T) - 1))));
 }
 template <class T> constexpr T unfolded(T value) { return static_cast<T>(static_cast<T>(value >> 1) ^ static_cast<T>(0 - static_cast<T>(value & 1))); }
 
-// What differences are taken of, and back.
+// Rotates words before differences are taken, and back.
 constexpr uint32_t turned(Arithmetic a, uint32_t word) { return a == Arithmetic::RotatedWords ? std::rotr(word, 8) : word; }
 constexpr uint32_t turnedBack(Arithmetic a, uint32_t word) { return a == Arithmetic::RotatedWords ? std::rotl(word, 8) : word; }
 
-// A difference as it is packed: red and blue less green, and folded.
+// Returns the packed form of a difference: with green subtraction, and zigzag-mapped.
 constexpr uint32_t residualOf(Arithmetic a, uint32_t d) {
     if (a == Arithmetic::Bytes) {
         const auto green = static_cast<uint8_t>(d >> 8);

@@ -1,4 +1,4 @@
-// Compressors of plain bytes, which know nothing of pictures.
+// General-purpose byte compressors.
 #pragma once
 
 #include <cstddef>
@@ -11,15 +11,15 @@ class ByteCompressor {
 public:
     virtual ~ByteCompressor() = default;
     [[nodiscard]] virtual size_t boundBytes(size_t sizeBytes) const = 0;
-    // `into` has boundBytes. Returns the bytes written, 0 when there is no memory.
+    // Returns the number of bytes written, 0 without memory. Requires boundBytes() in `into`.
     [[nodiscard]] virtual size_t compress(std::span<const std::byte> bytes, std::span<std::byte> into) = 0;
-    // Whether `bytes` are exactly as many as `into` holds, compressed.
+    // Returns true if `bytes` decompress to exactly the size of `into`.
     [[nodiscard]] virtual bool decompress(std::span<const std::byte> bytes, std::span<std::byte> into) = 0;
 };
 
-// LZ4 of its usual speed, 2 GiB at most.
+// LZ4 at default speed, at most 2 GiB.
 [[nodiscard]] std::unique_ptr<ByteCompressor> makeLz4();
-// Levels below zero are faster; 1 to 3 are what pictures profit from.
+// Zstandard. Levels below zero are faster; levels 1 to 3 suit pictures.
 [[nodiscard]] std::unique_ptr<ByteCompressor> makeZstd(int level);
 
 } // namespace mural::compositor

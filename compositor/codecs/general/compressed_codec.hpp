@@ -1,4 +1,4 @@
-// A plane's rows compressed as bytes, or another codec's bytes compressed once more (then behind their size, 4 bytes).
+// Compresses a plane's rows as bytes, or the output of another codec, preceded by its size (4 bytes).
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@ namespace mural::compositor {
 
 class CompressedCodec : public Codec {
 public:
-    // inner: null for the plain rows.
+    // inner: null for plain rows.
     CompressedCodec(std::string name, std::unique_ptr<Codec> inner, std::unique_ptr<ByteCompressor> compressor)
         : name_(std::move(name)), inner_(std::move(inner)), compressor_(std::move(compressor)) {}
 

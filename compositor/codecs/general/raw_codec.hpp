@@ -1,4 +1,4 @@
-// The rows as they are: for links that are faster than any codec, and what others are measured against.
+// Uncompressed rows: for links faster than any codec, and as the baseline of measurements.
 #pragma once
 
 #include "compositor/codecs/codec.hpp"

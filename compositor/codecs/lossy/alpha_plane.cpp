@@ -8,7 +8,7 @@ namespace mural::compositor {
 
 namespace {
 
-// A kind; then the one value, or a size of 4 bytes and LZ4.
+// A kind, then the uniform value, or a size of 4 bytes and LZ4 data.
 constexpr std::byte kUniform{0}, kCompressed{1};
 size_t pixelsOf(const PlaneView& p) { return static_cast<size_t>(p.width) * static_cast<size_t>(p.height); }
 

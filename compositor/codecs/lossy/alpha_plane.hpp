@@ -1,4 +1,4 @@
-// The alpha of an RGBA8 plane, which lossy codecs keep exactly: one byte when it is the same everywhere, or LZ4.
+// Lossless alpha of an RGBA8 plane for lossy codecs: one byte if it is uniform, otherwise LZ4.
 #pragma once
 
 #include <vector>
@@ -12,9 +12,9 @@ class AlphaPlane {
 public:
     AlphaPlane() : compressor_(makeLz4()) {}
     [[nodiscard]] size_t boundBytes(const PlaneShape& shape) const;
-    // Returns the bytes written; 0 when there is no memory.
+    // Returns the number of bytes written; 0 without memory.
     [[nodiscard]] size_t encode(const PlaneView& plane, std::span<std::byte> into);
-    // Puts it into the plane and returns the bytes it took; 0 for what is no alpha plane.
+    // Writes alpha into the plane and returns the number of bytes read; 0 for malformed data.
     [[nodiscard]] size_t decode(std::span<const std::byte> bytes, const MutablePlaneView& into);
 
 private:

@@ -6,7 +6,7 @@
 
 namespace mural::compositor {
 
-// A size of 4 bytes, JPEG, alpha.
+// A size of 4 bytes, JPEG data, alpha.
 
 JpegCodec::JpegCodec(int quality, bool halfColour)
     : quality_(quality), subsampling_(halfColour ? TJSAMP_420 : TJSAMP_444), compressor_(tjInitCompress()), decompressor_(tjInitDecompress()) {}
@@ -48,7 +48,7 @@ Result<void> JpegCodec::decode(std::span<const std::byte> bytes, const MutablePl
     int width = 0, height = 0, subsampling = 0, colours = 0;
     if (!decompressor_ || tjDecompressHeader3(decompressor_, jpeg, size, &width, &height, &subsampling, &colours) != 0) return damaged("it is no JPEG");
     if (width != into.width || height != into.height) return damaged("it is of another size");
-    // Damaged data gives a picture and a warning: that is an error here.
+    // Damaged data decodes with a warning, which counts as an error.
     if (tjDecompress2(decompressor_, jpeg, size, reinterpret_cast<unsigned char*>(into.pixels), into.width, static_cast<int>(into.strideBytes), into.height, TJPF_RGBA, TJFLAG_LIMITSCANS) != 0)
         return damaged(tjGetErrorStr2(decompressor_));
     const size_t alpha = alpha_.decode(bytes.subspan(4 + size), into);

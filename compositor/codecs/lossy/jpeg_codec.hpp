@@ -1,4 +1,4 @@
-// JPEG by libjpeg-turbo, and alpha as it is. RGBA8.
+// JPEG by libjpeg-turbo, with lossless alpha. RGBA8 only.
 #pragma once
 
 #include "compositor/codecs/lossy/alpha_plane.hpp"
@@ -7,7 +7,7 @@ namespace mural::compositor {
 
 class JpegCodec : public Codec {
 public:
-    // quality: 1 to 100. halfColour: colour at half the resolution (4:2:0).
+    // quality: 1 to 100. halfColour: 4:2:0 chroma subsampling.
     JpegCodec(int quality, bool halfColour);
     ~JpegCodec() override;
     JpegCodec(const JpegCodec&) = delete;

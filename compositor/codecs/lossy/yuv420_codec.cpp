@@ -6,7 +6,7 @@ namespace mural::compositor {
 
 namespace {
 
-// Weights in 1/65536; each row of the first two kinds sums to a whole number, so that greys stay grey.
+// Weights in 1/65536. The rows of the first two matrices sum to whole numbers, so greys stay grey.
 constexpr int kHalf = 32768;
 int brightness(int r, int g, int b) { return (19595 * r + 38470 * g + 7471 * b + kHalf) >> 16; }
 int blueness(int r, int g, int b) { return std::clamp(((-11059 * r - 21709 * g + 32768 * b + kHalf) >> 16) + 128, 0, 255); }
@@ -37,7 +37,7 @@ Result<size_t> Yuv420Codec::encode(const PlaneView& plane, std::span<std::byte> 
         for (size_t half = 0; half < std::min<size_t>(2, l.height - row); ++half)
             for (size_t x = 0; x < l.width; ++x) y[(row + half) * l.width + x] = static_cast<std::byte>(brightness(at(rows[half], 4 * x), at(rows[half], 4 * x + 1), at(rows[half], 4 * x + 2)));
         for (size_t x = 0; x < l.halfWidth; ++x) {
-            const size_t left = 8 * x, right = 4 * std::min(2 * x + 1, l.width - 1); // an odd last one counts twice
+            const size_t left = 8 * x, right = 4 * std::min(2 * x + 1, l.width - 1); // an odd last column counts twice
             int sum[3];
             for (size_t c = 0; c < 3; ++c) sum[c] = (at(rows[0], left + c) + at(rows[0], right + c) + at(rows[1], left + c) + at(rows[1], right + c) + 2) >> 2;
             *u++ = static_cast<std::byte>(blueness(sum[0], sum[1], sum[2]));

@@ -1,5 +1,5 @@
-// Brightness for each pixel, colour for each 2 x 2 (full-range BT.601, 8 bits): always 1.5 bytes per pixel, and alpha as it is.
-// The error is largest where colours change from pixel to pixel, as lines do. RGBA8.
+// Luma per pixel, chroma per 2 x 2 pixels (full-range BT.601, 8 bits), lossless alpha: always 1.5 bytes per pixel. The
+// error is largest where colours change from pixel to pixel, as at lines. RGBA8 only.
 #pragma once
 
 #include "compositor/codecs/lossy/alpha_plane.hpp"

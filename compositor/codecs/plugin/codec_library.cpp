@@ -8,7 +8,7 @@ namespace mural::compositor {
 
 namespace {
 
-// Newer tables only grow; but what a function means may have changed, so versions must be the same.
+// Requires equal versions: newer tables only grow, but the meaning of a function may have changed.
 std::string whyUnfit(const mural_codec_plugin* plugin, const std::string& name) {
     if (!plugin) return "its " MURAL_CODEC_PLUGIN_ENTRY "() gives nothing";
     if (plugin->version != MURAL_CODEC_PLUGIN_VERSION)
@@ -38,7 +38,7 @@ public:
         return static_cast<size_t>(plugin_.bound_bytes(codec_, &s));
     }
     [[nodiscard]] Result<size_t> encode(const PlaneView& plane, std::span<std::byte> into) override {
-        // The plug-in only reads it: one struct serves both ways.
+        // The plug-in only reads the pixels; one struct serves both directions.
         const mural_codec_plane p{shapeFor(shapeOf(plane)), plane.strideBytes, const_cast<std::byte*>(plane.pixels)};
         mural_codec_error error{};
         uint64_t written = 0;
@@ -67,7 +67,7 @@ Result<const mural_codec_plugin*> openCodecPlugin(const std::string& name, const
     if (!std::filesystem::exists(file, failed)) return Error{what + "there is no plug-in " + file + "; check the name, or build or install the plug-in"};
     void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
     if (!library) {
-        const char* said = dlerror(); // names the file
+        const char* said = dlerror(); // contains the file name
         return Error{what + "can't load the plug-in: " + (said ? said : file) + "; install what it needs"};
     }
     const auto entry = reinterpret_cast<mural_codec_plugin_entry>(dlsym(library, MURAL_CODEC_PLUGIN_ENTRY));

@@ -10,7 +10,7 @@ namespace mural::compositor {
 namespace {
 
 constexpr uint32_t kRun = 0x80000000u;
-constexpr size_t kShortestWords = 3; // words; a shorter one costs more than it saves
+constexpr size_t kShortestWords = 3; // in words; shorter runs cost more than they save
 
 size_t wordsOfRow(size_t rowBytes) { return (rowBytes + 7) / 8; }
 
@@ -24,7 +24,7 @@ uint64_t wordAt(const std::byte* row, size_t rowBytes, size_t index) {
 
 size_t Rle64Codec::boundBytes(const PlaneShape& shape) const {
     if (shape.width <= 0 || shape.height <= 0) return 0;
-    // A head before every literal at worst comes once in kShortestWords words, and once per row.
+    // Worst case: a head per kShortestWords words, and one per row.
     const size_t words = wordsOfRow(shape.rowBytes());
     return static_cast<size_t>(shape.height) * (words * 8 + 4 * (2 * words / kShortestWords + 2));
 }
@@ -34,7 +34,7 @@ Result<size_t> Rle64Codec::encode(const PlaneView& plane, std::span<std::byte> i
     const size_t rowBytes = plane.rowBytes(), words = wordsOfRow(rowBytes);
     for (int32_t y = 0; y < plane.height && plane.width > 0; ++y) {
         const std::byte* row = plane.row(y);
-        size_t literals = 0; // words before `at` that are not written yet
+        size_t literals = 0; // unwritten words before `at`
         const auto flush = [&](size_t at) {
             if (literals == 0) return;
             storeLittle(out, static_cast<uint32_t>(literals));

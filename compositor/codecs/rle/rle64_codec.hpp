@@ -1,6 +1,6 @@
-// Run lengths of 64 bits, two pixels at a time: the fastest of the three that parallel rendering has long used, here to be
-// measured against. Records of a 4-byte head: bit 31 says that one word follows, repeated; otherwise as many follow as the
-// rest of the head counts. A last half word of a row's end is completed by zeros.
+// Run lengths of 64 bits, two pixels at a time: the fastest of the three classic codecs of parallel rendering, for
+// comparisons. A record has a head of 4 bytes: bit 31 announces one repeated word; otherwise the rest of the head
+// counts literal words. Zeros complete a last half word of a row.
 #pragma once
 
 #include "compositor/codecs/codec.hpp"

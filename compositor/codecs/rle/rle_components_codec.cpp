@@ -46,7 +46,7 @@ private:
 class StreamReader {
 public:
     explicit StreamReader(std::span<const std::byte> left) : left_(left) {}
-    // False when there is nothing more, or nothing sensible.
+    // Returns false at the end, or for malformed data.
     bool next(uint8_t& value) {
         if (count_ == 0 && !begin()) return false;
         --count_;
@@ -73,7 +73,7 @@ private:
 
 } // namespace
 
-// Bytes and pairs of bits change places: a matrix of 4 x 4 pairs, transposed by halves and then within them.
+// Transposes a matrix of 4 x 4 bit pairs: first by halves, then within them.
 uint32_t swizzledWord(uint32_t word) {
     const uint32_t halves = (word ^ word >> 20) & 0x00000f0f;
     word ^= halves ^ halves << 20;
@@ -83,7 +83,7 @@ uint32_t swizzledWord(uint32_t word) {
 
 size_t RleComponentsCodec::boundBytes(const PlaneShape& shape) const {
     if (shape.width <= 0 || shape.height <= 0) return 0;
-    return kStreams * 4 + 3 * shape.sizeBytes(); // every byte a marker among others
+    return kStreams * 4 + 3 * shape.sizeBytes(); // worst case: every byte is an isolated marker
 }
 
 Result<size_t> RleComponentsCodec::encode(const PlaneView& plane, std::span<std::byte> into) {

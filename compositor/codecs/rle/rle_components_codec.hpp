@@ -1,6 +1,6 @@
-// Run lengths of bytes, each of the four bytes of a word in a stream of its own, to be measured against. Swizzled: each stream
-// gets two bits of each byte, the high ones first, so that what is noise in the low bits does not break the runs of the high.
-// A stream: its size, then bytes; the marker announces a value and how often it comes (1 to 255).
+// Run lengths of bytes, one stream per byte of a word, for comparisons. Swizzled: each stream takes two bits of each
+// byte, high bits first, so noise in low bits does not break runs of high bits. A stream is its size and its bytes; a
+// marker precedes a value and its repetition count (1 to 255).
 #pragma once
 
 #include "compositor/codecs/codec.hpp"
@@ -19,7 +19,7 @@ private:
     bool swizzled_;
 };
 
-// Stream s gets bits 7-2s and 6-2s of each byte; its own inverse.
+// Stream s takes bits 7-2s and 6-2s of each byte. Self-inverse.
 [[nodiscard]] uint32_t swizzledWord(uint32_t word);
 
 } // namespace mural::compositor
