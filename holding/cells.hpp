@@ -1,5 +1,5 @@
-// Values of which each command sets one whole: by number, what the nodes have and what waits. Commands are kept as their records, so
-// that what is equal is equal in everything.
+// Cache of state cells, each set completely by one command. Stores, per cell, the value that the nodes have and the
+// deferred value. Values are whole records, so equality covers the command and all arguments.
 #pragma once
 
 #include <algorithm>
@@ -12,22 +12,22 @@
 
 namespace mural::holding {
 
-// What became of a record that sets a cell.
+// Disposition of a record that sets a cell.
 enum class Fate : uint8_t { Goes, Waits, LeftOut };
 struct Outcome {
     Fate fate = Fate::Goes;
-    uint32_t gone = 0; // records that never go: this one, or the one that waited, or both
+    uint32_t gone = 0; // number of records dropped: this one, the deferred one, or both
     size_t goneBytes = 0;
 };
 
-// Words: of the longest record.
+// Words: length of the longest record.
 template <size_t Words>
 class Cells {
 public:
     static constexpr size_t kMostBytes = Words * 4;
 
-    // mayWait: for somebody who needs it; else it goes at once, unless it changes nothing. One that waits is replaced: both of them
-    // have to be valid, or neither.
+    // If `mayWait`, the command is deferred until a command reads this cell; otherwise it is sent now unless redundant.
+    // A deferred command is replaced by a later one; the caller guarantees that both are valid or both invalid.
     Outcome set(size_t index, std::span<const std::byte> record, bool mayWait) {
         if (index >= cells_.size()) cells_.resize(index + 1);
         Cell& cell = cells_[index];
@@ -53,7 +53,7 @@ public:
         return outcome;
     }
 
-    // What waits for it begins otherwise than the record: another command sets the same.
+    // Returns true if the deferred record is of another command that sets the same cell.
     [[nodiscard]] bool otherWaits(size_t index, std::span<const std::byte> record) const {
         return index < cells_.size() && cells_[index].waits && (cells_[index].now.sizeBytes != record.size() || std::memcmp(cells_[index].now.words.data(), record.data(), 4) != 0);
     }
@@ -61,7 +61,7 @@ public:
     [[nodiscard]] size_t waitingRecords() const { return order_.size(); }
     [[nodiscard]] size_t waitingBytes() const { return waitingBytes_; }
 
-    // What waits goes, in its order: each record is given.
+    // Flushes the deferred records in order, by passing each to `give`.
     template <typename Give>
     void send(const Give& give) {
         for (const uint32_t index : order_) {
@@ -74,7 +74,7 @@ public:
         order_.clear();
         waitingBytes_ = 0;
     }
-    // Nothing may wait: what the nodes have is not known from here on.
+    // Marks the nodes' value as unknown. Requires that nothing is deferred.
     void forget(size_t index) {
         if (index < cells_.size()) cells_[index].generation = generation_ - 1;
     }
@@ -94,12 +94,12 @@ private:
     };
     struct Cell {
         bool waits = false;
-        uint32_t generation = 0; // in which `sent` is known
+        uint32_t generation = 0; // generation in which `sent` is valid
         Record now, sent;
     };
 
     std::vector<Cell> cells_;
-    std::vector<uint32_t> order_; // of those that wait
+    std::vector<uint32_t> order_; // order of the deferred cells
     uint32_t generation_ = 1;
     size_t waitingBytes_ = 0;
 };

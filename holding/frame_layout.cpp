@@ -13,7 +13,7 @@ uint32_t word(const std::byte* from) {
     return value;
 }
 
-// Of so many words, whether any bit is another one that matters. By vectors that every processor of the kind has.
+// Compares masked words with baseline vector instructions.
 using Vector = uint32_t __attribute__((vector_size(16)));
 constexpr size_t kBlockWords = 16, kVectorWords = sizeof(Vector) / sizeof(uint32_t);
 
@@ -88,7 +88,7 @@ size_t FrameLayout::likeBytes(const std::byte* packet, size_t sameAt, size_t siz
     return i * 4;
 }
 
-// On as far as the packet is like the frame, and which records that were.
+// Advances while the packet matches the template, and collects the record offsets.
 FrameLayout::Stop FrameLayout::pass(std::span<const std::byte> packet, size_t& at, Walked& walked) {
     const size_t packetFrom = at;
     const uint64_t from = at_;
@@ -116,12 +116,12 @@ FrameLayout::Stop FrameLayout::passTo(std::span<const std::byte> packet, size_t&
         go(alike, at);
         return Stop::PacketEnds;
     }
-    // A record is another one, or longer than the packet.
+    // A record differs, or extends beyond the packet.
     backToRecord(at_ + alike - (alike == compared && alike > 0 ? 4 : 0), at);
     return Stop::Differs;
 }
 
-// So many bytes of the range are as expected.
+// Advances by matching bytes of the range.
 void FrameLayout::go(size_t sizeBytes, size_t& at) {
     at += sizeBytes;
     at_ += sizeBytes;
@@ -129,7 +129,7 @@ void FrameLayout::go(size_t sizeBytes, size_t& at) {
     doneBytes_ += sizeBytes;
 }
 
-// On over ranges that are, as far as they are whole: all that a loop over thousands of them needs is in registers.
+// Advances over whole matching ranges. A separate loop, which keeps its state in registers for thousands of ranges.
 void FrameLayout::passWhole(std::span<const std::byte> packet, size_t& at) {
     const std::byte* const from = packet.data() + at;
     const std::byte* const end = packet.data() + packet.size();
@@ -164,11 +164,11 @@ size_t FrameLayout::passed() const {
     return static_cast<size_t>(std::ranges::lower_bound(whole_, at_, {}, &Whole::at) - whole_.begin());
 }
 
-// To the record in which the packet is another one.
+// Returns to the start of the differing record.
 void FrameLayout::backToRecord(uint64_t differsAt, size_t& at) {
     const uint64_t start = *(std::ranges::upper_bound(starts_, differsAt) - 1);
-    if (start >= at_) at += start - at_; // records before it are the same
-    else at -= std::min<uint64_t>(at_ - start, at); // more only in a packet that is damaged
+    if (start >= at_) at += start - at_; // earlier records match
+    else at -= std::min<uint64_t>(at_ - start, at); // exceeded only by a damaged packet
     at_ = start;
 }
 

@@ -14,7 +14,7 @@ using recording::argumentWord;
 
 namespace {
 
-constexpr uint64_t kMostValueBytes = uint64_t{96} << 20; // longer ones are not waited for
+constexpr uint64_t kMostValueBytes = uint64_t{96} << 20; // longer blobs are not buffered
 
 } // namespace
 
@@ -38,7 +38,7 @@ void Holder::add(uint32_t streamId, std::span<const std::byte> payload) {
     recording::RecordWalk walk(payload);
     RecordView r;
     constexpr size_t kNone = SIZE_MAX;
-    size_t valueFrom = stream.values > 0 ? 0 : kNone; // where the pieces of the value begin that are in this packet
+    size_t valueFrom = stream.values > 0 ? 0 : kNone; // start of the blob's pieces in this packet
     while (true) {
         const bool looksAtState = leavesOutSmall_ || stream.list != 0;
         if (valueFrom == kNone && stream.same.now == SameFrames::Now::Following) passSame(stream, walk, payload);
@@ -83,8 +83,8 @@ void Holder::add(uint32_t streamId, std::span<const std::byte> payload) {
     output.finish(walk.whole());
 }
 
-// On over what need not be looked at. Of most programs that is nearly all but what they bind, which is followed on the way, and draws, of which most need
-// nothing that waits.
+// Skips records of no interest. In most programs these are nearly all records but bindings, which are followed here,
+// and draws, most of which need nothing deferred.
 void Holder::passOthers(Stream& stream, Output& output, recording::RecordWalk& walk, const Packet& packet, bool looksAtState) {
     using Walk = CommandKinds::Walk;
     const bool isUntracked = stream.context != nullptr && stream.context->group->untracked;
@@ -96,7 +96,7 @@ void Holder::passOthers(Stream& stream, Output& output, recording::RecordWalk& w
         if (stream.context->group->untracked) return false;
         const CommandKind& kind = kinds_[r.opcode];
         Group& group = *stream.context->group;
-        if (kind.about != CommandClass::Bind) // it draws, or a list does
+        if (kind.about != CommandClass::Bind) // a draw, or a display list that may draw
             return (group.held.empty() || !stream.context->needs) && (kind.about == CommandClass::Use || !group.listsBind);
         At at{stream, *stream.context, group, output, r, kind, r.offset, packet};
         bind(at);
@@ -104,7 +104,7 @@ void Holder::passOthers(Stream& stream, Output& output, recording::RecordWalk& w
     });
 }
 
-// The packet ends before the record that takes the value: whether that can be held is not known yet.
+// The packet ends within a blob, before its record: whether it can be deferred is still unknown.
 void Holder::keepPending(Stream& stream, Output& output, size_t from, const Packet& packet) {
     Context* const c = stream.context;
     const bool holds = c != nullptr && !c->group->held.empty();
@@ -116,7 +116,7 @@ void Holder::keepPending(Stream& stream, Output& output, size_t from, const Pack
         pendingBytes_ += rest.size();
         return output.leaveOut(from, packet.size());
     }
-    // From here on nothing can go before the record: values are taken in the order in which they came.
+    // Nothing can be inserted before the record from here on, because blobs are consumed in order.
     if (holds && !stream.inPrimitive) releaseGroup(stream, output, from);
     sendPending(stream, output, from);
     stream.passing = true;
@@ -144,11 +144,11 @@ void Holder::gl(At& at) {
     if (stream.list != 0 && kind != CommandClass::List) return compiled(at);
     if (stream.inPrimitive && kind != CommandClass::List) {
         if (kind == CommandClass::End) stream.inPrimitive = false;
-        return; // all else is an error
+        return; // everything else is an error
     }
     switch (kind) {
     case CommandClass::Begin:
-        // One that is refused for its framebuffer begins nothing.
+        // glBegin with an incomplete framebuffer starts no primitive.
         if (at.context.drawFramebuffer != 0 || at.group.listsBind) releaseGroup(stream, at.output, at.from);
         use(at);
         stream.inPrimitive = argumentWord(at.r, 0) <= 0xE;
@@ -169,7 +169,7 @@ void Holder::gl(At& at) {
     }
 }
 
-// Nothing can go between these and the draw that takes them: so what that uses goes before.
+// Nothing can be inserted between these records and their draw, so its inputs are flushed before.
 void Holder::arrays(At& at) {
     if (at.group.held.empty()) return;
     recording::RecordWalk behind(at.packet.subspan(at.r.offset + at.r.sizeBytes));
@@ -211,24 +211,24 @@ void Holder::own(Stream& stream, Output& output, const RecordView& r, size_t fro
         Object* const program = make(at.group, Kind::Program, argumentWord(r, 0));
         releaseOne(at, *program);
         program->forget();
-        program->target = 1; // it is linked: glUseProgram makes it current
+        program->target = 1; // linked, so glUseProgram makes it current
         return;
     }
     case wire::kOpCreateImage:
-    case wire::kOpDestroyImage: // images share what objects hold
+    case wire::kOpDestroyImage: // images share the contents of objects
         for (auto& [id, context] : clients_[wire::clientOf(stream.id)]) {
             releaseOf(*context->group, stream, output, from);
             context->group->untracked = true;
         }
         return;
-    default: return; // windows, questions whose answers are pictures or counts
+    default: return; // windows, and requests for pictures or counts
     }
 }
 
 void Holder::createContext(Stream& stream, const RecordView& r) {
     auto& contexts = clients_[wire::clientOf(stream.id)];
     const uint32_t id = argumentWord(r, 0);
-    if (id == 0 || contexts.contains(id)) return; // an error: the node's stays
+    if (id == 0 || contexts.contains(id)) return; // an error; the node keeps its context
     auto context = std::make_unique<Context>();
     context->id = id;
     context->arraysNamed.set(0, context->array);
@@ -237,7 +237,8 @@ void Holder::createContext(Stream& stream, const RecordView& r) {
     context->group = sharer == contexts.end() ? std::make_shared<Group>() : sharer->second->group;
     const uint32_t profile = argumentWord(r, 5), flags = argumentWord(r, 6);
     context->madeByBinding = !(profile & GL_CONTEXT_CORE_PROFILE_BIT);
-    if (flags & GL_CONTEXT_FLAG_DEBUG_BIT) context->group->untracked = true; // the program hears of each command when its driver speaks
+    // driver messages refer to the current command
+    if (flags & GL_CONTEXT_FLAG_DEBUG_BIT) context->group->untracked = true;
     contexts.emplace(id, std::move(context));
 }
 
@@ -250,7 +251,8 @@ void Holder::makeCurrent(Stream& stream, Output& output, const RecordView& r, si
     if (next == stream.context) return;
     if (stream.context != nullptr) releaseOf(*stream.context->group, stream, output, from);
     if (next != nullptr) leaveSameOf(*next->group);
-    if (next != nullptr) releaseOf(*next->group, stream, output, from); // another thread's, or another context's of the group
+    // another thread's context, or another one of the group
+    if (next != nullptr) releaseOf(*next->group, stream, output, from);
     Context* const before = std::exchange(stream.context, next);
     if (before != nullptr && before->destroyed) dropDestroyed(wire::clientOf(stream.id), before);
 }
@@ -267,7 +269,7 @@ void Holder::destroyContext(Stream& stream, Output& output, const RecordView& r,
 
 void Holder::dropDestroyed(uint32_t client, Context* context) {
     for (const auto& [id, stream] : streams_)
-        if (stream.context == context) return; // it lives until another is current
+        if (stream.context == context) return; // a current context lives until it is released
     for (auto& [id, stream] : streams_)
         if (stream.same.context == context) stream.same = {};
     clients_[client].erase(context->id);

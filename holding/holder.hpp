@@ -1,13 +1,16 @@
-// Holds back what nobody needs yet: uploads of textures, of buffers and to uniforms, until a record comes that may use them. What a
-// later one replaces before that is not sent, nor what changes nothing.
+// Command filter: defers texture, buffer and uniform uploads until the first command that may read them. Drops uploads
+// that are overwritten before that, and uploads that do not change the contents.
 //
-// An upload waits in the queue of its object, with all that is done to the object behind it; small state, where that is wanted, by what it
-// sets; nothing else is put off. An upload goes out
-// before the first record that may use the object: a draw with it bound, a command of which that is not known, any record of
-// another context that shares it. There it is bound for it, and what was bound is bound again. What the program does is followed as far
-// as bindings go; a command that recording/kept has no rule for ends holding in its share group.
+// Each object has a queue of deferred commands: its uploads and the later commands on the same object. Optionally,
+// redundant state setters are deferred per state cell. The queue is flushed before the first command that may read the
+// object, which is
+// - a draw while the object is bound,
+// - a command whose reads are unknown,
+// - any command of another context of the share group.
+// A flush binds the object, sends the queue, and restores the previous binding. The filter follows bindings only. A
+// command without an effect rule (recording/kept) disables deferral for its share group.
 //
-// Calls are taken to be valid where they bind something; an upload that is refused is refused wherever it stands.
+// Assumption: calls that bind something are valid. A rejected upload is rejected at any position.
 #pragma once
 
 #include <map>
@@ -24,40 +27,41 @@ namespace mural::holding {
 
 struct HolderCounts {
     uint64_t inBytes = 0, outBytes = 0;
-    uint64_t heldRecords = 0;    // that ever were
-    uint64_t leftOutRecords = 0; // those that were replaced, changed nothing, or went with their object
+    uint64_t heldRecords = 0; // total deferred
+    uint64_t leftOutRecords = 0; // dropped: overwritten, redundant, or deleted with their object
     uint64_t leftOutBytes = 0;
-    uint64_t heldBytes = 0;      // now
-    uint64_t alikeRecords = 0;   // that were as in the frame before, and not followed
+    uint64_t heldBytes = 0; // currently deferred
+    uint64_t alikeRecords = 0; // equal to the previous frame, and therefore not followed
 };
 
-// One thread at a time.
+// Not thread-safe.
 class Holder {
 public:
-    // mostBytes: of what is held; beyond that it is sent.
+    // mostBytes: limit of deferred data; above it the oldest is flushed.
     Holder(uint64_t mostBytes, Take take);
     Holder(const Holder&) = delete;
     Holder& operator=(const Holder&) = delete;
 
     void add(uint32_t stream, std::span<const std::byte> payload);
-    void releaseAll();               // all that is held is sent now
-    void clientGone(uint32_t client); // nobody needs it any more
-    // Whether small state, bindings and uniforms go only where they change something; between two packets. At first all of it goes.
+    void releaseAll(); // flushes everything
+    void clientGone(uint32_t client); // drops everything of the program
+    // Sets whether redundant state setters, bindings and uniforms are dropped. Initially off. Call between packets.
     void leaveOutSmall(bool leavesOut);
-    void losesWhatItHolds() { loses_ = true; } // a fault on purpose, for tests of the tests
+    void losesWhatItHolds() { loses_ = true; } // fault injection
     [[nodiscard]] const HolderCounts& counts() const { return counts_; }
 
 private:
     using RecordView = recording::RecordView;
-    using Packet = std::span<const std::byte>; // by reference: one on the stack that is read whole waits for its halves, for each record
-    struct At { // a record
+    // passed by reference: copying the span would stall on store forwarding per record
+    using Packet = std::span<const std::byte>;
+    struct At { // context of one record
         Stream& stream;
         Context& context;
         Group& group;
         Output& output;
         const RecordView& r;
         const CommandKind& kind;
-        size_t from; // in the packet: of the first piece of its value, or of the record
+        size_t from; // position in the packet of the record, or of the first piece of its blob
         const Packet& packet;
     };
 
@@ -70,7 +74,7 @@ private:
     void gl(At& at);
     void arrays(At& at);
 
-    // Frames like the one before
+    // Frames that repeat the previous one.
     [[nodiscard]] bool mayRepeat(const Stream& stream) const;
     [[nodiscard]] bool repeats(const Stream& stream) const;
     void passSame(Stream& stream, recording::RecordWalk& walk, const Packet& packet);
@@ -83,7 +87,7 @@ private:
     void keepRecords(Stream& stream, const Packet& packet);
     void endSame(Stream& stream, const Packet& packet);
 
-    // Small state
+    // Redundant state.
     bool smallState(Stream& stream, Output& output, const RecordView& r, StateRole role, size_t from, const Packet& packet);
     void countFate(const Outcome& outcome, size_t sizeBytes);
     [[nodiscard]] bool setsNothing(const Group& group, uint32_t list) const;
@@ -96,16 +100,16 @@ private:
         countLeftOut(cells.waitingRecords(), cells.waitingBytes());
     }
 
-    // Mural's records
+    // Control records.
     void own(Stream& stream, Output& output, const RecordView& r, size_t from);
     void createContext(Stream& stream, const RecordView& r);
     void makeCurrent(Stream& stream, Output& output, const RecordView& r, size_t from);
     void destroyContext(Stream& stream, Output& output, const RecordView& r, size_t from);
     void dropDestroyed(uint32_t client, Context* context);
 
-    // What is bound
+    // Bindings.
     void bind(At& at);
-    void boundAlready(At& at); // the record changes nothing
+    void boundAlready(At& at); // drops the record if it changes nothing
     void bindTexture(At& at, uint32_t target, uint32_t unit, Object* object);
     void bindBuffer(At& at, uint32_t target, uint32_t name);
     void bindIndexed(At& at);
@@ -119,20 +123,21 @@ private:
     void pushClientAttribs(At& at);
     void popClientAttribs(At& at);
 
-    // Objects
+    // Objects.
     Object* find(Group& group, Kind kind, uint32_t name) const;
     Object* make(Group& group, Kind kind, uint32_t name);
-    Object* named(At& at, Kind kind, uint32_t name); // null: 0, or an unknown one, which ends holding
+    // null for name 0, and for an unknown name, which disables deferral
+    Object* named(At& at, Kind kind, uint32_t name);
     Object* textureAt(At& at, uint32_t target);
     Object* bufferAt(const Context& c, uint32_t target) const;
     void generate(At& at);
     static VertexArray* makeArray(Context& c, uint32_t name);
     void deleteNames(At& at);
     void deleteObject(At& at, Object* object);
-    void openUp(At& at, Object* object); // nothing of it is held from now on
+    void openUp(At& at, Object* object); // excludes the object from deferral
     void openNamed(At& at, Kind kind, size_t word);
 
-    // Uploads
+    // Uploads.
     void upload(At& at);
     Object* objectOf(At& at);
     void hold(At& at, Object& object, const Upload* upload, bool barrier);
@@ -145,7 +150,7 @@ private:
     void list(At& at);
     void compiled(At& at);
 
-    // Releasing: before the byte `from` of the output's packet
+    // Flushing: inserts records before byte `from` of the output's packet.
     void use(At& at);
     enum class Because : uint8_t { Needed, NoRoom };
     void release(Stream& stream, Output& output, size_t from, std::span<Object* const> objects, Because because = Because::Needed);
@@ -162,23 +167,23 @@ private:
 
     const CommandKinds& kinds_ = CommandKinds::all();
     const uint64_t mostBytes_;
-    const Take take_; // counts what goes
+    const Take take_; // also counts the sent records
     std::unordered_map<uint32_t, Stream> streams_;
     std::map<uint32_t, std::map<uint32_t, std::unique_ptr<Context>>> clients_;
     std::vector<std::byte> scratch_, otherScratch_;
-    std::vector<Object*> used_; // by the draw
-    std::vector<uint32_t> names_; // of the record in hand
+    std::vector<Object*> used_; // objects that the draw uses
+    std::vector<uint32_t> names_; // names in the current record
     uint64_t pendingBytes_ = 0;
     bool leavesOutSmall_ = false;
     bool loses_ = false;
     HolderCounts counts_;
 };
 
-// Of a record's arguments, at that word: names that lie in the record; false: they travel ahead of it.
+// Reads names from the record's arguments at that word. Returns false if they travel as a blob.
 bool namesAt(const recording::RecordView& r, size_t word, std::vector<uint32_t>& names);
-// By which TextureUnit is counted; kTextureTargets: unknown. Faces of a cube are the cube.
+// Index into TextureUnit; kTextureTargets: unknown. Faces of a cube map to the cube.
 size_t targetIndex(uint32_t target);
-// While it is enabled the program hears of each command when its driver speaks.
+// Returns true for capabilities that enable driver messages per command.
 bool hearsDriver(uint32_t cap);
 
 } // namespace mural::holding

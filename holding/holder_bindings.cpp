@@ -1,4 +1,4 @@
-// What is bound: as much of the program's state as says which objects its commands are about.
+// Bindings of the command filter: the state that determines the objects that commands refer to.
 #include <GL/gl.h>
 #include <GL/glext.h>
 #include <algorithm>
@@ -22,7 +22,7 @@ bool needs(const VertexArray& array) {
 
 constexpr size_t kMostUnits = 256, kMostSaved = 16, kMostArrayBuffers = 256;
 
-// Targets at which a draw takes nothing from a buffer, and nothing else writes it.
+// Targets that no draw reads or writes.
 bool onlyForUploads(uint32_t target) { return target == GL_ARRAY_BUFFER || target == GL_COPY_READ_BUFFER || target == GL_COPY_WRITE_BUFFER || target == GL_UNIFORM_BUFFER || target == GL_TEXTURE_BUFFER; }
 
 } // namespace
@@ -45,7 +45,7 @@ size_t targetIndex(uint32_t target) {
     }
 }
 
-// Not in a group of several: there binding again is what shows what another context has changed.
+// Not in a group of several contexts: there, binding again makes changes by other contexts visible.
 void Holder::boundAlready(At& at) {
     if (!leavesOutSmall_ || at.context.group.use_count() > 1 || at.stream.values > 0) return;
     countLeftOut(1, at.r.sizeBytes);
@@ -83,7 +83,7 @@ void Holder::bind(At& at) {
     case Binding::Program: return useProgram(at, first);
     case Binding::Pointer: return arrayPointer(at);
     case Binding::Indexed: return bindIndexed(at);
-    case Binding::Cap: // nodes tell what their drivers say, as it happens
+    case Binding::Cap: // nodes forward driver messages as they occur
         return hearsDriver(first) ? untrack(at) : void();
     case Binding::ArrayBuffers: return arrayBuffers(at);
     case Binding::PushAttribs: return pushAttribs(at);
@@ -92,13 +92,14 @@ void Holder::bind(At& at) {
     case Binding::PopClientAttribs: return popClientAttribs(at);
     case Binding::Generate: return generate(at);
     case Binding::Delete: return deleteNames(at);
-    case Binding::Attach: { // a picture from now on
+    case Binding::Attach: { // the object is a render target from now on
         const bool texture = r.opcode != op::glFramebufferRenderbuffer;
         const bool layer = r.opcode == op::glFramebufferTextureLayer || r.opcode == op::glFramebufferTexture;
         return texture ? openNamed(at, Kind::Texture, layer ? 2 : 3) : void();
     }
     case Binding::AttachNamed:
-        for (size_t word = 1; word < 4; ++word) openNamed(at, Kind::Texture, word); // whichever of them is a name
+        // any of these words may be the name
+        for (size_t word = 1; word < 4; ++word) openNamed(at, Kind::Texture, word);
         return;
     case Binding::Pipeline: {
         const uint32_t program = argumentWord(r, r.opcode == op::glUseProgramStages ? 2 : 1);
@@ -120,7 +121,7 @@ void Holder::bindVertexArray(At& at, uint32_t name) {
     c.needs = c.needs || needs(*c.array);
 }
 
-// Who holds these buffers is not followed.
+// Holders of these buffers are not tracked.
 void Holder::arrayBuffers(At& at) {
     const RecordView& r = at.r;
     if (r.opcode == op::glVertexArrayElementBuffer) return openNamed(at, Kind::Buffer, 1);
@@ -136,7 +137,7 @@ void Holder::bindTexture(At& at, uint32_t target, uint32_t unit, Object* object)
     if (index == kTextureTargets || unit >= kMostUnits) return untrack(at);
     if (object != nullptr) {
         if (object->target == 0) object->target = target;
-        if (object->target != target) return untrack(at); // an error, which binds nothing
+        if (object->target != target) return untrack(at); // an error: binds nothing
     }
     if (unit >= c.units.size()) c.units.resize(unit + 1);
     c.units[unit][index] = object;
@@ -149,11 +150,11 @@ void Holder::bindIndexed(At& at) {
     case op::glBindTextureUnit: {
         Object* const object = named(at, Kind::Texture, second);
         if (at.group.untracked) return;
-        if (object == nullptr || object->target == 0) return untrack(at); // 0: of all targets
+        if (object == nullptr || object->target == 0) return untrack(at); // 0: all targets
         return bindTexture(at, object->target, first, object);
     }
     case op::glBindBufferBase:
-    case op::glBindBufferRange: // shaders take it from there, or write it
+    case op::glBindBufferRange: // shaders may read or write it there
         openNamed(at, Kind::Buffer, 2);
         return at.group.untracked ? void() : bindBuffer(at, first, argumentWord(at.r, 2));
     case op::glBindImageTexture: return openNamed(at, Kind::Texture, 1);
@@ -179,7 +180,7 @@ void Holder::bindBuffer(At& at, uint32_t target, uint32_t name) {
     c.buffers.emplace_back(target, object);
 }
 
-// A program that was not linked, as far as is known, may be refused: then the one before stays.
+// A program without a known successful link may be rejected; then the previous one stays current.
 void Holder::useProgram(At& at, uint32_t name) {
     Context& c = at.context;
     Object* const object = name == 0 ? nullptr : make(at.group, Kind::Program, name);
@@ -235,7 +236,7 @@ void Holder::popAttribs(At& at) {
     SavedAttribs saved = std::move(c.attribs.back());
     c.attribs.pop_back();
     if (!saved.textures) return;
-    // Units that there were not had nothing bound; parameters of textures come back with them, which are not of their images.
+    // New units had nothing bound. glPopAttrib also restores texture parameters, which are not part of the images.
     saved.units.resize(std::max(saved.units.size(), c.units.size()));
     c.units = std::move(saved.units);
     c.unit = saved.unit;

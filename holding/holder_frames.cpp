@@ -1,9 +1,10 @@
-// Frames that bind what the one before did: nothing of them is followed.
+// Frame matching: a frame that binds the same objects as the previous one is not followed record by record.
 //
-// What a record does to what is bound depends on nothing but its bytes, what is bound, and which objects there are. A frame is kept
-// (FrameLayout) that left bound what it had begun with, but for textures. While the next one has the same records, those that bind with all
-// their bytes, it leaves that, too; where it has another one, those before it are followed at once. What waited all through the frame that
-// was kept goes on waiting: the same draws need it no more than they did.
+// The effect of a record on bindings depends only on its bytes, the current bindings, and the existing objects. A
+// template (FrameLayout) is kept of a frame that ends with the bindings it began with, except for textures. A next
+// frame with the same records, and equal bytes of those that bind, ends with the same bindings. At a different record,
+// the records before it are followed at once. Commands deferred throughout the template frame stay deferred: the same
+// draws need them no more than before.
 #include "gl_opcodes.hpp"
 #include "holding/holder.hpp"
 #include "streamcodec/wire.hpp"
@@ -12,10 +13,10 @@ namespace mural::holding {
 
 namespace {
 
-constexpr size_t kMostCompared = 1024; // vertex arrays, and what they have bound: they are compared, or copied, once for a frame
+constexpr size_t kMostCompared = 1024; // vertex arrays and their bindings, which are compared or copied once per frame
 constexpr double kLike = 0.9, kUnlike = 0.5;
-constexpr size_t kWorthAMark = 64;   // records that would be followed each time
-constexpr uint32_t kMarkFrames = 16; // between two of them
+constexpr size_t kWorthAMark = 64; // records that would be followed in every frame
+constexpr uint32_t kMarkFrames = 16; // frames between two marks
 
 bool fewEnough(const Bindings& b) {
     size_t count = b.units.size() * kTextureTargets + b.arrays.size();
@@ -25,7 +26,8 @@ bool fewEnough(const Bindings& b) {
 
 using Textures = std::vector<TextureUnit>;
 
-// Whether a frame, or a part of one, that took `begins` to `after`, takes `now` to it, too: what it has changed it has bound itself.
+// Returns true if a frame, or a part of one, that leads from `begins` to `after` leads from `now` to `after` too: it
+// binds everything that it changes.
 bool leadsTo(const Textures& now, const Textures& begins, const Textures& after) {
     if (now == begins) return true;
     if (now.size() != begins.size() || now.size() != after.size()) return false;
@@ -35,7 +37,8 @@ bool leadsTo(const Textures& now, const Textures& begins, const Textures& after)
     return true;
 }
 
-// Of textures that are bound otherwise than they were. Draws in front of where the frame binds others may need it.
+// Returns true if a texture with deferred uploads is bound differently. Draws before the frame binds others may need
+// it.
 bool othersWait(const Textures& now, const Textures& begins) {
     for (size_t unit = 0; unit < now.size(); ++unit)
         for (size_t i = 0; i < kTextureTargets; ++i)
@@ -43,7 +46,7 @@ bool othersWait(const Textures& now, const Textures& begins) {
     return false;
 }
 
-// Whether a frame may begin with that and be taken for the one that was kept.
+// Returns true if a frame that begins with these bindings can match the template.
 bool mayBegin(const SameFrames& same, const Bindings& now) {
     return now.equalButTextures(same.begins) && leadsTo(now.units, same.begins.units, same.ends.units) && !othersWait(now.units, same.begins.units);
 }
@@ -52,13 +55,13 @@ bool nothingSaved(const Context& c) { return c.attribs.empty() && c.clientAttrib
 
 } // namespace
 
-// Whether what this stream says next can be taken for what it said before.
+// Returns true if the next records of this stream can match the template.
 bool Holder::mayRepeat(const Stream& stream) const {
     const Context* const c = stream.context;
     return !leavesOutSmall_ && c != nullptr && c->group.use_count() == 1 && !c->group->untracked && stream.list == 0;
 }
 
-// Whether it is still what the frame is about that was kept, or is.
+// Returns true if the template is still valid for this context.
 bool Holder::repeats(const Stream& stream) const {
     const SameFrames& same = stream.same;
     if (!mayRepeat(stream) || stream.context != same.context) return false;
@@ -66,7 +69,7 @@ bool Holder::repeats(const Stream& stream) const {
     return group.heldChanges == same.heldChanges && group.objectChanges == same.objectChanges;
 }
 
-// On over what is like the frame before.
+// Skips records that match the template.
 void Holder::passSame(Stream& stream, recording::RecordWalk& walk, const Packet& packet) {
     size_t at = walk.at();
     Walked walked;
@@ -76,7 +79,7 @@ void Holder::passSame(Stream& stream, recording::RecordWalk& walk, const Packet&
     if (stop == FrameLayout::Stop::Differs || stop == FrameLayout::Stop::End) leaveSame(stream);
 }
 
-// A record that passSame() has not passed comes.
+// Handles a record that passSame() did not skip.
 void Holder::seeSame(Stream& stream, const RecordView& r, const CommandKind& kind) {
     if (!stream.same.layout.passSeen(r.opcode)) return leaveSame(stream);
     if (kind.frame != FrameRole::Seen) followSame(stream);
@@ -92,7 +95,7 @@ void Holder::followSameTo(Stream& stream, size_t to) {
     nothing.finish();
 }
 
-// All that was passed is followed: from the mark on, where that was passed.
+// Follows all skipped records, from the mark on if it was passed.
 void Holder::followSame(Stream& stream) {
     SameFrames& same = stream.same;
     const size_t passed = same.layout.passed();
@@ -102,7 +105,7 @@ void Holder::followSame(Stream& stream) {
         stream.inPrimitive = mark.inPrimitive;
         same.layout.followFrom(mark.followed);
     }
-    // The next frame may have another record a little earlier than this one.
+    // The next frame may differ a little earlier.
     const size_t marked = passed - passed / 16;
     if (marked >= same.layout.followed() + kWorthAMark && (mark.followed == 0 || same.frames - mark.frame >= kMarkFrames)) {
         followSameTo(stream, marked);
@@ -111,13 +114,13 @@ void Holder::followSame(Stream& stream) {
     followSameTo(stream, passed);
 }
 
-// From here on each record is followed again.
+// Returns to following each record.
 void Holder::leaveSame(Stream& stream) {
     SameFrames& same = stream.same;
     if (same.now != SameFrames::Now::Following) return;
     followSame(stream);
     same.now = SameFrames::Now::Apart;
-    if (stream.context != nullptr) stream.context->needs = true; // draws were not looked at
+    if (stream.context != nullptr) stream.context->needs = true; // skipped draws were not examined
 }
 
 void Holder::leaveSameOf(const Group& group) {
@@ -125,13 +128,13 @@ void Holder::leaveSameOf(const Group& group) {
         if (stream.context != nullptr && stream.context->group.get() == &group) leaveSame(stream);
 }
 
-// Behind a record that has been looked at.
+// Called after an examined record.
 void Holder::keepSame(Stream& stream, const RecordView& r, const Packet& packet) {
     if (stream.same.now == SameFrames::Now::Following && !repeats(stream)) leaveSame(stream);
     if (r.opcode == wire::kOpSwap || r.opcode == wire::kOpFrontPicture) endSame(stream, packet.first(r.offset + r.sizeBytes));
 }
 
-// Records of the frame that is kept, from where the last ones ended. They have been followed.
+// Appends records to the template that is being built. They have been followed.
 void Holder::keepRecords(Stream& stream, const Packet& packet) {
     SameFrames& same = stream.same;
     recording::RecordWalk walk(packet.subspan(same.keptBytes));
@@ -151,7 +154,7 @@ void Holder::keepRecords(Stream& stream, const Packet& packet) {
     same.layout.clear();
 }
 
-// The frame ends, with the packet.
+// The frame ends with this packet.
 void Holder::endSame(Stream& stream, const Packet& packet) {
     using Now = SameFrames::Now;
     SameFrames& same = stream.same;
@@ -176,14 +179,14 @@ void Holder::endSame(Stream& stream, const Packet& packet) {
     const double share = same.layout.share();
     ++same.frames;
     same.shares += share;
-    if (group.held.empty()) same.heldChanges = group.heldChanges; // nothing waits that a draw could need
+    if (group.held.empty()) same.heldChanges = group.heldChanges; // no draw can need anything deferred
     const bool isLike = same.now == Now::Following || (!same.layout.empty() && repeats(stream) && (share >= kLike || same.frames < same.wait));
     const bool goesOn = isLike && mayBegin(same, bound);
     same.now = goesOn ? Now::Following : Now::Apart;
     if (goesOn) same.began = bound.units;
     same.layout.begin();
     if (goesOn || same.frames < same.wait) return;
-    // Kept anew; seldom, where that did not help before.
+    // Builds a new template; at growing intervals if templates did not match before.
     same.wait = same.shares >= kUnlike * same.frames ? SameFrames::kFirst : std::min(same.wait * 2, SameFrames::kMost);
     same.now = Now::Recording;
     same.keptBytes = packet.size();

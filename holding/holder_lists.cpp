@@ -1,4 +1,4 @@
-// Display lists: while one is compiled nothing is held, and one that binds something ends holding when it is called.
+// Display lists: nothing is deferred during compilation, and calling a list that binds something disables deferral.
 #include <GL/gl.h>
 #include <GL/glext.h>
 
@@ -41,12 +41,12 @@ void Holder::list(At& at) {
         const auto found = at.group.lists.find(first);
         if (found != at.group.lists.end()) binds = found->second.binds, calls = found->second.calls;
     }
-    if (calls) binds = at.group.listsBind; // which ones is not followed
+    if (calls) binds = at.group.listsBind; // the called lists are not tracked
     if (binds) return untrack(at);
     if (!stream.inPrimitive) use(at);
 }
 
-// A command while a list is compiled: done later, or now.
+// Handles a command during list compilation: part of the list, or executed immediately.
 void Holder::compiled(At& at) {
     switch (at.kind.about) {
     case CommandClass::Begin: ++at.stream.depth; return;
@@ -55,17 +55,17 @@ void Holder::compiled(At& at) {
     case CommandClass::Arrays: return;
     case CommandClass::Bind: break;
     case CommandClass::Unknown:
-        if (at.kind.family == Family::Handle) return untrack(at); // lists hold none: it is dealt now
+        if (at.kind.family == Family::Handle) return untrack(at); // not part of lists: executed immediately
         at.stream.compiled.binds = true;
         return;
     case CommandClass::Upload:
-    case CommandClass::Object: // those of buffers are no part of lists
+    case CommandClass::Object: // buffer commands are not part of lists
         if (Object* const object = objectOf(at); object != nullptr && object->kind == Kind::Buffer) return object->known.clear();
         [[fallthrough]];
     default: at.stream.compiled.binds = true; return;
     }
     switch (at.kind.family) {
-    case Family::Gen: // these are no part of lists
+    case Family::Gen: // not part of lists
     case Family::Create:
     case Family::Delete:
     case Family::ProgramDelete:

@@ -1,4 +1,4 @@
-// Objects: which there are, and who has them.
+// Objects of the command filter: creation, deletion and holders.
 #include <GL/gl.h>
 #include <GL/glext.h>
 #include <algorithm>
@@ -46,11 +46,11 @@ Object* Holder::named(At& at, Kind kind, uint32_t name) {
     Object* const object = find(at.group, kind, name);
     if (object != nullptr) return object;
     if (at.context.madeByBinding) return make(at.group, kind, name);
-    untrack(at); // an error, or something was missed
+    untrack(at); // an error, or an untracked change
     return nullptr;
 }
 
-// Of those without a name nothing is held.
+// Uploads to textures without a name are not deferred.
 Object* Holder::textureAt(At& at, uint32_t target) {
     const size_t index = targetIndex(target);
     return index == kTextureTargets ? nullptr : at.context.units[at.context.unit][index];
@@ -71,7 +71,7 @@ VertexArray* Holder::makeArray(Context& c, uint32_t name) {
         node.key() = name;
         node.mapped().buffers.clear();
         node.mapped().indices = nullptr;
-        c.arrays.insert(std::move(node)); // or one of that name is there
+        c.arrays.insert(std::move(node)); // unless that name exists
     }
     VertexArray* const array = &c.arrays[name];
     c.arraysNamed.set(name, array);
@@ -100,7 +100,7 @@ void Holder::generate(At& at) {
             continue;
         }
         const Kind kind = type == ObjectType::Texture ? Kind::Texture : Kind::Buffer;
-        if (find(at.group, kind, name) != nullptr) return untrack(at); // GL gives no name twice
+        if (find(at.group, kind, name) != nullptr) return untrack(at); // GL never returns a name twice
         Object* const object = make(at.group, kind, name);
         if (r.opcode == op::glCreateTextures) object->target = argumentWord(r, 0);
     }
@@ -111,7 +111,7 @@ void Holder::deleteNames(At& at) {
     const recording::Rule& rule = recording::ruleOf(r.opcode);
     Context& c = at.context;
     if (rule.family == recording::Family::ProgramDelete) {
-        // It lives as long as it is current somewhere.
+        // A program lives while it is current anywhere.
         Object* const program = find(at.group, Kind::Program, argumentWord(r, 0));
         return program != nullptr ? releaseOne(at, *program) : void();
     }
@@ -137,7 +137,7 @@ void Holder::deleteNames(At& at) {
 
 void Holder::deleteObject(At& at, Object* object) {
     Context& c = at.context;
-    // What is bound elsewhere lives on without its name: then nobody here can bind it again.
+    // An object bound elsewhere outlives its name, and can then no longer be bound here.
     bool elsewhere = !c.attribs.empty() || !c.clientAttribs.empty();
     for (const auto& [id, other] : clients_[wire::clientOf(at.stream.id)]) {
         if (other.get() == &c || other->group.get() != &at.group) continue;
@@ -150,7 +150,7 @@ void Holder::deleteObject(At& at, Object* object) {
     for (TextureUnit& unit : c.units) std::ranges::replace(unit, object, nullptr);
     for (auto& [target, there] : c.buffers)
         if (there == object) there = nullptr;
-    bool inArrays = false; // vertex arrays that are not bound keep it
+    bool inArrays = false; // unbound vertex arrays keep it alive
     for (auto& [name, array] : c.arrays) {
         const bool current = &array == c.array;
         if (array.indices == object) array.indices = nullptr, inArrays = inArrays || !current;

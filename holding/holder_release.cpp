@@ -1,4 +1,5 @@
-// Sending what was held: before the record that may use it, bound as it was meant to be, and what is bound now bound again.
+// Flushing: sends deferred commands before the command that may read them, with their original binding, and restores
+// the current binding.
 #include <GL/gl.h>
 #include <GL/glext.h>
 #include <algorithm>
@@ -20,21 +21,21 @@ void put(Output& output, size_t from, uint16_t opcode, const std::array<uint32_t
     output.insert(from, std::as_bytes(std::span(record)));
 }
 
-// What is needed so soon might as well be on its way: programs fill buffers before they show a frame, and draw behind that.
+// Uploads needed within this number of frames are not deferred: programs fill buffers before a swap and draw after it.
 constexpr uint64_t kSoonFrames = 1;
 
 uint32_t nameOf(const Object* object) { return object == nullptr ? 0 : object->name; }
 
 } // namespace
 
-// Whether to hold what has not been held yet.
+// Decides whether to defer the first upload of an object.
 bool Holder::mayWait(Group& group, Object& object) {
     if (!object.holding.tries()) return false;
     const bool othersWait = !group.held.empty() && group.frame - group.held.front()->heldSince > kSoonFrames;
     return othersWait || group.soonUsed.tries();
 }
 
-// A draw: of what is held goes what is bound for it.
+// Handles a draw: flushes the deferred objects that are bound for it.
 void Holder::use(At& at) {
     Context& c = at.context;
     if (at.group.held.empty() || !c.needs) return;
@@ -57,7 +58,8 @@ void Holder::releaseOne(At& at, Object& object) {
     if (object.waits()) release(at.stream, at.output, at.from, std::span(&one, 1));
 }
 
-// For so many bytes more: what has waited for longest goes, and some more, so that this is not done for each. False: there is none.
+// Frees room for this number of bytes by flushing the oldest objects, and some more to amortise the search. Returns
+// false if nothing can be flushed.
 bool Holder::makeRoom(Stream& stream, Output& output, size_t from, uint64_t sizeBytes) {
     const auto wants = [&] { return counts_.heldBytes + pendingBytes_ + sizeBytes; };
     if (wants() <= mostBytes_) return true;
@@ -79,14 +81,14 @@ void Holder::releaseGroup(Stream& stream, Output& output, size_t from) {
     release(stream, output, from, all);
 }
 
-// Where it was held: in the stream of its context, between two packets of that.
+// Flushes a group in the stream of its own context, between two of its packets.
 void Holder::releaseOf(Group& group, Stream& stream, Output& output, size_t from) {
     if (group.held.empty()) return;
     Stream& holder = streams_[group.holderStream];
-    // Between glBegin and glEnd of that nothing can be put: then here, if this shares it.
+    // Within glBegin and glEnd of that stream nothing can be inserted: then here, if this stream shares the group.
     const bool here = stream.context != nullptr && stream.context->group.get() == &group;
     if (&holder == &stream || (holder.inPrimitive && here)) return releaseGroup(stream, output, from);
-    if (holder.inPrimitive) return; // still held; nobody who looks at it has come
+    if (holder.inPrimitive) return; // stays deferred: no command of another context has come
     Output other(holder.id, {}, otherScratch_, take_);
     releaseGroup(holder, other, 0);
     other.finish();
@@ -110,7 +112,7 @@ void Holder::releaseAll() {
         }
 }
 
-// Nobody needs it.
+// Drops the queue.
 void Holder::dropQueue(Group& group, Object& object) {
     for (const Item& item : object.queue) countLeftOut(item.records, item.bytes.size());
     dropWaiting(object.uniforms);
@@ -118,7 +120,7 @@ void Holder::dropQueue(Group& group, Object& object) {
     emptyQueue(group, object);
 }
 
-// What waited has been sent, or goes nowhere.
+// Removes the queue after it was sent or dropped.
 void Holder::emptyQueue(Group& group, Object& object) {
     ++group.heldChanges;
     counts_.heldBytes -= object.heldBytes;
@@ -160,7 +162,7 @@ void Holder::sendQueue(Context& c, Output& output, size_t from, Object& object) 
             if (bound != &object) put<2>(output, from, op::glBindTexture, {target, object.name});
             break;
         case Kind::Buffer:
-            target = GL_ARRAY_BUFFER; // whichever it was: that of indices would be the vertex array's
+            target = GL_ARRAY_BUFFER; // any neutral target: the element array binding would belong to the vertex array
             bound = bufferAt(c, target);
             if (bound != &object) put<2>(output, from, op::glBindBuffer, {target, object.name});
             break;

@@ -1,4 +1,5 @@
-// Small state: what sets it waits for a command that needs it; what is set again before that, or is so already, is not sent.
+// Redundant state: a setter is deferred until a command needs its state. Setters that are overwritten before, or that
+// change nothing, are dropped.
 #include <algorithm>
 #include <iterator>
 
@@ -10,13 +11,13 @@ namespace mural::holding {
 void Holder::leaveOutSmall(bool leavesOut) {
     if (leavesOut == leavesOutSmall_) return;
     for (auto& [id, stream] : streams_) leaveSame(stream);
-    // Between glBegin and glEnd nothing can be put: later, then.
+    // Nothing can be inserted within glBegin and glEnd: postponed.
     if (std::ranges::any_of(streams_, [](const auto& s) { return s.second.inPrimitive; })) return;
     for (auto& [id, stream] : streams_) sendStateOf(stream);
     for (auto& [client, contexts] : clients_)
         for (auto& [id, context] : contexts) {
             sendUniformsOf(*context->group);
-            // What is set meanwhile is not looked at.
+            // Setters are not tracked in the meantime.
             context->state.forgetAll();
             context->program = nullptr;
             context->programSure = false;
@@ -25,7 +26,7 @@ void Holder::leaveOutSmall(bool leavesOut) {
     leavesOutSmall_ = leavesOut;
 }
 
-// Between two packets of the stream that has them.
+// Called between two packets of the stream that owns the uniforms.
 void Holder::sendUniformsOf(Group& group) {
     std::vector<Object*> programs;
     std::ranges::copy_if(group.held, std::back_inserter(programs), [](const Object* o) { return o->kind == Kind::Program; });
@@ -36,16 +37,16 @@ void Holder::sendUniformsOf(Group& group) {
     other.finish();
 }
 
-// Whether the record is dealt with: it waits, or nobody needs it.
+// Returns true if the record is handled: deferred or dropped.
 bool Holder::smallState(Stream& stream, Output& output, const RecordView& r, StateRole role, size_t from, const Packet& packet) {
     Context& c = *stream.context;
     const bool sets = role == StateRole::Set, changes = sets || role == StateRole::Change;
-    if (stream.list != 0) { // nothing waits: glNewList has needed it
+    if (stream.list != 0) { // nothing is deferred: glNewList flushed it
         stream.compiled.sets = stream.compiled.sets || changes;
         return false;
     }
-    if (!leavesOutSmall_) return false; // nor does anything wait
-    if (stream.inPrimitive) { // an error, unless glBegin was refused
+    if (!leavesOutSmall_) return false; // then nothing is deferred
+    if (stream.inPrimitive) { // an error, unless glBegin was rejected
         if (changes) c.state.forgetAll();
         return false;
     }
@@ -90,7 +91,7 @@ void Holder::sendState(Stream& stream, Output& output, size_t from) {
     });
 }
 
-// Between two packets of the stream.
+// Called between two packets of the stream.
 void Holder::sendStateOf(Stream& stream) {
     if (stream.context == nullptr || !stream.context->state.waiting()) return;
     Output other(stream.id, {}, otherScratch_, take_);

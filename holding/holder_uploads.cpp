@@ -1,4 +1,4 @@
-// Whether an upload stays behind, and what is done to objects that have some.
+// Uploads: the decision to defer them, and later commands on objects with deferred uploads.
 #include <GL/gl.h>
 #include <GL/glext.h>
 #include <algorithm>
@@ -19,14 +19,15 @@ using recording::Family;
 
 namespace {
 
-// Smaller ones cost more to hold than to send.
+// Smaller uploads cost more to defer than to send.
 constexpr size_t kLeastBytes = 512;
-constexpr size_t kMostItems = 4096;     // of one object
+constexpr size_t kMostItems = 4096; // per object
 constexpr size_t kMostLocations = 1024; // of uniforms
 
-// Samplers take numbers of units only: a larger one may be refused, where the one before it was not.
+// Returns true if no uniform type can reject these values. Samplers accept unit numbers only, so a larger value may be
+// rejected where its predecessor was not.
 bool refusedByNone(const recording::RecordView& r, size_t firstValueWord) {
-    constexpr uint32_t kUnits = 16; // that every GL has
+    constexpr uint32_t kUnits = 16; // minimum that every GL supports
     switch (r.opcode) {
     case op::glUniform1i:
     case op::glUniform1iv:
@@ -39,7 +40,7 @@ bool refusedByNone(const recording::RecordView& r, size_t firstValueWord) {
     return true;
 }
 
-// It sets one whole uniform, at that location, and lies here whole.
+// Returns true if the record sets one whole uniform at that location, with the value inline.
 bool isOneUniform(const recording::RecordView& r, const CommandKind& kind, size_t locationWord) {
     const bool counted = kind.valueWord != kNoValue;
     return argumentWord(r, locationWord) < kMostLocations && r.sizeBytes <= Cells<kUniformWords>::kMostBytes && (!counted || argumentWord(r, locationWord + 1) == 1);
@@ -47,7 +48,7 @@ bool isOneUniform(const recording::RecordView& r, const CommandKind& kind, size_
 
 } // namespace
 
-// The object that an upload, or a command of class Object, is about.
+// Returns the object of an upload, or of a command of class Object.
 Object* Holder::objectOf(At& at) {
     const uint32_t first = argumentWord(at.r, 0);
     if (at.r.opcode == wire::kOpBufferBytes || at.r.opcode == op::glInvalidateBufferData || at.r.opcode == op::glInvalidateBufferSubData) return find(at.group, Kind::Buffer, first);
@@ -69,12 +70,12 @@ Object* Holder::objectOf(At& at) {
 void Holder::upload(At& at) {
     Object* const object = objectOf(at);
     const Family family = at.kind.family;
-    if (object == nullptr || object->open) return; // nothing of it is held, and nothing known
+    if (object == nullptr || object->open) return; // never deferred, contents unknown
     if (at.kind.small && !leavesOutSmall_) return;
     const bool uniform = family == Family::Uniform;
     if (uniform) {
         if (at.stream.values == 0 && isOneUniform(at.r, at.kind, 0)) return oneUniform(at, *object, 0);
-        // Some of an array, which may be any of those.
+        // Elements of an array may be any of these.
         const bool certain = refusedByNone(at.r, at.kind.valueWord + size_t{1});
         if (!certain || object->uniforms.waiting()) releaseOne(at, *object);
         object->uniforms.forgetAll();
@@ -87,8 +88,9 @@ void Holder::upload(At& at) {
     if (uniform && object->queue.empty() && !object->holding.tries()) return;
     const auto u = uploadOf(at.r, blobBytes);
     const bool first = !std::exchange(object->filled, true);
-    const bool inVain = (object->holding.vain() || at.group.soonUsed.vain()) && (object->comparing.vain() || first); // to wait for its value
-    // Of a texture by its name, which face of a cube is written is one of its numbers.
+    // waiting for its blob would be in vain
+    const bool inVain = (object->holding.vain() || at.group.soonUsed.vain()) && (object->comparing.vain() || first);
+    // For a texture addressed by name, the cube face is one of the arguments.
     const bool anyFace = recording::ruleOf(at.r.opcode).type == recording::ObjectType::Texture && object->target == GL_TEXTURE_CUBE_MAP;
     const bool fromBuffer = object->kind == Kind::Texture && bufferAt(at.context, GL_PIXEL_UNPACK_BUFFER) != nullptr;
     if (!u || at.stream.passing || fromBuffer || anyFace || (at.stream.values > 0 && blobBytes == 0)) {
@@ -97,7 +99,7 @@ void Holder::upload(At& at) {
         if (at.stream.passing && !inVain) at.stream.waiting.won();
         return;
     }
-    // Does it change anything?
+    // Test whether it changes the contents.
     const bool compares = u->given && !small && !uniform && object->comparing.tries();
     if (compares) {
         const Object::News news = object->compare(*u, first, [&] { return sumOfValue(at, *u); });
@@ -123,12 +125,12 @@ void Holder::upload(At& at) {
     hold(at, *object, &*u, u->kind == UploadKind::Storage);
 }
 
-// A uniform that is no array waits by its location: what the next one replaces has not to be looked for.
+// A uniform that is not an array is deferred by location, so finding its predecessor needs no search.
 void Holder::oneUniform(At& at, Object& program, size_t locationWord) {
     const size_t location = argumentWord(at.r, locationWord);
     const auto record = at.packet.subspan(at.r.offset, at.r.sizeBytes);
     const bool certain = refusedByNone(at.r, at.kind.valueWord == kNoValue ? locationWord + 1 : at.kind.valueWord + size_t{1});
-    // Another thread may set it, in an order that is not this one; or what would be current again behind it is not known.
+    // Another thread may set it in an unknown order, or the program to restore after a flush is unknown.
     if (at.context.group.use_count() > 1 || !at.context.programSure) {
         releaseOne(at, program);
         return program.uniforms.forgetAll();
@@ -148,7 +150,7 @@ void Holder::oneUniform(At& at, Object& program, size_t locationWord) {
     if (!program.waits()) emptyQueue(at.group, program);
 }
 
-// It stays behind, with the pieces of its value.
+// Defers the record with the pieces of its blob.
 void Holder::hold(At& at, Object& object, const Upload* upload, bool barrier) {
     Item item;
     const auto here = at.packet.subspan(at.from, at.r.offset + at.r.sizeBytes - at.from);
@@ -176,7 +178,7 @@ void Holder::hold(At& at, Object& object, const Upload* upload, bool barrier) {
     waitsFor(at, object);
 }
 
-// Something of it has been held: it goes when the object is needed, or there is too much.
+// Registers an object with its first deferred command. It is flushed when needed, or when the limit is reached.
 void Holder::waitsFor(At& at, Object& object) {
     Group& group = at.group;
     ++group.heldChanges;
@@ -195,7 +197,7 @@ void Holder::waitsFor(At& at, Object& object) {
     makeRoom(at.stream, at.output, behind, 0);
 }
 
-// What is done to an object behind its uploads.
+// Handles a command on an object after its uploads.
 void Holder::objectCommand(At& at) {
     const recording::Rule& rule = recording::ruleOf(at.r.opcode);
     if (rule.family == Family::ProgramLink || rule.family == Family::ProgramSet || rule.family == Family::ProgramUniform || rule.family == Family::ProgramAttach ||
@@ -205,16 +207,17 @@ void Holder::objectCommand(At& at) {
         if (rule.family == Family::ProgramUniform && !program->open && at.stream.values == 0 && isOneUniform(at.r, at.kind, 1)) return oneUniform(at, *program, 1);
         releaseOne(at, *program);
         program->forget();
-        if (rule.family == Family::ProgramLink) program->target = 0; // until it is known that it was linked
+        if (rule.family == Family::ProgramLink) program->target = 0; // until the link is known to have succeeded
         return;
     }
     Object* const object = objectOf(at);
     if (object == nullptr) return;
     const bool parameter = rule.family == Family::TexParameter || rule.family == Family::NamedSet;
-    if (parameter && argumentWord(at.r, 1) == GL_GENERATE_MIPMAP) return openUp(at, object); // uploads do more than they say
+    // uploads have a side effect from now on
+    if (parameter && argumentWord(at.r, 1) == GL_GENERATE_MIPMAP) return openUp(at, object);
     const bool mipmaps = rule.family == Family::TexMipmaps;
     if (mipmaps) std::erase_if(object->known, [](const Object::Known& k) { return k.place.level != 0; });
-    if (!parameter && !mipmaps) { // a copy, or the content is given up
+    if (!parameter && !mipmaps) { // a copy, or an invalidation
         releaseOne(at, *object);
         return object->known.clear();
     }
@@ -229,7 +232,8 @@ Sum Holder::sumOfValue(At& at, const Upload& upload) {
         sum.add(upload.inlineValue);
         return sum.sum();
     }
-    for (const auto pieces : {std::span<const std::byte>(at.stream.pending), at.packet.subspan(at.from, at.r.offset - at.from)}) { // however it was cut
+    // independent of the division into pieces
+    for (const auto pieces : {std::span<const std::byte>(at.stream.pending), at.packet.subspan(at.from, at.r.offset - at.from)}) {
         recording::RecordWalk walk(pieces);
         RecordView piece;
         while (walk.next(piece))

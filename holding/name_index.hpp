@@ -1,4 +1,4 @@
-// What has a name, found without hashing: names are dealt from 1 on, and most programs have few.
+// Index of objects by name, without hashing: names are allocated from 1 on, and most programs have few.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ public:
         const auto found = high_.find(name);
         return found == high_.end() ? nullptr : found->second;
     }
-    // null: nothing has the name any more.
+    // null: removes the name.
     void set(uint32_t name, T* there) {
         if (name >= kLow) {
             if (there == nullptr) high_.erase(name);

@@ -6,7 +6,7 @@ namespace mural::holding {
 namespace {
 
 constexpr size_t kMostKnown = 32;
-constexpr size_t kLookedAt = 64; // of the queue's end
+constexpr size_t kLookedAt = 64; // examined entries at the end of the queue
 
 } // namespace
 
@@ -39,8 +39,8 @@ Object::Replaced Object::replaces(const Upload& u) {
         const Item& item = queue[--at];
         if (item.barrier) return gone;
         if (!item.isUpload || !(item.shape == u.shape)) continue;
-        // Of one shape, so either both are refused or neither: nothing shows of the first, nor, where all of the place is new, of
-        // what has changed it since.
+        // Uploads of one shape are both valid or both invalid: the first has no visible effect, nor do intermediate
+        // changes of an area that is completely overwritten.
         const auto stays = [&](const Item& i) {
             return &i != &item && !(u.kind == UploadKind::Whole && i.isUpload && i.place.overlaps(u.place));
         };

@@ -1,4 +1,4 @@
-// A texture, a buffer or the uniforms of a program, with what of it nobody has needed yet.
+// A texture, a buffer, or the uniforms of a program, with its deferred commands.
 #pragma once
 
 #include <cstddef>
@@ -14,21 +14,21 @@ namespace mural::holding {
 
 enum class Kind : uint8_t { Texture, Buffer, Program };
 
-constexpr size_t kUniformWords = 22; // of the longest record that sets one: glProgramUniformMatrix4fv
+constexpr size_t kUniformWords = 22; // longest record that sets a uniform: glProgramUniformMatrix4fv
 
-// A record that is held, with the pieces of its value before it.
+// A deferred record with the pieces of its blob.
 struct Item {
     std::vector<std::byte> bytes;
-    uint32_t recordAt = 0; // where the record begins, behind pieces
+    uint32_t recordAt = 0; // start of the record, after the pieces
     uint32_t records = 0;
-    uint32_t target = 0;   // at which the object has to be bound; 0: the record names it
-    bool isUpload = false, barrier = false; // barrier: reads what was uploaded before it
+    uint32_t target = 0; // target at which the object must be bound; 0: the record contains the name
+    bool isUpload = false, barrier = false; // barrier: reads earlier uploads
     UploadKind kind = UploadKind::Part;
     Place place;
     Shape shape;
 };
 
-// What is worth its time with this object: where twice nothing was won, the next ones are not tried.
+// Success counter of an optimization for one object: after two failures it is tried less often.
 class Worth {
 public:
     [[nodiscard]] bool tries() {
@@ -49,7 +49,8 @@ private:
     uint32_t skipped_ = 0;
 };
 
-// Whether objects that have just begun to be are worth to be held: where many in a row were drawn at once, most are not tried.
+// Tracks whether deferring uploads of new objects pays off: if many in a row were drawn immediately, most are not
+// deferred.
 class SoonUsed {
 public:
     [[nodiscard]] bool tries() { return inARow_ < kPatience || ++skipped_ % kSkips == 0; }
@@ -64,34 +65,33 @@ private:
 struct Object {
     Kind kind = Kind::Texture;
     uint32_t name = 0;
-    uint32_t target = 0;   // of a texture: what it was bound to first
-    bool open = false;     // others than draws with it bound may use or change it: nothing of it is held
-    std::vector<Item> queue; // held, in their order
-    Cells<kUniformWords> uniforms; // of a program, by location, those that are no array; what waits is behind the queue
+    uint32_t target = 0; // texture: target of its first binding
+    bool open = false; // other commands than draws may read or change it: never deferred
+    std::vector<Item> queue; // deferred commands in order
+    Cells<kUniformWords> uniforms; // program: uniforms that are not arrays, by location; deferred ones follow the queue
     size_t heldBytes = 0;
-    uint64_t heldSince = 0; // frame in which the first of the queue came
-    bool filled = false;    // something was uploaded
-    bool gained = false;    // something of the queue was replaced
+    uint64_t heldSince = 0; // frame of the first deferred command
+    bool filled = false; // has been uploaded to
+    bool gained = false; // a deferred upload was overwritten
     Worth holding, comparing;
     struct Known {
         Place place;
         Shape shape;
-        std::optional<Sum> sum; // none of what came first: most never comes again
+        std::optional<Sum> sum; // empty for first uploads, most of which never recur
     };
-    std::vector<Known> known; // what is in it, when the queue has been sent
+    std::vector<Known> known; // contents after the queue is flushed
 
     [[nodiscard]] bool waits() const { return !queue.empty() || uniforms.waiting(); }
-    void forget() { // what is in it; nothing may wait
+    void forget() { // marks the contents as unknown; requires an empty queue
         known.clear();
         uniforms.forgetAll();
     }
-    enum class News : uint8_t { Same, Changed, First }; // First: there was none like it
-    // Whether the upload changes anything of what is there. Remembers it.
-    // first: of all of the object's.
+    enum class News : uint8_t { Same, Changed, First }; // First: no comparable upload
+    // Compares an upload with the known contents, and records it. first: first upload of the object.
     News compare(const Upload& u, bool first, const std::function<Sum()>& sum);
-    // It comes, whatever it has.
+    // Records an upload without comparison.
     void forgets(const Upload& u);
-    // Takes out of the queue what the upload replaces before anything has read it; how much that was.
+    // Removes deferred uploads that this upload overwrites before any read; returns their number and size.
     struct Replaced {
         uint32_t records = 0;
         size_t sizeBytes = 0;

@@ -1,4 +1,4 @@
-// A packet on its way: as it came, or with parts left out and others put in.
+// A packet in transit: unchanged, or with records removed and inserted.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace mural::holding {
 
-// walked: of a packet as it came, what it is made of; else null.
+// walked: record offsets of an unchanged packet; otherwise null.
 using Take = std::function<void(uint32_t stream, std::span<const std::byte> payload, const Walked* walked)>;
 
 class Output {
@@ -22,12 +22,12 @@ public:
         scratch_.clear();
     }
 
-    // Bytes of the packet from `from` to `to` are left out; behind all that was said before.
+    // Removes the bytes from `from` to `to`. Requires ascending positions.
     void leaveOut(size_t from, size_t to) {
         copyTo(from);
         copied_ = to;
     }
-    // Records that stand before that byte of the packet.
+    // Inserts records before that byte of the packet.
     void insert(size_t before, std::span<const std::byte> records) {
         copyTo(before);
         if (records.size() < kCopiedBytes) return append(records);
@@ -55,8 +55,8 @@ public:
     [[nodiscard]] uint32_t stream() const { return stream_; }
 
 private:
-    static constexpr size_t kWantedBytes = 256 * 1024; // as the program's own packets
-    static constexpr size_t kCopiedBytes = 16 * 1024;  // more go from where they lie
+    static constexpr size_t kWantedBytes = 256 * 1024; // size of the program's own packets
+    static constexpr size_t kCopiedBytes = 16 * 1024; // larger parts are sent in place
 
     void copyTo(size_t to) {
         touched_ = true;

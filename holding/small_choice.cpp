@@ -5,10 +5,11 @@
 namespace mural::holding {
 namespace {
 
-// Of most frames: where less goes, or hardly any of what the program says, nothing can be won, and a try breaks equal runs.
+// Least size of relevant frames, absolute and relative to the program's bytes. Smaller frames have nothing to gain, and
+// a trial breaks equal runs.
 constexpr uint64_t kLeastWireBytes = 200, kLeastPart = 100;
 constexpr double kHopelessCost = 1.1;
-constexpr double kClearly = 0.97; // as small as that is cheaper; where both cost about the same, what leaves out is kept
+constexpr double kClearly = 0.97; // cost ratio that counts as cheaper; otherwise the filter stays on
 
 template <size_t N>
 double median(std::array<double, N> values) {
@@ -28,12 +29,13 @@ void SmallChoice::next(Phase phase) {
 
 void SmallChoice::frame(uint64_t programBytes, uint64_t wireBytes, double costNs) {
     if (programBytes == 0) return;
-    if (wantsTime() && costNs < 0) return; // begun before its time was wanted
+    if (wantsTime() && costNs < 0) return; // begun before timing was requested
     if (wantsTime()) costs_[phase_ == Phase::Trying][frames_] = costNs / static_cast<double>(programBytes);
     ++frames_;
     switch (phase_) {
     case Phase::Waiting:
-        large_ += wireBytes >= std::max(kLeastWireBytes, programBytes / kLeastPart); // a few that load something tell nothing of the others
+        // a few loading frames do not count
+        large_ += wireBytes >= std::max(kLeastWireBytes, programBytes / kLeastPart);
         if (frames_ < until_) return;
         return next(leavesOut_ || large_ * 2 >= frames_ ? Phase::Before : Phase::Waiting);
     case Phase::Before:

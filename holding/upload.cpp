@@ -32,7 +32,7 @@ std::optional<Upload> uploadOf(const RecordView& r, uint64_t blobBytes) {
     Upload u;
     const Family family = recording::ruleOf(r.opcode).family;
     const size_t words = r.arguments.size() / 4;
-    size_t shapeEnd = words, valueEnd = words; // words between these are the value
+    size_t shapeEnd = words, valueEnd = words; // the words between are the value
     const uint8_t valueWord = valueWordOf(r.opcode);
     if (valueWord != kNoValue) {
         if (valueWord >= words) return std::nullopt;
@@ -49,7 +49,7 @@ std::optional<Upload> uploadOf(const RecordView& r, uint64_t blobBytes) {
             u.shape.valueBytes = blobBytes;
             u.given = true;
         }
-    } else if (family == Family::Uniform) { // scalars behind the location
+    } else if (family == Family::Uniform) { // scalars after the location
         shapeEnd = 1;
         if (words < 2) return std::nullopt;
         u.inlineValue = r.arguments.subspan(4);
@@ -78,13 +78,14 @@ std::optional<Upload> uploadOf(const RecordView& r, uint64_t blobBytes) {
         return u;
     case Family::Uniform:
         if (static_cast<int32_t>(argumentWord(r, 0)) < 0) return std::nullopt;
-        u.place = {0, 0, argumentWord(r, 0), uint64_t{argumentWord(r, 0)} + (valueWord == kNoValue ? 1 : std::max(argumentWord(r, 1), 1u))}; // elements of an array follow each other
+        // array elements are consecutive
+        u.place = {0, 0, argumentWord(r, 0), uint64_t{argumentWord(r, 0)} + (valueWord == kNoValue ? 1 : std::max(argumentWord(r, 1), 1u))};
         return u;
     case Family::TexStorage: u.kind = UploadKind::Storage; return u;
     case Family::TexImage:
         u.kind = ofSamples(r.opcode) ? UploadKind::Storage : UploadKind::Whole;
         [[fallthrough]];
-    default: // glTexSubImage…, by the target or the name
+    default: // glTexSubImage..., by target or name
         u.place = {isFace(argumentWord(r, 0)) ? argumentWord(r, 0) : 0, argumentWord(r, 1), 0, UINT64_MAX};
         return u;
     }

@@ -1,5 +1,5 @@
-// An upload, taken apart: which part of its object it writes, and in what shape. Two of one shape are valid or not alike, and the
-// later replaces all that the earlier has written.
+// A parsed upload: the part of its object that it writes, and its shape. Two uploads of one shape are valid or invalid
+// alike, and the later overwrites everything of the earlier.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ struct XXH3_state_s;
 
 namespace mural::holding {
 
-// Of a texture: an image of it; of a buffer: a range.
+// Texture: an image; buffer: a range.
 struct Place {
     uint32_t target = 0, level = 0;
     uint64_t begin = 0, end = UINT64_MAX;
@@ -21,7 +21,7 @@ struct Place {
     bool operator==(const Place&) const = default;
 };
 
-// All of the record but the value, and how long that is.
+// Everything in the record except the value, and the length of the value.
 struct Shape {
     std::array<uint32_t, 16> words{};
     uint64_t valueBytes = 0;
@@ -29,24 +29,24 @@ struct Shape {
 };
 
 enum class UploadKind : uint8_t {
-    Whole,   // all of the place is new, its size, too
-    Part,    // bytes of the place
-    Storage, // the object gets other storage: nothing before counts, but nobody here knows that it succeeds
+    Whole, // replaces the image or buffer, including its size
+    Part, // replaces a part
+    Storage, // allocates new storage: earlier contents are irrelevant if it succeeds, which is unknown here
 };
 
 struct Upload {
     UploadKind kind = UploadKind::Part;
     Place place;
     Shape shape;
-    std::span<const std::byte> inlineValue; // what lies in the record
-    bool given = false;                     // it has bytes of the program's; false: only a size, or they lie in a buffer
+    std::span<const std::byte> inlineValue; // the inline part
+    bool given = false; // has data; false: only a size, or the data is in a buffer
 };
 
-// Of a record of class Upload; blobBytes: of the value that travels ahead of it, 0 when none does. Nothing: not of a form that is known.
+// Parses a record of class Upload. blobBytes: size of its blob, 0: none. Returns an empty value for unknown forms.
 std::optional<Upload> uploadOf(const recording::RecordView& r, uint64_t blobBytes);
 
-// Of bytes that are given one after another. 128 bits of XXH3: what has the same sum is taken as the same: of a
-// thousand million different ones, two are alike with a chance below 2^-64.
+// XXH3, 128 bits, over consecutive pieces. Equal sums count as equal data: among 10^9 different pieces the probability
+// of a collision is below 2^-64.
 struct Sum {
     uint64_t low = 0, high = 0;
     bool operator==(const Sum&) const = default;

@@ -1,4 +1,4 @@
-// What a recording says of itself, as JSON behind the file's header: for people, nothing depends on it.
+// Metadata of a trace, as JSON after the file's header. Informational only.
 #pragma once
 
 #include <string>
@@ -9,9 +9,9 @@
 namespace mural::recording {
 
 struct About {
-    std::string version;            // of Mural
-    std::vector<std::string> nodes; // GL of the nodes it was recorded with
-    std::string trimmed;            // what was left out by `mural trim`; empty: nothing
+    std::string version; // Mural's version
+    std::vector<std::string> nodes; // GL of the recording nodes
+    std::string trimmed; // parts removed by `mural trim`; empty: none
 };
 
 std::string toJson(const About& about);

@@ -10,7 +10,7 @@ namespace mural::recording {
 
 uint64_t checksumOf(std::initializer_list<std::span<const std::byte>> pieces);
 
-// The fields of a part in front of its checksum.
+// Returns the fields of a part before its checksum.
 template <class Part> std::span<const std::byte> beforeChecksum(const Part& part) {
     return std::as_bytes(std::span(&part, 1)).first(offsetof(Part, checksum));
 }

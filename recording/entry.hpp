@@ -1,4 +1,4 @@
-// One entry of a recording: a packet of a program's stream, or that a program has come or gone.
+// One entry of a trace: a packet of a program's stream, or the start or end of a program.
 #pragma once
 
 #include <cstring>
@@ -19,21 +19,21 @@ struct Entry {
 struct ClientEvent {
     Event kind = Event::ClientGone;
     uint32_t client = 0;
-    int32_t pid = 0;  // ClientCame
-    std::string name; // the same
+    int32_t pid = 0; // for ClientCame
+    std::string name; // for ClientCame
 };
 
-// Appends the entry to what will be a block.
+// Appends the entry to the contents of a block.
 void appendEntry(std::vector<std::byte>& raw, const Entry& entry);
 std::vector<std::byte> eventBytes(const ClientEvent& event);
-// False: it is none that this version knows.
+// Returns false for an unknown event.
 bool parseEvent(std::span<const std::byte> payload, ClientEvent& event);
 
-// The entries of a block.
+// Iterates over the entries of a block.
 class EntryWalk {
 public:
     explicit EntryWalk(std::span<const std::byte> raw) : raw_(raw) {}
-    // False at the end, and where an entry is not one: malformed() then.
+    // Returns false at the end, and for a malformed entry; malformed() distinguishes them.
     bool next(Entry& entry);
     [[nodiscard]] bool malformed() const { return malformed_; }
 

@@ -115,7 +115,7 @@ Result<bool> FileReader::readIndex() {
     if (!readAt(at + sizeof header, rows) || checksumOf({beforeChecksum(header), rows}) != header.checksum) return damaged(at, "its index is not as it was written");
     frames_ = static_cast<int64_t>(header.frames);
     blocksEnd_ = at;
-    // Rows lie one behind another, without gaps. What is there is looked at as it is read: a bad block spoils none before it.
+    // Rows must be contiguous. Blocks are validated when they are read, so a bad block does not affect earlier ones.
     uint64_t least = blocksAt_;
     for (const IndexRow& row : blocks_) {
         if (row.offset < least || row.offset > blocksEnd_ || blocksEnd_ - row.offset < sizeof(BlockHeader)) return damaged(at, "its index is of no blocks");

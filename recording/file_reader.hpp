@@ -1,5 +1,4 @@
-// Reads a recording. Nothing in the file is believed: sizes are bounded, each part is checked against its checksum. Used by
-// one thread.
+// Reads a trace. Input is untrusted: sizes are bounded, and every part has a checksum. Not thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +17,7 @@ namespace mural::recording {
 
 class FileReader {
 public:
-    // Of this build's stream: another wire version or registry is an error.
+    // Opens a trace of this build's stream format. Another wire version or registry is an error.
     static Result<std::unique_ptr<FileReader>> open(const std::string& path);
     static Result<std::unique_ptr<FileReader>> open(FileDescriptor file, const std::string& name);
     FileReader(const FileReader&) = delete;
@@ -26,30 +25,31 @@ public:
     ~FileReader();
 
     [[nodiscard]] const About& about() const { return about_; }
-    // One line where the file's end is missing; empty: it is whole.
+    // Returns one line if the end of the file is missing; empty: complete.
     [[nodiscard]] const std::string& notice() const { return notice_; }
     [[nodiscard]] const std::vector<IndexRow>& blocks() const { return blocks_; }
     [[nodiscard]] int64_t frames() const { return frames_; } // of the wall
     [[nodiscard]] uint64_t sizeBytes() const { return sizeBytes_; }
-    // For who wants frames that are not there, of so many; of none: why.
+    // Returns the error for missing frames, or the reason why there are none.
     [[nodiscard]] Error noSuchFrames(int64_t frames) const;
 
-    // That every block is as it was written, without unpacking them.
+    // Checks all checksums without decompressing.
     Result<void> verify();
-    // The block's entries, all of them sound; they lie in memory of the reader until the next call. An error names the frames
-    // before it, which are good to who has read all blocks until there.
+    // Returns the validated entries of a block, valid until the next call. An error names the preceding frames, which
+    // are usable after reading all earlier blocks.
     Result<std::span<const std::byte>> read(size_t block);
 
 private:
-    static constexpr const char* kElsewhere = "take another copy of it, or record again"; // where this file is of no use
+    // next step for an unusable file
+    static constexpr const char* kElsewhere = "take another copy of it, or record again";
 
     FileReader(FileDescriptor file, std::string name);
     Result<void> readHeader();
-    Result<bool> readIndex(); // false: there is no trailer
+    Result<bool> readIndex(); // false: no trailer
     Result<void> findBlocks();
-    Result<BlockHeader> readPacked(size_t block); // into packed_
+    Result<BlockHeader> readPacked(size_t block); // reads into packed_
     bool readAt(uint64_t offset, std::span<std::byte> into) const;
-    [[nodiscard]] uint64_t endOf(size_t block) const; // where the next one begins
+    [[nodiscard]] uint64_t endOf(size_t block) const; // start of the next block
     [[nodiscard]] Error damaged(uint64_t offset, const std::string& what, const std::string& next = kElsewhere) const;
     [[nodiscard]] Error damagedBlock(size_t block, const std::string& what) const;
 
@@ -57,8 +57,8 @@ private:
     const std::string name_;
     ZSTD_DCtx_s* const unpacker_;
     uint64_t sizeBytes_ = 0;
-    uint64_t blocksAt_ = 0;  // behind the header
-    uint64_t blocksEnd_ = 0; // where the index begins, or the last whole block ends
+    uint64_t blocksAt_ = 0; // end of the header
+    uint64_t blocksEnd_ = 0; // start of the index, or end of the last complete block
     About about_;
     std::string notice_;
     std::vector<IndexRow> blocks_;
@@ -67,7 +67,7 @@ private:
     std::vector<std::byte> raw_;
 };
 
-// All entries in their order. False from `take` ends it.
+// Visits all entries in order until `take` returns false.
 template <class Take> Result<void> forEachEntry(FileReader& reader, Take take) {
     for (size_t i = 0; i < reader.blocks().size(); ++i) {
         auto block = reader.read(i);

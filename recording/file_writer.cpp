@@ -87,7 +87,7 @@ Result<void> FileWriter::flush() {
     auto written = write(bytesOf(header));
     if (written) written = write(packed);
     if (!written) {
-        totals_ = before; // half a block is none
+        totals_ = before; // partial blocks do not count
         return written;
     }
     index_.push_back({before.fileBytes, header.firstFrame, header.framesEnded, header.entries});

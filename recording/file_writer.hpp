@@ -1,4 +1,4 @@
-// Writes a recording. Used by one thread.
+// Writes a trace. Not thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -17,28 +17,28 @@ struct ZSTD_CCtx_s;
 namespace mural::recording {
 
 struct WriterTotals {
-    int64_t frames = 0;     // of the wall, in whole blocks
+    int64_t frames = 0; // of the wall, in complete blocks
     uint64_t fileBytes = 0;
-    uint64_t rawBytes = 0;  // before they were packed
+    uint64_t rawBytes = 0; // before compression
 };
 
 class FileWriter {
 public:
-    // The file is there and empty from then on. level: of zstd.
+    // Creates an empty file. level: Zstandard level.
     static Result<std::unique_ptr<FileWriter>> create(const std::string& path, int level = kDefaultLevel);
     FileWriter(const FileWriter&) = delete;
     FileWriter& operator=(const FileWriter&) = delete;
     ~FileWriter();
 
-    Result<void> begin(const About& about, uint32_t wireVersion, uint64_t registryDigest); // first
+    Result<void> begin(const About& about, uint32_t wireVersion, uint64_t registryDigest); // call first
     Result<void> append(const Entry& entry);
-    // What has come so far is a block, and in the file.
+    // Ends the current block and writes it.
     Result<void> flush();
-    // Index and trailer, for the blocks that are in the file: flush() before, unless that has failed.
+    // Writes index and trailer for the blocks in the file. Call flush() before, unless it failed.
     Result<void> finish();
 
     [[nodiscard]] bool hasUnwritten() const { return !raw_.empty(); }
-    [[nodiscard]] int64_t framesSeen() const { return frames_.frames(); } // also those that are not in the file yet
+    [[nodiscard]] int64_t framesSeen() const { return frames_.frames(); } // including frames that are not written yet
     [[nodiscard]] const WriterTotals& totals() const { return totals_; }
 
     static constexpr int kDefaultLevel = 1;
@@ -52,7 +52,7 @@ private:
     const FileDescriptor file_;
     const int level_;
     ZSTD_CCtx_s* const packer_;
-    std::vector<std::byte> raw_; // of the block that is being filled
+    std::vector<std::byte> raw_; // of the current block
     uint32_t entries_ = 0;
     uint32_t framesEnded_ = 0;
     WallFrames frames_;

@@ -1,7 +1,7 @@
-// Layout of recordings: GL streams of programs in a file. Numbers are little-endian; docs/recording.md has the grammar.
+// File format of traces, little-endian. docs/recording.md has the grammar.
 //
 //   file    = Header about Block* Index Trailer
-//   Block   = BlockHeader, entries packed by zstd
+//   Block   = BlockHeader, entries compressed with Zstandard
 //   entries = (EntryHeader payload, padded to kEntryAlign)*
 //   Index   = IndexHeader IndexRow*
 //
@@ -22,34 +22,34 @@ constexpr uint32_t kIndexMagic = 0x58444e49; // "INDX"
 struct Header {
     char magic[8];
     uint32_t version;
-    uint32_t wireVersion;    // of the records: wire::kVersion
-    uint64_t registryDigest; // the same: which commands there are
-    uint32_t aboutBytes;     // JSON that follows (recording/about.hpp)
+    uint32_t wireVersion; // format of the records: wire::kVersion
+    uint64_t registryDigest; // command set of the records
+    uint32_t aboutBytes; // size of the following JSON (recording/about.hpp)
     uint32_t reserved;
-    uint64_t checksum;       // of the fields above and of the JSON
+    uint64_t checksum; // over the fields above and the JSON
 };
 static_assert(sizeof(Header) == 40);
 constexpr uint32_t kMaxAboutBytes = 1u << 20;
 
 struct BlockHeader {
     uint32_t magic;
-    uint32_t packedBytes; // that follow
-    uint32_t rawBytes;    // of the entries
+    uint32_t packedBytes; // size of the following data
+    uint32_t rawBytes; // decompressed size
     uint32_t entries;
-    uint64_t firstFrame;  // the frame of the wall that is under way where the block begins, from 1
+    uint64_t firstFrame; // wall frame at the start of the block, from 1
     uint32_t framesEnded; // in it
     uint32_t reserved;
-    uint64_t checksum;    // of the fields above and of the packed bytes
+    uint64_t checksum; // over the fields above and the data
 };
 static_assert(sizeof(BlockHeader) == 40);
-// A block ends with the frame in which it gets so large, or in the middle of one that is larger by far.
+// Size at which a block ends: with the current frame, or within a much larger one.
 constexpr size_t kBlockBytes = size_t{1} << 20;
 constexpr size_t kMaxBlockBytes = size_t{8} << 20;
 
 struct EntryHeader {
     uint32_t sizeBytes; // of the payload
-    uint32_t stream;    // client << 16 | thread, as in wire::PacketHeader; 0: the payload is an Event
-    uint64_t timeNs;    // since the recording began
+    uint32_t stream; // client << 16 | thread, as in wire::PacketHeader; 0: the payload is an Event
+    uint64_t timeNs; // since the start of the trace
 };
 static_assert(sizeof(EntryHeader) == 16);
 constexpr size_t kEntryAlign = 8;
@@ -57,15 +57,15 @@ constexpr size_t entryBytes(size_t payloadBytes) { return sizeof(EntryHeader) + 
 
 // First word of an entry of stream 0.
 enum class Event : uint32_t {
-    ClientCame = 1, // u32 client, i32 pid, its name
+    ClientCame = 1, // u32 client, i32 pid, name
     ClientGone = 2, // u32 client
 };
 
 struct IndexHeader {
     uint32_t magic;
     uint32_t blocks;
-    uint64_t frames;   // of the wall, in the whole file
-    uint64_t checksum; // of the fields above and of the rows
+    uint64_t frames; // wall frames in the whole file
+    uint64_t checksum; // over the fields above and the rows
 };
 static_assert(sizeof(IndexHeader) == 24);
 
@@ -79,7 +79,7 @@ static_assert(sizeof(IndexRow) == 24);
 
 struct Trailer {
     uint64_t indexOffset;
-    uint64_t checksum; // of the field above
+    uint64_t checksum; // over the field above
     char magic[8];
 };
 static_assert(sizeof(Trailer) == 24);

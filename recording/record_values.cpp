@@ -49,7 +49,7 @@ size_t blobsTakenBy(const RecordView& record) {
     case wire::kOpProgramLayout:
     case wire::kOpProgramRecipe: skip(in, 4), (void)in.data(); break;
     case wire::kOpBufferBytes: skip(in, 12), (void)in.data(); break;
-    default: readGl(in, record.opcode); // none of Mural's own
+    default: readGl(in, record.opcode); // not a control record
     }
     return queue.taken;
 }

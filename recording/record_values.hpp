@@ -1,4 +1,4 @@
-// How many of its stream's blobs a record takes: without them in step, later records get the wrong ones.
+// Number of blobs that a record consumes. Without it later records would take the wrong blobs.
 #pragma once
 
 #include "recording/record_walk.hpp"

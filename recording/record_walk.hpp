@@ -1,4 +1,4 @@
-// The records of a packet, one after another (docs/wire-format.md), without looking into their arguments.
+// Iterates over the records of a packet (docs/wire-format.md) without parsing their arguments.
 #pragma once
 
 #include <cstddef>
@@ -14,8 +14,8 @@ namespace mural::recording {
 
 struct RecordView {
     uint16_t opcode = 0;
-    size_t offset = 0;                     // in the packet, bytes
-    size_t sizeBytes = 0;                  // with its header
+    size_t offset = 0; // offset in the packet, in bytes
+    size_t sizeBytes = 0; // including its header
     std::span<const std::byte> arguments;
 };
 
@@ -23,7 +23,7 @@ class RecordWalk {
 public:
     explicit RecordWalk(std::span<const std::byte> packet) : packet_(packet) {}
 
-    // False at the end, and where a record is longer than what is left: malformed() then.
+    // Returns false at the end, and for a record longer than the rest; malformed() distinguishes them.
     bool next(RecordView& record) {
         const size_t left = packet_.size() - at_;
         if (left == 0 || malformed_) return false;
@@ -44,10 +44,9 @@ public:
         walked_.pass(record.offset, record.sizeBytes);
         return true;
     }
-    // On over short records as long as they are of no interest, by their opcode: asked once for so many of them, always the same of
-    // the same; of a round's, which come by turns, for all turns.
-    // A program that loads says hundreds of thousands in one frame: what changes with each is kept in locals, as what is called
-    // might look at this.
+    // Skips short records while their opcode is of no interest. The predicate must be pure: it is evaluated once per
+    // run of equal records, or once per round of alternating records. A loading program sends hundreds of thousands of
+    // records in one frame, so the loop keeps its state in locals, which the predicate cannot alias.
     template <typename OfNoInterest>
     void skip(const OfNoInterest& ofNoInterest) {
         const std::span<const std::byte> packet = packet_;
@@ -66,7 +65,7 @@ public:
             std::memcpy(&head, packet.data() + at, sizeof head);
             return true;
         };
-        // Where much is of interest, stretches are too short for rounds.
+        // With many interesting records the runs are too short for rounds.
         uint32_t head = 0;
         bool more = true;
         while (records < kBeforeRounds && more) more = headHere(head) && passOne(head);
@@ -81,7 +80,7 @@ public:
                 }
                 const size_t from = at;
                 if (!passOne(head)) break;
-                if (lastBytes > kMostShortRecordBytes) round.begin(); // each of those is told of
+                if (lastBytes > kMostShortRecordBytes) round.begin(); // long records are always reported
                 else round.add(head, from);
             }
         }
@@ -90,10 +89,11 @@ public:
         walked_.records += records;
         walked_.lastBytes = lastBytes;
     }
-    // What pass() does with a record.
+    // Action of pass() for a record.
     enum class Interest : uint8_t { None, Look, Stop };
-    // As skip(), but those of Interest::Look are given to look() on the way, one by one; false: the walk stops before that one. A loop of its own:
-    // one for both took 0.5 to 5 us more for a frame of some hundred records, as less of it was kept in registers.
+    // As skip(), but passes records of Interest::Look to look() one by one; its result false stops before that record.
+    // A separate loop: a common one kept less state in registers and took 0.5 to 5 us longer per frame of some hundred
+    // records.
     template <typename InterestOf, typename Looks>
     void pass(const InterestOf& interestOf, const Looks& look) {
         const std::span<const std::byte> packet = packet_;
@@ -101,9 +101,9 @@ public:
         uint32_t head = 0;
         if (packet.size() - at < sizeof head) return;
         std::memcpy(&head, packet.data() + at, sizeof head);
-        if (interestOf(static_cast<uint16_t>(head)) == Interest::Stop) return; // as where primitives are short
+        if (interestOf(static_cast<uint16_t>(head)) == Interest::Stop) return; // typical for short primitives
         RecordRound round;
-        size_t unlooked = 0; // in a row
+        size_t unlooked = 0; // consecutive
         while (packet.size() - at >= sizeof head) {
             std::memcpy(&head, packet.data() + at, sizeof head);
             if (unlooked >= kBeforeRounds && round.closes(head)) {
@@ -124,12 +124,12 @@ public:
             } else {
                 ++unlooked;
             }
-            if (sizeBytes > kMostShortRecordBytes) { // each of those is told of
+            if (sizeBytes > kMostShortRecordBytes) { // long records are always reported
                 walked_.longAt.push_back(static_cast<uint32_t>(at));
                 round.begin();
             }
             at += sizeBytes;
-            lastBytes = sizeBytes; // of rounds, too: what they end with came before them
+            lastBytes = sizeBytes; // also in rounds, whose last record was seen before
             ++records;
         }
         at_ = at;
@@ -137,13 +137,13 @@ public:
         walked_.records += records;
         walked_.lastBytes = lastBytes;
     }
-    [[nodiscard]] size_t at() const { return at_; } // where the next record begins, bytes
-    // Behind records that somebody else has passed.
+    [[nodiscard]] size_t at() const { return at_; } // offset of the next record, in bytes
+    // Continues after records that another component has passed.
     void goTo(size_t at, const Walked& passed) {
         at_ = at;
         walked_.add(passed);
     }
-    // All of the packet, once there is no next record; null: that is not all records.
+    // Returns the offsets of the whole packet after the last record; null if it does not consist of records only.
     [[nodiscard]] const Walked* whole() const { return at_ == packet_.size() && !malformed_ ? &walked_ : nullptr; }
     [[nodiscard]] bool malformed() const { return malformed_; }
 
@@ -162,7 +162,7 @@ private:
     Walked walked_;
 };
 
-// A word of a record's arguments; 0 behind their end.
+// Returns a word of a record's arguments; 0 after their end.
 inline uint32_t argumentWord(const RecordView& record, size_t index) {
     uint32_t value = 0;
     if ((index + 1) * 4 <= record.arguments.size()) std::memcpy(&value, record.arguments.data() + index * 4, sizeof value);

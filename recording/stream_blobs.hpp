@@ -1,4 +1,4 @@
-// The large values of one stream, which travel ahead of the record that takes them (docs/wire-format.md).
+// Pending blobs of one stream, which precede their record (docs/wire-format.md).
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace mural::recording {
 
 class StreamBlobs : public BlobQueue {
 public:
-    // True: the record was (part of) a blob. False with malformed(): it was none.
+    // Returns true if the record was a part of a blob, and false, with malformed(), if it was invalid.
     bool take(const RecordView& r) {
         taken_.clear();
         Args in(r.arguments, *this);
@@ -37,16 +37,16 @@ public:
     std::span<const std::byte> takeBlob(bool& found) override {
         found = !blobs_.empty() && (blobs_.size() > 1 || missing_ == 0);
         if (!found) return {};
-        taken_.push_back(std::move(blobs_.front())); // lives until the next record
+        taken_.push_back(std::move(blobs_.front())); // valid until the next record
         blobs_.pop_front();
         return taken_.back();
     }
 
 private:
-    static constexpr size_t kMostBlobs = 256; // as nodes have it
+    static constexpr size_t kMostBlobs = 256; // limit of the nodes
     std::deque<std::vector<std::byte>> blobs_;
     std::deque<std::vector<std::byte>> taken_;
-    uint64_t missing_ = 0; // of the last one
+    uint64_t missing_ = 0; // of the last blob
     bool malformed_ = false;
 };
 

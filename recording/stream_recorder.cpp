@@ -90,7 +90,7 @@ void StreamRecorder::work() {
     if (orderly) {
         Result<void> written = ended_ ? Result<void>() : writer_->flush();
         if (!written) end(written.error().message);
-        // What is whole can be read with its index, if there is room for that.
+        // Complete data is readable with its index, if there is room for it.
         written = writer_->finish();
         if (!written) end(written.error().message);
     }

@@ -1,5 +1,5 @@
-// Records what the head sends to the nodes while programs run, by a thread of its own. What goes wrong ends the recording and
-// is said in one line; the session goes on.
+// Records the stream that the head sends to the nodes, on a thread of its own. An error ends the recording with one
+// line; the session continues.
 #pragma once
 
 #include <atomic>
@@ -17,26 +17,26 @@
 namespace mural::recording {
 
 struct RecorderConfig {
-    size_t queueBytes = size_t{64} << 20; // full: senders wait
-    int64_t patienceMs = 5'000;           // while nothing of a full queue is taken: then the recording ends
-    int64_t lastFrame = 0;                // of the wall: no packet behind it is recorded; 0: all
-    int64_t wholeEveryMs = 1'000;         // what is older is in the file, whatever becomes of the head
+    size_t queueBytes = size_t{64} << 20; // when full, senders wait
+    int64_t patienceMs = 5'000; // timeout without progress of a full queue; then the recording ends
+    int64_t lastFrame = 0; // wall frame after which nothing is recorded; 0: all frames
+    int64_t wholeEveryMs = 1'000; // older data is in the file even if the head dies
     std::function<void(const std::string&)> say;
 };
 
-// begin() and finish() by one thread, the others by any.
+// Call begin() and finish() on one thread; the others may be called from any thread.
 class StreamRecorder {
 public:
-    // The file is there from now on.
+    // Creates the file.
     static Result<std::unique_ptr<StreamRecorder>> create(const std::string& path, RecorderConfig config);
     StreamRecorder(const StreamRecorder&) = delete;
     StreamRecorder& operator=(const StreamRecorder&) = delete;
-    ~StreamRecorder(); // what has not been finished by then lacks its end
+    ~StreamRecorder(); // without finish() the file has no end
 
-    void begin(const About& about); // before all packets
+    void begin(const About& about); // call before any packet
     void packet(uint32_t stream, std::span<const std::byte> payload);
     void event(const ClientEvent& event);
-    // Everything that came is in the file, and its end; says so when that is not so by the deadline.
+    // Blocks until everything is written, including index and trailer. Reports an error if the deadline passes.
     WriterTotals finish(Deadline deadline);
 
 private:
@@ -44,24 +44,24 @@ private:
     void put(uint32_t stream, std::span<const std::byte> payload);
     void work();
     Result<void> writeAll(std::span<const std::byte> entries);
-    void end(const std::string& why); // once
+    void end(const std::string& why); // reports once
 
     const std::string path_;
-    const std::unique_ptr<FileWriter> writer_; // the thread's, once that runs
+    const std::unique_ptr<FileWriter> writer_; // owned by the thread once it runs
     const RecorderConfig config_;
     const int64_t beganNs_ = monotonicNowNs();
     std::atomic<bool> ended_{false};
     std::atomic<int64_t> wholeFrames_{0}; // in the file
 
-    std::mutex mutex_; // what follows
+    std::mutex mutex_; // protects the following members
     std::condition_variable changed_;
-    std::vector<std::byte> queue_; // entries
+    std::vector<std::byte> queue_; // serialised entries
     bool finishing_ = false;
     bool stop_ = false;
     bool done_ = false;
     WriterTotals totals_;
 
-    std::thread thread_; // last: it uses all of it
+    std::thread thread_; // last member: it uses all others
 };
 
 } // namespace mural::recording

@@ -1,4 +1,4 @@
-// Which record of a stream ends which frame of the wall: as the head counts them for --out and --frames.
+// Maps swap records to frames of the wall, as the head counts them for --out and --frames.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace mural::recording {
 
 class WallFrames {
 public:
-    // Returns the number of the frame that the record has ended; 0: it has not.
+    // Returns the number of the frame that the record ends; 0: none.
     int64_t record(uint32_t stream, const RecordView& r) {
         const uint32_t client = wire::clientOf(stream), window = argumentWord(r, 0);
         switch (r.opcode) {
@@ -34,7 +34,7 @@ public:
         if (frame > 0) frames_ = frame;
         return frame;
     }
-    // All records of a packet; returns how many frames it has ended.
+    // Processes all records of a packet; returns the number of frames that it ends.
     uint32_t packet(uint32_t stream, std::span<const std::byte> payload) {
         RecordWalk walk(payload);
         RecordView r;
@@ -46,10 +46,10 @@ public:
         mainWindow_.clientGone(client);
         std::erase_if(sizes_, [client](const auto& entry) { return entry.first.first == client; });
     }
-    [[nodiscard]] int64_t frames() const { return frames_; } // that have ended
+    [[nodiscard]] int64_t frames() const { return frames_; } // complete frames
 
 private:
-    std::map<std::pair<uint32_t, uint32_t>, std::pair<uint32_t, uint32_t>> sizes_; // client, window → width, height
+    std::map<std::pair<uint32_t, uint32_t>, std::pair<uint32_t, uint32_t>> sizes_; // client, window to width, height
     MainWindow mainWindow_;
     int64_t frames_ = 0;
 };

@@ -23,7 +23,7 @@ class Dump {
 public:
     Dump(const DumpOptions& options, const std::function<bool(const std::string&)>& line) : options_(options), line_(line), absent_(options.calls) {}
 
-    // False: no more is wanted.
+    // Returns false to stop.
     bool entry(const Entry& e) {
         frame_ = frames_.frames() + 1;
         if (frame_ > options_.lastFrame) return false;
@@ -39,7 +39,7 @@ private:
         std::string name;
         bool wanted = false;
     };
-    // Of a call in the frames.
+    // Display properties of a command.
     const Kind& kindOf(uint16_t opcode) {
         const auto [at, isNew] = kinds_.try_emplace(opcode);
         Kind& kind = at->second;
@@ -75,7 +75,7 @@ private:
     }
 
     bool call(uint32_t stream, const RecordView& r, bool shows) {
-        const std::string text = recordText(r, blobs_[stream]); // also where nothing is shown: it takes its blobs
+        const std::string text = recordText(r, blobs_[stream]); // always formatted, because it consumes its blobs
         if (!shows || !kindOf(r.opcode).wanted) return true;
         return line_(fmt::format("{:6} {}.{:<2} {}", frame_, wire::clientOf(stream), stream & 0xffff, text));
     }
@@ -117,10 +117,10 @@ private:
     const DumpOptions& options_;
     const std::function<bool(const std::string&)>& line_;
     WallFrames frames_;
-    int64_t frame_ = 1; // that is under way
+    int64_t frame_ = 1; // current frame
     std::map<uint32_t, StreamBlobs> blobs_;
     std::map<uint16_t, Kind> kinds_;
-    std::vector<std::string> absent_; // patterns that have fitted nothing
+    std::vector<std::string> absent_; // patterns without a match
     std::map<std::string, Count> ofFrame_, total_;
 };
 

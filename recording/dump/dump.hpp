@@ -1,4 +1,4 @@
-// A recording as text: `mural dump`.
+// Prints a trace as text: `mural dump`.
 #pragma once
 
 #include <cstdint>
@@ -12,24 +12,24 @@
 namespace mural::recording {
 
 struct DumpOptions {
-    int64_t firstFrame = 1;         // of the wall
+    int64_t firstFrame = 1; // of the wall
     int64_t lastFrame = INT64_MAX;
-    std::vector<std::string> calls; // names, with * for any characters; empty: all
-    bool summary = false;           // counts and bytes instead of calls
+    std::vector<std::string> calls; // name patterns, with * for any characters; empty: all
+    bool summary = false; // counts and bytes instead of calls
 };
 
 struct DumpReport {
-    std::vector<std::string> absent; // of DumpOptions::calls, those that no call in the frames fits
+    std::vector<std::string> absent; // patterns of DumpOptions::calls without a match in these frames
 };
 
-// Whether the pattern fits a call that there may be in recordings: of a command of GL, or Mural.…
+// Returns true if the pattern matches a call that traces can contain: a GL command, or Mural....
 bool fitsSomeCall(const std::string& pattern);
 
-// That there are frames up to the last one. What stands behind the recording's last frame is of one more, which did not end:
-// what a program has said before it was killed.
+// Checks that the trace has frames up to the last one. Data after the last complete frame counts as one more frame: the
+// calls of a program before it was killed.
 Result<void> checkFrames(FileReader& reader, int64_t lastFrame);
 
-// Gives the lines; false from `line` ends it without an error.
+// Passes each line to `line`, whose result false stops without an error.
 Result<DumpReport> dump(FileReader& reader, const DumpOptions& options, const std::function<bool(const std::string&)>& line);
 
 } // namespace mural::recording

@@ -11,7 +11,7 @@
 namespace mural::recording {
 namespace {
 
-// Mural's own records. Of each parameter, the letter behind ':' says what it is; without one it is u32.
+// Control records. The letter after ':' is the type of a parameter; without one it is u32.
 //   i: i32  q: u64  e: enum  x: hexadecimal  w: WindowConfig  v: value
 struct OwnRecord {
     uint16_t opcode;
@@ -102,7 +102,7 @@ std::string ownText(const OwnRecord& own, Args& in) {
     return text;
 }
 
-// Takes the values behind the counts, so that their blobs are taken in order.
+// Reads the values after the counts, so their blobs are consumed in order.
 std::string clientArraysText(Args& in) {
     const auto arrays = in.get<uint32_t>(), spans = in.get<uint32_t>();
     if (arrays > client_arrays::kSlots || spans > arrays) return "malformed";
@@ -145,7 +145,7 @@ std::string argumentText(const ParameterInfo& p, Args& in, int64_t count) {
 std::string glText(uint16_t opcode, Args& in) {
     const CommandParameters command = parametersOf(opcode);
     std::string text;
-    int64_t count = 0; // of strings: the parameter in front of them says it
+    int64_t count = 0; // number of strings, from the preceding parameter
     for (const ParameterInfo& p : command.parameters) {
         const std::string value = argumentText(p, in, count);
         if (std::string_view(p.name) == "count") count = std::strtoll(value.c_str(), nullptr, 10);

@@ -1,4 +1,4 @@
-// A record as a call: its name, its arguments by name, enums as the registry calls them.
+// Formats a record as a call: its name, named arguments, and enum names of the registry.
 #pragma once
 
 #include <string>
@@ -8,10 +8,11 @@
 
 namespace mural::recording {
 
-// "glClear", "Mural.Swap", or "opcode 99".
+// Returns "glClear", "Mural.Swap", or "opcode 99".
 std::string recordName(uint16_t opcode);
 
-// "glClear(mask=GL_COLOR_BUFFER_BIT)". Takes the record's blobs. What can't be read is "…, malformed".
+// Returns "glClear(mask=GL_COLOR_BUFFER_BIT)". Consumes the record's blobs. Unreadable records end with "...,
+// malformed".
 std::string recordText(const RecordView& record, StreamBlobs& blobs);
 
 } // namespace mural::recording

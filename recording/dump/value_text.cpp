@@ -9,7 +9,7 @@ namespace {
 
 constexpr size_t kMostElements = 16;
 constexpr size_t kMostText = 120;
-// Enums without a group that are so small are mostly numbers: components, levels, GL_ONE…
+// Smaller enums without a group are usually numbers: components, levels, GL_ONE.
 constexpr uint32_t kFirstTellingEnum = 0x100;
 
 template <class T> T load(const std::byte* at) {

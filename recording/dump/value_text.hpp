@@ -1,4 +1,4 @@
-// Values of records as text.
+// Formats values of records.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +12,9 @@ namespace mural::recording {
 std::string enumText(uint16_t group, uint32_t value);
 std::string bitsText(uint16_t group, uint32_t value);
 std::string numberText(Element element, uint16_t group, const std::byte* at);
-// The first ones, and how many bytes there are in all.
+// Returns the first elements and the total size.
 std::string arrayText(Element element, uint16_t group, std::span<const std::byte> bytes);
-// In quotes; its beginning, where it is long.
+// Returns a quoted text, truncated if it is long.
 std::string quoted(std::span<const std::byte> bytes);
 
 } // namespace mural::recording

@@ -1,4 +1,4 @@
-// Which capabilities of glEnable are the context's own, whatever texture unit is active.
+// Capabilities of glEnable that belong to the context, independent of the active texture unit.
 #pragma once
 
 #include <GL/gl.h>
@@ -7,7 +7,8 @@
 
 namespace mural::recording {
 
-// Capabilities of the context. All others may be those of the texture unit, which is right for these, too, but keeps more.
+// Returns true for capabilities of the context. Others count as per texture unit, which is safe but keeps more
+// commands.
 inline bool isContextCap(uint32_t what) {
     switch (what) {
     case GL_BLEND:

@@ -1,4 +1,4 @@
-// What a command does to the state of the nodes, as keys.
+// Effect of a command on the nodes' state, as accesses to keys.
 #pragma once
 
 #include <vector>
@@ -8,13 +8,13 @@
 namespace mural::recording {
 
 enum class Mode : uint8_t {
-    Write,   // a part of it changes: what it was before still counts
-    Kill,    // all of it is new: what it was before counts no more
-    Read,    // what the command does depends on it
-    Forget,  // as Kill, but nothing that would be missed: it is gone
-    Close,   // ends what an earlier command has begun or made: needed where anything of that is kept
-    Open,    // glPushAttrib: what the Restores of its glPopAttrib bring back is as here
-    Restore, // glPopAttrib: it is as it was at the Open of the key that this command closes
+    Write, // changes a part; the previous value still counts
+    Kill, // replaces everything; the previous value is dead
+    Read, // the command depends on it
+    Forget, // as Kill, without a new value: the object is deleted
+    Close, // ends an earlier command's effect: needed if any of it is kept
+    Open, // glPushAttrib: values that Restores of its glPopAttrib bring back
+    Restore, // glPopAttrib: restores the value at the Open of the closed key
 };
 
 struct EffectEntry {
@@ -25,7 +25,7 @@ struct EffectEntry {
 
 struct Effect {
     std::vector<EffectEntry> entries;
-    bool always = false; // nobody knows all that it does: never left out
+    bool always = false; // effects are not fully known: never removed
 
     void add(Key key, Mode mode) {
         if (entries.empty() || entries.back() != EffectEntry{key, mode}) entries.push_back({key, mode});

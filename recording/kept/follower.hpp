@@ -1,5 +1,5 @@
-// Says of each record what it writes and reads, by following the little of the program's state that decides it. What is not known
-// here reads everything and is never left out: a gap costs bytes, not pictures.
+// GL state tracker: determines the reads and writes of each record, by tracking the state that decides them. A record
+// with unknown effects reads everything and is never removed: a gap costs bytes, not pixels.
 #pragma once
 
 #include <functional>
@@ -19,17 +19,18 @@ class Follower {
 public:
     explicit Follower(KeyTree& keys) : keys_(keys) {}
 
-    // Adds what the record does to `effect`. False: it belongs together with the records of the stream that follow.
+    // Adds the record's effects to `effect`. Returns false if it forms one command with the following records of the
+    // stream.
     bool record(uint32_t stream, const RecordView& r, Effect& effect);
-    // State that the last command has left behind beside what it draws, as records that set it again: with these behind it, it is
-    // needed for its pictures alone.
+    // Returns the side effects of the last command on context state, other than its drawing, as records that set that
+    // state. If they are replayed, the command itself matters only for its pixels.
     std::vector<std::byte> takeRest(uint32_t stream) { return std::exchange(streams_[stream].rest, {}); }
     void clientGone(uint32_t client);
-    // All keys that this knows of.
+    // Visits all tracked keys.
     void forEachKey(const std::function<void(Key)>& take) const;
 
 private:
-    struct At; // who executes a record
+    struct At; // context of one record
 
     void own(At& at, const RecordView& r);
     void createContext(At& at, const RecordView& r);
@@ -51,7 +52,7 @@ private:
     void readPicture(At& at);
     void readTextures(At& at);
 
-    // State
+    // State.
     Key cell(const At& at, Key above, uint32_t kind, const Rule& rule, const RecordView& r);
     void set(At& at, Key key, uint32_t attribBits);
     void setClient(At& at, Key key);
@@ -63,7 +64,7 @@ private:
     void pushAttribs(At& at, std::vector<SavedAttribs>& stack, Part part, uint32_t mask);
     void popAttribs(At& at, std::vector<SavedAttribs>& stack, Part part);
 
-    // Objects
+    // Objects.
     Object* find(At& at, ObjectType type, uint32_t name);
     Object* make(At& at, ObjectType type, uint32_t name);
     Object* findOrMake(At& at, ObjectType type, uint32_t name);
@@ -91,7 +92,7 @@ private:
     Object* textureOf(At& at, const HandleId& handle);
     void pages(At& at, const Rule& rule, const RecordView& r);
 
-    // Pictures
+    // Pictures.
     void draw(At& at);
     void drawBitmap(At& at);
     void drawGathered(At& at);
@@ -108,7 +109,7 @@ private:
     std::unordered_map<uint32_t, StreamNames> streams_;
 };
 
-// The names in a value of an argument list, from that word on; false: they travel as a blob, or are not there.
+// Reads names from a value in the arguments, from that word on. Returns false if they travel as a blob, or are missing.
 bool namesAt(const RecordView& r, size_t word, std::vector<uint32_t>& names);
 inline uint64_t argumentWide(const RecordView& r, size_t word) { return argumentWord(r, word) | uint64_t{argumentWord(r, word + 1)} << 32; }
 
@@ -116,9 +117,9 @@ struct Follower::At {
     uint32_t stream;
     ClientNames& client;
     StreamNames& thread;
-    ContextNames* context; // null: none is current
+    ContextNames* context; // null: no current context
     Effect& effect;
-    uint64_t blobBytes = 0; // of the first value that travels ahead
+    uint64_t blobBytes = 0; // size of the first pending blob
 };
 
 } // namespace mural::recording

@@ -1,4 +1,4 @@
-// What objects hold: buffers, shaders and programs, queries.
+// Contents of objects: buffers, shaders and programs, queries.
 #include <GL/gl.h>
 #include <GL/glext.h>
 #include <string_view>
@@ -10,7 +10,7 @@
 namespace mural::recording {
 namespace {
 
-// Samplers have the unit that a uniform of one integer has told them.
+// An integer uniform may be a sampler; its value is a texture unit.
 void noteUnits(Object& program, const RecordView& r, size_t locationWord) {
     const bool one = r.opcode == op::glUniform1i || r.opcode == op::glProgramUniform1i;
     const bool several = r.opcode == op::glUniform1iv || r.opcode == op::glProgramUniform1iv;
@@ -18,13 +18,13 @@ void noteUnits(Object& program, const RecordView& r, size_t locationWord) {
     std::vector<uint32_t> values;
     if (several && !namesAt(r, locationWord + 2, values)) program.anyUnit = true;
     program.units.insert(values.begin(), values.end());
-    constexpr size_t kMostUnits = 256; // it counts something else: all may be units
+    constexpr size_t kMostUnits = 256; // larger values are no units: all units count
     if (program.units.size() <= kMostUnits) return;
     program.units.clear();
     program.anyUnit = true;
 }
 
-// Or the one that the shader's text says.
+// Returns true if the shader's source may assign units.
 bool namesUnits(const RecordView& r) {
     const std::string_view text(reinterpret_cast<const char*>(r.arguments.data()), r.arguments.size());
     return text.find("binding") != std::string_view::npos || text.find("#include") != std::string_view::npos || text.size() < 64 || argumentWord(r, 2) > record::kInlineBytes || text.find("void") == std::string_view::npos;
@@ -39,7 +39,7 @@ void Follower::writeBuffer(At& at, Object* buffer, uint64_t offset, uint64_t siz
     if (buffer->opaque && at.context->group->untracked) at.effect.always = true;
     if (buffer->sparse) at.effect.read(part(part(buffer->key, Part::Storage), Part::Pages));
     if (offset == 0 && sizeBytes == buffer->sizeBytes && sizeBytes > 0) at.effect.kill(data);
-    else at.effect.kill(part(data, Part::Box, offset, sizeBytes)); // the same range replaces it
+    else at.effect.kill(part(data, Part::Box, offset, sizeBytes)); // an upload of the same range replaces it
 }
 
 void Follower::buffers(At& at, const Rule& rule, const RecordView& r) {
@@ -65,7 +65,7 @@ void Follower::buffers(At& at, const Rule& rule, const RecordView& r) {
     writeBuffer(at, buffer, argumentWide(r, 1), argumentWide(r, 3));
 }
 
-// buffer, u64 offset, value
+// Arguments: buffer, u64 offset, value.
 void Follower::bufferBytes(At& at, const RecordView& r) {
     Object* const buffer = find(at, ObjectType::Buffer, argumentWord(r, 0));
     if (buffer == nullptr) {
@@ -132,12 +132,12 @@ void Follower::shaders(At& at, const Rule& rule, const RecordView& r) {
             at.effect.read(shader->key);
             object->anyUnit = object->anyUnit || shader->anyUnit;
         }
-        return at.effect.write(part(object->key, Part::Linked)); // a link that fails replaces nothing
+        return at.effect.write(part(object->key, Part::Linked)); // a failed link replaces nothing
     case Family::PipelineSet: {
         Object* const program = find(at, ObjectType::Program, argumentWord(r, r.opcode == op::glUseProgramStages ? 2 : 1));
         if (program != nullptr) {
             use(at, program);
-            program->opaque = true; // lives as long as the pipeline has it
+            program->opaque = true; // lives as long as the pipeline refers to it
             at.effect.read(program->key);
         }
         return at.effect.kill(cell(at, object->key, r.opcode, rule, r));
@@ -146,7 +146,7 @@ void Follower::shaders(At& at, const Rule& rule, const RecordView& r) {
         noteUnits(*object, r, 1);
         at.effect.read(part(object->key, Part::Linked));
         return at.effect.kill(cell(at, part(object->key, Part::Uniforms), r.opcode, rule, r));
-    case Family::ProgramSet: // takes names as text: each its own
+    case Family::ProgramSet: // names are texts: each is a separate cell
         if (r.opcode == op::glBindAttribLocation || r.opcode == op::glBindFragDataLocation || r.opcode == op::glBindFragDataLocationIndexed || r.opcode == op::glTransformFeedbackVaryings)
             return at.effect.write(part(object->key, Part::Attachments));
         if (r.opcode != op::glProgramParameteri) at.effect.read(part(object->key, Part::Linked));

@@ -1,5 +1,5 @@
-// Draws and clears: which planes of which pictures they change. Whatever draws depends on all state, on the textures that it may take,
-// and on what its target is before.
+// Draws and clears: the planes of render targets that they change. A draw depends on all state, on the textures that it
+// may sample, and on the previous contents of its target.
 #include <GL/gl.h>
 #include <GL/glext.h>
 #include <algorithm>
@@ -16,7 +16,7 @@ constexpr uint32_t kColor = GL_COLOR_BUFFER_BIT, kDepth = GL_DEPTH_BUFFER_BIT, k
 
 bool isColor(uint32_t attachment) { return attachment >= GL_COLOR_ATTACHMENT0 && attachment <= GL_COLOR_ATTACHMENT31; }
 
-uint32_t planesOf(uint32_t buffer) { // of glClearBuffer…
+uint32_t planesOf(uint32_t buffer) { // argument of glClearBuffer...
     switch (buffer) {
     case GL_COLOR: return kColor;
     case GL_DEPTH: return kDepth;
@@ -31,7 +31,7 @@ uint32_t planesOf(uint32_t buffer) { // of glClearBuffer…
 void Follower::windowPlanes(At& at, uint32_t mask, bool covers) {
     const ContextNames& c = *at.context;
     const auto found = at.client.windows.find(at.thread.draw);
-    if (found == at.client.windows.end()) return; // there is nothing to draw to
+    if (found == at.client.windows.end()) return; // no render target
     const wire::WindowConfig& config = found->second.config;
     const Limits& l = c.limits;
     const Key picture = found->second.picture;
@@ -83,7 +83,7 @@ void Follower::planes(At& at, uint32_t mask, bool covers) {
     windowPlanes(at, mask, covers);
 }
 
-// What shaders and queries may write beside pictures.
+// Memory that shaders and queries may write besides render targets.
 void Follower::writeMemory(At& at) {
     ContextNames& c = *at.context;
     for (const auto& [slot, query] : c.queries)
@@ -103,7 +103,7 @@ void Follower::writeMemory(At& at) {
         at.effect.write(part(image->images, Part::Storage));
         at.effect.read(image->images);
         if (!image->opaque && image->target != GL_TEXTURE_BUFFER) continue;
-        at.effect.always = true; // whose memory it is, is not followed
+        at.effect.always = true; // the owner of this memory is not tracked
         readAll(at);
     }
 }
@@ -122,19 +122,19 @@ void Follower::drawBitmap(At& at) {
     draw(at);
 }
 
-// Mesa holds bitmaps back, and nodes have them drawn where a question comes (nodes/replay/replay_bitmaps.cpp). Without it they would be drawn
-// later, with the state that there is by then, for which Mesa may even crash: so it stays as long as they do.
+// Mesa batches bitmaps, and nodes flush them at requests (nodes/replay/replay_bitmaps.cpp). Without the request they
+// would be drawn later with other state, for which Mesa may crash. The request therefore stays as long as the bitmaps.
 void Follower::drawGathered(At& at) {
     if (at.context != nullptr && std::exchange(at.context->gathersBitmaps, false)) drawBitmap(at);
 }
 
-// Of the textures that are bound those that what is drawn now may take.
+// Reads the bound textures that the current draw may sample.
 void Follower::readTextures(At& at) {
     const Object* const program = bound(at, slotOf(Slot::Program));
     const bool any = program == nullptr || program->anyUnit;
     for (const auto& [slot, object] : at.context->bindings) {
         if (object == nullptr || slotKind(slot) != Slot::Texture) continue;
-        if (object->opaque) readAll(at); // may be another's image
+        if (object->opaque) readAll(at); // may be the image of another object
         const uint32_t unit = slotIndex(slot);
         if (any || unit == 0 || program->units.contains(unit)) at.effect.read(object->images);
     }
@@ -146,7 +146,7 @@ void Follower::readTextures(At& at) {
     }
 }
 
-// The picture that copies take from.
+// Reads the source of copies.
 void Follower::readPicture(At& at) {
     readState(at);
     const Object* const from = bound(at, slotOf(Slot::ReadFramebuffer));
@@ -173,7 +173,7 @@ void Follower::clear(At& at, const Rule& rule, const RecordView& r) {
         const uint32_t mask = buffer ? planesOf(first) : first;
         at.effect.read(c.key);
         if (c.limits.conditional) readState(at);
-        // Of several colours glClearBuffer… clears one.
+        // glClearBuffer... clears one of several colour buffers.
         const Object* const target = bound(at, slotOf(Slot::DrawFramebuffer));
         const auto colors = target == nullptr ? 1 : std::ranges::count_if(target->attachments, [](const auto& a) { return a.second.object != nullptr && isColor(a.first); });
         return planes(at, mask, !buffer || mask != kColor || (colors == 1 && argumentWord(r, 1) == 0));
@@ -197,7 +197,7 @@ void Follower::clear(At& at, const Rule& rule, const RecordView& r) {
         return drawBitmap(at);
     }
     if (r.opcode == op::glAccum) planes(at, GL_ACCUM_BUFFER_BIT, first == GL_LOAD);
-    if (r.opcode == op::glDrawPixels || r.opcode == op::glCopyPixels) { // may be all of depth or stencil
+    if (r.opcode == op::glDrawPixels || r.opcode == op::glCopyPixels) { // may include depth or stencil
         planes(at, kColor | kDepth | kStencil, false);
     }
     if (r.opcode == op::glCopyPixels) readPicture(at);

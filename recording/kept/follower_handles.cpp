@@ -1,4 +1,4 @@
-// Handles of textures (ARB_bindless_texture), and pages of sparse textures and buffers.
+// Texture handles (ARB_bindless_texture), and pages of sparse textures and buffers.
 #include <GL/gl.h>
 #include <GL/glext.h>
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace mural::recording {
 namespace {
 
-// Words of a record behind which its result stands.
+// Returns the word of a record after which its result follows.
 size_t resultWord(uint16_t opcode) {
     switch (opcode) {
     case op::glGetTextureSamplerHandleARB: return 2;
@@ -21,7 +21,7 @@ size_t resultWord(uint16_t opcode) {
 
 } // namespace
 
-// Null: deleted, and the handle with it.
+// Returns null if the texture is deleted, and its handle with it.
 Object* Follower::textureOf(At& at, const HandleId& handle) {
     const auto& known = at.context->group->handles;
     const auto found = known.find(handle);
@@ -43,11 +43,11 @@ void Follower::handles(At& at, const Rule& rule, const RecordView& r) {
     const HandleId handle{ofImage, argumentWide(r, resultWord(r.opcode))};
     Object* const texture = find(at, ObjectType::Texture, name);
     if (texture == nullptr) return unknown(at, false);
-    if (texture->handles.contains(handle)) return; // asked again
+    if (texture->handles.contains(handle)) return; // repeated query
     texture->handles.insert(handle);
     c.group->handles[handle] = name;
-    // Drivers number handles in their order, and shaders may take the numbers out of memory: none is left out, also not of textures
-    // that are deleted. What makes the texture complete has to be there, but not its pixels.
+    // Drivers number handles in order, and shaders may load handles from memory: none is removed, not even of deleted
+    // textures. The texture must be complete, but its pixels are not needed.
     at.effect.always = true;
     use(at, texture);
     at.effect.read(texture->key);
@@ -62,7 +62,7 @@ void Follower::handles(At& at, const Rule& rule, const RecordView& r) {
     at.effect.read(sampler->key);
 }
 
-// The same pages again replace what was said of them; what is written there in between depends on what was said before it.
+// A repeated commitment replaces the earlier one. Writes in between depend on the earlier one.
 void Follower::pages(At& at, const Rule& rule, const RecordView& r) {
     const uint32_t first = argumentWord(r, 0);
     if (rule.family == Family::TexPages) { // target or texture, level, offsets, sizes, commit

@@ -13,7 +13,7 @@ namespace {
 
 uint64_t levelOf(uint32_t target, uint32_t level) { return uint64_t{isFace(target) ? target - GL_TEXTURE_CUBE_MAP_POSITIVE_X : 0} << 32 | level; }
 
-// How many sizes the command names: that of its name.
+// Returns the number of size arguments, from the command's name.
 unsigned dimensionsOf(uint16_t opcode) {
     switch (opcode) {
     case op::glTexImage1D:
@@ -49,7 +49,7 @@ Extent extentAt(const RecordView& r, size_t word, unsigned dimensions) {
 
 } // namespace
 
-// The texture that commands name by that target.
+// Returns the texture bound at that target.
 Object* Follower::texture(At& at, uint32_t target, bool readsBinding) {
     ContextNames& c = *at.context;
     const uint32_t bindTarget = isFace(target) ? GL_TEXTURE_CUBE_MAP : target;
@@ -59,7 +59,7 @@ Object* Follower::texture(At& at, uint32_t target, bool readsBinding) {
         at.effect.read(part(part(c.cells, Part::TextureUnit, c.unit), Part::Binding, slot));
     }
     if (Object* const object = bound(at, slot)) return object;
-    // Each target has one without a name, which all units share.
+    // Each target has an unnamed texture, shared by all units.
     constexpr uint32_t kUnnamed = 0xff000000;
     Object* const unnamed = findOrMake(at, ObjectType::Texture, kUnnamed | bindTarget);
     unnamed->target = bindTarget;
@@ -69,7 +69,7 @@ Object* Follower::texture(At& at, uint32_t target, bool readsBinding) {
 void Follower::textures(At& at, const Rule& rule, const RecordView& r) {
     ContextNames& c = *at.context;
     const uint32_t target = argumentWord(r, 0), level = argumentWord(r, 1);
-    if (isProxy(target)) return; // only asks
+    if (isProxy(target)) return; // a query only
     const bool named = rule.type == ObjectType::Texture;
     Object* const t = named ? find(at, ObjectType::Texture, target) : texture(at, target, true);
     if (t == nullptr) return unknown(at, false);
@@ -78,7 +78,7 @@ void Follower::textures(At& at, const Rule& rule, const RecordView& r) {
     const Key storage = part(t->images, Part::Storage), image = part(storage, Part::Level, levelOf(target, level)), data = part(image, Part::Data);
     const unsigned dimensions = dimensionsOf(r.opcode);
     Extent& extent = t->levels[levelOf(target, level)];
-    // Images may come out of a buffer, and go through the pixel transfer.
+    // Images may come from a buffer, and pass through the pixel transfer.
     const bool fromBuffer = bound(at, slotOf(Slot::Buffer, GL_PIXEL_UNPACK_BUFFER)) != nullptr;
     if (fromBuffer) readState(at);
     if (c.transfersPixels) at.effect.read(c.cells);
@@ -131,7 +131,7 @@ void Follower::textures(At& at, const Rule& rule, const RecordView& r) {
         }
         return at.effect.kill(storage);
     }
-    default: // takes an image of another object
+    default: // shares the image of another object
         t->opaque = true;
         unknown(at, false);
     }
@@ -174,7 +174,7 @@ void Follower::framebuffers(At& at, const Rule& rule, const RecordView& r) {
         }
         use(at, target);
         target->drawBuffers = buffers;
-        if (!c.attribs.empty()) target->opaque = true; // glPopAttrib brings back what it was
+        if (!c.attribs.empty()) target->opaque = true; // glPopAttrib restores the previous binding
         return set(at, part(target->key, Part::Data), 0);
     }
     case Family::FramebufferSet: {
@@ -187,7 +187,7 @@ void Follower::framebuffers(At& at, const Rule& rule, const RecordView& r) {
     }
     default: break;
     }
-    // Of glFramebufferTexture… and glFramebufferRenderbuffer: target, attachment, …
+    // Arguments of glFramebufferTexture... and glFramebufferRenderbuffer: target, attachment, ...
     Object* const target = framebuffer(at, first);
     if (target == nullptr) return; // an error
     use(at, target);

@@ -1,4 +1,4 @@
-// Display lists: what is compiled does nothing until it is called, and then does what its commands do with the state of then.
+// Display lists: a compiled command takes effect when the list is called, with the state at that time.
 #include <GL/gl.h>
 #include <GL/glext.h>
 #include <algorithm>
@@ -11,9 +11,9 @@
 namespace mural::recording {
 namespace {
 
-constexpr uint32_t kMaxNesting = 64;              // as GL has it
-constexpr size_t kMaxListBytes = size_t{1} << 20; // of what is remembered of one
-constexpr size_t kRememberedWords = 16;           // of a command's arguments
+constexpr uint32_t kMaxNesting = 64; // GL's limit
+constexpr size_t kMaxListBytes = size_t{1} << 20; // remembered effects of one list
+constexpr size_t kRememberedWords = 16; // remembered arguments of one command
 
 enum class Compiles : uint8_t { Compiled, Executed, Unsure };
 
@@ -76,7 +76,7 @@ Compiles compiles(const Rule& rule) {
 
 bool draws(Family family) { return family == Family::Draw || family == Family::Begin || family == Family::Vertex || family == Family::End; }
 
-// Sets one part of the context's state, whatever else that is.
+// Returns true if the command sets one part of the context's state, independent of other state.
 bool setsAlone(const Rule& rule, const RecordView& r) {
     switch (rule.family) {
     case Family::Attribute:
@@ -88,7 +88,7 @@ bool setsAlone(const Rule& rule, const RecordView& r) {
     }
 }
 
-// What a call does, as records; of those that do the same again, the last.
+// Remembers the effects of a call as records; of repeated setters only the last.
 void remember(std::vector<std::byte>& into, const Rule& rule, const RecordView& r) {
     const bool repeats = draws(rule.family) || rule.family == Family::Attribute || rule.family == Family::Color;
     const bool movesRaster = r.opcode == op::glBitmap;
@@ -100,7 +100,7 @@ void remember(std::vector<std::byte>& into, const Rule& rule, const RecordView& 
     if (repeats) {
         RecordWalk walk(into);
         RecordView known;
-        bool drawn = false; // with what is bound, and the state, as they are now
+        bool drawn = false; // with the current bindings and state
         while (walk.next(known)) {
             bool same = known.opcode == opcode;
             for (size_t i = 0; same && !draws(rule.family) && i < rule.selectors; ++i)
@@ -121,10 +121,11 @@ void remember(std::vector<std::byte>& into, const Rule& rule, const RecordView& 
 
 } // namespace
 
-// In a primitive and in a list, what only sets state is told once more behind it: then nothing needs the whole of it for that.
+// State setters within a primitive or a list are repeated after it as side effects, so the state does not depend on the
+// whole command.
 bool Follower::leavesRest(At& at, const Rule& rule, const RecordView& r) {
     if ((!at.thread.inPrimitive && at.context->callDepth == 0) || at.context->restUnsafe || !setsAlone(rule, r)) return false;
-    if (at.context->callDepth > 0) { // clears that come in the list depend on it
+    if (at.context->callDepth > 0) { // later clears in the list depend on it
         Effect none;
         At of{at.stream, at.client, at.thread, at.context, none, 0};
         state(of, rule, r);
@@ -142,12 +143,12 @@ void Follower::compiled(At& at, const RecordView& r) {
         r.opcode == op::glColorMaterial || (rule.family == Family::Cap && argumentWord(r, 0) == GL_COLOR_MATERIAL))
         at.thread.listStacks = true;
     if (how == Compiles::Compiled && rule.family != Family::Nothing) remember(at.thread.listRecords, rule, r);
-    if (rule.family == Family::Draw) readState(at); // arrays are taken from buffers now
+    if (rule.family == Family::Draw) readState(at); // arrays are read from buffers at compile time
     if (!executes) return;
     const uint32_t list = std::exchange(at.thread.list, 0);
     gl(at, r);
     at.thread.list = list;
-    at.thread.inPrimitive = false; // the list is one command as it is
+    at.thread.inPrimitive = false; // the list is one command
 }
 
 void Follower::lists(At& at, const Rule& rule, const RecordView& r) {
@@ -164,7 +165,7 @@ void Follower::lists(At& at, const Rule& rule, const RecordView& r) {
     case Family::NewList: {
         Object* const list = findOrMake(at, ObjectType::List, first);
         at.thread.list = first;
-        at.thread.listExecutes = second == GL_COMPILE_AND_EXECUTE; // may call what it was before
+        at.thread.listExecutes = second == GL_COMPILE_AND_EXECUTE; // may call its own previous definition
         at.thread.listRecords.clear();
         at.thread.listStacks = false;
         if (first == 0) return unknown(at, true);
@@ -203,7 +204,7 @@ void Follower::callList(At& at, uint32_t name) {
     --at.context->callDepth;
 }
 
-// n, type, names
+// Arguments: n, type, names.
 void Follower::callLists(At& at, const RecordView& r) {
     const uint32_t n = argumentWord(r, 0), type = argumentWord(r, 1), bytes = argumentWord(r, 2);
     if (bytes > record::kInlineBytes || 12 + bytes > r.arguments.size()) return unknown(at, true);

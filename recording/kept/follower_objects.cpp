@@ -1,4 +1,4 @@
-// Objects: their names, who holds them, what is bound where.
+// Objects: names, holders, bindings.
 #include <GL/gl.h>
 #include <GL/glext.h>
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr uint64_t idOf(ObjectType type, uint32_t name) { return uint64_t{static_cast<uint8_t>(type)} << 32 | name; }
 
-// Those of a context: GL shares no containers and no queries.
+// Returns true for types that belong to a context: GL does not share container objects and queries.
 bool isOwn(ObjectType type) {
     return type == ObjectType::Framebuffer || type == ObjectType::VertexArray || type == ObjectType::Query || type == ObjectType::Pipeline || type == ObjectType::Feedback;
 }
@@ -28,9 +28,9 @@ Object* Follower::find(At& at, ObjectType type, uint32_t name) {
     return found == table.end() ? nullptr : found->second.get();
 }
 
-// A new one, whatever had the name.
+// Creates an object, replacing any of that name.
 Object* Follower::make(At& at, ObjectType type, uint32_t name) {
-    if (Object* const old = find(at, type, name)) { // GL gives no name twice: something was missed
+    if (Object* const old = find(at, type, name)) { // GL never returns a name twice: a deletion was missed
         old->opaque = true;
         at.effect.write(old->key);
         return old;
@@ -38,7 +38,7 @@ Object* Follower::make(At& at, ObjectType type, uint32_t name) {
     auto object = std::make_unique<Object>();
     object->type = type;
     object->name = name;
-    // One of that name that is held still has the plain key.
+    // A deleted but held object of that name keeps the plain key.
     Group& group = *at.context->group;
     const bool taken = std::ranges::any_of(group.gone, [&](const auto& o) { return o->type == type && o->name == name; });
     object->key = part(isOwn(type) ? at.context->key : group.key, Part::Object, idOf(type, name), taken ? ++group.lives : 0);
@@ -55,12 +55,12 @@ Object* Follower::make(At& at, ObjectType type, uint32_t name) {
     return place.get();
 }
 
-// Some names begin to be with their first use; those nobody has made here, with this one.
+// Some objects are created by the first use of their name.
 Object* Follower::findOrMake(At& at, ObjectType type, uint32_t name) {
     if (Object* const object = find(at, type, name)) return object;
     Object* const object = make(at, type, name);
     object->made = false;
-    object->anyUnit = true; // whatever has made it
+    object->anyUnit = true; // its origin is unknown
     return object;
 }
 
@@ -76,7 +76,7 @@ void Follower::release(At& at, Object* object) {
     if (object->deleted && object->holders == 0) erase(at, object);
 }
 
-// Nobody can use it any more.
+// Removes an object that can no longer be used.
 void Follower::erase(At& at, Object* object) {
     if (!object->opaque && !at.context->group->untracked)
         for (const Key key : {object->key, object->images})
@@ -87,7 +87,7 @@ void Follower::erase(At& at, Object* object) {
     std::erase_if(gone, [object](const auto& o) { return o.get() == object; });
 }
 
-// The command names it: it has to be there, and to be deleted if it was.
+// The command refers to the object: its creation is needed, and its deletion too.
 void Follower::use(At& at, Object* object) {
     const Key name = part(object->key, Part::Name);
     if (!object->made) at.effect.write(name);
@@ -110,7 +110,7 @@ void Follower::objects(At& at, const Rule& rule, const RecordView& r) {
     }
     case Family::Create: {
         const uint32_t name = argumentWord(r, r.opcode == op::glCreateShader ? 1 : 0);
-        if (name != 0) make(at, rule.type, name)->anyUnit = r.opcode == op::glCreateShader; // until its text is known
+        if (name != 0) make(at, rule.type, name)->anyUnit = r.opcode == op::glCreateShader; // until its source is known
         return;
     }
     case Family::SyncMake: // condition, flags, result
@@ -129,14 +129,14 @@ void Follower::objects(At& at, const Rule& rule, const RecordView& r) {
 void Follower::deleteNames(At& at, ObjectType type, const RecordView& r) {
     std::vector<uint32_t> names;
     if (!namesAt(r, 1, names)) return unknown(at, true);
-    // What is bound now lets go of it, what is not does not.
+    // Deletion unbinds the object where it is currently bound, and only there.
     for (const Slot slot : {Slot::DrawFramebuffer, Slot::ReadFramebuffer, Slot::VertexArray}) at.effect.read(part(at.context->cells, Part::Binding, slotOf(slot)));
     if (!at.context->attribs.empty()) at.context->attribs.back().texturesTouched = true;
-    for (const auto* stack : {&at.context->attribs, &at.context->clientAttribs}) // which bring back what was bound
+    for (const auto* stack : {&at.context->attribs, &at.context->clientAttribs}) // they restore bindings
         for (const SavedAttribs& level : *stack) at.effect.read(level.key);
     for (const uint32_t name : names) {
         if (name == 0) continue;
-        // Another context's, perhaps: extensions share what core GL does not.
+        // It may belong to another context: extensions share objects that core GL does not.
         if (isOwn(type) && find(at, type, name) == nullptr) at.effect.always = true;
         deleteOne(at, type, name);
     }
@@ -152,11 +152,11 @@ void Follower::deleteOne(At& at, ObjectType type, uint32_t name) {
     object->deleted = true;
     at.context->group->gone.push_back(std::move(found->second));
     table.erase(found);
-    ++object->holders; // while it is taken out of its bindings
+    ++object->holders; // keeps the object alive while its bindings are removed
     if (type != ObjectType::Program && type != ObjectType::Pipeline) {
         for (auto& [slot, there] : at.context->bindings)
             if (there == object) hold(at, there, nullptr);
-        // Only what is bound now lets go of it.
+        // Only current bindings are released.
         for (const Slot slot : {Slot::DrawFramebuffer, Slot::ReadFramebuffer})
             if (Object* const target = bound(at, slotOf(slot)))
                 for (auto& [point, attachment] : target->attachments)
@@ -210,7 +210,7 @@ void Follower::bind(At& at, const Rule& rule, const RecordView& r) {
             if (!c.clientAttribs.empty()) setClient(at, keyOf(slot));
             return;
         }
-        // That of indices belongs to the vertex array.
+        // The element array binding belongs to the vertex array.
         Object* const array = findOrMake(at, ObjectType::VertexArray, bound(at, slotOf(Slot::VertexArray)) ? bound(at, slotOf(Slot::VertexArray))->name : 0);
         Object* const buffer = objectOf(second);
         if (buffer != nullptr) use(at, buffer);
@@ -224,7 +224,7 @@ void Follower::bind(At& at, const Rule& rule, const RecordView& r) {
         const uint32_t name = argumentWord(r, 2);
         if (first == GL_TRANSFORM_FEEDBACK_BUFFER && bound(at, slotOf(Slot::Feedback)) != nullptr) return unknown(at, false);
         simple(slotOf(Slot::IndexedBuffer, first, second), name);
-        return simple(slotOf(Slot::Buffer, first), name); // the general binding, too
+        return simple(slotOf(Slot::Buffer, first), name); // the generic binding too
     }
     case op::glBindVertexArray: {
         simple(slotOf(Slot::VertexArray), first);
@@ -246,7 +246,7 @@ void Follower::bind(At& at, const Rule& rule, const RecordView& r) {
         if (first != GL_READ_FRAMEBUFFER) simple(slotOf(Slot::DrawFramebuffer), second);
         if (first != GL_DRAW_FRAMEBUFFER) simple(slotOf(Slot::ReadFramebuffer), second);
         return;
-    default: return simple(slotOf(Slot::Renderbuffer), second); // glBindRenderbuffer and its kin
+    default: return simple(slotOf(Slot::Renderbuffer), second); // glBindRenderbuffer and similar
     }
 }
 
@@ -263,7 +263,7 @@ void Follower::arrays(At& at, const Rule& rule, const RecordView& r) {
             Object* const buffer = held == 0 ? nullptr : find(at, ObjectType::Buffer, held);
             if (buffer == nullptr) continue;
             use(at, buffer);
-            buffer->opaque = true; // who holds it, and how long, is not followed here
+            buffer->opaque = true; // holders are not tracked
         }
         use(at, array);
         return at.effect.kill(cell(at, array->key, r.opcode, rule, r));
@@ -284,14 +284,14 @@ void Follower::arrays(At& at, const Rule& rule, const RecordView& r) {
         return setClient(at, keys_.child(above, op::glEnableVertexAttribArray, argumentWord(r, 0)));
     const bool generic = r.opcode == op::glVertexAttribPointer || r.opcode == op::glVertexAttribIPointer || r.opcode == op::glVertexAttribLPointer || r.opcode == op::glBindVertexBuffer;
     const uint32_t index = generic || rule.family == Family::ArraySet ? argumentWord(r, 0) : 0;
-    if (r.opcode == op::glBindVertexBuffers) { // first, count, buffers, …
+    if (r.opcode == op::glBindVertexBuffers) { // first, count, buffers, ...
         std::vector<uint32_t> names;
         if (!namesAt(r, 2, names)) names.clear();
         for (const uint32_t name : names) {
             Object* const held = name == 0 ? nullptr : findOrMake(at, ObjectType::Buffer, name);
             if (held == nullptr) continue;
             use(at, held);
-            held->opaque = true; // who holds it, and how long, is not followed here
+            held->opaque = true; // holders are not tracked
         }
         return setClient(at, keys_.child(above, r.opcode, index, argumentWord(r, 1)));
     }

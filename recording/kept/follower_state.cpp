@@ -1,4 +1,4 @@
-// State of contexts: what one command sets anew, matrices, and the stacks of attributes.
+// State of contexts: single state cells, matrices, and attribute stacks.
 #include <GL/gl.h>
 #include <GL/glext.h>
 #include <algorithm>
@@ -11,9 +11,9 @@
 namespace mural::recording {
 namespace {
 
-constexpr uint32_t kMaybe = 0x40000000; // other bits may save it, too
+constexpr uint32_t kMaybe = 0x40000000; // other bits may save it too
 
-// Which bindings come back with attributes.
+// Returns true if this attribute mask saves the binding.
 bool savesBinding(Part stack, uint32_t mask, uint64_t slot) {
     const uint32_t target = slotTarget(slot);
     if (stack == Part::AttribLevel) return slotKind(slot) == Slot::Texture && (mask & GL_TEXTURE_BIT);
@@ -25,7 +25,7 @@ bool savesBinding(Part stack, uint32_t mask, uint64_t slot) {
 
 } // namespace
 
-// The part of the state that the command sets: its name, and what in its arguments chooses.
+// Returns the key of the state that the command sets: its opcode, and the selecting arguments.
 Key Follower::cell(const At&, Key above, uint32_t kind, const Rule& rule, const RecordView& r) {
     Key key = above;
     uint64_t words[4] = {};
@@ -43,7 +43,7 @@ Key Follower::cell(const At&, Key above, uint32_t kind, const Rule& rule, const 
 void Follower::set(At& at, Key key, uint32_t attribBits) {
     at.effect.kill(key);
     if (at.context->attribs.empty() || attribBits == kNoAttribBit) return;
-    // Any of the stack may bring back what it was: with this command stays what undoes it.
+    // Any level of the stack may restore the previous value, so the command that restores it stays with this one.
     if (attribBits == 0 || (attribBits & GL_TEXTURE_BIT)) at.context->attribs.back().texturesTouched = true;
     for (const SavedAttribs& level : at.context->attribs)
         if (attribBits == 0 || (attribBits & (kMaybe | level.mask))) at.effect.read(level.key);
@@ -89,15 +89,15 @@ void Follower::state(At& at, const Rule& rule, const RecordView& r) {
         at.effect.read(unit);
         if (rule.family == Family::UnitCellOfMatrix) at.effect.read(part(c.key, Part::Matrices));
         return set(at, cell(at, part(c.cells, Part::TextureUnit, c.unit), r.opcode, rule, r), rule.attribBits);
-    case Family::CellOfAll: // the raster position: of all that makes a vertex, and whichever command sets it
+    case Family::CellOfAll: // the raster position depends on all vertex state and has several setters
         readState(at);
         return set(at, part(c.cells, Part::Config), rule.attribBits);
     case Family::CellOfMatrix: at.effect.read(part(c.key, Part::Matrices)); break;
-    case Family::PatternedCell: readState(at); break; // may lie in a buffer
+    case Family::PatternedCell: readState(at); break; // the pattern may be in a buffer
     case Family::Color:
-        // It may be the material as well: that stays when this is replaced after glDisable.
+        // With GL_COLOR_MATERIAL it also sets the material, which stays after glDisable even if the colour is replaced.
         if (c.limits.colorMaterial) colorMaterial(at);
-        return set(at, part(c.cells, Part::Color), rule.attribBits); // whichever command sets it
+        return set(at, part(c.cells, Part::Color), rule.attribBits); // one cell for all setters
     default: break;
     }
     if (r.opcode == op::glColorMaterial) {
@@ -136,7 +136,7 @@ void Follower::cap(At& at, const Rule& rule, const RecordView& r) {
     }
     if (ofUnit) at.effect.read(part(c.cells, Part::ActiveUnit));
     const Key above = ofUnit ? part(c.cells, Part::TextureUnit, c.unit) : c.cells;
-    // Enabled by one name, disabled by another; of one buffer, or of all.
+    // glEnable and glDisable set one cell; indexed variants set it for one buffer.
     const Key all = keys_.child(above, op::glEnable, what);
     const bool known = isContextCap(what) && what != GL_RASTERIZER_DISCARD && what != GL_PRIMITIVE_RESTART && what != GL_PRIMITIVE_RESTART_FIXED_INDEX &&
                        what != GL_TEXTURE_CUBE_MAP_SEAMLESS && what != GL_FRAMEBUFFER_SRGB;
@@ -169,7 +169,7 @@ void Follower::matrix(At& at, const Rule& rule, const RecordView&) {
     const auto readPlace = [&] {
         at.effect.read(part(c.cells, Part::MatrixMode));
         if (ofUnit) at.effect.read(part(c.cells, Part::ActiveUnit));
-        at.effect.read(part(level, Part::Made)); // that it was pushed so far
+        at.effect.read(part(level, Part::Made)); // depends on the pushes so far
         };
     switch (rule.family) {
     case Family::MatrixLoad:
@@ -222,7 +222,8 @@ void Follower::popAttribs(At& at, std::vector<SavedAttribs>& stack, Part kind) {
         if (!stack.empty() && std::ranges::find(stack.back().touched, key, &std::pair<Key, uint32_t>::first) == stack.back().touched.end())
             stack.back().touched.emplace_back(key, bits);
     };
-    // Textures are bound again, and have their parameters again, whatever has become of their names: that is not followed.
+    // glPopAttrib rebinds textures and restores their parameters, whatever happened to their names; this is not
+    // tracked.
     const bool textures = kind == Part::AttribLevel && (saved.mask & GL_TEXTURE_BIT) && saved.texturesTouched;
     if (saved.texturesTouched && !stack.empty()) stack.back().texturesTouched = true;
     if (textures) {

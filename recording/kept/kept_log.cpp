@@ -8,8 +8,8 @@
 namespace mural::recording {
 namespace {
 
-constexpr size_t kLargeBytes = 4096;           // items from here on have memory of their own, and are not moved
-constexpr size_t kLeastItems = 8192;           // fewer are not worth a pass
+constexpr size_t kLargeBytes = 4096; // larger entries have memory of their own and are not moved
+constexpr size_t kLeastItems = 8192; // minimum for a sweep
 constexpr size_t kLeastBytes = size_t{4} << 20;
 constexpr size_t kLeastKeys = 16384;
 
@@ -33,7 +33,7 @@ void KeptLog::record(uint32_t stream, const RecordView& r, std::span<const std::
     pending.bytes.clear();
     if (pending.bytes.capacity() > size_t{1} << 20) pending.bytes.shrink_to_fit();
     pending.effect.clear();
-    // State that it has left behind is a command of its own.
+    // Side effects become a command of their own.
     const std::vector<std::byte> rest = follower_.takeRest(stream);
     RecordWalk walk(rest);
     RecordView left;
@@ -143,7 +143,7 @@ void KeptLog::forEach(const std::function<void(uint32_t, std::span<const std::by
 }
 
 size_t KeptLog::sizeBytes() const {
-    constexpr size_t kKeyBytes = 32; // with its place in the table
+    constexpr size_t kKeyBytes = 32; // including its table entry
     size_t pending = 0;
     for (const auto& [stream, p] : pending_) pending += p.bytes.size();
     return bytes_.size() + largeBytes_ + pending + items_.size() * sizeof(Item) + effects_.size() * sizeof(EffectEntry) + keys_.used() * kKeyBytes;

@@ -1,6 +1,6 @@
-// The commands of all programs, in their order, but for those that nothing needs any more: what is kept, given to a fresh node, makes
-// it as the others are now. Appending costs a look at each record; every time the log has doubled, one pass over it finds what can
-// go, so that it stays in proportion to what is alive.
+// Log of the commands of all programs, without those that have no remaining effect. Replaying it brings a fresh node to
+// the current state. Appending examines each record; whenever the log has doubled, a liveness sweep removes dead
+// commands, so its size stays proportional to the live state.
 #pragma once
 
 #include <cstdint>
@@ -19,31 +19,31 @@ class KeptLog {
 public:
     KeptLog() : follower_(keys_) {}
 
-    // pinned: what the records need is kept, but they themselves are the caller's.
+    // pinned: everything the records need is kept, but the caller stores the records themselves.
     void append(uint32_t stream, std::span<const std::byte> payload, bool pinned = false);
     void record(uint32_t stream, const RecordView& r, std::span<const std::byte> bytes, bool pinned);
-    void clientGone(uint32_t client); // nothing of it is needed any more
-    // Leaves out what is not needed. `append` does that by itself, from time to time.
+    void clientGone(uint32_t client); // removes everything of the program
+    // Removes dead commands. append() calls it from time to time.
     void compact();
     bool compactIfGrown();
-    void settlePending(); // what streams have begun is as it is: the rest of it comes pinned
+    void settlePending(); // freezes incomplete commands; their remainder arrives pinned
 
-    // What is kept, in its order: a command at a time, some of them several records; then what streams have begun.
+    // Visits the live commands in order, each possibly several records, then the incomplete commands of streams.
     void forEach(const std::function<void(uint32_t stream, std::span<const std::byte> records)>& take) const;
-    [[nodiscard]] size_t sizeBytes() const; // of memory
+    [[nodiscard]] size_t sizeBytes() const; // memory in use
     [[nodiscard]] size_t records() const { return items_.size(); }
     void clear();
 
 private:
     struct Item {
-        std::unique_ptr<std::byte[]> large; // null: in bytes_
-        size_t at = 0;                      // there
+        std::unique_ptr<std::byte[]> large; // null: stored in bytes_
+        size_t at = 0; // offset there
         uint32_t sizeBytes = 0;
         uint32_t stream = 0;
         uint32_t effectAt = 0, effects = 0;
         bool always = false, pinned = false;
     };
-    struct Pending { // records that belong together, of which more come
+    struct Pending { // an incomplete command
         std::vector<std::byte> bytes;
         Effect effect;
     };
@@ -54,10 +54,10 @@ private:
     Follower follower_;
     std::vector<Item> items_;
     std::vector<EffectEntry> effects_;
-    std::vector<std::byte> bytes_; // of small items
+    std::vector<std::byte> bytes_; // small entries
     size_t largeBytes_ = 0;
     std::unordered_map<uint32_t, Pending> pending_;
-    size_t grownItems_ = 0, grownBytes_ = 0, grownKeys_ = 0; // when these are reached, a pass is due
+    size_t grownItems_ = 0, grownBytes_ = 0, grownKeys_ = 0; // thresholds of the next sweep
 };
 
 } // namespace mural::recording

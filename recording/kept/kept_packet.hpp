@@ -1,4 +1,4 @@
-// A packet of those that bring a late node to where the others are.
+// A packet of a snapshot, for a node that resynchronizes.
 #pragma once
 
 #include <cstddef>

@@ -19,7 +19,8 @@ void hideFrames(std::span<std::byte> records) {
 void KeptStream::append(uint32_t stream, std::span<const std::byte> payload) {
     if (overrun_ || wire::clientOf(stream) == 0) return;
     log_.append(stream, payload);
-    // At the bound one more pass; then a quarter of it has to be free, or there would be a pass for every packet.
+    // At the limit, sweep once more and require a quarter of it to become free; otherwise every packet would cause a
+    // sweep.
     if (log_.compactIfGrown() || log_.sizeBytes() <= boundBytes_) return;
     log_.compact();
     if (log_.sizeBytes() <= boundBytes_ / 2 + boundBytes_ / 4) return;

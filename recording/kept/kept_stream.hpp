@@ -1,5 +1,5 @@
-// What a node that comes late has to be given first: the stream of all programs so far, but for what nothing depends on any more. Fed
-// with every packet that goes to the nodes, in their order; used under the lock that orders them.
+// Produces snapshots for restarted nodes: the stream of all programs so far, without commands that have no remaining
+// effect. Receives every packet in broadcast order. Requires the broadcaster's lock.
 #pragma once
 
 #include <cstdint>
@@ -16,15 +16,15 @@ namespace mural::recording {
 
 class KeptStream {
 public:
-    // boundBytes: of memory. When what has to be kept does not fit, nothing is kept from then on, and `say` tells so, once.
+    // boundBytes: memory limit. If the live state exceeds it, logging stops, and `say` reports it once.
     KeptStream(size_t boundBytes, std::function<void(const std::string&)> say) : boundBytes_(boundBytes), say_(std::move(say)) {}
 
-    void append(uint32_t stream, std::span<const std::byte> payload); // those of the head's own stream are left out
-    void event(const ClientEvent& event);                             // ClientGone: nothing of it is needed
+    void append(uint32_t stream, std::span<const std::byte> payload); // ignores the head's own stream
+    void event(const ClientEvent& event); // ClientGone: removes everything of the program
 
-    [[nodiscard]] bool serves() const { return !overrun_; } // false: a node can't come any more
-    // Packets of programs' streams that make a fresh node what the others are now. Swaps in them are unseen (frame 0), and there
-    // are no questions.
+    [[nodiscard]] bool serves() const { return !overrun_; } // false: nodes can no longer resynchronize
+    // Returns packets that bring a fresh node to the current state. Swaps in them are unseen (frame 0), and they
+    // contain no requests.
     [[nodiscard]] std::vector<KeptPacket> snapshot();
     [[nodiscard]] size_t sizeBytes() const { return log_.sizeBytes(); }
     [[nodiscard]] size_t records() const { return log_.records(); }
@@ -36,7 +36,7 @@ private:
     bool overrun_ = false;
 };
 
-// A swap or front picture among the records becomes one that nobody sees.
+// Turns swaps and front pictures into unseen frames.
 void hideFrames(std::span<std::byte> records);
 
 } // namespace mural::recording

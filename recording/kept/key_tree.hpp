@@ -1,5 +1,5 @@
-// Names of all that commands write and read, as a tree: a client, in it share groups and contexts, in these objects and state,
-// in an object its parts. Who writes or reads a node does so with all below it.
+// Keys of everything that commands read and write, as a tree: clients, below them share groups and contexts, below
+// these objects and state, below an object its parts. An access to a node covers its whole subtree.
 #pragma once
 
 #include <cstddef>
@@ -14,12 +14,12 @@ constexpr Key kNoKey = 0; // the root, above all clients
 class KeyTree {
 public:
     KeyTree();
-    // The key of that name below `parent`; made when there was none. `kind` tells apart what a and b mean.
+    // Returns the key below `parent`, creating it if needed. `kind` separates the name spaces of a and b.
     Key child(Key parent, uint32_t kind, uint64_t a = 0, uint64_t b = 0);
     [[nodiscard]] Key parent(Key key) const { return nodes_[key].parent; }
-    [[nodiscard]] size_t size() const { return nodes_.size(); } // keys are below it
+    [[nodiscard]] size_t size() const { return nodes_.size(); } // has keys below it
     [[nodiscard]] size_t used() const { return nodes_.size() - free_.size(); }
-    // Forgets all keys that are not marked; those above marked ones stay. Forgotten keys may come back as others.
+    // Removes unmarked keys; ancestors of marked keys stay. Numbers of removed keys may be reused.
     void keepOnly(std::vector<bool> marked);
 
 private:

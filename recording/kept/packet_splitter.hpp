@@ -1,4 +1,4 @@
-// Puts records into packets again: as many of one stream as follow each other, and as one packet may hold.
+// Assembles records into packets: consecutive records of one stream, up to the packet size.
 #pragma once
 
 #include <cstddef>
@@ -34,7 +34,8 @@ public:
     }
 
 private:
-    static constexpr size_t kWantedBytes = wire::kMaxPacketBytes / 4; // as the program's own packets; a record may be larger
+    // size of the program's own packets; a record may be larger
+    static constexpr size_t kWantedBytes = wire::kMaxPacketBytes / 4;
     Take take_;
     uint32_t stream_ = 0;
     std::vector<std::byte> payload_;

@@ -1,4 +1,4 @@
-// Names of bindings: what is bound, at which target, of which unit or index.
+// Identifiers of bindings: kind, target, unit or index.
 #pragma once
 
 #include <cstdint>

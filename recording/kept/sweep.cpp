@@ -4,7 +4,7 @@
 
 namespace mural::recording {
 
-// All that nothing was said of is needed: it is there at the end.
+// Unmarked keys are live: the final state includes them.
 bool Sweep::needed(Key key) const {
     uint64_t last = 0;
     for (Key k = key;; k = keys_.parent(k)) {
@@ -32,7 +32,7 @@ void Sweep::need(Key key) {
     }
 }
 
-// A command that stays has to do with the key: so does what ends it.
+// A live command references `key`, so the command that closes the key (or an ancestor) is live too.
 void Sweep::mention(Key key) {
     for (Key k = key; k != kNoKey; k = keys_.parent(k)) {
         if (marks_[k].closer == kNobody) continue;
@@ -44,7 +44,7 @@ void Sweep::mention(Key key) {
 void Sweep::open(Key key) {
     const auto found = restored_.find(key);
     const Key state = keys_.parent(keys_.parent(key)); // of all contexts and their objects
-    if (found == restored_.end()) return need(state); // what comes back when it ends is not known yet
+    if (found == restored_.end()) return need(state); // the values that its end restores are not known yet
     for (const auto& [restored, wasNeeded] : found->second.keys)
         if (wasNeeded) need(restored);
     if (found->second.all) need(state);
@@ -57,12 +57,12 @@ bool Sweep::command(uint32_t number, std::span<const EffectEntry> effect, bool a
         stays = stays || ((e.mode == Mode::Write || e.mode == Mode::Kill) && anyNeeded(e.key));
         closes = closes || e.mode == Mode::Close;
     }
-    Key level = kNoKey; // of the attribute stack, that this command closes
+    Key level = kNoKey; // attribute stack level that this command closes
     for (const EffectEntry& e : effect)
         if (e.mode == Mode::Close) level = e.key;
     if (stays && level != kNoKey) restored_[level].all = true;
-    // One that closes may yet be needed: what it depends on is asked for now. The parts of a command are in the order in which they
-    // happen, so the last comes first here; what a part reads stands behind what it makes anew.
+    // A closing command may become live later, so its reads count now. Effects are in execution order, so the sweep
+    // visits them backwards: kills before reads.
     for (size_t i = effect.size(); i-- > 0;) {
         const EffectEntry& e = effect[i];
         if (stays) mention(e.key);
@@ -77,7 +77,7 @@ bool Sweep::command(uint32_t number, std::span<const EffectEntry> effect, bool a
         case Mode::Kill:
         case Mode::Forget:
             marks_[e.key].said = (++step_ << 1) | 1;
-            if (e.mode == Mode::Kill) marks_[e.key].closer = kNobody; // what it would have closed is not there
+            if (e.mode == Mode::Kill) marks_[e.key].closer = kNobody; // the closed object does not exist
         }
     }
     for (const EffectEntry& e : effect)

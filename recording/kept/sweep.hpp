@@ -1,8 +1,8 @@
-// Dead-store elimination: goes over a log from its end to its beginning, and says of each command whether the state at the end,
-// or a command behind it that stays, needs it.
+// Dead-store elimination: a backward pass over a log that decides, for each command, whether the final state or a later
+// live command needs it.
 //
-// Each key has the time (counted in steps of the sweep) at which it was last said to be needed or not; what was said last of it or of
-// any key above it holds.
+// Each key has the time (in steps of the sweep) of its last mark, live or dead. The latest mark of a key or any
+// ancestor counts.
 #pragma once
 
 #include <cstdint>
@@ -21,19 +21,19 @@ public:
 
     explicit Sweep(const KeyTree& keys) : keys_(keys), marks_(keys.size()) {}
 
-    // The commands from the last to the first, by numbers of the caller's. True: it stays. A command that was not needed may turn
-    // out to be later on, by `keepsAfterAll`.
+    // Visits commands from last to first, with numbers chosen by the caller. Returns true if the command is live. A
+    // dead command may become live later, by `keepsAfterAll`.
     bool command(uint32_t number, std::span<const EffectEntry> effect, bool always);
     std::function<void(uint32_t number)> keepsAfterAll;
 
 private:
     struct Mark {
-        uint64_t said = 0;      // step << 1 | not needed
-        uint64_t readBelow = 0; // the same, of the last that was needed below
+        uint64_t said = 0; // step << 1 | dead
+        uint64_t readBelow = 0; // the same, of the last live mark in the subtree
         uint32_t closer = kNobody;
     };
-    struct Restored { // by an attribute stack's level
-        std::vector<std::pair<Key, bool>> keys; // needed behind it
+    struct Restored { // by attribute stack level
+        std::vector<std::pair<Key, bool>> keys; // live after it
         bool all = false;
     };
 

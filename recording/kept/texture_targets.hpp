@@ -1,4 +1,4 @@
-// Of textures' targets: which only ask, and which are one of a cube's faces.
+// Texture targets: proxies, which only query, and faces of cubes.
 #pragma once
 
 #include <GL/gl.h>

@@ -17,13 +17,13 @@ bool draws(uint16_t opcode) {
     return family == Family::Draw || family == Family::Begin || family == Family::CallList || family == Family::CallLists;
 }
 
-// Goes over the whole once: what of the frames before is needed, and where the wanted ones are. Records are counted from 0 over
-// the file.
+// First pass: finds the needed part of earlier frames, and the requested frames. Records are numbered from 0 over the
+// file.
 class Survey {
 public:
     Survey(int64_t first, int64_t last) : first_(first), last_(last) { begun(0); }
 
-    // False: no more is needed.
+    // Returns false when nothing more is needed.
     bool entry(const Entry& e) {
         if (e.stream != 0) return packet(e);
         ClientEvent event;
@@ -39,11 +39,12 @@ public:
     [[nodiscard]] int64_t frames() const { return frames_.frames(); }
 
     KeptLog log;
-    std::vector<std::pair<uint32_t, std::vector<std::byte>>> came; // programs that were there when the first frame began
-    bool before = true;         // the first frame has not begun
-    uint64_t beginRecord = 0;   // its first record
-    uint64_t shownFrom = 0;     // the first swap that is seen
-    uint64_t endRecord = 0;     // the one that ends the last frame
+    // programs that existed at the start of the first frame
+    std::vector<std::pair<uint32_t, std::vector<std::byte>>> came;
+    bool before = true; // before the first frame
+    uint64_t beginRecord = 0; // first record of the first frame
+    uint64_t shownFrom = 0; // first visible swap
+    uint64_t endRecord = 0; // swap that ends the last frame
     uint64_t beganNs = 0;
     uint64_t drawsBefore = 0;
 
@@ -78,14 +79,14 @@ private:
 
     const int64_t first_, last_;
     WallFrames frames_;
-    uint64_t number_ = 0; // of the record
+    uint64_t number_ = 0; // number of the record
 };
 
 class Copy {
 public:
     Copy(const Survey& survey, FileWriter& writer, TrimReport& report) : survey_(survey), writer_(writer), report_(report) {}
 
-    // What the first frame needs of those before.
+    // Writes the needed part of earlier frames.
     bool kept() {
         for (const auto& [client, event] : survey_.came)
             if (!put({0, 0, event})) return false;
@@ -96,7 +97,7 @@ public:
         packets.flush();
         return failed_.ok();
     }
-    // And the frames themselves. False: no more is wanted, or failed() says why not.
+    // Writes the requested frames. Returns false at their end, or on an error, which failed() has.
     bool entry(const Entry& e) {
         if (e.stream != 0) return packet(e);
         ClientEvent event;
@@ -122,7 +123,7 @@ private:
         return (kept_.empty() || put({e.stream, timeOf(e), kept_})) && more;
     }
 
-    // Pictures before the first frame are seen by nobody; those that are count from 1 again.
+    // Swaps before the first frame become unseen; visible frames are renumbered from 1.
     void number(uint32_t stream, const RecordView& r, size_t argumentsAt, bool before) {
         if (r.arguments.size() < 8 || argumentWord(r, 1) == wire::kUnseenFrame) return;
         const uint32_t frame = before ? wire::kUnseenFrame : ++frames_[wire::clientOf(stream)];
