@@ -1,7 +1,7 @@
-// The least that datagrams cost who receives them by recvmmsg: a socket that is emptied each 4 ms, as RSP's readers rest, 32
-// datagrams by a call, always into the same places, and nothing is done with them. Knows nothing of Mural.
+// Lower bound of the receive cost with recvmmsg: a socket that is drained every 4 ms, the rest interval of RSP's
+// readers, 32 datagrams per call, always into the same buffers, without processing. Independent of Mural.
 //
-//   bare_receiver GROUP PORT INTERFACE-ADDRESS    until nothing came for 0.4 s; then one line
+//   bare_receiver GROUP PORT INTERFACE-ADDRESS    runs until 0.4 s of silence; prints one line
 #include <arpa/inet.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
@@ -18,7 +18,7 @@
 namespace {
 
 constexpr size_t kAtOnce = 32;
-constexpr size_t kPlaceBytes = 9216; // of a jumbo datagram
+constexpr size_t kPlaceBytes = 9216; // a jumbo datagram
 constexpr int kSocketBytes = 8 << 20;
 constexpr int64_t kNsPerS = 1'000'000'000;
 constexpr int64_t kRestNs = 4'000'000;
@@ -51,7 +51,7 @@ public:
             messages_[i].msg_hdr.msg_iovlen = 1;
         }
     }
-    // Bytes that were there.
+    // Drains the socket; returns the number of bytes.
     uint64_t empty(int socket) {
         uint64_t bytes = 0;
         for (int count = kAtOnce; count == static_cast<int>(kAtOnce);) {
@@ -105,7 +105,7 @@ int main(int count, char** words) {
             firstNs = now;
             cpuBeganS = cpuS();
         } else {
-            bytes += came; // those of the first look came before the time began
+            bytes += came; // the first read precedes the measurement
         }
         if (came > 0) lastNs = now;
         if (firstNs != 0 ? now - lastNs > kOverNs : now - startNs > kComesWithinNs) break;

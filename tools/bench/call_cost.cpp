@@ -1,6 +1,6 @@
-// What small OpenGL calls cost the thread that makes them: nanoseconds of its own CPU time per call.
-// Knows nothing of Mural; first_light runs it natively and through Mural and compares. Beside each
-// call the time to copy as many bytes as the call carries: no capture can be faster than that.
+// Measures the cost of small OpenGL calls to the calling thread: its CPU time per call in nanoseconds. Independent of
+// Mural; first_light runs it natively and through Mural. Each call is accompanied by the time to copy its arguments, a
+// lower bound for any capture.
 #include <GL/glx.h>
 #include <X11/Xlib.h>
 
@@ -20,8 +20,8 @@ namespace {
 using mural::bench::GlWindow;
 
 struct Options {
-    int steps = 4000;  // per frame
-    int frames = 100;  // measured, after as many for warming up
+    int steps = 4000; // per frame
+    int frames = 100; // measured, after as many warm-up frames
     std::string jsonFile;
 };
 
@@ -31,7 +31,7 @@ int64_t nowNs(clockid_t clock) {
     return int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
 }
 
-// Arguments change from call to call: drivers skip calls that change nothing.
+// Arguments change from call to call, because drivers skip redundant calls.
 float valueOf(int step) { return static_cast<float>(step & 1023) * (1.0F / 1024.0F); }
 
 GLint colourLocation = -1;
@@ -43,7 +43,7 @@ void callUniform(int steps) {
     for (int i = 0; i < steps; ++i) uniform4f(colourLocation, valueOf(i), 0.25F, 0.5F, 1.0F);
 }
 
-// All vertices in one point: nothing is filled.
+// All vertices coincide, so nothing is rasterized.
 void callVertices(int steps) {
     glBegin(GL_TRIANGLES);
     for (int i = 0; i < steps; ++i) {
@@ -76,10 +76,10 @@ void callTextures(int steps) {
 
 struct Case {
     const char* name;
-    int calls;      // per step
-    size_t bytes;   // of a step: opcode and arguments as they are captured
+    int calls; // per step
+    size_t bytes; // of a captured step: opcode and arguments
     void (*run)(int steps);
-    bool shader;    // with the GLSL program in use
+    bool shader; // with the GLSL program bound
 };
 constexpr Case kCases[] = {
     {"glUniform4f", 1, 24, callUniform, true},
@@ -117,13 +117,13 @@ Cost measureCase(const Case& c, const Options& options, GLuint program, GlWindow
     return {median(cpu), median(wall), 0};
 }
 
-// Into memory that is larger than the caches, as a ring between processes is.
+// Copies into memory larger than the caches, as in a ring between processes.
 double measureCopy(const Case& c, const Options& options) {
     constexpr size_t kRingBytes = size_t{64} << 20;
     static std::vector<std::byte> ring(kRingBytes, std::byte{1});
     static size_t at = 0;
     std::byte source[128] = {};
-    volatile size_t sizeBytes = c.bytes; // the copy must not become a few moves
+    volatile size_t sizeBytes = c.bytes; // prevents expansion into a few moves
     std::vector<double> cpu;
     for (int frame = 0; frame < options.frames; ++frame) {
         const int64_t cpuNs = nowNs(CLOCK_THREAD_CPUTIME_ID);
@@ -138,7 +138,7 @@ double measureCopy(const Case& c, const Options& options) {
     return median(cpu);
 }
 
-// The last uniform must arrive: a quad drawn with it is green.
+// Checks that the last uniform arrived: a quad drawn with it is green.
 bool pictureIsRight(GLuint program, GlWindow& window) {
     useProgram(program);
     uniform4f(colourLocation, 0.0F, 1.0F, 0.0F, 1.0F);

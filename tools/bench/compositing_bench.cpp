@@ -1,5 +1,6 @@
-// Measures codecs, kernels and the selector of the compositor on captured planes: compositing_bench FOLDER. Usually run by
-// tools/bench/compositing, which captures them. Ends with status 1 if a result is wrong; times are printed, never judged.
+// Benchmarks codecs, kernels and the selector of the compositor on captured planes: compositing_bench FOLDER. Usually
+// run by tools/bench/compositing, which captures them. Exit status 1 for a wrong result; times are printed, never
+// judged.
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 

@@ -8,10 +8,10 @@
 
 namespace mural::bench {
 
-// Used by the thread that opened it; the context stays current.
+// Use on the opening thread only; the context stays current.
 class GlWindow {
 public:
-    // Null with one line on standard error when there is no display or no GLX.
+    // Returns null, with one line on standard error, without a display or GLX.
     static std::unique_ptr<GlWindow> open(int width, int height);
     GlWindow(const GlWindow&) = delete;
     GlWindow& operator=(const GlWindow&) = delete;
@@ -23,7 +23,8 @@ public:
         return reinterpret_cast<Function>(glXGetProcAddressARB(reinterpret_cast<const GLubyte*>(name)));
     }
 
-    // Fills with the uniform at `location`. 0, with one line on standard error, when it does not link.
+    // Creates a program that fills with the uniform at `location`. Returns 0, with one line on standard error, if
+    // linking fails.
     GLuint colourProgram(GLint& location) const;
 
 private:

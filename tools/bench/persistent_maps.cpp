@@ -1,6 +1,6 @@
-// How a preloaded library can see what a program writes into memory that is mapped for good: each way at
-// the same job, in one run. A frame has some draws; before each the program writes its share of the
-// frame's bytes, then the way finds and copies what changed. Prints microseconds per draw beyond the writes.
+// Compares methods by which a preloaded library detects writes into persistently mapped memory, in one run. A frame has
+// several draws; before each the program writes its share of the frame's bytes, then the method finds and copies the
+// changes. Prints microseconds per draw beyond the writes.
 //
 //   persistent_maps [--quick]
 #include <algorithm>
@@ -27,9 +27,9 @@
 namespace {
 
 constexpr size_t kPage = 4096;
-std::vector<std::byte> sink; // where changes are copied to, as into the stream
+std::vector<std::byte> sink; // destination of changes, in place of the stream
 
-// One way of seeing writes.
+// A detection method.
 struct Way {
     virtual ~Way() = default;
     virtual bool begin(std::byte* memory, size_t size) = 0;
@@ -40,7 +40,7 @@ struct Way {
 
 void copyOut(const std::byte* from, size_t size) { std::memcpy(sink.data(), from, std::min(size, sink.size())); }
 
-// Every byte against a copy, by libc's vectorised memcmp.
+// Compares every byte with a copy, by libc's vectorized memcmp.
 struct Comparison : Way {
     std::vector<std::byte> shadow;
     bool begin(std::byte* memory, size_t size) override {
@@ -59,7 +59,7 @@ struct Comparison : Way {
     }
 };
 
-// A hash of every page: no copy to read, but more work for each byte.
+// Hashes every page: no copy to read, but more work per byte.
 struct Hashes : Way {
     std::vector<uint64_t> known;
     static uint64_t hash(const std::byte* page) {
@@ -88,7 +88,7 @@ struct Hashes : Way {
     }
 };
 
-// The kernel marks and lists pages; those are compared with the copy.
+// The kernel marks and lists written pages, which are compared with the copy.
 struct Watch : Comparison {
     mural::WriteWatch watch;
     bool begin(std::byte* memory, size_t size) override { return Comparison::begin(memory, size) && watch.begin(memory, size); }
@@ -98,7 +98,7 @@ struct Watch : Comparison {
     }
 };
 
-// What Mural does: as Watch, but pages that were written lately stay unlocked and are compared.
+// Mural's method: as Watch, but recently written pages stay unlocked and are compared.
 struct Chosen : Way {
     mural::MapChanges changes;
     bool begin(std::byte* memory, size_t size) override { return changes.begin(memory, size); }
@@ -107,7 +107,7 @@ struct Chosen : Way {
     }
 };
 
-// Pages that something says were written, to be protected again.
+// Base of methods that report written pages, which are protected again.
 struct Marked : Comparison {
     std::vector<std::atomic<uint8_t>> dirty;
     std::atomic<bool> any{false};
@@ -128,7 +128,7 @@ struct Marked : Comparison {
     }
 };
 
-// mprotect, and SIGSEGV at the first write of a page. System calls that write there fail (EFAULT).
+// mprotect, with SIGSEGV at the first write to a page. System calls that write there fail (EFAULT).
 struct Signals : Marked {
     static inline Signals* one = nullptr;
     struct sigaction before {};
@@ -155,7 +155,7 @@ struct Signals : Marked {
     void protect(size_t from, size_t size) override { mprotect(memory_ + from, size, PROT_READ); }
 };
 
-// userfaultfd with a thread that answers each first write. Without rights, system calls that write fail.
+// userfaultfd with a thread that resolves each first write. Unprivileged, system calls that write fail.
 struct Answered : Marked {
     int uffd = -1, end = -1;
     pthread_t thread{};
@@ -201,7 +201,7 @@ void* Answered::answer(void* self) {
     return nullptr;
 }
 
-// Soft-dirty bits of /proc/self/pagemap; clear_refs clears those of the whole process.
+// Soft-dirty bits of /proc/self/pagemap; clear_refs clears them for the whole process.
 struct SoftDirty : Comparison {
     int pagemap = open("/proc/self/pagemap", O_RDONLY | O_CLOEXEC), clear = open("/proc/self/clear_refs", O_WRONLY | O_CLOEXEC);
     std::vector<uint64_t> entries;
@@ -212,7 +212,7 @@ struct SoftDirty : Comparison {
         entries.resize(size / kPage);
         if (::write(clear, "4", 1) != 1) return false;
         memory[0] = std::byte{1};
-        return read() && entries[0] >> 55 & 1; // a kernel without them never sets one
+        return read() && entries[0] >> 55 & 1; // never set by a kernel without support
     }
     void beforeDraw() override {
         read();
@@ -229,10 +229,10 @@ struct SoftDirty : Comparison {
 struct Job {
     size_t size;
     int draws;
-    double share; // of the memory, written in a frame
+    double share; // fraction of the memory written per frame
 };
 
-// Writes a draw's share where the draw before ended, as a ring does.
+// Writes a draw's share after that of the previous draw, as in a ring buffer.
 struct Writer {
     std::byte* memory;
     Job job;
@@ -249,7 +249,7 @@ struct Writer {
     }
 };
 
-// Nanoseconds per draw: at most a frame's draws, within the time of a measurement.
+// Returns nanoseconds per draw, over at most a frame's draws within the time limit.
 double perDraw(const Job& job, std::byte* memory, Way* way, int64_t limitNs) {
     Writer writer{memory, job};
     const int64_t start = mural::monotonicNowNs();

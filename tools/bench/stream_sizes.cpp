@@ -1,9 +1,9 @@
-// Bytes per frame of a recording, by Mural's economy and by what it is measured against; one line of JSON. tools/bench/economy
-// runs it.
+// Bytes per frame of a trace, with Mural's delta coding and with competitors; one line of JSON. Run by
+// tools/bench/economy.
 //
-//   stream_sizes FILE.mural [WARM_FRAMES]     the first frames are start-up: what they need is told apart
+//   stream_sizes FILE.mural [WARM_FRAMES]     the first frames are start-up and reported separately
 //
-// Exit status 77: the recording has no more frames than that.
+// Exit status 77: the trace has no more frames than that.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -22,15 +22,16 @@ using namespace mural::bench;
 namespace {
 
 constexpr uint64_t kStoreBytes = uint64_t{1} << 30;
-constexpr int kZstdLevel = 3; // its default
+constexpr int kZstdLevel = 3; // Zstandard's default
 
-// Of all ways by turns; medians are told. Of a short recording another program that wakes up for a moment is a good part of a round: so as many as the time allows.
+// Rounds alternate between the methods, and medians are reported. Interruptions are a large part of a round with a
+// short trace, so the number of rounds depends on the time.
 constexpr int kLeastRounds = 3, kMostRounds = 15;
 constexpr int64_t kLongEnoughMs = 4000;
 constexpr size_t kMemoryBytes = size_t{384} << 20;
 
-// Where a hypervisor takes free memory away, to get the first 100 MB back takes as long as to compress them. That is no way's work, so
-// the system has enough at hand before each begins; to clear it counts.
+// Under a hypervisor that reclaims memory, committing the first 100 MB takes as long as compressing them. The memory is
+// therefore committed before each method; clearing it counts.
 void haveMemory() {
     void* const memory = mmap(nullptr, kMemoryBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (memory == MAP_FAILED) return;
@@ -39,13 +40,13 @@ void haveMemory() {
     munmap(memory, kMemoryBytes);
 }
 
-// Of one way, in one round.
+// Result of one method in one round.
 struct Counted {
-    double startBytes = 0, bytes = 0; // of the first frames, and of those behind them
+    double startBytes = 0, bytes = 0; // of the start-up frames, and of the others
     double startCpuNs = 0, cpuNs = 0;
 };
 
-// Of the recording.
+// Frames of the trace.
 struct Frames {
     int64_t start = 0, counted = 0;
     uint64_t startRaw = 0, raw = 0;
@@ -85,7 +86,7 @@ Result<Counted> run(Way& way, const char* path, int64_t warm, Frames& frames) {
     int64_t shown = 0;
     FrameReader again;
     again.packet = [&](const StreamPacket& p) {
-        if (!wrong.empty() || shown >= frames.start + frames.counted) return; // behind the last frame nothing was sent
+        if (!wrong.empty() || shown >= frames.start + frames.counted) return; // nothing is sent after the last frame
         if (auto same = way.comesOut(p); !same) wrong = "frame " + std::to_string(shown + 1) + ": " + same.error().message;
     };
     again.ended = [&](int64_t frame) { shown = frame; };
@@ -111,7 +112,7 @@ int fail(const std::string& why, int status = 2) {
 } // namespace
 
 int main(int argc, char** argv) {
-    keepFreedMemory(); // as the head
+    keepFreedMemory(); // as in the head
     if (argc < 2 || argc > 3) return fail("give a recording that mural run --record has made, and how many frames are start-up");
     const int64_t warm = argc > 2 ? std::strtoll(argv[2], nullptr, 10) : 10;
     Frames frames;

@@ -1,4 +1,4 @@
-// Sizes as users write them: 65536, 512KiB, 64MiB, 1GiB.
+// Sizes on the command line: 65536, 512KiB, 64MiB, 1GiB.
 #pragma once
 
 #include <charconv>

@@ -1,4 +1,4 @@
-// How the doctor's checks are told: a line each, or JSON.
+// Prints the doctor's checks: one line each, or JSON.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -9,7 +9,7 @@ namespace mural::cli {
 
 void printChecks(const std::vector<Check>& checks);
 nlohmann::json toJson(const std::vector<Check>& checks);
-// Nothing is bad.
+// Returns true if no check is bad.
 bool usable(const std::vector<Check>& checks);
 
 } // namespace mural::cli

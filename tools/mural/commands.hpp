@@ -1,4 +1,4 @@
-// The sub-commands of mural; each returns its exit status.
+// The subcommands of mural; each returns its exit status.
 #pragma once
 
 #include <string>
@@ -19,7 +19,7 @@ struct StatOptions {
 int statCommand(const StatOptions& options);
 int versionCommand();
 
-// In a child of doctor, with the environment of a captured program: has the library come along?
+// Runs in a child of doctor with the environment of a captured program: checks that the capture library is loaded.
 int preloadProbeCommand();
 
 const char* muralVersion();

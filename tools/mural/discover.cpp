@@ -55,7 +55,7 @@ int discoverCommand(const DiscoverArguments& a) {
     if (a.asJson) printJson(d);
     else printTable(d);
     if (!d.nodes.empty()) return 0;
-    // Without Avahi the beacon does as well: its trouble is worth a line only where nothing was found.
+    // The beacon works without Avahi, so problems are reported only if nothing was found.
     for (const std::string& trouble : {d.beaconTrouble, d.avahiTrouble})
         if (!trouble.empty() && !a.asJson) fmt::print(stderr, "mural discover: {}\n", trouble);
     if (!a.asJson) fmt::print(stderr, "mural discover: no node waits on this network; start one with: mural node --wait --secret FILE\n");

@@ -1,4 +1,4 @@
-// mural discover: the nodes that wait for heads on this network.
+// mural discover: lists waiting nodes on this network.
 #pragma once
 
 #include <CLI/App.hpp>

@@ -1,4 +1,4 @@
-// What `mural doctor` looks at, one function per thing. Each returns in limited time.
+// Checks of `mural doctor`, one function each. Each returns in bounded time.
 #pragma once
 
 #include <functional>
@@ -13,7 +13,7 @@ struct Check {
     Health health = Health::Ok;
     std::string name;
     std::string found;
-    std::string advice; // what to do; empty when fine
+    std::string advice; // next step; empty if fine
 };
 
 Check checkVersions();
@@ -26,11 +26,10 @@ Check checkMemoryFolder();
 Check checkOpenFiles();
 Check checkVideo();
 Check checkRemote();
-// One for each backend; usable is set when at least one draws.
+// One check per GL backend. Sets `usable` if at least one can draw.
 std::vector<Check> checkGl(bool& usable);
 
-// Runs `work` in a child process, so that a driver that crashes or hangs does no harm here; its text,
-// or what happened instead.
+// Runs `work` in a child process, so a driver's crash or hang does no harm. Returns its text, or the problem.
 struct Isolated {
     bool ok = false;
     std::string text;

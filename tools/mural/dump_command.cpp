@@ -50,7 +50,7 @@ Result<recording::DumpOptions> dumpOptionsFrom(const DumpArguments& a) {
     return options;
 }
 
-// What was asked for and is not there is said, or nobody knows whether the name is meant.
+// Reports requested names without a match, because they may be misspelt.
 std::string absentCalls(const DumpArguments& a, const std::vector<std::string>& absent) {
     std::string names;
     for (const std::string& name : absent) names += (names.empty() ? "" : ",") + name;
@@ -82,9 +82,9 @@ int dumpCommand(const DumpArguments& a) {
         if (const auto there = recording::checkFrames(reader, options.value().lastFrame); !there) return complain(there.error());
     if (!reader.notice().empty()) errors.error(reader.notice());
     const auto dumped = recording::dump(reader, options.value(), [](const std::string& line) { return std::puts(line.c_str()) >= 0; });
-    // main looks whether all has been written, and says why not.
+    // main reports output errors.
     if (dumped && (dumped.value().absent.empty() || std::ferror(stdout) != 0)) return 0;
-    std::fflush(stdout); // the line about it comes behind the calls
+    std::fflush(stdout); // the message follows the calls
     if (!dumped) return complain(dumped.error());
     errors.error(absentCalls(a, dumped.value().absent));
     return 0;

@@ -1,4 +1,4 @@
-// `mural dump`: a recording as text.
+// `mural dump`: prints a trace as text.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// Frames as the command line has them: 30 or 30-90, counted from 1.
+// Frame ranges on the command line: 30 or 30-90, from 1.
 #pragma once
 
 #include <charconv>

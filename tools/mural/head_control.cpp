@@ -29,8 +29,8 @@ HeadControl::start(const std::vector<std::string>& command, const launch::Enviro
     request.arguments.insert(request.arguments.end(), {"--control-fd", std::to_string(ends[1])});
     request.environment = environment.entries();
     request.keptFds = {ends[1]};
-    request.outputFd = STDERR_FILENO; // standard output is the program's
-    request.ownSession = true;        // Ctrl-C is for the program; the head ends after it, in order
+    request.outputFd = STDERR_FILENO; // standard output belongs to the program
+    request.ownSession = true; // Ctrl-C reaches the program; the head ends after it in order
     auto process = launch::ChildProcess::start(request);
     close(ends[1]);
     if (!process) {
@@ -41,7 +41,7 @@ HeadControl::start(const std::vector<std::string>& command, const launch::Enviro
 }
 
 HeadControl::~HeadControl() {
-    close(fd_); // for the head this means: finish
+    close(fd_); // tells the head to finish
     if (!process_.waitUntil(Deadline::inMs(kEndMs))) process_.end(Deadline::inMs(kEndMs));
     process_.signalGroup(SIGKILL); // nodes that a killed head could not end
 }

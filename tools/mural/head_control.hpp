@@ -1,4 +1,4 @@
-// The head process of a session and the line-wise conversation with it. Owned by one thread.
+// The head process of a session and its line-based control connection. Not thread-safe.
 #pragma once
 
 #include <memory>
@@ -14,21 +14,21 @@ namespace mural::cli {
 
 class HeadControl {
 public:
-    // command: program and arguments; "--control-fd N" is added.
+    // command: program and arguments; "--control-fd N" is appended.
     static Result<std::unique_ptr<HeadControl>>
     start(const std::vector<std::string>& command, const launch::Environment& environment);
     HeadControl(const HeadControl&) = delete;
     HeadControl& operator=(const HeadControl&) = delete;
-    // Ends the head and the nodes that it started, kindly at first.
+    // Ends the head and its nodes, in order first, then by signals.
     ~HeadControl();
 
     [[nodiscard]] int fd() const { return fd_; }
     [[nodiscard]] launch::ChildProcess& process() { return process_; }
-    // False once either side has ended the conversation.
+    // Returns false after either side has ended the connection.
     [[nodiscard]] bool connected() const { return connected_; }
 
     void send(const std::string& line);
-    // What has arrived, complete lines only; does not block.
+    // Returns complete received lines without blocking.
     std::vector<std::string> receive();
 
 private:

@@ -1,4 +1,4 @@
-// mural: one binary, many sub-commands. Parses the command line, and nothing else.
+// mural: one binary with many subcommands. This file parses the command line only.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
@@ -30,18 +30,18 @@ namespace {
 
 using mural::launch::kExitUsage;
 
-constexpr int kExitOutput = 1; // what was to be printed could not be
+constexpr int kExitOutput = 1; // output could not be written
 
 int usageError(const std::string& command, std::string text) {
     for (char& c : text) {
-        if (c == '\n') c = ' '; // one line for each mistake
+        if (c == '\n') c = ' '; // one line per error
     }
     while (!text.empty() && (text.back() == ' ' || text.back() == '.')) text.pop_back();
     fmt::print(stderr, "{}: {} (see {} --help)\n", command, text, command);
     return kExitUsage;
 }
 
-// What stands after the first "--" is the program of `mural run`, untouched.
+// Everything after the first "--" is the program of `mural run`, unparsed.
 struct SplitLine {
     std::vector<std::string> ours;
     std::vector<std::string> program;
@@ -63,7 +63,7 @@ SplitLine split(int count, char** arguments) {
     return line;
 }
 
-// Without "--" the first word that is no option begins the program: then "--" belongs to it.
+// Without "--" the first word that is not an option begins the program; a later "--" belongs to it.
 std::vector<std::string> programOf(const CLI::App& run, const SplitLine& line) {
     std::vector<std::string> program = run.remaining();
     if (!program.empty() && line.separated) program.emplace_back("--");
@@ -71,7 +71,7 @@ std::vector<std::string> programOf(const CLI::App& run, const SplitLine& line) {
     return program;
 }
 
-// The first line of --help: CLI11 does not know what follows "--", nor the name above a sub-command.
+// Prints the first line of --help: CLI11 does not know the arguments after "--", nor the name before a subcommand.
 class HelpFormatter : public CLI::Formatter {
 public:
     std::string make_usage(const CLI::App* app, std::string) const override {
@@ -81,7 +81,7 @@ public:
     }
     std::string make_option_name(const CLI::Option* option, bool positional) const override {
         const std::string name = CLI::Formatter::make_option_name(option, positional);
-        const auto at = name.find("{1}"); // how CLI11 writes a flag that may have a value
+        const auto at = name.find("{1}"); // CLI11's form of a flag with an optional value
         return at == std::string::npos ? name : name.substr(0, at) + "[=N]";
     }
 };
@@ -103,7 +103,7 @@ public:
         if (!line_.ours.empty() && !line_.ours.front().starts_with("-") && !isCommand(line_.ours.front())) {
             return usageError("mural", "there is no command " + line_.ours.front());
         }
-        std::vector<std::string> reversed(line_.ours.rbegin(), line_.ours.rend()); // as CLI11 takes them
+        std::vector<std::string> reversed(line_.ours.rbegin(), line_.ours.rend()); // in the order that CLI11 expects
         try {
             app_.parse(std::move(reversed));
         } catch (const CLI::CallForHelp&) {
@@ -174,7 +174,7 @@ private:
         return mural::cli::replayCommand(options.value(), replay_.file);
     }
 
-    // The program of a replay: what stands in MURAL_SESSION is its head.
+    // The program of a replay: MURAL_SESSION names its head.
     int runPlay() {
         const char* session = std::getenv("MURAL_SESSION");
         if (session == nullptr) return usageError("mural play", "there is no session; it is started by mural replay");
@@ -308,12 +308,12 @@ private:
     std::function<int()> action_;
 };
 
-// What a command prints is its result: lost, it has failed, whatever else it did.
+// The output of a command is its result: if it is lost, the command has failed.
 int afterOutput(int status, std::string why) {
     errno = 0;
     std::cout.flush();
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout) return status;
-    if (why.empty() && errno != 0) why = std::strerror(errno); // else it was lost with what came first
+    if (why.empty() && errno != 0) why = std::strerror(errno); // otherwise an earlier write failed
     fmt::print(stderr, "mural: the output can't be written{}{}; give it more room, or another place\n", why.empty() ? "" : ": ", why);
     return status != 0 ? status : kExitOutput;
 }
@@ -325,7 +325,7 @@ int main(int count, char** arguments) {
     std::string why;
     try {
         status = CommandLine().perform(count, arguments);
-    } catch (const std::system_error& error) { // of fmt::print(), where standard output takes no more
+    } catch (const std::system_error& error) { // thrown by fmt::print() on output errors
         if (std::ferror(stdout) == 0) throw;
         why = error.code().message();
     }

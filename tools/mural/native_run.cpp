@@ -1,4 +1,4 @@
-// `mural run --native`: the interposer only counts frames and writes what it has counted into a file.
+// `mural run --native`: the capture library only counts frames and writes the count into a file.
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -14,10 +14,10 @@ namespace mural::cli {
 
 namespace {
 
-// After the program's end its descendants may go on; as long as they show pictures they are waited for.
+// Descendants may outlive the program; they are waited for while they swap.
 constexpr int64_t kNoPictureMs = 5'000;
 
-// The file that the interposer rewrites; in memory, named through /proc.
+// The file that the capture library rewrites: in memory, named through /proc.
 class NativeReport {
 public:
     NativeReport() : fd_(memfd_create("mural-native-report", MFD_CLOEXEC)) {}
@@ -34,7 +34,7 @@ public:
         double cpuSeconds = 0;
         int64_t cpuFrames = 0;
     };
-    // The last complete line.
+    // Returns the last complete line.
     [[nodiscard]] std::optional<Count> read() const {
         char text[4096];
         const off_t size = lseek(fd_, 0, SEEK_END);
@@ -66,13 +66,13 @@ void tell(const std::optional<NativeReport::Count>& count, const PreparedRun& ru
         console.error("no frame was counted: " + run.program.front() + " never showed a picture by GL; is it an OpenGL program?");
         return;
     }
-    // n pictures have n − 1 intervals between them.
+    // n pictures have n - 1 intervals.
     const double rate = count->seconds > 0 ? static_cast<double>(count->frames - 1) / count->seconds : 0.0;
     console.say(fmt::format("native: {} frames in {:.1f} s, {:.1f} frames/s", count->frames, count->seconds, rate));
     writeReport(run, fmt::format(R"({{"event":"report","native":true,"frames":{},"seconds":{:.6f},"framesPerSecond":{:.3f},"frameCpuSeconds":{:.6f},"frameCpuFrames":{}}})", count->frames, count->seconds, rate, count->cpuSeconds, count->cpuFrames), console);
 }
 
-// True when as many frames as asked for have been seen.
+// Returns true when the requested number of frames is reached.
 bool countFrames(PreparedRun& run, launch::ProgramSupervisor& program, const NativeReport& report, Console& console) {
     bool reached = false;
     int64_t frames = 0;

@@ -25,8 +25,8 @@ namespace {
 using rsp::Group;
 
 constexpr size_t kPieceBytes = 256 * 1024;
-constexpr size_t kPieces = 128; // of a stream, that are looked at together: as many as come at once
-constexpr size_t kWarmUp = 20; // messages that are not counted
+constexpr size_t kPieces = 128; // pieces of a stream per read
+constexpr size_t kWarmUp = 20; // messages that do not count
 
 double seconds(const timeval& t) { return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6; }
 
@@ -44,7 +44,7 @@ struct Plan {
     uint64_t messageBytes = 0;
 };
 
-// By --stream: address and secret may stand there, or in options of their own.
+// Options from --stream, whose text may include address and secret, and from separate options.
 Result<rsp::GroupOptions> optionsOfStream(const NetperfArguments& a, bool& needsSecret) {
     auto description = parseConnectionDescription(a.stream);
     if (!description) return description.error();
@@ -145,7 +145,7 @@ Result<Measured> send(Group& group, const Plan& plan, const NetperfArguments& a)
     return m;
 }
 
-// Until the sender leaves, or is cut off, or this end wants to leave. The time is that of the first byte to the last.
+// Receives until the sender leaves, the connection breaks, or this end leaves. Times from the first byte to the last.
 Result<Measured> receive(Group& group, const NetperfArguments& a) {
     Measured m;
     m.role = "receiver " + std::to_string(group.self());
@@ -159,7 +159,7 @@ Result<Measured> receive(Group& group, const NetperfArguments& a) {
     while (!leave.passed()) {
         auto count = group.view(rsp::kHost, pieces, Deadline::at(quickNowNs() + leave.leftNs(withinNs) + kNsPerMs));
         if (!count && !leave.passed()) m.cut = count.error().message;
-        if (!count || *count == 0) break; // the sender has what it wanted
+        if (!count || *count == 0) break; // the sender has finished
         const int64_t nowNs = quickNowNs();
         const double now = static_cast<double>(nowNs) * 1e-9;
         if (m.bytes == 0) {
@@ -195,7 +195,7 @@ std::string faultOf(const Measured& m) {
 int sendRole(const Plan& plan, const NetperfArguments& a) {
     auto group = Group::host(plan.options);
     if (!group) return failed(group.error().message);
-    // Not among the results.
+    // Not part of the results.
     fmt::print(stderr, "waiting for {} receivers; start each with: mural netperf receive --control HOST:PORT --secret-file …, the host listens at {}\n",
         a.members, (*group)->controlAddress());
     auto m = send(**group, plan, a);
@@ -218,7 +218,7 @@ int receiveRole(const Plan& plan, const NetperfArguments& a) {
     return m->cut.empty() ? 0 : failed("the stream ended after " + std::to_string(m->bytes) + " bytes, before its end: " + m->cut);
 }
 
-// All in one process, over the loopback.
+// Runs all roles in one process over the loopback.
 int localRole(const Plan& plan, const NetperfArguments& a) {
     auto host = Group::host(plan.options);
     if (!host) return failed(host.error().message);

@@ -1,4 +1,4 @@
-// mural netperf: how fast the network carries a stream to many, and how long a word takes to be at all of them.
+// mural netperf: measures multicast throughput, and the latency until all receivers have a message.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@ namespace mural::cli {
 
 struct NetperfArguments {
     std::string role = "local";
-    std::string stream; // a group's description; instead of the single options below
+    std::string stream; // a group description, instead of the separate options
     std::string group = "239.255.77.85:4277";
     std::string interface;
     std::string control = ":4278";
@@ -26,7 +26,7 @@ struct NetperfArguments {
     double withinSeconds = 120;
     double leaveAfterSeconds = 0; // 0: stays to the end
     bool noParity = false;
-    bool unchecked = false; // neither filled nor compared: what the transport itself costs
+    bool unchecked = false; // data is neither generated nor checked: cost of the transport alone
     bool noMulticast = false;
     bool asJson = false;
 };

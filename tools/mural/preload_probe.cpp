@@ -6,7 +6,7 @@
 
 namespace mural::cli {
 
-// GLVND's entry into a vendor library: no other library that is loaded here has it.
+// GLVND's entry into a vendor library, which no other loaded library exports.
 int preloadProbeCommand() {
     void* found = dlsym(RTLD_DEFAULT, "__glx_Main");
     Dl_info info{};

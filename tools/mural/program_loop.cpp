@@ -9,9 +9,9 @@ namespace mural::cli {
 
 void waitTurn(PreparedRun& run, launch::ProgramSupervisor& program, int extraFd) {
     pollfd waiting[3] = {{program.signalFd(), POLLIN, 0}, {extraFd, POLLIN, 0}, {run.windowManager ? run.windowManager->fd() : -1, POLLIN, 0}};
-    poll(waiting, 3, kTurnMs); // negative descriptors are passed over
+    poll(waiting, 3, kTurnMs); // poll ignores negative descriptors
     program.tick();
-    // Without the display the program ends by itself, and that is what the loop waits for.
+    // Without the display the program ends by itself, and the loop waits for that.
     if (run.windowManager && !run.windowManager->dispatch()) run.windowManager.reset();
 }
 

@@ -1,5 +1,5 @@
-// One turn of waiting, shared by captured and native runs: signals, the private display's windows and
-// one more descriptor.
+// One iteration of waiting, for captured and native runs: signals, windows of the private display, and one more
+// descriptor.
 #pragma once
 
 #include "nodes/launch/program_supervisor.hpp"
@@ -9,10 +9,10 @@ namespace mural::cli {
 
 constexpr int kTurnMs = 100;
 
-// Waits at most kTurnMs; extraFd −1: none.
+// Waits at most kTurnMs; extraFd -1: none.
 void waitTurn(PreparedRun& run, launch::ProgramSupervisor& program, int extraFd);
 
-// Starts the program of a prepared run; complains and returns false when exec fails.
+// Starts the program of a prepared run. Reports an error and returns false if exec fails.
 bool startProgram(PreparedRun& run, launch::ProgramSupervisor& program, Console& console);
 
 } // namespace mural::cli

@@ -1,4 +1,4 @@
-// `mural replay`: a session whose program is a player of a recording.
+// `mural replay`: a session whose program is the player of a trace.
 #pragma once
 
 #include <string>

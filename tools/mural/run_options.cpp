@@ -153,7 +153,7 @@ Result<void> readSizes(const RunArguments& a, SessionConfig& c) {
     return {};
 }
 
-// A grid for nodes without --tiles: as square as the number allows, wider than high.
+// Returns the grid for nodes without --tiles: as square as possible, wider than high.
 std::pair<int, int> gridFor(int nodes) {
     int rows = 1;
     for (int r = 1; r * r <= nodes; ++r) {
@@ -182,7 +182,7 @@ Result<void> readNodes(const RunArguments& a, SessionConfig& c) {
             return h.empty() || h.front() == '-' || h.find_first_of(" \t\"'") != std::string::npos;
         });
         if (bad) return badValue("--nodes", *a.nodes, "must be host names separated by commas, such as wall1,wall2");
-        // A number is hardly a host's name: it would be waited for in vain.
+        // Rejects numbers as host names, because connecting to them would only time out.
         const bool counts = std::any_of(c.hosts.begin(), c.hosts.end(), [](const std::string& h) { return h.find_first_not_of("0123456789") == std::string::npos; });
         if (counts) return badValue("--nodes", *a.nodes, "must be host names, such as wall1,wall2; how many nodes run on this machine says --local-nodes");
     }
@@ -236,8 +236,8 @@ Result<void> readCount(std::string_view option, const RunArguments::Text& text, 
     return {};
 }
 
-// Z, or ZX and ZY.
-constexpr double kLeastZoom = 0.01; // of a hundred pixels one is left
+// Parses Z, or ZX and ZY.
+constexpr double kLeastZoom = 0.01; // one pixel of a hundred remains
 Result<void> readZoom(const RunArguments& a, Zoom& zoom) {
     if (!a.zoom) return {};
     const size_t x = a.zoom->find('x');
@@ -249,7 +249,7 @@ Result<void> readZoom(const RunArguments& a, Zoom& zoom) {
     return {};
 }
 
-// By what frames are drawn in several passes.
+// Reads the options for frames in several passes.
 Result<void> readPasses(const RunArguments& a, SessionConfig& c) {
     const Choice<StereoMode> modes[] = {{"off", StereoMode::Off},          {"anaglyph", StereoMode::Anaglyph}, {"side-by-side", StereoMode::SideBySide},
                                         {"top-bottom", StereoMode::TopBottom}, {"left", StereoMode::Left},     {"right", StereoMode::Right},
@@ -290,7 +290,7 @@ Result<void> readPasses(const RunArguments& a, SessionConfig& c) {
     if (passes > kMaxPasses) return Error{fmt::format("--stereo, --pixel, --subpixel, --dplex and --db make {} passes together; at most {} can be drawn", passes, kMaxPasses)};
     if (passes > 1 && c.tiling == Tiling::Lean) return Error{"--tiling lean does not go with --stereo, --pixel, --subpixel, --dplex or --db; leave it out"};
     if (!p.zoom.none() && c.tiling == Tiling::Lean) return Error{"--tiling lean does not go with --zoom; leave one of them out"};
-    if (p.period > 1 && !a.latency) c.latency = p.period; // turns overlap only so
+    if (p.period > 1 && !a.latency) c.latency = p.period; // required for overlapping turns
     return {};
 }
 
@@ -300,7 +300,7 @@ Result<void> readFrusta(const RunArguments& a, SessionConfig& c) {
     return readReal("--model-unit", a.modelUnit, 1e-9, c.modelUnit);
 }
 
-// Wall and nodes are the file's; what options say beside it would contradict it.
+// The file defines wall and nodes; options for them would contradict it.
 Result<void> readConfigFile(const RunArguments& a, RunOptions& options) {
     SessionConfig& c = options.config;
     if (!a.config) {
@@ -345,7 +345,7 @@ Result<void> readConfigFile(const RunArguments& a, RunOptions& options) {
     return {};
 }
 
-// The file that says the same as the options, to go on from.
+// Returns the configuration file equivalent to the options.
 Result<std::string> configTextOf(const RunArguments& a, const SessionConfig& c) {
     if (a.config) {
         config::Diagnostics ignored(*a.config);
@@ -364,7 +364,7 @@ Result<std::string> configTextOf(const RunArguments& a, const SessionConfig& c) 
     form.zoom = c.passes.zoom;
     if (c.passes.kernelHeight > 1) return Error{"--print-config: a pixel kernel of several rows has no short form; write it as pixel [ x y width height ] into a file"};
     if (c.tileWidth > 0) {
-        constexpr int kTakers = 4; // where nothing says how many nodes there are, as planSession() has it
+        constexpr int kTakers = 4; // default number of nodes, as in planSession()
         const int nodes = c.localNodes + static_cast<int>(c.hosts.size());
         form.tileWidth = c.tileWidth;
         form.tileHeight = c.tileHeight;

@@ -1,4 +1,4 @@
-// The command line of `mural run`, as a value.
+// The command line of `mural run` as a value.
 #pragma once
 
 #include <optional>
@@ -14,22 +14,22 @@ class App;
 
 namespace mural::cli {
 
-// Whether GL libraries that GLVND does not lead to are caught as well.
+// Selects whether GL libraries outside of GLVND are captured as well.
 enum class FrontChoice { Auto, Glvnd, Preload };
 
 struct RunOptions {
-    SessionConfig config;       // all but session and displayName
+    SessionConfig config; // everything except session and displayName
     bool displayChosen = false; // --display was given
     FrontChoice front = FrontChoice::Auto;
     bool native = false;
     bool quiet = false;
-    std::string configText;           // --print-config: the configuration that the options stand for; empty: not asked for
-    std::vector<std::string> notices; // what the configuration file should be mended in
-    std::string reportFile;           // --report; empty: none
+    std::string configText; // --print-config: equivalent configuration; empty: not requested
+    std::vector<std::string> notices; // warnings about the configuration file
+    std::string reportFile; // --report; empty: none
     std::vector<std::string> program; // name and arguments
 };
 
-// The texts as they stand on the command line; checked and converted by runOptionsFrom.
+// Raw texts of the command line, validated by runOptionsFrom().
 struct RunArguments {
     using Text = std::optional<std::string>;
     Text tiles, tileQueue, chunkQueue, size, position, nodes, out, save, display, tiling, policy, gl, launch, stream, remoteMural, front, restartNodes, leastNodes;
@@ -43,10 +43,10 @@ struct RunArguments {
     std::vector<std::string> program;
 };
 
-// Adds the options to the sub-command; `arguments` must outlive the parsing.
+// Adds the options to the subcommand; `arguments` must outlive the parsing.
 void describeRunOptions(CLI::App& command, RunArguments& arguments);
 
-// One error, for the first argument that is wrong.
+// Returns one error, for the first invalid argument.
 Result<RunOptions> runOptionsFrom(const RunArguments& arguments);
 
 } // namespace mural::cli

@@ -23,7 +23,7 @@ namespace mural::cli {
 
 namespace {
 
-constexpr timeval kPatience{5, 0}; // of a head that says nothing
+constexpr timeval kPatience{5, 0}; // timeout of a silent head
 constexpr size_t kMostBytes = size_t{16} << 20;
 
 FileDescriptor connectTo(const std::string& session) {
@@ -40,7 +40,7 @@ FileDescriptor connectTo(const std::string& session) {
     return fd;
 }
 
-// Anyone may listen under such a name.
+// Checks the owner, because any user may listen under such a name.
 bool isOurs(int fd) {
     ucred peer{};
     socklen_t size = sizeof peer;
@@ -67,9 +67,9 @@ std::optional<nlohmann::json> askSession(const std::string& name) {
 } // namespace
 
 std::vector<std::string> sessionNamesIn(const std::string& unixSockets) {
-    // The last word of a line is the name, "@" for the 0 before an abstract one.
+    // The last word of a line is the name; "@" stands for the 0 of an abstract name.
     static const std::regex kName(R"( @(mural-[0-9]+-[0-9a-f]{16})$)");
-    std::set<std::string> names; // a session stands there once for each connection
+    std::set<std::string> names; // a session appears once per connection
     std::istringstream lines(unixSockets);
     std::smatch found;
     for (std::string line; std::getline(lines, line);)

@@ -1,4 +1,4 @@
-// The sessions of this user that run on this machine, found by the names of their sockets, and what their heads say.
+// Finds this user's running sessions on this machine by their socket names, and queries their heads.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -9,10 +9,11 @@
 
 namespace mural::cli {
 
-// Names of sessions ("mural-PID-RANDOM") among the lines of /proc/net/unix, each once. Pure.
+// Returns the session names ("mural-PID-RANDOM") in the lines of /proc/net/unix, without duplicates. Pure.
 std::vector<std::string> sessionNamesIn(const std::string& unixSockets);
 
-// The state of each (nodes/head/session_status.hpp); those that do not answer, or belong to others, are left out.
+// Returns the state of each session (nodes/head/session_status.hpp), without sessions that do not answer or belong to
+// others.
 Result<std::vector<nlohmann::json>> askRunningSessions();
 
 } // namespace mural::cli

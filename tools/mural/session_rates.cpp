@@ -27,7 +27,7 @@ const Json& part(const Json& object, const char* name) {
     return found != object.end() ? *found : kNone;
 }
 
-// Entries that are no objects say nothing.
+// Ignores entries that are not objects.
 std::vector<Json> entries(const Json& object, const char* name) {
     std::vector<Json> result;
     const Json& list = part(object, name);
@@ -63,7 +63,7 @@ Json nodeRates(const Json& before, const Json& now, double seconds) {
     return {{"busyShare", (work(now) - work(before)) / seconds}};
 }
 
-// Of all programs together, per frame on the wall.
+// Rates over all programs, per frame of the wall.
 Json economyRates(const Json& before, const Json& now, double frames) {
     Json rates = Json::object();
     for (const char* name : {"records", "rawBytes", "stagedBytes", "wireBytes", "storeHits", "newPages", "patches", "encodeSeconds", "programBytes", "heldRecords", "leftOutRecords", "leftOutBytes"})
@@ -81,7 +81,7 @@ void addRates(const Json& before, Json& now, const char* list, const char* key, 
     now[list] = entriesNow;
 }
 
-// What a program waited for, the longest first: "waits 61 % for the nodes' frames".
+// Describes a program's waits, longest first: "waits 61 % for the nodes' frames".
 std::string waitText(const Json& program) {
     static constexpr std::pair<const char*, const char*> kWords[] = {
         {"frames", "for the nodes to finish frames"}, {"room", "for room: nodes take no more"},

@@ -1,4 +1,4 @@
-// What two looks at the running sessions say about the time between them; and that in words. Pure.
+// Rates between two snapshots of the running sessions, and their text form. Pure.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -7,12 +7,12 @@
 
 namespace mural::cli {
 
-// The states of `now`, with what happened since `before` in each session's, program's and node's "recent":
-// framesPerSecond, callsPerFrame, bytesPerFrame, roundTripsPerFrame, waitShares; busyShare of nodes.
-// A session or program that was not there before has none.
+// Returns the states of `now`, with the changes since `before` in "recent" of each session, program and node:
+// framesPerSecond, callsPerFrame, bytesPerFrame, roundTripsPerFrame, waitShares; busyShare of nodes. New sessions and
+// programs have none.
 std::vector<nlohmann::json> withRates(const std::vector<nlohmann::json>& before, std::vector<nlohmann::json> now);
 
-// A line for the session, then for each program and node.
+// Returns a line for the session, then one per program and node.
 std::vector<std::string> statLines(const nlohmann::json& session);
 
 } // namespace mural::cli

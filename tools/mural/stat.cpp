@@ -1,4 +1,4 @@
-// `mural stat`: the sessions that run, twice looked at, for rates.
+// `mural stat`: takes two snapshots of the running sessions and prints rates.
 #include <cerrno>
 #include <chrono>
 #include <fmt/format.h>
@@ -14,7 +14,7 @@ namespace mural::cli {
 
 namespace {
 
-constexpr double kOnceSeconds = 1.0; // between the two looks of a single report
+constexpr double kOnceSeconds = 1.0; // between the snapshots of a single report
 constexpr int kExitNone = 1;
 
 int fail(const std::string& why, int status) {

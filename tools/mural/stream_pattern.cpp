@@ -11,18 +11,18 @@ namespace mural::cli {
 
 namespace {
 
-// Word n is (n + 1) times an odd number modulo 2^64, so each word is another one, and the inverse tells which.
+// Word n is (n + 1) times an odd number modulo 2^64: all words differ, and the inverse gives their position.
 constexpr size_t kWordBytes = 8;
 constexpr uint64_t kFactor = 0x9e3779b97f4a7c15u;
 
 constexpr uint64_t inverseOf(uint64_t odd) {
-    uint64_t inverse = odd; // right in 3 bits; each step of Newton's doubles them
+    uint64_t inverse = odd; // 3 correct bits; each Newton step doubles them
     for (int i = 0; i < 5; ++i) inverse *= 2 - odd * inverse;
     return inverse;
 }
 static_assert(kFactor * inverseOf(kFactor) == 1);
 
-constexpr uint64_t kMostWords = uint64_t{1} << 60; // what is beyond that is chance
+constexpr uint64_t kMostWords = uint64_t{1} << 60; // larger results are chance
 
 bool isFilled(std::span<const std::byte> bytes, uint64_t place) {
     std::array<std::byte, kWordBytes> right;
@@ -31,7 +31,7 @@ bool isFilled(std::span<const std::byte> bytes, uint64_t place) {
     return std::ranges::equal(bytes, expected);
 }
 
-// Without a copy of what is right: what netperf measures is not this.
+// Compares without building a copy, whose cost would distort netperf's measurement.
 bool isPattern(std::span<const std::byte> bytes, uint64_t place) {
     const size_t before = std::min(bytes.size(), (kWordBytes - place % kWordBytes) % kWordBytes);
     const auto words = bytes.subspan(before, (bytes.size() - before) / kWordBytes * kWordBytes);

@@ -1,5 +1,5 @@
-// The bytes that `mural netperf` sends. Each word of eight bytes tells its place in the stream, so a reader sees by the bytes
-// alone what is missing, came twice, out of order or changed, and a late one where it began to listen.
+// Test data of `mural netperf`. Each word of eight bytes encodes its position in the stream, so a reader detects
+// missing, duplicate, reordered and changed bytes, and a late one its start position.
 #pragma once
 
 #include <cstddef>
@@ -11,20 +11,20 @@
 
 namespace mural::cli {
 
-// What belongs at a place of the stream, counted in bytes.
+// Fills with the data of a position in bytes.
 void fillPattern(std::span<std::byte> into, uint64_t place);
-// Which place these bytes are of; none when they are too few (below kFindBytes), or no place's.
+// Returns the position of these bytes; empty if they are too few (below kFindBytes) or not part of the pattern.
 std::optional<uint64_t> findPattern(std::span<const std::byte> bytes);
-constexpr size_t kFindBytes = 7 + 2 * 8; // two whole words, wherever they begin
+constexpr size_t kFindBytes = 7 + 2 * 8; // contains two whole words at any alignment
 
-// A reader's side: takes what came, in pieces of any size.
+// Checks received data, in pieces of any size.
 class PatternCheck {
 public:
-    // The first kFindBytes tell the place; less than that is not looked at.
+    // The first kFindBytes determine the position; fewer bytes are not checked.
     void take(std::span<const std::byte> bytes);
-    // What was wrong first; empty: nothing.
+    // Returns the first error; empty: none.
     [[nodiscard]] const std::string& fault() const { return fault_; }
-    // The first byte's place; 0 until it is known.
+    // Returns the position of the first byte; 0 until it is known.
     [[nodiscard]] uint64_t beganAt() const { return beganAt_; }
 
 private:
@@ -33,7 +33,7 @@ private:
     bool found_ = false;
     uint64_t beganAt_ = 0;
     uint64_t place_ = 0; // of the next byte
-    std::vector<std::byte> first_; // until the place is found
+    std::vector<std::byte> first_; // until the position is known
     std::string fault_;
 };
 

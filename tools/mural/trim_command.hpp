@@ -1,4 +1,4 @@
-// `mural trim`: some frames of a recording.
+// `mural trim`: extracts frames of a trace.
 #pragma once
 
 #include <string>

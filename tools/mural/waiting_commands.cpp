@@ -42,7 +42,7 @@ bool announceable(const std::string& name) {
     return !name.empty() && name.size() <= kMostAnnouncedText && std::ranges::all_of(name, [](char c) { return c > ' ' && c <= '~' && c != '@' && c != ','; });
 }
 
-// Readable when somebody wants us to end. All threads are begun after it.
+// Returns a descriptor that is readable after a termination signal. Call before any thread starts.
 Result<FileDescriptor> endSignals() {
     sigset_t signals;
     sigemptyset(&signals);
@@ -102,7 +102,7 @@ void describeCall(CLI::App& call, CallArguments& a) {
 
 namespace {
 
-// HOST, HOST:PORT, or @NAME: a node that announces itself by this name or UUID.
+// Resolves HOST, HOST:PORT, or @NAME: a node announced by this name or UUID.
 Result<NodeCall> placeOf(const std::string& host, const CallArguments& a) {
     NodeCall call;
     if (!host.starts_with("@")) {
@@ -135,14 +135,14 @@ int callCommand(const CallArguments& a) {
     std::signal(SIGPIPE, SIG_IGN);
     if (a.command.size() < 3) return failed("call", "a host, the path of mural there and its arguments are needed, as mural run gives them to --launch", launch::kExitUsage);
     if (a.secretFile.empty()) return failed("call", "--secret FILE is needed: the nodes take orders only of who knows it", launch::kExitUsage);
-    // Standard input is the node's.
+    // Standard input belongs to the node.
     if (a.secretFile == "-") return failed("call", "--secret -: standard input belongs to the node; give a file", launch::kExitUsage);
     auto secret = rsp::readSecret(a.secretFile);
     if (!secret) return failed("call", secret.error().message, launch::kExitUsage);
     auto call = placeOf(a.command[0], a);
     if (!call) return failed("call", call.error().message);
     call->secret = *secret;
-    // The path is ssh's need: a waiting node runs itself.
+    // Drops the path, which only ssh needs: a waiting node runs its own binary.
     call->arguments.assign(a.command.begin() + 2, a.command.end());
     const auto status = callNode(*call);
     return status ? status.value() : failed("call", fmt::format("{}: {}", a.command[0], status.error().message));

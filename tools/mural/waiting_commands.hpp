@@ -1,4 +1,4 @@
-// mural node --wait: a node that waits for heads; mural call: the launch command that finds it.
+// mural node --wait: a daemon that waits for heads; mural call: the launch command for such nodes.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ struct WaitArguments {
     bool wait = false;
     std::string secretFile;
     std::string listen = ":4279";
-    std::string name; // empty: the machine's
+    std::string name; // empty: the host name
     std::string discovery = "auto";
 };
 void describeWait(CLI::App& node, WaitArguments& arguments);
@@ -21,7 +21,7 @@ int waitCommand(const WaitArguments& arguments);
 struct CallArguments {
     std::string secretFile;
     std::string discovery = "auto";
-    double seconds = 5;               // to find a node by its name
+    double seconds = 5; // timeout of the search by name
     std::vector<std::string> command; // HOST MURAL ARGUMENTS...
 };
 void describeCall(CLI::App& call, CallArguments& arguments);

@@ -1,4 +1,4 @@
-// The parts of compositing_bench. Each prints its tables, and returns what is wrong with results; times are never judged.
+// The parts of compositing_bench. Each prints its tables and returns errors of results; times are never judged.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@ namespace mural::bench {
 
 struct BenchOptions {
     bool quick = false;
-    int turns = 9; // of each measurement
-    std::string icetLibrary; // icet_kernels.c, built against IceT; empty: left out
+    int turns = 9; // repetitions per measurement
+    std::string icetLibrary; // icet_kernels.c built against IceT; empty: omitted
 };
 
 using Faults = std::vector<std::string>;

@@ -14,12 +14,12 @@ namespace {
 
 constexpr const char* kColourCodecs[] = {"raw", "rle64", "rle-components", "rle-swizzled", "bitplane", "bitplane-zstd", "lz4", "zstd", "yuv420", "jpeg-95"};
 constexpr const char* kDepthCodecs[] = {"raw", "rle64", "rle-components", "rle-swizzled", "bitplane", "slope", "slope-zstd", "lz4", "zstd"};
-// Goal of the compositor, of results: what bit planes must reach against the run lengths of swizzled bits.
+// Goal for compression ratios: bit planes relative to swizzled run lengths.
 constexpr double kRatioGoal = 1.5;
 
 struct Measured {
-    double ratio, encode, decode; // the last two as multiples of memcpy's speed
-    double worst;                 // of a lossy one, largest difference of a component
+    double ratio, encode, decode; // the last two relative to memcpy
+    double worst; // lossy codecs: largest difference of a component
 };
 
 Result<Measured> measure(Codec& codec, const Plane& plane, const BenchOptions& options, bool slow) {
@@ -31,7 +31,7 @@ Result<Measured> measure(Codec& codec, const Plane& plane, const BenchOptions& o
     std::vector<double> encodes, decodes;
     size_t size = 0;
     const auto turns = static_cast<size_t>(slow ? 3 : options.turns);
-    for (size_t turn = 0; turn < turns + 1; ++turn) { // the first one warms up
+    for (size_t turn = 0; turn < turns + 1; ++turn) { // the first turn warms up
         Plane& source = sources[turn % buffers];
         Plane& target = targets[turn % buffers];
         Plane& other = targets[(turn + buffers / 2) % buffers];

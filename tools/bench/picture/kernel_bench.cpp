@@ -25,13 +25,13 @@ namespace {
 
 constexpr size_t kColumns = 1920, kRows = 1080, kPixels = kColumns * kRows;
 
-// Work on buffers: into, source, both of `sizeBytes`; the speed is that of sourceBytes.
+// Operates on two buffers of `sizeBytes`; the speed refers to sourceBytes.
 struct Kernel {
     std::string name;
     size_t sizeBytes;
     size_t sourceBytes;
     std::function<void(std::byte* into, uint32_t turn)> fill, fillSource;
-    std::function<void(std::byte* into, const std::byte* source)> fast, plain; // plain: null for none
+    std::function<void(std::byte* into, const std::byte* source)> fast, plain; // plain: scalar version, may be null
 };
 
 void fillNoise(std::byte* bytes, size_t sizeBytes, uint32_t seed) {
@@ -44,8 +44,8 @@ void fillNoise(std::byte* bytes, size_t sizeBytes, uint32_t seed) {
 
 uint32_t depthWord(DepthFormat format, float z) { return format == DepthFormat::D32F ? std::bit_cast<uint32_t>(z) : static_cast<uint32_t>(z * 16777215.0f) << 8; }
 
-// The first half is depth, the second colour. A surface in waves that fills the picture and leans to one side or the other: two
-// that lean differently cross in each row, and each is in front in half of the picture, whatever their waves' phases.
+// The first half of the buffer is depth, the second colour. A wavy surface that fills the picture and leans to one
+// side: two surfaces that lean differently intersect in each row, and each is in front in half of the picture.
 enum class Leans { Left, Right };
 
 void fillSurface(std::byte* bytes, DepthFormat format, Leans leans, uint32_t seed) {
@@ -58,13 +58,13 @@ void fillSurface(std::byte* bytes, DepthFormat format, Leans leans, uint32_t see
     fillNoise(bytes + 4 * kPixels, 4 * kPixels, seed + 1);
 }
 
-// Depth that is another one at each pixel: nothing is alike in any vector.
+// Random depth per pixel: no vector is uniform.
 void fillDepthNoise(std::byte* bytes, DepthFormat format, double covered, uint32_t seed) {
     std::mt19937 random(seed);
     auto* depth = reinterpret_cast<uint32_t*>(bytes);
     for (size_t y = 0; y < kRows; ++y)
         for (size_t x = 0; x < kColumns; ++x) {
-            // Covered pixels stand together, as those of objects do.
+            // Covered pixels are clustered, as those of objects are.
             const bool isDrawn = static_cast<double>((x / 64 * 7 + y / 64 * 13) % 32) < 32 * covered;
             const float z = isDrawn ? static_cast<float>(random() % 1000) / 1024.0f : 1.0f;
             depth[y * kColumns + x] = depthWord(format, z);
@@ -84,7 +84,7 @@ void fillLayer(std::byte* bytes, double covered, uint32_t seed) {
     }
 }
 
-// Of which rows: all of them, which come from memory, or one again and again, which stays in the cache and shows the arithmetic alone.
+// All rows come from memory; a single repeated row stays in the cache and shows the arithmetic alone.
 enum class ZRows { All, First };
 
 Kernel zKernel(const std::string& name, DepthFormat format, bool isNoise, double covered, ZRows rows = ZRows::All) {
@@ -97,7 +97,7 @@ Kernel zKernel(const std::string& name, DepthFormat format, bool isNoise, double
         area.sourceDepth = reinterpret_cast<const uint32_t*>(source);
         area.sourceColour = source + 4 * kPixels;
         area.depthStride = area.colourStride = area.sourceDepthStride = area.sourceColourStride = rows == ZRows::First ? 0 : 4 * kColumns;
-        // What has won once wins again, so that the same is done with one row.
+        // With LessOrEqual a winner wins again, so repeating one row does the same work.
         select(area, DepthRule{rows == ZRows::First ? DepthFunction::LessOrEqual : DepthFunction::Less, format, true, Coverage::All, 0});
     };
     return {name, 8 * kPixels, 8 * kPixels, [=](std::byte* into, uint32_t turn) { isNoise ? fillDepthNoise(into, format, 1, turn) : fillSurface(into, format, Leans::Left, turn); },
@@ -105,8 +105,9 @@ Kernel zKernel(const std::string& name, DepthFormat format, bool isNoise, double
             [run](std::byte* into, const std::byte* source) { run(into, source, zSelectScalar); }};
 }
 
-// What z must move where no line of the picture can be left alone, and next to nothing besides: both depths and colours are read, one of each
-// is written. No kernel moves less for noise; this row says what a plain loop gets of memory then.
+// Memory traffic of z compositing when no cache line can be skipped, with minimal arithmetic: reads both depths and
+// colours, writes one of each. No kernel moves less for random depths; this row shows the memory bandwidth of a plain
+// loop.
 __attribute__((optimize("O3"))) void exclusiveOr(std::byte* into, const std::byte* source) {
     auto* const to = reinterpret_cast<uint64_t*>(into);
     const auto* const from = reinterpret_cast<const uint64_t*>(source);
@@ -163,7 +164,7 @@ std::vector<Kernel> kernels() {
     return all;
 }
 
-// What of a picture is not background, and names of its tiles, on captured planes.
+// Region of interest and tile hashes, on captured planes.
 void benchSearches(const std::vector<NamedPlane>& planes, const BenchOptions& options) {
     fmt::print("\nlooking for what is drawn, and names of tiles, as multiples of memcpy's speed\n");
     for (const NamedPlane& p : planes) {
@@ -171,7 +172,7 @@ void benchSearches(const std::vector<NamedPlane>& planes, const BenchOptions& op
         const size_t buffers = buffersFor(p.plane.bytes().size(), options.quick);
         std::vector<Plane> sources(buffers, p.plane), targets(buffers, p.plane);
         Background background;
-        std::memcpy(background.pixel.data(), p.plane.bytes().data(), 4); // the lower left pixel
+        std::memcpy(background.pixel.data(), p.plane.bytes().data(), 4); // lower left pixel
         std::vector<double> searches, hashes;
         double share = 0;
         for (size_t turn = 0; turn < static_cast<size_t>(options.turns); ++turn) {
@@ -187,7 +188,7 @@ void benchSearches(const std::vector<NamedPlane>& planes, const BenchOptions& op
     }
 }
 
-// A layer that comes encoded is blended over a picture: tile by tile, or after all of it was decoded.
+// Blends an encoded layer over a picture: tile by tile, or after decoding all of it.
 void benchFused(const std::vector<NamedPlane>& planes, const BenchOptions& options, Faults& faults) {
     fmt::print("\ndecoding a layer and blending it, as multiples of memcpy's speed: whole planes, and tile by tile\n");
     for (const NamedPlane& p : planes) {
@@ -267,7 +268,7 @@ Faults benchKernels(const std::vector<NamedPlane>& planes, const BenchOptions& o
         RotatedBuffers into(buffers, k.sizeBytes), source(buffers, k.sizeBytes), copies(buffers, k.sizeBytes);
         for (size_t b = 0; b < buffers; ++b) k.fillSource(source.at(b).data(), static_cast<uint32_t>(b));
         std::vector<double> fast, plain;
-        // A kernel takes milliseconds, in which others' use of the memory shows: more turns than a codec needs.
+        // A kernel runs for milliseconds, in which other memory traffic shows, so it needs more turns than a codec.
         const size_t turns = static_cast<size_t>(options.turns) * (options.quick ? 1 : 4);
         for (size_t turn = 0; turn < turns + 1; ++turn) {
             k.fill(into.at(turn).data(), static_cast<uint32_t>(turn));

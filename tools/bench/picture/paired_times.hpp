@@ -1,5 +1,5 @@
-// Times of this thread's CPU beside those of memcpy, taken in turns so that both meet the same machine. Buffers are changed
-// with every turn: what is measured comes from memory, not from the caches.
+// CPU time of this thread relative to memcpy, measured alternately on the same machine state. Buffers change with every
+// turn, so data comes from memory, not from the caches.
 #pragma once
 
 #include <algorithm>
@@ -11,11 +11,11 @@
 
 namespace mural::bench {
 
-constexpr size_t kRotatedBytes = size_t{256} << 20; // per set of buffers, more than caches hold
+constexpr size_t kRotatedBytes = size_t{256} << 20; // per set of buffers; exceeds the caches
 
 [[nodiscard]] inline size_t buffersFor(size_t sizeBytes, bool quick) { return quick ? 2 : std::max<size_t>(3, kRotatedBytes / std::max<size_t>(sizeBytes, 1)); }
 
-// Zeroed pages are not there yet: written once.
+// Buffers are written once, because zero pages are not committed.
 class RotatedBuffers {
 public:
     RotatedBuffers(size_t count, size_t sizeBytes) : buffers_(count, compositor::PixelBytes(sizeBytes, std::byte{1})) {}
@@ -26,8 +26,8 @@ private:
     std::vector<compositor::PixelBytes> buffers_;
 };
 
-// Reads more than the caches hold, so that what is measured next finds neither its data there nor others' that must be written
-// back first: a copy and a kernel that are compared both begin like that.
+// Evicts the caches, so the next measurement finds neither its own data nor dirty lines of others: a copy and a kernel
+// start equally.
 inline void emptyCaches() {
     static const std::vector<std::byte> others(size_t{96} << 20, std::byte{1});
     unsigned sum = 0;

@@ -1,4 +1,4 @@
-// Planes in files, as plane_capture writes them, and planes made up here.
+// Planes in files, as written by plane_capture, and synthetic planes.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ struct NamedPlane {
 };
 
 [[nodiscard]] Result<NamedPlane> readPlane(const std::string& path);
-// All *.plane of a folder, sorted by name, those of a second frame (*.next.*) left out.
+// Returns all *.plane files of a folder, sorted by name, without those of a second frame (*.next.*).
 [[nodiscard]] Result<std::vector<NamedPlane>> readPlanes(const std::string& folder);
 
 } // namespace mural::bench

@@ -1,5 +1,5 @@
-// Pictures put together by 2 to 16 processes on this machine, ours and IceT's: each rank has drawn another scene, as sort-last nodes
-// would, and the first one ends with the picture that one machine's depth test leaves. CPU time of the processes, and bytes that they send.
+// Sort-last compositing by 2 to 16 processes on this machine, Mural's and IceT's. Each rank has drawn another scene,
+// and the first rank ends with the result of a depth test. Measures CPU time of the processes and transferred bytes.
 #include <algorithm>
 #include <cmath>
 #include <dlfcn.h>
@@ -21,7 +21,7 @@ namespace {
 constexpr uint64_t kPartTag = 1;
 constexpr FoldRule kRule{DepthFunction::Less, 0, 0xffffffffu, false};
 constexpr size_t kMostRanks = 16;
-constexpr int kWarmFrames = 4; // the selector of codecs looks around
+constexpr int kWarmFrames = 4; // the codec selector explores
 
 struct Drawn {
     PicturePart part;
@@ -31,15 +31,15 @@ struct Drawn {
 struct Way {
     const char* name;
     Strategy strategy;
-    int icet; // -1: it has none like it
+    int icet; // -1: no equivalent
 };
 constexpr Way kWays[] = {{"serial", Strategy::Serial, ICET_WAY_SERIAL}, {"direct send", Strategy::DirectSend, ICET_WAY_DIRECT_SEND}, {"binary swap", Strategy::BinarySwap, ICET_WAY_SWAP}, {"radix-k", Strategy::RadixK, ICET_WAY_RADIX_K}, {"streaming", Strategy::Streaming, -1}};
 
-// What a rank tells in the end.
+// Final report of a rank.
 struct Told {
     int64_t cpuNs = 0;
     uint64_t bytes = 0;
-    int64_t wrong = 0; // pixels; of the first rank
+    int64_t wrong = 0; // wrong pixels; first rank only
 };
 
 std::vector<Drawn> drawnOf(const std::vector<NamedPlane>& planes) {
@@ -62,14 +62,14 @@ std::vector<Drawn> drawnOf(const std::vector<NamedPlane>& planes) {
             std::memcpy(&word, depth->plane.bytes().data() + 4 * i, 4);
             std::memcpy(&d.part.colour[i], colour.plane.bytes().data() + 4 * i, 4);
             const uint32_t d24 = word >> 8;
-            if (d24 == 0xffffff) d.part.colour[i] = kRule.clearedColour; // each scene has another background
+            if (d24 == 0xffffff) d.part.colour[i] = kRule.clearedColour; // unifies the backgrounds of the scenes
             covered += d24 != 0xffffff;
             d.part.depth[i] = d24 << 8 | d24 >> 16;
             d.depth[i] = static_cast<float>(static_cast<double>(d24) / 0xffffff);
         }
         if (covered > 0) all.push_back(std::move(d));
     }
-    // Where there are not enough, the same upside down.
+    // With too few scenes, adds the same upside down.
     const size_t captured = all.size();
     for (size_t s = 0; captured > 1 && s < captured && all.size() < kMostRanks; ++s) {
         Drawn turned = all[s];
@@ -85,7 +85,7 @@ std::vector<Drawn> drawnOf(const std::vector<NamedPlane>& planes) {
     return all;
 }
 
-// Messages of PictureComposer over the links of the bench.
+// Messages of PictureComposer over the links of the benchmark.
 class LinkRoutes final : public PartRoutes {
 public:
     explicit LinkRoutes(RankLinks& links) : links_(links) {}
@@ -104,8 +104,8 @@ public:
         return {bytes, ns};
     }
     void giveUp(int) override {}
-    void renew(int, uint32_t) override {} // nobody is lost
-    // At the end of a picture.
+    void renew(int, uint32_t) override {} // no rank is lost
+    // Called at the end of a picture.
     void waitSent() {
         for (const Kept& k : kept_) links_.waitSent(k.rank, k.number);
         kept_.clear();
@@ -127,7 +127,8 @@ int64_t processCpuNowNs() {
     return now.tv_sec * kNsPerS + now.tv_nsec;
 }
 
-// Pixels that are not those of the depth test in draw order; where depths tie only ours must be.
+// Returns the number of pixels that differ from the depth test in draw order; pixels with equal depths count for Mural
+// only.
 int64_t wrongPixels(const std::vector<Drawn>& drawn, int ranks, const uint32_t* got, bool tiesCount) {
     int64_t wrong = 0;
     for (size_t i = 0; i < drawn[0].part.colour.size(); ++i) {
@@ -146,7 +147,7 @@ int64_t wrongPixels(const std::vector<Drawn>& drawn, int ranks, const uint32_t* 
     return wrong;
 }
 
-// One rank: frames are put together between barriers; how, `compose` knows. It returns the picture at the first rank.
+// Runs one rank: composites frames between barriers by `compose`, which returns the picture at the first rank.
 template <class Compose> Told measure(RankLinks& links, const std::vector<Drawn>& drawn, int frames, bool tiesCount, Compose&& compose) {
     Told told;
     const uint32_t* picture = nullptr;
@@ -169,7 +170,7 @@ Told ours(RankLinks& links, const std::vector<Drawn>& drawn, const Way& way, int
     PicturePart part;
     return measure(links, drawn, frames, true, [&](const uint32_t*& picture) {
         const uint64_t serial = part.id.serial;
-        part = drawn[static_cast<size_t>(links.own())].part; // as it would come from the GL
+        part = drawn[static_cast<size_t>(links.own())].part; // as read from the GL
         part.id.serial = serial + 1;
         const int64_t beganNs = processCpuNowNs();
         composer.compose(part, kRule);
@@ -210,7 +211,7 @@ struct Sum {
     std::string fault;
 };
 
-// All ranks as processes; their sockets are gone afterwards.
+// Runs all ranks as processes; closes their sockets.
 template <class Rank> Sum perform(int ranks, Rank&& rank) {
     Sum sum;
     auto sockets = RankSockets::make(ranks);
@@ -238,7 +239,8 @@ template <class Rank> Sum perform(int ranks, Rank&& rank) {
     close(results[1]);
     Told told;
     int count = 0;
-    while (read(results[0], &told, sizeof told) == static_cast<ssize_t>(sizeof told)) { // all ends close when all have ended; a rank waits for another a minute at most
+    // all ends close when all ranks have ended; a rank waits at most a minute for another
+    while (read(results[0], &told, sizeof told) == static_cast<ssize_t>(sizeof told)) {
         ++count;
         sum.meanCpuNs += told.cpuNs / ranks;
         sum.mostCpuNs = std::max(sum.mostCpuNs, told.cpuNs);
@@ -264,7 +266,7 @@ Faults benchRanks(const std::vector<NamedPlane>& planes, const BenchOptions& opt
     for (const Way& way : kWays)
         for (const int ranks : {2, 3, 4, 8, static_cast<int>(kMostRanks)}) {
             if (static_cast<size_t>(ranks) > drawn.size() || (options.quick && ranks > 3)) continue;
-            Sum best[2]; // of so many turns, the least busy machine
+            Sum best[2]; // the fastest of several turns
             const int turns = options.quick ? 1 : 3, frames = options.quick ? 3 : 10;
             for (int turn = 0; turn < turns; ++turn)
                 for (const bool theirs : {false, true}) {

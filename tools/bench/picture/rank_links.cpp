@@ -17,13 +17,13 @@ namespace mural::bench {
 namespace {
 
 constexpr uint64_t kBarrierTag = ~uint64_t{0};
-constexpr int kWaitMs = 60'000; // longer than any frame takes on a busy machine
+constexpr int kWaitMs = 60'000; // longer than any frame on a busy machine
 
 struct Head {
     uint64_t tag, bytes;
 };
 
-// A rank that can't go on ends; the parent sees it and says so.
+// Ends the rank; the parent reports it.
 [[noreturn]] void fail(const char* what) {
     std::fprintf(stderr, "compositing_bench: a rank %s: %s\n", what, std::strerror(errno));
     std::_Exit(1);
@@ -194,7 +194,7 @@ bool RankLinks::waiting(int from, uint64_t tag) {
     const ssize_t got = recv(peer.socket, &head, sizeof head, MSG_PEEK | MSG_DONTWAIT);
     if (got != static_cast<ssize_t>(sizeof head)) return false;
     if (head.tag == tag) return true;
-    readAll(peer, std::as_writable_bytes(std::span(&head, 1))); // another's: out of the way
+    readAll(peer, std::as_writable_bytes(std::span(&head, 1))); // another tag: queue it
     peer.came.push_back({head.tag, std::vector<std::byte>(head.bytes)});
     readAll(peer, peer.came.back().bytes);
     return waiting(from, tag);

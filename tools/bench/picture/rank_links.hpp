@@ -1,5 +1,5 @@
-// Processes of one bench, each with a pair of sockets to each other one. What is sent goes out by a thread of its own for each peer, from
-// where it lies; what comes is read by who waits for it. The same for ours and for IceT, so that what differs is what they send and compute.
+// Processes of one benchmark with a socket pair between any two. A thread per peer sends data in place; the waiting
+// thread receives. Equal for Mural and IceT, so only their data and computation differ.
 #pragma once
 
 #include <condition_variable>
@@ -16,18 +16,18 @@
 
 namespace mural::bench {
 
-// All ends, made before the processes are.
+// All sockets, created before the processes.
 class RankSockets {
 public:
     static Result<RankSockets> make(int ranks);
     [[nodiscard]] int ranks() const { return static_cast<int>(ends_.size()); }
     [[nodiscard]] int end(int own, int other) const { return ends_[static_cast<size_t>(own)][static_cast<size_t>(other)]; }
     void closeAll();
-    // All but those of this process.
+    // Closes the sockets of other processes.
     void closeOthers(int own);
 
 private:
-    std::vector<std::vector<int>> ends_; // of a rank to each other; -1 to itself
+    std::vector<std::vector<int>> ends_; // per pair of ranks; -1 on the diagonal
 };
 
 struct RankMessage {
@@ -44,21 +44,21 @@ public:
     [[nodiscard]] int own() const { return own_; }
     [[nodiscard]] int ranks() const { return static_cast<int>(peers_.size()); }
 
-    // The bytes stay where they are until sent(number) is true.
+    // Sends bytes, which must stay valid until sent(number) is true.
     uint64_t post(int to, uint64_t tag, std::span<const std::byte> bytes);
     void waitSent(int to, uint64_t number);
-    // The next message of that tag; others stay.
+    // Returns the next message with that tag; others stay queued.
     RankMessage take(int from, uint64_t tag);
-    // Straight to where it is wanted; how many bytes came.
+    // Receives into the given memory; returns the number of bytes.
     size_t takeInto(int from, uint64_t tag, std::span<std::byte> into);
-    // Whether something of that tag can be taken, or begins to come.
+    // Returns true if a message with that tag is available, or begins to arrive.
     bool waiting(int from, uint64_t tag);
-    // Until anything comes from one of them.
+    // Blocks until data arrives from one of these ranks.
     void waitForAny(const std::vector<int>& from);
 
     void barrier();
     [[nodiscard]] uint64_t bytesSent() const { return bytesSent_; }
-    // Of the thread that sends to that rank, since it was last asked.
+    // Returns bytes and time of the sending thread since the last call.
     std::pair<uint64_t, int64_t> takeTransfer(int to);
 
 private:
@@ -74,7 +74,7 @@ private:
         uint64_t posted = 0, sent = 0, transferBytes = 0;
         int64_t transferNs = 0;
         bool stop = false;
-        std::deque<RankMessage> came; // read while another was waited for
+        std::deque<RankMessage> came; // received while waiting for another message
         std::thread sender;
     };
     void send(Peer& peer);

@@ -14,15 +14,15 @@ using namespace compositor;
 
 namespace {
 
-// What a selector has to choose from; the first ones are tried first.
+// Candidates of the selector, in order of trial.
 const std::vector<std::string> kChoices = {"bitplane", "slope", "raw", "bitplane-zstd", "slope-zstd", "lz4", "zstd"};
 constexpr double kGbitPerSec[] = {0.1, 1, 10, 25, 100};
 constexpr int32_t kPieceColumns = 512, kPieceRows = 256;
-constexpr int kSamples = 3; // of each time: what happens to a piece is one of them
+constexpr int kSamples = 3; // measured times per piece, one of which is used
 constexpr int kFramesOfScene = 30;
-constexpr unsigned kOrders = 8; // of scenes: what was learnt from the one before helps, or misleads
+constexpr unsigned kOrders = 8; // orders of scenes: earlier scenes help or mislead
 
-// What became of a piece with a codec, measured.
+// Measured result of a codec for a piece.
 struct Outcome {
     double bytes = 0;
     double encodeNs[kSamples] = {};
@@ -31,7 +31,7 @@ struct Outcome {
 struct Piece {
     TileClass tile;
     uint64_t rawBytes = 0;
-    std::vector<Outcome> outcomes; // as kChoices
+    std::vector<Outcome> outcomes; // parallel to kChoices
 };
 using Scene = std::vector<Piece>;
 
@@ -46,7 +46,7 @@ Result<Scene> measureScene(const Plane& plane, std::vector<std::unique_ptr<Codec
             for (auto& codec : codecs) {
                 Outcome o;
                 bytes.resize(std::max(bytes.size(), codec->boundBytes(shapeOf(part))));
-                for (int sample = -1; sample < kSamples; ++sample) { // the first one warms up
+                for (int sample = -1; sample < kSamples; ++sample) { // the first sample warms up
                     Result<size_t> size = size_t{0};
                     const double encode = cpuNsOf([&] { size = codec->encode(part, bytes); });
                     if (!size) return size.error();
@@ -71,13 +71,13 @@ double timeNs(const Outcome& o, int sample, double bytesPerSec, Overlap overlap)
 }
 
 struct Race {
-    double selected = 0; // time in all
+    double selected = 0; // total time
     std::vector<double> each = std::vector<double>(kChoices.size()); // of each codec alone
-    double perScene = 0; // of the best codec of each scene
-    double perPiece = 0; // of the best codec of each piece: nobody can know it
+    double perScene = 0; // of the best codec per scene
+    double perPiece = 0; // of the best codec per piece, an oracle
 };
 
-// All scenes one after the other over one link: the selector against each codec alone.
+// Sends all scenes over one link: the selector against each codec alone.
 Race run(const std::vector<Scene>& scenes, double bytesPerSec, Overlap overlap) {
     Race race;
     CodecSelector selector(kChoices, {.overlap = overlap});
@@ -92,7 +92,7 @@ Race run(const std::vector<Scene>& scenes, double bytesPerSec, Overlap overlap) 
                 const Outcome& o = piece.outcomes[c];
                 race.selected += timeNs(o, sample, bytesPerSec, overlap);
                 selector.encoded(piece.tile, c, piece.rawBytes, static_cast<uint64_t>(o.bytes), static_cast<int64_t>(o.encodeNs[sample]));
-                if (choice.measure) { // nothing hides that
+                if (choice.measure) { // not hidden by other work
                     const Outcome& other = piece.outcomes[*choice.measure];
                     race.selected += other.encodeNs[sample] + other.decodeNs[sample];
                     selector.measured(piece.tile, *choice.measure, piece.rawBytes, static_cast<uint64_t>(other.bytes), static_cast<int64_t>(other.encodeNs[sample]), static_cast<int64_t>(other.decodeNs[sample]));

@@ -19,14 +19,14 @@ struct Frame {
     [[nodiscard]] std::span<const std::byte> of(const Command& c) const { return std::span(bytes).subspan(c.at, c.sizeBytes); }
 };
 
-// Not std::ranges::equal, which goes byte by byte: what others take is measured at its best.
+// memcmp instead of std::ranges::equal, which compares byte by byte: competitors are measured at their best.
 bool isSame(std::span<const std::byte> a, std::span<const std::byte> b) { return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size()) == 0; }
 
 class DifferenceWay final : public Way {
 public:
     [[nodiscard]] std::string name() const override { return "difference + LZ4"; }
 
-    // A chunk may end within a long value: that piece is a command, too.
+    // A chunk may end within a blob; the piece counts as a command.
     void packet(const StreamPacket& p) override {
         const size_t start = now_.bytes.size();
         now_.bytes.insert(now_.bytes.end(), p.payload.begin(), p.payload.end());
@@ -68,7 +68,7 @@ public:
     [[nodiscard]] int64_t cpuNs() const override { return cpuNs_; }
 
 private:
-    void number(uint32_t n) { // in sevens
+    void number(uint32_t n) { // as a varint
         for (; n >= 128; n >>= 7) left_.push_back(static_cast<std::byte>(n | 128));
         left_.push_back(static_cast<std::byte>(n));
     }

@@ -16,7 +16,7 @@ class EconomyWay final : public Way {
 public:
     EconomyWay(std::unique_ptr<StreamEconomy> economy, const economy::Limits& limits, bool holds) : economy_(std::move(economy)), unpacker_(limits), holds_(holds) {
         economy_->sendBy([this] { take(); });
-        if (!holds) economy_->holdNothing(); // what is unpacked is compared with what came
+        if (!holds) economy_->holdNothing(); // decoded packets are compared with the originals
     }
 
     [[nodiscard]] std::string name() const override { return holds_ ? "sent" : "all packed"; }
@@ -71,7 +71,7 @@ private:
     }
 
     Result<void> unpack() {
-        batch_ = std::move(batches_.front()); // what is unpacked lies in it
+        batch_ = std::move(batches_.front()); // decoded packets refer to it
         batches_.pop_front();
         economy::BatchHeadReader head;
         size_t at = 0;
@@ -86,10 +86,10 @@ private:
     std::unique_ptr<StreamEconomy> economy_;
     economy::BatchDecoder decoder_;
     economy::Unpacker unpacker_;
-    std::vector<Sent> sent_;                     // of the frame
-    std::deque<std::vector<std::byte>> batches_; // that have not been unpacked
-    std::vector<std::byte> batch_;               // that is
-    const bool holds_; // then what comes out is not what came, and not compared
+    std::vector<Sent> sent_; // of the frame
+    std::deque<std::vector<std::byte>> batches_; // not decoded yet
+    std::vector<std::byte> batch_; // being decoded
+    const bool holds_; // with the filter, output differs from input and is not compared
     bool unpacking_ = false;
     int64_t cpuNs_ = 0;
     std::string wrong_;

@@ -15,7 +15,7 @@ Result<int64_t> readFrames(const std::string& path, const FrameReader& to) {
         recording::EntryWalk walk(*raw);
         recording::Entry entry;
         while (walk.next(entry)) {
-            if (entry.stream == 0) continue; // that a program has come or gone
+            if (entry.stream == 0) continue; // start or end of a program
             to.packet({entry.stream, entry.payload});
             const int64_t before = frames.frames();
             frames.packet(entry.stream, entry.payload);

@@ -1,4 +1,4 @@
-// The packets of a recording, frame by frame of the wall.
+// Reads the packets of a trace, by frame of the wall.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +17,10 @@ struct StreamPacket {
 
 struct FrameReader {
     std::function<void(const StreamPacket&)> packet;
-    std::function<void(int64_t frame)> ended; // from 1; behind the packet that has ended it
+    std::function<void(int64_t frame)> ended; // from 1; called after the packet that ends the frame
 };
 
-// All of them, in their order. Returns how many frames there are.
+// Visits all packets in order. Returns the number of frames.
 Result<int64_t> readFrames(const std::string& path, const FrameReader& to);
 
 } // namespace mural::bench

@@ -1,5 +1,5 @@
-// Ways to make a frame's stream small: Mural's own, and what it is measured against. Each sees the same packets in the same
-// order, alone, as nothing else works between two frames in a head either, and gives the bytes of each frame, and the CPU time that they took.
+// Methods of stream compression: Mural's own, and competitors. Each processes the same packets in the same order,
+// alone, as in a head between two frames, and reports bytes and CPU time per frame.
 #pragma once
 
 #include <cstdint>
@@ -16,22 +16,22 @@ public:
     virtual ~Way() = default;
     [[nodiscard]] virtual std::string name() const = 0;
     virtual void packet(const StreamPacket& packet) = 0;
-    // Of the frame that ends: bytes as they would be sent.
+    // Ends the frame; returns its size as sent.
     virtual Result<uint64_t> frameEnds() = 0;
-    // Behind all frames, for each packet once more: is it what comes out at the other end?
+    // After all frames, for each packet again: checks the decoded result.
     virtual Result<void> comesOut(const StreamPacket& /*packet*/) { return {}; }
-    // CPU time of all so far, without gathering packets and without what is only compared.
+    // Total CPU time, without assembling packets and comparing results.
     [[nodiscard]] virtual int64_t cpuNs() const = 0;
 };
 
-// The economy, as the head uses it: what nobody needs yet stays behind, the rest is packed.
+// Mural as in the head: command filter, then delta coding.
 Result<std::unique_ptr<Way>> sentWay(uint64_t storeBytes);
-// All of it packed, and nothing held: every batch is kept, to be unpacked and compared.
+// Delta coding without the filter: batches are kept, decoded and compared.
 Result<std::unique_ptr<Way>> allPackedWay(uint64_t storeBytes);
-// Zstandard over the whole frame, by itself.
+// Zstandard over each whole frame.
 std::unique_ptr<Way> zstdWay(int level);
-// Commands that are as the one at their place in the frame before are left out; LZ4 over the rest.
-// Source: Neal, Hunkin, McGregor, "Distributed OpenGL rendering in network bandwidth constrained environments" (ClusterGL), 2011.
+// Omits commands equal to the one at the same position of the previous frame; LZ4 over the rest. Source: Neal, Hunkin,
+// McGregor, "Distributed OpenGL rendering in network bandwidth constrained environments" (ClusterGL), 2011.
 std::unique_ptr<Way> differenceWay();
 
 } // namespace mural::bench

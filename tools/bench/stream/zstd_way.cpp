@@ -18,10 +18,10 @@ public:
         frameBytes_ += p.payload.size();
     }
 
-    // A frame comes in packets, from which each way begins: what is compressed whole is put together first.
+    // Assembles the packets of a frame first, because it is compressed as a whole.
     Result<uint64_t> frameEnds() override {
         out_.resize(ZSTD_compressBound(frameBytes_));
-        frame_.resize(frameBytes_); // its memory is there before time is taken
+        frame_.resize(frameBytes_); // commits the memory before the measurement
         const int64_t beganNs = threadCpuNowNs();
         size_t at = 0;
         for (const auto& packet : packets_) {

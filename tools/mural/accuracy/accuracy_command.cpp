@@ -20,10 +20,10 @@ namespace mural::cli {
 
 namespace {
 
-// Not by fmt, which throws where nobody reads any more.
+// Not fmt::print, which throws when the reader of the pipe has gone.
 void tell(const std::string& what) { std::fputs(("mural bench accuracy: " + what + "\n").c_str(), stderr); }
 
-// Of what is skipped as all is being ended, nothing is said.
+// Silent after an interruption.
 void say(const std::string& what) {
     if (Interruption::signal() == 0) tell(what);
 }
@@ -34,7 +34,7 @@ int complain(const Error& error) {
     return number != 0 ? 128 + number : launch::kExitUsage;
 }
 
-// What would fail in each run is said once, before the first.
+// Reports errors common to all runs once, before the first run.
 Result<void> checkSubject(const BenchArguments& a) {
     if (!a.program.empty() && !a.recordings.empty()) return Error{"--recording is measured beside Mural's own scenes, not beside a program; leave out one of the two"};
     for (const std::string& recording : a.recordings)
@@ -75,7 +75,7 @@ Result<AccuracyReport> measureSubject(const BenchArguments& a) {
     return report;
 }
 
-// All folders and processes have gone when it returns.
+// Removes all its folders and ends all its processes before it returns.
 Result<AccuracyReport> measure(const BenchArguments& a) {
     auto report = measureSubject(a);
     if (Interruption::signal() != 0) return Error{"stopped before all was measured; nothing is written"};
@@ -101,14 +101,14 @@ void describeBench(CLI::App& command, BenchArguments& a) {
 
 int benchCommand(const BenchArguments& a) {
     if (auto sound = checkSubject(a); !sound) return complain(sound.error());
-    std::optional<Interruption> interruption(std::in_place); // before anything is made that must not stay
+    std::optional<Interruption> interruption(std::in_place); // before anything is created that must be removed
     auto json = ResultFile::open("--json", a.json);
     if (!json) return complain(json.error());
     auto svg = ResultFile::open("--svg", a.svg);
     if (!svg) return complain(svg.error());
     const auto report = measure(a);
     if (!report) return complain(report.error());
-    interruption.reset(); // what is left to do is done soon, or waits for a reader
+    interruption.reset(); // the rest is quick, or waits for a reader
     const bool written = write(*json, jsonOf(report.value())) && write(*svg, plotOf(report.value()));
     fmt::print("{}", tableOf(report.value()));
     const int status = report.value().exitStatus();

@@ -1,4 +1,4 @@
-// mural bench accuracy: how far what Mural makes of a picture is from what one machine draws.
+// mural bench accuracy: measures how far Mural's pictures differ from those of one machine.
 #pragma once
 
 #include <string>
@@ -10,10 +10,10 @@ namespace mural::cli {
 
 struct BenchArguments {
     std::string what;
-    std::string json, svg; // files; empty: none
+    std::string json, svg; // output files; empty: none
     bool quick = false;
     int64_t frames = 30;
-    std::vector<std::string> recordings; // files of `mural run --record`
+    std::vector<std::string> recordings; // traces of `mural run --record`
     std::vector<std::string> program; // empty: Mural's own scenes
 };
 

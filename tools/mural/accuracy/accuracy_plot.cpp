@@ -20,7 +20,7 @@ using drawing::Point;
 using drawing::Style;
 using drawing::Svg;
 
-constexpr double kWidth = 1080, kLabels = 330, kNone = 60, kPlot = 440; // the column of 0, then the scale
+constexpr double kWidth = 1080, kLabels = 330, kNone = 60, kPlot = 440; // column of exact results, then the scale
 constexpr double kLeft = kLabels + kNone, kRight = kLeft + kPlot;
 constexpr double kTop = 118, kRow = 17, kHeading = 26;
 constexpr double kLeast = 1e-3, kMost = 255;

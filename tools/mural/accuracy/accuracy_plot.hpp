@@ -1,4 +1,5 @@
-// What was measured as a picture: for each line its largest and its usual error on one logarithmic scale, and nothing at its left end.
+// Plots the measurements: per row its largest and its mean error on one logarithmic scale, with exact results at the
+// left end.
 #pragma once
 
 #include <string>
@@ -7,6 +8,6 @@
 
 namespace mural::cli {
 
-[[nodiscard]] std::string plotOf(const AccuracyReport& report); // SVG
+[[nodiscard]] std::string plotOf(const AccuracyReport& report); // returns SVG
 
 } // namespace mural::cli

@@ -1,4 +1,4 @@
-// One line of what `mural bench accuracy` has measured.
+// One row of the results of `mural bench accuracy`.
 #pragma once
 
 #include <functional>
@@ -10,39 +10,39 @@
 
 namespace mural::cli {
 
-// What a pixel of the result takes.
+// Cost per pixel of the result.
 struct Cost {
-    double cpuNs = 0;  // of all threads that work at it
-    double bytes = 0;  // that travel or are read for it
+    double cpuNs = 0; // of all threads involved
+    double bytes = 0; // transferred or read
 };
 
 struct AccuracyRow {
-    std::string group;     // heading under which it stands
-    std::string what;      // that was measured
-    std::string reference; // that it was compared with
+    std::string group; // heading
+    std::string what; // measured method
+    std::string reference; // reference
     MeasuredError error;
     Bound bound;
-    std::string failure; // why it could not be measured; empty: it was
-    std::optional<Cost> cost = {}; // where it was measured, too
+    std::string failure; // reason of a failed measurement; empty: none
+    std::optional<Cost> cost = {}; // if measured
 
     [[nodiscard]] bool holds() const { return failure.empty() && bound.holds(error); }
 };
 
 struct AccuracyCounts {
     size_t measured = 0;
-    size_t broken = 0; // of those
-    size_t failed = 0; // not measured
+    size_t broken = 0; // rows outside of their bound
+    size_t failed = 0; // rows without a measurement
 };
 
-// All that is told of one run.
+// Results of one run.
 struct AccuracyReport {
-    std::string subject; // what was drawn, at which size
-    std::string gl;      // renderer and version; empty: unknown
+    std::string subject; // drawn contents and size
+    std::string gl; // renderer and version; empty: unknown
     std::vector<AccuracyRow> rows;
 
     [[nodiscard]] bool holds() const;
     [[nodiscard]] AccuracyCounts counts() const;
-    // 0: all holds, 1: something is broken or failed, 2: nothing could be measured.
+    // Returns 0: all bounds hold; 1: a bound is violated, or a measurement failed; 2: no measurement was possible.
     [[nodiscard]] int exitStatus() const;
 };
 

@@ -22,8 +22,8 @@ namespace mural::cli {
 
 namespace {
 
-constexpr int64_t kRunMs = 300'000; // of one run; slow machines need a tenth of it
-constexpr int64_t kFrameMs = 1'000; // and of each frame that a user asks for
+constexpr int64_t kRunMs = 300'000; // timeout of one run; slow machines need a tenth
+constexpr int64_t kFrameMs = 1'000; // additional time per requested frame
 constexpr int64_t kEndMs = 10'000;
 constexpr int64_t kTurnMs = 50;
 
@@ -39,14 +39,14 @@ std::string lastLine(std::string text) {
     return text.substr(text.find_last_of('\n') + 1);
 }
 
-// True: it has ended by itself; false: it is to be ended.
+// Returns true if the process has ended by itself, false if it must be ended.
 bool awaitEnd(launch::ChildProcess& child, Deadline limit) {
     while (!child.waitUntil(Deadline::inMs(kTurnMs)))
         if (limit.passed() || Interruption::signal() != 0) return false;
     return true;
 }
 
-// What a killed `mural run` has left: it would go on writing into folders that are being removed.
+// Kills processes left by a killed `mural run`, which would write into folders during their removal.
 void killOrphans(pid_t display) {
     for (const Deadline deadline = Deadline::inMs(kEndMs); !deadline.passed(); poll(nullptr, 0, kTurnMs)) {
         launch::reapAdopted({display});
@@ -56,7 +56,7 @@ void killOrphans(pid_t display) {
     }
 }
 
-// `mural run` ends all that it has started when it is asked to, and at the second time does not wait for pictures any more.
+// `mural run` ends its processes at the first signal, and stops waiting for pictures at the second.
 void endWithAll(launch::ChildProcess& child, pid_t display) {
     for (int time = 0; time < 2; ++time) {
         child.signal(SIGTERM);
@@ -77,7 +77,7 @@ Result<OwnedPicture> readPpm(const std::string& path) {
         return Error{path + " is no PPM picture of 8 bits; was the disk full?"};
     OwnedPicture picture(width, height);
     std::vector<char> row(static_cast<size_t>(width) * 3);
-    for (int y = height; y-- > 0;) { // files begin at the top
+    for (int y = height; y-- > 0;) { // files begin with the top row
         if (!file.read(row.data(), static_cast<std::streamsize>(row.size()))) return Error{path + " ends too early; was the disk full?"};
         for (size_t x = 0; x < static_cast<size_t>(width); ++x)
             for (size_t c = 0; c < 4; ++c) picture.row(y)[4 * x + c] = c < 3 ? static_cast<std::byte>(row[3 * x + 2 - c]) : std::byte{255};
@@ -103,7 +103,7 @@ ScratchFolder::~ScratchFolder() {
 Result<AccuracyRuns> AccuracyRuns::open() {
     auto scratch = ScratchFolder::make();
     if (!scratch) return scratch.error();
-    launch::adoptOrphans(); // see killOrphans()
+    launch::adoptOrphans(); // for killOrphans()
     auto display = launch::PrivateDisplay::start(launch::kDefaultScreenWidth, launch::kDefaultScreenHeight);
     if (!display) return display.error();
     return AccuracyRuns(std::move(*display), std::move(*scratch));

@@ -1,4 +1,4 @@
-// The processes of `mural bench accuracy`: programs, natively and by `mural run`, on one private display.
+// Runs programs for `mural bench accuracy`, natively and by `mural run`, on one private display.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@ namespace mural::cli {
 
 using Words = std::vector<std::string>;
 
-// Removed with all that is in it.
+// Temporary folder, removed with its contents.
 class ScratchFolder {
 public:
     static Result<ScratchFolder> make();
@@ -33,13 +33,13 @@ class AccuracyRuns {
 public:
     static Result<AccuracyRuns> open();
 
-    // A program to its end, without Mural: what it has printed. Errors hold the last line that it said.
+    // Runs a program without Mural and returns its output. Errors contain its last line.
     [[nodiscard]] Result<std::string> native(const Words& program) const;
-    // The same by `mural run OPTIONS -- PROGRAM`. frames: how many it is asked for, where that decides how long it may take.
+    // The same by `mural run OPTIONS -- PROGRAM`. frames: number of frames, which extends the timeout.
     [[nodiscard]] Result<std::string> mural(const Words& options, const Words& program, int64_t frames = 0) const;
-    // A recording, by `mural replay OPTIONS FILE`.
+    // Replays a trace by `mural replay OPTIONS FILE`.
     [[nodiscard]] Result<std::string> replay(const Words& options, const std::string& recording) const;
-    // Beside the binary; an error when it is not there.
+    // Returns the path next to the binary, or an error.
     [[nodiscard]] static Result<std::string> scenesProgram();
 
 private:
@@ -47,10 +47,10 @@ private:
     [[nodiscard]] Result<std::string> perform(const Words& command, const std::string& name, int64_t limitMs) const;
 
     std::unique_ptr<launch::PrivateDisplay> display_;
-    ScratchFolder scratch_; // what the processes say
+    ScratchFolder scratch_; // output of the processes
 };
 
-// The pictures of a folder in the order of their names: .png, .ppm of 8 bits.
+// Reads the pictures of a folder, sorted by name: .png, and 8-bit .ppm.
 [[nodiscard]] Result<std::vector<OwnedPicture>> readPictures(const std::string& folder);
 
 } // namespace mural::cli

@@ -10,7 +10,7 @@ namespace mural::cli {
 
 namespace {
 
-// Letters, not bytes.
+// Counts characters, not bytes.
 size_t lengthOf(const std::string& text) {
     return static_cast<size_t>(std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
 }

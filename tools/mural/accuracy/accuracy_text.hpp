@@ -1,4 +1,4 @@
-// What was measured: a table for people, JSON for programs.
+// Prints the results as a table or as JSON.
 #pragma once
 
 #include <string>

@@ -11,7 +11,7 @@ using namespace compositor;
 
 namespace {
 
-// Pictures have blue first, planes red.
+// Pictures are BGRA, planes are RGBA.
 Plane planeOf(const Picture& picture) {
     Plane plane(PlaneFormat::Rgba8, picture.width, picture.height);
     for (size_t i = 0; i < picture.sizeBytes(); i += 4)
@@ -73,7 +73,7 @@ void measureCodecs(const std::vector<OwnedPicture>& pictures, const std::string&
     CodecRegistry registry;
     for (const CodecInfo& codec : registry.losslessFor(PlaneFormat::Rgba8))
         if (!quick || codec.name == "bitplane" || codec.name == "zstd") rows.push_back(codecRow(registry, group, codec.name, Bound::exact(), planes));
-    // Lossy ones are taken by name only. What they may lose is theirs; a fault would lose more.
+    // Lossy codecs are selected by name only. Their bounds are their own losses; a fault would lose more.
     for (const auto& [name, psnr] : {std::pair("yuv420", 28.0), std::pair("jpeg-100", 30.0), std::pair("jpeg-95", 28.0), std::pair("jpeg-80", 25.0), std::pair("jpeg-50", 22.0)})
         if (!quick || std::string(name) == "yuv420" || std::string(name) == "jpeg-95") rows.push_back(codecRow(registry, group, name, {{}, {}, psnr}, planes));
 }

@@ -17,7 +17,7 @@ using namespace compositor;
 
 namespace {
 
-constexpr int32_t kWidth = 509, kHeight = 383; // nothing divides them
+constexpr int32_t kWidth = 509, kHeight = 383; // primes
 constexpr size_t kPixels = size_t{kWidth} * kHeight;
 const char* const kGroup = "Composition of made-up pictures";
 
@@ -47,7 +47,7 @@ MeasuredError errorOfBytes(const Plane& wanted, const Plane& got) {
     return error;
 }
 
-// Of parts that arrived in an order of their own, the pixel that a depth test of all in their order leaves.
+// Composites parts in another order of arrival; the reference is a depth test in draw order.
 AccuracyRow depthRow(PlaneFormat format, DepthFunction function, const char* what) {
     constexpr uint32_t kParts = 8;
     std::mt19937 random(1);
@@ -56,7 +56,7 @@ AccuracyRow depthRow(PlaneFormat format, DepthFunction function, const char* wha
         parts.push_back(blank(PlaneFormat::Rgba8, p));
         parts[p].depth.emplace(format, kWidth, kHeight);
         for (size_t i = 0; i < kPixels; ++i) {
-            const uint32_t depth = random() % 50; // so few that most pixels have ties
+            const uint32_t depth = random() % 50; // few values, so most pixels have equal depths
             setValue(*parts[p].colour, i, static_cast<uint32_t>(random()));
             if (format == PlaneFormat::D24S8) setValue(*parts[p].depth, i, depth << 20 | (static_cast<uint32_t>(random()) & 0xff));
             else setValue(*parts[p].depth, i, static_cast<float>(depth) / 50);
@@ -80,7 +80,7 @@ AccuracyRow depthRow(PlaneFormat format, DepthFunction function, const char* wha
     return row;
 }
 
-// Layers of premultiplied colour, against the same in double precision and without rounding.
+// Blends premultiplied layers; the reference is unrounded double precision.
 AccuracyRow blendRow(PlaneFormat format, int layers, double bound, const char* what) {
     std::mt19937 random(2);
     Image sum = blank(format, 0);
@@ -99,7 +99,7 @@ AccuracyRow blendRow(PlaneFormat format, int layers, double bound, const char* w
                 else {
                     const uint16_t half = halfOfFloat(static_cast<float>(given));
                     setValue(*front.colour, 4 * i + c, half);
-                    given = static_cast<double>(floatOfHalf(half)); // what was sent, not what was meant
+                    given = static_cast<double>(floatOfHalf(half)); // the rounded input, not the intended one
                 }
                 shown[c] = given;
             }

@@ -1,4 +1,4 @@
-// The loops that put pictures together, on made-up pictures, against what they mean pixel by pixel; and the codecs.
+// Compositing loops on synthetic pictures, compared pixel by pixel with their definitions; and the codecs.
 #pragma once
 
 #include "nodes/output/picture.hpp"
@@ -8,7 +8,7 @@ namespace mural::cli {
 
 void measureComposition(std::vector<AccuracyRow>& rows);
 
-// On pictures of the scenes; none: nothing is measured.
+// Measures codecs on pictures of the scenes; without pictures, nothing.
 void measureCodecs(const std::vector<OwnedPicture>& pictures, const std::string& group, bool quick, std::vector<AccuracyRow>& rows);
 
 } // namespace mural::cli

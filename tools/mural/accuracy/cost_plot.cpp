@@ -16,13 +16,14 @@ using drawing::Point;
 using drawing::Style;
 using drawing::Svg;
 
-constexpr double kLeastError = 1e-3, kMostError = 100, kExact = 60, kAxis = 40; // of 255; the column of what is equal; the numbers' room
+// relative to 255; column of exact results; room for numbers
+constexpr double kLeastError = 1e-3, kMostError = 100, kExact = 60, kAxis = 40;
 constexpr std::array<const char*, 8> kColours{"#1f6f8b", "#c46a1b", "#5b8c2a", "#8e3b8a", "#b8312f", "#2f4b8f", "#8a7a1d", "#3f3f46"};
 const char *const kText = "#1f2933", *const kSoft = "#66727f", *const kFaint = "#d5dce3";
 
 struct Plot {
     Box area;
-    double least, most; // of what stands upwards, whole powers of ten
+    double least, most; // range of the vertical axis, powers of ten
 
     [[nodiscard]] double x(double error) const {
         if (error <= 0) return area.x + kAxis + kExact / 2;
@@ -51,7 +52,7 @@ void drawFrame(Svg& svg, const Plot& p, const std::string& title) {
     svg.text({p.area.x + (p.area.w + kAxis) / 2, p.area.y + p.area.h + 30}, "root mean square error, of 255", {.size = 11, .color = kSoft, .align = Align::Middle});
 }
 
-// What fits beside a dot: what tells it from its neighbours (behind a colon), up to the first comma.
+// Short label: the text after a colon, up to the first comma.
 std::string labelOf(const std::string& what) {
     const size_t colon = what.find(": ");
     const std::string own = colon == std::string::npos ? what : what.substr(colon + 2);
@@ -59,7 +60,7 @@ std::string labelOf(const std::string& what) {
 }
 
 void drawDots(Svg& svg, const Plot& p, const AccuracyReport& report, double Cost::*value, const std::map<std::string, size_t>& groups) {
-    std::vector<Box> taken; // by labels
+    std::vector<Box> taken; // areas of labels
     for (const AccuracyRow& row : report.rows) {
         if (!row.cost || !row.failure.empty() || (*row.cost).*value <= 0) continue;
         const char* colour = kColours[groups.at(row.group) % kColours.size()];
@@ -69,7 +70,7 @@ void drawDots(Svg& svg, const Plot& p, const AccuracyReport& report, double Cost
         dot.fill = colour;
         dot.rounding = 4;
         svg.rect({at.x - 4, at.y - 4, 8, 8}, dot, fmt::format("{}: {}; error {:.3g}, {:.3g} ns and {:.3g} bytes per pixel", row.group, row.what, error, row.cost->cpuNs, row.cost->bytes));
-        if (error <= 0) continue; // they stand too close; the pointer tells
+        if (error <= 0) continue; // too dense for labels; tooltips identify them
         const std::string label = labelOf(row.what);
         Box box{at.x + 6, at.y - 5, Svg::widthOf(label, 9), 10};
         if (box.x + box.w > p.area.x + p.area.w) box.x = at.x - 6 - box.w;

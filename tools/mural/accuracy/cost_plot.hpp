@@ -1,4 +1,4 @@
-// Below the errors: what they cost, as two plots of CPU time and of bytes against the error.
+// Plots costs below the errors: CPU time and bytes against the error.
 #pragma once
 
 #include "balancer/drawing/svg.hpp"
@@ -6,7 +6,7 @@
 
 namespace mural::cli {
 
-// Where its lower end is; nothing is drawn without rows that know their cost.
+// Returns the lower end of the plots; draws nothing without rows with costs.
 double drawCosts(drawing::Svg& svg, const AccuracyReport& report, const drawing::Box& area);
 
 } // namespace mural::cli

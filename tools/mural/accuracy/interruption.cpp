@@ -15,10 +15,11 @@ void note(int number) {
 Interruption::Interruption() {
     received = 0;
     struct sigaction noted {};
-    noted.sa_handler = note; // no SA_RESTART: waits end
+    noted.sa_handler = note; // without SA_RESTART, so waits end
     for (size_t i = 0; i < kSignals.size(); ++i) {
         sigaction(kSignals[i], nullptr, &before_[i]);
-        if (before_[i].sa_handler != SIG_IGN) sigaction(kSignals[i], &noted, nullptr); // nohup has its reasons
+        // an ignored signal stays ignored, as under nohup
+        if (before_[i].sa_handler != SIG_IGN) sigaction(kSignals[i], &noted, nullptr);
     }
 }
 

@@ -1,5 +1,5 @@
-// Ctrl-C, and what else asks `mural bench accuracy` to end: noticed by what waits, so that processes are ended and folders removed
-// by who made them.
+// Ctrl-C and other requests to end `mural bench accuracy`. Waiting code polls for them, so processes and folders are
+// cleaned up by their owners.
 #pragma once
 
 #include <array>
@@ -7,19 +7,19 @@
 
 namespace mural::cli {
 
-// As long as it lives, these signals are only noted. There is one at a time.
+// While it exists, these signals are only recorded. Only one instance at a time.
 class Interruption {
 public:
     Interruption();
     Interruption(const Interruption&) = delete;
     Interruption& operator=(const Interruption&) = delete;
-    ~Interruption(); // they do again what they did before
+    ~Interruption(); // restores the previous handlers
 
-    // The first that came since there was one; 0: none.
+    // Returns the first signal received; 0: none.
     static int signal();
 
 private:
-    // SIGPIPE: who reads what is said has gone. It ends most programs, and must leave nothing behind, either.
+    // SIGPIPE: the reader of the output has gone. It would end the process without clean-up.
     static constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP, SIGPIPE};
     std::array<struct sigaction, kSignals.size()> before_{};
 };

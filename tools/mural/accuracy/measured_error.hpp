@@ -1,4 +1,4 @@
-// How far pixels are from those of a reference, and what was promised.
+// Differences between pixels and a reference, and bounds for them.
 #pragma once
 
 #include <cstdint>
@@ -9,30 +9,30 @@
 
 namespace mural::cli {
 
-// Over any number of pictures. Values are of 255.
+// Accumulated over any number of pictures. Values are relative to 255.
 struct MeasuredError {
     int64_t pixels = 0;
     int64_t differing = 0; // pixels with any difference
-    double largest = 0;    // of one colour component
-    double squares = 0;    // of all components' differences, added up
+    double largest = 0; // of one colour component
+    double squares = 0; // sum over all components
     int64_t components = 0;
 
     void add(const MeasuredError& other);
-    void addValue(double difference); // of one component; pixels are counted by the caller
+    void addValue(double difference); // one component; the caller counts pixels
     [[nodiscard]] double rootMeanSquare() const;
-    // Decibels; none where nothing differs.
+    // In decibels; empty without differences.
     [[nodiscard]] std::optional<double> psnr() const;
     [[nodiscard]] double differingShare() const { return pixels > 0 ? static_cast<double>(differing) / static_cast<double>(pixels) : 0; }
 };
 
-// Colour of 8 bits; pictures of one size. Where sizes differ, all of `expected` counts as wrong.
+// Compares 8-bit colours. For different sizes every pixel of `expected` counts as wrong.
 [[nodiscard]] MeasuredError errorOf(const Picture& expected, const Picture& actual);
 
-// What must hold; what is not given is not promised.
+// Bounds; an empty member has no bound.
 struct Bound {
     std::optional<double> differingShare;
     std::optional<double> largest;
-    std::optional<double> psnr; // at least
+    std::optional<double> psnr; // minimum
 
     static Bound exact() { return {0.0, {}, {}}; }
     [[nodiscard]] bool holds(const MeasuredError& error) const;

@@ -17,7 +17,7 @@ struct Way {
 };
 
 std::vector<Way> ways() {
-    const Bound exact = Bound::exact(), notPromised{}; // what lean does to a program depends on what that draws
+    const Bound exact = Bound::exact(), notPromised{}; // the error of tiling lean depends on the program's drawing
     return {
         {"2D, 2x2 tiles", {"--tiles", "2x2"}, exact, true},
         {"2D, 7x5 tiles on 4 nodes, unevenly", {"--tiles", "7x5", "--local-nodes", "4"}, exact, false},
@@ -28,7 +28,7 @@ std::vector<Way> ways() {
     };
 }
 
-// What --verify has counted, alpha included.
+// Reads the counts of --verify, which include alpha.
 Result<MeasuredError> errorOfReport(const std::string& path) {
     std::ifstream file(path);
     const auto report = nlohmann::json::parse(file, nullptr, false);

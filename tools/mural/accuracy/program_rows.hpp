@@ -1,4 +1,4 @@
-// Decompositions of a program that the user names: each frame against what the program's own context has drawn meanwhile.
+// Decompositions of a user's program: each frame is compared with the program's own context.
 #pragma once
 
 #include "tools/mural/accuracy/accuracy_row.hpp"
@@ -6,7 +6,8 @@
 
 namespace mural::cli {
 
-// frames: how many are compared. What a decomposition changes on purpose (eyes, samples) has no such reference.
+// frames: number of compared frames. Decompositions that change the picture on purpose (eyes, samples) have no such
+// reference.
 void measureProgram(const AccuracyRuns& runs, const Words& program, int64_t frames, bool quick, const SayProgress& say, std::vector<AccuracyRow>& rows);
 
 } // namespace mural::cli

@@ -13,17 +13,17 @@ namespace mural::cli {
 
 namespace {
 
-constexpr size_t kWholeFrames = 2; // of each window: what its program reads is known behind them
-constexpr int kMostSamples = 16; // taken for the truth of antialiasing
+constexpr size_t kWholeFrames = 2; // per window; afterwards the program's reads are known
+constexpr int kMostSamples = 16; // reference for antialiasing
 
 struct Way {
     std::string name;
     Words options;
     Bound bound;
-    bool manySamples = false; // against the mean of kMostSamples, not against one node's picture
-    double pictures = 1;      // that go to be put together
+    bool manySamples = false; // compared with the mean of kMostSamples, not with one node's picture
+    double pictures = 1; // transferred for assembly
     bool quick = false;
-    bool otherPixels = false; // than there are: not of the first frames
+    bool otherPixels = false; // nodes draw other pixels than shown, except in the first frames
 };
 
 std::vector<Way> ways() {
@@ -46,7 +46,7 @@ std::vector<Way> ways() {
 
 struct Replayed {
     std::vector<OwnedPicture> pictures;
-    double cpuSeconds = 0; // of the threads that replay
+    double cpuSeconds = 0; // of the replay threads
     int64_t frames = 0, exchangeBytes = 0;
 };
 
@@ -86,7 +86,7 @@ Result<void> checkRecording(const std::string& recording, const SayProgress& say
 void measureRecording(const AccuracyRuns& runs, const std::string& recording, bool quick, const SayProgress& say, std::vector<AccuracyRow>& rows) {
     const std::string name = std::filesystem::path(recording).stem().string(), group = "Recording: " + name;
     const auto one = replayed(runs, recording, {});
-    if (!one) { // there is nothing to compare with, and one line says so
+    if (!one) { // without a reference: reported in one line
         rows.push_back({group, "one node", "", {}, {}, one.error().message, {}});
         return;
     }

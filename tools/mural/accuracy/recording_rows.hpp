@@ -1,4 +1,4 @@
-// A recording of a program, replayed in every way: against itself by one node; what samples are short of against many of them.
+// Replays a trace with every decomposition: compared with one node, and few samples with many.
 #pragma once
 
 #include "tools/mural/accuracy/accuracy_row.hpp"
@@ -6,7 +6,7 @@
 
 namespace mural::cli {
 
-// What can be said against it before it is replayed; all of it is read.
+// Validates the whole trace before replay.
 Result<void> checkRecording(const std::string& recording, const SayProgress& say);
 
 void measureRecording(const AccuracyRuns& runs, const std::string& recording, bool quick, const SayProgress& say, std::vector<AccuracyRow>& rows);

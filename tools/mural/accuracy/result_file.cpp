@@ -28,13 +28,14 @@ Error ResultFile::failed() const { return Error{name_ + " can't be written: " + 
 Result<void> ResultFile::write(const std::string& text) {
     if (path_.empty()) return {};
     unused_ = false;
-    if (ftruncate(file_.get(), 0) != 0 && errno != EINVAL) return failed(); // EINVAL: a pipe or a device, which has no length
+    // EINVAL: a pipe or a device, which has no length
+    if (ftruncate(file_.get(), 0) != 0 && errno != EINVAL) return failed();
     for (std::string_view rest = text; !rest.empty();) {
         const ssize_t n = ::write(file_.get(), rest.data(), rest.size());
         if (n < 0 && errno != EINTR) return failed();
         if (n > 0) rest.remove_prefix(static_cast<size_t>(n));
     }
-    if (close(file_.release()) != 0) return failed(); // of disks behind a network it is the close that fails
+    if (close(file_.release()) != 0) return failed(); // network file systems report errors at close
     return {};
 }
 

@@ -1,5 +1,4 @@
-// A file that is written when all has been measured, and opened before anything is: minutes later nobody wants to hear that its
-// folder is not there.
+// A result file that is opened before the measurement and written after it, so an invalid path is reported immediately.
 #pragma once
 
 #include <string>
@@ -12,21 +11,21 @@ namespace mural::cli {
 
 class ResultFile {
 public:
-    // Empty path: none, and what is written goes nowhere. What a file holds stays in it until it is written.
+    // Opens the file; an empty path discards the output. Existing contents stay until write().
     static Result<ResultFile> open(const std::string& option, const std::string& path);
     ResultFile(ResultFile&& other) noexcept : name_(std::move(other.name_)), path_(std::move(other.path_)), file_(std::move(other.file_)), unused_(std::exchange(other.unused_, false)) {}
     ResultFile(const ResultFile&) = delete;
-    ~ResultFile(); // removes a file that it has made and nobody has written
+    ~ResultFile(); // removes a file that it created and did not write
 
     Result<void> write(const std::string& text);
 
 private:
     ResultFile(const std::string& option, std::string path) : name_(option + " " + path), path_(std::move(path)) {}
-    [[nodiscard]] Error failed() const; // by errno
+    [[nodiscard]] Error failed() const; // from errno
 
     std::string name_, path_;
     FileDescriptor file_;
-    bool unused_ = false; // made by us, and still empty
+    bool unused_ = false; // created here and still empty
 };
 
 } // namespace mural::cli

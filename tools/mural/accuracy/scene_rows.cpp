@@ -9,12 +9,12 @@ namespace mural::cli {
 
 namespace {
 
-constexpr int kRounds = 2; // of all scenes: nodes that share draws go by what the frame before has cost
-// Of each window, and behind frames in which pixels are read, or levels of textures chosen by what is not ours: there nodes draw all pixels.
+constexpr int kRounds = 2; // repetitions of all scenes: sort-last nodes use costs of the previous frame
+// Per window, and after frames with readback or unknown mipmap selection: nodes draw all pixels of these frames.
 constexpr size_t kWholeFrames = 2;
 constexpr double kEye = 0.3, kFocus = 6;
 
-// What is promised of each scene, in the order of kSceneNames: triangles, lighting, textures, lines, blending, depths.
+// Bounds per scene, in the order of kSceneNames: triangles, lighting, textures, lines, blending, depths.
 using Bounds = std::vector<Bound>;
 
 const Bound kNotPromised{};
@@ -26,14 +26,15 @@ struct SceneRows::Way {
 
     std::string name;
     Words options; // of mural run
-    Bounds bounds; // one: all scenes together
+    Bounds bounds; // a single bound: all scenes together
     Reference reference = Reference::Native;
     int samples = 1;
-    bool quick = false; // measured with --quick, too
-    bool otherPixels = false; // nodes draw others than there are: each scene by itself, and not of its first frames, see kWholeFrames
+    bool quick = false; // also measured with --quick
+    // nodes draw other pixels than shown: scenes are measured separately, without their first frames (kWholeFrames)
+    bool otherPixels = false;
 };
 
-// Bounds: exact where the method is exact; otherwise what docs/accuracy.md says, with the reasons.
+// Bounds are exact for exact methods; docs/accuracy.md gives reasons for the others.
 std::vector<SceneRows::Way> SceneRows::ways() {
     using R = Way::Reference;
     const Bounds exact{Bound::exact()};
@@ -120,7 +121,7 @@ Result<void> SceneRows::prepare() {
     return {};
 }
 
-// Of as many pictures as samples, each with its viewport moved: to the nearest value, halves up, as `mural run` rounds.
+// Mean of one picture per sample, with moved viewports; rounds to nearest, halves up, as `mural run`.
 Result<std::vector<OwnedPicture>> SceneRows::meanOf(int samples) {
     std::vector<std::vector<unsigned>> sums;
     std::vector<OwnedPicture> mean;
@@ -143,7 +144,7 @@ Result<std::vector<OwnedPicture>> SceneRows::meanOf(int samples) {
     return mean;
 }
 
-// A window twice as large in both directions, each pixel the mean of its four.
+// A window of twice the size; each pixel is the mean of four.
 Result<std::vector<OwnedPicture>> SceneRows::reduced(const Words& more) {
     Words words{"--size", fmt::format("{}x{}", 2 * width(), 2 * height())};
     words.insert(words.end(), more.begin(), more.end());
@@ -170,7 +171,8 @@ Result<std::vector<OwnedPicture>> SceneRows::anaglyph() {
     if (!right) return right.error();
     if (left->size() != right->size()) return Error{"the scenes were not all drawn"};
     for (size_t p = 0; p < right->size(); ++p)
-        for (size_t b = 2; b < (*right)[p].view().sizeBytes(); b += 4) (*right)[p].data()[b] = (*left)[p].data()[b]; // red
+        // red
+        for (size_t b = 2; b < (*right)[p].view().sizeBytes(); b += 4) (*right)[p].data()[b] = (*left)[p].data()[b];
     return right;
 }
 

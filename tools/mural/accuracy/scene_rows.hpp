@@ -1,4 +1,4 @@
-// Decompositions: the scenes natively, and by every way in which Mural divides a picture.
+// Decompositions: compares the scenes drawn natively with every decomposition of Mural.
 #pragma once
 
 #include "tools/mural/accuracy/accuracy_row.hpp"
@@ -10,7 +10,7 @@ class SceneRows {
 public:
     SceneRows(const AccuracyRuns& runs, bool quick, SayProgress say) : runs_(runs), quick_(quick), say_(std::move(say)) {}
 
-    // Draws what is compared with. Errors: there are no scenes, or no GL.
+    // Draws the references. Errors: no scenes program, no GL.
     Result<void> prepare();
     void measure(std::vector<AccuracyRow>& rows);
 

@@ -9,16 +9,16 @@ namespace mural::cli {
 
 namespace {
 
-constexpr int kWidth = 1021, kHeight = 767, kColumns = 7, kRows = 5; // tiles that do not divide
+constexpr int kWidth = 1021, kHeight = 767, kColumns = 7, kRows = 5; // tiles that do not divide the size
 const Frustum kWhole{-0.83, 0.91, -0.47, 0.52, 0.1, 100};
 
-// A scene on the near plane: waves that change by up to a sixth of full brightness from pixel to pixel, and edges between them.
+// A function on the near plane: waves that change by up to a sixth of full brightness per pixel, and edges.
 template <class Real> double brightness(Real x, Real y) {
     const double wave = 0.5 + 0.5 * std::sin(static_cast<double>(x) * 420) * std::cos(static_cast<double>(y) * 310);
     return std::fmod(std::floor(static_cast<double>(x) * 9 + static_cast<double>(y) * 5) + 1000, 2) == 0 ? wave : 1 - wave;
 }
 
-// The place of pixel i's middle in a part, as shaders interpolate it.
+// Returns the position of pixel i's centre in a part, as shaders interpolate it.
 template <class Real> Real placeOf(double first, double last, int i, int pixels) {
     return static_cast<Real>(first) + (static_cast<Real>(i) + static_cast<Real>(0.5)) * ((static_cast<Real>(last) - static_cast<Real>(first)) / static_cast<Real>(pixels));
 }
@@ -56,7 +56,7 @@ template <class Real> AccuracyRow transformRow(const char* what, const Bound& bo
 } // namespace
 
 void measureTransforms(std::vector<AccuracyRow>& rows) {
-    // An edge that falls onto a pixel's middle may go either way, by all its brightness: in a few of 783 107 pixels.
+    // An edge at a pixel's centre may go either way, by its full brightness: in a few of 783 107 pixels.
     rows.push_back(transformRow<float>("35 tiles, by floats", {0.001, {}, 60.0}));
     rows.push_back(transformRow<double>("35 tiles, by doubles", {0.00001, {}, 80.0}));
 }

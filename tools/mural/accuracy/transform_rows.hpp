@@ -1,4 +1,5 @@
-// Where a part's pixels are looked up, by floats and by doubles: a made-up picture in parts, against the whole in wider numbers.
+// Pixel positions of parts in float and double: a synthetic picture in parts, compared with the whole in higher
+// precision.
 #pragma once
 
 #include "tools/mural/accuracy/accuracy_row.hpp"

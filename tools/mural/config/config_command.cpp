@@ -23,7 +23,7 @@ namespace {
 
 using compound::LoadedConfig;
 
-constexpr size_t kMostWarnings = 10; // beside errors, which are to be seen: of what is no configuration each word is warned of
+constexpr size_t kMostWarnings = 10; // keeps errors visible: a file of another format causes a warning per word
 
 void printDiagnostics(const LoadedConfig& loaded, std::FILE* where) {
     const auto isError = [](const config::Diagnostic& d) { return d.severity == config::Severity::Error; };
@@ -36,7 +36,7 @@ void printDiagnostics(const LoadedConfig& loaded, std::FILE* where) {
     if (wrong && warnings > kMostWarnings) fmt::print(where, "note: {} more warnings are left out; mend what is wrong first\n", warnings - kMostWarnings);
 }
 
-// Options that what is asked for does not take; empty: none.
+// Returns an option that does not apply to the requested output; empty: none.
 std::string unusedOption(const ConfigArguments& a) {
     if (a.resolved && a.verb != "print") return "--resolved is for print";
     if (!a.resolved && (a.frame >= 0 || !a.layout.empty() || !a.stereo.empty())) return "--frame, --layout and --stereo are for print --resolved";
@@ -56,7 +56,7 @@ int check(const LoadedConfig& loaded) {
     return loaded.ok() ? 0 : launch::kExitUsage;
 }
 
-// Shows the layout on every canvas that has it; false when none has.
+// Activates the layout on every canvas that has it. Returns false if none has.
 bool showLayout(const config::ResolvedConfig& c, const std::string& name, compound::FrameInput& input) {
     bool found = false;
     input.activeLayouts.assign(c.canvases.size(), 0);

@@ -1,4 +1,4 @@
-// mural config: looks at a configuration file, writes it again, draws it.
+// mural config: checks, rewrites and draws a configuration file.
 #pragma once
 
 #include <string>
@@ -13,9 +13,9 @@ struct ConfigArguments {
     std::string out; // empty: standard output
     bool strict = false;
     bool resolved = false;
-    int64_t frame = -1; // 0 where none is given
+    int64_t frame = -1; // default: 0
     std::string layout;
-    std::string stereo; // "on", "off", or as the file says
+    std::string stereo; // "on", "off"; empty: as in the file
 };
 
 void describeConfig(CLI::App& command, ConfigArguments& arguments);

@@ -1,4 +1,4 @@
-// What is found in a configuration, in a few lines.
+// Summarises a configuration in a few lines.
 #pragma once
 
 #include <string>

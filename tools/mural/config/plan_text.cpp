@@ -32,7 +32,7 @@ std::string buffersText(config::BufferSet buffers) {
     return text;
 }
 
-// What of a context is not as it is everywhere.
+// Prints the attributes of a context that differ from the defaults.
 std::string contextText(const RenderContext& c) {
     std::string text = fmt::format("eye {} pixels {} part {}", nameOf(c.eye), areaText(c.viewport), partText(c.part));
     if (c.viewport.x != c.area.x || c.viewport.y != c.area.y) text += fmt::format(" offset [ {} {} ]", c.area.x, c.area.y);

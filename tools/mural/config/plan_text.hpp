@@ -1,4 +1,4 @@
-// What every channel does in one frame, as text: a line for each task, with its context.
+// Prints the plan of one frame: a line per task with its context.
 #pragma once
 
 #include <string>

@@ -13,15 +13,15 @@ using nlohmann::json;
 
 constexpr int64_t kAnswerMs = 10'000;
 constexpr int64_t kJoinMs = 15'000;
-constexpr int64_t kArriveMs = 20'000;   // what a stream may take to be everywhere after its end
-constexpr int64_t kUnderWayMs = 150;    // of a probe
-constexpr unsigned kCopies = 5;         // of each probe: one that comes is enough
+constexpr int64_t kArriveMs = 20'000; // timeout for complete delivery after the end of a stream
+constexpr int64_t kUnderWayMs = 150; // transit time of a probe
+constexpr unsigned kCopies = 5; // copies of each probe: one arrival suffices
 constexpr int kBetweenProbesMs = 1;
-constexpr size_t kExactBytes = 4;       // a largest size is found within so many
+constexpr size_t kExactBytes = 4; // resolution of the largest size
 constexpr size_t kPieceBytes = 64 * 1024;
-constexpr size_t kLeastSessionBytes = 512; // of a session's datagrams
+constexpr size_t kLeastSessionBytes = 512; // least size of a session's datagrams
 
-// Packets as networks have them: tunnels, PPPoE, Ethernet, and cards with long packets.
+// Common packet sizes: tunnels, PPPoE, Ethernet, jumbo frames.
 constexpr size_t kKnownPackets[] = {1280, 1400, 1450, 1492, 1500, 2304, 4352, 8192, 9000};
 
 std::string textOf(const json& j, const char* name) {
@@ -75,7 +75,7 @@ Result<void> HostSurvey::measure() {
     return lookAgain();
 }
 
-// What arrives is noted in m_, and the largest of the first way in seenBytes_.
+// Records arrivals in m_, and the largest size of the first method in seenBytes_.
 Result<void> HostSurvey::probeThere(const std::vector<size_t>& sizes, const std::vector<ProbeWay>& ways) {
     for (unsigned copy = 0; copy < kCopies; ++copy) {
         for (const ProbeWay way : ways) {
@@ -114,9 +114,9 @@ Result<void> HostSurvey::probeBack() {
     return {};
 }
 
-// The known sizes first; then between the largest that came and the smallest that did not.
+// Tries common sizes first, then bisects between the largest arrival and the smallest loss.
 Result<void> HostSurvey::findLargest(ProbeWay way) {
-    // Cards take somewhat more than they say; what they can't answer with is of no use.
+    // Interfaces accept somewhat more than their MTU, but cannot send replies of that size.
     const size_t theirs = m_.facts.mtuBytes > plan_.headerBytes + kLeastProbeBytes ? m_.facts.mtuBytes - plan_.headerBytes : plan_.cardBytes;
     const size_t most = std::min(plan_.cardBytes, theirs);
     std::vector<size_t> sizes{kLeastProbeBytes};
@@ -138,7 +138,7 @@ Result<void> HostSurvey::findLargest(ProbeWay way) {
 
 Result<void> HostSurvey::stream() {
     rsp::GroupOptions options = plan_.group;
-    // As long as they arrive: the rate is that of a session that is set up for this network.
+    // The largest size that arrives: the rate of a session configured for this network.
     const size_t largest = m_.way(ProbeWay::Group).largestBytes;
     if (largest >= kLeastSessionBytes && largest < plan_.cardBytes) options.datagramBytes = largest;
     auto group = rsp::Group::host(options);
@@ -173,7 +173,7 @@ Result<void> HostSurvey::streamTo(rsp::Group& group) {
     if (auto r = group.waitArrived(Deadline::inMs(kArriveMs)); !r) return r;
     const double tookS = static_cast<double>(monotonicNowNs() - beganNs) * 1e-9;
     const rsp::GroupReport report = group.report();
-    // Without members a stream goes nowhere, very fast.
+    // Without members a stream is discarded at any rate.
     if (report.members.size() != 1) return Error{"the host's member was lost during the stream: it said nothing, or did not take it"};
     const auto& member = report.members.front();
     m_.multicast = member.info.multicast;

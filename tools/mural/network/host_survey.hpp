@@ -1,4 +1,4 @@
-// One host's part of a survey: what arrives, how long it may be, and a stream.
+// Surveys one host: reachability, largest datagram, and a stream.
 #pragma once
 
 #include "tools/mural/network/host_measured.hpp"
@@ -9,9 +9,9 @@
 namespace mural::cli {
 
 struct SurveyPlan {
-    rsp::GroupOptions group; // as its host
-    size_t headerBytes = 28; // IP's and UDP's
-    size_t cardBytes = 0; // UDP payload of our card's packets
+    rsp::GroupOptions group; // options of the host role
+    size_t headerBytes = 28; // IP and UDP headers
+    size_t cardBytes = 0; // largest UDP payload of this machine's interface
     double seconds = 1;
 };
 
@@ -20,10 +20,10 @@ public:
     HostSurvey(const SurveyPlan& plan, ProbeSockets& sockets, ProbeProcess& process, HostMeasured& into)
         : plan_(plan), sockets_(sockets), process_(process), m_(into) {}
 
-    // Its first answer, which comes when it has started.
+    // Reads the first reply, sent after start-up.
     Result<void> greet(Deadline deadline);
     Result<void> measure();
-    // Whether the group is still heard there.
+    // Checks again that multicast arrives.
     Result<void> lookAgain();
 
 private:
@@ -37,8 +37,8 @@ private:
     ProbeSockets& sockets_;
     ProbeProcess& process_;
     HostMeasured& m_;
-    SocketAddress single_; // its own socket
-    size_t seenBytes_ = 0; // the largest of the last probes of the way that is looked at
+    SocketAddress single_; // the host's unicast socket
+    size_t seenBytes_ = 0; // largest arrival of the last probes with the current method
 };
 
 } // namespace mural::cli

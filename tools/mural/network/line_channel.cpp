@@ -30,7 +30,8 @@ Result<void> LineChannel::write(const std::string& line, Deadline deadline) {
     const std::string bytes = line + "\n";
     for (size_t at = 0; at < bytes.size();) {
         if (waitForSocket(out_.get(), POLLOUT, deadline) == 0) return Error{"it does not listen"};
-        const ssize_t n = ::write(out_.get(), bytes.data() + at, std::min<size_t>(bytes.size() - at, PIPE_BUF)); // as much as never waits
+        // a size that never blocks
+        const ssize_t n = ::write(out_.get(), bytes.data() + at, std::min<size_t>(bytes.size() - at, PIPE_BUF));
         if (n < 0 && (errno == EINTR || errno == EAGAIN)) continue;
         if (n < 0) return Error{errno == EPIPE ? "it has ended" : "nothing can be said to it: " + errnoText(errno)};
         at += static_cast<size_t>(n);

@@ -1,4 +1,4 @@
-// Lines of text between two processes, each with a deadline.
+// Lines of text between two processes, with deadlines.
 #pragma once
 
 #include <string>
@@ -11,13 +11,13 @@ namespace mural::cli {
 
 class LineChannel {
 public:
-    // Reads from one, writes to the other; they may be the same.
+    // Reads from one descriptor and writes to the other; they may be equal.
     LineChannel(FileDescriptor in, FileDescriptor out) : in_(std::move(in)), out_(std::move(out)) {}
 
-    // Without its end. Errors: the deadline, the other's end, a line that is too long.
+    // Returns a line without its end. Errors: the deadline, end of file, an overlong line.
     Result<std::string> read(Deadline deadline);
     Result<void> write(const std::string& line, Deadline deadline);
-    // A line, or a part of one, may be there.
+    // Readable if a line, or a part of one, may be available.
     [[nodiscard]] int readableFd() const { return in_.get(); }
     void closeWriting() { out_ = FileDescriptor(); }
 

@@ -53,14 +53,14 @@ MachineFacts readMachineFacts(const rsp::NetworkInterface& interface, size_t buf
     f.bufferBytes = bufferBytes;
     f.receiveLimitBytes = numberIn(root + "/proc/sys/net/core/rmem_max");
     f.sendLimitBytes = numberIn(root + "/proc/sys/net/core/wmem_max");
-    // The stricter of both counts; 1 is strict, 2 is loose.
+    // The stricter setting applies; 1 is strict, 2 is loose.
     const std::string filters = root + "/proc/sys/net/ipv4/conf/";
     f.strictReturnPath = std::max(numberIn(filters + "all/rp_filter").value_or(0), numberIn(filters + interface.name + "/rp_filter").value_or(0)) == 1;
     f.silentBridges = silentBridges(root);
     return f;
 }
 
-// A line per processor, of hexadecimal columns; the second counts what was dropped.
+// One line per processor with hexadecimal columns; the second counts drops.
 uint64_t droppedByQueues(const std::string& root) {
     std::ifstream file(root + "/proc/net/softnet_stat");
     uint64_t all = 0;

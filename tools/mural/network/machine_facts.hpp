@@ -1,4 +1,4 @@
-// What a machine's kernel says about the network that Mural would use there.
+// A machine's network properties according to its kernel.
 #pragma once
 
 #include <cstdint>
@@ -15,23 +15,23 @@ namespace mural::cli {
 struct MachineFacts {
     std::string interface;
     size_t mtuBytes = 0;
-    double linkBytesPerS = 0; // 0: the card does not tell
+    double linkBytesPerS = 0; // 0: unknown
     bool multicast = false;
     bool loopback = false;
-    size_t bufferBytes = 0; // that a socket got for receiving
+    size_t bufferBytes = 0; // granted receive buffer
     std::optional<uint64_t> receiveLimitBytes, sendLimitBytes; // net.core.rmem_max, wmem_max
-    bool strictReturnPath = false; // rp_filter: what comes from an address that is reached by another interface is dropped
-    std::vector<std::string> silentBridges; // that snoop, and are no querier themselves
+    bool strictReturnPath = false; // rp_filter: drops packets whose source is reached through another interface
+    std::vector<std::string> silentBridges; // bridges with IGMP snooping and no querier
 };
 
-// `root` stands before /proc and /sys, for tests.
+// `root` precedes /proc and /sys, for tests.
 MachineFacts readMachineFacts(const rsp::NetworkInterface& interface, size_t bufferBytes, const std::string& root = "");
 
-// Packets that the kernel's queues between cards and sockets had no room for since the machine began, all cards together.
+// Returns the packets dropped by the kernel's input queues since boot, over all interfaces.
 uint64_t droppedByQueues(const std::string& root = "");
 
 nlohmann::json toJson(const MachineFacts& facts);
-// What is missing or of another kind stays as it is by default.
+// Missing or mistyped fields keep their defaults.
 MachineFacts machineFactsFrom(const nlohmann::json& json);
 
 } // namespace mural::cli

@@ -16,7 +16,7 @@ namespace mural::cli {
 
 namespace {
 
-constexpr int64_t kStartMs = 30'000; // of all members together, as of a session's nodes
+constexpr int64_t kStartMs = 30'000; // for all members together, as for a session's nodes
 constexpr int64_t kResolveMs = 5'000;
 constexpr size_t kUdpOverIpv4Bytes = 28;
 constexpr size_t kUdpOverIpv6Bytes = 48;
@@ -30,7 +30,7 @@ std::vector<std::string> split(const std::string& text, char separator) {
     return parts;
 }
 
-// For the shell that the launch command runs on the host.
+// Quotes a word for the shell that the launch command runs on the host.
 std::string quoted(const std::string& word) {
     if (word.find_first_of(" \t\"'\\$`*?[]()<>|&;!#~") == std::string::npos) return word;
     std::string result = "'";
@@ -45,13 +45,13 @@ std::vector<std::string> memberCommand(const NetworkArguments& a, const std::str
     return command;
 }
 
-// Which of our addresses the kernel would send from to a host; empty: its name is not known here, or not of this family.
+// Returns the source address that the kernel would use towards a host; empty for an unknown name or another family.
 std::string ownAddressTowards(const std::string& host, int family) {
     auto addresses = resolveTcp(host.substr(host.find('@') + 1), 9, TcpRole::Connect, Deadline::inMs(kResolveMs));
     if (!addresses) return {};
     for (const TcpAddress& a : *addresses) {
         if (a.family() != family) continue;
-        // Connecting a datagram socket sends nothing but chooses the route.
+        // Connecting a datagram socket sends nothing but selects the route.
         const FileDescriptor fd(::socket(a.family(), SOCK_DGRAM | SOCK_CLOEXEC, 0));
         if (::connect(fd.get(), a.get(), a.sizeBytes) == 0) return numericText(localTcpAddress(fd.get()));
     }
@@ -70,7 +70,7 @@ public:
     Result<Survey> run(const std::function<void(const std::string&)>& progress) {
         if (auto r = open(); !r) return r.error();
         const std::vector<std::string> hosts = a_.hosts.empty() ? std::vector<std::string>{"this machine"} : split(a_.hosts, ',');
-        // Measured are kept by pointers.
+        // Surveys hold pointers to these elements.
         survey_.hosts.resize(hosts.size());
         for (size_t i = 0; i < hosts.size(); ++i) survey_.hosts[i].host = hosts[i];
         for (HostMeasured& h : survey_.hosts) started_.push_back(start(h));
@@ -80,7 +80,7 @@ public:
             progress(hosts[i]);
             look(started_[i], survey_.hosts[i], deadline);
         }
-        // Switches forget groups after a while: the first hosts are looked at once more.
+        // Switches forget groups after some time, so the first hosts are checked again.
         for (size_t i = 0; i + 1 < hosts.size(); ++i) {
             if (started_[i].survey && survey_.hosts[i].failure.empty()) note(started_[i].survey->lookAgain(), survey_.hosts[i]);
         }
@@ -99,7 +99,7 @@ private:
         if (!number) return number.error();
         secret_ = secret.value();
         std::memcpy(&number_, number.value().data(), sizeof number_);
-        // By default the card that leads to the first host.
+        // Default: the interface that leads to the first host.
         std::string wanted = a_.interface;
         if (wanted.empty() && !a_.hosts.empty()) wanted = ownAddressTowards(split(a_.hosts, ',').front(), family_);
         auto interface = rsp::findInterface(wanted, group->family());
@@ -118,14 +118,15 @@ private:
         plan_.cardBytes = std::min(interface_.mtuBytes - plan_.headerBytes, kMostDatagramBytes);
         plan_.seconds = a_.seconds;
         survey_.here = {muralVersion(), readMachineFacts(interface_, sockets_->bufferBytes()), a_.group, plan_.headerBytes, plan_.cardBytes};
-        // Where members find out that they can connect to us.
+        // Members test their connection to this machine here.
         auto listening = rsp::Group::host(plan_.group);
         if (!listening) return listening.error();
         listening_ = std::move(*listening);
         return {};
     }
 
-    // All our addresses of the group's family, that towards the host first: members answer datagrams where they connect to.
+    // Returns this machine's addresses of the group's family, that towards the host first: members answer datagrams to
+    // the address they connect to.
     [[nodiscard]] std::vector<std::string> addressesFor(const std::string& towards) const {
         std::vector<std::string> texts;
         if (!towards.empty()) texts.push_back(towards);
@@ -176,7 +177,7 @@ private:
     Survey survey_;
     SurveyPlan plan_;
     SessionSecret secret_{};
-    uint64_t number_ = 0; // of this survey; goes over the network unhidden
+    uint64_t number_ = 0; // random number of this survey, sent in clear
     int family_ = 0; // of the group's address
     rsp::NetworkInterface interface_;
     std::optional<ProbeSockets> sockets_;

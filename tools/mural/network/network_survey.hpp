@@ -1,5 +1,5 @@
-// Measures the network between this machine and hosts: starts a member on each, all at once, then looks at one after the
-// other, so that none disturbs another's figures.
+// Surveys the network between this machine and hosts: starts all members at once, then measures them one after the
+// other to avoid interference.
 #pragma once
 
 #include <functional>
@@ -17,7 +17,7 @@ struct Survey {
     std::vector<HostMeasured> hosts;
 };
 
-// Errors are of this machine: nothing could be measured at all. `progress` is told the host that is looked at.
+// Errors concern this machine: nothing could be measured. `progress` receives the current host.
 Result<Survey> surveyNetwork(const NetworkArguments& arguments, const std::function<void(const std::string& host)>& progress);
 
 } // namespace mural::cli

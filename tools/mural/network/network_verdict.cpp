@@ -15,7 +15,7 @@ constexpr double kSlowLinkBytesPerS = 125e6; // 1 Gbit/s
 
 std::string percent(double share) { return fmt::format("{:.2g} %", share * 100); }
 
-// "eth0 at 1000 Mbit/s, packets of 1500 bytes".
+// Returns "eth0 at 1000 Mbit/s, packets of 1500 bytes".
 Check card(const std::string& name, const MachineFacts& f) {
     std::string found = fmt::format("{}, packets of {} bytes", f.interface, f.mtuBytes);
     if (f.linkBytesPerS > 0) found += fmt::format(", {:.0f} Mbit/s", f.linkBytesPerS * 8e-6);
@@ -32,12 +32,12 @@ Check buffers(const std::string& name, const std::string& where, const MachineFa
     return {Health::Warn, name, found, fmt::format("`sysctl -w net.core.rmem_max={0} net.core.wmem_max={0}`{1}; a file in /etc/sysctl.d keeps it", kWantedBufferBytes, where)};
 }
 
-// The card that is sent by is not the one that leads there, and nothing of the group arrives.
+// Returns true if the sending interface is not the one towards the host, and no multicast arrives.
 bool byWrongCard(const HereMeasured& here, const HostMeasured& h) {
     return !h.way(ProbeWay::Group).to && !h.interfaceTowards.empty() && h.interfaceTowards != here.facts.interface;
 }
 
-// Nothing of the group arrives while single datagrams do.
+// No multicast arrives, but unicast does.
 Check noMulticast(const HereMeasured& here, const HostMeasured& h, const std::string& name) {
     const WayMeasured& group = h.way(ProbeWay::Group);
     if (!group.trouble.empty()) return {Health::Bad, name, group.trouble, fmt::format("a firewall's rule for sending, or a missing route: `nft list ruleset`, `ip route add 224.0.0.0/4 dev {}`", here.facts.interface)};

@@ -1,4 +1,4 @@
-// What is to be mended: from measured facts to lines with a next step. Pure, so tests can ask it anything.
+// Derives diagnoses with next steps from measurements. Pure, so tests cover every case.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace mural::cli {
 
-// The checks' names tell what they are about: "card", "buffers", "wall1: multicast".
+// Names of checks identify their subject: "card", "buffers", "wall1: multicast".
 std::vector<Check> judgeHere(const HereMeasured& here);
 std::vector<Check> judgeHost(const HereMeasured& here, const HostMeasured& host);
 

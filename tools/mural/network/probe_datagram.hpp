@@ -1,7 +1,7 @@
-// The datagrams by which `mural doctor --network` finds out what arrives. No part of a session: RSP's ends refuse them by
-// their first byte. Little endian:
+// Probe datagrams of `mural doctor --network`. Not part of a session: RSP rejects them by their first byte.
+// Little-endian:
 //
-//   0 "MURALNP1"   8 u64 survey   16 u8 way   17 u8 1: from the doctor, 0: to it   18 u16 size of the whole   20 u32 0
+//   0 "MURALNP1"   8 u64 survey   16 u8 way   17 u8 1: from the doctor, 0: to it   18 u16 total size   20 u32 0
 #pragma once
 
 #include <cstddef>
@@ -11,26 +11,26 @@
 
 namespace mural::cli {
 
-// What it was sent to.
+// Destination of a probe.
 enum class ProbeWay : uint8_t {
-    Single = 0,    // the machine's own address
-    Group = 1,     // the multicast group
-    LinkLocal = 2, // a multicast group that switches let through everywhere (RFC 4541, 2.1.2)
+    Single = 0, // the machine's unicast address
+    Group = 1, // the multicast group
+    LinkLocal = 2, // a multicast group that switches always forward (RFC 4541, 2.1.2)
 };
 constexpr ProbeWay kProbeWays[] = {ProbeWay::Single, ProbeWay::Group, ProbeWay::LinkLocal};
 
 constexpr size_t kLeastProbeBytes = 24;
 
 struct ProbeDatagram {
-    uint64_t survey = 0; // random: others' are not ours
+    uint64_t survey = 0; // random; distinguishes surveys
     ProbeWay way = ProbeWay::Single;
     bool fromDoctor = false;
     uint16_t sizeBytes = kLeastProbeBytes;
 };
 
-// `into` has the datagram's size.
+// `into` has the size of the datagram.
 void writeProbe(const ProbeDatagram& probe, std::span<std::byte> into);
-// Nothing for what is no probe, or has not come whole.
+// Returns an empty value for other or truncated datagrams.
 [[nodiscard]] std::optional<ProbeDatagram> readProbe(std::span<const std::byte> datagram);
 
 } // namespace mural::cli

@@ -24,17 +24,17 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int64_t kSilenceMs = 600'000; // others are looked at meanwhile
+constexpr int64_t kSilenceMs = 600'000; // other hosts are surveyed in the meantime
 constexpr int64_t kConnectMs = 2'000; // per address
 constexpr int64_t kJoinGroupMs = 10'000;
 constexpr int64_t kSpeakMs = 10'000;
 constexpr int kBetweenDatagramsMs = 1;
 
-// How this machine gets to the doctor's.
+// The route to the doctor's machine.
 struct Route {
-    std::string reached; // address of the doctor's machine
-    std::string own;     // ours, as the kernel chose it
-    std::string why;     // nothing was reached
+    std::string reached; // reachable address of the doctor's machine
+    std::string own; // source address chosen by the kernel
+    std::string why; // reason if none is reachable
 };
 
 Route findRoute(const std::vector<std::string>& addresses, uint16_t port) {
@@ -55,7 +55,7 @@ Route findRoute(const std::vector<std::string>& addresses, uint16_t port) {
     return route;
 }
 
-// A member of the doctor's group that reads all that comes.
+// A member of the doctor's group that reads and discards the stream.
 class Reading {
 public:
     explicit Reading(std::unique_ptr<rsp::Group> group) : group_(std::move(group)), thread_([this] { read(); }) {}
@@ -73,7 +73,7 @@ private:
         std::vector<std::byte> piece(256 * 1024);
         while (!stop_) {
             auto count = group_->read(rsp::kHost, piece, Deadline::inMs(100));
-            if (count && *count == 0) return; // the doctor has what it wanted
+            if (count && *count == 0) return; // the doctor has finished
             if (count) bytes_ += *count;
         }
     }
@@ -112,7 +112,7 @@ private:
         auto group = numericEndpoint(order.at("group").get<std::string>());
         if (!group) return group.error();
         const Route route = findRoute(order.at("addresses").get<std::vector<std::string>>(), order.at("port").get<uint16_t>());
-        // By default the interface that leads to the doctor.
+        // Default: the interface that leads to the doctor.
         std::string wanted = order.at("interface").get<std::string>();
         if (wanted.empty()) wanted = route.own;
         auto interface = rsp::findInterface(wanted, group->family());
@@ -154,7 +154,7 @@ private:
     }
 
     json seen() {
-        (void)sockets_->listen(Deadline::inMs(0)); // what is there already
+        (void)sockets_->listen(Deadline::inMs(0)); // already received
         json list = json::array();
         for (const auto& [probe, count] : sockets_->take()) list.push_back({{"way", static_cast<int>(probe.way)}, {"size", probe.sizeBytes}, {"count", count}});
         return {{"seen", list}};

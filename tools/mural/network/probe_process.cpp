@@ -39,7 +39,7 @@ Result<std::unique_ptr<ProbeProcess>> ProbeProcess::start(const std::vector<std:
 }
 
 ProbeProcess::~ProbeProcess() {
-    lines_.closeWriting(); // it ends by itself then
+    lines_.closeWriting(); // the process then ends by itself
     if (process_.waitUntil(Deadline::inMs(kEndMs))) return;
     process_.signalGroup(SIGKILL);
     process_.end(Deadline::inMs(0));

@@ -1,4 +1,4 @@
-// `mural network-member` on a host, as the doctor sees it: started by the launch command, spoken to by lines.
+// The doctor's side of `mural network-member` on a host: started by the launch command, controlled by lines.
 #pragma once
 
 #include <memory>
@@ -18,10 +18,10 @@ public:
     static Result<std::unique_ptr<ProbeProcess>> start(const std::vector<std::string>& command);
     ProbeProcess(const ProbeProcess&) = delete;
     ProbeProcess& operator=(const ProbeProcess&) = delete;
-    ~ProbeProcess(); // ends it, and all that it has started
+    ~ProbeProcess(); // ends it with its descendants
 
     Result<void> say(const nlohmann::json& words);
-    // An object. Errors: the process has ended, says nothing, says that it failed, or what is no JSON.
+    // Returns a JSON object. Errors: the process has ended, is silent, reports an error, or sends no JSON.
     Result<nlohmann::json> hear(Deadline deadline);
     Result<nlohmann::json> ask(const nlohmann::json& words, Deadline deadline);
 

@@ -7,7 +7,7 @@
 namespace mural::cli {
 
 namespace {
-// For experiments; never forwarded, and never filtered by switches that snoop (RFC 3692, RFC 4541).
+// Experimental address: never forwarded, and never filtered by snooping switches (RFC 3692, RFC 4541).
 constexpr const char* kLinkLocal4 = "224.0.0.254";
 constexpr const char* kLinkLocal6 = "ff02::114";
 } // namespace
@@ -36,7 +36,7 @@ void ProbeSockets::send(ProbeWay way, size_t sizeBytes, const SocketAddress& sin
     std::vector<std::byte> datagram(sizeBytes);
     writeProbe({survey_, way, doctor_, static_cast<uint16_t>(sizeBytes)}, datagram);
     const SocketAddress& to = way == ProbeWay::Single ? single : way == ProbeWay::Group ? group_ : linkLocal_;
-    // That long ones are refused here is known by what arrives.
+    // Rejection of long datagrams shows in the arrivals and is no error.
     if (auto r = own_.send(to, datagram, sizeBytes); !r && sizeBytes == kLeastProbeBytes) troubles_[static_cast<size_t>(way)] = r.error().message;
 }
 

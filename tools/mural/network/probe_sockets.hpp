@@ -1,4 +1,4 @@
-// The sockets that one machine probes the network by: one of its own, one in the group, one in a link-local group.
+// Probe sockets of one machine: unicast, multicast group, and link-local group.
 #pragma once
 
 #include <array>
@@ -17,15 +17,15 @@ class ProbeSockets {
 public:
     static Result<ProbeSockets> open(const SocketAddress& group, const rsp::NetworkInterface& interface, uint64_t survey, bool doctor);
 
-    [[nodiscard]] uint16_t port() const; // of the own socket
-    // What the kernel gave for kWantedBufferBytes; it counts its own bookkeeping, and so doubles.
+    [[nodiscard]] uint16_t port() const; // of the unicast socket
+    // Returns the granted part of kWantedBufferBytes; the kernel doubles the value for its overhead.
     [[nodiscard]] size_t bufferBytes() const { return own_.bufferBytes() / 2; }
-    // Why a way can't be used here: the group was not joined, or sending failed; empty: it can.
+    // Returns the reason why a kind of probe is unusable here (join or send failed); empty: usable.
     [[nodiscard]] const std::string& trouble(ProbeWay way) const { return troubles_[static_cast<size_t>(way)]; }
 
-    // One probe; `single` is where ProbeWay::Single leads.
+    // Sends one probe; `single` is the destination of ProbeWay::Single.
     void send(ProbeWay way, size_t sizeBytes, const SocketAddress& single);
-    // Takes what comes until the deadline, or until `alsoFd` is readable (-1: none). True: it is.
+    // Receives until the deadline, or until `alsoFd` is readable (-1: none); returns true for the latter.
     bool listen(Deadline deadline, int alsoFd = -1);
 
     struct Seen {
@@ -33,7 +33,7 @@ public:
         uint16_t sizeBytes;
         bool operator<(const Seen& o) const { return way != o.way ? way < o.way : sizeBytes < o.sizeBytes; }
     };
-    // How many of each have come since the last call.
+    // Returns the arrivals since the last call.
     [[nodiscard]] std::map<Seen, unsigned> take() { return std::exchange(seen_, {}); }
 
 private:

@@ -1,4 +1,4 @@
-// mural-scenes: draws the scenes of `mural bench accuracy`, frame by frame, without a clock.
+// mural-scenes: draws the scenes of `mural bench accuracy` frame by frame, independent of time.
 #define GL_GLEXT_PROTOTYPES
 #include <GL/gl.h>
 #include <algorithm>
@@ -19,7 +19,7 @@ using mural::scenes::Look;
 struct Options {
     int width = 509, height = 383, frames = 6;
     std::string save; // folder; empty: nothing is saved
-    int scene = -1;   // alone; -1: all, one after the other
+    int scene = -1; // a single scene; -1: all in sequence
     Look look;
 };
 
@@ -39,7 +39,7 @@ bool take(const std::string& name, const char* value, Options& o) {
     return name == "--save" && *value != '\0';
 }
 
-// The window's back buffer as a PPM file, the topmost row first.
+// Saves the window's back buffer as a PPM file, top row first.
 void save(const Options& o, int frame) {
     std::vector<unsigned char> pixels(static_cast<size_t>(o.width) * static_cast<size_t>(o.height) * 3);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);

@@ -1,4 +1,4 @@
-// The scenes in the order of their frames: frame n shows scene n % size, seen from another side in each round.
+// Scenes in the order of their frames: frame n shows scene n % size, from another side in each round.
 #pragma once
 
 #include <array>

@@ -23,7 +23,7 @@ std::unique_ptr<SceneWindow> SceneWindow::open(int width, int height, std::strin
         why = "no X display; set DISPLAY, or run it under xvfb-run";
         return nullptr;
     }
-    // 24 bits of depth and none of stencil: what most programs ask for.
+    // 24 bits of depth and no stencil, as most programs request.
     int wanted[] = {GLX_RGBA, GLX_DOUBLEBUFFER, GLX_RED_SIZE, 8, GLX_GREEN_SIZE, 8, GLX_BLUE_SIZE, 8, GLX_DEPTH_SIZE, 24, None};
     XVisualInfo* visual = glXChooseVisual(x.display, DefaultScreen(x.display), wanted);
     if (visual == nullptr) {
@@ -34,7 +34,7 @@ std::unique_ptr<SceneWindow> SceneWindow::open(int width, int height, std::strin
     x.colours = XCreateColormap(x.display, root, visual->visual, AllocNone);
     XSetWindowAttributes attributes{};
     attributes.colormap = x.colours;
-    attributes.override_redirect = True; // no window manager gives it another size
+    attributes.override_redirect = True; // prevents resizing by a window manager
     x.window = XCreateWindow(x.display, root, 0, 0, static_cast<unsigned>(width), static_cast<unsigned>(height), 0, visual->depth, InputOutput,
                              visual->visual, CWColormap | CWOverrideRedirect | CWBorderPixel, &attributes);
     XStoreName(x.display, x.window, "mural-scenes");

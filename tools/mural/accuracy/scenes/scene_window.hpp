@@ -1,4 +1,4 @@
-// A double-buffered window with a compatibility context that stays current.
+// A double-buffered window with a current compatibility context.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,7 @@ namespace mural::scenes {
 
 class SceneWindow {
 public:
-    // Null when it can't be had; then `why` says it.
+    // Returns null on failure, with the reason in `why`.
     static std::unique_ptr<SceneWindow> open(int width, int height, std::string& why);
     SceneWindow(const SceneWindow&) = delete;
     SceneWindow& operator=(const SceneWindow&) = delete;
@@ -18,7 +18,7 @@ public:
 
 private:
     SceneWindow();
-    struct Handles; // of X: its headers define too many names
+    struct Handles; // X handles; its headers define too many names
     std::unique_ptr<Handles> x_;
 };
 

@@ -18,7 +18,8 @@ namespace {
 constexpr int kTriangles = 300;
 constexpr int kTextureSize = 256;
 
-double unit(std::mt19937& numbers) { return static_cast<double>(numbers()) / 4294967296.0; } // the same on every machine
+// identical on every machine
+double unit(std::mt19937& numbers) { return static_cast<double>(numbers()) / 4294967296.0; }
 
 Matrix4 turned(double aroundY, double aroundZ) {
     Matrix4 y, z;
@@ -64,7 +65,7 @@ unsigned programOf(const char* vertex, const char* fragment) {
     return program;
 }
 
-// Squares of 8 texels, lines of one texel between some: detail at all scales.
+// Squares of 8 texels, with lines of one texel between some: detail at all scales.
 unsigned chequeredTexture() {
     std::vector<unsigned char> texels;
     for (int y = 0; y < kTextureSize; ++y)
@@ -107,7 +108,7 @@ Scenes::Scenes(int width, int height, const Look& look) : width_(width), height_
     texture_ = chequeredTexture();
 }
 
-// Whole numbers where nothing moves, as programs do it.
+// Integer coordinates if nothing is moved, as programs use them.
 void Scenes::useViewport() const {
     if (look_.moveX == 0 && look_.moveY == 0) glViewport(0, 0, width_, height_);
     else glViewportIndexedf(0, look_.moveX, look_.moveY, static_cast<float>(width_), static_cast<float>(height_));
@@ -115,14 +116,14 @@ void Scenes::useViewport() const {
 
 void Scenes::usePerspective(double nearPlane, double farPlane, int round) const {
     const double halfHeight = 0.6 * nearPlane, halfWidth = halfHeight * width_ / height_;
-    // An eye beside the middle looks through the same frame at the distance of its focus.
+    // An off-centre eye looks through the same frame at its focus distance.
     const double shift = -static_cast<double>(look_.eye) * nearPlane / static_cast<double>(look_.focus);
     glMatrixMode(GL_PROJECTION);
     glLoadIdentity();
     glFrustum(shift - halfWidth, shift + halfWidth, -halfHeight, halfHeight, nearPlane, farPlane);
     glTranslatef(-look_.eye, 0, 0);
-    // A matrix that is loaded again goes on being the one of the frame before for Mesa, with what a draw has found out about it
-    // since; then lit colours are rounded otherwise (docs/accuracy.md). An own one does not depend on earlier frames.
+    // For Mesa an equal reloaded matrix stays the same object, with properties derived by earlier draws, which changes
+    // the rounding of lit colours (docs/accuracy.md). A distinct matrix is independent of earlier frames.
     glMatrixMode(GL_MODELVIEW);
     glLoadIdentity();
     glLoadMatrixf(columnsOf(Matrix4::translation({0.2, -0.1, -7}) * turned(0.35 * round + 0.2, 0.1 * round)).data());
@@ -146,7 +147,7 @@ void Scenes::draw(int frame) const {
     }
 }
 
-// By a shader that is given one matrix, as programs of today do it.
+// With a shader and one matrix, as in current programs.
 void Scenes::drawTriangles(int) const {
     const auto projection = fixedMatrix(GL_PROJECTION_MATRIX), modelView = fixedMatrix(GL_MODELVIEW_MATRIX);
     std::array<float, 16> whole{};
@@ -165,7 +166,7 @@ void Scenes::drawTriangles(int) const {
     glUseProgram(0);
 }
 
-// A ring of small lit faces, by the fixed function.
+// A ring of small lit faces, with fixed function.
 void Scenes::drawLighting(int) const {
     const float light[] = {3, 4, 6, 1}, shine[] = {1, 1, 1, 1}, tone[] = {0.8F, 0.4F, 0.2F, 1};
     glEnable(GL_LIGHTING);
@@ -192,7 +193,7 @@ void Scenes::drawLighting(int) const {
     glDisable(GL_LIGHT0);
 }
 
-// A plane to the horizon: mipmaps of all levels.
+// A plane to the horizon, which uses all mipmap levels.
 void Scenes::drawTextures(int) const {
     glEnable(GL_TEXTURE_2D);
     glBindTexture(GL_TEXTURE_2D, texture_);
@@ -206,7 +207,7 @@ void Scenes::drawTextures(int) const {
     glDisable(GL_TEXTURE_2D);
 }
 
-// Lines of one pixel and of five, stippled and smooth ones; points. They lie across every border.
+// Lines of one and five pixels, stippled and smooth lines, and points, across every tile border.
 void Scenes::drawLines(int) const {
     std::mt19937 numbers(12);
     const auto corner = [&] {
@@ -242,8 +243,8 @@ void Scenes::drawLines(int) const {
     glPointSize(1);
 }
 
-// Layers of translucent triangles, in their order. 0.35 of 255 lies between two bytes; 0.3 would be 76.5, which the last bit of
-// an interpolation rounds up or down.
+// Ordered translucent triangles. 0.35 of 255 is between two bytes; 0.3 would be 76.5, which rounds either way by the
+// last bit of an interpolation.
 void Scenes::drawBlending(int) const {
     glDisable(GL_DEPTH_TEST);
     glEnable(GL_BLEND);
@@ -257,8 +258,8 @@ void Scenes::drawBlending(int) const {
     glDisable(GL_BLEND);
 }
 
-// Planes that all but coincide, and a near plane at a thousandth with a far one at ten millions: depths that decide by their
-// last bit, or tie.
+// Nearly coplanar planes, with a near plane at 10^-3 and a far plane at 10^7: depths that differ in the last bit, or
+// are equal.
 void Scenes::drawDepths(int round) const {
     usePerspective(0.001, 1e7, round);
     for (int layer = 0; layer < 4; ++layer) {

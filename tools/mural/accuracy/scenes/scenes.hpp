@@ -1,20 +1,20 @@
-// What is drawn: one scene for each kind of thing that a decomposition may get wrong. A frame depends on its number alone.
+// The scenes: one per feature that a decomposition may get wrong. A frame depends on its number only.
 #pragma once
 
 #include <vector>
 
 namespace mural::scenes {
 
-// What Mural's passes do to a program that knows nothing of them, done by the program itself: the reference for those.
+// Transformations of Mural's passes, done by the program itself as their reference.
 struct Look {
-    float moveX = 0, moveY = 0; // of the viewport, pixels
-    float eye = 0;              // to the right of the middle, units of the scene
-    float focus = 6;            // distance at which all eyes see the same
+    float moveX = 0, moveY = 0; // of the viewport, in pixels
+    float eye = 0; // to the right of the centre, in scene units
+    float focus = 6; // distance at which all eyes converge
 };
 
 class Scenes {
 public:
-    // A context is current. Throws std::runtime_error, with one line, where it lacks something.
+    // Requires a current context. Throws std::runtime_error, with one line, if a feature is missing.
     Scenes(int width, int height, const Look& look);
     void draw(int frame) const;
 
@@ -31,7 +31,7 @@ private:
     int width_, height_;
     Look look_;
     unsigned program_ = 0, texture_ = 0;
-    std::vector<float> soup_; // triangles: x, y, z, r, g, b for each corner
+    std::vector<float> soup_; // triangle soup: x, y, z, r, g, b per corner
 };
 
 } // namespace mural::scenes
