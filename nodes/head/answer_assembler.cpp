@@ -11,7 +11,7 @@ using wire::AnswerKind;
 
 constexpr size_t kMostOpenRequests = 65536;
 constexpr int64_t kMostReplyBytes = int64_t{1} << 30;
-constexpr size_t kMostParts = 65536; // of one request
+constexpr size_t kMostParts = 65536; // per request
 
 Error contradiction(const AnswerHeader& header) {
     return Error{"its answer to request " + std::to_string(header.requestId) +
@@ -68,7 +68,7 @@ Result<void> AnswerAssembler::add(int node, const AnswerHeader& header, ByteBuff
         where = {header.x, header.y, header.w, header.h};
         PixelViewport all = where;
         for (const Part& part : r.parts) all = unite(all, part.rectangle);
-        // 64: the most that NodeLink lets through, so that this can't overflow.
+        // The limit of 64 that NodeLink enforces rules out an overflow here.
         if (header.groupBytes != r.groupBytes || all.area() * header.groupBytes > kMostReplyBytes)
             return contradiction(header);
     }
@@ -86,10 +86,11 @@ bool AnswerAssembler::allAnswered(const Request& request) const {
 
 bool AnswerAssembler::canDeliver(const Request& request) const {
     const bool bytes = request.kind == static_cast<uint32_t>(AnswerKind::Bytes);
-    // A rectangle that lies in one node's part need not wait until the others have come so far.
+    // A rectangle that lies in one node's part does not wait for the other nodes.
     const bool rectangle = request.kind == static_cast<uint32_t>(AnswerKind::Rectangle);
     if (rectangle && request.firstNode >= 0 && request.last[static_cast<size_t>(request.firstNode)]) return true;
-    // All hold the same, but for what nobody has written: always the first that lives speaks, so that two reads agree.
+    // All nodes hold the same bytes, except undefined ones. The first living node always answers, so that two reads
+    // agree.
     const auto speaker = static_cast<int>(std::ranges::find(request.awaited, true) - request.awaited.begin());
     if (bytes && request.firstNode == speaker && request.last[static_cast<size_t>(speaker)]) return true;
     return allAnswered(request);
@@ -103,7 +104,7 @@ void AnswerAssembler::nodeLost(int node) {
         for (auto it = requests_.begin(); it != requests_.end();) {
             Request& request = it->second;
             request.awaited[static_cast<size_t>(node)] = false;
-            // Its half answer of bytes counts for nothing: another node has the same in whole.
+            // A partial byte answer is discarded: another node sends all of it.
             if (request.firstNode == node && !request.last[static_cast<size_t>(node)])
                 request.firstNode = -1;
             if (!allAnswered(request)) {
@@ -148,7 +149,7 @@ Reply AnswerAssembler::assemble(uint32_t requestId, const Request& request) {
     Reply reply;
     reply.header.requestId = requestId;
     reply.header.kind = request.kind;
-    reply.header.failed = 1; // until somebody's answer is in
+    reply.header.failed = 1; // set to 0 by the first valid answer
     if (request.kind == static_cast<uint32_t>(AnswerKind::Rectangle)) assembleRectangle(request, reply);
     if (request.kind == static_cast<uint32_t>(AnswerKind::Bytes)) assembleBytes(request, reply);
     if (request.kind == static_cast<uint32_t>(AnswerKind::Sum)) assembleSum(request, reply);
@@ -163,7 +164,7 @@ void AnswerAssembler::assembleRectangle(const Request& request, Reply& reply) {
         all = unite(all, part.rectangle);
         covered += part.rectangle.area();
     }
-    // Nobody's tile meets the rectangle: that is an answer too, of no pixels.
+    // A rectangle outside all tiles has a valid answer without pixels.
     reply.header.failed = std::ranges::find(request.last, true) == request.last.end() && all.empty();
     reply.header.groupBytes = request.groupBytes;
     reply.header.x = all.x;
@@ -192,7 +193,7 @@ void AnswerAssembler::assembleRectangle(const Request& request, Reply& reply) {
 void AnswerAssembler::assembleBytes(const Request& request, Reply& reply) {
     int from = request.firstNode;
     for (const Part& part : request.parts) {
-        // Without the one that speaks for all: the first that has spoken to the end.
+        // If the preferred node is lost, the first node with a complete answer replaces it.
         const bool whole = request.last[static_cast<size_t>(part.node)];
         if (request.firstNode < 0 && whole && (from < 0 || part.node < from)) from = part.node;
     }

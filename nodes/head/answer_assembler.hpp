@@ -1,5 +1,5 @@
-// Puts together what the nodes answer to a program's request. Requests are known only from the
-// answers: the streams of all nodes are equal, so every node answers every request.
+// Assembles the answers of the nodes to a program's request. The answers alone identify requests: all nodes receive the
+// same stream, so every node answers every request.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@
 
 namespace mural {
 
-// All calls from any thread. `deliver` is called without locks held, once per request.
+// Thread-safe. `deliver` is called without locks, once per request.
 class AnswerAssembler {
 public:
     using Deliver = std::function<void(uint32_t client, Reply reply)>;
@@ -26,15 +26,15 @@ public:
     AnswerAssembler(int nodes, Deliver deliver);
 
     Result<void> answer(int node, const wire::AnswerHeader& header, ByteBuffer bytes);
-    // Requests in progress are completed with what there is.
+    // Completes pending requests from the answers that have arrived.
     void nodeLost(int node);
 
-    // It answers what is asked from this view on.
+    // The node answers requests from this view on.
     void nodeJoins(int node, uint32_t view);
     void nodeInView(int node, uint32_t view);
 
     [[nodiscard]] size_t openRequests() const;
-    // The nodes whose answer to the client's oldest open request is missing.
+    // Nodes that have not answered the client's oldest pending request.
     [[nodiscard]] std::vector<int> missing(uint32_t client) const;
 
 private:
@@ -49,10 +49,10 @@ private:
         uint32_t kind = 0;
         uint32_t groupBytes = 0;
         std::vector<Part> parts;
-        std::vector<bool> awaited; // per node: it answers, unless it is lost
-        std::vector<bool> last;   // per node
-        int firstNode = -1;       // the one that answers for all (Bytes)
-        bool delivered = false;   // the rest only has to come in
+        std::vector<bool> awaited; // per node; false after it is lost
+        std::vector<bool> last; // per node: its answer is complete
+        int firstNode = -1; // the node whose answer counts (AnswerKind::Bytes)
+        bool delivered = false; // later answers are discarded
     };
 
     Result<void> add(int node, const wire::AnswerHeader& header, ByteBuffer bytes, Request& request);

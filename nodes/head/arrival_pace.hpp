@@ -1,5 +1,5 @@
-// Whether more is likely to come within a nap: then the reader of a program's publications looks again by itself, and
-// the program needs no system call to wake it (common/capture_ring.hpp).
+// Predicts whether another publication arrives within one nap. If so, the reader polls again without a wake-up, and the
+// program saves a system call (common/capture_ring.hpp).
 #pragma once
 
 #include <cstdint>

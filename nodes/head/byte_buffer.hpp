@@ -1,4 +1,4 @@
-// Bytes on the heap that are not cleared first: pictures and answers are large and filled at once.
+// Uninitialised heap memory for pictures and answers, which are large and written once.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@ namespace mural {
 class ByteBuffer {
 public:
     ByteBuffer() = default;
-    // Empty (size 0) when there is no memory: sizes come from outside.
+    // Returns an empty buffer if the allocation fails: sizes come from the network.
     static ByteBuffer ofSize(size_t sizeBytes) {
         ByteBuffer buffer;
         buffer.bytes_.reset(new (std::nothrow) std::byte[sizeBytes]);

@@ -1,4 +1,4 @@
-// A value as the bytes that go over the wire.
+// The wire representation of a value.
 #pragma once
 
 #include <cstddef>

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kMostChunks = 4096;
 
-// Runs of chunks that n nodes have, about as many each.
+// Divides the chunks into n consecutive runs of nearly equal length.
 std::vector<TileRegion> evenRuns(int chunks, int nodes) {
     std::vector<TileRegion> runs;
     for (int i = 0; i < nodes; ++i) {
@@ -52,7 +52,7 @@ void ChunkDealer::frameDone(int node, const wire::FrameDoneMessage& message) {
     if (moved) announce();
 }
 
-// As many chunks as the queue has, and one for each node at least.
+// Uses the queue's number of chunks, but at least one per node.
 void ChunkDealer::layOut(Queue& queue) {
     queue.chunks.begin(times_);
     const auto takers = static_cast<int>(queue.chunks.takers().size());
@@ -78,7 +78,7 @@ void ChunkDealer::dealAtRandom() {
     announce();
 }
 
-// All queues' shares, to all nodes.
+// Sends the shares of all queues to all nodes.
 void ChunkDealer::announce() {
     for (Queue& queue : queues_) {
         queue.chunks.count();

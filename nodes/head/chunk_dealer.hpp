@@ -1,8 +1,8 @@
-// Deals the chunks of queues from frame to frame, by the times that nodes report (balancer/queue), and says which shares of a picture's draws
-// that makes: each node draws one run of chunks, as what is drawn stays in its order.
+// Assigns the chunks of chunk queues before each frame, from the times that nodes report (balancer/queue). Each node
+// draws one consecutive run of chunks, because draw order must not change.
 //
-// Times are those of one window (FrameTimes). A lost node's chunks go to the others, until it is back: then all begin with the shares of
-// the start, at one place of the stream (Replay::shareAnew), and are told others behind it.
+// The times are those of one window (FrameTimes). The other nodes take over a lost node's chunks until it returns. Then
+// all nodes reset to the initial shares at one position of the stream (Replay::shareAnew), and new shares follow.
 #pragma once
 
 #include <functional>
@@ -18,14 +18,14 @@
 
 namespace mural {
 
-// All calls from any thread.
+// Thread-safe.
 class ChunkDealer {
 public:
-    // Called under the dealer's lock; must not block.
+    // Called with the dealer's lock held; must not block.
     using Announce = std::function<void(const Shares&)>;
 
-    // plant: "shares" deals at random with each frame of each node, whatever it takes, for tests: what is drawn must stay right. So does
-    // "lateshare", a fault of a node (Replay::moveShares).
+    // plant: fault injection for tests. "shares" assigns chunks at random after each frame of each node; the picture
+    // must stay exact. "lateshare" is a fault of a node (Replay::moveShares).
     ChunkDealer(const SessionPlan& plan, Announce announce, const std::string& plant = {});
 
     void frameDone(int node, const wire::FrameDoneMessage& message);
@@ -39,10 +39,10 @@ public:
 private:
     struct Queue {
         ChunkQueuePlan plan;
-        DealtQueue chunks; // columns of one row; its nodes in the order of their ranges
+        DealtQueue chunks; // one row of columns; nodes in the order of their ranges
     };
 
-    void layOut(Queue& queue); // evenly, among those that live
+    void layOut(Queue& queue); // resets to equal shares among living nodes
     void layOutOf(int node);
     void dealAtRandom();
     void announce();
@@ -51,8 +51,8 @@ private:
     const Announce announce_;
     FrameTimes times_;
     std::vector<Queue> queues_;
-    std::vector<Range> shares_; // of all nodes, the latest
-    uint32_t number_ = 0;       // of them
+    std::vector<Range> shares_; // latest shares, per node
+    uint32_t number_ = 0; // number of the latest shares
     std::optional<std::mt19937> random_;
 };
 

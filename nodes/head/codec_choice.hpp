@@ -1,4 +1,5 @@
-// How pictures of nodes are packed on their way: as the user says, else as the file does, else by what is quickest there. Pure.
+// Selects the codec of each node's pictures: the user's option, then the configuration file, then the fastest for the
+// connection. Pure.
 #pragma once
 
 #include <string>
@@ -7,7 +8,7 @@
 
 namespace mural {
 
-// asked: of --codec. Pictures that go to the head through memory are not packed unless somebody has said how.
+// asked: the value of --codec. Pictures in shared memory stay raw unless the user or the file names a codec.
 void chooseCodecs(SessionPlan& plan, const std::string& asked);
 
 } // namespace mural

@@ -9,7 +9,7 @@ void chooseComposition(SessionPlan& plan, const std::string& wish) {
     for (NodePlan& node : plan.nodes) {
         const int ranges = node.pass.ranges;
         if (ranges < 2) continue;
-        // All of one picture go by one schedule: the first one's.
+        // All nodes of one picture use the schedule of the first node.
         if (node.pass.range != 0) {
             node.composition = plan.nodes[static_cast<size_t>(node.collector)].composition;
             continue;

@@ -1,5 +1,5 @@
-// How the nodes that draw ranges of one picture put it together: what the user asks for, else what a file says, else what suits
-// their number.
+// Selects the compositing strategy of sort-last nodes: the user's option, then the configuration file, then the best
+// for the number of nodes.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace mural {
 
-// wish: auto, or a strategy by its name. Adds a line for --explain for each picture.
+// wish: "auto" or the name of a strategy. Adds one line per picture for --explain.
 void chooseComposition(SessionPlan& plan, const std::string& wish);
 
 } // namespace mural

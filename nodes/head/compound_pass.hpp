@@ -1,4 +1,4 @@
-// What a compound's draw is for the node that draws it.
+// Converts the draw of a compound into the pass of a render node.
 #pragma once
 
 #include "balancer/compound/render_context.hpp"
@@ -6,10 +6,11 @@
 
 namespace mural {
 
-// As the compounds say it, all above included: in whole pixels of the channel it would differ between neighbours of different sizes.
+// The product of the zooms of the compound and its ancestors. Zooms derived from whole channel pixels would differ
+// between neighbours of different sizes.
 [[nodiscard]] Zoom zoomOf(const config::ResolvedConfig& config, compound::Index compound);
 
-// A zoom above kMostZoom is that. Which of how many ranges it is, who has all of them says.
+// Clamps the zoom to kMostZoom. The caller, who knows all ranges, numbers them.
 [[nodiscard]] RenderPass passOf(const config::ResolvedConfig& config, const compound::RenderContext& context);
 
 } // namespace mural

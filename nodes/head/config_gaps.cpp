@@ -9,9 +9,9 @@ namespace mural {
 namespace {
 
 struct Gap {
-    std::string_view section; // empty: any
+    std::string_view section; // empty: any section
     std::string_view field;
-    std::string_view instead; // what happens, and what to do
+    std::string_view instead; // the actual behaviour and a remedy
 };
 
 constexpr std::string_view kNoTransport = "nodes are reached by their host; mural run says how; remove it";

@@ -1,4 +1,4 @@
-// What a configuration file says and a session does not do: said, so that nobody looks for its effect.
+// Warns about fields of a configuration file that a session ignores.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace mural {
 
-// A line for each such field, where it stands first: "FILE:LINE:COLUMN: what; remedy".
+// Returns one line per ignored field, at its first occurrence: "FILE:LINE:COLUMN: field; remedy".
 [[nodiscard]] std::vector<std::string> fieldsWithoutEffect(const config::Diagnostics& read);
 
 } // namespace mural

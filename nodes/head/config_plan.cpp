@@ -29,16 +29,16 @@ using config::Index;
 using config::kNone;
 using config::ResolvedConfig;
 
-constexpr uint32_t kMostTurns = 64; // of periods that have no common end
+constexpr uint32_t kMostTurns = 64; // bounds periods without a small common multiple
 
-// One draw of the compound tree.
+// One draw task of the compound tree.
 struct Draw {
     RenderContext context;
-    Viewport area; // of the canvas
-    int queue = -1, chunkQueue = -1; // of the plan
-    compound::Flow flow; // where frames take it
-    std::optional<Viewport> shown; // of the canvas, where that is not its area
-    Zoom way; // it travels smaller by this
+    Viewport area; // on the canvas
+    int queue = -1, chunkQueue = -1; // indices into the plan's queues
+    compound::Flow flow; // the path of its frames
+    std::optional<Viewport> shown; // on the canvas, if different from area
+    Zoom way; // scale of its picture in transfer
     [[nodiscard]] const Viewport& onWall() const { return shown ? *shown : area; }
 };
 
@@ -46,7 +46,7 @@ std::string nameOf(const config::ResolvedChannel& channel, Index index) { return
 
 class Planner {
 public:
-    // only: plans this canvas, after `nodesBefore` nodes of others.
+    // only: plans this canvas alone; nodesBefore nodes of other canvases precede its nodes.
     Planner(const LoadedConfig& loaded, const ConfigWishes& wishes, Index only = kNone, int nodesBefore = 0) : config_(loaded.resolved), file_(loaded.diagnostics.file()), wishes_(wishes), only_(only), nodesBefore_(nodesBefore) {}
 
     Result<SessionPlan> plan() {
@@ -73,7 +73,7 @@ public:
         return {0, 0};
     }
 
-    // Of a canvas, by the channel of its first segment that has one.
+    // The size of a canvas, derived from its first segment with a channel.
     [[nodiscard]] compound::PixelSize sizeOf(Index canvas) const {
         if (canvas == kNone) return {0, 0};
         const compound::DisplaySizes sizes = compound::displaySizes(config_);
@@ -86,7 +86,7 @@ public:
         return {0, 0};
     }
 
-    // Those that show something, the planned one among them. After plan().
+    // The canvases that show something, the planned one included. Valid after plan().
     [[nodiscard]] const std::set<Index>& canvases() const { return canvases_; }
     [[nodiscard]] Index canvas() const { return canvas_; }
 
@@ -111,7 +111,7 @@ private:
         return {};
     }
 
-    // The draws of all turns, each once.
+    // Collects the draws of all phases, each once.
     void gather() {
         uint32_t period = 1;
         for (const config::ResolvedCompound& c : config_.compounds) {
@@ -125,7 +125,7 @@ private:
             const std::vector<compound::Flow> flows = compound::flowOf(config_, input_, plan);
             for (const compound::PlannedBarrier& barrier : plan.barriers)
                 for (const Index window : barrier.windows) barriers_.try_emplace(window, barrier.name);
-            std::map<Index, std::vector<size_t>> workers; // by their queue: their draws
+            std::map<Index, std::vector<size_t>> workers; // draws by queue
             for (const compound::ChannelPlan& channel : plan.channels) {
                 for (const compound::PlannedTask& task : channel.tasks) {
                     if (task.kind != config::Task::Draw || task.context == kNone) continue;
@@ -144,7 +144,7 @@ private:
         return segment == kNone ? kNone : config_.segments[at(segment)].canvas;
     }
 
-    // Each canvas is a wall of its own.
+    // Each canvas is a separate wall.
     Result<void> chooseCanvas() {
         std::set<Index>& canvases = canvases_;
         for (const Draw& d : draws_) canvases.insert(canvasOf(d));
@@ -161,7 +161,7 @@ private:
         return {};
     }
 
-    // Where frames hand on parts of what is drawn, or change its size, each part of the wall is drawn by those whose draws come there.
+    // If frames crop, move or scale pictures, the draws whose pictures reach a part of the wall determine that part.
     void followFrames() {
         using Destination = std::tuple<Index, Eye>;
         using One = std::tuple<Index, Eye, int, int, int, int, int, int, uint32_t>; // picture of a destination
@@ -180,11 +180,11 @@ private:
         draws_ = std::move(followed);
     }
 
-    // A draw as it comes to one part of the wall, or to several in the same way.
+    // A draw whose picture reaches one part of the wall, or several parts with the same scale and offset.
     struct Arrival {
         const Draw* draw;
-        Zoom scale;      // of the wall's part, to the drawn one
-        double x, y;     // where the drawn picture's corner would be, in parts of its own size
+        Zoom scale; // from the drawn picture to the part of the wall
+        double x, y; // position of the drawn picture's corner, in units of the picture's size
         Zoom way;
         [[nodiscard]] bool moved() const { return std::abs(scale.x - 1) > 1e-6 || std::abs(scale.y - 1) > 1e-6 || std::abs(x) > 1e-6 || std::abs(y) > 1e-6; }
     };
@@ -194,7 +194,8 @@ private:
     }
 
     void takeApart(std::vector<const Draw*> draws, std::vector<Draw>& into) {
-        std::stable_partition(draws.begin(), draws.end(), [](const Draw* d) { return d->context.channel == d->context.destination; }); // what is there before others' comes
+        // the destination's own picture comes first
+        std::stable_partition(draws.begin(), draws.end(), [](const Draw* d) { return d->context.channel == d->context.destination; });
         std::vector<Arrival> arrivals;
         std::vector<compound::Piece> pieces;
         for (const Draw* d : draws) {
@@ -210,7 +211,8 @@ private:
         std::vector<compound::Piece> needed;
         for (const compound::Cell& cell : compound::cellsOf(pieces)) {
             std::vector<Range> drawn;
-            for (const int i : cell.of) { // of two that draw the same, the first: a depth test leaves what is there
+            // of two draws with the same content the first counts: a depth test keeps existing pixels
+            for (const int i : cell.of) {
                 const Range& range = arrivals[static_cast<size_t>(i)].draw->context.range;
                 if (std::find(drawn.begin(), drawn.end(), range) != drawn.end()) continue;
                 drawn.push_back(range);
@@ -237,7 +239,7 @@ private:
         }
     }
 
-    // Queues begin dealt out evenly, in strips of the picture or of the range; tiles are taken by who is free, then.
+    // Queues start with equal strips of the picture or the range. Tiles move to idle nodes afterwards.
     void dealOut(const FramePlan& plan, const compound::PlannedQueue& queue, const std::vector<size_t>& draws) {
         const RenderContext& divided = plan.contexts[at(queue.context)];
         const bool chunks = !queue.tiles.empty() && std::any_of(queue.tiles.begin(), queue.tiles.end(), [&](const compound::PlannedTile& t) { return t.range != divided.range; });
@@ -267,7 +269,7 @@ private:
         plan_.queues.push_back(planned);
     }
 
-    // Destinations with their eyes, and which pictures they are made of.
+    // Determines the destinations, their eyes, and the pictures that compose them.
     Result<void> placeParts() {
         using Key = std::tuple<Index, Eye>;
         std::map<Key, std::vector<size_t>> parts;
@@ -308,7 +310,7 @@ private:
         return {};
     }
 
-    // The box of all that is drawn for it.
+    // The bounding box of all draws of the destination.
     [[nodiscard]] Viewport destinationArea(const std::vector<size_t>& draws) const {
         double x0 = 1e9, y0 = 1e9, x1 = -1e9, y1 = -1e9;
         for (const size_t i : draws) {
@@ -321,7 +323,7 @@ private:
         return {x0, y0, x1 - x0, y1 - y0};
     }
 
-    // Nodes in the order of their groups: draws of one area of one picture that differ in their range alone.
+    // Orders nodes by group. A group contains draws of one area of one picture that differ only in their range.
     Result<void> placeNodes() {
         using Key = std::tuple<int, uint32_t, double, double, double, double>;
         std::map<Key, std::vector<size_t>> groups;
@@ -362,7 +364,7 @@ private:
         return {};
     }
 
-    // Of a compound in the file, for lines about it.
+    // The position of a compound in the file, for messages.
     [[nodiscard]] std::string placeOf(Index compound) const {
         const config::SourcePosition& there = config_.compounds[at(compound)].at;
         return file_ + ":" + std::to_string(there.line) + ":" + std::to_string(there.column);
@@ -374,7 +376,7 @@ private:
         plan_.warnings.push_back(placeOf(compound) + ": nodes draw at most " + std::to_string(static_cast<int>(kMostZoom)) + " times as large as they show; give a smaller zoom");
     }
 
-    // Where a file says nothing, the number of nodes does, later.
+    // Without a value in the file, the number of nodes determines the strategy later.
     [[nodiscard]] Result<void> takeComposition(NodePlan& node, const config::ResolvedCompound& compound) const {
         if (compound.composition.empty() || compound.composition == "auto") return {};
         node.composition = compositor::strategyNamed(compound.composition);
@@ -389,7 +391,7 @@ private:
         return compound;
     }
 
-    // Of the pictures that it hands out; who takes one may say otherwise for its own.
+    // The codec of the pictures that a compound outputs. A compound that inputs a picture may override it.
     [[nodiscard]] Result<void> takeCodec(NodePlan& node, Index compound) const {
         for (const config::ResolvedFrame& given : config_.compounds[at(compound)].outputFrames) {
             const config::ResolvedFrame* said = &given;
@@ -418,8 +420,8 @@ private:
         node.reach = reachOf(machine.host, wishes_.ownHost);
     }
 
-    // Nodes show what they draw where the file has their channel's window, if every channel of the wall is drawn by its own
-    // node as it is shown. Otherwise the head shows the wall.
+    // Nodes show their own pictures if the file assigns a window to their channel, and one node draws each channel of
+    // the wall exactly as it is shown. Otherwise the head shows the wall.
     void placeWindows() {
         std::vector<NodePlan*> shows;
         for (const WallPart& part : plan_.wall.parts) {
@@ -455,7 +457,7 @@ private:
 
     [[nodiscard]] bool isDestination(const NodePlan& n) const { return config_.channels[at(channels_[node(n)])].isDestination(); }
 
-    // With all nodes here windows lie as on the wall, as a picture of it.
+    // If all nodes run on this machine, windows are arranged like the wall.
     [[nodiscard]] NodeWindow windowOf(Index index) const {
         const config::ResolvedChannel& channel = config_.channels[at(index)];
         const config::ResolvedWindow& window = config_.windows[at(channel.window)];
@@ -472,7 +474,7 @@ private:
         return shown;
     }
 
-    // Of the first view in stereo.
+    // The observer of the first stereo view.
     void takeObserver() {
         for (const Draw& d : draws_) {
             const Index o = config_.views[at(d.context.view)].observer;
@@ -484,7 +486,7 @@ private:
         }
     }
 
-    // Screens that look another way than the first one.
+    // True if some screen has another orientation than the first.
     [[nodiscard]] bool standAtAngles() const {
         const auto normal = [](const RenderContext& c) { return transformDirection(rigidInverse(c.perspectiveHead), {0, 0, 1}); };
         return std::any_of(draws_.begin(), draws_.end(), [&](const Draw& d) { return dot(normal(d.context), normal(draws_.front().context)) < 1 - 1e-6; });
@@ -539,14 +541,14 @@ private:
     const ConfigWishes& wishes_;
     const Index only_;
     const int nodesBefore_;
-    std::set<Index> canvases_; // that show something, or the one that is wanted
+    std::set<Index> canvases_; // those that show something, or the selected one
     FrameInput input_;
     std::vector<Draw> draws_;
-    std::vector<int> pictures_;   // of each draw
-    std::vector<Index> channels_; // of each node
-    std::map<Index, std::string> barriers_; // by window: the swap barrier that it waits at
-    std::set<Index> tooLarge_;    // compounds of which was said that they are
-    std::set<Index> unlike_;      // destinations of which was said that their pictures are not alike
+    std::vector<int> pictures_; // per draw
+    std::vector<Index> channels_; // per node
+    std::map<Index, std::string> barriers_; // swap barrier by window
+    std::set<Index> tooLarge_; // compounds already reported as too large
+    std::set<Index> unlike_; // destinations already reported for unequal pictures
     Index canvas_ = kNone;
     bool anaglyph_ = false, quad_ = false;
     bool inRoom_ = false;
@@ -562,7 +564,7 @@ std::string nameOf(const ResolvedConfig& config, Index canvas) {
     return "canvas " + (name.empty() ? std::to_string(canvas) : "\"" + name + "\"");
 }
 
-// What is planned for another canvas, behind what there is: its nodes draw the program's picture in its pixels.
+// Appends the plan of another canvas. Its nodes draw the program's picture at its own resolution.
 void add(SessionPlan& plan, SessionPlan other, CanvasPlan canvas) {
     const auto nodes = static_cast<int>(plan.nodes.size()), queues = static_cast<int>(plan.queues.size()), chunkQueues = static_cast<int>(plan.chunkQueues.size());
     int pictures = picturesOf(plan.wall);

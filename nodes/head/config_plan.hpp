@@ -1,9 +1,10 @@
-// Which nodes a session has that a configuration file describes, what each draws, and how the wall's picture is put
-// together. Pure.
+// Derives the plan of a session from a configuration file: the nodes, the task of each node, and the composition of the
+// wall. Pure.
 //
-// The program's picture is the canvas' surface, or, where its screens stand in a room, the scene that each of them shows:
-// each draw of the compound tree becomes a render node that draws its part of it, its eye, pixels, samples, turns and ranges. What frames and readback move between channels of the file,
-// the session moves as it does without one: ranges from node to node, everything else to the head.
+// The program's picture maps to the surface of the canvas, or, for screens in a room, to the scene that each screen
+// shows. Each draw of the compound tree becomes one render node with its area, eye, pixels, samples, phase and range.
+// Ranges travel between nodes and everything else to the head, as in a session without a file; the frames of the file
+// do not change these paths.
 #pragma once
 
 #include "balancer/compound/load_config.hpp"
@@ -13,19 +14,22 @@ namespace mural {
 
 struct ConfigWishes {
     std::string ownHost;
-    bool here = false;                // all nodes on this machine
-    std::string canvas;               // name of the one to show; empty: the first that shows anything
-    std::vector<std::string> layouts; // names of those to show; canvases without any show their first
+    bool here = false; // all nodes on this machine
+    std::string canvas; // name of the canvas to show; empty: all that show something
+    // names of the layouts to show; a canvas without any of them shows its first layout
+    std::vector<std::string> layouts;
     Frusta frusta = Frusta::Auto;
-    double modelUnit = 1;             // of the program, to the metre of the file
-    int width = 0;                    // of the program's picture, pixels; 0: as the file has it
+    double modelUnit = 1; // units of the program per metre of the file
+    int width = 0; // of the program's picture in pixels; 0: as in the file
 };
 
-// Canvases that show something are all planned, unless one is named: each has nodes of its own, which draw the program's picture in its own pixels.
-// Errors: there is nothing to draw, or a mix of decompositions that can't be put together yet; one line.
+// Plans every canvas that shows something, unless one is named. Each canvas has its own nodes, which draw the program's
+// picture at the resolution of the canvas. Errors, one line each: nothing to draw; an unsupported mix of
+// decompositions.
 Result<SessionPlan> planOf(const compound::LoadedConfig& loaded, const ConfigWishes& wishes);
 
-// Pixels of the first canvas that shows something, by the channels of its segments. 0 x 0: there is none.
+// The size in pixels of the first canvas that shows something, derived from the channels of its segments. 0 x 0 if
+// there is none.
 compound::PixelSize wallSizeOf(const compound::LoadedConfig& loaded, const ConfigWishes& wishes);
 
 } // namespace mural

@@ -9,7 +9,7 @@
 namespace mural {
 namespace {
 
-// `mural run` may be stopped for a while (Ctrl-Z). Lines wait for it, so that nobody here has to.
+// `mural run` may be stopped (Ctrl-Z). Its lines are buffered so that no thread of the head blocks.
 constexpr size_t kMaxUnsentBytes = size_t{1} << 20;
 constexpr int64_t kLastLinesMs = 5000;
 constexpr size_t kMaxLineBytes = size_t{4} << 20;
@@ -21,7 +21,7 @@ int pollMs(Deadline deadline) {
 } // namespace
 
 void ControlChannel::send(const nlohmann::json& event) {
-    // Text from nodes and programs need not be UTF-8.
+    // Text from nodes and programs may not be valid UTF-8.
     writeLine(event.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
@@ -31,12 +31,12 @@ void ControlChannel::error(const std::string& text) { send({{"event", "error"}, 
 
 void ControlChannel::writeLine(const std::string& line) {
     const std::lock_guard lock(mutex_);
-    if (unsent_.size() > kMaxUnsentBytes) return; // nobody has read for a long time
+    if (unsent_.size() > kMaxUnsentBytes) return; // the reader has been stopped for long
     unsent_ += line;
     writeSome();
 }
 
-// As much as there is room for.
+// Writes as much as the socket accepts.
 void ControlChannel::writeSome() {
     while (!broken_ && !unsent_.empty()) {
         const ssize_t n = ::send(fd_.get(), unsent_.data(), unsent_.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
@@ -69,7 +69,7 @@ std::optional<std::string> ControlChannel::receive(Deadline deadline) {
     }
 }
 
-// False when nothing more can be had now.
+// Returns false if no data is available now.
 bool ControlChannel::fill(Deadline deadline) {
     pollfd data{fd_.get(), POLLIN, 0};
     {
@@ -77,7 +77,7 @@ bool ControlChannel::fill(Deadline deadline) {
         if (!unsent_.empty()) data.events |= POLLOUT;
     }
     const int ready = poll(&data, 1, pollMs(deadline));
-    if (ready < 0) return false; // a signal: the caller looks at its flag
+    if (ready < 0) return false; // interrupted by a signal: the caller checks its flag
     if (ready == 0) return !deadline.passed();
     if ((data.revents & POLLOUT) != 0) {
         const std::lock_guard lock(mutex_);

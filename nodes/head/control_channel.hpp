@@ -1,4 +1,4 @@
-// The head's end of the control connection to `mural run` (docs/control-protocol.md): lines of JSON.
+// The head's end of the control connection to `mural run`: lines of JSON (docs/control-protocol.md).
 #pragma once
 
 #include <cstdint>
@@ -13,21 +13,21 @@
 
 namespace mural {
 
-// send(), say() and error() from any thread, never blocking; the receiving calls from one.
+// send(), say() and error() are thread-safe and never block. One thread receives.
 class ControlChannel {
 public:
     explicit ControlChannel(FileDescriptor fd) : fd_(std::move(fd)) {}
     ControlChannel(const ControlChannel&) = delete;
     ControlChannel& operator=(const ControlChannel&) = delete;
-    ~ControlChannel(); // waits a while until the last lines are written
+    ~ControlChannel(); // waits a limited time for buffered lines
 
     void send(const nlohmann::json& event);
     void say(const std::string& text); // one line for the user
     void error(const std::string& text);
 
-    // The next line, nothing when the deadline passes first or the connection is broken.
+    // Returns the next line, or nothing if the deadline passes or the connection fails.
     std::optional<std::string> receive(Deadline deadline);
-    // The other end is gone; lines that it left may still be received.
+    // True after the peer has closed the connection. Its remaining lines can still be received.
     [[nodiscard]] bool broken() const;
 
 private:
@@ -39,7 +39,7 @@ private:
 
     FileDescriptor fd_;
     std::string received_;
-    mutable std::mutex mutex_; // what follows
+    mutable std::mutex mutex_; // guards the members below
     std::string unsent_;
     bool broken_ = false;
 };

@@ -1,4 +1,4 @@
-// One queue of pieces, tiles or chunks, between the nodes that take them, and what became of it. Not thread-safe.
+// One queue of tiles or chunks, its assignment to nodes, and the totals for reports. Not thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -14,36 +14,37 @@ namespace mural {
 
 class DealtQueue {
 public:
-    // The number by which a frame says how it was divided.
+    // The field of a frame message that names the assignment by which the frame was drawn.
     using Division = uint32_t wire::FrameDoneMessage::*;
 
     explicit DealtQueue(std::vector<int> nodes) : nodes_(std::move(nodes)) {}
 
     QueueTotals totals;
     [[nodiscard]] const std::vector<int>& nodes() const { return nodes_; }
-    [[nodiscard]] const std::vector<int>& takers() const { return takers_; } // of them, those that live
+    [[nodiscard]] const std::vector<int>& takers() const { return takers_; } // the living nodes of the queue
     [[nodiscard]] bool has(int node) const;
-    // By taker; none: nothing is dealt.
+    // Pieces by node; no value if nothing is assigned.
     [[nodiscard]] bool deals() const { return pieces_.has_value(); }
     [[nodiscard]] const std::vector<TileRegion>& areas() const { return pieces_->areas(); }
     [[nodiscard]] int columns() const { return pieces_->columns(); }
 
-    // Anew, among those that live: nothing is dealt until deal().
+    // Restarts with the living nodes. Nothing is assigned until deal().
     void begin(const FrameTimes& times);
     void deal(int columns, int rows, std::vector<TileRegion> areas) { pieces_.emplace(columns, rows, std::move(areas)); }
-    // Whatever it takes; inOrder: areas of one row, in the order of the takers.
+    // Assigns pieces at random, ignoring times. inOrder: pieces in one row, in the order of the nodes.
     void dealAtRandom(std::mt19937& random, bool inOrder);
 
-    // A node has finished a frame that was divided so.
+    // Records that a node has finished a frame with this assignment.
     void note(int node, uint32_t division);
-    // All have; true: pieces have moved. A frame of another division than the one announced last, or of which nothing was shared, says nothing.
+    // Compares the times after all nodes have finished a frame. Returns true if pieces have moved. Ignores frames of an
+    // older assignment and frames without shared work.
     bool compare(const FrameTimes::Frame& frame, Division division, uint32_t latest);
-    void count(); // who has how many
+    void count(); // updates the pieces per node in the totals
 
 private:
     std::vector<int> nodes_, takers_;
     std::optional<queue::TileQueue> pieces_;
-    uint32_t drawnBy_ = 0; // number of the last frame's division
+    uint32_t drawnBy_ = 0; // assignment of the last frame
 };
 
 } // namespace mural

@@ -1,4 +1,4 @@
-// Which nodes are spared what they have had (economy/), as the user's --economy says. Pure.
+// Selects the nodes that receive a delta-coded stream (economy/), from the user's --economy. Pure.
 #pragma once
 
 #include <functional>
@@ -15,7 +15,7 @@ struct EconomyPlan {
     std::string explain; // for --explain
 };
 
-// All that get the stream by multicast get the same.
+// All nodes of the multicast group receive the same encoding.
 EconomyPlan planEconomy(const SessionConfig& config, const SessionPlan& plan, const std::function<bool(int node)>& byMulticast);
 
 } // namespace mural

@@ -5,8 +5,8 @@
 namespace mural {
 namespace {
 
-constexpr size_t kMostFrames = 64; // that some nodes have finished and others have not
-constexpr int kOthers = 240;       // frames of other windows, of all nodes together, until a window counts as one that has ended
+constexpr size_t kMostFrames = 64; // frames that only some nodes have finished
+constexpr int kOthers = 240; // consecutive frames of other windows after which the followed window counts as closed
 
 } // namespace
 

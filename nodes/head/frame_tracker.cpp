@@ -6,10 +6,10 @@
 namespace mural {
 namespace {
 
-// A frame number that has been missing for so many later ones will not come: its thread died between
-// taking the number and swapping.
+// A frame number counts as skipped after this many later frames: its thread ended between taking the number and
+// swapping.
 constexpr size_t kMostEarly = 16;
-// Nodes can't be ahead of each other by more than the streams hold; a node that is, is broken.
+// The capacity of the streams bounds the lead of one node over another. A larger lead means a broken node.
 constexpr size_t kMostOpenFrames = size_t{1} << 20;
 
 } // namespace
@@ -29,7 +29,7 @@ Result<void> FrameTracker::frameDone(int node, const wire::FrameDoneMessage& m, 
     const std::lock_guard lock(mutex_);
     Client& c = client(m.client);
     NodeProgress& progress = c.nodes[static_cast<size_t>(node)];
-    if (progress.joined > 0 && m.frame <= progress.joined) return {}; // swapped late, by another thread
+    if (progress.joined > 0 && m.frame <= progress.joined) return {}; // a late swap of another thread
     const bool repeated = m.frame <= progress.done || progress.early.contains(m.frame);
     if (repeated) return Error{"it finished frame " + std::to_string(m.frame) + " twice"};
     if (c.windows.size() >= kMostOpenFrames) return Error{"it is a million frames ahead"};
@@ -112,7 +112,7 @@ void FrameTracker::advance(uint32_t id, Client& c, int64_t nowNs) {
 void FrameTracker::giveCredit(uint32_t id, Client& c) {
     uint32_t shown = c.finished;
     if (!c.held.empty()) shown = std::min(shown, *c.held.begin() - 1);
-    shown = std::max(shown, c.shown); // a late swap of another thread does not take it back
+    shown = std::max(shown, c.shown); // a late swap of another thread does not decrease it
     if (c.finished == c.credited && shown == c.shown) return;
     c.credited = c.finished;
     c.shown = shown;

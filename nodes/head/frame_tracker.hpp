@@ -1,5 +1,4 @@
-// Which frames all living nodes have finished: the credit that lets programs go on, and the count of
-// frames on the wall.
+// Tracks the frames that all living nodes have finished: the credit of programs, and the frame count of the wall.
 #pragma once
 
 #include <cstdint>
@@ -15,45 +14,45 @@
 
 namespace mural {
 
-// How far one program is.
+// The progress of one program.
 struct ClientProgress {
-    uint32_t finished = 0; // frames, by all living nodes
-    uint64_t calls = 0;    // up to there, as the node that is ahead says
+    uint32_t finished = 0; // frames finished by all living nodes
+    uint64_t calls = 0; // GL calls up to the last frame, as reported by the fastest node
 };
 
 struct FrameTotals {
-    int64_t wallFrames = 0;  // frames of the main window, over changes of that window
-    int64_t firstNs = 0;     // when the first and the latest of them were finished
+    int64_t wallFrames = 0; // frames of the main window, across changes of that window
+    int64_t firstNs = 0; // completion of the first and the latest of them
     int64_t latestNs = 0;
 };
 
-// All calls from any thread. `credit` is called under the tracker's lock, so in order.
+// Thread-safe. `credit` is called with the tracker's lock held, hence in order.
 class FrameTracker {
 public:
-    // finished: by all living nodes; shown: of these, no picture up to here still has to be shown.
+    // finished: frames finished by all living nodes. shown: frames up to which every picture has been shown.
     using Credit = std::function<void(uint32_t client, uint32_t finished, uint32_t shown)>;
 
     FrameTracker(int nodes, Credit credit);
 
     Result<void> frameDone(int node, const wire::FrameDoneMessage& message, int64_t nowNs);
     void nodeLost(int node, int64_t nowNs);
-    // Nobody is given credit for what comes from now on without it, though it is not known yet how far it is.
+    // Credit waits for this node from now on, although its progress is still unknown.
     void nodeJoins(int node);
-    // It finishes the frames behind these.
+    // The node finishes the frames after `before`.
     void nodeJoined(int node, const std::vector<wire::ClientFrame>& before, int64_t nowNs);
     void clientGone(uint32_t client);
-    // No frame of it comes any more from any node.
+    // No node sends further frames of this window.
     void windowGone(uint32_t client, uint32_t window);
 
-    // A picture that is about to be shown (--display app); held before its frame is finished.
+    // Announces a picture for --display app. Must precede the completion of its frame.
     void pictureHeld(uint32_t client, uint32_t frame);
     void pictureReleased(uint32_t client, uint32_t frame);
 
     [[nodiscard]] ClientProgress progressOf(uint32_t client) const;
-    // The nodes that others wait for: they have not finished the frame after `finished`.
+    // The nodes that have not finished the frame after `finished`.
     [[nodiscard]] std::vector<int> behind(uint32_t client) const;
     [[nodiscard]] FrameTotals totals() const;
-    [[nodiscard]] int64_t framesOf(int node) const; // messages of this node
+    [[nodiscard]] int64_t framesOf(int node) const; // frame messages of this node
 
 private:
     struct Window {
@@ -61,19 +60,19 @@ private:
         uint32_t width = 0;
         uint32_t height = 0;
     };
-    // Frames come in order but for programs that swap in several threads.
+    // Frames arrive in order, except from programs that swap in several threads.
     struct NodeProgress {
-        uint32_t done = 0;          // all up to here
-        uint32_t joined = 0;        // up to here others have done what there was to do
-        std::set<uint32_t> early;   // beyond
+        uint32_t done = 0; // all frames up to here are done
+        uint32_t joined = 0; // frames up to here were finished by other nodes
+        std::set<uint32_t> early; // finished frames beyond `done`
     };
     struct Client {
         std::vector<NodeProgress> nodes;
-        std::map<uint32_t, Window> windows; // of frames that not all have finished
+        std::map<uint32_t, Window> windows; // windows of frames that some nodes have not finished
         std::multiset<uint32_t> held;
         uint32_t finished = 0; // by all living nodes
         uint64_t calls = 0;
-        uint32_t credited = 0; // what the program was last told of finished
+        uint32_t credited = 0; // the last value of `finished` sent to the program
         uint32_t shown = 0;
     };
 

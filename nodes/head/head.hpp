@@ -3,8 +3,8 @@
 
 namespace mural {
 
-// Takes over the descriptor. Returns the exit status: 0 after a session, 1 when it can't start.
-// Call from the main thread: the nodes live as long as the calling thread.
+// Takes ownership of the descriptor. Returns the exit status: 0 after a session, 1 if it cannot start. Call from the
+// main thread: the nodes live as long as the calling thread.
 int runHead(int controlFd);
 
 } // namespace mural

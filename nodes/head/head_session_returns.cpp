@@ -1,4 +1,4 @@
-// What the session does about nodes that are lost, and about those that come back.
+// The session's handling of lost and restarted nodes.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -8,7 +8,7 @@
 namespace mural {
 namespace {
 
-// Those of `wanted` that `has` lacks, by one name.
+// Returns the first name of `wanted` that `has` does not contain.
 std::string firstMissing(const std::string& wanted, const std::vector<std::string>& has) {
     std::istringstream words(wanted);
     for (std::string word; words >> word;)
@@ -33,7 +33,7 @@ NodeReturns::Hooks HeadSession::returnHooks() {
         if (!nodes_.canJoin()) return "programs have sent more than the " + std::to_string(config_.storeBytes >> 20) + " MiB that are kept to start a node again; --store gives more";
         return "";
     };
-    // Nodes that only members can tell how the picture is divided: whose turn it is, or by which areas.
+    // Only members know the state of time-multiplexed nodes and of moving areas.
     hooks.turns = [this](int node) {
         const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
         return plan.pass.period > 1 ? NodeSet::Turns::OfFrames : plan.queue >= 0 ? NodeSet::Turns::OfAreas : NodeSet::Turns::None;
@@ -74,14 +74,14 @@ void HeadSession::linkAgain(int node, StartingNode& starting) {
     NodeSetup setup = setupFor(plan);
     setup.catchesUp = true;
     setup.life = life;
-    setup.swapMembers = 0; // the others of its swap barrier go on without it
+    setup.swapMembers = 0; // the other members of its swap barrier continue without it
     setup.skipsFrames = returns_->skipsFrames();
-    setup.economy = false; // what it is given first comes as it is; NewHistory says from where on in batches
+    setup.economy = false; // its snapshot is not delta-coded; NewHistory starts the batches
     nodes_.sendAlone(node, wire::HeadCommand::Setup, toJson(setup));
 }
 
-// It connects itself to the others of its picture: to members, and of those that come back, too, to those that were told before it.
-// They learn nothing: they let it in.
+// The restarted node connects to the other nodes of its picture: to members, and among restarted nodes to those
+// introduced earlier. The other nodes accept the connection without further notice.
 void HeadSession::introduceAgain(int node) {
     const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
     if (plan.pass.ranges < 2) return;
@@ -97,7 +97,7 @@ void HeadSession::introduceAgain(int node) {
     nodes_.sendAlone(node, wire::HeadCommand::Exchange, nlohmann::json{{"pictures", pictures}}.dump());
 }
 
-// What programs were told of the nodes' GL must hold for this one.
+// The restarted node's GL must support everything that programs were told about the nodes' GL.
 Result<void> HeadSession::takeAgain(int node, NodeFacts facts) {
     {
         const std::lock_guard lock(mutex_);
@@ -115,7 +115,7 @@ Result<void> HeadSession::takeAgain(int node, NodeFacts facts) {
     return {};
 }
 
-// Under the lock that orders packets.
+// Called with the lock that orders packets.
 NodeSet::Admission HeadSession::admit(int node, uint32_t view) {
     const std::lock_guard membership(membership_);
     NodeSet::Admission admission;
@@ -128,7 +128,7 @@ NodeSet::Admission HeadSession::admit(int node, uint32_t view) {
     const std::lock_guard lock(mutex_);
     views_.joins(node, view);
     admission.life = lives_[static_cast<size_t>(node)];
-    admission.first = true; // of those that take turns, or have moving areas
+    admission.first = true; // of time-multiplexed nodes or nodes with moving areas
     for (size_t other = 0; other < plan_.nodes.size(); ++other) admission.first = admission.first && (totals_[other].lost || (plan_.nodes[other].pass.period < 2 && plan_.nodes[other].queue < 0));
     totals_[static_cast<size_t>(node)].lost = false;
     for (size_t other = 0; other < plan_.nodes.size(); ++other)
@@ -156,7 +156,7 @@ Result<void> HeadSession::nodeInView(int node, uint32_t view, const std::vector<
         if (!itself) return {};
     }
     const NodeReturns::Numbers numbers = returns_->numbers(node);
-    frames_.nodeJoined(node, numbers.framesGiven, monotonicNowNs()); // and what it has seen itself
+    frames_.nodeJoined(node, numbers.framesGiven, monotonicNowNs()); // plus the frames that it has drawn itself
     frames_.nodeJoined(node, frames, monotonicNowNs());
     dealer_.nodeJoined(node);
     chunks_.nodeJoined(node);
@@ -186,7 +186,7 @@ void HeadSession::loseMember(int node, const std::string& why) {
     goOnWithout(node);
 }
 
-// With the members that came; the others are started again until they come, as lost ones are.
+// Starts the session with the nodes that connected. Absent nodes are restarted like lost ones.
 void HeadSession::goOnWithoutAbsent() {
     for (const auto& [node, why] : absences_) {
         const std::lock_guard membership(membership_);
@@ -197,7 +197,7 @@ void HeadSession::goOnWithoutAbsent() {
     }
 }
 
-// With membership_.
+// Call with membership_ locked.
 void HeadSession::goOnWithout(int node) {
     {
         const std::lock_guard lock(mutex_);
@@ -209,7 +209,7 @@ void HeadSession::goOnWithout(int node) {
     frames_.nodeLost(node, monotonicNowNs());
     dealer_.nodeLost(node);
     chunks_.nodeLost(node);
-    std::vector<std::pair<uint32_t, uint32_t>> waiting; // for this node's word
+    std::vector<std::pair<uint32_t, uint32_t>> waiting; // requests that wait for this node
     {
         const std::lock_guard lock(mutex_);
         for (const auto& entry : gone_) waiting.push_back(entry.first);
@@ -218,7 +218,7 @@ void HeadSession::goOnWithout(int node) {
     if (noneIsLeft()) noNodeIsLeft();
 }
 
-// And none comes back.
+// True if no node lives and none can be restarted.
 bool HeadSession::noneIsLeft() {
     if (returns_->awaited()) return false;
     const std::lock_guard lock(mutex_);

@@ -13,7 +13,8 @@ namespace {
 constexpr int64_t kSliceMs = 100;
 
 std::unique_ptr<recording::KeptStream> emptyStream(uint64_t mostBytes) {
-    return std::make_unique<recording::KeptStream>(static_cast<size_t>(mostBytes), [](const std::string&) {}); // who is lost is told why it stays so
+    // a node that cannot return is reported elsewhere
+    return std::make_unique<recording::KeptStream>(static_cast<size_t>(mostBytes), [](const std::string&) {});
 }
 
 } // namespace
@@ -34,7 +35,7 @@ void KeptStream::append(uint32_t stream, std::span<const std::byte> payload) {
     Entry entry{stream, {payload.begin(), payload.end()}, 0};
     const std::lock_guard lock(mutex_);
     programs_.insert(wire::clientOf(stream));
-    if (!complete_) tooLarge_.insert(wire::clientOf(stream)); // it may share objects with those that are
+    if (!complete_) tooLarge_.insert(wire::clientOf(stream)); // it may share objects with the overflowed programs
     waitingBytes_ += payload.size();
     entries_.push_back(std::move(entry));
     if (complete_ && waitingBytes_ > mostBytes_) overflow();
@@ -104,9 +105,10 @@ Result<KeptStream::Snapshot> KeptStream::snapshot(uint64_t place, Deadline deadl
     const bool there = complete_ && taken_ == place && !inHand_;
     Result<Snapshot> result = Error{complete_ ? "what it has to be given was not found out in time" : "programs have sent more than the " + std::to_string(mostBytes_ >> 20) + " MiB that are kept for nodes that come back; --store gives more"};
     if (there) {
-        lock.unlock(); // the thread is held up, and nobody else touches what it has kept
+        lock.unlock(); // the thread is paused, and no other thread touches the log
         {
-            const std::lock_guard alone(snapshots_); // not before: who waits for a later place is let there by those of earlier ones
+            // locked late: a snapshot of a later position waits for those of earlier ones
+            const std::lock_guard alone(snapshots_);
             Snapshot snapshot{kept_->snapshot(), {}};
             for (const auto& [client, frame] : frames_) snapshot.frames.push_back({client, frame});
             result = std::move(snapshot);

@@ -1,5 +1,5 @@
-// What a node that comes late, or again, is given: the shortest stream that is known to bring it to where the others are
-// (recording/kept). A thread of its own finds that, behind the stream: nobody who sends waits for it.
+// The rejoin log: from it a restarted node receives a snapshot, the shortest known stream to the current state
+// (recording/kept). A background thread reduces the log, so that senders never wait for it.
 #pragma once
 
 #include <atomic>
@@ -27,58 +27,58 @@ namespace mural {
 
 class KeptStream {
 public:
-    // mostBytes: of memory for what is kept, and as much again for what its thread has not come to.
+    // mostBytes: memory for the reduced log, and as much again for entries that the thread has not processed.
     explicit KeptStream(uint64_t mostBytes);
     KeptStream(const KeptStream&) = delete;
     KeptStream& operator=(const KeptStream&) = delete;
     ~KeptStream();
 
-    // One after another, under the lock that orders packets. Packets of programs only.
+    // Appends a packet of a program. Call with the lock that orders packets.
     void append(uint32_t stream, std::span<const std::byte> payload);
     void programGone(uint32_t client);
-    // The place in the stream behind all of these, where the thread stops until there was a snapshot of it.
+    // Returns the current position of the stream. The thread pauses there until a snapshot of the position exists.
     [[nodiscard]] uint64_t hold();
 
     struct Snapshot {
-        std::vector<recording::KeptPacket> packets; // in their order
-        std::vector<wire::ClientFrame> frames;      // the last ones that programs have shown: nobody sees those of the packets
+        std::vector<recording::KeptPacket> packets; // in stream order
+        std::vector<wire::ClientFrame> frames; // the last frame of each program; the frames in `packets` are not shown
     };
-    // Of the stream up to there; once for each place that was held, by any thread. Waits until the thread has come there. Errors: it
-    // is too much to be kept; the deadline.
+    // Returns the snapshot of a held position; once per position, from any thread. Waits until the thread reaches the
+    // position. Errors: the log has overflowed; the deadline has passed.
     Result<Snapshot> snapshot(uint64_t place, Deadline deadline);
 
-    [[nodiscard]] bool complete() const { return complete_; } // false: what some program has sent was too much
+    [[nodiscard]] bool complete() const { return complete_; } // false: the log of some program has overflowed
     [[nodiscard]] uint64_t sizeBytes() const;
 
 private:
     struct Entry {
         uint32_t stream = 0;
         std::vector<std::byte> payload;
-        uint32_t clientGone = 0; // not a packet: this program has gone
+        uint32_t clientGone = 0; // nonzero: not a packet, but the end of this program
     };
     void work();
     void take(const Entry& entry);
-    void overflow(); // with the lock: nothing is kept of the programs that there are
+    void overflow(); // with the lock held: discards the log of all current programs
 
     const uint64_t mostBytes_;
-    uint64_t appended_ = 0; // by those who append
+    uint64_t appended_ = 0; // accessed by appending threads only
 
-    mutable std::mutex mutex_; // for all up to the thread but what it says
+    mutable std::mutex mutex_; // guards all members except the thread's own
     std::condition_variable changed_;
-    std::deque<Entry> entries_; // that the thread has not come to
+    std::deque<Entry> entries_; // not yet processed
     uint64_t waitingBytes_ = 0;
-    uint64_t taken_ = 0; // entries
-    std::multiset<uint64_t> holds_; // the thread takes no entries from the first of these places on
-    std::set<uint32_t> programs_;  // that have sent something
-    std::set<uint32_t> tooLarge_;  // those of which nothing is kept any more
+    uint64_t taken_ = 0; // number of processed entries
+    std::multiset<uint64_t> holds_; // the thread pauses at the first of these positions
+    std::set<uint32_t> programs_; // programs that have sent packets
+    std::set<uint32_t> tooLarge_; // programs whose log was discarded
     std::atomic<bool> complete_{true};
     std::atomic<uint64_t> keptBytes_{0};
-    bool inHand_ = false; // the thread is at work on an entry
+    bool inHand_ = false; // the thread is processing an entry
     bool stop_ = false;
 
-    std::unique_ptr<recording::KeptStream> kept_; // the thread's; a snapshot's while it is held up
-    std::map<uint32_t, uint32_t> frames_;         // likewise: by program
-    std::mutex snapshots_;                        // one at a time
+    std::unique_ptr<recording::KeptStream> kept_; // owned by the thread; by snapshot() while the thread is paused
+    std::map<uint32_t, uint32_t> frames_; // the same; last frame by program
+    std::mutex snapshots_; // serialises snapshot()
     std::thread thread_;
 };
 

@@ -2,7 +2,7 @@
 
 namespace mural {
 namespace {
-constexpr size_t kMostKinds = 4096; // of messages that are remembered; then the counts begin anew
+constexpr size_t kMostKinds = 4096; // bounds the remembered messages; the counts restart at this limit
 } // namespace
 
 bool NewsMerger::isNew(int node, const wire::News& news, const std::string& text) {

@@ -1,5 +1,5 @@
-// What the nodes' GL tells of one context, each on its own: the same message from all nodes, as they all
-// draw the same, is told to the program once.
+// Deduplicates driver events. All nodes draw the same, so each node reports the same message; the program receives it
+// once.
 #pragma once
 
 #include <map>
@@ -12,16 +12,16 @@
 
 namespace mural {
 
-// All calls from any thread.
+// Thread-safe.
 class NewsMerger {
 public:
-    // True: the program has not heard it. A node's n-th message of one kind is the n-th of all nodes.
+    // Returns true if the message is new to the program. The n-th message of a kind is the same message on all nodes.
     bool isNew(int node, const wire::News& news, const std::string& text);
     void programGone(uint32_t client);
-    void nodeJoins(int node); // what was told before is not this node's to tell
+    void nodeJoins(int node); // earlier messages are not expected from this node
 
 private:
-    // Numbers of messages differ from process to process, so they are no part of this.
+    // Message ids differ between processes and are not part of the key.
     using Key = std::tuple<uint32_t, uint32_t, uint32_t, uint32_t, uint32_t, uint32_t, std::string>;
     struct Count {
         std::vector<uint32_t> byNode;

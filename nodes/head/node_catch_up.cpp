@@ -10,13 +10,13 @@
 namespace mural {
 namespace {
 
-constexpr int64_t kShortRoundNs = 20 * kNsPerMs; // waiting for so long does not show
-constexpr int kMostRounds = 8;                   // who is no faster than the others does not get nearer
-constexpr int64_t kDrawPatienceMs = 500;         // until each window has had a frame
-constexpr int64_t kDirectPatienceMs = 2'000;     // until what is queued is sent with the others waiting
-constexpr int64_t kSnapshotMs = 20'000;          // until it is known what the node has to be given
-constexpr int64_t kLookMs = 50;                  // whether anybody is left who says whose turn it is
-constexpr int64_t kSyncLimitMs = 600'000;        // the last resort behind watch(), which loses silent nodes
+constexpr int64_t kShortRoundNs = 20 * kNsPerMs; // a pause of this length is invisible
+constexpr int kMostRounds = 8; // a node that is no faster than the others never converges
+constexpr int64_t kDrawPatienceMs = 500; // until each window has had a frame
+constexpr int64_t kDirectPatienceMs = 2'000; // after this time the queue is flushed while other nodes wait
+constexpr int64_t kSnapshotMs = 20'000; // limit for the snapshot
+constexpr int64_t kLookMs = 50; // interval of the check that a member is left to report the phase
+constexpr int64_t kSyncLimitMs = 600'000; // a last resort: watch() loses silent nodes earlier
 
 } // namespace
 
@@ -50,7 +50,7 @@ void NodeCatchUp::linkLost() {
 
 void NodeCatchUp::toldTurns(uint32_t number, const std::vector<std::byte>& turns) {
     const std::lock_guard lock(mutex_);
-    if (turns_ && number == turns_->number && !told_) told_ = turns; // all say the same
+    if (turns_ && number == turns_->number && !told_) told_ = turns; // all members report the same
     changed_.notify_all();
 }
 
@@ -96,7 +96,7 @@ void NodeCatchUp::sendQueue() {
     link_.flushNow();
 }
 
-// What it was given leaves out frames: it can't know whose turn it is. False: the node is lost.
+// A snapshot omits frames, so the node cannot count the phase itself. Returns false if the node is lost.
 bool NodeCatchUp::sendTurns() {
     if (!turns_) return true;
     const Deadline deadline = Deadline::inMs(kSyncLimitMs);
@@ -108,7 +108,7 @@ bool NodeCatchUp::sendTurns() {
         turns = told_;
     } while (!turns && std::ranges::any_of(turns_->asked, &NodeLink::alive) && !deadline.passed());
     if (turns) sendCommand(wire::HeadCommand::Turns, *turns);
-    return true; // nobody says it: it begins anew when the first one becomes a member
+    return true; // no member reports the phase: it restarts with the first new member
 }
 
 void NodeCatchUp::sendCommand(wire::HeadCommand command, std::span<const std::byte> arguments) {
@@ -118,7 +118,7 @@ void NodeCatchUp::sendCommand(wire::HeadCommand command, std::span<const std::by
     link_.flushNow();
 }
 
-// The frames in hand become whole with their windows' next clears. False: the node is lost.
+// The next clear of each window completes the current frames. Returns false if the node is lost.
 bool NodeCatchUp::drawsAgain() {
     const Deadline deadline = Deadline::inMs(kDrawPatienceMs);
     while (synchronize(true)) {
@@ -127,7 +127,8 @@ bool NodeCatchUp::drawsAgain() {
             unsound_ = sound_ == static_cast<uint32_t>(wire::Soundness::Unsound);
             if (sound_ == static_cast<uint32_t>(wire::Soundness::Sound)) return true;
         }
-        if (deadline.passed() && !unsound_) return true; // a window that nobody draws into; were that to change, the node would see it
+        // no program draws into the window; the node would notice a change
+        if (deadline.passed() && !unsound_) return true;
         if (unsound_) {
             link_.lose("its frames build on earlier ones that it did not draw; next time it draws them");
             return false;
@@ -138,7 +139,7 @@ bool NodeCatchUp::drawsAgain() {
     return false;
 }
 
-// False: the node is lost.
+// Returns false if the node is lost.
 bool NodeCatchUp::synchronize(bool draws) {
     const uint32_t number = ++asked_;
     const uint32_t arguments[] = {number, draws ? 1U : 0U};

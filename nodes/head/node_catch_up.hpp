@@ -1,6 +1,6 @@
-// Gives one node that has come back what it has missed, by a thread of its own, and makes it a member when it has caught up.
-// The others go on meanwhile. What programs send while it reads what was kept is sent behind that, what they send meanwhile
-// behind that again, until a round is so short that waiting for this node does not show in a frame.
+// Resync of one restarted node, on its own thread: sends the snapshot and everything after it, and makes the node a
+// member when it has caught up. The other nodes continue meanwhile. Each round sends what programs have produced during
+// the previous one, until a round is too short to delay a frame.
 #pragma once
 
 #include <atomic>
@@ -16,23 +16,24 @@ namespace mural {
 
 class NodeCatchUp {
 public:
-    using Admitted = std::function<NodeSet::Admission(uint32_t view)>; // hears in which view it becomes a member
-    // turns: of nodes that take turns.
+    // receives the view in which the node becomes a member
+    using Admitted = std::function<NodeSet::Admission(uint32_t view)>;
+    // turns: for nodes whose phase or areas members report.
     NodeCatchUp(NodeSet& nodes, int node, std::optional<NodeSet::TurnsAsked> turns, Admitted admitted);
     NodeCatchUp(const NodeCatchUp&) = delete;
     NodeCatchUp& operator=(const NodeCatchUp&) = delete;
-    ~NodeCatchUp(); // waits until it is done: soon, once its link is lost
+    ~NodeCatchUp(); // joins the thread, which ends soon after its link is lost
 
     void start();
 
-    void synchronized(const wire::SynchronizedMessage& message); // the node has come to there; from any thread
-    [[nodiscard]] bool unsound() const { return unsound_; } // its frames need those that it has not drawn
-    void linkLost();                    // from any thread
-    void toldTurns(uint32_t number, const std::vector<std::byte>& turns); // from any thread
+    void synchronized(const wire::SynchronizedMessage& message); // the node has reached this position; thread-safe
+    [[nodiscard]] bool unsound() const { return unsound_; } // the node's frames depend on frames that it has skipped
+    void linkLost(); // thread-safe
+    void toldTurns(uint32_t number, const std::vector<std::byte>& turns); // thread-safe
     [[nodiscard]] bool done() const { return done_; }
     [[nodiscard]] uint64_t snapshotBytes() const { return snapshotBytes_; }
     [[nodiscard]] uint64_t queuedBytes() const { return queuedBytes_; }
-    // That programs had shown where what it was given first ends.
+    // The last frame of each program at the end of the snapshot.
     [[nodiscard]] std::vector<wire::ClientFrame> framesGiven() const {
         const std::lock_guard lock(mutex_);
         return frames_;
@@ -56,14 +57,14 @@ private:
     std::atomic<bool> done_{false};
     std::atomic<bool> unsound_{false};
     std::atomic<uint64_t> snapshotBytes_{0}, queuedBytes_{0};
-    mutable std::mutex mutex_; // what follows
+    mutable std::mutex mutex_; // guards the members below
     std::condition_variable changed_;
     uint32_t reached_ = 0;
-    uint32_t sound_ = 0; // there: wire::Soundness
+    uint32_t sound_ = 0; // wire::Soundness at that position
     bool lost_ = false;
     std::optional<std::vector<std::byte>> told_;
     std::vector<wire::ClientFrame> frames_;
-    std::thread thread_; // last: it uses all of it
+    std::thread thread_; // declared last: it uses the members above
 };
 
 } // namespace mural

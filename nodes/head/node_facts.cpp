@@ -16,7 +16,7 @@ std::string textOf(const Json& json, const char* name) {
     return found != json.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
-// "4.5 (Core Profile) Mesa 22.3.6", "OpenGL ES 3.2 Mesa", 45.
+// Accepts "4.5 (Core Profile) Mesa 22.3.6", "OpenGL ES 3.2 Mesa" and 45.
 int versionOf(const Json& json) {
     const auto found = json.find("glVersion");
     if (found == json.end()) return 0;

@@ -12,7 +12,7 @@ namespace {
 constexpr int64_t kAcceptSliceMs = 100;
 constexpr int64_t kProofPatienceMs = 5000;
 const std::string kName = "node";
-constexpr int kMostChecked = 32; // strangers that keep silent at the same time
+constexpr int kMostChecked = 32; // limit of concurrent unauthenticated connections
 
 int portOf(const std::string& description) {
     const size_t colon = description.rfind(':');
@@ -71,14 +71,14 @@ void NodeGate::acceptAll() {
         const int64_t beganNs = monotonicNowNs();
         auto connection = listener_->accept(Deadline::inMs(kAcceptSliceMs));
         if (connection) {
-            if (checking_ >= kMostChecked) continue; // closes it
+            if (checking_ >= kMostChecked) continue; // destroys the connection
             ++checking_;
             checkers_.emplace_back([this, c = std::move(*connection)]() mutable {
                 check(std::move(c));
                 --checking_;
             });
         } else if (monotonicNowNs() - beganNs < kAcceptSliceMs * kNsPerMs / 2) {
-            poll(nullptr, 0, static_cast<int>(kAcceptSliceMs)); // out of descriptors: not in a busy loop
+            poll(nullptr, 0, static_cast<int>(kAcceptSliceMs)); // out of descriptors: avoids a busy loop
         }
     }
     for (auto& checker : checkers_) checker.join();
@@ -98,7 +98,7 @@ void NodeGate::check(std::unique_ptr<Connection> connection) {
     if (!shown) return;
     const std::lock_guard lock(mutex_);
     const auto found = expected_.find((*shown)->name());
-    if (found == expected_.end()) return; // good for one connection
+    if (found == expected_.end()) return; // each secret admits one connection
     arrived_[found->second.first] = std::move(*shown);
     expected_.erase(found);
 }

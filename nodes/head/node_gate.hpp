@@ -1,5 +1,5 @@
-// Where render nodes come in over TCP, encrypted. Who can't show the secret that the node of his name was given is sent
-// away; nothing else of what he sends is looked at.
+// Accepts encrypted TCP connections of render nodes. A peer that does not prove the secret of its node name is
+// disconnected before any of its other data is read.
 #pragma once
 
 #include <atomic>
@@ -16,10 +16,10 @@
 
 namespace mural {
 
-// All calls from any thread.
+// Thread-safe.
 class NodeGate {
 public:
-    // Listens on a free port of the loopback interface, or of all.
+    // Listens on a free port, on the loopback interface or on all interfaces.
     static Result<std::unique_ptr<NodeGate>> open(bool loopbackOnly);
     NodeGate(const NodeGate&) = delete;
     NodeGate& operator=(const NodeGate&) = delete;
@@ -27,8 +27,8 @@ public:
 
     [[nodiscard]] int port() const { return port_; }
     void expect(int node, const SessionSecret& secret);
-    std::unique_ptr<Connection> take(int node); // null: it has not come yet
-    static std::string nameOf(int node); // by which a node says who it is
+    std::unique_ptr<Connection> take(int node); // null: not connected yet
+    static std::string nameOf(int node); // the name by which a node identifies itself
     static std::optional<int> nodeOf(const std::string& name);
 
 private:
@@ -44,7 +44,7 @@ private:
     std::map<std::string, std::pair<int, SessionSecret>> expected_; // by name
     std::map<int, std::unique_ptr<Connection>> arrived_;
     std::atomic<int> checking_{0};
-    std::vector<std::thread> checkers_; // the accepting thread's
+    std::vector<std::thread> checkers_; // owned by the accepting thread
     std::thread thread_;
 };
 

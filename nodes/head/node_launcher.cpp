@@ -19,8 +19,8 @@ std::string nameOf(const NodePlan& plan) {
     return "node " + std::to_string(plan.node) + " (" + plan.where + ")";
 }
 
-// host:port at which `host` reaches the gate; the own name when the way there can't be found out. Of a node that is called by
-// the name under which it announces itself, only what calls it knows the way: no host.
+// The host:port at which `host` reaches the gate, or this machine's name if no route is known. The result has no host
+// for a daemon that announces itself: the caller knows the route.
 std::string endpointTowards(const std::string& host, uint16_t port) {
     constexpr int64_t kLookupMs = 5000;
     if (host.starts_with("@")) return endpointText("", port);
@@ -31,7 +31,7 @@ std::string endpointTowards(const std::string& host, uint16_t port) {
     return endpointText(name, port);
 }
 
-// For the shell that the launch command runs on the host.
+// Quotes a word for the remote shell of the launch command.
 std::string quoted(const std::string& word) {
     if (word.find_first_of(" \t\"'\\$`*?[]()<>|&;!#~") == std::string::npos) return word;
     std::string result = "'";
@@ -95,11 +95,11 @@ Result<std::unique_ptr<NodeGate>> openGate(const SessionPlan& plan) {
     return NodeGate::open(!remote);
 }
 
-// True: it has come. Errors: what it did not do, behind its name.
+// Returns true after the node has connected. Errors: why the node failed, without its name.
 Result<bool> lookForConnection(LaunchedNode& node, NodeGate& gate, Deadline deadline) {
     node.connection = gate.take(node.plan.node);
     if (node.connection) return true;
-    // A launch command may hand the node over to something else and end in order.
+    // A launch command may delegate to a batch system and exit with status 0.
     const auto how = node.process->ended();
     const bool handedOver = node.plan.reach == NodeReach::LaunchCommand && how == "exit status 0";
     if (how && !handedOver) return Error{"did not start: " + *how + "; its own messages say why"};
@@ -110,7 +110,7 @@ Result<bool> lookForConnection(LaunchedNode& node, NodeGate& gate, Deadline dead
     return false;
 }
 
-// Leaves alone those that failed, when enough are there without them.
+// Tolerates failed nodes as long as enough others connect.
 Result<void> awaitConnections(std::vector<LaunchedNode>& nodes, NodeGate* gate, const LaunchOptions& options, Deadline deadline,
                               const std::function<bool()>& cancelled) {
     const auto all = static_cast<int>(nodes.size());

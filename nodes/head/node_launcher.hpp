@@ -1,4 +1,4 @@
-// Starts the planned nodes, all at once, and waits until each has its connection.
+// Starts the planned nodes concurrently, and waits until each has connected.
 #pragma once
 
 #include <functional>
@@ -16,35 +16,35 @@ namespace mural {
 
 struct LaunchedNode {
     NodePlan plan;
-    std::unique_ptr<NodeProcess> process; // null in tests with nodes in the same process
+    std::unique_ptr<NodeProcess> process; // null in tests with in-process nodes
     std::unique_ptr<Connection> connection;
-    std::string absence = {}; // "did not start: …": why it has no connection; empty: it has one
+    std::string absence = {}; // the reason why it has no connection, "did not start: …"; empty: connected
 };
 
-// One that is started alone, later: for a node that was lost.
+// A lost node that is being restarted.
 struct StartingNode {
     LaunchedNode node;
-    std::unique_ptr<NodeGate> gate; // null: it has its connection
+    std::unique_ptr<NodeGate> gate; // null: connected
     Deadline deadline = Deadline::never();
 };
 
 struct LaunchOptions {
-    std::string executable;    // of `mural` here
-    std::string remoteMural;   // on other hosts
+    std::string executable; // path of `mural` on this machine
+    std::string remoteMural; // path of `mural` on other hosts
     std::string launchCommand; // prefix that runs a command on a host
-    int leastNodes = 0;        // so many are enough to begin: of the others those are waited for that come within lateMs; 0: all
+    int leastNodes = 0; // the session starts with this many nodes; others have lateMs to connect; 0: all nodes
     int64_t lateMs = 5'000;
 };
 
-// By the thread that lives as long as the nodes shall. `cancelled` is asked now and then. Errors: fewer than enough came.
+// Call from a thread that outlives the nodes. Polls `cancelled`. Errors: fewer nodes than required have connected.
 Result<std::vector<LaunchedNode>> launchNodes(const SessionPlan& plan,
                                               const LaunchOptions& options,
                                               Deadline deadline,
                                               const std::function<bool()>& cancelled);
 
-// The same for one of them, without the wait.
+// Starts one node without waiting for its connection.
 Result<StartingNode> startNode(const NodePlan& plan, const LaunchOptions& options, Deadline deadline);
-// True: it has its connection now.
+// Returns true once the node has connected.
 Result<bool> connected(StartingNode& starting);
 
 } // namespace mural

@@ -9,18 +9,18 @@ namespace {
 
 using wire::NodeMessage;
 
-constexpr int64_t kWatchGapNs = 2 * kNsPerS; // nobody has watched for longer: the head did not run
-constexpr int64_t kWriteLimitMs = 600'000;   // the last resort behind watch()
-constexpr int64_t kReadSliceMs = 100;        // between two looks whether the node was given up
-constexpr int64_t kMessageLimitMs = 60'000;  // from a message's header to its last byte
-constexpr int64_t kStatusPatienceMs = 300;   // a broken connection is seen before the process' end
-constexpr size_t kMostQueuedBytes = size_t{256} << 20; // for a node that catches up
+constexpr int64_t kWatchGapNs = 2 * kNsPerS; // a longer gap means that the head itself was stopped
+constexpr int64_t kWriteLimitMs = 600'000; // a last resort: watch() loses silent nodes earlier
+constexpr int64_t kReadSliceMs = 100; // interval of the check whether the node was given up
+constexpr int64_t kMessageLimitMs = 60'000; // from a message's header to its last byte
+constexpr int64_t kStatusPatienceMs = 300; // a broken connection is detected before the process has ended
+constexpr size_t kMostQueuedBytes = size_t{256} << 20; // limit during resync
 constexpr uint32_t kMaxTextBytes = 1u << 20;
-constexpr uint32_t kMaxDataBytes = (1u << 30) + 4096; // a picture of 16384 * 16384 pixels
+constexpr uint32_t kMaxDataBytes = (1u << 30) + 4096; // a picture of 16384 x 16384 pixels
 
 std::span<std::byte> bytesOf(auto& value) { return std::as_writable_bytes(std::span(&value, 1)); }
 
-// A rectangle whose bytes must be exactly `have`.
+// Checks that a rectangle has exactly `have` bytes.
 bool rectangleFits(int32_t x, int32_t y, int32_t w, int32_t h, uint64_t pixelBytes, uint64_t have) {
     constexpr int32_t kLimit = 1 << 20;
     if (x < -kLimit || y < -kLimit || x > kLimit || y > kLimit) return false;
@@ -106,7 +106,7 @@ void NodeLink::lose(const std::string& why) {
 }
 
 void NodeLink::watch(int64_t nowNs, int64_t patienceNs) {
-    // The whole session may have slept, the head with it: what the nodes left unsaid then is no silence.
+    // If the head itself was stopped, the silence of the nodes meanwhile does not count.
     if (nowNs - std::exchange(watchedNs_, nowNs) > kWatchGapNs) excusedNs_ = nowNs;
     if (!alive() || saidBye() || inMessage_) return;
     if (nowNs - std::max(excusedNs_, heardNs_.load()) <= patienceNs) return;
@@ -132,18 +132,18 @@ void NodeLink::readMessages() {
     }
     if (!saidBye()) {
         events_.nodeLost(place_.node, reasonOfEnd());
-        if (process_) process_->kill(); // it may still run, and hold a GPU
+        if (process_) process_->kill(); // it may still run and hold a GPU
     }
     alive_ = false;
     readerEnded_ = true;
 }
 
-// False: nothing has come yet.
+// Returns false if no message has arrived yet.
 Result<bool> NodeLink::readHeader(wire::MessageHeader& header) {
     const Result<void> got = connection_->read(bytesOf(header), Deadline::inMs(kReadSliceMs));
     if (got) return true;
     if (!connection_->timedOut()) return got.error();
-    // Nothing is left to read: only now a process that has ended is lost. (A connection may not notice.)
+    // All messages are read. Only now an ended process counts as lost; a shared-memory connection does not report it.
     if (process_ && place_.where == "local") {
         if (const auto how = process_->ended()) return Error{*how};
     }
@@ -325,7 +325,7 @@ template <class Handler> Result<void> NodeLink::handle(Handler&& handler) {
     return done;
 }
 
-// The end of the process says more than the broken connection that it leaves.
+// The exit status is a better explanation than the broken connection.
 std::string NodeLink::reasonOfEnd() {
     if (process_) {
         if (const auto how = process_->waitEnded(Deadline::inMs(kStatusPatienceMs))) return *how;

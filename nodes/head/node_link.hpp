@@ -1,5 +1,4 @@
-// The head's end of one render node: its connection, the thread that reads its messages, and the
-// knowledge whether it lives.
+// The head's end of one render node: its connection, the thread that reads its messages, and its liveness.
 #pragma once
 
 #include <algorithm>
@@ -22,8 +21,8 @@
 
 namespace mural {
 
-// What comes from the nodes. Called by the reader thread of the node in question; an error loses the
-// node. Sizes and headers are checked before, contents are not.
+// Receives the messages of all nodes. Called by the node's reader thread; an error loses the node. Sizes and headers
+// have been validated, contents have not.
 class NodeEvents {
 public:
     virtual ~NodeEvents() = default;
@@ -36,10 +35,10 @@ public:
     virtual Result<void> nodeLog(int node, const std::string& text) = 0;
     virtual Result<void> nodeBye(int node, const std::string& json) = 0;
     virtual Result<void> nodeInView(int node, uint32_t view, const std::vector<wire::ClientFrame>& frames) = 0;
-    // Of all windows, where the TellTurns of that number came.
+    // The phases and areas of all windows at the TellTurns of that number.
     virtual Result<void> nodeTurns(int node, uint32_t number, const std::vector<std::byte>& turns) = 0;
     virtual Result<void> nodeSynchronized(int node, const wire::SynchronizedMessage& message) = 0;
-    // The last call for a node that did not say Bye; everything it had sent was handed on before.
+    // The last call for a node that ended without Bye, after all of its messages.
     virtual void nodeLost(int node, const std::string& why) = 0;
 };
 
@@ -48,79 +47,79 @@ struct NodePlace {
     std::string where = "local"; // or the host
 };
 
-// send(), flush() and setFeed() from one thread at a time (NodeSet's lock); the rest from any thread.
+// send(), flush() and setFeed() need NodeSet's lock. All other calls are thread-safe.
 class NodeLink {
 public:
     NodeLink(NodePlace place,
-             std::unique_ptr<Connection> connection, // null: it has not come; it is as one that was lost
-             std::unique_ptr<NodeProcess> process, // null: nothing of ours (tests)
+             std::unique_ptr<Connection> connection, // null: the node has not connected and counts as lost
+             std::unique_ptr<NodeProcess> process, // null: not our child (tests)
              NodeEvents& events);
     ~NodeLink();
 
-    // Where its packets go: to it; nowhere; into a queue that another thread sends by sendNow(), while it catches up.
+    // The destination of the node's packets: the connection, none, or a queue that another thread sends during resync.
     enum class Feed { Direct, Nothing, Queued };
 
-    // How it packs its pictures (nodes/pictures), before startReading().
-    // way: they come smaller by this (nodes/pictures/picture_way.hpp).
+    // Sets the decoder of the node's pictures (nodes/pictures). Call before startReading(). way: the scale of its
+    // pictures in transfer (nodes/pictures/picture_way.hpp).
     void unpackBy(const std::string& codec, const Zoom& way) {
         way_ = way;
         if (codec != kRawCodec) pictures_ = std::make_unique<PictureUnpacker>(codec);
     }
     void startReading();
 
-    // A write that fails loses the node; nothing to tell the caller.
+    // A failed write loses the node and is not reported to the caller.
     void send(std::span<const std::byte> header, std::span<const std::byte> payload);
     void flush();
     void setFeed(Feed feed) { feed_ = feed; }
     [[nodiscard]] Feed feed() const { return feed_; }
-    // What is queued, packets with their headers, and the queue begins anew.
+    // Takes all queued packets with their headers, and leaves an empty queue.
     std::vector<std::vector<std::byte>> takeQueue();
     [[nodiscard]] bool queueEmpty() const;
-    // Whatever its feed is; by the only thread that does.
+    // Writes to the connection regardless of the feed. One thread only.
     void sendNow(std::span<const std::byte> header, std::span<const std::byte> payload);
     void flushNow();
 
     [[nodiscard]] NetworkPath path() const { return connection_->path(); }
-    // Its packets come another way (NodeMulticast), all but its setup.
+    // All packets except the setup arrive by multicast (NodeMulticast).
     void setByMulticast(bool by) { byMulticast_ = by; }
     [[nodiscard]] bool byMulticast() const { return byMulticast_; }
-    // It is one of all: not one that was replaced, and has not caught up.
+    // A restarted node is not a member until its resync has finished.
     void setMember(bool member) { member_ = member; }
     [[nodiscard]] bool member() const { return member_; }
-    // Its packets come in batches; before the first.
+    // The node receives delta-coded batches. Call before the first one.
     void setInBatches(bool in) { inBatches_ = in; }
     [[nodiscard]] bool inBatches() const { return inBatches_; }
-    // They do once it is a member.
+    // The node receives batches once it is a member.
     void setJoinsBatches(bool joins) { joinsBatches_ = joins; }
     [[nodiscard]] bool joinsBatches() const { return joinsBatches_; }
 
-    // It joins the multicast group once it is a member.
+    // The node joins the multicast group once it is a member.
     void setJoinsGroup(bool joins) { joinsGroup_ = joins; }
     [[nodiscard]] bool joinsGroup() const { return joinsGroup_; }
 
-    // Ends the connection; the reader thread then reports the first reason given.
+    // Closes the connection. The reader thread then reports the first reason given.
     void lose(const std::string& why);
-    // Called often: loses a node that says nothing for so long. Nodes say that they are alive even while
-    // they draw (nodes/node/heartbeat.hpp); one that does not is stopped or hangs.
+    // Called periodically: loses a node that has been silent for patienceNs. Nodes send heartbeats even while they draw
+    // (nodes/node/heartbeat.hpp), so a silent node is stopped or hangs.
     void watch(int64_t nowNs, int64_t patienceNs);
 
     [[nodiscard]] bool alive() const { return alive_.load(std::memory_order_acquire); }
     [[nodiscard]] bool saidBye() const { return saidBye_.load(std::memory_order_acquire); }
     [[nodiscard]] bool readerEnded() const { return readerEnded_.load(std::memory_order_acquire); }
-    // When the node last gave or took something; now while the head itself is at work on it.
+    // The time of the last message or packet; the current time while the head processes a message.
     [[nodiscard]] int64_t lastProgressNs(int64_t nowNs) const {
         return handlingSinceNs_ != 0 ? nowNs : lastMessageNs_.load();
     }
-    // Of its pictures that came packed, and of what was in them.
+    // Encoded and decoded size of the node's pictures.
     [[nodiscard]] int64_t pictureBytes() const { return pictureBytes_.load(std::memory_order_relaxed); }
     [[nodiscard]] int64_t pictureRawBytes() const { return pictureRawBytes_.load(std::memory_order_relaxed); }
-    // Since when nothing has come from it.
+    // Time since the last message.
     [[nodiscard]] int64_t silentNs(int64_t nowNs) const { return nowNs - std::min(nowNs, heardNs_.load()); }
     [[nodiscard]] const NodePlace& place() const { return place_; }
     [[nodiscard]] NodeProcess* process() { return process_.get(); }
     [[nodiscard]] std::string describe() const; // "node 2 (local, pid 77)"
 
-    // Joins the reader, ends the process.
+    // Joins the reader thread and ends the process.
     void end();
 
 private:
@@ -137,7 +136,7 @@ private:
     Result<void> readText(const wire::MessageHeader& header);
     Result<void> readInView(uint32_t sizeBytes);
     Result<void> readTurns(uint32_t sizeBytes);
-    // A number and a list, as long as the message.
+    // Reads a number followed by a list that fills the message.
     template <class Entry> Result<void> readList(uint32_t sizeBytes, uint32_t& first, std::vector<Entry>& entries, const char* what);
     template <class Handler> Result<void> handle(Handler&& handler);
     std::string reasonOfEnd();
@@ -146,8 +145,8 @@ private:
     const std::unique_ptr<Connection> connection_;
     const std::unique_ptr<NodeProcess> process_;
     NodeEvents& events_;
-    Zoom way_; // of its pictures
-    std::unique_ptr<PictureUnpacker> pictures_; // null: they come as they are
+    Zoom way_; // scale of its pictures in transfer
+    std::unique_ptr<PictureUnpacker> pictures_; // null: pictures are not encoded
     std::atomic<int64_t> pictureBytes_{0}, pictureRawBytes_{0};
     std::thread reader_;
     std::atomic<bool> alive_;
@@ -158,16 +157,16 @@ private:
     bool inBatches_ = false;
     bool joinsBatches_ = false;
     std::atomic<Feed> feed_{Feed::Direct};
-    mutable std::mutex queueMutex_; // what follows
+    mutable std::mutex queueMutex_; // guards the members below
     std::vector<std::vector<std::byte>> queue_;
     size_t queueBytes_ = 0;
     std::atomic<bool> readerEnded_;
-    int64_t watchedNs_ = 0; // the last watch()
-    int64_t excusedNs_ = 0; // silence before does not count
-    std::atomic<bool> inMessage_{false};      // the reader is between a message's header and its end
-    std::atomic<int64_t> heardNs_{0};         // when any message had been read
-    std::atomic<int64_t> handlingSinceNs_{0}; // 0: the reader waits for the node, not the node for us
-    std::atomic<int64_t> lastMessageNs_{0};   // when the last one but Alive had been handled
+    int64_t watchedNs_ = 0; // time of the last watch()
+    int64_t excusedNs_ = 0; // silence before this time does not count
+    std::atomic<bool> inMessage_{false}; // the reader is inside a message
+    std::atomic<int64_t> heardNs_{0}; // time of the last complete message
+    std::atomic<int64_t> handlingSinceNs_{0}; // 0: the reader is waiting for the node
+    std::atomic<int64_t> lastMessageNs_{0}; // time of the last processed message other than Alive
     std::mutex reasonMutex_;
     std::string reason_;
 };

@@ -12,12 +12,12 @@ namespace mural {
 namespace {
 
 constexpr uint16_t kPort = 4277;
-// A node that draws for long, or is stopped for a moment, is waited for: the head has its own patience with nodes.
+// Tolerates nodes that draw for long or are stopped briefly. The head has its own limit for silent nodes.
 constexpr int64_t kSilentMs = 5000;
 
 std::string machineOf(const std::string& host) { return host.substr(host.find('@') + 1); } // user@host
 
-// Another group for each session, so that none hears what is not for it.
+// Each session uses its own group, so that hosts receive no foreign traffic.
 std::string freshGroup(const std::string& ownAddress) {
     const auto last = std::to_string(std::random_device()() % 254 + 1);
     return ownAddress.find(':') != std::string::npos ? endpointText("ff15::4d75:7261:" + last, kPort) : endpointText("239.255.77." + last, kPort);
@@ -67,7 +67,7 @@ Result<std::unique_ptr<NodeMulticast>> NodeMulticast::open(const std::string& st
     if (!given.contains("control")) options->control = ":0";
     if (!given.contains("stalled")) options->stalled = rsp::StallPolicy::Wait;
     if (!given.contains("silent-ms")) options->silentMs = kSilentMs;
-    auto secret = makeSessionSecret(); // nodes get it over their own connections
+    auto secret = makeSessionSecret(); // on error, nodes use their own connections
     if (!secret) return secret.error();
     options->secret = *secret;
     auto group = rsp::Group::host(*options);
@@ -88,7 +88,7 @@ std::string NodeMulticast::invitation() const { return "rsp://" + groupAddress_ 
 
 Result<void> NodeMulticast::write(std::span<const std::byte> bytes, Deadline deadline) {
     writtenBytes_ += bytes.size();
-    return group_->write(bytes, deadline); // whole, or the group has failed
+    return group_->write(bytes, deadline); // complete, unless the group has failed
 }
 void NodeMulticast::flush() { group_->flush(); }
 
@@ -115,7 +115,7 @@ std::vector<NodeMulticast::Change> NodeMulticast::takeChanges() {
         if (!node) continue;
         if (event.kind == rsp::MemberEvent::Kind::Gone) {
             nodes_.erase(event.id);
-            // Who leaves or ends says so on its own connection, too, and there what it said before comes first.
+            // A node that leaves or ends also says so on its own connection, after its earlier messages.
             const bool itself = event.reason == rsp::GoneReason::Left || event.reason == rsp::GoneReason::Cut;
             if (!itself) changes.push_back({*node, Change::Kind::Gone, false, 0, textOf(event.reason)});
             continue;

@@ -1,5 +1,5 @@
-// The one stream to the nodes of other machines: a multicast group whose host is the head. What is written goes out once,
-// however many nodes there are (transport/rsp).
+// The multicast stream to the nodes of other machines, with the head as host of the group. Written data is sent once,
+// for any number of nodes (transport/rsp).
 #pragma once
 
 #include <atomic>
@@ -19,38 +19,38 @@
 
 namespace mural {
 
-// Which of the planned nodes get the stream by multicast, as the user's --stream says.
+// Selects the planned nodes that receive the stream by multicast, from the user's --stream.
 std::vector<int> nodesForMulticast(const std::string& stream, const SessionPlan& plan);
 
-// All calls from any thread.
+// Thread-safe.
 class NodeMulticast {
 public:
-    // `stream`: auto or rsp://…. Unless that says otherwise, the group is on the network of `path`, the way to a node, and its
-    // datagrams are as long as that says.
+    // stream: auto or rsp://…. Unless that names them, the interface and the datagram size come from `path`, the route
+    // to a node.
     static Result<std::unique_ptr<NodeMulticast>> open(const std::string& stream, const NetworkPath& path);
 
-    // What nodes are told to join with: description and secret. The control port is at the address by which they reach the
-    // head.
+    // What nodes need to join: the description and the secret. The control port is at the address by which they reach
+    // the head.
     [[nodiscard]] std::string invitation() const;
     [[nodiscard]] const SessionSecret& secret() const { return secret_; }
 
     Result<void> write(std::span<const std::byte> bytes, Deadline deadline);
     [[nodiscard]] uint64_t writtenBytes() const { return writtenBytes_; }
     void flush();
-    // Nobody waits for this node any longer.
+    // The stream no longer waits for this node.
     void remove(int node, const std::string& why);
 
-    // What became of a member since the last call.
+    // A membership change since the last call.
     struct Change {
         enum class Kind { Came, Rerouted, Gone };
         int node = 0;
         Kind kind = Kind::Came;
-        bool multicast = false; // it is reached by it; else through its connection
-        uint64_t fromByte = 0;  // came: the first of all bytes written that it gets
-        std::string why;        // gone
+        bool multicast = false; // multicast reaches it; otherwise its tunnel
+        uint64_t fromByte = 0; // joined: offset of the first byte that it receives
+        std::string why; // left: the reason
     };
     std::vector<Change> takeChanges();
-    // The nodes for which the stream waits now.
+    // The nodes whose acknowledgement the stream waits for.
     [[nodiscard]] std::vector<int> waitsFor() const;
     [[nodiscard]] std::string describe() const; // for --explain
     [[nodiscard]] rsp::GroupReport report() const { return group_->report(); }
@@ -66,7 +66,7 @@ private:
     uint16_t controlPort_ = 0;
     std::atomic<uint64_t> writtenBytes_{0};
     mutable std::mutex mutex_;
-    std::map<rsp::MemberId, int> nodes_; // those that have come and are not gone
+    std::map<rsp::MemberId, int> nodes_; // current members
 };
 
 } // namespace mural

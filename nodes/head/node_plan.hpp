@@ -1,4 +1,4 @@
-// Which nodes a session has, where they run and what each draws. Pure.
+// The plan of a session: its nodes, their places, and the task of each node. Pure.
 #pragma once
 
 #include <optional>
@@ -14,63 +14,64 @@ namespace mural {
 
 enum class NodeReach {
     SharedMemory, // a process of this machine
-    Tcp,          // a process of this machine, as if it ran on another
+    Tcp, // a process of this machine that is treated as remote
     LaunchCommand // a process of another machine
 };
 
-// Where a node shows its own part of the wall, on its machine.
+// The window in which a node shows its part of the wall, on its machine.
 struct NodeWindow {
     std::string title;
     std::string displayName; // empty: the session's
-    bool asOnWall = true;    // its place on the screen is that on the wall; else:
-    int x = 0, y = 0;        // of its upper left corner
+    bool asOnWall = true; // its position on the screen equals that on the wall; otherwise x, y
+    int x = 0, y = 0; // upper left corner
     bool fullScreen = false;
 };
 
-// Tiles of one picture, or of a part of it, that nodes take by when they are free.
+// A queue of tiles of one picture, or a part of it, for idle nodes.
 struct TileQueuePlan {
     std::string name;
-    Viewport area;           // of the picture: what is divided into them
-    int width = 0, height = 0; // of a tile, pixels; the last ones of rows and columns may be smaller
+    Viewport area; // the part of the picture that is divided into tiles
+    int width = 0, height = 0; // of a tile in pixels; the last tile of a row or column may be smaller
 };
 
-// Runs of a picture's draws, in their order, that nodes take by when they are free.
+// A queue of consecutive runs of a picture's draws, for idle nodes.
 struct ChunkQueuePlan {
     std::string name;
-    Range range;     // of all draws: what is divided into them
-    double part = 1; // of that, each
+    Range range; // the part of all draws that is divided into chunks
+    double part = 1; // size of a chunk, as a fraction of the range
 };
 
-// A canvas that is shown beside the first one: the same picture, in pixels of its own.
+// A canvas beside the first: the same picture at its own resolution.
 struct CanvasPlan {
     std::string name;
     WallComposition wall;
-    bool nodesShowWall = true; // as of SessionPlan
-    Zoom shown;                // its size, to the program's picture
-    int offsetX = 0;           // of its windows where those of all canvases lie on one screen
+    bool nodesShowWall = true; // see SessionPlan
+    Zoom shown; // its size relative to the program's picture
+    int offsetX = 0; // horizontal offset of its windows if the windows of all canvases share one screen
 };
 
 struct NodePlan {
     int node = 0;
-    int canvas = 0; // 0: the first; others are SessionPlan::canvases[canvas - 1]
+    int canvas = 0; // 0: the first; n: SessionPlan::canvases[n - 1]
     std::string where; // "local" or the host
     NodeReach reach = NodeReach::SharedMemory;
     RenderPass pass;
-    int picture = 0; // of the pass: see WallPart
-    bool answers = true; // what programs read of windows
+    int picture = 0; // index of the picture within the pass (WallPart)
+    bool answers = true; // answers reads of windows
     TileRegion region;
-    std::optional<Viewport> area; // instead of tiles: of the picture
-    std::optional<Viewport> shown; // where the wall shows its area, if not there
-    Zoom way; // its pictures travel smaller by this, at most 1; as large as they are shown they are made by who shows them
-    int chunkQueue = -1; // its share of the draws moves by this one of SessionPlan::chunkQueues; -1: it stays
-    int queue = -1; // its area moves by this one of SessionPlan::queues; -1: it stays
-    std::optional<ScreenView> screen; // of a room
-    std::optional<NodeWindow> window; // instead of those of tiles
-    std::string swapBarrier; // windows that this node shows wait for those of other nodes with the same one; empty: for none
-    int collector = 0; // the node that has the picture of all ranges: this one, when range is 0; range r is node collector + r
-    std::string codec = "auto";        // of its pictures, to whomever; before chooseCodecs: what a file says
-    std::string pictureCodec = "raw";  // of those that go to the head
-    std::optional<compositor::Strategy> composition; // how they put it together; before chooseComposition: what a file says
+    std::optional<Viewport> area; // on the picture, instead of tiles
+    std::optional<Viewport> shown; // place on the wall, if different from area
+    Zoom way; // scale of its pictures in transfer, at most 1; the receiver scales them to their shown size
+    int chunkQueue = -1; // index into SessionPlan::chunkQueues; -1: its range is fixed
+    int queue = -1; // index into SessionPlan::queues; -1: its area is fixed
+    std::optional<ScreenView> screen; // for a screen in a room
+    std::optional<NodeWindow> window; // replaces the windows of tiles
+    std::string swapBarrier; // swap barrier of the node's windows; empty: none
+    // the node with the composited picture of all ranges, which has range 0; range r is node collector + r
+    int collector = 0;
+    std::string codec = "auto"; // codec of its pictures to other nodes; before chooseCodecs: the file's
+    std::string pictureCodec = "raw"; // codec of its pictures to the head
+    std::optional<compositor::Strategy> composition; // strategy of its group; before chooseComposition: the file's
 };
 
 struct SessionPlan {
@@ -78,33 +79,33 @@ struct SessionPlan {
     std::vector<TileQueuePlan> queues;
     std::vector<ChunkQueuePlan> chunkQueues;
     WallComposition wall;
-    bool nodesShowWall = true; // what each draws is a part of the wall's picture as it is
-    std::vector<CanvasPlan> canvases; // that are shown, too
-    std::optional<double> eyeBase, focusDistance; // that a configuration file says, in metres
+    bool nodesShowWall = true; // each node draws an unscaled part of the wall
+    std::vector<CanvasPlan> canvases; // canvases beside the first
+    std::optional<double> eyeBase, focusDistance; // from the configuration file, metres
     std::vector<std::string> explain; // lines for --explain
-    std::vector<std::string> warnings; // lines that every user should see
+    std::vector<std::string> warnings; // lines for every user
 };
 
-// ownHost: this machine's name.
-// A node on this machine, or how another one is reached; the same name as the user gave.
+// ownHost: this machine's name. Returns how the head reaches a node on `host`, as the user named it.
 NodeReach reachOf(const std::string& host, const std::string& ownHost);
 
 SessionPlan planSession(const SessionConfig& config, const std::string& ownHost);
 
-// Where a session can't move areas, nodes keep those that they begin with; a line of the plan says why. After planSession(), or planOf().
+// Fixes the areas of queues in sessions that cannot move them, and adds a line with the reason to the plan. Call after
+// planSession() or planOf().
 void settleQueues(SessionPlan& plan, const SessionConfig& config);
 
-// --display windows: whether the head opens one, with the whole wall, as only several pictures together make it.
+// True if --display windows needs a window of the head, because several pictures compose the wall.
 [[nodiscard]] bool headShowsWall(const SessionConfig& config, const SessionPlan& plan);
-// The same for a canvas beside the first; those have no window of the program's.
+// The same for a canvas beside the first, which never uses the program's window.
 [[nodiscard]] bool headShowsCanvas(const SessionConfig& config, const CanvasPlan& canvas);
-// Whether nodes send it what they draw.
+// True if nodes send their pictures to the head.
 [[nodiscard]] bool headTakesPictures(const SessionConfig& config, const SessionPlan& plan);
 
-// Whether it opens windows for what it draws.
+// True if the node opens windows for its pictures.
 [[nodiscard]] bool showsWall(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node);
 
-// The nodes of its swap barrier, itself among them, the leader first; none: its windows wait for nobody.
+// The nodes of this node's swap barrier, including itself, the leader first. Empty: no barrier.
 [[nodiscard]] std::vector<const NodePlan*> swapMembersOf(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node);
 
 NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node);

@@ -23,7 +23,7 @@ Result<FileDescriptor> inputOf(const std::string& text) {
     if (pipe2(ends, O_CLOEXEC) != 0) return Error{std::string("pipe: ") + std::strerror(errno)};
     FileDescriptor reader(ends[0]);
     const FileDescriptor writer(ends[1]);
-    // A fresh pipe takes a page without waiting.
+    // A new pipe accepts a page without blocking.
     if (write(writer.get(), text.data(), text.size()) != static_cast<ssize_t>(text.size()))
         return Error{std::string("write to a pipe: ") + std::strerror(errno)};
     return reader;
@@ -70,7 +70,7 @@ std::optional<std::string> NodeProcess::waitEnded(Deadline deadline) {
 void NodeProcess::kill() {
     {
         const std::lock_guard lock(mutex_);
-        if (!process_.running()) return; // its number may belong to somebody else by now
+        if (!process_.running()) return; // another process may reuse its pid
         process_.signalGroup(SIGKILL);
         process_.signal(SIGKILL);
     }

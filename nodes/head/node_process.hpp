@@ -1,5 +1,5 @@
-// The process of one render node (or of the command that starts it on another host). It ends with the
-// head, whatever happens to the head.
+// The process of one render node, or of the launch command for another host. It ends with the head, however the head
+// ends.
 #pragma once
 
 #include <memory>
@@ -16,13 +16,13 @@
 namespace mural {
 
 struct NodeCommand {
-    std::vector<std::string> arguments; // [0] is looked up in PATH unless it holds a '/'
-    std::string standardInput;          // what the process reads there, at most 4096 bytes
-    int inheritFd = -1;                 // stays open under its number
+    std::vector<std::string> arguments; // [0] is looked up in PATH unless it contains a '/'
+    std::string standardInput; // at most 4096 bytes
+    int inheritFd = -1; // stays open under its number
 };
 
-// start() must be called by the thread that lives as long as the nodes shall: when it ends, the kernel
-// kills them (PR_SET_PDEATHSIG). The other calls may come from any thread.
+// Call start() from a thread that outlives the nodes: the kernel kills them when that thread ends (PR_SET_PDEATHSIG).
+// The other calls are thread-safe.
 class NodeProcess {
 public:
     static Result<std::unique_ptr<NodeProcess>> start(const NodeCommand& command);
@@ -31,10 +31,10 @@ public:
     ~NodeProcess(); // kill()
 
     [[nodiscard]] pid_t pid() const { return pid_; }
-    // How it ended ("exit status 3", "signal 9 (Killed)"); nothing while it runs.
+    // Returns how the process ended ("exit status 3", "signal 9 (Killed)"), or nothing while it runs.
     std::optional<std::string> ended();
     std::optional<std::string> waitEnded(Deadline deadline);
-    void kill(); // with everything that it has started
+    void kill(); // kills its descendants as well
 
 private:
     explicit NodeProcess(launch::ChildProcess process)

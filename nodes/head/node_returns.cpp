@@ -30,7 +30,8 @@ std::string NodeReturns::memberLost(int node) {
     Node& n = at(node);
     n.phase = Phase::Over;
     n.lostNs = nowNs;
-    if (n.tries > 0 && nowNs - n.memberNs <= terms_.steadyMs * kNsPerMs) skipsFrames_ = false; // it may have ended for what it had not drawn
+    // skipped frames may have caused the loss
+    if (n.tries > 0 && nowNs - n.memberNs <= terms_.steadyMs * kNsPerMs) skipsFrames_ = false;
     const std::string tiles = hooks_.tilesOfLost(node);
     if (terms_.tries == 0 || !hooks_.start || stopped_) return tiles;
     if (!never.empty()) return tiles + ": " + never;
@@ -41,7 +42,7 @@ std::string NodeReturns::memberLost(int node) {
     return tiles + " until it is back";
 }
 
-// Its first try was that of the start.
+// The start of the session was its first attempt.
 void NodeReturns::notThere(int node) {
     const int64_t nowNs = monotonicNowNs();
     const std::lock_guard lock(mutex_);
@@ -196,7 +197,7 @@ void NodeReturns::fail(int node, const std::string& why, int64_t nowNs) {
     {
         const std::lock_guard lock(mutex_);
         Node& n = at(node);
-        if (n.catchUp && n.catchUp->unsound() && std::exchange(skipsFrames_, false)) --n.tries; // not its fault
+        if (n.catchUp && n.catchUp->unsound() && std::exchange(skipsFrames_, false)) --n.tries; // not the node's fault
         n.problem.clear();
         again = n.tries < terms_.tries && !stopped_;
         n.phase = again ? Phase::Waiting : Phase::Over;
@@ -218,7 +219,7 @@ bool NodeReturns::settled() const {
     return true;
 }
 
-// Those that have become members may have a little left to be sent: it goes out before they hear that the session ends.
+// New members may have queued packets. These are sent before the nodes learn that the session ends.
 void NodeReturns::stop(const std::function<void()>& watch) {
     std::vector<int> ending;
     {

@@ -1,5 +1,5 @@
-// Starts lost nodes again, and makes them members when they have what the others have. For how long it tries, and with what
-// pauses, is said in docs/user-guide.md.
+// Restarts lost nodes, and makes them members after their resync. docs/user-guide.md states the number of attempts and
+// the pauses between them.
 #pragma once
 
 #include <functional>
@@ -14,42 +14,45 @@
 namespace mural {
 
 struct ReturnTerms {
-    int tries = 0;                // in a row, of each node
-    int64_t steadyMs = 30'000;    // who was back for so long has all tries again
+    int tries = 0; // consecutive attempts per node
+    int64_t steadyMs = 30'000; // after this time as a member a node has all attempts again
     int64_t readyPatienceMs = 30'000;
-    std::vector<int64_t> pausesMs = {0, 1'000, 3'000, 10'000, 30'000}; // before each try; the last before all further
+    std::vector<int64_t> pausesMs = {0, 1'000, 3'000, 10'000, 30'000}; // before each attempt; the last value repeats
 };
 
-// tick(), stop() and the destructor by one thread, the others by any.
+// tick(), stop() and the destructor need one thread. All other calls are thread-safe.
 class NodeReturns {
 public:
     struct Hooks {
-        std::function<Result<StartingNode>(int node)> start;    // by tick(); empty: none is started again
-        std::function<void(int node, StartingNode&)> connected; // makes its link and sends its setup
-        std::function<std::string(int node)> whyNever;          // for a reason of the session; empty: it may come back
-        std::function<void(int node)> introduce; // to the others of its picture, before it catches up
+        std::function<Result<StartingNode>(int node)> start; // called by tick(); empty: nodes are never restarted
+        std::function<void(int node, StartingNode&)> connected; // creates the link and sends the setup
+        // a reason why the session cannot take the node back; empty: it can
+        std::function<std::string(int node)> whyNever;
+        std::function<void(int node)> introduce; // introduces the node to the others of its picture, before the resync
         std::function<NodeSet::Turns(int node)> turns;
-        std::function<std::string(int node)> tilesOfLost; // what becomes of them while it is
-        std::function<NodeSet::Admission(int node, uint32_t view)> admitted; // under the lock that orders packets
-        std::function<void(int node, const std::string&)> gaveUp; // with the line for the user; it stays lost
+        std::function<std::string(int node)> tilesOfLost; // what happens to the node's tiles while it is lost
+        std::function<NodeSet::Admission(int node, uint32_t view)> admitted; // called with the lock that orders packets
+        // the node stays lost; the string is a line for the user
+        std::function<void(int node, const std::string&)> gaveUp;
         std::function<void(const std::string&)> say;
     };
 
     NodeReturns(ReturnTerms terms, NodeSet& nodes, Hooks hooks);
     ~NodeReturns();
 
-    // A member was lost. What follows of it, for the line that says so: "its tiles stay as they were until it is back".
+    // Records the loss of a member. Returns the consequence for the user's line: "its tiles stay as they were until it
+    // is back".
     std::string memberLost(int node);
-    // One was not there when the session began: it is started again, too.
+    // Records that a node was absent when the session began. It is restarted as well.
     void notThere(int node);
-    // Was it one that was on its way? Then it was not lost, but did not come back, and that is seen to.
+    // Returns true if the node was being restarted: the attempt has failed, and no member was lost.
     bool lostOnItsWay(int node, const std::string& why);
-    void ready(int node); // with facts that suit the session
+    void ready(int node); // its capabilities suit the session
     void synchronized(int node, const wire::SynchronizedMessage& message);
     void turns(uint32_t number, const std::vector<std::byte>& turns);
-    // Nodes that catch up do not draw the frames that nobody waits for; not once that has failed.
+    // Nodes skip frames that nobody waits for during their resync, until that has failed once.
     [[nodiscard]] bool skipsFrames() const;
-    // Called by Hooks::admitted when it agrees; false: it is gone already.
+    // Called by Hooks::admitted when it agrees. Returns false if the node is lost already.
     bool becomesMember(int node);
     [[nodiscard]] bool awaited() const; // some node may come back
     [[nodiscard]] bool onItsWay(int node) const;
@@ -59,22 +62,22 @@ public:
         uint64_t snapshotBytes = 0, queuedBytes = 0;
         std::vector<wire::ClientFrame> framesGiven;
     };
-    [[nodiscard]] Numbers numbers(int node) const; // of its last return
+    [[nodiscard]] Numbers numbers(int node) const; // of its last resync
 
     void tick(int64_t nowNs);
-    // No node comes back any more; who is on its way is ended. `watch` is called meanwhile.
+    // Ends all restarts in progress and starts no more. Calls `watch` meanwhile.
     void stop(const std::function<void()>& watch);
 
 private:
     enum class Phase { Member, Waiting, Starting, Readying, Ready, CatchingUp, Over };
     struct Node {
         Phase phase = Phase::Member;
-        int tries = 0; // since it was steady
+        int tries = 0; // since it last was steady
         int64_t lostNs = 0, nextNs = 0, memberNs = 0;
         Deadline readyBy = Deadline::never();
-        std::unique_ptr<StartingNode> starting; // tick()'s
+        std::unique_ptr<StartingNode> starting; // accessed by tick() only
         std::shared_ptr<NodeCatchUp> catchUp;
-        std::string problem; // why the last try failed, to be seen to by tick()
+        std::string problem; // why the last attempt failed, for tick()
         Numbers numbers;
     };
 
@@ -89,11 +92,11 @@ private:
     const ReturnTerms terms_;
     NodeSet& set_;
     const Hooks hooks_;
-    mutable std::mutex mutex_; // what follows
+    mutable std::mutex mutex_; // guards the members below
     std::vector<Node> nodes_;
     bool stopped_ = false;
     bool skipsFrames_ = true;
-    uint32_t turnsAsked_ = 0; // tick()'s
+    uint32_t turnsAsked_ = 0; // accessed by tick() only
 };
 
 } // namespace mural

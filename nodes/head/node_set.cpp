@@ -71,7 +71,7 @@ bool NodeSet::sendLocked(uint32_t stream, std::span<const std::byte> payload) {
     if (!economy_) return plain;
     const bool batched = std::ranges::any_of(links_, [](const NodeLink* link) { return link->inBatches() && link->alive(); });
     if (!batched) {
-        economy_->miss(stream, payload); // it goes on knowing what programs do
+        economy_->miss(stream, payload); // its state must still follow the programs
         return plain;
     }
     economy_->add(stream, payload);
@@ -83,7 +83,7 @@ bool NodeSet::sendPacketLocked(uint32_t stream, std::span<const std::byte> paylo
     return sendToLinksLocked(bytesOf(header), payload, false);
 }
 
-// To the links that get batches, or to the others.
+// Sends to the links that receive batches, or to all others.
 bool NodeSet::sendToLinksLocked(std::span<const std::byte> header, std::span<const std::byte> payload, bool inBatches) {
     bool any = false;
     bool byMulticast = false;
@@ -125,7 +125,7 @@ std::vector<int> NodeSet::full() const {
 }
 
 void NodeSet::multicastLocked(std::span<const std::byte> header, std::span<const std::byte> payload) {
-    constexpr int64_t kWriteLimitMs = 600'000; // the last resort behind watch()
+    constexpr int64_t kWriteLimitMs = 600'000; // a last resort: watch() loses silent nodes earlier
     const Deadline deadline = Deadline::inMs(kWriteLimitMs);
     sendingTo_ = kMulticast;
     Result<void> written = multicast_->write(header, deadline);
@@ -178,7 +178,7 @@ void NodeSet::watch(int64_t nowNs, int64_t patienceNs, const std::function<void(
         using Kind = NodeMulticast::Change::Kind;
         NodeLink& link = this->link(change.node);
         if (change.kind == Kind::Came && link.joinsGroup()) comers_.push_back(change);
-        if (!link.alive() || link.saidBye() || !link.byMulticast()) continue; // or it is there again, another way
+        if (!link.alive() || link.saidBye() || !link.byMulticast()) continue; // or it has returned by another transport
         if (change.kind == Kind::Gone) link.lose(change.why);
         else if (change.kind == Kind::Rerouted || !change.multicast) rerouted(change.node, change.multicast);
     }
@@ -187,7 +187,7 @@ void NodeSet::watch(int64_t nowNs, int64_t patienceNs, const std::function<void(
         rerouted(came.node, came.multicast);
         return true;
     });
-    // A writer may wait for room that a dead node will never make.
+    // A writer may be waiting for space in a lost node's connection.
     for (NodeLink* link : links_)
         if ((link->byMulticast() || link->joinsGroup()) && !link->alive()) multicast_->remove(link->place().node, "the head has lost it");
 }

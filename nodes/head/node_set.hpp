@@ -1,5 +1,5 @@
-// All render nodes of the session. A packet goes to every living node or to none: the streams of all
-// nodes are equal, whatever threads send.
+// All render nodes of the session. A packet goes to every living node or to none, so that all nodes receive the same
+// stream, whatever thread sends.
 #pragma once
 
 #include <atomic>
@@ -23,29 +23,31 @@ namespace mural {
 class NodeSet {
 public:
     void add(std::unique_ptr<NodeLink> link); // before any other call
-    // Carries the packets of the links that say so; before the first broadcast.
+    // Sets the multicast stream for links that use it. Call before the first broadcast.
     void multicastBy(std::unique_ptr<NodeMulticast> multicast) { multicast_ = std::move(multicast); }
     [[nodiscard]] NodeMulticast* multicast() { return multicast_.get(); }
-    // Gets all packets of programs, in the order in which the nodes do; outlives their senders. Before the first broadcast.
+    // The recorder receives all packets of programs in stream order, and must outlive their senders. Call before the
+    // first broadcast.
     void recordBy(recording::StreamRecorder* recorder) { recorder_ = recorder; }
-    // Makes the batches for the links that get such; before the first broadcast.
+    // Sets the encoder of batches. Call before the first broadcast.
     void economizeBy(std::unique_ptr<StreamEconomy> economy);
     [[nodiscard]] EconomyCounts economyCounts() const { return economy_ ? economy_->counts() : EconomyCounts(); }
-    // Keeps what programs send, for nodes that come later; before the first broadcast.
+    // Sets the rejoin log. Call before the first broadcast.
     void keepBy(std::unique_ptr<KeptStream> kept) { kept_ = std::move(kept); }
     void startReading();
 
-    // False when no node lives. Blocks while a node's connection is full.
+    // Returns false if no node lives. Blocks while a node's connection is full.
     bool broadcast(uint32_t stream, std::span<const std::byte> payload);
     bool broadcast(wire::HeadCommand command, std::span<const std::byte> arguments);
-    // To all nodes ahead of the next packet of a program, by whoever sends that; instead of one that still waits so. Never blocks.
+    // Queues a command that precedes the next packet of a program on all nodes. Replaces a queued command of the same
+    // kind. Never blocks.
     void leadWith(wire::HeadCommand command, std::span<const std::byte> arguments);
-    // The same, but gives up when others keep the nodes busy until the deadline.
+    // Gives up if the connections stay full until the deadline.
     bool broadcast(wire::HeadCommand command, Deadline deadline);
-    // To one node, before it gets anything of the stream; never waits for the other nodes.
+    // Sends to one node before it receives any of the stream. Does not wait for other nodes.
     void sendAlone(int node, wire::HeadCommand command, const std::string& json);
     void flush();
-    // The same, but what nodes can do nothing with yet may stay for a moment. True: nothing has stayed.
+    // Flushes, but may delay data that nodes cannot use yet. Returns true if nothing was delayed.
     bool flushUseful();
 
     [[nodiscard]] size_t size() const { return links_.size(); }
@@ -55,42 +57,45 @@ public:
     // ---- nodes that come again (node_set_joins.cpp)
     // All that a node needs that comes now has been kept.
     [[nodiscard]] bool canJoin() const { return kept_ && kept_->complete(); }
-    // In the place of a lost node, of which all has been said. It gets nothing yet. By the thread that adds; never waits.
+    // Replaces a lost node whose end was fully reported. The new link receives nothing yet. Call from the adding
+    // thread; never blocks.
     void replace(int node, std::unique_ptr<NodeLink> link);
-    // Of which nodes only members can say how pictures are divided among them.
+    // The state that only members can report for a restarted node.
     enum class Turns { None, OfFrames, OfAreas };
-    // What it is to be given first; from here on what comes waits in its link's queue. `turns`, where it is not null: members are
-    // asked there whose turn it is.
+    // Returns the snapshot for the node, and queues all later packets in its link. If `turns` is set, asks members for
+    // their state at this position.
     struct TurnsAsked {
-        uint32_t number = 0;                // of the TellTurns
-        std::function<bool(int node)> knows; // it is of the same kind
-        std::vector<NodeLink*> asked;       // set: those that will answer, when they live
+        uint32_t number = 0; // number of the TellTurns
+        std::function<bool(int node)> knows; // the member has the same kind of state
+        std::vector<NodeLink*> asked; // output: the members that will answer if they live
     };
     Result<KeptStream::Snapshot> beginCatchUp(int node, TurnsAsked* turns, Deadline deadline);
-    // It is a member behind all packets so far: told to all nodes, and to `announce` before, which may refuse.
-    // Where it is spared what it has had, too, a new history begins for all that are: none but its own is as short.
+    // Makes the node a member after all packets so far and tells all nodes. `announce` runs first and may refuse. If
+    // the node receives batches, delta coding restarts with an empty dictionary for all nodes, because no other one is
+    // as short.
     struct Admission {
         bool refused = false;
-        bool first = false;           // of the members that take turns
-        uint32_t life = 0;            // how often it was started again
+        bool first = false; // the first member with this kind of state
+        uint32_t life = 0; // its incarnation
         std::vector<uint32_t> absent; // nodes that are no members
     };
     Result<void> admit(int node, const std::function<Admission(uint32_t view)>& announce);
-    // From now on its packets go to it as they come. False: its queue is not empty. `now`: what is there is sent at once.
+    // Switches the node's feed to its connection. Returns false if its queue is not empty. `now`: sends the queue at
+    // once.
     bool goDirect(int node, bool now);
-    // A member whose packets may come by multicast is told to join the group. When it has, watch() changes it over.
+    // Asks a member to join the multicast group. watch() switches its transport after it has joined.
     void inviteToGroup(int node);
 
-    // Also whom the multicast group has lost, and the group loses whom we have. `rerouted` hears of nodes that multicast
-    // does not reach (false), or does again.
+    // Loses silent nodes, and synchronises the losses of connections and multicast group. `rerouted` receives nodes
+    // that multicast no longer reaches (false) or reaches again (true).
     void watch(int64_t nowNs, int64_t patienceNs, const std::function<void(int, bool)>& rerouted);
     void loseAll(const std::string& why); // those that have not said Bye
     void end();
 
-    // The nodes that packets can't go to now: their connections are full. Empty: none is being waited for.
+    // The nodes whose full connections block the stream.
     [[nodiscard]] std::vector<int> full() const;
 
-    // Bytes that each node was sent, packet headers included; where some get batches, each of those.
+    // Bytes sent to each node including packet headers; with delta coding, to each node that receives batches.
     [[nodiscard]] uint64_t bytesSent() const { return bytesSent_.load(std::memory_order_relaxed); }
 
 private:
@@ -107,23 +112,24 @@ private:
     bool sendToLinksLocked(std::span<const std::byte> header, std::span<const std::byte> payload, bool inBatches);
     void keepLocked(uint32_t stream, std::span<const std::byte> payload);
 
-    recording::StreamRecorder* recorder_ = nullptr; // null: nothing is recorded
-    std::unique_ptr<StreamEconomy> economy_;   // null: all packets go as they are
-    std::unique_ptr<NodeMulticast> multicast_; // null: every node has a stream of its own
-    std::vector<NodeMulticast::Change> comers_; // watch()'s: they have joined the group, and get their packets twice until they are told
-    const NodeLink* changingOver_ = nullptr;   // whose packets go to the group and to it; else null
-    std::unique_ptr<KeptStream> kept_;         // null: who is lost stays so
+    recording::StreamRecorder* recorder_ = nullptr; // null: no recording
+    std::unique_ptr<StreamEconomy> economy_; // null: no delta coding
+    std::unique_ptr<NodeMulticast> multicast_; // null: each node has its own stream
+    // for watch(): group members that still receive their packets on both transports
+    std::vector<NodeMulticast::Change> comers_;
+    const NodeLink* changingOver_ = nullptr; // the link that receives packets on both transports, or null
+    std::unique_ptr<KeptStream> kept_; // null: lost nodes stay lost
     std::deque<std::atomic<NodeLink*>> links_; // by node
-    std::vector<std::unique_ptr<NodeLink>> owned_; // also those of lost nodes: others may look at them still
-    uint32_t view_ = 0;                        // counts nodes that came
-    std::atomic<int> joining_{0};              // threads of such nodes that want the mutex
+    std::vector<std::unique_ptr<NodeLink>> owned_; // includes links of lost nodes, which other threads may still use
+    uint32_t view_ = 0; // number of returned nodes
+    std::atomic<int> joining_{0}; // resync threads that wait for the mutex
     std::timed_mutex sendMutex_;
     std::atomic<uint64_t> bytesSent_{0};
     std::mutex leadMutex_;
-    std::map<wire::HeadCommand, std::vector<std::byte>> leads_; // the latest payload of each command that waits
+    std::map<wire::HeadCommand, std::vector<std::byte>> leads_; // the latest payload of each queued command
     std::atomic<bool> hasLead_{false};
     static constexpr int kNobody = -1, kMulticast = -2;
-    std::atomic<int> sendingTo_{kNobody}; // the node whose connection is being written to
+    std::atomic<int> sendingTo_{kNobody}; // the node whose connection is being written
 };
 
 } // namespace mural

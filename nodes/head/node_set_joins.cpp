@@ -1,5 +1,5 @@
-// Nodes that come again. Everything that decides what a node is given, and from where on it is one of all, happens under the
-// lock that orders packets; only sending what it has missed does not.
+// The return of restarted nodes. The lock that orders packets guards the choice of the snapshot's position and of the
+// position where the node becomes a member. The transfer of the snapshot runs without the lock.
 #include <algorithm>
 #include <chrono>
 #include <cstring>
@@ -10,7 +10,7 @@
 namespace mural {
 namespace {
 
-constexpr int64_t kChangeOverMs = 5; // what watch() waits for the lock at a time
+constexpr int64_t kChangeOverMs = 5; // how long watch() waits for the lock per attempt
 
 } // namespace
 
@@ -56,7 +56,7 @@ Result<KeptStream::Snapshot> NodeSet::beginCatchUp(int node, TurnsAsked* turns, 
 
 Result<void> NodeSet::admit(int node, const std::function<Admission(uint32_t view)>& announce) {
     NodeLink& to = link(node);
-    std::unique_ptr<StreamEconomy::Coder> history; // made, and the old one freed, while others send
+    std::unique_ptr<StreamEconomy::Coder> history; // constructed, and the old one destroyed, without the lock
     if (to.joinsBatches()) {
         auto fresh = StreamEconomy::freshCoder(economy_->limits());
         if (!fresh) return fresh.error();
@@ -73,7 +73,7 @@ Result<void> NodeSet::admit(int node, const std::function<Admission(uint32_t vie
     sendLocked(wire::streamOf(0, 0), commandBytes(wire::HeadCommand::Member, std::as_bytes(std::span(arguments))));
     to.setMember(true);
     if (history) {
-        // The last of the old batches says it to those that get batches; this node gets them from here on.
+        // The last batch of the old dictionary announces the new one. This node receives batches from here on.
         const auto anew = commandBytes(wire::HeadCommand::NewHistory, {});
         economy_->add(wire::streamOf(0, 0), anew);
         sendBatchLocked();
@@ -107,12 +107,13 @@ void NodeSet::inviteToGroup(int node) {
     const std::lock_guard lock(sendMutex_);
     --joining_;
     const auto number = static_cast<uint32_t>(node);
-    sendLocked(wire::streamOf(0, 0), commandBytes(wire::HeadCommand::JoinGroup, std::as_bytes(std::span(&number, 1)))); // the others pass it over
+    // other nodes ignore it
+    sendLocked(wire::streamOf(0, 0), commandBytes(wire::HeadCommand::JoinGroup, std::as_bytes(std::span(&number, 1))));
     flushLocked();
 }
 
-// From one packet on, or batch, its stream is the group's, of which it has had all since it came there. False: writers are at
-// work, one of them perhaps for a node that watch() has to lose.
+// Switches the node from its connection to the group, at one packet or batch. The node has received the group's data
+// since it joined. Returns false if writers are busy, possibly with a node that watch() must lose.
 bool NodeSet::changesOver(const NodeMulticast::Change& came) {
     NodeLink& to = link(came.node);
     ++joining_;

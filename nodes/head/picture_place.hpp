@@ -1,5 +1,5 @@
-// What a node's picture is on the wall: frames of a configuration may have made it smaller on its way, or show it elsewhere and in another size
-// than it was drawn.
+// Places a node's picture on the wall. The frames of a configuration may scale the picture in transfer, or show it at
+// another place and size than drawn.
 #pragma once
 
 #include "common/result.hpp"
@@ -10,11 +10,11 @@
 namespace mural {
 
 struct PlacedPicture {
-    wire::PictureHeader header{}; // where it is shown
-    ByteBuffer rows;              // as many as that has
+    wire::PictureHeader header{}; // the shown area
+    ByteBuffer rows; // rows of that area
 };
 
-// rows: as they came, of the size that the node's pictures have on their way. Errors: no size that a picture has, or no memory.
+// rows: received rows, in the size of the node's pictures in transfer. Errors: an invalid size; out of memory.
 Result<PlacedPicture> placeOnWall(const NodePlan& node, const wire::PictureHeader& header, ByteBuffer rows);
 
 } // namespace mural

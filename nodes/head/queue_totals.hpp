@@ -1,4 +1,4 @@
-// What a queue has dealt out, for reports.
+// The totals of a queue, for reports.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,14 @@ namespace mural {
 
 struct QueueTotals {
     std::string name;
-    bool chunks = false;        // of draws, in columns of one row; else tiles of pixels
-    int columns = 0, rows = 0;  // 0: no frame has told yet how large the picture is
-    int width = 0, height = 0;  // of a tile, pixels
-    int64_t frames = 0;         // that were compared
-    int64_t moves = 0;          // after how many of them some moved…
-    int64_t tilesMoved = 0;     // …and how many tiles or chunks did
-    int64_t taken = 0;          // frames of the window that were divided otherwise than the one before
-    std::vector<std::pair<int, int>> nodes; // and how many each has now
+    bool chunks = false; // chunks of draws, in one row of columns; otherwise tiles
+    int columns = 0, rows = 0; // 0: the size of the picture is not known yet
+    int width = 0, height = 0; // of a tile, pixels
+    int64_t frames = 0; // compared frames
+    int64_t moves = 0; // frames after which pieces moved
+    int64_t tilesMoved = 0; // tiles or chunks that moved
+    int64_t taken = 0; // frames drawn with another assignment than the previous one
+    std::vector<std::pair<int, int>> nodes; // node and its current number of pieces
 };
 
 } // namespace mural

@@ -1,5 +1,4 @@
-// The state of a running session, for `mural stat`: totals and the moment they hold for. Whoever wants rates
-// asks twice.
+// The state of a running session for `mural stat`: totals and their time. A client derives rates from two requests.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +20,7 @@ struct ProgramStatus {
     ClientProgress progress;
     uint64_t bytesSent = 0; // to each node
     CaptureCounts counts;
-    std::vector<int> waitsForNodes; // now
+    std::vector<int> waitsForNodes; // at the moment
 };
 
 struct NodeStatus {
@@ -29,9 +28,9 @@ struct NodeStatus {
     std::string where; // "local", or the host
     int64_t pid = 0;
     std::string gl;
-    double silentSeconds = 0; // since anything came from it
-    std::string stream;       // how its packets travel: memory, TCP, multicast
-    bool returning = false;   // lost, but started again
+    double silentSeconds = 0; // since its last message
+    std::string stream; // transport of its packets: memory, TCP, multicast
+    bool returning = false; // lost, and being restarted
 };
 
 struct SessionStatus {
@@ -50,7 +49,8 @@ struct SessionStatus {
 
 nlohmann::json statusOf(const SessionStatus& status);
 
-// A process's command line, its words separated by spaces; what is not printable is "?". Empty: it is gone.
+// The command line of a process, its words separated by spaces; '?' replaces unprintable characters. Empty: no such
+// process.
 std::string commandLineOf(pid_t pid);
 
 } // namespace mural

@@ -12,15 +12,15 @@
 namespace mural {
 namespace {
 
-constexpr uint64_t kFullStagedBytes = uint64_t{64} * 1024; // as much as goes at once without economy
-// Beside which reading a thread's clock, a system call of 0.8 us, costs nothing: packets, which are mostly as they were, and new bytes.
-// What is shorter takes no time in which others are likely to have the processor: the clock on the wall tells as much.
+constexpr uint64_t kFullStagedBytes = uint64_t{64} * 1024; // the size of a write without delta coding
+// From these sizes on, the 0.8 us of reading the thread's CPU clock are negligible: for packets, which mostly repeat,
+// and for new bytes. Shorter work is unlikely to be preempted, so the wall clock serves as well.
 constexpr size_t kLongPacketBytes = size_t{256} << 10, kLongBytes = size_t{64} << 10;
 constexpr uint64_t kWorthAWayBytes = 2048;
 constexpr uint64_t kMostHeldBytes = uint64_t{256} << 20;
-// What programs load first is copied a few times on its way: a fault for each new page (3 us) took half as long as all else.
+// The first loads of a program are copied several times. Page faults (3 us per new page) took half as long as the rest.
 constexpr size_t kFirstBytes = size_t{16} << 20;
-constexpr uint64_t kFullRawBytes = uint64_t{4} << 20;      // so much a node unpacks in a millisecond or two
+constexpr uint64_t kFullRawBytes = uint64_t{4} << 20; // a node decodes this much in 1 to 2 ms
 
 int64_t (*clockFor(size_t sizeBytes))() { return sizeBytes >= kLongBytes ? threadCpuNowNs : quickNowNs; }
 
@@ -83,7 +83,8 @@ void StreamEconomy::hold(uint32_t stream, std::span<const std::byte> payload) {
         holder_.leaveOutSmall(small_.leavesOut());
         return holder_.add(stream, payload);
     }
-    // The head's own commands: of a program that has gone nobody needs anything; else nodes have all, as who comes now.
+    // The head's own commands. Data of a program that has ended is no longer needed. All other data reaches the nodes,
+    // as for a node that joins now.
     uint32_t words[2] = {};
     std::memcpy(words, payload.data(), std::min(payload.size(), sizeof words));
     if (words[0] == static_cast<uint32_t>(wire::HeadCommand::ClientGone)) holder_.clientGone(words[1]);
@@ -104,7 +105,7 @@ void StreamEconomy::pack(uint32_t stream, std::span<const std::byte> payload, co
     coder_->packer.ownBytes();
 }
 
-// Where most is pages there is little to win, and places of them to lose.
+// Where references already replace most bytes, there is little to gain and dictionary space to lose.
 bool StreamEconomy::isMostLeftOut() const { return measured_.rawBytes >= kWorthAWayBytes && measured_.leftOutBytes > measured_.rawBytes / 2; }
 
 bool StreamEconomy::full() const { return coder_->packer.stagedBytes() >= kFullStagedBytes || coder_->packer.rawBytes() >= kFullRawBytes; }
@@ -130,7 +131,7 @@ Result<std::span<const std::byte>> StreamEconomy::take() {
     if (!frameGoesOn || measured_.rawBytes > kFullRawBytes) {
         economy::WayChoice& way = coder_->way;
         const double frameNs = timesFrame_ ? static_cast<double>(encodeNs_ - measured_.encodeNs) : -1;
-        // What stays behind takes as long either way.
+        // Deferred data costs the same either way.
         if (isMostLeftOut()) way.leftOut();
         else if (timesFrame_) way.measured(measured_.rawBytes, measured_.pageBytes, measured_.wireBytes, static_cast<int64_t>(frameNs) - static_cast<int64_t>(measured_.holdNs), link_.nsPerByte());
         else way.unmeasured();

@@ -8,7 +8,7 @@
 namespace mural {
 namespace {
 
-constexpr int kMostTiles = 16384;     // of a queue: what more would bring is less than what they cost here
+constexpr int kMostTiles = 16384; // per queue; more tiles cost more here than they gain
 
 int piecesOf(int size, int step) { return (size + step - 1) / step; }
 
@@ -57,7 +57,7 @@ void TileDealer::answered() {
 
 PixelViewport TileDealer::pixelsOf(const Queue& queue) const { return apply({0, 0, times_.width(), times_.height()}, queue.plan.area); }
 
-// Even parts for those that live; tiles are doubled until there are not too many.
+// Starts with equal parts for the living nodes. Doubles the tile size while there are too many tiles.
 void TileDealer::layOut(Queue& queue) {
     queue.tiles.begin(times_);
     const PixelViewport pixels = pixelsOf(queue);
@@ -66,16 +66,17 @@ void TileDealer::layOut(Queue& queue) {
     if (pixels.empty() || queue.tiles.takers().empty()) return;
     while (int64_t{piecesOf(pixels.w, w)} * piecesOf(pixels.h, h) > kMostTiles) (w <= h ? w : h) *= 2;
     const auto takers = static_cast<int>(queue.tiles.takers().size());
-    while (piecesOf(pixels.w, w) * piecesOf(pixels.h, h) < takers && (w > 1 || h > 1)) { // each takes one at least
+    // each node gets at least one tile
+    while (piecesOf(pixels.w, w) * piecesOf(pixels.h, h) < takers && (w > 1 || h > 1)) {
         if (w > 1) w = (w + 1) / 2;
         if (h > 1) h = (h + 1) / 2;
     }
     const int columns = piecesOf(pixels.w, w), rows = piecesOf(pixels.h, h);
-    if (columns * rows < takers) return; // a window of a few pixels: areas stay as they are
+    if (columns * rows < takers) return; // a window of a few pixels: areas stay fixed
     queue.tiles.deal(columns, rows, splitGrid(columns, rows, takers));
 }
 
-// All queues' areas, to all nodes.
+// Sends the areas of all queues to all nodes.
 void TileDealer::announce() {
     bool any = false;
     for (Queue& queue : queues_) {

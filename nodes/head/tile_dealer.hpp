@@ -1,7 +1,7 @@
-// Deals the tiles of queues from frame to frame, by the times that nodes report (balancer/queue), and says which areas of the
-// picture that makes.
+// Assigns the tiles of tile queues before each frame, from the times that nodes report (balancer/queue), and derives
+// the area of each node.
 //
-// Times are those of one window (FrameTimes). A lost node's tiles go to the others, until it is back.
+// The times are those of one window (FrameTimes). The other nodes take over a lost node's tiles until it returns.
 #pragma once
 
 #include <cstdint>
@@ -19,18 +19,18 @@
 
 namespace mural {
 
-// All calls from any thread.
+// Thread-safe.
 class TileDealer {
 public:
-    // Called under the dealer's lock; must not block.
+    // Called with the dealer's lock held; must not block.
     using Announce = std::function<void(const Areas&)>;
 
-    // plant: "areas" deals at random with each frame and each answer of each node, whatever it takes, for tests: what is drawn must stay right. So do
-    // "early" and "uncleared", faults of nodes (nodes/replay/replay_areas.cpp).
+    // plant: fault injection for tests. "areas" assigns tiles at random after each frame and answer of each node; the
+    // picture must stay exact. "early" and "uncleared" are faults of nodes (nodes/replay/replay_areas.cpp).
     TileDealer(const SessionPlan& plan, Announce announce, const std::string& plant = {});
 
     void frameDone(int node, const wire::FrameDoneMessage& message);
-    void answered(); // a question, in the middle of a frame: of interest to the plants only
+    void answered(); // a reply within a frame; relevant to fault injection only
     void windowGone(uint32_t client, uint32_t window); // or wire::kAllWindows
     void nodeLost(int node);
     void nodeJoined(int node);
@@ -43,8 +43,8 @@ private:
         TileQueuePlan plan;
         DealtQueue tiles;
     };
-    void layOut(Queue& queue); // its grid, anew
-    void layOutOf(int node);   // those of its queue
+    void layOut(Queue& queue); // rebuilds its grid
+    void layOutOf(int node); // the queue of this node
     [[nodiscard]] PixelViewport pixelsOf(const Queue& queue) const;
     void dealAtRandom();
     void announce();
@@ -53,8 +53,8 @@ private:
     const Announce announce_;
     FrameTimes times_;
     std::vector<Queue> queues_;
-    std::vector<Viewport> areas_; // of all nodes, the latest
-    uint32_t number_ = 0;         // of them
+    std::vector<Viewport> areas_; // latest areas, per node
+    uint32_t number_ = 0; // number of the latest areas
     std::optional<std::mt19937> random_;
 };
 

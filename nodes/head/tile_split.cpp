@@ -6,14 +6,14 @@
 namespace mural {
 namespace {
 
-// Part a: the first `at` columns (or rows) for `nodes` of the nodes.
+// The first `at` columns (or rows) go to `nodes` of the nodes.
 struct Cut {
     bool columns = true;
     int at = 0;
     int nodes = 0;
-    double load = 0;  // tiles per node on the worse side
-    int uneven = 0;   // distance from the middle: of equal cuts the middle one gives squarer parts
-    int otherSide = 0; // length of the cut itself, tiles: short cuts share fewer edges
+    double load = 0; // tiles per node on the side with more
+    int uneven = 0; // distance from the middle: among equal cuts the middle one gives squarer parts
+    int otherSide = 0; // length of the cut in tiles: short cuts share fewer edges
 };
 
 bool better(const Cut& a, const Cut& b) {

@@ -1,4 +1,4 @@
-// Which tiles each render node draws: a grid cut into n rectangles of whole tiles. Pure.
+// Divides a grid of tiles among n render nodes, as n rectangles of whole tiles. Pure.
 #pragma once
 
 #include <vector>
@@ -7,9 +7,8 @@
 
 namespace mural {
 
-// Recursive bisection: every cut and every division of the nodes over its sides is weighed by the
-// most tiles that a node of a side gets on average. Regions are disjoint and cover the grid.
-// Needs 1 ≤ n ≤ columns * rows.
+// Recursive bisection: minimises, over all cuts and divisions of the nodes, the larger average number of tiles per
+// node. The regions are disjoint and cover the grid. Requires 1 ≤ n ≤ columns * rows.
 std::vector<TileRegion> splitGrid(int columns, int rows, int n);
 
 } // namespace mural

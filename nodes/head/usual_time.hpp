@@ -1,5 +1,5 @@
-// What something that comes again usually takes. Times by the clock on the wall have in them what others did meanwhile: where all cores are
-// busy, one of them is a thousand times too long now and then, and would stand for all that are not measured until the next one.
+// The typical duration of a repeated operation. Wall-clock samples include preemption: on a busy machine a rare sample
+// is a thousand times too long, and must not stand for the unmeasured ones.
 #pragma once
 
 #include <algorithm>
@@ -15,13 +15,13 @@ public:
         last_[count_++ % kKept] = value;
         const size_t there = std::min(count_, kKept);
         std::array<double, kKept> sorted = last_;
-        const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>((there - 1) / 2); // of two the shorter one
+        const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>((there - 1) / 2); // the lower median
         std::nth_element(sorted.begin(), middle, sorted.begin() + static_cast<std::ptrdiff_t>(there));
         usual_ = *middle;
     }
-    // The median of the last few; 0 before the first.
+    // The median of the last samples; 0 before the first.
     [[nodiscard]] double value() const { return usual_; }
-    // There are so many that one which was disturbed is not the median.
+    // True with enough samples that one outlier is not the median.
     [[nodiscard]] bool isKnown() const { return count_ >= 3; }
 
 private:
@@ -31,7 +31,7 @@ private:
     double usual_ = 0;
 };
 
-// The same by how many bytes it is done for, each size up to twice the one before: short ones take many times as long for each byte as long ones.
+// The same per size class, a factor of two each: short operations cost many times more per byte than long ones.
 class UsualTimesBySize {
 public:
     [[nodiscard]] UsualTime& of(size_t sizeBytes) { return bySize_[std::min<size_t>(std::bit_width(sizeBytes), kSizes - 1)]; }

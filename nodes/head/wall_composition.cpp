@@ -14,12 +14,12 @@ namespace {
 
 uint8_t byteAt(const Picture& p, size_t i) { return std::to_integer<uint8_t>(p.bgra[i]); }
 
-// Where a lost node's part was kept, a window may have had another size then: what is not there is black.
+// The last picture of a lost node may be older than a resize. Missing pixels are black.
 void fit(OwnedPicture& picture, int width, int height) {
     if (picture.width() != width || picture.height() != height) picture = cutOut(picture.view(), {0, 0, width, height});
 }
 
-// Sums of 32 bits hold 2^24 samples; halves are rounded up.
+// 32-bit sums hold 2^24 samples. Halves are rounded up.
 void average(std::span<const Picture> samples, OwnedPicture& into) {
     into.assign(samples.front());
     if (samples.size() == 1) return;
@@ -36,7 +36,7 @@ void average(std::span<const Picture> samples, OwnedPicture& into) {
     for (size_t i = 0; i < bytes; ++i) into.data()[i] = static_cast<std::byte>(sums[i] / count);
 }
 
-// Kernel pixel (i, j) of each picture is pixel (i * columns + its column, j * rows + its row) of the whole.
+// Pixel (i, j) of a kernel picture is pixel (i * columns + its column, j * rows + its row) of the whole.
 void interleave(const PassCounts& counts, std::vector<OwnedPicture>& parts, OwnedPicture& into) {
     const auto at = [&](int x, int y) -> OwnedPicture& { return parts[static_cast<size_t>(y * counts.kernelWidth + x)]; };
     int width = 0, height = 0;
@@ -65,7 +65,7 @@ compositor::ChannelMask maskOf(const EyeColours& colours) {
     return mask;
 }
 
-// One eye's picture of a part: samples averaged, kernels interleaved.
+// Composes one eye of a part: averages samples and interleaves kernel pictures.
 void composeEye(const PassCounts& counts, std::span<const Picture> pictures, OwnedPicture& into) {
     std::vector<OwnedPicture> parts(static_cast<size_t>(counts.kernelWidth * counts.kernelHeight));
     const auto samples = static_cast<size_t>(counts.samples);
@@ -76,7 +76,7 @@ void composeEye(const PassCounts& counts, std::span<const Picture> pictures, Own
 
 bool isEmpty(const Picture& p) { return p.empty(); }
 
-// The part's picture, of the wall's size; empty when some of it is missing.
+// Returns the part's picture in the size of the wall; empty if some input is missing.
 OwnedPicture pictureOf(const WallPart& part, const std::vector<Picture>& pictures) {
     OwnedPicture whole;
     const auto first = static_cast<size_t>(part.firstPicture), count = static_cast<size_t>(picturesOf(part.counts));
@@ -86,7 +86,7 @@ OwnedPicture pictureOf(const WallPart& part, const std::vector<Picture>& picture
     return whole;
 }
 
-// The left eye's parts first; colours that both give are the right one's, and those that none gives stay black.
+// The left eye comes first. The right eye wins for shared colour channels; channels of neither eye stay black.
 void anaglyph(const WallComposition& wall, const std::vector<Picture>& pictures, OwnedPicture& into) {
     for (const bool right : {false, true}) {
         for (const WallPart& part : wall.parts) {
@@ -133,7 +133,7 @@ int picturesOf(const WallComposition& wall) {
 
 void composeWall(const WallComposition& wall, const std::vector<Picture>& pictures, OwnedPicture& into) {
     into.resize(0, 0);
-    OwnedPicture eyes[2]; // of the left (or only) and the right one
+    OwnedPicture eyes[2]; // left (or only) and right
     const bool two = std::any_of(wall.parts.begin(), wall.parts.end(), [](const WallPart& p) { return p.eye == Eye::Left; }) &&
                      std::any_of(wall.parts.begin(), wall.parts.end(), [](const WallPart& p) { return p.eye == Eye::Right; });
     if (two && wall.stereo == StereoMode::Anaglyph) return anaglyph(wall, pictures, into);

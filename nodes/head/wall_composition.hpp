@@ -1,5 +1,5 @@
-// How the pictures that nodes draw become the one of the wall: by destinations, each a part of it with eyes, pixels of
-// a kernel and samples of its own.
+// Composes the wall from the pictures of the nodes. Each destination is a part of the wall with its own eyes, kernel
+// pixels and samples.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace mural {
 
-// Of an anaglyph: which of its colours an eye gives. Alpha is the last one's.
+// The colour channels that an eye contributes to an anaglyph. The last eye sets alpha.
 struct EyeColours {
     bool red = true, green = true, blue = true;
     friend bool operator==(const EyeColours&, const EyeColours&) = default;
@@ -18,25 +18,25 @@ struct EyeColours {
 
 struct WallPart {
     std::string name;
-    Viewport area;       // of the wall
+    Viewport area; // on the wall
     Eye eye = Eye::Cyclop;
-    EyeColours colours; // where eyes come together by colour
-    PassCounts counts;   // stereo is off: of one eye
-    int firstPicture = 0; // its pictures follow each other, in the order of pictureOf()
+    EyeColours colours; // for anaglyph stereo
+    PassCounts counts; // per eye: stereo is off
+    int firstPicture = 0; // its pictures are consecutive, in the order of pictureOf()
 };
 
 struct WallComposition {
     std::vector<WallPart> parts;
-    StereoMode stereo = StereoMode::Off; // how the eyes come together, where there are two
+    StereoMode stereo = StereoMode::Off; // how two eyes are combined
 };
 
-// A session without a configuration file: one destination, the whole wall.
+// For a session without a configuration file: one destination, the whole wall.
 WallComposition compositionOf(const PassCounts& counts);
 
 [[nodiscard]] int picturesOf(const WallComposition& wall);
 
-// Pictures of the wall's size (or of every nth pixel of it), of which the parts count. An empty picture leaves its part black. StereoMode::Quad: both eyes, one
-// above the other (stackEyes), the same one twice where there are no two.
+// pictures: in the size of the wall, or every nth pixel of it; only the parts' areas count. An empty picture leaves its
+// part black. StereoMode::Quad stacks both eyes (stackEyes); a single eye appears twice.
 void composeWall(const WallComposition& wall, const std::vector<Picture>& pictures, OwnedPicture& into);
 
 // The same for a session that compositionOf() describes.
