@@ -8,7 +8,7 @@ namespace {
 
 using compositor::DepthFunction;
 
-// Depths of up to 24 bits, as OpenGL hands them out with 32: the upper 24 tell them apart, in their order.
+// OpenGL returns depths of up to 24 bits as 32-bit values. The upper 24 bits are distinct and in depth order.
 constexpr unsigned kSpareBits = 8;
 
 template <class Passes> void foldWith(const FoldRow& r, FoldSide side, const FoldRule& rule, const Passes& passes) {
@@ -21,20 +21,20 @@ template <class Passes> void foldWith(const FoldRow& r, FoldSide side, const Fol
     }
 }
 
-// Pixel by pixel, as it reads: for depths of more than 24 bits, which are in none of the formats that the compositor's kernel knows
-// (32 whole bits; its 32 are floats).
+// Scalar path for depths of more than 24 bits. The compositor's kernel has no format for them (32-bit integers; its
+// 32-bit depths are floats).
 void foldDeep(const FoldRow& r, FoldSide side, const FoldRule& rule) {
     switch (rule.function) {
     case DepthFunction::Less: return foldWith(r, side, rule, [](uint32_t later, uint32_t earlier) { return later < earlier; });
     case DepthFunction::LessOrEqual: return foldWith(r, side, rule, [](uint32_t later, uint32_t earlier) { return later <= earlier; });
     case DepthFunction::Greater: return foldWith(r, side, rule, [](uint32_t later, uint32_t earlier) { return later > earlier; });
     case DepthFunction::GreaterOrEqual: return foldWith(r, side, rule, [](uint32_t later, uint32_t earlier) { return later >= earlier; });
-    default: return; // draws by these are not shared
+    default: return; // draws with these functions are not divided
     }
 }
 
-// What was drawn at the clear depth (a sky under GL_LEQUAL) is told from what was not drawn by its colour alone, which the kernel
-// does not look at. Nothing but the same can lie under it.
+// A pixel drawn at the clear depth (a sky with GL_LEQUAL) differs from an undrawn one only by its colour, which the
+// kernel ignores. Only pixels with the clear depth can lie below it.
 void foldAtClearDepth(const FoldRow& r, FoldSide side, const FoldRule& rule) {
     const uint32_t clear = rule.clearedDepth >> kSpareBits;
     for (size_t i = 0; i < r.count; ++i) {

@@ -1,5 +1,5 @@
-// Lays what one node has drawn over what another has, as one machine's depth test would have: pixel by pixel, a later one wins
-// where the test passes. What was not drawn has the values that all were cleared to. Source: accuracy 4 (fold in draw order).
+// Merges the parts of two nodes as one depth test would: per pixel, a later fragment wins if the test passes. Undrawn
+// pixels hold the common clear values. Source: accuracy 4 (fold in draw order).
 #pragma once
 
 #include <cstddef>
@@ -10,12 +10,13 @@
 namespace mural {
 
 struct FoldRule {
-    compositor::DepthFunction function = compositor::DepthFunction::Less; // Less, LessOrEqual, Greater or GreaterOrEqual
+    // Less, LessOrEqual, Greater or GreaterOrEqual
+    compositor::DepthFunction function = compositor::DepthFunction::Less;
     uint32_t clearedColour = 0, clearedDepth = 0;
     bool deep = false; // the depth buffer has more than 24 bits
 };
 
-enum class FoldSide : uint8_t { Earlier, Later }; // when the other's were drawn
+enum class FoldSide : uint8_t { Earlier, Later }; // draw order of the other part
 
 struct FoldRow {
     uint32_t* colour;

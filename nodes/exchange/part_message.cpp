@@ -15,14 +15,14 @@ using compositor::PlaneFormat;
 using compositor::PlaneView;
 using compositor::RowRange;
 
-// Coarser than the compositor's own: a piece has a head, and codecs like wide ones.
+// Coarser than the compositor's tiles: each piece has a header, and codecs favour wide pieces.
 constexpr int32_t kTilePixels = 64;
 constexpr size_t kHeadBytes = 44, kPieceBytes = 28;
 
-// Pieces are small enough that what is unpacked stays in a core's cache until it is folded.
+// A decoded piece fits into a core's cache until it is folded.
 constexpr int32_t kPieceColumns = 512, kPieceRows = 128;
 
-// 32 whole bits of depth travel as any words: what loses nothing does not ask what they mean.
+// 32-bit integer depths are encoded as opaque words, which a lossless codec permits.
 PlaneFormat depthFormatOf(const FoldRule& rule) { return rule.deep ? PlaneFormat::D32F : PlaneFormat::D24S8; }
 
 void put32(std::vector<std::byte>& into, int64_t value) {
@@ -89,7 +89,7 @@ Result<PartState> unpackPart(std::span<const std::byte> message, const PictureId
     const PartState state = int32At(message, 36) == 0 ? PartState::Complete : PartState::Incomplete;
     const uint32_t pieces = loadLittle<uint32_t>(message.data() + 40);
     const PixelViewport band{0, rows.first, id.box.w, rows.count()};
-    int64_t left = band.area(); // pieces do not overlap: what unpacks to more is made to keep this node busy
+    int64_t left = band.area(); // valid pieces do not overlap: rejects messages that decode to more
     std::vector<uint32_t>&colour = decoder.colour(), &depth = decoder.depth();
     std::span<const std::byte> rest = message.subspan(kHeadBytes);
     for (uint32_t i = 0; i < pieces; ++i) {

@@ -1,5 +1,5 @@
-// How rows of a picture part travel: the rectangles that were drawn, each with its colour and its depth packed by codecs.
-// The bytes: docs/wire-format.md, "Parts of pictures".
+// The message format for rows of a picture part: the drawn rectangles with encoded colour and depth. Layout:
+// docs/wire-format.md, "Parts of pictures".
 #pragma once
 
 #include <functional>
@@ -13,22 +13,23 @@
 
 namespace mural {
 
-// Whether all is in it that its ranks have drawn, or a node was lost on the way.
+// Incomplete: a lost node's contribution is missing.
 enum class PartState : uint8_t { Complete, Incomplete };
 
-// What of these rows is not as the clears have left it.
+// Encodes the rectangles of these rows that differ from the clear values.
 std::vector<std::byte> packPart(const PicturePart& part, const compositor::RowRange& rows, const FoldRule& rule, PartState state, PlaneEncoder& encoder);
 
-// The most bytes that packPart makes of such rows.
+// Upper bound of the size of packPart's result.
 [[nodiscard]] size_t boundBytesOf(const PixelViewport& box, const compositor::RowRange& rows);
 
-// A rectangle that came: in the part's box, without gaps between its rows.
+// A received rectangle inside the part's box, with contiguous rows.
 struct ArrivedPiece {
     PixelViewport area;
     const uint32_t* colour;
     const uint32_t* depth;
 };
-// Any bytes may come in. Errors: it is no such message, or of another picture or other rows; pieces before the damage have been told.
+// Accepts arbitrary bytes. Errors: a malformed message; another picture or other rows. Pieces before the damage have
+// been delivered.
 Result<PartState> unpackPart(std::span<const std::byte> message, const PictureId& id, const compositor::RowRange& rows, const FoldRule& rule, PlaneDecoder& decoder,
                              const std::function<void(const ArrivedPiece&)>& each);
 

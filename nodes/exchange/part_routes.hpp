@@ -1,4 +1,4 @@
-// How messages get from one node of a picture to another, by rank.
+// Message transport between the nodes of a picture, by rank.
 #pragma once
 
 #include <cstddef>
@@ -15,16 +15,16 @@ class PartRoutes {
 public:
     virtual ~PartRoutes() = default;
 
-    // Does not wait for the other to read. Errors of both: the other end is gone, or nothing came by the deadline; it is gone then, and
-    // later calls for it fail at once.
+    // Does not wait for the receiver. Errors of send and receive: the peer is lost; no message before the deadline.
+    // After an error the peer counts as lost, and later calls fail at once.
     virtual Result<void> send(int rank, std::vector<std::byte> message, Deadline deadline) = 0;
-    // The next message of that rank; a larger one is an error.
+    // Returns the next message of the rank. A message above mostBytes is an error.
     virtual Result<std::vector<std::byte>> receive(int rank, size_t mostBytes, Deadline deadline) = 0;
-    // Of the way to that rank, since it was last asked.
+    // The transfer to that rank since the last call.
     virtual LinkTransfer takeTransfer(int rank) = 0;
-    // It has sent what makes no sense.
+    // Drops a peer that has sent an invalid message.
     virtual void giveUp(int rank) = 0;
-    // The node of that rank is another from here on: the one that was started again for the `life`th time. Is it not connected, it is gone.
+    // Replaces the node of that rank by its incarnation `life`. Without a connection the rank counts as lost.
     virtual void renew(int rank, uint32_t life) = 0;
 };
 

@@ -9,12 +9,12 @@ namespace mural {
 
 namespace {
 
-// In one composition a node sends at most two parts to another, so with room for two compositions nobody waits who is not waited
-// for: the one that is furthest behind always has room.
+// In one composition a node sends at most two parts to another. Room for two compositions prevents a deadlock: the
+// slowest node always has room.
 constexpr size_t kMostWaiting = 4;
-constexpr int64_t kWriteMs = 60'000; // the reader gives up the whole picture before that
-constexpr int64_t kLingerMs = 5'000; // at the end
-constexpr uint64_t kTellingBytes = 1 << 16; // less vanishes in buffers
+constexpr int64_t kWriteMs = 60'000; // the reader gives up the whole picture earlier
+constexpr int64_t kLingerMs = 5'000; // limit for the destructor
+constexpr uint64_t kTellingBytes = 1 << 16; // smaller transfers only measure socket buffers
 
 } // namespace
 
@@ -49,9 +49,9 @@ LinkTransfer PartSender::takeTransfer() {
 void PartSender::run() {
     std::unique_lock lock(mutex_);
     while (true) {
-        changed_.wait(lock, [this] { return !waiting_.empty() || stop_; }); // ends with the object
+        changed_.wait(lock, [this] { return !waiting_.empty() || stop_; }); // the destructor ends the wait
         if (waiting_.empty()) return;
-        const std::vector<std::byte>& message = waiting_.front(); // stays where it is while others come behind it
+        const std::vector<std::byte>& message = waiting_.front(); // a deque keeps it in place while others are appended
         lock.unlock();
         std::array<std::byte, 4> size;
         storeLittle(size.data(), static_cast<uint32_t>(message.size()));

@@ -1,4 +1,4 @@
-// Sends messages over one connection by a thread of its own: two nodes that send to each other never wait for each other's reading.
+// Sends messages over one connection on its own thread, so that two nodes that send to each other never deadlock.
 #pragma once
 
 #include <condition_variable>
@@ -15,7 +15,7 @@
 
 namespace mural {
 
-// How fast the link was, when it had enough to do.
+// Bytes and time of a busy link, for bandwidth estimates.
 struct LinkTransfer {
     uint64_t bytes = 0;
     int64_t ns = 0;
@@ -24,12 +24,12 @@ struct LinkTransfer {
 class PartSender {
 public:
     explicit PartSender(Connection& over);
-    // What was given still goes out, unless the other end takes nothing.
+    // Sends queued messages first, unless the peer does not read.
     ~PartSender();
 
-    // Waits while too many are on their way. Errors: the connection broke, perhaps with a message before this one.
+    // Waits while the queue is full. Errors: the connection failed, possibly at an earlier message.
     Result<void> send(std::vector<std::byte> message, Deadline deadline);
-    // Since it was last asked; no bytes: nothing that tells.
+    // The transfer since the last call. Zero bytes: no usable measurement.
     LinkTransfer takeTransfer();
 
 private:

@@ -10,7 +10,7 @@ using compositor::Strategy;
 
 PictureComposer::PictureComposer(ComposerConfig config, PartRoutes& routes, Log log) : config_(std::move(config)), strategy_(config_.strategy), routes_(routes), log_(std::move(log)) {}
 
-// The collector's word on this picture: one byte, 1 for serially.
+// Receives the collector's decision for this picture: one byte, 1 for the serial strategy.
 void PictureComposer::agree() {
     if (std::exchange(agreed_, false) || strategy_ == Strategy::Serial || config_.rank == 0 || lost_.contains(0)) return;
     auto word = routes_.receive(0, 1, Deadline::inMs(config_.wordMs));
@@ -18,7 +18,7 @@ void PictureComposer::agree() {
     if (word->front() != std::byte{0}) serially();
 }
 
-// Those who are left send to the collector directly, from the next picture on.
+// After a loss, the remaining nodes send directly to the collector from the next picture on.
 void PictureComposer::tellNext() {
     if (strategy_ == Strategy::Serial || config_.rank != 0) return;
     for (int rank = 1; rank < config_.ranks; ++rank)
@@ -32,9 +32,10 @@ void PictureComposer::serially() {
 }
 
 void PictureComposer::returned(int rank, uint32_t life, const std::set<int>& absent) {
-    if (rank != 0 && rank != config_.rank) agree(); // the collector's word on the picture before may lie there still; it counts no more
+    // discards a stale decision of the collector for the previous picture
+    if (rank != 0 && rank != config_.rank) agree();
     if (rank != config_.rank) routes_.renew(rank, life);
-    encoders_.erase(rank); // by how fast the link was
+    encoders_.erase(rank); // codec choice depends on the bandwidth of the old link
     lost_ = absent;
     incomplete_ = false;
     agreed_ = true;
@@ -74,7 +75,7 @@ void PictureComposer::take(PicturePart& part, const Step& step, const FoldRule& 
     auto message = routes_.receive(step.peer, boundBytesOf(part.id.box, step.rows), deadline);
     if (!message) return lost(step.peer, message.error().message);
     Step::Kind kind = step.kind;
-    // Faults on purpose: what others drew is lost, a band is, the order of draws is swapped.
+    // Fault injection: drops the contributions of others, drops a band, or swaps the draw order.
     if (config_.plant == "range" || (config_.plant == "band" && kind == Step::Kind::Place && step.peer == config_.ranks - 1)) return;
     if (config_.plant == "order" && kind != Step::Kind::Place) kind = kind == Step::Kind::FoldLater ? Step::Kind::FoldEarlier : Step::Kind::FoldLater;
     auto done = unpackPart(*message, part.id, step.rows, rule, decoder_, [&](const ArrivedPiece& piece) { put(part, piece, kind, rule); });

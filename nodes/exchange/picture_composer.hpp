@@ -1,11 +1,11 @@
-// Puts a picture together of what the nodes of several ranges have drawn, by a schedule that all of them know.
+// Composites the picture parts of several ranges, by a schedule that all nodes know.
 //
-// A node that is lost takes along what others have sent it to be folded, in that picture. So where the strategy is not serial, the
-// collector tells all after each picture how the next is put together: as before, or, once anything was missing, serially; then
-// only what the lost node draws is missing. Parts say whether anything is missing in them.
+// A lost node may take contributions of other nodes with it. Except with the serial strategy, the collector therefore
+// announces the strategy of the next picture after each picture. After a loss it announces the serial one, so that only
+// the lost node's own range is missing. Each part states whether it is complete.
 //
-// When a node is back, all begin anew in the same picture: who takes part is what the head has told all of them, and with nobody
-// missing they go by the strategy of the start.
+// After a return, all nodes restart at the same picture, with the members that the head has announced. With all nodes
+// present they use the initial strategy.
 #pragma once
 
 #include <functional>
@@ -22,11 +22,11 @@ namespace mural {
 struct ComposerConfig {
     compositor::Strategy strategy = compositor::Strategy::Serial;
     int rank = 0, ranks = 1;
-    int64_t partMs = 20'000; // how long another's part is waited for; as long as the head waits for a silent node
-    int64_t wordMs = 60'000; // how long for the collector's word; it may have to wait for lost nodes first
-    int64_t stageMs = 5'000; // and for each wait that the other may have before it sends: a lost node must not make others seem lost
-    std::string plant;       // MURAL_PLANT: a fault on purpose, for tests of the tests
-    std::string codec = kQuickestCodec; // as of PlaneEncoder
+    int64_t partMs = 20'000; // limit for a part of another node; equals the head's limit for silent nodes
+    int64_t wordMs = 60'000; // limit for the collector's decision, which may wait for lost nodes
+    int64_t stageMs = 5'000; // added per earlier stage, so that one lost node does not make others seem lost
+    std::string plant; // MURAL_PLANT: fault injection for tests
+    std::string codec = kQuickestCodec; // see PlaneEncoder
 };
 
 class PictureComposer {
@@ -34,11 +34,11 @@ public:
     using Log = std::function<void(const std::string&)>;
     PictureComposer(ComposerConfig config, PartRoutes& routes, Log log);
 
-    // Each node calls this with what it has drawn. Afterwards the collector's part is the whole picture; the others' hold anything.
-    // Returns the area of the part that may have changed. What nodes have drawn that are lost is missing: said once for each.
+    // Called by each node with its part. Afterwards the collector's part is the whole picture; other nodes' parts are
+    // undefined. Returns the area that may have changed. Reports each lost node once; its range is missing.
     PixelViewport compose(PicturePart& part, const FoldRule& rule);
-    // From the next picture on that rank takes part again, in its `life`th life, and of the others all but those of `absent`. All that take
-    // part, and it itself, call this between the same pictures.
+    // From the next picture on, the rank takes part with its incarnation `life`, and so do all ranks except `absent`.
+    // All participants must call this between the same two pictures.
     void returned(int rank, uint32_t life, const std::set<int>& absent);
 
 private:
@@ -55,13 +55,13 @@ private:
     PartRoutes& routes_;
     const Log log_;
     int32_t rows_ = -1;
-    std::vector<compositor::Step> steps_;   // of this rank, for so many rows
-    std::map<int, PlaneEncoder> encoders_;  // of each link
+    std::vector<compositor::Step> steps_; // of this rank, for the current number of rows
+    std::map<int, PlaneEncoder> encoders_; // per link
     PlaneDecoder decoder_;
     PixelViewport changed_;
     std::set<int> lost_;
-    bool incomplete_ = false; // something is missing, here or in what has come
-    bool agreed_ = true;      // the first picture needs no word
+    bool incomplete_ = false; // some contribution is missing
+    bool agreed_ = true; // the first picture needs no decision
 };
 
 } // namespace mural

@@ -16,7 +16,7 @@ namespace {
 const std::string kName = "range";
 constexpr int64_t kAcceptSliceMs = 100;
 constexpr int64_t kProofPatienceMs = 5000;
-constexpr size_t kWelcomeBytes = 4; // the first message to who has connected: the life of this end
+constexpr size_t kWelcomeBytes = 4; // first message to a connecting node: the incarnation of this end
 
 std::string rangeText(int rank) { return "range " + std::to_string(rank + 1); }
 
@@ -54,7 +54,7 @@ Result<void> PictureExchange::connectTo(int rank, const std::string& host, uint1
     if (!connection) return connection.error();
     auto secure = SecureConnection::connecting(std::move(*connection), textOf(own_), secret_, deadline);
     if (!secure) return secure.error();
-    std::array<std::byte, 4 + kWelcomeBytes> welcome; // behind its size
+    std::array<std::byte, 4 + kWelcomeBytes> welcome; // after the length prefix
     if (auto came = (*secure)->read(welcome, deadline); !came) return came.error();
     if (loadLittle<uint32_t>(welcome.data()) != kWelcomeBytes) return Error{"it does not greet; head and nodes must be of one build"};
     add({rank, loadLittle<uint32_t>(welcome.data() + 4)}, std::move(*secure), Side::Connected);
@@ -70,21 +70,22 @@ PictureExchange::~PictureExchange() {
 }
 
 void PictureExchange::Link::end() {
-    if (connection) connection->close(); // or its sender would wait for room
+    if (connection) connection->close(); // otherwise its sender would block
     sender.reset();
     connection.reset();
 }
 
-// Whoever is welcomed knows that it is here: nobody takes it, and nothing is sent by it, before that.
+// The welcome message confirms the connection. The connection is not used before.
 void PictureExchange::add(const Name& name, std::unique_ptr<Connection> connection, Side side) {
     const std::lock_guard lock(mutex_);
     Peer& peer = peers_[name.rank];
     Link& link = !peer.link.connection && !peer.gone ? peer.link : peer.next[name.life];
-    if (link.connection) return; // the first one counts
+    if (link.connection) return; // the first connection wins
     link.connection = std::move(connection);
     link.sender = std::make_unique<PartSender>(*link.connection);
     link.life = name.life;
-    if (side == Side::Accepted) (void)link.sender->send(welcomeOf(own_.life), Deadline::inMs(kProofPatienceMs)); // there is room
+    // the queue is empty: cannot block
+    if (side == Side::Accepted) (void)link.sender->send(welcomeOf(own_.life), Deadline::inMs(kProofPatienceMs));
     arrived_.notify_all();
 }
 
@@ -123,7 +124,7 @@ Result<PictureExchange::Peer*> PictureExchange::peerOf(int rank, Deadline deadli
     std::unique_lock lock(mutex_);
     Peer& peer = peers_[rank];
     while (!peer.link.connection && !peer.gone) {
-        if (rank < own_.rank || own_.life > 0) peer.gone = true; // it was to be connected to before
+        if (rank < own_.rank || own_.life > 0) peer.gone = true; // the peer should have connected before
         else if (deadline.passed()) peer.gone = true;
         else {
             arrived_.wait_for(lock, std::chrono::milliseconds(kAcceptSliceMs));

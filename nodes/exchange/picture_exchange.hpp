@@ -1,8 +1,8 @@
-// Pictures from node to node, without the head in between. Of two nodes that start together the one with the higher rank connects to
-// the other; one that comes back connects to all that it needs. Who connects hears when the other has its connection, so that nobody
-// waits for one that will not come. A node that is behind in the stream still reads of one that was lost what that had sent: what its
-// successors send is told apart by their `life`. Connections are encrypted, by a secret that the head has given to the nodes of this
-// picture alone.
+// Direct picture exchange between nodes. Of two nodes that start together, the one with the higher rank connects; a
+// restarted node connects to all peers. The accepting node confirms each connection, so that no node waits for one that
+// will not come. A node that lags in the stream still reads the messages of a lost node; the incarnation `life`
+// separates them from its successor's. Connections are encrypted with a secret that the head gives to the nodes of one
+// picture.
 #pragma once
 
 #include <condition_variable>
@@ -22,43 +22,43 @@ namespace mural {
 class PictureExchange final : public PartRoutes {
 public:
     struct Name {
-        int rank = 0;      // from 0 on
-        uint32_t life = 0; // how often the node of that rank was started again
+        int rank = 0; // from 0
+        uint32_t life = 0; // incarnation: number of restarts
         friend bool operator==(const Name&, const Name&) = default;
     };
     PictureExchange(Name own, const ChannelSecret& secret) : own_(own), secret_(secret) {}
     ~PictureExchange() override;
 
-    // Lets nodes of other ranks in, on a free port: port(). By a thread of its own, until the end. loopbackOnly: all of them run on this machine.
+    // Accepts other ranks on a free port, port(), on its own thread. loopbackOnly: all nodes run on this machine.
     Result<void> listen(bool loopbackOnly);
     [[nodiscard]] uint16_t port() const { return port_; }
-    // To a node that listens. Back when that one has the connection.
+    // Connects to a listening node. Returns when the peer has confirmed.
     Result<void> connectTo(int rank, const std::string& host, uint16_t port, Deadline deadline);
 
-    // By the thread that replays.
+    // Call from the replay thread.
     Result<void> send(int rank, std::vector<std::byte> message, Deadline deadline) override;
     Result<std::vector<std::byte>> receive(int rank, size_t mostBytes, Deadline deadline) override;
     LinkTransfer takeTransfer(int rank) override;
     void giveUp(int rank) override;
     void renew(int rank, uint32_t life) override;
 
-    // Of messages, to all.
+    // Total size of messages to all peers.
     [[nodiscard]] uint64_t bytesSent() const { return bytesSent_; }
 
-    // What a node calls itself when it connects, and back; nothing: it is no such name.
+    // Formats and parses the name with which a node connects. The parser returns nothing for an invalid name.
     [[nodiscard]] static std::string textOf(const Name& name);
     [[nodiscard]] static std::optional<Name> nameOf(const std::string& text);
 
 private:
     struct Link {
         std::unique_ptr<Connection> connection;
-        std::unique_ptr<PartSender> sender; // ends before its connection
-        uint32_t life = 0; // of the other end
+        std::unique_ptr<PartSender> sender; // destroyed before its connection
+        uint32_t life = 0; // incarnation of the peer
         void end();
     };
     struct Peer {
         Link link;
-        std::map<uint32_t, Link> next; // of nodes that have come back, by life, until renew()
+        std::map<uint32_t, Link> next; // connections of restarted peers by incarnation, until renew()
         bool gone = false;
     };
     enum class Side { Accepted, Connected };
@@ -75,7 +75,7 @@ private:
     std::condition_variable arrived_;
     bool stop_ = false;
     uint64_t bytesSent_ = 0;
-    std::map<int, Peer> peers_; // by rank; they stay where they are
+    std::map<int, Peer> peers_; // by rank; entries keep their addresses
 };
 
 } // namespace mural

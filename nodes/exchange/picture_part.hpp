@@ -1,4 +1,4 @@
-// A picture with its depths that one node has drawn a range of, to be put together with the others'.
+// One node's range of a picture, with depth, as input of sort-last compositing.
 #pragma once
 
 #include <cstdint>
@@ -8,18 +8,18 @@
 
 namespace mural {
 
-// Which picture; the same at all nodes that take part.
+// Identifies a picture on all participating nodes.
 struct PictureId {
     uint32_t client = 0;
-    uint64_t serial = 0; // of the window's compositions, counted by all nodes alike
-    PixelViewport box;   // in the window
+    uint64_t serial = 0; // number of the window's composition, equal on all nodes
+    PixelViewport box; // in the window
 
     friend bool operator==(const PictureId&, const PictureId&) = default;
 };
 
 struct PicturePart {
     PictureId id;
-    std::vector<uint32_t> colour; // [y][x], 8 bits each of R G B A in memory; rows bottom first
+    std::vector<uint32_t> colour; // [y][x], bytes R G B A; rows bottom first
     std::vector<uint32_t> depth;  // [y][x], 0 to 2^32 - 1
 
     [[nodiscard]] size_t at(int32_t x, int32_t y) const { return static_cast<size_t>(y) * static_cast<size_t>(id.box.w) + static_cast<size_t>(x); }

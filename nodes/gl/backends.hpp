@@ -1,4 +1,4 @@
-// The constructors of the backends; openPlatform() chooses among them.
+// The constructors of the backends. openPlatform() selects one.
 #pragma once
 
 #include <memory>
@@ -7,10 +7,9 @@
 
 namespace mural::gl {
 
-// Each has made a context and drawn nothing when it returns: a backend that opens, works.
-// Leaves no context current.
+// Each constructor creates a test context, so that an opened backend works. Leaves no context current.
 Result<std::unique_ptr<Platform>> openEgl();
 Result<std::unique_ptr<Platform>> openOsmesa();
-Result<std::unique_ptr<Platform>> openGlx(); // on the display that DISPLAY names
+Result<std::unique_ptr<Platform>> openGlx(); // on the display named by DISPLAY
 
 } // namespace mural::gl

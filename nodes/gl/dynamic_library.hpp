@@ -1,5 +1,5 @@
-// A library that is found at run time: a machine without EGL, OSMesa or X still runs what it has.
-// Libraries of GL are never unloaded: they leave thread-local storage and exit handlers behind.
+// A library loaded at run time, so that a machine without EGL, OSMesa or X can use the others. GL libraries are never
+// unloaded: they leave thread-local storage and exit handlers behind.
 #pragma once
 
 #include <string>
@@ -12,12 +12,12 @@ namespace mural::gl {
 
 class DynamicLibrary {
 public:
-    // The first of names that the loader finds. package: what to install when there is none.
+    // Opens the first of `names` that the loader finds. package: named in the error message.
     static Result<DynamicLibrary> open(const std::vector<std::string>& names, const std::string& package);
 
     [[nodiscard]] void* symbol(const char* name) const;
 
-    // Sets function to the symbol; false when the library lacks it.
+    // Sets `function` to the symbol. Returns false if the library lacks it.
     template <class Function> bool load(Function& function, const char* name) const {
         function = reinterpret_cast<Function>(symbol(name));
         return function != nullptr;

@@ -26,7 +26,7 @@ constexpr Command kCommands[] = {
 #include "epoxy_commands.inc"
 };
 
-// libepoxy's state is the process's, and so is this: the platform's own function of each command.
+// The platform's own function of each command. Process-wide, like libepoxy's state.
 std::array<std::atomic<Proc>, std::size(kCommands)> ownFunctions; // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 
 const Command* commandOf(const char* name) {
@@ -37,8 +37,8 @@ const Command* commandOf(const char* name) {
 
 void nothing() {}
 
-// What libepoxy asks for before it would end the process: the current context announces no version and no
-// extension that has the command. Contexts of other kinds may, or the driver has it all the same.
+// libepoxy calls this before it aborts: no version or extension of the current context provides the command. Another
+// context may provide it, or the driver has it anyway.
 void* withoutProvider(const char* name) {
     const Command* command = commandOf(name);
     const Proc own = command ? ownFunctions[static_cast<size_t>(command - kCommands)].load() : nullptr;
@@ -48,7 +48,7 @@ void* withoutProvider(const char* name) {
 struct Libraries {
     DynamicLibrary epoxy, gl, es1, es2;
 
-    // libepoxy ends the process where a library lacks a command that it should have.
+    // libepoxy aborts if a library lacks a command that it should have.
     [[nodiscard]] bool have(const Command& command) const {
         return (!(command.libraries & kGl) || gl.symbol(command.name)) &&
                (!(command.libraries & kEs1) || es1.symbol(command.name)) &&
@@ -56,13 +56,13 @@ struct Libraries {
     }
 };
 
-// False: the current context is not this library's, as where a driver's own libEGL stands before the system's.
+// Returns false if another library owns the current context, such as a driver's libEGL in front of the system's.
 bool knowsContext(const DynamicLibrary& library) {
     const GLubyte* (*getString)(GLenum) = nullptr;
     return library.load(getString, "glGetString") && getString(GL_VERSION);
 }
 
-// Nothing where one is missing, for libepoxy would end the process when it needs it, and where one is of no use.
+// Returns nothing if a library is missing, because libepoxy would abort when it needs it, or if one is unusable.
 std::optional<Libraries> openLibraries() {
     auto epoxy = DynamicLibrary::open({"libepoxy.so.0"}, "libepoxy0");
     auto gl = DynamicLibrary::open({"libGL.so.1"}, "libgl1");
@@ -86,7 +86,7 @@ Proc throughEpoxy(const char* name, Proc own) {
     static const std::optional<Libraries> libraries = openLibraries();
     if (!libraries || !libraries->have(*command)) return own;
     const auto* variable = static_cast<const Proc*>(libraries->epoxy.symbol((std::string("epoxy_") + name).c_str()));
-    if (!variable) return own; // a command that is newer than this libepoxy
+    if (!variable) return own; // the command is newer than this libepoxy
     ownFunctions[static_cast<size_t>(command - kCommands)].store(own);
     return *variable;
 }

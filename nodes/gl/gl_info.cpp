@@ -28,7 +28,7 @@ std::string text(const Queries& gl, GLenum name) {
     return said ? reinterpret_cast<const char*>(said) : "";
 }
 
-// Core contexts know only the indexed form, versions before 3.0 only the whole string.
+// Core contexts have only the indexed query, versions before 3.0 only the string.
 std::vector<std::string> readExtensions(const Queries& gl, int glVersion) {
     std::vector<std::string> extensions;
     if (glVersion >= 30 && gl.getStringi) {
@@ -90,7 +90,7 @@ Result<GlInfo> readGlInfo(Platform& platform) {
         const bool back = drawn == GL_BACK || drawn == GL_BACK_LEFT;
         info.colorBuffers = doubled ? ColorBuffers::FrontAndBack : back ? ColorBuffers::OneNamedBack : ColorBuffers::OneNamedFront;
     }
-    // A question that this version does not know must not stay behind; a lost context reports for ever.
+    // Clears the errors of unsupported queries. Bounded, because a lost context reports errors forever.
     for (int i = 0; i < 16 && gl.getError() != GL_NO_ERROR; i++) {}
     return info;
 }

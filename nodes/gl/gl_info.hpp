@@ -1,4 +1,4 @@
-// What the context that is current says about itself.
+// Properties of the current context.
 #pragma once
 
 #include <string>
@@ -13,31 +13,32 @@ struct GlInfo {
     int glVersion = 0; // 10 * major + minor, e.g. 45
     bool es = false;
     std::vector<std::string> extensions; // sorted
-    int maxSurfaceSize = 0;              // the smaller side of GL_MAX_VIEWPORT_DIMS
-    ColorBuffers colorBuffers = ColorBuffers::OneNamedFront; // desktop only; of the surface that is current, in a context that has just been made
+    int maxSurfaceSize = 0; // the smaller side of GL_MAX_VIEWPORT_DIMS
+    ColorBuffers colorBuffers = ColorBuffers::OneNamedFront; // desktop GL only; of the current surface in a new context
 };
 
-// A context of the platform must be current. Fails when the driver hands out no functions.
+// A context of the platform must be current. Errors: the driver returns no functions.
 Result<GlInfo> readGlInfo(Platform& platform);
 
-// The same of a platform that was just opened, by a context and a surface of its own: what no query of the
-// window system tells. Leaves no context current. embedded: a driver that has only OpenGL ES will do.
+// The same for a new platform, with a temporary context and surface, for properties without a window-system query.
+// Leaves no context current. embedded: accepts a driver with OpenGL ES only.
 Result<GlInfo> measureGl(Platform& platform, bool embedded);
 
-// Waits until all is drawn that the current context has been told. Mesa's software driver does not always wait by itself
-// when it reads a surface that was drawn to until just now and is then current for reading only (README.md).
+// Waits for all commands of the current context. Mesa's software driver does not always wait before it reads a surface
+// that is current for reading only and was just drawn to (README.md).
 void finishDrawing(Platform& platform);
 
-// Hands what the current context holds back to the driver.
+// Returns the current context's temporary memory to the driver.
 void flushDrawing(Platform& platform);
 
-// Whether glReadPixels gives what was drawn to a surface with samples; true where there are none. Leaves no context current.
+// Returns whether glReadPixels reads the content of a multisampled surface; true without such surfaces. Leaves no
+// context current.
 bool showsSamples(Platform& platform);
 
-// "4.5 (Compatibility Profile) Mesa 22.3.6" → 45, "OpenGL ES-CM 1.1 Mesa" → 11; 0 when there is no number.
+// "4.5 (Compatibility Profile) Mesa 22.3.6" → 45, "OpenGL ES-CM 1.1 Mesa" → 11; 0 without a number.
 int parseGlVersion(const std::string& version);
 
-// "4.5 (Compatibility Profile) Mesa 22.3.6" → 22; 0 when it is not Mesa's.
+// "4.5 (Compatibility Profile) Mesa 22.3.6" → 22; 0 for other drivers.
 int parseMesaVersion(const std::string& version);
 
 } // namespace mural::gl

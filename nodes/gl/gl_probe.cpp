@@ -12,12 +12,13 @@ namespace {
 
 using Version = std::pair<int, int>;
 
-// Drivers may give a core profile or ES context exactly the version asked for: so ask from the top.
+// Drivers may return exactly the requested version of a core profile or ES context, so the search starts at the
+// highest.
 std::vector<Version> versionsToTry(Api api, bool core) {
     if (api == Api::Es1) return {{1, 1}, {1, 0}};
     if (api == Api::Es2) return {{3, 2}, {3, 1}, {3, 0}, {2, 0}};
     if (core) return {{4, 6}, {4, 5}, {4, 4}, {4, 3}, {4, 2}, {4, 1}, {4, 0}, {3, 3}, {3, 2}};
-    return {{1, 0}}; // what glXCreateContext gives
+    return {{1, 0}}; // the version of glXCreateContext
 }
 
 Result<std::unique_ptr<Context>> createHighest(Platform& platform, Api api, bool core) {

@@ -1,5 +1,4 @@
-// What a backend of this machine can do: for `mural doctor`, a node's Ready message, and for
-// telling programs no more than every node has.
+// The capabilities of a backend, for `mural doctor`, a node's Ready message, and the intersection that programs see.
 #pragma once
 
 #include <string>
@@ -12,7 +11,7 @@ namespace mural::gl {
 struct GlProbe {
     std::string backend; // Platform::describe()
     std::string vendor, renderer, version;
-    int glVersion = 0;   // 10 * major + minor
+    int glVersion = 0; // 10 * major + minor
     bool es = false;
     std::vector<std::string> extensions; // sorted
     int maxSurfaceSize = 0;
@@ -20,8 +19,8 @@ struct GlProbe {
     [[nodiscard]] bool has(const std::string& extension) const;
 };
 
-// Makes a small surface and a context of the highest version and asks it. core: the highest core
-// profile; desktop only. Afterwards no context is current on this thread.
+// Queries a small surface with a context of the highest version. core: the highest core profile; desktop GL only.
+// Leaves no context current.
 Result<GlProbe> probe(Platform& platform, Api api, bool core);
 
 } // namespace mural::gl

@@ -1,5 +1,4 @@
-// The functions of libOSMesa and those of GL that come with it. libOSMesa has left Mesa with version
-// 25.1: it is loaded where it is still there.
+// The functions of libOSMesa and its GL. Mesa 25.1 removed libOSMesa, so it is loaded at run time where it exists.
 #pragma once
 
 #include <GL/gl.h>

@@ -1,4 +1,4 @@
-// Whether the processor draws, by what GL_RENDERER says.
+// Detects CPU rendering from GL_RENDERER.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The last part of a path.
+// The last component of a path.
 #pragma once
 
 #include <string_view>

@@ -1,5 +1,5 @@
-// One child process: started with an exact environment and exact descriptors, waited for by its pid.
-// Owned by one thread. Destroying the object does not end the process: who starts it, ends it.
+// One child process with an exact environment and exact descriptors. Owned by one thread. Destroying the object does
+// not end the process: the owner ends it explicitly.
 #pragma once
 
 #include <optional>
@@ -14,36 +14,36 @@ namespace mural::launch {
 
 struct SpawnRequest {
     std::string file; // path to execute
-    std::vector<std::string> arguments; // with argv[0]
+    std::vector<std::string> arguments; // including argv[0]
     std::vector<std::string> environment; // NAME=value
-    std::vector<int> keptFds;  // descriptors that the child inherits under the same number
-    int inputFd = -1;          // becomes its standard input; -1: ours
-    int outputFd = -1;         // becomes its standard output
-    int errorFd = -1;          // becomes its standard error
-    bool ownSession = false;   // setsid: signals of the terminal do not reach it
-    int signalWhenWeDie = 0;   // PR_SET_PDEATHSIG; 0: none
+    std::vector<int> keptFds; // descriptors inherited under the same number
+    int inputFd = -1; // becomes standard input; -1: inherited
+    int outputFd = -1; // becomes standard output; -1: inherited
+    int errorFd = -1; // becomes standard error; -1: inherited
+    bool ownSession = false; // setsid: detaches it from the terminal's signals
+    int signalWhenWeDie = 0; // PR_SET_PDEATHSIG; 0: none
 };
 
 class ChildProcess {
 public:
     ChildProcess() = default;
-    // Fails with the reason of exec, not only that of fork.
+    // Reports errors of exec as well as of fork.
     static Result<ChildProcess> start(const SpawnRequest& request);
-    // A child that was forked by other means.
+    // Takes over a child that was forked by other means.
     static ChildProcess adopt(pid_t pid);
 
     [[nodiscard]] pid_t pid() const { return pid_; }
     [[nodiscard]] bool started() const { return pid_ > 0; }
-    // False once it has ended; collects its status then.
+    // Returns false once the process has ended, and collects its status.
     bool running();
-    // As a shell counts: exit status, or 128 + signal. Only after running() has become false.
+    // The exit status or 128 + signal, as in a shell. Valid after running() has returned false.
     [[nodiscard]] int exitStatus() const { return exitStatus_; }
     // "exit status 1", "signal 9 (Killed)".
     [[nodiscard]] std::string describeEnd() const;
-    void signal(int number);      // nothing happens when it has ended
-    void signalGroup(int number); // ownSession: everything that it started, also after it has ended
+    void signal(int number); // no effect after the end
+    void signalGroup(int number); // with ownSession: reaches all descendants, even after the child's end
     bool waitUntil(Deadline deadline); // true: it has ended
-    // SIGTERM, then SIGKILL when the deadline has passed.
+    // Sends SIGTERM, and SIGKILL after the deadline.
     void end(Deadline deadline);
 
 private:
@@ -54,8 +54,8 @@ private:
     int endSignal_ = 0;
 };
 
-// What the signal mask and dispositions were when this process began; children get them back.
-// To be called before any signal is blocked or ignored; only the first call counts.
+// Saves the signal mask and dispositions of this process for its children. Call before any signal is blocked or
+// ignored; only the first call has an effect.
 void rememberSignals();
 
 } // namespace mural::launch

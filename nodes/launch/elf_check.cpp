@@ -29,7 +29,7 @@ public:
         if (fd_ >= 0) close(fd_);
     }
     [[nodiscard]] bool opened() const { return fd_ >= 0; }
-    // Bytes read, less than asked at the end of the file.
+    // Returns the number of bytes read, fewer than requested at the end of the file.
     size_t readAt(void* into, size_t sizeBytes, uint64_t at) const {
         size_t done = 0;
         while (done < sizeBytes) {
@@ -70,7 +70,7 @@ template <class T> std::vector<T> readTable(const File& file, uint64_t at, uint6
     return rows;
 }
 
-// Where in the file the byte of this address stands; UINT64_MAX: nowhere.
+// Converts an address to a file offset. UINT64_MAX: not in the file.
 uint64_t offsetOf(const std::vector<Elf64_Phdr>& programs, uint64_t address) {
     for (const Elf64_Phdr& p : programs) {
         if (p.p_type == PT_LOAD && address >= p.p_vaddr && address - p.p_vaddr < p.p_filesz) return address - p.p_vaddr + p.p_offset;
@@ -78,7 +78,7 @@ uint64_t offsetOf(const std::vector<Elf64_Phdr>& programs, uint64_t address) {
     return UINT64_MAX;
 }
 
-// The strings of a dynamic section, by their place in its string table.
+// The strings of a dynamic section, by offset into its string table.
 class Strings {
 public:
     Strings(const File& file, const std::vector<Elf64_Phdr>& programs, const std::vector<Elf64_Dyn>& dynamic) {
@@ -134,7 +134,7 @@ Result<ExecutableFacts> readExecutable(const std::string& path) {
     } else if (text.starts_with("#!")) {
         readScriptLine(text, facts);
     } else if (text.substr(0, text.find('\n')).find('\0') == std::string_view::npos) {
-        facts.kind = FileKind::PlainScript; // the test that shells use: no zero byte in the first line
+        facts.kind = FileKind::PlainScript; // the test of shells: no zero byte in the first line
     }
     return facts;
 }

@@ -1,5 +1,5 @@
-// What the first bytes of an executable file say: is it a program that the dynamic loader starts?
-// Only such programs take a preloaded library. Pure reading, no execution.
+// Determines from the header of an executable whether the dynamic loader starts it. Only such programs accept a
+// preloaded library. Reads files without executing them.
 #pragma once
 
 #include <cstdint>
@@ -11,34 +11,34 @@
 namespace mural::launch {
 
 enum class FileKind {
-    Elf,         // a program for some machine
-    Script,      // "#!": another program runs it
-    PlainScript, // text without "#!": /bin/sh runs it, as a shell would do
-    Unknown,     // neither: nothing can run it
+    Elf, // a program for some machine
+    Script, // "#!": an interpreter runs it
+    PlainScript, // text without "#!": /bin/sh runs it, as in a shell
+    Unknown, // not executable
 };
 
 struct ExecutableFacts {
     FileKind kind = FileKind::Unknown;
-    int bits = 0;                  // ELF: 32 or 64
-    uint16_t machine = 0;          // ELF: e_machine
-    bool hasInterpreter = false;   // ELF: the dynamic loader starts it (PT_INTERP)
-    std::string interpreter;       // ELF: path of that loader
+    int bits = 0; // ELF: 32 or 64
+    uint16_t machine = 0; // ELF: e_machine
+    bool hasInterpreter = false; // ELF: dynamically linked (PT_INTERP)
+    std::string interpreter; // ELF: path of the loader
     std::string scriptInterpreter; // Script: path after "#!"
-    std::string scriptArgument;    // Script: the one argument after the path, may be empty
+    std::string scriptArgument; // Script: the argument after the path, may be empty
 };
 
 Result<ExecutableFacts> readExecutable(const std::string& path);
 
-// What the dynamic section of a shared library says.
+// The dynamic section of a shared library.
 struct LibraryFacts {
     std::string soname; // empty: none
     std::vector<std::string> needed;
 };
 
-// For libraries of this machine's word size.
+// Supports libraries of this machine's word size.
 Result<LibraryFacts> readLibrary(const std::string& path);
 
-// Of this process: programs that Mural captures must be of the same machine.
+// The word size of this process. Mural captures only programs of the same machine type.
 int ownBits();
 uint16_t ownMachine();
 

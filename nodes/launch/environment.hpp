@@ -1,5 +1,5 @@
-// Environments of the processes that `mural run` starts: the program gets the capture added, the head
-// and the nodes get it (and every preloaded library) taken away. Value types, no global state changed.
+// The environments of processes that `mural run` starts. The program's environment gains the capture library; those of
+// head and nodes lose it and all other preloaded libraries. Value types without global state.
 #pragma once
 
 #include <optional>
@@ -23,38 +23,38 @@ public:
     [[nodiscard]] const std::vector<std::string>& entries() const { return entries_; }
 
 private:
-    std::vector<std::string> entries_; // NAME=value, in the order found
+    std::vector<std::string> entries_; // NAME=value, in the original order
 };
 
-// Where the capture library is; found relative to the mural binary.
+// The location of the capture library, relative to the mural binary.
 struct CaptureLibrary {
-    std::string path;          // …/libGLX_mural.so.0
+    std::string path; // …/libGLX_mural.so.0
     std::string eglVendorFile; // …/mural_egl_vendor.json
 };
 constexpr std::string_view kCaptureLibraryName = "libGLX_mural.so.0";
-// In the same folder; only for programs whose GL library GLVND does not lead to.
+// In the same folder; for programs whose GL library does not use GLVND.
 constexpr std::string_view kFrontLibraryName = "libmural_front.so";
 constexpr std::string_view kEglVendorFileName = "mural_egl_vendor.json";
 
-// Looks beside the binary as in the build tree (../lib) and as installed (../lib/mural).
+// Searches relative to the binary, in the build tree (../lib) and in an installation (../lib/mural).
 Result<CaptureLibrary> findCaptureLibrary(const std::string& muralBinary);
 
 // Path of the running binary.
 std::string ownBinary();
 
-// LD_PRELOAD's value with every earlier entry of ours removed; other entries stay as they are.
+// Removes our entries from a value of LD_PRELOAD; keeps all others.
 std::string withoutCapture(std::string_view preload);
-// The same with our entries after all others.
+// Removes our entries and appends new ones after all others.
 std::string withCapture(std::string_view preload, std::string_view entries);
 
-// What is preloaded: the library alone, or with it the front for GL libraries that are not GLVND's.
+// The preloaded libraries: the capture library alone, or with the preload library for GL libraries outside GLVND.
 enum class Fronts { Vendor, VendorAndPreload };
 
-// Adds preload and vendor variables; what they were before goes to MURAL_REAL_*. Idempotent.
+// Adds the preload and vendor variables. Their previous values are saved in MURAL_REAL_*. Idempotent.
 Result<void> addCapture(Environment& environment, const CaptureLibrary& library, const std::string& session, Fronts fronts = Fronts::Vendor);
 
-// For the head and the nodes: nothing of the capture and nothing preloaded (clock fakers and frame
-// grabbers are meant for the program).
+// For head and nodes: removes the capture and all preloaded libraries. Clock fakers and frame grabbers are meant for
+// the program.
 void removeCapture(Environment& environment);
 
 } // namespace mural::launch

@@ -15,7 +15,7 @@ namespace mural::launch {
 
 namespace {
 
-constexpr int64_t kLoaderMs = 10'000; // large programs have hundreds of libraries, and discs may sleep
+constexpr int64_t kLoaderMs = 10'000; // large programs have hundreds of libraries, and disks may spin up
 constexpr const char* kOpenedByName = "libGL.so.1 libEGL.so.1 libGLESv2.so.2 libGLESv1_CM.so.1";
 
 std::string readAll(int fd, Deadline deadline) {
@@ -31,7 +31,7 @@ std::string readAll(int fd, Deadline deadline) {
     return text;
 }
 
-// What the loader would map, one line each: "\tNAME => PATH (ADDRESS)". The program is not run.
+// Returns the loader's list of libraries, one per line: "\tNAME => PATH (ADDRESS)". Does not run the program.
 std::string askLoader(const std::string& loader, const std::string& executable, const Environment& environment, bool openedToo) {
     int ends[2];
     if (pipe2(ends, O_CLOEXEC) != 0) return {};
@@ -53,7 +53,7 @@ std::string askLoader(const std::string& loader, const std::string& executable, 
     return text;
 }
 
-// Paths of GL libraries in the loader's list.
+// The paths of GL libraries in the loader's list.
 std::vector<std::string> glLibrariesIn(std::string_view list) {
     std::vector<std::string> found;
     for (size_t at = 0; at < list.size();) {
@@ -95,7 +95,7 @@ std::vector<std::string> ownGlLibraries(const std::string& executable, const Env
     const auto facts = readExecutable(executable);
     if (!facts || facts.value().interpreter.empty()) return {};
     const std::string& loader = facts.value().interpreter;
-    // Separately: a library that is opened by name would stand in for one that a dependency finds elsewhere.
+    // Two separate runs: a library opened by name could hide one that a dependency finds elsewhere.
     const auto linked = glLibrariesIn(askLoader(loader, executable, environment, false));
     if (!linked.empty()) return onlyOwn(linked);
     return onlyOwn(glLibrariesIn(askLoader(loader, executable, environment, true)));

@@ -1,5 +1,5 @@
-// Which GL libraries a program will have: those that GLVND leads to the vendor front, or others, which
-// only the preloaded front sees.
+// Determines the GL libraries that a program will load: those that use GLVND, and others, which need the preload
+// library.
 #pragma once
 
 #include <string>
@@ -9,20 +9,20 @@
 
 namespace mural::launch {
 
-// How a library shows pictures, judged by its soname and by what it needs.
+// The kind of a library, judged by its soname and its dependencies.
 enum class Drawing {
     None,
-    Glvnd,     // OpenGL, by way of GLVND
-    OwnGl,     // OpenGL: a library that GLVND does not lead to
-    OffScreen, // OSMesa: OpenGL into the program's own memory
+    Glvnd, // OpenGL through GLVND
+    OwnGl, // OpenGL without GLVND
+    OffScreen, // OSMesa: OpenGL into the program's memory
     Vulkan,
-    X11,       // what all windows need
+    X11, // window system only
 };
 Drawing drawingOf(const std::string& libraryPath);
 
-// Paths of the program's GL libraries that GLVND does not lead to: of those that it links, or where it
-// links none, of those that it would open by name. The dynamic loader itself is asked, so that rpaths,
-// LD_LIBRARY_PATH and the loader's cache count as they will. Empty: none, or the loader does not tell.
+// Paths of the program's GL libraries that do not use GLVND: the linked ones, or if it links none, those that it would
+// open by name. Runs the dynamic loader, so that rpaths, LD_LIBRARY_PATH and the loader's cache apply. Empty: none, or
+// the loader gives no answer.
 std::vector<std::string> ownGlLibraries(const std::string& executable, const Environment& environment);
 
 } // namespace mural::launch

@@ -35,7 +35,7 @@ private:
     int fd_;
 };
 
-// The number that Xvfb writes to its -displayfd once it listens; empty when it ended or took too long.
+// Reads the number that Xvfb writes to its -displayfd once it listens. Empty: it has ended or timed out.
 std::string readDisplayNumber(int fd, ChildProcess& server) {
     const Deadline deadline = Deadline::inMs(kStartMs);
     std::string text;
@@ -54,7 +54,7 @@ std::string readDisplayNumber(int fd, ChildProcess& server) {
     return {};
 }
 
-// The server's last words, in one line.
+// The last line of the server's log.
 std::string lastLine(int logFd) {
     std::string text(4096, '\0');
     const off_t size = lseek(logFd, 0, SEEK_END);
@@ -122,7 +122,7 @@ PrivateDisplay::~PrivateDisplay() {
 void PrivateDisplay::use(Environment& environment) const {
     environment.set("DISPLAY", name_);
     environment.set("XAUTHORITY", authority_->path());
-    environment.unset("WAYLAND_DISPLAY"); // toolkits prefer Wayland where they see it
+    environment.unset("WAYLAND_DISPLAY"); // toolkits prefer Wayland if available
     environment.unset("WAYLAND_SOCKET");
     if (environment.get("XDG_SESSION_TYPE")) environment.set("XDG_SESSION_TYPE", "x11");
 }
@@ -131,7 +131,7 @@ bool displayUsable(const std::string& name) {
     if (name.empty()) return false;
     const pid_t pid = fork();
     if (pid == 0) {
-        alarm(kProbeMs / 1000); // ends this child when the server does not answer
+        alarm(kProbeMs / 1000); // ends this child if the server does not answer
         xcb_connection_t* connection = xcb_connect(name.c_str(), nullptr);
         _exit(xcb_connection_has_error(connection) == 0 ? 0 : 1);
     }

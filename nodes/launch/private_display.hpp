@@ -1,5 +1,5 @@
-// An X server of our own (Xvfb) for programs that run without a display, or that must see a screen of
-// the wall's size: there every size question has a true answer.
+// A private X server (Xvfb) for programs without a display, or for programs that must see a screen of the wall's size.
+// All queries about the screen's size are then answered consistently.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace mural::launch {
 
-constexpr int kMaxScreenSize = 32767; // the X protocol's coordinates are 16 bits with sign
+constexpr int kMaxScreenSize = 32767; // X protocol coordinates are signed 16-bit integers
 constexpr int kDefaultScreenWidth = 1920;
 constexpr int kDefaultScreenHeight = 1080;
 
@@ -28,7 +28,7 @@ public:
     [[nodiscard]] pid_t pid() const { return server_.pid(); }
     [[nodiscard]] bool running() { return server_.running(); }
 
-    // Points a program at this display, and away from a Wayland one.
+    // Sets the program's display variables to this display, and removes the Wayland one.
     void use(Environment& environment) const;
 
 private:
@@ -38,8 +38,8 @@ private:
     std::string name_;
 };
 
-// Whether this process could open the display (empty name: there is none). Asked in a child process,
-// because connecting has no time limit of its own.
+// Returns whether this process could open the display; false for an empty name. A child process tries, because
+// connecting has no time limit.
 bool displayUsable(const std::string& name);
 
 } // namespace mural::launch

@@ -1,5 +1,5 @@
-// Who descends from this process, by /proc. With PR_SET_CHILD_SUBREAPER every orphan below us becomes
-// our child, so nothing that a program leaves behind is lost from sight.
+// Finds the descendants of this process through /proc. With PR_SET_CHILD_SUBREAPER orphaned descendants become its
+// children, so none is lost.
 #pragma once
 
 #include <set>
@@ -12,16 +12,16 @@ struct ProcessFacts {
     pid_t pid = 0;
     pid_t parent = 0;
     pid_t session = 0;
-    char state = '?'; // as in /proc/PID/stat; 'Z': ended, not yet waited for
+    char state = '?'; // as in /proc/PID/stat; 'Z': a zombie
 };
 
-// Makes orphans of our descendants our children.
+// Makes orphaned descendants children of this process.
 void adoptOrphans();
 
-// All processes below `root`, without those in `except` and what is below them.
+// Returns all descendants of `root` except `except` and their descendants.
 std::vector<ProcessFacts> descendantsOf(pid_t root, const std::set<pid_t>& except);
 
-// Waits for adopted children that have ended; those in `known` are someone else's to wait for.
+// Reaps adopted children that have ended. Children in `known` have other owners.
 void reapAdopted(const std::set<pid_t>& known);
 
 } // namespace mural::launch

@@ -12,7 +12,7 @@ namespace mural::launch {
 
 namespace {
 
-constexpr int kMaxScriptDepth = 5; // the kernel follows "#!" as often
+constexpr int kMaxScriptDepth = 5; // the kernel's limit for "#!"
 
 bool isFile(const std::string& path, struct stat& facts) {
     return stat(path.c_str(), &facts) == 0 && !S_ISDIR(facts.st_mode);
@@ -40,7 +40,7 @@ bool hasFileCapabilities(const std::string& path) {
     return getxattr(path.c_str(), "security.capability", nullptr, 0) > 0;
 }
 
-// Why the loader would not take our library into this program; empty when it would.
+// The reason why the loader would not preload our library into this program; empty if it would.
 std::string loaderObstacle(const std::string& path, const ExecutableFacts& facts) {
     struct stat file {};
     if (stat(path.c_str(), &file) != 0) return {};
@@ -92,7 +92,7 @@ ProgramCheck checkProgram(const std::string& name, const std::string& searchPath
     std::string path = found.path;
     for (int depth = 0; depth < kMaxScriptDepth; ++depth) {
         const auto facts = readExecutable(path);
-        if (!facts.ok()) return found; // executable but not readable: the kernel will decide
+        if (!facts.ok()) return found; // executable but not readable: the kernel decides
         switch (facts.value().kind) {
         case FileKind::Elf: {
             const std::string obstacle = loaderObstacle(path, facts.value());

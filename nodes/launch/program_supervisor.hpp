@@ -1,10 +1,10 @@
-// One program in our care, with all that it starts: signals that the user sends us reach it, its
-// descendants are known even when they leave it, and when it is to end, it ends.
+// Supervises one program and its descendants: forwards signals, tracks descendants that leave the process group, and
+// ends all of them on request.
 //
-// Ctrl-C comes from the terminal to the program itself (it stays in our process group), so it is not
-// sent a second time; a SIGINT sent to us by a process is handed on.
+// The program stays in our process group, so the terminal sends Ctrl-C to it directly and it is not sent twice. A
+// SIGINT from another process is forwarded.
 //
-// Owned by one thread, which waits for signalFd() and calls tick() at least ten times a second.
+// Owned by one thread, which waits for signalFd() and calls tick() at least ten times per second.
 #pragma once
 
 #include <memory>
@@ -28,27 +28,27 @@ public:
     ProgramSupervisor& operator=(const ProgramSupervisor&) = delete;
     ~ProgramSupervisor();
 
-    // Processes of ours (head, private display): neither waited for nor ended here, nor what is below.
+    // Excludes a process of Mural (head, private display) and its descendants: they have other owners.
     void leaveAlone(pid_t pid) { ours_.insert(pid); }
 
     Result<void> start(SpawnRequest request);
     [[nodiscard]] int signalFd() const { return signalFd_; }
-    // Reads waiting signals, hands them on, collects ended processes, ends what is overdue.
+    // Processes pending signals, forwards them, reaps ended processes, and kills those past their deadline.
     void tick();
 
     [[nodiscard]] bool started() const { return program_.started(); }
     [[nodiscard]] bool programRunning() { return program_.running(); }
     [[nodiscard]] int exitStatus() const { return program_.exitStatus(); }
     [[nodiscard]] std::string describeEnd() const { return program_.describeEnd(); }
-    // The running ones of those: the program and its descendants.
+    // The running processes: the program and its descendants.
     [[nodiscard]] std::vector<pid_t> processes() const;
-    // Processes below us other than ours and those that only wait to be collected.
+    // True if descendants other than excluded processes and zombies exist.
     [[nodiscard]] bool anyoneLeft() const;
 
-    // Asks the program and its descendants to end (SIGTERM); after graceMs they are killed.
+    // Sends SIGTERM to the program and its descendants, and SIGKILL after graceMs.
     void end(int64_t graceMs);
     [[nodiscard]] bool ending() const { return killAt_.has_value(); }
-    // SIGTERM or SIGHUP came, or Ctrl-C while no program was running.
+    // True after SIGTERM or SIGHUP, or after Ctrl-C without a running program.
     [[nodiscard]] bool askedToStop() const { return stopSignal_ != 0; }
     [[nodiscard]] int stopSignal() const { return stopSignal_; }
 
@@ -63,7 +63,7 @@ private:
     ChildProcess program_;
     std::set<pid_t> ours_;
     std::optional<Deadline> killAt_;
-    std::set<pid_t> asked_; // to end, once each
+    std::set<pid_t> asked_; // processes that have received SIGTERM, once each
     int stopSignal_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// Source: ICCCM 4.1.2.4 (transients), 4.1.3.1 (WM_STATE), 4.1.5 (answers to configure requests).
+// Source: ICCCM 4.1.2.4 (transients), 4.1.3.1 (WM_STATE), 4.1.5 (replies to configure requests).
 #include "nodes/launch/wall_window_manager.hpp"
 
 #include <algorithm>
@@ -105,7 +105,7 @@ void WallWindowManager::mapRequested(const xcb_map_request_event_t& event) {
 
 void WallWindowManager::configureRequested(const xcb_configure_request_event_t& event) {
     if (event.window == main_) {
-        fillScreen(main_); // costs nothing when it is so already, and answers either way
+        fillScreen(main_); // no-op if it fills the screen already; replies in both cases
         return;
     }
     const uint32_t all[] = {static_cast<uint32_t>(event.x), static_cast<uint32_t>(event.y), event.width, event.height,
@@ -137,7 +137,7 @@ void WallWindowManager::fillScreen(xcb_window_t window) {
     tellGeometry(window);
 }
 
-// A program that asked for another size waits for an answer, which the server only sends on a change.
+// A program that requested another size waits for a reply. The server only sends one after a change.
 void WallWindowManager::tellGeometry(xcb_window_t window) {
     xcb_configure_notify_event_t told{};
     told.response_type = XCB_CONFIGURE_NOTIFY;
@@ -145,7 +145,7 @@ void WallWindowManager::tellGeometry(xcb_window_t window) {
     told.window = window;
     told.width = static_cast<uint16_t>(width_);
     told.height = static_cast<uint16_t>(height_);
-    char bytes[32] = {}; // SendEvent takes 32 bytes, also of shorter events
+    char bytes[32] = {}; // SendEvent needs 32 bytes, even for shorter events
     static_assert(sizeof told <= sizeof bytes);
     std::memcpy(bytes, &told, sizeof told);
     xcb_send_event(connection_, 0, window, XCB_EVENT_MASK_STRUCTURE_NOTIFY, bytes);

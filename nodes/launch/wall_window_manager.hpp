@@ -1,9 +1,8 @@
-// A window manager for a private display of the wall's size: the program's main window fills the
-// screen exactly, before it is first seen; all other windows get what they ask for.
+// A window manager for a private display of the wall's size. The program's main window fills the screen before it
+// becomes visible; all other windows keep their requested geometry.
 //
-// The main window is the first mapped top-level window that is neither transient nor of a helper kind
-// (dialog, menu, splash, …); when it goes, the next such window takes its place. Windows with
-// override-redirect never come here, by the protocol.
+// The main window is the first mapped top-level window that is neither transient nor auxiliary (dialog, menu, splash,
+// …). When it closes, the next such window replaces it. Override-redirect windows bypass window managers.
 //
 // Owned by one thread, which calls dispatch() whenever fd() is readable.
 #pragma once
@@ -21,7 +20,7 @@ namespace mural::launch {
 
 class WallWindowManager {
 public:
-    // Fails when another window manager has the display.
+    // Fails if the display has another window manager.
     static Result<std::unique_ptr<WallWindowManager>>
     open(const std::string& display, const XAuthority::Cookie& cookie, int width, int height);
     WallWindowManager(const WallWindowManager&) = delete;
@@ -29,7 +28,7 @@ public:
     ~WallWindowManager();
 
     [[nodiscard]] int fd() const;
-    // Handles all that has arrived; false when the display is gone.
+    // Processes all pending events. Returns false if the display is lost.
     bool dispatch();
     [[nodiscard]] xcb_window_t mainWindow() const { return main_; }
 
@@ -52,10 +51,10 @@ private:
     int width_;
     int height_;
     xcb_window_t main_ = XCB_NONE;
-    std::vector<xcb_window_t> waiting_; // mapped later than the main one, could follow it
+    std::vector<xcb_window_t> waiting_; // candidates to replace the main window
     xcb_atom_t wmState_ = XCB_NONE;
     xcb_atom_t windowType_ = XCB_NONE;
-    std::vector<xcb_atom_t> mainKinds_; // values of _NET_WM_WINDOW_TYPE that a main window may have
+    std::vector<xcb_atom_t> mainKinds_; // values of _NET_WM_WINDOW_TYPE allowed for a main window
 };
 
 } // namespace mural::launch

@@ -11,7 +11,7 @@ namespace mural::launch {
 
 namespace {
 
-constexpr uint16_t kFamilyWild = 0xffff; // X11/Xauth.h: fits every address
+constexpr uint16_t kFamilyWild = 0xffff; // X11/Xauth.h: matches every address
 
 void appendBigEndian(std::string& file, size_t value) {
     file += static_cast<char>(value >> 8 & 0xff);

@@ -1,5 +1,5 @@
-// The key of a private X display, as the file that X servers and libXau read. It lives in anonymous
-// memory and is named through /proc, so that nothing is left on disk however the session ends.
+// The cookie of a private X display, as a file for X servers and libXau. The file is anonymous memory with a name in
+// /proc, so no session leaves it on disk.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ public:
     XAuthority& operator=(const XAuthority&) = delete;
     ~XAuthority();
 
-    // For XAUTHORITY and Xvfb's -auth; other processes of this user can open it while we live.
+    // For XAUTHORITY and Xvfb's -auth. Other processes of this user can open it while this object lives.
     [[nodiscard]] const std::string& path() const { return path_; }
     [[nodiscard]] const Cookie& cookie() const { return cookie_; }
 
@@ -34,7 +34,7 @@ private:
     std::string path_;
 };
 
-// One entry that fits every display: family (any), address, number, protocol, cookie.
+// One entry that matches every display: family (any), address, number, protocol, cookie.
 std::string authorityFile(const XAuthority::Cookie& cookie);
 
 } // namespace mural::launch

@@ -1,4 +1,4 @@
-// A node's part in the swap barrier that the head has put it into: as the leader, or by a connection to it.
+// A node's end of its swap barrier: as the leader, or connected to the leader.
 #pragma once
 
 #include <memory>
@@ -14,9 +14,9 @@ class BarrierPart {
 public:
     BarrierPart(const NodeSetup& setup, SwapBarrier::Log log) : rank_(setup.swapRank), members_(setup.swapMembers), here_(setup.swapHere), secretHex_(setup.exchangeSecret), log_(std::move(log)) {}
 
-    // The leader: lets the others in. The port; 0: it is not the leader.
+    // Leader only: listens for the other members. Returns the port; 0: not the leader.
     Result<uint16_t> open();
-    // The others: to the leader. Errors are told: the node shows its windows by itself then.
+    // Connects to the leader. On error, tells the user and shows this node's windows without the barrier.
     void follow(const std::string& host, uint16_t port);
 
     [[nodiscard]] SwapBarrier* barrier() const { return barrier_.get(); }

@@ -1,4 +1,4 @@
-// The node's end of the connection to the head: messages out, packets in.
+// The node's end of the connection to the head: receives packets and sends messages.
 #pragma once
 
 #include <atomic>
@@ -21,29 +21,31 @@ class HeadLine {
 public:
     static Result<std::unique_ptr<HeadLine>> open(const NodeOptions& options);
 
-    // From now on packets come by this multicast group (rsp://…), no longer by the connection.
+    // Receives packets from this multicast group (rsp://…) from now on, not from the connection.
     Result<void> follow(const std::string& stream, const std::string& secretHex, const std::string& name);
 
-    // The same, but packets still come by the connection, until changeOver(). What fails, the head's user is told: it is not needed.
+    // Joins the group, but receives packets from the connection until changeOver(). Reports errors to the head's user;
+    // the group is optional.
     void joinBeside(const std::string& stream, const std::string& secretHex, const std::string& name);
-    // The packet in hand has come by the group, too, behind `skipBytes` others. What follows it is read there. Errors: it is no
-    // member, or does not get what it was promised.
+    // Switches to the group: the current packet is also in the group's stream, after `skipBytes` bytes. Errors: not a
+    // member; data missing in the group's stream.
     Result<void> changeOver(uint64_t skipBytes);
 
-    // From now on packets come in batches, which refer to nothing that came before. Errors: no memory; called within a batch that has not ended. `plant`: a fault for tests to find, or nothing.
+    // Packets arrive in batches from now on, with an empty dictionary. Errors: out of memory; called within a batch.
+    // `plant`: fault injection for tests.
     Result<void> unpackBatches(uint64_t storeBytes, const std::string& plant);
 
-    // The next packet; its payload lives until the next call. Error: the head is gone, or sends what makes no
-    // sense, which it has been told.
+    // Returns the next packet; its payload is valid until the next call. Errors: the head is gone; invalid data, which
+    // has been reported to the head.
     Result<wire::PacketHeader> next(std::span<const std::byte>& payload);
 
-    // One message of up to three parts, sent at once, from any thread. Errors end the node: `broken()`.
+    // Sends one message in up to three parts, immediately. Thread-safe. Errors set `broken()`, which ends the node.
     void send(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b = {});
-    // A message without contents; nothing when another is under way.
+    // Sends an empty message, unless another thread is sending.
     void sendIfFree(wire::NodeMessage type);
     void sendText(wire::NodeMessage type, const std::string& text);
     [[nodiscard]] bool broken() const { return broken_; }
-    // By which the head is reached, and the address that reaches it; empty: by shared memory.
+    // The head's host, and the address that reaches it; empty: shared memory.
     [[nodiscard]] const std::string& headHost() const { return headHost_; }
     [[nodiscard]] std::string ownAddress() const { return connection_->path().ownAddress; }
 
@@ -55,8 +57,8 @@ private:
 
     const std::unique_ptr<Connection> connection_;
     std::string headHost_; // empty: shared memory
-    std::unique_ptr<Connection> stream_; // null: packets come by connection_
-    [[nodiscard]] Connection& line() { return stream_ ? *stream_ : *connection_; } // by which packets come
+    std::unique_ptr<Connection> stream_; // null: packets arrive on connection_
+    [[nodiscard]] Connection& line() { return stream_ ? *stream_ : *connection_; } // the source of packets
     Result<wire::PacketHeader> readPacket(std::span<const std::byte>& payload);
     Result<economy::BatchHead> readBatch();
     Result<void> readPayload(uint32_t sizeBytes, uint32_t mostBytes);
@@ -64,12 +66,12 @@ private:
     Result<void> openBatch(economy::BatchHead head);
 
     std::vector<std::byte> payload_;
-    std::unique_ptr<economy::BatchDecoder> batchDecoder_; // with the unpacker
-    std::unique_ptr<economy::Unpacker> unpacker_; // null: no batches come
+    std::unique_ptr<economy::BatchDecoder> batchDecoder_; // set together with the unpacker
+    std::unique_ptr<economy::Unpacker> unpacker_; // null: no batches
     bool inBatch_ = false;
     std::mutex sending_;
     std::atomic<bool> broken_{false};
-    std::unique_ptr<LateStream> late_; // between joinBeside() and changeOver(); its thread sends
+    std::unique_ptr<LateStream> late_; // between joinBeside() and changeOver(); its thread sends messages
 };
 
 } // namespace mural

@@ -6,7 +6,7 @@ namespace mural {
 
 namespace {
 constexpr std::chrono::seconds kBeat{4};
-constexpr int64_t kHungNs = 120 * kNsPerS; // one packet's work; the dearest frame without a GPU took 10 s
+constexpr int64_t kHungNs = 120 * kNsPerS; // for one packet; the slowest observed frame without a GPU took 10 s
 } // namespace
 
 Heartbeat::Heartbeat(HeadLine& line) : line_(line), thread_([this] { beat(); }) {}

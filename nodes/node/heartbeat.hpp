@@ -1,5 +1,5 @@
-// Tells the head every few seconds that this node lives, also while its replay thread is at work: so that the
-// head can tell a long frame from a stopped process. A replay that hangs ends it.
+// Sends heartbeats to the head every few seconds, even while the replay thread works. The head can thus distinguish a
+// long frame from a stopped process. Ends a process whose replay hangs.
 #pragma once
 
 #include <atomic>
@@ -19,7 +19,7 @@ public:
     Heartbeat& operator=(const Heartbeat&) = delete;
     ~Heartbeat();
 
-    // The replay thread begins, or has ended, its work on a packet.
+    // The replay thread starts or finishes a packet.
     void begins();
     void ended() { workingSinceNs_ = 0; }
 
@@ -27,7 +27,7 @@ private:
     void beat();
 
     HeadLine& line_;
-    std::atomic<int64_t> workingSinceNs_{0}; // 0: it waits for the head
+    std::atomic<int64_t> workingSinceNs_{0}; // 0: waiting for the head
     std::mutex mutex_;
     std::condition_variable stopped_;
     bool stop_ = false;

@@ -8,8 +8,8 @@ namespace mural {
 namespace {
 
 constexpr int64_t kJoinMs = 10'000;
-constexpr int64_t kSliceMs = 50;            // between two looks whether it is known where to go on
-constexpr size_t kMostBytes = size_t{64} << 20; // far above what the head sends before it has said that
+constexpr int64_t kSliceMs = 50; // interval of the check for goOn()
+constexpr size_t kMostBytes = size_t{64} << 20; // far above the head's output before goOn()
 constexpr size_t kReadBytes = size_t{64} << 10;
 
 } // namespace
@@ -31,11 +31,11 @@ void LateStream::work() {
     while (!stop_ && come_.size() < kMostBytes)
         if (!readSome()) return;
     if (stop_) return;
-    group_.reset(); // the others shall not wait
+    group_.reset(); // leaves the group, so that the writer does not wait
     failed_("the head did not say where in the stream to go on");
 }
 
-// False: nothing comes any more.
+// Returns false after the end of the stream.
 bool LateStream::readSome() {
     const size_t had = come_.size();
     come_.resize(had + kReadBytes);

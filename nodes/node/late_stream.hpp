@@ -1,5 +1,5 @@
-// A multicast group that is joined while packets still come another way: what comes by it is kept until it is known where in
-// it to go on. Nobody else waits meanwhile: who does not read holds up the writer.
+// A multicast group that a node joins while packets still arrive on its connection. Buffers the group's stream until
+// the switching position is known. Reading at once keeps the writer from waiting.
 #pragma once
 
 #include <atomic>
@@ -17,14 +17,15 @@ namespace mural {
 
 class LateStream {
 public:
-    // Joins in a thread of its own. `failed`: with the reason, by that thread, when it does not get in, or is told nothing for
-    // so long that it leaves.
+    // Joins on its own thread. `failed`: called by that thread with the reason if the node cannot join, or leaves
+    // because goOn() was not called in time.
     LateStream(rsp::GroupOptions options, std::function<void(const std::string&)> failed);
     ~LateStream();
     LateStream(const LateStream&) = delete;
     LateStream& operator=(const LateStream&) = delete;
 
-    // The stream without its first `skipBytes`. Once. Errors: it is no member; less than that came before the deadline.
+    // Returns the stream without its first `skipBytes`. Call once. Errors: not a member; too little data before the
+    // deadline.
     Result<std::unique_ptr<Connection>> goOn(uint64_t skipBytes, Deadline deadline);
 
 private:
@@ -33,10 +34,10 @@ private:
 
     const rsp::GroupOptions options_;
     const std::function<void(const std::string&)> failed_;
-    std::unique_ptr<rsp::Group> group_; // work()'s, then goOn()'s
-    std::vector<std::byte> come_;       // as well
+    std::unique_ptr<rsp::Group> group_; // owned by work(), then by goOn()
+    std::vector<std::byte> come_; // the same
     std::atomic<bool> stop_{false};
-    std::thread thread_; // last
+    std::thread thread_; // declared last: uses the members above
 };
 
 } // namespace mural

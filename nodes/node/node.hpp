@@ -1,4 +1,4 @@
-// A render node process: takes the stream of the head, replays it on its GL, answers.
+// A render node process: receives the head's stream, replays it on its GL, and replies.
 #pragma once
 
 #include <string>
@@ -6,12 +6,12 @@
 namespace mural {
 
 struct NodeOptions {
-    int connectFd = -1;  // shared memory, inherited from the head
-    std::string connect; // or host:port; the session's secret comes on standard input
-    std::string name;    // with it: by which the head knows that secret
+    int connectFd = -1; // shared memory, inherited from the head
+    std::string connect; // or host:port; the session's secret arrives on standard input
+    std::string name; // with `connect`: identifies the secret to the head
 };
 
-// Until the head says that it is over, or is gone. Returns the process's exit status.
+// Runs until the session ends or the head is gone. Returns the exit status of the process.
 int runNode(const NodeOptions& options);
 
 } // namespace mural

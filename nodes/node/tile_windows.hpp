@@ -1,4 +1,4 @@
-// The wall windows of one node: one per tile that it draws, or one of its area.
+// The wall windows of one node: one per tile, or one for its area.
 #pragma once
 
 #include <memory>
@@ -14,8 +14,7 @@ namespace mural {
 class TileWindows {
 public:
     static Result<std::unique_ptr<TileWindows>> open(const NodeSetup& setup);
-    // Shows the tiles of the main window (the largest that swaps); others are not on the wall. With a barrier when its other
-    // members do.
+    // Shows the tiles of the main window (the largest that swaps). With a barrier, waits for its other members.
     Result<void> show(const ReplayOutputs::Frame& frame, SwapBarrier* barrier);
 
     void windowGone(uint32_t client, uint32_t window) { mainWindow_.windowGone(client, window); }

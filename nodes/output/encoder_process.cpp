@@ -24,8 +24,8 @@ namespace mural {
 
 namespace {
 
-constexpr int64_t kWaitSliceNs = 20 * kNsPerMs; // where the kernel can't tell us that a child ended
-constexpr int kUnknownStatus = 255 << 8;        // as if it had ended with exit code 255
+constexpr int64_t kWaitSliceNs = 20 * kNsPerMs; // for kernels without pidfd_open
+constexpr int kUnknownStatus = 255 << 8; // stands for exit status 255
 constexpr int64_t kTermGraceMs = 2000;
 constexpr int kInputBufferBytes = 1 << 20;
 constexpr size_t kLargestText = size_t{4} << 20;
@@ -50,7 +50,7 @@ std::string textOf(int fd) {
     return text;
 }
 
-// The reason is in one of the last two lines: ffmpeg's very last one is often only a consequence.
+// The reason is in one of the last two lines: ffmpeg's last line is often only a consequence.
 std::string lastLines(const std::string& text) {
     std::string last;
     std::string beforeLast;
@@ -80,7 +80,7 @@ struct SpawnSettings {
     posix_spawnattr_t attributes{};
 };
 
-// Returns an error number, 0 when the child runs.
+// Returns an errno value; 0: the child runs.
 int spawn(const std::vector<std::string>& arguments, const int (&fds)[3], pid_t& pid) {
     SpawnSettings settings;
     for (int target = 0; target < 3; ++target)
@@ -129,7 +129,7 @@ Result<std::unique_ptr<EncoderProcess>>
 EncoderProcess::start(const std::vector<std::string>& arguments) {
     std::unique_ptr<EncoderProcess> process(new EncoderProcess);
     process->program_ = arguments.at(0);
-    // A socket instead of a pipe: only there can a write be told not to raise SIGPIPE.
+    // A socket instead of a pipe, because only a socket write can suppress SIGPIPE.
     int ends[2] = {-1, -1};
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
         return Error{fmt::format("cannot start {}: {}", arguments[0], std::strerror(errno))};
@@ -173,7 +173,7 @@ Result<void> EncoderProcess::write(std::span<const std::byte> bytes, Deadline de
         if (errno == EINTR)
             continue;
         if (errno != EAGAIN && errno != EWOULDBLOCK) {
-            // It closed its input: it is about to end, or should.
+            // The child has closed its input: it is ending.
             (void)ended(deadline.leftNs(kNsPerS));
             return howItEnded();
         }
@@ -204,21 +204,21 @@ std::string EncoderProcess::output() const {
     return textOf(outputFd_);
 }
 
-// Waits for the child's end, at most about waitNs.
+// Waits about waitNs at most for the child's end.
 bool EncoderProcess::ended(int64_t waitNs) {
     const int64_t untilNs = monotonicNowNs() + waitNs;
     while (pid_ >= 0) {
         const pid_t reaped = ::waitpid(pid_, &status_, WNOHANG);
         if (reaped != 0 && !(reaped < 0 && errno == EINTR)) {
             if (reaped < 0)
-                status_ = kUnknownStatus; // somebody else has reaped it
+                status_ = kUnknownStatus; // reaped elsewhere
             pid_ = -1;
             break;
         }
         const int64_t leftNs = untilNs - monotonicNowNs();
         if (leftNs <= 0)
             return false;
-        pollfd ready{pidFd_, POLLIN, 0}; // a negative descriptor: just a pause
+        pollfd ready{pidFd_, POLLIN, 0}; // a negative descriptor turns poll into a sleep
         ::poll(&ready, 1, pollMs(pidFd_ >= 0 ? leftNs : std::min(leftNs, kWaitSliceNs)));
     }
     return true;

@@ -1,7 +1,6 @@
-// A child process that is fed through its standard input: started, fed with a deadline, and ended
-// for sure. It gets a process group of its own, so that Ctrl-C at the terminal does not end it
-// before it has completed its file; if this process dies, it reads the end of its input and
-// completes.
+// A child process that reads its standard input from us: with deadlines for its start, its input and its end. It has
+// its own process group, so that Ctrl-C does not end it before its file is complete. If this process dies, the child
+// reads end-of-file and completes the file.
 #pragma once
 
 #include <cstddef>
@@ -16,30 +15,30 @@
 
 namespace mural {
 
-// Full path of a program in PATH (or `name` itself when it has a slash); empty when there is none.
+// The full path of a program in PATH, or `name` itself if it has a slash; empty: not found.
 std::string findProgram(const std::string& name);
 
 class EncoderProcess {
 public:
-    // arguments[0] is the program as findProgram() gives it. What the child writes to standard
-    // output is kept for output(), what it writes to standard error for its error messages.
+    // arguments[0] is a result of findProgram(). Standard output is kept for output(), standard error for error
+    // messages.
     static Result<std::unique_ptr<EncoderProcess>> start(const std::vector<std::string>& arguments);
 
     EncoderProcess(const EncoderProcess&) = delete;
     EncoderProcess& operator=(const EncoderProcess&) = delete;
-    ~EncoderProcess(); // kills a child that is still there
+    ~EncoderProcess(); // kills a running child
 
-    // Fails when the child has ended or does not read for too long.
+    // Errors: the child has ended, or does not read before the deadline.
     Result<void> write(std::span<const std::byte> bytes, Deadline deadline);
 
-    // Ends the child's input and waits for it. A child that is not done by the deadline is asked to
-    // end (SIGTERM) and then killed; that, and an exit status other than 0, is an error.
+    // Closes the child's input and waits for its end. After the deadline the child receives SIGTERM, then SIGKILL.
+    // That, and an exit status other than 0, is an error.
     Result<void> finish(Deadline deadline);
 
-    // What the child has written to its standard output so far.
+    // The child's standard output so far.
     [[nodiscard]] std::string output() const;
 
-    [[nodiscard]] pid_t pid() const { return pid_; } // -1 when it has ended
+    [[nodiscard]] pid_t pid() const { return pid_; } // -1 after its end
 
 private:
     EncoderProcess() = default;
@@ -50,11 +49,11 @@ private:
 
     std::string program_;
     pid_t pid_ = -1;
-    int pidFd_ = -1;    // -1 where the kernel has none
-    int inputFd_ = -1;  // our end of a socket pair
-    int outputFd_ = -1; // memory files
+    int pidFd_ = -1; // -1 without kernel support
+    int inputFd_ = -1; // our end of a socket pair
+    int outputFd_ = -1; // memfds
     int errorFd_ = -1;
-    int status_ = 0; // of waitpid, once the child has ended
+    int status_ = 0; // of waitpid, after the child has ended
 };
 
 } // namespace mural

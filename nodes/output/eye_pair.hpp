@@ -1,22 +1,23 @@
-// Two eyes' pictures, and both in one for who can show only that.
+// The pictures of two eyes, and single pictures that contain both.
 #pragma once
 
 #include "nodes/output/picture.hpp"
 
 namespace mural {
 
-// Of one size.
+// Pictures of equal size.
 struct EyePair {
     Picture left, right;
 };
 
-// Both whole, in one piece of memory: the left eye's above the right one's.
+// Both eyes at full size in one buffer, the left eye above the right one.
 void stackEyes(const EyePair& eyes, OwnedPicture& into);
 EyePair eyesOfStack(const Picture& stacked);
 
-// One dimension is halved: the mean of two neighbours, rounded up; an odd last one stands alone. The left half is the left eye's.
+// Halves the width: the mean of two neighbours, rounded up; an odd last column is copied. The left half is the left
+// eye.
 void sideBySide(const EyePair& eyes, OwnedPicture& into);
-// The upper half is the left eye's.
+// Halves the height. The upper half is the left eye.
 void topBottom(const EyePair& eyes, OwnedPicture& into);
 
 } // namespace mural

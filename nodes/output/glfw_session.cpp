@@ -18,14 +18,13 @@ namespace {
 std::atomic<bool> inUse{false};
 std::atomic<bool> lost{false};
 
-// Errors of single requests: a window that somebody else destroyed, an operation that a window
-// manager has overtaken. What matters shows in the results of the calls.
+// Ignores errors of single requests, such as a window destroyed by another client or an operation overtaken by a window
+// manager. The results of calls show the errors that matter.
 int onXError(Display*, XErrorEvent*) {
     return 0;
 }
 
-// The connection broke. Xlib would end the process after this; instead all its calls fail from now
-// on.
+// The connection is lost. Xlib would end the process; with this handler all its calls fail instead.
 void onXLost(Display*, void*) {
     lost = true;
 }
@@ -34,7 +33,7 @@ int quietly(Display*) {
     return 0; // Xlib's own handler prints
 }
 
-// Sets DISPLAY as long as it lives.
+// Sets DISPLAY during its lifetime.
 class DisplayName {
 public:
     explicit DisplayName(const std::string& name) {
@@ -109,7 +108,7 @@ bool GlfwSession::sync() const {
 }
 
 void GlfwSession::waitForEvents(int wakeFd, int64_t timeoutNs) const {
-    // What Xlib has read already, while it waited for an answer, does not make the socket readable.
+    // Events that Xlib has already read do not make the socket readable.
     if (!lost && XEventsQueued(glfwGetX11Display(), QueuedAlready) > 0)
         return;
     pollfd ready[2] = {{lost ? -1 : ConnectionNumber(glfwGetX11Display()), POLLIN, 0},

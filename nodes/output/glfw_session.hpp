@@ -1,5 +1,5 @@
-// GLFW, started for one X display and ended again. GLFW is one per process and belongs to the
-// thread that started it: so does this.
+// GLFW for one X display. GLFW exists once per process and belongs to the thread that initialised it, as does this
+// object.
 #pragma once
 
 #include <memory>
@@ -11,29 +11,28 @@ namespace mural {
 
 class GlfwSession {
 public:
-    // displayName empty: DISPLAY. Fails when another session is open in this process.
-    // GLFW takes the display's name from the environment only: DISPLAY is changed for the moment of
-    // starting, so no other thread should change the environment meanwhile.
+    // displayName empty: DISPLAY. Fails if this process has another session. GLFW reads the display's name only from
+    // the environment: DISPLAY is changed during initialisation, so no other thread may access the environment
+    // meanwhile.
     static Result<std::unique_ptr<GlfwSession>> open(const std::string& displayName);
     GlfwSession(const GlfwSession&) = delete;
     GlfwSession& operator=(const GlfwSession&) = delete;
     ~GlfwSession();
 
-    // X errors must not end the process, but GLFW 3.3 puts Xlib's fatal handler back now and then:
-    // called before anything that talks to the server.
+    // Installs handlers so that X errors do not end the process. GLFW 3.3 sometimes restores Xlib's handler: call this
+    // before each use of the server.
     void guardErrors() const;
 
-    // Lets the server do all that was sent. False when the display is lost.
+    // Waits until the server has processed all requests. Returns false if the display is lost.
     bool sync() const;
 
-    // Sleeps until the server has sent something, `wakeFd` (if not -1) is readable, or time is
-    // over.
+    // Waits for an event, for `wakeFd` to become readable (unless -1), or for the timeout.
     void waitForEvents(int wakeFd, int64_t timeoutNs) const;
 
     [[nodiscard]] bool displayLost() const;
     [[nodiscard]] const std::string& displayName() const { return displayName_; }
 
-    // What GLFW last complained about, "" if nothing; forgets it.
+    // Returns and clears GLFW's last error, "" if none.
     static std::string takeError();
 
 private:

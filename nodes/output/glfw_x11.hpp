@@ -1,6 +1,5 @@
-// GLFW with its native X11 side. GLFW's own glfw3native.h asks for the headers of Xrandr, which
-// nothing here needs otherwise: its two functions are declared here instead. For .cpp files only:
-// Xlib's macros (None, Success, Bool) break other headers.
+// GLFW with its native X11 functions. glfw3native.h includes the headers of Xrandr, which nothing else here needs, so
+// this header declares its two functions. For .cpp files only: Xlib's macros (None, Success, Bool) break other headers.
 #pragma once
 
 #define GLFW_INCLUDE_NONE

@@ -1,4 +1,4 @@
-// From the text of --out to where the pictures go.
+// Creates the sink for a value of --out.
 #pragma once
 
 #include <functional>
@@ -11,15 +11,15 @@
 namespace mural {
 
 struct OutputOptions {
-    int framesPerSecond = 30;                    // of videos
+    int framesPerSecond = 30; // of videos
     std::function<void(const std::string&)> say; // one line for the user; may be empty
 };
 
 enum class OutputKind { Folder, Video };
 
-// A name with the suffix of a video is a video, unless a folder has that name already or it ends
-// with a slash; everything else is a folder of PNG files. Suffixes of pictures and of videos that
-// we don't write are errors: nobody wants a folder of that name.
+// A name with the suffix of a video is a video, unless a folder has that name or it ends with a slash. Every other name
+// is a folder of PNG files. Suffixes of unsupported pictures and videos are errors, because they are never meant as
+// folders.
 Result<OutputKind> outputKindOf(const std::string& out);
 
 Result<std::unique_ptr<PictureSink>> openOutput(const std::string& out,

@@ -17,13 +17,11 @@ namespace mural {
 
 namespace {
 
-// Low level and one filter: pictures of a running program come fast, disks are large. A drawn
-// picture of 1920x1080 took 39 ms and 0.6 MB so; with libpng's choice among all filters 93 ms and
-// 0.7 MB, at its default level 284 ms and 0.5 MB.
+// A low level and one filter, because pictures arrive fast. A 1920x1080 picture takes 39 ms and 0.6 MB; with libpng's
+// choice among all filters 93 ms and 0.7 MB; at its default level 284 ms and 0.5 MB.
 constexpr int kCompressionLevel = 1;
 constexpr int kFilter = PNG_FILTER_UP;
-// A corrupt header must not make us reserve all memory: the largest picture that OpenGL draws is
-// smaller.
+// Bounds the allocation for a corrupt header. The largest OpenGL framebuffer is smaller.
 constexpr png_uint_32 kLargestSide = 1U << 17;
 constexpr uint64_t kLargestPixels = uint64_t{1} << 30;
 
@@ -39,7 +37,7 @@ struct File {
     FILE* stream;
 };
 
-// What libpng's callbacks leave behind; trivial, because longjmp passes over it.
+// State of libpng's callbacks; trivial, because longjmp skips destructors.
 struct Trouble {
     FILE* stream = nullptr;
     int systemError = 0;
@@ -52,7 +50,7 @@ void onError(png_structp png, png_const_charp text) {
     png_longjmp(png, 1);
 }
 
-void onWarning(png_structp, png_const_charp) {} // harmless by definition, and not for the terminal
+void onWarning(png_structp, png_const_charp) {} // harmless by definition; keeps the terminal clean
 
 void writeBytes(png_structp png, png_bytep bytes, size_t sizeBytes) {
     auto* trouble = static_cast<Trouble*>(png_get_io_ptr(png));
@@ -74,7 +72,7 @@ void readBytes(png_structp png, png_bytep bytes, size_t sizeBytes) {
     png_error(png, "the file ends too early");
 }
 
-// Row pointers from the topmost row down, as PNG wants them.
+// Row pointers from the top row down, the order of PNG.
 std::vector<png_bytep> rowsFromTop(const std::byte* data, int height, size_t rowBytes) {
     std::vector<png_bytep> rows(static_cast<size_t>(height));
     for (int y = 0; y < height; ++y) {
@@ -84,7 +82,7 @@ std::vector<png_bytep> rowsFromTop(const std::byte* data, int height, size_t row
     return rows;
 }
 
-// Between setjmp and a possible longjmp nothing here owns memory or changes.
+// Between setjmp and a possible longjmp, no local object owns memory or changes.
 bool encode(
     png_structp png, png_infop info, Trouble* trouble, int width, int height, png_bytepp rows) {
     if (setjmp(png_jmpbuf(png)) != 0)
@@ -113,7 +111,7 @@ Error cannotWrite(const std::string& path, int systemError) {
     return {fmt::format("cannot write {}: {}; {}", path, std::strerror(systemError), advice)};
 }
 
-// Error number 0: fine.
+// Returns an errno value; 0: success.
 int writeComplete(FILE* stream, const Picture& picture, Trouble& trouble) {
     trouble.stream = stream;
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &trouble, onError, onWarning);
@@ -129,7 +127,7 @@ int writeComplete(FILE* stream, const Picture& picture, Trouble& trouble) {
     return trouble.systemError != 0 ? trouble.systemError : EINVAL;
 }
 
-// Phase one of reading: everything up to the pixels, which then come as B G R A.
+// First step of reading: everything before the pixels, which then arrive as B G R A.
 bool readHeader(png_structp png, png_infop info, Trouble* trouble) {
     if (setjmp(png_jmpbuf(png)) != 0)
         return false;

@@ -1,4 +1,4 @@
-// Pictures as PNG files: RGB, 8 bits per channel, exactly the values that were drawn.
+// Pictures as PNG files: RGB, 8 bits per channel, with the exact drawn values.
 #pragma once
 
 #include <cstdint>
@@ -10,16 +10,16 @@
 
 namespace mural {
 
-// The file appears under its name only when it is complete.
+// The file gets its name only after it is complete.
 Result<void> writePng(const std::string& path, const Picture& picture);
 
-// Any PNG; 16-bit channels are cut to 8, transparency is dropped, no colour is converted.
+// Reads any PNG. 16-bit channels are truncated to 8 bits, transparency is dropped, colours are not converted.
 Result<OwnedPicture> readPng(const std::string& path);
 
-// Writes frame-000001.png and so on, named after the frame's number, into one folder.
+// Writes frame-000001.png etc. into one folder, numbered by frame.
 class PngFiles : public PictureSink {
 public:
-    // Makes the folder, and those above it, where missing.
+    // Creates the folder and its parents if missing.
     static Result<std::unique_ptr<PngFiles>> open(const std::string& folder);
 
     Result<void> show(int64_t frame, const Picture& picture) override;

@@ -40,7 +40,7 @@ SharedPixels::attach(XConnection& x, size_t sizeBytes, Deadline deadline) {
     std::unique_ptr<SharedPixels> pixels(
         new SharedPixels(x, static_cast<std::byte*>(mapping), sizeBytes));
     const xcb_shm_seg_t segment = xcb_generate_id(x.get());
-    // xcb closes the descriptor. A forwarded connection loses it on the way: an X error comes back.
+    // xcb closes the descriptor. A forwarded connection loses it, which returns an X error.
     const auto request = xcb_shm_attach_fd_checked(x.get(), segment, fd, 1);
     XOwned<xcb_generic_error_t> error;
     if (x.check(request, deadline, error) != XAnswer::Reply || error != nullptr)

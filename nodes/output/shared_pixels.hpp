@@ -1,4 +1,4 @@
-// Memory that an X server on this machine reads pictures from (MIT-SHM by descriptor).
+// Memory shared with a local X server for pictures (MIT-SHM with descriptors).
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ namespace mural {
 
 class SharedPixels {
 public:
-    // Null when the server can't: another machine, no MIT-SHM 1.2, not allowed. Not an error.
+    // Null without server support: a remote server, no MIT-SHM 1.2, no permission. Not an error.
     static std::unique_ptr<SharedPixels>
     attach(XConnection& x, size_t sizeBytes, Deadline deadline);
     SharedPixels(const SharedPixels&) = delete;

@@ -28,7 +28,7 @@ struct TextureBlit::Functions {
     PFNGLTEXSUBIMAGE2DPROC texSubImage2D = nullptr;
     PFNGLVIEWPORTPROC viewport = nullptr;
 
-    // The name of the first function that is missing; null when all are there.
+    // The name of the first missing function; null: none missing.
     const char* load(Loader loader) {
         const char* missing = nullptr;
         const auto get = [&](auto& function, const char* name) {
@@ -132,7 +132,7 @@ Result<void> TextureBlit::draw(Target target, int framebufferWidth, int framebuf
     gl_->drawBuffer(target == Target::Back ? GL_BACK : target == Target::BackLeft ? GL_BACK_LEFT : GL_BACK_RIGHT);
     if (width_ < framebufferWidth || height_ < framebufferHeight)
         gl_->clear(GL_COLOR_BUFFER_BIT);
-    const int bottom = framebufferHeight - height_; // below 0 where the picture is higher
+    const int bottom = framebufferHeight - height_; // negative if the picture is taller
     gl_->bindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
     if (width_ > 0 && height_ > 0)
         gl_->blitFramebuffer(0, 0, width_, height_, 0, bottom, width_, bottom + height_,

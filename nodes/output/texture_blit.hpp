@@ -1,6 +1,6 @@
-// Draws a picture 1:1 into the current window with OpenGL 3.0: uploaded as a texture and copied
-// with glBlitFramebuffer, which no state (blending, dithering, filtering, a rasterised edge) can
-// change. All calls with the window's context current, the destructor included.
+// Draws a picture 1:1 into the current window with OpenGL 3.0: a texture upload and glBlitFramebuffer, which blending,
+// dithering, filtering and rasterisation do not affect. All calls, including the destructor, need the window's context
+// current.
 #pragma once
 
 #include <memory>
@@ -13,20 +13,20 @@ namespace mural {
 
 class TextureBlit {
 public:
-    // `load` gives the address of a GL function by its name, null when it is not known.
+    // `load` returns the address of a GL function, or null.
     using Loader = void (*(*)(const char* name))();
     static Result<std::unique_ptr<TextureBlit>> create(Loader load);
     TextureBlit(const TextureBlit&) = delete;
     TextureBlit& operator=(const TextureBlit&) = delete;
     ~TextureBlit();
 
-    // Keeps the picture in the texture.
+    // Stores the picture in the texture.
     Result<void> upload(const Picture& picture);
 
     enum class Target { Back, BackLeft, BackRight };
-    // Copies it to that buffer of the window, upper left corners together, black around it.
+    // Copies it to the target buffer of the window, aligned at the upper left corner, with black around it.
     Result<void> draw(Target target, int framebufferWidth, int framebufferHeight);
-    // The window has a back buffer for each eye.
+    // True if the window has a back buffer per eye.
     [[nodiscard]] bool stereo() const;
 
     void finish(); // waits for the GPU

@@ -12,7 +12,7 @@ namespace mural {
 
 namespace {
 
-// All of these keep R, G and B as they are: no conversion to Y'CbCr takes place.
+// All of these store R, G and B unchanged, without conversion to Y'CbCr.
 const VideoEncoding kX264{"libx264rgb", {"-c:v", "libx264rgb", "-preset", "ultrafast", "-qp", "0"}};
 const VideoEncoding kFfv1{"ffv1", {"-c:v", "ffv1", "-level", "3", "-pix_fmt", "bgr0"}};
 const VideoEncoding kQuickTime{"qtrle", {"-c:v", "qtrle", "-pix_fmt", "rgb24"}};
@@ -59,7 +59,7 @@ bool isVideoSuffix(const std::string& suffix) {
     return findContainer(suffix) != nullptr;
 }
 
-// Lines look like " V....D libx264rgb           libx264 H.264 …"; the legend above them has " = ".
+// Lines look like " V....D libx264rgb           libx264 H.264 …"; the legend before them contains " = ".
 std::set<std::string> encodersIn(const std::string& listing) {
     std::set<std::string> names;
     std::istringstream lines(listing);

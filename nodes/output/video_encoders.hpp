@@ -1,4 +1,4 @@
-// Which encoder of ffmpeg stores pictures without any loss in which container. Pure.
+// Selects ffmpeg's lossless encoder for a container. Pure.
 #pragma once
 
 #include <set>
@@ -10,20 +10,20 @@
 namespace mural {
 
 struct VideoEncoding {
-    std::string encoder;                // as ffmpeg names it
-    std::vector<std::string> arguments; // after the input's, before the file's name
+    std::string encoder; // ffmpeg's name
+    std::vector<std::string> arguments; // between the input's arguments and the file name
 };
 
-// The suffix of `path` in lower case without its dot; empty when there is none.
+// The suffix of `path` in lower case without its dot; empty: none.
 std::string suffixOf(const std::string& path);
 
-// True for the suffixes that VideoFile writes: mp4 mkv avi webm mov.
+// True for the suffixes that VideoFile supports: mp4 mkv avi webm mov.
 bool isVideoSuffix(const std::string& suffix);
 
-// Names from the output of `ffmpeg -hide_banner -encoders`.
+// The names in the output of `ffmpeg -hide_banner -encoders`.
 std::set<std::string> encodersIn(const std::string& listing);
 
-// The fastest lossless encoding for the container among those that are there.
+// The fastest available lossless encoding for the container.
 Result<VideoEncoding> chooseEncoding(const std::string& suffix,
                                      const std::set<std::string>& encoders);
 

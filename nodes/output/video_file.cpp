@@ -22,7 +22,7 @@ Result<std::set<std::string>> listEncoders(const std::string& program) {
     return encodersIn(process.value()->output());
 }
 
-// What ffmpeg would only find out after the first picture.
+// Detects early what ffmpeg would report after the first picture.
 Result<void> checkFolder(const std::string& path) {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     std::error_code error;
@@ -132,14 +132,14 @@ Result<void> VideoFile::begin(int width, int height) {
     width_ = width;
     height_ = height;
     std::vector<std::string> arguments = {
-        // -xerror: without it ffmpeg 5.1 ends with 0 when the disk is full at a short .mkv's end.
+        // -xerror: without it ffmpeg 5.1 exits with 0 if the disk is full at the end of a short .mkv.
         config_.program, "-hide_banner", "-nostats", "-loglevel", "error", "-xerror", "-y",
-        // the input: rows come bottom first, hence vflip
+        // The input has its bottom row first, hence vflip.
         "-f", "rawvideo", "-pixel_format", "bgr0", "-video_size",
         fmt::format("{}x{}", width, height), "-framerate", std::to_string(config_.framesPerSecond),
         "-i", "pipe:0", "-vf", "vflip"};
     arguments.insert(arguments.end(), encoding_.arguments.begin(), encoding_.arguments.end());
-    // "file:", so that a name with a colon or a leading minus stays a name.
+    // "file:" protects names with a colon or a leading minus.
     arguments.push_back("file:" + currentPath_);
     Result<std::unique_ptr<EncoderProcess>> started = EncoderProcess::start(arguments);
     if (!started)

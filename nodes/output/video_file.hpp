@@ -1,5 +1,5 @@
-// Pictures as a video, through a child process `ffmpeg`. Lossless: the decoded video has exactly
-// the values that were drawn. Every frame that is shown is one frame of the video, at a fixed rate.
+// A video file, written by a child process `ffmpeg`. Lossless: the decoded video has the exact drawn values. Every
+// shown frame is one frame of the video, at a fixed rate.
 #pragma once
 
 #include <cstdint>
@@ -19,26 +19,25 @@ struct VideoConfig {
     std::string path; // suffix .mp4 .mkv .avi .webm or .mov
     int framesPerSecond = 30;
     std::string program = "ffmpeg";
-    int64_t frameTimeoutMs = 10'000;             // the encoder takes no data for so long: error
-    int64_t finishTimeoutMs = 120'000;           // encoders hold frames back
+    int64_t frameTimeoutMs = 10'000; // limit for the encoder to accept a frame
+    int64_t finishTimeoutMs = 120'000; // encoders buffer frames
     std::function<void(const std::string&)> say; // one line for the user; may be empty
 };
 
 class VideoFile : public PictureSink {
 public:
-    // Finds ffmpeg and its encoders; the file itself is begun with the first picture.
+    // Finds ffmpeg and its encoders. The first picture creates the file.
     static Result<std::unique_ptr<VideoFile>> open(VideoConfig config);
-    ~VideoFile() override; // completes the file if that takes no longer than a moment
+    ~VideoFile() override; // completes the file within a short limit
 
-    // A picture of another size than the one before ends the file and begins "NAME-2.SUFFIX".
-    // After a failure every further call fails alike.
+    // A picture of another size ends the file and starts "NAME-2.SUFFIX". After a failure all further calls fail.
     Result<void> show(int64_t frame, const Picture& picture) override;
     Result<void> finish() override;
     [[nodiscard]] std::string describe() const override;
 
     [[nodiscard]] const std::string& currentPath() const { return currentPath_; }
     [[nodiscard]] int64_t framesWritten() const { return framesWritten_; }
-    // Of the running encoder, -1 when none runs.
+    // Of the running encoder; -1: none.
     [[nodiscard]] pid_t encoderPid() const { return encoder_ ? encoder_->pid() : -1; }
 
 private:

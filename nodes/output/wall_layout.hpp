@@ -1,4 +1,4 @@
-// The windows of tiles of a wall: one for each, numbered in reading order.
+// The windows for the tiles of a wall: one per tile, in reading order.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace mural {
 
-// Of the region's tiles, row by row from the lowest; the picture has this size.
+// The windows of the region's tiles, row by row from the lowest. width, height: of the picture.
 [[nodiscard]] std::vector<TileWindow> windowsOfTiles(const TileGrid& grid, const TileRegion& region, int width, int height);
 
 } // namespace mural

@@ -44,7 +44,7 @@ Result<void> WallScreen::openWindows(bool openGl, bool stereo) {
         options.monitor = tile.monitor >= 0 ? tile.monitor : static_cast<int>(i);
         options.openGl = openGl;
         options.stereo = stereo;
-        // One swap that waits brings the others to the refresh too; each waiting would add up.
+        // Only one swap waits for the refresh: several waits would add up.
         options.waitForRefresh = config_.waitForRefresh && i == 0;
         options.timeoutMs = config_.showTimeoutMs;
         Result<std::unique_ptr<WallWindow>> window = WallWindow::open(*session_, options);

@@ -1,4 +1,4 @@
-// The windows behind WallWindows. Everything here belongs to the thread that opened it.
+// The windows of WallWindows. All objects belong to the thread that opened them.
 #pragma once
 
 #include <memory>
@@ -30,8 +30,7 @@ public:
 
     static Result<std::unique_ptr<WallWindow>> open(GlfwSession& session, const Options& options);
 
-    // True when OpenGL 3.0 is there on the display and runs on a graphics card. Nothing is seen of
-    // it.
+    // Returns whether the display has OpenGL 3.0 on a graphics card. Opens no visible window.
     static bool openGlIsFast(const GlfwSession& session);
 
     WallWindow(const WallWindow&) = delete;
@@ -40,11 +39,11 @@ public:
 
     Result<void> move(const PixelViewport& place);
 
-    // Takes the picture and leaves the one before in its place (memory to use again). right: of a window with a buffer for each
-    // eye; empty: the same for both.
+    // Swaps the picture with the previous one, whose memory can be reused. right: for windows with a buffer per eye;
+    // empty: both eyes show `picture`.
     Result<void> draw(OwnedPicture& picture, OwnedPicture& right);
-    Result<void> present(); // makes visible what was drawn
-    void finish();          // returns when it is on its way to the screen
+    Result<void> present(); // makes the drawn picture visible
+    void finish(); // returns when the picture is on its way to the screen
 
     Result<void> redrawIfUncovered();
     [[nodiscard]] bool closeRequested() const;
@@ -65,13 +64,13 @@ private:
     GlfwSession& session_;
     GLFWwindow* window_ = nullptr;
     bool fullScreen_ = false;
-    int wantedWidth_ = 0; // what was last asked for; a window manager may not give it
+    int wantedWidth_ = 0; // last requested size; a window manager may refuse it
     int wantedHeight_ = 0;
     std::string title_;
-    OwnedPicture kept_;                 // what the window shows
-    OwnedPicture keptRight_;            // empty: to both eyes
+    OwnedPicture kept_; // the shown picture
+    OwnedPicture keptRight_; // empty: both eyes show kept_
     bool stereo_ = false;
-    std::unique_ptr<TextureBlit> blit_; // one of the two
+    std::unique_ptr<TextureBlit> blit_; // one of the two is set
     std::unique_ptr<AppWindow> painter_;
     bool uncovered_ = false;
 };
@@ -85,15 +84,15 @@ public:
         OwnedPicture picture;
         OwnedPicture right; // empty: none
     };
-    // Draws pictures; leaves used memory in the buffers.
+    // Draws the pictures, and leaves reusable memory in the buffers.
     Result<void> draw(std::vector<TileBuffer>& buffers);
-    // Shows what was drawn, one window directly after the other, not before `atNs` (monotonicNowNs()).
+    // Shows the drawn pictures in quick succession, not before `atNs` (monotonicNowNs()).
     Result<void> present(int64_t atNs = 0);
-    // When the server had the pictures of the last one (monotonicNowNs()).
+    // When the server had the last pictures (monotonicNowNs()).
     [[nodiscard]] int64_t presentedNs() const { return presentedNs_; }
     Result<void> arrange(const std::vector<TileWindow>& tiles);
 
-    // Handles what the server has sent.
+    // Processes events of the server.
     Result<void> doWork();
     void waitForEvents(int wakeFd, int64_t timeoutNs) {
         session_->waitForEvents(wakeFd, timeoutNs);
@@ -112,7 +111,7 @@ private:
     Result<void> checkDisplay() const;
 
     WallWindowsConfig config_;
-    std::unique_ptr<GlfwSession> session_; // before the windows: outlives them
+    std::unique_ptr<GlfwSession> session_; // declared before the windows, which it outlives
     std::vector<std::unique_ptr<WallWindow>> windows_;
     std::vector<size_t> drawn_; // tiles with a picture that is not shown yet
     int64_t presentedNs_ = 0;

@@ -36,7 +36,7 @@ Result<void> WallSink::show(int64_t, const Picture& picture) {
     return showTiles(picture, {});
 }
 
-// Whether windows have a buffer for each eye is asked once: other sizes find the same display.
+// Stereo support is queried once: it depends on the display only.
 Result<void> WallSink::showPair(int64_t frame, const EyePair& eyes) {
     config_.stereo = whyNot_.empty();
     if (auto opened = openFor(eyes.left); !opened) return opened;

@@ -1,4 +1,4 @@
-// Whole pictures in the windows of a wall, where no node has a whole tile to show: frames of several passes.
+// Shows whole pictures in wall windows, for sessions in which several passes compose each tile.
 #pragma once
 
 #include <functional>
@@ -13,8 +13,7 @@ namespace mural {
 
 class WallSink : public PictureSink {
 public:
-    // config: without tiles; they come with the first picture's size.
-    // say: a line for the user.
+    // config: without tiles, which follow from the first picture's size. say: a line for the user.
     WallSink(WallWindowsConfig config, const TileGrid& grid, std::function<void(const std::string&)> say)
         : config_(std::move(config))
         , grid_(grid)
@@ -33,7 +32,7 @@ private:
     WallWindowsConfig config_;
     const TileGrid grid_;
     const std::function<void(const std::string&)> say_;
-    std::string whyNot_; // no window has a buffer for each eye; "": it is not known yet, or they have
+    std::string whyNot_; // why windows have no buffer per eye; "": they have, or it is not known yet
     std::unique_ptr<WallWindows> windows_;
     int width_ = 0, height_ = 0;
 };

@@ -13,7 +13,7 @@ namespace mural {
 
 namespace {
 
-// A window manager answers a wish for another size within this, or it won't.
+// A window manager grants a size request within this time or not at all.
 constexpr int64_t kResizeMs = 250;
 
 struct Monitor {
@@ -21,7 +21,7 @@ struct Monitor {
     int x, y;
 };
 
-// In reading order: GLFW puts the primary monitor first, wherever it stands.
+// In reading order. GLFW lists the primary monitor first.
 std::vector<Monitor> monitorsInOrder() {
     int count = 0;
     GLFWmonitor** all = glfwGetMonitors(&count);
@@ -44,7 +44,7 @@ void setHints(const WallWindow::Options& options) {
     glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
     glfwWindowHint(GLFW_DECORATED, GLFW_FALSE);
     glfwWindowHint(GLFW_RESIZABLE, GLFW_FALSE);
-    // The program keeps the keyboard and the pointer; a wall stays when another window is used.
+    // The program keeps the keyboard and pointer focus, and full-screen windows stay when another window is used.
     glfwWindowHint(GLFW_FOCUSED, GLFW_FALSE);
     glfwWindowHint(GLFW_FOCUS_ON_SHOW, GLFW_FALSE);
     glfwWindowHint(GLFW_CENTER_CURSOR, GLFW_FALSE);
@@ -55,7 +55,7 @@ void setHints(const WallWindow::Options& options) {
     }
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 0);
-    glfwWindowHint(GLFW_ALPHA_BITS, 0); // an alpha would let the desktop shine through
+    glfwWindowHint(GLFW_ALPHA_BITS, 0); // an alpha channel would let the desktop show through
     glfwWindowHint(GLFW_DEPTH_BITS, 0);
     glfwWindowHint(GLFW_STENCIL_BITS, 0);
     glfwWindowHint(GLFW_STEREO, options.stereo ? GLFW_TRUE : GLFW_FALSE);
@@ -90,7 +90,7 @@ Result<std::unique_ptr<WallWindow>> WallWindow::open(GlfwSession& session, const
     session.guardErrors();
     if (!created)
         return created.error();
-    // What the server paints where no picture is yet.
+    // The background that the server paints before the first picture.
     Display* display = glfwGetX11Display();
     XSetWindowBackground(display, glfwGetX11Window(window->window_),
                          BlackPixel(display, DefaultScreen(display)));
@@ -142,7 +142,7 @@ Result<void> WallWindow::createFullScreen(const Options& options) {
     const GLFWvidmode* mode = glfwGetVideoMode(monitor);
     if (mode == nullptr)
         return Error{fmt::format("cannot open {}: {}", where(), GlfwSession::takeError())};
-    glfwWindowHint(GLFW_REFRESH_RATE, mode->refreshRate); // as it is now: no change of modes
+    glfwWindowHint(GLFW_REFRESH_RATE, mode->refreshRate); // the current rate: no mode change
     window_ = glfwCreateWindow(mode->width, mode->height, title_.c_str(), monitor, nullptr);
     if (window_ == nullptr)
         return Error{fmt::format("cannot open {}: {}", where(), GlfwSession::takeError())};
@@ -210,7 +210,7 @@ Result<void> WallWindow::draw(OwnedPicture& picture, OwnedPicture& right) {
     if (blit_) {
         glfwMakeContextCurrent(window_);
     } else if (otherSize) {
-        // What the picture before left beside the new one; in order with the painter's connection.
+        // Clears remains of the previous picture beside the new one; ordered with the painter's connection.
         XClearWindow(glfwGetX11Display(), glfwGetX11Window(window_));
         (void)session_.sync();
     }
@@ -233,7 +233,7 @@ Result<void> WallWindow::drawKept() {
     return drawEye(right, TextureBlit::Target::BackRight, width, height);
 }
 
-// No picture yet: black.
+// Without a picture, draws black.
 Result<void> WallWindow::drawEye(const Picture& picture, TextureBlit::Target target, int width, int height) {
     if (!picture.empty())
         if (Result<void> uploaded = blit_->upload(picture); !uploaded)

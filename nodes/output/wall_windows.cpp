@@ -21,10 +21,10 @@ namespace mural {
 
 namespace {
 
-constexpr int64_t kIdleNs = 250 * kNsPerMs; // between looks at the display when nothing happens
+constexpr int64_t kIdleNs = 250 * kNsPerMs; // poll interval of an idle display
 constexpr size_t kBuffersKept = 32;
 
-// Something to do in the windows' thread.
+// A task for the windows' thread.
 struct Job {
     std::function<Result<void>(WallScreen&)> work;
     Result<void> result;
@@ -33,8 +33,8 @@ struct Job {
 
 } // namespace
 
-// What the thread and the callers have in common. The thread keeps it alive: one that is stuck in a
-// server that doesn't answer is left behind.
+// State shared by the thread and its callers. The thread keeps it alive: a thread blocked by an unresponsive server is
+// abandoned.
 struct WallWindows::Shared {
     explicit Shared(const WallWindowsConfig& c)
         : config(c)
@@ -51,10 +51,10 @@ struct WallWindows::Shared {
     std::thread thread;
     std::atomic<bool> closeRequested{false};
 
-    std::mutex mutex; // for all below
+    std::mutex mutex; // guards the members below
     std::condition_variable changed;
     std::deque<std::shared_ptr<Job>> jobs;
-    std::vector<OwnedPicture> buffers; // for pictures on their way
+    std::vector<OwnedPicture> buffers; // for pictures in transfer
     std::string description;
     bool stereo = false;
     std::string whyNotStereo;
@@ -77,7 +77,7 @@ struct WallWindows::Shared {
 
 namespace {
 
-// Waits for a condition until the deadline; the lock is held.
+// Waits for a condition until the deadline. Call with the lock held.
 template <class Condition>
 bool waitUntil(std::condition_variable& changed,
                std::unique_lock<std::mutex>& lock,
@@ -95,7 +95,7 @@ Error notInTime(const std::string& displayName) {
 
 } // namespace
 
-// In the windows' thread until the end.
+// The main function of the windows' thread.
 void WallWindows::Shared::serve() {
     {
         Result<std::unique_ptr<WallScreen>> screen = WallScreen::open(config);
@@ -117,7 +117,7 @@ void WallWindows::Shared::serve() {
                     break;
             }
             serveJobs(*screen.value());
-            (void)screen.value()->doWork(); // what failed for good fails again for the next job
+            (void)screen.value()->doWork(); // a permanent failure recurs in the next job
             if (screen.value()->closeRequested())
                 closeRequested = true;
             screen.value()->waitForEvents(wakeFd, kIdleNs);
@@ -153,7 +153,7 @@ Result<void> WallWindows::Shared::run(std::function<Result<void>(WallScreen&)> w
     wake();
     if (waitUntil(changed, lock, deadline, [&] { return job->done; }))
         return job->result;
-    std::erase(jobs, job); // not begun: it won't be
+    std::erase(jobs, job); // cancels it before its start
     return notInTime(config.displayName);
 }
 
@@ -245,7 +245,7 @@ Result<int64_t> WallWindows::present(int64_t atNs) {
     return *presentedNs;
 }
 
-// The pictures are copied: when the deadline passes the thread may still be reading them.
+// Copies the pictures: after the deadline the thread may still read them.
 Result<void> WallWindows::take(std::span<const TilePicture> pictures, bool present) {
     const Deadline deadline = Deadline::inMs(showTimeoutMs_);
     const size_t tiles = shared_->config.tiles.size();
@@ -262,7 +262,7 @@ Result<void> WallWindows::take(std::span<const TilePicture> pictures, bool prese
         buffers->back().right = shared_->takeBuffer();
         buffers->back().right.assign(shown.right);
     }
-    Shared* shared = shared_.get(); // the thread, where it runs, keeps it
+    Shared* shared = shared_.get(); // a running thread keeps it alive
     return shared_->run(
         [buffers, shared, present](WallScreen& screen) {
             Result<void> done = screen.draw(*buffers);

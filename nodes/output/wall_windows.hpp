@@ -1,11 +1,9 @@
-// The windows of a display wall on one X display: one borderless window per tile, at given places,
-// or one full-screen window per monitor. Shows pictures pixel by pixel, upper left corners
-// together.
+// The windows of a display wall on one X display: one borderless window per tile, or one full-screen window per
+// monitor. Shows pictures pixel by pixel, aligned at the upper left corner.
 //
-// All windowing happens in a thread of this object's own, with OpenGL contexts of its own: the
-// caller's current context is not touched. The calls here may come from any thread; each waits
-// until the thread has done it, with a deadline. One WallWindows per process at a time (GLFW is one
-// per process).
+// A separate thread owns the windows and their OpenGL contexts, so the caller's current context does not change. All
+// calls are thread-safe, and wait for that thread with a deadline. One WallWindows per process at a time (GLFW is
+// global).
 #pragma once
 
 #include <cstddef>
@@ -23,40 +21,39 @@ namespace mural {
 
 struct TileWindow {
     PixelViewport tile; // in pixels of the wall, origin lower left
-    int screenX = 0;    // upper left corner on the X screen, before WallWindowsConfig::position
+    int screenX = 0; // upper left corner on the X screen, without WallWindowsConfig::position
     int screenY = 0;
     std::string title = "Mural";
-    int monitor = -1; // full screen: in reading order of the monitors; -1: the tile's index
+    int monitor = -1; // full screen: monitor in reading order; -1: the tile's index
 };
 
-// Windows for tiles that lie on the screen as they do on the wall.
+// Arranges the windows on the screen as the tiles on the wall.
 std::vector<TileWindow> placeTiles(std::span<const PixelViewport> tiles, int wallHeight);
 
-// OpenGl is what graphics cards do best and what can wait for the refresh; XPut needs no OpenGL on
-// the display and is faster where that runs on the CPU: 2 ms against 23 ms for 1920x1080 (llvmpipe,
-// Xvfb, 2 cores). Auto takes OpenGl on a graphics card, XPut elsewhere. Both are exact on 24-bit
-// screens.
+// OpenGl suits graphics cards and can wait for the refresh. XPut needs no OpenGL and is faster with software rendering:
+// 2 ms against 23 ms for 1920x1080 (llvmpipe, Xvfb, 2 cores). Auto selects OpenGl on a graphics card, otherwise XPut.
+// Both are exact on 24-bit screens.
 enum class WallDrawing { Auto, OpenGl, XPut };
 
 struct WallWindowsConfig {
     std::string displayName; // empty: DISPLAY
     std::vector<TileWindow> tiles;
-    int positionX = 0; // --position: added to the place of every window
+    int positionX = 0; // --position: offset of every window
     int positionY = 0;
     bool fullScreen = false;
     WallDrawing drawing = WallDrawing::Auto;
-    bool stereo = false; // windows with a buffer for each eye, where the display has them: by OpenGl then
-    bool waitForRefresh = true; // OpenGl: swap at the monitor's refresh (once per showAll)
+    bool stereo = false; // requests a buffer per eye, which needs OpenGl
+    bool waitForRefresh = true; // OpenGl: swaps at the monitor's refresh (once per showAll)
     int64_t openTimeoutMs = 20'000;
-    int64_t showTimeoutMs = 5'000; // of show, showAll, arrange, and of closing
+    int64_t showTimeoutMs = 5'000; // for show, showAll, arrange, and closing
 };
 
 class WallWindows {
 public:
     struct TilePicture {
         size_t tile = 0;
-        Picture picture;    // of the left eye, where there are two
-        Picture right = {}; // empty: the same for both
+        Picture picture; // of the left eye in stereo
+        Picture right = {}; // empty: both eyes show `picture`
     };
 
     static Result<std::unique_ptr<WallWindows>> open(const WallWindowsConfig& config);
@@ -64,27 +61,27 @@ public:
     WallWindows& operator=(const WallWindows&) = delete;
     ~WallWindows();
 
-    // Returns when the server has the picture; its memory is the caller's again. A window that has
-    // not the picture's size is given it (not in full screen).
+    // Returns when the server has the picture and no longer uses its memory. A window of another size is resized,
+    // except in full screen.
     Result<void> show(size_t tile, const Picture& picture);
 
-    // Draws all, then shows one directly after the other.
+    // Draws all pictures, then shows them in quick succession.
     Result<void> showAll(std::span<const TilePicture> pictures);
 
-    // The same in two steps, between which other nodes may be waited for. `present` shows what was drawn last, not before
-    // `atNs` (monotonicNowNs()), and returns when the server had it.
+    // The same in two steps, for a swap barrier between them. `present` shows the pictures drawn last, not before
+    // `atNs` (monotonicNowNs()), and returns when the server had them.
     Result<void> drawAll(std::span<const TilePicture> pictures);
     Result<int64_t> present(int64_t atNs);
 
-    // The windows have a buffer for each eye.
+    // True if the windows have a buffer per eye.
     [[nodiscard]] bool stereo() const;
-    // Why they don't, though that was wanted; else "".
+    // Why requested stereo is not available; otherwise "".
     [[nodiscard]] std::string whyNotStereo() const;
 
-    // Other places and sizes for the same number of tiles; pictures follow with the next show.
+    // Moves and resizes the same number of tiles. Pictures follow with the next show.
     Result<void> arrange(const std::vector<TileWindow>& tiles);
 
-    // The user has asked a window to close.
+    // The user has asked to close a window.
     [[nodiscard]] bool closeRequested() const;
 
     [[nodiscard]] std::string describe() const; // e.g. "4 windows on :0 (OpenGL, llvmpipe)"
@@ -94,7 +91,7 @@ private:
     explicit WallWindows(std::shared_ptr<Shared> shared);
     Result<void> take(std::span<const TilePicture> pictures, bool present);
 
-    std::shared_ptr<Shared> shared_; // with the thread
+    std::shared_ptr<Shared> shared_; // shared with the thread
     int64_t showTimeoutMs_;
 };
 

@@ -1,5 +1,4 @@
-// A connection to an X server on which nothing waits longer than its deadline and no error ends the
-// process. Used by one thread.
+// A connection to an X server. No call exceeds its deadline, and no error ends the process. Used by one thread.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +22,7 @@ enum class XAnswer { Reply, Failed, TimedOut, ConnectionLost };
 
 class XConnection {
 public:
-    // displayName empty: the DISPLAY of the environment.
+    // displayName empty: the environment's DISPLAY.
     static Result<std::unique_ptr<XConnection>> open(const std::string& displayName,
                                                      Deadline deadline);
     XConnection(const XConnection&) = delete;
@@ -33,13 +32,13 @@ public:
     [[nodiscard]] xcb_connection_t* get() const { return connection_; }
     [[nodiscard]] const xcb_setup_t& setup() const { return *xcb_get_setup(connection_); }
     [[nodiscard]] const std::string& displayName() const { return displayName_; }
-    // The server is on this machine and reached through a Unix socket: descriptors can be passed.
+    // True for a server on this machine with a Unix socket, which can pass descriptors.
     [[nodiscard]] bool isLocal() const { return local_; }
-    // So many bytes can be on their way unanswered without a write ever blocking.
+    // The number of unanswered bytes that can be sent without blocking.
     [[nodiscard]] size_t bytesInFlight() const { return bytesInFlight_; }
 
-    // Waits for the answer to a request that has one. Failed: `error` (if wanted) says why.
-    // After TimedOut the same request can be waited for again.
+    // Waits for the reply to a request. If the request failed, `error` (unless null) holds the reason. After TimedOut
+    // the same request can be waited for again.
     template <class Reply>
     XAnswer await(unsigned sequence,
                   Deadline deadline,
@@ -54,17 +53,17 @@ public:
         return answer;
     }
 
-    // A request whose answer comes after the server has done everything before it.
+    // A request whose reply arrives after the server has processed everything before it.
     unsigned sendFence() { return xcb_get_input_focus(connection_).sequence; }
     XAnswer awaitFence(unsigned sequence, Deadline deadline) {
         return await<xcb_get_input_focus_reply_t>(sequence, deadline, nullptr);
     }
 
-    // For a checked request without an answer: sends a fence and waits for it. `error` is empty
-    // when the server has accepted the request.
+    // Waits for a checked request without a reply, by means of a fence. `error` is empty if the server has accepted the
+    // request.
     XAnswer check(xcb_void_cookie_t request, Deadline deadline, XOwned<xcb_generic_error_t>& error);
 
-    // One line for the answers TimedOut and ConnectionLost.
+    // One line for TimedOut and ConnectionLost.
     [[nodiscard]] Error describe(XAnswer answer) const;
 
 private:

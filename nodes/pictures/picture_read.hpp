@@ -1,4 +1,4 @@
-// A picture that was drawn, on its way to the thread that packs it.
+// The readback of a drawn picture, for the thread that encodes it.
 #pragma once
 
 #include <cstddef>
@@ -16,11 +16,12 @@ namespace mural {
 class PictureRead {
 public:
     virtual ~PictureRead() = default;
-    // Rows bottom first, B G R A, tightly packed; they live as long as this does. Called once, by any thread. Errors: they did not come in time, or GL has lost them.
+    // Rows bottom first, B G R A, without padding; valid during this object's lifetime. Call once, from any thread.
+    // Errors: the deadline has passed; the GL context is lost.
     [[nodiscard]] virtual Result<std::span<const std::byte>> bytes(Deadline deadline) = 0;
 };
 
-// Memory of pictures, used again: what comes anew from the system takes longer than reading into it.
+// A pool of picture buffers. Fresh memory from the system takes longer than reading into it.
 class PictureMemory {
 public:
     [[nodiscard]] std::vector<std::byte> take() {
@@ -41,7 +42,7 @@ private:
     std::vector<std::vector<std::byte>> free_;
 };
 
-// One that is in memory already.
+// A picture that is already in memory.
 class ReadPicture final : public PictureRead {
 public:
     ReadPicture(std::vector<std::byte> bytes, std::shared_ptr<PictureMemory> memory) : bytes_(std::move(bytes)), memory_(std::move(memory)) {}

@@ -1,4 +1,4 @@
-// The head's end of a node's packed pictures: keeps the last one of each of its windows, for the tiles that stay.
+// Decodes a node's transferred pictures. Keeps the last picture of each window, because unchanged tiles are not sent.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ class PictureUnpacker {
 public:
     explicit PictureUnpacker(const std::string& codec);
 
-    // As PicturePacker::pack got it, at once or by a later call; `into` has as many bytes. Any bytes may come in: what is no packed picture of this size,
-    // or builds on one that has not come, is an error.
+    // Inverse of PicturePacker::pack; `into` has the picture's size in bytes. Accepts arbitrary bytes. Errors: not an
+    // encoded picture of this size; the picture that it depends on is missing.
     [[nodiscard]] Result<void> unpack(uint32_t client, uint32_t window, int32_t width, int32_t height, std::span<const std::byte> packed, std::span<std::byte> into);
     void windowGone(uint32_t client, uint32_t window) { windows_.erase({client, window}); }
     void clientGone(uint32_t client);

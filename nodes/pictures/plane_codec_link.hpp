@@ -1,4 +1,4 @@
-// All codecs of one link as a single one: the first byte says which was taken.
+// Combines all codecs of a link into one. The first byte identifies the codec.
 #pragma once
 
 #include "common/copy_bytes.hpp"

@@ -15,7 +15,8 @@ using compositor::Codec;
 using compositor::MutablePlaneView;
 using compositor::PlaneView;
 
-// Numbers are places in this list; behind it comes the one that the user has named. Run lengths are there to be measured against, and not in it.
+// The index in this list is the codec number. The user's codec follows the list. Run-length coding is a baseline for
+// measurements and not included.
 constexpr const char* kCodecs[] = {"raw", "bitplane", "slope", "bitplane-zstd", "slope-zstd", "lz4", "zstd", "yuv420", "jpeg-90"};
 constexpr CodecNumber kRaw = 0;
 
@@ -45,7 +46,7 @@ std::vector<std::string> coloursBy(const std::string& codec) {
 
 compositor::SelectorOptions latencyCounts() {
     compositor::SelectorOptions options;
-    options.overlap = compositor::Overlap::Serial; // the receiver waits for the piece, and then unpacks it
+    options.overlap = compositor::Overlap::Serial; // the receiver decodes only after the whole piece has arrived
     return options;
 }
 
@@ -74,7 +75,7 @@ PlaneEncoder::PlaneEncoder(const std::string& codec)
 }
 PlaneEncoder::~PlaneEncoder() = default;
 
-// Into scratch_; how many bytes. As many as raw ones: it is of no use here.
+// Encodes into scratch_ and returns the size. A size equal to the raw one means no gain.
 size_t PlaneEncoder::tryCodec(CodecNumber codec, const PlaneView& plane, int64_t& tookNs) {
     scratch_.resize(std::max(scratch_.size(), codecs_[codec]->boundBytes(shapeOf(plane))));
     const int64_t beganNs = threadCpuNowNs();
@@ -83,7 +84,7 @@ size_t PlaneEncoder::tryCodec(CodecNumber codec, const PlaneView& plane, int64_t
     return size ? std::min(*size, plane.sizeBytes()) : plane.sizeBytes();
 }
 
-// What it has made larger goes raw.
+// Sends the plane raw if the codec enlarges it.
 CodecNumber PlaneEncoder::encodeBy(CodecNumber codec, const PlaneView& plane, std::vector<std::byte>& into) {
     int64_t tookNs = 0;
     size_t size = tryCodec(codec, plane, tookNs);

@@ -1,4 +1,4 @@
-// Planes of pixels packed for one link, and unpacked: by the codec that gets them across soonest, of those that lose nothing, or as the user wants it.
+// Encoding of pixel planes for one link: with the lossless codec that delivers them soonest, or with the user's codec.
 #pragma once
 
 #include <cstdint>
@@ -14,32 +14,33 @@
 
 namespace mural {
 
-// What the user may want instead of the name of a codec (compositor::CodecRegistry): the quickest, of those that lose nothing or of all.
+// Selects the fastest codec, lossless or any, instead of a name in compositor::CodecRegistry.
 inline constexpr const char* kQuickestCodec = "auto";
 inline constexpr const char* kLossyCodec = "lossy";
-inline constexpr const char* kRawCodec = "raw"; // of pictures: they are not packed at all
+inline constexpr const char* kRawCodec = "raw"; // pictures are not encoded
 
-// Errors: there is no such codec.
+// Errors: no such codec.
 struct WantedCodec {
-    bool chosen = false;   // by what is quickest
+    bool chosen = false; // selected by speed
     bool lossless = true;
 };
 Result<WantedCodec> wantedCodec(const std::string& name);
-[[nodiscard]] bool mayLose(const std::string& codec); // there is one of this name
+[[nodiscard]] bool mayLose(const std::string& codec); // requires an existing name
 
-// What codecs are called on the way; both ends are of one build, and know what the user wants.
+// Codec numbers in messages. Both ends are of one build and know the user's choice.
 using CodecNumber = uint8_t;
 
-// Planes are RGBA8, D24S8 or D32F. Used by one thread.
+// For planes in RGBA8, D24S8 or D32F. Used by one thread.
 class PlaneEncoder {
 public:
-    // What a codec does not take (depth, by lossy ones) goes by the quickest. Of a name that there is not: all.
+    // Planes that the codec does not support (depth, for lossy ones) use the fastest codec, as do all planes for an
+    // unknown name.
     explicit PlaneEncoder(const std::string& codec = kQuickestCodec);
     ~PlaneEncoder();
 
-    // Puts the plane's bytes behind what is there; never more than those of its pixels.
+    // Appends the encoded plane; its size never exceeds the raw size.
     CodecNumber encode(const compositor::PlaneView& plane, std::vector<std::byte>& into);
-    // The link carried so much in a time in which it was never idle.
+    // Reports a measurement of the link: bytes sent in a time without idle periods.
     void transferred(uint64_t bytes, int64_t ns);
 
 private:
@@ -48,11 +49,11 @@ private:
     void measure(compositor::CodecSelector& selector, size_t index, const compositor::TileClass& tile, const compositor::PlaneView& plane);
 
     std::vector<std::unique_ptr<compositor::Codec>> codecs_; // by number
-    std::optional<CodecNumber> named_; // for all planes of these formats
+    std::optional<CodecNumber> named_; // for all planes in its formats
     uint32_t namedFormats_ = 0;
     compositor::CodecSelector colour_, depth_;
     std::vector<std::byte> scratch_;
-    compositor::Plane decoded_; // of a codec that is measured
+    compositor::Plane decoded_; // output of a codec under measurement
 };
 
 class PlaneDecoder {
@@ -60,10 +61,10 @@ public:
     explicit PlaneDecoder(const std::string& codec = kQuickestCodec);
     ~PlaneDecoder();
 
-    // Any bytes may come in; what is no plane of this shape is an error.
+    // Accepts arbitrary bytes. Errors: not a plane of this shape.
     Result<void> decode(CodecNumber codec, std::span<const std::byte> bytes, const compositor::MutablePlaneView& into);
 
-    // For what is unpacked: kept from piece to piece, since memory that comes anew takes longer than unpacking does.
+    // Buffers for decoded pieces. They are reused, because fresh memory costs more than decoding.
     std::vector<uint32_t>& colour() { return colour_; }
     std::vector<uint32_t>& depth() { return depth_; }
 

@@ -9,7 +9,8 @@ namespace mural {
 
 namespace {
 
-// Of the pixels of the drawn picture in one direction, how much of each counts for those that are shown: in 4096ths, so that no machine rounds otherwise.
+// Weights of source pixels per target pixel in one direction, as integers of 1/4096, so that all machines round
+// equally.
 constexpr int64_t kOne = 4096;
 
 class Weights {
@@ -24,7 +25,7 @@ public:
     }
 
     struct Part {
-        int32_t pixel; // of the drawn picture, counted from its first
+        int32_t pixel; // index in the drawn picture
         uint32_t weight;
     };
     [[nodiscard]] size_t size() const { return first_.size() - 1; }
@@ -32,7 +33,7 @@ public:
     [[nodiscard]] const Part* end(size_t shown) const { return parts_.data() + first_[shown + 1]; }
 
 private:
-    // At the edges the outermost pixels count on.
+    // Extends edge pixels.
     void add(int64_t pixel, int64_t weight) {
         if (weight > 0) parts_.push_back({static_cast<int32_t>(std::clamp<int64_t>(pixel, 0, count_ - 1)), static_cast<uint32_t>(weight)});
     }
@@ -43,7 +44,7 @@ private:
         add(at >> 8, (kSteps - part) * (kOne / kSteps));
         add((at >> 8) + 1, part * (kOne / kSteps));
     }
-    // What of the pixel each covers: weights follow from rounded edges, so that they are one together.
+    // Weights follow from rounded edges, so that they sum to one.
     void within(int32_t shown, double zoom) {
         const double begin = shown * zoom - from_, end = (shown + 1.0) * zoom - from_;
         const auto edge = [&](double at) { return static_cast<int64_t>(std::lround((std::clamp(at, begin, end) - begin) / zoom * kOne)); };
@@ -52,7 +53,7 @@ private:
     }
 
     int32_t from_, count_;
-    std::vector<size_t> first_; // of each that is shown, in parts_
+    std::vector<size_t> first_; // index into parts_ per shown pixel
     std::vector<Part> parts_;
 };
 
@@ -66,7 +67,7 @@ void scalePicture(const DrawnPicture& from, const Zoom& zoom, const PixelViewpor
     for (size_t y = 0; y < rows.size(); ++y) {
         auto* to = reinterpret_cast<uint8_t*>(into) + (static_cast<size_t>(r.y - box.y + static_cast<int32_t>(y)) * static_cast<size_t>(box.w) + static_cast<size_t>(r.x - box.x)) * 4;
         for (size_t x = 0; x < columns.size(); ++x) {
-            uint32_t sums[4] = {1 << 23, 1 << 23, 1 << 23, 1 << 23}; // one is 2^24
+            uint32_t sums[4] = {1 << 23, 1 << 23, 1 << 23, 1 << 23}; // fixed point: 2^24 is one
             for (const auto* row = rows.begin(y); row != rows.end(y); ++row) {
                 const uint8_t* const line = pixels + static_cast<size_t>(row->pixel) * width * 4;
                 for (const auto* column = columns.begin(x); column != columns.end(x); ++column)

@@ -1,4 +1,4 @@
-// Pictures that were drawn smaller or larger, made as large as they are shown.
+// Scales pictures that were drawn smaller or larger to their shown size.
 #pragma once
 
 #include <cstddef>
@@ -10,11 +10,11 @@ namespace mural {
 
 struct DrawnPicture {
     const std::byte* pixels; // 4 bytes each
-    PixelViewport area;      // of all of it, by its own pixels
+    PixelViewport area; // of the whole picture, in its own pixels
 };
 
-// Writes pixels `r` of the picture that is shown: of one that was drawn smaller linearly between the middles of pixels, of one that was drawn
-// larger the mean of all that lies in the pixel, each direction by itself. `into` holds pixels `box`, which has all of r. The same on all machines.
+// Writes pixels `r` of the shown picture. Interpolates linearly between pixel centres to enlarge, and averages the
+// covered area to shrink, per direction. `into` holds the pixels `box`, which contains r. Identical on all machines.
 void scalePicture(const DrawnPicture& from, const Zoom& zoom, const PixelViewport& r, std::byte* into, const PixelViewport& box);
 
 } // namespace mural

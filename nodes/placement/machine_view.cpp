@@ -36,7 +36,7 @@ int linkMbitPerSec(const std::string& interface) {
     if (state != "up") return 0;
     int speed = 0;
     std::ifstream(folder / "speed") >> speed;
-    return speed > 0 ? speed : 1; // up, but drivers of virtual cards do not tell
+    return speed > 0 ? speed : 1; // the interface is up; drivers of virtual cards report no speed
 }
 
 bool canRender(const std::string& busId) {

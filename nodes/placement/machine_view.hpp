@@ -1,4 +1,4 @@
-// What of a machine matters to placement, as plain data; and the choice from it.
+// The properties of a machine that determine thread affinity, as plain data, and the selection of CPUs.
 #pragma once
 
 #include <hwloc.h>
@@ -14,12 +14,12 @@ namespace mural {
 
 struct DeviceView {
     DeviceKind kind = DeviceKind::Gpu;
-    std::string name;       // "PCI 0000:41:00.0", "eth0"
-    // Of several the highest is taken. GPUs: 1 when it can render (not a management card's display);
-    // network interfaces: Mbit/s.
+    std::string name; // "PCI 0000:41:00.0", "eth0"
+    // The device with the highest rank is selected. GPUs: 1 if it can render (not a management card's display). Network
+    // interfaces: Mbit/s.
     int rank = 0;
-    bool usable = true;     // interfaces that are down are not
-    std::set<unsigned> cpus; // near it, as the operating system counts them
+    bool usable = true; // false for interfaces that are down
+    std::set<unsigned> cpus; // CPUs near it, by the operating system's numbers
 };
 
 struct MachineView {
@@ -29,20 +29,20 @@ struct MachineView {
 };
 
 struct PlacementChoice {
-    std::set<unsigned> cpus; // empty: leave the thread where it is
+    std::set<unsigned> cpus; // empty: keep the affinity
     std::string description;
 };
 
 PlacementChoice choosePlacement(const MachineView& machine, DeviceKind kind);
 
-// What hwloc does not know; the tests bring their own.
+// Properties that hwloc does not report. Tests supply their own.
 struct DeviceFacts {
     std::function<int(const std::string& interface)> linkMbitPerSec; // 0: down
     std::function<bool(const std::string& busId)> canRender;
 };
 DeviceFacts factsOfThisMachine();
 
-// The topology must have been loaded with its I/O devices. allowedCpus stays empty.
+// The topology must include I/O devices. Leaves allowedCpus empty.
 MachineView viewOf(hwloc_topology_t topology, const DeviceFacts& facts);
 
 } // namespace mural

@@ -13,8 +13,8 @@ namespace {
 using Topology = std::unique_ptr<hwloc_topology, decltype(&hwloc_topology_destroy)>;
 using Bitmap = std::unique_ptr<hwloc_bitmap_s, decltype(&hwloc_bitmap_free)>;
 
-// hwloc's plugins that ask drivers. PCI tells where devices are; and "gl" connects to the X displays :0 to :9, whoever's they
-// are, and Xlib ends this process where one of them ends meanwhile.
+// hwloc plugins that query drivers. PCI already locates devices. The "gl" plugin connects to the X displays :0 to :9 of
+// any user, and Xlib ends this process if one of them closes meanwhile.
 constexpr std::array kDriverComponents{"gl", "opencl", "cuda", "nvml", "rsmi", "levelzero"};
 
 Topology loadTopology() {

@@ -1,5 +1,5 @@
-// Threads near the device that they feed: on the cores of the NUMA node that the GPU, or the network
-// card, is attached to. Threads that a placed thread starts later stay there too.
+// Binds threads to the NUMA node of the device that they feed, a GPU or a network card. Threads started later by a
+// bound thread inherit the affinity.
 #pragma once
 
 #include <string>
@@ -13,8 +13,8 @@ struct Placement {
     bool bound = false;
 };
 
-// Binds the calling thread, never beyond what it may use already. Where there is nothing to choose
-// (one NUMA node, no such device) nothing changes, and the description says so.
+// Binds the calling thread, within its current affinity. With a single NUMA node or without such a device it changes
+// nothing, and the description says so.
 Placement placeThread(DeviceKind kind);
 
 } // namespace mural

@@ -1,4 +1,4 @@
-// Plays a recording as if its programs ran: a session's head can't tell the difference. The program of `mural replay`.
+// Plays a trace in place of its programs; the head cannot tell the difference. The program of `mural replay`.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@ namespace mural {
 struct PlayOptions {
     std::string file;
     std::string session; // the head's socket
-    bool pace = false;   // packets at the times at which they were recorded
-    bool loop = false;   // again and again
+    bool pace = false; // keeps the recorded timing of packets
+    bool loop = false; // repeats forever
 };
 
-// Returns the exit status: 0, 1 when the session does not go on, 2 when the recording can't be read. Errors go to stderr.
+// Returns the exit status: 0; 1 if the session ends early; 2 for an unreadable trace. Errors go to stderr.
 int playRecording(const PlayOptions& options);
 
 } // namespace mural

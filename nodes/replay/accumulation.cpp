@@ -9,8 +9,8 @@ namespace mural::accumulation {
 
 namespace {
 
-// The upper 20 bits of the least float that is written as sRGB byte 1, 2, … 255. Measured: the driver does
-// not round to the nearest byte everywhere, and looks at no lower bit.
+// The upper 20 bits of the smallest float that encodes to sRGB byte 1, 2, … 255. Measured: the driver does not always
+// round to the nearest byte, and ignores lower bits.
 constexpr std::array<uint32_t, 255> kEncodedFrom = {
     0x391ed, 0x39eed, 0x3a46f, 0x3a8b3, 0x3ab32, 0x3adae, 0x3b014, 0x3b153, 0x3b291, 0x3b3cf, 0x3b50d, 0x3b660,
     0x3b7c4, 0x3b89d, 0x3b963, 0x3ba31, 0x3bb09, 0x3bbed, 0x3bcdb, 0x3bdd4, 0x3bed6, 0x3bfe3, 0x3c07f, 0x3c10f,
@@ -47,7 +47,7 @@ std::array<float, 256> decodeTable() {
     return table;
 }
 
-// As processors convert: what no int can hold is INT_MIN; then the lower half counts.
+// The x86 conversion: values outside the range of int become INT_MIN; then the lower half is taken.
 int16_t toShort(float value) {
     const bool fits = value > -2147483648.0f && value < 2147483648.0f;
     return static_cast<int16_t>(fits ? static_cast<int32_t>(value) : INT32_MIN);

@@ -1,4 +1,4 @@
-// The shaders that a program is made of.
+// The shaders attached to a program.
 #pragma once
 
 #include <algorithm>

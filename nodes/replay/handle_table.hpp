@@ -1,6 +1,6 @@
-// The program's handles of textures and images without a binding (ARB_bindless_texture) → this node's. Mostly equal:
-// drivers number them in the order in which they are asked for, and nodes ask in the program's. Texture and image
-// handles are counted apart: a number may be both.
+// Maps the program's bindless texture and image handles (ARB_bindless_texture) to this node's. They are mostly equal:
+// drivers number handles in request order, and nodes repeat the program's order. Texture and image handles are
+// separate: a number may be both.
 #pragma once
 
 #include <cstdint>
