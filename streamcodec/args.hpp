@@ -1,5 +1,5 @@
-// Reading a record's arguments. The stream is a trust boundary: every read is checked against the
-// record's end; after a failed one everything reads as zero and ok() is false.
+// Reads the arguments of a record. The stream is a trust boundary: every read is checked against the record's end.
+// After a failed read all values are zero and ok() is false.
 #pragma once
 
 #include <GL/gl.h>
@@ -14,7 +14,7 @@
 
 namespace mural {
 
-// A value of variable size: inline bytes, a blob, an offset into a bound buffer, or nothing.
+// A variable-size value: inline bytes, a blob, an offset into a bound buffer, or null.
 class Data {
 public:
     Data() = default;
@@ -24,7 +24,7 @@ public:
     [[nodiscard]] bool isOffset() const { return isOffset_; }
     [[nodiscard]] bool absent() const { return !isOffset_ && !pointer_; }
     [[nodiscard]] uint64_t size() const { return size_; }
-    // True when GL may read n bytes: they are there, or nothing is, or a buffer is bound for it.
+    // True if GL may read n bytes: they are present, the value is null, or a buffer is bound.
     [[nodiscard]] bool covers(uint64_t n) const { return isOffset_ || !pointer_ || size_ >= n; }
     [[nodiscard]] bool isText() const { return !pointer_ || (size_ > 0 && pointer_[size_ - 1] == std::byte{0}); }
     [[nodiscard]] const void* pointer() const { return pointer_; }
@@ -40,11 +40,11 @@ private:
     bool isOffset_ = false;
 };
 
-// Where blobs of a stream wait for the command that takes them.
+// Holds the blobs of a stream until their command takes them.
 class BlobQueue {
 public:
     virtual ~BlobQueue() = default;
-    // The oldest complete blob; its bytes live until the record has been replayed. Empty: there is none.
+    // Takes the oldest complete blob; valid until the record has been replayed. found: false if there is none.
     virtual std::span<const std::byte> takeBlob(bool& found) = 0;
 };
 
@@ -61,7 +61,7 @@ public:
         if (const std::byte* p = take(sizeof(T))) std::memcpy(&value, p, sizeof(T));
         return value;
     }
-    // A value of one or two bytes, sent as four.
+    // Reads a value of one or two bytes, stored in four.
     template <class T> T narrow() {
         const auto word = get<uint32_t>();
         T value{};
@@ -85,7 +85,7 @@ public:
         return p ? Data::bytes(p, tag) : Data{};
     }
 
-    // The same where only bytes make sense: GL would take an offset for an address.
+    // Reads a value that must not be an offset, which GL would use as an address.
     Data values() {
         const Data d = data();
         if (!d.isOffset()) return d;
@@ -110,7 +110,7 @@ private:
     bool ok_ = true;
 };
 
-// The strings of packStrings (interposer/encode_support.hpp): lengths, then text.
+// Inverse of packStrings (interposer/encode_support.hpp): lengths, then text.
 class StringList {
 public:
     bool parse(const Data& d, int64_t count) {

@@ -1,5 +1,5 @@
-// How the arguments of each GL command travel in a record, and what they are called: for readers that print records.
-// Made from the registry, as the decoders are.
+// The names and record layout of each GL command's arguments, for tools that print records. Generated from the
+// registry, as the decoders are.
 #pragma once
 
 #include <cstdint>
@@ -8,15 +8,15 @@
 namespace mural {
 
 enum class Travel : uint8_t {
-    Scalar, // in the record, widened to 4 bytes
-    Wide,   // 8 bytes: handles, offsets into buffers
-    Fixed,  // an array of fixedBytes
-    Value,  // a value of variable size (docs/wire-format.md)
-    Text,   // a value that is a text
-    Texts,  // a value that is a list of strings
+    Scalar, // widened to 4 bytes in the record
+    Wide, // 8 bytes: handles, offsets into buffers
+    Fixed, // an array of fixedBytes
+    Value, // a variable-size value (docs/wire-format.md)
+    Text, // a value with text
+    Texts, // a value with a list of strings
 };
 
-// What a parameter is, or each element of an array.
+// The type of a parameter, or of an array's elements.
 enum class Element : uint8_t { Bytes, Boolean, Enum, Bits, I8, U8, I16, U16, I32, U32, I64, U64, F32, F64 };
 constexpr unsigned bytesOf(Element e) {
     switch (e) {
@@ -38,13 +38,13 @@ struct ParameterInfo {
     const char* name;
     Travel travel;
     Element element;
-    uint16_t fixedBytes; // Fixed
-    uint16_t group;      // of enums and bits; 0: the registry does not say
+    uint16_t fixedBytes; // for Fixed
+    uint16_t group; // of enums and bits; 0: not in the registry
 };
 
 struct CommandParameters {
-    std::span<const ParameterInfo> parameters; // in the order of the record
-    uint8_t resultBytes = 0;                   // of the name that the driver has made, behind them
+    std::span<const ParameterInfo> parameters; // in record order
+    uint8_t resultBytes = 0; // size of the driver-generated name after the parameters
 };
 CommandParameters parametersOf(uint16_t opcode);
 
@@ -53,8 +53,8 @@ struct EnumName {
     uint32_t value;
     const char* name;
 };
-// All of the group, by value; of each value the name that core GL has for it, if it has one. Group 0: all that are not bits.
+// All names of the group, sorted by value, with core GL names preferred. Group 0: all enums that are not bits.
 std::span<const EnumName> enumNames(uint16_t group);
-const char* enumName(uint16_t group, uint32_t value); // null: there is none
+const char* enumName(uint16_t group, uint32_t value); // null: none
 
 } // namespace mural

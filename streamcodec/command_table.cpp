@@ -4,7 +4,7 @@
 
 namespace mural {
 namespace {
-// First element whose name is not less than `name`, or null when the names differ.
+// The element with this name, or null. The table is sorted.
 template <class T> const T* find(std::span<const T> table, std::string_view name) {
     const auto it = std::lower_bound(table.begin(), table.end(), name,
                                      [](const T& e, std::string_view n) { return std::string_view(e.name) < n; });

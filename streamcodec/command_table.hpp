@@ -1,4 +1,4 @@
-// Every command and extension of the registry, and whether Mural carries it. Sorted by name.
+// All commands and extensions of the registry, and whether Mural supports them. Sorted by name.
 #pragma once
 
 #include <cstdint>
@@ -10,23 +10,23 @@ namespace mural {
 struct CommandInfo {
     const char* name;
     const char* commandClass; // state object draw query sync transfer frame unsupported
-    const char* reason;       // why it is not carried; empty otherwise
+    const char* reason; // why it is unsupported; otherwise empty
     bool carried;
-    uint16_t opcode;          // 0: never in a stream
+    uint16_t opcode; // 0: never in a stream
 };
 struct ExtensionInfo {
     const char* name;
-    bool carried;             // all its commands are; else it is not advertised to programs
+    bool carried; // all of its commands are supported; otherwise it is hidden from programs
     const char* firstLacking;
 };
 
 std::span<const CommandInfo> commandTable();
 std::span<const ExtensionInfo> extensionTable();
 const CommandInfo* findCommand(std::string_view name);
-// Extensions that the registry does not know bring no commands that it knows: they change what
-// carried commands accept, and count as carried.
+// Extensions outside the registry add no commands: they only extend the arguments of supported commands, and count as
+// supported.
 bool extensionCarried(std::string_view name);
-// The registry's own text of that name, there for ever; null: it knows none.
+// The registry's copy of the name, with static lifetime; null: unknown.
 const char* registeredExtension(std::string_view name);
 
 } // namespace mural

@@ -1,4 +1,4 @@
-// Extensions of window systems that programs are not told of though none of their commands is missing, with the reason.
+// Window-system extensions that are hidden from programs although all of their commands exist, with the reasons.
 #pragma once
 
 namespace mural {
@@ -8,7 +8,7 @@ struct LocalExtension {
     const char* why;
 };
 
-// The driver's own swaps, whose count and events programs would wait for, do not happen.
+// The driver does not swap, so programs would wait for its swap counts and events forever.
 inline constexpr LocalExtension kLocalWindowExtensions[] = {
     {"GLX_MESA_copy_sub_buffer", "parts of pictures are not shown"},
     {"EGL_NV_post_sub_buffer", "parts of pictures are not shown"},

@@ -1,4 +1,4 @@
-// Readable names of GL opcodes, for messages and dumps. Null: unknown.
+// Names of GL opcodes, for messages and dumps. Null: unknown.
 #pragma once
 
 #include <cstdint>

@@ -1,17 +1,17 @@
-// The shape of a record: constants that encoder and decoder share. See docs/wire-format.md.
+// Record constants shared by encoder and decoder. See docs/wire-format.md.
 #pragma once
 
 #include <cstdint>
 
 namespace mural::record {
 
-constexpr uint32_t kLongForm = 0xffff;     // in the length field: the length stands in the next word
-constexpr uint32_t kInlineBytes = 16384;   // larger values travel ahead of their record, as blobs
+constexpr uint32_t kLongForm = 0xffff; // in the length field: the next word holds the length
+constexpr uint32_t kInlineBytes = 16384; // larger values precede their record as blobs
 constexpr uint32_t kBlobPieceBytes = 65536;
 
-// First word of a value of variable size; everything below kTagBlob is a count of inline bytes.
+// The first word of a variable-size value. Values below kTagBlob count inline bytes.
 constexpr uint32_t kTagNull = 0xffffffff;
-constexpr uint32_t kTagOffset = 0xfffffffe; // u64 offset into a bound buffer follows
-constexpr uint32_t kTagBlob = 0xfffffffd;   // the oldest blob of this stream that was not taken yet
+constexpr uint32_t kTagOffset = 0xfffffffe; // a u64 offset into a bound buffer follows
+constexpr uint32_t kTagBlob = 0xfffffffd; // the oldest unused blob of this stream
 
 } // namespace mural::record

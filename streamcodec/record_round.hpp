@@ -1,6 +1,6 @@
-// The same few commands again and again: a normal and four vertices, a colour and a point. Where a record begins is known only when
-// the one before it has been read, 2 ns for each; while the records of a round have the heads of the round before, they lie where
-// those did, and are read beside each other (0.3 ns, seven in a round).
+// Accelerates the walk over repeated record sequences (rounds), such as a normal and four vertices. A serial walk knows
+// the start of a record only after the previous one, 2 ns each. While a round has the same headers as the previous
+// round, its records have the same offsets and are read in parallel (0.3 ns each, with seven per round).
 #pragma once
 
 #include <algorithm>
@@ -12,11 +12,11 @@
 
 namespace mural {
 
-// Of a walk over short records, which tells of each that it passes one by one. A round is what lies between two places where the same
-// two heads come: a single one comes more than once in most rounds.
+// For a walk over short records that reports each record it passes. A round lies between two places with the same pair
+// of headers; a single header occurs several times in most rounds.
 class RecordRound {
 public:
-    // A record with this head begins a round anew, maybe.
+    // Returns whether a record with this header may start a new round.
     [[nodiscard]] bool closes(uint32_t head) {
         if (count_ < 2) return false;
         const uint32_t back = static_cast<uint8_t>(count_ - last_[pairOf(before(1), head)]);
@@ -26,7 +26,8 @@ public:
         --wait_;
         return false;
     }
-    // On over whole rounds like the last one, from the record at `at`, which closes it. How many there were; of none add() is next.
+    // Skips whole rounds equal to the last one, from the record at `at`, which starts a round. Returns their number. If
+    // it is 0, continue with add().
     [[nodiscard]] size_t pass(std::span<const std::byte> packet, size_t& at) {
         const size_t start = places_[(count_ - size_) % kKept];
         for (size_t i = 0; i < size_; ++i) {
@@ -34,10 +35,10 @@ public:
             offsets_[i] = places_[(count_ - size_ + i) % kKept] - start;
         }
         const size_t sizeBytes = at - start, rounds = roundsAt(packet.subspan(at), sizeBytes);
-        // Where rounds seldom repeat, that is tried the seldomer.
+        // Exponential backoff where rounds rarely repeat.
         patience_ = rounds > 0 ? 0 : std::min(2 * patience_ + 1, kMostPatience);
         wait_ = patience_;
-        // They may be within a longer round.
+        // The skipped rounds may be part of a longer round.
         const size_t kept = std::min(rounds, (kMost + size_ - 1) / size_);
         at += (rounds - kept) * sizeBytes;
         for (size_t i = 0; i < kept; ++i, at += sizeBytes)
@@ -52,7 +53,7 @@ public:
         ++count_;
     }
 
-    [[nodiscard]] size_t size() const { return size_; } // records in a round that was passed
+    [[nodiscard]] size_t size() const { return size_; } // records per skipped round
     [[nodiscard]] uint32_t head(size_t i) const { return round_[i]; }
 
 private:
@@ -63,7 +64,7 @@ private:
     [[nodiscard]] uint32_t before(size_t records) const { return heads_[(count_ - records) % kKept]; }
     static size_t pairOf(uint32_t first, uint32_t second) { return ((first * 5 + second) * 0x9e3779b1u) >> 26; }
 
-    // Most rounds are of few records: of so many as are known when this is compiled heads and places stay in registers.
+    // Most rounds have few records. With a compile-time size, headers and offsets stay in registers.
     [[nodiscard]] size_t roundsAt(std::span<const std::byte> from, size_t sizeBytes) const {
         switch (size_) {
         case 1: return roundsOf<1>(from, sizeBytes);
@@ -77,7 +78,7 @@ private:
         default: return roundsOf<0>(from, sizeBytes);
         }
     }
-    template <size_t Size> // 0: any
+    template <size_t Size> // 0: any size
     [[nodiscard]] size_t roundsOf(std::span<const std::byte> from, size_t sizeBytes) const {
         std::array<uint32_t, Size == 0 ? kMost : Size> heads;
         std::array<size_t, Size == 0 ? kMost : Size> places;
@@ -94,14 +95,14 @@ private:
         return rounds;
     }
 
-    std::array<uint8_t, kPairs> last_{}; // the second of two with such heads: its number, of which the lower bits do
-    std::array<uint32_t, kKept> heads_;  // of the last ones, a ring
-    std::array<size_t, kKept> places_;   // bytes
+    std::array<uint8_t, kPairs> last_{}; // number of the last record with this pair of headers; the lower bits suffice
+    std::array<uint32_t, kKept> heads_; // of the last records, a ring buffer
+    std::array<size_t, kKept> places_; // bytes
     size_t count_ = 0;
     std::array<uint32_t, kMost> round_;
-    std::array<size_t, kMost> offsets_; // bytes from its first
+    std::array<size_t, kMost> offsets_; // bytes from the round's first record
     size_t size_ = 0;
-    uint32_t patience_ = 0, wait_ = 0; // closings that are not looked at
+    uint32_t patience_ = 0, wait_ = 0; // round starts to ignore
 };
 
 } // namespace mural

@@ -1,4 +1,4 @@
-// Which command table and opcodes this build has: app, head and nodes must agree.
+// Identifies the command table and opcodes of this build, on which program, head and nodes must agree.
 #pragma once
 
 #include <cstdint>

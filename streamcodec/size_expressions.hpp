@@ -1,5 +1,5 @@
-// The vocabulary of the size expressions in semantics.txt: bytes behind an input pointer, from the
-// other parameters. Used by the encoder (how much to copy) and by the replay (how much must be there).
+// The functions of the size expressions in semantics.txt: the bytes at an input pointer, from the other parameters. The
+// encoder uses them to copy, the replay to validate.
 #pragma once
 
 #include <GL/gl.h>
@@ -15,7 +15,8 @@
 
 namespace mural {
 
-// count values of `bytes` each; negative counts are the driver's error to report, nothing to copy.
+// count values of `bytes` each. A negative count is an error of the program: nothing is copied, and the driver reports
+// it.
 template <class N> constexpr uint64_t vn(N count, uint32_t bytes) {
     return static_cast<int64_t>(count) > 0 ? static_cast<uint64_t>(count) * bytes : 0;
 }
@@ -30,8 +31,8 @@ template <class N, class P> uint64_t n8(N count, const P& p) { return given(p) ?
 template <class P> uint64_t clearBytes(GLenum format, GLenum type, const P& p) {
     return given(p) ? sizes::groupBytes(format, type) : 0;
 }
-// A text of `length` characters, or up to its end when that is negative. What is far too long for any
-// driver is an error of the program's, and need not be there.
+// A text of `length` characters, or zero-terminated if negative. A length beyond every driver's limit is a program
+// error, and the text may not exist.
 template <class P> uint64_t labelBytes(const P& p, GLsizei length) {
     constexpr GLsizei kLongest = 1 << 16;
     if (!given(p) || length > kLongest) return 0;
@@ -44,7 +45,7 @@ inline uint64_t saturated(uint64_t values, uint32_t bytes) {
     uint64_t product = 0;
     return __builtin_mul_overflow(values, bytes, &product) ? UINT64_MAX : product;
 }
-// Values that glMap1/2 read, from the first to the last.
+// The span of values that glMap1/2 read.
 inline uint64_t mapSpan1(GLenum target, GLint stride, GLint order, uint32_t bytes) {
     return saturated(sizes::map1Values(target, stride, order), bytes);
 }

@@ -1,4 +1,5 @@
-// What a walk over the records of a packet has passed: who takes the packet next need not walk again (docs/wire-format.md).
+// The result of a walk over the records of a packet. The packet's next consumer need not walk again
+// (docs/wire-format.md).
 #pragma once
 
 #include <cstddef>
@@ -7,20 +8,20 @@
 
 namespace mural {
 
-// What is longer is told of, for who treats it otherwise (economy/).
+// Longer records are listed, for consumers that treat them separately (economy/).
 inline constexpr size_t kMostShortRecordBytes = 1024;
 
 struct Walked {
     size_t records = 0;
-    size_t lastBytes = 0;         // of the last one
-    std::vector<uint32_t> longAt; // where the long ones begin, bytes, in order
+    size_t lastBytes = 0; // of the last record
+    std::vector<uint32_t> longAt; // offsets of the long records in bytes, ascending
 
     void pass(size_t at, size_t sizeBytes) {
         ++records;
         lastBytes = sizeBytes;
         if (sizeBytes > kMostShortRecordBytes) longAt.push_back(static_cast<uint32_t>(at));
     }
-    // What `next` has passed behind it.
+    // Appends the result of the following walk.
     void add(const Walked& next) {
         if (next.records == 0) return;
         records += next.records;

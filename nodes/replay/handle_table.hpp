@@ -12,28 +12,28 @@ class HandleTable {
 public:
     enum class Of : uint8_t { Texture, Image };
 
-    // The node's driver has dealt `ours` where the program's dealt `theirs`. What the number stood for before is gone: handles
-    // end with their textures, and drivers deal them again. False: they differ, for the first time.
+    // Records that this node's driver returned `ours` for the program's `theirs`. Replaces an older pair: handles end
+    // with their textures, and drivers reuse them. Returns false if the two differ for the first time.
     bool set(Of of, uint64_t theirs, uint64_t ours) {
         table(of)[theirs] = ours;
         const bool news = theirs != ours && !differ_;
         differ_ = differ_ || theirs != ours;
         return !news;
     }
-    // 0: no such handle was dealt here.
+    // 0: unknown handle.
     [[nodiscard]] uint64_t find(Of of, uint64_t theirs) const {
         const auto& known = of == Of::Texture ? textures_ : images_;
         const auto it = known.find(theirs);
         return it == known.end() ? 0 : it->second;
     }
-    // Where a number is a value like any other: as it is, when no handle has it. `first`: which of both it rather is.
+    // For a number that may be a handle: returns it unchanged if it is none. `first`: the more likely kind.
     [[nodiscard]] uint64_t value(Of first, uint64_t theirs) const {
         if (!differ_) return theirs;
         if (const uint64_t ours = find(first, theirs)) return ours;
         const uint64_t other = find(first == Of::Texture ? Of::Image : Of::Texture, theirs);
         return other ? other : theirs;
     }
-    [[nodiscard]] bool differ() const { return differ_; } // some of them, at any time
+    [[nodiscard]] bool differ() const { return differ_; } // some pair has differed
 
 private:
     std::unordered_map<uint64_t, uint64_t>& table(Of of) { return of == Of::Texture ? textures_ : images_; }

@@ -1,4 +1,4 @@
-// The program's object names → this node's. Small names in a vector, others in a map.
+// Maps the program's object names to this node's. Small names use a vector, others a map.
 #pragma once
 
 #include <GL/gl.h>
@@ -9,7 +9,7 @@ namespace mural {
 
 class NameTable {
 public:
-    // 0 when the program's name is not known.
+    // 0: unknown name.
     [[nodiscard]] GLuint find(GLuint name) const {
         if (name < dense_.size()) return dense_[name];
         const auto it = sparse_.find(name);
@@ -35,8 +35,8 @@ private:
 };
 
 enum class Kind : uint8_t {
-    Texture, Buffer, Renderbuffer, Sampler, Program, ArbProgram,          // shared by contexts
-    Framebuffer, VertexArray, Query, Pipeline, TransformFeedback,         // of one context
+    Texture, Buffer, Renderbuffer, Sampler, Program, ArbProgram, // shared by contexts
+    Framebuffer, VertexArray, Query, Pipeline, TransformFeedback, // per context
     Count
 };
 constexpr bool isShared(Kind k) { return k <= Kind::ArbProgram; }

@@ -8,13 +8,13 @@ namespace mural {
 
 namespace {
 
-// The first pixel of a kernel's column at or behind a place of the window.
+// The first pixel of a kernel's column at or after a window position.
 int64_t firstBehind(int64_t at, int column, int columns) {
     const int64_t n = at - column;
     return n > 0 ? (n + columns - 1) / columns : -(-n / columns);
 }
 
-// The first pixel of a zoomed picture whose middle is at or behind an edge.
+// The first pixel of a zoomed picture whose centre is at or after an edge.
 int64_t zoomed(int64_t edge, double zoom) { return zoom == 1 ? edge : static_cast<int64_t>(std::ceil(static_cast<double>(edge) * zoom - 0.5)); }
 
 int32_t narrow(int64_t value) { return static_cast<int32_t>(std::clamp<int64_t>(value, INT32_MIN, INT32_MAX)); }

@@ -20,7 +20,7 @@ void put(std::vector<std::byte>& out, const std::string& text) {
     out.insert(out.end(), p, p + text.size());
 }
 
-// Reads what put() wrote; after a read past the end everything is empty.
+// Inverse of put(). After a read past the end all further values are empty.
 class Reader {
 public:
     explicit Reader(std::span<const std::byte> bytes) : left_(bytes) {}

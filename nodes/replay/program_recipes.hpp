@@ -1,5 +1,5 @@
-// What a program was linked from, so that it can be linked again in another run: the node's half of program
-// binaries (docs/wire-format.md, "Recipes of programs"). One for all contexts that share. Names are this node's.
+// Recipes: the inputs of a program's last link, for relinking it in another run. The node's half of program binaries
+// (docs/wire-format.md, "Recipes of programs"). One instance per share group. Names are this node's.
 #pragma once
 
 #include <cstddef>
@@ -25,19 +25,19 @@ struct ProgramRecipe {
     };
     bool separable = false;
     std::vector<Shader> shaders;
-    std::map<std::string, Output> outputs; // as the program has bound them
+    std::map<std::string, Output> outputs; // explicit bindings
     GLenum varyingMode = 0;
-    std::vector<std::string> varyings;     // of transform feedback
+    std::vector<std::string> varyings; // of transform feedback
 
     [[nodiscard]] std::vector<std::byte> toBytes() const;
-    // Nothing where these bytes are none.
+    // Returns nothing for malformed bytes.
     static std::optional<ProgramRecipe> fromBytes(std::span<const std::byte> bytes);
 };
 
 class ProgramRecipes {
 public:
     void source(GLuint shader, std::string text) { shaders_[shader].given = std::move(text); }
-    // The shader holds a module now: programs with it have no recipe.
+    // The shader now contains a module; programs with it have no recipe.
     void forget(GLuint shader) { shaders_.erase(shader); }
     void compiled(const GlFunctions& gl, GLuint shader, bool withIncludes);
     void bindOutput(GLuint program, const char* name, const ProgramRecipe::Output& output) { programs_[program].next.outputs[name] = output; }
@@ -46,22 +46,22 @@ public:
     void linked(const GlFunctions& gl, GLuint program);
     void linkedFrom(GLuint program, ProgramRecipe recipe);
     void deleted(const GlFunctions& gl, GLuint shaderOrProgram);
-    // Of the last link; empty where there is none, or it can't be told.
+    // Of the last successful link; empty: none, or unsupported.
     [[nodiscard]] std::vector<std::byte> of(GLuint program) const;
 
 private:
     struct Shader {
         GLenum type = 0;
         std::string given, compiled;
-        bool withIncludes = false; // named strings (ARB_shading_language_include): the text alone is not all
+        bool withIncludes = false; // named strings (ARB_shading_language_include): the text alone is incomplete
     };
     struct Program {
-        ProgramRecipe next;                // what the program's commands have set for the next link
-        std::optional<ProgramRecipe> last; // of the link that succeeded
+        ProgramRecipe next; // state for the next link
+        std::optional<ProgramRecipe> last; // of the last successful link
     };
     std::unordered_map<GLuint, Shader> shaders_;
     std::unordered_map<GLuint, Program> programs_;
-    std::set<GLuint> ending_; // deleted while something still has them
+    std::set<GLuint> ending_; // deleted, but still attached or current
 };
 
 } // namespace mural

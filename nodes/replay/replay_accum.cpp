@@ -11,7 +11,7 @@ namespace {
 constexpr GLbitfield kBuffers = GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT | GL_ACCUM_BUFFER_BIT;
 } // namespace
 
-// True: the accumulation buffer of the window that is drawn to is ours to keep.
+// True if this class keeps the accumulation buffer of the draw window.
 bool Replay::accumulatesHere() {
     const bool has = drawsWindow() && c_->draw && c_->draw->config.accum > 0 && !platform_->accumulates() &&
                      c_->api == wire::Api::Desktop && !c_->core;
@@ -22,7 +22,7 @@ bool Replay::accumulatesHere() {
     return false;
 }
 
-// Calls with each row of the program's scissor box within this node's part: the row's accumulated values and place.
+// Calls `call` with the values and the place of each row of the program's scissor box within this node's part.
 void Replay::forAccumulatedRows(const std::function<void(int16_t*, const PixelViewport&)>& call) {
     Window& w = *c_->draw;
     const size_t values = static_cast<size_t>(w.drawn.area()) * 4;
@@ -52,7 +52,7 @@ void Replay::glClear(GLbitfield mask) {
 
 void Replay::glAccum(GLenum op, GLfloat value) {
     if (!accumulatesHere()) return gl.glAccum ? withoutTile([&] { gl.glAccum(op, value); }) : void();
-    if (c_->readFramebuffer != 0 || c_->read != c_->draw) return; // an error there
+    if (c_->readFramebuffer != 0 || c_->read != c_->draw) return; // an error in GL
     const auto count = [](const PixelViewport& row) { return static_cast<size_t>(row.w); };
     switch (op) {
     case GL_MULT: return forAccumulatedRows([&](int16_t* values, const PixelViewport& row) { accumulation::multiply(values, count(row), value); });
@@ -83,7 +83,7 @@ void Replay::returnAccumulated(GLfloat value) {
     gl.glGetBooleanv(GL_COLOR_WRITEMASK, mask);
     const bool channels[4] = {mask[0] != 0, mask[1] != 0, mask[2] != 0, mask[3] != 0};
     const size_t bytes = static_cast<size_t>(box.area()) * 4;
-    const std::byte* pixels = nullptr; // what the mask keeps
+    const std::byte* pixels = nullptr; // components that the mask preserves
     withPlainTransfer([&] { pixels = readRegion(box, GL_RGBA, GL_UNSIGNED_BYTE, bytes); });
     std::vector<uint8_t> colours(bytes);
     std::memcpy(colours.data(), pixels, bytes);

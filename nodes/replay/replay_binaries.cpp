@@ -1,5 +1,5 @@
-// Program binaries: a driver's own can't be carried to other drivers, so the program's side asks here what a
-// program was linked from, keeps that with the binary, and hands it out again when the binary is loaded.
+// Program binaries. A driver's binary is useless to other drivers, so the program's side requests the recipe of the
+// program, stores it with the binary, and sends it back when the binary is loaded.
 #include "nodes/replay/replay.hpp"
 
 namespace mural {
@@ -42,7 +42,7 @@ void Replay::glDeleteProgram(GLuint program) {
     gl.glDeleteProgram(ours);
     if (!c_->shared) return;
     c_->shared->recipes.deleted(gl, ours);
-    c_->shared->primitiveIds.erase(ours); // the driver may give that name to another, at one node and not at the next
+    c_->shared->primitiveIds.erase(ours); // drivers may reuse the name, on some nodes only
 }
 void Replay::glDeleteObjectARB(GLuint obj) {
     const GLuint ours = name(Kind::Program, obj);
@@ -68,13 +68,14 @@ bool Replay::ownProgramRecipe(Args& in) {
     if (!bound_ || !c_->shared || !gl.glGetAttachedShaders || !gl.glCreateShader) return true;
     const GLuint ours = name(Kind::Program, program);
     if (auto recipe = ProgramRecipe::fromBytes(bytes.span())) linkFrom(ours, std::move(*recipe));
-    else if (gl.glProgramBinary) gl.glProgramBinary(ours, GL_PROGRAM_BINARY_FORMAT_MESA, "", 0); // not linked any more
+    // the program is no longer linked
+    else if (gl.glProgramBinary) gl.glProgramBinary(ours, GL_PROGRAM_BINARY_FORMAT_MESA, "", 0);
     noteModules(ours);
-    applyTileValues(); // it may be the current one
+    applyTileValues(); // it may be the current program
     return true;
 }
 
-// Links from these shaders; those that the program has attached stay so.
+// Links from the recipe's shaders, and restores the program's attached shaders.
 void Replay::linkFrom(GLuint ours, ProgramRecipe recipe) {
     GLuint attached[64] = {};
     GLsizei count = 0;

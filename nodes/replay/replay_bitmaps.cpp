@@ -1,19 +1,19 @@
-// Mesa gathers what glBitmap draws, and draws it before the next command that needs it: with the state of that moment. What
-// the node does by itself between the two must not be that moment.
+// Mesa batches glBitmap and draws the batch before the next dependent command, with the state of that moment. State
+// changes of the node itself must not fall between the two.
 #include "gl_opcodes.hpp"
 #include "nodes/replay/replay.hpp"
 
 namespace mural {
 
-// Lists gather some only when any of them holds one: what settleBitmaps() does is not without a trace (Mesa takes
-// materials that are on their way, where a colour would have followed them).
+// Display lists count only if some list contains a bitmap, because settleBitmaps() has a side effect: Mesa commits
+// pending materials, which a colour would otherwise still change.
 void Replay::noteBitmaps(uint16_t opcode) {
     if (opcode == op::glBitmap && c_->compiling && c_->shared) c_->shared->listsHoldBitmaps = true;
     const bool listed = (opcode == op::glCallList || opcode == op::glCallLists) && c_->shared && c_->shared->listsHoldBitmaps;
     if (opcode == op::glBitmap || listed) c_->gathersBitmaps = true;
 }
 
-// What neither draws nor changes what draws: the driver goes on gathering, as it does without these.
+// Commands that neither draw nor change drawing state: the driver continues its batch, as it does natively.
 bool Replay::leavesBitmaps(uint16_t opcode) {
     switch (opcode) {
     case wire::kOpBlobBegin:
@@ -30,12 +30,12 @@ bool Replay::leavesBitmaps(uint16_t opcode) {
     }
 }
 
-// With the program's own state, as the command would that comes next.
+// Draws the batch with the program's own state, as its next command would.
 void Replay::settleBitmaps() {
     if (!bound_ || c_ != bound_ || !c_->gathersBitmaps || c_->compiling || !gl.glBegin || !gl.glEnd || !gl.glFlush) return;
-    if (!gl.glGetString(GL_VENDOR)) return; // between glBegin and glEnd, where nothing is answered
+    if (!gl.glGetString(GL_VENDOR)) return; // between glBegin and glEnd, where queries fail
     c_->gathersBitmaps = false;
-    gl.glBegin(GL_POINTS); // Mesa looks at programs and samplers here; where it had not yet, it read through a null pointer
+    gl.glBegin(GL_POINTS); // makes Mesa validate programs and samplers; unvalidated ones cause a null pointer access
     gl.glEnd();
     gl.glFlush();
 }

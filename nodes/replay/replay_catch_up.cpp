@@ -1,18 +1,17 @@
-// A node that comes back replays in a moment what the others took long for. Frames that nobody waits for are not drawn
-// then: its region of windows is empty, as in frames that are another node's turn, and draw calls that could change nothing
-// else are left out. When it has nearly caught up it draws again, each window from its next frame on.
+// Resync of a restarted node, which replays quickly what took the others long. It does not draw frames that nobody
+// waits for: its region is empty, as in frames of another phase, and draw calls without other effects are skipped. When
+// it has nearly caught up it draws again, each window from its next frame on.
 //
-// What a window's buffers hold then is stale until they are cleared whole. Who draws over stale buffers, reads them or shows
-// them would show another picture than the others: that is found here before anybody sees it, and the node, which can't mend
-// it, ends; it is started again and draws all.
+// A window's buffers are stale until a full clear. Drawing over stale buffers, reading or showing them would differ
+// from the other nodes. The code here detects that beforehand and ends the node; the next incarnation draws all frames.
 #include "gl_opcodes.hpp"
 #include "nodes/replay/replay.hpp"
 #include "nodes/replay/window_use.hpp"
 
 namespace mural {
 
-// Whose picture another node depends on, and where a copy of the window is not filled by the stream, all is drawn. Nobody depends on the
-// range of a node that catches up.
+// A node draws everything if another node depends on its picture, or if a copy of the window is filled from outside the
+// stream. No node depends on the range of a node in resync.
 bool Replay::maySkip() const {
     const RenderPass& p = config_.pass;
     return config_.skips && !config_.lean && (takesRanges() || !alone()) && !takesTurns() && !drawsOtherPixels() && !movesView() && p.samples == 1;
@@ -20,7 +19,7 @@ bool Replay::maySkip() const {
 
 void Replay::drawAgain() { skips_ = false; }
 
-// Before any command that may change pixels of the window.
+// Called before any command that may change pixels of the window.
 void Replay::noteSkipped(uint16_t opcode, std::span<const std::byte> arguments) {
     const WindowUse use = useOf(opcode);
     if (use == WindowUse::FeedbackBegins || use == WindowUse::FeedbackEnds) c_->feedsBack = use == WindowUse::FeedbackBegins;

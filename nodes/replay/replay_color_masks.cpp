@@ -1,5 +1,5 @@
-// Windows without alpha on a surface that has one all the same (OSMesa): it stays 1, as what blending and
-// reading see in a window without. Everything that writes colours comes by the mask, but for blits.
+// Windows without alpha on surfaces with alpha (OSMesa). Alpha stays 1, the value that blending and reads see without
+// alpha. The colour mask covers all writes except blits.
 #include "nodes/replay/replay.hpp"
 
 namespace mural {
@@ -8,7 +8,7 @@ bool Replay::hidesAlpha() const {
     return alphaHides_ && drawsWindow() && c_->draw && c_->draw->surface && c_->draw->surface->hiddenAlpha();
 }
 
-// After another framebuffer or window became current, or the program's masks came back from a stack.
+// Called after a change of framebuffer or window, and after the program's masks are popped.
 void Replay::applyColorMasks() {
     if (!bound_ || !alphaHides_ || !gl.glColorMask) return;
     const ColorMasks& masks = c_->colorMasks;
@@ -34,7 +34,7 @@ void Replay::glColorMaski(GLuint index, GLboolean r, GLboolean g, GLboolean b, G
     gl.glColorMaski(index, r, g, b, a && !(index == 0 && hidesAlpha()));
 }
 
-// After a blit into the window, which no mask stops.
+// After a blit into the window, which ignores masks.
 void Replay::makeOpaque() {
     if (!gl.glColorMask || !gl.glClearBufferfv) return;
     const GLfloat opaque[4] = {0, 0, 0, 1};
@@ -45,7 +45,7 @@ void Replay::makeOpaque() {
     gl.glClearBufferfv(GL_COLOR, 0, opaque);
     if (discards) gl.glEnable(GL_RASTERIZER_DISCARD);
     applyColorMasks();
-    c_->scissorsDiffer = c_->scissorsDiffer || gl.glScissorIndexed; // every viewport's enable was touched
+    c_->scissorsDiffer = c_->scissorsDiffer || gl.glScissorIndexed; // the enables of all viewports have changed
     applyScissors();
 }
 

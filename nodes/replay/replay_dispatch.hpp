@@ -1,4 +1,4 @@
-// From an opcode to the generated function that decodes and calls it.
+// Maps an opcode to the generated function that decodes and executes it.
 #pragma once
 
 #include <array>
@@ -9,9 +9,9 @@
 namespace mural {
 
 class Replay;
-// False: the record is malformed.
+// Returns false for a malformed record.
 using ReplayFunction = bool (*)(Replay&, Args&);
-// Null: no such command.
+// Null: unknown opcode.
 ReplayFunction replayFunction(uint16_t opcode);
 
 } // namespace mural

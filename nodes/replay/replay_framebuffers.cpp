@@ -1,4 +1,4 @@
-// Framebuffers and the buffers that are drawn to and read from: the window's are those that its surface has.
+// Framebuffer objects, draw buffers and read buffers. Window buffers map to those that the surface has.
 #include <algorithm>
 #include <utility>
 
@@ -21,7 +21,7 @@ void Replay::glDeleteFramebuffers(GLsizei n, const Data& framebuffers) {
     if (n <= 0 || !framebuffers.pointer()) return;
     const auto* app = framebuffers.as<GLuint>();
     gl.glDeleteFramebuffers(n, names(Kind::Framebuffer, app, n));
-    for (GLsizei i = 0; i < n; ++i) { // a bound one that is deleted leaves the window bound
+    for (GLsizei i = 0; i < n; ++i) { // deleting a bound framebuffer binds the window
         if (app[i] != 0 && app[i] == c_->drawFramebuffer) c_->drawFramebuffer = 0;
         if (app[i] != 0 && app[i] == c_->readFramebuffer) c_->readFramebuffer = 0;
     }
@@ -29,8 +29,8 @@ void Replay::glDeleteFramebuffers(GLsizei n, const Data& framebuffers) {
     restoreWindowState();
 }
 
-// Of a program's window with a buffer for each eye a node has one eye's: that of its pass, or the left one. What goes to the other eye alone goes nowhere
-// here (GL 4.6 17.4.1; design 4: stereo programs are kept as they are).
+// Of a stereo window a node has one eye: that of its pass, or the left one. Draws to the other eye alone have no effect
+// here (GL 4.6 17.4.1; design 4: stereo programs keep their eyes).
 GLenum Replay::bufferOfEye(GLenum buffer, const Window* w) const {
     if (!w || !w->config.stereo || c_->api != wire::Api::Desktop) return buffer;
     const bool right = config_.pass.eye == Eye::Right;
@@ -44,16 +44,16 @@ GLenum Replay::bufferOfEye(GLenum buffer, const Window* w) const {
     default: return buffer;
     }
 }
-// Who reads the other eye's gets this one's: it is all that there is, and no error.
+// Reads of the other eye return this one: it is the only one here, and not an error.
 GLenum Replay::readBufferOfEye(GLenum buffer, const Window* w) const {
     const GLenum here = bufferOfEye(buffer, w);
     if (here != GL_NONE || buffer == GL_NONE) return here;
     return buffer == GL_FRONT_LEFT || buffer == GL_FRONT_RIGHT ? GL_FRONT_LEFT : GL_BACK_LEFT;
 }
 
-// As glDrawBuffers takes it, too, which knows GL_BACK alone of the names that may be several.
+// Valid for glDrawBuffers as well, which accepts GL_BACK as the only name for several buffers.
 GLenum Replay::onlyBuffer(const gl::Surface& surface) { return surface.colorBuffers() == gl::ColorBuffers::OneNamedBack ? GL_BACK : GL_FRONT_LEFT; }
-// The one colour buffer of a surface, whichever of the window's it stands for (replay_front.cpp).
+// The only colour buffer of the surface that stands for the window's buffer (replay_front.cpp).
 GLenum Replay::windowBuffer(GLenum buffer, const Window* w) const {
     if (!w || !w->surface || !w->surface->singleBuffered() || c_->api != wire::Api::Desktop) return buffer;
     switch (buffer) {
@@ -68,7 +68,7 @@ GLenum Replay::windowBuffer(GLenum buffer, const Window* w) const {
 }
 void Replay::drawBufferOfWindow(GLenum buffer) {
     buffersChanged(std::exchange(c_->drawBuffer0, buffer));
-    if (moves()) restoreWindowState(); // the front may be divided in another way
+    if (moves()) restoreWindowState(); // the front buffer may be divided differently
 }
 void Replay::readBufferOfWindow(GLenum buffer) {
     c_->readBuffer0 = buffer;
@@ -79,13 +79,13 @@ void Replay::glDrawBuffer(GLenum buf) {
     gl.glDrawBuffer(drawsWindow() ? windowBuffer(buf, c_->draw) : buf);
     if (drawsWindow()) drawBufferOfWindow(buf);
 }
-// `call` gives them to the driver.
+// `call` passes the buffers to the driver.
 void Replay::drawBuffers(bool ofWindow, GLsizei n, const Data& bufs, const std::function<void(const GLenum*)>& call) {
     if (n < 0 || (n > 0 && !bufs.pointer())) return;
-    std::vector<GLenum> list(bufs.as<GLenum>(), bufs.as<GLenum>() + n); // none at all: nothing is drawn to
+    std::vector<GLenum> list(bufs.as<GLenum>(), bufs.as<GLenum>() + n); // no buffers: draws have no effect
     if (!ofWindow) return call(list.data());
     for (GLenum& b : list) b = bufferOfEye(b, c_->draw);
-    // Surfaces are chosen by the first; of two eyes' by the one that is here.
+    // The first buffer selects the surface; in stereo, the first buffer of the eye that is here.
     const auto chosen = c_->draw && c_->draw->config.stereo ? std::ranges::find_if(list, [](GLenum b) { return b != GL_NONE; }) : list.begin();
     const GLenum first = chosen == list.end() ? GLenum{GL_NONE} : *chosen;
     for (GLenum& b : list) b = windowBuffer(b, c_->draw);
@@ -113,7 +113,7 @@ void Replay::glNamedFramebufferReadBuffer(GLuint framebuffer, GLenum src) {
     gl.glNamedFramebufferReadBuffer(name(Kind::Framebuffer, framebuffer), framebuffer == 0 ? windowBuffer(src, c_->read) : src);
     if (framebuffer == 0) readBufferOfWindow(src);
 }
-// EXT_direct_state_access: the same.
+// The same for EXT_direct_state_access.
 void Replay::glFramebufferDrawBufferEXT(GLuint framebuffer, GLenum mode) {
     if (!gl.glFramebufferDrawBufferEXT) return;
     if (framebuffer == 0) mode = bufferOfEye(mode, c_->draw);
@@ -129,7 +129,7 @@ void Replay::glFramebufferReadBufferEXT(GLuint framebuffer, GLenum mode) {
     gl.glFramebufferReadBufferEXT(name(Kind::Framebuffer, framebuffer), framebuffer == 0 ? windowBuffer(mode, c_->read) : mode);
     if (framebuffer == 0) readBufferOfWindow(mode);
 }
-// Only a hint, and what it throws away may be another tile's: not done for windows.
+// Only a hint, which could discard the pixels of another tile: ignored for windows.
 void Replay::glInvalidateFramebuffer(GLenum target, GLsizei n, const Data& attachments) {
     if (!drawsWindow() && n > 0 && attachments.pointer() && gl.glInvalidateFramebuffer) gl.glInvalidateFramebuffer(target, n, attachments.as<GLenum>());
 }

@@ -1,6 +1,6 @@
-// Front and back of a window where a surface has one colour buffer: a second surface holds the front, from the first
-// command on that names it. Depth and stencil are one for both in the program's window; here they go along to the
-// surface that is drawn to. What is drawn into both at once goes to the back, and to the front when that ends.
+// Front and back of a window whose surface has a single colour buffer. A second surface holds the front buffer from the
+// first command that names it. The program's window shares depth and stencil between both; here they are copied to the
+// current draw surface. Draws to both buffers go to the back, which is then copied to the front.
 #include <utility>
 
 #include "nodes/replay/replay.hpp"
@@ -10,7 +10,7 @@ namespace mural {
 namespace {
 
 bool isBoth(GLenum buffer) { return buffer == GL_FRONT_AND_BACK || buffer == GL_LEFT || buffer == GL_RIGHT; }
-GLenum readFrom(GLenum buffer) { return isBoth(buffer) ? GL_FRONT : buffer; } // one of several
+GLenum readFrom(GLenum buffer) { return isBoth(buffer) ? GL_FRONT : buffer; } // stands for several buffers
 bool isFront(GLenum buffer) { return buffer == GL_FRONT || buffer == GL_FRONT_LEFT || buffer == GL_FRONT_RIGHT; }
 
 constexpr GLbitfield kDeep = GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT;
@@ -21,7 +21,7 @@ bool Replay::hasTwoSurfaces(const Window* w) const {
     return w && w->surface && w->config.doubleBuffer && w->surface->singleBuffered() && c_->api == wire::Api::Desktop && gl.glBlitFramebuffer && platform_->readsOtherSurfaces();
 }
 
-// Which surface stands for the window's buffer. The front's is made here, and filled when it is bound.
+// The surface of the window's buffer. Creates the front surface on demand; binding fills it.
 gl::Surface* Replay::surfaceOf(Window* w, GLenum buffer) {
     if (!w) return nullptr;
     if (!isFront(buffer) || !hasTwoSurfaces(w) || (w == c_->draw && isBoth(c_->drawBuffer0))) return w->surface.get();
@@ -38,7 +38,7 @@ gl::Surface* Replay::surfaceOf(Window* w, GLenum buffer) {
     return w->front.get();
 }
 
-// Makes current what bound_, boundDraw_ and boundRead_ say.
+// Makes bound_, boundDraw_ and boundRead_ current.
 bool Replay::bindSurfaces(gl::HeldBack heldBack) {
     const auto bind = [&] {
         drawSurface_ = surfaceOf(boundDraw_, c_->drawBuffer0);
@@ -46,13 +46,13 @@ bool Replay::bindSurfaces(gl::HeldBack heldBack) {
         return platform_->makeCurrent(bound_->context.get(), drawSurface_, readSurface_, heldBack);
     };
     auto made = bind();
-    if (made && !loaded_) { // before that, nothing tells whether the front can have its own
+    if (made && !loaded_) { // before the first load, surface support is unknown
         loadFunctions();
         made = bind();
     }
     if (!made) {
         out_.log("a context can't be made current: " + made.error().message);
-        unbindPlatform(); // what is current after that, no driver tells
+        unbindPlatform(); // the current surfaces are undefined after a failure
         return false;
     }
     for (Window* w : {boundDraw_, boundRead_}) {
@@ -65,7 +65,7 @@ bool Replay::bindSurfaces(gl::HeldBack heldBack) {
     return true;
 }
 
-// The program has chosen other buffers of its windows.
+// Called after the program has chosen other buffers of its windows.
 void Replay::buffersChanged(GLenum drawnBefore) {
     if (!bound_ || c_ != bound_) return;
     if (boundDraw_ && boundDraw_->front && isBoth(drawnBefore) && !isBoth(c_->drawBuffer0)) backToFront(*boundDraw_);
@@ -78,7 +78,7 @@ void Replay::backToFront(Window& w) {
     copySurface(*w.surface, *w.front, GL_COLOR_BUFFER_BIT);
 }
 
-// A swap: what was in the back is in the front now. Later, where another context than the window's is current.
+// After a swap the front has the back's content. Deferred if another window is current.
 void Replay::showBack(Window& w) {
     w.frontStale = true;
     if (!bound_ || (drawSurface_ != w.front.get() && readSurface_ != w.front.get() && boundDraw_ != &w)) return;
@@ -87,13 +87,13 @@ void Replay::showBack(Window& w) {
     c_ = own;
 }
 
-// Depth and stencil of the window, put where the program reads from.
+// Copies the window's depth and stencil to the surface that the program reads from.
 void Replay::depthForReading() {
     if (!bound_ || !boundRead_ || !boundRead_->front || readSurface_ == boundRead_->deep) return;
     copySurface(*boundRead_->deep, *readSurface_, kDeep);
 }
 
-// All of it, whatever the program has set.
+// Copies the whole surface, independently of the program's state.
 void Replay::copySurface(gl::Surface& from, gl::Surface& to, GLbitfield planes) {
     if (platform_->makeCurrent(bound_->context.get(), &to, &from)) {
         gl.glBindFramebuffer(GL_FRAMEBUFFER, 0);
@@ -110,11 +110,11 @@ void Replay::copySurface(gl::Surface& from, gl::Surface& to, GLbitfield planes) 
         gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER, name(Kind::Framebuffer, c_->drawFramebuffer));
     }
     (void)platform_->makeCurrent(bound_->context.get(), drawSurface_, readSurface_);
-    c_->scissorsDiffer = true; // all viewports' enables were touched
+    c_->scissorsDiffer = true; // the enables of all viewports have changed
     applyScissors();
 }
 
-// What is drawn to now is a front that is divided in another way than the back: every node draws all of it.
+// True if draws go to a front buffer that is divided differently from the back; every node then draws all of it.
 bool Replay::drawsOldFront() const {
     const Window* const w = c_->draw;
     return moves() && w && w->front && w->moving.front != w->moving.areas && isFront(c_->drawBuffer0);
@@ -122,13 +122,13 @@ bool Replay::drawsOldFront() const {
 
 bool Replay::readsFront() const { return isFront(readFrom(c_->readBuffer0)); }
 
-// What this node has of the window's picture, or of its front.
+// This node's region of the window's back or front buffer.
 PixelViewport Replay::regionOf(const Window& w, bool front) const {
     if (!moves() || !front || !w.front || w.skipped) return w.region;
     return partOf(w, w.moving.front.get());
 }
 
-// Of a window that gets another surface.
+// For a window that gets another surface.
 void Replay::dropFront(Window& w) {
     w.front.reset();
     w.deep = nullptr;

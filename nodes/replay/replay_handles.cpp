@@ -1,6 +1,6 @@
-// Textures and images without a binding (ARB_bindless_texture): the program's handles, which its own driver has dealt, are
-// mapped to those of this node's wherever a command names them. What shaders take out of memory nobody sees: there a
-// handle is right when both drivers deal the same (docs/decisions/0006-handles-of-textures.md).
+// Bindless textures and images (ARB_bindless_texture). Commands' handles, which the program's driver has created, are
+// mapped to this node's. Handles that shaders read from memory cannot be mapped: they work if both drivers number
+// handles equally (docs/decisions/0006-handles-of-textures.md).
 #include <cinttypes>
 #include <cstdio>
 #include <cstring>
@@ -34,7 +34,7 @@ void Replay::dealtHandle(HandleTable::Of of, uint64_t theirs, uint64_t ours) {
 // program's process. A texture may have any number of handles, by samplers like its own: one of them has the wanted number where
 // drivers deal the lowest that is free.
 
-// Lets the driver free what was deleted: zink does when it takes up the memory of commands again that have ended.
+// Lets the driver free deleted objects: zink does so when it reuses the memory of completed commands.
 void Replay::settleDriver() {
     constexpr int kRounds = 6;
     constexpr GLsizeiptr kBytes = 16;
@@ -57,7 +57,7 @@ void Replay::settleDriver() {
     gl.glDeleteBuffers(2, buffers);
 }
 
-// With the parameters of the sampler, or where there is none, of the texture. 0: this GL can't.
+// Creates a sampler with the parameters of `sampler`, or without one, of the texture. 0: unsupported.
 GLuint Replay::samplerLike(GLuint texture, GLuint sampler) {
     if (!gl.glGenSamplers || !gl.glSamplerParameteri || !gl.glGetSamplerParameterfv || (!sampler && !gl.glGetTextureParameterfv)) return 0;
     const auto get = [&](GLenum name, GLfloat* value) {
@@ -69,22 +69,22 @@ GLuint Replay::samplerLike(GLuint texture, GLuint sampler) {
     for (const GLenum name : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER, GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R, GL_TEXTURE_COMPARE_MODE, GL_TEXTURE_COMPARE_FUNC,
                               GL_TEXTURE_MIN_LOD, GL_TEXTURE_MAX_LOD, GL_TEXTURE_LOD_BIAS, GL_TEXTURE_MAX_ANISOTROPY, GL_TEXTURE_SRGB_DECODE_EXT, GL_TEXTURE_CUBE_MAP_SEAMLESS,
                               GL_TEXTURE_REDUCTION_MODE_ARB}) {
-        constexpr GLfloat kUnknown = -1e30f; // to drivers without it
+        constexpr GLfloat kUnknown = -1e30f; // for drivers without it
         GLfloat value = kUnknown;
         get(name, &value);
         if (value != kUnknown) gl.glSamplerParameterf(made, name, value);
     }
     GLfloat border[4] = {};
-    get(GL_TEXTURE_BORDER_COLOR, border); // handles demand one of four that are the same as integers
+    get(GL_TEXTURE_BORDER_COLOR, border); // handles allow four border colours, which are equal as integers
     gl.glSamplerParameterfv(made, GL_TEXTURE_BORDER_COLOR, border);
     return made;
 }
 
-// A handle with the wanted number, by a sampler that is made for it. 0: it can't be had.
+// Obtains a handle with the wanted number by means of additional samplers. 0: impossible.
 uint64_t Replay::equalHandle(GLuint texture, GLuint sampler, uint64_t wanted, GLuint& made) {
     constexpr size_t kMostTries = 1024;
     if (!gl.glGetTextureSamplerHandleARB || !gl.glDeleteSamplers) return 0;
-    for (int round = 0; round < 2; ++round) { // the second when nothing is on its way any more
+    for (int round = 0; round < 2; ++round) { // the second round runs after the driver is idle
         std::vector<GLuint> spare;
         for (uint64_t last = 0; last < wanted && spare.size() < kMostTries;) {
             made = samplerLike(texture, sampler);
@@ -92,10 +92,10 @@ uint64_t Replay::equalHandle(GLuint texture, GLuint sampler, uint64_t wanted, GL
             const uint64_t next = gl.glGetTextureSamplerHandleARB(texture, made);
             if (next == wanted) break;
             spare.push_back(std::exchange(made, 0));
-            if (next <= last) break; // in no order, or none
+            if (next <= last) break; // unordered, or no handle
             last = next;
         }
-        gl.glDeleteSamplers(static_cast<GLsizei>(spare.size()), spare.data()); // and their handles
+        gl.glDeleteSamplers(static_cast<GLsizei>(spare.size()), spare.data()); // frees their handles as well
         (void)isError();
         if (made) return wanted;
         if (round == 0) settleDriver();
@@ -103,11 +103,12 @@ uint64_t Replay::equalHandle(GLuint texture, GLuint sampler, uint64_t wanted, GL
     return 0;
 }
 
-// As long as none was freed, numbers come in the order of the questions.
+// Until the first handle is freed, drivers number handles in request order.
 void Replay::askTextureHandle(GLuint texture, GLuint sampler, uint64_t theirs) {
     if (!c_->shared) return;
     const auto known = c_->shared->dealt.find(theirs);
-    if (known != c_->shared->dealt.end() && known->second.texture == texture && known->second.sampler == sampler) return; // asked again
+    // a repeated request
+    if (known != c_->shared->dealt.end() && known->second.texture == texture && known->second.sampler == sampler) return;
     DealtHandle dealt{texture, sampler, 0};
     uint64_t ours = c_->shared->handlesFreed ? equalHandle(texture, sampler, theirs, dealt.made) : 0;
     if (!ours) ours = sampler ? gl.glGetTextureSamplerHandleARB(texture, sampler) : gl.glGetTextureHandleARB(texture);
@@ -115,7 +116,7 @@ void Replay::askTextureHandle(GLuint texture, GLuint sampler, uint64_t theirs) {
     dealtHandle(HandleTable::Of::Texture, theirs, ours);
 }
 
-// A texture or a sampler is deleted, and its handles are with it.
+// Deleting a texture or a sampler ends its handles.
 void Replay::handlesGone(Kind kind, GLuint ours) {
     if (!c_->shared || c_->shared->dealt.empty()) return;
     std::erase_if(c_->shared->dealt, [&](const auto& d) {
@@ -163,7 +164,8 @@ void Replay::glMakeImageHandleNonResidentARB(GLuint64 handle) {
 
 // ---- values
 
-// By the type of the uniform of our program at our location; asked for only where handles differ.
+// The kind of handle, from the uniform's type. `program` and `location` are this node's. Queried only if handles
+// differ.
 HandleTable::Of Replay::handlesOfUniform(GLuint program, GLint location) const {
     GLint count = 0;
     if (program) gl.glGetProgramiv(program, GL_ACTIVE_UNIFORMS, &count);
@@ -179,7 +181,7 @@ HandleTable::Of Replay::handlesOfUniform(GLuint program, GLint location) const {
     return HandleTable::Of::Texture;
 }
 
-// The values as this node's handles; the location is ours.
+// Converts values to this node's handles. The location is this node's.
 std::vector<GLuint64> Replay::handleValues(GLuint program, GLint location, const GLuint64* values, GLsizei count) const {
     std::vector<GLuint64> ours(static_cast<size_t>(count));
     std::memcpy(ours.data(), values, ours.size() * sizeof(GLuint64)); // records are aligned to 4 bytes
@@ -213,7 +215,7 @@ void Replay::glProgramUniformHandleui64vARB(GLuint program, GLint location, GLsi
     const GLint at = uniformLocation(program, location);
     gl.glProgramUniformHandleui64vARB(ours, at, count, handleValues(ours, at, values.as<GLuint64>(), count).data());
 }
-// Which of both an attribute stands for, only the shader knows: most are textures.
+// Only the shader knows the kind of handle in an attribute. Most are textures.
 void Replay::glVertexAttribL1ui64ARB(GLuint index, GLuint64EXT x) {
     if (!gl.glVertexAttribL1ui64ARB) return (void)lacking(op::glVertexAttribL1ui64ARB);
     gl.glVertexAttribL1ui64ARB(index, c_->shared ? c_->shared->handles.value(HandleTable::Of::Texture, x) : x);

@@ -1,4 +1,4 @@
-// Images of GL objects (EGL_KHR_image_base): how contexts of different share groups use the same picture.
+// EGL images (EGL_KHR_image_base), which share a picture between contexts of different share groups.
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 
@@ -13,7 +13,7 @@ bool Replay::ownCreateImage(Args& in) {
     if (!in.ok()) return false;
     Client& client = clients_[wire::clientOf(stream_)];
     const auto it = client.contexts.find(context);
-    if (it == client.contexts.end()) return true; // it could not be made here, which was said
+    if (it == client.contexts.end()) return true; // its creation failed on this node, which was reported
     const Kind kind = target == EGL_GL_RENDERBUFFER_KHR ? Kind::Renderbuffer : Kind::Texture;
     const gl::ImageSource source{it->second->context.get(), target, it->second->shared->tables[static_cast<int>(kind)].find(object), level, layer};
     auto made = platform_->createImage(source);
@@ -29,7 +29,7 @@ bool Replay::ownDestroyImage(Args& in) {
     return true;
 }
 
-// An image that is not here is an error of the program's, or of another origin, which its side has told.
+// A missing image is an error of the program, or unsupported and already reported by its side.
 void Replay::withImage(uint64_t image, const std::function<void(GLeglImageOES)>& call) {
     const auto& images = clients_[wire::clientOf(stream_)].images;
     if (const auto it = images.find(image); it != images.end()) call(it->second->handle());
@@ -41,7 +41,7 @@ void Replay::glEGLImageTargetTexture2DOES(GLenum target, uint64_t image) {
 void Replay::glEGLImageTargetRenderbufferStorageOES(GLenum target, uint64_t image) {
     if (gl.glEGLImageTargetRenderbufferStorageOES) withImage(image, [&](GLeglImageOES i) { gl.glEGLImageTargetRenderbufferStorageOES(target, i); });
 }
-// The list of attributes is empty: nothing has been defined for it.
+// No attributes are defined for the list.
 void Replay::glEGLImageTargetTexStorageEXT(GLenum target, uint64_t image, const Data&) {
     if (gl.glEGLImageTargetTexStorageEXT) withImage(image, [&](GLeglImageOES i) { gl.glEGLImageTargetTexStorageEXT(target, i, nullptr); });
 }

@@ -1,5 +1,4 @@
-// What the program is told without having asked: messages of this node's driver, memory that could not be
-// had, a context that is lost.
+// Driver events: debug messages of this node's driver, out of memory, and context loss.
 #include <string>
 #include <utility>
 
@@ -8,7 +7,7 @@
 namespace mural {
 
 namespace {
-constexpr size_t kMostMessages = 64; // between two packets; the program learns of the first ones
+constexpr size_t kMostMessages = 64; // between two packets; the program receives the first ones
 } // namespace
 
 void Replay::listenToDriver() {
@@ -17,7 +16,7 @@ void Replay::listenToDriver() {
     gl.glDebugMessageCallback(reinterpret_cast<void*>(&Replay::hearDriver), &c_->debug);
 }
 
-// What the program itself has said it knows.
+// The program knows the messages that it has inserted itself.
 void APIENTRY Replay::hearDriver(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length, const GLchar* text, const void* inbox) {
     if (source == GL_DEBUG_SOURCE_APPLICATION || source == GL_DEBUG_SOURCE_THIRD_PARTY || !text) return;
     auto& box = *static_cast<DebugInbox*>(const_cast<void*>(inbox));
@@ -43,9 +42,10 @@ void Replay::tellMessages() {
     for (const auto& message : messages) tell(wire::NewsKind::DebugMessage, message);
 }
 
-// The program's own context raises all errors but those of this machine's memory. True: there was none.
+// Clears GL errors. The program's own context reports all errors except out of memory on this machine. Returns true if
+// there was none.
 bool Replay::takeErrors() {
-    constexpr int kMostErrors = 8; // a lost context has them for ever
+    constexpr int kMostErrors = 8; // a lost context reports errors forever
     bool noMemory = false;
     for (int i = 0; i < kMostErrors && gl.glGetError; ++i) {
         const GLenum error = gl.glGetError();
@@ -56,14 +56,14 @@ bool Replay::takeErrors() {
     return noMemory;
 }
 
-// What lacked memory before the error that was told is told with it.
+// A reported error includes allocation failures before it.
 bool Replay::errorTold() {
     if (bound_ == c_ && takeErrors()) tell(wire::NewsKind::OutOfMemory, {0, c_->errorsTold, 0, 0, {}});
     ++c_->errorsTold;
     return true;
 }
 
-// An error that was raised before would hide the one that is looked for.
+// Clears earlier errors first, which would hide an allocation failure.
 bool Replay::executeAllocating(ReplayFunction function, Args& in) {
     (void)takeErrors();
     const bool ok = function(*this, in);
@@ -96,7 +96,7 @@ Kind kindOf(GLenum identifier) {
     case GL_TEXTURE: return Kind::Texture;
     case GL_RENDERBUFFER: return Kind::Renderbuffer;
     case GL_FRAMEBUFFER: return Kind::Framebuffer;
-    default: return Kind::Count; // display lists: several of ours are one of the program's
+    default: return Kind::Count; // display lists: several lists here form one of the program's
     }
 }
 } // namespace
@@ -119,12 +119,12 @@ void Replay::glPushDebugGroup(GLenum source, GLuint id, GLsizei length, const Da
     const std::string text = textOf(message, length);
     if (gl.glPushDebugGroup) gl.glPushDebugGroup(source, id, static_cast<GLsizei>(text.size()), text.c_str());
 }
-// The numbers of a driver's messages differ from process to process.
+// Message ids differ between processes.
 void Replay::glDebugMessageControl(GLenum source, GLenum type, GLenum severity, GLsizei count, const Data&, GLboolean enabled) {
     if (count == 0 && gl.glDebugMessageControl) gl.glDebugMessageControl(source, type, severity, 0, nullptr, enabled);
 }
 
-// What only drawing has found, at the end of a frame.
+// Reports, at the end of a frame, problems that only drawing reveals.
 void Replay::tellTroubles() {
     if (!bound_) return;
     ContextState* const own = std::exchange(c_, bound_);

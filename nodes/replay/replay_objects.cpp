@@ -1,4 +1,4 @@
-// Commands whose objects or pointers mean something else on this node.
+// Commands with object names or pointers that differ on this node.
 #include <cstring>
 #include <utility>
 
@@ -33,7 +33,8 @@ void Replay::glDeleteBuffers(GLsizei n, const Data& buffers) {
 }
 void Replay::glBindVertexArray(GLuint array) { gl.glBindVertexArray(name(Kind::VertexArray, array)); }
 
-// Only offsets come this way (client memory: kOpClientArrays); without a buffer GL would read memory.
+// Pointers here are offsets into buffers (client memory: kOpClientArrays). Without a bound buffer GL would access
+// memory.
 void Replay::arrayPointer(uint64_t pointer, const std::function<void(const void*)>& call) {
     if (c_->arrayBuffer == 0 && pointer != 0) return;
     call(reinterpret_cast<const void*>(pointer));
@@ -76,7 +77,7 @@ void Replay::glVertexAttribLPointer(GLuint index, GLint size, GLenum type, GLsiz
 }
 
 namespace {
-// The indices of a multi draw as GL wants them; false: malformed.
+// Converts the indices of a multi-draw. Returns false if malformed.
 bool indexPointers(const Data& indices, const GLsizei* count, GLenum type, GLsizei drawcount, std::vector<const void*>& out) {
     const auto bytes = indices.span();
     if (bytes.size() < 8) return false;
@@ -96,7 +97,7 @@ bool indexPointers(const Data& indices, const GLsizei* count, GLenum type, GLsiz
 }
 } // namespace
 
-// Offsets only count with a buffer of indices bound, pointers only without.
+// Offsets require a bound index buffer, pointers require none.
 bool Replay::indicesFit(const Data& indices) {
     uint32_t kind = 0;
     GLint buffer = 0;
@@ -149,10 +150,10 @@ void Replay::glDeleteSync(uint64_t sync) {
     if (it->second) gl.glDeleteSync(it->second);
     c_->shared->syncs.erase(it);
 }
-// The program's own context has waited already where it matters; a node need not stall its stream.
+// The program's own context has already waited where it matters. A node need not stall its stream.
 void Replay::glFinish() { gl.glFlush(); }
 
-// Feedback and selection happen in the program's own context; nothing is drawn meanwhile.
+// Feedback and selection run in the program's own context. Nothing is drawn meanwhile.
 void Replay::glRenderMode(GLenum mode) {
     if (mode == GL_RENDER) {
         if (gl.glRenderMode) gl.glRenderMode(GL_RENDER);
@@ -167,7 +168,7 @@ void Replay::glRenderMode(GLenum mode) {
 }
 
 namespace {
-constexpr int kListNesting = 64; // GL_MAX_LIST_NESTING: lists that call themselves end there
+constexpr int kListNesting = 64; // GL_MAX_LIST_NESTING: bounds recursive lists
 
 class ItemBlobs : public BlobQueue {
 public:
@@ -236,7 +237,7 @@ bool Replay::splitsLists(uint16_t opcode, std::span<const std::byte> arguments) 
     }
 }
 
-// While a list is compiled. A glBegin that is an error begins nothing.
+// During list compilation. An invalid glBegin starts no primitive.
 void Replay::notePrimitive(uint16_t opcode, std::span<const std::byte> arguments) {
     if (opcode == op::glEnd) c_->compilesPrimitive = false;
     uint32_t mode = GL_PATCHES + 1;
@@ -244,9 +245,9 @@ void Replay::notePrimitive(uint16_t opcode, std::span<const std::byte> arguments
     if (mode <= GL_PATCHES) c_->compilesPrimitive = true;
 }
 
-// A command that splits lists. Between glBegin and glEnd GL takes none of them but calls of lists: the others are errors
-// there, which the program's own list raises, and would end the native list within its primitive. Nor can a list be ended
-// there while it is executed: what it calls is called natively.
+// A command that splits lists. Between glBegin and glEnd, GL accepts only calls of lists among these commands. The
+// others are errors there, which the program's own list raises, and would end the native list inside its primitive. A
+// list cannot be ended during the execution of a primitive either, so the lists that it calls are called natively.
 bool Replay::compileSplitting(uint16_t opcode, std::span<const std::byte> bytes, std::span<const std::byte> arguments) {
     const bool callsList = opcode == op::glCallList || opcode == op::glCallLists;
     if (c_->compilesPrimitive && !callsList) {
@@ -267,14 +268,14 @@ void Replay::glNewList(GLuint list, GLenum mode) {
     c_->building = {};
     const GLuint first = gl.glGenLists(1);
     c_->building.items.push_back({.native = first, .record = {}, .blobs = {}});
-    gl.glNewList(first, mode); // compile-and-execute is left to the driver: its playback may draw otherwise
+    gl.glNewList(first, mode); // compile-and-execute is left to the driver: list playback may draw differently
 }
 void Replay::glEndList() {
     if (!c_->compiling) return;
     gl.glEndList();
     const GLuint list = c_->compiling;
     c_->compiling = 0;
-    applyTileValues(); // what changed meanwhile
+    applyTileValues(); // changed meanwhile
     List& slot = c_->shared->lists[list];
     for (const ListItem& item : slot.items) {
         if (item.record.empty()) gl.glDeleteLists(item.native, 1);
@@ -283,8 +284,8 @@ void Replay::glEndList() {
     c_->building = {};
 }
 
-// A command that the list can't hold natively goes between two native lists. What was spilled ahead of
-// it belongs to it, and is kept with it: the list may be called again and again.
+// A command that a native list cannot contain goes between two native lists. Its spilled arguments are stored with it,
+// because the list may be called repeatedly.
 void Replay::compileSplit(std::span<const std::byte> bytes) {
     ListItem item{.record = {bytes.begin(), bytes.end()}, .blobs = {}};
     for (bool found = true; found;) {
@@ -297,7 +298,7 @@ void Replay::compileSplit(std::span<const std::byte> bytes) {
     });
 }
 
-// Goes on with another native list; what `between` calls is in none.
+// Continues with another native list. Calls made in `between` are in no list.
 void Replay::nextNativeList(const std::function<void()>& between) {
     gl.glEndList();
     const GLuint compiling = std::exchange(c_->compiling, 0);
@@ -333,7 +334,7 @@ void Replay::runList(GLuint list) {
     }
 }
 
-// A command of a list that the node executes itself.
+// Executes a list command that is not in a native list.
 void Replay::runItem(const ListItem& item) {
     uint32_t header = 0;
     std::memcpy(&header, item.record.data(), 4);
@@ -341,7 +342,7 @@ void Replay::runItem(const ListItem& item) {
     ItemBlobs blobs(item.blobs);
     const size_t used = scratchUsed_;
     execute(static_cast<uint16_t>(header & 0xffff), bytes.subspan(header >> 16 == record::kLongForm ? 8 : 4), blobs);
-    scratchUsed_ = used; // the caller's names stay, this command's are done with
+    scratchUsed_ = used; // releases this command's temporary names, not the caller's
 }
 void Replay::glCallLists(GLsizei n, GLenum type, const Data& lists) {
     if (!lists.pointer()) return;
@@ -371,13 +372,13 @@ void Replay::glCallLists(GLsizei n, GLenum type, const Data& lists) {
     }
 }
 void Replay::glListBase(GLuint base) { c_->listBase = base; }
-void Replay::glGenLists(GLsizei, GLuint) {} // the program's names need none of ours yet
+void Replay::glGenLists(GLsizei, GLuint) {} // native lists are created on demand
 void Replay::glDeleteLists(GLuint list, GLsizei range) {
     auto& lists = c_->shared->lists;
     for (GLsizei i = 0; i < range && !lists.empty(); ++i) {
         const auto it = lists.find(list + static_cast<GLuint>(i));
         if (it == lists.end()) {
-            if (range > 1 << 16 && i > 1 << 16) break; // a wild range: only what exists counts
+            if (range > 1 << 16 && i > 1 << 16) break; // an implausible range: deletes existing lists only
             continue;
         }
         for (const ListItem& item : it->second.items) {

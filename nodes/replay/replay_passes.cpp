@@ -1,8 +1,8 @@
-// Drawing a pass of a frame: another place of the samples in their pixels, every nth pixel only, or the whole smaller.
+// Drawing the pass of a frame: with shifted samples, every nth pixel, or zoomed.
 //
-// All are a scale and an offset of window coordinates, and viewports take fractions: whatever draws, shaders or not,
-// is moved by them. OpenGL ES has no such viewports: there shaders move positions (nodes/shaders/moved_position).
-// Source: accuracy 2.5; thesis, "Pixel", "Subpixel" and "zoom".
+// All three scale and translate window coordinates. Viewports accept fractions, so they transform every draw, with or
+// without shaders. OpenGL ES lacks fractional viewports; its shaders transform positions
+// (nodes/shaders/moved_position). Source: accuracy 2.5; thesis, "Pixel", "Subpixel" and "zoom".
 #include <algorithm>
 #include <cstring>
 
@@ -15,8 +15,8 @@ namespace mural {
 
 bool Replay::movesByShaders() const { return c_->api != wire::Api::Desktop || !gl.glViewportIndexedf; }
 
-// What moves now: a window whose pixels are copied or read, in the frame before, is drawn as if there were no kernel; and
-// what only shows a scene that was sampled before is not sampled again (replay_scenes.cpp).
+// The pass for the current draws. A window whose pixels were copied or read in the previous frame is drawn without a
+// kernel. A draw that only shows an already sampled scene is not sampled again (replay_scenes.cpp).
 RenderPass Replay::passOfDraws() const {
     RenderPass p = config_.pass;
     if (!drawsWindow() || !interleaves(c_->draw)) p.kernelX = p.kernelY = 0, p.kernelWidth = p.kernelHeight = 1, p.zoom = {};
@@ -24,17 +24,17 @@ RenderPass Replay::passOfDraws() const {
     return p;
 }
 
-// Where this node draws its part of the window.
+// This node's part of the window in the drawn picture.
 PixelViewport Replay::partDrawn(const Window& w) const { return interleaves(&w) ? inPass(config_.pass, w.part) : w.part; }
 
-// How large a framebuffer has to be: of a node that draws larger than it shows, for either way.
+// The required size of the framebuffer: large enough for the drawn and the shown picture.
 PixelViewport Replay::surfaceOf(const Window& w, bool lean) const {
     const PixelViewport shown = lean ? w.part : w.whole, drawn = inPass(config_.pass, shown);
     return {0, 0, std::max({shown.w, drawn.w, 1}), std::max({shown.h, drawn.h, 1})};
 }
 
-// Pixels `r` of the picture that the pass hands out, of a window that was drawn smaller or larger than that. What other nodes draw is not here: at the
-// edges of its part the outermost pixels count on.
+// Reads pixels `r` of the output picture from a window drawn at another size. Pixels of other nodes are not available:
+// edge pixels of this node's part are extended.
 const std::byte* Replay::readScaled(Window& w, const PixelViewport& r, bool front) {
     const RenderPass& p = config_.pass;
     const PixelViewport all = inShown(p, w.part), area = w.plain ? inKernel(p, w.part) : w.region;
@@ -47,7 +47,7 @@ const std::byte* Replay::readScaled(Window& w, const PixelViewport& r, bool fron
     return pixels_.data();
 }
 
-// The pass's pixels `r` of a window that was drawn whole.
+// Reads the pass's pixels `r` from a window drawn without the kernel.
 const std::byte* Replay::readEveryNth(Window& w, const PixelViewport& r, bool front) {
     const RenderPass& p = config_.pass;
     const PixelViewport from = shownByKernel(p, r);
@@ -61,7 +61,7 @@ const std::byte* Replay::readEveryNth(Window& w, const PixelViewport& r, bool fr
     return pixels_.data();
 }
 
-// What a program reads of a window that has every nth pixel only: each stands for its neighbours.
+// A program's read of a window with every nth pixel: each pixel also stands for its neighbours.
 const std::byte* Replay::readRepeated(const PixelViewport& part, GLenum format, GLenum type, size_t group) {
     const RenderPass& p = config_.pass;
     const PixelViewport picture = inPass(p, c_->read->whole);
@@ -69,7 +69,7 @@ const std::byte* Replay::readRepeated(const PixelViewport& part, GLenum format, 
     if (!from.empty()) (void)readRegion(from, format, type, static_cast<size_t>(from.area()) * group);
     const std::vector<std::byte> few = pixels_;
     pixels_.assign(static_cast<size_t>(part.area()) * group, std::byte{0});
-    if (from.empty()) return pixels_.data(); // too small to have a pixel
+    if (from.empty()) return pixels_.data(); // too small to contain a pixel
     for (int32_t y = 0; y < part.h; ++y)
         for (int32_t x = 0; x < part.w; ++x) {
             const PassPixel at = standingFor(p, part.x + x, part.y + y);

@@ -1,5 +1,5 @@
-// Pixel store: images from client memory come tightly packed, others lie in buffers as the program's own state says. And
-// the stack of client attributes, most of which is that state.
+// Pixel store state. Images from client memory arrive tightly packed; images in buffers follow the program's state.
+// Also the client attribute stack, most of which is that state.
 #include "nodes/replay/replay.hpp"
 #include "nodes/replay/to_int.hpp"
 
@@ -7,14 +7,14 @@ namespace mural {
 
 namespace {
 
-// The order of PixelUnpack::values and ContextState::pack; alignment is the sixth.
+// In the order of PixelUnpack::values and ContextState::pack; alignment is the sixth.
 constexpr GLenum kUnpackNames[8] = {GL_UNPACK_SWAP_BYTES, GL_UNPACK_LSB_FIRST, GL_UNPACK_ROW_LENGTH, GL_UNPACK_SKIP_ROWS,
                                     GL_UNPACK_SKIP_PIXELS, GL_UNPACK_ALIGNMENT, GL_UNPACK_SKIP_IMAGES, GL_UNPACK_IMAGE_HEIGHT};
 constexpr GLenum kPackNames[8] = {GL_PACK_SWAP_BYTES, GL_PACK_LSB_FIRST, GL_PACK_ROW_LENGTH, GL_PACK_SKIP_ROWS,
                                   GL_PACK_SKIP_PIXELS, GL_PACK_ALIGNMENT, GL_PACK_SKIP_IMAGES, GL_PACK_IMAGE_HEIGHT};
 constexpr int kAlignment = 5;
 
-// Which of the eight the API knows.
+// Whether the API has parameter i of the eight.
 bool knows(wire::Api api, int version, int i, bool pack) {
     if (api == wire::Api::Desktop) return true;
     if (i == kAlignment) return true;
@@ -103,7 +103,7 @@ void Replay::glPopClientAttrib() {
     const ClientState saved = c_->clientAttributes.back();
     c_->clientAttributes.pop_back();
     if (saved.mask & GL_CLIENT_PIXEL_STORE_BIT) {
-        c_->unpack = saved.unpack; // `tight` too: GL has gone back to what it had then
+        c_->unpack = saved.unpack; // `tight` too: GL has restored its value as well
         c_->pack = saved.pack;
         c_->packBuffer = saved.packBuffer;
         c_->unpackBuffer = saved.unpackBuffer;

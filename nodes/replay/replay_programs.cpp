@@ -1,7 +1,7 @@
-// Programs whose shaders know of the tile (tiling.hpp), and what else those shaders must be told.
+// Programs with shaders rewritten for tiles (tiling.hpp), and the values of their added uniforms.
 //
-// Values go to the current program when it becomes current and whenever something changes that they
-// depend on: viewport, framebuffer, window, widest line. In between, draws cost nothing more.
+// The current program receives the values when it becomes current, and whenever viewport, framebuffer, window or
+// maximum line width change. Draws in between have no overhead.
 #include <cmath>
 #include <cstring>
 #include <utility>
@@ -53,7 +53,7 @@ void Replay::compileShader(GLuint ours) {
     if (c_->shared && rewrites().any()) c_->shared->tiled.compile(gl, ours);
     else gl.glCompileShader(ours);
 }
-// Modules are taken as they are: where coordinates would have to be the window's, windows are drawn whole.
+// Modules are not rewritten. If they need window coordinates, the whole window is drawn.
 void Replay::glShaderBinary(GLsizei count, const Data& shaders, GLenum format, const Data& binary, GLsizei length) {
     if (!gl.glShaderBinary || !c_->shared || count < 0 || length < 0 || shaders.size() < size_t{4} * static_cast<size_t>(count)) return;
     std::vector<GLuint> ours(static_cast<size_t>(count));
@@ -82,7 +82,7 @@ void Replay::noteModules(GLuint ours) {
         if (found != c_->shared->placedModules.end() && found->second && !std::exchange(c_->shared->allDrawn, true)) restoreWindowState();
     }
 }
-// Rewritten texts would be compiled without these paths: such shaders stay as they are.
+// A rewritten text would lose these paths, so such shaders are not rewritten.
 void Replay::glCompileShaderIncludeARB(GLuint shader, GLsizei count, const Data& path) {
     StringList paths;
     if (!gl.glCompileShaderIncludeARB || !paths.parse(path, count)) return;
@@ -106,7 +106,7 @@ void Replay::glLinkProgram(GLuint program) {
     if (c_->shared) c_->shared->recipes.linked(gl, ours);
     noteModules(ours);
     if (takesRanges()) notePrimitiveIds(ours);
-    applyTileValues(); // it may be the current one
+    applyTileValues(); // it may be the current program
 }
 void Replay::linkProgram(GLuint ours) {
     if (c_->shared) c_->shared->memoryWriters.clear();

@@ -1,16 +1,16 @@
-// Programs that draw their scene into a framebuffer object and then show it: what a pass moves is the scene, not the
-// quad or blit that shows it. A framebuffer object with a depth buffer, through a viewport of the window's size, is taken
-// for a scene's; shadow maps, textures and filters have other sizes or no depth buffer, and stay as they are.
+// Programs that draw their scene into a framebuffer object and then show it. A pass must transform the scene, not the
+// quad or blit that shows it. Heuristic: a framebuffer object with a depth buffer and a viewport of the window's size
+// contains the scene. Shadow maps, textures and filters have other sizes or no depth buffer, and are not transformed.
 #include <utility>
 
 #include "nodes/replay/replay.hpp"
 
 namespace mural {
 
-// Eyes look at windows and at scenes elsewhere.
+// Stereo applies to windows and to scenes in framebuffer objects.
 bool Replay::isSeen() const { return drawsWindow() || c_->sceneSized; }
 
-// Samples are taken of scenes: of what is depth-tested, and in windows of everything while no scene is drawn elsewhere.
+// Samples apply to scenes: to depth-tested draws, and in windows to all draws while no scene is drawn elsewhere.
 bool Replay::drawsScene() const {
     if (!drawsWindow()) return c_->sceneSized && c_->depthTested;
     return c_->depthTested || !c_->draw || !(c_->draw->sceneElsewhere || c_->draw->sceneWasElsewhere);
@@ -27,7 +27,7 @@ bool Replay::hasDepthAttached() {
     return c_->depthAttached;
 }
 
-// Before a command that draws.
+// Called before each draw command.
 void Replay::noteScene() {
     if (!c_->draw) return;
     const auto& v = c_->viewports[0];

@@ -1,5 +1,5 @@
-// Pages of sparse textures and buffers. What is not committed is undefined, so a node may have more pages than the program:
-// where its driver's are of another size, those around are committed, and none is given back. That costs memory only.
+// Page commitment of sparse textures and buffers. Uncommitted memory is undefined, so a node may commit more than the
+// program: with other page sizes it commits all overlapping pages and releases none. This costs memory only.
 #include <algorithm>
 
 #include "gl_opcodes.hpp"
@@ -9,7 +9,7 @@ namespace mural {
 
 namespace {
 
-// [from, from + size) up to multiples of `step`, and not beyond `most`.
+// Extends [from, from + size) to multiples of `step`, but not beyond `most`.
 template <class T, class S> void enlarge(T& from, S& size, int64_t step, int64_t most) {
     if (step <= 0) return;
     const int64_t end = (int64_t{from} + size + step - 1) / step * step;
@@ -21,12 +21,12 @@ template <class T, class S> void enlarge(T& from, S& size, int64_t step, int64_t
 
 bool Replay::isError() {
     bool found = false;
-    constexpr int kMostErrors = 8; // a lost context has them for ever
+    constexpr int kMostErrors = 8; // a lost context reports errors forever
     for (int i = 0; i < kMostErrors && gl.glGetError && gl.glGetError() != GL_NO_ERROR; ++i) found = true;
     return found;
 }
 
-// To this driver's pages of the texture (texture 0: that is bound there). False: it has none for it.
+// Extends the box to this driver's pages of the texture (0: the bound one). Returns false without sparse pages.
 bool Replay::enlargeToPages(GLenum target, GLuint texture, PageBox& box) {
     if (!gl.glGetInternalformativ || !gl.glGetTexLevelParameteriv || (texture && !gl.glGetTextureLevelParameteriv)) return false;
     const auto ofTexture = [&](GLenum name) {
@@ -54,7 +54,8 @@ bool Replay::enlargeToPages(GLenum target, GLuint texture, PageBox& box) {
     if (width <= 0 || height <= 0 || depth <= 0) return false;
     enlarge(box.x, box.width, width, ofLevel(GL_TEXTURE_WIDTH));
     enlarge(box.y, box.height, height, ofLevel(GL_TEXTURE_HEIGHT));
-    if (target == GL_TEXTURE_3D) enlarge(box.z, box.depth, depth, ofLevel(GL_TEXTURE_DEPTH)); // else layers, one by one
+    // otherwise separate layers
+    if (target == GL_TEXTURE_3D) enlarge(box.z, box.depth, depth, ofLevel(GL_TEXTURE_DEPTH));
     return true;
 }
 
@@ -81,14 +82,14 @@ void Replay::glTexturePageCommitmentEXT(GLuint texture, GLint level, GLint x, GL
     commitPages(0, ours, {level, x, y, z, w, h, d}, commit, [&](const PageBox& b) { gl.glTexturePageCommitmentEXT(ours, b.level, b.x, b.y, b.z, b.width, b.height, b.depth, commit); });
 }
 
-// bufferBytes(): asked for only where pages differ.
+// bufferBytes() is called only if page sizes differ.
 void Replay::commitBuffer(uint64_t offset, uint64_t sizeBytes, bool commits, const std::function<uint64_t()>& bufferBytes, const std::function<void(uint64_t, uint64_t)>& call) {
     GLint page = 0;
     gl.glGetIntegerv(GL_SPARSE_BUFFER_PAGE_SIZE_ARB, &page);
     const uint64_t step = page > 0 ? static_cast<uint64_t>(page) : 1;
     if (offset % step == 0 && sizeBytes % step == 0) return call(offset, sizeBytes);
     const uint64_t whole = bufferBytes();
-    if (offset > whole || sizeBytes > whole - offset) return; // an error
+    if (offset > whole || sizeBytes > whole - offset) return; // an error in GL
     const bool fits = offset % step == 0 && offset + sizeBytes == whole;
     if (!commits && !fits) return;
     const uint64_t from = offset / step * step, end = std::min((offset + sizeBytes + step - 1) / step * step, whole);

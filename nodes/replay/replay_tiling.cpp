@@ -1,10 +1,9 @@
 // Drawing only this node's part of a window.
 //
-// exact: the framebuffer has the window's size and everything outside the node's region is closed by
-// the scissor, together with the program's own scissor box: the spec demands that fragments do not
-// depend on the scissor, so what is drawn is bit for bit the whole picture's. lean: the framebuffer
-// has the region's size and window coordinates are translated. Framebuffer objects are drawn whole.
-// Source: design §4, accuracy M4 and M1.
+// exact: the framebuffer has the window's size, and the scissor, intersected with the program's scissor box, closes
+// everything outside the node's region. The specification requires fragments to be independent of the scissor, so the
+// region is bit-identical to the whole picture's. lean: the framebuffer has the region's size, and window coordinates
+// are translated. Framebuffer objects are always drawn whole. Source: design §4, accuracy M4 and M1.
 #include <cstdint>
 
 #include "nodes/replay/pass_place.hpp"
@@ -15,7 +14,7 @@ namespace mural {
 
 namespace {
 
-// Viewports and boxes that are set together: one that is an error keeps all of them as they were.
+// Viewports and boxes set by one command: an invalid one leaves all of them unchanged.
 template <class T> bool areBoxes(GLuint most, GLuint first, GLsizei count, const T* v) {
     if (!v || count <= 0 || first >= most || static_cast<GLuint>(count) > most - first) return false;
     for (GLsizei i = 0; i < count; ++i) {
@@ -37,7 +36,7 @@ void Replay::applyScissor(int index, bool all) {
     PixelViewport box = drawsWindow() && interleaves(c_->draw) ? inPass(config_.pass, app.box) : app.box;
     if (!drawsWhole() && c_->draw) {
         const PixelViewport part = c_->draw->drawn;
-        if (drawsLean()) { // the framebuffer's edges are the tile's
+        if (drawsLean()) { // the framebuffer ends at the tile's edges
             box.x = moved(box.x, c_->draw->region.x);
             box.y = moved(box.y, c_->draw->region.y);
         } else {
@@ -87,7 +86,7 @@ void Replay::applyViewports() {
     }
 }
 
-// After another context, framebuffer or window became current.
+// Called after a change of context, framebuffer or window.
 void Replay::restoreWindowState() {
     if (!bound_ || !c_->everCurrent) return;
     const bool needsAll = drawsLean() && c_->draw && allDrawn();
@@ -198,7 +197,7 @@ void Replay::glPopAttrib() {
     if (saved.mask & GL_COLOR_BUFFER_BIT) {
         drawBufferOfWindow(saved.drawBuffer0);
         c_->colorMasks = saved.colorMasks;
-        applyColorMasks(); // the framebuffer may be another one than at the push
+        applyColorMasks(); // the framebuffer may have changed since the push
     }
     if (saved.mask & GL_PIXEL_MODE_BIT) readBufferOfWindow(saved.readBuffer0);
     if (saved.mask & (GL_SCISSOR_BIT | GL_ENABLE_BIT | GL_VIEWPORT_BIT)) restoreWindowState();
@@ -206,7 +205,7 @@ void Replay::glPopAttrib() {
 
 namespace {
 
-// As a framebuffer needs it whose lower left corner is the window's (x, y).
+// Rotates the pattern for a framebuffer whose lower left corner is at (x, y) in the window.
 std::array<GLubyte, 128> turnedStipple(const GLubyte* pattern, int x, int y) {
     std::array<GLubyte, 128> turned{};
     const int shift = x % 32;
@@ -221,13 +220,13 @@ std::array<GLubyte, 128> turnedStipple(const GLubyte* pattern, int x, int y) {
 
 } // namespace
 
-// The pattern is fixed to the window: a translated framebuffer needs a rotated one.
+// The pattern is fixed to the window, so a translated framebuffer needs a rotated pattern.
 void Replay::glPolygonStipple(const Data& mask) {
     if (!unpackFor(mask)) return;
     const PixelViewport o = origin();
     if ((o.x % 32 == 0 && o.y % 32 == 0) || (!mask.pointer() && !mask.isOffset())) return gl.glPolygonStipple(mask.as<GLubyte>());
     if (!mask.isOffset()) return gl.glPolygonStipple(turnedStipple(mask.as<GLubyte>(), o.x, o.y).data());
-    gl.glPolygonStipple(mask.as<GLubyte>()); // out of a buffer: by GL, and back
+    gl.glPolygonStipple(mask.as<GLubyte>()); // from a buffer: GL sets it, then it is queried
     GLubyte pattern[128] = {};
     if (c_->packBuffer) gl.glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
     packTightly(true);

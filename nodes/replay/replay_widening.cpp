@@ -1,5 +1,5 @@
-// Where every node has to draw all (interposer/memory_writers.hpp), a tile's framebuffer (lean) has no place for it:
-// windows get framebuffers of their own size.
+// If every node has to draw all (interposer/memory_writers.hpp), the framebuffer of a lean tile is too small. Windows
+// then get framebuffers of their own size.
 #include <algorithm>
 #include <utility>
 
@@ -7,8 +7,8 @@
 
 namespace mural {
 
-// From now on the window is drawn as with tiling exact. What its tile holds stays; raster position and
-// polygon stipple, where they were set before, stay the tile's.
+// Switches the window to exact tiling and preserves the tile's content. A raster position and a polygon stipple that
+// were set before keep the tile's coordinates.
 void Replay::widenToWindow(Window& w) {
     w.widens = false;
     const PixelViewport size = surfaceOf(w, false);
@@ -25,8 +25,8 @@ void Replay::widenToWindow(Window& w) {
     (void)bindSurfaces();
 }
 
-// Into the window's new framebuffer, whatever the program has set. That one becomes current; buffers are chosen
-// again, the scissor by whoever asked for this.
+// Copies the tile into the window's new framebuffer, independently of the program's state. Makes the new one current
+// and reselects buffers; the caller restores the scissor.
 void Replay::copyTile(const Window& w, gl::Surface& from) {
     if (!platform_->makeCurrent(c_->context.get(), w.surface.get(), &from)) return;
     const bool desktop = c_->api == wire::Api::Desktop;
@@ -34,7 +34,7 @@ void Replay::copyTile(const Window& w, gl::Surface& from) {
     gl.glDisable(GL_SCISSOR_TEST);
     const bool srgb = desktop && gl.glIsEnabled(GL_FRAMEBUFFER_SRGB);
     if (srgb) gl.glDisable(GL_FRAMEBUFFER_SRGB);
-    GLboolean deep = GL_TRUE; // what other tiles hold is not known: the program's cleared depth is likely
+    GLboolean deep = GL_TRUE; // the content of other tiles is unknown: the program's clear depth is a good guess
     gl.glGetBooleanv(GL_DEPTH_WRITEMASK, &deep);
     gl.glDepthMask(GL_TRUE);
     gl.glClear(GL_DEPTH_BUFFER_BIT);

@@ -45,10 +45,10 @@ void TiledPrograms::compile(const GlFunctions& gl, GLuint shader) {
     s.type = static_cast<GLenum>(type);
     s.text = sourceOf(gl, shader);
     s.compiled.clear();
-    if (s.text.empty()) gl.glCompileShader(shader); // an error there is an error here
+    if (s.text.empty()) gl.glCompileShader(shader); // reproduces the program's error
 }
 
-// Compiles `shader` from `text` unless that is what it has. The source that the program set stays.
+// Compiles `shader` from `text` unless it already is. Keeps the source that the program has set.
 bool TiledPrograms::holds(const GlFunctions& gl, GLuint shader, const std::string& text) {
     Shader& s = shaders_[shader];
     if (s.compiled != text) {
@@ -65,7 +65,7 @@ bool TiledPrograms::holds(const GlFunctions& gl, GLuint shader, const std::strin
 
 std::vector<TiledPrograms::Part> TiledPrograms::rewritten(const GlFunctions& gl, GLuint program, const ShaderRewrites& rewrites, bool es) {
     std::vector<Part> parts;
-    GLenum last = 0; // stages in the order in which they run
+    GLenum last = 0; // in pipeline order
     const auto place = [](GLenum type) { return type == GL_GEOMETRY_SHADER ? 3 : type == GL_TESS_EVALUATION_SHADER ? 2 : type == GL_VERTEX_SHADER ? 1 : 0; };
     for (const GLuint shader : attachedShaders(gl, program)) {
         const auto it = shaders_.find(shader);
@@ -75,7 +75,7 @@ std::vector<TiledPrograms::Part> TiledPrograms::rewritten(const GlFunctions& gl,
         if (it->second.type == GL_FRAGMENT_SHADER) parts.back().wanted = shaders::withWindowPlace(it->second.text, fragmentReads(rewrites), es).value_or("");
     }
     const auto separable = separable_.find(program);
-    // The stage behind a separable one may be another program's, which must see the same block.
+    // The stage after a separable one may be in another program, which must declare the same block.
     if (!(rewrites.cull || rewrites.moved) || !last || (separable != separable_.end() && separable->second)) return parts;
     std::vector<std::string> texts;
     for (const Part& p : parts) {
@@ -94,7 +94,7 @@ std::vector<TiledPrograms::Part> TiledPrograms::rewritten(const GlFunctions& gl,
     return parts;
 }
 
-// False: something that was rewritten stands in the way.
+// Returns false if a rewritten shader prevents linking.
 bool TiledPrograms::linkParts(const GlFunctions& gl, GLuint program, std::vector<Part>& parts) {
     bool any = false, compiled = true;
     for (const Part& p : parts) {
@@ -115,7 +115,7 @@ void TiledPrograms::link(const GlFunctions& gl, GLuint program, const ShaderRewr
         for (Part& p : parts) {
             if (p.lastStage || !both) p.wanted.clear();
         }
-        if (!linkParts(gl, program, parts)) { // without the coordinates too
+        if (!linkParts(gl, program, parts)) { // also without the rewritten coordinates
             for (Part& p : parts) p.wanted.clear();
             linkParts(gl, program, parts);
         }

@@ -1,5 +1,5 @@
-// GLSL programs whose shaders are rewritten for a tile: which text each shader object is compiled from,
-// and the values of the uniforms that came in. One for all contexts that share. Names are this node's.
+// GLSL programs with shaders rewritten for a tile: the text from which each shader object is compiled, and the values
+// of the added uniforms. One instance per share group. Names are this node's.
 #pragma once
 
 #include <string>
@@ -13,17 +13,17 @@ namespace mural {
 
 class TiledPrograms {
 public:
-    // Instead of glCompileShader: the text is kept and compiled when a link shows what it must be.
+    // Replaces glCompileShader: stores the text and compiles it when a link determines the rewriting.
     void compile(const GlFunctions& gl, GLuint shader);
-    // The shader holds a module now, or was compiled in another way: never rewritten.
+    // The shader contains a module or was compiled otherwise: it is never rewritten.
     void forget(GLuint shader) { shaders_.erase(shader); }
-    // Instead of glLinkProgram. What does not compile or link rewritten is linked as it was.
+    // Replaces glLinkProgram. Links the original shaders if the rewritten ones do not compile or link.
     void link(const GlFunctions& gl, GLuint program, const ShaderRewrites& rewrites, bool es);
-    // Instead of glCreateShaderProgramv.
+    // Replaces glCreateShaderProgramv.
     GLuint create(const GlFunctions& gl, GLenum type, GLsizei count, const GLchar* const* texts, const ShaderRewrites& rewrites, bool es);
-    // Makes `program`, which is current, have these values.
+    // Sets the uniforms of `program`, which must be current.
     void apply(const GlFunctions& gl, GLuint program, const TileValues& values);
-    // The same for all that may be in pipelines.
+    // Sets them in all separable programs.
     void applySeparable(const GlFunctions& gl, const TileValues& values);
     // GL_PROGRAM_SEPARABLE for the next link.
     void setSeparable(GLuint program, bool separable);
@@ -31,18 +31,18 @@ public:
 private:
     struct Shader {
         GLenum type = 0;
-        std::string text;     // that the program has compiled
-        std::string compiled; // that the object now holds; empty: not compiled yet
+        std::string text; // the program's source
+        std::string compiled; // the compiled source; empty: not compiled yet
     };
     struct Program {
-        GLint cull = -1, place = -1, move = -1; // locations
+        GLint cull = -1, place = -1, move = -1; // uniform locations
         bool separable = false;
-        TileValues sent;              // zeros, as after a link
+        TileValues sent; // zeros, as after a link
     };
     struct Part {
         GLuint shader;
-        std::string wanted; // the rewritten text; empty: the program's own
-        bool lastStage;     // by which rewriting
+        std::string wanted; // the rewritten text; empty: the original
+        bool lastStage; // rewritten as the last stage
     };
 
     std::vector<Part> rewritten(const GlFunctions& gl, GLuint program, const ShaderRewrites& rewrites, bool es);
@@ -51,7 +51,7 @@ private:
     void remember(const GlFunctions& gl, GLuint program, bool separable);
 
     std::unordered_map<GLuint, Shader> shaders_;
-    std::unordered_map<GLuint, Program> programs_; // those with uniforms of ours
+    std::unordered_map<GLuint, Program> programs_; // programs with added uniforms
     std::unordered_map<GLuint, bool> separable_;
 };
 

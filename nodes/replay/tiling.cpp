@@ -8,7 +8,7 @@ namespace mural {
 
 namespace {
 
-// Viewports beyond this may be clamped by GL without a word: then nothing is known of where things land.
+// GL may silently clamp larger viewports, after which the positions of fragments are unknown.
 constexpr GLfloat kLargestViewport = 16384;
 
 bool known(const std::array<GLfloat, 4>& v) {
@@ -28,7 +28,7 @@ TileValues tileValues(const TilePlace& p) {
                     static_cast<GLfloat>(p.window.top() - to.scale[1] * framebuffer.top() - to.from[1]), 0,
                     static_cast<GLfloat>(to.scale[0] - 1), static_cast<GLfloat>(to.scale[1] - 1), static_cast<GLfloat>(1 / to.scale[0] - 1), static_cast<GLfloat>(1 / to.scale[1] - 1)};
     if (!p.mayCull || p.tile == p.window || !known(p.viewport)) return values;
-    // A point of window coordinate x is at 2 (x - vx) / vw - 1 of the viewport's -1 to 1.
+    // Window coordinate x is at 2 (x - vx) / vw - 1 within the viewport's -1 to 1.
     const auto edge = [](double position, GLfloat from, GLfloat size) { return static_cast<GLfloat>(2 * (position - from) / size - 1); };
     const auto& v = p.viewport;
     const double m = p.marginPixels;

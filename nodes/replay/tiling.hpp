@@ -1,5 +1,5 @@
-// What a tiling changes in the program's shaders, and the values that those changes take: the one place
-// where exact, lean and further tilings differ for shaders. Pure; replay_tiling.cpp does the rest.
+// The shader rewritings that a tiling needs, and the values of their uniforms. The only place where the tilings differ
+// for shaders. Pure; replay_tiling.cpp applies them.
 #pragma once
 
 #include <GL/gl.h>
@@ -10,33 +10,34 @@
 
 namespace mural {
 
-// Which rewritings of nodes/shaders are used.
+// Selects rewritings of nodes/shaders.
 struct ShaderRewrites {
-    bool cull = false;              // whole primitives outside of the tile are dropped
-    bool windowCoordinates = false; // gl_FragCoord is the window's: the framebuffer is the tile's, or has every nth pixel
-    bool windowDerivatives = false; // derivatives are per pixel of the window
-    bool windowGradients = false;   // and textures' levels are chosen by such
-    bool moved = false;             // positions as another eye sees them, or moved in the viewport; instead of cull
+    bool cull = false; // drops whole primitives outside the tile
+    // gl_FragCoord in window coordinates, for framebuffers of the tile or of every nth pixel
+    bool windowCoordinates = false;
+    bool windowDerivatives = false; // derivatives per window pixel
+    bool windowGradients = false; // texture levels from derivatives per window pixel
+    bool moved = false; // positions for another eye or another place in the viewport; excludes cull
     [[nodiscard]] bool place() const { return windowCoordinates || windowDerivatives; }
     [[nodiscard]] bool any() const { return cull || place() || moved; }
 };
 
-// Values of the uniforms that the rewritings bring in.
+// Values of the added uniforms.
 struct TileValues {
-    std::array<GLfloat, 8> cull{};   // shaders::kCullUniform
-    std::array<GLfloat, 8> place{};  // shaders::kPlaceUniform
-    std::array<GLfloat, 20> move{};   // shaders::kMoveUniform
+    std::array<GLfloat, 8> cull{}; // shaders::kCullUniform
+    std::array<GLfloat, 8> place{}; // shaders::kPlaceUniform
+    std::array<GLfloat, 20> move{}; // shaders::kMoveUniform
 };
 
-// Where drawing goes: all rectangles in the window's coordinates.
+// The target of draws; all rectangles are in window coordinates.
 struct TilePlace {
     PixelViewport window;
-    PixelViewport tile;              // what is let through
+    PixelViewport tile; // the visible region
     std::array<GLfloat, 4> viewport{}; // the program's own
-    GLfloat marginPixels = 0;        // half of the widest line or point, and something for rounding
+    GLfloat marginPixels = 0; // half of the widest line or point, plus a rounding margin
     bool mayCull = true;
-    bool translated = false;         // the framebuffer is the tile's
-    RenderPass pass;                 // the framebuffer's pixels are this one's
+    bool translated = false; // the framebuffer has the tile's size
+    RenderPass pass; // the pass of the framebuffer's pixels
 };
 
 TileValues tileValues(const TilePlace& place);

@@ -4,7 +4,7 @@ namespace mural {
 
 namespace {
 
-using MatrixRow = std::array<double, 4>; // of x, y, w and 1
+using MatrixRow = std::array<double, 4>; // coefficients of x, y, w and 1
 
 MatrixRow operator*(double by, const MatrixRow& a) { return {by * a[0], by * a[1], by * a[2], by * a[3]}; }
 MatrixRow operator+(const MatrixRow& a, const MatrixRow& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]}; }
@@ -19,7 +19,7 @@ ViewMove eyeMove(const SeenProjection& seen, double offset, double focusDistance
 }
 
 ViewMove screenMove(const SeenProjection& seen, const ScreenView& s) {
-    // The program's eye coordinates, from its clip coordinates.
+    // From clip coordinates back to the program's eye coordinates.
     const MatrixRow own[4] = {{1 / seen.scaleX, 0, -seen.shearX / seen.scaleX, 0}, {0, 1 / seen.scaleY, -seen.shearY / seen.scaleY, 0}, {0, 0, -1, 0}, {0, 0, 0, 1}};
     MatrixRow eye[3];
     for (size_t i = 0; i < 3; ++i) {
@@ -27,7 +27,7 @@ ViewMove screenMove(const SeenProjection& seen, const ScreenView& s) {
         eye[i] = m[0] * own[0] + m[1] * own[1] + m[2] * own[2] + m[3] * own[3];
     }
     const MatrixRow w = -1 * eye[2];
-    // Of the screen's own picture, and that put into its place on the wall's.
+    // The screen's projection, mapped to its place on the wall.
     const MatrixRow x = 2 / (s.right - s.left) * eye[0] + (s.right + s.left) / (s.right - s.left) * eye[2];
     const MatrixRow y = 2 / (s.top - s.bottom) * eye[1] + (s.top + s.bottom) / (s.top - s.bottom) * eye[2];
     ViewMove move;

@@ -1,5 +1,4 @@
-// Where a vertex is seen that another eye looks at, or a screen that stands elsewhere: clip coordinates as a linear
-// function of the program's own.
+// Clip coordinates for another eye or another screen, as a linear function of the program's clip coordinates.
 #pragma once
 
 #include <array>
@@ -9,19 +8,18 @@
 
 namespace mural {
 
-// What is added to clip coordinates x, y and w: so much of x, y, w and 1; to z: so much of what is added to w, that depth
-// is told by the program's own near and far planes.
+// Added to clip coordinates x, y and w: coefficients of x, y, w and 1. Added to z: a multiple of w's addition, so that
+// depth keeps the program's near and far planes.
 struct ViewMove {
     std::array<double, 4> x{}, y{}, w{};
     double z = 0;
 
-    // The same for a whole projection matrix: columns of four, as OpenGL keeps them.
+    // Applies the same to a projection matrix, column-major as in OpenGL.
     void apply(double (&matrix)[16], double unit) const;
 };
 
-// Two eyes before one screen, off-axis: this one is `offset` to the right of the middle, and what lies at `focusDistance`
-// stays where it is (both in the program's units). x_clip + K (w / focusDistance - 1), K = offset times the projection's
-// scale of x.
+// Off-axis stereo: this eye is `offset` to the right of the centre, and points at `focusDistance` stay fixed (both in
+// the program's units). x_clip + K (w / focusDistance - 1), K = offset times the projection's scale of x.
 [[nodiscard]] ViewMove eyeMove(const SeenProjection& seen, double offset, double focusDistance);
 
 // A screen of a room. Source: thesis, "Virtual Reality"; Kooima, "Generalized Perspective Projection".

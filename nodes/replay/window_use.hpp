@@ -1,4 +1,4 @@
-// What commands are to the picture of a window.
+// Classifies commands by their effect on a window's picture.
 #pragma once
 
 #include <cstdint>

@@ -6,10 +6,11 @@ namespace mural {
 
 namespace {
 
-constexpr double kRounding = 1e-9; // what decimal fractions lose
+constexpr double kRounding = 1e-9; // tolerates the rounding of decimal fractions
 
 bool inPicture(const Viewport& v) {
-    return v.x >= 0 && v.y >= 0 && v.w >= 0 && v.h >= 0 && v.x + v.w <= 1 + kRounding && v.y + v.h <= 1 + kRounding; // not so with any NaN
+    // false for NaN
+    return v.x >= 0 && v.y >= 0 && v.w >= 0 && v.h >= 0 && v.x + v.w <= 1 + kRounding && v.y + v.h <= 1 + kRounding;
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// Which part of the picture each node draws, where that may change while the session runs (HeadCommand::Areas).
+// The area of each node, where areas change during the session (HeadCommand::Areas).
 #pragma once
 
 #include <cstddef>
@@ -12,16 +12,17 @@
 namespace mural {
 
 struct Areas {
-    uint32_t number = 0;          // 0: those of the start; later ones are larger
-    std::vector<Viewport> ofNodes; // by node; neighbours have the same edges, bit for bit
+    uint32_t number = 0; // 0: the initial areas; increases
+    std::vector<Viewport> ofNodes; // per node; neighbours share bit-identical edges
 
     friend bool operator==(const Areas&, const Areas&) = default;
 };
 
-// u32 number, u32 nodes, then of each four doubles: x, y, w, h.
+// u32 number, u32 nodes, then four doubles per node: x, y, w, h.
 std::vector<std::byte> bytesOf(const Areas& areas);
 
-// The first areas in `bytes`, which then begins behind them. None: it is too short, or some area is not one within the picture.
+// Parses areas at the start of `bytes` and removes them. Returns nothing if truncated, or if an area exceeds the
+// picture.
 std::optional<Areas> takeAreas(std::span<const std::byte>& bytes);
 
 } // namespace mural

@@ -1,5 +1,5 @@
-// How pictures leave a node's GL: Direct: they are read before the next frame is drawn. Buffer: GL writes them into a buffer, for which another thread waits.
-// Auto: by which of both the drawing thread loses less.
+// The readback of pictures. Direct: synchronous, before the next frame. Buffer: into a pixel buffer that another thread
+// maps. Auto: whichever blocks the drawing thread less.
 #pragma once
 
 #include <cstdint>

@@ -56,7 +56,7 @@ std::string describe(const RenderPass& pass) {
         add("pixel " + std::to_string(pass.kernelX) + "," + std::to_string(pass.kernelY) + " of each " + std::to_string(pass.kernelWidth) + "x" + std::to_string(pass.kernelHeight));
     if (pass.samples > 1) add("sample " + std::to_string(pass.sample + 1) + " of " + std::to_string(pass.samples));
     if (pass.period > 1) add("frames " + std::to_string(pass.phase) + ", " + std::to_string(pass.phase + pass.period) + ", …");
-    if (pass.zoom != pass.shown) { // who draws as large as his canvas is does not zoom
+    if (pass.zoom != pass.shown) { // drawing at the canvas's own resolution is no zoom
         char zoom[48];
         std::snprintf(zoom, sizeof zoom, "zoom %.4g %.4g", pass.zoom.x / pass.shown.x, pass.zoom.y / pass.shown.y);
         add(zoom);

@@ -1,7 +1,6 @@
-// What a picture is drawn for beside its place on the wall: an eye, a pixel of a kernel, a sample of a
-// pixel, a turn in time, a range of what is drawn. A session that decomposes by any of them draws every frame in several passes, each by
-// nodes of its own; the head puts the passes' pictures together.
-// Source: thesis, "Scalable Rendering" (stereo, pixel, subpixel and time-multiplex compounds).
+// The pass of a picture: an eye, a kernel pixel, a sample, a phase, a range. A session with any of these draws every
+// frame in several passes on separate nodes; the head combines the pictures. Source: thesis, "Scalable Rendering"
+// (stereo, pixel, subpixel and time-multiplex compounds).
 #pragma once
 
 #include <array>
@@ -16,54 +15,54 @@ namespace mural {
 
 enum class StereoMode {
     Off,
-    Anaglyph,   // left in red, right in green and blue
-    SideBySide, // left half and right half, each the whole picture at half its width
-    TopBottom,  // left above right, each at half its height
-    Left,       // one eye alone: for two sessions, or to look at it
+    Anaglyph, // left eye in red, right eye in green and blue
+    SideBySide, // eyes side by side at half width
+    TopBottom, // left above right at half height
+    Left, // one eye only, for two sessions or for inspection
     Right,
-    Quad // each whole: windows with a buffer for each eye
+    Quad // both eyes at full size: quad-buffered windows
 };
 
 struct RenderPass {
     Eye eye = Eye::Cyclop;
-    int kernelX = 0, kernelY = 0; // which pixel of a kernel…
-    int kernelWidth = 1, kernelHeight = 1; // …of so many columns and rows; row 0 is the lowest
-    int sample = 0, samples = 1;  // which of the jittered pictures that are averaged
-    int phase = 0, period = 1;    // draws the frames n with n mod period == phase
-    int range = 0, ranges = 1;    // which of the nodes that share a frame's draws in their order (sort-last)…
-    Range share;                  // …and which part of them it draws
-    Zoom zoom;                    // drawn smaller or larger by this, and as large as it is shown before anybody sees it; at most kMostZoom
+    int kernelX = 0, kernelY = 0; // the pixel within the kernel
+    int kernelWidth = 1, kernelHeight = 1; // size of the kernel; row 0 is the lowest
+    int sample = 0, samples = 1; // index and number of the averaged samples
+    int phase = 0, period = 1; // draws frames n with n mod period == phase
+    int range = 0, ranges = 1; // index and number of the ranges of a frame's draws (sort-last)
+    Range share; // this node's part of the draws
+    Zoom zoom; // drawn at this scale and resized before it is shown; at most kMostZoom
 
-    Zoom shown;                   // its pictures are larger or smaller than the program's by this: those of another canvas
+    Zoom shown; // scale of another canvas relative to the program's picture
 
     bool operator==(const RenderPass&) const = default;
 };
 
-// How many of each; 1 of everything is a session without passes.
+// The number of each; all 1: a session without passes.
 struct PassCounts {
     StereoMode stereo = StereoMode::Off;
     int kernelWidth = 1, kernelHeight = 1;
     int samples = 1;
     int period = 1;
     int ranges = 1;
-    Zoom zoom; // of all
+    Zoom zoom; // of all passes
 };
 
 [[nodiscard]] std::vector<Eye> eyesOf(StereoMode mode);
 
-// All passes: by eye, then by row and column of the kernel, then by sample, then by phase. Each stands for as many nodes
-// as there are ranges: they draw one picture together.
+// All passes, ordered by eye, kernel row, kernel column, sample and phase. One node per range draws each pass; together
+// they draw one picture.
 [[nodiscard]] std::vector<RenderPass> passesOf(const PassCounts& counts);
 
-// Passes that differ in their phase alone make one picture: its index in that order.
+// The index of the pass's picture in that order. Passes that differ only in their phase share a picture.
 [[nodiscard]] int pictureOf(const PassCounts& counts, const RenderPass& pass);
 [[nodiscard]] int picturesOf(const PassCounts& counts);
 
-// Where sample i of n lies in its pixel, each coordinate in (-1/2, 1/2), (0, 0) being its centre: one sample in each of n
-// columns and n rows, the rows in the order of a Hammersley set; their mean is the centre, so that no picture moves.
+// The position of sample i of n in its pixel, each coordinate in (-1/2, 1/2), with (0, 0) the centre. Each of n columns
+// and n rows contains one sample; rows follow a Hammersley set. The mean is the centre, so no picture shifts.
 [[nodiscard]] std::array<double, 2> jitterOf(int sample, int samples);
 
-// One word or two for --explain: "left eye", "sample 2 of 4", "" when it is the plain picture.
+// A short text for --explain: "left eye", "sample 2 of 4"; "" for the plain picture.
 [[nodiscard]] std::string describe(const RenderPass& pass);
 
 } // namespace mural

@@ -1,4 +1,4 @@
-// What one screen of a room (a cave's wall, a screen at an angle) shows of a program's scene.
+// The view of one screen in a room, such as a side of a CAVE or a tilted screen.
 #pragma once
 
 #include "common/matrix4.hpp"
@@ -7,9 +7,10 @@
 namespace mural {
 
 struct ScreenView {
-    Viewport area;                                     // where its picture lies on the wall's
-    double left = -1, right = 1, bottom = -1, top = 1; // its edges, on the plane at distance 1 from the eye
-    Matrix4 fromProgram; // from the program's eye coordinates to those of the eye before the screen, which looks along -z
+    Viewport area; // place of its picture on the wall
+    double left = -1, right = 1, bottom = -1, top = 1; // its edges on the plane at distance 1 from the eye
+    // from the program's eye coordinates to those of the eye before the screen, which looks along -z
+    Matrix4 fromProgram;
 
     friend bool operator==(const ScreenView&, const ScreenView&) = default;
 };

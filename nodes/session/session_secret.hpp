@@ -1,6 +1,5 @@
-// How a render node that comes over TCP proves that it belongs to this session, and learns that the head is it. The head
-// hands each node its own 32 random bytes as one line of 64 hex digits on the node's standard input; they are never sent,
-// but proven (transport/secure_channel.hpp).
+// Mutual authentication of the head and a node on TCP. The head gives each node its own 32 random bytes, as one line of
+// 64 hex digits on standard input. Neither end sends the secret; each proves it (transport/secure_channel.hpp).
 #pragma once
 
 #include <array>
@@ -14,8 +13,8 @@ namespace mural {
 
 using SessionSecret = ChannelSecret;
 
-Result<SessionSecret> makeSessionSecret(); // from the kernel's random numbers
+Result<SessionSecret> makeSessionSecret(); // from the kernel's random number generator
 std::string toHex(const SessionSecret& secret);
-Result<SessionSecret> sessionSecretFromHex(const std::string& line); // a line end is allowed
+Result<SessionSecret> sessionSecretFromHex(const std::string& line); // accepts a trailing newline
 
 } // namespace mural

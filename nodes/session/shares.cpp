@@ -26,7 +26,7 @@ std::optional<Shares> sharesOf(std::span<const std::byte> bytes) {
     shares.number = head[0];
     for (; !bytes.empty(); bytes = bytes.subspan(sizeof edges)) {
         std::memcpy(edges, bytes.data(), sizeof edges);
-        if (!(edges[0] >= 0 && edges[0] <= edges[1] && edges[1] <= 1)) return {}; // nor with any NaN
+        if (!(edges[0] >= 0 && edges[0] <= edges[1] && edges[1] <= 1)) return {}; // also rejects NaN
         shares.ofNodes.push_back({edges[0], edges[1]});
     }
     return shares;

@@ -1,4 +1,4 @@
-// Which part of a picture's draws, in their order, each node draws, where that may change while the session runs (HeadCommand::Shares).
+// The part of a picture's draws that each node draws, where parts change during the session (HeadCommand::Shares).
 #pragma once
 
 #include <cstddef>
@@ -12,16 +12,16 @@
 namespace mural {
 
 struct Shares {
-    uint32_t number = 0;        // 0: those of the start; later ones are larger
-    std::vector<Range> ofNodes; // by node; neighbours have the same edges, bit for bit
+    uint32_t number = 0; // 0: the initial shares; increases
+    std::vector<Range> ofNodes; // per node; neighbours share bit-identical edges
 
     friend bool operator==(const Shares&, const Shares&) = default;
 };
 
-// u32 number, u32 nodes, then of each two doubles: start, end.
+// u32 number, u32 nodes, then two doubles per node: start, end.
 std::vector<std::byte> bytesOf(const Shares& shares);
 
-// None: these bytes are no shares, or one is not within the draws.
+// Returns nothing for malformed bytes, or if a share exceeds the draws.
 std::optional<Shares> sharesOf(std::span<const std::byte> bytes);
 
 } // namespace mural

@@ -1,5 +1,4 @@
-// Which stream a program, its head and its nodes speak: the grammar and the command table. Both ends of a
-// link must name the same.
+// Identifies the stream's grammar and command table. Both ends of a link must have the same value.
 #pragma once
 
 #include <cinttypes>

@@ -7,12 +7,12 @@ namespace mural::shaders {
 
 namespace {
 
-// What these mean can't be kept, or would be changed, by more distances.
+// Shaders with these are unsupported: additional distances would change their meaning.
 constexpr const char* kExcluding[] = {"gl_ClipVertex", "gl_CullDistance", "gl_ViewportIndex", "gl_ViewportMask"};
 
 bool maybePatched(const GlslText& t) {
     if (t.es && t.version < 300) return false;
-    // Captured blocks must keep their members.
+    // Blocks captured by transform feedback must keep their members.
     if (t.usesPrefix("xfb_")) return false;
     return std::none_of(std::begin(kExcluding), std::end(kExcluding), [&](const char* name) { return t.uses(name); });
 }
@@ -20,7 +20,7 @@ bool maybePatched(const GlslText& t) {
 std::string distances(const GlslText& t, bool sized) {
     const std::string p = t.es ? "highp " : "";
     std::string grow = "0.0";
-    // Points of the shader's own size may reach further than the edges are set off.
+    // Points with a shader-defined size may extend beyond the margin.
     if (sized) grow = "(gl_PointSize * 0.5 + 2.0 > muralCullPlanes[1].y ? gl_PointSize * 0.5 + 2.0 - muralCullPlanes[1].y : 0.0) * (gl_Position.w < 0.0 ? -gl_Position.w : gl_Position.w)";
     return p + "vec4 muralP = gl_Position; " + p + "float muralGrow = " + grow + "; bool muralOn = muralCullPlanes[1].x != 0.0; "
            "gl_CullDistance[0] = muralOn ? muralP.x - muralCullPlanes[0].x * muralP.w + muralGrow * muralCullPlanes[1].z : 1.0; "
@@ -29,7 +29,7 @@ std::string distances(const GlslText& t, bool sized) {
            "gl_CullDistance[3] = muralOn ? muralCullPlanes[0].w * muralP.w - muralP.y + muralGrow * muralCullPlanes[1].w : 1.0;";
 }
 
-// `out gl_PerVertex { … }`: a block that is redeclared has only the members that it names.
+// `out gl_PerVertex { … }`: a redeclared block has only the members that it names.
 void addBlockMember(const GlslText& t, TextEdits& edits) {
     const std::string member = t.es ? " highp float gl_CullDistance[4];" : " float gl_CullDistance[4];";
     for (size_t i = 1; i + 1 < t.tokens.size(); ++i) {

@@ -11,7 +11,7 @@ namespace mural::shaders {
 
 namespace {
 
-// A program's stage may be made of several texts, each with functions of its own.
+// A stage may consist of several texts with functions of their own, so added names need a unique suffix.
 std::string endingOf(std::string_view source) {
     uint32_t sum = 2166136261; // FNV-1a
     for (const char c : source) sum = (sum ^ static_cast<unsigned char>(c)) * 16777619;
@@ -21,8 +21,8 @@ std::string endingOf(std::string_view source) {
     return ending;
 }
 
-// A function, so that what is reckoned with its result keeps the precision that it has natively: 16 bits for mediump, in some drivers.
-// Pixel centres that count as whole numbers lie half a pixel elsewhere in both.
+// A function, so that expressions with its result keep the native precision: 16 bits for mediump on some drivers.
+// Integer pixel centres are offset by half a pixel in both coordinate systems.
 std::string windowCoordinate(const GlslText& text, const std::string& ending) {
     const std::string from = text.uses("origin_upper_left") ? "xz" : "xy";
     const std::string counted = text.uses("pixel_center_integer") ? "(p.xy + 0.5)" : "p.xy";
@@ -32,7 +32,7 @@ std::string windowCoordinate(const GlslText& text, const std::string& ending) {
 
 constexpr std::string_view kDerivatives[] = {"dFdx", "dFdy", "fwidth", "dFdxFine", "dFdyFine", "fwidthFine", "dFdxCoarse", "dFdyCoarse", "fwidthCoarse"};
 
-// What GLSL's function gives is between this framebuffer's neighbours, and made one between the window's.
+// GLSL's derivative is between neighbours in this framebuffer; the division converts it to neighbours in the window.
 std::string perPixelOfWindow(const std::string& name) {
     if (name.starts_with("dFd")) return name + "(v) + " + name + "(v) * muralPlace[1]." + (name[3] == 'x' ? "z" : "w");
     const std::string kind = name.substr(std::string_view("fwidth").size());

@@ -1,5 +1,5 @@
-// A framebuffer of the tile's size, or one that has every nth pixel of the window only, gives fragments its own coordinates: shaders
-// that read them get the window's instead, and derivatives per pixel of the window. Source: accuracy M1; GL_ARB_fragment_coord_conventions.
+// A framebuffer with the tile's size, or with every nth pixel, changes the coordinates of fragments. Rewritten shaders
+// read window coordinates and derivatives per window pixel. Source: accuracy M1; GL_ARB_fragment_coord_conventions.
 #pragma once
 
 #include <optional>
@@ -8,22 +8,22 @@
 
 namespace mural::shaders {
 
-// vec4[2]. Of the first x, y: what lies at the framebuffer's lower left corner, in the window from its lower left; z: the same height
-// from both upper left corners; w: 0. Of the second x, y: how many pixels of the window one of the framebuffer stands for, less 1; z, w: one through so many,
-// less 1: zeros change nothing, not even a rounding.
+// vec4[2]. [0].xy: window position of the framebuffer's lower left corner; [0].z: its height from the upper left
+// corners; [0].w: 0. [1].xy: window pixels per framebuffer pixel, minus 1; [1].zw: the reciprocal, minus 1. Zeros
+// change nothing, not even by rounding.
 inline constexpr const char* kPlaceUniform = "muralPlace";
 
 struct FragmentReads {
-    bool coordinates = false; // are moved
+    bool coordinates = false; // gl_FragCoord
     bool derivatives = false;
     bool gradients = false; // of texture lookups (texture_gradients.hpp)
 };
 
-// GLSL of any version. Nothing: the shader reads none of these.
+// Supports GLSL of any version. Returns nothing if the shader reads none of these.
 std::optional<std::string> withWindowPlace(std::string_view source, const FragmentReads& reads, bool es);
 
-// ARB_fragment_program: the same vec4s are program.env[envIndex - 1], the second, and program.env[envIndex]. Nothing: it reads no position,
-// or uses these parameters itself.
+// The same for ARB_fragment_program: the vec4s are program.env[envIndex - 1] (the second) and program.env[envIndex].
+// Returns nothing if the program reads no position, or uses these parameters itself.
 std::optional<std::string> withWindowPlaceArb(std::string_view source, int envIndex);
 
 } // namespace mural::shaders

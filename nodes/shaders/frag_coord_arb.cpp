@@ -10,7 +10,7 @@ namespace mural::shaders {
 
 namespace {
 
-// Names, numbers and single signs; # begins a comment.
+// Tokens are names, numbers and single characters; # starts a comment.
 std::vector<GlslToken> scanArb(std::string_view s) {
     std::vector<GlslToken> tokens;
     for (size_t at = 0; at < s.size();) {
@@ -49,7 +49,7 @@ bool namesEnv(const Arb& arb, int index) {
     return false;
 }
 
-// Behind the header and the OPTION lines; 0: this is no fragment program.
+// The index after the header and the OPTION lines; 0: not a fragment program.
 size_t firstStatement(const Arb& arb) {
     size_t i = 0;
     while (i < arb.tokens.size() && arb.at(i).substr(0, 5) != "ARBfp") ++i;
@@ -68,7 +68,7 @@ std::optional<std::string> withWindowPlaceArb(std::string_view source, int envIn
     const Arb arb{scanArb(source)};
     const size_t first = firstStatement(arb);
     if (first == 0 || namesEnv(arb, envIndex - 1)) return std::nullopt;
-    bool upper = false, whole = false; // pixel centres are whole numbers
+    bool upper = false, whole = false; // origin upper left; integer pixel centres
     TextEdits edits;
     for (size_t i = 0; i < arb.tokens.size(); ++i) {
         upper = upper || arb.at(i) == "ARB_fragment_coord_origin_upper_left";
@@ -76,7 +76,7 @@ std::optional<std::string> withWindowPlaceArb(std::string_view source, int envIn
         if (!arb.position(i)) continue;
         const GlslToken& last = arb.tokens[i + 2];
         edits.replace(arb.tokens[i].at, last.at + last.text.size() - arb.tokens[i].at, "muralPosition");
-        // An ATTRIB can only name what comes in; an ALIAS names a variable.
+        // ATTRIB accepts inputs only; ALIAS accepts a variable.
         if (i >= 3 && arb.at(i - 3) == "ATTRIB") edits.replace(arb.tokens[i - 3].at, 6, "ALIAS");
     }
     if (edits.empty()) return std::nullopt;

@@ -32,7 +32,7 @@ private:
     void step() {
         const char c = peek();
         if (c == '\\' && (peek(1) == '\n' || (peek(1) == '\r' && peek(2) == '\n'))) {
-            at_ += peek(1) == '\n' ? 2 : 3; // the line goes on
+            at_ += peek(1) == '\n' ? 2 : 3; // line continuation
         } else if (c == '\n') {
             ++at_;
             closeDirective(at_);
@@ -53,7 +53,7 @@ private:
 
     void skipComment() {
         if (peek(1) == '/') {
-            // A line comment goes on behind a backslash at its end, as any line does.
+            // A backslash continues a line comment, as it does any line.
             while (at_ < s_.size() && s_[at_] != '\n') at_ += s_[at_] == '\\' && peek(1) == '\n' ? 2 : 1;
             return;
         }
@@ -123,7 +123,7 @@ size_t GlslText::extensionsAt() const {
 
 size_t GlslText::declarationsAt() const {
     size_t at = extensionsAt();
-    bool pending = false; // an #extension inside of conditionals that are still open
+    bool pending = false; // an #extension inside open conditionals
     for (const GlslDirective& d : directives) {
         if (d.name == "extension") {
             pending = d.depth > 0;
@@ -153,7 +153,7 @@ std::string TextEdits::apply(std::string_view source) const {
 std::string onItsLine(const GlslText& text, size_t at, std::string declaration) {
     size_t next = at;
     while (next < text.source.size() && blank(text.source[next])) ++next;
-    const bool ends = at > 0 && text.source[at - 1] != '\n'; // the last line may have no end
+    const bool ends = at > 0 && text.source[at - 1] != '\n'; // the last line may lack a newline
     const bool directive = next < text.source.size() && text.source[next] == '#';
     return (ends ? "\n" : "") + std::move(declaration) + (directive ? "\n" : " ");
 }

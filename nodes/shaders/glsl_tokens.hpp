@@ -1,5 +1,5 @@
-// The tokens of a GLSL text: enough of the language to find names, directives and declarations.
-// Comments are skipped; names inside of macro definitions count, as the compiler will see them.
+// A tokenizer for GLSL, sufficient to find names, directives and declarations. Skips comments. Names in macro
+// definitions count as the compiler sees them.
 #pragma once
 
 #include <cstddef>
@@ -10,16 +10,16 @@
 namespace mural::shaders {
 
 struct GlslToken {
-    std::string_view text;    // of the source
-    size_t at = 0;            // where it begins
-    bool directive = false;   // on a preprocessor line
+    std::string_view text; // in the source
+    size_t at = 0; // offset of its first character
+    bool directive = false; // on a preprocessor line
 };
 
 struct GlslDirective {
-    std::string_view name;    // "version", "extension", …; empty: a lone #
-    size_t begin = 0;         // of the #
-    size_t end = 0;           // after the line's end
-    int depth = 0;            // conditionals around it; an #if and its #endif are at the same depth
+    std::string_view name; // "version", "extension", …; empty: a lone #
+    size_t begin = 0; // of the #
+    size_t end = 0; // after the end of the line
+    int depth = 0; // number of enclosing conditionals; an #if and its #endif have the same depth
 };
 
 struct GlslText {
@@ -31,16 +31,16 @@ struct GlslText {
 
     [[nodiscard]] bool uses(std::string_view name) const;
     [[nodiscard]] bool usesPrefix(std::string_view prefix) const;
-    // Behind #version: where #extension lines go.
+    // The position for #extension lines, after #version.
     [[nodiscard]] size_t extensionsAt() const;
-    // Behind the last #extension, outside of all conditionals: where declarations may go.
+    // The position for declarations: after the last #extension, outside all conditionals.
     [[nodiscard]] size_t declarationsAt() const;
 };
 
-// es: what a text without #version is (ES 1.00 in ES contexts, 1.10 elsewhere).
+// es: selects the version of a text without #version (ES 1.00, otherwise 1.10).
 GlslText scanGlsl(std::string_view source, bool es);
 
-// Insertions and replacements, gathered in any order and applied at once.
+// Collects insertions and replacements in any order, and applies them together.
 class TextEdits {
 public:
     void insert(size_t at, std::string text) { replace(at, 0, std::move(text)); }
@@ -56,8 +56,8 @@ private:
     std::vector<Edit> edits_;
 };
 
-// A declaration to be put at `at`: on the line that is there when that is none of the preprocessor's,
-// so that __LINE__ and messages stay as they were.
+// Formats a declaration for insertion at `at`: on the existing line unless it is a preprocessor line, so that __LINE__
+// and messages do not change.
 std::string onItsLine(const GlslText& text, size_t at, std::string declaration);
 
 } // namespace mural::shaders

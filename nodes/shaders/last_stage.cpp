@@ -21,7 +21,7 @@ MainPlaces findMain(const GlslText& t) {
     return places;
 }
 
-// The text that holds main().
+// Patches the text that contains main().
 std::string patchMain(const GlslText& t, const MainPlaces& main, LastStage stage, bool sized, const VertexCode& code) {
     TextEdits edits;
     if (code.more) code.more(t, edits);
@@ -49,8 +49,8 @@ std::optional<std::vector<std::string>> withVertexCode(const std::vector<std::st
     const auto any = [&](const char* name) { return std::any_of(texts.begin(), texts.end(), [&](const GlslText& t) { return t.uses(name); }); };
     if (!std::all_of(texts.begin(), texts.end(), code.allowed)) return std::nullopt;
     if (any("EmitStreamVertex") || any("muralMain")) return std::nullopt;
-    if (!any("gl_Position")) return std::nullopt; // nothing is drawn, or by names that only macros give
-    // A block that one text redeclares is redeclared in all; emitting elsewhere can't be followed.
+    if (!any("gl_Position")) return std::nullopt; // draws nothing, or uses names from macros
+    // A block redeclared in one text must be redeclared in all. Vertices emitted by another text cannot be followed.
     if (texts.size() > 1 && (any("gl_PerVertex") || stage == LastStage::Geometry)) return std::nullopt;
     std::vector<std::string> out = sources;
     int patched = 0;

@@ -1,5 +1,5 @@
-// Code that runs after each vertex of the last stage before the rasteriser: behind main(), or before each
-// EmitVertex of a geometry shader.
+// Inserts code after each vertex of the last stage before the rasteriser: after main(), or before each EmitVertex of a
+// geometry shader.
 #pragma once
 
 #include <functional>
@@ -14,15 +14,15 @@ namespace mural::shaders {
 enum class LastStage { Vertex, TessEvaluation, Geometry };
 
 struct VertexCode {
-    // Per text of the stage that holds main(); `sized`: some text of the stage sets gl_PointSize.
+    // Called for the text with main(). `sized`: some text of the stage writes gl_PointSize.
     std::function<std::string(const GlslText&)> declarations;
     std::function<std::string(const GlslText&, bool sized)> body;
     std::function<void(const GlslText&, TextEdits&)> more; // further edits; may be empty
-    std::function<bool(const GlslText&)> allowed;          // false: the stage stays as it is
+    std::function<bool(const GlslText&)> allowed; // false: do not change the stage
 };
 
-// es: in an ES context. `sources`: all texts of that stage, of which one holds main(). The same number comes back;
-// nothing when the stage must stay as it is (not allowed, several streams, names that only macros give).
+// es: in an ES context. `sources`: all texts of the stage, one of which contains main(). Returns as many texts, or
+// nothing if the stage must not change (not allowed, several streams, names from macros).
 std::optional<std::vector<std::string>> withVertexCode(const std::vector<std::string>& sources, LastStage stage, bool es, const VertexCode& code);
 
 } // namespace mural::shaders

@@ -1,5 +1,5 @@
-// Positions as another eye or a screen that stands elsewhere sees them, or for another place in the viewport: the last stage before the rasteriser
-// moves gl_Position.
+// Transforms gl_Position in the last stage before the rasteriser, for another eye, another screen, or another place in
+// the viewport.
 #pragma once
 
 #include <optional>
@@ -10,14 +10,14 @@
 
 namespace mural::shaders {
 
-// Five vec4 in the patched program, zeros: nothing moves.
+// Five vec4 in the patched program; zeros have no effect.
 //   [0] = scale - 1 in x, y and offset in x, y of normalised device coordinates
-//   [1], [2], [3] = what is added to x, y and w of clip coordinates: so much of x, y, w and 1
-//   [4].x = so much of what is added to w is added to z
-// Positions with w = 1 are not seen in perspective: no eye moves them.
+//   [1], [2], [3] = added to x, y and w of clip coordinates: coefficients of x, y, w and 1
+//   [4].x = added to z: multiple of the addition to w
+// Positions with w = 1 have no perspective and are not transformed for an eye.
 inline constexpr const char* kMoveUniform = "muralMove";
 
-// As withVertexCode. Transform feedback that is declared in the text keeps its positions: then nothing comes back.
+// As withVertexCode. Returns nothing for texts with transform feedback, whose positions must not change.
 std::optional<std::vector<std::string>> withMovedPosition(const std::vector<std::string>& sources, LastStage stage, bool es);
 
 } // namespace mural::shaders

@@ -1,4 +1,4 @@
-// What a tile has to know of a SPIR-V module. Source: SPIR-V 1.6, sections 2.3 and 3.
+// Properties of a SPIR-V module that matter to tiles. Source: SPIR-V 1.6, sections 2.3 and 3.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 namespace mural::shaders {
 
-// A fragment shader in it may read gl_FragCoord. Also true for what is no module that we can read.
+// Whether a fragment shader in it may read gl_FragCoord. True for an unreadable module.
 bool moduleReadsFragCoord(std::span<const std::byte> module);
 
 } // namespace mural::shaders

@@ -9,7 +9,7 @@ namespace mural::shaders {
 
 namespace {
 
-// What `texture` takes; `of`: of the coordinates, what has gradients.
+// A sampler type that `texture` accepts; `of`: the components of the coordinates that have gradients.
 struct Sampler {
     std::string_view name, coordinates, of, result;
     bool biased = true;
@@ -26,7 +26,8 @@ constexpr std::array kSamplers = {
     Sampler{"sampler1DArrayShadow", "vec3", ".x", "float"}, Sampler{"sampler2DArrayShadow", "vec4", ".xy", "float", false},
 };
 
-// Lookups of the first versions; each is of one kind of sampler. before130: what has gradients, with the extension.
+// Lookup functions of early versions, each for one sampler type. before130: their variants with gradients, from the
+// extension.
 struct Lookup {
     std::string_view name, sampler, coordinates, before130;
 };
@@ -38,7 +39,7 @@ constexpr std::array kLookups = {
 };
 constexpr int kFirstWithTexture = 130;
 
-// Where all pixels are drawn, the lookup is the program's own, bit for bit.
+// If all pixels are drawn, the function performs the original lookup, bit for bit.
 std::string function(std::string_view result, const std::string& name, std::string_view sampler, std::string_view coordinates, std::string_view of, std::string_view own,
                      std::string_view withGradients, bool biased) {
     const std::string p = "p" + std::string(of), head = " " + std::string(result) + " " + name + "(" + std::string(sampler) + " s, " + std::string(coordinates) + " p";
@@ -53,7 +54,7 @@ bool isType(std::string_view word) {
     return word == "float" || word == "vec2" || word == "vec3" || word == "vec4" || word == "ivec4" || word == "uvec4";
 }
 
-// Calls of it; none when the text has a function of its own by this name.
+// The tokens that call it; none if the text defines a function of that name.
 std::set<size_t> callsOf(const GlslText& text, std::string_view name) {
     std::set<size_t> calls;
     for (size_t i = 0; i < text.tokens.size(); ++i) {
@@ -78,7 +79,7 @@ TextureLookups withWindowGradients(const GlslText& text, const std::string& endi
         const std::string name = "muralTexture" + ending;
         for (const Sampler& s : kSamplers)
             if (text.uses(s.name)) done.declarations += function(s.result, name, s.name, s.coordinates, s.of, "texture", "textureGrad", s.biased);
-        // Of others (rectangles, buffers have no levels) it is the program's own function: then all calls stay.
+        // Other samplers (rectangles and buffers have no levels) use the original function; then no call is rewritten.
         const bool others = std::ranges::any_of(text.tokens, [](const GlslToken& t) {
             return t.text.find("sampler") != std::string_view::npos && t.text.find("sampler") < 2 && std::ranges::none_of(kSamplers, [&](const Sampler& s) { return s.name == t.text; });
         });

@@ -1,6 +1,6 @@
-// Levels of textures where a framebuffer has every nth pixel of the window only: GL chooses them by the distance to the next pixel that is drawn, which
-// is n times as far. Lookups by desktop GLSL get the gradients of the window's pixels instead.
-// Source: OpenGL 4.6, 8.14.1 (scale factor and level-of-detail); GL_ARB_shader_texture_lod.
+// Texture levels for framebuffers with every nth pixel. GL selects levels by the distance to the next drawn pixel,
+// which is n times too large. Rewritten desktop GLSL passes the gradients of window pixels to lookups. Source: OpenGL
+// 4.6, 8.14.1 (scale factor and level-of-detail); GL_ARB_shader_texture_lod.
 #pragma once
 
 #include <string>
@@ -10,12 +10,12 @@
 namespace mural::shaders {
 
 struct TextureLookups {
-    std::string declarations; // functions to be declared, which read kPlaceUniform; empty: nothing is looked up
-    std::string extension;    // that they need; empty: none
+    std::string declarations; // added functions, which read kPlaceUniform; empty: no lookups
+    std::string extension; // required extension; empty: none
 };
 
-// Replaces the names of lookups in `edits`; those that choose no level, or have gradients, stay. ending: of the functions' names.
-// Of ES texts, whose samplers have precisions that a function would have to know, none.
+// Replaces the names of lookups in `edits`, except lookups without level selection or with explicit gradients. ending:
+// the suffix of added names. ES texts are not rewritten: functions would have to declare their samplers' precisions.
 TextureLookups withWindowGradients(const GlslText& text, const std::string& ending, TextEdits& edits);
 
 } // namespace mural::shaders

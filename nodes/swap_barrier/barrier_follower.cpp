@@ -10,8 +10,8 @@ namespace mural {
 namespace {
 
 constexpr int64_t kSendMs = 2000;
-constexpr int64_t kMostSleepNs = 20 * kNsPerMs; // whatever the leader says
-constexpr int64_t kAnswerMs = 4 * SwapBarrier::kPatienceMs; // longer than the leader waits for anyone
+constexpr int64_t kMostSleepNs = 20 * kNsPerMs; // upper bound, whatever time the leader sends
+constexpr int64_t kAnswerMs = 4 * SwapBarrier::kPatienceMs; // longer than the leader waits for any member
 
 } // namespace
 
@@ -41,7 +41,7 @@ Result<BarrierGo> BarrierFollower::ask(const SwapKey& key) {
 int64_t BarrierFollower::await(const SwapKey& key) {
     if (!leader_) return 0;
     auto go = ask(key);
-    if (go && go->showNs == 0) return 0; // it goes alone
+    if (go && go->showNs == 0) return 0; // shown without the others
     if (go) return std::min(go->showNs - clock_.offsetNs(), monotonicNowNs() + kMostSleepNs);
     log_("the swap barrier is broken: its leader is gone: " + go.error().message + "; windows of this node show frames when they are drawn");
     leader_.reset();

@@ -1,4 +1,4 @@
-// A member of a swap barrier that asks the leader.
+// A member of a swap barrier that is connected to the leader.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@ namespace mural {
 
 class BarrierFollower final : public SwapBarrier {
 public:
-    // rank: from 1 on.
+    // rank: from 1.
     static Result<std::unique_ptr<SwapBarrier>> connect(int rank, const ChannelSecret& secret, const std::string& host, uint16_t port, Deadline deadline, Log log);
     BarrierFollower(std::unique_ptr<Connection> leader, Log log) : leader_(std::move(leader)), log_(std::move(log)) {}
 
@@ -24,11 +24,11 @@ public:
 private:
     Result<BarrierGo> ask(const SwapKey& key);
 
-    std::unique_ptr<Connection> leader_; // null: it is gone
+    std::unique_ptr<Connection> leader_; // null: connection lost
     const Log log_;
     ClockOffset clock_;
     SwapKey shownKey_;
-    int64_t shownNs_ = 0; // by the leader's clock; 0: has been told, or nothing was shown
+    int64_t shownNs_ = 0; // by the leader's clock; 0: already reported, or nothing was shown
 };
 
 } // namespace mural

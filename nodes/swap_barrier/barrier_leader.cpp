@@ -11,12 +11,12 @@ namespace mural {
 
 namespace {
 
-constexpr int64_t kSliceMs = 100; // between looks at what is late, and whether to stop
+constexpr int64_t kSliceMs = 100; // poll interval for late members and for the end
 constexpr int64_t kProofPatienceMs = 5000;
 constexpr int64_t kSendMs = 1000;
-constexpr int64_t kRestMs = 1000; // of a message that has begun
+constexpr int64_t kRestMs = 1000; // for the rest of a message
 constexpr int64_t kWakeNs = 50'000;
-constexpr int64_t kMostLeadNs = 4 * kNsPerMs; // a way that takes longer is not waited for
+constexpr int64_t kMostLeadNs = 4 * kNsPerMs; // members with a higher latency are not waited for
 
 std::string memberText(int rank) { return "member " + std::to_string(rank + 1) + " of the swap barrier"; }
 
@@ -55,7 +55,7 @@ void BarrierLeader::letIn() {
         if (!shown) continue;
         const int rank = barrierRankOf((*shown)->name());
         const std::lock_guard lock(mutex_);
-        if (members_.contains(rank)) continue; // the first one counts
+        if (members_.contains(rank)) continue; // the first connection wins
         Member& member = members_[rank];
         member.connection = std::move(*shown);
         member.thread = std::thread([this, rank, &c = *member.connection] { follow(rank, c); });
@@ -105,7 +105,7 @@ void BarrierLeader::apply(const BarrierRounds::Step& step) {
     }
     for (const BarrierRounds::Release& release : step.releases) {
         skew_.released(release.key, release.members.size());
-        // When the word has come to all of them, by what is known of the ways.
+        // The estimated time at which all members have received the release.
         const int64_t showNs = release.members.size() < 2 ? 0 : monotonicNowNs() + std::min(worstClockNs(Whose::Waiting) + kWakeNs, kMostLeadNs);
         for (const int rank : release.members) {
             if (rank == 0) {
@@ -117,7 +117,7 @@ void BarrierLeader::apply(const BarrierRounds::Step& step) {
             Member& member = members_.at(rank);
             const BarrierGo go{release.key, member.readySentNs, member.arrivedNs, monotonicNowNs(), showNs};
             if (member.connection->write(encode(go), Deadline::inMs(kSendMs))) member.connection->flush();
-            else member.connection->close(); // its thread tells the rest
+            else member.connection->close(); // its thread reports the loss
         }
     }
 }

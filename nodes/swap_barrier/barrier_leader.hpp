@@ -1,4 +1,4 @@
-// The member of a swap barrier that lets all go. A thread lets the others in, and one for each takes what it says when it comes.
+// The leader of a swap barrier. One thread accepts members, and one thread per member receives its messages.
 #pragma once
 
 #include <atomic>
@@ -23,7 +23,7 @@ public:
     BarrierLeader(int members, const ChannelSecret& secret, Log log, int64_t patienceMs = kPatienceMs);
     ~BarrierLeader() override;
 
-    // On a free port: port(). loopbackOnly: all members run on this machine.
+    // Listens on a free port, port(). loopbackOnly: all members run on this machine.
     Result<void> listen(bool loopbackOnly);
     [[nodiscard]] uint16_t port() const { return port_; }
 
@@ -35,13 +35,13 @@ private:
     struct Member {
         std::unique_ptr<Connection> connection;
         std::thread thread;
-        int64_t readySentNs = 0, arrivedNs = 0, errorNs = INT64_MAX; // of its last word
+        int64_t readySentNs = 0, arrivedNs = 0, errorNs = INT64_MAX; // of its last message
     };
     void letIn();
     void follow(int rank, Connection& connection);
     void take(int rank, const BarrierReady& ready, int64_t arrivedNs);
-    void apply(const BarrierRounds::Step& step); // with the lock
-    // A round waits for those that are there; the times measured are also of those that have gone, as all have when a run ends.
+    void apply(const BarrierRounds::Step& step); // call with the lock held
+    // A round waits for present members. Measured times include members that have left, as all have when a run ends.
     enum class Whose : uint8_t { Waiting, All };
     [[nodiscard]] int64_t worstClockNs(Whose whose) const;
 
@@ -54,11 +54,11 @@ private:
     std::thread thread_;
     std::atomic<bool> stop_{false};
 
-    mutable std::mutex mutex_; // for all below
+    mutable std::mutex mutex_; // guards the members below
     std::condition_variable went_;
     BarrierRounds rounds_;
     SkewMeter skew_;
-    std::map<int, Member> members_; // by rank; they stay where they are
+    std::map<int, Member> members_; // by rank; entries keep their addresses
     bool waiting_ = false;
     int64_t showNs_ = 0;
 };

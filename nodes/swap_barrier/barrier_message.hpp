@@ -1,4 +1,4 @@
-// What members of a swap barrier send each other: docs/wire-format.md, "Swap barriers".
+// The messages of a swap barrier: docs/wire-format.md, "Swap barriers".
 #pragma once
 
 #include <array>
@@ -10,20 +10,20 @@
 
 namespace mural {
 
-// To the leader: its picture of `key` is drawn.
+// To the leader: the picture of `key` is drawn.
 struct BarrierReady {
     SwapKey key;
-    SwapKey shownKey;    // the swap before…
-    int64_t shownNs = 0; // …was shown then, by the leader's clock; 0: nothing to tell
-    int64_t sentNs = 0;  // by its own clock
-    int64_t errorNs = 0; // how well it knows the leader's; INT64_MAX: not yet
+    SwapKey shownKey; // the previous swap
+    int64_t shownNs = 0; // when it was shown, by the leader's clock; 0: not reported
+    int64_t sentNs = 0; // by its own clock
+    int64_t errorNs = 0; // error of its estimate of the leader's clock; INT64_MAX: no estimate yet
 };
 
-// To one that waits: show it.
+// To a waiting member: show the picture.
 struct BarrierGo {
     SwapKey key;
-    int64_t readySentNs = 0; // as it came
-    int64_t arrivedNs = 0;   // by the leader's clock, as those below
+    int64_t readySentNs = 0; // copied from BarrierReady
+    int64_t arrivedNs = 0; // by the leader's clock, as the times below
     int64_t leftNs = 0;
     int64_t showNs = 0;
 };

@@ -1,4 +1,4 @@
-// What the members of a swap barrier call themselves when they connect to its leader.
+// The names by which members of a swap barrier identify themselves to the leader.
 #pragma once
 
 #include <charconv>
@@ -8,7 +8,7 @@ namespace mural {
 
 inline std::string barrierNameOf(int rank) { return "swap" + std::to_string(rank); }
 
-// 0: it is no such name.
+// 0: not a valid name.
 inline int barrierRankOf(const std::string& name) {
     int rank = 0;
     if (!name.starts_with("swap")) return 0;

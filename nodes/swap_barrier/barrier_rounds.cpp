@@ -6,7 +6,7 @@ namespace mural {
 
 namespace {
 
-constexpr size_t kMostWindows = 256; // whose last frames are remembered
+constexpr size_t kMostWindows = 256; // windows with a remembered last frame
 
 } // namespace
 
@@ -20,7 +20,7 @@ BarrierRounds::Step BarrierRounds::arrive(int member, const SwapKey& key, int64_
     Member& m = members_[static_cast<size_t>(member)];
     if (m.state == State::Gone) return step;
     progressNs_ = nowNs;
-    if (passed(key)) { // the others have shown it: it catches up
+    if (passed(key)) { // already released: the member lags
         m.state = State::Away;
         step.releases.push_back({key, {member}});
         return step;

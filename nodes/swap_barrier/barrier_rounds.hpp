@@ -1,7 +1,9 @@
-// Who waits at a swap barrier, and who may go on. No clocks, threads or sockets: times are given.
+// The state machine of a swap barrier: who waits, and who is released. Without clocks, threads or sockets: times are
+// arguments.
 //
-// All members take the same stream, so they come to the same swaps in the same order; some may leave swaps out. A round ends
-// when every member waits: those with the oldest swap go. One that does not come in time is not waited for until it comes again.
+// All members replay the same stream and reach the same swaps in the same order; some may skip swaps. A round ends when
+// every member waits: the members with the oldest swap are released. A member that misses its deadline is ignored until
+// it arrives again.
 #pragma once
 
 #include <cstddef>
@@ -24,10 +26,10 @@ public:
     };
     struct Step {
         std::vector<Release> releases;
-        std::vector<int> late; // not waited for from now on
+        std::vector<int> late; // ignored from now on
     };
     Step arrive(int member, const SwapKey& key, int64_t nowNs);
-    Step gone(int member, int64_t nowNs); // for good
+    Step gone(int member, int64_t nowNs); // permanently
     Step tick(int64_t nowNs);
 
     [[nodiscard]] bool isGone(int member) const { return members_[static_cast<size_t>(member)].state == State::Gone; }
@@ -44,9 +46,9 @@ private:
 
     std::vector<Member> members_;
     const int64_t patienceNs_;
-    int64_t progressNs_ = 0; // when somebody last came or went
+    int64_t progressNs_ = 0; // time of the last arrival or release
     uint64_t arrivals_ = 0;
-    std::map<std::pair<uint32_t, uint32_t>, uint32_t> passed_; // by client and window: the last frame that was released
+    std::map<std::pair<uint32_t, uint32_t>, uint32_t> passed_; // last released frame by client and window
 };
 
 } // namespace mural

@@ -6,7 +6,7 @@ namespace mural {
 
 void ClockOffset::add(const ClockSample& s) {
     const int64_t wayNs = (s.cameBackNs - s.sentNs) - (s.leftThereNs - s.arrivedThereNs);
-    if (wayNs < 0) return; // one of the clocks was set, or the other end does not tell the truth
+    if (wayNs < 0) return; // a clock was set, or the peer is wrong
     seen_[next_] = {((s.arrivedThereNs - s.sentNs) + (s.leftThereNs - s.cameBackNs)) / 2, wayNs};
     next_ = (next_ + 1) % kKept;
     best_ = *std::ranges::min_element(seen_, {}, &Seen::wayNs);

@@ -1,4 +1,4 @@
-// How far apart the windows of a barrier show the same frame.
+// Measures the time between windows of a barrier showing the same frame.
 #pragma once
 
 #include <cstddef>
@@ -11,15 +11,15 @@
 namespace mural {
 
 struct SkewNumbers {
-    int64_t swaps = 0; // that two or more have shown
-    int64_t medianNs = 0, p99Ns = 0; // of the last 4096
+    int64_t swaps = 0; // shown by at least two members
+    int64_t medianNs = 0, p99Ns = 0; // over the last 4096 swaps
     int64_t mostNs = 0;
 };
 
 class SkewMeter {
 public:
     void released(const SwapKey& key, size_t windows);
-    // All by one clock.
+    // All times by the same clock.
     void shown(const SwapKey& key, int64_t atNs);
     [[nodiscard]] SkewNumbers numbers() const;
 
@@ -30,7 +30,7 @@ private:
         int64_t firstNs = 0, lastNs = 0;
         bool any = false;
     };
-    std::deque<Open> open_; // those of windows that never say so are dropped
+    std::deque<Open> open_; // bounded: windows that never report are dropped
     std::vector<int64_t> last_;
     size_t next_ = 0;
     int64_t swaps_ = 0, mostNs_ = 0;

@@ -1,4 +1,4 @@
-// A node's part in a swap barrier: the leader (rank 0) lets all go, the others follow it.
+// A node's end of a swap barrier: the leader (rank 0) releases the members.
 #pragma once
 
 #include <cstdint>
@@ -13,14 +13,14 @@ namespace mural {
 
 struct SwapBarrierNumbers {
     SkewNumbers skew;
-    int64_t clockErrorNs = 0; // what the times of the worst known clock may be off by
+    int64_t clockErrorNs = 0; // maximum error of the members' clock estimates
 };
 
 class SwapBarrier {
 public:
-    using Log = std::function<void(const std::string&)>; // one line for the user; from any thread
+    using Log = std::function<void(const std::string&)>; // one line for the user; thread-safe
 
-    // A member that has not come for that long is not waited for.
+    // A member that is late by this time is ignored.
     static constexpr int64_t kPatienceMs = 5000;
 
     SwapBarrier() = default;
@@ -28,11 +28,11 @@ public:
     SwapBarrier& operator=(const SwapBarrier&) = delete;
     virtual ~SwapBarrier() = default;
 
-    // The picture of `key` is drawn. Returns when all have said so, or no one waits any more: the time of monotonicNowNs() at
-    // which to show it. By the thread that replays.
+    // Reports that the picture of `key` is drawn. Returns when all members have reported or the wait is over: the time
+    // of monotonicNowNs() at which to show it. Call from the replay thread.
     virtual int64_t await(const SwapKey& key) = 0;
     virtual void shown(const SwapKey& key, int64_t atNs) = 0;
-    // The leader's only.
+    // Leader only.
     [[nodiscard]] virtual std::optional<SwapBarrierNumbers> numbers() const { return std::nullopt; }
 };
 

@@ -1,4 +1,4 @@
-// A swap of a program's window: the same on all nodes.
+// Identifies a swap of a program's window on all nodes.
 #pragma once
 
 #include <cstdint>

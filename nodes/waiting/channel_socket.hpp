@@ -1,4 +1,4 @@
-// Node messages over a TCP connection with a secure channel in it; each call has a deadline.
+// Messages on a TCP connection with a secure channel. Every call has a deadline.
 #pragma once
 
 #include <deque>
@@ -13,15 +13,15 @@ namespace mural {
 
 class ChannelSocket {
 public:
-    // The socket does not block.
+    // The socket must be non-blocking.
     ChannelSocket(FileDescriptor socket, SecureChannel channel) : socket_(std::move(socket)), channel_(std::move(channel)) {}
 
-    // Until the peer has shown that it knows the secret.
+    // Waits for the peer's proof of the secret.
     Result<void> open(Deadline deadline);
     Result<void> send(const NodeMessage& message, Deadline deadline);
-    // Waits for the next one.
+    // Waits for the next message.
     Result<NodeMessage> receive(Deadline deadline);
-    // Takes what has come, without waiting. Errors: the peer has gone, or sends what is no message.
+    // Reads available messages without waiting. Errors: the peer is gone; an invalid message.
     Result<void> fetch();
     std::optional<NodeMessage> next();
 

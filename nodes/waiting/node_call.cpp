@@ -16,7 +16,7 @@ namespace mural {
 
 namespace {
 
-constexpr int64_t kConnectMs = 5'000; // all addresses; as much to find them
+constexpr int64_t kConnectMs = 5'000; // for all addresses together; the same for name resolution
 constexpr int64_t kProofMs = 10'000;
 constexpr int64_t kSendMs = 10'000;
 
@@ -62,12 +62,12 @@ Result<int> callNode(const NodeCall& call) {
             if (m->kind != NodeMessageKind::Output && m->kind != NodeMessageKind::Errors) continue;
             if (auto r = writeAll(m->kind == NodeMessageKind::Output ? STDOUT_FILENO : STDERR_FILENO, m->body); !r) return r.error();
         }
-        // A session lasts as long as it lasts: a head that is gone without a word is told by TCP's keepalive, within 14 s.
+        // A session has no time limit. TCP keepalive detects a lost head within 14 s.
         std::array<pollfd, 2> look{{{channel.descriptor(), POLLIN, 0}, {input ? STDIN_FILENO : -1, POLLIN, 0}}};
         if (poll(look.data(), look.size(), -1) < 0 && errno != EINTR) return Error{"can't wait for the node: " + errnoText(errno)};
         if (look[0].revents != 0) {
             if (auto r = channel.fetch(); !r) {
-                // What it said last comes first.
+                // Its last output comes first.
                 for (auto m = channel.next(); m; m = channel.next())
                     if (m->kind == NodeMessageKind::Ended && !m->body.empty()) return std::to_integer<int>(m->body.front());
                 return Error{"the node there is lost: " + r.error().message};

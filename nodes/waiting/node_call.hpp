@@ -1,4 +1,4 @@
-// The head's side of a waiting node: has it run a process, and stands in for it here, as ssh does.
+// The head's client of a daemon: runs a process there and acts as its local stand-in, as ssh does.
 #pragma once
 
 #include <string>
@@ -10,13 +10,13 @@
 namespace mural {
 
 struct NodeCall {
-    std::vector<std::string> addresses; // to try one after the other: numbers or names
+    std::vector<std::string> addresses; // tried in order: numeric or names
     uint16_t port = 4279;
     ChannelSecret secret{};
     std::vector<std::string> arguments; // of mural
 };
 
-// Standard input, output and errors are those of the process there; returns its exit status.
+// Connects standard input, output and error to the remote process, and returns its exit status.
 Result<int> callNode(const NodeCall& call);
 
 } // namespace mural

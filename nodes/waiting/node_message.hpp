@@ -1,4 +1,4 @@
-// What a head and a waiting node tell each other over their secure channel: a byte of kind, and its bytes.
+// The messages between a head and a daemon on their secure channel: one byte for the type, then the payload.
 #pragma once
 
 #include <cstddef>
@@ -10,13 +10,13 @@
 namespace mural {
 
 enum class NodeMessageKind : uint8_t {
-    Order = 0,    // to the node: run Mural with these arguments, each with a zero behind it
-    Input = 1,    // for its standard input
+    Order = 0, // to the daemon: run mural with these zero-terminated arguments
+    Input = 1, // data for standard input
     InputEnd = 2,
-    Output = 3,   // to the head: of its standard output
-    Errors = 4,   // of its standard error
-    Ended = 5,    // how, as text, behind the exit status (a byte)
-    Refused = 6,  // why; then the channel ends
+    Output = 3, // to the head: data of standard output
+    Errors = 4, // data of standard error
+    Ended = 5, // exit status (a byte), then a description
+    Refused = 6, // the reason; then the channel closes
 };
 
 struct NodeMessage {
@@ -32,7 +32,7 @@ std::vector<std::byte> encode(const NodeMessage& message);
 std::optional<NodeMessage> decodeNodeMessage(std::span<const std::byte> bytes);
 
 NodeMessage orderMessage(const std::vector<std::string>& arguments);
-// Nothing for what is no order: bounds, or no zero at its end.
+// Returns nothing for an invalid order: limits exceeded, or no terminating zero.
 std::optional<std::vector<std::string>> orderArguments(const NodeMessage& message);
 NodeMessage textMessage(NodeMessageKind kind, const std::string& text);
 std::string textOf(std::span<const std::byte> bytes);

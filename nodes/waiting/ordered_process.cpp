@@ -19,13 +19,13 @@ namespace {
 
 constexpr int kSliceMs = 50;
 constexpr int64_t kSendMs = 10'000;
-constexpr int64_t kEndMs = 2'000;       // for a process whose head has gone
-constexpr size_t kMostWaiting = 1 << 20; // bytes for its standard input
+constexpr int64_t kEndMs = 2'000; // limit for a process whose head is gone
+constexpr size_t kMostWaiting = 1 << 20; // buffered bytes for standard input
 
-// Ours are sockets instead of pipes: writing to them raises no signal, and never waits.
+// Sockets instead of pipes on our side: writes raise no signal and do not block.
 struct Streams {
-    FileDescriptor input, output, errors;          // ours
-    FileDescriptor itsInput, itsOutput, itsErrors; // the process's
+    FileDescriptor input, output, errors; // our ends
+    FileDescriptor itsInput, itsOutput, itsErrors; // the process's ends
 
     static Result<Streams> make() {
         Streams s;
@@ -55,11 +55,11 @@ public:
                 {waiting_.empty() ? -1 : s_.input.get(), POLLOUT, 0}}};
             (void)poll(look.data(), look.size(), kSliceMs);
             auto came = look[0].revents != 0 ? channel_.fetch() : Result<void>();
-            // Some may have come with the order.
+            // Input may have arrived with the order.
             if (auto r = takeInput(); !r) return r.error();
             if (!came) return came.error();
             feed();
-            // Before looking whether it has ended: what it said last is told.
+            // Reads the state before the output, so that the last output is sent.
             const bool ended = !process_.running();
             if (auto r = tell(s_.output, NodeMessageKind::Output); !r) return r.error();
             if (auto r = tell(s_.errors, NodeMessageKind::Errors); !r) return r.error();
@@ -82,7 +82,7 @@ private:
         if (!waiting_.empty()) {
             const ssize_t n = ::send(s_.input.get(), waiting_.data(), waiting_.size(), MSG_NOSIGNAL);
             if (n > 0) waiting_.erase(waiting_.begin(), waiting_.begin() + n);
-            else if (n < 0 && errno != EAGAIN && errno != EINTR) waiting_.clear(); // it reads no more
+            else if (n < 0 && errno != EAGAIN && errno != EINTR) waiting_.clear(); // the process no longer reads
         }
         if (inputEnded_ && waiting_.empty()) s_.input = FileDescriptor();
     }

@@ -1,4 +1,4 @@
-// A process of Mural that a head has ordered, between its pipes and the head's channel.
+// A process of Mural that a head has ordered; forwards between its pipes and the head's channel.
 #pragma once
 
 #include <atomic>
@@ -10,12 +10,12 @@
 
 namespace mural {
 
-// What may be ordered: nodes that connect to a head, and members for `mural doctor --network`.
+// Allows nodes that connect to a head, and members for `mural doctor --network`.
 bool mayBeOrdered(const std::vector<std::string>& arguments);
-// Who orders a node by a port alone is where it connects to.
+// Replaces a bare port in the arguments by the peer's address and the port.
 void completeOrder(std::vector<std::string>& arguments, const std::string& peer);
 
-// Until the process has ended, the head is gone, or `stop`; returns how it ended. The process is gone then.
+// Runs until the process ends, the head is gone, or `stop`. Returns how the process ended; it no longer runs.
 Result<std::string> runOrdered(const std::string& executable, const std::vector<std::string>& arguments, ChannelSocket& channel, const std::atomic<bool>& stop);
 
 } // namespace mural

@@ -19,14 +19,14 @@ namespace {
 
 constexpr int kBacklog = 32;
 constexpr unsigned kMostConnections = 64;
-constexpr int64_t kProofMs = 5'000;  // to show the secret, and to say what is wanted
+constexpr int64_t kProofMs = 5'000; // for the proof of the secret and for the order
 constexpr int64_t kAnswerMs = 5'000;
-constexpr int64_t kEndMs = 10'000;   // of all orders, when this node stops
+constexpr int64_t kEndMs = 10'000; // for all orders, when the daemon stops
 
 Result<FileDescriptor> listenAt(const std::string& text) {
     auto where = splitHostPort(text);
     if (!where) return where.error();
-    // Without an address: all, IPv4 and IPv6 by one socket where there is IPv6.
+    // Without an address: all interfaces, with one socket for IPv4 and IPv6 where IPv6 exists.
     std::vector<std::string> hosts{where->host};
     if (where->host.empty()) hosts = {"::", "0.0.0.0"};
     std::string why;
@@ -43,7 +43,7 @@ Result<FileDescriptor> listenAt(const std::string& text) {
     return Error{"can't listen at " + text + ": " + why + "; give another --listen ADDRESS:PORT"};
 }
 
-// "::ffff:10.0.0.1" is how an IPv4 peer of an IPv6 socket looks.
+// An IPv4 peer of an IPv6 socket appears as "::ffff:10.0.0.1".
 std::string peerText(const SocketAddress& address) {
     constexpr std::string_view kMapping = "::ffff:";
     const std::string text = numericText(address);
@@ -76,7 +76,7 @@ void WaitingNode::leave(const std::string& peer) {
     if (--heads_[peer] == 0) heads_.erase(peer);
 }
 
-// One connection, on a thread of its own: the process that it starts ends with this thread.
+// Serves one connection on its own thread. The process that it starts ends with this thread.
 void WaitingNode::take(FileDescriptor socket, const std::string& peer) {
     const ChannelSecret secret = options_.secret;
     ChannelSocket channel(std::move(socket), SecureChannel::accepting([secret](const std::string&) { return std::optional(secret); }));
@@ -110,11 +110,12 @@ Result<void> WaitingNode::serve(int stopFd) {
         from.sizeBytes = sizeof from.storage;
         FileDescriptor socket(accept4(socket_.get(), from.get(), &from.sizeBytes, SOCK_NONBLOCK | SOCK_CLOEXEC));
         if (!socket.valid()) {
-            // Too many open files, for instance: it passes.
+            // A temporary error, such as too many open files.
             if (errno != EAGAIN && errno != EINTR && errno != ECONNABORTED) poll(nullptr, 0, 100);
             continue;
         }
-        if (!prepareTcpSocket(socket.get()) || connections_ >= kMostConnections) continue; // who knows no secret can't have more either
+        // bounds unauthenticated connections
+        if (!prepareTcpSocket(socket.get()) || connections_ >= kMostConnections) continue;
         ++connections_;
         try {
             std::thread([this, peer = peerText(from), s = std::move(socket)]() mutable {

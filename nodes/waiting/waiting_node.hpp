@@ -1,6 +1,6 @@
-// A node that waits for heads without ssh: `mural node --wait`. Whoever shows that he knows the secret has this machine run
-// Mural's node process, and only that; its standard input, output and errors travel over the connection, and it ends with it.
-// One head at a time: while one has nodes here, others are sent away.
+// The daemon: `mural node --wait`. A peer that proves the secret can run Mural's node process here, and nothing else.
+// Its standard streams travel on the connection, and it ends with the connection. One head at a time: others are
+// refused while a head has nodes here.
 #pragma once
 
 #include <atomic>
@@ -17,9 +17,9 @@
 namespace mural {
 
 struct WaitingOptions {
-    std::string listen = ":4279"; // address, or none for all; port, 0: any
+    std::string listen = ":4279"; // address (empty: all interfaces) and port (0: any)
     ChannelSecret secret{};
-    std::string executable; // what orders run
+    std::string executable; // the executable of orders
     std::function<void(const std::string&)> log;
 };
 
@@ -28,7 +28,7 @@ public:
     static Result<std::unique_ptr<WaitingNode>> open(const WaitingOptions& options);
 
     [[nodiscard]] uint16_t port() const { return port_; }
-    // Serves until `stopFd` is readable. Errors: nobody can be listened to any longer.
+    // Serves until `stopFd` is readable. Errors: listening has failed.
     Result<void> serve(int stopFd);
 
 private:
@@ -42,7 +42,7 @@ private:
     FileDescriptor socket_;
     uint16_t port_;
     std::mutex mutex_;
-    std::map<std::string, unsigned> heads_; // orders that run, by the head's address: one entry at most
+    std::map<std::string, unsigned> heads_; // running orders by the head's address; at most one entry
     std::atomic<unsigned> connections_ = 0;
     std::atomic<bool> stop_ = false;
 };

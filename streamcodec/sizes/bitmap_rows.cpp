@@ -19,7 +19,7 @@ size_t bytesOfBits(size_t bits) {
     return (bits + 7) / 8;
 }
 
-// The highest `bits` bits of a byte.
+// Mask of the highest `bits` bits of a byte.
 uint8_t highBits(size_t bits) {
     return static_cast<uint8_t>(bits >= 8 ? 0xff : 0xff00u >> bits);
 }

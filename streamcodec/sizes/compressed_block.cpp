@@ -5,7 +5,7 @@
 namespace mural::sizes {
 namespace {
 
-// ASTC blocks have 16 bytes; the registry numbers their shapes without a gap (KHR 2D, OES 3D).
+// ASTC blocks have 16 bytes. The registry numbers their shapes consecutively (KHR 2D, OES 3D).
 struct BlockShape {
     uint8_t width, height, depth;
 };
@@ -27,11 +27,11 @@ bool astcBlock(const BlockShape (&shapes)[count],
     return true;
 }
 
-// Blocks of 4×4 texels: their bytes, or 0.
+// Bytes per block of 4×4 texels, or 0.
 uint32_t squareBlockBytes(GLenum internalformat) {
     switch (internalformat) {
     case GL_COMPRESSED_RGB_S3TC_DXT1_EXT:
-    case GL_RGB_S3TC: // S3_s3tc: the same blocks under older names
+    case GL_RGB_S3TC: // S3_s3tc: older names of the same blocks
     case GL_RGB4_S3TC:
     case GL_COMPRESSED_RGBA_S3TC_DXT1_EXT:
     case GL_COMPRESSED_SRGB_S3TC_DXT1_EXT:
@@ -110,7 +110,7 @@ size_t blocksAlong(GLsizei texels, uint32_t block, uint32_t atLeast) {
     return blocks < atLeast ? atLeast : blocks;
 }
 
-// a·b·c; beyond what can be addressed: SIZE_MAX.
+// a·b·c, saturated to SIZE_MAX.
 size_t product(size_t a, size_t b, size_t c) {
     size_t ab = 0;
     size_t all = 0;
@@ -119,8 +119,7 @@ size_t product(size_t a, size_t b, size_t c) {
     return all;
 }
 
-// Products of four settings of a program, 31 bits each, of which at most three are multiplied by
-// the bytes of a row: they fit.
+// Products of up to three 31-bit program values and a row size fit.
 __extension__ typedef unsigned __int128 Wide;
 
 Wide wide(GLint value) {

@@ -7,8 +7,7 @@
 namespace mural::sizes {
 namespace {
 
-// `uorder` rows of `vorder` points; a curve is one row. Strides count values. components 0: GL
-// reads nothing.
+// `uorder` rows of `vorder` points; a curve is one row. Strides count values. components 0: GL reads nothing.
 struct Points {
     size_t components = 0;
     size_t ustride = 0;

@@ -1,4 +1,4 @@
-// Control points of glMap1* and glMap2*: how many values GL reads, and copies without gaps.
+// Control points of glMap1* and glMap2*: the number of values that GL reads, and packed copies.
 #pragma once
 
 #include <cstddef>
@@ -11,14 +11,14 @@ namespace mural::sizes {
 // Values per control point; 0: not a map.
 uint32_t mapComponents(GLenum target);
 
-// Floats or doubles from `points` to the last that GL reads; strides count values. 0: GL raises an
-// error and reads nothing (no such target, order < 1, stride less than a point).
+// Floats or doubles from `points` to the last one that GL reads; strides count values. 0: GL raises an error and reads
+// nothing (invalid target, order < 1, stride smaller than a point).
 size_t map1Values(GLenum target, GLint stride, GLint order);
 size_t map2Values(GLenum target, GLint ustride, GLint uorder, GLint vstride, GLint vorder);
 
-// Copies without gaps: stride = mapComponents(target) afterwards, and for two dimensions
-// vstride = mapComponents(target), ustride = vorder·vstride. dst has (u)order·vorder points. They
-// return the number of values written, 0 where GL would read nothing.
+// Copies without gaps: afterwards stride = mapComponents(target), and in two dimensions vstride =
+// mapComponents(target), ustride = vorder·vstride. dst has (u)order·vorder points. Returns the number of values
+// written, 0 if GL reads nothing.
 size_t packMap1(float* dst, const float* points, GLenum target, GLint stride, GLint order);
 size_t packMap1(double* dst, const double* points, GLenum target, GLint stride, GLint order);
 size_t packMap2(float* dst,

@@ -1,4 +1,4 @@
-// Copies of images between client memory and the tight form.
+// Copies images between client memory and the tight form.
 #include "streamcodec/sizes/pixel_format.hpp"
 
 #include <cstring>
@@ -39,7 +39,7 @@ BitmapRow bitmapRow(const ImageLayout& layout) {
     return {layout.firstBit, layout.width, layout.lsbFirst};
 }
 
-// The client's rows are one piece of memory in the order of the tight image.
+// True if the client's rows are contiguous and in the order of the tight image.
 bool isContiguous(const ImageLayout& layout) {
     return !layout.bitmap && layout.swapUnit == 0 &&
            layout.rowStride == static_cast<ptrdiff_t>(layout.rowBytes) &&

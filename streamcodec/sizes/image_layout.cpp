@@ -1,11 +1,11 @@
-// From the pixel store state to offsets. Sizes are checked for overflow: the arguments may come
-// from a program's mistake or, on a render node, from the network.
+// Converts the pixel store state to offsets. Sizes are checked for overflow: arguments may be a program's mistake or,
+// on a render node, come from the network.
 #include "streamcodec/sizes/pixel_format.hpp"
 
 namespace mural::sizes {
 namespace {
 
-// A size that remembers when it grew beyond what can be addressed.
+// A size with a sticky overflow flag.
 struct Checked {
     size_t bytes;
     bool overflow = false;
@@ -40,17 +40,17 @@ size_t roundUp(size_t value, size_t step) {
     return (value + step - 1) / step * step;
 }
 
-// GL takes 1, 2, 4 and 8.
+// GL accepts 1, 2, 4 and 8.
 size_t alignmentOf(const PixelStore& store) {
     return store.alignment > 0 ? positive(store.alignment) : 1;
 }
 
-// Bytes of `pixels` pixels from bit `firstBit` on.
+// Bytes of `pixels` pixels, starting at bit `firstBit`.
 size_t bytesOfPixels(size_t pixels, uint32_t group, size_t firstBit) {
     return group == 0 ? (firstBit + pixels + 7) / 8 : pixels * group;
 }
 
-// Only indices come as single bits: glBitmap, glPolygonStipple, glDrawPixels, glReadPixels.
+// Only indices can be single bits: glBitmap, glPolygonStipple, glDrawPixels, glReadPixels.
 bool isBitmap(GLenum format, GLenum type) {
     return type == GL_BITMAP && (format == GL_COLOR_INDEX || format == GL_STENCIL_INDEX);
 }
@@ -60,8 +60,8 @@ void setSwap(ImageLayout& layout, const PixelStore& store, GLenum type) {
     layout.swapUnit = store.swapBytes && unit > 1 ? unit : 0;
 }
 
-// GL_PACK_INVERT_MESA: rows count downwards from the highest row of the image; as in Mesa, skipped
-// rows then lie above it, that is, they shift the image downwards.
+// GL_PACK_INVERT_MESA: rows run downwards from the highest row of the image. As in Mesa, skipped rows precede it, so
+// they shift the image downwards.
 void invertRows(ImageLayout& layout, ptrdiff_t skipRows) {
     layout.firstByte += layout.rowStride * (static_cast<ptrdiff_t>(layout.rows) - 1 - 2 * skipRows);
     layout.rowStride = -layout.rowStride;

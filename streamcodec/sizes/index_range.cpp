@@ -3,10 +3,10 @@
 namespace mural::sizes {
 namespace {
 
-// Client indices have any alignment, and the memory has any type.
+// Client indices have any alignment, and their memory any type.
 template <class Value> struct __attribute__((packed, may_alias)) Stored { Value value; };
 
-// Both loops have no branch: the compiler makes vector code of them.
+// Both loops are branch-free for vectorisation.
 template <class Value> IndexRange scanAll(const Stored<Value>* indices, size_t count) {
     Value lowest = static_cast<Value>(-1);
     Value highest = 0;

@@ -1,5 +1,4 @@
-// How many values lie behind an input pointer whose length the registry (gl.xml) leaves open as
-// COMPSIZE(…). Covered are:
+// The number of values at an input pointer whose length the registry (gl.xml) specifies as COMPSIZE(…). Covered:
 //   pname       the …Count functions below
 //   buffer      clearBufferCount
 //   count       the k…Values constants, per element
@@ -11,13 +10,12 @@
 //   (target,stride,order) …            evaluator_maps.hpp
 //   drawcount, indices, vertex types   vertex_types.hpp, index_range.hpp
 //   images and glPolygonStipple        pixel_format.hpp, compressed_block.hpp
-//   size, numBufferBarriers, numTextureBarriers, uniformCount: other parameters, as they stand
-// Left out, because no driver of today has them or they never change what is drawn:
-// NV_path_rendering (gl*Path*NV), glMapControlPointsNV and glMapParameter*NV,
-// glMapVertexAttrib*APPLE, glDeformationMap3*SGIX, glIglooInterfaceSGIX,
-// glVideoCaptureStreamParameter*NV, glShadingRateSampleOrderCustomNV, the vertex arrays
-// (client_arrays has them) and callbacks (glDebugMessageCallback: the pointer is the program's
-// own).
+//   size, numBufferBarriers, numTextureBarriers, uniformCount: other parameters, unchanged
+//
+// Not covered, because no current driver has them or they never affect drawing: NV_path_rendering (gl*Path*NV),
+// glMapControlPointsNV and glMapParameter*NV, glMapVertexAttrib*APPLE, glDeformationMap3*SGIX, glIglooInterfaceSGIX,
+// glVideoCaptureStreamParameter*NV, glShadingRateSampleOrderCustomNV, the vertex arrays (see client_arrays), and
+// callbacks (glDebugMessageCallback: the pointer belongs to the program).
 #pragma once
 
 #include <cstddef>
@@ -32,15 +30,14 @@
 
 namespace mural::sizes {
 
-// Values of gl<Name>*v for a pname. A pname that is not known here counts as one value: what
-// extensions add is nearly always a single number, and drivers read one value before they refuse a
-// pname (measured with Mesa). Callers look for null pointers.
+// Values of gl<Name>*v for a pname. An unknown pname counts as one value: extensions nearly always add single numbers,
+// and drivers read one value before they reject a pname (measured with Mesa). Callers check for null pointers.
 uint32_t texParameterCount(GLenum pname); // also glTextureParameter*, glMultiTexParameter*
-uint32_t texEnvCount(GLenum pname);       // also glMultiTexEnv*
-uint32_t texGenCount(GLenum pname);       // also glMultiTexGen*
-uint32_t lightCount(GLenum pname);        // also glFragmentLight*SGIX
-uint32_t lightModelCount(GLenum pname);   // also glFragmentLightModel*SGIX
-uint32_t materialCount(GLenum pname);     // also glFragmentMaterial*SGIX
+uint32_t texEnvCount(GLenum pname); // also glMultiTexEnv*
+uint32_t texGenCount(GLenum pname); // also glMultiTexGen*
+uint32_t lightCount(GLenum pname); // also glFragmentLight*SGIX
+uint32_t lightModelCount(GLenum pname); // also glFragmentLightModel*SGIX
+uint32_t materialCount(GLenum pname); // also glFragmentMaterial*SGIX
 uint32_t fogCount(GLenum pname);
 uint32_t pointParameterCount(GLenum pname);
 uint32_t samplerParameterCount(GLenum pname);
@@ -48,33 +45,31 @@ uint32_t patchParameterCount(GLenum pname);
 uint32_t convolutionParameterCount(GLenum pname);
 uint32_t colorTableParameterCount(GLenum pname);
 uint32_t
-combinerParameterCount(GLenum pname);         // glCombinerParameter*NV, glCombinerStageParameter*NV
-uint32_t spriteParameterCount(GLenum pname);  // SGIX
+combinerParameterCount(GLenum pname); // glCombinerParameter*NV, glCombinerStageParameter*NV
+uint32_t spriteParameterCount(GLenum pname); // SGIX
 uint32_t texBumpParameterCount(GLenum pname); // ATI
-uint32_t singleParameterCount(GLenum pname);  // glListParameter*SGIX, glImageTransformParameter*HP,
+uint32_t singleParameterCount(GLenum pname); // glListParameter*SGIX, glImageTransformParameter*HP,
                                               // glPixelTexGenParameter*SGIS: one value each
 
 // glClear(Named)Buffer*v; 0: not a buffer.
 uint32_t clearBufferCount(GLenum buffer);
 
-// glVariant*vEXT, glSetInvariantEXT, glSetLocalConstantEXT: dataType is that of glGenSymbolsEXT; 0:
-// none.
+// glVariant*vEXT, glSetInvariantEXT, glSetLocalConstantEXT: dataType as in glGenSymbolsEXT; 0: none.
 uint32_t variantCount(GLenum dataType);
 
 // Values per element of `count` elements.
-constexpr uint32_t kDepthRangeValues = 2;      // glDepthRangeArray*v
-constexpr uint32_t kScissorValues = 4;         // glScissorArrayv*, glScissorExclusiveArrayvNV
-constexpr uint32_t kViewportValues = 4;        // glViewportArrayv*
+constexpr uint32_t kDepthRangeValues = 2; // glDepthRangeArray*v
+constexpr uint32_t kScissorValues = 4; // glScissorArrayv*, glScissorExclusiveArrayvNV
+constexpr uint32_t kViewportValues = 4; // glViewportArrayv*
 constexpr uint32_t kWindowRectangleValues = 4; // glWindowRectanglesEXT
-constexpr uint32_t kSampleLocationValues = 2;  // gl*FramebufferSampleLocationsfv*
+constexpr uint32_t kSampleLocationValues = 2; // gl*FramebufferSampleLocationsfv*
 constexpr uint32_t kTransformFeedbackAttribValues = 3; // glTransformFeedbackAttribsNV
 
-// Bytes of a text that GL reads: `length` of them, or, when it is negative, all with the final
-// zero. 0 for a null pointer.
+// Bytes of a text that GL reads: `length`, or if negative, all including the final zero. 0 for a null pointer.
 size_t stringBytes(const char* text, GLsizei length);
 
-// Values of a list that ends with GL_NONE, that one included (glTexStorageAttribs*EXT,
-// glEGLImageTargetTexStorageEXT). 0 for a null pointer.
+// Values of a list up to and including GL_NONE (glTexStorageAttribs*EXT, glEGLImageTargetTexStorageEXT). 0 for a null
+// pointer.
 size_t attribListCount(const GLint* list);
 
 // glCallLists; 0: n < 0, or not a type.

@@ -5,10 +5,10 @@
 namespace mural::sizes {
 namespace {
 
-// A type that holds all values of a pixel in one word (two for 64 bits).
+// A type that packs all components of a pixel into one word (two for 64 bits).
 struct PackedType {
-    uint32_t bytes;    // 0: not packed
-    uint32_t channels; // of the formats that go with it
+    uint32_t bytes; // 0: not packed
+    uint32_t channels; // of matching formats
 };
 
 PackedType packedType(GLenum type) {
@@ -106,8 +106,7 @@ uint32_t scalarBytes(GLenum type) {
     }
 }
 
-// Luma of each pixel with the chroma of every second: 16 bits per pixel, only in types of their
-// own.
+// Luma of each pixel with the chroma of every second one: 16 bits per pixel, with types of their own.
 bool isSubsampledPair(GLenum format) {
     return format == GL_YCBCR_MESA || format == GL_YCBCR_422_APPLE || format == GL_RGB_422_APPLE ||
            format == GL_RGB_RAW_422_APPLE;
@@ -117,14 +116,14 @@ bool isPairType(GLenum type) {
     return type == GL_UNSIGNED_SHORT_8_8_MESA || type == GL_UNSIGNED_SHORT_8_8_REV_MESA;
 }
 
-// OpenGL ES takes 2_10_10_10 for GL_RGB too (EXT_texture_type_2_10_10_10_REV).
+// OpenGL ES accepts 2_10_10_10 for GL_RGB too (EXT_texture_type_2_10_10_10_REV).
 bool fitsPacked(GLenum format, GLenum type, uint32_t channels) {
     const bool wantsPair = isPairType(type);
     if (wantsPair != isSubsampledPair(format))
         return false;
     if (wantsPair)
         return true;
-    // NV_read_depth takes the word of depth and stencil for depth alone.
+    // NV_read_depth uses the depth-stencil word for depth alone.
     if (channels == 2)
         return format == GL_DEPTH_STENCIL ||
                (format == GL_DEPTH_COMPONENT && type == GL_UNSIGNED_INT_24_8);

@@ -1,7 +1,6 @@
-// Images in client memory: bytes per pixel, and where the rows of an image lie under the pixel
-// store state (GL 4.6 §8.4.4, §18.2.2). Images travel "tight": as alignment 1 and nothing else set
-// describes them, in the machine's byte order, bitmap rows most significant bit first and padded
-// with zero bits to whole bytes. All functions are pure and safe with any value of any argument.
+// Images in client memory: bytes per pixel, and the offsets of rows under the pixel store state (GL 4.6 §8.4.4,
+// §18.2.2). Images are sent in the tight form: alignment 1, all other state default, native byte order; bitmap rows
+// with the most significant bit first and zero padding to whole bytes. All functions are pure and accept any argument.
 #pragma once
 
 #include <cstddef>
@@ -11,16 +10,16 @@
 
 namespace mural::sizes {
 
-constexpr size_t kMaxBytes = PTRDIFF_MAX; // the largest size that still is an address difference
+constexpr size_t kMaxBytes = PTRDIFF_MAX; // the largest valid address difference
 
-// Values per pixel of a client format; 0: not a format.
+// Components per pixel of a client format; 0: not a format.
 uint32_t componentsOf(GLenum format);
 
-// Bytes per pixel. 0: GL takes no such pair (it then raises an error and touches no client memory),
-// or the type is GL_BITMAP, which has no whole bytes.
+// Bytes per pixel. 0: an invalid pair, for which GL raises an error without accessing client memory; or GL_BITMAP,
+// which has no whole bytes.
 uint32_t groupBytes(GLenum format, GLenum type);
 
-// Bytes of what GL_*_SWAP_BYTES reverses: a value, or the whole of a packed pixel. 0: not a type.
+// Bytes of the unit that GL_*_SWAP_BYTES reverses: a component, or a packed pixel. 0: not a type.
 uint32_t swapUnitBytes(GLenum type);
 
 // The glPixelStore state of one direction.
@@ -41,20 +40,20 @@ struct PixelStore {
     GLint compressedBlockSize = 0;
 };
 
-// Where the rows of an image lie, relative to the pointer that GL gets. All sizes in bytes.
+// The rows of an image relative to the pointer passed to GL. All sizes in bytes.
 struct ImageLayout {
-    bool known = false;    // false: GL touches nothing (invalid or empty image)
-    bool bitmap = false;   // rows are bits: the first is bit `firstBit` of the row's first byte
+    bool known = false; // false: GL accesses nothing (invalid or empty image)
+    bool bitmap = false; // rows are bits: the first is bit `firstBit` of the row's first byte
     bool lsbFirst = false; // of a bitmap
     uint32_t firstBit = 0; // 0…7
-    uint32_t width = 0;    // pixels
-    uint32_t rows = 0;     // per image; rows of blocks when compressed
+    uint32_t width = 0; // pixels
+    uint32_t rows = 0; // per image; rows of blocks if compressed
     uint32_t images = 0;
     uint32_t swapUnit =
-        0; // client values of 2 or 4 bytes are in the other byte order; 0: they aren't
-    size_t rowBytes = 0;       // of a tight row
-    size_t clientRowBytes = 0; // from the first to the last byte of a client row that holds pixels
-    ptrdiff_t rowStride = 0;   // negative when inverted
+        0; // client values of 2 or 4 bytes need a byte swap; 0: none
+    size_t rowBytes = 0; // of a tight row
+    size_t clientRowBytes = 0; // from the first to the last byte with pixels in a client row
+    ptrdiff_t rowStride = 0; // negative if inverted
     size_t imageStride = 0;
     ptrdiff_t firstByte = 0; // of row 0 of image 0
 
@@ -64,9 +63,8 @@ struct ImageLayout {
     }
 };
 
-// dims: of the command or texture target (1, 2, 3): GL_*_SKIP_IMAGES counts for 3 only,
-// GL_*_SKIP_ROWS always. height and depth are 1 where the command has none; glPolygonStipple is a
-// 32×32 GL_COLOR_INDEX, GL_BITMAP.
+// dims: of the command or texture target (1, 2, 3). GL_*_SKIP_IMAGES applies to 3 only, GL_*_SKIP_ROWS always. height
+// and depth are 1 for commands without them. glPolygonStipple is a 32×32 image with GL_COLOR_INDEX, GL_BITMAP.
 ImageLayout layoutOf(const PixelStore& store,
                      GLenum format,
                      GLenum type,
@@ -75,17 +73,17 @@ ImageLayout layoutOf(const PixelStore& store,
                      GLsizei depth,
                      int dims);
 
-// Bytes of the tight image. 0: empty or unknown. SIZE_MAX: no memory can hold it.
+// Bytes of the tight image. 0: empty or unknown. SIZE_MAX: not addressable.
 size_t tightBytes(GLenum format, GLenum type, GLsizei width, GLsizei height, GLsizei depth);
 size_t tightBytes(const ImageLayout& layout);
 
-// Bytes from the pointer to the end of what GL reads or writes.
+// Bytes from the pointer to the end of GL's accesses.
 size_t spanBytes(const ImageLayout& layout);
 
 // Client memory → tight. dst has tightBytes(layout).
 void packTight(void* dst, const void* src, const ImageLayout& layout);
 
-// Tight → client memory under the pack state: writes the pixels of the rows and not a bit more.
+// Tight → client memory under the pack state. Writes the pixels of the rows and no other bit.
 void unpackTight(void* dst, const void* tightSrc, const ImageLayout& layout);
 
 } // namespace mural::sizes
