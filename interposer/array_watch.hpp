@@ -1,5 +1,5 @@
-// Around a command that lets arrays of a vertex array object lie in a buffer from now on: the mirror learns it when the
-// driver has taken the command. That is asked only where one of them was in the program's own memory.
+// Wraps a command that moves arrays of a vertex array object into a buffer. Updates the mirror after the driver has
+// accepted the command. The driver is queried only if an array was in client memory.
 #pragma once
 
 #include <GL/gl.h>
@@ -18,7 +18,7 @@ public:
     ArrayWatch& operator=(const ArrayWatch&) = delete;
 
 private:
-    Context* context_ = nullptr; // null: there is nothing to learn
+    Context* context_ = nullptr; // null: no update needed
     GLuint array_;
     uint32_t first_, end_; // slots
 };

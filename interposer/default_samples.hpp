@@ -1,12 +1,12 @@
-// Framebuffer objects without attachments have a number of samples of their own. A driver may fit it to the
-// numbers that it has when it first draws there (Mesa), and tells the fitted number from then on.
+// Framebuffer objects without attachments have their own number of samples. Mesa rounds it to a supported number at the
+// first draw, and reports the rounded number afterwards.
 #pragma once
 
 #include "interposer/thread_state.hpp"
 
 namespace mural {
 
-// Before the next draw: a context that draws nothing fits the number all the same.
+// Call before the next draw, so that a context that does not draw rounds the number as well.
 void fitDefaultSamples(const ThreadState& t);
 
 } // namespace mural

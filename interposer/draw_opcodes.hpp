@@ -1,5 +1,4 @@
-// Which records draw into the window, or copy out of it: at the first of them after a swap a driver
-// gives its buffers the window's size.
+// Records that draw into the window or copy from it. At the first one after a swap, a driver adopts the window's size.
 #pragma once
 
 #include <cstdint>

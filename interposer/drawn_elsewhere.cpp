@@ -17,10 +17,10 @@ namespace mural {
 
 namespace {
 
-// State is proof at once. A picture is proof only when it stays: new memory may hold anything.
+// A state change is proof at once. A picture is proof only if it persists: fresh memory may contain anything.
 constexpr int kEmptyFrames = 3;
 
-// With no call of the program's in the stream, every state must be as it was at first.
+// If the stream contains no call of the program, every state must have its initial value.
 bool stateChanged(const Context& c) {
     GLint program = 0, buffer = 0, texture = 0;
     GLfloat clear[4] = {};
@@ -34,7 +34,7 @@ bool stateChanged(const Context& c) {
     return program || buffer || texture || enabled || clear[0] != 0 || clear[1] != 0 || clear[2] != 0 || clear[3] != 0;
 }
 
-// Whether the back buffer holds more than one colour, by its lines in the middle of 16 parts.
+// Whether the back buffer has more than one colour, sampled on the middle lines of 16 parts.
 bool hasPicture(Context& c, const Window& w) {
     const BackBufferRead read(c, w, BackBufferRead::Where::Here);
     if (!read.ready()) return false;

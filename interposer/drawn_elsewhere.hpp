@@ -1,6 +1,6 @@
-// Pictures that are drawn past us, all of them or in part. With no GL call through us: is the program's own
-// context drawn into by another way, or has the program not drawn yet? With calls through us, which we do not
-// let draw there: has something been drawn there all the same (local_pixels.hpp)?
+// Detects pictures drawn past the capture library, wholly or partly. Without captured GL calls: does the program draw
+// into its context by another path, or has it not drawn yet? With captured calls, which do not draw locally: has
+// something been drawn there anyway (local_pixels.hpp)?
 #pragma once
 
 namespace mural {
@@ -8,11 +8,11 @@ namespace mural {
 struct ThreadState;
 struct Window;
 
-// Called before and after records of our own are written: what lies between two is the program's.
+// Call before and after control records are written. Calls in between belong to the program.
 void noteCalls(ThreadState& t);
 void watchFromHere(ThreadState& t);
-// Before a picture goes out. True: the context is used past us; this has been said, and the program is
-// to go on alone.
+// Call before a picture is sent. Returns true if the context is used past us; this has been reported, and the program
+// continues without capture.
 bool drawnElsewhere(ThreadState& t, Window& w);
 
 } // namespace mural

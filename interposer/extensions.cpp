@@ -15,7 +15,7 @@ namespace mural {
 
 namespace {
 
-// Images of GL objects are carried where the nodes have images.
+// Images of GL objects are available if the nodes support them.
 const char* const kWindowSystemOfNodes[] = {"EGL_KHR_image_base", "EGL_KHR_gl_texture_2D_image", "EGL_KHR_gl_texture_cubemap_image",
                                             "EGL_KHR_gl_texture_3D_image", "EGL_KHR_gl_renderbuffer_image"};
 
@@ -33,7 +33,7 @@ template <size_t N> bool oneOf(const LocalExtension (&extensions)[N], const char
 }
 template <size_t N> bool oneOf(const char* const (&names)[N], const char* name, size_t length) { return oneOf(names, N, name, length); }
 
-// name: with a blank before and behind.
+// name: with a space before and after.
 bool nodesHave(const char* name) {
     Session* s = Session::get();
     return !s || std::strlen(s->nodeExtensions()) <= 2 || std::strstr(s->nodeExtensions(), name);
@@ -51,8 +51,8 @@ bool advertised(const char* name, size_t length) {
     return extensionCarried(text + 1);
 }
 
-// A driver's text without the names that keep() refuses, in the driver's order: old programs look at the first few
-// kilobytes only, and drivers put what these know in front.
+// Copies a driver's text without the names that keep() rejects, in the driver's order. Old programs read only the first
+// kilobytes, where drivers list old extensions.
 template <typename Keep> void copyKept(const char* text, char* out, Keep keep) {
     for (const char* p = text; *p;) {
         const size_t length = std::strcspn(p, " ");
@@ -75,8 +75,8 @@ void makeText(Context& c) {
     if (c.extensionText) copyKept(whole, c.extensionText, advertised);
 }
 
-// Programs keep these pointers for longer than Mesa keeps the driver that they point into: EGL unloads it with its last
-// display. So they are ours: the registry's, or copies that stay.
+// Programs keep these pointers after Mesa has unloaded the driver that they point into, with its last EGL display. So
+// they point to the registry's copies or to permanent copies.
 struct KeptName {
     KeptName* next;
     char name[1];
@@ -99,7 +99,7 @@ const char* keep(const char* name) {
     return kept->name;
 }
 
-// The single names are the driver's, in an order of their own.
+// Indexed names follow the driver's indexed order, which differs from the string's.
 void makeNames(Context& c) {
     if (c.extensionCount >= 0 || c.version < 30 || !gReal.glGetStringi) return;
     GLint count = 0;
@@ -113,7 +113,7 @@ void makeNames(Context& c) {
     }
 }
 
-// Each text of a window system that was asked for, and what programs are told of it.
+// A queried window-system string and its filtered version.
 struct Filtered {
     const char* text;
     const char* kept;

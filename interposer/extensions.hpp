@@ -1,4 +1,4 @@
-// What programs are told that they may use: what the driver here, all nodes and Mural can do.
+// The capabilities that programs see: the intersection of the driver here, all nodes, and Mural.
 #pragma once
 
 #include <GL/gl.h>
@@ -7,13 +7,13 @@ namespace mural {
 
 struct Context;
 
-// GL_EXTENSIONS and GL_VERSION as the program shall see them; null: the driver's own answer stands.
+// GL_EXTENSIONS and GL_VERSION for the program; null: use the driver's own.
 const char* adjustedString(Context& c, GLenum name);
 const char* extensionAt(Context& c, GLuint index);
-GLint extensionCount(Context& c); // below 0: the driver's own answer stands
+GLint extensionCount(Context& c); // negative: use the driver's own
 
-// A GLX or EGL extension string without what exists on one machine only. The answer for each text is
-// made once and kept: programs keep the pointer.
+// A GLX or EGL extension string without machine-local extensions. Each result is permanent, because programs keep the
+// pointer.
 const char* filterWindowSystemExtensions(const char* text);
 
 } // namespace mural

@@ -1,5 +1,4 @@
-// CPU time of a thread that shows frames, from frame to frame: what capture costs a program is the
-// difference to a run without it.
+// CPU time per frame of a thread that shows frames. The difference to a run without Mural is the overhead of capture.
 #pragma once
 
 #include <cstdint>
@@ -8,14 +7,14 @@
 
 namespace mural {
 
-// One per thread. The kernel is asked every 16th frame only: the question takes a few microseconds.
+// One per thread. Queries the kernel every 16th frame only, because a query takes a few microseconds.
 class FrameCpu {
 public:
     static constexpr uint32_t kFrames = 16;
 
-    static constexpr uint32_t kWarmFrames = 2 * kFrames; // of a thread, and all before: start-up, not counted
+    static constexpr uint32_t kWarmFrames = 2 * kFrames; // start-up frames of a thread, not counted
 
-    // After each frame. Not 0: ns of CPU time that the last kFrames frames took.
+    // Call after each frame. Returns the CPU time in ns of the last kFrames frames, or 0 between measurements.
     uint64_t afterFrame() {
         if (++frames_ % kFrames != 0) return 0;
         const int64_t nowNs = threadCpuNowNs();

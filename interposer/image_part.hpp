@@ -1,4 +1,4 @@
-// A part of an image of a texture. Nodes give whole images: the part is taken out of what they gave.
+// A part of a texture image. Nodes send whole images, from which the part is extracted.
 #pragma once
 
 #include <GL/gl.h>
@@ -16,7 +16,7 @@ struct ImagePart {
     size_t groupBytes = 0; // of a pixel or a block; 0: the whole image
 };
 
-// Moves the part to the beginning of the image, both of them tight.
+// Moves the part to the start of the image; both are tight.
 void keepPart(std::byte* image, const ImagePart& part);
 
 } // namespace mural

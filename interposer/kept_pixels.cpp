@@ -11,8 +11,8 @@ namespace mural {
 
 namespace {
 
-constexpr GLsizei kSmall = 64;  // pixels a side: larger reads come one at a time
-constexpr GLint kBlock = 256;   // what is fetched begins and ends at multiples of it
+constexpr GLsizei kSmall = 64; // maximum side in pixels for caching
+constexpr GLint kBlock = 256; // alignment of fetched blocks
 
 const Window* windowRead(const Context& c) {
     GLint framebuffer = 0;
@@ -23,7 +23,7 @@ const Window* windowRead(const Context& c) {
 } // namespace
 
 bool KeptPixels::nothingSince(const ThreadState& t, const Kind& kind) const {
-    // Other threads' drawing leaves no trace in this one's stream.
+    // Draws of other threads do not appear in this thread's stream.
     return cursor_ && cursor_ == t.cursor && publications_ == t.publications && t.context && context_ == t.context->id && !t.shared && kind_ == kind;
 }
 

@@ -1,5 +1,5 @@
-// Pixels that the nodes have told and that nothing has changed since. A program that reads pixel by pixel would
-// otherwise wait for a round trip each time: the second small read at the same place of the stream fetches a block.
+// A cache of pixels that the nodes have sent and that no command has changed since. A program that reads pixel by pixel
+// would otherwise need a round trip each time. The second small read at one position of the stream fetches a block.
 #pragma once
 
 #include <GL/gl.h>
@@ -23,21 +23,21 @@ public:
         GLsizei w, h;
     };
 
-    // The box out of what is kept, tightly packed at `into`. False: it is not there.
+    // Copies the box from the cache to `into`, tightly packed. Returns false if it is not cached.
     bool find(const ThreadState& t, const Kind& kind, const Box& box, void* into) const;
-    // What to ask for in place of a box: more than it, when the last question stands right before in the stream.
+    // The box to request instead: larger if the previous request directly precedes it in the stream.
     Box wider(const ThreadState& t, const Kind& kind, const Box& box) const;
-    // One more small read with nothing between them, after many: better a block than one by one.
+    // Returns whether this read continues a series of small reads, which justifies fetching a block.
     bool inSeries(const ThreadState& t, const Kind& kind, const Box& box);
-    // Memory for the answer to a wider question; null: there is none.
+    // Memory for the answer to a larger request; null if the allocation fails.
     std::byte* memory(size_t sizeBytes);
-    // A question has been answered; `kept`: its pixels are in memory().
+    // Records an answered request. `kept`: its pixels are in memory().
     void answered(const ThreadState& t, const Kind& kind, const Box& box, bool kept);
 
 private:
     [[nodiscard]] bool nothingSince(const ThreadState& t, const Kind& kind) const;
 
-    const std::byte* cursor_ = nullptr; // of the stream, behind the question
+    const std::byte* cursor_ = nullptr; // stream position after the request
     uint32_t publications_ = 0;
     uint32_t context_ = 0;
     Kind kind_{};

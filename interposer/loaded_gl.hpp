@@ -1,15 +1,14 @@
-// The GL libraries of this process that do not lead to GLVND, by what their ELF headers say.
+// The loaded GL libraries that do not use GLVND, identified by their ELF headers.
 #pragma once
 
 #include <cstddef>
 
 namespace mural {
 
-// Path of a loaded GL library that GLVND does not lead to; null: none. Valid until the program ends.
+// Path of a loaded GL library without GLVND; null: none. Valid until the program ends.
 const char* loadedOwnGl();
 
-// Paths of up to three loaded libraries that export GL's names past GLVND and past us, with " and "
-// between; false: there are none.
+// Paths of up to three loaded libraries that export GL names past GLVND and past us, joined by " and "; false: none.
 bool librariesPastUs(char* into, size_t sizeBytes);
 
 } // namespace mural

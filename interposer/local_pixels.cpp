@@ -14,7 +14,7 @@ namespace mural {
 namespace {
 
 constexpr uint32_t kBands = 16, kSampledPixels = 65536;
-// A program that goes to and fro between contexts without showing anything is not read out again and again.
+// Limits readbacks for a program that alternates between contexts without swapping.
 constexpr int kBindsPerFrame = 16;
 
 std::atomic<uint64_t> drawingsBegun{0}, drawingsEnded{0};
@@ -27,7 +27,7 @@ bool canLook(const ThreadState& t, const Window& w) {
     return c->drawWindow == w.id && c->readWindow == w.id && w.config.doubleBuffer && !w.config.isPbuffer && w.config.width > 0;
 }
 
-// Scales, biases and maps of pixels would change what is read.
+// Pixel scales, biases and maps would change the result.
 bool plainTransfer(const Context& c) {
     if (c.api != wire::Api::Desktop || c.core) return true;
     GLint mapped = 0;
@@ -46,7 +46,7 @@ bool plainTransfer(const Context& c) {
     return plain;
 }
 
-// A pixel outside the buffer leaves memory as it was.
+// A read outside the buffer leaves memory unchanged, which reveals the buffer's size.
 bool isInside(const BackBufferRead& read, GLint x, GLint y) {
     uint32_t pixel = 0, again = ~0U;
     read.pixels(x, y, 1, 1, &pixel);
@@ -54,7 +54,7 @@ bool isInside(const BackBufferRead& read, GLint x, GLint y) {
     return pixel == again;
 }
 
-// A driver's buffers may take their window's new size long after the window.
+// A driver may resize its buffers long after the window.
 bool hasSize(const BackBufferRead& read, GLint width, GLint height) {
     return isInside(read, width - 1, height - 1) && !isInside(read, width, height - 1) && !isInside(read, width - 1, height);
 }
@@ -68,7 +68,8 @@ uint64_t printOfRow(const uint32_t* pixels, uint32_t count) {
     return print;
 }
 
-// Bands of whole rows, evenly spread; of a small window every row. A sum, as MESA_pack_invert turns bands.
+// Samples evenly spaced bands of rows; every row of a small window. Uses a sum, because MESA_pack_invert reverses
+// bands.
 bool sample(ThreadState& t, const BackBufferRead& read, uint32_t width, uint32_t height, uint64_t& print) {
     const uint32_t most = kSampledPixels / kBands > width ? kSampledPixels / kBands / width : 1;
     auto* band = static_cast<uint32_t*>(scratchMemory(t, size_t{most} * width * 4));
@@ -89,12 +90,12 @@ struct Look {
     uint64_t print = 0, drawings = 0;
 };
 
-// False: not to be compared with anything.
+// Returns false if the sample is not comparable.
 bool look(ThreadState& t, Window& w, Look& seen) {
     if (!canLook(t, w)) return false;
     seen.drawings = drawingsBegun.load();
     if (seen.drawings != drawingsEnded.load()) return false;
-    // What another context has drawn may still be on its way into the buffer.
+    // Draws of another context may still be in progress.
     if (seen.drawings > 0 && w.holders > 1) return false;
     if (!askWindowSize(w, seen.width, seen.height) || seen.width != w.config.width || seen.height != w.config.height) return false;
     const BackBufferRead read(*t.context, w, BackBufferRead::Where::Here);

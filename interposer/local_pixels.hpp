@@ -1,10 +1,10 @@
-// What the nodes draw is not drawn in the program's own context: a window's own back buffer stays as it is
-// from the moment that it is bound. When it has changed, somebody draws into it past us. Looked at at the
-// end of the frames 1, 2, 4, 8, … of a window, by a sample of its pixels.
+// Detects draws past the capture library. The program's own context does not draw what the nodes draw, so a window's
+// local back buffer stays unchanged after it is bound. A change means that another path has drawn. Compares samples of
+// its pixels at the end of frames 1, 2, 4, 8, … of a window.
 //
-// Nothing but drawing past us may count. So a change means nothing after a window was bound anew or has
-// another size (drivers take other memory then) and after we have drawn there ourselves; and only Mesa is
-// looked at: its buffers belong to the window alone, and several libraries share its dispatch.
+// False positives are excluded. A change is ignored after a new binding or size, for which drivers may use other
+// memory, and after our own draws. Only Mesa is checked: its buffers belong to one window, and several libraries share
+// its dispatch.
 #pragma once
 
 #include <atomic>
@@ -15,23 +15,23 @@ namespace mural {
 struct ThreadState;
 struct Window;
 
-// A window's pixels when they were last looked at; part of Window.
+// The last sample of a window; part of Window.
 struct LocalPixels {
     std::atomic<bool> known{false};
-    std::atomic<bool> busy{false}; // a thread is looking
+    std::atomic<bool> busy{false}; // a thread is sampling
     uint32_t width = 0, height = 0;
     uint64_t print = 0;
-    uint64_t drawings = 0; // of our own that there had been
-    uint32_t frames = 0;   // that the window has shown
-    int binds = 0;         // since the last of them
+    uint64_t drawings = 0; // number of our own draws at the sample
+    uint32_t frames = 0; // frames that the window has shown
+    int binds = 0; // bindings since the last frame
 };
 
-// The window was made current, and was not before.
+// The window has become current.
 void localPixelsBound(ThreadState& t, Window& w);
-// Before a picture of the window goes out. True: somebody else has drawn into it.
+// Call before a picture of the window is sent. Returns true if another path has drawn into it.
 bool localPixelsChanged(ThreadState& t, Window& w);
 
-// Around everything that we let the program's own contexts draw while the nodes draw the pictures.
+// Brackets draws of the program's own contexts that we allow while the nodes draw the pictures.
 void ownDrawingBegins();
 void ownDrawingEnds();
 

@@ -13,30 +13,30 @@
 
 namespace mural {
 
-// One mapping that the program has open.
+// An active mapping of the program.
 struct MappedBuffer {
     GLuint buffer;
     std::byte* memory;
     uint64_t offset, length; // in the buffer, bytes
     GLbitfield access;
-    MapChanges changes;      // of persistent ones that are not flushed
+    MapChanges changes; // for persistent mappings without explicit flushes
     MappedBuffer* next;
-    bool pinned = false;     // memory of the program's own: no mapping of it that can end
+    bool pinned = false; // client memory: a permanent mapping
 
     [[nodiscard]] bool has(GLbitfield bits) const { return (access & bits) != 0; }
-    // Written without a word to GL.
+    // Written without further GL calls.
     [[nodiscard]] bool silent() const { return has(GL_MAP_PERSISTENT_BIT) && has(GL_MAP_WRITE_BIT) && !has(GL_MAP_FLUSH_EXPLICIT_BIT); }
 };
 
 namespace {
 
-constexpr uint64_t kAskedBytes = uint64_t{16} << 20; // at once
+constexpr uint64_t kAskedBytes = uint64_t{16} << 20; // per request
 
-// And the program's own context does not: what they have written into buffers is theirs alone, also for one that selects, or
-// compiles a list, by now.
+// The nodes draw and the program's own context does not, so only the nodes know buffers written by shaders. Includes
+// contexts that now select or compile a list.
 bool nodesDraw(const ThreadState& t) { return t.context && !swapLocally() && !t.context->drawsPixmap && !t.context->drawsFeedback; }
 
-// Holds the list of mappings. Asking the nodes under it ships mappings: by the same thread, which may.
+// Locks the list of mappings. A request to the nodes ships mappings; the same thread may do so while it holds the lock.
 class MapsHeld {
 public:
     explicit MapsHeld(ThreadState& t) : group_(*t.context->group), outer_(group_.mapsHolder.load(std::memory_order_relaxed) == &t) {
@@ -69,7 +69,7 @@ void ship(ThreadState& t, const MappedBuffer& m, uint64_t from, const std::byte*
 }
 
 void shipChanges(ThreadState& t, MappedBuffer& m) {
-    if (!m.changes.active()) return ship(t, m, 0, m.memory, m.length); // no memory to remember by
+    if (!m.changes.active()) return ship(t, m, 0, m.memory, m.length); // no memory for change tracking
     struct Shipping {
         ThreadState& t;
         MappedBuffer& m;
@@ -84,7 +84,7 @@ bool mayBeWritten(const ShareGroup& group, GLuint buffer) {
     return group.nodesWriteBuffers && (group.nodesWrite.get(buffer) || !NameBits::known(buffer));
 }
 
-// Whether a program may replace the bytes of what is bound by glBufferSubData, and write them in a mapping.
+// Whether the bound buffer allows glBufferSubData, and writable mappings.
 struct Writable {
     bool immutable, replaced, mapped;
 };
@@ -92,22 +92,23 @@ Writable writable(GLenum target) {
     GLint immutable = 0, flags = 0;
     gReal.glGetBufferParameteriv(target, GL_BUFFER_IMMUTABLE_STORAGE, &immutable);
     if (immutable) gReal.glGetBufferParameteriv(target, GL_BUFFER_STORAGE_FLAGS, &flags);
-    driverError(); // of drivers that know no such storage
+    driverError(); // of drivers without immutable storage
     return {immutable != 0, !immutable || (flags & GL_DYNAMIC_STORAGE_BIT), (flags & GL_MAP_WRITE_BIT) != 0};
 }
 
-// Storage that no program may write, GL itself may: by clears, a few bytes each. False: there are too many, or no such command.
+// Writes to storage that programs may not write, with clears of a few bytes each. Returns false for too many bytes, or
+// without the command.
 bool clearIntoBound(uint64_t offset, const void* bytes, uint64_t length) {
     constexpr uint64_t kCleared = uint64_t{64} << 10;
     if (!gReal.glClearBufferSubData || length > kCleared) return false;
     constexpr GLenum kPlace[] = {GL_UNPACK_SWAP_BYTES, GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_ROWS, GL_UNPACK_SKIP_IMAGES};
-    GLint before[4] = {}; // Mesa looks there
+    GLint before[4] = {}; // Mesa checks this binding
     for (int i = 0; i < 4; ++i) {
         gReal.glGetIntegerv(kPlace[i], &before[i]);
         gReal.glPixelStorei(kPlace[i], 0);
     }
     struct Element {
-        uint64_t bytes; // begins and ends at multiples of them
+        uint64_t bytes; // alignment of the range
         GLenum internal, format, type;
     };
     constexpr Element kElements[] = {{16, GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT}, {4, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT}, {1, GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE}};
@@ -124,8 +125,7 @@ bool clearIntoBound(uint64_t offset, const void* bytes, uint64_t length) {
     return true;
 }
 
-// By a copy. The buffer for it takes the name that the program's next one would have had natively: only where nothing
-// else is left.
+// Writes with a copy. The temporary buffer uses up the program's next native name, so this is the last resort.
 void copyIntoBound(uint64_t offset, const void* bytes, uint64_t length) {
     GLint before = 0;
     GLuint between = 0;
@@ -139,7 +139,7 @@ void copyIntoBound(uint64_t offset, const void* bytes, uint64_t length) {
     gReal.glFinish(); // it may be mapped
 }
 
-// Where a buffer is bound for a moment: nothing draws from there.
+// Binds the buffer temporarily to a target from which nothing draws.
 class OwnCopy {
 public:
     OwnCopy(const Context& c, GLuint buffer) : copies_(c.version >= (c.api == wire::Api::Desktop ? 31 : 30)) {
@@ -148,7 +148,7 @@ public:
     }
     ~OwnCopy() {
         gReal.glBindBuffer(target(), static_cast<GLuint>(before_));
-        driverError(); // ours, not the program's
+        driverError(); // our own error, not the program's
     }
     OwnCopy(const OwnCopy&) = delete;
     OwnCopy& operator=(const OwnCopy&) = delete;
@@ -169,7 +169,7 @@ void writeBound(GLenum target, uint64_t offset, const void* bytes, uint64_t leng
         return;
     }
     void* const mapped = may.mapped ? gReal.glMapBufferRange(target, at, size, GL_MAP_WRITE_BIT) : nullptr;
-    driverError(); // it may be mapped by the program
+    driverError(); // the program may have mapped it
     if (mapped) {
         std::memcpy(mapped, bytes, length);
         gReal.glUnmapBuffer(target);
@@ -214,7 +214,7 @@ bool readOwnCopy(ThreadState& t, GLuint buffer, uint64_t offset, void* into, uin
 
 void refreshBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t length, const char* by) {
     if (!nodesDraw(t) || !t.context->group->nodesWriteBuffers || buffer == 0 || !gReal.glBindBuffer || nodesLack(t, buffer)) return;
-    if (!gReal.glIsBuffer(buffer)) return; // a name without a buffer: to bind it would make one
+    if (!gReal.glIsBuffer(buffer)) return; // an unused name: binding it would create a buffer
     for (uint64_t at = 0; at < length; at += kAskedBytes) {
         const uint64_t count = length - at < kAskedBytes ? length - at : kAskedBytes;
         const void* bytes = askBuffer(t, buffer, offset + at, count, by);
@@ -232,7 +232,7 @@ void refreshForMap(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t leng
 
 namespace {
 
-// Only what differs is written: other threads may be writing elsewhere in the mapping.
+// Writes only the differences: other threads may write elsewhere in the mapping.
 void showInMap(ThreadState& t, MappedBuffer& m, uint64_t from, const std::byte* bytes, uint64_t count) {
     struct Showing {
         ThreadState& t;
@@ -255,7 +255,7 @@ void refreshMaps(ThreadState& t, const char* by) {
     const ShareGroup& group = *t.context->group;
     const MapsHeld held(t);
     for (MappedBuffer* m = group.maps; m; m = m->next) {
-        // What the nodes have written is compared with, even where the program does not read it.
+        // Data written by the nodes is the baseline for change detection, even if the program does not read it.
         const bool stale = m->has(GL_MAP_READ_BIT) || mayBeWritten(group, m->buffer);
         if (!m->has(GL_MAP_PERSISTENT_BIT) || !stale) continue;
         for (uint64_t at = 0; at < m->length; at += kAskedBytes) {
@@ -292,7 +292,7 @@ void begin(ThreadState& t, GLuint buffer, void* memory, uint64_t offset, uint64_
     void* place = std::malloc(sizeof(MappedBuffer));
     if (!place) return;
     auto* m = new (place) MappedBuffer{buffer, static_cast<std::byte*>(memory), offset, length, access, {}, nullptr, pinned};
-    // Other processes may share the program's own memory, and it may do with it what it likes: no watching.
+    // Pinned client memory is not write-protected: other processes may share it, and the program may remap it.
     if (m->silent()) m->changes.begin(memory, length, !pinned);
     ShareGroup& group = *t.context->group;
     const MapsHeld held(t);

@@ -1,5 +1,5 @@
-// Buffers that the program has mapped: what it writes into them goes to the nodes, and what the nodes
-// have written into them comes back. Mapping itself is the program's own context's.
+// Mapped buffers: data that the program writes is sent to the nodes, and data that the nodes write is fetched. The
+// mapping itself is the program's own context's.
 #pragma once
 
 #include <GL/gl.h>
@@ -10,36 +10,36 @@ namespace mural {
 struct ShareGroup;
 struct ThreadState;
 
-// The program has mapped these bytes of the buffer at `memory`, with the access bits of glMapBufferRange.
+// The program has mapped a range of the buffer at `memory`, with the access bits of glMapBufferRange.
 void mapBegins(ThreadState& t, GLuint buffer, void* memory, uint64_t offset, uint64_t length, GLbitfield access);
-// The buffer is the program's own memory from now on (AMD_pinned_memory): both sides write it at any time.
+// The buffer uses client memory from now on (AMD_pinned_memory), which both sides may write at any time.
 void pinBegins(ThreadState& t, GLuint buffer, void* memory, uint64_t length);
-// Before it ends, by unmap, new storage or deletion; `ship` says whether its bytes still count.
+// Call before an unmap, new storage or deletion ends the mapping. `ship`: its data is still valid.
 void mapEnds(ThreadState& t, GLuint buffer, bool ship);
-// Before the program unmaps it: pinned memory stays.
-// The last context of the group is gone, and its mappings with it.
+// The last context of the group is destroyed, together with its mappings.
 void forgetMaps(ShareGroup& group);
+// Call before the program unmaps the buffer. Pinned memory stays.
 void unmaps(ThreadState& t, GLuint buffer);
 void mapFlushes(ThreadState& t, GLuint buffer, GLintptr offset, GLsizeiptr length);
 
-// Round trips of these are counted under `by`, the wrapper's name (interposer/asking.hpp).
-// Brings the program's own copy of a buffer that the nodes may have written up to date, before it is read.
+// Updates the program's own copy of a buffer that the nodes may have written, before it is read. Round trips are
+// counted under `by`, the wrapper's name (interposer/asking.hpp).
 void refreshBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t length, const char* by = __builtin_FUNCTION());
-// Before the buffer is mapped so: what is not written stays, and is not to go back as it was here.
+// The same before a mapping with this access: unwritten bytes must not overwrite the nodes' with outdated values.
 void refreshForMap(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t length, GLbitfield access, const char* by = __builtin_FUNCTION());
-// The program has waited for the GL: mappings that stay show what the nodes have written until then.
+// The program has waited for the GL: updates persistent mappings with data written by the nodes.
 void refreshMaps(ThreadState& t, const char* by = __builtin_FUNCTION());
-// From now on buffers may hold what only the nodes know; this one (0: any) is bound where shaders or
-// transform feedback write into it.
+// From now on only the nodes know the content of buffers. This one (0: any) is bound for writes by shaders or transform
+// feedback.
 void nodesMayWrite(ThreadState& t, GLuint buffer);
 void buffersMayBeWritten(ThreadState& t, GLsizei count, const GLuint* buffers);
-// The program's own context has copied into the buffer. When that came from what only the nodes know, it is old.
+// The program's own context has copied into the buffer. If the source is known to the nodes only, the copy is outdated.
 void copiedHere(ThreadState& t, GLuint buffer);
-// Writes into the program's own copy of a buffer, whatever its storage allows the program.
+// Writes into the program's own copy of a buffer, even if its storage forbids it to the program.
 void writeOwnCopy(ThreadState& t, GLuint buffer, uint64_t offset, const void* bytes, uint64_t length);
-// How large it is. False: it is mapped.
+// The size of the program's own copy. Returns false if it is mapped.
 bool ownSize(ThreadState& t, GLuint buffer, uint64_t& size);
-// Reads it. False: it is mapped, or not so large.
+// Reads it. Returns false if it is mapped or too small.
 bool readOwnCopy(ThreadState& t, GLuint buffer, uint64_t offset, void* into, uint64_t length);
 
 } // namespace mural

@@ -24,7 +24,7 @@ GLint activeCount(GLuint program, GLenum kind) {
     return count;
 }
 
-// A resource of that kind that the fragment shader uses; of uniforms only images.
+// Whether the fragment shader uses a resource of that kind; of uniforms, images only.
 bool fragmentUses(GLuint program, GLenum kind) {
     const bool uniforms = kind == GL_UNIFORM;
     const GLint count = activeCount(program, kind);
@@ -49,7 +49,7 @@ bool linked(Context& c, GLuint program) {
     return raisesNothing(c, [&] { gReal.glGetProgramiv(program, GL_LINK_STATUS, &status); }) && status;
 }
 
-// fragmentMayStore(): a fragment shader of it may write to storage blocks.
+// fragmentMayStore(): one of its fragment shaders may write to storage blocks.
 template <class MayStore> void note(ThreadState& t, GLuint program, MayStore&& fragmentMayStore) {
     if (!mayHaveWriters(t) || !linked(*t.context, program)) return;
     const bool writes = fragmentUses(program, GL_ATOMIC_COUNTER_BUFFER) || fragmentUses(program, GL_UNIFORM) ||
@@ -57,7 +57,7 @@ template <class MayStore> void note(ThreadState& t, GLuint program, MayStore&& f
     if (writes) copies::drawAll(t, "glLinkProgram");
 }
 
-// True as well for modules, whose text nobody has.
+// True for modules as well, which have no text.
 bool shaderMayStore(ThreadState& t, GLuint shader) {
     GLint type = 0, bytes = 0;
     gReal.glGetShaderiv(shader, GL_SHADER_TYPE, &type);
@@ -95,7 +95,7 @@ void noteMemoryWriter(ThreadState& t, GLuint program, GLenum type, GLsizei count
 
 void noteMemoryWriter(ThreadState& t, GLuint program, const std::byte* recipe, size_t sizeBytes) {
     note(t, program, [&] {
-        size_t at = 4; // behind `separable`
+        size_t at = 4; // after `separable`
         const auto number = [&] {
             uint32_t value = 0;
             if (at + 4 <= sizeBytes) std::memcpy(&value, recipe + at, 4);

@@ -1,12 +1,12 @@
-// `mural run --native`: no capture, only frames and seconds, for comparison.
+// `mural run --native`: counts frames and seconds without capture, for comparison.
 #pragma once
 
 namespace mural {
 
-// True when MURAL_NATIVE is set: the program draws as it would without Mural.
+// True if MURAL_NATIVE is set: the program draws as without Mural.
 bool nativeRun();
-// One frame was shown; rewrites MURAL_NATIVE_REPORT ("frames seconds", and the
-// CPU seconds of the showing threads over so many frames) now and then.
+// Counts a shown frame. Periodically rewrites MURAL_NATIVE_REPORT ("frames seconds", and the CPU seconds of the showing
+// threads for a number of frames).
 void countNativeFrame();
 
 } // namespace mural

@@ -1,5 +1,5 @@
-// Between glBegin and glEnd drivers refuse all calls but those that make vertices. Nodes are not told of them: theirs would
-// refuse them, too, and what Mural knows of the state by itself stays true.
+// Between glBegin and glEnd drivers reject all calls except vertex commands. Rejected calls are not sent to the nodes,
+// which would reject them as well, and do not change mirrored state.
 #pragma once
 
 #include "interposer/context.hpp"
@@ -7,12 +7,11 @@
 
 namespace mural {
 
-// Whether the program's own driver is between glBegin and glEnd: it answers nothing there and takes the question for an
-// error, so this is asked only where such an error has been or will be raised by the program's own call. (Mesa answers
-// glGet* while a display list is compiled, even then.)
+// Whether the program's own driver is between glBegin and glEnd. The query itself raises an error there, so call this
+// only where the program's own call raises the same error. (Mesa answers glGet* during list compilation, even then.)
 inline bool answersNothing() { return gReal.glGetString(GL_VENDOR) == nullptr; }
 
-// For a call that makes no vertex. A glBegin that the driver has refused has begun nothing.
+// For calls other than vertex commands. A rejected glBegin has started no primitive.
 bool primitiveIsOpen(Context& c);
 inline bool refusedInPrimitive(const ThreadState& t) {
     return t.context && t.context->openPrimitive != kNoPrimitive && primitiveIsOpen(*t.context);

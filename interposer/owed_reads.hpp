@@ -1,6 +1,6 @@
-// Reads into pixel pack buffers whose pixels the program has not needed yet: the nodes are asked, and the call returns.
-// What comes goes into the program's own copy of the buffer when the program first looks at it, writes into it, or uses
-// it for anything else. Until that other use the nodes do without the bytes: they would have no use for them.
+// Deferred replies: reads into pixel pack buffers whose pixels the program has not used yet. The call sends a request
+// and returns. The reply is written into the program's own copy of the buffer when the program first reads, writes or
+// otherwise uses it. Until another use, the nodes do not receive the bytes, which they do not need.
 #pragma once
 
 #include <GL/gl.h>
@@ -19,7 +19,7 @@ struct ThreadState;
 struct OwedRead; // interposer/owed_reads.cpp
 struct ReadArea;
 
-// One bit per object name, set by any thread. Names beyond never have it.
+// One bit per object name, set by any thread. Names above the limit never have it.
 class SharedNameBits {
 public:
     [[nodiscard]] bool get(GLuint name) const {
@@ -38,43 +38,43 @@ private:
     std::atomic<uint64_t> bits_[kNames / 64] = {};
 };
 
-// Of a share group.
+// Per share group.
 struct OwedReads {
-    Lock lock;                  // of the list, and while answers are waited for
-    OwedRead* first = nullptr;  // in the order of the calls
+    Lock lock; // for the list, and while waiting for replies
+    OwedRead* first = nullptr; // in call order
     std::atomic<int> count{0};
     uint64_t sizeBytes = 0;
-    SharedNameBits usedElsewhere; // the buffer was used for more than reads into it: the nodes have all its bytes
-    SharedNameBits nodesLack;     // the nodes have not got its bytes, or not all
-    std::atomic<bool> dueAtUnmap{false}; // some buffer that they lack was mapped when it was first used elsewhere
+    SharedNameBits usedElsewhere; // the buffer was used for other purposes than reads: the nodes have all of its bytes
+    SharedNameBits nodesLack; // the nodes lack some of its bytes
+    std::atomic<bool> dueAtUnmap{false}; // a buffer that the nodes lack was mapped at its first other use
 
     [[nodiscard]] bool onlyReadInto(GLuint buffer) const { return SharedNameBits::known(buffer) && !usedElsewhere.get(buffer); }
 };
 
-// The image's place in the bound pack buffer, and what of the answer goes there.
+// The image's place in the bound pack buffer, and the part of the reply that goes there.
 struct PackPlace {
     uint64_t offset;
     sizes::ImageLayout layout;
     ImagePart part{};
 };
 
-// Both: false when this one has to be read now: the buffer is used for other things, or there is no memory.
+// Both defer a read. They return false if it must complete now: the buffer has other uses, or memory is exhausted.
 bool owePixels(ThreadState& t, const ReadArea& area, GLenum format, GLenum type, const PackPlace& place, const char* by);
 bool oweTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type, uint64_t sizeBytes, const PackPlace& place, const char* by);
 
-// What follows has short ways past it in interposer/context.hpp.
+// interposer/context.hpp has fast paths for the following functions.
 void settle(ThreadState& t, GLuint buffer, const char* by);
 void firstUse(ThreadState& t, GLuint buffer, const char* by);
 GLuint boundPackBuffer();
 
-// The program's own copy is what counts, and the nodes' is another.
+// True if the program's own copy is valid and the nodes' is not.
 [[nodiscard]] bool nodesLack(const ThreadState& t, GLuint buffer);
-// The program has unmapped it; or given it new storage.
+// The program has unmapped the buffer, or given it new storage.
 void unmappedHere(ThreadState& t, GLuint buffer);
 void newStorage(ThreadState& t, GLuint buffer);
-// The program deletes it.
+// The program deletes the buffer.
 void forgetReads(ThreadState& t, GLuint buffer, const char* by = __builtin_FUNCTION());
-// The last context of the group is gone.
+// The last context of the group is destroyed.
 void forgetReads(ShareGroup& group);
 
 } // namespace mural

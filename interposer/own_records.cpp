@@ -13,7 +13,7 @@ template <class... T> void putAll(Writer& w, T... values) {
     (put(values), ...);
 }
 
-// A record of fixed size from plain values.
+// Writes a record of fixed size from plain values.
 template <class... T> bool fixed(ThreadState& t, uint16_t opcode, T... values) {
     constexpr uint32_t kSize = 4 + kBytesOf<T...>;
     std::byte* p = beginRecord(t, opcode, kSize);
@@ -24,7 +24,7 @@ template <class... T> bool fixed(ThreadState& t, uint16_t opcode, T... values) {
     return true;
 }
 
-// Plain values, then what stands behind a pointer.
+// Writes plain values, then the data at a pointer.
 template <class... T> void withData(ThreadState& t, uint16_t opcode, const DataArg& data, T... values) {
     spillLarge(t, data);
     const uint32_t size = 4 + kBytesOf<T...> + wireBytes(data);
@@ -114,7 +114,7 @@ void programRecipe(ThreadState& t, GLuint program, const DataArg& recipe) {
 }
 
 namespace {
-// A span is sent ahead of its record when it is large, or when the record would not fit into a chunk.
+// A span precedes its record as a blob if it is large, or if the record would not fit into a chunk.
 constexpr uint32_t kMaxArrayRecordBytes = 128 * 1024;
 constexpr uint32_t kSmallSpanBytes = 1024; // 72 of them always fit
 

@@ -1,4 +1,4 @@
-// Mural's own records: everything in the stream that is not a GL command. Layouts: wire::Op.
+// Control records: all records that are not GL commands. Layouts: wire::Op.
 #pragma once
 
 #include "interposer/encode_support.hpp"
@@ -27,7 +27,7 @@ void requestQuery(ThreadState& t, uint32_t request, GLuint query, GLenum pname);
 void requestFinish(ThreadState& t, uint32_t request);
 void beginConditional(ThreadState& t, bool draws);
 void drawAll(ThreadState& t);
-bool errorTold(ThreadState& t); // false: nobody hears it
+bool errorTold(ThreadState& t); // false: no session
 void requestProgram(ThreadState& t, uint32_t request, GLuint program);
 void programRecipe(ThreadState& t, GLuint program, const DataArg& recipe);
 void queryKnown(ThreadState& t, GLuint query, bool passed);

@@ -10,11 +10,11 @@ namespace mural {
 
 namespace {
 
-// Without one of these the names are errors to the driver.
+// Without pixel buffers their names are errors.
 bool hasPixelBuffers(const Context& c) { return c.api == wire::Api::Desktop ? c.version >= 21 : c.version >= 30; }
 bool hasRowLength(const Context& c) { return c.api == wire::Api::Desktop || c.version >= 30; }
 
-// In the order in which the versions have brought them: ES 1 and 2 have the last only, ES 3 has no swapping.
+// Ordered by availability: ES 1 and 2 have only the last one, ES 3 lacks byte swapping.
 constexpr GLenum kPack[6] = {GL_PACK_SWAP_BYTES, GL_PACK_LSB_FIRST, GL_PACK_ROW_LENGTH, GL_PACK_SKIP_ROWS, GL_PACK_SKIP_PIXELS, GL_PACK_ALIGNMENT};
 
 GLint get(GLenum name) {
@@ -66,13 +66,13 @@ sizes::PixelStore compressedPackStore(Context& c) {
     s.compressedBlockHeight = get(GL_PACK_COMPRESSED_BLOCK_HEIGHT);
     s.compressedBlockDepth = get(GL_PACK_COMPRESSED_BLOCK_DEPTH);
     s.compressedBlockSize = get(GL_PACK_COMPRESSED_BLOCK_SIZE);
-    driverError(); // of drivers that have no such state
+    driverError(); // of drivers without this state
     return s;
 }
 
 TightPack::TightPack(const Context& context) : first_(context.api == wire::Api::Desktop ? 0 : context.version >= 30 ? 2 : 5) {
     if (packBufferBound(context)) buffer_ = get(GL_PIXEL_PACK_BUFFER_BINDING);
-    // What another context of the share group has deleted may still be bound here.
+    // A buffer that another context has deleted may still be bound here.
     ready_ = !buffer_ || gReal.glIsBuffer(static_cast<GLuint>(buffer_));
     if (!ready_) return;
     if (buffer_) gReal.glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);

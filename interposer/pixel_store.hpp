@@ -1,5 +1,5 @@
-// The pixel-store state of the program's context, asked from the context itself: it is needed only
-// where images travel, and asking is always right (client attribute stacks, other entry points).
+// The pixel store state, queried from the program's context. It is needed only for images, and a query is always
+// correct (client attribute stacks, other entry points).
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,9 @@ struct Context;
 [[nodiscard]] bool packBufferBound(const Context& c);
 [[nodiscard]] sizes::PixelStore unpackStore(const Context& c);
 [[nodiscard]] sizes::PixelStore packStore(const Context& c);
-// The same with what describes the blocks of compressed images.
+// The same with the parameters of compressed blocks.
 [[nodiscard]] sizes::PixelStore compressedPackStore(Context& c);
-// As long as it lives, the program's own context packs pixels tightly into client memory.
+// During its lifetime the program's own context packs pixels tightly into client memory.
 class TightPack {
 public:
     explicit TightPack(const Context& context);
@@ -24,7 +24,7 @@ public:
     TightPack(const TightPack&) = delete;
     TightPack& operator=(const TightPack&) = delete;
 
-    // False: the pack buffer is deleted already and could not be bound again; nothing was changed.
+    // False: the bound pack buffer is deleted and could not be bound again; nothing was changed.
     [[nodiscard]] bool ready() const { return ready_; }
 
 private:
@@ -34,7 +34,7 @@ private:
     int32_t values_[6] = {};
 };
 
-// True when the image lies in client memory just as it travels.
+// True if the image in client memory is tight already.
 [[nodiscard]] bool isTight(const sizes::ImageLayout& layout);
 
 } // namespace mural

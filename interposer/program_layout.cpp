@@ -39,7 +39,7 @@ struct LayoutWriter {
     }
 };
 
-// An array's elements have locations of their own: "a[0]" stands for all `size` of them.
+// Array elements have separate locations: "a[0]" stands for all `size` elements.
 void addUniform(LayoutWriter& w, GLuint program, const char* name, GLint size) {
     const GLint first = gReal.glGetUniformLocation(program, name);
     if (first < 0) return; // in a block, or built in

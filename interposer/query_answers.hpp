@@ -1,5 +1,5 @@
-// Query results that are asked for when the query ends, so that a program which reads them in a later frame finds them
-// there: the nodes answer at the swap. Only in contexts whose program does read results that late.
+// Prefetches query results: requests them when a query ends, so that they have arrived when the program reads them in a
+// later frame. The nodes answer at the swap. Active only in contexts whose program reads results that late.
 #pragma once
 
 #include <GL/gl.h>
@@ -17,30 +17,30 @@ public:
     QueryAnswers& operator=(const QueryAnswers&) = delete;
     ~QueryAnswers() { std::free(ended_); }
 
-    // index: the vertex stream that it counts, 0 where there is but one.
+    // index: the vertex stream; 0 for targets without streams.
     void begun(GLenum target, GLuint index, GLuint query);
     void ended(ThreadState& t, GLenum target, GLuint index, uint32_t swaps);
-    // The result, when it is known, or was asked for when the query ended before the last swap. False: ask now.
+    // Returns the result if it is known, or was requested before the last swap. False: request it now.
     bool find(GLuint query, uint32_t swaps, uint64_t& value);
-    // What the nodes have answered: it stays until the query is begun anew.
+    // Stores the nodes' result until the query begins again.
     void keep(GLuint query, uint64_t value);
 
 private:
     struct Ended {
-        uint32_t swaps;   // of the context until then, + 1; 0: never
-        uint32_t request; // 0: not asked
+        uint32_t swaps; // swap count of the context at its end, plus 1; 0: never ended
+        uint32_t request; // 0: not requested
         uint64_t value;
         bool known;
     };
     struct Active {
         GLenum target;
         GLuint index;
-        GLuint query; // 0: the place is free
+        GLuint query; // 0: a free entry
     };
-    static constexpr GLuint kNames = 16384; // queries beyond are asked when their results are wanted
+    static constexpr GLuint kNames = 16384; // higher names are not prefetched
     static constexpr int kTargets = 24;
 
-    Ended* ended_ = nullptr; // by the query's name; made with the first
+    Ended* ended_ = nullptr; // by query name; allocated on first use
     Active active_[kTargets] = {};
     bool readsLate_ = false;
 };

@@ -12,7 +12,7 @@ namespace mural {
 
 namespace {
 
-// A read of one pixel outside the framebuffer leaves memory as it was.
+// A read of one pixel outside the framebuffer leaves memory unchanged.
 bool isInside(GLint x, GLint y, GLenum format, GLenum type) {
     unsigned char once[64], again[64];
     std::memset(once, 0, sizeof once);
@@ -23,7 +23,7 @@ bool isInside(GLint x, GLint y, GLenum format, GLenum type) {
     return bytes > sizeof once || std::memcmp(once, again, bytes) == 0;
 }
 
-// The first place between `low`, which is inside, and `high`, which is not, that is not.
+// Bisection: the first outside position between `low`, which is inside, and `high`, which is outside.
 template <class Inside> GLint firstOutside(GLint low, GLint high, Inside&& inside) {
     while (high - low > 1) {
         const GLint middle = low + (high - low) / 2;
@@ -32,7 +32,7 @@ template <class Inside> GLint firstOutside(GLint low, GLint high, Inside&& insid
     return high;
 }
 
-// No version tells a framebuffer object's size; its edges are looked for.
+// No GL version reports the size of a framebuffer object, so its edges are searched.
 bool cutToObject(Context& c, GLenum format, GLenum type, ReadArea& area, GLint x1, GLint y1) {
     stashError(c, driverError());
     const TightPack pack(c);

@@ -1,4 +1,4 @@
-// What a read takes of the framebuffer that the program's context reads from.
+// The part of a read that lies in the current read framebuffer.
 #pragma once
 
 #include <GL/gl.h>
@@ -14,8 +14,8 @@ struct ReadArea {
     GLsizei w, h;
 };
 
-// Cuts the rectangle to the read framebuffer: the GL leaves memory for the rest untouched. False: nothing is left.
-// Format and type are right for it.
+// Clips the rectangle to the read framebuffer: GL leaves the memory of other pixels unchanged. Returns false if nothing
+// is left. Requires a valid format and type.
 [[nodiscard]] bool cutToReadFramebuffer(Context& c, GLenum format, GLenum type, ReadArea& area);
 
 } // namespace mural

@@ -17,7 +17,7 @@ Entry wrapperFor(const char* name) {
     if (index < 0 || !realLoader) return nullptr;
     Entry real = realLoader(name);
     if (!real) return nullptr;
-    // An old alias may be another function in some APIs (glAttachObjectARB does nothing in ES).
+    // An alias may be another function in some APIs (glAttachObjectARB has no effect in ES).
     if (const Entry leading = realLoader(glFunctionName(index))) real = leading;
     auto* slot = reinterpret_cast<Entry*>(&gReal) + index;
     if (!__atomic_load_n(slot, __ATOMIC_ACQUIRE)) __atomic_store_n(slot, real, __ATOMIC_RELEASE);

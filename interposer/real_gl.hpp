@@ -1,4 +1,4 @@
-// The entry points of the vendor's driver, which the app's own context runs on.
+// The entry points of the vendor's driver, which executes the program's own context.
 #pragma once
 
 #include "gl_functions.hpp"
@@ -10,12 +10,12 @@ extern GlFunctions gReal;
 using Entry = void (*)();
 using Loader = Entry (*)(const char* name);
 
-// Remembers the vendor's loader; functions are looked up when they are first asked for.
+// Stores the vendor's loader. Functions are loaded on first use.
 void setRealLoader(Loader loader);
-// The wrapper that a program gets for `name`; null when the driver has no such command or Mural does
-// not carry it. Loads the driver's entry point.
+// The wrapper of `name`; null if the driver lacks the command or Mural does not support it. Loads the driver's entry
+// point.
 Entry wrapperFor(const char* name);
-// Loads everything that the interposer itself calls.
+// Loads all functions that the interposer itself calls.
 void loadOwnNeeds();
 
 } // namespace mural

@@ -15,7 +15,7 @@ void StorageScan::feed(const char* text, size_t length) {
         if (text[i] == '\r') continue;
         const In before = in_;
         step(text[i]);
-        last_ = in_ == before ? text[i] : ' '; // where a comment begins or ends, no character counts twice
+        last_ = in_ == before ? text[i] : ' '; // at the start or end of a comment no character counts twice
     }
 }
 
@@ -25,7 +25,7 @@ void StorageScan::step(char c) {
         return;
     }
     if (c == '\n') {
-        if (last_ == '\\') return; // the line goes on
+        if (last_ == '\\') return; // line continuation
         if (in_ == In::Code) endWord();
         in_ = In::Code;
         directive_ = false;
@@ -41,7 +41,8 @@ void StorageScan::step(char c) {
     }
     endWord();
     if (last_ == '/' && (c == '/' || c == '*')) in_ = c == '/' ? In::LineComment : In::BlockComment;
-    else if (c == '#' && lineEmpty_) directive_ = true, readonly_ = false; // what stands before it may be left out
+    // a conditional may remove the text before it
+    else if (c == '#' && lineEmpty_) directive_ = true, readonly_ = false;
     if (c == '{' && buffer_ && !readonly_) mayWrite_ = true;
     if (!directive_ && (c == '{' || c == '}' || c == ';')) buffer_ = readonly_ = false;
     if (c != ' ' && c != '\t' && c != '/') lineEmpty_ = false;

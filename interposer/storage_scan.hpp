@@ -1,5 +1,5 @@
-// Whether a shader's text declares storage blocks that it may write. Drivers don't tell: Mesa's
-// GL_REFERENCED_BY_FRAGMENT_SHADER is false for blocks that are read and written at places not known before the run.
+// Scans a shader's text for writable storage blocks. Drivers do not report them reliably: Mesa's
+// GL_REFERENCED_BY_FRAGMENT_SHADER is false for blocks accessed only at dynamic offsets.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@ class StorageScan {
 public:
     // The text, in any number of pieces.
     void feed(const char* text, size_t length);
-    // A block without `readonly`, or what may stand for one: a macro, a text that is included.
+    // True after a block without `readonly`, or a possible one: a macro, an included text.
     [[nodiscard]] bool mayWrite() const { return mayWrite_; }
 
 private:
@@ -18,14 +18,14 @@ private:
     void step(char c);
     void endWord();
 
-    static constexpr size_t kWordBytes = 16; // longer words are none of ours
+    static constexpr size_t kWordBytes = 16; // longer words never match
     char word_[kWordBytes] = {};
     size_t wordLength_ = 0;
     char last_ = '\n';
     In in_ = In::Code;
-    bool directive_ = false;  // on a preprocessor line
+    bool directive_ = false; // on a preprocessor line
     bool lineEmpty_ = true;
-    bool buffer_ = false, readonly_ = false; // in the declaration so far
+    bool buffer_ = false, readonly_ = false; // in the current declaration
     bool mayWrite_ = false;
 };
 

@@ -27,7 +27,7 @@ GLint get(GLenum name) {
     return value;
 }
 
-// Rows without gaps into client memory, whatever the program has set.
+// Sets a tight pack state for client memory, independent of the program's.
 class PackTightly {
 public:
     explicit PackTightly(const Context& c) : buffers_(packBufferBound(c)) {
@@ -87,10 +87,10 @@ void textureFromLocal(GLenum target, bool alpha) {
 
 namespace {
 
-// Of all windows; most programs have none.
+// Over all windows; most programs have none.
 std::atomic<int> boundPbuffers{0};
 
-// Mesa draws to pbuffers from the top row down, as to windows, and its texture is the same memory: upside down.
+// Mesa draws to pbuffers from the top row down, as to windows, and its texture shares that memory: upside down.
 const void* asTheDriverHasIt(ThreadState& t, const void* pixels, GLint width, GLint height) {
     if (!pixels || !t.context->isMesa) return pixels;
     const size_t row = size_t(width) * 4, rows = size_t(height);
@@ -100,7 +100,7 @@ const void* asTheDriverHasIt(ThreadState& t, const void* pixels, GLint width, GL
 }
 
 void textureFromDrawn(ThreadState& t, const Window& w) {
-    if (!w.announced) return; // nothing was drawn there yet
+    if (!w.announced) return; // nothing has been drawn there yet
     const Context& c = *t.context;
     const bool separate = c.version >= 30;
     const GLenum target = separate ? GL_READ_FRAMEBUFFER : GL_FRAMEBUFFER;

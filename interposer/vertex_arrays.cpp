@@ -64,7 +64,8 @@ bool VertexArrayMirror::setPointer(uint32_t slot, GLint size, GLenum type, GLsiz
 
 void VertexArrayMirror::setFormat(GLuint array, uint32_t slot, GLint size, GLenum type, uint32_t flags, GLuint relative) {
     ArrayPointer& a = find(array)->slots[slot];
-    if (a.stride == 0) a.stride = static_cast<GLsizei>(sizes::attributeBytes(a.size, a.type)); // vertices stay where they are
+    // keeps the effective stride
+    if (a.stride == 0) a.stride = static_cast<GLsizei>(sizes::attributeBytes(a.size, a.type));
     a.size = size;
     a.type = type;
     a.flags = flags;

@@ -1,6 +1,5 @@
-// A mirror of the vertex array state, for one question at every draw: does an enabled array live in
-// the program's own memory? Such arrays are copied at the draw, as OpenGL reads them then.
-// Source: OpenGL 4.6 compatibility, sections 10.3 and 10.4.
+// A mirror of the vertex array state, for one question at every draw: is an enabled array in client memory? Such arrays
+// are copied at the draw, as OpenGL reads them then. Source: OpenGL 4.6 compatibility, sections 10.3 and 10.4.
 #pragma once
 
 #include <GL/gl.h>
@@ -17,18 +16,18 @@ struct ArrayPointer {
     const void* pointer = nullptr;
     GLint size = 4;
     GLenum type = GL_FLOAT;
-    GLsizei stride = 0;     // as given; 0: tightly packed
+    GLsizei stride = 0; // as specified; 0: tightly packed
     GLsizei bindingStride = 0; // of the binding with the same number, bytes
-    uint32_t flags = 0;     // client_arrays::Flags
+    uint32_t flags = 0; // client_arrays::Flags
     GLuint divisor = 0;
-    GLuint relative = 0;    // from the pointer on, bytes: glVertexAttribFormat
+    GLuint relative = 0; // offset from the pointer in bytes: glVertexAttribFormat
 };
 
 // One vertex array object.
 struct VertexArray {
     GLuint name = 0;
     uint64_t enabled[2] = {0, 0}; // one bit per slot
-    uint64_t client[2] = {0, 0};  // the pointer was given while no buffer was bound
+    uint64_t client[2] = {0, 0}; // the pointer was specified without a bound buffer
     ArrayPointer slots[client_arrays::kSlots];
 
     [[nodiscard]] bool anyClient() const { return (enabled[0] & client[0]) | (enabled[1] & client[1]); }
@@ -57,18 +56,18 @@ public:
     [[nodiscard]] bool anyClient() const { return current_->anyClient(); }
 
     void bind(GLuint name);
-    // It has been bound before, so there is one.
+    // True if the name has been bound, which creates the object.
     [[nodiscard]] bool knows(GLuint name) const { return name == 0 || (name < namedCount_ && named_[name]); }
     [[nodiscard]] GLuint currentName() const { return current_->name; }
     void remove(GLsizei n, const GLuint* names);
-    // Of an array that there is, bound or not.
+    // For an existing array, bound or not.
     void enableIn(GLuint name, uint32_t slot, bool on) { find(name)->enable(slot, on); }
     void divide(GLuint name, uint32_t slot, GLuint divisor) { find(name)->slots[slot].divisor = divisor; }
     [[nodiscard]] GLuint divisor(GLuint name, uint32_t slot) { return find(name)->slots[slot].divisor; }
-    // Whether any of the slots from first on points to client memory, enabled or not; and that none does any more.
+    // Whether any slot in the range points to client memory, enabled or not. The second function clears them.
     [[nodiscard]] bool anyInMemory(GLuint name, uint32_t first, uint32_t end);
     void moveToBuffer(GLuint name, uint32_t first, uint32_t end);
-    // An array in memory steps as another does.
+    // Gives an array in client memory the divisor of another one.
     void step(GLuint name, uint32_t slot, uint32_t as);
     void bindArrayBuffer(GLuint buffer) { arrayBuffer_ = buffer; }
     [[nodiscard]] GLuint arrayBuffer() const { return arrayBuffer_; }
@@ -76,11 +75,11 @@ public:
     void activeTexture(GLenum unit) { unit_ = unit - GL_TEXTURE0 < client_arrays::kTexCoords ? unit - GL_TEXTURE0 : 0; }
     [[nodiscard]] uint32_t texCoordSlot() const { return client_arrays::kTexCoord0 + unit_; }
 
-    // True: the pointer is client memory, which travels at the draw; false: an offset, to be sent now.
+    // Returns true for client memory, which is sent at the draw; false for an offset, which is sent now.
     bool setPointer(uint32_t slot, GLint size, GLenum type, GLsizei stride, uint32_t flags, const void* pointer);
-    // glVertexAttribFormat: another view of what the slot points to.
+    // glVertexAttribFormat: changes the interpretation of the slot's data.
     void setFormat(GLuint array, uint32_t slot, GLint size, GLenum type, uint32_t flags, GLuint relative);
-    // The slot of a glEnableClientState name, kSlots when it is none.
+    // The slot of a name of glEnableClientState; kSlots: none.
     [[nodiscard]] uint32_t slotOf(GLenum array) const;
 
     void push(GLbitfield mask);

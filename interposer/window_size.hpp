@@ -1,4 +1,4 @@
-// How large the driver takes a drawable to be.
+// The size of a drawable as the driver sees it.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@ namespace mural {
 
 struct Window;
 
-// False when it can't be told (the drawable is gone).
+// Returns false if the drawable no longer exists.
 bool askWindowSize(const Window& w, uint32_t& width, uint32_t& height);
 
 } // namespace mural

@@ -1,4 +1,4 @@
-// By index of GlFunctions: the wrapper of each command (null: the driver's own is handed out).
+// The wrapper of each command, by index of GlFunctions; null: use the driver's own.
 #pragma once
 
 namespace mural {

@@ -1,5 +1,5 @@
-// Bindings of ARB_vertex_attrib_binding name buffers; one that names none leaves an array in memory where it is. Divisors
-// are those of both.
+// Bindings of ARB_vertex_attrib_binding refer to buffers. A binding without a buffer leaves an array in client memory
+// unchanged. Divisors apply to both.
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
 #include "interposer/array_watch.hpp"
@@ -14,8 +14,9 @@ namespace {
 
 GLuint currentArray(const ThreadState& t) { return t.context ? t.context->arrays.currentName() : 0; }
 
-// The mirror takes a divisor that the program's own context takes: OpenGL ES has none for bindings of array 0, for one.
-// The driver is asked for its error only where the mirror has another divisor.
+// The mirror stores a divisor that the program's own context accepts; OpenGL ES, for one, has none for bindings of
+// array
+// 0. The driver's error is queried only if the divisor differs from the mirror's.
 template <class Local, class Send> void divide(GLuint array, GLuint index, GLuint divisor, Local&& local, Send&& send) {
     ThreadState& t = *tThread;
     if (!t.context) return local();
@@ -36,7 +37,7 @@ template <class Local, class Send> void bindTo(GLuint array, GLuint index, GLuin
     ThreadState& t = *tThread;
     const bool named = t.context && index < kGenerics && binding < kGenerics && t.context->arrays.knows(array);
     const auto inMemory = [&](GLuint of) { return t.context->arrays.anyInMemory(array, genericSlot(of), genericSlot(of) + 1); };
-    if (named && inMemory(index) && inMemory(binding)) { // it stays where it is, in the steps of the other
+    if (named && inMemory(index) && inMemory(binding)) { // it keeps its memory, with the binding's divisor
         if (!raisesNothing(*t.context, local)) return;
         t.context->arrays.step(array, genericSlot(index), genericSlot(binding));
         return send(t);

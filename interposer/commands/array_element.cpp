@@ -11,7 +11,7 @@ using namespace client_arrays;
 
 namespace {
 
-// One element of one array, copied: the program's memory need not be aligned.
+// A copy of one element of one array, because client memory may be unaligned.
 struct Element {
     alignas(8) std::byte bytes[32] = {};
     GLint size = 0; // components
@@ -31,7 +31,7 @@ GLfloat fromHalf(GLushort half) {
     return sign ? -value : value;
 }
 
-// Signed values are normalised as immediate commands do (GL 4.1, equation 2.2).
+// Normalises signed values as immediate-mode commands do (GL 4.1, equation 2.2).
 template <class T> GLfloat number(const Element& e, int k, bool normalized) {
     const T value = e.as<T>()[k];
     if (!normalized) return static_cast<GLfloat>(value);
@@ -55,7 +55,7 @@ GLfloat component(const Element& e, int k) {
     }
 }
 
-// What has no command of its own type goes as floats.
+// Types without commands of their own are sent as floats.
 bool becomesFloat(GLenum type) { return type == GL_HALF_FLOAT || type == GL_FIXED; }
 
 void toFloats(Element& e) {
@@ -69,11 +69,11 @@ void toFloats(Element& e) {
     e = converted;
 }
 
-// Components in the order blue, green, red, alpha: turned round.
+// Swizzles BGRA to RGBA.
 void fromBgra(Element& e) {
     e.size = 4;
     if (!sizes::isPackedVertexType(e.type)) {
-        std::swap(e.bytes[0], e.bytes[2]); // bytes is all there is
+        std::swap(e.bytes[0], e.bytes[2]); // bytes are the only BGRA type
         return;
     }
     uint32_t word = 0;
@@ -216,14 +216,14 @@ void sendSlot(ThreadState& t, uint32_t slot, Element& e) {
     case kFogCoord: return e.type == GL_DOUBLE ? encode_glFogCoorddv(t, e.as<GLdouble>()) : encode_glFogCoordfv(t, e.as<GLfloat>());
     case kIndex: return sendIndex(t, e);
     case kEdgeFlag: return encode_glEdgeFlagv(t, e.as<GLboolean>());
-    case kPointSize: return; // of ES only
+    case kPointSize: return; // ES only
     default: break;
     }
     if (slot < kGeneric0) sendTexCoord(t, GL_TEXTURE0 + slot - kTexCoord0, e);
     else sendGeneric(t, slot - kGeneric0, e);
 }
 
-// The buffer that an array lies in, 0: the driver does not say (it draws itself and is between glBegin and glEnd).
+// The buffer of an array. 0: the driver gives no answer, because it draws itself and is between glBegin and glEnd.
 GLint bufferOf(uint32_t slot) {
     static constexpr GLenum kBindings[] = {GL_VERTEX_ARRAY_BUFFER_BINDING, GL_NORMAL_ARRAY_BUFFER_BINDING, GL_COLOR_ARRAY_BUFFER_BINDING,
                                            GL_SECONDARY_COLOR_ARRAY_BUFFER_BINDING, GL_FOG_COORDINATE_ARRAY_BUFFER_BINDING,
@@ -279,7 +279,7 @@ void sendElement(ThreadState& t, Context& c, GLint i) {
     for (uint32_t slot = kVertex + 1; slot < kSlots; ++slot) {
         if (enabled(slot) && slot != kGeneric0) sendArray(t, va, slot, i);
     }
-    if (enabled(kGeneric0)) sendArray(t, va, kGeneric0, i); // takes the place of the vertex
+    if (enabled(kGeneric0)) sendArray(t, va, kGeneric0, i); // replaces the vertex
     else if (enabled(kVertex)) sendArray(t, va, kVertex, i);
 }
 

@@ -1,4 +1,4 @@
-// glArrayElement from the program's memory.
+// glArrayElement with client memory.
 #pragma once
 
 #include <GL/gl.h>
@@ -8,8 +8,8 @@ namespace mural {
 struct ThreadState;
 struct Context;
 
-// Sends element i of all enabled arrays as the commands that set them one by one, the vertex last: between
-// glBegin and glEnd no array can be given to the nodes, and the memory may change from one element to the next.
+// Sends element i of all enabled arrays as immediate-mode commands, the vertex last. Between glBegin and glEnd arrays
+// cannot be sent, and the memory may change between elements.
 void sendElement(ThreadState& t, Context& c, GLint i);
 
 } // namespace mural

@@ -1,4 +1,4 @@
-// Vertex array state: kept in the mirror, sent only where it names buffers.
+// Vertex array state: stored in the mirror, sent only if it refers to buffers.
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
 #include "interposer/asking.hpp"
@@ -11,15 +11,15 @@ using namespace mural::client_arrays;
 
 namespace {
 
-// What programs give all the time and no driver refuses.
+// Common arguments that every driver accepts.
 bool isUsual(const Context& c, GLint size, GLenum type, GLsizei stride) {
     const bool floats = type == GL_FLOAT && size >= 3 && size <= 4, bytes = type == GL_UNSIGNED_BYTE && size == 4;
-    constexpr GLsizei kStride = 2048; // GL_MAX_VERTEX_ATTRIB_STRIDE is at least that
+    constexpr GLsizei kStride = 2048; // minimum of GL_MAX_VERTEX_ATTRIB_STRIDE
     return (floats || bytes) && stride >= 0 && stride <= kStride && !c.core && (c.arrays.arrayBuffer() || c.arrays.currentName() == 0);
 }
 
-// The call goes to the program's own context; if it takes it, the mirror does, and `send` is called where the pointer is
-// an offset that the nodes need now.
+// Calls the program's own context. If it accepts the call, updates the mirror, and calls `send` if the pointer is an
+// offset that the nodes need now.
 template <class Local, class Send>
 void point(uint32_t slot, GLint size, GLenum type, GLsizei stride, const void* pointer, uint32_t flags, Local&& local, Send&& send) {
     ThreadState& t = *tThread;
@@ -31,12 +31,12 @@ void point(uint32_t slot, GLint size, GLenum type, GLsizei stride, const void* p
     if (!t.context->arrays.setPointer(slot, size, type, stride, flags, pointer)) send(t);
 }
 
-// Of the array that is named. False: the program's own context does not take it.
+// For the named array. Returns false if the program's own context rejects the call.
 template <class Local> bool formatOf(GLuint array, GLuint index, GLint size, GLenum type, uint32_t flags, GLuint relative, Local&& local) {
     ThreadState& t = *tThread;
     if (!t.context) return local(), false;
     if (!raisesNothing(*t.context, local)) return false;
-    const GLuint offset = t.context->isMesa ? 0 : relative; // Mesa reads client memory from the pointer on in any case
+    const GLuint offset = t.context->isMesa ? 0 : relative; // Mesa ignores the offset for client memory
     if (index < kGenerics) t.context->arrays.setFormat(array, kGeneric0 + index, size, type, flags, offset);
     return true;
 }
@@ -52,7 +52,7 @@ void enableSlot(ThreadState& t, uint32_t slot, bool on) {
     if (t.context && slot < kSlots) t.context->arrays.current().enable(slot, on);
 }
 
-// The array is named by the command, which the driver has had: a name that it refused is none.
+// The command names the array, and the driver has already executed it: a rejected name does not exist.
 void enableNamed(ThreadState& t, GLuint array, uint32_t slot, bool on) {
     if (!t.context || slot >= kSlots) return;
     VertexArrayMirror& mirror = t.context->arrays;
@@ -61,37 +61,37 @@ void enableNamed(ThreadState& t, GLuint array, uint32_t slot, bool on) {
 template <class Encode, class Real> void switchNamed(Encode encode, Real real, GLuint array, GLuint which, uint32_t slot, bool on) {
     ThreadState& t = *tThread;
     if (!t.context) return real(array, which);
-    if (!raisesNothing(*t.context, [&] { real(array, which); })) return; // EXT_direct_state_access knows no array 0
+    if (!raisesNothing(*t.context, [&] { real(array, which); })) return; // EXT_direct_state_access has no array 0
     encode(t, array, which);
     enableNamed(t, array, slot, on);
 }
-// EXT_direct_state_access: GL_TEXTUREi are the arrays of that unit's coordinates.
+// EXT_direct_state_access: GL_TEXTUREi selects the texture coordinate array of that unit.
 uint32_t namedSlot(ThreadState& t, GLenum array) {
     if (array - GL_TEXTURE0 < kTexCoords) return kTexCoord0 + (array - GL_TEXTURE0);
     return t.context ? t.context->arrays.slotOf(array) : kSlots;
 }
 
-constexpr GLuint kUnitsOfAll = 2; // GL_MAX_TEXTURE_COORDS is at least that
+constexpr GLuint kUnitsOfAll = 2; // minimum of GL_MAX_TEXTURE_COORDS
 
-// The texture unit is named by the command: selected for it, then the program's own again.
+// The command names the texture unit. Selects it for the call, then restores the program's.
 template <class Call> void withUnit(GLenum unit, Call&& call) {
     GLint before = GL_TEXTURE0;
     gReal.glGetIntegerv(GL_CLIENT_ACTIVE_TEXTURE, &before);
     mural_glClientActiveTexture(unit);
     GLint now = GL_TEXTURE0;
     gReal.glGetIntegerv(GL_CLIENT_ACTIVE_TEXTURE, &now);
-    if (static_cast<GLenum>(now) != unit) return; // there is no such unit
+    if (static_cast<GLenum>(now) != unit) return; // no such unit
     call();
     mural_glClientActiveTexture(static_cast<GLenum>(before));
 }
 
-// Mesa takes the client's arrays in glEnable and glDisable, too: the same as glEnableClientState there.
+// Mesa accepts client arrays in glEnable and glDisable, with the effect of glEnableClientState.
 bool isClientArray(GLenum cap) {
     return (cap >= GL_VERTEX_ARRAY && cap <= GL_EDGE_FLAG_ARRAY) || cap == GL_FOG_COORD_ARRAY || cap == GL_SECONDARY_COLOR_ARRAY;
 }
 void switchClientArray(ThreadState& t, GLenum array, bool on) {
     const auto local = [=] { on ? gReal.glEnable(array) : gReal.glDisable(array); };
-    if (!t.context || t.context->compilingList) return local(); // in a list it is the program's own context's alone
+    if (!t.context || t.context->compilingList) return local(); // in a list, only the program's own context executes it
     if (!raisesNothing(*t.context, local)) return;
     enableSlot(t, t.context->arrays.slotOf(array), on);
     on ? encode_glEnableClientState(t, array) : encode_glDisableClientState(t, array);
@@ -168,7 +168,7 @@ void mural_glVertexAttribLPointer(GLuint index, GLint size, GLenum type, GLsizei
           [=](ThreadState& t) { encode_glVertexAttribLPointer(t, index, size, type, stride, pointer); });
 }
 
-// EXT_vertex_array: the same with a count, which nobody needs.
+// EXT_vertex_array: the same with an unused count.
 void mural_glVertexPointerEXT(GLint size, GLenum type, GLsizei stride, GLsizei, const void* pointer) { mural_glVertexPointer(size, type, stride, pointer); }
 void mural_glNormalPointerEXT(GLenum type, GLsizei stride, GLsizei, const void* pointer) { mural_glNormalPointer(type, stride, pointer); }
 void mural_glColorPointerEXT(GLint size, GLenum type, GLsizei stride, GLsizei, const void* pointer) { mural_glColorPointer(size, type, stride, pointer); }
@@ -176,7 +176,7 @@ void mural_glTexCoordPointerEXT(GLint size, GLenum type, GLsizei stride, GLsizei
 void mural_glIndexPointerEXT(GLenum type, GLsizei stride, GLsizei, const void* pointer) { mural_glIndexPointer(type, stride, pointer); }
 void mural_glEdgeFlagPointerEXT(GLsizei stride, GLsizei, const GLboolean* pointer) { mural_glEdgeFlagPointer(stride, pointer); }
 
-// GL 4.6 compatibility, table 10.5: the command is defined by the ones that it stands for.
+// GL 4.6 compatibility, table 10.5 defines the command by its equivalents.
 void mural_glInterleavedArrays(GLenum format, GLsizei stride, const void* pointer) {
     struct Row {
         GLenum format;
@@ -208,7 +208,7 @@ void mural_glInterleavedArrays(GLenum format, GLsizei stride, const void* pointe
         if (r.format == format) row = &r;
     }
     if (!row || stride < 0) {
-        gReal.glInterleavedArrays(format, stride, pointer); // for its error
+        gReal.glInterleavedArrays(format, stride, pointer); // raises the error
         return;
     }
     const GLsizei step = stride ? stride : row->total;
@@ -243,7 +243,7 @@ void mural_glDisableClientState(GLenum array) {
 void mural_glMultiTexCoordPointerEXT(GLenum texunit, GLint size, GLenum type, GLsizei stride, const void* pointer) {
     withUnit(texunit, [&] { mural_glTexCoordPointer(size, type, stride, pointer); });
 }
-// Of other arrays there is one only: an error.
+// Other arrays have a single instance: an error.
 void mural_glEnableClientStateiEXT(GLenum array, GLuint index) {
     if (array != GL_TEXTURE_COORD_ARRAY) return gReal.glEnableClientStateiEXT(array, index);
     withUnit(GL_TEXTURE0 + index, [&] { mural_glEnableClientState(array); });
@@ -320,7 +320,7 @@ void mural_glDeleteVertexArrays(GLsizei n, const GLuint* arrays) {
     gReal.glDeleteVertexArrays(n, arrays);
 }
 
-// Formats say how client memory is read, too.
+// Formats also apply to client memory.
 void mural_glVertexAttribFormat(GLuint index, GLint size, GLenum type, GLboolean normalized, GLuint relative) {
     if (format(index, size, type, normalized ? uint32_t{kNormalized} : 0, relative, [=] { gReal.glVertexAttribFormat(index, size, type, normalized, relative); }))
         encode_glVertexAttribFormat(*tThread, index, size, type, normalized, relative);
@@ -354,7 +354,8 @@ void mural_glBindBuffer(GLenum target, GLuint buffer) {
         return encode_glBindBuffer(t, target, buffer);
     }
     if (t.context && target == GL_ARRAY_BUFFER) t.context->arrays.bindArrayBuffer(buffer);
-    if (t.context && target == GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD) { // of this process: the nodes have a buffer like others
+    // memory of this process: the nodes use an ordinary buffer
+    if (t.context && target == GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD) {
         t.context->pinnedBuffer = buffer;
         return gReal.glBindBuffer(target, buffer);
     }

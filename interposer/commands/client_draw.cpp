@@ -14,14 +14,14 @@ namespace {
 
 struct Source {
     uint32_t slot;
-    const std::byte* begin;  // of the first element that the draw reads
+    const std::byte* begin; // first element that the draw reads
     uint32_t elementBytes;
     uint32_t stride;
-    int32_t first; // below 0: before the array, as drivers read it
+    int32_t first; // negative: before the array, as drivers read it
     uint32_t count;
 };
 
-// The part of one array that the draw reads; count 0: none. Display lists hold vertices and know no divisors.
+// The part of one array that the draw reads; count 0: none. Display lists store vertices and ignore divisors.
 Source sourceOf(const VertexArray& va, uint32_t slot, const VertexRange& r, bool compiled) {
     const ArrayPointer& a = va.slots[slot];
     Source s{slot, nullptr, sizes::attributeBytes(a.size, a.type), 0, 0, 0};
@@ -50,7 +50,7 @@ int collect(const VertexArray& va, const VertexRange& range, bool compiled, Sour
         const Source s = sourceOf(va, slot, range, compiled);
         if (s.count == 0 || s.elementBytes == 0) continue;
         int at = n++;
-        for (; at > 0 && out[at - 1].begin > s.begin; --at) out[at] = out[at - 1]; // by address
+        for (; at > 0 && out[at - 1].begin > s.begin; --at) out[at] = out[at - 1]; // sorted by address
         out[at] = s;
     }
     return n;
@@ -92,7 +92,7 @@ GLint elementBufferBinding() {
 }
 
 namespace {
-// A copy of a part of the bound element buffer. ES has no glGetBufferSubData: there it is mapped.
+// Copies a part of the bound element buffer. ES lacks glGetBufferSubData and maps the buffer instead.
 const void* elementBufferContent(ThreadState& t, const Context& c, GLintptr offset, size_t bytes) {
     void* copy = secondScratch(t, bytes);
     if (!copy) return nullptr;

@@ -1,4 +1,5 @@
-// Compressed images: their texels may come from rendering (copies, mipmaps, unpack buffers), so the nodes have them.
+// Reads of compressed images. Their texels may come from rendering (copies, mipmaps, unpack buffers), so the nodes
+// answer.
 #include "custom_wrappers.hpp"
 #include "interposer/asking.hpp"
 #include "interposer/commands/image_reads.hpp"
@@ -15,7 +16,7 @@ struct Image {
     Level size;
     int dimensions = 2;
 
-    // Bytes of the tight level; 0: not a format that is made of blocks.
+    // Bytes of the tight level; 0: not a block format.
     [[nodiscard]] size_t bytes() const {
         const size_t tight = sizes::compressedBytes(format, size.width, size.height, size.depth);
         return tight == SIZE_MAX ? 0 : tight;
@@ -49,7 +50,7 @@ Level inBlocks(const Level& texels, const sizes::CompressedBlock& block) {
     return {along(texels.width, block.width), along(texels.height, block.height), along(texels.depth, block.depth)};
 }
 
-// The driver's own answer comes first: it gives the errors, and the content where nodes have none.
+// The driver's own call comes first: it raises errors, and fills what the nodes do not answer.
 template <class Local> void readBound(GLenum target, GLint level, void* pixels, Local&& local, const char* by = __builtin_FUNCTION()) {
     ThreadState& t = *tThread;
     if (!capturing(t)) return local();
@@ -79,7 +80,7 @@ void mural_glGetCompressedTextureImage(GLuint texture, GLint level, GLsizei bufS
     if (packsAhead(t, local)) read(t, true, texture, level, imageByName(t, texture, level), pixels);
 }
 
-// A part: the whole level is asked for, the part's blocks are copied out of it.
+// Reads a part: requests the whole level and copies the part's blocks.
 void mural_glGetCompressedTextureSubImage(GLuint texture, GLint level, GLint xoffset, GLint yoffset, GLint zoffset, GLsizei width, GLsizei height, GLsizei depth, GLsizei bufSize, void* pixels) {
     ThreadState& t = *tThread;
     const auto local = [&] { gReal.glGetCompressedTextureSubImage(texture, level, xoffset, yoffset, zoffset, width, height, depth, bufSize, pixels); };

@@ -1,4 +1,4 @@
-// Copies out of a framebuffer: what of a window lies on other nodes is handed to all of them first.
+// Copies from a framebuffer. The parts of a window on other nodes are first distributed to all nodes.
 #pragma once
 
 #include <GL/gl.h>
@@ -7,20 +7,20 @@
 
 namespace mural::copies {
 
-// Fetches the planes of the rectangle from all nodes and gives them to all, where a window is read. Samples come resolved.
+// If a window is read, collects the planes of the rectangle from all nodes and sends them to all. Samples are resolved.
 void gather(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, const char* by = __builtin_FUNCTION());
 
-// Before glCopyPixels.
+// For glCopyPixels.
 void gatherForPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, const char* by = __builtin_FUNCTION());
 
-// The same for a command that names the window, whatever is bound for reading. Display lists hold none.
+// The same for a command that names the window, independent of the read binding. Not available in display lists.
 void gatherNamed(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, const char* by = __builtin_FUNCTION());
 
-// From now on every node draws all. For fragment shaders that write to memory, for a display list that copies out
-// of a window, or draws on a condition that it finds itself: nobody can be asked in the middle of it; and for copies of samples.
+// From now on every node draws the whole window. For fragment shaders that write to memory, for display lists that copy
+// from a window or contain conditional rendering, which cannot be interrupted for a request, and for copies of samples.
 void drawAll(ThreadState& t, const char* by = __builtin_FUNCTION());
 
-// The planes that a copy into an image reads: of this format, of a level of the texture that is bound, or named.
+// The planes that a copy reads into an image: of this format, or of a level of the bound or named texture.
 GLbitfield planesOf(GLenum internalFormat);
 GLbitfield planesOfBound(ThreadState& t, GLenum target, GLint level);
 GLbitfield planesOfTexture(ThreadState& t, GLuint texture, GLint level);

@@ -1,4 +1,4 @@
-// Debug output and resets: what the driver tells here, and what the nodes' drivers tell.
+// Debug output and reset status, of the driver here and of the nodes' drivers.
 #include "custom_wrappers.hpp"
 #include "interposer/asking.hpp"
 #include "interposer/context.hpp"
@@ -14,7 +14,7 @@ template <class Ask> GLenum resetStatus(Ask&& ask) {
     if (!t.context) return here;
     takeNews(t);
     const GLenum there = t.context->resetStatus;
-    t.context->resetStatus = GL_NO_ERROR; // told once: the nodes' reset is over when it is known
+    t.context->resetStatus = GL_NO_ERROR; // reported once: the nodes' reset is complete when it is known
     return here ? here : there;
 }
 } // namespace

@@ -9,7 +9,7 @@ using namespace mural;
 
 namespace {
 
-// From here on, draws of this context are looked at.
+// From now on, this context's draws are checked.
 void parameterSet(ThreadState& t, GLenum pname) {
     if (pname != GL_FRAMEBUFFER_DEFAULT_SAMPLES || !t.context) return;
     t.context->hasDefaultSamples = true;

@@ -17,14 +17,14 @@ VertexRange arraysRange(GLint first, GLsizei count, GLsizei instances = 1, GLuin
     return {first, int64_t{first} + count - 1, instances > 0 ? static_cast<uint32_t>(instances) : 0, baseInstance};
 }
 
-// Of IBM_multimode_draw_arrays: the modes lie `stride` bytes apart.
+// IBM_multimode_draw_arrays: modes are `stride` bytes apart.
 GLenum modeAt(const GLenum* modes, GLsizei index, GLint stride) {
     GLenum mode = 0;
     std::memcpy(&mode, reinterpret_cast<const std::byte*>(modes) + ptrdiff_t{index} * stride, sizeof mode);
     return mode;
 }
 
-// Everything that has to go ahead of a draw without indices.
+// Sends everything that must precede a draw without indices.
 inline void prepareArrays(ThreadState& t, GLint first, GLsizei count, GLsizei instances = 1, GLuint baseInstance = 0) {
     Context* c = t.context;
     if (!c) return;
@@ -32,12 +32,12 @@ inline void prepareArrays(ThreadState& t, GLint first, GLsizei count, GLsizei in
     if (c->arrays.anyClient()) [[unlikely]] sendClientArrays(t, *c, arraysRange(first, count, instances, baseInstance));
 }
 
-// Whether indices are the program's own memory.
+// Whether indices are in client memory.
 bool inMemory(const Context& c, const void* indices) {
     return reinterpret_cast<uintptr_t>(indices) >= c.indicesInMemoryFrom && elementBufferBinding() == 0;
 }
 
-// The same with indices; says where these come from.
+// The same for a draw with indices; returns their source.
 DataArg prepareElements(ThreadState& t, GLsizei count, GLenum type, const void* indices, GLint baseVertex = 0, GLsizei instances = 1, GLuint baseInstance = 0) {
     Context* c = t.context;
     if (!c) return {};
@@ -52,7 +52,7 @@ DataArg prepareElements(ThreadState& t, GLsizei count, GLenum type, const void* 
     return DataArg::of(indices, count > 0 ? uint64_t(count) * sizes::typeBytes(type) : 0);
 }
 
-// Client memory of indirect draws exists in compatibility contexts only.
+// Only compatibility contexts allow client memory for indirect draws.
 DataArg indirectSource(ThreadState& t, const void* indirect, bool withElements, GLsizei drawCount, GLsizei stride) {
     Context* c = t.context;
     if (!c) return {};
@@ -93,15 +93,15 @@ void indirectClientArrays(ThreadState& t, const DataArg& source, bool withElemen
     sendClientArrays(t, *c, all);
 }
 
-// While the driver counts the vertices of transform feedback it is asked first: the nodes' drivers may count none, and
-// would draw what is an error. False: it counts nothing, the caller goes on.
+// During transform feedback the driver counts vertices and executes the draw first: the nodes' drivers may not count,
+// and would draw what is an error here. Returns false if nothing is counted; the caller continues.
 template <class Local, class Send> bool drawnCounted(ThreadState& t, Local&& local, Send&& send) {
     if (!t.drawLocally || !t.context || !t.context->drawsFeedback) return false;
     if (raisesNothing(*t.context, local)) send();
     return true;
 }
 
-// How many of several draws the driver gets: none, unless one of them is an error; then it does none.
+// The number of draws passed to the driver: none, unless one is invalid; then the driver executes none of them.
 GLsizei quietDraws(const ThreadState& t, const GLsizei* count, GLsizei drawcount) {
     if (t.drawLocally || drawcount < 0) return drawcount;
     for (GLsizei i = 0; i < drawcount; ++i)
@@ -171,7 +171,7 @@ void mural_glDrawElementsInstancedBaseVertexBaseInstance(GLenum mode, GLsizei co
     encode_glDrawElementsInstancedBaseVertexBaseInstance(t, mode, count, type, prepareElements(t, count, type, indices, basevertex, instancecount, baseinstance), instancecount, basevertex, baseinstance);
     gReal.glDrawElementsInstancedBaseVertexBaseInstance(mode, quiet::count(t, count), type, indices, instancecount, basevertex, baseinstance);
 }
-// start and end are promises that programs break; the indices themselves are what counts.
+// Programs violate the promised range start … end, so the actual indices count.
 void mural_glDrawRangeElements(GLenum mode, GLuint start, GLuint end, GLsizei count, GLenum type, const void* indices) {
     ThreadState& t = *tThread;
     encode_glDrawRangeElements(t, mode, start, end, count, type, prepareElements(t, count, type, indices));
@@ -183,7 +183,7 @@ void mural_glDrawRangeElementsBaseVertex(GLenum mode, GLuint start, GLuint end, 
     gReal.glDrawRangeElementsBaseVertex(mode, start, end, quiet::count(t, count), type, indices, basevertex);
 }
 
-// Draws one after the other, each of its own mode: as such they travel.
+// Sent as separate draws, each with its own mode.
 void mural_glMultiModeDrawArraysIBM(const GLenum* mode, const GLint* first, const GLsizei* count, GLsizei primcount, GLint modestride) {
     for (GLsizei i = 0; i < primcount; ++i) {
         if (count[i] > 0) mural_glDrawArrays(modeAt(mode, i, modestride), first[i], count[i]);
@@ -217,8 +217,8 @@ void mural_glMultiDrawArrays(GLenum mode, const GLint* first, const GLsizei* cou
 
 namespace {
 
-// Indices of glMultiDrawElements: u32 kind, u32 0, then offsets (kind 1, u64 each) or the index
-// lists one after the other (kind 0).
+// Indices of glMultiDrawElements: u32 kind, u32 0, then offsets (kind 1, u64 each) or the concatenated index lists
+// (kind 0).
 DataArg multiIndices(ThreadState& t, const GLsizei* count, GLenum type, const void* const* indices, GLsizei drawcount, const GLint* basevertex) {
     Context* c = t.context;
     if (!c || drawcount <= 0) return {};

@@ -1,5 +1,5 @@
-// Handles of textures and images without a binding (ARB_bindless_texture). The program has those of its own driver, at
-// once; each node asks its driver at the same place of the stream and maps what it is told.
+// Bindless texture and image handles (ARB_bindless_texture). The program receives its own driver's handles immediately.
+// Each node requests one at the same position of the stream and maps between them.
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
 #include "interposer/asking.hpp"
@@ -12,7 +12,7 @@ using namespace mural;
 
 extern "C" {
 
-// 0 is an error, which the nodes need not make.
+// A handle of 0 is an error, which the nodes need not repeat.
 GLuint64 mural_glGetTextureHandleARB(GLuint texture) {
     const GLuint64 handle = gReal.glGetTextureHandleARB(texture);
     if (handle) encode_glGetTextureHandleARB(*tThread, texture, handle);
@@ -29,15 +29,15 @@ GLuint64 mural_glGetImageHandleARB(GLuint texture, GLint level, GLboolean layere
     return handle;
 }
 
-// An image that may be written needs no uniform in a shader: the handle may come out of any memory. So what is said of
-// fragment shaders that write (interposer/memory_writers.hpp) holds from here on, whichever program is linked.
+// A writable image needs no uniform: its handle may come from any memory. From now on all programs count as fragment
+// shaders that write (interposer/memory_writers.hpp).
 void mural_glMakeImageHandleResidentARB(GLuint64 handle, GLenum access) {
     ThreadState& t = *tThread;
     const auto local = [=] { gReal.glMakeImageHandleResidentARB(handle, access); };
     if (!t.context) return local();
     if (!raisesNothing(*t.context, local)) return;
     if (access != GL_READ_ONLY) {
-        nodesMayWrite(t, 0); // it may be of a buffer
+        nodesMayWrite(t, 0); // it may be a buffer image
         copies::drawAll(t, "glMakeImageHandleResidentARB");
     }
     encode_glMakeImageHandleResidentARB(t, handle, access);

@@ -16,7 +16,7 @@ constexpr Target kTargets[] = {{GL_TEXTURE_2D, GL_TEXTURE_BINDING_2D}, {GL_TEXTU
                                {GL_TEXTURE_3D, GL_TEXTURE_BINDING_3D}, {GL_TEXTURE_CUBE_MAP_ARRAY, GL_TEXTURE_BINDING_CUBE_MAP_ARRAY}, {GL_TEXTURE_1D, GL_TEXTURE_BINDING_1D},
                                {GL_TEXTURE_1D_ARRAY, GL_TEXTURE_BINDING_1D_ARRAY}, {GL_TEXTURE_RECTANGLE, GL_TEXTURE_BINDING_RECTANGLE}};
 
-// The target of a texture. Drivers tell it in core contexts only (Mesa), but let it be bound to no other.
+// The target of a texture. Mesa's query exists in core contexts only; elsewhere trial bindings find the target.
 GLenum targetOf(Context& c, GLuint texture) {
     GLint told = 0;
     if (c.core && gReal.glGetTextureParameteriv) gReal.glGetTextureParameteriv(texture, GL_TEXTURE_TARGET, &told);
@@ -49,7 +49,7 @@ void deliver(ThreadState& t, const void* tight, void* pixels, const sizes::Image
     if (!whole) return;
     const GLuint buffer = boundPackBuffer();
     const auto offset = reinterpret_cast<uint64_t>(pixels);
-    if (!readOwnCopy(t, buffer, offset, whole, span)) std::memset(whole, 0, span); // bytes between the rows stay
+    if (!readOwnCopy(t, buffer, offset, whole, span)) std::memset(whole, 0, span); // preserves bytes between rows
     sizes::unpackTight(whole, tight, layout);
     writeOwnCopy(t, buffer, offset, whole, span);
     records::bufferBytes(t, buffer, offset, DataArg::of(whole, span));

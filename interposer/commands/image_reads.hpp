@@ -1,5 +1,4 @@
-// What the commands that read images from the nodes share: sizes of levels, parts of images, and the way of an answer
-// to where the program wants it.
+// Shared by commands that read images from the nodes: level sizes, parts of images, and delivery of the answer.
 #pragma once
 
 #include "encoders.hpp"
@@ -13,41 +12,41 @@ namespace mural::image_reads {
 
 [[nodiscard]] bool capturing(const ThreadState& t);
 
-// Writes tight pixels where the pack state puts them: client memory, or the bound pack buffer (the
-// program's own and the nodes').
+// Writes tight pixels according to the pack state: to client memory, or to the bound pack buffer (the program's own and
+// the nodes').
 void deliver(ThreadState& t, const void* tight, void* pixels, const sizes::ImageLayout& layout);
 
 struct ImageQuestion {
     bool byName;
     GLuint targetOrTexture;
     GLint level;
-    GLenum format, type; // 0: the blocks of a compressed image
-    size_t sizeBytes;    // of the tight image; 0: it can't be asked for
-    ImagePart part{};    // of it that is wanted
+    GLenum format, type; // 0: compressed blocks
+    size_t sizeBytes; // of the tight image; 0: it cannot be requested
+    ImagePart part{}; // the requested part
 };
-// Asks the nodes for an image of a texture, and delivers it or a part: later, where it goes into a pack buffer.
+// Requests a texture image from the nodes and delivers it, or a part. Delivery into a pack buffer is deferred.
 void askAndDeliver(ThreadState& t, const ImageQuestion& question, void* pixels, const sizes::ImageLayout& layout, const char* by);
 
-// The program's own context packs something by `local`, its errors are kept: true when there was none. What the
-// bound pack buffer is still owed comes first.
+// Runs `local`, which packs data in the program's own context, and saves its errors; returns true without errors.
+// Deferred replies for the bound pack buffer are delivered first.
 template <class Local> bool packsHere(ThreadState& t, Local&& local, const char* by = __builtin_FUNCTION()) {
     settleBound(t, GL_PIXEL_PACK_BUFFER, by);
     return raisesNothing(*t.context, local);
 }
 
-// The same before nodes are asked for what goes to the same place: what the buffer is owed from before need not be here, for
-// answers are put there in their order. askAndDeliver waits for it where this one is not owed.
+// The same before a request for the same place. Earlier deferred replies may stay deferred, because replies are
+// delivered in order; askAndDeliver waits for them if this one is not deferred.
 template <class Local> bool packsAhead(ThreadState& t, Local&& local) { return raisesNothing(*t.context, local); }
 
-// The program's own context has written so many bytes into the bound pack buffer: the nodes get them.
+// The program's own context has written `bytes` bytes into the bound pack buffer: sends them to the nodes.
 void tellPackBuffer(ThreadState& t, const void* offset, size_t bytes);
 
-// How many dimensions of an image of that target the pack state counts.
+// The dimensions of an image of that target, as the pack state counts them.
 int imageDimensions(GLenum target);
-// Of an image by name: a cube map's faces are images one behind the other.
+// For access by name: the faces of a cube map are consecutive images.
 int dimensionsByName(GLenum target);
 
-// ask(pname, &value) asks the driver.
+// ask(pname, &value) queries the driver.
 template <class Ask> Level levelOf(Ask&& ask) {
     Level size;
     ask(GL_TEXTURE_WIDTH, &size.width);
@@ -55,17 +54,17 @@ template <class Ask> Level levelOf(Ask&& ask) {
     ask(GL_TEXTURE_DEPTH, &size.depth);
     return size;
 }
-// A cube map's level is its six faces.
+// A level of a cube map consists of its six faces.
 Level levelOf(Context& c, GLuint texture, GLint level, GLenum& target);
 
 struct Target {
     GLenum target, binding;
 };
-// Null: textures of it have no images to read.
+// Null: textures of this target have no readable images.
 const Target* targetWithImages(GLenum target);
 GLint boundTo(const Target& t);
 
-// EXT_direct_state_access: the nodes read what is bound, so the texture is bound there as long as `read` takes.
+// EXT_direct_state_access: the nodes read the bound texture, so it is bound during `read`.
 template <class Read> void whileBound(ThreadState& t, GLenum target, GLuint texture, Read&& read) {
     const bool isFace = target >= GL_TEXTURE_CUBE_MAP_POSITIVE_X && target <= GL_TEXTURE_CUBE_MAP_NEGATIVE_Z;
     const Target* const kind = targetWithImages(isFace ? GL_TEXTURE_CUBE_MAP : target);

@@ -1,4 +1,4 @@
-// Mapped buffers, and the commands that end mappings or change what they show.
+// Mapped buffers, and commands that end a mapping or change mapped data.
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
 #include "interposer/asking.hpp"
@@ -35,7 +35,7 @@ GLuint boundBuffer(GLenum target) {
     return static_cast<GLuint>(buffer);
 }
 
-// The program's memory becomes a buffer; the nodes get one with a copy of it, without a change of its bindings.
+// Client memory becomes a buffer. The nodes create one with a copy, without changing bindings.
 void pin(ThreadState& t, GLsizeiptr size, const void* data, GLenum usage) {
     const GLenum target = GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD;
     if (!raisesNothing(*t.context, [&] { gReal.glBufferData(target, size, data, usage); }) || size <= 0 || !data) return;
@@ -64,7 +64,7 @@ template <class Get> uint64_t sizeOfNamed(Get&& get, GLuint buffer) {
     return static_cast<uint64_t>(size);
 }
 
-// What the nodes have written comes first, where it may be read or would be written over.
+// Fetches data written by the nodes first if the mapping can be read or partially written.
 template <class Size, class Map> void* mapWhole(GLuint buffer, GLenum access, Size&& size, Map&& map, const char* by = __builtin_FUNCTION()) {
     ThreadState& t = *tThread;
     const GLbitfield bits = accessBits(access);
@@ -77,7 +77,7 @@ template <class Size, class Map> void* mapWhole(GLuint buffer, GLenum access, Si
 template <class Map> void* mapRange(GLuint buffer, GLintptr offset, GLsizeiptr length, GLbitfield access, Map&& map, const char* by = __builtin_FUNCTION()) {
     ThreadState& t = *tThread;
     const bool valid = offset >= 0 && length > 0;
-    if (access & GL_MAP_PERSISTENT_BIT) bufferUsed(t, buffer, by); // it is looked at without a word to GL
+    if (access & GL_MAP_PERSISTENT_BIT) bufferUsed(t, buffer, by); // the program accesses it without further GL calls
     settleReads(t, buffer, by);
     if (valid) refreshForMap(t, buffer, static_cast<uint64_t>(offset), static_cast<uint64_t>(length), access, by);
     void* memory = map();
@@ -137,8 +137,8 @@ void mural_glFlushMappedNamedBufferRange(GLuint buffer, GLintptr offset, GLsizei
     gReal.glFlushMappedNamedBufferRange(buffer, offset, length);
 }
 
-// New storage ends a mapping without its bytes counting (GL 4.6 §6.3.3). A deleted buffer keeps them where it
-// is still attached.
+// New storage ends a mapping and discards its data (GL 4.6 §6.3.3). A deleted buffer keeps its data while it is
+// attached.
 void mural_glBufferData(GLenum target, GLsizeiptr size, const void* data, GLenum usage) {
     ThreadState& t = *tThread;
     if (t.context && t.context->group->maps) mapEnds(t, boundBuffer(target), false);
@@ -159,7 +159,8 @@ void mural_glNamedBufferData(GLuint buffer, GLsizeiptr size, const void* data, G
 void mural_glBufferSubData(GLenum target, GLintptr offset, GLsizeiptr size, const void* data) {
     ThreadState& t = *tThread;
     settleBound(t, target);
-    if (t.context && target == GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD) return gReal.glBufferSubData(target, offset, size, data); // its memory changes
+    // writes client memory
+    if (t.context && target == GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD) return gReal.glBufferSubData(target, offset, size, data);
     encode_glBufferSubData(t, target, offset, size, DataArg::of(data, size > 0 ? uint64_t(size) : 0));
     gReal.glBufferSubData(target, offset, size, data);
 }
@@ -169,7 +170,7 @@ void mural_glNamedBufferSubData(GLuint buffer, GLintptr offset, GLsizeiptr size,
     encode_glNamedBufferSubData(t, buffer, offset, size, DataArg::of(data, size > 0 ? uint64_t(size) : 0));
     gReal.glNamedBufferSubData(buffer, offset, size, data);
 }
-// What the program's own context copies may be old: it is no writing of the program's.
+// The program's own context may copy outdated data, which is not a write of the program.
 void mural_glCopyBufferSubData(GLenum readTarget, GLenum writeTarget, GLintptr readOffset, GLintptr writeOffset, GLsizeiptr size) {
     ThreadState& t = *tThread;
     boundUsed(t, readTarget);
@@ -197,7 +198,7 @@ void mural_glNamedCopyBufferSubDataEXT(GLuint readBuffer, GLuint writeBuffer, GL
     gReal.glNamedCopyBufferSubDataEXT(readBuffer, writeBuffer, readOffset, writeOffset, size);
     if (mapsLast(t)) copiedHere(t, writeBuffer);
 }
-// The nodes write into persistent storage through glBufferSubData: they need the dynamic bit.
+// The nodes write to persistent storage with glBufferSubData, which needs the dynamic bit.
 void mural_glBufferStorage(GLenum target, GLsizeiptr size, const void* data, GLbitfield flags) {
     ThreadState& t = *tThread;
     settleBound(t, target);
@@ -234,7 +235,7 @@ void mural_glDeleteBuffers(GLsizei n, const GLuint* buffers) {
     gReal.glDeleteBuffers(n, buffers);
 }
 
-// The EXT forms differ in that they make the buffer when it has only a name yet; the driver does that.
+// The EXT variants create the buffer of an unused name; the driver does that.
 void mural_glGetNamedBufferSubDataEXT(GLuint buffer, GLintptr offset, GLsizeiptr size, void* data) {
     ThreadState& t = *tThread;
     settleReads(t, buffer);

@@ -1,6 +1,6 @@
-// Memory of other programs' APIs (EXT_memory_object): no node could have it. Programs are told of a device and a
-// driver that are none of Vulkan's, which the extension has them compare before they share anything; who imports
-// all the same gets an error.
+// Memory shared with other APIs (EXT_memory_object) is unavailable to the nodes. Programs see device and driver UUIDs
+// that match no Vulkan device; the extension requires them to compare before they share. An import without that check
+// fails.
 #include <cstring>
 
 #include "custom_wrappers.hpp"
@@ -39,7 +39,7 @@ void mural_glGetUnsignedBytei_vEXT(GLenum target, GLuint index, GLubyte* data) {
     getBytes(target, data, [&] { gReal.glGetUnsignedBytei_vEXT(target, index, data); });
 }
 
-// The descriptor stays the program's, as after every import that fails.
+// The program keeps ownership of the descriptor, as after every failed import.
 void mural_glImportMemoryFdEXT(GLuint memory, GLuint64 size, GLenum handleType, GLint fd) {
     const ThreadState& t = *tThread;
     if (!capturing(t) || handleType != GL_HANDLE_TYPE_OPAQUE_FD_EXT) return gReal.glImportMemoryFdEXT(memory, size, handleType, fd);

@@ -1,4 +1,4 @@
-// Display lists, synchronisation, programs and answers that are put right before the program sees them.
+// Display lists, synchronisation, programs, and corrected query results.
 #include <cstring>
 #include <utility>
 
@@ -28,7 +28,8 @@ void publish(ThreadState& t) {
     if (Session* s = Session::current(); s && t.context) s->publish(t, false);
 }
 
-// In a primitive that is thrown away: what the list may not do there raises its errors. `closes`: the list ends it.
+// Calls a list within a discarded primitive, so that commands invalid there raise their errors. `closes`: the list
+// contains the glEnd.
 template <class Call> void callBetweenBeginAndEnd(Context& c, bool closes, Call&& call) {
     const uint32_t mode = c.openPrimitive;
     gReal.glEnd();
@@ -44,14 +45,14 @@ template <class Call> void callBetweenBeginAndEnd(Context& c, bool closes, Call&
     else gReal.glBegin(mode);
 }
 
-// After a list that begins a primitive and leaves it open. Which mode does not matter where nothing is drawn.
+// After a list with an unmatched glBegin. The mode is irrelevant, because nothing is drawn.
 void primitiveOpened(ThreadState& t, bool locallyOpen) {
     if (!locallyOpen) gReal.glBegin(GL_POINTS);
     if (t.context) t.context->openPrimitive = GL_POINTS;
 }
 
-// A list holds draws and state: the program's own context needs the state but need not draw. Where a
-// bitmap may move the raster position it does draw, for a discarded bitmap moves nothing.
+// The program's own context needs a list's state changes but not its draws. If a bitmap may move the raster position,
+// it does draw, because a discarded bitmap does not move it.
 template <class Call> void callWithoutDrawing(ThreadState& t, bool movesRaster, bool opens, bool closes, Call&& call) {
     if (t.drawLocally) {
         call();
@@ -59,7 +60,7 @@ template <class Call> void callWithoutDrawing(ThreadState& t, bool movesRaster, 
         return;
     }
     if (t.context && t.context->openPrimitive != kNoPrimitive && t.context->version >= 30) return callBetweenBeginAndEnd(*t.context, closes, call);
-    const PrimitivePause pause(t); // or the list's vertices would be the primitive's
+    const PrimitivePause pause(t); // otherwise the list's vertices would join the primitive
     if (movesRaster || !t.context || t.context->version < 30) {
         ownDrawingBegins();
         call();
@@ -70,7 +71,7 @@ template <class Call> void callWithoutDrawing(ThreadState& t, bool movesRaster, 
     if (!discards) gReal.glEnable(GL_RASTERIZER_DISCARD);
     call();
     if (opens) gReal.glEnd();
-    if (!gReal.glIsEnabled(GL_RASTERIZER_DISCARD)) { // the list has put an end to it
+    if (!gReal.glIsEnabled(GL_RASTERIZER_DISCARD)) { // the list has ended the primitive
         ownDrawingBegins();
         ownDrawingEnds();
     }
@@ -79,7 +80,7 @@ template <class Call> void callWithoutDrawing(ThreadState& t, bool movesRaster, 
     if (opens) primitiveOpened(t, false);
 }
 
-// What a list draws while it is compiled, and whatever selection and feedback let through.
+// Enables drawing for compile-and-execute, selection and feedback.
 void setDrawing(bool& draws, bool now) {
     if (draws == now) return;
     draws = now;
@@ -96,7 +97,7 @@ void drawFeedback(ThreadState& t, bool now) {
     refreshDrawLocally(t);
 }
 
-// A list that calls others moves the raster position when they do, whatever they will be by then.
+// A list that calls other lists may move the raster position, depending on their content at the call.
 void noteListCall(const ThreadState& t, bool asks) {
     if (!t.context || !t.context->compilingList) return;
     ShareGroup& group = *t.context->group;
@@ -109,7 +110,7 @@ void notePrimitives(Context& c, GLuint called) {
     if (c.group->listOpens.get(called)) c.listPrimitive = true;
 }
 
-// SPIR-V: what both sides have.
+// Whether both sides support SPIR-V.
 bool takesModules(Context& c) {
     for (GLint i = 0; i < extensionCount(c); ++i) {
         if (!std::strcmp(extensionAt(c, static_cast<GLuint>(i)), "GL_ARB_gl_spirv")) return true;
@@ -125,7 +126,7 @@ bool isFront(GLenum buffer) {
 
 extern "C" {
 
-// Lists are compiled whole in the program's own context: if the head is lost they still draw.
+// The program's own context compiles complete lists: they still draw if the head is lost.
 void mural_glNewList(GLuint list, GLenum mode) {
     ThreadState& t = *tThread;
     if (!t.context) return gReal.glNewList(list, mode);
@@ -174,7 +175,7 @@ void mural_glCallLists(GLsizei n, GLenum type, const void* lists) {
     const bool moves = t.context && t.context->group->listsMoveRaster; // mostly text
     callWithoutDrawing(t, moves, false, false, [&] { gReal.glCallLists(n, type, lists); });
 }
-// Selection and feedback need vertices only: the program's own context does them.
+// Selection and feedback need vertices only and run in the program's own context.
 GLint mural_glRenderMode(GLenum mode) {
     ThreadState& t = *tThread;
     encode_glRenderMode(t, mode);
@@ -202,7 +203,7 @@ void mural_glEndTransformFeedback() {
     if (t.context && t.context->feedbackCounts) drawFeedback(t, false);
 }
 
-// Some drivers look at the window's size when a program sets its viewport: a resize takes effect there.
+// Some drivers check the window's size when a program sets its viewport: a resize takes effect there.
 void mural_glViewport(GLint x, GLint y, GLsizei width, GLsizei height) {
     ThreadState& t = *tThread;
     gReal.glViewport(x, y, width, height);
@@ -212,7 +213,7 @@ void mural_glViewport(GLint x, GLint y, GLsizei width, GLsizei height) {
     encode_glViewport(t, x, y, width, height);
 }
 
-// Which buffer is drawn to matters at the next flush: what is in front is shown by it.
+// The draw buffer matters at the next flush, which shows a front buffer.
 void mural_glDrawBuffer(GLenum buf) {
     ThreadState& t = *tThread;
     if (!t.context) return gReal.glDrawBuffer(buf);
@@ -224,7 +225,8 @@ void mural_glDrawBuffers(GLsizei n, const GLenum* bufs) {
     ThreadState& t = *tThread;
     if (!t.context) return gReal.glDrawBuffers(n, bufs);
     if (!raisesNothing(*t.context, [&] { gReal.glDrawBuffers(n, bufs); })) return;
-    static const GLenum kNone = GL_NONE; // of no buffers it may be null, which nodes take for a call without its values
+    // without buffers the pointer may be null, which nodes would take for missing values
+    static const GLenum kNone = GL_NONE;
     encode_glDrawBuffers(t, n, DataArg::of(bufs ? bufs : &kNone, n > 0 ? uint64_t(n) * sizeof(GLenum) : 0));
     for (GLsizei i = 0; i < n && bufs; ++i)
         if (isFront(bufs[i])) t.context->frontDue = true;
@@ -274,7 +276,7 @@ void mural_glDeleteSync(GLsync sync) {
     gReal.glDeleteSync(sync);
 }
 
-// Attributes are bound before the nodes link, so that locations agree; uniforms are matched by name.
+// Attributes are bound before the nodes link, so that locations agree. Uniforms are matched by name.
 void mural_glLinkProgram(GLuint program) {
     ThreadState& t = *tThread;
     gReal.glLinkProgram(program);
@@ -292,7 +294,7 @@ GLuint mural_glCreateShaderProgramv(GLenum type, GLsizei count, const GLchar* co
     if (capturing(t) && program) sendLayout(t, program);
     return program;
 }
-// Modules are the same everywhere; other formats are of one driver, and not advertised.
+// SPIR-V modules are portable. Other formats are driver-specific and not advertised.
 void mural_glShaderBinary(GLsizei count, const GLuint* shaders, GLenum binaryFormat, const void* binary, GLsizei length) {
     ThreadState& t = *tThread;
     if (binaryFormat == GL_SHADER_BINARY_FORMAT_SPIR_V || !capturing(t)) {
@@ -303,7 +305,7 @@ void mural_glShaderBinary(GLsizei count, const GLuint* shaders, GLenum binaryFor
     stashError(*t.context, GL_INVALID_ENUM);
 }
 
-// Lengths below 0 stand for text up to its terminator.
+// Negative lengths mean zero-terminated text.
 void mural_glNamedStringARB(GLenum type, GLint namelen, const GLchar* name, GLint stringlen, const GLchar* string) {
     ThreadState& t = *tThread;
     const auto local = [&] { gReal.glNamedStringARB(type, namelen, name, stringlen, string); };
@@ -321,14 +323,14 @@ void mural_glDeleteNamedStringARB(GLint namelen, const GLchar* name) {
     encode_glDeleteNamedStringARB(t, nameBytes, DataArg::of(name, vn(nameBytes, 1)));
 }
 
-// The primitive stays empty in the program's own context, but the errors of what comes between are raised.
+// The primitive is empty in the program's own context, which still raises the errors of commands inside it.
 void mural_glBegin(GLenum mode) {
     ThreadState& t = *tThread;
     buffersRead(t);
     encode_glBegin(t, mode);
     if (Context* c = t.context; c && c->openPrimitive == kNoPrimitive) c->restartElement = c->arrays.anyClient() ? restartIndexOf(*c) : kNoRestart;
     gReal.glBegin(mode);
-    if (!t.context || mode > GL_PATCHES) return; // refused
+    if (!t.context || mode > GL_PATCHES) return; // invalid mode
     if (t.context->compilingList) t.context->listPrimitive = true;
     else if (t.context->openPrimitive == kNoPrimitive && t.context->compatible()) t.context->openPrimitive = mode;
 }
@@ -341,8 +343,8 @@ void mural_glEnd() {
     else t.context->openPrimitive = kNoPrimitive;
 }
 
-// In the program's own context primitives are empty, and Mesa may take the attributes that were set in an empty one for
-// current only behind the pop. Asking for one makes it take them all.
+// Primitives are empty in the program's own context, and Mesa may apply attributes set in an empty one only after the
+// pop. A query applies them all.
 void mural_glPopAttrib() {
     ThreadState& t = *tThread;
     encode_glPopAttrib(t);
@@ -361,7 +363,7 @@ GLenum mural_glGetError() {
 }
 const GLubyte* mural_glGetString(GLenum name) {
     ThreadState& t = *tThread;
-    if (capturing(t) && t.context->openPrimitive == kNoPrimitive) { // else an error
+    if (capturing(t) && t.context->openPrimitive == kNoPrimitive) { // otherwise an error
         if (const char* text = adjustedString(*t.context, name)) return reinterpret_cast<const GLubyte*>(text);
     }
     return gReal.glGetString(name);
@@ -370,13 +372,14 @@ const GLubyte* mural_glGetStringi(GLenum name, GLuint index) {
     ThreadState& t = *tThread;
     if (capturing(t) && name == GL_EXTENSIONS && t.context->openPrimitive == kNoPrimitive) {
         if (const char* text = extensionAt(*t.context, index)) return reinterpret_cast<const GLubyte*>(text);
-        return gReal.glGetStringi(name, UINT32_MAX); // for its error
+        return gReal.glGetStringi(name, UINT32_MAX); // raises the error
     }
     return gReal.glGetStringi(name, index);
 }
 void mural_glGetIntegerv(GLenum pname, GLint* data) {
     ThreadState& t = *tThread;
-    if (pname == GL_SHADER_BINARY_FORMATS && capturing(t) && data) { // the driver may know more, for which there is no room
+    // the driver may have more formats than the program expects
+    if (pname == GL_SHADER_BINARY_FORMATS && capturing(t) && data) {
         GLint formats = 0;
         gReal.glGetIntegerv(GL_NUM_SHADER_BINARY_FORMATS, &formats);
         if (formats > 0 && takesModules(*t.context)) *data = GL_SHADER_BINARY_FORMAT_SPIR_V;

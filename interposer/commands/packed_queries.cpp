@@ -1,5 +1,5 @@
-// State that is packed like images: the program's own context knows it. Where a pack buffer is bound the nodes' copy of
-// that gets the same bytes.
+// State queries with packed results. The program's own context answers; the nodes' copy of a bound pack buffer receives
+// the same bytes.
 #include "custom_wrappers.hpp"
 #include "interposer/asking.hpp"
 #include "interposer/commands/image_reads.hpp"
@@ -10,7 +10,7 @@ using namespace mural::image_reads;
 
 namespace {
 
-// span() is how many bytes the query writes.
+// span() returns the number of bytes that the query writes.
 template <class Local, class Span> void packed(const void* values, Local&& local, Span&& span, const char* by) {
     ThreadState& t = *tThread;
     if (!capturing(t) || !packBufferBound(*t.context)) return local();

@@ -1,6 +1,6 @@
-// Program binaries: the driver's own, for the program's context, and behind it what the nodes link the program from
-// (docs/wire-format.md). One that lacks that, as those of runs without Mural do, does not load: the program links from
-// source then, as it must where the driver has changed.
+// Program binaries: the driver's own for the program's context, followed by the recipe from which the nodes link the
+// program (docs/wire-format.md). A binary without a recipe, such as one from a run without Mural, fails to load. The
+// program then links from source, as it must after a driver update.
 #include <cstring>
 
 #include "custom_wrappers.hpp"
@@ -35,7 +35,7 @@ uint32_t checksumOf(const std::byte* bytes, size_t count) {
     return hash;
 }
 
-// The footer of a binary that is one of ours; false: it is none.
+// Reads the footer of a binary with a recipe. Returns false for others.
 bool isOurs(const void* binary, GLsizei length, Footer& footer) {
     if (!binary || length < static_cast<GLsizei>(sizeof(Footer))) return false;
     const auto* bytes = static_cast<const std::byte*>(binary);
@@ -85,7 +85,7 @@ void mural_glGetProgramBinary(GLuint program, GLsizei bufSize, GLsizei* length, 
     if (!recipe) recipeBytes = 0;
     const auto more = static_cast<GLsizei>(recipeBytes + sizeof(Footer));
     GLsizei own = 0;
-    // Too little room is the driver's to tell: it gets what would be left for its part.
+    // The driver reports insufficient space: it receives the space that remains for its part.
     const GLsizei room = bufSize > more ? bufSize - more : 0;
     if (!raisesNothing(*t.context, [&] { local(room, &own); })) {
         if (length) *length = own;

@@ -1,4 +1,4 @@
-// Queries: what they count happens on the nodes, so the nodes are asked, and their answers put together.
+// Query objects. The nodes count, so their answers are combined.
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
 #include "interposer/asking.hpp"
@@ -19,7 +19,7 @@ bool capturing(const ThreadState& t) {
 }
 
 void begins(ThreadState& t, GLenum target, GLuint index, GLuint id) {
-    if (!t.context || t.context->listPrimitive) return; // the list takes none there
+    if (!t.context || t.context->listPrimitive) return; // not valid in a list there
     t.context->queryIsAny.set(id, target == GL_ANY_SAMPLES_PASSED || target == GL_ANY_SAMPLES_PASSED_CONSERVATIVE);
     t.context->queryIsTimestamp.set(id, false);
     t.context->queryBegun.set(id, true);
@@ -34,7 +34,7 @@ void ends(ThreadState& t, GLenum target, GLuint index) {
     if (t.context && !t.context->compilingList) t.context->answers.ended(t, target, index, t.context->swaps);
 }
 
-// A node makes pieces of a query when it begins: it hears of it only if it does.
+// A node allocates parts of a query at its begin, so it receives only successful begins.
 template <class Local, class Send> void beginQuery(GLenum target, GLuint index, GLuint id, Local&& local, Send&& send) {
     ThreadState& t = *tThread;
     if (!t.context) return local();
@@ -45,21 +45,21 @@ template <class Local, class Send> void beginQuery(GLenum target, GLuint index, 
 
 bool isResult(GLenum pname) { return pname == GL_QUERY_RESULT || pname == GL_QUERY_RESULT_NO_WAIT; }
 
-// It has counted nothing, and the driver knows all there is to know. A list begins its queries whenever it is called.
+// A query without a begin has counted nothing, and the driver knows its state. A list begins its queries at every call.
 bool neverBegun(const ThreadState& t, GLuint id) {
     return NameBits::known(id) && !t.context->queryBegun.get(id) && !t.context->group->listCounts.get(id);
 }
 
-// The result over all tiles. False: it is the local driver's.
+// The result over all tiles. Returns false if the local driver's result applies.
 bool result(ThreadState& t, const char* by, GLuint id, uint64_t& value) {
-    // A program compares time stamps with glGetInteger64v(GL_TIMESTAMP): one clock for both.
+    // Programs compare time stamps with glGetInteger64v(GL_TIMESTAMP): both must use the same clock.
     if (t.context->queryIsTimestamp.get(id) || neverBegun(t, id)) return false;
-    const bool keeps = !t.context->group->listCounts.get(id); // a list begins it whenever it is called
+    const bool keeps = !t.context->group->listCounts.get(id); // a list begins it at every call
     if (!keeps || !t.context->answers.find(id, t.context->swaps, value)) {
         if (!askQuery(t, id, GL_QUERY_RESULT, value, by)) return false;
         if (keeps) t.context->answers.keep(id, value);
     }
-    if (value > 1 && t.context->queryIsAny.get(id)) value = 1; // yes or no, from several tiles
+    if (value > 1 && t.context->queryIsAny.get(id)) value = 1; // a boolean, summed over several tiles
     return true;
 }
 
@@ -68,17 +68,17 @@ template <class T> T held(uint64_t value) {
     return static_cast<T>(value < largest ? value : largest);
 }
 
-// What queries count the program's own context counts as well. Not so while it compiles a list: it drew none of what was before.
+// Whether the program's own context counts as well. Not during list compilation: it has not drawn earlier frames.
 bool drawsAllItself(const ThreadState& t) { return swapLocally() || t.context->drawsPixmap; }
 
-// The driver's own answer comes first: it gives the errors, and what does not come from rendering.
+// The driver's own call comes first: it raises errors, and answers what does not depend on rendering.
 template <class T, class Local> void intoMemory(ThreadState& t, const char* by, GLuint id, GLenum pname, T* params, Local local) {
     if (drawsAllItself(t) || !params || !isResult(pname)) return local();
     uint64_t value = 0;
     if (raisesNothing(*t.context, local) && result(t, by, id, value)) *params = held<T>(value);
 }
 
-// The same into a buffer: the program's own context and the nodes have it then.
+// The same into a buffer, in the program's own context and on the nodes.
 template <class T, class Local> void intoBuffer(ThreadState& t, const char* by, GLuint id, GLenum pname, GLuint buffer, GLintptr offset, Local local) {
     if (!raisesNothing(*t.context, local)) return;
     T written{};
@@ -140,7 +140,7 @@ void mural_glBeginQueryIndexed(GLenum target, GLuint index, GLuint id) {
 void mural_glDeleteQueries(GLsizei n, const GLuint* ids) {
     ThreadState& t = *tThread;
     if (t.context && ids)
-        for (GLsizei i = 0; i < n; ++i) t.context->queryBegun.set(ids[i], false); // the name may come again
+        for (GLsizei i = 0; i < n; ++i) t.context->queryBegun.set(ids[i], false); // the name may be reused
     encode_glDeleteQueries(t, n, DataArg::of(ids, n > 0 ? uint64_t(n) * 4 : 0));
     gReal.glDeleteQueries(n, ids);
 }
@@ -160,7 +160,7 @@ void tellCondition(ThreadState& t, const char* by, GLuint id) {
     if (t.context->queryBegun.get(id) && result(t, by, id, value)) records::queryKnown(t, id, value != 0);
 }
 
-// What a list that is being compiled will ask at each call.
+// Records the conditions that a compiled list evaluates at each call.
 void noteListCondition(ThreadState& t, GLuint id) {
     ShareGroup& group = *t.context->group;
     group.listAsks.set(t.context->compiledList, true);
@@ -174,7 +174,8 @@ void noteListCondition(ThreadState& t, GLuint id) {
 
 namespace mural {
 void tellListConditions(ThreadState& t, const char* by) {
-    if (!capturing(t) || t.context->compilingList || t.context->group->allDrawn) return; // the nodes know it themselves
+    // each node knows the result itself
+    if (!capturing(t) || t.context->compilingList || t.context->group->allDrawn) return;
     const ShareGroup& group = *t.context->group;
     for (int i = 0; i < group.listConditionCount; ++i) tellCondition(t, by, group.listConditions[i]);
 }
@@ -182,20 +183,20 @@ void tellListConditions(ThreadState& t, const char* by) {
 
 extern "C" {
 
-// A node knows its own tiles only, and what it draws may depend on all: the whole picture's answer is
-// fetched and told to all nodes; for a display list, when it is called.
+// A node knows its own tiles only, but its draws may depend on all of them. The result of the whole picture is fetched
+// and sent to all nodes; for a display list, at its call.
 void mural_glBeginConditionalRender(GLuint id, GLenum mode) {
     ThreadState& t = *tThread;
     if (!capturing(t) || t.context->compilingList) {
         if (capturing(t) && !t.context->listPrimitive) {
             noteListCondition(t, id);
-            tellCondition(t, __func__, id); // the list may be executed while it is compiled
+            tellCondition(t, __func__, id); // the list may be executed during compilation
         }
         encode_glBeginConditionalRender(t, id, mode);
         return gReal.glBeginConditionalRender(id, mode);
     }
     if (!raisesNothing(*t.context, [&] { gReal.glBeginConditionalRender(id, mode); })) return;
-    if (neverBegun(t, id)) return encode_glBeginConditionalRender(t, id, mode); // all drivers know the same of it
+    if (neverBegun(t, id)) return encode_glBeginConditionalRender(t, id, mode); // all drivers agree on its result
     uint64_t value = 1;
     result(t, __func__, id, value);
     records::beginConditional(t, (value != 0) != isInverted(mode));

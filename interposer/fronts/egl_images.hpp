@@ -1,5 +1,5 @@
-// Images of GL objects (EGL 1.5 §3.9): each node makes its own of its own object. Images of other things
-// (pixmaps, dma-buf, Wayland buffers) exist on this machine only and are not told to programs.
+// Images of GL objects (EGL 1.5 §3.9). Each node creates one from its own object. Images of other sources (pixmaps,
+// dma-buf, Wayland buffers) exist on this machine only and are hidden from programs.
 #pragma once
 
 #include <EGL/egl.h>

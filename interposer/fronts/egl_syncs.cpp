@@ -14,7 +14,7 @@ void publishOwn() {
     if (Session* s = Session::current(); s && tThread->context) s->publish(*tThread, false);
 }
 
-// What such a sync stands for is flushed when it is made; nodes do not flush when they turn to another thread's context.
+// Flushes the commands before the sync at its creation; nodes do not flush when they switch contexts.
 void flushOwn() {
     if (tThread->context) encode_glFlush(*tThread);
     publishOwn();

@@ -1,5 +1,5 @@
-// Syncs of EGL order threads whose contexts share nothing but images and surfaces: what a thread has
-// encoded is with the nodes before another one goes on.
+// EGL syncs order threads whose contexts share only images and surfaces: the encoded commands of one thread reach the
+// nodes before another thread continues.
 #pragma once
 
 #include <EGL/egl.h>

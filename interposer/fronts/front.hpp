@@ -1,5 +1,5 @@
-// What the fronts share. A front stands before a library that really draws, keeps for itself what makes
-// contexts, binds them and shows pictures, gives out wrappers for GL commands, and passes on the rest.
+// Shared by the entries. An entry wraps a library that draws: it handles contexts, bindings and swaps itself, returns
+// wrappers for GL commands, and forwards everything else.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace mural {
 
-// A function that Mural has instead of the library's own.
+// A function that replaces the library's own.
 struct OwnEntry {
     const char* name;
     Entry entry;
@@ -20,28 +20,28 @@ class Front {
 public:
     template <size_t N> constexpr Front(const char* windowSystem, const OwnEntry (&own)[N]) : windowSystem_(windowSystem), own_(own), count_(N) {}
 
-    // The library behind: where its functions come from. GL commands are looked up there, too.
+    // Sets the wrapped library, from which functions and GL commands are loaded.
     void attach(Loader library);
     [[nodiscard]] bool attached() const { return library_ != nullptr; }
     [[nodiscard]] Entry behind(const char* name) const { return library_ ? library_(name) : nullptr; }
-    // What a program gets for the name: ours, a wrapper, the library's own, or null when it has none.
+    // The function that a program receives for a name: ours, a wrapper, the library's own, or null if none exists.
     [[nodiscard]] Entry entryFor(const char* name) const;
-    // The same, null where the library's own is right.
+    // The same; null if the library's own applies.
     [[nodiscard]] Entry replacementFor(const char* name) const;
 
 private:
-    const char* windowSystem_; // what the names of its own functions begin with
+    const char* windowSystem_; // prefix of the window system's functions
     const OwnEntry* own_;
     size_t count_;
     Loader library_ = nullptr;
 };
 
-// Both ways into a program feed one encoder, and only one of them does, the one that is asked first: a
-// library behind the preloaded front may itself go through GLVND, and its calls would arrive twice.
+// Both entries feed one encoder, but only the first one used is active: a library behind the preloaded entry may itself
+// call GLVND, and its calls would arrive twice.
 enum class Way : int { Open, Vendor, Preload };
 bool claimProgram(Way way);
 
-// Patched entry points would go round the wrappers.
+// Patched entry points would bypass the wrappers.
 template <class Imports> void forbidPatching(Imports& imports) {
     imports.isPatchSupported = nullptr;
     imports.initiatePatch = nullptr;
@@ -51,7 +51,7 @@ template <class Imports> void forbidPatching(Imports& imports) {
 
 inline uint8_t clampByte(int v) { return static_cast<uint8_t>(v < 0 ? 0 : v > 255 ? 255 : v); }
 
-// The fronts of GLX and EGL; each is attached by GLVND or by the preloaded front.
+// The GLX and EGL entries. GLVND or the preloaded entry attaches them.
 Front& glxFront();
 Front& eglFront();
 

@@ -13,7 +13,7 @@ namespace mural {
 
 namespace {
 
-// What is needed of Xlib.
+// The required functions of Xlib.
 struct FontCalls {
     decltype(&::XQueryFont) queryFont;
     decltype(&::XFreeFontInfo) freeFontInfo;
@@ -40,7 +40,7 @@ bool findFontCalls(FontCalls& x) {
            find(x.drawString, "XDrawString16") && find(x.getImage, "XGetImage");
 }
 
-// The program's own way to the GL commands that are made here.
+// The GL commands used here, through the program's own entry.
 struct ListCalls {
     decltype(&::glNewList) newList;
     decltype(&::glEndList) endList;
@@ -56,7 +56,7 @@ bool findListCalls(ListCalls& gl) {
     return gl.newList && gl.endList && gl.bitmap && gl.pixelStore && gReal.glGetIntegerv;
 }
 
-// Bitmaps as they are made here: rows of whole bytes, the first bit the highest. Given back at the end.
+// Sets the unpack state for these bitmaps: rows of whole bytes, most significant bit first. Restores it at the end.
 class UnpackState {
 public:
     explicit UnpackState(const ListCalls& gl) : gl_(gl) {
@@ -79,10 +79,10 @@ private:
     GLint before_[kCount] = {};
 };
 
-// The metrics of a character; null when the font has none of this number.
+// The metrics of a character; null if the font lacks it.
 const XCharStruct* metricsOf(const XFontStruct& font, unsigned character) {
     unsigned column = character, index = 0;
-    if (font.min_byte1 == 0 && font.max_byte1 == 0) { // one row: the whole number counts
+    if (font.min_byte1 == 0 && font.max_byte1 == 0) { // one row: the character is a plain index
         if (column < font.min_char_or_byte2 || column > font.max_char_or_byte2) return nullptr;
         index = column - font.min_char_or_byte2;
     } else {
@@ -95,7 +95,7 @@ const XCharStruct* metricsOf(const XFontStruct& font, unsigned character) {
     return font.per_char ? font.per_char + index : &font.max_bounds;
 }
 
-// Draws characters of a font and takes their bits from the server.
+// Draws characters of a font and reads their bits from the server.
 class GlyphReader {
 public:
     GlyphReader(const FontCalls& x, Display* dpy, Font font, const XFontStruct& metrics)
@@ -117,7 +117,7 @@ public:
     GlyphReader(const GlyphReader&) = delete;
     GlyphReader& operator=(const GlyphReader&) = delete;
 
-    // Rows from the lowest up, valid until the next call; null when the server gives none.
+    // Rows from the lowest up, valid until the next call; null if the server returns none.
     const GLubyte* read(unsigned character, const XCharStruct& metrics, int width, int height) {
         if (!gc_ || width > width_ || height > height_) return nullptr;
         const auto w = static_cast<unsigned>(width), h = static_cast<unsigned>(height);
@@ -149,8 +149,8 @@ private:
     GC gc_ = nullptr;
 };
 
-// GLX 1.4, section 3.3.11. A character without ink is an empty bitmap, made as Mesa makes it: its
-// lists refuse that one (GL_OUT_OF_MEMORY), and programs see it.
+// GLX 1.4, section 3.3.11. A character without ink is an empty bitmap, created as Mesa does: its lists reject that
+// bitmap (GL_OUT_OF_MEMORY), which programs observe.
 void compileGlyph(const ListCalls& gl, GlyphReader& reader, const XFontStruct& font, unsigned character) {
     const XCharStruct* known = metricsOf(font, character);
     const XCharStruct& m = known ? *known : font.max_bounds;
@@ -167,7 +167,7 @@ bool listsFromXFont(Display* dpy, Font font, int first, int count, int listBase)
     ListCalls gl;
     if (!findFontCalls(x) || !findListCalls(gl)) return false;
     XFontStruct* metrics = x.queryFont(dpy, font);
-    if (!metrics) return true; // the X server has told the program's error handler
+    if (!metrics) return true; // the X server has called the program's error handler
     {
         GlyphReader reader(x, dpy, font, *metrics);
         UnpackState unpack(gl);

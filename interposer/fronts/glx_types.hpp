@@ -1,4 +1,4 @@
-// The little of Xlib and GLX that the front needs; nothing is linked.
+// The declarations of Xlib and GLX that the entry needs, without linking them.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// What the preloaded front (interposer/preload) asks for: it has found that a program's GL library is
-// not GLVND's, and exports that library's names in front of it.
+// The interface for the preloaded entry (interposer/preload), which has detected that a program's GL library does not
+// use GLVND, and exports that library's names in front of it.
 #include "interposer/preload/link.hpp"
 
 #include <cstring>
@@ -18,7 +18,7 @@ extern "C" __attribute__((visibility("default"))) Entry mural_front_entry(const 
             sayBypass("the program uses two GL libraries; GLVND's is on the wall, what %s draws stays in the program's own window", own);
         return nullptr;
     }
-    // No lock: all callers bring the same loader.
+    // Needs no lock: all callers pass the same loader.
     if (!glxFront().attached()) glxFront().attach(library);
     if (!eglFront().attached()) eglFront().attach(library);
     return (std::strncmp(name, "egl", 3) ? glxFront() : eglFront()).replacementFor(name);

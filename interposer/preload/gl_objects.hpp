@@ -1,17 +1,17 @@
-// The GL libraries of this process: which object a function belongs to, and whether GLVND leads to it.
+// The GL libraries of this process: the owner of a function's code, and whether it uses GLVND.
 #pragma once
 
 namespace mural {
 
 enum class GlObject {
     Other, // no GL library: the program's own functions, another tool's hooks
-    Glvnd, // hands everything to a vendor library, so the vendor front sees it
-    Own,   // a GL library that does its work itself: old Mesa's, a driver's, ANGLE's
+    Glvnd, // dispatches to vendor libraries, so the vendor entry captures it
+    Own, // a GL library without GLVND: old Mesa, a driver, ANGLE
 };
 
-// What kind of object the code at the address belongs to.
+// The kind of the object that contains the address.
 GlObject objectOf(const void* address);
-// The same code is part of the object that this function is in.
+// True if the address is in the object that contains this function.
 bool isOurs(const void* address);
 
 } // namespace mural

@@ -1,17 +1,17 @@
-// The thunks are generated (front_thunks.cpp): one function for each exported name, which jumps through
-// its slot. Who links them says by resolveSlot what stands behind a name.
+// Generated thunks (front_thunks.cpp): one function per exported name, which jumps through its slot. The client defines
+// resolveSlot, which finds the function of a name.
 #pragma once
 
 namespace mural {
 
 using Entry = void (*)();
 
-// By number of the thunk; null: not asked for yet. May be filled at any time, by any thread.
+// Indexed by thunk; null: not resolved yet. Any thread may fill an entry at any time.
 extern Entry gSlots[];
 const char* thunkName(int number);
 int thunkCount();
 
-// Called at a name's first call; fills the slot, or leaves it empty to be asked again. Never null.
+// Called at the first call of a name. Fills the slot, or leaves it empty to be called again. Never returns null.
 Entry resolveSlot(int number);
 
 } // namespace mural

@@ -13,7 +13,7 @@ void waitWindowsShown() {
 void waitGlShown() {
     Session* s = Session::current();
     if (!s || !s->alive()) return;
-    if (tThread->context) encode_glFlush(*tThread); // nodes do not flush when they turn to another thread's context
+    if (tThread->context) encode_glFlush(*tThread); // nodes do not flush when they switch contexts
     flushedWindow(*tThread);
     s->waitShown();
 }

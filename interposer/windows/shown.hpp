@@ -1,16 +1,15 @@
-// With --display app the finished pictures reach the program's window from another X connection, up to
-// `latency` frames after the swap. Before the program looks at a window or draws into it past GL, it
-// waits here until its window shows what it has swapped.
+// With --display app, finished pictures reach the program's window on another X connection, up to `latency` frames
+// after the swap. Before the program reads a window or draws into it without GL, it waits here until the window shows
+// the swapped frame.
 #pragma once
 
 namespace mural {
 
-// Until every frame that this process has submitted is in its window; bounded. At once when nothing is
-// under way, when pictures go elsewhere, and when there is no session.
+// Waits, with a limit, until every submitted frame of this process is in its window. Returns at once without pending
+// frames, without --display app, and without a session.
 void waitWindowsShown();
 
-// glXWaitGL and its kin: GL drawing happens before what X does next, so a window with a single buffer
-// shows it, too.
+// For glXWaitGL and similar calls: GL draws precede later X draws, so single-buffered windows are shown too.
 void waitGlShown();
 
 } // namespace mural
