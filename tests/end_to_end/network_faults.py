@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Reliable multicast (docs/transport.md) on a network that does what it may not (own_network.py): one sender, three receivers
+"""Reliable multicast (docs/architecture/transport.md) on a network that does what it may not (own_network.py): one sender, three receivers
 by `mural netperf`, which checks each byte that comes. Who survives has all bytes, once and in order.
 
   network_faults.py --build build/release [--cases duplicates,bursts] [--long]

@@ -258,7 +258,7 @@ void describeNetperf(CLI::App& command, NetperfArguments& a) {
     command.add_option("--bytes", a.bytes, "how much is sent: 64M")->type_name("SIZE");
     command.add_option("--message", a.message, "send messages of this size instead, each when all have the one before")->type_name("SIZE");
     command.add_option("--count", a.count, "so many messages")->check(CLI::Range(1, 10'000'000));
-    auto* stream = command.add_option("--stream", a.stream, "the group as a description, rsp://GROUP:PORT?parameter=value&…, instead of the options for one of them (docs/transport.md lists them)");
+    auto* stream = command.add_option("--stream", a.stream, "the group as a description, rsp://GROUP:PORT?parameter=value&…, instead of the options for one of them (docs/reference/connections.md lists them)");
     command.add_option("--rate", a.rate, "at most: 200mbit, 1gbit; 0: nine tenths of what the card tells")->type_name("RATE");
     command.add_option("--group", a.group, "multicast address and port")->type_name("ADDRESS:PORT");
     command.add_option("--interface", a.interface, "network interface, by name or address");

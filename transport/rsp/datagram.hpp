@@ -1,4 +1,4 @@
-// Wire format of RSP datagrams, little-endian. docs/transport.md describes the layouts.
+// Wire format of RSP datagrams, little-endian. docs/architecture/transport.md describes the layouts.
 //
 //   all         0 u8 version<<4|type   1 u8 flags   2 u16 from   4 u32 session   8 u64 counter       (16 bytes)
 //   DATA        16 u32 sequence   20 u8 index  21 u8 group size  22 u8 row  23 u8 rows sent
