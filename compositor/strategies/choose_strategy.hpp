@@ -1,4 +1,4 @@
-// Default strategy for a number of ranks. Rules and measurements: docs/compositing.md, "Strategies measured".
+// Default strategy for a number of ranks. Rules and measurements: docs/measurements/compositing.md, "Strategies".
 #pragma once
 
 #include "compositor/strategies/strategy.hpp"

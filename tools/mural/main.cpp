@@ -250,7 +250,7 @@ private:
                               "  mural bench accuracy --json a.json --svg a.svg    the same for programs, and as a picture\n"
                               "  mural bench accuracy --recording app.mural        with a recording of a program: errors beside CPU time and bytes\n"
                               "  mural bench accuracy --frames 60 -- glxgears      a program of yours, each frame against what its own context draws\n\n"
-                              "Everything runs on this machine and a private display. docs/accuracy.md says what the bounds are, and why.\n"
+                              "Everything runs on this machine and a private display. docs/measurements/accuracy.md says what the bounds are, and why.\n"
                               "Exit status: 0, 1 when a bound is broken, something failed or a result can't be written, 2 when nothing could be measured.");
         mural::cli::describeBench(bench, bench_);
     }

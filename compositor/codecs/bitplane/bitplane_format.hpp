@@ -1,4 +1,4 @@
-// Bit-plane code of a strip: 4 rows of up to 256 words, in blocks of 16 x 4 words. docs/compositing.md describes the
+// Bit-plane code of a strip: 4 rows of up to 256 words, in blocks of 16 x 4 words. docs/reference/codecs.md describes the
 // whole format.
 //
 // A word is a pixel of 4 bytes, or a part of a larger one. Each word is predicted from the rows above. Each byte of the

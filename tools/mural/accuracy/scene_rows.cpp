@@ -34,7 +34,7 @@ struct SceneRows::Way {
     bool otherPixels = false;
 };
 
-// Bounds are exact for exact methods; docs/accuracy.md gives reasons for the others.
+// Bounds are exact for exact methods; docs/measurements/accuracy.md gives reasons for the others.
 std::vector<SceneRows::Way> SceneRows::ways() {
     using R = Way::Reference;
     const Bounds exact{Bound::exact()};

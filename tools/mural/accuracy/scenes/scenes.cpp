@@ -123,7 +123,7 @@ void Scenes::usePerspective(double nearPlane, double farPlane, int round) const 
     glFrustum(shift - halfWidth, shift + halfWidth, -halfHeight, halfHeight, nearPlane, farPlane);
     glTranslatef(-look_.eye, 0, 0);
     // For Mesa an equal reloaded matrix stays the same object, with properties derived by earlier draws, which changes
-    // the rounding of lit colours (docs/accuracy.md). A distinct matrix is independent of earlier frames.
+    // the rounding of lit colours (docs/measurements/accuracy.md). A distinct matrix is independent of earlier frames.
     glMatrixMode(GL_MODELVIEW);
     glLoadIdentity();
     glLoadMatrixf(columnsOf(Matrix4::translation({0.2, -0.1, -7}) * turned(0.35 * round + 0.2, 0.1 * round)).data());
