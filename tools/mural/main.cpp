@@ -267,7 +267,7 @@ private:
                                "  mural config print wall.eqc                       the same in today's words\n"
                                "  mural config print wall.eqc --resolved --frame 2  what every channel does in frame 2\n"
                                "  mural config draw wall.eqc --out wall.svg         displays, machines and compounds as a picture\n\n"
-                               "docs/configuration.md describes the format. Exit status: 0, 1 when the output can't be written, 2 for errors in the file.");
+                               "docs/reference/configuration.md describes the format. Exit status: 0, 1 when the output can't be written, 2 for errors in the file.");
         mural::cli::describeConfig(config, config_);
     }
 
