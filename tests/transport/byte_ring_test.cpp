@@ -26,7 +26,7 @@ struct Ring {
 
 } // namespace
 
-TEST(ByteRing, takesNoMoreThanItsCapacity) {
+TEST(ByteRing, acceptsNoMoreThanItsCapacity) {
     Ring ring(64);
     const std::vector<std::byte> bytes(100, std::byte{7});
     EXPECT_EQ(ring.writer.write(bytes), 64U);
@@ -37,7 +37,7 @@ TEST(ByteRing, takesNoMoreThanItsCapacity) {
     EXPECT_EQ(ring.writer.write(bytes), 10U);
 }
 
-TEST(ByteRing, keepsTheBytesOverManyWraps) {
+TEST(ByteRing, preservesBytesOverManyWraps) {
     for (const size_t capacityBytes : {64U, 128U, 4096U}) {
         Ring ring(capacityBytes);
         ByteStream written(1);
@@ -58,7 +58,7 @@ TEST(ByteRing, keepsTheBytesOverManyWraps) {
     }
 }
 
-TEST(ByteRing, flowsWithoutSystemCallsWhenNobodySleeps) {
+TEST(ByteRing, makesNoSystemCallWhenNoThreadSleeps) {
     Ring ring(4096);
     std::array<std::byte, 48> record{};
     for (int i = 0; i < 100000; ++i) {
@@ -85,7 +85,7 @@ TEST(ByteRing, wakesASleeperOnce) {
     EXPECT_EQ(ring.writer.wakeUps(), 2U) << "a big write does not";
 }
 
-TEST(ByteRing, sleepReturnsAtOnceWhenThereIsSomething) {
+TEST(ByteRing, returnsFromSleepAtOnceWhenDataIsAvailable) {
     Ring ring(64);
     const std::array<std::byte, 4> record{};
     ring.writer.write(record);
@@ -95,7 +95,7 @@ TEST(ByteRing, sleepReturnsAtOnceWhenThereIsSomething) {
     EXPECT_LT(monotonicNowNs() - beginNs, 5 * kNsPerS);
 }
 
-// Sleeps of 60 s that end early show that the wake-up came.
+// A sleep of 60 s that ends early proves the wake-up.
 TEST(ByteRing, wakesASleepingReaderAndASleepingWriter) {
     Ring ring(4096);
     std::vector<std::byte> bytes(4096);
@@ -130,7 +130,7 @@ TEST(ByteRing, wakesASleepingReaderAndASleepingWriter) {
     EXPECT_EQ(ring.reader.wakeUps(), 1U);
 }
 
-TEST(ByteRing, noticesPositionsThatCantBe) {
+TEST(ByteRing, detectsInvalidPositions) {
     Ring ring(64);
     ring.control.tail = 65;
     EXPECT_FALSE(ring.reader.hasData());

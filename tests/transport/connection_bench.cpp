@@ -1,6 +1,5 @@
-// Throughput of each kind of connection against memcpy of the same bytes, and the time of a
-// question with its answer. Both are measured alternately; the median and the spread of the ratio
-// are printed. All kinds, or those that are named: mural_transport_bench Tcp Fabric
+// Throughput of each kind of connection relative to memcpy of the same bytes, and the time of a round trip. Both are
+// measured alternately; prints median and spread of the ratio. Arguments select kinds: mural_transport_bench Tcp Fabric
 #include <algorithm>
 #include <cstdio>
 #include <cstring>

@@ -9,7 +9,7 @@ namespace mural {
 
 using Kind = ConnectionDescription::Kind;
 
-TEST(ConnectionDescription, readsWhatItWrites) {
+TEST(ConnectionDescription, parsesItsOwnOutput) {
     const ConnectionDescription all[] = {
         {},
         {.kind = Kind::SharedMemory, .host = {}},
@@ -29,7 +29,7 @@ TEST(ConnectionDescription, readsWhatItWrites) {
     }
 }
 
-TEST(ConnectionDescription, refusesWithTheReason) {
+TEST(ConnectionDescription, rejectsInvalidTextWithAReason) {
     const std::pair<const char*, const char*> all[] = {
         {"", "unknown kind"},
         {"Udp://a:1", "unknown kind"},
@@ -63,7 +63,7 @@ TEST(ConnectionDescription, refusesWithTheReason) {
     }
 }
 
-TEST(ConnectionDescription, groupsHaveParameters) {
+TEST(ConnectionDescription, parsesGroupParameters) {
     const auto options = [](const char* text) { return rsp::groupOptionsOf(parseConnectionDescription(text).value()); };
     auto good = options("rsp://239.0.0.1:5000?interface=eth1&rate=800mbit&seal=siphash&stalled=wait&stalled-ms=70&window=128&multicast=off&parity=off");
     ASSERT_TRUE(good) << good.error().message;
@@ -93,7 +93,7 @@ TEST(ConnectionDescription, groupsHaveParameters) {
     }
 }
 
-TEST(ConnectionDescription, connectsOnlyToWhatHasAnOtherEnd) {
+TEST(ConnectionDescription, failsToConnectWithoutAPeer) {
     for (const char* text : {"pipe:", "shm:", "tcp://:80", "tcp://localhost:0", "nonsense", "rsp://239.0.0.1:5000", "nobodyhas://a:1"}) {
         EXPECT_FALSE(connectTo(text, Deadline::inMs(100))) << text;
     }

@@ -1,4 +1,4 @@
-// What every kind of connection must do, one suite over all of them.
+// The contract of all connections: one suite for every kind.
 #include <atomic>
 #include <gtest/gtest.h>
 #include <thread>
@@ -12,7 +12,7 @@ namespace mural::test {
 namespace {
 
 constexpr size_t kCapacityBytes = 4096;
-// More than a TCP connection's two kernel buffers ever hold.
+// More than both kernel buffers of a TCP connection hold.
 constexpr size_t kMoreThanFitsBytes = size_t{96} << 20;
 
 Deadline soon() {
@@ -47,7 +47,7 @@ std::vector<std::byte> bytesOf(std::string_view text) {
     return {all.begin(), all.end()};
 }
 
-// Sends `total` bytes in pieces up to `most`, while another thread reads them in other pieces.
+// Sends `total` bytes in pieces of up to `most` while another thread reads them in other pieces.
 void streamThrough(Connection& from, Connection& to, uint64_t seed, size_t total, size_t most) {
     std::vector<std::byte> source(most);
     ByteStream(seed).fill(source);
@@ -82,7 +82,7 @@ void streamThrough(Connection& from, Connection& to, uint64_t seed, size_t total
 
 } // namespace
 
-TEST_P(ConnectionTest, carriesBytesBothWays) {
+TEST_P(ConnectionTest, carriesBytesInBothDirections) {
     link();
     EXPECT_OK(a().write(bytesOf("hello"), late()));
     a().flush();
@@ -103,22 +103,22 @@ TEST_P(ConnectionTest, carriesBytesBothWays) {
     EXPECT_OK(a().read({}, soon()));
 }
 
-TEST_P(ConnectionTest, keepsRandomPiecesInOrder) {
+TEST_P(ConnectionTest, preservesOrderOfRandomPieces) {
     link();
     streamThrough(a(), b(), testSeed(), size_t{8} << 20, 3 * kCapacityBytes);
 }
 
-TEST_P(ConnectionTest, streamsMuchInSmallPieces) {
+TEST_P(ConnectionTest, streamsManySmallPieces) {
     link(size_t{1} << 20);
     streamThrough(b(), a(), testSeed(), size_t{32} << 20, 200);
 }
 
-TEST_P(ConnectionTest, streamsMuchInBigPieces) {
+TEST_P(ConnectionTest, streamsLargePieces) {
     link(size_t{1} << 20);
     streamThrough(a(), b(), testSeed(), size_t{mural::testing::rounds(512)} << 20, size_t{4} << 20);
 }
 
-TEST_P(ConnectionTest, streamsBothWaysAtOnce) {
+TEST_P(ConnectionTest, streamsInBothDirectionsConcurrently) {
     link();
     const uint64_t seed = testSeed();
     std::thread back([&] { streamThrough(b(), a(), seed, size_t{4} << 20, 10000); });
@@ -126,7 +126,7 @@ TEST_P(ConnectionTest, streamsBothWaysAtOnce) {
     back.join();
 }
 
-TEST_P(ConnectionTest, answersManySmallQuestions) {
+TEST_P(ConnectionTest, completesManySmallRoundTrips) {
     link();
     constexpr uint32_t kRounds = 2000;
     std::thread answerer([&] {
@@ -148,7 +148,7 @@ TEST_P(ConnectionTest, answersManySmallQuestions) {
     EXPECT_EQ(value, kRounds);
 }
 
-TEST_P(ConnectionTest, writerWaitsForTheReader) {
+TEST_P(ConnectionTest, blocksTheWriterUntilTheReaderReads) {
     link();
     std::vector<std::byte> all(kMoreThanFitsBytes);
     std::atomic<bool> finished = false;
@@ -166,7 +166,7 @@ TEST_P(ConnectionTest, writerWaitsForTheReader) {
     EXPECT_EQ(b().bytesRead(), kMoreThanFitsBytes);
 }
 
-TEST_P(ConnectionTest, writerGivesUpInTheMiddle) {
+TEST_P(ConnectionTest, reportsPartialWritesAtTheDeadline) {
     link();
     const std::vector<std::byte> all(kMoreThanFitsBytes);
     const auto result = a().write(all, Deadline::inMs(100));
@@ -181,7 +181,7 @@ TEST_P(ConnectionTest, writerGivesUpInTheMiddle) {
     EXPECT_FALSE(b().timedOut());
 }
 
-TEST_P(ConnectionTest, readerGivesUpInTheMiddle) {
+TEST_P(ConnectionTest, reportsPartialReadsAtTheDeadline) {
     link();
     EXPECT_OK(a().write(bytesOf("half"), late()));
     a().flush();
@@ -194,7 +194,7 @@ TEST_P(ConnectionTest, readerGivesUpInTheMiddle) {
     EXPECT_FALSE(b().read(whole, soon()));
 }
 
-TEST_P(ConnectionTest, readerGivesUpBeforeTheFirstByteAndGoesOn) {
+TEST_P(ConnectionTest, continuesAfterAReadThatTimedOutBeforeItsFirstByte) {
     link();
     std::vector<std::byte> four(4);
     for (int i = 0; i < 3; ++i) {
@@ -212,7 +212,7 @@ TEST_P(ConnectionTest, readerGivesUpBeforeTheFirstByteAndGoesOn) {
     EXPECT_FALSE(b().timedOut());
 }
 
-TEST_P(ConnectionTest, aPassedDeadlineStillTakesWhatIsThere) {
+TEST_P(ConnectionTest, returnsAvailableDataAfterTheDeadline) {
     link();
     EXPECT_OK(a().write(bytesOf("abc"), late()));
     a().flush();
@@ -223,8 +223,8 @@ TEST_P(ConnectionTest, aPassedDeadlineStillTakesWhatIsThere) {
     EXPECT_EQ(two, bytesOf("bc"));
 }
 
-// Single bytes: none can be cut in half, so each write is done or not done.
-TEST_P(ConnectionTest, writerGivesUpBeforeTheFirstByteAndGoesOn) {
+// Single bytes cannot be divided, so each write is either complete or has no effect.
+TEST_P(ConnectionTest, continuesAfterAWriteThatTimedOutBeforeItsFirstByte) {
     link();
     size_t written = 0;
     for (bool full = false; !full;) {
@@ -253,7 +253,7 @@ TEST_P(ConnectionTest, writerGivesUpBeforeTheFirstByteAndGoesOn) {
     EXPECT_EQ(wrong, 0U) << "of " << all.size();
 }
 
-TEST_P(ConnectionTest, deliversWhatWasWrittenBeforeClose) {
+TEST_P(ConnectionTest, deliversDataWrittenBeforeClose) {
     link();
     EXPECT_OK(a().write(bytesOf("bye"), late()));
     a().close();
@@ -267,10 +267,9 @@ TEST_P(ConnectionTest, deliversWhatWasWrittenBeforeClose) {
     EXPECT_FALSE(a().write(three, late()));
 }
 
-// The writer writes and closes just while the reader looks: many times, to meet each order of
-// events.
-TEST_P(ConnectionTest, losesNoLastByteToTheCloseAfterIt) {
-    const int rounds = GetParam() == LinkKind::Rsp ? 20 : 500; // a group takes 0.2 s to come together
+// The writer writes and closes while the reader polls, repeatedly, to cover every interleaving.
+TEST_P(ConnectionTest, deliversTheLastByteBeforeAConcurrentClose) {
+    const int rounds = GetParam() == LinkKind::Rsp ? 20 : 500; // a group takes 0.2 s to form
     for (int i = 0; i < rounds; ++i) {
         link();
         std::atomic<bool> go = false;
@@ -289,7 +288,7 @@ TEST_P(ConnectionTest, losesNoLastByteToTheCloseAfterIt) {
     }
 }
 
-TEST_P(ConnectionTest, destroyingAnEndClosesIt) {
+TEST_P(ConnectionTest, closesWhenAnEndIsDestroyed) {
     link();
     pair_.a.reset();
     std::vector<std::byte> one(1);
@@ -301,8 +300,7 @@ TEST_P(ConnectionTest, destroyingAnEndClosesIt) {
     EXPECT_FALSE(b().timedOut());
 }
 
-// Runs `blocked` on a thread until it sleeps, then closes `closing`; the thread must return with an
-// error.
+// Runs `blocked` on a thread until it sleeps, then closes `closing`. The thread must return an error.
 template <class Blocked> void expectCloseWakes(Blocked blocked, Connection& closing) {
     std::atomic<pid_t> id = 0;
     std::atomic<bool> failed = false;
@@ -322,7 +320,7 @@ template <class Blocked> void expectCloseWakes(Blocked blocked, Connection& clos
     EXPECT_LT(endNs - beginNs, 5 * kNsPerS);
 }
 
-TEST_P(ConnectionTest, closeWakesABlockedReaderOfEitherEnd) {
+TEST_P(ConnectionTest, wakesABlockedReaderWhenEitherEndCloses) {
     for (const bool ownEnd : {false, true}) {
         link();
         std::vector<std::byte> one(1);
@@ -331,7 +329,7 @@ TEST_P(ConnectionTest, closeWakesABlockedReaderOfEitherEnd) {
     }
 }
 
-TEST_P(ConnectionTest, closeWakesABlockedWriterOfEitherEnd) {
+TEST_P(ConnectionTest, wakesABlockedWriterWhenEitherEndCloses) {
     const std::vector<std::byte> all(kMoreThanFitsBytes);
     for (const bool ownEnd : {false, true}) {
         link();

@@ -1,4 +1,4 @@
-// What only libfabric's connections do; what all do is in connection_test.cpp.
+// Properties of libfabric connections only; connection_test.cpp covers the common contract.
 #include <gtest/gtest.h>
 #include <thread>
 #include <vector>
@@ -26,7 +26,7 @@ template <class T> void expectError(const Result<T>& result, const std::string& 
 
 } // namespace
 
-TEST_F(FabricTest, saysWhichProviderItHas) {
+TEST_F(FabricTest, namesItsProvider) {
     auto listener = listenAt("fabric://127.0.0.1:0?provider=tcp");
     ASSERT_TRUE(listener) << listener.error().message;
     const auto text = (*listener)->describe();
@@ -37,7 +37,7 @@ TEST_F(FabricTest, saysWhichProviderItHas) {
     EXPECT_EQ(description.value().parameters.at("provider"), "tcp") << text;
 }
 
-TEST_F(FabricTest, refusesWithTheReason) {
+TEST_F(FabricTest, rejectsInvalidDescriptionsWithAReason) {
     const Deadline deadline = Deadline::inMs(5000);
     expectError(listenAt("fabric://127.0.0.1:0?provider=carrierpigeon"), "no provider");
     expectError(listenAt("fabric://127.0.0.1:0?speed=1"), "there is no parameter \"speed\"");
@@ -58,7 +58,7 @@ TEST_F(FabricTest, keepsItsDeadlines) {
     EXPECT_LT(tookNs, 5 * kNsPerS);
 }
 
-// Both directions wait: one sleeps at libfabric's descriptors, the other for what that one finds.
+// Both directions wait: one thread polls libfabric's descriptors, the other waits for that thread.
 TEST_F(FabricTest, sleepsWhileItWaits) {
     LinkedPair link = makeLinkedPair(LinkKind::Fabric, 0);
     ASSERT_TRUE(link.a && link.b);
@@ -78,8 +78,8 @@ TEST_F(FabricTest, sleepsWhileItWaits) {
     EXPECT_LT(writerNs, 100 * kNsPerMs) << "busy waiting";
 }
 
-// By credits, not by what libfabric or a socket would take beyond them: cards with RDMA take nothing.
-TEST_F(FabricTest, aSlowReaderHoldsTheWriterAtTheWindow) {
+// Credits are the limit, not additional buffers of libfabric or a socket: RDMA hardware has none.
+TEST_F(FabricTest, blocksTheWriterAtTheWindowOfASlowReader) {
     constexpr size_t kMessageBytes = (size_t{64} << 10) - 8;
     constexpr size_t kWindow = 16;
     LinkedPair link = makeLinkedPair(LinkKind::Fabric, 0);
@@ -92,21 +92,21 @@ TEST_F(FabricTest, aSlowReaderHoldsTheWriterAtTheWindow) {
         EXPECT_LE(written, kWindow + 1) << "the window, and one that is gathered";
         EXPECT_GE(written, kWindow - 4) << "the reader may have one still, and owe three credits";
         EXPECT_TRUE(link.a->timedOut());
-        std::thread flushing([&] { link.a->flush(); }); // the gathered one goes when there are credits
+        std::thread flushing([&] { link.a->flush(); }); // the buffered message is sent when credits arrive
         for (size_t i = 0; i < written; ++i) ASSERT_TRUE(link.b->read(got, Deadline::inMs(5000))) << i;
         flushing.join();
     }
 }
 
-// All that was written arrives, also what the other end had no room for when the writer closed; with answers unread on the way.
-TEST_F(FabricTest, closeLosesNothing) {
+// All written data arrives, including data without credits when the writer closed, and with unread replies in flight.
+TEST_F(FabricTest, losesNothingOnClose) {
     constexpr size_t kBytes = 1'000'000; // nearly the window
     for (int round = 0; round < 20; ++round) {
         LinkedPair link = makeLinkedPair(LinkKind::Fabric, 0);
         ASSERT_TRUE(link.a && link.b);
         std::vector<std::byte> sent(kBytes);
         ByteStream(static_cast<uint64_t>(round)).fill(sent);
-        ASSERT_TRUE(link.b->write(sent, Deadline::inMs(5000))); // a never reads it
+        ASSERT_TRUE(link.b->write(sent, Deadline::inMs(5000))); // `a` never reads it
         ASSERT_TRUE(link.a->write(sent, Deadline::inMs(5000)));
         link.a.reset();
         std::vector<std::byte> got(kBytes);

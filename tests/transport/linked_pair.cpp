@@ -71,10 +71,10 @@ LinkedPair makeFabricPair() {
 
 LinkedPair makeRspPair() {
     rsp::GroupOptions options;
-    options.group = "239.255.77.87:" + std::to_string(20'000 + getpid() % 20'000); // tests run beside each other
+    options.group = "239.255.77.87:" + std::to_string(20'000 + getpid() % 20'000); // tests run concurrently
     options.interface = "lo";
     options.control = "127.0.0.1:0";
-    options.silentMs = options.stalledMs = 30'000; // busy machines
+    options.silentMs = options.stalledMs = 30'000; // for busy machines
     options.probeMs = 10'000;
     options.stalled = rsp::StallPolicy::Wait;
     options.windowDatagrams = 256;
@@ -102,7 +102,8 @@ std::string linkName(LinkKind kind) {
     return "Rsp";
 }
 
-// A build with libfabric has the plug-in, so that there a missing one fails; at run time libfabric itself may be gone.
+// A build with libfabric includes the plug-in, so a missing plug-in is a failure. libfabric itself may be missing at
+// run time.
 std::string whyNoLinks(LinkKind kind) {
     if (kind != LinkKind::Fabric) return {};
 #ifdef MURAL_HAS_FABRIC

@@ -1,4 +1,4 @@
-// Two connected ends of each kind, and a stream of bytes whose every place is known.
+// Connected pairs of each kind, and a stream of bytes that encode their position.
 #pragma once
 
 #include <array>
@@ -18,18 +18,17 @@ enum class LinkKind { Pipe, SharedMemory, Tcp, Secure, Fabric, Rsp };
 inline constexpr std::array kAllLinkKinds = {LinkKind::Pipe,   LinkKind::SharedMemory, LinkKind::Tcp,
                                             LinkKind::Secure, LinkKind::Fabric,       LinkKind::Rsp};
 std::string linkName(LinkKind kind);
-// Why this build or machine has no such links; empty: it has. Only plug-ins may be missing.
+// Why this build or machine lacks such links; empty: available. Only plug-ins may be missing.
 std::string whyNoLinks(LinkKind kind);
 
-// Both ends in this process; capacity counts for the rings only. Empty pointers when it failed (the
-// reason is on stderr).
+// Both ends in this process; capacity applies to rings only. Null pointers after a failure, with the reason on stderr.
 struct LinkedPair {
     std::unique_ptr<Connection> a;
     std::unique_ptr<Connection> b;
 };
 LinkedPair makeLinkedPair(LinkKind kind, size_t capacityBytes);
 
-// Deterministic bytes in one pass: fills `into` with what follows in the stream.
+// A deterministic byte sequence: fills `into` with its continuation.
 class ByteStream {
 public:
     explicit ByteStream(uint64_t seed)
@@ -43,7 +42,7 @@ private:
     int bytesLeft_ = 0;
 };
 
-// Order-sensitive, independent of how the bytes are cut.
+// Order-sensitive, independent of the division into pieces.
 class Checksum {
 public:
     void add(std::span<const std::byte> bytes);
@@ -56,14 +55,13 @@ private:
     size_t restBytes_ = 0;
 };
 
-// MURAL_TEST_SEED or a new one each time; printed, so that a failure can be repeated.
+// MURAL_TEST_SEED, or a new seed each time. Printed, so that a failure can be repeated.
 uint64_t testSeed();
 
-// Sizes spread evenly over the orders of magnitude from 1 to most.
+// Sizes distributed evenly over the orders of magnitude from 1 to most.
 size_t randomSize(std::mt19937_64& random, size_t most);
 
-// True when the thread sleeps in the kernel before the deadline: for tests that need a blocked
-// peer.
+// Returns true if the thread sleeps in the kernel before the deadline, for tests with a blocked peer.
 bool waitUntilAsleep(pid_t thread, Deadline deadline);
 pid_t currentThread();
 

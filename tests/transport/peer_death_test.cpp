@@ -1,4 +1,4 @@
-// A peer process that is killed: noticed soon, and never before its last bytes are read.
+// A killed peer process is detected promptly, and never before its last bytes are read.
 #include <atomic>
 #include <csignal>
 #include <functional>
@@ -26,7 +26,7 @@ Deadline late() {
         pause();
 }
 
-// A process that plays `role` at the other end; killed and reaped at the latest by the destructor.
+// A process that runs `role` at the other end. The destructor kills and reaps it.
 class PeerProcess {
 public:
     PeerProcess(LinkKind kind, size_t capacityBytes, const Role& role) {
@@ -99,7 +99,7 @@ protected:
     }
 };
 
-// Calls `blocked` on a thread, kills the peer while that sleeps, gives the time until it returned.
+// Calls `blocked` on a thread, kills the peer while that sleeps, and returns the time until it returned.
 template <class Blocked> int64_t killWhileBlockedNs(PeerProcess& peer, Blocked blocked) {
     std::atomic<pid_t> id = 0;
     int64_t endNs = 0;
@@ -117,12 +117,12 @@ template <class Blocked> int64_t killWhileBlockedNs(PeerProcess& peer, Blocked b
     return endNs - beginNs;
 }
 
-// 50 ms are promised; a busy machine may add to it. Unnoticed, it would be the deadline's 20 s.
+// 50 ms is the guarantee; a busy machine may add to it. Without detection the deadline of 20 s would apply.
 constexpr int64_t kNoticedNs = 5 * kNsPerS;
 
 } // namespace
 
-TEST_P(PeerDeathTest, whileTheReaderWaits) {
+TEST_P(PeerDeathTest, endsAWaitingRead) {
     PeerProcess peer(GetParam(), 4096, [](Connection&) { waitToBeKilled(); });
     ASSERT_TRUE(peer.linked());
     std::vector<std::byte> one(1);
@@ -134,7 +134,7 @@ TEST_P(PeerDeathTest, whileTheReaderWaits) {
     RecordProperty("noticedAfterUs", static_cast<int>(tookNs / 1000));
 }
 
-TEST_P(PeerDeathTest, whileTheWriterWaits) {
+TEST_P(PeerDeathTest, endsAWaitingWrite) {
     PeerProcess peer(GetParam(), 4096, [](Connection&) { waitToBeKilled(); });
     ASSERT_TRUE(peer.linked());
     const std::vector<std::byte> all(size_t{96} << 20);
@@ -145,7 +145,7 @@ TEST_P(PeerDeathTest, whileTheWriterWaits) {
     EXPECT_FALSE(peer.connection().timedOut());
 }
 
-TEST_P(PeerDeathTest, afterItsLastBytes) {
+TEST_P(PeerDeathTest, isReportedAfterThePeersLastBytes) {
     constexpr size_t kBytes = 100000;
     PeerProcess peer(GetParam(), size_t{1} << 20, [](Connection& end) {
         std::vector<std::byte> last(kBytes);
@@ -168,7 +168,7 @@ TEST_P(PeerDeathTest, afterItsLastBytes) {
     EXPECT_FALSE(peer.connection().timedOut());
 }
 
-TEST_P(PeerDeathTest, isNotHiddenByShortDeadlines) {
+TEST_P(PeerDeathTest, isDetectedWithShortDeadlines) {
     PeerProcess peer(GetParam(), 4096, [](Connection&) { waitToBeKilled(); });
     ASSERT_TRUE(peer.linked());
     std::vector<std::byte> one(1);
@@ -179,7 +179,7 @@ TEST_P(PeerDeathTest, isNotHiddenByShortDeadlines) {
     EXPECT_FALSE(peer.connection().timedOut());
 }
 
-TEST_P(PeerDeathTest, inTheMiddleOfAMessage) {
+TEST_P(PeerDeathTest, endsAPartialMessage) {
     PeerProcess peer(GetParam(), 4096, [](Connection& end) {
         const std::vector<std::byte> some(100);
         if (!end.write(some, late()))

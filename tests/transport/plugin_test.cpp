@@ -1,4 +1,4 @@
-// Plug-ins: those that fit carry bytes, all others are refused by one line that says why.
+// Valid plug-ins carry bytes; others are rejected with a one-line reason.
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ void expectRefused(const std::string& scheme, const std::string& reason, const s
 
 } // namespace
 
-TEST(Plugin, isRefusedWithTheReason) {
+TEST(Plugin, isRejectedWithAReason) {
     expectRefused("nobodyhas", "there is no plug-in");
     expectRefused("noentry", "has no function mural_get_transport_plugin");
     expectRefused("older", "version 0");
@@ -32,7 +32,7 @@ TEST(Plugin, isRefusedWithTheReason) {
     expectRefused("renamed", "carries the scheme \"other\"");
 }
 
-TEST(Plugin, isRefusedWhenItIsNoLibrary) {
+TEST(Plugin, isRejectedWhenItIsNoLibrary) {
     const auto folder = std::filesystem::temp_directory_path() / ("mural_plugin_test." + std::to_string(getpid()));
     std::filesystem::create_directory(folder);
     std::ofstream(folder / "libmural_transport_text.so") << "no library\n";

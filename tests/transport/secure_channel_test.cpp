@@ -25,7 +25,7 @@ struct Pair {
     SecureChannel host;
     std::vector<Bytes> atMember;
     std::vector<Bytes> atHost;
-    std::string error; // the first
+    std::string error; // the first error
 
     explicit Pair(uint8_t secret = 1, uint8_t expected = 1)
         : member(SecureChannel::connecting("node-1", secretOf(secret))),
@@ -34,7 +34,7 @@ struct Pair {
               return secretOf(expected);
           })) {}
 
-    // Until nobody has anything to say, in pieces of pieceBytes. `change` may spoil what is on the way.
+    // Exchanges data in pieces of pieceBytes until both ends are idle. `change` may modify data in transit.
     void talk(size_t pieceBytes = SIZE_MAX, const std::function<void(Bytes&)>& change = {}) {
         for (bool any = true; any && error.empty();) {
             any = move(member, host, atHost, pieceBytes, change);
@@ -57,7 +57,7 @@ struct Pair {
     }
 };
 
-TEST(SecureChannel, CarriesMessagesBothWays) {
+TEST(SecureChannel, carriesMessagesInBothDirections) {
     for (const size_t pieceBytes : {size_t{1}, size_t{7}, SIZE_MAX}) {
         Pair p;
         p.talk(pieceBytes);
@@ -80,7 +80,7 @@ TEST(SecureChannel, CarriesMessagesBothWays) {
     }
 }
 
-TEST(SecureChannel, HidesWhatItCarries) {
+TEST(SecureChannel, hidesItsContent) {
     Pair p;
     p.talk();
     const Bytes secret = bytesOf("a word that nobody may read");
@@ -89,7 +89,7 @@ TEST(SecureChannel, HidesWhatItCarries) {
     EXPECT_EQ(std::search(wire.begin(), wire.end(), secret.begin(), secret.end()), wire.end());
 }
 
-TEST(SecureChannel, WrongSecretsAndStrangersStayOutside) {
+TEST(SecureChannel, rejectsWrongSecretsAndStrangers) {
     Pair wrong(1, 2);
     wrong.talk();
     EXPECT_NE(wrong.error.find("secret"), std::string::npos) << wrong.error;
@@ -108,8 +108,8 @@ TEST(SecureChannel, WrongSecretsAndStrangersStayOutside) {
     EXPECT_NE(r.error().message.find("version"), std::string::npos) << r.error().message;
 }
 
-// Who knows a secret of another session's records can't use them again: both ends begin with new keys.
-TEST(SecureChannel, RecordsOfAnotherConnectionAreRefused) {
+// Records of another session with the same secret are useless: both ends create new keys.
+TEST(SecureChannel, rejectsRecordsOfAnotherConnection) {
     Pair a;
     a.talk();
     ASSERT_TRUE(a.member.send(bytesOf("once")));
@@ -122,23 +122,23 @@ TEST(SecureChannel, RecordsOfAnotherConnectionAreRefused) {
     EXPECT_FALSE(a.host.input(record, a.atHost)) << "the same record again";
 }
 
-TEST(SecureChannel, AnyChangedBitIsNoticed) {
+TEST(SecureChannel, detectsAnyChangedBit) {
     std::mt19937 random(7);
     for (int i = 0; i < 3000; ++i) {
         Pair p;
-        size_t turn = random() % 4; // which piece of the talk is spoiled
+        size_t turn = random() % 4; // which piece is modified
         const auto spoil = [&](Bytes& bytes) {
             if (turn-- != 0) return;
             bytes[random() % bytes.size()] ^= static_cast<std::byte>(1u << random() % 8);
         };
         p.talk(SIZE_MAX, spoil);
         if (p.error.empty() && p.member.send(bytesOf("genuine"))) p.talk(SIZE_MAX, spoil);
-        // A changed length may leave the host waiting; a message that is not genuine never comes.
+        // A modified length may leave the host waiting, but a forged message never arrives.
         for (const Bytes& m : p.atHost) EXPECT_EQ(m, bytesOf("genuine"));
     }
 }
 
-TEST(SecureChannel, LongMessagesAndLongerOnes) {
+TEST(SecureChannel, carriesLongMessagesAndRejectsLongerOnes) {
     Pair p;
     p.talk();
     const Bytes most(SecureChannel::kMostMessageBytes, std::byte{3});

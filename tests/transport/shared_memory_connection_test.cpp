@@ -10,7 +10,7 @@
 
 namespace mural {
 
-TEST(SharedMemoryConnection, takesOnlyPowersOfTwo) {
+TEST(SharedMemoryConnection, acceptsOnlyPowersOfTwo) {
     for (const size_t bytes : {size_t{0}, size_t{63}, size_t{32}, size_t{4097}, size_t{1} << 31}) {
         const auto offer = offerSharedMemory(bytes);
         ASSERT_FALSE(offer) << bytes;
@@ -21,7 +21,7 @@ TEST(SharedMemoryConnection, takesOnlyPowersOfTwo) {
     close(offer->peerFd);
 }
 
-TEST(SharedMemoryConnection, offersADescriptorThatChildrenInherit) {
+TEST(SharedMemoryConnection, offersAnInheritableDescriptor) {
     auto offer = offerSharedMemory(4096);
     ASSERT_TRUE(offer);
     EXPECT_EQ(fcntl(offer->peerFd, F_GETFD) & FD_CLOEXEC, 0);
@@ -30,7 +30,7 @@ TEST(SharedMemoryConnection, offersADescriptorThatChildrenInherit) {
     EXPECT_NE(fcntl(offer->peerFd, F_GETFD) & FD_CLOEXEC, 0) << "but grandchildren do not";
 }
 
-TEST(SharedMemoryConnection, refusesDescriptorsThatCarryNothing) {
+TEST(SharedMemoryConnection, rejectsInvalidDescriptors) {
     EXPECT_FALSE(openSharedMemory(-1));
     EXPECT_FALSE(openSharedMemory(open("/dev/null", O_RDONLY)));
     int ends[2];
@@ -47,7 +47,7 @@ TEST(SharedMemoryConnection, canBeOpenedOnlyOnce) {
     EXPECT_FALSE(openSharedMemory(again));
 }
 
-TEST(SharedMemoryConnection, noticesAPeerThatNeverOpened) {
+TEST(SharedMemoryConnection, detectsAPeerThatNeverOpened) {
     auto offer = offerSharedMemory(4096);
     ASSERT_TRUE(offer);
     EXPECT_TRUE(offer->connection->alive());
@@ -58,7 +58,7 @@ TEST(SharedMemoryConnection, noticesAPeerThatNeverOpened) {
     EXPECT_FALSE(offer->connection->timedOut());
 }
 
-// A program that forks has copies of both; ending the child must not end the parent's connection.
+// A forked program has copies of both ends; the end of the child must not close the parent's connection.
 TEST(SharedMemoryConnection, survivesAForkedCopy) {
     auto offer = offerSharedMemory(4096);
     ASSERT_TRUE(offer);

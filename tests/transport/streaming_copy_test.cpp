@@ -8,8 +8,8 @@
 
 namespace mural::test {
 
-// Every alignment of both sides, around the size from which lines are streamed.
-TEST(StreamingCopy, copiesExactlyTheBytesAsked) {
+// Covers every alignment of both sides, around the size from which stores are streamed.
+TEST(StreamingCopy, copiesExactlyTheRequestedBytes) {
     constexpr size_t kMargin = 128;
     for (const size_t size : {size_t{0}, size_t{1}, kStreamingCopyBytes - 1, kStreamingCopyBytes,
                               kStreamingCopyBytes + 1, 3 * kStreamingCopyBytes + 63}) {

@@ -17,7 +17,7 @@ Deadline late() {
     return Deadline::inMs(20000);
 }
 
-// One byte there, one back.
+// Sends one byte in each direction.
 void expectTalk(Listener& listener, const std::string& description) {
     auto a = connectTo(description, late());
     ASSERT_TRUE(a) << a.error().message;
@@ -38,7 +38,7 @@ bool hasIpv6() {
     return fd >= 0 && listenTcp("::1", 0).ok();
 }
 
-// A port where nobody listens: one that was free a moment ago.
+// A port without a listener: one that was free a moment ago.
 uint16_t closedPort() {
     auto listener = listenTcp("127.0.0.1", 0);
     return parseConnectionDescription((*listener)->describe()).value().port;
@@ -46,14 +46,14 @@ uint16_t closedPort() {
 
 } // namespace
 
-TEST(TcpConnection, overIpv4) {
+TEST(TcpConnection, connectsOverIpv4) {
     auto listener = listenTcp("127.0.0.1", 0);
     ASSERT_TRUE(listener) << listener.error().message;
     EXPECT_TRUE((*listener)->describe().starts_with("tcp://127.0.0.1:"));
     expectTalk(**listener, (*listener)->describe());
 }
 
-TEST(TcpConnection, overIpv6) {
+TEST(TcpConnection, connectsOverIpv6) {
     if (!hasIpv6())
         GTEST_SKIP() << "this machine has no IPv6 loopback";
     auto listener = listenTcp("::1", 0);
@@ -62,14 +62,14 @@ TEST(TcpConnection, overIpv6) {
     expectTalk(**listener, (*listener)->describe());
 }
 
-TEST(TcpConnection, byName) {
+TEST(TcpConnection, connectsByName) {
     auto listener = listenTcp("localhost", 0);
     ASSERT_TRUE(listener) << listener.error().message;
     const uint16_t port = parseConnectionDescription((*listener)->describe()).value().port;
     expectTalk(**listener, tcpText("localhost", port));
 }
 
-TEST(TcpConnection, listeningEverywhereTellsAHostName) {
+TEST(TcpConnection, reportsAHostNameWhenListeningOnAllAddresses) {
     for (const char* everywhere : {"", "*"}) {
         auto listener = listenTcp(everywhere, 0);
         ASSERT_TRUE(listener) << listener.error().message;
@@ -85,7 +85,7 @@ TEST(TcpConnection, listeningEverywhereTellsAHostName) {
     }
 }
 
-TEST(TcpConnection, saysWhyItCantConnect) {
+TEST(TcpConnection, explainsAFailedConnect) {
     const uint16_t port = closedPort();
     const auto refused = connectTcp("127.0.0.1", port, late());
     ASSERT_FALSE(refused);
@@ -98,8 +98,8 @@ TEST(TcpConnection, saysWhyItCantConnect) {
         << unknown.error().message;
 }
 
-// A full backlog lets further connects hang: what a silent host looks like, without one.
-TEST(TcpConnection, connectKeepsItsDeadline) {
+// With a full backlog further connects hang, as with a silent host.
+TEST(TcpConnection, keepsTheDeadlineOfConnect) {
     const int silent = socket(AF_INET, SOCK_STREAM, 0);
     sockaddr_in any{};
     any.sin_family = AF_INET;
@@ -123,7 +123,7 @@ TEST(TcpConnection, connectKeepsItsDeadline) {
     close(silent);
 }
 
-TEST(TcpConnection, acceptKeepsItsDeadline) {
+TEST(TcpConnection, keepsTheDeadlineOfAccept) {
     auto listener = listenTcp("127.0.0.1", 0);
     ASSERT_TRUE(listener);
     const auto nobody = (*listener)->accept(Deadline::inMs(30));
@@ -132,7 +132,7 @@ TEST(TcpConnection, acceptKeepsItsDeadline) {
     expectTalk(**listener, (*listener)->describe());
 }
 
-TEST(TcpConnection, cantListenOnATakenPort) {
+TEST(TcpConnection, failsToListenOnATakenPort) {
     auto listener = listenTcp("127.0.0.1", 0);
     ASSERT_TRUE(listener);
     const uint16_t port = parseConnectionDescription((*listener)->describe()).value().port;
@@ -143,7 +143,7 @@ TEST(TcpConnection, cantListenOnATakenPort) {
     EXPECT_FALSE(listenTcp("192.0.2.1", 0)) << "an address of nobody";
 }
 
-TEST(TcpConnection, gathersSmallWritesUntilFlush) {
+TEST(TcpConnection, buffersSmallWritesUntilFlush) {
     auto listener = listenTcp("127.0.0.1", 0);
     ASSERT_TRUE(listener);
     auto a = connectTo((*listener)->describe(), late());

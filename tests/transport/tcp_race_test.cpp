@@ -8,7 +8,7 @@
 namespace mural {
 namespace {
 
-// A TCP port of the loopback that is taken; when it does not listen, it refuses.
+// A bound TCP port on the loopback interface. Without a listener it refuses connections.
 struct Port {
     FileDescriptor socket;
     TcpAddress address;
@@ -25,7 +25,7 @@ Port portThat(bool listens, int backlog = 8) {
     return port;
 }
 
-TEST(TcpRace, TheAddressThatAnswersIsTaken) {
+TEST(TcpRace, usesTheAddressThatAnswers) {
     const Port deaf = portThat(false);
     const Port good = portThat(true);
     const std::array addresses{deaf.address, good.address};
@@ -34,7 +34,7 @@ TEST(TcpRace, TheAddressThatAnswersIsTaken) {
     EXPECT_TRUE(sameTcpAddress(peerTcpAddress(socket->get()), good.address));
 }
 
-TEST(TcpRace, WhereAllRefuseNobodyWaits) {
+TEST(TcpRace, failsAtOnceWhenAllRefuse) {
     const Port deaf = portThat(false);
     const std::array addresses{deaf.address, deaf.address};
     const int64_t began = monotonicNowNs();
@@ -45,7 +45,7 @@ TEST(TcpRace, WhereAllRefuseNobodyWaits) {
 }
 
 // A full backlog drops requests, as a bad network does.
-TEST(TcpRace, ALostRequestDoesNotHoldItUp) {
+TEST(TcpRace, isNotDelayedByALostRequest) {
     const Port full = portThat(true, 0);
     const Port good = portThat(true);
     const std::array one{full.address};
@@ -65,7 +65,7 @@ TEST(TcpRace, ALostRequestDoesNotHoldItUp) {
     EXPECT_NE(none.error().message.find("deadline"), std::string::npos) << none.error().message;
 }
 
-TEST(TcpRace, NoAddressIsNoHost) { EXPECT_FALSE(connectRacing({}, Deadline::inMs(100))); }
+TEST(TcpRace, failsWithoutAnAddress) { EXPECT_FALSE(connectRacing({}, Deadline::inMs(100))); }
 
 } // namespace
 } // namespace mural

@@ -11,7 +11,7 @@ Announcement example() {
     return a;
 }
 
-TEST(Announcement, IsReadAsItWasWritten) {
+TEST(Announcement, decodesItsOwnEncoding) {
     const auto a = decodeAnnouncement(encode(example()));
     ASSERT_TRUE(a);
     EXPECT_EQ(a->kind, AnnouncementKind::Here);
@@ -21,21 +21,21 @@ TEST(Announcement, IsReadAsItWasWritten) {
     EXPECT_EQ(a->version, "0.1.0");
 }
 
-TEST(Announcement, TextsThatAreTooLongAreCut) {
+TEST(Announcement, truncatesLongTexts) {
     Announcement a = example();
     a.name = std::string(200, 'x');
     EXPECT_EQ(decodeAnnouncement(encode(a))->name, std::string(kMostAnnouncedText, 'x'));
 }
 
-TEST(Announcement, WhatIsCutOrLongerIsNone) {
+TEST(Announcement, rejectsTruncatedAndLongerDatagrams) {
     auto bytes = encode(example());
     for (size_t size = 0; size < bytes.size(); ++size) EXPECT_FALSE(decodeAnnouncement(std::span(bytes).first(size))) << size;
     bytes.push_back(std::byte{0});
     EXPECT_FALSE(decodeAnnouncement(bytes));
 }
 
-// Names come to terminals: no control characters among them.
-TEST(Announcement, OtherVersionsKindsAndTextsAreNone) {
+// Names are printed on terminals, so control characters are invalid.
+TEST(Announcement, rejectsOtherVersionsKindsAndTexts) {
     const auto changed = [](size_t at, uint8_t value) {
         auto bytes = encode(example());
         bytes[at] = std::byte{value};
@@ -53,7 +53,7 @@ TEST(Announcement, OtherVersionsKindsAndTextsAreNone) {
     EXPECT_FALSE(decodeAnnouncement(encode(nowhere)));
 }
 
-TEST(Uuid, TextsAndBack) {
+TEST(Uuid, convertsToTextAndBack) {
     const auto uuid = uuidFromText("01234567-89ab-cdef-0123-456789ABCDEF");
     ASSERT_TRUE(uuid);
     EXPECT_EQ(uuidText(*uuid), "01234567-89ab-cdef-0123-456789abcdef");

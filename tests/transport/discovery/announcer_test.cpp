@@ -10,7 +10,7 @@ constexpr int64_t kMs = 1'000'000;
 class Told {
 public:
     Told() : announcer_(Announcement{AnnouncementKind::Here, 4278, {}, "wall1", "0.1.0"}, 7) {}
-    // Until a time, as a loop would that comes when it is told to; asked every so often, 0: never.
+    // Runs until a time, as an event loop with timers; queries every askedEveryNs, 0: never.
     void run(int64_t untilNs, int64_t askedEveryNs) {
         int64_t askNs = askedEveryNs;
         while (nowNs_ < untilNs) {
@@ -34,21 +34,21 @@ private:
     int64_t nowNs_ = 0;
 };
 
-TEST(Announcer, SaysItEverySecond) {
+TEST(Announcer, announcesEverySecond) {
     Told told;
     told.run(10'500 * kMs, 0);
     EXPECT_EQ(told.saidNs.size(), 11u);
 }
 
-TEST(Announcer, AnswersSoon) {
+TEST(Announcer, answersQueriesPromptly) {
     Told told;
     told.run(1'400 * kMs, 1'300 * kMs);
     ASSERT_EQ(told.saidNs.size(), 3u);
     EXPECT_LT(told.saidNs.back(), 1'350 * kMs);
 }
 
-// A thousand questions a second are answered as five are.
-TEST(Announcer, IsNotMadeToShout) {
+// A thousand queries per second get as many answers as five.
+TEST(Announcer, limitsItsRateUnderManyQueries) {
     Told told;
     told.run(10'000 * kMs, kMs);
     EXPECT_LE(told.saidNs.size(), 51u);
@@ -56,7 +56,7 @@ TEST(Announcer, IsNotMadeToShout) {
     for (size_t i = 1; i < told.saidNs.size(); ++i) EXPECT_GE(told.saidNs[i] - told.saidNs[i - 1], Announcer::kLeastBetweenNs);
 }
 
-TEST(Announcer, OthersWordsAreNoQuestions) {
+TEST(Announcer, ignoresAnnouncementsOfOthers) {
     Announcer announcer({AnnouncementKind::Here, 1, {}, "a", "0"}, 1);
     const int64_t dueNs = announcer.tick(0, [](auto) {});
     announcer.heard({AnnouncementKind::Here, 1, {}, "b", "0"}, kMs);

@@ -1,4 +1,4 @@
-// Announced and found over this machine's own network; the beacon alone, as Avahi may not run here.
+// Announcement and discovery over this machine's own network, without Avahi, which may not run here.
 #include "transport/discovery/announcing.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ bool has(const std::vector<FoundNode>& nodes, const Announcement& a) {
     return std::ranges::any_of(nodes, [&](const FoundNode& n) { return n.uuid == a.uuid && n.name == a.name && n.port == a.port; });
 }
 
-TEST(Discovery, WhoWaitsIsFoundAtOnceAndGoneAtOnce) {
+TEST(Discovery, findsANodeAtOnceAndDropsItAtOnce) {
     const Announcement one = self("one"), two = self("second");
     auto first = Announcing::start(one, kBeacon);
     auto second = Announcing::start(two, kBeacon);
@@ -34,7 +34,7 @@ TEST(Discovery, WhoWaitsIsFoundAtOnceAndGoneAtOnce) {
     if (!d.beaconTrouble.empty() && d.nodes.empty()) GTEST_SKIP() << "no multicast here: " << d.beaconTrouble;
     EXPECT_TRUE(both(d.nodes));
     EXPECT_LT(monotonicNowNs() - beganNs, 5 * kNsPerS);
-    // Its last word, long before its silence would tell.
+    // The goodbye ends it long before the silence limit.
     int64_t endedNs = 0;
     const auto gone = [&](const std::vector<FoundNode>& nodes) {
         if (endedNs == 0 && both(nodes)) {
@@ -49,7 +49,7 @@ TEST(Discovery, WhoWaitsIsFoundAtOnceAndGoneAtOnce) {
     EXPECT_LT(monotonicNowNs() - endedNs, NodeTable::kSilentNs - kNsPerS);
 }
 
-TEST(Discovery, WhatIsTurnedOffFindsNothing) {
+TEST(Discovery, findsNothingWhenDisabled) {
     const Announcement one = self("off");
     const auto first = Announcing::start(one, {false, false, {}});
     ASSERT_TRUE(first);
@@ -57,7 +57,7 @@ TEST(Discovery, WhatIsTurnedOffFindsNothing) {
     EXPECT_TRUE(discoverNodes({false, false, {}}, Deadline::inMs(50)).nodes.empty());
 }
 
-TEST(Discovery, AnInterfaceThatIsNotThereIsTold) {
+TEST(Discovery, reportsAMissingInterface) {
     const Discovered d = discoverNodes({true, false, "none7"}, Deadline::inMs(50));
     EXPECT_NE(d.beaconTrouble.find("\"none7\""), std::string::npos) << d.beaconTrouble;
 }

@@ -25,7 +25,7 @@ protected:
     NodeIdPlaces places_;
 };
 
-TEST_F(NodeId, IsTheSameEachTimeAndTellsNothing) {
+TEST_F(NodeId, isStableAndRevealsNothing) {
     machineId("0123456789abcdef0123456789abcdef");
     const std::string id = idText();
     EXPECT_EQ(idText(), id);
@@ -36,7 +36,7 @@ TEST_F(NodeId, IsTheSameEachTimeAndTellsNothing) {
     EXPECT_NE(idText(), id);
 }
 
-TEST_F(NodeId, WithoutAMachineIdOneIsMadeAndKept) {
+TEST_F(NodeId, isCreatedAndStoredWithoutAMachineId) {
     for (const char* text : {"", "uninitialized", "0123"}) {
         machineId(text);
         std::filesystem::remove_all(places_.state);
@@ -50,7 +50,7 @@ TEST_F(NodeId, WithoutAMachineIdOneIsMadeAndKept) {
     EXPECT_EQ(idText(), id);
 }
 
-TEST_F(NodeId, AnErrorSaysWhatToDo) {
+TEST_F(NodeId, namesARemedyOnError) {
     std::ofstream(folder_ + "/state") << "a file in the way\n";
     EXPECT_NE(idText().find("XDG_STATE_HOME"), std::string::npos) << idText();
 }

@@ -11,7 +11,7 @@ Announcement node(uint8_t number, const std::string& name, AnnouncementKind kind
     return a;
 }
 
-TEST(NodeTable, OneNodeIsListedOnce) {
+TEST(NodeTable, listsANodeOnce) {
     NodeTable table;
     table.heardBeacon(node(1, "wall1"), "10.0.0.1", 0);
     table.heardBeacon(node(1, "wall1"), "10.0.0.1", 1);
@@ -26,7 +26,7 @@ TEST(NodeTable, OneNodeIsListedOnce) {
     EXPECT_TRUE(nodes[1].byBeacon && nodes[1].byAvahi);
 }
 
-TEST(NodeTable, WhoIsSilentOrGoesIsGone) {
+TEST(NodeTable, removesSilentAndLeavingNodes) {
     NodeTable table;
     table.heardBeacon(node(1, "silent"), "10.0.0.1", 0);
     table.heardBeacon(node(2, "gone"), "10.0.0.2", 0);
@@ -44,7 +44,7 @@ TEST(NodeTable, WhoIsSilentOrGoesIsGone) {
     EXPECT_TRUE(table.nodes().empty());
 }
 
-TEST(NodeTable, ANodeThatWasStartedAgainIsWhereItSaysNow) {
+TEST(NodeTable, updatesTheAddressOfARestartedNode) {
     NodeTable table;
     table.heardBeacon(node(1, "wall1"), "10.0.0.1", 0);
     Announcement again = node(1, "wall1");
@@ -54,7 +54,7 @@ TEST(NodeTable, ANodeThatWasStartedAgainIsWhereItSaysNow) {
     EXPECT_EQ(table.nodes()[0].addresses, std::vector<std::string>{"10.0.0.7"});
 }
 
-TEST(NodeTable, MadeUpNodesFindAnEnd) {
+TEST(NodeTable, limitsTheNumberOfNodes) {
     NodeTable table;
     for (unsigned i = 0; i < 5000; ++i) {
         Announcement a = node(0, "x");

@@ -1,4 +1,4 @@
-// TCP by way of a plug-in: wrapped://host:port.
+// TCP through a plug-in: wrapped://host:port.
 #include "transport/plugin/exported_transport.hpp"
 
 namespace mural::test {

@@ -1,4 +1,4 @@
-// What a group waits for: sockets, a time that another thread sets, and a timeout; each wakes, and none for longer than once.
+// A group waits for sockets, a time set by another thread, and a timeout. Each ends one wait.
 #include <gtest/gtest.h>
 
 #include <poll.h>
@@ -13,7 +13,7 @@
 namespace mural::rsp {
 namespace {
 
-constexpr int64_t kLongNs = 20 * kNsPerS; // no test takes that long but by a fault
+constexpr int64_t kLongNs = 20 * kNsPerS; // reached only by a faulty wait
 
 struct SocketPair {
     std::array<int, 2> ends{-1, -1};
@@ -30,7 +30,7 @@ int64_t waitedNs(Arrivals& arrivals, int64_t timeoutNs, size_t sockets) {
     return quickNowNs() - beganNs;
 }
 
-TEST(Arrivals, ATimeoutIsOfNanoseconds) {
+TEST(Arrivals, waitsWithNanosecondResolution) {
     auto arrivals = Arrivals::open();
     ASSERT_TRUE(arrivals) << arrivals.error().message;
     int64_t shortestNs = kLongNs;
@@ -39,12 +39,12 @@ TEST(Arrivals, ATimeoutIsOfNanoseconds) {
         EXPECT_GE(tookNs, 200'000);
         shortestNs = std::min(shortestNs, tookNs);
     }
-    EXPECT_LT(shortestNs, kNsPerMs); // at least once, on a busy machine, too
+    EXPECT_LT(shortestNs, kNsPerMs); // holds at least once, even on a busy machine
     EXPECT_LT(waitedNs(*arrivals, 0, 0), kLongNs);
     EXPECT_LT(waitedNs(*arrivals, -kNsPerS, 0), kLongNs);
 }
 
-TEST(Arrivals, WhatIsAtASocketStaysUntilItIsFetched) {
+TEST(Arrivals, keepsASocketReadyUntilItIsRead) {
     SocketPair pair;
     auto arrivals = Arrivals::open();
     ASSERT_TRUE(arrivals && arrivals->add(pair.ends[0]));
@@ -59,7 +59,7 @@ TEST(Arrivals, WhatIsAtASocketStaysUntilItIsFetched) {
     EXPECT_TRUE(arrivals->wait(0).empty());
 }
 
-TEST(Arrivals, ATimeWakesWhoSleepsOnce) {
+TEST(Arrivals, wakesASleeperOnceAtTheSetTime) {
     auto arrivals = Arrivals::open();
     ASSERT_TRUE(arrivals);
     std::thread other([&] { arrivals->wakeAt(quickNowNs() + 20 * kNsPerMs); });
@@ -75,7 +75,7 @@ bool readableWithin(int descriptor, int64_t ms) {
     return poll(&one, 1, static_cast<int>(ms)) == 1;
 }
 
-TEST(TakeOverTimer, RingsOnceWhenNobodyPushesIt) {
+TEST(TakeOverTimer, firesOnceWhenNotPostponed) {
     auto timer = TakeOverTimer::open();
     ASSERT_TRUE(timer) << timer.error().message;
     EXPECT_FALSE(timer->rang(quickNowNs())) << "nobody has set it";
@@ -89,10 +89,10 @@ TEST(TakeOverTimer, RingsOnceWhenNobodyPushesIt) {
     EXPECT_FALSE(readableWithin(timer->descriptor(), 50));
 }
 
-TEST(TakeOverTimer, WhoPushesItInTimeIsNotTakenOverFrom) {
+TEST(TakeOverTimer, doesNotFireWhilePostponed) {
     auto timer = TakeOverTimer::open();
     ASSERT_TRUE(timer);
-    constexpr int64_t kAfterNs = 400 * kNsPerMs; // a busy machine may hold this test up for some of it
+    constexpr int64_t kAfterNs = 400 * kNsPerMs; // a busy machine may delay this test by part of it
     const int64_t beganNs = quickNowNs();
     int64_t pushedNs = beganNs;
     for (; quickNowNs() - beganNs < 2 * kAfterNs;) {
@@ -102,15 +102,15 @@ TEST(TakeOverTimer, WhoPushesItInTimeIsNotTakenOverFrom) {
     }
     EXPECT_TRUE(readableWithin(timer->descriptor(), 10'000));
     EXPECT_GE(quickNowNs() - pushedNs, kAfterNs / 2) << "half of it at least";
-    // Sooner is set, too: else a stream of ours would wait as long as another one.
+    // An earlier time replaces a later one, otherwise a short interval would wait for a longer one.
     const int64_t sooner = quickNowNs();
     timer->push(sooner, 1'000 * kNsPerS);
     timer->push(sooner, kNsPerMs);
     EXPECT_TRUE(readableWithin(timer->descriptor(), 10'000));
 }
 
-// Readable when its thread has been told; pushed before that thread has the lock.
-TEST(TakeOverTimer, WasPushedAfterItRang) {
+// The timer fired, but was postponed before its thread got the lock.
+TEST(TakeOverTimer, reportsAPostponementAfterItFired) {
     auto timer = TakeOverTimer::open();
     ASSERT_TRUE(timer);
     timer->push(quickNowNs(), kNsPerMs);
@@ -121,15 +121,15 @@ TEST(TakeOverTimer, WasPushedAfterItRang) {
     EXPECT_TRUE(timer->rang(quickNowNs()));
 }
 
-// Its thread would be woken for nothing: the leader looks again before it is needed.
-TEST(TakeOverTimer, ALeaderThatSleepsBeyondItPutsItOff) {
+// A wake-up would be useless: the leader polls again before it is needed.
+TEST(TakeOverTimer, isPostponedByALeaderThatSleepsLonger) {
     auto timer = TakeOverTimer::open();
     ASSERT_TRUE(timer);
     timer->keepBehind(quickNowNs(), kNsPerMs);
     EXPECT_FALSE(readableWithin(timer->descriptor(), 20)) << "nobody has set it";
     const int64_t beganNs = quickNowNs();
     timer->push(beganNs, 400 * kNsPerMs);
-    timer->keepBehind(beganNs + 100 * kNsPerMs, kNsPerS); // it is behind that already
+    timer->keepBehind(beganNs + 100 * kNsPerMs, kNsPerS); // it is later already
     timer->keepBehind(beganNs + 500 * kNsPerMs, 300 * kNsPerMs);
     ASSERT_TRUE(readableWithin(timer->descriptor(), 10'000));
     const int64_t tookNs = quickNowNs() - beganNs;
@@ -137,7 +137,7 @@ TEST(TakeOverTimer, ALeaderThatSleepsBeyondItPutsItOff) {
     EXPECT_TRUE(timer->rang(quickNowNs()));
 }
 
-TEST(QuickClock, IsTheSameClock) {
+TEST(QuickClock, agreesWithTheSystemClock) {
     for (int i = 0; i < 1000; ++i) {
         const int64_t before = monotonicNowNs();
         const int64_t quick = quickNowNs();

@@ -12,7 +12,7 @@ namespace {
 namespace asio = boost::asio;
 using Tcp = asio::ip::tcp;
 
-// A link to a peer that reads only when the test lets it.
+// A link to a peer that reads only on request.
 class LinkTest : public ::testing::Test {
 protected:
     void SetUp() override {
@@ -51,7 +51,7 @@ protected:
     std::vector<std::vector<std::byte>> messages_;
 };
 
-TEST_F(LinkTest, WhatIsOfferedToAPeerThatDoesNotReadWaitsUpToABound) {
+TEST_F(LinkTest, limitsQueuedDataForAPeerThatDoesNotRead) {
     constexpr size_t kBound = 1'000'000;
     const Tunnel datagram{1, std::vector<std::byte>(60'000)};
     size_t taken = 0;
@@ -64,7 +64,7 @@ TEST_F(LinkTest, WhatIsOfferedToAPeerThatDoesNotReadWaitsUpToABound) {
     EXPECT_LT(link_->waitingBytes(), kBound + 2 * datagram.datagram.size());
     EXPECT_FALSE(link_->offer(datagram, kBound));
     const size_t waited = link_->waitingBytes();
-    link_->send(Ping{}); // what must not be lost goes in
+    link_->send(Ping{}); // control messages are always queued
     EXPECT_GT(link_->waitingBytes(), waited);
 
     while (link_->waitingBytes() != 0 || peer_.available() != 0) {
@@ -75,8 +75,8 @@ TEST_F(LinkTest, WhatIsOfferedToAPeerThatDoesNotReadWaitsUpToABound) {
     EXPECT_TRUE(link_->offer(datagram, kBound));
 }
 
-// A host that leaves, or pings, is heard by who has megabytes of a stream before itself, and reads slowly.
-TEST_F(LinkTest, WordsGoBeforeWhatIsOffered) {
+// A member with megabytes of queued data that reads slowly still receives a goodbye or a ping.
+TEST_F(LinkTest, sendsControlMessagesBeforeQueuedData) {
     constexpr size_t kBound = 24'000'000;
     const Tunnel datagram{1, std::vector<std::byte>(1'400)};
     while (link_->offer(datagram, kBound)) {}
@@ -103,7 +103,7 @@ TEST_F(LinkTest, WordsGoBeforeWhatIsOffered) {
     EXPECT_TRUE(link_->ended());
 }
 
-TEST_F(LinkTest, WhatIsOfferedCanBeDropped) {
+TEST_F(LinkTest, dropsQueuedDataOnRequest) {
     const Tunnel datagram{1, std::vector<std::byte>(60'000)};
     while (link_->offer(datagram, 8'000'000)) {}
     exchange();

@@ -27,7 +27,7 @@ protected:
     SessionKeys keys_;
 };
 
-TEST_P(DatagramSeal, OpensWhatWasSealedOnce) {
+TEST_P(DatagramSeal, opensEachDatagramOnce) {
     DatagramSealer sealer(keys_, 3);
     DatagramOpener opener(keys_);
     opener.addMember(3);
@@ -45,7 +45,7 @@ TEST_P(DatagramSeal, OpensWhatWasSealedOnce) {
     EXPECT_EQ(opener.refused().all(), 100u);
 }
 
-TEST_P(DatagramSeal, HidesWhatIsSent) {
+TEST_P(DatagramSeal, hidesThePayload) {
     DatagramSealer sealer(keys_, 3);
     Bytes sealed = datagram(0x5a);
     sealer.seal(sealed);
@@ -54,7 +54,7 @@ TEST_P(DatagramSeal, HidesWhatIsSent) {
     else EXPECT_LT(same, 20);
 }
 
-TEST_P(DatagramSeal, RefusesOtherSessionsMembersAndKeys) {
+TEST_P(DatagramSeal, rejectsOtherSessionsMembersAndKeys) {
     DatagramOpener opener(keys_);
     opener.addMember(3);
     SessionKeys other = makeSessionKeys(keys_.seal);
@@ -68,19 +68,19 @@ TEST_P(DatagramSeal, RefusesOtherSessionsMembersAndKeys) {
     EXPECT_TRUE(empty.open(d).empty());
     EXPECT_EQ(empty.refused().stranger, 1u);
     if (keys_.seal == Seal::None) return;
-    other.session = keys_.session; // knows all but the secret
+    other.session = keys_.session; // knows everything except the secret
     d = datagram(1);
     DatagramSealer(other, 3).seal(d);
     EXPECT_TRUE(opener.open(d).empty());
     EXPECT_EQ(opener.refused().forged, 1u);
-    // Member 4 has the session's secret, but not a datagram of member 3 to show.
+    // Member 4 has the session's secret, but no valid datagram of member 3.
     d = datagram(1);
     DatagramSealer(keys_, 4).seal(d);
     EXPECT_TRUE(opener.open(d).empty());
     EXPECT_EQ(opener.refused().forged, 2u);
 }
 
-TEST_P(DatagramSeal, WhoHasLeftIsAStrangerAtOnce) {
+TEST_P(DatagramSeal, rejectsAMemberAfterItHasLeft) {
     DatagramSealer sealer(keys_, 3);
     DatagramOpener opener(keys_);
     opener.addMember(3);
@@ -96,7 +96,7 @@ TEST_P(DatagramSeal, WhoHasLeftIsAStrangerAtOnce) {
 
 class DatagramForgery : public DatagramSeal {};
 
-TEST_P(DatagramForgery, IsRefusedEachTime) {
+TEST_P(DatagramForgery, isRejectedEachTime) {
     std::mt19937 random(5);
     DatagramSealer sealer(keys_, 3);
     DatagramOpener opener(keys_);
@@ -104,7 +104,7 @@ TEST_P(DatagramForgery, IsRefusedEachTime) {
     Bytes sealed = datagram(9, 20);
     sealer.seal(sealed);
     size_t accepted = 0;
-    constexpr int kTries = 350'000; // by three seals
+    constexpr int kTries = 350'000; // for each of three seals
     for (int i = 0; i < kTries; ++i) {
         Bytes d = sealed;
         if (random() % 16 == 0) d.resize(random() % d.size());
@@ -126,15 +126,15 @@ INSTANTIATE_TEST_SUITE_P(
     Seals, DatagramSeal, testing::Values(Seal::None, Seal::Tag, Seal::AesGcm, Seal::ChaCha), testName);
 INSTANTIATE_TEST_SUITE_P(Seals, DatagramForgery, testing::Values(Seal::Tag, Seal::AesGcm, Seal::ChaCha), testName);
 
-TEST(SessionKeys, MembersHaveKeysOfTheirOwn) {
+TEST(SessionKeys, differBetweenMembers) {
     const SessionKeys keys = makeSessionKeys(Seal::Tag);
     EXPECT_NE(memberKey(keys, 1), memberKey(keys, 2));
     EXPECT_EQ(memberKey(keys, 1), memberKey(keys, 1));
     EXPECT_NE(makeSessionKeys(Seal::Tag).secret, keys.secret);
 }
 
-// The published vector: key 00 to 0f, message 00 to 0e.
-TEST(DatagramCipher, IsSipHash24) {
+// The published test vector: key 00 to 0f, message 00 to 0e.
+TEST(DatagramCipher, matchesSipHash24) {
     Key key{};
     for (size_t i = 0; i < 16; ++i) key[i] = static_cast<std::byte>(i);
     Bytes d(15 + 8);
@@ -145,13 +145,13 @@ TEST(DatagramCipher, IsSipHash24) {
     for (size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(std::to_integer<uint8_t>(d[15 + i]), expected[i]);
 }
 
-TEST(ReplayWindow, TellsEachCounterOnce) {
+TEST(ReplayWindow, acceptsEachCounterOnce) {
     ReplayWindow w;
     EXPECT_FALSE(w.fresh(0));
     std::mt19937 random(4);
     std::vector<uint64_t> counters;
     for (uint64_t i = 1; i <= 50'000; ++i) counters.push_back(i);
-    // Out of order by less than the window.
+    // Reordered within the window.
     for (size_t i = 0; i + 4000 < counters.size(); i += 4000)
         std::shuffle(counters.begin() + static_cast<std::ptrdiff_t>(i), counters.begin() + static_cast<std::ptrdiff_t>(i + 4000), random);
     for (const uint64_t c : counters) {

@@ -11,7 +11,7 @@ namespace {
 
 using Bytes = std::vector<std::byte>;
 
-TEST(Sequence, IsOrderedAcrossTheWrap) {
+TEST(Sequence, comparesAcrossTheWrap) {
     const Sequence last(0xffffffff);
     EXPECT_LT(last, last + 1);
     EXPECT_EQ((last + 1).value(), 0u);
@@ -27,7 +27,7 @@ Bytes streamBytes(StreamDatagram d, size_t payloadBytes) {
     return bytes;
 }
 
-TEST(Datagram, StreamHeadsComeBack) {
+TEST(Datagram, decodesItsOwnStreamHeaders) {
     StreamDatagram d;
     d.type = Type::Parity;
     d.flags = flag::kRepair;
@@ -53,7 +53,7 @@ TEST(Datagram, StreamHeadsComeBack) {
     EXPECT_EQ(back->payload.size(), 40u);
 }
 
-TEST(Datagram, WhatIsOutOfBoundsIsNone) {
+TEST(Datagram, rejectsFieldsOutOfBounds) {
     StreamDatagram d;
     d.index = 31;
     EXPECT_TRUE(readStream(streamBytes(d, 1)));
@@ -81,7 +81,7 @@ TEST(Datagram, WhatIsOutOfBoundsIsNone) {
     EXPECT_FALSE(readHead(other)) << "another version";
 }
 
-TEST(Datagram, FeedbackComesBack) {
+TEST(Datagram, decodesItsOwnFeedback) {
     Feedback f;
     f.from = 3;
     f.to = 9;
@@ -116,8 +116,8 @@ TEST(Datagram, FeedbackComesBack) {
     EXPECT_FALSE(readFeedback(bytes)) << "misses what it does not span";
 }
 
-// Members say now and then what they have, asked or not: only who has sent something waits for that.
-TEST(Datagram, AnswersAreUrgentForWhoWaitsForThem) {
+// Members send feedback with and without a request. Only a writer with data in flight waits for it.
+TEST(Datagram, marksFeedbackUrgentForAWaitingWriter) {
     const Feedback f;
     Bytes bytes(feedbackBytes(f));
     writeFeedback(f, bytes);
@@ -129,7 +129,7 @@ TEST(Datagram, AnswersAreUrgentForWhoWaitsForThem) {
     EXPECT_TRUE(isUrgent(streamBytes(d, 1), false));
 }
 
-TEST(Datagram, NoBytesHurtTheParsers) {
+TEST(Datagram, survivesArbitraryBytes) {
     std::mt19937 random(3);
     Feedback f;
     f.entryCount = 5;

@@ -19,14 +19,14 @@ Bytes randomBytes(std::mt19937& random, size_t count) {
     return bytes;
 }
 
-TEST(Gf256, EachElementHasItsInverse) {
+TEST(Gf256, invertsEachElement) {
     for (unsigned a = 1; a < 256; ++a) {
         const auto element = static_cast<uint8_t>(a);
         EXPECT_EQ(gf256::multiply(element, gf256::inverse(element)), 1) << a;
     }
 }
 
-TEST(Gf256, VectorsAndBytesAgree) {
+TEST(Gf256, givesEqualResultsForVectorsAndBytes) {
     std::mt19937 random(1);
     for (size_t count : {0, 1, 2, 15, 16, 17, 31, 33, 64, 100, 1430, 8940}) {
         for (unsigned factor = 0; factor < 256; factor += count > 100 ? 17 : 1) {
@@ -40,11 +40,11 @@ TEST(Gf256, VectorsAndBytesAgree) {
     }
 }
 
-TEST(ErasureCode, TheFirstRowIsASum) {
+TEST(ErasureCode, usesASumAsFirstRow) {
     for (int column = 0; column < kMostInGroup; ++column) EXPECT_EQ(codeFactor(0, column), 1);
 }
 
-// k symbols of any lengths; `lost` of them are put back from rows drawn by lot.
+// Restores `lost` of k symbols of any lengths from randomly chosen rows.
 void loseAndSolve(std::mt19937& random, int k, int lost) {
     std::vector<Bytes> symbols;
     size_t longest = 0;
@@ -79,7 +79,7 @@ void loseAndSolve(std::mt19937& random, int k, int lost) {
     }
 }
 
-TEST(ErasureCode, AnyRowsPutAnyLossesBack) {
+TEST(ErasureCode, restoresAnyLossesFromAnyRows) {
     std::mt19937 random(2);
     for (int k = 1; k <= kMostInGroup; ++k)
         for (int lost = 1; lost <= k; ++lost) loseAndSolve(random, k, lost);

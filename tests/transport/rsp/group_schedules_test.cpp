@@ -1,4 +1,4 @@
-// Groups under random schedules.
+// Groups with random schedules.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -10,8 +10,8 @@
 namespace mural::rsp::test {
 namespace {
 
-// Members freeze, come, are killed, cut off and not reached, at random and while all write. Whom patience keeps loses nothing;
-// who is removed knows it, and the others go on. MURAL_SEEDS=first:count hunts for more.
+// Members freeze, join, die, are disconnected or unreachable by multicast, at random, while all write. A tolerated
+// member loses nothing; an evicted one is notified, and the others continue. MURAL_SEEDS=first:count tests more seeds.
 class RandomGroup {
 public:
     explicit RandomGroup(uint64_t seed)
@@ -60,7 +60,7 @@ private:
         case 2:
             if (thawNs_.contains(place)) return;
             group_.network.freeze(place);
-            // Three seconds are too long for an impatient group; three tenths are not.
+            // Three seconds exceed the limit of a group that evicts; 0.3 s do not.
             thawNs_[place] = group_.network.nowNs() + static_cast<int64_t>(random_() % (random_() % 3 == 0 ? 3000 : 300)) * kNsPerMs;
             return;
         case 3:
@@ -88,7 +88,7 @@ private:
         if (thawNs_.erase(place) != 0) group_.network.thaw(place);
         group_.deaf.erase(place);
     }
-    // All who are still in are live and know each other, and nobody else; all is written.
+    // All remaining members are live and agree on the membership; everything is written.
     [[nodiscard]] bool settled() const {
         const auto in = std::ranges::count_if(group_.processes, &Process::takesPart);
         return std::ranges::all_of(group_.processes, [&](const Process& p) {
@@ -102,7 +102,7 @@ private:
     SimulatedGroup group_;
 };
 
-TEST(GroupSimulation, RandomSchedules) {
+TEST(GroupSimulation, survivesRandomSchedules) {
     uint64_t first = 1;
     uint64_t count = mural::testing::rounds(15);
     if (const char* seeds = std::getenv("MURAL_SEEDS")) std::sscanf(seeds, "%lu:%lu", &first, &count);

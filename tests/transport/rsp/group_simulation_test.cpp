@@ -1,4 +1,4 @@
-// Groups on a simulated network: members come, go, die, freeze and are not reached, while each may write to all.
+// Groups on a simulated network: members join, leave, die, freeze and become unreachable while each may write to all.
 #include <gtest/gtest.h>
 
 #include "tests/transport/rsp/simulated_group.hpp"
@@ -6,7 +6,7 @@
 namespace mural::rsp::test {
 namespace {
 
-TEST(GroupSimulation, AllWriteToAll) {
+TEST(GroupSimulation, deliversWritesOfAllToAll) {
     SimulatedGroup group(1);
     for (int i = 0; i < 5; ++i) group.join();
     ASSERT_TRUE(group.run(2 * kNsPerS, [&] { return group.allLive(); }));
@@ -15,8 +15,8 @@ TEST(GroupSimulation, AllWriteToAll) {
     EXPECT_EQ(group.wrongBytes(), 0u);
 }
 
-// Each one's stream has all others as readers: what goes to and fro while nobody writes grows with the square of their number.
-TEST(GroupSimulation, WhoWritesNothingIsSeldomToldSo) {
+// Every member reads every stream, so idle traffic grows with the square of the number of members.
+TEST(GroupSimulation, limitsIdleTraffic) {
     SimulatedGroup group(12);
     constexpr uint64_t kOthers = 8;
     for (uint64_t i = 0; i < kOthers; ++i) group.join();
@@ -29,7 +29,7 @@ TEST(GroupSimulation, WhoWritesNothingIsSeldomToldSo) {
         const SenderCounters& after = group.processes[place].core.sender()->counters();
         const uint64_t words = (after.feedback - before[place].feedback) / kOthers;
         const uint64_t beats = after.polls - before[place].polls;
-        const uint64_t perSecond = place == 0 ? 10 : 1; // by the host's everybody is watched
+        const uint64_t perSecond = place == 0 ? 10 : 1; // the host's stream monitors all members
         EXPECT_LE(words, kSeconds * perSecond + 1) << place;
         EXPECT_GE(words, kSeconds * perSecond * 8 / 10) << place;
         EXPECT_LE(beats, kSeconds * perSecond + 1) << place;
@@ -38,7 +38,7 @@ TEST(GroupSimulation, WhoWritesNothingIsSeldomToldSo) {
     }
 }
 
-TEST(GroupSimulation, SixteenJoinAtOnceAtFivePercentLoss) {
+TEST(GroupSimulation, admitsSixteenSimultaneousJoinsAtFivePercentLoss) {
     for (uint64_t seed = 1; seed <= 100; ++seed) {
         SimulatedGroup group(seed);
         for (int i = 0; i < 16; ++i) group.network.faults(group.join()).loss = 0.05;
@@ -47,7 +47,7 @@ TEST(GroupSimulation, SixteenJoinAtOnceAtFivePercentLoss) {
     }
 }
 
-TEST(GroupSimulation, WhomMulticastDoesNotReachIsReachedThroughTheHost) {
+TEST(GroupSimulation, tunnelsToAMemberWithoutMulticast) {
     SimulatedGroup group(3);
     for (int i = 0; i < 4; ++i) group.join();
     group.deaf = {2, 3};
@@ -59,7 +59,7 @@ TEST(GroupSimulation, WhomMulticastDoesNotReachIsReachedThroughTheHost) {
     EXPECT_EQ(group.wrongBytes(), 0u);
 }
 
-TEST(GroupSimulation, AKilledMemberHoldsNobodyForLong) {
+TEST(GroupSimulation, continuesSoonAfterAMemberIsKilled) {
     SimulatedGroup group(4, [](GroupSettings& s) { s.rate.mostBytesPerS = 20e6; });
     for (int i = 0; i < 4; ++i) group.join();
     ASSERT_TRUE(group.run(kNsPerS, [&] { return group.allLive(); }));
@@ -75,13 +75,13 @@ TEST(GroupSimulation, AKilledMemberHoldsNobodyForLong) {
     EXPECT_EQ(group.processes[1].gone.at(*group.idOf(2)), GoneReason::Cut);
 }
 
-TEST(GroupSimulation, ASilentMemberIsRemovedWithinItsTime) {
+TEST(GroupSimulation, evictsASilentMemberInTime) {
     SimulatedGroup group(5, [](GroupSettings& s) { s.rate.mostBytesPerS = 20e6; });
     for (int i = 0; i < 3; ++i) group.join();
     ASSERT_TRUE(group.run(kNsPerS, [&] { return group.allLive(); }));
     group.processes[0].write(60 << 20);
     group.run(200 * kNsPerMs, [] { return false; });
-    group.network.faults(2).cut = true; // its cable; nobody tells
+    group.network.faults(2).cut = true; // an unplugged cable: no connection reset
     const int64_t cutNs = group.network.nowNs();
     ASSERT_TRUE(group.run(2 * kNsPerS, [&] { return group.processes[1].gone.contains(*group.idOf(2)); }));
     EXPECT_LE(group.network.nowNs() - cutNs, 1200 * kNsPerMs);
@@ -90,13 +90,13 @@ TEST(GroupSimulation, ASilentMemberIsRemovedWithinItsTime) {
     EXPECT_EQ(group.wrongBytes(), 0u);
 }
 
-TEST(GroupSimulation, WhomMulticastCeasesToReachGoesOnThroughTheHost) {
+TEST(GroupSimulation, tunnelsToAMemberThatLosesMulticast) {
     SimulatedGroup group(11, [](GroupSettings& s) { s.rate.mostBytesPerS = 20e6; });
     for (int i = 0; i < 3; ++i) group.join();
     ASSERT_TRUE(group.run(kNsPerS, [&] { return group.allLive(); }));
     for (auto& p : group.processes) p.write(20 << 20);
     group.run(200 * kNsPerMs, [] { return false; });
-    group.deaf = {2}; // as a switch that forgets who listens
+    group.deaf = {2}; // like a switch that forgets a subscription
     const MemberId deaf = *group.idOf(2);
     ASSERT_TRUE(group.run(2 * kNsPerS, [&] { return group.processes[1].rerouted.contains(deaf); }));
     EXPECT_TRUE(group.processes[0].rerouted.contains(deaf));
@@ -106,8 +106,8 @@ TEST(GroupSimulation, WhomMulticastCeasesToReachGoesOnThroughTheHost) {
     EXPECT_TRUE(group.processes[0].core.members().at(*group.idOf(1)).multicast);
 }
 
-// Stopped for long enough to be tried by its connection, which it may look at first when it goes on: its socket has all the rest.
-TEST(GroupSimulation, WhoFindsItsConnectionBeforeItsSocketHasLostNothing) {
+// A member that was stopped long enough for a tunnel may read its connection first. Its socket still holds the rest.
+TEST(GroupSimulation, losesNothingWhenTheTunnelIsReadBeforeTheSocket) {
     SimulatedGroup group(12, [](GroupSettings& s) { s.rate.mostBytesPerS = 20e6; });
     for (int i = 0; i < 3; ++i) group.join();
     ASSERT_TRUE(group.run(kNsPerS, [&] { return group.allLive(); }));
@@ -116,7 +116,7 @@ TEST(GroupSimulation, WhoFindsItsConnectionBeforeItsSocketHasLostNothing) {
     const MemberId stopped = *group.idOf(2);
     group.network.freeze(2);
     ASSERT_TRUE(group.run(900 * kNsPerMs, [&] { return group.processes[1].rerouted.contains(stopped); }));
-    group.run(100 * kNsPerMs, [] { return false; }); // polls go into its connection
+    group.run(100 * kNsPerMs, [] { return false; }); // polls enter its tunnel
     group.network.thaw(2);
     ASSERT_TRUE(group.run(60 * kNsPerS, [&] { return group.processes[0].wroteAll() && group.allRead(); }));
     EXPECT_GT(group.tunnelledBytes[2], 0u);
@@ -125,7 +125,7 @@ TEST(GroupSimulation, WhoFindsItsConnectionBeforeItsSocketHasLostNothing) {
     EXPECT_EQ(group.processes[0].core.sender()->counters().resent, 0u);
 }
 
-TEST(GroupSimulation, WhoWasOnlyStoppedIsSentToByMulticastAgainAtOnce) {
+TEST(GroupSimulation, returnsToMulticastAtOnceAfterAStop) {
     SimulatedGroup group(16, [](GroupSettings& s) {
         s.rate.mostBytesPerS = 20e6;
         s.silentNs = 4 * kNsPerS;
@@ -149,10 +149,10 @@ TEST(GroupSimulation, WhoWasOnlyStoppedIsSentToByMulticastAgainAtOnce) {
     for (const auto& p : group.processes) EXPECT_TRUE(p.gone.empty());
 }
 
-TEST(GroupSimulation, WhomMulticastReachesAgainIsSentToByItAgain) {
+TEST(GroupSimulation, returnsToMulticastWhenItReachesTheMemberAgain) {
     SimulatedGroup group(13, [](GroupSettings& s) { s.rate.mostBytesPerS = 5e6; });
     for (int i = 0; i < 3; ++i) group.join();
-    group.deaf = {2}; // from the beginning
+    group.deaf = {2}; // from the start
     ASSERT_TRUE(group.run(kNsPerS, [&] { return group.allLive(); }));
     const MemberId deaf = *group.idOf(2);
     for (auto& p : group.processes) p.write(40 << 20);
@@ -160,16 +160,16 @@ TEST(GroupSimulation, WhomMulticastReachesAgainIsSentToByItAgain) {
     group.deaf = {};
     ASSERT_TRUE(group.run(5 * kNsPerS, [&] { return group.processes[3].core.members().at(deaf).multicast; }));
     EXPECT_TRUE(group.processes[0].core.members().at(deaf).multicast);
-    group.deaf = {2}; // and it ceases to, once more
+    group.deaf = {2}; // lost a second time
     ASSERT_TRUE(group.run(3 * kNsPerS, [&] { return group.processes[3].rerouted.contains(deaf); }));
     ASSERT_TRUE(group.run(90 * kNsPerS, [&] { return group.processes[2].written == 40 << 20 && group.allRead(); }));
     EXPECT_EQ(group.wrongBytes(), 0u);
     for (const auto& p : group.processes) EXPECT_TRUE(p.gone.empty());
 }
 
-// A lost word of the control connection comes 200 ms late: the member can't have seen a probe in time. What flows by multicast
-// reaches it all the same, and is not to fill its connection for seconds.
-TEST(GroupSimulation, WhoLearnsLateThatItIsOneIsReachedByMulticastAllTheSame) {
+// A lost segment of the control connection arrives 200 ms late, so the member cannot see a probe in time. The multicast
+// stream reaches it anyway, and must not fill its tunnel for seconds.
+TEST(GroupSimulation, usesMulticastForAMemberWithALateWelcome) {
     SimulatedGroup group(15, [](GroupSettings& s) { s.rate.mostBytesPerS = 5e6; });
     group.join();
     group.lateControlNs[2] = GroupSettings{}.probeNs + 50 * kNsPerMs;
@@ -186,8 +186,8 @@ TEST(GroupSimulation, WhoLearnsLateThatItIsOneIsReachedByMulticastAllTheSame) {
     for (const auto& p : group.processes) EXPECT_TRUE(p.gone.empty());
 }
 
-// The host's probes are numbered from probeSeed on: those of the joining came before multicast ceased.
-TEST(GroupSimulation, AnAnswerToAnEarlierProbeDoesNotCount) {
+// The host numbers its probes from probeSeed. Those of the join were sent before multicast failed.
+TEST(GroupSimulation, ignoresRepliesToEarlierProbes) {
     SimulatedGroup group(14, [](GroupSettings& s) { s.rate.mostBytesPerS = 5e6; });
     for (int i = 0; i < 3; ++i) group.join();
     ASSERT_TRUE(group.run(kNsPerS, [&] { return group.allLive(); }));
@@ -200,7 +200,7 @@ TEST(GroupSimulation, AnAnswerToAnEarlierProbeDoesNotCount) {
     EXPECT_FALSE(host.members().at(deaf).multicast);
 }
 
-TEST(GroupSimulation, ASlowReaderIsNotTakenForUnreached) {
+TEST(GroupSimulation, doesNotTunnelToASlowReader) {
     SimulatedGroup group(12, [](GroupSettings& s) { s.stalled = StallPolicy::Wait; });
     for (int i = 0; i < 2; ++i) group.join();
     ASSERT_TRUE(group.run(kNsPerS, [&] { return group.allLive(); }));
@@ -213,7 +213,7 @@ TEST(GroupSimulation, ASlowReaderIsNotTakenForUnreached) {
     EXPECT_TRUE(group.run(10 * kNsPerS, allDone));
 }
 
-TEST(GroupSimulation, WhoDoesNotReadIsWaitedForOrEjectedAsIsAsked) {
+TEST(GroupSimulation, waitsForOrEjectsAMemberThatDoesNotReadAsConfigured) {
     for (const StallPolicy policy : {StallPolicy::Wait, StallPolicy::Eject}) {
         SimulatedGroup group(6, [&](GroupSettings& s) { s.stalled = policy; });
         for (int i = 0; i < 2; ++i) group.join();
@@ -228,7 +228,7 @@ TEST(GroupSimulation, WhoDoesNotReadIsWaitedForOrEjectedAsIsAsked) {
     }
 }
 
-TEST(GroupSimulation, TheHostsEndEndsTheGroup) {
+TEST(GroupSimulation, endsWithItsHost) {
     SimulatedGroup group(7);
     for (int i = 0; i < 2; ++i) group.join();
     ASSERT_TRUE(group.run(kNsPerS, [&] { return group.allLive(); }));
@@ -237,7 +237,7 @@ TEST(GroupSimulation, TheHostsEndEndsTheGroup) {
     EXPECT_TRUE(group.processes[1].core.over());
 }
 
-TEST(GroupSimulation, WhoCannotEncryptIsToldSo) {
+TEST(GroupSimulation, refusesAMemberWithoutEncryption) {
     SimulatedGroup group(8);
     const size_t place = group.join([](GroupSettings& s) { s.seals = 1; });
     group.run(kNsPerS, [] { return false; });
@@ -246,7 +246,7 @@ TEST(GroupSimulation, WhoCannotEncryptIsToldSo) {
     EXPECT_TRUE(group.processes[0].core.members().empty());
 }
 
-TEST(ControlMessage, NoBytesHurtTheDecoder) {
+TEST(ControlMessage, survivesArbitraryBytes) {
     std::mt19937 random(9);
     const std::vector<ControlMessage> messages{Join{}, Welcome{}, Probed{}, MemberCame{}, StreamStart{}, MemberGone{}, Tunnel{1, {std::byte{1}}},
         Refused{"no"}, Leave{}, Ping{}};

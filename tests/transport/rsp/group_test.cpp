@@ -13,19 +13,19 @@ std::byte byteAt(uint64_t place) { return static_cast<std::byte>((place * 0x9e37
 
 GroupOptions options(Seal seal) {
     GroupOptions o;
-    // Any free port: tests run beside each other.
+    // Any free port: tests run concurrently.
     o.group = "239.255.77.86:" + std::to_string(20'000 + ::getpid() % 20'000);
     o.interface = "lo";
     o.control = "127.0.0.1:0";
     o.secret.fill(std::byte{42});
     o.seal = seal;
-    // Busy machines are slow; what is asked here is not how fast they are.
+    // Generous limits for busy machines: speed is not tested here.
     o.silentMs = o.stalledMs = 30'000;
     o.probeMs = 10'000;
     return o;
 }
 
-// A host, and how others join it.
+// A host, and the options to join it.
 struct Hosted {
     std::unique_ptr<Group> host;
     GroupOptions join;
@@ -43,7 +43,7 @@ void startHost(Hosted& h, Seal seal) {
 
 class GroupTest : public ::testing::TestWithParam<Seal> {};
 
-TEST_P(GroupTest, AHostAndThreeMembersShareABigStream) {
+TEST_P(GroupTest, deliversALargeStreamToThreeMembers) {
     HOSTED(hosted, GetParam());
     auto& [host, join] = hosted;
     std::vector<std::unique_ptr<Group>> members;
@@ -90,11 +90,11 @@ std::string sealName(const ::testing::TestParamInfo<Seal>& tested) {
 }
 INSTANTIATE_TEST_SUITE_P(Seals, GroupTest, ::testing::Values(Seal::None, Seal::Tag, Seal::ChaCha), sealName);
 
-TEST(Group, MembersWriteToo) {
+TEST(Group, deliversWritesOfMembers) {
     HOSTED(hosted, Seal::Tag);
     auto& [host, join] = hosted;
     auto a = Group::join(join, Deadline::inMs(10'000));
-    join.multicast = false; // through the host
+    join.multicast = false; // tunnelled by the host
     auto b = Group::join(join, Deadline::inMs(10'000));
     ASSERT_TRUE(a && b);
     ASSERT_TRUE(host->waitForMembers(2, Deadline::inMs(10'000)) && (*a)->waitForMembers(2, Deadline::inMs(10'000)) &&
@@ -120,8 +120,8 @@ TEST(Group, MembersWriteToo) {
     }
 }
 
-// What comes is looked at in the window, a few bytes at a time, while more comes than fits in.
-TEST(Group, AReaderMayWorkWhereBytesLie) {
+// The reader processes data in the window, a few bytes at a time, while more arrives than the window holds.
+TEST(Group, letsAReaderWorkInPlace) {
     HOSTED(hosted, Seal::Tag);
     auto& [host, join] = hosted;
     auto member = Group::join(join, Deadline::inMs(10'000));
@@ -159,7 +159,7 @@ TEST(Group, AReaderMayWorkWhereBytesLie) {
     EXPECT_EQ(wrong, 0u);
 }
 
-// Reads a word of a member's stream.
+// Reads one word of a member's stream.
 Result<void> readWord(Group& group, MemberId from, Deadline deadline) {
     std::array<std::byte, 64> word{};
     for (size_t have = 0; have < word.size();) {
@@ -177,8 +177,8 @@ Result<void> writeWord(Group& group, Deadline deadline) {
     return {};
 }
 
-// Everybody waits for everybody: three threads at the host, and one of them sees to the sockets.
-TEST(Group, WordsGoAndComeWhoeverSeesToTheSockets) {
+// All ends wait for each other: three threads at the host, one of which serves the sockets.
+TEST(Group, exchangesWordsWhicheverThreadLeads) {
     HOSTED(hosted, Seal::Tag);
     auto& [host, join] = hosted;
     constexpr int kRounds = 300;
@@ -219,7 +219,7 @@ TEST(Group, WordsGoAndComeWhoeverSeesToTheSockets) {
     for (const std::string& failure : failures) EXPECT_EQ(failure, "");
 }
 
-// Each word is written when the one before was read. A wake that is lost costs 100 ms, and so many the deadline.
+// Writes each word after the previous one was read. A lost wake-up costs 100 ms, and many of them the deadline.
 void expectEachWordWakes(Group& writer, Group& reader, MemberId from) {
     constexpr int kRounds = 200;
     const Deadline deadline = Deadline::inMs(8'000);
@@ -241,8 +241,8 @@ void expectEachWordWakes(Group& writer, Group& reader, MemberId from) {
     thread.join();
 }
 
-// A tunnelled reader waits at sockets where nothing comes, and nothing is due: the group's thread, to which it comes, wakes it.
-TEST(Group, WhatComesByTheConnectionWakesWhoSeesToTheSockets) {
+// A tunnelled reader waits at idle sockets. The group's thread receives the data and wakes it.
+TEST(Group, wakesTheLeaderWhenTunnelledDataArrives) {
     HOSTED(hosted, Seal::Tag);
     auto& [host, join] = hosted;
     join.multicast = false;
@@ -252,8 +252,8 @@ TEST(Group, WhatComesByTheConnectionWakesWhoSeesToTheSockets) {
     expectEachWordWakes(*host, **member, kHost);
 }
 
-// Who waits for a silent member sees to the sockets for who waits for another.
-TEST(Group, WhoSeesToTheSocketsWakesTheOthers) {
+// A thread that waits for a silent member serves the sockets for one that waits for another member.
+TEST(Group, wakesOtherThreadsFromTheLeader) {
     HOSTED(hosted, Seal::Tag);
     auto& [host, join] = hosted;
     auto silent = Group::join(join, Deadline::inMs(10'000));
@@ -262,21 +262,23 @@ TEST(Group, WhoSeesToTheSocketsWakesTheOthers) {
     ASSERT_TRUE(host->waitForMembers(2, Deadline::inMs(10'000)));
     for (int i = 0; i < 2; ++i) ASSERT_TRUE(host->accept(Deadline::inMs(10'000)));
     std::thread leader([&] { EXPECT_TRUE(readWord(*host, (*silent)->self(), Deadline::inMs(30'000))); });
-    std::this_thread::sleep_for(std::chrono::milliseconds(20)); // it most likely waits by then; the test holds without
+    // the thread probably waits by then; the test does not depend on it
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
     expectEachWordWakes(**member, *host, (*member)->self());
     EXPECT_TRUE(writeWord(**silent, Deadline::inMs(10'000)));
     leader.join();
 }
 
-// The member's reader has seen to its sockets, and now does something else: the group's thread answers.
-TEST(Group, WhoDoesNotReadStillAnswers) {
+// The member's reader has served its sockets and now computes: the group's thread replies.
+TEST(Group, repliesWhileNoThreadReads) {
     HOSTED(hosted, Seal::Tag);
     auto& [host, join] = hosted;
     auto member = Group::join(join, Deadline::inMs(10'000));
     ASSERT_TRUE(member);
     ASSERT_TRUE(host->waitForMembers(1, Deadline::inMs(10'000)));
     std::thread reader([&] { EXPECT_TRUE(readWord(**member, kHost, Deadline::inMs(10'000))); });
-    std::this_thread::sleep_for(std::chrono::milliseconds(20)); // it most likely waits by then; the test holds without
+    // the thread probably waits by then; the test does not depend on it
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
     ASSERT_TRUE(writeWord(*host, Deadline::inMs(10'000)));
     reader.join();
     constexpr int kWords = 50;
@@ -288,8 +290,8 @@ TEST(Group, WhoDoesNotReadStillAnswers) {
     for (int i = 0; i < kWords; ++i) EXPECT_TRUE(readWord(**member, kHost, Deadline::inMs(10'000)));
 }
 
-// Nothing comes: a wait ends with its deadline, and when another thread leaves the group.
-TEST(Group, WaitsEndWithTheirDeadlineAndWithTheGroup) {
+// Without data a wait ends at its deadline, and when another thread leaves the group.
+TEST(Group, endsWaitsAtTheDeadlineAndWhenItIsLeft) {
     HOSTED(hosted, Seal::Tag);
     auto& [host, join] = hosted;
     auto member = Group::join(join, Deadline::inMs(10'000));
@@ -307,7 +309,7 @@ TEST(Group, WaitsEndWithTheirDeadlineAndWithTheGroup) {
     reader.join();
 }
 
-TEST(Group, WhoLeavesIsMissedAndItsStreamEnds) {
+TEST(Group, endsTheStreamOfALeavingMember) {
     HOSTED(hosted, Seal::Tag);
     auto& [host, join] = hosted;
     auto a = Group::join(join, Deadline::inMs(10'000));
@@ -330,7 +332,7 @@ TEST(Group, WhoLeavesIsMissedAndItsStreamEnds) {
     EXPECT_EQ(*count, 0u);
 }
 
-TEST(Group, AWrongSecretAndNoHostAreSaidInOneLine) {
+TEST(Group, reportsAWrongSecretAndAMissingHostInOneLine) {
     HOSTED(hosted, Seal::Tag);
     auto& [host, join] = hosted;
     join.secret.fill(std::byte{1});
@@ -343,7 +345,7 @@ TEST(Group, AWrongSecretAndNoHostAreSaidInOneLine) {
     EXPECT_NE(none.error().message.find(join.control), std::string::npos) << none.error().message;
 }
 
-TEST(Group, AHostThatLeavesInOrderEndsItsStream) {
+TEST(Group, endsTheStreamOfALeavingHost) {
     HOSTED(hosted, Seal::Tag);
     auto& [host, join] = hosted;
     auto a = Group::join(join, Deadline::inMs(10'000));

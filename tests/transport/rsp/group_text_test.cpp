@@ -11,7 +11,7 @@ namespace {
 
 constexpr char kSecret[] = "sixteen bytes, or a few more";
 
-TEST(GroupText, ratesHaveBitsBytesOrNoUnit) {
+TEST(GroupText, parsesRatesInBitsBytesOrWithoutUnit) {
     const std::pair<const char*, double> all[] = {{"200mbit", 25e6}, {"1gbit", 125e6}, {"1.5Gbit", 187.5e6}, {"950kbit", 118'750}, {"25MB", 25e6}, {"3kb", 3000}, {"2GB", 2e9}, {"0", 0}};
     for (const auto& [text, bytesPerSecond] : all) {
         auto rate = parseRate(text);
@@ -26,7 +26,7 @@ TEST(GroupText, ratesHaveBitsBytesOrNoUnit) {
     }
 }
 
-TEST(GroupText, sizesAreInStepsOf1024) {
+TEST(GroupText, parsesSizesInUnitsOf1024) {
     const std::pair<const char*, uint64_t> all[] = {{"1000000", 1'000'000}, {"64k", 65'536}, {"1.5K", 1536}, {"256M", 256u << 20}, {"2g", uint64_t{2} << 30}};
     for (const auto& [text, sizeBytes] : all) {
         auto size = parseSize(text);
@@ -36,7 +36,7 @@ TEST(GroupText, sizesAreInStepsOf1024) {
     for (const char* text : {"", "k", "-1", "64kbit", "1e300"}) EXPECT_FALSE(parseSize(text)) << text;
 }
 
-TEST(GroupText, sealsAreKnownByTheirNames) {
+TEST(GroupText, parsesSealNames) {
     for (const Seal seal : {Seal::None, Seal::Tag, Seal::ChaCha}) {
         auto read = parseSeal(nameOf(seal));
         ASSERT_TRUE(read) << nameOf(seal) << ": " << read.error().message;
@@ -49,7 +49,7 @@ TEST(GroupText, sealsAreKnownByTheirNames) {
     EXPECT_NE(unknown.error().message.find("\"wax\""), std::string::npos);
 }
 
-TEST(GroupText, allOfASecretCountsButALineEnd) {
+TEST(GroupText, usesAllBytesOfASecretExceptATrailingNewline) {
     const mural::test::TemporaryFolder folder;
     const std::string text = kSecret;
     auto bare = readSecret(folder.file("bare", text, 0600)), line = readSecret(folder.file("line", text + "\n", 0600)), dos = readSecret(folder.file("dos", text + "\r\n", 0600)),
@@ -60,7 +60,7 @@ TEST(GroupText, allOfASecretCountsButALineEnd) {
     EXPECT_NE(*bare, *other);
 }
 
-TEST(GroupText, secretsThatAreNoneAreRefused) {
+TEST(GroupText, rejectsInvalidSecrets) {
     const mural::test::TemporaryFolder folder;
     const std::pair<std::string, const char*> all[] = {
         {folder.at("none"), "can't read"},

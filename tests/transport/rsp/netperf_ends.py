@@ -13,7 +13,7 @@ import tempfile
 import time
 
 WAIT_SECONDS = 30
-REMOVED_SECONDS = 1.8  # of silence are too long
+REMOVED_SECONDS = 1.8 # a silence that leads to eviction
 
 
 def start(words):
@@ -62,13 +62,14 @@ def main():
         expect("what nobody checks is no success", receiver.returncode == 0 and '"bytes":2097152' in told[0], told)
         sender.communicate(timeout=WAIT_SECONDS)
 
-        # A receiver that checks sees that these bytes are not the pattern.
+        # A checking receiver detects that these bytes are not the pattern.
         sender, receiver = start_pair(mural, secret.name, "2M", unchecked)
         told = receiver.communicate(timeout=WAIT_SECONDS)
         expect("other bytes are no failure", receiver.returncode == 1 and "what came is not what was sent" in told[1], told)
         sender.communicate(timeout=WAIT_SECONDS)
 
-        # Stopped for so long that it is removed: the end of what it has is not the stream's. Its socket holds enough to read.
+        # The receiver is stopped until it is evicted: the end of its data is not the end of the stream. Its socket
+        # holds enough data.
         sender, receiver = start_pair(mural, secret.name, "1G", rate="300mbit")
         go_on(receiver)
         receiver.send_signal(signal.SIGSTOP)

@@ -1,4 +1,4 @@
-// Places of payloads: none twice, the lowest first, and so few of them for who reads at once.
+// Payload slots are unique, lowest first, so a reader that returns them at once uses few.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 constexpr uint32_t kPlaces = 256;
 constexpr size_t kBytes = 100;
 
-TEST(PayloadPlaces, ThereAreAsManyAsWereAskedFor) {
+TEST(PayloadPlaces, providesTheRequestedNumber) {
     PayloadPlaces places(kBytes, kPlaces);
     std::set<uint32_t> taken;
     for (uint32_t i = 0; i < kPlaces; ++i) {
@@ -25,7 +25,7 @@ TEST(PayloadPlaces, ThereAreAsManyAsWereAskedFor) {
     }
 }
 
-TEST(PayloadPlaces, WhoGivesBackAtOnceUsesFew) {
+TEST(PayloadPlaces, usesFewSlotsWhenTheyAreReturnedAtOnce) {
     PayloadPlaces places(kBytes, kPlaces);
     uint32_t highest = 0;
     std::deque<uint32_t> held;
@@ -39,7 +39,7 @@ TEST(PayloadPlaces, WhoGivesBackAtOnceUsesFew) {
     EXPECT_EQ(highest, 39u);
 }
 
-TEST(PayloadPlaces, TheLowestFreeOneIsNextInAnyOrder) {
+TEST(PayloadPlaces, returnsTheLowestFreeSlotInAnyOrder) {
     constexpr unsigned kSeed = 7;
     std::mt19937 random(kSeed);
     PayloadPlaces places(kBytes, kPlaces);

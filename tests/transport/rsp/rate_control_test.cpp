@@ -1,4 +1,4 @@
-// What losses do to the rate: a bad link's nothing, a crowded one's enough, chance nothing.
+// The effect of losses on the rate: none for a lossy link or chance, enough for congestion.
 #include "transport/rsp/rate_control.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ constexpr double kMost = 25e6;
 constexpr double kDatagramBytes = 1538;
 constexpr int64_t kRoundNs = 50'000'000;
 
-// The share that the unluckiest of so many members has lost of a round, as rounds are counted: with 256 datagrams or more.
+// The loss rate of the unluckiest member per round of at least 256 datagrams.
 struct Rounds {
     std::mt19937 random{7};
     int64_t nowNs = 0;
@@ -31,7 +31,7 @@ struct Rounds {
     }
 };
 
-TEST(RateControl, ABadLinkIsNotTakenForACrowdedOne) {
+TEST(RateControl, keepsTheRateOnALossyLink) {
     for (const double share : {0.001, 0.01, 0.05, 0.15}) {
         RateControl rate({kMost});
         Rounds rounds;
@@ -44,7 +44,7 @@ TEST(RateControl, ABadLinkIsNotTakenForACrowdedOne) {
     }
 }
 
-TEST(RateControl, ACrowdedLinkIsGivenRoom) {
+TEST(RateControl, reducesTheRateUnderCongestion) {
     RateControl rate({kMost});
     Rounds rounds;
     const double room = 0.4 * kMost;
@@ -58,7 +58,7 @@ TEST(RateControl, ACrowdedLinkIsGivenRoom) {
     EXPECT_GT(sum / 200, 0.75 * room);
 }
 
-TEST(RateControl, ItRisesAgain) {
+TEST(RateControl, increasesTheRateAgain) {
     RateControl rate({kMost});
     Rounds rounds;
     rounds.run(rate, 100, 4, [](double bytesPerS) { return std::clamp(1 - 0.1 * kMost / bytesPerS, 0.0, 1.0); });
@@ -68,19 +68,19 @@ TEST(RateControl, ItRisesAgain) {
     EXPECT_GT(rate.bytesPerS(), 0.98 * kMost) << "within 20 s";
 }
 
-TEST(RateControl, TheBucketMakesGoodWhatASleepMissed) {
+TEST(RateControl, compensatesForASleepWithItsBucket) {
     RateControl rate({kMost});
     while (rate.take(kDatagramBytes, 0)) {}
     double sent = 0;
     while (rate.take(kDatagramBytes, 4'000'000)) sent += kDatagramBytes;
     EXPECT_NEAR(sent, kMost * 0.004, 2 * kDatagramBytes);
-    // But not of any sleep: queues on the way are not endless.
+    // But only for short sleeps: queues on the path are finite.
     sent = 0;
     while (rate.take(kDatagramBytes, 1'000'000'000)) sent += kDatagramBytes;
     EXPECT_LT(sent, kMost * 0.006);
 }
 
-TEST(RateControl, SaysWhetherManyMayGo) {
+TEST(RateControl, reportsWhetherABatchMayBeSent) {
     RateControl rate({kMost});
     while (rate.take(kDatagramBytes, 0)) {}
     EXPECT_FALSE(rate.has(10 * kDatagramBytes, 500'000));

@@ -1,4 +1,4 @@
-// When a reader looks at its sockets: how much is gathered, and that it delays nothing for long.
+// When a reader polls its sockets: how much accumulates, and that the delay is limited.
 #include <gtest/gtest.h>
 
 #include "transport/rsp/receive_moderation.hpp"
@@ -10,7 +10,7 @@ constexpr int64_t kBeginNs = 1'000'000'000'000;
 constexpr int64_t kUs = 1000;
 constexpr uint32_t kSocketDatagrams = 4096;
 
-// Datagrams come every so often; who waits looks, and rests as it is told. Returns the looks.
+// Simulates a flow and a reader that polls and rests as advised. Returns the number of polls.
 int looksAtAFlow(ReceiveModeration& m, int64_t everyNs, int64_t lastingNs, int64_t& longestNs) {
     int looks = 0;
     int64_t seenNs = kBeginNs;
@@ -26,31 +26,31 @@ int looksAtAFlow(ReceiveModeration& m, int64_t everyNs, int64_t lastingNs, int64
     return looks;
 }
 
-TEST(ReceiveModeration, GathersWhatFlows) {
+TEST(ReceiveModeration, accumulatesDatagramsOfAFlow) {
     ReceiveModeration m(kSocketDatagrams);
     int64_t longestNs = 0;
     EXPECT_LT(looksAtAFlow(m, 12 * kUs, 100'000 * kUs, longestNs), 8333 / 20);
     EXPECT_EQ(longestNs, ReceiveModeration::kMostRestNs);
 }
 
-// A socket of few datagrams is not left until it may be full, and the same flow into a large one is left for longest.
-TEST(ReceiveModeration, ASmallSocketIsLookedAtBeforeItIsFull) {
+// A small socket is polled before it can be full; the same flow into a large one rests for the maximum.
+TEST(ReceiveModeration, pollsASmallSocketBeforeItIsFull) {
     constexpr uint32_t kFew = 100;
     ReceiveModeration m(kFew);
     int64_t longestNs = 0;
     (void)looksAtAFlow(m, 12 * kUs, 100'000 * kUs, longestNs);
     EXPECT_LE(longestNs, 12 * kUs * kFew / 3);
     EXPECT_GE(longestNs, 12 * kUs * kFew / 5);
-    // What is left behind by one look counts with what the next one finds.
+    // Datagrams left by one poll count together with those of the next.
     const int64_t endNs = kBeginNs + 100'000 * kUs;
     m.looked({.datagrams = 1}, endNs);
     m.looked({.datagrams = 32, .mayBeMore = true}, endNs);
     m.looked({.datagrams = 32, .mayBeMore = true}, endNs);
-    m.looked({.datagrams = 16}, endNs + 160 * kUs); // 2 us between two
+    m.looked({.datagrams = 16}, endNs + 160 * kUs); // 2 us apart
     EXPECT_EQ(m.restNs(endNs + 160 * kUs), 0) << "50 us: a timer is later than that";
 }
 
-TEST(ReceiveModeration, LooksAtOnceForTheFirstDatagramsAndAfterAnUrgentOne) {
+TEST(ReceiveModeration, pollsAtOnceForFirstAndUrgentDatagrams) {
     ReceiveModeration m(kSocketDatagrams);
     EXPECT_EQ(m.restNs(kBeginNs), 0);
     int64_t longestNs = 0;
@@ -64,8 +64,8 @@ TEST(ReceiveModeration, LooksAtOnceForTheFirstDatagramsAndAfterAnUrgentOne) {
     EXPECT_EQ(m.restNs(endNs + 100 * kUs), 0);
 }
 
-// More comes than a look takes: who rested after each would fall behind for good.
-TEST(ReceiveModeration, LooksAgainAtOnceWhereSomethingWasLeft) {
+// More arrives than one poll reads: a reader that rested after each would never catch up.
+TEST(ReceiveModeration, pollsAgainAtOnceWhenDatagramsAreLeft) {
     ReceiveModeration m(kSocketDatagrams);
     int64_t longestNs = 0;
     (void)looksAtAFlow(m, 12 * kUs, 50'000 * kUs, longestNs);
@@ -76,19 +76,20 @@ TEST(ReceiveModeration, LooksAgainAtOnceWhereSomethingWasLeft) {
     EXPECT_GT(m.restNs(endNs + 50 * kUs), 0);
 }
 
-// On a busy machine writer and reader are late by milliseconds: short rests anew behind each of them cost more than all the rest.
-TEST(ReceiveModeration, AFlowThatIsLateGoesOn) {
+// On a busy machine writer and reader are late by milliseconds. Restarting with short rests after each delay would be
+// expensive.
+TEST(ReceiveModeration, continuesALateFlow) {
     ReceiveModeration m(kSocketDatagrams);
     int64_t longestNs = 0;
     (void)looksAtAFlow(m, 12 * kUs, 100'000 * kUs, longestNs);
     const int64_t lateNs = kBeginNs + 106'000 * kUs;
-    m.looked({}, lateNs - 3'000 * kUs); // nothing was there
+    m.looked({}, lateNs - 3'000 * kUs); // no datagram arrived
     EXPECT_EQ(m.restNs(lateNs - 3'000 * kUs), ReceiveModeration::kMostRestNs);
     m.looked({.datagrams = 500}, lateNs);
     EXPECT_EQ(m.restNs(lateNs), ReceiveModeration::kMostRestNs);
 }
 
-TEST(ReceiveModeration, AFlowThatHasStoppedIsOver) {
+TEST(ReceiveModeration, endsAStoppedFlow) {
     ReceiveModeration m(kSocketDatagrams);
     int64_t longestNs = 0;
     (void)looksAtAFlow(m, 12 * kUs, 50'000 * kUs, longestNs);

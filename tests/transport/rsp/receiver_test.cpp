@@ -1,4 +1,4 @@
-// A reading end alone, with a writer that says what can't be.
+// A single receiver, with a writer that sends invalid data.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ private:
 };
 
 // Found by stream_fuzz: each number up to there was counted as lost, one by one.
-TEST(Receiver, APollFarAheadTellsOfNoMoreThanTheWindow) {
+TEST(Receiver, limitsLossesToTheWindowForAPollFarAhead) {
     ReceiverSettings settings;
     settings.shape = {1400, 256};
     Receiver receiver(settings, Sequence(7));
@@ -38,8 +38,9 @@ TEST(Receiver, APollFarAheadTellsOfNoMoreThanTheWindow) {
     EXPECT_EQ(out.told().highest, Sequence(7) + 256);
 }
 
-// Found by stream_fuzz: it was before what had come, and behind the newest; all between, half of the numbers there are, was lost then, one by one.
-TEST(Receiver, ADatagramOfHalfTheNumbersBeforeTellsOfNoLoss) {
+// Found by stream_fuzz: the datagram was before received ones and after the newest, so half of all numbers counted as
+// lost, one by one.
+TEST(Receiver, countsNoLossForADatagramHalfTheNumbersBehind) {
     ReceiverSettings settings;
     settings.shape = {1400, 256};
     Receiver receiver(settings, Sequence(7));
@@ -58,8 +59,8 @@ TEST(Receiver, ADatagramOfHalfTheNumbersBeforeTellsOfNoLoss) {
     EXPECT_EQ(out.told().highest, Sequence(7) + 101);
 }
 
-// What a writer waits for is told in time, and no more often than that: each word costs both ends.
-TEST(Receiver, SaysWhatItHasTwiceInAWindow) {
+// Feedback is timely for the writer, but no more frequent: it costs both ends.
+TEST(Receiver, sendsFeedbackTwicePerWindow) {
     ReceiverSettings settings;
     settings.shape = {100, 256};
     settings.socketDatagrams = 10'000;
@@ -83,9 +84,9 @@ TEST(Receiver, SaysWhatItHasTwiceInAWindow) {
     EXPECT_EQ(receiver.feedbackSent() - before, 2u * kWindows);
 }
 
-// A socket puts payloads where the window wants them: those are taken as they lie, others copied, none twice, and places
-// do not run out.
-TEST(Receiver, TakesPayloadsAsTheyHaveLanded) {
+// A socket places payloads where the window requests them. Those are used in place, others copied, duplicates rejected,
+// and slots do not leak.
+TEST(Receiver, usesPayloadsInPlace) {
     ReceiverSettings settings;
     settings.shape = {100, 64};
     Receiver receiver(settings, Sequence(7));
@@ -107,11 +108,11 @@ TEST(Receiver, TakesPayloadsAsTheyHaveLanded) {
     std::array<std::span<const std::byte>, 3> pieces;
     EXPECT_EQ(receiver.readable(pieces), 0u);
     come(0, landed(0, 10));
-    come(1, landed(2, 11)); // one was skipped: it was of another stream, or nothing new
+    come(1, landed(2, 11)); // one slot was skipped: another stream's, or a duplicate
     ASSERT_EQ(receiver.readable(pieces), 2u);
     EXPECT_EQ(pieces[0].data(), landing.places[0] + kStreamHeadBytes);
     EXPECT_EQ(pieces[1].data(), landing.places[2] + kStreamHeadBytes);
-    come(1, landed(3, 99)); // once more: not taken, and its place is used again
+    come(1, landed(3, 99)); // a duplicate: rejected, and its slot is reused
     const std::vector<std::byte> elsewhere(100, std::byte{12});
     come(2, elsewhere);
     const Landing next = receiver.landing();
@@ -127,7 +128,7 @@ TEST(Receiver, TakesPayloadsAsTheyHaveLanded) {
     EXPECT_EQ(read, (std::vector{10, 11, 12}));
     receiver.consume(260);
     EXPECT_EQ(receiver.readable(pieces), 0u);
-    // A whole window that nobody reads, and as many places as ever to land at.
+    // A whole unread window still leaves the usual number of slots.
     for (int i = 3; i < 3 + 64; ++i) {
         landing = receiver.landing();
         come(i, i % 3 == 0 ? std::span<const std::byte>(elsewhere) : landed(static_cast<size_t>(i) % landing.places.size(), i));

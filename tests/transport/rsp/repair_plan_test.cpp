@@ -1,4 +1,4 @@
-// What a writer repairs, in which order, and that nothing is sent twice while it may be under way.
+// Which repairs a writer sends in which order, without sending data in flight twice.
 #include <gtest/gtest.h>
 
 #include "transport/rsp/repair_plan.hpp"
@@ -16,21 +16,21 @@ SendWindow::Group groupAt(RepairPlan& plan, int number) {
 
 std::optional<RepairPlan::Repair> take(RepairPlan& plan, uint32_t sentUs) { return plan.take(kFirst, {}, false, sentUs); }
 
-TEST(RepairPlan, RowsUnderWayAreNotSentAgain) {
+TEST(RepairPlan, doesNotResendRowsInFlight) {
     RepairPlan plan(1024);
     const auto group = groupAt(plan, 0);
     plan.want(group, 0b111, 0, 100);
     for (int i = 0; i < 3; ++i) EXPECT_TRUE(take(plan, 1000));
     EXPECT_FALSE(take(plan, 1000));
-    plan.want(group, 0b111, 0, 500); // told before the rows can have come
+    plan.want(group, 0b111, 0, 500); // reported before the rows can have arrived
     EXPECT_FALSE(take(plan, 1500));
-    plan.want(group, 0b111, 1, 1000); // one has come, and two are lost
+    plan.want(group, 0b111, 1, 1000); // one has arrived, and two are lost
     EXPECT_EQ(take(plan, 1600)->place, 3);
     EXPECT_EQ(take(plan, 1600)->place, 4);
     EXPECT_FALSE(take(plan, 1600));
 }
 
-TEST(RepairPlan, WhatIsUnderWayAgainIsNotSentAgain) {
+TEST(RepairPlan, doesNotResendRetransmissionsInFlight) {
     RepairPlan plan(1024);
     const auto group = groupAt(plan, 0);
     plan.wantAgain(group, 0b101, 100);
@@ -42,7 +42,7 @@ TEST(RepairPlan, WhatIsUnderWayAgainIsNotSentAgain) {
     EXPECT_EQ(take(plan, 1600)->place, 2);
 }
 
-TEST(RepairPlan, TheOldestGroupComesFirst) {
+TEST(RepairPlan, repairsTheOldestGroupFirst) {
     RepairPlan plan(1024);
     std::vector<SendWindow::Group> groups;
     for (int i = 0; i < 5; ++i) groups.push_back(groupAt(plan, i));
@@ -51,7 +51,7 @@ TEST(RepairPlan, TheOldestGroupComesFirst) {
     EXPECT_EQ(take(plan, 1000)->base, groups[1].base);
     plan.want(groups[0], 1, 0, 1000); // lost again: readers wait for it
     EXPECT_EQ(take(plan, 1100)->base, groups[0].base);
-    // What all have is no longer of interest; what is not sent whole waits.
+    // Groups that all members have are dropped; incomplete groups wait.
     EXPECT_EQ(plan.take(groups[3].base, {}, false, 1100)->base, groups[3].base);
     EXPECT_FALSE(plan.take(groups[3].base, groups[4].base, false, 1100));
     EXPECT_EQ(plan.take(groups[3].base, {}, false, 1100)->base, groups[4].base);

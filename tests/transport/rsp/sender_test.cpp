@@ -1,4 +1,4 @@
-// A writing end alone: what it asks its readers, and when.
+// A single sender: when it requests replies, and when it sends.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -11,7 +11,7 @@ namespace {
 class Kept : public Outbox {
 public:
     std::span<std::byte> datagram(MemberId, size_t bytes) override { return kept_.emplace_back(bytes); }
-    // Of all datagrams since the last call, those that want an answer at once.
+    // The datagrams since the last call that request an immediate reply.
     size_t takeAsking() {
         size_t asking = 0;
         for (const auto& d : kept_) asking += isUrgent(d, false);
@@ -24,21 +24,21 @@ private:
     std::vector<std::vector<std::byte>> kept_;
 };
 
-// Answers cost both ends; what a writer goes on with needs none.
-TEST(SenderAsks, AtTheEndOfAFlushAlone) {
+// Replies cost both ends; a writer that continues needs none.
+TEST(SenderAsks, atTheEndOfAFlushOnly) {
     SenderSettings settings;
     settings.shape = {1000, 256};
     Sender sender(settings, Sequence(5));
     int64_t nowNs = 1'000'000'000;
     sender.addMember(1, nowNs);
-    Feedback word; // the member has room
+    Feedback word; // the member has space
     word.from = 1;
     word.cumulative = word.highest = Sequence(5);
     word.edge = Sequence(5 + 256);
     sender.input(word, nowNs);
     Kept out;
     const std::vector<std::byte> groupful(1000 * kMostInGroup);
-    for (int i = 0; i < 3; ++i) { // each time all of a whole group goes out, and nothing is left
+    for (int i = 0; i < 3; ++i) { // each time a whole group is sent and nothing is left
         ASSERT_EQ(sender.write(groupful), groupful.size());
         (void)sender.tick(nowNs += 100'000, out);
         EXPECT_GE(out.count(), 32u);
@@ -54,8 +54,8 @@ TEST(SenderAsks, AtTheEndOfAFlushAlone) {
     EXPECT_EQ(out.takeAsking(), 1u);
 }
 
-// A sending's work is the same for a few datagrams: while more waits than it takes, it is full.
-TEST(Sender, GoesByWholeSendings) {
+// A system call costs the same for few datagrams: while more wait than fit, each call is full.
+TEST(Sender, sendsFullBatches) {
     SenderSettings settings;
     settings.shape = {1438, 1024};
     settings.rate.mostBytesPerS = 125e6;
@@ -70,30 +70,30 @@ TEST(Sender, GoesByWholeSendings) {
     Kept out;
     const std::vector<std::byte> all(size_t{1438} * 900);
     ASSERT_EQ(sender.write(all), all.size());
-    (void)sender.tick(nowNs, out); // what the bucket holds
+    (void)sender.tick(nowNs, out); // the content of the bucket
     const auto most = static_cast<size_t>(mostInSending(1472));
     EXPECT_EQ(out.count() % most, 0u);
     size_t before = out.count();
     ASSERT_LT(before, 500u);
-    for (int i = 0; i < 500 && out.count() < 800; ++i) { // asked at any time
+    for (int i = 0; i < 500 && out.count() < 800; ++i) { // called at any time
         (void)sender.tick(nowNs += 29'000, out);
         EXPECT_TRUE(out.count() == before || out.count() == before + most) << out.count() - before;
         before = out.count();
     }
     EXPECT_GE(out.count(), 800u);
-    const int64_t whenNs = sender.tick(nowNs, out); // and says when to come again
+    const int64_t whenNs = sender.tick(nowNs, out); // returns the time of the next call
     before = out.count();
     ASSERT_LT(before + most, 900u);
     (void)sender.tick(whenNs - 1000, out);
     EXPECT_EQ(out.count(), before);
     (void)sender.tick(whenNs, out);
     EXPECT_EQ(out.count(), before + most);
-    for (int i = 0; i < 200; ++i) (void)sender.tick(nowNs += 29'000, out); // the rest is less than that
+    for (int i = 0; i < 200; ++i) (void)sender.tick(nowNs += 29'000, out); // the rest is smaller than a batch
     EXPECT_GE(out.count(), 900u);
 }
 
-// Who leads a group comes often; what a writer has to do is looked for when it is time, and when something has happened.
-TEST(Sender, HasNothingToDoBeforeItIsTimeAndNothingHasHappened) {
+// A leader calls often; a sender only works when a time is due or something has happened.
+TEST(Sender, doesNothingBeforeATimeIsDueOrAnEvent) {
     SenderSettings settings;
     settings.shape = {1000, 256};
     Sender sender(settings, Sequence(5));
@@ -143,8 +143,8 @@ TEST(Sender, HasNothingToDoBeforeItIsTimeAndNothingHasHappened) {
     EXPECT_EQ(sentBy(dueNs), 1u) << "says that it lives";
 }
 
-// A shaper's bucket of 64 KiB takes them whole, with their heads.
-TEST(Sender, SendingsFitIntoABucket) {
+// A shaper's bucket of 64 KiB accepts a batch with all headers.
+TEST(Sender, limitsBatchesToABucket) {
     for (const size_t bytes : {100u, 576u, 1472u, 8972u, 65'000u}) {
         const size_t most = mostInSending(bytes);
         EXPECT_GE(most, 1u) << bytes;

@@ -26,7 +26,7 @@ void Process::useKeys(const SessionKeys& keys, MemberId self) {
     if (self != kHost) opener_->addMember(kHost);
 }
 
-// The new one's stream from here begins now.
+// Starts this member's stream to the new one.
 void Process::memberCame(MemberId id, const MemberInfo&) {
     opener_->addMember(id);
     if (const auto place = group_.placeOf(id)) group_.processes[*place].readBytes.emplace(core.self(), written);

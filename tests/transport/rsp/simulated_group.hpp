@@ -1,4 +1,4 @@
-// A group's processes on a simulated network. Each checks every byte that it reads of each other's stream.
+// The processes of a group on a simulated network. Each verifies every byte of every other stream.
 #pragma once
 
 #include <algorithm>
@@ -16,11 +16,11 @@
 
 namespace mural::rsp::test {
 
-constexpr int64_t kControlNs = 200'000; // of a message over a control connection
+constexpr int64_t kControlNs = 200'000; // latency of a control message
 
 class SimulatedGroup;
 
-// One process: place 0 is the host.
+// One process: index 0 is the host.
 class Process : public GroupOutput {
 public:
     Process(SimulatedGroup& group, size_t place, const GroupSettings& settings);
@@ -36,7 +36,7 @@ public:
 
     void run();
     void write(uint64_t bytes) { toWrite_ += bytes; }
-    // How far another's stream has been read; who comes late begins where the writer is.
+    // Read position per stream; a late member starts at the writer's position.
     std::map<MemberId, uint64_t> readBytes;
     uint64_t wrongBytes = 0;
     std::map<MemberId, GoneReason> gone;
@@ -44,7 +44,7 @@ public:
     bool dead = false;
     [[nodiscard]] bool takesPart() const { return !dead && !core.over(); }
     bool reads = true;
-    std::string hungUp; // why
+    std::string hungUp; // the reason
     [[nodiscard]] bool wroteAll() const { return written == toWrite_; }
     GroupCore core;
     uint64_t written = 0;
@@ -118,7 +118,7 @@ public:
     [[nodiscard]] size_t alive() const {
         return static_cast<size_t>(std::ranges::count_if(processes, [](const Process& p) { return !p.dead; }));
     }
-    // Everyone who is still in has read all that everyone who is still in has written.
+    // All remaining members have read everything that remaining members have written.
     [[nodiscard]] bool allRead() const {
         for (const Process& reader : processes) {
             if (!reader.takesPart()) continue;
@@ -138,9 +138,9 @@ public:
 
     SimulatedNetwork network;
     std::deque<Process> processes;
-    std::set<size_t> deaf; // places that no multicast reaches
-    std::map<size_t, int64_t> lateControlNs; // places that each control message reaches so much later
-    std::map<size_t, uint64_t> tunnelledBytes; // by the place that they went to
+    std::set<size_t> deaf; // processes without multicast
+    std::map<size_t, int64_t> lateControlNs; // additional latency of control messages, by receiver
+    std::map<size_t, uint64_t> tunnelledBytes; // by receiver
 
 private:
     friend class Process;

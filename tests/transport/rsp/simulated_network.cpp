@@ -48,7 +48,7 @@ void SimulatedNetwork::setTimer(size_t host, int64_t atNs) {
     if (atNs == INT64_MAX) return;
     atNs = std::max(atNs, nowNs_);
     Host& h = hosts_[host];
-    if (h.timerNs <= atNs && h.timerNs > nowNs_) return; // comes earlier anyway, and then asks again
+    if (h.timerNs <= atNs && h.timerNs > nowNs_) return; // fires earlier and is then set again
     h.timerNs = atNs;
     events_.push({atNs, numbers_++, host, true, {}, {}});
 }
@@ -77,7 +77,7 @@ void SimulatedNetwork::thaw(size_t host) {
     Host& h = hosts_[host];
     h.frozen = false;
     h.timerNs = INT64_MAX;
-    for (auto& what : std::exchange(h.waiting, {})) { // as a thread of its own might, before the socket is looked at
+    for (auto& what : std::exchange(h.waiting, {})) { // runs before the socket is read, as another thread might
         what();
         h.timer();
     }

@@ -1,5 +1,5 @@
-// A network and a clock of numbers: datagrams are lost, doubled, late, out of order and too many for a link, all decided
-// by one seed. Hosts freeze, and their sockets overflow then.
+// A simulated network and clock: datagrams are lost, duplicated, late, reordered, or exceed a link's rate, all decided
+// by one seed. Hosts can freeze, and their sockets then overflow.
 #pragma once
 
 #include <cstddef>
@@ -12,14 +12,14 @@
 
 namespace mural::rsp::test {
 
-// What happens to datagrams on the way to one host.
+// Faults of datagrams to one host.
 struct LinkFaults {
     double loss = 0;
-    double burstBegins = 0; // per datagram (Gilbert and Elliott): from then on all are lost …
-    double burstEnds = 1;   // … until this happens, per datagram
+    double burstBegins = 0; // probability per datagram that a loss burst starts (Gilbert and Elliott)
+    double burstEnds = 1; // probability per datagram that it ends
     double twice = 0;
-    double flipped = 0; // a bit in it is another
-    double late = 0; // share of datagrams that come lateNs later
+    double flipped = 0; // probability of a flipped bit
+    double late = 0; // share of datagrams delayed by lateNs
     int64_t lateNs = 0;
     int64_t delayNs = 50'000;
     int64_t jitterNs = 0;
@@ -34,26 +34,27 @@ public:
 
     using Handler = std::function<void(std::span<std::byte>)>;
     void onDatagram(size_t host, Handler handler) { hosts_[host].handler = std::move(handler); }
-    // Called at most when it said it wants to be (setTimer), and after datagrams have come.
+    // Called at the time set by setTimer, and after datagrams have arrived.
     void onTimer(size_t host, std::function<void()> timer) { hosts_[host].timer = std::move(timer); }
     void setTimer(size_t host, int64_t atNs);
 
     LinkFaults& faults(size_t host) { return hosts_[host].faults; }
     void send(size_t to, std::span<const std::byte> datagram);
-    // Something that happens at a host after a while, in order, whatever the faults; a frozen host does it later.
+    // Runs `what` at a host after a delay, in order, independent of faults; a frozen host runs it later.
     void sendReliably(size_t to, int64_t afterNs, std::function<void()> what);
 
-    // A frozen host does nothing; its socket keeps so many datagrams.
+    // A frozen host does nothing; its socket stores a limited number of datagrams.
     void freeze(size_t host) { hosts_[host].frozen = true; }
     void thaw(size_t host);
-    [[nodiscard]] bool socketHolds(size_t host) const { return !hosts_[host].socket.empty(); } // of what came while it was frozen
+    // datagrams that arrived while it was frozen
+    [[nodiscard]] bool socketHolds(size_t host) const { return !hosts_[host].socket.empty(); }
     void setSocketDatagrams(size_t host, size_t count) { hosts_[host].socketDatagrams = count; }
     [[nodiscard]] uint64_t overflowed(size_t host) const { return hosts_[host].overflowed; }
     [[nodiscard]] uint64_t lost() const { return lost_; }
 
     [[nodiscard]] int64_t nowNs() const { return nowNs_; }
     void jumpClock(int64_t ns) { nowNs_ += ns; }
-    // Until `done` or the time is over; returns whether it was done.
+    // Runs until `done` or untilNs. Returns whether it was done.
     bool run(int64_t untilNs, const std::function<bool()>& done);
 
     uint64_t random() { return random_(); }
@@ -62,7 +63,7 @@ public:
 private:
     struct Event {
         int64_t atNs;
-        uint64_t number; // events of one time keep their order
+        uint64_t number; // keeps the order of simultaneous events
         size_t host;
         bool timer;
         std::vector<std::byte> datagram;

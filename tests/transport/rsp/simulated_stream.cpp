@@ -20,7 +20,7 @@ SenderSettings senderSettings(const StreamPlan& plan) {
 
 } // namespace
 
-// Datagrams go out when the next one is asked for, or at the end.
+// Sends a datagram when the next one is requested, or at the end.
 class SimulatedStream::Wire : public Outbox {
 public:
     Wire(SimulatedStream& stream, DatagramSealer& sealer) : stream_(stream), sealer_(sealer) {}
@@ -71,7 +71,7 @@ size_t SimulatedStream::join() {
     m.readBytes = written_;
     m.lastProgressNs = m.readNs = network_.nowNs();
     network_.faults(host(i)) = plan_.toMembers;
-    network_.setSocketDatagrams(host(i), plan_.socketDatagrams * 2); // repairs come above what the edge allows
+    network_.setSocketDatagrams(host(i), plan_.socketDatagrams * 2); // repairs may exceed the edge
     network_.onDatagram(host(i), [this, &m](std::span<std::byte> d) {
         const auto opened = m.opener->open(d);
         const auto datagram = landed(opened, *m.receiver);
@@ -82,7 +82,7 @@ size_t SimulatedStream::join() {
     return i;
 }
 
-// As a socket brings it: anywhere, or where the window wants it; by chance.
+// Delivers as a socket does: randomly in place in the window or elsewhere.
 std::optional<StreamDatagram> SimulatedStream::landed(std::span<const std::byte> datagram, Receiver& receiver) {
     if (datagram.size() <= kStreamHeadBytes || network_.random() % 2 == 0) return readStream(datagram);
     const Landing landing = receiver.landing();

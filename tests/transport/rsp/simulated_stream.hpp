@@ -1,5 +1,4 @@
-// One writer and many members of a group on a simulated network. Each member checks every byte that it reads against
-// what the writer wrote at that place.
+// One writer and many members of a group on a simulated network. Each member compares every byte with the written one.
 #pragma once
 
 #include <deque>
@@ -15,9 +14,9 @@ namespace mural::rsp::test {
 struct StreamPlan {
     uint64_t seed = 1;
     size_t members = 1;
-    uint64_t bytes = 1 << 20;   // to write
-    size_t flushEveryBytes = 0; // 0: at the end alone; else about so often, at random
-    uint32_t first = 7;         // number of the first datagram
+    uint64_t bytes = 1 << 20; // to write
+    size_t flushEveryBytes = 0; // 0: only at the end; otherwise the mean of random intervals
+    uint32_t first = 7; // first sequence number
     StreamShape shape{1430, 1024};
     RateSettings rate{};
     uint32_t socketDatagrams = 512;
@@ -31,9 +30,9 @@ struct SimulatedMember {
     std::unique_ptr<Receiver> receiver;
     std::unique_ptr<DatagramSealer> sealer;
     std::unique_ptr<DatagramOpener> opener;
-    uint64_t readBytes = 0;  // place in the stream
+    uint64_t readBytes = 0; // position in the stream
     uint64_t wrongBytes = 0;
-    double readBytesPerS = 0; // 0: at once
+    double readBytesPerS = 0; // 0: immediately
     int64_t readNs = 0;
     int64_t lastProgressNs = 0;
     int64_t longestStallNs = 0;
@@ -44,13 +43,13 @@ class SimulatedStream {
 public:
     explicit SimulatedStream(const StreamPlan& plan);
 
-    // Until all has been written and read by all who are there, or the simulated time is over.
+    // Runs until everything is written and read by all remaining members, or until the time is over.
     bool run(int64_t forNs);
-    // Goes on until the time is over or `until` holds.
+    // Continues until the time is over or `until` holds.
     bool run(int64_t forNs, const std::function<bool()>& until);
     [[nodiscard]] bool allRead() const;
 
-    // The member's process ends; the writer learns it by removeMember.
+    // Ends the member's process; removeMember tells the writer.
     void kill(size_t member) { members_[member].gone = true; }
     void remove(size_t member) { sender_.removeMember(static_cast<MemberId>(member + 1)); }
     size_t join();

@@ -1,4 +1,4 @@
-// The protocol under every fault that a simulated network can make. Each test prints the seed that it fails with.
+// The protocol with every fault of the simulated network. Each test prints the seed of a failure.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kMbit = 1e6 / 8;
 
-// All bytes at all members, in order, once. Returns the simulated seconds.
+// Expects all bytes at all members, in order, once. Returns the simulated seconds.
 double expectAllArrives(const StreamPlan& plan, int64_t forS = 120) {
     SCOPED_TRACE("seed " + std::to_string(plan.seed));
     SimulatedStream stream(plan);
@@ -25,15 +25,15 @@ double expectAllArrives(const StreamPlan& plan, int64_t forS = 120) {
     return static_cast<double>(stream.network().nowNs() - began) * 1e-9;
 }
 
-TEST(StreamSimulation, ArrivesWithoutFaults) {
+TEST(StreamSimulation, deliversWithoutFaults) {
     for (const size_t members : {1, 2, 8, 100}) expectAllArrives({.members = members, .bytes = 1 << 20});
 }
 
-TEST(StreamSimulation, EmptyAndSmallStreams) {
+TEST(StreamSimulation, deliversEmptyAndSmallStreams) {
     for (const uint64_t bytes : {1, 2, 1429, 1430, 1431, 32 * 1430, 32 * 1430 + 1}) expectAllArrives({.members = 3, .bytes = bytes});
 }
 
-TEST(StreamSimulation, LossOfEveryShare) {
+TEST(StreamSimulation, deliversWithAnyLossRate) {
     for (const double loss : {0.001, 0.01, 0.05, 0.2, 0.5}) {
         for (uint64_t seed = 1; seed <= 5; ++seed) {
             StreamPlan plan{.seed = seed, .members = 4, .bytes = 1 << 20, .flushEveryBytes = 20'000};
@@ -43,7 +43,7 @@ TEST(StreamSimulation, LossOfEveryShare) {
     }
 }
 
-TEST(StreamSimulation, LossInBursts) {
+TEST(StreamSimulation, deliversWithBurstLosses) {
     for (const double length : {10.0, 100.0, 1000.0}) {
         StreamPlan plan{.seed = 11, .members = 4, .bytes = 4 << 20};
         plan.toMembers.burstEnds = 1 / length;
@@ -52,7 +52,7 @@ TEST(StreamSimulation, LossInBursts) {
     }
 }
 
-TEST(StreamSimulation, LateTwiceAndOutOfOrder) {
+TEST(StreamSimulation, deliversWithDelaysDuplicatesAndReordering) {
     StreamPlan plan{.seed = 21, .members = 4, .bytes = 8 << 20, .rate = {150 * kMbit}};
     plan.toMembers.late = 0.05;
     plan.toMembers.lateNs = 3 * kNsPerMs;
@@ -61,12 +61,12 @@ TEST(StreamSimulation, LateTwiceAndOutOfOrder) {
     SimulatedStream stream(plan);
     ASSERT_TRUE(stream.run(60 * kNsPerS));
     EXPECT_EQ(stream.wrongBytes(), 0u);
-    // Lateness is learnt, so few repairs are made for what was only late.
+    // The receiver learns the delay, so late datagrams cause few repairs.
     const auto& c = stream.sender().counters();
     EXPECT_LT(c.rows, c.datagrams / 20) << "of " << c.datagrams;
 }
 
-TEST(StreamSimulation, FlippedBits) {
+TEST(StreamSimulation, deliversWithFlippedBits) {
     for (const Seal seal : {Seal::Tag, bestEncryption()}) {
         StreamPlan plan{.seed = 25, .members = 3, .bytes = 2 << 20, .flushEveryBytes = 20'000, .seal = seal};
         plan.toMembers.flipped = plan.toWriter.flipped = 0.05;
@@ -78,7 +78,7 @@ TEST(StreamSimulation, FlippedBits) {
     }
 }
 
-TEST(StreamSimulation, NumbersWrap) {
+TEST(StreamSimulation, deliversAcrossTheSequenceWrap) {
     for (const uint32_t first : {0xffffff9cu, 0x7fffff9cu, 0xffffffffu}) {
         StreamPlan plan{.seed = 31, .members = 3, .bytes = 4 << 20, .flushEveryBytes = 50'000, .first = first};
         plan.toMembers.loss = 0.02;
@@ -88,13 +88,13 @@ TEST(StreamSimulation, NumbersWrap) {
     }
 }
 
-TEST(StreamSimulation, FeedbackIsLost) {
+TEST(StreamSimulation, deliversWithLostFeedback) {
     StreamPlan plan{.seed = 41, .members = 4, .bytes = 2 << 20, .flushEveryBytes = 5000};
     plan.toWriter.loss = 0.8;
     expectAllArrives(plan);
 }
 
-TEST(StreamSimulation, ParityMendsWithHalfOfThePlainRepairs) {
+TEST(StreamSimulation, repairsWithHalfOfThePlainRetransmissions) {
     uint64_t repairs[2] = {};
     for (const bool parity : {false, true}) {
         StreamPlan plan{.seed = 51, .members = 8, .bytes = 16 << 20, .rate = {185 * kMbit}, .parity = parity};
@@ -107,8 +107,8 @@ TEST(StreamSimulation, ParityMendsWithHalfOfThePlainRepairs) {
     EXPECT_LE(repairs[1], repairs[0] / 2) << "plain: " << repairs[0];
 }
 
-// What a lossy network leaves of the rate: more would be congestion control that takes bad luck for crowding.
-TEST(StreamSimulation, LossCostsLittleMoreThanItsRepairs) {
+// The rate that remains on a lossy link. A larger reduction would mean that chance counts as congestion.
+TEST(StreamSimulation, losesLittleMoreRateThanItsRepairs) {
     const auto seconds = [](double loss) {
         StreamPlan plan{.seed = 61, .members = 8, .bytes = 32 << 20, .rate = {185 * kMbit}};
         plan.toMembers.loss = loss;
@@ -121,14 +121,14 @@ TEST(StreamSimulation, LossCostsLittleMoreThanItsRepairs) {
     EXPECT_GE(without / seconds(0.05), 0.80);
 }
 
-TEST(StreamSimulation, FindsTheRateOfACrowdedLink) {
+TEST(StreamSimulation, findsTheRateOfACongestedLink) {
     StreamPlan plan{.seed = 71, .members = 4, .bytes = 64 << 20, .shape = {1430, 4096}, .rate = {1000 * kMbit}, .socketDatagrams = 4096};
     plan.toMembers.bytesPerS = 200 * kMbit;
     const double seconds = expectAllArrives(plan);
     EXPECT_GE(plan.bytes / seconds, 0.85 * 200 * kMbit * 1430 / (1430 + 100));
 }
 
-TEST(StreamSimulation, ASlowReaderHoldsTheWriter) {
+TEST(StreamSimulation, blocksTheWriterForASlowReader) {
     StreamPlan plan{.seed = 81, .members = 3, .bytes = 8 << 20};
     SimulatedStream stream(plan);
     stream.member(1).readBytesPerS = 4e6;
@@ -138,7 +138,7 @@ TEST(StreamSimulation, ASlowReaderHoldsTheWriter) {
     EXPECT_NEAR(static_cast<double>(stream.network().nowNs() - began) * 1e-9, 8.4e6 / 4e6, 0.3);
 }
 
-TEST(StreamSimulation, AFrozenMemberLosesNothingAndAllGoOnAtOnce) {
+TEST(StreamSimulation, losesNothingAtAFrozenMemberAndContinuesAtOnce) {
     for (const int64_t frozenMs : {100, 1000, 5000}) {
         StreamPlan plan{.seed = 91, .members = 3, .bytes = 64 << 20, .rate = {185 * kMbit}};
         SimulatedStream stream(plan);
@@ -157,7 +157,7 @@ TEST(StreamSimulation, AFrozenMemberLosesNothingAndAllGoOnAtOnce) {
     }
 }
 
-TEST(StreamSimulation, ACutLinkHoldsAllUntilTheMemberIsRemoved) {
+TEST(StreamSimulation, blocksAtACutLinkUntilTheMemberIsRemoved) {
     StreamPlan plan{.seed = 101, .members = 3, .bytes = 32 << 20, .rate = {185 * kMbit}};
     SimulatedStream stream(plan);
     stream.run(200 * kNsPerMs, [] { return false; });
@@ -172,7 +172,7 @@ TEST(StreamSimulation, ACutLinkHoldsAllUntilTheMemberIsRemoved) {
     EXPECT_EQ(stream.wrongBytes(), 0u);
 }
 
-TEST(StreamSimulation, ALinkThatIsCutAndHealsLosesNothing) {
+TEST(StreamSimulation, losesNothingWhenACutLinkHeals) {
     StreamPlan plan{.seed = 111, .members = 3, .bytes = 16 << 20, .flushEveryBytes = 100'000, .rate = {185 * kMbit}};
     SimulatedStream stream(plan);
     stream.run(100 * kNsPerMs, [] { return false; });
@@ -183,8 +183,9 @@ TEST(StreamSimulation, ALinkThatIsCutAndHealsLosesNothing) {
     EXPECT_EQ(stream.wrongBytes(), 0u);
 }
 
-// Nothing comes for 200 ms, now here, now there. Who is held by what it lost then for 2 s is removed, and must not come near.
-TEST(StreamSimulation, BurstsHoldNoMemberForLong) {
+// Nothing arrives for 200 ms at varying members. A member blocked by its losses for 2 s would be evicted, and must stay
+// far below that.
+TEST(StreamSimulation, repairsBurstsQuickly) {
     StreamPlan plan{.seed = 115, .members = 3, .bytes = 16 << 20, .shape = {1430, 4096}, .rate = {80 * kMbit}, .socketDatagrams = 4096};
     SimulatedStream stream(plan);
     const auto setCut = [&](size_t member, bool cut) { stream.network().faults(SimulatedStream::host(member)).cut = cut; };
@@ -200,7 +201,7 @@ TEST(StreamSimulation, BurstsHoldNoMemberForLong) {
     for (const size_t member : {0, 2}) EXPECT_LT(stream.member(member).longestStallNs, kNsPerS) << "member " << member;
 }
 
-TEST(StreamSimulation, MembersComeAndGoWhileItFlows) {
+TEST(StreamSimulation, admitsAndReleasesMembersWhileItFlows) {
     StreamPlan plan{.seed = 121, .members = 2, .bytes = 48 << 20, .flushEveryBytes = 30'000, .rate = {185 * kMbit}};
     plan.toMembers.loss = plan.toWriter.loss = 0.02;
     SimulatedStream stream(plan);
@@ -215,7 +216,7 @@ TEST(StreamSimulation, MembersComeAndGoWhileItFlows) {
     EXPECT_EQ(stream.wrongBytes(), 0u);
 }
 
-TEST(StreamSimulation, AJumpOfTheClockAccusesNobody) {
+TEST(StreamSimulation, evictsNoMemberAfterAClockJump) {
     StreamPlan plan{.seed = 131, .members = 2, .bytes = 8 << 20, .rate = {185 * kMbit}};
     SimulatedStream stream(plan);
     stream.run(100 * kNsPerMs, [] { return false; });
@@ -226,14 +227,14 @@ TEST(StreamSimulation, AJumpOfTheClockAccusesNobody) {
     EXPECT_EQ(stream.wrongBytes(), 0u);
 }
 
-TEST(StreamSimulation, AHundredMembersAtOnePercent) {
+TEST(StreamSimulation, deliversToAHundredMembersAtOnePercentLoss) {
     StreamPlan plan{.seed = 141, .members = 100, .bytes = 2 << 20, .flushEveryBytes = 100'000};
     plan.toMembers.loss = plan.toWriter.loss = 0.01;
     expectAllArrives(plan);
 }
 
-// Everything at once, differently in each round. MURAL_SEEDS=first:count hunts for more.
-TEST(StreamSimulation, RandomSchedules) {
+// All faults combined, differently in each round. MURAL_SEEDS=first:count tests more seeds.
+TEST(StreamSimulation, survivesRandomSchedules) {
     uint64_t first = 1;
     uint64_t count = mural::testing::rounds(100);
     if (const char* seeds = std::getenv("MURAL_SEEDS")) std::sscanf(seeds, "%lu:%lu", &first, &count);

@@ -1,4 +1,4 @@
-// Datagrams over this machine's own network, as they are brought: where they are wanted, elsewhere, and joined by the kernel.
+// Datagrams over this machine's own network: delivered in place, elsewhere, and merged by the kernel.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -43,7 +43,7 @@ struct Ends {
     }
 };
 
-// What came, and how many of them lay at a place of the landing.
+// The received datagrams, and how many of them were in place.
 struct Came {
     std::vector<std::vector<std::byte>> datagrams;
     size_t landed = 0;
@@ -71,7 +71,7 @@ struct Places {
     [[nodiscard]] Landing landing() const { return {placeBytes, each}; }
 };
 
-// Sends many one by one, and takes them: so many that it is clear that nothing joins them.
+// Sends and receives enough single datagrams to show that none are merged.
 void showThatNoneAreJoined(Ends& ends, const Landing& landing) {
     constexpr size_t kAtOnce = 32;
     for (size_t round = 0; round < 8; ++round) {
@@ -83,11 +83,12 @@ void showThatNoneAreJoined(Ends& ends, const Landing& landing) {
     }
 }
 
-TEST(UdpSocket, WhereNoneAreJoinedTheyLand) {
+TEST(UdpSocket, receivesInPlaceWithoutMerging) {
     Ends ends;
     Places places(4);
     showThatNoneAreJoined(ends, places.landing());
-    const std::vector<size_t> sizes{kPlace, 1, 32, 5, 1000, kPlace}; // more than there are places; the last ones go to the socket's own
+    // more than there are slots; the last ones use the socket's own buffer
+    const std::vector<size_t> sizes{kPlace, 1, 32, 5, 1000, kPlace};
     for (const size_t size : sizes) ends.send(numbered(size, size), size);
     const Came came(ends.to, places.landing(), sizes.size());
     ASSERT_EQ(came.datagrams.size(), sizes.size());
@@ -95,8 +96,8 @@ TEST(UdpSocket, WhereNoneAreJoinedTheyLand) {
     EXPECT_EQ(came.landed, 4u);
 }
 
-// As a group's sockets: nobody asks who has sent, all places are given with each look, and no two looks are given the same.
-TEST(UdpSocket, EachLookHasPlacesOfItsOwn) {
+// As a group uses it: no sender addresses, all slots offered to each call, and no slot used by two calls.
+TEST(UdpSocket, usesSeparateSlotsPerCall) {
     Ends ends;
     ends.to.leaveOutSenders();
     const Places few(4);
@@ -110,7 +111,7 @@ TEST(UdpSocket, EachLookHasPlacesOfItsOwn) {
         for (size_t i = 0; i < kMostAtOnce; ++i) EXPECT_EQ(came.datagrams[i], numbered(size, look + i)) << look << ", " << i;
         EXPECT_EQ(came.landed, kMostAtOnce) << look;
     }
-    // Fewer places, and none: as before.
+    // The same with fewer slots and with none.
     ends.send(numbered(kPlace, 9), kPlace);
     const Came last(ends.to, few.landing(), 1);
     ASSERT_EQ(last.datagrams.size(), 1u);
@@ -118,7 +119,7 @@ TEST(UdpSocket, EachLookHasPlacesOfItsOwn) {
     EXPECT_EQ(last.landed, 1u);
 }
 
-TEST(UdpSocket, WhatIsLongerThanItsPlaceIsLost) {
+TEST(UdpSocket, dropsDatagramsLongerThanTheirSlot) {
     Ends ends;
     Places places(32);
     showThatNoneAreJoined(ends, places.landing());
@@ -129,7 +130,7 @@ TEST(UdpSocket, WhatIsLongerThanItsPlaceIsLost) {
     EXPECT_EQ(came.datagrams[1], numbered(kPlace - 1, kPlace - 1));
 }
 
-TEST(UdpSocket, NoneLandWhereNothingIsWanted) {
+TEST(UdpSocket, usesItsOwnBufferWithoutSlots) {
     Ends ends;
     showThatNoneAreJoined(ends, {});
     ends.send(numbered(500, 3), 500);
@@ -138,8 +139,9 @@ TEST(UdpSocket, NoneLandWhereNothingIsWanted) {
     EXPECT_EQ(came.datagrams[0], numbered(500, 3));
 }
 
-// What is sent at once goes through this machine's own network in one piece; whoever may get such has no landing, however many come singly behind.
-TEST(UdpSocket, JoinedOnesComeOneByOne) {
+// Datagrams sent together cross this machine's own network as one. A socket that may receive merged datagrams has no
+// slots, even if later datagrams are single.
+TEST(UdpSocket, dividesMergedDatagrams) {
     for (const size_t segment : {kPlace, kPlace / 2, size_t{32}, size_t{700}}) {
         Ends ends;
         Places places(32);
@@ -158,7 +160,7 @@ TEST(UdpSocket, JoinedOnesComeOneByOne) {
     }
 }
 
-TEST(UdpSocket, CountsWhatNobodyFetched) {
+TEST(UdpSocket, countsDroppedDatagrams) {
     Ends ends;
     const size_t room = ends.to.capacity(1000);
     for (size_t i = 0; i < 2 * room; ++i) ends.send(numbered(1000, i), 1000);
@@ -168,7 +170,7 @@ TEST(UdpSocket, CountsWhatNobodyFetched) {
     EXPECT_EQ(ends.to.dropped(), 2 * room - got);
 }
 
-// Datagrams of one size and a shorter one go out by each way of sending; what is refused once is not tried again.
+// Sends datagrams of equal size and a shorter one by each method. A rejected method is not tried again.
 class Sent : public ::testing::Test {
 protected:
     static constexpr size_t kSegment = 232;
@@ -182,27 +184,27 @@ protected:
         for (size_t i = 0; i < 10; ++i)
             EXPECT_TRUE(std::ranges::equal(came.datagrams[i], std::span(all).subspan(i * kSegment, i == 9 ? lastBytes : kSegment))) << i;
     }
-    void joinedOnesAreRefused() { // the kernel's rule: none without a checksum
+    void joinedOnesAreRefused() { // the kernel rejects segmentation without a checksum
         const int on = 1;
         ASSERT_EQ(setsockopt(ends.from.descriptor(), SOL_SOCKET, SO_NO_CHECK, &on, sizeof on), 0);
     }
 };
 
-TEST_F(Sent, AtOnce) {
+TEST_F(Sent, asOneSegmentedDatagram) {
     sendAll(kSegment);
     sendAll(3);
     EXPECT_STREQ(ends.from.sendingBy(), "UDP_SEGMENT");
 }
 
-TEST_F(Sent, BySeveralMessages) {
+TEST_F(Sent, bySeveralMessagesPerCall) {
     joinedOnesAreRefused();
     sendAll(kSegment);
     EXPECT_STREQ(ends.from.sendingBy(), "sendmmsg");
     sendAll(3);
 }
 
-// A kernel without that call, as this thread sees it.
-TEST_F(Sent, OneByOne) {
+// Simulates a kernel without that call for this thread.
+TEST_F(Sent, oneByOne) {
     joinedOnesAreRefused();
     std::thread([&] {
         std::array<sock_filter, 4> program{{
