@@ -66,7 +66,7 @@ def bad():
                         (('draw', files[0], '--resolved'), '--resolved is for print'), (('check', files[0], '--out', 'x'), '--out is for print and draw')):
         status, out, err = run(*words)
         expect(status == 2 and not out and said in err and err.count('\n') == 1, '%s: %d %s' % (' '.join(words), status, err))
-    # Of what is no configuration each word is warned of: the error is to be seen.
+    # Each word of a file that is no configuration causes a warning; the error must still be visible.
     with tempfile.TemporaryDirectory() as folder:
         foreign = os.path.join(folder, 'foreign')
         with open(foreign, 'w', encoding='utf-8') as file:

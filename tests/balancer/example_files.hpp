@@ -1,5 +1,5 @@
-// Example configurations of Equalizer, byte for byte, with what must be found in them. They stand beside the tree, in
-// the folder shared/eqc, or where MURAL_SHARED says that shared is; where they are not, tests say so and are skipped.
+// Example configurations of Equalizer, unmodified, and their expected contents. They are outside the tree, in the
+// folder shared/eqc, or at MURAL_SHARED. Without them tests print the reason and are skipped.
 #pragma once
 
 #include <algorithm>
@@ -44,7 +44,7 @@ inline std::string textOf(const std::filesystem::path& path) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-// What is said when the example files are not there.
+// The message for missing example files.
 inline std::string noExamples() { return "no example files in " + exampleFolder().string() + "; set MURAL_SHARED to the folder that holds eqc"; }
 
 } // namespace mural::config::testing

@@ -1,4 +1,5 @@
-// Where draws are shown by the viewports and zooms of frames: number by number, and on random trees against a wall of single pixels.
+// The places of draws after viewports and zooms of frames: in numbers, and for random trees compared with a wall of
+// single pixels.
 #include "balancer/compound/frame_flow.hpp"
 
 #include <cmath>
@@ -20,7 +21,7 @@
 namespace mural::compound {
 namespace {
 
-// The flow of the draws of one channel, in a wall of 400 x 200 pixels.
+// The flow of one channel's draws, on a wall of 400 x 200 pixels.
 Flow flowOfDraw(const std::string& compounds, const std::string& channel) {
     const std::string text = "#Equalizer 1.2 ascii\nconfig { appNode { pipe { window { viewport [ 0 0 400 200 ] channel { name \"d\" } } window { viewport [ 0 0 400 200 ] channel { name \"s\" } } } "
                              "pipe { window { viewport [ 0 0 400 200 ] channel { name \"t\" } } } } layout { view { } } canvas { layout 0 wall { } segment { channel \"d\" } } compound { channel ( ) " +
@@ -47,11 +48,11 @@ void expectNear(const Viewport& v, double x, double y, double w, double h) {
 
 } // namespace
 
-TEST(FrameFlow, withoutViewportsAndZoomsNothingIsSteered) {
+TEST(FrameFlow, isTrivialWithoutViewportsAndZooms) {
     EXPECT_FALSE(flowOfDraw("compound { channel \"t\" zoom [ .5 .5 ] outputframe { } } inputframe { name \"frame.t\" }", "t").steered);
 }
 
-TEST(FrameFlow, viewportsCutWhatIsHandedOnAndWhatIsTouched) {
+TEST(FrameFlow, clipsToViewportsOfOutputsAndInputs) {
     const Flow f = flowOfDraw("compound { channel \"t\" outputframe { viewport [ .25 0 .5 1 ] } } inputframe { name \"frame.t\" viewport [ 0 .5 1 .5 ] }", "t");
     ASSERT_TRUE(f.steered);
     ASSERT_EQ(f.parts.size(), 1u);
@@ -60,7 +61,7 @@ TEST(FrameFlow, viewportsCutWhatIsHandedOnAndWhatIsTouched) {
     EXPECT_TRUE(f.parts[0].way.none());
 }
 
-TEST(FrameFlow, zoomsOfOutputsAreUndoneWhereTheyAreShown) {
+TEST(FrameFlow, undoesZoomsOfOutputsWhereTheyAreShown) {
     const Flow f = flowOfDraw("compound { channel \"t\" viewport [ .5 0 .5 1 ] outputframe { zoom [ .5 .25 ] } } inputframe { name \"frame.t\" }", "t");
     ASSERT_EQ(f.parts.size(), 1u);
     expectNear(f.parts[0].from, 0, 0, 1, 1);
@@ -69,7 +70,7 @@ TEST(FrameFlow, zoomsOfOutputsAreUndoneWhereTheyAreShown) {
     EXPECT_NEAR(f.parts[0].way.y, .25, 1e-9);
 }
 
-TEST(FrameFlow, zoomsOfInputsShowLargerOrSmaller) {
+TEST(FrameFlow, scalesByZoomsOfInputs) {
     const Flow small = flowOfDraw("compound { channel \"t\" outputframe { } } inputframe { name \"frame.t\" zoom [ .5 .5 ] }", "t");
     ASSERT_EQ(small.parts.size(), 1u);
     expectNear(small.parts[0].from, 0, 0, 1, 1);
@@ -82,7 +83,7 @@ TEST(FrameFlow, zoomsOfInputsShowLargerOrSmaller) {
     EXPECT_NEAR(large.parts[0].way.x, 1, 1e-9) << "all that was drawn is sent";
 }
 
-TEST(FrameFlow, coloursComeInPlaceOfWhatWasThere) {
+TEST(FrameFlow, replacesExistingColours) {
     const std::string compounds = "compound { } compound { channel \"t\" outputframe { viewport [ .5 .5 .5 .5 ] } } inputframe { name \"frame.t\" }";
     double area = 0;
     const Flow own = flowOfDraw(compounds, "d"), other = flowOfDraw(compounds, "t");
@@ -95,7 +96,7 @@ TEST(FrameFlow, coloursComeInPlaceOfWhatWasThere) {
     expectNear(other.parts[0].to, .5, .5, .5, .5);
 }
 
-TEST(FrameFlow, stripesThatAreSentDirectlyAreWholeAgain) {
+TEST(FrameFlow, recombinesStripesOfDirectSend) {
     const std::string compounds = "buffer [ COLOR DEPTH ] "
                                   "compound { compound { range [ 0 .5 ] outputframe { name \"s2.d\" viewport [ 0 .5 1 .5 ] } } inputframe { name \"s1.t\" } } "
                                   "compound { channel \"t\" compound { range [ .5 1 ] outputframe { name \"s1.t\" viewport [ 0 0 1 .5 ] } } inputframe { name \"s2.d\" } outputframe { name \"s2.t\" buffer [ COLOR ] viewport [ 0 .5 1 .5 ] } } "
@@ -112,7 +113,7 @@ TEST(FrameFlow, stripesThatAreSentDirectlyAreWholeAgain) {
     }
 }
 
-TEST(FrameFlow, randomTreesShowWhatTheirPixelsHave) {
+TEST(FrameFlow, matchesPixelsOfRandomTrees) {
     size_t compared = 0, steered = 0;
     for (uint64_t seed = 1; seed <= mural::testing::rounds(300); ++seed) {
         const config::ConfigFile file = testing::TreeMaker(seed, true).make();
@@ -152,7 +153,7 @@ TEST(FrameFlow, randomTreesShowWhatTheirPixelsHave) {
     EXPECT_GT(steered, mural::testing::rounds(200));
 }
 
-TEST(Cells, areApartAndCoverAll) {
+TEST(Cells, areDisjointAndCoverAll) {
     std::mt19937 random(3);
     const auto number = [&](int to) { return static_cast<int>(random() % static_cast<unsigned>(to)); };
     for (int round = 0; round < 200; ++round) {

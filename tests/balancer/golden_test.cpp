@@ -1,4 +1,4 @@
-// What a loader must find in the example files: every value of the table in their README.
+// Checks every value of the table in the README of the example files.
 #include <functional>
 #include <set>
 
@@ -54,7 +54,7 @@ struct CompoundCounts {
     }
 };
 
-// What a file makes use of, in the words of the table.
+// The features that a file uses, with the table's names.
 class Features {
 public:
     explicit Features(const ConfigFile& file) : file_(file) {
@@ -87,7 +87,7 @@ public:
 private:
     void has(const std::string& feature) { features_.insert(feature); }
 
-    // Set to this, here or for all.
+    // Whether the attribute has this value, here or globally.
     [[nodiscard]] bool is(const Attribute& own, const char* global, const std::function<bool(int32_t)>& wanted) const {
         const auto found = file_.globals.find(global);
         const bool all = found != file_.globals.end() && wanted(std::get<int32_t>(found->second));
@@ -177,7 +177,7 @@ Row found(const ConfigFile& file, const ResolvedConfig& resolved) {
     row.version = numberText(file.version);
     size_t pipes = 0, windows = 0, channels = 0;
     std::vector<Node> nodes = c.nodes;
-    nodes.push_back(c.appNode.value_or(Node{})); // which is there even when the file does not say it
+    nodes.push_back(c.appNode.value_or(Node{})); // exists even if the file omits it
     for (const Node& n : nodes) {
         pipes += n.pipes.size();
         for (const Pipe& p : n.pipes) {
@@ -203,7 +203,7 @@ Row found(const ConfigFile& file, const ResolvedConfig& resolved) {
 
 } // namespace
 
-TEST(ExampleFiles, holdWhatTheirTableSays) {
+TEST(ExampleFiles, matchTheirTable) {
     const std::vector<Row> rows = goldenRows();
     if (rows.empty()) GTEST_SKIP() << testing::noExamples();
     EXPECT_GE(rows.size(), 58u);

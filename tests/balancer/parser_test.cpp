@@ -1,4 +1,4 @@
-// How text becomes a configuration: what Equalizer's reader takes, what early releases wrote, and what is said of faults.
+// Parsing of configurations: the syntax of Equalizer's reader, keywords of early releases, and error messages.
 #include <gtest/gtest.h>
 
 #include "balancer/config/text/parser.hpp"
@@ -28,7 +28,7 @@ Parsed inCompound(const std::string& text) { return inConfig("compound { " + tex
 const Compound& compoundOf(const Parsed& p) { return p.file.config.compounds.at(0); }
 const Window& windowOf(const Parsed& p) { return p.file.config.appNode->pipes.at(0).windows.at(0); }
 
-// One line, of one fault.
+// Expects one error with this line.
 void expectError(const std::string& text, const std::string& line) {
     const Parsed p = parse(text);
     EXPECT_EQ(p.errors, 1) << text;
@@ -38,21 +38,21 @@ void expectError(const std::string& text, const std::string& line) {
 
 } // namespace
 
-TEST(Parser, takesWhatEqualizersLexerDrops) {
+TEST(Parser, ignoresWhatEqualizersLexerIgnores) {
     const Parsed p = inCompound("viewport [ 0, 0, .5, 1.f ];\r\n range [ 0 +.5 ] // to the end\n# and this\n");
     EXPECT_TRUE(p.lines.empty()) << p.lines.front();
     EXPECT_EQ(compoundOf(p).viewport, (Viewport{0, 0, .5, 1}));
     EXPECT_EQ(compoundOf(p).range, (Range{0, .5}));
 }
 
-TEST(Parser, takesAFileWithoutAServer) {
+TEST(Parser, acceptsAFileWithoutAServer) {
     const Parsed p = parse("EQ_WINDOW_IATTR_HINT_STEREO ON global { global { EQ_CONFIG_FATTR_EYE_BASE .1 } } config { latency 3 }");
     EXPECT_TRUE(p.lines.empty()) << p.lines.front();
     EXPECT_EQ(p.file.config.latency, 3u);
     EXPECT_EQ(std::get<double>(p.file.globals.at("EQ_CONFIG_FATTR_EYE_BASE")), .1);
 }
 
-TEST(Parser, readsTheHeaderBehindComments) {
+TEST(Parser, readsTheHeaderAfterComments) {
     EXPECT_EQ(parse("# one\n#Equalizer 1.1 ascii server { config { } }").file.version, 1.1);
     EXPECT_EQ(parse("config { }").file.version, 0);
     const Parsed bad = parse("#Equalizer 1.1\nconfig { }");
@@ -61,35 +61,35 @@ TEST(Parser, readsTheHeaderBehindComments) {
     EXPECT_EQ(bad.lines[0], "f:1:1: this header is not understood and read as a comment; write: #Equalizer 1.2 ascii");
 }
 
-TEST(Parser, aCommentMayEndTheFile) { EXPECT_TRUE(parse("config { } # no newline").lines.empty()); }
+TEST(Parser, acceptsACommentAtTheEnd) { EXPECT_TRUE(parse("config { } # no newline").lines.empty()); }
 
-TEST(Parser, theLastOfRepeatedFieldsCounts) {
+TEST(Parser, usesTheLastOfRepeatedFields) {
     const Parsed p = inCompound("range [ 0 .1 ] range [ 0 .2 ] eye [ LEFT RIGHT ] eye [ CYCLOP ] wall { } projection { distance 3 }");
     EXPECT_EQ(compoundOf(p).range, (Range{0, .2}));
     EXPECT_EQ(compoundOf(p).eyes, EyeSet{Eye::Cyclop});
     EXPECT_EQ(std::get<Projection>(*compoundOf(p).surface).distance, 3);
 }
 
-TEST(Parser, emptySets) {
+TEST(Parser, acceptsEmptySets) {
     const Parsed p = inCompound("eye [ LEFT ] eye [ ] task [ ] buffer [ ]");
     EXPECT_FALSE(compoundOf(p).eyes);
     EXPECT_EQ(compoundOf(p).tasks, TaskSet{});
     EXPECT_EQ(compoundOf(p).buffers, BufferSet{});
 }
 
-TEST(Parser, eyeBasePlacesTheEyesAnew) {
+TEST(Parser, resetsTheEyesAtAnEyeBase) {
     const Observer o = inConfig("observer { eye_left [ 1 0 0 ] eye_base .1 eye_right [ 2 0 0 ] }").file.config.observers.at(0);
     EXPECT_FALSE(o.eyeLeft);
     EXPECT_EQ(o.eyeRight, (Vector3{2, 0, 0}));
 }
 
-TEST(Parser, sectionsOfTheApplicationsNodeAddUp) {
+TEST(Parser, mergesSectionsOfTheAppNode) {
     const Parsed p = inConfig("appNode { pipe { } } appNode { name \"a\" pipe { } }");
     EXPECT_EQ(p.file.config.appNode->pipes.size(), 2u);
     EXPECT_EQ(p.file.config.appNode->name, "a");
 }
 
-TEST(Parser, attributeValues) {
+TEST(Parser, readsAttributeValues) {
     const Parsed p = inConfig("appNode { pipe { attributes { hint_affinity CORE 3 } window { attributes { planes_color RGBA16F hint_drawable pbuffer planes_depth 24 } } } }");
     EXPECT_EQ(p.file.config.appNode->pipes[0].attributes.hintAffinity, value::kCore + 3);
     EXPECT_EQ(windowOf(p).attributes.planesColor, value::kRgba16f);
@@ -97,7 +97,7 @@ TEST(Parser, attributeValues) {
     EXPECT_EQ(windowOf(p).attributes.planesDepth, 24);
 }
 
-TEST(Parser, saysWhereWhatAndHowOfUnknownWords) {
+TEST(Parser, reportsPositionProblemAndRemedyOfUnknownWords) {
     const Parsed p = parse("server { config {\n  latancy 3\n  latency 2 } }");
     ASSERT_EQ(p.lines.size(), 1u);
     EXPECT_EQ(p.lines[0], "f:2:3: section config has no field latancy, it is left out; check its spelling, or remove it");
@@ -106,14 +106,14 @@ TEST(Parser, saysWhereWhatAndHowOfUnknownWords) {
     EXPECT_EQ(parse("server { config { latancy 3 } }", true).errors, 1);
 }
 
-TEST(Parser, stepsOverUnknownSections) {
+TEST(Parser, skipsUnknownSections) {
     const Parsed p = inConfig("particles { count 3 { deep [ 1 2 ] } } latency 4");
     EXPECT_EQ(p.lines.size(), 1u);
     EXPECT_EQ(p.file.config.latency, 4u);
 }
 
-// The whole table of what early releases wrote.
-TEST(Parser, loadBalancersOfEarlyReleases) {
+// All keywords of early releases.
+TEST(Parser, acceptsLoadBalancersOfEarlyReleases) {
     Parsed p = inCompound("loadBalancer { mode DB damping .3 boundary .01 }");
     EXPECT_EQ(std::get<LoadEqualizer>(compoundOf(p).equalizers.at(0)).mode, SplitMode::Db);
     EXPECT_EQ(std::get<LoadEqualizer>(compoundOf(p).equalizers.at(0)).damping, .3);
@@ -125,7 +125,7 @@ TEST(Parser, loadBalancersOfEarlyReleases) {
     }
 }
 
-TEST(Parser, resourcesOfEarlyReleases) {
+TEST(Parser, acceptsResourcesOfEarlyReleases) {
     const Parsed p = inConfig("appNode { connection { type SDP TCPIP_port 4 command \"rsh %h %c\" command_quote '\"' timeout 100 } connection { type MCIP PIPE_filename \"x\" } connection { type IB }"
                               " pipe { display 1 screen 2 window { hints { stereo on hint_fullscreen OFF } attributes { planes { stencil 8 } } channel { drawable [ FBO_COLOR FBO_DEPTH ] } } } }");
     const Node& n = *p.file.config.appNode;
@@ -146,7 +146,7 @@ TEST(Parser, resourcesOfEarlyReleases) {
     EXPECT_EQ(p.lines.size(), 14u);
 }
 
-TEST(Parser, otherWordsOfEarlyReleases) {
+TEST(Parser, acceptsOtherKeywordsOfEarlyReleases) {
     Parsed p = inConfig("attributes { eyeBase .1 focus_distance 2 focus_mode relative_to_origin } observer { eyeBase .2 } layout { view { attributes { displaycluster \"h\" } } }"
                         " compound { buffers [ COLOR STENCIL depth ] format RGBA8 attributes { update_FOV ON stereo_mode quad stereo_anaglyph_left_mask [ red ] } }");
     EXPECT_EQ(p.errors, 0) << p.lines.back();
@@ -165,7 +165,7 @@ TEST(Parser, otherWordsOfEarlyReleases) {
     EXPECT_EQ(p.lines.size(), 4u);
 }
 
-TEST(Parser, faultsHaveOneLine) {
+TEST(Parser, reportsEachErrorInOneLine) {
     expectError("", "f:1:1: there is no configuration in this file; it begins with: server { config {");
     expectError("config { name \"x }", "f:1:15: this text has no end; close it with \" on the same line");
     expectError("config { latency -1 }", "f:1:18: latency can't be negative; give 0 or more");
@@ -179,7 +179,7 @@ TEST(Parser, faultsHaveOneLine) {
     expectError("config { node {", "f:1:16: section node ends with }, here is the end of the file; add it, or look for a bracket that is missing before");
 }
 
-TEST(Parser, deepNestingIsOneLine) {
+TEST(Parser, reportsDeepNestingInOneLine) {
     std::string text = "config { ";
     for (int i = 0; i < 100'000; ++i) text += "compound { ";
     const Parsed p = parse(text);
@@ -187,14 +187,14 @@ TEST(Parser, deepNestingIsOneLine) {
     EXPECT_EQ(p.lines.back().substr(p.lines.back().find(' ') + 1), "more than 200 sections stand in each other; check the brackets");
 }
 
-TEST(Parser, everyCutFileIsOneLine) {
+TEST(Parser, reportsEveryTruncatedFileInOneLine) {
     const std::string whole = "#Equalizer 1.2 ascii\nglobal { EQ_CONFIG_FATTR_EYE_BASE .1 }\nserver { connection { type RSP } config { appNode { pipe { window { viewport [ 0 0 1 1 ] channel { name \"c\" } } } }"
                               " compound { channel ( segment 0 view \"v\" ) eye [ LEFT ] load_equalizer { boundary [ 1 2 ] } } } }";
     for (size_t n = 0; n + 2 < whole.size(); ++n) EXPECT_LE(parse(whole.substr(0, n)).errors, 1) << n;
     EXPECT_EQ(parse(whole).errors, 0);
 }
 
-TEST(Parser, aFileThatIsNoTextHasFewLines) {
+TEST(Parser, reportsFewLinesForABinaryFile) {
     std::string noise;
     for (int i = 0; i < 100'000; ++i) noise += static_cast<char>(i * 7919 >> 3);
     EXPECT_LE(parse(noise).lines.size(), 200u);

@@ -1,4 +1,4 @@
-// Every configuration file, carried out without drawing: every layout, mono and stereo, several frames.
+// Executes every configuration file without drawing: every layout, mono and stereo, several frames.
 #include <gtest/gtest.h>
 
 #include "balancer/compound/even_split.hpp"
@@ -13,7 +13,7 @@ namespace {
 
 std::optional<std::string> noEnvironment(const std::string&) { return std::nullopt; }
 
-// So many pixels that all positions are told apart, and no more.
+// Reduces the size to the smallest that distinguishes all positions.
 void shrink(const ResolvedConfig& config, FrameInput& input) {
     for (size_t w = 0; w < config.windows.size(); ++w) {
         const PixelViewport& size = input.sizes.windows[w];
@@ -41,7 +41,7 @@ void expectWhole(const std::string& path) {
             for (input.frameNumber = 0; input.frameNumber < 4; ++input.frameNumber) {
                 const FramePlan plan = planFrame(config, input);
                 const std::string wrong = testing::SymbolicWall(config, input, plan).run();
-                // Files that are made for stereo alone may show nothing in mono, and the other way round.
+                // Files for stereo only may show nothing in mono, and vice versa.
                 if (switched && wrong.ends_with("nothing was drawn")) continue;
                 ASSERT_EQ(wrong, "") << "layout " << layout << " frame " << input.frameNumber << (switched ? ", mono and stereo exchanged" : "");
             }
@@ -54,14 +54,14 @@ void expectWhole(const std::string& path) {
 TEST(PlanFiles, showEveryPixelOnce) {
     for (const auto& path : config::testing::allFiles()) {
         SCOPED_TRACE(path.filename().string());
-        if (path.filename() == "own-coverage.eqc") continue; // uses every word, and draws what comes of it
-        if (path.filename() == "frame-zoom.eqc") continue;   // makes pixels one on purpose: FrameFlow
+        if (path.filename() == "own-coverage.eqc") continue; // uses every keyword, so its picture makes no sense
+        if (path.filename() == "frame-zoom.eqc") continue; // merges pixels intentionally: see FrameFlow
         expectWhole(path.string());
     }
     if (config::testing::exampleFiles().empty()) GTEST_SKIP() << config::testing::noExamples();
 }
 
-TEST(PlanFiles, ownFilesHaveNoFault) {
+TEST(PlanFiles, reportNoProblemInOurFiles) {
     EXPECT_GE(config::testing::ownFiles().size(), 10u);
     for (const auto& path : config::testing::ownFiles()) {
         const LoadedConfig loaded = loadConfig(path.string(), noEnvironment);

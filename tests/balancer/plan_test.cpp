@@ -1,4 +1,4 @@
-// Contexts, frusta and links of small configurations, number by number; and what is said of those that cannot work.
+// Contexts, frusta and links of small configurations in numbers, and messages for impossible ones.
 #include <gtest/gtest.h>
 
 #include "balancer/compound/check_config.hpp"
@@ -59,22 +59,22 @@ std::vector<std::string> faults(const std::string& text) {
 
 } // namespace
 
-TEST(Plan, frustaOfTheDefaultWall) {
+TEST(Plan, computesFrustaOfTheDefaultWall) {
     const ResolvedConfig c = resolved(kWall);
     expectFrustum(drawn(plan(c), c, "d").perspective, -.08, .08, -.05, .05);
     const FramePlan stereo = plan(c, config::ViewMode::Stereo);
     expectFrustum(drawn(stereo, c, "d", Eye::Right).perspective, -.0825, .0775, -.05, .05);
     expectFrustum(drawn(stereo, c, "d", Eye::Left).perspective, -.0775, .0825, -.05, .05);
     expectFrustum(drawn(stereo, c, "d", Eye::Left).orthographic, -.8, .8, -.5, .5);
-    // The eye stands .025 to the right: what is in the middle of the wall is .025 to the left of it.
+    // The eye is .025 to the right: the centre of the wall is .025 to its left.
     EXPECT_NEAR(transformPoint(drawn(stereo, c, "d", Eye::Right).perspectiveHead, {0, 0, -1}).x, -.025, 1e-12);
     EXPECT_NEAR(transformPoint(drawn(stereo, c, "d", Eye::Right).perspectiveHead, {0, 0, -1}).z, -1, 1e-12);
-    // Orthographic eyes agree on the wall, and differ before it.
+    // Orthographic eyes agree on the wall, and differ in front of it.
     const auto& ortho = drawn(stereo, c, "d", Eye::Right).orthographicHead;
     EXPECT_NEAR(transformPoint(ortho, {.3, 0, -1}).x - .3, .025, 1e-9);
 }
 
-TEST(Plan, anaglyphMasksAndQuadBuffers) {
+TEST(Plan, setsAnaglyphMasksAndQuadBuffers) {
     ResolvedConfig c = resolved(kWall);
     EXPECT_EQ(drawn(plan(c, config::ViewMode::Stereo), c, "d", Eye::Left).colorMask, config::ColorMask{config::ColorComponent::Red});
     c.windows[0].attributes.hintStereo = config::value::kOn;
@@ -87,7 +87,7 @@ TEST(Plan, anaglyphMasksAndQuadBuffers) {
     EXPECT_EQ(passive.contexts.size(), 1u);
 }
 
-TEST(Plan, headsAndModelUnits) {
+TEST(Plan, appliesHeadsAndModelUnits) {
     const ResolvedConfig c = resolved("observer { } layout { view { observer 0 } } canvas { layout 0 wall { } segment { channel \"d\" } }");
     FrameInput input = firstFrame(c);
     input.observers = {{Matrix4::translation({.1, .2, 1})}};
@@ -97,7 +97,7 @@ TEST(Plan, headsAndModelUnits) {
     input.nearPlane = 100;
     const FramePlan millimetres = planFrame(c, input);
     expectFrustum(drawn(millimetres, c, "d").perspective, -45, 35, -35, 15);
-    // Behind the wall everything is mirrored; in its plane there is still a frustum.
+    // Behind the wall the picture is mirrored; in its plane a frustum still exists.
     input = firstFrame(c);
     input.observers = {{Matrix4::translation({0, 0, -2})}};
     EXPECT_TRUE(drawn(planFrame(c, input), c, "d").behindScreen);
@@ -105,13 +105,13 @@ TEST(Plan, headsAndModelUnits) {
     EXPECT_TRUE(std::isfinite(drawn(planFrame(c, input), c, "d").perspective.left));
 }
 
-TEST(Plan, focusMovesTheWall) {
+TEST(Plan, movesTheWallToTheFocusDistance) {
     const ResolvedConfig c = resolved("observer { eye_base .1 focus_distance 4 focus_mode relative_to_observer } layout { view { observer 0 mode STEREO } } canvas { layout 0 wall { } segment { channel \"d\" } }");
-    // As if the wall were 4 m away and four times as large: the eye's offset counts a quarter.
+    // As if the wall were 4 m away and four times as large: a quarter of the eye's offset remains.
     expectFrustum(drawn(plan(c, config::ViewMode::Stereo), c, "d", Eye::Right).perspective, -.08 - .00125, .08 - .00125, -.05, .05);
 }
 
-TEST(Plan, hmdWallsMoveWithTheHead) {
+TEST(Plan, movesHmdWallsWithTheHead) {
     const ResolvedConfig c = resolved("observer { } layout { view { observer 0 wall { type HMD } } } canvas { layout 0 segment { channel \"d\" } }");
     FrameInput input = firstFrame(c);
     input.observers = {{Matrix4::translation({5, 6, 7})}};
@@ -120,7 +120,7 @@ TEST(Plan, hmdWallsMoveWithTheHead) {
     EXPECT_NEAR(transformPoint(drawn(p, c, "d").perspectiveHead, {5, 6, 7}).x, 0, 1e-12);
 }
 
-TEST(Plan, areasInPixels) {
+TEST(Plan, computesAreasInPixels) {
     const ResolvedConfig c = resolved(kWall + "compound { channel ( ) compound { viewport [ 0 0 .333 1 ] } compound { channel \"s\" viewport [ .333 0 .667 1 ] outputframe { } } inputframe { name \"frame.s\" } }");
     const FramePlan p = plan(c);
     const RenderContext& s = drawn(p, c, "s");
@@ -135,8 +135,8 @@ TEST(Plan, areasInPixels) {
     EXPECT_EQ(assemble.inputs[0].y, 0);
 }
 
-// Pixel i of the context is the middle of destination pixel kernel + i · step, for every width and height.
-TEST(Plan, kernelsOfAnySize) {
+// Pixel i of the context is the centre of destination pixel kernel + i · step, for every width and height.
+TEST(Plan, supportsKernelsOfAnySize) {
     for (const int k : {1, 2, 3, 5}) {
         for (int i = 0; i < k; ++i) {
             const std::string kernel = "[ " + std::to_string(i) + " " + std::to_string(k - 1 - i) + " " + std::to_string(k) + " " + std::to_string(k) + " ]";
@@ -154,7 +154,7 @@ TEST(Plan, kernelsOfAnySize) {
     }
 }
 
-TEST(Plan, samplesLieEvenly) {
+TEST(Plan, distributesSamplesEvenly) {
     for (const int n : {1, 2, 3, 4, 7, 8, 15, 16, 24, 66}) {
         double x = 0, y = 0;
         for (int i = 0; i < n; ++i) {
@@ -168,36 +168,36 @@ TEST(Plan, samplesLieEvenly) {
     }
 }
 
-TEST(Plan, zoomsAreUndoneWhereTheyAreShown) {
+TEST(Plan, undoesZoomsWhereTheyAreShown) {
     const ResolvedConfig c = resolved(kWall + "compound { channel ( ) compound { channel \"s\" zoom [ .5 .5 ] outputframe { } } compound { channel \"t\" zoom [ 2 2 ] outputframe { } } inputframe { name \"frame.s\" } inputframe { name \"frame.t\" } }");
     const FramePlan p = plan(c);
     EXPECT_EQ(drawn(p, c, "s").viewport.w, 200);
-    EXPECT_EQ(p.frames[0].size.w, 200);                    // sent small,
-    EXPECT_EQ(p.channels.back().channel, 3);               // (the destination)
-    EXPECT_EQ(p.channels.back().tasks.back().inputs[0].zoom, (Zoom{2, 2})); // enlarged here
+    EXPECT_EQ(p.frames[0].size.w, 200); // transferred at the small size
+    EXPECT_EQ(p.channels.back().channel, 3); // (the destination)
+    EXPECT_EQ(p.channels.back().tasks.back().inputs[0].zoom, (Zoom{2, 2})); // enlarged at the destination
     EXPECT_EQ(drawn(p, c, "t").viewport.w, 800);
-    EXPECT_EQ(p.frames[1].size.w, 400);                    // made smaller before it is sent
+    EXPECT_EQ(p.frames[1].size.w, 400); // reduced before the transfer
     EXPECT_EQ(p.channels.back().tasks.back().inputs[1].zoom, (Zoom{1, 1}));
 }
 
-TEST(Plan, copiesShowTheSamePicture) {
+TEST(Plan, showsTheSamePictureInCopies) {
     const ResolvedConfig c = resolved("layout { view { mode STEREO } } canvas { layout 0 wall { } segment { channel \"d\" mural_copy_to \"t\" } }");
     for (const auto mode : {config::ViewMode::Mono, config::ViewMode::Stereo}) {
         const FramePlan p = plan(c, mode);
         const size_t passes = mode == config::ViewMode::Mono ? 1 : 2;
         ASSERT_EQ(p.channels.size(), 2u);
         EXPECT_EQ(p.frames.size(), passes);
-        EXPECT_EQ(p.channels.front().tasks.size(), 2 * passes); // clear, assemble: of the copy
+        EXPECT_EQ(p.channels.front().tasks.size(), 2 * passes); // clear and assemble of the copy
     }
 }
 
-TEST(Plan, timeMultiplex) {
+TEST(Plan, timeMultiplexes) {
     const ResolvedConfig c = resolved(kWall + "compound { channel ( ) compound { channel \"s\" period 2 phase 0 outputframe { name \"f\" } } compound { channel \"t\" period 2 phase 1 outputframe { name \"f\" } } inputframe { name \"f\" } }");
     EXPECT_EQ(c.channels[static_cast<size_t>(plan(c, config::ViewMode::Mono, 0).frames.at(0).channel)].name, "s");
     EXPECT_EQ(c.channels[static_cast<size_t>(plan(c, config::ViewMode::Mono, 1).frames.at(0).channel)].name, "t");
 }
 
-TEST(Plan, leavesDoNotClearWhatOthersDrew) {
+TEST(Plan, doesNotClearDrawsOfOtherLeaves) {
     const ResolvedConfig c = resolved(kWall + "compound { channel ( ) compound { range [ 0 .5 ] } compound { range [ .5 1 ] } compound { channel \"d\" viewport [ 0 0 1 0 ] } }");
     const FramePlan p = plan(c);
     ASSERT_EQ(p.channels.size(), 1u);
@@ -206,9 +206,9 @@ TEST(Plan, leavesDoNotClearWhatOthersDrew) {
     EXPECT_EQ(kinds, (std::vector<Task>{Task::Clear, Task::Draw, Task::Draw}));
 }
 
-// A channel that works for another screen, and waits for it, and shows its own picture in the same window: that comes
-// when the work is done, although it could go on before.
-TEST(Plan, channelsOfOneWindowDoNotDisturbEachOther) {
+// A channel draws for another screen, and waits for it, and also shows its own picture in the same window. Its own
+// picture follows after that work, although it could continue earlier.
+TEST(Plan, separatesChannelsOfOneWindow) {
     const ResolvedConfig c = resolved("layout { view { } } canvas { layout 0 wall { } segment { channel \"s\" viewport [ 0 0 .5 1 ] } segment { channel \"d\" viewport [ .5 0 .5 1 ] } }"
                                       " compound { channel ( segment 1 ) compound { outputframe { name \"x\" } } compound { channel \"s\" task [ CLEAR ASSEMBLE READBACK ] inputframe { name \"x\" } outputframe { name \"y\" } }"
                                       " inputframe { name \"y\" } } compound { channel ( segment 0 ) }");
@@ -239,7 +239,7 @@ TEST(Plan, barriersNameTheirWindows) {
     EXPECT_EQ(p.barriers[0].windows, (std::vector<Index>{0, 2}));
 }
 
-TEST(Plan, layoutsAreSwitched) {
+TEST(Plan, switchesLayouts) {
     const ResolvedConfig c = resolved("layout { view { } } layout { view { } view { } } canvas { layout 0 layout 1 layout OFF segment { channel \"d\" } }");
     FrameInput input = firstFrame(c);
     EXPECT_EQ(planFrame(c, input).channels.size(), 1u);
@@ -251,18 +251,18 @@ TEST(Plan, layoutsAreSwitched) {
     }
 }
 
-TEST(Check, framesThatWaitForEachOther) {
+TEST(Check, reportsCyclicFrames) {
     const auto lines = faults(kWall + "compound { channel ( ) compound { channel \"s\" task [ ASSEMBLE READBACK ] inputframe { name \"x\" } outputframe { name \"y\" } }"
                                       " compound { channel \"t\" task [ ASSEMBLE READBACK ] inputframe { name \"y\" } outputframe { name \"x\" } } inputframe { name \"y\" } inputframe { name \"x\" } }");
     ASSERT_EQ(lines.size(), 1u);
     EXPECT_EQ(lines[0], "error: frames \"x\", \"y\" wait for each other: nothing is ever drawn");
     const auto itself = faults(kWall + "compound { channel ( ) inputframe { name \"x\" } outputframe { name \"x\" } }");
     EXPECT_EQ(itself.back(), "error: frame \"x\" waits for itself: nothing is ever drawn");
-    // In different frames it is no circle.
+    // In different frames there is no cycle.
     EXPECT_TRUE(faults(kWall + "compound { channel ( ) compound { channel \"s\" outputframe { name \"y\" } } compound { channel \"t\" period 2 phase 1 inputframe { name \"y\" } outputframe { name \"x\" } } inputframe { name \"x\" } }").empty());
 }
 
-TEST(Check, namesWithoutAPartner) {
+TEST(Check, reportsNamesWithoutACounterpart) {
     EXPECT_EQ(faults(kWall + "compound { channel ( ) inputframe { name \"x\" } }"), std::vector<std::string>{"nobody in this tree makes frame \"x\", it is not waited for"});
     EXPECT_EQ(faults(kWall + "compound { channel ( ) outputframe { name \"x\" } }"), std::vector<std::string>{"nobody in this tree takes frame \"x\", it is not read back"});
     EXPECT_EQ(faults(kWall + "compound { channel ( ) compound { channel \"s\" outputframe { } } compound { channel \"t\" outputframe { name \"frame.s\" } } inputframe { name \"frame.s\" } }"),
@@ -275,7 +275,7 @@ TEST(Check, namesWithoutAPartner) {
               std::vector<std::string>{"frame \"frame.t\" is a texture, and taken by another pipe, it is handed over in memory"});
 }
 
-TEST(Check, partsThatAreNeverShown) {
+TEST(Check, reportsPartsThatAreNeverShown) {
     EXPECT_EQ(faults("layout { name \"a\" view { } } layout { name \"b\" view { viewport [ .6 0 .2 1 ] } } canvas { layout \"b\" segment { channel \"d\" viewport [ 0 0 .5 1 ] } }"),
               (std::vector<std::string>{"layout \"a\" is on no canvas and never shown", "view number 1 falls onto no segment and is never shown"}));
     EXPECT_EQ(faults(kWall + "compound { channel ( ) period 2 phase 2 }"), std::vector<std::string>{"phase 2 never comes with a period of 2, so this compound never draws"});

@@ -1,4 +1,4 @@
-// Configurations with random values in all fields: what they say makes no sense, but each can be written and read.
+// Configurations with random values in all fields: meaningless, but each can be written and parsed.
 #pragma once
 
 #include <random>
@@ -8,7 +8,7 @@
 
 namespace mural::config::testing {
 
-// The walker over section_fields.hpp that gives about half of the fields a value.
+// A walker over section_fields.hpp that sets about half of the fields.
 class RandomFiller {
 public:
     explicit RandomFiller(uint64_t seed) : random_(seed) {}
@@ -103,7 +103,7 @@ public:
         for (const auto& s : spellings(E{})) {
             if (chance(.5)) v.add(s.value);
         }
-        if constexpr (std::is_same_v<E, Eye>) v.add(Eye::Cyclop); // no eye at all is not written
+        if constexpr (std::is_same_v<E, Eye>) v.add(Eye::Cyclop); // an empty set of eyes is not written
     }
 
 private:

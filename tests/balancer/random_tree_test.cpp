@@ -1,5 +1,5 @@
-// Random trees of all decompositions in each other, carried out without drawing: every pixel is drawn for itself, all of
-// its range and every sample once, in every frame; and nothing stands still.
+// Executes random trees with nested decompositions without drawing: every pixel is drawn at its place, with its
+// complete range and every sample once, in every frame, without deadlock.
 #include <gtest/gtest.h>
 
 #include "balancer/compound/even_split.hpp"

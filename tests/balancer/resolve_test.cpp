@@ -1,4 +1,4 @@
-// What follows from a file: destination channels, compounds and canvases that are not written, defaults, old versions.
+// Resolution of a file: destination channels, implicit compounds and canvases, defaults, old versions.
 #include <gtest/gtest.h>
 
 #include "balancer/config/resolve.hpp"
@@ -38,7 +38,7 @@ std::vector<const ResolvedChannel*> destinations(const ResolvedConfig& c) {
 
 } // namespace
 
-TEST(Resolve, segmentsAndViewsMakeDestinations) {
+TEST(Resolve, createsDestinationsFromSegmentsAndViews) {
     const Resolved r = with("layout { name \"l\" view { viewport [ .25 0 .5 1 ] } view { viewport [ 0 0 .25 1 ] } } canvas { layout 0 segment { channel \"a\" viewport [ 0 0 .5 1 ] } segment { channel \"b\" viewport [ .5 0 .5 1 ] } }");
     EXPECT_EQ(r.errors, 0);
     const auto all = destinations(r.config);
@@ -47,21 +47,21 @@ TEST(Resolve, segmentsAndViewsMakeDestinations) {
     EXPECT_EQ(all[1]->viewport, (Viewport{0, 0, .5, 1}));
     EXPECT_EQ(all[1]->name, "b");
     EXPECT_EQ(all[2]->viewport, (Viewport{0, 0, .5, 1}));
-    // Nobody said how they are drawn: a group, and a compound for each.
+    // No compound draws them: adds a group with one compound for each.
     ASSERT_EQ(r.config.roots.size(), 1u);
     EXPECT_EQ(r.config.compounds[0].name, "l");
     EXPECT_EQ(r.config.compounds[0].children.size(), 3u);
-    // Nobody said who looks at them.
+    // No observer is defined: adds one.
     ASSERT_EQ(r.config.observers.size(), 1u);
     EXPECT_EQ(r.config.views[1].observer, 0);
 }
 
-TEST(Resolve, channelsInPixels) {
+TEST(Resolve, computesChannelsInPixels) {
     const Resolved r = resolved("config { appNode { pipe { window { channel { name \"a\" viewport [ 10 20 100 50 ] } } } } layout { view { viewport [ .5 .5 .5 .5 ] } } canvas { layout 0 segment { channel \"a\" } } }");
     EXPECT_EQ(destinations(r.config).at(0)->viewport, (Viewport{60, 45, 50, 25}));
 }
 
-TEST(Resolve, waysToChannels) {
+TEST(Resolve, resolvesReferencesToChannels) {
     const std::string displays = "layout { name \"one\" view { } } layout { name \"two\" view { name \"v\" } view { name \"w\" viewport [ 0 0 .5 1 ] } } canvas { name \"c\" layout 0 layout 1 segment { name \"s\" channel \"a\" } segment { name \"t\" channel \"b\" } }";
     const auto shown = [&](const std::string& way) {
         const Resolved r = with(displays + "compound { channel " + way + " }");
@@ -79,7 +79,7 @@ TEST(Resolve, waysToChannels) {
     EXPECT_EQ(shown("\"z\""), "there is no channel \"z\"; define it in a window, or name another");
 }
 
-TEST(Resolve, filesOlderThanCanvases) {
+TEST(Resolve, completesFilesOlderThanCanvases) {
     const Resolved r = with("compound { eye [ LEFT ] channel \"a\" viewport [ 0 0 .5 1 ] wall { bottom_left [ -2 -1 -1 ] bottom_right [ 2 -1 -1 ] top_left [ -2 1 -1 ] } }", "");
     EXPECT_EQ(r.errors, 0);
     ASSERT_EQ(r.config.canvases.size(), 1u);
@@ -88,13 +88,13 @@ TEST(Resolve, filesOlderThanCanvases) {
     EXPECT_EQ(screenOf(r.config.segments[0].surface).width, 4);
     EXPECT_EQ(r.config.compounds[0].viewport, Viewport{});
     EXPECT_FALSE(r.config.compounds[0].surface);
-    // Stereo was what a compound has eyes for.
+    // A compound with eyes implied stereo.
     EXPECT_EQ(r.config.views[0].mode, ViewMode::Stereo);
     EXPECT_EQ(r.config.segments[0].eyes, (EyeSet{Eye::Cyclop, Eye::Left}));
     EXPECT_EQ(*r.config.compounds[0].eyes, (EyeSet{Eye::Cyclop, Eye::Left}));
 }
 
-TEST(Resolve, hostsOfOldFiles) {
+TEST(Resolve, findsHostsInOldFiles) {
     const std::string node = "config { node { host \"h\" connection { hostname \"c\" } } node { connection { hostname \"d\" } } }";
     EXPECT_EQ(resolved("#Equalizer 1.1 ascii\n" + node).config.nodes[1].host, "c");
     EXPECT_EQ(resolved("#Equalizer 1.1 ascii\n" + node).lines.size(), 1u);
@@ -105,7 +105,7 @@ TEST(Resolve, hostsOfOldFiles) {
     EXPECT_EQ(resolved(node).config.serverConnections.size(), 1u);
 }
 
-TEST(Resolve, whatCountsOfAnAttribute) {
+TEST(Resolve, appliesPrecedenceOfAttributes) {
     const auto stereo = [](const std::string& global, const std::string& own, const Globals& environment) {
         return resolved("global { " + global + " } config { appNode { pipe { window { attributes { " + own + " } } } } }", environment).config.windows[0].attributes.hintStereo;
     };
@@ -117,7 +117,7 @@ TEST(Resolve, whatCountsOfAnAttribute) {
     EXPECT_FALSE(resolved("config { appNode { pipe { window { } } } }").config.windows[0].attributes.hintSwapsync);
 }
 
-TEST(Resolve, environmentVariables) {
+TEST(Resolve, readsEnvironmentVariables) {
     const std::map<std::string, std::string> set{{"EQ_WINDOW_IATTR_HINT_STEREO", "1"}, {"EQ_PIPE_IATTR_HINT_THREAD", "OFF"}, {"EQ_CONFIG_FATTR_EYE_BASE", "x"},
                                                  {"EQ_CONNECTION_SATTR_HOSTNAME", "a \"b"}, {"EQ_NODE_CATTR_LAUNCH_COMMAND_QUOTE", "\""}};
     Diagnostics diagnostics("f");
@@ -131,7 +131,7 @@ TEST(Resolve, environmentVariables) {
     EXPECT_EQ(diagnostics.text(diagnostics.all()[0]), "f: environment variable EQ_CONFIG_FATTR_EYE_BASE:1:1: EQ_CONFIG_FATTR_EYE_BASE can't be the word x; it is a number; it is left out");
 }
 
-TEST(Resolve, namesOfFramesAndBarriers) {
+TEST(Resolve, namesFramesAndBarriers) {
     const Resolved r = with("compound { name \"root\" channel \"a\" swapbarrier { } compound { channel \"b\" outputframe { } } compound { name \"n\" outputframe { } inputframe { } } inputframe { } }");
     EXPECT_EQ(r.config.compounds[1].outputFrames[0].name, "frame.b");
     EXPECT_EQ(r.config.compounds[2].outputFrames[0].name, "frame.n");
@@ -142,7 +142,7 @@ TEST(Resolve, namesOfFramesAndBarriers) {
     EXPECT_EQ(shown.config.compounds[2].barrier->name, "own");
 }
 
-TEST(Resolve, bezelsCutWhatIsSeen) {
+TEST(Resolve, subtractsBezels) {
     const std::string wall = "layout { view { } } canvas { layout 0 wall { bottom_left [ -1 -.5 -1 ] bottom_right [ 1 -.5 -1 ] top_left [ -1 .5 -1 ] } mural_bezel_mm [ 10 20 30 40 ] ";
     const Resolved r = with(wall + "segment { channel \"a\" viewport [ 0 0 .5 1 ] } segment { channel \"b\" viewport [ .5 0 .5 1 ] mural_bezel_mm [ 0 0 0 0 ] } }");
     EXPECT_EQ(r.errors, 0);
@@ -155,14 +155,14 @@ TEST(Resolve, bezelsCutWhatIsSeen) {
     EXPECT_EQ(with(wall + "segment { channel \"a\" viewport [ 0 0 .01 1 ] } }").lines.back(), "f:2:246: bezels leave nothing of this segment, or are negative; they are millimetres of left, right, bottom and top");
 }
 
-TEST(Resolve, degenerateWallsAreRefused) {
+TEST(Resolve, rejectsDegenerateWalls) {
     EXPECT_EQ(with("layout { view { } } canvas { layout 0 wall { bottom_right [ -.8 -.5 -1 ] } }").errors, 1);
     EXPECT_EQ(with("layout { view { projection { distance 0 } } }").errors, 1);
     EXPECT_EQ(with("layout { view { projection { fov [ 180 40 ] } } }").errors, 1);
     EXPECT_EQ(with("layout { view { wall { top_left [ 0 .5 -1 ] } } }").errors, 1);
 }
 
-TEST(Screen, projectorsStandWhereTheyLook) {
+TEST(Screen, orientsProjectorsAlongTheirViewingDirection) {
     Projection p;
     p.hpr = {50, 0, 0};
     p.distance = 3;

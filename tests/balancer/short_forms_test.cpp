@@ -1,4 +1,4 @@
-// Every short form is a configuration that reads back, has no fault, and shows every pixel once.
+// Every short form is a configuration that can be parsed again, has no problem, and shows every pixel once.
 #include <gtest/gtest.h>
 
 #include "balancer/compound/even_split.hpp"
@@ -41,7 +41,7 @@ void expectWhole(ShortForm form) {
 
 } // namespace
 
-TEST(ShortForms, eachAlone) {
+TEST(ShortForms, workSeparately) {
     for (const auto member : {&ShortForm::columns, &ShortForm::rows, &ShortForm::ranges, &ShortForm::pixels, &ShortForm::samples, &ShortForm::frames}) {
         for (const int n : {1, 2, 3, 7}) {
             ShortForm form;
@@ -56,14 +56,14 @@ TEST(ShortForms, eachAlone) {
     }
 }
 
-TEST(ShortForms, allAreZoomed) {
+TEST(ShortForms, supportZoom) {
     ShortForm form;
     form.columns = form.ranges = 2;
     form.zoom = {0.5, 2};
     for (const auto& c : loaded(form).resolved.compounds) EXPECT_EQ(c.zoom, c.parent == config::kNone ? form.zoom : Zoom{}) << "what is in it inherits that";
 }
 
-TEST(ShortForms, allTogether) {
+TEST(ShortForms, workInCombination) {
     for (const auto stereo : {StereoForm::None, StereoForm::Anaglyph, StereoForm::Passive}) {
         ShortForm form;
         form.columns = form.ranges = form.pixels = form.samples = form.frames = 2;
@@ -73,19 +73,19 @@ TEST(ShortForms, allTogether) {
     }
 }
 
-TEST(ShortForms, nodesTakeTurns) {
+TEST(ShortForms, timeMultiplexNodes) {
     ShortForm form;
     form.columns = form.rows = 2;
     form.nodes = {"a", "b"};
     const LoadedConfig one = loaded(form);
-    ASSERT_EQ(one.resolved.nodes.size(), 3u); // the application's, which draws nothing
+    ASSERT_EQ(one.resolved.nodes.size(), 3u); // the application's node, which does not draw
     EXPECT_EQ(one.resolved.nodes[1].host, "a");
     EXPECT_EQ(one.resolved.nodes[1].pipes.size(), 2u);
     EXPECT_EQ(one.resolved.segments[1].viewport, (Viewport{.5, 0, .5, .5}));
     EXPECT_EQ(one.resolved.windows.size(), 4u);
 }
 
-TEST(ShortForms, tilesAreTakenFromAQueue) {
+TEST(ShortForms, createTileQueues) {
     ShortForm form;
     form.tileWidth = form.tileHeight = 8;
     form.takers = 3;
@@ -93,21 +93,21 @@ TEST(ShortForms, tilesAreTakenFromAQueue) {
     form.samples = 2;
     form.stereo = StereoForm::Anaglyph;
     expectWhole(form);
-    form.takers = 1; // nobody to share with
+    form.takers = 1; // a single node shares nothing
     for (const auto& c : loaded(form).resolved.compounds) EXPECT_TRUE(c.outputQueues.empty());
 }
 
-TEST(ShortForms, compositionIsInheritedByTheRanges) {
+TEST(ShortForms, inheritTheCompositionInRanges) {
     ShortForm form;
     form.ranges = 3;
     form.composition = "2-3-swap";
     const LoadedConfig three = loaded(form);
     for (const auto& c : three.resolved.compounds) EXPECT_EQ(c.composition, "2-3-swap");
-    form.ranges = 1; // nothing is put together
+    form.ranges = 1; // nothing is composited
     for (const auto& c : loaded(form).resolved.compounds) EXPECT_EQ(c.composition, "");
 }
 
-TEST(ShortForms, senselessOnesAreRefused) {
+TEST(ShortForms, areRejectedWhenInvalid) {
     ShortForm form;
     form.ranges = 0;
     EXPECT_EQ(config::shortForm(form).error().message, "--db can't be 0; give 1 or more");

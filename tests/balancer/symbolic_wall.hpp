@@ -1,5 +1,5 @@
-// Carries out a plan without drawing: each pixel holds what was drawn into it, and for which pixel of the destination.
-// At the end every pixel that is shown must have been drawn for itself, all of its range and every subpixel once.
+// Executes a plan without drawing: each pixel stores its draws, and the destination pixel for which each was drawn. At
+// the end every shown pixel must contain its own draws, with the complete range and every subpixel once.
 #pragma once
 
 #include <algorithm>
@@ -11,13 +11,13 @@
 
 namespace mural::compound::testing {
 
-// One thing that is in a pixel.
+// One contribution to a pixel.
 struct Share {
-    int32_t x, y; // of the destination that it was drawn for, from its corner
+    int32_t x, y; // intended destination pixel, from the destination's corner
     Range range;
     SubPixel sample;
     Index destination;
-    Index context = kNone; // that drew it; none: as tiles
+    Index context = kNone; // the context that drew it; none: drawn as tiles
 };
 using Pixel = std::vector<Share>;
 
@@ -29,10 +29,10 @@ class SymbolicWall {
 public:
     SymbolicWall(const ResolvedConfig& config, const FrameInput& input, const FramePlan& plan) : config_(config), input_(input), plan_(plan) {}
 
-    // What every destination has when it is done, by its eyes: pixels of its window.
+    // The final content of every destination, by its eyes: pixels of its window.
     std::map<std::pair<Index, Eye>, std::map<std::pair<int32_t, int32_t>, Pixel>> shown;
 
-    // What is wrong, empty when everything was drawn once.
+    // Returns the first error, or an empty string if everything was drawn once.
     std::string run() {
         if (!plan_.deadlock.empty()) return "deadlock";
         frames_.resize(plan_.frames.size());
@@ -57,7 +57,7 @@ public:
 private:
     using Pixels = std::map<std::pair<int32_t, int32_t>, Pixel>;
 
-    // A buffer for each window and eye; interleaved channels have their own.
+    // One buffer per window and eye; interleaved channels have their own.
     Pixels& pixelsOf(const RenderContext& c) {
         const Index window = config_.channels[ResolvedConfig::at(c.channel)].window;
         return buffers_[{plan_.interleaved ? c.channel + 100'000 : window, c.eye}];
@@ -92,7 +92,7 @@ private:
         }
     }
 
-    // Of a picture that is drawn larger, several are drawn for one.
+    // In an enlarged picture several pixels are drawn for one.
     static int32_t pixelOf(const PixelAxis& axis, int32_t i) {
         const double at = axis.origin + axis.scale * (axis.kernel + i * axis.step);
         return static_cast<int32_t>(axis.scale < 1 ? std::floor(at + 1e-9) : std::round(at));
@@ -109,7 +109,8 @@ private:
         return planned ? static_cast<Index>(&c - plan_.contexts.data()) : kNone;
     }
 
-    // Tiles are drawn, handed over and put together one by one: here all by the first who asks, each at its place.
+    // Tiles are drawn, transferred and assembled one by one. Here the first channel draws all of them, each in its
+    // place.
     void draw(const PlannedTask& task, const RenderContext& c) {
         if (task.queue == kNone) return drawInto(pixelsOf(c), c, c.viewport.x, c.viewport.y);
         const PlannedQueue& queue = plan_.queues[ResolvedConfig::at(task.queue)];
@@ -128,7 +129,7 @@ private:
         for (int32_t y = 0; y < area.h; ++y) {
             for (int32_t x = 0; x < area.w; ++x) {
                 const Pixel& drawn = pixelsOf(c)[{area.x + x, area.y + y}];
-                // What was drawn larger goes smaller: the mean of pixels that were drawn for the same one.
+                // An enlarged picture is reduced for the transfer: the mean of the pixels drawn for the same one.
                 const auto [at, isFirst] = picture.try_emplace({static_cast<int32_t>(x * frame.zoom.x + 1e-9), static_cast<int32_t>(y * frame.zoom.y + 1e-9)}, drawn);
                 if (!isFirst && !(frame.zoom == Zoom{}) && !drawnForSame(at->second, drawn)) fault_ = "pixels for several are made one";
                 else if (!isFirst) at->second = drawn;
@@ -141,13 +142,13 @@ private:
         return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Share& one, const Share& other) { return one.x == other.x && one.y == other.y; });
     }
 
-    // Whole pictures replace what was there; parts of the range and samples are joined with it.
-    // removes: only takes away what is there, since it is in the picture.
+    // Whole pictures replace the existing content; parts of the range and samples are merged with it. removes: only
+    // removes existing content that the picture contains.
     void assemble(const RenderContext& c, const FrameUse& use, bool removes) {
         const PlannedFrame& frame = plan_.frames[ResolvedConfig::at(use.frame)];
         const bool replaces = !frame.buffers.has(config::Buffer::Depth) && frame.range.full() && frame.subPixel.whole();
         for (const auto& [at, pixel] : frames_[ResolvedConfig::at(use.frame)]) {
-            if (frame.perTile && pixel.empty()) continue; // somebody else has taken that tile
+            if (frame.perTile && pixel.empty()) continue; // another channel has taken that tile
             const int32_t x0 = use.x + use.kernel.x + enlarged(use.kernel.w * at.first, use.zoom.x), y0 = use.y + use.kernel.y + enlarged(use.kernel.h * at.second, use.zoom.y);
             for (int32_t y = y0; y < y0 + enlarged(1, use.zoom.y); ++y)
                 for (int32_t x = x0; x < x0 + enlarged(1, use.zoom.x); ++x) {
@@ -162,10 +163,10 @@ private:
         }
     }
 
-    // Whole numbers only: files of tests zoom by nothing else.
+    // Test files use integer zooms only.
     static int32_t enlarged(int32_t pixels, double zoom) { return static_cast<int32_t>(std::lround(pixels * zoom)); }
 
-    // A destination that is done must be whole, in each eye that it was drawn for.
+    // A finished destination must be complete, in each eye that it was drawn for.
     void check(const ChannelPlan& done) {
         const PixelViewport& channel = input_.sizes.channels[ResolvedConfig::at(done.channel)];
         for (const Eye eye : kEyes) {
@@ -182,7 +183,7 @@ private:
 
     static std::string faultOf(const Pixel& pixel, int32_t x, int32_t y, Index destination) {
         if (pixel.empty()) return "nothing was drawn";
-        std::vector<std::pair<double, double>> edges; // of ranges: how much weight begins or ends there
+        std::vector<std::pair<double, double>> edges; // of ranges: the weight that starts or ends there
         for (const Share& s : pixel) {
             if (s.destination == destination && (s.x != x || s.y != y)) return "drawn for pixel " + std::to_string(s.x) + " " + std::to_string(s.y);
             edges.emplace_back(s.range.start, 1. / s.sample.size);
@@ -190,7 +191,7 @@ private:
         }
         std::sort(edges.begin(), edges.end());
         if (std::abs(edges.front().first) > 1e-9 || std::abs(edges.back().first - 1) > 1e-9) return "the range is " + std::to_string(edges.front().first) + " to " + std::to_string(edges.back().first);
-        double weight = 0; // of all samples, 1 in each part of the range
+        double weight = 0; // over all samples, 1 in each part of the range
         for (size_t i = 0; i < edges.size(); ++i) {
             weight += edges[i].second;
             const bool sameEdge = i + 1 < edges.size() && edges[i + 1].first - edges[i].first < 1e-9;

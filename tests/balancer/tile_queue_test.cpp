@@ -1,4 +1,4 @@
-// Tiles that are dealt by measured times: what areas must be at every moment, and where they end up.
+// Assignment of tiles by measured times: invariants of the areas, and convergence.
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 
 bool same(const std::vector<TileRegion>& a, const std::vector<TileRegion>& b) { return tilesMoved(a, b) == 0 && a.size() == b.size(); }
 
-// Disjoint, none empty, within the grid, and together all of it.
+// Checks that areas are disjoint, not empty, within the grid, and cover it.
 std::string whatIsWrong(int columns, int rows, const std::vector<TileRegion>& areas) {
     std::vector<int> owners(static_cast<size_t>(columns) * static_cast<size_t>(rows), 0);
     for (const TileRegion& r : areas) {
@@ -26,12 +26,12 @@ std::string whatIsWrong(int columns, int rows, const std::vector<TileRegion>& ar
     return std::ranges::all_of(owners, [](int n) { return n == 1; }) ? "" : "a tile that nobody, or more than one, draws";
 }
 
-// What is drawn, by which nodes.
+// A simulated load and the nodes that process it.
 struct Load {
     int columns = 1, rows = 1;
-    std::vector<double> tiles;  // work of each
+    std::vector<double> tiles; // work per tile
     std::vector<double> speeds; // of the nodes
-    double everywhere = 0;      // work that each node has whatever it draws
+    double everywhere = 0; // work of each node independent of its tiles
 
     [[nodiscard]] std::vector<double> times(const std::vector<TileRegion>& areas) const {
         std::vector<double> times;
@@ -47,7 +47,7 @@ struct Load {
     [[nodiscard]] double longest(const std::vector<TileRegion>& areas) const { return std::ranges::max(times(areas)); }
 };
 
-// Most of the work around one place.
+// A load concentrated around one place.
 Load withHill(int columns, int rows, size_t nodes, double x, double y, double height) {
     Load load{columns, rows, {}, std::vector<double>(nodes, 1), 0};
     for (int row = 0; row < rows; ++row)
@@ -64,7 +64,7 @@ std::vector<TileRegion> strips(int columns, int n) {
     return areas;
 }
 
-// The shortest time that any strips in this order take.
+// The lowest maximum time of any strips in this order.
 double bestOfStrips(const Load& load) {
     const size_t n = load.speeds.size();
     const auto columns = static_cast<size_t>(load.columns);
@@ -85,7 +85,7 @@ double bestOfStrips(const Load& load) {
 }
 
 struct Course {
-    double first = 0, last = 0; // the longest time
+    double first = 0, last = 0; // the maximum time
     int moves = 0, lateMoves = 0;
     std::string wrong;
 };
@@ -108,7 +108,7 @@ Course run(const Load& load, std::vector<TileRegion> areas, int frames, double n
     return result;
 }
 
-TEST(DealTiles, AreasCoverTheGridOnceForAnyCostsAndCuts) {
+TEST(DealTiles, coversTheGridOnceForAnyCostsAndCuts) {
     std::mt19937 random(7);
     const auto below = [&](int n) { return static_cast<int>(random() % static_cast<uint32_t>(n)); };
     for (int round = 0; round < 2000; ++round) {
@@ -125,20 +125,20 @@ TEST(DealTiles, AreasCoverTheGridOnceForAnyCostsAndCuts) {
     }
 }
 
-TEST(DealTiles, EvenCostsGiveEvenAreas) {
+TEST(DealTiles, givesEqualAreasForEqualCosts) {
     const TileCosts costs(16, 1);
     const auto dealt = dealTiles(costs, {{0, 0, 1, 1}, {1, 0, 2, 1}, {3, 0, 3, 1}, {6, 0, 10, 1}});
     for (const TileRegion& r : dealt) EXPECT_EQ(r.columns, 4);
 }
 
-TEST(DealTiles, CostsThatTheCutsFitStayWhereTheyAre) {
+TEST(DealTiles, keepsCutsThatFitTheCosts) {
     TileCosts costs(12, 6);
     const std::vector<TileRegion> areas{{0, 0, 3, 6}, {3, 0, 9, 2}, {3, 2, 9, 4}};
     for (const TileRegion& r : areas) costs.learn(r, 5);
     EXPECT_TRUE(same(dealTiles(costs, areas), areas));
 }
 
-TEST(TileCosts, LearningKeepsTheSharesWithinARegion) {
+TEST(TileCosts, keepsTheSharesWithinARegion) {
     TileCosts costs(4, 2);
     costs.learn({0, 0, 1, 1}, 3);
     costs.learn({0, 0, 2, 1}, 8);
@@ -147,8 +147,8 @@ TEST(TileCosts, LearningKeepsTheSharesWithinARegion) {
     EXPECT_DOUBLE_EQ(costs.of({0, 0, 4, 2}), 8 + 6);
 }
 
-// One hill, wherever it stands, strips and rectangles: the longest time comes near to an even share.
-TEST(TileQueue, ComesNearTheBestOnUnevenLoads) {
+// For a peak at any place, with strips and rectangles, the maximum time approaches an equal share.
+TEST(TileQueue, approachesTheOptimumOnUnevenLoads) {
     for (const double height : {0., 5., 50.})
         for (const double x : {0.05, 0.3, 0.5, 0.95})
             for (const int n : {2, 3, 5}) {
@@ -166,7 +166,7 @@ TEST(TileQueue, ComesNearTheBestOnUnevenLoads) {
             }
 }
 
-TEST(TileQueue, FasterNodesTakeMore) {
+TEST(TileQueue, assignsMoreToFasterNodes) {
     for (const std::vector<double>& speeds : {std::vector<double>{1, 3}, {4, 1, 2}, {1, 1, 1, 5}})
         for (const double everywhere : {0., 40.}) {
             Load load = withHill(64, 1, speeds.size(), 0.2, 0.5, 4);
@@ -179,8 +179,8 @@ TEST(TileQueue, FasterNodesTakeMore) {
         }
 }
 
-// A tile that costs more than all others together can't be divided: its node has little else in the end.
-TEST(TileQueue, OneCostlyTileIsLeftAlone) {
+// A tile that costs more than all others together cannot be divided: its node ends up with few others.
+TEST(TileQueue, isolatesOneExpensiveTile) {
     for (int hot = 0; hot < 32; ++hot) {
         Load load{32, 1, std::vector<double>(32, 1), {1, 1}, 0};
         load.tiles[static_cast<size_t>(hot)] = 100;
@@ -189,7 +189,7 @@ TEST(TileQueue, OneCostlyTileIsLeftAlone) {
     }
 }
 
-TEST(TileQueue, SettlesOnALoadThatStays) {
+TEST(TileQueue, settlesOnAConstantLoad) {
     std::mt19937 random(3);
     const auto below = [&](int n) { return static_cast<int>(random() % static_cast<uint32_t>(n)); };
     for (int round = 0; round < static_cast<int>(mural::testing::rounds(300)); ++round) {
@@ -204,13 +204,13 @@ TEST(TileQueue, SettlesOnALoadThatStays) {
     }
 }
 
-TEST(TileQueue, NoiseMovesLittle) {
+TEST(TileQueue, movesLittleForNoise) {
     int late = 0;
     for (uint32_t seed = 0; seed < 50; ++seed) late += run(withHill(64, 1, 3, 0.3, 0.5, 20), strips(64, 3), 600, 0.03, seed).lateMoves;
     EXPECT_LE(late, 10) << "in 15000 frames";
 }
 
-TEST(TileQueue, FollowsALoadThatChanges) {
+TEST(TileQueue, followsAChangingLoad) {
     TileQueue queue(64, 1, strips(64, 2));
     Load load = withHill(64, 1, 2, 0.1, 0.5, 40);
     for (int frame = 0; frame < 200; ++frame) queue.drawn(load.times(queue.areas()));
@@ -220,7 +220,7 @@ TEST(TileQueue, FollowsALoadThatChanges) {
     EXPECT_LE(load.longest(queue.areas()), 1.25 * bestOfStrips(load)) << "the hill stands elsewhere";
 }
 
-TEST(TileQueue, TimesThatSayNothingMoveNothing) {
+TEST(TileQueue, ignoresInvalidTimes) {
     TileQueue queue(8, 1, strips(8, 2));
     for (const auto& times : {std::vector<double>{0, 0}, {1}, {1, -1}, {NAN, 1}, {INFINITY, 1}})
         for (int i = 0; i < 10; ++i) EXPECT_FALSE(queue.drawn(times));
@@ -229,7 +229,7 @@ TEST(TileQueue, TimesThatSayNothingMoveNothing) {
     EXPECT_FALSE(alone.drawn({5}));
 }
 
-TEST(TilesMoved, CountsThoseThatChangeHands) {
+TEST(TilesMoved, countsTilesWithANewNode) {
     EXPECT_EQ(tilesMoved(strips(8, 2), strips(8, 2)), 0);
     EXPECT_EQ(tilesMoved({{0, 0, 4, 2}, {4, 0, 4, 2}}, {{0, 0, 3, 2}, {3, 0, 5, 2}}), 2);
     EXPECT_EQ(tilesMoved({{0, 0, 4, 2}, {4, 0, 4, 2}}, {{4, 0, 4, 2}, {0, 0, 4, 2}}), 16);

@@ -1,4 +1,4 @@
-// Random trees of compounds: all decompositions in each other.
+// Random compound trees with nested decompositions.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ using config::ConfigFile;
 
 class TreeMaker {
 public:
-    // steered: frames hand on any part of what they could, and touch any part.
+    // steered: frames export random parts, and inputs may write to random parts.
     explicit TreeMaker(uint64_t seed, bool steered = false) : random_(seed), steered_(steered) {}
 
     ConfigFile make() {
@@ -63,7 +63,7 @@ private:
         return *channel.name;
     }
 
-    // Cuts at random thousandths, from 0 to 1.
+    // Random cuts in thousandths, from 0 to 1.
     std::vector<double> cuts(int n) {
         std::vector<double> all{0, 1};
         for (int i = 1; i < n; ++i) all.push_back(number(1, 999) / 1000.);
@@ -83,7 +83,7 @@ private:
         const int n = number(2, 4);
         const auto edges = cuts(n);
         const bool columns = number(0, 1) == 0;
-        const int shared = frames_++; // of all frame numbers' pictures
+        const int shared = frames_++; // one name for the pictures of all phases
         for (int i = 0; i < n; ++i) {
             Compound child;
             const double from = edges[static_cast<size_t>(i)], to = edges[static_cast<size_t>(i) + 1];
@@ -95,7 +95,7 @@ private:
                 child.period = static_cast<uint32_t>(n);
                 child.phase = static_cast<uint32_t>(i);
             }
-            // The first share of areas and ranges may be drawn where it is shown.
+            // The first part of areas and ranges may be drawn at the destination.
             const bool here = i == 0 && (kind == Kind::Areas || kind == Kind::Ranges) && number(0, 1) == 0;
             if (!here) {
                 child.channel = newChannel();

@@ -1,4 +1,4 @@
-// What is written reads back as the same configuration, and is written the same again.
+// Written configurations parse to the same configuration, and are written identically again.
 #include <gtest/gtest.h>
 
 #include "balancer/config/text/parser.hpp"
@@ -22,7 +22,7 @@ void expectRoundTrip(const ConfigFile& file) {
 
 } // namespace
 
-TEST(Writer, writesExampleFilesSoThatTheyReadBack) {
+TEST(Writer, roundTripsExampleFiles) {
     const auto files = testing::allFiles();
     for (const auto& path : files) {
         SCOPED_TRACE(path.filename().string());
@@ -34,7 +34,7 @@ TEST(Writer, writesExampleFilesSoThatTheyReadBack) {
     if (testing::exampleFiles().empty()) GTEST_SKIP() << testing::noExamples();
 }
 
-TEST(Writer, writesRandomConfigurationsSoThatTheyReadBack) {
+TEST(Writer, roundTripsRandomConfigurations) {
     for (uint64_t seed = 1; seed <= 300; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         expectRoundTrip(testing::randomConfig(seed));

@@ -16,8 +16,8 @@ Bytes randomBytes(size_t size, std::mt19937& random) {
     return bytes;
 }
 
-TEST(SectionCodec, bothCodingsUseWhatCameBefore) {
-    for (const Coding coding : {Coding::Lz4, Coding::Zstd}) { // of whose windows the smaller has 64 KiB
+TEST(SectionCodec, usesEarlierSectionsWithBothCodings) {
+    for (const Coding coding : {Coding::Lz4, Coding::Zstd}) { // the smaller window has 64 KiB
         SectionCompressor compressor;
         SectionDecompressor decompressor;
         std::mt19937 random(1);
@@ -39,8 +39,8 @@ TEST(SectionCodec, bothCodingsUseWhatCameBefore) {
     }
 }
 
-// The window moves in its memory now and then; what it holds is found behind that as before.
-TEST(SectionCodec, windowsGoOnOverSectionsOfAnySize) {
+// The window is moved in memory occasionally; its content stays available.
+TEST(SectionCodec, keepsItsWindowOverSectionsOfAnySize) {
     for (const Coding coding : {Coding::Lz4, Coding::Zstd}) {
         SectionCompressor compressor;
         SectionDecompressor decompressor;
@@ -62,7 +62,7 @@ TEST(SectionCodec, windowsGoOnOverSectionsOfAnySize) {
     }
 }
 
-TEST(SectionCodec, wrongSizesAreRefused) {
+TEST(SectionCodec, rejectsWrongSizes) {
     for (const Coding coding : {Coding::Lz4, Coding::Zstd}) {
         const Bytes bytes(1000, std::byte{5});
         Bytes coded;
@@ -74,7 +74,7 @@ TEST(SectionCodec, wrongSizesAreRefused) {
     }
 }
 
-TEST(BatchCodec, anyChangeIsAnErrorOrOtherBytes) {
+TEST(BatchCodec, failsOrDiffersAfterAnyChange) {
     BatchEncoder encoder([](size_t) { return int64_t{0}; });
     const Bytes some(100, std::byte{1}), others(300, std::byte{2});
     const SectionBytes sections{some, others, {}, some, others};
@@ -83,7 +83,7 @@ TEST(BatchCodec, anyChangeIsAnErrorOrOtherBytes) {
     const auto [head, body] = headAndBody(*batch);
     ASSERT_TRUE(head.sections);
     ASSERT_EQ(head.sizeBytes, body.size());
-    // Control is what is left: cut there it is shorter, cut before it is an error.
+    // Control bytes are last: a cut there shortens them, a cut before is an error.
     for (size_t size = 0; size + some.size() < body.size(); ++size) EXPECT_FALSE(BatchDecoder().decode(head, std::span(body).first(size)).ok()) << size;
     BatchDecoder decoder;
     auto back = decoder.decode(head, body);
@@ -91,7 +91,7 @@ TEST(BatchCodec, anyChangeIsAnErrorOrOtherBytes) {
     for (size_t i = 0; i < kSections; ++i) EXPECT_TRUE(std::ranges::equal((*back)[i], sections[i]));
 }
 
-TEST(BatchCodec, ControlAloneIsAByteMore) {
+TEST(BatchCodec, addsOneByteToControlBytesAlone) {
     const Bytes some(60, std::byte{1});
     BatchEncoder encoder([](size_t) { return int64_t{0}; });
     auto batch = encoder.encode({some, {}, {}, {}, {}}, 8);
@@ -105,7 +105,7 @@ TEST(BatchCodec, ControlAloneIsAByteMore) {
     EXPECT_TRUE(std::ranges::equal((*back)[0], some));
 }
 
-TEST(BatchHead, isReadByteByByte) {
+TEST(BatchHead, decodesByteByByte) {
     for (const uint32_t size : {0u, 1u, 63u, 64u, 8191u, 8192u, 1u << 20, 4u << 20, (1u << 27) - 1}) {
         Bytes bytes;
         putBatchHead({size, size % 3 == 0}, bytes);
@@ -120,8 +120,8 @@ TEST(BatchHead, isReadByteByByte) {
     EXPECT_GT(endless.head().sizeBytes, 1u << 30);
 }
 
-TEST(BatchCodec, sizesAreBounded) {
-    // Words, raw, of 128 MiB; and compressed to as much.
+TEST(BatchCodec, limitsSizes) {
+    // Words with 128 MiB, raw and compressed.
     for (const uint32_t coding : {1u, 2u, 3u}) {
         Bytes body{static_cast<std::byte>(coding), std::byte{0xff}, std::byte{0xff}, std::byte{0xff}, std::byte{0x3f}};
         if (coding != 1) body.push_back(std::byte{0});

@@ -1,4 +1,4 @@
-// A packer and an unpacker with what lies between them; and packets to give to them.
+// An encoder connected to a decoder, and packets for them.
 #pragma once
 
 #include <cstring>
@@ -28,7 +28,7 @@ class BothSides {
 public:
     explicit BothSides(const Limits& limits) : packer(limits), unpacker(limits), encoder_([](size_t) { return int64_t{0}; }) {}
 
-    // Sends one batch, a frame; returns its size on the wire.
+    // Sends one batch as a frame and returns its encoded size.
     size_t send(const std::vector<Packet>& packets) {
         for (const Packet& p : packets) packer.add(p.stream, p.bytes, walked);
         staged = packer.stagedBytes();
@@ -67,8 +67,8 @@ public:
         EXPECT_TRUE(more && !*more) << "more than was sent";
         return wire.size();
     }
-    const Walked* walked = nullptr; // is told to the packer
-    bool goesOn = false; // what is sent is more of the frame before
+    const Walked* walked = nullptr; // passed to the encoder
+    bool goesOn = false; // continues the previous frame
     size_t send(Bytes packet) { return send({Packet{0x10000, std::move(packet)}}); }
 
     Packer packer;
@@ -80,7 +80,7 @@ private:
     BatchDecoder decoder_;
 };
 
-// A record of `words` words, the header one of them; `fill` makes the others.
+// A record of `words` words including the header; `fill` generates the others.
 inline void addRecord(Bytes& to, uint16_t opcode, uint32_t words, const std::function<uint32_t()>& fill) {
     const auto add = [&](uint32_t word) {
         const auto* p = reinterpret_cast<const std::byte*>(&word);

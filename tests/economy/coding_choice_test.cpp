@@ -5,7 +5,7 @@
 namespace mural::economy {
 namespace {
 
-// Both codings tried; then Zstandard takes 3 ns for a byte and halves, LZ4 takes 1 ns and makes 0.7 of it.
+// Both codings measured: Zstandard 3 ns per byte with ratio 0.5, LZ4 1 ns with 0.7.
 CodingChoice measuredChoice(double zstdRatio = 0.5, double lz4Ratio = 0.7) {
     CodingChoice choice;
     for (int i = 0; i < 20; ++i) {
@@ -16,19 +16,19 @@ CodingChoice measuredChoice(double zstdRatio = 0.5, double lz4Ratio = 0.7) {
     return choice;
 }
 
-TEST(CodingChoice, slowLinksGetTheSmallestFastOnesNothing) {
+TEST(CodingChoice, compressesMoreOnSlowerLinks) {
     CodingChoice choice = measuredChoice();
     EXPECT_EQ(choice.choose(1000, 80), Coding::Zstd); // 100 Mbit/s
     EXPECT_EQ(choice.choose(1000, 4), Coding::Lz4);
     EXPECT_EQ(choice.choose(1000, 0.8), Coding::Raw); // 10 Gbit/s
 }
 
-TEST(CodingChoice, whatDoesNotCompressGoesAsItIs) {
+TEST(CodingChoice, sendsIncompressibleDataRaw) {
     CodingChoice choice = measuredChoice(1.001, 1.004);
     EXPECT_EQ(choice.choose(1000, 80), Coding::Raw);
 }
 
-TEST(CodingChoice, bothAreTriedAndTriedAgain) {
+TEST(CodingChoice, measuresBothCodingsRepeatedly) {
     CodingChoice choice;
     for (const Coding coding : {Coding::Zstd, Coding::Lz4}) {
         for (int time = 0; time < 3; ++time) {
@@ -43,7 +43,7 @@ TEST(CodingChoice, bothAreTriedAndTriedAgain) {
     EXPECT_LE(compressed, 8);
 }
 
-TEST(CodingChoice, aLongSectionTriesLz4OnAPartOfIt) {
+TEST(CodingChoice, measuresLz4OnAPartOfALongSection) {
     CodingChoice choice = measuredChoice();
     int sampled = 0;
     for (int i = 0; i < 256; ++i) {
@@ -56,9 +56,9 @@ TEST(CodingChoice, aLongSectionTriesLz4OnAPartOfIt) {
     EXPECT_EQ(choice.sampleBytes(1000), 0u);
 }
 
-TEST(CodingChoice, theFirstTimeAndOneThatWasDisturbedDecideNothing) {
+TEST(CodingChoice, ignoresTheFirstTimeAndOutliers) {
     CodingChoice choice;
-    choice.measured(Coding::Zstd, 1 << 16, 1 << 15, int64_t{1} << 30); // memory that is new
+    choice.measured(Coding::Zstd, 1 << 16, 1 << 15, int64_t{1} << 30); // includes page faults
     for (const Coding coding : {Coding::Zstd, Coding::Lz4})
         for (int i = 0; i < 5; ++i) choice.measured(coding, 1 << 16, coding == Coding::Zstd ? 1 << 15 : 1 << 16, 3 << 16);
     EXPECT_EQ(choice.choose(1000, 32), Coding::Zstd);
@@ -67,7 +67,7 @@ TEST(CodingChoice, theFirstTimeAndOneThatWasDisturbedDecideNothing) {
     EXPECT_EQ(choice.choose(1000, 32), Coding::Zstd);
 }
 
-TEST(CodingChoice, fewOfManyShortSectionsAreTimedAndMoreLongOnes) {
+TEST(CodingChoice, timesFewShortSectionsAndMoreLongOnes) {
     CodingChoice choice = measuredChoice();
     const auto timedOf = [&](size_t sizeBytes) {
         int timed = 0;
@@ -80,13 +80,13 @@ TEST(CodingChoice, fewOfManyShortSectionsAreTimedAndMoreLongOnes) {
     choice.measured(Coding::Zstd, 1000, 500, std::nullopt);
 }
 
-TEST(CodingChoice, shortOnesAreNotCompressed) {
+TEST(CodingChoice, doesNotCompressShortSections) {
     CodingChoice choice;
     EXPECT_EQ(choice.choose(0, 80), Coding::Empty);
     EXPECT_EQ(choice.choose(CodingChoice::kLeastBytes - 1, 80), Coding::Raw);
 }
 
-TEST(LinkRate, onlyWritesThatWaitedCount) {
+TEST(LinkRate, countsOnlyWritesThatWaited) {
     LinkRate rate;
     rate.wrote(1 << 20, 100'000); // into the system's buffer
     EXPECT_DOUBLE_EQ(rate.nsPerByte(), 32);

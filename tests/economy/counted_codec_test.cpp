@@ -1,4 +1,4 @@
-// What few repeats are in goes by its counts, and comes back.
+// Coding by byte frequencies for data with few repetitions.
 #include "economy/counted_codec.hpp"
 
 #include <cmath>
@@ -10,7 +10,7 @@ namespace {
 
 using Bytes = std::vector<std::byte>;
 
-// As what is left of a photograph: small numbers, some more often than others.
+// Like the residual of a photograph: small numbers with different frequencies.
 Bytes left(size_t sizeBytes, uint32_t seed) {
     std::mt19937 random(seed);
     std::normal_distribution<double> values(0, 6);
@@ -26,7 +26,7 @@ Bytes repeated(const Bytes& bytes, size_t sizeBytes) {
     return all;
 }
 
-TEST(CountedCodec, allThatGoesInComesOut) {
+TEST(CountedCodec, roundTripsAllData) {
     CountedCompressor compressor;
     CountedDecompressor decompressor;
     for (const Bytes& bytes : {Bytes{}, left(1, 1), left(300, 2), left(5000, 3), left(700'000, 4), repeated(left(100, 5), 9000), Bytes(4096, std::byte{7})}) {
@@ -40,26 +40,26 @@ TEST(CountedCodec, allThatGoesInComesOut) {
     }
 }
 
-// Its codes are as short as the counts allow, by a hundredth and the table: 4.63 bits for each of these.
-TEST(CountedCodec, bytesCostWhatTheirCountsSay) {
+// The codes are within 1 % of the entropy plus the table: 4.63 bits for each of these.
+TEST(CountedCodec, approachesTheEntropy) {
     CountedCompressor compressor;
     Bytes coded;
     ASSERT_TRUE(compressor.compress(left(100'000, 6), coded));
     EXPECT_NEAR(static_cast<double>(coded.size()), 100'000 * 4.63 / 8, 900);
 }
 
-TEST(CountedCodec, itSuitsWhatHasCountsAndNoRepeats) {
+TEST(CountedCodec, suitsUnevenFrequenciesWithoutRepetitions) {
     CountedCompressor compressor;
     EXPECT_TRUE(compressor.suits(left(100'000, 7)));
     EXPECT_TRUE(compressor.suits(left(4096, 7)));
-    EXPECT_FALSE(compressor.suits(left(4095, 7))); // too few to tell
+    EXPECT_FALSE(compressor.suits(left(4095, 7))); // too short to decide
     EXPECT_FALSE(compressor.suits({}));
     EXPECT_FALSE(compressor.suits(repeated(left(200, 8), 100'000)));
     EXPECT_FALSE(compressor.suits(Bytes(100'000, std::byte{0})));
     Bytes random(100'000);
     std::mt19937 any(9);
     for (std::byte& b : random) b = static_cast<std::byte>(any());
-    EXPECT_FALSE(compressor.suits(random)); // neither helps
+    EXPECT_FALSE(compressor.suits(random)); // incompressible
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// When bytes are copied, and when whoever lent them must keep them.
+// When bytes are copied, and when a borrowed buffer must stay valid.
 #include "economy/gathered_bytes.hpp"
 
 #include <algorithm>
@@ -9,7 +9,7 @@ namespace {
 
 using Bytes = std::vector<std::byte>;
 
-TEST(GatheredBytes, aLongPieceThatIsAloneIsNotCopied) {
+TEST(GatheredBytes, borrowsASingleLongPiece) {
     const Bytes piece(20'000, std::byte{1});
     GatheredBytes gathered;
     gathered.lend(piece);
@@ -23,7 +23,7 @@ TEST(GatheredBytes, aLongPieceThatIsAloneIsNotCopied) {
     EXPECT_TRUE(std::ranges::equal(gathered.bytes(), little));
 }
 
-TEST(GatheredBytes, whatWasLentIsThereWhenItHasGone) {
+TEST(GatheredBytes, keepsBorrowedDataAfterRelease) {
     Bytes piece(20'000, std::byte{1});
     const Bytes before = piece;
     GatheredBytes gathered;
@@ -33,7 +33,7 @@ TEST(GatheredBytes, whatWasLentIsThereWhenItHasGone) {
     EXPECT_TRUE(std::ranges::equal(gathered.bytes(), before));
 }
 
-TEST(GatheredBytes, allStayInTheirOrder) {
+TEST(GatheredBytes, preservesOrder) {
     const Bytes first(20'000, std::byte{1}), second(30'000, std::byte{2}), third(10, std::byte{3});
     GatheredBytes gathered;
     gathered.lend(first);

@@ -1,4 +1,4 @@
-// What comes out is what went in: random streams, with histories so small that all of it is overwritten again and again.
+// Decoded data equals encoded data: random streams, with dictionaries so small that entries are replaced constantly.
 #include <bit>
 #include <cmath>
 
@@ -7,7 +7,7 @@
 namespace mural::economy::testing {
 namespace {
 
-// Frames like programs' frames: records of a small set, some changed, moved, left out, some long, some that make no sense.
+// Frames like those of programs: records of a small set, some changed, moved or omitted, some long, some malformed.
 class RandomProgram {
 public:
     explicit RandomProgram(uint32_t seed) : random_(seed) {
@@ -49,9 +49,11 @@ private:
     }
     void odd(Bytes& bytes) {
         switch (below(3)) {
-        case 0: bytes.resize(bytes.size() - std::min<size_t>(bytes.size(), below(9))); break;          // cut in a record
-        case 1: bytes.insert(bytes.end(), 1 + below(30), std::byte{0}); break;                         // a record without length
-        default: bytes.insert(bytes.begin(), {std::byte{64}, std::byte{0}, std::byte{0xff}, std::byte{0xff}}); // a length that is none
+        // truncated within a record
+        case 0: bytes.resize(bytes.size() - std::min<size_t>(bytes.size(), below(9))); break;
+        case 1: bytes.insert(bytes.end(), 1 + below(30), std::byte{0}); break; // a record without length
+        // an invalid length
+        default: bytes.insert(bytes.begin(), {std::byte{64}, std::byte{0}, std::byte{0xff}, std::byte{0xff}});
         }
     }
 
@@ -71,7 +73,7 @@ void compare(const Limits& limits, uint32_t seed, uint32_t streams, int frames) 
             const auto stream = static_cast<uint32_t>(random() % streams);
             Bytes bytes = programs[stream].frame();
             bytes.resize(std::min<size_t>(bytes.size(), 1 << 20));
-            // Anywhere, as publications end where they must: here even within records.
+            // Cuts anywhere, like publications; here even within records.
             const size_t cut = random() % (bytes.size() + 1);
             packets.push_back({stream, Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(cut))});
             packets.push_back({stream, Bytes(bytes.begin() + static_cast<std::ptrdiff_t>(cut), bytes.end())});
@@ -81,20 +83,20 @@ void compare(const Limits& limits, uint32_t seed, uint32_t streams, int frames) 
     }
 }
 
-TEST(Identity, withRoom) {
+TEST(Identity, holdsWithLargeDictionaries) {
     for (uint32_t seed = 1; seed <= 4; ++seed) compare(Limits{.storeBytes = 64 << 20, .textBytes = 1 << 20, .logItems = 1 << 16, .streams = 8}, seed, 3, 60);
 }
 
-TEST(Identity, withoutRoom) {
+TEST(Identity, holdsWithTinyDictionaries) {
     for (uint32_t seed = 1; seed <= 20; ++seed) compare(tinyLimits(), seed, 1 + seed % 5, 60);
 }
 
-TEST(Identity, logsOfOneItemAndOnePage) {
+TEST(Identity, holdsWithLogsOfOneItemAndOnePage) {
     for (uint32_t seed = 1; seed <= 6; ++seed) compare({.storeBytes = kPageBytes, .textBytes = 4096, .logItems = 1, .streams = 1}, seed, 2, 60);
 }
 
-// What moves smoothly is guessed by more of what both sides remember than what jumps.
-TEST(Identity, whatMovesSmoothly) {
+// Smooth motion is predicted from more shared state than jumps.
+TEST(Identity, holdsForSmoothMotion) {
     for (const Limits& limits : {Limits{.storeBytes = 1 << 20}, tinyLimits()}) {
         BothSides sides{limits};
         std::mt19937 random(5);
@@ -120,7 +122,7 @@ TEST(Identity, whatMovesSmoothly) {
     }
 }
 
-TEST(Identity, emptyPackets) {
+TEST(Identity, holdsForEmptyPackets) {
     BothSides sides{tinyLimits()};
     sides.send(std::vector<Packet>{{0, {}}, {0xffffffff, {}}, {0, {}}});
     sides.send(std::vector<Packet>{});

@@ -1,4 +1,4 @@
-// When the rest of a packet goes as bytes.
+// When the rest of a packet is sent as plain bytes.
 #include "economy/new_records.hpp"
 
 #include <gtest/gtest.h>
@@ -8,14 +8,14 @@ namespace {
 
 constexpr bool kLong = true, kOther = false;
 
-// So many new records in a row are looked at before there are many.
+// The number of consecutive new records examined before the limit.
 int lookedAt(NewRecords& news) {
     int count = 0;
     for (; !news.many() && count < 1000; ++count) news.isNew();
     return count;
 }
 
-TEST(NewRecords, fewerAreLookedAtBehindEachPacketWhoseRestWasLeftOut) {
+TEST(NewRecords, decreasesTheLimitAfterEachPlainRest) {
     NewRecords news;
     news.packetBegins(1, 0, kLong);
     EXPECT_EQ(lookedAt(news), 64);
@@ -24,11 +24,11 @@ TEST(NewRecords, fewerAreLookedAtBehindEachPacketWhoseRestWasLeftOut) {
         news.packetBegins(1, 100, kLong);
         EXPECT_EQ(lookedAt(news), expected);
     }
-    news.packetBegins(1, 100, kLong); // of the one before nothing was left out
+    news.packetBegins(1, 100, kLong); // the previous packet was complete
     EXPECT_EQ(lookedAt(news), 4);
     news.packetBegins(1, 100, kOther);
     EXPECT_EQ(lookedAt(news), 32);
-    news.packetEnds(true); // there will be pages
+    news.packetEnds(true); // pages follow
     news.packetBegins(1, 100, kLong);
     EXPECT_EQ(lookedAt(news), 32);
     for (const int expected : {16, 8, 4, 4}) {
@@ -38,8 +38,8 @@ TEST(NewRecords, fewerAreLookedAtBehindEachPacketWhoseRestWasLeftOut) {
     }
 }
 
-// Else what repeats would not be seen to.
-TEST(NewRecords, someAreLookedAtInEachFrame) {
+// Otherwise repetitions would stay undetected.
+TEST(NewRecords, examinesSomeInEachFrame) {
     NewRecords news;
     news.packetBegins(1, 0, kLong);
     for (int packet = 0; packet < 10; ++packet) {
@@ -53,15 +53,15 @@ TEST(NewRecords, someAreLookedAtInEachFrame) {
     EXPECT_EQ(lookedAt(news), 4);
 }
 
-TEST(NewRecords, whereWhatWasLeftOutIsReachedAgainAllIsLookedAt) {
+TEST(NewRecords, examinesAllWhenOmittedRecordsRepeat) {
     NewRecords news;
     news.packetBegins(1, 0, kLong);
     (void)lookedAt(news);
     news.leaveOut(64);
     news.packetBegins(2, 64, kLong);
-    news.found(0, 64); // as the log has them
+    news.found(0, 64); // as in the log
     news.another(64);
-    EXPECT_EQ(lookedAt(news), 64); // what the first frame had loads what others draw
+    EXPECT_EQ(lookedAt(news), 64); // the first frame loads what others draw
     news.leaveOut(128);
     news.packetBegins(3, 128, kLong);
     news.found(64, 64);

@@ -1,4 +1,4 @@
-// What goes over the wire for what programs do from frame to frame.
+// The encoded size of typical changes from frame to frame.
 #include <algorithm>
 #include <utility>
 
@@ -8,7 +8,7 @@
 namespace mural::economy::testing {
 namespace {
 
-// A frame of many small records; `frame` stands in the last, as in Swap.
+// A frame of many small records; the last one contains `frame`, like Swap.
 Bytes frameOf(uint32_t frame, uint32_t records = 2000) {
     std::mt19937 random(7);
     Bytes bytes;
@@ -42,7 +42,7 @@ Bytes noise(size_t size, uint32_t seed) {
     return bytes;
 }
 
-// A frame's bytes as packets of at most a chunk, as programs send them.
+// A frame's bytes as packets of at most one chunk, as programs send them.
 std::vector<Packet> packetsOf(const Bytes& records, size_t pieceBytes = 3 * 65544) {
     std::vector<Packet> packets;
     for (size_t at = 0; at < records.size(); at += pieceBytes)
@@ -50,32 +50,32 @@ std::vector<Packet> packetsOf(const Bytes& records, size_t pieceBytes = 3 * 6554
     return packets;
 }
 
-TEST(Packer, aFrameEqualToTheLastCostsAFewBytes) {
+TEST(Packer, encodesARepeatedFrameInAFewBytes) {
     BothSides sides{Limits{}};
     const size_t first = sides.send(frameOf(1));
     EXPECT_GT(first, 10'000u);
     sides.send(frameOf(2));
-    sides.send(frameOf(3)); // what of the second was not looked at, is now
+    sides.send(frameOf(3)); // examines what the second frame skipped
     EXPECT_LE(sides.send(frameOf(4)), 24u);
     for (uint32_t frame = 5; frame < 50; ++frame) EXPECT_LE(sides.send(frameOf(frame)), 16u) << frame;
 }
 
-// Such as lists that a program compiles: they come once.
-TEST(Packer, manyNewRecordsGoAsBytesUntilTheyComeAgain) {
+// For example display lists, which occur once.
+TEST(Packer, sendsManyNewRecordsAsBytesUntilTheyRepeat) {
     BothSides sides{Limits{}};
     const Bytes first = frameOf(1, 5000), second = frameOf(2, 5000);
     sides.send(first);
     EXPECT_GE(sides.staged, first.size());
-    EXPECT_LE(sides.staged, first.size() + 800); // some hundred were looked at
+    EXPECT_LE(sides.staged, first.size() + 800); // some hundred were examined
     const size_t again = sides.send(second);
     EXPECT_GE(sides.staged, second.size() / 2);
-    EXPECT_LE(again, second.size() / 10); // the compressor has had them
+    EXPECT_LE(again, second.size() / 10); // the compressor has seen them
     sides.send(frameOf(3, 5000));
     EXPECT_LE(sides.send(frameOf(4, 5000)), 24u);
 }
 
-// In packets of a frame, each of which begins with fewer.
-TEST(Packer, manyNewRecordsOfSeveralPacketsAreKnownWhenTheyComeAgain) {
+// In packets of a frame, each with a lower limit.
+TEST(Packer, recognisesNewRecordsOfSeveralPacketsWhenTheyRepeat) {
     BothSides sides{Limits{}};
     const Bytes all = frameOf(1, 9000);
     std::vector<Packet> packets;
@@ -94,7 +94,7 @@ TEST(Packer, manyNewRecordsOfSeveralPacketsAreKnownWhenTheyComeAgain) {
     EXPECT_LE(sides.send(packets), 60u);
 }
 
-TEST(Packer, insertedMissingAndMovedRecordsCostWhatTheyAre) {
+TEST(Packer, encodesInsertedMissingAndMovedRecordsAtTheirSize) {
     BothSides sides{Limits{}};
     std::vector<Bytes> records;
     std::mt19937 random(3);
@@ -120,7 +120,7 @@ TEST(Packer, insertedMissingAndMovedRecordsCostWhatTheyAre) {
     EXPECT_LE(sides.send(frame()), 60u);
 }
 
-TEST(Packer, changedWordsGoAlone) {
+TEST(Packer, sendsChangedWordsOnly) {
     BothSides sides{Limits{}};
     const auto frame = [](uint32_t moved) {
         Bytes bytes;
@@ -130,11 +130,11 @@ TEST(Packer, changedWordsGoAlone) {
     sides.send(frame(1));
     const uint64_t before = sides.packer.counts().patches;
     sides.send(frame(2));
-    EXPECT_EQ(sides.packer.counts().patches - before, 99u); // that of object 0 has not changed
+    EXPECT_EQ(sides.packer.counts().patches - before, 99u); // object 0 is unchanged
     EXPECT_LE(sides.staged, 99u * 6 + 12);
 }
 
-TEST(Packer, aTextureThatComesAgainCostsNothing) {
+TEST(Packer, encodesARepeatedTextureAtNoCost) {
     BothSides sides{Limits{}};
     const auto packets = packetsOf(textureOf(noise(8 << 20, 5)));
     EXPECT_GT(sides.send(packets), size_t{8} << 20);
@@ -142,7 +142,7 @@ TEST(Packer, aTextureThatComesAgainCostsNothing) {
     EXPECT_LE(sides.send(packets), 150u);
 }
 
-TEST(Packer, aPatchOfATextureCostsAboutThePatch) {
+TEST(Packer, encodesAPatchOfATextureAtItsSize) {
     BothSides sides{Limits{}};
     Bytes pixels = noise(8 << 20, 5); // 2048 × 1024
     sides.send(packetsOf(textureOf(pixels)));
@@ -154,7 +154,7 @@ TEST(Packer, aPatchOfATextureCostsAboutThePatch) {
     EXPECT_LE(sides.send(packetsOf(textureOf(pixels))), 150u);
 }
 
-TEST(Packer, pagesThatAnotherStreamHasSentAreReferences) {
+TEST(Packer, refersToPagesOfOtherStreams) {
     BothSides sides{Limits{}};
     const Bytes texture = textureOf(noise(1 << 20, 9));
     for (const Packet& p : packetsOf(texture)) sides.send({p});
@@ -166,8 +166,8 @@ TEST(Packer, pagesThatAnotherStreamHasSentAreReferences) {
     EXPECT_LE(sum, 400u);
 }
 
-// Flat colours are many equal pages: they must not cost a reference each.
-TEST(Packer, equalPagesAreRunsToo) {
+// Flat colours consist of many equal pages, which must not cost one reference each.
+TEST(Packer, formsRunsOfEqualPages) {
     BothSides sides{Limits{}};
     Bytes pixels(4 << 20, std::byte{7});
     std::fill(pixels.begin() + (1 << 20), pixels.begin() + (1 << 20) + 9000, std::byte{9});
@@ -177,8 +177,8 @@ TEST(Packer, equalPagesAreRunsToo) {
     EXPECT_LE(sides.send(packets), 100u);
 }
 
-// One record more of those that are alike: what is equal from the beginning of the known run is not so from its second record on.
-TEST(Packer, knownRunsAreComparedFromTheirMiddle) {
+// One more of several equal records: the data equals the known run from its beginning, but not from its second record.
+TEST(Packer, comparesKnownRunsFromTheirMiddle) {
     BothSides sides{Limits{}};
     const auto frame = [](uint32_t first, int alike) {
         Bytes bytes;
@@ -191,8 +191,8 @@ TEST(Packer, knownRunsAreComparedFromTheirMiddle) {
     sides.send(frame(7, 40));
 }
 
-// Changed pages are found behind short records that the log has from before.
-TEST(Packer, pagesAreKnownWhereShortRecordsGoPlain) {
+// Changed pages are found after short records that an earlier log contains.
+TEST(Packer, findsPagesWhileShortRecordsArePlain) {
     BothSides sides{Limits{}};
     Bytes pixels = noise(1 << 20, 3);
     const auto send = [&](uint32_t number) {
@@ -208,8 +208,9 @@ TEST(Packer, pagesAreKnownWhereShortRecordsGoPlain) {
     EXPECT_LE(send(5), 6000u);
 }
 
-// Of runs of one size only what changes goes, also of the second one of its size in a frame; where all changes they go whole.
-TEST(Packer, plainRunsOfOneSizeCostWhatChanges) {
+// Of runs with equal size only changes are sent, including the second run of that size in a frame. If everything
+// changes, the whole run is sent.
+TEST(Packer, sendsChangesOfPlainRunsOfOneSize) {
     BothSides sides{Limits{}};
     std::mt19937 random(7);
     const auto runOf = [&](size_t records) {
@@ -247,8 +248,8 @@ TEST(Packer, plainRunsOfOneSizeCostWhatChanges) {
     EXPECT_LE(send(), 200u);
 }
 
-// More of them than are kept.
-TEST(Packer, plainRunsOfManySizesComeOutAsTheyWent) {
+// More runs than are stored.
+TEST(Packer, preservesPlainRunsOfManySizes) {
     BothSides sides{Limits{}};
     std::mt19937 random(8);
     Bytes all;
@@ -266,8 +267,8 @@ TEST(Packer, plainRunsOfManySizesComeOutAsTheyWent) {
     }
 }
 
-// One of several batches: what was left out of it comes again in it, and is no frame that repeats.
-TEST(Packer, aLongFrameIsOneFrameForWhatIsNewInIt) {
+// A frame of several batches: its omitted records repeat within it, which does not count as a repeated frame.
+TEST(Packer, countsALongFrameOnceForNewRecords) {
     const Bytes records = frameOf(1, 5000);
     BothSides whole{Limits{}}, frames{Limits{}};
     whole.goesOn = true;
@@ -277,8 +278,8 @@ TEST(Packer, aLongFrameIsOneFrameForWhatIsNewInIt) {
     EXPECT_LE(frames.staged, 1000u);
 }
 
-// What is told of a packet saves a walk; where it can't be so, as of a damaged one, it is of no account.
-TEST(Packer, plainRecordsComeOutAsTheyWentWhateverIsToldOfThem) {
+// The result of an earlier walk saves another one. An impossible result, as of a damaged packet, is ignored.
+TEST(Packer, preservesPlainRecordsWithAnyWalkResult) {
     Bytes packet;
     for (uint32_t i = 0; i < 50; ++i) addRecord(packet, 99, 3, [&] { return i; });
     const auto size = static_cast<uint32_t>(packet.size());
@@ -292,8 +293,8 @@ TEST(Packer, plainRecordsComeOutAsTheyWentWhateverIsToldOfThem) {
     }
 }
 
-// Long records among them are found as if nothing were told.
-TEST(Packer, longRecordsAmongPlainOnesAreFoundWhereTheyAreTold) {
+// Long records among them are found as without a walk result.
+TEST(Packer, findsLongRecordsAmongPlainOnesByTheWalkResult) {
     const Bytes pixels = noise(3 * kPageBytes, 21);
     const auto frame = [&](uint32_t number) {
         Bytes bytes = frameOf(number, 50), texture = textureOf(pixels), rest = frameOf(number, 30);
@@ -315,8 +316,8 @@ TEST(Packer, longRecordsAmongPlainOnesAreFoundWhereTheyAreTold) {
     EXPECT_EQ(sides.packer.counts().records, untold.packer.counts().records);
 }
 
-// A part of it is another in each frame, or in some of them: so it stays in its slot, and the store keeps what others have.
-TEST(Packer, aPageThatChangesAgainAndAgainFillsNoMemory) {
+// A part of the page changes in each frame, or in some of them. It keeps its slot, and the store keeps other pages.
+TEST(Packer, usesNoMemoryForAPageThatChangesConstantly) {
     for (const uint32_t framesAsItIs : {1u, 3u}) {
         Limits limits;
         limits.storeBytes = 64 * kPageBytes;
@@ -335,8 +336,8 @@ TEST(Packer, aPageThatChangesAgainAndAgainFillsNoMemory) {
     }
 }
 
-// One that comes again as it was is kept as it was, however often it changes.
-TEST(Packer, statesOfAPageThatComeAgainAreReferences) {
+// An earlier state that returns stays stored, however often the page changes.
+TEST(Packer, refersToReturningStatesOfAPage) {
     BothSides sides{Limits{}};
     const Bytes first = noise(4 * kPageBytes, 12);
     Bytes second = first;
@@ -348,8 +349,8 @@ TEST(Packer, statesOfAPageThatComeAgainAreReferences) {
         }
 }
 
-// As long as states before come again, so many as there are stay what they are; also where the record before a page leads to it.
-TEST(Packer, aPageOfWhichStatesComeAgainMayHaveAnyNumber) {
+// While earlier states return, all of them stay stored, even if the previous record leads to the page.
+TEST(Packer, storesAnyNumberOfReturningStates) {
     for (const bool named : {false, true}) {
         BothSides sides{Limits{}};
         Bytes pixels = noise(4 * kPageBytes, 12), before;
@@ -372,13 +373,13 @@ TEST(Packer, aPageOfWhichStatesComeAgainMayHaveAnyNumber) {
     }
 }
 
-TEST(Packer, whatIsUsedStaysWhenTheStoreIsFull) {
+TEST(Packer, keepsUsedPagesWhenTheStoreIsFull) {
     Limits limits;
     limits.storeBytes = 4 << 20;
     BothSides sides{limits};
     const auto kept = packetsOf(textureOf(noise(1 << 20, 1)));
     sides.send(kept);
-    for (uint32_t i = 0; i < 20; ++i) { // 20 MiB pass by
+    for (uint32_t i = 0; i < 20; ++i) { // 20 MiB of unique data
         sides.send(packetsOf(textureOf(noise(1 << 20, 50 + i))));
         EXPECT_LE(sides.send(kept), 400u) << i;
     }

@@ -1,4 +1,4 @@
-// Short records that are passed at once are those that come one by one.
+// Short records skipped together equal those visited one by one.
 #include "economy/packet_cut.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace mural::economy {
 namespace {
 
-TEST(PacketCut, passesRoundsAsIfOneByOne) {
+TEST(PacketCut, skipsRoundsLikeSingleRecords) {
     uint64_t passed = 0;
     for (uint32_t seed = 0; seed < 3000; ++seed) {
         SCOPED_TRACE(seed);

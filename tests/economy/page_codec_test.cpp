@@ -19,7 +19,7 @@ Bytes operator+(Bytes a, const Bytes& b) {
     return a;
 }
 
-// A photograph, as far as a compressor can tell: colours that go up and down by little, alpha that is the same.
+// A photograph for a compressor's purposes: colours that change gradually, constant alpha.
 Bytes picture(size_t sizeBytes, size_t pixelBytes, uint32_t seed) {
     std::mt19937 random(seed);
     Bytes bytes(sizeBytes);
@@ -40,7 +40,7 @@ Bytes vertices(size_t sizeBytes, uint32_t seed) {
     return bytes;
 }
 
-// Black signs on white, four bytes a pixel, 8 a line; of so many kinds.
+// Black glyphs on white, four bytes per pixel, 8 per line, of `kinds` different shapes.
 Bytes signs(size_t sizeBytes, uint32_t kinds, uint32_t seed) {
     constexpr size_t kWidth = 16, kHeight = 8, kSigns = 8, kLine = kWidth * kSigns;
     std::mt19937 random(seed);
@@ -70,7 +70,7 @@ size_t plainBytes(const Bytes& bytes) {
     return coded.size();
 }
 
-TEST(PageCodec, anyPagesComeBackByBothCodings) {
+TEST(PageCodec, roundTripsAnyPagesWithBothCodings) {
     for (const Coding coding : {Coding::Zstd, Coding::Lz4}) {
         PageCompressor compressor;
         PageDecompressor decompressor;
@@ -91,7 +91,7 @@ TEST(PageCodec, anyPagesComeBackByBothCodings) {
     }
 }
 
-TEST(PageCodec, picturesAreSmallerThanWithoutAndVerticesAsSmall) {
+TEST(PageCodec, reducesPicturesAndKeepsTheSizeOfVertices) {
     for (const size_t pixelBytes : {1, 3, 4}) {
         const Bytes bytes = picture(64 * kPageBytes, pixelBytes, 1);
         EXPECT_LT(compressedBytes(bytes), plainBytes(bytes) * 8 / 10) << pixelBytes;
@@ -100,8 +100,8 @@ TEST(PageCodec, picturesAreSmallerThanWithoutAndVerticesAsSmall) {
     EXPECT_LE(compressedBytes(floats), plainBytes(floats) + 1);
 }
 
-// Of two signs Zstandard finds more as they are; of many, differences are less.
-TEST(PageCodec, whatRepeatsItselfStaysAsItIs) {
+// With two glyphs Zstandard finds more in the original; with many, differences are smaller.
+TEST(PageCodec, leavesRepetitivePicturesUnchanged) {
     const Bytes few = signs(48 * kPageBytes, 2, 7), many = signs(48 * kPageBytes, 400, 8);
     EXPECT_FALSE(PixelSplitter().split(few));
     EXPECT_LE(compressedBytes(few), plainBytes(few) + 1);
@@ -109,15 +109,15 @@ TEST(PageCodec, whatRepeatsItselfStaysAsItIs) {
     EXPECT_LT(compressedBytes(many), plainBytes(many));
 }
 
-// Grey ones of three bytes, wherever in a pixel their pages begin, are about as many bytes as one colour of them alone.
-// Whether planes go by their counts.
+// Grey pictures with three bytes per pixel cost about as much as one channel, wherever a page starts within a pixel.
+// Returns whether planes are coded by frequencies.
 bool isCounted(const Bytes& coded) {
     std::span<const std::byte> at = coded;
     uint32_t pieces = 0, front = 0, planes = 0;
     return takeSevens(at, pieces) && takeSevens(at, front) && takeSevens(at, planes) && (planes & 1) != 0;
 }
 
-TEST(PageCodec, repeatsAreLookedForWhereThereAreSome) {
+TEST(PageCodec, searchesForRepetitionsWhereTheyExist) {
     const Bytes photograph = picture(16 * kPageBytes, 4, 1);
     Bytes lines;
     while (lines.size() < 16 * kPageBytes) lines = lines + picture(600, 4, 2);
@@ -133,7 +133,7 @@ TEST(PageCodec, repeatsAreLookedForWhereThereAreSome) {
     }
 }
 
-TEST(PageCodec, greyPicturesOfThreeBytesCostOneColour) {
+TEST(PageCodec, encodesGreyPicturesOfThreeBytesLikeOneChannel) {
     const Bytes one = picture(64 * kPageBytes, 1, 6);
     Bytes three;
     for (const std::byte b : one) three.insert(three.end(), 3, b);
@@ -143,7 +143,7 @@ TEST(PageCodec, greyPicturesOfThreeBytesCostOneColour) {
     }
 }
 
-TEST(PageCodec, onesOfOneColourCostNoPlanes) {
+TEST(PageCodec, needsNoPlanesForUniformPages) {
     Bytes bytes;
     for (uint32_t i = 0; i < 16; ++i) bytes = bytes + Bytes(kPageBytes, static_cast<std::byte>(100 + i));
     Bytes coded, back(bytes.size());
@@ -153,8 +153,8 @@ TEST(PageCodec, onesOfOneColourCostNoPlanes) {
     EXPECT_TRUE(back == bytes);
 }
 
-// What no compressor has made is refused or becomes other bytes; never more than there is room for.
-TEST(PageCodec, changedAndCutBytesDoNoHarm) {
+// Corrupt data is rejected or decodes to other bytes, never beyond the buffer.
+TEST(PageCodec, survivesChangedAndTruncatedBytes) {
     const Bytes bytes = picture(3 * kPageBytes, 4, 3) + vertices(2 * kPageBytes + 400, 3) + picture(kPageBytes, 3, 4);
     Bytes coded, back(bytes.size());
     ASSERT_TRUE(PageCompressor().compress(Coding::Zstd, bytes, coded));

@@ -28,7 +28,7 @@ Bytes apartOf(const Bytes& piece, uint8_t way) {
     return apart;
 }
 
-TEST(PixelColours, ofFourBytesTheFirstAndTheThirdAreWhatTheyDifferFromTheSecondBy) {
+TEST(PixelColours, subtractsTheSecondOfFourBytesFromTheFirstAndThird) {
     const Bytes piece = noise(1), apart = apartOf(piece, kColoursOfFour);
     for (size_t i = 0; i < kPageBytes; i += 4) {
         ASSERT_EQ(at(apart, i), static_cast<uint8_t>(at(piece, i) - at(piece, i + 1))) << i;
@@ -38,7 +38,7 @@ TEST(PixelColours, ofFourBytesTheFirstAndTheThirdAreWhatTheyDifferFromTheSecondB
     }
 }
 
-TEST(PixelColours, ofThreeBytesEachColourStandsTogether) {
+TEST(PixelColours, groupsEachChannelOfThreeBytes) {
     test::forEachTarget([](const char* target) {
         for (size_t before = 0; before < 3; ++before) {
             const Bytes piece = noise(2), apart = apartOf(piece, static_cast<uint8_t>(kColoursOfThree + before));
@@ -55,7 +55,7 @@ TEST(PixelColours, ofThreeBytesEachColourStandsTogether) {
     });
 }
 
-TEST(PixelColours, allWaysComeBack) {
+TEST(PixelColours, invertsAllTransforms) {
     test::forEachTarget([](const char* target) {
         for (uint32_t seed = 0; seed < 20; ++seed) {
             const Bytes piece = noise(seed);

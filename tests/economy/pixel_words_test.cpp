@@ -27,7 +27,7 @@ Bytes pieceOf(uint32_t seed) {
 
 uint8_t behind(const Bytes& piece, size_t i, size_t pixelBytes) { return static_cast<uint8_t>(static_cast<uint8_t>(piece[i]) - (i < pixelBytes ? 0 : static_cast<uint8_t>(piece[i - pixelBytes]))); }
 
-TEST(PixelWords, differencesAreThoseOfEachByteAndAddUpAgain) {
+TEST(PixelWords, computesAndInvertsByteDifferences) {
     test::forEachTarget([](const char* target) {
         for (uint32_t seed = 0; seed < 40; ++seed) {
             const Bytes piece = pieceOf(seed);
@@ -53,7 +53,7 @@ TEST(PixelWords, differencesAreThoseOfEachByteAndAddUpAgain) {
     });
 }
 
-TEST(PixelWords, allInstructionSetsFindAPieceAsRough) {
+TEST(PixelWords, measuresEqualRoughnessWithAllInstructionSets) {
     for (uint32_t seed = 0; seed < 40; ++seed) {
         const Bytes piece = pieceOf(seed);
         const auto first = roughness(piece.data());
@@ -61,7 +61,7 @@ TEST(PixelWords, allInstructionSetsFindAPieceAsRough) {
     }
 }
 
-TEST(PixelWords, aSlopeOfPixelsIsSmoothestByTheirSize) {
+TEST(PixelWords, findsThePixelSizeOfASlope) {
     for (size_t k = 1; k < kPlainWays; ++k) {
         const size_t pixelBytes = kPixelWays[k];
         Bytes piece(kPageBytes);
@@ -71,8 +71,8 @@ TEST(PixelWords, aSlopeOfPixelsIsSmoothestByTheirSize) {
     }
 }
 
-// Brighter and darker by chance, of one hue: only what colours have in common changes.
-TEST(PixelWords, pixelsOfOneHueAreSmoothestWithoutWhatTheirColoursHaveInCommon) {
+// Random brightness of one hue: only the common part of the channels changes.
+TEST(PixelWords, subtractsTheCommonPartForPixelsOfOneHue) {
     for (size_t k = kPlainWays; k < kPixelWays.size(); ++k) {
         const size_t pixelBytes = kPixelWays[k] == kColoursOfFour ? 4 : 3, before = pixelBytes == 4 ? 0 : k - kPlainWays - 1;
         std::mt19937 random(5);
@@ -91,7 +91,7 @@ TEST(PixelWords, pixelsOfOneHueAreSmoothestWithoutWhatTheirColoursHaveInCommon) 
     }
 }
 
-TEST(PixelWords, planesOfAnyLengthComeBack) {
+TEST(PixelWords, roundTripsPlanesOfAnyLength) {
     test::forEachTarget([](const char* target) {
         std::mt19937 random(7);
         for (size_t count = 0; count < 300; ++count) {

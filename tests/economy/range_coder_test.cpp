@@ -10,7 +10,7 @@ struct Models {
     BitModel bit;
     SymbolModel symbol;
     BytePredictor bytes;
-    // Codes what `random` says, or reads it; the sum of all.
+    // Encodes random symbols or decodes them; returns their sum.
     template <class Coder> uint64_t all(Coder& coder, std::mt19937& random, int count, uint32_t rare) {
         uint64_t sum = 0;
         for (int i = 0; i < count; ++i) {
@@ -26,7 +26,7 @@ struct Models {
     }
 };
 
-TEST(RangeCoder, whatIsReadIsWhatWasWritten) {
+TEST(RangeCoder, readsWhatWasWritten) {
     Models writing, reading; // they live as long as the stream
     RangeWriter writer;
     for (uint32_t batch = 0; batch < 300; ++batch) {
@@ -43,7 +43,7 @@ TEST(RangeCoder, whatIsReadIsWhatWasWritten) {
     }
 }
 
-TEST(RangeCoder, whatIsExpectedCostsHundredthsOfABit) {
+TEST(RangeCoder, needsHundredthsOfABitForExpectedSymbols) {
     Models models;
     RangeWriter writer;
     std::mt19937 random(1);
@@ -53,7 +53,7 @@ TEST(RangeCoder, whatIsExpectedCostsHundredthsOfABit) {
     EXPECT_LE(writer.finish().size(), 20u);
 }
 
-TEST(RangeCoder, behindItsEndItIsBad) {
+TEST(RangeCoder, reportsReadsPastTheEnd) {
     RangeWriter writer;
     Models writing, reading;
     std::mt19937 there(1), back(1);

@@ -1,4 +1,4 @@
-// What no packer writes.
+// Input that no encoder writes.
 #include "tests/economy/both_sides.hpp"
 
 namespace mural::economy::testing {
@@ -25,7 +25,7 @@ std::string problemOf(const std::function<void(ControlWriter&)>& write, size_t l
     return problemOf(unpacker, write, literalBytes);
 }
 
-TEST(Unpacker, tellsWhatIsWrong) {
+TEST(Unpacker, describesErrors) {
     const auto has = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos && text.find("; head and nodes must be") != std::string::npos; };
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::Run, 1); }), "an item that is not remembered"));
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::Patch, 1); }), "a change of an item that is not remembered"));
@@ -57,8 +57,8 @@ TEST(Unpacker, tellsWhatIsWrong) {
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(Do::NewText, 2); }, 8), "in the middle of a packet"));
 }
 
-// A few bytes must not make a node write for ever, or into more memory than a packet has.
-TEST(Unpacker, packetsAndBatchesHaveAnEnd) {
+// A few bytes must not make a node decode forever, or into more memory than a packet.
+TEST(Unpacker, limitsPacketsAndBatches) {
     EXPECT_NE(problemOf([](ControlWriter& c) { c.put(Do::NewText, 256), c.put(Do::Seek, 1), c.put(Do::Run, UINT32_MAX); }, 1024).find("too large"), std::string::npos);
     EXPECT_NE(problemOf([](ControlWriter& c) { c.put(Other::Bytes), c.number(UINT32_MAX); }, 1024).find("too large"), std::string::npos);
     Limits limits = tinyLimits();

@@ -13,7 +13,7 @@ struct Made {
     int64_t ns;
 };
 
-// Of the last of so many frames, how many went plain.
+// The number of plain frames among the last `last` of `frames`.
 int plainOf(WayChoice& choice, Made looked, Made plain, int frames, int last, double linkNsPerByte = kLinkNsPerByte, uint64_t pageBytes = 0) {
     int count = 0;
     for (int i = 0; i < frames; ++i) {
@@ -24,49 +24,49 @@ int plainOf(WayChoice& choice, Made looked, Made plain, int frames, int last, do
     return count;
 }
 
-TEST(WayChoice, looksAtFirst) { EXPECT_FALSE(WayChoice().plain()); }
+TEST(WayChoice, usesTheDictionaryFirst) { EXPECT_FALSE(WayChoice().plain()); }
 
-TEST(WayChoice, goesPlainWhereLookingCostsMoreThanItSaves) {
+TEST(WayChoice, becomesPlainWhereTheDictionaryCostsMoreThanItSaves) {
     WayChoice choice;
     EXPECT_GE(plainOf(choice, {3000, 450'000}, {5000, 110'000}, 400, 300), 280);
 }
 
-TEST(WayChoice, looksWhereTheLinkIsSlow) {
+TEST(WayChoice, usesTheDictionaryOnASlowLink) {
     WayChoice choice;
     EXPECT_LE(plainOf(choice, {3000, 450'000}, {5000, 110'000}, 400, 300, 640), 20);
 }
 
-TEST(WayChoice, looksWhereItIsCheap) {
+TEST(WayChoice, usesTheDictionaryWhereItIsCheap) {
     WayChoice choice;
     EXPECT_EQ(plainOf(choice, {10, 4'000}, {100, 1'000}, 400, 400), 0) << "not even tried: nothing is to be won";
     WayChoice other;
     EXPECT_LE(plainOf(other, {10, 40'000}, {2400, 50'000}, 400, 300), 20);
 }
 
-// 400 bytes more would take longer than looking, but small frames go plain only where that takes half as long.
-TEST(WayChoice, smallFramesStaySmallUnlessThatIsTooDear) {
+// 400 more bytes would take longer than the dictionary, but small frames become plain only at half of the time.
+TEST(WayChoice, keepsSmallFramesSmallUnlessThatIsTooExpensive) {
     WayChoice near, far;
     EXPECT_LE(plainOf(near, {50, 9'000}, {450, 6'000}, 400, 300), 20);
     EXPECT_GE(plainOf(far, {50, 9'000}, {450, 3'500}, 400, 300), 280);
-    WayChoice back; // and back again when it is no longer
+    WayChoice back; // and returns when it is no longer
     plainOf(back, {50, 9'000}, {450, 3'500}, 400, 1);
     ASSERT_TRUE(back.plain());
     EXPECT_LE(plainOf(back, {50, 5'500}, {450, 3'500}, 3000, 100), 5);
 }
 
-TEST(WayChoice, looksWhereMostIsPages) {
+TEST(WayChoice, usesTheDictionaryForPages) {
     WayChoice choice;
     EXPECT_EQ(plainOf(choice, {3000, 450'000}, {5000, 110'000}, 400, 400, kLinkNsPerByte, kRawBytes * 3 / 4), 0);
 }
 
-TEST(WayChoice, triesAgainSoonWhenAllIsAnother) {
+TEST(WayChoice, retriesSoonAfterACompleteChange) {
     WayChoice choice;
     plainOf(choice, {3000, 450'000}, {5000, 110'000}, 1000, 1);
     ASSERT_TRUE(choice.plain());
     EXPECT_LE(plainOf(choice, {10, 30'000}, {30'000, 300'000}, 60, 20), 0);
 }
 
-TEST(WayChoice, fewFramesAreTimedAndAllThatDecide) {
+TEST(WayChoice, timesFewFramesButAllDecisiveOnes) {
     WayChoice choice;
     int timed = 0, plain = 0;
     for (int i = 0; i < 1000; ++i) {
@@ -80,15 +80,15 @@ TEST(WayChoice, fewFramesAreTimedAndAllThatDecide) {
     EXPECT_GE(plain, 900) << "it decides as if all were timed";
 }
 
-// Looking takes five times as long: what the tries take more is a fiftieth of all.
-TEST(WayChoice, triesAreSeldomWhereTheyAreDear) {
+// The dictionary takes five times as long: trials cost 2 % of the total.
+TEST(WayChoice, triesRarelyWhenTrialsAreExpensive) {
     WayChoice choice;
     plainOf(choice, {3000, 2'400'000}, {5000, 480'000}, 100, 1);
     EXPECT_GE(plainOf(choice, {3000, 2'400'000}, {5000, 480'000}, 2000, 2000), 1992);
 }
 
-// The clock takes as long as looking at such a frame does.
-TEST(WayChoice, cheapFramesAreSeldomTimed) {
+// Reading the clock takes as long as encoding such a frame.
+TEST(WayChoice, timesCheapFramesRarely) {
     WayChoice choice;
     int timed = 0;
     for (int i = 0; i < 4000; ++i) {
@@ -99,15 +99,15 @@ TEST(WayChoice, cheapFramesAreSeldomTimed) {
     EXPECT_GT(timed, 4000 / 64) << "they may become dear";
 }
 
-TEST(WayChoice, oneOutlierDecidesNothing) {
+TEST(WayChoice, ignoresOneOutlier) {
     WayChoice choice;
     plainOf(choice, {3000, 450'000}, {5000, 110'000}, 300, 1);
     choice.measured(kRawBytes, 0, 50'000, 5'000'000, kLinkNsPerByte);
     EXPECT_GE(plainOf(choice, {3000, 450'000}, {5000, 110'000}, 100, 60), 50);
 }
 
-// The first is all new; where to look at the second takes several times as long for each byte, it is not looked at three times more.
-TEST(WayChoice, goesPlainAtOnceWhereTheSecondIsDear) {
+// The first frame is all new. If the second takes several times as long per byte, the next three use no dictionary.
+TEST(WayChoice, becomesPlainAtOnceAfterAnExpensiveSecondFrame) {
     const auto second = [](uint64_t rawBytes, uint64_t pageBytes, int64_t ns) {
         WayChoice choice;
         choice.measured(400'000, 200'000, 40'000, 800'000, kLinkNsPerByte);
@@ -118,18 +118,18 @@ TEST(WayChoice, goesPlainAtOnceWhereTheSecondIsDear) {
     EXPECT_FALSE(second(18'000, 0, 60'000)) << "hardly dearer than new bytes";
     EXPECT_FALSE(second(1000, 0, 15'000)) << "nothing to be won";
     EXPECT_FALSE(second(18'000, 10'000, 170'000)) << "pages";
-    WayChoice choice; // where it was not worth it, that is known soon
+    WayChoice choice; // a wrong decision is detected soon
     choice.measured(400'000, 200'000, 40'000, 800'000, kLinkNsPerByte);
     choice.measured(18'000, 0, 1600, 170'000, kLinkNsPerByte);
     EXPECT_EQ(plainOf(choice, {10, 20'000}, {9000, 90'000}, 200, 40), 0);
 }
 
-// Most of what was to be looked at went plain behind many new records, in so many batches.
+// In `batches` batches, most records became plain after many new ones.
 void leftOutOf(WayChoice& choice, int batches) {
     for (int i = 0; i < batches; ++i) choice.leftOut();
 }
 
-TEST(WayChoice, goesPlainWhereAllIsNewBehindTheFirst) {
+TEST(WayChoice, becomesPlainWhereAllIsNewAfterTheFirstFrame) {
     WayChoice choice;
     choice.leftOut();
     EXPECT_FALSE(choice.plain()) << "all of the first is new";
@@ -141,16 +141,16 @@ TEST(WayChoice, goesPlainWhereAllIsNewBehindTheFirst) {
     EXPECT_TRUE(other.plain());
 }
 
-TEST(WayChoice, looksSoonWhereWhatWasNewRepeats) {
+TEST(WayChoice, triesSoonWhereNewRecordsRepeat) {
     WayChoice choice;
     leftOutOf(choice, 2);
     EXPECT_LE(plainOf(choice, {10, 40'000}, {300, 100'000}, 60, 20), 0);
-    WayChoice other; // and where it does not, it is not tried soon
+    WayChoice other; // otherwise not soon
     leftOutOf(other, 2);
     EXPECT_EQ(plainOf(other, {3000, 450'000}, {8000, 110'000}, 120, 120), 120);
 }
 
-TEST(WayChoice, aTryThatIsLeftOutEnds) {
+TEST(WayChoice, endsATrialWithOmittedRecords) {
     WayChoice choice;
     plainOf(choice, {3000, 450'000}, {5000, 110'000}, 400, 1);
     int tries = 0;

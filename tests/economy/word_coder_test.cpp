@@ -1,4 +1,4 @@
-// Changed words: whatever they are, they come back; and what moves smoothly is cheap.
+// Changed words round-trip whatever they are, and smooth motion is cheap.
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -11,7 +11,7 @@ namespace {
 
 using Words = std::vector<uint32_t>;
 
-// Codes frames of one item there and back; returns the bytes of each.
+// Encodes and decodes frames of one item; returns the size of each.
 class OneItem {
 public:
     explicit OneItem(uint32_t modelWords = 4096) : writing_(modelWords), reading_(modelWords) {}
@@ -54,7 +54,7 @@ private:
 
 uint32_t wordOf(double value) { return std::bit_cast<uint32_t>(static_cast<float>(value)); }
 
-TEST(WordCoder, anyWordsComeBack) {
+TEST(WordCoder, roundTripsAnyWords) {
     std::mt19937 random(1);
     const Words odd{0, 1, 0x80000000, 0xffffffff, 0x7f800000, 0xff800000, 0x7fc00001, 0xffc12345, 0x00000001, 0x807fffff, 0x7f7fffff, 0xff7fffff, 0x3f800000, 0xbf800000};
     for (const uint32_t modelWords : {1024u, 4096u}) {
@@ -67,8 +67,8 @@ TEST(WordCoder, anyWordsComeBack) {
     }
 }
 
-// Of a matrix that turns by steps unlike each other 8 words change: 32 bytes without a guess.
-TEST(WordCoder, whatTurnsCostsAFewBytes) {
+// A matrix that rotates in unequal steps changes 8 words: 32 bytes without prediction.
+TEST(WordCoder, encodesRotationInAFewBytes) {
     OneItem item;
     std::mt19937 random(2);
     double angle = 0, sum = 0;
@@ -85,19 +85,19 @@ TEST(WordCoder, whatTurnsCostsAFewBytes) {
     EXPECT_LE(sum / 200, 10);
 }
 
-TEST(WordCoder, countersAndRepeatedValuesCostNearlyNothing) {
+TEST(WordCoder, encodesCountersAndRepeatedValuesAtNearlyNoCost) {
     OneItem item;
     std::mt19937 random(3);
     double sum = 0;
     for (uint32_t frame = 0; frame < 300; ++frame) {
         Words words{7, frame, 5 * frame, 0, 0, 0};
-        words[3] = static_cast<uint32_t>(random()) & 0x7fffffff; // says nothing
+        words[3] = static_cast<uint32_t>(random()) & 0x7fffffff; // unpredictable
         words[4] = words[3];
         words[5] = words[3] | 0x80000000;
         const size_t bytes = item.send(words);
         if (frame >= 100) sum += static_cast<double>(bytes);
     }
-    EXPECT_LE(sum / 200, 6.5); // four of it random
+    EXPECT_LE(sum / 200, 6.5); // four of them random
 }
 
 } // namespace

@@ -39,7 +39,7 @@ protected:
     }
 };
 
-TEST_F(AnswerAssemblerTest, rectanglesWaitForEveryLast) {
+TEST_F(AnswerAssemblerTest, waitsForTheLastPartOfEveryNode) {
     rectangle(0, 0, 2, 1);
     rectangle(1, 2, 1, 2, false);
     rectangle(2, 4, 1, 4);
@@ -59,7 +59,7 @@ TEST_F(AnswerAssemblerTest, rectanglesWaitForEveryLast) {
     EXPECT_EQ(assembler.openRequests(), 0u);
 }
 
-TEST_F(AnswerAssemblerTest, aRectangleThatOneNodeHasWholeWaitsForNobody) {
+TEST_F(AnswerAssemblerTest, deliversARectangleOfOneNodeWithoutWaiting) {
     rectangle(0, 0, 0, 0);
     EXPECT_TRUE(replies.empty());
     rectangle(2, 3, 2, 7, true, true);
@@ -68,13 +68,13 @@ TEST_F(AnswerAssemblerTest, aRectangleThatOneNodeHasWholeWaitsForNobody) {
     EXPECT_EQ(replies[0].second.header.w, 2);
     EXPECT_EQ(replies[0].second.header.failed, 0u);
     EXPECT_EQ(replyBytes(), (std::vector<uint8_t>{7, 7, 7, 7}));
-    EXPECT_EQ(assembler.openRequests(), 1u); // the rest only has to come in
+    EXPECT_EQ(assembler.openRequests(), 1u); // later answers are discarded
     rectangle(1, 0, 0, 0);
     EXPECT_EQ(replies.size(), 1u);
     EXPECT_EQ(assembler.openRequests(), 0u);
 }
 
-TEST_F(AnswerAssemblerTest, aRectangleThatOneNodeHasWholeIsThereWhenAnotherIsLost) {
+TEST_F(AnswerAssemblerTest, deliversARectangleOfOneNodeWhenAnotherIsLost) {
     rectangle(2, 3, 2, 7, true, true);
     assembler.nodeLost(0);
     assembler.nodeLost(1);
@@ -82,7 +82,7 @@ TEST_F(AnswerAssemblerTest, aRectangleThatOneNodeHasWholeIsThereWhenAnotherIsLos
     EXPECT_EQ(assembler.openRequests(), 0u);
 }
 
-TEST_F(AnswerAssemblerTest, holesAreZero) {
+TEST_F(AnswerAssemblerTest, fillsHolesWithZeros) {
     rectangle(0, 0, 1, 7);
     rectangle(2, 3, 1, 9);
     assembler.nodeLost(1);
@@ -91,14 +91,14 @@ TEST_F(AnswerAssemblerTest, holesAreZero) {
     EXPECT_EQ(replies[0].second.header.failed, 0u);
 }
 
-TEST_F(AnswerAssemblerTest, aRectangleThatNoTileMeetsIsNotAFailure) {
+TEST_F(AnswerAssemblerTest, acceptsARectangleOutsideAllTiles) {
     for (int node = 0; node < 3; ++node) rectangle(node, 0, 0, 0);
     ASSERT_EQ(replies.size(), 1u);
     EXPECT_EQ(replies[0].second.header.failed, 0u);
     EXPECT_EQ(replies[0].second.header.sizeBytes, 0u);
 }
 
-TEST_F(AnswerAssemblerTest, bytesComeFromTheOneThatSpeaksForAll) {
+TEST_F(AnswerAssemblerTest, takesBytesFromOneNode) {
     bytes(2, {}, false);
     bytes(1, {9}, false);
     EXPECT_TRUE(replies.empty());
@@ -109,8 +109,8 @@ TEST_F(AnswerAssemblerTest, bytesComeFromTheOneThatSpeaksForAll) {
     EXPECT_EQ(assembler.openRequests(), 0u);
 }
 
-// What nobody has written differs from node to node: two reads must not tell of two nodes.
-TEST_F(AnswerAssemblerTest, theFirstThatLivesSpeaksHoweverFastTheOthersAre) {
+// Undefined bytes differ between nodes: two reads must return the same node's.
+TEST_F(AnswerAssemblerTest, takesBytesFromTheFirstLivingNodeWhicheverIsFastest) {
     bytes(2, {7}, true);
     bytes(1, {5}, true);
     EXPECT_TRUE(replies.empty());
@@ -119,7 +119,7 @@ TEST_F(AnswerAssemblerTest, theFirstThatLivesSpeaksHoweverFastTheOthersAre) {
     EXPECT_EQ(replyBytes(), (std::vector<uint8_t>{3}));
 }
 
-TEST_F(AnswerAssemblerTest, theSpeakerIsNotHeldUpByTheOthers) {
+TEST_F(AnswerAssemblerTest, deliversBytesWithoutWaitingForOthers) {
     bytes(0, {1}, true);
     ASSERT_EQ(replies.size(), 1u);
     EXPECT_EQ(assembler.openRequests(), 1u);
@@ -129,7 +129,7 @@ TEST_F(AnswerAssemblerTest, theSpeakerIsNotHeldUpByTheOthers) {
     EXPECT_EQ(assembler.openRequests(), 0u);
 }
 
-TEST_F(AnswerAssemblerTest, whenTheSpeakerIsLostAnotherSpeaks) {
+TEST_F(AnswerAssemblerTest, takesBytesFromAnotherNodeAfterALoss) {
     bytes(0, {1}, true, false); // half of it
     bytes(2, {7}, false);
     bytes(1, {5, 6}, false);
@@ -139,7 +139,7 @@ TEST_F(AnswerAssemblerTest, whenTheSpeakerIsLostAnotherSpeaks) {
     EXPECT_EQ(replies[0].second.header.failed, 0u);
 }
 
-TEST_F(AnswerAssemblerTest, failsOnlyWhenNobodyAnswered) {
+TEST_F(AnswerAssemblerTest, failsOnlyWithoutAnyAnswer) {
     bytes(0, {1}, true, false);
     bytes(1, {}, false);
     bytes(2, {}, false);
@@ -149,7 +149,7 @@ TEST_F(AnswerAssemblerTest, failsOnlyWhenNobodyAnswered) {
     EXPECT_EQ(replies[0].second.header.sizeBytes, 0u);
 }
 
-TEST_F(AnswerAssemblerTest, sumsAreAdded) {
+TEST_F(AnswerAssemblerTest, addsSums) {
     for (int node = 0; node < 3; ++node) {
         AnswerHeader h{1, 7, static_cast<uint32_t>(AnswerKind::Sum), 0, 0, 0, 0, 0, 0, 1};
         std::vector<uint8_t> value(8, 0);
@@ -163,7 +163,7 @@ TEST_F(AnswerAssemblerTest, sumsAreAdded) {
     EXPECT_EQ(sum, 3 * ((uint64_t{1} << 32) + 200));
 }
 
-TEST_F(AnswerAssemblerTest, contradictionsAreErrors) {
+TEST_F(AnswerAssemblerTest, reportsContradictions) {
     EXPECT_TRUE(rectangle(0, 0, 1, 1));
     EXPECT_FALSE(rectangle(0, 0, 1, 1)) << "after its last";
     AnswerHeader other{1, 5, static_cast<uint32_t>(AnswerKind::Bytes), 0, 0, 0, 0, 0, 0, 1};

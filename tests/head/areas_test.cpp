@@ -1,4 +1,4 @@
-// Areas on the wire.
+// The wire format of areas.
 #include "nodes/session/areas.hpp"
 
 #include <cmath>
@@ -8,7 +8,7 @@
 namespace mural {
 namespace {
 
-TEST(AreasOnTheWire, comeBackAsTheyWere) {
+TEST(AreasOnTheWire, roundTrip) {
     const Areas first{7, {{0, 0, 1. / 3, 1}, {1. / 3, 0, 2. / 3, 1}, {0, 0, 0, 0}}}, second{8, {}};
     auto bytes = bytesOf(first);
     EXPECT_EQ(bytes.size(), 8u + 3 * 32);
@@ -21,7 +21,7 @@ TEST(AreasOnTheWire, comeBackAsTheyWere) {
     EXPECT_FALSE(takeAreas(rest).has_value());
 }
 
-TEST(AreasOnTheWire, whatIsNoAreaIsRefused) {
+TEST(AreasOnTheWire, areRejectedWhenInvalid) {
     const auto refused = [](const Viewport& v) {
         const auto bytes = bytesOf(Areas{1, {v}});
         std::span<const std::byte> rest(bytes);

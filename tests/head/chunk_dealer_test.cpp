@@ -1,4 +1,4 @@
-// Which shares the head announces, by what nodes report.
+// The shares that the head announces, from the reports of nodes.
 #include "nodes/head/chunk_dealer.hpp"
 
 #include <functional>
@@ -26,7 +26,8 @@ protected:
 
     [[nodiscard]] Range shareOf(size_t node) const { return announced_.empty() ? plan_.nodes[node].pass.share : announced_.back().ofNodes[node]; }
 
-    // All that live finish a frame; each draw costs `cost` of its place in the frame, from 0 to 1; the collector has `more` to do.
+    // All living nodes finish a frame. A draw costs `cost` of its place in the frame, from 0 to 1; the collector has
+    // `more` additional work.
     void frame(const std::function<double(double)>& cost, double more = 0, uint32_t flags = 0, uint32_t shares = UINT32_MAX) {
         ++frames_;
         const uint32_t number = shares != UINT32_MAX ? shares : announced_.empty() ? 0 : announced_.back().number;
@@ -52,7 +53,7 @@ protected:
     static double even(double) { return 1; }
     static double costlyFirst(double at) { return at < 0.2 ? 10 : 1; }
 
-    // Every draw is one living node's, in the order of their ranges.
+    // Every draw belongs to one living node, in the order of their ranges.
     void expectWhole() const {
         double at = 0;
         for (size_t node = 0; node < lives_.size(); ++node) {
@@ -75,19 +76,19 @@ protected:
     uint32_t frames_ = 0;
 };
 
-TEST_F(ChunkDealerTest, evenCostMovesNothing) {
+TEST_F(ChunkDealerTest, movesNothingForEqualCosts) {
     begin(4, 64);
     for (int i = 0; i < 20; ++i) frame(even);
     EXPECT_TRUE(announced_.empty());
     EXPECT_GT(dealer_->totals()[0].frames, 10);
 }
 
-TEST_F(ChunkDealerTest, whoHasCostlyDrawsGetsFewerOfThem) {
+TEST_F(ChunkDealerTest, assignsFewerExpensiveDraws) {
     begin(3, 90);
     for (int i = 0; i < 60; ++i) frame(costlyFirst);
     ASSERT_FALSE(announced_.empty());
     expectWhole();
-    // 2.8 of cost in all: a third is 0.93, which lies within the first fifth of the draws.
+    // Total cost 2.8: a third is 0.93, within the first fifth of the draws.
     EXPECT_LT(shareOf(0).end, 0.14);
     EXPECT_LT(shareOf(1).end, 0.3);
     const QueueTotals totals = dealer_->totals()[0];
@@ -97,7 +98,7 @@ TEST_F(ChunkDealerTest, whoHasCostlyDrawsGetsFewerOfThem) {
     EXPECT_LT(totals.moves, 20) << "it settles";
 }
 
-TEST_F(ChunkDealerTest, theCollectorsOtherWorkCounts) {
+TEST_F(ChunkDealerTest, countsOtherWorkOfTheCollector) {
     begin(2, 100);
     for (int i = 0; i < 60; ++i) frame(even, 500);
     expectWhole();
@@ -105,7 +106,7 @@ TEST_F(ChunkDealerTest, theCollectorsOtherWorkCounts) {
     EXPECT_GT(shareOf(0).end, 0.18);
 }
 
-TEST_F(ChunkDealerTest, framesOfOlderSharesOrWithNothingSharedAreNotCompared) {
+TEST_F(ChunkDealerTest, ignoresFramesOfOlderSharesOrWithoutSharedDraws) {
     begin(3, 30);
     for (int i = 0; i < 20; ++i) frame(costlyFirst, 0, wire::kNotSplit);
     for (int i = 0; i < 20; ++i) frame(costlyFirst, 0, 0, 7);
@@ -113,7 +114,7 @@ TEST_F(ChunkDealerTest, framesOfOlderSharesOrWithNothingSharedAreNotCompared) {
     EXPECT_EQ(dealer_->totals()[0].frames, 0);
 }
 
-TEST_F(ChunkDealerTest, theChunksOfALostNodeGoToTheOthers) {
+TEST_F(ChunkDealerTest, reassignsTheChunksOfALostNode) {
     begin(3, 30);
     for (int i = 0; i < 4; ++i) frame(even);
     lives_[1] = false;
@@ -128,18 +129,18 @@ TEST_F(ChunkDealerTest, theChunksOfALostNodeGoToTheOthers) {
     expectWhole();
     EXPECT_NEAR(shareOf(1).start, 1.0 / 3, 1e-9);
     const size_t announced = announced_.size();
-    dealer_->nodeJoined(1); // it lives
+    dealer_->nodeJoined(1); // it is alive
     EXPECT_EQ(announced_.size(), announced);
 }
 
-TEST_F(ChunkDealerTest, eachNodeHasAChunkHoweverFewThereAre) {
+TEST_F(ChunkDealerTest, givesEachNodeAChunk) {
     begin(5, 2);
     dealer_->nodeLost(4);
     lives_[4] = false;
     expectWhole();
 }
 
-TEST_F(ChunkDealerTest, atRandomTheyStayWholeAndInOrder) {
+TEST_F(ChunkDealerTest, keepsRandomSharesCompleteAndInOrder) {
     plan_ = planSession(configOf(4, 16), "me");
     dealer_ = std::make_unique<ChunkDealer>(plan_, [this](const Shares& shares) { announced_.push_back(shares); }, "shares");
     lives_.assign(4, true);
@@ -150,7 +151,7 @@ TEST_F(ChunkDealerTest, atRandomTheyStayWholeAndInOrder) {
     EXPECT_GE(announced_.size(), 200u);
 }
 
-TEST(ChunkDealer, hasNothingToDoWithoutAQueueOrForNodesThatTakeTurns) {
+TEST(ChunkDealer, doesNothingWithoutAQueueOrForTimeMultiplexedNodes) {
     const SessionPlan without = planSession(configOf(3, 0), "me");
     EXPECT_FALSE(ChunkDealer(without, [](const Shares&) { ADD_FAILURE(); }).deals());
     SessionConfig turns = configOf(2, 20);
@@ -162,7 +163,7 @@ TEST(ChunkDealer, hasNothingToDoWithoutAQueueOrForNodesThatTakeTurns) {
     EXPECT_NE(plan.warnings[0].find("take turns"), std::string::npos) << plan.warnings[0];
 }
 
-TEST(Shares, comeBackAndWrongOnesDoNot) {
+TEST(Shares, roundTripAndRejectInvalidOnes) {
     const Shares shares{3, {{0, .25}, {.25, .25}, {.25, 1}}};
     const auto bytes = bytesOf(shares);
     EXPECT_EQ(sharesOf(bytes), shares);

@@ -26,7 +26,7 @@ SessionPlan planOfFile(const std::string& name, bool here = true) {
     return plan.ok() ? std::move(*plan) : SessionPlan{};
 }
 
-TEST(ConfigPlan, rangesShareAPictureAndACollector) {
+TEST(ConfigPlan, givesRangesACommonPictureAndCollector) {
     const SessionPlan plan = planOfFile("db.eqc");
     ASSERT_GE(plan.nodes.size(), 2u);
     double end = 0;
@@ -53,7 +53,7 @@ SessionPlan planOfRanges(const std::string& composition) {
     return plan.ok() ? std::move(*plan) : SessionPlan{};
 }
 
-TEST(ConfigPlan, filesSayHowRangesAreComposed) {
+TEST(ConfigPlan, readsTheCompositionOfRanges) {
     using compositor::Strategy;
     const auto chosen = [](SessionPlan plan, const std::string& wish) {
         chooseComposition(plan, wish);
@@ -66,8 +66,8 @@ TEST(ConfigPlan, filesSayHowRangesAreComposed) {
     EXPECT_EQ(chosen(planOfRanges(""), "auto"), compositor::chooseStrategy(5));
 }
 
-TEST(ConfigPlan, partsOfTheWallLieSideBySide) {
-    // The monitors of the first have frames, behind which nothing is drawn.
+TEST(ConfigPlan, placesPartsOfTheWallSideBySide) {
+    // The monitors of the first file have bezels, behind which nothing is drawn.
     for (const auto& [file, whole] : {std::pair("wall-2x2.eqc", 0.930896), std::pair("2d.eqc", 1.0)}) {
         const SessionPlan plan = planOfFile(file);
         double covered = 0;
@@ -82,7 +82,7 @@ TEST(ConfigPlan, partsOfTheWallLieSideBySide) {
     }
 }
 
-TEST(ConfigPlan, turnsDrawOnePicture) {
+TEST(ConfigPlan, drawsOnePictureInPhases) {
     const SessionPlan plan = planOfFile("dplex.eqc");
     ASSERT_GE(plan.nodes.size(), 2u);
     std::vector<bool> phases(static_cast<size_t>(plan.nodes.front().pass.period), false);
@@ -94,7 +94,7 @@ TEST(ConfigPlan, turnsDrawOnePicture) {
     EXPECT_EQ(std::count(phases.begin(), phases.end(), true), static_cast<long>(phases.size()));
 }
 
-TEST(ConfigPlan, samplesAndPixelsAreWhole) {
+TEST(ConfigPlan, drawsWholePicturesForSamplesAndPixels) {
     const SessionPlan samples = planOfFile("subpixel.eqc"), pixels = planOfFile("pixel.eqc");
     EXPECT_EQ(picturesOf(samples.wall), samples.wall.parts.front().counts.samples);
     EXPECT_GT(samples.wall.parts.front().counts.samples, 1);
@@ -108,7 +108,7 @@ TEST(ConfigPlan, samplesAndPixelsAreWhole) {
     }
 }
 
-TEST(ConfigPlan, eyesComeTogether) {
+TEST(ConfigPlan, combinesEyes) {
     const SessionPlan plan = planOfFile("stereo-anaglyph.eqc");
     EXPECT_EQ(plan.wall.stereo, StereoMode::Anaglyph);
     ASSERT_EQ(plan.wall.parts.size(), 2u);
@@ -117,7 +117,7 @@ TEST(ConfigPlan, eyesComeTogether) {
     EXPECT_EQ(planOfFile("stereo-passive.eqc").wall.stereo, StereoMode::SideBySide);
 }
 
-TEST(ConfigPlan, eyesHaveTheColoursOfTheFile) {
+TEST(ConfigPlan, usesTheColoursOfTheFileForEyes) {
     const auto coloursOf = [](const SessionPlan& plan, Eye eye) {
         for (const WallPart& part : plan.wall.parts)
             if (part.eye == eye) return part.colours;
@@ -141,7 +141,7 @@ TEST(ConfigPlan, eyesHaveTheColoursOfTheFile) {
     EXPECT_EQ(coloursOf(plan.value(), Eye::Right), (EyeColours{true, false, true}));
 }
 
-TEST(ConfigPlan, theWallHasThePixelsOfItsSegments) {
+TEST(ConfigPlan, sizesTheWallByItsSegments) {
     const auto loaded = load("wall-2x2.eqc");
     const auto size = wallSizeOf(loaded, {"me", true, "", {}});
     EXPECT_GT(size.w, 0);
@@ -151,10 +151,10 @@ TEST(ConfigPlan, theWallHasThePixelsOfItsSegments) {
     EXPECT_EQ(tiles, 4);
 }
 
-TEST(ConfigPlan, screensAtAnglesAreARoom) {
+TEST(ConfigPlan, treatsScreensAtAnglesAsARoom) {
     const SessionPlan plan = planOfFile("cave.eqc");
     ASSERT_EQ(plan.nodes.size(), 3u);
-    const double xs[] = {-1, 0, 1}; // where the middle of each wall is seen
+    const double xs[] = {-1, 0, 1}; // where the centre of each wall is seen
     for (size_t i = 0; i < 3; ++i) {
         const NodePlan& n = plan.nodes[i];
         ASSERT_TRUE(n.screen) << i;
@@ -169,7 +169,7 @@ TEST(ConfigPlan, screensAtAnglesAreARoom) {
     }
 }
 
-TEST(ConfigPlan, whoSaysWhereWallsAreLookedAtFrom) {
+TEST(ConfigPlan, selectsTheViewpointByFrusta) {
     const auto screens = [](const std::string& file, Frusta frusta) {
         auto plan = planOf(load(file), {"me", true, "", {}, frusta});
         EXPECT_TRUE(plan.ok());
@@ -181,8 +181,8 @@ TEST(ConfigPlan, whoSaysWhereWallsAreLookedAtFrom) {
     EXPECT_EQ(screens("wall-2x2.eqc", Frusta::Room), 4);
 }
 
-// An eye half a metre to the right is half a metre in the program's units, whatever these are.
-TEST(ConfigPlan, eyesAreInTheProgramsUnits) {
+// An eye half a metre to the right is half a metre in the program's units.
+TEST(ConfigPlan, convertsEyesToTheProgramsUnits) {
     const auto loaded = load("stereo-passive.eqc");
     for (const double unit : {1., 100.}) {
         auto plan = planOf(loaded, {"me", true, "", {}, Frusta::Room, unit});
@@ -192,7 +192,7 @@ TEST(ConfigPlan, eyesAreInTheProgramsUnits) {
     }
 }
 
-TEST(ConfigPlan, nodesShowTheirOwnChannels) {
+TEST(ConfigPlan, showsChannelsOnTheirNodes) {
     SessionConfig windows;
     windows.display = Display::Windows;
     windows.windowX = 5;
@@ -215,7 +215,7 @@ TEST(ConfigPlan, nodesShowTheirOwnChannels) {
     for (const NodePlan& n : here.nodes) EXPECT_TRUE(setupOf(windows, here, n).windowAsOnWall && !setupOf(windows, here, n).fullScreen);
 }
 
-TEST(ConfigPlan, tilesOfQueuesMove) {
+TEST(ConfigPlan, createsTileQueues) {
     SessionPlan plan = planOfFile("tile-queue.eqc");
     ASSERT_EQ(plan.nodes.size(), 3u);
     ASSERT_EQ(plan.queues.size(), 1u);
@@ -236,7 +236,7 @@ TEST(ConfigPlan, tilesOfQueuesMove) {
     EXPECT_FALSE(projector.queues.empty()) << "by a tile_equalizer";
 }
 
-TEST(ConfigPlan, chunksOfQueuesMove) {
+TEST(ConfigPlan, createsChunkQueues) {
     SessionPlan plan = planOfFile("chunk-queue.eqc");
     ASSERT_EQ(plan.nodes.size(), 3u);
     ASSERT_EQ(plan.chunkQueues.size(), 1u);
@@ -256,8 +256,8 @@ TEST(ConfigPlan, chunksOfQueuesMove) {
     EXPECT_NE(plan.explain.back().find("of 0.01 of the draws"), std::string::npos) << plan.explain.back();
 }
 
-// Of ranges the node that has the picture shows it; what several pictures make, and eyes on one screen, the head.
-TEST(ConfigPlan, whoShowsWhatSeveralDraw) {
+// The collector shows the picture of ranges. The head shows what several pictures compose, and both eyes on one screen.
+TEST(ConfigPlan, selectsWhoShowsComposedPictures) {
     SessionConfig windows;
     windows.display = Display::Windows;
     for (const char* file : {"db.eqc", "cave.eqc"}) EXPECT_FALSE(headShowsWall(windows, planOfFile(file))) << file;
@@ -265,13 +265,13 @@ TEST(ConfigPlan, whoShowsWhatSeveralDraw) {
     EXPECT_FALSE(headShowsWall(windows, planOfFile("stereo-passive.eqc", false))) << "each eye has a projector";
 }
 
-TEST(ConfigPlan, aLayoutThatThereIsNot) {
+TEST(ConfigPlan, rejectsAnUnknownLayout) {
     const auto plan = planOf(load("db.eqc"), {"me", true, "", {"nowhere"}});
     ASSERT_FALSE(plan.ok());
     EXPECT_NE(plan.error().message.find("--layout \"nowhere\""), std::string::npos) << plan.error().message;
 }
 
-// In a folder of this process: tests run beside each other.
+// In a folder of this process, because tests run concurrently.
 std::filesystem::path ownFile(const std::string& name) {
     const auto folder = std::filesystem::path(::testing::TempDir()) / ("config_plan." + std::to_string(getpid()));
     std::filesystem::create_directories(folder);
@@ -289,7 +289,7 @@ Result<SessionPlan> planOfText(const std::string& compounds) {
     return planOf(loaded, {"me", true, "", {}});
 }
 
-TEST(ConfigPlan, zoomsMultiplyAndAreDrawn) {
+TEST(ConfigPlan, multipliesZooms) {
     auto plan = planOfText("zoom [ .5 1 ] compound { viewport [ 0 0 .5 1 ] } compound { channel \"b\" viewport [ .5 0 .5 1 ] zoom [ .5 .5 ] outputframe { } }");
     ASSERT_TRUE(plan) << plan.error().message;
     ASSERT_EQ(plan->nodes.size(), 2u);
@@ -302,7 +302,7 @@ TEST(ConfigPlan, zoomsMultiplyAndAreDrawn) {
     EXPECT_TRUE(larger->warnings.empty());
 }
 
-TEST(ConfigPlan, whatIsNotZoomedIsSaid) {
+TEST(ConfigPlan, reportsUnsupportedZooms) {
     auto large = planOfText("compound { viewport [ 0 0 .5 1 ] } compound { channel \"b\" viewport [ .5 0 .5 1 ] zoom [ 17 .5 ] outputframe { } }");
     ASSERT_TRUE(large) << large.error().message;
     EXPECT_EQ(large->nodes[1].pass.zoom, (Zoom{kMostZoom, .5}));
@@ -313,8 +313,8 @@ TEST(ConfigPlan, whatIsNotZoomedIsSaid) {
     EXPECT_NE(ranges.error().message.find("the same zoom"), std::string::npos) << ranges.error().message;
 }
 
-// What a file says without effect is said, with its place and what to do.
-TEST(ConfigPlan, fieldsWithoutEffectAreSaid) {
+// Fields without effect are reported with position and remedy.
+TEST(ConfigPlan, reportsFieldsWithoutEffect) {
     auto plan = planOfText("load_equalizer { mode 2D } compound { viewport [ 0 0 .5 1 ] }\ncompound { channel \"b\" viewport [ .5 0 .5 1 ] framerate_equalizer { } outputframe { } }");
     ASSERT_TRUE(plan) << plan.error().message;
     ASSERT_EQ(plan->warnings.size(), 2u) << plan->warnings.front();
@@ -324,8 +324,8 @@ TEST(ConfigPlan, fieldsWithoutEffectAreSaid) {
     EXPECT_TRUE(planOfText("compound { viewport [ 0 0 .5 1 ] } compound { channel \"b\" viewport [ .5 0 .5 1 ] zoom [ .5 .5 ] outputframe { } }")->warnings.empty()) << "that one has";
 }
 
-// The picture of the second channel is handed on in part: what the screen has drawn is seen around it.
-TEST(ConfigPlan, framesBringPartsToTheWall) {
+// The second channel's picture is exported in part: the screen's own draws are visible around it.
+TEST(ConfigPlan, placesPartialFramesOnTheWall) {
     auto plan = planOfText("compound { } compound { channel \"b\" outputframe { viewport [ .5 .5 .5 .5 ] buffer [ COLOR ] } }");
     ASSERT_TRUE(plan) << plan.error().message;
     double covered = 0;
@@ -346,7 +346,7 @@ TEST(ConfigPlan, framesBringPartsToTheWall) {
     EXPECT_EQ(same->nodes.size(), 1u) << "with depth, what is there stays, as it is the same";
 }
 
-TEST(ConfigPlan, framesMakePicturesSmallerOnTheirWay) {
+TEST(ConfigPlan, reducesPicturesForTheTransfer) {
     auto plan = planOfText("compound { viewport [ 0 0 .5 1 ] } compound { channel \"b\" viewport [ .5 0 .5 1 ] outputframe { zoom [ .5 .25 ] } }");
     ASSERT_TRUE(plan) << plan.error().message;
     ASSERT_EQ(plan->nodes.size(), 2u);
@@ -355,7 +355,7 @@ TEST(ConfigPlan, framesMakePicturesSmallerOnTheirWay) {
     EXPECT_NEAR(plan->nodes[1].way.y, .25, .005);
     EXPECT_TRUE(plan->nodes[1].pass.zoom.none()) << "it is drawn as it is";
     EXPECT_TRUE(plan->warnings.empty());
-    // Ranges that are put together by depth do not fit then.
+    // Ranges composited by depth do not support this.
     auto ranges = planOfText("buffer [ COLOR DEPTH ] compound { range [ 0 .5 ] } compound { channel \"b\" range [ .5 1 ] outputframe { zoom [ .5 .5 ] } }");
     ASSERT_TRUE(ranges) << ranges.error().message;
     for (const NodePlan& n : ranges->nodes) EXPECT_TRUE(n.way.none());
@@ -363,7 +363,7 @@ TEST(ConfigPlan, framesMakePicturesSmallerOnTheirWay) {
     EXPECT_NE(ranges->warnings[0].find(".eqc:4:"), std::string::npos) << ranges->warnings[0];
 }
 
-TEST(ConfigPlan, framesOfQueuesShowWhatIsDrawnWhereItIsDrawn) {
+TEST(ConfigPlan, showsFramesOfQueuesWhereTheyAreDrawn) {
     const std::string queue = "outputtiles { name \"q\" size [ 16 16 ] } ";
     auto plan = planOfText(queue + "compound { inputtiles { name \"q\" } } compound { channel \"b\" inputtiles { name \"q\" } outputframe { zoom [ .5 .5 ] } }");
     ASSERT_TRUE(plan) << plan.error().message;
@@ -379,8 +379,8 @@ TEST(ConfigPlan, framesOfQueuesShowWhatIsDrawnWhereItIsDrawn) {
     EXPECT_TRUE(plain->warnings.empty());
 }
 
-// Each canvas has nodes of its own, that draw the program's picture in its pixels.
-TEST(ConfigPlan, canvasesAreShownTogether) {
+// Each canvas has its own nodes, which draw the program's picture at its resolution.
+TEST(ConfigPlan, showsSeveralCanvases) {
     const SessionPlan plan = planOfFile("wall-and-monitor.eqc");
     ASSERT_EQ(plan.nodes.size(), 3u);
     ASSERT_EQ(plan.canvases.size(), 1u);
@@ -415,7 +415,7 @@ TEST(ConfigPlan, canvasesAreShownTogether) {
     EXPECT_TRUE(named->nodes[0].pass.shown.none());
 }
 
-TEST(ConfigPlan, quadBufferedPairsAreTheHeadsToShow) {
+TEST(ConfigPlan, showsQuadBufferedPairsOnTheHead) {
     const auto path = ownFile("config_plan_quad.eqc");
     std::ofstream(path) << "#Equalizer 1.2 ascii\nserver { config { appNode { pipe { window { viewport [ 0 0 320 200 ] attributes { hint_stereo ON } channel { name \"a\" } } } }\n"
                            "layout { view { mode STEREO } } canvas { layout 0 wall { } segment { channel \"a\" } }\ncompound { channel ( ) attributes { stereo_mode QUAD } } } }\n";
@@ -430,7 +430,7 @@ TEST(ConfigPlan, quadBufferedPairsAreTheHeadsToShow) {
     EXPECT_TRUE(headShowsWall(windows, *plan));
 }
 
-TEST(ConfigPlan, everyExampleFileCanBePlanned) {
+TEST(ConfigPlan, plansEveryExampleFile) {
     const auto files = config::testing::exampleFiles();
     if (files.empty()) GTEST_SKIP() << "no example files at " << config::testing::exampleFolder() << "; MURAL_SHARED says where shared is";
     for (const auto& file : files) {

@@ -20,7 +20,7 @@ struct Ends {
     std::unique_ptr<ControlChannel> head;
 };
 
-TEST(ControlChannel, linesAreWholeHoweverTheyCome) {
+TEST(ControlChannel, reassemblesLines) {
     Ends ends;
     ASSERT_EQ(send(ends.mine.get(), "one\ntw", 6, 0), 6);
     EXPECT_EQ(ends.head->receive(Deadline::inMs(5000)), "one");
@@ -34,9 +34,9 @@ TEST(ControlChannel, linesAreWholeHoweverTheyCome) {
     ends.head->say("nobody hears this");
 }
 
-TEST(ControlChannel, aReaderThatPausesLosesNothingAndBlocksNobody) {
+TEST(ControlChannel, losesNothingAndBlocksNothingWhileTheReaderPauses) {
     Ends ends;
-    constexpr int kLines = 5000; // more than a socket holds
+    constexpr int kLines = 5000; // more than a socket buffers
     for (int i = 0; i < kLines; ++i) ends.head->send({{"line", i}});
     EXPECT_FALSE(ends.head->broken());
     std::thread ending([&] { ends.head.reset(); }); // writes the rest while it is read
@@ -49,7 +49,7 @@ TEST(ControlChannel, aReaderThatPausesLosesNothingAndBlocksNobody) {
     EXPECT_NE(all.find("{\"line\":" + std::to_string(kLines - 1) + "}\n"), std::string::npos);
 }
 
-TEST(ControlChannel, oddTextIsStillJson) {
+TEST(ControlChannel, writesJsonForInvalidText) {
     Ends ends;
     ends.head->say("bad \xff\xfe \"text\"\nand more");
     char bytes[256];

@@ -16,7 +16,7 @@ SessionPlan planOf(std::initializer_list<NodeReach> reaches) {
     return plan;
 }
 
-TEST(EconomyPlan, networksAreSparedMemoryIsNot) {
+TEST(EconomyPlan, codesForNetworksButNotForSharedMemory) {
     const SessionPlan plan = planOf({NodeReach::SharedMemory, NodeReach::Tcp, NodeReach::LaunchCommand, NodeReach::Tcp});
     const auto third = [](int node) { return node == 3; };
     SessionConfig config;

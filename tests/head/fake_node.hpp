@@ -1,5 +1,5 @@
-// A render node without GL, in a thread of the test: answers what FakeProgram's records ask, draws
-// pictures whose pixels tell node and frame, and fails where the test wants it to.
+// A render node without GL in a thread of the test. Answers the requests of FakeProgram's records, draws pictures whose
+// pixels encode node and frame, and fails on demand.
 #pragma once
 
 #include <atomic>
@@ -20,18 +20,18 @@ namespace mural {
 
 struct FakeNodeBehaviour {
     bool pictures = false;
-    bool silentStart = false;      // never ready
-    bool refuses = false;          // says why, instead of being ready, and ends
-    bool drawsWhole = false;       // says so with every frame
-    bool keepsAreas = false;       // likewise
-    uint64_t busyNs = 0;           // with every frame
-    std::string news;              // a driver message with every frame
-    uint32_t dieAtFrame = 0;       // closes its connection instead of finishing this frame
-    uint32_t dieAtRequest = 0;     // instead of answering
-    uint32_t garbageAtFrame = 0;   // sends a message that makes no sense
-    bool halfAnswer = false;       // the first part of an answer, then dies
-    bool noBye = false;            // hangs at the end
-    bool alive = false;            // says so all the time
+    bool silentStart = false; // never ready
+    bool refuses = false; // reports this reason instead of being ready, and ends
+    bool drawsWhole = false; // reported with every frame
+    bool keepsAreas = false; // reported with every frame
+    uint64_t busyNs = 0; // reported with every frame
+    std::string news; // a driver event with every frame
+    uint32_t dieAtFrame = 0; // closes its connection instead of finishing this frame
+    uint32_t dieAtRequest = 0; // instead of answering
+    uint32_t garbageAtFrame = 0; // sends a malformed message
+    bool halfAnswer = false; // sends the first part of an answer, then dies
+    bool noBye = false; // hangs at the end
+    bool alive = false; // sends heartbeats
     std::atomic<bool>* hold = nullptr; // reads nothing while true
 };
 
@@ -77,7 +77,8 @@ private:
             const auto bytes = std::as_writable_bytes(std::span(words)).first(header.sizeBytes);
             if (!connection_->read(bytes, Deadline::inMs(kTestPatienceMs))) return;
             words.resize(header.sizeBytes / 4);
-            while (behaviour_.hold != nullptr && *behaviour_.hold && !stop_) std::this_thread::yield(); // since it was asked for
+            // still requested
+            while (behaviour_.hold != nullptr && *behaviour_.hold && !stop_) std::this_thread::yield();
             note(header.stream, words);
             const bool goOn = header.stream == 0 ? command(words, bytes) : records(header.stream, words);
             connection_->flush();
@@ -107,7 +108,7 @@ private:
                                       std::to_string(setup_.node) + R"( fake","extensions":")" + common + "\"}";
             if (!behaviour_.silentStart) sendText(wire::NodeMessage::Ready, ready);
         }
-        if (op(words) == static_cast<uint32_t>(wire::HeadCommand::Areas)) areas_ = words.at(1); // taken at once
+        if (op(words) == static_cast<uint32_t>(wire::HeadCommand::Areas)) areas_ = words.at(1); // applied at once
         if (op(words) == static_cast<uint32_t>(wire::HeadCommand::ClientGone))
             sendStruct(wire::NodeMessage::WindowGone, wire::WindowGoneMessage{words.at(1), wire::kAllWindows}, {});
         if (op(words) == static_cast<uint32_t>(wire::HeadCommand::Finish) && !behaviour_.noBye) {

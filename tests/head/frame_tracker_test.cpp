@@ -25,7 +25,7 @@ protected:
     using Credits = std::vector<std::vector<uint32_t>>;
 };
 
-TEST_F(FrameTrackerTest, theSlowestNodeCounts) {
+TEST_F(FrameTrackerTest, followsTheSlowestNode) {
     done(0, 1);
     done(0, 2);
     EXPECT_TRUE(credits.empty());
@@ -35,18 +35,18 @@ TEST_F(FrameTrackerTest, theSlowestNodeCounts) {
     EXPECT_EQ(credits.back(), (std::vector<uint32_t>{1, 2, 2}));
 }
 
-TEST_F(FrameTrackerTest, aLostNodeIsNotWaitedFor) {
+TEST_F(FrameTrackerTest, doesNotWaitForALostNode) {
     done(0, 1);
     done(0, 2);
     tracker.nodeLost(1, 5);
     EXPECT_EQ(credits, (Credits{{1, 2, 2}}));
     done(0, 3);
     EXPECT_EQ(credits.back()[1], 3u);
-    tracker.nodeLost(0, 6); // nobody is left: no credit out of nothing
+    tracker.nodeLost(0, 6); // no node left: no credit
     EXPECT_EQ(credits.size(), 2u);
 }
 
-TEST_F(FrameTrackerTest, framesOfOtherThreadsMayOvertake) {
+TEST_F(FrameTrackerTest, acceptsReorderedFramesOfSeveralThreads) {
     for (const int node : {0, 1}) {
         done(node, 2);
         done(node, 3);
@@ -57,14 +57,14 @@ TEST_F(FrameTrackerTest, framesOfOtherThreadsMayOvertake) {
     EXPECT_EQ(credits, (Credits{{1, 3, 3}}));
 }
 
-TEST_F(FrameTrackerTest, aFrameThatNeverComesDoesNotStopTheProgram) {
+TEST_F(FrameTrackerTest, skipsAFrameThatNeverComes) {
     for (uint32_t frame = 2; frame < 30; ++frame)
         for (const int node : {0, 1}) done(node, frame);
     ASSERT_FALSE(credits.empty());
     EXPECT_EQ(credits.back()[1], 29u);
 }
 
-TEST_F(FrameTrackerTest, heldPicturesHoldOnlyWhatIsShown) {
+TEST_F(FrameTrackerTest, delaysOnlyShownFramesForHeldPictures) {
     tracker.pictureHeld(1, 1);
     tracker.pictureHeld(1, 2);
     for (const uint32_t frame : {1u, 2u})
@@ -76,13 +76,13 @@ TEST_F(FrameTrackerTest, heldPicturesHoldOnlyWhatIsShown) {
     EXPECT_EQ(credits.back(), (std::vector<uint32_t>{1, 2, 2}));
 }
 
-TEST_F(FrameTrackerTest, aRepeatedFrameIsAnError) {
+TEST_F(FrameTrackerTest, rejectsARepeatedFrame) {
     EXPECT_TRUE(done(0, 1));
     EXPECT_FALSE(done(0, 1));
     EXPECT_FALSE(done(0, 0));
 }
 
-TEST_F(FrameTrackerTest, programsAreCountedApart) {
+TEST_F(FrameTrackerTest, countsProgramsSeparately) {
     done(0, 1, 1, 64, 1);
     done(1, 1, 1, 64, 2);
     EXPECT_TRUE(credits.empty());
@@ -90,7 +90,7 @@ TEST_F(FrameTrackerTest, programsAreCountedApart) {
     EXPECT_EQ(credits, (Credits{{1, 1, 1}}));
 }
 
-TEST_F(FrameTrackerTest, theLargestWindowIsTheWall) {
+TEST_F(FrameTrackerTest, treatsTheLargestWindowAsTheWall) {
     uint32_t frame = 0;
     const auto both = [&](uint32_t window, uint32_t width) {
         ++frame;
@@ -100,15 +100,15 @@ TEST_F(FrameTrackerTest, theLargestWindowIsTheWall) {
     };
     EXPECT_EQ(both(1, 10), 1); // a splash screen
     EXPECT_EQ(both(1, 10), 2);
-    EXPECT_EQ(both(2, 50), 3); // the real one: the wall's frames go on
+    EXPECT_EQ(both(2, 50), 3); // the real window: the wall's frames continue
     EXPECT_EQ(both(1, 10), 3);
-    EXPECT_EQ(both(3, 50), 3); // of the same size: not larger
+    EXPECT_EQ(both(3, 50), 3); // equal size: not larger
     EXPECT_EQ(both(2, 20), 4); // made smaller
     EXPECT_EQ(both(3, 50), 5);
     EXPECT_EQ(tracker.totals().firstNs, 1);
     EXPECT_EQ(tracker.totals().latestNs, 7);
     tracker.windowGone(1, 3);
-    EXPECT_EQ(both(1, 10), 5); // the largest of those that are left is the next
+    EXPECT_EQ(both(1, 10), 5); // the largest remaining window is next
     EXPECT_EQ(both(2, 20), 6);
     tracker.windowGone(1, 1); // another one
     EXPECT_EQ(both(2, 20), 7);

@@ -9,22 +9,22 @@ wire::News message(uint32_t client, uint32_t id) {
     return {client, 1, static_cast<uint32_t>(wire::NewsKind::DebugMessage), 2, 3, id, 4, 0};
 }
 
-TEST(NewsMerger, TellsWhatAllNodesSayOnce) {
+TEST(NewsMerger, reportsAMessageOfAllNodesOnce) {
     NewsMerger merger;
     EXPECT_TRUE(merger.isNew(0, message(1, 10), "slow"));
-    EXPECT_FALSE(merger.isNew(1, message(1, 20), "slow")); // numbers differ from node to node
+    EXPECT_FALSE(merger.isNew(1, message(1, 20), "slow")); // ids differ between nodes
     EXPECT_FALSE(merger.isNew(2, message(1, 30), "slow"));
-    EXPECT_TRUE(merger.isNew(1, message(1, 20), "slow")); // a second time, by whichever node is first
+    EXPECT_TRUE(merger.isNew(1, message(1, 20), "slow")); // a second time, from whichever node is first
     EXPECT_FALSE(merger.isNew(0, message(1, 10), "slow"));
 }
 
-TEST(NewsMerger, KeepsMessagesApart) {
+TEST(NewsMerger, distinguishesMessages) {
     NewsMerger merger;
     EXPECT_TRUE(merger.isNew(0, message(1, 1), "slow"));
     EXPECT_TRUE(merger.isNew(1, message(1, 1), "slower"));
     EXPECT_TRUE(merger.isNew(1, message(2, 1), "slow")); // another program
     merger.programGone(1);
-    EXPECT_TRUE(merger.isNew(1, message(1, 1), "slow")); // its number is another's now
+    EXPECT_TRUE(merger.isNew(1, message(1, 1), "slow")); // its number belongs to another program now
     EXPECT_FALSE(merger.isNew(0, message(2, 1), "slow"));
 }
 

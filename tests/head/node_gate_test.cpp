@@ -10,7 +10,7 @@ namespace {
 
 constexpr int64_t kPatienceMs = 20'000;
 
-// Null: turned away.
+// Null: rejected.
 std::unique_ptr<Connection> come(const NodeGate& gate, int node, const SessionSecret& secret) {
     auto connection = connectTcp("127.0.0.1", static_cast<uint16_t>(gate.port()), Deadline::inMs(kPatienceMs));
     if (!connection) return nullptr;
@@ -28,7 +28,7 @@ std::unique_ptr<Connection> waitTaken(NodeGate& gate, int node) {
     return nullptr;
 }
 
-TEST(NodeGate, eachNodeIsKnownByItsSecret) {
+TEST(NodeGate, identifiesNodesByTheirSecret) {
     auto gate = NodeGate::open(true);
     ASSERT_TRUE(gate.ok()) << gate.error().message;
     auto a = makeSessionSecret();
@@ -49,12 +49,12 @@ TEST(NodeGate, eachNodeIsKnownByItsSecret) {
     EXPECT_EQ(received, sent);
 }
 
-TEST(NodeGate, strangersAreTurnedAwayAndSecretsAreGoodOnce) {
+TEST(NodeGate, rejectsStrangersAndUsedSecrets) {
     auto gate = NodeGate::open(true);
     ASSERT_TRUE(gate.ok());
     auto right = makeSessionSecret();
     (*gate)->expect(0, *right);
-    // One that says nothing must not hold up the others.
+    // A silent connection must not delay others.
     auto silent = connectTcp("127.0.0.1", static_cast<uint16_t>((*gate)->port()), Deadline::inMs(kPatienceMs));
     ASSERT_TRUE(silent.ok());
     SessionSecret wrong = *right;
@@ -68,7 +68,7 @@ TEST(NodeGate, strangersAreTurnedAwayAndSecretsAreGoodOnce) {
     EXPECT_EQ(come(**gate, 0, *right), nullptr);
 }
 
-TEST(NodeGate, namesTellTheirNodes) {
+TEST(NodeGate, convertsNodeNames) {
     EXPECT_EQ(NodeGate::nodeOf(NodeGate::nameOf(17)), 17);
     for (const char* other : {"", "node", "node-1", "node1x", "nod1"}) EXPECT_FALSE(NodeGate::nodeOf(other)) << other;
 }

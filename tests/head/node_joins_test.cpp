@@ -1,4 +1,4 @@
-// A node becomes a member at one place of the stream: who waits for it, and from where on.
+// A node becomes a member at one position of the stream: what waits for it, and from which position on.
 #include <future>
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 
 constexpr uint32_t kView = 1;
 
-TEST(NodeJoins, picturesWaitForItFromItsPlaceOn) {
+TEST(NodeJoins, includeTheNodeInPicturesFromItsPositionOn) {
     std::vector<uint32_t> frames;
     PictureAssembler assembler(2, [&](WindowPicture picture) { frames.push_back(picture.frame); });
     const auto part = [&](int node, uint32_t frame) {
@@ -29,8 +29,8 @@ TEST(NodeJoins, picturesWaitForItFromItsPlaceOn) {
     assembler.nodeLost(1);
     part(0, 1);
     assembler.nodeJoins(1, kView);
-    part(1, 3); // it is ahead, and frame 3 is behind its place…
-    part(0, 2); // …this one before: the other has not come to that place yet
+    part(1, 3); // it is ahead, and frame 3 is after its position
+    part(0, 2); // frame 2 is before it: the other node has not reached that position
     EXPECT_EQ(frames, (std::vector<uint32_t>{1, 2}));
     assembler.nodeInView(0, kView);
     part(0, 3);
@@ -46,7 +46,7 @@ TEST(NodeJoins, picturesWaitForItFromItsPlaceOn) {
     EXPECT_EQ(frames.back(), 6u) << "nor before the other is where it joins";
 }
 
-TEST(NodeJoins, answersWaitForItFromItsPlaceOn) {
+TEST(NodeJoins, includeTheNodeInAnswersFromItsPositionOn) {
     std::vector<std::pair<uint32_t, uint64_t>> sums;
     AnswerAssembler assembler(2, [&](uint32_t, Reply reply) {
         uint64_t value = 0;
@@ -61,7 +61,7 @@ TEST(NodeJoins, answersWaitForItFromItsPlaceOn) {
     };
     assembler.nodeLost(1);
     assembler.nodeJoins(1, kView);
-    answer(0, 1, 10); // asked before
+    answer(0, 1, 10); // requested before
     EXPECT_EQ(sums.size(), 1u);
     assembler.nodeInView(0, kView);
     answer(0, 2, 20);
@@ -72,7 +72,7 @@ TEST(NodeJoins, answersWaitForItFromItsPlaceOn) {
     EXPECT_EQ(assembler.openRequests(), 0u);
 }
 
-TEST(NodeJoins, creditWaitsForIt) {
+TEST(NodeJoins, makeCreditWaitForTheNode) {
     std::vector<uint32_t> finished;
     FrameTracker tracker(2, [&](uint32_t, uint32_t f, uint32_t) { finished.push_back(f); });
     const auto done = [&](int node, uint32_t frame) {
@@ -87,10 +87,10 @@ TEST(NodeJoins, creditWaitsForIt) {
     tracker.nodeLost(1, 2);
     done(0, 2);
     EXPECT_EQ(finished.back(), 2u);
-    tracker.nodeJoins(1); // nobody knows yet how far it is
+    tracker.nodeJoins(1); // its progress is still unknown
     done(0, 3);
     EXPECT_EQ(finished.back(), 2u);
-    tracker.nodeJoined(1, {{1, 4}}, 3); // it has replayed frames 3 and 4 in silence
+    tracker.nodeJoined(1, {{1, 4}}, 3); // it has replayed frames 3 and 4 without messages
     EXPECT_EQ(finished.back(), 3u);
     done(0, 4);
     EXPECT_EQ(finished.back(), 4u);
@@ -102,16 +102,16 @@ TEST(NodeJoins, creditWaitsForIt) {
     EXPECT_FALSE(done(1, 5));
 }
 
-TEST(NodeJoins, theOnlyNodeBringsItsFramesAlong) {
+TEST(NodeJoins, takeTheProgressOfTheOnlyNode) {
     std::vector<uint32_t> finished;
     FrameTracker tracker(1, [&](uint32_t, uint32_t f, uint32_t) { finished.push_back(f); });
     tracker.nodeLost(0, 1);
     tracker.nodeJoins(0);
-    tracker.nodeJoined(0, {{1, 7}}, 2); // the program waits for frame 7, which nobody lived to show
+    tracker.nodeJoined(0, {{1, 7}}, 2); // the program waits for frame 7, which no living node has shown
     EXPECT_EQ(finished, (std::vector<uint32_t>{7}));
 }
 
-TEST(NodeJoins, itTellsNoNewsTwice) {
+TEST(NodeJoins, repeatNoDriverEvents) {
     NewsMerger merger;
     const wire::News news{1, 2, 1, 0, 0, 0, 0, 0};
     EXPECT_TRUE(merger.isNew(0, news, "a"));
@@ -128,14 +128,14 @@ size_t contextsIn(const KeptStream::Snapshot& snapshot) {
     return contexts;
 }
 
-TEST(KeptStream, givesAllThatCameBeforeAndForgetsWhoHasGone) {
+TEST(KeptStream, returnsAllEarlierPacketsAndForgetsEndedPrograms) {
     KeptStream kept(1 << 20);
     const auto makes = [&](uint32_t stream, uint32_t context) { kept.append(stream, recording::PacketBuilder().context(context).swap(1, context).bytes()); };
     makes(wire::streamOf(1, 0), 7);
     makes(wire::streamOf(2, 0), 8);
     makes(wire::streamOf(1, 1), 9);
     const uint64_t first = kept.hold();
-    makes(wire::streamOf(2, 0), 10); // behind it
+    makes(wire::streamOf(2, 0), 10); // after it
     const uint64_t second = kept.hold();
     auto later = std::async(std::launch::async, [&] { return kept.snapshot(second, Deadline::inMs(10'000)); });
     auto snapshot = kept.snapshot(first, Deadline::inMs(10'000));
@@ -153,10 +153,10 @@ TEST(KeptStream, givesAllThatCameBeforeAndForgetsWhoHasGone) {
     EXPECT_EQ(contextsIn(*rest), 2u);
 }
 
-TEST(KeptStream, saysThatProgramsHaveSentTooMuchUntilTheyAreGone) {
+TEST(KeptStream, reportsOverflowUntilTheProgramsAreGone) {
     KeptStream kept(1 << 20);
     const auto fits = [&] { return kept.snapshot(kept.hold(), Deadline::inMs(10'000)).ok(); };
-    const std::vector<uint32_t> much(65536, 1); // of a command that no rule names: it stays
+    const std::vector<uint32_t> much(65536, 1); // a command without a rule: it stays in the log
     kept.append(wire::streamOf(1, 0), recording::PacketBuilder().context(1).window(1, 9, 9).record(wire::kOpMakeCurrent, {1, 1, 1}).bytes());
     EXPECT_TRUE(fits());
     for (int i = 0; i < 16; ++i) kept.append(wire::streamOf(1, 0), recording::PacketBuilder().longRecord(op::glAlphaFragmentOp1ATI, much).bytes());

@@ -1,4 +1,4 @@
-// Real processes: their environment, their input, their end.
+// Real processes: their environment, input and end.
 #include "nodes/head/node_process.hpp"
 
 #include <cstdlib>
@@ -24,7 +24,7 @@ std::unique_ptr<NodeProcess> shell(const std::string& script, const std::string&
     return started ? std::move(*started) : nullptr;
 }
 
-TEST(NodeProcess, tellsHowItEnded) {
+TEST(NodeProcess, reportsHowItEnded) {
     EXPECT_EQ(endOf(*shell("exit 3")), "exit status 3");
     auto killed = shell("kill -9 $$");
     EXPECT_EQ(endOf(*killed)->rfind("signal 9", 0), 0u);
@@ -33,7 +33,7 @@ TEST(NodeProcess, tellsHowItEnded) {
     EXPECT_NE(missing.error().message.find("/no/such/program"), std::string::npos);
 }
 
-TEST(NodeProcess, readsItsInputAndNothingOfTheCapture) {
+TEST(NodeProcess, readsItsInputWithoutTheCaptureEnvironment) {
     setenv("MURAL_SESSION", "x", 1);
     setenv("__GLX_VENDOR_LIBRARY_NAME", "mural", 1);
     auto process = shell("read line; test \"$line\" = secret && test -z \"$MURAL_SESSION$LD_PRELOAD"
@@ -44,7 +44,7 @@ TEST(NodeProcess, readsItsInputAndNothingOfTheCapture) {
     EXPECT_EQ(endOf(*process), "exit status 0");
 }
 
-TEST(NodeProcess, killEndsWhatItHasStartedToo) {
+TEST(NodeProcess, killsItsDescendants) {
     int ends[2];
     ASSERT_EQ(pipe(ends), 0);
     const FileDescriptor reader(ends[0]);
@@ -58,14 +58,14 @@ TEST(NodeProcess, killEndsWhatItHasStartedToo) {
     const pid_t pid = (*started)->pid();
     started->reset();
     EXPECT_EQ(kill(pid, 0), -1) << "left behind";
-    // The pipe ends when the last process that holds it has ended.
+    // The pipe ends after the last process that holds it.
     pollfd end{reader.get(), POLLIN, 0};
     ASSERT_EQ(poll(&end, 1, static_cast<int>(kPatienceMs)), 1);
     while (read(reader.get(), &byte, 1) > 0) {
     }
 }
 
-TEST(NodeLauncher, aNodeThatEndsAtOnceIsOneClearError) {
+TEST(NodeLauncher, reportsANodeThatEndsAtOnceInOneLine) {
     SessionConfig config;
     config.hosts = {"localhost"};
     const SessionPlan plan = planSession(config, "here");
@@ -76,7 +76,7 @@ TEST(NodeLauncher, aNodeThatEndsAtOnceIsOneClearError) {
         << nodes.error().message;
 }
 
-TEST(NodeLauncher, anotherHostIsReachedByTheLaunchCommand) {
+TEST(NodeLauncher, usesTheLaunchCommandForAnotherHost) {
     SessionConfig config;
     config.hosts = {"elsewhere.invalid"};
     const SessionPlan plan = planSession(config, "here");
@@ -87,7 +87,7 @@ TEST(NodeLauncher, anotherHostIsReachedByTheLaunchCommand) {
         << nodes.error().message;
 }
 
-TEST(NodeLauncher, givesUpWhenTheSessionIsCancelled) {
+TEST(NodeLauncher, stopsWhenTheSessionIsCancelled) {
     SessionConfig config;
     config.hosts = {"localhost"};
     const SessionPlan plan = planSession(config, "here");

@@ -27,7 +27,7 @@ OwnedPicture composed(const PassCounts& counts, const std::vector<OwnedPicture>&
     return into;
 }
 
-TEST(PassComposition, meansAreRoundedOnce) {
+TEST(PassComposition, roundsMeansOnce) {
     for (const int n : {2, 3, 4, 7, 16, 255}) {
         PassCounts counts;
         counts.samples = n;
@@ -43,7 +43,7 @@ TEST(PassComposition, meansAreRoundedOnce) {
     }
 }
 
-TEST(PassComposition, meansOfManyDoNotDrift) {
+TEST(PassComposition, averagesManyPicturesWithoutDrift) {
     PassCounts counts;
     counts.samples = 256;
     OwnedPicture white(3, 2);
@@ -52,8 +52,8 @@ TEST(PassComposition, meansOfManyDoNotDrift) {
     EXPECT_TRUE(comparePictures(white.view(), out.view()).same());
 }
 
-// A picture that is cut into kernels comes back, whatever its size.
-TEST(PassComposition, kernelsAreInterleaved) {
+// A picture divided into kernels is restored, whatever its size.
+TEST(PassComposition, interleavesKernels) {
     for (const auto& [columns, rows] : {std::pair(2, 1), std::pair(3, 1), std::pair(1, 4), std::pair(3, 2), std::pair(2, 2)}) {
         for (const auto& [width, height] : {std::pair(12, 8), std::pair(11, 7), std::pair(13, 9), std::pair(4, 5)}) {
             PassCounts counts;
@@ -75,7 +75,7 @@ TEST(PassComposition, kernelsAreInterleaved) {
     }
 }
 
-TEST(PassComposition, anaglyphTakesRedFromTheLeft) {
+TEST(PassComposition, takesRedFromTheLeftEye) {
     const std::vector<OwnedPicture> eyes{noise(5, 3, 1), noise(5, 3, 2)};
     const OwnedPicture out = composed({.stereo = StereoMode::Anaglyph}, eyes);
     for (int y = 0; y < 3; ++y)
@@ -86,8 +86,8 @@ TEST(PassComposition, anaglyphTakesRedFromTheLeft) {
         }
 }
 
-// Green and magenta; a colour that both give, and one that none does.
-TEST(PassComposition, anaglyphTakesTheColoursOfEachEye) {
+// Green and magenta; a channel in both masks, and one in neither.
+TEST(PassComposition, takesTheColoursOfEachEye) {
     const std::vector<OwnedPicture> eyes{noise(9, 3, 1), noise(9, 3, 2)};
     WallComposition wall = compositionOf({.stereo = StereoMode::Anaglyph});
     const auto with = [&](EyeColours left, EyeColours right) {
@@ -111,7 +111,7 @@ TEST(PassComposition, anaglyphTakesTheColoursOfEachEye) {
 
 int mean(int a, int b) { return (a + b + 1) / 2; }
 
-TEST(PassComposition, sideBySideHalvesTheWidth) {
+TEST(PassComposition, halvesTheWidthSideBySide) {
     for (const int width : {6, 7}) {
         const std::vector<OwnedPicture> eyes{noise(width, 2, 1), noise(width, 2, 2)};
         const OwnedPicture out = composed({.stereo = StereoMode::SideBySide}, eyes);
@@ -123,7 +123,7 @@ TEST(PassComposition, sideBySideHalvesTheWidth) {
     }
 }
 
-TEST(PassComposition, topBottomHasTheLeftEyeAbove) {
+TEST(PassComposition, putsTheLeftEyeOnTop) {
     for (const int height : {6, 7}) {
         const std::vector<OwnedPicture> eyes{noise(3, height, 1), noise(3, height, 2)};
         const OwnedPicture out = composed({.stereo = StereoMode::TopBottom}, eyes);
@@ -134,7 +134,7 @@ TEST(PassComposition, topBottomHasTheLeftEyeAbove) {
     }
 }
 
-TEST(PassComposition, quadHasBothEyesWhole) {
+TEST(PassComposition, keepsBothEyesWholeForQuadBuffers) {
     const std::vector<OwnedPicture> eyes{noise(7, 5, 1), noise(7, 5, 2)};
     const OwnedPicture out = composed({.stereo = StereoMode::Quad}, eyes);
     ASSERT_EQ(out.width(), 7);
@@ -143,13 +143,13 @@ TEST(PassComposition, quadHasBothEyesWhole) {
     EXPECT_TRUE(comparePictures(eyes[0].view(), both.left).same());
     EXPECT_TRUE(comparePictures(eyes[1].view(), both.right).same());
     EXPECT_FALSE(comparePictures(eyes[0].view(), both.right).same());
-    // One eye's node is lost, or its window was another: still a pair.
+    // One eye's node is lost, or its window had another size: still a pair.
     const OwnedPicture smaller = composed({.stereo = StereoMode::Quad}, {noise(7, 5, 1), noise(3, 2, 2)});
     EXPECT_EQ(smaller.height(), 10);
     EXPECT_TRUE(comparePictures(eyes[0].view(), eyesOfStack(smaller.view()).left).same());
 }
 
-TEST(PassComposition, samplesThenKernelsThenEyes) {
+TEST(PassComposition, combinesSamplesThenKernelsThenEyes) {
     PassCounts counts{.stereo = StereoMode::Anaglyph, .kernelWidth = 2, .samples = 2};
     std::vector<OwnedPicture> passes;
     for (int i = 0; i < 8; ++i) { // red of left: samples 0,1 | 2,3; green of right: 4,5 | 6,7
@@ -164,8 +164,8 @@ TEST(PassComposition, samplesThenKernelsThenEyes) {
     EXPECT_EQ(channel(out, 1, 0, 1), 65);
 }
 
-// A lost node's picture may be that of a smaller window.
-TEST(PassComposition, picturesOfOtherSizesAreCutOrFilled) {
+// A lost node's picture may have the size of an earlier window.
+TEST(PassComposition, cropsOrFillsPicturesOfOtherSizes) {
     for (const PassCounts& counts : {PassCounts{.stereo = StereoMode::SideBySide}, PassCounts{.stereo = StereoMode::TopBottom}, PassCounts{.stereo = StereoMode::Anaglyph},
                                      PassCounts{.kernelWidth = 2}, PassCounts{.kernelHeight = 2}, PassCounts{.samples = 2}}) {
         const OwnedPicture out = composed(counts, {noise(64, 48, 1), noise(3, 2, 2)});
@@ -175,7 +175,7 @@ TEST(PassComposition, picturesOfOtherSizesAreCutOrFilled) {
     }
 }
 
-TEST(PassComposition, emptyOrMissingPicturesGiveAnEmptyOne) {
+TEST(PassComposition, returnsAnEmptyPictureForEmptyOrMissingInputs) {
     EXPECT_TRUE(composed({.samples = 2}, {noise(2, 2, 1), OwnedPicture()}).view().empty());
     EXPECT_TRUE(composed({.samples = 3}, {noise(2, 2, 1), noise(2, 2, 1)}).view().empty());
 }

@@ -1,4 +1,4 @@
-// Pictures of several passes: which parts belong together, and what becomes of a pass whose nodes are lost.
+// Pictures of several passes: which parts belong together, and the effect of lost nodes on a pass.
 #include "nodes/head/picture_assembler.hpp"
 
 #include <cstring>
@@ -9,12 +9,11 @@ namespace {
 
 using Pixels = std::vector<uint32_t>;
 
-// Two passes, each drawn by two nodes, the left and the right half of a line of pixels. Put together they are one
-// after the other.
+// Two passes, each drawn by two nodes: the left and the right half of a line of pixels. Composition concatenates them.
 class PicturePassesTest : public testing::Test {
 protected:
     std::vector<WindowPicture> pictures;
-    std::vector<std::vector<int>> sizes; // widths of the passes that were put together
+    std::vector<std::vector<int>> sizes; // widths of the composed passes
     PictureAssembler assembler{{0, 0, 1, 1},
                                [this](const std::vector<Picture>& passes, OwnedPicture& into) {
                                    int width = 0;
@@ -47,7 +46,7 @@ protected:
     }
 };
 
-TEST_F(PicturePassesTest, partsOfAllPassesMakeOnePicture) {
+TEST_F(PicturePassesTest, composesPartsOfAllPasses) {
     part(3, 1, 13);
     part(0, 1, 10);
     part(1, 1, 11);
@@ -57,7 +56,8 @@ TEST_F(PicturePassesTest, partsOfAllPassesMakeOnePicture) {
     EXPECT_EQ(pixels(0), (Pixels{10, 11, 12, 13}));
 }
 
-// A canvas beside the first, half as wide: its picture comes with the frame's, and keeps its size when its node is lost.
+// A canvas beside the first, half as wide. Its picture arrives with the frame's, and keeps its size when its node is
+// lost.
 TEST(OtherCanvases, haveAPictureOfEachFrame) {
     std::vector<WindowPicture> pictures;
     const auto only = [](size_t pass) { return [pass](const std::vector<Picture>& passes, OwnedPicture& into) { into.assign(passes[pass]); }; };
@@ -86,7 +86,7 @@ TEST(OtherCanvases, haveAPictureOfEachFrame) {
     EXPECT_EQ(pictures[2].others[0]->view().bgra[0], std::byte{0});
 }
 
-TEST_F(PicturePassesTest, latePartsKeepTheOrderOfTheirFrames) {
+TEST_F(PicturePassesTest, keepsFrameOrderWithLateParts) {
     part(0, 1, 10), part(1, 1, 11), part(2, 1, 12);
     frame(2, 20);
     ASSERT_EQ(pictures.size(), 1u) << "frame 2 waits for nobody";
@@ -96,7 +96,7 @@ TEST_F(PicturePassesTest, latePartsKeepTheOrderOfTheirFrames) {
     EXPECT_EQ(pixels(1), (Pixels{10, 11, 12, 13})) << "of its own parts alone";
 }
 
-TEST_F(PicturePassesTest, aLostNodesPassKeepsWhatItHad) {
+TEST_F(PicturePassesTest, keepsTheLastPartOfALostNode) {
     frame(1, 10);
     assembler.nodeLost(3);
     part(0, 2, 20), part(1, 2, 21), part(2, 2, 22);
@@ -104,7 +104,7 @@ TEST_F(PicturePassesTest, aLostNodesPassKeepsWhatItHad) {
     EXPECT_EQ(pixels(1), (Pixels{20, 21, 22, 13}));
 }
 
-TEST_F(PicturePassesTest, aWhollyLostPassStaysAsItWas) {
+TEST_F(PicturePassesTest, keepsTheLastPictureOfALostPass) {
     frame(1, 10);
     part(0, 2, 20), part(1, 2, 21);
     assembler.nodeLost(2);
@@ -115,7 +115,7 @@ TEST_F(PicturePassesTest, aWhollyLostPassStaysAsItWas) {
     EXPECT_EQ(pixels(2), (Pixels{30, 31, 12, 13}));
 }
 
-TEST_F(PicturePassesTest, aPassThatNeverCameIsBlack) {
+TEST_F(PicturePassesTest, showsAMissingPassBlack) {
     assembler.nodeLost(0);
     assembler.nodeLost(1);
     part(2, 1, 12), part(3, 1, 13);
@@ -123,7 +123,7 @@ TEST_F(PicturePassesTest, aPassThatNeverCameIsBlack) {
     EXPECT_EQ(pixels(0), (Pixels{0, 0, 12, 13}));
 }
 
-TEST_F(PicturePassesTest, aLostPassOfAnotherSizeIsBlack) {
+TEST_F(PicturePassesTest, showsALostPassOfAnotherSizeBlack) {
     frame(1, 10);
     assembler.nodeLost(2);
     assembler.nodeLost(3);
@@ -133,14 +133,14 @@ TEST_F(PicturePassesTest, aLostPassOfAnotherSizeIsBlack) {
     EXPECT_EQ(pixels(1), (Pixels{20, 20, 20, 21, 21, 21, 0, 0, 0, 0, 0, 0}));
 }
 
-TEST_F(PicturePassesTest, finishedFramesNeedNoPart) { // it is another node's turn
+TEST_F(PicturePassesTest, finishedFramesNeedNoPart) { // another node's phase
     part(0, 1, 10), part(2, 1, 12), part(3, 1, 13);
     assembler.frameDone(1, 1, 1, 1);
     ASSERT_EQ(pictures.size(), 1u);
     EXPECT_EQ(pixels(0), (Pixels{10, 0, 12, 13}));
 }
 
-TEST_F(PicturePassesTest, memoryIsReusedOnlyWhenNobodyHoldsIt) {
+TEST_F(PicturePassesTest, reusesMemoryOnlyAfterItsRelease) {
     for (uint32_t number = 1; number <= 40; ++number) frame(number, 10 * number);
     for (uint32_t number = 1; number <= 40; ++number) EXPECT_EQ(pixels(number - 1), (Pixels{10 * number, 10 * number + 1, 10 * number + 2, 10 * number + 3}));
 }

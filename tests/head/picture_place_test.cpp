@@ -18,14 +18,14 @@ ByteBuffer rowsOf(size_t pixels, std::byte value) {
     return rows;
 }
 
-TEST(PicturePlace, staysWhereNothingIsSaid) {
+TEST(PicturePlace, keepsThePictureByDefault) {
     auto placed = placeOnWall({}, headerOf(3, 4, 10, 5), rowsOf(50, std::byte{7}));
     ASSERT_TRUE(placed);
     EXPECT_EQ(placed->header.x, 3);
     EXPECT_EQ(placed->rows.size(), 200u);
 }
 
-TEST(PicturePlace, isAsLargeAgainAsItWasDrawn) {
+TEST(PicturePlace, restoresTheDrawnSize) {
     NodePlan node;
     node.way = {.5, .5};
     auto placed = placeOnWall(node, headerOf(50, 0, 51, 40), rowsOf(26 * 20, std::byte{9}));
@@ -35,7 +35,7 @@ TEST(PicturePlace, isAsLargeAgainAsItWasDrawn) {
     for (const std::byte b : placed->rows.span()) EXPECT_EQ(b, std::byte{9});
 }
 
-TEST(PicturePlace, isShownElsewhere) {
+TEST(PicturePlace, movesThePicture) {
     NodePlan node;
     node.shown = Viewport{.25, .5, .25, .25};
     auto placed = placeOnWall(node, headerOf(0, 0, 100, 80), rowsOf(8000, std::byte{1}));
@@ -47,7 +47,7 @@ TEST(PicturePlace, isShownElsewhere) {
     EXPECT_EQ(placed->rows.size(), 25u * 20 * 4);
 }
 
-TEST(PicturePlace, impossibleSizesAreErrors) {
+TEST(PicturePlace, rejectsImpossibleSizes) {
     NodePlan node;
     node.way = {.5, .5};
     EXPECT_FALSE(placeOnWall(node, headerOf(0, 0, 40, 40), rowsOf(1600, std::byte{1}))) << "it came as large as it was drawn";

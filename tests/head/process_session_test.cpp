@@ -1,4 +1,4 @@
-// The head with nodes that are real processes: this very program, started again as `… node …`.
+// The head with nodes in separate processes: this program, started again as `… node …`.
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -15,7 +15,7 @@ namespace {
 
 std::string ownPath() { return std::filesystem::read_symlink("/proc/self/exe"); }
 
-// As `mural node` does: --connect-fd N, or --name NAME --connect HOST:PORT.
+// Accepts the options of `mural node`: --connect-fd N, or --name NAME --connect HOST:PORT.
 std::unique_ptr<Connection> connectAs(const std::vector<std::string>& arguments) {
     if (arguments[0] == "--connect-fd") {
         auto shared = openSharedMemory(std::stoi(arguments[1]));
@@ -37,7 +37,7 @@ bool swapFrames(FakeProgram& program, uint32_t from, uint32_t to) {
     return true;
 }
 
-// Child processes of this one that have not been waited for.
+// The number of unreaped child processes.
 int childrenLeft() {
     int count = 0;
     for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
@@ -65,7 +65,7 @@ int64_t descriptorsOpen() {
     return std::distance(begin(folder), end(folder));
 }
 
-TEST(ProcessSession, nodesOverSharedMemoryAndTcpDrawTogether) {
+TEST(ProcessSession, combinesNodesOverSharedMemoryAndTcp) {
     const int64_t before = descriptorsOpen();
     {
         SessionHarness head(3);
@@ -91,7 +91,7 @@ TEST(ProcessSession, nodesOverSharedMemoryAndTcpDrawTogether) {
     EXPECT_EQ(descriptorsOpen(), before);
 }
 
-TEST(ProcessSession, aKilledNodeIsNamedWithItsSignal) {
+TEST(ProcessSession, reportsTheSignalOfAKilledNode) {
     for (const bool tcp : {false, true}) {
         SessionHarness head(2);
         if (tcp) {
@@ -119,7 +119,7 @@ TEST(ProcessSession, aKilledNodeIsNamedWithItsSignal) {
     }
 }
 
-TEST(ProcessSession, stoppedNodesAreEndedWithTheSession) {
+TEST(ProcessSession, endsStoppedNodesWithTheSession) {
     SessionHarness head(2);
     head.options.byePatienceMs = 3000;
     head.startProcesses(ownPath());

@@ -6,7 +6,7 @@
 namespace mural {
 namespace {
 
-TEST(SessionConfig, everyFieldSurvivesARoundTrip) {
+TEST(SessionConfig, roundTripsEveryField) {
     SessionConfig c;
     c.session = "mural-7";
     c.columns = 3;
@@ -43,7 +43,7 @@ TEST(SessionConfig, everyFieldSurvivesARoundTrip) {
     EXPECT_NE(json, toJson(SessionConfig{}));
 }
 
-TEST(SessionConfig, passesSurviveARoundTrip) {
+TEST(SessionConfig, roundTripsPasses) {
     SessionConfig c;
     c.passes = {StereoMode::TopBottom, 3, 2, 4, 5};
     c.eyeBase = 0.0625;
@@ -56,7 +56,7 @@ TEST(SessionConfig, passesSurviveARoundTrip) {
     EXPECT_EQ((*back).focusDistance, 1e6);
 }
 
-TEST(SessionConfig, passesThatAreNoneOfTheSessionsAreRefused) {
+TEST(SessionConfig, rejectsForeignPasses) {
     NodeSetup setup;
     setup.pass = {Eye::Right, 1, 2, 2, 3, 0, 4, 1, 2, 0, 1, {}, {}};
     ASSERT_TRUE(nodeSetupFromJson(toJson(setup)).ok());
@@ -73,14 +73,14 @@ TEST(SessionConfig, passesThatAreNoneOfTheSessionsAreRefused) {
     EXPECT_TRUE(refused([](RenderPass& p) { p.kernelX = -1; }));
 }
 
-TEST(SessionConfig, missingFieldsKeepTheirDefaults) {
+TEST(SessionConfig, usesDefaultsForMissingFields) {
     const auto c = sessionConfigFromJson(R"({"session":"s"})");
     ASSERT_TRUE(c.ok());
     EXPECT_EQ(c.value().latency, 1);
     EXPECT_EQ(c.value().launchCommand, "ssh -o BatchMode=yes");
 }
 
-TEST(NodeSetup, zoomsAreKeptAndLieAboveZeroAndNotAboveTheMost) {
+TEST(NodeSetup, limitsZooms) {
     NodeSetup setup;
     setup.pass.zoom = {0.3, 16};
     const auto read = nodeSetupFromJson(toJson(setup));
@@ -92,7 +92,7 @@ TEST(NodeSetup, zoomsAreKeptAndLieAboveZeroAndNotAboveTheMost) {
     }
 }
 
-TEST(SessionConfig, zoomsAreThoseOfNodes) {
+TEST(SessionConfig, storesZoomsPerNode) {
     SessionConfig config;
     config.passes.zoom = {0.3, 16};
     const auto read = sessionConfigFromJson(toJson(config));
@@ -103,7 +103,7 @@ TEST(SessionConfig, zoomsAreThoseOfNodes) {
     EXPECT_FALSE(sessionConfigFromJson(toJson(config)).ok());
 }
 
-TEST(SessionConfig, errorsNameTheField) {
+TEST(SessionConfig, namesTheFieldInErrors) {
     const std::pair<const char*, const char*> cases[] = {
         {R"({"colums":2})", "colums"},
         {R"({"columns":"2"})", "columns"},
@@ -133,7 +133,7 @@ TEST(SessionConfig, errorsNameTheField) {
     }
 }
 
-TEST(NodeSetup, roundTripAndRegionCheck) {
+TEST(NodeSetup, roundTripsAndChecksRegions) {
     NodeSetup s;
     s.node = 2;
     s.nodeCount = 3;
@@ -150,7 +150,7 @@ TEST(NodeSetup, roundTripAndRegionCheck) {
     EXPECT_FALSE(nodeSetupFromJson(toJson(s)).ok());
 }
 
-TEST(SessionSecret, hexRoundTrip) {
+TEST(SessionSecret, roundTripsAsHex) {
     auto a = makeSessionSecret();
     auto b = makeSessionSecret();
     ASSERT_TRUE(a.ok() && b.ok());

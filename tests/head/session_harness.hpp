@@ -1,4 +1,4 @@
-// A whole head in one test: its session in a thread, fake nodes on pipes, the other end of its control
+// A complete head in one test: its session in a thread, fake nodes on pipes, and the other end of its control
 // connection.
 #pragma once
 
@@ -30,7 +30,7 @@ public:
         config.localNodes = nodes;
         options.registryDigest = kTestDigest;
         options.chunkCount = 16;
-        config.placeThreads = false; // the tests own no processors
+        config.placeThreads = false; // tests do not change CPU affinity
         options.byePatienceMs = 1000;
     }
     ~SessionHarness() {
@@ -55,11 +55,11 @@ public:
         });
     }
 
-    // The nodes are processes: `executable node …`.
+    // Starts the nodes as processes: `executable node …`.
     void startProcesses(const std::string& executable) {
         connectControl();
         const SessionPlan plan = planSession(config, "here");
-        // Launched by the session's own thread: the nodes live as long as it.
+        // The session's own thread launches the nodes, which live as long as that thread.
         thread_ = std::thread([this, plan, executable] {
             auto nodes = launchNodes(plan, {executable, executable, ""}, Deadline::inMs(kTestPatienceMs),
                                      [] { return false; });
@@ -73,7 +73,7 @@ public:
         });
     }
 
-    // The next event of that name; others are kept in `seen`.
+    // Returns the next event of that name; stores others in `seen`.
     nlohmann::json waitFor(const std::string& event) {
         const Deadline deadline = Deadline::inMs(kTestPatienceMs);
         while (!deadline.passed()) {

@@ -1,4 +1,4 @@
-// When a batch is sent: soon, but not for what nodes can do nothing with yet.
+// When a batch is sent: soon, but not inside a blob.
 #include "nodes/head/stream_economy.hpp"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ std::unique_ptr<StreamEconomy> smallEconomy() {
     return economy ? std::move(*economy) : nullptr;
 }
 
-// One record with an unlike word in each place.
+// One record with different words.
 std::vector<std::byte> record(uint16_t opcode, uint32_t words) {
     std::vector<uint32_t> text(words);
     text[0] = opcode | words << 16;
@@ -30,7 +30,7 @@ std::vector<std::byte> record(uint16_t opcode, uint32_t words) {
     return {bytes.begin(), bytes.end()};
 }
 
-TEST(StreamEconomy, isFullByWhatIsNewOrByAllOfIt) {
+TEST(StreamEconomy, isFullByNewDataOrByTotalSize) {
     auto economy = smallEconomy();
     ASSERT_NE(economy, nullptr);
     EXPECT_TRUE(economy->empty());
@@ -52,7 +52,7 @@ TEST(StreamEconomy, isFullByWhatIsNewOrByAllOfIt) {
     EXPECT_EQ(economy->counts().packer.rawBytes, 90u * 48'000);
 }
 
-TEST(StreamEconomy, knowsWhenAValueIsNotComplete) {
+TEST(StreamEconomy, detectsAnIncompleteBlob) {
     auto economy = smallEconomy();
     ASSERT_NE(economy, nullptr);
     economy->add(kStream, record(wire::kOpBlobBegin, 3));
@@ -63,8 +63,8 @@ TEST(StreamEconomy, knowsWhenAValueIsNotComplete) {
     EXPECT_FALSE(economy->inValue());
 }
 
-// What goes as bytes is not copied while its packet is there; which is another one, or none, when the batch is taken later.
-TEST(StreamEconomy, packetsMayGoBehindAdd) {
+// Plain bytes are borrowed while their packet exists. The batch may be taken after the packet is gone.
+TEST(StreamEconomy, keepsDataAfterThePacketIsGone) {
     auto economy = smallEconomy();
     ASSERT_NE(economy, nullptr);
     economy->holdNothing();
@@ -76,7 +76,7 @@ TEST(StreamEconomy, packetsMayGoBehindAdd) {
     };
     economy->sendBy(take);
     uint32_t number = 0;
-    // Short ones, all new; below and above what fills a batch, and a long one that begins the next.
+    // Short packets with new data below and above the size of a batch, and a long one that starts the next batch.
     for (const size_t records : {2000, 10, 500, 30'000, 3000, 500}) {
         std::vector<std::byte> packet;
         for (size_t i = 0; i < records; ++i) {

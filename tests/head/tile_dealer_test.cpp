@@ -1,4 +1,4 @@
-// Which areas the head announces, by what nodes report.
+// The areas that the head announces, from the reports of nodes.
 #include "nodes/head/tile_dealer.hpp"
 
 #include <cmath>
@@ -20,7 +20,7 @@ protected:
         lives_.assign(static_cast<size_t>(nodes), true);
     }
 
-    // All that live finish a frame; each pixel costs `cost` of the place where it lies, from 0 to 1.
+    // All living nodes finish a frame. A pixel costs `cost` of its position, from 0 to 1.
     void frame(const std::function<double(double x, double y)>& cost, uint32_t width = kWidth, uint32_t height = kHeight, uint32_t areas = UINT32_MAX) {
         ++frames_;
         for (size_t node = 0; node < lives_.size(); ++node) {
@@ -46,7 +46,7 @@ protected:
     static double even(double, double) { return 1; }
     static double corner(double x, double y) { return x < 0.2 && y < 0.3 ? 30 : 1; }
 
-    // Pixels; each of the picture's in one area, on the grid.
+    // Checks that each pixel of the picture belongs to one area, aligned to the grid.
     void expectWhole(int width = kWidth, int height = kHeight, int tileWidth = 32, int tileHeight = 32) const {
         const PixelViewport whole{0, 0, width, height};
         int64_t covered = 0;
@@ -71,7 +71,7 @@ protected:
     uint32_t frames_ = 0, client_ = 1;
 };
 
-TEST_F(TileDealerTest, theFirstFrameTellsTheGrid) {
+TEST_F(TileDealerTest, derivesTheGridFromTheFirstFrame) {
     begin(3);
     frame(even);
     ASSERT_EQ(announced_.size(), 1u);
@@ -81,7 +81,7 @@ TEST_F(TileDealerTest, theFirstFrameTellsTheGrid) {
     EXPECT_LE(announced_.size(), 3u) << "an even load";
 }
 
-TEST_F(TileDealerTest, whoHasMoreWorkGetsFewerTiles) {
+TEST_F(TileDealerTest, assignsFewerTilesToABusierNode) {
     begin(2);
     for (int i = 0; i < 100; ++i) {
         frame(corner);
@@ -99,7 +99,7 @@ TEST_F(TileDealerTest, whoHasMoreWorkGetsFewerTiles) {
     EXPECT_EQ(announced_.size(), static_cast<size_t>(totals[0].moves) + 1);
 }
 
-TEST_F(TileDealerTest, framesOfOlderAreasAreNotCompared) {
+TEST_F(TileDealerTest, ignoresFramesOfOlderAreas) {
     begin(2);
     frame(even);
     for (int i = 0; i < 20; ++i) frame(corner, kWidth, kHeight, 0);
@@ -107,13 +107,13 @@ TEST_F(TileDealerTest, framesOfOlderAreasAreNotCompared) {
     EXPECT_EQ(dealer_->totals()[0].frames, 0);
 }
 
-TEST_F(TileDealerTest, sizesThatDoNotDivideAndSmallWindows) {
+TEST_F(TileDealerTest, supportsUnevenSizesAndSmallWindows) {
     begin(4, 50, 70);
     frame(even, 333, 217);
     expectWhole(333, 217, 50, 70);
     frame(even, 500, 300); // larger
     expectWhole(500, 300, 50, 70);
-    begin(4, 500, 500); // a single tile would be one node's
+    begin(4, 500, 500); // one tile would serve a single node
     announced_.clear();
     frame(even, 300, 300);
     for (const Viewport& area : announced_.back().ofNodes) EXPECT_FALSE(area.empty());
@@ -123,7 +123,7 @@ TEST_F(TileDealerTest, sizesThatDoNotDivideAndSmallWindows) {
     EXPECT_TRUE(announced_.empty()) << "nothing to divide";
 }
 
-TEST_F(TileDealerTest, theTilesOfALostNodeGoToTheOthers) {
+TEST_F(TileDealerTest, reassignsTheTilesOfALostNode) {
     begin(3);
     for (int i = 0; i < 5; ++i) frame(even);
     lives_[1] = false;
@@ -141,7 +141,7 @@ TEST_F(TileDealerTest, theTilesOfALostNodeGoToTheOthers) {
     EXPECT_EQ(announced_.size(), before) << "it is there already";
 }
 
-TEST_F(TileDealerTest, anotherProgramIsFollowedWhenTheFirstIsGone) {
+TEST_F(TileDealerTest, followsAnotherProgramAfterTheFirstHasEnded) {
     begin(2);
     frame(even);
     dealer_->windowGone(1, wire::kAllWindows);
@@ -154,7 +154,7 @@ TEST_F(TileDealerTest, anotherProgramIsFollowedWhenTheFirstIsGone) {
     EXPECT_EQ(announced_.size(), before) << "a smaller window beside it";
 }
 
-TEST(TileDealer, hasNothingToDoWithoutQueues) {
+TEST(TileDealer, doesNothingWithoutQueues) {
     SessionConfig config;
     config.columns = 2;
     TileDealer dealer(planSession(config, "me"), [](const Areas&) { ADD_FAILURE(); });

@@ -6,7 +6,7 @@
 namespace mural {
 namespace {
 
-// How often each tile is covered, and the most tiles of one region.
+// How often each tile is covered, and the maximum number of tiles per region.
 struct Coverage {
     bool exact = true;
     int most = 0;
@@ -35,13 +35,13 @@ TEST(SplitGrid, coversEveryTileOnceForAnyNumberOfNodes) {
                 ASSERT_EQ(regions.size(), static_cast<size_t>(n));
                 const Coverage coverage = coverageOf(columns, rows, regions);
                 ASSERT_TRUE(coverage.exact) << columns << 'x' << rows << " over " << n;
-                // Whole tiles in rectangles can't be even; twice the even share is the bound.
+                // Rectangles of whole tiles are uneven in general; twice the equal share is the bound.
                 const int even = (columns * rows + n - 1) / n;
                 ASSERT_LE(coverage.most, 2 * even) << columns << 'x' << rows << " over " << n;
             }
 }
 
-TEST(SplitGrid, evenWhereThatIsPossible) {
+TEST(SplitGrid, dividesEquallyWherePossible) {
     const int cases[][4] = {{2, 2, 4, 1}, {4, 4, 4, 4}, {4, 2, 2, 4}, {7, 5, 35, 1}, {6, 1, 3, 2}, {8, 8, 16, 4},
                             {5, 1, 5, 1}, {7, 5, 4, 10}, {3, 3, 9, 1}, {1, 13, 13, 1}};
     for (const auto& [columns, rows, n, most] : cases)
@@ -49,13 +49,13 @@ TEST(SplitGrid, evenWhereThatIsPossible) {
             << columns << 'x' << rows << " over " << n;
 }
 
-TEST(SplitGrid, theFirstRegionHoldsTheLowerLeftTile) {
+TEST(SplitGrid, putsTheLowerLeftTileIntoTheFirstRegion) {
     const auto regions = splitGrid(7, 5, 4);
     EXPECT_EQ(regions[0].column, 0);
     EXPECT_EQ(regions[0].row, 0);
 }
 
-TEST(SplitGrid, largeWallsAndPrimeCounts) {
+TEST(SplitGrid, supportsLargeWallsAndPrimeCounts) {
     for (const int n : {97, 211, 509, 1021, 1024}) {
         const auto regions = splitGrid(32, 32, n);
         const Coverage coverage = coverageOf(32, 32, regions);

@@ -6,7 +6,7 @@
 namespace mural {
 namespace {
 
-TEST(UsualTime, isNotThatOfOneThatSomethingElseHasDisturbed) {
+TEST(UsualTime, ignoresAnOutlier) {
     UsualTime time;
     EXPECT_EQ(time.value(), 0);
     time.add(30'000);
@@ -19,7 +19,7 @@ TEST(UsualTime, isNotThatOfOneThatSomethingElseHasDisturbed) {
     }
 }
 
-TEST(UsualTime, isKnownWhenOneThatWasDisturbedIsNotTheMedian) {
+TEST(UsualTime, isKnownAfterEnoughSamples) {
     UsualTime time;
     for (const double ns : {4e6, 21.0, 22.0}) {
         EXPECT_FALSE(time.isKnown());
@@ -29,7 +29,7 @@ TEST(UsualTime, isKnownWhenOneThatWasDisturbedIsNotTheMedian) {
     EXPECT_EQ(time.value(), 22);
 }
 
-TEST(UsualTime, saysNothingOfOtherSizes) {
+TEST(UsualTime, separatesSizes) {
     UsualTimesBySize times;
     for (int i = 0; i < 3; ++i) times.of(100).add(5'000);
     EXPECT_TRUE(times.of(127).isKnown());
@@ -39,7 +39,7 @@ TEST(UsualTime, saysNothingOfOtherSizes) {
     EXPECT_EQ(times.of(SIZE_MAX).value(), 1);
 }
 
-TEST(UsualTime, followsWhatStaysOtherwise) {
+TEST(UsualTime, followsALastingChange) {
     UsualTime time;
     for (int i = 0; i < 5; ++i) time.add(20);
     for (int i = 0; i < 3; ++i) time.add(90);

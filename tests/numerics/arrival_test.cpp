@@ -1,4 +1,4 @@
-// Pictures arrive in any order: what comes of them is the same, and it is what drawing everything in one piece gives.
+// Pictures arrive in any order with the same result, which equals drawing everything in one piece.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ constexpr int32_t kWidth = 31, kHeight = 5;
 constexpr size_t kPixels = size_t{kWidth} * kHeight;
 constexpr uint32_t kFar = 0xffffff00; // D24S8: the largest depth
 
-// A draw list: of each pixel, which depths and colours are drawn there one after the other. Few depths: ties are common.
+// A draw list: per pixel, the depths and colours drawn there in order. Few depth values, so ties are frequent.
 struct Fragment {
     size_t pixel;
     uint32_t depth, colour;
@@ -61,7 +61,7 @@ Image imageOf(const Drawn& d, uint32_t part) {
     image.colour.emplace(PlaneFormat::Rgba8, kWidth, kHeight);
     image.depth.emplace(PlaneFormat::D24S8, kWidth, kHeight);
     std::memcpy(image.colour->bytes().data(), d.colour.data(), 4 * kPixels);
-    for (size_t i = 0; i < kPixels; ++i) { // drawn or not: the stencil says it, for draws at the depth that was cleared to
+    for (size_t i = 0; i < kPixels; ++i) { // the stencil marks drawn pixels, for draws at the clear depth
         const uint32_t word = d.depth[i] | (d.colour[i] != 0 ? 1 : 0);
         std::memcpy(image.depth->bytes().data() + 4 * i, &word, 4);
     }
@@ -81,7 +81,7 @@ std::vector<size_t> edgesOf(std::mt19937& random, size_t count, size_t parts) {
     return edges;
 }
 
-// Takes what arrives into one of the pictures that wait, as soon as they are neighbours; until one is left.
+// Merges each arriving picture with an adjacent waiting one, until one picture is left.
 Image assembled(std::vector<Image> arriving, DepthFunction f) {
     std::vector<Image> waiting;
     for (Image& next : arriving) {
@@ -101,7 +101,7 @@ Image assembled(std::vector<Image> arriving, DepthFunction f) {
     return std::move(waiting.front());
 }
 
-TEST(Arrival, sortLastIsOnePictureInAllOrders) {
+TEST(Arrival, givesOneSortLastPictureInAllOrders) {
     for (unsigned seed = 1; seed <= 3; ++seed)
         for (const DepthFunction f : kShared)
             for (size_t parts = 1; parts <= 6; ++parts) {
@@ -121,8 +121,8 @@ TEST(Arrival, sortLastIsOnePictureInAllOrders) {
             }
 }
 
-// What nodes of `mural run --db` exchange, folded in the order of their ranks.
-TEST(Arrival, rangesOfNodesAreOnePicture) {
+// The exchange of `mural run --db`, folded in rank order.
+TEST(Arrival, givesOnePictureForRangesOfNodes) {
     for (unsigned seed = 1; seed <= 200; ++seed)
         for (const DepthFunction f : kShared) {
             std::mt19937 random(seed);
@@ -130,7 +130,7 @@ TEST(Arrival, rangesOfNodesAreOnePicture) {
             const size_t parts = 1 + random() % 9;
             const std::vector<size_t> edges = edgesOf(random, list.size(), parts);
             const Drawn whole = draw(list, 0, list.size(), f), nothing = draw(list, 0, 0, f);
-            for (const bool deep : {false, true}) { // by the kernel, and pixel by pixel
+            for (const bool deep : {false, true}) { // with the kernel, and pixel by pixel
                 const FoldRule rule{f, nothing.colour[0], nothing.depth[0], deep};
                 Drawn sum = draw(list, edges[0], edges[1], f);
                 for (size_t p = 1; p < parts; ++p) {
@@ -143,8 +143,8 @@ TEST(Arrival, rangesOfNodesAreOnePicture) {
         }
 }
 
-// Tiles, kernels and samples do not meet: all 720 orders of six of them.
-TEST(Arrival, tilesKernelsAndSamplesAreOnePictureInAllOrders) {
+// Tiles, kernels and samples are disjoint: all 720 orders of six of them.
+TEST(Arrival, givesOnePictureForTilesKernelsAndSamplesInAllOrders) {
     std::mt19937 random(9);
     Plane picture(PlaneFormat::Rgba8, kWidth, kHeight);
     for (auto& b : picture.bytes()) b = static_cast<std::byte>(random());

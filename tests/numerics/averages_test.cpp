@@ -1,4 +1,4 @@
-// Means of 1 to 256 pictures: the nearest value, always, and no drift in either direction.
+// Means of 1 to 256 pictures: always the nearest value, without drift.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,11 +25,11 @@ Plane allValues() {
     return p;
 }
 
-TEST(Averages, ofOnePictureManyTimesIsThatPicture) {
+TEST(Averages, reproduceARepeatedPicture) {
     for (size_t n = 1; n <= 256; ++n) ASSERT_EQ(meanOf(std::vector<Plane>(n, allValues())), allValues()) << n << " pictures";
 }
 
-// With k of n pictures one step above the others, the exact mean is value + k/n: each way to round is met, ties too.
+// With k of n pictures one step above the others, the exact mean is value + k/n: covers all roundings, including ties.
 TEST(Averages, areTheNearestValue) {
     Plane above = allValues();
     for (auto& b : above.bytes()) b = static_cast<std::byte>(std::min(255U, std::to_integer<unsigned>(b) + 1));
@@ -46,7 +46,7 @@ TEST(Averages, areTheNearestValue) {
         }
 }
 
-// The mean of the errors: rounding that always went up, or down, would show as half a unit.
+// The mean of the errors: rounding in one direction would show as half a unit.
 TEST(Averages, doNotDrift) {
     std::mt19937 random(11);
     for (const size_t n : {3, 5, 16, 17, 64, 255, 256}) {
@@ -67,10 +67,11 @@ TEST(Averages, doNotDrift) {
             worst = std::max(worst, std::abs(error));
             drift += error / static_cast<double>(sums.size());
         }
-        // A tie goes up: one of n sums, for even n, by half a unit.
+        // Ties go up: one of n sums, for even n, by half a unit.
         const double ties = n % 2 ? 0 : 0.5 / static_cast<double>(n);
         numerics::expectWithin("means of 3 to 256 pictures", "double", worst, 0.5, "of 255");
-        numerics::expectWithin("drift of means beyond what ties do", "double", std::abs(drift - ties), 0.012, "of 255"); // 4 standard deviations of 16384 errors
+        // 4 standard deviations of 16384 errors
+        numerics::expectWithin("drift of means beyond what ties do", "double", std::abs(drift - ties), 0.012, "of 255");
     }
 }
 

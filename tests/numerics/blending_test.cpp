@@ -1,4 +1,4 @@
-// Colours on colours, against double precision: many layers, light that is brighter than it covers, order and neighbours.
+// Blending compared with double precision: many layers, emission brighter than its coverage, order and adjacency.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -46,7 +46,7 @@ std::vector<double> truthOf(const Layers& layers) {
     return sum;
 }
 
-// Of n layers, in halves of the list as nodes would: each half by itself, then one over the other.
+// Blends n layers in halves of the list, as nodes would: each half separately, then one over the other.
 double offBy(const Layers& layers, PlaneFormat format) {
     const bool halves = format == PlaneFormat::Rgba16F;
     const auto pack = [&](const std::vector<double>& layer) {
@@ -79,7 +79,7 @@ double offBy(const Layers& layers, PlaneFormat format) {
     return worst;
 }
 
-TEST(Blending, manyLayersStayNearTheTruth) {
+TEST(Blending, staysAccurateForManyLayers) {
     for (const int n : {1, 2, 8, 32, 64}) {
         expectWithin("1 to 64 layers over each other, RGBA8, alpha from 0.1", "double", offBy(layersOf(n, .1, 1), PlaneFormat::Rgba8), 3, "of 255");
         expectWithin("1 to 64 layers over each other, RGBA16F", "double", offBy(layersOf(n, .03, 1), PlaneFormat::Rgba16F), 1, "of 255");
@@ -87,7 +87,7 @@ TEST(Blending, manyLayersStayNearTheTruth) {
     for (const int n : {8, 64}) expectWithin("8 and 64 thin layers, RGBA8, alpha 0.03", "double", offBy(layersOf(n, .03, .03), PlaneFormat::Rgba8), 6, "of 255");
 }
 
-TEST(Blending, repeatedBlendingWearsNothingAway) {
+TEST(Blending, losesNothingWhenRepeated) {
     Plane whole(PlaneFormat::Rgba8, kBlendedPixels, 1), clear(PlaneFormat::Rgba8, kBlendedPixels, 1);
     std::ranges::fill(whole.bytes(), std::byte{255});
     for (int i = 0; i < 1000; ++i) {
@@ -97,12 +97,14 @@ TEST(Blending, repeatedBlendingWearsNothingAway) {
     expectWithin("white under 1000 transparent layers (by >> 8: 239 after 16)", "white", 255 - std::to_integer<int>(*std::ranges::min_element(whole.bytes())), 0, "of 255");
 }
 
-// All 2^24 of background, light and alpha; light may be more than alpha covers, and then the sum saturates instead of wrapping.
-TEST(Blending, lightSaturates) {
+// All 2^24 combinations of background, emission and alpha. Emission may exceed the coverage; the sum then saturates
+// instead of wrapping.
+TEST(Blending, saturates) {
     double worst = 0;
     for (int alpha = 0; alpha < 256; ++alpha)
         for (int light = 0; light < 256; ++light) {
-            Plane sum(PlaneFormat::Rgba8, 64, 1), over = sum; // 256 components: red, green, blue of 64 pixels are backgrounds, alpha is alpha
+            // 256 components: red, green, blue of 64 pixels are backgrounds, alpha is alpha
+            Plane sum(PlaneFormat::Rgba8, 64, 1), over = sum;
             for (int i = 0; i < 256; ++i) {
                 const bool isAlpha = i % 4 == 3;
                 sum.bytes()[static_cast<size_t>(i)] = static_cast<std::byte>(i);
@@ -126,8 +128,8 @@ Image layerImage(const Layers& layers, uint32_t i) {
     return image;
 }
 
-// Five layers arrive in each of 120 orders: what is no neighbour waits, and the result is near the truth whoever came first.
-TEST(Blending, onlyNeighboursAreBlended) {
+// Five layers arrive in each of 120 orders: non-adjacent layers wait, and the result is accurate in every order.
+TEST(Blending, blendsOnlyNeighbours) {
     const Layers layers = layersOf(5, .1, 1);
     const std::vector<double> truth = truthOf(layers);
     std::array<uint32_t, 5> arrival{0, 1, 2, 3, 4};

@@ -28,7 +28,7 @@ Row& rowOf(const std::string& what, const std::string& against) {
     return rows().back();
 }
 
-// A test that has told no number compares for equality, or has its own bounds: its name is its row.
+// A test that reports no number compares for equality or has its own bounds; its row is its name.
 class Tests : public testing::EmptyTestEventListener {
     void OnTestStart(const testing::TestInfo&) override { before_ = rows().size(); }
     void OnTestEnd(const testing::TestInfo& test) override {
@@ -38,7 +38,7 @@ class Tests : public testing::EmptyTestEventListener {
     size_t before_ = 0;
 };
 
-// Behind all tests: gtest's own lines stand above it; --gtest_brief=1 leaves them out.
+// Printed after gtest's own lines; --gtest_brief=1 omits those.
 class Table : public testing::Environment {
     void SetUp() override { testing::UnitTest::GetInstance()->listeners().Append(new Tests); } // gtest owns it
     void TearDown() override {
@@ -50,13 +50,14 @@ class Table : public testing::Environment {
         }
     }
 };
-[[maybe_unused]] const testing::Environment* const kTable = testing::AddGlobalTestEnvironment(new Table); // gtest owns it
+// gtest owns it
+[[maybe_unused]] const testing::Environment* const kTable = testing::AddGlobalTestEnvironment(new Table);
 
 } // namespace
 
 void expectWithin(const std::string& what, const std::string& against, double off, double most, const std::string& unit) {
     Row& row = rowOf(what, against);
-    const bool within = off <= most; // false of NaN, too
+    const bool within = off <= most; // false for NaN as well
     if (row.holds) row.off = within ? std::max(row.off, off) : off;
     row.most = most;
     row.unit = unit;

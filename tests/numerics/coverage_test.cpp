@@ -1,4 +1,4 @@
-// Tiles, viewports and kernels: every pixel is somebody's, and nobody else's, however the numbers fall.
+// Tiles, viewports and kernels: every pixel belongs to exactly one part.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,10 +12,10 @@
 namespace mural {
 namespace {
 
-// Sizes that divide badly: primes, one off powers of two, the largest that GL's viewports go to, and beyond.
+// Difficult sizes: primes, neighbours of powers of two, the largest GL viewports, and beyond.
 constexpr int32_t kSizes[] = {1, 2, 3, 7, 63, 64, 65, 127, 191, 253, 777, 1000, 1023, 1080, 1921, 2047, 4099, 8191, 16381, 16384, 32749, 32767, 32768};
 
-TEST(Coverage, tilesMeetAtEveryEdge) {
+TEST(Coverage, joinsTilesAtEveryEdge) {
     for (const int32_t size : kSizes)
         for (int n = 1; n <= 257; ++n)
             for (const int alignment : {1, 2, 64}) {
@@ -33,8 +33,8 @@ TEST(Coverage, tilesMeetAtEveryEdge) {
             }
 }
 
-// In two dimensions, by counting: rows and columns do not disturb each other.
-TEST(Coverage, everyPixelHasOneTile) {
+// Counts in two dimensions: rows and columns are independent.
+TEST(Coverage, assignsEveryPixelToOneTile) {
     std::mt19937 random(1);
     for (int trial = 0; trial < 300; ++trial) {
         const auto width = static_cast<int32_t>(1 + random() % 200), height = static_cast<int32_t>(1 + random() % 150);
@@ -50,8 +50,8 @@ TEST(Coverage, everyPixelHasOneTile) {
     }
 }
 
-// A viewport of i n-ths begins at the pixel that whole numbers give: floor(size i / n).
-TEST(Coverage, fractionsOfPicturesAreThoseOfWholeNumbers) {
+// A viewport of i n-ths starts at the pixel that integer arithmetic gives: floor(size i / n).
+TEST(Coverage, matchesIntegerArithmeticForFractions) {
     for (const int32_t size : kSizes)
         for (int32_t n = 1; n <= 640; ++n)
             for (int32_t i = 0; i < n; ++i) {
@@ -61,7 +61,7 @@ TEST(Coverage, fractionsOfPicturesAreThoseOfWholeNumbers) {
             }
 }
 
-// Viewports of viewports of viewports: each cut goes to both sides, sizes by subtraction as equalizers make them.
+// Nested viewports: each cut applies to both sides, with sizes by subtraction as equalizers compute them.
 void cut(std::mt19937& random, const Viewport& part, int depth, int32_t width, int32_t height, int64_t& pixels, std::vector<PixelViewport>& leaves) {
     if (depth == 0) {
         leaves.push_back(apply(PixelViewport{0, 0, width, height}, part));
@@ -77,7 +77,7 @@ void cut(std::mt19937& random, const Viewport& part, int depth, int32_t width, i
     cut(random, compose(part, second), depth - 1, width, height, pixels, leaves);
 }
 
-TEST(Coverage, nestedViewportsCoverOnce) {
+TEST(Coverage, coversOnceWithNestedViewports) {
     for (unsigned seed = 1; seed <= 400; ++seed) {
         std::mt19937 random(seed);
         const int32_t width = kSizes[random() % std::size(kSizes)], height = kSizes[random() % std::size(kSizes)];
@@ -90,8 +90,8 @@ TEST(Coverage, nestedViewportsCoverOnce) {
     }
 }
 
-// Kernels in kernels: every pixel of a row is that of one of them, also where widths do not divide.
-TEST(Coverage, nestedKernelsCoverOnce) {
+// Nested kernels: every pixel of a row belongs to one of them, even if widths do not divide.
+TEST(Coverage, coversOnceWithNestedKernels) {
     for (const int32_t size : kSizes)
         for (const int32_t outer : {1, 2, 3, 5, 8})
             for (const int32_t inner : {1, 2, 3, 7}) {

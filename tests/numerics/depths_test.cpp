@@ -1,5 +1,5 @@
-// Depths on depths, against the depth test of one machine, fragment by fragment: ties by function, stencil bits, what is no
-// number, reversed Z, depths whose planes are 10^10 apart.
+// Depth compositing compared with a single depth test, fragment by fragment: ties by function, stencil bits, NaN,
+// reversed Z, and planes 10^10 apart.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,12 +33,13 @@ std::vector<Part> partsOf(Maker make, int count) {
     for (Part& p : parts)
         for (size_t i = 0; i < kComparedPixels; ++i) {
             p.depth.push_back(make(random));
-            p.colour.push_back(number++); // every fragment has its own
+            p.colour.push_back(number++); // every fragment has a unique colour
         }
     return parts;
 }
 
-// As doubles: 24 bits and floats are exact in them. NaN loses against every number; of two, the earlier one stays.
+// As doubles, which represent 24 bits and floats exactly. NaN loses against every number; of two NaNs the earlier one
+// stays.
 double valueOf(uint32_t word, DepthFormat format) { return format == DepthFormat::D24S8 ? word >> 8 : static_cast<double>(std::bit_cast<float>(word)); }
 bool laterWins(DepthFunction f, double later, double earlier) {
     if (std::isnan(later) || std::isnan(earlier)) return !std::isnan(later);
@@ -50,7 +51,7 @@ bool laterWins(DepthFunction f, double later, double earlier) {
     }
 }
 
-// Folded in a tree of neighbours, from both sides: how many pixels are not those of drawing all in order.
+// Folds in a tree of neighbours, from both sides. Returns the number of pixels that differ from drawing all in order.
 size_t wrongPixels(const std::vector<Part>& drawn, DepthFunction function, DepthFormat format) {
     Part wanted = drawn[0];
     for (size_t p = 1; p < drawn.size(); ++p)
@@ -86,25 +87,25 @@ void expectExact(const std::string& what, Maker make, DepthFormat format, size_t
     }
 }
 
-TEST(Depths, tiesGoAsTheFunctionSays) {
+TEST(Depths, resolveTiesByTheFunction) {
     expectExact("2 to 16 parts, ties everywhere, D24S8", [](std::mt19937& r) { return static_cast<uint32_t>(0x80000000U + (r() % 3 << 8)); }, DepthFormat::D24S8);
     expectExact("2 to 16 parts, ties everywhere, D32F", [](std::mt19937& r) { return std::bit_cast<uint32_t>(0.5F) + static_cast<uint32_t>(r() % 3); }, DepthFormat::D32F);
 }
 
-TEST(Depths, stencilBitsDecideNothing) {
+TEST(Depths, ignoreStencilBits) {
     expectExact("stencil bits at random beside tied depths", [](std::mt19937& r) { return static_cast<uint32_t>(0x12345600U + (r() % 2 << 8) + r() % 256); }, DepthFormat::D24S8);
 }
 
-TEST(Depths, whatIsNoNumberLoses) {
+TEST(Depths, makeNanLose) {
     expectExact("NaN, -0, infinities, denormals among numbers, D32F", [](std::mt19937& r) {
         constexpr uint32_t kSpecial[] = {0, 0x80000000, 0x7f800000, 0xff800000, 0x7fc00000, 0xffc00001, 0x7f800001, 1, 0x80000001, 0x3f800000, 0xbf800000};
         return kSpecial[r() % std::size(kSpecial)];
     }, DepthFormat::D32F);
 }
 
-// Near and far plane 10^10 apart, as floats see it: of reversed Z nearly all floats between 0 and 1 are used; of the usual one nearly
-// everything is within the last few steps below 1.
-TEST(Depths, planesTenToTheTenApart) {
+// Near and far plane 10^10 apart in floats: reversed Z uses nearly all floats between 0 and 1; normal Z puts nearly
+// everything into the last steps below 1.
+TEST(Depths, supportPlanesTenToTheTenApart) {
     const auto reversed = [](std::mt19937& r) {
         const double z = std::pow(10, std::uniform_real_distribution<>(-4, 6)(r)), nearPlane = 1e-4, farPlane = 1e6;
         return std::bit_cast<uint32_t>(static_cast<float>(nearPlane * (farPlane - z) / (z * (farPlane - nearPlane))));
@@ -117,8 +118,8 @@ TEST(Depths, planesTenToTheTenApart) {
     expectExact("near plane 10^-4, far plane 10^6, D24S8", usual, DepthFormat::D24S8);
 }
 
-// Equal and NotEqual ask for what others have left: no order of folding answers that, and they are not offered.
-TEST(Depths, functionsThatCannotBeShared) {
+// Equal and NotEqual depend on other parts' depth: no order of folding gives the result, so they are not decomposed.
+TEST(Depths, rejectFunctionsThatCannotBeDecomposed) {
     const bool refused = !decomposable(DepthFunction::Equal) && !decomposable(DepthFunction::NotEqual);
     expectThat("GL_EQUAL, GL_NOTEQUAL", "what others have drawn", refused, "not shared");
 }

@@ -1,4 +1,4 @@
-// Where a part's frustum puts a vertex, against where the whole picture has it: in pixels, by wider arithmetic.
+// The position of a vertex in a part's frustum relative to the whole picture: in pixels, with wider arithmetic.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@
 namespace mural::compound {
 namespace {
 
-using Exact = long double; // 64 bits of mantissa where double has 53
+using Exact = long double; // 64-bit mantissa; double has 53
 static_assert(std::numeric_limits<Exact>::digits >= 64);
 
 // One picture of width × height, divided by the given parts of one compound, each drawn by channel s; both eyes.
@@ -33,22 +33,22 @@ Planned planned(int width, int height, const std::string& parts) {
     return p;
 }
 
-// Of a frustum that `pixels` pixels show: the pixel, counted from its first, that a place on the near plane falls into.
+// For a frustum that `pixels` pixels show: the pixel, counted from its first, of a place on the near plane.
 template <class Real> Real pixelOf(double left, double right, Real place, int pixels) {
     return (place - static_cast<Real>(left)) / (static_cast<Real>(right) - static_cast<Real>(left)) * static_cast<Real>(pixels);
 }
 
-// As OpenGL has it: glFrustum's matrix in floats, w by floats, the viewport's transform by floats.
+// As OpenGL computes it: glFrustum's matrix, w and the viewport transform in floats.
 float pixelByFloats(double left, double right, double nearPlane, float x, float z, int pixels) {
     const auto scale = static_cast<float>(2 * nearPlane / (right - left)), shear = static_cast<float>((right + left) / (right - left));
     const float clip = scale * x + shear * z, w = -z, half = static_cast<float>(pixels) / 2;
     return clip / w * half + half;
 }
 
-// How far off vertices are at most along one axis.
+// The maximum error of vertices along one axis.
 struct Off {
-    double byDoubles = 0; // the frustum's own numbers
-    double byFloats = 0;  // what OpenGL makes of them
+    double byDoubles = 0; // of the frustum itself
+    double byFloats = 0; // with OpenGL's floats
 };
 
 void measure(std::mt19937& random, const Frustum& whole, const Frustum& part, bool horizontal, int wholePixels, int partPixels, const PixelAxis& axis, Off& off) {
@@ -60,7 +60,7 @@ void measure(std::mt19937& random, const Frustum& whole, const Frustum& part, bo
         const auto x = static_cast<float>((pl + inside * (pr - pl)) * -z / whole.nearPlane);
         const Exact place = static_cast<Exact>(x) * static_cast<Exact>(whole.nearPlane) / -static_cast<Exact>(z);
         const Exact wanted = pixelOf<Exact>(l, r, place, wholePixels);
-        // The part's pixels are `step` of the whole wide and lie around the middle of what they stand for.
+        // The part's pixels are `step` whole pixels wide and centred on the pixels that they stand for.
         const Exact first = static_cast<Exact>(axis.origin) + static_cast<Exact>(axis.kernel) + 0.5L - static_cast<Exact>(axis.step) / 2;
         const Exact got = first + pixelOf<Exact>(pl, pr, place, partPixels) * axis.step;
         off.byDoubles = std::max(off.byDoubles, static_cast<double>(std::abs(got - wanted)));
@@ -81,7 +81,7 @@ Off worst(int width, int height, const std::string& parts) {
         for (const RenderContext& c : pieces) {
             measure(random, whole[0].perspective, c.perspective, true, width, c.viewport.w, c.x, off);
             measure(random, whole[0].perspective, c.perspective, false, height, c.viewport.h, c.y, off);
-            EXPECT_EQ(c.perspective.nearPlane, whole[0].perspective.nearPlane); // depths must agree to the bit
+            EXPECT_EQ(c.perspective.nearPlane, whole[0].perspective.nearPlane); // depths must be bit-identical
             EXPECT_EQ(c.perspective.farPlane, whole[0].perspective.farPlane);
         }
     }
@@ -101,7 +101,7 @@ std::string tiles(int columns, int rows) {
     return all;
 }
 
-// OpenGL rasterises on a grid of at most 1/256 pixel: what a part's frustum adds must stay below.
+// OpenGL rasterises on a grid of at most 1/256 pixel: a part's error must stay below.
 void expectExact(int width, int height, const std::string& parts, const std::string& what) {
     const Off off = worst(width, height, parts);
     SCOPED_TRACE(std::to_string(width) + "x" + std::to_string(height));
@@ -109,12 +109,12 @@ void expectExact(int width, int height, const std::string& parts, const std::str
     numerics::expectWithin("the same through OpenGL's floats: " + what, "64 bits of mantissa", off.byFloats, 1.0 / 256, "pixels");
 }
 
-TEST(Frusta, tilesSeeWhatTheWholeSees) {
+TEST(Frusta, matchTheWholeForTiles) {
     for (const auto& [width, height] : {std::pair(253, 191), std::pair(1000, 777), std::pair(1921, 1081), std::pair(8191, 4099)})
         for (const auto& [columns, rows] : {std::pair(1, 1), std::pair(2, 1), std::pair(3, 3), std::pair(7, 5), std::pair(16, 1)}) expectExact(width, height, tiles(columns, rows), "tiles");
 }
 
-TEST(Frusta, kernelsSeeTheMiddlesOfTheirPixels) {
+TEST(Frusta, hitPixelCentresForKernels) {
     for (const auto& [width, height] : {std::pair(253, 191), std::pair(1921, 1081), std::pair(4099, 2047)})
         for (const auto& [w, h] : {std::pair(2, 1), std::pair(3, 1), std::pair(2, 2), std::pair(4, 3), std::pair(8, 8)})
             for (const auto& [x, y] : {std::pair(0, 0), std::pair(w - 1, h - 1), std::pair(w / 2, 0)}) {
@@ -124,7 +124,7 @@ TEST(Frusta, kernelsSeeTheMiddlesOfTheirPixels) {
             }
 }
 
-TEST(Frusta, tilesOfKernelsOfTiles) {
+TEST(Frusta, matchTheWholeForTilesOfKernelsOfTiles) {
     expectExact(1921, 1081, "compound { viewport [ .1 .3 .5 .7 ] compound { channel \"s\" pixel [ 1 0 3 2 ] viewport [ .3 0 .7 .9 ] outputframe { } } }", "mixed");
     expectExact(1921, 1081, "compound { pixel [ 2 1 3 2 ] compound { channel \"s\" viewport [ .5 .1 .5 .9 ] outputframe { } } }", "mixed");
 }

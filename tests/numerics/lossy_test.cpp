@@ -1,4 +1,4 @@
-// What the lossy codecs may lose, and no more.
+// Upper bounds of the errors of lossy codecs.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -41,8 +41,8 @@ Loss lossOf(const Plane& a, const Plane& b) {
     return loss;
 }
 
-// Blocks of one colour each: no detail for subsampling to lose, only the rounding of the colour transform. Every colour of a
-// grid of 33 x 33 x 33, in blocks of 16 x 16, as large as JPEG's.
+// Uniform blocks: subsampling loses nothing, only the colour transform rounds. Every colour of a grid of 33 x 33 x 33,
+// in blocks of 16 x 16, the size of JPEG's.
 Plane blocksOfColours() {
     constexpr int kSteps = 33, kBlock = 16;
     Plane plane(PlaneFormat::Rgba8, kSteps * kBlock, kSteps * kSteps * kBlock);
@@ -56,9 +56,9 @@ Plane blocksOfColours() {
     return plane;
 }
 
-// Y, U and V are rounded to half a unit. Of green that is .5 + .344 / 2 + .714 / 2, of blue .5 + 1.772 / 2, and the result is
-// rounded once more: at most 1.9.
-TEST(Lossy, coloursThatStayAreNearlyKept) {
+// Y, U and V are rounded to half a unit. For green that is .5 + .344 / 2 + .714 / 2, for blue .5 + 1.772 / 2, and the
+// result is rounded once more: at most 1.9.
+TEST(Lossy, nearlyPreservesUniformColours) {
     const Plane colours = blocksOfColours();
     const Loss yuv = lossOf(colours, through("yuv420", colours));
     numerics::expectWithin("35937 colours that stay, YUV 4:2:0", "the colours", yuv.largest, 2, "of 255");
@@ -67,7 +67,7 @@ TEST(Lossy, coloursThatStayAreNearlyKept) {
     numerics::expectWithin("35937 colours that stay, JPEG 100", "the colours", jpeg.largest, 3, "of 255");
 }
 
-TEST(Lossy, greysAreKept) {
+TEST(Lossy, preservesGreys) {
     Plane grey(PlaneFormat::Rgba8, 256, 16);
     for (int32_t y = 0; y < 16; ++y)
         for (int32_t x = 0; x < 256; ++x) std::memset(grey.view().row(y) + 4 * x, x, 4);
@@ -75,8 +75,8 @@ TEST(Lossy, greysAreKept) {
     numerics::expectWithin("greys, JPEG 100", "the greys", lossOf(grey, through("jpeg-100", grey)).largest, 1, "of 255");
 }
 
-// Noise of brightness: YUV keeps it but for its rounding, JPEG by its quality; never more for a higher quality.
-TEST(Lossy, brightnessIsKeptAndQualityHelps) {
+// Luma noise: YUV preserves it up to rounding, JPEG by its quality, and never worse at a higher quality.
+TEST(Lossy, preservesLumaAndImprovesWithQuality) {
     std::mt19937 random(3);
     Plane noise(PlaneFormat::Rgba8, 256, 128);
     for (size_t i = 0; i < noise.bytes().size(); i += 4) std::memset(noise.bytes().data() + i, static_cast<int>(random() % 256), 4);
@@ -90,13 +90,13 @@ TEST(Lossy, brightnessIsKeptAndQualityHelps) {
     EXPECT_LT(before, 1); // 48 dB at quality 100
 }
 
-// Colour that changes with every pixel is what subsampling loses; brightness must not be lost with it.
-TEST(Lossy, subsampledColourKeepsBrightness) {
+// Subsampling loses colour that changes with every pixel; luma must not suffer.
+TEST(Lossy, preservesLumaOfSubsampledColour) {
     Plane stripes(PlaneFormat::Rgba8, 64, 64);
     for (int32_t y = 0; y < 64; ++y)
         for (int32_t x = 0; x < 64; ++x) {
             std::byte* pixel = stripes.view().row(y) + 4 * x;
-            const int shift = x % 2 ? 30 : -30; // along a line of equal brightness: .299 r + .587 g + .114 b
+            const int shift = x % 2 ? 30 : -30; // along a line of equal luma: .299 r + .587 g + .114 b
             pixel[0] = static_cast<std::byte>(128 + shift);
             pixel[1] = static_cast<std::byte>(128 - std::lround(shift * .299 / .587));
             pixel[2] = std::byte{128};

@@ -1,4 +1,4 @@
-// Samples and kernels as unmodified programs get them: where positions are moved to, against wider arithmetic.
+// Samples and kernels of unmodified programs: positions compared with wider arithmetic.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,8 +15,8 @@ namespace {
 
 using Exact = long double;
 
-// In whole numbers: (2 i + 1 - n) / 2n each once on both axes; so the sum is 0, and no picture moves.
-TEST(Passes, samplesStandInEveryColumnAndRowOnce) {
+// In integers: (2 i + 1 - n) / 2n once on each axis; so the sum is 0, and no picture shifts.
+TEST(Passes, placeOneSampleInEveryColumnAndRow) {
     for (int n = 1; n <= 257; ++n) {
         std::set<long> columns, rows;
         long sumX = 0, sumY = 0;
@@ -35,15 +35,15 @@ TEST(Passes, samplesStandInEveryColumnAndRowOnce) {
     }
 }
 
-// The vertex shader's last lines, in floats as shaders compute them, then the viewport's transform without a loss.
+// The last lines of the vertex shader in floats, then an exact viewport transform.
 Exact shown(float ndc, float scaleLess1, float offset, float origin, float size) {
     const float moved = ndc + (ndc * scaleLess1 + offset);
     return static_cast<Exact>(origin) + (static_cast<Exact>(moved) + 1) * static_cast<Exact>(size) / 2;
 }
 
-// In pixels of the pass: where the moved position lands less where it should. Half the picture times the last bit of what the
-// offset's size has: the same that a float position loses natively.
-TEST(Passes, movedPositionsLandWhereTheyShould) {
+// In pixels of the pass: the error of the moved position. Half the picture times the last bit at the magnitude of the
+// offset, which a float position also loses natively.
+TEST(Passes, moveVerticesAccurately) {
     std::mt19937 random(5);
     for (const int size : {191, 253, 1000, 1921, 4096, 16384}) {
         double worst = 0;
@@ -66,8 +66,8 @@ TEST(Passes, movedPositionsLandWhereTheyShould) {
     }
 }
 
-// The sample's own place is what its pixel's middle shows: exactly in doubles, for every count and far from the origin.
-TEST(Passes, placesAreExactFarFromTheOrigin) {
+// A sample's position maps to the centre of its pixel: exactly in doubles, for every count and far from the origin.
+TEST(Passes, areExactFarFromTheOrigin) {
     for (const int size : {1, 253, 16384, 32768})
         for (int n = 1; n <= 64; ++n)
             for (int i = 0; i < n; ++i) {

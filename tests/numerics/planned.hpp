@@ -1,4 +1,4 @@
-// A configuration and what one frame of it draws.
+// A configuration and the tasks of one frame.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ struct Planned {
     FramePlan plan;
 };
 
-// What a channel of this name draws for an eye.
+// The draws of the channel of this name for an eye.
 inline std::vector<RenderContext> drawn(const Planned& p, const std::string& channel, Eye eye) {
     std::vector<RenderContext> found;
     for (const ChannelPlan& one : p.plan.channels)

@@ -1,4 +1,4 @@
-// Ranges share what is drawn: each draw is somebody's and nobody else's, whatever decimal fractions and nesting make of edges.
+// Ranges divide draws: each draw belongs to exactly one range, for any decimal fractions and nesting.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace mural {
 namespace {
 
-// Of leaves in their order: each begins where the one before has ended.
+// Leaves in order: each starts where the previous one ends.
 void expectOnce(const std::vector<Range>& leaves, uint64_t count, const std::string& what) {
     uint64_t reached = 0;
     for (const Range& r : leaves) {
@@ -23,19 +23,20 @@ void expectOnce(const std::vector<Range>& leaves, uint64_t count, const std::str
 
 constexpr uint64_t kCounts[] = {1, 2, 3, 7, 10, 90, 100, 999, 1000, 4097, 1'000'000, 16'777'217, 4'294'967'295};
 
-TEST(Ranges, wholeFractions) {
+TEST(Ranges, matchIntegerArithmeticForFractions) {
     for (uint64_t n = 1; n <= 300; ++n)
         for (const uint64_t count : kCounts) {
             std::vector<Range> leaves;
             for (uint64_t i = 0; i < n; ++i) {
                 leaves.push_back({static_cast<double>(i) / static_cast<double>(n), static_cast<double>(i + 1) / static_cast<double>(n)});
-                ASSERT_EQ(countBefore(leaves.back().start, count), count * i / n) << i << "/" << n; // as whole numbers have it
+                // as in integer arithmetic
+                ASSERT_EQ(countBefore(leaves.back().start, count), count * i / n) << i << "/" << n;
             }
             expectOnce(leaves, count, "n-ths");
         }
 }
 
-// As files write them: decimal edges, ranges within ranges, with the same edge reached on several ways.
+// As in files: decimal edges and nested ranges, with equal edges reached on several paths.
 void cut(std::mt19937& random, const Range& part, int depth, std::vector<Range>& leaves) {
     if (depth == 0) return leaves.push_back(part);
     const double edge = static_cast<double>(1 + random() % 9) / 10;
@@ -43,7 +44,7 @@ void cut(std::mt19937& random, const Range& part, int depth, std::vector<Range>&
     cut(random, compose(part, {edge, 1}), depth - 1, leaves);
 }
 
-TEST(Ranges, nestedDecimals) {
+TEST(Ranges, coverOnceWithNestedDecimals) {
     for (unsigned seed = 1; seed <= 3000; ++seed) {
         std::mt19937 random(seed);
         std::vector<Range> leaves;
@@ -52,8 +53,8 @@ TEST(Ranges, nestedDecimals) {
     }
 }
 
-// 0.3 + (0.9 - 0.3) and 0.9, 0.1 * 3 and 0.3: an edge that two compounds write in two ways is one edge.
-TEST(Ranges, oneEdgeWrittenInTwoWays) {
+// 0.3 + (0.9 - 0.3) and 0.9, 0.1 * 3 and 0.3: an edge that two compounds express differently is one edge.
+TEST(Ranges, unifyDifferentExpressionsOfOneEdge) {
     for (const uint64_t count : kCounts)
         for (int a = 0; a < 100; ++a)
             for (int b = a + 1; b <= 100; ++b) {
@@ -67,11 +68,12 @@ TEST(Ranges, oneEdgeWrittenInTwoWays) {
             }
 }
 
-TEST(Ranges, edgesBesideNothingAndAll) {
+TEST(Ranges, handleEdgesNextToNothingAndAll) {
     for (const uint64_t count : kCounts) {
         for (const double nothing : {0.0, -0.0, -1.0, 5e-324, 1e-300, 1e-17, std::nan("")}) EXPECT_EQ(countBefore(nothing, count), 0U) << nothing;
         for (const double all : {1.0, std::nextafter(1.0, 2.0), 1.5, 1e300}) EXPECT_EQ(countBefore(all, count), count) << all;
-        EXPECT_EQ(countBefore(std::nextafter(1.0, 0.0), count), count); // one step of arithmetic below the end is the end
+        // one rounding step below the end counts as the end
+        EXPECT_EQ(countBefore(std::nextafter(1.0, 0.0), count), count);
         uint64_t before = 0;
         for (int i = 0; i <= 10000; ++i) {
             const uint64_t at = countBefore(i / 10000., count);

@@ -1,4 +1,4 @@
-// Sizes that fit no vector and no tile, and content that nothing makes smaller: codecs and kernels, against the bits.
+// Sizes that fit no vector and no tile, and incompressible content: codecs and kernels compared bit by bit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ Plane noise(PlaneFormat format, int32_t width, int32_t height) {
     return plane;
 }
 
-TEST(Shapes, oddSizesOfNoiseThroughEveryCodec) {
+TEST(Shapes, roundTripNoiseOfOddSizesThroughEveryCodec) {
     CodecRegistry registry;
     for (const PlaneFormat format : {PlaneFormat::Rgba8, PlaneFormat::Rgb10A2, PlaneFormat::Rgba16F, PlaneFormat::Rgba32F, PlaneFormat::D24S8, PlaneFormat::D32F})
         for (const auto& [width, height] : kSizes) {
@@ -41,7 +41,7 @@ TEST(Shapes, oddSizesOfNoiseThroughEveryCodec) {
                 for (size_t i = 0; i < back.bytes().size(); ++i) wrong += back.bytes()[i] != plane.bytes()[i];
                 expectWithin("noise of 10 odd sizes in 6 formats by every lossless codec", "the bits", static_cast<double>(wrong), 0, "bytes");
             }
-            // What bit planes cannot make smaller goes as it is: tables and kinds of tiles are all that is added.
+            // Data that bit planes cannot compress stays raw: only tables and kinds of tiles are added.
             auto bitplane = registry.make("bitplane");
             ASSERT_TRUE(bitplane);
             std::vector<std::byte> bytes((*bitplane)->boundBytes(shapeOf(plane.view())));
@@ -52,8 +52,8 @@ TEST(Shapes, oddSizesOfNoiseThroughEveryCodec) {
         }
 }
 
-// Cut into tiles and kernels that do not divide, and put together again.
-TEST(Shapes, oddSizesOfNoiseCutAndJoined) {
+// Divided into uneven tiles and kernels, and combined again.
+TEST(Shapes, restoreNoiseOfOddSizesFromParts) {
     for (const auto& [width, height] : kSizes) {
         const Plane whole = noise(PlaneFormat::Rgba8, width, height);
         for (const auto& [w, h] : {std::pair(2, 1), std::pair(3, 2), std::pair(7, 5)}) {

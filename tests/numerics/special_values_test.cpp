@@ -1,4 +1,4 @@
-// Lossless codecs keep bits, not numbers: those that mean something else, or nothing, come back as they were.
+// Lossless codecs preserve bits, not numbers: special values are unchanged.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -11,11 +11,12 @@
 namespace mural::compositor {
 namespace {
 
-// -0, infinities, NaN that are quiet and signalling with payloads, the smallest, largest and denormal numbers, near 1.
+// -0, infinities, quiet and signalling NaN with payloads, the smallest, largest and denormal numbers, and values near
+// 1.
 constexpr uint32_t kSpecial32[] = {0x00000000, 0x80000000, 0x7f800000, 0xff800000, 0x7fc00000, 0xffc00001, 0x7f800001, 0xffbfffff, 0x7fffffff, 0xffffffff,
                                    0x00000001, 0x80000001, 0x007fffff, 0x807fffff, 0x00800000, 0x7f7fffff, 0xff7fffff, 0x3f7fffff, 0x3f800000, 0x3f800001};
 
-// A plane of the given words (of 2 or 4 bytes), once in their order and once mixed, so that neighbours differ in all ways.
+// A plane of the given words (2 or 4 bytes), in order and shuffled, so that neighbours differ in all ways.
 template <class Word> Plane planeOf(PlaneFormat format, const std::vector<Word>& words) {
     const size_t perPixel = bytesPerPixel(format) / sizeof(Word);
     const auto width = static_cast<int32_t>((words.size() + perPixel - 1) / perPixel);
@@ -45,18 +46,18 @@ void expectIdentity(const Plane& plane, const char* what) {
     }
 }
 
-TEST(SpecialValues, depthsThatAreNoNumbers) {
+TEST(SpecialValues, preserveSpecialDepths) {
     expectIdentity(planeOf(PlaneFormat::D32F, std::vector<uint32_t>(std::begin(kSpecial32), std::end(kSpecial32))), "D32F");
     expectIdentity(planeOf<uint32_t>(PlaneFormat::D24S8, {0, 0xff, 0x100, 0x1ff, 0x7fffffff, 0x80000000, 0xffffff00, 0xffffffff, 0xfffffe01}), "D24S8");
 }
 
-TEST(SpecialValues, everyHalf) {
+TEST(SpecialValues, preserveEveryHalf) {
     std::vector<uint16_t> halves;
     for (uint32_t h = 0; h < 0x10000; h += 1) halves.push_back(static_cast<uint16_t>(h));
     expectIdentity(planeOf(PlaneFormat::Rgba16F, halves), "RGBA16F");
 }
 
-TEST(SpecialValues, floatsAndTens) {
+TEST(SpecialValues, preserveFloatsAndTenBitComponents) {
     expectIdentity(planeOf(PlaneFormat::Rgba32F, std::vector<uint32_t>(std::begin(kSpecial32), std::end(kSpecial32))), "RGBA32F");
     std::vector<uint32_t> tens;
     for (uint32_t alpha = 0; alpha < 4; ++alpha)
@@ -64,8 +65,8 @@ TEST(SpecialValues, floatsAndTens) {
     expectIdentity(planeOf(PlaneFormat::Rgb10A2, tens), "RGB10A2");
 }
 
-// Depth as one node has read it and another writes it: 24 bits through 32 and back, all of them.
-TEST(SpecialValues, everyDepthOf24BitsSurvivesFloatsAndIntegers) {
+// Depth read by one node and written by another: all 24-bit values through 32 bits and back.
+TEST(SpecialValues, preserveEveryDepthOf24BitsThroughFloatsAndIntegers) {
     for (uint32_t d = 0; d < 1U << 24; ++d) {
         const auto asFloat = static_cast<float>(static_cast<double>(d) / 0xffffff); // GL_FLOAT
         ASSERT_EQ(static_cast<uint32_t>(static_cast<double>(asFloat) * 0xffffff + 0.5), d);

@@ -1,5 +1,5 @@
-// Walls that are hard to look at: the eye 1 cm from them and in their plane, 2^18 pixels, tiles of one pixel, planes 10^10 apart,
-// and such that are none.
+// Difficult walls: the eye 1 cm from them and in their plane, 2^18 pixels, tiles of one pixel, planes 10^10 apart, and
+// degenerate walls.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,8 @@ using Exact = long double;
 using numerics::expectThat;
 using numerics::expectWithin;
 
-const std::string kWall = "bottom_left [ -3 -1.5 -1 ] bottom_right [ 3 -1.5 -1 ] top_left [ -3 1.5 -1 ]"; // 6 m wide, 1 m before the eyes
+// 6 m wide, 1 m in front of the eyes
+const std::string kWall = "bottom_left [ -3 -1.5 -1 ] bottom_right [ 3 -1.5 -1 ] top_left [ -3 1.5 -1 ]";
 
 std::string configOf(int width, int height, const std::string& wall, const std::string& parts) {
     const std::string window = "window { viewport [ 0 0 " + std::to_string(width) + " " + std::to_string(height) + " ] ";
@@ -55,15 +56,15 @@ std::string tiles(int columns, int rows) {
     return all;
 }
 
-// How far from where it belongs a place of the picture is seen in a part, in pixels; places are spread over the part.
+// The error of positions in a part, in pixels; positions are spread over the part.
 struct Off {
-    double byDoubles = 0; // the frustum's own numbers
-    double byFloats = 0;  // as glFrustum's matrix and the viewport's transform have it in floats
-    double whole = 0;     // the same, of one picture of the whole size
-    double edges = 0;     // between a part's edge and its neighbour's
+    double byDoubles = 0; // of the frustum itself
+    double byFloats = 0; // with glFrustum's matrix and the viewport transform in floats
+    double whole = 0; // the same for one picture of the whole size
+    double edges = 0; // between a part's edge and its neighbour's
 };
 
-// As glFrustum's matrix, w and the viewport's transform have it in floats.
+// With glFrustum's matrix, w and the viewport transform in floats.
 float pixelByFloats(double l, double r, double nearPlane, float x, float z, int pixels) {
     const auto scale = static_cast<float>(2 * nearPlane / (r - l)), shear = static_cast<float>((r + l) / (r - l)), half = static_cast<float>(pixels) / 2;
     return (scale * x + shear * z) / -z * half + half;
@@ -71,7 +72,8 @@ float pixelByFloats(double l, double r, double nearPlane, float x, float z, int 
 
 void along(std::mt19937& random, double l, double r, double pl, double pr, double nearPlane, int whole, int part, int origin, Off& off) {
     for (int i = 0; i < 20; ++i) {
-        const Exact place = static_cast<Exact>(pl) + std::uniform_real_distribution<>(0, 1)(random) * (static_cast<Exact>(pr) - static_cast<Exact>(pl)); // on the near plane
+        // on the near plane
+        const Exact place = static_cast<Exact>(pl) + std::uniform_real_distribution<>(0, 1)(random) * (static_cast<Exact>(pr) - static_cast<Exact>(pl));
         const Exact wanted = (place - static_cast<Exact>(l)) / (static_cast<Exact>(r) - static_cast<Exact>(l)) * whole;
         const Exact got = origin + (place - static_cast<Exact>(pl)) / (static_cast<Exact>(pr) - static_cast<Exact>(pl)) * part;
         off.byDoubles = std::max(off.byDoubles, static_cast<double>(std::abs(got - wanted)));
@@ -99,50 +101,52 @@ Off worst(int width, int height, const std::string& parts, const Vector3& head, 
         for (const RenderContext& c : pieces) {
             along(random, f.left, f.right, c.perspective.left, c.perspective.right, nearPlane, width, c.viewport.w, c.x.origin, off);
             along(random, f.bottom, f.top, c.perspective.bottom, c.perspective.top, nearPlane, height, c.viewport.h, c.y.origin, off);
-            EXPECT_EQ(c.perspective.nearPlane, f.nearPlane); // depths must agree to the bit
+            EXPECT_EQ(c.perspective.nearPlane, f.nearPlane); // depths must be bit-identical
             EXPECT_EQ(c.perspective.farPlane, f.farPlane);
         }
     }
     return off;
 }
 
-constexpr double kGrid = 1.0 / 256; // OpenGL rasterises on such a one
+constexpr double kGrid = 1.0 / 256; // OpenGL's rasterisation grid
 
-// By floats a part must be below the grid, or where a picture is too large for floats, no worse than twice what one such picture would be.
+// With floats a part must be below the grid; for a picture too large for floats, at most twice the error of one such
+// picture.
 void expectNear(const std::string& what, const Off& off) {
     expectWithin(what + ": a part's frustum", "the whole's, 64 bits of mantissa", off.byDoubles, 1e-6, "pixels");
     expectWithin(what + ": edges of neighbours", "the whole's grid", off.edges, 1e-6, "pixels");
     expectWithin(what + ": vertices through OpenGL's floats", "the whole's, 64 bits of mantissa", off.byFloats, std::max(kGrid, 2 * off.whole), "pixels");
 }
 
-TEST(Walls, theEyeIsACentimetreFromTheWall) {
+TEST(Walls, areExactWithTheEyeACentimetreAway) {
     expectNear("eye 1 cm from a wall of 6 m, 7x5 tiles", worst(1921, 1081, tiles(7, 5), {0.4, 0.2, -0.99}, 0.001, 1000, 35));
 }
 
-// An eye in the plane sees nothing of the wall; it is taken for one a tenth of a millimetre before it, and all numbers stay numbers.
-TEST(Walls, theEyeIsInTheWall) {
+// An eye in the plane would see nothing. It is treated as a tenth of a millimetre in front, and all numbers stay
+// finite.
+TEST(Walls, areFiniteWithTheEyeInTheirPlane) {
     expectNear("eye in the wall's plane, 7x5 tiles", worst(1921, 1081, tiles(7, 5), {0.4, 0.2, -1}, 0.001, 1000, 35));
     const Planned before = planned(configOf(1921, 1081, kWall, ""), {0, 0, -1 + 1e-4}, 0.1, 100), in = planned(configOf(1921, 1081, kWall, ""), {0, 0, -1}, 0.1, 100);
     const double a = drawn(before, "d", Eye::Left)[0].perspective.right, b = drawn(in, "d", Eye::Left)[0].perspective.right;
     expectWithin("eye in the wall's plane: its frustum", "that of an eye 0.1 mm before it", std::abs(a - b) / std::abs(a), 1e-9, "of its width");
 }
 
-TEST(Walls, twoToTheEighteenPixels) {
+TEST(Walls, supportTwoToTheEighteenPixels) {
     constexpr int kWide = 1 << 18, kHigh = 3 << 16;
     expectNear("262144 x 196608 pixels, 16x12 tiles", worst(kWide, kHigh, tiles(16, 12), {}, 0.1, 1000, 192));
     expectNear("262144 x 196608 pixels, 7x5 tiles", worst(kWide, kHigh, tiles(7, 5), {}, 0.1, 1000, 35));
 }
 
-TEST(Walls, tilesOfOnePixel) {
+TEST(Walls, supportTilesOfOnePixel) {
     expectNear("tiles of 1 pixel, 61x37 of them", worst(61, 37, tiles(61, 37), {}, 0.1, 1000, 61 * 37));
 }
 
-TEST(Walls, planesTenToTheTenApart) {
+TEST(Walls, supportPlanesTenToTheTenApart) {
     expectNear("near plane 10^-4, far plane 10^6, 7x5 tiles", worst(1921, 1081, tiles(7, 5), {}, 1e-4, 1e6, 35));
 }
 
-// What is no wall is refused by one line that says where it stands and what to do.
-TEST(Walls, thatAreNone) {
+// A degenerate wall is rejected with one line: position and remedy.
+TEST(Walls, areRejectedWhenDegenerate) {
     const struct {
         const char *what, *wall;
     } kNone[] = {
