@@ -29,7 +29,7 @@ Image randomImage(std::mt19937& random, DrawOrder order) {
     return image;
 }
 
-TEST(AssembleDepth, ArrivalDoesNotMatter) {
+TEST(AssembleDepth, isIndependentOfArrivalOrder) {
     std::mt19937 random(1);
     std::array<Image, 3> parts{randomImage(random, {0, 1}), randomImage(random, {1, 2}), randomImage(random, {2, 3})};
     for (const DepthFunction f : {DepthFunction::Less, DepthFunction::LessOrEqual, DepthFunction::GreaterOrEqual, DepthFunction::Always}) {
@@ -46,14 +46,14 @@ TEST(AssembleDepth, ArrivalDoesNotMatter) {
             EXPECT_EQ(other.colour, inOrder.colour);
             EXPECT_EQ(other.depth, inOrder.depth);
         }
-        // 0 and 2 may come together, but then 1 can't be told apart from both where depths tie.
+        // 0 and 2 could be combined, but ties with 1 could then not be resolved.
         Image gap = parts[0];
         ASSERT_TRUE(assembleDepth(gap, parts[2], {f, Coverage::All, 0}));
         EXPECT_FALSE(assembleDepth(gap, parts[1], {f, Coverage::All, 0}));
     }
 }
 
-TEST(AssembleBlended, OnlyNeighboursAndInFrontWhatIsLater) {
+TEST(AssembleBlended, blendsOnlyNeighboursWithTheLaterInFront) {
     Image back = emptyImage(PlaneFormat::Rgba8, {0, 1}), front = emptyImage(PlaneFormat::Rgba8, {1, 2}), third = emptyImage(PlaneFormat::Rgba8, {2, 3});
     std::ranges::fill(back.colour->bytes(), std::byte{255});
     for (size_t i = 0; i < front.colour->bytes().size(); ++i) front.colour->bytes()[i] = std::byte(i % 4 == 3 ? 255 : 7);
@@ -67,7 +67,7 @@ TEST(AssembleBlended, OnlyNeighboursAndInFrontWhatIsLater) {
     EXPECT_EQ(b.order, (DrawOrder{0, 2}));
 }
 
-TEST(AssembleCopy, PartsGoWhereTheyBelong) {
+TEST(AssembleCopy, placesParts) {
     std::mt19937 random(2);
     Image whole = emptyImage(PlaneFormat::Rgba8, {});
     const Image wanted = randomImage(random, {});
@@ -89,7 +89,7 @@ TEST(AssembleCopy, PartsGoWhereTheyBelong) {
     EXPECT_TRUE(assembleCopy(whole, outside)) << "what is not drawn may lie outside";
 }
 
-TEST(AssembleDepth, OnlyWhatIsDrawnIsTaken) {
+TEST(AssembleDepth, takesOnlyDrawnPixels) {
     std::mt19937 random(3);
     Image into = randomImage(random, {0, 1}), part = randomImage(random, {1, 2});
     const Image before = into;
@@ -105,7 +105,7 @@ TEST(AssembleDepth, OnlyWhatIsDrawnIsTaken) {
     EXPECT_FALSE(assembleDepth(into, part, {}));
 }
 
-TEST(InterleavePixels, SizesThatDoNotDivide) {
+TEST(InterleavePixels, supportsSizesThatDoNotDivide) {
     std::mt19937 random(4);
     for (const PlaneFormat format : {PlaneFormat::Rgba8, PlaneFormat::Rgba16F, PlaneFormat::Rgba32F})
         for (const auto& [columns, rows] : {std::pair{1, 1}, {2, 1}, {1, 2}, {3, 2}, {4, 4}, {7, 5}})
@@ -116,7 +116,7 @@ TEST(InterleavePixels, SizesThatDoNotDivide) {
                     for (int32_t column = 0; column < columns; ++column) {
                         const PixelKernel k{column, row, columns, rows};
                         const int32_t partWidth = column < width ? (width - column + columns - 1) / columns : 0, partHeight = row < height ? (height - row + rows - 1) / rows : 0;
-                        // With just its pixels, or with a column and a row outside of the picture.
+                        // With exactly its pixels, or with an additional column and row outside the picture.
                         for (const PixelViewport& size : {PixelViewport{0, 0, partWidth, partHeight}, apply({0, 0, width, height}, k)}) {
                             Plane part(format, size.w, size.h);
                             ASSERT_TRUE(deinterleavePixels(part.view(), whole.view(), k));
@@ -136,7 +136,7 @@ TEST(InterleavePixels, SizesThatDoNotDivide) {
     EXPECT_FALSE(interleavePixels(whole.view(), two.view(), {2, 0, 2, 1}));
 }
 
-TEST(AssembleMasked, ComponentsOfEveryFormat) {
+TEST(AssembleMasked, masksComponentsOfEveryFormat) {
     std::mt19937 random(5);
     for (const auto& [format, bits] : {std::pair{PlaneFormat::Rgba8, 8}, {PlaneFormat::Rgba16F, 16}, {PlaneFormat::Rgba32F, 32}}) {
         Plane left(format, 37, 3), right(format, 37, 3);

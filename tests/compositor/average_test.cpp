@@ -11,7 +11,7 @@
 namespace mural::compositor::test {
 namespace {
 
-TEST(Average, VectorsAndPixelsAgree) {
+TEST(Average, givesEqualResultsForVectorsAndPixels) {
     forEachTarget([](const char* target) {
         std::mt19937 random(4);
         for (const size_t count : {0, 1, 7, 8, 31, 33, 64, 129}) {
@@ -33,8 +33,8 @@ TEST(Average, VectorsAndPixelsAgree) {
     });
 }
 
-// The division by floats, for sums next to every step of the result.
-TEST(Average, QuotientsAreExactAtEveryStep) {
+// Division in floats, for sums next to every step of the result.
+TEST(Average, dividesExactlyAtEveryStep) {
     forEachTarget([](const char* target) {
         for (const uint32_t n : {1u, 2u, 3u, 7u, 64u, 257u, 258u, 1000u, 4099u, 65521u, kMostAveraged8}) {
             std::vector<uint32_t> sums;
@@ -48,8 +48,8 @@ TEST(Average, QuotientsAreExactAtEveryStep) {
     });
 }
 
-// Half a unit from the truth and no more, whatever n; no drift.
-TEST(Average, EightBitsDoNotDrift) {
+// At most half a unit off, for every n, without drift.
+TEST(Average, doesNotDriftInEightBits) {
     std::mt19937 random(5);
     for (const int n : {1, 2, 3, 16, 64, 257, 258, 600}) {
         Average average(PlaneFormat::Rgba8, 13, 3);
@@ -66,7 +66,7 @@ TEST(Average, EightBitsDoNotDrift) {
     }
 }
 
-TEST(Average, OtherFormats) {
+TEST(Average, supportsOtherFormats) {
     for (const PlaneFormat format : {PlaneFormat::Rgb10A2, PlaneFormat::Rgba16F, PlaneFormat::Rgba32F}) {
         Average average(format, 3, 2);
         Plane a(format, 3, 2), b(format, 3, 2), result(format, 3, 2);
@@ -88,7 +88,7 @@ TEST(Average, OtherFormats) {
     }
 }
 
-TEST(Average, RefusesWhatDoesNotFit) {
+TEST(Average, rejectsPicturesThatDoNotFit) {
     Average average(PlaneFormat::Rgba8, 4, 4);
     Plane small(PlaneFormat::Rgba8, 3, 4), fits(PlaneFormat::Rgba8, 4, 4), depth(PlaneFormat::D24S8, 4, 4);
     EXPECT_FALSE(average.write(fits.view()));

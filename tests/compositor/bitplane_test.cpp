@@ -13,7 +13,7 @@ namespace {
 
 using test::forEachTarget;
 
-// Rows of words whose differences are small, large, or none, block by block.
+// Rows of words with small, large or no differences, block by block.
 std::vector<uint32_t> randomRows(std::mt19937& random, unsigned columns, unsigned rows) {
     std::vector<uint32_t> words(size_t{columns} * rows);
     for (unsigned x = 0; x < columns; ++x) {
@@ -30,7 +30,7 @@ std::vector<uint32_t> randomRows(std::mt19937& random, unsigned columns, unsigne
     return words;
 }
 
-TEST(Bitplane, FoldingAndColoursComeBack) {
+TEST(Bitplane, invertsFoldingAndColours) {
     for (unsigned v = 0; v < 256; ++v) EXPECT_EQ(unfolded(folded(static_cast<uint8_t>(v))), v);
     EXPECT_EQ(folded(uint8_t{255}), 1);
     EXPECT_EQ(folded(uint32_t{0} - 2), 3u);
@@ -44,8 +44,8 @@ TEST(Bitplane, FoldingAndColoursComeBack) {
         }
 }
 
-// Every instruction set writes the bytes that the definition writes, and reads them as it does.
-TEST(Bitplane, VectorsAndWordsAgree) {
+// Every instruction set writes and reads the bytes of the reference.
+TEST(Bitplane, givesEqualBytesForVectorsAndWords) {
     forEachTarget([](const char* target) {
         std::mt19937 random(2);
         for (const Arithmetic a : {Arithmetic::Bytes, Arithmetic::Halves, Arithmetic::Words, Arithmetic::RotatedWords})
@@ -79,14 +79,14 @@ TEST(Bitplane, VectorsAndWordsAgree) {
     });
 }
 
-TEST(Bitplane, ImpossibleStripsAreRefused) {
+TEST(Bitplane, rejectsImpossibleStrips) {
     ParsedStrip strip;
     std::vector<std::byte> bytes(4 + 64, std::byte{0});
     bytes[0] = std::byte{1};
     bytes[2] = std::byte{0x08};
     EXPECT_EQ(parseStrip(bytes, 1, strip), bytes.size());
     EXPECT_EQ(parseStrip(std::span(bytes).first(67), 1, strip), 0u) << "cut short";
-    bytes.resize(4 + 16 * 8 * 4); // room for what no width takes
+    bytes.resize(4 + 16 * 8 * 4); // more than any width needs
     for (unsigned width = 9; width < 16; ++width) {
         bytes[2] = static_cast<std::byte>(width);
         EXPECT_EQ(parseStrip(bytes, 1, strip), 0u) << width;

@@ -15,7 +15,7 @@ constexpr PlaneFormat kColours[] = {PlaneFormat::Rgba8, PlaneFormat::Rgb10A2, Pl
 
 std::vector<std::byte> randomPixels(std::mt19937& random, PlaneFormat format, size_t count) {
     std::vector<std::byte> bytes = randomBytes(random, count * bytesPerPixel(format));
-    if (random() % 2) std::fill_n(bytes.begin(), bytes.size() / 2, std::byte{0}); // as most of a picture is
+    if (random() % 2) std::fill_n(bytes.begin(), bytes.size() / 2, std::byte{0}); // typical for most of a picture
     if (format == PlaneFormat::Rgba32F)
         for (size_t i = 0; i + 4 <= bytes.size(); i += 4) {
             static constexpr float kHard[] = {0.0f, -0.0f, 1.0f, 0.5f, 1e-40f, 3e38f, 0.1f, -2.0f};
@@ -25,7 +25,7 @@ std::vector<std::byte> randomPixels(std::mt19937& random, PlaneFormat format, si
     return bytes;
 }
 
-TEST(BlendOver, VectorsAndPixelsAgree) {
+TEST(BlendOver, givesEqualResultsForVectorsAndPixels) {
     forEachTarget([](const char* target) {
         std::mt19937 random(2);
         for (const PlaneFormat format : kColours)
@@ -41,8 +41,8 @@ TEST(BlendOver, VectorsAndPixelsAgree) {
     });
 }
 
-// Every pair of bytes, against real numbers.
-TEST(BlendOver, BytesAreRoundedExactly) {
+// Every pair of bytes, compared with real numbers.
+TEST(BlendOver, roundsBytesExactly) {
     for (unsigned alpha = 0; alpha < 256; ++alpha) {
         std::vector<uint8_t> back, front;
         for (unsigned value = 0; value < 256; ++value) {
@@ -58,7 +58,7 @@ TEST(BlendOver, BytesAreRoundedExactly) {
     }
 }
 
-TEST(BlendOver, TenBitsAreRoundedExactly) {
+TEST(BlendOver, roundsTenBitsExactly) {
     for (uint32_t alpha = 0; alpha < 4; ++alpha)
         for (uint32_t value = 0; value < 1024; ++value) {
             const uint32_t front = alpha << 30 | 5u << 20 | 1023u << 10 | value;
@@ -72,8 +72,8 @@ TEST(BlendOver, TenBitsAreRoundedExactly) {
         }
 }
 
-// Light without cover: colour may be above alpha.
-TEST(BlendOver, SumsSaturate) {
+// Emission without coverage: colour may exceed alpha.
+TEST(BlendOver, saturates) {
     const uint8_t glow[8] = {200, 0, 255, 0, 200, 0, 255, 0};
     uint8_t into[8] = {100, 3, 255, 9, 255, 255, 1, 255};
     blendOverRow(PlaneFormat::Rgba8, reinterpret_cast<std::byte*>(into), reinterpret_cast<const std::byte*>(glow), 2, SourceSide::InFront);
@@ -81,8 +81,8 @@ TEST(BlendOver, SumsSaturate) {
     EXPECT_EQ(std::memcmp(into, expected, sizeof into), 0);
 }
 
-// What is opaque stays so under any number of layers that hold nothing.
-TEST(BlendOver, RepeatedBlendingKeepsOpaqueWhole) {
+// Opaque pixels stay opaque below any number of empty layers.
+TEST(BlendOver, keepsOpaquePixelsWhenRepeated) {
     std::vector<uint8_t> into(64, 255);
     const std::vector<uint8_t> nothing(64, 0);
     std::vector<uint8_t> faint(64, 0);
@@ -93,8 +93,8 @@ TEST(BlendOver, RepeatedBlendingKeepsOpaqueWhole) {
     EXPECT_EQ(into, std::vector<uint8_t>(64, 255));
 }
 
-// Against double precision, random layers: notes of the field measure 1.7 at most for 8 layers and 2.4 for 32.
-TEST(BlendOver, ManyLayersStayNearTheTruth) {
+// Random layers compared with double precision: at most 1.7 for 8 layers and 2.4 for 32 in earlier measurements.
+TEST(BlendOver, staysAccurateForManyLayers) {
     std::mt19937 random(3);
     double worst = 0;
     std::vector<uint8_t> sum(4 * 512, 0);
@@ -114,7 +114,7 @@ TEST(BlendOver, ManyLayersStayNearTheTruth) {
     EXPECT_LT(worst, 3.0);
 }
 
-TEST(HalfFloat, EveryHalfComesBack) {
+TEST(HalfFloat, roundTripsEveryHalf) {
     for (uint32_t half = 0; half < 0x10000; ++half) {
         const auto h = static_cast<uint16_t>(half);
         const float value = floatOfHalf(h);

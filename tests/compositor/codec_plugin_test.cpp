@@ -6,7 +6,7 @@
 namespace mural::compositor::test {
 namespace {
 
-TEST(CodecPlugin, IsFoundByNameAndWorks) {
+TEST(CodecPlugin, isFoundByNameAndWorks) {
     CodecRegistry registry(MURAL_TEST_PLUGINS);
     const size_t own = registry.known().size();
     auto codec = registry.make("inverted");
@@ -30,7 +30,7 @@ TEST(CodecPlugin, IsFoundByNameAndWorks) {
     EXPECT_EQ(refused.error().message, "codec inverted: another size; check the sender");
 }
 
-TEST(CodecPlugin, EachUnfitOneIsRefusedWithTheReason) {
+TEST(CodecPlugin, isRejectedWithAReasonWhenUnfit) {
     CodecRegistry registry(MURAL_TEST_PLUGINS);
     const auto why = [&](const char* name) {
         auto codec = registry.make(name);

@@ -11,11 +11,11 @@
 namespace mural::compositor::test {
 namespace {
 
-// A codec as notes of the field measured it: ns per byte to encode and to decode, bytes per byte.
+// A measured codec: ns per byte to encode and to decode, and its ratio.
 struct Model {
     double encodeNs, decodeNs, size;
 };
-// raw, bitplane, bitplane-zstd, lz4, zstd; of a picture with much background, and of one that fills all.
+// raw, bitplane, bitplane-zstd, lz4, zstd; for a picture with much background, and for a full one.
 const std::vector<std::string> kNames = {"raw", "bitplane", "bitplane-zstd", "lz4", "zstd"};
 const std::vector<Model> kSparse = {{0.15, 0.15, 1}, {0.12, 0.12, 0.02}, {0.2, 0.16, 0.012}, {0.3, 0.15, 0.03}, {0.6, 0.3, 0.02}};
 const std::vector<Model> kDense = {{0.15, 0.15, 1}, {0.28, 0.22, 0.45}, {0.9, 0.5, 0.41}, {1.6, 0.3, 0.55}, {3.3, 0.9, 0.41}};
@@ -33,7 +33,7 @@ class Simulation {
 public:
     Simulation(Overlap overlap, double noise, unsigned seed = 1) : overlap_(overlap), noise_(noise), random_(seed), selector_(kNames, {.overlap = overlap}) {}
 
-    // Time spent over the best there is for all of them: 1.05 is 5 % more.
+    // Returns the time relative to the best codec: 1.05 is 5 % more.
     double run(const std::vector<Model>& content, double bytesPerSec, int pieces) {
         double spent = 0, best = std::numeric_limits<double>::max();
         for (const Model& m : content) best = std::min(best, timeOf(m, bytesPerSec, overlap_) * pieces);
@@ -41,7 +41,7 @@ public:
             const CodecSelector::Choice choice = selector_.choose(kClass, kPieceBytes);
             const size_t c = choice.codec;
             const Model& m = content[c];
-            const double hard = jitter(noise_); // some pieces are harder, for all codecs
+            const double hard = jitter(noise_); // some pieces are harder for all codecs
             const auto bytes = bytesOf(m, hard);
             spent += timeOf(m, bytesPerSec, overlap_);
             ++used_[c];
@@ -49,7 +49,7 @@ public:
             if (choice.measure) {
                 const Model& other = content[*choice.measure];
                 ++measured_[*choice.measure];
-                spent += (other.encodeNs + other.decodeNs) * kPieceBytes; // hidden by nothing
+                spent += (other.encodeNs + other.decodeNs) * kPieceBytes; // not hidden by a transfer
                 selector_.measured(kClass, *choice.measure, kPieceBytes, bytesOf(other, hard), nsOf(other.encodeNs), nsOf(other.decodeNs));
             }
             selector_.decoded(kClass, c, kPieceBytes, nsOf(m.decodeNs));
@@ -59,7 +59,7 @@ public:
     }
     CodecSelector& selector() { return selector_; }
     [[nodiscard]] int measured(size_t codec) const { return measured_[codec]; }
-    // How often each codec was used, and how often measured on the side.
+    // How often each codec was used and measured.
     [[nodiscard]] std::string history() const {
         std::string text;
         for (size_t i = 0; i < kNames.size(); ++i) text += kNames[i] + " " + std::to_string(used_[i]) + "+" + std::to_string(measured_[i]) + "  ";
@@ -77,7 +77,7 @@ private:
     CodecSelector selector_;
 };
 
-TEST(CodecSelector, IsNearTheBestOnEveryLink) {
+TEST(CodecSelector, isNearTheBestOnEveryLink) {
     for (const Overlap overlap : {Overlap::Serial, Overlap::Pipelined})
         for (const bool dense : {false, true})
             for (const double gbit : kGbit)
@@ -88,7 +88,7 @@ TEST(CodecSelector, IsNearTheBestOnEveryLink) {
                 }
 }
 
-TEST(CodecSelector, FollowsContentAndLink) {
+TEST(CodecSelector, followsContentAndLink) {
     for (const Overlap overlap : {Overlap::Serial, Overlap::Pipelined}) {
         Simulation s(overlap, 0.1);
         s.run(kSparse, 1e9 / 8, 1000);
@@ -100,8 +100,8 @@ TEST(CodecSelector, FollowsContentAndLink) {
     }
 }
 
-// What the other codecs made of the old content says nothing of the new one.
-TEST(CodecSelector, TriesAllAnewWhenTheContentIsAnother) {
+// Results for the old content say nothing about the new one.
+TEST(CodecSelector, measuresAllCodecsAgainForNewContent) {
     const std::vector<Model> before = {{0.15, 0.15, 1}, {0.12, 0.12, 0.05}, {0.2, 0.16, 0.9}, {0.3, 0.15, 0.9}, {0.6, 0.3, 0.9}};
     std::vector<Model> after = before;
     after[1].size = 0.6;
@@ -113,8 +113,8 @@ TEST(CodecSelector, TriesAllAnewWhenTheContentIsAnother) {
     EXPECT_EQ(s.selector().name(s.selector().best(kClass)), "zstd");
 }
 
-// What became larger with the codec in use did so with the others: none is taken for what it was once.
-TEST(CodecSelector, OldSizesOfOthersMoveWithTheContent) {
+// If pieces grow with the current codec, they grow with the others: no old size counts.
+TEST(CodecSelector, scalesOldSizesWithTheContent) {
     const std::vector<Model> before = {{0.15, 0.15, 1}, {0.2, 0.2, 0.02}, {0.2, 0.2, 0.03}, {0.2, 0.2, 0.04}, {0.2, 0.2, 0.05}};
     std::vector<Model> after = before;
     for (size_t i = 1; i < after.size(); ++i) after[i].size *= 10;
@@ -123,7 +123,7 @@ TEST(CodecSelector, OldSizesOfOthersMoveWithTheContent) {
     EXPECT_LT(s.run(after, 0.1e9 / 8, 6), 1.03) << s.history();
 }
 
-TEST(CodecSelector, RawEscapesFromWhatCannotBeCompressed) {
+TEST(CodecSelector, switchesToRawForIncompressibleContent) {
     const std::vector<Model> noise = {{0.15, 0.15, 1}, {0.5, 0.2, 1.001}, {0.8, 0.3, 1.002}, {0.3, 0.15, 1.004}, {0.5, 0.2, 1.001}};
     for (const double gbit : kGbit) {
         Simulation s(Overlap::Serial, 0.1);
@@ -132,7 +132,7 @@ TEST(CodecSelector, RawEscapesFromWhatCannotBeCompressed) {
     }
 }
 
-TEST(CodecSelector, ClassesDoNotDisturbEachOther) {
+TEST(CodecSelector, separatesClasses) {
     CodecSelector selector(kNames);
     const TileClass depth{PlaneFormat::D24S8, Activity::Full, Change::Smooth};
     for (int i = 0; i < 400; ++i)
@@ -154,21 +154,21 @@ TEST(CodecSelector, ClassesDoNotDisturbEachOther) {
     EXPECT_EQ(selector.expectedNsPerByte({PlaneFormat::D32F, Activity::Full, Change::Sharp}, 0), 0);
 }
 
-TEST(CodecSelector, SameReportsGiveSameChoices) {
+TEST(CodecSelector, isDeterministic) {
     Simulation a(Overlap::Pipelined, 0.3, 7), b(Overlap::Pipelined, 0.3, 7);
     for (int i = 0; i < 20; ++i) EXPECT_EQ(a.run(kDense, 1e9, 50), b.run(kDense, 1e9, 50));
 }
 
-TEST(CodecSelector, MeasuresWhatMayBecomeTheBest) {
+TEST(CodecSelector, measuresPossibleWinners) {
     Simulation s(Overlap::Pipelined, 0.1);
     s.run(kDense, 5e9 / 8, 4000);
-    // bitplane is best here; with Zstandard behind it, it is near; Zstandard alone takes five times as long.
+    // bitplane is best here, bitplane-zstd is close, and zstd alone takes five times as long.
     EXPECT_EQ(s.selector().name(s.selector().best(kClass)), "bitplane") << s.history();
     EXPECT_GT(s.measured(2), 4 * s.measured(4)) << s.history();
 }
 
-// On a fast link zstd would be too slow if it made pieces to nothing; on a slow one it may be the best.
-TEST(CodecSelector, LeavesAloneWhatCannotWin) {
+// On a fast link zstd would lose even with an empty output; on a slow one it may be the best.
+TEST(CodecSelector, doesNotMeasureCodecsThatCannotWin) {
     for (const Overlap overlap : {Overlap::Serial, Overlap::Pipelined}) {
         Simulation s(overlap, 0.1);
         s.run(kDense, 100e9 / 8, 4000);
@@ -180,7 +180,7 @@ TEST(CodecSelector, LeavesAloneWhatCannotWin) {
     }
 }
 
-TEST(CodecSelector, OneInterruptedPieceTurnsNothing) {
+TEST(CodecSelector, ignoresOneInterruptedPiece) {
     CodecSelector selector({"raw", "bitplane"}, {.overlap = Overlap::Serial});
     for (int i = 0; i < 400; ++i) {
         const CodecSelector::Choice choice = selector.choose(kClass, kPieceBytes);
@@ -198,7 +198,7 @@ TEST(CodecSelector, OneInterruptedPieceTurnsNothing) {
     }
 }
 
-TEST(TileClass, IsSortedByWhatIsThere) {
+TEST(TileClass, classifiesContent) {
     std::mt19937 random(1);
     for (const PlaneFormat format : {PlaneFormat::Rgba8, PlaneFormat::D24S8, PlaneFormat::D32F}) {
         const auto classOf = [&](Content c) { return classify(makePlane(random, format, c, 256, 64).view()); };
@@ -207,7 +207,7 @@ TEST(TileClass, IsSortedByWhatIsThere) {
         EXPECT_LE(classOf(Content::Sparse).activity, Activity::Flat);
         EXPECT_EQ(classOf(Content::Noise), (TileClass{format, Activity::Full, Change::Sharp}));
         EXPECT_NE(classOf(Content::Surface).change, Change::Sharp); // 8 bits of a slope repeat
-        // Rows of one value each, far from each other.
+        // Rows of one value each, with large differences between rows.
         Plane striped(format, 256, 64);
         for (int32_t y = 0; y < 64; ++y)
             for (int32_t x = 0; x < 256; ++x) {

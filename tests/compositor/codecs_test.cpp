@@ -14,7 +14,7 @@ namespace {
 constexpr std::pair<int32_t, int32_t> kSizes[] = {{1, 1}, {3, 2}, {16, 4}, {17, 5}, {63, 65}, {257, 66}, {301, 129}, {512, 64}};
 constexpr std::byte kUntouched{0xa7};
 
-// A plane amid others: with a stride, and bytes around that nobody may touch.
+// A plane within a larger buffer: with a stride, and guard bytes around it.
 struct Framed {
     explicit Framed(const PlaneShape& s) : strideBytes(s.rowBytes() + 40), memory(strideBytes * static_cast<size_t>(s.height + 2) + 80, kUntouched), shape(s) {}
     MutablePlaneView view() { return {shape.format, shape.width, shape.height, static_cast<ptrdiff_t>(strideBytes), memory.data() + strideBytes + 20}; }
@@ -42,12 +42,13 @@ void expectLossless(Codec& codec, const Plane& plane, const std::string& what) {
     ASSERT_TRUE(size) << what << size.error().message;
     ASSERT_LE(*size, bytes.size() - 64) << what;
     ASSERT_TRUE(std::all_of(bytes.end() - 64, bytes.end(), [](std::byte b) { return b == kUntouched; })) << what << ": wrote behind its bound";
-    const std::vector<std::byte> exact(bytes.begin(), bytes.begin() + static_cast<ptrdiff_t>(*size)); // so a sanitizer sees the first byte behind
+    // lets a sanitizer see the first byte after the end
+    const std::vector<std::byte> exact(bytes.begin(), bytes.begin() + static_cast<ptrdiff_t>(*size));
     auto decoded = codec.decode(exact, target.view());
     ASSERT_TRUE(decoded) << what << decoded.error().message;
     ASSERT_TRUE(samePixels(target.view(), plane.view())) << what;
     ASSERT_TRUE(target.frameIsWhole()) << what << ": wrote outside of the plane";
-    // Tight planes take other ways through some codecs.
+    // Some codecs have separate paths for planes without padding.
     Plane tight(plane.format(), plane.width(), plane.height());
     ASSERT_TRUE(codec.decode(exact, tight.view())) << what;
     ASSERT_EQ(tight, plane) << what;
@@ -55,7 +56,7 @@ void expectLossless(Codec& codec, const Plane& plane, const std::string& what) {
 
 class EveryLosslessCodec : public testing::TestWithParam<std::string> {};
 
-TEST_P(EveryLosslessCodec, GivesBackEveryBit) {
+TEST_P(EveryLosslessCodec, roundTripsEveryBit) {
     CodecRegistry registry;
     auto codec = registry.make(GetParam());
     ASSERT_TRUE(codec);
@@ -66,7 +67,7 @@ TEST_P(EveryLosslessCodec, GivesBackEveryBit) {
                 expectLossless(**codec, makePlane(random, format, content, width, height), GetParam() + " " + nameOf(format) + " content " + std::to_string(static_cast<int>(content)) + " " + std::to_string(width) + "x" + std::to_string(height) + ": ");
 }
 
-TEST_P(EveryLosslessCodec, EmptyPlanesAreNoBytes) {
+TEST_P(EveryLosslessCodec, encodesEmptyPlanesAsNoBytes) {
     CodecRegistry registry;
     auto codec = registry.make(GetParam());
     Plane empty(PlaneFormat::Rgba8, 0, 5);
@@ -78,8 +79,8 @@ TEST_P(EveryLosslessCodec, EmptyPlanesAreNoBytes) {
     EXPECT_FALSE((*codec)->decode(one, empty.view()));
 }
 
-// Every shorter piece, and every plane of another shape: an error or a plane, and nothing outside of it.
-TEST_P(EveryLosslessCodec, WhatIsCutShortIsRefused) {
+// Every truncation, and every plane of another shape, gives an error or a plane, and no access outside.
+TEST_P(EveryLosslessCodec, survivesTruncation) {
     CodecRegistry registry;
     auto codec = registry.make(GetParam());
     std::mt19937 random(2);
@@ -105,7 +106,7 @@ INSTANTIATE_TEST_SUITE_P(Codecs, EveryLosslessCodec, testing::Values("raw", "rle
                              return name;
                          });
 
-TEST(RleSwizzled, StreamsHoldPairsOfBitsTheHighOnesFirst) {
+TEST(RleSwizzled, storesPairsOfBitsWithTheHighOnesFirst) {
     std::mt19937 random(6);
     for (int i = 0; i < 1000; ++i) {
         const auto word = static_cast<uint32_t>(random());
@@ -117,7 +118,7 @@ TEST(RleSwizzled, StreamsHoldPairsOfBitsTheHighOnesFirst) {
     }
 }
 
-TEST(BitplaneCodecs, AreTheSameOnEveryInstructionSet) {
+TEST(BitplaneCodecs, giveEqualBytesOnEveryInstructionSet) {
     CodecRegistry registry;
     std::mt19937 random(3);
     const Plane plane = makePlane(random, PlaneFormat::Rgba8, Content::Mixed, 301, 129);
@@ -131,7 +132,7 @@ TEST(BitplaneCodecs, AreTheSameOnEveryInstructionSet) {
     });
 }
 
-TEST(BitplaneCodecs, TilesOneByOneAreThePlane) {
+TEST(BitplaneCodecs, decodeThePlaneTileByTile) {
     std::mt19937 random(7);
     for (const PlaneFormat format : kEveryFormat)
         for (const auto& [width, height] : kSizes) {
@@ -148,7 +149,7 @@ TEST(BitplaneCodecs, TilesOneByOneAreThePlane) {
         }
 }
 
-TEST(BitplaneCodecs, NoiseIsNotMadeLargerThanByItsTables) {
+TEST(BitplaneCodecs, enlargeNoiseByTheirTablesOnly) {
     CodecRegistry registry;
     std::mt19937 random(4);
     const Plane noise = makePlane(random, PlaneFormat::Rgba8, Content::Noise, 512, 128);
@@ -165,7 +166,7 @@ double worstError(const Plane& a, const Plane& b) {
     return worst;
 }
 
-TEST(LossyCodecs, AreNearOnSmoothPicturesAndKeepAlpha) {
+TEST(LossyCodecs, areAccurateOnSmoothPicturesAndKeepAlpha) {
     CodecRegistry registry;
     std::mt19937 random(5);
     for (const auto& [name, most] : {std::pair{"yuv420", 4.0}, {"jpeg-95", 12.0}, {"jpeg-100", 4.0}})
@@ -188,7 +189,7 @@ TEST(LossyCodecs, AreNearOnSmoothPicturesAndKeepAlpha) {
             }
 }
 
-TEST(CodecRegistry, LossyOnesAreTakenByNameOnly) {
+TEST(CodecRegistry, returnsLossyCodecsByNameOnly) {
     CodecRegistry registry;
     ASSERT_TRUE(registry.make("jpeg-90"));
     for (const PlaneFormat format : kEveryFormat)

@@ -10,7 +10,7 @@
 namespace mural::compositor::test {
 namespace {
 
-TEST(MaskChannels, VectorsAndBytesAgree) {
+TEST(MaskChannels, givesEqualResultsForVectorsAndBytes) {
     forEachTarget([](const char* target) {
         std::mt19937 random(6);
         for (const size_t count : {0, 4, 8, 12, 16, 20, 60, 64, 68, 132, 1000}) {
@@ -25,7 +25,7 @@ TEST(MaskChannels, VectorsAndBytesAgree) {
     });
 }
 
-TEST(InterleavePixels, EveryWayGivesTheSameRow) {
+TEST(InterleavePixels, givesTheSameRowOnEveryPath) {
     forEachTarget([](const char* target) {
         std::mt19937 random(7);
         for (const size_t pixelBytes : {size_t{4}, size_t{8}, size_t{16}})
@@ -53,7 +53,7 @@ TEST(InterleavePixels, EveryWayGivesTheSameRow) {
     });
 }
 
-TEST(FindUnlike, FindsTheFirst) {
+TEST(FindUnlike, findsTheFirst) {
     forEachTarget([](const char* target) {
         std::mt19937 random(8);
         const uint32_t pattern[4] = {1, 2, 3, 0xffffff00}, mask[4] = {0xffffffff, 0xff, 0xffffffff, 0xffffff00};

@@ -10,7 +10,7 @@ namespace {
 
 uintptr_t placeOf(const PixelBytes& bytes) { return reinterpret_cast<uintptr_t>(bytes.data()); }
 
-TEST(PixelBytes, beginWithALineOfTheCacheAndWholePicturesWithALargePage) {
+TEST(PixelBytes, alignToCacheLinesAndHugePages) {
     for (size_t sizeBytes = 1; sizeBytes < size_t{20} << 20; sizeBytes = sizeBytes * 3 + 5) {
         const PixelBytes bytes(sizeBytes);
         EXPECT_EQ(placeOf(bytes) % 64, 0u) << sizeBytes;
@@ -19,8 +19,8 @@ TEST(PixelBytes, beginWithALineOfTheCacheAndWholePicturesWithALargePage) {
     }
 }
 
-// What is small may become large and the other way round: each is freed as it was had.
-TEST(PixelBytes, growAndShrinkWithWhatIsInThem) {
+// Small and large allocations differ: each is freed as it was allocated.
+TEST(PixelBytes, preserveContentWhenResized) {
     PixelBytes bytes(100, std::byte{7});
     for (const size_t sizeBytes : {size_t{5} << 20, size_t{300}, size_t{9} << 20}) {
         bytes.resize(sizeBytes);

@@ -1,4 +1,4 @@
-// Random words and bytes with what goes wrong more often than by chance: extremes, runs, numbers that are equal.
+// Random words and bytes biased towards difficult values: extremes, runs, equal numbers.
 #pragma once
 
 #include <cstddef>

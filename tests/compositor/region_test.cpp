@@ -11,7 +11,7 @@ namespace {
 
 constexpr int32_t kSize = 40;
 
-// The same set as one mark per pixel.
+// The same set with one mark per pixel.
 class Marks {
 public:
     void set(const PixelViewport& area, bool to) {
@@ -27,7 +27,7 @@ private:
 };
 
 void expectSame(const Region& region, const Marks& marks) {
-    ASSERT_EQ(region.area(), marks.area()); // so nothing overlaps
+    ASSERT_EQ(region.area(), marks.area()); // hence nothing overlaps
     for (int32_t y = 0; y < kSize; ++y)
         for (int32_t x = 0; x < kSize; ++x) ASSERT_EQ(region.contains(x, y), marks.at(x, y)) << x << "," << y;
 }
@@ -37,7 +37,7 @@ PixelViewport randomArea(std::mt19937& random) {
     return {x, y, 1 + static_cast<int32_t>(random() % static_cast<unsigned>(kSize - x)), 1 + static_cast<int32_t>(random() % static_cast<unsigned>(kSize - y))};
 }
 
-TEST(Region, IsASetOfPixels) {
+TEST(Region, behavesAsASetOfPixels) {
     std::mt19937 random(1);
     for (int round = 0; round < 50; ++round) {
         Region region;
@@ -63,7 +63,7 @@ TEST(Region, IsASetOfPixels) {
     }
 }
 
-TEST(Region, SimplifyJoinsTiles) {
+TEST(Region, simplifiesTilesToRectangles) {
     Region region;
     for (int32_t y = 0; y < 4; ++y)
         for (int32_t x = 0; x < 5; ++x) region.add({x * 8, y * 8, 8, 8});
@@ -72,7 +72,7 @@ TEST(Region, SimplifyJoinsTiles) {
     EXPECT_EQ(region.bounds(), (PixelViewport{0, 0, 40, 32}));
 }
 
-TEST(RegionOfInterest, HoldsWhatIsDrawnAndLeavesHoles) {
+TEST(RegionOfInterest, containsDrawnPixelsAndOmitsHoles) {
     std::mt19937 random(2);
     for (const PlaneFormat format : {PlaneFormat::Rgba8, PlaneFormat::D24S8, PlaneFormat::Rgba16F, PlaneFormat::Rgba32F}) {
         for (int round = 0; round < 40; ++round) {
@@ -103,10 +103,11 @@ TEST(RegionOfInterest, HoldsWhatIsDrawnAndLeavesHoles) {
     }
 }
 
-TEST(RegionOfInterest, StencilIsNoDepthAndTwoPlanesAreOne) {
+TEST(RegionOfInterest, ignoresStencilAndMergesTwoPlanes) {
     Plane depth(PlaneFormat::D24S8, 64, 16), colour(PlaneFormat::Rgba8, 64, 16);
     const Background far = Background::ofWord(0xffffff00), black = Background::ofWord(0);
-    for (size_t i = 0; i < depth.bytes().size(); ++i) depth.bytes()[i] = i % 4 ? std::byte{0xff} : std::byte(i); // any stencil
+    // any stencil
+    for (size_t i = 0; i < depth.bytes().size(); ++i) depth.bytes()[i] = i % 4 ? std::byte{0xff} : std::byte(i);
     EXPECT_TRUE(findRegionOfInterest(depth.view(), far).empty());
     colour.view().row(3)[4 * 20] = std::byte{1};
     depth.view().row(3)[4 * 50 + 1] = std::byte{1};
@@ -116,7 +117,7 @@ TEST(RegionOfInterest, StencilIsNoDepthAndTwoPlanesAreOne) {
     EXPECT_FALSE(both.contains(0, 0) || both.contains(40, 3));
 }
 
-TEST(TileHash, StrideDoesNotCountAndEveryByteDoes) {
+TEST(TileHash, ignoresStrideButNoByte) {
     std::mt19937 random(3);
     Plane plane(PlaneFormat::Rgba8, 50, 20);
     for (auto& b : plane.bytes()) b = static_cast<std::byte>(random());

@@ -1,4 +1,4 @@
-// Schedules as all ranks would run them, with what each holds of every row: who has drawn it.
+// Simulates schedules on all ranks, with the draws that each rank holds per row.
 #include <algorithm>
 #include <deque>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace mural::compositor {
 namespace {
 
-using Held = std::vector<DrawOrder>; // by row: whose draws; empty: it was given away
+using Held = std::vector<DrawOrder>; // draws per row; empty: sent away
 
 struct Message {
     RowRange rows;
@@ -19,7 +19,7 @@ struct Message {
     int waits = 0;
 };
 
-// Runs a schedule; the first thing that is wrong, or nothing.
+// Executes a schedule; returns the first error, or nothing.
 class Simulation {
 public:
     Simulation(const Schedule& schedule, int32_t rows) : schedule_(schedule), rows_(rows) {
@@ -50,7 +50,7 @@ public:
     }
 
 private:
-    // False: it waits.
+    // Returns false if the rank must wait.
     bool take(size_t rank, const Step& step, int& waits) {
         const auto peer = static_cast<size_t>(step.peer);
         if (peer >= schedule_.size() || peer == rank || step.rows.empty() || step.rows.first < 0 || step.rows.end > rows_) {
@@ -93,7 +93,7 @@ private:
     std::string wrong_;
 };
 
-TEST(Schedule, everyRowOfEveryRankReachesTheCollectorOnceAndInOrder) {
+TEST(Schedule, deliversEveryRowOfEveryRankOnceAndInOrder) {
     for (const Strategy strategy : kEveryStrategy)
         for (int ranks = 1; ranks <= 33; ++ranks)
             for (const int32_t rows : {1, 2, 7, 64, 191, 1080}) {
@@ -103,12 +103,12 @@ TEST(Schedule, everyRowOfEveryRankReachesTheCollectorOnceAndInOrder) {
             }
 }
 
-TEST(Schedule, picturesWithoutRowsNeedNoStep) {
+TEST(Schedule, needsNoStepForPicturesWithoutRows) {
     for (const Strategy strategy : kEveryStrategy)
         for (const auto& steps : makeSchedule(strategy, 5, 0)) EXPECT_TRUE(steps.empty());
 }
 
-// What every rank sends, in whole pictures.
+// The maximum sent by a rank, in whole pictures.
 double mostSent(Strategy strategy, int ranks) {
     constexpr int32_t kRows = 6720;
     double most = 0;
@@ -128,7 +128,7 @@ int stagesOf(Strategy strategy, int ranks) {
     return most;
 }
 
-TEST(Schedule, eachStrategyCarriesWhatItPromises) {
+TEST(Schedule, sendsTheDocumentedAmountPerStrategy) {
     EXPECT_DOUBLE_EQ(mostSent(Strategy::Serial, 8), 1);
     EXPECT_EQ(stagesOf(Strategy::Serial, 8), 1);
     EXPECT_DOUBLE_EQ(mostSent(Strategy::DirectSend, 8), 1); // 7/8 swapped, 1/8 gathered
@@ -137,29 +137,30 @@ TEST(Schedule, eachStrategyCarriesWhatItPromises) {
     EXPECT_EQ(stagesOf(Strategy::BinarySwap, 8), 4);
     EXPECT_DOUBLE_EQ(mostSent(Strategy::TwoThreeSwap, 9), 1); // 2/3 + 2/9 swapped, 1/9 gathered
     EXPECT_EQ(stagesOf(Strategy::TwoThreeSwap, 9), 3);
-    EXPECT_LT(mostSent(Strategy::TwoThreeSwap, 7), 1.5); // cuts that do not fit cost a little
+    EXPECT_LT(mostSent(Strategy::TwoThreeSwap, 7), 1.5); // uneven cuts cost slightly more
     EXPECT_EQ(stagesOf(Strategy::RadixK, 16), 3);           // 8 x 2
     EXPECT_EQ(stagesOf(Strategy::RadixK, 7), 2);
     EXPECT_EQ(stagesOf(Strategy::RadixK, 31), 4); // one is folded, then 6 x 5
     EXPECT_DOUBLE_EQ(mostSent(Strategy::Streaming, 8), 1);
 }
 
-// The check above has to see what goes wrong.
-TEST(Schedule, faultsAreSeen) {
+// The simulation must detect faults.
+TEST(Schedule, isCheckedForFaults) {
     const auto broken = [](auto&& change) {
         Schedule s = makeSchedule(Strategy::BinarySwap, 4, 8);
         change(s);
         return Simulation(s, 8).wrong();
     };
     EXPECT_EQ(broken([](Schedule&) {}), "");
-    EXPECT_NE(broken([](Schedule& s) { s[3].pop_back(); }), "");                                                   // a band is not sent
-    EXPECT_NE(broken([](Schedule& s) { s[0].pop_back(); }), "");                                                   // or not taken
-    EXPECT_NE(broken([](Schedule& s) { std::swap(s[0][0], s[0][1]); s[1] = {s[1][1], s[1][0]}; }), "");            // both wait first
-    EXPECT_NE(broken([](Schedule& s) { s[0][1].kind = Step::Kind::FoldEarlier; }), "");                            // order swapped
+    EXPECT_NE(broken([](Schedule& s) { s[3].pop_back(); }), ""); // a band is not sent
+    EXPECT_NE(broken([](Schedule& s) { s[0].pop_back(); }), ""); // or not received
+    // both wait first
+    EXPECT_NE(broken([](Schedule& s) { std::swap(s[0][0], s[0][1]); s[1] = {s[1][1], s[1][0]}; }), "");
+    EXPECT_NE(broken([](Schedule& s) { s[0][1].kind = Step::Kind::FoldEarlier; }), ""); // order swapped
     EXPECT_NE(broken([](Schedule& s) { s[2][0].peer = 1; }), "");
 }
 
-TEST(Strategy, namesAreRead) {
+TEST(Strategy, parsesNames) {
     for (const Strategy s : kEveryStrategy) EXPECT_EQ(strategyNamed(nameOf(s)), s);
     EXPECT_FALSE(strategyNamed("swap"));
 }

@@ -1,4 +1,4 @@
-// Planes as codecs meet them: noise, nothing, surfaces, edges, repeated rows.
+// Typical planes for codecs: noise, empty, surfaces, edges, repeated rows.
 #pragma once
 
 #include <algorithm>
@@ -42,7 +42,7 @@ inline Plane makePlane(std::mt19937& random, PlaneFormat format, Content content
     const auto words = static_cast<int32_t>(bytesPerPixel(format) / 4);
     for (int32_t y = 0; y < height; ++y)
         for (int32_t x = 0; x < width * words; ++x) {
-            // Pixels of several words repeat with the pixel.
+            // Pixels of several words repeat per pixel.
             const uint32_t word = wordOf(random, format, content, content == Content::Uniform ? 0 : x / words, y);
             std::memcpy(plane.view().row(y) + 4 * x, &word, 4);
         }

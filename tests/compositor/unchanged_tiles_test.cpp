@@ -19,7 +19,7 @@ struct Link {
     }
 };
 
-TEST(UnchangedTiles, OnlyWhatChangedIsSent) {
+TEST(UnchangedTiles, sendsChangesOnly) {
     std::mt19937 random(1);
     Link link;
     Plane plane = makePlane(random, PlaneFormat::Rgba8, Content::Noise, 1000, 300), there(PlaneFormat::Rgba8, 1000, 300);
@@ -41,7 +41,7 @@ TEST(UnchangedTiles, OnlyWhatChangedIsSent) {
     }
 }
 
-TEST(UnchangedTiles, AMissingPlaneIsNoticedAndMendedByARestart) {
+TEST(UnchangedTiles, detectsAMissingPlaneAndRestarts) {
     std::mt19937 random(2);
     Link link;
     Plane plane = makePlane(random, PlaneFormat::D24S8, Content::Surface, 300, 70), there(PlaneFormat::D24S8, 300, 70);
@@ -56,13 +56,13 @@ TEST(UnchangedTiles, AMissingPlaneIsNoticedAndMendedByARestart) {
     link.encoder.restart();
     ASSERT_TRUE(link.decoder.decode(link.encoded(plane), *link.codec, there.view()));
     EXPECT_EQ(there, plane);
-    // Another shape begins anew by itself.
+    // Another shape restarts automatically.
     Plane larger = makePlane(random, PlaneFormat::D24S8, Content::Surface, 301, 70), target(PlaneFormat::D24S8, 301, 70);
     ASSERT_TRUE(link.decoder.decode(link.encoded(larger), *link.codec, target.view()));
     EXPECT_EQ(target, larger);
 }
 
-TEST(UnchangedTiles, DamagedBytesAreRefused) {
+TEST(UnchangedTiles, rejectsDamagedBytes) {
     std::mt19937 random(3);
     Link link;
     const Plane plane = makePlane(random, PlaneFormat::Rgba8, Content::Mixed, 300, 70);

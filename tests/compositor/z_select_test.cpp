@@ -16,7 +16,7 @@ constexpr size_t kCounts[] = {0, 1, 3, 4, 7, 15, 16, 17, 31, 33, 63, 64, 65, 127
 
 uint32_t bits(float value) { return std::bit_cast<uint32_t>(value); }
 
-// Numbers that depths meet, so that ties are common.
+// Few distinct depths, so ties are frequent.
 std::vector<uint32_t> hardDepths(DepthFormat format) {
     if (format == DepthFormat::D24S8) return {0, 1, 0xff, 0x100, 0x101, 0x1ff, 0x7fffff00, 0x80000000, 0x80000001, 0xffffff00, 0xffffffff, 0xfffffe00};
     const auto inf = std::numeric_limits<float>::infinity();
@@ -60,7 +60,7 @@ std::vector<DepthRule> allRules() {
     return rules;
 }
 
-TEST(ZSelect, VectorsAndPixelsAgree) {
+TEST(ZSelect, givesEqualResultsForVectorsAndPixels) {
     forEachTarget([](const char* target) {
         std::mt19937 random(1);
         for (const DepthRule& rule : allRules())
@@ -76,9 +76,9 @@ TEST(ZSelect, VectorsAndPixelsAgree) {
     });
 }
 
-// Rows with something in between that is not the area's; large ones, whose colours go past the caches where they are all taken,
-// begin with a vector and beside one.
-TEST(ZSelect, AreasLeaveWhatIsBetweenTheirRows) {
+// Rows with foreign data in between. In large areas fully won colours use streaming stores; rows start aligned and
+// unaligned.
+TEST(ZSelect, preservesDataBetweenRows) {
     struct Shape {
         size_t columns, rows, gap, begin;
     };
@@ -87,11 +87,11 @@ TEST(ZSelect, AreasLeaveWhatIsBetweenTheirRows) {
         std::mt19937 random(3);
         for (const Shape& shape : kShapes)
             for (const size_t colourBytes : {size_t{4}, size_t{8}, size_t{0}}) {
-                if (colourBytes != 4 && shape.rows > 100) continue; // only words go past the caches
+                if (colourBytes != 4 && shape.rows > 100) continue; // only words use streaming stores
                 const size_t stride = shape.columns + shape.gap, count = shape.begin + stride * shape.rows;
                 using Words = std::vector<uint32_t, LineAligned<uint32_t>>;
                 Words depth(count), sourceDepth(count);
-                for (size_t i = 0; i < count; ++i) { // runs of pixels that one or the other wins, and some that stand alone
+                for (size_t i = 0; i < count; ++i) { // runs of pixels won by either side, and single ones
                     depth[i] = bits(0.5f);
                     sourceDepth[i] = bits(i / 150 % 3 == 0 ? 0.25f : i / 150 % 3 == 1 ? 0.75f : random() % 2 ? 0.25f : 0.75f);
                 }
@@ -123,7 +123,7 @@ TEST(ZSelect, AreasLeaveWhatIsBetweenTheirRows) {
     });
 }
 
-TEST(ZSelect, DepthAloneNeedsNoColour) {
+TEST(ZSelect, worksOnDepthWithoutColour) {
     std::vector<uint32_t> depth(40, bits(0.5f)), source(40, bits(0.25f));
     ZArea row;
     row.depth = depth.data();
@@ -133,14 +133,14 @@ TEST(ZSelect, DepthAloneNeedsNoColour) {
     EXPECT_EQ(depth, source);
 }
 
-// One pixel against another, whatever the vectors: `wins` says whether the source did.
+// Compares one pixel with another, independent of vectors; returns whether the source wins.
 bool sourceWins(const DepthRule& rule, uint32_t source, uint32_t there) {
     Pixels a{{there}, std::vector<std::byte>(4, std::byte{1})}, b{{source}, std::vector<std::byte>(4, std::byte{2})};
     zSelect(rowOf(a, b, 4), rule);
     return a.colour[0] == std::byte{2};
 }
 
-TEST(ZSelect, TheDrawOrderDecidesTies) {
+TEST(ZSelect, resolvesTiesByDrawOrder) {
     for (const DepthFormat format : {DepthFormat::D24S8, DepthFormat::D32F}) {
         const uint32_t half = format == DepthFormat::D24S8 ? 0x80000000u : bits(0.5f);
         for (const auto& [function, laterWins] : {std::pair{DepthFunction::Less, false}, {DepthFunction::LessOrEqual, true}, {DepthFunction::Greater, false}, {DepthFunction::GreaterOrEqual, true}}) {
@@ -150,7 +150,7 @@ TEST(ZSelect, TheDrawOrderDecidesTies) {
     }
 }
 
-TEST(ZSelect, StencilBitsDoNotDecide) {
+TEST(ZSelect, ignoresStencilBits) {
     const DepthRule less{DepthFunction::Less, DepthFormat::D24S8, true, Coverage::All, 0};
     EXPECT_FALSE(sourceWins(less, 0x12345600, 0x123456ff)); // smaller as a word
     const DepthRule lessOrEqual{DepthFunction::LessOrEqual, DepthFormat::D24S8, true, Coverage::All, 0};
@@ -160,7 +160,7 @@ TEST(ZSelect, StencilBitsDoNotDecide) {
     EXPECT_FALSE(sourceWins(greater, 0x123456ff, 0x12345600));
 }
 
-TEST(ZSelect, NanLosesAndMinusZeroIsZero) {
+TEST(ZSelect, makesNanLoseAndMinusZeroEqualZero) {
     const uint32_t nan = 0x7fc00000, other = 0xffc00001;
     for (const DepthFunction f : {DepthFunction::Less, DepthFunction::LessOrEqual, DepthFunction::Greater, DepthFunction::GreaterOrEqual})
         for (const bool later : {false, true}) {
@@ -169,24 +169,24 @@ TEST(ZSelect, NanLosesAndMinusZeroIsZero) {
                 EXPECT_FALSE(sourceWins(rule, nan, bits(number)));
                 EXPECT_TRUE(sourceWins(rule, bits(number), nan));
             }
-            EXPECT_EQ(sourceWins(rule, nan, other), !later); // the earlier stays
+            EXPECT_EQ(sourceWins(rule, nan, other), !later); // the earlier one stays
         }
     EXPECT_FALSE(sourceWins({DepthFunction::Less, DepthFormat::D32F, true, Coverage::All, 0}, bits(-0.0f), bits(0.0f)));
     EXPECT_TRUE(sourceWins({DepthFunction::LessOrEqual, DepthFormat::D32F, true, Coverage::All, 0}, bits(0.0f), bits(-0.0f)));
 }
 
-TEST(ZSelect, WhatWasNotDrawnNeverWins) {
+TEST(ZSelect, makesUndrawnPixelsLose) {
     const uint32_t far24 = 0xffffff00;
     const DepthRule clear{DepthFunction::LessOrEqual, DepthFormat::D24S8, true, Coverage::NotClear, far24};
     EXPECT_FALSE(sourceWins(clear, far24, far24));
     EXPECT_FALSE(sourceWins({DepthFunction::Always, DepthFormat::D24S8, true, Coverage::NotClear, far24}, far24, 0x100));
-    // A sky at the clear depth, drawn: its stencil says so.
+    // A sky drawn at the clear depth, marked in the stencil.
     const DepthRule stencil{DepthFunction::LessOrEqual, DepthFormat::D24S8, true, Coverage::Stencil, 0};
     EXPECT_TRUE(sourceWins(stencil, far24 | 1, far24));
     EXPECT_FALSE(sourceWins(stencil, far24, far24 | 1));
 }
 
-// What nobody drew is the same in all parts.
+// Undrawn pixels are equal in all parts.
 void clearUndrawn(Pixels& p, const DepthRule& rule) {
     for (size_t i = 0; i < p.depth.size(); ++i) {
         const bool drawn = rule.coverage == Coverage::All || (rule.coverage == Coverage::Stencil ? (p.depth[i] & 0xff) != 0 : rule.format == DepthFormat::D24S8 ? p.depth[i] >> 8 != rule.clearBits >> 8 : p.depth[i] != rule.clearBits);
@@ -196,8 +196,8 @@ void clearUndrawn(Pixels& p, const DepthRule& rule) {
     }
 }
 
-// All ways to pair neighbours give one result, and for order functions it is what drawing one after the other gives.
-TEST(ZSelect, PairingDoesNotMatter) {
+// All ways to pair neighbours give one result; for order functions it equals drawing in sequence.
+TEST(ZSelect, isIndependentOfPairing) {
     std::mt19937 random(7);
     for (const DepthRule& base : allRules()) {
         if (!decomposable(base.function)) continue;

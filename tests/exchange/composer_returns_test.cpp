@@ -17,13 +17,13 @@ using compositor::Strategy;
 struct Happening {
     enum class Kind { Lost, Returned } kind;
     int rank = 0;
-    uint64_t before = 0; // which picture
-    std::set<int> absent = {}; // as the head says when a node has returned
+    uint64_t before = 0; // number of the picture
+    std::set<int> absent = {}; // as announced by the head when a node has returned
 };
-constexpr int64_t kPartMs = 5000; // of a test that fails
+constexpr int64_t kPartMs = 5000; // reached only by a failing test
 constexpr auto kLost = Happening::Kind::Lost, kReturned = Happening::Kind::Returned;
 
-// Some pictures of the same scene, with what happens between them.
+// Several pictures of one scene, with events between them.
 class Story {
 public:
     Story(const Scene& scene, Strategy strategy, uint64_t pictures, std::vector<Happening> happenings)
@@ -37,7 +37,7 @@ public:
     [[nodiscard]] int sent(uint64_t picture) const { return sent_[picture]; }
 
 private:
-    // One after the other all nodes that have this rank.
+    // Runs all incarnations of this rank in sequence.
     void live(int rank) {
         FakeNode node{rank, 0};
         uint64_t next = 0;
@@ -53,10 +53,10 @@ private:
             node = network_.comeAgain(rank);
         }
     }
-    // Up to which picture that node lives.
+    // Returns the picture at which that node is lost.
     uint64_t take(FakeNode node, uint64_t from) {
         const int ranks = static_cast<int>(scene_.parts.size());
-        std::map<int, int> lives; // those that it meets
+        std::map<int, int> lives; // incarnations of its peers
         for (const Happening& h : happenings_) {
             if (node.life > 0 && h.kind == kReturned && h.rank == node.rank && livesAt(h) == node.life) break;
             if (node.life > 0 && h.kind == kReturned) lives[h.rank] = livesAt(h);
@@ -71,7 +71,7 @@ private:
                 if (h.kind != kReturned) continue;
                 member = member || h.rank == node.rank;
                 if (!member) continue;
-                network_.awaitLife(h.rank, livesAt(h)); // nobody is a member before it is connected
+                network_.awaitLife(h.rank, livesAt(h)); // a member is always connected
                 composer.returned(h.rank, static_cast<uint32_t>(livesAt(h)), h.absent);
             }
             PicturePart part = scene_.parts[static_cast<size_t>(node.rank)];
@@ -83,7 +83,7 @@ private:
         }
         return pictures_.size();
     }
-    // Of that rank, with this return.
+    // The incarnation of that rank after this return.
     [[nodiscard]] int livesAt(const Happening& happening) const {
         int lives = 0;
         for (const Happening& h : happenings_) {
@@ -95,18 +95,18 @@ private:
 
     const Scene& scene_;
     const Strategy strategy_;
-    const std::vector<Happening> happenings_; // in their order
+    const std::vector<Happening> happenings_; // in order
     FakeNetwork network_;
-    std::vector<PicturePart> pictures_; // by the collector; empty ones: it was not there
+    std::vector<PicturePart> pictures_; // by the collector; empty while it was lost
     std::vector<int> sent_;
 };
 
-// Does the collector say something about each picture, as all strategies have it but the serial one?
+// Returns whether the collector announces each picture, as all strategies except serial do.
 bool goesBy(Strategy strategy, const Story& story, uint64_t picture, int others) {
     return strategy == Strategy::Serial || story.sent(picture) - story.sent(picture - 1) >= others;
 }
 
-TEST(ComposerReturns, eachRankAfterItsLossWasNoticed) {
+TEST(ComposerReturns, workForEachRankAfterItsLossWasDetected) {
     std::mt19937 random(53);
     for (const Strategy strategy : kEveryStrategy)
         for (const int ranks : {2, 3, 6})
@@ -122,8 +122,8 @@ TEST(ComposerReturns, eachRankAfterItsLossWasNoticed) {
             }
 }
 
-// Nobody has waited for it meanwhile: what the collector said of the picture before is still unread.
-TEST(ComposerReturns, beforeItsLossWasNoticed) {
+// No node has waited for it meanwhile: the collector's announcement of the previous picture is still unread.
+TEST(ComposerReturns, workBeforeTheLossWasDetected) {
     std::mt19937 random(59);
     const Scene scene = sceneOf(random, 4, ruleOf(DepthFunction::Less, false), 60, 110);
     for (const Strategy strategy : kEveryStrategy)
@@ -137,7 +137,7 @@ TEST(ComposerReturns, beforeItsLossWasNoticed) {
         }
 }
 
-TEST(ComposerReturns, whileAnotherIsLost) {
+TEST(ComposerReturns, workWhileAnotherNodeIsLost) {
     std::mt19937 random(61);
     const Scene scene = sceneOf(random, 4, ruleOf(DepthFunction::GreaterOrEqual, false), 60, 110);
     for (const Strategy strategy : kEveryStrategy)
@@ -152,8 +152,8 @@ TEST(ComposerReturns, whileAnotherIsLost) {
         }
 }
 
-// The head has not noticed yet: as after any loss, only what that one draws is missing two pictures later.
-TEST(ComposerReturns, whileAnotherIsLostOfWhichTheHeadDoesNotKnow) {
+// The head has not detected the loss yet: as after any loss, only that node's draws are missing two pictures later.
+TEST(ComposerReturns, workWhileAnotherLossIsUnknownToTheHead) {
     std::mt19937 random(67);
     const Scene scene = sceneOf(random, 5, ruleOf(DepthFunction::Less, false), 60, 110);
     for (const Strategy strategy : kEveryStrategy) {
@@ -162,7 +162,7 @@ TEST(ComposerReturns, whileAnotherIsLostOfWhichTheHeadDoesNotKnow) {
     }
 }
 
-TEST(ComposerReturns, theSameOneAgainAndAgain) {
+TEST(ComposerReturns, workRepeatedlyForOneNode) {
     std::mt19937 random(71);
     const Scene scene = sceneOf(random, 3, ruleOf(DepthFunction::Less, false), 60, 110);
     for (const Strategy strategy : kEveryStrategy)

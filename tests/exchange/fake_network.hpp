@@ -1,5 +1,5 @@
-// A network in memory between nodes that are threads. Nodes can be lost, and come again: what was for one that was lost, or from it, is
-// not for, or from, the one that takes its place.
+// An in-memory network between nodes that are threads. Nodes can be lost and return: messages from and to a lost node
+// do not reach its successor.
 #pragma once
 
 #include <chrono>
@@ -16,7 +16,7 @@ namespace mural::test {
 
 struct FakeNode {
     int rank = 0;
-    int life = 0; // counts how often it came again
+    int life = 0; // incarnation
     friend auto operator<=>(const FakeNode&, const FakeNode&) = default;
 };
 
@@ -43,7 +43,7 @@ public:
         gone_.insert(node);
         changed_.notify_all();
     }
-    // In the place of the one that was lost.
+    // Replaces the lost node.
     FakeNode comeAgain(int rank) {
         const std::lock_guard lock(mutex_);
         changed_.notify_all();
@@ -57,7 +57,7 @@ public:
         const std::lock_guard lock(mutex_);
         return sent_[rank];
     }
-    // Nothing gets from one to the other, neither way.
+    // Drops all messages between the two nodes.
     void cut(int a, int b) { cut_ = {a, b}; }
 
 private:
@@ -72,7 +72,7 @@ private:
 
 class FakeRoutes final : public PartRoutes {
 public:
-    // lives: of those that it has connected to; 0 where none is named.
+    // lives: incarnations of the connected peers; 0 if not listed.
     FakeRoutes(FakeNetwork& network, FakeNode own, std::map<int, int> lives = {}) : network_(network), own_(own), lives_(std::move(lives)) {}
     Result<void> send(int rank, std::vector<std::byte> message, Deadline) override {
         network_.put(own_, peer(rank), std::move(message));

@@ -9,8 +9,8 @@ void fold(PicturePart& into, const PicturePart& other, FoldSide side, const Fold
     foldRow({into.colour.data(), into.depth.data(), other.colour.data(), other.depth.data(), into.colour.size()}, side, rule);
 }
 
-// Three nodes draw a third each; however they are paired, it is the picture of one that draws all.
-TEST(PartFold, isThePictureOfOneMachineHoweverPartsArePaired) {
+// Three nodes draw a third each; any pairing gives the picture of a single node.
+TEST(PartFold, givesOneNodesPictureForAnyPairing) {
     std::mt19937 random(5);
     for (const auto function : kOrders)
         for (const bool deep : {false, true})
@@ -39,8 +39,8 @@ TEST(PartFold, isThePictureOfOneMachineHoweverPartsArePaired) {
             }
 }
 
-// Of 32 bits the lowest count too.
-TEST(PartFold, deepBuffersAreComparedWhole) {
+// All 32 bits count.
+TEST(PartFold, comparesAllBitsOfDeepBuffers) {
     const FoldRule rule = ruleOf(compositor::DepthFunction::Less, true);
     PicturePart into = clearedPart(1, 1, rule), later = into;
     draw(into, 0, 1, 0x80000001u, rule);

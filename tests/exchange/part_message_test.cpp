@@ -36,7 +36,7 @@ Result<PartState> unpackInto(PicturePart& into, std::span<const std::byte> messa
     });
 }
 
-TEST(PartMessage, rowsArriveAsTheyWere) {
+TEST(PartMessage, roundTripsRows) {
     std::mt19937 random(11);
     PlaneEncoder encoder;
     for (int round = 0; round < 60; ++round) {
@@ -56,11 +56,11 @@ TEST(PartMessage, rowsArriveAsTheyWere) {
                 ASSERT_EQ(back.colour[back.at(x, y)], sent ? part.colour[part.at(x, y)] : rule.clearedColour);
                 ASSERT_EQ(back.depth[back.at(x, y)], sent ? part.depth[part.at(x, y)] : rule.clearedDepth);
             }
-        encoder.transferred(1 << 20, round % 2 ? 1'000'000 : 100'000'000); // links that change, so that codecs do
+        encoder.transferred(1 << 20, round % 2 ? 1'000'000 : 100'000'000); // the rate changes, so codecs do
     }
 }
 
-TEST(PartMessage, whatIsNotDrawnIsNotSent) {
+TEST(PartMessage, omitsUndrawnPixels) {
     const FoldRule rule = ruleOf(DepthFunction::Less, false);
     PlaneEncoder encoder;
     PicturePart part = clearedPart(1920, 1080, rule);
@@ -69,7 +69,7 @@ TEST(PartMessage, whatIsNotDrawnIsNotSent) {
     EXPECT_LT(packPart(part, {0, 1080}, rule, PartState::Complete, encoder).size(), 1000u);
 }
 
-TEST(PartMessage, noiseGrowsByNoMoreThanItsHeads) {
+TEST(PartMessage, enlargesNoiseByItsHeadersOnly) {
     std::mt19937 random(2);
     const FoldRule rule = ruleOf(DepthFunction::Less, true);
     PicturePart part = clearedPart(300, 200, rule);
@@ -79,7 +79,7 @@ TEST(PartMessage, noiseGrowsByNoMoreThanItsHeads) {
     for (int i = 0; i < 20; ++i) EXPECT_LE(packPart(part, {0, 200}, rule, PartState::Complete, encoder).size(), boundBytesOf(part.id.box, {0, 200}));
 }
 
-TEST(PartMessage, otherPicturesAreToldApart) {
+TEST(PartMessage, distinguishesPictures) {
     const FoldRule rule = ruleOf(DepthFunction::Less, false);
     PlaneEncoder encoder;
     PicturePart part = clearedPart(64, 64, rule);
@@ -90,7 +90,7 @@ TEST(PartMessage, otherPicturesAreToldApart) {
     EXPECT_EQ(unpackInto(part, message, {0, 32}, rule).error().message, "parts of different pictures came together: this one is incomplete");
 }
 
-TEST(PartMessage, damageIsAnErrorOfOneLine) {
+TEST(PartMessage, reportsDamageInOneLine) {
     std::mt19937 random(3);
     const FoldRule rule = ruleOf(DepthFunction::Less, false);
     PlaneEncoder encoder;

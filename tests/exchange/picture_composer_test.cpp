@@ -1,4 +1,4 @@
-// Nodes as threads, with a network in memory.
+// Nodes as threads, with an in-memory network.
 #include <atomic>
 #include <gtest/gtest.h>
 #include <mutex>
@@ -45,7 +45,7 @@ Outcome compose(const Scene& scene, Strategy strategy, const std::string& plant 
     return outcome;
 }
 
-TEST(PictureComposer, everyStrategyGivesThePictureOfOneMachine) {
+TEST(PictureComposer, givesOneNodesPictureWithEveryStrategy) {
     std::mt19937 random(23);
     for (const Strategy strategy : kEveryStrategy)
         for (int ranks = 1; ranks <= 9; ++ranks) {
@@ -58,8 +58,8 @@ TEST(PictureComposer, everyStrategyGivesThePictureOfOneMachine) {
         }
 }
 
-// Pictures follow each other; what is left of one must not stand in the next.
-TEST(PictureComposer, picturesFollowEachOther) {
+// Remains of one picture must not appear in the next.
+TEST(PictureComposer, composesConsecutivePictures) {
     std::mt19937 random(29);
     for (const Strategy strategy : kEveryStrategy) {
         FakeNetwork network;
@@ -85,18 +85,19 @@ TEST(PictureComposer, picturesFollowEachOther) {
     }
 }
 
-TEST(PictureComposer, plantedFaultsAreSeen) {
+TEST(PictureComposer, showsPlantedFaults) {
     std::mt19937 random(31);
     const Scene scene = sceneOf(random, 4, ruleOf(DepthFunction::LessOrEqual, false), 97, 150);
     for (const Strategy strategy : kEveryStrategy)
         for (const char* plant : {"range", "tie", "order", "band"}) {
-            if (std::string(plant) == "band" && (strategy == Strategy::Serial || strategy == Strategy::Streaming)) continue; // they have no bands to gather
+            // these strategies gather no bands
+            if (std::string(plant) == "band" && (strategy == Strategy::Serial || strategy == Strategy::Streaming)) continue;
             EXPECT_NE(compose(scene, strategy, plant).picture.colour, scene.whole.colour) << nameOf(strategy) << " " << plant;
         }
 }
 
-// What it drew is missing; nobody waits for ever, and it is said once by each that waited for it.
-TEST(PictureComposer, aLostNodeHoldsUpNobody) {
+// The node's draws are missing; no node waits forever, and each node that waited reports the loss once.
+TEST(PictureComposer, doesNotBlockOnALostNode) {
     std::mt19937 random(37);
     const Scene scene = sceneOf(random, 5, ruleOf(DepthFunction::Less, false), 60, 90);
     for (const Strategy strategy : kEveryStrategy)
@@ -107,7 +108,7 @@ TEST(PictureComposer, aLostNodeHoldsUpNobody) {
         }
 }
 
-// Three pictures by nodes of which one is gone (lost), or two can't reach each other (cut); the last one.
+// Composes three pictures with a lost node, or with two nodes that cannot connect (cut); returns the last one.
 PicturePart thirdPicture(const Scene& scene, Strategy strategy, int lost, std::pair<int, int> cut) {
     FakeNetwork network;
     if (lost >= 0) network.lose({lost, 0});
@@ -132,8 +133,8 @@ PicturePart thirdPicture(const Scene& scene, Strategy strategy, int lost, std::p
     return last;
 }
 
-// From the next picture on, or the one after, nothing is missing but what the lost node draws.
-TEST(PictureComposer, afterALossOnlyWhatTheLostNodeDrawsIsMissing) {
+// From the second picture after the loss at the latest, only the lost node's draws are missing.
+TEST(PictureComposer, missesOnlyTheLostNodesDrawsAfterALoss) {
     std::mt19937 random(43);
     const Scene scene = sceneOf(random, 7, ruleOf(DepthFunction::LessOrEqual, false), 60, 150);
     for (const Strategy strategy : kEveryStrategy)
@@ -143,15 +144,15 @@ TEST(PictureComposer, afterALossOnlyWhatTheLostNodeDrawsIsMissing) {
         }
 }
 
-TEST(PictureComposer, nodesThatCanNotReachEachOtherSendToTheCollector) {
+TEST(PictureComposer, sendsToTheCollectorWhenNodesCannotConnect) {
     std::mt19937 random(47);
     const Scene scene = sceneOf(random, 6, ruleOf(DepthFunction::Less, false), 60, 150);
     for (const Strategy strategy : kEveryStrategy)
         for (const auto& cut : {std::pair(1, 2), std::pair(2, 3), std::pair(3, 5)}) EXPECT_EQ(thirdPicture(scene, strategy, -1, cut).colour, scene.whole.colour) << nameOf(strategy);
 }
 
-// One that is silent: those who wait for it are not taken for lost themselves.
-TEST(PictureComposer, aSilentNodeIsTheOnlyOneThatIsLost) {
+// Nodes that wait for a silent node must not count as lost themselves.
+TEST(PictureComposer, losesOnlyTheSilentNode) {
     std::mt19937 random(41);
     const Scene scene = sceneOf(random, 5, ruleOf(DepthFunction::Less, false), 60, 90);
     for (const Strategy strategy : kEveryStrategy) {

@@ -14,14 +14,14 @@ ChannelSecret secretOf(unsigned char fill) {
 
 std::vector<std::byte> bytesOf(size_t count, int value) { return std::vector<std::byte>(count, static_cast<std::byte>(value)); }
 
-TEST(PictureExchange, namesSayRankAndLife) {
+TEST(PictureExchange, namesRankAndIncarnation) {
     const auto there = [](PictureExchange::Name name) { return PictureExchange::nameOf(PictureExchange::textOf(name)) == name; };
     EXPECT_TRUE(there({12, 0}));
     EXPECT_TRUE(there({0, 31}));
     for (const char* other : {"range", "range3", "range3.", "range3.x", "range3.1x", "range-1.0", "range.1", "node3.0"}) EXPECT_FALSE(PictureExchange::nameOf(other)) << other;
 }
 
-TEST(PictureExchange, bothSendAtOnceMoreThanBuffersHold) {
+TEST(PictureExchange, letsBothEndsSendMoreThanBuffersHold) {
     PictureExchange low({0, 0}, secretOf(1)), high({2, 0}, secretOf(1));
     ASSERT_TRUE(low.listen(true));
     ASSERT_TRUE(high.connectTo(0, "127.0.0.1", low.port(), Deadline::inMs(5000)));
@@ -39,7 +39,7 @@ TEST(PictureExchange, bothSendAtOnceMoreThanBuffersHold) {
     EXPECT_EQ(low.takeTransfer(2).bytes, 0u);
 }
 
-TEST(PictureExchange, whoKnowsNotTheSecretIsNotLetIn) {
+TEST(PictureExchange, rejectsAWrongSecret) {
     PictureExchange low({0, 0}, secretOf(1)), stranger({1, 0}, secretOf(2));
     ASSERT_TRUE(low.listen(true));
     EXPECT_FALSE(stranger.connectTo(0, "127.0.0.1", low.port(), Deadline::inMs(5000)));
@@ -47,14 +47,14 @@ TEST(PictureExchange, whoKnowsNotTheSecretIsNotLetIn) {
     EXPECT_EQ(low.receive(1, 100, Deadline::inMs(300)).error().message, "range 2 is gone");
 }
 
-TEST(PictureExchange, whoIsGoneIsSaidAtOnce) {
+TEST(PictureExchange, reportsALostPeerAtOnce) {
     PictureExchange low({0, 0}, secretOf(1));
     ASSERT_TRUE(low.listen(true));
     {
         PictureExchange high({1, 0}, secretOf(1));
         ASSERT_TRUE(high.connectTo(0, "127.0.0.1", low.port(), Deadline::inMs(5000)));
         ASSERT_TRUE(high.send(0, bytesOf(1 << 20, 7), Deadline::inMs(5000)));
-    } // what was sent still comes
+    } // sent data still arrives
     EXPECT_TRUE(low.receive(1, 1 << 20, Deadline::inMs(5000)));
     const int64_t beganNs = monotonicNowNs();
     EXPECT_FALSE(low.receive(1, 1 << 20, Deadline::inMs(20000)));
@@ -62,7 +62,7 @@ TEST(PictureExchange, whoIsGoneIsSaidAtOnce) {
     EXPECT_LT(monotonicNowNs() - beganNs, 5 * kNsPerS);
 }
 
-TEST(PictureExchange, whatIsTooLargeEndsTheConnection) {
+TEST(PictureExchange, closesTheConnectionAfterAnOversizedMessage) {
     PictureExchange low({0, 0}, secretOf(1)), high({1, 0}, secretOf(1));
     ASSERT_TRUE(low.listen(true));
     ASSERT_TRUE(high.connectTo(0, "127.0.0.1", low.port(), Deadline::inMs(5000)));
@@ -71,8 +71,8 @@ TEST(PictureExchange, whatIsTooLargeEndsTheConnection) {
     EXPECT_EQ(low.receive(1, 100, Deadline::inMs(5000)).error().message, "range 2 is gone");
 }
 
-// What is known of the one before stays as it is until it is said that the newcomer takes part.
-TEST(PictureExchange, whoComesBackTakesTheOldPlaceWhenItIsTold) {
+// The predecessor's state remains until the newcomer is announced as a participant.
+TEST(PictureExchange, replacesANodeWhenItsSuccessorIsAnnounced) {
     PictureExchange low({0, 0}, secretOf(1));
     ASSERT_TRUE(low.listen(true));
     {
@@ -82,7 +82,7 @@ TEST(PictureExchange, whoComesBackTakesTheOldPlaceWhenItIsTold) {
         EXPECT_TRUE(low.receive(1, 100, Deadline::inMs(5000)));
     }
     {
-        PictureExchange onItsWay({1, 1}, secretOf(1)); // lost before it was a member
+        PictureExchange onItsWay({1, 1}, secretOf(1)); // lost before it became a member
         ASSERT_TRUE(onItsWay.connectTo(0, "127.0.0.1", low.port(), Deadline::inMs(5000)));
     }
     PictureExchange again({1, 2}, secretOf(1));
@@ -95,8 +95,8 @@ TEST(PictureExchange, whoComesBackTakesTheOldPlaceWhenItIsTold) {
     EXPECT_EQ(*again.receive(0, 100, Deadline::inMs(5000)), bytesOf(10, 3));
 }
 
-// It was a member, and is lost again, and the next one is here: what it had sent is read all the same.
-TEST(PictureExchange, whoIsBehindReadsOfEachLifeWhatItSent) {
+// It was a member, is lost again, and its successor is connected: its sent data is still readable.
+TEST(PictureExchange, deliversDataOfEachIncarnation) {
     PictureExchange low({0, 0}, secretOf(1));
     ASSERT_TRUE(low.listen(true));
     for (int life = 0; life < 4; ++life) {
@@ -105,7 +105,7 @@ TEST(PictureExchange, whoIsBehindReadsOfEachLifeWhatItSent) {
         ASSERT_TRUE(high.send(0, bytesOf(10, life), Deadline::inMs(5000)));
     }
     for (int life = 0; life < 4; ++life) {
-        if (life == 2) continue; // it never became one
+        if (life == 2) continue; // it never became a member
         if (life > 0) low.renew(1, static_cast<uint32_t>(life));
         auto came = low.receive(1, 100, Deadline::inMs(5000));
         ASSERT_TRUE(came) << life << ": " << came.error().message;
@@ -114,29 +114,29 @@ TEST(PictureExchange, whoIsBehindReadsOfEachLifeWhatItSent) {
     EXPECT_FALSE(low.receive(1, 100, Deadline::inMs(5000)));
 }
 
-// The collector, too, goes to the others; of those it knows from their welcome which life they are in.
-TEST(PictureExchange, theLowestRankConnectsWhenItComesBack) {
+// A returning collector connects to the others too, and learns their incarnation from the welcome message.
+TEST(PictureExchange, connectsTheLowestRankWhenItReturns) {
     PictureExchange high({2, 5}, secretOf(1));
     ASSERT_TRUE(high.listen(true));
     PictureExchange again({0, 1}, secretOf(1));
     ASSERT_TRUE(again.connectTo(2, "127.0.0.1", high.port(), Deadline::inMs(5000)));
     high.renew(0, 1);
-    again.renew(2, 5); // it is the one that is known
+    again.renew(2, 5); // it is the connected one
     ASSERT_TRUE(again.send(2, bytesOf(10, 4), Deadline::inMs(5000)));
     EXPECT_EQ(*high.receive(0, 100, Deadline::inMs(5000)), bytesOf(10, 4));
-    again.renew(2, 6); // and this one has not come
+    again.renew(2, 6); // this incarnation has not connected
     EXPECT_FALSE(again.send(2, bytesOf(10, 4), Deadline::inMs(5000)));
 }
 
-// Nobody waits for a connection that was not made in time.
-TEST(PictureExchange, whoDidNotComeIsGoneAtOnce) {
+// No node waits for a connection that was not made in time.
+TEST(PictureExchange, treatsAMissingPeerAsLostAtOnce) {
     PictureExchange low({0, 0}, secretOf(1)), again({0, 1}, secretOf(1));
     ASSERT_TRUE(low.listen(true));
-    low.renew(1, 1); // never seen
+    low.renew(1, 1); // never connected
     {
         PictureExchange before({2, 0}, secretOf(1));
         ASSERT_TRUE(before.connectTo(0, "127.0.0.1", low.port(), Deadline::inMs(5000)));
-        low.renew(2, 1); // back, but not here
+        low.renew(2, 1); // returned, but not connected here
     }
     const int64_t beganNs = monotonicNowNs();
     for (const int rank : {1, 2}) {
@@ -147,8 +147,8 @@ TEST(PictureExchange, whoDidNotComeIsGoneAtOnce) {
     EXPECT_LT(monotonicNowNs() - beganNs, 5 * kNsPerS);
 }
 
-// Who is through with connecting is there for the other, however soon that asks.
-TEST(PictureExchange, whoIsWelcomedIsThere) {
+// After connecting, a node is known to its peer, however soon the peer asks.
+TEST(PictureExchange, knowsAPeerOnceItIsWelcomed) {
     PictureExchange low({0, 0}, secretOf(1));
     ASSERT_TRUE(low.listen(true));
     for (uint32_t life = 1; life < 60; ++life) {

@@ -1,4 +1,5 @@
-// Pictures as nodes draw them: cleared, and then drawn by a depth function, with many equal depths and some at the clear depth.
+// Pictures as nodes draw them: cleared, then drawn with a depth function, with many equal depths and some at the clear
+// depth.
 #pragma once
 
 #include <random>
@@ -10,7 +11,7 @@ namespace mural::test {
 
 constexpr compositor::DepthFunction kOrders[] = {compositor::DepthFunction::Less, compositor::DepthFunction::LessOrEqual, compositor::DepthFunction::Greater, compositor::DepthFunction::GreaterOrEqual};
 
-// As OpenGL hands out 24 bits of depth with 32.
+// As OpenGL converts 24 bits of depth to 32.
 inline uint32_t widened(uint32_t depth24) { return depth24 << 8 | depth24 >> 16; }
 
 inline FoldRule ruleOf(compositor::DepthFunction function, bool deep) {
@@ -27,7 +28,7 @@ inline bool passes(compositor::DepthFunction f, uint32_t later, uint32_t earlier
     }
 }
 
-// One fragment, by the depth test.
+// Draws one fragment with the depth test.
 inline void draw(PicturePart& part, size_t at, uint32_t colour, uint32_t depth, const FoldRule& rule) {
     if (!passes(rule.function, depth, part.depth[at])) return;
     part.colour[at] = colour;
@@ -47,7 +48,7 @@ struct Fragment {
     uint32_t colour, depth;
 };
 
-// Few depths, so that many are equal; at the clear depth in another colour than that of the clear.
+// Few depths, so many are equal; at the clear depth with another colour than the clear's.
 inline std::vector<Fragment> fragmentsOf(std::mt19937& random, size_t pixels, const FoldRule& rule) {
     std::vector<Fragment> fragments;
     for (size_t i = 0; i < pixels; ++i) {

@@ -1,4 +1,4 @@
-// One picture as a machine draws it, and as several do that share its draws.
+// One picture drawn by a single node, and by several that divide its draws.
 #pragma once
 
 #include "tests/exchange/test_parts.hpp"
@@ -10,7 +10,7 @@ namespace mural::test {
 
 struct Scene {
     FoldRule rule;
-    PicturePart whole; // of one machine
+    PicturePart whole; // of a single node
     std::vector<PicturePart> parts;
 };
 
@@ -18,7 +18,7 @@ inline Scene sceneOf(std::mt19937& random, int ranks, const FoldRule& rule, int3
     Scene s{rule, clearedPart(width, height, rule), {}};
     for (int rank = 0; rank < ranks; ++rank) {
         s.parts.push_back(clearedPart(width, height, rule));
-        if (rank % 5 == 4) continue; // one that has drawn nothing
+        if (rank % 5 == 4) continue; // a node without draws
         for (const Fragment& f : fragmentsOf(random, s.whole.colour.size(), rule)) {
             draw(s.whole, f.at, f.colour, f.depth, rule);
             draw(s.parts.back(), f.at, f.colour, f.depth, rule);
@@ -27,7 +27,7 @@ inline Scene sceneOf(std::mt19937& random, int ranks, const FoldRule& rule, int3
     return s;
 }
 
-// By the collector, of what is there.
+// Folds the remaining parts, as the collector does.
 inline PicturePart foldedWithout(const Scene& scene, const std::set<int>& lost) {
     PicturePart picture = scene.parts[0];
     for (size_t rank = 1; rank < scene.parts.size(); ++rank) {

@@ -1,4 +1,4 @@
-// Opens backends for tests; what is missing on this machine is said, never passed over in silence.
+// Opens backends for tests. Reports those that this machine lacks.
 #pragma once
 
 #include <memory>
@@ -12,8 +12,7 @@
 
 namespace mural::test {
 
-// OSMesa has left Mesa upstream: without its library its tests are skipped, with the reason. EGL, GLX
-// and Xvfb must be there.
+// Mesa has removed OSMesa: without its library its tests are skipped with a reason. EGL, GLX and Xvfb are required.
 class BackendTest : public testing::Test {
 protected:
     void open(const std::string& backend) {
@@ -36,7 +35,7 @@ protected:
     std::unique_ptr<gl::Platform> platform_;
 };
 
-// A context with a surface of its kind, current.
+// A current context with a matching surface.
 struct Drawable {
     std::unique_ptr<gl::Surface> surface;
     std::unique_ptr<gl::Context> context;

@@ -1,4 +1,4 @@
-// What every backend promises, on each of them: versions, buffers, errors that name the wish, probing.
+// The contract of every backend: versions, buffers, errors that name the requested feature, probing.
 #include <algorithm>
 #include <thread>
 
@@ -40,7 +40,7 @@ protected:
         return surface ? "" : surface.error().message;
     }
 
-    // The red that both names of a buffer show after clearing one of them.
+    // The red component that both names of a buffer show after one of them was cleared.
     static int redOf(const GlFunctions& gl) {
         uint8_t pixel[4] = {1, 2, 3, 4};
         gl.readPixels(3, 3, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel);
@@ -81,14 +81,14 @@ protected:
     }
 };
 
-TEST_P(Backends, describeNamesBackendAndDriver) {
+TEST_P(Backends, describeBackendAndDriver) {
     const std::string text = platform_->describe();
     const std::string name = isOsmesa() ? "OSMesa" : GetParam() == "egl" ? "EGL" : "GLX";
     EXPECT_EQ(text.rfind(name, 0), 0u) << text;
     EXPECT_NE(text.find("."), std::string::npos) << text;
 }
 
-TEST_P(Backends, probeTellsVersionAndExtensions) {
+TEST_P(Backends, probeVersionAndExtensions) {
     for (const bool core : {false, true}) {
         auto probed = gl::probe(*platform_, gl::Api::Desktop, core);
         ASSERT_TRUE(probed) << probed.error().message;
@@ -98,7 +98,8 @@ TEST_P(Backends, probeTellsVersionAndExtensions) {
         EXPECT_FALSE(probed->has("GL_ARB_debug"));
         EXPECT_FALSE(probed->renderer.empty());
         EXPECT_GE(probed->maxSurfaceSize, 4096);
-        EXPECT_TRUE(!isMesas() || (probed->version.find("Core") != std::string::npos) == core) << probed->version; // others do not say
+        // others do not report it
+        EXPECT_TRUE(!isMesas() || (probed->version.find("Core") != std::string::npos) == core) << probed->version;
     }
     for (const gl::Api api : {gl::Api::Es1, gl::Api::Es2}) {
         auto probed = gl::probe(*platform_, api, false);
@@ -110,15 +111,15 @@ TEST_P(Backends, probeTellsVersionAndExtensions) {
     }
 }
 
-TEST_P(Backends, probeLeavesNoContextCurrent) {
+TEST_P(Backends, leaveNoContextCurrentAfterAProbe) {
     ASSERT_TRUE(gl::probe(*platform_, gl::Api::Desktop, false));
     if (!isMesas()) GTEST_SKIP() << "contexts of other drivers stay current until others are";
     const GlFunctions gl(find());
     EXPECT_EQ(gl.getString(GL_VERSION), nullptr);
 }
 
-// As glXCreateContext: the latest version that is compatible.
-TEST_P(Backends, oldVersionsGiveTheLatestCompatibleOne) {
+// Like glXCreateContext: the latest compatible version.
+TEST_P(Backends, createTheLatestCompatibleVersion) {
     const int latest = gl::probe(*platform_, gl::Api::Desktop, false)->glVersion;
     for (const auto& [major, minor] : {std::pair{1, 0}, {1, 5}, {2, 1}, {3, 0}, {3, 1}, {3, 2}, {4, 5}}) {
         Drawable drawable(*platform_, version(major, minor));
@@ -132,7 +133,7 @@ TEST_P(Backends, oldVersionsGiveTheLatestCompatibleOne) {
     }
 }
 
-TEST_P(Backends, coreProfilesAreCore) {
+TEST_P(Backends, createCoreProfiles) {
     for (const auto& [major, minor] : {std::pair{3, 1}, {3, 2}, {3, 3}, {4, 5}}) {
         Drawable drawable(*platform_, version(major, minor, true));
         ASSERT_EQ(drawable.error, "");
@@ -140,12 +141,12 @@ TEST_P(Backends, coreProfilesAreCore) {
         GLint profile = 0;
         gl.getIntegerv(GL_CONTEXT_PROFILE_MASK, &profile);
         EXPECT_EQ(profile, GL_CONTEXT_CORE_PROFILE_BIT) << major << "." << minor;
-        gl.begin(GL_TRIANGLES); // gone from core
+        gl.begin(GL_TRIANGLES); // removed from core
         EXPECT_EQ(gl.getError(), static_cast<GLenum>(GL_INVALID_OPERATION));
     }
 }
 
-TEST_P(Backends, flagsReachTheContext) {
+TEST_P(Backends, passFlagsToTheContext) {
     if (isOsmesa()) {
         gl::ContextConfig forward = version(3, 3, true);
         forward.forwardCompatible = true;
@@ -169,7 +170,7 @@ TEST_P(Backends, flagsReachTheContext) {
     EXPECT_EQ((flags & GL_CONTEXT_FLAG_ROBUST_ACCESS_BIT) != 0, config.robust);
 }
 
-TEST_P(Backends, framebuffersHaveTheBitsAskedFor) {
+TEST_P(Backends, createFramebuffersWithTheRequestedBits) {
     const int depths[][2] = {{16, 0}, {24, 0}, {24, 8}};
     for (const auto& [depth, stencil] : depths)
         for (const int alpha : {0, 8}) {
@@ -189,11 +190,12 @@ TEST_P(Backends, framebuffersHaveTheBitsAskedFor) {
             EXPECT_EQ(bits(GL_ALPHA_BITS), drawable.surface->hiddenAlpha() ? 8 : alpha);
             EXPECT_EQ(bits(GL_DEPTH_BITS), drawable.surface->config().depth);
             EXPECT_EQ(bits(GL_STENCIL_BITS), drawable.surface->config().stencil);
-            EXPECT_EQ(isMesas() ? gl::whatDiffers(drawable.surface->config(), config.surface) : "", ""); // others may have no 16 bits
+            // others may lack 16 bits
+            EXPECT_EQ(isMesas() ? gl::whatDiffers(drawable.surface->config(), config.surface) : "", "");
         }
 }
 
-TEST_P(Backends, impossibleWishesAreNamed) {
+TEST_P(Backends, nameImpossibleRequests) {
     gl::SurfaceConfig config;
     config.alpha = 3;
     EXPECT_NE(errorOf(config).find("alpha 3"), std::string::npos);
@@ -213,8 +215,8 @@ TEST_P(Backends, impossibleWishesAreNamed) {
     EXPECT_NE(errorOf(bits).find("alpha 3"), std::string::npos);
 }
 
-// A program's window on the head may have bits that no window here has: it is drawn all the same, and told.
-TEST_P(Backends, bitsThatAreNotThereAreTheNearest) {
+// A program's window on the head may have bits that no window here has: it is drawn anyway, with a message.
+TEST_P(Backends, useTheNearestBitsForMissingOnes) {
     gl::ContextConfig config = version(2, 1);
     config.surface.depth = 23;
     config.surface.samples = 77;
@@ -229,13 +231,13 @@ TEST_P(Backends, bitsThatAreNotThereAreTheNearest) {
     gl.getIntegerv(GL_DEPTH_BITS, &bits);
     EXPECT_EQ(bits, 24);
     clearRed(gl, 200);
-    if (there.samples == 0) { // else reading would need a resolve
+    if (there.samples == 0) { // otherwise reading would need a resolve
         EXPECT_EQ(redOf(gl), 200);
     }
 }
 
-// See README.md of nodes/gl: the table that it prints is kept by this test.
-TEST_P(Backends, namesOfTheColorBuffers) {
+// Verifies the table in the README.md of nodes/gl.
+TEST_P(Backends, nameTheColorBuffersAsDocumented) {
     for (const bool core : {false, true}) {
         gl::ContextConfig config = version(core ? 3 : 1, core ? 3 : 0, core);
         Drawable drawable(*platform_, config);
@@ -272,8 +274,8 @@ TEST_P(Backends, namesOfTheColorBuffers) {
     }
 }
 
-// One buffer under two names is drawn to once: blending must not add up.
-TEST_P(Backends, frontAndBackBlendOnce) {
+// One buffer with two names is drawn to once: blending must not accumulate.
+TEST_P(Backends, blendFrontAndBackOnce) {
     Drawable drawable(*platform_, version(1, 0));
     ASSERT_EQ(drawable.error, "");
     if (drawable.surface->colorBuffers() == gl::ColorBuffers::OneNamedBack) GTEST_SKIP() << "one buffer, with one name";
@@ -294,8 +296,8 @@ TEST_P(Backends, frontAndBackBlendOnce) {
     EXPECT_EQ(redOf(gl), 30);
 }
 
-TEST_P(Backends, backIsTheOnlyNameInEs) {
-    if (isOsmesa()) return; // has no ES: see impossibleWishesAreNamed
+TEST_P(Backends, acceptOnlyTheNameBackInEs) {
+    if (isOsmesa()) return; // has no ES: see nameImpossibleRequests
     Drawable drawable(*platform_, version(3, 0, false, gl::Api::Es2));
     ASSERT_EQ(drawable.error, "");
     const GlFunctions gl(find());
@@ -309,7 +311,7 @@ TEST_P(Backends, backIsTheOnlyNameInEs) {
     EXPECT_NE(gl.getError(), static_cast<GLenum>(GL_NO_ERROR));
 }
 
-TEST_P(Backends, shareGroupsShareObjects) {
+TEST_P(Backends, shareObjectsInShareGroups) {
     Drawable first(*platform_, version(2, 1));
     ASSERT_EQ(first.error, "");
     const GlFunctions gl(find());
@@ -332,8 +334,8 @@ TEST_P(Backends, shareGroupsShareObjects) {
     EXPECT_FALSE(gl.isTexture(texture));
 }
 
-// A window's new size is a new surface; the context and its objects stay.
-TEST_P(Backends, resizeByANewSurface) {
+// A window's new size needs a new surface; the context and its objects stay.
+TEST_P(Backends, resizeWithANewSurface) {
     gl::ContextConfig config = version(1, 0);
     Drawable drawable(*platform_, config);
     ASSERT_EQ(drawable.error, "");
@@ -363,7 +365,7 @@ TEST_P(Backends, resizeByANewSurface) {
     }
 }
 
-TEST_P(Backends, theLargestSurfaceDrawsToItsCorners) {
+TEST_P(Backends, drawToTheCornersOfTheLargestSurface) {
     gl::ContextConfig config = version(1, 0);
     config.surface.width = 16384;
     config.surface.height = 64;
@@ -384,7 +386,7 @@ TEST_P(Backends, theLargestSurfaceDrawsToItsCorners) {
     }
 }
 
-TEST_P(Backends, drawAndReadSurfacesMayDiffer) {
+TEST_P(Backends, supportDifferentDrawAndReadSurfaces) {
     gl::ContextConfig config = version(1, 0);
     Drawable drawable(*platform_, config);
     ASSERT_EQ(drawable.error, "");
@@ -402,14 +404,14 @@ TEST_P(Backends, drawAndReadSurfacesMayDiffer) {
     }
     ASSERT_TRUE(mixed) << mixed.error().message;
     EXPECT_EQ(redOf(gl), 40);
-    clearRed(gl, 60); // into other
+    clearRed(gl, 60); // into the other surface
     EXPECT_EQ(redOf(gl), 40);
     ASSERT_TRUE(platform_->makeCurrent(drawable.context.get(), drawable.surface.get(), other->get()));
     EXPECT_EQ(redOf(gl), 60);
 }
 
-// Some platforms of EGL grant surfaces with samples that have no buffers (Mesa 25.0: the surfaceless one).
-TEST_P(Backends, surfacesWithSamplesHaveTheirBuffers) {
+// Some EGL platforms grant multisampled surfaces without buffers (Mesa 25.0: the surfaceless one).
+TEST_P(Backends, provideBuffersForMultisampledSurfaces) {
     if (isOsmesa()) GTEST_SKIP() << "this backend has no surfaces with samples";
     gl::ContextConfig config = version(2, 1);
     config.surface.samples = 4;
@@ -422,8 +424,8 @@ TEST_P(Backends, surfacesWithSamplesHaveTheirBuffers) {
     EXPECT_EQ(gl.getError(), GLenum{GL_NO_ERROR});
 }
 
-// Objects can be made before there is a window.
-TEST_P(Backends, contextWithoutSurface) {
+// Objects can be created before there is a window.
+TEST_P(Backends, createContextsWithoutASurface) {
     auto context = platform_->createContext(version(3, 3, true), nullptr);
     ASSERT_TRUE(context);
     auto current = platform_->makeCurrent(context->get(), nullptr, nullptr);
@@ -436,7 +438,7 @@ TEST_P(Backends, contextWithoutSurface) {
     EXPECT_EQ(gl.getError(), static_cast<GLenum>(GL_NO_ERROR));
 }
 
-TEST_P(Backends, oneContextServesSurfacesOfSeveralBits) {
+TEST_P(Backends, serveSurfacesWithDifferentBitsFromOneContext) {
     gl::ContextConfig config = version(1, 0);
     Drawable drawable(*platform_, config);
     ASSERT_EQ(drawable.error, "");
@@ -458,8 +460,8 @@ TEST_P(Backends, oneContextServesSurfacesOfSeveralBits) {
     EXPECT_EQ(alpha, 8);
 }
 
-// A picture that one thread has drawn, seen by another in a buffer of the same share group.
-TEST_P(Backends, readersSeeWhatTheirShareGroupHasWritten) {
+// A picture drawn by one thread, read by another from a buffer of the same share group.
+TEST_P(Backends, showWritesToReadersInTheShareGroup) {
     gl::ContextConfig config = version(3, 2);
     if (GetParam() != "egl") {
         Drawable drawn(*platform_, version(2, 1));
@@ -504,7 +506,7 @@ TEST_P(Backends, readersSeeWhatTheirShareGroupHasWritten) {
             unmapBuffer(GL_PIXEL_PACK_BUFFER);
             (*reader)->leave();
         });
-        gl.clear(GL_COLOR_BUFFER_BIT); // this thread draws on meanwhile
+        gl.clear(GL_COLOR_BUFFER_BIT); // this thread continues to draw
         other.join();
     }
     EXPECT_EQ(gl.getError(), static_cast<GLenum>(GL_NO_ERROR));
@@ -513,7 +515,7 @@ TEST_P(Backends, readersSeeWhatTheirShareGroupHasWritten) {
 INSTANTIATE_TEST_SUITE_P(Each, Backends, testing::Values("egl", "osmesa", "glx"),
                          [](const auto& chosen) { return chosen.param; });
 
-TEST(OpenPlatform, namesAreChecked) {
+TEST(OpenPlatform, checksNames) {
     auto none = gl::openPlatform("metal");
     ASSERT_FALSE(none);
     EXPECT_NE(none.error().message.find("metal"), std::string::npos);
@@ -522,7 +524,7 @@ TEST(OpenPlatform, namesAreChecked) {
     EXPECT_EQ((*some)->describe().rfind("EGL", 0), 0u);
 }
 
-TEST(OpenPlatform, glxSaysWhatIsMissing) {
+TEST(OpenPlatform, reportsWhatGlxLacks) {
     unsetenv("DISPLAY");
     auto none = gl::openPlatform("glx");
     ASSERT_FALSE(none);
@@ -533,7 +535,7 @@ TEST(OpenPlatform, glxSaysWhatIsMissing) {
     EXPECT_NE(none.error().message.find(":not-there"), std::string::npos);
 }
 
-TEST(OpenPlatform, severalOfOneKindDoNotDisturbEachOther) {
+TEST(OpenPlatform, supportsSeveralInstancesOfOneKind) {
     auto first = gl::openPlatform("egl");
     ASSERT_TRUE(first);
     Drawable drawable(**first, version(1, 0));

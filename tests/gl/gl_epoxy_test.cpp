@@ -1,6 +1,6 @@
-// libepoxy looks for the driver's functions once per process, in the context that happens to be current when a
-// command is first called. The order of contexts, and what a stream names, must not matter. ctest runs each test
-// in a process of its own: so each begins with a libepoxy that has found nothing.
+// libepoxy resolves the driver's functions once per process, in the context current at the first call of a command.
+// Neither the order of contexts nor the names in a stream may matter. ctest runs each test in its own process, so each
+// starts with an unresolved libepoxy.
 #include <array>
 #include <dlfcn.h>
 
@@ -51,7 +51,7 @@ protected:
         EXPECT_TRUE(platform_->makeCurrent(nullptr, nullptr, nullptr));
     }
 
-    // Draws in a context of each kind, through libepoxy first: the pictures are the driver's own.
+    // Draws in a context of each kind, with libepoxy first. The pictures must equal the driver's own.
     void drawInAll(const std::string& backend, const Kinds& kinds) {
         open(backend);
         if (HasFatalFailure()) return;
@@ -71,7 +71,7 @@ protected:
     }
 };
 
-TEST_F(Epoxy, givesTheCommandsOfEglAndGlx) {
+TEST_F(Epoxy, providesTheCommandsOfEglAndGlx) {
     for (const char* backend : {"egl", "glx"}) {
         open(backend);
         Drawable drawable(*platform_, kind(gl::Api::Desktop, 1, 0));
@@ -81,17 +81,17 @@ TEST_F(Epoxy, givesTheCommandsOfEglAndGlx) {
     }
 }
 
-// Names that libepoxy may take for others, what may stand between Begin and End, what libepoxy does not know.
-TEST_F(Epoxy, leavesTheRestToTheDriver) {
+// Names that libepoxy may confuse, commands allowed between Begin and End, and commands unknown to libepoxy.
+TEST_F(Epoxy, leavesOtherCommandsToTheDriver) {
     open("egl");
     for (const char* name : {"glBindVertexArray", "glBindFramebufferEXT", "glAttachObjectARB", "glBlendBarrier", "glBegin", "glEnd",
                              "glVertexAttrib4Nub", "glColor3hNV", "glTexCoordP2uiv", "glShadingRateQCOM", "glNoSuchCommand", "eglGetError"})
         EXPECT_FALSE(isEpoxys(platform_->getProcAddress(name))) << name;
 }
 
-TEST_F(Epoxy, drawsTheDriversPicturesWhenEsComesFirst) { drawInAll("egl", esFirst()); }
+TEST_F(Epoxy, drawsTheDriversPicturesWithEsFirst) { drawInAll("egl", esFirst()); }
 
-TEST_F(Epoxy, drawsTheDriversPicturesWhenDesktopComesFirst) { drawInAll("egl", desktopFirst()); }
+TEST_F(Epoxy, drawsTheDriversPicturesWithDesktopFirst) { drawInAll("egl", desktopFirst()); }
 
 TEST_F(Epoxy, drawsTheDriversPicturesInEglThenGlx) {
     drawInAll("egl", desktopFirst());
@@ -103,8 +103,8 @@ TEST_F(Epoxy, drawsTheDriversPicturesInGlxThenEgl) {
     drawInAll("egl", esFirst());
 }
 
-// By itself libepoxy ends the process ("No provider of ... found").
-TEST_F(Epoxy, livesWhenTheDriverLacksACommand) {
+// libepoxy itself would abort the process ("No provider of ... found").
+TEST_F(Epoxy, survivesACommandThatTheDriverLacks) {
     constexpr std::array kLacking{"glResizeBuffersMESA", "glFlushVertexArrayRangeNV", "glFinishTextureSUNX", "glSwapAPPLE",
                                   "glFlushRasterSGIX", "glEndOcclusionQueryNV", "glVDPAUFiniNV"};
     size_t next = 0;

@@ -3,7 +3,7 @@
 namespace mural::test {
 namespace {
 
-// Takes the type of what it is assigned to.
+// Converts to the type of its destination.
 struct AnyProc {
     void (*proc)();
     template <class Function> operator Function() const { return reinterpret_cast<Function>(proc); }

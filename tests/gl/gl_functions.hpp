@@ -1,9 +1,9 @@
-// The functions of GL that the test scenes draw with, resolved as each backend resolves them.
+// The GL functions of the test scenes, resolved as each backend resolves them.
 #pragma once
 
 #include <functional>
 
-#define GL_GLEXT_PROTOTYPES // for the types only: nothing links to libGL here
+#define GL_GLEXT_PROTOTYPES // for the types only: libGL is not linked
 #include <GL/gl.h>
 #include <GL/glext.h>
 
@@ -11,7 +11,7 @@ namespace mural::test {
 
 using FindProc = std::function<void (*(const char*))()>;
 
-// Fixed-point entry points and the rest of ES 1 are not needed: its float forms are the desktop's.
+// Without fixed-point entry points and the rest of ES 1: its float commands are the desktop's.
 struct GlFunctions {
     explicit GlFunctions(const FindProc& find);
 

@@ -1,5 +1,5 @@
-// OSMesa keeps buffers in contexts; ours behave as surfaces: their contents go with them from context
-// to context, and a context finds each surface as it left it.
+// OSMesa keeps buffers in contexts; ours behave as surfaces: their contents move between contexts, and a context finds
+// each surface unchanged.
 #include <algorithm>
 
 #include "tests/gl/backend_test.hpp"
@@ -21,7 +21,7 @@ protected:
         EXPECT_TRUE(platform_->makeCurrent(nullptr, nullptr, nullptr));
     }
 
-    // Each copy may move a 24-bit depth by one unit: see osmesa_pixels.hpp.
+    // Each copy may change a 24-bit depth by one unit: see osmesa_pixels.hpp.
     static void expectCopied(Picture expected, Picture actual, int copies, int depthBits = 24) {
         ASSERT_EQ(expected.depth.size(), actual.depth.size());
         uint32_t largest = 0;
@@ -42,7 +42,7 @@ protected:
     gl::ContextConfig config_;
 };
 
-TEST_F(OsmesaSurfaces, oneContextKeepsTwoSurfacesApart) {
+TEST_F(OsmesaSurfaces, areSeparateInOneContext) {
     Drawable first(*platform_, config_);
     ASSERT_EQ(first.error, "");
     const Picture drawn = draw();
@@ -61,7 +61,7 @@ TEST_F(OsmesaSurfaces, oneContextKeepsTwoSurfacesApart) {
     expectCopied(pink, read(), 1);
 }
 
-TEST_F(OsmesaSurfaces, contentsGoFromContextToContext) {
+TEST_F(OsmesaSurfaces, keepContentsBetweenContexts) {
     for (const int depth : {16, 24}) {
         config_.surface.depth = depth;
         config_.surface.stencil = depth == 24 ? 8 : 0;
@@ -85,7 +85,7 @@ TEST_F(OsmesaSurfaces, contentsGoFromContextToContext) {
     }
 }
 
-TEST_F(OsmesaSurfaces, rgb565SurvivesToo) {
+TEST_F(OsmesaSurfaces, keepRgb565) {
     config_.surface.red = config_.surface.blue = 5;
     config_.surface.green = 6;
     config_.surface.alpha = 0;
@@ -99,8 +99,8 @@ TEST_F(OsmesaSurfaces, rgb565SurvivesToo) {
     ASSERT_TRUE(platform_->makeCurrent(nullptr, nullptr, nullptr));
 }
 
-// The copies must leave no trace in the state that pixels pass through.
-TEST_F(OsmesaSurfaces, glStateIsUntouched) {
+// The copies must not change the pixel transfer state.
+TEST_F(OsmesaSurfaces, preserveGlState) {
     Drawable first(*platform_, config_);
     ASSERT_EQ(first.error, "");
     const Picture drawn = draw();
@@ -141,7 +141,7 @@ TEST_F(OsmesaSurfaces, glStateIsUntouched) {
 }
 
 // Mesa 22.3.6 keeps the orientation of a framebuffer object across a clear; the copies use one.
-TEST_F(OsmesaSurfaces, firstSceneAfterACopyIsNotFlipped) {
+TEST_F(OsmesaSurfaces, doNotFlipTheFirstSceneAfterACopy) {
     Drawable first(*platform_, config_);
     ASSERT_EQ(first.error, "");
     const Picture once = draw();
@@ -149,14 +149,14 @@ TEST_F(OsmesaSurfaces, firstSceneAfterACopyIsNotFlipped) {
     ASSERT_TRUE(other);
     const GlFunctions gl(find());
     use(first.context, **other);
-    gl.disable(GL_BLEND); // as a new context has it
+    gl.disable(GL_BLEND); // as in a new context
     gl.disable(GL_TEXTURE_2D);
     gl.lineWidth(1);
     use(first.context, *first.surface); // restored by a copy
     EXPECT_EQ(difference(once, draw()), "");
 }
 
-TEST_F(OsmesaSurfaces, hiddenAlphaStartsOpaque) {
+TEST_F(OsmesaSurfaces, startWithOpaqueHiddenAlpha) {
     config_.surface.alpha = 0;
     Drawable drawable(*platform_, config_);
     ASSERT_EQ(drawable.error, "");
@@ -171,7 +171,7 @@ TEST_F(OsmesaSurfaces, hiddenAlphaStartsOpaque) {
     EXPECT_EQ(clear[3], 0.0f);
 }
 
-TEST_F(OsmesaSurfaces, surfaceMayGoBeforeItsContext) {
+TEST_F(OsmesaSurfaces, mayBeDestroyedBeforeTheirContext) {
     Drawable drawable(*platform_, config_);
     ASSERT_EQ(drawable.error, "");
     draw();
@@ -187,8 +187,8 @@ TEST_F(OsmesaSurfaces, surfaceMayGoBeforeItsContext) {
     next.value().reset();
 }
 
-// 16-bit colours have no window on a 24-bit display: so the backends are compared with each other.
-TEST_F(OsmesaSurfaces, rgb565EqualsEgl) {
+// A 24-bit display has no 16-bit windows, so the backends are compared with each other.
+TEST_F(OsmesaSurfaces, matchEglInRgb565) {
     config_.surface.red = config_.surface.blue = 5;
     config_.surface.green = 6;
     config_.surface.alpha = 0;

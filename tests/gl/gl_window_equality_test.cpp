@@ -1,4 +1,4 @@
-// The promise of the platforms: bit for bit the picture of a native window on the same machine.
+// The guarantee of the platforms: bit-identical to the picture of a native window on the same machine.
 #include <cstring>
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 struct Case {
     const char* name;
     gl::ContextConfig context; // surface: the bits
-    bool osmesa;               // OSMesa has these bits and this kind of context
+    bool osmesa; // OSMesa supports these bits and this kind of context
     bool egl = true;
 };
 
@@ -87,7 +87,7 @@ protected:
         return picture;
     }
 
-    // What was read back is what stands on the screen.
+    // Verifies that the read picture is on the screen.
     void checkShown(NativeWindow& window, const Picture& picture) {
         const std::vector<uint32_t> shown = window.show();
         ASSERT_EQ(shown.size() * 4, picture.color.size());
@@ -109,7 +109,7 @@ protected:
     void compare(const std::string& backend, const Picture& native) {
         platform_.reset();
         open(backend);
-        if (!platform_) return; // failed or skipped, and said so
+        if (!platform_) return; // failed or skipped, with a message
         Picture picture;
         {
             Drawable drawable(*platform_, GetParam().context);
@@ -121,7 +121,7 @@ protected:
     }
 };
 
-TEST_P(WindowEquality, everyBackendDrawsTheNativePicture) {
+TEST_P(WindowEquality, holdsForEveryBackend) {
     auto started = xvfb_.start();
     ASSERT_TRUE(started) << started.error().message;
     const Picture native = drawNative();
@@ -137,8 +137,8 @@ INSTANTIATE_TEST_SUITE_P(Configs, WindowEquality, testing::ValuesIn(kCases),
 
 class EglWindowEquality : public BackendTest, public testing::WithParamInterface<Case> {};
 
-// GLES programs and Wayland-minded ones make their windows with EGL.
-TEST_P(EglWindowEquality, eglPbufferDrawsTheNativePicture) {
+// GLES programs and toolkits with Wayland support create their windows with EGL.
+TEST_P(EglWindowEquality, holdsForEglPbuffers) {
     auto started = xvfb_.start();
     ASSERT_TRUE(started) << started.error().message;
     const gl::ContextConfig& config = GetParam().context;

@@ -9,7 +9,7 @@
 namespace mural::test {
 namespace {
 
-// The X side, the same for both.
+// The X side, common to both.
 class XWindow {
 public:
     XWindow() : display_(XOpenDisplay(nullptr)) {}
@@ -104,7 +104,7 @@ private:
         return chosen;
     }
 
-    // As old programs do for version 1, as new ones do for the rest.
+    // With the old call for version 1, with the new one for others.
     GLXContext makeContext(GLXFBConfig config, const gl::ContextConfig& wish) const {
         if (wish.api == gl::Api::Desktop && wish.major == 1)
             return glXCreateNewContext(x_.display(), config, GLX_RGBA_TYPE, nullptr, True);

@@ -1,5 +1,4 @@
-// A window on an X display, drawn to as any program would: with GLX or EGL and nothing of ours. It is
-// the reference that the platforms' pictures are compared with.
+// A window on an X display, drawn to by plain GLX or EGL without our code: the reference for the platforms' pictures.
 #pragma once
 
 #include <memory>
@@ -12,13 +11,13 @@ namespace mural::test {
 class NativeWindow {
 public:
     virtual ~NativeWindow() = default;
-    // Its context is current until it goes.
+    // Its context is current during its lifetime.
     [[nodiscard]] virtual FindProc find() const = 0;
-    // Swaps and reads the window's pixels back from the X server: [y][x][rgb as 0xrrggbb], origin upper left.
+    // Swaps and reads the window's pixels from the X server: [y][x][rgb as 0xrrggbb], origin upper left.
     virtual std::vector<uint32_t> show() = 0;
 };
 
-// On the display that DISPLAY names; the window is of context.surface's size and bits.
+// On the display named by DISPLAY, with the size and bits of context.surface.
 Result<std::unique_ptr<NativeWindow>> openGlxWindow(const gl::ContextConfig& context);
 Result<std::unique_ptr<NativeWindow>> openEglWindow(const gl::ContextConfig& context);
 

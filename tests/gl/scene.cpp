@@ -9,7 +9,7 @@
 namespace mural::test {
 namespace {
 
-// The same numbers everywhere, unlike those of the standard library.
+// Equal numbers on all platforms, unlike the standard library's.
 class Random {
 public:
     float unit() {
@@ -67,7 +67,7 @@ GLuint makeTexture(const GlFunctions& gl, bool mipmaps) {
     return texture;
 }
 
-// Blending reads the framebuffer's alpha: 1 where it has none.
+// Blending reads the framebuffer's alpha: 1 if there is none.
 void blendWithTarget(const GlFunctions& gl) {
     gl.enable(GL_BLEND);
     gl.blendFunc(GL_DST_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
@@ -99,7 +99,7 @@ void drawLinesAndPoints(const GlFunctions& gl, Random& random) {
     immediate(gl, GL_POINTS, triangles(random, 20, 0.2f, 0.9f));
 }
 
-// As text of the nineties: 8 rows of bits at a raster position.
+// Bitmap text: 8 rows of bits at a raster position.
 void drawText(const GlFunctions& gl, Random& random) {
     gl.disable(GL_TEXTURE_2D);
     gl.pixelStorei(GL_UNPACK_ALIGNMENT, 1);
@@ -164,7 +164,7 @@ void drawEs1(const GlFunctions& gl, const gl::SurfaceConfig& config) {
     arrays(GL_POINTS, triangles(random, 10, 0.5f, 1));
 }
 
-// GLSL 1.00 serves ES 2 and 3; core profiles get the same in 1.50.
+// GLSL 1.00 works in ES 2 and 3; core profiles use equal shaders in 1.50.
 std::array<std::string, 2> shaders(bool core) {
     const std::string in = core ? "in" : "attribute", to = core ? "out" : "varying", from = core ? "in" : "varying";
     const std::string sample = core ? "texture" : "texture2D", color = core ? "result" : "gl_FragColor";
@@ -233,7 +233,7 @@ std::string drawShaded(const GlFunctions& gl, const gl::SurfaceConfig& config, b
     return failed;
 }
 
-// Through a framebuffer object with one sample, as a swap resolves into the window.
+// Reads through a framebuffer object with one sample, as a swap resolves into the window.
 std::vector<uint8_t> readResolved(const GlFunctions& gl, const gl::SurfaceConfig& config) {
     std::vector<uint8_t> color(static_cast<size_t>(config.width) * static_cast<size_t>(config.height) * 4);
     GLuint renderbuffer = 0, framebuffer = 0;

@@ -1,5 +1,5 @@
-// Small pictures that touch what differs between framebuffers: depth, stencil, blending with the
-// framebuffer's alpha, stipples, lines, points, bitmaps, derivatives, gl_FragCoord.
+// Small pictures that cover differences between framebuffers: depth, stencil, blending with the framebuffer's alpha,
+// stipples, lines, points, bitmaps, derivatives, gl_FragCoord.
 #pragma once
 
 #include <cstdint>
@@ -11,27 +11,28 @@
 
 namespace mural::test {
 
-// All that can be read of a framebuffer. Planes that it lacks, or that the API can't read, are empty.
+// The readable content of a framebuffer. Planes that it lacks, or that the API cannot read, are empty.
 struct Picture {
     int width = 0, height = 0;
-    std::vector<uint8_t> color;    // [y][x][rgba8], origin lower left; resolved where it is multisampled
-    std::vector<uint8_t> readBack; // as glReadPixels gives it: Mesa 22.3.6 gives one sample, unresolved
+    std::vector<uint8_t> color; // [y][x][rgba8], origin lower left; resolved if multisampled
+    std::vector<uint8_t> readBack; // by glReadPixels: Mesa 22.3.6 returns one sample, unresolved
     std::vector<uint32_t> depth;
     std::vector<uint8_t> stencil;
-    std::string error;            // not empty: GL or a shader reported it
+    std::string error; // an error of GL or a shader; empty: none
 };
 
-// The context is current with a framebuffer made of config; the picture fills it.
-// maskAlpha: as the replay does for Surface::hiddenAlpha().
+// The context is current with a framebuffer made from config, which the picture fills. maskAlpha: as the replay does
+// for Surface::hiddenAlpha().
 Picture drawScene(const FindProc& find, const gl::ContextConfig& context, const gl::SurfaceConfig& config,
                   bool maskAlpha = false);
 
 Picture readPicture(const GlFunctions& gl, const gl::ContextConfig& context, const gl::SurfaceConfig& config);
 
-// Empty: equal in every bit. Else how many pixels of which plane differ, by how much, and where first.
+// Empty if every bit is equal. Otherwise the number of differing pixels per plane, the maximum difference, and the
+// first position.
 std::string difference(const Picture& expected, const Picture& actual);
 
-// How many colours the picture has: one that shows nothing proves nothing.
+// The number of colours: an empty picture proves nothing.
 size_t countColors(const Picture& picture);
 
 } // namespace mural::test

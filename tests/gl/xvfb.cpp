@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kStartDeadlineMs = 30000;
 
-// The server writes its number and a line end once it listens.
+// The server writes its number and a newline once it listens.
 std::string readNumber(int fd) {
     std::string number;
     for (;;) {

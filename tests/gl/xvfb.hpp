@@ -1,4 +1,4 @@
-// An X server of the test's own, on a display number that the server picks itself.
+// An X server of the test, with a display number that the server selects.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ public:
     Xvfb& operator=(const Xvfb&) = delete;
     ~Xvfb();
 
-    // Waits until it answers and sets DISPLAY of this process.
+    // Waits until it answers, and sets DISPLAY of this process.
     Result<void> start();
     [[nodiscard]] const std::string& display() const { return display_; }
 

@@ -1,4 +1,4 @@
-// What stays behind, until when, and what never goes.
+// Which commands the filter defers, until when, and which it drops.
 #include "holding/holder.hpp"
 
 #include <algorithm>
@@ -38,8 +38,8 @@ protected:
     [[nodiscard]] size_t countOf(uint16_t opcode) const;
 
     SeenModel seen_;
-    std::vector<uint32_t> streams_;  // of the packets that went
-    std::vector<uint16_t> opcodes_; // of the records that went
+    std::vector<uint32_t> streams_; // of the packets that were sent
+    std::vector<uint16_t> opcodes_; // of the records that were sent
     Holder holder_{kBound, [this](uint32_t stream, std::span<const std::byte> payload, const Walked*) {
                        seen_.packet(stream, payload);
                        streams_.push_back(stream);
@@ -48,7 +48,7 @@ protected:
                    }};
 };
 
-TEST_F(Holding, keepsATextureUntilADrawHasItBound) {
+TEST_F(Holding, defersATextureUntilADrawHasItBound) {
     begin();
     send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glTexImage2D, image(5)).record(op::glBindTexture, {GL_TEXTURE_2D, 2}));
     EXPECT_EQ(seen_.uploads(), 0u);
@@ -61,8 +61,8 @@ TEST_F(Holding, keepsATextureUntilADrawHasItBound) {
     EXPECT_EQ(holder_.counts().heldBytes, 0u);
 }
 
-// Shaders may take the texture without its being bound.
-TEST_F(Holding, keepsNothingOnceATextureHasAHandle) {
+// Shaders may use the texture without a binding.
+TEST_F(Holding, defersNothingAfterATextureHasAHandle) {
     begin();
     send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glTexImage2D, image(5)).record(op::glBindTexture, {GL_TEXTURE_2D, 2}));
     EXPECT_EQ(seen_.uploads(), 0u);
@@ -72,14 +72,14 @@ TEST_F(Holding, keepsNothingOnceATextureHasAHandle) {
     EXPECT_EQ(seen_.uploads(), 2u);
 }
 
-TEST_F(Holding, keepsNothingOnceAHandleIsDealtWithinAList) {
+TEST_F(Holding, defersNothingAfterAHandleIsRequestedInAList) {
     begin();
     send(PacketBuilder().record(op::glNewList, {3, GL_COMPILE}).record(op::glGetTextureHandleARB, {1, 7, 0}).record(op::glEndList, {}));
     send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 2}).record(op::glTexImage2D, image(6)));
     EXPECT_EQ(seen_.uploads(), 1u);
 }
 
-TEST_F(Holding, leavesOutWhatIsReplacedBeforeItIsUsed) {
+TEST_F(Holding, dropsUploadsReplacedBeforeTheirUse) {
     begin();
     send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glBindBuffer, {GL_ARRAY_BUFFER, 1}).record(op::glVertexAttribPointer, {0, 4, GL_FLOAT, 0, 0, 0}));
     for (uint32_t i = 0; i < 10; ++i) send(PacketBuilder().record(op::glTexImage2D, image(i)).record(op::glBufferData, buffer(i)).swap(1, i + 1));
@@ -90,14 +90,14 @@ TEST_F(Holding, leavesOutWhatIsReplacedBeforeItIsUsed) {
     EXPECT_EQ(holder_.counts().inBytes, holder_.counts().outBytes + holder_.counts().leftOutBytes);
 }
 
-TEST_F(Holding, keepsWhatWasReadBeforeItIsReplaced) {
+TEST_F(Holding, sendsUploadsReadBeforeTheirReplacement) {
     begin();
     send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glTexImage2D, image(1)).record(op::glGenerateMipmap, {GL_TEXTURE_2D}).record(op::glTexImage2D, image(2)));
     send(draw());
     EXPECT_EQ(seen_.uploads(), 2u);
 }
 
-TEST_F(Holding, leavesOutWhatChangesNothing) {
+TEST_F(Holding, dropsUploadsThatChangeNothing) {
     begin();
     send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}));
     for (uint32_t i = 0; i < 10; ++i) send(PacketBuilder().record(op::glTexImage2D, image(7)).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}).swap(1, i + 1));
@@ -105,14 +105,14 @@ TEST_F(Holding, leavesOutWhatChangesNothing) {
     EXPECT_EQ(holder_.counts().leftOutRecords, 8u);
 }
 
-TEST_F(Holding, sendsNothingOfWhatIsDeletedUnused) {
+TEST_F(Holding, dropsUploadsOfObjectsDeletedUnused) {
     begin();
     send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glTexImage2D, image(5)).record(op::glDeleteTextures, {1, 4, 1}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));
     EXPECT_EQ(seen_.uploads(), 0u);
     EXPECT_EQ(holder_.counts().leftOutRecords, 1u);
 }
 
-TEST_F(Holding, passesWhatIsAlwaysUsedAtOnce) {
+TEST_F(Holding, forwardsUploadsThatAreAlwaysUsedAtOnce) {
     begin();
     send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}));
     for (uint32_t i = 0; i < 40; ++i) send(PacketBuilder().record(op::glTexImage2D, image(i)).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}).swap(1, i + 1));
@@ -120,7 +120,7 @@ TEST_F(Holding, passesWhatIsAlwaysUsedAtOnce) {
     EXPECT_EQ(holder_.counts().heldRecords, 2u) << "nothing was won twice";
 }
 
-TEST_F(Holding, sendsEverythingForACommandThatItDoesNotKnow) {
+TEST_F(Holding, releasesEverythingForAnUnknownCommand) {
     begin();
     send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glTexImage2D, image(5)).record(op::glBindTexture, {GL_TEXTURE_2D, 2}));
     send(PacketBuilder().record(op::glClearTexImage, {1, 0, GL_RGBA, GL_UNSIGNED_BYTE, record::kTagNull}));
@@ -129,8 +129,8 @@ TEST_F(Holding, sendsEverythingForACommandThatItDoesNotKnow) {
     EXPECT_EQ(seen_.uploads(), 2u) << "from then on all goes at once";
 }
 
-// Of a group that is not followed any more records are passed at once; but not those that leave it.
-TEST_F(Holding, holdsAgainInAContextThatSharesNothing) {
+// Records of a group that is no longer followed are skipped at once, except those that leave the group.
+TEST_F(Holding, defersAgainInAContextWithoutSharing) {
     begin();
     holder_.leaveOutSmall(false);
     send(PacketBuilder().record(op::glClearTexImage, {1, 0, GL_RGBA, GL_UNSIGNED_BYTE, record::kTagNull}));
@@ -141,8 +141,8 @@ TEST_F(Holding, holdsAgainInAContextThatSharesNothing) {
     EXPECT_EQ(seen_.uploads(), 1u);
 }
 
-// What one had bound, the next of another name has not, though it has its memory.
-TEST_F(Holding, knowsVertexArraysThatAreMadeAnew) {
+// A new vertex array does not inherit bindings of an older one in the same memory.
+TEST_F(Holding, distinguishesNewVertexArrays) {
     begin();
     send(PacketBuilder().record(op::glBindBuffer, {GL_ARRAY_BUFFER, 1}).record(op::glBufferData, buffer(5)).record(op::glBindBuffer, {GL_ARRAY_BUFFER, 0}));
     send(PacketBuilder().record(op::glGenVertexArrays, {1, 4, 1}).record(op::glBindVertexArray, {1}).record(op::glBindBuffer, {GL_ELEMENT_ARRAY_BUFFER, 1}));
@@ -154,7 +154,7 @@ TEST_F(Holding, knowsVertexArraysThatAreMadeAnew) {
     EXPECT_EQ(seen_.uploads(), 1u);
 }
 
-TEST_F(Holding, sendsWhatIsHeldBeforeAnotherContextSpeaks) {
+TEST_F(Holding, releasesBeforeRecordsOfAnotherContext) {
     begin();
     send(PacketBuilder().context(2, 1).record(wire::kOpMakeCurrent, {2, 2, 2}), kOther);
     send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glTexImage2D, image(5)));
@@ -166,7 +166,7 @@ TEST_F(Holding, sendsWhatIsHeldBeforeAnotherContextSpeaks) {
     EXPECT_EQ(streams_[0], kStream) << "by the context that it was given to";
 }
 
-TEST_F(Holding, holdsNoMoreThanItMay) {
+TEST_F(Holding, respectsItsMemoryLimit) {
     begin();
     std::vector<uint32_t> names;
     for (uint32_t i = 0; i < 2000; ++i) send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 10 + i}).record(op::glTexImage2D, image(i)));
@@ -176,7 +176,7 @@ TEST_F(Holding, holdsNoMoreThanItMay) {
     EXPECT_EQ(seen_.uploads(), 2000u);
 }
 
-TEST_F(Holding, waitsForValuesThatTravelAhead) {
+TEST_F(Holding, waitsForBlobs) {
     begin();
     constexpr uint32_t kPieces = 5, kWords = 10'000;
     send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}));
@@ -205,10 +205,10 @@ TEST_F(Holding, waitsForValuesThatTravelAhead) {
     EXPECT_EQ(holder_.counts().heldBytes, 0u);
 }
 
-// What of the stream came out, by its commands.
+// The number of sent records with this opcode.
 size_t Holding::countOf(uint16_t opcode) const { return static_cast<size_t>(std::ranges::count(opcodes_, opcode)); }
 
-TEST_F(Holding, sendsNoStateThatIsAsItWas) {
+TEST_F(Holding, dropsUnchangedState) {
     begin();
     for (uint32_t frame = 1; frame <= 50; ++frame) {
         send(PacketBuilder().record(op::glEnable, {GL_BLEND}).record(op::glBlendFunc, {GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA}).record(op::glDepthMask, {1}).record(op::glActiveTexture, {GL_TEXTURE0}));
@@ -221,11 +221,11 @@ TEST_F(Holding, sendsNoStateThatIsAsItWas) {
     EXPECT_EQ(holder_.counts().inBytes, holder_.counts().outBytes + holder_.counts().leftOutBytes);
 }
 
-TEST_F(Holding, keepsStateUntilADrawNeedsIt) {
+TEST_F(Holding, defersStateUntilADrawNeedsIt) {
     begin();
     send(PacketBuilder().record(op::glDisable, {GL_DEPTH_TEST}).record(op::glDepthFunc, {GL_LESS}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));
     EXPECT_EQ(countOf(op::glDisable), 1u);
-    for (uint32_t frame = 1; frame <= 50; ++frame) // nothing between is drawn
+    for (uint32_t frame = 1; frame <= 50; ++frame) // no draws in between
         send(PacketBuilder().record(op::glEnable, {GL_DEPTH_TEST}).record(op::glDepthFunc, {GL_LESS + frame % 3}).record(op::glMatrixMode, {GL_MODELVIEW}).swap(1, frame));
     EXPECT_EQ(countOf(op::glEnable) + countOf(op::glDepthFunc), 1u);
     EXPECT_GT(holder_.counts().heldBytes, 0u);
@@ -233,14 +233,14 @@ TEST_F(Holding, keepsStateUntilADrawNeedsIt) {
     EXPECT_EQ(countOf(op::glEnable), 1u);
     EXPECT_EQ(countOf(op::glDepthFunc), 2u);
     EXPECT_EQ(holder_.counts().heldBytes, 0u);
-    // Back to what it was before anybody has seen it.
+    // Restored before it was used.
     send(PacketBuilder().record(op::glDisable, {GL_DEPTH_TEST}).record(op::glEnable, {GL_DEPTH_TEST}));
     EXPECT_EQ(holder_.counts().heldBytes, 0u);
     send(draw());
     EXPECT_EQ(countOf(op::glDisable), 1u);
 }
 
-TEST_F(Holding, sendsStateBeforeWhatAsksForIt) {
+TEST_F(Holding, sendsStateBeforeCommandsThatReadIt) {
     const PacketBuilder asking[] = {PacketBuilder().record(op::glPushAttrib, {GL_ENABLE_BIT}), PacketBuilder().record(op::glBegin, {GL_POINTS}).record(op::glEnd, {}),
                                     PacketBuilder().record(op::glBlitFramebuffer, {0, 0, 1, 1, 0, 0, 1, 1, GL_COLOR_BUFFER_BIT, GL_NEAREST}), PacketBuilder().record(op::glCallList, {7}),
                                     PacketBuilder().record(wire::kOpFinish, {1}), PacketBuilder().record(wire::kOpMakeCurrent, {0, 0, 0}), PacketBuilder().record(op::glClearTexImage, {1, 0, GL_RGBA, GL_UNSIGNED_BYTE, record::kTagNull})};
@@ -254,11 +254,12 @@ TEST_F(Holding, sendsStateBeforeWhatAsksForIt) {
     }
 }
 
-TEST_F(Holding, sendsUniformsOfTheProgramThatDraws) {
+TEST_F(Holding, sendsUniformsOfTheDrawingProgram) {
     begin();
     for (const uint32_t program : {5U, 6U}) send(PacketBuilder().record(op::glCreateProgram, {program}).record(wire::kOpProgramLayout, {program, 4, 0}));
     for (uint32_t frame = 1; frame <= 50; ++frame) {
-        send(PacketBuilder().record(op::glUseProgram, {5}).record(op::glUniform1f, {0, frame}).record(op::glUniform4f, {1, frame, 2, 3, 4})); // replaced, but once
+        // replaced except once
+        send(PacketBuilder().record(op::glUseProgram, {5}).record(op::glUniform1f, {0, frame}).record(op::glUniform4f, {1, frame, 2, 3, 4}));
         send(PacketBuilder().record(op::glUseProgram, {6}).record(op::glUniform1f, {0, 7}).record(op::glUniform1i, {2, 3}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}).swap(1, frame));
     }
     EXPECT_EQ(countOf(op::glUniform1i), 1u) << "it is 3";
@@ -270,8 +271,8 @@ TEST_F(Holding, sendsUniformsOfTheProgramThatDraws) {
     EXPECT_EQ(holder_.counts().heldBytes, 0u);
 }
 
-// What another thread has set meanwhile is not known.
-TEST_F(Holding, leavesOutNothingSmallWhereContextsShare) {
+// State set by another thread meanwhile is unknown.
+TEST_F(Holding, dropsNoSmallStateWhereContextsShare) {
     begin();
     send(PacketBuilder().context(2, 1), kOther);
     send(PacketBuilder().record(op::glCreateProgram, {5}).record(wire::kOpProgramLayout, {5, 4, 0}).record(op::glUseProgram, {5}));
@@ -281,9 +282,8 @@ TEST_F(Holding, leavesOutNothingSmallWhereContextsShare) {
     EXPECT_EQ(countOf(op::glBindTexture), 10u);
 }
 
-// A list that has been compiled sets state when it is called, and binds nothing.
-// Its first frame leaves bound what the second does not begin with.
-TEST_F(Holding, followsFramesThatEndOtherwiseThanTheyBegin) {
+// Called lists set state and bind nothing. The first frame ends with other bindings than the second starts with.
+TEST_F(Holding, followsFramesThatEndDifferently) {
     begin();
     holder_.leaveOutSmall(false);
     SeenModel whole;
@@ -303,7 +303,7 @@ TEST_F(Holding, followsFramesThatEndOtherwiseThanTheyBegin) {
     }
 }
 
-TEST_F(Holding, doesNotFollowFramesThatAreAlike) {
+TEST_F(Holding, skipsRepeatedFrames) {
     begin();
     holder_.leaveOutSmall(false);
     const auto frame = [&](uint32_t number, uint32_t texture) {
@@ -314,7 +314,7 @@ TEST_F(Holding, doesNotFollowFramesThatAreAlike) {
     for (uint32_t i = 1; i <= 100; ++i) send(frame(i, 1));
     const uint64_t alike = holder_.counts().alikeRecords;
     EXPECT_GT(alike, 80u * 200) << "of 201 in each";
-    send(frame(101, 2)); // another one at its end
+    send(frame(101, 2)); // differs at its end
     EXPECT_GT(holder_.counts().alikeRecords, alike + 199);
     send(PacketBuilder().record(op::glTexImage2D, image(5)).record(op::glBindTexture, {GL_TEXTURE_2D, 1}).append(draw()));
     EXPECT_EQ(seen_.uploads(), 0u) << "it is the second that has waited";
@@ -322,8 +322,8 @@ TEST_F(Holding, doesNotFollowFramesThatAreAlike) {
     EXPECT_EQ(seen_.uploads(), 1u);
 }
 
-// Each leaves another texture bound, as programs do that move one thing; the next one binds its own first.
-TEST_F(Holding, doesNotFollowFramesThatLeaveOtherTextures) {
+// Each frame ends with another texture bound, as in programs that move one object; the next frame binds its own first.
+TEST_F(Holding, skipsFramesThatLeaveOtherTexturesBound) {
     begin();
     holder_.leaveOutSmall(false);
     constexpr uint32_t kEnds = 3, kFirst = 10;
@@ -338,7 +338,7 @@ TEST_F(Holding, doesNotFollowFramesThatLeaveOtherTextures) {
     uint32_t number = 0;
     while (number < 100) send(frame(++number));
     EXPECT_GT(holder_.counts().alikeRecords, 80u * 300) << "of 302 in each";
-    // What is left bound is followed all the same.
+    // The remaining binding is followed nevertheless.
     const uint32_t last = kFirst + number % kEnds;
     send(PacketBuilder().record(op::glTexImage2D, image(7)).record(op::glTexParameteri, {GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR}));
     EXPECT_EQ(seen_.uploads(), 0u);
@@ -350,8 +350,8 @@ TEST_F(Holding, doesNotFollowFramesThatLeaveOtherTextures) {
     EXPECT_EQ(seen_.uploads(), 1u) << "the third one binds that at its end, and draws";
 }
 
-// Nodes refuse them; the head goes on.
-TEST_F(Holding, livesWithPacketsThatAreDamaged) {
+// Nodes reject them; the head continues.
+TEST_F(Holding, survivesDamagedPackets) {
     begin();
     holder_.leaveOutSmall(false);
     const auto frame = [](uint32_t number) {
@@ -364,15 +364,15 @@ TEST_F(Holding, livesWithPacketsThatAreDamaged) {
     for (size_t cut = 0; cut < sizeBytes; cut += 4) {
         for (int i = 0; i < 8; ++i) send(frame(++number));
         const PacketBuilder whole = frame(++number);
-        holder_.add(kStream, whole.bytes().first(cut)); // within a record, mostly
+        holder_.add(kStream, whole.bytes().first(cut)); // usually within a record
         holder_.add(kStream, whole.bytes().subspan(cut));
     }
     EXPECT_EQ(holder_.counts().inBytes, holder_.counts().outBytes);
 }
 
-TEST_F(Holding, sendsWhatHasWaitedLongestWhenThereIsTooMuch) {
+TEST_F(Holding, releasesTheOldestAtTheMemoryLimit) {
     begin();
-    constexpr uint32_t kImages = 1100; // a thousand are about what it may hold
+    constexpr uint32_t kImages = 1100; // about a thousand fit
     for (uint32_t i = 0; i < kImages; ++i) send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 10 + i}).record(op::glTexImage2D, image(i)));
     EXPECT_GT(seen_.uploads(), 50u);
     EXPECT_LT(seen_.uploads(), 400u) << "the others wait on";
@@ -383,14 +383,14 @@ TEST_F(Holding, sendsWhatHasWaitedLongestWhenThereIsTooMuch) {
     EXPECT_EQ(seen_.uploads(), before + 1);
 }
 
-// Loaded and drawn in one frame, again and again: then most of it goes as it comes.
-TEST_F(Holding, holdsLittleOfWhatIsAlwaysDrawnAtOnce) {
+// Loaded and drawn in the same frame repeatedly: most uploads are then forwarded.
+TEST_F(Holding, defersLittleThatIsAlwaysDrawnAtOnce) {
     begin();
     constexpr uint32_t kTextures = 200;
     for (uint32_t i = 0; i < kTextures; ++i) send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 10 + i}).record(op::glTexImage2D, image(i)).append(draw()).swap(1, i + 1));
     EXPECT_EQ(seen_.uploads(), kTextures);
     EXPECT_LT(holder_.counts().heldRecords, 60u);
-    // One that waits shows that it is worth it.
+    // A waiting object shows that deferring pays.
     for (uint32_t i = 0; i < 20; ++i) send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1000 + i}).record(op::glTexImage2D, image(i)));
     for (uint32_t i = 0; i < 5; ++i) send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).append(draw()).swap(1, 300 + i));
     const uint64_t held = holder_.counts().heldRecords;
@@ -398,7 +398,7 @@ TEST_F(Holding, holdsLittleOfWhatIsAlwaysDrawnAtOnce) {
     EXPECT_EQ(holder_.counts().heldRecords, held + 100);
 }
 
-TEST_F(Holding, looksAtUniformsOnlyWhereItLooksAtSmallState) {
+TEST_F(Holding, examinesUniformsOnlyWithSmallState) {
     begin();
     send(PacketBuilder().record(op::glCreateProgram, {5}).record(wire::kOpProgramLayout, {5, 4, 0}).record(op::glUseProgram, {5}));
     const auto sets = [&](uint32_t value) { send(PacketBuilder().record(op::glUniform1f, {0, value})); };
@@ -424,7 +424,7 @@ TEST_F(Holding, followsListsThatSetState) {
     EXPECT_EQ(seen_.uploads(), 0u) << "holding goes on";
 }
 
-// Records of a list that only draw are passed many at a time: glBegin and glEnd are paired all the same, also over packets.
+// Draw records of a list are skipped together; glBegin and glEnd are paired nevertheless, even across packets.
 TEST_F(Holding, pairsPrimitivesOfLists) {
     for (const bool leavesOut : {true, false}) {
         for (const bool ends : {true, false}) {
@@ -448,7 +448,7 @@ TEST_F(Holding, pairsPrimitivesOfLists) {
     }
 }
 
-TEST_F(Holding, holdsNothingOfAProgramThatHearsItsDriver) {
+TEST_F(Holding, defersNothingForAProgramWithDebugOutput) {
     begin();
     send(PacketBuilder().record(op::glEnable, {GL_DEBUG_OUTPUT}).record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glTexImage2D, image(5)));
     EXPECT_EQ(seen_.uploads(), 1u);

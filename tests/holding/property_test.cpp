@@ -1,4 +1,4 @@
-// Random programs: whatever is held back, each draw sees what it would have seen.
+// Random programs: whatever the filter defers, each draw sees the same as without it.
 #include <gtest/gtest.h>
 #include <random>
 
@@ -39,7 +39,7 @@ public:
     }
     uint32_t below(uint32_t n) { return random_() % n; }
 
-    // Of a frame that comes again and again; without commands: something between glBegin and glEnd.
+    // A repeated frame; without commands: something between glBegin and glEnd.
     std::vector<PacketBuilder> frame() {
         std::vector<PacketBuilder> commands(1 + below(below(3) == 0 ? 400 : 60));
         for (PacketBuilder& p : commands) {
@@ -48,13 +48,13 @@ public:
         }
         return commands;
     }
-    // One that binds much, and in which little is drawn.
+    // A frame with many bindings and few draws.
     std::vector<PacketBuilder> bindingFrame() {
         std::vector<PacketBuilder> commands(150 + below(300));
         for (PacketBuilder& p : commands) binds(p);
         return commands;
     }
-    // One that binds few textures again and again, and draws; of one unit, or of two.
+    // A frame that repeatedly binds few textures and draws, on one or two units.
     std::vector<PacketBuilder> textureFrame() {
         std::vector<PacketBuilder> commands(80 + below(60));
         const bool bindsBoth = below(2) == 0;
@@ -67,7 +67,7 @@ public:
         commands.push_back(PacketBuilder().record(op::glActiveTexture, {GL_TEXTURE0}));
         return commands;
     }
-    // That frame, which leaves this or that bound; seldom it is another one, towards its end.
+    // That frame with varying final bindings; rarely another one towards its end.
     PacketBuilder withOtherEnd(const std::vector<PacketBuilder>& commands) {
         PacketBuilder p;
         const size_t other = below(8) == 0 ? commands.size() - 1 - below(12) : commands.size();
@@ -83,7 +83,7 @@ public:
         p.record(op::glActiveTexture, {GL_TEXTURE0});
         return p.swap(1, ++frame_);
     }
-    // That frame, with an upload somewhere, which is to what is bound there; sometimes with others before it.
+    // That frame with an upload somewhere, to a bound object; sometimes with others before it.
     PacketBuilder withUpload(const std::vector<PacketBuilder>& commands) {
         PacketBuilder p;
         const size_t at = commands.size() - 1 - below(below(2) == 0 ? 20 : 120);
@@ -102,7 +102,7 @@ public:
             if (CommandKinds::all()[r.opcode].frame == FrameRole::Ends) return true;
         return false;
     }
-    // That frame, mostly: where it is another one, anywhere.
+    // That frame with occasional differences anywhere.
     PacketBuilder likeFrame(const std::vector<PacketBuilder>& commands, uint32_t changes) {
         PacketBuilder p;
         for (const PacketBuilder& c : commands) {
@@ -114,10 +114,10 @@ public:
     }
 
 private:
-    // Few different ones, so that some come again.
+    // Few different values, so that some repeat.
     std::vector<uint32_t> value(uint32_t words) { return std::vector<uint32_t>(words, below(5)); }
     void withValue(PacketBuilder& p, uint16_t opcode, std::vector<uint32_t> arguments, const std::vector<uint32_t>& value, const std::vector<uint32_t>& behind = {}) {
-        if (below(3) == 0) { // ahead of its record, in two pieces
+        if (below(3) == 0) { // as a blob in two pieces
             const uint32_t half = static_cast<uint32_t>(value.size() / 2), rest = static_cast<uint32_t>(value.size()) - half;
             p.record(wire::kOpBlobBegin, {static_cast<uint32_t>(value.size() * 4), 0});
             std::vector<uint32_t> piece{half * 4};
@@ -199,12 +199,12 @@ private:
         else withValue(p, op::glBufferData, {target(), kBufferBytes, 0}, value(kBufferBytes / 4), {GL_STATIC_DRAW});
         if (below(2) == 0) p.record(op::glDrawArrays, {GL_TRIANGLES, 0, 3});
     }
-    // Their places in memory change, too.
+    // Their addresses change too.
     void otherNames(PacketBuilder& p) {
         const uint32_t n = name(), other = n % kNames + 1;
         p.record(op::glDeleteTextures, {1, 4, n}).record(op::glDeleteTextures, {1, 4, other}).record(op::glGenTextures, {1, 4, n}).record(op::glGenTextures, {1, 4, other});
     }
-    // What is bound within it is an error.
+    // Binding within it is an error.
     void primitive(PacketBuilder& p, uint32_t changes) {
         p.record(op::glBegin, {GL_POINTS});
         if (below(changes) == 0) p.record(op::glBindTexture, {GL_TEXTURE_2D, name()});
@@ -212,13 +212,13 @@ private:
         if (below(changes) == 0) p.record(op::glActiveTexture, {GL_TEXTURE0 + below(2)});
         p.record(op::glEnd, {});
     }
-    // Few values of few things, so that many are as they were.
+    // Few values of few states, so that many are unchanged.
     void small(PacketBuilder& p) {
         switch (below(17)) {
         case 0:
         case 1: p.record(below(2) == 0 ? op::glEnable : op::glDisable, {below(2) == 0 ? 0U + GL_BLEND : 0U + GL_DEPTH_TEST}); return;
         case 2: p.record(below(2) == 0 ? op::glEnable : op::glDisable, {GL_TEXTURE_2D}); return;
-        case 3: p.record(op::glDepthFunc, {below(4) == 0 ? 77U : GL_LESS + below(2)}); return; // 77: refused
+        case 3: p.record(op::glDepthFunc, {below(4) == 0 ? 77U : GL_LESS + below(2)}); return; // 77: rejected
         case 4: p.record(op::glStencilFunc, {GL_LESS, below(2), 255}); return;
         case 5: p.record(op::glStencilFuncSeparate, {GL_FRONT + below(2), GL_LESS, below(2), 255}); return;
         case 6: p.record(op::glViewport, {0, 0, 8 + below(2), 8}); return;
@@ -228,7 +228,8 @@ private:
         case 10: p.record(op::glClear, {GL_COLOR_BUFFER_BIT}); return;
         case 11:
         case 12: p.record(op::glUniform1f, {3 + below(4), below(2)}); return;
-        case 13: p.record(op::glUniform1i, {6, below(3) == 0 ? 99U : below(2)}); return; // 99: refused, it is a sampler
+        // 99: rejected, it is a sampler
+        case 13: p.record(op::glUniform1i, {6, below(3) == 0 ? 99U : below(2)}); return;
         case 14: return withValue(p, op::glUniform1fv, {3 + below(2), 1 + below(2)}, value(2));
         case 15: p.record(op::glProgramUniform1f, {name(), 3 + below(3), below(2)}); return;
         default:
@@ -267,12 +268,12 @@ struct Won {
     size_t held = 0, leftOut = 0, alike = 0; // records
 };
 
-// What a node sees of a program's packets, and what it sees of those that the holder lets go.
+// What a node sees of the original packets, and of the filter's output.
 class Both {
 public:
     Both(RandomProgram& program, uint64_t mostBytes, bool small, uint32_t toggles) : program_(program), mostBytes_(mostBytes), toggles_(toggles) { holder_.leaveOutSmall(small); }
 
-    // Cut in pieces: values may be cut between two packets, but not between streams.
+    // Sends in pieces: values may be divided between two packets, but not between streams.
     void send(uint32_t stream, const PacketBuilder& p) {
         const auto bytes = p.bytes();
         recording::RecordWalk walk(bytes);
@@ -305,7 +306,7 @@ private:
 
     RandomProgram& program_;
     const uint64_t mostBytes_;
-    const uint32_t toggles_; // packets between them, about
+    const uint32_t toggles_; // mean number of packets between them
     SeenModel whole_, held_;
     Holder holder_{mostBytes_, [this](uint32_t stream, std::span<const std::byte> payload, const Walked* walked) {
                        ASSERT_LE(payload.size(), wire::kMaxPacketBytes);
@@ -340,7 +341,7 @@ void same(uint32_t seed, bool shares, uint64_t mostBytes, Won& won) {
     both.ends(won);
 }
 
-// Frames that are much alike, as those of most programs.
+// Similar frames, as most programs send.
 void sameFrames(uint32_t seed, Won& won) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     RandomProgram program(seed, false);
@@ -385,28 +386,28 @@ TEST(HeldStreams, showTheSameToEachDraw) {
     EXPECT_GT(won.leftOut, rounds(1000));
 }
 
-TEST(HeldStreams, showTheSameInFramesThatAreAlike) {
+TEST(HeldStreams, showTheSameInSimilarFrames) {
     Won won;
     for (uint32_t seed = 0; seed < rounds(50) && !HasFatalFailure(); ++seed) sameFrames(seed, won);
     EXPECT_GT(won.alike, rounds(10'000)) << "or this shows nothing";
     EXPECT_GT(won.held, rounds(1000));
 }
 
-TEST(HeldStreams, showTheSameInFramesThatBindMuch) {
+TEST(HeldStreams, showTheSameInFramesWithManyBindings) {
     Won won;
     for (uint32_t seed = 0; seed < rounds(150) && !HasFatalFailure(); ++seed) bindingFrames(seed, won);
     EXPECT_GT(won.alike, rounds(50'000)) << "or this shows nothing";
     EXPECT_GT(won.held, rounds(500));
 }
 
-TEST(HeldStreams, showTheSameInFramesThatLeaveOtherTextures) {
+TEST(HeldStreams, showTheSameInFramesThatLeaveOtherTexturesBound) {
     Won won;
     for (uint32_t seed = 0; seed < rounds(75) && !HasFatalFailure(); ++seed) slidingFrames(seed, won);
     EXPECT_GT(won.alike, rounds(500'000)) << "or this shows nothing";
     EXPECT_GT(won.held, rounds(250));
 }
 
-TEST(HeldStreams, showTheSameWithTwoThreadsThatShare) {
+TEST(HeldStreams, showTheSameWithTwoSharingThreads) {
     Won won;
     for (uint32_t seed = 0; seed < rounds(200) && !HasFatalFailure(); ++seed) same(seed, true, 1 << 20, won);
 }

@@ -1,5 +1,5 @@
-// A small GL in numbers: what each draw, copy and question of a stream sees. Two streams are as good as each other when they see the
-// same in the same order.
+// A small model of GL: the state that each draw, copy and query of a stream sees. Two streams are equivalent if they
+// see the same in the same order.
 #pragma once
 
 #include <GL/gl.h>
@@ -28,7 +28,7 @@ public:
     [[nodiscard]] const std::vector<uint64_t>& seen() const { return seen_; }
     [[nodiscard]] size_t sizeBytes() const { return sizeBytes_; }
     [[nodiscard]] size_t uploads() const { return uploads_; }
-    // All that there is, as one number.
+    // A hash of the complete state.
     uint64_t all() {
         uint64_t h = 1;
         for (const auto& [name, levels] : textures_) h = mix(mix(h, name), content(levels));
@@ -40,8 +40,8 @@ public:
 
 private:
     using Bytes = std::vector<std::byte>;
-    static constexpr uint32_t kColumns = 24;     // of an image
-    static constexpr uint32_t kSampler = 6, kUnits = 16; // where there is a uniform that takes units, and how many
+    static constexpr uint32_t kColumns = 24; // of an image
+    static constexpr uint32_t kSampler = 6, kUnits = 16; // location of a sampler uniform, and the number of units
     using Levels = std::map<uint32_t, uint64_t>; // content, by level and column; parameters above
     struct Array {
         std::map<uint32_t, uint32_t> pointers;
@@ -52,8 +52,8 @@ private:
         std::map<uint32_t, uint32_t> textures; // by unit
         std::map<uint32_t, Array> arrays;
         std::map<uint32_t, uint32_t> attached;
-        std::map<uint32_t, std::array<uint32_t, 4>> state; // by what there is of it
-        std::map<uint32_t, uint32_t> matrices;             // by mode
+        std::map<uint32_t, std::array<uint32_t, 4>> state; // by kind of state
+        std::map<uint32_t, uint32_t> matrices; // by mode
         struct Saved {
             uint32_t mask, unit;
             std::map<uint32_t, uint32_t> textures;
@@ -115,7 +115,7 @@ private:
         if (c.framebuffer == 0) c.window = h;
         else if (const uint32_t name = c.attached[c.framebuffer]) textures_[name][0] = h;
     }
-    // The value of the record, and what stands before it.
+    // The value of the record and its blob.
     Bytes valueOf(Stream& s, const recording::RecordView& r, size_t word) {
         const uint32_t tag = recording::argumentWord(r, word);
         if (tag == record::kTagBlob) {
@@ -185,7 +185,7 @@ private:
             for (auto& [unit, name] : c.textures)
                 if (name == arg(2)) name = 0;
             textures_.erase(arg(2));
-            for (auto& [id, other] : contexts_) // what draws to it draws to nothing that has a name
+            for (auto& [id, other] : contexts_) // draws then go to an object without a name
                 for (auto& [framebuffer, name] : other.attached)
                     if (name == arg(2)) name = 0;
             return;
@@ -205,7 +205,7 @@ private:
             for (auto& [index, buffer] : c.arrays[c.array].pointers)
                 if (buffer == arg(2)) buffer = 0;
             if (c.arrays[c.array].indices == arg(2)) c.arrays[c.array].indices = 0;
-            // Vertex arrays that are not bound keep it, without its name.
+            // Unbound vertex arrays keep it without its name.
             ++ghosts_;
             for (auto& [name, array] : c.arrays) {
                 if (array.indices == arg(2)) array.indices = ghosts_, buffers_[ghosts_] = buffers_[arg(2)];
@@ -254,7 +254,7 @@ private:
             const auto saved = std::move(c.saved.back());
             c.saved.pop_back();
             if (saved.mask & GL_TEXTURE_BIT) c.unit = saved.unit, c.textures = saved.textures;
-            if (saved.mask & GL_ENABLE_BIT) c.state = saved.state; // as if that were all
+            if (saved.mask & GL_ENABLE_BIT) c.state = saved.state; // a simplification
             return;
         }
         case op::glBegin: draw(c); c.inPrimitive = true; return;

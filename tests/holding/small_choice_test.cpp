@@ -1,4 +1,4 @@
-// When small state is left out, and when no more.
+// When small state is deferred, and when no longer.
 #include "holding/small_choice.hpp"
 
 #include <functional>
@@ -13,7 +13,7 @@ struct Went {
     uint32_t frames = 0, leftOut = 0, timed = 0;
 };
 
-// cost: of a frame, by whether it leaves out.
+// cost: of a frame, with and without dropping.
 Went go(SmallChoice& choice, uint32_t frames, const std::function<double(bool, uint32_t)>& cost) {
     Went went;
     for (uint32_t i = 0; i < frames; ++i) {
@@ -25,14 +25,14 @@ Went go(SmallChoice& choice, uint32_t frames, const std::function<double(bool, u
     return went;
 }
 
-TEST(SmallChoice, leavesOutWhereItCostsLess) {
+TEST(SmallChoice, dropsWhereItCostsLess) {
     SmallChoice choice;
     EXPECT_EQ(go(choice, 16, [](bool, uint32_t) { return 1.0; }).leftOut, 0u) << "not before it has been tried";
     EXPECT_GT(go(choice, 3000, [](bool out, uint32_t) { return out ? 80.0 : 100.0; }).leftOut, 2800u);
     EXPECT_TRUE(choice.leavesOut());
 }
 
-TEST(SmallChoice, triesSeldomWhereItCostsMore) {
+TEST(SmallChoice, triesRarelyWhereItCostsMore) {
     SmallChoice choice;
     const Went went = go(choice, 5000, [](bool out, uint32_t) { return out ? 120.0 : 100.0; });
     EXPECT_FALSE(choice.leavesOut());
@@ -41,7 +41,7 @@ TEST(SmallChoice, triesSeldomWhereItCostsMore) {
     EXPECT_LT(went.timed, 250u) << "clocks cost, too";
 }
 
-TEST(SmallChoice, triesNothingWhereFramesAreEqual) {
+TEST(SmallChoice, triesNothingForEqualFrames) {
     SmallChoice choice;
     for (uint32_t i = 0; i < 1000; ++i) {
         choice.frame(kBytes, 20, 1);
@@ -49,13 +49,13 @@ TEST(SmallChoice, triesNothingWhereFramesAreEqual) {
     }
 }
 
-TEST(SmallChoice, isNotLedAstrayBySingleFrames) {
+TEST(SmallChoice, ignoresSingleFrames) {
     SmallChoice choice;
     go(choice, 3000, [](bool out, uint32_t frame) { return frame % 5 == 0 ? 5000.0 : out ? 80.0 : 100.0; });
     EXPECT_TRUE(choice.leavesOut());
 }
 
-TEST(SmallChoice, changesWithTheProgram) {
+TEST(SmallChoice, followsTheProgram) {
     SmallChoice choice;
     go(choice, 1000, [](bool out, uint32_t) { return out ? 80.0 : 100.0; });
     EXPECT_TRUE(choice.leavesOut());
@@ -63,10 +63,10 @@ TEST(SmallChoice, changesWithTheProgram) {
     EXPECT_FALSE(choice.leavesOut());
 }
 
-TEST(SmallChoice, beginsAnewWhenSomethingElseHasChanged) {
+TEST(SmallChoice, restartsAfterAnotherChange) {
     SmallChoice choice;
     bool tried = false;
-    for (uint32_t i = 0; i < 3000; ++i) { // the dear frames would decide it
+    for (uint32_t i = 0; i < 3000; ++i) { // otherwise the expensive frames would decide
         if (choice.leavesOut() && !tried) {
             tried = true;
             choice.disturbed();

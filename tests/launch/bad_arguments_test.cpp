@@ -1,5 +1,5 @@
-// The built command with everything that a user can get wrong: one line on standard error, nothing on
-// standard output, the documented status, and no process left.
+// The built command with every user error: one line on standard error, nothing on standard output, the documented
+// status, and no remaining process.
 #include <cstdio>
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -55,7 +55,7 @@ void expectOneLine(const Said& said, int status, const std::string& word) {
     EXPECT_NE(said.errors.find(word), std::string::npos) << said.errors;
 }
 
-TEST(BadArguments, ofTheCommandItself) {
+TEST(BadArguments, areReportedForTheCommandItself) {
     expectOneLine(mural({}), 2, "command is needed");
     expectOneLine(mural({"rnu"}), 2, "rnu");
     expectOneLine(mural({"--nope"}), 2, "--nope");
@@ -65,26 +65,26 @@ TEST(BadArguments, ofTheCommandItself) {
     expectOneLine(mural({"head", "--control-fd", "x"}), 2, "--control-fd");
 }
 
-// Whoever reads it later would take what is missing for all there is.
-TEST(BadArguments, outputThatIsLostIsAnError) {
+// Incomplete output would look complete to a later reader.
+TEST(BadArguments, includeLostOutput) {
     for (const std::vector<std::string>& words : {std::vector<std::string>{"version"}, {"list-commands"}, {"list-commands", "--unsupported"}, {"run", "--help"}, {"run", "--print-config", "--tiles", "3x2"}}) {
         SCOPED_TRACE(words.front());
         expectOneLine(mural(words, {}, "/dev/full"), 1, "the output can't be written: No space left");
     }
 }
 
-TEST(BadArguments, whatIsWrittenAtTheEndIsLookedAtBefore) {
+TEST(BadArguments, includeUnwritableFilesBeforeTheRun) {
     test::TemporaryFolder folder;
     expectOneLine(mural({"run", "--report", "/nodir/r.json", "--", "true"}), 2, "--report /nodir/r.json: cannot be written");
     expectOneLine(mural({"run", "--report", "/tmp", "--", "true"}), 2, "is a folder");
     expectOneLine(mural({"run", "--out", folder.at("shots"), "--frames", "10", "--save", "4,45", "--", "true"}), 2, "behind the last one, 10");
 }
 
-TEST(BadArguments, aWallThatNoNodeDrawsIsRefused) {
+TEST(BadArguments, includeAWallThatNoNodeCanDraw) {
     expectOneLine(mural({"run", "--size", "20000x100", "--", "true"}), 2, "give a smaller --size");
 }
 
-TEST(GoodArguments, picturesOfAnEarlierRunAreToldOf) {
+TEST(GoodArguments, reportPicturesOfAnEarlierRun) {
     test::TemporaryFolder folder;
     const auto toldOf = [&](const std::string& out) {
         return mural({"run", "--tiles", "1x1", "--display", "none", "--out", out, "--", "true"}).errors.find("2 pictures of an earlier run are there") != std::string::npos;
@@ -97,7 +97,7 @@ TEST(GoodArguments, picturesOfAnEarlierRunAreToldOf) {
     EXPECT_FALSE(toldOf(folder.at("film.mp4")));
 }
 
-TEST(GoodArguments, versionByCommandAndByFlag) {
+TEST(GoodArguments, printTheVersionByCommandAndByFlag) {
     const Said byCommand = mural({"version"});
     const Said byFlag = mural({"--version"});
     EXPECT_EQ(byCommand.status, 0);
@@ -107,7 +107,7 @@ TEST(GoodArguments, versionByCommandAndByFlag) {
     EXPECT_EQ(byFlag.errors, "");
 }
 
-TEST(BadArguments, ofRun) {
+TEST(BadArguments, areReportedForRun) {
     expectOneLine(mural({"run"}), 2, "no program");
     expectOneLine(mural({"run", "--"}), 2, "no program");
     expectOneLine(mural({"run", "--tilez", "2x2", "--", "true"}), 2, "--tilez");
@@ -121,13 +121,13 @@ TEST(BadArguments, ofRun) {
     expectOneLine(mural({"run", "--gl", "vulkan", "--", "true"}), 2, "osmesa");
 }
 
-TEST(BadArguments, displaysThatAreNotThere) {
+TEST(BadArguments, includeMissingDisplays) {
     expectOneLine(mural({"run", "--display", "app", "--", "true"}), 2, "DISPLAY");
     expectOneLine(mural({"run", "--display", "windows", "--", "true"}), 2, "DISPLAY");
     expectOneLine(mural({"run", "--", "true"}, {"DISPLAY=:7654"}), 2, ":7654");
 }
 
-TEST(BadArguments, programsThatCannotBeCaptured) {
+TEST(BadArguments, includeProgramsThatCannotBeCaptured) {
     const test::TemporaryFolder folder;
     const auto program = [&](const std::string& name, int mode) { return folder.file(name, test::elf64(true, launch::ownMachine()), mode); };
     expectOneLine(mural({"run", "--", "surely-not-installed"}), 127, "PATH");
@@ -141,7 +141,7 @@ TEST(BadArguments, programsThatCannotBeCaptured) {
     expectOneLine(mural({"run", "--native", "--", folder.at("none")}), 127, "none");
 }
 
-TEST(Help, everyCommandHasExamplesAndItsExitStatus) {
+TEST(Help, hasExamplesAndExitStatusForEveryCommand) {
     for (const char* command : {"run", "head", "node", "doctor", "list-commands", "version"}) {
         const Said said = mural({command, "--help"});
         EXPECT_EQ(said.status, 0);

@@ -30,14 +30,14 @@ ChildProcess ended(const SpawnRequest& request) {
     return child.value();
 }
 
-TEST(ChildProcess, countsItsEndAsAShellDoes) {
+TEST(ChildProcess, reportsItsEndLikeAShell) {
     EXPECT_EQ(ended(shell("exit 7")).exitStatus(), 7);
     const ChildProcess killed = ended(shell("kill -9 $$"));
     EXPECT_EQ(killed.exitStatus(), 137);
     EXPECT_EQ(killed.describeEnd(), "signal 9 (Killed)");
 }
 
-TEST(ChildProcess, tellsWhyExecFailed) {
+TEST(ChildProcess, explainsAFailedExec) {
     SpawnRequest request = shell("");
     request.file = "/nonexistent/program";
     const auto child = ChildProcess::start(request);
@@ -62,7 +62,7 @@ TEST(ChildProcess, hasExactlyTheGivenEnvironmentAndDescriptors) {
     for (const int fd : {output, kept, other}) close(fd);
 }
 
-TEST(ChildProcess, getsTheSignalsThatWeBeganWith) {
+TEST(ChildProcess, inheritsTheOriginalSignals) {
     rememberSignals();
     sigset_t block;
     sigemptyset(&block);
@@ -73,7 +73,7 @@ TEST(ChildProcess, getsTheSignalsThatWeBeganWith) {
     EXPECT_EQ(status, 128 + SIGTERM);
 }
 
-TEST(ChildProcess, endKillsWhatDoesNotListen) {
+TEST(ChildProcess, isKilledWhenItIgnoresItsEnd) {
     const int output = memfd_create("output", MFD_CLOEXEC);
     SpawnRequest request = shell("trap '' TERM; echo deaf; while :; do sleep 0.05; done");
     request.outputFd = output;

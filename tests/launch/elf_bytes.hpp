@@ -1,4 +1,4 @@
-// The smallest files that count as programs, for tests that must not depend on what is installed.
+// Minimal files that count as programs, for tests independent of installed software.
 #pragma once
 
 #include <cstring>
@@ -34,7 +34,7 @@ inline std::string elf32() {
     return {reinterpret_cast<const char*>(&header), sizeof header};
 }
 
-// A shared library that only has a name and needs others.
+// A shared library with only a name and dependencies.
 inline std::string library64(const std::string& soname, const std::vector<std::string>& needed) {
     std::string strings(1, '\0');
     std::vector<Elf64_Dyn> dynamic;
@@ -53,7 +53,7 @@ inline std::string library64(const std::string& soname, const std::vector<std::s
     header.e_phnum = 2;
     const uint64_t dynamicAt = sizeof header + 2 * sizeof(Elf64_Phdr);
     const uint64_t stringsAt = dynamicAt + (dynamic.size() + 3) * sizeof(Elf64_Dyn);
-    constexpr uint64_t kBase = 0x10000; // addresses are not places in the file
+    constexpr uint64_t kBase = 0x10000; // addresses differ from file offsets
     dynamic.push_back({DT_STRTAB, {kBase + stringsAt}});
     dynamic.push_back({DT_STRSZ, {strings.size()}});
     dynamic.push_back({DT_NULL, {0}});

@@ -18,7 +18,7 @@ protected:
     test::TemporaryFolder folder_;
 };
 
-TEST_F(ElfCheck, knowsThisProgramAsDynamic) {
+TEST_F(ElfCheck, recognisesThisProgramAsDynamic) {
     const auto facts = readExecutable("/proc/self/exe");
     ASSERT_TRUE(facts.ok());
     EXPECT_EQ(facts.value().kind, FileKind::Elf);
@@ -28,7 +28,7 @@ TEST_F(ElfCheck, knowsThisProgramAsDynamic) {
     EXPECT_NE(ownMachine(), EM_NONE);
 }
 
-TEST_F(ElfCheck, seesTheMissingInterpreterOfAStaticProgram) {
+TEST_F(ElfCheck, detectsTheMissingInterpreterOfAStaticProgram) {
     EXPECT_TRUE(factsOf(test::elf64(true, EM_X86_64)).hasInterpreter);
     EXPECT_FALSE(factsOf(test::elf64(false, EM_X86_64)).hasInterpreter);
 }
@@ -40,12 +40,12 @@ TEST_F(ElfCheck, readsThe32BitHeader) {
     EXPECT_EQ(facts.machine, EM_386);
 }
 
-TEST_F(ElfCheck, cutElfIsUnknown) {
+TEST_F(ElfCheck, treatsATruncatedFileAsUnknown) {
     EXPECT_EQ(factsOf(test::elf64(true, EM_X86_64).substr(0, 20)).kind, FileKind::Unknown);
     EXPECT_EQ(factsOf("\x7f" "ELF\x09 and more").kind, FileKind::Unknown);
 }
 
-TEST_F(ElfCheck, wildHeaderCountsAreNotFollowed) {
+TEST_F(ElfCheck, ignoresInvalidHeaderCounts) {
     std::string bytes = test::elf64(true, EM_X86_64);
     auto* header = reinterpret_cast<Elf64_Ehdr*>(bytes.data());
     header->e_phnum = 0xfffe;
@@ -63,12 +63,12 @@ TEST_F(ElfCheck, splitsTheScriptLine) {
     EXPECT_EQ(factsOf("#!/bin/sh").scriptInterpreter, "/bin/sh");
 }
 
-TEST_F(ElfCheck, textWithoutHashBangIsAShellScriptAndBytesAreNothing) {
+TEST_F(ElfCheck, treatsTextAsAShellScriptAndBytesAsUnknown) {
     EXPECT_EQ(factsOf("echo hello\n").kind, FileKind::PlainScript);
     EXPECT_EQ(factsOf(std::string("ab\0cd\n", 6)).kind, FileKind::Unknown);
 }
 
-TEST_F(ElfCheck, missingFileIsAnErrorThatNamesIt) {
+TEST_F(ElfCheck, namesAMissingFile) {
     const auto facts = readExecutable(folder_.at("nothing"));
     ASSERT_FALSE(facts.ok());
     EXPECT_NE(facts.error().message.find("nothing"), std::string::npos);

@@ -9,7 +9,7 @@ namespace {
 
 const CaptureLibrary kLibrary{"/opt/mural/lib/libGLX_mural.so.0", "/opt/mural/lib/mural_egl_vendor.json"};
 
-TEST(Preload, keepsOthersAndComesLast) {
+TEST(Preload, keepsOtherEntriesAndComesLast) {
     EXPECT_EQ(withCapture("", kLibrary.path), kLibrary.path);
     EXPECT_EQ(withCapture("/a.so", kLibrary.path), "/a.so " + kLibrary.path);
     EXPECT_EQ(withCapture("/a.so:/b.so  c.so", kLibrary.path), "/a.so /b.so c.so " + kLibrary.path);
@@ -23,7 +23,7 @@ TEST(Preload, isIdempotentAndRemovesAnEarlierMural) {
     EXPECT_EQ(withoutCapture("/x/notlibGLX_mural.so.0"), "/x/notlibGLX_mural.so.0");
 }
 
-TEST(Environment, setReplacesAndGetWantsTheWholeName) {
+TEST(Environment, matchesWholeNamesInSetAndGet) {
     Environment e({"AB=1", "A=2"});
     EXPECT_EQ(e.get("A"), "2");
     EXPECT_EQ(e.get("B"), std::nullopt);
@@ -35,7 +35,7 @@ TEST(Environment, setReplacesAndGetWantsTheWholeName) {
     EXPECT_EQ(e.get("AB"), "3");
 }
 
-TEST(CaptureEnvironment, setsAllThatBothFrontsNeed) {
+TEST(CaptureEnvironment, setsTheVariablesOfBothEntries) {
     Environment e({"LD_PRELOAD=/grab.so"});
     ASSERT_TRUE(addCapture(e, kLibrary, "mural-1").ok());
     EXPECT_EQ(e.get("LD_PRELOAD"), "/grab.so " + kLibrary.path);
@@ -46,7 +46,7 @@ TEST(CaptureEnvironment, setsAllThatBothFrontsNeed) {
     EXPECT_EQ(e.get("MURAL_REAL_EGL_VENDORS"), std::nullopt);
 }
 
-TEST(CaptureEnvironment, preloadsTheSecondFrontOnlyWhenAsked) {
+TEST(CaptureEnvironment, preloadsTheSecondLibraryOnlyOnRequest) {
     const std::string both = kLibrary.path + " /opt/mural/lib/libmural_front.so";
     Environment e({"LD_PRELOAD=/grab.so"});
     ASSERT_TRUE(addCapture(e, kLibrary, "mural-1", Fronts::VendorAndPreload).ok());
@@ -57,7 +57,7 @@ TEST(CaptureEnvironment, preloadsTheSecondFrontOnlyWhenAsked) {
     EXPECT_EQ(e.get("LD_PRELOAD"), "/grab.so " + kLibrary.path);
 }
 
-TEST(CaptureEnvironment, keepsTheUsersVendorsAlsoWhenAddedTwice) {
+TEST(CaptureEnvironment, savesTheUsersVendorsEvenWhenAddedTwice) {
     Environment e({"__GLX_VENDOR_LIBRARY_NAME=mesa", "__EGL_VENDOR_LIBRARY_FILENAMES=/v/50_mesa.json"});
     ASSERT_TRUE(addCapture(e, kLibrary, "mural-1").ok());
     const auto once = e.entries();
@@ -67,20 +67,20 @@ TEST(CaptureEnvironment, keepsTheUsersVendorsAlsoWhenAddedTwice) {
     EXPECT_EQ(e.get("MURAL_REAL_EGL_VENDORS"), "/v/50_mesa.json");
 }
 
-TEST(CaptureEnvironment, staleKeptVendorsDoNotSurvive) {
+TEST(CaptureEnvironment, discardsStaleSavedVendors) {
     Environment e({"MURAL_REAL_GLX_VENDOR=old"});
     ASSERT_TRUE(addCapture(e, kLibrary, "mural-1").ok());
     EXPECT_EQ(e.get("MURAL_REAL_GLX_VENDOR"), std::nullopt);
 }
 
-TEST(CaptureEnvironment, removingGivesRenderersTheirOwnGl) {
+TEST(CaptureEnvironment, restoresTheOriginalGlForNodes) {
     Environment e({"HOME=/h", "LD_PRELOAD=/clock.so", "__GLX_VENDOR_LIBRARY_NAME=mesa"});
     ASSERT_TRUE(addCapture(e, kLibrary, "mural-1").ok());
     removeCapture(e);
     EXPECT_EQ(std::multiset<std::string>(e.entries().begin(), e.entries().end()), (std::multiset<std::string>{"HOME=/h", "__GLX_VENDOR_LIBRARY_NAME=mesa"}));
 }
 
-TEST(CaptureEnvironment, folderWithBlanksGoesThroughTheLibraryPath) {
+TEST(CaptureEnvironment, usesTheLibraryPathForAFolderWithSpaces) {
     const CaptureLibrary spaced{"/my wall/lib/libGLX_mural.so.0", "/my wall/lib/mural_egl_vendor.json"};
     Environment e({"LD_LIBRARY_PATH=/x"});
     ASSERT_TRUE(addCapture(e, spaced, "s").ok());
@@ -89,7 +89,7 @@ TEST(CaptureEnvironment, folderWithBlanksGoesThroughTheLibraryPath) {
     EXPECT_EQ(e.get("LD_LIBRARY_PATH"), "/my wall/lib:/x");
 }
 
-TEST(CaptureEnvironment, folderThatTheLoaderCannotNameIsAnError) {
+TEST(CaptureEnvironment, rejectsAFolderThatTheLoaderCannotName) {
     Environment e;
     EXPECT_FALSE(addCapture(e, {"/a:b/libGLX_mural.so.0", ""}, "s").ok());
 }

@@ -1,5 +1,4 @@
-// A head without nodes: speaks docs/control-protocol.md as its first argument says, so that the side
-// of `mural run` can be tested alone.
+// A head without nodes: follows docs/control-protocol.md as its first argument selects, to test `mural run` alone.
 //   fake_head ok|error|frames|die|mute --control-fd N
 #include <csignal>
 #include <cstdlib>
@@ -16,7 +15,7 @@ void say(const std::string& line) {
     if (write(control, bytes.data(), bytes.size()) < 0) _exit(3);
 }
 
-// One line, or nothing when the conversation has ended.
+// One line, or nothing after the end of the connection.
 std::string hear() {
     std::string line;
     char c = 0;

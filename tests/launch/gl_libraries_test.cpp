@@ -9,7 +9,7 @@
 namespace mural::launch {
 namespace {
 
-TEST(LibraryFacts, nameAndNeedsAreRead) {
+TEST(LibraryFacts, readNameAndDependencies) {
     const test::TemporaryFolder folder;
     folder.file("lib.so", test::library64("libGL.so.1", {"libGLdispatch.so.0", "libc.so.6"}), 0644);
     const auto facts = readLibrary(folder.at("lib.so"));
@@ -18,8 +18,8 @@ TEST(LibraryFacts, nameAndNeedsAreRead) {
     EXPECT_EQ(facts.value().needed, (std::vector<std::string>{"libGLdispatch.so.0", "libc.so.6"}));
 }
 
-// Any file may stand in a program's folder: cut off anywhere, it must not be read beyond its end.
-TEST(LibraryFacts, cutOffFilesAreNoLibraries) {
+// A program's folder may contain any file: a truncated one must not be read past its end.
+TEST(LibraryFacts, rejectTruncatedFiles) {
     const test::TemporaryFolder folder;
     const std::string whole = test::library64("libGL.so.1", {"libc.so.6"});
     for (size_t size = 0; size < whole.size(); ++size) {
@@ -32,7 +32,7 @@ TEST(LibraryFacts, cutOffFilesAreNoLibraries) {
     EXPECT_FALSE(readLibrary(folder.at("none.so")).ok());
 }
 
-TEST(Drawing, isJudgedByNameAndNeeds) {
+TEST(Drawing, isDerivedFromNameAndDependencies) {
     const test::TemporaryFolder folder;
     const auto drawing = [&](const std::string& soname, const std::vector<std::string>& needed) {
         folder.file("lib.so", test::library64(soname, needed), 0644);
@@ -42,7 +42,7 @@ TEST(Drawing, isJudgedByNameAndNeeds) {
     EXPECT_EQ(drawing("libGL.so.1", {"libglapi.so.0", "libX11.so.6"}), Drawing::OwnGl);
     EXPECT_EQ(drawing("libEGL.so.1", {"libc.so.6"}), Drawing::OwnGl);
     EXPECT_EQ(drawing("libGLESv2.so.2", {"libGLdispatch.so.0"}), Drawing::Glvnd);
-    EXPECT_EQ(drawing("libEGL.so", {"libc.so.6"}), Drawing::None); // a browser's ANGLE: goes through the system's
+    EXPECT_EQ(drawing("libEGL.so", {"libc.so.6"}), Drawing::None); // a browser's ANGLE, which uses the system's GL
     EXPECT_EQ(drawing("libGLEW.so.2.2", {"libGL.so.1"}), Drawing::None);
     EXPECT_EQ(drawing("libOSMesa.so.8", {}), Drawing::OffScreen);
     EXPECT_EQ(drawing("libvulkan.so.1", {}), Drawing::Vulkan);
@@ -50,7 +50,7 @@ TEST(Drawing, isJudgedByNameAndNeeds) {
     EXPECT_EQ(drawingOf(folder.at("no-such.so")), Drawing::None);
 }
 
-TEST(OwnGlLibraries, thisMachinesAreGlvnds) {
+TEST(OwnGlLibraries, areEmptyOnThisMachine) {
     EXPECT_TRUE(ownGlLibraries("/proc/self/exe", Environment::current()).empty());
     EXPECT_TRUE(ownGlLibraries("/no/such/program", Environment::current()).empty());
 }

@@ -18,7 +18,7 @@ bool takes(const std::string& display, xcb_auth_info_t* key) {
     return taken;
 }
 
-TEST(XAuthority, fileHasOneEntryForEveryDisplay) {
+TEST(XAuthority, writesOneEntryForEveryDisplay) {
     XAuthority::Cookie cookie{};
     cookie.back() = 0x7f;
     const std::string file = authorityFile(cookie);
@@ -28,7 +28,7 @@ TEST(XAuthority, fileHasOneEntryForEveryDisplay) {
     EXPECT_EQ(file.back(), '\x7f');
 }
 
-TEST(PrivateDisplay, hasTheAskedSizeAndOnlyTakesItsKey) {
+TEST(PrivateDisplay, hasTheRequestedSizeAndRequiresItsCookie) {
     auto display = PrivateDisplay::start(1234, 567);
     ASSERT_TRUE(display.ok()) << display.error().message;
     const PrivateDisplay& d = *display.value();
@@ -52,7 +52,7 @@ TEST(PrivateDisplay, hasTheAskedSizeAndOnlyTakesItsKey) {
     EXPECT_TRUE(displayUsable(d.name()));
 }
 
-// The server that listens on a display's socket; 0: nobody.
+// The server that listens on a display's socket; 0: none.
 pid_t ownerOf(const std::string& socketPath) {
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
@@ -77,20 +77,20 @@ TEST(PrivateDisplay, leavesNothingBehind) {
     EXPECT_EQ(ownerOf(socket), pid);
     display.value().reset();
     EXPECT_FALSE(std::filesystem::exists("/proc/" + std::to_string(pid)));
-    // Another server may have taken the number at once: then the socket is that one's.
+    // Another server may have taken the number and the socket at once.
     const pid_t owner = ownerOf(socket);
     EXPECT_NE(owner, pid);
     EXPECT_TRUE(owner != 0 || !std::filesystem::exists(socket));
 }
 
-TEST(PrivateDisplay, saysWhatXvfbSaysWhenItCannotStart) {
+TEST(PrivateDisplay, quotesXvfbWhenItCannotStart) {
     auto display = PrivateDisplay::start(-5, 64);
     ASSERT_FALSE(display.ok());
     EXPECT_EQ(display.error().message.find('\n'), std::string::npos);
     EXPECT_NE(display.error().message.find("-5x64"), std::string::npos);
 }
 
-TEST(DisplayUsable, noNameMeansNoDisplay) { EXPECT_FALSE(displayUsable("")); }
+TEST(DisplayUsable, isFalseWithoutAName) { EXPECT_FALSE(displayUsable("")); }
 
 } // namespace
 } // namespace mural::launch

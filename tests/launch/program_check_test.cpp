@@ -14,7 +14,7 @@ protected:
     std::string program(const std::string& name, int mode = 0755) {
         return folder_.file(name, test::elf64(true, ownMachine()), mode);
     }
-    // The check refuses with this status, in one line that has the word.
+    // Expects a rejection with this status, in one line that contains the word.
     void expectRefusal(const std::string& path, int status, const std::string& word) {
         const ProgramCheck check = checkProgram(path, "");
         EXPECT_EQ(check.exitStatus, status) << check.message;
@@ -24,14 +24,14 @@ protected:
     test::TemporaryFolder folder_;
 };
 
-TEST_F(ProgramCheckTest, takesADynamicProgram) {
+TEST_F(ProgramCheckTest, acceptsADynamicProgram) {
     const std::string path = program("app");
     const ProgramCheck check = checkProgram(path, "");
     EXPECT_TRUE(check.ok()) << check.message;
     EXPECT_EQ(check.path, path);
 }
 
-TEST_F(ProgramCheckTest, statusesAreThoseOfTheShell) {
+TEST_F(ProgramCheckTest, returnsTheStatusesOfAShell) {
     expectRefusal(folder_.at("none"), 127, "No such file");
     expectRefusal(program("noright", 0644), 126, "chmod");
     expectRefusal(folder_.at("."), 126, "folder");
@@ -39,7 +39,7 @@ TEST_F(ProgramCheckTest, statusesAreThoseOfTheShell) {
     EXPECT_EQ(checkProgram("", "/usr/bin").exitStatus, 127);
 }
 
-TEST_F(ProgramCheckTest, refusesWhatTheLoaderWouldNotPreloadInto) {
+TEST_F(ProgramCheckTest, rejectsProgramsWithoutPreloading) {
     expectRefusal(program("setuid", 04755), 2, "setuid");
     expectRefusal(program("setgid", 02755), 2, "setgid");
     expectRefusal(folder_.file("static", test::elf64(false, ownMachine()), 0755), 2, "static");
@@ -60,11 +60,11 @@ TEST_F(ProgramCheckTest, followsScriptsToTheirInterpreter) {
     expectRefusal(loop, 126, "scripts");
 }
 
-TEST_F(ProgramCheckTest, plainTextRunsInTheShell) {
+TEST_F(ProgramCheckTest, runsPlainTextInTheShell) {
     EXPECT_TRUE(checkProgram(folder_.file("text", "exit 0\n", 0755), "").ok());
 }
 
-TEST_F(ProgramCheckTest, searchesPathInOrderAndPassesOverWhatMayNotRun) {
+TEST_F(ProgramCheckTest, searchesPathInOrderAndSkipsWhatIsNotExecutable) {
     const test::TemporaryFolder first;
     const test::TemporaryFolder second;
     first.file("app", test::elf64(true, ownMachine()), 0644);

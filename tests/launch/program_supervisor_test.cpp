@@ -48,20 +48,20 @@ protected:
     std::unique_ptr<ProgramSupervisor> supervisor_;
 };
 
-TEST_F(Supervisor, learnsTheExitStatus) {
+TEST_F(Supervisor, returnsTheExitStatus) {
     start("exit 5");
     EXPECT_TRUE(waitFor([&] { return !supervisor_->programRunning(); }));
     EXPECT_EQ(supervisor_->exitStatus(), 5);
 }
 
-TEST_F(Supervisor, knowsProcessesThatTheirLauncherHasLeft) {
+TEST_F(Supervisor, tracksOrphanedProcesses) {
     start("sleep 60 & exit 3");
     EXPECT_TRUE(waitFor([&] { return !supervisor_->programRunning(); }));
     EXPECT_EQ(supervisor_->exitStatus(), 3);
     EXPECT_TRUE(supervisor_->anyoneLeft());
 }
 
-TEST_F(Supervisor, handsOnAnInterruptThatDidNotComeFromTheTerminal) {
+TEST_F(Supervisor, forwardsAnInterruptFromAnotherProcess) {
     start("trap 'echo interrupted; exit 4' INT; echo ready; while :; do sleep 0.02; done");
     ASSERT_TRUE(waitFor([&] { return output() == "ready\n"; }));
     kill(getpid(), SIGINT);
@@ -70,7 +70,7 @@ TEST_F(Supervisor, handsOnAnInterruptThatDidNotComeFromTheTerminal) {
     EXPECT_FALSE(supervisor_->askedToStop());
 }
 
-TEST_F(Supervisor, terminationEndsTheProgramAndItsChildren) {
+TEST_F(Supervisor, endsTheProgramAndItsChildrenOnTermination) {
     start("sleep 60 & echo ready; wait");
     ASSERT_TRUE(waitFor([&] { return output() == "ready\n"; }));
     kill(getpid(), SIGTERM);
@@ -79,7 +79,7 @@ TEST_F(Supervisor, terminationEndsTheProgramAndItsChildren) {
     EXPECT_EQ(supervisor_->stopSignal(), SIGTERM);
 }
 
-TEST_F(Supervisor, killsWhatIgnoresItsEnd) {
+TEST_F(Supervisor, killsProcessesThatIgnoreTheirEnd) {
     start("trap '' TERM; echo ready; while :; do sleep 0.02; done");
     ASSERT_TRUE(waitFor([&] { return output() == "ready\n"; }));
     supervisor_->end(50);
@@ -87,7 +87,7 @@ TEST_F(Supervisor, killsWhatIgnoresItsEnd) {
     EXPECT_EQ(supervisor_->exitStatus(), 128 + SIGKILL);
 }
 
-TEST_F(Supervisor, leavesOurOwnProcessesAlone) {
+TEST_F(Supervisor, ignoresMuralsOwnProcesses) {
     SpawnRequest request;
     request.file = "/bin/sh";
     request.arguments = {"sh", "-c", "sleep 60 & wait"};
@@ -100,7 +100,7 @@ TEST_F(Supervisor, leavesOurOwnProcessesAlone) {
     supervisor_->end(0);
     supervisor_->tick();
     EXPECT_TRUE(own.value().running());
-    own.value().signal(SIGKILL); // its sleep is an orphan now, of our session still
+    own.value().signal(SIGKILL); // its sleep is now an orphan in our session
     EXPECT_TRUE(waitFor([&] { return !own.value().running(); }));
     EXPECT_FALSE(supervisor_->anyoneLeft());
     own.value().signalGroup(SIGKILL);

@@ -23,7 +23,7 @@ std::string refusal(const std::function<void(RunArguments&)>& change) {
     return options.ok() ? "accepted" : options.error().message;
 }
 
-TEST(RunOptions, defaultsAreOneExactNode) {
+TEST(RunOptions, defaultToOneExactNode) {
     const RunOptions o = accepted([](RunArguments&) {});
     EXPECT_EQ(o.config.columns, 1);
     EXPECT_EQ(o.config.rows, 1);
@@ -33,7 +33,7 @@ TEST(RunOptions, defaultsAreOneExactNode) {
     EXPECT_EQ(o.program, (std::vector<std::string>{"app", "-x"}));
 }
 
-TEST(RunOptions, aQueueNeedsNoTilesForItsNodes) {
+TEST(RunOptions, needNoTilesForAQueue) {
     const RunOptions o = accepted([](RunArguments& a) { a.tileQueue = "64x48"; a.localNodes = "5"; });
     EXPECT_EQ(o.config.tileWidth, 64);
     EXPECT_EQ(o.config.tileHeight, 48);
@@ -42,7 +42,7 @@ TEST(RunOptions, aQueueNeedsNoTilesForItsNodes) {
     EXPECT_NE(printed.configText.find("outputtiles { name \"wall.queue\" size [ 64 48 ] }"), std::string::npos) << printed.configText;
 }
 
-TEST(RunOptions, readsEveryOption) {
+TEST(RunOptions, readEveryOption) {
     const RunOptions o = accepted([](RunArguments& a) {
         a.tiles = "7x5";
         a.nodes = "h1,h2";
@@ -93,7 +93,7 @@ TEST(RunOptions, readsEveryOption) {
     EXPECT_EQ(o.front, FrontChoice::Preload);
 }
 
-TEST(RunOptions, nodesWithoutTilesGetOneEach) {
+TEST(RunOptions, giveNodesOneTileEachByDefault) {
     const auto grid = [](const char* local) {
         const RunOptions o = accepted([&](RunArguments& a) { a.localNodes = local; });
         return std::pair(o.config.columns, o.config.rows);
@@ -106,7 +106,7 @@ TEST(RunOptions, nodesWithoutTilesGetOneEach) {
     EXPECT_EQ(o.config.columns, 2);
 }
 
-TEST(RunOptions, wrongValuesNameTheOptionAndWhatIsWanted) {
+TEST(RunOptions, nameTheOptionAndTheExpectedValue) {
     for (const char* bad : {"2", "2x", "x2", "0x1", "2x2x2", "-1x2", "2 x2", "2X2", "257x1", "99999999999x1", ""}) {
         EXPECT_EQ(refusal([&](RunArguments& a) { a.tiles = bad; }).rfind("--tiles \"" + std::string(bad) + "\": must be", 0), 0u) << bad;
     }
@@ -126,7 +126,7 @@ TEST(RunOptions, wrongValuesNameTheOptionAndWhatIsWanted) {
     EXPECT_NE(refusal([](RunArguments& a) { a.nodes = "h1,h2", a.leastNodes = "3"; }).find("--least-nodes \"3\": must be at most 2"), std::string::npos);
 }
 
-TEST(RunOptions, passesAreRead) {
+TEST(RunOptions, readPasses) {
     const RunOptions o = accepted([](RunArguments& a) {
         a.stereo = "anaglyph";
         a.eyeBase = "0.25";
@@ -153,7 +153,7 @@ TEST(RunOptions, passesAreRead) {
     for (size_t i = 0; i < 7; ++i) EXPECT_EQ(accepted([&](RunArguments& a) { a.stereo = modes[i]; }).config.passes.stereo, static_cast<StereoMode>(i));
 }
 
-TEST(RunOptions, compositionIsForNodesThatShareDraws) {
+TEST(RunOptions, allowCompositionOnlyForSharedDraws) {
     EXPECT_EQ(accepted([](RunArguments& a) { a.db = "3"; }).config.composition, "auto");
     for (const char* how : {"auto", "serial", "direct-send", "binary-swap", "2-3-swap", "radix-k", "streaming"})
         EXPECT_EQ(accepted([&](RunArguments& a) { a.db = "3"; a.composition = how; }).config.composition, how);
@@ -162,14 +162,14 @@ TEST(RunOptions, compositionIsForNodesThatShareDraws) {
     EXPECT_EQ(refusal([](RunArguments& a) { a.composition = "serial"; }), "--composition is for nodes that share draws; add --db N, such as --db 4");
 }
 
-TEST(RunOptions, nodesOfSeveralPassesShareTheTiles) {
+TEST(RunOptions, shareTilesAmongNodesOfSeveralPasses) {
     EXPECT_EQ(accepted([](RunArguments& a) { a.subpixel = "4"; a.localNodes = "4"; }).config.columns, 1);
     const RunOptions o = accepted([](RunArguments& a) { a.subpixel = "2"; a.localNodes = "8"; });
     EXPECT_EQ(std::pair(o.config.columns, o.config.rows), std::pair(2, 2));
     EXPECT_NE(refusal([](RunArguments& a) { a.subpixel = "2"; a.tiles = "2x1"; a.localNodes = "5"; }).find("5 render nodes for 2 tiles in 2 passes"), std::string::npos);
 }
 
-TEST(RunOptions, wrongPassesNameTheOptionAndWhatIsWanted) {
+TEST(RunOptions, nameTheOptionAndTheExpectedValueOfPasses) {
     const auto names = [](const char* option, auto change) {
         const std::string said = refusal(change);
         EXPECT_EQ(said.rfind(option, 0), 0u) << said;
@@ -197,7 +197,7 @@ TEST(RunOptions, wrongPassesNameTheOptionAndWhatIsWanted) {
     names("--tiling lean does not go with", [](RunArguments& a) { a.subpixel = "2"; a.tiling = "lean"; });
 }
 
-TEST(RunOptions, optionsThatMeanNothingTogetherAreRefused) {
+TEST(RunOptions, rejectMeaninglessCombinations) {
     EXPECT_NE(refusal([](RunArguments& a) { a.save = "1"; }).find("--out"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.fullScreen = true; }).find("--display windows"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.native = true; a.out = "x"; }).find("--native"), std::string::npos);

@@ -13,12 +13,12 @@ namespace {
 
 struct Outcome {
     int status = 0;
-    std::string words; // what the user was told
+    std::string words; // messages to the user
 };
 
 class RunSession : public ::testing::Test {
 protected:
-    // A session with a head of this mode and a shell script as the program.
+    // A session with a head in this mode and a shell script as the program.
     Outcome run(const std::string& mode, const std::string& script) {
         PreparedRun run;
         run.config.session = "mural-test";
@@ -46,7 +46,7 @@ protected:
     test::TemporaryFolder folder_;
 };
 
-TEST_F(RunSession, exitStatusIsTheProgramsAndTheReportIsTold) {
+TEST_F(RunSession, returnsTheProgramsStatusAndPrintsTheReport) {
     const Outcome o = run("ok", "exit 7");
     EXPECT_EQ(o.status, 7);
     EXPECT_EQ(o.words, "mural: 3 frames in 1.0 s, 3.0 frames/s, 0 B per frame to each node, 0 round trips\n");
@@ -54,7 +54,7 @@ TEST_F(RunSession, exitStatusIsTheProgramsAndTheReportIsTold) {
     expectNobodyLeft();
 }
 
-TEST_F(RunSession, aHeadThatCannotStartIsOneLineAndNoProgramRuns) {
+TEST_F(RunSession, reportsAHeadThatCannotStartAndRunsNoProgram) {
     Outcome o = run("error", "touch $FOLDER/ran");
     EXPECT_EQ(o.status, 2);
     EXPECT_EQ(o.words, "mural: no GL on this machine\n");
@@ -65,14 +65,14 @@ TEST_F(RunSession, aHeadThatCannotStartIsOneLineAndNoProgramRuns) {
     expectNobodyLeft();
 }
 
-TEST_F(RunSession, theProgramOutlivesItsHead) {
+TEST_F(RunSession, letsTheProgramOutliveItsHead) {
     const Outcome o = run("die", "sleep 0.3; exit 6");
     EXPECT_EQ(o.status, 6);
     EXPECT_EQ(o.words, "mural: the head process was lost (signal 9 (Killed)); the program goes on alone, without the wall\n");
     expectNobodyLeft();
 }
 
-TEST_F(RunSession, enoughFramesEndTheProgramWithSuccess) {
+TEST_F(RunSession, endsTheProgramWithSuccessAfterEnoughFrames) {
     EXPECT_EQ(run("frames", "sleep 60").status, 0);
     EXPECT_EQ(run("frames", "sleep 60 & wait").status, 0);
     expectNobodyLeft();
@@ -85,7 +85,7 @@ TEST_F(RunSession, waitsForAProgramThatLeavesItsLauncher) {
     expectNobodyLeft();
 }
 
-TEST_F(RunSession, aProgramThatCannotBeExecutedIsSaid) {
+TEST_F(RunSession, reportsAProgramThatCannotBeExecuted) {
     PreparedRun broken;
     broken.config.session = "mural-test";
     broken.programPath = "/nonexistent/app";

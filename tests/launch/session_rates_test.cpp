@@ -19,7 +19,7 @@ Json look(double atSeconds, int frames, int calls, int bytes, int trips, double 
                        {{"node", 1}, {"where", "wall2"}, {"stream", "multicast"}, {"pid", 11}, {"gl", "llvmpipe"}, {"state", "lost"}, {"frames", 3}}}}};
 }
 
-TEST(SessionRates, comeFromTheDifferenceOfTwoLooks) {
+TEST(SessionRates, areDifferencesOfTwoStates) {
     const auto both = withRates({look(10, 100, 1000, 5000, 4, 1.0)}, {look(12, 150, 2000, 105000, 29, 2.5)});
     const Json& recent = both[0]["programs"][0]["recent"];
     EXPECT_DOUBLE_EQ(recent["framesPerSecond"].get<double>(), 25);
@@ -38,7 +38,7 @@ TEST(SessionRates, comeFromTheDifferenceOfTwoLooks) {
                                       "  node 1  wall2, by multicast, pid 11, llvmpipe: lost"}));
 }
 
-TEST(SessionRates, showWhatTheNodesWereSpared) {
+TEST(SessionRates, includeDeltaCoding) {
     const auto with = [](Json session, int frames) {
         session["economy"] = {{"records", 100 * frames}, {"rawBytes", 5000 * frames}, {"stagedBytes", 300 * frames}, {"wireBytes", 120 * frames}, {"storeHits", 9 * frames},
                               {"newPages", frames}, {"patches", 2 * frames}, {"encodeSeconds", 3e-5 * frames}, {"programBytes", 9000 * frames}, {"heldRecords", 4}, {"heldBytes", 2000},
@@ -51,7 +51,7 @@ TEST(SessionRates, showWhatTheNodesWereSpared) {
     EXPECT_EQ(statLines(both[0])[6], "           of 9.0 kB per frame 4.0 kB were left out (2.0 records); 2.0 kB held back now");
 }
 
-TEST(SessionRates, showHowPicturesCame) {
+TEST(SessionRates, includeTransferredPictures) {
     auto session = look(10, 100, 1000, 5000, 4, 1.0);
     session["nodes"][0]["pictureRawBytes"] = 300000.0;
     session["nodes"][0]["pictureBytes"] = 2000.0;
@@ -59,7 +59,7 @@ TEST(SessionRates, showHowPicturesCame) {
     EXPECT_TRUE(std::ranges::any_of(lines, [](const std::string& line) { return line.find("100 frames, pictures of 3.0 kB came in 20 B per frame") != std::string::npos; })) << lines.back();
 }
 
-TEST(SessionRates, showWhoHasWhichTiles) {
+TEST(SessionRates, includeQueues) {
     auto session = look(10, 100, 1000, 5000, 4, 1.0);
     session["queues"] = {{{"name", "tiles"}, {"of", "tiles"}, {"columns", 25}, {"rows", 19}, {"tileWidth", 32}, {"tileHeight", 16}, {"frames", 8}, {"moves", 2}, {"tilesMoved", 60}, {"nodes", {{{"node", 0}, {"tiles", 95}}, {{"node", 1}, {"tiles", 380}}}}}};
     session["queues"].push_back({{"name", "draws"}, {"of", "chunks"}, {"columns", 60}, {"rows", 1}, {"frames", 4}, {"moves", 1}, {"tilesMoved", 6}, {"nodes", {{{"node", 0}, {"tiles", 20}}, {{"node", 1}, {"tiles", 40}}}}});
@@ -68,7 +68,7 @@ TEST(SessionRates, showWhoHasWhichTiles) {
     EXPECT_NE(std::ranges::find(lines, "  queue \"tiles\"  25x19 tiles of 32x16 pixels: node 0 has 95, node 1 has 380; moved after 2 of 8 frames, 7.50 tiles per frame"), lines.end());
 }
 
-TEST(SessionRates, ofWhatStoodStillOrIsNewAreLeftOut) {
+TEST(SessionRates, areOmittedForIdleAndNewEntries) {
     const auto still = withRates({look(10, 100, 1000, 5000, 0, 1.0)}, {look(11, 100, 1000, 5000, 0, 1.0)});
     EXPECT_EQ(still[0]["programs"][0]["recent"].count("callsPerFrame"), 0u);
     EXPECT_DOUBLE_EQ(still[0]["programs"][0]["recent"]["framesPerSecond"].get<double>(), 0);
@@ -77,7 +77,7 @@ TEST(SessionRates, ofWhatStoodStillOrIsNewAreLeftOut) {
     EXPECT_EQ(statLines(fresh[0])[3], "    0 round trips in all: glReadPixels 0");
 }
 
-TEST(SessionRates, statesThatMakeNoSenseDoNoHarm) {
+TEST(SessionRates, surviveMalformedStates) {
     for (const char* text : {"{}", R"({"programs":[{}],"nodes":[{}]})", R"({"programs":7,"nodes":"x","atSeconds":[]})",
                              R"({"programs":[1,null],"nodes":[[]]})", R"({"programs":[{"waitSeconds":{"frames":"x"},"client":1}],"nodes":[]})"}) {
         const Json odd = Json::parse(text);
@@ -85,7 +85,7 @@ TEST(SessionRates, statesThatMakeNoSenseDoNoHarm) {
     }
 }
 
-TEST(RunningSessions, areFoundByTheNamesOfTheirSockets) {
+TEST(RunningSessions, areFoundByTheirSocketNames) {
     const std::string sockets = "Num       RefCount Protocol Flags    Type St Inode Path\n"
                                 "0000000000000000: 00000002 00000000 00010000 0001 01 411 @mural-123-00ff00ff00ff00ff\n"
                                 "0000000000000000: 00000003 00000000 00000000 0001 03 412 @mural-123-00ff00ff00ff00ff\n"

@@ -61,7 +61,7 @@ protected:
         std::free(reply);
         return g;
     }
-    // Lets the manager work until an event of this kind has come to the program.
+    // Runs the manager until an event of this kind reaches the program.
     bool await(uint8_t kind, const std::function<bool(const xcb_generic_event_t&)>& wanted) {
         xcb_flush(program_);
         const Deadline deadline = Deadline::inMs(10'000);
@@ -88,7 +88,7 @@ protected:
     const xcb_screen_t* screen_ = nullptr;
 };
 
-TEST_F(WallWindows, mainWindowHasTheWallsSizeBeforeItIsSeen) {
+TEST_F(WallWindows, giveTheMainWindowTheWallsSizeBeforeItIsVisible) {
     const xcb_window_t window = create(300, 200);
     xcb_map_window(program_, window);
     bool sizedFirst = false;
@@ -103,7 +103,7 @@ TEST_F(WallWindows, mainWindowHasTheWallsSizeBeforeItIsSeen) {
     EXPECT_EQ(manager_->mainWindow(), window);
 }
 
-TEST_F(WallWindows, laterResizeRequestsAreAnsweredWithTheWallsSize) {
+TEST_F(WallWindows, answerLaterResizeRequestsWithTheWallsSize) {
     const xcb_window_t window = create(300, 200);
     ASSERT_TRUE(map(window));
     const uint32_t size[] = {640, 480};
@@ -115,7 +115,7 @@ TEST_F(WallWindows, laterResizeRequestsAreAnsweredWithTheWallsSize) {
     EXPECT_EQ(geometry(window), kWall);
 }
 
-TEST_F(WallWindows, helpersKeepTheirSize) {
+TEST_F(WallWindows, keepTheSizeOfAuxiliaryWindows) {
     const xcb_window_t splash = create(320, 100);
     setAtoms(splash, "_NET_WM_WINDOW_TYPE", XCB_ATOM_ATOM, atom("_NET_WM_WINDOW_TYPE_SPLASH"));
     const xcb_window_t main = create(300, 200);
@@ -135,7 +135,7 @@ TEST_F(WallWindows, helpersKeepTheirSize) {
     EXPECT_EQ(geometry(second), (Geometry{20, 30, 410, 320}));
 }
 
-TEST_F(WallWindows, theNextWindowFollowsTheMainOne) {
+TEST_F(WallWindows, replaceAClosedMainWindow) {
     const xcb_window_t first = create(300, 200);
     const xcb_window_t second = create(400, 310);
     ASSERT_TRUE(map(first));
@@ -149,7 +149,7 @@ TEST_F(WallWindows, theNextWindowFollowsTheMainOne) {
     EXPECT_EQ(manager_->mainWindow(), second);
 }
 
-TEST_F(WallWindows, thereIsOneManagerPerDisplay) {
+TEST_F(WallWindows, allowOneManagerPerDisplay) {
     const auto another = WallWindowManager::open(display_->name(), display_->authority().cookie(), kWidth, kHeight);
     ASSERT_FALSE(another.ok());
     EXPECT_NE(another.error().message.find("window manager"), std::string::npos);

@@ -7,7 +7,7 @@
 
 namespace mural::test {
 
-TEST(Outputs, kindByName) {
+TEST(Outputs, selectTheKindByName) {
     const TemporaryFolder folder;
     std::filesystem::create_directory(folder.at("old.mp4"));
     EXPECT_EQ(outputKindOf("run.mp4").value(), OutputKind::Video);
@@ -22,7 +22,7 @@ TEST(Outputs, kindByName) {
     EXPECT_NE(gif.error().message.find(".webm"), std::string::npos);
 }
 
-TEST(Outputs, opensWhatTheNameSays) {
+TEST(Outputs, openTheKindOfTheName) {
     const TemporaryFolder folder;
     const OwnedPicture picture = noisePicture(16, 16, 1);
     for (const char* name : {"pictures", "run.mkv"}) {

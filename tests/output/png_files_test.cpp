@@ -10,7 +10,7 @@
 
 namespace mural::test {
 
-TEST(PngFiles, comeBackExactly) {
+TEST(PngFiles, roundTripExactly) {
     const TemporaryFolder folder;
     const int sizes[][2] = {{1, 1}, {1, 7}, {640, 480}, {257, 3}};
     auto files = PngFiles::open(folder.at("new/folder"));
@@ -29,8 +29,8 @@ TEST(PngFiles, comeBackExactly) {
     EXPECT_TRUE(std::filesystem::exists(folder.at("new/folder/frame-000004.png")));
 }
 
-// Somebody else's decoder must see red where we saw red, and the right side up.
-TEST(PngFiles, otherProgramsSeeTheSame) {
+// Another decoder must see the same colours and orientation.
+TEST(PngFiles, lookTheSameToOtherPrograms) {
     const TemporaryFolder folder;
     OwnedPicture picture = plainPicture(2, 2, 0, 0, 0);
     setPixel(picture, 0, 1, 255, 128, 1); // upper left
@@ -47,11 +47,11 @@ TEST(PngFiles, otherProgramsSeeTheSame) {
     EXPECT_TRUE(std::all_of(bytes + 3, bytes + 12, [](int b) { return b == 0; }));
 }
 
-TEST(PngFiles, fullDiskIsSaid) {
+TEST(PngFiles, reportAFullDisk) {
     const TemporaryFolder folder;
     auto files = PngFiles::open(folder.path());
     ASSERT_TRUE(files);
-    // A device on which every write fails as on a full disk takes the place of the file.
+    // A device on which every write fails like on a full disk replaces the file.
     ASSERT_EQ(::symlink("/dev/full", folder.at("frame-000007.png.part").c_str()), 0);
     const OwnedPicture picture = noisePicture(300, 300, 1);
     Result<void> shown = files.value()->show(7, picture.view());
@@ -60,11 +60,11 @@ TEST(PngFiles, fullDiskIsSaid) {
         << shown.error().message;
     EXPECT_NE(shown.error().message.find("frame-000007.png"), std::string::npos);
     EXPECT_FALSE(std::filesystem::exists(folder.at("frame-000007.png")));
-    EXPECT_TRUE(files.value()->show(8, picture.view())); // one failure ends nothing
+    EXPECT_TRUE(files.value()->show(8, picture.view())); // one failure does not end the sink
 }
 
-// A picture so small that everything fits into the stream's buffer: only closing can fail.
-TEST(PngFiles, fullDiskIsSaidForSmallPictures) {
+// A picture that fits into the stream's buffer: only closing can fail.
+TEST(PngFiles, reportAFullDiskForSmallPictures) {
     const TemporaryFolder folder;
     ASSERT_EQ(::symlink("/dev/full", folder.at("a.png.part").c_str()), 0);
     const OwnedPicture picture = noisePicture(4, 4, 1);
@@ -73,7 +73,7 @@ TEST(PngFiles, fullDiskIsSaidForSmallPictures) {
     EXPECT_NE(written.error().message.find("No space"), std::string::npos);
 }
 
-TEST(PngFiles, unusableFoldersAreSaid) {
+TEST(PngFiles, reportUnusableFolders) {
     const TemporaryFolder folder;
     std::ofstream(folder.at("file")) << "x";
     for (const std::string& path : {folder.at("file"), folder.at("file/below")}) {
@@ -84,7 +84,7 @@ TEST(PngFiles, unusableFoldersAreSaid) {
     }
 }
 
-TEST(PngFiles, folderThatVanishesIsSaid) {
+TEST(PngFiles, reportAFolderThatVanishes) {
     const TemporaryFolder folder;
     auto files = PngFiles::open(folder.at("gone"));
     ASSERT_TRUE(files);
@@ -95,19 +95,19 @@ TEST(PngFiles, folderThatVanishesIsSaid) {
     EXPECT_NE(shown.error().message.find("No such file"), std::string::npos);
 }
 
-TEST(PngFiles, emptyPicturesAreRefused) {
+TEST(PngFiles, rejectEmptyPictures) {
     const TemporaryFolder folder;
     EXPECT_FALSE(writePng(folder.at("a.png"), Picture{}));
 }
 
-TEST(ReadPng, refusesWhatIsNoPng) {
+TEST(ReadPng, rejectsOtherFiles) {
     const TemporaryFolder folder;
     EXPECT_FALSE(readPng(folder.at("missing.png")));
     std::ofstream(folder.at("text.png")) << "not a picture at all, really";
     auto text = readPng(folder.at("text.png"));
     ASSERT_FALSE(text);
     EXPECT_NE(text.error().message.find("not a usable PNG"), std::string::npos);
-    // Cut off in the middle of the pixels.
+    // Truncated within the pixels.
     const OwnedPicture picture = noisePicture(64, 64, 1);
     ASSERT_TRUE(writePng(folder.at("cut.png"), picture.view()));
     std::filesystem::resize_file(folder.at("cut.png"),

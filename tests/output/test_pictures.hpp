@@ -1,4 +1,4 @@
-// Pictures for tests: noise, so that no shift, flip, swap of channels or rounding goes unseen.
+// Noise pictures, in which every shift, flip, swapped channel or rounding is visible.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +36,7 @@ inline OwnedPicture plainPicture(int width, int height, int red, int green, int 
     return picture;
 }
 
-// For EXPECT_TRUE: says how many pixels differ, by how much and where.
+// For EXPECT_TRUE: reports the number of differing pixels, the maximum difference and the position.
 inline testing::AssertionResult samePictures(const Picture& expected, const Picture& actual) {
     const PictureDifference difference = comparePictures(expected, actual);
     if (difference.same())

@@ -4,7 +4,7 @@
 
 namespace mural::test {
 
-TEST(VideoEncoders, listingIsRead) {
+TEST(VideoEncoders, parseTheListing) {
     const auto names = encodersIn("Encoders:\n V..... = Video\n A..... = Audio\n ------\n"
                                   " V....D libx264rgb           libx264 H.264 (codec h264)\n"
                                   " VFS... ffv1                 FFmpeg video codec #1\n"
@@ -12,7 +12,7 @@ TEST(VideoEncoders, listingIsRead) {
     EXPECT_EQ(names, (std::set<std::string>{"libx264rgb", "ffv1"}));
 }
 
-TEST(VideoEncoders, suffixInAnyCase) {
+TEST(VideoEncoders, acceptSuffixesInAnyCase) {
     EXPECT_EQ(suffixOf("a.b/run.MP4"), "mp4");
     EXPECT_EQ(suffixOf("a.b/run"), "");
     EXPECT_TRUE(isVideoSuffix("webm"));
@@ -20,7 +20,7 @@ TEST(VideoEncoders, suffixInAnyCase) {
     EXPECT_FALSE(isVideoSuffix(""));
 }
 
-TEST(VideoEncoders, secondChoiceWhereTheFirstIsMissing) {
+TEST(VideoEncoders, useTheSecondChoiceWithoutTheFirst) {
     const std::set<std::string> all = {"libx264rgb", "ffv1", "qtrle", "png", "libvpx-vp9"};
     const std::set<std::string> without = {"ffv1", "qtrle", "png"};
     EXPECT_EQ(chooseEncoding("mp4", all)->encoder, "libx264rgb");
@@ -31,7 +31,7 @@ TEST(VideoEncoders, secondChoiceWhereTheFirstIsMissing) {
     EXPECT_EQ(chooseEncoding("webm", all)->encoder, "libvpx-vp9");
 }
 
-TEST(VideoEncoders, errorsSayWhatToDo) {
+TEST(VideoEncoders, nameARemedyInErrors) {
     auto missing = chooseEncoding("webm", {"ffv1"});
     ASSERT_FALSE(missing);
     EXPECT_NE(missing.error().message.find("libvpx-vp9"), std::string::npos);

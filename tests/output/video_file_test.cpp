@@ -11,7 +11,7 @@ namespace mural::test {
 
 namespace {
 
-// All frames of a video, as pictures, decoded by ffmpeg without any change of their number.
+// All frames of a video as pictures, decoded by ffmpeg without frame rate conversion.
 std::vector<OwnedPicture>
 decode(const TemporaryFolder& folder, const std::string& path, int width, int height) {
     const std::string raw = folder.at("decoded");
@@ -36,7 +36,7 @@ VideoConfig configFor(const std::string& path) {
     return config;
 }
 
-// An ffmpeg that knows all encoders and then does what `text` says.
+// A fake ffmpeg that lists all encoders and then executes `text`.
 std::string fakeEncoder(const TemporaryFolder& folder, const std::string& text) {
     return folder.script("fake-ffmpeg", "if [ \"$2\" = -encoders ]; then\n"
                                          "echo ' V....D libx264rgb x'; exit 0\nfi\n" +
@@ -50,7 +50,7 @@ class VideoFormats : public testing::TestWithParam<std::string> {};
 TEST_P(VideoFormats, decodeBitExactly) {
     const TemporaryFolder folder;
     const std::string path = folder.at("run." + GetParam());
-    constexpr int kWidth = 161; // odd: no format may demand even sizes
+    constexpr int kWidth = 161; // odd: no format may require even sizes
     constexpr int kHeight = 97;
     constexpr int kFrames = 7;
     auto video = VideoFile::open(configFor(path));
@@ -58,7 +58,7 @@ TEST_P(VideoFormats, decodeBitExactly) {
     std::vector<OwnedPicture> written;
     for (int i = 0; i < kFrames; ++i) {
         written.push_back(noisePicture(kWidth, kHeight, static_cast<uint32_t>(i)));
-        // Two equal frames in a row must stay two frames.
+        // Two equal consecutive frames must stay two frames.
         if (i == 4)
             written.back().assign(written[3].view());
         Result<void> shown = video.value()->show(i + 1, written.back().view());
@@ -78,7 +78,7 @@ INSTANTIATE_TEST_SUITE_P(All,
                          testing::Values("mp4", "mkv", "avi", "webm", "mov"),
                          [](const auto& format) { return format.param; });
 
-TEST(VideoFile, newSizeBeginsANumberedFile) {
+TEST(VideoFile, startsANumberedFileForANewSize) {
     const TemporaryFolder folder;
     VideoConfig config = configFor(folder.at("run.mkv"));
     std::vector<std::string> said;
@@ -113,7 +113,7 @@ TEST(VideoFile, completesWhenDestroyed) {
     EXPECT_EQ(decode(folder, folder.at("run.mp4"), 32, 16).size(), 1U);
 }
 
-TEST(VideoFile, killedEncoderIsNoticed) {
+TEST(VideoFile, detectsAKilledEncoder) {
     const TemporaryFolder folder;
     auto video = VideoFile::open(configFor(folder.at("run.mkv")));
     ASSERT_TRUE(video) << video.error().message;
@@ -132,14 +132,14 @@ TEST(VideoFile, killedEncoderIsNoticed) {
     EXPECT_FALSE(video.value()->show(10'000, picture.view()));
 }
 
-TEST(VideoFile, encoderThatFailsIsQuoted) {
+TEST(VideoFile, quotesAnEncoderThatFails) {
     const TemporaryFolder folder;
     VideoConfig config = configFor(folder.at("run.mkv"));
     config.program =
         fakeEncoder(folder, "echo first >&2\necho 'disk quota is gone' >&2\nexit 3\n");
     auto video = VideoFile::open(std::move(config));
     ASSERT_TRUE(video) << video.error().message;
-    const OwnedPicture picture = noisePicture(512, 512, 1); // more than the socket takes
+    const OwnedPicture picture = noisePicture(512, 512, 1); // more than the socket buffers
     Result<void> shown;
     for (int i = 1; i < 1000 && shown; ++i)
         shown = video.value()->show(i, picture.view());
@@ -149,8 +149,8 @@ TEST(VideoFile, encoderThatFailsIsQuoted) {
         << shown.error().message;
 }
 
-// The file can't be made: found by finish() when the few bytes went into the socket before.
-TEST(VideoFile, realEncoderCannotWrite) {
+// The file cannot be created: detected by finish() if the few bytes entered the socket before.
+TEST(VideoFile, reportsARealEncoderThatCannotWrite) {
     const TemporaryFolder folder;
     auto video = VideoFile::open(configFor(folder.at("folder/run.mkv")));
     ASSERT_TRUE(video) << video.error().message;
@@ -164,7 +164,7 @@ TEST(VideoFile, realEncoderCannotWrite) {
         << result.error().message;
 }
 
-TEST(VideoFile, fullDiskIsSaid) {
+TEST(VideoFile, reportsAFullDisk) {
     for (const char* name : {"run.mp4", "run.mkv", "run.avi", "run.webm", "run.mov"}) {
         const TemporaryFolder folder;
         std::filesystem::create_symlink("/dev/full", folder.at(name));
@@ -182,7 +182,7 @@ TEST(VideoFile, fullDiskIsSaid) {
     }
 }
 
-TEST(VideoFile, encoderThatDoesNotReadRunsIntoTheDeadline) {
+TEST(VideoFile, stopsAtTheDeadlineWhenTheEncoderDoesNotRead) {
     const TemporaryFolder folder;
     VideoConfig config = configFor(folder.at("run.mkv"));
     config.program = fakeEncoder(folder, "exec tail -f /dev/null\n");
@@ -209,7 +209,7 @@ TEST(VideoFile, encoderThatDoesNotReadRunsIntoTheDeadline) {
     EXPECT_NE(::kill(encoder, 0), 0); // gone and reaped
 }
 
-TEST(VideoFile, missingProgramNamesThePackage) {
+TEST(VideoFile, namesThePackageOfAMissingProgram) {
     const TemporaryFolder folder;
     VideoConfig config = configFor(folder.at("run.mkv"));
     config.program = "no-such-ffmpeg";
@@ -219,7 +219,7 @@ TEST(VideoFile, missingProgramNamesThePackage) {
         << video.error().message;
 }
 
-TEST(VideoFile, unusableNamesAreRefusedAtOnce) {
+TEST(VideoFile, rejectsUnusableNamesAtOnce) {
     const TemporaryFolder folder;
     std::ofstream(folder.at("file")) << "x";
     std::filesystem::create_directory(folder.at("folder.mp4"));

@@ -56,7 +56,7 @@ protected:
         EXPECT_TRUE(samePictures(expected, seen->view()));
     }
 
-    // The only mapped child of the root whose size this is; 0 when there is none.
+    // The only mapped child of the root with this size; 0: none.
     uint32_t findWindow(int width, int height) {
         xcb_connection_t* c = client_->get();
         XOwned<xcb_query_tree_reply_t> tree(
@@ -71,7 +71,7 @@ protected:
         return 0;
     }
 
-    // For what the windows' thread does by itself, some time after an event.
+    // For asynchronous actions of the windows' thread.
     template <class Condition> static bool becomesTrue(Condition condition) {
         const Deadline deadline = Deadline::inMs(20'000);
         while (!condition()) {
@@ -91,7 +91,7 @@ class DrawnWalls : public Walls, public testing::WithParamInterface<WallDrawing>
 
 } // namespace
 
-TEST(PlaceTiles, originGoesFromLowerLeftToUpperLeft) {
+TEST(PlaceTiles, convertsTheOriginFromLowerLeftToUpperLeft) {
     const PixelViewport tiles[] = {{0, 0, 100, 40}, {100, 40, 60, 50}};
     const auto placed = placeTiles(tiles, 90);
     ASSERT_EQ(placed.size(), 2U);
@@ -101,8 +101,8 @@ TEST(PlaceTiles, originGoesFromLowerLeftToUpperLeft) {
     EXPECT_EQ(placed[1].screenY, 0);
 }
 
-// A picture in four tiles of odd sizes is the picture again on the screen.
-TEST_P(DrawnWalls, tilesMakeThePictureExactly) {
+// A picture in four tiles of odd sizes reappears on the screen.
+TEST_P(DrawnWalls, showThePictureExactlyInTiles) {
     startServer();
     const PixelViewport tiles[] = {
         {0, 0, 201, 99}, {201, 0, 150, 99}, {0, 99, 201, 131}, {201, 99, 150, 131}};
@@ -118,7 +118,7 @@ TEST_P(DrawnWalls, tilesMakeThePictureExactly) {
             parts.push_back(cutOut(whole.view(), tiles[t]));
         for (size_t t = 0; t < 4; ++t)
             pictures.push_back({t, parts[t].view()});
-        if (i == 1) { // one by one, too
+        if (i == 1) { // also one by one
             for (size_t t = 0; t < 4; ++t)
                 show(t, parts[t].view());
         } else {
@@ -131,7 +131,7 @@ TEST_P(DrawnWalls, tilesMakeThePictureExactly) {
     EXPECT_NE(wall_->describe().find("4 windows on " + server_->displayName()), std::string::npos);
 }
 
-TEST_P(DrawnWalls, windowsTakeThePicturesSize) {
+TEST_P(DrawnWalls, resizeWindowsToThePicture) {
     startServer();
     openWall(configFor({{{0, 0, 100, 100}, 50, 60, "wall", -1}}, GetParam()));
     for (const auto& size :
@@ -140,13 +140,13 @@ TEST_P(DrawnWalls, windowsTakeThePicturesSize) {
             noisePicture(size.first, size.second, static_cast<uint32_t>(size.first));
         show(0, picture.view());
         expectOnScreen(50, 60, picture.view());
-        // Nothing of a larger window before is left beside it.
+        // Nothing of an earlier larger window remains beside it.
         expectOnScreen(50 + size.first, 60, plainPicture(5, 5, 0, 0, 0).view());
         EXPECT_NE(findWindow(size.first, size.second), 0U);
     }
 }
 
-TEST_P(DrawnWalls, arrangeMovesAndResizes) {
+TEST_P(DrawnWalls, moveAndResizeWhenArranged) {
     startServer();
     openWall(configFor({{{0, 0, 100, 100}, 0, 0, "wall", -1}}, GetParam()));
     const OwnedPicture first = noisePicture(100, 100, 1);
@@ -160,7 +160,7 @@ TEST_P(DrawnWalls, arrangeMovesAndResizes) {
     EXPECT_FALSE(wall_->arrange({}));
 }
 
-TEST_P(DrawnWalls, fullScreenFillsTheMonitorAndKeepsPixels) {
+TEST_P(DrawnWalls, fillTheMonitorWithoutScalingInFullScreen) {
     startServer();
     WallWindowsConfig config = configFor({{{0, 0, 200, 100}, 5, 5, "wall", -1}}, GetParam());
     config.fullScreen = true;
@@ -169,7 +169,7 @@ TEST_P(DrawnWalls, fullScreenFillsTheMonitorAndKeepsPixels) {
     const OwnedPicture full = noisePicture(kScreenWidth, kScreenHeight, 1);
     show(0, full.view());
     expectOnScreen(0, 0, full.view());
-    // A smaller picture is not scaled, and black is around it.
+    // A smaller picture is not scaled, with black around it.
     const OwnedPicture small = noisePicture(200, 100, 2);
     show(0, small.view());
     OwnedPicture expected = plainPicture(kScreenWidth, kScreenHeight, 0, 0, 0);
@@ -181,7 +181,7 @@ TEST_P(DrawnWalls, fullScreenFillsTheMonitorAndKeepsPixels) {
     expectOnScreen(0, 0, cutOut(large.view(), {0, 20, kScreenWidth, kScreenHeight}).view());
 }
 
-TEST_P(DrawnWalls, comeBackWhenUncovered) {
+TEST_P(DrawnWalls, redrawWhenUncovered) {
     startServer();
     openWall(configFor({{{0, 0, 120, 90}, 10, 10, "wall", -1}}, GetParam()));
     const OwnedPicture picture = noisePicture(120, 90, 1);
@@ -194,7 +194,7 @@ TEST_P(DrawnWalls, comeBackWhenUncovered) {
     }));
 }
 
-TEST_P(DrawnWalls, closeButtonIsNoticed) {
+TEST_P(DrawnWalls, detectTheCloseButton) {
     startServer();
     openWall(configFor({{{0, 0, 120, 90}, 10, 10, "wall", -1}}, GetParam()));
     EXPECT_FALSE(wall_->closeRequested());
@@ -214,13 +214,13 @@ TEST_P(DrawnWalls, closeButtonIsNoticed) {
     xcb_send_event(c, 0, message.window, 0, reinterpret_cast<const char*>(&message));
     client_->sync();
     EXPECT_TRUE(becomesTrue([&] { return wall_->closeRequested(); }));
-    // The wall goes on until its owner ends it.
+    // The wall continues until its owner ends it.
     const OwnedPicture picture = noisePicture(120, 90, 1);
     show(0, picture.view());
     expectOnScreen(10, 10, picture.view());
 }
 
-TEST_P(DrawnWalls, windowThatOthersDestroyEndsNothing) {
+TEST_P(DrawnWalls, surviveAWindowDestroyedByOthers) {
     startServer();
     openWall(configFor({{{0, 0, 120, 90}, 0, 0, "a", -1}, {{0, 0, 64, 64}, 200, 0, "b", -1}},
                        GetParam()));
@@ -228,13 +228,13 @@ TEST_P(DrawnWalls, windowThatOthersDestroyEndsNothing) {
     const OwnedPicture b = noisePicture(64, 64, 1);
     show(0, a.view());
     client_->destroyWindow(findWindow(120, 90));
-    (void)wall_->show(0, a.view()); // whatever it says, the other window lives
+    (void)wall_->show(0, a.view()); // any result is valid; the other window lives
     (void)wall_->show(0, b.view());
     show(1, b.view());
     expectOnScreen(200, 0, b.view());
 }
 
-TEST_P(DrawnWalls, stoppedServerRunsIntoTheDeadline) {
+TEST_P(DrawnWalls, stopAtTheDeadlineWithAStoppedServer) {
     startServer();
     WallWindowsConfig config = configFor({{{0, 0, 120, 90}, 10, 10, "wall", -1}}, GetParam());
     config.showTimeoutMs = 200;
@@ -252,7 +252,7 @@ TEST_P(DrawnWalls, stoppedServerRunsIntoTheDeadline) {
     expectOnScreen(10, 10, picture.view());
 }
 
-TEST_P(DrawnWalls, openingOnAStoppedServerRunsIntoTheDeadline) {
+TEST_P(DrawnWalls, stopOpeningAtTheDeadlineWithAStoppedServer) {
     startServer();
     WallWindowsConfig config = configFor({{{0, 0, 120, 90}, 10, 10, "wall", -1}}, GetParam());
     config.openTimeoutMs = 100;
@@ -262,7 +262,7 @@ TEST_P(DrawnWalls, openingOnAStoppedServerRunsIntoTheDeadline) {
     ASSERT_FALSE(late);
     EXPECT_NE(late.error().message.find("in time"), std::string::npos) << late.error().message;
     ASSERT_EQ(::kill(server_->pid(), SIGCONT), 0);
-    // As soon as the thread that was left behind has cleaned up.
+    // Works again once the abandoned thread has ended.
     config.openTimeoutMs = 20'000;
     config.showTimeoutMs = 20'000;
     EXPECT_TRUE(becomesTrue([&] {
@@ -277,7 +277,7 @@ TEST_P(DrawnWalls, openingOnAStoppedServerRunsIntoTheDeadline) {
     expectOnScreen(10, 10, picture.view());
 }
 
-TEST_P(DrawnWalls, serverThatEndsIsAnErrorAndNotOurEnd) {
+TEST_P(DrawnWalls, reportAServerThatEnds) {
     startServer();
     openWall(configFor({{{0, 0, 120, 90}, 10, 10, "wall", -1}}, GetParam()));
     const OwnedPicture picture = noisePicture(120, 90, 1);
@@ -290,7 +290,7 @@ TEST_P(DrawnWalls, serverThatEndsIsAnErrorAndNotOurEnd) {
             << shown.error().message;
     }
     wall_.reset();
-    // Another display is no problem afterwards.
+    // Another display works afterwards.
     startServer();
     openWall(configFor({{{0, 0, 120, 90}, 10, 10, "wall", -1}}, GetParam()));
     show(0, picture.view());
@@ -304,7 +304,7 @@ INSTANTIATE_TEST_SUITE_P(Ways,
                              return way.param == WallDrawing::OpenGl ? "OpenGl" : "XPut";
                          });
 
-TEST_F(Walls, withoutGlxTheServerDraws) {
+TEST_F(Walls, letTheServerDrawWithoutGlx) {
     startServer({"-extension", "GLX"});
     const std::vector<TileWindow> tiles = {{{0, 0, 120, 90}, 10, 10, "wall", -1}};
     auto openGl = WallWindows::open(configFor(tiles, WallDrawing::OpenGl));
@@ -316,7 +316,7 @@ TEST_F(Walls, withoutGlxTheServerDraws) {
     expectOnScreen(10, 10, picture.view());
 }
 
-TEST_F(Walls, autoIsExactToo) {
+TEST_F(Walls, areExactWithAuto) {
     startServer();
     openWall(configFor({{{0, 0, 120, 90}, 10, 10, "wall", -1}, {{0, 0, 64, 64}, 200, 0, "b", -1}},
                        WallDrawing::Auto));
@@ -328,7 +328,7 @@ TEST_F(Walls, autoIsExactToo) {
     expectOnScreen(200, 0, b.view());
 }
 
-TEST_F(Walls, whatIsMissingIsSaid) {
+TEST_F(Walls, reportWhatIsMissing) {
     startServer();
     const std::vector<TileWindow> tiles = {{{0, 0, 120, 90}, 10, 10, "a", -1},
                                            {{0, 0, 120, 90}, 200, 10, "b", -1}};
@@ -353,7 +353,7 @@ TEST_F(Walls, whatIsMissingIsSaid) {
     EXPECT_FALSE(wall_->show(0, Picture{}));
 }
 
-TEST_F(Walls, environmentStaysAsItIs) {
+TEST_F(Walls, preserveTheEnvironment) {
     startServer();
     ::setenv("DISPLAY", ":64998", 1);
     openWall(configFor({{{0, 0, 64, 64}, 0, 0, "a", -1}}, WallDrawing::Auto));
@@ -361,7 +361,7 @@ TEST_F(Walls, environmentStaysAsItIs) {
 }
 
 // A render node has an EGL context current while it shows its tiles.
-TEST_F(Walls, currentContextOfTheCallerStays) {
+TEST_F(Walls, preserveTheCallersCurrentContext) {
     startServer();
     const auto getDisplay = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(
         eglGetProcAddress("eglGetPlatformDisplayEXT"));

@@ -19,7 +19,7 @@ namespace {
 constexpr int64_t kStartTimeoutMs = 30'000;
 constexpr int64_t kAnswerTimeoutMs = 10'000;
 
-// Xvfb writes its number and a newline when it can be connected to.
+// Xvfb writes its number and a newline when it accepts connections.
 std::string readNumber(int fd, Deadline deadline) {
     std::string number;
     while (!deadline.passed()) {
@@ -76,7 +76,7 @@ XvfbServer::start(int width, int height, int depth, const std::vector<std::strin
     return server;
 }
 
-// Asked to end first: then it takes its lock file and its socket with it.
+// Sends SIGTERM first, so that the server removes its lock file and its socket.
 void XvfbServer::kill() {
     if (pid_ <= 0)
         return;

@@ -1,4 +1,4 @@
-// An X server of the test's own, and eyes to see what is on it.
+// An X server of the test, and a client that reads its screen.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ namespace mural::test {
 
 class XvfbServer {
 public:
-    // Takes the first free display number. `options`: more arguments for Xvfb.
+    // Uses the first free display number. `options`: additional arguments for Xvfb.
     static Result<std::unique_ptr<XvfbServer>>
     start(int width, int height, int depth, const std::vector<std::string>& options = {});
     XvfbServer(const XvfbServer&) = delete;
@@ -30,12 +30,12 @@ private:
     std::string displayName_;
 };
 
-// Another X client: its windows play the program's own ones, its eyes see the screen.
+// Another X client: its windows stand for the program's, and it reads the screen.
 class XClient {
 public:
     static Result<std::unique_ptr<XClient>> open(const std::string& displayName);
 
-    // A mapped window in the upper left corner, filled with `pixel`. depth 0: as the screen.
+    // A mapped window in the upper left corner, filled with `pixel`. depth 0: the screen's.
     uint32_t makeWindow(
         int x, int y, int width, int height, uint32_t pixel, int depth = 0, uint32_t parent = 0);
     void destroyWindow(uint32_t window);
@@ -43,8 +43,8 @@ public:
     void resizeWindow(uint32_t window, int width, int height);
     void sync();
 
-    // What a part of the window shows, children and windows above included. Channels of less or
-    // more than 8 bits are left as they are stored (so at most 8 bits of them are seen).
+    // The visible content of a part of the window, including children and windows above. Channels without 8 bits are
+    // returned as stored, at most 8 bits of them.
     Result<OwnedPicture> see(uint32_t window, int x, int y, int width, int height);
     Result<OwnedPicture> seeScreen(int x, int y, int width, int height) {
         return see(root(), x, y, width, height);

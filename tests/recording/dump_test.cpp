@@ -1,4 +1,4 @@
-// Records as text, and which of them are there.
+// Records as text, and the selection of records.
 #include <GL/gl.h>
 #include <GL/glext.h>
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ TEST(RecordText, showsValuesAndTexts) {
     EXPECT_EQ(textOf(wire::kOpSwap, {1, 5}), "Mural.Swap(window=1, frame=5)");
 }
 
-TEST(RecordText, saysWhatIsNone) {
+TEST(RecordText, marksMalformedRecords) {
     EXPECT_EQ(textOf(op::glVertex2f, {0}), "glVertex2f(x=0, y=0), malformed");
     EXPECT_EQ(textOf(op::glDeleteTextures, {2, 400, 5}), "glDeleteTextures(n=2, textures=NULL), malformed");
     EXPECT_EQ(textOf(op::glDeleteTextures, {2, record::kTagBlob}), "glDeleteTextures(n=2, textures=NULL), malformed");
@@ -56,7 +56,7 @@ TEST(ValueText, isShortForLongValues) {
     EXPECT_EQ(quoted(std::as_bytes(std::span(text))), "\"" + std::string(120, 'x') + "…\" (200 bytes)");
 }
 
-// Two frames of a program, and what follows them.
+// Two frames of a program, and records after them.
 class Dumped : public ::testing::Test {
 protected:
     void write(const PacketBuilder& behind) {
@@ -86,19 +86,19 @@ protected:
     std::unique_ptr<FileReader> reader_;
 };
 
-TEST_F(Dumped, framesThatAreNotThereAreSaid) {
+TEST_F(Dumped, reportsMissingFrames) {
     write({});
     EXPECT_EQ(saidOf(2), "");
     for (const int64_t last : {int64_t{3}, int64_t{99}, INT64_MAX}) EXPECT_EQ(saidOf(last), "the recording has 2 frames; give some of them, such as 1-2") << last;
 }
 
-TEST_F(Dumped, whatFollowsTheLastFrameIsOneMore) {
+TEST_F(Dumped, treatsRecordsAfterTheLastFrameAsOneMore) {
     write(PacketBuilder().record(op::glFlush, {}));
     EXPECT_EQ(saidOf(3), "");
     EXPECT_EQ(saidOf(4), "the recording has 2 frames; give some of them, such as 1-2");
 }
 
-TEST_F(Dumped, callsThatAreNotThereAreTold) {
+TEST_F(Dumped, reportsMissingCalls) {
     write({});
     DumpOptions options;
     options.calls = {"glClear", "glTexImage*", "glDepth*", "Mural.FillWindow"};
@@ -112,7 +112,7 @@ TEST_F(Dumped, callsThatAreNotThereAreTold) {
     EXPECT_EQ(absent(options), std::vector<std::string>());
 }
 
-TEST(DumpedCalls, haveNamesThatAreKnown) {
+TEST(DumpedCalls, haveKnownNames) {
     for (const char* pattern : {"glClear", "glTexImage*", "*Vertex*", "Mural.Swap", "Mural.*", "*", "glGetError"}) EXPECT_TRUE(fitsSomeCall(pattern)) << pattern;
     for (const char* pattern : {"nosuch", "glclear", "Swap", "glClear*Nothing", "glXSwapBuffers", " glClear", ""}) EXPECT_FALSE(fitsSomeCall(pattern)) << pattern;
 }

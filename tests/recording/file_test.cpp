@@ -1,4 +1,4 @@
-// Files of recordings: what comes back, and what becomes of files that are cut, changed or foreign.
+// Trace files: round trips, and truncated, modified or foreign files.
 #include <filesystem>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ protected:
     ~RecordingFile() override { std::filesystem::remove_all(folder_); }
     [[nodiscard]] std::string path() const { return (folder_ / "a.mural").string(); }
 
-    // Two programs, three frames of the larger window in two blocks; returns what was put in.
+    // Writes two programs and three frames of the larger window in two blocks; returns the entries.
     std::vector<Written> writeSmall() {
         std::vector<Written> put;
         auto writer = FileWriter::create(path());
@@ -43,7 +43,7 @@ protected:
     const std::filesystem::path folder_;
 };
 
-TEST_F(RecordingFile, givesBackWhatWasPutIn) {
+TEST_F(RecordingFile, roundTrips) {
     const auto put = writeSmall();
     auto reader = FileReader::open(path());
     ASSERT_TRUE(reader) << reader.error().message;
@@ -59,7 +59,7 @@ TEST_F(RecordingFile, givesBackWhatWasPutIn) {
     EXPECT_EQ(problem, "");
 }
 
-TEST_F(RecordingFile, isReadableUpToItsLastWholeBlockWhereverItIsCut) {
+TEST_F(RecordingFile, isReadableUpToTheLastCompleteBlockWhenTruncated) {
     const auto put = writeSmall();
     const Bytes whole = readWhole(path());
     auto all = readerOf(whole);
@@ -81,10 +81,10 @@ TEST_F(RecordingFile, isReadableUpToItsLastWholeBlockWhereverItIsCut) {
         EXPECT_EQ(entries.size() >= inFirst, bytes >= second) << bytes;
         mostRead = std::max(mostRead, entries.size());
     }
-    EXPECT_EQ(mostRead, put.size()); // nothing but the index is missing then
+    EXPECT_EQ(mostRead, put.size()); // only the index is missing
 }
 
-TEST_F(RecordingFile, noChangedByteGoesUnnoticed) {
+TEST_F(RecordingFile, detectsEveryChangedByte) {
     const auto put = writeSmall();
     const Bytes whole = readWhole(path());
     for (size_t at = 0; at < whole.size(); ++at) {
@@ -100,7 +100,7 @@ TEST_F(RecordingFile, noChangedByteGoesUnnoticed) {
     }
 }
 
-TEST_F(RecordingFile, saysWhatIsWrongAndWhatToDo) {
+TEST_F(RecordingFile, reportsProblemAndRemedy) {
     writeSmall();
     const Bytes whole = readWhole(path());
     const auto said = [&](size_t at, uint32_t value) {
@@ -117,7 +117,7 @@ TEST_F(RecordingFile, saysWhatIsWrongAndWhatToDo) {
     EXPECT_EQ(FileWriter::create("/nowhere/a.mural").error().message, "recording /nowhere/a.mural: can't be written: No such file or directory; give another place");
 }
 
-TEST_F(RecordingFile, aDamagedBlockSpoilsNoFrameBeforeIt) {
+TEST_F(RecordingFile, keepsFramesBeforeADamagedBlock) {
     const auto put = writeSmall();
     const Bytes whole = readWhole(path());
     const auto blocks = (*FileReader::open(path()))->blocks();
@@ -139,7 +139,7 @@ TEST_F(RecordingFile, aDamagedBlockSpoilsNoFrameBeforeIt) {
                                                                   ": a block is not as it was written, and no frame ends before it; take another copy of it, or record again");
 }
 
-TEST_F(RecordingFile, saysWhyThereIsNoFrame) {
+TEST_F(RecordingFile, explainsMissingFrames) {
     writeSmall();
     const Bytes whole = readWhole(path());
     const uint64_t first = (*FileReader::open(path()))->blocks()[0].offset;
@@ -153,7 +153,7 @@ TEST_F(RecordingFile, saysWhyThereIsNoFrame) {
               "the recording has 3 frames, as its end is missing (was the head killed, or the file cut?); give some of them, such as 1-3");
 }
 
-TEST_F(RecordingFile, ofOtherCommandsIsRefused) {
+TEST_F(RecordingFile, rejectsOtherCommandTables) {
     auto writer = FileWriter::create(path());
     ASSERT_TRUE((*writer)->begin({"9.9", {}, ""}, wire::kVersion, registryDigest() ^ 1));
     ASSERT_TRUE((*writer)->finish());
@@ -162,7 +162,7 @@ TEST_F(RecordingFile, ofOtherCommandsIsRefused) {
     EXPECT_EQ(reader.error().message, "recording " + path() + " was made by a Mural with other commands (version 9.9); use that one to read it, or record again");
 }
 
-TEST_F(RecordingFile, largeFramesAreCutIntoBlocksOfBoundedSize) {
+TEST_F(RecordingFile, dividesLargeFramesIntoBoundedBlocks) {
     auto writer = FileWriter::create(path());
     FileWriter& w = **writer;
     ASSERT_TRUE(w.begin({}, wire::kVersion, registryDigest()));
@@ -180,7 +180,7 @@ TEST_F(RecordingFile, largeFramesAreCutIntoBlocksOfBoundedSize) {
     EXPECT_EQ((*reader)->frames(), 1);
 }
 
-TEST(RecordWalk, stopsAtWhatIsNoRecord) {
+TEST(RecordWalk, stopsAtAnInvalidRecord) {
     const uint32_t endless[] = {wire::kOpFinish | 2u << 16, 0, 99u << 16 | wire::kOpSwap, 0};
     RecordWalk walk(std::as_bytes(std::span(endless)));
     RecordView r;
@@ -198,12 +198,13 @@ TEST(RecordWalk, stopsAtWhatIsNoRecord) {
     EXPECT_TRUE(third.malformed());
 }
 
-TEST(RecordedFrames, countTheWallsWindowAlone) {
+TEST(RecordedFrames, countTheMainWindowOnly) {
     WallFrames frames;
     EXPECT_EQ(frames.packet(wire::streamOf(1, 0), PacketBuilder().window(1, 10, 10).window(2, 20, 20).swap(1, 1).bytes()), 1u);
-    EXPECT_EQ(frames.packet(wire::streamOf(1, 0), PacketBuilder().swap(2, 2).swap(1, 3).bytes()), 1u); // the larger is the main one now
+    // the larger one is now the main window
+    EXPECT_EQ(frames.packet(wire::streamOf(1, 0), PacketBuilder().swap(2, 2).swap(1, 3).bytes()), 1u);
     EXPECT_EQ(frames.packet(wire::streamOf(1, 0), PacketBuilder().record(wire::kOpDestroyWindow, {2}).swap(1, 4).bytes()), 1u);
-    EXPECT_EQ(frames.packet(wire::streamOf(1, 0), PacketBuilder().swap(1, 0).bytes()), 0u); // unseen
+    EXPECT_EQ(frames.packet(wire::streamOf(1, 0), PacketBuilder().swap(1, 0).bytes()), 0u); // not shown
     EXPECT_EQ(frames.frames(), 3);
 }
 

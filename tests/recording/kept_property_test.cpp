@@ -1,4 +1,4 @@
-// Random programs: what is kept of a stream leaves the same behind as all of it.
+// Random programs: the snapshot of a stream leaves the same state as the whole stream.
 #include <gtest/gtest.h>
 #include <random>
 
@@ -29,7 +29,7 @@ public:
         p.record(op::glBindFramebuffer, {GL_FRAMEBUFFER, 0}).record(op::glGenLists, {2, 1});
         return p;
     }
-    // A frame or so of commands, sensible enough to be no errors.
+    // About a frame of commands, mostly valid.
     PacketBuilder packet() {
         PacketBuilder p;
         for (uint32_t i = below(60); i > 0; --i) command(p);
@@ -109,7 +109,7 @@ private:
     uint32_t frame_ = 0;
 };
 
-TEST(KeptProperty, leavesWhatAllLeaves) {
+TEST(KeptProperty, leavesTheStateOfTheWholeStream) {
     size_t whole = 0, kept = 0;
     for (uint32_t seed = 1; seed <= 300; ++seed) {
         RandomProgram program(seed);
@@ -123,7 +123,7 @@ TEST(KeptProperty, leavesWhatAllLeaves) {
         give(program.begin());
         for (int i = 0; i < 40; ++i) {
             give(program.packet());
-            if (i % 10 != 9 && seed % 3 != 0) continue; // passes upon passes, or one at the end
+            if (i % 10 != 9 && seed % 3 != 0) continue; // repeated passes, or one at the end
             log.compact();
             StateModel some;
             size_t bytes = 0;
@@ -135,7 +135,7 @@ TEST(KeptProperty, leavesWhatAllLeaves) {
             if (i == 39) kept += bytes;
         }
     }
-    // It is worth the while.
+    // The reduction is worthwhile.
     EXPECT_LT(kept * 2, whole);
     RecordProperty("keptBytes", static_cast<int>(kept));
 }

@@ -1,4 +1,4 @@
-// What is passed many records at a time is passed as one by one: how many of each command, places, counts.
+// Records skipped together equal those visited one by one: numbers per command, positions, totals.
 #include "recording/record_walk.hpp"
 
 #include <gtest/gtest.h>
@@ -14,8 +14,8 @@ namespace mural::recording {
 namespace {
 
 struct Passed {
-    std::map<uint16_t, size_t> opcodes; // how many of each
-    std::vector<size_t> looked;         // where those of kLooked begin
+    std::map<uint16_t, size_t> opcodes; // number per opcode
+    std::vector<size_t> looked; // offsets of the opcodes in kLooked
     size_t at = 0;
     Walked walked;
 };
@@ -25,12 +25,13 @@ constexpr uint16_t kLooked = 99;
 std::vector<std::byte> someRecords(std::mt19937& random) {
     std::vector<std::byte> packet = mural::testing::recordRounds(random, [](auto& p) { mural::testing::putRecord(p, kLooked, 2); });
     const auto below = [&](uint32_t n) { return random() % n; };
-    if (below(4) == 0) mural::testing::putRecord(packet, 1, 0); // no record
-    if (below(4) == 0 && packet.size() > 4) packet.resize(packet.size() - 4 * (1 + below(2)) + 2); // the last one is cut
+    if (below(4) == 0) mural::testing::putRecord(packet, 1, 0); // an invalid record
+    // truncates the last one
+    if (below(4) == 0 && packet.size() > 4) packet.resize(packet.size() - 4 * (1 + below(2)) + 2);
     return packet;
 }
 
-// Up to one of kLooked behind so many.
+// Walks up to a record of kLooked after mostLooked of them.
 Passed byOne(std::span<const std::byte> packet, size_t mostLooked = 0) {
     Passed p;
     size_t at = 0;
@@ -69,7 +70,7 @@ void forRandomPackets(const Each& each) {
     }
 }
 
-TEST(RecordWalk, skipsRoundsAsIfOneByOne) {
+TEST(RecordWalk, skipsRoundsLikeSingleRecords) {
     size_t passed = 0;
     forRandomPackets([&](std::span<const std::byte> packet, std::mt19937&) {
         const Passed right = byOne(packet);
@@ -87,7 +88,7 @@ TEST(RecordWalk, skipsRoundsAsIfOneByOne) {
     EXPECT_GT(passed, 100'000u);
 }
 
-TEST(RecordWalk, givesWhatIsLookedAtOnTheWay) {
+TEST(RecordWalk, reportsSelectedRecords) {
     size_t looks = 0;
     forRandomPackets([&](std::span<const std::byte> packet, std::mt19937& random) {
         const size_t most = random() % 8;
@@ -109,8 +110,8 @@ TEST(RecordWalk, givesWhatIsLookedAtOnTheWay) {
     EXPECT_GT(looks, 1000u);
 }
 
-// Wherever in a round it begins: triangles with a normal, quads with a colour for each corner, polygons.
-TEST(RecordWalk, passesRoundsInWhichACommandComesTwice) {
+// From any position in a round: triangles with a normal, quads with a colour per corner, polygons.
+TEST(RecordWalk, skipsRoundsWithRepeatedCommands) {
     for (const std::string round : {"eff", "nmomomomop", "nbvvvve", "aabab", "abcdefghijklmnop"})
         for (size_t from = 0; from < round.size(); ++from) {
             SCOPED_TRACE(round + " from " + std::to_string(from));

@@ -1,4 +1,4 @@
-// Streams and recordings for tests: records of a program that draws nothing, files in memory.
+// Streams and traces for tests: records of a program without draws, and in-memory files.
 #pragma once
 
 #include <cstdint>
@@ -82,7 +82,7 @@ struct Written {
     bool operator==(const Written&) const = default;
 };
 
-// All entries of it, up to the first block that can't be read.
+// All entries up to the first unreadable block.
 inline std::vector<Written> entriesOf(FileReader& reader, std::string* problem = nullptr) {
     std::vector<Written> entries;
     for (size_t i = 0; i < reader.blocks().size(); ++i) {

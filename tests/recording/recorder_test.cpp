@@ -1,4 +1,4 @@
-// The thread that records: order, a disk that is full, one that takes nothing, a head that is killed.
+// The recording thread: order, a full disk, a blocked disk, a killed head.
 #include <filesystem>
 #include <gtest/gtest.h>
 
@@ -24,14 +24,14 @@ protected:
     std::vector<std::string> said_;
 };
 
-TEST_F(Recorder, keepsTheOrderThroughASmallQueue) {
+TEST_F(Recorder, keepsOrderWithASmallQueue) {
     RecorderConfig config;
     config.queueBytes = 256;
     auto r = recorder(config);
     r->begin({});
     r->event({Event::ClientCame, 1, 5, "x"});
     for (uint32_t i = 1; i <= 1000; ++i) r->packet(wire::streamOf(1, i % 3), PacketBuilder().swap(1, i).bytes());
-    r->packet(0, PacketBuilder().record(1, {}).bytes()); // the head's own commands are not the programs'
+    r->packet(0, PacketBuilder().record(1, {}).bytes()); // the head's own commands do not belong to programs
     const WriterTotals totals = r->finish(Deadline::inMs(20'000));
     EXPECT_EQ(totals.frames, 1000);
     auto reader = FileReader::open(path_);
@@ -61,7 +61,7 @@ TEST_F(Recorder, endsWithTheLastFrame) {
     EXPECT_EQ(entriesOf(**reader).size(), 4u);
 }
 
-TEST_F(Recorder, aFullDiskEndsItWithOneLine) {
+TEST_F(Recorder, stopsWithOneLineOnAFullDisk) {
     auto r = recorder({}, "/dev/full");
     r->begin({});
     for (uint32_t i = 1; i <= 100; ++i) r->packet(wire::streamOf(1, 0), PacketBuilder().swap(1, i).bytes());
@@ -71,17 +71,17 @@ TEST_F(Recorder, aFullDiskEndsItWithOneLine) {
     EXPECT_EQ(said_[0], "recording /dev/full: can't be written: No space left on device; make room there, or give another place; the recording ends after 0 frames, the program goes on");
 }
 
-TEST_F(Recorder, ADiskThatTakesNothingEndsItWithOneLine) {
+TEST_F(Recorder, stopsWithOneLineOnABlockedDisk) {
     RecorderConfig config;
     config.queueBytes = 1024;
     config.patienceMs = 50;
-    auto r = recorder(config); // not begun: nothing is written
+    auto r = recorder(config); // not started: nothing is written
     for (uint32_t i = 1; i <= 1000; ++i) r->packet(wire::streamOf(1, 0), PacketBuilder().swap(1, i).bytes());
     ASSERT_EQ(said_.size(), 1u);
     EXPECT_NE(said_[0].find("nothing was written for"), std::string::npos) << said_[0];
 }
 
-TEST_F(Recorder, whatIsOlderThanASecondOutlivesTheHead) {
+TEST_F(Recorder, preservesDataOlderThanASecondWhenTheHeadIsKilled) {
     RecorderConfig config;
     config.wholeEveryMs = 20;
     {
@@ -94,7 +94,7 @@ TEST_F(Recorder, whatIsOlderThanASecondOutlivesTheHead) {
             if (reader && (*reader)->frames() == 1) break;
             usleep(5000);
         }
-    } // without finish(): as killed
+    } // without finish(): as if killed
     auto reader = FileReader::open(path_);
     ASSERT_TRUE(reader) << reader.error().message;
     EXPECT_EQ((*reader)->frames(), 1);

@@ -1,5 +1,5 @@
-// A small GL in numbers: what a stream of some commands leaves behind. Draws put a hash of all that they could depend on into their
-// target, so that two streams that leave the same have drawn the same what is still there.
+// A small model of GL: the state that a stream leaves behind. Draws store a hash of everything that they may depend on
+// in their target, so streams with equal results have drawn the same remaining content.
 #pragma once
 
 #include <GL/gl.h>
@@ -22,7 +22,7 @@ public:
         RecordView r;
         while (walk.next(r)) record(r);
     }
-    // All of it as text, for comparing.
+    // The complete state as text, for comparison.
     [[nodiscard]] std::string text() const {
         std::string s = state() + " colour " + std::to_string(window_);
         for (const auto& [name, t] : textures_)
@@ -72,7 +72,7 @@ private:
         return s;
     }
 
-    // What a context is as such.
+    // The state of the context itself.
     [[nodiscard]] std::string state() const {
         std::string s = "unit " + std::to_string(unit_) + " mode " + std::to_string(mode_) + " program " + std::to_string(program_) + " target " + std::to_string(framebuffer_) + " array " +
                         std::to_string(array_) + " colour " + std::to_string(colour_) + " caps" + numbers(caps_);
@@ -84,7 +84,7 @@ private:
     }
     void draw() {
         uint64_t h = hash(state());
-        // Programs that were told no unit take textures from the first.
+        // Programs without sampler values use the first unit.
         for (const auto& [unit, name] : bound_)
             if (const auto t = textures_.find(name); t != textures_.end() && framebuffer_ == 0 && (program_ == 0 || unit == GL_TEXTURE0)) h = mix(mix(h, t->second.content), hash(numbers(t->second.parameters)));
         for (const auto& [name, b] : buffers_) h = mix(h, hash(bytes(b)));
@@ -121,7 +121,7 @@ private:
         case op::glActiveTexture: unit_ = a[0]; return;
         case op::glGenTextures: textures_[a[2]] = {}; return;
         case op::glDeleteTextures:
-            ++gone_; // who else has it keeps it
+            ++gone_; // other references keep it
             textures_[kGone + gone_] = textures_[a[2]];
             textures_.erase(a[2]);
             for (auto& [unit, t] : bound_)
@@ -195,7 +195,7 @@ private:
         }
     }
 
-    static constexpr uint32_t kGone = 1000; // names of textures without one
+    static constexpr uint32_t kGone = 1000; // stands for deleted textures
     uint32_t gone_ = 0;
     uint32_t unit_ = GL_TEXTURE0, mode_ = GL_MODELVIEW, program_ = 0, framebuffer_ = 0, array_ = 0, query_ = 0, list_ = 0;
     uint64_t colour_ = 0, window_ = 0, clearColor_ = 0;
@@ -205,7 +205,7 @@ private:
     std::map<uint32_t, std::vector<uint8_t>> buffers_;
     std::map<uint32_t, Numbers> uniforms_;
     std::map<uint32_t, std::vector<uint64_t>> matrices_{{GL_MODELVIEW, {0}}, {GL_PROJECTION, {0}}};
-    std::map<uint32_t, uint32_t> framebuffers_; // their textures
+    std::map<uint32_t, uint32_t> framebuffers_; // attached textures
     std::map<uint32_t, uint64_t> queries_;
     std::map<uint32_t, std::vector<std::pair<uint16_t, std::array<uint32_t, 4>>>> lists_;
     std::vector<Attribs> attribs_;

@@ -1,4 +1,4 @@
-// Which draws `mural trim` leaves out, and which it must keep.
+// Which draws `mural trim` drops, and which it must keep.
 #include <GL/gl.h>
 #include <GL/glext.h>
 #include <algorithm>
@@ -35,7 +35,7 @@ protected:
         swap();
     }
 
-    // The calls that are left of the frames first to last, as `mural dump` has them.
+    // The remaining calls of the frames first to last, as printed by `mural dump`.
     std::vector<std::string> trimmed(int64_t first, int64_t last) {
         const std::string whole = (folder_ / "a").string(), part = (folder_ / "b").string();
         auto writer = FileWriter::create(whole);
@@ -70,7 +70,7 @@ protected:
     int64_t frames_ = 0;
 };
 
-TEST_F(Trim, leavesOutWhatALaterClearCovers) {
+TEST_F(Trim, dropsWhatALaterClearCovers) {
     for (int i = 0; i < 4; ++i) frame();
     const auto lines = trimmed(3, 3);
     const std::vector<std::string> wanted{
@@ -94,11 +94,11 @@ TEST_F(Trim, keepsWhatNoClearCovers) {
     frame(0);
     frame(0);
     EXPECT_EQ(dropped(3, 3), 0u);
-    frame(); // and here one does
+    frame(); // a clear covers this one
     EXPECT_EQ(dropped(4, 4), 3u);
 }
 
-TEST_F(Trim, depthCountsOnceItIsTested) {
+TEST_F(Trim, keepsDepthOnceItIsTested) {
     begin().window(1, 20, 10, 24);
     for (int i = 0; i < 3; ++i) frame(GL_COLOR_BUFFER_BIT);
     EXPECT_EQ(dropped(3, 3), 2u);
@@ -110,7 +110,7 @@ TEST_F(Trim, depthCountsOnceItIsTested) {
     EXPECT_EQ(dropped(7, 7), 6u);
 }
 
-TEST_F(Trim, aClearWithScissorOrMaskCoversNothing) {
+TEST_F(Trim, ignoresClearsWithScissorOrMask) {
     begin().record(op::glEnable, {GL_SCISSOR_TEST});
     for (int i = 0; i < 3; ++i) frame();
     EXPECT_EQ(dropped(3, 3), 0u);
@@ -131,7 +131,7 @@ TEST_F(Trim, aClearWithScissorOrMaskCoversNothing) {
     EXPECT_EQ(dropped(8, 8), 7u);
 }
 
-TEST_F(Trim, whatIsReadIsKept) {
+TEST_F(Trim, keepsWhatIsRead) {
     frame();
     begin().record(op::glCopyTexSubImage2D, {GL_TEXTURE_2D, 0, 0, 0, 0, 0, 4, 4});
     frame();
@@ -139,7 +139,7 @@ TEST_F(Trim, whatIsReadIsKept) {
     EXPECT_EQ(dropped(3, 3), 1u); // of the second frame
 }
 
-TEST_F(Trim, whatIsDrawnElsewhereIsKept) {
+TEST_F(Trim, keepsDrawsToOtherTargets) {
     begin().record(op::glGenTextures, {1, 4, 5}).record(op::glBindTexture, {GL_TEXTURE_2D, 5}).record(op::glBindFramebuffer, {GL_FRAMEBUFFER, 7});
     begin().record(op::glFramebufferTexture2D, {GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 5, 0});
     draw();
@@ -149,7 +149,7 @@ TEST_F(Trim, whatIsDrawnElsewhereIsKept) {
     EXPECT_EQ(dropped(2, 2), 1u);
 }
 
-TEST_F(Trim, whatCountsOrGivesValuesIsKept) {
+TEST_F(Trim, keepsQueriesAndFeedback) {
     begin().record(op::glBeginQuery, {GL_SAMPLES_PASSED, 1});
     draw();
     begin().record(op::glEndQuery, {GL_SAMPLES_PASSED}).record(op::glBeginTransformFeedback, {GL_POINTS});
@@ -162,15 +162,15 @@ TEST_F(Trim, whatCountsOrGivesValuesIsKept) {
     EXPECT_EQ(dropped(2, 2), 2u); // not those of the query and of the list; the transform feedback has no buffer
 }
 
-TEST_F(Trim, whatIsNotUnderstoodKeepsAllBeforeIt) {
+TEST_F(Trim, keepsEverythingBeforeAnUnknownCommand) {
     for (int i = 0; i < 3; ++i) frame();
     begin().record(op::glConvolutionParameterfEXT, {0, 0, 0}); // no rule names it
     frame();
-    EXPECT_EQ(dropped(4, 4), 2u); // the third frame is what it may depend on
+    EXPECT_EQ(dropped(4, 4), 2u); // it may depend on the third frame
     EXPECT_EQ(dropped(3, 3), 2u);
 }
 
-TEST_F(Trim, verticesGoAndCurrentValuesStay) {
+TEST_F(Trim, dropsVerticesAndKeepsCurrentValues) {
     clear().record(op::glBegin, {GL_TRIANGLES}).record(op::glColor3f, {0, 0, 0}).record(op::glVertex2f, {0, 0}).record(op::glEnd, {});
     swap();
     frame();
@@ -181,9 +181,9 @@ TEST_F(Trim, verticesGoAndCurrentValuesStay) {
     EXPECT_EQ(std::ranges::count_if(lines, [](const auto& l) { return l.starts_with("glBegin"); }), 0);
 }
 
-TEST_F(Trim, blobsGoWithTheirDraw) {
+TEST_F(Trim, dropsBlobsWithTheirDraw) {
     begin().record(op::glGenBuffers, {1, 4, 1});
-    // Two values that travel ahead: the first is a draw's, the second a buffer's.
+    // Two blobs: the first belongs to a draw, the second to a buffer.
     begin().record(wire::kOpBlobBegin, {4, 0}).record(wire::kOpBlobData, {4, 11}).record(op::glDrawElements, {GL_TRIANGLES, 1, GL_UNSIGNED_INT, record::kTagBlob});
     begin().record(wire::kOpBlobBegin, {4, 0}).record(wire::kOpBlobData, {4, 22}).record(wire::kOpBufferBytes, {1, 0, 0, record::kTagBlob});
     frame();
@@ -195,19 +195,19 @@ TEST_F(Trim, blobsGoWithTheirDraw) {
     EXPECT_EQ(std::ranges::count(lines, "Mural.BufferBytes(buffer=1, offset=0, bytes=<4 bytes>)"), 1);
 }
 
-TEST_F(Trim, framesThatAreNotThereAreSaid) {
+TEST_F(Trim, reportsMissingFrames) {
     frame();
     trimmed(1, 2);
     EXPECT_EQ(error_, "the recording has 1 frames; give some of them, such as 1-1");
 }
 
-TEST_F(Trim, framesOfWhatHasNoneAreSaidWithWhy) {
+TEST_F(Trim, explainsTracesWithoutFrames) {
     draw();
     trimmed(2, 5);
     EXPECT_EQ(error_, "recording " + (folder_ / "a").string() + " has no frame: its program showed no picture; mural dump prints its calls");
 }
 
-TEST_F(Trim, theFramesBeforeADamagedBlockAreThere) {
+TEST_F(Trim, keepsFramesBeforeADamagedBlock) {
     const std::string whole = (folder_ / "a").string(), part = (folder_ / "b").string();
     frame();
     frame();
@@ -219,13 +219,13 @@ TEST_F(Trim, theFramesBeforeADamagedBlockAreThere) {
     ASSERT_TRUE((*writer)->flush());
     ASSERT_TRUE((*writer)->finish());
     Bytes changed = readWhole(whole);
-    changed[(*FileReader::open(whole))->blocks()[1].offset] ^= std::byte{0xff}; // not even a block any more
+    changed[(*FileReader::open(whole))->blocks()[1].offset] ^= std::byte{0xff}; // no longer a block
     auto reader = readerOf(changed);
     ASSERT_TRUE(reader) << reader.error().message;
     const auto tooMany = trim(**reader, 1, 3, part);
     ASSERT_FALSE(tooMany);
     EXPECT_NE(tooMany.error().message.find("mural trim in memory 1-2 -o good.mural"), std::string::npos) << tooMany.error().message;
-    const auto good = trim(**reader, 1, 2, part); // as it says
+    const auto good = trim(**reader, 1, 2, part); // as the message advises
     ASSERT_TRUE(good) << good.error().message;
     EXPECT_TRUE((*FileReader::open(part))->verify());
     EXPECT_EQ((*FileReader::open(part))->frames(), 2);

@@ -1,4 +1,4 @@
-// The arithmetic of accumulation buffers. All figures were read from windows of Mesa 22.3.6.
+// The arithmetic of accumulation buffers. All values were read from windows of Mesa 22.3.6.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -16,7 +16,7 @@ std::array<int16_t, 4> loaded(uint8_t byte, float by) {
     return values;
 }
 
-TEST(Accumulation, ColoursAreDecodedAndAlphaIsNot) {
+TEST(Accumulation, decodesColoursButNotAlpha) {
     EXPECT_EQ(loaded(128, 1)[0], 7073);
     EXPECT_EQ(loaded(128, 0.5f)[1], 3536);
     EXPECT_EQ(loaded(255, 0.25f)[2], 8191);
@@ -25,7 +25,7 @@ TEST(Accumulation, ColoursAreDecodedAndAlphaIsNot) {
     EXPECT_EQ(loaded(51, 1)[3], 6553);
 }
 
-TEST(Accumulation, SumsWrapAround) {
+TEST(Accumulation, wrapsAround) {
     EXPECT_EQ(loaded(255, 1.7f)[0], -9833);
     std::array<int16_t, 4> values{32767, 0, -32768, 1};
     accumulation::add(values.data(), 1, 1.0f / 32767);
@@ -33,7 +33,7 @@ TEST(Accumulation, SumsWrapAround) {
     EXPECT_EQ(loaded(255, 1e30f)[0], 0); // more than an int holds
 }
 
-TEST(Accumulation, ClearsTakeTheColourAsShorts) {
+TEST(Accumulation, clearsToShorts) {
     for (const auto& [colour, value] : {std::pair{0.05f, 1637}, {0.1f, 3276}, {0.5f, 16383}, {1.0f, 32767}, {-1.0f, -32768}, {-0.3f, -9830}, {0.0f, 0}}) {
         const std::array<float, 4> colours{colour, 0, 0, colour};
         std::array<int16_t, 8> values{};
@@ -44,7 +44,7 @@ TEST(Accumulation, ClearsTakeTheColourAsShorts) {
     }
 }
 
-TEST(Accumulation, WhatComesInGoesOutAgain) {
+TEST(Accumulation, roundTrips) {
     constexpr bool kAll[4] = {true, true, true, true};
     for (int byte = 0; byte < 256; ++byte) {
         const auto values = loaded(static_cast<uint8_t>(byte), 1);
@@ -54,7 +54,7 @@ TEST(Accumulation, WhatComesInGoesOutAgain) {
     }
 }
 
-TEST(Accumulation, HalvesAreBrighterThanHalf) {
+TEST(Accumulation, returnsHalvesBrighterThanHalf) {
     constexpr bool kAll[4] = {true, true, true, true};
     for (const auto& [byte, half] : {std::pair{100, 71}, {200, 146}, {255, 188}}) {
         const auto values = loaded(static_cast<uint8_t>(byte), 0.5f);
@@ -64,7 +64,7 @@ TEST(Accumulation, HalvesAreBrighterThanHalf) {
     }
 }
 
-TEST(Accumulation, TheColourMaskKeepsChannels) {
+TEST(Accumulation, respectsTheColourMask) {
     constexpr bool kSome[4] = {true, false, true, false};
     const std::array<int16_t, 4> values{32767, 32767, -5, 32767};
     std::array<uint8_t, 4> out{1, 2, 3, 4};
@@ -72,7 +72,7 @@ TEST(Accumulation, TheColourMaskKeepsChannels) {
     EXPECT_EQ(out, (std::array<uint8_t, 4>{255, 2, 0, 4}));
 }
 
-TEST(Accumulation, MultiplicationCutsOff) {
+TEST(Accumulation, truncatesProducts) {
     std::array<int16_t, 4> values{3, -3, 1000, -1000};
     accumulation::multiply(values.data(), 1, 0.6f);
     EXPECT_EQ(values, (std::array<int16_t, 4>{1, -1, 600, -600}));

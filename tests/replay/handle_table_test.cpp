@@ -7,17 +7,17 @@ namespace {
 
 using Of = HandleTable::Of;
 
-TEST(HandleTable, equalHandlesStayAsTheyAre) {
+TEST(HandleTable, keepsEqualHandles) {
     HandleTable t;
     EXPECT_TRUE(t.set(Of::Texture, 1, 1));
     EXPECT_TRUE(t.set(Of::Texture, 2, 2));
     EXPECT_FALSE(t.differ());
     EXPECT_EQ(t.find(Of::Texture, 2), 2u);
     EXPECT_EQ(t.find(Of::Image, 2), 0u);
-    EXPECT_EQ(t.value(Of::Texture, 77), 77u); // a number that is none of them
+    EXPECT_EQ(t.value(Of::Texture, 77), 77u); // a number that is no handle
 }
 
-TEST(HandleTable, saysOnceThatTheyDiffer) {
+TEST(HandleTable, reportsTheFirstDifference) {
     HandleTable t;
     EXPECT_TRUE(t.set(Of::Texture, 1, 1));
     EXPECT_FALSE(t.set(Of::Texture, 2, 9));
@@ -28,7 +28,7 @@ TEST(HandleTable, saysOnceThatTheyDiffer) {
     EXPECT_EQ(t.value(Of::Texture, 77), 77u);
 }
 
-TEST(HandleTable, aNumberThatIsDealtAgainStandsForTheNewOne) {
+TEST(HandleTable, replacesAReusedHandle) {
     HandleTable t;
     t.set(Of::Texture, 4, 8);
     t.set(Of::Texture, 4, 5);
@@ -37,7 +37,7 @@ TEST(HandleTable, aNumberThatIsDealtAgainStandsForTheNewOne) {
     EXPECT_EQ(t.value(Of::Texture, 4), 4u);
 }
 
-TEST(HandleTable, texturesAndImagesMayHaveTheSameNumber) {
+TEST(HandleTable, separatesTexturesAndImages) {
     HandleTable t;
     t.set(Of::Texture, 1, 100);
     t.set(Of::Image, 1, 200);

@@ -1,4 +1,4 @@
-// Areas that move: when a window takes them, and what is drawn where until then.
+// Moving areas: when a window adopts them, and what is drawn where before.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -23,7 +23,7 @@ Areas leftAndRight(uint32_t number, bool swapped) {
     return {number, swapped ? std::vector<Viewport>{right, left} : std::vector<Viewport>{left, right}};
 }
 
-// Node 0 of two: of a window of 64x32 pixels it begins with the left half, and is to have the right one.
+// Node 0 of two starts with the left half of a window of 64x32 pixels, and is to get the right one.
 class MovingAreas : public ::testing::Test {
 protected:
     void SetUp() override { replay_ = make(false); }
@@ -60,7 +60,7 @@ protected:
         for (const auto& packet : encoder_.takePackets()) ASSERT_TRUE(replay_->packet(wire::streamOf(1, 1), packet));
     }
     void draw() { encode_glRectf(t_, -1, -1, 1, 1); }
-    // The part of the window that this node has in this frame.
+    // This node's part of the window in this frame.
     PixelViewport shown() {
         records::swap(t_, 1, ++frames_);
         send();
@@ -80,7 +80,7 @@ protected:
     uint32_t frames_ = 0;
 };
 
-TEST_F(MovingAreas, AreTakenAtTheNextFullClear) {
+TEST_F(MovingAreas, areAdoptedAtTheNextFullClear) {
     open();
     encode_glEnable(t_, GL_DEPTH_TEST);
     encode_glClear(t_, kColour | kDepth);
@@ -99,7 +99,7 @@ TEST_F(MovingAreas, AreTakenAtTheNextFullClear) {
     EXPECT_EQ(drawn_, (std::vector<PixelViewport>{kLeft, {0, 0, 64, 32}, kRight})) << "what was the other node's is cleared here, too";
 }
 
-TEST_F(MovingAreas, WaitForEachBufferThatIsDrawnInto) {
+TEST_F(MovingAreas, waitForEachBufferThatIsDrawnTo) {
     open(24, 8);
     encode_glEnable(t_, GL_DEPTH_TEST);
     draw();
@@ -117,7 +117,7 @@ TEST_F(MovingAreas, WaitForEachBufferThatIsDrawnInto) {
     EXPECT_EQ(shown(), kLeft);
 }
 
-TEST_F(MovingAreas, WhatIsDrawnBetweenClearsCounts) {
+TEST_F(MovingAreas, considerDrawsBetweenClears) {
     open();
     encode_glEnable(t_, GL_DEPTH_TEST);
     draw();
@@ -130,7 +130,7 @@ TEST_F(MovingAreas, WhatIsDrawnBetweenClearsCounts) {
     EXPECT_EQ(shown(), kRight) << "in a later frame, as nothing was drawn since";
 }
 
-TEST_F(MovingAreas, ClearsOfAPartAreNone) {
+TEST_F(MovingAreas, ignorePartialClears) {
     open();
     draw();
     announce();
@@ -156,7 +156,7 @@ TEST_F(MovingAreas, ClearsOfAPartAreNone) {
     EXPECT_EQ(shown(), kRight);
 }
 
-TEST_F(MovingAreas, OnlyTheLatestCount) {
+TEST_F(MovingAreas, useTheLatestOnly) {
     open();
     draw();
     announce(1, true);
@@ -166,7 +166,7 @@ TEST_F(MovingAreas, OnlyTheLatestCount) {
     EXPECT_EQ(frame_.areas, 2u);
 }
 
-TEST_F(MovingAreas, AreTakenBehindAClearWhereNothingWasDrawnYet) {
+TEST_F(MovingAreas, areAdoptedAfterAClearWithoutDraws) {
     open();
     encode_glEnable(t_, GL_DEPTH_TEST);
     draw();
@@ -176,7 +176,7 @@ TEST_F(MovingAreas, AreTakenBehindAClearWhereNothingWasDrawnYet) {
     EXPECT_EQ(shown(), kRight);
 }
 
-TEST_F(MovingAreas, NewWindowsAndNewSizesHaveTheLatest) {
+TEST_F(MovingAreas, applyTheLatestToNewWindowsAndSizes) {
     announce();
     open();
     EXPECT_EQ(shown(), kRight);
@@ -190,7 +190,7 @@ TEST_F(MovingAreas, NewWindowsAndNewSizesHaveTheLatest) {
     EXPECT_EQ(shown(), (PixelViewport{0, 0, 64, 32}));
 }
 
-TEST_F(MovingAreas, StayWhereTheFrontIsDrawnOrFramesAccumulate) {
+TEST_F(MovingAreas, stayForFrontDrawsAndAccumulation) {
     open(24, 0, 16);
     encode_glDrawBuffer(t_, GL_FRONT);
     draw();
@@ -203,7 +203,7 @@ TEST_F(MovingAreas, StayWhereTheFrontIsDrawnOrFramesAccumulate) {
     }
 }
 
-TEST_F(MovingAreas, AWindowThatIsNeverClearedSaysSo) {
+TEST_F(MovingAreas, reportAWindowThatIsNeverCleared) {
     open();
     draw();
     announce();
@@ -215,7 +215,7 @@ TEST_F(MovingAreas, AWindowThatIsNeverClearedSaysSo) {
     EXPECT_TRUE(frame_.keepsAreas);
 }
 
-TEST_F(MovingAreas, ListsAreLookedInto) {
+TEST_F(MovingAreas, considerDisplayLists) {
     open();
     encode_glNewList(t_, 1, GL_COMPILE);
     encode_glClear(t_, kColour | kDepth);
@@ -241,8 +241,8 @@ TEST_F(MovingAreas, ListsAreLookedInto) {
     EXPECT_EQ(shown(), kLeft);
 }
 
-// The driver does that, in the node's part only.
-TEST_F(MovingAreas, ListsMayHoldClearsOfBuffers) {
+// The driver clears the node's part only.
+TEST_F(MovingAreas, acceptClearsOfBuffersInLists) {
     open();
     const GLfloat depth = 0.5F;
     encode_glNewList(t_, 1, GL_COMPILE);
@@ -256,7 +256,7 @@ TEST_F(MovingAreas, ListsMayHoldClearsOfBuffers) {
     EXPECT_EQ(shown(), kRight);
 }
 
-TEST_F(MovingAreas, AnswersAreOfTheAreaOfTheirPlace) {
+TEST_F(MovingAreas, answerForTheAreaAtThePosition) {
     open();
     draw();
     announce();
@@ -270,8 +270,8 @@ TEST_F(MovingAreas, AnswersAreOfTheAreaOfTheirPlace) {
     EXPECT_EQ(asked(), kRight);
 }
 
-// What a member tells is what a node that comes back then has.
-TEST_F(MovingAreas, AreToldToNodesThatComeBack) {
+// A returning node gets the state that a member reports.
+TEST_F(MovingAreas, areReportedToReturningNodes) {
     open();
     draw();
     announce();
@@ -287,7 +287,7 @@ TEST_F(MovingAreas, AreToldToNodesThatComeBack) {
     EXPECT_NE(replay_->tellAreas(), told);
 }
 
-TEST_F(MovingAreas, WhatNoMemberTellsIsRefused) {
+TEST_F(MovingAreas, rejectInvalidReports) {
     open();
     const auto told = replay_->tellAreas();
     for (size_t size = 0; size < told.size(); ++size) {
@@ -297,7 +297,7 @@ TEST_F(MovingAreas, WhatNoMemberTellsIsRefused) {
     }
 }
 
-TEST_F(MovingAreas, WithNobodyToTellTheyBeginAnew) {
+TEST_F(MovingAreas, restartWithoutAMember) {
     replay_ = make(true);
     open();
     announce();

@@ -15,14 +15,14 @@ RenderPass kernel(int x, int y, int width, int height) {
     return p;
 }
 
-TEST(PassPlace, plainPassesMoveNothing) {
+TEST(PassPlace, isTheIdentityForPlainPasses) {
     for (const double x : {0.0, 3.5, 16384.0}) EXPECT_EQ(placeInPass({}, x, -x), (std::array<double, 2>{x, -x}));
     EXPECT_EQ(inKernel({}, {-3, 4, 7, 9}), (PixelViewport{-3, 4, 7, 9}));
     EXPECT_EQ(moveInViewport({}, {10, 20, 300, 200}), (std::array<float, 4>{}));
 }
 
-// The centre of pixel i of a pass is that of the window's pixel which it shows.
-TEST(PassPlace, centresOfKernelPixelsMeet) {
+// The centre of pixel i of a pass equals that of its window pixel.
+TEST(PassPlace, alignsCentresOfKernelPixels) {
     for (int width = 1; width <= 5; ++width)
         for (int k = 0; k < width; ++k)
             for (int i = 0; i < 4; ++i) {
@@ -31,7 +31,7 @@ TEST(PassPlace, centresOfKernelPixelsMeet) {
             }
 }
 
-TEST(PassPlace, samplesLieBesideTheCentre) {
+TEST(PassPlace, placesSamplesBesideTheCentre) {
     RenderPass p;
     p.samples = 4;
     for (p.sample = 0; p.sample < 4; ++p.sample) {
@@ -42,8 +42,8 @@ TEST(PassPlace, samplesLieBesideTheCentre) {
     }
 }
 
-// Against counting: pixel x of the window belongs to column x mod width.
-TEST(PassPlace, kernelsOfRectangles) {
+// Compared with counting: pixel x of the window belongs to column x mod width.
+TEST(PassPlace, convertsRectanglesToKernels) {
     for (int width = 1; width <= 4; ++width)
         for (int k = 0; k < width; ++k)
             for (int x = 0; x < 9; ++x)
@@ -61,7 +61,7 @@ TEST(PassPlace, kernelsOfRectangles) {
                 }
 }
 
-TEST(PassPlace, kernelsOfAWindowCoverItOnce) {
+TEST(PassPlace, coversAWindowOnceWithKernels) {
     const PixelViewport window{0, 0, 253, 191};
     int64_t pixels = 0;
     for (int y = 0; y < 2; ++y)
@@ -69,7 +69,7 @@ TEST(PassPlace, kernelsOfAWindowCoverItOnce) {
     EXPECT_EQ(pixels, window.area());
 }
 
-TEST(PassPlace, shownPixelsAndThoseThatStandForThem) {
+TEST(PassPlace, relatesShownAndRepresentativePixels) {
     const RenderPass p = kernel(1, 0, 3, 2);
     EXPECT_EQ(shownByKernel(p, {2, 1, 4, 3}), (PixelViewport{7, 2, 10, 5}));
     EXPECT_EQ(inKernel(p, shownByKernel(p, {2, 1, 4, 3})), (PixelViewport{2, 1, 4, 3}));
@@ -82,8 +82,8 @@ RenderPass zoomed(double x, double y, RenderPass p = {}) {
     return p;
 }
 
-// Parts of a window that do not overlap do not in a zoomed pass, and leave nothing out.
-TEST(PassPlace, zoomedPartsMeet) {
+// Disjoint parts of a window stay disjoint in a zoomed pass, without gaps.
+TEST(PassPlace, joinsZoomedParts) {
     for (const double zoom : {0.5, 0.3, 0.77, 0.999, 1.5, 2.0, 3.7, 16.0})
         for (const int width : {320, 321, 1001}) {
             const RenderPass p = zoomed(zoom, 1);
@@ -100,7 +100,7 @@ TEST(PassPlace, zoomedPartsMeet) {
         }
 }
 
-TEST(PassPlace, middlesOfZoomedPixelsMeet) {
+TEST(PassPlace, alignsCentresOfZoomedPixels) {
     EXPECT_EQ(placeInPass(zoomed(0.5, 0.25), 8, 8), (std::array<double, 2>{4, 2}));
     const auto at = placeInPass(zoomed(0.5, 0.5, kernel(1, 0, 2, 1)), 2 * 10 + 1 + 0.5, 0); // pixel 10 of the kernel
     EXPECT_DOUBLE_EQ(at[0], 10.5 / 2);
@@ -115,7 +115,7 @@ TEST(PassPlace, middlesOfZoomedPixelsMeet) {
     }
 }
 
-TEST(PassPlace, anyRectangleOfAProgramIsAnswered) {
+TEST(PassPlace, acceptsAnyRectangle) {
     constexpr int32_t kMost = std::numeric_limits<int32_t>::max(), kLeast = std::numeric_limits<int32_t>::min();
     for (const PixelViewport& r : {PixelViewport{kMost, kMost, kMost, kMost}, PixelViewport{kLeast, kLeast, kMost, kMost}, PixelViewport{kLeast, 0, kLeast, 1}})
         for (const int width : {1, 2, 16}) (void)inKernel(kernel(width - 1, 0, width, 1), r);
@@ -123,8 +123,8 @@ TEST(PassPlace, anyRectangleOfAProgramIsAnswered) {
     EXPECT_EQ(moveInViewport(kernel(0, 0, 2, 1), {0, 0, std::numeric_limits<float>::quiet_NaN(), 10}), (std::array<float, 4>{}));
 }
 
-// A position that is moved in its viewport lands where a moved viewport puts the position.
-TEST(PassPlace, movesInAViewportAreMovedViewports) {
+// A position moved within its viewport equals the position in a moved viewport.
+TEST(PassPlace, movesPositionsLikeViewports) {
     RenderPass p = kernel(2, 1, 3, 2);
     p.samples = 5;
     p.sample = 3;

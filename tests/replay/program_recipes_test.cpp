@@ -15,7 +15,7 @@ ProgramRecipe example() {
     return r;
 }
 
-TEST(ProgramRecipe, comesBackFromItsBytes) {
+TEST(ProgramRecipe, roundTrips) {
     const auto back = ProgramRecipe::fromBytes(example().toBytes());
     ASSERT_TRUE(back);
     EXPECT_TRUE(back->separable);
@@ -28,14 +28,14 @@ TEST(ProgramRecipe, comesBackFromItsBytes) {
     EXPECT_EQ(back->varyings, (std::vector<std::string>{"kept", ""}));
 }
 
-TEST(ProgramRecipe, isNothingWhenBytesAreMissingOrTooMany) {
+TEST(ProgramRecipe, isRejectedWithMissingOrAdditionalBytes) {
     std::vector<std::byte> bytes = example().toBytes();
     for (size_t n = 0; n < bytes.size(); ++n) EXPECT_FALSE(ProgramRecipe::fromBytes(std::span(bytes).first(n))) << n;
     bytes.push_back(std::byte{0});
     EXPECT_FALSE(ProgramRecipe::fromBytes(bytes));
 }
 
-TEST(ProgramRecipe, isNothingWithWildCounts) {
+TEST(ProgramRecipe, isRejectedWithInvalidCounts) {
     for (size_t at = 0; at + 4 <= example().toBytes().size(); ++at) {
         std::vector<std::byte> bytes = example().toBytes();
         for (size_t i = 0; i < 4; ++i) bytes[at + i] = std::byte{0xff};

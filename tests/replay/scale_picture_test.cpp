@@ -26,14 +26,14 @@ std::vector<std::byte> picture(const PixelViewport& area, const Value& value) {
 
 int at(const std::vector<std::byte>& bytes, const PixelViewport& box, int x, int y) { return std::to_integer<int>(bytes[(static_cast<size_t>(y) * static_cast<size_t>(box.w) + static_cast<size_t>(x)) * 4]); }
 
-TEST(ScalePicture, nothingChangesWithoutZoom) {
+TEST(ScalePicture, changesNothingWithoutZoom) {
     std::vector<std::byte> drawn;
     for (int i = 0; i < 7 * 5 * 4; ++i) drawn.push_back(static_cast<std::byte>(i * 37));
     EXPECT_EQ(scaled(drawn, {3, 2, 7, 5}, {1, 1}, {3, 2, 7, 5}), drawn);
 }
 
-// A ramp stays one: what lies between two middles is their mean by distance.
-TEST(ScalePicture, smallerOnesAreLinearBetweenMiddles) {
+// A ramp stays a ramp: between two centres values are interpolated by distance.
+TEST(ScalePicture, interpolatesLinearlyToEnlarge) {
     RenderPass pass;
     pass.zoom = {0.25, 0.25};
     const PixelViewport box{40, 0, 80, 8}, area = inPass(pass, box);
@@ -45,8 +45,8 @@ TEST(ScalePicture, smallerOnesAreLinearBetweenMiddles) {
     EXPECT_EQ(shown.back(), drawn.back());
 }
 
-// Each pixel is the mean of what lies in it, of single lines and points, too.
-TEST(ScalePicture, largerOnesAreMeans) {
+// Each pixel is the mean of the area that it covers, including single lines and points.
+TEST(ScalePicture, averagesToReduce) {
     const PixelViewport box{5, 3, 10, 6};
     for (const int zoom : {2, 3, 5}) {
         const PixelViewport area{5 * zoom, 3 * zoom, 10 * zoom, 6 * zoom};
@@ -56,7 +56,7 @@ TEST(ScalePicture, largerOnesAreMeans) {
     }
 }
 
-// Whatever the zoom, nothing gets brighter, and what is even stays so, to the last value.
+// For any zoom, brightness does not increase, and a uniform picture stays exactly uniform.
 TEST(ScalePicture, keepsBrightness) {
     for (const Zoom zoom : {Zoom{1.5, 1.5}, Zoom{2.7, 0.6}, Zoom{0.3, 7.9}, Zoom{16, 1.01}, Zoom{1.999, 15.5}}) {
         RenderPass pass;

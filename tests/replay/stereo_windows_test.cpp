@@ -1,4 +1,4 @@
-// Programs that draw for two eyes themselves: a node shows what they have drawn for its eye, by this machine's GL.
+// Programs that draw two eyes themselves: a node shows the program's picture of its eye, with this machine's GL.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -55,7 +55,7 @@ protected:
         encode_glClearColor(t_, red, green, blue, 1);
         encode_glClear(t_, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     }
-    // All pixels of the next picture, which have one colour.
+    // The uniform colour of the next picture.
     Pixel shown() {
         records::swap(t_, 1, ++frame_);
         send();
@@ -66,7 +66,7 @@ protected:
     void send() {
         for (const auto& packet : encoder_.takePackets()) EXPECT_TRUE(replay_->packet(wire::streamOf(1, 1), packet));
     }
-    // A quad two units in front of the eye, from x = 0 to the right, drawn with a frustum of a field of view of 90 degrees.
+    // A quad two units in front of the eye, from x = 0 to the right, with a field of view of 90 degrees.
     void drawRightHalf() {
         encode_glMatrixMode(t_, GL_PROJECTION);
         encode_glLoadIdentity(t_);
@@ -98,7 +98,7 @@ protected:
 
 constexpr Pixel kRed{255, 0, 0}, kBlue{0, 0, 255}, kGreen{0, 255, 0};
 
-TEST_F(StereoWindows, EachEyeHasItsOwnBuffer) {
+TEST_F(StereoWindows, haveABufferPerEye) {
     for (const Eye eye : {Eye::Left, Eye::Right, Eye::Cyclop}) {
         start(eye);
         for (int frame = 0; frame < 3; ++frame) {
@@ -113,7 +113,7 @@ TEST_F(StereoWindows, EachEyeHasItsOwnBuffer) {
     }
 }
 
-TEST_F(StereoWindows, WhatGoesToBothIsSeenByBoth) {
+TEST_F(StereoWindows, showDrawsToBothEyes) {
     for (const Eye eye : {Eye::Left, Eye::Right}) {
         start(eye);
         clear(GL_BACK_LEFT, 1, 0, 0);
@@ -130,8 +130,8 @@ TEST_F(StereoWindows, WhatGoesToBothIsSeenByBoth) {
     }
 }
 
-// The other eye's buffer can't be asked for here: this eye's pixels come, and no error, as natively.
-TEST_F(StereoWindows, ReadsAreAnswered) {
+// The other eye's buffer is not here: reads return this eye's pixels without an error, as natively.
+TEST_F(StereoWindows, answerReads) {
     start(Eye::Left);
     clear(GL_BACK_LEFT, 1, 0, 0);
     clear(GL_BACK_RIGHT, 0, 0, 1);
@@ -144,8 +144,8 @@ TEST_F(StereoWindows, ReadsAreAnswered) {
     }
 }
 
-// What the program has moved for its eyes is not moved once more; a mono window's is.
-TEST_F(StereoWindows, TheProgramLooksForItself) {
+// A stereo program's own eye offset is not applied twice; a mono window is transformed.
+TEST_F(StereoWindows, keepTheProgramsOwnView) {
     std::map<bool, int> white;
     for (const bool stereo : {true, false}) {
         start(Eye::Left, stereo);
@@ -158,7 +158,7 @@ TEST_F(StereoWindows, TheProgramLooksForItself) {
     EXPECT_NE(white[false], white[true]);
 }
 
-TEST_F(StereoWindows, MonoSessionsSayWhatIsShown) {
+TEST_F(StereoWindows, reportTheShownEyeInMonoSessions) {
     start(Eye::Cyclop);
     send();
     EXPECT_NE(log_.find("--stereo"), std::string::npos) << log_;

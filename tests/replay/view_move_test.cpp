@@ -1,4 +1,4 @@
-// Moved clip coordinates against those of the matrices that they stand for.
+// Transformed clip coordinates compared with those of the intended matrices.
 #include "nodes/replay/view_move.hpp"
 
 #include <cmath>
@@ -24,7 +24,7 @@ Point times(const double (&m)[16], const Point& p) {
     return out;
 }
 
-// As the shader has it.
+// As in the shader.
 Point moved(const ViewMove& m, const Point& p) {
     const auto by = [&](const std::array<double, 4>& row) { return row[0] * p[0] + row[1] * p[1] + row[2] * p[3] + row[3]; };
     return {p[0] + by(m.x), p[1] + by(m.y), p[2] + m.z * by(m.w), p[3] + by(m.w)};
@@ -42,7 +42,7 @@ Matrix4 turn(double about, double up) {
     return Matrix4::rows({1, 0, 0}, {0, std::cos(up), -std::sin(up)}, {0, std::sin(up), std::cos(up)}) * y;
 }
 
-TEST_F(ViewMoveTest, screensOfARoom) {
+TEST_F(ViewMoveTest, matchesScreensOfARoom) {
     for (int i = 0; i < 2000; ++i) {
         const Projection own = anyProjection();
         ScreenView s;
@@ -59,7 +59,7 @@ TEST_F(ViewMoveTest, screensOfARoom) {
         const double x = (2 * there.x + (s.right + s.left) * there.z) / (s.right - s.left), y = (2 * there.y + (s.top + s.bottom) * there.z) / (s.top - s.bottom);
         const double w = -there.z;
         const double placedX = s.area.w * x + (2 * s.area.x + s.area.w - 1) * w, placedY = s.area.h * y + (2 * s.area.y + s.area.h - 1) * w;
-        const double depth = own.matrix()[10] * there.z + own.matrix()[14]; // of the program's near and far
+        const double depth = own.matrix()[10] * there.z + own.matrix()[14]; // with the program's near and far planes
 
         const Point got = moved(screenMove(seen, s), clip);
         const double scale = 1e-9 * (std::fabs(clip[3]) + std::fabs(w) + 1) * 100;
@@ -75,8 +75,8 @@ TEST_F(ViewMoveTest, screensOfARoom) {
     }
 }
 
-// A screen that is where the program thinks it is shows what the program shows.
-TEST_F(ViewMoveTest, theProgramsOwnScreenMovesNothing) {
+// A screen in the program's assumed place shows the program's picture.
+TEST_F(ViewMoveTest, isTheIdentityForTheProgramsOwnScreen) {
     for (int i = 0; i < 100; ++i) {
         const Projection own = anyProjection();
         double m[16];
@@ -89,7 +89,7 @@ TEST_F(ViewMoveTest, theProgramsOwnScreenMovesNothing) {
     }
 }
 
-TEST_F(ViewMoveTest, eyesBeforeOneScreen) {
+TEST_F(ViewMoveTest, matchesEyesInFrontOfOneScreen) {
     const Projection own{-2, 2, -1, 1, 1.5, 60};
     double m[16], shifted[16];
     std::ranges::copy(own.matrix(), m);
@@ -103,8 +103,8 @@ TEST_F(ViewMoveTest, eyesBeforeOneScreen) {
     }
 }
 
-// Upside down, as programs draw into framebuffer objects that they show the other way up.
-TEST_F(ViewMoveTest, mirroredProjectionsStayMirrored) {
+// Upside down, as programs draw into framebuffer objects that they show flipped.
+TEST_F(ViewMoveTest, keepsMirroredProjectionsMirrored) {
     double m[16];
     std::ranges::copy(Projection{-2, 2, -1, 1, 1.5, 60}.matrix(), m);
     m[5] = -m[5];

@@ -15,7 +15,7 @@ void expectBlock(GLenum format, uint32_t width, uint32_t height, uint32_t depth,
     EXPECT_EQ(block.bytes, bytes) << std::hex << format;
 }
 
-TEST(SizesCompressedBlock, shapes) {
+TEST(SizesCompressedBlock, knowsBlockShapes) {
     expectBlock(GL_COMPRESSED_RGB_S3TC_DXT1_EXT, 4, 4, 1, 8);
     expectBlock(GL_COMPRESSED_SRGB_ALPHA_S3TC_DXT5_EXT, 4, 4, 1, 16);
     expectBlock(GL_COMPRESSED_RED_RGTC1, 4, 4, 1, 8);
@@ -33,19 +33,19 @@ TEST(SizesCompressedBlock, shapes) {
     expectBlock(GL_PALETTE4_RGB8_OES, 0, 0, 0, 0);
 }
 
-TEST(SizesCompressedBlock, bytesOfImages) {
+TEST(SizesCompressedBlock, computesImageSizes) {
     EXPECT_EQ(compressedBytes(GL_COMPRESSED_RGB_S3TC_DXT1_EXT, 5, 5, 1), 32u);
     EXPECT_EQ(compressedBytes(GL_COMPRESSED_RGBA_ASTC_8x5_KHR, 17, 11, 2), 3u * 3 * 2 * 16);
     EXPECT_EQ(compressedBytes(GL_COMPRESSED_RGBA_ASTC_3x3x3_OES, 4, 4, 4), 8u * 16);
     EXPECT_EQ(compressedBytes(GL_COMPRESSED_RGB_PVRTC_4BPPV1_IMG, 4, 4, 1),
-              32u); // 2×2 blocks at least
+              32u); // at least 2×2 blocks
     EXPECT_EQ(compressedBytes(GL_COMPRESSED_RGB_S3TC_DXT1_EXT, 0, 5, 1), 0u);
     EXPECT_EQ(compressedBytes(GL_RGBA8, 4, 4, 1), 0u);
     EXPECT_EQ(compressedBytes(GL_COMPRESSED_RGBA_ASTC_4x4_KHR, INT32_MAX, INT32_MAX, INT32_MAX),
               SIZE_MAX);
 }
 
-TEST(SizesCompressedBlock, withoutBlockSettingsTheImageIsTight) {
+TEST(SizesCompressedBlock, isTightWithoutBlockSettings) {
     PixelStore store;
     store.rowLength = 100;
     store.skipRows = 3;
@@ -57,15 +57,15 @@ TEST(SizesCompressedBlock, withoutBlockSettingsTheImageIsTight) {
     EXPECT_EQ(tightBytes(layout), spanBytes(layout));
 }
 
-TEST(SizesCompressedBlock, partOfALargerImage) {
+TEST(SizesCompressedBlock, selectsAPartOfALargerImage) {
     PixelStore store;
     store.compressedBlockWidth = store.compressedBlockHeight = 4;
     store.compressedBlockDepth = 1;
     store.compressedBlockSize = 8;
-    store.rowLength = 22;   // 6 blocks
+    store.rowLength = 22; // 6 blocks
     store.imageHeight = 13; // 4 rows
-    store.skipPixels = 8;   // 2 blocks
-    store.skipRows = 4;     // 1 row
+    store.skipPixels = 8; // 2 blocks
+    store.skipRows = 4; // 1 row
     store.skipImages = 1;
     const ImageLayout layout =
         compressedLayoutOf(store, GL_COMPRESSED_RGB_S3TC_DXT1_EXT, 8, 8, 2, 3);
@@ -90,7 +90,7 @@ TEST(SizesCompressedBlock, partOfALargerImage) {
             }
 }
 
-TEST(SizesCompressedBlock, hugeSettingsAreNotWrappedAround) {
+TEST(SizesCompressedBlock, doesNotWrapHugeSettings) {
     PixelStore store;
     store.compressedBlockWidth = store.compressedBlockHeight = store.compressedBlockDepth = 1;
     store.compressedBlockSize = store.rowLength = store.imageHeight = store.skipImages = INT32_MAX;

@@ -1,4 +1,4 @@
-// Block formats and their pixel store settings, against GL.
+// Block formats and their pixel store parameters, compared with GL.
 #include "tests/streamcodec/sizes_gl_context.hpp"
 
 #include <cstring>
@@ -11,7 +11,7 @@
 namespace mural::sizes {
 namespace {
 
-// By brute force: GL takes a compressed image of any size only with the right imageSize.
+// By brute force: GL accepts a compressed image of any size only with the correct imageSize.
 int checkImageSizes(GLenum format) {
     const std::vector<uint8_t> data(4096);
     for (const auto& [width, height] : {std::pair{1, 1}, {4, 4}, {5, 9}, {13, 8}, {24, 25}}) {
@@ -47,10 +47,10 @@ void checkFormats(TestApi api, int atLeast) {
     EXPECT_GE(taken, atLeast);
 }
 
-TEST(SizesCompressedGl, imageSizes) {
+TEST(SizesCompressedGl, matchesImageSizes) {
     checkFormats(TestApi::Compatibility, 10);
 }
-TEST(SizesCompressedGl, imageSizesOfOpenGlEs3) {
+TEST(SizesCompressedGl, matchesImageSizesOfOpenGlEs3) {
     checkFormats(TestApi::Es3, 10);
 }
 
@@ -77,7 +77,7 @@ PixelStore randomBlockStore(Random& random, const CompressedBlock& block, int wi
 
 class CompressedGl : public testing::Test {
 protected:
-    // Places bytes so that they end at the guard, and loads them.
+    // Places bytes so that they end at the guard, and uploads them.
     void load(const std::vector<uint8_t>& bytes, size_t pastTheEnd, const PixelStore& store) {
         setPixelStore(Direction::Unpack, store, TestApi::Compatibility);
         uint8_t* pointer = memory_.end() - bytes.size() + pastTheEnd;
@@ -133,7 +133,7 @@ protected:
     GLsizei width_ = 0, height_ = 0, depth_ = 0;
 };
 
-TEST_F(CompressedGl, partsOfLargerImages) {
+TEST_F(CompressedGl, uploadsPartsOfLargerImages) {
     const TestContext context(TestApi::Compatibility);
     if (!context.valid())
         GTEST_SKIP() << "no compatibility profile over EGL surfaceless here";

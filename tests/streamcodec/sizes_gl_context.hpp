@@ -1,4 +1,4 @@
-// A GL context without a window for the tests of the sizes, and what they share.
+// A windowless GL context for the tests of sizes, and shared helpers.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace mural::sizes {
 
 enum class TestApi { Compatibility, Es3, Es1 };
 
-// Current on the calling thread for its lifetime, over EGL surfaceless. Not made: valid() is false.
+// Current on the calling thread during its lifetime, on EGL surfaceless. valid() is false if it could not be created.
 class TestContext {
 public:
     explicit TestContext(TestApi api);
@@ -31,7 +31,7 @@ private:
     void* context_ = nullptr;
 };
 
-// Forgets all errors, and says whether there was one.
+// Clears all errors, and returns whether there was one.
 bool takeErrors();
 
 enum class Direction { Unpack, Pack };
@@ -40,11 +40,11 @@ PixelStore tightStore();
 
 void (*procAddress(const char* name))();
 
-// All values of the enum range that the sizes know as format or type.
+// All enum values known as format or type.
 std::vector<GLenum> knownFormats();
 const std::vector<GLenum>& knownTypes();
 
-// A texture's colour, depth or indices as a framebuffer of 32×32; returns false when GL has it not.
+// A texture of colour, depth or indices as a framebuffer of 32×32; false if GL lacks it.
 class TestFramebuffer {
 public:
     TestFramebuffer(GLenum internalformat, GLenum format, GLenum type);

@@ -10,7 +10,7 @@
 namespace mural::sizes {
 namespace {
 
-// Wide guards: a layout that is wrong by whole rows or images must hit them too.
+// Wide guards detect layouts that are off by whole rows or images.
 constexpr size_t kGuardBytes = size_t{1} << 20;
 constexpr size_t kPageBytes = 4096;
 
@@ -35,7 +35,7 @@ void onFault(int signal, siginfo_t* info, void* /*context*/) {
         mprotect(guard, kGuardBytes, PROT_READ | PROT_WRITE);
         return;
     }
-    sigaction(signal, &gPrevious, nullptr); // a fault of another cause: happens again, unhandled
+    sigaction(signal, &gPrevious, nullptr); // a fault with another cause: repeats unhandled
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// Memory between two pages that notice any access: proves how far GL reads and writes.
+// Memory between two guard pages, which shows how far GL reads and writes.
 #pragma once
 
 #include <cstddef>
@@ -6,9 +6,9 @@
 
 namespace mural::sizes {
 
-// Pages of memory with guards before and behind. An access to a guard is noted and then let through
-// (the guard opens), so GL goes on and keeps its state; close() puts the guards up again.
-// One at a time, used by one thread; accesses from other threads (of the driver) count too.
+// Pages with guards before and after. An access to a guard is recorded and then permitted (the guard opens), so GL
+// continues and keeps its state; close() restores the guards. One instance at a time, used by one thread; accesses of
+// the driver's threads count too.
 class GuardedMemory {
 public:
     explicit GuardedMemory(size_t size);
@@ -20,7 +20,7 @@ public:
     uint8_t* end() { return begin_ + size_; }
     [[nodiscard]] size_t size() const { return size_; }
 
-    // True when a guard was touched since the last close().
+    // True if a guard was accessed since the last close().
     [[nodiscard]] bool touched() const;
     void close();
 

@@ -1,5 +1,4 @@
-// packTight and unpackTight against the formulae of the specification, value by value and bit by
-// bit.
+// packTight and unpackTight compared with the specification's formulae, value by value and bit by bit.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -35,7 +34,7 @@ const Shape kShapes[] = {
     {GL_STENCIL_INDEX, GL_BITMAP, 1, 0},
 };
 
-// The specification's row length k in elements, times the element's size.
+// The specification's row length k in elements, times the element size.
 size_t rowStrideBySpec(const Shape& shape, const PixelStore& store, size_t width) {
     const auto a = static_cast<size_t>(store.alignment);
     const size_t l = store.rowLength > 0 ? static_cast<size_t>(store.rowLength) : width;
@@ -48,7 +47,7 @@ size_t rowStrideBySpec(const Shape& shape, const PixelStore& store, size_t width
     return a / s * ((s * n * l + a - 1) / a) * s;
 }
 
-// Moves one pixel between client memory and the tight image.
+// Copies one pixel between client memory and the tight image.
 struct Reference {
     const Shape& shape;
     const PixelStore& store;
@@ -152,7 +151,7 @@ void compareOnce(Random& random, const Shape& shape) {
     const int depth = dims > 2 ? random.between(1, 4) : 1;
     PixelStore store = random.store(width, height);
     if (random.oneIn(8))
-        store.rowLength = random.between(1, width); // rows may overlap: both sides go row by row
+        store.rowLength = random.between(1, width); // rows may overlap: both sides proceed row by row
     SCOPED_TRACE(describe(store) + " size " + std::to_string(width) + "x" + std::to_string(height) +
                  "x" + std::to_string(depth) + " dims " + std::to_string(dims));
     const Reference reference{shape,
@@ -180,7 +179,7 @@ void compareOnce(Random& random, const Shape& shape) {
     ASSERT_EQ(target, unpackedByReference(reference, client, picture));
 }
 
-TEST(SizesImageCopy, agreesWithTheFormulaeOfTheSpecification) {
+TEST(SizesImageCopy, agreesWithTheSpecification) {
     const uint32_t seed = std::random_device{}();
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
@@ -193,7 +192,7 @@ TEST(SizesImageCopy, agreesWithTheFormulaeOfTheSpecification) {
     }
 }
 
-TEST(SizesImageCopy, bitmapsComeOutMostSignificantBitFirst) {
+TEST(SizesImageCopy, outputsBitmapsMostSignificantBitFirst) {
     PixelStore store;
     store.alignment = 1;
     store.skipPixels = 3;
@@ -208,7 +207,7 @@ TEST(SizesImageCopy, bitmapsComeOutMostSignificantBitFirst) {
     EXPECT_EQ(tight[0], 0b10101110);
 }
 
-TEST(SizesImageCopy, unpackingBitmapsKeepsTheBitsBeside) {
+TEST(SizesImageCopy, preservesAdjacentBitsOfBitmaps) {
     PixelStore store;
     store.alignment = 1;
     store.skipPixels = 2;
@@ -219,7 +218,7 @@ TEST(SizesImageCopy, unpackingBitmapsKeepsTheBitsBeside) {
     EXPECT_EQ(client[1], 0b01111111);
 }
 
-TEST(SizesImageCopy, emptyUnknownAndImpossibleImagesTouchNothing) {
+TEST(SizesImageCopy, accessesNothingForEmptyUnknownAndImpossibleImages) {
     const PixelStore store;
     for (const ImageLayout& layout :
          {layoutOf(store, GL_RGBA, GL_FLOAT, 0, 5, 1, 2),
@@ -237,7 +236,7 @@ TEST(SizesImageCopy, emptyUnknownAndImpossibleImagesTouchNothing) {
     EXPECT_EQ(tightBytes(GL_RGBA, GL_FLOAT, -1, 1, 1), 0u);
 }
 
-TEST(SizesImageCopy, hugeSkipsAreNotWrappedAround) {
+TEST(SizesImageCopy, doesNotWrapHugeSkips) {
     PixelStore store;
     store.rowLength = INT32_MAX;
     store.imageHeight = INT32_MAX;

@@ -1,6 +1,5 @@
-// What GL writes of images into client memory, against layoutOf, spanBytes and unpackTight: nothing
-// outside of the pixels changes, and the bytes are those of the tight image laid out under the pack
-// state.
+// GL's writes to client memory, compared with layoutOf, spanBytes and unpackTight: nothing outside the pixels changes,
+// and the bytes are those of the tight image laid out under the pack state.
 #include "tests/streamcodec/sizes_gl_context.hpp"
 
 #include <cstring>
@@ -66,10 +65,10 @@ public:
 private:
     PixelStore randomStore(const Image& image) {
         PixelStore store = random_.store(image.width, image.height);
-        // Mesa swaps depth by way of floats, which loses bits of 32-bit integers.
+        // Mesa swaps depth through floats, which loses bits of 32-bit integers.
         if (image.format == GL_DEPTH_COMPONENT || image.format == GL_DEPTH_STENCIL)
             store.swapBytes = false;
-        // Mesa clears the bits before the first pixel; the specification leaves them.
+        // Mesa clears the bits before the first pixel; the specification preserves them.
         if (image.type == GL_BITMAP)
             store.skipPixels &= ~7;
         if (api_ != TestApi::Compatibility) {
@@ -79,7 +78,7 @@ private:
             store.invert =
                 image.type != GL_BITMAP && random_.oneIn(4); // Mesa does not invert stipples
             if (store.invert)
-                store.skipRows = 0; // see invertedRowsLieAboveTheSkippedOnes
+                store.skipRows = 0; // see placesInvertedRowsAboveTheSkippedOnes
         }
         return store;
     }
@@ -111,8 +110,8 @@ bool isDepth(GLenum format) {
     return format == GL_DEPTH_COMPONENT || format == GL_DEPTH_STENCIL || format == GL_STENCIL_INDEX;
 }
 
-// Mesa 22.3 calls a null pointer for some of the pairs that it should refuse, takes GL_BITMAP and
-// colour indices but writes nothing, and of integer luminance writes only a part.
+// Mesa 22.3 calls a null pointer for some pairs that it should reject. It accepts GL_BITMAP and colour indices but
+// writes nothing, and writes integer luminance only partly.
 bool isReadable(const Source& source, GLenum format) {
     if (format == GL_STENCIL_INDEX && source.format == GL_DEPTH_COMPONENT)
         return false;
@@ -147,7 +146,7 @@ int checkReadPixels(Checker& checker, TestApi api) {
                     const Read read = [&](void* pixels) {
                         glReadPixels(1, 2, image.width, image.height, format, type, pixels);
                     };
-                    // Mesa 22.3 writes luminance as one row of all pixels, whatever the state says.
+                    // Mesa 22.3 writes luminance as one row of all pixels, ignoring the state.
                     if (format == GL_LUMINANCE || format == GL_LUMINANCE_ALPHA)
                         checker.check(image, tightStore(), read);
                     else
@@ -160,7 +159,7 @@ int checkReadPixels(Checker& checker, TestApi api) {
     return pairs;
 }
 
-TEST(SizesImageReadGl, readPixels) {
+TEST(SizesImageReadGl, matchesReadPixels) {
     const TestContext context(TestApi::Compatibility);
     if (!context.valid())
         GTEST_SKIP() << "no compatibility profile over EGL surfaceless here";
@@ -170,7 +169,7 @@ TEST(SizesImageReadGl, readPixels) {
     EXPECT_GE(pairs, 100);
 }
 
-TEST(SizesImageReadGl, readPixelsOfOpenGlEs3) {
+TEST(SizesImageReadGl, matchesReadPixelsOfOpenGlEs3) {
     const TestContext context(TestApi::Es3);
     if (!context.valid())
         GTEST_SKIP() << "no OpenGL ES 3 over EGL surfaceless here";
@@ -227,7 +226,7 @@ void checkGetTexImage(Checker& checker, const Source& source, int dims, int& pai
         for (GLenum type : knownTypes()) {
             if (!isReadable(source, format) || type == GL_BITMAP)
                 continue;
-            // Mesa 22.3 writes bytes, whatever the type.
+            // Mesa 22.3 writes bytes for every type.
             if (format == GL_STENCIL_INDEX && type != GL_UNSIGNED_BYTE && type != GL_BYTE)
                 continue;
             setPixelStore(Direction::Pack, tightStore(), TestApi::Compatibility);
@@ -245,7 +244,7 @@ void checkGetTexImage(Checker& checker, const Source& source, int dims, int& pai
         }
 }
 
-TEST(SizesImageReadGl, getTexImage) {
+TEST(SizesImageReadGl, matchesGetTexImage) {
     const TestContext context(TestApi::Compatibility);
     if (!context.valid())
         GTEST_SKIP() << "no compatibility profile over EGL surfaceless here";
@@ -261,7 +260,7 @@ TEST(SizesImageReadGl, getTexImage) {
     EXPECT_GE(pairs, 100);
 }
 
-TEST(SizesImageReadGl, getPolygonStipple) {
+TEST(SizesImageReadGl, matchesGetPolygonStipple) {
     const TestContext context(TestApi::Compatibility);
     if (!context.valid())
         GTEST_SKIP() << "no compatibility profile over EGL surfaceless here";
@@ -274,9 +273,9 @@ TEST(SizesImageReadGl, getPolygonStipple) {
                       [](void* bits) { glGetPolygonStipple(static_cast<GLubyte*>(bits)); });
 }
 
-// Mesa counts rows downwards from the highest of the image, the skipped ones first: into the memory
-// below the highest row, and with more skipped rows than there are, below the pointer.
-TEST(SizesImageReadGl, invertedRowsLieAboveTheSkippedOnes) {
+// Mesa counts rows downwards from the highest row of the image, skipped rows first: into the memory below the highest
+// row, and below the pointer if more rows are skipped than exist.
+TEST(SizesImageReadGl, placesInvertedRowsAboveTheSkippedOnes) {
     const TestContext context(TestApi::Compatibility);
     if (!context.valid())
         GTEST_SKIP() << "no compatibility profile over EGL surfaceless here";

@@ -1,7 +1,6 @@
-// What GL reads of images in client memory, against layoutOf, spanBytes and packTight: for all
-// pairs of format and type that this GL takes, with odd sizes and random pixel store states. A byte
-// too few or too many shows as a touched guard page, a byte at the wrong place as a different
-// picture.
+// GL's reads of images in client memory, compared with layoutOf, spanBytes and packTight: for all pairs of format and
+// type that this GL accepts, with odd sizes and random pixel store states. A byte too many or too few hits a guard
+// page, a misplaced byte changes the picture.
 #include "tests/streamcodec/sizes_gl_context.hpp"
 
 #include <cstring>
@@ -29,28 +28,26 @@ std::string describe(const Image& image) {
     return text;
 }
 
-// Mesa swaps depth by way of floats, which loses bits of 32-bit integers: only the same path
-// compares.
+// Mesa swaps depth through floats, which loses bits of 32-bit integers: only equal paths are comparable.
 bool isDepth(GLenum format) {
     return format == GL_DEPTH_COMPONENT || format == GL_DEPTH_STENCIL;
 }
 
-// A 32-bit depth, a byte of stencil, and three bytes for nothing.
+// A 32-bit depth, a byte of stencil, and three unused bytes.
 size_t unreadAtTheEnd(GLenum type) {
     return type == GL_FLOAT_32_UNSIGNED_INT_24_8_REV ? 3 : 0;
 }
 
-// Mesa 22.3 swaps the bytes in a copy of all rows from the pointer on, and skips in the copy once
-// more.
+// Mesa 22.3 swaps bytes in a copy of all rows from the pointer on, and skips in the copy again.
 PixelStore swappedOnly(const PixelStore& store) {
     return {.alignment = store.alignment, .swapBytes = true, .lsbFirst = store.lsbFirst};
 }
 
-// Mesa 22.3 reads colour indices as one row of all pixels, whatever the pixel store state
-// says, and then takes its own copy apart by that state.
+// Mesa 22.3 reads colour indices as one row of all pixels, ignoring the pixel store state, and then divides its own
+// copy by that state.
 bool mesaIgnoresStore(const Image& image) {
     return image.format == GL_COLOR_INDEX && image.type != GL_BITMAP;
-} // glBitmap is right
+} // glBitmap is correct
 
 class Checker {
 public:
@@ -73,7 +70,7 @@ public:
         return mesaIgnoresStore(image) ? tightStore() : store;
     }
 
-    // snapshot: empty function where the result can't be read.
+    // snapshot: an empty function if the result cannot be read.
     void check(const Image& image, const Upload& upload, const Snapshot& snapshot) {
         check(image, randomStore(image), upload, snapshot);
     }
@@ -116,7 +113,7 @@ public:
     }
 
 private:
-    // Calls GL with `pointer`, where bytes lie from offset `first` on.
+    // Calls GL with `pointer`; the bytes start at offset `first`.
     void
     runAt(uint8_t* pointer, const std::vector<uint8_t>& bytes, size_t first, const Upload& upload) {
         if (bytes.size() > first)
@@ -131,8 +128,8 @@ private:
     GuardedMemory memory_{size_t{1} << 19};
 };
 
-// Tried in this order, and then the format itself (OpenGL ES: unsized formats). Of unsized formats
-// the driver chooses the precision, by the byte order too.
+// Tried in this order, then the format itself (OpenGL ES: unsized formats). For unsized formats the driver chooses the
+// precision, depending on the byte order too.
 constexpr GLenum kInternalFormats[] = {GL_RGBA32F,
                                        GL_RGBA,
                                        GL_RGBA32UI,
@@ -196,7 +193,7 @@ constexpr GLenum kInternalFormats[] = {GL_RGBA32F,
                                        GL_SRGB8_ALPHA8,
                                        GL_DUDV_ATI};
 
-// 0: GL takes no texture of this format and type.
+// 0: GL has no texture of this format and type.
 GLenum internalFormatFor(GLenum format, GLenum type) {
     const auto accepted = [&](GLenum internalformat) {
         glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(internalformat), 1, 1, 0, format, type,
@@ -227,7 +224,7 @@ void checkTextures(
                               : dims == 2 ? GL_TEXTURE_2D
                                           : GL_TEXTURE_2D_ARRAY;
         for (int round = 0; round < 3; ++round) {
-            // Pixels that share their chroma come in pairs.
+            // Pixels with shared chroma occur in pairs.
             const int step = internalformat == GL_YCBCR_MESA ? 2 : 1;
             const Image image{format,
                               type,
@@ -283,17 +280,17 @@ void checkAllTextures(TestApi api) {
     EXPECT_GE(pairs, api == TestApi::Es1 ? 5 : 50);
 }
 
-TEST(SizesImageUploadGl, texturesOfTheCompatibilityProfile) {
+TEST(SizesImageUploadGl, matchesTexturesOfTheCompatibilityProfile) {
     checkAllTextures(TestApi::Compatibility);
 }
-TEST(SizesImageUploadGl, texturesOfOpenGlEs3) {
+TEST(SizesImageUploadGl, matchesTexturesOfOpenGlEs3) {
     checkAllTextures(TestApi::Es3);
 }
-TEST(SizesImageUploadGl, texturesOfOpenGlEs1) {
+TEST(SizesImageUploadGl, matchesTexturesOfOpenGlEs1) {
     checkAllTextures(TestApi::Es1);
 }
 
-// Formats and types that GL takes, and that the sizes have never heard of.
+// Formats and types that GL accepts and the sizes do not know.
 void findUnknown(TestApi api) {
     const TestContext context(api);
     if (!context.valid())
@@ -333,10 +330,10 @@ void findUnknown(TestApi api) {
     }
 }
 
-TEST(SizesImageUploadGl, noFormatOrTypeIsMissing) {
+TEST(SizesImageUploadGl, knowsEveryFormatAndType) {
     findUnknown(TestApi::Compatibility);
 }
-TEST(SizesImageUploadGl, noFormatOrTypeOfOpenGlEsIsMissing) {
+TEST(SizesImageUploadGl, knowsEveryFormatAndTypeOfOpenGlEs) {
     findUnknown(TestApi::Es3);
 }
 
@@ -390,7 +387,7 @@ private:
     GLuint buffers_[2] = {};
 };
 
-TEST(SizesImageUploadGl, drawPixels) {
+TEST(SizesImageUploadGl, matchesDrawPixels) {
     const TestContext context(TestApi::Compatibility);
     if (!context.valid())
         GTEST_SKIP() << "no compatibility profile over EGL surfaceless here";
@@ -401,7 +398,7 @@ TEST(SizesImageUploadGl, drawPixels) {
     for (GLenum format : knownFormats())
         for (GLenum type : knownTypes()) {
             if (type == GL_BITMAP)
-                continue; // Mesa takes bits here, and says on stderr that it can't
+                continue; // Mesa accepts bits here, and reports on stderr that they are unsupported
             setPixelStore(Direction::Unpack, tightStore(), TestApi::Compatibility);
             glDrawPixels(1, 1, format, type, zeros.data());
             if (takeErrors())
@@ -424,7 +421,7 @@ TEST(SizesImageUploadGl, drawPixels) {
     EXPECT_GE(pairs, 50);
 }
 
-TEST(SizesImageUploadGl, bitmaps) {
+TEST(SizesImageUploadGl, matchesBitmaps) {
     const TestContext context(TestApi::Compatibility);
     if (!context.valid())
         GTEST_SKIP() << "no compatibility profile over EGL surfaceless here";
@@ -440,7 +437,7 @@ TEST(SizesImageUploadGl, bitmaps) {
         const Upload draw = [&](const void* bits) {
             DrawTarget::clear();
             glBitmap(image.width, image.height, 0, 0, 0, 0, static_cast<const GLubyte*>(bits));
-            glFlush(); // Mesa gathers small bitmaps
+            glFlush(); // Mesa batches small bitmaps
         };
         checker.check(image, draw, DrawTarget::read);
         if (HasFailure())
@@ -448,7 +445,7 @@ TEST(SizesImageUploadGl, bitmaps) {
     }
 }
 
-TEST(SizesImageUploadGl, polygonStipples) {
+TEST(SizesImageUploadGl, matchesPolygonStipples) {
     const TestContext context(TestApi::Compatibility);
     if (!context.valid())
         GTEST_SKIP() << "no compatibility profile over EGL surfaceless here";
@@ -465,7 +462,7 @@ TEST(SizesImageUploadGl, polygonStipples) {
     const Image image{GL_COLOR_INDEX, GL_BITMAP, 32, 32, 1, 2};
     for (int round = 0; round < 100 && !HasFailure(); ++round) {
         PixelStore store = checker.randomStore(image);
-        store.skipPixels &= ~7; // Mesa 22.3 writes beyond its copy when bits are shifted
+        store.skipPixels &= ~7; // Mesa 22.3 writes past its copy if bits are shifted
         checker.check(image, store, stipple, stippleBits);
     }
 }

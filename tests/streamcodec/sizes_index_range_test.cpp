@@ -26,20 +26,20 @@ TEST(SizesIndexRange, findsLowestAndHighest) {
     expectRange(scanIndices(ints, GL_UNSIGNED_INT, 3, false, 0), 5, 0x80000000);
 }
 
-TEST(SizesIndexRange, restartsNameNoVertex) {
+TEST(SizesIndexRange, skipsRestarts) {
     const uint8_t bytes[] = {255, 3, 255, 9};
     expectRange(scanIndices(bytes, GL_UNSIGNED_BYTE, 4, true, 255), 3, 9);
     const uint16_t zeroRestarts[] = {0, 8, 0, 4};
     expectRange(scanIndices(zeroRestarts, GL_UNSIGNED_SHORT, 4, true, 0), 4, 8);
 }
 
-TEST(SizesIndexRange, aRestartIndexBeyondTheTypeNeverOccurs) {
+TEST(SizesIndexRange, ignoresARestartIndexBeyondTheType) {
     const uint8_t bytes[] = {255, 3};
     expectRange(scanIndices(bytes, GL_UNSIGNED_BYTE, 2, true, 0xffffffff), 3, 255);
     expectRange(scanIndices(bytes, GL_UNSIGNED_BYTE, 2, true, 0x103), 3, 255);
 }
 
-TEST(SizesIndexRange, emptyWithoutIndices) {
+TEST(SizesIndexRange, isEmptyWithoutIndices) {
     expectEmpty(scanIndices(nullptr, GL_UNSIGNED_INT, 0, false, 0));
     const uint16_t restarts[] = {0xffff, 0xffff};
     expectEmpty(
@@ -47,12 +47,12 @@ TEST(SizesIndexRange, emptyWithoutIndices) {
     expectEmpty(scanIndices(restarts, GL_FLOAT, 2, false, 0));
 }
 
-TEST(SizesIndexRange, fullRangeOfBytesWithRestartInTheMiddle) {
+TEST(SizesIndexRange, coversBytesWithARestartInTheMiddle) {
     const uint8_t bytes[] = {0, 255, 100};
     expectRange(scanIndices(bytes, GL_UNSIGNED_BYTE, 3, true, 100), 0, 255);
 }
 
-// Every alignment and length around the width of vector registers, against a plain loop.
+// Every alignment and length around the width of vector registers, compared with a plain loop.
 template <class Value> void compareWithPlainLoop(GLenum type, Random& random) {
     for (int round = 0; round < 400; ++round) {
         const auto count = static_cast<size_t>(random.upTo(150));

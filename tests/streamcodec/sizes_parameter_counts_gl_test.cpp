@@ -1,5 +1,5 @@
-// How many values GL really reads for each of the 65536 possible pnames, measured with a guard
-// page: the array begins so near to the guard that only `count` values lie before it.
+// The number of values that GL reads for each of the 65536 possible pnames, measured with a guard page: the array
+// starts so close to the guard that only `count` values precede it.
 #include "tests/streamcodec/sizes_gl_context.hpp"
 
 #include <cstring>
@@ -37,8 +37,8 @@ protected:
         return kMostValues * valueBytes;
     }
 
-    // call(pname, pointer). GL must never read more than `countOf` says, and exactly so much where
-    // it takes the pname (with zeros as values).
+    // call(pname, pointer). GL must never read more than `countOf` returns, and exactly that many if it accepts the
+    // pname (with zeros as values).
     template <class Call>
     void check(const char* name, size_t valueBytes, uint32_t (*countOf)(GLenum), const Call& call) {
         int taken = 0;
@@ -48,7 +48,7 @@ protected:
             call(pname, memory_.end() - expected);
             const bool refused = takeErrors();
             if (refused && valueBytes == sizeof(GLdouble))
-                continue; // Mesa converts four doubles before it looks at the pname
+                continue; // Mesa converts four doubles before it checks the pname
             EXPECT_FALSE(memory_.touched()) << name << " reads more, pname " << std::hex << pname;
             if (refused)
                 continue;
@@ -64,7 +64,7 @@ protected:
     std::unique_ptr<TestContext> context_;
 };
 
-// What only one of the APIs has.
+// For commands of one API only.
 class DesktopParameterCountsGl : public ParameterCountsGl {};
 class Es1ParameterCountsGl : public ParameterCountsGl {};
 
@@ -78,7 +78,7 @@ const GLfixed* fixeds(void* values) {
     return static_cast<const GLfixed*>(values);
 }
 
-TEST_P(ParameterCountsGl, textures) {
+TEST_P(ParameterCountsGl, matchTextureParameters) {
     check("glTexParameterfv", 4, texParameterCount,
           [](GLenum p, void* v) { glTexParameterfv(GL_TEXTURE_2D, p, floats(v)); });
     check("glTexParameteriv", 4, texParameterCount,
@@ -95,7 +95,7 @@ TEST_P(ParameterCountsGl, textures) {
           [=](GLenum p, void* v) { glSamplerParameterIiv(sampler, p, ints(v)); });
 }
 
-TEST_P(ParameterCountsGl, fixedFunction) {
+TEST_P(ParameterCountsGl, matchFixedFunctionParameters) {
     for (GLenum target : {GL_TEXTURE_ENV, GL_TEXTURE_FILTER_CONTROL, GL_POINT_SPRITE}) {
         if (target == GL_TEXTURE_FILTER_CONTROL && GetParam() == TestApi::Es1)
             continue;
@@ -115,7 +115,7 @@ TEST_P(ParameterCountsGl, fixedFunction) {
           [](GLenum p, void* v) { glPointParameterfv(p, floats(v)); });
 }
 
-TEST_P(DesktopParameterCountsGl, onlyOfTheDesktop) {
+TEST_P(DesktopParameterCountsGl, matchDesktopParameters) {
     check("glTexGenfv", 4, texGenCount, [](GLenum p, void* v) { glTexGenfv(GL_S, p, floats(v)); });
     check("glTexGendv", 8, texGenCount,
           [](GLenum p, void* v) { glTexGendv(GL_S, p, static_cast<GLdouble*>(v)); });
@@ -137,7 +137,7 @@ TEST_P(DesktopParameterCountsGl, onlyOfTheDesktop) {
           [](GLenum p, void* v) { glMultiTexEnvfvEXT(GL_TEXTURE1, GL_TEXTURE_ENV, p, floats(v)); });
 }
 
-TEST_P(Es1ParameterCountsGl, fixedPoint) {
+TEST_P(Es1ParameterCountsGl, matchFixedPointParameters) {
     const auto lightx =
         reinterpret_cast<void (*)(GLenum, GLenum, const GLfixed*)>(procAddress("glLightxv"));
     const auto fogx = reinterpret_cast<void (*)(GLenum, const GLfixed*)>(procAddress("glFogxv"));
@@ -149,10 +149,10 @@ TEST_P(Es1ParameterCountsGl, fixedPoint) {
           [=](GLenum p, void* v) { texx(GL_TEXTURE_2D, p, fixeds(v)); });
 }
 
-TEST_P(DesktopParameterCountsGl, clearBuffers) {
+TEST_P(DesktopParameterCountsGl, matchClearBuffers) {
     TestFramebuffer framebuffer(GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE);
     ASSERT_TRUE(framebuffer.complete());
-    GLuint depth = 0; // GL reads the value only where there is such a buffer
+    GLuint depth = 0; // GL reads the value only if such a buffer exists
     glGenRenderbuffers(1, &depth);
     glBindRenderbuffer(GL_RENDERBUFFER, depth);
     glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, 32, 32);
@@ -161,8 +161,7 @@ TEST_P(DesktopParameterCountsGl, clearBuffers) {
           [](GLenum b, void* v) { glClearBufferfv(b, 0, floats(v)); });
 }
 
-// Evaluator maps and display list names have no pname: the exact span is right, a value less is
-// not.
+// Evaluator maps and display list names have no pname: the exact span is sufficient, one value less is not.
 template <class Call>
 void expectExact(GuardedMemory& memory, size_t bytes, const Call& call, const char* what) {
     memory.close();
@@ -176,14 +175,14 @@ void expectExact(GuardedMemory& memory, size_t bytes, const Call& call, const ch
     takeErrors();
 }
 
-TEST_P(DesktopParameterCountsGl, evaluatorMaps) {
+TEST_P(DesktopParameterCountsGl, matchEvaluatorMaps) {
     const auto isVertexAttribute = [](GLenum target) {
         return target >= 0x8000 && mapComponents(target) != 0;
     };
     for (GLenum target = 0; target <= 0xffff; ++target)
         for (GLint stride : {1, 3, 4, 6}) {
             if (isVertexAttribute(target))
-                continue; // NV_vertex_program: Mesa has it no more
+                continue; // NV_vertex_program: removed from Mesa
             expectExact(
                 memory_, map1Values(target, stride, 4) * 4,
                 [&](void* p) { glMap1f(target, 0, 1, stride, 4, floats(p)); }, "glMap1f");
@@ -203,7 +202,7 @@ TEST_P(DesktopParameterCountsGl, evaluatorMaps) {
         }
 }
 
-TEST_P(DesktopParameterCountsGl, displayListNames) {
+TEST_P(DesktopParameterCountsGl, matchDisplayListNames) {
     glNewList(1, GL_COMPILE);
     glEndList();
     for (GLenum type = 0; type <= 0xffff; ++type) {

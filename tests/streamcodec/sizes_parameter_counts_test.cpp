@@ -6,7 +6,7 @@
 namespace mural::sizes {
 namespace {
 
-TEST(SizesParameterCounts, textures) {
+TEST(SizesParameterCounts, countTextureParameters) {
     EXPECT_EQ(texParameterCount(GL_TEXTURE_MIN_FILTER), 1u);
     EXPECT_EQ(texParameterCount(GL_TEXTURE_BORDER_COLOR), 4u);
     EXPECT_EQ(texParameterCount(GL_TEXTURE_SWIZZLE_RGBA), 4u);
@@ -22,7 +22,7 @@ TEST(SizesParameterCounts, textures) {
     EXPECT_EQ(texBumpParameterCount(GL_BUMP_ROT_MATRIX_ATI), 4u);
 }
 
-TEST(SizesParameterCounts, fixedFunction) {
+TEST(SizesParameterCounts, countFixedFunctionParameters) {
     EXPECT_EQ(lightCount(GL_POSITION), 4u);
     EXPECT_EQ(lightCount(GL_SPOT_DIRECTION), 3u);
     EXPECT_EQ(lightCount(GL_SPOT_CUTOFF), 1u);
@@ -45,7 +45,7 @@ TEST(SizesParameterCounts, fixedFunction) {
     EXPECT_EQ(spriteParameterCount(GL_SPRITE_AXIS_SGIX), 3u);
 }
 
-TEST(SizesParameterCounts, buffersAndSymbols) {
+TEST(SizesParameterCounts, countBuffersAndSymbols) {
     EXPECT_EQ(clearBufferCount(GL_COLOR), 4u);
     EXPECT_EQ(clearBufferCount(GL_DEPTH), 1u);
     EXPECT_EQ(clearBufferCount(GL_DEPTH_STENCIL), 0u);
@@ -53,7 +53,7 @@ TEST(SizesParameterCounts, buffersAndSymbols) {
     EXPECT_EQ(variantCount(GL_FLOAT), 0u);
 }
 
-TEST(SizesParameterCounts, textsAndLists) {
+TEST(SizesParameterCounts, countTextsAndLists) {
     EXPECT_EQ(stringBytes("tile", -1), 5u);
     EXPECT_EQ(stringBytes("tile", 2), 2u);
     EXPECT_EQ(stringBytes("tile", 0), 0u);

@@ -6,7 +6,7 @@
 namespace mural::sizes {
 namespace {
 
-TEST(SizesPixelFormat, componentsOfFormats) {
+TEST(SizesPixelFormat, countsComponents) {
     EXPECT_EQ(componentsOf(GL_RED), 1u);
     EXPECT_EQ(componentsOf(GL_COLOR_INDEX), 1u);
     EXPECT_EQ(componentsOf(GL_LUMINANCE_ALPHA), 2u);
@@ -19,7 +19,7 @@ TEST(SizesPixelFormat, componentsOfFormats) {
     EXPECT_EQ(componentsOf(0), 0u);
 }
 
-TEST(SizesPixelFormat, bytesOfPlainPixels) {
+TEST(SizesPixelFormat, computesBytesOfPlainPixels) {
     EXPECT_EQ(groupBytes(GL_RGB, GL_UNSIGNED_BYTE), 3u);
     EXPECT_EQ(groupBytes(GL_RGBA, GL_FLOAT), 16u);
     EXPECT_EQ(groupBytes(GL_RGB_INTEGER, GL_SHORT), 6u);
@@ -30,7 +30,7 @@ TEST(SizesPixelFormat, bytesOfPlainPixels) {
     EXPECT_EQ(groupBytes(GL_422_EXT, GL_UNSIGNED_BYTE), 2u);
 }
 
-TEST(SizesPixelFormat, bytesOfPackedPixels) {
+TEST(SizesPixelFormat, computesBytesOfPackedPixels) {
     EXPECT_EQ(groupBytes(GL_RGB, GL_UNSIGNED_BYTE_2_3_3_REV), 1u);
     EXPECT_EQ(groupBytes(GL_RGB, GL_UNSIGNED_SHORT_5_6_5), 2u);
     EXPECT_EQ(groupBytes(GL_BGRA, GL_UNSIGNED_SHORT_1_5_5_5_REV), 2u);
@@ -46,7 +46,7 @@ TEST(SizesPixelFormat, bytesOfPackedPixels) {
     EXPECT_EQ(groupBytes(GL_RGB_422_APPLE, GL_UNSIGNED_SHORT_8_8_APPLE), 2u);
 }
 
-TEST(SizesPixelFormat, pairsThatGlRefusesHaveNoSize) {
+TEST(SizesPixelFormat, returnsZeroForInvalidPairs) {
     EXPECT_EQ(groupBytes(GL_RGB, GL_UNSIGNED_SHORT_4_4_4_4), 0u);
     EXPECT_EQ(groupBytes(GL_RGBA, GL_UNSIGNED_SHORT_5_6_5), 0u);
     EXPECT_EQ(groupBytes(GL_DEPTH_STENCIL, GL_UNSIGNED_BYTE), 0u);
@@ -58,7 +58,7 @@ TEST(SizesPixelFormat, pairsThatGlRefusesHaveNoSize) {
     EXPECT_EQ(groupBytes(GL_RGBA8, GL_UNSIGNED_BYTE), 0u);
 }
 
-TEST(SizesPixelFormat, wordsThatAreSwapped) {
+TEST(SizesPixelFormat, findsSwapUnits) {
     EXPECT_EQ(swapUnitBytes(GL_BYTE), 1u);
     EXPECT_EQ(swapUnitBytes(GL_HALF_FLOAT), 2u);
     EXPECT_EQ(swapUnitBytes(GL_UNSIGNED_SHORT_5_5_5_1), 2u);

@@ -1,5 +1,4 @@
-// Random pixel store states and bytes for the tests of the sizes. The seed is printed with a
-// failure.
+// Random pixel store states and bytes for the tests of sizes. A failure prints the seed.
 #pragma once
 
 #include <cstdint>
