@@ -736,7 +736,8 @@ private:
     void drawBuffers(bool ofWindow, GLsizei n, const Data& bufs, const std::function<void(const GLenum*)>& call);
     [[nodiscard]] static GLenum onlyBuffer(const gl::Surface& surface);
     [[nodiscard]] GLenum windowBuffer(GLenum buffer, const Window* w) const;
-    void bindFramebuffer(GLenum target, GLuint framebuffer, bool ext);
+    void bindFramebuffer(GLenum target, GLuint framebuffer, void (*bind)(GLenum, GLuint));
+    void deleteFramebuffers(GLsizei n, const Data& framebuffers, void (*remove)(GLsizei, const GLuint*));
     // replay_pixel_store.cpp
     void setUnpack(bool tight);
     void pixelStore(GLenum pname, GLint value);
