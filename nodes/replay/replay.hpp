@@ -698,6 +698,8 @@ private:
     bool alphaHides_ = false; // in any window
     std::string toldBits_;    // what windows here have instead of what was asked for
     // replay_accum.cpp
+    // x, y, z, width and height, in window coordinates.
+    void drawTexture(const std::array<GLfloat, 5>& rectangle);
     bool accumulatesHere();
     void forAccumulatedRows(const std::function<void(int16_t*, const PixelViewport&)>& call);
     [[nodiscard]] PixelViewport accumulatedBox() const;
