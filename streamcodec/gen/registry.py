@@ -63,6 +63,7 @@ class Command:
         alias = element.find('alias')
         self.alias = alias.get('name') if alias is not None else None
         self.options = {}
+        self.traits = set()
         self.command_class = None
         self.reason = ''
         self.feature = None
@@ -210,9 +211,11 @@ def load(gl_xml, semantics):
     root_aliases(commands)
     for pattern, options, number in rules:
         hit = False
+        traits = set(options.pop('traits').split(',')) if 'traits' in options else set()
         for name in commands:
             if name == pattern or fnmatch.fnmatchcase(name, pattern):
                 hit = True
+                commands[name].traits |= traits
                 if 'class' in options:     # a new class starts afresh
                     kept = {} if options['class'] == 'unsupported' else {
                         k: v for k, v in commands[name].options.items() if '.' in k}
@@ -229,7 +232,16 @@ def load(gl_xml, semantics):
             commands[n].extension_apis.update(ext.get('supported').split('|'))
     for c in commands.values():
         c.classify()
+    check_traits(semantics, commands)
     return commands, extensions
+
+
+def check_traits(semantics, commands):
+    """A line whose traits no command in the stream gets is a mistake."""
+    for pattern, options, number in read_semantics(semantics):
+        wanted = options.get('traits')
+        if wanted and not any(c.sent and not c.alias and fnmatch.fnmatchcase(c.name, pattern) for c in commands.values()):
+            raise SystemExit('%s:%d: traits of %s, which no record has' % (semantics, number, pattern))
 
 
 def root_aliases(commands):
