@@ -171,7 +171,9 @@ class Command:
 
 def read_semantics(path):
     rules = []
-    for number, line in enumerate(open(path, encoding='utf-8'), 1):
+    with open(path, encoding='utf-8') as f:
+        lines = list(f)
+    for number, line in enumerate(lines, 1):
         line = line.split('#', 1)[0].strip() if not line.lstrip().startswith('#') else ''
         if not line:
             continue
@@ -220,6 +222,9 @@ def load(gl_xml, semantics):
                     kept = {} if options['class'] == 'unsupported' else {
                         k: v for k, v in commands[name].options.items() if '.' in k}
                     commands[name].options = kept
+                if 'effect' in options:
+                    for key in ('attrib', 'object'):
+                        commands[name].options.pop(key, None)
                 commands[name].options.update(options)
         if not hit:
             raise SystemExit('%s:%d: no command matches %s' % (semantics, number, pattern))
@@ -237,11 +242,11 @@ def load(gl_xml, semantics):
 
 
 def check_traits(semantics, commands):
-    """A line whose traits no command in the stream gets is a mistake."""
+    """A line whose traits or effect no command in the stream gets is a mistake."""
     for pattern, options, number in read_semantics(semantics):
-        wanted = options.get('traits')
+        wanted = options.get('traits') or options.get('effect') or options.get('deferral')
         if wanted and not any(c.sent and not c.alias and fnmatch.fnmatchcase(c.name, pattern) for c in commands.values()):
-            raise SystemExit('%s:%d: traits of %s, which no record has' % (semantics, number, pattern))
+            raise SystemExit('%s:%d: %s has traits or an effect, and is in no record' % (semantics, number, pattern))
 
 
 def root_aliases(commands):
