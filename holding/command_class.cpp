@@ -9,26 +9,12 @@ namespace {
 using recording::Family;
 using recording::ObjectType;
 
-// Families that say too little of these.
-CommandClass exceptionOf(uint16_t opcode) {
-    switch (opcode) {
-    case op::glPixelTransferf: // images go through it
-    case op::glPixelTransferi:
-    case op::glPixelMapfv:
-    case op::glPixelMapuiv:
-    case op::glPixelMapusv: return CommandClass::Unknown;
-    case op::glHint: return CommandClass::UseAll; // how mipmaps are made
-    case op::glEnable: // GL_DEBUG_OUTPUT
-    case op::glBindVertexBuffers:
-    case op::glVertexArrayVertexBuffer:
-    case op::glVertexArrayVertexBuffers:
-    case op::glVertexArrayElementBuffer: return CommandClass::Bind;
-    case op::glInvalidateBufferData:
-    case op::glInvalidateBufferSubData: return CommandClass::Object;
-    case op::glCopyBufferSubData:
-    case op::glClearBufferData:
-    case op::glClearBufferSubData: return CommandClass::UseAll;
-    default: return CommandClass::Pass;
+CommandClass ofDeferral(Deferral deferral) {
+    switch (deferral) {
+    case Deferral::Bind: return CommandClass::Bind;
+    case Deferral::Object: return CommandClass::Object;
+    case Deferral::UseAll: return CommandClass::UseAll;
+    default: return CommandClass::Unknown;
     }
 }
 
@@ -121,7 +107,17 @@ CommandClass ofFamily(const recording::Rule& rule) {
     }
 }
 
-Binding bindingOf(uint16_t opcode, Family family) {
+Binding bindingOf(ObjectType type) {
+    switch (type) {
+    case ObjectType::Texture: return Binding::Texture;
+    case ObjectType::Buffer: return Binding::Buffer;
+    case ObjectType::VertexArray: return Binding::VertexArray;
+    case ObjectType::Framebuffer: return Binding::Framebuffer;
+    default: return Binding::Nothing;
+    }
+}
+
+Binding bindingOf(Family family, ObjectType type) {
     switch (family) {
     case Family::Cap: return Binding::Cap;
     case Family::ActiveTexture: return Binding::Unit;
@@ -143,15 +139,7 @@ Binding bindingOf(uint16_t opcode, Family family) {
     case Family::FramebufferNamed: return Binding::AttachNamed;
     case Family::PipelineSet: return Binding::Pipeline;
     case Family::TexBuffer: return Binding::TextureBuffer;
-    default: break;
-    }
-    switch (opcode) {
-    case op::glBindTexture: return Binding::Texture;
-    case op::glBindBuffer: return Binding::Buffer;
-    case op::glBindVertexArray: return Binding::VertexArray;
-    case op::glBindFramebuffer:
-    case op::glBindFramebufferEXT:
-    case op::glBindFramebufferOES: return Binding::Framebuffer;
+    case Family::Bind: return bindingOf(type);
     default: return Binding::Nothing;
     }
 }
@@ -230,14 +218,14 @@ CommandKinds::CommandKinds() {
         }
         const recording::Rule& rule = recording::ruleOf(opcode);
         kind.family = rule.family;
-        kind.about = exceptionOf(opcode);
-        if (kind.about == CommandClass::Pass) kind.about = ofFamily(rule);
+        const Deferral deferral = kCommandEffects[opcode].deferral;
+        kind.about = deferral == Deferral::ByEffect ? ofFamily(rule) : ofDeferral(deferral);
         kind.valueWord = findValue(opcode);
     }
     kinds_[wire::kOpBufferBytes].valueWord = kBufferBytesValue;
     for (uint16_t opcode = 0; opcode <= op::kLimit; ++opcode) {
         CommandKind& kind = kinds_[opcode];
-        kind.binding = bindingOf(opcode, kind.family);
+        kind.binding = bindingOf(kind.family, recording::ruleOf(opcode).type);
         kind.small = kind.family == Family::Uniform || kind.family == Family::ProgramUniform;
         kind.deeper = deeperOf(kind);
         kind.frame = asksForPictures(opcode) ? FrameRole::Seen : frameRoleOf(kind);

@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <string_view>
 #include <vector>
 
 #include "gl_opcodes.hpp"
 #include "recording/kept/families.hpp"
-#include "streamcodec/opcode_names.hpp"
+#include "streamcodec/command_traits.hpp"
 #include "streamcodec/wire.hpp"
 
 namespace mural::holding {
@@ -126,18 +125,9 @@ bool isIndexedCap(uint16_t opcode) { return opcode == op::glEnablei || opcode ==
 
 // ---- roles
 
-// Of state that one command sets and that is no cell: these set what no cell has a part of.
-bool standsAlone(uint16_t opcode) {
-    const char* const text = glOpcodeName(opcode);
-    const std::string_view name = text == nullptr ? "" : text;
-    constexpr std::string_view kAll[] = {"glHint", "glDebugMessageControl", "glColorMaterial", "glClearIndex", "glClearAccum", "glClampColor", "glClipControl", "glFog", "glLightModel", "glPointParameter",
-                                         "glMapGrid", "glSampleMaski", "glPatchParameter", "glPixelTransfer", "glIndexMask", "glProgramEnvParameter", "glDepthBoundsEXT", "glPrimitiveBoundingBox"};
-    return std::ranges::any_of(kAll, [&](std::string_view prefix) { return name.starts_with(prefix); });
-}
-
 StateRole ofFamily(uint16_t opcode) {
     switch (recording::ruleOf(opcode).family) {
-    case Family::Cell: return standsAlone(opcode) ? StateRole::None : StateRole::Change;
+    case Family::Cell: return hasTrait(opcode, Trait::StandsAlone) ? StateRole::None : StateRole::Change;
     case Family::Nothing:
     case Family::CellOfMatrix:
     case Family::UnitCell:

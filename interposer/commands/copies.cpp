@@ -184,9 +184,5 @@ void mural_glBitmap(GLsizei width, GLsizei height, GLfloat xorig, GLfloat yorig,
     if (t.drawLocally || isError) gReal.glBitmap(width, height, xorig, yorig, xmove, ymove, bitmap);
     else gReal.glBitmap(0, 0, 0, 0, xmove, ymove, nullptr);
 }
-void mural_glBitmapxOES(GLsizei width, GLsizei height, GLfixed xorig, GLfixed yorig, GLfixed xmove, GLfixed ymove, const GLubyte* bitmap) {
-    const auto number = [](GLfixed fixed) { return static_cast<GLfloat>(fixed) / 65536; };
-    mural_glBitmap(width, height, number(xorig), number(yorig), number(xmove), number(ymove), bitmap);
-}
 
 } // extern "C"

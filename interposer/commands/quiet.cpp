@@ -11,6 +11,8 @@ namespace {
 constexpr GLint kSureDrawBuffers = 4;
 // Groups per dimension that every driver takes.
 constexpr GLuint kSureGroups = 65535;
+// Mesh tasks per draw that every driver accepts.
+constexpr GLuint kSureMeshTasks = 65535;
 
 bool isDesktop(const ThreadState& t, int version) {
     return t.context && t.context->api == wire::Api::Desktop && t.context->version >= version;
@@ -71,6 +73,13 @@ void drawPixels(const ThreadState& t, GLsizei width, GLsizei height, GLenum form
 void accumulate(GLenum op, GLfloat value) {
     if (op == GL_ACCUM || op == GL_LOAD || op == GL_ADD || op == GL_MULT || op == GL_RETURN) gReal.glAccum(GL_MULT, 1);
     else gReal.glAccum(op, value);
+}
+
+// The driver reports counts above its limit.
+void meshTasks(GLuint first, GLuint count) {
+    GLint limit = static_cast<GLint>(kSureMeshTasks);
+    if (count > kSureMeshTasks) gReal.glGetIntegerv(GL_MAX_DRAW_MESH_TASKS_COUNT_NV, &limit);
+    gReal.glDrawMeshTasksNV(first, count > static_cast<GLuint>(limit) ? count : 0);
 }
 
 void dispatch(GLuint x, GLuint y, GLuint z) {

@@ -9,6 +9,9 @@
 
 namespace mural::quiet {
 
+// A window coordinate outside every framebuffer. Exact as a float.
+constexpr GLfloat kFarOutside = -1048576;
+
 // Vertices, instances, draws: none of them, unless the number itself is an error.
 inline GLsizei none(GLsizei count) { return count < 0 ? count : 0; }
 
@@ -60,6 +63,13 @@ template <class Blit> void blit(const Area& from, const Area& to, Blit&& call) {
     call(Area{0, 0, sameSize ? 0 : 1, sameSize ? 0 : 1}, Area{to0, to0, to0, to0});
 }
 
+// glDrawTex*OES. Drivers refuse empty rectangles; this one lies outside every framebuffer.
+template <class T> void drawTexture(T width, T height) {
+    const bool isError = width <= 0 || height <= 0;
+    gReal.glDrawTexfOES(kFarOutside, kFarOutside, 0, isError ? 0 : 1, isError ? 0 : 1);
+}
+
+void meshTasks(GLuint first, GLuint count);
 void dispatch(GLuint x, GLuint y, GLuint z);
 void dispatchIndirect(GLintptr indirect);
 void drawFeedback(const ThreadState& t, GLenum mode, GLuint id);

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "gl_opcodes.hpp"
+#include "streamcodec/command_traits.hpp"
 #include "streamcodec/opcode_names.hpp"
 
 namespace mural {
@@ -70,25 +71,6 @@ bool Replay::record(std::span<const std::byte> bytes) {
     return ok;
 }
 
-namespace {
-// Commands that may find no memory, each with its kin for other kinds of objects.
-bool allocates(uint16_t opcode) {
-    static const auto kAllocates = [] {
-        std::vector<bool> found(op::kLimit, false);
-        for (uint16_t o = wire::kFirstGlOpcode; o < op::kLimit; ++o) {
-            const char* text = glOpcodeName(o);
-            const std::string_view name = text ? text : "";
-            for (const std::string_view stem : {"glBufferData", "glBufferStorage", "glNamedBufferData", "glNamedBufferStorage", "glTexImage", "glTexStorage",
-                                                "glTextureStorage", "glTextureImage", "glMultiTexImage", "glCompressedTexImage", "glCopyTexImage", "glRenderbufferStorage",
-                                                "glNamedRenderbufferStorage", "glGenerateMipmap", "glGenerateTextureMipmap"})
-                if (name.starts_with(stem)) found[o] = true;
-        }
-        return found;
-    }();
-    return kAllocates[opcode];
-}
-} // namespace
-
 bool Replay::execute(uint16_t opcode, std::span<const std::byte> arguments, BlobQueue& blobs) {
     Args in(arguments, blobs);
     const bool drawing = opcode == wire::kOpRequestPixels || opcode == wire::kOpFillWindow || opcode == wire::kOpDrawAll;
@@ -114,7 +96,7 @@ bool Replay::execute(uint16_t opcode, std::span<const std::byte> arguments, Blob
     const bool leftOut = (takesTurns() || (hasSkipped_ && c_->draw && c_->draw->skipped)) && leavesOut(opcode); // behind noteRange, which decides whether this draw is the node's
     if (moves()) noteArea(opcode, arguments);
     if (leftOut) exchangeDraws();
-    const bool done = allocates(opcode) ? executeAllocating(function, in) : function(*this, in);
+    const bool done = hasTrait(opcode, Trait::Allocates) ? executeAllocating(function, in) : function(*this, in);
     if (leftOut) exchangeDraws();
     if (movesView()) noteEyeAfter(opcode);
     return done;

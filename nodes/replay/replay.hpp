@@ -698,6 +698,8 @@ private:
     bool alphaHides_ = false; // in any window
     std::string toldBits_;    // what windows here have instead of what was asked for
     // replay_accum.cpp
+    // x, y, z, width and height, in window coordinates.
+    void drawTexture(const std::array<GLfloat, 5>& rectangle);
     bool accumulatesHere();
     void forAccumulatedRows(const std::function<void(int16_t*, const PixelViewport&)>& call);
     [[nodiscard]] PixelViewport accumulatedBox() const;
@@ -736,7 +738,8 @@ private:
     void drawBuffers(bool ofWindow, GLsizei n, const Data& bufs, const std::function<void(const GLenum*)>& call);
     [[nodiscard]] static GLenum onlyBuffer(const gl::Surface& surface);
     [[nodiscard]] GLenum windowBuffer(GLenum buffer, const Window* w) const;
-    void bindFramebuffer(GLenum target, GLuint framebuffer, bool ext);
+    void bindFramebuffer(GLenum target, GLuint framebuffer, void (*bind)(GLenum, GLuint));
+    void deleteFramebuffers(GLsizei n, const Data& framebuffers, void (*remove)(GLsizei, const GLuint*));
     // replay_pixel_store.cpp
     void setUnpack(bool tight);
     void pixelStore(GLenum pname, GLint value);

@@ -15,6 +15,7 @@
 #include "gl_opcodes.hpp"
 #include "nodes/replay/replay.hpp"
 #include "nodes/replay/window_use.hpp"
+#include "streamcodec/command_traits.hpp"
 
 namespace mural {
 
@@ -22,17 +23,6 @@ namespace {
 
 bool isFrontBuffer(GLenum buffer) {
     return buffer == GL_FRONT || buffer == GL_FRONT_LEFT || buffer == GL_FRONT_RIGHT || buffer == GL_FRONT_AND_BACK || buffer == GL_LEFT || buffer == GL_RIGHT;
-}
-
-// Pixels that come from elsewhere, of any buffer.
-bool copiesPixels(uint16_t opcode) {
-    switch (opcode) {
-    case op::glBlitFramebuffer:
-    case op::glBlitNamedFramebuffer:
-    case op::glCopyPixels:
-    case op::glDrawPixels: return true;
-    default: return false;
-    }
 }
 
 // Not an error, and not of another buffer than the first.
@@ -111,7 +101,7 @@ GLbitfield Replay::clearedBy(uint16_t opcode, std::span<const std::byte> argumen
 
 // Which of them a draw may change.
 GLbitfield Replay::drawnBy(uint16_t opcode) const {
-    if (copiesPixels(opcode)) return kWindowBuffers;
+    if (hasTrait(opcode, Trait::AllPlanes)) return kWindowBuffers;
     const Shared& shared = *c_->shared;
     const GLbitfield known = c_->draw->moving.drawn; // no need to ask the driver
     const auto tests = [&](GLbitfield buffer, bool ever, GLenum cap) { return !(known & buffer) && ever && gl.glIsEnabled(cap) ? buffer : 0; };
@@ -124,7 +114,7 @@ void Replay::noteArea(uint16_t opcode, std::span<const std::byte> arguments) {
     if ((opcode == op::glBegin || opcode == op::glEnd) && !c_->compiling) c_->inPrimitive = opcode == op::glBegin;
     if ((use != WindowUse::Clears && use != WindowUse::Draws) || !c_->shared) return;
     if (c_->compiling) {
-        if (use == WindowUse::Clears || copiesPixels(opcode)) c_->shared->testsDepth = c_->shared->testsStencil = true; // what lists change
+        if (use == WindowUse::Clears || hasTrait(opcode, Trait::AllPlanes)) c_->shared->testsDepth = c_->shared->testsStencil = true; // what lists change
         if (c_->compileMode == GL_COMPILE_AND_EXECUTE) noteNativeList(); // it is drawn by the driver, as it is compiled
         return;
     }

@@ -10,41 +10,13 @@
 #include <utility>
 
 #include "gl_opcodes.hpp"
+#include "nodes/replay/command_uses.hpp"
 #include "nodes/replay/replay.hpp"
-#include "streamcodec/opcode_names.hpp"
+#include "streamcodec/command_parameters.hpp"
 
 namespace mural {
 
 namespace {
-
-enum class EyeUse : uint8_t { None, Matrix, Draw, List, Uniform, Buffer, Framebuffer };
-
-EyeUse classify(std::string_view name) {
-    const auto starts = [&](std::string_view stem) { return name.starts_with(stem); };
-    if (starts("glUniformMatrix4") || starts("glProgramUniformMatrix4")) return EyeUse::Uniform;
-    for (const std::string_view stem : {"glBindFramebuffer", "glFramebuffer", "glNamedFramebuffer", "glDeleteFramebuffers", "glDeleteTextures", "glDeleteRenderbuffers"})
-        if (starts(stem)) return EyeUse::Framebuffer;
-    if (starts("glUniform") || starts("glProgramUniform")) return EyeUse::None;
-    if (starts("glBufferData") || starts("glBufferSubData") || starts("glNamedBuffer") || starts("glBufferStorage")) return EyeUse::Buffer;
-    for (const std::string_view stem : {"glRotate", "glTranslate", "glScale", "glFrustum", "glOrtho", "glLoadIdentity", "glLoadTranspose", "glMultTranspose", "glLoadMatrix", "glMultMatrix", "glPushMatrix", "glPopMatrix", "glMatrix"})
-        if (starts(stem) && name != "glMatrixMode") return EyeUse::Matrix;
-    if (starts("glViewport")) return EyeUse::Matrix;
-    if (starts("glCallList")) return EyeUse::List;
-    if (starts("glDrawBuffer")) return EyeUse::None;
-    for (const std::string_view stem : {"glDraw", "glMultiDraw", "glMultiMode", "glRect", "glEvalMesh", "glRasterPos"})
-        if (starts(stem)) return EyeUse::Draw;
-    return name == "glBegin" ? EyeUse::Draw : EyeUse::None;
-}
-
-EyeUse eyeUseOf(uint16_t opcode) {
-    static const auto kUses = [] {
-        std::vector<EyeUse> uses(op::kLimit, EyeUse::None);
-        for (uint16_t o = wire::kFirstGlOpcode; o < op::kLimit; ++o)
-            if (const char* name = glOpcodeName(o)) uses[o] = classify(name);
-        return uses;
-    }();
-    return kUses[opcode];
-}
 
 class NoBlobs : public BlobQueue {
     std::span<const std::byte> takeBlob(bool& found) override {
@@ -164,15 +136,15 @@ void Replay::noteEye(uint16_t opcode, std::span<const std::byte> arguments) {
     Args in(arguments, none);
     if (use == EyeUse::Buffer) return noteProjections(arguments);
     if (use != EyeUse::Uniform) return;
-    const std::string_view name = glOpcodeName(opcode);
-    const bool named = name.starts_with("glProgram");
-    if (name.find("4x") != std::string_view::npos) return; // not square
+    const std::span<const ParameterInfo> parameters = parametersOf(opcode).parameters;
+    const bool named = std::string_view(parameters.front().name) == "program";
+    const bool doubles = parameters.back().element == Element::F64;
     const GLuint program = named ? in.get<GLuint>() : c_->program;
     in.get<GLint>();
     const auto count = in.get<GLsizei>();
     const bool transposed = in.narrow<GLboolean>() != 0;
     const Data values = in.values();
-    if (in.ok() && count > 0) noteMatrices(program, values, count, transposed, name.find("dv") != std::string_view::npos);
+    if (in.ok() && count > 0) noteMatrices(program, values, count, transposed, doubles);
 }
 
 // A list may have brought a projection of its own.

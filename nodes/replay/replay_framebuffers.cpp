@@ -6,21 +6,23 @@
 
 namespace mural {
 
-void Replay::bindFramebuffer(GLenum target, GLuint framebuffer, bool ext) {
-    const GLuint ours = name(Kind::Framebuffer, framebuffer);
-    if (ext) gl.glBindFramebufferEXT(target, ours);
-    else gl.glBindFramebuffer(target, ours);
+void Replay::bindFramebuffer(GLenum target, GLuint framebuffer, void (*bind)(GLenum, GLuint)) {
+    bind(target, name(Kind::Framebuffer, framebuffer));
     if (target != GL_READ_FRAMEBUFFER) c_->drawFramebuffer = framebuffer;
     if (target != GL_DRAW_FRAMEBUFFER) c_->readFramebuffer = framebuffer;
     if (target != GL_READ_FRAMEBUFFER) restoreWindowState();
 }
-void Replay::glBindFramebuffer(GLenum target, GLuint framebuffer) { bindFramebuffer(target, framebuffer, !gl.glBindFramebuffer); }
-void Replay::glBindFramebufferEXT(GLenum target, GLuint framebuffer) { bindFramebuffer(target, framebuffer, gl.glBindFramebufferEXT != nullptr); }
+void Replay::glBindFramebuffer(GLenum target, GLuint framebuffer) { bindFramebuffer(target, framebuffer, gl.glBindFramebuffer ? gl.glBindFramebuffer : gl.glBindFramebufferEXT); }
+void Replay::glBindFramebufferEXT(GLenum target, GLuint framebuffer) { bindFramebuffer(target, framebuffer, gl.glBindFramebufferEXT ? gl.glBindFramebufferEXT : gl.glBindFramebuffer); }
+void Replay::glBindFramebufferOES(GLenum target, GLuint framebuffer) { bindFramebuffer(target, framebuffer, gl.glBindFramebufferOES ? gl.glBindFramebufferOES : gl.glBindFramebuffer); }
 
-void Replay::glDeleteFramebuffers(GLsizei n, const Data& framebuffers) {
+void Replay::glDeleteFramebuffers(GLsizei n, const Data& framebuffers) { deleteFramebuffers(n, framebuffers, gl.glDeleteFramebuffers); }
+void Replay::glDeleteFramebuffersOES(GLsizei n, const Data& framebuffers) { deleteFramebuffers(n, framebuffers, gl.glDeleteFramebuffersOES ? gl.glDeleteFramebuffersOES : gl.glDeleteFramebuffers); }
+
+void Replay::deleteFramebuffers(GLsizei n, const Data& framebuffers, void (*remove)(GLsizei, const GLuint*)) {
     if (n <= 0 || !framebuffers.pointer()) return;
     const auto* app = framebuffers.as<GLuint>();
-    gl.glDeleteFramebuffers(n, names(Kind::Framebuffer, app, n));
+    remove(n, names(Kind::Framebuffer, app, n));
     for (GLsizei i = 0; i < n; ++i) { // deleting a bound framebuffer binds the window
         if (app[i] != 0 && app[i] == c_->drawFramebuffer) c_->drawFramebuffer = 0;
         if (app[i] != 0 && app[i] == c_->readFramebuffer) c_->readFramebuffer = 0;
@@ -99,6 +101,11 @@ void Replay::glReadBuffer(GLenum src) {
     if (c_->readFramebuffer == 0) src = readBufferOfEye(src, c_->read);
     gl.glReadBuffer(c_->readFramebuffer == 0 ? windowBuffer(src, c_->read) : src);
     if (c_->readFramebuffer == 0) readBufferOfWindow(src);
+}
+// NV_draw_buffers and NV_read_buffer of OpenGL ES 2.
+void Replay::glDrawBuffersNV(GLsizei n, const Data& bufs) { glDrawBuffers(n, bufs); }
+void Replay::glReadBufferNV(GLenum mode) {
+    if (gl.glReadBuffer) glReadBuffer(mode);
 }
 void Replay::glNamedFramebufferDrawBuffer(GLuint framebuffer, GLenum buf) {
     if (framebuffer == 0) buf = bufferOfEye(buf, c_->draw);

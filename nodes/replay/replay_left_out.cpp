@@ -1,24 +1,19 @@
 // Draw calls of frames that are another node's turn: they change no pixel here, and are left out where they change
 // nothing else either. What follows of them in the stream is taken as ever: only GL's own functions do nothing.
-#include <string_view>
 #include <tuple>
 #include <utility>
 
 #include "gl_opcodes.hpp"
 #include "nodes/replay/replay.hpp"
-#include "streamcodec/opcode_names.hpp"
+#include "streamcodec/command_traits.hpp"
 
 namespace mural {
 
 namespace {
 
-using F = GlFunctions;
 constexpr auto kDraws = std::tuple(
-    &F::glDrawArrays, &F::glDrawArraysIndirect, &F::glDrawArraysInstanced, &F::glDrawArraysInstancedBaseInstance, &F::glDrawElements,
-    &F::glDrawElementsBaseVertex, &F::glDrawElementsIndirect, &F::glDrawElementsInstanced, &F::glDrawElementsInstancedBaseInstance,
-    &F::glDrawElementsInstancedBaseVertex, &F::glDrawElementsInstancedBaseVertexBaseInstance, &F::glDrawRangeElements,
-    &F::glDrawRangeElementsBaseVertex, &F::glMultiDrawArrays, &F::glMultiDrawArraysIndirect, &F::glMultiDrawElements,
-    &F::glMultiDrawElementsBaseVertex, &F::glMultiDrawElementsIndirect);
+#include "skippable_draws.inc"
+);
 
 template <class... A> void leaveOut(void (*&function)(A...)) {
     if (function) function = [](A...) {};
@@ -26,22 +21,6 @@ template <class... A> void leaveOut(void (*&function)(A...)) {
 
 template <class Call> void forEachDraw(Call&& call) {
     std::apply([&](auto... members) { (call(members), ...); }, kDraws);
-}
-
-bool maybeLeftOut(std::string_view name) {
-    for (const std::string_view stem : {"glDrawArrays", "glDrawElements", "glDrawRangeElements", "glMultiDrawArrays", "glMultiDrawElements"})
-        if (name.starts_with(stem)) return true;
-    return false;
-}
-
-bool isDraw(uint16_t opcode) {
-    static const auto kFound = [] {
-        std::vector<bool> found(op::kLimit, false);
-        for (uint16_t o = wire::kFirstGlOpcode; o < op::kLimit; ++o)
-            if (const char* name = glOpcodeName(o)) found[o] = maybeLeftOut(name);
-        return found;
-    }();
-    return kFound[opcode];
 }
 
 } // namespace
@@ -70,7 +49,7 @@ bool Replay::mayWriteMemory(GLuint program) {
 }
 
 bool Replay::leavesOut(uint16_t opcode) {
-    if (!isDraw(opcode) || !drawsWindow() || !c_->draw || c_->compiling || !c_->shared) return false;
+    if (!hasTrait(opcode, Trait::SkippableDraw) || !drawsWindow() || !c_->draw || c_->compiling || !c_->shared) return false;
     const Window& w = *c_->draw;
     const bool drawsHere = drawsWhole() || !w.drawn.empty() || w.whole.empty();
     return !drawsHere && c_->openQueries.empty() && !c_->feedsBack && !mayWriteMemory(c_->program);

@@ -133,6 +133,10 @@ void Replay::glCopyImageSubData(GLuint srcName, GLenum srcTarget, GLint srcLevel
     gl.glCopyImageSubData(ours(srcName, srcTarget), srcTarget, srcLevel, srcX, srcY, srcZ, ours(dstName, dstTarget), dstTarget, dstLevel, dstX, dstY, dstZ, w, h, d);
 }
 
+void Replay::glCopyImageSubDataNV(GLuint srcName, GLenum srcTarget, GLint srcLevel, GLint srcX, GLint srcY, GLint srcZ, GLuint dstName, GLenum dstTarget, GLint dstLevel, GLint dstX, GLint dstY, GLint dstZ, GLsizei w, GLsizei h, GLsizei d) {
+    glCopyImageSubData(srcName, srcTarget, srcLevel, srcX, srcY, srcZ, dstName, dstTarget, dstLevel, dstX, dstY, dstZ, w, h, d);
+}
+
 // ---- synchronisation: one thread replays all contexts in the program's order
 
 void Replay::glFenceSync(GLenum condition, GLbitfield flags, uint64_t result) {

@@ -12,46 +12,16 @@
 // (accuracy 4). Framebuffer objects are drawn by all. How the pictures become one: nodes/exchange.
 #include <algorithm>
 #include <cstring>
-#include <string_view>
 #include <utility>
 
 #include "gl_opcodes.hpp"
+#include "nodes/replay/command_uses.hpp"
 #include "nodes/replay/replay.hpp"
-#include "streamcodec/opcode_names.hpp"
+#include "streamcodec/command_traits.hpp"
 
 namespace mural {
 
 namespace {
-
-enum class RangeUse : uint8_t { None, State, Clear, Draw, Begin, End, Vertex, Read, Memory, Feedback, Query };
-
-RangeUse classify(uint16_t opcode, std::string_view name) {
-    const auto starts = [&](std::string_view stem) { return name.starts_with(stem); };
-    if (opcode == op::glBegin) return RangeUse::Begin;
-    if (opcode == op::glEnd) return RangeUse::End;
-    if (opcode == op::glClear) return RangeUse::Clear;
-    if (starts("glClearBuffer") || starts("glClearNamedFramebuffer") || starts("glAccum") || starts("glCopy") || starts("glBlit") || starts("glReadPixels") || starts("glDrawPixels") || starts("glBitmap")) return RangeUse::Read;
-    if (starts("glBeginTransformFeedback") || starts("glEndTransformFeedback") || starts("glDrawTransformFeedback")) return RangeUse::Feedback;
-    if (starts("glBeginQuery") || starts("glEndQuery")) return RangeUse::Query;
-    if (starts("glBindImageTexture") || starts("glBindBufferBase") || starts("glBindBufferRange") || starts("glBindBuffersBase") || starts("glBindBuffersRange")) return RangeUse::Memory;
-    if (starts("glDrawBuffer")) return RangeUse::State;
-    for (const std::string_view stem : {"glDraw", "glMultiDraw", "glMultiMode", "glRect", "glEvalMesh"})
-        if (starts(stem)) return RangeUse::Draw;
-    if (starts("glVertex") && !starts("glVertexA") && !starts("glVertexB") && !starts("glVertexPointer")) return RangeUse::Vertex;
-    for (const std::string_view stem : {"glEnable", "glDisable", "glDepth", "glBlend", "glColorMask", "glStencil", "glLogicOp", "glPopAttrib", "glUseProgram", "glBindProgramPipeline", "glBindFramebuffer", "glClipControl", "glReadBuffer", "glRenderMode"})
-        if (starts(stem)) return RangeUse::State;
-    return RangeUse::None;
-}
-
-RangeUse rangeUseOf(uint16_t opcode) {
-    static const auto kUses = [] {
-        std::vector<RangeUse> uses(op::kLimit, RangeUse::None);
-        for (uint16_t o = wire::kFirstGlOpcode; o < op::kLimit; ++o)
-            if (const char* name = glOpcodeName(o)) uses[o] = classify(o, name);
-        return uses;
-    }();
-    return kUses[opcode];
-}
 
 // Draws whose vertices can be cut into pieces: where their count and their first vertex stand among the arguments,
 // all of four bytes.
@@ -118,17 +88,16 @@ bool Replay::mayShare() {
 
 void Replay::noteRangeState(uint16_t opcode, std::span<const std::byte> arguments) {
     c_->rangeKnown = false;
-    const std::string_view name = glOpcodeName(opcode);
     switch (rangeUseOf(opcode)) {
     case RangeUse::Memory: {
         const uint32_t target = wordAt(arguments, 0);
-        if (name.starts_with("glBindImage") || target == GL_SHADER_STORAGE_BUFFER || target == GL_ATOMIC_COUNTER_BUFFER) c_->writesMemory = true;
+        if (hasTrait(opcode, Trait::ImageBinding) || target == GL_SHADER_STORAGE_BUFFER || target == GL_ATOMIC_COUNTER_BUFFER) c_->writesMemory = true;
         break;
     }
     case RangeUse::Feedback:
-        if (!name.starts_with("glDraw")) c_->rangeFeedsBack = name.starts_with("glBegin");
+        if (!hasTrait(opcode, Trait::FeedbackDraw)) c_->rangeFeedsBack = hasTrait(opcode, Trait::FeedbackBegin);
         break;
-    case RangeUse::Query: c_->activeQueries = std::max(0, c_->activeQueries + (name.starts_with("glBegin") ? 1 : -1)); break;
+    case RangeUse::Query: c_->activeQueries = std::max(0, c_->activeQueries + (hasTrait(opcode, Trait::QueryBegin) ? 1 : -1)); break;
     default: break;
     }
 }

@@ -5,11 +5,10 @@
 // the lookups of fixed function, ARB programs and OpenGL ES are not ours to change. A zoom's levels are those of its own pixels.
 // Source: OpenGL 4.6, 8.14.1 (scale factor and level-of-detail).
 #include <cstring>
-#include <string_view>
 
 #include "gl_opcodes.hpp"
+#include "nodes/replay/command_uses.hpp"
 #include "nodes/replay/replay.hpp"
-#include "streamcodec/opcode_names.hpp"
 
 namespace mural {
 
@@ -17,43 +16,6 @@ namespace {
 
 constexpr GLuint kFixedUnits = 4; // that are asked for; who textures by others only, does not by these
 constexpr int kMostAsked = 256;   // draws of a frame: of more, one that does is among them
-
-enum class Use : uint8_t {
-    None,
-    Copies,
-    Level,     // is given by the second argument, of a texture's image
-    Levels,    // so many has a texture, by the second argument
-    Parameter, // of a texture: GL_GENERATE_MIPMAP among them
-    AllLevels,
-    Draw,
-};
-
-Use copyUseByName(std::string_view name) {
-    const auto isAnyOf = [&](std::initializer_list<std::string_view> stems) {
-        for (const std::string_view stem : stems)
-            if (name.starts_with(stem)) return true;
-        return false;
-    };
-    if (isAnyOf({"glBlitFramebuffer", "glBlitNamedFramebuffer", "glDrawPixels", "glCopyPixels", "glBitmap"}) || name == "glAccum") return Use::Copies;
-    if (isAnyOf({"glGenerate", "glMultiTexImage", "glMultiTexSubImage", "glTextureImage", "glTextureView", "glTextureStorageMem", "glTexStorageMem"})) return Use::AllLevels;
-    if (isAnyOf({"glTexStorage", "glTextureStorage"})) return name.ends_with("EXT") ? Use::AllLevels : Use::Levels;
-    if (isAnyOf({"glTexParameter", "glTextureParameter", "glMultiTexParameter"})) return Use::Parameter;
-    if (isAnyOf({"glTexImage", "glTexSubImage", "glTextureSubImage", "glCompressedTexImage", "glCompressedTexSubImage", "glCompressedTextureSubImage", "glCopyTexImage",
-                 "glCopyTexSubImage", "glCopyTextureSubImage"}))
-        return name.ends_with("EXT") ? Use::AllLevels : Use::Level;
-    if (isAnyOf({"glDrawBuffer"})) return Use::None;
-    return isAnyOf({"glDraw", "glMultiDraw", "glMultiMode", "glRect", "glEvalMesh", "glCallList"}) || name == "glBegin" ? Use::Draw : Use::None;
-}
-
-Use copyUseOf(uint16_t opcode) {
-    static const auto kUses = [] {
-        std::vector<Use> uses(op::kLimit, Use::None);
-        for (uint16_t o = wire::kFirstGlOpcode; o < op::kLimit; ++o)
-            if (const char* name = glOpcodeName(o)) uses[o] = copyUseByName(name);
-        return uses;
-    }();
-    return kUses[opcode];
-}
 
 uint32_t secondOf(std::span<const std::byte> arguments) {
     uint32_t words[2] = {};
@@ -76,17 +38,17 @@ bool Replay::choosesOwnLevels() const {
 }
 
 void Replay::noteWholeWindow(uint16_t opcode, std::span<const std::byte> arguments) {
-    const Use use = copyUseOf(opcode);
-    if (use == Use::None) return;
-    if (use == Use::Copies || use == Use::Draw) {
+    const WholeUse use = wholeUseOf(opcode);
+    if (use == WholeUse::None) return;
+    if (use == WholeUse::Copies || use == WholeUse::Draw) {
         if (!drawsWindow() || !c_->draw || c_->draw->copied) return;
         Window& w = *c_->draw;
-        w.copied = use == Use::Copies || (++w.askedOfLevels <= kMostAsked && choosesOwnLevels());
+        w.copied = use == WholeUse::Copies || (++w.askedOfLevels <= kMostAsked && choosesOwnLevels());
         return;
     }
     if (!c_->shared) return;
     const uint32_t second = secondOf(arguments);
-    const bool levels = use == Use::AllLevels || (use == Use::Level && second > 0) || (use == Use::Levels && second > 1) || (use == Use::Parameter && second == GL_GENERATE_MIPMAP);
+    const bool levels = use == WholeUse::AllLevels || (use == WholeUse::Level && second > 0) || (use == WholeUse::Levels && second > 1) || (use == WholeUse::Parameter && second == GL_GENERATE_MIPMAP);
     c_->shared->texturesHaveLevels = c_->shared->texturesHaveLevels || levels;
 }
 

@@ -20,6 +20,7 @@ import emit_front         # noqa: E402
 import emit_interposer    # noqa: E402
 import emit_parameters    # noqa: E402
 import emit_replay        # noqa: E402
+import emit_traits        # noqa: E402
 import registry           # noqa: E402
 
 REGISTRY_DIR = os.path.join(os.path.dirname(HERE), 'registry')
@@ -82,6 +83,7 @@ def main():
     files.update(emit_replay.emit(model))
     files.update(emit_epoxy.emit(model))
     files.update(emit_parameters.emit(model, o.registry))
+    files.update(emit_traits.emit(model))
     if o.glx_registry and o.egl_header:
         files.update(emit_front.emit(model, o.glx_registry, o.egl_header))
     for name, text in files.items():

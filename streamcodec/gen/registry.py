@@ -63,6 +63,7 @@ class Command:
         alias = element.find('alias')
         self.alias = alias.get('name') if alias is not None else None
         self.options = {}
+        self.traits = set()
         self.command_class = None
         self.reason = ''
         self.feature = None
@@ -170,7 +171,9 @@ class Command:
 
 def read_semantics(path):
     rules = []
-    for number, line in enumerate(open(path, encoding='utf-8'), 1):
+    with open(path, encoding='utf-8') as f:
+        lines = list(f)
+    for number, line in enumerate(lines, 1):
         line = line.split('#', 1)[0].strip() if not line.lstrip().startswith('#') else ''
         if not line:
             continue
@@ -210,13 +213,18 @@ def load(gl_xml, semantics):
     root_aliases(commands)
     for pattern, options, number in rules:
         hit = False
+        traits = set(options.pop('traits').split(',')) if 'traits' in options else set()
         for name in commands:
             if name == pattern or fnmatch.fnmatchcase(name, pattern):
                 hit = True
+                commands[name].traits |= traits
                 if 'class' in options:     # a new class starts afresh
                     kept = {} if options['class'] == 'unsupported' else {
                         k: v for k, v in commands[name].options.items() if '.' in k}
                     commands[name].options = kept
+                if 'effect' in options:
+                    for key in ('attrib', 'object'):
+                        commands[name].options.pop(key, None)
                 commands[name].options.update(options)
         if not hit:
             raise SystemExit('%s:%d: no command matches %s' % (semantics, number, pattern))
@@ -229,7 +237,16 @@ def load(gl_xml, semantics):
             commands[n].extension_apis.update(ext.get('supported').split('|'))
     for c in commands.values():
         c.classify()
+    check_traits(semantics, commands)
     return commands, extensions
+
+
+def check_traits(semantics, commands):
+    """A line whose traits or effect no command in the stream gets is a mistake."""
+    for pattern, options, number in read_semantics(semantics):
+        wanted = options.get('traits') or options.get('effect') or options.get('deferral')
+        if wanted and not any(c.sent and not c.alias and fnmatch.fnmatchcase(c.name, pattern) for c in commands.values()):
+            raise SystemExit('%s:%d: %s has traits or an effect, and is in no record' % (semantics, number, pattern))
 
 
 def root_aliases(commands):

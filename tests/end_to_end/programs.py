@@ -25,7 +25,7 @@ GROUPS = {
     "bindless": ["bindless_textures", "sparse_textures", "sparse_buffers"],
     # No test runs it: the one driver here that has images without a binding ends in it at times (docs/exactness.md).
     "bindless_images": ["bindless_images"],
-    "windows": ["es1_scene", "es2_scene", "es3_scene", "es_pipelines", "es_feedback_limit", "egl_desktop",
+    "windows": ["es1_scene", "es1_draw_texture", "es2_scene", "es3_scene", "es_pipelines", "es_feedback_limit", "egl_desktop",
                 "egl_offscreen", "egl_images", "egl_pixmaps",
                 "egl_pbuffer_textures", "egl_bound_pbuffers", "egl_sync_order", "draw_read_mix", "fence_order", "flush_control", "surfaceless_sharing",
                 "texture_from_pixmap", "debug_messages",

@@ -81,13 +81,33 @@ class TinyRegistry(unittest.TestCase):
         self.assertEqual(lines[:2], ['glUniform4fv', 'glGone'])
         self.assertEqual(sorted(lines[2:]), ['glColor3ubv', 'glGenTextures', 'glGetFloatv', 'glOddPointersX', 'glTexImage1D', 'glVertex2s'])
 
-    def test_rule_that_matches_nothing_is_an_error(self):
+    def rejected(self, text):
+        """What the generator reports for these rules."""
         with tempfile.TemporaryDirectory() as folder:
             rules = os.path.join(folder, 'rules')
-            write(rules, 'glNoSuchCommand draw\n')
+            write(rules, text)
             run = generate('--registry', tiny('gl.xml'), '--semantics', rules, '--lock', tiny('opcodes.lock'), '--out', folder)
         self.assertNotEqual(run.returncode, 0)
-        self.assertIn('rules:1: no command matches glNoSuchCommand', run.stderr)
+        return run.stderr
+
+    def with_rules(self, text):
+        with tempfile.TemporaryDirectory() as folder:
+            rules = os.path.join(folder, 'rules')
+            write(rules, read(tiny('semantics.txt')) + text)
+            return generated(semantics=rules)
+
+    def test_rule_that_matches_nothing_is_an_error(self):
+        self.assertIn('rules:1: no command matches glNoSuchCommand', self.rejected('glNoSuchCommand draw\n'))
+
+    def test_traits_of_commands_that_are_never_sent_are_an_error(self):
+        self.assertIn('rules:1: glGetFloatv has traits or an effect, and is in no record', self.rejected('glGetFloatv - traits=Matrix\n'))
+
+    def test_traits_of_all_lines_add_up(self):
+        self.assertIn('all[op::glVertex2s] = bits(Begin, DrawClass, End, Vertex);', self.with_rules('glVertex2s - traits=End,Begin\n'))
+
+    def test_last_effect_replaces_the_earlier_ones(self):
+        text = self.with_rules('glColor* - effect=Cell\n')
+        self.assertIn('all[op::glColor3ubv] = {EffectKind::Cell, ObjectType::None, Deferral::ByEffect, 0};', text)
 
 
 @unittest.skipUnless(GL_XML, 'no gl.xml here: install khronos-api')
@@ -144,6 +164,18 @@ class RealRegistry(unittest.TestCase):
         """No command of a core version is left out by an accident of parsing."""
         vague = ('is not described', 'no rule explains', 'is unknown')
         wrong = [(c.name, c.reason) for c in self.canonical if c.feature and c.command_class == 'unsupported' and any(v in c.reason for v in vague)]
+        self.assertEqual([], wrong)
+
+    def test_draws_without_a_quiet_call_are_vertices(self):
+        """Without `quiet` the program's own context skips the command wherever it knows glBegin: right for vertices only."""
+        wrong = [c.name for c in self.sent if c.command_class == 'draw' and c.option('app') != 'custom' and not c.option('quiet') and 'Vertex' not in c.traits]
+        self.assertEqual([], wrong)
+
+    def test_copies_out_of_framebuffers_gather_what_they_read(self):
+        """The imaging subset has no driver here, and is not gathered; glAccum and copies of pixels are written by hand."""
+        imaging = re.compile(r'glCopy(Color|Convolution)')
+        wrong = [c.name for c in self.sent if ('ReadsFramebuffer' in c.traits) != bool(c.option('copies'))
+                 and 'Pixels' not in c.traits and not imaging.match(c.name)]
         self.assertEqual([], wrong)
 
     def test_aliases_lead_to_commands_that_have_a_class(self):

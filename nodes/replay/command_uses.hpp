@@ -1,0 +1,28 @@
+// Classes of commands for the features of replay, derived from their traits (streamcodec/command_traits.hpp).
+#pragma once
+
+#include <cstdint>
+
+namespace mural {
+
+// Sort-last (replay_range.cpp).
+enum class RangeUse : uint8_t { None, State, Clear, Draw, Begin, End, Vertex, Read, Memory, Feedback, Query };
+RangeUse rangeUseOf(uint16_t opcode);
+
+// Other eyes and screens (replay_eyes.cpp).
+enum class EyeUse : uint8_t { None, Matrix, Draw, List, Uniform, Buffer, Framebuffer };
+EyeUse eyeUseOf(uint16_t opcode);
+
+// Windows that a node draws whole although its pass shows part of the pixels (replay_whole_windows.cpp).
+enum class WholeUse : uint8_t {
+    None,
+    Copies,
+    Level,     // defines the level that the second argument names
+    Levels,    // defines as many levels as the second argument says
+    Parameter, // sets a texture parameter, such as GL_GENERATE_MIPMAP
+    AllLevels,
+    Draw,
+};
+WholeUse wholeUseOf(uint16_t opcode);
+
+} // namespace mural
