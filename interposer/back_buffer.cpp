@@ -1,6 +1,9 @@
 #include "interposer/back_buffer.hpp"
 
 #include <GL/glext.h>
+#include <bit>
+#include <cstdlib>
+#include <utility>
 
 #include "interposer/asking.hpp"
 #include "interposer/context.hpp"
@@ -19,6 +22,19 @@ bool canBindAgain(GLint framebuffer) {
     return !framebuffer || !gReal.glIsFramebuffer || gReal.glIsFramebuffer(static_cast<GLuint>(framebuffer));
 }
 
+bool isExiting = false;
+
+// With GL_UNSIGNED_BYTE Mesa looks the format up in a table, which it makes with the first such read and frees when the process
+// begins to exit. After our own reads every read behind that would find it freed. The packed type is the same bytes and needs
+// no table; OpenGL ES lacks it.
+GLenum typeOfReads(const Context& context) { return context.api == wire::Api::Desktop ? GL_UNSIGNED_INT_8_8_8_8_REV : GL_UNSIGNED_BYTE; }
+
+bool isTooLate(const Context& context) {
+    static bool registered = false;
+    if (!std::exchange(registered, true)) std::atexit([] { isExiting = true; });
+    return isExiting && context.isMesa && typeOfReads(context) == GL_UNSIGNED_BYTE;
+}
+
 // The program's own errors come before ours.
 Context& withErrorsStashed(Context& context) {
     stashError(context, driverError());
@@ -31,7 +47,7 @@ BackBufferRead::BackBufferRead(Context& context, const Window& window, Where whe
     const bool twoTargets = context.version >= 30;
     target_ = twoTargets ? GL_READ_FRAMEBUFFER : GL_FRAMEBUFFER;
     if (gReal.glBindFramebuffer) gReal.glGetIntegerv(twoTargets ? GL_READ_FRAMEBUFFER_BINDING : GL_FRAMEBUFFER_BINDING, &framebuffer_);
-    ready_ = pack_.ready() && canBindAgain(framebuffer_);
+    ready_ = pack_.ready() && canBindAgain(framebuffer_) && !isTooLate(context);
     if (ready_) bindWindow(window);
 }
 
@@ -53,7 +69,8 @@ void BackBufferRead::bindWindow(const Window& window) {
 }
 
 void BackBufferRead::pixels(GLint x, GLint y, GLsizei width, GLsizei height, void* into) const {
-    gReal.glReadPixels(x, y, width, height, GL_RGBA, GL_UNSIGNED_BYTE, into);
+    static_assert(std::endian::native == std::endian::little);
+    gReal.glReadPixels(x, y, width, height, GL_RGBA, typeOfReads(context_), into);
 }
 
 } // namespace mural

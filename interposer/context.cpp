@@ -312,7 +312,9 @@ void beforeMakeCurrent(const Context* next, const Window* draw, const Window* re
     const uint32_t drawWindow = draw ? draw->id : 0, readWindow = read ? read->id : 0;
     if (t.context == next && t.context->drawWindow == drawWindow && t.context->readWindow == readWindow) return;
     const Window* const given = findWindowById(t.context->drawWindow);
-    if (given && !given->config.isPbuffer) flushedWindow(t);
+    if (!given || given->config.isPbuffer || (given->config.doubleBuffer && !t.context->frontDue)) return;
+    gReal.glFlush(); // the driver's own front, where nothing was drawn, must not come over the picture
+    flushedWindow(t);
 }
 
 namespace {

@@ -9,6 +9,7 @@
 #include "interposer/context.hpp"
 #include "interposer/session.hpp"
 #include "interposer/window_binding.hpp"
+#include "interposer/window_size.hpp"
 
 namespace mural {
 
@@ -56,6 +57,7 @@ void compare(ThreadState& t, Window& w, uint8_t* mine, size_t pixels) {
     const BackBufferRead read(*t.context, w, BackBufferRead::Where::NodesToo);
     if (!read.ready()) return countUncompared(Uncompared::NotReadable);
     const auto width = static_cast<GLsizei>(w.config.width), height = static_cast<GLsizei>(w.config.height);
+    read.pixels(0, 0, 1, 1, mine); // Mesa cuts a read to the size that its buffers had before it
     read.pixels(0, 0, width, height, mine);
     if (driverError() != GL_NO_ERROR) return countUncompared(Uncompared::NotReadable);
     const auto* theirs = static_cast<const uint8_t*>(askPixels(t, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, 0, "--verify"));
@@ -72,6 +74,13 @@ void compare(ThreadState& t, Window& w, uint8_t* mine, size_t pixels) {
     dump(w, static_cast<uint32_t>(frame), "wall", theirs);
 }
 
+// A read gives the driver's buffers the window's new size, and with it other contents, before they were shown.
+bool wouldChangeSize(const Window& w) {
+    uint32_t width = 0, height = 0;
+    if (!askWindowSize(w, width, height)) return true;
+    return !w.sizeKnown && (width != w.config.width || height != w.config.height);
+}
+
 } // namespace
 
 void countUncompared(capture::Uncompared reason) {
@@ -81,7 +90,7 @@ void countUncompared(capture::Uncompared reason) {
 void verifyFrame(ThreadState& t, Window& w) {
     using capture::Uncompared;
     if (!t.context) return countUncompared(Uncompared::NoContext);
-    if (w.config.width == 0 || w.config.height == 0) return countUncompared(Uncompared::NoSize);
+    if (w.config.width == 0 || w.config.height == 0 || wouldChangeSize(w)) return countUncompared(Uncompared::NoSize);
     const size_t pixels = size_t{w.config.width} * w.config.height;
     auto* mine = static_cast<uint8_t*>(std::calloc(pixels, 4));
     if (!mine) return countUncompared(Uncompared::NoMemory);

@@ -148,11 +148,11 @@ Result<void> GlxPlatform::clear(const GlxSurface& surface) {
     const GLXDrawable draw = glx.getCurrentDrawable(), read = glx.getCurrentReadDrawable();
     const auto failed = [](const std::string& why) { return Error{"GLX can't clear a new pbuffer: " + (why.empty() ? "no reason given" : why) + "; use --gl egl"}; };
     XErrorTrap trap(*display_);
-    const Bool made = glx.makeContextCurrent(display_->display, surface.handle(), surface.handle(), static_cast<GlxContext*>(*context)->handle());
-    if (const std::string why = trap.take(); !made || !why.empty()) return failed(why);
+    if (!glx.makeContextCurrent(display_->display, surface.handle(), surface.handle(), static_cast<GlxContext*>(*context)->handle())) return failed(trap.take());
     clearCurrentSurface(*this, surface.config(), surface.colorBuffers());
-    const Bool back = glx.makeContextCurrent(display_->display, draw, read, before);
-    if (const std::string why = trap.take(); !back || !why.empty()) return failed(why);
+    if (!glx.makeContextCurrent(display_->display, draw, read, before)) return failed(trap.take());
+    // A front that is flushed into a pixmap of another depth is an X error, and cleared (Mesa's software driver, alpha on a screen of depth 24).
+    (void)trap.take();
     return {};
 }
 

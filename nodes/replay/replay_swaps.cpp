@@ -62,6 +62,8 @@ void Replay::swapUnbound(Window& w, ContextState& drawer, uint32_t id, uint32_t 
     before.read = boundRead_;
     Window* const draw = drawer.draw;
     Window* const read = drawer.read;
+    // What a driver still gathers for the window that is current would go to the other one (Mesa, where the context is the same).
+    if (bound_ && gl.glFlush) gl.glFlush();
     Stream forSwap;
     forSwap.context = &drawer;
     forSwap.draw = forSwap.read = &w;

@@ -1,8 +1,8 @@
-// OpenGL after main() has returned: in a handler of atexit and in a destructor of the program. Prints what they read and see.
+// OpenGL after main() has returned: in a handler of atexit and in a destructor of the program. Nothing is read: Mesa frees
+// memory that reads need at exit, so that natively some of them crash.
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
-#include <vector>
 
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
@@ -22,23 +22,13 @@ void draw(int frame) {
     showBar(3, frame * 9);
 }
 
-void printRead(const char* what) {
-    std::vector<GLubyte> pixels(std::size_t(window->width()) * std::size_t(window->height()) * 4);
-    glReadPixels(0, 0, window->width(), window->height(), GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
-    std::uint64_t sum = 0;
-    for (const GLubyte byte : pixels) {
-        sum = (sum ^ byte) * 1099511628211ULL;
-    }
-    std::printf("%s reads %016llx, error %x\n", what, static_cast<unsigned long long>(sum), glGetError());
-    std::fflush(stdout);
-}
-
 void showFrames(const char* what, int first, int count) {
     for (int frame = first; frame < first + count; ++frame) {
         draw(frame);
-        printRead(what);
         window->swap();
     }
+    std::printf("%s: %d frames\n", what, count);
+    std::fflush(stdout);
 }
 
 void atExit() { showFrames("at exit", 10, 4); }
@@ -54,7 +44,7 @@ __attribute__((destructor)) void inDestructor() {
 int main(int argc, char** argv) {
     const Options options = parseOptions(argc, argv);
     std::atexit(atExit); // before the driver has registered handlers of its own
-    window = MURAL_OPEN({}, options.width, options.height).release();
+    window = MURAL_OPEN(MURAL_SPEC, options.width, options.height).release();
     window->makeCurrent();
     showFrames("in main", 0, 3);
     return 9;
