@@ -24,9 +24,8 @@ bool canBindAgain(GLint framebuffer) {
 
 bool isExiting = false;
 
-// With GL_UNSIGNED_BYTE Mesa looks the format up in a table, which it makes with the first such read and frees when the process
-// begins to exit. After our own reads every read behind that would find it freed. The packed type is the same bytes and needs
-// no table; OpenGL ES lacks it.
+// Mesa finds formats of GL_UNSIGNED_BYTE in a table. It creates the table at the first such read and frees it when the process
+// begins to exit, so that reads after that crash. The packed type gives the same bytes without the table; OpenGL ES lacks it.
 GLenum typeOfReads(const Context& context) { return context.api == wire::Api::Desktop ? GL_UNSIGNED_INT_8_8_8_8_REV : GL_UNSIGNED_BYTE; }
 
 bool isTooLate(const Context& context) {

@@ -51,7 +51,7 @@ Difference differenceOf(const uint8_t* mine, const uint8_t* theirs, size_t pixel
     return difference;
 }
 
-// The window is current. `mine` has room for its pixels.
+// Precondition: the window is current; `mine` has room for its pixels.
 void compare(ThreadState& t, Window& w, uint8_t* mine, size_t pixels) {
     using capture::Uncompared;
     const BackBufferRead read(*t.context, w, BackBufferRead::Where::NodesToo);
@@ -74,7 +74,7 @@ void compare(ThreadState& t, Window& w, uint8_t* mine, size_t pixels) {
     dump(w, static_cast<uint32_t>(frame), "wall", theirs);
 }
 
-// A read gives the driver's buffers the window's new size, and with it other contents, before they were shown.
+// Returns whether a read would resize the driver's buffers. The new buffers are empty, and the swap would show them.
 bool wouldChangeSize(const Window& w) {
     uint32_t width = 0, height = 0;
     if (!askWindowSize(w, width, height)) return true;

@@ -9,15 +9,15 @@ namespace mural {
 
 namespace {
 
-// GLX refuses others with an X error, which ends most programs.
+// Returns whether the driver accepts the pair. GLX answers a mismatch with an X error, which ends most programs.
 bool goTogether(const Context& c, const Window& w) {
     const wire::WindowConfig &a = c.config, &b = w.config;
     return a.red == b.red && a.green == b.green && a.blue == b.blue && a.alpha == b.alpha && a.depth == b.depth && a.stencil == b.stencil && a.samples == b.samples &&
            a.doubleBuffer == b.doubleBuffer && a.accum == b.accum && a.stereo == b.stereo && a.srgb == b.srgb;
 }
 
-// Whether the window keeps its buffers when the context is bound to another one: GLX gives up those of a plain X window with
-// the last context that was bound to it.
+// Returns whether the window keeps its buffers after the context is bound to another one. GLX frees the buffers of a plain X
+// window with the last context that was bound to it.
 bool keepsBuffers(const Window* w, const Context& c) {
     if (!w || w->isEgl || w->drawable != w->native) return true;
     return w->holders > (c.held[0] == w) + (c.held[1] == w);
@@ -32,7 +32,7 @@ WindowBinding::WindowBinding(ThreadState& t, Window& w) : t_(t), before_(*t.cont
     ready_ = by && bind(*by, &w, &w);
 }
 
-// The thread's own context, or one that is current nowhere and was bound to this window last.
+// Returns the thread's own context, or one that is current nowhere and was bound to this window last.
 Context* WindowBinding::contextFor(const Window& w) const {
     if (!before_.drawWindow || !before_.readWindow) return nullptr; // it could not be bound again as it was
     const bool leaves = keepsBuffers(findWindowById(before_.drawWindow), before_) && keepsBuffers(findWindowById(before_.readWindow), before_);

@@ -1,4 +1,4 @@
-// A window that is not current, bound for a moment here and on the nodes, so that its buffers can be read.
+// Binds a window that is not current for a moment, here and on the nodes, so that its buffers can be read.
 #pragma once
 
 namespace mural {
@@ -7,8 +7,8 @@ struct Context;
 struct ThreadState;
 struct Window;
 
-// While it lives, the window is current for drawing and reading in the thread; what was current before is bound again at
-// its end. Precondition: the thread has a current context.
+// Keeps the window current for drawing and reading in the thread. The destructor binds the previous context and windows
+// again. Precondition: the thread has a current context.
 class WindowBinding {
 public:
     WindowBinding(ThreadState& t, Window& w);

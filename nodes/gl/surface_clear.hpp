@@ -1,5 +1,5 @@
-// Clears surfaces that were just created. Drivers take their memory as it is: Mesa's pbuffers without a window system
-// get their colours from the heap of the process (measured, 22.3.6), and with them bytes of other pictures.
+// Clears new surfaces. Drivers do not clear their memory: the colours of Mesa's pbuffers without a window system lie in
+// recycled heap memory of the process (measured, 22.3.6), which may hold other pictures.
 #pragma once
 
 #include <functional>
@@ -10,8 +10,8 @@
 
 namespace mural::gl {
 
-// The contexts that clear, one per configuration. They are the platform's own: nothing that a program sets can mask,
-// clip or skip the clear.
+// Owns the contexts that clear, one per configuration. They belong to the platform, so that no state of a program can
+// mask, clip or skip the clear.
 class ClearingContexts {
 public:
     using Create = std::function<Result<std::unique_ptr<Context>>(const ContextConfig&)>;

@@ -1,7 +1,7 @@
-// Complete frames: the picture of a window goes out.
+// Ends frames and reads the picture of the window.
 //
-// The thread that swaps a window need not have it current, nor any context at all (GLX 1.4, 3.3.10). The context that drew
-// there last is bound with it for the moment then, so that the read comes behind all that was drawn.
+// A thread may swap a window that is not current, even without any context (GLX 1.4, 3.3.10). The replay then binds the window for
+// the read, with the context that drew there last: the driver orders the read after the draws of that context.
 #include <utility>
 
 #include "common/clock.hpp"
@@ -14,8 +14,8 @@ namespace {
 constexpr int64_t kPatientFrames = 60; // for a full clear
 } // namespace
 
-// By a fence where there are any: at glFinish Mesa copies the whole picture of a framebuffer with one colour
-// buffer to a window that is not there (measured: a quarter of this thread's time at 800x600).
+// Waits for a fence where the driver has fences. For a framebuffer with one colour buffer glFinish of Mesa copies the whole
+// picture to a window that does not exist (measured: a quarter of this thread's time at 800x600).
 void Replay::waitUntilDrawn() {
     constexpr GLuint64 kPatienceNs = 60'000'000'000;
     if (!bound_) return;
@@ -26,7 +26,7 @@ void Replay::waitUntilDrawn() {
     if (!done && gl.glFinish) gl.glFinish();
 }
 
-// Null: the program has no context that was ever current.
+// Returns null if no context of the program was ever current.
 Replay::ContextState* Replay::contextFor(const Client& client, const Window& w) const {
     if (w.drawer) return w.drawer;
     if (s_->context) return s_->context;
@@ -35,7 +35,7 @@ Replay::ContextState* Replay::contextFor(const Client& client, const Window& w) 
     return nullptr;
 }
 
-// Whether this node has to read the window, or to send its share of it, and something else is current.
+// Returns whether this node reads or sends pixels of a window that is not bound.
 bool Replay::mustBindForSwap(const Window& w, uint32_t frame, bool front) const {
     if (!w.surface || (bound_ && boundDraw_ == &w)) return false;
     return takesRanges() || (frame != wire::kUnseenFrame && !regionOf(w, front).empty());
@@ -54,7 +54,7 @@ bool Replay::ownSwap(Args& in, bool front) {
     return true;
 }
 
-// Binds the window, shows it and binds what was bound before.
+// Binds the window, shows it, and binds the previous window again.
 void Replay::swapUnbound(Window& w, ContextState& drawer, uint32_t id, uint32_t frame, bool front) {
     Stream before;
     before.context = bound_;
@@ -62,7 +62,7 @@ void Replay::swapUnbound(Window& w, ContextState& drawer, uint32_t id, uint32_t 
     before.read = boundRead_;
     Window* const draw = drawer.draw;
     Window* const read = drawer.read;
-    // What a driver still gathers for the window that is current would go to the other one (Mesa, where the context is the same).
+    // Mesa gathers vertices. Without a flush the context would draw them into the window that is bound next.
     if (bound_ && gl.glFlush) gl.glFlush();
     Stream forSwap;
     forSwap.context = &drawer;
@@ -83,7 +83,7 @@ void Replay::showWindow(Window* window, uint32_t id, uint32_t frame, bool front)
     f.frame = frame;
     f.drawnWhole = bound_ && bound_->shared && bound_->shared->allDrawn;
     ++counts_.frames;
-    Window* ours = nullptr; // whose pixels can be had
+    Window* ours = nullptr; // the window, if its pixels can be read
     if (window) {
         Window& w = *window;
         if (takesRanges()) rangeDrawn(w);
@@ -105,15 +105,14 @@ void Replay::showWindow(Window* window, uint32_t id, uint32_t frame, bool front)
             c_ = own;
             return pixels;
         };
-        // Without a context or a surface the picture is black; the reason was logged. It still counts as a frame.
+        // Without a context or a surface the picture is black. The frame still counts, and the log has the reason.
         else f.pixels = [black = std::vector<std::byte>()](const PixelViewport& r) mutable {
             black.assign(static_cast<size_t>(r.area()) * 4, std::byte{0});
             return static_cast<const std::byte*>(black.data());
         };
     }
     if (window && bound_) flushIfAsked(*window);
-    // A frame counts when it is drawn, not when it is queued: pacing and frame rates depend on it.
-    // A picture that is read later comes then, and the frame counts with it.
+    // A frame counts after its draws: pacing and frame rates depend on that. A later read counts the frame with its picture.
     const bool shown = frame != wire::kUnseenFrame;
     const bool later = shown && ours && readsLater(*ours, f.region);
     const int64_t beganNs = monotonicNowNs();
@@ -128,7 +127,7 @@ void Replay::showWindow(Window* window, uint32_t id, uint32_t frame, bool front)
         return picture;
     };
     if (shown) out_.frameDone(f);
-    if (later && !read) waitUntilDrawn(); // nobody has
+    if (later && !read) waitUntilDrawn();
     if (window) turnDrawn(*window, front);
     if (window && window->front && !front) showBack(*window);
 }

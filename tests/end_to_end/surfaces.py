@@ -19,14 +19,14 @@ import programs
 failures.CASES.clear()  # only those of this file
 MODES = {"verify": ["--verify"], "app": ["--display", "app"]}
 SIZE = "253x191"
-# New memory of nodes is full of a pattern: whatever is not cleared is seen. That of programs holds 0, as drivers take
-# memory for new surfaces as it is (Mesa's EGL).
+# glibc fills new memory of nodes with a pattern, which makes missing clears visible. New memory of programs holds 0, because
+# Mesa's EGL does not clear the surfaces of windows.
 OF_NODES = {"MALLOC_PERTURB_": "165"}
 OF_PROGRAMS = {"MALLOC_PERTURB_": "255"}
 
 
 def natively(context, program, wanted_status, environment):
-    """What it prints. None: it does not end as it should.
+    """Returns the printed lines, or None after a wrong exit status.
 
     OpenGL behind the end of main() works natively only where Mesa compiles no shader then. Its cache on disk has them after
     another try.

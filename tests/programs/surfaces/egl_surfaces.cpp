@@ -1,4 +1,4 @@
-// EGL: what new surfaces hold, and which of them eglSwapBuffers shows. Prints both.
+// Prints the contents of new EGL surfaces, and which surfaces eglSwapBuffers shows.
 #include <EGL/egl.h>
 #include <cstdio>
 #include <thread>

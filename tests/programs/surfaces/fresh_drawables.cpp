@@ -1,5 +1,4 @@
-// What drawables hold before anything was drawn there: prints how many values are not 0. Windows of several visuals, as
-// they are and after they grew, pbuffers and pixmaps.
+// Prints how many values of new drawables are not 0: windows of several visuals before and after they grew, and pbuffers.
 #include <GL/glx.h>
 #include <cstdio>
 #include <unistd.h>

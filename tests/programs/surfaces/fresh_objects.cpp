@@ -1,5 +1,5 @@
-// What objects without data hold: textures, renderbuffers and buffers, new ones and such as were given up. Prints how many
-// bytes are not 0. What the nodes hold of a buffer is seen in a texture that is made of it.
+// Prints how many bytes of objects without data are not 0: new textures, renderbuffers and buffers, and invalidated ones. A
+// texture that is made from a buffer shows the bytes that the nodes hold.
 #include <cstdio>
 #include <vector>
 

@@ -1,4 +1,4 @@
-// What a drawable shows, as the X server tells it.
+// Reads the pixels of a drawable from the X server.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Windows that are swapped while another one is current, or by a thread with another context, or bound for reading alone;
-// windows with one buffer, which are shown when they are given up. Prints what each shows then.
+// Prints the pixels of windows that are swapped while another window is current, by a thread with another context, or while
+// they are bound for reading alone. A window with one buffer is shown when its context is released.
 #include <GL/glx.h>
 #include <cstdio>
 #include <thread>
