@@ -23,7 +23,7 @@
 namespace mural::capture {
 
 constexpr uint32_t kMagic = 0x4d55524c; // "MURL"
-constexpr uint32_t kVersion = 7;
+constexpr uint32_t kVersion = 8;
 constexpr uint32_t kChunkBytes = 256 * 1024;
 constexpr uint32_t kDefaultChunks = 256; // 64 MiB
 constexpr uint32_t kReplyBytes = 4 * 1024 * 1024;
@@ -61,6 +61,18 @@ enum class Wait : uint32_t {
     Window = 4, // the picture is in the program's own window
 };
 constexpr uint32_t kWaits = 5;
+
+// Why `--verify` could not compare a frame.
+enum class Uncompared : uint32_t {
+    NoContext = 0,   // the thread that swapped has none
+    NotBindable = 1, // another window is current, and this one can't be bound with the thread's context
+    Front = 2,       // drawn into the front buffer of a window with two buffers, and shown by a flush
+    NoSize = 3,      // the driver does not tell the window's size
+    NoMemory = 4,
+    NotReadable = 5, // the program's own GL does not read its picture
+    NoAnswer = 6,    // of the nodes
+};
+constexpr uint32_t kUncomparedReasons = 7;
 
 // How many round trips a command has caused. Written under the program's lock of questions; a name is
 // complete before its count is more than 0.
@@ -135,6 +147,7 @@ struct alignas(64) CaptureHeader {
     std::atomic<uint64_t> differingPixels;
     std::atomic<uint64_t> squaredDifference; // of all components, added up
     std::atomic<uint32_t> largestDifference;
+    std::atomic<uint64_t> uncomparedFrames[kUncomparedReasons]; // by Uncompared
     // Counters of the app's side, for the report.
     std::atomic<uint64_t> callsUnsupported;
     std::atomic<uint64_t> roundTrips;

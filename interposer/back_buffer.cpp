@@ -1,6 +1,9 @@
 #include "interposer/back_buffer.hpp"
 
 #include <GL/glext.h>
+#include <bit>
+#include <cstdlib>
+#include <utility>
 
 #include "interposer/asking.hpp"
 #include "interposer/context.hpp"
@@ -19,6 +22,18 @@ bool canBindAgain(GLint framebuffer) {
     return !framebuffer || !gReal.glIsFramebuffer || gReal.glIsFramebuffer(static_cast<GLuint>(framebuffer));
 }
 
+bool isExiting = false;
+
+// Mesa finds formats of GL_UNSIGNED_BYTE in a table. It creates the table at the first such read and frees it when the process
+// begins to exit, so that reads after that crash. The packed type gives the same bytes without the table; OpenGL ES lacks it.
+GLenum typeOfReads(const Context& context) { return context.api == wire::Api::Desktop ? GL_UNSIGNED_INT_8_8_8_8_REV : GL_UNSIGNED_BYTE; }
+
+bool isTooLate(const Context& context) {
+    static bool registered = false;
+    if (!std::exchange(registered, true)) std::atexit([] { isExiting = true; });
+    return isExiting && context.isMesa && typeOfReads(context) == GL_UNSIGNED_BYTE;
+}
+
 // The program's own errors come before ours.
 Context& withErrorsStashed(Context& context) {
     stashError(context, driverError());
@@ -31,7 +46,7 @@ BackBufferRead::BackBufferRead(Context& context, const Window& window, Where whe
     const bool twoTargets = context.version >= 30;
     target_ = twoTargets ? GL_READ_FRAMEBUFFER : GL_FRAMEBUFFER;
     if (gReal.glBindFramebuffer) gReal.glGetIntegerv(twoTargets ? GL_READ_FRAMEBUFFER_BINDING : GL_FRAMEBUFFER_BINDING, &framebuffer_);
-    ready_ = pack_.ready() && canBindAgain(framebuffer_);
+    ready_ = pack_.ready() && canBindAgain(framebuffer_) && !isTooLate(context);
     if (ready_) bindWindow(window);
 }
 
@@ -53,7 +68,8 @@ void BackBufferRead::bindWindow(const Window& window) {
 }
 
 void BackBufferRead::pixels(GLint x, GLint y, GLsizei width, GLsizei height, void* into) const {
-    gReal.glReadPixels(x, y, width, height, GL_RGBA, GL_UNSIGNED_BYTE, into);
+    static_assert(std::endian::native == std::endian::little);
+    gReal.glReadPixels(x, y, width, height, GL_RGBA, typeOfReads(context_), into);
 }
 
 } // namespace mural

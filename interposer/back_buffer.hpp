@@ -21,7 +21,8 @@ public:
     BackBufferRead(const BackBufferRead&) = delete;
     BackBufferRead& operator=(const BackBufferRead&) = delete;
 
-    // False: something is bound that is deleted already and could not be bound again; nothing is read.
+    // False: something is bound that is deleted already and could not be bound again, or the process exits and the driver has
+    // freed what reads need; nothing is read.
     [[nodiscard]] bool ready() const { return ready_; }
     // RGBA, one byte each, tightly packed; what lies outside the buffer is left as it is.
     void pixels(GLint x, GLint y, GLsizei width, GLsizei height, void* into) const;

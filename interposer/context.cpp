@@ -107,11 +107,17 @@ bool feedbackCounts(const Context& c) {
     return extensions && !std::strstr(extensions, "_geometry_shader") && !std::strstr(extensions, "_tessellation_shader");
 }
 
+// GLX of Mesa's software drivers swaps only in threads that have a current context (drisw_swap_buffers), whichever it is.
+bool swapsNeedContext = false;
+
 // Version and profile that the driver really gave; needs the context to be current.
 void learnVersion(Context& c) {
     const auto* text = reinterpret_cast<const char*>(gReal.glGetString(GL_VERSION));
     if (!text) return;
     c.isMesa = std::strstr(text, "Mesa");
+    const auto* renderer = reinterpret_cast<const char*>(gReal.glGetString(GL_RENDERER));
+    for (const char* software : {"llvmpipe", "softpipe", "swrast"})
+        if (renderer && std::strstr(renderer, software)) __atomic_store_n(&swapsNeedContext, true, __ATOMIC_RELAXED);
     if (const char* es = std::strstr(text, "OpenGL ES")) {
         const char* digits = std::strpbrk(es, "0123456789");
         c.api = digits && *digits == '1' ? wire::Api::Es1 : wire::Api::Es2;
@@ -240,6 +246,7 @@ void becameCurrent(Context* context, Window* draw, Window* read) {
     s->publish(t, false);
     watchFromHere(t);
     if (bound && draw) localPixelsBound(t, *draw);
+    if (bound && draw && !draw->config.doubleBuffer) draw->lastFlush = t.cursor; // nothing is drawn yet
 }
 
 void updateWindowSize(ThreadState& t, Window& w) {
@@ -262,6 +269,11 @@ void beforeAwaitedDrawing(ThreadState& t, uint32_t opcode) {
 
 namespace {
 
+bool isVerified(const Session& s, uint32_t frame) {
+    const uint32_t every = s.welcome().verifyEvery;
+    return every && frame % every == 0;
+}
+
 bool drawsToFront() {
     GLint framebuffer = 0, buffer = 0;
     gReal.glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer);
@@ -275,7 +287,9 @@ void showFront(ThreadState& t, Window& w) {
     Session* s = Session::current();
     if (!s || !s->alive()) return;
     t.context->frontDue = drawsToFront();
-    records::frontPicture(t, w.id, s->nextFrame());
+    const uint32_t frame = s->nextFrame();
+    if (isVerified(*s, frame)) countUncompared(capture::Uncompared::Front);
+    records::frontPicture(t, w.id, frame);
     s->publish(t, false);
     s->waitForCredit();
     refreshDrawLocally(t);
@@ -292,6 +306,24 @@ void flushedWindow(ThreadState& t) {
     w->lastFlush = t.cursor;
 }
 
+void beforeMakeCurrent(const Context* next, const Window* draw, const Window* read) {
+    ThreadState& t = *tThread;
+    if (!t.context || t.context->keepsUnflushed) return;
+    const uint32_t drawWindow = draw ? draw->id : 0, readWindow = read ? read->id : 0;
+    if (t.context == next && t.context->drawWindow == drawWindow && t.context->readWindow == readWindow) return;
+    const Window* const given = findWindowById(t.context->drawWindow);
+    if (!given || given->config.isPbuffer || (given->config.doubleBuffer && !t.context->frontDue)) return;
+    gReal.glFlush(); // the driver's own front, where nothing was drawn, must not come over the picture
+    flushedWindow(t);
+}
+
+namespace {
+
+// GLX gives up those of a plain X window with the last context that was bound to it.
+bool hasBuffers(const Window& w) { return w.announced && (w.isEgl || w.drawable != w.native || w.holders > 0); }
+
+} // namespace
+
 bool swapLocally() {
     Session* s = Session::current();
     // A verified run needs the program's own picture to compare with.
@@ -299,11 +331,12 @@ bool swapLocally() {
 }
 
 bool swapsItself(Window* w) {
-    if (w && w->drawnInPart) {
+    if (!w || !hasBuffers(*w)) return true; // an error of the driver's
+    if (w->drawnInPart) {
         w->drawnInPart = false; // the next picture is whole
         return false;
     }
-    return swapLocally() || (w && w->isPixmap);
+    return swapLocally() || w->isPixmap;
 }
 
 namespace {
@@ -318,13 +351,32 @@ void flushLists(Context& c) {
 
 } // namespace
 
+namespace {
+
+// No context of the thread is flushed by it. What others have drawn there they have published with their own flush.
+void endFrameWithoutContext(Session& s, Window& w) {
+    if (!w.isEgl && __atomic_load_n(&swapsNeedContext, __ATOMIC_RELAXED)) return;
+    ThreadState& t = ownThreadState();
+    const uint32_t frame = s.nextFrame();
+    if (isVerified(s, frame)) countUncompared(capture::Uncompared::NoContext);
+    records::swap(t, w.id, frame);
+    s.publish(t, false, false);
+    s.waitForCredit();
+    w.sizeKnown = false;
+}
+
+} // namespace
+
 void endFrame(Window* w) {
     ThreadState& t = *tThread;
     Session* s = Session::current();
-    if (!s || !s->alive() || !w || !t.context) {
+    // One buffer alone is shown by flushes, of a context that has the window current.
+    const bool shows = w && hasBuffers(*w) && (w->config.doubleBuffer || (t.context && t.context->drawWindow == w->id));
+    if (!s || !s->alive() || !shows) {
         refreshDrawLocally(t);
         return;
     }
+    if (!t.context) return endFrameWithoutContext(*s, *w);
     if (drawnElsewhere(t, *w)) {
         s->die(nullptr);
         refreshDrawLocally(t);
@@ -332,8 +384,7 @@ void endFrame(Window* w) {
     }
     beforeDraw(t, *t.context);
     const uint32_t frame = s->nextFrame();
-    const uint32_t every = s->welcome().verifyEvery;
-    if (every && frame % every == 0) verifyFrame(t, *w);
+    if (isVerified(*s, frame)) verifyFrame(t, *w);
     records::swap(t, w->id, frame);
     ++t.context->swaps;
     flushLists(*t.context);

@@ -173,8 +173,11 @@ void threadLeaves(ThreadState& t);
 void updateWindowSize(ThreadState& t, Window& w);
 // While t.drawingAwaited: before each record.
 void beforeAwaitedDrawing(ThreadState& t, uint32_t opcode);
-// The program shows the window's back buffer: a frame ends.
+// The program shows the window's back buffer: a frame ends. The window need not be current, nor any context.
 void endFrame(Window* w);
+// Before the driver makes `next` (null: none) current with these drawables: giving up a context flushes it, and a flush shows
+// what was drawn into a front buffer.
+void beforeMakeCurrent(const Context* next, const Window* draw, const Window* read);
 // glFlush or glFinish shows what was drawn into a front buffer: a frame, when something was drawn.
 void flushedWindow(ThreadState& t);
 // Whether frames are drawn and shown by the program's own GL, too.

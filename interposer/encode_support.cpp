@@ -19,8 +19,8 @@ void goAlone(ThreadState& t) {
     t.drawLocally = true;
 }
 
-// What EGL does without a current context.
-bool needsNoContext(uint32_t opcode) { return opcode == wire::kOpCreateImage || opcode == wire::kOpDestroyImage; }
+// What EGL and GLX do without a current context.
+bool needsNoContext(uint32_t opcode) { return opcode == wire::kOpCreateImage || opcode == wire::kOpDestroyImage || opcode == wire::kOpSwap; }
 
 // Under the lock, as another thread may close the fast path at this moment (enterGroup).
 void openFastPath(ThreadState& t) {

@@ -117,6 +117,15 @@ void hold(Context& c, Window* draw, Window* read) {
     for (Window* w : before) release(w);
 }
 
+Context* idleHolderOf(const Window& w) {
+    Guard guard(tableLock);
+    for (uint32_t i = 0; i < contextCount; ++i) {
+        Context* const c = contexts[i];
+        if (!c->destroyed && c->announced && c->held[0] == &w && (c->held[1] == &w || !c->held[1]) && !isCurrent(*c)) return c;
+    }
+    return nullptr;
+}
+
 namespace {
 
 // The last of a group that the nodes have holds the objects for those that they have not been told of yet.

@@ -14,6 +14,9 @@ const Context* sharerOf(const Context& c);
 // The context is bound to these drawables (null: none), and no longer to those before.
 void hold(Context& c, Window* draw, Window* read);
 
+// A context that is current nowhere and was bound to this window alone last; null: there is none.
+Context* idleHolderOf(const Window& w);
+
 // Ids that the nodes are told the end of now, each once; 0: no more.
 uint32_t nextDueContext();
 uint32_t nextDueWindow();

@@ -8,19 +8,12 @@
 #include "interposer/back_buffer.hpp"
 #include "interposer/context.hpp"
 #include "interposer/session.hpp"
+#include "interposer/window_binding.hpp"
+#include "interposer/window_size.hpp"
 
 namespace mural {
 
 namespace {
-
-// Reads the window's back buffer into `mine` by the local driver and, through askPixels, from the nodes.
-const void* readBoth(ThreadState& t, Window& w, void* mine) {
-    const BackBufferRead read(*t.context, w, BackBufferRead::Where::NodesToo);
-    if (!read.ready()) return nullptr;
-    const auto width = static_cast<GLsizei>(w.config.width), height = static_cast<GLsizei>(w.config.height);
-    read.pixels(0, 0, width, height, mine);
-    return askPixels(t, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, 0, "--verify");
-}
 
 // MURAL_VERIFY_DUMP=folder: both pictures of frames that differ, as PPM.
 void dump(const Window& w, uint32_t frame, const char* which, const uint8_t* rgba) {
@@ -37,40 +30,73 @@ void dump(const Window& w, uint32_t frame, const char* which, const uint8_t* rgb
     fclose(f);
 }
 
-} // namespace
-
-void verifyFrame(ThreadState& t, Window& w) {
-    Session* s = Session::current();
-    if (!t.context || t.context->drawWindow != w.id || w.config.width == 0) return;
-    const size_t pixels = size_t{w.config.width} * w.config.height;
-    auto* mine = static_cast<uint8_t*>(std::malloc(pixels * 4));
-    if (!mine) return;
-    const auto* theirs = static_cast<const uint8_t*>(readBoth(t, w, mine));
-    uint64_t differing = 0, squared = 0;
+struct Difference {
+    uint64_t pixels = 0, squared = 0;
     uint32_t largest = 0;
-    for (size_t i = 0; theirs && i < pixels; ++i) {
+};
+
+Difference differenceOf(const uint8_t* mine, const uint8_t* theirs, size_t pixels) {
+    Difference difference;
+    for (size_t i = 0; i < pixels; ++i) {
         uint32_t worst = 0;
         for (size_t k = 0; k < 4; ++k) {
             const int d = mine[4 * i + k] - theirs[4 * i + k];
             const auto size = static_cast<uint32_t>(d < 0 ? -d : d);
             worst = size > worst ? size : worst;
-            squared += uint64_t{size} * size;
+            difference.squared += uint64_t{size} * size;
         }
-        differing += worst > 0;
-        largest = worst > largest ? worst : largest;
+        difference.pixels += worst > 0;
+        difference.largest = worst > difference.largest ? worst : difference.largest;
     }
-    if (theirs) {
-        auto* h = s->header();
-        const uint64_t frame = h->verifiedFrames.fetch_add(1) + 1;
-        h->verifiedPixels.fetch_add(pixels);
-        h->differingPixels.fetch_add(differing);
-        h->squaredDifference.fetch_add(squared);
-        if (largest > h->largestDifference.load()) h->largestDifference.store(largest);
-        if (differing) {
-            dump(w, static_cast<uint32_t>(frame), "native", mine);
-            dump(w, static_cast<uint32_t>(frame), "wall", theirs);
-        }
-    }
+    return difference;
+}
+
+// Precondition: the window is current; `mine` has room for its pixels.
+void compare(ThreadState& t, Window& w, uint8_t* mine, size_t pixels) {
+    using capture::Uncompared;
+    const BackBufferRead read(*t.context, w, BackBufferRead::Where::NodesToo);
+    if (!read.ready()) return countUncompared(Uncompared::NotReadable);
+    const auto width = static_cast<GLsizei>(w.config.width), height = static_cast<GLsizei>(w.config.height);
+    read.pixels(0, 0, 1, 1, mine); // Mesa cuts a read to the size that its buffers had before it
+    read.pixels(0, 0, width, height, mine);
+    if (driverError() != GL_NO_ERROR) return countUncompared(Uncompared::NotReadable);
+    const auto* theirs = static_cast<const uint8_t*>(askPixels(t, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, 0, "--verify"));
+    if (!theirs) return countUncompared(Uncompared::NoAnswer);
+    const Difference difference = differenceOf(mine, theirs, pixels);
+    auto* h = Session::current()->header();
+    const uint64_t frame = h->verifiedFrames.fetch_add(1) + 1;
+    h->verifiedPixels.fetch_add(pixels);
+    h->differingPixels.fetch_add(difference.pixels);
+    h->squaredDifference.fetch_add(difference.squared);
+    if (difference.largest > h->largestDifference.load()) h->largestDifference.store(difference.largest);
+    if (difference.pixels == 0) return;
+    dump(w, static_cast<uint32_t>(frame), "native", mine);
+    dump(w, static_cast<uint32_t>(frame), "wall", theirs);
+}
+
+// Returns whether a read would resize the driver's buffers. The new buffers are empty, and the swap would show them.
+bool wouldChangeSize(const Window& w) {
+    uint32_t width = 0, height = 0;
+    if (!askWindowSize(w, width, height)) return true;
+    return !w.sizeKnown && (width != w.config.width || height != w.config.height);
+}
+
+} // namespace
+
+void countUncompared(capture::Uncompared reason) {
+    if (Session* s = Session::current()) s->header()->uncomparedFrames[static_cast<uint32_t>(reason)].fetch_add(1);
+}
+
+void verifyFrame(ThreadState& t, Window& w) {
+    using capture::Uncompared;
+    if (!t.context) return countUncompared(Uncompared::NoContext);
+    if (w.config.width == 0 || w.config.height == 0 || wouldChangeSize(w)) return countUncompared(Uncompared::NoSize);
+    const size_t pixels = size_t{w.config.width} * w.config.height;
+    auto* mine = static_cast<uint8_t*>(std::calloc(pixels, 4));
+    if (!mine) return countUncompared(Uncompared::NoMemory);
+    const WindowBinding binding(t, w);
+    if (binding.ready()) compare(t, w, mine, pixels);
+    else countUncompared(Uncompared::NotBindable);
     std::free(mine);
 }
 

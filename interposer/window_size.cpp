@@ -9,4 +9,12 @@ bool askWindowSize(const Window& w, uint32_t& width, uint32_t& height) {
     return w.isEgl ? askEglSize(w, width, height) : askGlxSize(w, width, height);
 }
 
+void beforeAwaitedReading(ThreadState& t) {
+    if (!t.drawingAwaited || !t.context || !t.context->isMesa) return;
+    for (const uint32_t id : {t.context->drawWindow, t.context->readWindow}) {
+        Window* const w = id ? findWindowById(id) : nullptr;
+        if (w && !w->sizeKnown) updateWindowSize(t, *w);
+    }
+}
+
 } // namespace mural

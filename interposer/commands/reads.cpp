@@ -11,6 +11,7 @@
 #include "interposer/read_area.hpp"
 #include "interposer/real_gl.hpp"
 #include "interposer/session.hpp"
+#include "interposer/window_size.hpp"
 
 using namespace mural;
 using namespace mural::image_reads;
@@ -37,7 +38,9 @@ void readPixels(ThreadState& t, GLint x, GLint y, GLsizei width, GLsizei height,
         return;
     }
     ReadArea clip{x, y, width, height};
-    if (!cutToReadFramebuffer(c, format, type, clip)) return;
+    const bool reads = cutToReadFramebuffer(c, format, type, clip);
+    beforeAwaitedReading(t); // Mesa cuts the rectangle first, and gives its buffers a new size then
+    if (!reads) return;
     sizes::PixelStore store = packStore(c);
     if (store.rowLength == 0) store.rowLength = width; // rows keep their distance when clipped
     store.skipPixels += clip.x - x;

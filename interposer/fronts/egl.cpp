@@ -95,6 +95,7 @@ Window* windowFor(EGLDisplay dpy, EGLSurface surface) {
 
 EGLBoolean makeCurrent(EGLDisplay dpy, EGLSurface draw, EGLSurface read, EGLContext context) {
     static auto* call = real<EGLBoolean(EGLDisplay, EGLSurface, EGLSurface, EGLContext)>("eglMakeCurrent");
+    if (!nativeRun()) beforeMakeCurrent(context ? findContext(context) : nullptr, windowFor(dpy, draw), windowFor(dpy, read));
     const EGLBoolean ok = call(dpy, draw, read, context);
     if (ok && !nativeRun()) becameCurrent(context ? findContext(context) : nullptr, windowFor(dpy, draw), windowFor(dpy, read));
     return ok;
@@ -105,27 +106,36 @@ void frameShown(EGLDisplay dpy, EGLSurface surface) {
     else endFrame(windowFor(dpy, surface));
 }
 
+// EGL 1.5, 3.10.1: a surface that is not current for drawing is not shown, and the driver tells the error.
+bool isCurrentForDrawing(const Window* w) { return w && tThread->context && tThread->context->drawWindow == w->id; }
+
+template <class Call> EGLBoolean swap(EGLDisplay dpy, EGLSurface surface, Call&& call) {
+    if (!nativeRun() && !isCurrentForDrawing(windowFor(dpy, surface))) {
+        const EGLBoolean ok = call();
+        if (ok) frameShown(dpy, surface);
+        return ok;
+    }
+    frameShown(dpy, surface);
+    return swapsItself(windowFor(dpy, surface)) ? call() : EGL_TRUE;
+}
+
 EGLBoolean swapBuffers(EGLDisplay dpy, EGLSurface surface) {
     static auto* call = real<EGLBoolean(EGLDisplay, EGLSurface)>("eglSwapBuffers");
-    frameShown(dpy, surface);
-    return swapsItself(windowFor(dpy, surface)) ? call(dpy, surface) : EGL_TRUE;
+    return swap(dpy, surface, [&] { return call(dpy, surface); });
 }
 EGLBoolean swapBuffersWithDamageKhr(EGLDisplay dpy, EGLSurface surface, const EGLint* rects, EGLint n) {
     static auto* call = real<EGLBoolean(EGLDisplay, EGLSurface, const EGLint*, EGLint)>("eglSwapBuffersWithDamageKHR");
-    frameShown(dpy, surface);
-    return swapsItself(windowFor(dpy, surface)) ? call(dpy, surface, rects, n) : EGL_TRUE;
+    return swap(dpy, surface, [&] { return call(dpy, surface, rects, n); });
 }
 EGLBoolean swapBuffersWithDamageExt(EGLDisplay dpy, EGLSurface surface, const EGLint* rects, EGLint n) {
     static auto* call = real<EGLBoolean(EGLDisplay, EGLSurface, const EGLint*, EGLint)>("eglSwapBuffersWithDamageEXT");
-    frameShown(dpy, surface);
-    return swapsItself(windowFor(dpy, surface)) ? call(dpy, surface, rects, n) : EGL_TRUE;
+    return swap(dpy, surface, [&] { return call(dpy, surface, rects, n); });
 }
 
 // Not advertised; who calls it all the same shows the whole picture.
 EGLBoolean postSubBuffer(EGLDisplay dpy, EGLSurface surface, EGLint x, EGLint y, EGLint width, EGLint height) {
     static auto* call = real<EGLBoolean(EGLDisplay, EGLSurface, EGLint, EGLint, EGLint, EGLint)>("eglPostSubBufferNV");
-    frameShown(dpy, surface);
-    return swapsItself(windowFor(dpy, surface)) ? call(dpy, surface, x, y, width, height) : EGL_TRUE;
+    return swap(dpy, surface, [&] { return call(dpy, surface, x, y, width, height); });
 }
 
 EGLBoolean waitGl() {
@@ -289,6 +299,11 @@ void* openVendor() {
 } // namespace
 
 Front& eglFront() { return front; }
+
+bool makeEglCurrent(const Window& draw, const Window& read, const Context& context) {
+    static auto* call = real<EGLBoolean(EGLDisplay, EGLSurface, EGLSurface, EGLContext)>("eglMakeCurrent");
+    return call && call(draw.display, reinterpret_cast<EGLSurface>(draw.drawable), reinterpret_cast<EGLSurface>(read.drawable), context.native);
+}
 
 bool askEglSize(const Window& w, uint32_t& width, uint32_t& height) {
     static auto* query = real<EGLBoolean(EGLDisplay, EGLSurface, EGLint, EGLint*)>("eglQuerySurface");

@@ -131,18 +131,25 @@ Bool madeCurrent(Bool ok, Display* dpy, XID draw, XID read, GLXContext native) {
     return ok;
 }
 
+void beforeBinding(Display* dpy, XID draw, XID read, GLXContext native) {
+    if (!nativeRun()) beforeMakeCurrent(native ? findContext(native) : nullptr, draw ? findWindow(draw, dpy) : nullptr, read ? findWindow(read, dpy) : nullptr);
+}
+
 Bool makeCurrent(Display* dpy, XID drawable, GLXContext context) {
     static auto* call = real<Bool(Display*, XID, GLXContext)>("glXMakeCurrent");
+    beforeBinding(dpy, drawable, drawable, context);
     return madeCurrent(call(dpy, drawable, context), dpy, drawable, drawable, context);
 }
 
 Bool makeContextCurrent(Display* dpy, XID draw, XID read, GLXContext context) {
     static auto* call = real<Bool(Display*, XID, XID, GLXContext)>("glXMakeContextCurrent");
+    beforeBinding(dpy, draw, read, context);
     return madeCurrent(call(dpy, draw, read, context), dpy, draw, read, context);
 }
 
 Bool makeCurrentRead(Display* dpy, XID draw, XID read, GLXContext context) {
     static auto* call = real<Bool(Display*, XID, XID, GLXContext)>("glXMakeCurrentReadSGI");
+    beforeBinding(dpy, draw, read, context);
     return madeCurrent(call(dpy, draw, read, context), dpy, draw, read, context);
 }
 
@@ -335,6 +342,11 @@ void* openVendor() {
 } // namespace
 
 Front& glxFront() { return front; }
+
+bool makeGlxCurrent(const Window& draw, const Window& read, const Context& context) {
+    static auto* call = real<Bool(Display*, XID, XID, GLXContext)>("glXMakeContextCurrent");
+    return call && call(static_cast<Display*>(draw.display), draw.drawable, read.drawable, static_cast<GLXContext>(context.native));
+}
 
 bool askGlxSize(const Window& w, uint32_t& width, uint32_t& height) {
     auto* dpy = static_cast<Display*>(w.display);

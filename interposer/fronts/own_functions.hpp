@@ -5,7 +5,11 @@
 
 namespace mural {
 
+struct Context;
 struct Window;
+// The driver's own function, past the fronts: the context becomes current with these windows in the calling thread.
+bool makeGlxCurrent(const Window& draw, const Window& read, const Context& context);
+bool makeEglCurrent(const Window& draw, const Window& read, const Context& context);
 bool askGlxSize(const Window& w, uint32_t& width, uint32_t& height);
 bool askEglSize(const Window& w, uint32_t& width, uint32_t& height);
 

@@ -30,7 +30,8 @@ Result<EglFunctions> loadEgl() {
         library->load(egl.destroySurface, "eglDestroySurface") &&
         library->load(egl.getConfigAttrib, "eglGetConfigAttrib") &&
         library->load(egl.getConfigs, "eglGetConfigs") &&
-        library->load(egl.getCurrentContext, "eglGetCurrentContext") && library->load(egl.getError, "eglGetError") &&
+        library->load(egl.getCurrentContext, "eglGetCurrentContext") &&
+        library->load(egl.getCurrentSurface, "eglGetCurrentSurface") && library->load(egl.getError, "eglGetError") &&
         library->load(egl.getProcAddress, "eglGetProcAddress") &&
         library->load(egl.initialize, "eglInitialize") && library->load(egl.makeCurrent, "eglMakeCurrent") &&
         library->load(egl.queryString, "eglQueryString") &&

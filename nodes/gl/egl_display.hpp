@@ -24,6 +24,7 @@ struct EglFunctions {
     decltype(&eglGetConfigAttrib) getConfigAttrib = nullptr;
     decltype(&eglGetConfigs) getConfigs = nullptr;
     decltype(&eglGetCurrentContext) getCurrentContext = nullptr;
+    decltype(&eglGetCurrentSurface) getCurrentSurface = nullptr;
     decltype(&eglGetError) getError = nullptr;
     decltype(&eglGetProcAddress) getProcAddress = nullptr;
     decltype(&eglInitialize) initialize = nullptr;

@@ -13,6 +13,7 @@
 #include "nodes/gl/egl_display.hpp"
 #include "nodes/gl/epoxy_functions.hpp"
 #include "nodes/gl/gl_info.hpp"
+#include "nodes/gl/surface_clear.hpp"
 
 namespace mural::gl {
 namespace {
@@ -159,10 +160,15 @@ private:
         SurfaceConfig bits;
     };
     Result<Chosen> chooseConfig(const SurfaceConfig& wish) const;
+    // Its contents are undefined.
+    Result<std::unique_ptr<EglSurface>> createPbuffer(const SurfaceConfig& wish) const;
+    // What is current stays current.
+    Result<void> clear(const EglSurface& surface);
 
     SharedDisplay display_;
     EGLenum currentApi_ = EGL_OPENGL_API;
     std::string renderer_, version_;
+    ClearingContexts clearing_;
 };
 
 Result<EglPlatform::Chosen> EglPlatform::chooseConfig(const SurfaceConfig& wish) const {
@@ -172,7 +178,7 @@ Result<EglPlatform::Chosen> EglPlatform::chooseConfig(const SurfaceConfig& wish)
     return Chosen{all.handles[*index], bitsOf(all.candidates[*index], wish)};
 }
 
-Result<std::unique_ptr<Surface>> EglPlatform::createSurface(const SurfaceConfig& wish) {
+Result<std::unique_ptr<EglSurface>> EglPlatform::createPbuffer(const SurfaceConfig& wish) const {
     if (auto size = checkSize("EGL", wish, display_->maxSurfaceSize); !size) return size.error();
     auto config = chooseConfig(wish);
     if (!config) return config.error();
@@ -193,7 +199,41 @@ Result<std::unique_ptr<Surface>> EglPlatform::createSurface(const SurfaceConfig&
     if (width != wish.width || height != wish.height)
         return Error{"EGL made a pbuffer of " + std::to_string(width) + "x" + std::to_string(height) +
                      " instead of " + what + ": draw a smaller picture"};
-    return std::unique_ptr<Surface>(std::move(surface));
+    return surface;
+}
+
+Result<void> EglPlatform::clear(const EglSurface& surface) {
+    auto context = clearing_.find(surface.config(), display_->noConfigContext, [this](const ContextConfig& c) { return createContext(c, nullptr); });
+    if (!context) return context.error();
+    const EglFunctions& egl = display_->egl;
+    auto* clearing = static_cast<EglContext*>(*context);
+    // Handles of what is current, which may be gone as objects (EglLeftOvers).
+    const EGLContext before = egl.getCurrentContext();
+    const EGLSurface draw = egl.getCurrentSurface(EGL_DRAW), read = egl.getCurrentSurface(EGL_READ);
+    egl.bindApi(clearing->api());
+    if (!egl.makeCurrent(display_->display, surface.handle(), surface.handle(), clearing->handle())) {
+        const std::string why = takeEglError(egl);
+        egl.bindApi(currentApi_);
+        return Error{"EGL can't clear a new pbuffer: " + why + "; see mural doctor"};
+    }
+    clearCurrentSurface(*this, surface.config(), surface.colorBuffers());
+    if (before == EGL_NO_CONTEXT && !display_->mesa) { // stays current until others are (EglLeftOvers)
+        currentApi_ = clearing->api();
+        return {};
+    }
+    // A release acts on the API that is bound.
+    if (before != EGL_NO_CONTEXT) egl.bindApi(currentApi_);
+    if (!egl.makeCurrent(display_->display, draw, read, before))
+        return Error{"EGL can't make the context current again after clearing a pbuffer: " + takeEglError(egl) + "; see mural doctor"};
+    egl.bindApi(currentApi_);
+    return {};
+}
+
+Result<std::unique_ptr<Surface>> EglPlatform::createSurface(const SurfaceConfig& wish) {
+    auto surface = createPbuffer(wish);
+    if (!surface) return surface.error();
+    if (auto cleared = clear(**surface); !cleared) return cleared.error();
+    return std::unique_ptr<Surface>(std::move(*surface));
 }
 
 Result<std::unique_ptr<Context>> EglPlatform::createContext(const ContextConfig& wish, Context* shareWith) {
@@ -204,7 +244,7 @@ Result<std::unique_ptr<Context>> EglPlatform::createContext(const ContextConfig&
     if (!display_->surfaceless) {
         SurfaceConfig small = wish.surface;
         small.width = small.height = 1;
-        auto made = createSurface(small);
+        auto made = createPbuffer(small);
         if (!made) return made.error();
         dummy = std::move(made.value());
     }

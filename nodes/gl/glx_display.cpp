@@ -24,7 +24,8 @@ Result<void> loadFunctions(GlxFunctions& f) {
         glx->load(f.createPbuffer, "glXCreatePbuffer") && glx->load(f.destroyContext, "glXDestroyContext") &&
         glx->load(f.destroyPbuffer, "glXDestroyPbuffer") &&
         glx->load(f.getFbConfigAttrib, "glXGetFBConfigAttrib") && glx->load(f.getFbConfigs, "glXGetFBConfigs") &&
-        glx->load(f.getCurrentContext, "glXGetCurrentContext") &&
+        glx->load(f.getCurrentContext, "glXGetCurrentContext") && glx->load(f.getCurrentDrawable, "glXGetCurrentDrawable") &&
+        glx->load(f.getCurrentReadDrawable, "glXGetCurrentReadDrawable") &&
         glx->load(f.getProcAddress, "glXGetProcAddressARB") &&
         glx->load(f.makeContextCurrent, "glXMakeContextCurrent") &&
         glx->load(f.queryDrawable, "glXQueryDrawable") && glx->load(f.queryExtension, "glXQueryExtension") &&

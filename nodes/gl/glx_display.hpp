@@ -28,6 +28,8 @@ struct GlxFunctions {
     decltype(&glXGetFBConfigAttrib) getFbConfigAttrib = nullptr;
     decltype(&glXGetFBConfigs) getFbConfigs = nullptr;
     decltype(&glXGetCurrentContext) getCurrentContext = nullptr;
+    decltype(&glXGetCurrentDrawable) getCurrentDrawable = nullptr;
+    decltype(&glXGetCurrentReadDrawable) getCurrentReadDrawable = nullptr;
     decltype(&glXGetProcAddressARB) getProcAddress = nullptr;
     decltype(&glXMakeContextCurrent) makeContextCurrent = nullptr;
     decltype(&glXQueryDrawable) queryDrawable = nullptr;

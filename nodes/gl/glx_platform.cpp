@@ -10,11 +10,19 @@
 #include "nodes/gl/epoxy_functions.hpp"
 #include "nodes/gl/gl_info.hpp"
 #include "nodes/gl/glx_display.hpp"
+#include "nodes/gl/surface_clear.hpp"
 
 namespace mural::gl {
 namespace {
 
 using SharedDisplay = std::shared_ptr<GlxDisplayState>;
+
+// What is destroyed is not current any more: clear() binds again what was current before it.
+void release(const GlxDisplayState& display) {
+    XErrorTrap trap(display);
+    display.glx.makeContextCurrent(display.display, 0, 0, nullptr);
+    (void)trap.take();
+}
 
 class GlxSurface final : public Surface {
 public:
@@ -22,7 +30,11 @@ public:
         : display_(std::move(display)), handle_(handle), config_(config) {}
     GlxSurface(const GlxSurface&) = delete;
     GlxSurface& operator=(const GlxSurface&) = delete;
-    ~GlxSurface() override { display_->glx.destroyPbuffer(display_->display, handle_); }
+    ~GlxSurface() override {
+        const GlxFunctions& glx = display_->glx;
+        if (glx.getCurrentDrawable() == handle_ || glx.getCurrentReadDrawable() == handle_) release(*display_);
+        glx.destroyPbuffer(display_->display, handle_);
+    }
 
     [[nodiscard]] const SurfaceConfig& config() const override { return config_; }
     [[nodiscard]] ColorBuffers colorBuffers() const override { return ColorBuffers::FrontAndBack; }
@@ -40,7 +52,10 @@ public:
         : display_(std::move(display)), handle_(handle), tellsReset_(tellsReset), dummy_(std::move(dummy)) {}
     GlxContext(const GlxContext&) = delete;
     GlxContext& operator=(const GlxContext&) = delete;
-    ~GlxContext() override { display_->glx.destroyContext(display_->display, handle_); }
+    ~GlxContext() override {
+        if (display_->glx.getCurrentContext() == handle_) release(*display_);
+        display_->glx.destroyContext(display_->display, handle_);
+    }
 
     [[nodiscard]] GLXContext handle() const { return handle_; }
     [[nodiscard]] bool tellsReset() const override { return tellsReset_; }
@@ -77,12 +92,16 @@ private:
         SurfaceConfig bits;
     };
     Result<Chosen> chooseConfig(const SurfaceConfig& wish) const;
+    // Its contents are undefined.
     Result<std::unique_ptr<GlxSurface>> createPbuffer(const SurfaceConfig& wish);
+    // What is current stays current.
+    Result<void> clear(const GlxSurface& surface);
     Result<void> checkSupport(const ContextConfig& wish) const;
     std::vector<int> contextAttributes(const ContextConfig& wish) const;
 
     SharedDisplay display_;
     std::string renderer_, version_;
+    ClearingContexts clearing_;
 };
 
 Result<GlxPlatform::Chosen> GlxPlatform::chooseConfig(const SurfaceConfig& wish) const {
@@ -117,7 +136,24 @@ Result<std::unique_ptr<GlxSurface>> GlxPlatform::createPbuffer(const SurfaceConf
 Result<std::unique_ptr<Surface>> GlxPlatform::createSurface(const SurfaceConfig& wish) {
     auto surface = createPbuffer(wish);
     if (!surface) return surface.error();
+    if (auto cleared = clear(**surface); !cleared) return cleared.error();
     return std::unique_ptr<Surface>(std::move(surface.value()));
+}
+
+Result<void> GlxPlatform::clear(const GlxSurface& surface) {
+    auto context = clearing_.find(surface.config(), display_->noConfigContext, [this](const ContextConfig& c) { return createContext(c, nullptr); });
+    if (!context) return context.error();
+    const GlxFunctions& glx = display_->glx;
+    const GLXContext before = glx.getCurrentContext();
+    const GLXDrawable draw = glx.getCurrentDrawable(), read = glx.getCurrentReadDrawable();
+    const auto failed = [](const std::string& why) { return Error{"GLX can't clear a new pbuffer: " + (why.empty() ? "no reason given" : why) + "; use --gl egl"}; };
+    XErrorTrap trap(*display_);
+    if (!glx.makeContextCurrent(display_->display, surface.handle(), surface.handle(), static_cast<GlxContext*>(*context)->handle())) return failed(trap.take());
+    clearCurrentSurface(*this, surface.config(), surface.colorBuffers());
+    if (!glx.makeContextCurrent(display_->display, draw, read, before)) return failed(trap.take());
+    // A front that is flushed into a pixmap of another depth is an X error, and cleared (Mesa's software driver, alpha on a screen of depth 24).
+    (void)trap.take();
+    return {};
 }
 
 Result<void> GlxPlatform::checkSupport(const ContextConfig& wish) const {

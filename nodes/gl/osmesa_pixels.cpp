@@ -114,6 +114,9 @@ OsmesaPixels::OsmesaPixels(decltype(&OSMesaGetProcAddress) find) {
     load(find, gl_.genFramebuffers, "glGenFramebuffers");
     load(find, gl_.framebufferTexture2D, "glFramebufferTexture2D");
     load(find, gl_.clearBufferfv, "glClearBufferfv");
+    load(find, gl_.clearBufferiv, "glClearBufferiv");
+    load(find, gl_.depthMask, "glDepthMask");
+    load(find, gl_.stencilMaskSeparate, "glStencilMaskSeparate");
     load(find, gl_.colorMaski, "glColorMaski");
     load(find, gl_.getBooleani, "glGetBooleani_v");
     load(find, gl_.enablei, "glEnablei");
@@ -160,14 +163,28 @@ void OsmesaPixels::restore(const SurfaceConfig& config, bool compatibility, cons
     restorePlane(config, GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT, pixels.depthStencil);
 }
 
-void OsmesaPixels::clearOpaque(bool compatibility) const {
+void OsmesaPixels::clearNew(const SurfaceConfig& config, bool compatibility, GLfloat alpha) const {
     const NeutralState neutral(*this, compatibility);
     GLboolean mask[4] = {GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE};
     gl_.getBooleani(GL_COLOR_WRITEMASK, 0, mask);
     gl_.colorMaski(0, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    const GLfloat opaque[4] = {0, 0, 0, 1};
-    gl_.clearBufferfv(GL_COLOR, 0, opaque);
+    const GLfloat black[4] = {0, 0, 0, alpha};
+    gl_.clearBufferfv(GL_COLOR, 0, black);
     gl_.colorMaski(0, mask[0], mask[1], mask[2], mask[3]);
+    const GLint deep = get(GL_DEPTH_WRITEMASK), front = get(GL_STENCIL_WRITEMASK), back = get(GL_STENCIL_BACK_WRITEMASK);
+    const GLfloat nearest = 0;
+    const GLint zero = 0;
+    if (config.depth > 0) {
+        gl_.depthMask(GL_TRUE);
+        gl_.clearBufferfv(GL_DEPTH, 0, &nearest);
+        gl_.depthMask(deep ? GL_TRUE : GL_FALSE);
+    }
+    if (config.stencil > 0) {
+        gl_.stencilMaskSeparate(GL_FRONT_AND_BACK, ~0U);
+        gl_.clearBufferiv(GL_STENCIL, 0, &zero);
+        gl_.stencilMaskSeparate(GL_FRONT, static_cast<GLuint>(front));
+        gl_.stencilMaskSeparate(GL_BACK, static_cast<GLuint>(back));
+    }
 }
 
 void OsmesaPixels::restorePlane(const SurfaceConfig& config,

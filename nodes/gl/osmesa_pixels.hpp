@@ -30,8 +30,8 @@ public:
     // Both: a context is current with a framebuffer of these bits. compatibility: not a core profile.
     SavedPixels save(const SurfaceConfig& config, bool compatibility) const;
     void restore(const SurfaceConfig& config, bool compatibility, const SavedPixels& pixels) const;
-    // Black with an alpha of 1.
-    void clearOpaque(bool compatibility) const;
+    // Colours, depth and stencil 0, alpha as given, whatever the context's masks are.
+    void clearNew(const SurfaceConfig& config, bool compatibility, GLfloat alpha) const;
 
 private:
     struct Functions {
@@ -42,6 +42,7 @@ private:
         PFNGLGENFRAMEBUFFERSPROC genFramebuffers;
         PFNGLFRAMEBUFFERTEXTURE2DPROC framebufferTexture2D;
         PFNGLCLEARBUFFERFVPROC clearBufferfv;
+        PFNGLCLEARBUFFERIVPROC clearBufferiv;
         PFNGLCOLORMASKIPROC colorMaski;
         PFNGLGETBOOLEANI_VPROC getBooleani;
         PFNGLENABLEIPROC enablei;
@@ -49,6 +50,7 @@ private:
         PFNGLISENABLEDIPROC isEnabledi;
         void (*bindTexture)(GLenum, GLuint);
         void (*deleteTextures)(GLsizei, const GLuint*);
+        void (*depthMask)(GLboolean);
         void (*disable)(GLenum);
         void (*drawBuffer)(GLenum);
         void (*enable)(GLenum);
@@ -59,6 +61,7 @@ private:
         void (*pixelStorei)(GLenum, GLint);
         void (*pixelTransferf)(GLenum, GLfloat);
         void (*readBuffer)(GLenum);
+        void (*stencilMaskSeparate)(GLenum, GLuint);
         void (*readPixels)(GLint, GLint, GLsizei, GLsizei, GLenum, GLenum, void*);
         void (*texImage2D)(GLenum, GLint, GLint, GLsizei, GLsizei, GLint, GLenum, GLenum, const void*);
     };

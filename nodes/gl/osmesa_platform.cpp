@@ -90,7 +90,8 @@ public:
     OsmesaSurface(const SurfaceConfig& config, const ColorFormat& format) : config_(config) {
         const size_t sizeBytes = static_cast<size_t>(config.width) * static_cast<size_t>(config.height) *
                                  static_cast<size_t>(format.bytesPerPixel);
-        // Not cleared: OSMesa only writes it, and only when GL is flushed; a big one costs nothing until then.
+        // Not cleared: OSMesa only writes it, and only when GL is flushed; a big one costs nothing until then. What is drawn and
+        // read lies in the context's own buffers, which bind() clears.
         memory_ = std::shared_ptr<std::byte[]>(new std::byte[sizeBytes]);
     }
     OsmesaSurface(const OsmesaSurface&) = delete;
@@ -194,8 +195,8 @@ Result<void> OsmesaContext::bind(OsmesaSurface* surface) {
     if (surface->saved_.valid) {
         state_->pixels.restore(surface->config(), compatibility(), surface->saved_);
         surface->saved_ = {};
-    } else if (surface->hiddenAlpha()) {
-        state_->pixels.clearOpaque(compatibility());
+    } else {
+        state_->pixels.clearNew(surface->config(), compatibility(), surface->hiddenAlpha() ? 1.0F : 0.0F);
     }
     return {};
 }

@@ -210,6 +210,7 @@ CaptureCounts CaptureMemory::counts() const {
     c.differingPixels = shared_->differingPixels.load();
     c.squaredDifference = shared_->squaredDifference.load();
     c.largestDifference = shared_->largestDifference.load();
+    for (uint32_t i = 0; i < capture::kUncomparedReasons; ++i) c.uncomparedFrames[i] = shared_->uncomparedFrames[i].load();
     c.callsUnsupported = shared_->callsUnsupported.load();
     c.roundTrips = shared_->roundTrips.load();
     for (uint32_t i = 0; i < capture::kWaits; ++i) c.waitNs[i] = shared_->waitNs[i].load();

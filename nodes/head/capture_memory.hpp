@@ -26,6 +26,7 @@ struct CaptureCounts {
     uint64_t differingPixels = 0;
     uint64_t squaredDifference = 0;
     uint32_t largestDifference = 0;
+    std::array<uint64_t, capture::kUncomparedReasons> uncomparedFrames{}; // by capture::Uncompared
     uint64_t callsUnsupported = 0;
     uint64_t roundTrips = 0;
     std::map<std::string, uint64_t> tripsBy; // command → round trips that it caused

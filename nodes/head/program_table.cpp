@@ -200,6 +200,7 @@ void ProgramTable::addCounts(CaptureCounts& sum, const CaptureCounts& counts) {
     sum.differingPixels += counts.differingPixels;
     sum.squaredDifference += counts.squaredDifference;
     sum.largestDifference = std::max(sum.largestDifference, counts.largestDifference);
+    for (size_t i = 0; i < counts.uncomparedFrames.size(); ++i) sum.uncomparedFrames[i] += counts.uncomparedFrames[i];
     sum.callsUnsupported += counts.callsUnsupported;
     sum.roundTrips += counts.roundTrips;
     for (size_t i = 0; i < counts.waitNs.size(); ++i) sum.waitNs[i] += counts.waitNs[i];

@@ -57,6 +57,26 @@ Json waitSecondsOf(const CaptureCounts& counts) {
     return seconds;
 }
 
+std::string reasonText(capture::Uncompared reason) {
+    switch (reason) {
+    case capture::Uncompared::NoContext: return "swapped without a current context";
+    case capture::Uncompared::NotBindable: return "window not current";
+    case capture::Uncompared::Front: return "front buffer";
+    case capture::Uncompared::NoSize: return "window size unknown";
+    case capture::Uncompared::NoMemory: return "out of memory";
+    case capture::Uncompared::NotReadable: return "own picture not readable";
+    case capture::Uncompared::NoAnswer: break;
+    }
+    return "no answer from the nodes";
+}
+
+Json uncomparedJson(const CaptureCounts& counts) {
+    Json reasons = Json::object();
+    for (uint32_t i = 0; i < capture::kUncomparedReasons; ++i)
+        if (counts.uncomparedFrames[i] > 0) reasons[reasonText(static_cast<capture::Uncompared>(i))] = counts.uncomparedFrames[i];
+    return reasons;
+}
+
 Json queuesJson(const std::vector<QueueTotals>& queues) {
     if (queues.empty()) return nullptr;
     Json list = Json::array();
@@ -121,6 +141,8 @@ Json reportOf(const SessionNumbers& n) {
         {"differingPixels", n.programs.differingPixels},
         {"squaredDifference", n.programs.squaredDifference},
         {"largestDifference", n.programs.largestDifference},
+        {"uncomparedFrames", std::accumulate(n.programs.uncomparedFrames.begin(), n.programs.uncomparedFrames.end(), uint64_t{0})},
+        {"uncomparedFramesBy", uncomparedJson(n.programs)},
         {"drawnWhole", n.drawnWhole},
         {"callsUnsupported", n.programs.callsUnsupported},
         {"savedPictures", n.output.savedPictures},

@@ -66,6 +66,8 @@ nlohmann::json reportOf(const SessionNumbers& numbers);
 
 // "room", "frames", "answer", "window", "nothing".
 std::string waitName(capture::Wait wait);
+// "front buffer", …: why `--verify` could not compare a frame.
+std::string reasonText(capture::Uncompared reason);
 nlohmann::json waitSecondsOf(const CaptureCounts& counts); // {"room": 0.5, …}
 
 // Frames per second and bytes per frame of the last second or so. One thread.

@@ -156,6 +156,7 @@ bool Replay::bindStream(Stream& s) {
     boundRead_ = s.read;
     s.context->draw = s.draw;
     s.context->read = s.read;
+    if (s.draw) s.draw->drawer = s.context;
     // Another thread's context: it is still current there, as the one before is in its own.
     if (!bindSurfaces(gl::HeldBack::Kept)) {
         c_ = none_.get();

@@ -188,6 +188,7 @@ public:
 #include "replay_custom.inc"
 
 private:
+    struct ContextState;
     // How far a frame of a window is that nodes share by ranges.
     struct RangeFrame {
         enum class Phase : uint8_t {
@@ -222,6 +223,7 @@ private:
         bool lean = false;      // the framebuffer has the region's size
         bool widens = true;     // to the window's size, when that is needed; not when that has failed
         wire::WindowConfig config{};
+        ContextState* drawer = nullptr; // the context that was current with it for drawing last; null: it is gone
         std::unique_ptr<gl::Surface> surface;
         std::unique_ptr<gl::Surface> front;  // where surfaces have one colour buffer: the front, once it is used
         bool frontStale = false;             // its colours have to come from `surface`
@@ -474,8 +476,6 @@ private:
     bool ownMakeCurrent(Args& in);
     bool ownWindow(Args& in);
     void takeBitsOfSurface(Window& w);
-    bool ownSwap(Args& in, bool front);
-    void waitUntilDrawn();
     bool ownClientArrays(Args& in);
     bool ownProgramLayout(Args& in);
     bool ownBufferBytes(Args& in);
@@ -483,6 +483,13 @@ private:
     void copyIntoBuffer(GLenum target, uint64_t offset, std::span<const std::byte> bytes);
     bool ownFillWindow(Args& in);
     void setArrayPointer(const client_arrays::ArrayRecord& a, const std::byte* first);
+    // replay_swaps.cpp
+    void waitUntilDrawn();
+    [[nodiscard]] ContextState* contextFor(const Client& client, const Window& w) const;
+    [[nodiscard]] bool mustBindForSwap(const Window& w, uint32_t frame, bool front) const;
+    bool ownSwap(Args& in, bool front);
+    void swapUnbound(Window& w, ContextState& drawer, uint32_t id, uint32_t frame, bool front);
+    void showWindow(Window* window, uint32_t id, uint32_t frame, bool front);
     // replay_reads.cpp
     bool ownRequestPixels(Args& in);
     bool ownRequestTexImage(Args& in);
@@ -492,6 +499,7 @@ private:
     void readBuffer(GLuint ours, uint64_t offset);
     void answerBytes(uint32_t request, wire::AnswerKind kind, std::span<const std::byte> bytes);
     enum class Beyond : uint8_t { Black, Nothing }; // what may lie there that is read
+    [[nodiscard]] bool isAnswering();
     const std::byte* readRegion(const PixelViewport& r, GLenum format, GLenum type, size_t bytes, Beyond beyond = Beyond::Black);
     const std::byte* readShown(Window& w, const PixelViewport& r, bool front);
     [[nodiscard]] bool resolves(const Window& w) const;

@@ -1,10 +1,8 @@
-// Mural's own records: contexts, windows, frames, client memory.
+// Mural's own records: contexts, windows, client memory. Frames: replay_swaps.cpp.
 #include <cstring>
 #include <utility>
 
-#include "common/clock.hpp"
 #include "nodes/gl/config_match.hpp"
-#include "nodes/replay/pass_place.hpp"
 #include "nodes/replay/replay.hpp"
 #include "nodes/replay/window_use.hpp"
 #include "streamcodec/context_flags.hpp"
@@ -15,7 +13,6 @@ namespace mural {
 namespace {
 // More than any record takes (72 spans of client arrays): empty blobs must not pile up either.
 constexpr size_t kMaxBlobs = 256;
-constexpr int64_t kPatientFrames = 60; // for a full clear
 } // namespace
 
 gl::SurfaceConfig Replay::surfaceConfig(const wire::WindowConfig& c, int width, int height) const {
@@ -236,83 +233,6 @@ void Replay::takeBitsOfSurface(Window& w) {
     w.config.samples = static_cast<uint8_t>(there.samples);
     if (differs == std::exchange(toldBits_, differs)) return;
     out_.log("its GL has no framebuffer like the program's window, which is drawn with " + differs + ": pixels may differ from the native picture's");
-}
-
-// By a fence where there are any: at glFinish Mesa copies the whole picture of a framebuffer with one colour
-// buffer to a window that is not there (measured: a quarter of this thread's time at 800x600).
-void Replay::waitUntilDrawn() {
-    constexpr GLuint64 kPatienceNs = 60'000'000'000;
-    if (!bound_) return;
-    const GLsync drawn = hasFences(*bound_) ? gl.glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0) : nullptr;
-    const GLenum state = drawn ? gl.glClientWaitSync(drawn, GL_SYNC_FLUSH_COMMANDS_BIT, kPatienceNs) : GL_WAIT_FAILED;
-    if (drawn) gl.glDeleteSync(drawn);
-    const bool done = state == GL_ALREADY_SIGNALED || state == GL_CONDITION_SATISFIED;
-    if (!done && gl.glFinish) gl.glFinish();
-}
-
-bool Replay::ownSwap(Args& in, bool front) {
-    const auto window = in.get<uint32_t>(), frame = in.get<uint32_t>();
-    if (!in.ok()) return false;
-    auto& windows = clients_[wire::clientOf(stream_)].windows;
-    const auto it = windows.find(window);
-    ReplayOutputs::Frame f{};
-    f.sound = true;
-    f.client = wire::clientOf(stream_);
-    f.window = window;
-    f.frame = frame;
-    f.drawnWhole = bound_ && bound_->shared && bound_->shared->allDrawn;
-    ++counts_.frames;
-    Window* ours = nullptr; // whose pixels can be had
-    if (it != windows.end()) {
-        Window& w = *it->second;
-        if (takesRanges()) rangeDrawn(w);
-        f.notSplit = takesRanges() && !w.range.wasSplit;
-        f.config = w.config;
-        f.region = drawsOtherPixels() && !w.region.empty() ? inShown(config_.pass, w.part) : regionOf(w, front);
-        f.picture = drawsOtherPixels() ? inShown(config_.pass, w.whole) : w.whole;
-        f.keepsPicture = keepsTurn(w);
-        f.areas = moves() ? w.moving.areas->number : 0;
-        f.shares = w.range.drawnBy;
-        f.keepsAreas = moves() && w.moving.areas != areas_ && ++w.moving.waits >= kPatientFrames;
-        f.sound = isSound(w, front);
-        if (!front && f.sound) w.frontStaled = false;
-        showedUnsound_ = showedUnsound_ || (!f.sound && !w.skipped && w.begun);
-        // The thread that swaps need not be the one that has drawn: GLX takes any window.
-        if (bound_ && &w == boundDraw_ && w.surface) ours = &w, f.pixels = [this, &w, front](const PixelViewport& r) {
-            ContextState* const own = std::exchange(c_, bound_);
-            const bool zoomed = (w.plain ? Zoom{} : config_.pass.zoom) != config_.pass.shown && !r.empty();
-            const std::byte* pixels = zoomed ? readScaled(w, r, front) : hasKernel() && w.plain && !r.empty() ? readEveryNth(w, r, front) : readShown(w, r, front);
-            c_ = own;
-            return pixels;
-        };
-        // What this GL can't make is said, and black: the frame is one all the same.
-        else if (!bound_ || !w.surface) f.pixels = [black = std::vector<std::byte>()](const PixelViewport& r) mutable {
-            black.assign(static_cast<size_t>(r.area()) * 4, std::byte{0});
-            return static_cast<const std::byte*>(black.data());
-        };
-    }
-    if (it != windows.end() && bound_) flushIfAsked(*it->second);
-    // A frame counts when it is drawn, not when it is queued: pacing and frame rates depend on it.
-    // A picture that is read later comes then, and the frame counts with it.
-    const bool shown = frame != wire::kUnseenFrame;
-    const bool later = shown && ours && readsLater(*ours, f.region);
-    const int64_t beganNs = monotonicNowNs();
-    if (!skips_ && !later) waitUntilDrawn();
-    tellTroubles();
-    bool read = false;
-    if (f.pixels) f.read = [&]() -> std::unique_ptr<PictureRead> {
-        read = true;
-        std::unique_ptr<PictureRead> picture = later ? readLater(*ours, f.region, front) : nullptr;
-        if (!picture) picture = readAtOnce(f, f.region);
-        if (ours && config_.readback == Readback::Auto) ours->readback.took(monotonicNowNs() - beganNs);
-        return picture;
-    };
-    if (shown) out_.frameDone(f);
-    if (later && !read) waitUntilDrawn(); // nobody has
-    answerAskedAhead();
-    if (it != windows.end()) turnDrawn(*it->second, front);
-    if (it != windows.end() && it->second->front && !front) showBack(*it->second);
-    return true;
 }
 
 bool Replay::ownClientArrays(Args& in) {

@@ -32,7 +32,7 @@ bool Replay::readsLater(const Window& w, const PixelViewport& region) {
     if (config_.readback == Readback::Auto && !w.readback.later()) return false;
     if ((!config_.pass.zoom.none() && !w.plain) || (hasKernel() && w.plain)) return false;
     const bool buffers = gl.glGenBuffers && gl.glBindBuffer && gl.glBufferData && gl.glMapBufferRange && gl.glUnmapBuffer && gl.glFlush;
-    return buffers && hasFences(*bound_) && laterReads();
+    return buffers && hasFences(*bound_) && isAnswering() && laterReads();
 }
 
 std::unique_ptr<PictureRead> Replay::readAtOnce(const ReplayOutputs::Frame& f, const PixelViewport& r) {

@@ -9,6 +9,13 @@
 
 namespace mural {
 
+// Between glBegin and glEnd, and in a lost context, GL answers nothing and a read leaves memory as it is.
+bool Replay::isAnswering() {
+    GLint alignment = 0;
+    gl.glGetIntegerv(GL_PACK_ALIGNMENT, &alignment);
+    return alignment != 0;
+}
+
 // The read framebuffer is the program's; pack state and pack buffer are set aside.
 const std::byte* Replay::readRegion(const PixelViewport& r, GLenum format, GLenum type, size_t bytes, Beyond beyond) {
     const size_t room = into_ ? 1 : std::max<size_t>(bytes, 1);
@@ -21,7 +28,10 @@ const std::byte* Replay::readRegion(const PixelViewport& r, GLenum format, GLenu
     const bool window = readsLean() && c_->readFramebuffer == 0;
     const PixelViewport o = window ? c_->read->region : PixelViewport{};
     const int32_t planted = config_.plant == "shift" && c_->readFramebuffer == 0 && r.x > 0 ? 1 : 0;
+    const bool fresh = beyond == Beyond::Nothing && !into_; // the memory still holds an earlier picture, of any program
+    const bool answering = !fresh || isAnswering();
     gl.glReadPixels(r.x - o.x - planted, r.y - o.y, r.w, r.h, format, type, into_ ? nullptr : pixels_.data());
+    if (fresh && (!answering || gl.glGetError() != GL_NO_ERROR)) std::ranges::fill(pixels_, std::byte{0});
     packTightly(false);
     if (into_ || c_->packBuffer) gl.glBindBuffer(GL_PIXEL_PACK_BUFFER, c_->packBuffer);
     return pixels_.data();

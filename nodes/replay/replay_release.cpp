@@ -55,6 +55,8 @@ void Replay::freeDestroyed(Client& client) {
         }
         if (bound_ == c) unbindPlatform();
         if (c_ == c) c_ = none_.get();
+        for (auto& [id, w] : client.windows)
+            if (w->drawer == c) w->drawer = nullptr;
         it = client.contexts.erase(it);
     }
     for (auto it = client.windows.begin(); it != client.windows.end();) {

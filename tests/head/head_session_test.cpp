@@ -383,6 +383,8 @@ TEST(HeadSession, aProgramThatEndsIsDrainedAndItsContextsFreed) {
         id = program.welcome().clientId;
         program.header()->verifiedFrames = 3;
         program.header()->largestDifference = 9;
+        program.header()->uncomparedFrames[static_cast<uint32_t>(capture::Uncompared::Front)] = 2;
+        program.header()->uncomparedFrames[static_cast<uint32_t>(capture::Uncompared::NoAnswer)] = 1;
         ASSERT_TRUE(swapFrames(program, 1, 12));
         program.disconnect();
     }
@@ -392,6 +394,8 @@ TEST(HeadSession, aProgramThatEndsIsDrainedAndItsContextsFreed) {
     EXPECT_EQ(report["frames"], 12);
     EXPECT_EQ(report["verifiedFrames"], 3);
     EXPECT_EQ(report["largestDifference"], 9);
+    EXPECT_EQ(report["uncomparedFrames"], 3);
+    EXPECT_EQ(report["uncomparedFramesBy"], (nlohmann::json{{"front buffer", 2}, {"no answer from the nodes", 1}}));
     const auto packets = head.node(1).packets();
     const std::vector<uint32_t> gone{static_cast<uint32_t>(wire::HeadCommand::ClientGone), id};
     EXPECT_EQ(packets[packets.size() - 2].words, gone);

@@ -45,6 +45,12 @@ TEST(Report, saysWhatDiffersAndWhoWasLost) {
                                          "node 1 was lost after 12 frames"}));
 }
 
+TEST(Report, saysWhatWasNotVerified) {
+    const HeadEvent e = event(R"({"event":"report","frames":9,"seconds":1,"framesPerSecond":9,"bytesPerFrame":120,"uncomparedFrames":3,)"
+                              R"("uncomparedFramesBy":{"front buffer":2,"window not current":1}})");
+    EXPECT_EQ(reportLines(e.report).back(), "not verified: 3 frames (front buffer 2, window not current 1)");
+}
+
 TEST(Report, saysWhatTheNodesWereSpared) {
     const HeadEvent e = event(R"({"event":"report","frames":10,"seconds":1,"framesPerSecond":9,"bytesPerFrame":120,)"
                               R"("economy":{"records":1000,"rawBytes":50000,"stagedBytes":3000,"wireBytes":1200,"storeHits":90,"newPages":10,"encodeSeconds":0.0003,"heldRecords":7,"leftOutRecords":5,"leftOutBytes":4096}})");

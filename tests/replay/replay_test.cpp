@@ -240,6 +240,51 @@ TEST_F(ReplayTest, AWindowMayChangeUnderAnotherThreadsContext) {
     begin(1);
 }
 
+// GLX: one context draws into two windows, and swaps both while one is current.
+TEST_F(ReplayTest, showsAWindowThatIsNotCurrent) {
+    begin();
+    wire::WindowConfig c{};
+    c.width = 16;
+    c.height = 8;
+    c.doubleBuffer = 1;
+    records::window(t_, 2, c);
+    records::makeCurrent(t_, 1, 2, 2);
+    encode_glClear(t_, GL_COLOR_BUFFER_BIT);
+    records::makeCurrent(t_, 1, 1, 1);
+    encode_glClear(t_, GL_COLOR_BUFFER_BIT);
+    records::swap(t_, 2, 1);
+    EXPECT_TRUE(send());
+    EXPECT_EQ(frame_.window, 2u);
+    EXPECT_EQ(pictureBytes_, 16 * 8 * 4);
+    encode_glClear(t_, GL_COLOR_BUFFER_BIT);
+    records::swap(t_, 1, 2);
+    EXPECT_TRUE(send());
+    EXPECT_EQ(frame_.window, 1u);
+    EXPECT_EQ(pictureBytes_, 64 * 32 * 4);
+    EXPECT_EQ(log_, "");
+}
+
+// The context that drew there may be gone, and the swap come from a thread that never had one.
+TEST_F(ReplayTest, showsAWindowWhoseContextIsGone) {
+    begin();
+    encode_glClear(t_, GL_COLOR_BUFFER_BIT);
+    wire::WindowConfig c{};
+    c.width = 16;
+    c.height = 8;
+    records::createContext(t_, {2, 0, 0, 4, 5, 0, 0, c});
+    records::window(t_, 2, c);
+    records::makeCurrent(t_, 2, 2, 2);
+    records::destroyContext(t_, 1);
+    EXPECT_TRUE(send(1));
+    records::swap(t_, 1, 1);
+    EXPECT_TRUE(send(2));
+    EXPECT_EQ(frame_.window, 1u);
+    EXPECT_EQ(pictureBytes_, 64 * 32 * 4);
+    records::swap(t_, 2, 2);
+    EXPECT_TRUE(send(1));
+    EXPECT_EQ(pictureBytes_, 16 * 8 * 4);
+}
+
 TEST_F(ReplayTest, BlobsAreBounded) {
     start({.blobBytes = 1000});
     begin();

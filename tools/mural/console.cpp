@@ -57,6 +57,17 @@ void Console::progress(int64_t frame, double framesPerSecond, double bytesPerFra
     progressShown_ = terminal_;
 }
 
+namespace {
+
+// "not verified: 3 frames (front buffer 2, window not current 1)"
+std::string uncomparedText(const SessionReport& r) {
+    std::string reasons;
+    for (const auto& [reason, count] : r.uncomparedFramesBy) reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", reason, count);
+    return fmt::format("not verified: {} frame{}{}", r.uncomparedFrames, plural(r.uncomparedFrames), reasons.empty() ? "" : " (" + reasons + ")");
+}
+
+} // namespace
+
 std::vector<std::string> reportLines(const SessionReport& r) {
     std::vector<std::string> lines;
     std::string first = fmt::format("{} frame{} in {:.1f} s, {:.1f} frames/s, {} per frame to each node, {} round trip{}", r.frames, plural(r.frames),
@@ -92,6 +103,7 @@ std::vector<std::string> reportLines(const SessionReport& r) {
         if (r.squaredDifference > 0) line += fmt::format(", PSNR {:.1f} dB", 10 * std::log10(255.0 * 255 * 4 * static_cast<double>(r.verifiedPixels) / static_cast<double>(r.squaredDifference)));
         lines.push_back(line);
     }
+    if (r.uncomparedFrames > 0) lines.push_back(uncomparedText(r));
     if (r.savedPictures > 0) {
         lines.push_back(fmt::format("saved {} picture{}, the last in {}", r.savedPictures, plural(r.savedPictures), r.lastPicture));
     }

@@ -63,6 +63,15 @@ SwapReport swapsFrom(const Json& j) {
     return {whole(j, "members"), whole(j, "swaps"), real(j, "medianNs"), real(j, "p99Ns"), real(j, "mostNs"), real(j, "clockErrorNs")};
 }
 
+std::map<std::string, int64_t> countsFrom(const Json& j, const char* name) {
+    std::map<std::string, int64_t> counts;
+    const auto by = j.find(name);
+    if (by == j.end() || !by->is_object()) return counts;
+    for (const auto& [key, count] : by->items())
+        if (count.is_number()) counts[key] = count.get<int64_t>();
+    return counts;
+}
+
 SessionReport reportFrom(const Json& j) {
     SessionReport r;
     r.frames = whole(j, "frames");
@@ -71,15 +80,14 @@ SessionReport reportFrom(const Json& j) {
     r.bytesPerFrame = real(j, "bytesPerFrame");
     r.callsUnsupported = whole(j, "callsUnsupported");
     r.roundTrips = whole(j, "roundTrips");
-    if (const auto by = j.find("roundTripsBy"); by != j.end() && by->is_object()) {
-        for (const auto& [command, count] : by->items())
-            if (count.is_number()) r.roundTripsBy[command] = count.get<int64_t>();
-    }
+    r.roundTripsBy = countsFrom(j, "roundTripsBy");
     r.verifiedFrames = whole(j, "verifiedFrames");
     r.verifiedPixels = whole(j, "verifiedPixels");
     r.differingPixels = whole(j, "differingPixels");
     r.squaredDifference = whole(j, "squaredDifference");
     r.largestDifference = whole(j, "largestDifference");
+    r.uncomparedFrames = whole(j, "uncomparedFrames");
+    r.uncomparedFramesBy = countsFrom(j, "uncomparedFramesBy");
     r.savedPictures = whole(j, "savedPictures");
     r.lastPicture = text(j, "lastPicture");
     r.recording = text(j, "recording");

@@ -64,6 +64,8 @@ struct SessionReport {
     int64_t differingPixels = 0;
     int64_t squaredDifference = 0; // of all components, alpha among them
     int64_t largestDifference = 0;
+    int64_t uncomparedFrames = 0; // that `--verify` could not compare
+    std::map<std::string, int64_t> uncomparedFramesBy; // reason → how many
     int64_t savedPictures = 0;
     std::string lastPicture;
     std::string recording; // path; empty: none was made

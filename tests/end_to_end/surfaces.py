@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+"""Surfaces of programs: what new ones hold, which of them a swap shows, and what is shown while the program ends.
+
+The programs (tests/programs/surfaces) print what they read of OpenGL and of the X server. Each runs natively and through
+Mural, with --verify and with --display app: the lines, the status and the count of compared frames must be right.
+
+  surfaces.py --build build/release [--cases fresh_drawables] [--list]
+"""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+import failures
+import programs
+
+failures.CASES.clear()  # only those of this file
+MODES = {"verify": ["--verify"], "app": ["--display", "app"]}
+SIZE = "253x191"
+# glibc fills new memory of nodes with a pattern, which makes missing clears visible. New memory of programs holds 0, because
+# Mesa's EGL does not clear the surfaces of windows.
+OF_NODES = {"MALLOC_PERTURB_": "165"}
+OF_PROGRAMS = {"MALLOC_PERTURB_": "255"}
+
+
+def natively(context, program, wanted_status, environment):
+    """Returns the printed lines, or None after a wrong exit status.
+
+    OpenGL behind the end of main() works natively only where Mesa compiles no shader then. Its cache on disk has them after
+    another try.
+    """
+    for _ in range(4):
+        run = subprocess.run([context.program(program), "--size", SIZE], env={**programs.clean_environment(context.display), **environment}, stdin=subprocess.DEVNULL,
+                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=120, check=False)
+        if run.returncode == wanted_status:
+            return run.stdout.decode(errors="replace").splitlines()
+    return None
+
+
+def difference(wanted, got):
+    """The first line that differs."""
+    for number, line in enumerate(wanted):
+        if number >= len(got) or got[number] != line:
+            return "it printed \"%s\" instead of \"%s\"" % (got[number] if number < len(got) else "nothing", line)
+    return "it printed \"%s\" besides" % got[len(wanted)] if len(got) > len(wanted) else None
+
+
+def through_mural(context, program, mode, status, wanted, report_is_wrong, layout, environment):
+    with tempfile.TemporaryDirectory(prefix="mural-surfaces.") as folder:
+        report_file = os.path.join(folder, "report.json")
+        options = ["--tiles", layout, "--quiet", "--report", report_file] + MODES[mode]
+        command = ["env"] + ["%s=%s" % item for item in environment.items()] + [context.program(program), "--size", SIZE]
+        with context.run(command, options, OF_NODES) as run:
+            wrong = failures.check_end(run, status) or difference(wanted, run.standard_output)
+            if wrong is not None:
+                return "%s: %s" % (mode, wrong)
+        with open(report_file, encoding="utf-8") as file:
+            wrong = report_is_wrong(json.load(file), mode)
+    return "%s: %s" % (mode, wrong) if wrong else None
+
+
+def surfaces(program, frames, status=0, uncompared=None, layout="2x2", environment=None):
+    """uncompared: {reason: how many frames --verify can't compare}."""
+    def report_is_wrong(report, mode):
+        if report["frames"] < frames:
+            return "%d frames are on the wall instead of %d" % (report["frames"], frames)
+        if mode != "verify":
+            return None
+        if report["differingPixels"] != 0 or report["verifiedFrames"] == 0:
+            return "%d pixels of %d frames differ" % (report["differingPixels"], report["verifiedFrames"])
+        reasons = uncompared or {}
+        if report["uncomparedFramesBy"] != reasons or report["uncomparedFrames"] != sum(reasons.values()):
+            return "frames that were not compared: %s" % report["uncomparedFramesBy"]
+        return None
+
+    def check(context):
+        wanted = natively(context, program, status, environment or {})
+        if wanted is None:
+            return "it fails natively"
+        for mode in MODES:
+            wrong = through_mural(context, program, mode, status, wanted, report_is_wrong, layout, environment or {})
+            if wrong is not None:
+                return wrong
+        return None
+    check.__name__ = program
+    failures.case(check)
+
+
+surfaces("fresh_drawables", 40, uncompared={"window size unknown": 10}, environment=OF_PROGRAMS)
+surfaces("fresh_objects", 1, layout="2x1")
+surfaces("swaps_elsewhere", 12, uncompared={"front buffer": 2})
+surfaces("egl_surfaces", 8, uncompared={"window size unknown": 2}, environment=OF_PROGRAMS)
+surfaces("at_exit_glx", 9, status=9, layout="2x1")
+surfaces("at_exit_egl", 9, status=9, layout="2x1")
+surfaces("at_exit_es", 9, status=9, layout="2x1", uncompared={"own picture not readable": 6})
+
+if __name__ == "__main__":
+    sys.exit(failures.main())
