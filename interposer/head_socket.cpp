@@ -2,6 +2,8 @@
 
 #include <cerrno>
 #include <cstddef>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <sys/socket.h>
 #include <sys/time.h>
@@ -47,6 +49,18 @@ int connectByName(const char* name, bool isAbstract) {
     return connectTo(address, offsetof(sockaddr_un, sun_path) + length + 1);
 }
 
+// The socket as `mural run` sees it, where something is mounted over its folder here: session names are mural-PID-RANDOM.
+int connectByRoot(const char* session, const char* path) {
+    char seen[sizeof(sockaddr_un::sun_path)];
+    const long pid = std::strncmp(session, "mural-", 6) ? 0 : std::strtol(session + 6, nullptr, 10);
+    const int length = snprintf(seen, sizeof seen, "/proc/%ld/root%s", pid, path);
+    if (pid <= 0 || length >= static_cast<int>(sizeof seen)) {
+        errno = ENOENT;
+        return -1;
+    }
+    return connectByName(seen, false);
+}
+
 } // namespace
 
 int openHeadSocket() {
@@ -54,6 +68,7 @@ int openHeadSocket() {
     if (!launch.session) return -1;
     int fd = connectByName(launch.session, true);
     if (fd < 0 && launch.socketPath) fd = connectByName(launch.socketPath, false);
+    if (fd < 0 && launch.socketPath) fd = connectByRoot(launch.session, launch.socketPath);
     if (fd < 0)
         say("no head answers at session %s (%s): this program draws on its own. In a sandbox, let %s in", launch.session, std::strerror(errno),
             launch.socketPath ? launch.socketPath : "its network namespace");
