@@ -27,7 +27,7 @@ template <class F> struct Loaded {
     F* found = nullptr;
 
     F* get() {
-        if (F* known = __atomic_load_n(&found, __ATOMIC_RELAXED)) return known;
+        if (F* earlier = __atomic_load_n(&found, __ATOMIC_RELAXED)) return earlier;
         void* handle = loader::openLibrary(library, RTLD_LAZY | RTLD_NOLOAD);
         F* function = handle ? reinterpret_cast<F*>(loader::symbolIn(handle, name)) : nullptr;
         __atomic_store_n(&found, function, __ATOMIC_RELAXED);
