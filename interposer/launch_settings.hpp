@@ -15,7 +15,7 @@ struct LaunchSettings {
     const char* nativeFrames;
 };
 
-// Valid from the first call on; all fields stay null where MURAL_DISABLE is set, except those of `native`.
+// Valid from the first call on. MURAL_DISABLE leaves the first three fields null.
 const LaunchSettings& launchSettings();
 
 } // namespace mural

@@ -15,7 +15,7 @@ constexpr size_t kMaxEntries = 8192; // of an environment that is changed; the s
 constexpr char kLibrary[] = "libGLX_mural.so.0";
 constexpr char kFront[] = "libmural_front.so";
 
-// What this process was started with, as whole entries.
+// The capture's variables at the start of this process, as whole entries.
 struct Started {
     char preload[8192]; // our libraries in LD_PRELOAD, between blanks
     char session[256];

@@ -1,5 +1,5 @@
-// The environment of a program that this process executes. Without LD_PRELOAD in it, or without the session, the new
-// program would not be captured: what is missing is added.
+// The environment of a program that this process executes. LD_PRELOAD and the session are added where they are missing:
+// without them the new program would not be captured.
 #pragma once
 
 #include <cstddef>

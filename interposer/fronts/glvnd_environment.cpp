@@ -51,7 +51,7 @@ char* ourEglFile() {
     return path;
 }
 
-// Whether GLVND asks for its vendor; then `answer` is what it is told.
+// Whether GLVND asks for its vendor; `answer` is then the value for it.
 bool answersGlvnd(const char* name, const void* caller, char*& answer) {
     if (name[0] != '_' || name[1] != '_' || (std::strncmp(name, "__GLX_", 6) && std::strncmp(name, "__EGL_", 6))) return false;
     static char ourVendor[] = "mural";

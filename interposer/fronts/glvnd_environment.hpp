@@ -1,6 +1,6 @@
-// Which vendor libraries GLVND takes. `mural run` says so in the environment, where GLVND looks when the first display is
-// used: a program may have cleared or changed its environment by then. GLVND is therefore answered by this library
-// (getenv in glvnd_environment.cpp); the program itself sees its environment as it is.
+// The choice of GLVND's vendor libraries. `mural run` sets it in the environment, and GLVND reads it with the first display:
+// a program may have cleared or changed its environment by then. This library's own getenv therefore answers GLVND; the
+// program itself sees its environment as it is.
 #pragma once
 
 namespace mural {

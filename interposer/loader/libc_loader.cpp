@@ -46,8 +46,8 @@ void* nextFunction(const char* name) {
     return found;
 }
 
-// In all three the result is stored before it is returned: after a tail call the C library would take our caller for its
-// own, and the caller's place decides on RTLD_NEXT and on the search path.
+// These three store the result before they return it, which prevents a tail call. The C library looks at its caller for
+// RTLD_NEXT and for the search path, and after a tail call it would see our caller.
 
 void* openLibrary(const char* name, int flags) {
     static decltype(&::dlopen) known = nullptr;

@@ -1,5 +1,5 @@
-// What the dynamic section of a loaded object says: its name, what it needs, the functions it has for others. Nothing of
-// this goes through dlsym, dlvsym or dlopen, which another preloaded library may have replaced.
+// Reads the dynamic section of a loaded object: its name, its dependencies, its exported functions. It does not use dlsym,
+// dlvsym or dlopen, as another preloaded library may have replaced them.
 #pragma once
 
 #include <cstddef>

@@ -28,7 +28,7 @@ bool isOwnFolder(const std::string& path, struct stat& facts) {
 
 bool fitsSocket(const std::string& path) { return path.size() < sizeof(sockaddr_un::sun_path); }
 
-// True only where the kernel says that nobody listens.
+// True if the kernel reports that no process listens.
 bool isDeserted(const std::string& path) {
     sockaddr_un address{};
     address.sun_family = AF_UNIX;

@@ -9,8 +9,8 @@
 
 namespace mural::launch {
 
-// The folder, from create() until the end of `mural run`. The head listens in it, and removes it as well: whichever of
-// both lives longer. What a session left that was killed as a whole, a later create() removes.
+// The folder, from create() until the end of `mural run`. The head listens in it, and removes it as well if it outlives
+// `mural run`. A later create() removes the folder of a session whose processes were all killed.
 class SessionSocket {
 public:
     // session: as of newSessionName(). runtimeFolder: $XDG_RUNTIME_DIR, which is used where it belongs to this user and

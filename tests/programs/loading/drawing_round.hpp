@@ -1,5 +1,5 @@
-// One life of a GL library in a process: it is opened by name, draws some frames in a window of its own on a display of its
-// own, says what it reads back, and is closed again. So nothing of it stays but what others keep.
+// One life of a GL library in a process. The program opens the library by name, draws some frames in a new window on a new
+// display connection, prints checksums of the pixels, and closes all of it.
 #pragma once
 
 #include <X11/Xlib.h>

@@ -1,5 +1,5 @@
-// GL libraries are loaded, used and unloaded several times, as toolkits do that end and begin again; what happens to the
-// environment before is an argument:
+// Loads, uses and unloads GL libraries several times, as toolkits do that end and begin again. The second argument changes
+// the environment before:
 //   gl_reloaded glx|egl|both untouched|cleared|unset|put|other
 #include <cstdio>
 #include <cstdlib>
