@@ -177,7 +177,7 @@ inline std::byte* chunk(CaptureHeader* h, uint32_t index) {
     return reinterpret_cast<std::byte*>(h) + h->chunksAt + size_t{index} * kChunkBytes;
 }
 
-// The handshake on the session's Unix socket (SOCK_STREAM, abstract name from MURAL_SESSION).
+// The handshake on the session's Unix socket (SOCK_STREAM, abstract name from MURAL_SESSION, or path from MURAL_SOCKET).
 // App → head: Hello. Head → app: Welcome with the mapping's memfd attached (SCM_RIGHTS), then
 // Welcome.extensionBytes bytes: the GL extensions that all nodes have, separated by spaces.
 // Afterwards the socket only says who is alive.

@@ -2,13 +2,13 @@
 
 #include <cstdarg>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
 #include <initializer_list>
 #include <link.h>
 #include <unistd.h>
 
+#include "interposer/launch_settings.hpp"
 #include "interposer/log.hpp"
 #include "interposer/session.hpp"
 
@@ -16,16 +16,9 @@ namespace mural {
 
 namespace {
 
-// As it was at the start: programs change their environment, and it may be gone at the end.
-char notesPath[64];
-
-__attribute__((constructor)) void rememberNotes() {
-    const char* path = getenv("MURAL_SESSION") && !getenv("MURAL_DISABLE") ? getenv("MURAL_NOTES") : nullptr;
-    if (path && std::strlen(path) < sizeof notesPath) std::strcpy(notesPath, path);
-}
-
 bool note(const char* text, size_t length) {
-    const int fd = notesPath[0] ? open(notesPath, O_WRONLY | O_APPEND | O_CLOEXEC) : -1;
+    const char* path = launchSettings().session ? launchSettings().notes : nullptr;
+    const int fd = path ? open(path, O_WRONLY | O_APPEND | O_CLOEXEC) : -1;
     if (fd < 0) return false;
     const bool written = write(fd, text, length) == static_cast<ssize_t>(length);
     close(fd);
@@ -62,7 +55,7 @@ int addLibrary(dl_phdr_info* info, size_t, void* into) {
 // A process that ends and was never captured leaves word of what it had loaded: `mural run` tells the
 // user when nobody else was captured either.
 __attribute__((destructor)) void tellLibraries() {
-    if (!notesPath[0] || Session::current()) return;
+    if (!launchSettings().notes || Session::current()) return;
     static Libraries libraries;
     libraries.add("ended");
     char program[1024];

@@ -7,6 +7,7 @@
 
 #include "common/clock.hpp"
 #include "interposer/frame_cpu.hpp"
+#include "interposer/launch_settings.hpp"
 
 namespace mural {
 
@@ -29,8 +30,7 @@ void writeReport(const char* path, int64_t nowNs) {
 } // namespace
 
 bool nativeRun() {
-    static const bool native = getenv("MURAL_NATIVE") != nullptr;
-    return native;
+    return launchSettings().native != nullptr;
 }
 
 void countNativeFrame() {
@@ -42,9 +42,9 @@ void countNativeFrame() {
         cpuNs += tookNs;
         cpuFrames += FrameCpu::kFrames;
     }
-    static const char* const path = getenv("MURAL_NATIVE_REPORT");
-    static const char* const limit = getenv("MURAL_NATIVE_FRAMES");
-    static const long last = limit ? atol(limit) : 0;
+    const char* const path = launchSettings().nativeReport;
+    const char* const limit = launchSettings().nativeFrames;
+    const long last = limit ? atol(limit) : 0;
     static int64_t writtenNs = 0;
     if (path && (frames == last || nowNs - writtenNs > kNsPerS / 20)) {
         writtenNs = nowNs;

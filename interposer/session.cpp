@@ -8,10 +8,11 @@
 #include <pthread.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include "common/clock.hpp"
+#include "interposer/head_socket.hpp"
+#include "interposer/launch_settings.hpp"
 #include "interposer/lock.hpp"
 #include "interposer/log.hpp"
 #include "interposer/owed_answers.hpp"
@@ -70,28 +71,6 @@ bool receiveWelcome(int fd, capture::Welcome& welcome, int& memory) {
     return receiveAll(fd, reinterpret_cast<char*>(&welcome) + n, sizeof welcome - static_cast<size_t>(n));
 }
 
-int connectAbstract(const char* name) {
-    const int fd = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    if (fd < 0) return -1;
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    const size_t length = std::strlen(name);
-    if (length + 1 > sizeof address.sun_path) {
-        close(fd);
-        return -1;
-    }
-    std::memcpy(address.sun_path + 1, name, length);
-    const auto bytes = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + length);
-    if (::connect(fd, reinterpret_cast<sockaddr*>(&address), bytes) != 0) {
-        close(fd);
-        return -1;
-    }
-    const timeval patience{30, 0};
-    setsockopt(fd, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-    setsockopt(fd, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
-    return fd;
-}
-
 // While it exists a thread waits; the header says so to `mural stat`, and for how long to the report.
 class Waiting {
 public:
@@ -142,21 +121,17 @@ Session* Session::get() {
     Guard guard(connectLock);
     if (tried) return theSession;
     tried = true;
-    const char* name = getenv("MURAL_SESSION");
-    if (!name || !*name || getenv("MURAL_DISABLE")) return nullptr;
+    if (!launchSettings().session) return nullptr;
     static Session session; // trivially destructible: outlives the program's destructors
-    if (!session.connect(name)) return nullptr;
+    if (!session.connect()) return nullptr;
     pthread_atfork(nullptr, nullptr, forkedChild);
     __atomic_store_n(&theSession, &session, __ATOMIC_RELEASE);
     return theSession;
 }
 
-bool Session::connect(const char* name) {
-    socket_ = connectAbstract(name);
-    if (socket_ < 0) {
-        say("no head answers at session %s: this program draws on its own", name);
-        return false;
-    }
+bool Session::connect() {
+    socket_ = openHeadSocket();
+    if (socket_ < 0) return false; // it has said why
     const capture::Hello hello{capture::kMagic, capture::kVersion, registryDigest(), getpid(), 0};
     int memory = -1;
     const bool received = sendAll(socket_, &hello, sizeof hello) && receiveWelcome(socket_, welcome_, memory);

@@ -13,7 +13,7 @@ namespace mural {
 
 class Session {
 public:
-    // The process's session; connects once, when MURAL_SESSION names a head. Null: no capture.
+    // The process's session; connects once, when `mural run` has named a head. Null: no capture.
     static Session* get();
     // Like get(), but never connects.
     static Session* current();
@@ -66,7 +66,7 @@ public:
     void die(const char* why);
 
 private:
-    bool connect(const char* name);
+    bool connect();
     bool takeOwed(const wire::ReplyHeader& header);
     [[nodiscard]] bool replyWaits() const;
     bool headAlive();

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <dlfcn.h>
 #include <glvnd/libeglabi.h>
 
 #include "interposer/context.hpp"
@@ -15,7 +14,9 @@
 #include "interposer/fronts/egl_images.hpp"
 #include "interposer/fronts/egl_syncs.hpp"
 #include "interposer/fronts/front.hpp"
+#include "interposer/fronts/glvnd_environment.hpp"
 #include "interposer/fronts/own_functions.hpp"
+#include "interposer/loader/libc_loader.hpp"
 #include "interposer/log.hpp"
 #include "interposer/native_count.hpp"
 #include "interposer/real_gl.hpp"
@@ -273,12 +274,12 @@ void* openNamedBy(const char* vendorFile) {
     char* end = at ? std::strchr(++at, '"') : nullptr;
     if (!end) return nullptr;
     *end = 0;
-    return dlopen(at, RTLD_LAZY);
+    return loader::openLibrary(at, RTLD_LAZY);
 }
 
 // The vendor library that the user's own list of vendor files leads to, else the usual ones.
 void* openVendor() {
-    const char* list = getenv("MURAL_REAL_EGL_VENDORS");
+    const char* list = wantedEglVendors();
     while (list && *list) {
         char path[4096];
         const size_t length = std::strcspn(list, ":");
@@ -290,7 +291,7 @@ void* openVendor() {
         list += length + (list[length] == ':');
     }
     for (const char* name : {"libEGL_mesa.so.0", "libEGL_nvidia.so.0"}) {
-        if (void* handle = dlopen(name, RTLD_LAZY)) return handle;
+        if (void* handle = loader::openLibrary(name, RTLD_LAZY)) return handle;
     }
     say("no EGL driver is found (libEGL_mesa.so.0): install libegl-mesa0");
     return nullptr;
@@ -321,8 +322,9 @@ bool askEglSize(const Window& w, uint32_t& width, uint32_t& height) {
 extern "C" __attribute__((visibility("default"))) EGLBoolean __egl_Main(uint32_t version, const __EGLapiExports* exports, __EGLvendorInfo* vendor, __EGLapiImports* imports) {
     using Main = EGLBoolean(uint32_t, const __EGLapiExports*, __EGLvendorInfo*, __EGLapiImports*);
     void* handle = mural::openVendor();
-    auto* main = handle ? reinterpret_cast<Main*>(dlsym(handle, "__egl_Main")) : nullptr;
+    auto* main = handle ? reinterpret_cast<Main*>(mural::loader::symbolIn(handle, "__egl_Main")) : nullptr;
     if (!main || !main(version, exports, vendor, imports)) return EGL_FALSE;
+    mural::loader::keepLoaded(exports); // as in glx.cpp
     if (!mural::claimProgram(mural::Way::Vendor)) return EGL_TRUE;
     mural::vendorGetProcAddress = imports->getProcAddress;
     imports->getProcAddress = mural::getProcAddress;

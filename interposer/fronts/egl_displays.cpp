@@ -2,9 +2,9 @@
 
 #include <EGL/eglext.h>
 #include <cstdlib>
-#include <dlfcn.h>
 #include <xcb/xcb.h>
 
+#include "interposer/loader/libc_loader.hpp"
 #include "interposer/lock.hpp"
 
 namespace mural {
@@ -20,17 +20,27 @@ Known known[kMost];
 int count = 0;
 Lock lock;
 
-// From the copy that the program's EGL has brought with it; null: it has none.
-template <class F> F* loaded(const char* library, const char* name) {
-    void* handle = dlopen(library, RTLD_LAZY | RTLD_NOLOAD);
-    return handle ? reinterpret_cast<F*>(dlsym(handle, name)) : nullptr;
-}
+// A function of the copy that the program's EGL has brought with it, which stays loaded from then on; null: it has none yet.
+template <class F> struct Loaded {
+    const char* library;
+    const char* name;
+    F* found = nullptr;
+
+    F* get() {
+        if (F* earlier = __atomic_load_n(&found, __ATOMIC_RELAXED)) return earlier;
+        void* handle = loader::openLibrary(library, RTLD_LAZY | RTLD_NOLOAD);
+        F* function = handle ? reinterpret_cast<F*>(loader::symbolIn(handle, name)) : nullptr;
+        __atomic_store_n(&found, function, __ATOMIC_RELAXED);
+        return function;
+    }
+};
 
 // Threads may share it, as Mesa does; Xlib's own calls would need XInitThreads.
 xcb_connection_t* connectionOf(EGLenum platform, void* native) {
     if (platform == EGL_PLATFORM_XCB_EXT) return static_cast<xcb_connection_t*>(native);
     if (platform != EGL_PLATFORM_X11_KHR) return nullptr;
-    static auto* get = loaded<xcb_connection_t*(void*)>("libX11-xcb.so.1", "XGetXCBConnection");
+    static Loaded<xcb_connection_t*(void*)> function{"libX11-xcb.so.1", "XGetXCBConnection"};
+    auto* get = function.get();
     return get ? get(native) : nullptr;
 }
 
@@ -56,8 +66,10 @@ void rememberDisplay(EGLDisplay made, EGLenum platform, void* native) {
 }
 
 bool askXSize(EGLDisplay display, uint64_t window, uint32_t& width, uint32_t& height) {
-    static auto* ask = loaded<xcb_get_geometry_cookie_t(xcb_connection_t*, xcb_drawable_t)>("libxcb.so.1", "xcb_get_geometry");
-    static auto* answer = loaded<xcb_get_geometry_reply_t*(xcb_connection_t*, xcb_get_geometry_cookie_t, xcb_generic_error_t**)>("libxcb.so.1", "xcb_get_geometry_reply");
+    static Loaded<xcb_get_geometry_cookie_t(xcb_connection_t*, xcb_drawable_t)> asking{"libxcb.so.1", "xcb_get_geometry"};
+    static Loaded<xcb_get_geometry_reply_t*(xcb_connection_t*, xcb_get_geometry_cookie_t, xcb_generic_error_t**)> answering{"libxcb.so.1", "xcb_get_geometry_reply"};
+    auto* ask = asking.get();
+    auto* answer = answering.get();
     xcb_connection_t* connection = ask && answer ? connectionOf(display) : nullptr;
     if (!connection) return false;
     xcb_generic_error_t* error = nullptr;

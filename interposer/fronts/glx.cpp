@@ -4,7 +4,6 @@
 // Source: libglvnd, glvnd/libglxabi.h.
 #include <cstdlib>
 #include <cstring>
-#include <dlfcn.h>
 #include <X11/Xlib.h>
 #include <glvnd/libglxabi.h>
 
@@ -12,9 +11,11 @@
 #include "interposer/extensions.hpp"
 #include "interposer/fronts/front.hpp"
 #include "interposer/fronts/glx_fonts.hpp"
+#include "interposer/fronts/glvnd_environment.hpp"
 #include "interposer/fronts/glx_types.hpp"
 #include "interposer/fronts/own_functions.hpp"
 #include "interposer/fronts/xlib.hpp"
+#include "interposer/loader/libc_loader.hpp"
 #include "interposer/log.hpp"
 #include "interposer/native_count.hpp"
 #include "interposer/real_gl.hpp"
@@ -328,12 +329,12 @@ constinit Front front("glX", kOwn);
 // The library of the vendor that really draws: what the user had set, NVIDIA's when the X server is
 // theirs, else Mesa's.
 void* openVendor() {
-    const char* wish = getenv("MURAL_REAL_GLX_VENDOR");
+    const char* wish = wantedGlxVendor();
     const char* const candidates[] = {wish && *wish ? wish : "mesa", "mesa", "nvidia"};
     for (const char* vendor : candidates) {
         char name[128];
         snprintf(name, sizeof name, "libGLX_%s.so.0", vendor);
-        if (void* handle = dlopen(name, RTLD_LAZY)) return handle;
+        if (void* handle = loader::openLibrary(name, RTLD_LAZY)) return handle;
     }
     say("no GLX driver is found (libGLX_mesa.so.0): install libglx-mesa0");
     return nullptr;
@@ -373,8 +374,9 @@ bool askGlxSize(const Window& w, uint32_t& width, uint32_t& height) {
 extern "C" __attribute__((visibility("default"))) Bool __glx_Main(uint32_t version, const __GLXapiExports* exports, __GLXvendorInfo* vendor, __GLXapiImports* imports) {
     using Main = Bool(uint32_t, const __GLXapiExports*, __GLXvendorInfo*, __GLXapiImports*);
     void* handle = mural::openVendor();
-    auto* main = handle ? reinterpret_cast<Main*>(dlsym(handle, "__glx_Main")) : nullptr;
+    auto* main = handle ? reinterpret_cast<Main*>(mural::loader::symbolIn(handle, "__glx_Main")) : nullptr;
     if (!main || !main(version, exports, vendor, imports)) return False;
+    mural::loader::keepLoaded(exports); // programs that end GLX and begin again find it as it is, and the vendor with it
     if (!mural::claimProgram(mural::Way::Vendor)) return True;
     mural::vendorGetProcAddress = imports->getProcAddress;
     imports->getProcAddress = mural::getProcAddress;

@@ -2,9 +2,9 @@
 // lead to, and jumps to the wrappers of libGLX_mural.so.0, the same that the vendor front gives out.
 // `mural run` preloads it only into programs that have such a library. Names of GLVND's libraries, which
 // may be there as well, are passed on: their calls arrive by the vendor front.
-#include <dlfcn.h>
 #include <initializer_list>
 
+#include "interposer/loader/libc_loader.hpp"
 #include "interposer/preload/gl_objects.hpp"
 #include "interposer/preload/link.hpp"
 #include "interposer/preload/next_symbol.hpp"
@@ -20,12 +20,12 @@ void* nothing() { return nullptr; }
 // The function that the program would have found without us. Libraries that were opened without making
 // their names global are not behind us in the order, so they are asked by name.
 Entry nextEntry(const char* name) {
-    if (void* found = nextSymbol(RTLD_NEXT, name)) return reinterpret_cast<Entry>(found);
+    if (void* found = loader::symbolIn(RTLD_NEXT, name)) return reinterpret_cast<Entry>(found);
     for (const char* library : {"libGL.so.1", "libEGL.so.1", "libGLESv2.so.2", "libGLESv1_CM.so.1"}) {
-        void* handle = dlopen(library, RTLD_LAZY | RTLD_NOLOAD);
+        void* handle = loader::openLibrary(library, RTLD_LAZY | RTLD_NOLOAD);
         if (!handle) continue;
-        void* found = nextSymbol(handle, name);
-        dlclose(handle);
+        void* found = loader::symbolIn(handle, name);
+        loader::closeLibrary(handle);
         if (found && !isOurs(found)) return reinterpret_cast<Entry>(found);
     }
     return nullptr;
@@ -72,6 +72,7 @@ Entry resolveSlot(int number) {
     const Entry next = nextEntry(name);
     if (!next) return reinterpret_cast<Entry>(nothing);
     const Entry entry = frontOf(name, next);
+    loader::keepLoaded(reinterpret_cast<const void*>(next)); // the slot outlives an unloading
     __atomic_store_n(&gSlots[number], entry, __ATOMIC_RELEASE);
     return entry;
 }

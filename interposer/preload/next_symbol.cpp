@@ -1,25 +1,21 @@
 #include "interposer/preload/next_symbol.hpp"
 
-#include <dlfcn.h>
-#include <initializer_list>
+#include "interposer/loader/libc_loader.hpp"
 
 namespace mural {
 
 namespace {
 
 using Dlsym = void*(void*, const char*);
-Dlsym* libcDlsym = nullptr;
+Dlsym* nextDlsym = nullptr;
 
+// Another library's that stands behind this one, else the C library's. Not found by dlvsym, which may be replaced as well.
 Dlsym* findDlsym() {
-    if (Dlsym* known = __atomic_load_n(&libcDlsym, __ATOMIC_RELAXED)) return known;
-    // The versions under which glibc has had it, by processor and age.
-    for (const char* version : {"GLIBC_2.34", "GLIBC_2.17", "GLIBC_2.2.5"}) {
-        void* found = dlvsym(RTLD_NEXT, "dlsym", version);
-        if (!found) continue;
-        __atomic_store_n(&libcDlsym, reinterpret_cast<Dlsym*>(found), __ATOMIC_RELAXED);
-        return reinterpret_cast<Dlsym*>(found);
-    }
-    return nullptr;
+    Dlsym* next = __atomic_load_n(&nextDlsym, __ATOMIC_RELAXED);
+    if (next) return next;
+    next = reinterpret_cast<Dlsym*>(loader::nextFunction("dlsym"));
+    __atomic_store_n(&nextDlsym, next, __ATOMIC_RELAXED);
+    return next;
 }
 
 bool maybeGl(const char* name) {
@@ -27,13 +23,6 @@ bool maybeGl(const char* name) {
 }
 
 } // namespace
-
-void* nextSymbol(void* handle, const char* name) {
-    Dlsym* next = findDlsym();
-    // Stored and returned: a tail call would make glibc look at our caller's place in the order.
-    void* volatile found = next ? next(handle, name) : nullptr;
-    return found;
-}
 
 } // namespace mural
 
@@ -46,6 +35,8 @@ extern "C" __attribute__((visibility("default"))) void* dlsym(void* handle, cons
         if (!next) return nullptr;
         return next(handle, name);
     }
-    void* found = nextSymbol(handle, name);
+    // Stored before it is used: a tail call would hide our caller from libc.
+    Dlsym* next = findDlsym();
+    void* volatile found = next ? next(handle, name) : nullptr;
     return found ? replaceFound(name, found) : nullptr;
 }

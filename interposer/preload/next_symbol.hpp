@@ -4,9 +4,6 @@
 
 namespace mural {
 
-// libc's dlsym, past our own; the caller's place in the order is this library's.
-void* nextSymbol(void* handle, const char* name);
-
 // What a program gets for a name of GL that it looked up and that is `found`; implemented by the front.
 void* replaceFound(const char* name, void* found);
 

@@ -2,7 +2,7 @@
 // program's own order; nothing is ever loaded.
 #pragma once
 
-#include <dlfcn.h>
+#include "interposer/loader/libc_loader.hpp"
 
 namespace mural {
 
@@ -18,13 +18,13 @@ struct NextFunction {
 
     void* get() {
         if (void* known = __atomic_load_n(&found, __ATOMIC_RELAXED)) return known;
-        // Stored, not returned: in a tail call glibc would look from our caller's place in the order.
-        void* volatile next = dlsym(RTLD_NEXT, name);
+        void* next = loader::symbolIn(RTLD_NEXT, name);
         if (!next) { // the program has loaded the library out of everybody's sight
-            void* handle = dlopen(library, RTLD_LAZY | RTLD_NOLOAD);
-            if (handle) next = dlsym(handle, name);
-            if (handle) dlclose(handle);
+            void* handle = loader::openLibrary(library, RTLD_LAZY | RTLD_NOLOAD);
+            if (handle) next = loader::symbolIn(handle, name);
+            if (handle) loader::closeLibrary(handle);
         }
+        if (next) loader::keepLoaded(next); // a plugin that brings its library may be unloaded and loaded elsewhere
         __atomic_store_n(&found, next, __ATOMIC_RELAXED);
         return next;
     }

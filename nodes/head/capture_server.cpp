@@ -9,6 +9,8 @@
 #include <sys/socket.h>
 #include <sys/un.h>
 
+#include "nodes/launch/session_socket.hpp"
+
 namespace mural {
 namespace {
 
@@ -19,11 +21,20 @@ constexpr int64_t kAcceptSliceMs = 100;
 constexpr int64_t kHelloPatienceMs = 5000;
 constexpr int64_t kWelcomePatienceMs = 5000;
 constexpr size_t kMaxNewcomers = 64;
+constexpr size_t kListeners = 2; // the abstract one, the one with a path
 
 Error socketError(const std::string& session, const char* what) {
-    std::string text = "session socket @" + session + ": " + what + ": " + std::strerror(errno);
+    std::string text = "session socket " + session + ": " + what + ": " + std::strerror(errno);
     if (errno == EADDRINUSE) text += "; another session has this name, choose another";
     return Error{text};
+}
+
+Result<FileDescriptor> listenAt(const std::string& session, const sockaddr_un& address, size_t bytes) {
+    FileDescriptor fd(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+    if (!fd.valid()) return socketError(session, "socket");
+    if (bind(fd.get(), reinterpret_cast<const sockaddr*>(&address), static_cast<socklen_t>(bytes)) != 0) return socketError(session, "bind");
+    if (listen(fd.get(), 64) != 0) return socketError(session, "listen");
+    return fd;
 }
 
 Result<FileDescriptor> listenAbstract(const std::string& session) {
@@ -34,13 +45,18 @@ Result<FileDescriptor> listenAbstract(const std::string& session) {
                      std::to_string(sizeof(address.sun_path) - 1) + " bytes: " + session};
     }
     std::memcpy(address.sun_path + 1, session.data(), session.size()); // [0] = 0: abstract
-    const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + session.size());
-    FileDescriptor fd(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-    if (!fd.valid()) return socketError(session, "socket");
-    if (bind(fd.get(), reinterpret_cast<const sockaddr*>(&address), length) != 0)
-        return socketError(session, "bind");
-    if (listen(fd.get(), 64) != 0) return socketError(session, "listen");
-    return fd;
+    return listenAt("@" + session, address, offsetof(sockaddr_un, sun_path) + 1 + session.size());
+}
+
+// Its folder lets only this user in. Not valid without a path, or where it can't be: programs of this network namespace
+// do not need it, and others say what they could not reach.
+FileDescriptor listenInFolder(const std::string& path) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    if (path.empty() || path.size() >= sizeof(address.sun_path)) return {};
+    std::memcpy(address.sun_path, path.data(), path.size());
+    auto fd = listenAt(path, address, sizeof address);
+    return fd ? std::move(*fd) : FileDescriptor();
 }
 
 bool waitWritable(int fd, Deadline deadline) {
@@ -94,19 +110,21 @@ bool peerOf(int socket, ucred& peer) {
 
 } // namespace
 
-Result<std::unique_ptr<CaptureServer>> CaptureServer::start(const std::string& session,
+Result<std::unique_ptr<CaptureServer>> CaptureServer::start(const CaptureAddresses& addresses,
                                                             uint64_t digest,
                                                             ProgramHost& host,
                                                             std::function<std::string()> status) {
-    auto listener = listenAbstract(session);
+    auto listener = listenAbstract(addresses.abstractName);
     if (!listener) return listener.error();
-    std::unique_ptr<CaptureServer> server(new CaptureServer(std::move(*listener), digest, host, std::move(status)));
+    std::unique_ptr<CaptureServer> server(new CaptureServer(std::move(*listener), listenInFolder(addresses.path), addresses.path, digest, host, std::move(status)));
     server->thread_ = std::thread([raw = server.get()] { raw->serve(); });
     return server;
 }
 
-CaptureServer::CaptureServer(FileDescriptor listener, uint64_t digest, ProgramHost& host, std::function<std::string()> status)
+CaptureServer::CaptureServer(FileDescriptor listener, FileDescriptor pathListener, std::string path, uint64_t digest, ProgramHost& host, std::function<std::string()> status)
     : listener_(std::move(listener))
+    , pathListener_(std::move(pathListener))
+    , path_(std::move(path))
     , digest_(digest)
     , host_(host)
     , status_(std::move(status)) {}
@@ -115,24 +133,26 @@ CaptureServer::~CaptureServer() {
     stop_ = true;
     shutdown(listener_.get(), SHUT_RDWR); // wakes the thread
     if (thread_.joinable()) thread_.join();
+    if (!path_.empty()) launch::removeSessionSocket(path_); // `mural run` may have been killed
 }
 
 void CaptureServer::serve() {
     while (!stop_) {
-        std::vector<pollfd> looks{{listener_.get(), POLLIN, 0}};
+        std::vector<pollfd> looks{{listener_.get(), POLLIN, 0}, {pathListener_.get(), POLLIN, 0}}; // a negative one is passed over
         for (const Newcomer& n : newcomers_) looks.push_back({n.socket.get(), POLLIN, 0});
         if (poll(looks.data(), looks.size(), kAcceptSliceMs) < 0) continue;
         // Those that came first leave first: the vector shrinks from the end.
         for (size_t i = newcomers_.size(); i-- > 0;) {
-            if (settle(newcomers_[i], looks[i + 1].revents != 0))
+            if (settle(newcomers_[i], looks[i + kListeners].revents != 0))
                 newcomers_.erase(newcomers_.begin() + static_cast<std::ptrdiff_t>(i));
         }
-        if (looks[0].revents != 0 && !stop_) acceptOne();
+        for (size_t i = 0; i < kListeners; ++i)
+            if (looks[i].revents != 0 && !stop_) acceptOne(looks[i].fd);
     }
 }
 
-void CaptureServer::acceptOne() {
-    FileDescriptor socket(accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC));
+void CaptureServer::acceptOne(int listener) {
+    FileDescriptor socket(accept4(listener, nullptr, nullptr, SOCK_CLOEXEC));
     if (!socket.valid() || newcomers_.size() >= kMaxNewcomers) return;
     newcomers_.push_back({std::move(socket), Deadline::inMs(kHelloPatienceMs)});
 }

@@ -1,4 +1,4 @@
-// The session's Unix socket (abstract name): programs come, say Hello, and get their shared memory.
+// The session's Unix sockets: programs connect, send Hello, and get their shared memory.
 #pragma once
 
 #include <atomic>
@@ -33,11 +33,16 @@ public:
     virtual void programWelcomed(uint32_t client, FileDescriptor socket) = 0;
 };
 
+struct CaptureAddresses {
+    std::string abstractName; // reached from the head's network namespace
+    std::string path;         // reached from its mount namespace; empty: none
+};
+
 class CaptureServer {
 public:
     // digest: of the command table, must be equal at both ends.
     // status: the session's state as JSON, for `mural stat`; called by the server's thread.
-    static Result<std::unique_ptr<CaptureServer>> start(const std::string& session,
+    static Result<std::unique_ptr<CaptureServer>> start(const CaptureAddresses& addresses,
                                                         uint64_t digest,
                                                         ProgramHost& host,
                                                         std::function<std::string()> status);
@@ -53,15 +58,17 @@ private:
         size_t haveBytes = 0; // of hello
     };
 
-    CaptureServer(FileDescriptor listener, uint64_t digest, ProgramHost& host, std::function<std::string()> status);
+    CaptureServer(FileDescriptor listener, FileDescriptor pathListener, std::string path, uint64_t digest, ProgramHost& host, std::function<std::string()> status);
     void serve();
-    void acceptOne();
+    void acceptOne(int listener);
     bool settle(Newcomer& newcomer, bool readable); // true: done with it, one way or the other
     void answer(FileDescriptor socket, const capture::Hello& hello);
     Result<Admission> judge(int socket, const capture::Hello& hello);
     void tellStatus(int socket);
 
     const FileDescriptor listener_;
+    const FileDescriptor pathListener_; // not valid: there is none
+    const std::string path_;
     const uint64_t digest_;
     ProgramHost& host_;
     const std::function<std::string()> status_;

@@ -47,7 +47,7 @@ Result<void> HeadSession::bringUp() {
     introduceNodes();
     openTables();
     goOnWithoutAbsent();
-    auto server = CaptureServer::start(config_.session, options_.registryDigest, *programs_, [this] { return statusOf(status()).dump(); });
+    auto server = CaptureServer::start({config_.session, config_.socketPath}, options_.registryDigest, *programs_, [this] { return statusOf(status()).dump(); });
     if (!server) return server.error();
     server_ = std::move(*server);
     announceReady();

@@ -106,6 +106,18 @@ std::string describeBypass(const std::vector<UnseenProgram>& programs, bool fail
     return line;
 }
 
+std::string describeUncaptured(const UnseenProgram& program) {
+    std::string gl;
+    for (const std::string& path : program.libraries) {
+        if (baseName(path) == kCaptureLibraryName) return {};
+        const Drawing drawing = gl.empty() && mayDraw(path) ? drawingOf(path) : Drawing::None;
+        if (drawing == Drawing::Glvnd || drawing == Drawing::OwnGl) gl = path;
+    }
+    if (gl.empty()) return {};
+    return std::string(baseName(program.program)) + " uses GL (" + gl + ") without Mural's library: what started it left LD_PRELOAD out of its environment, "
+           "or a sandbox hides the library's folder. What it draws stays in its own window";
+}
+
 Result<std::unique_ptr<BypassWatch>> BypassWatch::create() {
     const int fd = memfd_create("mural-notes", MFD_CLOEXEC);
     if (fd < 0) return Error{std::string("no memory for the programs' notes: ") + std::strerror(errno)};
@@ -146,6 +158,18 @@ void BypassWatch::readNotes() {
 std::vector<std::string> BypassWatch::news() {
     readNotes();
     return std::exchange(waiting_, {});
+}
+
+std::string BypassWatch::uncaptured(const std::vector<pid_t>& processes) {
+    for (const pid_t pid : processes) {
+        const UnseenProgram program = runningProgram(pid);
+        if (saidUncaptured_.contains(program.program)) continue;
+        if (std::string line = describeUncaptured(program); !line.empty()) {
+            saidUncaptured_.insert(program.program);
+            return line;
+        }
+    }
+    return {};
 }
 
 std::string BypassWatch::lookAt(const std::vector<pid_t>& processes) const {

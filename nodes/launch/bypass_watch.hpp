@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <sys/types.h>
 #include <vector>
@@ -22,6 +23,9 @@ struct UnseenProgram {
 // libraries do not tell. Of one that failed, to have loaded no GL yet tells nothing.
 std::string describeBypass(const std::vector<UnseenProgram>& programs, bool failed = false);
 
+// The same about one that runs GL without the capture library; empty where it has the library, or no GL.
+std::string describeUncaptured(const UnseenProgram& program);
+
 class BypassWatch {
 public:
     static Result<std::unique_ptr<BypassWatch>> create();
@@ -35,6 +39,8 @@ public:
     std::vector<std::string> news();
     // Looks at processes that run now.
     [[nodiscard]] std::string lookAt(const std::vector<pid_t>& processes) const;
+    // One line for each program that runs GL without the capture library, the first time it is seen; empty: there is none.
+    std::string uncaptured(const std::vector<pid_t>& processes);
     // About the programs that have ended; failed: the one that was started, with an error.
     [[nodiscard]] std::string aboutEnded(bool failed) const { return describeBypass(ended_, failed); }
 
@@ -46,6 +52,7 @@ private:
     size_t read_ = 0; // bytes of the notes
     std::vector<std::string> said_, waiting_;
     std::vector<UnseenProgram> ended_;
+    std::set<std::string> saidUncaptured_; // their names
 };
 
 } // namespace mural::launch

@@ -17,6 +17,7 @@ constexpr std::string_view kEglVendors = "__EGL_VENDOR_LIBRARY_FILENAMES";
 constexpr std::string_view kRealGlxVendor = "MURAL_REAL_GLX_VENDOR";
 constexpr std::string_view kRealEglVendors = "MURAL_REAL_EGL_VENDORS";
 constexpr std::string_view kSession = "MURAL_SESSION";
+constexpr std::string_view kSocket = "MURAL_SOCKET";
 constexpr std::string_view kNotes = "MURAL_NOTES";
 constexpr std::string_view kOurVendor = "mural";
 
@@ -145,6 +146,7 @@ Result<void> addCapture(Environment& environment, const CaptureLibrary& library,
     replaceVendor(environment, kEglVendors, kRealEglVendors, library.eglVendorFile,
                   isOurEglList(environment.get(kEglVendors).value_or("")));
     environment.set(kSession, session);
+    environment.unset(kSocket); // of a session that this one runs in
     return {};
 }
 
@@ -153,6 +155,7 @@ void removeCapture(Environment& environment) {
     restoreVendor(environment, kEglVendors, kRealEglVendors, isOurEglList(environment.get(kEglVendors).value_or("")));
     environment.unset(kPreload);
     environment.unset(kSession);
+    environment.unset(kSocket);
     environment.unset(kNotes);
 }
 

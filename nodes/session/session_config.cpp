@@ -49,6 +49,7 @@ template <class Config, class Visitor>
     requires std::is_same_v<std::remove_const_t<Config>, SessionConfig>
 void visitFields(Config& c, Visitor&& visit) {
     visit("session", c.session);
+    visit("socketPath", c.socketPath);
     visit("columns", c.columns, 1);
     visit("rows", c.rows, 1);
     visit("chunks", c.chunks, 0);

@@ -28,6 +28,7 @@ enum class Economy { Auto, On, Off };
 
 struct SessionConfig {
     std::string session;          // abstract Unix socket name that programs connect to
+    std::string socketPath;       // the same socket's path, for programs in other network namespaces; empty: none
     int columns = 1;              // --tiles CxR
     int rows = 1;
     int tileWidth = 0, tileHeight = 0; // --tile-queue: pixels of tiles that nodes take from a queue, instead of columns and rows; 0: none

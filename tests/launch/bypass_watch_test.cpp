@@ -75,11 +75,21 @@ TEST_F(Bypass, endedProgramsLeaveTheirLibraries) {
     EXPECT_NE(watch.value()->aboutEnded(false).find("app draws by OSMesa"), std::string::npos);
 }
 
+TEST_F(Bypass, saysSoWhenGlRunsWithoutTheCaptureLibrary) {
+    const std::string gl = library("libGL.so.1", {"libGLdispatch.so.0"}), x11 = library("libX11.so.6", {});
+    const std::string line = describeUncaptured({"/opt/app/bin/app", {x11, gl}});
+    EXPECT_EQ(line.find("app uses GL (" + gl + ") without Mural's library"), 0u) << line;
+    EXPECT_EQ(line.find('\n'), std::string::npos);
+    EXPECT_EQ(describeUncaptured({"app", {gl, "/opt/mural/lib/libGLX_mural.so.0"}}), "");
+    EXPECT_EQ(describeUncaptured({"app", {x11}}), "");
+}
+
 TEST(BypassNotes, runningProcessesAreLookedAt) {
     auto watch = BypassWatch::create();
     ASSERT_TRUE(watch.ok());
     EXPECT_EQ(watch.value()->lookAt({}), "");
     EXPECT_EQ(watch.value()->lookAt({-1}), ""); // gone meanwhile
+    EXPECT_EQ(watch.value()->uncaptured({-1}), "");
 }
 
 } // namespace

@@ -17,6 +17,14 @@ std::string newSessionName() {
     return fmt::format("mural-{}-{:016x}", getpid(), random);
 }
 
+void createSessionSocket(PreparedRun& run) {
+    auto socket = launch::SessionSocket::create(run.config.session, run.programEnvironment.get("XDG_RUNTIME_DIR").value_or(""));
+    if (!socket) return;
+    run.socket = std::move(socket.value());
+    run.config.socketPath = run.socket->path();
+    run.programEnvironment.set("MURAL_SOCKET", run.config.socketPath);
+}
+
 Result<void> checkOutput(const std::string& out) {
     namespace fs = std::filesystem;
     if (out.empty()) return {};

@@ -12,6 +12,10 @@ namespace mural::cli {
 // Names are guessed by nobody else and fit into an abstract socket's.
 std::string newSessionName();
 
+// The session's socket in the file system, for programs in other network namespaces; without it they are not captured,
+// and the run goes on.
+void createSessionSocket(PreparedRun& run);
+
 // What can be said about --out before the first picture; the head opens it.
 Result<void> checkOutput(const std::string& out);
 // Of pictures that stay in its folder from before, beside those that come; empty: there are none.

@@ -53,6 +53,8 @@ int runCommand(const RunOptions& options) {
     if (auto r = checkReport(run.reportFile); !r) return complain(r.error().message, launch::kExitUsage);
     if (auto r = chooseDisplay(options, true, run); !r) return complain(r.error().message, launch::kExitUsage);
 
+    if (!options.native) createSessionSocket(run);
+
     run.headCommand = {launch::ownBinary(), "head"};
     Console console(options.quiet);
     for (const std::string& notice : options.notices) console.say(notice);

@@ -23,6 +23,8 @@ constexpr int64_t kAfterLastContextMs = 1'000;
 constexpr int64_t kWaitNoticeMs = 3'000;
 // A program that has made no context for so long may draw past us: its libraries are looked at.
 constexpr int64_t kUnseenMs = 10'000;
+// How often the program's processes are looked at for those that run without the capture library.
+constexpr int64_t kUncapturedMs = 1'000;
 // The head drains and writes pictures after the program's end; as long as it says something it may.
 constexpr int64_t kFinishSilenceMs = 120'000;
 constexpr int kWallLost = 1; // exit status, whatever that of the program, which was ended
@@ -42,6 +44,7 @@ public:
         run_.programEnvironment.set("MURAL_NOTES", bypass_.notesPath());
         if (!startProgram(run_, program_, console_)) return launch::kExitNotExecutable;
         lookAt_ = Deadline::inMs(kUnseenMs);
+        uncapturedAt_ = Deadline::inMs(kUncapturedMs);
         whileRunning();
         finish();
         return framesReached_ ? 0 : wallLost_ ? kWallLost : program_.exitStatus();
@@ -151,10 +154,21 @@ private:
             console_.error(line);
             bypassSaid_ = true;
         }
+        sayUncaptured();
         if (!lookAt_.passed()) return;
         lookAt_ = Deadline::inMs(kUnseenMs);
         if (everClients_ || bypassSaid_) return;
         const std::string line = bypass_.lookAt(program_.processes());
+        if (line.empty()) return;
+        console_.error(line);
+        bypassSaid_ = true;
+    }
+
+    // Processes that were started past the capture, such as by a shell whose environment was cleared.
+    void sayUncaptured() {
+        if (!uncapturedAt_.passed() || finishing_) return;
+        uncapturedAt_ = Deadline::inMs(kUncapturedMs);
+        const std::string line = bypass_.uncaptured(program_.processes());
         if (line.empty()) return;
         console_.error(line);
         bypassSaid_ = true;
@@ -221,6 +235,7 @@ private:
     launch::ProgramSupervisor& program_;
     launch::BypassWatch& bypass_;
     Deadline lookAt_ = Deadline::never();
+    Deadline uncapturedAt_ = Deadline::never();
     bool bypassSaid_ = false;
     std::unique_ptr<HeadControl> head_;
     bool ready_ = false;

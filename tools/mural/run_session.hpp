@@ -7,6 +7,7 @@
 
 #include "nodes/launch/environment.hpp"
 #include "nodes/launch/private_display.hpp"
+#include "nodes/launch/session_socket.hpp"
 #include "nodes/launch/wall_window_manager.hpp"
 #include "nodes/session/session_config.hpp"
 #include "tools/mural/console.hpp"
@@ -24,6 +25,7 @@ struct PreparedRun {
     launch::Environment programEnvironment;
     launch::Environment headEnvironment;
     std::vector<std::string> headCommand;
+    std::unique_ptr<launch::SessionSocket> socket;            // null: it could not be made
     std::unique_ptr<launch::PrivateDisplay> display;          // null: the user's own
     std::unique_ptr<launch::WallWindowManager> windowManager; // null: no --size
 };

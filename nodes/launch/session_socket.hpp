@@ -1,0 +1,35 @@
+// The session's socket in the file system, beside its abstract one: programs in another network namespace (sandboxes)
+// reach no abstract socket of this one. Each session has a folder of its own, which only its user may enter.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "common/result.hpp"
+
+namespace mural::launch {
+
+// The folder, from create() until the end of `mural run`. The head listens in it, and removes it as well if it outlives
+// `mural run`. A later create() removes the folder of a session whose processes were all killed.
+class SessionSocket {
+public:
+    // session: as of newSessionName(). runtimeFolder: $XDG_RUNTIME_DIR, which is used where it belongs to this user and
+    // the path is short enough for a socket; else the system's folder for temporary files.
+    static Result<std::unique_ptr<SessionSocket>> create(const std::string& session, const std::string& runtimeFolder);
+    SessionSocket(const SessionSocket&) = delete;
+    SessionSocket& operator=(const SessionSocket&) = delete;
+    ~SessionSocket();
+
+    [[nodiscard]] const std::string& path() const { return path_; }
+
+private:
+    explicit SessionSocket(std::string path) : path_(std::move(path)) {}
+    std::string path_;
+};
+
+// Removes the socket and its folder. Idempotent.
+void removeSessionSocket(const std::string& path);
+// Removes the folders of sessions in `folder` that this user owns and no head listens in any more.
+void removeStaleSockets(const std::string& folder);
+
+} // namespace mural::launch

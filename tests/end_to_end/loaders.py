@@ -1,0 +1,157 @@
+#!/usr/bin/env python3
+"""What loaders do: GL libraries unloaded and loaded again, environments cleared, programs that execute others, hooks of other
+preloaded libraries, sandboxes with namespaces of their own. Each program says what it reads; natively it must be the same.
+
+  loaders.py --build build/release [--cases reloaded,executed,hooked,sandboxed] [--list]
+"""
+
+import glob
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+
+import failures
+import processes
+import session
+
+failures.CASES.clear()  # only those of this file
+SOCKETS = ("/tmp", os.environ.get("XDG_RUNTIME_DIR") or "/tmp")
+
+
+def sockets_of(run):
+    """Folders of the run's session; other sessions may have theirs at the same time."""
+    return [path for place in set(SOCKETS) for path in glob.glob("%s/mural-%d-*" % (place, run.process.pid))]
+
+
+def compared(context, command, frames, options=(), said=(), through=None):
+    """None when the command says the same natively and through Mural (there it may be another: `through`), where `frames` come
+    to the wall, all pixels equal, and where standard error has one line for each of the words of `said`, and no other."""
+    with session.Session(command, context.display) as native:
+        status = native.status()
+        wanted = list(native.standard_output)
+    if status not in (0, 6) or not wanted:
+        return "natively status %s: %s" % (status, " | ".join(native.standard_error[-3:]))
+    with tempfile.TemporaryDirectory(prefix="mural-loaders.") as folder:
+        report_file = os.path.join(folder, "report.json")
+        fixed = ["--tiles", "2x1", "--display", "app", "--quiet", "--verify", "--report", report_file] + list(options)
+        with context.run(through or command, fixed) as run:
+            wrong = failures.check_end(run, status)
+            if wrong is not None:
+                return wrong
+        with open(report_file, encoding="utf-8") as file:
+            report = json.load(file)
+    if run.standard_output != wanted:
+        both = zip(run.standard_output + ["nothing"] * len(wanted), wanted)
+        return "it said %s" % next(("\"%s\" instead of \"%s\"" % pair for pair in both if pair[0] != pair[1]), "more")
+    if report["frames"] != frames:
+        return "%d frames on the wall instead of %d; %s" % (report["frames"], frames, " | ".join(run.standard_error))
+    if report["differingPixels"] != 0 or (frames and report["verifiedPixels"] == 0):
+        return "%d of %d pixels differ" % (report["differingPixels"], report["verifiedPixels"])
+    lines = [line for line in run.standard_error if line.startswith("mural:")]
+    if len(lines) != len(said) or not all(word in line for word, line in zip(said, lines)):
+        return "it said %d lines: %s" % (len(lines), " | ".join(lines))
+    left = sockets_of(run)
+    return "left behind: " + ", ".join(left) if left else None
+
+
+def reloaded(name, *arguments, frames):
+    def check(context):
+        return compared(context, [context.program("gl_reloaded")] + list(arguments), frames)
+    check.__name__ = "reloaded_" + name
+    failures.case(check)
+
+
+reloaded("both", "both", "untouched", frames=18)
+for changed in ("cleared", "unset", "put", "other"):
+    reloaded("both_" + changed, "both", changed, frames=18)
+
+
+def executed(way, frames=6, said=()):
+    def check(context):
+        return compared(context, [context.program("exec_rounds"), way], frames, said=said)
+    check.__name__ = "executed_by_" + way
+    failures.case(check)
+
+
+for call in ("execl", "execlp", "execle", "execv", "execvp", "execvpe", "execve", "fexecve", "execveat", "posix_spawn", "posix_spawnp", "vfork"):
+    executed(call)
+executed("system", 3, ["exec_rounds"])
+
+
+def hooked(name, program, frames, options=()):
+    """With an overlay in LD_PRELOAD, before Mural's library and behind it."""
+    def check(context):
+        overlay = os.path.join(context.build, "tests", "end_to_end", "overlay.so")
+        command = [context.program(program[0])] + program[1:]
+        for order in ("%s${LD_PRELOAD:+ $LD_PRELOAD}", "${LD_PRELOAD:+$LD_PRELOAD }%s"):
+            shell = ["sh", "-c", 'LD_PRELOAD="%s" exec "$@"' % (order % overlay), "sh"] + command
+            wrong = compared(context, shell, frames, options)
+            if wrong is not None:
+                return "LD_PRELOAD=%s: %s" % (order % "overlay", wrong)
+        return None
+    check.__name__ = "hooked_" + name
+    failures.case(check)
+
+
+hooked("reloaded", ["gl_reloaded", "both", "untouched"], 18)
+hooked("with_front", ["gl_reloaded", "both", "untouched"], 18, ["--front", "preload"])
+
+
+def sandboxed(name, unshare, script='exec "$@"'):
+    """In namespaces of its own; skipped where the kernel does not let this user have them."""
+    def check(context):
+        program = [context.program("gl_reloaded"), "both", "untouched"]
+        words = ["unshare"] + unshare + ["sh", "-c", script, "sh"]
+        tried = subprocess.run(words + ["true"], capture_output=True, text=True, timeout=20, check=False) if shutil.which("unshare") else None
+        if tried is None or tried.returncode != 0:
+            print("skipped: unshare %s: %s" % (" ".join(unshare), tried.stderr.strip() if tried else "is not installed"), flush=True)
+            return None
+        return compared(context, program, 18, through=words + program)
+    check.__name__ = "sandboxed_" + name
+    failures.case(check)
+
+
+sandboxed("network", ["-Urn"])
+sandboxed("network_and_processes", ["-Urnp", "--fork", "--mount-proc"])
+sandboxed("network_without_user", ["-n"])
+
+
+@failures.case
+def sandboxed_socket_of_a_killed_launcher_goes(context):
+    with context.run([context.program("long_run"), "--frames", "100000"], ["--quiet", "--display", "none"]) as run:
+        if not run.wait_for_line("frame 10"):
+            return "the program did not start: " + " | ".join(run.standard_error[-3:])
+        if len(sockets_of(run)) != 1:
+            return "%d folders while it runs" % len(sockets_of(run))
+        os.kill(run.process.pid, signal.SIGKILL)
+        return None if processes.until(lambda: not sockets_of(run), 10) else "its folder is still there"
+
+
+@failures.case
+def sandboxed_stale_sockets_go(context):
+    """What a session left that was killed as a whole is removed by the next; others' folders stay."""
+    stale, foreign = "/tmp/mural-1-0123456789abcdef", "/tmp/mural-1-not-a-session"
+    for folder in (stale, foreign):
+        os.makedirs(folder, exist_ok=True)
+    with open(stale + "/socket", "w", encoding="ascii"):
+        pass
+    os.utime(stale, (1, 1))
+    try:
+        with context.run(["true"], ["--quiet", "--display", "none"], {"XDG_RUNTIME_DIR": None}) as run:
+            wrong = failures.check_end(run, 0)
+        if wrong is None and os.path.exists(stale):
+            wrong = stale + " is still there"
+        if wrong is None and not os.path.exists(foreign):
+            wrong = foreign + " is gone"
+        return wrong
+    finally:
+        for folder in (stale, foreign):
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+if __name__ == "__main__":
+    sys.exit(failures.main())
