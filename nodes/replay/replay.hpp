@@ -644,6 +644,7 @@ private:
     // replay_left_out.cpp
     bool mayWriteMemory(GLuint program);
     bool leavesOut(uint16_t opcode);
+    [[nodiscard]] bool stipplesLines() const;
     void exchangeDraws();
     // replay_eyes.cpp
     void noteEye(uint16_t opcode, std::span<const std::byte> arguments);
