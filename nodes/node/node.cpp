@@ -205,6 +205,7 @@ private:
         config.catchesUp = setup_.catchesUp;
         config.lean = setup_.tiling == Tiling::Lean;
         config.cull = setup_.tiling == Tiling::Culled;
+        config.rastersInBins = gl::drawsWithoutGpu(ready.value("renderer", ""));
         config.grid = {setup_.columns, setup_.rows, config.lean ? 2 : 1};
         config.region = {setup_.regionColumn, setup_.regionRow, setup_.regionColumns, setup_.regionRows};
         if (setup_.hasArea) config.area = setup_.area;

@@ -72,6 +72,7 @@ struct ReplayConfig {
                             // draws are not shared before shareAnew()
     bool cull = false;     // whole primitives outside of the region are dropped by rewritten shaders
     bool lean = false;     // framebuffers of the tile's size; false: of the picture's size (exact)
+    bool rastersInBins = false; // the driver draws in software, so a region has to end on its bins (raster_bins.hpp)
     Readback readback = Readback::Direct; // of Frame::read
     std::string plant;     // MURAL_PLANT: a fault on purpose, for tests of the tests
     ReplayLimits limits;
@@ -224,6 +225,7 @@ private:
         bool widens = true;     // to the window's size, when that is needed; not when that has failed
         wire::WindowConfig config{};
         ContextState* drawer = nullptr; // the context that was current with it for drawing last; null: it is gone
+        bool isFlat = false;    // the program's window has neither depth nor stencil buffer, whatever this node's surface has
         std::unique_ptr<gl::Surface> surface;
         std::unique_ptr<gl::Surface> front;  // where surfaces have one colour buffer: the front, once it is used
         bool frontStale = false;             // its colours have to come from `surface`
@@ -232,7 +234,7 @@ private:
         PixelViewport whole;  // 0, 0, width, height
         PixelViewport part;   // this node's, by the grid
         PixelViewport region; // the same, or nothing while it is another node's turn
-        PixelViewport drawn;  // what the scissor lets through: the region, larger with multisampling
+        PixelViewport drawn;  // what the scissor lets through: the region, or the driver's bins that hold it (raster_bins.hpp)
         int64_t frames = 0;        // that have begun, and turns that have (replay_turns.cpp)
         int64_t turn = 0;
         bool turnOver = false;     // the frame is complete: the next command that draws begins another
@@ -603,6 +605,7 @@ private:
     [[nodiscard]] bool learnsTurns(const Window& w) const;
     void turnsChanged();
     void placePart(Window& w);
+    [[nodiscard]] bool drawsWholeBins(const Window& w) const;
     void partChanged(Window& w);
     void noteTurn(uint16_t opcode, std::span<const std::byte> arguments);
     void noteTurnOfList();
@@ -649,6 +652,7 @@ private:
     // replay_left_out.cpp
     bool mayWriteMemory(GLuint program);
     bool leavesOut(uint16_t opcode);
+    [[nodiscard]] bool stipplesLines() const;
     void exchangeDraws();
     // replay_eyes.cpp
     void noteEye(uint16_t opcode, std::span<const std::byte> arguments);

@@ -52,8 +52,12 @@ bool Replay::leavesOut(uint16_t opcode) {
     if (!hasTrait(opcode, Trait::SkippableDraw) || !drawsWindow() || !c_->draw || c_->compiling || !c_->shared) return false;
     const Window& w = *c_->draw;
     const bool drawsHere = drawsWhole() || !w.drawn.empty() || w.whole.empty();
-    return !drawsHere && c_->openQueries.empty() && !c_->feedsBack && !mayWriteMemory(c_->program);
+    return !drawsHere && c_->openQueries.empty() && !c_->feedsBack && !stipplesLines() && !mayWriteMemory(c_->program);
 }
+
+// Mesa carries the phase of a line stipple from draw to draw: a strip whose first segment is clipped away goes on where the
+// last stippled line has ended. So every node makes all stippled draws, whole and in order.
+bool Replay::stipplesLines() const { return c_->lineStippled && c_->api == wire::Api::Desktop && !c_->core && gl.glIsEnabled(GL_LINE_STIPPLE) != GL_FALSE; }
 
 // Twice: as it was.
 void Replay::exchangeDraws() {

@@ -62,8 +62,9 @@ void Replay::glBeginQuery(GLenum target, GLuint id) {
     dropPieces(query);
     query.target = target;
     query.skipped = c_->draw && c_->draw->skipped;
-    const bool multisampled = countsSamples(target) && drawsWindow() && c_->draw && c_->draw->config.samples > 0; // nodes' parts overlap then
-    if (multisampled || target == GL_FRAGMENT_SHADER_INVOCATIONS) {
+    // Regions of whole bins overlap. Nodes with and without a GPU have to decide alike, so the window's buffers decide.
+    const bool overlap = countsSamples(target) && drawsWindow() && c_->draw && (c_->draw->config.samples > 0 || c_->draw->isFlat);
+    if (overlap || target == GL_FRAGMENT_SHADER_INVOCATIONS) {
         c_->countedWhole = true;
         applyScissors();
     }

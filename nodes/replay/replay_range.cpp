@@ -208,7 +208,7 @@ std::span<const std::byte> Replay::noteRangeDraw(Window& w, uint16_t opcode, std
     uint64_t first = 0, last = 0;
     if (!shares(w, cost, first, last)) return arguments;
     const auto numbers = c_->shared->primitiveIds.find(name(Kind::Program, c_->program));
-    bool cuts = c.count >= 0 && each > 0 && count <= INT32_MAX && instances == 1 && !c_->pipelineBound && (c_->program == 0 || (numbers != c_->shared->primitiveIds.end() && !numbers->second));
+    bool cuts = c.count >= 0 && each > 0 && count <= INT32_MAX && instances == 1 && !c_->pipelineBound && !stipplesLines() && (c_->program == 0 || (numbers != c_->shared->primitiveIds.end() && !numbers->second));
     if (cuts && c.indices >= 0) cuts = wordAt(arguments, c.indices) == record::kTagOffset && !gl.glIsEnabled(GL_PRIMITIVE_RESTART) && (c_->version < 43 || !gl.glIsEnabled(GL_PRIMITIVE_RESTART_FIXED_INDEX));
     if (!cuts) { // whole: of the node in whose range it begins
         mute(w, first != 0 || last == 0);

@@ -15,6 +15,7 @@
 
 #include "gl_opcodes.hpp"
 #include "nodes/replay/pass_place.hpp"
+#include "nodes/replay/raster_bins.hpp"
 #include "nodes/replay/replay.hpp"
 #include "nodes/replay/window_use.hpp"
 
@@ -56,10 +57,14 @@ void Replay::placePart(Window& w) {
     w.drawn = copiesOthers() && w.drawsAll && !w.lean && hasTurn(w.turn) ? w.whole : w.region;
     if (w.range.muted) w.drawn = {};
     if (takesRanges() && !collects()) w.region = {}; // the collector's
-    if (w.config.samples == 0 || w.drawn.empty()) return;
-    // A driver may treat multisampled lines at scissor edges off its own raster of 64 pixels (accuracy, M4).
-    const int32_t x0 = w.drawn.x / 64 * 64, y0 = w.drawn.y / 64 * 64;
-    w.drawn = intersect({x0, y0, (w.drawn.right() + 63) / 64 * 64 - x0, (w.drawn.top() + 63) / 64 * 64 - y0}, interleaves(&w) ? inPass(config_.pass, w.whole) : w.whole);
+    if (!drawsWholeBins(w) || w.drawn.empty()) return;
+    w.drawn = intersect(widenToBins(w.drawn, surfaceOf(w, false)), interleaves(&w) ? inPass(config_.pass, w.whole) : w.whole);
+}
+
+// Whether pixels of the window may depend on where the scissor cuts a bin of the driver.
+bool Replay::drawsWholeBins(const Window& w) const {
+    if (config_.plant == "edges") return false;
+    return w.config.samples > 0 || (config_.rastersInBins && w.isFlat);
 }
 
 // Which of the buffers a clear, as the state is now, gives one value everywhere.

@@ -6,7 +6,8 @@ out one frame's draws; economy loses what has changed in commands that a node ha
 all uploads that it has held back; of nodes that share draws, range loses the others' pictures, tie lets the
 earlier draw win where depths are equal, order takes later draws for earlier ones, and band loses a band that a node
 has put together; where areas move, early has one node take them before the clear that the others take them at, and uncleared all
-nodes without one; where shares of draws move, lateshare has one node take those that were announced before. Without a fault, the same comparison must be exact.
+nodes without one; where shares of draws move, lateshare has one node take those that were announced before; edges cuts
+regions inside the bins of a software driver. Without a fault, the same comparison must be exact.
 """
 
 import argparse
@@ -20,9 +21,10 @@ SWAPS = ["--programs", "range_ties", "--layouts", "1x1", "--options", "--display
 ECONOMY = ["--programs", "same_scene,immediate", "--layouts", "2x1", "--options", "--display none --economy on"]
 HELD = ["--programs", "late_uploads", "--layouts", "2x1", "--options", "--display none --economy on", "--frames", "3"]
 CHUNKS = ["--programs", "fixed_lighting,range_ties", "--layouts", "1x1", "--options", "--display none --db 3 --chunk-queue 40", "--frames", "12"]
+EDGES = ["--programs", "blended_rectangles", "--layouts", "3x2", "--frames", "4"]
 AREAS = ["--programs", "clears_in_turns,es2_scene", "--tile-queue", "16x16", "--layouts", "2,3", "--frames", "12"]
 # What is run, and the faults that it must find.
-SETTINGS = ((["--layouts", "2x2"], ("opcode", "shift", "drop")), (RANGES, ("range", "tie", "order")), (SWAPS, ("band", "order")), (ECONOMY, ("economy",)), (HELD, ("held",)), (AREAS, ("early", "uncleared")), (CHUNKS, ("lateshare",)))
+SETTINGS = ((["--layouts", "2x2"], ("opcode", "shift", "drop")), (RANGES, ("range", "tie", "order")), (SWAPS, ("band", "order")), (ECONOMY, ("economy",)), (HELD, ("held",)), (EDGES, ("edges",)), (AREAS, ("early", "uncleared")), (CHUNKS, ("lateshare",)))
 
 
 def compare(arguments, setting, fault):

@@ -15,7 +15,7 @@ GROUPS = {
                "pixels_draw", "copied_samples", "copied_scene", "pixels_read", "texture_reads", "sized_reads", "compressed_reads", "reads_later", "reads_owed", "reads_threads",
                "front_buffer", "front_and_back", "single_buffered", "frames_kept", "clears_in_turns", "uneven_cost", "uneven_draws",
                "accum_buffer"],
-    "state": ["raster_state", "blend_modes", "clipping", "fixed_lighting", "feedback_select",
+    "state": ["raster_state", "blend_modes", "blended_rectangles", "multisampled_lines", "stippled_strips", "clipping", "fixed_lighting", "feedback_select",
               "attribute_stacks", "list_materials", "range_ties", "shared_draws", "arb_programs", "odd_calls", "list_questions", "refused_calls", "refused_core"],
     "shaders": ["glsl_legacy", "glsl_uniforms", "glsl_blocks", "glsl_stages", "spirv_shaders", "compute_images",
                 "fragment_counters", "fragment_sums", "frag_coord", "fragment_places", "many_triangles", "no_depth", "queries", "queries_later",
@@ -26,7 +26,7 @@ GROUPS = {
     # No test runs it: the one driver here that has images without a binding ends in it at times (docs/exactness.md).
     "bindless_images": ["bindless_images"],
     "windows": ["es1_scene", "es1_draw_texture", "es2_scene", "es3_scene", "es_pipelines", "es_feedback_limit", "egl_desktop",
-                "egl_offscreen", "egl_images", "egl_pixmaps",
+                "egl_offscreen", "egl_blended_rectangles", "egl_images", "egl_pixmaps",
                 "egl_pbuffer_textures", "egl_bound_pbuffers", "egl_sync_order", "draw_read_mix", "fence_order", "flush_control", "surfaceless_sharing",
                 "texture_from_pixmap", "debug_messages",
                 "several_windows", "shared_contexts", "sharing_order", "threads_windows",
