@@ -52,8 +52,8 @@ void BackBufferRead::bindWindow(const Window& window) {
     (where_ == Where::NodesToo ? mural_glReadBuffer : gReal.glReadBuffer)(wanted);
 }
 
-void BackBufferRead::pixels(GLint x, GLint y, GLsizei width, GLsizei height, void* into) const {
-    gReal.glReadPixels(x, y, width, height, GL_RGBA, GL_UNSIGNED_BYTE, into);
+void BackBufferRead::pixels(GLint x, GLint y, GLsizei width, GLsizei height, void* into, GLenum type) const {
+    gReal.glReadPixels(x, y, width, height, GL_RGBA, type, into);
 }
 
 } // namespace mural

@@ -7,19 +7,21 @@
 #include "interposer/asking.hpp"
 #include "interposer/back_buffer.hpp"
 #include "interposer/context.hpp"
+#include "interposer/log.hpp"
 #include "interposer/session.hpp"
+#include "interposer/window_colours.hpp"
 
 namespace mural {
 
 namespace {
 
 // Reads the window's back buffer into `mine` by the local driver and, through askPixels, from the nodes.
-const void* readBoth(ThreadState& t, Window& w, void* mine) {
+const void* readBoth(ThreadState& t, Window& w, void* mine, GLenum type) {
     const BackBufferRead read(*t.context, w, BackBufferRead::Where::NodesToo);
     if (!read.ready()) return nullptr;
     const auto width = static_cast<GLsizei>(w.config.width), height = static_cast<GLsizei>(w.config.height);
-    read.pixels(0, 0, width, height, mine);
-    return askPixels(t, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, 0, "--verify");
+    read.pixels(0, 0, width, height, mine, type);
+    return askPixels(t, 0, 0, width, height, GL_RGBA, type, 0, "--verify");
 }
 
 // MURAL_VERIFY_DUMP=folder: both pictures of frames that differ, as PPM.
@@ -43,32 +45,25 @@ void verifyFrame(ThreadState& t, Window& w) {
     Session* s = Session::current();
     if (!t.context || t.context->drawWindow != w.id || w.config.width == 0) return;
     const size_t pixels = size_t{w.config.width} * w.config.height;
-    auto* mine = static_cast<uint8_t*>(std::malloc(pixels * 4));
+    const ColourReads reads = colourReadsOf(*t.context, w);
+    if (w.config.red > 8 && reads.type == GL_UNSIGNED_BYTE)
+        MURAL_SAY_ONCE("a window has %d bits per channel; --verify compares 8 of them, as OpenGL ES before 3 reads no more", w.config.red);
+    auto* mine = static_cast<uint8_t*>(std::malloc(pixels * reads.pixelBytes));
     if (!mine) return;
-    const auto* theirs = static_cast<const uint8_t*>(readBoth(t, w, mine));
-    uint64_t differing = 0, squared = 0;
-    uint32_t largest = 0;
-    for (size_t i = 0; theirs && i < pixels; ++i) {
-        uint32_t worst = 0;
-        for (size_t k = 0; k < 4; ++k) {
-            const int d = mine[4 * i + k] - theirs[4 * i + k];
-            const auto size = static_cast<uint32_t>(d < 0 ? -d : d);
-            worst = size > worst ? size : worst;
-            squared += uint64_t{size} * size;
-        }
-        differing += worst > 0;
-        largest = worst > largest ? worst : largest;
-    }
+    auto* theirs = const_cast<void*>(readBoth(t, w, mine, reads.type)); // in memory of this thread
     if (theirs) {
+        const ColourDifference difference = compareColours(mine, theirs, pixels, reads.type);
         auto* h = s->header();
         const uint64_t frame = h->verifiedFrames.fetch_add(1) + 1;
         h->verifiedPixels.fetch_add(pixels);
-        h->differingPixels.fetch_add(differing);
-        h->squaredDifference.fetch_add(squared);
-        if (largest > h->largestDifference.load()) h->largestDifference.store(largest);
-        if (differing) {
+        h->differingPixels.fetch_add(difference.differingPixels);
+        h->squaredDifference.fetch_add(difference.squared);
+        if (difference.largest > h->largestDifference.load()) h->largestDifference.store(difference.largest);
+        if (difference.differingPixels) {
+            reduceToBytes(mine, pixels, reads.type);
+            reduceToBytes(theirs, pixels, reads.type);
             dump(w, static_cast<uint32_t>(frame), "native", mine);
-            dump(w, static_cast<uint32_t>(frame), "wall", theirs);
+            dump(w, static_cast<uint32_t>(frame), "wall", static_cast<const uint8_t*>(theirs));
         }
     }
     std::free(mine);

@@ -19,6 +19,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "common/picture_format.hpp"
 #include "common/pixel_viewport.hpp"
 #include "common/tile_grid.hpp"
 #include "common/viewport.hpp"
@@ -27,6 +28,7 @@
 #include "nodes/exchange/picture_part.hpp"
 #include "nodes/gl/gl_platform.hpp"
 #include "nodes/pictures/picture_read.hpp"
+#include "nodes/replay/colour_words.hpp"
 #include "nodes/replay/handle_table.hpp"
 #include "nodes/replay/name_table.hpp"
 #include "nodes/replay/program_recipes.hpp"
@@ -73,6 +75,7 @@ struct ReplayConfig {
     bool cull = false;     // whole primitives outside of the region are dropped by rewritten shaders
     bool lean = false;     // framebuffers of the tile's size; false: of the picture's size (exact)
     Readback readback = Readback::Direct; // of Frame::read
+    bool deepPictures = false; // allows Bgr10A2 in Frame::format
     std::string plant;     // MURAL_PLANT: a fault on purpose, for tests of the tests
     ReplayLimits limits;
 };
@@ -82,11 +85,12 @@ struct ReplayOutputs {
     // Part of an answer; `last` closes this node's part.
     std::function<void(const wire::AnswerHeader&, std::span<const std::byte>)> answer;
     // A frame of the window is complete. `pixels` reads the given rectangle (window coordinates),
-    // BGRA, rows bottom first, tightly packed; only valid during the call.
+    // rows bottom first, tightly packed; only valid during the call.
     struct Frame {
         uint32_t client, window, frame;
         wire::WindowConfig config;
         PixelViewport region; // this node's part of the picture
+        PictureFormat format; // of `pixels` and `read`
         PixelViewport picture; // all of it: the window's size, or every nth pixel of it
         bool drawnWhole;      // nothing is cut to the part (Shared::allDrawn)
         bool keepsPicture;    // frames build on the one before: one node goes on drawing them
@@ -221,7 +225,8 @@ private:
         bool destroyed = false; // freed when it is current nowhere
         bool lean = false;      // the framebuffer has the region's size
         bool widens = true;     // to the window's size, when that is needed; not when that has failed
-        wire::WindowConfig config{};
+        wire::WindowConfig config{}; // channel bits are those of `surface`
+        uint8_t wishedRed = 0;       // red bits of the program's window; equal on all nodes
         std::unique_ptr<gl::Surface> surface;
         std::unique_ptr<gl::Surface> front;  // where surfaces have one colour buffer: the front, once it is used
         bool frontStale = false;             // its colours have to come from `surface`
@@ -495,10 +500,12 @@ private:
     const std::byte* readRegion(const PixelViewport& r, GLenum format, GLenum type, size_t bytes, Beyond beyond = Beyond::Black);
     const std::byte* readShown(Window& w, const PixelViewport& r, bool front);
     [[nodiscard]] bool resolves(const Window& w) const;
-    const std::byte* readResolved(const PixelViewport& r, GLenum format, size_t bytes);
+    const std::byte* readResolved(const PixelViewport& r, GLenum format, const ColourWords& words);
+    [[nodiscard]] PictureFormat pictureFormatOf(const Window& w) const; // of readShown()
     void packTightly(bool tight);
     void withPlainTransfer(const std::function<void()>& call);
-    void fillColor(const PixelViewport& r, const void* rgba);
+    void withoutReadClamp(const std::function<void()>& call);
+    void fillColor(const PixelViewport& r, const void* rgba, const ColourWords& words = kByteWords);
     // replay_pictures.cpp
     [[nodiscard]] bool hasFences(const ContextState& c) const;
     std::shared_ptr<LaterReads> laterReads();
@@ -511,7 +518,7 @@ private:
     const GLfloat* depthAsFloats(const Window& w, const PixelViewport& r, const void* pixels);
     std::vector<GLfloat> depths_;
     gl::Context* fillerOf(Window& w);
-    void fillByOtherContext(const PixelViewport& r, GLbitfield plane, const void* pixels);
+    void fillByOtherContext(const PixelViewport& r, GLbitfield plane, const void* pixels, GLenum colourType = GL_UNSIGNED_BYTE);
     // replay_images.cpp
     bool ownCreateImage(Args& in);
     bool ownDestroyImage(Args& in);
@@ -716,7 +723,7 @@ private:
     void applyTileValues();
     void widen(GLfloat pixels);
     // replay_copies.cpp
-    void gatherForCopy(const PixelViewport& r, GLbitfield plane, const void* pixels);
+    void gatherForCopy(const PixelViewport& r, GLbitfield plane, const void* pixels, const ColourWords& words);
     void gatherDepthStencil(Gathered& g, GLbitfield plane, const void* pixels);
     void forgetGathered();
     void fromWindow(const PixelViewport& source, const std::function<void(GLint, GLint)>& call);

@@ -189,6 +189,7 @@ bool Replay::ownWindow(Args& in) {
     if (config->stereo && !w.config.stereo && config_.pass.eye == Eye::Cyclop && config_.answers && config_.node == 0)
         out_.log("the program draws into a buffer for each eye: the left one's is shown; --stereo quad, side-by-side or anaglyph shows both");
     w.config = *config;
+    w.wishedRed = config->red;
     const auto width = static_cast<int32_t>(config->width), height = static_cast<int32_t>(config->height);
     w.whole = {0, 0, width, height};
     if (moves() && (!w.surface || w.surface->width() != std::max(width, 1) || w.surface->height() != std::max(height, 1))) divideAnew(w);
@@ -231,6 +232,7 @@ void Replay::takeBitsOfSurface(Window& w) {
     w.config.red = static_cast<uint8_t>(there.red);
     w.config.green = static_cast<uint8_t>(there.green);
     w.config.blue = static_cast<uint8_t>(there.blue);
+    w.config.alpha = static_cast<uint8_t>(there.alpha);
     w.config.depth = static_cast<uint8_t>(there.depth);
     w.config.stencil = static_cast<uint8_t>(there.stencil);
     w.config.samples = static_cast<uint8_t>(there.samples);
@@ -269,6 +271,7 @@ bool Replay::ownSwap(Args& in, bool front) {
         f.notSplit = takesRanges() && !w.range.wasSplit;
         f.config = w.config;
         f.region = drawsOtherPixels() && !w.region.empty() ? inShown(config_.pass, w.part) : regionOf(w, front);
+        f.format = PictureFormat::Bgra8;
         f.picture = drawsOtherPixels() ? inShown(config_.pass, w.whole) : w.whole;
         f.keepsPicture = keepsTurn(w);
         f.areas = moves() ? w.moving.areas->number : 0;
@@ -278,7 +281,7 @@ bool Replay::ownSwap(Args& in, bool front) {
         if (!front && f.sound) w.frontStaled = false;
         showedUnsound_ = showedUnsound_ || (!f.sound && !w.skipped && w.begun);
         // The thread that swaps need not be the one that has drawn: GLX takes any window.
-        if (bound_ && &w == boundDraw_ && w.surface) ours = &w, f.pixels = [this, &w, front](const PixelViewport& r) {
+        if (bound_ && &w == boundDraw_ && w.surface) ours = &w, f.format = pictureFormatOf(w), f.pixels = [this, &w, front](const PixelViewport& r) {
             ContextState* const own = std::exchange(c_, bound_);
             const bool zoomed = (w.plain ? Zoom{} : config_.pass.zoom) != config_.pass.shown && !r.empty();
             const std::byte* pixels = zoomed ? readScaled(w, r, front) : hasKernel() && w.plain && !r.empty() ? readEveryNth(w, r, front) : readShown(w, r, front);
