@@ -259,6 +259,8 @@ struct WindowConfig {
     uint32_t nativeLow, nativeHigh; // X window id, 0 when there is none
 };
 static_assert(sizeof(WindowConfig) == 28);
+// In doubleBuffer: the front buffer begins black, and swaps do not change it.
+constexpr uint8_t kOwnFront = 2;
 
 // In CreateContext's flags: the program wants to be told when the context is lost.
 constexpr uint32_t kLosesOnReset = 0x80000000;

@@ -690,6 +690,8 @@ private:
     void readBufferOfWindow(GLenum buffer);
     void buffersChanged(GLenum drawnBefore);
     void backToFront(Window& w);
+    void beginFront(Window& w);
+    void clearToBlack(gl::Surface& current);
     void showBack(Window& w);
     void copySurface(gl::Surface& from, gl::Surface& to, GLbitfield planes);
     void depthForReading();

@@ -39,6 +39,7 @@ struct Kind {
     XVisualInfo visual;
     int alphaBits, samples;
     bool desktop = true, es3 = false;
+    bool readsFront = true; // EGL's hold unwritten memory of the process with Mesa's software driver
     std::function<void(::Window)> open;
     std::function<void()> swap, close;
 };
@@ -159,6 +160,11 @@ void tryKind(const Kind& kind) {
         checkNoError("drawing");
         kind.swap();
         seeWindow(kind, window.id());
+        if (kind.readsFront) {
+            glReadBuffer(GL_FRONT);
+            readAs("front", GL_UNSIGNED_BYTE, 4);
+            glReadBuffer(GL_BACK);
+        }
     }
     kind.close();
 }
@@ -191,7 +197,7 @@ void tryGlx() {
         if (samples != 0 && (samples != 4 || ask(GLX_ALPHA_SIZE) == 0)) {
             continue;
         }
-        Kind kind{nameOf("GLX", ask(GLX_RED_SIZE), ask(GLX_ALPHA_SIZE), samples, visual->depth), *visual, ask(GLX_ALPHA_SIZE), samples, true, false, {}, {}, {}};
+        Kind kind{nameOf("GLX", ask(GLX_RED_SIZE), ask(GLX_ALPHA_SIZE), samples, visual->depth), *visual, ask(GLX_ALPHA_SIZE), samples, true, false, true, {}, {}, {}};
         if (!tried.insert(kind.name).second) {
             continue;
         }
@@ -243,7 +249,7 @@ void tryEgl(const EglApi& api) {
         if (visual == nullptr || ask(EGL_SAMPLES) != 0) {
             continue;
         }
-        Kind kind{nameOf(api.name, ask(EGL_RED_SIZE), ask(EGL_ALPHA_SIZE), 0, visual->depth), *visual, ask(EGL_ALPHA_SIZE), 0, api.api == EGL_OPENGL_API, api.major == 3, {}, {}, {}};
+        Kind kind{nameOf(api.name, ask(EGL_RED_SIZE), ask(EGL_ALPHA_SIZE), 0, visual->depth), *visual, ask(EGL_ALPHA_SIZE), 0, api.api == EGL_OPENGL_API, api.major == 3, false, {}, {}, {}};
         kind.visual.bits_per_rgb = ask(EGL_RED_SIZE);
         if (!tried.insert(kind.name).second) {
             continue;
