@@ -9,6 +9,7 @@
 #include "interposer/context.hpp"
 #include "interposer/pixel_store.hpp"
 #include "interposer/real_gl.hpp"
+#include "interposer/window_colours.hpp"
 
 extern "C" void mural_glBindFramebuffer(GLenum target, GLuint framebuffer);
 extern "C" void mural_glReadBuffer(GLenum buffer);
@@ -24,14 +25,18 @@ bool canBindAgain(GLint framebuffer) {
 
 bool isExiting = false;
 
-// Mesa finds formats of GL_UNSIGNED_BYTE in a table. It creates the table at the first such read and frees it when the process
+// Mesa finds formats of unpacked types in a table. It creates the table at the first such read and frees it when the process
 // begins to exit, so that reads after that crash. The packed type gives the same bytes without the table; OpenGL ES lacks it.
-GLenum typeOfReads(const Context& context) { return context.api == wire::Api::Desktop ? GL_UNSIGNED_INT_8_8_8_8_REV : GL_UNSIGNED_BYTE; }
+GLenum withoutTable(const Context& context, GLenum type) {
+    static_assert(std::endian::native == std::endian::little);
+    return type == GL_UNSIGNED_BYTE && context.api == wire::Api::Desktop ? GL_UNSIGNED_INT_8_8_8_8_REV : type;
+}
 
-bool isTooLate(const Context& context) {
+bool isTooLate(const Context& context, const Window& window) {
     static bool registered = false;
     if (!std::exchange(registered, true)) std::atexit([] { isExiting = true; });
-    return isExiting && context.isMesa && typeOfReads(context) == GL_UNSIGNED_BYTE;
+    const GLenum type = withoutTable(context, colourReadsOf(context, window).type);
+    return isExiting && context.isMesa && (type == GL_UNSIGNED_BYTE || type == GL_FLOAT);
 }
 
 // The program's own errors come before ours.
@@ -46,7 +51,7 @@ BackBufferRead::BackBufferRead(Context& context, const Window& window, Where whe
     const bool twoTargets = context.version >= 30;
     target_ = twoTargets ? GL_READ_FRAMEBUFFER : GL_FRAMEBUFFER;
     if (gReal.glBindFramebuffer) gReal.glGetIntegerv(twoTargets ? GL_READ_FRAMEBUFFER_BINDING : GL_FRAMEBUFFER_BINDING, &framebuffer_);
-    ready_ = pack_.ready() && canBindAgain(framebuffer_) && !isTooLate(context);
+    ready_ = pack_.ready() && canBindAgain(framebuffer_) && !isTooLate(context, window);
     if (ready_) bindWindow(window);
 }
 
@@ -67,9 +72,8 @@ void BackBufferRead::bindWindow(const Window& window) {
     (where_ == Where::NodesToo ? mural_glReadBuffer : gReal.glReadBuffer)(wanted);
 }
 
-void BackBufferRead::pixels(GLint x, GLint y, GLsizei width, GLsizei height, void* into) const {
-    static_assert(std::endian::native == std::endian::little);
-    gReal.glReadPixels(x, y, width, height, GL_RGBA, typeOfReads(context_), into);
+void BackBufferRead::pixels(GLint x, GLint y, GLsizei width, GLsizei height, void* into, GLenum type) const {
+    gReal.glReadPixels(x, y, width, height, GL_RGBA, withoutTable(context_, type), into);
 }
 
 } // namespace mural

@@ -24,8 +24,8 @@ public:
     // False: something is bound that is deleted already and could not be bound again, or the process exits and the driver has
     // freed what reads need; nothing is read.
     [[nodiscard]] bool ready() const { return ready_; }
-    // RGBA, one byte each, tightly packed; what lies outside the buffer is left as it is.
-    void pixels(GLint x, GLint y, GLsizei width, GLsizei height, void* into) const;
+    // Reads RGBA, tightly packed. Leaves memory of pixels outside the buffer unchanged.
+    void pixels(GLint x, GLint y, GLsizei width, GLsizei height, void* into, GLenum type = GL_UNSIGNED_BYTE) const;
 
 private:
     void bindWindow(const Window& window);

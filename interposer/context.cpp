@@ -200,6 +200,21 @@ void threadLeaves(ThreadState& t) {
     leaveContext(t);
 }
 
+namespace {
+
+// Returns whether the driver keeps a front buffer separate from the X window's content: black until the program draws into it.
+// Mesa's software drivers do.
+bool hasOwnFront() {
+    const auto* renderer = reinterpret_cast<const char*>(gReal.glGetString(GL_RENDERER));
+    return renderer && (std::strncmp(renderer, "llvmpipe", 8) == 0 || std::strncmp(renderer, "softpipe", 8) == 0);
+}
+
+void learnFront(Window& w) {
+    if (!w.announced && w.config.doubleBuffer && !w.config.isPbuffer && hasOwnFront()) w.config.doubleBuffer = wire::kOwnFront;
+}
+
+} // namespace
+
 void becameCurrent(Context* context, Window* draw, Window* read) {
     ThreadState& t = ownThreadState();
     Session* s = Session::get();
@@ -235,6 +250,7 @@ void becameCurrent(Context* context, Window* draw, Window* read) {
     for (Window* w : {draw, read}) {
         if (!w) continue;
         if (!w->sizeKnown) updateWindowSize(t, *w);
+        learnFront(*w);
         announce(t, *w);
     }
     t.drawingAwaited = context->hasDefaultSamples;

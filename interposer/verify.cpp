@@ -7,8 +7,10 @@
 #include "interposer/asking.hpp"
 #include "interposer/back_buffer.hpp"
 #include "interposer/context.hpp"
+#include "interposer/log.hpp"
 #include "interposer/session.hpp"
 #include "interposer/window_binding.hpp"
+#include "interposer/window_colours.hpp"
 #include "interposer/window_size.hpp"
 
 namespace mural {
@@ -30,48 +32,29 @@ void dump(const Window& w, uint32_t frame, const char* which, const uint8_t* rgb
     fclose(f);
 }
 
-struct Difference {
-    uint64_t pixels = 0, squared = 0;
-    uint32_t largest = 0;
-};
-
-Difference differenceOf(const uint8_t* mine, const uint8_t* theirs, size_t pixels) {
-    Difference difference;
-    for (size_t i = 0; i < pixels; ++i) {
-        uint32_t worst = 0;
-        for (size_t k = 0; k < 4; ++k) {
-            const int d = mine[4 * i + k] - theirs[4 * i + k];
-            const auto size = static_cast<uint32_t>(d < 0 ? -d : d);
-            worst = size > worst ? size : worst;
-            difference.squared += uint64_t{size} * size;
-        }
-        difference.pixels += worst > 0;
-        difference.largest = worst > difference.largest ? worst : difference.largest;
-    }
-    return difference;
-}
-
 // Precondition: the window is current; `mine` has room for its pixels.
-void compare(ThreadState& t, Window& w, uint8_t* mine, size_t pixels) {
+void compare(ThreadState& t, Window& w, uint8_t* mine, size_t pixels, const ColourReads& reads) {
     using capture::Uncompared;
     const BackBufferRead read(*t.context, w, BackBufferRead::Where::NodesToo);
     if (!read.ready()) return countUncompared(Uncompared::NotReadable);
     const auto width = static_cast<GLsizei>(w.config.width), height = static_cast<GLsizei>(w.config.height);
-    read.pixels(0, 0, 1, 1, mine); // Mesa cuts a read to the size that its buffers had before it
-    read.pixels(0, 0, width, height, mine);
+    read.pixels(0, 0, 1, 1, mine, reads.type); // Mesa clips a read to the size that its buffers had before it
+    read.pixels(0, 0, width, height, mine, reads.type);
     if (driverError() != GL_NO_ERROR) return countUncompared(Uncompared::NotReadable);
-    const auto* theirs = static_cast<const uint8_t*>(askPixels(t, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, 0, "--verify"));
+    auto* theirs = const_cast<void*>(askPixels(t, 0, 0, width, height, GL_RGBA, reads.type, 0, "--verify")); // in memory of this thread
     if (!theirs) return countUncompared(Uncompared::NoAnswer);
-    const Difference difference = differenceOf(mine, theirs, pixels);
+    const ColourDifference difference = compareColours(mine, theirs, pixels, reads.type);
     auto* h = Session::current()->header();
     const uint64_t frame = h->verifiedFrames.fetch_add(1) + 1;
     h->verifiedPixels.fetch_add(pixels);
-    h->differingPixels.fetch_add(difference.pixels);
+    h->differingPixels.fetch_add(difference.differingPixels);
     h->squaredDifference.fetch_add(difference.squared);
     if (difference.largest > h->largestDifference.load()) h->largestDifference.store(difference.largest);
-    if (difference.pixels == 0) return;
+    if (difference.differingPixels == 0) return;
+    reduceToBytes(mine, pixels, reads.type);
+    reduceToBytes(theirs, pixels, reads.type);
     dump(w, static_cast<uint32_t>(frame), "native", mine);
-    dump(w, static_cast<uint32_t>(frame), "wall", theirs);
+    dump(w, static_cast<uint32_t>(frame), "wall", static_cast<const uint8_t*>(theirs));
 }
 
 // Returns whether a read would resize the driver's buffers. The new buffers are empty, and the swap would show them.
@@ -92,10 +75,13 @@ void verifyFrame(ThreadState& t, Window& w) {
     if (!t.context) return countUncompared(Uncompared::NoContext);
     if (w.config.width == 0 || w.config.height == 0 || wouldChangeSize(w)) return countUncompared(Uncompared::NoSize);
     const size_t pixels = size_t{w.config.width} * w.config.height;
-    auto* mine = static_cast<uint8_t*>(std::calloc(pixels, 4));
+    const ColourReads reads = colourReadsOf(*t.context, w);
+    if (w.config.red > 8 && reads.type == GL_UNSIGNED_BYTE)
+        MURAL_SAY_ONCE("a window has %d bits per channel; --verify compares 8 of them, as OpenGL ES before 3 reads no more", w.config.red);
+    auto* mine = static_cast<uint8_t*>(std::calloc(pixels, reads.pixelBytes));
     if (!mine) return countUncompared(Uncompared::NoMemory);
     const WindowBinding binding(t, w);
-    if (binding.ready()) compare(t, w, mine, pixels);
+    if (binding.ready()) compare(t, w, mine, pixels, reads);
     else countUncompared(Uncompared::NotBindable);
     std::free(mine);
 }

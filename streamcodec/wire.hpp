@@ -15,7 +15,7 @@ namespace mural::wire {
 
 constexpr uint32_t kMagic = 0x4d52534d; // "MSRM"
 constexpr uint32_t kVersion = 4;      // of packets and records; recordings have these, too
-constexpr uint32_t kBatchVersion = 9; // of batches (economy/), head commands and messages, which only head and nodes exchange
+constexpr uint32_t kBatchVersion = 10; // of batches (economy/), head commands and messages, which only head and nodes exchange
 
 // Which capture stream a packet belongs to: client (app process) and thread of it.
 // streamOf(0, 0) is the head's own stream: its payload is one HeadCommand.
@@ -196,11 +196,12 @@ struct PictureHeader {
     uint32_t client;
     uint32_t window;
     uint32_t frame;
-    int32_t x, y, w, h; // lower left origin, rows bottom first, BGRA 8 bits, tightly packed
+    int32_t x, y, w, h; // lower left origin, rows bottom first, tightly packed
     uint32_t windowWidth, windowHeight;
     uint32_t nativeLow, nativeHigh; // WindowConfig's X window id, 0 when there is none
+    uint32_t format; // PictureFormat (common/picture_format.hpp)
 };
-static_assert(sizeof(PictureHeader) == 44);
+static_assert(sizeof(PictureHeader) == 48);
 
 // Mural's own opcodes in capture streams: below kFirstGlOpcode; GL commands have theirs from
 // streamcodec/registry/opcodes.lock.
@@ -242,6 +243,9 @@ constexpr uint32_t kPlainTransfer = 0x80000000;
 constexpr uint32_t kResolved = 0x40000000;
 // In planes of kOpFillWindow: for the copy that is next. A window with samples stays as it is.
 constexpr uint32_t kForCopy = 0x80000000;
+// In planes of kOpFillWindow: colours are words of GL_UNSIGNED_INT_2_10_10_10_REV, or four floats. Default: four bytes.
+constexpr uint32_t kTenBits = 0x40000000;
+constexpr uint32_t kFloats = 0x20000000;
 
 // In kOpSwap and kOpFrontPicture: drawn and counted as any other, but no picture is sent and no credit given.
 constexpr uint32_t kUnseenFrame = 0;
@@ -255,6 +259,8 @@ struct WindowConfig {
     uint32_t nativeLow, nativeHigh; // X window id, 0 when there is none
 };
 static_assert(sizeof(WindowConfig) == 28);
+// In doubleBuffer: the front buffer begins black, and swaps do not change it.
+constexpr uint8_t kOwnFront = 2;
 
 // In CreateContext's flags: the program wants to be told when the context is lost.
 constexpr uint32_t kLosesOnReset = 0x80000000;

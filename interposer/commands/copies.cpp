@@ -10,6 +10,7 @@
 #include "interposer/read_area.hpp"
 #include "interposer/real_gl.hpp"
 #include "interposer/session.hpp"
+#include "interposer/window_colours.hpp"
 
 using namespace mural;
 
@@ -48,14 +49,16 @@ void gatherNow(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfiel
         uint32_t bits;
         uint32_t bytes;
     };
-    const Plane kinds[] = {{GL_COLOR_BUFFER_BIT, GL_RGBA, GL_UNSIGNED_BYTE, 8, 4},
+    const ColourReads colours = colourReadsOf(*t.context, *window);
+    const Plane kinds[] = {{GL_COLOR_BUFFER_BIT, GL_RGBA, colours.type, 8, colours.pixelBytes},
                            {GL_DEPTH_BUFFER_BIT, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, window->config.depth, 4},
                            {GL_STENCIL_BUFFER_BIT, GL_STENCIL_INDEX, GL_UNSIGNED_BYTE, window->config.stencil, 1}};
     for (const Plane& p : kinds) {
         if (!(planes & p.bit) || p.bits == 0) continue;
         const bool resolves = p.bit == GL_COLOR_BUFFER_BIT && window->config.samples > 0;
         const void* pixels = askPixels(t, gx, gy, gw, gh, p.format, p.type, wire::kPlainTransfer | (resolves ? wire::kResolved : 0), by);
-        if (pixels) records::fillWindow(t, gx, gy, gw, gh, forCopy ? p.bit | wire::kForCopy : p.bit, DataArg::of(pixels, uint64_t(gw) * uint64_t(gh) * p.bytes));
+        const uint32_t flags = (forCopy ? wire::kForCopy : 0) | (p.bit == GL_COLOR_BUFFER_BIT ? colours.fillFlag : 0);
+        if (pixels) records::fillWindow(t, gx, gy, gw, gh, p.bit | flags, DataArg::of(pixels, uint64_t(gw) * uint64_t(gh) * p.bytes));
     }
 }
 

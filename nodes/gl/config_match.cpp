@@ -7,25 +7,35 @@
 namespace mural::gl {
 namespace {
 
+// Acceptable substitutes for a value of an attribute.
+enum class Other { None, Any, AnyButZero };
+
 struct Attribute {
     const char* name;
     int (*value)(const SurfaceConfig&);
-    bool nearest = false; // another value gives a picture, too
+    Other other = Other::None;
 };
 
 // A count of one sample means no multisampling, as with none: drivers report either.
 const std::array<Attribute, 10> kAttributes{{
-    {"red", [](const SurfaceConfig& c) { return c.red; }, true},
-    {"green", [](const SurfaceConfig& c) { return c.green; }, true},
-    {"blue", [](const SurfaceConfig& c) { return c.blue; }, true},
-    {"alpha", [](const SurfaceConfig& c) { return c.alpha; }},
-    {"depth", [](const SurfaceConfig& c) { return c.depth; }, true},
-    {"stencil", [](const SurfaceConfig& c) { return c.stencil; }, true},
-    {"samples", [](const SurfaceConfig& c) { return c.samples <= 1 ? 0 : c.samples; }, true},
+    {"red", [](const SurfaceConfig& c) { return c.red; }, Other::Any},
+    {"green", [](const SurfaceConfig& c) { return c.green; }, Other::Any},
+    {"blue", [](const SurfaceConfig& c) { return c.blue; }, Other::Any},
+    {"alpha", [](const SurfaceConfig& c) { return c.alpha; }, Other::AnyButZero},
+    {"depth", [](const SurfaceConfig& c) { return c.depth; }, Other::Any},
+    {"stencil", [](const SurfaceConfig& c) { return c.stencil; }, Other::Any},
+    {"samples", [](const SurfaceConfig& c) { return c.samples <= 1 ? 0 : c.samples; }, Other::Any},
     {"accum", [](const SurfaceConfig& c) { return c.accum; }},
     {"srgb", [](const SurfaceConfig& c) { return c.srgb ? 1 : 0; }},
     {"stereo", [](const SurfaceConfig& c) { return c.stereo ? 1 : 0; }},
 }};
+
+// Returns whether a surface with `offered` can replace one with `wish`. An absent alpha channel reads as 1 in blending, so zero
+// and non-zero alpha never replace each other.
+bool isAcceptable(const Attribute& attribute, int wish, int offered) {
+    if (offered == wish || attribute.other == Other::Any) return true;
+    return attribute.other == Other::AnyButZero && wish != 0 && offered != 0;
+}
 
 // Of values that there are, for one that there is not.
 int nearestTo(int wish, const std::set<int>& offered) {
@@ -61,8 +71,11 @@ Result<size_t> matchConfig(const std::string& backend,
         std::set<int> offered;
         for (size_t i : left) offered.insert(kAttributes[a].value(candidates[i].bits));
         const int wished = kAttributes[a].value(wish);
-        if (!offered.contains(wished) && !kAttributes[a].nearest) return noMatch(backend, a, wish, offered);
-        const int taken = nearestTo(wished, offered);
+        std::set<int> acceptable;
+        for (const int value : offered)
+            if (isAcceptable(kAttributes[a], wished, value)) acceptable.insert(value);
+        if (acceptable.empty()) return noMatch(backend, a, wish, offered);
+        const int taken = nearestTo(wished, acceptable);
         std::erase_if(left, [&](size_t i) { return kAttributes[a].value(candidates[i].bits) != taken; });
     }
     return *std::min_element(left.begin(), left.end(), [&](size_t one, size_t other) {

@@ -1,7 +1,7 @@
 // Choice of a framebuffer configuration whose bits are exactly those asked for: one bit more or less
 // rounds, clears or blends differently, and the picture is no longer the native one. Where a driver has no such
-// one (depths of 32 bits are Mesa's alone), the nearest in depth, stencil, samples and bits of a colour is taken, and
-// told: a picture that may differ is better than none.
+// one (depths of 32 bits are Mesa's alone), the nearest in depth, stencil, samples, bits of a colour and bits of alpha, if
+// there are any, is taken, and told: a picture that may differ is better than none.
 #pragma once
 
 #include <cstddef>

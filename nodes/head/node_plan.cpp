@@ -5,6 +5,7 @@
 #include "nodes/head/codec_choice.hpp"
 #include "nodes/head/composition_choice.hpp"
 #include "nodes/head/tile_split.hpp"
+#include "nodes/pictures/plane_codecs.hpp"
 #include "nodes/session/stream_build.hpp"
 
 namespace mural {
@@ -196,6 +197,17 @@ std::vector<const NodePlan*> swapMembersOf(const SessionConfig& config, const Se
     return members;
 }
 
+namespace {
+
+// Returns true if the node's pixels reach the program's window unchanged: without scaling, averaging or a lossy codec.
+bool keepsPixels(const SessionPlan& plan, const NodePlan& node) {
+    const RenderPass& p = node.pass;
+    const bool scales = !node.way.none() || node.shown || !p.zoom.none() || !p.shown.none();
+    return picturesOf(plan.wall) == 1 && plan.canvases.empty() && !scales && !mayLose(node.pictureCodec);
+}
+
+} // namespace
+
 NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node) {
     NodeSetup setup;
     setup.node = node.node;
@@ -223,6 +235,8 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
     setup.collector = node.collector;
     setup.composition = nameOf(node.composition.value_or(compositor::Strategy::Serial));
     setup.pictureCodec = node.pictureCodec;
+    setup.windowPixels = config.display == Display::App;
+    setup.deepPictures = setup.windowPixels && keepsPixels(plan, node);
     setup.partCodec = node.codec;
     setup.readback = config.readback;
     setup.answers = node.answers;

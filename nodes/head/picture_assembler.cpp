@@ -19,12 +19,15 @@ constexpr size_t kKeptWindows = 8;  // more windows than that rarely swap; of ea
 constexpr size_t kKeptPictures = 6; // latest, in the output's queue, being shown
 
 bool sensible(const PictureHeader& h) {
+    if (h.format > static_cast<uint32_t>(kLastPictureFormat)) return false;
     if (h.windowWidth == 0 || h.windowHeight == 0) return h.w == 0 || h.h == 0;
     if (h.windowWidth > kMaxSide || h.windowHeight > kMaxSide) return false;
     if (uint64_t{h.windowWidth} * h.windowHeight > kMaxPixels) return false;
     return h.x >= 0 && h.y >= 0 && h.w >= 0 && h.h >= 0 &&
            int64_t{h.x} + h.w <= h.windowWidth && int64_t{h.y} + h.h <= h.windowHeight;
 }
+
+PictureFormat formatOf(const PictureHeader& h) { return static_cast<PictureFormat>(h.format); }
 
 } // namespace
 
@@ -42,7 +45,7 @@ PictureAssembler::PictureAssembler(std::vector<int> passOf, Compose compose, Del
 
 Result<void> PictureAssembler::part(int node, const PictureHeader& header, ByteBuffer rows) {
     const auto index = static_cast<size_t>(node);
-    if (!sensible(header)) return Error{"it sent a part that lies outside of its picture"};
+    if (!sensible(header)) return Error{"it sent a part that lies outside of its picture, or of an unknown pixel format"};
     const std::lock_guard lock(mutex_);
     if (!views_.lives(node)) return {};
     if (open_.size() >= kMostOpenPictures) return Error{"it is thousands of pictures ahead"};
@@ -167,9 +170,12 @@ std::shared_ptr<const OwnedPicture> PictureAssembler::assemblePass(const WindowK
     if (any == open.parts.end() && before && near(before->width(), size.windowWidth) && near(before->height(), size.windowHeight)) return before;
     const auto width = static_cast<int>(size.windowWidth);
     const auto height = static_cast<int>(size.windowHeight);
+    auto format = PictureFormat::Bgra8; // that loses nothing of any part
+    for (const Part& part : open.parts)
+        if (mine(part)) format = std::max(format, formatOf(part.header));
     auto picture = spare();
     try {
-        picture->resize(width, height);
+        picture->resize(width, height, format);
     } catch (const std::bad_alloc&) {
         return nullptr;
     }
@@ -179,12 +185,12 @@ std::shared_ptr<const OwnedPicture> PictureAssembler::assemblePass(const WindowK
     if (covered < int64_t{width} * height) {
         const bool sameSize = before && before->width() == width && before->height() == height;
         if (sameSize)
-            std::memcpy(picture->data(), before->view().bgra, before->view().sizeBytes());
+            copyInto(*picture, 0, 0, before->view());
         else
             std::memset(picture->data(), 0, picture->view().sizeBytes());
     }
     for (const Part& part : open.parts)
-        if (mine(part)) copyInto(*picture, part.header.x, part.header.y, Picture{part.header.w, part.header.h, part.rows.data()});
+        if (mine(part)) copyInto(*picture, part.header.x, part.header.y, Picture{part.header.w, part.header.h, part.rows.data(), formatOf(part.header)});
     keepLatest(key, picture);
     return picture;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 namespace mural {
 namespace {
@@ -9,8 +10,6 @@ namespace {
 constexpr size_t kQueuedPictures = 3;
 constexpr size_t kMostWindows = 64;
 constexpr std::chrono::milliseconds kSlice{500};
-
-Result<void> give(PictureSink& sink, int64_t frame, const Picture& picture, bool pair) { return pair ? sink.showPair(frame, eyesOfStack(picture)) : sink.show(frame, picture); }
 
 } // namespace
 
@@ -128,7 +127,20 @@ void PictureOutput::show(const WindowPicture& picture) {
     config_.done(picture.client, picture.frame);
 }
 
+// Shows the picture. Rounds to 8 bits per channel for a sink without deep pictures.
+Result<void> PictureOutput::give(PictureSink& sink, int64_t frame, const Picture& picture, bool pair) {
+    Picture shown = picture;
+    if (shown.format != PictureFormat::Bgra8 && !sink.takesDeepPictures()) {
+        eightBits_.resize(shown.width, shown.height);
+        copyInto(eightBits_, 0, 0, shown);
+        shown = eightBits_.view();
+    }
+    return pair ? sink.showPair(frame, eyesOfStack(shown)) : sink.show(frame, shown);
+}
+
 void PictureOutput::save(int64_t frame, const Picture& picture) {
+    if (picture.format != PictureFormat::Bgra8 && !std::exchange(saidEightBits_, true))
+        config_.say("the program's window has 10 bits per channel; --out saves its pictures with 8");
     const auto saved = give(*file_, frame, picture, config_.pairs);
     if (!saved) {
         config_.say(saved.error().message + "; no further pictures are saved");

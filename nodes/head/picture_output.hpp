@@ -76,6 +76,7 @@ private:
     void work();
     void show(const WindowPicture& picture);
     void finishFile();
+    Result<void> give(PictureSink& sink, int64_t frame, const Picture& picture, bool pair);
     void save(int64_t frame, const Picture& picture);
     void showInWindow(const WindowPicture& picture);
     void showOnWall(int64_t frame, const Picture& picture);
@@ -86,6 +87,8 @@ private:
     const std::set<int64_t> saveFrames_;
     std::unique_ptr<PictureSink> file_;
     bool fileFailed_ = false;
+    bool saidEightBits_ = false;
+    OwnedPicture eightBits_; // scratch memory of give()
     std::unique_ptr<PictureSink> wall_;
     bool wallFailed_ = false;
     struct Shown {

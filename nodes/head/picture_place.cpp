@@ -1,5 +1,6 @@
 #include "nodes/head/picture_place.hpp"
 
+#include "common/picture_format.hpp"
 #include "nodes/pictures/picture_way.hpp"
 
 namespace mural {
@@ -8,7 +9,7 @@ Result<PlacedPicture> placeOnWall(const NodePlan& node, const wire::PictureHeade
     if (node.way.none() && !node.shown) return PlacedPicture{header, std::move(rows)};
     constexpr uint32_t kMostSide = 32768;
     const SizeOnWay size = sizeOnWay(header.w, header.h, node.way);
-    const bool sensible = header.windowWidth <= kMostSide && header.windowHeight <= kMostSide && header.w >= 0 && header.h >= 0 &&
+    const bool sensible = header.format == static_cast<uint32_t>(PictureFormat::Bgra8) && header.windowWidth <= kMostSide && header.windowHeight <= kMostSide && header.w >= 0 && header.h >= 0 &&
                           static_cast<uint32_t>(header.w) <= header.windowWidth && static_cast<uint32_t>(header.h) <= header.windowHeight && size.bytes() == rows.size();
     if (!sensible) return Error{"it sent a picture of an impossible size"};
     PlacedPicture placed;

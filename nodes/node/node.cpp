@@ -144,6 +144,7 @@ private:
             if (replay_) replay_->clientGone(client);
             if (windows_) windows_->clientGone(client);
             if (sender_) sender_->clientGone(client);
+            std::erase_if(saidEightBits_, [client](const auto& window) { return window.first == client; });
             sayWindowGone(client, wire::kAllWindows);
             return true;
         }
@@ -212,6 +213,7 @@ private:
         if (!setup_.areas.empty()) config.areas.emplace(Areas{0, areasOf(setup_.areas)});
         config.pass = setup_.pass;
         config.readback = setup_.sendPictures ? readbackBy(ready.value("renderer", ""), setup_.readback) : Readback::Direct;
+        config.deepPictures = setup_.deepPictures;
         config.answers = setup_.answers;
         config.screen = setup_.screen;
         config.eyeBase = setup_.eyeBase;
@@ -443,6 +445,13 @@ private:
         return changed || fail("its stream can't go on by multicast: " + changed.error().message);
     }
 
+    // Reports a window whose picture loses bits, once, on the first node.
+    void sayEightBits(const ReplayOutputs::Frame& f) {
+        const bool shows = setup_.node == 0 && (sender_ || windows_);
+        if (!shows || f.config.red <= 8 || f.format != PictureFormat::Bgra8 || !saidEightBits_.insert({f.client, f.window}).second) return;
+        line_->sendText(wire::NodeMessage::Log, "the program's window has " + std::to_string(f.config.red) + " bits per channel; its picture is shown and saved with 8, and what the program reads of it keeps all bits");
+    }
+
     void frameDone(const ReplayOutputs::Frame& f) {
         uint32_t& latest = frames_[f.client];
         latest = std::max(latest, f.frame);
@@ -451,6 +460,7 @@ private:
         const uint64_t replayedNs = threadCpuNs();
         std::unique_ptr<PictureRead> picture;
         if (f.pixels && !f.region.empty()) {
+            sayEightBits(f);
             if (sender_) picture = f.read();
             countWork();
             if (windows_) showTiles(f);
@@ -479,6 +489,7 @@ private:
     void windowGone(uint32_t client, uint32_t window) {
         if (windows_) windows_->windowGone(client, window);
         if (sender_) sender_->windowGone(client, window);
+        saidEightBits_.erase({client, window});
         sayWindowGone(client, window);
     }
 
@@ -501,6 +512,7 @@ private:
         h.windowHeight = static_cast<uint32_t>(f.picture.h);
         h.nativeLow = f.config.nativeLow;
         h.nativeHigh = f.config.nativeHigh;
+        h.format = static_cast<uint32_t>(f.format);
         return h;
     }
 
@@ -509,6 +521,7 @@ private:
         config.codec = setup_.pictureCodec;
         config.addsCpu = countsCpu_;
         config.way = setup_.way;
+        config.alpha = setup_.windowPixels ? PictureAlpha::Kept : PictureAlpha::Dropped;
         const auto send = [this](wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b) { line_->send(type, a, b); };
         sender_ = std::make_unique<PictureSender>(config, send, [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); });
         beganNs_ = workNowNs(); // its clock counts from now
@@ -557,6 +570,7 @@ private:
     bool slow_ = false;   // a fault for tests to find
     std::map<uint32_t, uint64_t> calls_; // by client, of packets that are done with
     std::map<uint32_t, uint32_t> frames_; // by client: the last one
+    std::set<std::pair<uint32_t, uint32_t>> saidEightBits_; // client, window
     bool unsound_ = false;      // it can't draw what the others draw
     bool losesPackets_ = false; // a fault for tests to find
     int packetsGiven_ = 0;      // while it catches up

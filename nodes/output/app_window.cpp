@@ -213,7 +213,7 @@ void AppWindow::convert(const Picture& picture,
     for (int line = 0; line < part.h; ++line) {
         const std::byte* source = picture.row(part.top() - 1 - line) +
                                   static_cast<size_t>(part.x) * kPictureBytesPerPixel;
-        converter_->convertRow(source, part.w, target + rowBytes * static_cast<size_t>(line));
+        converter_->convertRow(picture.format, source, part.w, target + rowBytes * static_cast<size_t>(line));
     }
 }
 

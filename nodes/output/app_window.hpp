@@ -1,4 +1,5 @@
-// Shows pictures in a window that belongs to another X client: the program's own window.
+// Shows pictures in a window that belongs to another X client: the program's own window. Pixels keep alpha and all
+// bits per channel of the window's visual.
 //
 // Pixels are put 1:1, upper left corners together, clipped to the window; child windows stay on
 // top, as with OpenGL. A window that is gone, unmapped or of another size is not an error. One
@@ -36,6 +37,7 @@ public:
     // Returns when the server has done it. After a deadline has passed it can be called again.
     Result<void> show(int64_t frame, const Picture& picture) override;
     Result<void> finish() override { return {}; } // every picture was complete when show() returned
+    [[nodiscard]] bool takesDeepPictures() const override { return true; }
     [[nodiscard]] std::string describe() const override;
 
     // The last picture found no window; the next one looks again.

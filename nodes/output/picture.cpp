@@ -8,7 +8,8 @@
 
 namespace mural {
 
-void OwnedPicture::resize(int width, int height) {
+void OwnedPicture::resize(int width, int height, PictureFormat format) {
+    format_ = format;
     width_ = std::max(width, 0);
     height_ = std::max(height, 0);
     bytes_.resize(rowBytes() * static_cast<size_t>(height_));
@@ -19,8 +20,40 @@ void OwnedPicture::assign(const Picture& source) {
         resize(0, 0);
         return;
     }
-    resize(source.width, source.height);
+    resize(source.width, source.height, source.format);
     std::memcpy(bytes_.data(), source.bgra, source.sizeBytes());
+}
+
+namespace {
+
+constexpr uint32_t scaled(uint32_t value, uint32_t largest, uint32_t newLargest) {
+    return (2 * value * newLargest + largest) / (2 * largest);
+}
+
+constexpr uint32_t toEightBits(uint32_t pixel) {
+    const auto channel = [&](int shift) { return scaled(pixel >> shift & 1023, 1023, 255); };
+    return channel(0) | channel(10) << 8 | channel(20) << 16 | scaled(pixel >> 30, 3, 255) << 24;
+}
+
+constexpr uint32_t toTenBits(uint32_t pixel) {
+    const auto channel = [&](int shift) { return scaled(pixel >> shift & 255, 255, 1023); };
+    return channel(0) | channel(8) << 10 | channel(16) << 20 | scaled(pixel >> 24, 255, 3) << 30;
+}
+
+} // namespace
+
+void convertPixels(PictureFormat fromFormat, const std::byte* from, PictureFormat toFormat, std::byte* to, size_t pixels) {
+    if (fromFormat == toFormat) {
+        std::memcpy(to, from, pixels * kPictureBytesPerPixel);
+        return;
+    }
+    const bool widens = toFormat == PictureFormat::Bgr10A2;
+    for (size_t i = 0; i < pixels; ++i) {
+        uint32_t pixel = 0;
+        std::memcpy(&pixel, from + i * kPictureBytesPerPixel, sizeof pixel);
+        pixel = widens ? toTenBits(pixel) : toEightBits(pixel);
+        std::memcpy(to + i * kPictureBytesPerPixel, &pixel, sizeof pixel);
+    }
 }
 
 void copyInto(OwnedPicture& target, int x, int y, const Picture& source) {
@@ -30,15 +63,16 @@ void copyInto(OwnedPicture& target, int x, int y, const Picture& source) {
         intersect({x, y, source.width, source.height}, {0, 0, target.width(), target.height()});
     if (part.empty())
         return;
-    const size_t lineBytes = static_cast<size_t>(part.w) * kPictureBytesPerPixel;
     const size_t targetSkip = static_cast<size_t>(part.x) * kPictureBytesPerPixel;
     const size_t sourceSkip = static_cast<size_t>(part.x - x) * kPictureBytesPerPixel;
     for (int line = part.y; line < part.top(); ++line)
-        std::memcpy(target.row(line) + targetSkip, source.row(line - y) + sourceSkip, lineBytes);
+        convertPixels(source.format, source.row(line - y) + sourceSkip, target.format(),
+                      target.row(line) + targetSkip, static_cast<size_t>(part.w));
 }
 
 OwnedPicture cutOut(const Picture& source, const PixelViewport& rectangle) {
-    OwnedPicture part(rectangle.w, rectangle.h);
+    OwnedPicture part;
+    part.resize(rectangle.w, rectangle.h, source.format);
     copyInto(part, -rectangle.x, -rectangle.y, source);
     return part;
 }

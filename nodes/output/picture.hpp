@@ -1,5 +1,5 @@
 // Finished pictures as the outputs take them: rows bottom first as in OpenGL, tightly packed, 4
-// bytes per pixel B G R A. A carries nothing and is never compared or shown.
+// bytes per pixel. Windows with an alpha channel show the alpha; all other outputs ignore it.
 #pragma once
 
 #include <cstddef>
@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/picture_format.hpp"
 #include "common/pixel_viewport.hpp"
 
 namespace mural {
@@ -17,7 +18,8 @@ constexpr size_t kPictureBytesPerPixel = 4;
 struct Picture {
     int width = 0;
     int height = 0;
-    const std::byte* bgra = nullptr; // [y][x][b g r a8], origin lower left
+    const std::byte* bgra = nullptr; // [y][x], 4 bytes each, origin lower left
+    PictureFormat format = PictureFormat::Bgra8;
 
     [[nodiscard]] bool empty() const { return width <= 0 || height <= 0 || bgra == nullptr; }
     [[nodiscard]] size_t rowBytes() const {
@@ -35,8 +37,8 @@ public:
     OwnedPicture(int width, int height) { resize(width, height); }
     explicit OwnedPicture(const Picture& source) { assign(source); }
 
-    // Contents are unspecified afterwards when the size changes. Memory is kept for the next use.
-    void resize(int width, int height);
+    // Contents are unspecified afterwards when the size or the format changes. Memory is kept for the next use.
+    void resize(int width, int height, PictureFormat format = PictureFormat::Bgra8);
     void assign(const Picture& source);
 
     [[nodiscard]] int width() const { return width_; }
@@ -46,16 +48,22 @@ public:
     }
     std::byte* row(int y) { return bytes_.data() + rowBytes() * static_cast<size_t>(y); }
     std::byte* data() { return bytes_.data(); }
-    [[nodiscard]] Picture view() const { return {width_, height_, bytes_.data()}; }
+    [[nodiscard]] PictureFormat format() const { return format_; }
+    [[nodiscard]] Picture view() const { return {width_, height_, bytes_.data(), format_}; }
 
 private:
     int width_ = 0;
     int height_ = 0;
+    PictureFormat format_ = PictureFormat::Bgra8;
     std::vector<std::byte> bytes_;
 };
 
-// Copies all of `source` with its lower left corner at (x, y) of `target`; what lies outside is
-// dropped.
+// Converts pixels and rounds to the nearest value, as OpenGL does. The colours of 8 bits survive a conversion to 10 bits and
+// back; alpha keeps 2 bits.
+void convertPixels(PictureFormat fromFormat, const std::byte* from, PictureFormat toFormat, std::byte* to, size_t pixels);
+
+// Copies all of `source` in the format of `target` with its lower left corner at (x, y) of `target`; pixels outside
+// are dropped.
 void copyInto(OwnedPicture& target, int x, int y, const Picture& source);
 
 // The part of `source` inside `rectangle`; pixels of the rectangle outside of `source` are black.
@@ -73,6 +81,7 @@ struct PictureDifference {
     [[nodiscard]] bool same() const { return !sizesDiffer && differingPixels == 0; }
 };
 
+// Both pictures are Bgra8.
 PictureDifference comparePictures(const Picture& expected, const Picture& actual);
 
 // One line for people, e.g. "12 of 307200 pixels differ, by at most 3, first at x 10, y 20".

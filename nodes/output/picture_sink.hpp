@@ -21,6 +21,9 @@ public:
     // Takes the picture; its memory is the caller's again on return.
     virtual Result<void> show(int64_t frame, const Picture& picture) = 0;
 
+    // Returns false if show() and showPair() take Bgra8 only.
+    [[nodiscard]] virtual bool takesDeepPictures() const { return false; }
+
     // The same with one for each eye; who has no room for two shows them side by side.
     virtual Result<void> showPair(int64_t frame, const EyePair& eyes) {
         sideBySide(eyes, bothEyes_);

@@ -1,10 +1,12 @@
-// How an X server stores the pixels of a window, and turning our pixels into that. Pure.
+// The pixel layout of an X window, and the conversion of pictures into it. Pure.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
+#include "common/picture_format.hpp"
 #include "common/result.hpp"
 
 namespace mural {
@@ -27,22 +29,27 @@ public:
     [[nodiscard]] size_t rowBytes(int width) const; // with its padding
     [[nodiscard]] const PixelFormat& format() const { return format_; }
 
-    // `bgra`: pixels as in Picture; writes pixels * bytesPerPixel() bytes, least significant byte
+    // Reads `pixels` pixels of a Picture of that format; writes pixels * bytesPerPixel() bytes, least significant byte
     // first.
-    void convertRow(const std::byte* bgra, int pixels, std::byte* target) const;
+    void convertRow(PictureFormat format, const std::byte* source, int pixels, std::byte* target) const;
 
 private:
     PixelConverter() = default;
 
+    // The scaled and shifted contribution of each channel value to the pixel. A visual has no alpha mask: alpha takes
+    // the bits of the depth outside the colour masks.
+    struct Tables {
+        int bits = 8; // per colour in the source word; blue is lowest, without gaps
+        std::vector<uint32_t> blue, green, red, alpha;
+    };
+    [[nodiscard]] static Tables tablesOf(PictureFormat source, const PixelFormat& format, uint32_t alphaMask);
     template <size_t Bytes>
-    void convertByTable(const std::byte* bgra, int pixels, std::byte* target) const;
+    static void convertByTable(const Tables& tables, const std::byte* source, int pixels, std::byte* target);
 
     PixelFormat format_;
     size_t bytesPerPixel_ = 4;
-    bool sameLayout_ = false; // B G R X in memory: nothing to convert but X
-    uint32_t opaque_ = 0;     // bits of the depth that belong to no colour: the alpha of depth 32
-    // What a channel's value contributes to the pixel: already scaled and at its place.
-    std::array<uint32_t, 256> red_{}, green_{}, blue_{};
+    std::array<bool, 2> sameLayout_{}; // by PictureFormat: rows are copied
+    std::array<Tables, 2> tables_;     // by PictureFormat
 };
 
 } // namespace mural

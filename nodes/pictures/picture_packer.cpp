@@ -4,14 +4,14 @@
 
 namespace mural {
 
-PicturePacker::PicturePacker(const std::string& codec) : codec_(codec), asColours_(mayLose(codec)) {}
+PicturePacker::PicturePacker(const std::string& codec, PictureAlpha alpha) : codec_(codec), asColours_(mayLose(codec)), alpha_(alpha) {}
 
 Result<std::span<const std::byte>> PicturePacker::pack(uint32_t client, uint32_t window, int32_t width, int32_t height, const std::byte* bgra) {
     const compositor::PlaneShape shape{compositor::PlaneFormat::Rgba8, width, height};
     const std::byte* pixels = bgra;
     if (asColours_) {
         rgba_.resize(shape.sizeBytes());
-        swapRedAndBlue(bgra, rgba_.data(), rgba_.size() / 4);
+        swapRedAndBlue(bgra, rgba_.data(), rgba_.size() / 4, alpha_ == PictureAlpha::Dropped ? 0xff000000 : 0);
         pixels = rgba_.data();
     }
     compositor::UnchangedTilesEncoder& tiles = windows_[{client, window}];

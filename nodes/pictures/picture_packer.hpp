@@ -15,11 +15,14 @@
 
 namespace mural {
 
+// Alpha in lossy codecs, which store it separately and take Bgra8 only. Lossless codecs keep all bits of any PictureFormat.
+enum class PictureAlpha { Kept, Dropped };
+
 // Used by one thread. The other end gets all that is packed, in this order.
 class PicturePacker {
 public:
     // codec: as of PlaneEncoder.
-    explicit PicturePacker(const std::string& codec);
+    explicit PicturePacker(const std::string& codec, PictureAlpha alpha = PictureAlpha::Kept);
 
     // Rows bottom first, 4 bytes per pixel, B G R A; neither side is 0. The bytes live until the next call. Errors: no memory.
     [[nodiscard]] Result<std::span<const std::byte>> pack(uint32_t client, uint32_t window, int32_t width, int32_t height, const std::byte* bgra);
@@ -34,6 +37,7 @@ public:
 private:
     LinkEncoder codec_;
     const bool asColours_; // codecs that lose something must know which byte is red
+    const PictureAlpha alpha_;
     std::map<std::pair<uint32_t, uint32_t>, compositor::UnchangedTilesEncoder> windows_;
     std::vector<std::byte> packed_, rgba_;
     uint64_t rawBytes_ = 0, packedBytes_ = 0;

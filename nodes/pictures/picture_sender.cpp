@@ -14,14 +14,14 @@ namespace {
 constexpr size_t kMostFrames = 2;         // one is packed, one waits
 constexpr size_t kTellingBytes = 1 << 16; // fewer vanish in buffers
 
-std::unique_ptr<PicturePacker> packerFor(const std::string& codec) {
-    return codec == kRawCodec ? nullptr : std::make_unique<PicturePacker>(codec);
+std::unique_ptr<PicturePacker> packerFor(const PictureSenderConfig& config) {
+    return config.codec == kRawCodec ? nullptr : std::make_unique<PicturePacker>(config.codec, config.alpha);
 }
 
 } // namespace
 
 PictureSender::PictureSender(PictureSenderConfig config, Send send, Log log)
-    : config_(std::move(config)), send_(std::move(send)), log_(std::move(log)), packer_(packerFor(config_.codec)), thread_([this] { run(); }) {
+    : config_(std::move(config)), send_(std::move(send)), log_(std::move(log)), packer_(packerFor(config_)), thread_([this] { run(); }) {
     if (pthread_getcpuclockid(thread_.native_handle(), &clock_) != 0) clock_ = CLOCK_THREAD_CPUTIME_ID;
 }
 

@@ -24,6 +24,7 @@ namespace mural {
 
 struct PictureSenderConfig {
     std::string codec = "raw"; // as of PlaneEncoder; raw: pictures go as they are
+    PictureAlpha alpha = PictureAlpha::Kept;
     Zoom way;                  // they go smaller by this (picture_way.hpp)
     bool addsCpu = false;      // what a picture takes here is added to its frame's work: nodes share cores. Else the longer one counts, for both go on at once
     size_t mostBytes = size_t{64} << 20; // of messages behind pictures

@@ -3,27 +3,20 @@
 #include <algorithm>
 #include <cstring>
 
+#include "nodes/pictures/red_and_blue.hpp"
+
 namespace mural {
 
 namespace {
 
 constexpr int64_t kSliceNs = kNsPerS; // of waits for a fence
 
-void swapFirstAndThird(const std::byte* from, std::vector<std::byte>& to) {
-    for (size_t i = 0; i < to.size(); i += 4) {
-        to[i] = from[i + 2];
-        to[i + 1] = from[i + 1];
-        to[i + 2] = from[i];
-        to[i + 3] = from[i + 3];
-    }
-}
-
 } // namespace
 
 // One picture. bytes() and the end of it are one thread's.
 class LaterPicture final : public PictureRead {
 public:
-    LaterPicture(std::shared_ptr<LaterReads> of, LaterReads::Buffer buffer, GLsync drawn, bool redFirst) : of_(std::move(of)), buffer_(buffer), drawn_(drawn), redFirst_(redFirst) {}
+    LaterPicture(std::shared_ptr<LaterReads> of, LaterReads::Buffer buffer, GLsync drawn, bool redFirst, PictureFormat format) : of_(std::move(of)), buffer_(buffer), drawn_(drawn), redFirst_(redFirst), format_(format) {}
     LaterPicture(const LaterPicture&) = delete;
     LaterPicture& operator=(const LaterPicture&) = delete;
     ~LaterPicture() override {
@@ -50,7 +43,7 @@ public:
         const auto* pixels = static_cast<const std::byte*>(mapped_);
         if (!redFirst_) return std::span(pixels, buffer_.bytes);
         swapped_.resize(buffer_.bytes);
-        swapFirstAndThird(pixels, swapped_);
+        swapRedAndBlue(format_, pixels, swapped_.data(), swapped_.size() / 4);
         return std::span<const std::byte>(swapped_);
     }
 
@@ -64,6 +57,7 @@ private:
     const LaterReads::Buffer buffer_;
     const GLsync drawn_;
     const bool redFirst_;
+    const PictureFormat format_;
     bool entered_ = false;
     const void* mapped_ = nullptr;
     std::vector<std::byte> swapped_;
@@ -88,11 +82,11 @@ void LaterReads::bindBuffer(size_t bytes) {
 }
 
 // The flush lets the other thread's wait end, whatever comes next.
-std::unique_ptr<PictureRead> LaterReads::take(bool redFirst) {
+std::unique_ptr<PictureRead> LaterReads::take(bool redFirst, PictureFormat format) {
     const Buffer buffer = std::exchange(bound_, {});
     const GLsync drawn = gl_.fenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl_.flush();
-    if (drawn) return std::make_unique<LaterPicture>(shared_from_this(), buffer, drawn, redFirst);
+    if (drawn) return std::make_unique<LaterPicture>(shared_from_this(), buffer, drawn, redFirst, format);
     giveBack(buffer);
     return nullptr;
 }

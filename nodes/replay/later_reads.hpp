@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gl_functions.hpp"
+#include "common/picture_format.hpp"
 #include "nodes/gl/gl_platform.hpp"
 #include "nodes/pictures/picture_read.hpp"
 
@@ -20,7 +21,7 @@ public:
     // By the replay's thread, with a context of the group current. The buffer of `bytes` is bound to GL_PIXEL_PACK_BUFFER, and then the picture is read into it.
     void bindBuffer(size_t bytes);
     // What was read; it is drawn when the fence says so. redFirst: R G B A. Null: GL makes no fence.
-    std::unique_ptr<PictureRead> take(bool redFirst);
+    std::unique_ptr<PictureRead> take(bool redFirst, PictureFormat format);
 
 private:
     friend class LaterPicture;

@@ -19,6 +19,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "common/picture_format.hpp"
 #include "common/pixel_viewport.hpp"
 #include "common/tile_grid.hpp"
 #include "common/viewport.hpp"
@@ -27,6 +28,7 @@
 #include "nodes/exchange/picture_part.hpp"
 #include "nodes/gl/gl_platform.hpp"
 #include "nodes/pictures/picture_read.hpp"
+#include "nodes/replay/colour_words.hpp"
 #include "nodes/replay/handle_table.hpp"
 #include "nodes/replay/name_table.hpp"
 #include "nodes/replay/program_recipes.hpp"
@@ -74,6 +76,7 @@ struct ReplayConfig {
     bool lean = false;     // framebuffers of the tile's size; false: of the picture's size (exact)
     bool rastersInBins = false; // the driver draws in software, so a region has to end on its bins (raster_bins.hpp)
     Readback readback = Readback::Direct; // of Frame::read
+    bool deepPictures = false; // allows Bgr10A2 in Frame::format
     std::string plant;     // MURAL_PLANT: a fault on purpose, for tests of the tests
     ReplayLimits limits;
 };
@@ -83,11 +86,12 @@ struct ReplayOutputs {
     // Part of an answer; `last` closes this node's part.
     std::function<void(const wire::AnswerHeader&, std::span<const std::byte>)> answer;
     // A frame of the window is complete. `pixels` reads the given rectangle (window coordinates),
-    // BGRA, rows bottom first, tightly packed; only valid during the call.
+    // rows bottom first, tightly packed; only valid during the call.
     struct Frame {
         uint32_t client, window, frame;
         wire::WindowConfig config;
         PixelViewport region; // this node's part of the picture
+        PictureFormat format; // of `pixels` and `read`
         PixelViewport picture; // all of it: the window's size, or every nth pixel of it
         bool drawnWhole;      // nothing is cut to the part (Shared::allDrawn)
         bool keepsPicture;    // frames build on the one before: one node goes on drawing them
@@ -223,8 +227,9 @@ private:
         bool destroyed = false; // freed when it is current nowhere
         bool lean = false;      // the framebuffer has the region's size
         bool widens = true;     // to the window's size, when that is needed; not when that has failed
-        wire::WindowConfig config{};
-        ContextState* drawer = nullptr; // the context that was current with it for drawing last; null: it is gone
+        wire::WindowConfig config{}; // channel bits are those of `surface`
+        uint8_t wishedRed = 0;       // red bits of the program's window; equal on all nodes
+        ContextState* drawer = nullptr; // the context that was last current with it for drawing; null: destroyed
         bool isFlat = false;    // the program's window has neither depth nor stencil buffer, whatever this node's surface has
         std::unique_ptr<gl::Surface> surface;
         std::unique_ptr<gl::Surface> front;  // where surfaces have one colour buffer: the front, once it is used
@@ -505,10 +510,12 @@ private:
     const std::byte* readRegion(const PixelViewport& r, GLenum format, GLenum type, size_t bytes, Beyond beyond = Beyond::Black);
     const std::byte* readShown(Window& w, const PixelViewport& r, bool front);
     [[nodiscard]] bool resolves(const Window& w) const;
-    const std::byte* readResolved(const PixelViewport& r, GLenum format, size_t bytes);
+    const std::byte* readResolved(const PixelViewport& r, GLenum format, const ColourWords& words);
+    [[nodiscard]] PictureFormat pictureFormatOf(const Window& w) const; // of readShown()
     void packTightly(bool tight);
     void withPlainTransfer(const std::function<void()>& call);
-    void fillColor(const PixelViewport& r, const void* rgba);
+    void withoutReadClamp(const std::function<void()>& call);
+    void fillColor(const PixelViewport& r, const void* rgba, const ColourWords& words = kByteWords);
     // replay_pictures.cpp
     [[nodiscard]] bool hasFences(const ContextState& c) const;
     std::shared_ptr<LaterReads> laterReads();
@@ -521,7 +528,7 @@ private:
     const GLfloat* depthAsFloats(const Window& w, const PixelViewport& r, const void* pixels);
     std::vector<GLfloat> depths_;
     gl::Context* fillerOf(Window& w);
-    void fillByOtherContext(const PixelViewport& r, GLbitfield plane, const void* pixels);
+    void fillByOtherContext(const PixelViewport& r, GLbitfield plane, const void* pixels, GLenum colourType = GL_UNSIGNED_BYTE);
     // replay_images.cpp
     bool ownCreateImage(Args& in);
     bool ownDestroyImage(Args& in);
@@ -695,6 +702,8 @@ private:
     void readBufferOfWindow(GLenum buffer);
     void buffersChanged(GLenum drawnBefore);
     void backToFront(Window& w);
+    void beginFront(Window& w);
+    void clearToBlack(gl::Surface& current);
     void showBack(Window& w);
     void copySurface(gl::Surface& from, gl::Surface& to, GLbitfield planes);
     void depthForReading();
@@ -730,7 +739,7 @@ private:
     void applyTileValues();
     void widen(GLfloat pixels);
     // replay_copies.cpp
-    void gatherForCopy(const PixelViewport& r, GLbitfield plane, const void* pixels);
+    void gatherForCopy(const PixelViewport& r, GLbitfield plane, const void* pixels, const ColourWords& words);
     void gatherDepthStencil(Gathered& g, GLbitfield plane, const void* pixels);
     void forgetGathered();
     void fromWindow(const PixelViewport& source, const std::function<void(GLint, GLint)>& call);

@@ -19,7 +19,7 @@ void Replay::forgetGathered() {
     g = {};
 }
 
-void Replay::gatherForCopy(const PixelViewport& r, GLbitfield plane, const void* pixels) {
+void Replay::gatherForCopy(const PixelViewport& r, GLbitfield plane, const void* pixels, const ColourWords& words) {
     Gathered& g = c_->gathered;
     const bool separate = c_->version >= 30 || c_->api == wire::Api::Desktop;
     const GLenum target = separate ? GL_READ_FRAMEBUFFER : GL_FRAMEBUFFER;
@@ -37,9 +37,9 @@ void Replay::gatherForCopy(const PixelViewport& r, GLbitfield plane, const void*
     setUnpack(true);
     // As the window: its values count as sRGB only where the program has asked for that.
     const bool srgb = c_->read->config.srgb && c_->api == wire::Api::Desktop && gl.glIsEnabled(GL_FRAMEBUFFER_SRGB);
-    const GLint srgbOrNot = srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8;
+    const auto srgbOrNot = static_cast<GLint>(srgb ? GL_SRGB8_ALPHA8 : words.storage);
     withPlainTransfer([&] {
-        if (plane == GL_COLOR_BUFFER_BIT) gl.glTexImage2D(GL_TEXTURE_2D, 0, separate ? srgbOrNot : GL_RGBA, r.w, r.h, 0, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
+        if (plane == GL_COLOR_BUFFER_BIT) gl.glTexImage2D(GL_TEXTURE_2D, 0, separate ? srgbOrNot : GL_RGBA, r.w, r.h, 0, GL_RGBA, words.type, pixels);
         else gatherDepthStencil(g, plane, pixels);
     });
     if (c_->unpackBuffer) gl.glBindBuffer(GL_PIXEL_UNPACK_BUFFER, c_->unpackBuffer);

@@ -34,7 +34,7 @@ gl::Context* Replay::fillerOf(Window& w) {
     return w.filler.get();
 }
 
-void Replay::fillByOtherContext(const PixelViewport& r, GLbitfield plane, const void* pixels) {
+void Replay::fillByOtherContext(const PixelViewport& r, GLbitfield plane, const void* pixels, GLenum colourType) {
     Window& w = *boundRead_;
     gl::Context* const filler = fillerOf(w);
     gl::Surface* const deep = w.deep ? w.deep : w.surface.get();
@@ -47,7 +47,7 @@ void Replay::fillByOtherContext(const PixelViewport& r, GLbitfield plane, const 
         gl.glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
         gl.glWindowPos2i(r.x, r.y);
         if (depth) gl.glDrawPixels(r.w, r.h, GL_DEPTH_COMPONENT, GL_FLOAT, depthAsFloats(w, r, pixels));
-        else if (colour) gl.glDrawPixels(r.w, r.h, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
+        else if (colour) gl.glDrawPixels(r.w, r.h, GL_RGBA, colourType, pixels);
         else gl.glDrawPixels(r.w, r.h, GL_STENCIL_INDEX, GL_UNSIGNED_BYTE, pixels);
         gl.glFlush();
     }

@@ -56,7 +56,7 @@ bool Replay::bindSurfaces(gl::HeldBack heldBack) {
         return false;
     }
     for (Window* w : {boundDraw_, boundRead_}) {
-        if (w && w->front && w->frontStale && (drawSurface_ == w->front.get() || readSurface_ == w->front.get())) backToFront(*w);
+        if (w && w->front && w->frontStale && (drawSurface_ == w->front.get() || readSurface_ == w->front.get())) beginFront(*w);
     }
     if (boundDraw_ && boundDraw_->front && boundDraw_->deep != drawSurface_) {
         copySurface(*boundDraw_->deep, *drawSurface_, kDeep);
@@ -72,6 +72,39 @@ void Replay::buffersChanged(GLenum drawnBefore) {
     if (surfaceOf(boundDraw_, c_->drawBuffer0) != drawSurface_ || surfaceOf(boundRead_, readFrom(c_->readBuffer0)) != readSurface_) (void)bindSurfaces();
 }
 
+// Fills a new or stale front buffer.
+void Replay::beginFront(Window& w) {
+    if (w.config.doubleBuffer != wire::kOwnFront) return backToFront(w);
+    w.frontStale = false;
+    w.moving.front = w.moving.areas;
+    if (platform_->makeCurrent(bound_->context.get(), w.front.get(), w.front.get())) aside([&] { clearToBlack(*w.front); });
+    (void)platform_->makeCurrent(bound_->context.get(), drawSurface_, readSurface_);
+    c_->scissorsDiffer = true; // all viewports' enables were touched
+    applyScissors();
+}
+
+// Clears colours and alpha of the current surface. Keeps all program state except the scissors: the caller applies them again.
+void Replay::clearToBlack(gl::Surface& current) {
+    GLfloat colour[4] = {};
+    GLboolean mask[4] = {};
+    gl.glGetFloatv(GL_COLOR_CLEAR_VALUE, colour);
+    gl.glGetBooleanv(GL_COLOR_WRITEMASK, mask);
+    const auto setMask = [&](GLboolean r, GLboolean g, GLboolean b, GLboolean a) { gl.glColorMaski ? gl.glColorMaski(0, r, g, b, a) : gl.glColorMask(r, g, b, a); };
+    const GLboolean discards = c_->version >= 30 && gl.glIsEnabled(GL_RASTERIZER_DISCARD);
+    gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    gl.glDrawBuffer(onlyBuffer(current));
+    gl.glDisable(GL_SCISSOR_TEST);
+    if (discards) gl.glDisable(GL_RASTERIZER_DISCARD);
+    setMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    gl.glClearColor(0, 0, 0, 0);
+    gl.glClear(GL_COLOR_BUFFER_BIT);
+    gl.glClearColor(colour[0], colour[1], colour[2], colour[3]);
+    setMask(mask[0], mask[1], mask[2], mask[3]);
+    if (discards) gl.glEnable(GL_RASTERIZER_DISCARD);
+    gl.glDrawBuffer(windowBuffer(c_->drawBuffer0, boundDraw_));
+    gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER, name(Kind::Framebuffer, c_->drawFramebuffer));
+}
+
 void Replay::backToFront(Window& w) {
     w.frontStale = false;
     w.moving.front = w.moving.areas;
@@ -80,6 +113,7 @@ void Replay::backToFront(Window& w) {
 
 // After a swap the front has the back's content. Deferred if another window is current.
 void Replay::showBack(Window& w) {
+    if (w.config.doubleBuffer == wire::kOwnFront) return;
     w.frontStale = true;
     if (!bound_ || (drawSurface_ != w.front.get() && readSurface_ != w.front.get() && boundDraw_ != &w)) return;
     ContextState* const own = std::exchange(c_, bound_);

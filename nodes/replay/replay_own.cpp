@@ -187,6 +187,7 @@ bool Replay::ownWindow(Args& in) {
         out_.log("the program draws into a buffer for each eye: the left one's is shown; --stereo quad, side-by-side or anaglyph shows both");
     w.config = *config;
     w.isFlat = config->depth == 0 && config->stencil == 0;
+    w.wishedRed = config->red;
     const auto width = static_cast<int32_t>(config->width), height = static_cast<int32_t>(config->height);
     w.whole = {0, 0, width, height};
     if (moves() && (!w.surface || w.surface->width() != std::max(width, 1) || w.surface->height() != std::max(height, 1))) divideAnew(w);
@@ -229,6 +230,7 @@ void Replay::takeBitsOfSurface(Window& w) {
     w.config.red = static_cast<uint8_t>(there.red);
     w.config.green = static_cast<uint8_t>(there.green);
     w.config.blue = static_cast<uint8_t>(there.blue);
+    w.config.alpha = static_cast<uint8_t>(there.alpha);
     w.config.depth = static_cast<uint8_t>(there.depth);
     w.config.stencil = static_cast<uint8_t>(there.stencil);
     w.config.samples = static_cast<uint8_t>(there.samples);
@@ -236,6 +238,8 @@ void Replay::takeBitsOfSurface(Window& w) {
     out_.log("its GL has no framebuffer like the program's window, which is drawn with " + differs + ": pixels may differ from the native picture's");
 }
 
+    w.isFlat = config->depth == 0 && config->stencil == 0;
+    w.wishedRed = config->red;
 bool Replay::ownClientArrays(Args& in) {
     using client_arrays::ArrayRecord;
     const auto arrayCount = in.get<uint32_t>(), spanCount = in.get<uint32_t>();

@@ -72,6 +72,7 @@ bool Replay::mayShare() {
     c_->mayShare = false;
     const auto on = [&](GLenum cap) { return gl.glIsEnabled(cap) != GL_FALSE; };
     if (c_->api != wire::Api::Desktop || !c_->draw || c_->read != c_->draw || c_->draw->config.samples > 0 || c_->draw->config.depth == 0) return false;
+    if (c_->draw->wishedRed > 8) return false; // the exchange has 8 bits per channel
     if (!on(GL_DEPTH_TEST) || on(GL_BLEND) || on(GL_STENCIL_TEST) || on(GL_COLOR_LOGIC_OP)) return false;
     if (!c_->core && on(GL_INDEX_LOGIC_OP)) return false;
     GLboolean depthMask = GL_FALSE;

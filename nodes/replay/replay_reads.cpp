@@ -4,6 +4,7 @@
 #include <cstring>
 #include <utility>
 
+#include "nodes/pictures/red_and_blue.hpp"
 #include "nodes/replay/later_reads.hpp"
 #include "nodes/replay/replay.hpp"
 
@@ -49,13 +50,24 @@ void Replay::withPlainTransfer(const std::function<void()>& call) {
     gl.glPopAttrib();
 }
 
+// Calls without the clamp of reads to 1. A copy of a half-float window needs all values, although drivers clamp its reads.
+void Replay::withoutReadClamp(const std::function<void()>& call) {
+    if (c_->api != wire::Api::Desktop || !gl.glClampColor) return call();
+    GLint before = 0;
+    gl.glGetIntegerv(GL_CLAMP_READ_COLOR, &before);
+    gl.glClampColor(GL_CLAMP_READ_COLOR, GL_FALSE);
+    call();
+    gl.glClampColor(GL_CLAMP_READ_COLOR, static_cast<GLenum>(before));
+}
+
 bool Replay::ownRequestPixels(Args& in) {
     const auto request = in.get<uint32_t>();
     const auto x = in.get<int32_t>(), y = in.get<int32_t>(), w = in.get<int32_t>(), h = in.get<int32_t>();
     const auto format = in.get<uint32_t>(), type = in.get<uint32_t>(), groupAndFlags = in.get<uint32_t>();
     const uint32_t group = groupAndFlags & ~(wire::kPlainTransfer | wire::kResolved);
     if (!in.ok() || w < 0 || h < 0 || group == 0 || group > 64 || uint64_t(w) * uint64_t(h) > config_.limits.answerBytes / group) return false;
-    if ((groupAndFlags & wire::kResolved) && (format != GL_RGBA || type != GL_UNSIGNED_BYTE)) return false;
+    const ColourWords* const words = format == GL_RGBA ? colourWordsOf(type) : nullptr;
+    if ((groupAndFlags & wire::kResolved) && !words) return false;
     const PixelViewport asked{x, y, w, h};
     if (!bound_ || group != sizes::groupBytes(format, type)) {
         answerBytes(request, wire::AnswerKind::Bytes, {});
@@ -77,7 +89,8 @@ bool Replay::ownRequestPixels(Args& in) {
     // Colours of no buffer are asked for by copies that are errors; Mesa reads through a null pointer there in OpenGL ES.
     const bool nothing = !deep && c_->readBuffer0 == GL_NONE;
     const auto read = [&] { pixels = repeats && !nothing && !part.empty() ? readRepeated(part, format, type, group) : readRegion(nothing ? PixelViewport{} : part, format, type, bytes); };
-    if ((groupAndFlags & wire::kResolved) && !nothing && !part.empty() && resolves(*c_->read)) aside([&] { pixels = readResolved(part, format, bytes); });
+    if ((groupAndFlags & wire::kResolved) && !nothing && !part.empty() && resolves(*c_->read)) aside([&] { pixels = readResolved(part, format, *words); });
+    else if ((groupAndFlags & wire::kPlainTransfer) && type == GL_FLOAT) withPlainTransfer([&] { withoutReadClamp(read); });
     else if (groupAndFlags & wire::kPlainTransfer) withPlainTransfer(read);
     else read();
     wire::AnswerHeader header{};
@@ -195,6 +208,12 @@ void Replay::readBuffer(GLuint ours, uint64_t offset) {
     gl.glBindBuffer(GL_COPY_READ_BUFFER, static_cast<GLuint>(before));
 }
 
+// Returns Bgra8 for OpenGL ES before 3, which reads windows as bytes only.
+PictureFormat Replay::pictureFormatOf(const Window& w) const {
+    const bool reads = c_->api == wire::Api::Desktop || c_->version >= 30;
+    return config_.deepPictures && reads && w.config.red == 10 ? PictureFormat::Bgr10A2 : PictureFormat::Bgra8;
+}
+
 // The window's picture, whatever the program has bound; called at a swap.
 const std::byte* Replay::readShown(Window& w, const PixelViewport& r, bool front) {
     const GLuint bound = c_->readFramebuffer;
@@ -214,9 +233,11 @@ const std::byte* Replay::readShown(Window& w, const PixelViewport& r, bool front
     const bool bgra = c_->api == wire::Api::Desktop;
     const std::byte* pixels = nullptr;
     const GLenum format = bgra ? GL_BGRA : GL_RGBA;
-    if (resolves(w) && !r.empty()) aside([&] { pixels = readResolved(r, format, bytes); });
-    else withPlainTransfer([&] { pixels = readRegion(r, format, GL_UNSIGNED_BYTE, bytes, Beyond::Nothing); });
-    for (size_t i = 0; !bgra && !into_ && i < bytes; i += 4) std::swap(pixels_[i], pixels_[i + 2]);
+    const PictureFormat shownFormat = pictureFormatOf(w);
+    const ColourWords& words = shownFormat == PictureFormat::Bgr10A2 ? kTenBitWords : kByteWords;
+    if (resolves(w) && !r.empty()) aside([&] { pixels = readResolved(r, format, words); });
+    else withPlainTransfer([&] { pixels = readRegion(r, format, words.type, bytes, Beyond::Nothing); });
+    if (!bgra && !into_) swapRedAndBlue(shownFormat, pixels_.data(), pixels_.data(), bytes / 4);
     c_->read = read;
     c_->readFramebuffer = bound;
     if (chooses) gl.glReadBuffer(windowBuffer(c_->readBuffer0, &w));
@@ -229,14 +250,14 @@ bool Replay::resolves(const Window& w) const { return w.config.samples > 0 && c_
 
 // A swap shows the resolved picture; glReadPixels of a multisampled window gives one sample (Mesa).
 // The window is bound for reading when this is called, and again afterwards.
-const std::byte* Replay::readResolved(const PixelViewport& r, GLenum format, size_t bytes) {
+const std::byte* Replay::readResolved(const PixelViewport& r, GLenum format, const ColourWords& words) {
     GLint renderbuffer = 0;
     gl.glGetIntegerv(GL_RENDERBUFFER_BINDING, &renderbuffer);
     GLuint buffer = 0, framebuffer = 0;
     gl.glGenRenderbuffers(1, &buffer);
     gl.glGenFramebuffers(1, &framebuffer);
     gl.glBindRenderbuffer(GL_RENDERBUFFER, buffer);
-    gl.glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, r.w, r.h);
+    gl.glRenderbufferStorage(GL_RENDERBUFFER, words.storage, r.w, r.h);
     gl.glBindRenderbuffer(GL_RENDERBUFFER, static_cast<GLuint>(renderbuffer));
     gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
     gl.glFramebufferRenderbuffer(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, buffer);
@@ -249,7 +270,8 @@ const std::byte* Replay::readResolved(const PixelViewport& r, GLenum format, siz
     gl.glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
     const std::byte* pixels = nullptr;
     Window* const window = std::exchange(c_->read, nullptr); // what is read now lies at 0, 0
-    withPlainTransfer([&] { pixels = readRegion({0, 0, r.w, r.h}, format, GL_UNSIGNED_BYTE, bytes, Beyond::Nothing); });
+    const size_t bytes = static_cast<size_t>(r.area()) * words.sizeBytes;
+    withPlainTransfer([&] { pixels = readRegion({0, 0, r.w, r.h}, format, words.type, bytes, Beyond::Nothing); });
     c_->read = window;
     gl.glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
     gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER, name(Kind::Framebuffer, c_->drawFramebuffer));
@@ -263,9 +285,10 @@ const std::byte* Replay::readResolved(const PixelViewport& r, GLenum format, siz
 // Pixels of other tiles, put where a copy will read them. A blit from a texture: no other state counts.
 bool Replay::ownFillWindow(Args& in) {
     const auto x = in.get<int32_t>(), y = in.get<int32_t>(), w = in.get<int32_t>(), h = in.get<int32_t>();
-    const auto planeAndFlag = in.get<uint32_t>(), plane = planeAndFlag & ~wire::kForCopy;
+    const auto planeAndFlag = in.get<uint32_t>(), plane = planeAndFlag & ~(wire::kForCopy | wire::kTenBits | wire::kFloats);
+    const ColourWords& words = planeAndFlag & wire::kFloats ? kFloatWords : planeAndFlag & wire::kTenBits ? kTenBitWords : kByteWords;
     const Data data = in.data();
-    const uint64_t bytesPer = plane == GL_STENCIL_BUFFER_BIT ? 1 : 4;
+    const uint64_t bytesPer = plane == GL_STENCIL_BUFFER_BIT ? 1 : plane == GL_COLOR_BUFFER_BIT ? words.sizeBytes : 4;
     if (!in.ok() || w <= 0 || h <= 0 || data.absent() || data.isOffset() || data.size() / bytesPer / uint64_t(w) < uint64_t(h) || x > INT32_MAX - w || y > INT32_MAX - h) return false;
     if (plane == GL_COLOR_BUFFER_BIT && c_->readBuffer0 == GL_NONE) return true; // the copy is an error
     if (c_->read) c_->read->filled = true;
@@ -274,7 +297,7 @@ bool Replay::ownFillWindow(Args& in) {
         return true;
     }
     if (bound_ && (readsLean() || ((planeAndFlag & wire::kForCopy) && c_->read && resolves(*c_->read)))) {
-        gatherForCopy({x, y, w, h}, plane, data.pointer());
+        gatherForCopy({x, y, w, h}, plane, data.pointer(), words);
         return true;
     }
     if (!bound_ || !c_->read || !gl.glBlitFramebuffer) return true;
@@ -283,7 +306,7 @@ bool Replay::ownFillWindow(Args& in) {
     forgetGathered(); // of another window
     aside([&] {
         if (plane != GL_COLOR_BUFFER_BIT) fillByOtherContext({x, y, w, h}, plane, data.pointer());
-        else fillColor({x, y, w, h}, data.pointer());
+        else fillColor({x, y, w, h}, data.pointer(), words);
     });
     return true;
 }
@@ -299,8 +322,8 @@ std::array<PixelViewport, 4> around(const PixelViewport& r, const PixelViewport&
 } // namespace
 
 // Colours into the window that is read, whatever the program has set. Its own part of a window with samples keeps them.
-void Replay::fillColor(const PixelViewport& r, const void* rgba) {
-    if (c_->api == wire::Api::Es1) return fillByOtherContext(r, GL_COLOR_BUFFER_BIT, rgba);
+void Replay::fillColor(const PixelViewport& r, const void* rgba, const ColourWords& words) {
+    if (c_->api == wire::Api::Es1) return fillByOtherContext(r, GL_COLOR_BUFFER_BIT, rgba, words.type);
     // That window becomes the one that is drawn to, as long as this takes.
     const bool otherDraw = drawSurface_ != readSurface_;
     if (otherDraw) (void)platform_->makeCurrent(c_->context.get(), readSurface_, readSurface_);
@@ -312,7 +335,7 @@ void Replay::fillColor(const PixelViewport& r, const void* rgba) {
     gl.glBindTexture(GL_TEXTURE_2D, texture);
     if (c_->unpackBuffer) gl.glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
     setUnpack(true);
-    withPlainTransfer([&] { gl.glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, r.w, r.h, 0, GL_RGBA, GL_UNSIGNED_BYTE, rgba); });
+    withPlainTransfer([&] { gl.glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(words.storage), r.w, r.h, 0, GL_RGBA, words.type, rgba); });
     if (c_->unpackBuffer) gl.glBindBuffer(GL_PIXEL_UNPACK_BUFFER, c_->unpackBuffer);
     gl.glBindTexture(GL_TEXTURE_2D, static_cast<GLuint>(texture2d));
     if (!c_->fillFramebuffer) gl.glGenFramebuffers(1, &c_->fillFramebuffer);

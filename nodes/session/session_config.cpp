@@ -146,6 +146,8 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("glBackend", s.glBackend);
     visit("sendPictures", s.sendPictures);
     visit("pictureCodec", s.pictureCodec);
+    visit("windowPixels", s.windowPixels);
+    visit("deepPictures", s.deepPictures);
     visit("wayX", s.way.x);
     visit("wayY", s.way.y);
     visit("readback", s.readback);

@@ -95,6 +95,8 @@ struct NodeSetup {
     std::string glBackend = "auto";
     bool sendPictures = false;    // Picture messages to the head at every swap…
     std::string pictureCodec = "raw"; // …or PackedPictures, as of PlaneEncoder
+    bool windowPixels = false;    // pictures go to the program's own window: lossy codecs keep its alpha
+    bool deepPictures = false;    // pictures keep 10 bits per channel; requires windowPixels
     Zoom way;                     // they are sent smaller by this, at most 1 (nodes/pictures/picture_way.hpp)
     Readback readback = Readback::Auto; // how they leave GL
     std::string partCodec = "auto"; // of parts of pictures, to other nodes

@@ -36,12 +36,22 @@ TEST(ConfigMatch, oneSampleIsNoMultisampling) {
 
 TEST(ConfigMatch, errorNamesTheWishAndWhatThereIs) {
     SurfaceConfig wish;
-    wish.alpha = 2;
+    wish.accum = 2;
     auto index = matchConfig("EGL", {candidate(0, 24, 0), candidate(0, 24, 4), candidate(8, 24, 8)}, wish);
     ASSERT_FALSE(index);
     EXPECT_NE(index.error().message.find("EGL"), std::string::npos);
-    EXPECT_NE(index.error().message.find("alpha 2 (it has 0, 8)"), std::string::npos) << index.error().message;
+    EXPECT_NE(index.error().message.find("accum 2 (it has 0)"), std::string::npos) << index.error().message;
     EXPECT_FALSE(matchConfig("EGL", {}, wish));
+}
+
+// A window of 10 bits per channel and 2 of alpha, where the driver has pbuffers of 8 only.
+TEST(ConfigMatch, takesOtherAlphaOnlyWhereBothHaveOne) {
+    SurfaceConfig wish;
+    wish.alpha = 2;
+    EXPECT_EQ(matchConfig("X", {candidate(0, 24, 0), candidate(8, 24, 0)}, wish).value(), 1u);
+    EXPECT_FALSE(matchConfig("X", {candidate(0, 24, 0)}, wish));
+    wish.alpha = 0;
+    EXPECT_FALSE(matchConfig("X", {candidate(8, 24, 0)}, wish));
 }
 
 TEST(ConfigMatch, takesTheNearestOfWhatIsNotThere) {

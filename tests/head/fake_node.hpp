@@ -147,7 +147,7 @@ private:
         }
         if (behaviour_.pictures) {
             const PixelViewport v = region(static_cast<int32_t>(a[2]), static_cast<int32_t>(a[3]));
-            const wire::PictureHeader header{client, a[1], frame, v.x, v.y, v.w, v.h, a[2], a[3], a[1], 0};
+            const wire::PictureHeader header{client, a[1], frame, v.x, v.y, v.w, v.h, a[2], a[3], a[1], 0, 0};
             const uint32_t pixel = frame << 8 | static_cast<uint32_t>(setup_.node);
             const std::vector<uint32_t> rows(static_cast<size_t>(v.area()), pixel);
             sendStruct(wire::NodeMessage::Picture, header, std::as_bytes(std::span(rows)));

@@ -20,7 +20,7 @@ TEST(NodeJoins, includeTheNodeInPicturesFromItsPositionOn) {
     std::vector<uint32_t> frames;
     PictureAssembler assembler(2, [&](WindowPicture picture) { frames.push_back(picture.frame); });
     const auto part = [&](int node, uint32_t frame) {
-        const wire::PictureHeader header{1, 1, frame, node * 2, 0, 2, 1, 4, 1, 0, 0};
+        const wire::PictureHeader header{1, 1, frame, node * 2, 0, 2, 1, 4, 1, 0, 0, 0};
         ByteBuffer rows = ByteBuffer::ofSize(8);
         std::memset(rows.data(), 7, 8);
         EXPECT_TRUE(assembler.part(node, header, std::move(rows)).ok());

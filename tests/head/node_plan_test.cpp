@@ -89,6 +89,33 @@ TEST(NodePlan, setupsSayWhatEachNodeDraws) {
     EXPECT_EQ(tiles, 4);
 }
 
+TEST(NodePlan, deepPicturesGoWhereNothingComputesWithPixels) {
+    const auto deep = [](const SessionConfig& config) {
+        const SessionPlan plan = planSession(config, "me");
+        return setupOf(config, plan, plan.nodes.front()).deepPictures;
+    };
+    SessionConfig plain;
+    plain.columns = 2;
+    plain.display = Display::App;
+    EXPECT_TRUE(deep(plain));
+    SessionConfig other = plain;
+    other.codec = "zstd";
+    other.passes.ranges = 2;
+    EXPECT_TRUE(deep(other));
+    other.codec = "jpeg-90";
+    EXPECT_FALSE(deep(other));
+    other = plain;
+    other.display = Display::None;
+    other.out = "folder";
+    EXPECT_FALSE(deep(other)) << "files have 8 bits";
+    other = plain;
+    other.passes.samples = 4;
+    EXPECT_FALSE(deep(other));
+    other = plain;
+    other.passes.zoom = {0.5, 0.5};
+    EXPECT_FALSE(deep(other));
+}
+
 // ---- queues
 
 TEST(NodePlan, tilesOfAQueueBeginInEvenPartsAndMove) {

@@ -12,9 +12,9 @@ protected:
     std::vector<WindowPicture> pictures;
 
     // Windows of 4 × 1 pixels; node 0 draws the left half, node 1 the right one.
-    bool part(int node, uint32_t frame, uint32_t pixel, uint32_t window = 1, uint32_t width = 4) {
+    bool part(int node, uint32_t frame, uint32_t pixel, uint32_t window = 1, uint32_t width = 4, PictureFormat format = PictureFormat::Bgra8) {
         const int32_t x = node == 0 ? 0 : 2;
-        const wire::PictureHeader header{1, window, frame, x, 0, 2, 1, width, 1, 0xabc, 0};
+        const wire::PictureHeader header{1, window, frame, x, 0, 2, 1, width, 1, 0xabc, 0, static_cast<uint32_t>(format)};
         ByteBuffer rows = ByteBuffer::ofSize(8);
         std::memcpy(rows.data(), &pixel, 4);
         std::memcpy(rows.data() + 4, &pixel, 4);
@@ -43,6 +43,18 @@ TEST_F(PictureAssemblerTest, partsMayComeOutOfOrder) {
     EXPECT_EQ(pixels(0), (Pixels{10, 10, 11, 11})) << "kept though later ones came";
     EXPECT_EQ(pixels(2), (Pixels{30, 30, 31, 31}));
     EXPECT_EQ(pictures[0].nativeWindow, 0xabcu);
+}
+
+// A node whose driver has no surfaces of 10 bits sends 8, which 10 bits hold without a loss.
+TEST_F(PictureAssemblerTest, partsOfBothFormatsMakeADeepPicture) {
+    const uint32_t deep = 3U << 30 | 0x201U << 20 | 1U << 10 | 0x3ffU, plain = 0xff8000ffU;
+    part(0, 1, deep, 1, 4, PictureFormat::Bgr10A2);
+    part(1, 1, plain);
+    ASSERT_EQ(pictures.size(), 1u);
+    EXPECT_EQ(pictures[0].picture->format(), PictureFormat::Bgr10A2);
+    const uint32_t widened = 3U << 30 | 0x202U << 20 | 0x3ffU; // 0x80 of 255 is 513.5 of 1023
+    EXPECT_EQ(pixels(0), (Pixels{deep, deep, widened, widened}));
+    EXPECT_FALSE(part(0, 2, deep, 1, 4, static_cast<PictureFormat>(2)));
 }
 
 TEST_F(PictureAssemblerTest, aLostNodesTilesStayAsTheyWere) {
@@ -115,9 +127,9 @@ TEST_F(PictureAssemblerTest, memoryIsReusedOnlyWhenNobodyHoldsIt) {
 
 TEST_F(PictureAssemblerTest, partsOutsideOfTheirPictureAreErrors) {
     const wire::PictureHeader bad[] = {
-        {1, 1, 1, 3, 0, 2, 1, 4, 1, 0, 0},         {1, 1, 1, -1, 0, 2, 1, 4, 1, 0, 0},
-        {1, 1, 1, 0, 1, 2, 1, 4, 1, 0, 0},         {1, 1, 1, 0, 0, 2, 1, 0, 0, 0, 0},
-        {1, 1, 1, 0, 0, 2, 1, 40000, 1, 0, 0},     {1, 1, 1, 0, 0, 2, 1, 32000, 32000, 0, 0},
+        {1, 1, 1, 3, 0, 2, 1, 4, 1, 0, 0, 0},         {1, 1, 1, -1, 0, 2, 1, 4, 1, 0, 0, 0},
+        {1, 1, 1, 0, 1, 2, 1, 4, 1, 0, 0, 0},         {1, 1, 1, 0, 0, 2, 1, 0, 0, 0, 0, 0},
+        {1, 1, 1, 0, 0, 2, 1, 40000, 1, 0, 0, 0},     {1, 1, 1, 0, 0, 2, 1, 32000, 32000, 0, 0, 0},
     };
     for (const auto& header : bad) EXPECT_FALSE(assembler.part(0, header, ByteBuffer::ofSize(8)).ok());
     EXPECT_TRUE(part(0, 1, 1));

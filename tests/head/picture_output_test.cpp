@@ -1,6 +1,7 @@
 // Which sinks get a frame's pictures, and of how many eyes.
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <memory>
 #include <string>
 #include <vector>
@@ -81,6 +82,40 @@ TEST(PictureOutput, EachCanvasHasItsOwnEyes) {
             expectOne(otherFile, otherIsPair, "file of the other canvas");
             expectOne(otherWall, otherIsPair, "wall of the other canvas");
         }
+}
+
+// Files have 8 bits, which one line says; the program's window takes all.
+TEST(PictureOutput, DeepPicturesAreReducedForWhoTakesNone) {
+    struct DeepSink final : PictureSink {
+        explicit DeepSink(std::vector<PictureFormat>& formats) : formats_(formats) {}
+        Result<void> show(int64_t, const Picture& p) override {
+            formats_.push_back(p.format);
+            return {};
+        }
+        Result<void> finish() override { return {}; }
+        [[nodiscard]] bool takesDeepPictures() const override { return true; }
+        [[nodiscard]] std::string describe() const override { return "a test"; }
+        std::vector<PictureFormat>& formats_;
+    };
+    std::vector<Shown> file;
+    std::vector<PictureFormat> window;
+    std::string said;
+    PictureOutputConfig config;
+    config.toNativeWindows = true;
+    config.openWindow = [&](uint64_t) { return Result<std::unique_ptr<PictureSink>>(std::make_unique<DeepSink>(window)); };
+    config.done = [](uint32_t, uint32_t) {};
+    config.say = [&](const std::string& text) { said += text; };
+    PictureOutput output(std::move(config), std::make_unique<TellingSink>(file));
+    auto deep = std::make_shared<OwnedPicture>();
+    deep->resize(kWidth, kHeight, PictureFormat::Bgr10A2);
+    const uint32_t word = 805; // of 1023, blue: 200.7 of 255
+    for (int i = 0; i < kWidth * kHeight; ++i) std::memcpy(deep->data() + 4 * i, &word, 4);
+    for (uint32_t frame = 1; frame <= 2; ++frame) output.add({1, 1, frame, 7, deep, {}});
+    ASSERT_TRUE(output.finish(Deadline::inMs(10'000)));
+    ASSERT_EQ(file.size(), 2u);
+    EXPECT_EQ(file[0].left, std::byte{201});
+    EXPECT_EQ(window, (std::vector{PictureFormat::Bgr10A2, PictureFormat::Bgr10A2}));
+    EXPECT_EQ(said, "the program's window has 10 bits per channel; --out saves its pictures with 8");
 }
 
 TEST(PictureOutput, AVideoThatIsNotCompleteIsNotSaved) {

@@ -30,7 +30,7 @@ protected:
 
     void part(int node, uint32_t frame, uint32_t pixel, uint32_t half = 1) {
         const auto w = static_cast<int32_t>(half);
-        const wire::PictureHeader header{1, 1, frame, node % 2 * w, 0, w, 1, 2 * half, 1, 0, 0};
+        const wire::PictureHeader header{1, 1, frame, node % 2 * w, 0, w, 1, 2 * half, 1, 0, 0, 0};
         ByteBuffer rows = ByteBuffer::ofSize(size_t{4} * half);
         for (uint32_t i = 0; i < half; ++i) std::memcpy(rows.data() + size_t{4} * i, &pixel, 4);
         EXPECT_TRUE(assembler.part(node, header, std::move(rows)).ok());
@@ -63,7 +63,7 @@ TEST(OtherCanvases, haveAPictureOfEachFrame) {
     const auto only = [](size_t pass) { return [pass](const std::vector<Picture>& passes, OwnedPicture& into) { into.assign(passes[pass]); }; };
     PictureAssembler assembler({0, 1}, {}, [&](WindowPicture picture) { pictures.push_back(std::move(picture)); }, {only(1)}, {Zoom{}, Zoom{.5, 1}});
     const auto part = [&](int node, uint32_t frame, uint32_t width, int value) {
-        const wire::PictureHeader header{1, 1, frame, 0, 0, static_cast<int32_t>(width), 1, width, 1, 0, 0};
+        const wire::PictureHeader header{1, 1, frame, 0, 0, static_cast<int32_t>(width), 1, width, 1, 0, 0, 0};
         ByteBuffer rows = ByteBuffer::ofSize(size_t{4} * width);
         std::memset(rows.data(), value, rows.size());
         EXPECT_TRUE(assembler.part(node, header, std::move(rows)).ok());

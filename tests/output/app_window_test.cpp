@@ -100,15 +100,18 @@ TEST_F(AppWindows, serverWithoutSharedMemory) {
     expectSeen(window, 0, 0, picture.view());
 }
 
-TEST_F(AppWindows, windowWithAlphaIsOpaque) {
+TEST_F(AppWindows, windowWithAlphaShowsIt) {
     startServer();
     const uint32_t window = client_->makeWindow(0, 0, 64, 32, 0, 32);
     openOutput(configFor(window));
     const OwnedPicture picture = noisePicture(64, 32, 1);
     show(picture);
     expectSeen(window, 0, 0, picture.view());
-    for (int x = 0; x < 64; ++x)
-        EXPECT_EQ(client_->pixelAt(window, x, 5).value() >> 24, 0xffU);
+    for (int x = 0; x < 64; ++x) {
+        uint32_t expected = 0;
+        std::memcpy(&expected, picture.view().row(26) + x * 4, 4);
+        EXPECT_EQ(client_->pixelAt(window, x, 5).value(), expected);
+    }
 }
 
 class OtherDepths : public AppWindows, public testing::WithParamInterface<bool> {};
@@ -124,7 +127,7 @@ TEST_P(OtherDepths, sixteenBits) {
     for (int y = 0; y < 9; ++y)
         for (int x = 0; x < 33; ++x) {
             uint16_t expected = 0;
-            converter->convertRow(picture.view().row(8 - y) + x * 4, 1,
+            converter->convertRow(PictureFormat::Bgra8, picture.view().row(8 - y) + x * 4, 1,
                                   reinterpret_cast<std::byte*>(&expected));
             ASSERT_EQ(client_->pixelAt(window, x, y).value() & 0xffff, expected) << x << ' ' << y;
         }
@@ -142,6 +145,20 @@ TEST_P(OtherDepths, thirtyBits) {
     const uint32_t half = (128 * 1023 + 127) / 255;
     const auto mixed = client_->pixelAt(window, 4, 0).value() & 0x3fffffffU;
     EXPECT_EQ(mixed, red == 0x3ffU ? (half << 20 | 1023U << 10) : (half | 1023U << 10));
+}
+
+TEST_P(OtherDepths, thirtyBitsOfDeepPictures) {
+    startServer(30);
+    const uint32_t window = client_->makeWindow(0, 0, 33, 9, 0);
+    openOutput(configFor(window, GetParam()));
+    OwnedPicture picture;
+    picture.resize(33, 9, PictureFormat::Bgr10A2);
+    const uint32_t word = 0x2aaU << 20 | 0x155U << 10 | 0x3feU;
+    for (int i = 0; i < 33 * 9; ++i)
+        std::memcpy(picture.data() + i * 4, &word, 4);
+    show(picture);
+    const auto seen = client_->pixelAt(window, 3, 0).value() & 0x3fffffffU;
+    EXPECT_TRUE(seen == word || seen == (0x3feU << 20 | 0x155U << 10 | 0x2aaU)) << std::hex << seen;
 }
 
 INSTANTIATE_TEST_SUITE_P(Ways, OtherDepths, testing::Bool(), [](const auto& shared) {

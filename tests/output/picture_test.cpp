@@ -1,5 +1,7 @@
 #include "nodes/output/picture.hpp"
 
+#include <cstring>
+
 #include "tests/output/test_pictures.hpp"
 
 namespace mural::test {
@@ -25,6 +27,26 @@ TEST(Picture, copyIntoIgnoresEmptyAndFarPictures) {
     copyInto(target, 8, 0, before.view());
     copyInto(target, 0, -8, before.view());
     EXPECT_TRUE(samePictures(before.view(), target.view()));
+}
+
+TEST(Picture, eightBitsComeBackFromTen) {
+    for (uint32_t value = 0; value < 256; ++value) {
+        const uint32_t pixel = 0x55000000U | value << 16 | (255 - value) << 8 | value;
+        OwnedPicture source(1, 1), back(1, 1);
+        std::memcpy(source.data(), &pixel, 4);
+        OwnedPicture deep;
+        deep.resize(1, 1, PictureFormat::Bgr10A2);
+        copyInto(deep, 0, 0, source.view());
+        copyInto(back, 0, 0, deep.view());
+        EXPECT_EQ(std::memcmp(back.data(), source.data(), 4), 0) << value;
+    }
+}
+
+TEST(Picture, cutOutAndCopiesKeepTheFormat) {
+    OwnedPicture deep;
+    deep.resize(3, 2, PictureFormat::Bgr10A2);
+    EXPECT_EQ(cutOut(deep.view(), {1, 0, 2, 2}).format(), PictureFormat::Bgr10A2);
+    EXPECT_EQ(OwnedPicture(deep.view()).format(), PictureFormat::Bgr10A2);
 }
 
 TEST(Picture, flipRowsMovesTheLowestRowUp) {

@@ -15,7 +15,15 @@ uint32_t convertOne(const PixelFormat& format, int red, int green, int blue) {
     const std::byte pixel[4] = {static_cast<std::byte>(blue), static_cast<std::byte>(green),
                                 static_cast<std::byte>(red), std::byte{0x5a}};
     uint32_t stored = 0;
-    converter->convertRow(pixel, 1, reinterpret_cast<std::byte*>(&stored));
+    converter->convertRow(PictureFormat::Bgra8, pixel, 1, reinterpret_cast<std::byte*>(&stored));
+    return stored;
+}
+
+uint32_t convertDeep(const PixelFormat& format, uint32_t word) {
+    auto converter = PixelConverter::make(format);
+    EXPECT_TRUE(converter);
+    uint32_t stored = 0;
+    converter->convertRow(PictureFormat::Bgr10A2, reinterpret_cast<const std::byte*>(&word), 1, reinterpret_cast<std::byte*>(&stored));
     return stored;
 }
 
@@ -40,8 +48,21 @@ TEST(PixelFormat, thirtyBits) {
                   static_cast<uint32_t>(std::lround(value / 255.0 * 1023)));
 }
 
-TEST(PixelFormat, depth32IsOpaque) {
-    EXPECT_EQ(convertOne({32, 32, 32, 0xff0000, 0xff00, 0xff}, 1, 2, 3), 0xff010203U);
+// As drivers write them: the upper bits lie beyond the depth.
+TEST(PixelFormat, copiesDeepPixelsOfTheSameLayout) {
+    EXPECT_EQ(convertDeep({30, 32, 32, 0x3ff00000, 0x000ffc00, 0x000003ff}, 0x9f1ada92U), 0x9f1ada92U);
+}
+
+TEST(PixelFormat, convertsDeepPixels) {
+    const uint32_t word = 1U << 30 | 0x3ffU << 20 | 0x155U << 10 | 3U; // red, green, blue
+    EXPECT_EQ(convertDeep({30, 32, 32, 0x3ff, 0xffc00, 0x3ff00000}, word), 3U << 20 | 0x155U << 10 | 0x3ffU);
+    EXPECT_EQ(convertDeep({32, 32, 32, 0xff0000, 0xff00, 0xff}, word), 0x55U << 24 | 0xffU << 16 | 85U << 8 | 1U);
+    EXPECT_EQ(convertDeep({16, 16, 32, 0xf800, 0x07e0, 0x001f}, word), 0x1fU << 11 | 21U << 5);
+}
+
+TEST(PixelFormat, depth32KeepsAlpha) {
+    EXPECT_EQ(convertOne({32, 32, 32, 0xff0000, 0xff00, 0xff}, 1, 2, 3), 0x5a010203U);
+    EXPECT_EQ(convertOne({32, 32, 32, 0xff, 0xff00, 0xff0000}, 1, 2, 3), 0x5a030201U);
 }
 
 TEST(PixelFormat, swappedChannels) {
@@ -56,7 +77,7 @@ TEST(PixelFormat, threeBytesPerPixelArePadded) {
     const std::byte two[8] = {std::byte{1}, std::byte{2}, std::byte{3}, std::byte{0},
                               std::byte{4}, std::byte{5}, std::byte{6}, std::byte{0}};
     unsigned char stored[7] = {0, 0, 0, 0, 0, 0, 99};
-    converter->convertRow(two, 2, reinterpret_cast<std::byte*>(stored));
+    converter->convertRow(PictureFormat::Bgra8, two, 2, reinterpret_cast<std::byte*>(stored));
     const unsigned char expected[7] = {1, 2, 3, 4, 5, 6, 99};
     EXPECT_EQ(std::memcmp(stored, expected, sizeof stored), 0);
 }

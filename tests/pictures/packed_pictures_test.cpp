@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <random>
 
 #include "nodes/pictures/picture_packer.hpp"
@@ -61,6 +62,17 @@ TEST_P(EveryLosslessCodec, PicturesComeAsTheyWere) {
 
 INSTANTIATE_TEST_SUITE_P(Codecs, EveryLosslessCodec, ::testing::Values("auto", "raw", "rle64", "bitplane", "bitplane-zstd", "lz4", "zstd"));
 
+// Words of 10 bits are nothing else to them.
+TEST_P(EveryLosslessCodec, DeepPixelsComeAsTheyWere) {
+    Ends ends(GetParam());
+    Pixels pixels(static_cast<size_t>(kWidth) * kHeight * 4);
+    for (uint32_t i = 0; i < kWidth * kHeight; ++i) {
+        const uint32_t word = (i % 4) << 30 | (i % 1024) << 20 | (i / 7 % 1024) << 10 | (i * 3 % 1024);
+        std::memcpy(&pixels[4 * size_t{i}], &word, 4);
+    }
+    EXPECT_EQ(ends.through(1, 1, kWidth, kHeight, pixels), pixels);
+}
+
 TEST(PackedPictures, WhatStaysIsNotSentAgain) {
     Ends ends("auto");
     Pixels pixels = drawn(kWidth, kHeight, 1);
@@ -91,6 +103,20 @@ TEST(PackedPictures, LossyCodecsLoseLittleOfSmoothPictures) {
     }
     Ends ends("jpeg-50");
     EXPECT_NE(ends.through(1, 1, kWidth, kHeight, drawn(kWidth, kHeight, 3)), drawn(kWidth, kHeight, 3)) << "noise does not come through";
+}
+
+TEST(PackedPictures, LossyCodecsKeepAlphaUnlessItIsDropped) {
+    Pixels pixels = drawn(kWidth, kHeight, 3, false);
+    for (size_t i = 0; i < pixels.size(); i += 4) pixels[i + 3] = static_cast<std::byte>(i / 4 * 7);
+    for (const char* codec : {"yuv420", "jpeg-95", "lossy"}) {
+        Ends ends(codec);
+        const Pixels out = ends.through(1, 1, kWidth, kHeight, pixels);
+        for (size_t i = 3; i < pixels.size(); i += 4) ASSERT_EQ(out[i], pixels[i]) << codec << ", pixel " << i / 4;
+        PicturePacker packer(codec, PictureAlpha::Dropped);
+        auto packed = packer.pack(1, 1, kWidth, kHeight, pixels.data());
+        ASSERT_TRUE(packed);
+        EXPECT_LT(packed->size(), ends.size) << codec << ": alpha costs nothing where nobody sees it";
+    }
 }
 
 TEST(PackedPictures, AWindowThatIsGoneBeginsAnew) {
