@@ -1,5 +1,6 @@
 #include "interposer/bypass.hpp"
 
+#include <cerrno>
 #include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
@@ -10,7 +11,7 @@
 #include <unistd.h>
 
 #include "interposer/log.hpp"
-#include "interposer/session.hpp"
+#include "interposer/process.hpp"
 
 namespace mural {
 
@@ -24,10 +25,18 @@ __attribute__((constructor)) void rememberNotes() {
     if (path && std::strlen(path) < sizeof notesPath) std::strcpy(notesPath, path);
 }
 
+int openFile(const char* path, int flags) {
+    int fd = -1;
+    do {
+        fd = open(path, flags);
+    } while (fd < 0 && errno == EINTR);
+    return fd;
+}
+
 bool note(const char* text, size_t length) {
-    const int fd = notesPath[0] ? open(notesPath, O_WRONLY | O_APPEND | O_CLOEXEC) : -1;
+    const int fd = notesPath[0] ? openFile(notesPath, O_WRONLY | O_APPEND | O_CLOEXEC) : -1;
     if (fd < 0) return false;
-    const bool written = write(fd, text, length) == static_cast<ssize_t>(length);
+    const bool written = writeAll(fd, text, length);
     close(fd);
     return written;
 }
@@ -62,7 +71,7 @@ int addLibrary(dl_phdr_info* info, size_t, void* into) {
 // A process that ends and was never captured leaves word of what it had loaded: `mural run` tells the
 // user when nobody else was captured either.
 __attribute__((destructor)) void tellLibraries() {
-    if (!notesPath[0] || Session::current()) return;
+    if (!notesPath[0] || process::everCaptured()) return;
     static Libraries libraries;
     libraries.add("ended");
     char program[1024];
