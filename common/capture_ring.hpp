@@ -140,6 +140,9 @@ struct alignas(64) CaptureHeader {
 
     // Set by the head when it ends the session in order; the app then goes on alone.
     alignas(64) std::atomic<uint32_t> headGone;
+    // A robust futex that a thread of the head holds while it serves the program: the kernel sets FUTEX_OWNER_DIED when
+    // the head ends in any other way, and the app goes on alone.
+    std::atomic<uint32_t> headLife;
 
     // Results of `--verify`: written by the app, read by the head for the report.
     alignas(64) std::atomic<uint64_t> verifiedFrames;
@@ -180,7 +183,8 @@ inline std::byte* chunk(CaptureHeader* h, uint32_t index) {
 // The handshake on the session's Unix socket (SOCK_STREAM, abstract name from MURAL_SESSION, or path from MURAL_SOCKET).
 // App → head: Hello. Head → app: Welcome with the mapping's memfd attached (SCM_RIGHTS), then
 // Welcome.extensionBytes bytes: the GL extensions that all nodes have, separated by spaces.
-// Afterwards the socket only says who is alive.
+// Then the app closes the socket. Its mapping says that it is alive: the head has locked the memfd's file
+// description (flock), and the kernel releases the lock with the last mapping and descriptor of it.
 struct Hello {
     uint32_t magic;
     uint32_t version;

@@ -1,9 +1,11 @@
 #include "common/write_watch.hpp"
 
+#include <cerrno>
 #include <cstring>
 #include <fcntl.h>
 #include <pthread.h>
 #include <sys/ioctl.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -44,9 +46,17 @@ constexpr int kRegions = 64;
 uint64_t pageFloor(uint64_t at) { return at & ~(kPageBytes - 1); }
 uint64_t pageCeil(uint64_t at) { return pageFloor(at + kPageBytes - 1); }
 
-// A sandbox (seccomp) may kill a program for unknown system calls.
+int openUninterrupted(const char* path) {
+    int fd = -1;
+    do {
+        fd = open(path, O_RDONLY | O_CLOEXEC);
+    } while (fd < 0 && errno == EINTR);
+    return fd;
+}
+
+// A sandbox (seccomp) may kill a program for unknown system calls. Each thread has its own filters.
 bool sandboxed() {
-    const int file = open("/proc/self/status", O_RDONLY | O_CLOEXEC);
+    const int file = openUninterrupted("/proc/thread-self/status");
     if (file < 0) return true;
     char text[4096];
     const ssize_t length = read(file, text, sizeof text - 1);
@@ -58,10 +68,17 @@ bool sandboxed() {
 }
 
 // Descriptors of this process's own memory. A forked child has none: the inherited ones refer to the parent's memory.
+// A program may close them and reuse their numbers.
 struct Kernel {
     pid_t process = 0;
     int uffd = -1, pagemap = -1;
-    [[nodiscard]] bool usable() const { return uffd >= 0 && process == getpid(); }
+    dev_t device = 0;
+    ino_t pagemapInode = 0;
+    [[nodiscard]] bool usable() const { return uffd >= 0 && process == getpid() && isPagemap(); }
+    [[nodiscard]] bool isPagemap() const {
+        struct stat file {};
+        return fstat(pagemap, &file) == 0 && file.st_dev == device && file.st_ino == pagemapInode;
+    }
 };
 Kernel kernel;
 
@@ -70,9 +87,10 @@ void openKernel() {
     const int uffd = static_cast<int>(syscall(SYS_userfaultfd, O_CLOEXEC | kUserModeOnly));
     if (uffd < 0) return;
     UffdApi api = {kUffdApi, kFeatureUnpopulated | kFeatureAsync, 0};
-    const int pagemap = open("/proc/self/pagemap", O_RDONLY | O_CLOEXEC);
-    if (pagemap >= 0 && ioctl(uffd, kIoctlApi, &api) == 0) {
-        kernel = {getpid(), uffd, pagemap};
+    const int pagemap = openUninterrupted("/proc/self/pagemap");
+    struct stat file {};
+    if (pagemap >= 0 && fstat(pagemap, &file) == 0 && ioctl(uffd, kIoctlApi, &api) == 0) {
+        kernel = {getpid(), uffd, pagemap, file.st_dev, file.st_ino};
         return;
     }
     if (pagemap >= 0) close(pagemap);

@@ -1,5 +1,6 @@
 #include "interposer/bypass.hpp"
 
+#include <cerrno>
 #include <cstdarg>
 #include <cstdio>
 #include <cstring>
@@ -10,17 +11,25 @@
 
 #include "interposer/launch_settings.hpp"
 #include "interposer/log.hpp"
-#include "interposer/session.hpp"
+#include "interposer/process.hpp"
 
 namespace mural {
 
 namespace {
 
+int openFile(const char* path, int flags) {
+    int fd = -1;
+    do {
+        fd = open(path, flags);
+    } while (fd < 0 && errno == EINTR);
+    return fd;
+}
+
 bool note(const char* text, size_t length) {
     const char* path = launchSettings().session ? launchSettings().notes : nullptr;
-    const int fd = path ? open(path, O_WRONLY | O_APPEND | O_CLOEXEC) : -1;
+    const int fd = path ? openFile(path, O_WRONLY | O_APPEND | O_CLOEXEC) : -1;
     if (fd < 0) return false;
-    const bool written = write(fd, text, length) == static_cast<ssize_t>(length);
+    const bool written = writeAll(fd, text, length);
     close(fd);
     return written;
 }
@@ -55,7 +64,7 @@ int addLibrary(dl_phdr_info* info, size_t, void* into) {
 // A process that ends and was never captured leaves word of what it had loaded: `mural run` tells the
 // user when nobody else was captured either.
 __attribute__((destructor)) void tellLibraries() {
-    if (!launchSettings().notes || Session::current()) return;
+    if (!launchSettings().notes || process::everCaptured()) return;
     static Libraries libraries;
     libraries.add("ended");
     char program[1024];

@@ -2,15 +2,14 @@
 
 #include <cstdlib>
 #include <cstring>
-#include <linux/membarrier.h>
 #include <new>
 #include <sys/auxv.h>
-#include <sys/syscall.h>
-#include <unistd.h>
 
 #include "interposer/default_samples.hpp"
 #include "interposer/drawn_elsewhere.hpp"
 #include "interposer/draw_opcodes.hpp"
+#include "interposer/forked_child.hpp"
+#include "interposer/group_order.hpp"
 #include "interposer/known_objects.hpp"
 #include "interposer/log.hpp"
 #include "interposer/news.hpp"
@@ -28,50 +27,13 @@ namespace {
 
 Lock announceLock; // taken before the tables' own
 
-// After this, every other thread either sees its limit gone at its next record, or had begun that
-// record before: so what it has completed may be published for it.
-void stopFastPath(ThreadState& other) {
-    other.shared = true;
-    __atomic_store_n(&other.limit, nullptr, __ATOMIC_SEQ_CST);
-}
-
-void registerBarrier() {
-    static bool once = false;
-    if (!__atomic_exchange_n(&once, true, __ATOMIC_RELAXED))
-        syscall(SYS_membarrier, MEMBARRIER_CMD_REGISTER_PRIVATE_EXPEDITED, 0, 0);
-}
-
 // The thread gives up its context: what it encoded is made visible first.
 void leaveContext(ThreadState& t) {
     Context* old = t.context;
     if (!old) return;
-    Session* s = Session::current();
     Guard guard(old->group->lock);
-    if (s && s->alive()) s->publish(t, false);
-    --old->group->threads;
-    if (old->group->lastWriter == &t) old->group->lastWriter = nullptr;
-    t.shared = false;
-    t.context = nullptr;
+    group_order::leave(t, Session::current());
     if (old->destroyed) known::hold(*old, nullptr, nullptr);
-}
-
-// Threads of one share group order all their records from the moment that there are two of them.
-void enterGroup(ThreadState& t, Context& c) {
-    ShareGroup& group = *c.group;
-    Guard guard(group.lock);
-    ++group.threads;
-    t.context = &c;
-    t.shared = group.threads > 1;
-    if (!t.shared) return;
-    registerBarrier();
-    for (ThreadState* other = firstThread(); other; other = other->next) {
-        if (other != &t && other->context && other->context->group == &group) stopFastPath(*other);
-    }
-    syscall(SYS_membarrier, MEMBARRIER_CMD_PRIVATE_EXPEDITED, 0, 0);
-    Session* s = Session::current();
-    for (ThreadState* other = firstThread(); s && other; other = other->next) {
-        if (other != &t && other->context && other->context->group == &group) s->publish(*other, false);
-    }
 }
 
 void announce(ThreadState& t, Context& c) {
@@ -217,10 +179,14 @@ void learnFront(Window& w) {
 
 void becameCurrent(Context* context, Window* draw, Window* read) {
     ThreadState& t = ownThreadState();
-    Session* s = Session::get();
+    if (context && context->group->inherited) {
+        inheritedUsed(draw);
+        context = nullptr;
+    }
+    Session* s = context ? Session::get() : Session::current();
     if (!s) {
         t.context = nullptr;
-        t.drawLocally = true;
+        t.drawLocally = t.vertexLocally = true;
         return;
     }
     noteCalls(t);
@@ -234,7 +200,7 @@ void becameCurrent(Context* context, Window* draw, Window* read) {
         return;
     }
     const bool entered = !t.context;
-    if (entered) enterGroup(t, *context);
+    if (entered) group_order::enter(t, *context);
     t.limit = nullptr; // the first record takes the slow path, which finds or takes a chunk
     if (context->firstCurrent) {
         context->firstCurrent = false;
@@ -242,6 +208,7 @@ void becameCurrent(Context* context, Window* draw, Window* read) {
         learnVersion(*context);
     }
     context->drawsPixmap = draw && draw->isPixmap;
+    if (draw) draw->inherited = false;
     const uint32_t drawWindow = draw ? draw->id : 0, readWindow = read ? read->id : 0;
     const bool bound = entered || context->drawWindow != drawWindow || context->readWindow != readWindow;
     refreshDrawLocally(t);
@@ -352,7 +319,7 @@ bool swapsItself(Window* w) {
         w->drawnInPart = false; // the next picture is whole
         return false;
     }
-    return swapLocally() || w->isPixmap;
+    return swapLocally() || w->isPixmap || w->inherited;
 }
 
 namespace {
@@ -386,8 +353,9 @@ void endFrameWithoutContext(Session& s, Window& w) {
 void endFrame(Window* w) {
     ThreadState& t = *tThread;
     Session* s = Session::current();
+    if (w && w->inherited) inheritedUsed(w);
     // One buffer alone is shown by flushes, of a context that has the window current.
-    const bool shows = w && hasBuffers(*w) && (w->config.doubleBuffer || (t.context && t.context->drawWindow == w->id));
+    const bool shows = w && !w->inherited && hasBuffers(*w) && (w->config.doubleBuffer || (t.context && t.context->drawWindow == w->id));
     if (!s || !s->alive() || !shows) {
         refreshDrawLocally(t);
         return;

@@ -43,6 +43,8 @@ struct ShareGroup {
     Lock lock;
     ThreadState* lastWriter = nullptr;
     int threads = 0; // that have a context of the group current
+    int unsettledThreads = 0; // ThreadState::mayBeWriting
+    bool inherited = false; // the parent's of a forked child: its objects are in the parent's stream
     MappedBuffer* maps = nullptr; // mappings of buffers that are not unmapped yet
     std::atomic<int> lastingMaps{0}; // persistent ones
     Lock mapsLock;                // of the list; records are written under it
@@ -133,6 +135,7 @@ struct Window {
     bool announced = false;
     bool freeDue = false;      // the program has destroyed it, the nodes have to be told
     bool sizeKnown = false;    // the driver's buffers have a size until the next swap
+    bool inherited = false;    // drawn by a context of the parent of this forked child: on its own
     int holders = 0;           // contexts that were last bound to it
     uint64_t native = 0;       // X window
     wire::WindowConfig config{};

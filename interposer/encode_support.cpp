@@ -1,12 +1,11 @@
 #include "interposer/encode_support.hpp"
 
-#include <sys/uio.h>
-#include <unistd.h>
-
 #include "interposer/context.hpp"
+#include "interposer/group_order.hpp"
 #include "interposer/log.hpp"
 #include "interposer/own_records.hpp"
 #include "interposer/pixel_store.hpp"
+#include "interposer/readable.hpp"
 #include "interposer/session.hpp"
 
 namespace mural {
@@ -16,7 +15,7 @@ namespace {
 void goAlone(ThreadState& t) {
     t.cursor = t.limit = t.chunkEnd = nullptr;
     t.chunk = UINT32_MAX;
-    t.drawLocally = true;
+    t.drawLocally = t.vertexLocally = true;
 }
 
 // What EGL and GLX do without a current context.
@@ -30,20 +29,17 @@ void openFastPath(ThreadState& t) {
 } // namespace
 
 std::byte* makeRoom(ThreadState& t, uint32_t opcode, uint32_t sizeBytes) {
-    if (!t.context && !needsNoContext(opcode)) return nullptr;
+    if (!t.context && !needsNoContext(opcode)) {
+        t.drawLocally = t.vertexLocally = true; // they are false where a forked child has its parent's state
+        return nullptr;
+    }
     if (t.drawingAwaited) beforeAwaitedDrawing(t, opcode);
     Session* s = Session::current();
     if (!s || !s->alive()) {
         goAlone(t);
         return nullptr;
     }
-    if (t.context && t.shared) {
-        ShareGroup& group = *t.context->group;
-        group.lock.lock();
-        if (group.lastWriter && group.lastWriter != &t) s->publish(*group.lastWriter, false);
-        group.lastWriter = &t;
-        t.locked = true;
-    }
+    if (t.context && t.shared) group_order::takeTurn(t, *s);
     if (t.chunk == UINT32_MAX || t.cursor + sizeBytes > t.chunkEnd) {
         s->publish(t, true);
         if (!s->takeChunk(t)) {
@@ -128,15 +124,10 @@ DataArg packStrings(ThreadState& t, GLsizei count, const GLchar* const* strings,
     return DataArg::of(out, total);
 }
 
-GLsizei readableElements(ThreadState& t, const void* value, GLsizei count, uint32_t elementBytes) {
+GLsizei readableElements(const void* value, GLsizei count, uint32_t elementBytes) {
     constexpr uint64_t kMostBytes = 256 * 1024; // of all uniforms of a stage, far above what drivers have
     const uint64_t wanted = uint64_t(count) * elementBytes < kMostBytes ? uint64_t(count) * elementBytes : kMostBytes;
-    void* const copy = t.context ? scratchMemory(t, wanted) : nullptr;
-    if (!copy) return 0;
-    const iovec to{copy, wanted}, from{const_cast<void*>(value), wanted};
-    const ssize_t there = process_vm_readv(getpid(), &to, 1, &from, 1, 0);
-    const uint64_t bytes = there > 0 ? static_cast<uint64_t>(there) : wanted; // not allowed here: the program knows best
-    return static_cast<GLsizei>(bytes / elementBytes);
+    return static_cast<GLsizei>(readableBytes(value, wanted) / elementBytes);
 }
 
 void unsupportedCalled(const char* name, const char* reason) {

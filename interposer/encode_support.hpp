@@ -115,7 +115,7 @@ DataArg packStrings(ThreadState& t, GLsizei count, const GLchar* const* strings,
 // Of an array of uniforms: drivers take no more than the uniform has, whatever the count says, so behind that there
 // may be no memory. How many are there; asked for long ones only.
 constexpr GLsizei kSureElements = 256;
-GLsizei readableElements(ThreadState& t, const void* value, GLsizei count, uint32_t elementBytes);
+GLsizei readableElements(const void* value, GLsizei count, uint32_t elementBytes);
 
 // True: shaders write into buffers that are bound there.
 constexpr bool writesThrough(GLenum target) {

@@ -10,6 +10,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "common/clock.hpp"
 #include "interposer/launch_settings.hpp"
 #include "interposer/log.hpp"
 
@@ -25,10 +26,11 @@ int connectTo(const sockaddr_un& address, size_t bytes) {
     if (fd < 0) return -1;
     setsockopt(fd, SOL_SOCKET, SO_RCVTIMEO, &kTimeout, sizeof kTimeout);
     setsockopt(fd, SOL_SOCKET, SO_SNDTIMEO, &kTimeout, sizeof kTimeout);
+    const int64_t endNs = monotonicNowNs() + kTimeout.tv_sec * kNsPerS;
     int result = 0;
     do { // a signal interrupts it only while the head's backlog is full: nothing has begun
         result = ::connect(fd, reinterpret_cast<const sockaddr*>(&address), static_cast<socklen_t>(bytes));
-    } while (result != 0 && errno == EINTR);
+    } while (result != 0 && errno == EINTR && monotonicNowNs() < endNs);
     if (result == 0) return fd;
     const int why = errno;
     close(fd);

@@ -6,6 +6,7 @@
 #include "interposer/lock.hpp"
 #include "interposer/mapped_buffers.hpp"
 #include "interposer/news.hpp"
+#include "interposer/session.hpp"
 #include "interposer/thread_state.hpp"
 
 namespace mural {
@@ -174,6 +175,27 @@ uint32_t nextDueWindow() {
     return oldest->id;
 }
 
+Lock& tables() { return tableLock; }
+
+void inherit() {
+    Guard guard(tableLock);
+    for (uint32_t i = 0; i < contextCount; ++i) {
+        Context& c = *contexts[i];
+        if (!c.group) continue;
+        c.group->inherited = c.group->inherited || c.announced || !c.firstCurrent;
+        c.announced = c.freeDue = false;
+        c.group->threads = c.group->unsettledThreads = 0;
+        c.group->lastWriter = nullptr;
+        c.group->mapsHolder.store(nullptr, std::memory_order_relaxed);
+    }
+    for (Window* w = windows; w; w = w->next) {
+        w->inherited = w->inherited || w->announced;
+        w->announced = w->freeDue = w->sizeKnown = false;
+        w->lastFlush = nullptr;
+        if (w->boundGroup && w->boundGroup->inherited) w->boundGroup = nullptr;
+    }
+}
+
 bool nativeEnds(uint64_t native) {
     bool any = false;
     Guard guard(tableLock);
@@ -190,6 +212,8 @@ bool nativeEnds(uint64_t native) {
 } // namespace known
 
 Context* addContext(void* native, Context* shareWith, wire::Api api, const wire::WindowConfig& config) {
+    // A sandbox may begin before the context is made current, and forbid to connect.
+    if (!shareWith || !shareWith->group->inherited) Session::get();
     Guard guard(tableLock);
     Context* c = emptyContext();
     if (!c) return nullptr;

@@ -20,6 +20,10 @@ Context* idleHolderOf(const Window& w);
 // Ids that the nodes are told the end of now, each once; 0: no more.
 uint32_t nextDueContext();
 uint32_t nextDueWindow();
+// Of all tables; for the time of a fork.
+Lock& tables();
+// For a forked child: what the nodes know is the parent's.
+void inherit();
 // An X window is destroyed. True: drawables of it are known.
 bool nativeEnds(uint64_t native);
 

@@ -5,29 +5,51 @@
 #include <atomic>
 
 #include "common/futex.hpp"
+#include "interposer/process.hpp"
 
 namespace mural {
 
+// The word is 0 when free. Otherwise it names the process that holds the lock: a thread of the parent that held it at a
+// fork does not exist in the child, so a lock of another process counts as free.
 class Lock {
 public:
     void lock() {
-        uint32_t free = 0;
-        if (word_.compare_exchange_strong(free, 1, std::memory_order_acquire)) return;
+        const uint32_t mine = process::number() << 2;
+        uint32_t seen = 0;
+        if (word_.compare_exchange_strong(seen, mine | kHeld, std::memory_order_acquire)) return;
         for (int spin = 0; spin < 100; ++spin) {
-            free = 0;
-            if (word_.compare_exchange_weak(free, 1, std::memory_order_acquire)) return;
+            seen = 0;
+            if (word_.compare_exchange_weak(seen, mine | kHeld, std::memory_order_acquire)) return;
         }
-        while (word_.exchange(2, std::memory_order_acquire) != 0) futexWait(word_, 2, 100'000'000);
+        while (!takeContended(mine)) futexWait(word_, mine | kAwaited, 100'000'000);
     }
     bool tryLock() {
-        uint32_t free = 0;
-        return word_.compare_exchange_strong(free, 1, std::memory_order_acquire);
+        const uint32_t mine = process::number() << 2;
+        uint32_t seen = word_.load(std::memory_order_relaxed);
+        return !isHeld(seen, mine) && word_.compare_exchange_strong(seen, mine | kHeld, std::memory_order_acquire);
     }
     void unlock() {
-        if (word_.exchange(0, std::memory_order_release) == 2) futexWakeAll(word_);
+        if (word_.exchange(0, std::memory_order_release) & kAwaited) futexWakeAll(word_);
     }
 
 private:
+    static constexpr uint32_t kHeld = 1, kAwaited = 2, kStateBits = 3;
+
+    static bool isHeld(uint32_t word, uint32_t mine) { return word != 0 && (word & ~kStateBits) == mine; }
+
+    // False: another thread of this process holds it, and the word says that somebody waits.
+    bool takeContended(uint32_t mine) {
+        uint32_t seen = word_.load(std::memory_order_relaxed);
+        for (;;) {
+            const bool held = isHeld(seen, mine);
+            if (held && (seen & kAwaited)) return false;
+            if (word_.compare_exchange_weak(seen, mine | kAwaited, std::memory_order_acquire)) {
+                if (!held) return true;
+                return false;
+            }
+        }
+    }
+
     std::atomic<uint32_t> word_{0};
 };
 

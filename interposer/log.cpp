@@ -1,10 +1,77 @@
 #include "interposer/log.hpp"
 
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <initializer_list>
+#include <pthread.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace mural {
+
+namespace {
+
+struct FileIdentity {
+    bool isOpen;
+    dev_t device;
+    ino_t inode;
+};
+
+FileIdentity identityOf(int fd) {
+    struct stat file {};
+    if (fstat(fd, &file) != 0) return {false, 0, 0};
+    return {true, file.st_dev, file.st_ino};
+}
+
+FileIdentity userStderr{};
+__attribute__((constructor)) void rememberStderr() { userStderr = identityOf(STDERR_FILENO); }
+
+bool isUserStderr() {
+    const FileIdentity now = identityOf(STDERR_FILENO);
+    return now.isOpen && userStderr.isOpen && now.device == userStderr.device && now.inode == userStderr.inode;
+}
+
+// Both signals are sent to the thread that writes: a closed pipe, a limit of file size. They are taken back.
+class NoWriteSignals {
+public:
+    NoWriteSignals() {
+        sigemptyset(&signals_);
+        sigset_t pending;
+        sigpending(&pending);
+        for (const int number : {SIGPIPE, SIGXFSZ})
+            if (!sigismember(&pending, number)) sigaddset(&signals_, number); // others are the program's own
+        pthread_sigmask(SIG_BLOCK, &signals_, &before_);
+    }
+    ~NoWriteSignals() {
+        const timespec now{};
+        const int error = errno;
+        while (sigtimedwait(&signals_, nullptr, &now) > 0) {}
+        pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+        errno = error;
+    }
+    NoWriteSignals(const NoWriteSignals&) = delete;
+    NoWriteSignals& operator=(const NoWriteSignals&) = delete;
+
+private:
+    sigset_t signals_{}, before_{};
+};
+
+} // namespace
+
+bool writeAll(int fd, const void* data, size_t bytes) {
+    const NoWriteSignals quiet;
+    const auto* at = static_cast<const char*>(data);
+    while (bytes > 0) {
+        const ssize_t n = write(fd, at, bytes);
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return false;
+        at += n;
+        bytes -= static_cast<size_t>(n);
+    }
+    return true;
+}
 
 size_t formatLine(char* line, size_t sizeBytes, const char* prefix, const char* format, va_list arguments) {
     const size_t before = std::strlen(prefix);
@@ -24,7 +91,7 @@ void say(const char* format, ...) {
     va_start(arguments, format);
     const size_t length = formatLine(line, sizeof line, "mural: ", format, arguments);
     va_end(arguments);
-    [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, line, length);
+    if (isUserStderr()) writeAll(STDERR_FILENO, line, length);
 }
 
 } // namespace mural

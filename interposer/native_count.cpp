@@ -8,6 +8,7 @@
 #include "common/clock.hpp"
 #include "interposer/frame_cpu.hpp"
 #include "interposer/launch_settings.hpp"
+#include "interposer/log.hpp"
 
 namespace mural {
 
@@ -23,7 +24,7 @@ void writeReport(const char* path, int64_t nowNs) {
     if (fd < 0) return;
     char line[128];
     const int n = snprintf(line, sizeof line, "%ld %.6f %.6f %ld\n", frames, static_cast<double>(nowNs - firstNs) / 1e9, static_cast<double>(cpuNs) / 1e9, cpuFrames);
-    [[maybe_unused]] const ssize_t written = write(fd, line, static_cast<size_t>(n));
+    writeAll(fd, line, static_cast<size_t>(n));
     close(fd);
 }
 

@@ -174,6 +174,12 @@ void takeWaitingNews(ThreadState& t) {
     }
 }
 
+void forgetNews() {
+    Guard guard(newsLock);
+    waiting = nullptr; // not freed: a thread of the parent may have been changing the list
+    waitingCount = 0;
+}
+
 void listen(Context& c, GLDEBUGPROC callback, const void* user) {
     if (!c.debug) {
         void* memory = callback ? std::calloc(1, sizeof(DebugListener)) : nullptr;

@@ -20,6 +20,9 @@ inline void takeNews(ThreadState& t) {
     if (s && s->newsWaiting()) [[unlikely]] takeWaitingNews(t);
 }
 
+// For a forked child: they are for its parent's contexts.
+void forgetNews();
+
 // The callback of glDebugMessageCallback; null: messages go to the driver's log.
 void listen(Context& c, GLDEBUGPROC callback, const void* user);
 // Its context is gone: it tells nobody.

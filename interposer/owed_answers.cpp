@@ -73,6 +73,14 @@ void release(OwedAnswer* answer) {
     answer->bytes = nullptr;
 }
 
+void forgetAll() {
+    Guard guard(tableLock);
+    first = nullptr; // release() frees what is still referred to
+    last = &first;
+    onTheirWay = 0;
+    onTheirWayBytes = 0;
+}
+
 void* placeOf(uint32_t request, uint64_t sizeBytes, bool failed) {
     Guard guard(tableLock);
     OwedAnswer* const answer = find(request);

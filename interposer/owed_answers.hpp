@@ -33,6 +33,9 @@ uint32_t inTheWayOf(uint64_t sizeBytes);
 // What came has been used, or is not wanted any more: the entry is the caller's no longer.
 void release(OwedAnswer* answer);
 
+// For a forked child: the answers go to its parent.
+void forgetAll();
+
 // For the one that reads the replies: where this answer's bytes go; null: nowhere. arrived() follows.
 void* placeOf(uint32_t request, uint64_t sizeBytes, bool failed);
 void arrived(uint32_t request, bool whole);

@@ -1,22 +1,22 @@
 #include "interposer/session.hpp"
 
+#include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <fcntl.h>
+#include <new>
 #include <optional>
-#include <poll.h>
-#include <pthread.h>
-#include <sys/mman.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include "common/clock.hpp"
+#include "interposer/forked_child.hpp"
+#include "interposer/handshake.hpp"
 #include "interposer/head_socket.hpp"
 #include "interposer/launch_settings.hpp"
 #include "interposer/lock.hpp"
 #include "interposer/log.hpp"
 #include "interposer/owed_answers.hpp"
-#include "streamcodec/registry_digest.hpp"
+#include "interposer/process.hpp"
 
 namespace mural {
 
@@ -26,50 +26,9 @@ constexpr int64_t kSliceNs = 50 * kNsPerMs;   // how often a blocked thread look
 constexpr int64_t kStuckNs = 60 * kNsPerS;    // a living head that gives nothing for so long is given up
 constexpr int64_t kShowNs = 5 * kNsPerS;      // for a finished picture to get into its window: the head's own patience
 
-Session* theSession = nullptr;
-bool tried = false;
 Lock connectLock;
 Lock ringLock;    // publications and freed chunks have one producer, one consumer
 Lock requestLock; // one question at a time
-
-bool sendAll(int fd, const void* data, size_t bytes) {
-    const auto* p = static_cast<const char*>(data);
-    while (bytes > 0) {
-        const ssize_t n = send(fd, p, bytes, MSG_NOSIGNAL);
-        if (n <= 0) return false;
-        p += n;
-        bytes -= static_cast<size_t>(n);
-    }
-    return true;
-}
-
-bool receiveAll(int fd, void* into, size_t bytes) {
-    auto* p = static_cast<char*>(into);
-    while (bytes > 0) {
-        const ssize_t n = recv(fd, p, bytes, 0);
-        if (n <= 0) return false;
-        p += n;
-        bytes -= static_cast<size_t>(n);
-    }
-    return true;
-}
-
-// The welcome and the descriptor of the mapping that comes with its first byte.
-bool receiveWelcome(int fd, capture::Welcome& welcome, int& memory) {
-    alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))];
-    iovec part{&welcome, sizeof welcome};
-    msghdr message{};
-    message.msg_iov = &part;
-    message.msg_iovlen = 1;
-    message.msg_control = control;
-    message.msg_controllen = sizeof control;
-    const ssize_t n = recvmsg(fd, &message, MSG_CMSG_CLOEXEC);
-    if (n <= 0) return false;
-    for (cmsghdr* c = CMSG_FIRSTHDR(&message); c; c = CMSG_NXTHDR(&message, c)) {
-        if (c->cmsg_level == SOL_SOCKET && c->cmsg_type == SCM_RIGHTS) std::memcpy(&memory, CMSG_DATA(c), sizeof(int));
-    }
-    return receiveAll(fd, reinterpret_cast<char*>(&welcome) + n, sizeof welcome - static_cast<size_t>(n));
-}
 
 // While it exists a thread waits; the header says so to `mural stat`, and for how long to the report.
 class Waiting {
@@ -105,63 +64,36 @@ void countTrip(capture::CaptureHeader& header, const char* by) {
     header.roundTrips.fetch_add(1, std::memory_order_relaxed);
 }
 
-// The ring belongs to the parent; a child that goes on without exec draws alone.
-void forkedChild() {
-    if (Session* s = theSession) s->die(nullptr);
-    tThread->cursor = tThread->limit = tThread->chunkEnd = nullptr;
-    tThread->drawLocally = true;
-}
-
 } // namespace
 
-Session* Session::current() { return __atomic_load_n(&theSession, __ATOMIC_ACQUIRE); }
+Session* Session::current() { return __atomic_load_n(&process::page.session, __ATOMIC_ACQUIRE); }
 
 Session* Session::get() {
     if (Session* s = current()) return s;
     Guard guard(connectLock);
-    if (tried) return theSession;
-    tried = true;
+    if (process::page.connectTried) return process::page.session;
+    process::page.connectTried = true;
     if (!launchSettings().session) return nullptr;
-    static Session session; // trivially destructible: outlives the program's destructors
-    if (!session.connect()) return nullptr;
-    pthread_atfork(nullptr, nullptr, forkedChild);
-    __atomic_store_n(&theSession, &session, __ATOMIC_RELEASE);
-    return theSession;
+    void* const place = std::calloc(1, sizeof(Session)); // never freed: outlives the program's destructors
+    if (!place) return nullptr;
+    auto* const session = new (place) Session;
+    if (!session->connect()) {
+        std::free(place);
+        return nullptr;
+    }
+    expectForks();
+    __atomic_store_n(&process::page.session, session, __ATOMIC_RELEASE);
+    return session;
 }
 
 bool Session::connect() {
-    socket_ = openHeadSocket();
-    if (socket_ < 0) return false; // it has said why
-    const capture::Hello hello{capture::kMagic, capture::kVersion, registryDigest(), getpid(), 0};
-    int memory = -1;
-    const bool received = sendAll(socket_, &hello, sizeof hello) && receiveWelcome(socket_, welcome_, memory);
-    if (!received || welcome_.magic != capture::kMagic || welcome_.version != capture::kVersion) {
-        say("the head does not speak this version: run the interposer and mural of one build; this program draws on its own");
-        close(socket_);
-        return false;
-    }
-    auto* text = static_cast<char*>(std::malloc(welcome_.extensionBytes + 3));
-    if (!text) return false;
-    text[0] = ' ';
-    if (!receiveAll(socket_, text + 1, welcome_.extensionBytes)) welcome_.extensionBytes = 0;
-    text[welcome_.extensionBytes + 1] = ' ';
-    text[welcome_.extensionBytes + 2] = 0;
-    if (welcome_.refused || memory < 0) {
-        say("not captured: %s", text + 1);
-        close(socket_);
-        return false;
-    }
-    extensions_ = text;
-    const off_t size = lseek(memory, 0, SEEK_END);
-    void* mapping = mmap(nullptr, static_cast<size_t>(size), PROT_READ | PROT_WRITE, MAP_SHARED, memory, 0);
-    close(memory);
-    if (mapping == MAP_FAILED) {
-        say("can't map %ld bytes shared with the head: this program draws on its own", static_cast<long>(size));
-        close(socket_);
-        return false;
-    }
-    madvise(mapping, static_cast<size_t>(size), MADV_DONTFORK);
-    header_ = static_cast<capture::CaptureHeader*>(mapping);
+    const int socket = openHeadSocket();
+    if (socket < 0) return false; // it has said why
+    Handshake handshake;
+    if (!shakeHands(socket, handshake)) return false;
+    welcome_ = handshake.welcome;
+    extensions_ = handshake.extensions;
+    header_ = handshake.header;
     __atomic_store_n(&alive_, true, __ATOMIC_RELEASE);
     return true;
 }
@@ -171,22 +103,12 @@ void Session::die(const char* why) {
     if (why) say("%s; the program goes on alone", why);
 }
 
+// The kernel marks the word of a head that ends without a word of its own (nodes/head/life_mark.hpp).
 bool Session::headAlive() {
     if (!alive()) return false;
-    if (header_->headGone.load(std::memory_order_acquire)) {
-        die(nullptr); // the head has told the user why
-        return false;
-    }
-    pollfd p{socket_, POLLIN, 0};
-    if (poll(&p, 1, 0) > 0) {
-        char byte;
-        const bool open = !(p.revents & (POLLHUP | POLLERR)) && recv(socket_, &byte, 1, MSG_DONTWAIT | MSG_PEEK) != 0;
-        if (!open) {
-            die(nullptr); // `mural run`, which has started it, says so
-            return false;
-        }
-    }
-    return true;
+    const bool gone = header_->headGone.load(std::memory_order_acquire) || header_->headLife.load(std::memory_order_acquire) & FUTEX_OWNER_DIED;
+    if (gone) die(nullptr); // the head, or `mural run`, has told the user why
+    return !gone;
 }
 
 void Session::publish(ThreadState& t, bool last, bool hurry) {
@@ -207,8 +129,9 @@ void Session::wakeReader(bool fromNap) {
 }
 
 bool Session::publishLocked(ThreadState& t, bool last) {
-    std::byte* start = capture::chunk(header_, t.chunk);
-    const auto end = static_cast<uint32_t>(__atomic_load_n(&t.cursor, __ATOMIC_ACQUIRE) - start);
+    std::byte* const cursor = __atomic_load_n(&t.cursor, __ATOMIC_ACQUIRE);
+    if (!cursor) return false; // zero in a forked child
+    const auto end = static_cast<uint32_t>(cursor - capture::chunk(header_, t.chunk));
     if (end == t.publishedBytes && !last) return false;
     const uint32_t tail = header_->publishedTail.load(std::memory_order_relaxed);
     // A takeover publishes ranges of one chunk, so publications may outnumber chunks.
@@ -271,6 +194,7 @@ bool Session::mayGoAhead(uint32_t submitted, uint32_t done, int64_t nowNs) const
 }
 
 void Session::waitForCredit() {
+    if (!alive()) return;
     const uint32_t submitted = framesSubmitted();
     const int64_t nowNs = monotonicNowNs();
     __atomic_store_n(&submittedNs_[submitted % capture::kAheadFrames], nowNs, __ATOMIC_RELAXED);
@@ -295,7 +219,7 @@ void Session::waitForCredit() {
 
 void Session::countFrameCpu(ThreadState& t) {
     const uint64_t tookNs = t.frameCpu.afterFrame();
-    if (tookNs == 0) return;
+    if (tookNs == 0 || !alive()) return;
     header_->frameCpuNs.fetch_add(tookNs, std::memory_order_relaxed);
     header_->frameCpuFrames.fetch_add(FrameCpu::kFrames, std::memory_order_relaxed);
 }

@@ -1,6 +1,6 @@
 // The connection to the head: one per process, opened with the first context. Owns the mapping, hands
 // out chunks, publishes what was encoded, waits for credit and answers. When the head is gone every
-// call becomes a no-op and the program goes on alone.
+// call becomes a no-op and the program goes on alone. A forked child has none until it makes a context.
 #pragma once
 
 #include <cstdint>
@@ -78,7 +78,6 @@ private:
     capture::CaptureHeader* header_ = nullptr;
     capture::Welcome welcome_{};
     const char* extensions_ = "";
-    int socket_ = -1;
     bool alive_ = false;
     uint32_t framesSubmitted_ = 0; // by all threads
     int64_t submittedNs_[capture::kAheadFrames] = {}; // of frame n at n modulo their number

@@ -5,6 +5,7 @@
 
 #include "interposer/context.hpp"
 #include "interposer/lock.hpp"
+#include "interposer/process.hpp"
 #include "interposer/session.hpp"
 
 namespace mural {
@@ -20,6 +21,7 @@ pthread_once_t endKeyOnce = PTHREAD_ONCE_INIT;
 // A thread ends: what it encoded is published, its entry waits for the next thread.
 void threadEnded(void* p) {
     auto* t = static_cast<ThreadState*>(p);
+    if (t->stream == 0) return; // the thread that forked, in the child
     threadLeaves(*t);
     if (Session* s = Session::current()) s->publish(*t, true);
     t->cursor = t->limit = t->chunkEnd = nullptr;
@@ -48,14 +50,14 @@ void* grow(void*& memory, size_t& have, size_t bytes) {
 constinit thread_local ThreadState* tThread __attribute__((tls_model("initial-exec"))) = &idleThread;
 
 ThreadState& ownThreadState() {
-    if (tThread != &idleThread) return *tThread;
+    if (tThread->stream != 0) return *tThread; // the parent's state is zero in a forked child
     pthread_once(&endKeyOnce, [] { pthread_key_create(&endKey, threadEnded); });
     Guard guard(listLock);
     ThreadState* t = takeOver();
     if (!t) {
-        t = static_cast<ThreadState*>(std::calloc(1, sizeof(ThreadState)));
+        t = static_cast<ThreadState*>(process::memory(sizeof(ThreadState)));
         if (!t) return idleThread;
-        t->drawLocally = true;
+        t->drawLocally = t->vertexLocally = true;
         t->chunk = UINT32_MAX;
         t->stream = ++lastStream;
         t->next = allThreads;
@@ -64,6 +66,15 @@ ThreadState& ownThreadState() {
     pthread_setspecific(endKey, t);
     tThread = t;
     return *t;
+}
+
+void forgetThreads() {
+    pthread_once(&endKeyOnce, [] { pthread_key_create(&endKey, threadEnded); });
+    pthread_setspecific(endKey, nullptr);
+    Guard guard(listLock);
+    __atomic_store_n(&allThreads, nullptr, __ATOMIC_RELEASE);
+    lastStream = 0;
+    tThread = &idleThread;
 }
 
 ThreadState* firstThread() { return __atomic_load_n(&allThreads, __ATOMIC_ACQUIRE); }

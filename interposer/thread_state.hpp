@@ -1,4 +1,5 @@
-// What one app thread needs to encode a call: a bump pointer into its chunk of the ring.
+// What one app thread needs to encode a call: a bump pointer into its chunk of the ring. In a forked child it is zero
+// (interposer/process.hpp): such a state has no room, no context and no stream.
 // Reached through an initial-exec thread-local pointer: 2 to 4 times cheaper than the default model.
 #pragma once
 
@@ -23,7 +24,8 @@ struct ThreadState {
     bool locked = false;            // the share group's lock is held for the record being written
     bool shared = false;            // several threads use this share group: order every record
     bool drawingAwaited = false;    // the next drawing finds out the window's size, or more: beforeAwaitedDrawing
-    uint16_t stream = 0;            // number of this thread in the session
+    bool mayBeWriting = false;      // its last record may have begun before its fast path was closed; the group's lock
+    uint16_t stream = 0;            // number of this thread in the session, from 1
     uint32_t chunk = UINT32_MAX;    // index of the chunk, UINT32_MAX: none
     uint32_t publishedBytes = 0;    // of the chunk; the rest up to cursor is not yet visible
     uint32_t publications = 0;      // until now
@@ -42,6 +44,9 @@ extern thread_local ThreadState* tThread __attribute__((tls_model("initial-exec"
 
 // This thread's own state, made at the first call.
 ThreadState& ownThreadState();
+
+// For a forked child: its threads are new.
+void forgetThreads();
 
 // All threads that ever encoded, by `next`.
 ThreadState* firstThread();

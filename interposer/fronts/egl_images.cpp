@@ -27,7 +27,7 @@ template <class Attribute> int32_t valueOf(const Attribute* attributes, EGLint n
 // The thread's own state serves also where no context is current. Published at once: the thread that
 // uses the image next may be another one.
 template <class Write> void tellNodes(Write&& write) {
-    Session* s = Session::get();
+    Session* s = Session::current();
     if (nativeRun() || !s || !s->alive()) return;
     ThreadState& t = ownThreadState();
     write(t);

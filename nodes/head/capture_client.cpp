@@ -3,9 +3,10 @@
 #include <chrono>
 #include <cstring>
 #include <fstream>
-#include <poll.h>
+#include <system_error>
 
 #include "nodes/head/bytes_of.hpp"
+#include "nodes/head/life_mark.hpp"
 
 namespace mural {
 namespace {
@@ -44,11 +45,19 @@ CaptureClient::~CaptureClient() {
     if (replyThread_.joinable()) replyThread_.join();
 }
 
-void CaptureClient::start(FileDescriptor socket) {
+Result<void> CaptureClient::start(FileDescriptor socket) {
     socket_ = std::move(socket);
-    memory_->closeFd();
-    pumpThread_ = std::thread([this] { pump(); });
-    replyThread_ = std::thread([this] { writeReplies(); });
+    memory_->passed();
+    try {
+        replyThread_ = std::thread([this] { writeReplies(); });
+        pumpThread_ = std::thread([this] { pump(); });
+    } catch (const std::system_error& e) {
+        stop();
+        memory_->setHeadGone();
+        pumpEnded_ = true;
+        return Error{std::string("no threads for it: ") + e.what() + "; raise ulimit -u"};
+    }
+    return {};
 }
 
 std::string CaptureClient::describe() const {
@@ -148,8 +157,7 @@ bool CaptureClient::drained() const {
 }
 
 bool CaptureClient::programGone() const {
-    pollfd look{socket_.get(), POLLRDHUP, 0};
-    return poll(&look, 1, 0) > 0 && (look.revents & (POLLRDHUP | POLLHUP | POLLERR | POLLNVAL)) != 0;
+    return memory_->programGone();
 }
 
 void CaptureClient::reply(Reply reply) {
@@ -170,6 +178,7 @@ void CaptureClient::reply(Reply reply) {
 }
 
 void CaptureClient::writeReplies() {
+    const LifeMark mark(memory_->lifeWord());
     std::unique_lock lock(mutex_);
     while (!stop_) {
         if (replies_.empty()) {

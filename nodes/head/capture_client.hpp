@@ -1,5 +1,6 @@
-// One captured program: a thread that pumps its publications to the nodes, a thread that hands it the
-// nodes' answers, and its socket, which only says whether it lives.
+// One captured program: a thread that pumps its publications to the nodes, and a thread that hands it the
+// nodes' answers. Its memory says whether it lives (CaptureMemory::programGone). The program may have
+// closed its end of the socket; the head's end is closed with the client, which tells the player.
 #pragma once
 
 #include <atomic>
@@ -44,7 +45,8 @@ public:
                   int64_t replyPatienceMs);
     ~CaptureClient(); // stop()
 
-    void start(FileDescriptor socket);
+    // An error: there are no threads for it.
+    Result<void> start(FileDescriptor socket);
     // Pumps what is published at this moment, then ends the pump.
     void drain();
     // Ends both threads soon, whatever is left.

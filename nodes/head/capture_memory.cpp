@@ -5,6 +5,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <new>
+#include <sys/file.h>
 #include <sys/mman.h>
 
 #include "common/futex.hpp"
@@ -22,7 +23,19 @@ uint64_t roundUp(uint64_t value) { return (value + kPageBytes - 1) / kPageBytes 
 
 Error systemError(const char* what) {
     return Error{std::string("no shared memory for a program: ") + what + ": " +
-                 std::strerror(errno) + "; check the limits of memory and open files"};
+                 std::strerror(errno) + "; check the limits of memory, open files and file sizes (ulimit -a)"};
+}
+
+// A file description of its own for the program, with a lock that says whether anybody has it still.
+Result<FileDescriptor> openForProgram(int fd) {
+    const std::string path = "/proc/self/fd/" + std::to_string(fd);
+    FileDescriptor opened;
+    do {
+        opened = FileDescriptor(open(path.c_str(), O_RDWR | O_CLOEXEC));
+    } while (!opened.valid() && errno == EINTR);
+    if (!opened.valid()) return systemError(path.c_str());
+    if (flock(opened.get(), LOCK_SH | LOCK_NB) != 0) return systemError("flock");
+    return opened;
 }
 
 void writeLayout(CaptureHeader& h, uint32_t chunkCount, uint32_t replyBytes) {
@@ -67,17 +80,20 @@ Result<std::unique_ptr<CaptureMemory>> CaptureMemory::create(uint32_t chunkCount
     // Without the seals the program could shrink the memory and kill the head with SIGBUS.
     if (fcntl(fd.get(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0)
         return systemError("sealing");
+    auto programFd = openForProgram(fd.get());
+    if (!programFd) return programFd.error();
     void* base =
         mmap(nullptr, layout.totalBytes, PROT_READ | PROT_WRITE, MAP_SHARED, fd.get(), 0);
     if (base == MAP_FAILED) return systemError("mmap");
     auto* header = new (base) CaptureHeader{};
     writeLayout(*header, chunkCount, replyBytes);
     return std::unique_ptr<CaptureMemory>(
-        new CaptureMemory(std::move(fd), static_cast<std::byte*>(base), layout));
+        new CaptureMemory(std::move(fd), std::move(*programFd), static_cast<std::byte*>(base), layout));
 }
 
-CaptureMemory::CaptureMemory(FileDescriptor fd, std::byte* base, const CaptureHeader& layout)
+CaptureMemory::CaptureMemory(FileDescriptor fd, FileDescriptor programFd, std::byte* base, const CaptureHeader& layout)
     : fd_(std::move(fd))
+    , programFd_(std::move(programFd))
     , base_(base)
     , shared_(reinterpret_cast<CaptureHeader*>(base))
     , chunkCount_(layout.chunkCount)
@@ -95,6 +111,8 @@ CaptureMemory::CaptureMemory(FileDescriptor fd, std::byte* base, const CaptureHe
 }
 
 CaptureMemory::~CaptureMemory() { munmap(base_, totalBytes_); }
+
+bool CaptureMemory::programGone() const { return flock(fd_.get(), LOCK_EX | LOCK_NB) == 0; }
 
 CaptureMemory::Next CaptureMemory::next(Range& range) {
     const uint32_t tail = publishedTail();

@@ -46,8 +46,12 @@ public:
     CaptureMemory& operator=(const CaptureMemory&) = delete;
     ~CaptureMemory();
 
-    [[nodiscard]] int fd() const { return fd_.get(); }
-    void closeFd() { fd_ = FileDescriptor(); } // the mapping stays
+    // For the program. Its file description is another than the head's own, and locked: the kernel releases the lock
+    // with the program's last descriptor and mapping.
+    [[nodiscard]] int fdToPass() const { return programFd_.get(); }
+    void passed() { programFd_ = FileDescriptor(); } // to the program, or on its way there
+    // After passed(): nobody has it any more. A program may close all descriptors; it does not unmap what it does not know.
+    [[nodiscard]] bool programGone() const;
 
     struct Range {
         std::span<const std::byte> bytes;
@@ -75,13 +79,15 @@ public:
     void setFramesDone(uint32_t frames);
     void setFramesShown(uint32_t frames);
     void setHeadGone(); // and wakes whoever sleeps on any word
+    std::atomic<uint32_t>& lifeWord() { return shared_->headLife; } // for a LifeMark
     [[nodiscard]] CaptureCounts counts() const;
 
 private:
-    CaptureMemory(FileDescriptor fd, std::byte* base, const capture::CaptureHeader& layout);
+    CaptureMemory(FileDescriptor fd, FileDescriptor programFd, std::byte* base, const capture::CaptureHeader& layout);
     [[nodiscard]] std::byte* at(uint64_t offset) const { return base_ + offset; }
 
-    FileDescriptor fd_;
+    const FileDescriptor fd_;
+    FileDescriptor programFd_;
     std::byte* base_;
     capture::CaptureHeader* shared_;
     uint32_t chunkCount_;

@@ -61,8 +61,8 @@ FileDescriptor listenInFolder(const std::string& path) {
 
 bool waitWritable(int fd, Deadline deadline) {
     pollfd room{fd, POLLOUT, 0};
-    return poll(&room, 1, static_cast<int>(deadline.leftNs(kNsPerS) / kNsPerMs)) >= 0 &&
-           !deadline.passed();
+    const int ready = poll(&room, 1, static_cast<int>(deadline.leftNs(kNsPerS) / kNsPerMs));
+    return (ready >= 0 || errno == EINTR) && !deadline.passed();
 }
 
 // The descriptor travels with the first byte.
@@ -153,6 +153,8 @@ void CaptureServer::serve() {
 
 void CaptureServer::acceptOne(int listener) {
     FileDescriptor socket(accept4(listener, nullptr, nullptr, SOCK_CLOEXEC));
+    // Without a descriptor it would come back at once, with the same.
+    if (!socket.valid() && (errno == EMFILE || errno == ENFILE)) poll(nullptr, 0, kAcceptSliceMs);
     if (!socket.valid() || newcomers_.size() >= kMaxNewcomers) return;
     newcomers_.push_back({std::move(socket), Deadline::inMs(kHelloPatienceMs)});
 }

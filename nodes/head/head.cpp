@@ -31,6 +31,7 @@ void askToFinish(int) { asked = 1; }
 void setUpSignals() {
     launch::rememberSignals();
     signal(SIGPIPE, SIG_IGN);
+    signal(SIGXFSZ, SIG_IGN); // a limit of file sizes is an error of the call
     signal(SIGINT, SIG_IGN);
     struct sigaction finish {};
     finish.sa_handler = askToFinish; // no SA_RESTART: waits end

@@ -28,7 +28,7 @@ Result<Admission> ProgramTable::admitProgram(pid_t pid) {
     Admission admission;
     admission.welcome = terms_.welcome;
     admission.welcome.clientId = id;
-    admission.memoryFd = (*memory)->fd();
+    admission.memoryFd = (*memory)->fdToPass();
     admission.extensions = terms_.extensions;
     admitted_[id] = std::make_shared<CaptureClient>(id, pid, std::move(*memory), nodes_, *this, terms_.replyPatienceMs);
     return admission;
@@ -36,6 +36,7 @@ Result<Admission> ProgramTable::admitProgram(pid_t pid) {
 
 void ProgramTable::programWelcomed(uint32_t id, FileDescriptor socket) {
     size_t count = 0;
+    Result<void> started;
     {
         const std::lock_guard lock(mutex_);
         const auto found = admitted_.find(id);
@@ -45,11 +46,12 @@ void ProgramTable::programWelcomed(uint32_t id, FileDescriptor socket) {
         if (!socket.valid()) return; // it left before it was let in
         if (headGone_) client->memory().setHeadGone(); // the nodes were lost in between
         events_.came(*client);
-        client->start(std::move(socket));
+        started = client->start(std::move(socket));
         clients_[id] = client;
         count = clients_.size();
     }
     events_.countChanged(count);
+    if (!started) programEnded(id, started.error().message);
 }
 
 void ProgramTable::programEnded(uint32_t id, const std::string& problem) {

@@ -17,6 +17,7 @@ struct RememberedSignals {
     bool known = false;
     sigset_t mask{};
     struct sigaction pipe {};
+    struct sigaction fileSize {};
 };
 RememberedSignals remembered;
 
@@ -40,6 +41,7 @@ bool redirect(int from, int to) { return from < 0 || dup2(from, to) >= 0; }
     if (remembered.known) {
         sigprocmask(SIG_SETMASK, &remembered.mask, nullptr);
         sigaction(SIGPIPE, &remembered.pipe, nullptr);
+        sigaction(SIGXFSZ, &remembered.fileSize, nullptr);
     }
     bool ready = redirect(request.inputFd, 0) && redirect(request.outputFd, 1) && redirect(request.errorFd, 2);
     for (const int fd : request.keptFds) ready = ready && fcntl(fd, F_SETFD, 0) == 0;
@@ -65,6 +67,7 @@ void rememberSignals() {
     if (remembered.known) return; // later they are ours already
     sigprocmask(SIG_SETMASK, nullptr, &remembered.mask);
     sigaction(SIGPIPE, nullptr, &remembered.pipe);
+    sigaction(SIGXFSZ, nullptr, &remembered.fileSize);
     remembered.known = true;
 }
 
@@ -85,7 +88,7 @@ Result<ChildProcess> ChildProcess::start(const SpawnRequest& request) {
     const int reason = reasonFrom(report[0]);
     close(report[0]);
     if (reason != 0) {
-        waitpid(pid, nullptr, 0);
+        while (waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {}
         return Error{request.file + " cannot be executed: " + std::strerror(reason)};
     }
     ChildProcess child = adopt(pid);

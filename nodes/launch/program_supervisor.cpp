@@ -30,6 +30,7 @@ Result<std::unique_ptr<ProgramSupervisor>> ProgramSupervisor::create() {
     const sigset_t set = watchedSignals();
     sigprocmask(SIG_BLOCK, &set, nullptr);
     ::signal(SIGPIPE, SIG_IGN);
+    ::signal(SIGXFSZ, SIG_IGN);
     adoptOrphans();
     const int fd = signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
     if (fd < 0) return Error{"no descriptor for signals: " + std::string(std::strerror(errno))};

@@ -78,7 +78,7 @@ Result<std::unique_ptr<CaptureLink>> CaptureLink::connect(const std::string& ses
 CaptureLink::CaptureLink(FileDescriptor socket, const capture::Welcome& welcome, capture::CaptureHeader* header, size_t sizeBytes)
     : socket_(std::move(socket)), welcome_(welcome), header_(header), sizeBytes_(sizeBytes) {}
 
-CaptureLink::~CaptureLink() { munmap(header_, sizeBytes_); }
+CaptureLink::~CaptureLink() { leave(); }
 
 // A chunk for each packet: so a freed chunk says that a packet is with the nodes.
 bool CaptureLink::publish(uint16_t thread, std::span<const std::byte> packet) {
@@ -114,6 +114,7 @@ uint64_t CaptureLink::unanswered() {
 }
 
 void CaptureLink::takeAnswers() {
+    if (header_ == nullptr) return;
     uint32_t head = header_->replyHead.load(std::memory_order_relaxed);
     const uint32_t tail = header_->replyTail.load(std::memory_order_acquire);
     if (head == tail) return;
@@ -141,8 +142,8 @@ void CaptureLink::takeAnswers() {
 }
 
 void CaptureLink::leave() {
-    shutdown(socket_.get(), SHUT_WR);
-    futexWakeAll(header_->publishedTail);
+    if (header_ != nullptr) munmap(header_, sizeBytes_);
+    header_ = nullptr;
 }
 
 bool CaptureLink::gone(int64_t sliceMs) {

@@ -39,7 +39,8 @@ public:
     [[nodiscard]] uint64_t unanswered(); // so many questions, after what has come was dropped
     [[nodiscard]] const std::atomic<uint32_t>& answersWord() const { return header_->replyTail; }
 
-    // The program ends here; true once the head has seen that, and the nodes have heard of it.
+    // The program ends here: nothing but gone() may follow, which is true once the head has seen that and the nodes
+    // have heard of it.
     void leave();
     bool gone(int64_t sliceMs);
 
@@ -47,9 +48,9 @@ private:
     CaptureLink(FileDescriptor socket, const capture::Welcome& welcome, capture::CaptureHeader* header, size_t sizeBytes);
     void takeAnswers();
 
-    FileDescriptor socket_; // says who lives
+    FileDescriptor socket_; // says whether the head has seen the end
     const capture::Welcome welcome_;
-    capture::CaptureHeader* const header_;
+    capture::CaptureHeader* header_; // null: the program has left
     const size_t sizeBytes_;
     uint64_t asked_ = 0;
     uint64_t answered_ = 0;

@@ -162,7 +162,7 @@ def wrapper(c):
             out += '    copies::gather(self, x, y, width, %s, %s);\n' % ('height' if c.param('height') else '1', c.option('copies'))
         elements = uniform_elements(c)
         if elements:
-            out += '    const GLsizei told = count;\n    if (count > kSureElements) [[unlikely]] count = readableElements(self, value, count, %d);\n' % elements
+            out += '    const GLsizei told = count;\n    if (count > kSureElements) [[unlikely]] count = readableElements(value, count, %d);\n' % elements
             names = names.replace('count', 'told')
         out += '    encode_%s(%s);\n' % (c.name, encode_args)
         local = c.option('local') != 'no'

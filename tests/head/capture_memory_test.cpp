@@ -1,13 +1,17 @@
 // Who is woken, and who need not be: the reader of publications and a program that waits for frames.
 #include "nodes/head/capture_memory.hpp"
 
+#include <csignal>
 #include <gtest/gtest.h>
 #include <sys/mman.h>
+#include <sys/wait.h>
 #include <thread>
+#include <unistd.h>
 
 #include "common/clock.hpp"
 #include "common/futex.hpp"
 #include "nodes/head/arrival_pace.hpp"
+#include "nodes/head/life_mark.hpp"
 
 namespace mural {
 namespace {
@@ -20,7 +24,7 @@ protected:
         auto made = CaptureMemory::create(16, 4096);
         ASSERT_TRUE(made) << made.error().message;
         memory_ = std::move(made.value());
-        base_ = mmap(nullptr, sizeof(capture::CaptureHeader), PROT_READ | PROT_WRITE, MAP_SHARED, memory_->fd(), 0);
+        base_ = mmap(nullptr, sizeof(capture::CaptureHeader), PROT_READ | PROT_WRITE, MAP_SHARED, memory_->fdToPass(), 0);
         ASSERT_NE(base_, MAP_FAILED);
         program_ = static_cast<capture::CaptureHeader*>(base_);
     }
@@ -48,6 +52,59 @@ protected:
     capture::CaptureHeader* program_ = nullptr;
     int wakes_ = 0;
 };
+
+TEST(CaptureMemory, theProgramIsThereAsLongAsItHasADescriptorOrTheMapping) {
+    auto memory = CaptureMemory::create(16, 4096);
+    ASSERT_TRUE(memory) << memory.error().message;
+    FileDescriptor passed(dup((*memory)->fdToPass())); // as SCM_RIGHTS does
+    (*memory)->passed();
+    EXPECT_FALSE((*memory)->programGone());
+    void* mapping = mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, passed.get(), 0);
+    ASSERT_NE(mapping, MAP_FAILED);
+    passed = FileDescriptor();
+    EXPECT_FALSE((*memory)->programGone());
+    munmap(mapping, 4096);
+    EXPECT_TRUE((*memory)->programGone());
+}
+
+// A word in memory that a process shares with its child.
+class LifeMarkTest : public ::testing::Test {
+protected:
+    void SetUp() override {
+        void* const page = mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+        ASSERT_NE(page, MAP_FAILED);
+        word_ = new (page) std::atomic<uint32_t>{0};
+    }
+    void TearDown() override { munmap(word_, 4096); }
+
+    std::atomic<uint32_t>* word_ = nullptr;
+};
+
+TEST_F(LifeMarkTest, isMarkedWhenItsProcessIsKilled) {
+    const pid_t child = fork();
+    if (child == 0) {
+        std::thread([this] {
+            const LifeMark mark(*word_);
+            pause();
+        }).join();
+        _exit(0);
+    }
+    const Deadline deadline = Deadline::inMs(10'000);
+    while (word_->load() == 0 && !deadline.passed()) std::this_thread::yield();
+    EXPECT_NE(word_->load(), 0U);
+    EXPECT_EQ(word_->load() & FUTEX_OWNER_DIED, 0U);
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    EXPECT_NE(word_->load() & FUTEX_OWNER_DIED, 0U);
+}
+
+TEST_F(LifeMarkTest, isMarkedWhenItEndsInOrder) {
+    std::thread([this] {
+        const LifeMark mark(*word_);
+        EXPECT_EQ(word_->load(), static_cast<uint32_t>(gettid()));
+    }).join();
+    EXPECT_EQ(word_->load(), FUTEX_OWNER_DIED);
+}
 
 TEST_F(CaptureMemoryTest, aNapEndsByItself) {
     memory_->waitPublished(Reader::Naps, capture::kNapNs); // nobody wakes it

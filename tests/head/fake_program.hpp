@@ -62,10 +62,14 @@ public:
     FakeProgram() = default;
     FakeProgram(const FakeProgram&) = delete;
     FakeProgram& operator=(const FakeProgram&) = delete;
-    ~FakeProgram() {
+    ~FakeProgram() { disconnect(); }
+    // As the end of a process does: it gives up the socket and the memory.
+    void disconnect() {
+        closeSocket();
         if (header_ != nullptr) munmap(header_, sizeBytes_);
+        header_ = nullptr;
     }
-    void disconnect() { socket_ = FileDescriptor(); }
+    void closeSocket() { socket_ = FileDescriptor(); }
 
     capture::CaptureHeader* header() { return header_; }
     const capture::Welcome& welcome() const { return welcome_; }

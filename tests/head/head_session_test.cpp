@@ -401,6 +401,26 @@ TEST(HeadSession, aProgramThatEndsIsDrainedAndItsContextsFreed) {
     EXPECT_EQ(packets[packets.size() - 2].words, gone);
 }
 
+TEST(HeadSession, keepsAProgramThatClosesItsSocketUntilItsMemoryIsUnmapped) {
+    SessionHarness head(1);
+    head.start();
+    head.waitFor("ready");
+    FakeProgram program;
+    ASSERT_TRUE(program.connect(head.config.session));
+    program.closeSocket();
+    ASSERT_TRUE(swapFrames(program, 1, 3));
+    ASSERT_TRUE(program.waitFramesDone(3));
+    poll(nullptr, 0, 200); // several looks of the head
+    ASSERT_TRUE(swapFrames(program, 4, 6));
+    ASSERT_TRUE(program.waitFramesDone(6));
+    EXPECT_EQ(program.header()->headLife & FUTEX_OWNER_DIED, 0U);
+    EXPECT_NE(program.header()->headLife, 0U);
+    program.disconnect();
+    while (head.waitFor("clients")["count"] != 0) {
+    }
+    EXPECT_EQ(head.finish()["frames"], 6);
+}
+
 TEST(HeadSession, whatAProgramPublishesJustBeforeItsEndIsNotLost) {
     SessionHarness head(1);
     head.start();

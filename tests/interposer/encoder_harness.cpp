@@ -42,6 +42,7 @@ void beforeAwaitedDrawing(ThreadState&, uint32_t) {}
 void shipLastingMaps(ThreadState&) {}
 
 // Like thread_state.cpp, for one thread that never ends.
+ThreadState* firstThread() { return nullptr; }
 void* scratchMemory(ThreadState& t, size_t bytes) {
     if (bytes <= t.scratchBytes) return t.scratch;
     t.scratch = std::realloc(t.scratch, bytes);

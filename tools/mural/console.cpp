@@ -1,5 +1,6 @@
 #include "tools/mural/console.hpp"
 
+#include <cerrno>
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -39,7 +40,12 @@ Console::Console(bool quiet)
 void Console::write(const std::string& text) {
     const std::string bytes = (progressShown_ ? "\r\033[K" : "") + text;
     progressShown_ = false;
-    [[maybe_unused]] const ssize_t n = ::write(STDERR_FILENO, bytes.data(), bytes.size());
+    for (size_t done = 0; done < bytes.size();) {
+        const ssize_t n = ::write(STDERR_FILENO, bytes.data() + done, bytes.size() - done);
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return;
+        done += static_cast<size_t>(n);
+    }
 }
 
 void Console::error(const std::string& text) { write("mural: " + text + "\n"); }

@@ -26,6 +26,13 @@ namespace {
 constexpr timeval kPatience{5, 0}; // timeout of a silent head
 constexpr size_t kMostBytes = size_t{16} << 20;
 
+// Calls with a timeout are not restarted after a stop (SIGSTOP, SIGCONT), whatever the signals' flags.
+template <class Call> auto uninterrupted(Call&& call) {
+    auto result = call();
+    while (result < 0 && errno == EINTR) result = call();
+    return result;
+}
+
 FileDescriptor connectTo(const std::string& session) {
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
@@ -36,7 +43,7 @@ FileDescriptor connectTo(const std::string& session) {
     if (!fd.valid()) return {};
     setsockopt(fd.get(), SOL_SOCKET, SO_RCVTIMEO, &kPatience, sizeof kPatience);
     setsockopt(fd.get(), SOL_SOCKET, SO_SNDTIMEO, &kPatience, sizeof kPatience);
-    if (connect(fd.get(), reinterpret_cast<const sockaddr*>(&address), length) != 0) return {};
+    if (uninterrupted([&] { return connect(fd.get(), reinterpret_cast<const sockaddr*>(&address), length); }) != 0) return {};
     return fd;
 }
 
@@ -54,11 +61,11 @@ std::optional<nlohmann::json> askSession(const std::string& name) {
     hello.magic = capture::kStatusMagic;
     hello.version = capture::kVersion;
     hello.pid = getpid();
-    if (send(fd.get(), &hello, sizeof hello, MSG_NOSIGNAL) != static_cast<ssize_t>(sizeof hello)) return {};
+    if (uninterrupted([&] { return send(fd.get(), &hello, sizeof hello, MSG_NOSIGNAL); }) != static_cast<ssize_t>(sizeof hello)) return {};
     std::string text;
     char part[65536];
     ssize_t n = 0;
-    while (text.size() < kMostBytes && (n = recv(fd.get(), part, sizeof part, 0)) > 0) text.append(part, static_cast<size_t>(n));
+    while (text.size() < kMostBytes && (n = uninterrupted([&] { return recv(fd.get(), part, sizeof part, 0); })) > 0) text.append(part, static_cast<size_t>(n));
     nlohmann::json state = nlohmann::json::parse(text, nullptr, false);
     if (!state.is_object()) return {};
     return state;

@@ -1,0 +1,63 @@
+#include "interposer/forked_child.hpp"
+
+#include <pthread.h>
+#include <time.h>
+
+#include "interposer/context.hpp"
+#include "interposer/known_objects.hpp"
+#include "interposer/log.hpp"
+#include "interposer/news.hpp"
+#include "interposer/owed_answers.hpp"
+#include "interposer/process.hpp"
+#include "interposer/thread_state.hpp"
+
+namespace mural {
+
+namespace {
+
+thread_local constinit bool tablesHeld __attribute__((tls_model("initial-exec"))) = false;
+
+void childBegins() {
+    forgetThreads();
+    known::inherit();
+    owed::forgetAll();
+    forgetNews();
+}
+
+// The child copies the tables: no other thread may be changing them. Bounded, for a signal handler may fork.
+void beforeFork() {
+    constexpr int kTries = 100;
+    const timespec nap{0, 200'000};
+    tablesHeld = known::tables().tryLock();
+    for (int i = 0; i < kTries && !tablesHeld; ++i) {
+        nanosleep(&nap, nullptr);
+        tablesHeld = known::tables().tryLock();
+    }
+}
+
+void afterFork() {
+    if (tablesHeld) known::tables().unlock();
+    tablesHeld = false;
+}
+
+void inChild() {
+    tablesHeld = false;
+    process::forked(); // the lock was the parent's: it is free
+}
+
+} // namespace
+
+void expectForks() {
+    if (process::everCaptured()) return; // a child has its parent's handlers
+    process::onChildBegins(childBegins);
+    pthread_atfork(beforeFork, afterFork, inChild);
+}
+
+void inheritedUsed(Window* window) {
+    static bool once = false;
+    if (window) window->inherited = true;
+    if (!__atomic_exchange_n(&once, true, __ATOMIC_RELAXED))
+        say("a forked child draws with a context of its parent: it draws on its own, not on the wall; make the context after the fork");
+}
+
+} // namespace mural

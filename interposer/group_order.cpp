@@ -1,0 +1,73 @@
+#include "interposer/group_order.hpp"
+
+#include "interposer/context.hpp"
+#include "interposer/session.hpp"
+#include "interposer/thread_state.hpp"
+
+namespace mural::group_order {
+
+namespace {
+
+template <class Visit> void forOthers(const ThreadState& t, const ShareGroup& group, Visit&& visit) {
+    for (ThreadState* other = firstThread(); other; other = other->next)
+        if (other != &t && other->context && other->context->group == &group) visit(*other);
+}
+
+// The other thread may have read its limit before, and be within a record: nobody waits for that. Such a record is
+// concurrent to this call, but not to what the program orders after it, so the thread's records are published before
+// each record of others until it takes its own turn. A barrier (membarrier) would not spare that, and sandboxes may end a
+// program for it.
+void closeFastPath(ThreadState& other) {
+    if (other.shared) return;
+    other.shared = true;
+    other.mayBeWriting = true;
+    ++other.context->group->unsettledThreads;
+    __atomic_store_n(&other.limit, nullptr, __ATOMIC_SEQ_CST);
+}
+
+void settle(ThreadState& t) {
+    if (!t.mayBeWriting) return;
+    t.mayBeWriting = false;
+    --t.context->group->unsettledThreads;
+}
+
+void publishUnsettled(const ThreadState& t, Session& s, const ShareGroup& group) {
+    forOthers(t, group, [&](ThreadState& other) {
+        if (other.mayBeWriting) s.publish(other, false, false);
+    });
+}
+
+} // namespace
+
+void enter(ThreadState& t, Context& c) {
+    ShareGroup& group = *c.group;
+    Guard guard(group.lock);
+    ++group.threads;
+    t.context = &c;
+    t.shared = group.threads > 1;
+    if (!t.shared) return;
+    forOthers(t, group, closeFastPath);
+    if (Session* s = Session::current()) forOthers(t, group, [&](ThreadState& other) { s->publish(other, false); });
+}
+
+void leave(ThreadState& t, Session* s) {
+    ShareGroup& group = *t.context->group;
+    if (s && s->alive()) s->publish(t, false);
+    settle(t);
+    --group.threads;
+    if (group.lastWriter == &t) group.lastWriter = nullptr;
+    t.shared = false;
+    t.context = nullptr;
+}
+
+void takeTurn(ThreadState& t, Session& s) {
+    ShareGroup& group = *t.context->group;
+    group.lock.lock();
+    settle(t);
+    if (group.unsettledThreads > 0) [[unlikely]] publishUnsettled(t, s, group);
+    if (group.lastWriter && group.lastWriter != &t) s.publish(*group.lastWriter, false);
+    group.lastWriter = &t;
+    t.locked = true;
+}
+
+} // namespace mural::group_order
