@@ -11,6 +11,7 @@
 #include <mutex>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "common/capture_ring.hpp"
 #include "common/result.hpp"
@@ -75,6 +76,8 @@ public:
     void setFramesShown(uint32_t frames);
     void setHeadGone(); // and wakes whoever sleeps on any word
     [[nodiscard]] CaptureCounts counts() const;
+    // Of the X displays on which the program has windows, by number.
+    [[nodiscard]] std::vector<std::string> displayNames() const;
 
 private:
     CaptureMemory(FileDescriptor fd, std::byte* base, const capture::CaptureHeader& layout);
