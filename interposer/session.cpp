@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "common/clock.hpp"
+#include "common/window_mark.hpp"
 #include "interposer/lock.hpp"
 #include "interposer/log.hpp"
 #include "interposer/owed_answers.hpp"
@@ -151,7 +152,20 @@ Session* Session::get() {
     return theSession;
 }
 
+uint32_t Session::displayNumber(const char* name) {
+    static Lock lock;
+    Guard guard(lock);
+    const uint32_t count = header_->displayCount.load(std::memory_order_relaxed);
+    for (uint32_t i = 0; i < count; ++i)
+        if (std::strcmp(header_->displays[i], name) == 0) return i;
+    if (count == capture::kDisplays || std::strlen(name) >= capture::kDisplayNameBytes) return capture::kNoDisplay;
+    std::strcpy(header_->displays[count], name);
+    header_->displayCount.store(count + 1, std::memory_order_release);
+    return count;
+}
+
 bool Session::connect(const char* name) {
+    nameKey_ = window_mark::sessionKey(name);
     socket_ = connectAbstract(name);
     if (socket_ < 0) {
         say("no head answers at session %s: this program draws on its own", name);

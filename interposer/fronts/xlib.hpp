@@ -5,6 +5,14 @@
 
 namespace mural {
 
+// Of a library that the program has loaded; null: it has not.
+template <class F> F* loadedFunction(const char* library, const char* name) {
+    void* handle = dlopen(library, RTLD_LAZY | RTLD_NOLOAD);
+    F* function = handle ? reinterpret_cast<F*>(dlsym(handle, name)) : nullptr;
+    if (handle) dlclose(handle);
+    return function;
+}
+
 inline void* xlibSymbol(const char* name) {
     static void* handle = dlopen("libX11.so.6", RTLD_LAZY | RTLD_NOLOAD);
     return handle ? dlsym(handle, name) : nullptr;
