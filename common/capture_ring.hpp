@@ -30,6 +30,10 @@ constexpr uint32_t kReplyBytes = 4 * 1024 * 1024;
 constexpr int kMaxWindows = 256;
 constexpr uint32_t kNewsSlots = 64; // a power of two
 constexpr uint32_t kNewsTextBytes = 480;
+// X displays of one program; their numbers are in WindowConfig::nativeHigh.
+constexpr uint32_t kDisplays = 16;
+constexpr uint32_t kDisplayNameBytes = 128; // with the 0 at the end
+constexpr uint32_t kNoDisplay = 0xffffffff; // the table is full, or the name is too long
 
 // Requests whose answers nobody waits for yet: ids with this bit. Their answers lie in a table, each at its id
 // modulo the table's size, until a later one takes the place.
@@ -160,6 +164,10 @@ struct alignas(64) CaptureHeader {
     std::atomic<uint64_t> frameCpuNs;
     std::atomic<uint64_t> frameCpuFrames;
     TripCount trips[kTripCounts];
+
+    // Names of the X displays on which the program has windows. Written by the app before the first window's record.
+    std::atomic<uint32_t> displayCount;
+    char displays[kDisplays][kDisplayNameBytes];
 
     alignas(64) AheadAnswer ahead[kAheadAnswers]; // the head writes
 };

@@ -5,6 +5,7 @@
 #include <new>
 #include <sys/auxv.h>
 
+#include "encoders.hpp"
 #include "interposer/default_samples.hpp"
 #include "interposer/drawn_elsewhere.hpp"
 #include "interposer/draw_opcodes.hpp"
@@ -19,6 +20,8 @@
 #include "interposer/texture_from.hpp"
 #include "interposer/verify.hpp"
 #include "interposer/window_size.hpp"
+#include "interposer/windows/gone_windows.hpp"
+#include "interposer/windows/introduction.hpp"
 #include "streamcodec/context_flags.hpp"
 
 namespace mural {
@@ -45,6 +48,29 @@ void announce(ThreadState& t, Context& c) {
                                     c.profileMask, c.flags | (c.losesOnReset ? wire::kLosesOnReset : 0) | (c.keepsUnflushed ? wire::kKeepsUnflushed : 0), c.config};
     records::createContext(t, info);
     c.announced = true;
+}
+
+// EGL's configurations do not tell how many buffers a drawable has, and drivers differ. A framebuffer object would hide
+// the drawable's own.
+void learnBuffers(const Context& c, Window& w) {
+    if (w.announced || c.api != wire::Api::Desktop) return;
+    GLint framebuffer = 0;
+    GLboolean two = w.config.doubleBuffer;
+    if (gReal.glBindFramebuffer) gReal.glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer);
+    if (framebuffer == 0) gReal.glGetBooleanv(GL_DOUBLEBUFFER, &two);
+    w.config.doubleBuffer = two != 0;
+}
+
+// The buffer that is read from: Mesa has one for each drawable, others one for each context, as the nodes do. So they are
+// told when the context reads from another drawable.
+void tellReadBuffer(ThreadState& t, const Context& c, const Window& read, uint32_t before) {
+    if (!read.config.doubleBuffer || c.api != wire::Api::Desktop || c.compilingList) return;
+    GLint framebuffer = 0, buffer = 0;
+    if (gReal.glBindFramebuffer) gReal.glGetIntegerv(c.version >= 30 ? GL_READ_FRAMEBUFFER_BINDING : GL_FRAMEBUFFER_BINDING, &framebuffer);
+    if (framebuffer != 0) return;
+    gReal.glGetIntegerv(GL_READ_BUFFER, &buffer);
+    const GLint assumed = before || !c.config.doubleBuffer ? GL_NONE : GL_BACK; // by the nodes
+    if (buffer != assumed) encode_glReadBuffer(t, static_cast<GLenum>(buffer));
 }
 
 void announce(ThreadState& t, Window& w) {
@@ -134,26 +160,52 @@ uint32_t announcedSharer(const Context& c) {
     return sharer ? sharer->id : 0;
 }
 
+namespace {
+
+void end(Context& c) {
+    if (!known::isCurrent(c)) known::hold(c, nullptr, nullptr);
+    c.destroyed = true;
+    c.freeDue = c.announced;
+}
+
+void end(Window& w) {
+    releaseDrawn(w);
+    w.freeDue = w.freeDue || w.announced;
+    w.drawable = 0; // never found again; its number is not used again
+}
+
+} // namespace
+
 void destroyContext(void* native) {
     Context* c = findContext(native);
     if (!c) return;
-    if (tThread->context != c) known::hold(*c, nullptr, nullptr);
-    c->destroyed = true;
-    c->freeDue = c->announced;
+    end(*c);
     freeDestroyed(*tThread);
 }
 
 void destroyWindow(uintptr_t drawable, void* display) {
     Window* w = findWindow(drawable, display);
     if (!w) return;
-    releaseDrawn(*w);
-    w->freeDue = w->announced;
-    w->drawable = 0; // never found again; its number is not used again
+    end(*w);
     freeDestroyed(*tThread);
 }
 
-void nativeWindowEnds(uint64_t native) {
-    if (known::nativeEnds(native)) freeDestroyed(*tThread);
+void displayEnds(void* display, bool isEgl) {
+    for (Window* w = nextWindow(nullptr); w; w = nextWindow(w))
+        if (w->drawable && w->display == display && w->isEgl == isEgl) end(*w);
+    while (Context* c = known::contextOf(display)) end(*c);
+    freeDestroyed(*tThread);
+}
+
+void nativeWindowEnds(uint64_t server, uint64_t native) {
+    if (known::nativeEnds(server, native)) freeDestroyed(*tThread);
+}
+
+void nativeWindowsEnd(uint64_t server, uint64_t firstNative, uint64_t mask) {
+    bool any = false;
+    for (Window* w = nextWindow(nullptr); w; w = nextWindow(w))
+        if (w->native && w->server == server && (w->native & ~mask) == firstNative) any = known::nativeEnds(server, w->native) || any;
+    if (any) freeDestroyed(*tThread);
 }
 
 void threadLeaves(ThreadState& t) {
@@ -214,16 +266,23 @@ void becameCurrent(Context* context, Window* draw, Window* read) {
     refreshDrawLocally(t);
     announce(t, *context);
     known::hold(*context, draw, read);
+    const bool readIsNew = read && !read->announced;
     for (Window* w : {draw, read}) {
         if (!w) continue;
+        if (w->nativeGone) lookForGone(*w);
+        introduceWindow(*w);
         if (!w->sizeKnown) updateWindowSize(t, *w);
+        if (w == draw) learnBuffers(*context, *w);
         learnFront(*w);
         announce(t, *w);
     }
     t.drawingAwaited = context->hasDefaultSamples;
+    const uint32_t readBefore = context->readWindow;
+    const bool readsOther = read && (readIsNew || read->id != readBefore);
     context->drawWindow = drawWindow;
     context->readWindow = readWindow;
     records::makeCurrent(t, context->id, context->drawWindow, context->readWindow);
+    if (readsOther) tellReadBuffer(t, *context, *read, readBefore);
     freeDestroyed(t);
     refreshBoundTextures(t);
     s->publish(t, false);
@@ -283,7 +342,8 @@ void showFront(ThreadState& t, Window& w) {
 void flushedWindow(ThreadState& t) {
     if (!t.context) return;
     Window* w = findWindowById(t.context->drawWindow);
-    if (!w || t.cursor == w->lastFlush || (w->config.doubleBuffer && !t.context->frontDue)) return;
+    // EGL shows a surface with one buffer when it is swapped.
+    if (!w || t.cursor == w->lastFlush || !(w->config.doubleBuffer ? t.context->frontDue : !w->isEgl)) return;
     if (w->config.doubleBuffer) showFront(t, *w);
     else endFrame(w);
     w->lastFlush = t.cursor;
@@ -314,12 +374,12 @@ bool swapLocally() {
 }
 
 bool swapsItself(Window* w) {
-    if (!w || !hasBuffers(*w)) return true; // an error of the driver's
+    if (!w || w->inherited || w->nativeGone || !hasBuffers(*w)) return true; // the driver knows it, or reports the error
     if (w->drawnInPart) {
         w->drawnInPart = false; // the next picture is whole
         return false;
     }
-    return swapLocally() || w->isPixmap || w->inherited;
+    return swapLocally() || w->isPixmap;
 }
 
 namespace {
@@ -354,8 +414,9 @@ void endFrame(Window* w) {
     ThreadState& t = *tThread;
     Session* s = Session::current();
     if (w && w->inherited) inheritedUsed(w);
+    if (s && windowsAsked()) takeGoneWindows();
     // One buffer alone is shown by flushes, of a context that has the window current.
-    const bool shows = w && !w->inherited && hasBuffers(*w) && (w->config.doubleBuffer || (t.context && t.context->drawWindow == w->id));
+    const bool shows = w && !w->inherited && !w->nativeGone && hasBuffers(*w) && (w->config.doubleBuffer || (t.context && t.context->drawWindow == w->id));
     if (!s || !s->alive() || !shows) {
         refreshDrawLocally(t);
         return;

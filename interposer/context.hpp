@@ -93,6 +93,7 @@ struct Context {
     uint32_t flags = 0;
     uint32_t profileMask = 0;
     void* native = nullptr;    // GLXContext or EGLContext
+    void* display = nullptr;   // Display* or EGLDisplay
 
     VertexArrayMirror arrays;
     GLenum stashedError = 0;   // an error that we met while asking, for the program's next glGetError
@@ -138,6 +139,9 @@ struct Window {
     bool inherited = false;    // drawn by a context of the parent of this forked child: on its own
     int holders = 0;           // contexts that were last bound to it
     uint64_t native = 0;       // X window
+    uint64_t server = 0;       // of that (interposer/windows/x_server.hpp), from its introduction on
+    bool introduced = false;   // interposer/windows/introduction.hpp
+    bool nativeGone = false;   // the X window was destroyed
     wire::WindowConfig config{};
     std::byte* lastFlush = nullptr; // where the stream was at the last flush of a single-buffered window
     LocalPixels pixels;
@@ -155,7 +159,7 @@ void refreshDrawLocally(ThreadState& t);
 // The id of a context that the nodes have and whose objects are c's; 0: they have none.
 uint32_t announcedSharer(const Context& c);
 // Registers a context that the driver has made. shareWith may be null.
-Context* addContext(void* native, Context* shareWith, wire::Api api, const wire::WindowConfig& config);
+Context* addContext(void* native, void* display, Context* shareWith, wire::Api api, const wire::WindowConfig& config);
 Context* findContext(void* native);
 void destroyContext(void* native);
 
@@ -164,8 +168,13 @@ Window* findWindow(uintptr_t drawable, void* display);
 Window* findWindowById(uint32_t id);
 Window* nextWindow(const Window* before); // null: the first. Those that are given up are among them
 void destroyWindow(uintptr_t drawable, void* display);
-// The program destroys an X window. Its number may be given to another.
-void nativeWindowEnds(uint64_t native);
+// Ends a destroyed X window. The server may give its number to another window.
+void nativeWindowEnds(uint64_t server, uint64_t native);
+// Ends the windows that one connection has created: their numbers are firstNative plus bits of `mask`.
+void nativeWindowsEnd(uint64_t server, uint64_t firstNative, uint64_t mask);
+// Ends the drawables and contexts of a closed Display* or a terminated EGLDisplay. A current context lives until its
+// release, as in EGL. With GLX the caller has released it.
+void displayEnds(void* display, bool isEgl);
 
 // The driver has made `context` current with these drawables (null: none): says so in the stream.
 void becameCurrent(Context* context, Window* draw, Window* read);

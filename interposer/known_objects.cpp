@@ -24,14 +24,14 @@ template <class T> T* make() {
     return memory ? new (memory) T : nullptr;
 }
 
-bool isCurrent(const Context& c) {
+bool isCurrentAnywhere(const Context& c) {
     for (const ThreadState* t = firstThread(); t; t = t->next)
         if (t->context == &c) return true;
     return false;
 }
 
 // The program and the nodes have given it up.
-bool mayBecomeAnother(const Context& c) { return c.destroyed && !c.freeDue && !c.held[0] && !c.held[1] && !isCurrent(c); }
+bool mayBecomeAnother(const Context& c) { return c.destroyed && !c.freeDue && !c.held[0] && !c.held[1] && !isCurrentAnywhere(c); }
 bool mayBecomeAnother(const Window& w) { return w.drawable == 0 && !w.freeDue && w.holders <= 0 && !w.boundGroup; }
 
 bool isUsed(const ShareGroup* group) {
@@ -86,11 +86,53 @@ Window* emptyWindow() {
     return windows = w;
 }
 
-// A drawable that no context holds any more is given up by GLX when it is a plain X window: it starts
-// anew, with a new size, when it is bound again. GLX windows, pbuffers and EGL surfaces stay.
+bool isBare(const Window& w) { return !w.isEgl && w.drawable == w.native; }
+
+// GLX destroys its drawable of a plain X window with the last context that holds it. bareWindow() makes it anew.
+// GLX windows, pbuffers and EGL surfaces have functions that destroy them.
 void release(Window* w) {
-    if (!w || --w->holders > 0 || w->isEgl || w->drawable != w->native) return;
+    if (!w || --w->holders > 0 || !isBare(*w)) return;
     w->sizeKnown = false;
+    if (w->nativeGone) w->drawable = 0;
+}
+
+Window* findLocked(uintptr_t drawable, void* display) {
+    for (Window* w = windows; w; w = w->next) {
+        if (w->drawable == drawable && (w->display == display || !display)) return w;
+    }
+    return nullptr;
+}
+
+// `config` comes from a context or a configuration: it has neither a size nor an X window.
+void setConfig(Window& w, const wire::WindowConfig& config) {
+    const wire::WindowConfig before = w.config;
+    w.config = config;
+    w.config.width = before.width;
+    w.config.height = before.height;
+    w.config.nativeLow = static_cast<uint32_t>(w.native);
+    w.config.nativeHigh = before.nativeHigh;
+}
+
+Window* addLocked(uintptr_t drawable, void* display, bool isEgl, const wire::WindowConfig& config, uint64_t native) {
+    Window* w = emptyWindow();
+    if (!w) return nullptr;
+    w->id = ++lastWindow;
+    w->drawable = drawable;
+    w->display = display;
+    w->isEgl = isEgl;
+    w->native = native;
+    setConfig(*w, config);
+    return w;
+}
+
+// The driver has destroyed its drawable and makes another one. The nodes keep the window: it is the same on the wall.
+void renew(Window& w, const wire::WindowConfig& config) {
+    setConfig(w, config);
+    w.announced = false;
+    w.sizeKnown = false;
+    w.drawnInPart = false;
+    w.lastFlush = nullptr;
+    w.pixels.known = false;
 }
 
 } // namespace
@@ -104,6 +146,16 @@ const Context* sharerOf(const Context& c) {
     Guard guard(tableLock);
     for (uint32_t i = 0; i < contextCount; ++i) {
         if (contexts[i]->group == c.group && contexts[i] != &c && nodesHave(*contexts[i])) return contexts[i];
+    }
+    return nullptr;
+}
+
+bool isCurrent(const Context& c) { return isCurrentAnywhere(c); }
+
+Context* contextOf(void* display) {
+    Guard guard(tableLock);
+    for (uint32_t i = 0; i < contextCount; ++i) {
+        if (contexts[i]->display == display && !contexts[i]->destroyed) return contexts[i];
     }
     return nullptr;
 }
@@ -166,7 +218,7 @@ uint32_t nextDueWindow() {
             w->freeDue = false;
             return w->id;
         }
-        if (!w->announced || w->holders > 0 || w->isEgl || w->drawable != w->native || w->drawable == 0) continue;
+        if (!w->announced || w->holders > 0 || !isBare(*w) || w->drawable == 0) continue;
         if (!oldest || w->id < oldest->id) oldest = w;
         ++idle;
     }
@@ -196,28 +248,48 @@ void inherit() {
     }
 }
 
-bool nativeEnds(uint64_t native) {
+// The drawables of GLX and EGL live on while contexts hold them, as in the driver.
+bool nativeEnds(uint64_t server, uint64_t native) {
     bool any = false;
     Guard guard(tableLock);
     for (Window* w = windows; w; w = w->next) {
-        if (native == 0 || w->native != native || w->config.isPbuffer) continue;
+        if (native == 0 || w->native != native || w->server != server || w->config.isPbuffer || w->nativeGone) continue;
         any = true;
         w->freeDue = w->freeDue || w->announced;
-        w->announced = false; // GLX windows and surfaces on it may still be bound
-        if (w->drawable == w->native) w->drawable = 0;
+        w->announced = false;
+        w->nativeGone = true;
+        if (isBare(*w) && w->holders <= 0) w->drawable = 0;
     }
     return any;
 }
 
+uint32_t drawablesOf(uint64_t server, uint64_t native, uint32_t* ids, uint32_t most) {
+    uint32_t count = 0;
+    Guard guard(tableLock);
+    for (const Window* w = windows; w && count < most; w = w->next) {
+        if (w->drawable && w->native == native && w->server == server) ids[count++] = w->id;
+    }
+    return count;
+}
+
+Window* bareWindow(uintptr_t drawable, void* display, const wire::WindowConfig& config) {
+    Guard guard(tableLock);
+    Window* w = findLocked(drawable, display);
+    if (!w) return addLocked(drawable, display, false, config, drawable);
+    if (w->holders <= 0 && isBare(*w)) renew(*w, config);
+    return w;
+}
+
 } // namespace known
 
-Context* addContext(void* native, Context* shareWith, wire::Api api, const wire::WindowConfig& config) {
+Context* addContext(void* native, void* display, Context* shareWith, wire::Api api, const wire::WindowConfig& config) {
     // A sandbox may begin before the context is made current, and forbid to connect.
     if (!shareWith || !shareWith->group->inherited) Session::get();
     Guard guard(tableLock);
     Context* c = emptyContext();
     if (!c) return nullptr;
     c->native = native;
+    c->display = display;
     c->api = api;
     c->config = config;
     c->id = ++lastContext;
@@ -236,25 +308,12 @@ Context* findContext(void* native) {
 
 Window* addWindow(uintptr_t drawable, void* display, bool isEgl, const wire::WindowConfig& config, uint64_t native) {
     Guard guard(tableLock);
-    Window* w = emptyWindow();
-    if (!w) return nullptr;
-    w->id = ++lastWindow;
-    w->drawable = drawable;
-    w->display = display;
-    w->isEgl = isEgl;
-    w->native = native;
-    w->config = config;
-    w->config.nativeLow = static_cast<uint32_t>(native);
-    w->config.nativeHigh = static_cast<uint32_t>(native >> 32);
-    return w;
+    return addLocked(drawable, display, isEgl, config, native);
 }
 
 Window* findWindow(uintptr_t drawable, void* display) {
     Guard guard(tableLock);
-    for (Window* w = windows; w; w = w->next) {
-        if (w->drawable == drawable && (w->display == display || !display)) return w;
-    }
-    return nullptr;
+    return findLocked(drawable, display);
 }
 
 Window* findWindowById(uint32_t id) {

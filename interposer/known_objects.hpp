@@ -16,6 +16,10 @@ void hold(Context& c, Window* draw, Window* read);
 
 // A context that is current nowhere and was bound to this window alone last; null: there is none.
 Context* idleHolderOf(const Window& w);
+// In any thread.
+bool isCurrent(const Context& c);
+// One that is not destroyed; null: none.
+Context* contextOf(void* display);
 
 // Ids that the nodes are told the end of now, each once; 0: no more.
 uint32_t nextDueContext();
@@ -25,6 +29,12 @@ Lock& tables();
 // For a forked child: what the nodes know is the parent's.
 void inherit();
 // An X window is destroyed. True: drawables of it are known.
-bool nativeEnds(uint64_t native);
+bool nativeEnds(uint64_t server, uint64_t native);
+// Ids of the drawables on an X window, up to `most`. Returns how many there are.
+uint32_t drawablesOf(uint64_t server, uint64_t native, uint32_t* ids, uint32_t most);
+// The plain X window of this number, which GLX takes without making a drawable of it. Mesa makes one at the first
+// binding, with the configuration of that context, and destroys it when no context is bound to it or was bound to
+// it last. The next binding makes another one, with the configuration of its context. Null: no memory.
+Window* bareWindow(uintptr_t drawable, void* display, const wire::WindowConfig& config);
 
 } // namespace mural::known

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "common/clock.hpp"
+#include "common/window_mark.hpp"
 #include "interposer/forked_child.hpp"
 #include "interposer/handshake.hpp"
 #include "interposer/head_socket.hpp"
@@ -86,11 +87,24 @@ Session* Session::get() {
     return session;
 }
 
+uint32_t Session::displayNumber(const char* name) {
+    static Lock lock;
+    Guard guard(lock);
+    const uint32_t count = header_->displayCount.load(std::memory_order_relaxed);
+    for (uint32_t i = 0; i < count; ++i)
+        if (std::strcmp(header_->displays[i], name) == 0) return i;
+    if (count == capture::kDisplays || std::strlen(name) >= capture::kDisplayNameBytes) return capture::kNoDisplay;
+    std::strcpy(header_->displays[count], name);
+    header_->displayCount.store(count + 1, std::memory_order_release);
+    return count;
+}
+
 bool Session::connect() {
     const int socket = openHeadSocket();
     if (socket < 0) return false; // it has said why
     Handshake handshake;
     if (!shakeHands(socket, handshake)) return false;
+    nameKey_ = window_mark::sessionKey(launchSettings().session);
     welcome_ = handshake.welcome;
     extensions_ = handshake.extensions;
     header_ = handshake.header;

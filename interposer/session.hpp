@@ -21,6 +21,10 @@ public:
     [[nodiscard]] const capture::Welcome& welcome() const { return welcome_; }
     [[nodiscard]] bool alive() const { return __atomic_load_n(&alive_, __ATOMIC_ACQUIRE); }
     [[nodiscard]] capture::CaptureHeader* header() { return header_; }
+    // Of the session's name (common/window_mark.hpp).
+    [[nodiscard]] uint64_t nameKey() const { return nameKey_; }
+    // The number by which the head knows the X display of this name. It takes the same name for the same display.
+    uint32_t displayNumber(const char* name);
     // Extensions that all nodes have, with a space before and behind each.
     [[nodiscard]] const char* nodeExtensions() const { return extensions_; }
 
@@ -78,6 +82,7 @@ private:
     capture::CaptureHeader* header_ = nullptr;
     capture::Welcome welcome_{};
     const char* extensions_ = "";
+    uint64_t nameKey_ = 0;
     bool alive_ = false;
     uint32_t framesSubmitted_ = 0; // by all threads
     int64_t submittedNs_[capture::kAheadFrames] = {}; // of frame n at n modulo their number

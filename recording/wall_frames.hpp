@@ -18,9 +18,9 @@ public:
     int64_t record(uint32_t stream, const RecordView& r) {
         const uint32_t client = wire::clientOf(stream), window = argumentWord(r, 0);
         switch (r.opcode) {
-        case wire::kOpWindow: sizes_[{client, window}] = {argumentWord(r, 1), argumentWord(r, 2)}; return 0;
+        case wire::kOpWindow: windows_[{client, window}] = {argumentWord(r, 1), argumentWord(r, 2), uint64_t{argumentWord(r, 7)} << 32 | argumentWord(r, 6)}; return 0;
         case wire::kOpDestroyWindow:
-            sizes_.erase({client, window});
+            windows_.erase({client, window});
             mainWindow_.windowGone(client, window);
             return 0;
         case wire::kOpSwap:
@@ -28,9 +28,9 @@ public:
         default: return 0;
         }
         if (argumentWord(r, 1) == wire::kUnseenFrame) return 0;
-        const auto found = sizes_.find({client, window});
-        const auto [width, height] = found == sizes_.end() ? std::pair(0u, 0u) : found->second;
-        const int64_t frame = mainWindow_.swapped(client, window, width, height);
+        const auto found = windows_.find({client, window});
+        const Window at = found == windows_.end() ? Window{} : found->second;
+        const int64_t frame = mainWindow_.swapped(client, window, at.width, at.height, at.native);
         if (frame > 0) frames_ = frame;
         return frame;
     }
@@ -44,12 +44,16 @@ public:
     }
     void clientGone(uint32_t client) {
         mainWindow_.clientGone(client);
-        std::erase_if(sizes_, [client](const auto& entry) { return entry.first.first == client; });
+        std::erase_if(windows_, [client](const auto& entry) { return entry.first.first == client; });
     }
     [[nodiscard]] int64_t frames() const { return frames_; } // complete frames
 
 private:
-    std::map<std::pair<uint32_t, uint32_t>, std::pair<uint32_t, uint32_t>> sizes_; // client, window to width, height
+    struct Window {
+        uint32_t width = 0, height = 0;
+        uint64_t native = 0;
+    };
+    std::map<std::pair<uint32_t, uint32_t>, Window> windows_; // by client and window
     MainWindow mainWindow_;
     int64_t frames_ = 0;
 };

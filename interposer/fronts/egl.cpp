@@ -56,11 +56,13 @@ Window* addSurface(EGLDisplay dpy, EGLSurface surface, EGLConfig config, uint64_
     if (!surface || nativeRun()) return nullptr;
     wire::WindowConfig c = configOf(dpy, config);
     c.isPbuffer = pbuffer;
+    // Mesa gives windows two buffers, whatever EGL_RENDER_BUFFER says, and others one. Desktop GL is asked (learnBuffers).
+    c.doubleBuffer = !pbuffer;
     for (const EGLint* a = attributes; a && *a != EGL_NONE; a += 2) {
         if (a[0] == EGL_GL_COLORSPACE) c.srgb = a[1] == EGL_GL_COLORSPACE_SRGB;
-        if (a[0] == EGL_RENDER_BUFFER && a[1] == EGL_SINGLE_BUFFER) c.doubleBuffer = 0;
     }
-    return addWindow(reinterpret_cast<uintptr_t>(surface), dpy, true, c, native);
+    const bool isX = hasXWindows(dpy) && native <= UINT32_MAX; // what other platforms take are pointers
+    return addWindow(reinterpret_cast<uintptr_t>(surface), dpy, true, c, isX ? native : 0);
 }
 
 EGLSurface addPixmap(EGLDisplay dpy, EGLSurface surface, EGLConfig config, const EGLint* attributes) {
@@ -74,7 +76,7 @@ EGLContext createContext(EGLDisplay dpy, EGLConfig config, EGLContext share, con
     const EGLContext made = call(dpy, config, share, attributes);
     if (made && !nativeRun()) {
         const bool desktop = queryApi && queryApi() == EGL_OPENGL_API;
-        Context* c = addContext(made, findContext(share), desktop ? wire::Api::Desktop : wire::Api::Es2, configOf(dpy, config));
+        Context* c = addContext(made, dpy, findContext(share), desktop ? wire::Api::Desktop : wire::Api::Es2, configOf(dpy, config));
         for (const EGLint* a = attributes; c && a && *a != EGL_NONE; a += 2) {
             if (a[0] == EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY || a[0] == EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT)
                 c->losesOnReset = a[1] == EGL_LOSE_CONTEXT_ON_RESET;
@@ -100,6 +102,20 @@ EGLBoolean makeCurrent(EGLDisplay dpy, EGLSurface draw, EGLSurface read, EGLCont
     const EGLBoolean ok = call(dpy, draw, read, context);
     if (ok && !nativeRun()) becameCurrent(context ? findContext(context) : nullptr, windowFor(dpy, draw), windowFor(dpy, read));
     return ok;
+}
+
+// The thread gives up its context.
+EGLBoolean releaseThread() {
+    static auto* call = real<EGLBoolean()>("eglReleaseThread");
+    const EGLBoolean ok = call();
+    if (ok && !nativeRun() && tThread->context) becameCurrent(nullptr, nullptr, nullptr);
+    return ok;
+}
+
+EGLBoolean terminate(EGLDisplay dpy) {
+    static auto* call = real<EGLBoolean(EGLDisplay)>("eglTerminate");
+    if (!nativeRun()) displayEnds(dpy, true);
+    return call(dpy);
 }
 
 void frameShown(EGLDisplay dpy, EGLSurface surface) {
@@ -243,6 +259,7 @@ void* getProcAddress(const char* name) { return reinterpret_cast<void*>(eglFront
 const OwnEntry kOwn[] = {
     ownEntry("eglCreateContext", createContext), ownEntry("eglDestroyContext", destroyedContext),
     ownEntry("eglMakeCurrent", makeCurrent), ownEntry("eglSwapBuffers", swapBuffers),
+    ownEntry("eglReleaseThread", releaseThread), ownEntry("eglTerminate", terminate),
     ownEntry("eglPostSubBufferNV", postSubBuffer), ownEntry("eglWaitGL", waitGl), ownEntry("eglWaitClient", waitClient),
     ownEntry("eglSwapBuffersWithDamageKHR", swapBuffersWithDamageKhr),
     ownEntry("eglSwapBuffersWithDamageEXT", swapBuffersWithDamageExt),
@@ -308,6 +325,7 @@ bool makeEglCurrent(const Window& draw, const Window& read, const Context& conte
 
 bool askEglSize(const Window& w, uint32_t& width, uint32_t& height) {
     static auto* query = real<EGLBoolean(EGLDisplay, EGLSurface, EGLint, EGLint*)>("eglQuerySurface");
+    if (w.nativeGone) return false;
     if (w.native && askXSize(w.display, w.native, width, height)) return width > 0 && height > 0;
     EGLint a = 0, b = 0;
     auto* surface = reinterpret_cast<EGLSurface>(w.drawable);

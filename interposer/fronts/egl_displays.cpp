@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <xcb/xcb.h>
 
-#include "interposer/loader/libc_loader.hpp"
+#include "interposer/fronts/xlib.hpp"
 #include "interposer/lock.hpp"
 
 namespace mural {
@@ -13,27 +13,12 @@ namespace {
 
 struct Known {
     EGLDisplay display = nullptr;
-    xcb_connection_t* connection = nullptr;
+    xcb_connection_t* connection = nullptr; // null: of another platform than X
 };
 constexpr int kMost = 16; // displays beyond are asked through EGL
 Known known[kMost];
 int count = 0;
 Lock lock;
-
-// A function of the copy that the program's EGL has brought with it, which stays loaded from then on; null: it has none yet.
-template <class F> struct Loaded {
-    const char* library;
-    const char* name;
-    F* found = nullptr;
-
-    F* get() {
-        if (F* earlier = __atomic_load_n(&found, __ATOMIC_RELAXED)) return earlier;
-        void* handle = loader::openLibrary(library, RTLD_LAZY | RTLD_NOLOAD);
-        F* function = handle ? reinterpret_cast<F*>(loader::symbolIn(handle, name)) : nullptr;
-        __atomic_store_n(&found, function, __ATOMIC_RELAXED);
-        return function;
-    }
-};
 
 // Threads may share it, as Mesa does; Xlib's own calls would need XInitThreads.
 xcb_connection_t* connectionOf(EGLenum platform, void* native) {
@@ -44,18 +29,31 @@ xcb_connection_t* connectionOf(EGLenum platform, void* native) {
     return get ? get(native) : nullptr;
 }
 
-xcb_connection_t* connectionOf(EGLDisplay display) {
-    Guard guard(lock);
+const Known* find(EGLDisplay display) {
     for (int i = 0; i < count; ++i)
-        if (known[i].display == display) return known[i].connection;
+        if (known[i].display == display) return &known[i];
     return nullptr;
 }
 
+bool isX(EGLenum platform) { return platform == EGL_NONE || platform == EGL_PLATFORM_X11_KHR || platform == EGL_PLATFORM_XCB_EXT; }
+
 } // namespace
+
+xcb_connection_t* xConnectionOf(EGLDisplay display) {
+    Guard guard(lock);
+    const Known* found = find(display);
+    return found ? found->connection : nullptr;
+}
+
+bool hasXWindows(EGLDisplay display) {
+    Guard guard(lock);
+    const Known* found = find(display);
+    return !found || found->connection;
+}
 
 void rememberDisplay(EGLDisplay made, EGLenum platform, void* native) {
     xcb_connection_t* connection = made && native ? connectionOf(platform, native) : nullptr;
-    if (!connection) return;
+    if (!made || (!connection && isX(platform))) return;
     Guard guard(lock);
     for (int i = 0; i < count; ++i) {
         if (known[i].display != made) continue;
@@ -65,12 +63,18 @@ void rememberDisplay(EGLDisplay made, EGLenum platform, void* native) {
     if (count < kMost) known[count++] = {made, connection};
 }
 
+void forgetConnection(xcb_connection_t* connection) {
+    Guard guard(lock);
+    for (int i = count; i-- > 0;)
+        if (connection && known[i].connection == connection) known[i] = known[--count];
+}
+
 bool askXSize(EGLDisplay display, uint64_t window, uint32_t& width, uint32_t& height) {
     static Loaded<xcb_get_geometry_cookie_t(xcb_connection_t*, xcb_drawable_t)> asking{"libxcb.so.1", "xcb_get_geometry"};
     static Loaded<xcb_get_geometry_reply_t*(xcb_connection_t*, xcb_get_geometry_cookie_t, xcb_generic_error_t**)> answering{"libxcb.so.1", "xcb_get_geometry_reply"};
     auto* ask = asking.get();
     auto* answer = answering.get();
-    xcb_connection_t* connection = ask && answer ? connectionOf(display) : nullptr;
+    xcb_connection_t* connection = ask && answer ? xConnectionOf(display) : nullptr;
     if (!connection) return false;
     xcb_generic_error_t* error = nullptr;
     xcb_get_geometry_reply_t* reply = answer(connection, ask(connection, static_cast<xcb_drawable_t>(window)), &error);

@@ -5,10 +5,18 @@
 #include <EGL/egl.h>
 #include <cstdint>
 
+struct xcb_connection_t;
+
 namespace mural {
 
-// eglGetDisplay and its kin have given `made` for this; displays that are not of X are passed over.
+// eglGetDisplay and its kin have given `made` for this.
 void rememberDisplay(EGLDisplay made, EGLenum platform, void* native);
+// Null: not known. EGL_DEFAULT_DISPLAY has a connection of its own, which only the driver knows.
+xcb_connection_t* xConnectionOf(EGLDisplay display);
+// False: its native windows are those of another platform, such as Wayland or GBM.
+bool hasXWindows(EGLDisplay display);
+// It closes.
+void forgetConnection(xcb_connection_t* connection);
 
 // False where the connection is not known, or the server knows no such window.
 bool askXSize(EGLDisplay display, uint64_t window, uint32_t& width, uint32_t& height);

@@ -15,6 +15,7 @@
 #include "interposer/fronts/glx_types.hpp"
 #include "interposer/fronts/own_functions.hpp"
 #include "interposer/fronts/xlib.hpp"
+#include "interposer/known_objects.hpp"
 #include "interposer/loader/libc_loader.hpp"
 #include "interposer/log.hpp"
 #include "interposer/native_count.hpp"
@@ -83,34 +84,32 @@ wire::WindowConfig defaultConfig() {
 }
 
 Window* windowFor(Display* dpy, XID drawable, const Context& context) {
-    if (!drawable) return nullptr;
-    if (Window* w = findWindow(drawable, dpy)) return w;
-    return addWindow(drawable, dpy, false, context.config, drawable);
+    return drawable ? known::bareWindow(drawable, dpy, context.config) : nullptr;
 }
 
-GLXContext created(GLXContext made, GLXContext share, const wire::WindowConfig& config) {
-    if (made && !nativeRun()) addContext(made, findContext(share), wire::Api::Desktop, config);
+GLXContext created(Display* dpy, GLXContext made, GLXContext share, const wire::WindowConfig& config) {
+    if (made && !nativeRun()) addContext(made, dpy, findContext(share), wire::Api::Desktop, config);
     return made;
 }
 
 GLXContext createContext(Display* dpy, XVisualInfo* visual, GLXContext share, Bool direct) {
     static auto* call = real<GLXContext(Display*, XVisualInfo*, GLXContext, Bool)>("glXCreateContext");
-    return created(call(dpy, visual, share, direct), share, configOfVisual(dpy, visual));
+    return created(dpy, call(dpy, visual, share, direct), share, configOfVisual(dpy, visual));
 }
 
 GLXContext createNewContext(Display* dpy, GLXFBConfig fb, int type, GLXContext share, Bool direct) {
     static auto* call = real<GLXContext(Display*, GLXFBConfig, int, GLXContext, Bool)>("glXCreateNewContext");
-    return created(call(dpy, fb, type, share, direct), share, configOfFb(dpy, fb));
+    return created(dpy, call(dpy, fb, type, share, direct), share, configOfFb(dpy, fb));
 }
 
 GLXContext createContextWithConfig(Display* dpy, GLXFBConfig fb, int type, GLXContext share, Bool direct) {
     static auto* call = real<GLXContext(Display*, GLXFBConfig, int, GLXContext, Bool)>("glXCreateContextWithConfigSGIX");
-    return created(call(dpy, fb, type, share, direct), share, configOfFb(dpy, fb));
+    return created(dpy, call(dpy, fb, type, share, direct), share, configOfFb(dpy, fb));
 }
 
 GLXContext createContextAttribs(Display* dpy, GLXFBConfig fb, GLXContext share, Bool direct, const int* attributes) {
     static auto* call = real<GLXContext(Display*, GLXFBConfig, GLXContext, Bool, const int*)>("glXCreateContextAttribsARB");
-    const GLXContext made = created(call(dpy, fb, share, direct, attributes), share, fb ? configOfFb(dpy, fb) : defaultConfig());
+    const GLXContext made = created(dpy, call(dpy, fb, share, direct, attributes), share, fb ? configOfFb(dpy, fb) : defaultConfig());
     Context* c = made && !nativeRun() ? findContext(made) : nullptr;
     for (const int* a = attributes; c && a && *a; a += 2) {
         if (a[0] == glx::kResetStrategy) c->losesOnReset = a[1] == glx::kLoseOnReset;
@@ -352,6 +351,7 @@ bool makeGlxCurrent(const Window& draw, const Window& read, const Context& conte
 bool askGlxSize(const Window& w, uint32_t& width, uint32_t& height) {
     auto* dpy = static_cast<Display*>(w.display);
     unsigned int a = 0, b = 0;
+    if (w.nativeGone) return false; // an X error would end the program
     if (w.native && !w.config.isPbuffer) {
         static auto* geometry = xlib<Status(Display*, Drawable, ::Window*, int*, int*, unsigned*, unsigned*, unsigned*, unsigned*)>("XGetGeometry");
         ::Window root = 0;

@@ -1,23 +1,77 @@
 // X windows end without a word to GLX or EGL: the nodes are told when the program destroys one that it has
-// drawn in, so that the wall turns to another. (The X server ends children with their parents: those go
-// unnoticed until they are many.)
+// drawn in, so that the wall turns to another. Other windows end with their parent or their connection (gone_windows.hpp).
 #include <X11/Xlib.h>
 #include <xcb/xcb.h>
 
 #include "interposer/context.hpp"
+#include "interposer/fronts/xlib.hpp"
+#include "interposer/windows/gone_windows.hpp"
 #include "interposer/windows/next_function.hpp"
+#include "interposer/windows/x_server.hpp"
 
 using namespace mural;
 
+namespace {
+
+uint64_t serverOf(Display* dpy) {
+    static auto* socket = xlib<int(Display*)>("XConnectionNumber");
+    return socket && dpy ? mural::serverOf(socket(dpy)) : 0;
+}
+
+uint64_t serverOf(xcb_connection_t* c) {
+    static auto* socket = loadedFunction<int(xcb_connection_t*)>(kXcb, "xcb_get_file_descriptor");
+    return socket && c ? mural::serverOf(socket(c)) : 0;
+}
+
+// GLX releases the context that this thread has current there; contexts of other threads stay until they are released.
+void displayCloses(Display* dpy) {
+    if (const Context* c = tThread->context; c && c->display == dpy) becameCurrent(nullptr, nullptr, nullptr);
+    displayEnds(dpy, false);
+}
+
+void windowEnds(auto* connection, uint64_t window) {
+    if (nextWindow(nullptr)) nativeWindowEnds(serverOf(connection), window);
+}
+
+} // namespace
+
+#define PASS_ON_AND_ASK(library, function, connection, resource)          \
+    static NextFunction next{#function, library};                        \
+    const auto result = callNext(next, function, connection, resource); \
+    askForWindows(connection);                                           \
+    return result
+
 #define END_AND_PASS_ON(library, function, connection, window) \
-    static NextFunction next{#function, library};              \
-    nativeWindowEnds(window);                                  \
-    return callNext(next, function, connection, window)
+    windowEnds(connection, window);                            \
+    PASS_ON_AND_ASK(library, function, connection, window)
 
 MURAL_SHOWN int XDestroyWindow(Display* dpy, ::Window window) { END_AND_PASS_ON(kXlib, XDestroyWindow, dpy, window); }
+MURAL_SHOWN int XDestroySubwindows(Display* dpy, ::Window window) { PASS_ON_AND_ASK(kXlib, XDestroySubwindows, dpy, window); }
+MURAL_SHOWN int XKillClient(Display* dpy, XID resource) { PASS_ON_AND_ASK(kXlib, XKillClient, dpy, resource); }
+MURAL_SHOWN int XCloseDisplay(Display* dpy) {
+    static NextFunction next{"XCloseDisplay", kXlib};
+    displayCloses(dpy);
+    return callNext(next, XCloseDisplay, dpy);
+}
+
 MURAL_SHOWN xcb_void_cookie_t xcb_destroy_window(xcb_connection_t* c, xcb_window_t window) {
     END_AND_PASS_ON(kXcb, xcb_destroy_window, c, window);
 }
 MURAL_SHOWN xcb_void_cookie_t xcb_destroy_window_checked(xcb_connection_t* c, xcb_window_t window) {
     END_AND_PASS_ON(kXcb, xcb_destroy_window_checked, c, window);
+}
+MURAL_SHOWN xcb_void_cookie_t xcb_destroy_subwindows(xcb_connection_t* c, xcb_window_t window) {
+    PASS_ON_AND_ASK(kXcb, xcb_destroy_subwindows, c, window);
+}
+MURAL_SHOWN xcb_void_cookie_t xcb_destroy_subwindows_checked(xcb_connection_t* c, xcb_window_t window) {
+    PASS_ON_AND_ASK(kXcb, xcb_destroy_subwindows_checked, c, window);
+}
+MURAL_SHOWN xcb_void_cookie_t xcb_kill_client(xcb_connection_t* c, uint32_t resource) { PASS_ON_AND_ASK(kXcb, xcb_kill_client, c, resource); }
+MURAL_SHOWN xcb_void_cookie_t xcb_kill_client_checked(xcb_connection_t* c, uint32_t resource) {
+    PASS_ON_AND_ASK(kXcb, xcb_kill_client_checked, c, resource);
+}
+MURAL_SHOWN void xcb_disconnect(xcb_connection_t* c) {
+    static NextFunction next{"xcb_disconnect", kXcb};
+    if (c) connectionCloses(c);
+    callNext(next, xcb_disconnect, c);
 }

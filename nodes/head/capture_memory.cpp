@@ -221,6 +221,16 @@ void CaptureMemory::setHeadGone() {
         futexWakeAll(*word);
 }
 
+std::vector<std::string> CaptureMemory::displayNames() const {
+    std::vector<std::string> names(std::min(shared_->displayCount.load(std::memory_order_acquire), capture::kDisplays));
+    for (size_t i = 0; i < names.size(); ++i) {
+        char copy[capture::kDisplayNameBytes];
+        std::memcpy(copy, shared_->displays[i], sizeof copy); // first: the program may change it
+        names[i].assign(copy, strnlen(copy, sizeof copy));
+    }
+    return names;
+}
+
 CaptureCounts CaptureMemory::counts() const {
     CaptureCounts c;
     c.verifiedFrames = shared_->verifiedFrames.load();

@@ -11,6 +11,7 @@
 #include <mutex>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "common/capture_ring.hpp"
 #include "common/result.hpp"
@@ -81,6 +82,8 @@ public:
     void setHeadGone(); // and wakes whoever sleeps on any word
     std::atomic<uint32_t>& lifeWord() { return shared_->headLife; } // for a LifeMark
     [[nodiscard]] CaptureCounts counts() const;
+    // Of the X displays on which the program has windows, by number.
+    [[nodiscard]] std::vector<std::string> displayNames() const;
 
 private:
     CaptureMemory(FileDescriptor fd, FileDescriptor programFd, std::byte* base, const capture::CaptureHeader& layout);

@@ -81,11 +81,17 @@ void FrameTracker::clientGone(uint32_t id) {
 void FrameTracker::windowGone(uint32_t id, uint32_t window) {
     const std::lock_guard lock(mutex_);
     mainWindow_.windowGone(id, window);
+    client(id).natives.erase(window);
 }
 
 void FrameTracker::pictureHeld(uint32_t id, uint32_t frame) {
     const std::lock_guard lock(mutex_);
     client(id).held.insert(frame);
+}
+
+void FrameTracker::isOn(uint32_t id, uint32_t window, uint64_t native) {
+    const std::lock_guard lock(mutex_);
+    client(id).natives[window] = native;
 }
 
 void FrameTracker::pictureReleased(uint32_t id, uint32_t frame) {
@@ -120,7 +126,9 @@ void FrameTracker::giveCredit(uint32_t id, Client& c) {
 }
 
 void FrameTracker::count(uint32_t id, const Window& window, int64_t nowNs) {
-    if (mainWindow_.swapped(id, window.id, window.width, window.height) == 0) return;
+    const auto& natives = client(id).natives;
+    const auto native = natives.find(window.id);
+    if (mainWindow_.swapped(id, window.id, window.width, window.height, native == natives.end() ? 0 : native->second) == 0) return;
     if (totals_.wallFrames++ == 0) totals_.firstNs = nowNs;
     totals_.latestNs = nowNs;
 }

@@ -44,8 +44,10 @@ public:
     // No node sends further frames of this window.
     void windowGone(uint32_t client, uint32_t window);
 
-    // Announces a picture for --display app. Must precede the completion of its frame.
+    // Announces a picture for the outputs. Must precede the completion of its frame.
     void pictureHeld(uint32_t client, uint32_t frame);
+    // Tells the X window of a window. Several drawables may be on one X window.
+    void isOn(uint32_t client, uint32_t window, uint64_t native);
     void pictureReleased(uint32_t client, uint32_t frame);
 
     [[nodiscard]] ClientProgress progressOf(uint32_t client) const;
@@ -70,6 +72,7 @@ private:
         std::vector<NodeProgress> nodes;
         std::map<uint32_t, Window> windows; // windows of frames that some nodes have not finished
         std::multiset<uint32_t> held;
+        std::map<uint32_t, uint64_t> natives; // window → X window
         uint32_t finished = 0; // by all living nodes
         uint64_t calls = 0;
         uint32_t credited = 0; // the last value of `finished` sent to the program

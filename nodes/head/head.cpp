@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "common/kept_memory.hpp"
+#include "common/window_mark.hpp"
 #include "nodes/head/codec_choice.hpp"
 #include "nodes/head/composition_choice.hpp"
 #include "nodes/head/config_plan.hpp"
@@ -73,10 +74,11 @@ std::string outOfCanvas(const std::string& out, const std::string& name) {
 }
 
 Result<void> addOutputs(const SessionConfig& config, const SessionPlan& plan, ControlChannel& control, HeadOptions& options) {
-    options.openWindow = [display = config.displayName](uint64_t window) {
+    options.openWindow = [display = config.displayName, key = window_mark::sessionKey(config.session.c_str())](const NativeWindow& window) {
         AppWindowConfig target;
-        target.displayName = display;
-        target.window = static_cast<uint32_t>(window);
+        target.displayName = window.display.empty() ? display : window.display;
+        target.window = window.id;
+        target.owner = WindowOwner{key, window.client, window.window};
         auto opened = AppWindow::open(target);
         if (!opened) return Result<std::unique_ptr<PictureSink>>(opened.error());
         return Result<std::unique_ptr<PictureSink>>(std::move(*opened));

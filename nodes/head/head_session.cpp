@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <poll.h>
 #include <thread>
@@ -82,6 +83,7 @@ HeadSession::HeadSession(SessionConfig config,
                 composeBy(plan_.wall),
                 [this](WindowPicture picture) {
                     frames_.pictureHeld(picture.client, picture.frame);
+                    frames_.isOn(picture.client, picture.window, picture.nativeWindow);
                     output_->add(std::move(picture));
                 },
                 composeOthersBy(plan_),
@@ -120,7 +122,7 @@ HeadSession::HeadSession(SessionConfig config,
     output.lastFrame = config_.frames;
     output.toNativeWindows = config_.display == Display::App;
     output.pairs = plan_.wall.stereo == StereoMode::Quad;
-    output.openWindow = options_.openWindow;
+    output.openWindow = [this](const WindowPicture& picture) { return openNativeWindow(picture); };
     if (headShowsWall(config_, plan_)) output.openWall = [this] { return options_.openWall(0); };
     for (size_t i = 0; i < plan_.canvases.size(); ++i) {
         OtherCanvas& canvas = output.canvases.emplace_back();
@@ -142,6 +144,7 @@ HeadSession::~HeadSession() {
     returns_->stop([] {});
     if (programs_) programs_->endAll();
     nodes_.end();
+    output_.reset(); // its thread asks the programs' table
 }
 
 int HeadSession::run() {
@@ -282,6 +285,16 @@ Result<void> HeadSession::nodePicture(int node, const wire::PictureHeader& heade
     auto done = placed ? pictures_.part(node, placed->header, std::move(placed->rows)) : Result<void>(placed.error());
     output_->waitForRoom();
     return done;
+}
+
+Result<std::unique_ptr<PictureSink>> HeadSession::openNativeWindow(const WindowPicture& picture) {
+    const auto number = static_cast<uint32_t>(picture.nativeWindow >> 32);
+    if (number == capture::kNoDisplay)
+        return Error{fmt::format("a program has windows on more than {} X displays, or on one whose name is longer than {} bytes; its window there shows nothing",
+                                 capture::kDisplays, capture::kDisplayNameBytes - 1)};
+    NativeWindow window{picture.client, picture.window, static_cast<uint32_t>(picture.nativeWindow), {}};
+    if (serving_) window.display = programs_->displayName(picture.client, number);
+    return options_.openWindow(window);
 }
 
 // Frames of all nodes come before: only then another window is the main one, or the program forgotten.

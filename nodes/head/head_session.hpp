@@ -36,11 +36,18 @@
 
 namespace mural {
 
+// A program's own window.
+struct NativeWindow {
+    uint32_t client = 0, window = 0; // as in the stream
+    uint32_t id = 0;                 // on its X display
+    std::string display;             // as the program names it; empty: not told
+};
+
 struct HeadOptions {
     uint64_t registryDigest = 0;
     std::unique_ptr<PictureSink> file; // of --out; null: none
     std::function<std::string()> lastPicture; // path of the last file; may be empty
-    std::function<Result<std::unique_ptr<PictureSink>>(uint64_t nativeWindow)> openWindow;
+    std::function<Result<std::unique_ptr<PictureSink>>(const NativeWindow& window)> openWindow;
     std::vector<std::shared_ptr<PictureSink>> canvasFiles; // of --out, for each canvas beside the first
     std::function<Result<std::unique_ptr<PictureSink>>(int offsetX)> openWall; // where the head shows the wall (headShowsWall), or a canvas beside it
     std::unique_ptr<recording::StreamRecorder> recorder; // of --record; null: none
@@ -116,6 +123,7 @@ private:
     void sayKeepsAreas(); // once
     void countSplit(uint32_t flags);
     void watchNodes(int64_t nowNs);
+    Result<std::unique_ptr<PictureSink>> openNativeWindow(const WindowPicture& picture); // by the output's thread
     void windowGone(const std::pair<uint32_t, uint32_t>& window, int node); // client, window
     void reportProgress(int64_t nowNs);
 

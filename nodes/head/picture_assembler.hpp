@@ -24,7 +24,7 @@ struct WindowPicture {
     uint32_t client = 0;
     uint32_t window = 0;
     uint32_t frame = 0;
-    uint64_t nativeWindow = 0; // X window id, 0: none
+    uint64_t nativeWindow = 0; // X window id, 0: none; from bit 32 on the number of its display (CaptureHeader::displays)
     std::shared_ptr<const OwnedPicture> picture;
     std::vector<std::shared_ptr<const OwnedPicture>> others; // of the canvases beside the first, in their order; null: no memory
 };

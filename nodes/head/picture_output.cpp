@@ -112,7 +112,7 @@ void PictureOutput::show(const WindowPicture& picture) {
     const Picture view = picture.picture->view();
     const int64_t wallFrame =
         mainWindow_.swapped(picture.client, picture.window, static_cast<uint32_t>(view.width),
-                            static_cast<uint32_t>(view.height));
+                            static_cast<uint32_t>(view.height), picture.nativeWindow);
     const bool inTime = config_.lastFrame == 0 || wallFrame <= config_.lastFrame;
     const bool wanted = wallFrame > 0 && inTime && (saveFrames_.empty() || saveFrames_.contains(wallFrame));
     if (wanted && file_ && !fileFailed_) save(wallFrame, view);
@@ -185,12 +185,11 @@ void PictureOutput::showOnCanvas(size_t index, int64_t frame, const Picture& pic
 }
 
 void PictureOutput::showInWindow(const WindowPicture& picture) {
-    const WindowKey key{picture.client, picture.nativeWindow};
-    nativeOf_[{picture.client, picture.window}] = picture.nativeWindow;
+    const WindowKey key{picture.client, picture.window};
     auto found = windows_.find(key);
     if (found == windows_.end()) {
         if (windows_.size() >= kMostWindows) windows_.clear(); // mostly closed ones by then
-        auto opened = config_.openWindow(picture.nativeWindow);
+        auto opened = config_.openWindow(picture);
         // A window that was closed meanwhile is no news to its user.
         if (!opened && complained_.insert(key).second) config_.say(opened.error().message);
         found = windows_.emplace(key, opened ? std::move(*opened) : nullptr).first;
@@ -204,15 +203,11 @@ void PictureOutput::forget(const WindowPicture& gone) {
     const uint32_t client = gone.client;
     if (gone.window != 0) {
         mainWindow_.windowGone(client, gone.window);
-        const auto native = nativeOf_.find({client, gone.window});
-        if (native == nativeOf_.end()) return;
-        windows_.erase({client, native->second});
-        complained_.erase({client, native->second});
-        nativeOf_.erase(native);
+        windows_.erase({client, gone.window});
+        complained_.erase({client, gone.window});
         return;
     }
     mainWindow_.clientGone(client);
-    std::erase_if(nativeOf_, [&](const auto& entry) { return entry.first.first == client; });
     std::erase_if(windows_, [&](const auto& entry) { return entry.first.first == client; });
     std::erase_if(complained_, [&](const WindowKey& key) { return key.first == client; });
 }

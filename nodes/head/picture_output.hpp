@@ -37,8 +37,8 @@ struct PictureOutputConfig {
     int64_t lastFrame = 0;           // none behind it is saved: some come before the program has ended; 0: no limit
     bool toNativeWindows = false;    // --display app
     bool pairs = false;              // pictures are both eyes' (stackEyes)
-    // Opens the sink of one native window.
-    std::function<Result<std::unique_ptr<PictureSink>>(uint64_t nativeWindow)> openWindow;
+    // Opens the sink of the native window that this picture, which is of no interest otherwise, belongs to.
+    std::function<Result<std::unique_ptr<PictureSink>>(const WindowPicture& picture)> openWindow;
     // Opens the windows of the wall, where the head has them; empty: nodes have, or nobody.
     std::function<Result<std::unique_ptr<PictureSink>>()> openWall;
     std::vector<OtherCanvas> canvases; // as of WindowPicture::others
@@ -71,7 +71,7 @@ public:
     [[nodiscard]] OutputTotals totals() const;
 
 private:
-    using WindowKey = std::pair<uint32_t, uint64_t>; // client, native window
+    using WindowKey = std::pair<uint32_t, uint32_t>; // client, window
 
     void work();
     void show(const WindowPicture& picture);
@@ -98,7 +98,6 @@ private:
     std::vector<Shown> canvases_; // as in the config
     MainWindow mainWindow_;
     std::map<WindowKey, std::unique_ptr<PictureSink>> windows_; // null: it could not be opened
-    std::map<std::pair<uint32_t, uint32_t>, uint64_t> nativeOf_; // client, window: of those shown
     std::set<WindowKey> complained_;
 
     mutable std::mutex mutex_; // what follows

@@ -64,6 +64,7 @@ void ProgramTable::programEnded(uint32_t id, const std::string& problem) {
         if (!problem.empty())
             line = found->second->describe() + " was dropped: " + problem + "; it goes on alone";
         addCounts(goneCounts_, found->second->memory().counts());
+        if (auto names = found->second->memory().displayNames(); !names.empty()) goneDisplays_[id] = std::move(names);
         gone_.push_back(found->second);
         clients_.erase(found);
         count = clients_.size();
@@ -154,6 +155,16 @@ void ProgramTable::endAll() {
         gone.swap(gone_);
     }
     // Joined here, outside of the lock.
+}
+
+std::string ProgramTable::displayName(uint32_t client, uint32_t number) const {
+    const std::lock_guard lock(mutex_);
+    const auto here = clients_.find(client);
+    const auto gone = goneDisplays_.find(client);
+    const std::vector<std::string> names = here != clients_.end()      ? here->second->memory().displayNames()
+                                           : gone != goneDisplays_.end() ? gone->second
+                                                                         : std::vector<std::string>();
+    return number < names.size() ? names[number] : std::string();
 }
 
 CaptureCounts ProgramTable::counts() const {

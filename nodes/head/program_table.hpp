@@ -54,6 +54,8 @@ public:
     void reap();    // joins the threads of programs that have gone
     void endAll();  // tells them and joins all; the nodes must not hold a pump up any more
 
+    // Of an X display of the program, which may have ended; empty: not told.
+    [[nodiscard]] std::string displayName(uint32_t client, uint32_t number) const;
     [[nodiscard]] CaptureCounts counts() const; // over all programs, past and present
     [[nodiscard]] std::vector<ProgramStatus> status() const; // of those that are there, but for their frames
 
@@ -77,6 +79,7 @@ private:
     Clients clients_;
     std::vector<std::shared_ptr<CaptureClient>> gone_;
     CaptureCounts goneCounts_;
+    std::map<uint32_t, std::vector<std::string>> goneDisplays_; // of programs with windows: pictures may come later
 };
 
 } // namespace mural

@@ -43,7 +43,8 @@ Result<void> TileWindows::reopen(int width, int height) {
 Result<void> TileWindows::show(const ReplayOutputs::Frame& f, SwapBarrier* barrier) {
     const bool other = !setup_.pass.shown.none(); // of a canvas with pixels of its own
     const int width = other ? f.picture.w : static_cast<int>(f.config.width), height = other ? f.picture.h : static_cast<int>(f.config.height);
-    if (mainWindow_.swapped(f.client, f.window, f.config.width, f.config.height) == 0) return {};
+    const uint64_t native = uint64_t{f.config.nativeHigh} << 32 | f.config.nativeLow;
+    if (mainWindow_.swapped(f.client, f.window, f.config.width, f.config.height, native) == 0) return {};
     if (!windows_ || width != width_ || height != height_) {
         const auto opened = reopen(width, height);
         if (!opened) return opened;

@@ -1,6 +1,7 @@
 #include "nodes/output/app_window.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -42,6 +43,8 @@ Result<std::unique_ptr<AppWindow>> AppWindow::open(AppWindowConfig config) {
     if (!connected)
         return connected.error();
     window->x_ = std::move(connected.value());
+    if (window->config_.owner)
+        window->owner_.emplace(*window->config_.owner);
     if (window->x_->setup().image_byte_order != XCB_IMAGE_ORDER_LSB_FIRST) {
         return Error{fmt::format("the X display '{}' is of a big-endian machine, which is not "
                                  "supported; show the pictures elsewhere",
@@ -68,6 +71,8 @@ Result<void> AppWindow::show(int64_t frame, const Picture& picture) {
             if (windowGone_)
                 return {};
         }
+        if (Result<void> confirmed = confirmOwner(deadline); !confirmed || windowGone_)
+            return confirmed;
         Result<Outcome> outcome = showOnce(picture, deadline);
         if (!outcome)
             return outcome.error();
@@ -82,6 +87,23 @@ Result<void> AppWindow::show(int64_t frame, const Picture& picture) {
 std::string AppWindow::describe() const {
     return fmt::format("window {:#x} of the X display {} ({})", config_.window, x_->displayName(),
                        shared_ != nullptr ? "shared memory" : "through the connection");
+}
+
+// Sets windowGone_ when the window is not, or no longer, the program's. That is an error only for one that never was:
+// programs end while their last pictures are on the way.
+Result<void> AppWindow::confirmOwner(Deadline deadline) {
+    if (!owner_)
+        return {};
+    auto owned = owner_->owns(*x_, config_.window, deadline);
+    if (!owned)
+        return owned.error();
+    windowGone_ = !*owned;
+    const bool first = !std::exchange(ownerChecked_, true);
+    if (*owned || !first)
+        return {};
+    return Error{fmt::format("the window {:#x} of the X display '{}' is not the program's, which may "
+                             "have ended: its pictures are not painted there",
+                             config_.window, x_->displayName())};
 }
 
 // Looks at the window: its pixels and its size. Not finding it is not an error.
@@ -198,8 +220,8 @@ AppWindow::putInPieces(const Picture& picture, int width, int height, Deadline d
                 static_cast<uint16_t>(h), static_cast<int16_t>(left), static_cast<int16_t>(top), 0,
                 static_cast<uint8_t>(converter_->format().depth), static_cast<uint32_t>(sizeBytes),
                 reinterpret_cast<uint8_t*>(piece_.data())));
-            if (Result<void> ready = settle(mostUnanswered - 1, deadline); !ready)
-                return ready;
+            if (Result<void> ready = settle(mostUnanswered - 1, deadline); !ready || firstError_)
+                return ready; // after an error the number may be another window's
         }
     }
     return {};

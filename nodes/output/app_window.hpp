@@ -4,6 +4,11 @@
 // Pixels are put 1:1, upper left corners together, clipped to the window; child windows stay on
 // top, as with OpenGL. A window that is gone, unmapped or of another size is not an error. One
 // thread.
+//
+// X window numbers are given again: after a program has ended, the next program's windows often have
+// them. So the window's owner is checked before each picture. X has no request that draws only if the
+// owner is still the same. Between the check and the picture lies no wait of ours: in that moment the
+// window would have to end, its client to disconnect, another client to connect and to create a window.
 #pragma once
 
 #include <cstdint>
@@ -16,6 +21,7 @@
 #include "nodes/output/picture_sink.hpp"
 #include "nodes/output/pixel_format.hpp"
 #include "nodes/output/shared_pixels.hpp"
+#include "nodes/output/window_owner.hpp"
 #include "nodes/output/x_connection.hpp"
 
 namespace mural {
@@ -23,6 +29,7 @@ namespace mural {
 struct AppWindowConfig {
     std::string displayName;   // empty: DISPLAY
     uint32_t window = 0;       // XID
+    std::optional<WindowOwner> owner; // nothing is painted in a window that is not of this program
     int64_t timeoutMs = 5'000; // of open() and of each show(); a window manager may grab the server
     bool sharedMemory = true;  // where the server has it
     size_t pieceBytes = 32 * 1024; // without shared memory: pixels per request
@@ -55,6 +62,7 @@ private:
     explicit AppWindow(AppWindowConfig config)
         : config_(std::move(config)) {}
 
+    Result<void> confirmOwner(Deadline deadline);
     Result<void> adopt(Deadline deadline);
     Result<void> findConverter(xcb_visualid_t visual, int depth);
     Result<Outcome> showOnce(const Picture& picture, Deadline deadline);
@@ -68,6 +76,8 @@ private:
 
     AppWindowConfig config_;
     std::unique_ptr<XConnection> x_;
+    std::optional<WindowOwnerCheck> owner_;
+    bool ownerChecked_ = false; // before some picture
     std::optional<PixelConverter> converter_; // of the window's visual
     xcb_gcontext_t gc_ = 0;                   // 0: none yet
     std::unique_ptr<SharedPixels> shared_;

@@ -40,7 +40,7 @@ bool asksForReply(uint16_t opcode) {
 
 class Player {
 public:
-    explicit Player(const PlayOptions& options) : options_(options), windows_("Mural: " + options.file) {}
+    explicit Player(const PlayOptions& options) : options_(options), windows_("Mural: " + options.file, options.session) {}
 
     Result<void> play(recording::FileReader& reader, bool& unreadable) {
         beganNs_ = monotonicNowNs();
@@ -140,17 +140,17 @@ private:
             else if (!link.welcome().displayApp) continue;
             else if (r.opcode == wire::kOpDestroyWindow) windows_.destroy(wire::clientOf(stream), first);
             else if (r.opcode == wire::kOpWindow)
-                if (auto shown = showWindow(stream, r); !shown) return shown;
+                if (auto shown = showWindow(link, stream, r); !shown) return shown;
         }
         return {};
     }
 
-    Result<void> showWindow(uint32_t stream, const RecordView& r) {
+    Result<void> showWindow(const CaptureLink& link, uint32_t stream, const RecordView& r) {
         wire::WindowConfig config{};
         if (r.arguments.size() < 4 + sizeof config) return {};
         std::memcpy(&config, r.arguments.data() + 4, sizeof config);
         if ((config.nativeLow == 0 && config.nativeHigh == 0) || config.isPbuffer) return {};
-        auto shown = windows_.show(wire::clientOf(stream), recording::argumentWord(r, 0), config.width, config.height);
+        auto shown = windows_.show(wire::clientOf(stream), link.welcome().clientId, recording::argumentWord(r, 0), config.width, config.height);
         if (!shown) return shown.error();
         config.nativeLow = *shown;
         config.nativeHigh = 0;

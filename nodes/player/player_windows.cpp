@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/clock.hpp"
+#include "common/window_mark.hpp"
 
 namespace mural {
 namespace {
@@ -12,6 +13,10 @@ constexpr uint32_t kMostPixels = 32767; // per side, as X has it
 
 } // namespace
 
+PlayerWindows::PlayerWindows(std::string title, const std::string& session)
+    : title_(std::move(title))
+    , sessionKey_(window_mark::sessionKey(session.c_str())) {}
+
 Result<void> PlayerWindows::open() {
     if (x_) return {};
     auto opened = XConnection::open("", Deadline::inMs(kXPatienceMs));
@@ -20,13 +25,14 @@ Result<void> PlayerWindows::open() {
     return {};
 }
 
-Result<uint32_t> PlayerWindows::make(uint32_t width, uint32_t height) {
+Result<uint32_t> PlayerWindows::make(const WindowOwner& owner, uint32_t width, uint32_t height) {
     const xcb_screen_t* screen = xcb_setup_roots_iterator(&x_->setup()).data;
     const xcb_window_t id = xcb_generate_id(x_->get());
     const uint32_t black = screen->black_pixel;
     const auto made = xcb_create_window_checked(x_->get(), XCB_COPY_FROM_PARENT, id, screen->root, 0, 0, static_cast<uint16_t>(width), static_cast<uint16_t>(height), 0,
                                                 XCB_WINDOW_CLASS_INPUT_OUTPUT, screen->root_visual, XCB_CW_BACK_PIXEL, &black);
     xcb_change_property(x_->get(), XCB_PROP_MODE_REPLACE, id, XCB_ATOM_WM_NAME, XCB_ATOM_STRING, 8, static_cast<uint32_t>(title_.size()), title_.data());
+    if (auto marked = markWindow(*x_, id, owner, Deadline::inMs(kXPatienceMs)); !marked) return marked.error();
     xcb_map_window(x_->get(), id);
     XOwned<xcb_generic_error_t> error;
     const XAnswer answer = x_->check(made, Deadline::inMs(kXPatienceMs), error);
@@ -35,13 +41,13 @@ Result<uint32_t> PlayerWindows::make(uint32_t width, uint32_t height) {
     return x_->describe(answer);
 }
 
-Result<uint32_t> PlayerWindows::show(uint32_t client, uint32_t window, uint32_t width, uint32_t height) {
+Result<uint32_t> PlayerWindows::show(uint32_t client, uint32_t clientNow, uint32_t window, uint32_t width, uint32_t height) {
     if (auto r = open(); !r) return r.error();
     width = std::clamp(width, 1u, kMostPixels);
     height = std::clamp(height, 1u, kMostPixels);
     const auto found = windows_.find({client, window});
     if (found == windows_.end()) {
-        auto made = make(width, height);
+        auto made = make({sessionKey_, clientNow, window}, width, height);
         if (made) windows_[{client, window}] = *made;
         return made;
     }

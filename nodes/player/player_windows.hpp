@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/result.hpp"
+#include "nodes/output/window_owner.hpp"
 #include "nodes/output/x_connection.hpp"
 #include "streamcodec/wire.hpp"
 
@@ -15,16 +16,18 @@ namespace mural {
 
 class PlayerWindows {
 public:
-    explicit PlayerWindows(std::string title) : title_(std::move(title)) {}
-    // The window of that size, made or resized; its id on the display.
-    Result<uint32_t> show(uint32_t client, uint32_t window, uint32_t width, uint32_t height);
+    // session: the name of the session that shows pictures in the windows.
+    PlayerWindows(std::string title, const std::string& session);
+    // The window of that size, made or resized; its id on the display. clientNow: the program's number in this session.
+    Result<uint32_t> show(uint32_t client, uint32_t clientNow, uint32_t window, uint32_t width, uint32_t height);
     void destroy(uint32_t client, uint32_t window);
 
 private:
     Result<void> open();
-    Result<uint32_t> make(uint32_t width, uint32_t height);
+    Result<uint32_t> make(const WindowOwner& owner, uint32_t width, uint32_t height);
 
     const std::string title_;
+    const uint64_t sessionKey_;
     std::unique_ptr<XConnection> x_; // with the first window
     std::map<std::pair<uint32_t, uint32_t>, xcb_window_t> windows_;
 };

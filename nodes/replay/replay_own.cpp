@@ -183,6 +183,8 @@ bool Replay::ownWindow(Args& in) {
     }
     Window& w = *slot;
     w.destroyed = false; // the program has bound it again
+    // The same size once more: the program's driver has destroyed the drawable and made it again.
+    const bool renewed = w.surface && config->width == w.config.width && config->height == w.config.height;
     if (config->stereo && !w.config.stereo && config_.pass.eye == Eye::Cyclop && config_.answers && config_.node == 0)
         out_.log("the program draws into a buffer for each eye: the left one's is shown; --stereo quad, side-by-side or anaglyph shows both");
     w.config = *config;
@@ -190,11 +192,11 @@ bool Replay::ownWindow(Args& in) {
     w.wishedRed = config->red;
     const auto width = static_cast<int32_t>(config->width), height = static_cast<int32_t>(config->height);
     w.whole = {0, 0, width, height};
-    if (moves() && (!w.surface || w.surface->width() != std::max(width, 1) || w.surface->height() != std::max(height, 1))) divideAnew(w);
+    if (moves() && (!w.surface || renewed || w.surface->width() != std::max(width, 1) || w.surface->height() != std::max(height, 1))) divideAnew(w);
     w.part = partOf(w, w.moving.areas.get());
     placePart(w);
     const PixelViewport size = surfaceOf(w, w.lean);
-    if (w.surface && w.surface->width() == size.w && w.surface->height() == size.h) {
+    if (w.surface && !renewed && w.surface->width() == size.w && w.surface->height() == size.h) {
         takeBitsOfSurface(w);
         return true;
     }
@@ -212,6 +214,7 @@ bool Replay::ownWindow(Args& in) {
     w.surface = std::move(*made);
     takeBitsOfSurface(w);
     w.readback = {};
+    w.accumulated.clear();
     if (bound) {
         boundDraw_ = boundRead_ = nullptr;
         bound_ = nullptr;

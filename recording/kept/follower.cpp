@@ -268,14 +268,13 @@ void Follower::window(At& at, const RecordView& r) {
         window.key = part(at.client.state, Part::Window, id, ++at.client.lives);
         window.picture = part(at.client.pictures, Part::Window, id, at.client.lives);
     }
-    const bool sameSize = config.width == window.config.width && config.height == window.config.height;
     window.config = config;
     if (fresh) {
         at.effect.kill(window.key);
         return at.effect.kill(window.picture);
     }
     at.effect.kill(part(window.key, Part::Config));
-    if (!sameSize) at.effect.kill(window.picture); // it gets another surface
+    at.effect.kill(window.picture); // it gets another surface
     at.effect.read(part(window.key, Part::Name)); // that it is there
 }
 

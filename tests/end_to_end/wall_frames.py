@@ -17,13 +17,13 @@ FRAMES = 3
 WIDTH, HEIGHT = 252, 190
 
 
-def saved(context, program, options=()):
+def saved(context, program, options=(), environment=None):
     """What is wrong, and the PNG files by their names' order: (width, height, bytes)."""
     with tempfile.TemporaryDirectory(prefix="mural-wall-frames.") as folder:
         report_file, out = os.path.join(folder, "report.json"), os.path.join(folder, "out")
         command = [context.program(program), "--frames", str(FRAMES), "--size", "%dx%d" % (WIDTH, HEIGHT)]
         more = ["--tiles", "2x2", "--display", "none", "--out", out, "--report", report_file]
-        with context.run(command, more + list(options)) as run:
+        with context.run(command, more + list(options), environment) as run:
             wrong = failures.check_end(run, 0)
             if wrong is not None:
                 return wrong, []
@@ -49,6 +49,27 @@ def windows_change(context):
     sizes = [file[:2] for file in files]
     wanted = [small] * FRAMES + [large] * FRAMES + [small] * FRAMES
     return None if sizes == wanted else "pictures of the sizes %s" % sizes
+
+
+@failures.case
+def windows_end_unnamed(context):
+    """The X server ends the large window, by a request that names another one or none."""
+    wanted = [(WIDTH, HEIGHT)] * FRAMES + [(WIDTH // 2, HEIGHT // 2)] * FRAMES
+    for way in ("parent", "subwindows", "kill", "close"):
+        wrong, files = saved(context, "windows_end", environment={"WINDOWS_END": way})
+        sizes = [file[:2] for file in files]
+        if wrong is not None or sizes != wanted:
+            return "%s: %s, pictures of the sizes %s" % (way, wrong, sizes)
+    return None
+
+
+@failures.case
+def drawables_of_one_window(context):
+    """Two connections, each with a drawable of its own: all that they swap is in the window, and on the wall."""
+    wrong, files = saved(context, "windows_end", environment={"WINDOWS_END": "shared"})
+    if wrong is not None:
+        return wrong
+    return None if [file[:2] for file in files] == [(WIDTH, HEIGHT)] * (2 * FRAMES) else "%d pictures" % len(files)
 
 
 @failures.case

@@ -46,6 +46,20 @@ TEST_F(FrameTrackerTest, doesNotWaitForALostNode) {
     EXPECT_EQ(credits.size(), 2u);
 }
 
+TEST_F(FrameTrackerTest, countsAllDrawablesOfTheMainWindowsXWindow) {
+    constexpr uint64_t kXWindow = 0x200001;
+    tracker.isOn(1, 1, kXWindow);
+    tracker.isOn(1, 2, kXWindow);
+    tracker.isOn(1, 3, kXWindow + 1);
+    for (const int node : {0, 1}) {
+        done(node, 1, 1);
+        done(node, 2, 2); // as large, and on the same X window
+        done(node, 3, 3); // as large, elsewhere
+        done(node, 4, 1);
+    }
+    EXPECT_EQ(tracker.totals().wallFrames, 3);
+}
+
 TEST_F(FrameTrackerTest, acceptsReorderedFramesOfSeveralThreads) {
     for (const int node : {0, 1}) {
         done(node, 2);

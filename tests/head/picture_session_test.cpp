@@ -55,9 +55,9 @@ private:
 void addSinks(SessionHarness& head, Shown& shown) {
     for (auto& behaviour : head.behaviours) behaviour.pictures = true;
     head.options.file = std::make_unique<FakeSink>(shown, "file");
-    head.options.openWindow = [&shown](uint64_t window) {
+    head.options.openWindow = [&shown](const NativeWindow& window) {
         return Result<std::unique_ptr<PictureSink>>(
-            std::make_unique<FakeSink>(shown, "window " + std::to_string(window)));
+            std::make_unique<FakeSink>(shown, "window " + std::to_string(window.id)));
     };
     head.config.out = "out";
 }

@@ -248,6 +248,71 @@ TEST_F(AppWindows, windowThatWasGoneBeforeIsNoError) {
     EXPECT_TRUE(output.value()->windowGone());
 }
 
+class OwnedWindows : public AppWindows {
+protected:
+    void SetUp() override {
+        AppWindows::SetUp();
+        startServer();
+        auto connection = XConnection::open(server_->displayName(), Deadline::inMs(10'000));
+        ASSERT_TRUE(connection) << connection.error().message;
+        program_ = std::move(connection.value());
+        window_ = client_->makeWindow(0, 0, 40, 30, kBlue);
+    }
+    void mark(const WindowOwner& owner) {
+        const Deadline deadline = Deadline::inMs(10'000);
+        ASSERT_TRUE(markWindow(*program_, window_, owner, deadline));
+        ASSERT_EQ(program_->awaitFence(program_->sendFence(), deadline), XAnswer::Reply);
+    }
+    void openFor(const WindowOwner& owner) {
+        AppWindowConfig config = configFor(window_);
+        config.owner = owner;
+        openOutput(config);
+    }
+    void expectUntouched() {
+        auto seen = client_->see(window_, 0, 0, 1, 1);
+        ASSERT_TRUE(seen) << seen.error().message;
+        EXPECT_EQ(static_cast<int>(seen->view().bgra[0]), 255);
+        EXPECT_EQ(static_cast<int>(seen->view().bgra[2]), 0);
+    }
+
+    std::unique_ptr<XConnection> program_;
+    uint32_t window_ = 0;
+    const OwnedPicture picture_ = noisePicture(40, 30, 1);
+};
+
+TEST_F(OwnedWindows, showsInTheProgramsWindow) {
+    mark({7, 1, 5});
+    openFor({7, 1, 5});
+    show(picture_);
+    expectSeen(window_, 0, 0, picture_.view());
+}
+
+TEST_F(OwnedWindows, paintsNothingInAnothersWindow) {
+    mark({7, 1, 5});
+    for (const WindowOwner other : {WindowOwner{8, 1, 5}, WindowOwner{7, 2, 5}, WindowOwner{7, 1, 6}}) {
+        openFor(other);
+        const auto shown = output_->show(1, picture_.view());
+        ASSERT_FALSE(shown);
+        EXPECT_NE(shown.error().message.find("is not the program's"), std::string::npos);
+        EXPECT_TRUE(output_->show(2, picture_.view())); // said once
+        expectUntouched();
+    }
+}
+
+TEST_F(OwnedWindows, paintsNothingWhenTheWindowBecomesAnothers) {
+    mark({7, 1, 5});
+    openFor({7, 1, 5});
+    show(picture_);
+    mark({7, 1, 6}); // the number is given to the next window
+    const OwnedPicture next = noisePicture(40, 30, 2);
+    EXPECT_TRUE(output_->show(2, next.view()));
+    EXPECT_TRUE(output_->windowGone());
+    expectSeen(window_, 0, 0, picture_.view());
+    mark({7, 1, 5});
+    EXPECT_TRUE(output_->show(3, next.view()));
+    expectSeen(window_, 0, 0, next.view());
+}
+
 TEST_F(AppWindows, whatIsMissingIsSaid) {
     startServer();
     AppWindowConfig config;

@@ -76,6 +76,14 @@ TEST_F(Kept, thatMemoryWasBoundStaysKnownWhenItIsGone) {
     EXPECT_EQ(left(op::glBindImageTexture), 1u);
 }
 
+// The driver has made the drawable again: its buffers are new.
+TEST_F(Kept, nothingOfAWindowsPictureWhenItIsMadeAgain) {
+    give(PacketBuilder().record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));
+    EXPECT_EQ(left(op::glDrawArrays), 1u);
+    give(PacketBuilder().window(1, 20, 10));
+    EXPECT_EQ(left(op::glDrawArrays), 0u);
+}
+
 TEST_F(Kept, proxiesOnlyAsk) {
     const auto image = [](uint32_t target) { return PacketBuilder().record(op::glTexImage2D, {target, 0, GL_RGBA, 1, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, 4, 7}); };
     give(PacketBuilder().record(op::glGenTextures, {1, 4, 9}).record(op::glBindTexture, {GL_TEXTURE_2D, 9}));

@@ -1,0 +1,37 @@
+// Checks whether a captured program draws in an X window (common/window_mark.hpp). For one thread.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/clock.hpp"
+#include "common/result.hpp"
+#include "nodes/output/x_connection.hpp"
+
+namespace mural {
+
+// The drawable of a program, as its stream names it.
+struct WindowOwner {
+    uint64_t sessionKey = 0;
+    uint32_t client = 0, window = 0;
+};
+
+class WindowOwnerCheck {
+public:
+    explicit WindowOwnerCheck(WindowOwner owner)
+        : owner_(owner) {}
+    // Takes one round trip, the first time two. Returns false for a window that does not exist. Errors are those of the
+    // connection.
+    Result<bool> owns(XConnection& x, xcb_window_t window, Deadline deadline);
+
+private:
+    Result<void> findProperty(XConnection& x, Deadline deadline);
+
+    const WindowOwner owner_;
+    xcb_atom_t property_ = XCB_ATOM_NONE; // none: the server has not heard of it yet
+};
+
+// Marks a window that a process of Mural has created in place of the program.
+Result<void> markWindow(XConnection& x, xcb_window_t window, const WindowOwner& owner, Deadline deadline);
+
+} // namespace mural
