@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <poll.h>
 #include <thread>
@@ -285,16 +284,6 @@ Result<void> HeadSession::nodePicture(int node, const wire::PictureHeader& heade
     auto done = placed ? pictures_.part(node, placed->header, std::move(placed->rows)) : Result<void>(placed.error());
     output_->waitForRoom();
     return done;
-}
-
-Result<std::unique_ptr<PictureSink>> HeadSession::openNativeWindow(const WindowPicture& picture) {
-    const auto number = static_cast<uint32_t>(picture.nativeWindow >> 32);
-    if (number == capture::kNoDisplay)
-        return Error{fmt::format("a program has windows on more than {} X displays, or on one whose name is longer than {} bytes; its window there shows nothing",
-                                 capture::kDisplays, capture::kDisplayNameBytes - 1)};
-    NativeWindow window{picture.client, picture.window, static_cast<uint32_t>(picture.nativeWindow), {}};
-    if (serving_) window.display = programs_->displayName(picture.client, number);
-    return options_.openWindow(window);
 }
 
 // Frames of all nodes come before: only then another window is the main one, or the program forgotten.
