@@ -36,5 +36,41 @@ TEST(RunningTime, countsALongWaitOfRareBeats) {
     EXPECT_EQ(countedNs, 60 * kNsPerS);
 }
 
+// The pauses of a process are told by its own watch; here the test is the watch.
+class Pauses : public ::testing::Test {
+protected:
+    void SetUp() override { pauses::tick(nowNs_); }
+    void TearDown() override { pauses::endWatch(); }
+    void runs(int64_t forNs) {
+        for (const int64_t endNs = nowNs_ + forNs; nowNs_ < endNs;) pauses::tick(nowNs_ += pauses::kTickNs);
+    }
+    int64_t nowNs_ = monotonicNowNs();
+    const int64_t beforeNs_ = pauses::totalNs(nowNs_);
+};
+
+TEST_F(Pauses, areNoneWhileTheWatchTicks) {
+    runs(20 * kNsPerS);
+    EXPECT_EQ(pauses::totalNs(nowNs_) - beforeNs_, 0);
+}
+
+TEST_F(Pauses, areSeenBeforeAndAfterTheWatchRunsAgain) {
+    runs(kNsPerS);
+    nowNs_ += 45 * kNsPerS;
+    const int64_t early = pauses::totalNs(nowNs_) - beforeNs_;
+    pauses::tick(nowNs_);
+    const int64_t late = pauses::totalNs(nowNs_) - beforeNs_;
+    EXPECT_EQ(early, late);
+    EXPECT_NEAR(static_cast<double>(late), static_cast<double>(45 * kNsPerS), static_cast<double>(pauses::kTickNs));
+}
+
+TEST_F(Pauses, doNotShortenADeadline) {
+    runs(kNsPerS);
+    const Deadline deadline = Deadline::at(nowNs_ + 10 * kNsPerS);
+    EXPECT_NEAR(static_cast<double>(deadline.atNs()), static_cast<double>(nowNs_ + 10 * kNsPerS), 1);
+    nowNs_ += 45 * kNsPerS;
+    pauses::tick(nowNs_);
+    EXPECT_NEAR(static_cast<double>(deadline.atNs()), static_cast<double>(nowNs_ + 10 * kNsPerS), static_cast<double>(pauses::kTickNs));
+}
+
 } // namespace
 } // namespace mural
