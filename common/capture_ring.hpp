@@ -24,7 +24,7 @@
 namespace mural::capture {
 
 constexpr uint32_t kMagic = 0x4d55524c; // "MURL"
-constexpr uint32_t kVersion = 8;
+constexpr uint32_t kVersion = 9;
 constexpr uint32_t kChunkBytes = 256 * 1024;
 constexpr uint32_t kDefaultChunks = 256; // 64 MiB
 constexpr uint32_t kReplyBytes = 4 * 1024 * 1024;
