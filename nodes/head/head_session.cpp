@@ -131,6 +131,11 @@ HeadSession::HeadSession(SessionConfig config,
         if (headShowsCanvas(config_, plan_.canvases[i])) canvas.openWall = [this, offset = plan_.canvases[i].offsetX] { return options_.openWall(offset); };
     }
     output.done = [this](uint32_t client, uint32_t frame) { frames_.pictureReleased(client, frame); };
+    output.displayBlocked = [this](uint32_t client, bool isBlocked) { programs_->displayBlocked(client, isBlocked); };
+    output.giveToProgram = [this](const WindowPicture& picture, const Picture& whole) {
+        const auto done = [this, client = picture.client, frame = picture.frame] { frames_.pictureReleased(client, frame); };
+        return programs_->giveOwnPicture(picture.client, picture.frame, picture.nativeWindow, whole, done);
+    };
     output.say = [this](const std::string& text) { control_.say(text); };
     output_ = std::make_unique<PictureOutput>(std::move(output), std::move(options_.file));
 }
@@ -186,6 +191,7 @@ void HeadSession::watchNodes(int64_t nowNs) {
 
 void HeadSession::tick() {
     const int64_t nowNs = monotonicNowNs();
+    programs_->beat();
     watchNodes(nowNs);
     programs_->reap();
     returns_->tick(nowNs);

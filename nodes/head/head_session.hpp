@@ -57,7 +57,6 @@ struct HeadOptions {
     uint32_t chunkCount = capture::kDefaultChunks;
     int64_t readyPatienceMs = 30'000;
     int64_t drainPatienceMs = 10'000;
-    int64_t replyPatienceMs = 30'000; // without a program taking a byte of the answer that it waits for
     int64_t byePatienceMs = 10'000; // without anything from a node
     int64_t silencePatienceMs = 20'000; // the same, while it is asked nothing; nodes say every 4 s that they live
     int64_t endPatienceMs = 60'000; // with

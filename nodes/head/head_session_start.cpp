@@ -175,7 +175,6 @@ void HeadSession::openTables() {
     }
     terms.framesDoneWhenShown = config_.display == Display::App && config_.latency == 0;
     terms.chunkCount = options_.chunkCount;
-    terms.replyPatienceMs = options_.replyPatienceMs;
     beginRecording();
     ProgramTable::Events events;
     events.came = [this](const CaptureClient& client) {
