@@ -12,6 +12,7 @@
 // At the start every chunk's index lies in the freed ring: the app takes its chunks from there only.
 //
 //   head       → news slots (a ring)   → the app thread that looks first; full: news are lost
+//   head       → reply ring (pictures) → the app, which puts them into its own windows during a server grab
 //
 // Layout of the mapping: CaptureHeader | publications | freed | reply bytes | news | chunks.
 #pragma once
@@ -23,7 +24,7 @@
 namespace mural::capture {
 
 constexpr uint32_t kMagic = 0x4d55524c; // "MURL"
-constexpr uint32_t kVersion = 8;
+constexpr uint32_t kVersion = 9;
 constexpr uint32_t kChunkBytes = 256 * 1024;
 constexpr uint32_t kDefaultChunks = 256; // 64 MiB
 constexpr uint32_t kReplyBytes = 4 * 1024 * 1024;
@@ -110,6 +111,18 @@ struct NewsSlot {
 };
 static_assert(sizeof(NewsSlot) == 512);
 
+// A window into which the program puts its pictures itself, as it holds a grab of the X server: the head's connection is
+// not served then. The program writes; `window` is stored last.
+struct OwnWindow {
+    std::atomic<uint32_t> window; // X id; 0: a free slot
+    std::atomic<uint32_t> frame;  // the latest one that the program puts
+    std::atomic<uint32_t> depth, bitsPerPixel, rowPadBits, redMask, greenMask, blueMask;
+};
+constexpr uint32_t kOwnWindows = 16;
+// ReplyHeader.kind of such a picture: requestId is the frame, x the window, and w * h pixels in the window's format follow,
+// the topmost row first.
+constexpr uint32_t kPictureReply = 0xffffffff;
+
 struct alignas(64) CaptureHeader {
     uint32_t magic;
     uint32_t version;
@@ -142,6 +155,9 @@ struct alignas(64) CaptureHeader {
     // Frames of the app's own window that are on the screen (--display app). futex.
     std::atomic<uint32_t> framesShown;
 
+    // Incremented by the head's main loop, about every 50 ms: the limits of the app's waits count only while it runs.
+    alignas(64) std::atomic<uint32_t> headBeat;
+
     // Set by the head when it ends the session in order; the app then goes on alone.
     alignas(64) std::atomic<uint32_t> headGone;
     // A robust futex that a thread of the head holds while it serves the program: the kernel sets FUTEX_OWNER_DIED when
@@ -169,6 +185,7 @@ struct alignas(64) CaptureHeader {
     std::atomic<uint32_t> displayCount;
     char displays[kDisplays][kDisplayNameBytes];
 
+    alignas(64) OwnWindow ownWindows[kOwnWindows];
     alignas(64) AheadAnswer ahead[kAheadAnswers]; // the head writes
 };
 

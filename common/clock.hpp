@@ -7,6 +7,8 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include "common/pauses.hpp"
+
 namespace mural {
 
 constexpr int64_t kNsPerMs = 1'000'000;
@@ -33,25 +35,33 @@ inline int64_t threadCpuNowNs() {
     return static_cast<int64_t>(t.tv_sec) * kNsPerS + t.tv_nsec;
 }
 
+// Counts only while this process runs (common/pauses.hpp).
 class Deadline {
 public:
-    static Deadline inMs(int64_t ms) { return Deadline(monotonicNowNs() + ms * kNsPerMs); }
+    static Deadline inMs(int64_t ms) { return Deadline(runningNowNs() + ms * kNsPerMs); }
     static Deadline never() { return Deadline(INT64_MAX); }
-    // Converts from a time of monotonicNowNs(), and back. INT64_MAX: never.
-    static Deadline at(int64_t ns) { return Deadline(ns); }
-    [[nodiscard]] int64_t atNs() const { return atNs_; }
+    // Converts from a time of monotonicNowNs(), and back as of now. INT64_MAX: never.
+    static Deadline at(int64_t ns) { return Deadline(ns == INT64_MAX ? ns : ns - pauses::totalNs(monotonicNowNs())); }
+    [[nodiscard]] int64_t atNs() const { return atNs_ == INT64_MAX ? atNs_ : atNs_ + pauses::totalNs(monotonicNowNs()); }
 
-    [[nodiscard]] bool passed() const { return atNs_ != INT64_MAX && monotonicNowNs() >= atNs_; }
+    [[nodiscard]] bool passed() const { return atNs_ != INT64_MAX && runningNowNs() >= atNs_; }
     // Returns the remaining time in ns, 0 after the deadline, capped for callers that wait in slices.
     [[nodiscard]] int64_t leftNs(int64_t capNs = INT64_MAX) const {
         if (atNs_ == INT64_MAX) return capNs;
-        const int64_t left = atNs_ - monotonicNowNs();
+        const int64_t left = atNs_ - runningNowNs();
         return left < 0 ? 0 : (left < capNs ? left : capNs);
     }
 
 private:
     explicit Deadline(int64_t atNs) : atNs_(atNs) {}
-    int64_t atNs_;
+
+    // Returns monotonicNowNs() without the pauses.
+    static int64_t runningNowNs() {
+        const int64_t nowNs = monotonicNowNs();
+        return nowNs - pauses::totalNs(nowNs);
+    }
+
+    int64_t atNs_; // of runningNowNs()
 };
 
 } // namespace mural

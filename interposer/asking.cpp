@@ -13,10 +13,15 @@ namespace mural {
 
 namespace {
 
-// Sends one question and reads its answer into memory that room(sizeBytes) gives; null: it is not wanted.
+// Sends one question and reads its answer into memory that room(sizeBytes) gives; null: it is not wanted. The session
+// may end in between: then there is no answer, and the program learns of it by a GL error.
 template <class Send, class Room> bool ask(ThreadState& t, const char* by, Room&& room, Send&& send) {
     Session* s = Session::current();
-    if (!s || !s->alive() || !t.context) return false;
+    if (!s || !t.context) return false;
+    if (!s->alive()) {
+        answerLost(*t.context);
+        return false;
+    }
     buffersRead(t);
     const uint32_t request = s->beginRequest(by);
     send(request);
@@ -29,7 +34,10 @@ template <class Send, class Room> bool ask(ThreadState& t, const char* by, Room&
     }
     s->endRequest();
     takeNews(t);
-    if (!s->alive()) refreshDrawLocally(t);
+    if (!s->alive()) {
+        if (!ok) answerLost(*t.context);
+        refreshDrawLocally(t);
+    }
     return ok;
 }
 
@@ -59,6 +67,11 @@ bool executesInPrimitive(const Context& c) { return c.drawsList && answersNothin
 
 void stashError(Context& c, GLenum error) {
     if (!c.stashedError) c.stashedError = error; // GL keeps the first
+}
+
+void answerLost(Context& c) {
+    stashError(c, driverError()); // an earlier error of the program's comes first
+    stashError(c, GL_OUT_OF_MEMORY);
 }
 
 const void* askPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type, uint32_t how, const char* by) {
@@ -112,7 +125,11 @@ const void* askProgram(ThreadState& t, GLuint program, uint64_t& sizeBytes, cons
 
 bool askFinish(ThreadState& t, const char* by) {
     uint64_t nothing = 0;
-    return ask(t, by, &nothing, sizeof nothing, [&](uint32_t request) { records::requestFinish(t, request); });
+    if (t.context) stashError(*t.context, driverError());
+    const GLenum before = t.context ? t.context->stashedError : GL_NO_ERROR;
+    const bool finished = ask(t, by, &nothing, sizeof nothing, [&](uint32_t request) { records::requestFinish(t, request); });
+    if (!finished && t.context) t.context->stashedError = before; // there is no value that could be wrong
+    return finished;
 }
 
 } // namespace mural

@@ -32,6 +32,9 @@ GLenum driverError();
 // A list that is executed as it is compiled may leave the driver in a primitive: then it has refused the call.
 bool executesInPrimitive(const Context& c);
 void stashError(Context& c, GLenum error);
+// The session has ended before an answer came. The program's own GL has not drawn what was asked about, so the call
+// writes nothing and raises GL_OUT_OF_MEMORY.
+void answerLost(Context& c);
 
 template <class Call> bool raisesNothing(Context& c, Call&& call) {
     stashError(c, driverError()); // the program's own, not asked for yet, comes first

@@ -22,6 +22,7 @@
 #include "interposer/window_size.hpp"
 #include "interposer/windows/gone_windows.hpp"
 #include "interposer/windows/introduction.hpp"
+#include "interposer/windows/own_puts.hpp"
 #include "streamcodec/context_flags.hpp"
 
 namespace mural {
@@ -331,8 +332,10 @@ void showFront(ThreadState& t, Window& w) {
     t.context->frontDue = drawsToFront();
     const uint32_t frame = s->nextFrame();
     if (isVerified(*s, frame)) countUncompared(capture::Uncompared::Front);
+    const bool putsItself = s->welcome().displayApp && announceOwnPut(*s->header(), w, frame);
     records::frontPicture(t, w.id, frame);
     s->publish(t, false);
+    if (putsItself) s->takePictures(frame);
     s->waitForCredit();
     refreshDrawLocally(t);
 }
@@ -430,11 +433,13 @@ void endFrame(Window* w) {
     beforeDraw(t, *t.context);
     const uint32_t frame = s->nextFrame();
     if (isVerified(*s, frame)) verifyFrame(t, *w);
+    const bool putsItself = s->welcome().displayApp && announceOwnPut(*s->header(), *w, frame);
     records::swap(t, w->id, frame);
     ++t.context->swaps;
     flushLists(*t.context);
     s->publish(t, false, false); // waitForCredit wakes the head when it has to
     watchFromHere(t);
+    if (putsItself) s->takePictures(frame);
     s->waitForCredit();
     takeNews(t);
     w->sizeKnown = false;

@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <new>
 
+#include "interposer/asking.hpp"
 #include "interposer/context.hpp"
 #include "interposer/known_objects.hpp"
 #include "interposer/mapped_buffers.hpp"
@@ -56,7 +57,8 @@ void drop(OwedReads& reads, OwedRead*& p) {
 
 // Under the lock, as the next one. The first of the list at `p`.
 void settleFirst(ThreadState& t, Session& s, OwedReads& reads, OwedRead*& p, const char* by) {
-    if (s.waitOwed(p->answer->request, by) && p->answer->state == OwedAnswer::State::Here) put(t, *p);
+    if (!s.waitOwed(p->answer->request, by)) answerLost(*t.context);
+    else if (p->answer->state == OwedAnswer::State::Here) put(t, *p);
     drop(reads, p);
 }
 
@@ -64,6 +66,22 @@ void settleLocked(ThreadState& t, Session& s, OwedReads& reads, GLuint buffer, c
     for (OwedRead** p = &reads.first; *p;) {
         if ((*p)->buffer == buffer) settleFirst(t, s, reads, *p, by);
         else p = &(*p)->next;
+    }
+}
+
+// The session has ended with reads into the buffer owed: they raise an error when the program uses the buffer.
+void loseReads(ThreadState& t, GLuint buffer) {
+    const Session* const s = Session::current();
+    if (!s || s->alive() || !t.context) return;
+    OwedReads& reads = t.context->group->owedReads;
+    Guard guard(reads.lock);
+    for (OwedRead** p = &reads.first; *p;) {
+        if ((*p)->buffer != buffer) {
+            p = &(*p)->next;
+            continue;
+        }
+        answerLost(*t.context);
+        drop(reads, *p);
     }
 }
 
@@ -158,7 +176,8 @@ bool oweTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint leve
 
 void settle(ThreadState& t, GLuint buffer, const char* by) {
     Session* const s = sessionFor(t);
-    if (!s || buffer == 0) return;
+    if (!s) return loseReads(t, buffer);
+    if (buffer == 0) return;
     OwedReads& reads = t.context->group->owedReads;
     {
         Guard guard(reads.lock);
@@ -169,7 +188,7 @@ void settle(ThreadState& t, GLuint buffer, const char* by) {
 
 void firstUse(ThreadState& t, GLuint buffer, const char* by) {
     Session* const s = sessionFor(t);
-    if (!s) return;
+    if (!s) return loseReads(t, buffer);
     OwedReads& reads = t.context->group->owedReads;
     {
         Guard guard(reads.lock);

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "common/clock.hpp"
+#include "common/running_time.hpp"
 #include "common/window_mark.hpp"
 #include "interposer/forked_child.hpp"
 #include "interposer/handshake.hpp"
@@ -18,14 +19,14 @@
 #include "interposer/log.hpp"
 #include "interposer/owed_answers.hpp"
 #include "interposer/process.hpp"
+#include "interposer/windows/own_puts.hpp"
 
 namespace mural {
 
 namespace {
 
 constexpr int64_t kSliceNs = 50 * kNsPerMs;   // how often a blocked thread looks whether the head lives
-constexpr int64_t kStuckNs = 60 * kNsPerS;    // a living head that gives nothing for so long is given up
-constexpr int64_t kShowNs = 5 * kNsPerS;      // for a finished picture to get into its window: the head's own patience
+constexpr int64_t kStuckNs = 60 * kNsPerS;    // a running head that gives nothing for so long is given up
 
 Lock connectLock;
 Lock ringLock;    // publications and freed chunks have one producer, one consumer
@@ -34,21 +35,26 @@ Lock requestLock; // one question at a time
 // While it exists a thread waits; the header says so to `mural stat`, and for how long to the report.
 class Waiting {
 public:
-    Waiting(capture::CaptureHeader& header, capture::Wait what) : header_(header), what_(static_cast<uint32_t>(what)), sinceNs_(monotonicNowNs()) {
+    Waiting(capture::CaptureHeader& header, capture::Wait what)
+        : header_(header), what_(static_cast<uint32_t>(what)), sinceNs_(monotonicNowNs()), running_(sinceNs_, beat()) {
         header_.waitingFor.store(what_, std::memory_order_relaxed);
     }
     ~Waiting() {
-        header_.waitNs[what_].fetch_add(static_cast<uint64_t>(forNs()), std::memory_order_relaxed);
+        header_.waitNs[what_].fetch_add(static_cast<uint64_t>(monotonicNowNs() - sinceNs_), std::memory_order_relaxed);
         header_.waitingFor.store(static_cast<uint32_t>(capture::Wait::Nothing), std::memory_order_relaxed);
     }
     Waiting(const Waiting&) = delete;
     Waiting& operator=(const Waiting&) = delete;
-    [[nodiscard]] int64_t forNs() const { return monotonicNowNs() - sinceNs_; }
+    // Time for which this process and the head both ran; to be called once per slice.
+    [[nodiscard]] int64_t forNs() { return running_.countNs(monotonicNowNs(), beat()); }
 
 private:
+    [[nodiscard]] uint32_t beat() const { return header_.headBeat.load(std::memory_order_relaxed); }
+
     capture::CaptureHeader& header_;
     uint32_t what_;
     int64_t sinceNs_;
+    RunningTime running_;
 };
 
 // Under the lock of questions.
@@ -151,7 +157,7 @@ bool Session::publishLocked(ThreadState& t, bool last) {
     // A takeover publishes ranges of one chunk, so publications may outnumber chunks.
     const auto full = [&] { return tail - header_->publishedHead.load(std::memory_order_acquire) >= header_->chunkCount; };
     if (full()) {
-        const Waiting waiting(*header_, capture::Wait::Room);
+        Waiting waiting(*header_, capture::Wait::Room);
         do {
             if (!headAlive()) return false;
             if (waiting.forNs() > kStuckNs) {
@@ -216,7 +222,7 @@ void Session::waitForCredit() {
     const auto tooMany = [&](uint32_t done) { return static_cast<int32_t>(submitted - done) > static_cast<int32_t>(welcome_.latency); };
     uint32_t done = header_->framesDone.load(std::memory_order_acquire);
     if (!alive() || !tooMany(done) || mayGoAhead(submitted, done, nowNs)) return;
-    const Waiting waiting(*header_, capture::Wait::Frames);
+    Waiting waiting(*header_, capture::Wait::Frames);
     wakeReader(true);
     for (bool inVain = false; alive() && tooMany(done); inVain = true) {
         if (inVain) { // nothing of this is looked at in most frames
@@ -243,18 +249,10 @@ void Session::waitShown() {
     const uint32_t submitted = framesSubmitted();
     const auto missing = [&](uint32_t frame) { return static_cast<int32_t>(submitted - frame) > 0; };
     if (!missing(header_->framesShown.load(std::memory_order_acquire))) return;
-    const Waiting waiting(*header_, capture::Wait::Window);
-    int64_t progressNs = 0;
-    uint32_t shownBefore = header_->framesShown.load(std::memory_order_acquire);
+    Waiting waiting(*header_, capture::Wait::Window);
     while (alive()) {
         const uint32_t shown = header_->framesShown.load(std::memory_order_acquire);
-        if (!missing(shown)) break;
-        const int64_t nowNs = waiting.forNs();
-        // The nodes may need long for a frame; what they have finished needs only the X server.
-        const bool drawing = missing(header_->framesDone.load(std::memory_order_acquire));
-        if (shown != shownBefore || drawing) progressNs = nowNs;
-        shownBefore = shown;
-        if (nowNs - progressNs > kShowNs || nowNs > kStuckNs) break;
+        if (!missing(shown) || waiting.forNs() > kStuckNs) break;
         futexWait(header_->framesShown, shown, kSliceNs);
         if (!headAlive()) return;
     }
@@ -338,14 +336,45 @@ bool Session::takeNews(wire::News& news, char* text) {
 bool Session::answerHeader(uint32_t request, wire::ReplyHeader& header) {
     while (alive()) {
         if (!answerBytes(&header, sizeof header)) return false;
-        if (header.requestId == request) return true;
+        if (header.kind != capture::kPictureReply && header.requestId == request) return true;
         if (!takeOwed(header)) return false;
     }
     return false;
 }
 
-// An answer that is not the one waited for: owed, or late to a question given up.
+bool Session::takePicture(const wire::ReplyHeader& header) {
+    void* const pixels = header.failed ? nullptr : std::malloc(header.sizeBytes);
+    const bool read = answerBytes(pixels, header.sizeBytes);
+    if (read && pixels) putOwnPicture(header, static_cast<const std::byte*>(pixels));
+    std::free(pixels);
+    if (read) picturesTaken_ = header.requestId;
+    return read;
+}
+
+void Session::takePictures(uint32_t frame) {
+    if (!alive()) return;
+    Guard guard(requestLock);
+    wakeReader(true);
+    Waiting waiting(*header_, capture::Wait::Window);
+    const auto has = [&](uint32_t frames) { return static_cast<int32_t>(frame - frames) <= 0; };
+    while (alive() && !has(picturesTaken_)) {
+        // A frame without a picture is shown without a reply; the reply of any other comes before it counts as shown.
+        const bool shown = has(header_->framesShown.load(std::memory_order_acquire));
+        const uint32_t tail = header_->replyTail.load(std::memory_order_acquire);
+        if (replyWaits()) {
+            wire::ReplyHeader header{};
+            if (!answerBytes(&header, sizeof header) || !takeOwed(header)) return;
+            continue;
+        }
+        if (shown || waiting.forNs() > kStuckNs) return;
+        futexWait(header_->replyTail, tail, kSliceNs);
+        if (!headAlive()) return;
+    }
+}
+
+// An answer that is not the one waited for: owed, late to a question given up, or a picture.
 bool Session::takeOwed(const wire::ReplyHeader& header) {
+    if (header.kind == capture::kPictureReply) return takePicture(header);
     void* const into = owed::placeOf(header.requestId, header.sizeBytes, header.failed != 0);
     const bool read = answerBytes(into, header.sizeBytes);
     owed::arrived(header.requestId, read && into);

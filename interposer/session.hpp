@@ -39,6 +39,10 @@ public:
     // Blocks until all frames of this process are in its windows (--display app); bounded.
     void waitShown();
 
+    // For a frame that announceOwnPut() has announced, after its records are published: until its picture is in the
+    // window; bounded.
+    void takePictures(uint32_t frame);
+
     // One question to the nodes at a time per process; `by` is the function that asks, counted under its name.
     uint32_t beginRequest(const char* by);
     // The head of the answer; false when the head died (the request is over then).
@@ -72,6 +76,7 @@ public:
 private:
     bool connect();
     bool takeOwed(const wire::ReplyHeader& header);
+    bool takePicture(const wire::ReplyHeader& header);
     [[nodiscard]] bool replyWaits() const;
     bool headAlive();
     [[nodiscard]] bool publishLocked(ThreadState& t, bool last); // false: there was nothing, or no room
@@ -90,6 +95,7 @@ private:
     uint32_t lastAhead_ = 0;
     uint32_t lastOwed_ = 0;
     uint32_t newsTaken_ = 0;
+    uint32_t picturesTaken_ = 0; // the latest frame among them; under the lock of questions
 };
 
 } // namespace mural

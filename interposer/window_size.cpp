@@ -2,10 +2,12 @@
 
 #include "interposer/context.hpp"
 #include "interposer/fronts/own_functions.hpp"
+#include "interposer/windows/server_grabs.hpp"
 
 namespace mural {
 
 bool askWindowSize(const Window& w, uint32_t& width, uint32_t& height) {
+    if (askSizeDuringGrab(w, width, height)) return true;
     return w.isEgl ? askEglSize(w, width, height) : askGlxSize(w, width, height);
 }
 

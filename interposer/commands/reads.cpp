@@ -52,7 +52,7 @@ void readPixels(ThreadState& t, GLint x, GLint y, GLsizei width, GLsizei height,
     }
     const void* tight = askPixels(t, clip.x, clip.y, clip.w, clip.h, format, type, 0, by);
     if (!tight) {
-        gReal.glReadPixels(x, y, width, height, format, type, pixels); // alone by now
+        if (capturing(t)) gReal.glReadPixels(x, y, width, height, format, type, pixels); // the nodes can't answer; else an error is raised
         return;
     }
     if (layout.known) deliver(t, tight, pixels, layout);

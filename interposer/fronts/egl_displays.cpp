@@ -2,7 +2,6 @@
 
 #include <EGL/eglext.h>
 #include <cstdlib>
-#include <xcb/xcb.h>
 
 #include "interposer/fronts/xlib.hpp"
 #include "interposer/lock.hpp"

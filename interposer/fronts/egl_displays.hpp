@@ -4,6 +4,7 @@
 
 #include <EGL/egl.h>
 #include <cstdint>
+#include <xcb/xcb.h>
 
 struct xcb_connection_t;
 
@@ -17,6 +18,9 @@ xcb_connection_t* xConnectionOf(EGLDisplay display);
 bool hasXWindows(EGLDisplay display);
 // It closes.
 void forgetConnection(xcb_connection_t* connection);
+
+// Null: it is not known, as EGL has opened it itself, or the display is not of X.
+xcb_connection_t* xConnectionOf(EGLDisplay display);
 
 // False where the connection is not known, or the server knows no such window.
 bool askXSize(EGLDisplay display, uint64_t window, uint32_t& width, uint32_t& height);

@@ -46,6 +46,16 @@ Result callNext(NextFunction& next, Result (*like)(Parameters...), Arguments... 
     return call ? call(arguments...) : Nothing<Result>::value();
 }
 
+// The same for a function of which only the type is known here: no reference to it is left for the linker.
+template <class Function> struct CallOf;
+template <class Result, class... Parameters> struct CallOf<Result(Parameters...)> {
+    static Result call(NextFunction& next, Parameters... arguments) {
+        auto* call = reinterpret_cast<Result (*)(Parameters...)>(next.get());
+        return call ? call(arguments...) : Nothing<Result>::value();
+    }
+};
+
 } // namespace mural
 
+#define MURAL_CALL_OF(next, function, ...) (::mural::CallOf<decltype(function)>::call(next, __VA_ARGS__))
 #define MURAL_SHOWN extern "C" __attribute__((visibility("default")))

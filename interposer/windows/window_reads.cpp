@@ -1,7 +1,6 @@
 // Requests by which a program reads its windows, or copies between them and its pixmaps, through X: they
 // wait for the pictures that are under way, then go on unchanged. The drawable is not looked at: a read
 // of a parent or of the root window contains our windows as well, and an X id does not tell what it is.
-// Grabbing the server waits, too: afterwards nobody else's picture would get through.
 #include <X11/Xlib.h>
 #include <xcb/shm.h>
 #include <xcb/xcb.h>
@@ -30,7 +29,6 @@ MURAL_SHOWN int XCopyArea(Display* dpy, Drawable from, Drawable to, GC gc, int x
 MURAL_SHOWN int XCopyPlane(Display* dpy, Drawable from, Drawable to, GC gc, int x, int y, unsigned w, unsigned h, int toX, int toY, unsigned long plane) {
     PASS_ON(kXlib, XCopyPlane, dpy, from, to, gc, x, y, w, h, toX, toY, plane);
 }
-MURAL_SHOWN int XGrabServer(Display* dpy) { PASS_ON(kXlib, XGrabServer, dpy); }
 
 // As in X11/extensions/XShm.h, whose package is not needed for this one declaration.
 MURAL_SHOWN Bool XShmGetImage(Display* dpy, Drawable d, XImage* image, int x, int y, unsigned long planes) {
@@ -51,8 +49,6 @@ MURAL_SHOWN xcb_void_cookie_t xcb_copy_area(xcb_connection_t* c, xcb_drawable_t 
 MURAL_SHOWN xcb_void_cookie_t xcb_copy_area_checked(xcb_connection_t* c, xcb_drawable_t from, xcb_drawable_t to, xcb_gcontext_t gc, int16_t x, int16_t y, int16_t toX, int16_t toY, uint16_t w, uint16_t h) {
     PASS_ON(kXcb, xcb_copy_area_checked, c, from, to, gc, x, y, toX, toY, w, h);
 }
-MURAL_SHOWN xcb_void_cookie_t xcb_grab_server(xcb_connection_t* c) { PASS_ON(kXcb, xcb_grab_server, c); }
-MURAL_SHOWN xcb_void_cookie_t xcb_grab_server_checked(xcb_connection_t* c) { PASS_ON(kXcb, xcb_grab_server_checked, c); }
 MURAL_SHOWN xcb_shm_get_image_cookie_t xcb_shm_get_image(xcb_connection_t* c, xcb_drawable_t d, int16_t x, int16_t y, uint16_t w, uint16_t h, uint32_t planes, uint8_t format, xcb_shm_seg_t segment, uint32_t offset) {
     PASS_ON(kXcbShm, xcb_shm_get_image, c, d, x, y, w, h, planes, format, segment, offset);
 }

@@ -29,15 +29,13 @@ CaptureClient::CaptureClient(uint32_t id,
                              pid_t pid,
                              std::unique_ptr<CaptureMemory> memory,
                              NodeSet& nodes,
-                             CaptureEvents& events,
-                             int64_t replyPatienceMs)
+                             CaptureEvents& events)
     : id_(id)
     , pid_(pid)
     , name_(nameOf(pid))
     , memory_(std::move(memory))
     , nodes_(nodes)
-    , events_(events)
-    , replyPatienceMs_(replyPatienceMs) {}
+    , events_(events) {}
 
 CaptureClient::~CaptureClient() {
     stop();
@@ -161,7 +159,7 @@ bool CaptureClient::programGone() const {
 }
 
 void CaptureClient::reply(Reply reply) {
-    if (reply.header.requestId & capture::kAskedAhead) {
+    if (reply.header.kind != capture::kPictureReply && (reply.header.requestId & capture::kAskedAhead) != 0) {
         uint64_t value = 0;
         if (reply.bytes.size() >= sizeof value) std::memcpy(&value, reply.bytes.data(), sizeof value);
         return memory_->answerAhead(reply.header.requestId, value);
@@ -189,29 +187,21 @@ void CaptureClient::writeReplies() {
         replies_.pop_front();
         replyQueueBytes_ -= reply.bytes.size();
         lock.unlock();
-        const bool awaited = (reply.header.requestId & capture::kOwed) == 0;
-        const bool written = writeAll(bytesOf(reply.header), awaited) && writeAll(reply.bytes.span(), awaited);
+        const bool written = writeAll(bytesOf(reply.header)) && writeAll(reply.bytes.span());
+        if (written && reply.written) reply.written();
         lock.lock();
         if (!written) return;
     }
 }
 
-// False: the program is gone, dropped, or the session ends. A program takes what it does not wait for when it likes.
-bool CaptureClient::writeAll(std::span<const std::byte> bytes, bool awaited) {
-    const auto patience = [this, awaited] { return awaited ? Deadline::inMs(replyPatienceMs_) : Deadline::never(); };
-    Deadline deadline = patience();
+// False: the program is gone, was dropped, or the session ends. There is no deadline: a program that is stopped takes
+// the rest when it runs again, and a reply that ends in the middle would be lost. kMaxQueuedBytes bounds what waits.
+bool CaptureClient::writeAll(std::span<const std::byte> bytes) {
     while (!bytes.empty()) {
         const size_t written = memory_->writeReply(bytes);
         bytes = bytes.subspan(written);
-        if (written > 0) {
-            deadline = patience();
-            continue;
-        }
+        if (written > 0) continue;
         if (stop_ || programGone()) return false;
-        if (deadline.passed()) {
-            drop("it did not read its answer for " + std::to_string(replyPatienceMs_ / 1000) + " s");
-            return false;
-        }
         memory_->waitReplyRoom(kPumpSliceNs);
     }
     return true;

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -32,6 +33,7 @@ public:
 struct Reply {
     wire::ReplyHeader header{};
     ByteBuffer bytes;
+    std::function<void()> written; // the program has all of it before it; may be empty
 };
 
 // All calls from any thread.
@@ -41,8 +43,7 @@ public:
                   pid_t pid,
                   std::unique_ptr<CaptureMemory> memory,
                   NodeSet& nodes,
-                  CaptureEvents& events,
-                  int64_t replyPatienceMs);
+                  CaptureEvents& events);
     ~CaptureClient(); // stop()
 
     // An error: there are no threads for it.
@@ -72,7 +73,7 @@ private:
     void drop(const std::string& problem);
 
     void writeReplies();
-    bool writeAll(std::span<const std::byte> bytes, bool awaited);
+    bool writeAll(std::span<const std::byte> bytes);
 
     const uint32_t id_;
     const pid_t pid_;
@@ -80,7 +81,6 @@ private:
     const std::unique_ptr<CaptureMemory> memory_;
     NodeSet& nodes_;
     CaptureEvents& events_;
-    const int64_t replyPatienceMs_; // without the program taking a byte of an answer that it waits for
     FileDescriptor socket_;
     std::thread pumpThread_;
     std::thread replyThread_;

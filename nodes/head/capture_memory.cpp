@@ -203,6 +203,22 @@ bool CaptureMemory::putNews(const wire::News& news, const std::string& text) {
     return true;
 }
 
+std::optional<PixelFormat> CaptureMemory::ownWindow(uint32_t window, uint32_t frame) const {
+    for (const capture::OwnWindow& own : shared_->ownWindows) {
+        if (own.window.load(std::memory_order_acquire) != window) continue;
+        if (static_cast<int32_t>(frame - own.frame.load()) > 0) return std::nullopt; // swapped after the grab
+        PixelFormat format;
+        format.depth = static_cast<int>(own.depth.load() & 0xff);
+        format.bitsPerPixel = static_cast<int>(own.bitsPerPixel.load() & 0xff);
+        format.rowPadBits = static_cast<int>(own.rowPadBits.load() & 0xff);
+        format.redMask = own.redMask.load();
+        format.greenMask = own.greenMask.load();
+        format.blueMask = own.blueMask.load();
+        return format;
+    }
+    return std::nullopt;
+}
+
 void CaptureMemory::setFramesDone(uint32_t frames) {
     shared_->framesDone.store(frames, std::memory_order_release);
     std::atomic_thread_fence(std::memory_order_seq_cst);

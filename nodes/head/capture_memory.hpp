@@ -9,12 +9,14 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "common/capture_ring.hpp"
 #include "common/result.hpp"
+#include "nodes/output/pixel_format.hpp"
 #include "streamcodec/wire.hpp"
 #include "transport/file_descriptor.hpp"
 
@@ -77,8 +79,12 @@ public:
     // False: the program has not looked at what it was told before.
     bool putNews(const wire::News& news, const std::string& text);
 
+    // The format of a window into which the program puts the pictures of this frame itself; nothing: it does not.
+    [[nodiscard]] std::optional<PixelFormat> ownWindow(uint32_t window, uint32_t frame) const;
+
     void setFramesDone(uint32_t frames);
     void setFramesShown(uint32_t frames);
+    void beat() { shared_->headBeat.fetch_add(1, std::memory_order_relaxed); } // the head runs
     void setHeadGone(); // and wakes whoever sleeps on any word
     std::atomic<uint32_t>& lifeWord() { return shared_->headLife; } // for a LifeMark
     [[nodiscard]] CaptureCounts counts() const;

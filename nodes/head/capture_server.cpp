@@ -151,16 +151,24 @@ void CaptureServer::serve() {
     }
 }
 
+// A program that is stopped before its Hello may take any time. Others must not hold a place for so long.
 void CaptureServer::acceptOne(int listener) {
     FileDescriptor socket(accept4(listener, nullptr, nullptr, SOCK_CLOEXEC));
     // Without a descriptor it would come back at once, with the same.
     if (!socket.valid() && (errno == EMFILE || errno == ENFILE)) poll(nullptr, 0, kAcceptSliceMs);
-    if (!socket.valid() || newcomers_.size() >= kMaxNewcomers) return;
-    newcomers_.push_back({std::move(socket), Deadline::inMs(kHelloPatienceMs)});
+    if (!socket.valid()) return;
+    if (newcomers_.size() >= kMaxNewcomers) {
+        const auto late = std::ranges::find_if(newcomers_, [](const Newcomer& n) { return n.deadline.passed(); });
+        if (late == newcomers_.end()) return;
+        newcomers_.erase(late);
+    }
+    ucred peer{};
+    const bool mayTakeLong = peerOf(socket.get(), peer) && peer.uid == geteuid();
+    newcomers_.push_back({std::move(socket), Deadline::inMs(kHelloPatienceMs), mayTakeLong});
 }
 
 bool CaptureServer::settle(Newcomer& newcomer, bool readable) {
-    if (newcomer.deadline.passed()) return true;
+    if (newcomer.deadline.passed() && !newcomer.mayTakeLong) return true;
     if (!readable) return false;
     auto* hello = reinterpret_cast<std::byte*>(&newcomer.hello);
     const ssize_t n = recv(newcomer.socket.get(), hello + newcomer.haveBytes,

@@ -54,6 +54,7 @@ private:
     struct Newcomer {
         FileDescriptor socket;
         Deadline deadline;
+        bool mayTakeLong = false; // past the deadline it keeps its place until another one needs it
         capture::Hello hello{};
         size_t haveBytes = 0; // of hello
     };

@@ -7,6 +7,7 @@
 
 #include "common/kept_memory.hpp"
 #include "common/window_mark.hpp"
+#include "common/pause_watch.hpp"
 #include "nodes/head/codec_choice.hpp"
 #include "nodes/head/composition_choice.hpp"
 #include "nodes/head/config_plan.hpp"
@@ -154,6 +155,7 @@ int runHead(int controlFd) {
     fcntl(controlFd, F_SETFD, FD_CLOEXEC); // nodes must not hold it open
     keepFreedMemory();
     setUpSignals();
+    const PauseWatch pauseWatch;
     ControlChannel control{FileDescriptor(controlFd)};
     const Result<int> status = runSession(control);
     if (status) return status.value();

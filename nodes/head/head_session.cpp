@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <poll.h>
 #include <thread>
@@ -94,6 +93,7 @@ HeadSession::HeadSession(SessionConfig config,
     , chunks_(plan_,
               [this](const Shares& shares) { nodes_.leadWith(wire::HeadCommand::Shares, bytesOf(shares)); },
               plantOf())
+    , advice_(config_, nodeCount_, control_)
     , absences_(absencesOf(nodes))
     , views_(nodes.size())
     , facts_(nodes.size())
@@ -132,6 +132,11 @@ HeadSession::HeadSession(SessionConfig config,
         if (headShowsCanvas(config_, plan_.canvases[i])) canvas.openWall = [this, offset = plan_.canvases[i].offsetX] { return options_.openWall(offset); };
     }
     output.done = [this](uint32_t client, uint32_t frame) { frames_.pictureReleased(client, frame); };
+    output.displayBlocked = [this](uint32_t client, bool isBlocked) { programs_->displayBlocked(client, isBlocked); };
+    output.giveToProgram = [this](const WindowPicture& picture, const Picture& whole) {
+        const auto done = [this, client = picture.client, frame = picture.frame] { frames_.pictureReleased(client, frame); };
+        return programs_->giveOwnPicture(picture.client, picture.frame, picture.nativeWindow, whole, done);
+    };
     output.say = [this](const std::string& text) { control_.say(text); };
     output_ = std::make_unique<PictureOutput>(std::move(output), std::move(options_.file));
 }
@@ -187,6 +192,7 @@ void HeadSession::watchNodes(int64_t nowNs) {
 
 void HeadSession::tick() {
     const int64_t nowNs = monotonicNowNs();
+    programs_->beat();
     watchNodes(nowNs);
     programs_->reap();
     returns_->tick(nowNs);
@@ -247,36 +253,8 @@ Result<void> HeadSession::nodeFrameDone(int node, const wire::FrameDoneMessage& 
     }
     dealer_.frameDone(node, message);
     chunks_.frameDone(node, message);
-    if (message.flags & wire::kDrawnWhole) sayDrawnWhole();
-    if (message.flags & wire::kKeepsAreas) sayKeepsAreas();
-    if (message.flags & wire::kKeepsPicture) sayKeepsPicture();
-    if (plan_.nodes[static_cast<size_t>(node)].pass.ranges > 1) countSplit(message.flags);
+    advice_.frameDone(message.flags, plan_.nodes[static_cast<size_t>(node)].pass.ranges > 1);
     return frames_.frameDone(node, message, monotonicNowNs());
-}
-
-void HeadSession::sayDrawnWhole() {
-    if (drawnWhole_.exchange(true)) return;
-    control_.say(config_.tiling == Tiling::Lean
-                     ? "fragment shaders write to memory, SPIR-V modules read gl_FragCoord, display lists read the picture, or samples of it are copied: every node draws all of it, into framebuffers of the window's size; tiling lean saves nothing there"
-                     : "fragment shaders write to memory, display lists read the picture, or samples of it are copied: every node draws all of it; more nodes do not make that faster");
-}
-
-// A program of which nothing can be shared gains nothing: said once, when that is clear.
-void HeadSession::countSplit(uint32_t flags) {
-    constexpr int64_t kFrames = 100;
-    if (!(flags & wire::kNotSplit)) unsplitFrames_ = INT64_MIN / 2;
-    else if (++unsplitFrames_ == kFrames * nodeCount_)
-        control_.say("none of the program's first frames has draws that nodes can share (opaque, with a depth test, into its window, behind a clear of colour and depth): one node draws all; --db does not make that faster");
-}
-
-void HeadSession::sayKeepsAreas() {
-    if (keepsAreas_.exchange(true)) return;
-    control_.say("frames of a window are drawn without a clear of all that its buffers hold (or into its front, or accumulated): its tiles stay with the nodes that have them; a queue does not make that faster");
-}
-
-void HeadSession::sayKeepsPicture() {
-    if (keepsPicture_.exchange(true)) return;
-    control_.say("frames are drawn over the picture before them (no clear, accumulation, or the front buffer): one node goes on drawing them; --dplex does not make that faster");
 }
 
 Result<void> HeadSession::nodePicture(int node, const wire::PictureHeader& header, ByteBuffer rows) {
@@ -285,16 +263,6 @@ Result<void> HeadSession::nodePicture(int node, const wire::PictureHeader& heade
     auto done = placed ? pictures_.part(node, placed->header, std::move(placed->rows)) : Result<void>(placed.error());
     output_->waitForRoom();
     return done;
-}
-
-Result<std::unique_ptr<PictureSink>> HeadSession::openNativeWindow(const WindowPicture& picture) {
-    const auto number = static_cast<uint32_t>(picture.nativeWindow >> 32);
-    if (number == capture::kNoDisplay)
-        return Error{fmt::format("a program has windows on more than {} X displays, or on one whose name is longer than {} bytes; its window there shows nothing",
-                                 capture::kDisplays, capture::kDisplayNameBytes - 1)};
-    NativeWindow window{picture.client, picture.window, static_cast<uint32_t>(picture.nativeWindow), {}};
-    if (serving_) window.display = programs_->displayName(picture.client, number);
-    return options_.openWindow(window);
 }
 
 // Frames of all nodes come before: only then another window is the main one, or the program forgotten.
@@ -501,7 +469,7 @@ SessionNumbers HeadSession::numbers() {
     result.queues = queues();
     result.programs = programs_->counts();
     if (output_) result.output = output_->totals();
-    result.drawnWhole = drawnWhole_;
+    result.drawnWhole = advice_.drawnWhole();
     if (options_.lastPicture) result.lastPicture = options_.lastPicture();
     if (options_.recorder) result.recording = config_.record;
     result.recorded = recorded_;

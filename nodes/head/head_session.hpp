@@ -31,6 +31,7 @@
 #include "nodes/head/program_table.hpp"
 #include "nodes/head/session_report.hpp"
 #include "nodes/head/session_status.hpp"
+#include "nodes/head/slowdown_advice.hpp"
 #include "nodes/head/tile_dealer.hpp"
 #include "nodes/session/session_config.hpp"
 
@@ -57,7 +58,6 @@ struct HeadOptions {
     uint32_t chunkCount = capture::kDefaultChunks;
     int64_t readyPatienceMs = 30'000;
     int64_t drainPatienceMs = 10'000;
-    int64_t replyPatienceMs = 30'000; // without a program taking a byte of the answer that it waits for
     int64_t byePatienceMs = 10'000; // without anything from a node
     int64_t silencePatienceMs = 20'000; // the same, while it is asked nothing; nodes say every 4 s that they live
     int64_t endPatienceMs = 60'000; // with
@@ -118,10 +118,6 @@ private:
     void serve();
     bool askedToFinish(Deadline deadline); // waits until then for the control connection
     void tick();
-    void sayDrawnWhole(); // once
-    void sayKeepsPicture(); // once
-    void sayKeepsAreas(); // once
-    void countSplit(uint32_t flags);
     void watchNodes(int64_t nowNs);
     Result<std::unique_ptr<PictureSink>> openNativeWindow(const WindowPicture& picture); // by the output's thread
     void windowGone(const std::pair<uint32_t, uint32_t>& window, int node); // client, window
@@ -157,6 +153,7 @@ private:
     PictureAssembler pictures_;
     TileDealer dealer_;
     ChunkDealer chunks_;
+    SlowdownAdvice advice_;
     NodeSet nodes_;
     std::unique_ptr<NodeReturns> returns_;
     std::unique_ptr<ProgramTable> programs_; // once the nodes are ready
@@ -169,10 +166,6 @@ private:
     std::set<int> multicastNodes_; // nodes whose stream comes by multicast where that reaches them
     std::set<int> economical_; // nodes that are spared what they have had
     std::string exchangeSecret_;   // of nodes that send each other parts of pictures or wait for each other, in hex
-    std::atomic<int64_t> unsplitFrames_{0}; // by the collectors, since the start
-    std::atomic<bool> keepsPicture_{false};
-    std::atomic<bool> keepsAreas_{false};
-    std::atomic<bool> drawnWhole_{false}; // see SessionReport
     ProgressMeter meter_;
     int64_t lastProgressNs_ = 0;
     int64_t lastProgressFrame_ = 0;

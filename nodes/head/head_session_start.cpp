@@ -1,6 +1,7 @@
 // Up to where programs may come: what the session opens, in which order.
 #include <algorithm>
 #include <cstdlib>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
@@ -174,7 +175,6 @@ void HeadSession::openTables() {
     }
     terms.framesDoneWhenShown = config_.display == Display::App && config_.latency == 0;
     terms.chunkCount = options_.chunkCount;
-    terms.replyPatienceMs = options_.replyPatienceMs;
     beginRecording();
     ProgramTable::Events events;
     events.came = [this](const CaptureClient& client) {
@@ -245,6 +245,16 @@ void HeadSession::announceReady() {
     if (plan_.wall.stereo == StereoMode::Quad && sendsPictures_ && !headShowsWall(config_, plan_))
         control_.say("both eyes are shown side by side: windows of the wall alone have a buffer for each; add --display windows");
     control_.send({{"event", "ready"}, {"explain", explainLines()}, {"nodes", nodes}});
+}
+
+Result<std::unique_ptr<PictureSink>> HeadSession::openNativeWindow(const WindowPicture& picture) {
+    const auto number = static_cast<uint32_t>(picture.nativeWindow >> 32);
+    if (number == capture::kNoDisplay)
+        return Error{fmt::format("a program has windows on more than {} X displays, or on one whose name is longer than {} bytes; its window there shows nothing",
+                                 capture::kDisplays, capture::kDisplayNameBytes - 1)};
+    NativeWindow window{picture.client, picture.window, static_cast<uint32_t>(picture.nativeWindow), {}};
+    if (serving_) window.display = programs_->displayName(picture.client, number);
+    return options_.openWindow(window);
 }
 
 } // namespace mural

@@ -8,7 +8,6 @@ namespace mural {
 namespace {
 
 constexpr size_t kQueuedPictures = 3;
-constexpr size_t kMostWindows = 64;
 constexpr std::chrono::milliseconds kSlice{500};
 
 } // namespace
@@ -18,6 +17,7 @@ PictureOutput::PictureOutput(PictureOutputConfig config, std::unique_ptr<Picture
     , saveFrames_(config_.saveFrames.begin(), config_.saveFrames.end())
     , file_(std::move(file))
     , canvases_(config_.canvases.size())
+    , natives_({config_.pairs, config_.openWindow, config_.giveToProgram, config_.done, config_.displayBlocked, config_.say})
     , thread_([this] { work(); }) {}
 
 PictureOutput::~PictureOutput() {
@@ -26,6 +26,7 @@ PictureOutput::~PictureOutput() {
 }
 
 void PictureOutput::drop() {
+    natives_.drop();
     const std::lock_guard lock(mutex_);
     dropped_ = true;
     changed_.notify_all();
@@ -86,7 +87,7 @@ void PictureOutput::work() {
     }
     queue_.clear();
     lock.unlock();
-    windows_.clear();
+    natives_.finish();
     wall_.reset();
     if (file_) finishFile();
     canvases_.clear();
@@ -119,12 +120,12 @@ void PictureOutput::show(const WindowPicture& picture) {
     if (wallFrame > 0 && config_.openWall) showOnWall(wallFrame, view);
     for (size_t i = 0; wallFrame > 0 && i < std::min(canvases_.size(), picture.others.size()); ++i)
         if (picture.others[i]) showOnCanvas(i, wallFrame, picture.others[i]->view(), wanted);
-    if (config_.toNativeWindows && picture.nativeWindow != 0) showInWindow(picture);
     if (wallFrame > 0) {
         const std::lock_guard lock(mutex_);
         totals_.wallFrames = wallFrame;
     }
-    config_.done(picture.client, picture.frame);
+    if (config_.toNativeWindows && picture.nativeWindow != 0) natives_.show(picture);
+    else config_.done(picture.client, picture.frame);
 }
 
 // Shows the picture. Rounds to 8 bits per channel for a sink without deep pictures.
@@ -184,32 +185,14 @@ void PictureOutput::showOnCanvas(size_t index, int64_t frame, const Picture& pic
     shown.wallFailed = !shown.wall || !done;
 }
 
-void PictureOutput::showInWindow(const WindowPicture& picture) {
-    const WindowKey key{picture.client, picture.window};
-    auto found = windows_.find(key);
-    if (found == windows_.end()) {
-        if (windows_.size() >= kMostWindows) windows_.clear(); // mostly closed ones by then
-        auto opened = config_.openWindow(picture);
-        // A window that was closed meanwhile is no news to its user.
-        if (!opened && complained_.insert(key).second) config_.say(opened.error().message);
-        found = windows_.emplace(key, opened ? std::move(*opened) : nullptr).first;
-    }
-    if (!found->second) return;
-    const auto shown = give(*found->second, picture.frame, picture.picture->view(), config_.pairs);
-    if (!shown && complained_.insert(key).second) config_.say(shown.error().message);
-}
-
 void PictureOutput::forget(const WindowPicture& gone) {
-    const uint32_t client = gone.client;
     if (gone.window != 0) {
-        mainWindow_.windowGone(client, gone.window);
-        windows_.erase({client, gone.window});
-        complained_.erase({client, gone.window});
+        mainWindow_.windowGone(gone.client, gone.window);
+        natives_.windowGone(gone.client, gone.window);
         return;
     }
-    mainWindow_.clientGone(client);
-    std::erase_if(windows_, [&](const auto& entry) { return entry.first.first == client; });
-    std::erase_if(complained_, [&](const WindowKey& key) { return key.first == client; });
+    mainWindow_.clientGone(gone.client);
+    natives_.clientGone(gone.client);
 }
 
 } // namespace mural

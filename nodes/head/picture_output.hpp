@@ -1,4 +1,4 @@
-// The thread that shows and saves finished pictures.
+// The thread that shows and saves finished pictures; NativeWindows has one more for each program with windows.
 //
 //   wall picture (main window) → file sink (--out), all frames or those of --save
 //   the same → windows of the wall (--display windows with several passes)
@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -19,6 +18,7 @@
 
 #include "common/clock.hpp"
 #include "common/main_window.hpp"
+#include "nodes/head/native_windows.hpp"
 #include "nodes/head/picture_assembler.hpp"
 #include "nodes/output/picture_sink.hpp"
 
@@ -39,10 +39,13 @@ struct PictureOutputConfig {
     bool pairs = false;              // pictures are both eyes' (stackEyes)
     // Opens the sink of the native window that this picture, which is of no interest otherwise, belongs to.
     std::function<Result<std::unique_ptr<PictureSink>>(const WindowPicture& picture)> openWindow;
+    // As of NativeWindowsConfig; needed with toNativeWindows.
+    std::function<bool(const WindowPicture& picture, const Picture& whole)> giveToProgram = [](const WindowPicture&, const Picture&) { return false; };
+    std::function<void(uint32_t client, bool isBlocked)> displayBlocked = [](uint32_t, bool) {};
     // Opens the windows of the wall, where the head has them; empty: nodes have, or nobody.
     std::function<Result<std::unique_ptr<PictureSink>>()> openWall;
     std::vector<OtherCanvas> canvases; // as of WindowPicture::others
-    // From the output's thread, when a picture has gone wherever it had to.
+    // When a picture has gone wherever it had to; by any thread of the output.
     std::function<void(uint32_t client, uint32_t frame)> done;
     std::function<void(const std::string&)> say;
 };
@@ -71,14 +74,11 @@ public:
     [[nodiscard]] OutputTotals totals() const;
 
 private:
-    using WindowKey = std::pair<uint32_t, uint32_t>; // client, window
-
     void work();
     void show(const WindowPicture& picture);
     void finishFile();
     Result<void> give(PictureSink& sink, int64_t frame, const Picture& picture, bool pair);
     void save(int64_t frame, const Picture& picture);
-    void showInWindow(const WindowPicture& picture);
     void showOnWall(int64_t frame, const Picture& picture);
     void showOnCanvas(size_t canvas, int64_t frame, const Picture& picture, bool saves);
     void forget(const WindowPicture& gone);
@@ -97,8 +97,7 @@ private:
     };
     std::vector<Shown> canvases_; // as in the config
     MainWindow mainWindow_;
-    std::map<WindowKey, std::unique_ptr<PictureSink>> windows_; // null: it could not be opened
-    std::set<WindowKey> complained_;
+    NativeWindows natives_;
 
     mutable std::mutex mutex_; // what follows
     std::condition_variable changed_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <poll.h>
 
+#include "nodes/head/own_pictures.hpp"
+
 namespace mural {
 namespace {
 
@@ -30,7 +32,7 @@ Result<Admission> ProgramTable::admitProgram(pid_t pid) {
     admission.welcome.clientId = id;
     admission.memoryFd = (*memory)->fdToPass();
     admission.extensions = terms_.extensions;
-    admitted_[id] = std::make_shared<CaptureClient>(id, pid, std::move(*memory), nodes_, *this, terms_.replyPatienceMs);
+    admitted_[id] = std::make_shared<CaptureClient>(id, pid, std::move(*memory), nodes_, *this);
     return admission;
 }
 
@@ -67,6 +69,7 @@ void ProgramTable::programEnded(uint32_t id, const std::string& problem) {
         if (auto names = found->second->memory().displayNames(); !names.empty()) goneDisplays_[id] = std::move(names);
         gone_.push_back(found->second);
         clients_.erase(found);
+        progress_.erase(id);
         count = clients_.size();
     }
     const uint32_t argument = id;
@@ -89,10 +92,46 @@ void ProgramTable::news(const wire::News& news, const std::string& text) {
 }
 
 void ProgramTable::credit(uint32_t id, uint32_t finished, uint32_t shown) {
+    const std::lock_guard lock(mutex_);
+    const auto found = clients_.find(id);
+    if (found == clients_.end()) return;
+    Progress& progress = progress_[id];
+    progress.finished = finished;
+    progress.shown = shown;
+    tellProgress(*found->second, progress);
+}
+
+void ProgramTable::displayBlocked(uint32_t id, bool isBlocked) {
+    const std::lock_guard lock(mutex_);
+    const auto found = clients_.find(id);
+    if (found == clients_.end()) return;
+    Progress& progress = progress_[id];
+    progress.isBlocked = isBlocked;
+    tellProgress(*found->second, progress);
+}
+
+// Pictures that wait for their window hold back the program that they belong to.
+void ProgramTable::tellProgress(CaptureClient& client, const Progress& progress) const {
+    constexpr uint32_t kMaxUnshown = 3;
+    const uint32_t allowed = progress.shown + (terms_.framesDoneWhenShown ? 0 : kMaxUnshown);
+    const bool isHeldBack = terms_.welcome.displayApp != 0 && !progress.isBlocked;
+    client.memory().setFramesDone(isHeldBack ? std::min(progress.finished, allowed) : progress.finished);
+    client.memory().setFramesShown(progress.shown);
+}
+
+bool ProgramTable::giveOwnPicture(uint32_t id, uint32_t frame, uint64_t nativeWindow, const Picture& picture, std::function<void()> done) {
     const auto client = find(id);
-    if (!client) return;
-    client->memory().setFramesDone(terms_.framesDoneWhenShown ? shown : finished);
-    client->memory().setFramesShown(shown);
+    const auto format = client ? client->memory().ownWindow(static_cast<uint32_t>(nativeWindow), frame) : std::nullopt;
+    if (!format) return false;
+    Reply reply = ownPictureReply(frame, static_cast<uint32_t>(nativeWindow), *format, picture);
+    reply.written = std::move(done);
+    client->reply(std::move(reply));
+    return true;
+}
+
+void ProgramTable::beat() {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [id, client] : clients_) client->memory().beat();
 }
 
 void ProgramTable::tellHeadGone() {

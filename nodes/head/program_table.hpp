@@ -23,7 +23,6 @@ struct ProgramTerms {
     std::string extensions;
     bool framesDoneWhenShown = false; // --display app without latency
     uint32_t chunkCount = capture::kDefaultChunks;
-    int64_t replyPatienceMs = 30'000;
 };
 
 // All calls from any thread but for drainAll(), reap() and endAll() (one thread).
@@ -46,6 +45,11 @@ public:
     void reply(uint32_t client, Reply reply);
     void news(const wire::News& news, const std::string& text);
     void credit(uint32_t client, uint32_t finished, uint32_t shown);
+    // Credit does not wait for the program's windows while its X server does not answer.
+    void displayBlocked(uint32_t client, bool isBlocked);
+    // True: the program puts this picture into its window itself (capture::OwnWindow); `done` is called when it has it.
+    bool giveOwnPicture(uint32_t client, uint32_t frame, uint64_t nativeWindow, const Picture& picture, std::function<void()> done);
+    void beat();         // tells all programs that the head runs; from its main loop
     void tellHeadGone(); // all programs go on alone
 
     // Everything published at this moment goes to the nodes; the pumps end, answers and credit still
@@ -61,10 +65,15 @@ public:
 
 private:
     using Clients = std::map<uint32_t, std::shared_ptr<CaptureClient>>;
+    struct Progress { // of a program, as it was told last
+        uint32_t finished = 0, shown = 0;
+        bool isBlocked = false; // its X server does not answer
+    };
 
     std::shared_ptr<CaptureClient> find(uint32_t client) const;
     std::vector<std::shared_ptr<CaptureClient>> all() const;
     [[nodiscard]] bool anyAdmitted() const;
+    void tellProgress(CaptureClient& client, const Progress& progress) const;
     static void addCounts(CaptureCounts& sum, const CaptureCounts& counts);
 
     const ProgramTerms terms_;
@@ -77,6 +86,7 @@ private:
     uint32_t nextId_ = 1;
     Clients admitted_; // not welcomed yet
     Clients clients_;
+    std::map<uint32_t, Progress> progress_;
     std::vector<std::shared_ptr<CaptureClient>> gone_;
     CaptureCounts goneCounts_;
     std::map<uint32_t, std::vector<std::string>> goneDisplays_; // of programs with windows: pictures may come later

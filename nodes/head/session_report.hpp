@@ -52,7 +52,7 @@ struct SessionNumbers {
     std::string lastPicture; // path
     std::string recording;   // path of --record; empty: none
     recording::WriterTotals recorded;
-    bool drawnWhole = false; // see HeadSession::sayDrawnWhole
+    bool drawnWhole = false; // see SlowdownAdvice
     std::vector<NodeTotals> nodes;
 };
 

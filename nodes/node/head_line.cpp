@@ -13,7 +13,7 @@ namespace mural {
 
 namespace {
 
-constexpr int64_t kSendMs = 20'000;
+constexpr int64_t kChangeOverMs = 20'000;
 constexpr int64_t kConnectMs = 20'000;
 constexpr int64_t kJoinMs = 10'000;
 
@@ -81,7 +81,7 @@ void HeadLine::joinBeside(const std::string& stream, const std::string& secretHe
 Result<void> HeadLine::changeOver(uint64_t skipBytes) {
     if (!late_) return Error{"it was not told of a group"};
     if (auto ended = endBatch(); !ended) return ended;
-    auto stream = late_->goOn(skipBytes, Deadline::inMs(kSendMs));
+    auto stream = late_->goOn(skipBytes, Deadline::inMs(kChangeOverMs));
     late_.reset();
     if (!stream) return stream.error();
     stream_ = std::move(*stream);
@@ -175,7 +175,7 @@ Result<economy::BatchHead> HeadLine::readBatch() {
 Result<void> HeadLine::readPayload(uint32_t sizeBytes, uint32_t mostBytes) {
     if (sizeBytes > mostBytes) return Error{"the head sent a packet of " + std::to_string(sizeBytes) + " bytes: it is of another build"};
     payload_.resize(sizeBytes);
-    return line().read(payload_, Deadline::inMs(kSendMs));
+    return line().read(payload_, Deadline::never()); // the head may be stopped in the middle; its end closes the connection
 }
 
 void HeadLine::send(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b) {
@@ -192,7 +192,7 @@ void HeadLine::sendLocked(wire::NodeMessage type, std::span<const std::byte> a, 
     const wire::MessageHeader header{static_cast<uint32_t>(type), static_cast<uint32_t>(a.size() + b.size())};
     for (const auto part : {std::as_bytes(std::span(&header, 1)), a, b}) {
         if (broken_ || part.empty()) continue;
-        broken_ = !connection_->write(part, Deadline::inMs(kSendMs)).ok();
+        broken_ = !connection_->write(part, Deadline::never()).ok(); // as in readPayload()
     }
     if (!broken_) connection_->flush();
 }

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "common/clock.hpp"
+#include "common/pause_watch.hpp"
 #include "nodes/exchange/picture_composer.hpp"
 #include "nodes/exchange/picture_exchange.hpp"
 #include "nodes/gl/gl_probe.hpp"
@@ -586,6 +587,7 @@ private:
 
 int runNode(const NodeOptions& options) {
     signal(SIGPIPE, SIG_IGN); // a display that ends is an error of its windows, and not the node's end
+    const PauseWatch pauseWatch;
     auto line = HeadLine::open(options);
     if (!line) {
         std::cerr << "mural node: " << line.error().message << '\n';

@@ -39,26 +39,45 @@ const xcb_format_t* findFormat(const xcb_setup_t& setup, int depth) {
 Result<std::unique_ptr<AppWindow>> AppWindow::open(AppWindowConfig config) {
     const Deadline deadline = Deadline::inMs(config.timeoutMs);
     std::unique_ptr<AppWindow> window(new AppWindow(std::move(config)));
-    auto connected = XConnection::open(window->config_.displayName, deadline);
-    if (!connected)
+    Result<void> ready = window->connect(deadline);
+    if (ready)
+        ready = window->adopt(deadline);
+    if (!ready && !window->isBlocked())
+        return ready.error();
+    return window;
+}
+
+Result<void> AppWindow::connect(Deadline deadline) {
+    auto connected = XConnection::open(config_.displayName, deadline);
+    if (!connected) {
+        isBlocked_ = deadline.passed();
         return connected.error();
-    window->x_ = std::move(connected.value());
-    if (window->config_.owner)
-        window->owner_.emplace(*window->config_.owner);
-    if (window->x_->setup().image_byte_order != XCB_IMAGE_ORDER_LSB_FIRST) {
+    }
+    x_ = std::move(connected.value());
+    if (config_.owner)
+        owner_.emplace(*config_.owner);
+    if (x_->setup().image_byte_order != XCB_IMAGE_ORDER_LSB_FIRST) {
         return Error{fmt::format("the X display '{}' is of a big-endian machine, which is not "
                                  "supported; show the pictures elsewhere",
-                                 window->x_->displayName())};
+                                 x_->displayName())};
     }
-    if (Result<void> adopted = window->adopt(deadline); !adopted)
-        return adopted.error();
-    return window;
+    return {};
 }
 
 Result<void> AppWindow::show(int64_t frame, const Picture& picture) {
     if (picture.empty())
         return Error{fmt::format("frame {} is empty: nothing to show", frame)};
     const Deadline deadline = Deadline::inMs(config_.timeoutMs);
+    isBlocked_ = false;
+    hasAnswered_ = false;
+    if (x_ == nullptr) {
+        if (Result<void> connected = connect(deadline); !connected)
+            return connected;
+    }
+    return showBefore(deadline, picture);
+}
+
+Result<void> AppWindow::showBefore(Deadline deadline, const Picture& picture) {
     // What an earlier call left behind when its deadline passed: shared memory may still be read.
     if (Result<void> settled = settle(0, deadline); !settled)
         return settled;
@@ -84,8 +103,14 @@ Result<void> AppWindow::show(int64_t frame, const Picture& picture) {
                              config_.window, x_->displayName())};
 }
 
+// A server that answers, but slowly, is not blocked: a second attempt would take as long.
+Error AppWindow::missed(XAnswer answer) {
+    isBlocked_ = answer == XAnswer::TimedOut && !hasAnswered_;
+    return x_->describe(answer);
+}
+
 std::string AppWindow::describe() const {
-    return fmt::format("window {:#x} of the X display {} ({})", config_.window, x_->displayName(),
+    return fmt::format("window {:#x} of the X display {} ({})", config_.window, x_ != nullptr ? x_->displayName() : config_.displayName,
                        shared_ != nullptr ? "shared memory" : "through the connection");
 }
 
@@ -95,8 +120,10 @@ Result<void> AppWindow::confirmOwner(Deadline deadline) {
     if (!owner_)
         return {};
     auto owned = owner_->owns(*x_, config_.window, deadline);
-    if (!owned)
+    if (!owned) {
+        isBlocked_ = deadline.passed() && !hasAnswered_;
         return owned.error();
+    }
     windowGone_ = !*owned;
     const bool first = !std::exchange(ownerChecked_, true);
     if (*owned || !first)
@@ -117,12 +144,12 @@ Result<void> AppWindow::adopt(Deadline deadline) {
     if (first == XAnswer::TimedOut || first == XAnswer::ConnectionLost) {
         xcb_discard_reply(c, attributesAsked.sequence);
         xcb_discard_reply(c, geometryAsked.sequence);
-        return x_->describe(first);
+        return missed(first);
     }
     const XAnswer second = x_->await(geometryAsked.sequence, deadline, &geometry);
     if (second == XAnswer::TimedOut || second == XAnswer::ConnectionLost) {
         xcb_discard_reply(c, geometryAsked.sequence);
-        return x_->describe(second);
+        return missed(second);
     }
     windowGone_ = attributes == nullptr || geometry == nullptr;
     if (windowGone_)
@@ -181,8 +208,8 @@ bool AppWindow::sharedFor(size_t sizeBytes, Deadline deadline) {
         return true;
     shared_.reset();
     shared_ = SharedPixels::attach(*x_, sizeBytes, deadline);
-    sharedRefused_ = shared_ == nullptr;
-    return !sharedRefused_;
+    sharedRefused_ = shared_ == nullptr && !deadline.passed();
+    return shared_ != nullptr;
 }
 
 Result<void>
@@ -250,7 +277,8 @@ Result<void> AppWindow::settle(size_t keep, Deadline deadline) {
         const Put put = unanswered_.front();
         const XAnswer answer = x_->awaitFence(put.fence, deadline);
         if (answer == XAnswer::TimedOut || answer == XAnswer::ConnectionLost)
-            return x_->describe(answer);
+            return missed(answer);
+        hasAnswered_ = true;
         unanswered_.pop_front();
         XOwned<xcb_generic_error_t> error(xcb_request_check(x_->get(), put.request));
         if (error != nullptr && firstError_ == nullptr)

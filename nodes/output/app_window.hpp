@@ -30,7 +30,7 @@ struct AppWindowConfig {
     std::string displayName;   // empty: DISPLAY
     uint32_t window = 0;       // XID
     std::optional<WindowOwner> owner; // nothing is painted in a window that is not of this program
-    int64_t timeoutMs = 5'000; // of open() and of each show(); a window manager may grab the server
+    int64_t timeoutMs = 5'000; // of open() and of each show(); another client may grab the server
     bool sharedMemory = true;  // where the server has it
     size_t pieceBytes = 32 * 1024; // without shared memory: pixels per request
 };
@@ -38,11 +38,13 @@ struct AppWindowConfig {
 class AppWindow : public PictureSink {
 public:
     // Fails without a display, or when the window's pixels can't be written. A window that is not there
-    // (any more: a program may end right after its last swap) is no error: windowGone() tells.
+    // (any more: a program may end right after its last swap) is no error: windowGone() tells. Neither is a
+    // display that does not answer in time: show() connects then.
     static Result<std::unique_ptr<AppWindow>> open(AppWindowConfig config);
 
     // Returns when the server has done it. After a deadline has passed it can be called again.
     Result<void> show(int64_t frame, const Picture& picture) override;
+    [[nodiscard]] bool isBlocked() const override { return isBlocked_; }
     Result<void> finish() override { return {}; } // every picture was complete when show() returned
     [[nodiscard]] bool takesDeepPictures() const override { return true; }
     [[nodiscard]] std::string describe() const override;
@@ -62,6 +64,9 @@ private:
     explicit AppWindow(AppWindowConfig config)
         : config_(std::move(config)) {}
 
+    Result<void> connect(Deadline deadline);
+    Result<void> showBefore(Deadline deadline, const Picture& picture);
+    Error missed(XAnswer answer);
     Result<void> confirmOwner(Deadline deadline);
     Result<void> adopt(Deadline deadline);
     Result<void> findConverter(xcb_visualid_t visual, int depth);
@@ -86,6 +91,8 @@ private:
     std::deque<Put> unanswered_;
     XOwned<xcb_generic_error_t> firstError_; // of the puts of one picture
     bool windowGone_ = false;
+    bool isBlocked_ = false;  // as of the last show()
+    bool hasAnswered_ = false; // the server, since show() began
 };
 
 } // namespace mural

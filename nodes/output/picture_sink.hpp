@@ -33,6 +33,9 @@ public:
     // Nothing more comes: completes what is open. Further calls do nothing.
     virtual Result<void> finish() = 0;
 
+    // The last show() failed only because a display has not answered in time: the same picture may be shown again.
+    [[nodiscard]] virtual bool isBlocked() const { return false; }
+
     [[nodiscard]] virtual std::string describe() const = 0;
 
 private:

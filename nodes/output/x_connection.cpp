@@ -77,8 +77,8 @@ Result<std::unique_ptr<XConnection>> XConnection::open(const std::string& displa
                                [&] { return attempt->finished; });
         if (!attempt->finished) {
             attempt->abandoned = true;
-            return Error{fmt::format("the X display '{}' does not answer; check that its server "
-                                     "is not stopped",
+            return Error{fmt::format("the X display '{}' does not answer in time; another program may have "
+                                     "grabbed its server, or the server is stopped",
                                      name)};
         }
         connection = attempt->connection;
@@ -152,8 +152,8 @@ XAnswer XConnection::check(xcb_void_cookie_t request,
 
 Error XConnection::describe(XAnswer answer) const {
     if (answer == XAnswer::TimedOut) {
-        return {fmt::format("the X display '{}' does not answer in time; check that its server is "
-                            "not stopped",
+        return {fmt::format("the X display '{}' does not answer in time; another program may have "
+                            "grabbed its server, or the server is stopped",
                             displayName_)};
     }
     return {fmt::format("the connection to the X display '{}' is lost; restart its server and the "

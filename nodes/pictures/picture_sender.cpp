@@ -40,11 +40,24 @@ int64_t PictureSender::cpuNs() const {
     return int64_t{t.tv_sec} * kNsPerS + t.tv_nsec;
 }
 
+// False: the condition did not come true within roomMs. A message that is being sent does not count: a head that is
+// stopped takes none, and its end breaks the connection.
+template <class Condition> bool PictureSender::await(std::unique_lock<std::mutex>& lock, Condition condition) {
+    constexpr int64_t kSliceMs = 100;
+    for (int64_t waitedMs = 0; !condition();) {
+        const int64_t sliceMs = std::min(kSliceMs, config_.roomMs - waitedMs);
+        if (sliceMs <= 0) return false;
+        changed_.wait_for(lock, std::chrono::milliseconds(sliceMs));
+        if (!sending_) waitedMs += sliceMs;
+    }
+    return true;
+}
+
 // A message that is larger than all that may wait goes when nothing else does.
 bool PictureSender::give(Job job, size_t bytes, bool isFrame) {
     std::unique_lock lock(mutex_);
     const auto room = [&] { return isFrame ? frames_ < kMostFrames : waitingBytes_ == 0 || waitingBytes_ + bytes <= config_.mostBytes; };
-    if (stuck_ || !changed_.wait_for(lock, std::chrono::milliseconds(config_.roomMs), room)) {
+    if (stuck_ || !await(lock, room)) {
         if (!std::exchange(stuck_, true)) log_("its pictures do not get away: none has gone for " + std::to_string(config_.roomMs / 1000) + " s; it ends");
         return false;
     }
@@ -94,7 +107,7 @@ void PictureSender::clientGone(uint32_t client) {
 
 bool PictureSender::finish() {
     std::unique_lock lock(mutex_);
-    return !stuck_ && changed_.wait_for(lock, std::chrono::milliseconds(config_.roomMs), [this] { return idle(); });
+    return !stuck_ && await(lock, [this] { return idle(); });
 }
 
 void PictureSender::run() {
@@ -118,9 +131,15 @@ void PictureSender::run() {
     }
 }
 
+void PictureSender::send(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b) {
+    sending_ = true;
+    send_(type, a, b);
+    sending_ = false;
+}
+
 void PictureSender::work(Job& job) {
     if (job.frame) return sendFrame(*job.frame);
-    if (job.message) return send_(job.message->type, job.message->bytes, {});
+    if (job.message) return send(job.message->type, job.message->bytes, {});
     if (job.forgotten) forget(*job.forgotten);
 }
 
@@ -150,19 +169,19 @@ void PictureSender::sendFrame(Frame& frame) {
         auto packed = packer_->pack(h.client, h.window, size.w, size.h, pixels.data());
         packedNs = monotonicNowNs();
         if (packed) {
-            send_(wire::NodeMessage::PackedPicture, std::as_bytes(std::span(&h, 1)), *packed);
+            send(wire::NodeMessage::PackedPicture, std::as_bytes(std::span(&h, 1)), *packed);
             if (packed->size() >= kTellingBytes) packer_->transferred(packed->size(), monotonicNowNs() - packedNs);
         } else { // no memory for it
-            send_(wire::NodeMessage::Picture, std::as_bytes(std::span(&h, 1)), pixels);
+            send(wire::NodeMessage::Picture, std::as_bytes(std::span(&h, 1)), pixels);
         }
     } else {
-        send_(wire::NodeMessage::Picture, std::as_bytes(std::span(&h, 1)), pixels);
+        send(wire::NodeMessage::Picture, std::as_bytes(std::span(&h, 1)), pixels);
     }
     const int64_t tookCpuNs = threadCpuNowNs() - beganCpuNs;
     frame.done.readbackNs += static_cast<uint64_t>(tookCpuNs);
     if (config_.addsCpu) frame.done.busyNs += static_cast<uint64_t>(tookCpuNs);
     else frame.done.busyNs = std::max(frame.done.busyNs, static_cast<uint64_t>(packedNs - beganNs));
-    send_(wire::NodeMessage::FrameDone, std::as_bytes(std::span(&frame.done, 1)), {});
+    send(wire::NodeMessage::FrameDone, std::as_bytes(std::span(&frame.done, 1)), {});
 }
 
 } // namespace mural

@@ -29,13 +29,13 @@ struct PictureSenderConfig {
     bool addsCpu = false;      // what a picture takes here is added to its frame's work: nodes share cores. Else the longer one counts, for both go on at once
     size_t mostBytes = size_t{64} << 20; // of messages behind pictures
     int64_t readMs = 60'000;   // until GL has drawn a picture
-    int64_t roomMs = 120'000;  // until there is room for another: longer than a picture may take to be read, and a message to be sent
+    int64_t roomMs = 120'000;  // until there is room for another, without the time of sending: longer than a picture may take to be read
 };
 
 // All calls from one thread.
 class PictureSender {
 public:
-    // One message of up to two parts; called by either thread, one at a time. It ends in a time of its own.
+    // One message of up to two parts; called by either thread, one at a time. It lasts as long as the head takes nothing, and ends with it.
     using Send = std::function<void(wire::NodeMessage, std::span<const std::byte>, std::span<const std::byte>)>;
     using Log = std::function<void(const std::string&)>;
     struct Frame {
@@ -86,7 +86,9 @@ private:
     void work(Job& job);
     void sendFrame(Frame& frame);
     void forget(const Forgotten& forgotten);
+    void send(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b); // by the thread
     bool give(Job job, size_t bytes, bool isFrame);
+    template <class Condition> bool await(std::unique_lock<std::mutex>& lock, Condition condition);
     [[nodiscard]] bool idle() const { return jobs_.empty() && !working_; } // mutex_ is held
 
     const PictureSenderConfig config_;
@@ -95,6 +97,7 @@ private:
     const std::unique_ptr<PicturePacker> packer_; // null: pictures go as they are. Used by whoever works
     std::vector<std::byte> black_, onWay_;
     bool saidLost_ = false;
+    std::atomic<bool> sending_{false}; // the thread is in send_
 
     std::mutex mutex_; // of all below
     std::condition_variable changed_;

@@ -241,8 +241,6 @@ void Replay::takeBitsOfSurface(Window& w) {
     out_.log("its GL has no framebuffer like the program's window, which is drawn with " + differs + ": pixels may differ from the native picture's");
 }
 
-    w.isFlat = config->depth == 0 && config->stencil == 0;
-    w.wishedRed = config->red;
 bool Replay::ownClientArrays(Args& in) {
     using client_arrays::ArrayRecord;
     const auto arrayCount = in.get<uint32_t>(), spanCount = in.get<uint32_t>();

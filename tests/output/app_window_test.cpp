@@ -358,11 +358,18 @@ TEST_P(StoppedServer, deadlinePassesAndLaterItGoesOn) {
         }
         EXPECT_LT(monotonicNowNs() - beforeNs, 10 * kNsPerS);
     }
+    EXPECT_TRUE(output_->isBlocked());
     auto late = AppWindow::open(config);
-    EXPECT_FALSE(late);
+    ASSERT_TRUE(late); // it connects when the server answers
+    EXPECT_FALSE(late.value()->show(101, second.view()));
+    EXPECT_TRUE(late.value()->isBlocked());
     ASSERT_EQ(::kill(server_->pid(), SIGCONT), 0);
     EXPECT_TRUE(showsSoon(second));
+    EXPECT_FALSE(output_->isBlocked());
     expectSeen(window, 0, 0, second.view());
+    output_ = std::move(late.value());
+    EXPECT_TRUE(showsSoon(first));
+    expectSeen(window, 0, 0, first.view());
 }
 
 INSTANTIATE_TEST_SUITE_P(Ways, StoppedServer, testing::Bool(), [](const auto& shared) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <optional>
 
+#include "common/pause_watch.hpp"
 #include "nodes/launch/bypass_watch.hpp"
 #include "nodes/launch/program_check.hpp"
 #include "nodes/launch/program_supervisor.hpp"
@@ -252,6 +253,7 @@ private:
 } // namespace
 
 int runSession(PreparedRun& run, Console& console) {
+    const PauseWatch pauseWatch;
     auto program = launch::ProgramSupervisor::create();
     if (!program) {
         console.error(program.error().message);

@@ -1,0 +1,13 @@
+// A picture as the reply by which the program gets it during a server grab (capture::OwnWindow).
+#pragma once
+
+#include "nodes/head/capture_client.hpp"
+#include "nodes/output/picture.hpp"
+#include "nodes/output/pixel_format.hpp"
+
+namespace mural {
+
+// `format` comes from the program and is checked: where it makes no sense, or the memory is short, the reply has no pixels.
+Reply ownPictureReply(uint32_t frame, uint32_t window, const PixelFormat& format, const Picture& picture);
+
+} // namespace mural

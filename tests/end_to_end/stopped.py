@@ -1,0 +1,241 @@
+#!/usr/bin/env python3
+"""Processes that are stopped for a while, and programs that hold a grab of the X server.
+
+  stopped.py --build build/release [--cases program,head,grabs] [--list]
+
+A stop is much longer than what a healthy process leaves unanswered, and shorter than a test may take. Limits of 20 s and more
+are looked at by the unit tests of their clocks (running_time_test, head_session_test).
+"""
+
+import argparse
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+
+import display
+import programs
+import session
+
+STOP_SECONDS = 1
+CASES = {}  # name: function(context) → None or what is wrong
+
+
+def case(function):
+    CASES[function.__name__] = function
+    return function
+
+
+class Context:
+    def __init__(self, build, mural, display_name):
+        self.build = build
+        self.mural = mural
+        self.display = display_name
+
+    def program(self, name):
+        return os.path.join(self.build, "tests", "programs", name)
+
+    def run(self, command, options=("--tiles", "2x1", "--display", "none")):
+        return session.Session([self.mural, "run", *options, "--", *command], self.display)
+
+
+def pids_of(run, pattern):
+    return run.wait_for_processes(pattern, 1)
+
+
+def stop_for_a_while(pids, seconds=STOP_SECONDS):
+    for pid in pids:
+        os.kill(pid, signal.SIGSTOP)
+    time.sleep(seconds)
+    for pid in pids:
+        os.kill(pid, signal.SIGCONT)
+
+
+def what_it_read(run, wanted_status=0):
+    """The program's own counts; a text where something is wrong with its end."""
+    status = run.status()
+    counts = [re.match(r"reads (\d+) differ (\d+) errors (\d+)", line) for line in run.standard_output]
+    counts = [[int(number) for number in found.groups()] for found in counts if found]
+    if status != wanted_status or not counts:
+        return "status %s, it printed %s; Mural said: %s" % (status, run.standard_output[-2:], " | ".join(run.standard_error[-4:]))
+    return counts[0]
+
+
+def reads_through_stops(context, kind, pattern, stops=2, seconds=2 + 2 * STOP_SECONDS):
+    """All reads are right, nothing is said, and the program is on the wall to the end."""
+    with context.run([context.program("stopped_reads"), kind, str(seconds)]) as run:
+        if not run.wait_for_line("begins"):
+            return "it did not begin: " + " | ".join(run.standard_error[-3:])
+        pids = pids_of(run, pattern)
+        if not pids:
+            return "no process fits " + pattern
+        for number in range(stops):
+            time.sleep(0.31 + 0.07 * number)  # wherever that is
+            stop_for_a_while(pids)
+        counts = what_it_read(run)
+        if isinstance(counts, str):
+            return counts
+        if counts[0] < 2 or counts[1] or counts[2]:
+            return "%d reads, %d differ, %d errors" % tuple(counts)
+        said = [line for line in run.standard_error if "alone" in line or "dropped" in line or "lost" in line]
+        return "it was lost: " + " | ".join(said) if said else None
+
+
+PROGRAM_ALONE = r"^\S*stopped_reads \w+ \d+$"
+
+
+@case
+def program_pixels(context):
+    return reads_through_stops(context, "pixels", PROGRAM_ALONE)
+
+
+@case
+def program_buffer(context):
+    return reads_through_stops(context, "buffer", PROGRAM_ALONE, stops=1, seconds=3)
+
+
+@case
+def program_texture(context):
+    return reads_through_stops(context, "texture", PROGRAM_ALONE, stops=1, seconds=3)
+
+
+@case
+def program_query(context):
+    return reads_through_stops(context, "query", PROGRAM_ALONE, stops=1, seconds=3)
+
+
+@case
+def program_swaps(context):
+    return reads_through_stops(context, "swaps", PROGRAM_ALONE, stops=1, seconds=3)
+
+
+@case
+def head_pixels(context):
+    return reads_through_stops(context, "pixels", r"mural head\b")
+
+
+@case
+def all_of_it(context):
+    """Ctrl-Z and fg: the program, its launcher, the head and the nodes."""
+    return reads_through_stops(context, "pixels", r".")
+
+
+@case
+def program_killed_while_stopped(context):
+    with context.run([context.program("stopped_reads"), "pixels", "60"]) as run:
+        if not run.wait_for_line("begins"):
+            return "it did not begin"
+        pids = pids_of(run, PROGRAM_ALONE)
+        time.sleep(0.4)
+        for pid in pids:
+            os.kill(pid, signal.SIGSTOP)
+        time.sleep(0.5)
+        began = time.monotonic()
+        for pid in pids:
+            os.kill(pid, signal.SIGKILL)
+        status = run.status()
+        if status != 128 + signal.SIGKILL or time.monotonic() - began > 15:
+            return "status %s after %.0f s" % (status, time.monotonic() - began)
+        left = run.left_behind()
+        return "left behind: " + ", ".join(left) if left else None
+
+
+def head_killed(context, kind):
+    """The read in the middle of which the head goes is right, or raises an error; never wrong pixels alone."""
+    with context.run([context.program("stopped_reads"), kind, "5"]) as run:
+        if not run.wait_for_line("begins"):
+            return "it did not begin"
+        time.sleep(0.5)
+        for pid in pids_of(run, r"mural head\b"):
+            os.kill(pid, signal.SIGKILL)
+        counts = what_it_read(run)
+        if isinstance(counts, str):
+            return counts
+        return "%d of %d reads are wrong without an error" % (counts[1], counts[0]) if counts[1] else None
+
+
+@case
+def head_killed_pixels(context):
+    return head_killed(context, "pixels")
+
+
+@case
+def head_killed_buffer(context):
+    return head_killed(context, "buffer")
+
+
+# ---- grabs
+
+def sums(text):
+    return [line for line in text.splitlines() if re.search(r" [0-9a-f]{8}$", line)]
+
+
+def natively(context, way):
+    run = subprocess.run([context.program("grabbed_server"), way], env=programs.clean_environment(context.display), capture_output=True,
+                         text=True, timeout=60, check=False)
+    return sums(run.stdout) if run.returncode == 0 else "natively: status %d, %s" % (run.returncode, run.stderr[-200:])
+
+
+def grabbed(context, way, like=None):
+    wanted = natively(context, like or way)
+    if isinstance(wanted, str):
+        return wanted
+    with context.run([context.program("grabbed_server"), way], options=("--tiles", "2x1", "--display", "app")) as run:
+        if run.status() != 0:
+            return "it failed: " + " | ".join(run.standard_error[-3:])
+        got = sums("\n".join(run.standard_output))
+        if got != wanted:
+            return "it saw %s instead of %s" % (got, wanted)
+        took = [float(found.group(1)) for found in map(lambda line: re.search(r"grabbed for ([\d.]+) s", line), run.standard_error) if found]
+        if not took or took[0] > 10:  # a picture that waits for the head takes 5 s, each
+            return "the grab lasted %s s" % took
+        said = [line for line in run.standard_error if "does not answer" in line]
+        return "it was told: " + said[0] if said else None
+
+
+# Another connection's grab holds up the program's own GL natively, so these are compared with the first way.
+for name, native_way in (("xlib", None), ("xcb", None), ("checked", None), ("nested", None), ("early", None), ("second", "xlib"), ("closed", "xlib"), ("front", None),
+                         ("two", None), ("large", None), ("opened", None), ("thread", None), ("copy", None), ("egl", None)):
+    CASES["grabs_" + name] = lambda context, way=name, like=native_way: grabbed(context, way, like)
+
+
+@case
+def grabs_of_another_program(context):
+    """The pictures wait, and with them the program's reads: it sees each of its frames all the same."""
+    wanted = natively(context, "without")
+    with context.run([context.program("grabbed_server"), "without"], options=("--tiles", "2x1", "--display", "app")) as run:
+        if not run.wait_for_line("without a grab"):
+            return "it did not begin: " + " | ".join(run.standard_error[-3:])
+        time.sleep(0.3)
+        subprocess.run([context.program("grabbed_server"), "hold"], env=programs.clean_environment(context.display), timeout=60, check=True)
+        status = run.status()
+        got = sums("\n".join(run.standard_output))
+        return None if status == 0 and got == wanted else "status %s, it saw %s instead of %s" % (status, got, wanted)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", required=True)
+    parser.add_argument("--cases", default="", help="beginnings of names, separated by commas; all if none")
+    parser.add_argument("--list", action="store_true")
+    arguments = parser.parse_args()
+    wanted = [name for name in CASES if not arguments.cases or any(name.startswith(part) for part in arguments.cases.split(","))]
+    if arguments.list:
+        print("\n".join(wanted))
+        return 0
+    build = os.path.abspath(arguments.build)
+    wrong = 0
+    with display.PrivateDisplay() as display_name:
+        context = Context(build, os.path.join(build, "bin", "mural"), display_name)
+        for name in wanted:
+            began = time.monotonic()
+            fault = CASES[name](context)
+            wrong += fault is not None
+            print("%-30s %s (%.1f s)" % (name, fault or "ok", time.monotonic() - began), flush=True)
+    return 1 if wrong or not wanted else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
