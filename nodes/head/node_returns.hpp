@@ -1,4 +1,4 @@
-// Restarts lost nodes, and makes them members after their resync. docs/user-guide.md states the number of attempts and
+// Restarts lost nodes, and makes them members after their resync. docs/guide/nodes.md states the number of attempts and
 // the pauses between them.
 #pragma once
 
