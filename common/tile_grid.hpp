@@ -12,7 +12,7 @@ struct TileGrid {
     int columns = 1;
     int rows = 1;
     // Tile origins are multiples of this value. Tiling lean uses 2, so that 2x2 pixel quads stay whole: odd origins
-    // raise texture-level mismatches 4 to 40 times (docs/exactness.md).
+    // raise texture-level mismatches 4 to 40 times (docs/architecture/exactness.md).
     int alignment = 1;
 };
 

@@ -23,7 +23,7 @@ GROUPS = {
                 "draw_errors_compat", "draw_errors_core", "draw_errors_es3"],
     # Of what few drivers have: elsewhere they say so and are skipped.
     "bindless": ["bindless_textures", "sparse_textures", "sparse_buffers"],
-    # No test runs it: the one driver here that has images without a binding ends in it at times (docs/exactness.md).
+    # No test runs it: the one driver here that has images without a binding ends in it at times (docs/measurements/exactness.md).
     "bindless_images": ["bindless_images"],
     "windows": ["es1_scene", "es1_draw_texture", "es2_scene", "es3_scene", "es_pipelines", "es_feedback_limit", "egl_desktop",
                 "egl_offscreen", "egl_buffer_names", "egl_blended_rectangles", "egl_images", "egl_pixmaps",
@@ -150,7 +150,7 @@ def same_status(native, through):
         return through in (native, 128 - native)
     return native == through
 
-# Programs whose pictures are not yet the native ones, and why (docs/exactness.md has the proofs).
+# Programs whose pictures are not yet the native ones, and why (docs/measurements/exactness.md has the proofs).
 KNOWN_DIFFERENCES = {
     "egl_pbuffer_textures": "Mesa's software driver leaves textures of pbuffers empty; the nodes show the pictures",
 }

@@ -1,5 +1,5 @@
 // Images without a binding: stores from fragment shaders of which other pixels see the result, atomics, of a level and of a
-// layer, into a buffer; the handles come from uniforms and out of memory. (No compute shaders: docs/exactness.md.)
+// layer, into a buffer; the handles come from uniforms and out of memory. (No compute shaders: docs/measurements/exactness.md.)
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/needs.hpp"
 #include "tests/programs/support/program.hpp"

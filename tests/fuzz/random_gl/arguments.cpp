@@ -49,7 +49,7 @@ public:
         }
     }
 
-    // Vertices outside of glBegin and glEnd, and attributes with which Mesa 22.3.6 does what nobody can tell (docs/exactness.md).
+    // Vertices outside of glBegin and glEnd, and attributes with which Mesa 22.3.6 does what nobody can tell (docs/measurements/exactness.md).
     bool isDefined() {
         const std::string_view name = command_.name;
         const bool vertex = name.starts_with("glVertex2") || name.starts_with("glVertex3") || name.starts_with("glVertex4") ||
