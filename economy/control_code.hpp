@@ -1,4 +1,4 @@
-// The control bytes of a batch: operations with counts. docs/wire-format.md has the grammar.
+// The control bytes of a batch: operations with counts. docs/reference/wire-format.md has the grammar.
 #pragma once
 
 #include <cstdint>

@@ -20,7 +20,7 @@ void* askTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint lev
 bool askQuery(ThreadState& t, GLuint query, GLenum name, uint64_t& value, const char* by = __builtin_FUNCTION());
 // Bytes of a buffer as the nodes have it; in scratch memory.
 const void* askBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t sizeBytes, const char* by = __builtin_FUNCTION());
-// What a program was linked from (docs/wire-format.md); in scratch memory. Null: that can't be told.
+// What a program was linked from (docs/reference/wire-format.md); in scratch memory. Null: that can't be told.
 const void* askProgram(ThreadState& t, GLuint program, uint64_t& sizeBytes, const char* by = __builtin_FUNCTION());
 bool askFinish(ThreadState& t, const char* by = __builtin_FUNCTION());
 

@@ -11,7 +11,7 @@ namespace mural {
 struct ThreadState;
 
 // A program has been linked: from its attached shaders, from one of these texts, or from a recipe
-// (docs/wire-format.md).
+// (docs/reference/wire-format.md).
 void noteMemoryWriter(ThreadState& t, GLuint program);
 void noteMemoryWriter(ThreadState& t, GLuint program, GLenum type, GLsizei count, const GLchar* const* strings);
 void noteMemoryWriter(ThreadState& t, GLuint program, const std::byte* recipe, size_t sizeBytes);

@@ -1,4 +1,4 @@
-// File format of traces, little-endian. docs/recording.md has the grammar.
+// File format of traces, little-endian. docs/reference/trace.md has the grammar.
 //
 //   file    = Header about Block* Index Trailer
 //   Block   = BlockHeader, entries compressed with Zstandard

@@ -1,4 +1,4 @@
-// Iterates over the records of a packet (docs/wire-format.md) without parsing their arguments.
+// Iterates over the records of a packet (docs/reference/wire-format.md) without parsing their arguments.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Pending blobs of one stream, which precede their record (docs/wire-format.md).
+// Pending blobs of one stream, which precede their record (docs/reference/wire-format.md).
 #pragma once
 
 #include <cstdint>

@@ -11,7 +11,7 @@ enum class Travel : uint8_t {
     Scalar, // widened to 4 bytes in the record
     Wide, // 8 bytes: handles, offsets into buffers
     Fixed, // an array of fixedBytes
-    Value, // a variable-size value (docs/wire-format.md)
+    Value, // a variable-size value (docs/reference/wire-format.md)
     Text, // a value with text
     Texts, // a value with a list of strings
 };

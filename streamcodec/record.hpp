@@ -1,4 +1,4 @@
-// Record constants shared by encoder and decoder. See docs/wire-format.md.
+// Record constants shared by encoder and decoder. See docs/reference/wire-format.md.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // The result of a walk over the records of a packet. The packet's next consumer need not walk again
-// (docs/wire-format.md).
+// (docs/reference/wire-format.md).
 #pragma once
 
 #include <cstddef>

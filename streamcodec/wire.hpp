@@ -1,5 +1,5 @@
 // The stream from the head to the render nodes, and the messages back. Little-endian, 4-byte aligned.
-// Grammar and versions: docs/wire-format.md.
+// Grammar and versions: docs/reference/wire-format.md.
 //
 //   stream  = Packet*, or behind a Setup that says `economy` batches of packets (economy/batch_head.hpp)
 //   Packet  = PacketHeader payload[sizeBytes]

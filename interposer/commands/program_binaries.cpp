@@ -1,6 +1,6 @@
 // Program binaries: the driver's own for the program's context, followed by the recipe from which the nodes link the
-// program (docs/wire-format.md). A binary without a recipe, such as one from a run without Mural, fails to load. The
-// program then links from source, as it must after a driver update.
+// program (docs/reference/wire-format.md). A binary without a recipe, such as one from a run without Mural, fails to
+// load. The program then links from source, as it must after a driver update.
 #include <cstring>
 
 #include "custom_wrappers.hpp"

@@ -1,5 +1,5 @@
 // The message format for rows of a picture part: the drawn rectangles with encoded colour and depth. Layout:
-// docs/wire-format.md, "Parts of pictures".
+// docs/reference/wire-format.md, "Parts of pictures".
 #pragma once
 
 #include <functional>

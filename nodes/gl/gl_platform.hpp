@@ -99,7 +99,7 @@ class Platform {
 public:
     virtual ~Platform() = default;
     // Creates a surface with 0 in all buffers, as new windows have with Mesa: colours, alpha (a hidden one: 1), depth and
-    // stencil. No other memory shows there (docs/security.md). The current context stays current.
+    // stencil. No other memory shows there (docs/architecture/security.md). The current context stays current.
     virtual Result<std::unique_ptr<Surface>> createSurface(const SurfaceConfig& config) = 0;
     virtual Result<std::unique_ptr<Context>> createContext(const ContextConfig& config, Context* shareWith) = 0;
     // Null context: release. Null surfaces: surfaceless (or a 1×1 dummy where that is unknown).

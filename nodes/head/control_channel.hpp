@@ -1,4 +1,4 @@
-// The head's end of the control connection to `mural run`: lines of JSON (docs/control-protocol.md).
+// The head's end of the control connection to `mural run`: lines of JSON (docs/reference/control-protocol.md).
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The last line of a session: its numbers (docs/control-protocol.md).
+// The last line of a session: its numbers (docs/reference/control-protocol.md).
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // A node's end of pictures that travel packed: of each window only the tiles that are not as in the picture before, each run of them by the codec
-// that gets it there soonest, or as the user wants it. Bytes: docs/wire-format.md, "Packed pictures".
+// that gets it there soonest, or as the user wants it. Bytes: docs/reference/wire-format.md, "Packed pictures".
 #pragma once
 
 #include <cstdint>

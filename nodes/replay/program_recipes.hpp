@@ -1,5 +1,5 @@
 // Recipes: the inputs of a program's last link, for relinking it in another run. The node's half of program binaries
-// (docs/wire-format.md, "Recipes of programs"). One instance per share group. Names are this node's.
+// (docs/reference/wire-format.md, "Recipes of programs"). One instance per share group. Names are this node's.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// The messages of a swap barrier: docs/wire-format.md, "Swap barriers".
+// The messages of a swap barrier: docs/reference/wire-format.md, "Swap barriers".
 #pragma once
 
 #include <array>

@@ -14,9 +14,9 @@
 namespace mural {
 namespace {
 
-constexpr int64_t kPatienceMs = 20'000;
+constexpr int64_t kEndPatienceMs = 20'000;
 
-std::optional<std::string> endOf(NodeProcess& process) { return process.waitEnded(Deadline::inMs(kPatienceMs)); }
+std::optional<std::string> endOf(NodeProcess& process) { return process.waitEnded(Deadline::inMs(kEndPatienceMs)); }
 
 std::unique_ptr<NodeProcess> shell(const std::string& script, const std::string& input = "") {
     auto started = NodeProcess::start({{"sh", "-c", script}, input, -1});
@@ -60,7 +60,7 @@ TEST(NodeProcess, killsItsDescendants) {
     EXPECT_EQ(kill(pid, 0), -1) << "left behind";
     // The pipe ends after the last process that holds it.
     pollfd end{reader.get(), POLLIN, 0};
-    ASSERT_EQ(poll(&end, 1, static_cast<int>(kPatienceMs)), 1);
+    ASSERT_EQ(poll(&end, 1, static_cast<int>(kEndPatienceMs)), 1);
     while (read(reader.get(), &byte, 1) > 0) {
     }
 }
@@ -70,7 +70,7 @@ TEST(NodeLauncher, reportsANodeThatEndsAtOnceInOneLine) {
     config.hosts = {"localhost"};
     const SessionPlan plan = planSession(config, "here");
     const auto nodes =
-        launchNodes(plan, {"/bin/false", "/bin/false", ""}, Deadline::inMs(kPatienceMs), [] { return false; });
+        launchNodes(plan, {"/bin/false", "/bin/false", ""}, Deadline::inMs(kEndPatienceMs), [] { return false; });
     ASSERT_FALSE(nodes.ok());
     EXPECT_NE(nodes.error().message.find("node 0 (localhost) did not start: exit status 1"), std::string::npos)
         << nodes.error().message;
@@ -81,7 +81,7 @@ TEST(NodeLauncher, usesTheLaunchCommandForAnotherHost) {
     config.hosts = {"elsewhere.invalid"};
     const SessionPlan plan = planSession(config, "here");
     const auto nodes = launchNodes(plan, {"/bin/false", "/opt/my mural", "/bin/false --flag"},
-                                   Deadline::inMs(kPatienceMs), [] { return false; });
+                                   Deadline::inMs(kEndPatienceMs), [] { return false; });
     ASSERT_FALSE(nodes.ok());
     EXPECT_NE(nodes.error().message.find("(elsewhere.invalid) did not start: exit status 1"), std::string::npos)
         << nodes.error().message;
@@ -91,7 +91,7 @@ TEST(NodeLauncher, stopsWhenTheSessionIsCancelled) {
     SessionConfig config;
     config.hosts = {"localhost"};
     const SessionPlan plan = planSession(config, "here");
-    auto sleeper = launchNodes(plan, {"/bin/cat", "", ""}, Deadline::inMs(kPatienceMs), [] { return true; });
+    auto sleeper = launchNodes(plan, {"/bin/cat", "", ""}, Deadline::inMs(kEndPatienceMs), [] { return true; });
     ASSERT_FALSE(sleeper.ok());
 }
 

@@ -102,7 +102,7 @@ TEST(PictureOutput, DeepPicturesAreReducedForWhoTakesNone) {
     std::string said;
     PictureOutputConfig config;
     config.toNativeWindows = true;
-    config.openWindow = [&](uint64_t) { return Result<std::unique_ptr<PictureSink>>(std::make_unique<DeepSink>(window)); };
+    config.openWindow = [&](const WindowPicture&) { return Result<std::unique_ptr<PictureSink>>(std::make_unique<DeepSink>(window)); };
     config.done = [](uint32_t, uint32_t) {};
     config.say = [&](const std::string& text) { said += text; };
     PictureOutput output(std::move(config), std::make_unique<TellingSink>(file));

@@ -1,4 +1,5 @@
-// A head without nodes: follows docs/control-protocol.md as its first argument selects, to test `mural run` alone.
+// A head without nodes: follows docs/reference/control-protocol.md as its first argument selects, to test `mural run`
+// alone.
 //   fake_head ok|error|frames|die|mute --control-fd N
 #include <csignal>
 #include <cstdlib>

@@ -21,7 +21,7 @@ constexpr const char* kDumpFooter = R"(Examples:
   mural dump app.mural --summary                           how many of each in each frame, and their bytes
 
 Frames are counted as --out counts them; what stands behind the last one is of one more, which did not end. Records of Mural
-itself are called Mural.…; docs/wire-format.md describes them.
+itself are called Mural.…; docs/reference/wire-format.md describes them.
 Exit status: 0, 2 for a bad argument or a recording that can't be read.)";
 
 std::vector<std::string> patternsIn(const std::string& text) {
@@ -41,7 +41,7 @@ Result<recording::DumpOptions> dumpOptionsFrom(const DumpArguments& a) {
         options.calls = patternsIn(*a.calls);
         if (options.calls.empty()) return Error{"--calls \"" + *a.calls + "\": must name calls, such as glTexImage*,Mural.Swap (see mural dump --help)"};
         const auto unknown = std::ranges::find_if_not(options.calls, recording::fitsSomeCall);
-        if (unknown != options.calls.end()) return Error{"--calls \"" + *unknown + "\": no command has such a name; mural list-commands has all names of GL, docs/wire-format.md those of Mural.…"};
+        if (unknown != options.calls.end()) return Error{"--calls \"" + *unknown + "\": no command has such a name; mural list-commands has all names of GL, docs/reference/wire-format.md those of Mural.…"};
     }
     if (!a.frames) return options;
     const auto range = frameRangeOf(*a.frames);

@@ -1,4 +1,4 @@
-// What the head says, line by line (docs/control-protocol.md). Pure.
+// What the head says, line by line (docs/reference/control-protocol.md). Pure.
 #pragma once
 
 #include <cstdint>

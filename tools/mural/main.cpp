@@ -184,7 +184,7 @@ private:
 
     void addProcesses() {
         CLI::App& head = add("head", "head process of a session (started by mural run)", [this] { return mural::runHead(controlFd_); },
-                             "Example:\n  mural head --control-fd 3     speaks docs/control-protocol.md on descriptor 3\n\nExit status: 0, or 1 when the session could not start.");
+                             "Example:\n  mural head --control-fd 3     speaks docs/reference/control-protocol.md on descriptor 3\n\nExit status: 0, or 1 when the session could not start.");
         head.add_option("--control-fd", controlFd_, "descriptor of the conversation with mural run")->required()->check(CLI::NonNegativeNumber);
         CLI::App& node = add("node", "render node process (started by the head, here or on another host), or one that waits for heads", [this] { return runNode(); },
                              "Examples:\n  mural node --connect-fd 3           shared memory with a head on this machine\n  mural node --connect wall0:4711     a head on another machine\n"
