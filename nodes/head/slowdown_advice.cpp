@@ -1,6 +1,6 @@
 #include "nodes/head/slowdown_advice.hpp"
 
-#include "common/wire.hpp"
+#include "streamcodec/wire.hpp"
 
 namespace mural {
 
