@@ -58,11 +58,11 @@ def quick(folder):
     for kind in ('2D', 'DB', 'DPlex', 'mixed', 'pixel', 'stereo', 'zoom'):
         expect(any(row['what'].startswith(kind) for row in rows), 'nothing of %s was measured' % kind)
     expect(len(exact) >= 10 and all(row['differingPixels'] == 0 and row['psnr'] is None for row in exact), '%d exact ones' % len(exact))
-    # What approximates must be seen to: a kernel or an eye that leaves every pixel as it was did nothing.
+    # Approximations must have a visible effect: a kernel or an eye without any wrong pixel did nothing.
     for kind in ('pixel, kernel of 2x2: triangles', 'zoom of 0.5: triangles', 'yuv420'):
         expect(any(row['what'].startswith(kind) and row['differingPixels'] > 0 for row in rows), '%s changed nothing' % kind)
     expect('%d measured, 0 broken, 0 failed' % len(rows) in out, 'the table tells something else')
-    # Costs: of what recordings, codecs and blending take; more samples are nearer to many and dearer.
+    # Costs of recordings, codecs and blending. More samples are closer to the reference and cost more.
     costs = {row['what']: row for row in rows if row['group'] == 'Recording: scenes'}
     expect(all(row['cpuNsPerPixel'] > 0 and row['bytesPerPixel'] > 0 for row in costs.values()) and len(costs) >= 5, 'costs of the recording: %s' % list(costs))
     one, two = costs.get('one sample'), costs.get('2 samples')
@@ -94,7 +94,7 @@ def refused(folder):
         status, out, err = run(*words)
         expect(status == 2 and wanted in err and err.count('\n') == 1 and not out, '%s: %d %s %s' % (words, status, out, err))
     refused_before(folder)
-    # It can be run, and draws nothing.
+    # A program that can be run, but draws nothing.
     status, out, err = run('accuracy', '--quick', '--', 'true')
     expect(status == 2 and '\n0 measured, 0 broken, 3 failed\n' in out, 'a program that draws nothing: %d %s %s' % (status, out, err))
 
@@ -142,7 +142,8 @@ def check_end(process, inside, name, status, result):
     expect(process.returncode == status and not out, '%s: status %d instead of %d; %s %s' % (name, process.returncode, status, out, err))
     expect(not os.listdir(inside), '%s: these are left: %s' % (name, os.listdir(inside)))
     expect(not os.path.exists(result), '%s: an empty file is left' % name)
-    expect(until(lambda: not processes_with(inside), 2), '%s: these go on: %s' % (name, processes_with(inside))) # what has been killed is gone a moment later
+    # a killed process disappears a moment later
+    expect(until(lambda: not processes_with(inside), 2), '%s: these go on: %s' % (name, processes_with(inside)))
     return err
 
 

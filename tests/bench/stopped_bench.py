@@ -38,7 +38,7 @@ def fault_of(a, number):
             return "its status is %d, not %d; it said: %s" % (process.returncode, STOPPED, said)
         if "stopped" not in said:
             return "it does not say that it was stopped: " + said
-        # What Mural has started ends by itself, soon.
+        # Processes that Mural started end without help, soon.
         if not until(lambda: not processes_with(inside), END_SECONDS):
             return "these go on: " + ", ".join(processes_with(inside).values())
         left = os.listdir(inside)
