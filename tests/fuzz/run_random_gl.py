@@ -62,7 +62,7 @@ class Bench:
     def __init__(self, arguments, display_name, folder):
         self.arguments, self.folder = arguments, folder
         self.environment = programs.clean_environment(display_name)
-        self.environment["LP_NUM_THREADS"] = "0"  # the order of fragments is that of the draws
+        self.environment["LP_NUM_THREADS"] = "0" # the order of fragments is the order of the draws
         mural = os.path.join(arguments.build, "bin", "mural")
         self.launcher = [mural, "run", "--quiet", "--tiles", arguments.tiles] + arguments.options.split() + ["--"]
         self.program = os.path.join(arguments.build, "tests", "fuzz", "random_gl")
@@ -164,7 +164,7 @@ class Hunt:
             print("%s seed %d: two native runs are not the same" % (profile, seed), flush=True)
             return
         print("%s seed %d differs:\n  native  %s\n  Mural   %s" % ((profile, seed) + difference[1:]), flush=True)
-        # Steps after the first difference have no part in it.
+        # Steps after the first difference do not contribute to it.
         kept = steps[:difference[0]] if 0 < difference[0] <= len(steps) else steps
         if not self.arguments.no_shrink:
             kept = self.shrink(profile, seed, kept)
@@ -187,7 +187,7 @@ class Hunt:
             cuts = [len(steps) * i // parts for i in range(parts + 1)]
             fewer = [steps[:a] + steps[b:] for a, b in zip(cuts, cuts[1:])]
             answers = self.differing(profile, [(seed, candidate) for candidate in fewer])
-            # All parts that can be left out by themselves, if they can be left out together.
+            # All parts that can be removed one by one, if they can be removed together.
             spare = {step for (a, b), yes in zip(zip(cuts, cuts[1:]), answers) if yes for step in steps[a:b]}
             together = [step for step in steps if step not in spare]
             if sum(answers) > 1 and together and self.differing(profile, [(seed, together)])[0]:

@@ -6,7 +6,7 @@
 namespace mural::fuzz {
 
 inline constexpr const char* kWanted[] = {"auto", "lossy", "zstd", "jpeg-70"};
-constexpr int32_t kMostColumns = 600; // of three tiles
+constexpr int32_t kMostColumns = 600; // three tiles
 constexpr int32_t kMostRows = 150;
 constexpr int kMostWindows = 3;
 

@@ -24,7 +24,7 @@ KINDS = {'shader': 'Shader', 'program': 'Program', 'display list': 'List', 'arb 
 PACKED = re.compile(r'gl(ReadPixels|ReadnPixels|Getn?(Compressed)?Tex(ture)?(Sub)?Image|Getn?PixelMap|Getn?PolygonStipple|'
                     r'GetMultiTexImage|GetCompressedMultiTexImage)')
 UNPACKED = re.compile(r'gl((Compressed)?(Multi)?Tex(ture)?(Sub)?Image|DrawPixels|Bitmap|PolygonStipple|PixelMap)')
-# What numbers are called, and between what they lie.
+# Ranges of numbers by parameter name.
 RANGES = {
     'x': (-8, 70), 'y': (-8, 50), 'z': (-2, 4), 'w': (0, 90), 'width': (0, 36), 'height': (0, 28), 'depth': (0, 5),
     'h': (0, 70), 'xoffset': (-1, 12), 'yoffset': (-1, 12), 'zoffset': (-1, 4), 'level': (0, 4), 'levels': (0, 4),
