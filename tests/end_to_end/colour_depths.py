@@ -17,7 +17,7 @@ import tempfile
 import display
 import programs
 
-# What is shown with fewer bits than the window has is said; nothing else is.
+# A warning appears exactly for windows shown with fewer bits than they have.
 EIGHT_BITS = "bits per channel; its picture is shown and saved with 8"
 
 
@@ -68,7 +68,7 @@ class Comparison:
                 problems.append("no frame was verified")
             if numbers.get("differingPixels", 0) != 0:
                 problems.append("%d pixels differ" % numbers["differingPixels"])
-        halves = os.path.basename(program) == "deep_framebuffers"  # pbuffers of half floats are no windows
+        halves = os.path.basename(program) == "deep_framebuffers" # pbuffers of half floats are not windows
         if "app" in options and (EIGHT_BITS in messages) != halves:
             problems.append("the line about 8 bits " + ("is missing" if halves else "came"))
         return problems

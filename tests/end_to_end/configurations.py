@@ -25,11 +25,15 @@ import programs
 
 PROGRAM = "fixed_lighting"
 FRAMES = 3
-ZOOMED_MEAN = 12  # of half the size; a picture that is a few pixels off, or black, differs by more
-REDUCED_MEAN = 0.1  # of one that was drawn larger, from the native picture that was drawn so and reduced; a pixel off is 1 and more
-CANVAS_SIZE = "320x240"  # of the program's picture, so that those of canvases are whole parts or multiples of it
-CANVAS_MEAN = 3  # of a canvas with pixels of its own, from a native window of its size (0.97); a pixel off is 13 and more, the native picture made smaller 4.5
-WAY_MOST = 2  # of values that were rounded four times: pixels, and their weights, in 256ths; a part that is a pixel off differs by more
+ZOOMED_MEAN = 12 # at half the size; a picture that is a few pixels off, or black, differs by more
+# for a picture drawn larger, compared with the reduced native picture; a shift by one pixel gives 1 or more
+REDUCED_MEAN = 0.1
+CANVAS_SIZE = "320x240" # size of the program's picture, of which canvases are integer fractions or multiples
+# for a canvas with its own pixels, compared with a native window of its size (0.97); a shift by one pixel gives 13 or
+# more, the reduced native picture 4.5
+CANVAS_MEAN = 3
+# for values rounded four times: pixels and their weights, in 256ths; a part that is one pixel off differs by more
+WAY_MOST = 2
 SKIPPED = 77
 
 
@@ -156,7 +160,7 @@ def way_difference(native, shown, area, way, place):
     """The largest difference of values from the native picture, made smaller and larger as the frame says."""
     width, height, rows = native
     x0, x1, y0, y1 = pixels_of(area, width, height)
-    lines = [rows[y][3 * x0:3 * x1] for y in range(y1 - 1, y0 - 1, -1)]  # upwards, as what is rounded is
+    lines = [rows[y][3 * x0:3 * x1] for y in range(y1 - 1, y0 - 1, -1)] # bottom-up, like the rounded values
     small = (max(1, int((x1 - x0) * way[0] + 0.5)), max(1, int((y1 - y0) * way[1] + 0.5)))
     sent = [[int(v + 0.5) for v in line] for line in resized(lines, small)] if small != (x1 - x0, y1 - y0) else lines
     x0, x1, y0, y1 = pixels_of(place, width, height)
@@ -235,13 +239,15 @@ def check(run, path, native):
         zoomed += ", the zoomed part by %.2f of 255 in the mean" % mean
         if not all(z >= 1 and z == int(z) for z in zoom):
             continue
-        # Drawn larger: what the program draws natively in a window of that size, each pixel the mean of those in it.
+        # A picture drawn larger, compared with a native window of that size, in which each pixel is the mean of its
+        # block.
         times = tuple(int(z) for z in zoom)
         mean = mean_difference(reduced(run.reference([], times), times), shown, area)
         if mean > REDUCED_MEAN:
             return "zoomed, the part %s differs by %.3f of 255 in the mean from the native picture drawn larger" % (area, mean), ""
         zoomed += ", by %.3f from one that is drawn larger" % mean
-    # Both eyes of an anaglyph see one picture when nothing is between them; pairs side by side have parts of half the width, which are not compared.
+    # Both eyes of an anaglyph see one picture at eye base 0. Side-by-side pairs have parts of half the width, which are
+    # not compared.
     one = shown
     if sent and " eye" in said:
         one = run.picture(["--config", path, "--here", "--frusta", "program", "--eye-base", "0"])[0]
@@ -253,7 +259,7 @@ def check(run, path, native):
         zoomed += ", what frames made smaller by at most %.2f of 255 from the native picture made so" % most
     if not told:
         return "no node is told of", ""
-    # Antialiased, or every nth pixel: as the short form draws it.
+    # Antialiased, or every nth pixel, compared with the short form of the options.
     samples, kernel = re.search(r"sample \d+ of (\d+)", said), re.search(r"of each (\d+x\d+)", said)
     options = (["--subpixel", samples.group(1)] if samples else []) + (["--pixel", kernel.group(1)] if kernel else [])
     expected, against = native, "the native picture"
@@ -264,15 +270,15 @@ def check(run, path, native):
     eyes = [word for word in ("left eye", "right eye") if word in said]
     if eyes:
         flat = one if one is not shown else run.picture(["--config", path, "--here", "--frusta", "program", "--eye-base", "0"])[0]
-        # The file's own distance shows it already where it moves a pixel.
+        # The file's own eye base is sufficient where it moves a pixel.
         apart = shown if shown[2] != flat[2] else run.picture(["--config", path, "--here", "--frusta", "program", "--eye-base", "0.5"])[0]
         if apart[2] == flat[2]:
             return "the eyes see the same, however far apart", ""
-        # Without a distance between them both eyes see what one sees.
+        # With eye base 0 both eyes see the picture of one.
         against += " for both eyes"
         if not (sent and eyes_as_one) and flat[2] != expected[2]:
             expected, areas, shown = side_by_side(expected, expected), [(0, 0, 1, 1)], flat
-            if sent:  # in halves of the picture: near it
+            if sent: # in halves of the picture: approximate
                 mean = mean_difference(expected, shown, (0, 0, 1, 1))
                 about = "%d nodes, pictures that frames make smaller among them: by %.2f of 255 in the mean from %s" % (len(told), mean, against)
                 return (None if mean < ZOOMED_MEAN else about), about

@@ -56,11 +56,11 @@ def per_frame(case_name, program, at_least, at_most, frames=(4, 10)):
     failures.case(check)
 
 
-per_frame("same_scene", "same_scene", 0.5, 100, (10, 310)) # how the first frames are coded is chosen by measured time
+per_frame("same_scene", "same_scene", 0.5, 100, (10, 310)) # measured times select the coding of the first frames
 per_frame("same_texture", "same_texture", 1, 1024)
 per_frame("changed_texture", "changed_texture", PATCH_BYTES, 1.5 * PATCH_BYTES + 1024)
 
-# Values of 16 to 36 kB that come again, in no order: a source, vertices, an image cost where they are.
+# Values of 16 to 36 kB that recur in random order: a source, vertices, or an image costs only a reference.
 for value in ("same_sources", "same_arrays", "same_pixels"):
     per_frame(value, value, 1, 300, (30, 90))
 
@@ -97,7 +97,8 @@ def late_uploads(context):
     if not isinstance(report, dict):
         return report
     e = left_out_of(report)
-    # Of a frame at least: two of three textures and of three buffers, two of four parts, the unused, the same and the deleted one.
+    # Dropped per frame, at least: two of three textures and of three buffers, two of four parts, the unused, the equal
+    # and the deleted one.
     if e["leftOutRecords"] < 900 or e["heldRecords"] < 600 or e["rawBytes"] > 0.7 * e["programBytes"]:
         return "too little was left out: %s" % e
     return None
@@ -114,7 +115,8 @@ def equal_state(context):
     if not isinstance(report, dict):
         return report
     e = left_out_of(report)
-    # Of each of 48 objects' 2 x 19 sets at least 30 change nothing that its draw sees: over 1 400 of a frame, and a try has at least eight.
+    # Of each of 48 objects' 2 x 19 state changes at least 30 have no effect on its draw: over 1 400 per frame, and a
+    # run has at least eight frames.
     if e["leftOutRecords"] < 8 * 1400 or e["programBytes"] - e["rawBytes"] < 0.4 * 8 / 300 * e["programBytes"]:
         return "too little was left out: %s" % e
     return None

@@ -18,7 +18,7 @@ import display
 import programs
 import session
 
-CASES = {}  # name: function(context) → None or what is wrong
+CASES = {} # name: function(context) → None or an error
 
 
 def case(function):
@@ -262,7 +262,7 @@ def program_killed(context):
     with context.drawing("long_run", 100000) as run:
         if not run.wait_for_line("frame 10"):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
-        kill_all(run.processes(r"^\S*/long_run --frames"))  # not the launcher, which names it, too
+        kill_all(run.processes(r"^\S*/long_run --frames")) # not the launcher, whose command line also has the name
         return check_end(run, 128 + signal.SIGKILL)
 
 
@@ -337,7 +337,7 @@ def ends_frames_reached(context):
 
 @case
 def ends_picture_that_nobody_sees(context):
-    # The wall's size needs a private display: the program's window is there.
+    # The size of the wall needs a private display, because the program's window is there.
     for options, told in ((("--size", "250x190", "--display", "app"), 1), (("--tiles", "1x1", "--display", "app"), 0)):
         with context.drawing("immediate", 3, options=options) as run:
             wrong = check_end(run, 0)

@@ -19,7 +19,7 @@ import display
 import pictures
 import programs
 
-# The frames of tests/programs/hard_cases.cpp, in its order.
+# Names of the frames of tests/programs/hard_cases.cpp, in its order.
 CASES = ["coplanar, GL_LESS, D24", "coplanar, GL_LEQUAL, D24", "near 10^-3, far 10^7", "near 10^-4, far 10^6", "far plane infinitely far", "far plane lost in floats",
          "reversed Z", "world at 10^6, matrices by the program", "eye 1 cm from a wall", "through the near plane, ground of 10^5", "lines and points of 1 pixel",
          "lines of 7, points of 9 pixels", "stippled lines and strips", "smooth lines", "mipmaps, anisotropy, derivatives", "gl_FragCoord, stipples, raster position",
@@ -29,7 +29,7 @@ CASES = ["coplanar, GL_LESS, D24", "coplanar, GL_LEQUAL, D24", "near 10^-3, far 
 WAYS = {"2x2 tiles": ["--tiles", "2x2"], "7x5 tiles on 4 nodes": ["--tiles", "7x5", "--local-nodes", "4"],
         "3x2 culled": ["--tiles", "3x2", "--tiling", "culled", "--local-nodes", "4"], "3 ranges": ["--db", "3"], "3 turns": ["--dplex", "3"],
         "2x1 tiles of 2 ranges": ["--tiles", "2x1", "--db", "2", "--local-nodes", "4"]}
-# The same by tiles of one pixel each: small, for a tile has its price.
+# The same with tiles of one pixel each. The picture is small, because each tile has a cost.
 SMALL_SIZE, SMALL_WAY = "37x23", {"tiles of 1 pixel": ["--tiles", "37x23", "--local-nodes", "3"]}
 PROGRAMS = {"hard_cases": "", "hard_cases_samples": ", 4 samples"}
 

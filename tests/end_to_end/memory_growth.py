@@ -20,11 +20,11 @@ import programs  # noqa: E402
 from memory_watch import MemoryWatch  # noqa: E402
 
 MARKS = (150, 1650)
-LEAK_MARKS = (150, 550)  # enough to be seen: 25 MiB and more
-MOST_GROWTH_MIB = 4.0  # heaps settle; a texture forgotten in each frame makes 100, a context in every fourth 7.5
+LEAK_MARKS = (150, 550) # frames between which a leak becomes visible: 25 MiB or more
+MOST_GROWTH_MIB = 4.0 # heaps settle; a texture leaked in each frame makes 100, a context in every fourth 7.5
 WEIGHT_MARKS = (4, 12)
-LEAST_WEIGHT_MIB = 200.0 # of large_objects natively: or the comparison says nothing
-MOST_NODE_SHARE = 1.3    # of the native run
+LEAST_WEIGHT_MIB = 200.0 # for large_objects natively; otherwise the comparison means nothing
+MOST_NODE_SHARE = 1.3 # relative to the native run
 
 
 def growth(seen, role, marks=MARKS):
@@ -57,7 +57,7 @@ def main():
     build = os.path.abspath(arguments.build)
     mural = arguments.mural or os.path.join(build, "bin", "mural")
     program = [os.path.join(build, "tests", "programs", "object_churn"), "--frames", "100000", "--size", "96x96"]
-    # What is kept for nodes that come back grows with lists that call lists, up to --store: not what this is about.
+    # Without the rejoin log, which grows with lists that call lists, up to --store, and is not tested here.
     wall = ["--tiles", "2x1", "--display", "none", "--restart-nodes", "0"]
     wrong = 0
     with display.PrivateDisplay() as name:

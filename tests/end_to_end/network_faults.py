@@ -23,10 +23,10 @@ STRANGER = {"stranger": "192.0.2.24"}
 GROUP, GROUP_PORT, CONTROL_PORT = "239.255.77.90", 4277, 4278
 RATE_BYTES_PER_S = 10_000_000
 PATIENT = {"silent-ms": 20000, "stalled": "wait"}
-STEP_MS = 20  # of the timeline
+STEP_MS = 20 # step of the timeline
 MOST_GAP_S = 1.2
 DATAGRAMS = "udp dport %d" % GROUP_PORT
-PAYLOAD = {"counter": "@ih,96,16", "symbol": "@ih,800,16"}  # bits behind the UDP head: the seal's counter, the middle
+PAYLOAD = {"counter": "@ih,96,16", "symbol": "@ih,800,16"} # bits after the UDP header: the cipher's counter, the middle
 ENDS_WITHIN_S = 40
 
 
@@ -222,7 +222,7 @@ def sender_killed(lab):
 
 def comes_and_goes(lab):
     total = 3 * RATE_BYTES_PER_S
-    # Who comes hears what is written from then on: with a small window that is soon sent.
+    # A new member receives the stream from its join on: with a small window that data is sent soon.
     sender, receivers = lab.begin(total, window=512)
     guests = []
     for number in range(15):
@@ -310,9 +310,10 @@ def stranger(lab):
         forger.kill()
         forger.wait()
     sent = dict(zip(said[::2], map(int, said[1::2])))
-    # It does what a busy machine lets it do: few are enough, as a check that is gone refuses none.
+    # The stranger's rate depends on the load of the machine. A small number is sufficient, because a missing check
+    # rejects none.
     need(sent.get("replayed", 0) > 100 and sent.get("changed", 0) > 100, "the stranger sent: %s" % sent)
-    # By kind: other refusals must not hide that one of the two checks is gone.
+    # Counted by kind: other rejections must not hide that one of the two checks is missing.
     refused = {kind: min(m[kind] for m in told) for kind in ("replayed", "forged")}
     need(min(refused.values()) > 20, "refused were only %s" % refused)
     return "%s; refused %s" % (sent, refused)

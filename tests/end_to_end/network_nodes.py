@@ -20,7 +20,7 @@ NODES = {"wall1": "10.79.0.2", "wall2": "10.79.0.3"}
 MULTICAST = "by reliable multicast"
 UNREACHED = "does not answer to multicast"
 REACHED_AGAIN = "multicast reaches it again"
-MOST_FRAMES = 20000  # of runs that end when enough was seen, after a few hundred
+MOST_FRAMES = 20000 # limit for runs that end after a few hundred frames, when enough was seen
 NO_MULTICAST = "ip daddr 239.0.0.0/8"
 
 
@@ -134,7 +134,7 @@ def killed(lab, *options):
         status = run.status()
         said = "\n".join(run.standard_error)
         drawn = drawn_by(run)
-        # Once only: a stream that goes on at a wrong place ends the node again.
+        # Exactly once: a stream that continues at a wrong position ends the node again.
         good = status == 0 and all(text in said for text in wanted) and said.count("was lost: ") == 1 and drawn_before < drawn / 2
         return too_many(drawn) if good else "status %s, %d frames, %d before it was back; it said:\n%s" % (status, drawn, drawn_before, said)
 

@@ -44,7 +44,7 @@ def main():
     arguments = parser.parse_args()
     failures = 0
     for way in arguments.ways.split(","):
-        # Fresh servers: both give the same numbers to their first programs.
+        # Fresh servers give the same numbers to their first programs.
         with display.PrivateDisplay("640x480x24") as first, display.PrivateDisplay("640x480x24") as second:
             wrong = check(os.path.abspath(arguments.build), way, (first, second))
         failures += wrong is not None

@@ -59,7 +59,7 @@ caught("once_by_both_fronts", "immediate", "forwarding")
 caught("once_by_both_fronts_dlsym", "route_dlsym", "forwarding")
 caught("glvnd_with_front", "immediate", "none", ("--front", "preload"))
 caught("glvnd_with_front_dlsym", "route_dlsym", "none", ("--front", "preload"))
-# What the line of told_mixed_… advises.
+# The advice in the message of told_mixed_….
 caught("mixed_linked_when_glvnd_is_first", "mixed_linked", "none", more={"LD_PRELOAD": "libGL.so.1"})
 caught("in_script_when_asked", "immediate", "glx", ("--front", "preload"), in_script=True)
 
@@ -99,7 +99,7 @@ for name, library in (("mixed_glx_driver", "libGLX_mesa.so.0"), ("mixed_glx_osme
                       ("mixed_egl_osmesa", "libOSMesa.so.8"), ("mixed_linked", "libOSMesa.so.8")):
     told(name, name, ["part of the program's GL calls", library, "LD_PRELOAD=libGL.so.1"], output="the window shows the whole picture")
 told("x11_only", "x11_window", ["loads no GL library"])
-# What fails early tells nothing by what it has not loaded yet.
+# For a program that fails early, missing libraries mean nothing.
 told("failed_early", None, ["sh ended before it made a GL context (exit status 3)", "mural doctor"], shell="exit 3", status=3)
 told("killed_early", None, ["sh ended before it made a GL context (signal 9 (Killed))"], shell="kill -9 $$", status=137)
 told("never_tried", None, ["sh never reached GL"], shell="exit 0")

@@ -12,12 +12,12 @@ import sys
 SKIP = 77
 INSIDE = "MURAL_TEST_OWN_NETWORK"
 
-# Rules of netdev see all that comes in, as a switch would.
+# Rules of the netdev family see all incoming packets, as a switch would.
 RULES = """
 add table netdev faults
 add chain netdev faults in { type filter hook ingress device "%s" priority 0; }
 """
-# Of a longer way: a packet of 1514 bytes takes 2.4 ms, and those behind it wait.
+# Rate of a slower path: a packet of 1514 bytes takes 2.4 ms, and the packets after it wait.
 DETOUR_RATE = "5mbit"
 
 
@@ -31,7 +31,7 @@ def enter(own_processes=False):
     if os.environ.get(INSIDE):
         return
     reasons = []
-    # In a chroot nobody may have users of his own; root needs none.
+    # In a chroot the kernel permits no user namespaces; root needs none.
     for namespaces in ["-Urnm"] + (["-nm"] if os.getuid() == 0 else []):
         command = ["unshare", namespaces, "--kill-child", "--fork"] + (["--pid"] if own_processes else [])
         try:
@@ -63,7 +63,7 @@ class OwnNetwork:
             for at in (["ip"] + ["ip -n " + name for name in others]) if single_packets else []:
                 sh(at + " link set dev eth0 gso_max_segs 1")
             for name in others:
-                self.drop(name, "ip daddr 192.0.2.1")  # whether rules can be made at all
+                self.drop(name, "ip daddr 192.0.2.1") # tests whether rules can be created
                 self.heal(name)
         except (RuntimeError, OSError, subprocess.SubprocessError) as e:
             skip("this machine makes no networks of namespaces: %s" % e)
@@ -119,7 +119,7 @@ class OwnNetwork:
         """What comes from this machine and is chosen comes to all others later than what was sent after it."""
         sh("ip -n switch link add slow0 mtu 1500 type veth peer name slow1; ip -n switch link set slow0 up")
         sh("ip -n switch link set slow1 master bridge up; tc -n switch qdisc add dev slow0 root tbf rate %s burst 2kb limit 1mb" % DETOUR_RATE)
-        # Nobody lives there: nothing is learnt from it, nothing goes to it.
+        # An unused branch: no addresses are learnt from it, nothing is sent to it.
         sh("ip -n switch link set slow1 type bridge_slave learning off flood off mcast_flood off bcast_flood off")
         self.rules("switch", "port0", what + " counter fwd to \"slow0\"")
 

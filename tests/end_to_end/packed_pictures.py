@@ -16,7 +16,7 @@ import pictures
 failures.CASES.clear()  # only those of this file
 PROGRAMS = ("immediate", "fixed_lighting", "copied_scene", "es2_scene")
 TILES = ["--tiles", "2x2"]
-LEAST_DB = 20 # colours at half the resolution, at edges of triangles
+LEAST_DB = 20 # half the colour resolution, at edges of triangles
 
 
 @passes.case

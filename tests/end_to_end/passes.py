@@ -303,7 +303,7 @@ server { config {
             wall { bottom_left [ 1 -.75 -1 ] bottom_right [ 1 -.75 1 ] top_left [ 1 .75 -1 ] } } }
     %(compounds)s } }
 """
-# The front wall by two nodes.
+# The front wall drawn by two nodes.
 SHARED_WALL = """
     node { pipe { window { viewport [ 0 0 %(w)d %(h)d ] channel { name "helper" } } } }
     compound {
@@ -314,7 +314,7 @@ SHARED_WALL = """
             compound { channel "helper" viewport [ .4 0 .6 1 ] outputframe { name "rest" } }
             inputframe { name "rest" } } }
 """
-# As the eye in ROOM sees them: distance, left and right edge, degrees to the left.
+# The walls as seen from the eye in ROOM: distance, left and right edge, degrees to the left.
 WALLS = ((1.2, -0.7, 1.3, 90), (1.3, -1.2, 0.8, 0), (0.8, -1.3, 0.7, -90))
 
 
@@ -334,14 +334,14 @@ def room_ways(context, notes, scenes, size=(160, 120)):
         arguments = list(arguments) + ["--around"]
         got = in_room(context, program, arguments, size)
         worst, apart = math.inf, math.inf
-        # Over its right upper corner this one lays what a light sees.
+        # This scene draws the light's view over its upper right corner.
         has_shadow = "framebuffer" in arguments
         columns = size[0] * 3 // 4 if has_shadow else size[0]
         for wall, (distance, left, right, degrees) in enumerate(WALLS[:2] if has_shadow else WALLS):
             edges = (left / distance, right / distance, -0.65 / distance, 0.85 / distance, degrees, 0.2, -0.1, 0.3)
             wanted = native(context, program, arguments + ["--screen", ",".join("%.9g" % edge for edge in edges)], size)
             for number, (a, b) in enumerate(zip(wanted, got)):
-                # The overlay lies over the lower left quarter of the whole wall.
+                # The overlay covers the lower left quarter of the whole wall.
                 upper = slice(0, size[1] // 2)
                 start = 3 * wall * size[0]
                 part = pictures.Picture(columns, size[1] // 2, [row[start:start + 3 * columns] for row in b.rows[upper]])

@@ -23,7 +23,7 @@ HELD = ["--programs", "late_uploads", "--layouts", "2x1", "--options", "--displa
 CHUNKS = ["--programs", "fixed_lighting,range_ties", "--layouts", "1x1", "--options", "--display none --db 3 --chunk-queue 40", "--frames", "12"]
 EDGES = ["--programs", "blended_rectangles", "--layouts", "3x2", "--frames", "4"]
 AREAS = ["--programs", "clears_in_turns,es2_scene", "--tile-queue", "16x16", "--layouts", "2,3", "--frames", "12"]
-# What is run, and the faults that it must find.
+# Settings of the runs, and the faults that they must detect.
 SETTINGS = ((["--layouts", "2x2"], ("opcode", "shift", "drop")), (RANGES, ("range", "tie", "order")), (SWAPS, ("band", "order")), (ECONOMY, ("economy",)), (HELD, ("held",)), (EDGES, ("edges",)), (AREAS, ("early", "uncleared")), (CHUNKS, ("lateshare",)))
 
 
@@ -35,7 +35,7 @@ def compare(arguments, setting, fault):
                "--size", "250x190", "--seconds", "60"] + setting
     if fault:
         environment["MURAL_PLANT"] = fault
-        command.append("--until-differs")  # one program that shows it is enough
+        command.append("--until-differs") # one program that reveals it is sufficient
     if arguments.mural:
         command += ["--mural", arguments.mural]
     done = subprocess.run(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,

@@ -6,7 +6,7 @@ import shlex
 import signal
 import subprocess
 
-# Every program must be in one group; CTest runs one group per test.
+# Groups of programs. Every program belongs to exactly one; CTest runs one group per test.
 GROUPS = {
     "vertices": ["immediate", "generic_attributes", "display_lists", "client_arrays", "draw_calls",
                  "core_arrays", "buffers", "persistent_mapping", "persistent_frames", "pinned_memory",
@@ -21,9 +21,9 @@ GROUPS = {
                 "fragment_counters", "fragment_sums", "frag_coord", "fragment_places", "many_triangles", "no_depth", "queries", "queries_later",
                 "direct_state_access", "program_binaries", "shader_includes",
                 "draw_errors_compat", "draw_errors_core", "draw_errors_es3"],
-    # Of what few drivers have: elsewhere they say so and are skipped.
+    # Programs whose extensions few drivers have: elsewhere they report it and are skipped.
     "bindless": ["bindless_textures", "sparse_textures", "sparse_buffers"],
-    # No test runs it: the one driver here that has images without a binding ends in it at times (docs/exactness.md).
+    # Run by no test: the only driver here with bindless images sometimes crashes in it (docs/exactness.md).
     "bindless_images": ["bindless_images"],
     "windows": ["es1_scene", "es1_draw_texture", "es2_scene", "es3_scene", "es_pipelines", "es_feedback_limit", "egl_desktop",
                 "egl_offscreen", "egl_buffer_names", "egl_blended_rectangles", "egl_images", "egl_pixmaps",
@@ -37,14 +37,14 @@ GROUPS = {
                   "exit_abort", "exit_segv", "exit_term", "fork_child", "fork_exec"],
 }
 
-# The status of a program whose driver lacks what it is about (tests/programs/support/needs.hpp).
+# Exit status of a program whose driver lacks its extension (tests/programs/support/needs.hpp).
 SKIPPED = 77
 
-# The status that a program ends with when it is not 0, as subprocess tells it.
+# Exit status of programs that do not end with 0, in the form of subprocess.
 STATUS = {"exit_three": 3, "exit_abort": -signal.SIGABRT, "exit_segv": -signal.SIGSEGV,
           "exit_term": -signal.SIGTERM}
 
-# Frames that are shown by glFlush and not by a swap.
+# Programs that show frames with glFlush instead of a swap.
 FLUSHING = {"single_buffered"}
 
 
@@ -70,7 +70,7 @@ def clean_environment(display):
     keep = ("PATH", "HOME", "TMPDIR", "XDG_RUNTIME_DIR", "LANG", "LC_ALL", "MURAL_PLANT",
             "MURAL_LOG", "ASAN_OPTIONS", "UBSAN_OPTIONS", "LD_LIBRARY_PATH", "LIBGL_ALWAYS_SOFTWARE",
             "EGL_PLATFORM", "LP_NUM_THREADS", "CLEARS_FRONT",
-            # which driver: another Mesa than the system's
+            # selection of the driver: a Mesa other than the system's
             "GALLIUM_DRIVER", "MESA_LOADER_DRIVER_OVERRIDE", "LIBGL_DRIVERS_PATH", "GBM_BACKENDS_PATH",
             "VK_ICD_FILENAMES", "VK_DRIVER_FILES", "__EGL_VENDOR_LIBRARY_DIRS")
     environment = {key: os.environ[key] for key in keep if key in os.environ}
@@ -82,10 +82,10 @@ class Run:
     """What one run of a program gave."""
 
     def __init__(self, status, output, folder):
-        self.status = status  # None: it did not end in time
+        self.status = status # None: it did not end in time
         self.output = output
         self.folder = folder
-        self.captured = None  # frames through the nodes, where that is known
+        self.captured = None # frames drawn by the nodes; None: unknown
 
     def frames(self):
         """{"w0/f0003.ppm": path} of all pictures."""
@@ -120,7 +120,7 @@ def ended_within(process, seconds):
 def command_of(build, name, folder, size, frames, library="grab.so", arguments=()):
     """What a shell sets for the program so that its frames are kept, and the words of its command."""
     settings = "GRAB_OUT=%s " % shlex.quote(folder) + ("GRAB_FLUSH=1 " if name in FLUSHING else "")
-    # Our library is in front of whatever the launcher preloads.
+    # The test's library comes before any library that the launcher preloads.
     settings += 'LD_PRELOAD="%s${LD_PRELOAD:+ $LD_PRELOAD}"' % os.path.join(build, "tests", "end_to_end", library)
     return settings, [os.path.join(build, "tests", "programs", name), "--size", size, "--frames", str(frames)] + list(arguments)
 
@@ -150,7 +150,7 @@ def same_status(native, through):
         return through in (native, 128 - native)
     return native == through
 
-# Programs whose pictures are not yet the native ones, and why (docs/exactness.md has the proofs).
+# Programs whose pictures still differ from the native ones, with the reason (docs/exactness.md has the proofs).
 KNOWN_DIFFERENCES = {
     "egl_pbuffer_textures": "Mesa's software driver leaves textures of pbuffers empty; the nodes show the pictures",
 }

@@ -16,7 +16,7 @@ import pictures
 failures.CASES.clear()  # only those of this file
 EYES = ["--eye-base", str(2 * passes.EYE), "--focus", str(passes.FOCUS)]
 DRAW = ["--draw", "fixed"]
-# Both eyes by one window; the sizes are those of the pictures.
+# Both eyes in one window; the sizes are the pictures' sizes.
 FILE = """#Equalizer 1.2 ascii
 server { config {
     appNode { pipe { window { viewport [ 0 0 %d %d ] attributes { hint_stereo ON } channel { name "screen" } } } }

@@ -39,9 +39,9 @@ def round_trips(case_name, program, at_most, options=()):
 for name in ("immediate", "client_arrays", "core_arrays", "persistent_mapping", "glsl_uniforms", "glsl_blocks", "arb_programs",
              "attribute_stacks", "evaluators", "clipping", "fixed_lighting", "many_triangles", "shared_contexts"):
     round_trips("draws_only_" + name, name, 0)
-# The results of the first two frames, as long as nobody knows yet that they are read later: six each.
+# Results of the first two frames, before the library knows that they are read later: six each.
 round_trips("queries_later", "queries_later", 12)
-# Reads into pixel buffers that are mapped two frames later: on a busy machine some answers are late, all are not.
+# Reads into pixel buffers that are mapped two frames later. On a busy machine some replies are late, but not all.
 round_trips("reads_later", "reads_later", 20)
 
 if __name__ == "__main__":

@@ -39,7 +39,8 @@ class SanitizedComparison(run_exact.Comparison):
     def environment(self):
         reports = "log_path=" + self.report_prefix()
         return {"LD_PRELOAD": " ".join(self.runtimes),
-                # Drivers keep what they have until the end. The test's own library stands before the runtime.
+                # Leaks are not reported, because drivers keep memory until the end. The test's own library precedes the
+                # runtime.
                 "ASAN_OPTIONS": reports + ":detect_leaks=0:verify_asan_link_order=0",
                 "UBSAN_OPTIONS": reports + ":print_stacktrace=1"}
 

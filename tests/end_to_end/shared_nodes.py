@@ -7,7 +7,7 @@ import subprocess
 
 import programs
 
-# Lines are commands; what each has ended with goes into the pipe.
+# A shell that runs each line as a command, and writes its exit status into the pipe.
 READER = 'while IFS= read -r line; do eval "$line"; echo $? > "$1"; done'
 
 
@@ -22,7 +22,7 @@ class SharedNodes:
     def __init__(self, launcher, display, folder):
         os.makedirs(folder)
         self.log_path = os.path.join(folder, "log")
-        self.wanted_frames = 0  # that must have gone through the nodes in the end
+        self.wanted_frames = 0 # total that the nodes must have drawn at the end
         statuses = os.path.join(folder, "statuses")
         os.mkfifo(statuses)
         self.statuses = os.open(statuses, os.O_RDWR)
@@ -45,7 +45,7 @@ class SharedNodes:
             self.process.stdin.write(line.encode())
             self.process.stdin.flush()
         except BrokenPipeError:
-            pass  # there will be no status
+            pass # there is no status
         status = self._status(seconds)
         return status, "\n".join(text_of(path) for path in ((log_path,) if status is not None else (self.log_path, log_path)))
 

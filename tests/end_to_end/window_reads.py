@@ -13,7 +13,7 @@ import sys
 import programs
 import run_exact
 
-# Not threads_windows: its windows overlap, and a read finds whatever another thread has just shown there.
+# Without threads_windows: its windows overlap, so a read returns the pixels that another thread has just shown there.
 PROGRAMS = "immediate,single_buffered,several_windows,resize,window_churn,es2_scene,egl_desktop"
 
 
