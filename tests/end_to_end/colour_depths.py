@@ -68,7 +68,7 @@ class Comparison:
                 problems.append("no frame was verified")
             if numbers.get("differingPixels", 0) != 0:
                 problems.append("%d pixels differ" % numbers["differingPixels"])
-        halves = os.path.basename(program) == "deep_framebuffers" # pbuffers of half floats are not windows
+        halves = os.path.basename(program) == "deep_framebuffers"  # pbuffers of half floats are not windows
         if "app" in options and (EIGHT_BITS in messages) != halves:
             problems.append("the line about 8 bits " + ("is missing" if halves else "came"))
         return problems

@@ -25,10 +25,10 @@ import programs
 
 PROGRAM = "fixed_lighting"
 FRAMES = 3
-ZOOMED_MEAN = 12 # at half the size; a picture that is a few pixels off, or black, differs by more
+ZOOMED_MEAN = 12  # at half the size; a picture that is a few pixels off, or black, differs by more
 # for a picture drawn larger, compared with the reduced native picture; a shift by one pixel gives 1 or more
 REDUCED_MEAN = 0.1
-CANVAS_SIZE = "320x240" # size of the program's picture, of which canvases are integer fractions or multiples
+CANVAS_SIZE = "320x240"  # size of the program's picture, of which canvases are integer fractions or multiples
 # for a canvas with its own pixels, compared with a native window of its size (0.97); a shift by one pixel gives 13 or
 # more, the reduced native picture 4.5
 CANVAS_MEAN = 3
@@ -160,7 +160,7 @@ def way_difference(native, shown, area, way, place):
     """The largest difference of values from the native picture, made smaller and larger as the frame says."""
     width, height, rows = native
     x0, x1, y0, y1 = pixels_of(area, width, height)
-    lines = [rows[y][3 * x0:3 * x1] for y in range(y1 - 1, y0 - 1, -1)] # bottom-up, like the rounded values
+    lines = [rows[y][3 * x0:3 * x1] for y in range(y1 - 1, y0 - 1, -1)]  # bottom-up, like the rounded values
     small = (max(1, int((x1 - x0) * way[0] + 0.5)), max(1, int((y1 - y0) * way[1] + 0.5)))
     sent = [[int(v + 0.5) for v in line] for line in resized(lines, small)] if small != (x1 - x0, y1 - y0) else lines
     x0, x1, y0, y1 = pixels_of(place, width, height)
@@ -278,7 +278,7 @@ def check(run, path, native):
         against += " for both eyes"
         if not (sent and eyes_as_one) and flat[2] != expected[2]:
             expected, areas, shown = side_by_side(expected, expected), [(0, 0, 1, 1)], flat
-            if sent: # in halves of the picture: approximate
+            if sent:  # in halves of the picture: approximate
                 mean = mean_difference(expected, shown, (0, 0, 1, 1))
                 about = "%d nodes, pictures that frames make smaller among them: by %.2f of 255 in the mean from %s" % (len(told), mean, against)
                 return (None if mean < ZOOMED_MEAN else about), about

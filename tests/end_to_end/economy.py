@@ -11,7 +11,7 @@ import tempfile
 
 import failures
 
-failures.CASES.clear()  # only those of this file
+failures.CASES.clear()  # keeps only the cases of this file
 PATCH_BYTES = 64 * 64 * 4
 
 
@@ -56,7 +56,7 @@ def per_frame(case_name, program, at_least, at_most, frames=(4, 10)):
     failures.case(check)
 
 
-per_frame("same_scene", "same_scene", 0.5, 100, (10, 310)) # measured times select the coding of the first frames
+per_frame("same_scene", "same_scene", 0.5, 100, (10, 310))  # measured times select the coding of the first frames
 per_frame("same_texture", "same_texture", 1, 1024)
 per_frame("changed_texture", "changed_texture", PATCH_BYTES, 1.5 * PATCH_BYTES + 1024)
 

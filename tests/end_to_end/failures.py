@@ -18,7 +18,7 @@ import display
 import programs
 import session
 
-CASES = {} # name: function(context) → None or an error
+CASES = {}  # name: function(context) → None or an error
 
 
 def case(function):
@@ -195,7 +195,7 @@ def node_without_memory(context):
         node = run.wait_for_processes(NODE, 1)[0]
         with open("/proc/%d/statm" % node, encoding="ascii") as sizes:
             pages = int(sizes.read().split()[0])
-        limit = pages * resource.getpagesize() + (3 << 20) # less than one texture
+        limit = pages * resource.getpagesize() + (3 << 20)  # less than one texture
         resource.prlimit(node, resource.RLIMIT_AS, (limit, limit))
         wrong = check_end(run, 0, frames)
         if wrong is None and run.standard_output.count("no memory") != 1:
@@ -262,7 +262,7 @@ def program_killed(context):
     with context.drawing("long_run", 100000) as run:
         if not run.wait_for_line("frame 10"):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
-        kill_all(run.processes(r"^\S*/long_run --frames")) # not the launcher, whose command line also has the name
+        kill_all(run.processes(r"^\S*/long_run --frames"))  # not the launcher, whose command line also has the name
         return check_end(run, 128 + signal.SIGKILL)
 
 

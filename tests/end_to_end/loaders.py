@@ -18,7 +18,7 @@ import failures
 import processes
 import session
 
-failures.CASES.clear()  # only those of this file
+failures.CASES.clear()  # keeps only the cases of this file
 SOCKETS = ("/tmp", os.environ.get("XDG_RUNTIME_DIR") or "/tmp")
 
 

@@ -20,11 +20,11 @@ import programs  # noqa: E402
 from memory_watch import MemoryWatch  # noqa: E402
 
 MARKS = (150, 1650)
-LEAK_MARKS = (150, 550) # frames between which a leak becomes visible: 25 MiB or more
-MOST_GROWTH_MIB = 4.0 # heaps settle; a texture leaked in each frame makes 100, a context in every fourth 7.5
+LEAK_MARKS = (150, 550)  # frames between which a leak becomes visible: 25 MiB or more
+MOST_GROWTH_MIB = 4.0  # heaps settle; a texture leaked in each frame makes 100, a context in every fourth 7.5
 WEIGHT_MARKS = (4, 12)
-LEAST_WEIGHT_MIB = 200.0 # for large_objects natively; otherwise the comparison means nothing
-MOST_NODE_SHARE = 1.3 # relative to the native run
+LEAST_WEIGHT_MIB = 200.0  # for large_objects natively; otherwise the comparison means nothing
+MOST_NODE_SHARE = 1.3  # relative to the native run
 
 
 def growth(seen, role, marks=MARKS):

@@ -13,7 +13,7 @@ import tempfile
 
 import failures
 
-failures.CASES.clear()  # only those of this file
+failures.CASES.clear()  # keeps only the cases of this file
 PATIENCE_SECONDS = 60
 
 

@@ -23,10 +23,10 @@ STRANGER = {"stranger": "192.0.2.24"}
 GROUP, GROUP_PORT, CONTROL_PORT = "239.255.77.90", 4277, 4278
 RATE_BYTES_PER_S = 10_000_000
 PATIENT = {"silent-ms": 20000, "stalled": "wait"}
-STEP_MS = 20 # step of the timeline
+STEP_MS = 20  # step of the timeline
 MOST_GAP_S = 1.2
 DATAGRAMS = "udp dport %d" % GROUP_PORT
-PAYLOAD = {"counter": "@ih,96,16", "symbol": "@ih,800,16"} # bits after the UDP header: the cipher's counter, the middle
+PAYLOAD = {"counter": "@ih,96,16", "symbol": "@ih,800,16"}  # bits after the UDP header: the cipher's counter, the middle
 ENDS_WITHIN_S = 40
 
 

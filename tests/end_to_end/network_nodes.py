@@ -20,7 +20,7 @@ NODES = {"wall1": "10.79.0.2", "wall2": "10.79.0.3"}
 MULTICAST = "by reliable multicast"
 UNREACHED = "does not answer to multicast"
 REACHED_AGAIN = "multicast reaches it again"
-MOST_FRAMES = 20000 # limit for runs that end after a few hundred frames, when enough was seen
+MOST_FRAMES = 20000  # limit for runs that end after a few hundred frames, when enough was seen
 NO_MULTICAST = "ip daddr 239.0.0.0/8"
 
 

@@ -13,7 +13,7 @@ import tempfile
 import failures
 import session
 
-failures.CASES.clear()  # only those of this file
+failures.CASES.clear()  # keeps only the cases of this file
 FRAMES = 4
 OPTIONS = ["--tiles", "2x2", "--display", "none", "--verify"]
 

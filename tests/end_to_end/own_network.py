@@ -63,7 +63,7 @@ class OwnNetwork:
             for at in (["ip"] + ["ip -n " + name for name in others]) if single_packets else []:
                 sh(at + " link set dev eth0 gso_max_segs 1")
             for name in others:
-                self.drop(name, "ip daddr 192.0.2.1") # tests whether rules can be created
+                self.drop(name, "ip daddr 192.0.2.1")  # tests whether rules can be created
                 self.heal(name)
         except (RuntimeError, OSError, subprocess.SubprocessError) as e:
             skip("this machine makes no networks of namespaces: %s" % e)

@@ -13,10 +13,10 @@ import failures
 import passes
 import pictures
 
-failures.CASES.clear()  # only those of this file
+failures.CASES.clear()  # keeps only the cases of this file
 PROGRAMS = ("immediate", "fixed_lighting", "copied_scene", "es2_scene")
 TILES = ["--tiles", "2x2"]
-LEAST_DB = 20 # half the colour resolution, at edges of triangles
+LEAST_DB = 20  # half the colour resolution, at edges of triangles
 
 
 @passes.case

@@ -18,7 +18,7 @@ import failures
 import pictures
 import programs
 
-failures.CASES.clear()  # only those of this file
+failures.CASES.clear()  # keeps only the cases of this file
 FRAMES = 4
 SIZE = (253, 191)
 WAYS = ("fixed", "legacy", "matrices", "mvp", "block", "geometry", "tessellation")

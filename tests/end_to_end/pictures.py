@@ -76,7 +76,7 @@ def halved(row, width):
 def _unfiltered(kind, row, above):
     if kind == 0:
         return bytes(row)
-    if kind == 2: # format of --out
+    if kind == 2:  # format of --out
         return _sums(row, above)
     out = bytearray(row)
     for i in range(len(out)):

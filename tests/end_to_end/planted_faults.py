@@ -35,7 +35,7 @@ def compare(arguments, setting, fault):
                "--size", "250x190", "--seconds", "60"] + setting
     if fault:
         environment["MURAL_PLANT"] = fault
-        command.append("--until-differs") # one program that reveals it is sufficient
+        command.append("--until-differs")  # one program that reveals it is sufficient
     if arguments.mural:
         command += ["--mural", arguments.mural]
     done = subprocess.run(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,

@@ -56,7 +56,7 @@ def differs(build, name, native, report):
         facts = json.load(file)
     if facts.get("differingPixels", 0):
         return "%d pixels differ" % facts["differingPixels"]
-    if facts.get("verifiedFrames", 0) < frames: # over all processes; "frames" counts only the main window's
+    if facts.get("verifiedFrames", 0) < frames:  # over all processes; "frames" counts only the main window's
         return "%d frames on the wall instead of %d: %s" % (facts.get("verifiedFrames", 0), frames, said[-400:])
     if SAID.get(name, "") not in said:
         return "it did not say \"%s\"" % SAID[name]

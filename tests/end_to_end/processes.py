@@ -14,7 +14,7 @@ def processes_with(word):
                     continue
                 words = command.read().split(b"\0")
         except OSError:
-            continue # has ended meanwhile, or belongs to another user
+            continue  # has ended meanwhile, or belongs to another user
         if words != [b""]:  # a process that has ended has no command line
             found[int(pid)] = b" ".join(words).decode(errors="replace").strip()
     return found

@@ -82,10 +82,10 @@ class Run:
     """What one run of a program gave."""
 
     def __init__(self, status, output, folder):
-        self.status = status # None: it did not end in time
+        self.status = status  # None: it did not end in time
         self.output = output
         self.folder = folder
-        self.captured = None # frames drawn by the nodes; None: unknown
+        self.captured = None  # frames drawn by the nodes; None: unknown
 
     def frames(self):
         """{"w0/f0003.ppm": path} of all pictures."""

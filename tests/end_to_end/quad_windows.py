@@ -13,7 +13,7 @@ import failures
 import passes
 import pictures
 
-failures.CASES.clear()  # only those of this file
+failures.CASES.clear()  # keeps only the cases of this file
 EYES = ["--eye-base", str(2 * passes.EYE), "--focus", str(passes.FOCUS)]
 DRAW = ["--draw", "fixed"]
 # Both eyes in one window; the sizes are the pictures' sizes.

@@ -18,7 +18,7 @@ import pictures
 import programs
 import session
 
-failures.CASES.clear()  # only those of this file
+failures.CASES.clear()  # keeps only the cases of this file
 FRAMES = 6
 SIZE = (253, 191)
 RECORD = ("--display", "none", "--tiles", "1x1")
@@ -140,7 +140,7 @@ def case(function):
     return function
 
 
-# ---- what is replayed is what was drawn
+# ---- a replay shows the recorded pictures
 
 def replayed(place, program, layouts):
     windows = place.native(program)
@@ -235,11 +235,11 @@ def killed_head_leaves_what_is_whole(place):
     with place.context.drawing("long_run", 20000, options=list(RECORD) + ["--record", place.path("a.mural")]) as run:
         if not run.wait_for_line("frame 20"):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
-        time.sleep(2.5) # data older than about a second is in the file
+        time.sleep(2.5)  # data older than about a second is in the file
         failures.kill_all(run.wait_for_processes(failures.HEAD))
         if not run.wait_for_line("head"):
             return "nobody said that the head has ended"
-        run.process.send_signal(signal.SIGTERM) # the program would continue without nodes
+        run.process.send_signal(signal.SIGTERM)  # the program would continue without nodes
         run.status()
     done = place.mural("dump", place.path("a.mural"), "--summary")
     if done.returncode == 2 and "is not a recording" in done.stderr:
@@ -280,7 +280,7 @@ def arguments_that_are_wrong(place):
 @case
 def arguments_of_a_damaged_file(place):
     """What is before the damage is named, with what saves it; and it does."""
-    live = place.record("fixed_lighting", frames=20) # several blocks
+    live = place.record("fixed_lighting", frames=20)  # several blocks
     place.change("damaged.mural", lambda whole: flipped(whole, len(whole) * 2 // 3))
     file = place.path("damaged.mural")
     done = place.mural("replay", file)
@@ -428,7 +428,7 @@ def dump_refuses_what_is_not_there(place):
     done = place.mural("dump", file, "--calls", "glDispatchCompute,glBegin")
     if wrong is None and (done.returncode != 0 or done.stderr.count("\n") != 1 or absent not in done.stderr or "glBegin(" not in done.stdout):
         wrong = "of two calls: status %d, %s" % (done.returncode, done.stderr)
-    behind = place.mural("dump", file, "--frames", "3") # the program's commands after its last picture
+    behind = place.mural("dump", file, "--frames", "3")  # the program's commands after its last picture
     if wrong is None and (behind.returncode != 0 or not behind.stdout.startswith("     3 ")):
         wrong = "behind the last frame: status %d, %s" % (behind.returncode, behind.stderr)
     return wrong

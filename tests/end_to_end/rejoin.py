@@ -19,18 +19,18 @@ import pictures
 import programs
 import session
 
-failures.CASES.clear()  # only those of this file
+failures.CASES.clear()  # keeps only the cases of this file
 case = failures.case
 WIDTH, HEIGHT = 252, 190
 BACK = "is back in the picture"
 PROGRAM = "long_scene"
 # limit of frames per run: on a busy machine a rejoin takes seconds, and a run without an end file takes too long
 MOST = 6000
-TAIL = 60 # frames drawn after the awaited event of a case
-EXACT = 20 # the last frames of these, which must not differ
+TAIL = 60  # frames drawn after the awaited event of a case
+EXACT = 20  # the last frames of these, which must not differ
 
 
-NATIVE = {} # pictures by environment, because several cases draw the same
+NATIVE = {}  # pictures by environment, because several cases draw the same
 
 
 def native_pictures(context, folder, frames, environment):
@@ -39,7 +39,7 @@ def native_pictures(context, folder, frames, environment):
     environment["SCENE_PAUSE_US"] = "0"
     key = tuple(sorted(environment.items()))
     if len(NATIVE.get(key, ())) < frames:
-        drawn = frames + frames // 4 # a reserve for the next case
+        drawn = frames + frames // 4  # a reserve for the next case
         run = programs.run_program(context.build, PROGRAM, os.path.join(folder, "native"), context.display,
                                    "%dx%d" % (WIDTH, HEIGHT), drawn, more_environment=environment)
         if run.status != 0:
@@ -59,15 +59,15 @@ class Watch:
 
     def __init__(self, context, frames=MOST, options=(), environment=None, tiles="2x1", every=1, beside=False, display="none"):
         self.context, self.frames, self.tiles = context, frames, tiles
-        self.every = every # frames between two saved pictures
-        self.beside = beside # the same program also runs a second time, in a smaller window
+        self.every = every  # frames between two saved pictures
+        self.beside = beside  # the same program also runs a second time, in a smaller window
         self.environment = {"SCENE_PAUSE_US": "15000"}
         self.environment.update(environment or {})
         self.folder = tempfile.TemporaryDirectory(prefix="mural-rejoin.")
         self.out = os.path.join(self.folder.name, "out")
         self.report_file = os.path.join(self.folder.name, "report.json")
         self.end_file = os.path.join(self.folder.name, "end")
-        self.least, self.drawn = frames, None # minimum number of frames, and the actual number
+        self.least, self.drawn = frames, None  # minimum number of frames, and the actual number
         self.options = divided(tiles) + ["--display", display, "--report", self.report_file] + list(options)
         if display == "none":
             self.options += ["--out", self.out]
@@ -119,7 +119,7 @@ def divided(tiles):
 
 
 def columns_that_differ(first, second):
-    different = 0 # a bit mask of all rows: far cheaper than pixel by pixel
+    different = 0  # a bit mask of all rows: far cheaper than pixel by pixel
     for a, b in zip(first.rows, second.rows):
         if a != b:
             different |= int.from_bytes(a, "little") ^ int.from_bytes(b, "little")
@@ -171,7 +171,7 @@ def kill_and_look(context, frames=MOST, options=(), environment=None, victims=(1
             os.kill(victim, signal.SIGKILL)
             if not run.wait_for_line(BACK, 30):
                 return "node %d did not come back (of %s): %s" % (number, pids, " | ".join(run.standard_error[-4:]))
-            time.sleep(0.3) # a frame in progress at the rejoin contains only the other node's part
+            time.sleep(0.3)  # a frame in progress at the rejoin contains only the other node's part
         watch.enough(run, max(TAIL, 4 * every))
         differing = watch.differing(run)
         if isinstance(differing, str):
@@ -239,7 +239,7 @@ def by_multicast(context):
 @case
 def waiting_node(context):
     """The head calls `mural node --wait` again; the secret and the port are as before."""
-    host = "127.0.0.2" # an address of this machine without a daemon of its user
+    host = "127.0.0.2"  # an address of this machine without a daemon of its user
     with tempfile.TemporaryDirectory(prefix="mural-rejoin-key.") as folder:
         secret = os.path.join(folder, "key")
         with open(secret, "w", encoding="ascii") as file:
@@ -345,15 +345,15 @@ def two_eyes(context):
 
 
 STRATEGIES = ("serial", "direct-send", "binary-swap", "2-3-swap", "radix-k", "streaming")
-UNDER_WAY = 12 # frames in progress when a node is lost or rejoins, which may contain only the others' parts
-LONGEST_MS = 8000 # time of one frame; timeouts are 20 s and more
+UNDER_WAY = 12  # frames in progress when a node is lost or rejoins, which may contain only the others' parts
+LONGEST_MS = 8000  # time of one frame; timeouts are 20 s and more
 
 
 def ranges_come_back(context, rounds, nodes, options, tiles="1x1", environment=None, where="local", frames=MOST, beside=False):
     """Nodes that share draws. rounds: the nodes that are killed at once, each round when those of the one before are back. Each frame is exact
     that all of them share, from a few behind each return on; nobody waits for a timeout. Frames have no picture while the collector is away."""
     watch = Watch(context, frames, options, dict(environment or {}, SCENE_SHARES="1"), tiles, beside=beside)
-    whole = [] # spans of frames that must be exact: first, end
+    whole = []  # spans of frames that must be exact: first, end
     with watch.start() as run:
         if not run.wait_for_line("frame 40 "):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
@@ -644,7 +644,7 @@ def dies_again_and_again(context):
         differing = watch.differing(run)
         if isinstance(differing, str):
             return differing
-        if len(said(run, "tiles stay as they were")) != 2: # until the rejoin, after 2 tries
+        if len(said(run, "tiles stay as they were")) != 2:  # until the rejoin, after 2 tries
             return "it was not said that it stays lost: " + " | ".join(run.standard_error[-6:])
         return judged(differing, [(frame - 3, range(half, WIDTH))], -1)
 

@@ -68,7 +68,7 @@ class Comparison:
         self.healed = []
         self.taken = 0
         self.ended = False  # --until-differs
-        self.shared = {} # nodes that start once for all programs, by layout
+        self.shared = {}  # nodes that start once for all programs, by layout
 
     def finish(self):
         """Whatever has to be looked at after all programs."""
@@ -139,7 +139,7 @@ class Comparison:
         nodes = self.shared[label]
         through = nodes.run_program(arguments.build, name, os.path.join(self.folder, name, label), arguments.size, arguments.frames, arguments.seconds)
         nodes.wanted_frames += frames
-        if through.status is None: # the next program gets new nodes
+        if through.status is None:  # the next program gets new nodes
             self.end_shared(label)
         return through
 
@@ -166,7 +166,7 @@ class Comparison:
             self.report(name, "reference", 0, "fails natively: status %s, %d pictures%s" % (
                 native.status, len(native.frames()), said(native)))
             return
-        frames = 0 # drawn by the nodes of the first layout
+        frames = 0  # drawn by the nodes of the first layout
         for number, (label, launcher) in enumerate(self.launchers().items()):
             start = time.monotonic()
             if number > 0 and self.arguments.share_nodes:

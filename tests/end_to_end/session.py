@@ -13,7 +13,7 @@ import uuid
 import processes
 import programs
 
-MARK = "MURAL_TEST_RUN" # variable in the environment of every process that a run starts
+MARK = "MURAL_TEST_RUN"  # variable in the environment of every process that a run starts
 
 
 def processes_of(mark):
@@ -28,7 +28,7 @@ def end_after(end_file, frames):
     """The program whose END_FILE this is draws so many frames more."""
     with open(end_file + ".new", "w", encoding="ascii") as file:
         file.write(str(frames))
-    os.rename(end_file + ".new", end_file) # atomic, because the program reads the file before each frame
+    os.rename(end_file + ".new", end_file)  # atomic, because the program reads the file before each frame
 
 
 class Session:

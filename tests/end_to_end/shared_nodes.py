@@ -22,7 +22,7 @@ class SharedNodes:
     def __init__(self, launcher, display, folder):
         os.makedirs(folder)
         self.log_path = os.path.join(folder, "log")
-        self.wanted_frames = 0 # total that the nodes must have drawn at the end
+        self.wanted_frames = 0  # total that the nodes must have drawn at the end
         statuses = os.path.join(folder, "statuses")
         os.mkfifo(statuses)
         self.statuses = os.open(statuses, os.O_RDWR)
@@ -45,7 +45,7 @@ class SharedNodes:
             self.process.stdin.write(line.encode())
             self.process.stdin.flush()
         except BrokenPipeError:
-            pass # there is no status
+            pass  # there is no status
         status = self._status(seconds)
         return status, "\n".join(text_of(path) for path in ((log_path,) if status is not None else (self.log_path, log_path)))
 

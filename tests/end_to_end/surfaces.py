@@ -16,7 +16,7 @@ import tempfile
 import failures
 import programs
 
-failures.CASES.clear()  # only those of this file
+failures.CASES.clear()  # keeps only the cases of this file
 MODES = {"verify": ["--verify"], "app": ["--display", "app"]}
 SIZE = "253x191"
 # glibc fills new memory of nodes with a pattern, which makes missing clears visible. New memory of programs holds 0, because

@@ -12,7 +12,7 @@ import sys
 import tempfile
 import time
 
-HOST = '127.0.0.2' # an address of this machine without a daemon of its user
+HOST = '127.0.0.2'  # an address of this machine without a daemon of its user
 FRAMES = '3'
 
 

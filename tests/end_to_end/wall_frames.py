@@ -12,7 +12,7 @@ import tempfile
 
 import failures
 
-failures.CASES.clear()  # only those of this file
+failures.CASES.clear()  # keeps only the cases of this file
 FRAMES = 3
 WIDTH, HEIGHT = 252, 190
 

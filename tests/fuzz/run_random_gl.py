@@ -62,7 +62,7 @@ class Bench:
     def __init__(self, arguments, display_name, folder):
         self.arguments, self.folder = arguments, folder
         self.environment = programs.clean_environment(display_name)
-        self.environment["LP_NUM_THREADS"] = "0" # the order of fragments is the order of the draws
+        self.environment["LP_NUM_THREADS"] = "0"  # the order of fragments is the order of the draws
         mural = os.path.join(arguments.build, "bin", "mural")
         self.launcher = [mural, "run", "--quiet", "--tiles", arguments.tiles] + arguments.options.split() + ["--"]
         self.program = os.path.join(arguments.build, "tests", "fuzz", "random_gl")
