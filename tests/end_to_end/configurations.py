@@ -28,7 +28,7 @@ FRAMES = 3
 ZOOMED_MEAN = 12  # at half the size; a picture that is a few pixels off, or black, differs by more
 # for a picture drawn larger, compared with the reduced native picture; a shift by one pixel gives 1 or more
 REDUCED_MEAN = 0.1
-CANVAS_SIZE = "320x240"  # size of the program's picture, of which canvases are integer fractions or multiples
+CANVAS_SIZE = "320x240" # size of the program's picture; canvases are integer fractions or multiples of it
 # for a canvas with its own pixels, compared with a native window of its size (0.97); a shift by one pixel gives 13 or
 # more, the reduced native picture 4.5
 CANVAS_MEAN = 3

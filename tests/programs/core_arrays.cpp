@@ -1,5 +1,5 @@
-// Vertex formats of the core profile: separate formats and bindings, integer and double attributes, packed types, BGRA,
-// half floats, fixed point, several divisors, a buffer bound to many attributes.
+// Vertex formats of the core profile: separate formats and bindings, integer and double attributes, packed types, BGRA.
+// Also half floats, fixed point, several divisors, and a buffer bound to many attributes.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"

@@ -1,5 +1,5 @@
-// Depth and stencil in a core context: read from the window and from a framebuffer object, copied from the window into
-// a texture with a copy and with a blit. The results are drawn as colours.
+// Depth and stencil in a core context, read from the window and from a framebuffer object. They are also copied from
+// the window into a texture, with a copy and with a blit. The results are drawn as colours.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"

@@ -116,7 +116,7 @@ void makeTextureList() {
     glEndList();
 }
 
-// Compiles a list with state, part of which it pops again.
+// Compiles a list that sets state and pops a part of it.
 void makeStateList() {
     stateList = glGenLists(1);
     glNewList(stateList, GL_COMPILE);

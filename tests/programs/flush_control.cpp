@@ -1,6 +1,9 @@
-// Drawing of an unflushed context as a second thread sees it: while it is current, after its thread has released it
-// (KHR_context_flush_control: flushed then, or not), and after a flush. The threads run in step, and the observed
-// colours are shown as numbers. The target is a texture, because framebuffer objects are not shared.
+// Drawing of an unflushed context as a second thread sees it:
+//   - while the context is current;
+//   - after its thread has released it (KHR_context_flush_control: flushed then, or not);
+//   - after a flush.
+// The threads run in step, and the observed colours are shown as numbers. The target is a texture, because framebuffer
+// objects are not shared.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/glx_choice.hpp"
 #include "tests/programs/support/program.hpp"

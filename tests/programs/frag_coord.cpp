@@ -1,6 +1,6 @@
 // Positions in a fragment shader: gl_FragCoord with both origins and pixel centres, derivatives, gl_FrontFacing,
-// gl_PointCoord, gl_FragDepth, early tests, interpolation qualifiers, gl_PrimitiveID, screen doors, and a ray caster
-// that uses only its position.
+// gl_PointCoord, gl_FragDepth. Also early tests, interpolation qualifiers, gl_PrimitiveID, screen doors, and a ray
+// caster that uses only its position.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"

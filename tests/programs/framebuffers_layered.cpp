@@ -1,6 +1,6 @@
-// A multisampled window, layered framebuffers filled by a geometry shader, cube map faces and 3D slices as targets,
-// sample masks, alpha to coverage, sample shading, blits of depth and stencil. Also the number of samples of a
-// framebuffer without attachments before and after drawing to it.
+// A multisampled window, layered framebuffers filled by a geometry shader, cube map faces and 3D slices as targets.
+// Sample masks, alpha to coverage, sample shading, blits of depth and stencil. The number of samples of a framebuffer
+// without attachments, before and after drawing to it.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"

@@ -1,6 +1,8 @@
-// Windows whose frames depend on the previous frame, each in another way: without clears, with clears only at first, a
-// depth buffer that stays, a partial clear, a copy of the window, conditional rendering, reads before drawing, frames
-// without drawing. Two windows clear everything, with old and with new commands.
+// Windows whose frames depend on the previous frame, each in another way:
+//   - without clears, with clears only at first, with a partial clear;
+//   - a depth buffer that stays, a copy of the window, conditional rendering;
+//   - reads before drawing, frames without drawing.
+// Two windows clear everything, with old and with new commands.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"

@@ -1,6 +1,8 @@
-// GLSL 1.10 to 1.50 in the style of older programs: built-in attributes, varyings and state, the ARB entry points
-// (handles instead of names), generic attributes bound before the link, two-sided colours, point sprites, mixtures of a
-// shader and a fixed-function stage, several shaders of one stage.
+// GLSL 1.10 to 1.50 in the style of older programs:
+//   - built-in attributes, varyings and state;
+//   - the ARB entry points (handles instead of names), generic attributes bound before the link;
+//   - two-sided colours, point sprites;
+//   - mixtures of a shader and a fixed-function stage, several shaders of one stage.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"

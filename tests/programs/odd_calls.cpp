@@ -1,6 +1,9 @@
-// Calls that few programs make, but drivers accept: client arrays enabled with glEnable, display lists inside and
-// across glBegin and glEnd, counts and pointers without memory after them, buffers too small for a picture, and the
-// picture read pixel by pixel. Errors and values read are shown as bits.
+// Calls that few programs make, but drivers accept:
+//   - client arrays enabled with glEnable;
+//   - display lists inside and across glBegin and glEnd;
+//   - counts and pointers without memory after them, buffers too small for a picture;
+//   - the picture read pixel by pixel.
+// Errors and values read are shown as bits.
 #include "tests/programs/support/gl.hpp"
 
 #include "tests/programs/draw_errors/record.hpp"

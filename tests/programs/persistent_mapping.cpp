@@ -1,5 +1,5 @@
-// Buffers that stay mapped while they are drawn from: coherent ones written between two draws of one frame, flushed
-// ones, one ring of three regions with fences, and a mapping that only a texture buffer and a uniform block read.
+// Buffers that stay mapped while they are drawn from: coherent ones written between two draws of one frame, and flushed
+// ones. Also one ring of three regions with fences, and a mapping that only a texture buffer and a uniform block read.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"

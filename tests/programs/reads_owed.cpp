@@ -1,5 +1,6 @@
-// Uses of a pixel buffer between a read into it and the arrival of its bytes: reading in every way, writing, copying,
-// clearing, drawing and uploading from it, new storage, deletion, other round trips, use in another context.
+// Uses of a pixel buffer between a read into it and the arrival of its bytes. It is read in every way, written, copied,
+// cleared, drawn and uploaded from, deleted, or given new storage. The program makes other round trips, and uses
+// another context.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"

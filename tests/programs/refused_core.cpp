@@ -1,6 +1,6 @@
-// Calls that GL rejects in a core context leave their error and have no other effect: calls of the compatibility
-// profile, unused names, missing draw buffers, missing memory after another error. Shader writes use no names, and the
-// source of a buffer clear is found.
+// Calls that GL rejects in a core context leave their error and have no other effect. These are calls of the
+// compatibility profile, unused names, missing draw buffers, and missing memory after another error. Shader writes use
+// no names, and the source of a buffer clear is found.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"

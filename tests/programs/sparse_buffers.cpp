@@ -1,5 +1,5 @@
-// Buffers of which only some pages exist: vertices, uniform blocks and storage in committed pages, written by the
-// program, by copies and by shaders, released and committed again. Only committed pages are read, because the rest is
+// Buffers with only some pages: vertices, uniform blocks and storage in committed pages. The program, copies and
+// shaders write them. Pages are released and committed again. Only committed pages are read, because the rest is
 // undefined.
 #include <cstdint>
 

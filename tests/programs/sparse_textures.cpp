@@ -1,5 +1,5 @@
-// Textures of which only some pages exist: committed, filled, drawn into, released and committed again. The driver's
-// page sizes become part of the picture. Only committed pages are read, because the rest is undefined.
+// Textures with only some pages: committed, filled, drawn into, released and committed again. The driver's page sizes
+// become part of the picture. Only committed pages are read, because the rest is undefined.
 #include <algorithm>
 #include <vector>
 

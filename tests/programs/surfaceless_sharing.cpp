@@ -1,5 +1,5 @@
-// Contexts without a window that share with a window's context, each in its own thread: one without any drawable
-// (permitted by GL 3 and GLX_ARB_create_context), and one on a pbuffer only. One thread ends with its context current.
+// Contexts without a window that share with a window's context, each in its own thread. One has no drawable (permitted
+// by GL 3 and GLX_ARB_create_context), one has only a pbuffer. One thread ends with its context current.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/glx_choice.hpp"
 #include "tests/programs/support/program.hpp"

@@ -1,5 +1,5 @@
 // Reads of parts of textures: cube faces, layers, boxes, by name, by target and by unit, into memory and into a buffer.
-// Their texels are copies of the window, made in every way, including those of EXT_direct_state_access.
+// Their texels are copies of the window, made in every way, also with EXT_direct_state_access.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"

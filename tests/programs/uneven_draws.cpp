@@ -1,6 +1,6 @@
-// Opaque draws with equal numbers of vertices, of which the first tenth has nearly all cost of a frame: large layers,
-// each in front of the previous one, then thousands of small triangles. UNEVEN_LAYERS (60) sets the cost. With
-// UNEVEN_EVENLY all layers have one size.
+// Opaque draws with equal numbers of vertices, whose first tenth has nearly all cost of a frame. These are large
+// layers, each in front of the previous one; thousands of small triangles follow. UNEVEN_LAYERS (60) sets the cost.
+// With UNEVEN_EVENLY all layers have one size.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"

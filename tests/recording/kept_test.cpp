@@ -149,7 +149,7 @@ PacketBuilder sparseTexture(uint32_t name) {
 }
 PacketBuilder uploadTo(uint32_t x) { return PacketBuilder().record(op::glTexSubImage2D, {GL_TEXTURE_2D, 0, x, 0, 128, 256, GL_RGBA, GL_UNSIGNED_BYTE, 4, x}); }
 
-// Drivers number handles in order of creation. Those of deleted textures count too, but not the contents of these
+// Drivers number handles in order of creation. Handles of deleted textures count too, but not the contents of these
 // textures.
 TEST_F(Kept, createsHandlesInTheSameOrder) {
     for (uint32_t i = 0; i < 3; ++i) {

@@ -1,6 +1,6 @@
-// Fills the window with fragments that use only their position: from the lower left and the upper left, with centres at
-// halves and at integers, in GLSL (in two texts) and in assembly. Each bit of a position is visible, and also the
-// texture level that the distance of positions selects.
+// Fills the window with fragments that use only their position. Origins are at the lower left and the upper left,
+// centres at halves and at integers, in GLSL (in two texts) and in assembly. Each bit of a position is visible, and
+// also the texture level that the distance of positions selects.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"

@@ -31,7 +31,7 @@ Matrix projectionOf(const PassOptions& options, int width, int height);
 // Returns the scene's matrix; objects turn with the frames.
 Matrix modelViewOf(const PassOptions& options, int frame);
 
-// Triangles in front of the eyes, some of which intersect: position, tone, 6 floats per vertex.
+// Triangles in front of the eyes; some intersect. Position and tone, 6 floats per vertex.
 constexpr int kSceneVertices = 3 * 96;
 const float* sceneVertices();
 

@@ -1,12 +1,13 @@
-// Many frames that show the results of earlier ones: textures of the start, of which each frame changes a part, a
-// buffer and a framebuffer object that are filled gradually, a display list, a query. A restarted node shows any
-// missing data. Prints "frame N T" on standard output before each frame, where T is the time in ms since the previous
-// one. Environment:
-//   SCENE_MIB       MiB of textures (8)
-//   SCENE_PAUSE_US  pause in each frame in us (5000)
-//   SCENE_KEEPS=1   only the first frame clears, the others draw over the old contents
-//   SCENE_SHARES=1  depth test and many small triangles everywhere, so that --db divides the draws and each of up to 4 nodes draws
-//                   visible ones; an overlay that is not divided
+// Many frames that show the results of earlier ones, so a restarted node reveals missing data. Textures of the start, a
+// part of which changes in each frame, a buffer and a framebuffer object that are filled gradually, a display list, a
+// query. Prints "frame N T" on standard output before each frame, where T is the time in ms since the previous one.
+//
+// Environment:
+//   SCENE_MIB       MiB of textures (8).
+//   SCENE_PAUSE_US  pause in each frame in us (5000).
+//   SCENE_KEEPS=1   only the first frame clears, the others draw over the old contents.
+//   SCENE_SHARES=1  depth test and many small triangles everywhere, so that --db divides the draws.
+//                   Each of up to 4 nodes draws visible ones; an overlay is not divided.
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
