@@ -1,13 +1,21 @@
 #!/usr/bin/env python3
-"""Shows that run_exact.py can fail: each fault that a render node, or the head, makes on purpose must be found.
+"""Proves that run_exact.py can fail: each planted fault of a render node, or of the head, must be detected.
 
-MURAL_PLANT=opcode changes one argument of one command, shift moves one tile by a pixel, drop leaves
-out one frame's draws; economy loses what has changed in commands that a node has had before, and the head with held
-all uploads that it has held back; of nodes that share draws, range loses the others' pictures, tie lets the
-earlier draw win where depths are equal, order takes later draws for earlier ones, and band loses a band that a node
-has put together; where areas move, early has one node take them before the clear that the others take them at, and uncleared all
-nodes without one; where shares of draws move, lateshare has one node take those that were announced before; edges cuts
-regions inside the bins of a software driver. Without a fault, the same comparison must be exact.
+Values of MURAL_PLANT:
+  opcode     changes one argument of one command
+  shift      moves one tile by a pixel
+  drop       skips one frame's draws
+  economy    loses the changed parts of commands that a node has received before
+  held       the head loses all uploads that it has deferred
+  range      loses the other nodes' pictures (nodes that divide draws)
+  tie        the earlier draw wins at equal depths
+  order      exchanges earlier and later draws
+  band       loses a band that a node has combined
+  early      one node adopts moving areas at an earlier clear than the others
+  uncleared  all nodes adopt moving areas without a clear
+  lateshare  one node uses the previously announced shares of draws
+  edges      cuts regions inside the bins of a software driver
+Without a fault the same comparison must be exact.
 """
 
 import argparse
@@ -44,7 +52,7 @@ def compare(arguments, setting, fault):
 
 
 def found_in(output):
-    """The program in whose pictures the fault was seen: not by a crash, but by wrong pixels."""
+    """Returns the program whose pictures reveal the fault: with wrong pixels, not with a crash."""
     return [line.split()[0] for line in output.splitlines() if "pixels differ in" in line]
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Programs about processes (tests/programs/processes) tell natively and through Mural the same: what they read, how they and
-their children end; --verify finds no pixel that differs, and the wall has had the frames.
+"""Programs about processes (tests/programs/processes) print the same natively and through Mural: the pixels that they
+read, and the ends of their children. --verify finds no differing pixel, and the frames are on the wall.
 
   process_ways.py --build build/release [--cases calls,closed] [--repeat 20] [--list]
 """

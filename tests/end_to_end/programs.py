@@ -1,4 +1,4 @@
-"""The test programs: names, groups, what is special about each, and how to run one and keep its frames."""
+"""The test programs: names, groups, special cases, and functions that run one and keep its frames."""
 
 import os
 import select
@@ -53,7 +53,7 @@ def all_names():
 
 
 def choose(text):
-    """Names from a list of programs and groups, separated by commas; None: all."""
+    """Returns the names of a list of programs and groups, separated by commas; None: all."""
     if not text:
         return all_names()
     chosen = []
@@ -66,7 +66,7 @@ def choose(text):
 
 
 def clean_environment(display):
-    """Only what a program needs, so that results don't depend on the caller's settings."""
+    """Returns only the variables that a program needs, so that results do not depend on the caller's settings."""
     keep = ("PATH", "HOME", "TMPDIR", "XDG_RUNTIME_DIR", "LANG", "LC_ALL", "MURAL_PLANT",
             "MURAL_LOG", "ASAN_OPTIONS", "UBSAN_OPTIONS", "LD_LIBRARY_PATH", "LIBGL_ALWAYS_SOFTWARE",
             "EGL_PLATFORM", "LP_NUM_THREADS", "CLEARS_FRONT",
@@ -79,7 +79,7 @@ def clean_environment(display):
 
 
 class Run:
-    """What one run of a program gave."""
+    """The results of one run of a program."""
 
     def __init__(self, status, output, folder):
         self.status = status  # None: it did not end in time
@@ -88,7 +88,7 @@ class Run:
         self.captured = None  # frames drawn by the nodes; None: unknown
 
     def frames(self):
-        """{"w0/f0003.ppm": path} of all pictures."""
+        """Returns {"w0/f0003.ppm": path} of all pictures."""
         found = {}
         for drawable in sorted(os.listdir(self.folder)):
             inside = os.path.join(self.folder, drawable)
@@ -99,7 +99,7 @@ class Run:
 
 
 def stop_group(process):
-    """Ends all that the run has left in its session."""
+    """Ends all processes that the run has left in its session."""
     try:
         os.killpg(process.pid, signal.SIGKILL)
     except ProcessLookupError:
@@ -107,7 +107,8 @@ def stop_group(process):
 
 
 def ended_within(process, seconds):
-    """The status; None: not in time. Popen.wait with a deadline looks again only each 50 ms, a third of what many runs take."""
+    """Returns the status, or None after the timeout. Popen.wait with a timeout polls only every 50 ms, a third of many
+    runs' duration."""
     pidfd = os.pidfd_open(process.pid)
     try:
         watch = select.poll()
@@ -118,7 +119,7 @@ def ended_within(process, seconds):
 
 
 def command_of(build, name, folder, size, frames, library="grab.so", arguments=()):
-    """What a shell sets for the program so that its frames are kept, and the words of its command."""
+    """Returns the shell settings that keep the program's frames, and the words of its command."""
     settings = "GRAB_OUT=%s " % shlex.quote(folder) + ("GRAB_FLUSH=1 " if name in FLUSHING else "")
     # The test's library comes before any library that the launcher preloads.
     settings += 'LD_PRELOAD="%s${LD_PRELOAD:+ $LD_PRELOAD}"' % os.path.join(build, "tests", "end_to_end", library)
@@ -127,7 +128,7 @@ def command_of(build, name, folder, size, frames, library="grab.so", arguments=(
 
 def run_program(build, name, folder, display, size, frames, launcher=(), seconds=120,
                 more_environment=None, library="grab.so", arguments=()):
-    """Runs a program, natively or behind `launcher`, with the grabbing library in front."""
+    """Runs a program, natively or with `launcher`, with the grabbing library preloaded."""
     os.makedirs(folder)
     environment = clean_environment(display)
     environment.update(more_environment or {})
@@ -145,7 +146,7 @@ def run_program(build, name, folder, display, size, frames, launcher=(), seconds
 
 
 def same_status(native, through):
-    """A launcher tells death by a signal as 128 + its number, as shells do."""
+    """Compares statuses. A launcher reports death by a signal as 128 + its number, as shells do."""
     if native is not None and native < 0:
         return through in (native, 128 - native)
     return native == through

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How often a program has to wait for an answer of the nodes: never when it reads nothing back, and not for what it
+"""Counts how often a program waits for a reply of the nodes: never when it reads nothing, and not for results that it
 reads a frame later.
 
   round_trips.py --build build/release [--cases draws_only,queries_later] [--list]
