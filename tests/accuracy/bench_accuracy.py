@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""mural bench accuracy as a user meets it: what it measures holds, files say the same as the table, and a fault is seen.
+"""Tests mural bench accuracy from the user's side: its bounds hold, its files agree with its table, and it detects a
+fault.
 
-  bench_accuracy.py MURAL
+bench_accuracy.py MURAL
 """
 import json
 import os
@@ -76,7 +77,7 @@ def quick(folder):
 
 
 def program(folder):
-    """A program of the user's, and the same with a tile that is read one pixel off."""
+    """Measures a program of the user, and the same with a tile read one pixel off."""
     scenes = os.path.join(os.path.dirname(os.path.abspath(sys.argv[1])), 'mural-scenes')
     path = os.path.join(folder, 'p.json')
     words = 'accuracy', '--quick', '--frames', '6', '--json', path, '--', scenes, '--size', '253x191', '--frames', '6'
@@ -100,7 +101,7 @@ def refused(folder):
 
 
 def refused_before(folder):
-    """What can't come to anything is refused before anything is measured, in one line."""
+    """Checks that invalid requests are rejected before any measurement, with one line."""
     left, kept, lost = (os.path.join(folder, name) for name in ('left.json', 'kept.json', os.path.join('none', 'a')))
     damaged = os.path.join(folder, 'damaged.mural')
     with open(kept, 'w', encoding='utf-8') as f:
@@ -123,7 +124,7 @@ def refused_before(folder):
 
 
 def start(folder, *words):
-    """A bench that can be told by its folder for what is temporary."""
+    """Starts a bench that is identified by its folder for temporary files."""
     inside = tempfile.mkdtemp(dir=folder)
     process = subprocess.Popen([sys.argv[1], 'bench', 'accuracy', *words], env=environment_with(TMPDIR=inside), text=True, start_new_session=True,
                                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
@@ -132,7 +133,7 @@ def start(folder, *words):
 
 
 def check_end(process, inside, name, status, result):
-    """What it said; nothing of it may be left."""
+    """Checks the output and that nothing remains."""
     try:
         out, err = process.communicate(timeout=END_SECONDS)
     except subprocess.TimeoutExpired:
@@ -148,7 +149,7 @@ def check_end(process, inside, name, status, result):
 
 
 def stopped(folder):
-    """A signal, while a process runs whose command line is awaited. Ctrl-C goes to all processes of a terminal."""
+    """Sends a signal while a process with the given command line runs. Ctrl-C reaches all processes of a terminal."""
     result = os.path.join(folder, 'stopped.json')
     stubborn = '--', 'sh', '-c', 'trap "" INT TERM; while :; do sleep 0.1; done'
     for name, number, send, words, awaited in (('Ctrl-C, and a scene', signal.SIGINT, os.killpg, (), r'mural-scenes '),
@@ -165,7 +166,7 @@ def stopped(folder):
 
 
 def unread(folder):
-    """Who reads what it says goes away: that ends it as it ends other programs, and leaves nothing, either."""
+    """Closes the reader of the output: the bench ends like other programs, and leaves nothing behind, either."""
     result = os.path.join(folder, 'unread.json')
     process, inside = start(folder, '--quick', '--json', result)
     process.stderr.readline()

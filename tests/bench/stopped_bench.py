@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A bench that is stopped while its programs run: it ends soon, says so, and leaves neither processes nor folders."""
+"""A bench that is stopped while its programs run ends soon, reports it, and leaves neither processes nor folders."""
 
 import argparse
 import os
@@ -18,7 +18,7 @@ from processes import processes_with, until
 
 
 def fault_of(a, number):
-    """Empty: all is as it should be."""
+    """Returns an error, or an empty text."""
     with tempfile.TemporaryDirectory(prefix="mural-stopped.") as folder:
         inside = os.path.join(folder, "temporary")
         os.mkdir(inside)

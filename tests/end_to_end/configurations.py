@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
-"""Runs a real program by configuration files, all nodes on this machine, and looks at what the wall shows.
+"""Runs a real program with configuration files, all nodes on this machine, and checks the picture of the wall.
 
   configurations.py --build build/release [--files a.eqc,b.eqc] [--shared] [--size 320x240]
 
-Without --files: all of configs/; with --shared also the example files beside the tree (or in MURAL_SHARED), when they are
-there. A file without stereo shows, over every part of the wall that it draws, exactly the native picture: 0 pixels differ.
-Screens at angles are laid flat for that (passes.py looks into rooms). What is zoomed must be near the native picture, and differ from it; what frames make smaller on their way, or show
-elsewhere, must be the native picture made so. Of one with stereo the picture is put together from the runs of each eye alone, and compared with that.
+Without --files: all of configs/. With --shared also the example files next to the tree (or in MURAL_SHARED), if
+present.
+  - A file without stereo shows exactly the native picture on every part of the wall that it draws: 0 pixels differ. Screens at
+    angles are laid flat for that (passes.py tests rooms).
+  - A zoomed part must be close to the native picture, and differ from it.
+  - A part that frames reduce in transit, or show elsewhere, must equal the native picture after the same change.
+  - A picture with stereo is combined from separate runs of each eye, and compared with that.
 """
 
 import argparse
@@ -38,7 +41,7 @@ SKIPPED = 77
 
 
 def read_png(path):
-    """(width, height, RGB rows)."""
+    """Returns (width, height, RGB rows)."""
     picture = pictures.read_png(path)
     return picture.width, picture.height, picture.rows
 
@@ -49,7 +52,8 @@ class Run:
         self.references = {}
 
     def picture(self, options, times=(1, 1)):
-        """The last frame, and what was said; of a program with a window so many times as large. Raises RuntimeError with the program's words."""
+        """Returns the last frame and the messages, for a program with a window of that relative size. Raises
+        RuntimeError with the program's messages."""
         a = self.arguments
         size = "x".join(str(math.ceil(int(length) * by - 0.5)) for length, by in zip(a.size.split("x"), times))
         with tempfile.TemporaryDirectory(prefix="mural-configurations.") as folder:
@@ -67,7 +71,7 @@ class Run:
             return read_png(files[-1]), said
 
     def reference(self, options, times=(1, 1)):
-        """The picture of a run that several files are compared with: drawn once."""
+        """Returns the picture of a run with which several files are compared; drawn once."""
         key = tuple(options), times
         if key not in self.references:
             self.references[key] = self.picture(options, times)[0]
@@ -75,7 +79,7 @@ class Run:
 
 
 def difference(expected, shown, areas):
-    """Pixels that differ inside of the areas, and how many lie outside of all of them."""
+    """Returns the number of differing pixels inside the areas, and outside all of them."""
     width, height, rows = expected
     if (shown[0], shown[1]) != (width, height):
         return width * height, 0
@@ -96,7 +100,7 @@ def difference(expected, shown, areas):
 
 
 def mean_difference(expected, shown, area):
-    """Of the values of an area: 0 to 255."""
+    """Returns the mean difference of the values of an area: 0 to 255."""
     width, height, rows = expected
     x, y, w, h = area
     x0, x1 = int(x * width + 1e-6), int((x + w) * width + 1e-6)
@@ -108,7 +112,8 @@ def mean_difference(expected, shown, area):
 
 
 def reduced(picture, times):
-    """Each pixel the mean of so many columns and rows, as a zoom above 1 shows what was drawn larger."""
+    """Returns a picture in which each pixel is the mean of a block of columns and rows, as a zoom above 1 shows a
+    larger picture."""
     columns, lines = times
     width, height = picture[0] // columns, picture[1] // lines
     rows = []
@@ -122,13 +127,14 @@ def reduced(picture, times):
 
 
 def pixels_of(area, width, height):
-    """x0, x1, and rows from the top, of a part of the picture."""
+    """Returns x0, x1, and the rows from the top, of a part of the picture."""
     x, y, w, h = area
     return int(x * width + 1e-6), int((x + w) * width + 1e-6), height - int((y + h) * height + 1e-6), height - int(y * height + 1e-6)
 
 
 def resized(lines, size):
-    """Rows of values (3 per pixel) of another size: the mean of what a pixel covers where it is smaller, else linear between the middles of pixels."""
+    """Returns rows of values (3 per pixel) at another size: the mean of the covered pixels if smaller, otherwise linear
+    between pixel centres."""
     def weights(count, wanted):
         by = count / wanted
         for i in range(wanted):
@@ -146,7 +152,8 @@ def resized(lines, size):
 
 
 def of_frames(said):
-    """Parts of the wall that frames have made smaller on their way, or show elsewhere: area, size on the way, where it is shown."""
+    """Returns the parts of the wall that frames reduce in transit, or show elsewhere: area, size in transit, shown
+    area."""
     found = []
     for pass_text, area, shown in re.findall(r"node \d+ \(local\) draws for channel (.*?)part \[ ([^]]+) \] of the wall(?:, shown in \[ ([^]]+) \])?", said):
         way = re.search(r"sent (\S+) by (\S+) times as large", pass_text)
@@ -157,7 +164,7 @@ def of_frames(said):
 
 
 def way_difference(native, shown, area, way, place):
-    """The largest difference of values from the native picture, made smaller and larger as the frame says."""
+    """Returns the largest difference from the native picture after the frame's reduction and enlargement."""
     width, height, rows = native
     x0, x1, y0, y1 = pixels_of(area, width, height)
     lines = [rows[y][3 * x0:3 * x1] for y in range(y1 - 1, y0 - 1, -1)]  # bottom-up, like the rounded values
@@ -175,7 +182,7 @@ def side_by_side(left, right):
 
 
 def other_canvases(said):
-    """Of each canvas beside the first: its name, how much larger it is, and the first of its nodes."""
+    """Returns for each further canvas its name, its relative size, and the first of its nodes."""
     found = []
     for name, w, h, own_w, own_h in re.findall(r'canvas "?([^" ]+)"? shows the program\'s picture, too, in (\d+)x(\d+) pixels where the first has (\d+)x(\d+)', said):
         after = said[said.index("canvas \"%s\" shows" % name if "canvas \"%s\" shows" % name in said else "canvas %s shows" % name):]
@@ -191,7 +198,7 @@ def of_other_canvas(line, said):
 
 
 def check_canvases(run, path, canvases, said):
-    """What the other canvases show is what the program draws natively into a window of their size."""
+    """Compares the other canvases with native drawing into a window of their size."""
     about = ""
     for name, times, _ in other_canvases(said):
         if name not in canvases:
@@ -219,7 +226,7 @@ def check_canvases(run, path, canvases, said):
 
 
 def check(run, path, native):
-    """None, or what is wrong; and a line about what was seen."""
+    """Returns None or an error, and a line about the checks."""
     shown, said = run.picture(["--config", path, "--here", "--frusta", "program"])
     about_canvases, wrong = check_canvases(run, path, run.canvases, said)
     if wrong:

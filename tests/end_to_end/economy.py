@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""What goes to the nodes, with economy: little where frames are alike, and the pictures are right.
+"""Traffic to the nodes with delta coding: little for similar frames, with exact pictures.
 
-  economy.py --build build/release [--cases same_scene,same_texture] [--list]
+economy.py --build build/release [--cases same_scene,same_texture] [--list]
 """
 
 import json
@@ -16,7 +16,7 @@ PATCH_BYTES = 64 * 64 * 4
 
 
 def report_of(context, program, frames, *options):
-    """The report of a run; a text when it went wrong."""
+    """Returns the report of a run, or an error text."""
     with tempfile.TemporaryDirectory(prefix="mural-economy.") as folder:
         report_file = os.path.join(folder, "report.json")
         command = [context.program(program), "--frames", str(frames), "--size", "253x191"]
@@ -29,7 +29,7 @@ def report_of(context, program, frames, *options):
 
 
 def verified(context, program, frames, *options, every=1):
-    """The same, of a run whose pictures were right; each so many frames are compared."""
+    """Returns the report of a run with exact pictures; every Nth frame is compared."""
     report = report_of(context, program, frames, "--economy", "on", "--verify=%d" % every, *options)
     if isinstance(report, dict) and (report["verifiedFrames"] != frames // every or report["differingPixels"] != 0):
         return "%s %s: %d frames verified, %d pixels differ" % (program, " ".join(options), report["verifiedFrames"], report["differingPixels"])
@@ -37,7 +37,7 @@ def verified(context, program, frames, *options, every=1):
 
 
 def per_frame(case_name, program, at_least, at_most, frames=(4, 10)):
-    """Between a run of few and one of more frames lie frames that nodes know all but the news of."""
+    """Compares a run of few frames with one of more: nodes know all data of the additional frames except the changes."""
     def check(context):
         wire = []
         for count in frames:
@@ -76,7 +76,7 @@ def verified_values(context):
 
 @failures.case
 def verified_texture(context):
-    """Patches arrive where they belong; also with a store that is too small for the texture."""
+    """Patches arrive at their position, also with a store that is too small for the texture."""
     for store in ("1GiB", "1MiB"):
         report = verified(context, "changed_texture", 3, "--store", store)
         if not isinstance(report, dict):
@@ -92,7 +92,7 @@ def left_out_of(report):
 
 @failures.case
 def late_uploads(context):
-    """What is replaced, the same again, or never drawn with does not go; what is drawn with late goes late."""
+    """Uploads that are replaced, unchanged, or never drawn are not sent; uploads that are drawn late are sent late."""
     report = verified(context, "late_uploads", 103)
     if not isinstance(report, dict):
         return report
@@ -106,11 +106,11 @@ def late_uploads(context):
 
 @failures.case
 def equal_state(context):
-    """State that is as it was, or set again before a draw, stays behind, and the pictures are right.
+    """State that does not change, or is set again before a draw, is not sent, and the pictures are exact.
 
-    Whether frames go on without it is chosen by what they cost, CPU time with it, which another load of the machine makes longer: that it is chosen where
-    it is cheaper is asserted without a clock (tests/holding/small_choice_test.cpp). Here at least it is tried.
-    """
+    The filter decides by CPU time whether it skips frames, and other load of the machine makes that time longer. A test
+    without a clock asserts the choice where it is cheaper (tests/holding/small_choice_test.cpp). Here it is at least
+    tried."""
     report = verified(context, "equal_state", 300, every=10)
     if not isinstance(report, dict):
         return report
@@ -124,7 +124,7 @@ def equal_state(context):
 
 @failures.case
 def off(context):
-    """Nodes of this machine are sent everything, unless asked otherwise."""
+    """Nodes of this machine receive everything, unless configured otherwise."""
     report = report_of(context, "same_scene", 5)
     if not isinstance(report, dict):
         return report

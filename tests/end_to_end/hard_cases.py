@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Pictures in which rounding decides much, by every decomposition that is exact, against one node's: a table.
+"""Pictures in which rounding decides much, with every exact decomposition, compared with a native run: prints a table.
 
   hard_cases.py --build build/release
   hard_cases.py --build build/release --ways "2x2 tiles,3 ranges" --size 506x378
 
-A cell is how many pixels differ from the program's native picture, and by how much at most; 0 is what is promised. The arithmetic
-below the pictures has a table of its own: bin/numerics_test --gtest_brief=1.
+A cell is the number of pixels that differ from the program's native picture, and the largest difference; 0 is required.
+The arithmetic that the pictures depend on has a table of its own: bin/numerics_test --gtest_brief=1.
 """
 
 import argparse
@@ -59,7 +59,7 @@ def drawn_by_nodes(report):
 
 
 def draw(arguments, screen, folder, program, size, options=None):
-    """The frames of one run, in their order; None and what it said when they did not all come."""
+    """Returns the frames of one run, in order; None and the messages if any is missing."""
     report = folder + ".json"
     launcher = [] if options is None else [os.path.join(arguments.build, "bin", "mural"), "run", "--quiet", "--display", "none", "--report", report] + options + ["--"]
     run = programs.run_program(arguments.build, program, folder, screen, size, len(CASES), launcher, arguments.seconds)
@@ -78,7 +78,7 @@ def cell_of(wanted, got):
 
 
 def table_of(arguments, screen, scratch, program, title, size, ways):
-    """Prints it; how many cells are not what is promised."""
+    """Prints the table, and returns the number of cells that violate the requirement."""
     ways = {name: options for name, options in ways.items() if name in arguments.chosen}
     if not ways:
         return 0

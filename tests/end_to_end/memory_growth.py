@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Nothing grows while a program makes and deletes objects of every kind in each frame: neither the program, nor the
-head, nor a render node, beyond what the program grows by natively. Then a node forgets to delete textures
-(MURAL_PLANT=leak): that must be found. And large objects weigh natively what they weigh on a node, with what a node is
-besides; in the program they weigh no more than natively. tools/bench/memory shows the same over more frames.
+"""No process grows while a program creates and deletes objects of every kind in each frame: neither the program, nor
+the head, nor a render node, beyond the program's native growth. A planted leak of textures in a node
+(MURAL_PLANT=leak) must be detected. Large objects use the same memory natively and on a node, apart from the node's
+own memory. In the program they use no more than natively. tools/bench/memory shows the same over more frames.
 
   memory_growth.py --build build/release
 """
@@ -37,7 +37,7 @@ def weight(seen, role):
 
 
 def heavy_objects(mural, environment, program, wall):
-    """How many of the comparisons are wrong. The ring is shared memory and not in these numbers."""
+    """Returns the number of failed comparisons. The ring is shared memory and not included."""
     native = weight(MemoryWatch(mural, environment).run(["--native"], program, WEIGHT_MARKS), "app")
     seen = MemoryWatch(mural, environment).run(wall, program, WEIGHT_MARKS)
     app, node = weight(seen, "app"), weight(seen, "node")

@@ -1,4 +1,6 @@
-"""One `mural run` that test programs are run by, one after another: nodes are started once, and have drawn others before."""
+"""One `mural run` for several test programs, one after another: the nodes start once, and have drawn other programs
+before.
+"""
 
 import os
 import select
@@ -33,13 +35,14 @@ class SharedNodes:
         self.ended = os.pidfd_open(self.process.pid)
 
     def run_program(self, build, name, folder, size, frames, seconds=120):
-        """As programs.run_program does."""
+        """Runs a program, with the interface of programs.run_program."""
         os.makedirs(folder)
         settings, words = programs.command_of(build, name, folder, size, frames)
         return programs.Run(*self.run(settings, words, folder + ".log", seconds), folder)
 
     def run(self, settings, words, log_path, seconds):
-        """The status of a command, and what it has said; None: it did not end in time, or the run itself has ended, which says why."""
+        """Returns the status of a command, and its output. The status is None if it did not end in time, or if the run
+        itself has ended, with the reason as output."""
         line = "%s %s > %s 2>&1 < /dev/null\n" % (settings, shlex.join(words), shlex.quote(log_path))
         try:
             self.process.stdin.write(line.encode())
@@ -57,7 +60,7 @@ class SharedNodes:
         return int(os.read(self.statuses, 16)) if self.statuses in ready else None
 
     def end(self, seconds):
-        """The status of the run; None: it did not end in time, and was killed."""
+        """Returns the status of the run; None: it did not end in time, and was killed."""
         try:
             self.process.stdin.close()
         except BrokenPipeError:

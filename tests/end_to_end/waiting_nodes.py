@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Nodes without ssh: mural node --wait, found and started by mural call, draw what local nodes draw.
+"""Nodes without ssh: mural call finds and starts daemons (mural node --wait), which draw the same as local nodes.
 
-  waiting_nodes.py --build BUILD
+waiting_nodes.py --build BUILD
 """
 import argparse
 import filecmp

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Under --display app a program that reads its own window right after a swap finds that frame there.
+"""With --display app a program that reads its own window right after a swap finds that frame there.
 
   window_reads.py --build build/release --programs immediate,resize --layouts 2x2 --size 250x190 --frames 4
   window_reads.py --build build/release --read copy    through a pixmap instead of XGetImage
 
-As run_exact.py, but the pictures are what the windows show (window_grab.c), not what GL reads.
+As run_exact.py, but the pictures are the windows' contents (window_grab.c), not the pixels that GL reads.
 """
 
 import os

@@ -61,7 +61,7 @@ class Excluded:
 
 
 class Groups:
-    """Values of the enum groups, group 0 all values: those that a version or a common extension has."""
+    """Values of the enum groups; group 0 is all values of any version or common extension."""
 
     def __init__(self, root, excluded):
         values, members = {}, {}
@@ -140,7 +140,7 @@ def value_source(p, groups):
 
 
 def param_row(command, p, groups):
-    """The initializer of a Param; None when nothing can be passed."""
+    """Returns the initializer of a Param; None if no value can be passed."""
     if p.pointers:
         source, type_name = pointer_source(command, p, groups), pointed_type(p.base)
         if p.base in registry.FOREIGN_TYPES:
