@@ -22,11 +22,11 @@ namespace mural {
 
 // Verbs of the test payloads: u32 length in words, u32 verb, arguments.
 enum FakeVerb : uint32_t {
-    kFakeSwap = 1,    // frame, window, width, height
-    kFakePixels = 2,  // request, x, y, w, h
-    kFakeBytes = 3,   // request
-    kFakeSum = 4,     // request
-    kFakeNote = 5, // any arguments, which nodes only record
+    kFakeSwap = 1,       // frame, window, width, height
+    kFakePixels = 2,     // request, x, y, w, h
+    kFakeBytes = 3,      // request
+    kFakeSum = 4,        // request
+    kFakeNote = 5,       // any arguments, which nodes only record
     kFakeWindowGone = 6, // window
 };
 

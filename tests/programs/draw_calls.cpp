@@ -178,10 +178,10 @@ void makeBuffers() {
     glBindBuffer(GL_ARRAY_BUFFER, buffers[0]);
     glBufferData(GL_ARRAY_BUFFER, kVertices * 12, nullptr, GL_DYNAMIC_DRAW);
     const GLuint commands[] = {
-        9, 3, 2, 0, 0, 0, 0, 0,      // arrays: count, instances, first, base instance
-        7, 2, 64, 5, 1, 0, 0, 0,     // elements as bytes: count, instances, first index, base vertex
-        6, 1, 0, 0, 6, 2, 10, 1,     // two array commands
-        3, 1, 0, 0, 0, 0, 0, 0,      // two element commands, 32 bytes apart
+        9, 3, 2, 0, 0, 0, 0, 0,  // arrays: count, instances, first, base instance
+        7, 2, 64, 5, 1, 0, 0, 0, // elements as bytes: count, instances, first index, base vertex
+        6, 1, 0, 0, 6, 2, 10, 1, // two array commands
+        3, 1, 0, 0, 0, 0, 0, 0,  // two element commands, 32 bytes apart
         6, 2, 6, 3, 0, 0, 0, 0};
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, buffers[2]);
     glBufferData(GL_DRAW_INDIRECT_BUFFER, sizeof commands, commands, GL_STATIC_DRAW);

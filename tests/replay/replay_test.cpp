@@ -472,8 +472,8 @@ protected:
 };
 
 TEST_F(HandlesTest, mapsHandlesInEveryCommand) {
-    encode_glGetTextureHandleARB(t_, 1, 7);            // 100
-    encode_glGetTextureSamplerHandleARB(t_, 1, 2, 8);  // 101
+    encode_glGetTextureHandleARB(t_, 1, 7);                         // 100
+    encode_glGetTextureSamplerHandleARB(t_, 1, 2, 8);               // 101
     encode_glGetImageHandleARB(t_, 1, 0, GL_FALSE, 0, GL_RGBA8, 9); // 102
     encode_glMakeTextureHandleResidentARB(t_, 8);
     encode_glMakeImageHandleResidentARB(t_, 9, GL_READ_WRITE);

@@ -6,15 +6,15 @@
 namespace mural::fuzz {
 
 enum class StreamStep : uint8_t {
-    Wait,         // u32 µs
+    Wait,     // u32 µs
     ToReader, // piece: an arbitrary datagram
-    ToWriter,     // piece
-    Write,        // u16 bytes
+    ToWriter, // piece
+    Write,    // u16 bytes
     Flush,
     Read,         // u16 bytes
-    PassOn, // u16 position, u8 bits: the writer's next datagram arrives, changed at the position
-    Answer, // u16 position, u8 bits: the same for the reader's next datagram
-    Lose, // drops the writer's next datagram
+    PassOn,       // u16 position, u8 bits: the writer's next datagram arrives, changed at the position
+    Answer,       // u16 position, u8 bits: the same for the reader's next datagram
+    Lose,         // drops the writer's next datagram
     AddMember,    // u8
     RemoveMember, // u8
     Count

@@ -7,10 +7,10 @@ namespace fuzz {
 
 struct ImageFormat {
     GLenum internal, format, type;
-    bool texture;  // has a sized internal format that textures keep
-    bool es; // also in OpenGL ES
+    bool texture; // has a sized internal format that textures keep
+    bool es;      // also in OpenGL ES
     bool classic; // also in OpenGL ES 1 and with the fixed function
-    bool color;    // a framebuffer object may draw into it
+    bool color;   // a framebuffer object may draw into it
 };
 
 const ImageFormat& anyFormat(World& w); // valid for glTexImage* in this context

@@ -35,23 +35,23 @@ enum class Kind : std::uint8_t { // kind of object
 };
 
 enum class Draw : std::uint8_t { // source of a value
-    Enum,       // one of a group
-    Bits,       // some of a group
-    Number,     // between low and high
-    Real,       // around 0, sometimes large
+    Enum,                        // one of a group
+    Bits,                        // some of a group
+    Number,                      // between low and high
+    Real,                        // around 0, sometimes large
     Boolean,
-    Object,     // a name of that kind
+    Object, // a name of that kind
     Sync,
-    Input,      // memory with values of the type
-    Text,       // a string that ends with 0
-    Names,      // an array of names of that kind
-    Enums,      // an array of values of the group
-    Made, // an array that receives names of that kind
-    Unpack,     // an image that is read: memory or an offset
-    Pack,       // an image that is written: memory or an offset
-    Array,      // vertices: memory or an offset
-    Indices,    // of elements: memory or an offset
-    Output      // memory that is written
+    Input,   // memory with values of the type
+    Text,    // a string that ends with 0
+    Names,   // an array of names of that kind
+    Enums,   // an array of values of the group
+    Made,    // an array that receives names of that kind
+    Unpack,  // an image that is read: memory or an offset
+    Pack,    // an image that is written: memory or an offset
+    Array,   // vertices: memory or an offset
+    Indices, // of elements: memory or an offset
+    Output   // memory that is written
 };
 
 enum class Type : std::uint8_t { Signed, Unsigned, Single, Double, Pointer, Byte, Short, Int, Float, Wide };
@@ -70,8 +70,8 @@ struct Command {
     Invoke invoke;
     const Param* params;
     std::uint8_t paramCount;
-    std::uint8_t gl, es1, es2;    // first version, times 10; 0: none
-    bool removed; // removed from the core profile
+    std::uint8_t gl, es1, es2; // first version, times 10; 0: none
+    bool removed;              // removed from the core profile
     bool returns;
     Kind made; // kind of the returned name
     const char* extensions; // separated by blanks, for example " GL_EXT_a GL_EXT_b "

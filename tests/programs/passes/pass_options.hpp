@@ -10,9 +10,9 @@
 namespace programs {
 
 struct PassOptions {
-    std::string draw = "fixed";     // --draw WAY
+    std::string draw = "fixed"; // --draw WAY
     float moveX = 0, moveY = 0; // --move X,Y: shift of the picture in pixels
-    float eye = 0, focus = 1; // --eye X,DISTANCE: position of the eye, and focus distance
+    float eye = 0, focus = 1;   // --eye X,DISTANCE: position of the eye, and focus distance
     // --screen LEFT,RIGHT,BOTTOM,TOP,DEGREES,X,Y,Z: a screen with these edges at distance 1, turned to the left by
     // DEGREES, seen from the point X,Y,Z.
     struct Screen {

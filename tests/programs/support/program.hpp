@@ -10,8 +10,8 @@
 namespace programs {
 
 struct Options {
-    int frames = 4;   // --frames N
-    int width = 250;  // --size WxH
+    int frames = 4;  // --frames N
+    int width = 250; // --size WxH
     int height = 190;
 };
 
