@@ -5,8 +5,8 @@
 
 Without --files: all of configs/. With --shared also the example files next to the tree (or in MURAL_SHARED), if
 present.
-  - A file without stereo shows exactly the native picture on every part of the wall that it draws: 0 pixels differ. Screens at
-    angles are laid flat for that (passes.py tests rooms).
+  - A file without stereo shows exactly the native picture on every part of the wall that it draws: 0 pixels differ.
+    Screens at angles are laid flat for that (passes.py tests rooms).
   - A zoomed part must be close to the native picture, and differ from it.
   - A part that frames reduce in transit, or show elsewhere, must equal the native picture after the same change.
   - A picture with stereo is combined from separate runs of each eye, and compared with that.

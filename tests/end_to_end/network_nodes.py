@@ -50,7 +50,7 @@ def drawn_by(run):
 
 
 def too_many(frames):
-    """Returns a frame limit for a run that ends earlier, when enough was seen."""
+    """Returns an error if a run reached the frame limit instead of ending when enough was seen."""
     return None if frames < MOST_FRAMES else "it did not end before frame %d" % frames
 
 

@@ -322,7 +322,7 @@ void drawReformatted(int frame) {
     glDisableVertexAttribArray(0);
 }
 
-// Binds vertex buffer 0: the array keeps its address, and the stride changes.
+// Moves an array to a binding without a buffer: it keeps its address, and takes the stride of the binding.
 void drawRebound(int frame) {
     const auto places = band<GLfloat>(4, 16, frame);
     glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 16, places.data());

@@ -196,7 +196,7 @@ void textureFromMap(const Cell& cell) {
     drawAt(at);
 }
 
-// Draws a shader's result, a copy of it and the pixel of the previous cell as colours.
+// Draws a shader's result, a copy of it and a window pixel of the earlier drawing as colours.
 void resultsOfTheGl(Cell cell, int round) {
     glUseProgram(compute);
     glUniform1ui(0, GLuint(round));
